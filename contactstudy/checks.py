@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Iterable, Iterator
+import uuid
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from difflib import get_close_matches
 from numbers import Integral, Real
@@ -14,7 +15,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from contactstudy.errors import InvalidInputError
+from contactstudy.errors import InvalidInputError, StoreError
 
 UNIT_SIZES: dict[str, dict[str, float]] = {
     "m": {
@@ -60,6 +61,7 @@ FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 IntArray = npt.NDArray[np.int64]
 BoolArray = npt.NDArray[np.bool_]
+PART = ".part"  # Suffix of an unfinished file
 REAL = "biufO"  # Kinds of arrays whose values can be real numbers: not complex ones, dates or texts
 
 
@@ -154,25 +156,27 @@ def known_name(name: str, value: str, names: Iterable[str]) -> str:
 
 
 @contextmanager
-def writing(path: str | Path) -> Iterator[Path]:
-    """Yield the path of a new file in the same folder; it replaces the file or link `path` when it is complete.
+def writing(path: Path, name: Callable[[Path], str] | None = None) -> Iterator[Path]:
+    """Yield a new file beside `path`, which it replaces when it is complete, or has the name ``name(part)``.
 
-    The previous file stays if writing fails, with an InvalidInputError. A device or pipe is written to directly.
+    The previous file stays if writing fails, with a StoreError. A device or pipe is written to directly.
     """
-    target = Path(path)
-    part = target.with_name(f".{target.stem}.part-{os.getpid()}{target.suffix}")
+    if path.is_dir():
+        raise StoreError(f"cannot write {path}: it is a folder")
+    part = path.with_name(f"{path.name}.{uuid.uuid4().hex[:12]}{PART}")
     try:
-        if target.exists() and not target.is_file():
-            yield target
+        if path.exists() and not path.is_file():
+            yield path
             return
         try:
             yield part
-            os.replace(part, target)
+            with open(part, "rb+") as file:
+                os.fsync(file.fileno())
+            os.replace(part, path if name is None else path.with_name(name(part)))
         finally:
             part.unlink(missing_ok=True)
     except OSError as error:
-        reason = error.strerror or str(error)
-        raise InvalidInputError("path", str(path), "a file that can be written", reason.lower()) from None
+        raise StoreError(f"cannot write {path}: {error.strerror or error}") from error
 
 
 def coordinates(name: str, values: object, unit: str = "m") -> FloatArray:

@@ -10,7 +10,6 @@ import signal
 import sys
 import threading
 from collections.abc import Callable, Iterable, Sequence
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -151,13 +150,14 @@ def _draw(folder: Path) -> list[Path]:
     try:
         from matplotlib import pyplot
 
+        from contactstudy.checks import writing
         from contactstudy.report.study_page import figures_of_folder
-        from contactstudy.study.files import write_atomically
 
         paths = []
         for name, (figure, _) in figures_of_folder(folder).items():
-            save = partial(figure.savefig, dpi=150, format="png")
-            paths.append(write_atomically(folder / f"{name}.png", save))
+            paths.append(folder / f"{name}.png")
+            with writing(paths[-1]) as part:
+                figure.savefig(part, dpi=150, format="png")
             pyplot.close(figure)
         return paths
     finally:
@@ -205,21 +205,18 @@ def _collect(options: argparse.Namespace, solver: Solver | None) -> int:
 
 
 def _export(options: argparse.Namespace, solver: Solver | None) -> int:
-    from contactstudy.export.command import export, export_summaries
+    from contactstudy.export.command import export
     from contactstudy.study.report import shown
 
-    if options.format or options.variable or options.line or options.select or not options.path.is_dir():
-        written = export(
-            options.path,
-            kind=options.format or "csv",
-            variables=options.variable,
-            line=options.line,
-            points=options.points,
-            select=options.select or (),
-            out=options.out,
-        )
-    else:
-        written = export_summaries(options.path, options.out)
+    written = export(
+        options.path,
+        kind=options.format,
+        variables=options.variable,
+        line=options.line,
+        points=options.points,
+        select=options.select or (),
+        out=options.out,
+    )
     if written is not None:
         print(f"wrote {shown(written.resolve())}")
     return ALL_OK

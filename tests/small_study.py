@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 
 from contactstudy.study import Study
-from contactstudy.study.parameters import case_id
+from contactstudy.study.parameters import checked, fragment, hash_of
 
 BASE = {
     "young": 210e9,
@@ -25,6 +25,12 @@ def small_study(name: str = "small", **changes) -> Study:
     """Four cases, or what `changes` make of it."""
     content = {"base": BASE, "sweep": {"e_over_a": [0.0, 1.0], "friction": [0.0, 0.1]}} | changes
     return Study(name=name, **content)
+
+
+def case_id(parameters: dict) -> str:
+    """Identity of a case of these parameters, without the default accuracy."""
+    values = checked(parameters)
+    return hash_of(fragment(name, values[name]) for name in sorted(values)).decode()
 
 
 def identity(**changes) -> str:

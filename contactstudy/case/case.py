@@ -60,8 +60,7 @@ class Case:
         Normal load ``W``, N.
     approach : float, optional
         Displacement of the roller towards the body at its mid-length, from where its profile's drop of 0 touches the
-        undeformed top, metres; between free ends relative to the top far away along y, see `reference` of `approach` in
-        results.
+        undeformed top, metres; see `reference` of `approach` in results.
     friction : float or DataArray (x)
         Coefficient ``f``, a number or values at positions along x with lines between: in full sliding the shear
         traction on the body is ``q = f p`` along +y; in any other motion ``f p`` is the bound on it.
@@ -74,8 +73,7 @@ class Case:
         Misalignment about the roller's mid-length against the undeformed top, radians, positive if larger x is pressed
         deeper. The moment that holds it is applied.
     load_position : float, optional
-        Position x on which the load acts, metres: the roller takes the inclination at which the pressure balances it,
-        so `tilt` is left out. Default: the roller keeps its tilt.
+        Position x of the load, metres, on which the roller tilts until the pressure balances it; default: `tilt` holds.
     motion : Sliding, Shift or Rolling
         Motion and speed of the roller against the body. Default: full sliding.
     body_edge : Cylinder or Chamfer, optional

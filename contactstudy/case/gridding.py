@@ -70,10 +70,6 @@ def choose_grid(
     margin : float
         Distance over ``a`` from the roller to the grid's edge where the body goes on.
 
-    Returns
-    -------
-    Grid
-
     Raises
     ------
     InvalidInputError

@@ -1,4 +1,4 @@
-"""Equilibrium of tilted rollers: a contact within one half-width of the roller's end is refused."""
+"""Doubtful magnitudes of a case, and tilted rollers whose contact would lie within one half-width of an end."""
 
 from __future__ import annotations
 
@@ -157,29 +157,18 @@ def _warn(messages: Iterable[str], stacklevel: int) -> None:
         warnings.warn(f"doubtful magnitudes in SI units: {text}; {SILENCE}", MagnitudeWarning, stacklevel=stacklevel)
 
 
-def _doubt(quantity_name: str, name: str, value: float) -> str:
-    """Message on a value outside its usual range; empty inside."""
+def _doubt(quantity_name: str, name: str, value: float, radius: float | None = None) -> str:
+    """Message on a value outside its usual range, of a depth over the roller's radius; empty inside."""
     usual = RANGES[quantity_name]
-    if usual.least <= value <= usual.most:
+    least, most = (usual.least, usual.most) if radius is None else (-np.inf, usual.most * radius)
+    if least <= value <= most:
         return ""
     unit = "" if usual.unit == "1" else f" {usual.unit}"
-    text = f"{name} = {value:g}{unit}, usual are {usual.least:g} to {usual.most:g}{unit}"
+    limits = f"up to {most:.2g} m on a roller of this radius" if radius else f"{least:g} to {most:g}{unit}"
+    text = f"{name} = {value:g}{unit}, usual are {limits}"
     for other in usual.units:
-        if usual.least <= (converted := value * UNIT_SIZES[usual.unit][other]) <= usual.most:
+        if least <= (converted := value * UNIT_SIZES[usual.unit][other]) <= most:
             return f"{text}; {value:g} {other} is {converted:g}{unit}"
-    return text
-
-
-def _depth_doubt(quantity_name: str, name: str, value: float, radius: float) -> str:
-    """Message on a depth beyond the usual fraction of the roller's radius; empty below."""
-    usual = RANGES[quantity_name]
-    most = usual.most * radius
-    if value <= most:
-        return ""
-    text = f"{name} = {value:.3g} m, usual are up to {most:.2g} m on a roller of this radius"
-    for other in usual.units:
-        if (converted := value * UNIT_SIZES["m"][other]) <= most:
-            return f"{text}; {value:.3g} {other} is {converted:.3g} m"
     return text
 
 
@@ -191,7 +180,7 @@ def _crown_doubt(case: Case) -> str:
         drop = checked_drop(roller.profile, np.array([-x, x]), roller.length)
         deepest = float(np.max(drop, where=np.isfinite(drop), initial=0.0))
         name = f"drop of roller.profile at {fraction:g} of the length from the middle"
-        if message := _depth_doubt(quantity_name, name, deepest, roller.radius):
+        if message := _doubt(quantity_name, name, deepest, roller.radius):
             return message
     return ""
 
@@ -247,7 +236,7 @@ def _design_doubt(case: Case) -> str:
 def _load_doubt(case: Case) -> str:
     """Message on load or pressure by the Hertz half-width, or on the approach."""
     if case.approach is not None:
-        return _depth_doubt("approach", "approach", case.approach - case.first_touch, case.roller.radius)
+        return _doubt("approach", "approach", case.approach - case.first_touch, case.roller.radius)
     usual, half_width = RANGES["half_width"], case.hertz_half_width / case.roller.radius
     if usual.least <= half_width <= usual.most:
         return ""

@@ -231,11 +231,6 @@ class AxialFriction:
         """Coefficient at positions `x`: array (x, 1)."""
         return np.asarray(np.interp(x, self.x, self.values))[:, None]
 
-    @property
-    def least(self) -> float:
-        """Smallest coefficient."""
-        return min(self.values)
-
 
 Friction = float | AxialFriction  # Friction of a case
 
@@ -263,8 +258,8 @@ def on_columns(friction: Friction, x: FloatArray) -> float | FloatArray:
 
 def check_coupled(friction: Friction, motion: Motion, *, coupled: bool) -> None:
     """Raise if a motion cannot have this friction, or if it cannot displace the surface normally."""
-    least = friction.least if isinstance(friction, AxialFriction) else friction
     if not isinstance(motion, Sliding):
+        least = min(friction.values) if isinstance(friction, AxialFriction) else friction
         if least < 0:
             allowed = "not below zero with stick and slip: the slip turns the traction round"
             raise InvalidInputError("friction", least, allowed)

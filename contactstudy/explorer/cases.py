@@ -180,20 +180,19 @@ def numbers_by_subject(scalars: xr.Dataset) -> dict[str, dict[str, str]]:
         if entry.dtype.kind == "f" and not str(name).endswith("_error") and bool(entry.notnull().any())
     ]
     meanings = [variable_of(name, scalars[name].attrs).long_name for name in names]
+
+    def rank(name: str) -> tuple[int, int]:
+        for subject, members in SUBJECTS.items():
+            for number, entry in enumerate(members):
+                if name == entry or (entry.endswith("_") and name.startswith(entry)):
+                    return ORDER.index(subject), number
+        return ORDER.index(REMAINING), 0
+
     groups: dict[str, dict[str, str]] = {}
     for (subject, _), name, meaning in sorted(
-        (_rank(name), name, meaning) for name, meaning in zip(names, meanings, strict=True)
+        (rank(name), name, meaning) for name, meaning in zip(names, meanings, strict=True)
     ):
         # The texts of all groups are distinct.
         text = meaning if meanings.count(meaning) == 1 else f"{meaning}, {name}"
         groups.setdefault(ORDER[subject], {})[text] = name
     return groups
-
-
-def _rank(name: str) -> tuple[int, int]:
-    """Subject of a number and its rank within it."""
-    for subject, names in SUBJECTS.items():
-        for rank, entry in enumerate(names):
-            if name == entry or (entry.endswith("_") and name.startswith(entry)):
-                return ORDER.index(subject), rank
-    return ORDER.index(REMAINING), 0

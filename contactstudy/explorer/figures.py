@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from bokeh.models import (
@@ -120,14 +120,6 @@ class ImageFigure:
         self.figure.xaxis.axis_label, self.figure.yaxis.axis_label = image.names
 
 
-class Marked(NamedTuple):
-    """A case of the page: number along the swept parameter, value, and colour."""
-
-    number: int
-    value: float
-    color: str
-
-
 class StudyFigure:
     """Number of all cases over one swept parameter, with the cases of the page."""
 
@@ -153,17 +145,18 @@ class StudyFigure:
         values: FloatArray,
         errors: FloatArray | None,
         *,
-        marked: list[Marked],
+        marked: list[tuple[int, float, str]],
         labels: tuple[str, str],
         ticks: dict[float, str] | None = None,
     ) -> None:
         """Draw values with bars of errors over a swept parameter; an unbounded value as a triangle at the top.
 
-        The mark of a value with the error NaN is open; without `errors` the values are exact; `ticks` are texts.
+        The mark of a value with the error NaN is open; without `errors` the values are exact. `marked` are cases of the
+        page: number along the parameter, value, and colour. `ticks` are texts.
         """
         finite = np.isfinite(values)
         bars = np.zeros(values.size) if errors is None else np.nan_to_num(errors)
-        numbers = [*values[finite], *(case.value for case in marked if np.isfinite(case.value))]
+        numbers = [*values[finite], *(value for _, value, _ in marked if np.isfinite(value))]
         extremes = [*numbers, *(values + bars)[finite], *(values - bars)[finite & (bars > 0)]]
         low, high = min([0.0, *extremes]), max([*extremes, 1e-12]) if numbers else 1.0
         high += 0.06 * (high - low)
@@ -182,21 +175,16 @@ class StudyFigure:
         top = 0.96 * high
         self._unbounded.data = {"x": x[np.isinf(values)], "v": np.full(int(np.isinf(values).sum()), top)}
         for source, unbounded in ((self._marked, False), (self._marked_unbounded, True)):
-            cases = [case for case in marked if np.isposinf(case.value) == unbounded]
+            cases = [case for case in marked if np.isposinf(case[1]) == unbounded]
             source.data = {
-                "x": [x[case.number] for case in cases],
-                "v": [top if unbounded else case.value for case in cases],
-                "color": [case.color for case in cases],
+                "x": [x[number] for number, _, _ in cases],
+                "v": [top if unbounded else value for _, value, _ in cases],
+                "color": [color for _, _, color in cases],
             }
         self.figure.y_range.update(start=low, end=high)
-        self._set_ticks(ticks or {})
+        if (ticks or {}) != self._ticks:  # a new ticker is slow
+            axis, self._ticks = self.figure.xaxis[0], ticks or {}
+            axis.ticker = list(self._ticks) if ticks else self._ticker
+            axis.major_label_overrides = self._ticks
+            axis.major_label_orientation = 0.5 if ticks else "horizontal"
         self.figure.xaxis.axis_label, self.figure.yaxis.axis_label = labels
-
-    def _set_ticks(self, ticks: dict[float, str]) -> None:
-        """Replace numbers by texts, only if the texts change: a new ticker is slow."""
-        if ticks == self._ticks:
-            return
-        axis, self._ticks = self.figure.xaxis[0], ticks
-        axis.ticker = list(ticks) if ticks else self._ticker
-        axis.major_label_overrides = ticks
-        axis.major_label_orientation = 0.5 if ticks else "horizontal"

@@ -213,26 +213,21 @@ def _image(
     first, second = (f"{labels[name]}{scale.length_name}" for name in names)
     (left, right), (low, high) = ((start / scale.length, stop / scale.length) for start, stop in spans)
     clipped = np.minimum(pixels, limit / scale.stress).astype(np.float32)
-    largest = _largest(values, axes, spans, limit)
+    # The largest value of the field up to the limit, which may lie between the pixels.
+    within = [(points >= start) & (points <= stop) for points, (start, stop) in zip(axes, spans, strict=True)]
+    drawn = np.where(within[0][:, None] & within[1] & (values <= limit), values, -np.inf)
+    row, column = np.unravel_index(int(drawn.argmax()), drawn.shape)
+    place = np.array([drawn[row, column], axes[0][row], axes[1][column]])
+    place /= (scale.stress, scale.length, scale.length)
+    largest = place.tolist() if place[0] > -np.inf else (np.nan, np.nan, np.nan)
     return Image(
         values=clipped,
         horizontal=(left, right),
         vertical=(low, high),
         limit=limit / scale.stress,
         names=(first, second),
-        largest=(largest[0] / scale.stress, largest[1] / scale.length, largest[2] / scale.length),
+        largest=tuple(largest),
     )
-
-
-def _largest(
-    values: FloatArray, axes: tuple[FloatArray, FloatArray], spans: tuple[Span, Span], limit: float
-) -> tuple[float, float, float]:
-    """Largest value up to a limit between two positions along each axis, and its place; NaN without values."""
-    first, second = ((points >= low) & (points <= high) for points, (low, high) in zip(axes, spans, strict=True))
-    drawn = np.where(first[:, None] & second & (values <= limit), values, -np.inf)
-    row, column = np.unravel_index(int(drawn.argmax()), drawn.shape)
-    value = float(drawn[row, column])
-    return (value, float(axes[0][row]), float(axes[1][column])) if value > -np.inf else (np.nan, np.nan, np.nan)
 
 
 def to_pixels(

@@ -15,7 +15,7 @@ from contactstudy.arrays.variables import variable_of
 from contactstudy.checks import FloatArray
 from contactstudy.errors import ContactStudyError
 from contactstudy.explorer.cases import Cases, numbers_by_subject, status_sentence
-from contactstudy.explorer.figures import FIRST, SECOND, AxialFigure, ImageFigure, Marked, StudyFigure
+from contactstudy.explorer.figures import FIRST, SECOND, AxialFigure, ImageFigure, StudyFigure
 from contactstudy.explorer.images import (
     PLANES,
     REGIONS,
@@ -260,9 +260,7 @@ class Page:
         values = np.asarray(numbers[line], dtype=np.float64) / factor
         x, label, ticks = self._parameter_axis(parameter)
         axis = dims.index(parameter)
-        marked = [
-            Marked(self.index(side)[axis], float(numbers[self.index(side)]) / factor, COLORS[side]) for side in sides
-        ]
+        marked = [(self.index(side)[axis], float(numbers[self.index(side)]) / factor, COLORS[side]) for side in sides]
         number_label = f"{specification.long_name} ({unit})" if unit else specification.long_name
         self._set_visible(5, not np.isnan(values).all())
         errors = self._errors(name, line, values, factor)

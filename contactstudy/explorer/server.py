@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import hmac
 import json
 import logging
@@ -147,22 +148,21 @@ class Opening:
         """Read the study in a thread; an error stops the server."""
         from tornado.ioloop import IOLoop
 
+        def open_folder() -> Cases:
+            import_module("contactstudy.explorer.page")
+            from contactstudy.explorer.cases import open_cases
+
+            return open_cases(self._folder)
+
         loop, interval = IOLoop.current(), sys.getswitchinterval()
         sys.setswitchinterval(SWITCH)
         try:
-            self._cases.set_result(await loop.run_in_executor(None, self._open))
+            self._cases.set_result(await loop.run_in_executor(None, open_folder))
         except Exception as error:  # `serve` raises it
             self.error = error
             loop.stop()
         finally:
             sys.setswitchinterval(interval)
-
-    def _open(self) -> Cases:
-        """Import the page, and read the study."""
-        import_module("contactstudy.explorer.page")
-        from contactstudy.explorer.cases import open_cases
-
-        return open_cases(self._folder)
 
     def page(self) -> Any:
         """Page of a new visitor: empty until the browser has its scripts and the study is read."""
@@ -255,21 +255,12 @@ def study_title(study: Mapping[str, Any], name: str) -> str:
     return f"{title}: {study['description']}" if study.get("description") else title
 
 
-def _is_free(port: int) -> bool:
-    """Whether no process listens on a port of this machine."""
-    with socket.socket(socket.AF_INET, socket.SOCK_STREAM) as probe:
-        probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)  # a recently closed port is free
-        try:
-            probe.bind((HOST, port))
-        except OSError:
-            return False
-    return True
-
-
 def _choose_port(port: int | None) -> int:
     """Return the port if it is free, or the first free one without it, or raise."""
     for number in range(PORT, PORT + PORTS) if port is None else (checks.count("port", port),):
-        if number <= 65535 and _is_free(number):
+        with socket.socket(socket.AF_INET, socket.SOCK_STREAM) as probe, contextlib.suppress(OSError, OverflowError):
+            probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)  # a recently closed port is free
+            probe.bind((HOST, number))
             return number
     if port is None:
         raise InvalidInputError("port", None, f"given: all from {PORT} to {PORT + PORTS - 1} are taken")

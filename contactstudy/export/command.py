@@ -4,12 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from contactstudy.arrays.selections import place_of, selection_of
 from contactstudy.errors import InvalidInputError
 from contactstudy.export.matlab import to_mat
-from contactstudy.export.table import Line, csv_text, headings, to_csv, to_table
+from contactstudy.export.table import Line, csv_text, headings, to_table
 from contactstudy.export.vtk import to_vtk
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 SUFFIXES = {"csv": ".csv", "vtk": ".vtr", "mat": ".mat"}
 
@@ -26,17 +30,26 @@ def parse_line(text: str) -> Line:
 def export(
     path: Path,
     *,
-    kind: str = "csv",
+    kind: str | None = None,
     variables: Sequence[str] | None = None,
     line: str | None = None,
     points: int = 101,
     select: Sequence[str] = (),
     out: Path | None = None,
 ) -> Path | None:
-    """Write a field or a line of a case as CSV or VTK, or a case or a study for MATLAB; None if ``-`` prints it."""
-    from contactstudy.study import open_study
+    """Write summaries of a study, or a field or line of a case, as CSV; a field for VTK; a case or study for MATLAB.
+
+    Return the path; None if ``-`` prints the table.
+    """
+    from contactstudy.study import collect, open_study
     from contactstudy.study.files import load_result
 
+    if path.is_dir() and not (kind or variables or line or select):
+        collected = collect(path)
+        rows = collected.to_dataframe().reset_index()
+        rows = rows.rename(columns=headings(collected, [str(name) for name in rows.columns]))
+        return _write_csv(rows, path / "summary.csv" if out is None else out)
+    kind = kind or "csv"
     dataset = open_study(path) if path.is_dir() else load_result(path, "path")
     for name, value in selection_of(select).items():
         dataset = dataset.isel({name: place_of(dataset, name, value, "select")})
@@ -55,23 +68,15 @@ def export(
             dataset = dataset.drop_dims([dim for dim in dataset.dims if dim not in dataset["status"].dims])
         return to_mat(dataset, target, variables)
     ends = None if line is None else parse_line(line)
-    if str(target) == "-":
-        print(csv_text(to_table(dataset, variables, line=ends, points=points)), end="")
-        return None
-    return to_csv(dataset, target, variables, line=ends, points=points)
+    return _write_csv(to_table(dataset, variables, line=ends, points=points), target)
 
 
-def export_summaries(folder: Path, out: Path | None = None) -> Path | None:
-    """Write the summaries of a study as CSV, one row per case; None if ``-`` prints it."""
-    from contactstudy.study import collect
+def _write_csv(table: pd.DataFrame, path: Path) -> Path | None:
+    """Write a table as CSV; print it and return None if the path is ``-``."""
     from contactstudy.study.files import write_text
 
-    collected = collect(folder)
-    table = collected.to_dataframe().reset_index()
-    text = csv_text(table.rename(columns=headings(collected, [str(name) for name in table.columns])))
-    if str(out) == "-":
-        print(text, end="")
+    if str(path) == "-":
+        print(csv_text(table), end="")
         return None
-    path = out if out is not None else folder / "summary.csv"
-    write_text(path, text)
+    write_text(path, csv_text(table))
     return path

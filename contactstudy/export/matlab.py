@@ -12,7 +12,6 @@ import xarray as xr
 
 from contactstudy import checks
 from contactstudy.arrays.variables import require, variable_of
-from contactstudy.checks import Array
 from contactstudy.errors import InvalidInputError
 from contactstudy.export.table import named_arrays
 
@@ -48,7 +47,9 @@ def to_mat(dataset: xr.Dataset, path: str | Path, variables: str | Sequence[str]
     ------
     InvalidInputError
         If the path ends otherwise, a variable is missing, has an invalid name in MATLAB or exceeds the size of the
-        format, or the file cannot be written.
+        format.
+    StoreError
+        If the file cannot be written.
 
     Examples
     --------
@@ -68,9 +69,19 @@ def to_mat(dataset: xr.Dataset, path: str | Path, variables: str | Sequence[str]
     if target.suffix != SUFFIX:
         raise InvalidInputError("path", str(path), f"a file name that ends with {SUFFIX}")
     content: dict[str, Any] = {name: {} for name in STRUCTS}
-    for name, array in _arrays(dataset, variables).items():
+    arrays = named_arrays(dataset, variables)
+    for array in list(arrays.values()):
+        arrays |= {str(name): coordinate for name, coordinate in array.coords.items()}
+    for name, array in arrays.items():
+        if not NAME.fullmatch(name) or name in STRUCTS:
+            allowed = f"a name of up to 63 letters, digits and _ that begins with a letter, not {', '.join(STRUCTS)}"
+            raise InvalidInputError("variables", name, allowed, "rename it")
+        if array.nbytes > LARGEST:
+            hint = "select a part of it, or read the netCDF file, which MATLAB can"
+            raise InvalidInputError("variables", f"{name} of {array.nbytes / 1e9:.1f} GB", "at most 2 GB each", hint)
+        values = array.values
         specification = variable_of(name, array.attrs, coordinate=name in dataset.coords)
-        content[name] = _values(name, array)
+        content[name] = values if values.dtype.kind in "biuf" else values.astype(str).astype(object)
         content["units"][name] = specification.units
         content["meaning"][name] = specification.long_name
         content["dims"][name] = np.array([str(dim) for dim in array.dims], dtype=object)
@@ -80,24 +91,3 @@ def to_mat(dataset: xr.Dataset, path: str | Path, variables: str | Sequence[str]
     with checks.writing(target) as part, part.open("wb") as file:
         savemat(file, content, long_field_names=True, do_compression=True, oned_as="column")
     return target
-
-
-def _arrays(dataset: xr.Dataset, variables: str | Sequence[str] | None) -> dict[str, xr.DataArray]:
-    """Return the arrays of the file by name, the coordinates last."""
-    arrays = named_arrays(dataset, variables)
-    for array in list(arrays.values()):
-        arrays |= {str(name): coordinate for name, coordinate in array.coords.items()}
-    for name in arrays:
-        if not NAME.fullmatch(name) or name in STRUCTS:
-            allowed = f"a name of up to 63 letters, digits and _ that begins with a letter, not {', '.join(STRUCTS)}"
-            raise InvalidInputError("variables", name, allowed, "rename it")
-    return arrays
-
-
-def _values(name: str, array: xr.DataArray) -> Array:
-    """Return the values for MATLAB: numbers, or a cell for each text."""
-    if array.nbytes > LARGEST:
-        hint = "select a part of it, or read the netCDF file, which MATLAB can"
-        raise InvalidInputError("variables", f"{name} of {array.nbytes / 1e9:.1f} GB", "at most 2 GB each", hint)
-    values = array.values
-    return values if values.dtype.kind in "biuf" else values.astype(str).astype(object)

@@ -40,17 +40,6 @@ def named_arrays(dataset: xr.Dataset, variables: str | Sequence[str] | None) -> 
     return {name: measure(dataset, name) for name in ([variables] if isinstance(variables, str) else variables)}
 
 
-def _fields_on_same_points(dataset: xr.Dataset, variables: str | Sequence[str] | None) -> xr.Dataset:
-    """Variables of the table; by default all but scalars."""
-    arrays = named_arrays(dataset, variables)
-    if variables is None:
-        arrays = {name: array for name, array in arrays.items() if array.ndim}
-    shapes = [array.dims for array in arrays.values()]
-    if len({frozenset(dims) for dims in shapes}) != 1 or not all(shapes):
-        raise InvalidInputError("variables", variables or "all", "variables on the same points", points_hint(arrays))
-    return xr.Dataset(arrays)
-
-
 def to_table(
     dataset: xr.Dataset,
     variables: str | Sequence[str] | None = None,
@@ -93,7 +82,15 @@ def to_table(
     require(dataset)
     case = single_case(dataset)
     if line is None:
-        fields = _fields_on_same_points(case, variables)
+        arrays = named_arrays(case, variables)
+        if variables is None:
+            arrays = {name: array for name, array in arrays.items() if array.ndim}
+        points_of_arrays = {frozenset(array.dims) for array in arrays.values()}
+        if len(points_of_arrays) != 1 or frozenset() in points_of_arrays:
+            raise InvalidInputError(
+                "variables", variables or "all", "variables on the same points", points_hint(arrays)
+            )
+        fields = xr.Dataset(arrays)
     else:
         if not isinstance(line, Sequence) or len(line) != 2:
             raise InvalidInputError("line", line, "a pair of points, each (x, y, z) or (x, y) in metres")
@@ -136,15 +133,12 @@ def to_csv(
     path : str or Path
         File to write.
 
-    Returns
-    -------
-    Path
-        The file.
-
     Raises
     ------
     InvalidInputError
-        As :func:`to_table`, or if the file cannot be written.
+        As :func:`to_table`.
+    StoreError
+        If the file cannot be written.
 
     Examples
     --------

@@ -51,7 +51,9 @@ def to_vtk(dataset: xr.Dataset, path: str | Path, variables: str | Sequence[str]
     ------
     InvalidInputError
         If the Dataset contains more than one case, the path has another suffix, the variables are missing or lie on
-        different points, or the file cannot be written.
+        different points.
+    StoreError
+        If the file cannot be written.
 
     Examples
     --------
@@ -69,7 +71,15 @@ def to_vtk(dataset: xr.Dataset, path: str | Path, variables: str | Sequence[str]
         raise InvalidInputError("path", str(path), f"a file name that ends with {' or '.join(SUFFIXES)}")
     fields = fields_on_same_points(single_case(dataset), variables)
     if target.suffix == ".vtr":
-        _write_rectilinear(target, *_on_points(fields))
+        axes, data = _on_points(fields)
+        extent = " ".join(f"0 {axis.size - 1}" for axis in axes)
+        # The points of the format have x fastest.
+        points = {name: np.moveaxis(values, (0, 1, 2), (2, 1, 0)) for name, values in data.items()}
+        sections = {
+            "PointData": {name: values.reshape(-1, *values.shape[3:]) for name, values in points.items()},
+            "Coordinates": dict(zip(AXES, axes, strict=True)),
+        }
+        _write(target, "RectilinearGrid", {"WholeExtent": extent}, {"Extent": extent}, sections)
     elif set(axis_dimensions(next(iter(fields.values()))).values()) == {"x", "y"}:
         first = next(iter(fields.values()))
         # Only the cells of the field matter: a gap is infinite beyond the roller.
@@ -98,18 +108,6 @@ def _on_points(fields: dict[str, xr.DataArray]) -> tuple[list[FloatArray], dict[
         components = np.stack([data[name] for name in STRESSES], axis=-1)
         data["stress"] = components[..., TENSOR].reshape(*components.shape[:-1], 3, 3)
     return [points[axis][order[axis]] for axis in AXES], data
-
-
-def _write_rectilinear(path: Path, axes: list[FloatArray], data: Mapping[str, FloatArray]) -> None:
-    """Write point data on a rectilinear grid."""
-    extent = " ".join(f"0 {axis.size - 1}" for axis in axes)
-    # The points of the format have x fastest.
-    points = {name: np.moveaxis(values, (0, 1, 2), (2, 1, 0)) for name, values in data.items()}
-    sections = {
-        "PointData": {name: values.reshape(-1, *values.shape[3:]) for name, values in points.items()},
-        "Coordinates": dict(zip(AXES, axes, strict=True)),
-    }
-    _write(path, "RectilinearGrid", {"WholeExtent": extent}, {"Extent": extent}, sections)
 
 
 def _write_mesh(

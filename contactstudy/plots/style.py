@@ -185,7 +185,9 @@ def save(figure: Figure, path: str | Path, formats: Sequence[str] = ("png", "pdf
     Raises
     ------
     InvalidInputError
-        If matplotlib does not support a format, or a file cannot be written.
+        If matplotlib does not support a format.
+    StoreError
+        If a file cannot be written.
 
     Examples
     --------
@@ -206,7 +208,7 @@ def save(figure: Figure, path: str | Path, formats: Sequence[str] = ("png", "pdf
         base = base.with_suffix("")
     files = [base.with_name(f"{base.name}.{name}") for name in formats]
     with matplotlib.rc_context({"pdf.fonttype": 42}):
-        for file in files:
+        for file, name in zip(files, formats, strict=True):
             with checks.writing(file) as part:
-                figure.savefig(part, dpi=200, bbox_inches="tight")
+                figure.savefig(part, dpi=200, bbox_inches="tight", format=name)
     return files

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, fields
-from typing import NamedTuple
 
 import numpy as np
 
@@ -13,16 +12,10 @@ from contactstudy.bodies.material import Material
 from contactstudy.bodies.models import Body, FiniteLengthSpace
 from contactstudy.case.case import Case
 from contactstudy.case.motion import AxialFriction, Sliding
-from contactstudy.case.roller import Roller
 from contactstudy.profiles import Cylinder, Profile, Shape
 from contactstudy.profiles.base import in_words
 
-
-class Input(NamedTuple):
-    """One row: meaning, and value with its unit."""
-
-    meaning: str
-    text: str
+Input = tuple[str, str]  # One row: meaning, and value with its unit
 
 
 @dataclass(frozen=True, repr=False)
@@ -33,7 +26,7 @@ class CaseTable:
 
     def __repr__(self) -> str:
         return "\n".join(
-            f"{subject}: {row.meaning}: {row.text}" for subject, rows in self.subjects.items() for row in rows
+            f"{subject}: {meaning}: {text}" for subject, rows in self.subjects.items() for meaning, text in rows
         )
 
     def _repr_html_(self) -> str:
@@ -56,67 +49,64 @@ def case_table(case: Case) -> CaseTable:
     >>> print(str(table).splitlines()[0])
     Roller: radius R: 5 mm
     """
-    place = [Input("from end I of the body to the roller, e", quantity(case.roller_start, "m"))]
+    roller = case.roller
+    roller_rows = [
+        ("radius R", quantity(roller.radius, "m")),
+        ("length L", quantity(roller.length, "m")),
+        ("profile", _profile(roller.profile)),
+        ("material", material_words(roller.material) if roller.material else "rigid"),
+    ]
+    if roller.material is not None:
+        roller_rows.append(
+            ("elastic as", "its own free ends" if roller.ends == "free" else "a half-space, without ends")
+        )
+    drops = roller.profile.drop(np.array([0.45, 0.5]) * roller.length, roller.length).tolist()
+    roller_rows.append((f"drop at {quantity(0.45 * roller.length, 'm')} from mid-length", quantity(drops[0], "m")))
+    roller_rows.append(("drop at the very end", quantity(drops[1], "m")))
+    place = [("from end I of the body to the roller, e", quantity(case.roller_start, "m"))]
     if isinstance(case.body, FiniteLengthSpace):
         distance = case.body.length - case.roller_start - case.roller.length
-        place.append(Input("from the roller to end II", quantity(distance, "m")))
+        place.append(("from the roller to end II", quantity(distance, "m")))
     subjects = {
-        "Roller": _roller(case.roller),
-        "Body": [Input("kind", body_words(case.body)), Input("material", material_words(case.body.material))],
+        "Roller": roller_rows,
+        "Body": [("kind", body_words(case.body)), ("material", material_words(case.body.material))],
         "Place": place,
         "Load": _load(case),
     }
     return CaseTable(subjects)
 
 
-def _roller(roller: Roller) -> list[Input]:
-    """Rows on a roller: geometry, material, and how far its profile drops."""
-    rows = [
-        Input("radius R", quantity(roller.radius, "m")),
-        Input("length L", quantity(roller.length, "m")),
-        Input("profile", _profile(roller.profile)),
-        Input("material", material_words(roller.material) if roller.material else "rigid"),
-    ]
-    if roller.material is not None:
-        ends = "its own free ends" if roller.ends == "free" else "a half-space, without ends"
-        rows.append(Input("elastic as", ends))
-    drops = roller.profile.drop(np.array([0.45, 0.5]) * roller.length, roller.length).tolist()
-    rows.append(Input(f"drop at {quantity(0.45 * roller.length, 'm')} from mid-length", quantity(drops[0], "m")))
-    rows.append(Input("drop at the very end", quantity(drops[1], "m")))
-    return rows
-
-
 def _load(case: Case) -> list[Input]:
     """Load, friction, tilt and motion."""
     if case.approach is not None:
-        rows = [Input("approach, which takes the load that results", quantity(case.approach, "m"))]
+        rows = [("approach, which takes the load that results", quantity(case.approach, "m"))]
     else:
         rows = [
-            Input("normal load W", quantity(case.normal_load, "N")),
-            Input("Hertz pressure p0 of the line contact", quantity(case.hertz_max_pressure, "Pa")),
-            Input("Hertz half-width a", quantity(case.hertz_half_width, "m")),
+            ("normal load W", quantity(case.normal_load, "N")),
+            ("Hertz pressure p0 of the line contact", quantity(case.hertz_max_pressure, "Pa")),
+            ("Hertz half-width a", quantity(case.hertz_half_width, "m")),
         ]
     if case.load_position is not None:
-        rows.append(Input("the load acts at x =", quantity(case.load_position, "m")))
+        rows.append(("the load acts at x =", quantity(case.load_position, "m")))
     if case.tilt:
-        rows.append(Input("tilt, positive if larger x is pressed deeper", quantity(case.tilt, "rad")))
+        rows.append(("tilt, positive if larger x is pressed deeper", quantity(case.tilt, "rad")))
     friction = case.friction
     if isinstance(friction, AxialFriction):
-        rows.append(Input("friction along the axis", f"{min(friction.values):g} to {max(friction.values):g}"))
+        rows.append(("friction along the axis", f"{min(friction.values):g} to {max(friction.values):g}"))
     else:
-        rows.append(Input("friction coefficient", f"{friction:g}{', coupled' if case.coupled else ''}"))
+        rows.append(("friction coefficient", f"{friction:g}{', coupled' if case.coupled else ''}"))
     if isinstance(case.motion, Sliding):
         rows.append(
-            Input("motion", "full sliding along +y" if friction else "sliding without friction, so without traction")
+            ("motion", "full sliding along +y" if friction else "sliding without friction, so without traction")
         )
     else:
         values = {entry.name: getattr(case.motion, entry.name) for entry in fields(case.motion)}
         values_text = ", ".join(f"{name.replace('_', ' ')} {value}" for name, value in values.items() if value)
-        rows.append(Input("motion", f"{type(case.motion).__name__.lower()}: {values_text or 'none'}"))
+        rows.append(("motion", f"{type(case.motion).__name__.lower()}: {values_text or 'none'}"))
     if case.motion.speeds is not None:
-        rows.append(Input("entrainment speed um", f"{case.motion.speeds.entrainment:g} m/s"))
+        rows.append(("entrainment speed um", f"{case.motion.speeds.entrainment:g} m/s"))
     if case.lubricant is not None:
-        rows.append(Input("lubricant", repr(case.lubricant).partition("(")[2].rstrip(")")))
+        rows.append(("lubricant", repr(case.lubricant).partition("(")[2].rstrip(")")))
     return rows
 
 

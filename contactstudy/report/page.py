@@ -22,6 +22,7 @@ from contactstudy.report.sources import citations
 from contactstudy.report.study_page import study_context
 from contactstudy.report.summary_table import summary
 from contactstudy.study.files import load_result
+from contactstudy.versions import PACKAGES
 
 CELLS = {
     "refined": "columns refined along the axis until the accuracy was reached",
@@ -29,8 +30,6 @@ CELLS = {
     "given": "given by the user",
 }
 """Cells of a result by the setting of `solve`."""
-
-VERSIONS = ("contactstudy", "commit", "python", "numpy", "scipy", "xarray", "netCDF4", "pyfftw")
 
 
 def html(
@@ -77,7 +76,19 @@ def html(
         title = title or (f"Study {study}, case {path.stem}" if study else path.stem)
     if selection:
         raise InvalidInputError("selection", dict(selection), "left out: the report of one case shows that case")
-    return _render("case.html", _case_context(source) | {"title": title or "Contact of a roller"})
+    result = single_case(source)
+    case, table = solved_case(result) if INPUTS_ATTRIBUTE in result.attrs else None, summary(result)
+    context = {
+        "title": title or "Contact of a roller",
+        "inputs": case_table(case).subjects if case is not None else {},
+        "drawing": side_view(case) if case is not None else None,
+        "numbers": table.numbers,
+        "assessment": assess_case(result, table),
+        "pictures": case_pictures(result, case),
+        "provenance": provenance(result),
+        "citations": citations(result).entries,
+    }
+    return _render("case.html", context)
 
 
 def write(
@@ -99,16 +110,12 @@ def write(
     title, selection : optional
         As for :func:`html`.
 
-    Returns
-    -------
-    Path
-        The file.
-
     Raises
     ------
     InvalidInputError
-        As :func:`html`; if the path is missing for a Dataset in memory or does not end in .html, or the file cannot be
-        written.
+        As :func:`html`; if the path is missing for a Dataset in memory or does not end in .html.
+    StoreError
+        If the file cannot be written.
 
     Examples
     --------
@@ -159,7 +166,8 @@ def provenance(dataset: xr.Dataset) -> list[tuple[str, str]]:
         rows.append(("solved", datetime.fromisoformat(run["time"]).strftime("%Y-%m-%d %H:%M UTC")))
     if run.get("study"):
         rows.append(("study", str(run["study"])))
-    versions = ", ".join(f"{name} {run[name]}" for name in VERSIONS if name in run)
+    names = ("contactstudy", "commit", "python", *PACKAGES)
+    versions = ", ".join(f"{name} {run[name]}" for name in names if name in run)
     rows.append(("versions", versions or str(dataset.attrs.get("source", "not known"))))
     if "cells" in settings:
         rows.append(("cells", CELLS.get(str(settings["cells"]), str(settings["cells"]))))
@@ -189,18 +197,3 @@ def _render(template: str, context: dict[str, Any]) -> str:
         lstrip_blocks=True,
     )
     return templates.get_template(template).render({"made": date, "version": package_version()} | context)
-
-
-def _case_context(dataset: xr.Dataset) -> dict[str, Any]:
-    """Return the context of a case's page."""
-    result = single_case(dataset)
-    case, table = solved_case(result) if INPUTS_ATTRIBUTE in result.attrs else None, summary(result)
-    return {
-        "inputs": case_table(case).subjects if case is not None else {},
-        "drawing": side_view(case) if case is not None else None,
-        "numbers": table.numbers,
-        "assessment": assess_case(result, table),
-        "pictures": case_pictures(result, case),
-        "provenance": provenance(result),
-        "citations": citations(result).entries,
-    }

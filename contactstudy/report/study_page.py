@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import re
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -24,6 +24,7 @@ from contactstudy.study import collect
 from contactstudy.study.folder import Entry, Folder
 from contactstudy.study.parameters import PARAMETERS, with_defaults
 from contactstudy.study.plan import Plan, PlannedCase, label, listed, value_text
+from contactstudy.versions import PACKAGES
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -62,8 +63,6 @@ FIELDS = ("pressure", "initial_gap", "von_mises")  # Variables of a case in the 
 PERCENTAGE = re.compile(r" ([0-9.]+)%$")  # Size of an error at the end of a reason
 WORST_FIRST = (NO, CARE, UNKNOWN, YES)
 
-VERSIONS = ("contactstudy", "commit", "python", "numpy", "scipy")
-
 
 class Row(NamedTuple):
     """A case in the table: swept values, numbers with errors, status, assessment."""
@@ -91,10 +90,11 @@ def study_context(path: Path, selection: Mapping[str, Any] | None = None) -> dic
         _row(f"case-{number}", entry, _swept_values(plan, case, swept), names)
         for number, (case, entry) in enumerate(zip(plan, entries, strict=True), 1)
     ]
+    sizes = ", ".join(f"{_heading(dim)}: {size}" for dim, size in zip(plan.cube.dims, plan.cube.shape, strict=True))
     return {
         "title": f"Study {study.name}",
         "description": study.description,
-        "shape": _shape(plan),
+        "shape": f"{len(plan)} cases ({sizes})",
         "counts": Counter(entry.status for entry in entries),
         "base": [(_meaning(name), value_text(name, value)) for name, value in study.base.items()],
         "swept": [
@@ -105,7 +105,7 @@ def study_context(path: Path, selection: Mapping[str, Any] | None = None) -> dic
         "number_headings": [(NUMBERS | SINGULAR_NUMBERS)[name] for name in names],
         "intensities": any(name.startswith("end_intensity") for name in names),
         "rows": rows,
-        "reasons": _unsolved(rows),
+        "reasons": _grouped((row for row in rows if row.status != "ok"), lambda row: (row.status, row.note)),
         "answers": _answers(rows),
         "verdict": _verdict(rows),
         "pictures": _pictures(path, selection),
@@ -215,24 +215,27 @@ def _record(entry: Entry) -> xr.Dataset:
     return xr.Dataset(scalars, attrs={RUN_ATTRIBUTE: json.dumps(entry.run)})
 
 
-def _answers(rows: list[Row]) -> list[tuple[str, str, list[Row]]]:
-    """Answers and reasons with their cases, the worst first."""
+def _grouped(rows: Iterable[Row], key: Callable[[Row], tuple[str, str]]) -> list[tuple[str, str, list[Row]]]:
+    """Keys of two texts and the rows of each, in the order of their first row."""
     groups: dict[tuple[str, str], list[Row]] = {}
     for row in rows:
-        if row.answer:
-            # The percentage differs from case to case.
-            groups.setdefault((row.answer, PERCENTAGE.sub("", row.reason)), []).append(row)
-    keys = sorted(groups, key=lambda key: WORST_FIRST.index(key[0]))
-    return [(answer, _with_range(reason, groups[answer, reason]), groups[answer, reason]) for answer, reason in keys]
+        groups.setdefault(key(row), []).append(row)
+    return [(*texts, members) for texts, members in groups.items()]
 
 
-def _with_range(reason: str, rows: list[Row]) -> str:
-    """Reason of several cases, with the range of their percentages."""
-    sizes = [float(match[1]) for row in rows if (match := PERCENTAGE.search(row.reason))]
-    if not sizes:
-        return reason
-    low, high = min(sizes), max(sizes)
-    return f"{reason} {high:.1f}%" + (f" in the worst case, {low:.1f}% in the best" if low < high else "")
+def _answers(rows: list[Row]) -> list[tuple[str, str, list[Row]]]:
+    """Answers and reasons with their cases, the worst first."""
+    # The percentage differs from case to case.
+    groups = _grouped((row for row in rows if row.answer), lambda row: (row.answer, PERCENTAGE.sub("", row.reason)))
+    groups.sort(key=lambda group: WORST_FIRST.index(group[0]))
+    answers = []
+    for answer, reason, cases in groups:
+        sizes = sorted(float(match[1]) for row in cases if (match := PERCENTAGE.search(row.reason)))
+        if sizes:
+            reason += f" {sizes[-1]:.1f}%"
+            reason += f" in the worst case, {sizes[0]:.1f}% in the best" if sizes[0] < sizes[-1] else ""
+        answers.append((answer, reason, cases))
+    return answers
 
 
 def _verdict(rows: list[Row]) -> tuple[str, str]:
@@ -245,43 +248,22 @@ def _verdict(rows: list[Row]) -> tuple[str, str]:
     return worst, ", ".join(f"{count[answer]} {words[answer]}" for answer in WORST_FIRST if count[answer])
 
 
-def _shape(plan: Plan) -> str:
-    """Count and dimensions of the study."""
-    sizes = zip(plan.cube.dims, plan.cube.shape, strict=True)
-    return f"{len(plan)} cases ({', '.join(f'{_heading(dim)}: {size}' for dim, size in sizes)})"
-
-
-def _unsolved(rows: list[Row]) -> list[tuple[str, str, list[Row]]]:
-    """Status, reason and cases of all unsolved cases, grouped by reason."""
-    groups: dict[tuple[str, str], list[Row]] = {}
-    for row in rows:
-        if row.status != "ok":
-            groups.setdefault((row.status, row.note), []).append(row)
-    return [(status, reason, cases) for (status, reason), cases in groups.items()]
-
-
 def _pictures(path: Path, selection: Mapping[str, Any] | None) -> list[Picture]:
     """Figures of the study with captions."""
     from matplotlib import pyplot
 
     pictures = []
     for name, (figure, fixed) in figures_of_folder(path, selection).items():
-        caption = f"{CAPTIONS.get(name, name.replace('_', ' '))}{_selection_hint(fixed)}"
+        caption = CAPTIONS.get(name, name.replace("_", " "))
+        for parameter, value in list(fixed.items())[:1]:
+            option = f"{parameter}={value}"
+            option = f'"{option}"' if set(option) & set(" $\\'\"()&;|<>*?#`!") else option
+            headings = " and ".join(map(_heading, fixed))
+            caption += f" Of {headings} the figure has the value in its title. Another value: "
+            caption += f"contactstudy report FOLDER --select {option}"
         pictures.append(Picture(as_address(figure), caption, round(PIXELS * figure.get_figwidth())))
         pyplot.close(figure)
     return pictures
-
-
-def _selection_hint(fixed: dict[str, str]) -> str:
-    """Parameters with one value in a figure, and the command that draws another value."""
-    if not fixed:
-        return ""
-    name, value = next(iter(fixed.items()))
-    option = f"{name}={value}" if not set(f"{name}{value}") & set(" $\\'\"()&;|<>*?#`!") else f'"{name}={value}"'
-    return (
-        f" Of {' and '.join(map(_heading, fixed))} the figure has the value in its title. Another value: "
-        f"contactstudy report FOLDER --select {option}"
-    )
 
 
 def _provenance(runs: list[dict[str, Any]]) -> list[tuple[str, str]]:
@@ -290,7 +272,7 @@ def _provenance(runs: list[dict[str, Any]]) -> list[tuple[str, str]]:
         return []
     dates = sorted(str(run["time"])[:10] for run in runs if "time" in run)
     rows = [("solved", dates[0] if dates[0] == dates[-1] else f"{dates[0]} to {dates[-1]}")] if dates else []
-    for name in VERSIONS:
+    for name in ("contactstudy", "commit", "python", *PACKAGES):
         versions = sorted({str(run[name]) for run in runs if name in run})
         if versions:
             rows.append((name, ", ".join(versions)))

@@ -134,19 +134,29 @@ def _rows(case: xr.Dataset) -> Iterator[Quantity]:
         if f"end_pressure_{suffix}" in case:
             yield _row(case, f"end_pressure_{suffix}", f"pressure at {end} of the roller")
         if f"end_intensity_{suffix}" in case:
-            yield _intensity(case, suffix, end)
+            name, exponent = f"end_intensity_{suffix}", float(case[f"end_exponent_{suffix}"])
+            value, error = float(case[name]), float(case.get(f"{name}_error", np.nan))
+            text, units = intensity_text(value, error, exponent), f"Pa m^{exponent:.3g}"
+            remark = f"p = K / d^{exponent:.3g} at the distance d from the end"
+            yield Quantity(name, f"intensity K at {end}", value, error, units, text=text, remark=remark)
         if f"end_load_{suffix}" in case:
             yield _row(case, f"end_load_{suffix}", f"load on the last half-width, {end}")
     for name in FILMS:
         if name in case:
             yield _row(case, name, variable_of(name, case[name].attrs).long_name)
-    yield from _length(case)
+    if {"pressure", "gap"} <= set(case.data_vars) and (case["pressure"] > 0).any() and not any(cut_ends(case)):
+        case = case.assign(contact_length=contact_edges(case)["contact_length"])
+    if "contact_length" in case:
+        yield _row(case, "contact_length", "length of the contact", NOT_ESTIMATED)
     yield from _peak_stress(case)
     yield from _edge_tension(case)
     for name, meaning in SCALARS.items():
         if name in case and float(case[name]) != 0 and np.isfinite(float(case[name])):
-            estimated = f"{name}_error" in case and name != BALANCED
-            yield _rounded(case, _row(case, name, meaning, None if estimated else _mark(case, name)))
+            # In a study's case a residual above zero shows that the value was prescribed.
+            balanced = name == BALANCED and float(case.get(f"{name}_error", 0.0)) > 0
+            is_given = _prescribed(case, name) is not None or balanced or name not in SOLVED
+            mark = None if f"{name}_error" in case and name != BALANCED else "" if is_given else NOT_ESTIMATED
+            yield _rounded(case, _row(case, name, meaning, mark))
     yield from _slip(case)
 
 
@@ -179,28 +189,10 @@ def _peak_pressure(case: xr.Dataset) -> Iterator[Quantity]:
         yield Quantity("peak_pressure", "largest pressure", value, np.nan, "Pa", text=text, remark=CELL_MEAN)
 
 
-def _intensity(case: xr.Dataset, suffix: str, end: str) -> Quantity:
-    """Row of the law of a singular end, p = K / d^m."""
-    name = f"end_intensity_{suffix}"
-    value, error = float(case[name]), float(case.get(f"{name}_error", np.nan))
-    exponent = float(case[f"end_exponent_{suffix}"])
-    text = intensity_text(value, error, exponent)
-    remark = f"p = K / d^{exponent:.3g} at the distance d from the end"
-    return Quantity(name, f"intensity K at {end}", value, error, f"Pa m^{exponent:.3g}", text=text, remark=remark)
-
-
 def intensity_text(value: float, error: float, exponent: float) -> str:
     """Intensity of a singular end in GPa mm^exponent, from SI."""
     factor = 1e9 * 1e-3**exponent
     return with_error(value / factor, error / factor if np.isfinite(error) else None, f"GPa mm^{exponent:.3g}")
-
-
-def _length(case: xr.Dataset) -> Iterator[Quantity]:
-    """Row of the length of the contact, unless the Dataset is a part of the contact."""
-    if {"pressure", "gap"} <= set(case.data_vars) and (case["pressure"] > 0).any() and not any(cut_ends(case)):
-        case = case.assign(contact_length=contact_edges(case)["contact_length"])
-    if "contact_length" in case:
-        yield _row(case, "contact_length", "length of the contact", NOT_ESTIMATED)
 
 
 def _peak_stress(case: xr.Dataset) -> Iterator[Quantity]:
@@ -278,13 +270,6 @@ def _slip(case: xr.Dataset) -> Iterator[Quantity]:
             yield Quantity(
                 f"largest_{name}", meaning, value, np.nan, units, text=text, remark=f"of a cell, {NOT_ESTIMATED}"
             )
-
-
-def _mark(case: xr.Dataset, name: str) -> str:
-    """Remark of a number without an error; empty if the case prescribes the number."""
-    # In a study's case a residual above zero shows that the value was prescribed.
-    balanced = name == BALANCED and float(case.get(f"{name}_error", 0.0)) > 0
-    return "" if _prescribed(case, name) is not None or balanced or name not in SOLVED else NOT_ESTIMATED
 
 
 def _prescribed(case: xr.Dataset, name: str) -> Any:

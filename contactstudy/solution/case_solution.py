@@ -114,7 +114,23 @@ def contact_on_cells(case: Case, grid: Grid | None, roughness: xr.DataArray | No
         # At an approach the smooth roller determines the cells; the rough one carries another load.
         loaded = case if case.approach is None else contact_at_approach(case, ROUGHLY, ROUGH_TOLERANCE).case
         grid = choose_grid(loaded)
-    contact, tractions = _contact(case, grid, roughness, tolerance), None
+    clearance, tractions = case.gap(grid), None
+    if not np.isfinite(clearance).any():
+        raise InvalidInputError(
+            "grid",
+            grid.shape,
+            f"such that a cell's centre lies under the roller, which faces the body over {case.contact_length:.3g} m",
+            "move the roller by end_distance, or take more cells along x",
+        )
+    gap = clearance if roughness is None else clearance - heights_on(grid, roughness)
+    try:
+        contact = contact_of(contact_shape(case, grid, gap=gap), Settings(tolerance))
+    except WindowError as error:
+        advice = f"{error}; choose_grid(case, window=..., margin=...) makes a wider one"
+        if not case.tilt and case.load_position is None:
+            raise WindowError(advice) from error
+        raise WindowError(f"{inclination(case)}, and so deep at the roller's end that {advice}") from error
+    contact = _checked(case, contact)
     if not isinstance(case.motion, Sliding):
         request = FrictionRequest(
             motion=case.motion,
@@ -131,27 +147,6 @@ def contact_on_cells(case: Case, grid: Grid | None, roughness: xr.DataArray | No
 def _with_load(case: Case, contact: Contact) -> Case:
     """Case with a prescribed load in place of its approach."""
     return case if case.approach is None else replace(case, load=contact.carried, approach=None)
-
-
-def _contact(case: Case, grid: Grid, roughness: xr.DataArray | None, tolerance: float) -> Contact:
-    """Contact of a case on given cells."""
-    clearance = case.gap(grid)
-    if not np.isfinite(clearance).any():
-        raise InvalidInputError(
-            "grid",
-            grid.shape,
-            f"such that a cell's centre lies under the roller, which faces the body over {case.contact_length:.3g} m",
-            "move the roller by end_distance, or take more cells along x",
-        )
-    gap = clearance if roughness is None else clearance - heights_on(grid, roughness)
-    try:
-        contact = contact_of(contact_shape(case, grid, gap=gap), Settings(tolerance))
-    except WindowError as error:
-        advice = f"{error}; choose_grid(case, window=..., margin=...) makes a wider one"
-        if not case.tilt and case.load_position is None:
-            raise WindowError(advice) from error
-        raise WindowError(f"{inclination(case)}, and so deep at the roller's end that {advice}") from error
-    return _checked(case, contact)
 
 
 def _checked(case: Case, contact: Contact) -> Contact:
@@ -241,18 +236,14 @@ def solve(
     Returns
     -------
     Dataset
-        Everything that `solve_contact` and `stress_field` return, with `hertz_half_width` and `hertz_max_pressure`;
-        with stick and slip, tractions and slip as from `solve_contact` instead of `traction_y`. Stresses have
-        the dimensions ``(x_field, y_field, z)``; ``(x, y, z)`` at the centres of given cells. With stresses also
-        `end_traction_residual` and the largest von Mises stress in the body, independent of the positions:
-        `peak_von_mises`, its error and its position ``_x``, ``_y``, ``_z``. On refined columns also `peak_pressure`
-        (and ``_first`` and ``_last``, of either half), `end_pressure_first` and `end_pressure_last`, and the load on
-        the last half-width, `end_load_first` and `end_load_last`, each with its error ``<name>_error``. At a singular
-        end pressures are infinite; `end_intensity_first` or `end_intensity_last` is K of ``p = K d**-m`` with its
-        error, and `end_exponent_first` or `end_exponent_last` is m; `end_intensity` and `end_exponent` belong to the
-        sharper end. With stick and slip, forces, moment, work and the unknown creepages or shifts have errors as well.
-        The attributes contain the case, the settings, the versions, and the seconds of each stage, see
-        `contactstudy.analysis.solved_case`.
+        Everything that `solve_contact` and `stress_field` return, with `hertz_half_width` and `hertz_max_pressure`.
+        Stresses have the dimensions ``(x_field, y_field, z)``; ``(x, y, z)`` at the centres of given cells. With
+        stresses also `end_traction_residual` and the largest von Mises stress in the body, independent of the
+        positions: `peak_von_mises` and its position ``_x``, ``_y``, ``_z``. On refined columns also `peak_pressure`
+        and, for the ends ``_first`` and ``_last``, `end_pressure` and `end_load`, the load on the last half-width. At
+        a singular end pressures are infinite; `end_intensity` is K and `end_exponent` m of ``p = K d**-m``. Estimated
+        errors are ``<name>_error``. The attributes contain the case, the settings, the versions, and the seconds of
+        each stage, see `contactstudy.analysis.solved_case`.
 
     Raises
     ------

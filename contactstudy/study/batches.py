@@ -26,9 +26,9 @@ import xarray as xr
 
 from contactstudy.analysis.provenance import RUN_ATTRIBUTE
 from contactstudy.arrays.variables import describe, labels, package_version
-from contactstudy.checks import FloatArray, IntArray
+from contactstudy.checks import PART, FloatArray, IntArray, writing
 from contactstudy.errors import StoreError
-from contactstudy.study.files import PART, is_regular, netcdf_access, write_atomically
+from contactstudy.study.files import is_regular, netcdf_access
 
 STATUSES = ("ok", "failed", "skipped")  # States of a case in a batch, by their code
 
@@ -181,14 +181,11 @@ def common_attributes(name: str, first: Mapping[str, Any], second: Mapping[str, 
     return common
 
 
-def write_batch(folder: Path, name: str, batch: Batch) -> Path:
-    """Write a batch as a new file; return its path, which ends with the CRC-32 of the bytes."""
-
-    def write(part: Path) -> None:
-        with netcdf_access(folder / name, "write"):
-            _write(part, batch)
-
-    return write_atomically(folder / name, write, lambda part: f"{name}-{len(batch)}-{checksum(part):08x}{SUFFIX}")
+def write_batch(folder: Path, name: str, batch: Batch) -> None:
+    """Write a batch as a new file, whose name ends with the CRC-32 of the bytes."""
+    path, rename = folder / name, lambda part: f"{name}-{len(batch)}-{checksum(part):08x}{SUFFIX}"
+    with writing(path, rename) as part, netcdf_access(path, "write"):
+        _write(part, batch)
 
 
 def checksum(path: Path) -> int:

@@ -31,19 +31,6 @@ KEYS = ("name", "description", "level", "base", "sweep", "zip", "cases", "exclud
 MOST_CASES = 1_000_000  # Combinations of one study, at most: half a gigabyte of identities and groups
 
 
-def _listed(name: str, values: object) -> list[Any]:
-    """Values of a swept parameter as a list that is not empty."""
-    if isinstance(values, Mapping) and set(values) == {"start", "stop", "count"}:
-        values = points(name, values)
-    if isinstance(values, np.ndarray):
-        values = values.tolist()
-    if isinstance(values, (str, bytes, Mapping)) or not isinstance(values, Sequence):
-        raise InvalidInputError(name, values, "a list of values, or for numbers a table with start, stop and count")
-    if not values:
-        raise InvalidInputError(name, values, "a list of at least one value")
-    return list(values)
-
-
 def _tables(name: str, value: object) -> list[Mapping[str, Any]]:
     """Return a table, or a list of tables, as a list of tables."""
     entries = [value] if isinstance(value, Mapping) else list(value) if isinstance(value, (list, tuple)) else None
@@ -105,15 +92,15 @@ class Study:
     description: str = ""
 
     def __repr__(self) -> str:
-        lines = [f"Study {self.name}: {self.size} cases before exclusions, keeping {self.level}"]
-        if self.description:
-            lines.append(f"  {self.description}")
-        lines += [f"  {meaning}: {text}" for meaning, text in self._rows()]
-        return "\n".join(lines)
+        lines = [self._head, self.description, *(f"{meaning}: {text}" for meaning, text in self._rows())]
+        return "\n  ".join(filter(None, lines))
 
     def _repr_html_(self) -> str:
-        head = escape(f"Study {self.name}: {self.size} cases before exclusions, keeping {self.level}")
-        return f"<b>{head}</b><br>{escape(self.description)}{html_table([('', self._rows())])}"
+        return f"<b>{escape(self._head)}</b><br>{escape(self.description)}{html_table([('', self._rows())])}"
+
+    @property
+    def _head(self) -> str:
+        return f"Study {self.name}: {self.size} cases before exclusions, keeping {self.level}"
 
     def _rows(self) -> Iterator[tuple[str, str]]:
         """Parameters, the swept ones first, in the units of engineers."""
@@ -160,12 +147,23 @@ class Study:
 
     @staticmethod
     def _swept(where: str, name: str, values: object) -> list[Any]:
+        """Values of a swept parameter as a list that is not empty."""
         checks.known_name(where, str(name), PARAMETERS)
-        column = [PARAMETERS[name].checked(value) for value in _listed(f"{where}.{name}", values)]
+        argument = f"{where}.{name}"
+        if isinstance(values, Mapping) and set(values) == {"start", "stop", "count"}:
+            values = points(argument, values)
+        if isinstance(values, np.ndarray):
+            values = values.tolist()
+        if isinstance(values, (str, bytes, Mapping)) or not isinstance(values, Sequence):
+            allowed = "a list of values, or for numbers a table with start, stop and count"
+            raise InvalidInputError(argument, values, allowed)
+        if not values:
+            raise InvalidInputError(argument, values, "a list of at least one value")
+        column = [PARAMETERS[name].checked(value) for value in values]
         if where == "sweep":
             entries = [label(name, value) for value in column]
             if twice := [entry for entry in entries if entries.count(entry) > 1]:
-                raise InvalidInputError(f"{where}.{name}", twice[0], "a list of different values", "it appears twice")
+                raise InvalidInputError(argument, twice[0], "a list of different values", "it appears twice")
         return column
 
     @staticmethod
@@ -281,10 +279,6 @@ class Study:
     def plan(self) -> Plan:
         """Cases of the study, in order; solves nothing.
 
-        Returns
-        -------
-        Plan
-
         Raises
         ------
         StudyFileError
@@ -330,10 +324,21 @@ class Study:
 
 
 def content_of_table(table: xr.Dataset, base: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the keys of a study whose cases are the entries of a table."""
-    columns = {
-        str(name): _column(str(name), array) for name, array in table.variables.items() if _is_parameter(table, name)
-    }
+    """Return the keys of a study whose cases are the entries of a table, in SI."""
+    columns: dict[str, xr.Variable] = {}
+    for name, array in ((str(key), variable) for key, variable in table.variables.items()):
+        if name not in PARAMETERS:
+            # The dimension of a parameter may be numbered.
+            used = any(name in other.dims for key, other in table.variables.items() if key in PARAMETERS)
+            if name not in table.indexes or not used:
+                checks.known_name("variable of the table", name, PARAMETERS)
+            continue
+        if PARAMETERS[name].check is points and array.dims:
+            raise InvalidInputError(name, array.dims, "a list in base: it is one value of a case")
+        stated_unit, unit = array.attrs.get("units"), PARAMETERS[name].units
+        equal = stated_unit is None or stated_unit == unit
+        factor = 1.0 if equal else factor_to(unit, f"{name}.attrs['units']", stated_unit)
+        columns[name] = array if factor == 1.0 else array * factor
     shared = {name: _plain(array.values[()]) for name, array in columns.items() if not array.dims}
     for name in {*base} & {*columns}:
         raise InvalidInputError("base", name, "a parameter that the table does not have")
@@ -346,26 +351,6 @@ def content_of_table(table: xr.Dataset, base: Mapping[str, Any]) -> dict[str, An
             groups.setdefault(str(array.dims[0]), {})[name] = [_plain(value) for value in array.values]
     alone = {name: values for group in groups.values() if len(group) == 1 for name, values in group.items()}
     return content | {"sweep": alone, "zip": [group for group in groups.values() if len(group) > 1]}
-
-
-def _is_parameter(table: xr.Dataset, name: object) -> bool:
-    """Whether a variable of a table is a parameter; a dimension may be numbered, all else is an error."""
-    if name in PARAMETERS:
-        return True
-    used = any(name in array.dims for other, array in table.variables.items() if other in PARAMETERS)
-    if name not in table.indexes or not used:
-        checks.known_name("variable of the table", str(name), PARAMETERS)
-    return False
-
-
-def _column(name: str, array: xr.Variable) -> xr.Variable:
-    """Values of a parameter, in SI."""
-    stated_unit, unit = array.attrs.get("units"), PARAMETERS[name].units
-    if PARAMETERS[name].check is points and array.dims:
-        raise InvalidInputError(name, array.dims, "a list in base: it is one value of a case")
-    equal = stated_unit is None or stated_unit == unit
-    factor = 1.0 if equal else factor_to(unit, f"{name}.attrs['units']", stated_unit)
-    return array if factor == 1.0 else array * factor
 
 
 def _plain(value: Any) -> Any:

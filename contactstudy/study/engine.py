@@ -87,32 +87,23 @@ class Engine:
         """Client of the scheduler, or of local processes for some `cases`, which end with the block."""
         if self.scheduler is None:
             cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-            with _local_client(min(cores if self.workers is None else self.workers, cases)) as client:
-                yield client
-        elif isinstance(self.scheduler, str):
+            with _local_client(min(cores if self.workers is None else self.workers, cases)) as local_client:
+                yield local_client
+            return
+        from distributed.comm.core import CommClosedError
+
+        if isinstance(self.scheduler, str):
             notify(f"connecting to the dask scheduler at {self.scheduler}, for up to {RUN.start_seconds:g} s")
-            with _silent_libraries():
-                client = _connect(self.scheduler)
-                try:
-                    with _lost_connections():
-                        yield client
-                finally:
+        with _silent_libraries() if isinstance(self.scheduler, str) else contextlib.nullcontext():
+            client = _connect(self.scheduler) if isinstance(self.scheduler, str) else self.scheduler
+            try:
+                yield client
+            except (CommClosedError, TimeoutError) as error:
+                raise StudyFileError(SCHEDULER_LOST) from error
+            finally:
+                if client is not self.scheduler:
                     with contextlib.suppress(Exception):
                         client.close(timeout=RUN.close_seconds)
-        else:
-            with _lost_connections():
-                yield self.scheduler
-
-
-@contextlib.contextmanager
-def _lost_connections() -> Iterator[None]:
-    """Errors of a connection that ends become :class:`StudyFileError`."""
-    from distributed.comm.core import CommClosedError
-
-    try:
-        yield
-    except (CommClosedError, TimeoutError) as error:
-        raise StudyFileError(SCHEDULER_LOST) from error
 
 
 def _connect(scheduler: str) -> Client:
@@ -138,9 +129,8 @@ def _connect(scheduler: str) -> Client:
     if not errors:
         raise StudyFileError(f"no dask scheduler at {scheduler}: the listener did not answer")
     (error,) = errors
-    if isinstance(error, (OSError, ValueError)):
-        raise StudyFileError(f"no dask scheduler answers at {scheduler}: {error}") from error
-    raise StudyFileError(f"no dask scheduler at {scheduler}: {type(error).__name__}") from error
+    reason = error if isinstance(error, (OSError, ValueError)) else type(error).__name__
+    raise StudyFileError(f"no dask scheduler answers at {scheduler}: {reason}") from error
 
 
 @contextlib.contextmanager
@@ -260,7 +250,9 @@ class Tasks:
             task = self._returned.popleft()
         else:
             plan, jobs = self._plan, list[Job]()
-            limit = self._limit(workers)
+            # All workers end at about the same time.
+            cases = RUN.task_seconds * self._cases / max(self._seconds, 1e-9)
+            limit = int(min(cases, self.remaining / (2 * max(workers, 1)))) if self._cases else 1
             while self._groups and (not jobs or len(jobs) + len(self._groups[0]) <= limit):
                 for index in self._groups.popleft():
                     identity, group = plan.ids[index].decode(), int(plan.groups[index])
@@ -269,13 +261,6 @@ class Tasks:
             task = replace(self._template, jobs=tuple(jobs), profiles=profiles)
         self.remaining -= len(task.jobs)
         return task
-
-    def _limit(self, workers: int) -> int:
-        """Largest number of cases of the next task, such that all workers end at about the same time."""
-        if not self._cases:
-            return 1
-        cases = RUN.task_seconds * self._cases / max(self._seconds, 1e-9)
-        return int(min(cases, self.remaining / (2 * max(workers, 1))))
 
     def record(self, cases: int, seconds: float) -> None:
         """Add the time of a finished task."""
@@ -324,26 +309,19 @@ class Workers:
     def usable(self, busy: bool) -> set[str]:
         """Addresses of the usable workers now; raises if all have another version, or none came for too long."""
         present = set(self._client.nthreads())
-        if present - set(self._faults):
-            self._check(present)
+        if new := present - set(self._faults):
+            versions: Any = self._client.get_versions(packages=["contactstudy"])
+            for worker in new & set(versions["workers"]):
+                version, expected = versions["workers"][worker]["packages"].get("contactstudy"), package_version()
+                self._faults[worker] = ""
+                if version != expected:
+                    self.exclude(worker, f"it has version {version} of contactstudy, not {expected}")
         usable = {worker for worker in present if self._faults.get(worker) == ""}
         if usable or busy:
             self._last_present, self._announced = time.monotonic(), False
         else:
             self._wait_for_one(present)
         return usable
-
-    def _check(self, present: set[str]) -> None:
-        """Compare the package's version on new workers with this one."""
-        versions: Any = self._client.get_versions(packages=["contactstudy"])
-        for worker in present - set(self._faults):
-            answer = dict(versions["workers"]).get(worker)
-            if answer is not None:
-                version, expected = answer["packages"].get("contactstudy"), package_version()
-                if version == expected:
-                    self._faults[worker] = ""
-                else:
-                    self.exclude(worker, f"it has version {version} of contactstudy, not {expected}")
 
     def exclude(self, worker: str, reason: str) -> None:
         """Give a worker no further task."""

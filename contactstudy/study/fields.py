@@ -42,11 +42,6 @@ class Positions:
     scales: list[float] = field(default_factory=list)  # half-widths, metres
 
     @property
-    def alike(self) -> bool:
-        """Whether all positions are equal, in metres."""
-        return all(np.array_equal(values, self.values[0]) for values in self.values)
-
-    @property
     def over_a(self) -> list[FloatArray]:
         """Different positions over the half-width."""
         return [values / scale for values, scale in zip(self.values, self.scales, strict=True)]
@@ -56,14 +51,20 @@ class Positions:
         """Whether cells have different widths."""
         return any(widths.size for widths in self.widths)
 
-    def edges(self, number: int) -> FloatArray:
-        """Edges of the cells of one case, metres."""
-        middles, widths = self.values[number], self.widths[number]
-        if not widths.size:
-            half = 0.5 * (middles[-1] - middles[0]) / max(middles.size - 1, 1)
-            return np.linspace(middles[0] - half, middles[-1] + half, middles.size + 1)
-        low, high = middles - 0.5 * widths, middles + 0.5 * widths
-        return np.concatenate([low[:1], 0.5 * (high[:-1] + low[1:]), high[-1:]])
+    def sources(self, *, of_points: bool) -> list[FloatArray]:
+        """Points, or edges of the cells, over the half-width."""
+        if of_points:
+            return self.over_a
+        result = []
+        for middles, widths, scale in zip(self.values, self.widths, self.scales, strict=True):
+            if widths.size:
+                low, high = middles - 0.5 * widths, middles + 0.5 * widths
+                edges = np.concatenate([low[:1], 0.5 * (high[:-1] + low[1:]), high[-1:]])
+            else:
+                half = 0.5 * (middles[-1] - middles[0]) / max(middles.size - 1, 1)
+                edges = np.linspace(middles[0] - half, middles[-1] + half, middles.size + 1)
+            result.append(edges / scale)
+        return result
 
 
 def _equal(arrays: Sequence[FloatArray], first: FloatArray) -> bool:
@@ -142,7 +143,13 @@ class Fields:
             array = CaseArray(self._states, name, {dim: axes[dim] for dim in dims}, self._positions, dtype)
             variable_dims = (*cube.dims, *(axes[dim].name for dim in dims))
             variable = xr.Variable(variable_dims, indexing.LazilyIndexedArray(array), attributes)
-            variable.encoding = {"preferred_chunks": _preferred_chunks(variable_dims, array, len(cube.dims))}
+            # Chunks of about 16 MiB: whole arrays of some cases along the last swept dimensions.
+            size = array.dtype.itemsize * int(np.prod(array.shape[len(cube.dims) :], dtype=np.int64))
+            chunks = dict(zip(variable_dims, array.shape, strict=True))
+            for dim in reversed(cube.dims):
+                chunks[dim] = max(1, min(chunks[dim], 2**24 // max(size, 1)))
+                size *= chunks[dim]
+            variable.encoding = {"preferred_chunks": chunks}
             variables[name] = variable
         return dataset.assign_coords(coordinates).assign(variables)
 
@@ -168,7 +175,8 @@ class Fields:
     def _original_axis(self, dim: str) -> tuple[dict[str, StudyAxis], dict[str, Any]]:
         """Axis of the cases' positions, padded with NaN to the largest case where they differ."""
         positions = self._positions[dim]
-        name = dim if positions.alike else f"{dim}_index"
+        alike = all(np.array_equal(values, positions.values[0]) for values in positions.values)
+        name = dim if alike else f"{dim}_index"
         size = max(values.size for values in positions.values)
 
         def coordinate(rows: list[FloatArray]) -> tuple[Any, ...]:
@@ -182,45 +190,33 @@ class Fields:
         return {dim: StudyAxis(name, size)}, coordinates
 
     def _common_axis(self, dims: list[str]) -> tuple[dict[str, StudyAxis], dict[str, Any]]:
-        """Axis over the half-width that all cases share along dimensions of one direction."""
-        name = f"{dims[0]}_over_a"
-        sources = {dim: self._sources(dim) for dim in dims}
-        axis, borders = self._joint(sources)
-        axes, maps = {}, {}
-        for dim in dims:
-            of_points = dim not in CELLS
-            outside = 0.0 if dim == "y" else np.nan
-            maps[dim] = [
-                Resampling(source=source, axis=axis, borders=borders, outside=outside, of_points=of_points)
-                for source in sources[dim]
-            ]
-            remains = _equal(sources[dim], axis if of_points else borders)
-            axes[dim] = StudyAxis(name, axis.size, None if remains else maps[dim])
-        return axes, self._common_coordinates(maps, axis, borders)
-
-    def _sources(self, dim: str) -> list[FloatArray]:
-        """Edges of the cells, or points, of all cases over the half-width."""
-        positions = self._positions[dim]
-        if dim in CELLS:
-            return [positions.edges(number) / scale for number, scale in enumerate(positions.scales)]
-        return positions.over_a
-
-    def _joint(self, sources: dict[str, list[FloatArray]]) -> tuple[FloatArray, FloatArray]:
-        """Positions of a common axis and the borders around each."""
-        dim, first = next(iter(sources.items()))
-        if dim not in CELLS:
-            axis = first[0] if _equal(first, first[0]) else common_columns(first)
-            return axis, np.concatenate([axis[:1], centres(axis), axis[-1:]])
-        union = common_columns if dim == "x" else common_rows
-        borders = first[0] if _equal(first, first[0]) else union(first)
-        if "x_field" in sources:
+        """Axis over the half-width that all cases share along dimensions of one direction, with borders around each."""
+        first, name = dims[0], f"{dims[0]}_over_a"
+        sources = {dim: self._positions[dim].sources(of_points=dim not in CELLS) for dim in dims}
+        rows = sources[first]
+        union = common_rows if first == "y" else common_columns
+        axis = borders = rows[0] if _equal(rows, rows[0]) else union(rows)
+        if first not in CELLS:
+            borders = np.concatenate([axis[:1], centres(axis), axis[-1:]])
+        elif "x_field" in sources:
             points = common_columns([np.sort(row) for row in sources["x_field"]])
             plan = self._states.plan
-            parameters = [plan.base, *(axis[0] for axis in plan.axes), *plan.explicit]
+            parameters = [plan.base, *(steps[0] for steps in plan.axes), *plan.explicit]
             # Stress points that the study gives are positions of the common axis.
             given = any("field_x_over_a" in entry for entry in parameters)
             borders = centred_cells(borders, points) if given else split_cells(borders, points)
-        return centres(borders), borders
+        if first in CELLS:
+            axis = centres(borders)
+        axes, maps = {}, {}
+        for dim, source_rows in sources.items():
+            of_points, outside = dim not in CELLS, 0.0 if dim == "y" else np.nan
+            maps[dim] = [
+                Resampling(source=source, axis=axis, borders=borders, outside=outside, of_points=of_points)
+                for source in source_rows
+            ]
+            remains = _equal(source_rows, axis if of_points else borders)
+            axes[dim] = StudyAxis(name, axis.size, None if remains else maps[dim])
+        return axes, self._common_coordinates(maps, axis, borders)
 
     def _common_coordinates(
         self, maps: dict[str, list[Resampling]], axis: FloatArray, borders: FloatArray
@@ -307,15 +303,11 @@ class CaseArray(BackendArray):
             for index, row, values in zip(indices, rows, flat, strict=True):
                 if values.size:
                     shaped = values.reshape([int(batch.sizes[dim][row]) for dim in self._dims])
-                    yield index, self._on_axes(shaped, int(cases[index]))
-
-    def _on_axes(self, values: npt.NDArray[Any], case: int) -> npt.NDArray[Any]:
-        """Values of one case on the study's axes."""
-        maps = [
-            axis.resamplings[which[case]] if axis.resamplings else None
-            for axis, which in zip(self._axes, self._which, strict=True)
-        ]
-        return resampled(self._name, values, maps) if any(maps) else values
+                    maps = [
+                        axis.resamplings[which[cases[index]]] if axis.resamplings else None
+                        for axis, which in zip(self._axes, self._which, strict=True)
+                    ]
+                    yield index, resampled(self._name, shaped, maps) if any(maps) else shaped
 
 
 def _outer(values: npt.NDArray[Any], key: Sequence[Any]) -> npt.NDArray[Any]:
@@ -323,13 +315,3 @@ def _outer(values: npt.NDArray[Any], key: Sequence[Any]) -> npt.NDArray[Any]:
     for axis in range(len(key) - 1, -1, -1):
         values = values[(slice(None),) * axis + (key[axis],)]
     return values
-
-
-def _preferred_chunks(dims: Sequence[str], array: CaseArray, swept: int) -> dict[str, int]:
-    """Chunks of about 16 MiB: whole arrays of some cases along the last swept dimensions."""
-    size = array.dtype.itemsize * int(np.prod(array.shape[swept:], dtype=np.int64))
-    chunks = dict(zip(dims, array.shape, strict=True))
-    for axis in range(swept - 1, -1, -1):
-        chunks[dims[axis]] = max(1, min(array.shape[axis], 2**24 // max(size, 1)))
-        size *= chunks[dims[axis]]
-    return chunks

@@ -3,22 +3,20 @@
 from __future__ import annotations
 
 import contextlib
-import os
 import re
 import shutil
 import stat
-import uuid
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from datetime import UTC, datetime
 from pathlib import Path
 from threading import RLock
 
 import xarray as xr
 
+from contactstudy.checks import writing
 from contactstudy.errors import InvalidInputError, StoreError
 
 NETCDF_LOCK = RLock()  # One netCDF operation at a time in this process
-PART = ".part"  # Suffix of an unfinished file
 UNFINISHED = re.compile(r".+\.[0-9a-f]{12}\.part")  # Names of unfinished files
 ALMOST_FULL = 2**20
 """Bytes of free disk below which a failed write is attributed to a full disk: the netCDF library gives no reason."""
@@ -30,38 +28,15 @@ def netcdf_access(path: Path, verb: str) -> Iterator[None]:
     try:
         with NETCDF_LOCK:
             yield
-    except StoreError:
-        raise
     except (OSError, RuntimeError, ValueError, TypeError, KeyError, IndexError, AttributeError) as error:
         full = verb == "write" and shutil.disk_usage(path.parent).free < ALMOST_FULL
         raise StoreError(f"cannot {verb} {path}: {'the disk is full; ' if full else ''}{error}") from error
 
 
-def write_atomically(path: Path, write: Callable[[Path], object], name: Callable[[Path], str] | None = None) -> Path:
-    """Call ``write(part)`` for a file beside `path`, flush it, rename it to `path` or ``name(part)``, and return that.
-
-    The existing file remains if writing fails, which raises :class:`StoreError`. A link is replaced, not followed.
-    """
-    if path.is_dir():
-        raise StoreError(f"cannot write {path}: it is a folder")
-    part = path.with_name(f"{path.name}.{uuid.uuid4().hex[:12]}{PART}")
-    try:
-        write(part)
-        with open(part, "rb+") as handle:
-            os.fsync(handle.fileno())
-        target = path if name is None else path.with_name(name(part))
-        os.replace(part, target)
-    except OSError as error:
-        raise StoreError(f"cannot write {path}: {error.strerror or error}") from error
-    finally:
-        with contextlib.suppress(OSError):
-            part.unlink(missing_ok=True)
-    return target
-
-
 def write_text(path: Path, text: str) -> None:
     """Write a text file atomically."""
-    write_atomically(path, lambda part: part.write_text(text, encoding="utf-8"))
+    with writing(path) as part:
+        part.write_text(text, encoding="utf-8")
 
 
 def write_dataset(path: Path, dataset: xr.Dataset) -> None:
@@ -70,12 +45,8 @@ def write_dataset(path: Path, dataset: xr.Dataset) -> None:
     described = dataset.assign_attrs(history=f"{now} written by contactstudy")
     # CF: coordinates lack a fill value.
     encoding = {name: {"_FillValue": None} for name in dataset.coords if name in dataset.dims}
-
-    def write(part: Path) -> None:
-        with netcdf_access(path, "write"):
-            described.to_netcdf(part, engine="netcdf4", encoding=encoding)
-
-    write_atomically(path, write)
+    with writing(path) as part, netcdf_access(path, "write"):
+        described.to_netcdf(part, engine="netcdf4", encoding=encoding)
 
 
 def load_result(path: Path, argument: str) -> xr.Dataset:

@@ -20,7 +20,7 @@ from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from functools import cached_property, partial, reduce
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -31,7 +31,7 @@ from contactstudy import checks
 from contactstudy.analysis.provenance import INPUTS_ATTRIBUTE
 from contactstudy.arrays.variables import package_version
 from contactstudy.case.serialization import to_dict
-from contactstudy.checks import IntArray
+from contactstudy.checks import PART, IntArray
 from contactstudy.errors import InvalidInputError, LockedError, StoreError, StudyFileError
 from contactstudy.study.batches import (
     CASE_ATTRIBUTE,
@@ -47,8 +47,7 @@ from contactstudy.study.batches import (
     write_batch,
 )
 from contactstudy.study.definition import Study
-from contactstudy.study.files import PART, UNFINISHED, is_regular, write_text
-from contactstudy.study.parameters import PARAMETERS
+from contactstudy.study.files import UNFINISHED, is_regular, write_text
 from contactstudy.study.plan import LEVELS, Plan
 from contactstudy.study.profile_tables import check_without_files
 from contactstudy.study.settings import RUN
@@ -56,8 +55,7 @@ from contactstudy.study.setup import build_setup
 from contactstudy.study.user_profiles import are_registered
 from contactstudy.study.worker import by_structure
 
-SCHEMA = 2  # Number of the meaning of study.json: 1 had uniform cells by default, and did not state its number
-CELLS = ("cells_x", "cells_y")
+SCHEMA = 2  # Number of the meaning of study.json
 STATES = (*STATUSES, "stale", "missing", "excluded")  # States of a case of a study
 
 
@@ -89,13 +87,6 @@ class Entry:
     run: dict[str, Any] = field(default_factory=dict)
 
 
-class Location(NamedTuple):
-    """Batch and row of a case."""
-
-    batch: int
-    row: int
-
-
 class Results:
     """Results in a folder, as of now: columns of all intact batches, in memory."""
 
@@ -113,14 +104,14 @@ class Results:
         self._texts: dict[int, Batch] = {}
 
     @cached_property
-    def locations(self) -> dict[bytes, Location]:
-        """Location of each case by its identity: the result of the latest run."""
-        locations: dict[bytes, Location] = {}
+    def locations(self) -> dict[bytes, tuple[int, int]]:
+        """Batch and row of each case by its identity: the result of the latest run."""
+        locations: dict[bytes, tuple[int, int]] = {}
         for number, batch in enumerate(self.batches):
             for row, identity in enumerate(batch.ids.tolist()):
-                former = locations.get(identity)
-                if former is None or self.batches[former.batch].runs[former.row] < batch.runs[row]:
-                    locations[identity] = Location(number, row)
+                former_batch, former_row = locations.get(identity, (number, row))
+                if self.batches[former_batch].runs[former_row] < batch.runs[row] or identity not in locations:
+                    locations[identity] = (number, row)
         return locations
 
     @property
@@ -136,10 +127,10 @@ class Results:
 
     def case(self, identity: str, names: Iterable[str] | None = None) -> xr.Dataset:
         """Return one solved case on its cells, with all arrays or the named ones."""
-        location = self.locations.get(identity.encode())
-        if location is None or self.batches[location.batch].status[location.row] != 0:
+        number, row = self.locations.get(identity.encode(), (-1, -1))
+        if number < 0 or self.batches[number].status[row] != 0:
             raise InvalidInputError("case_id", identity, "that of a solved case of the study")
-        case = read_case(self.paths[location.batch], location.row, names)
+        case = read_case(self.paths[number], row, names)
         parameters = json.loads(case.attrs[CASE_ATTRIBUTE])
         if are_registered(parameters):
             with contextlib.suppress(InvalidInputError):  # parameters of another version
@@ -148,26 +139,21 @@ class Results:
                 case.attrs[INPUTS_ATTRIBUTE] = json.dumps({"case": to_dict(setup.case), "settings": settings})
         return case
 
-    @cached_property
-    def _reasons(self) -> list[str]:
-        """Reason why each batch is stale; empty if it is not."""
-        versions = [batch.circumstances.get("contactstudy") for batch in self.batches]
-        return ["" if version == package_version() else f"solved by version {version}" for version in versions]
-
     def state(self, identity: bytes, level: str) -> tuple[str, str, bool]:
         """Status and reason of a case, and whether its result can be used."""
-        location = self.locations.get(identity)
-        if location is None:
+        number, row = self.locations.get(identity, (-1, -1))
+        if number < 0:
             return "missing", "", False
-        batch = self.batches[location.batch]
-        status, version = STATUSES[batch.status[location.row]], self._reasons[location.batch]
+        batch = self.batches[number]
+        status, version = STATUSES[batch.status[row]], batch.circumstances.get("contactstudy")
+        is_current = version == package_version()
         if status != "ok":
-            message = batch.texts["message"][location.row]
-            return ("missing", "", False) if status == "skipped" and version else (status, message, False)
+            is_missing = status == "skipped" and not is_current
+            return ("missing", "", False) if is_missing else (status, batch.texts["message"][row], False)
         retained = batch.circumstances.get("level")
         if retained not in LEVELS or LEVELS.index(retained) < LEVELS.index(level):
             return "stale", f"retains {retained}, not {level}", False
-        return ("stale", version, True) if version else ("ok", "", True)
+        return ("ok", "", True) if is_current else ("stale", f"solved by version {version}", True)
 
 
 class States:
@@ -289,8 +275,8 @@ class Folder:
         except RecursionError:
             raise StudyFileError(f"{path}: nested too deeply for a study") from None
         try:
-            if isinstance(content, dict) and content.pop("schema", 1) == 1:
-                content["base"] = {name: PARAMETERS[name].default for name in CELLS} | dict(content.get("base", {}))
+            if isinstance(content, dict) and (schema := content.pop("schema", None)) != SCHEMA:
+                raise InvalidInputError("schema", schema, f"{SCHEMA}: another version of the package wrote the folder")
             check_without_files(content)
             return Study.from_mapping(content)
         except InvalidInputError as error:

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import xarray as xr
 
 from contactstudy import checks
@@ -38,15 +36,14 @@ def open_study(folder: str | Path, *, cells: str = "common", chunks: Any = None)
     Returns
     -------
     Dataset
-        * `status` ("ok", "failed", "skipped", "stale", "missing", or "excluded" for combinations that the study leaves
-          out), `message` and `case_id` of every case;
-        * `e_over_a`, `friction`, `gamma` and `profile`, as dimension or as coordinate;
+        * `status` ("ok", "failed", "skipped", "stale", "missing" or, left out by the study, "excluded"), `message` and
+          `case_id` of every case; `e_over_a`, `friction`, `gamma` and `profile`, as dimension or as coordinate;
         * every number of the cases, in memory, NaN where it is absent;
-        * surfaces and stresses, read when their values are needed, on the dimensions ``x_over_a`` (distance from the
-          free end over the half-width), ``y_over_a`` and ``z_over_a``; ``x``, ``y`` and ``z`` contain each case's
-          metres. Pressure and traction are averaged over the common cells, so that loads remain, other variables are
-          interpolated. Stresses at separate rows have ``y_field_over_a``. With ``cells="original"`` different
-          positions are padded with NaN: dimensions ``x_index``, ``x_field_index``, ...
+        * surfaces and stresses, read on demand, along ``x_over_a`` (distance from the free end over the half-width),
+          ``y_over_a`` (``y_field_over_a`` of separate stress points) and ``z_over_a``; ``x``, ``y`` and ``z`` are each
+          case's metres. Pressure and traction are averaged over the common cells, so that loads remain, other
+          variables are interpolated. With ``cells="original"`` different positions are padded with NaN along
+          ``x_index``, ``x_field_index``, ...
 
     Raises
     ------
@@ -81,10 +78,6 @@ def collect(folder: str | Path) -> xr.Dataset:
     ----------
     folder : str or Path
         The study's folder.
-
-    Returns
-    -------
-    Dataset
 
     Raises
     ------
@@ -134,10 +127,14 @@ def study_dataset(folder: str | Path, *, cells: str | None) -> xr.Dataset:
 def numbers_dataset(states: States) -> xr.Dataset:
     """Status, message and numbers of all cases along the study's dimensions."""
     plan, cube = states.plan, states.plan.cube
-    coordinates: dict[str, Any] = {
-        name: _label_coordinate(name, dim, values) for name, (dim, values) in cube.labels.items()
-    }
-
+    coordinates: dict[str, Any] = {}
+    for name, (dim, values) in cube.labels.items():
+        if any(isinstance(value, str) for value in values):
+            column = np.asarray(["" if value is None else str(value) for value in values])
+        else:
+            column = np.asarray([np.nan if value is None else value for value in values])
+        attributes = PARAMETERS[name].attrs if name in PARAMETERS else labels("case", coordinate=True)
+        coordinates[name] = (dim, column, attributes)
     names = np.array(STATES, dtype=np.str_)
     reasons = [states.reasons.get(index, "") for index in range(len(plan))] if states.reasons else [""] * len(plan)
     variables: dict[str, Any] = {
@@ -160,15 +157,6 @@ def numbers_dataset(states: States) -> xr.Dataset:
             attributes = PARAMETERS[name].attrs | {"comment": DERIVED}
             coordinates[name] = ((), label(name, value), attributes)
     return xr.Dataset(variables, coords=coordinates)
-
-
-def _label_coordinate(name: str, dim: str, values: Sequence[Any]) -> tuple[str, npt.NDArray[Any], dict[str, str]]:
-    """Coordinate of a swept parameter; NaN or an empty text where a case lacks it."""
-    if any(isinstance(value, str) for value in values):
-        array = np.asarray(["" if value is None else str(value) for value in values], dtype=np.str_)
-    else:
-        array = np.asarray([np.nan if value is None else value for value in values])
-    return dim, array, PARAMETERS[name].attrs if name in PARAMETERS else labels("case", coordinate=True)
 
 
 def _reduced(dims: tuple[str, ...], table: FloatArray) -> tuple[tuple[str, ...], FloatArray]:

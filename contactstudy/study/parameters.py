@@ -411,15 +411,6 @@ def with_defaults(values: Mapping[str, Any]) -> dict[str, Any]:
     return {name: entry.default for name, entry in PARAMETERS.items() if entry.default is not None} | dict(values)
 
 
-def case_id(parameters: Mapping[str, Any]) -> str:
-    """Identity of a case: SHA-256 of its canonical JSON without defaults, as 64 hexadecimal digits.
-
-    A parameter added later with a default keeps the identity of old cases.
-    """
-    values = checked(parameters)
-    return hash_of(fragment(name, values[name]) for name in sorted(values)).decode()
-
-
 def fragment(name: str, value: Any) -> str:
     """Part of a checked parameter in JSON with sorted keys and without spaces; empty if the value is the default."""
     value = counted(name, value)
@@ -428,7 +419,7 @@ def fragment(name: str, value: Any) -> str:
 
 
 def hash_of(fragments: Iterable[str]) -> bytes:
-    """Identity of a case from the fragments of its parameters, sorted by name."""
+    """Identity of a case, SHA-256 in 64 hexadecimal digits, from the fragments of its parameters, sorted by name."""
     content = ",".join(filter(None, fragments))
     return hashlib.sha256(f'{{"case":{{{content}}},"schema":{SCHEMA}}}'.encode()).hexdigest().encode()
 

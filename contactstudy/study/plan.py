@@ -11,7 +11,7 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from itertools import repeat
+from itertools import islice, repeat
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -22,7 +22,7 @@ from contactstudy.case.magnitudes import doubts, friction_doubt
 from contactstudy.checks import IntArray
 from contactstudy.errors import ContactStudyError
 from contactstudy.study.parameters import PARAMETERS, completed, fragment, hash_of, without_defaults
-from contactstudy.study.profile_tables import describe_profile, profile_label
+from contactstudy.study.profile_tables import profile_text
 from contactstudy.study.settings import RUN
 from contactstudy.study.setup import Setup, build_setup
 
@@ -212,11 +212,7 @@ class Plan(Sequence[PlannedCase]):
             for name in axis[0]:
                 table = [fragment(name, entry[name]) for entry in axis]
                 columns[name] = map(table.__getitem__, column.tolist())
-        if product.size and self.axes:
-            ordered = [columns[name] for name in sorted(columns)]
-            yield from zip(*ordered, strict=False)
-        elif product.size:
-            yield tuple(next(iter(columns[name])) for name in sorted(columns))
+        yield from islice(zip(*(columns[name] for name in sorted(columns)), strict=False), product.size)
         for number in self.chosen[len(product) :]:
             values = completed({**self.base, **self.explicit[number - self.products]})
             yield tuple(fragment(name, values[name]) for name in sorted(values))
@@ -321,7 +317,7 @@ def _numbered(keys: Iterable[int], count: int) -> IntArray:
 def label(name: str, value: Any) -> Any:
     """Value of a parameter as a coordinate contains it."""
     if name == "profile" and value is not None:
-        return profile_label(value)
+        return profile_text(value)
     if isinstance(value, list):
         return f"{len(value)} points {value[0]:g} to {value[-1]:g}"
     return value
@@ -334,7 +330,7 @@ def listed(texts: Sequence[str]) -> str:
 
 def value_text(name: str, value: Any) -> str:
     """Value of a study's parameter in the units of engineers."""
-    value = describe_profile(value) if name == "profile" and isinstance(value, dict) else value
+    value = profile_text(value, in_units=True) if name == "profile" and isinstance(value, dict) else value
     if isinstance(value, (list, tuple)):
         ends = f"{value[0]:g}" if len(value) == 1 else f"{value[0]:g} to {value[-1]:g}"
         return f"{len(value)} value{'s' if len(value) > 1 else ''}, {ends}"

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import MISSING, dataclass, field, fields, is_dataclass
 from functools import cached_property
 from pathlib import Path
@@ -75,38 +75,41 @@ class ProfileKind:
             given = _points_of_file(given)
         values = {key: _checked_value(key, entry, depth) for key, entry in given.items()}
         if not {*POINTS, *NESTED, "terms"}.isdisjoint(self.defaults):
-            _require(values, *self._required)
+            self._require(values)
         return {key: values[key] for key in keys if key in values and values[key] != self.defaults.get(key)}
 
-    @property
-    def _required(self) -> list[str]:
-        return [name for name, default in self.defaults.items() if default is MISSING]
+    def _require(self, table: Mapping[str, Any], designed: tuple[str, ...] = ()) -> None:
+        """Raise unless a table has every required field but those that a design determines."""
+        for name, default in self.defaults.items():
+            if default is MISSING and name not in table and name not in designed:
+                raise InvalidInputError("profile", dict(table), f"given with {name}")
 
     def build(self, table: Mapping[str, Any], sizes: Dimensions) -> Profile:
         """Profile of the values that :meth:`read` returns."""
         design = {name: table[name] for name in DESIGN if name in table}
-        values = {name: _built_value(value, sizes) for name, value in table.items() if name not in design}
+        values: dict[str, Any] = {}
+        for name, value in table.items():
+            if isinstance(value, Mapping):
+                values[name] = build_profile(value, sizes)
+            elif name == "terms":
+                values[name] = tuple(build_profile(term, sizes) for term in value)
+            elif name not in design:
+                values[name] = value
         if self.designed and len(design) + any(name in values for name in self.designed) != 1:
             choice = f"exactly one of {' with '.join(self.designed)}, {' and '.join(DESIGN)}"
             raise InvalidInputError("profile", dict(table), f"given with {choice}")
+        self._require(values, self.designed if design else ())
+        profile: Profile
         if not design:
-            _require(values, *self._required)
             radii = {name: factor * sizes.radius for name, factor in self.of_radius.items()}
-            profile: Profile = self.made(**(radii | values))
+            profile = self.made(**(radii | values))
             return profile
-        _require(values, *(name for name in self._required if name not in self.designed))
         values |= {"radius": sizes.radius, "modulus": sizes.modulus}
         if "design_load" in design:
             profile = self.made.for_load(design["design_load"], length=sizes.roller_length, **values)
         else:
             profile = self.made.for_pressure(design["design_pressure"], **values)
         return profile
-
-
-def _require(table: Mapping[str, Any], *names: str) -> None:
-    for name in names:
-        if name not in table:
-            raise InvalidInputError("profile", dict(table), f"given with {name}")
 
 
 def _checked_value(key: str, value: object, depth: int) -> Any:
@@ -129,15 +132,6 @@ def _checked_value(key: str, value: object, depth: int) -> Any:
 def _nested_table(value: object, depth: int) -> Table:
     """Table of a profile within another one, without its name."""
     return {key: entry for key, entry in profile_table(value, depth + 1).items() if key != "name"}
-
-
-def _built_value(value: Any, sizes: Dimensions) -> Any:
-    """Argument of a profile's class."""
-    if isinstance(value, Mapping):
-        return build_profile(value, sizes)
-    if isinstance(value, list) and value and isinstance(value[0], Mapping):
-        return tuple(build_profile(term, sizes) for term in value)
-    return value
 
 
 def _points_of_file(table: Table) -> Table:
@@ -235,40 +229,25 @@ def check_without_files(content: Any) -> None:
             raise InvalidInputError("profile.file", table["file"], "left out of study.json, which contains the points")
 
 
-def profile_label(table: Mapping[str, Any]) -> str:
-    """Label of a profile on a dimension: its name, or its kind and values."""
-    return _composed(table, " ", lambda key, value: f"{key}={value:g}", lambda length: f"{length:g} m")
-
-
-def describe_profile(table: Mapping[str, Any]) -> str:
-    """Name of a profile, or its kind and values in the units of engineers."""
-    units = UNITS | {"design_pressure": "Pa", "design_load": "N"}
-
-    def item(key: str, value: float) -> str:
-        return f"{key.replace('_', ' ')} {quantity(value, units.get(key, 'm'))}"
-
-    return _composed(table, ", ", item, lambda length: quantity(length, "m"))
-
-
-def _composed(
-    table: Mapping[str, Any], separator: str, item: Callable[[str, float], str], length: Callable[[float], str]
-) -> str:
-    """Text of a profile from the texts of its parts, values and effective length."""
+def profile_text(table: Mapping[str, Any], *, in_units: bool = False) -> str:
+    """Name of a profile, or its kind and values: in SI, a label of a dimension, or in the units of engineers."""
     if "name" in table:
         return str(table["name"])
-
-    def part(inner: Mapping[str, Any]) -> str:
-        return _composed(inner, separator, item, length)
-
-    kind = str(table["kind"])
+    kind, units = str(table["kind"]), UNITS | {"design_pressure": "Pa", "design_load": "N"}
     if kind == "sum":
-        return " + ".join(map(part, table["terms"]))
+        return " + ".join(profile_text(term, in_units=in_units) for term in table["terms"])
     if kind == "halves":
-        return f"{part(table['left'])} | {part(table['right'])}"
+        return " | ".join(profile_text(table[side], in_units=in_units) for side in ("left", "right"))
     if kind == "measured":
         return f"measured {hashlib.sha256(json.dumps(table).encode()).hexdigest()[:8]}"
     if kind == user_profiles.KIND:
         return f"{table['class']} {table['content'][:8]}"
     if kind == "effective-length":
-        return f"{part(table['profile'])} over {length(table['effective_length'])}"
-    return separator.join([kind, *(item(key, table[key]) for key in sorted(table) if key != "kind")])
+        length = table["effective_length"]
+        over = quantity(length, "m") if in_units else f"{length:g} m"
+        return f"{profile_text(table['profile'], in_units=in_units)} over {over}"
+    values = {key: table[key] for key in sorted(table) if key != "kind"}
+    if in_units:
+        items = (f"{key.replace('_', ' ')} {quantity(value, units.get(key, 'm'))}" for key, value in values.items())
+        return ", ".join([kind, *items])
+    return " ".join([kind, *(f"{key}={value:g}" for key, value in values.items())])

@@ -9,7 +9,7 @@ import sys
 import time
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import IO, Any
+from typing import Any
 
 from contactstudy.errors import StoreError
 from contactstudy.study.worker import Outcome
@@ -30,38 +30,33 @@ class Progress:
     def __init__(self, path: Path, *, shown: bool = True) -> None:
         self._bar_shown = shown and sys.stderr.isatty() and not os.environ.get("CI")
         self._messages_shown = shown
-        self._path = path
         self._bar: Any = None
         self._count = self._total = self._logged = 0
         self._began = time.monotonic()
-        self._file: IO[str] | None = None
         self.remarks: list[str] = []
-
-    def __enter__(self) -> Progress:
-        """Open the log."""
         flags = os.O_WRONLY | os.O_APPEND | os.O_CREAT | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0)
         try:
-            self._file = open(os.open(self._path, flags, 0o666), "a", encoding="utf-8", buffering=1)
+            self._file = os.fdopen(os.open(path, flags, 0o666), "a", encoding="utf-8", buffering=1)
         except OSError as error:
-            raise StoreError(f"cannot write {self._path}: {error.strerror or error}") from error
+            raise StoreError(f"cannot write {path}: {error.strerror or error}") from error
+
+    def __enter__(self) -> Progress:
         return self
 
     def __exit__(self, *error: object) -> None:
         """Close bar and log."""
         if self._bar is not None:
             self._bar.close()
-        if self._file is not None:
-            with contextlib.suppress(OSError):  # a full disk is reported already
-                self._file.close()
+        with contextlib.suppress(OSError):  # a full disk is reported already
+            self._file.close()
 
     def log(self, message: str) -> None:
         """Write a line to the log file and to the logger of the package."""
         LOGGER.info(message)
-        if self._file is not None:
-            now = datetime.now(UTC).isoformat(timespec="seconds")
-            # A log that cannot grow must not stop the run; a full disk shows when a batch is written.
-            with contextlib.suppress(OSError):
-                self._file.write(f"{now} {message}\n")
+        now = datetime.now(UTC).isoformat(timespec="seconds")
+        # A log that cannot grow must not stop the run; a full disk shows when a batch is written.
+        with contextlib.suppress(OSError):
+            self._file.write(f"{now} {message}\n")
 
     def notify(self, message: str) -> None:
         """Write a line to the log and, if progress is wanted, to the screen; safe in a handler of signals."""

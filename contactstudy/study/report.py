@@ -9,7 +9,6 @@ from pathlib import Path
 import numpy as np
 
 from contactstudy.study.folder import STATES, States
-from contactstudy.study.plan import Plan
 from contactstudy.study.progress import duration
 from contactstudy.study.run import RunReport
 
@@ -107,12 +106,7 @@ def forecast_lines(states: States) -> Iterator[str]:
     unique = plan.unique
     if duplicates := len(plan) - len(plan.skipped) - len(unique):
         yield f"  {duplicates} duplicates, solved once"
-    yield from _effort_lines(states, plan, len(set(states.indices("missing")) & set(unique)))
-
-
-def _effort_lines(states: States, plan: Plan, missing: int) -> Iterator[str]:
-    """Lines on the bytes of a study and on the time of its missing cases."""
-    seconds = states.numbers("seconds")
+    missing, seconds = len(set(states.indices("missing")) & set(unique)), states.numbers("seconds")
     solved = int(np.isfinite(seconds).sum())
     if solved:
         size = sum(path.stat().st_size for path in states.results.paths)

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from itertools import groupby
 from pathlib import Path
 from types import FrameType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -155,10 +155,6 @@ def run_study(
     solver : callable, optional
         Called instead of :func:`contactstudy.solve`, with the same arguments.
 
-    Returns
-    -------
-    RunReport
-
     Raises
     ------
     InvalidInputError
@@ -277,7 +273,11 @@ def _groups_to_solve(states: States, again: tuple[str, ...], share: Share, sampl
     order = sorted(members, key=order_of)
     groups = [members[key] for key in order]
     if share.count > 1:
-        pieces = _pieces([key[0] for key in order], max(1, len(groups) // (RUN.turns * share.count)))
+        # A piece contains consecutive groups with one operator, so many at most that every share has several turns.
+        longest, pieces = max(1, len(groups) // (RUN.turns * share.count)), list[int]()
+        for _, members_of_one in groupby(operator for operator, _ in order):
+            first = pieces[-1] + 1 if pieces else 0
+            pieces += [first + number // longest for number, _ in enumerate(members_of_one)]
         groups = [group for group, piece in zip(groups, pieces, strict=True) if piece % share.count == share.number - 1]
     remaining = []
     for group in groups:
@@ -288,15 +288,6 @@ def _groups_to_solve(states: States, again: tuple[str, ...], share: Share, sampl
         else:
             remaining.append([index for index in group if index in missing])
     return [group for group in remaining if group]
-
-
-def _pieces(operators: list[int], longest: int) -> list[int]:
-    """Return the number of each group's piece: consecutive groups with one operator, at most so many."""
-    pieces: list[int] = []
-    for _, members in groupby(operators):
-        first = pieces[-1] + 1 if pieces else 0
-        pieces += [first + number // longest for number, _ in enumerate(members)]
-    return pieces
 
 
 def _collect(results: Results, template: Task, results_folder: Folder, share: Share, log: Progress) -> None:
@@ -328,35 +319,14 @@ def _compact(results_folder: Folder, share: Share, log: Progress, *, at_end: boo
         log.log(f"batches are not joined: {error}")
 
 
-def rerun_study(
-    folder: str | Path,
-    *,
-    workers: int | None = None,
-    scheduler: str | Client | None = None,
-    wait: float = WAIT_SECONDS,
-    progress: bool = True,
-    solver: Solver | None = None,
-) -> RunReport:
+def rerun_study(folder: str | Path, **options: Any) -> RunReport:
     """Solve the failed, skipped and stale cases of a folder's study anew, and the missing ones.
 
     Parameters
     ----------
     folder : str or Path
         The study's folder.
-    workers, scheduler, wait, progress, solver
-        As for :func:`run_study`.
-
-    Returns
-    -------
-    RunReport
+    **options
+        `workers`, `scheduler`, `wait`, `progress` and `solver`, as for :func:`run_study`.
     """
-    return run_study(
-        Folder(folder).read_study(),
-        folder,
-        workers=workers,
-        scheduler=scheduler,
-        wait=wait,
-        progress=progress,
-        again=AGAIN,
-        solver=solver,
-    )
+    return run_study(Folder(folder).read_study(), folder, again=AGAIN, **options)

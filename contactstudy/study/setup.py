@@ -57,43 +57,39 @@ class Dimensions:
     def of(cls, values: Mapping[str, Any], modulus: float) -> Dimensions:
         """Dimensions of a case; under a load ``a`` depends on the length and conversely; with an approach it is NaN."""
         radius = checks.positive("radius", values["radius"], "metres")
+
+        def of_half_width(half_width: float) -> Dimensions:
+            distance = values["end_distance"] if "end_distance" in values else values["e_over_a"] * half_width
+            if "gamma" in values:
+                body = checks.positive("gamma", values["gamma"]) * radius
+                roller = body - 2 * distance
+            else:
+                roller = values["roller_length"]
+                body = roller + 2 * distance
+            return cls(
+                radius=radius,
+                body_length=body,
+                roller_length=roller,
+                end_distance=distance,
+                half_width=half_width,
+                modulus=modulus,
+            )
+
         if "max_pressure" in values:
             pressure = checks.positive("max_pressure", values["max_pressure"], "Pa")
-            return cls._for(values, radius, modulus, hertz.line_half_width(pressure, radius, modulus))._checked()
+            return of_half_width(hertz.line_half_width(pressure, radius, modulus))._checked()
         if "approach" in values:
-            return cls._for(values, radius, modulus, np.nan)._checked()
-        load, half_width = checks.positive("load", values["load"], "N"), 0.0
+            return of_half_width(np.nan)._checked()
+        load, dimensions = checks.positive("load", values["load"], "N"), of_half_width(0.0)._checked()
         for _ in range(500):
-            dimensions = cls._for(values, radius, modulus, half_width)
-            length = min(dimensions.body_length, dimensions.roller_length)
+            length, previous = min(dimensions.body_length, dimensions.roller_length), dimensions.half_width
             if length <= 0:
-                if not half_width:  # for any load
-                    dimensions._checked()
                 break
             pressure = hertz.line_max_pressure(load / length, radius, modulus)
-            previous, half_width = half_width, hertz.line_half_width(pressure, radius, modulus)
-            if abs(half_width - previous) <= 1e-14 * half_width:
-                return cls._for(values, radius, modulus, half_width)._checked()
+            dimensions = of_half_width(hertz.line_half_width(pressure, radius, modulus))
+            if abs(dimensions.half_width - previous) <= 1e-14 * dimensions.half_width:
+                return dimensions._checked()
         raise InvalidInputError("load", load, "small enough for a roller of positive length at this e_over_a")
-
-    @classmethod
-    def _for(cls, values: Mapping[str, Any], radius: float, modulus: float, half_width: float) -> Dimensions:
-        """Dimensions for a given half-width."""
-        distance = values["end_distance"] if "end_distance" in values else values["e_over_a"] * half_width
-        if "gamma" in values:
-            body = checks.positive("gamma", values["gamma"]) * radius
-            roller = body - 2 * distance
-        else:
-            roller = values["roller_length"]
-            body = roller + 2 * distance
-        return cls(
-            radius=radius,
-            body_length=body,
-            roller_length=roller,
-            end_distance=distance,
-            half_width=half_width,
-            modulus=modulus,
-        )
 
     def _checked(self) -> Dimensions:
         """Return the dimensions, or raise if a length is not positive."""

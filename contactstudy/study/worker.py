@@ -104,25 +104,7 @@ def perform(task: Task, solver: Solver | None = None) -> list[Outcome]:
     A case fails with an error of the package, a lack of memory or a singular system of equations. Any other error is a
     defect of the program, and raised after the cases finished before are written.
     """
-    _check_folder(*task.lock)
-    receive(task.profiles)
-    writer = _Writer(task)
-    try:
-        with single_threaded():
-            for _, jobs in groupby(task.jobs, key=lambda job: job.group):
-                for batch in _solve_group(task, list(jobs), solver):
-                    writer.add(batch)
-    except StoreError:
-        raise
-    except BaseException:
-        writer.flush()
-        raise
-    writer.flush()
-    return writer.outcomes
-
-
-def _check_folder(path: str, text: str) -> None:
-    """Raise unless this process reads the lock of the run."""
+    path, text = task.lock
     try:
         lock = Path(path).read_text(encoding="utf-8") if path else ""
     except (OSError, ValueError) as error:
@@ -130,35 +112,38 @@ def _check_folder(path: str, text: str) -> None:
     if lock != text:
         host = socket.gethostname()
         raise StoreError(f"a worker on {host} reads {lock[:200]!r} at {path}, not this run's lock; share the folder")
+    receive(task.profiles)
+    pending: list[Batch] = []
+    outcomes: list[Outcome] = []
 
-
-class _Writer:
-    """Accumulates finished cases and writes them in batches."""
-
-    def __init__(self, task: Task) -> None:
-        self._task = task
-        self._pending: list[Batch] = []
-        self._since = time.monotonic()
-        self.outcomes: list[Outcome] = []
-
-    def add(self, batch: Batch) -> None:
-        """Add one finished case."""
-        self._pending.append(batch)
-        full = sum(pending.nbytes for pending in self._pending) > RUN.buffer_bytes if batch.arrays else False
-        if full or time.monotonic() - self._since > RUN.save_seconds:
-            self.flush()
-
-    def flush(self) -> None:
-        """Write one batch for each structure of arrays."""
-        pending, self._pending = self._pending, []
-        for batches in by_structure(pending):
+    def flush() -> None:
+        groups = by_structure(pending)
+        pending.clear()
+        for batches in groups:
             joined = join(batches)
-            write_batch(Path(self._task.folder), f"{self._task.prefix}{uuid.uuid4().hex[:12]}", joined)
+            write_batch(Path(task.folder), f"{task.prefix}{uuid.uuid4().hex[:12]}", joined)
             for row, identity in enumerate(joined.ids):
                 status = STATUSES[joined.status[row]]
                 seconds = float(joined.numbers["seconds"][row]) if "seconds" in joined.numbers else 0.0
-                self.outcomes.append(Outcome(identity.decode(), status, seconds, joined.texts["message"][row]))
-        self._since = time.monotonic()
+                outcomes.append(Outcome(identity.decode(), status, seconds, joined.texts["message"][row]))
+
+    saved = time.monotonic()
+    try:
+        with single_threaded():
+            for _, jobs in groupby(task.jobs, key=lambda job: job.group):
+                for batch in _solve_group(task, list(jobs), solver):
+                    pending.append(batch)
+                    full = bool(batch.arrays) and sum(entry.nbytes for entry in pending) > RUN.buffer_bytes
+                    if full or time.monotonic() - saved > RUN.save_seconds:
+                        flush()
+                        saved = time.monotonic()
+    except StoreError:
+        raise
+    except BaseException:
+        flush()
+        raise
+    flush()
+    return outcomes
 
 
 def by_structure(batches: Iterable[Batch]) -> list[list[Batch]]:

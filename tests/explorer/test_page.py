@@ -17,7 +17,7 @@ from contactstudy.analysis import in_plane, measure
 from contactstudy.arrays.variables import STRESSES, specification
 from contactstudy.explorer import explore, server
 from contactstudy.explorer.cases import ORDER, SUBJECTS, Cases, open_cases
-from contactstudy.explorer.figures import NEUTRAL, Marked, StudyFigure
+from contactstudy.explorer.figures import NEUTRAL, StudyFigure
 from contactstudy.explorer.images import (
     PLANES,
     REGIONS,
@@ -313,7 +313,7 @@ def test_taken_port() -> None:
 def test_unbounded_values_are_triangles() -> None:
     figure = StudyFigure()
     values, x = np.array([2.0, np.inf]), np.array([0.0, 1.0])
-    marked = [Marked(0, 2.0, "blue"), Marked(1, np.inf, "red")]
+    marked = [(0, 2.0, "blue"), (1, np.inf, "red")]
     figure.show(x, values, None, marked=marked, labels=("x", "v"))
     assert (figure._marked.data["x"], figure._marked.data["color"]) == ([0.0], ["blue"])
     assert (figure._marked_unbounded.data["x"], figure._marked_unbounded.data["color"]) == ([1.0], ["red"])

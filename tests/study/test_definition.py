@@ -6,8 +6,7 @@ import pytest
 
 from contactstudy.errors import InvalidInputError
 from contactstudy.study import Study, StudyFileError
-from contactstudy.study.parameters import case_id
-from tests.small_study import BASE, as_toml, small_study
+from tests.small_study import BASE, as_toml, case_id, small_study
 
 
 def ids(study):

@@ -1,5 +1,6 @@
 """Locks, states and joined batches of a study's folder."""
 
+import json
 import os
 import subprocess
 import sys
@@ -7,11 +8,12 @@ import sys
 import numpy as np
 import pytest
 
+from contactstudy.checks import PART, writing
 from contactstudy.errors import InvalidInputError
-from contactstudy.study import LockedError, StoreError, load_case, open_study, run_study
+from contactstudy.study import LockedError, StoreError, StudyFileError, load_case, open_study, run_study
 from contactstudy.study import folder as module
 from contactstudy.study.batches import batch_paths, damage, join, read_batch, write_batch
-from contactstudy.study.files import PART, write_atomically, write_text
+from contactstudy.study.files import write_text
 from contactstudy.study.folder import Folder, Share, latest
 from contactstudy.study.settings import RunSettings
 from contactstudy.study.worker import Job, Task, without_result
@@ -76,7 +78,8 @@ def test_a_pipe_as_lock(tmp_path):
 
 
 def test_a_batch_is_read_as_it_was_written(tmp_path):
-    path = write_batch(tmp_path, "a", rows(3, message="Größe", warnings=["one"]))
+    write_batch(tmp_path, "a", rows(3, message="Größe", warnings=["one"]))
+    (path,) = batch_paths(tmp_path)
     assert damage(path) == ""
     batch = read_batch(path, arrays=None)
     assert batch.ids.tolist() == [f"{number:064x}".encode() for number in range(3)]
@@ -89,14 +92,16 @@ def test_tables_of_parameters_are_stored_once(tmp_path):
     profiles = [{"kind": "measured", "drops": [1e-6] * 1000}, {"kind": "cylinder"}]
     parameters = [{"young": 1.0, "profile": profiles[number % 2], "friction": 0.1 * number} for number in range(40)]
     batch = join([failed(number, entry) for number, entry in enumerate(parameters)])
-    path = write_batch(tmp_path, "a", batch)
+    write_batch(tmp_path, "a", batch)
+    (path,) = batch_paths(tmp_path)
     assert read_batch(path, arrays=None).texts["parameters"] == batch.texts["parameters"]
     assert path.stat().st_size < 60_000
 
 
 @pytest.mark.parametrize("change", [lambda data: data[:-10], lambda data: b"", lambda data: b"x" + data[1:]])
 def test_damage_is_detected(tmp_path, change):
-    path = write_batch(tmp_path, "a", rows(2))
+    write_batch(tmp_path, "a", rows(2))
+    (path,) = batch_paths(tmp_path)
     path.write_bytes(change(path.read_bytes()))
     assert "checksum" in damage(path)
 
@@ -131,16 +136,26 @@ def test_joined_batches_have_equal_results(tmp_path, monkeypatch):
     assert one.identical(many)
 
 
+@pytest.mark.parametrize("schema", [1, None])
+def test_a_folder_of_another_schema_is_refused(study, tmp_path, schema):
+    run(study, tmp_path)
+    content = json.loads((tmp_path / "study.json").read_text())
+    (tmp_path / "study.json").write_text(json.dumps(content | {"schema": schema}))
+    with pytest.raises(StudyFileError, match=f"schema = {schema}: must be 2"):
+        open_study(tmp_path)
+
+
 def test_a_failed_write_leaves_the_file_as_it_was(tmp_path):
     path = tmp_path / "a.txt"
     write_text(path, "before")
 
-    def fails(part):
-        part.write_text("half")
-        raise OSError("no space")
+    def fail():
+        with writing(path) as part:
+            part.write_text("half")
+            raise OSError("no space")
 
     with pytest.raises(StoreError, match="no space"):
-        write_atomically(path, fails)
+        fail()
     assert path.read_text() == "before"
     assert list(tmp_path.iterdir()) == [path]
 

@@ -6,8 +6,8 @@ from hypothesis import strategies as st
 from contactstudy.errors import InvalidInputError
 from contactstudy.profiles import Cylinder
 from contactstudy.study import parameters
-from contactstudy.study.parameters import case_id
 from contactstudy.study.profile_tables import SMALLEST, number
+from tests.small_study import case_id
 
 
 @pytest.mark.parametrize("one", [1, 1.0, np.int64(1), np.float32(1), np.float64(1), 1 + 1e-14])

@@ -11,9 +11,8 @@ import pytest
 from contactstudy import InvalidInputError, Rolling, Shift, Sliding, solve
 from contactstudy.study import Study, load_case, open_study, run_study
 from contactstudy.study.common_cells import resampled
-from contactstudy.study.parameters import case_id
 from contactstudy.study.setup import build_setup
-from tests.small_study import BASE, small_study
+from tests.small_study import BASE, case_id, small_study
 from tests.study.test_common_cells import cells_map
 
 ROLLS: dict[str, Any] = {

@@ -12,10 +12,9 @@ import pytest
 from contactstudy import Material, profiles
 from contactstudy.errors import InvalidInputError
 from contactstudy.study import Study, open_study, run_study
-from contactstudy.study.parameters import case_id
-from contactstudy.study.profile_tables import PROFILES, profile_label, profile_table
+from contactstudy.study.profile_tables import PROFILES, profile_table, profile_text
 from contactstudy.study.setup import build_setup
-from tests.small_study import BASE, as_toml, small_study
+from tests.small_study import BASE, as_toml, case_id, small_study
 from tests.stand_in_solver import solve_fake
 from tests.study.conftest import ROOT
 
@@ -68,7 +67,7 @@ def test_a_profile_as_object_as_table_and_after_json(kind: str) -> None:
     again = json.loads(json.dumps(table))
     assert built(again) == profile
     assert case_id({"profile": profile}) == case_id({"profile": again})
-    assert profile_label(table)
+    assert profile_text(table)
 
 
 def test_the_documented_profiles_can_be_solved(tmp_path: Path) -> None:
@@ -150,8 +149,8 @@ def test_files_are_found_from_the_study_file_and_not_needed_later(tmp_path: Path
 
 def test_labels_tell_measured_profiles_apart(tmp_path: Path) -> None:
     tables = [profile_table(profiles.Measured.from_file(trace(tmp_path, height))) for height in (1.0, 2.0)]
-    assert len({profile_label(table) for table in tables}) == 2
-    assert profile_label(profile_table(EXAMPLES["halves"])) == "cylinder | full-crown crown_radius=0.5"
+    assert len({profile_text(table) for table in tables}) == 2
+    assert profile_text(profile_table(EXAMPLES["halves"])) == "cylinder | full-crown crown_radius=0.5"
 
 
 @pytest.mark.parametrize(

@@ -1,7 +1,7 @@
 """Texts of the command line on a study."""
 
 from contactstudy.study.plan import value_text
-from contactstudy.study.profile_tables import describe_profile
+from contactstudy.study.profile_tables import profile_text
 from contactstudy.study.progress import duration
 from contactstudy.study.report import in_bytes
 
@@ -14,5 +14,7 @@ def test_sizes_and_durations():
 def test_values_of_parameters_in_engineering_units():
     assert (value_text("radius", 5e-3), value_text("field_y_over_a", [0.0])) == ("5 mm", "1 value, 0")
     assert value_text("coupled", True) == "yes"
-    assert describe_profile({"kind": "cylinder", "fillet_radius": 2e-4}) == "cylinder, fillet radius 0.2 mm"
-    assert describe_profile({"kind": "lundberg", "design_pressure": 2e9}) == "lundberg, design pressure 2 GPa"
+    assert profile_text({"kind": "cylinder", "fillet_radius": 2e-4}, in_units=True) == "cylinder, fillet radius 0.2 mm"
+    assert (
+        profile_text({"kind": "lundberg", "design_pressure": 2e9}, in_units=True) == "lundberg, design pressure 2 GPa"
+    )
