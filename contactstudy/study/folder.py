@@ -20,7 +20,7 @@ from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from functools import cached_property, partial, reduce
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -87,6 +87,13 @@ class Entry:
     run: dict[str, Any] = field(default_factory=dict)
 
 
+class Location(NamedTuple):
+    """Batch and row of a case."""
+
+    batch: int
+    row: int
+
+
 class Results:
     """Results in a folder, as of now: columns of all intact batches, in memory."""
 
@@ -104,14 +111,14 @@ class Results:
         self._texts: dict[int, Batch] = {}
 
     @cached_property
-    def locations(self) -> dict[bytes, tuple[int, int]]:
-        """Batch and row of each case by its identity: the result of the latest run."""
-        locations: dict[bytes, tuple[int, int]] = {}
+    def locations(self) -> dict[bytes, Location]:
+        """Location of each case by its identity: the result of the latest run."""
+        locations: dict[bytes, Location] = {}
         for number, batch in enumerate(self.batches):
             for row, identity in enumerate(batch.ids.tolist()):
-                former_batch, former_row = locations.get(identity, (number, row))
-                if self.batches[former_batch].runs[former_row] < batch.runs[row] or identity not in locations:
-                    locations[identity] = (number, row)
+                former = locations.get(identity)
+                if former is None or self.batches[former.batch].runs[former.row] < batch.runs[row]:
+                    locations[identity] = Location(number, row)
         return locations
 
     @property
@@ -127,10 +134,10 @@ class Results:
 
     def case(self, identity: str, names: Iterable[str] | None = None) -> xr.Dataset:
         """Return one solved case on its cells, with all arrays or the named ones."""
-        number, row = self.locations.get(identity.encode(), (-1, -1))
-        if number < 0 or self.batches[number].status[row] != 0:
+        location = self.locations.get(identity.encode())
+        if location is None or self.batches[location.batch].status[location.row] != 0:
             raise InvalidInputError("case_id", identity, "that of a solved case of the study")
-        case = read_case(self.paths[number], row, names)
+        case = read_case(self.paths[location.batch], location.row, names)
         parameters = json.loads(case.attrs[CASE_ATTRIBUTE])
         if are_registered(parameters):
             with contextlib.suppress(InvalidInputError):  # parameters of another version
@@ -141,15 +148,15 @@ class Results:
 
     def state(self, identity: bytes, level: str) -> tuple[str, str, bool]:
         """Status and reason of a case, and whether its result can be used."""
-        number, row = self.locations.get(identity, (-1, -1))
-        if number < 0:
+        location = self.locations.get(identity)
+        if location is None:
             return "missing", "", False
-        batch = self.batches[number]
-        status, version = STATUSES[batch.status[row]], batch.circumstances.get("contactstudy")
+        batch = self.batches[location.batch]
+        status, version = STATUSES[batch.status[location.row]], batch.circumstances.get("contactstudy")
         is_current = version == package_version()
         if status != "ok":
-            is_missing = status == "skipped" and not is_current
-            return ("missing", "", False) if is_missing else (status, batch.texts["message"][row], False)
+            message = batch.texts["message"][location.row]
+            return ("missing", "", False) if status == "skipped" and not is_current else (status, message, False)
         retained = batch.circumstances.get("level")
         if retained not in LEVELS or LEVELS.index(retained) < LEVELS.index(level):
             return "stale", f"retains {retained}, not {level}", False
