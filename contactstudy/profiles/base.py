@@ -63,7 +63,7 @@ class Shape:
         raise NotImplementedError
 
     def local_radius(self, x: FloatArray, length: float, radius: float | FloatArray) -> FloatArray:
-        """Radius of curvature across the roller (m) at `x`, for a roller with `radius` at mid-length: the same."""
+        """Radius of curvature across the roller (m) at `x`, for one with `radius` (m) after preceding summands."""
         return np.broadcast_to(np.asarray(radius, dtype=np.float64), np.shape(x))
 
     def slope_jumps(self, length: float) -> SlopeJumps:
@@ -113,21 +113,7 @@ def _terms(profile: Shape | Profile) -> tuple[Profile, ...]:
 def local_radius(profile: Profile, x: FloatArray, length: float, radius: float | FloatArray) -> FloatArray:
     """Radius of curvature across the roller (m) at distances `x` from mid-length.
 
-    Parameters
-    ----------
-    profile : Profile
-        Any profile; a user's class leaves `radius` unchanged.
-    x : array
-        Distances from mid-length, metres.
-    length : float
-        Length of the roller, metres.
-    radius : float or array
-        Radius at mid-length, in a sum after the preceding summands, metres.
-
-    Returns
-    -------
-    array
-        Of the shape of `x`, metres.
+    See :meth:`Shape.local_radius`; a user's class without this method leaves `radius` unchanged.
     """
     return as_shape(profile).local_radius(x, length, radius)
 

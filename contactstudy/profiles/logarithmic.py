@@ -18,7 +18,9 @@ EDGE_SHARE = 0.5 / math.sqrt(math.e)  # Johns and Gohar's 0.3033, ``1 / (2 sqrt(
 
 
 def logarithmic_drop(amplitude: float, t: FloatArray, share: float = 1.0) -> FloatArray:
-    """Drop ``A ln(1 / (1 - share t**2))`` (m); at ``share = 1`` infinite from ``|t| = 1`` on."""
+    """Drop ``A ln(1 / (1 - share t**2))`` (m); at ``share = 1`` infinite from ``|t| = 1`` on; 0 without amplitude."""
+    if amplitude == 0:
+        return np.zeros(np.shape(t))
     with np.errstate(divide="ignore"):
         return np.asarray(-amplitude * np.log1p(-share * np.minimum(t**2, 1.0)))
 
@@ -122,8 +124,6 @@ class Lundberg(Logarithmic):
 
     def drop(self, x: FloatArray, length: float) -> FloatArray:
         """Material removed (m) at distances `x` (m) from mid-length; infinite at the very ends."""
-        if self.delta * self.amplitude == 0:
-            return np.zeros(np.shape(x))
         return logarithmic_drop(self.delta * self.amplitude, 2 * np.asarray(x) / length)
 
 
@@ -172,24 +172,17 @@ class JohnsGohar(Logarithmic):
             "half_width": hertz.line_half_width(max_pressure, radius, modulus)
         }
 
-    def _share(self, length: float) -> float:
-        """Part of Lundberg's argument that is kept, ``1 - 0.3033 b / h``."""
-        share = 1 - EDGE_SHARE * self.half_width / (length / 2)
-        if share < 0:
-            raise InvalidInputError(
-                "half_width", self.half_width, f"at most 3.3 half lengths of the roller, {length / 2 / EDGE_SHARE:g} m"
-            )
-        return float(share)
-
     def edge_drop(self, length: float) -> float:
         """Drop (m) at the ends of a roller of the given `length` (m)."""
         return float(self.drop(np.array([length / 2]), length)[0])
 
     def drop(self, x: FloatArray, length: float) -> FloatArray:
         """Material removed (m) at distances `x` (m) from mid-length."""
-        share = self._share(length)
-        if self.amplitude == 0:
-            return np.zeros(np.shape(x))
+        share = float(1 - EDGE_SHARE * self.half_width / (length / 2))
+        if share < 0:
+            raise InvalidInputError(
+                "half_width", self.half_width, f"at most 3.3 half lengths of the roller, {length / 2 / EDGE_SHARE:g} m"
+            )
         return logarithmic_drop(self.amplitude, 2 * np.asarray(x) / length, share)
 
 
@@ -228,7 +221,6 @@ class FujiwaraKawase(Logarithmic):
 
     Examples
     --------
-    >>> import numpy as np
     >>> profile = FujiwaraKawase(amplitude=0.2e-6, edge_drop=5e-6, k1=2.0, k2=0.5)
     >>> profile.drop(np.array([0.0, 2.5e-3, 5e-3]), length=10e-3).round(12).tolist()
     [0.0, 0.0, 5e-06]

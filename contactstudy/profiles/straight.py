@@ -32,7 +32,6 @@ class Cylinder(Shape):
 
     Examples
     --------
-    >>> import numpy as np
     >>> Cylinder(fillet_radius=1e-3).drop(np.array([0.0, 4e-3, 5e-3]), length=10e-3).tolist()
     [0.0, 0.0, 0.001]
     """
@@ -90,7 +89,6 @@ class Tapered(Shape):
 
     Examples
     --------
-    >>> import numpy as np
     >>> x = np.array([-5e-3, 0.0, 5e-3])
     >>> Tapered(half_angle=0.05).local_radius(x, length=10e-3, radius=5e-3).round(6).tolist()
     [0.004756, 0.005006, 0.005256]
