@@ -157,21 +157,16 @@ def single_case(dataset: xr.Dataset) -> xr.Dataset:
         # A case without stresses lacks finite positions.
         case = case.isel({dim: finite}).swap_dims({dim: name}) if finite.size else case.drop_dims(dim)
     if "x_field" in case.coords and case["x_field"].dims == ("x",):
-        case = _with_stress_points(case)
+        # Stresses that share an axis with the pressure move to their own positions.
+        deep = [name for name, array in case.data_vars.items() if {"x", "z"} <= set(array.dims)]
+        finite = np.flatnonzero(np.isfinite(case["x_field"].values))
+        stresses = case[deep].isel(x=finite).swap_dims(x="x_field")
+        stresses = stresses.drop_vars(["x", "x_over_a", "x_width"], errors="ignore")
+        case = case.drop_vars([*deep, "x_field"]).assign(stresses.data_vars)
     unsorted = [
         dim for dim, index in case.indexes.items() if str(dim)[:1] in AXES and not index.is_monotonic_increasing
     ]
     return case.sortby(unsorted) if unsorted else case
-
-
-def _with_stress_points(case: xr.Dataset) -> xr.Dataset:
-    """Return a case whose stresses lie on `x_field`, instead of on an axis that they share with the pressure."""
-    deep = [name for name, array in case.data_vars.items() if "x" in array.dims and "z" in array.dims]
-    if not deep:
-        return case.drop_vars("x_field")
-    finite = np.flatnonzero(np.isfinite(case["x_field"].values))
-    stresses = case[deep].isel(x=finite).swap_dims(x="x_field").drop_vars(["x", "x_over_a", "x_width"], errors="ignore")
-    return case.drop_vars([*deep, "x_field"]).assign(stresses.data_vars)
 
 
 def reduce_dims(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from typing import NamedTuple
 
 import numpy as np
@@ -230,12 +231,16 @@ def cut_ends(dataset: xr.Dataset) -> tuple[xr.DataArray, xr.DataArray]:
     for axis in "xy":
         pressure = sort_positions(pressure, axis)
     x, y = dimension_along(pressure, "x"), dimension_along(pressure, "y")
+    start, stop = 0.0, np.inf
+    if "case" in attribute(dataset, INPUTS_ATTRIBUTE):
+        with contextlib.suppress(InvalidInputError):  # inputs of another version
+            start, stop = solved_case(dataset).contact_range
     arguments = [
         (pressure, [x, y]),
         (dataset["normal_load"], []),
         (positions(pressure, "x"), [x]),
         *((_cell_widths(pressure, axis), [dim]) for axis, dim in (("x", x), ("y", y))),
-        *((xr.DataArray(end), []) for end in _contact_range(dataset)),
+        *((xr.DataArray(end), []) for end in (start, stop)),
     ]
     first, last = reduce_dims(_find_cuts, arguments, 2)
     return first, last
@@ -262,16 +267,6 @@ def _find_cuts(
     starts_inside, stops_inside = x - 0.5 * dx > start + slack, x + 0.5 * dx < stop - slack
     first, last = outermost(loaded & starts_inside, first=True), outermost(loaded & stops_inside, first=False)
     return (short & first).astype(np.float64), (short & last).astype(np.float64)
-
-
-def _contact_range(dataset: xr.Dataset) -> tuple[float, float]:
-    """First and last x of the contact, as far as the inputs determine them."""
-    if "case" in attribute(dataset, INPUTS_ATTRIBUTE):
-        try:
-            return solved_case(dataset).contact_range
-        except InvalidInputError:  # inputs of another version
-            pass
-    return 0.0, np.inf
 
 
 def edge_factors(
@@ -346,14 +341,9 @@ def _values(dataset: xr.Dataset, variable: str, reach: xr.DataArray | float) -> 
         # Beside a singular end pressure and stress are unbounded.
         singular = np.isinf(dataset.get(f"end_pressure_{side}", xr.DataArray(0.0)))
         values[side] = value.where(~singular | value.isnull(), np.inf)
-    return values | {"middle": _nearest(profile, 0.5 * (borders[0] + borders[1])), "peak": profile.max(x)}
-
-
-def _nearest(profile: xr.DataArray, position: xr.DataArray) -> xr.DataArray:
-    """Value at the point nearest to a position; NaN beyond the points."""
-    x = dimension_along(profile, "x")
-    distance = abs(positions(profile, "x") - position)
+    distance = abs(points - 0.5 * (borders[0] + borders[1]))
     nearest = distance.fillna(np.inf).argmin(x)
     width = cell_size(profile, "x")
-    limit = width.isel({x: nearest}) if x in width.dims else width
-    return profile.isel({x: nearest}).where(distance.min(x) <= limit)
+    # Beyond the points there is no value.
+    within = distance.min(x) <= (width.isel({x: nearest}) if x in width.dims else width)
+    return values | {"middle": profile.isel({x: nearest}).where(within), "peak": profile.max(x)}

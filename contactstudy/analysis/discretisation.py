@@ -75,13 +75,29 @@ def discretisation_error(fine: xr.Dataset, coarse: xr.Dataset) -> xr.Dataset:
     displacement = EDGE_UNCERTAINTY * float(fine["y"][1] - fine["y"][0]) / values["half_width_middle"]
     singular, turn = _singular_pressures(fine), _largest_turn(fine)
     unresolved = {name for name in PRESSURES if values[name] > 0} if turn > RESOLVED_TURN else set()
-    errors = {
-        name: np.inf
-        if name in singular | unresolved
-        else _estimate(name, (coarse_values[name], value), ratio, displacement)
-        for name, value in values.items()
-    }
-    errors["peak_pressure"] = max(errors["peak_pressure"], _end_excess(values, coarse_values, errors, ratio))
+
+    def correction(name: str) -> float:
+        """Distance from the fine value to the limit of Richardson's extrapolation."""
+        order = END_ORDER if name in ENDS else ASSUMED_ORDER
+        return float(abs(values[name] - coarse_values[name]) / (ratio**order - 1))
+
+    def estimate(name: str) -> float:
+        value, coarse_value = values[name], coarse_values[name]
+        if name in singular | unresolved:
+            return np.inf
+        if value == 0 and coarse_value == 0:
+            return 0.0
+        # Relative change between two grids without an estimate of the limit
+        if not (np.isfinite(value) and np.isfinite(coarse_value)) or abs(value - coarse_value) > 0.2 * abs(value):
+            return np.inf
+        return max(correction(name), displacement * abs(value) if np.isfinite(displacement) else 0.0)
+
+    errors = {name: estimate(name) for name in values}
+    peak = values["peak_pressure"]
+    for name in ENDS:
+        # An end below the peak without a limit counts with its correction.
+        error = errors[name] if np.isfinite(errors[name]) or values[name] >= peak else correction(name)
+        errors["peak_pressure"] = max(errors["peak_pressure"], values[name] + error - peak)
     result = xr.Dataset()
     for name, value in values.items():
         result[name], result[f"{name}_error"] = value, errors[name]
@@ -94,34 +110,6 @@ def discretisation_error(fine: xr.Dataset, coarse: xr.Dataset) -> xr.Dataset:
             result[f"{name}_error"].attrs["comment"] = f"{reason} on {columns} x {rows} cells: {advice}"
     result.attrs["cells"] = [f"{columns} x {rows}" for columns, rows in (cells, coarse_cells)]
     return describe(result, "contact quantities with their discretisation error")
-
-
-def _estimate(name: str, values: tuple[float, float], ratio: float, displacement: float) -> float:
-    """Error of the fine one of two values; `displacement` is the relative effect of an edge within its uncertainty."""
-    coarse, fine = values
-    if fine == 0 and coarse == 0:
-        return 0.0
-    # Relative change between two grids without an estimate of the limit
-    if not (np.isfinite(fine) and np.isfinite(coarse)) or abs(fine - coarse) > 0.2 * abs(fine):
-        return np.inf
-    floor = displacement * abs(fine) if np.isfinite(displacement) else 0.0
-    return max(_correction(name, coarse, fine, ratio), floor)
-
-
-def _correction(name: str, coarse: float, fine: float, ratio: float) -> float:
-    """Distance from the fine value to the limit of Richardson's extrapolation."""
-    order = END_ORDER if name in ENDS else ASSUMED_ORDER
-    return float(abs(fine - coarse) / (ratio**order - 1))
-
-
-def _end_excess(fine: dict[str, float], coarse: dict[str, float], errors: dict[str, float], ratio: float) -> float:
-    """Largest excess of an end over the peak; an end below it without a limit counts with its correction."""
-    peak, excess = fine["peak_pressure"], 0.0
-    for name in ENDS:
-        estimated = np.isfinite(errors[name]) or fine[name] >= peak
-        error = errors[name] if estimated else _correction(name, coarse[name], fine[name], ratio)
-        excess = max(excess, fine[name] + error - peak)
-    return excess
 
 
 def _shape_columns(contact: xr.Dataset) -> tuple[int, int]:

@@ -220,7 +220,18 @@ def slices(dataset: xr.Dataset, count: int = 30) -> xr.Dataset:
         mean = (weights * cells[name]).sum(x) / weights.sum(x)
         result[name] = mean.assign_attrs(comment="mean over the cells of the slice")
     if all(name in case and "z" in axis_dimensions(case[name]) for name in STRESSES):
-        result = _with_stresses(result, case, borders)
+        rounding = ROUNDING * (borders[-1] - borders[0])
+        for name in SHEARS:
+            sections = largest_sample(case, name, along="x")
+            stress = sections[f"peak_{name}"]
+            along = dimension_along(stress, "x")
+            points = stress[along].values
+            inside = (points >= borders[:-1, None] - rounding) & (points <= borders[1:, None] + rounding)
+            samples = stress.where(xr.DataArray(inside, dims=("slice", along)))
+            index, sampled = samples.fillna(-np.inf).argmax(along), samples.notnull().any(along)
+            for variable in (f"peak_{name}", f"peak_{name}_z"):
+                value = sections[variable].isel({along: index}).where(sampled).reset_coords(drop=True)
+                result[variable] = value.assign_attrs(sections[variable].attrs)
     return describe(without_error(result, *means))
 
 
@@ -259,20 +270,3 @@ def _with_errors(
         }
     )
     return without_error(result, *values) if np.isnan(relative).any() else result
-
-
-def _with_stresses(result: xr.Dataset, case: xr.Dataset, borders: FloatArray) -> xr.Dataset:
-    """Add the largest stress measures of the samples in each slice, and their depths."""
-    for name in SHEARS:
-        sections = largest_sample(case, name, along="x")
-        stress = sections[f"peak_{name}"]
-        x = dimension_along(stress, "x")
-        rounding = ROUNDING * (borders[-1] - borders[0])
-        points = stress[x].values
-        inside = (points >= borders[:-1, None] - rounding) & (points <= borders[1:, None] + rounding)
-        samples = stress.where(xr.DataArray(inside, dims=("slice", x)))
-        index, sampled = samples.fillna(-np.inf).argmax(x), samples.notnull().any(x)
-        for variable in (f"peak_{name}", f"peak_{name}_z"):
-            value = sections[variable].isel({x: index}).where(sampled).reset_coords(drop=True)
-            result[variable] = value.assign_attrs(sections[variable].attrs)
-    return result

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
-
 import numpy as np
 import xarray as xr
 
 from contactstudy.analysis import largest_sample, peak
 from contactstudy.analysis.contact import contact_numbers
-from contactstudy.arrays.variables import ERROR_KIND, NOT_ESTIMATED, STRESSES, labels, require
+from contactstudy.arrays.variables import STRESSES, describe, require, without_error
 from contactstudy.errors import InvalidInputError
 
 # Comments of numbers that depend on the cells, with errors that are not estimated
@@ -21,7 +19,7 @@ COMMENTS = {
 }
 
 
-def pressure_numbers(dataset: xr.Dataset) -> dict[str, float]:
+def pressure_numbers(dataset: xr.Dataset) -> xr.Dataset:
     """Numbers of the pressure; at the ends those of the Dataset, else of the outer pressed columns."""
     require(dataset, "pressure", "hertz_max_pressure")
     array = dataset["pressure"].transpose("x", "y")
@@ -42,7 +40,7 @@ def pressure_numbers(dataset: xr.Dataset) -> dict[str, float]:
         float(dataset.get(f"end_pressure_{end}", value)) / scale
         for end, value in zip(("first", "last"), outermost, strict=True)
     )
-    return {
+    values = {
         "peak_pressure": float(pressure[at_x, at_y]),
         "peak_pressure_x": float(x[at_x]),
         "peak_pressure_y": float(y[at_y]),
@@ -52,6 +50,10 @@ def pressure_numbers(dataset: xr.Dataset) -> dict[str, float]:
         "contact_length": float(numbers.contact_length),
         "contact_width": float(numbers.contact_width),
     }
+    result = describe(xr.Dataset(values))
+    for name, comment in COMMENTS.items():
+        result[name].attrs["comment"] = comment
+    return without_error(result, *COMMENTS)
 
 
 def stress_summary(dataset: xr.Dataset) -> xr.Dataset:
@@ -65,21 +67,12 @@ def stress_summary(dataset: xr.Dataset) -> xr.Dataset:
     return result.reset_coords(drop=True)
 
 
-class Number(NamedTuple):
-    """One number of a case with the attributes of its variable."""
-
-    value: float
-    attributes: dict[str, Any]
-
-
-def case_numbers(dataset: xr.Dataset) -> dict[str, Number]:
-    """All numbers of a solved case by name: scalars of the Dataset (settled), then those of its cells."""
-    numbers = {}
-    for name, value in pressure_numbers(dataset).items():
-        estimate = {"comment": COMMENTS[name], ERROR_KIND: NOT_ESTIMATED} if name in COMMENTS else {}
-        numbers[name] = Number(value, labels(name) | estimate)
-    for source in (stress_summary(dataset), dataset):
-        for key, variable in source.variables.items():
-            if variable.ndim == 0 and key not in source.coords:
-                numbers[str(key)] = Number(float(variable.values), dict(variable.attrs))
-    return numbers
+def case_numbers(dataset: xr.Dataset) -> xr.Dataset:
+    """All numbers of a solved case: scalars of the Dataset (settled), then those of its cells."""
+    scalars = {
+        name: array.variable
+        for source in (stress_summary(dataset), dataset)
+        for name, array in source.data_vars.items()
+        if not array.ndim
+    }
+    return pressure_numbers(dataset).assign(scalars)

@@ -42,7 +42,7 @@ def test_no_contact_at_all():
 @given(st.floats(0.1, 1e9))
 def test_ratios_do_not_depend_on_the_unit(scale):
     one, other = pressure_numbers(contact(VALUES)), pressure_numbers(contact(np.multiply(VALUES, scale), 2 * scale))
-    assert other["end_pressure_over_p0"] == pytest.approx(one["end_pressure_over_p0"])
+    assert float(other["end_pressure_over_p0"]) == pytest.approx(float(one["end_pressure_over_p0"]))
 
 
 def test_stress_points_of_their_own():
@@ -72,5 +72,5 @@ def test_without_stresses():
 
 def test_numbers_are_described_and_contain_the_scalars_of_the_result():
     result = case_numbers(contact(VALUES).assign(iterations=7))
-    assert result["iterations"].value == 7
-    assert result["end_pressure_over_p0"].attributes["units"] == "1"
+    assert result["iterations"] == 7
+    assert result["end_pressure_over_p0"].attrs["units"] == "1"

@@ -22,7 +22,6 @@ from contactstudy.film import line_contact
 from contactstudy.film.newton import FilmSettings
 from contactstudy.film.problem import FilmProblem
 from contactstudy.heat import flash
-from contactstudy.heat.flash import Shared
 from contactstudy.heat.moving_source import MovingBody
 from contactstudy.kernels.load import Load
 from contactstudy.overlapping.equations import EquationSet
@@ -157,7 +156,7 @@ def better_conductors(patch: Patch) -> None:
 
 def heat_in_halves(patch: Patch) -> None:
     """The heat is shared whatever temperatures come of it, and not quite in halves."""
-    patch.setattr(flash, "shared_heat", lambda first, second, density, touching: Shared(0.49 * density, 0.0))
+    patch.setattr(flash, "shared_heat", lambda first, second, density, touching: (0.49 * density, 0.0))
 
 
 def wear_that_changes_nothing(patch: Patch) -> None:
