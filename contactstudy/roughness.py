@@ -1,7 +1,6 @@
 """Height maps of rough surfaces: made by numbers, or read from a measurement, on a grid.
 
-A height map is a DataArray ``(x, y)`` of metres on cell centres, positive where material sticks out towards the other
-body: it makes a gap smaller by as much.
+A height map is a DataArray ``(x, y)`` of metres on cell centres, positive where material sticks out and closes the gap.
 """
 
 from __future__ import annotations

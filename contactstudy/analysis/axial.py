@@ -110,8 +110,17 @@ def contact_edges(dataset: xr.Dataset) -> xr.Dataset:
     pressure, grid = labelled_cells("dataset.pressure", contact["pressure"])
     gap, _ = labelled_cells("dataset.gap", contact["gap"], infinite=True)
     left, right = contact_borders(pressure, grid.y, gap)
-    touches = bool(pressure.any())
-    first, last = _axial_ends(pressure, gap, grid) if touches else (np.nan, np.nan)
+    touches, faces = bool(pressure.any()), grid.x_edges
+    first = last = np.nan
+    if touches and grid.uniform:
+        starts, stops = contact_borders(pressure.T, grid.x, gap.T)
+        # A smooth end is not beyond the face of the shape or the body.
+        facing = np.flatnonzero(np.isfinite(gap).any(axis=1))
+        first = float(max(np.nanmin(starts), faces[facing[0]]))
+        last = float(min(np.nanmax(stops), faces[facing[-1] + 1]))
+    elif touches:
+        loaded = np.flatnonzero(pressure.any(axis=1))
+        first, last = float(faces[loaded[0]]), float(faces[loaded[-1] + 1])
     result = xr.Dataset(
         {
             "y_left": ("x", left),
@@ -125,18 +134,6 @@ def contact_edges(dataset: xr.Dataset) -> xr.Dataset:
         coords={"x": contact["x"].values},
     )
     return describe(result, "edges of a contact, within a cell")
-
-
-def _axial_ends(pressure: FloatArray, gap: FloatArray, grid: Grid) -> tuple[float, float]:
-    """First and last x of the contact: within a uniform cell, or faces of the outermost of other cells."""
-    if grid.uniform:
-        starts, stops = contact_borders(pressure.T, grid.x, gap.T)
-        # A smooth end is not beyond the face of the shape or the body.
-        facing, faces = np.flatnonzero(np.isfinite(gap).any(axis=1)), grid.x_edges
-        first, last = max(np.nanmin(starts), faces[facing[0]]), min(np.nanmax(stops), faces[facing[-1] + 1])
-        return float(first), float(last)
-    loaded, faces = np.flatnonzero(pressure.any(axis=1)), grid.x_edges
-    return float(faces[loaded[0]]), float(faces[loaded[-1] + 1])
 
 
 def _area(grid: Grid, gap: FloatArray, width: FloatArray, ends: tuple[float, float]) -> float:

@@ -133,7 +133,14 @@ def check_solved_for(
     except (InvalidInputError, KeyError, TypeError):
         return
     if isinstance(part, Case):
-        actual, expected = _comparable(solved) | _scalars(result), _comparable(part)
+        # Scalars of a result follow a selection from joined results.
+        variables = {"load": "normal_load", "tilt": "tilt", "friction": "friction"}
+        scalars = {
+            name: float(result[variable])
+            for name, variable in variables.items()
+            if variable in result and result[variable].ndim == 0 and np.isfinite(result[variable])
+        }
+        actual, expected = _comparable(solved) | scalars, _comparable(part)
     else:
         actual, expected = (dict(_leaves({"body": to_dict(body)})) for body in (solved.body, part))
     names = [
@@ -164,16 +171,6 @@ def _comparable(case: Case) -> dict[str, Any]:
     if case.load_position is not None:
         values.pop("tilt")
     return values
-
-
-def _scalars(result: xr.Dataset) -> dict[str, float]:
-    """Values of a case among the scalars of a result: they follow a selection from joined results."""
-    variables = {"load": "normal_load", "tilt": "tilt", "friction": "friction"}
-    return {
-        name: float(result[variable])
-        for name, variable in variables.items()
-        if variable in result and result[variable].ndim == 0 and np.isfinite(result[variable])
-    }
 
 
 def _leaves(entry: Any, name: str = "") -> Iterator[tuple[str, Any]]:

@@ -47,11 +47,6 @@ class Columns(NamedTuple):
     middles: FloatArray  # (column), m
     values: FloatArray  # (column), a quantity
 
-    @property
-    def widths(self) -> FloatArray:
-        """Width of each column, m."""
-        return np.asarray(self.edges[:, 1] - self.edges[:, 0])
-
     def overlaps(self, borders: FloatArray) -> FloatArray:
         """Length of each column within each part between two borders, m: array (part, column)."""
         low, high = self.edges.T
@@ -126,7 +121,7 @@ def power_means(columns: Columns, borders: FloatArray, power: float) -> tuple[Fl
 def border_load_errors(line_load: Columns, borders: FloatArray) -> FloatArray:
     """Return the load that may lie beyond the borders of each part, because it is uniform in each column, N."""
     low, high = line_load.edges.T
-    moved = larger_step(np.abs(np.diff(line_load.values))) * np.minimum(line_load.widths, np.diff(borders).min())
+    moved = larger_step(np.abs(np.diff(line_load.values))) * np.minimum(high - low, np.diff(borders).min())
     errors = np.zeros(borders.size)
     for number, border in enumerate(borders[1:-1], start=1):
         first = int(np.searchsorted(high, border, side="left"))

@@ -31,10 +31,6 @@ class Nodes(NamedTuple):
     load: FloatArray  # N
     moment: FloatArray  # N m
 
-    def approached(self, lines: FloatArray) -> Nodes:
-        """Return some of the approaches."""
-        return Nodes(self.approaches[lines], self.tilts, self.energy[lines], self.load[lines], self.moment[lines])
-
 
 class Motion(NamedTuple):
     """Load, moment and stiffness matrix at an approach and a tilt; arrays of one shape."""
@@ -148,7 +144,10 @@ def fit_errors(nodes: Nodes, length: float) -> FloatArray:
     about = maximum_filter(degree, (1, 2 * BETWEEN + 1, 2 * BETWEEN + 1), mode="nearest")[:, ::BETWEEN, ::BETWEEN]
     lines, residuals = np.arange(nodes.approaches.size), []
     for line in lines[1:-1]:
-        fewer, removed = nodes.approached(lines != line), nodes.approached(lines == line)
+        fewer, removed = (
+            Nodes(nodes.approaches[some], nodes.tilts, nodes.energy[some], nodes.load[some], nodes.moment[some])
+            for some in (lines != line, lines == line)
+        )
         motion = EnergySpline.fitted(fewer)(*np.meshgrid(removed.approaches, removed.tilts, indexing="ij"))
         residuals.append(_differences(motion, removed.load, removed.moment, length))
     return np.asarray(

@@ -51,15 +51,11 @@ class Presser:
             return refine_contact(case, self.accuracy, self.tolerance).contact
 
     def pressed(self, approach: float, tilt: float, load: float) -> Node:
-        """Return the contact at an approach, from a first guess of its load."""
+        """Load, moment about mid-length and strain energy at an approach, from a first guess of the load."""
         with _refused(load, tilt):
             solution = search_load(replace(self.case, tilt=tilt), approach, load, self.accuracy, self.tolerance)
         contact = solution.refined.contact
         contact.warn_unless_converged()
-        return self.node(contact)
-
-    def node(self, contact: Contact) -> Node:
-        """Load, moment about mid-length and strain energy of a contact."""
         grid = contact.shape.grid
         forces = grid.weights * contact.pressure * grid.cell_area
         # In the contact the surfaces move apart by approach less gap.

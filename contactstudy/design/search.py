@@ -365,10 +365,10 @@ def best_profile(
     if not isinstance(bounds, Mapping) or not bounds:
         raise InvalidInputError("bounds", bounds, 'such as {"crown_radius": (0.5, 5.0)}')
     ranges = {}
-    for name, ends in bounds.items():
-        low, high = checks.coordinates(f"bounds[{name!r}]", ends, "SI")[[0, -1]] if np.size(ends) == 2 else (0.0, 0.0)
+    for name, pair in bounds.items():
+        low, high = checks.coordinates(f"bounds[{name!r}]", pair, "SI")[[0, -1]] if np.size(pair) == 2 else (0.0, 0.0)
         if not low < high:
-            raise InvalidInputError(f"bounds[{name!r}]", ends, "two numbers, the least and the largest value")
+            raise InvalidInputError(f"bounds[{name!r}]", pair, "two numbers, the least and the largest value")
         ranges[str(name)] = Range(float(low), float(high))
     designs = Evaluations(
         cases=_cases(case, loads, max_pressures, tilts),

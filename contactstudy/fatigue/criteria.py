@@ -141,17 +141,17 @@ def dang_van(stress: xr.Dataset, limits: FatigueLimits) -> xr.Dataset:
     Parameters
     ----------
     stress : Dataset
-        The six components with the rolling direction y over the whole passage, see
-        :func:`contactstudy.fatigue.window_remainder`; residual stresses may be added to them beforehand.
+        The six components with the rolling direction y over the whole passage, see :func:`window_remainder`; residual
+        stresses may be added.
     limits : FatigueLimits
         Of the material.
 
     Returns
     -------
     Dataset
-        Without the rolling direction: `dang_van` (Pa), the largest of the sum; `utilisation` (1), that over
-        ``tau_w``; `dang_van_shear` and `dang_van_hydrostatic` (Pa), both terms at that instant, and `dang_van_y` (m),
-        where that is (NaN for the unloaded state). Their errors are not estimated (`error_kind`).
+        Without the rolling direction: `dang_van` (Pa), the largest of the sum; `utilisation`, that over ``tau_w``;
+        `dang_van_shear` and `dang_van_hydrostatic` (Pa), both terms at that instant, and `dang_van_y` (m), where that
+        is (NaN for the unloaded state). Their errors are not estimated.
 
     Raises
     ------

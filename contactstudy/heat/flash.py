@@ -21,7 +21,7 @@ from contactstudy.case.case import Case
 from contactstudy.case.motion import Rolling, Shift, Sliding
 from contactstudy.checks import BoolArray, FloatArray
 from contactstudy.errors import ConvergenceWarning, InvalidInputError, TemperatureWarning
-from contactstudy.heat.moving_source import Ends, MovingBody, SourceOperator, ThermalProperties
+from contactstudy.heat.moving_source import MovingBody, SourceOperator, ThermalProperties
 
 
 class FrictionalHeat(NamedTuple):
@@ -71,9 +71,7 @@ RESTART, MOST_RESTARTS = 60, 20  # Steps between restarts, and restarts
 Heated = Callable[[FloatArray], FloatArray]  # Temperature rise from heat
 
 
-def shared_heat(
-    first: Heated, second: Heated, heat: FloatArray, touching: BoolArray
-) -> tuple[FloatArray, float]:
+def shared_heat(first: Heated, second: Heated, heat: FloatArray, touching: BoolArray) -> tuple[FloatArray, float]:
     """Heat into the first of two surfaces of equal temperature where they touch, and their difference over the rise."""
     if not heat.any():  # surfaces of the same speed
         return np.zeros(heat.shape), 0.0
@@ -119,7 +117,7 @@ def flash_temperature(
     result : Dataset
         Result of `solve`.
     body, roller : ThermalProperties
-        Thermal properties of body and roller; the roller's may be omitted with a given `partition`.
+        The roller's may be omitted with a given `partition`.
     partition : float, optional
         Uniform part of the heat that goes into the body, from 0 to 1. Default: equal temperatures of both surfaces in
         the contact determine the part at each point.
@@ -153,11 +151,9 @@ def flash_temperature(
 
     Notes
     -----
-    Properties do not depend on temperature; thermal expansion is neglected. At a singular end heat and pressure are
-    infinite, and the maximum is the temperature of the last cell.
-
-    The stated error of the maximum is its change on cells twice as wide along y, plus the relative error of the
-    largest pressure. It is NaN without an estimate of the latter, or with an infinite pressure.
+    Thermal expansion is neglected. At a singular end heat and pressure are infinite, and the maximum is the temperature
+    of the last cell. The stated error of the maximum is its change on cells twice as wide along y, plus the relative
+    error of the largest pressure; NaN without an estimate of the latter, or with an infinite pressure.
 
     Examples
     --------
@@ -220,7 +216,7 @@ def flash_temperature(
     hot = xr.Dataset(values | scalars, coords=coords)
     hot = hot.assign({name: solution[name] for name in ("hertz_half_width", "hertz_max_pressure") if name in solution})
     if depths is not None:
-        moving, columns = MovingBody(body, heat.body_speed, Ends(*case.body.extent)), slice(0, grid.cells_x)
+        moving, columns = MovingBody(body, heat.body_speed, case.body.extent), slice(0, grid.cells_x)
         inside = [SourceOperator(moving, grid, columns, float(depth))(into_body) for depth in depths]
         hot = hot.assign_coords(z=depths)
         hot["body_temperature_rise"] = (("x", "y", "z"), np.stack(inside, axis=-1))
@@ -249,7 +245,7 @@ def _temperatures(
     share: float | None,
 ) -> tuple[dict[str, FloatArray], FloatArray, float]:
     """Rises of the surfaces by name, heat into the body, and relative difference of the temperatures."""
-    body_rise = SourceOperator(MovingBody(body, heat.body_speed, Ends(*case.body.extent)), grid, slice(0, grid.cells_x))
+    body_rise = SourceOperator(MovingBody(body, heat.body_speed, case.body.extent), grid, slice(0, grid.cells_x))
     if roller is None:
         assert share is not None
         return {"temperature_rise": body_rise(share * heat.density)}, share * heat.density, np.nan
@@ -273,10 +269,10 @@ def _on_wider_cells(grid: Grid, values: FloatArray) -> tuple[Grid, FloatArray]:
     return wider, np.diff(at_cuts, axis=1) * wider.cells_y / grid.cells_y
 
 
-def _under_roller(case: Case, grid: Grid, pressure: FloatArray) -> tuple[slice, Ends]:
+def _under_roller(case: Case, grid: Grid, pressure: FloatArray) -> tuple[slice, tuple[float, float]]:
     """Columns under the roller, pressed ones included, and its insulated ends, moved to borders of cells."""
     if case.roller.ends == "none":
-        return slice(0, grid.cells_x), Ends(-np.inf, np.inf)
+        return slice(0, grid.cells_x), (-np.inf, np.inf)
     low, high = case.roller_start, case.roller_start + case.roller.length
     edges = grid.x_edges
     # Rounding decides on a centre at the end of the roller.
@@ -284,7 +280,7 @@ def _under_roller(case: Case, grid: Grid, pressure: FloatArray) -> tuple[slice, 
     first, stop = int(under[0]), int(under[-1]) + 1
     start = edges[first] if first > 0 else min(low, edges[0])
     end = edges[stop] if stop < grid.cells_x else max(high, edges[-1])
-    return slice(first, stop), Ends(float(start), float(end))
+    return slice(first, stop), (float(start), float(end))
 
 
 def _largest(grid: Grid, rises: dict[str, FloatArray]) -> dict[str, float]:

@@ -80,13 +80,6 @@ class ThermalProperties:
 TAIL = 6.5  # Lengths of spreading beyond which the heat of a cell vanishes: erfc(6.5) = 4e-20
 
 
-class Ends(NamedTuple):
-    """Positions of insulated ends along x, metres; infinite without an end."""
-
-    low: float
-    high: float
-
-
 def spread_lengths(smallest: float, step: float, window: float, drift: float) -> tuple[FloatArray, FloatArray]:
     """Nodes and weights over the length of spreading s, in which heat moves by ``drift s**2 / 2``, drift in 1/m."""
     speed = abs(drift)
@@ -119,11 +112,11 @@ def along_y(spread: FloatArray, distance: FloatArray, step: float, drift: float)
     return np.asarray(0.5 * (erf((behind + 0.5 * step) / s) - erf((behind - 0.5 * step) / s)))
 
 
-def along_x(spread: FloatArray, x: FloatArray, edges: FloatArray, ends: Ends) -> FloatArray:
+def along_x(spread: FloatArray, x: FloatArray, edges: FloatArray, ends: tuple[float, float]) -> FloatArray:
     """Part left at positions `x` of the heat of cells between `edges`: array (spread, x, cell)."""
-    length = ends.high - ends.low
+    length = ends[1] - ends[0]
     passed = _primitive(spread, x[:, None] - edges[None, :], length)
-    mirror = ends.low if np.isfinite(ends.low) else ends.high
+    mirror = next(filter(np.isfinite, ends), np.inf)
     if np.isfinite(mirror):
         passed = passed - _primitive(spread, x[:, None] + edges[None, :] - 2 * mirror, length)
     return np.asarray(passed[..., :-1] - passed[..., 1:])
@@ -163,7 +156,7 @@ class MovingBody(NamedTuple):
 
     properties: ThermalProperties
     speed: float  # of its surface along +y relative to the contact, m/s
-    ends: Ends  # insulated
+    ends: tuple[float, float]  # insulated, m; infinite without an end
 
     @property
     def drift(self) -> float:
@@ -182,7 +175,7 @@ class SourceOperator:
         self._length = next_fast_len(2 * grid.cells_y - 1, real=True)
         edges = grid.x_edges[columns.start : columns.stop + 1]
         x = grid.x[columns]
-        length = body.ends.high - body.ends.low
+        length = body.ends[1] - body.ends[0]
         window = grid.dy * grid.cells_y
         # Peclet number of the window below which a surface counts as resting
         if np.isfinite(length) and abs(body.drift) * window < 1e-6:
@@ -218,7 +211,7 @@ class SourceOperator:
             return np.asarray(fft(_summed(spread, lateral, low.size, factors), axis=0))
 
         self._spectrum = kernel(0.0)
-        mirror = body.ends.low if np.isfinite(body.ends.low) else body.ends.high
+        mirror = next(filter(np.isfinite, body.ends), np.inf)
         if np.isfinite(mirror):
             # Counted from the last one, cell j lies at x[-1] - dx j, and its image at 2 mirror - x[-1] + dx j.
             self._mirrored = kernel(x[0] + x[-1] - 2 * mirror)

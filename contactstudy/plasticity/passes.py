@@ -185,12 +185,6 @@ class _Section:
         """Yield stress in every cell, Pa."""
         return np.tile(self.material.yield_stress_at(self.z), self.x.size)
 
-    def residual(self, cells: IntArray) -> Influence | LayerInfluence:
-        """Residual stress of plastic strain in some of the cells, in the same ones."""
-        if self.layered:
-            return self.layers
-        return Influence.of(self.cells, *np.unravel_index(cells, (self.x.size, self.z.size)))
-
     @property
     def layers(self) -> LayerInfluence:
         """Residual stress of layers without an end."""
@@ -213,7 +207,7 @@ class _Section:
         box = np.unique(columns, return_inverse=True)[1], layers - first
         return Passage(
             elastic=elastic,
-            residual=self.residual(cells),
+            residual=self.layers if self.layered else Influence.of(self.cells, columns, layers),
             layers=self.layers,
             along=periodic,
             places=places,
@@ -317,8 +311,12 @@ def residual_stress(
     passage = section.passage(cells, substeps, tolerance) if cells.size else None
     for number in range(1, passes + 1):
         while True:
-            after = _passed(passage, cells, state)
-            residual, *displaced = section.residual_state(after.strain)
+            after = state
+            if passage is not None:
+                flowed = passage.after(State(state.strain[:, cells], state.accumulated[cells], state.converged))
+                after = State(state.strain.copy(), state.accumulated.copy(), flowed.converged)
+                after.strain[:, cells], after.accumulated[cells] = flowed.strain, flowed.accumulated
+            residual, sunk, dragged = section.residual_state(after.strain)
             further = np.setdiff1d(section.may_flow(residual.reshape(6, -1), 1 + tolerance), cells)
             if not further.size:
                 break
@@ -337,7 +335,16 @@ def residual_stress(
                 "lower the load, or give the material hardening: flow above the shakedown limit has no end without",
             )
         state = after
-        left = _to_dataset(section, dims, state, residual, displaced, grown=grown)
+        strains = state.strain.reshape(6, section.x.size, section.z.size)
+        fields = dict(zip((*STRESSES, *STRAINS), (*residual, *strains), strict=True))
+        fields["equivalent_plastic_strain"] = state.accumulated.reshape(strains.shape[1:])
+        tops = {"residual_displacement_z": sunk, "residual_displacement_y": dragged}
+        left = xr.Dataset(
+            {name: (dims, field) for name, field in fields.items()}
+            | {name: (dims[:1], values) for name, values in tops.items()}
+            | {"plastic_flow": ((), grown), "converged": ((), state.converged)},
+            coords={dims[0]: section.x, dims[1]: section.z},
+        )
         states.append(left.expand_dims(pass_number=[number]))
         # Stress of a pass' flow, over the tolerance times the yield stress, below which the state is stationary
         if 3 * body.material.shear_modulus * grown <= 2.0 * tolerance * section.yield_stress.min():
@@ -371,35 +378,3 @@ def _section(stress: xr.Dataset, body: Body, material: ElasticPlastic) -> tuple[
     if not section.layered:
         section.cells  # noqa: B018, refuses positions that make no cells
     return section, (dims["x"], dims["z"])
-
-
-def _passed(passage: Passage | None, cells: IntArray, state: State) -> State:
-    """State after one more pass."""
-    if passage is None:
-        return state
-    after = passage.after(State(state.strain[:, cells], state.accumulated[cells], state.converged))
-    total, sums = state.strain.copy(), state.accumulated.copy()
-    total[:, cells], sums[cells] = after.strain, after.accumulated
-    return State(total, sums, after.converged)
-
-
-def _to_dataset(
-    section: _Section,
-    dims: tuple[str, str],
-    state: State,
-    residual: FloatArray,
-    displaced: list[FloatArray],
-    grown: float,
-) -> xr.Dataset:
-    """One pass as a Dataset."""
-    shape = (section.x.size, section.z.size)
-    fields = dict(zip(STRESSES, residual, strict=True))
-    fields |= dict(zip(STRAINS, state.strain.reshape(6, *shape), strict=True))
-    fields["equivalent_plastic_strain"] = state.accumulated.reshape(shape)
-    tops = dict(zip(("residual_displacement_z", "residual_displacement_y"), displaced, strict=True))
-    return xr.Dataset(
-        {name: (dims, field) for name, field in fields.items()}
-        | {name: (dims[:1], values) for name, values in tops.items()}
-        | {"plastic_flow": ((), grown), "converged": ((), state.converged)},
-        coords={dims[0]: section.x, dims[1]: section.z},
-    )

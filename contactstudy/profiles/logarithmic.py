@@ -101,8 +101,7 @@ class Lundberg(Logarithmic):
 
     Notes
     -----
-    The drop is infinite at the very ends: the roller does not touch there. Where exactly a factor ``delta`` enters
-    differs between authors; here it multiplies the amplitude.
+    The drop is infinite at the very ends. Authors differ in where ``delta`` enters; here it multiplies the amplitude.
 
     References
     ----------
@@ -276,8 +275,7 @@ class IsoCylindrical(Shape):
 
     References
     ----------
-    ISO/TS 16281:2008, Rolling bearings - Methods for calculating the modified reference rating life for universally
-    loaded bearings.
+    ISO/TS 16281:2008.
 
     Examples
     --------
@@ -303,8 +301,7 @@ class IsoCylindrical(Shape):
 class IsoTapered(Shape):
     """Reference profile of a tapered roller: ``drop = 0.00045 D ln(1 / (1 - (2 x / length)**2))``.
 
-    It is the departure from the cone. Add :class:`~contactstudy.profiles.Tapered` for a cone on a surface that is
-    parallel to the axis.
+    It is the departure from the cone; add :class:`Tapered` for a cone on a surface that is parallel to the axis.
 
     Parameters
     ----------

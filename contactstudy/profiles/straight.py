@@ -79,9 +79,8 @@ class Tapered(Shape):
 
     Notes
     -----
-    `length` and `x` are measured along the generatrix. In bearings ``beta`` is up to about 0.07 rad (4 degrees), and
-    ``1 / cos(beta)`` up to 1.0025: the Hertz half-width and pressure that results are given over are those of a
-    cylinder with the roller's `radius`, without this factor.
+    `length` and `x` are measured along the generatrix. The Hertz half-width and pressure that results are given over
+    are those of a cylinder with the roller's `radius`, without ``1 / cos(beta)``: up to 1.0025 in bearings.
 
     References
     ----------

@@ -109,10 +109,8 @@ def potential_stresses(
 ) -> tuple[list[NDArray[np.inexact]], list[NDArray[np.inexact]]]:
     """Stresses of a unit normal and a unit tangential (along y) load, from the potentials of Johnson, section 3.2.
 
-    With `rho^2 = x^2 + y^2 + zeta^2` the potentials are `V = 1/rho`, `L = ln(rho + zeta)` and
-    `W = zeta L - rho`. They are harmonic in `(x, y, zeta)`, while the depth `z` that multiplies them stays apart:
-    for a real source `zeta = z`. Derivatives across the axis follow from those by `s = x^2 + y^2`:
-    `f_xy = 4 x y f''` and so on.
+    With `rho^2 = x^2 + y^2 + zeta^2` the potentials are `V = 1/rho`, `L = ln(rho + zeta)` and `W = zeta L - rho`; for a
+    real source `zeta = z`. Derivatives across the axis follow from those by `s = x^2 + y^2`: `f_xy = 4 x y f''`.
     """
     rho = np.sqrt(x**2 + y**2 + zeta**2)
     d = rho + zeta
@@ -207,10 +205,8 @@ def hertz_circle(
     """Stresses under `p0 sqrt(1 - r^2/a^2)` and `q = f p` along `+y`: the problem of Hamilton (1983).
 
     Hamilton and Goodman's device: the Hertz pressure has the potential of point sources of strength
-    `pi p0 (a^2 - t^2) / (2 a) dt` at the complex depths `-i t`, `-a < t < a`. Their explicit formulae are
-    this integral; here it is done by Gauss quadrature on the half circle through `t = -i a`, where the
-    integrand is smooth (`z >= 0`, also on the surface and the axis) except close to the ring `r = a, z = 0`. Twelve
-    digits and more away from there.
+    `pi p0 (a^2 - t^2) / (2 a) dt` at the complex depths `-i t`, `-a < t < a`. Gauss quadrature on the half circle
+    through `t = -i a` gives twelve digits and more except close to the ring `r = a, z = 0`.
     """
     a = radius
     angle, weight = np.polynomial.legendre.leggauss(160)

@@ -158,7 +158,11 @@ def _through(case: Case, columns: _Columns, ends: _Ends, depth: FloatArray) -> M
     volume = np.concatenate([[0.0], np.cumsum(remainder * np.diff(columns.edges))])
     spline = make_interp_spline(columns.edges, volume, k=min(3, depth.size)).derivative()
     borders = _borders(case, columns, depth)
-    places = _points(columns, start, stop)
+    edges, middles = columns.edges, columns.middles
+    # Points between the outer column's middle and the end, each half as far from it as the one before
+    closer = 0.5 ** np.arange(1, 11)
+    first, last = start + closer * (middles[0] - start), stop - closer * (stop - middles[-1])
+    places = np.concatenate([[start], np.sort(np.concatenate([first, last, edges[1:-1], middles])), [stop]])
     for border in borders:
         more = np.linspace(border.x[0], border.x[-1], 8 * border.x.size)  # points in each column
         apart = np.abs(places - more[:, None]).min(axis=1) > ROUNDING * case.roller.length
@@ -169,12 +173,12 @@ def _through(case: Case, columns: _Columns, ends: _Ends, depth: FloatArray) -> M
         near = (places >= border.x[0]) & (places <= border.x[-1])
         unworn = case.roller.profile.drop(places[near], case.roller.length)
         points[near] = np.maximum(border(places[near]) - unworn, 0.0)
-        corrected &= (columns.middles < border.x[0]) | (columns.middles > border.x[-1])
-    middles = np.searchsorted(places, columns.middles)
+        corrected &= (middles < border.x[0]) | (middles > border.x[-1])
+    nearest = np.searchsorted(places, middles)
     profile = _measured(half, places, points)
     for _ in range(8):  # Rounds that move the points until the interpolation has the depth of every column
         means = columns.depths(lambda x: profile.drop(x, case.roller.length))  # noqa: B023, called at once
-        points[middles] = np.maximum(points[middles] + np.where(corrected, depth - means, 0.0), 0.0)
+        points[nearest] = np.maximum(points[nearest] + np.where(corrected, depth - means, 0.0), 0.0)
         profile = _measured(half, places, points)
     return profile
 
@@ -194,15 +198,6 @@ def _borders(case: Case, columns: _Columns, depth: FloatArray) -> list[PchipInte
             if np.isfinite(shape[numbers]).all() and numbers.size > 2:
                 borders.append(PchipInterpolator(columns.middles[numbers], shape[numbers]))
     return borders
-
-
-def _points(columns: _Columns, start: float, stop: float) -> FloatArray:
-    """Return the columns' edges and middles, and ever closer points towards the contact's ends."""
-    edges, middles = columns.edges, columns.middles
-    # Points between the outer column's middle and the end, each half as far from it as the one before
-    closer = 0.5 ** np.arange(1, 11)
-    first, last = start + closer * (middles[0] - start), stop - closer * (stop - middles[-1])
-    return np.concatenate([[start], np.sort(np.concatenate([first, last, edges[1:-1], middles])), [stop]])
 
 
 def _overhanging(length: float, step: float) -> FloatArray:

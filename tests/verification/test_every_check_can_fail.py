@@ -173,8 +173,8 @@ def pressed_harder_by(factor: float) -> Callable[[Patch], None]:
     """Line contacts that pass with another pressure than the checks believe."""
 
     def patched(patch: Patch) -> None:
-        real = passes.line_contact
-        patch.setattr(passes, "line_contact", lambda friction: (factor * real(friction)).assign(hertz_max_pressure=1.0))
+        real = passes.from_top
+        patch.setattr(passes, "from_top", lambda friction: (factor * real(friction)).assign(hertz_max_pressure=1.0))
 
     return patched
 
