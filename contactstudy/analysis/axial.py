@@ -1,8 +1,7 @@
 """Edges of a contact to a few hundredths of a cell: half-width, length and area.
 
-Across the smooth edge of a contact the pressure vanishes like the square root of the distance, and the gap opens like
-its power 3/2 (K. L. Johnson, Contact Mechanics, 1985, section 5.1). The squared pressure inside and the gap to the
-power 2/3 outside are therefore linear at the edge: the edge is the mean of the zeros of quadratics fitted to both.
+The squared pressure inside a smooth edge and the gap to the power 2/3 outside are linear in the distance from it
+(K. L. Johnson, Contact Mechanics, 1985, section 5.1): the edge is the mean of the zeros of quadratics fitted to both.
 """
 
 from __future__ import annotations
@@ -236,8 +235,7 @@ def load_between(dataset: xr.Dataset, start: xr.DataArray | float, stop: xr.Data
     Returns
     -------
     DataArray
-        N, without the dimensions along x and y. A cell that a position cuts counts by its part, so that the load beside
-        an end, unlike the pressure there, depends little on the grid.
+        N, without the dimensions along x and y. A cell that a position cuts counts by its part.
 
     Raises
     ------
@@ -268,8 +266,7 @@ def load_between(dataset: xr.Dataset, start: xr.DataArray | float, stop: xr.Data
 def half_width(dataset: xr.Dataset) -> xr.Dataset:
     """Return the half-width of the contact at each position along the roller's axis, and its middle.
 
-    The border follows from the pressure alone, more finely than the cells (:mod:`contactstudy.analysis.axial`); with
-    few loaded cells across y it is the face of a cell.
+    The border follows from the pressure alone; with few loaded cells across y it is the face of a cell.
 
     Parameters
     ----------
@@ -279,8 +276,7 @@ def half_width(dataset: xr.Dataset) -> xr.Dataset:
     Returns
     -------
     Dataset
-        Along x: `half_width` (m; 0 without contact) and `contact_middle` (m, the y of the contact's middle; NaN without
-        contact).
+        Along x: `half_width` (m; 0 without contact) and `contact_middle` (m, its y; NaN without contact).
 
     Raises
     ------

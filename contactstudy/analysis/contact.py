@@ -12,6 +12,7 @@ from contactstudy import checks
 from contactstudy.analysis.axes import (
     axis_dimensions,
     cell_size,
+    cell_widths,
     dimension_along,
     positions,
     reduce_dims,
@@ -115,7 +116,7 @@ def contact_results(dataset: xr.Dataset, about: float | None = None) -> xr.Datas
         (pressure, [x, y]),
         (facing, [x]),
         *((positions(pressure, axis), [dim]) for axis, dim in (("x", x), ("y", y))),
-        *((_cell_widths(pressure, axis), [dim]) for axis, dim in (("x", x), ("y", y))),
+        *((cell_widths(pressure, axis), [dim]) for axis, dim in (("x", x), ("y", y))),
     ]
     numbers = dict(zip(ContactNumbers._fields, reduce_dims(contact_numbers, arguments, 7), strict=True))
     middle, loss = numbers.pop("facing_middle"), numbers.pop("contact_length_loss")
@@ -128,11 +129,6 @@ def contact_results(dataset: xr.Dataset, about: float | None = None) -> xr.Datas
         scalars[name].attrs["comment"] = "in whole cells"
     peak = _peak_pressure(dataset, numbers["resultant"])
     return without_error(peak.assign(edge_pressure(dataset).data_vars).assign(scalars).compute(), *scalars)
-
-
-def _cell_widths(pressure: xr.DataArray, axis: str) -> xr.DataArray:
-    """Width of each cell along an axis, metres; NaN in padding."""
-    return cell_size(pressure, axis) + 0.0 * positions(pressure, axis)
 
 
 def _peak_pressure(dataset: xr.Dataset, resultant: xr.DataArray) -> xr.Dataset:
@@ -239,7 +235,7 @@ def cut_ends(dataset: xr.Dataset) -> tuple[xr.DataArray, xr.DataArray]:
         (pressure, [x, y]),
         (dataset["normal_load"], []),
         (positions(pressure, "x"), [x]),
-        *((_cell_widths(pressure, axis), [dim]) for axis, dim in (("x", x), ("y", y))),
+        *((cell_widths(pressure, axis), [dim]) for axis, dim in (("x", x), ("y", y))),
         *((xr.DataArray(end), []) for end in (start, stop)),
     ]
     first, last = reduce_dims(_find_cuts, arguments, 2)

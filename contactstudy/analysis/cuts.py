@@ -69,8 +69,7 @@ def along_line(
     Returns
     -------
     Dataset
-        Along `distance` (m, from `start`), with the coordinates `x`, `y`, `z` of the points. For values without
-        interpolation, see `contactstudy.stress_field` at these positions.
+        Along `distance` (m, from `start`), with the coordinates `x`, `y`, `z` of the points.
 
     Raises
     ------

@@ -73,7 +73,13 @@ def discretisation_error(fine: xr.Dataset, coarse: xr.Dataset) -> xr.Dataset:
             "coarse", f"{coarse_cells} cells", f"fewer in each direction than the fine grid's {cells}"
         )
     displacement = EDGE_UNCERTAINTY * float(fine["y"][1] - fine["y"][0]) / values["half_width_middle"]
-    singular, turn = _singular_pressures(fine), _largest_turn(fine)
+    # At a pressed end of the shape inside the body's top the pressure has no limit, and then the peak has none.
+    axial = fine["pressure"].transpose("x", "y").values.max(axis=1)
+    first, last = _shape_columns(fine)
+    pressed = (first > 0 and axial[first] > 0, last < axial.size - 1 and axial[last] > 0)
+    singular = {name for name, sharp in zip(ENDS, pressed, strict=True) if sharp}
+    singular |= {"peak_pressure"} if singular else set()
+    turn = _largest_turn(fine)
     unresolved = {name for name in PRESSURES if values[name] > 0} if turn > RESOLVED_TURN else set()
 
     def correction(name: str) -> float:
@@ -118,18 +124,6 @@ def _shape_columns(contact: xr.Dataset) -> tuple[int, int]:
     if not facing.size:
         raise InvalidInputError("gap", "infinite everywhere", "finite where the shape can touch the body")
     return int(facing[0]), int(facing[-1])
-
-
-def _singular_pressures(contact: xr.Dataset) -> set[str]:
-    """Names of pressures without a limit: at a pressed end of the shape inside the body's top, and the peak then."""
-    axial = contact["pressure"].transpose("x", "y").values.max(axis=1)
-    first, last = _shape_columns(contact)
-    sharp = {
-        name
-        for name, column, inside in zip(ENDS, (first, last), (first > 0, last < axial.size - 1), strict=True)
-        if inside and axial[column] > 0
-    }
-    return sharp | {"peak_pressure"} if sharp else sharp
 
 
 def _largest_turn(contact: xr.Dataset) -> float:

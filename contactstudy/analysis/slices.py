@@ -1,8 +1,7 @@
 """Roller in slices: load, largest pressure, half-width and shear of equal parts of its length, with their errors.
 
-Columns that follow the solution differ much in width: at an edge they are a hundredth of those at mid-length. The
-largest pressure of a part is therefore interpolated between the middles of its columns: its square is linear where a
-contact ends, and is interpolated linearly. The distance of the columns determines the error.
+The square of the pressure, linear where a contact ends, is interpolated linearly between the middles of the columns,
+whose distance determines the error.
 """
 
 from __future__ import annotations
@@ -14,7 +13,7 @@ import numpy as np
 import xarray as xr
 
 from contactstudy import checks
-from contactstudy.analysis.axes import axis_dimensions, cell_size, dimension_along, single_case
+from contactstudy.analysis.axes import axis_dimensions, cell_size, cell_widths, dimension_along, single_case
 from contactstudy.analysis.axial import axial_profiles
 from contactstudy.analysis.contact import MISSING_LOAD, cut_ends
 from contactstudy.analysis.peaks import largest_sample
@@ -191,7 +190,7 @@ def slices(dataset: xr.Dataset, count: int = 30) -> xr.Dataset:
     centres = cells[x].values
     if centres.size < number:
         raise InvalidInputError("count", count, f"at most the number of cells, {centres.size}")
-    half = 0.5 * np.broadcast_to(cell_size(cells["line_load"], "x").values, centres.shape)
+    half = 0.5 * cell_widths(cells["line_load"], "x").values
     borders = np.linspace(centres[0] - half[0], centres[-1] + half[-1], number + 1)
 
     edges = np.stack([centres - half, centres + half], axis=-1)

@@ -6,6 +6,7 @@ import numpy as np
 import xarray as xr
 
 from contactstudy.analysis import largest_sample, peak
+from contactstudy.analysis.axes import cell_widths
 from contactstudy.analysis.contact import contact_numbers
 from contactstudy.arrays.variables import STRESSES, describe, require, without_error
 from contactstudy.errors import InvalidInputError
@@ -27,13 +28,7 @@ def pressure_numbers(dataset: xr.Dataset) -> xr.Dataset:
     pressed = pressure > 0
     facing = np.asarray(pressed.any(axis=1))
     columns = np.flatnonzero(facing)
-    widths = [
-        dataset[f"{axis}_width"].values
-        if f"{axis}_width" in dataset.variables
-        else np.full(centres.size, np.ptp(centres) / max(centres.size - 1, 1))
-        for axis, centres in (("x", x), ("y", y))
-    ]
-    numbers = contact_numbers(pressure, facing, x, y, *widths)
+    numbers = contact_numbers(pressure, facing, x, y, *(cell_widths(array, axis).values for axis in "xy"))
     at_x, at_y = np.unravel_index(int(np.nanargmax(pressure)), pressure.shape)
     outermost = [float(pressure[column].max()) for column in columns[[0, -1]]] if columns.size else [np.nan, np.nan]
     first, last = (

@@ -38,10 +38,10 @@ def atlas(
     tilt_ratio: npt.ArrayLike | xr.DataArray = 0.0,
     poisson: npt.ArrayLike | xr.DataArray = 0.3,
 ) -> xr.Dataset:
-    """Interpolate the contact of a rigid roller with a logarithmic profile between free ends.
+    """Interpolate the contact of a rigid roller with a logarithmic profile between free ends (`studies/atlas.py`).
 
-    The scales are those of the Hertz line contact: half-width ``a = 2 p0 R / E*``, pressure p0, and the load
-    ``P = pi E* a**2 L / (4 R)``. The friction is 0, and approach and tilt refer to the depth of the body's length.
+    The scales are those of the Hertz line contact: half-width a, pressure p0, load ``P = pi E* a**2 L / (4 R)``.
+    The friction is 0, and approach and tilt refer to the depth of the body's length.
 
     Parameters
     ----------
@@ -69,10 +69,6 @@ def atlas(
     ------
     InvalidInputError
         If a value is not a finite number inside the range of the atlas.
-
-    Notes
-    -----
-    ``studies/atlas.py`` computes the table.
 
     Examples
     --------

@@ -1,9 +1,8 @@
 """Strain energy of a contact over approach and tilt as one smooth function: load, moment and stiffness derive from it.
 
-Load and moment are the derivatives of the energy with respect to approach and tilt, so the stiffness matrix is its
-matrix of second derivatives and symmetric by construction. The energy without tilt follows powers of the approach: its
-logarithm is a spline in the logarithm of the approach. The energy added by a tilt is a tensor product of splines in
-that logarithm and in the tilt, fitted to energy, load and moment together by least squares.
+The energy without tilt follows powers of the approach: its logarithm is a spline in the logarithm of the approach. The
+energy added by a tilt is a tensor product of splines in that logarithm and in the tilt, fitted to energy, load and
+moment together by least squares.
 """
 
 from __future__ import annotations

@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from contactstudy import checks
-from contactstudy.analysis.axes import cell_size, dimension_along, single_case
+from contactstudy.analysis.axes import cell_widths, dimension_along, single_case
 from contactstudy.analysis.provenance import solved_case
 from contactstudy.analysis.slices import SIDES, Columns, power_means, pressure_errors
 from contactstudy.arrays.peaks import section_maxima
@@ -37,8 +37,7 @@ def slice_model(case: Case, *, slices: int = 30, tilt: float | None = None, edge
     Parameters
     ----------
     case : Case
-        Body, roller and load. Of the body the model uses the contact modulus only. Where the roller
-        overhangs only the part over the body is cut.
+        Of the body the model uses the contact modulus only. Of an overhanging roller the part over the body is cut.
     slices : int
         Number ``n`` of slices; at least 30 in the standard.
     tilt : float, optional
@@ -69,8 +68,7 @@ def slice_model(case: Case, *, slices: int = 30, tilt: float | None = None, edge
 
     References
     ----------
-    ISO/TS 16281:2008, Rolling bearings - Methods for calculating the modified reference rating life for universally
-    loaded bearings, equations 35, 38 to 44 and 60.
+    ISO/TS 16281:2008, equations 35, 38 to 44 and 60.
 
     Examples
     --------
@@ -234,7 +232,7 @@ def _hertz_loads(result: xr.Dataset, case: Case, borders: FloatArray) -> tuple[F
     pressure = result["pressure"].transpose(dimension_along(result["pressure"], "x"), ...)
     x = dimension_along(pressure, "x")
     position, top = result[x].values, section_maxima(pressure.values)
-    half = 0.5 * np.broadcast_to(cell_size(pressure, "x").values, position.shape)
+    half = 0.5 * cell_widths(pressure, "x").values
     middle = case.roller_middle
     under = np.abs(position - middle) <= 0.5 * case.roller.length
     radius = np.full(position.size, case.roller.radius)

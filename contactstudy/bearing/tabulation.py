@@ -110,8 +110,7 @@ def _mirror_images(presser: Presser) -> bool:
     """Whether the halves of roller and body are mirror images."""
     case, (low, high) = presser.case, presser.case.body.extent
     length = case.roller.length
-    endless = np.isinf(low) and np.isinf(high)
-    centred = endless or abs(low + high - 2 * case.roller_middle) <= MIRRORED * length
+    centred = np.isinf(low) or abs(low + high - 2 * case.roller_middle) <= MIRRORED * length
     places = 0.5 * length * np.linspace(0.01, 0.99, 50)
     second_half, first_half = (case.roller.clearance(side * places, np.array([0.0, 1e-2 * length])) for side in (1, -1))
     return bool(centred) and bool(np.allclose(second_half, first_half, rtol=MIRRORED, atol=0.0))

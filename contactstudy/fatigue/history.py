@@ -1,10 +1,8 @@
 """Stress histories of material points that pass the contact, and the smallest ball around a history.
 
-At most one point more than the dimensions supports the ball. Beginning with one point, the farthest point outside joins
-the support, and the smallest ball around the support is one of the circumscribed balls of its subsets, until all points
-are inside. The radius grows with each step, so the iteration ends with the exact ball.
-Source: E. Welzl, Smallest enclosing disks (balls and ellipsoids), in: New Results and New Trends in Computer Science,
-LNCS 555 (1991) 359-370, and of B. Gaertner, Fast and robust smallest enclosing balls, ESA 1999.
+At most one point more than the dimensions supports the ball. The farthest point outside joins the support, and the
+smallest ball around it is one of the circumscribed balls of its subsets, until all points are inside: exact (E. Welzl,
+LNCS 555 (1991) 359-370, and of B. Gaertner, Fast and robust smallest enclosing balls, ESA 1999).
 """
 
 from __future__ import annotations

@@ -1,10 +1,9 @@
 """Risk of fatigue over the stressed volume, and relative life: two lives with the same probability to survive.
 
-Lundberg and Palmgren, and Ioannides and Harris: ``ln(1/S) = const N**e risk`` for the probability S to survive N
-passages; the constant belongs to material and lubrication and cancels in the ratio of two lives. Sources: G. Lundberg,
-A. Palmgren, Dynamic capacity of rolling bearings, Acta Polytechnica, Mechanical Engineering Series 1 (1947) no. 3, and
-Dynamic capacity of roller bearings, ibid. 2 (1952) no. 4; E. Ioannides, T. A. Harris, A new fatigue life model for
-rolling bearings, Journal of Tribology 107 (1985) 367-378.
+``ln(1/S) = const N**e risk`` for the probability S to survive N passages; the constant belongs to material and
+lubrication. G. Lundberg, A. Palmgren, Dynamic capacity of rolling bearings, Acta Polytechnica, Mechanical Engineering
+Series 1 (1947) no. 3, and 2 (1952) no. 4; E. Ioannides, T. A. Harris, A new fatigue life model for rolling bearings,
+Journal of Tribology 107 (1985) 367-378.
 """
 
 from __future__ import annotations

@@ -1,22 +1,11 @@
-"""Shakedown of a body under many passes of a contact: Melan's theorem.
+"""Shakedown of a body under many passes of a contact: Melan's theorem (docs/explanation/passes.md).
 
-A perfectly plastic body shakes down, and yields no more, if some residual stress in equilibrium
-keeps the sum of it and the passing contact's elastic stress from yielding at every instant (E. Melan, Zur Plastizitaet
-des raeumlichen Kontinuums, Ingenieur-Archiv 9 (1938) 116-126; for rolling contact K. L. Johnson, A shakedown limit in
-rolling contact, Proc. 4th US National Congress of Applied Mechanics (1962) 971-975). Rolling makes residual stress
-that does not depend on y. Then ``rho_yy(x, z)`` appears in no equation of equilibrium and in no condition on a free
-face: it is free at every point of every body and bounds the load rigorously. It changes ``u`` of eq. (501) alone: the
-least of the largest von Mises stress is the radius of the smallest ball around the history centred on its axis.
+E. Melan, Zur Plastizitaet des raeumlichen Kontinuums, Ingenieur-Archiv 9 (1938) 116-126; K. L. Johnson, A shakedown
+limit in rolling contact, Proc. 4th US National Congress of Applied Mechanics (1962) 971-975.
 
-`shakedown_in_plane` adds ``rho_xx``, ``rho_zz`` and ``rho_xz`` in equilibrium that leave top and ends free. Airy's
-stress function of (x, z) makes them (eigenstrain/), so they are linear in its coefficients, and the least yield stress
-k solves a second-order cone program:
-
-    minimise t  such that  |(u + w, v + sqrt(3)/2 (rho_xx - rho_zz), sqrt(3) (t_xz + rho_xz), remainder)| <= t
-
-at every point and instant; w is free at every point. Few instants of a history decide: the program begins with the
-unloaded state of every point and the instants of the largest stress, and each solution adds the instants that violate
-it. The result is a bound without convergence as well: the least k follows from the residual stress at all instants.
+`shakedown_in_plane` minimises t with ``|(u + w, v + sqrt(3)/2 (rho_xx - rho_zz), sqrt(3) (t_xz + rho_xz), remainder)|``
+at most t at every point and instant, w free at every point. Few instants decide: the cone program begins with the
+unloaded state of every point and the instants of the largest stress, and each solution adds those that violate it.
 """
 
 from __future__ import annotations
@@ -63,8 +52,7 @@ def shakedown(stress: xr.Dataset, *, axial: bool = False) -> xr.Dataset:
     Parameters
     ----------
     stress : Dataset
-        The six components with the rolling direction y over the whole passage, as for
-        :func:`contactstudy.fatigue.dang_van`; of one case or of a study. Sliding, or rolling with stick and slip.
+        The six components with the rolling direction y over the whole passage, of one case or of a study.
     axial : bool
         Whether a residual stress along the axis may help too. Only a line contact leaves it free at every depth: it may
         not change along x, and must vanish on free ends.
@@ -260,8 +248,8 @@ def shakedown_in_plane(stress: xr.Dataset, body: Body) -> xr.Dataset:
     Parameters
     ----------
     stress : Dataset
-        A single case with the six components along x, y and z, as for :func:`contactstudy.fatigue.shakedown`. The
-        residual stress reaches from the top to the largest z, and from the first to the last x, or to the free ends.
+        As for :func:`shakedown`, a single case. The residual stress reaches from the top to the largest z, and from the
+        first to the last x, or to the free ends.
     body : Body
         The body, for its free ends.
 

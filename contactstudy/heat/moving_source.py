@@ -1,13 +1,7 @@
 """Temperature of a moving surface under heat in its cells: the diffusion of heat between insulated ends.
 
-A point source at rest in a body whose surface moves at V along +y has released its heat at all times t before. In t
-that heat has spread by the length ``s = sqrt(4 kappa t)`` and has moved by ``V t``, so the steady temperature is an
-integral over s of a product of one factor along each axis (H. S. Carslaw, J. C. Jaeger, Conduction of Heat in Solids,
-1959, sections 10.2 and 10.7):
-
-    T = 1 / (lambda sqrt(pi))  integral of  X(s) Y(s) exp(-z**2 / s**2) ds .
-
-X and Y are the factors of uniform heat in a cell. Insulated ends act on X alone: they mirror the cell.
+The steady temperature is the integral of eq. (601) over the length of spreading s, with one factor along each axis of
+uniform heat in a cell (docs/explanation/heat_and_wear.md). Insulated ends act on X alone: they mirror the cell.
 """
 
 from __future__ import annotations
@@ -116,9 +110,8 @@ def along_x(spread: FloatArray, x: FloatArray, edges: FloatArray, ends: tuple[fl
     """Part left at positions `x` of the heat of cells between `edges`: array (spread, x, cell)."""
     length = ends[1] - ends[0]
     passed = _primitive(spread, x[:, None] - edges[None, :], length)
-    mirror = next(filter(np.isfinite, ends), np.inf)
-    if np.isfinite(mirror):
-        passed = passed - _primitive(spread, x[:, None] + edges[None, :] - 2 * mirror, length)
+    if np.isfinite(ends[0]):
+        passed = passed - _primitive(spread, x[:, None] + edges[None, :] - 2 * ends[0], length)
     return np.asarray(passed[..., :-1] - passed[..., 1:])
 
 
@@ -156,7 +149,7 @@ class MovingBody(NamedTuple):
 
     properties: ThermalProperties
     speed: float  # of its surface along +y relative to the contact, m/s
-    ends: tuple[float, float]  # insulated, m; infinite without an end
+    ends: tuple[float, float]  # insulated, m; without an end, or without the second, infinite
 
     @property
     def drift(self) -> float:
@@ -211,7 +204,7 @@ class SourceOperator:
             return np.asarray(fft(_summed(spread, lateral, low.size, factors), axis=0))
 
         self._spectrum = kernel(0.0)
-        mirror = next(filter(np.isfinite, body.ends), np.inf)
+        mirror = body.ends[0]
         if np.isfinite(mirror):
             # Counted from the last one, cell j lies at x[-1] - dx j, and its image at 2 mirror - x[-1] + dx j.
             self._mirrored = kernel(x[0] + x[-1] - 2 * mirror)

@@ -1,17 +1,7 @@
 """Passes of a contact over an elastic-plastic body, until the residual state is stationary.
 
-All points of one (x, z) have the same history: the stress field along y from the leading edge to the trailing edge.
-In coordinates that move with the contact the pass is steady. The states ahead of the contact and behind it are uniform
-along y, with the residual stress of the cross-section (eigenstrain/): no strain along y, free ends in the plane.
-Between the two the plastic strain changes along y, as in a line contact: each column along x acts separately, in plane
-strain. The residual stress at each position depends on the strain at all positions. Two steps alternate until the
-strain is stationary (K. Dang Van, M. H. Maitournam, J. Mech. Phys. Solids 41 (1993) 1691):
-
-* at fixed total strain, von Mises' radial return along y gives the plastic strain of every point
-  (J. C. Simo, T. J. R. Hughes, Computational Inelasticity, 1998, chapter 3);
-* the elastic body's stress of this plastic strain gives the total strain.
-
-D. G. Anderson's mixing of the latest iterates (J. ACM 12 (1965) 547) accelerates the iteration.
+docs/explanation/passes.md; radial return: J. C. Simo, T. J. R. Hughes, Computational Inelasticity (1998), chapter 3.
+Each column along x acts separately while the strain changes along y, in plane strain as in a line contact.
 """
 
 from __future__ import annotations
@@ -251,9 +241,9 @@ def residual_stress(
     Parameters
     ----------
     stress : Dataset
-        A single case with the six elastic stresses along x, y and z, as for :func:`contactstudy.fatigue.dang_van`: from
-        :func:`contactstudy.solve` or :func:`contactstudy.stress_field`. The positions along x and z are the
-        cells' middles; they should reach beyond the yielding region. One position along x: a line contact.
+        A single case with the six elastic stresses along x, y and z, as for :func:`contactstudy.fatigue.dang_van`. The
+        positions along x and z are the cells' middles, beyond the yielding region too. One position along x: a line
+        contact.
     body : Body
         The body, for its elastic constants and free ends.
     material : ElasticPlastic

@@ -84,10 +84,6 @@ class PartialCrown(Shape):
     InvalidInputError
         If a value is out of range, or (on use) the parts do not fit the roller's length.
 
-    Notes
-    -----
-    A corner fillet is added as ``+ Cylinder(fillet_radius=...)``.
-
     Examples
     --------
     >>> profile = PartialCrown(straight_length=6e-3, crown_radius=1.0, dub_length=0.5e-3, dub_radius=0.02)
@@ -153,8 +149,7 @@ class Ellipsoid(Shape):
     Parameters
     ----------
     crown_radius : float
-        Radius of curvature ``R_x`` in the axial plane at mid-length, metres; positive. The parabola stands for the body
-        only where ``x`` is small against it.
+        Radius of curvature ``R_x`` in the axial plane at mid-length, metres; positive and large against ``x``.
 
     Raises
     ------

@@ -84,7 +84,8 @@ class Logarithmic(Shape):
 class Lundberg(Logarithmic):
     """Lundberg's logarithmic profile, ``drop = delta * A * ln(1 / (1 - (2 x / length)**2))``.
 
-    At its design load on a half-space, and with ``delta = 1``, the pressure is uniform along the roller.
+    At its design load on a half-space, and with ``delta = 1``, the pressure is uniform along the roller. The drop is
+    infinite at the very ends.
 
     Parameters
     ----------
@@ -98,10 +99,6 @@ class Lundberg(Logarithmic):
     ------
     InvalidInputError
         If a value is negative.
-
-    Notes
-    -----
-    The drop is infinite at the very ends. Authors differ in where ``delta`` enters; here it multiplies the amplitude.
 
     References
     ----------
@@ -208,11 +205,6 @@ class FujiwaraKawase(Logarithmic):
     InvalidInputError
         If a value is out of range.
 
-    Notes
-    -----
-    With ``k1 = k2 = 1`` and the end drop of Johns and Gohar it is their profile; with an end drop that grows without
-    bound it becomes Lundberg's.
-
     References
     ----------
     H. Fujiwara, T. Kawase, Logarithmic profiles of rollers in roller bearings and optimization of the profiles,
@@ -266,12 +258,6 @@ class IsoCylindrical(Shape):
     ------
     InvalidInputError
         If the diameter is not positive.
-
-    Notes
-    -----
-    The short profile is Lundberg's for a Hertz pressure of 3000 MPa between a steel roller and a flat steel raceway.
-    The two branches differ in their amplitude: at ``length = 2.5 D`` the drop jumps by the factor 0.0005 / 0.00035.
-    The drop is infinite at the very ends.
 
     References
     ----------

@@ -1,14 +1,12 @@
 """Checks of stick and slip, flash temperature and wear: closed forms, Kalker's coefficients, published numbers.
 
-* Kalker, *Three-Dimensional Elastic Bodies in Rolling Contact* (1990), table E.3: creep coefficients to three digits.
-  They belong to vanishing creepage, where no cell slips and the traction at the trailing edge is singular, so the error
-  is of first order in the cell; it is extrapolated from two grids.
+* Kalker, *Three-Dimensional Elastic Bodies in Rolling Contact* (1990), table E.3: creep coefficients. They belong to
+  vanishing creepage, where the traction at the trailing edge is singular; the error, of first order in the cell, is
+  extrapolated from two grids.
 * Bentall and Johnson, *Int. J. Mech. Sci.* 9 (1967) 389, recomputed by the program CONTACT: unlike rollers.
-* A traction curve by CONTACT, 48 x 44 cells: its values are 1.4 % above those here at all creepages but the largest.
-  With the slip taken half a cell late, between neighbouring cells, this solver gives CONTACT's values to 0.2 % on as
-  many cells, and on twice as many half of the difference is gone: it is the cells' error.
-* Spence, *J. Elasticity* 5 (1975) 297: pressed with friction, a sphere sticks within the same part of the contact at
-  any load, so the load is raised in steps; by the program CONTACT half of the radius at this friction.
+* A traction curve by CONTACT, 48 x 44 cells, whose error explains the difference (docs/explanation/rolling.md).
+* Spence, *J. Elasticity* 5 (1975) 297: a sphere pressed with friction sticks within the same part of the contact at any
+  load, so the load is raised in steps; by the program CONTACT half of the radius at this friction.
 """
 
 from __future__ import annotations

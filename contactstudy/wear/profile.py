@@ -12,6 +12,7 @@ from scipy.interpolate import PchipInterpolator, make_interp_spline
 
 from contactstudy import checks
 from contactstudy.analysis.provenance import check_solved_for
+from contactstudy.arrays.grid import growing_edges
 from contactstudy.arrays.variables import require
 from contactstudy.case.case import Case
 from contactstudy.case.roller import GAP_NODES
@@ -200,21 +201,11 @@ def _borders(case: Case, columns: _Columns, depth: FloatArray) -> list[PchipInte
     return borders
 
 
-def _overhanging(length: float, step: float) -> FloatArray:
-    """Distances from the body's end of unworn points on a part of the roller that overhangs; none without one."""
-    if length <= ROUNDING * step:
-        return np.zeros(0)
-    # Steps that grow by a factor that a measured profile may have.
-    count = max(1, int(np.ceil(np.log2(1 + length / step))))
-    steps = 2.0 ** np.arange(count)
-    return np.asarray(length * np.cumsum(steps) / steps.sum())
-
-
 def _measured(half: float, places: FloatArray, depth: FloatArray) -> Measured:
     """Worn depth from the one end of the contact to the other as a profile of the roller's length."""
-    # Where the roller overhangs the body nothing is worn off.
-    before = _overhanging(places[0] + half, places[1] - places[0])[::-1]
-    behind = _overhanging(half - places[-1], places[-1] - places[-2])
+    # Where the roller overhangs the body nothing is worn off; a measured profile may have steps of this growth.
+    before = growing_edges(places[0] + half, places[1] - places[0], 2.0)[::-1]
+    behind = growing_edges(half - places[-1], places[-1] - places[-2], 2.0)
     x = np.concatenate([places[0] - before, places, places[-1] + behind])
     drops = np.concatenate([np.zeros(before.size), depth, np.zeros(behind.size)])
     return Measured((half + x).tolist(), drops.tolist(), largest_spike=half)

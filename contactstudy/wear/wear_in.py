@@ -301,8 +301,12 @@ def wear_in(
     distance_before, depth, cells, step, error = (
         (0.0, None, _cells(case, grid), None, 0.0) if after is None else _state_of(after, case, grid)
     )
-    stops, all_steps = _stops(distance, distance_before)
-
+    all_steps = np.ndim(distance) == 0
+    stops = checks.coordinates("distance", numbers_in_si("distance", distance, "m"))
+    if (np.diff(stops) <= 0).any():
+        raise InvalidInputError("distance", stops.tolist(), "increasing (metres)")
+    if stops[0] < distance_before or stops[-1] <= distance_before:
+        raise InvalidInputError("distance", stops.tolist(), f"beyond {distance_before:g} m, where the wear begins")
     gap = case.gap(cells)
     prescribed = Prescribed(case.normal_load, case.load_position).checked(gap, cells)
     shape = Shape(case.body, cells, ArrayKey(gap), prescribed, case.counterbody, coupled_friction=case.coupled_friction)
@@ -350,17 +354,6 @@ def _cells(case: Case, grid: Grid | None) -> Grid:
     count = 2 * int(np.ceil(0.5 * 1.4 * refined.cells_y))
     wider = count / refined.cells_y
     return Grid.between(refined.x_edges, (wider * low, wider * high), count)
-
-
-def _stops(distance: object, first: float) -> tuple[FloatArray, bool]:
-    """Distances to reach, and whether every step is wanted."""
-    all_steps = np.ndim(distance) == 0  # type: ignore[arg-type]
-    stops = checks.coordinates("distance", numbers_in_si("distance", distance, "m"))
-    if (np.diff(stops) <= 0).any():
-        raise InvalidInputError("distance", stops.tolist(), "increasing (metres)")
-    if stops[0] < first or stops[-1] <= first:
-        raise InvalidInputError("distance", stops.tolist(), f"beyond {first:g} m, where the wear begins")
-    return stops, all_steps
 
 
 def _state_of(after: xr.Dataset, case: Case, grid: Grid | None) -> tuple[float, FloatArray, Grid, float, float]:
