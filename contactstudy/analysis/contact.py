@@ -174,7 +174,16 @@ def edge_pressure(dataset: xr.Dataset) -> xr.Dataset:
     (3.0, 2.0)
     """
     axial = sort_positions(axial_pressure(dataset), "x")
-    values = reduce_dims(_first_and_last, [(axial, [dimension_along(axial, "x")])], 2)
+
+    def first_and_last(values: Array) -> tuple[Array, Array]:
+        """First and last positive number along the last axis; NaN without one."""
+        loaded = values > 0
+        indices = loaded.argmax(axis=-1), values.shape[-1] - 1 - loaded[..., ::-1].argmax(axis=-1)
+        first, last = (np.take_along_axis(values, index[..., None], axis=-1)[..., 0] for index in indices)
+        none = ~loaded.any(axis=-1)
+        return np.where(none, np.nan, first), np.where(none, np.nan, last)
+
+    values = reduce_dims(first_and_last, [(axial, [dimension_along(axial, "x")])], 2)
     edges = {}
     for end, value, cut in zip(("first", "last"), values, cut_ends(dataset), strict=True):
         edge = value.where(cut == 0)
@@ -183,15 +192,6 @@ def edge_pressure(dataset: xr.Dataset) -> xr.Dataset:
         edges[f"edge_pressure_{end}"] = named(f"edge_pressure_{end}", edge.where(~singular | edge.isnull(), np.inf))
         edges[f"edge_pressure_{end}"].attrs["comment"] = "mean of the outermost loaded cell"
     return without_error(xr.Dataset(edges), *edges)
-
-
-def _first_and_last(values: Array) -> tuple[Array, Array]:
-    """First and last positive number along the last axis; NaN without one."""
-    loaded = values > 0
-    first, last = loaded.argmax(axis=-1), values.shape[-1] - 1 - loaded[..., ::-1].argmax(axis=-1)
-    ends = [np.take_along_axis(values, index[..., None], axis=-1)[..., 0] for index in (first, last)]
-    none = ~loaded.any(axis=-1)
-    return np.where(none, np.nan, ends[0]), np.where(none, np.nan, ends[1])
 
 
 def cut_ends(dataset: xr.Dataset) -> tuple[xr.DataArray, xr.DataArray]:

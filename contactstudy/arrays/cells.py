@@ -79,15 +79,15 @@ def _grid(array: xr.DataArray, extent: tuple[float, float], y_range: tuple[float
                 error.parameter, error.value, error.allowed, "cells of different widths need a coordinate x_width (x)"
             ) from None
         # The cells follow each other from the body's end.
-        edges = [extent[0]]
+        positions = [extent[0]]
         for centre in centres:
-            edges.append(2 * centre - edges[-1])
-            if not edges[-2] < centre:
+            positions.append(2 * centre - positions[-1])
+            if not positions[-2] < centre:
                 raise InvalidInputError(
                     "x",
                     f"a cell centre at {centre:g} m",
                     "the middle of a cell that follows the others from the body's end",
                     "add a coordinate x_width (x) for cells of different widths",
                 ) from None
-        return Grid.between(edges, y_range, cells_y)
+        return Grid.between(positions, y_range, cells_y)
     return Grid(x_range=x_range, y_range=y_range, cells_x=cells_x, cells_y=cells_y)

@@ -7,6 +7,7 @@ import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from types import MappingProxyType
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -121,7 +122,12 @@ class Evaluations:
         """Solve every case of a design."""
         pairs = np.full((len(self.cases), 2), np.inf)
         try:
-            profile = self._profile(self.parameters(parts))
+            parameters = self.parameters(parts)
+            try:
+                profile = self.profile(**parameters)
+            except TypeError as error:
+                allowed = "of the keywords that profile takes"
+                raise InvalidInputError("bounds", list(parameters), allowed, str(error)) from None
             cases = [replace(case, roller=replace(case.roller, profile=profile)) for case in self.cases]
             with warnings.catch_warnings():
                 if self.designs:  # the first design has warned of magnitudes
@@ -135,14 +141,6 @@ class Evaluations:
             self.refused = error
         return Design(parts, pairs[:, 0], pairs[:, 1])
 
-    def _profile(self, parameters: dict[str, float]) -> Profile:
-        """Profile of the parameters."""
-        try:
-            return self.profile(**parameters)
-        except TypeError as error:
-            allowed = "of the keywords that profile takes"
-            raise InvalidInputError("bounds", list(parameters), allowed, str(error)) from None
-
     def _measured(self, case: Case) -> tuple[float, float]:
         """Measure of one case and its error."""
         uniform = bool({"grid", "roughness"} & self.settings.keys())
@@ -154,29 +152,24 @@ class Evaluations:
                     hint = f"an array; a function makes a number of it: lambda result: result.{self.measure}.max()"
                     raise InvalidInputError("measure", self.measure, "a scalar of the result, or a function", hint)
                 checks.known_name("measure", self.measure, scalars)
-            measured: object = result[self.measure]
+            measured: Any = result[self.measure]
             self.units = str(result[self.measure].attrs.get("units", ""))
             if f"{self.measure}_error" in result:
                 measured = (measured, result[f"{self.measure}_error"])
         else:
             measured = self.measure(result)
-        number, error = _number_and_error(measured)
+        try:
+            value, stated = measured if isinstance(measured, tuple) else (measured, None)
+            if isinstance(value, str) or isinstance(stated, str):
+                raise TypeError
+            number, error = float(value), None if stated is None else float(stated)
+        except (TypeError, ValueError):
+            shape = getattr(measured, "shape", ())
+            value = f"an array of shape {shape}" if shape else measured
+            raise InvalidInputError("measure", value, "a function that returns a number, or (number, error)") from None
         if np.isnan(number):
             raise InvalidInputError("measure", number, "a number in every case", f"NaN for {case!r}")
         return number, self.accuracy * abs(number) if error is None or np.isnan(error) else error
-
-
-def _number_and_error(measured: object) -> tuple[float, float | None]:
-    """Split the return value of a measure into number and error."""
-    try:
-        value, error = measured if isinstance(measured, tuple) else (measured, None)
-        if isinstance(value, str) or isinstance(error, str):
-            raise TypeError
-        return float(value), None if error is None else float(error)
-    except (TypeError, ValueError):
-        shape = getattr(measured, "shape", ())
-        value = f"an array of shape {shape}" if shape else measured
-        raise InvalidInputError("measure", value, "a function that returns a number, or (number, error)") from None
 
 
 def fewest(parameters: int) -> int:
