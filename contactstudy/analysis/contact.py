@@ -81,8 +81,7 @@ def contact_results(dataset: xr.Dataset, about: float | None = None) -> xr.Datas
     Parameters
     ----------
     dataset : Dataset
-        A result of :func:`contactstudy.solve` or of :func:`contactstudy.open_study`; `initial_gap` contains the facing
-        length of roller and body.
+        With `pressure` on cells; `initial_gap` contains the facing length of roller and body.
     about : float, optional
         Position x of the moment's axis, m; default: the middle of the facing length (mid-length of the roller unless it
         overhangs), or of the grid without `initial_gap`.
@@ -197,8 +196,8 @@ def edge_pressure(dataset: xr.Dataset) -> xr.Dataset:
 def cut_ends(dataset: xr.Dataset) -> tuple[xr.DataArray, xr.DataArray]:
     """Return whether the contact continues beyond the first and the last x, as in a part of a result: 1, otherwise 0.
 
-    The pressure of a part carries less than the load, and reaches a border of the cells inside the contact's range. The
-    range follows from the inputs of `solve`; without them it begins at x = 0 or inside the cells, without a last x.
+    The pressure of a part carries less than the load, and reaches a border of the cells inside the contact's range,
+    which follows from the inputs of `solve`, else begins at x = 0.
 
     Parameters
     ----------
@@ -278,7 +277,7 @@ def edge_factors(
         `pressure`, or a stress or measure, see :func:`contactstudy.analysis.measure`, with its largest sample in each
         cross-section.
     reference : Dataset, optional
-        The same contact on another body, usually the half-space, in the same coordinates, with its own borders.
+        The same contact on another body, usually the half-space, in the same coordinates.
     reach : float, optional
         Length of an end from the contact's border, m; default: one Hertz half-width.
 

@@ -28,11 +28,11 @@ SHARP = (
 def discretisation_error(fine: xr.Dataset, coarse: xr.Dataset) -> xr.Dataset:
     """Return peak and end pressure and half-width of a contact, each with an estimate of its discretisation error.
 
-    The estimate is the correction of Richardson's extrapolation with order 1, lower than that of smooth pressures, and
-    with order 0.8 at the ends; at least the effect of an edge displaced by `EDGE_UNCERTAINTY` cells. It is infinite
-    where the grids show no limit: at a pressed sharp end inside the body's top and for the peak then; if the two grids
-    differ by more than a fifth; for peak and ends if the shape turns too much between pressed columns, as at an edge
-    radius. An edge radius, or a top that continues, within half a cell of the end is not covered.
+    The estimate is the correction of Richardson's extrapolation with order 1, and with order 0.8 at the ends; at least
+    the effect of an edge displaced by `EDGE_UNCERTAINTY` cells. It is infinite where the grids show no limit: at a
+    pressed sharp end inside the body's top and for the peak then; if the two grids differ by more than a fifth; for
+    peak and ends if the shape turns too much between pressed columns. An edge radius, or a top that continues, within
+    half a cell of the end is not covered.
 
     Parameters
     ----------

@@ -64,8 +64,7 @@ def roller_ratings(dynamic_rating: float, rollers: int, gamma: float, *, rows: i
     Notes
     -----
     ``Q_c = C_r / (0.83 c Z rows**(7/9)) (1 + r**(+-9/2))**(2/9)`` with c = 0.378 inside and 0.364 outside, and
-    ``r = 1.038 ((1 - gamma) / (1 + gamma))**(143/108)``: equations 47 to 49 of ISO/TS 16281, second-hand. The two c
-    follow from the load on half of the rollers, and r from Lundberg and Palmgren's ratings of either raceway.
+    ``r = 1.038 ((1 - gamma) / (1 + gamma))**(143/108)``: equations 47 to 49 of ISO/TS 16281, second-hand.
 
     Examples
     --------

@@ -154,10 +154,8 @@ def contact_law(
     approaches : sequence of float, optional
         Five or more, increasing, positive, metres: how far the roller is pressed down at its mid-length. Default: eight
         from the approach under 0.03 of the case's load to the approach under 1.5 times the load, in equal ratios.
-    accuracy : float
-        Accuracy of the peak pressure of each contact, see :func:`contactstudy.solve`.
-    tolerance : float
-        Tolerance of each contact, see :func:`contactstudy.solve_contact`.
+    accuracy, tolerance : float
+        Of each contact, see :func:`contactstudy.solve` and :func:`contactstudy.solve_contact`.
 
     Returns
     -------

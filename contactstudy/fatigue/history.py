@@ -74,9 +74,8 @@ def of_points(name: str, array: xr.DataArray, base: Variable | None = None) -> x
 def window_remainder(stress: xr.Dataset) -> xr.DataArray:
     """Stress at the window's borders in y over the largest of the passage: how much of a history is left out.
 
-    The unloaded state is part of every history, so the remainder matters only where an extreme lies beyond the window.
-    The extremes of the orthogonal shear lie at ``y = 0.87 a`` near the surface, and move out to ``y = z / sqrt(3)`` at
-    depths of several half-widths.
+    The remainder matters only where an extreme lies beyond the window. The extremes of the orthogonal shear lie at
+    ``y = 0.87 a`` near the surface, and move out to ``y = z / sqrt(3)`` at depths of several half-widths.
 
     Parameters
     ----------

@@ -112,8 +112,7 @@ def flash_temperature(
     Parameters
     ----------
     case : Case
-        The solved case, with the speeds of its motion. A roller with ``ends="none"`` conducts heat like a
-        half-space. Ends, and the top beside the contact, are insulated.
+        The solved case, with the speeds of its motion. A roller with ``ends="none"`` conducts heat like a half-space.
     result : Dataset
         Result of `solve`.
     body, roller : ThermalProperties

@@ -90,8 +90,7 @@ class Lundberg(Logarithmic):
     Parameters
     ----------
     amplitude : float
-        ``A = q / (pi E*)``, metres, with the design load per length ``q`` and the contact modulus ``E*``
-        (equivalently ``R (p0 / E*)**2``); see :meth:`for_pressure` and :meth:`for_load`. Not negative.
+        ``A = q / (pi E*) = R (p0 / E*)**2``, metres, see :meth:`for_pressure` and :meth:`for_load`. Not negative.
     delta : float
         Modification factor on the amplitude. Not negative; 0 is the cylinder.
 
@@ -135,8 +134,7 @@ class JohnsGohar(Logarithmic):
     amplitude : float
         ``A = q / (pi E*)``, metres, as for :class:`Lundberg`. Not negative.
     half_width : float
-        Hertz half-width ``b`` at the design load, metres. Not negative; 0 is Lundberg's profile. At most
-        ``2 sqrt(e) h``; sensible well below ``h``.
+        Hertz half-width ``b`` at the design load, metres. Not negative; 0 is Lundberg's profile; at most 3.3 h.
 
     Raises
     ------

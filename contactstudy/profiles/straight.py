@@ -55,13 +55,9 @@ class Cylinder(Shape):
 class Tapered(Shape):
     """Tapered roller with rounded ends: a cone that lies on the body with its generatrix.
 
-    The generatrix is straight, so only the fillets drop. The radius of curvature across it varies like a cone's in the
-    plane normal to its generatrix::
-
-        R(x) = radius / cos(beta) + x tan(beta)
-
-    with `radius` of the roller at mid-length, measured at right angles to the axis. The gap is ``y**2 / (2 R(x))``:
-    the contact is narrower and the pressure higher at the small end.
+    The generatrix is straight, so only the fillets drop. The radius of curvature across it is that of a cone in the
+    plane normal to its generatrix, ``R(x) = radius / cos(beta) + x tan(beta)`` with `radius` of the roller at
+    mid-length, measured at right angles to the axis. The pressure is higher at the small end.
 
     Parameters
     ----------

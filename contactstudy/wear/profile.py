@@ -41,9 +41,8 @@ def worn_profile(case: Case, worn: xr.Dataset, distance: float | None = None) ->
     Returns
     -------
     Sum
-        Of the unworn profile, as it was, and of the worn depth as a `Measured`, whose points are the middles and edges
-        of the columns and the roller's ends. Over columns of different widths its means are the depths that wore off;
-        between the columns and towards the ends it is smooth.
+        Of the unworn profile and of the worn depth as a smooth `Measured`. Over columns of different widths its means
+        are the depths that wore off.
 
     Raises
     ------
