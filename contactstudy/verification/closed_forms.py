@@ -182,10 +182,8 @@ def below_rectangle_corner(z: ArrayLike, side_x: float, side_y: float) -> FloatA
 def rectangle(
     x: ArrayLike, y: ArrayLike, z: ArrayLike, half_x: float, half_y: float, poisson: float, friction: float
 ) -> Stress:
-    """Stresses below a unit pressure and `friction` times it along +y: point loads, summed by Gauss quadrature.
-
-    Accurate from depths of about a sixth of the half-widths on.
-    """
+    """Stresses below a unit pressure and `friction` times it along +y: Gauss quadrature of point loads."""
+    # Accurate from depths of about a sixth of the half-widths on.
     node, weight = np.polynomial.legendre.leggauss(64)
     xs, ys, zs = (np.asarray(c, dtype=float)[..., None, None] for c in np.broadcast_arrays(x, y, z))
     loads = half_x * half_y * np.multiply.outer(weight, weight)
@@ -322,9 +320,9 @@ def _primitive(u: FloatArray) -> FloatArray:
 
 
 def fast_line() -> tuple[float, float]:
-    """Largest rise of a fast surface under Hertz' pressure on a line, and how far behind the middle, over a.
+    """Largest rise of a fast line over ``q0 sqrt(kappa a / (pi V)) / lambda``, and its distance behind the middle / a.
 
-    The rise is over ``q0 sqrt(kappa a / (pi V)) / lambda``: heat flows into the depth only (Blok 1937, Jaeger 1942).
+    Heat flows into the depth only (Blok 1937, Jaeger 1942).
     """
 
     def rise(behind: float) -> float:

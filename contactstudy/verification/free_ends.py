@@ -268,10 +268,7 @@ def displacement_checks(name: str) -> Iterator[Check]:
 
 
 def contact_checks(name: str) -> Iterator[Check]:
-    """Contact of a roller: pressure along its middle line, averaged over the cells.
-
-    At a sharp end inside the face neither solution resolves the singular pressure: wider tolerance within a / 2.
-    """
+    """Contact of a roller: pressure along its middle line, averaged over the cells."""
     case, stored = CONTACT_CASES[name], load_reference(CONTACT_FILE, name)
     grid = Grid(
         x_range=(0.0, case.length), y_range=(-1.75, 1.75), cells_x=round(CONTACT_CELLS * case.length), cells_y=113
@@ -288,6 +285,7 @@ def contact_checks(name: str) -> Iterator[Check]:
     label = f"{name}: contact, L = {case.length:g}a, roller from {case.distance:g}a"
     label += f", crown {case.crown:g}" if case.crown else ""
     curve = Curve(("x / a", "p / p0 at y = 0"), x, computed, expected)
+    # At a sharp end inside the face neither solution resolves the pressure: wider tolerance within a / 2.
     singular = case.distance > 0 and not case.crown
     away = slice(1, -1)
     quantity = "pressure / p0 at y = 0, away from the last cell"
