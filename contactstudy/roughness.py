@@ -1,7 +1,6 @@
 """Height maps of rough surfaces: made by numbers, or read from a measurement, on a grid.
 
-A height map is a DataArray ``(x, y)`` of metres on cell centres, positive where material sticks out towards the other
-body: it makes a gap smaller by as much.
+A height map is a DataArray ``(x, y)`` of metres on cell centres, positive where material sticks out and closes the gap.
 """
 
 from __future__ import annotations
@@ -121,9 +120,8 @@ def read_height_map(
     ----------
     path : str or Path
         CSV with one line for each point and the columns `x`, `y`, `height`, in any order of the points; or netCDF
-        (ending ``.nc``) with a variable `height` along `x` and `y`. All with units of length. Or an instrument's file:
-        x3p (``.x3p``), or a format of SurfaceTopography; both need the extra `measured`. Coordinates, as of
-        the grid: `x` from end I of the body, `y` from under the roller's centre.
+        (ending ``.nc``) with a variable `height` along `x` and `y`. All with units of length. Or an instrument's file,
+        x3p or a format of SurfaceTopography, with the extra `measured`. Coordinates are the grid's.
     grid : Grid
         Cells; their centres must lie within the measured area. Between measured points heights are interpolated
         linearly along both axes. Cells wider than the steps of the measurement leave fine waves out or fold them
@@ -136,8 +134,8 @@ def read_height_map(
     turn : {0, 90, 180, 270}
         Degrees by which the part is turned about the axis of the heights, from x to y.
     mirror : bool
-        Whether the y axis points the other way, after the turn. A body's surface is seen from the other side than here,
-        where z points into it, so an instrument's y runs against this one; the roller's does not.
+        Whether the y axis points the other way, after the turn: z points into the body, so an instrument's y of its
+        surface runs against this one; the roller's does not.
     corner : tuple of float, optional
         Where the first point along x and y comes to lie, metres, after turning. Default: the file's
         position, mostly (0, 0) for an instrument.

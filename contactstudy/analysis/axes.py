@@ -1,8 +1,7 @@
 """Dimensions and positions along x, y and z, in a result of one case and in an opened study.
 
-A result has the dimensions ``x``, ``y``, ``z`` with positions as coordinates; stresses at separate positions have
-``x_field``, ``y_field``. In an opened study the dimension is ``x_over_a``, with ``cells="original"`` ``x_index``. The
-coordinate ``x`` contains the positions of each case in metres then, padded with NaN.
+Stresses at separate positions have ``x_field``, ``y_field``. In an opened study the dimension is ``x_over_a``, with
+``cells="original"`` ``x_index``; the coordinate ``x`` contains the positions of each case in metres, padded with NaN.
 """
 
 from __future__ import annotations
@@ -118,6 +117,11 @@ def cell_size(array: xr.DataArray, axis: str) -> xr.DataArray:
     return (centres.max(dim) - centres.min(dim)) / np.maximum(centres.count(dim) - 1, 1)
 
 
+def cell_widths(array: xr.DataArray, axis: str) -> xr.DataArray:
+    """Return the width of each cell along an axis, metres; NaN in padding."""
+    return cell_size(array, axis) + 0.0 * positions(array, axis)
+
+
 def single_case(dataset: xr.Dataset) -> xr.Dataset:
     """Return one case, selected from a study, in the form of a result of :func:`contactstudy.solve`.
 
@@ -157,21 +161,18 @@ def single_case(dataset: xr.Dataset) -> xr.Dataset:
         # A case without stresses lacks finite positions.
         case = case.isel({dim: finite}).swap_dims({dim: name}) if finite.size else case.drop_dims(dim)
     if "x_field" in case.coords and case["x_field"].dims == ("x",):
-        case = _with_stress_points(case)
+        # Stresses that share an axis with the pressure move to their own positions.
+        deep = [name for name, array in case.data_vars.items() if {"x", "z"} <= set(array.dims)]
+        finite = np.flatnonzero(np.isfinite(case["x_field"].values))
+        stresses = case[deep]
+        if deep:
+            stresses = stresses.isel(x=finite).swap_dims(x="x_field")
+            stresses = stresses.drop_vars(["x", "x_over_a", "x_width"], errors="ignore")
+        case = case.drop_vars([*deep, "x_field"]).assign(stresses.data_vars)
     unsorted = [
         dim for dim, index in case.indexes.items() if str(dim)[:1] in AXES and not index.is_monotonic_increasing
     ]
     return case.sortby(unsorted) if unsorted else case
-
-
-def _with_stress_points(case: xr.Dataset) -> xr.Dataset:
-    """Return a case whose stresses lie on `x_field`, instead of on an axis that they share with the pressure."""
-    deep = [name for name, array in case.data_vars.items() if "x" in array.dims and "z" in array.dims]
-    if not deep:
-        return case.drop_vars("x_field")
-    finite = np.flatnonzero(np.isfinite(case["x_field"].values))
-    stresses = case[deep].isel(x=finite).swap_dims(x="x_field").drop_vars(["x", "x_over_a", "x_width"], errors="ignore")
-    return case.drop_vars([*deep, "x_field"]).assign(stresses.data_vars)
 
 
 def reduce_dims(
@@ -201,8 +202,7 @@ def normalized(dataset: xr.Dataset) -> xr.Dataset:
     Parameters
     ----------
     dataset : Dataset
-        With `hertz_half_width` and `hertz_max_pressure`: a result, an opened study, or a Dataset of
-        :mod:`contactstudy.analysis` with the two scales added.
+        With `hertz_half_width` and `hertz_max_pressure`.
 
     Returns
     -------

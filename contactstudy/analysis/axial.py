@@ -1,8 +1,7 @@
 """Edges of a contact to a few hundredths of a cell: half-width, length and area.
 
-Across the smooth edge of a contact the pressure vanishes like the square root of the distance, and the gap opens like
-its power 3/2 (K. L. Johnson, Contact Mechanics, 1985, section 5.1). The squared pressure inside and the gap to the
-power 2/3 outside are therefore linear at the edge: the edge is the mean of the zeros of quadratics fitted to both.
+The squared pressure inside a smooth edge and the gap to the power 2/3 outside are linear in the distance from it
+(K. L. Johnson, Contact Mechanics, 1985, section 5.1): the edge is the mean of the zeros of quadratics fitted to both.
 """
 
 from __future__ import annotations
@@ -110,8 +109,17 @@ def contact_edges(dataset: xr.Dataset) -> xr.Dataset:
     pressure, grid = labelled_cells("dataset.pressure", contact["pressure"])
     gap, _ = labelled_cells("dataset.gap", contact["gap"], infinite=True)
     left, right = contact_borders(pressure, grid.y, gap)
-    touches = bool(pressure.any())
-    first, last = _axial_ends(pressure, gap, grid) if touches else (np.nan, np.nan)
+    touches, faces = bool(pressure.any()), grid.x_edges
+    first = last = np.nan
+    if touches and grid.uniform:
+        starts, stops = contact_borders(pressure.T, grid.x, gap.T)
+        # A smooth end is not beyond the face of the shape or the body.
+        facing = np.flatnonzero(np.isfinite(gap).any(axis=1))
+        first = float(max(np.nanmin(starts), faces[facing[0]]))
+        last = float(min(np.nanmax(stops), faces[facing[-1] + 1]))
+    elif touches:
+        loaded = np.flatnonzero(pressure.any(axis=1))
+        first, last = float(faces[loaded[0]]), float(faces[loaded[-1] + 1])
     result = xr.Dataset(
         {
             "y_left": ("x", left),
@@ -125,18 +133,6 @@ def contact_edges(dataset: xr.Dataset) -> xr.Dataset:
         coords={"x": contact["x"].values},
     )
     return describe(result, "edges of a contact, within a cell")
-
-
-def _axial_ends(pressure: FloatArray, gap: FloatArray, grid: Grid) -> tuple[float, float]:
-    """First and last x of the contact: within a uniform cell, or faces of the outermost of other cells."""
-    if grid.uniform:
-        starts, stops = contact_borders(pressure.T, grid.x, gap.T)
-        # A smooth end is not beyond the face of the shape or the body.
-        facing, faces = np.flatnonzero(np.isfinite(gap).any(axis=1)), grid.x_edges
-        first, last = max(np.nanmin(starts), faces[facing[0]]), min(np.nanmax(stops), faces[facing[-1] + 1])
-        return float(first), float(last)
-    loaded, faces = np.flatnonzero(pressure.any(axis=1)), grid.x_edges
-    return float(faces[loaded[0]]), float(faces[loaded[-1] + 1])
 
 
 def _area(grid: Grid, gap: FloatArray, width: FloatArray, ends: tuple[float, float]) -> float:
@@ -239,8 +235,7 @@ def load_between(dataset: xr.Dataset, start: xr.DataArray | float, stop: xr.Data
     Returns
     -------
     DataArray
-        N, without the dimensions along x and y. A cell that a position cuts counts by its part, so that the load beside
-        an end, unlike the pressure there, depends little on the grid.
+        N, without the dimensions along x and y. A cell that a position cuts counts by its part.
 
     Raises
     ------
@@ -271,8 +266,7 @@ def load_between(dataset: xr.Dataset, start: xr.DataArray | float, stop: xr.Data
 def half_width(dataset: xr.Dataset) -> xr.Dataset:
     """Return the half-width of the contact at each position along the roller's axis, and its middle.
 
-    The border follows from the pressure alone, more finely than the cells (:mod:`contactstudy.analysis.axial`); with
-    few loaded cells across y it is the face of a cell.
+    The border follows from the pressure alone; with few loaded cells across y it is the face of a cell.
 
     Parameters
     ----------
@@ -282,8 +276,7 @@ def half_width(dataset: xr.Dataset) -> xr.Dataset:
     Returns
     -------
     Dataset
-        Along x: `half_width` (m; 0 without contact) and `contact_middle` (m, the y of the contact's middle; NaN without
-        contact).
+        Along x: `half_width` (m; 0 without contact) and `contact_middle` (m, its y; NaN without contact).
 
     Raises
     ------

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from typing import NamedTuple
 
 import numpy as np
@@ -11,6 +12,7 @@ from contactstudy import checks
 from contactstudy.analysis.axes import (
     axis_dimensions,
     cell_size,
+    cell_widths,
     dimension_along,
     positions,
     reduce_dims,
@@ -79,8 +81,7 @@ def contact_results(dataset: xr.Dataset, about: float | None = None) -> xr.Datas
     Parameters
     ----------
     dataset : Dataset
-        A result of :func:`contactstudy.solve` or of :func:`contactstudy.open_study`; `initial_gap` contains the facing
-        length of roller and body.
+        With `pressure` on cells; `initial_gap` contains the facing length of roller and body.
     about : float, optional
         Position x of the moment's axis, m; default: the middle of the facing length (mid-length of the roller unless it
         overhangs), or of the grid without `initial_gap`.
@@ -114,7 +115,7 @@ def contact_results(dataset: xr.Dataset, about: float | None = None) -> xr.Datas
         (pressure, [x, y]),
         (facing, [x]),
         *((positions(pressure, axis), [dim]) for axis, dim in (("x", x), ("y", y))),
-        *((_cell_widths(pressure, axis), [dim]) for axis, dim in (("x", x), ("y", y))),
+        *((cell_widths(pressure, axis), [dim]) for axis, dim in (("x", x), ("y", y))),
     ]
     numbers = dict(zip(ContactNumbers._fields, reduce_dims(contact_numbers, arguments, 7), strict=True))
     middle, loss = numbers.pop("facing_middle"), numbers.pop("contact_length_loss")
@@ -127,11 +128,6 @@ def contact_results(dataset: xr.Dataset, about: float | None = None) -> xr.Datas
         scalars[name].attrs["comment"] = "in whole cells"
     peak = _peak_pressure(dataset, numbers["resultant"])
     return without_error(peak.assign(edge_pressure(dataset).data_vars).assign(scalars).compute(), *scalars)
-
-
-def _cell_widths(pressure: xr.DataArray, axis: str) -> xr.DataArray:
-    """Width of each cell along an axis, metres; NaN in padding."""
-    return cell_size(pressure, axis) + 0.0 * positions(pressure, axis)
 
 
 def _peak_pressure(dataset: xr.Dataset, resultant: xr.DataArray) -> xr.Dataset:
@@ -177,7 +173,16 @@ def edge_pressure(dataset: xr.Dataset) -> xr.Dataset:
     (3.0, 2.0)
     """
     axial = sort_positions(axial_pressure(dataset), "x")
-    values = reduce_dims(_first_and_last, [(axial, [dimension_along(axial, "x")])], 2)
+
+    def first_and_last(values: Array) -> tuple[Array, Array]:
+        """First and last positive number along the last axis; NaN without one."""
+        loaded = values > 0
+        indices = loaded.argmax(axis=-1), values.shape[-1] - 1 - loaded[..., ::-1].argmax(axis=-1)
+        first, last = (np.take_along_axis(values, index[..., None], axis=-1)[..., 0] for index in indices)
+        none = ~loaded.any(axis=-1)
+        return np.where(none, np.nan, first), np.where(none, np.nan, last)
+
+    values = reduce_dims(first_and_last, [(axial, [dimension_along(axial, "x")])], 2)
     edges = {}
     for end, value, cut in zip(("first", "last"), values, cut_ends(dataset), strict=True):
         edge = value.where(cut == 0)
@@ -188,20 +193,11 @@ def edge_pressure(dataset: xr.Dataset) -> xr.Dataset:
     return without_error(xr.Dataset(edges), *edges)
 
 
-def _first_and_last(values: Array) -> tuple[Array, Array]:
-    """First and last positive number along the last axis; NaN without one."""
-    loaded = values > 0
-    first, last = loaded.argmax(axis=-1), values.shape[-1] - 1 - loaded[..., ::-1].argmax(axis=-1)
-    ends = [np.take_along_axis(values, index[..., None], axis=-1)[..., 0] for index in (first, last)]
-    none = ~loaded.any(axis=-1)
-    return np.where(none, np.nan, ends[0]), np.where(none, np.nan, ends[1])
-
-
 def cut_ends(dataset: xr.Dataset) -> tuple[xr.DataArray, xr.DataArray]:
     """Return whether the contact continues beyond the first and the last x, as in a part of a result: 1, otherwise 0.
 
-    The pressure of a part carries less than the load, and reaches a border of the cells inside the contact's range. The
-    range follows from the inputs of `solve`; without them it begins at x = 0 or inside the cells, without a last x.
+    The pressure of a part carries less than the load, and reaches a border of the cells inside the contact's range,
+    which follows from the inputs of `solve`, else begins at x = 0.
 
     Parameters
     ----------
@@ -230,12 +226,16 @@ def cut_ends(dataset: xr.Dataset) -> tuple[xr.DataArray, xr.DataArray]:
     for axis in "xy":
         pressure = sort_positions(pressure, axis)
     x, y = dimension_along(pressure, "x"), dimension_along(pressure, "y")
+    start, stop = 0.0, np.inf
+    if "case" in attribute(dataset, INPUTS_ATTRIBUTE):
+        with contextlib.suppress(InvalidInputError):  # inputs of another version
+            start, stop = solved_case(dataset).contact_range
     arguments = [
         (pressure, [x, y]),
         (dataset["normal_load"], []),
         (positions(pressure, "x"), [x]),
-        *((_cell_widths(pressure, axis), [dim]) for axis, dim in (("x", x), ("y", y))),
-        *((xr.DataArray(end), []) for end in _contact_range(dataset)),
+        *((cell_widths(pressure, axis), [dim]) for axis, dim in (("x", x), ("y", y))),
+        *((xr.DataArray(end), []) for end in (start, stop)),
     ]
     first, last = reduce_dims(_find_cuts, arguments, 2)
     return first, last
@@ -264,16 +264,6 @@ def _find_cuts(
     return (short & first).astype(np.float64), (short & last).astype(np.float64)
 
 
-def _contact_range(dataset: xr.Dataset) -> tuple[float, float]:
-    """First and last x of the contact, as far as the inputs determine them."""
-    if "case" in attribute(dataset, INPUTS_ATTRIBUTE):
-        try:
-            return solved_case(dataset).contact_range
-        except InvalidInputError:  # inputs of another version
-            pass
-    return 0.0, np.inf
-
-
 def edge_factors(
     dataset: xr.Dataset, variable: str = "pressure", reference: xr.Dataset | None = None, *, reach: float | None = None
 ) -> xr.Dataset:
@@ -287,7 +277,7 @@ def edge_factors(
         `pressure`, or a stress or measure, see :func:`contactstudy.analysis.measure`, with its largest sample in each
         cross-section.
     reference : Dataset, optional
-        The same contact on another body, usually the half-space, in the same coordinates, with its own borders.
+        The same contact on another body, usually the half-space, in the same coordinates.
     reach : float, optional
         Length of an end from the contact's border, m; default: one Hertz half-width.
 
@@ -346,14 +336,9 @@ def _values(dataset: xr.Dataset, variable: str, reach: xr.DataArray | float) -> 
         # Beside a singular end pressure and stress are unbounded.
         singular = np.isinf(dataset.get(f"end_pressure_{side}", xr.DataArray(0.0)))
         values[side] = value.where(~singular | value.isnull(), np.inf)
-    return values | {"middle": _nearest(profile, 0.5 * (borders[0] + borders[1])), "peak": profile.max(x)}
-
-
-def _nearest(profile: xr.DataArray, position: xr.DataArray) -> xr.DataArray:
-    """Value at the point nearest to a position; NaN beyond the points."""
-    x = dimension_along(profile, "x")
-    distance = abs(positions(profile, "x") - position)
+    distance = abs(points - 0.5 * (borders[0] + borders[1]))
     nearest = distance.fillna(np.inf).argmin(x)
     width = cell_size(profile, "x")
-    limit = width.isel({x: nearest}) if x in width.dims else width
-    return profile.isel({x: nearest}).where(distance.min(x) <= limit)
+    # Beyond the points there is no value.
+    within = distance.min(x) <= (width.isel({x: nearest}) if x in width.dims else width)
+    return values | {"middle": profile.isel({x: nearest}).where(within), "peak": profile.max(x)}

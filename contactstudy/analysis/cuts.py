@@ -69,8 +69,7 @@ def along_line(
     Returns
     -------
     Dataset
-        Along `distance` (m, from `start`), with the coordinates `x`, `y`, `z` of the points. For values without
-        interpolation, see `contactstudy.stress_field` at these positions.
+        Along `distance` (m, from `start`), with the coordinates `x`, `y`, `z` of the points.
 
     Raises
     ------
@@ -105,7 +104,8 @@ def along_line(
             values = _clip_rounding(axis, values, positions(field, axis).values)
         targets[axis] = xr.DataArray(values, dims="distance", attrs=labels(axis, coordinate=True))
     distance = ("distance", fraction * length, labels("distance", coordinate=True))
-    return _interpolate_fields(fields, targets).assign_coords({"distance": distance, **targets})
+    values = {name: _interpolate(array, targets) for name, array in fields.items()}
+    return xr.Dataset(values).assign_coords({"distance": distance, **targets})
 
 
 def in_plane(
@@ -154,7 +154,8 @@ def in_plane(
         raise InvalidInputError("variables", list(fields), f"fields along {axis}")
     position = _clip_rounding(axis, np.array([checks.finite(axis, value, "metres")]), positions(field, axis).values)
     target = xr.DataArray(position[0], attrs=labels(axis, coordinate=True))
-    return _interpolate_fields(fields, {axis: target}).assign_coords({axis: target})
+    values = {name: _interpolate(array, {axis: target}) for name, array in fields.items()}
+    return xr.Dataset(values).assign_coords({axis: target})
 
 
 def _clip_rounding(name: str, values: FloatArray, points: FloatArray) -> FloatArray:
@@ -169,15 +170,9 @@ def _clip_rounding(name: str, values: FloatArray, points: FloatArray) -> FloatAr
     return np.clip(values, low, high)
 
 
-def _interpolate_fields(fields: dict[str, xr.DataArray], targets: dict[str, xr.DataArray]) -> xr.Dataset:
-    """Interpolate every field; the positions replace its coordinates."""
-    values = {name: _interpolate(array, targets).assign_attrs(array.attrs) for name, array in fields.items()}
-    return xr.Dataset({name: value.reset_coords(drop=True) for name, value in values.items()})
-
-
 def _interpolate(array: xr.DataArray, targets: dict[str, xr.DataArray]) -> xr.DataArray:
-    """Linear interpolation along the axes of `targets`, which may share a new dimension."""
-    lines, axes = {}, axis_dimensions(array)
+    """Linear interpolation along the axes of `targets`, which may share a new dimension and replace its coordinates."""
+    lines, axes, attributes = {}, axis_dimensions(array), array.attrs
     for axis, target in targets.items():
         if axis not in axes:
             continue
@@ -196,4 +191,4 @@ def _interpolate(array: xr.DataArray, targets: dict[str, xr.DataArray]) -> xr.Da
             before, after = (array.isel({dim: index}, drop=True) for index in (right - 1, right))
             # At a plane itself the neighbouring plane, which may be infinite, has zero weight.
             array = before if weight == 0 else after if weight == 1 else (1 - weight) * before + weight * after
-    return array.interp(lines) if lines else array
+    return (array.interp(lines) if lines else array).assign_attrs(attributes).reset_coords(drop=True)

@@ -28,11 +28,11 @@ SHARP = (
 def discretisation_error(fine: xr.Dataset, coarse: xr.Dataset) -> xr.Dataset:
     """Return peak and end pressure and half-width of a contact, each with an estimate of its discretisation error.
 
-    The estimate is the correction of Richardson's extrapolation with order 1, lower than that of smooth pressures, and
-    with order 0.8 at the ends; at least the effect of an edge displaced by `EDGE_UNCERTAINTY` cells. It is infinite
-    where the grids show no limit: at a pressed sharp end inside the body's top and for the peak then; if the two grids
-    differ by more than a fifth; for peak and ends if the shape turns too much between pressed columns, as at an edge
-    radius. An edge radius, or a top that continues, within half a cell of the end is not covered.
+    The estimate is the correction of Richardson's extrapolation with order 1, and with order 0.8 at the ends; at least
+    the effect of an edge displaced by `EDGE_UNCERTAINTY` cells. It is infinite where the grids show no limit: at a
+    pressed sharp end inside the body's top and for the peak then; if the two grids differ by more than a fifth; for
+    peak and ends if the shape turns too much between pressed columns. An edge radius, or a top that continues, within
+    half a cell of the end is not covered.
 
     Parameters
     ----------
@@ -73,15 +73,37 @@ def discretisation_error(fine: xr.Dataset, coarse: xr.Dataset) -> xr.Dataset:
             "coarse", f"{coarse_cells} cells", f"fewer in each direction than the fine grid's {cells}"
         )
     displacement = EDGE_UNCERTAINTY * float(fine["y"][1] - fine["y"][0]) / values["half_width_middle"]
-    singular, turn = _singular_pressures(fine), _largest_turn(fine)
+    # At a pressed end of the shape inside the body's top the pressure has no limit, and then the peak has none.
+    axial = fine["pressure"].transpose("x", "y").values.max(axis=1)
+    first, last = _shape_columns(fine)
+    pressed = (first > 0 and axial[first] > 0, last < axial.size - 1 and axial[last] > 0)
+    singular = {name for name, sharp in zip(ENDS, pressed, strict=True) if sharp}
+    singular |= {"peak_pressure"} if singular else set()
+    turn = _largest_turn(fine)
     unresolved = {name for name in PRESSURES if values[name] > 0} if turn > RESOLVED_TURN else set()
-    errors = {
-        name: np.inf
-        if name in singular | unresolved
-        else _estimate(name, (coarse_values[name], value), ratio, displacement)
-        for name, value in values.items()
-    }
-    errors["peak_pressure"] = max(errors["peak_pressure"], _end_excess(values, coarse_values, errors, ratio))
+
+    def correction(name: str) -> float:
+        """Distance from the fine value to the limit of Richardson's extrapolation."""
+        order = END_ORDER if name in ENDS else ASSUMED_ORDER
+        return float(abs(values[name] - coarse_values[name]) / (ratio**order - 1))
+
+    def estimate(name: str) -> float:
+        value, coarse_value = values[name], coarse_values[name]
+        if name in singular | unresolved:
+            return np.inf
+        if value == 0 and coarse_value == 0:
+            return 0.0
+        # Relative change between two grids without an estimate of the limit
+        if not (np.isfinite(value) and np.isfinite(coarse_value)) or abs(value - coarse_value) > 0.2 * abs(value):
+            return np.inf
+        return max(correction(name), displacement * abs(value) if np.isfinite(displacement) else 0.0)
+
+    errors = {name: estimate(name) for name in values}
+    peak = values["peak_pressure"]
+    for name in ENDS:
+        # An end below the peak without a limit counts with its correction.
+        error = errors[name] if np.isfinite(errors[name]) or values[name] >= peak else correction(name)
+        errors["peak_pressure"] = max(errors["peak_pressure"], values[name] + error - peak)
     result = xr.Dataset()
     for name, value in values.items():
         result[name], result[f"{name}_error"] = value, errors[name]
@@ -96,52 +118,12 @@ def discretisation_error(fine: xr.Dataset, coarse: xr.Dataset) -> xr.Dataset:
     return describe(result, "contact quantities with their discretisation error")
 
 
-def _estimate(name: str, values: tuple[float, float], ratio: float, displacement: float) -> float:
-    """Error of the fine one of two values; `displacement` is the relative effect of an edge within its uncertainty."""
-    coarse, fine = values
-    if fine == 0 and coarse == 0:
-        return 0.0
-    # Relative change between two grids without an estimate of the limit
-    if not (np.isfinite(fine) and np.isfinite(coarse)) or abs(fine - coarse) > 0.2 * abs(fine):
-        return np.inf
-    floor = displacement * abs(fine) if np.isfinite(displacement) else 0.0
-    return max(_correction(name, coarse, fine, ratio), floor)
-
-
-def _correction(name: str, coarse: float, fine: float, ratio: float) -> float:
-    """Distance from the fine value to the limit of Richardson's extrapolation."""
-    order = END_ORDER if name in ENDS else ASSUMED_ORDER
-    return float(abs(fine - coarse) / (ratio**order - 1))
-
-
-def _end_excess(fine: dict[str, float], coarse: dict[str, float], errors: dict[str, float], ratio: float) -> float:
-    """Largest excess of an end over the peak; an end below it without a limit counts with its correction."""
-    peak, excess = fine["peak_pressure"], 0.0
-    for name in ENDS:
-        estimated = np.isfinite(errors[name]) or fine[name] >= peak
-        error = errors[name] if estimated else _correction(name, coarse[name], fine[name], ratio)
-        excess = max(excess, fine[name] + error - peak)
-    return excess
-
-
 def _shape_columns(contact: xr.Dataset) -> tuple[int, int]:
     """First and last column of cells where the shape faces the body."""
     facing = np.flatnonzero(np.isfinite(contact["gap"].transpose("x", "y").values).any(axis=1))
     if not facing.size:
         raise InvalidInputError("gap", "infinite everywhere", "finite where the shape can touch the body")
     return int(facing[0]), int(facing[-1])
-
-
-def _singular_pressures(contact: xr.Dataset) -> set[str]:
-    """Names of pressures without a limit: at a pressed end of the shape inside the body's top, and the peak then."""
-    axial = contact["pressure"].transpose("x", "y").values.max(axis=1)
-    first, last = _shape_columns(contact)
-    sharp = {
-        name
-        for name, column, inside in zip(ENDS, (first, last), (first > 0, last < axial.size - 1), strict=True)
-        if inside and axial[column] > 0
-    }
-    return sharp | {"peak_pressure"} if sharp else sharp
 
 
 def _largest_turn(contact: xr.Dataset) -> float:

@@ -1,7 +1,7 @@
 """Stress measures and their largest values: of the samples, and between them with an estimated error.
 
-The six stress components are smooth: polynomials through the samples about the largest one interpolate them, and the
-measure follows from the components. The error estimate is the difference from polynomials of lower degree.
+Polynomials through the samples about the largest one interpolate the six components, from which the measure follows.
+The error estimate is the difference from polynomials of lower degree.
 """
 
 from __future__ import annotations
@@ -183,8 +183,7 @@ def peak(dataset: xr.Dataset, variable: str = "von_mises") -> xr.Dataset:
     dataset : Dataset
         A single case with the six stresses, from :func:`contactstudy.solve` or :func:`contactstudy.stress_field`.
     variable : str
-        A measure of the stress at a point: `von_mises`, `tresca`, `maximum_shear`, `hydrostatic`,
-        `principal_stress_1`, `principal_stress_2`, `principal_stress_3`.
+        A measure of the stress at a point, see :func:`measure`.
 
     Returns
     -------
@@ -195,8 +194,7 @@ def peak(dataset: xr.Dataset, variable: str = "von_mises") -> xr.Dataset:
         the samples. The error contains the difference of polynomials of two degrees, the relative error of
         `peak_pressure`, and on the top 2 % for the cells. It is infinite, with the reason in `comment`, if the largest
         sample lies at the edge of the samples, if these do not resolve the pressure above, or if the pressure is
-        singular. Without `pressure` the error assumes that the samples resolve the stress. Along an axis with one
-        sample the position is that sample.
+        singular. Without `pressure` the error assumes that the samples resolve the stress.
 
     Raises
     ------

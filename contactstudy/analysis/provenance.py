@@ -20,9 +20,8 @@ from contactstudy.case.serialization import from_dict, to_dict
 from contactstudy.errors import InvalidInputError
 from contactstudy.versions import versions
 
-INPUTS_ATTRIBUTE, RUN_ATTRIBUTE = "contactstudy_inputs", "contactstudy_run"
 # Attributes: case and settings; versions, date and times, also in files of a study; definition of a study
-STUDY_ATTRIBUTE = "contactstudy_study"
+INPUTS_ATTRIBUTE, RUN_ATTRIBUTE, STUDY_ATTRIBUTE = "contactstudy_inputs", "contactstudy_run", "contactstudy_study"
 # Differences of equal numbers, relative and in SI: a solved load has the tolerance of the iteration
 RELATIVE_TOLERANCE, ABSOLUTE_TOLERANCE = 1e-6, 1e-15
 # Values of a case that follow from the solution unless the case prescribes them
@@ -70,22 +69,19 @@ def attribute(dataset: xr.Dataset, name: str) -> dict[str, Any]:
 
 
 def _without_malformed(table: dict[str, Any]) -> dict[str, Any]:
-    """Table, and the tables in it, without malformed entries."""
-    valid = {name: value for name, value in table.items() if _is_valid(name, value)}
-    nested = ("settings", "case", "roller")
-    return {name: _without_malformed(value) if name in nested else value for name, value in valid.items()}
-
-
-def _is_valid(name: str, value: Any) -> bool:
-    """Whether an entry has its type, a date is a date, and times are numbers."""
-    if name in KINDS and not isinstance(value, KINDS[name]):
-        return False
-    if name == "time":
-        try:
-            datetime.fromisoformat(value)
-        except ValueError:
-            return False
-    return name != "stages" or all(isinstance(seconds, Real) for seconds in value.values())
+    """Table, and the tables in it, without malformed entries: of a foreign type, no date, no numbers of seconds."""
+    valid = {}
+    for name, value in table.items():
+        if name in KINDS and not isinstance(value, KINDS[name]):
+            continue
+        if name == "time":
+            try:
+                datetime.fromisoformat(value)
+            except ValueError:
+                continue
+        if name != "stages" or all(isinstance(seconds, Real) for seconds in value.values()):
+            valid[name] = _without_malformed(value) if name in ("settings", "case", "roller") else value
+    return valid
 
 
 def solved_case(dataset: xr.Dataset) -> Case:
@@ -133,7 +129,14 @@ def check_solved_for(
     except (InvalidInputError, KeyError, TypeError):
         return
     if isinstance(part, Case):
-        actual, expected = _comparable(solved) | _scalars(result), _comparable(part)
+        # Scalars of a result follow a selection from joined results.
+        variables = {"load": "normal_load", "tilt": "tilt", "friction": "friction"}
+        scalars = {
+            name: float(result[variable])
+            for name, variable in variables.items()
+            if variable in result and result[variable].ndim == 0 and np.isfinite(result[variable])
+        }
+        actual, expected = _comparable(solved) | scalars, _comparable(part)
     else:
         actual, expected = (dict(_leaves({"body": to_dict(body)})) for body in (solved.body, part))
     names = [
@@ -164,16 +167,6 @@ def _comparable(case: Case) -> dict[str, Any]:
     if case.load_position is not None:
         values.pop("tilt")
     return values
-
-
-def _scalars(result: xr.Dataset) -> dict[str, float]:
-    """Values of a case among the scalars of a result: they follow a selection from joined results."""
-    variables = {"load": "normal_load", "tilt": "tilt", "friction": "friction"}
-    return {
-        name: float(result[variable])
-        for name, variable in variables.items()
-        if variable in result and result[variable].ndim == 0 and np.isfinite(result[variable])
-    }
 
 
 def _leaves(entry: Any, name: str = "") -> Iterator[tuple[str, Any]]:

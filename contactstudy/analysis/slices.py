@@ -1,8 +1,7 @@
 """Roller in slices: load, largest pressure, half-width and shear of equal parts of its length, with their errors.
 
-Columns that follow the solution differ much in width: at an edge they are a hundredth of those at mid-length. The
-largest pressure of a part is therefore interpolated between the middles of its columns: its square is linear where a
-contact ends, and is interpolated linearly. The distance of the columns determines the error.
+The square of the pressure, linear where a contact ends, is interpolated linearly between the middles of the columns,
+whose distance determines the error.
 """
 
 from __future__ import annotations
@@ -14,7 +13,7 @@ import numpy as np
 import xarray as xr
 
 from contactstudy import checks
-from contactstudy.analysis.axes import axis_dimensions, cell_size, dimension_along, single_case
+from contactstudy.analysis.axes import axis_dimensions, cell_size, cell_widths, dimension_along, single_case
 from contactstudy.analysis.axial import axial_profiles
 from contactstudy.analysis.contact import MISSING_LOAD, cut_ends
 from contactstudy.analysis.peaks import largest_sample
@@ -46,11 +45,6 @@ class Columns(NamedTuple):
     edges: FloatArray  # (column, 2), first and last x, m
     middles: FloatArray  # (column), m
     values: FloatArray  # (column), a quantity
-
-    @property
-    def widths(self) -> FloatArray:
-        """Width of each column, m."""
-        return np.asarray(self.edges[:, 1] - self.edges[:, 0])
 
     def overlaps(self, borders: FloatArray) -> FloatArray:
         """Length of each column within each part between two borders, m: array (part, column)."""
@@ -126,7 +120,7 @@ def power_means(columns: Columns, borders: FloatArray, power: float) -> tuple[Fl
 def border_load_errors(line_load: Columns, borders: FloatArray) -> FloatArray:
     """Return the load that may lie beyond the borders of each part, because it is uniform in each column, N."""
     low, high = line_load.edges.T
-    moved = larger_step(np.abs(np.diff(line_load.values))) * np.minimum(line_load.widths, np.diff(borders).min())
+    moved = larger_step(np.abs(np.diff(line_load.values))) * np.minimum(high - low, np.diff(borders).min())
     errors = np.zeros(borders.size)
     for number, border in enumerate(borders[1:-1], start=1):
         first = int(np.searchsorted(high, border, side="left"))
@@ -196,7 +190,7 @@ def slices(dataset: xr.Dataset, count: int = 30) -> xr.Dataset:
     centres = cells[x].values
     if centres.size < number:
         raise InvalidInputError("count", count, f"at most the number of cells, {centres.size}")
-    half = 0.5 * np.broadcast_to(cell_size(cells["line_load"], "x").values, centres.shape)
+    half = 0.5 * cell_widths(cells["line_load"], "x").values
     borders = np.linspace(centres[0] - half[0], centres[-1] + half[-1], number + 1)
 
     edges = np.stack([centres - half, centres + half], axis=-1)
@@ -220,7 +214,18 @@ def slices(dataset: xr.Dataset, count: int = 30) -> xr.Dataset:
         mean = (weights * cells[name]).sum(x) / weights.sum(x)
         result[name] = mean.assign_attrs(comment="mean over the cells of the slice")
     if all(name in case and "z" in axis_dimensions(case[name]) for name in STRESSES):
-        result = _with_stresses(result, case, borders)
+        rounding = ROUNDING * (borders[-1] - borders[0])
+        for name in SHEARS:
+            sections = largest_sample(case, name, along="x")
+            stress = sections[f"peak_{name}"]
+            along = dimension_along(stress, "x")
+            points = stress[along].values
+            inside = (points >= borders[:-1, None] - rounding) & (points <= borders[1:, None] + rounding)
+            samples = stress.where(xr.DataArray(inside, dims=("slice", along)))
+            index, sampled = samples.fillna(-np.inf).argmax(along), samples.notnull().any(along)
+            for variable in (f"peak_{name}", f"peak_{name}_z"):
+                value = sections[variable].isel({along: index}).where(sampled).reset_coords(drop=True)
+                result[variable] = value.assign_attrs(sections[variable].attrs)
     return describe(without_error(result, *means))
 
 
@@ -259,20 +264,3 @@ def _with_errors(
         }
     )
     return without_error(result, *values) if np.isnan(relative).any() else result
-
-
-def _with_stresses(result: xr.Dataset, case: xr.Dataset, borders: FloatArray) -> xr.Dataset:
-    """Add the largest stress measures of the samples in each slice, and their depths."""
-    for name in SHEARS:
-        sections = largest_sample(case, name, along="x")
-        stress = sections[f"peak_{name}"]
-        x = dimension_along(stress, "x")
-        rounding = ROUNDING * (borders[-1] - borders[0])
-        points = stress[x].values
-        inside = (points >= borders[:-1, None] - rounding) & (points <= borders[1:, None] + rounding)
-        samples = stress.where(xr.DataArray(inside, dims=("slice", x)))
-        index, sampled = samples.fillna(-np.inf).argmax(x), samples.notnull().any(x)
-        for variable in (f"peak_{name}", f"peak_{name}_z"):
-            value = sections[variable].isel({x: index}).where(sampled).reset_coords(drop=True)
-            result[variable] = value.assign_attrs(sections[variable].attrs)
-    return result

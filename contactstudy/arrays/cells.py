@@ -74,29 +74,20 @@ def _grid(array: xr.DataArray, extent: tuple[float, float], y_range: tuple[float
         x_range, cells_x = uniform_range("x", array["x"].values)
     except InvalidInputError as error:
         centres = checks.coordinates("x", array["x"].values)
-        if centres.size < 2 or not np.isfinite(extent).any():
+        if centres.size < 2 or not np.isfinite(extent[0]):
             raise InvalidInputError(
                 error.parameter, error.value, error.allowed, "cells of different widths need a coordinate x_width (x)"
             ) from None
-        return Grid.between(_edges_from_end(centres, extent), y_range, cells_y)
+        # The cells follow each other from the body's end.
+        positions = [extent[0]]
+        for centre in centres:
+            positions.append(2 * centre - positions[-1])
+            if not positions[-2] < centre:
+                raise InvalidInputError(
+                    "x",
+                    f"a cell centre at {centre:g} m",
+                    "the middle of a cell that follows the others from the body's end",
+                    "add a coordinate x_width (x) for cells of different widths",
+                ) from None
+        return Grid.between(positions, y_range, cells_y)
     return Grid(x_range=x_range, y_range=y_range, cells_x=cells_x, cells_y=cells_y)
-
-
-def _edges_from_end(centres: FloatArray, extent: tuple[float, float]) -> FloatArray:
-    """Edges of the cells around `centres` that begin, or end, at a body's end."""
-    low, high = extent
-    backwards = not np.isfinite(low)
-    ahead = -centres[::-1] if backwards else centres
-    edges = [-high if backwards else low]
-    for centre in ahead:
-        edges.append(2 * centre - edges[-1])
-        if not edges[-2] < centre:
-            position = -centre if backwards else centre
-            raise InvalidInputError(
-                "x",
-                f"a cell centre at {position:g} m",
-                "the middle of a cell that follows the others from the body's end",
-                "add a coordinate x_width (x) for cells of different widths",
-            )
-    positions = np.array(edges)
-    return -positions[::-1] if backwards else positions

@@ -204,14 +204,14 @@ class Grid:
         return replace(self, cells_x=len(inner) + 1, cells_y=self.cells_y // 2, _inner=inner)
 
 
-def growing_edges(distance: float, width: float) -> FloatArray:
+def growing_edges(distance: float, width: float, growth: float = GROWTH) -> FloatArray:
     """Edges of few cells that grow from about `width` at 0 up to `distance`; one cell if infinite."""
     if np.isinf(distance):
         return np.array([width])
     if distance <= 1e-9 * width:
         return np.zeros(0)
-    count = max(1, int(np.ceil(np.log1p(distance * (GROWTH - 1) / width) / np.log(GROWTH) - 1e-9)))
-    sizes = GROWTH ** np.arange(count)
+    count = max(1, int(np.ceil(np.log1p(distance * (growth - 1) / width) / np.log(growth) - 1e-9)))
+    sizes = growth ** np.arange(count)
     return np.asarray(np.cumsum(sizes) * (distance / sizes.sum()))
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple
 
 import numpy as np
 
@@ -36,33 +35,27 @@ def lagrange(nodes: FloatArray, points: FloatArray) -> FloatArray:
     return matrix
 
 
-class LocalPolynomial(NamedTuple):
-    """Polynomial interpolation of samples about one of them."""
-
-    window: slice  # samples that the polynomial interpolates
-    points: FloatArray  # points of evaluation: from the left to the right neighbour, with the sample
-    matrix: FloatArray  # (point, node): maps samples in the window to values at `points`
-
-
-def local_polynomial(positions: FloatArray, centre: int, neighbours: int) -> LocalPolynomial:
-    """Polynomial through a sample and `neighbours` samples on either side; at an edge all of them on one side."""
-    count = min(2 * neighbours + 1, positions.size)
-    start = min(max(centre - neighbours, 0), positions.size - count)
-    nodes = positions[start : start + count]
-    low, high = positions[max(centre - 1, 0)], positions[min(centre + 1, positions.size - 1)]
-    points = np.unique(np.append(np.linspace(low, high, SAMPLES_BETWEEN), positions[centre])) if count > 1 else nodes
-    return LocalPolynomial(slice(start, start + count), points, lagrange(nodes, points))
-
-
 def interpolate_about(
     axes: Sequence[FloatArray], index: Sequence[int], values: FloatArray, neighbours: int
 ) -> tuple[list[FloatArray], FloatArray]:
-    """Points along each axis, and components (component, *axes, ...) there, by polynomials about a sample."""
-    polynomials = [local_polynomial(axis, i, neighbours) for axis, i in zip(axes, index, strict=True)]
-    values = values[(slice(None), *(polynomial.window for polynomial in polynomials))]
-    for number, polynomial in enumerate(polynomials, start=1):
-        values = np.moveaxis(np.tensordot(polynomial.matrix, values, axes=(1, number)), 0, number)
-    return [polynomial.points for polynomial in polynomials], values
+    """Points from the left to the right neighbour of a sample along each axis, and components (component, *axes, ...).
+
+    One polynomial along each axis interpolates the sample and `neighbours` samples on either side.
+    """
+    points, matrices = [], []
+    for number, (axis, centre) in enumerate(zip(axes, index, strict=True), start=1):
+        # At an edge all samples lie on one side.
+        count = min(2 * neighbours + 1, axis.size)
+        start = min(max(centre - neighbours, 0), axis.size - count)
+        nodes = axis[start : start + count]
+        low, high = axis[max(centre - 1, 0)], axis[min(centre + 1, axis.size - 1)]
+        between = np.unique(np.append(np.linspace(low, high, SAMPLES_BETWEEN), axis[centre])) if count > 1 else nodes
+        values = values[(slice(None),) * number + (slice(start, start + count),)]
+        points.append(between)
+        matrices.append(lagrange(nodes, between))
+    for number, matrix in enumerate(matrices, start=1):
+        values = np.moveaxis(np.tensordot(matrix, values, axes=(1, number)), 0, number)
+    return points, values
 
 
 def peak_width(pressure: FloatArray, x: FloatArray, dy: float, column: int) -> float:

@@ -142,23 +142,20 @@ def in_si(name: str, array: xr.DataArray, unit: str) -> xr.DataArray:
 def required_in_si(dataset: xr.Dataset, *names: str, argument: str = "dataset", normalized: bool = False) -> xr.Dataset:
     """Return a Dataset that must hold some variables, with these and all positions in SI."""
     require(dataset, *names, argument=argument)
-    changed: dict[str, xr.DataArray] = {}
-    positions_in = {axis: "m" for axis in POSITIONS if axis in dataset.coords}
-    for name, units in ({name: VARIABLES[name].units for name in names} | positions_in).items():
-        array = dataset[name]
-        stated_unit = array.attrs.get("units", units)
-        if not units or stated_unit == units:  # without units: depends on another variable
+    units = {name: VARIABLES[name].units for name in names}
+    for name, unit in (units | {axis: "m" for axis in POSITIONS if axis in dataset.coords}).items():
+        stated_unit = dataset[name].attrs.get("units", unit)
+        if not unit or stated_unit == unit:  # without unit: depends on another variable
             continue
         if stated_unit == "1":
-            if name not in positions_in and not normalized:
+            if name in names and not normalized:
                 hint = "lengths over a and pressures over p0, as from analysis.normalized, are for figures and files"
-                raise InvalidInputError(argument, f"{name} without unit", f"in SI, {name} in {units}", hint)
+                raise InvalidInputError(argument, f"{name} without unit", f"in SI, {name} in {unit}", hint)
             continue
-        factor = factor_to(units, f"{argument}.{name}.attrs['units']", stated_unit)
-        changed[name] = (array * factor).assign_attrs({**array.attrs, "units": units})
-    positions = {name: array.variable for name, array in changed.items() if name in POSITIONS}
-    values = {name: array.variable for name, array in changed.items() if name not in POSITIONS}
-    return dataset.assign_coords(positions).assign(values) if changed else dataset
+        converted = dataset[name].variable * factor_to(unit, f"{argument}.{name}.attrs['units']", stated_unit)
+        converted.attrs = {**dataset[name].attrs, "units": unit}
+        dataset = dataset.assign_coords({name: converted}) if name in POSITIONS else dataset.assign({name: converted})
+    return dataset
 
 
 def numbers_in_si(name: str, values: Any, unit: str) -> Any:

@@ -1,8 +1,6 @@
 """Every variable that the package returns: dimensions, unit, symbol and meaning, in one table.
 
-The text of results, files and figures is taken from here by :mod:`contactstudy.arrays.variables`. A symbol is LaTeX
-without dollar signs, as in the theory; quantities that no formula uses have none. Texts and quantities whose unit
-depends on the row have an empty unit.
+Quantities that no formula uses have no symbol; texts, and quantities whose unit depends on the row, have no unit.
 """
 
 from __future__ import annotations

@@ -38,10 +38,10 @@ def atlas(
     tilt_ratio: npt.ArrayLike | xr.DataArray = 0.0,
     poisson: npt.ArrayLike | xr.DataArray = 0.3,
 ) -> xr.Dataset:
-    """Interpolate the contact of a rigid roller with a logarithmic profile between free ends.
+    """Interpolate the contact of a rigid roller with a logarithmic profile between free ends (`studies/atlas.py`).
 
-    The scales are those of the Hertz line contact: half-width ``a = 2 p0 R / E*``, pressure p0, and the load
-    ``P = pi E* a**2 L / (4 R)``. The friction is 0, and approach and tilt refer to the depth of the body's length.
+    The scales are those of the Hertz line contact: half-width a, pressure p0, load ``P = pi E* a**2 L / (4 R)``.
+    The friction is 0, and approach and tilt refer to the depth of the body's length.
 
     Parameters
     ----------
@@ -69,10 +69,6 @@ def atlas(
     ------
     InvalidInputError
         If a value is not a finite number inside the range of the atlas.
-
-    Notes
-    -----
-    ``studies/atlas.py`` computes the table.
 
     Examples
     --------
@@ -204,23 +200,18 @@ class AtlasTable:
             logarithmic = name in LOGARITHMIC
             values[name] = np.exp(interpolated) if logarithmic else np.maximum(interpolated, 0.0)
             values[f"{name}_error"] = error * values[name] if logarithmic else error
-        slope = self._approach_slope(points)
+        # Slope of the approach over the load, both logarithmic, at constant lengths in metres: with the half-width s a
+        # the groups are L/(s a), e/(s a), A R/(s a)**2, ...; the load grows with s**2.
+        lower, higher = (
+            self.interpolate("approach_ratio", self.coordinates(points / np.array([s, s, s**2, s**2, 1])))[0]
+            for s in (1 - LOAD_STEP, 1 + LOAD_STEP)
+        )
+        slope = 1 + (higher - lower) / RISE
         values["stiffness_ratio"] = np.pi / (4 * values["approach_ratio"] * slope)
         # Independent errors of the approach at both ends of the step.
         relative = values["approach_ratio_error"] / values["approach_ratio"]
         values["stiffness_ratio_error"] = values["stiffness_ratio"] * np.sqrt(2) * relative / (RISE * slope)
         return values
-
-    def _approach_slope(self, points: FloatArray) -> FloatArray:
-        """Slope of the approach over the load, both logarithmic, at constant lengths in metres."""
-        # With the half-width s a the groups are L/(s a), e/(s a), A R/(s a)**2, ...; the load grows with s**2.
-        lower, higher = (
-            self.interpolate("approach_ratio", self.coordinates(points / np.array([step, step, step**2, step**2, 1])))[
-                0
-            ]
-            for step in (1 - LOAD_STEP, 1 + LOAD_STEP)
-        )
-        return np.asarray(1 + (higher - lower) / RISE)
 
 
 def _even(points: FloatArray) -> FloatArray:

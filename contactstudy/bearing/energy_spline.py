@@ -1,9 +1,8 @@
 """Strain energy of a contact over approach and tilt as one smooth function: load, moment and stiffness derive from it.
 
-Load and moment are the derivatives of the energy with respect to approach and tilt, so the stiffness matrix is its
-matrix of second derivatives and symmetric by construction. The energy without tilt follows powers of the approach: its
-logarithm is a spline in the logarithm of the approach. The energy added by a tilt is a tensor product of splines in
-that logarithm and in the tilt, fitted to energy, load and moment together by least squares.
+The energy without tilt follows powers of the approach: its logarithm is a spline in the logarithm of the approach. The
+energy added by a tilt is a tensor product of splines in that logarithm and in the tilt, fitted to energy, load and
+moment together by least squares.
 """
 
 from __future__ import annotations
@@ -30,10 +29,6 @@ class Nodes(NamedTuple):
     energy: FloatArray  # (approach, tilt), J
     load: FloatArray  # N
     moment: FloatArray  # N m
-
-    def approached(self, lines: FloatArray) -> Nodes:
-        """Return some of the approaches."""
-        return Nodes(self.approaches[lines], self.tilts, self.energy[lines], self.load[lines], self.moment[lines])
 
 
 class Motion(NamedTuple):
@@ -148,7 +143,10 @@ def fit_errors(nodes: Nodes, length: float) -> FloatArray:
     about = maximum_filter(degree, (1, 2 * BETWEEN + 1, 2 * BETWEEN + 1), mode="nearest")[:, ::BETWEEN, ::BETWEEN]
     lines, residuals = np.arange(nodes.approaches.size), []
     for line in lines[1:-1]:
-        fewer, removed = nodes.approached(lines != line), nodes.approached(lines == line)
+        fewer, removed = (
+            Nodes(nodes.approaches[some], nodes.tilts, nodes.energy[some], nodes.load[some], nodes.moment[some])
+            for some in (lines != line, lines == line)
+        )
         motion = EnergySpline.fitted(fewer)(*np.meshgrid(removed.approaches, removed.tilts, indexing="ij"))
         residuals.append(_differences(motion, removed.load, removed.moment, length))
     return np.asarray(

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
 
 from contactstudy import checks
-from contactstudy.analysis.axes import cell_size, dimension_along, single_case
+from contactstudy.analysis.axes import cell_widths, dimension_along, single_case
 from contactstudy.analysis.provenance import solved_case
 from contactstudy.analysis.slices import SIDES, Columns, power_means, pressure_errors
 from contactstudy.arrays.peaks import section_maxima
@@ -38,8 +37,7 @@ def slice_model(case: Case, *, slices: int = 30, tilt: float | None = None, edge
     Parameters
     ----------
     case : Case
-        Body, roller and load. Of the body the model uses the contact modulus only. Where the roller
-        overhangs only the part over the body is cut.
+        Of the body the model uses the contact modulus only. Of an overhanging roller the part over the body is cut.
     slices : int
         Number ``n`` of slices; at least 30 in the standard.
     tilt : float, optional
@@ -70,8 +68,7 @@ def slice_model(case: Case, *, slices: int = 30, tilt: float | None = None, edge
 
     References
     ----------
-    ISO/TS 16281:2008, Rolling bearings - Methods for calculating the modified reference rating life for universally
-    loaded bearings, equations 35, 38 to 44 and 60.
+    ISO/TS 16281:2008, equations 35, 38 to 44 and 60.
 
     Examples
     --------
@@ -84,6 +81,8 @@ def slice_model(case: Case, *, slices: int = 30, tilt: float | None = None, edge
     >>> bool(result.pressure[-1] > result.pressure[0])
     True
     """
+    from scipy.optimize import brentq
+
     checks.instance("case", case, Case, "a Case")
     slices = checks.count("slices", slices, least=2)
     if case.load_position is not None:
@@ -96,9 +95,23 @@ def slice_model(case: Case, *, slices: int = 30, tilt: float | None = None, edge
     from_middle = x - case.roller_middle
     height = checked_drop(roller.profile, from_middle, roller.length) - np.tan(tilt) * from_middle
     stiffness = SPRING * length ** (8 / 9) / slices * (case.modulus / STEEL)
-    approach, deflection = _equilibrium(height, stiffness, case.normal_load)
+    load = case.normal_load
+    lowest, largest = float(height.min()), 0.5 * (load / stiffness) ** (1 / EXPONENT)  # one slice under the whole load
+    approach = float(
+        brentq(
+            lambda approach: stiffness * float(np.sum((2 * np.maximum(approach - height, 0.0)) ** EXPONENT)) / load - 1,
+            lowest,
+            lowest + 1.001 * largest,
+            xtol=1e-15 * largest,
+            rtol=1e-14,
+            maxiter=200,
+        )
+    )
+    deflection = np.maximum(approach - height, 0.0)
     load_per_length = stiffness * (2 * deflection) ** EXPONENT * slices / length
-    factor = _edge_factor(slices)
+    from_ends = np.abs(2 * np.arange(1, slices + 1) - slices - 1) / (2 * slices - 2)
+    with np.errstate(divide="ignore"):
+        factor = 1 - 0.01 / np.log(1.985 * from_ends)  # 1 in the middle
     radius = local_radius(roller.profile, from_middle, roller.length, roller.radius)
     line_load = load_per_length * factor if edge_riser else load_per_length
     pressure = np.sqrt(line_load * case.modulus / (np.pi * radius))
@@ -124,29 +137,6 @@ def slice_model(case: Case, *, slices: int = 30, tilt: float | None = None, edge
     return describe(result, "slice model of ISO/TS 16281")
 
 
-def _equilibrium(height: FloatArray, stiffness: float, load: float) -> tuple[float, FloatArray]:
-    """Approach and deflections of springs of equal stiffness at different heights under the load."""
-    from scipy.optimize import brentq
-
-    def deflection(approach: float) -> FloatArray:
-        return np.asarray(np.maximum(approach - height, 0.0))
-
-    def excess(approach: float) -> float:
-        return float(stiffness * np.sum((2 * deflection(approach)) ** EXPONENT)) / load - 1
-
-    lowest = float(height.min())
-    largest = 0.5 * (load / stiffness) ** (1 / EXPONENT)  # of one slice under the whole load
-    approach = float(brentq(excess, lowest, lowest + 1.001 * largest, xtol=1e-15 * largest, rtol=1e-14, maxiter=200))
-    return approach, deflection(approach)
-
-
-def _edge_factor(slices: int) -> FloatArray:
-    """Stress riser of every slice; 1 in the middle."""
-    number = np.arange(1, slices + 1)
-    with np.errstate(divide="ignore"):
-        return np.asarray(1 - 0.01 / np.log(1.985 * np.abs(2 * number - slices - 1) / (2 * slices - 2)))
-
-
 # Power of a lamina's load that its risk of fatigue follows: the life exponent 4 of a line contact times the slope 9/8
 # of Weibull's distribution
 LIFE_POWER = 9 / 2
@@ -168,10 +158,9 @@ def lamina_factors(result: xr.Dataset, *, laminae: int = 30) -> xr.Dataset:
     Dataset
         Along `slice`: `position` (m, middle, from end I of the body), `width` (m); `load_per_length` (N/m) of the
         lamina model under the same load and tilt; `hertz_load_per_length` (N/m), the one whose line contact has the
-        solved pressure; `stress_riser`, the latter over the former: ``f_i[k]`` from the inner raceway, ``f_e[k]`` from
-        the outer one; with `hertz_load_per_length_error` and `stress_riser_error`, which follow from the stated errors
-        of the peak pressures and from the distance of the columns; and `edge_factor`, the standard's approximation.
-        The error of the lamina model is not estimated.
+        solved pressure; `stress_riser`, the latter over the former: ``f_i[k]`` inside, ``f_e[k]`` outside; the errors
+        of these two, from the stated errors of the pressures and the distance of the columns; and `edge_factor`, the
+        standard's approximation. The error of the lamina model is not estimated.
 
     Raises
     ------
@@ -200,11 +189,19 @@ def lamina_factors(result: xr.Dataset, *, laminae: int = 30) -> xr.Dataset:
     require(result, "tilt", argument="result")
     result = required_in_si(result, "pressure", argument="result")
     solution = single_case(result)
-    case, count = solved_case(solution), checks.count("laminae", laminae, least=2)
+    return lamina_loads(solution, solved_case(solution), laminae)[0]
+
+
+def lamina_loads(solution: xr.Dataset, case: Case, laminae: int) -> tuple[xr.Dataset, FloatArray]:
+    """Factors of :func:`lamina_factors`; and the error of the loads, N/m, from the stated errors of the pressure alone.
+
+    This error bounds a life, where errors of columns cancel.
+    """
+    count = checks.count("laminae", laminae, least=2)
     sliced = slice_model(replace(case, load_position=None, tilt=float(solution["tilt"])), slices=count)
     start, stop = case.contact_range
     borders = np.linspace(start, stop, count + 1)
-    load, error, _ = hertz_loads(solution, case, borders)
+    load, error, common = _hertz_loads(solution, case, borders)
     sliced_load = sliced["load_per_length"].values
     with np.errstate(divide="ignore", invalid="ignore"):
         riser = np.where(sliced_load > 0, load / sliced_load, np.nan)
@@ -227,23 +224,15 @@ def lamina_factors(result: xr.Dataset, *, laminae: int = 30) -> xr.Dataset:
     estimated = not np.isnan(error).any()
     for name in ("hertz_load_per_length", "stress_riser"):
         labelled[f"{name}_error"].attrs |= {"comment": OF_COLUMNS} if estimated else {ERROR_KIND: NOT_ESTIMATED}
-    return describe(labelled, "stress riser of every lamina from solved pressures")
+    return describe(labelled, "stress riser of every lamina from solved pressures"), common
 
 
-class HertzLoads(NamedTuple):
-    """Load per length of every lamina whose line contact has the solved pressure, N/m."""
-
-    load: FloatArray  # N/m; infinite at a singular end
-    error: FloatArray  # of the stated errors and of the columns
-    common: FloatArray  # of the stated errors: bounds a life, where errors of columns cancel
-
-
-def hertz_loads(result: xr.Dataset, case: Case, borders: FloatArray) -> HertzLoads:
-    """Return loads per length of laminae between borders from the solved pressure, and their errors."""
+def _hertz_loads(result: xr.Dataset, case: Case, borders: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Load per length of every lamina whose line contact has the solved pressure, its error, and the common part."""
     pressure = result["pressure"].transpose(dimension_along(result["pressure"], "x"), ...)
     x = dimension_along(pressure, "x")
     position, top = result[x].values, section_maxima(pressure.values)
-    half = 0.5 * np.broadcast_to(cell_size(pressure, "x").values, position.shape)
+    half = 0.5 * cell_widths(pressure, "x").values
     middle = case.roller_middle
     under = np.abs(position - middle) <= 0.5 * case.roller.length
     radius = np.full(position.size, case.roller.radius)
@@ -256,7 +245,7 @@ def hertz_loads(result: xr.Dataset, case: Case, borders: FloatArray) -> HertzLoa
     for end, side in ((0, "first"), (-1, "last")):
         if np.isinf(float(result.get(f"peak_pressure_{side}", 0.0))):
             load[end] = error[end] = common[end] = np.inf
-    return HertzLoads(load, error, common)
+    return load, error, common
 
 
 def _of_pressure(result: xr.Dataset, load: FloatArray, line: FloatArray, weights: FloatArray) -> FloatArray:

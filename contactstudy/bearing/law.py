@@ -341,16 +341,8 @@ class Raceways:
     def at(self, approach: Values, tilt: Values = 0.0) -> xr.Dataset:
         """Load, moment and stiffness at an approach and a tilt of one raceway against the other.
 
-        Parameters
-        ----------
-        approach, tilt : float, sequence or DataArray
-            Metres and radians; broadcast as in :meth:`ContactLaw.at`.
-
-        Returns
-        -------
-        Dataset
-            As :meth:`ContactLaw.at`, with the shares of the contacts: `inner_approach`, `inner_tilt`, `outer_approach`
-            and `outer_tilt`.
+        As :meth:`ContactLaw.at`, with the shares of the contacts in the result: `inner_approach`, `inner_tilt`,
+        `outer_approach` and `outer_tilt`.
 
         Raises
         ------
@@ -362,17 +354,7 @@ class Raceways:
         return self._dataset(inner, (delta - inner[0], theta - inner[1]))
 
     def under(self, normal_load: Values, moment: Values = 0.0) -> xr.Dataset:
-        """Approach and tilt of the raceways under a load and a moment.
-
-        Parameters
-        ----------
-        normal_load, moment : float, sequence or DataArray
-            N and N m; broadcast as in :meth:`ContactLaw.at`.
-
-        Returns
-        -------
-        Dataset
-            As of :meth:`at`, with the errors of approach and tilt.
+        """Approach and tilt of the raceways under a load and a moment, as :meth:`ContactLaw.under`, with the shares.
 
         Raises
         ------
@@ -390,7 +372,10 @@ class Raceways:
         pairs = [(self.inner, *inner), (self.outer, *outer)]
         contacts = [law.motion(delta.values, theta.values) for law, delta, theta in pairs]
         # Compliances add up.
-        stiffness = np.linalg.inv(sum(np.linalg.inv(_matrix(motion)) for motion in contacts))
+        matrices = (
+            np.stack([motion.normal, motion.coupling, motion.coupling, motion.tilting], axis=-1) for motion in contacts
+        )
+        stiffness = np.linalg.inv(sum(np.linalg.inv(matrix.reshape(*matrix.shape[:-1], 2, 2)) for matrix in matrices))
         first = contacts[0]
         motion = Motion(first.load, first.moment, stiffness[..., 0, 0], stiffness[..., 0, 1], stiffness[..., 1, 1])
         # A softer contact decides; the larger error is a bound for either.
@@ -438,9 +423,3 @@ class Raceways:
             )
         delta, theta = solution.x * size
         return float(delta), float(theta)
-
-
-def _matrix(motion: Motion) -> FloatArray:
-    """Stiffness as matrices along the last two axes."""
-    rows = [[motion.normal, motion.coupling], [motion.coupling, motion.tilting]]
-    return np.asarray(np.moveaxis(np.array(rows), (0, 1), (-2, -1)))

@@ -10,7 +10,7 @@ import xarray as xr
 
 from contactstudy import checks
 from contactstudy.arrays.variables import describe
-from contactstudy.bearing.laminae import LIFE_POWER, hertz_loads, lamina_factors
+from contactstudy.bearing.laminae import LIFE_POWER, lamina_loads
 from contactstudy.bodies.models import HalfSpace
 from contactstudy.case.case import Case
 from contactstudy.case.magnitudes import warn_doubtful_values
@@ -59,13 +59,12 @@ def roller_ratings(dynamic_rating: float, rollers: int, gamma: float, *, rows: i
     Warns
     -----
     MagnitudeWarning
-        If the rating is of a size that is mostly a mistake in the unit.
+        If the rating is of a doubtful size.
 
     Notes
     -----
     ``Q_c = C_r / (0.83 c Z rows**(7/9)) (1 + r**(+-9/2))**(2/9)`` with c = 0.378 inside and 0.364 outside, and
-    ``r = 1.038 ((1 - gamma) / (1 + gamma))**(143/108)``: equations 47 to 49 of ISO/TS 16281, second-hand. The two c
-    follow from the load on half of the rollers, and r from Lundberg and Palmgren's ratings of either raceway.
+    ``r = 1.038 ((1 - gamma) / (1 + gamma))**(143/108)``: equations 47 to 49 of ISO/TS 16281, second-hand.
 
     Examples
     --------
@@ -107,12 +106,10 @@ def reference_life(
         Dynamic load ratings ``Q_ci`` and ``Q_ce`` of a roller, N, see :func:`roller_ratings`.
     rollers : int, optional
         Number of rollers beside a sequence, the unloaded ones included. Default: all are given.
-    turning : str
-        Raceway that turns against the load: "inner" or "outer".
-    laminae : int
-        Number of laminae; at least 30 in the standard.
-    accuracy : float
-        Accuracy of the contacts, see :func:`contactstudy.solve`.
+    turning : {"inner", "outer"}
+        Raceway that turns against the load.
+    laminae, accuracy
+        As for :func:`lamina_factors` and :func:`contactstudy.solve`.
 
     Returns
     -------
@@ -226,16 +223,17 @@ def _loads_of_roller(case: Case, laminae: int, accuracy: float) -> FloatArray:
         tilt=0.0,
         load_position=position,
     )
-    results = [(endless, solve(endless, stresses=False, accuracy=accuracy)), (case, exact)]
-    solved = [lamina_factors(result, laminae=laminae) for _, result in results]
+    half_space = solve(endless, stresses=False, accuracy=accuracy)
+    solved, common = zip(
+        *(lamina_loads(result, model, laminae) for model, result in ((endless, half_space), (case, exact))), strict=True
+    )
     width, plain = solved[1]["width"].values, solved[1]["load_per_length"].values
     factor, unknown = solved[1]["edge_factor"].values, [np.full_like(plain, np.nan)] * 2
-    hertz = [hertz_loads(result, model, np.linspace(*model.contact_range, plain.size + 1)) for model, result in results]
     return np.array(
         [
-            width * np.array([plain, plain * factor, *(loads.load for loads in hertz)]),
-            width * np.array([*unknown, *(loads.error for loads in hertz)]),
-            width * np.array([*unknown, *(loads.common for loads in hertz)]),
+            width * np.array([plain, plain * factor, *(factors["hertz_load_per_length"].values for factors in solved)]),
+            width * np.array([*unknown, *(factors["hertz_load_per_length_error"].values for factors in solved)]),
+            width * np.array([*unknown, *common]),
             [np.ones_like(plain), factor, *(factors["stress_riser"].values for factors in solved)],
             [*unknown, *(factors["stress_riser_error"].values for factors in solved)],
         ]

@@ -51,15 +51,11 @@ class Presser:
             return refine_contact(case, self.accuracy, self.tolerance).contact
 
     def pressed(self, approach: float, tilt: float, load: float) -> Node:
-        """Return the contact at an approach, from a first guess of its load."""
+        """Load, moment about mid-length and strain energy at an approach, from a first guess of the load."""
         with _refused(load, tilt):
             solution = search_load(replace(self.case, tilt=tilt), approach, load, self.accuracy, self.tolerance)
         contact = solution.refined.contact
         contact.warn_unless_converged()
-        return self.node(contact)
-
-    def node(self, contact: Contact) -> Node:
-        """Load, moment about mid-length and strain energy of a contact."""
         grid = contact.shape.grid
         forces = grid.weights * contact.pressure * grid.cell_area
         # In the contact the surfaces move apart by approach less gap.
@@ -114,8 +110,7 @@ def _mirror_images(presser: Presser) -> bool:
     """Whether the halves of roller and body are mirror images."""
     case, (low, high) = presser.case, presser.case.body.extent
     length = case.roller.length
-    endless = np.isinf(low) and np.isinf(high)
-    centred = endless or abs(low + high - 2 * case.roller_middle) <= MIRRORED * length
+    centred = np.isinf(low) or abs(low + high - 2 * case.roller_middle) <= MIRRORED * length
     places = 0.5 * length * np.linspace(0.01, 0.99, 50)
     second_half, first_half = (case.roller.clearance(side * places, np.array([0.0, 1e-2 * length])) for side in (1, -1))
     return bool(centred) and bool(np.allclose(second_half, first_half, rtol=MIRRORED, atol=0.0))
@@ -159,10 +154,8 @@ def contact_law(
     approaches : sequence of float, optional
         Five or more, increasing, positive, metres: how far the roller is pressed down at its mid-length. Default: eight
         from the approach under 0.03 of the case's load to the approach under 1.5 times the load, in equal ratios.
-    accuracy : float
-        Accuracy of the peak pressure of each contact, see :func:`contactstudy.solve`.
-    tolerance : float
-        Tolerance of each contact, see :func:`contactstudy.solve_contact`.
+    accuracy, tolerance : float
+        Of each contact, see :func:`contactstudy.solve` and :func:`contactstudy.solve_contact`.
 
     Returns
     -------

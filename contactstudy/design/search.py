@@ -7,6 +7,7 @@ import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from types import MappingProxyType
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -121,7 +122,12 @@ class Evaluations:
         """Solve every case of a design."""
         pairs = np.full((len(self.cases), 2), np.inf)
         try:
-            profile = self._profile(self.parameters(parts))
+            parameters = self.parameters(parts)
+            try:
+                profile = self.profile(**parameters)
+            except TypeError as error:
+                allowed = "of the keywords that profile takes"
+                raise InvalidInputError("bounds", list(parameters), allowed, str(error)) from None
             cases = [replace(case, roller=replace(case.roller, profile=profile)) for case in self.cases]
             with warnings.catch_warnings():
                 if self.designs:  # the first design has warned of magnitudes
@@ -135,14 +141,6 @@ class Evaluations:
             self.refused = error
         return Design(parts, pairs[:, 0], pairs[:, 1])
 
-    def _profile(self, parameters: dict[str, float]) -> Profile:
-        """Profile of the parameters."""
-        try:
-            return self.profile(**parameters)
-        except TypeError as error:
-            allowed = "of the keywords that profile takes"
-            raise InvalidInputError("bounds", list(parameters), allowed, str(error)) from None
-
     def _measured(self, case: Case) -> tuple[float, float]:
         """Measure of one case and its error."""
         uniform = bool({"grid", "roughness"} & self.settings.keys())
@@ -154,29 +152,24 @@ class Evaluations:
                     hint = f"an array; a function makes a number of it: lambda result: result.{self.measure}.max()"
                     raise InvalidInputError("measure", self.measure, "a scalar of the result, or a function", hint)
                 checks.known_name("measure", self.measure, scalars)
-            measured: object = result[self.measure]
+            measured: Any = result[self.measure]
             self.units = str(result[self.measure].attrs.get("units", ""))
             if f"{self.measure}_error" in result:
                 measured = (measured, result[f"{self.measure}_error"])
         else:
             measured = self.measure(result)
-        number, error = _number_and_error(measured)
+        try:
+            value, stated = measured if isinstance(measured, tuple) else (measured, None)
+            if isinstance(value, str) or isinstance(stated, str):
+                raise TypeError
+            number, error = float(value), None if stated is None else float(stated)
+        except (TypeError, ValueError):
+            shape = getattr(measured, "shape", ())
+            value = f"an array of shape {shape}" if shape else measured
+            raise InvalidInputError("measure", value, "a function that returns a number, or (number, error)") from None
         if np.isnan(number):
             raise InvalidInputError("measure", number, "a number in every case", f"NaN for {case!r}")
         return number, self.accuracy * abs(number) if error is None or np.isnan(error) else error
-
-
-def _number_and_error(measured: object) -> tuple[float, float | None]:
-    """Split the return value of a measure into number and error."""
-    try:
-        value, error = measured if isinstance(measured, tuple) else (measured, None)
-        if isinstance(value, str) or isinstance(error, str):
-            raise TypeError
-        return float(value), None if error is None else float(error)
-    except (TypeError, ValueError):
-        shape = getattr(measured, "shape", ())
-        value = f"an array of shape {shape}" if shape else measured
-        raise InvalidInputError("measure", value, "a function that returns a number, or (number, error)") from None
 
 
 def fewest(parameters: int) -> int:
@@ -187,7 +180,13 @@ def fewest(parameters: int) -> int:
 def optimum(evaluations: Evaluations) -> Design:
     """Return the best design of the search; some evaluations are left for the ends of the flat range."""
     count = len(evaluations.ranges)
-    first = min((evaluations(parts) for parts in _first_scan(count)), key=lambda design: design.value)
+    if count == 1:
+        scan = np.linspace(0.0, 1.0, SCAN)[:, None]
+    else:
+        from scipy.stats.qmc import Sobol
+
+        scan = Sobol(count, scramble=False).random(fewest(count) - 1)
+    first = min((evaluations(parts) for parts in scan), key=lambda design: design.value)
     if not np.isfinite(first.value):
         if evaluations.refused is not None:
             raise evaluations.refused
@@ -201,36 +200,18 @@ def optimum(evaluations: Evaluations) -> Design:
 
     # Evaluations per parameter that are reserved for the ends of the flat range
     most = max(evaluations.remaining - 4 * count, 1)
-    (_along_one if count == 1 else _along_several)(bounded, first, most)
+    if count > 1:  # Nelder and Mead's simplex tolerates errors and kinks.
+        corners = np.tile(first.parts, (count + 1, 1))
+        # Away from the nearer bound, so that no corner is cut off.
+        corners[1:] += np.diag(np.where(first.parts > 0.5, -SIMPLEX, SIMPLEX))
+        options = {"initial_simplex": corners, "xatol": CLOSE, "fatol": first.error, "maxfev": most}
+        optimize.minimize(bounded, first.parts, method="Nelder-Mead", bounds=[(0.0, 1.0)] * count, options=options)
+    elif most > 1:  # Brent's method, between the neighbours of the best design; it takes two designs or more.
+        start, step = float(first.parts[0]), 1 / (SCAN - 1)
+        between = (max(start - step, 0.0), min(start + step, 1.0))
+        options = {"xatol": CLOSE, "maxiter": most}
+        optimize.minimize_scalar(bounded, bounds=between, method="bounded", options=options)
     return evaluations.best
-
-
-def _first_scan(count: int) -> FloatArray:
-    """First designs: array (design, parameter)."""
-    if count == 1:
-        return np.linspace(0.0, 1.0, SCAN)[:, None]
-    from scipy.stats.qmc import Sobol
-
-    return np.asarray(Sobol(count, scramble=False).random(fewest(count) - 1))
-
-
-def _along_one(function: Callable[[FloatArray], float], first: Design, most: int) -> None:
-    """Minimise between the neighbours of the best design of the scan (Brent)."""
-    if most < 2:  # the least number of Brent's method
-        return
-    start, step = float(first.parts[0]), 1 / (SCAN - 1)
-    bounds = (max(start - step, 0.0), min(start + step, 1.0))
-    optimize.minimize_scalar(function, bounds=bounds, method="bounded", options={"xatol": CLOSE, "maxiter": most})
-
-
-def _along_several(function: Callable[[FloatArray], float], first: Design, most: int) -> None:
-    """Minimise from the best design of the scan by Nelder and Mead's simplex, which tolerates errors and kinks."""
-    count = first.parts.size
-    corners = np.tile(first.parts, (count + 1, 1))
-    # Away from the nearer bound, so that no corner is cut off.
-    corners[1:] += np.diag(np.where(first.parts > 0.5, -SIMPLEX, SIMPLEX))
-    options = {"initial_simplex": corners, "xatol": CLOSE, "fatol": first.error, "maxfev": most}
-    optimize.minimize(function, first.parts, method="Nelder-Mead", bounds=[(0.0, 1.0)] * count, options=options)
 
 
 def flat_range(evaluations: Evaluations, best: Design, parameter: int) -> tuple[float, float]:
@@ -374,7 +355,14 @@ def best_profile(
         raise InvalidInputError("profile", profile, "a class of profiles, or a function that makes one")
     if not (isinstance(measure, str) or callable(measure)):
         raise InvalidInputError("measure", measure, "the name of a variable, or a function of the result")
-    ranges = _ranges(bounds)
+    if not isinstance(bounds, Mapping) or not bounds:
+        raise InvalidInputError("bounds", bounds, 'such as {"crown_radius": (0.5, 5.0)}')
+    ranges = {}
+    for name, pair in bounds.items():
+        low, high = checks.coordinates(f"bounds[{name!r}]", pair, "SI")[[0, -1]] if np.size(pair) == 2 else (0.0, 0.0)
+        if not low < high:
+            raise InvalidInputError(f"bounds[{name!r}]", pair, "two numbers, the least and the largest value")
+        ranges[str(name)] = Range(float(low), float(high))
     designs = Evaluations(
         cases=_cases(case, loads, max_pressures, tilts),
         profile=profile,
@@ -397,19 +385,6 @@ def best_profile(
             stacklevel=2,
         )
     return result
-
-
-def _ranges(bounds: object) -> dict[str, Range]:
-    """Range of every parameter."""
-    if not isinstance(bounds, Mapping) or not bounds:
-        raise InvalidInputError("bounds", bounds, 'such as {"crown_radius": (0.5, 5.0)}')
-    ranges = {}
-    for name, ends in bounds.items():
-        low, high = checks.coordinates(f"bounds[{name!r}]", ends, "SI")[[0, -1]] if np.size(ends) == 2 else (0.0, 0.0)
-        if not low < high:
-            raise InvalidInputError(f"bounds[{name!r}]", ends, "two numbers, the least and the largest value")
-        ranges[str(name)] = Range(float(low), float(high))
-    return ranges
 
 
 def _numbers(name: str, values: object, unit: str) -> list[float]:

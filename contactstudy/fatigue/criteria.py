@@ -141,17 +141,17 @@ def dang_van(stress: xr.Dataset, limits: FatigueLimits) -> xr.Dataset:
     Parameters
     ----------
     stress : Dataset
-        The six components with the rolling direction y over the whole passage, see
-        :func:`contactstudy.fatigue.window_remainder`; residual stresses may be added to them beforehand.
+        The six components with the rolling direction y over the whole passage, see :func:`window_remainder`; residual
+        stresses may be added.
     limits : FatigueLimits
         Of the material.
 
     Returns
     -------
     Dataset
-        Without the rolling direction: `dang_van` (Pa), the largest of the sum; `utilisation` (1), that over
-        ``tau_w``; `dang_van_shear` and `dang_van_hydrostatic` (Pa), both terms at that instant, and `dang_van_y` (m),
-        where that is (NaN for the unloaded state). Their errors are not estimated (`error_kind`).
+        Without the rolling direction: `dang_van` (Pa), the largest of the sum; `utilisation`, that over ``tau_w``;
+        `dang_van_shear` and `dang_van_hydrostatic` (Pa), both terms at that instant, and `dang_van_y` (m), where that
+        is (NaN for the unloaded state). Their errors are not estimated.
 
     Raises
     ------
@@ -296,23 +296,6 @@ def _damage(history: Array, frames: Array, slope: float) -> tuple[Array, Array, 
     return amplitude + slope * largest, amplitude, largest
 
 
-def _search(history: Array, slope: float) -> Array:
-    """Best frames (point, start, 2, 3) of the first search."""
-    frames = _frames()
-    shear_of, normal_of = _resolvers(frames)
-    normal_of = normal_of[::DIRECTIONS]
-    best = np.empty((len(history), STARTS, 2, 3))
-    block = max(1, 2**24 // (history.shape[1] * len(frames)))  # Numbers held at once in the first search
-    for start in range(0, len(history), block):
-        part = history[start : start + block]
-        shear = part @ shear_of.T
-        amplitude = 0.5 * (shear.max(axis=1) - shear.min(axis=1))
-        largest = np.repeat((part @ normal_of.T).max(axis=1), DIRECTIONS, axis=1)
-        damage = amplitude + slope * largest
-        best[start : start + block] = frames[np.argpartition(damage, -STARTS, axis=1)[:, -STARTS:]]
-    return best
-
-
 def _turned(frames: Array, turn: Array) -> Array:
     """Frames (frame, candidate, 2, 3): as they are, and turned by `turn` about 14 axes around each."""
     from scipy.spatial.transform import Rotation
@@ -326,7 +309,17 @@ def _turned(frames: Array, turn: Array) -> Array:
 
 def _worst_planes(history: Array, slope: float) -> tuple[Array, ...]:
     """Sum, shear amplitude, largest normal stress and components of the normal of the worst plane of each history."""
-    frames = _search(history, slope).reshape(-1, 2, 3)
+    first = _frames()
+    shear_of, normal_of = _resolvers(first)
+    best = np.empty((len(history), STARTS, 2, 3))
+    block = max(1, 2**24 // (history.shape[1] * len(first)))  # Numbers held at once in the first search
+    for start in range(0, len(history), block):
+        part = history[start : start + block]
+        shear = part @ shear_of.T
+        largest = np.repeat((part @ normal_of[::DIRECTIONS].T).max(axis=1), DIRECTIONS, axis=1)
+        damage = 0.5 * (shear.max(axis=1) - shear.min(axis=1)) + slope * largest
+        best[start : start + block] = first[np.argpartition(damage, -STARTS, axis=1)[:, -STARTS:]]
+    frames = best.reshape(-1, 2, 3)
     owner = np.repeat(np.arange(len(history)), STARTS)
     turn = np.full(len(frames), FIRST_TURN)
     active = np.arange(len(frames))
@@ -335,9 +328,9 @@ def _worst_planes(history: Array, slope: float) -> tuple[Array, ...]:
     while active.size:
         candidates = _turned(frames[active], turn[active])
         damage, _, _ = _damage(history[owner[active]], candidates, slope)
-        best = np.where(damage.max(axis=1) > damage[:, 0] + least[owner[active]], damage.argmax(axis=1), 0)
-        frames[active] = candidates[np.arange(active.size), best]
-        turn[active[best == 0]] *= 0.5
+        worse = np.where(damage.max(axis=1) > damage[:, 0] + least[owner[active]], damage.argmax(axis=1), 0)
+        frames[active] = candidates[np.arange(active.size), worse]
+        turn[active[worse == 0]] *= 0.5
         active = active[turn[active] > LAST_TURN]
     refined = frames.reshape(-1, STARTS, 2, 3)
     damage_terms = _damage(history, refined, slope)
@@ -351,9 +344,9 @@ def findley(stress: xr.Dataset, limits: FatigueLimits) -> xr.Dataset:
     """Findley's criterion ``max over planes of tau_a + k sigma_n,max <= f`` for every material point.
 
     On a plane, ``tau_a`` is half of the largest range of the shear stress resolved in one direction during the history,
-    and ``sigma_n,max`` the largest normal stress, positive in tension, and not below zero since the point is unloaded
-    before and after. The worst planes are searched over a hemisphere in steps of about 10 degrees, and turned until no
-    rotation by 0.001 degrees makes it worse. ``k`` and ``f`` follow from the limits.
+    and ``sigma_n,max`` the largest normal stress, positive in tension, and not below zero of the unloaded point. The
+    worst planes are searched over a hemisphere in steps of about 10 degrees, and turned until no rotation by 0.001
+    degrees makes it worse. ``k`` and ``f`` follow from the limits.
 
     Parameters
     ----------

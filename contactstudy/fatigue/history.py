@@ -1,10 +1,8 @@
 """Stress histories of material points that pass the contact, and the smallest ball around a history.
 
-At most one point more than the dimensions supports the ball. Beginning with one point, the farthest point outside joins
-the support, and the smallest ball around the support is one of the circumscribed balls of its subsets, until all points
-are inside. The radius grows with each step, so the iteration ends with the exact ball.
-Source: E. Welzl, Smallest enclosing disks (balls and ellipsoids), in: New Results and New Trends in Computer Science,
-LNCS 555 (1991) 359-370, and of B. Gaertner, Fast and robust smallest enclosing balls, ESA 1999.
+At most one point more than the dimensions supports the ball. The farthest point outside joins the support, and the
+smallest ball around it is one of the circumscribed balls of its subsets, until all points are inside: exact (E. Welzl,
+LNCS 555 (1991) 359-370, and of B. Gaertner, Fast and robust smallest enclosing balls, ESA 1999).
 """
 
 from __future__ import annotations
@@ -76,9 +74,8 @@ def of_points(name: str, array: xr.DataArray, base: Variable | None = None) -> x
 def window_remainder(stress: xr.Dataset) -> xr.DataArray:
     """Stress at the window's borders in y over the largest of the passage: how much of a history is left out.
 
-    The unloaded state is part of every history, so the remainder matters only where an extreme lies beyond the window.
-    The extremes of the orthogonal shear lie at ``y = 0.87 a`` near the surface, and move out to ``y = z / sqrt(3)`` at
-    depths of several half-widths.
+    The remainder matters only where an extreme lies beyond the window. The extremes of the orthogonal shear lie at
+    ``y = 0.87 a`` near the surface, and move out to ``y = z / sqrt(3)`` at depths of several half-widths.
 
     Parameters
     ----------

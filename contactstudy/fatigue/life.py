@@ -1,17 +1,15 @@
 """Risk of fatigue over the stressed volume, and relative life: two lives with the same probability to survive.
 
-Lundberg and Palmgren, and Ioannides and Harris: ``ln(1/S) = const N**e risk`` for the probability S to survive N
-passages; the constant belongs to material and lubrication and cancels in the ratio of two lives. Sources: G. Lundberg,
-A. Palmgren, Dynamic capacity of rolling bearings, Acta Polytechnica, Mechanical Engineering Series 1 (1947) no. 3, and
-Dynamic capacity of roller bearings, ibid. 2 (1952) no. 4; E. Ioannides, T. A. Harris, A new fatigue life model for
-rolling bearings, Journal of Tribology 107 (1985) 367-378.
+``ln(1/S) = const N**e risk`` for the probability S to survive N passages; the constant belongs to material and
+lubrication. G. Lundberg, A. Palmgren, Dynamic capacity of rolling bearings, Acta Polytechnica, Mechanical Engineering
+Series 1 (1947) no. 3, and 2 (1952) no. 4; E. Ioannides, T. A. Harris, A new fatigue life model for rolling bearings,
+Journal of Tribology 107 (1985) 367-378.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from functools import partial
 from typing import TypeVar
 
 import numpy as np
@@ -67,7 +65,10 @@ class LifeExponents:
         return f"Pa**{self.stress:.6g} m**{lengths - self.depth:.6g}"
 
 
-def relative_life(risk: xr.Dataset, reference: xr.Dataset, exponents: LifeExponents | None = None) -> xr.DataArray:
+ROLLER_BEARINGS = LifeExponents()
+
+
+def relative_life(risk: xr.Dataset, reference: xr.Dataset, exponents: LifeExponents = ROLLER_BEARINGS) -> xr.DataArray:
     """Life of one contact over the life of a reference, for the same probability to survive.
 
     Parameters
@@ -75,7 +76,7 @@ def relative_life(risk: xr.Dataset, reference: xr.Dataset, exponents: LifeExpone
     risk, reference : Dataset
         Results of :func:`lundberg_palmgren`, or both of :func:`ioannides_harris` with the same limit; for example the
         body with free ends and the half-space.
-    exponents : LifeExponents, optional
+    exponents : LifeExponents
         Those that both were computed with.
 
     Returns
@@ -95,8 +96,7 @@ def relative_life(risk: xr.Dataset, reference: xr.Dataset, exponents: LifeExpone
     >>> round(float(relative_life(twice, one)), 6) == round(0.5 ** (8 / 9), 6)
     True
     """
-    chosen = LifeExponents() if exponents is None else exponents
-    checks.instance("exponents", chosen, LifeExponents, "a LifeExponents")
+    checks.instance("exponents", exponents, LifeExponents, "a LifeExponents")
     for name, dataset in (("risk", risk), ("reference", reference)):
         require(dataset, "risk", argument=name)
     units = [dataset["risk"].attrs.get("units") for dataset in (risk, reference)]
@@ -111,14 +111,14 @@ def relative_life(risk: xr.Dataset, reference: xr.Dataset, exponents: LifeExpone
     risks, references = risk["risk"], reference["risk"]
     # Without any risk the life is infinite, unless the reference has none either.
     ratio = (references / risks.where(risks > 0)).where((risks != 0) | (references == 0), np.inf)
-    life = named("relative_life", ratio ** (1 / chosen.weibull))
+    life = named("relative_life", ratio ** (1 / exponents.weibull))
     if not all("risk_error" in dataset for dataset in (risk, reference)):
         return life.assign_attrs({ERROR_KIND: NOT_ESTIMATED})
     part, reference_part = (
         result["risk_error"] / result["risk"].where(result["risk"] > 0) for result in (risk, reference)
     )
     # The longest life that the errors allow: no bound if there may be no risk at all.
-    most = ((1 + reference_part) / (1 - part).clip(0.0)) ** (1 / chosen.weibull)
+    most = ((1 + reference_part) / (1 - part).clip(0.0)) ** (1 / exponents.weibull)
     error = (life * (most - 1)).reset_coords(drop=True)
     return life.assign_coords(relative_life_error=named("relative_life_error", error))
 
@@ -170,7 +170,7 @@ def _integral(density: Array, position: Array) -> Array:
 
 
 def _along_axis(
-    density: xr.DataArray, exponents: LifeExponents, theory: dict[str, str | float], cut: dict[str, xr.DataArray]
+    density: xr.DataArray, exponents: LifeExponents, theory: Mapping[str, str | float], cut: dict[str, xr.DataArray]
 ) -> xr.Dataset:
     """Risk along x, and integrated over x; `cut` marks sections with a truncated stress, by the reason."""
     x = dimension_along(density, "x")
@@ -205,7 +205,7 @@ def _over_x(density: xr.DataArray) -> xr.DataArray:
     return risk.reset_coords(drop=True)
 
 
-def _error(data: Data, of: xr.DataArray, risk: xr.DataArray, risk_of: Callable[[Data], xr.DataArray]) -> Array:
+def _error(data: Data, of: xr.DataArray, risk: xr.DataArray, risk_of: Callable[[Data], xr.DataArray]) -> xr.DataArray:
     """Sum over the axes of the change with every second position; infinite with too few positions."""
     error = np.zeros(risk.shape)
     for axis, dim in axis_dimensions(of).items():
@@ -214,26 +214,19 @@ def _error(data: Data, of: xr.DataArray, risk: xr.DataArray, risk_of: Callable[[
             parts = [np.unique(np.append(parts[0], of.sizes[dim] - 1))]
         # Least number of every second position along an axis for an error estimate; along x a risk needs two
         if any(part.size < 3 for part in parts):
-            return np.full(risk.shape, np.inf)
-        changes = [np.abs(risk_of(data.isel({dim: part})).values - risk.values) for part in parts]
-        error += np.maximum.reduce(changes)
-    return error
+            return xr.full_like(risk, np.inf)
+        error += np.max([np.abs(risk_of(data.isel({dim: part})).values - risk.values) for part in parts], axis=0)
+    return risk.copy(data=error)
 
 
-def _with_error(
-    result: xr.Dataset, error: Array, pressure: xr.DataArray | None = None, comment: str = POSITIONS_ALONE
-) -> xr.Dataset:
-    """Return a result with the error of its risk: of the positions, and of the pressure if that is known."""
+def _with_error(result: xr.Dataset, error: xr.DataArray, comment: str) -> xr.Dataset:
+    """Return a result with the error of its risk; without a risk there is no error."""
     risk = result["risk"]
-    total = risk.copy(data=error)
-    if pressure is not None:
-        comment = "from the distance of the positions, and of the pressure"
-        total = total + (risk * pressure).reset_coords(drop=True)
-    total = named("risk_error", total.where(risk != 0, 0.0))
+    total = named("risk_error", error.where(risk != 0, 0.0))
     return result.assign(risk_error=total.assign_attrs(units=risk.attrs["units"], comment=comment))
 
 
-def lundberg_palmgren(stress: xr.Dataset, exponents: LifeExponents | None = None) -> xr.Dataset:
+def lundberg_palmgren(stress: xr.Dataset, exponents: LifeExponents = ROLLER_BEARINGS) -> xr.Dataset:
     """Risk of fatigue after Lundberg and Palmgren, section by section along the roller.
 
     Each cross-section contributes ``tau_0**c z_0**(1 - h) dx``: its largest amplitude of the orthogonal shear, the
@@ -243,8 +236,8 @@ def lundberg_palmgren(stress: xr.Dataset, exponents: LifeExponents | None = None
     ----------
     stress : Dataset
         `tau_yz` with the rolling direction y over the whole passage, at three or more depths and two or more x.
-    exponents : LifeExponents, optional
-        Default: the exponents of roller bearings.
+    exponents : LifeExponents
+        Default: of roller bearings.
 
     Returns
     -------
@@ -268,11 +261,11 @@ def lundberg_palmgren(stress: xr.Dataset, exponents: LifeExponents | None = None
     >>> round(float(result.risk / 0.5 ** (1 - 7 / 3)), 9)
     2.0
     """
-    chosen = LifeExponents() if exponents is None else exponents
-    checks.instance("exponents", chosen, LifeExponents, "a LifeExponents")
+    checks.instance("exponents", exponents, LifeExponents, "a LifeExponents")
     stress = required_in_si(stress, "tau_yz", argument="stress")
-    rolling_dimension(stress["tau_yz"])
-    stress = stress.assign(tau_yz=stress["tau_yz"].compute())  # once, not for every part of the positions
+    rolling = rolling_dimension(stress["tau_yz"])
+    shear = stress["tau_yz"].compute()  # once, not for every part of the positions
+    stress = stress.assign(tau_yz=shear)
     amplitude, crest, depth = _shear(stress)
     if ((crest > 0) & (depth <= 0)).any():
         raise InvalidInputError(
@@ -282,19 +275,32 @@ def lundberg_palmgren(stress: xr.Dataset, exponents: LifeExponents | None = None
             "Lundberg and Palmgren's theory is not for such friction; Ioannides and Harris' is",
         )
     depths, dim = positions(amplitude, "z"), dimension_along(amplitude, "z")
-    outside = (depth <= depths.min(dim)) | (depth >= depths.max(dim))
-    cut = {"orthogonal shear largest at the first or last depth": outside, **_outside(stress, amplitude)}
-    result = _along_axis(_of_shear(crest, depth, chosen), chosen, {"theory": "Lundberg and Palmgren"}, cut).assign(
+    along = positions(shear, "y")
+    inside = shear.where((along > along.min(rolling)) & (along < along.max(rolling)))
+    inner_amplitude = 0.5 * (inside.max(rolling) - inside.min(rolling))
+    cut = {
+        "orthogonal shear largest at the first or last depth": (depth <= depths.min(dim)) | (depth >= depths.max(dim)),
+        "orthogonal shear largest at the first or last y": (
+            (amplitude == amplitude.max(dim)) & (inner_amplitude < amplitude)
+        ).any(dim),
+    }
+    density = _of_shear(crest, depth, exponents)
+    result = _along_axis(density, exponents, {"theory": "Lundberg and Palmgren"}, cut).assign(
         shear_amplitude=of_points("shear_amplitude", crest.compute()),
         shear_depth=of_points("shear_depth", depth.compute()),
     )
 
     def risk_of(part: xr.Dataset) -> xr.DataArray:
-        return _over_x(_of_shear(*_shear(part)[1:], chosen).compute())
+        return _over_x(_of_shear(*_shear(part)[1:], exponents).compute())
 
-    return _with_error(
-        result, _error(stress[["tau_yz"]], stress["tau_yz"], result["risk"], risk_of), _pressure(stress, chosen)
-    )
+    error, comment = _error(stress[["tau_yz"]], shear, result["risk"], risk_of), POSITIONS_ALONE
+    if {"peak_pressure", "peak_pressure_error"} <= set(stress.variables):
+        comment = "from the distance of the positions, and of the pressure"
+        peak = stress["peak_pressure"]
+        # At a singular end the stress is unbounded.
+        relative = (stress["peak_pressure_error"] / peak.where(np.isfinite(peak), 1.0)).where(np.isfinite(peak), np.inf)
+        error = error + (result["risk"] * (exponents.stress * relative)).reset_coords(drop=True)
+    return _with_error(result, error, comment)
 
 
 def _shear(stress: xr.Dataset) -> tuple[xr.DataArray, xr.DataArray, xr.DataArray]:
@@ -308,37 +314,6 @@ def _shear(stress: xr.Dataset) -> tuple[xr.DataArray, xr.DataArray, xr.DataArray
 def _of_shear(crest: xr.DataArray, depth: xr.DataArray, exponents: LifeExponents) -> xr.DataArray:
     """Lundberg and Palmgren's density of the risk: none where nothing is loaded, wherever its largest may be."""
     return (crest**exponents.stress * depth.where(depth > 0) ** (1 - exponents.depth)).where(crest != 0, 0.0)
-
-
-def _pressure(stress: xr.Dataset, exponents: LifeExponents) -> xr.DataArray | None:
-    """Relative error of a risk from the error of the largest pressure."""
-    if not {"peak_pressure", "peak_pressure_error"} <= set(stress.variables):
-        return None
-    peak, error = stress["peak_pressure"], stress["peak_pressure_error"]
-    # At a singular end the stress is unbounded.
-    return exponents.stress * (error / peak.where(np.isfinite(peak), 1.0)).where(np.isfinite(peak), np.inf)
-
-
-def _outside(stress: xr.Dataset, amplitude: xr.DataArray) -> dict[str, xr.DataArray]:
-    """Sections with the largest shear amplitude at the first or the last position along y."""
-    shear = stress["tau_yz"]
-    rolling, depth = dimension_along(shear, "y"), dimension_along(shear, "z")
-    border = positions(shear, "y")
-    is_border = (border == border.min(rolling)) | (border == border.max(rolling))
-    inside = shear.where(~is_border)
-    inner_amplitude = 0.5 * (inside.max(rolling) - inside.min(rolling))
-    crest = amplitude == amplitude.max(depth)
-    return {"orthogonal shear largest at the first or last y": (crest & (inner_amplitude < amplitude)).any(depth)}
-
-
-def _risk_of_sections(stress: Array, depth: Array, limit: float, exponents: LifeExponents) -> tuple[Array, ...]:
-    """Integral over the depth of the excess over the limit, over the stress-weighted mean depth; part beyond."""
-    excess = np.clip(stress - limit, 0.0, None) ** exponents.stress
-    volume, moment = _integral(excess, depth), _integral(excess * depth, depth)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        mean = moment / volume
-        density = np.where(volume > 0, volume / mean**exponents.depth, volume)
-    return density, mean, _beyond(np.nan_to_num(excess), np.broadcast_to(depth, excess.shape), exponents)
 
 
 def _beyond(excess: Array, depth: Array, exponents: LifeExponents) -> Array:
@@ -357,7 +332,9 @@ def _beyond(excess: Array, depth: Array, exponents: LifeExponents) -> Array:
     return np.where(np.isnan(part), 0.0, part)
 
 
-def ioannides_harris(stress: xr.DataArray, limit: float = 0.0, exponents: LifeExponents | None = None) -> xr.Dataset:
+def ioannides_harris(
+    stress: xr.DataArray, limit: float = 0.0, exponents: LifeExponents = ROLLER_BEARINGS
+) -> xr.Dataset:
     """Risk of fatigue after Ioannides and Harris: the excess over a fatigue limit, over the stressed volume.
 
     ``risk = integral of (sigma - sigma_u)**c / z'**h dx dz`` where the stress exceeds its limit, per length of the
@@ -371,8 +348,8 @@ def ioannides_harris(stress: xr.DataArray, limit: float = 0.0, exponents: LifeEx
         stress along y.
     limit : float
         ``sigma_u`` below which nothing fails, of the same measure, Pa.
-    exponents : LifeExponents, optional
-        Default: the exponents of roller bearings.
+    exponents : LifeExponents
+        Default: of roller bearings.
 
     Returns
     -------
@@ -396,32 +373,43 @@ def ioannides_harris(stress: xr.DataArray, limit: float = 0.0, exponents: LifeEx
     >>> float(result.risk), result.mean_depth.values.tolist()
     (3.0, [0.5, 0.5])
     """
-    chosen = LifeExponents() if exponents is None else exponents
-    checks.instance("exponents", chosen, LifeExponents, "a LifeExponents")
+    checks.instance("exponents", exponents, LifeExponents, "a LifeExponents")
     checks.instance("stress", stress, xr.DataArray, "a DataArray along x and z")
     if stress.attrs.get("units") != "1":  # a utilisation has none
         stress = in_si("stress", stress, "Pa")
     threshold = checks.not_negative("limit", limit, "Pa")
-    if any(str(dim) == "y" or str(dim).startswith("y_") for dim in stress.dims):
+    if "y" in axis_dimensions(stress):
         raise InvalidInputError(
             "stress.dims", stress.dims, "without the rolling direction", "take the largest or the amplitude along y"
         )
-    theory: dict[str, str | float] = {"theory": "Ioannides and Harris", "fatigue_limit": threshold}
     stress = stress.compute()
     dim, depths = _depths(stress)
     outer = (depths == depths.max(dim)) | ((depths == depths.min(dim)) & (depths > 0))
     outside = stress.where(outer).max(dim) >= stress.max(dim)
 
+    def risks(stress: Array, depth: Array) -> tuple[Array, ...]:
+        """Integral over the depth of the excess, over the stress-weighted mean depth; mean depth; part beyond."""
+        excess = np.clip(stress - threshold, 0.0, None) ** exponents.stress
+        volume, moment = _integral(excess, depth), _integral(excess * depth, depth)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            mean = moment / volume
+            density = np.where(volume > 0, volume / mean**exponents.depth, volume)
+        return density, mean, _beyond(np.nan_to_num(excess), np.broadcast_to(depth, excess.shape), exponents)
+
     def sections(part: xr.DataArray) -> tuple[xr.DataArray, ...]:
         dimension, depth_positions = _depths(part)
-        of = partial(_risk_of_sections, limit=threshold, exponents=chosen)
-        return reduce_dims(of, [(part, [dimension]), (depth_positions, [dimension])], 3)
+        return reduce_dims(risks, [(part, [dimension]), (depth_positions, [dimension])], 3)
 
     density, mean, beyond = sections(stress)
-    result = _along_axis(density, chosen, theory, {"a measure largest at the first or last depth": outside})
+    result = _along_axis(
+        density,
+        exponents,
+        {"theory": "Ioannides and Harris", "fatigue_limit": threshold},
+        {"a measure largest at the first or last depth": outside},
+    )
     if stress.attrs.get("units") == "1":
         for name in ("risk", "risk_density"):
             result[name].attrs["units"] = result[name].attrs["units"].split(maxsplit=1)[1]
     error = _error(stress, stress, result["risk"], lambda part: _over_x(sections(part)[0]))
-    error = error + _over_x(density * beyond).values
-    return _with_error(result.assign(mean_depth=of_points("mean_depth", mean)), error, comment=ALONG_X_AND_Z)
+    error = error + _over_x(density * beyond)
+    return _with_error(result.assign(mean_depth=of_points("mean_depth", mean)), error, ALONG_X_AND_Z)

@@ -1,22 +1,11 @@
-"""Shakedown of a body under many passes of a contact: Melan's theorem.
+"""Shakedown of a body under many passes of a contact: Melan's theorem (docs/explanation/passes.md).
 
-A perfectly plastic body shakes down, and yields no more, if some residual stress in equilibrium
-keeps the sum of it and the passing contact's elastic stress from yielding at every instant (E. Melan, Zur Plastizitaet
-des raeumlichen Kontinuums, Ingenieur-Archiv 9 (1938) 116-126; for rolling contact K. L. Johnson, A shakedown limit in
-rolling contact, Proc. 4th US National Congress of Applied Mechanics (1962) 971-975). Rolling makes residual stress
-that does not depend on y. Then ``rho_yy(x, z)`` appears in no equation of equilibrium and in no condition on a free
-face: it is free at every point of every body and bounds the load rigorously. It changes ``u`` of eq. (501) alone: the
-least of the largest von Mises stress is the radius of the smallest ball around the history centred on its axis.
+E. Melan, Zur Plastizitaet des raeumlichen Kontinuums, Ingenieur-Archiv 9 (1938) 116-126; K. L. Johnson, A shakedown
+limit in rolling contact, Proc. 4th US National Congress of Applied Mechanics (1962) 971-975.
 
-`shakedown_in_plane` adds ``rho_xx``, ``rho_zz`` and ``rho_xz`` in equilibrium that leave top and ends free. Airy's
-stress function of (x, z) makes them (eigenstrain/), so they are linear in its coefficients, and the least yield stress
-k solves a second-order cone program:
-
-    minimise t  such that  |(u + w, v + sqrt(3)/2 (rho_xx - rho_zz), sqrt(3) (t_xz + rho_xz), remainder)| <= t
-
-at every point and instant; w is free at every point. Few instants of a history decide: the program begins with the
-unloaded state of every point and the instants of the largest stress, and each solution adds the instants that violate
-it. The result is a bound without convergence as well: the least k follows from the residual stress at all instants.
+`shakedown_in_plane` minimises t with ``|(u + w, v + sqrt(3)/2 (rho_xx - rho_zz), sqrt(3) (t_xz + rho_xz), remainder)|``
+at most t at every point and instant, w free at every point. Few instants decide: the cone program begins with the
+unloaded state of every point and the instants of the largest stress, and each solution adds those that violate it.
 """
 
 from __future__ import annotations
@@ -24,7 +13,6 @@ from __future__ import annotations
 import warnings
 from collections.abc import Hashable
 from dataclasses import dataclass
-from functools import partial
 
 import numpy as np
 import xarray as xr
@@ -58,28 +46,13 @@ def _least_yield_stress(history: Array) -> Array:
     return np.asarray(np.sqrt((u**2 + v**2 + remainder) / 3))
 
 
-def _of_history(history: Array, *, axial: bool) -> tuple[Array, ...]:
-    """Yield stresses in shear for no yield and for shakedown, and the residual stresses yy and xx."""
-    u, v, remainder = in_ball_axes(history)
-    if axial:
-        centre, radius = enclosing_balls(np.stack([u, v], axis=-1), np.sqrt(remainder))
-        # A stress xx moves u by -1/2 and v by sqrt(3)/2 of itself.
-        residual_xx = -2 / np.sqrt(3.0) * centre[:, 1]
-    else:
-        centre, radius = enclosing_balls(u[..., None], np.sqrt(v**2 + remainder))  # eq. (502)
-        residual_xx = np.zeros(len(radius))
-    first = _least_yield_stress(history).max(axis=1)
-    return first, radius / np.sqrt(3.0), 0.5 * residual_xx - centre[:, 0], residual_xx
-
-
 def shakedown(stress: xr.Dataset, *, axial: bool = False) -> xr.Dataset:
     """Least yield stress with which every material point shakes down (Melan), and the residual stress that helps it.
 
     Parameters
     ----------
     stress : Dataset
-        The six components with the rolling direction y over the whole passage, as for
-        :func:`contactstudy.fatigue.dang_van`; of one case or of a study. Sliding, or rolling with stick and slip.
+        The six components with the rolling direction y over the whole passage, of one case or of a study.
     axial : bool
         Whether a residual stress along the axis may help too. Only a line contact leaves it free at every depth: it may
         not change along x, and must vanish on free ends.
@@ -118,7 +91,21 @@ def shakedown(stress: xr.Dataset, *, axial: bool = False) -> xr.Dataset:
                 f"False with {tensor.sizes[axial_dims[0]]} positions along x",
                 "residual stress along the axis is free in a line contact, which one position tells",
             )
-    results = over_history(partial(_of_history, axial=bool(axial)), stress, 4)
+
+    def least_yield_stresses(history: Array) -> tuple[Array, ...]:
+        """Yield stresses in shear for no yield and for shakedown, and the residual stresses yy and xx."""
+        u, v, remainder = in_ball_axes(history)
+        if axial:
+            centre, radius = enclosing_balls(np.stack([u, v], axis=-1), np.sqrt(remainder))
+            # A stress xx moves u by -1/2 and v by sqrt(3)/2 of itself.
+            residual_xx = -2 / np.sqrt(3.0) * centre[:, 1]
+        else:
+            centre, radius = enclosing_balls(u[..., None], np.sqrt(v**2 + remainder))  # eq. (502)
+            residual_xx = np.zeros(len(radius))
+        first = _least_yield_stress(history).max(axis=1)
+        return first, radius / np.sqrt(3.0), 0.5 * residual_xx - centre[:, 0], residual_xx
+
+    results = over_history(least_yield_stresses, stress, 4)
     names = ("first_yield_stress", "shakedown_stress", "residual_sigma_yy", "residual_sigma_xx")
     result = {name: of_points(name, array) for name, array in zip(names, results, strict=True)}
     if not axial:
@@ -261,8 +248,8 @@ def shakedown_in_plane(stress: xr.Dataset, body: Body) -> xr.Dataset:
     Parameters
     ----------
     stress : Dataset
-        A single case with the six components along x, y and z, as for :func:`contactstudy.fatigue.shakedown`. The
-        residual stress reaches from the top to the largest z, and from the first to the last x, or to the free ends.
+        As for :func:`shakedown`, a single case. The residual stress reaches from the top to the largest z, and from the
+        first to the last x, or to the free ends.
     body : Body
         The body, for its free ends.
 
@@ -325,7 +312,7 @@ def shakedown_in_plane(stress: xr.Dataset, body: Body) -> xr.Dataset:
             stacklevel=2,
         )
     in_plane = [scale * (matrix @ airy) for matrix in function]
-    centre, radius = program.pointwise(airy)
+    centre, radius, _ = program.balls(airy)
     xx, zz, xz = in_plane
     results = {
         "first_yield_stress": _least_yield_stress(history).max(axis=1),
@@ -382,35 +369,34 @@ class _Program:
         self.xz = ROOT * self.history[..., 4]
         self.rest = np.sqrt(3 * (self.history[..., 3] ** 2 + self.history[..., 5] ** 2))
 
-    def pointwise(self, airy: FloatArray) -> tuple[Array, Array]:
-        """Free stress along u and least von Mises stress at every point, with the residual stress in the plane."""
+    def balls(self, airy: FloatArray) -> tuple[Array, Array, Array]:
+        """Free stress along u and least von Mises stress at every point, with the residual stress in the plane.
+
+        The third is the von Mises stress at every instant.
+        """
         v, xz = self.v + (self._v @ airy)[:, None], self.xz + (self._xz @ airy)[:, None]
-        centre, radius = enclosing_balls(self.u[..., None], np.sqrt(v**2 + xz**2 + self.rest**2))
-        return centre[:, 0], radius
+        squared = v**2 + xz**2 + self.rest**2
+        centre, radius = enclosing_balls(self.u[..., None], np.sqrt(squared))
+        return centre[:, 0], radius, np.sqrt((self.u - centre) ** 2 + squared)
 
     def solve(self) -> tuple[FloatArray, float, float]:
         """Coefficients, the largest von Mises stress with them, and the program's lower bound of it."""
-        airy = np.zeros(self._v.shape[1])
-        best, least, bound = airy, float(self.pointwise(airy)[1].max()), 0.0
+        best, least, bound = np.zeros(self._v.shape[1]), np.inf, 0.0
+        airy = best
         # The unloaded state at every point bounds all coefficients.
         active = np.zeros(self.history.shape[:2], dtype=bool)
         active[:, -1] = True
-        for _ in range(MOST_PROGRAMS):
-            active |= self._exceeding(airy, *self.pointwise(airy), bound)
-            airy, bound = self._minimise(active)
-            largest = float(self.pointwise(airy)[1].max())
-            if largest < least:
-                best, least = airy, largest
-            if least - bound <= LARGEST_GAP * least:
+        for number in range(MOST_PROGRAMS + 1):
+            _, radius, stress = self.balls(airy)
+            if radius.max() < least:
+                best, least = airy, float(radius.max())
+            if number == MOST_PROGRAMS or least - bound <= LARGEST_GAP * least:
                 break
+            # Instants that support the smallest ball at points with a ball above the program's bound.
+            critical = radius > max(bound, 0.5 * radius.max())
+            active |= (stress >= radius[:, None] * (1 - 0.3 * LARGEST_GAP)) & critical[:, None]
+            airy, bound = self._minimise(active)
         return best, least, bound
-
-    def _exceeding(self, airy: FloatArray, centre: Array, radius: Array, bound: float) -> Array:
-        """Instants that support the smallest ball at points with a ball above the program's bound."""
-        v, xz = self.v + (self._v @ airy)[:, None], self.xz + (self._xz @ airy)[:, None]
-        size = np.sqrt((self.u - centre[:, None]) ** 2 + v**2 + xz**2 + self.rest**2)
-        critical = radius > max(bound, 0.5 * radius.max())
-        return np.asarray((size >= radius[:, None] * (1 - 0.3 * LARGEST_GAP)) & critical[:, None])
 
     def _minimise(self, active: Array) -> tuple[FloatArray, float]:
         """Coefficients and least largest stress over the active instants."""

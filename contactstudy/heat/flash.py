@@ -21,7 +21,7 @@ from contactstudy.case.case import Case
 from contactstudy.case.motion import Rolling, Shift, Sliding
 from contactstudy.checks import BoolArray, FloatArray
 from contactstudy.errors import ConvergenceWarning, InvalidInputError, TemperatureWarning
-from contactstudy.heat.moving_source import Ends, MovingBody, SourceOperator, ThermalProperties
+from contactstudy.heat.moving_source import MovingBody, SourceOperator, ThermalProperties
 
 
 class FrictionalHeat(NamedTuple):
@@ -36,63 +36,45 @@ class FrictionalHeat(NamedTuple):
 def frictional_heat(case: Case, solution: xr.Dataset, grid: Grid) -> FrictionalHeat:
     """Heat per area and speeds of a solved case."""
     motion = case.motion
-    assert not isinstance(motion, Shift)
-    area = grid.weights * grid.cell_area
-    if isinstance(motion, Sliding):
-        solution = required_in_si(solution, "traction_y", argument="result")
-        if motion.speeds is None:
-            raise InvalidInputError("case.motion", motion, "one with body_speed and roller_speed (m/s)")
-        body_speed, roller_speed = motion.speeds
-        traction = labelled_cells("result.traction_y", solution["traction_y"], extent=case.body.extent)[0]
-        density = traction * (roller_speed - body_speed)
-        if (density < 0).any():
-            raise InvalidInputError(
-                "case.motion.roller_speed",
-                roller_speed,
-                f"{_side(traction)} body_speed, {body_speed:g}: friction drags the body the way the roller slides",
-                "speeds are along +y",
-            )
-        power = float((area * traction).sum() * (roller_speed - body_speed))
-        return FrictionalHeat(density, power, body_speed, roller_speed)
-    return _rolling_heat(case, motion, solution, area)
-
-
-def _side(traction: FloatArray) -> str:
-    """Bound on the roller's speed relative to the body's, in words."""
-    if (traction < 0).any() and (traction > 0).any():
-        return "equal to, as the friction changes its sign along the axis,"
-    return "not below" if traction.max() > 0 else "not above"
-
-
-def _rolling_heat(case: Case, motion: Rolling, solution: xr.Dataset, area: FloatArray) -> FrictionalHeat:
-    """Heat of a rolling contact: traction times slip per distance, times distance per time."""
-    names = ("traction_x", "slip_x", "traction_y", "slip_y")
+    names = ("traction_y",) if isinstance(motion, Sliding) else ("traction_x", "slip_x", "traction_y", "slip_y")
     solution = required_in_si(solution, *names, argument="result")
-    q_x, s_x, q_y, s_y = (
-        labelled_cells(f"result.{name}", solution[name], extent=case.body.extent)[0] for name in names
-    )
-    creepage = solution.get("longitudinal_creepage", motion.longitudinal_creepage)
-    speeds = motion.speeds_at(0.0 if creepage is None else float(creepage))
-    speed = -speeds.entrainment
-    density = speed * np.maximum(q_x * s_x + q_y * s_y, 0.0)
-    return FrictionalHeat(density, float((area * density).sum()), speeds.body, speeds.roller)
+    fields = [labelled_cells(f"result.{name}", solution[name], extent=case.body.extent)[0] for name in names]
+    area = grid.weights * grid.cell_area
+    if isinstance(motion, Rolling):
+        creepage = solution.get("longitudinal_creepage", motion.longitudinal_creepage)
+        speeds = motion.speeds_at(0.0 if creepage is None else float(creepage))
+        q_x, s_x, q_y, s_y = fields
+        # Traction times slip per distance, times distance per time.
+        density = -speeds.entrainment * np.maximum(q_x * s_x + q_y * s_y, 0.0)
+        return FrictionalHeat(density, float((area * density).sum()), speeds.body, speeds.roller)
+    assert isinstance(motion, Sliding)
+    if motion.speeds is None:
+        raise InvalidInputError("case.motion", motion, "one with body_speed and roller_speed (m/s)")
+    body_speed, roller_speed = motion.speeds
+    (traction,) = fields
+    density = traction * (roller_speed - body_speed)
+    if (density < 0).any():
+        bound = "not below" if traction.max() > 0 else "not above"
+        if (traction < 0).any() and (traction > 0).any():
+            bound = "equal to, as the friction changes its sign along the axis,"
+        raise InvalidInputError(
+            "case.motion.roller_speed",
+            roller_speed,
+            f"{bound} body_speed, {body_speed:g}: friction drags the body the way the roller slides",
+            "speeds are along +y",
+        )
+    power = float((area * traction).sum() * (roller_speed - body_speed))
+    return FrictionalHeat(density, power, body_speed, roller_speed)
 
 
 RESTART, MOST_RESTARTS = 60, 20  # Steps between restarts, and restarts
 Heated = Callable[[FloatArray], FloatArray]  # Temperature rise from heat
 
 
-class Shared(NamedTuple):
-    """Heat into the first body, W/m2, and the largest difference of the temperatures over the largest rise."""
-
-    heat: FloatArray
-    mismatch: float
-
-
-def shared_heat(first: Heated, second: Heated, heat: FloatArray, touching: BoolArray) -> Shared:
-    """Solve for the heat into the first body of two surfaces of equal temperature where they touch."""
+def shared_heat(first: Heated, second: Heated, heat: FloatArray, touching: BoolArray) -> tuple[FloatArray, float]:
+    """Heat into the first of two surfaces of equal temperature where they touch, and their difference over the rise."""
     if not heat.any():  # surfaces of the same speed
-        return Shared(np.zeros(heat.shape), 0.0)
+        return np.zeros(heat.shape), 0.0
 
     def on_cells(values: FloatArray) -> FloatArray:
         full = np.zeros(heat.shape)
@@ -112,15 +94,7 @@ def shared_heat(first: Heated, second: Heated, heat: FloatArray, touching: BoolA
     # Residual of the temperatures over the right-hand side at which the iteration stops
     solved, _ = gmres(operator, second_rise, x0=guess, rtol=1e-9, restart=min(RESTART, count), maxiter=MOST_RESTARTS)
     mismatch = float(np.abs(summed(solved) - second_rise).max() / max(np.abs(second_rise).max(), np.finfo(float).tiny))
-    return Shared(on_cells(solved), mismatch)
-
-
-class _Temperatures(NamedTuple):
-    """Rises of the surfaces by name, heat into the body, and relative difference of the temperatures."""
-
-    rises: dict[str, FloatArray]
-    into_body: FloatArray
-    mismatch: float
+    return on_cells(solved), mismatch
 
 
 def flash_temperature(
@@ -138,12 +112,11 @@ def flash_temperature(
     Parameters
     ----------
     case : Case
-        The solved case, with the speeds of its motion. A roller with ``ends="none"`` conducts heat like a
-        half-space. Ends, and the top beside the contact, are insulated.
+        The solved case, with the speeds of its motion. A roller with ``ends="none"`` conducts heat like a half-space.
     result : Dataset
         Result of `solve`.
     body, roller : ThermalProperties
-        Thermal properties of body and roller; the roller's may be omitted with a given `partition`.
+        The roller's may be omitted with a given `partition`.
     partition : float, optional
         Uniform part of the heat that goes into the body, from 0 to 1. Default: equal temperatures of both surfaces in
         the contact determine the part at each point.
@@ -177,11 +150,9 @@ def flash_temperature(
 
     Notes
     -----
-    Properties do not depend on temperature; thermal expansion is neglected. At a singular end heat and pressure are
-    infinite, and the maximum is the temperature of the last cell.
-
-    The stated error of the maximum is its change on cells twice as wide along y, plus the relative error of the
-    largest pressure. It is NaN without an estimate of the latter, or with an infinite pressure.
+    Thermal expansion is neglected. At a singular end heat and pressure are infinite, and the maximum is the temperature
+    of the last cell. The stated error of the maximum is its change on cells twice as wide along y, plus the relative
+    error of the largest pressure; NaN without an estimate of the latter, or with an infinite pressure.
 
     Examples
     --------
@@ -218,38 +189,38 @@ def flash_temperature(
     if depths is not None and (depths < 0).any():
         raise InvalidInputError("z", float(depths.min()), "not below zero (metres)")
     heat = frictional_heat(case, solution, grid)
-    temperatures = _temperatures(case, grid, heat, pressure, body, roller=roller, share=share)
-    into_body, into_roller = temperatures.into_body, heat.density - temperatures.into_body
+    rises, into_body, mismatch = _temperatures(case, grid, heat, pressure, body, roller=roller, share=share)
+    into_roller = heat.density - into_body
     area = grid.weights * grid.cell_area
     heated = heat.density != 0
-    fields = temperatures.rises | {
+    fields = rises | {
         "frictional_heat": heat.density,
         "heat_into_body": into_body,
         "heat_partition": np.where(heated, into_body / np.where(heated, heat.density, 1.0), np.nan),
     }
     values = {name: (("x", "y"), field) for name, field in fields.items()}
-    scalars = _largest(grid, temperatures.rises)
+    scalars = _largest(grid, rises)
     (wider, density), (_, means) = (_on_wider_cells(grid, values) for values in (heat.density, pressure))
-    on_half = _temperatures(case, wider, heat._replace(density=density), means, body, roller=roller, share=share)
-    change = abs(_largest(wider, on_half.rises)["max_temperature_rise"] - scalars["max_temperature_rise"])
-    scalars["max_temperature_rise_error"] = change + scalars["max_temperature_rise"] * _pressure_error(solution)
+    on_half, _, _ = _temperatures(case, wider, heat._replace(density=density), means, body, roller=roller, share=share)
+    change = abs(_largest(wider, on_half)["max_temperature_rise"] - scalars["max_temperature_rise"])
+    peak, error = (float(solution.get(name, np.nan)) for name in ("peak_pressure", "peak_pressure_error"))
+    relative = error / peak if np.isfinite([peak, error]).all() and peak > 0 else np.nan
+    scalars["max_temperature_rise_error"] = change + scalars["max_temperature_rise"] * relative
     scalars["friction_power"] = heat.power
     scalars["body_heat_share"] = float((area * into_body).sum() / heat.power) if heat.power else np.nan
     entered = (area * into_body).sum() + (area * into_roller)[_under_roller(case, grid, pressure)[0]].sum()
     scalars["heat_error"] = float(entered / heat.power - 1) if heat.power else 0.0
-    scalars["temperature_mismatch"] = temperatures.mismatch
+    scalars["temperature_mismatch"] = mismatch
     coords = {name: solution.coords[name] for name in ("x", "y", "x_bounds", "x_width") if name in solution.coords}
     hot = xr.Dataset(values | scalars, coords=coords)
-    for name in ("hertz_half_width", "hertz_max_pressure"):
-        if name in solution:
-            hot[name] = solution[name]
+    hot = hot.assign({name: solution[name] for name in ("hertz_half_width", "hertz_max_pressure") if name in solution})
     if depths is not None:
-        moving, columns = MovingBody(body, heat.body_speed, Ends(*case.body.extent)), slice(0, grid.cells_x)
+        moving, columns = MovingBody(body, heat.body_speed, case.body.extent), slice(0, grid.cells_x)
         inside = [SourceOperator(moving, grid, columns, float(depth))(into_body) for depth in depths]
         hot = hot.assign_coords(z=depths)
         hot["body_temperature_rise"] = (("x", "y", "z"), np.stack(inside, axis=-1))
-    if temperatures.mismatch > 1e-6:  # larger differences do not count as equal
-        text = f"the surfaces' temperatures still differ by {temperatures.mismatch:.2g} of the largest"
+    if mismatch > 1e-6:  # larger differences do not count as equal
+        text = f"the surfaces' temperatures still differ by {mismatch:.2g} of the largest"
         warnings.warn(text, ConvergenceWarning, stacklevel=2)
     largest = scalars["max_temperature_rise"]
     if limit is not None and largest > limit:
@@ -271,12 +242,12 @@ def _temperatures(
     body: ThermalProperties,
     roller: ThermalProperties | None,
     share: float | None,
-) -> _Temperatures:
-    """Partition of the heat and temperatures of both surfaces."""
-    body_rise = SourceOperator(MovingBody(body, heat.body_speed, Ends(*case.body.extent)), grid, slice(0, grid.cells_x))
+) -> tuple[dict[str, FloatArray], FloatArray, float]:
+    """Rises of the surfaces by name, heat into the body, and relative difference of the temperatures."""
+    body_rise = SourceOperator(MovingBody(body, heat.body_speed, case.body.extent), grid, slice(0, grid.cells_x))
     if roller is None:
         assert share is not None
-        return _Temperatures({"temperature_rise": body_rise(share * heat.density)}, share * heat.density, np.nan)
+        return {"temperature_rise": body_rise(share * heat.density)}, share * heat.density, np.nan
     columns, ends = _under_roller(case, grid, pressure)
     roller_rise = SourceOperator(MovingBody(roller, heat.roller_speed, ends), grid, columns)
     if share is None:
@@ -284,7 +255,7 @@ def _temperatures(
     else:
         into_body, mismatch = share * heat.density, np.nan
     rises = {"temperature_rise": body_rise(into_body), "roller_temperature_rise": roller_rise(heat.density - into_body)}
-    return _Temperatures(rises, into_body, mismatch)
+    return rises, into_body, mismatch
 
 
 def _on_wider_cells(grid: Grid, values: FloatArray) -> tuple[Grid, FloatArray]:
@@ -297,18 +268,10 @@ def _on_wider_cells(grid: Grid, values: FloatArray) -> tuple[Grid, FloatArray]:
     return wider, np.diff(at_cuts, axis=1) * wider.cells_y / grid.cells_y
 
 
-def _pressure_error(solution: xr.Dataset) -> float:
-    """Relative error of the largest pressure; NaN without an estimate, or with an infinite pressure."""
-    if not {"peak_pressure", "peak_pressure_error"} <= set(solution.variables):
-        return float("nan")
-    peak, error = float(solution["peak_pressure"]), float(solution["peak_pressure_error"])
-    return error / peak if np.isfinite(peak) and np.isfinite(error) and peak > 0 else float("nan")
-
-
-def _under_roller(case: Case, grid: Grid, pressure: FloatArray) -> tuple[slice, Ends]:
+def _under_roller(case: Case, grid: Grid, pressure: FloatArray) -> tuple[slice, tuple[float, float]]:
     """Columns under the roller, pressed ones included, and its insulated ends, moved to borders of cells."""
     if case.roller.ends == "none":
-        return slice(0, grid.cells_x), Ends(-np.inf, np.inf)
+        return slice(0, grid.cells_x), (-np.inf, np.inf)
     low, high = case.roller_start, case.roller_start + case.roller.length
     edges = grid.x_edges
     # Rounding decides on a centre at the end of the roller.
@@ -316,7 +279,7 @@ def _under_roller(case: Case, grid: Grid, pressure: FloatArray) -> tuple[slice, 
     first, stop = int(under[0]), int(under[-1]) + 1
     start = edges[first] if first > 0 else min(low, edges[0])
     end = edges[stop] if stop < grid.cells_x else max(high, edges[-1])
-    return slice(first, stop), Ends(float(start), float(end))
+    return slice(first, stop), (float(start), float(end))
 
 
 def _largest(grid: Grid, rises: dict[str, FloatArray]) -> dict[str, float]:

@@ -1,13 +1,7 @@
 """Temperature of a moving surface under heat in its cells: the diffusion of heat between insulated ends.
 
-A point source at rest in a body whose surface moves at V along +y has released its heat at all times t before. In t
-that heat has spread by the length ``s = sqrt(4 kappa t)`` and has moved by ``V t``, so the steady temperature is an
-integral over s of a product of one factor along each axis (H. S. Carslaw, J. C. Jaeger, Conduction of Heat in Solids,
-1959, sections 10.2 and 10.7):
-
-    T = 1 / (lambda sqrt(pi))  integral of  X(s) Y(s) exp(-z**2 / s**2) ds .
-
-X and Y are the factors of uniform heat in a cell. Insulated ends act on X alone: they mirror the cell.
+The steady temperature is the integral of eq. (601) over the length of spreading s, with one factor along each axis of
+uniform heat in a cell (docs/explanation/heat_and_wear.md). Insulated ends act on X alone: they mirror the cell.
 """
 
 from __future__ import annotations
@@ -80,13 +74,6 @@ class ThermalProperties:
 TAIL = 6.5  # Lengths of spreading beyond which the heat of a cell vanishes: erfc(6.5) = 4e-20
 
 
-class Ends(NamedTuple):
-    """Positions of insulated ends along x, metres; infinite without an end."""
-
-    low: float
-    high: float
-
-
 def spread_lengths(smallest: float, step: float, window: float, drift: float) -> tuple[FloatArray, FloatArray]:
     """Nodes and weights over the length of spreading s, in which heat moves by ``drift s**2 / 2``, drift in 1/m."""
     speed = abs(drift)
@@ -119,13 +106,12 @@ def along_y(spread: FloatArray, distance: FloatArray, step: float, drift: float)
     return np.asarray(0.5 * (erf((behind + 0.5 * step) / s) - erf((behind - 0.5 * step) / s)))
 
 
-def along_x(spread: FloatArray, x: FloatArray, edges: FloatArray, ends: Ends) -> FloatArray:
+def along_x(spread: FloatArray, x: FloatArray, edges: FloatArray, ends: tuple[float, float]) -> FloatArray:
     """Part left at positions `x` of the heat of cells between `edges`: array (spread, x, cell)."""
-    length = ends.high - ends.low
+    length = ends[1] - ends[0]
     passed = _primitive(spread, x[:, None] - edges[None, :], length)
-    mirror = ends.low if np.isfinite(ends.low) else ends.high
-    if np.isfinite(mirror):
-        passed = passed - _primitive(spread, x[:, None] + edges[None, :] - 2 * mirror, length)
+    if np.isfinite(ends[0]):
+        passed = passed - _primitive(spread, x[:, None] + edges[None, :] - 2 * ends[0], length)
     return np.asarray(passed[..., :-1] - passed[..., 1:])
 
 
@@ -163,7 +149,7 @@ class MovingBody(NamedTuple):
 
     properties: ThermalProperties
     speed: float  # of its surface along +y relative to the contact, m/s
-    ends: Ends  # insulated
+    ends: tuple[float, float]  # insulated, m; without an end, or without the second, infinite
 
     @property
     def drift(self) -> float:
@@ -182,7 +168,7 @@ class SourceOperator:
         self._length = next_fast_len(2 * grid.cells_y - 1, real=True)
         edges = grid.x_edges[columns.start : columns.stop + 1]
         x = grid.x[columns]
-        length = body.ends.high - body.ends.low
+        length = body.ends[1] - body.ends[0]
         window = grid.dy * grid.cells_y
         # Peclet number of the window below which a surface counts as resting
         if np.isfinite(length) and abs(body.drift) * window < 1e-6:
@@ -218,7 +204,7 @@ class SourceOperator:
             return np.asarray(fft(_summed(spread, lateral, low.size, factors), axis=0))
 
         self._spectrum = kernel(0.0)
-        mirror = body.ends.low if np.isfinite(body.ends.low) else body.ends.high
+        mirror = body.ends[0]
         if np.isfinite(mirror):
             # Counted from the last one, cell j lies at x[-1] - dx j, and its image at 2 mirror - x[-1] + dx j.
             self._mirrored = kernel(x[0] + x[-1] - 2 * mirror)

@@ -1,17 +1,7 @@
 """Passes of a contact over an elastic-plastic body, until the residual state is stationary.
 
-All points of one (x, z) have the same history: the stress field along y from the leading edge to the trailing edge.
-In coordinates that move with the contact the pass is steady. The states ahead of the contact and behind it are uniform
-along y, with the residual stress of the cross-section (eigenstrain/): no strain along y, free ends in the plane.
-Between the two the plastic strain changes along y, as in a line contact: each column along x acts separately, in plane
-strain. The residual stress at each position depends on the strain at all positions. Two steps alternate until the
-strain is stationary (K. Dang Van, M. H. Maitournam, J. Mech. Phys. Solids 41 (1993) 1691):
-
-* at fixed total strain, von Mises' radial return along y gives the plastic strain of every point
-  (J. C. Simo, T. J. R. Hughes, Computational Inelasticity, 1998, chapter 3);
-* the elastic body's stress of this plastic strain gives the total strain.
-
-D. G. Anderson's mixing of the latest iterates (J. ACM 12 (1965) 547) accelerates the iteration.
+docs/explanation/passes.md; radial return: J. C. Simo, T. J. R. Hughes, Computational Inelasticity (1998), chapter 3.
+Each column along x acts separately while the strain changes along y, in plane strain as in a line contact.
 """
 
 from __future__ import annotations
@@ -185,12 +175,6 @@ class _Section:
         """Yield stress in every cell, Pa."""
         return np.tile(self.material.yield_stress_at(self.z), self.x.size)
 
-    def residual(self, cells: IntArray) -> Influence | LayerInfluence:
-        """Residual stress of plastic strain in some of the cells, in the same ones."""
-        if self.layered:
-            return self.layers
-        return Influence.of(self.cells, *np.unravel_index(cells, (self.x.size, self.z.size)))
-
     @property
     def layers(self) -> LayerInfluence:
         """Residual stress of layers without an end."""
@@ -213,7 +197,7 @@ class _Section:
         box = np.unique(columns, return_inverse=True)[1], layers - first
         return Passage(
             elastic=elastic,
-            residual=self.residual(cells),
+            residual=self.layers if self.layered else Influence.of(self.cells, columns, layers),
             layers=self.layers,
             along=periodic,
             places=places,
@@ -257,9 +241,9 @@ def residual_stress(
     Parameters
     ----------
     stress : Dataset
-        A single case with the six elastic stresses along x, y and z, as for :func:`contactstudy.fatigue.dang_van`: from
-        :func:`contactstudy.solve` or :func:`contactstudy.stress_field`. The positions along x and z are the
-        cells' middles; they should reach beyond the yielding region. One position along x: a line contact.
+        A single case with the six elastic stresses along x, y and z, as for :func:`contactstudy.fatigue.dang_van`. The
+        positions along x and z are the cells' middles, beyond the yielding region too. One position along x: a line
+        contact.
     body : Body
         The body, for its elastic constants and free ends.
     material : ElasticPlastic
@@ -317,8 +301,12 @@ def residual_stress(
     passage = section.passage(cells, substeps, tolerance) if cells.size else None
     for number in range(1, passes + 1):
         while True:
-            after = _passed(passage, cells, state)
-            residual, *displaced = section.residual_state(after.strain)
+            after = state
+            if passage is not None:
+                flowed = passage.after(State(state.strain[:, cells], state.accumulated[cells], state.converged))
+                after = State(state.strain.copy(), state.accumulated.copy(), flowed.converged)
+                after.strain[:, cells], after.accumulated[cells] = flowed.strain, flowed.accumulated
+            residual, sunk, dragged = section.residual_state(after.strain)
             further = np.setdiff1d(section.may_flow(residual.reshape(6, -1), 1 + tolerance), cells)
             if not further.size:
                 break
@@ -337,7 +325,16 @@ def residual_stress(
                 "lower the load, or give the material hardening: flow above the shakedown limit has no end without",
             )
         state = after
-        left = _to_dataset(section, dims, state, residual, displaced, grown=grown)
+        strains = state.strain.reshape(6, section.x.size, section.z.size)
+        fields = dict(zip((*STRESSES, *STRAINS), (*residual, *strains), strict=True))
+        fields["equivalent_plastic_strain"] = state.accumulated.reshape(strains.shape[1:])
+        tops = {"residual_displacement_z": sunk, "residual_displacement_y": dragged}
+        left = xr.Dataset(
+            {name: (dims, field) for name, field in fields.items()}
+            | {name: (dims[:1], values) for name, values in tops.items()}
+            | {"plastic_flow": ((), grown), "converged": ((), state.converged)},
+            coords={dims[0]: section.x, dims[1]: section.z},
+        )
         states.append(left.expand_dims(pass_number=[number]))
         # Stress of a pass' flow, over the tolerance times the yield stress, below which the state is stationary
         if 3 * body.material.shear_modulus * grown <= 2.0 * tolerance * section.yield_stress.min():
@@ -371,35 +368,3 @@ def _section(stress: xr.Dataset, body: Body, material: ElasticPlastic) -> tuple[
     if not section.layered:
         section.cells  # noqa: B018, refuses positions that make no cells
     return section, (dims["x"], dims["z"])
-
-
-def _passed(passage: Passage | None, cells: IntArray, state: State) -> State:
-    """State after one more pass."""
-    if passage is None:
-        return state
-    after = passage.after(State(state.strain[:, cells], state.accumulated[cells], state.converged))
-    total, sums = state.strain.copy(), state.accumulated.copy()
-    total[:, cells], sums[cells] = after.strain, after.accumulated
-    return State(total, sums, after.converged)
-
-
-def _to_dataset(
-    section: _Section,
-    dims: tuple[str, str],
-    state: State,
-    residual: FloatArray,
-    displaced: list[FloatArray],
-    grown: float,
-) -> xr.Dataset:
-    """One pass as a Dataset."""
-    shape = (section.x.size, section.z.size)
-    fields = dict(zip(STRESSES, residual, strict=True))
-    fields |= dict(zip(STRAINS, state.strain.reshape(6, *shape), strict=True))
-    fields["equivalent_plastic_strain"] = state.accumulated.reshape(shape)
-    tops = dict(zip(("residual_displacement_z", "residual_displacement_y"), displaced, strict=True))
-    return xr.Dataset(
-        {name: (dims, field) for name, field in fields.items()}
-        | {name: (dims[:1], values) for name, values in tops.items()}
-        | {"plastic_flow": ((), grown), "converged": ((), state.converged)},
-        coords={dims[0]: section.x, dims[1]: section.z},
-    )

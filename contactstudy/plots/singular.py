@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import xarray as xr
 
-from contactstudy.analysis.axes import cell_size, dimension_along, positions
+from contactstudy.analysis.axes import cell_widths, dimension_along, positions
 from contactstudy.checks import BoolArray, FloatArray
 
 if TYPE_CHECKING:
@@ -31,7 +31,7 @@ def singular_ends(case: xr.Dataset) -> list[float]:
     if not facing.size:
         return []
     centres = positions(pressure, "x").values
-    half = 0.5 * (cell_size(pressure, "x") + 0 * positions(pressure, "x")).values
+    half = 0.5 * cell_widths(pressure, "x").values
     first, last = facing[0], facing[-1]
     borders = {"first": centres[first] - half[first], "last": centres[last] + half[last]}
     return [

@@ -149,8 +149,7 @@ def plot_end_face(
 ) -> Axes:
     """Contours of a stress around the edge of an end face: the face and the plane ``y = 0``, unfolded side by side.
 
-    To the right of the fold lies the plane ``y = 0``, from the end face inwards; to its left the end face, from
-    ``y = 0`` outwards. Both share the depth, and the contours meet at the fold.
+    To the right of the fold lies the plane ``y = 0``, to its left the end face, from ``y = 0`` outwards.
 
     Parameters
     ----------

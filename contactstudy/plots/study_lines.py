@@ -70,8 +70,7 @@ def plot_study_lines(
     -------
     Figure
         The title lists the values of the other parameters. Bars are stated errors, an open triangle at the top is an
-        unbounded value, such as the peak pressure at a sharp end inside the face, an open marker is a value whose
-        error is not estimated.
+        unbounded value, an open marker is a value whose error is not estimated.
 
     Raises
     ------

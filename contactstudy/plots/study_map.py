@@ -41,8 +41,8 @@ def plot_study_map(
         From :func:`contactstudy.open_study`.
     variable : str or DataArray
         A scalar of each case, such as `peak_von_mises`; or an array computed from the study, such as an edge factor.
-    ax : Axes, optional
-        Axes to draw in; default: a new figure.
+    ax
+        As for :func:`plot_axial_pressure`.
     x, y : str
         Swept parameters across and up; for cases along one dimension, two of its coordinates.
     selection : mapping, optional

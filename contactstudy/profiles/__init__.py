@@ -1,12 +1,7 @@
-"""Roller profiles: how much lower than the cylinder a roller's generatrix lies.
+"""Roller profiles: how much lower than the cylinder a roller's generatrix lies (docs/reference/profiles.md).
 
-A profile is a small object with one method ``drop(x, length)``: the material removed, in metres and not negative, at
-the distance `x` from mid-length of a roller of the given `length`. ``one + other`` adds two up. The
-conventions with a sketch, and a table of all profiles with formulas and sources, are in docs/reference/profiles.md.
-
-``length`` is the distance between the end faces, fillets included. A formula or drawing that counts over the
-*effective* length, without the corners, goes into :class:`EffectiveLength`. A drop may be infinite at the very ends
-(Lundberg, ISO/TS 16281): the roller does not touch there.
+A profile has one method ``drop(x, length)``: the material removed, in metres and not negative, at the distance `x` from
+mid-length of a roller of the given `length`, fillets included. ``one + other`` adds two up.
 """
 
 from contactstudy.profiles.base import Profile, Shape, Sum, local_radius

@@ -15,8 +15,7 @@ from contactstudy.errors import InvalidInputError
 
 # Units of the parameters of profiles other than lengths
 UNITS = {"half_angle": "rad", "angle": "rad", "delta": "1", "k1": "1", "k2": "1"}
-# Step of the differences for a slope, over the length, and the least jump of a slope beyond rounding
-SLOPE_STEP, LEAST_JUMP = 1e-6, 1e-6
+LEAST_JUMP = 1e-6  # Least jump of a slope beyond rounding
 
 
 @runtime_checkable
@@ -63,7 +62,7 @@ class Shape:
         raise NotImplementedError
 
     def local_radius(self, x: FloatArray, length: float, radius: float | FloatArray) -> FloatArray:
-        """Radius of curvature across the roller (m) at `x`, for a roller with `radius` at mid-length: the same."""
+        """Radius of curvature across the roller (m) at `x`, for one with `radius` (m) after preceding summands."""
         return np.broadcast_to(np.asarray(radius, dtype=np.float64), np.shape(x))
 
     def slope_jumps(self, length: float) -> SlopeJumps:
@@ -113,21 +112,7 @@ def _terms(profile: Shape | Profile) -> tuple[Profile, ...]:
 def local_radius(profile: Profile, x: FloatArray, length: float, radius: float | FloatArray) -> FloatArray:
     """Radius of curvature across the roller (m) at distances `x` from mid-length.
 
-    Parameters
-    ----------
-    profile : Profile
-        Any profile; a user's class leaves `radius` unchanged.
-    x : array
-        Distances from mid-length, metres.
-    length : float
-        Length of the roller, metres.
-    radius : float or array
-        Radius at mid-length, in a sum after the preceding summands, metres.
-
-    Returns
-    -------
-    array
-        Of the shape of `x`, metres.
+    See :meth:`Shape.local_radius`; a user's class without this method leaves `radius` unchanged.
     """
     return as_shape(profile).local_radius(x, length, radius)
 
@@ -135,13 +120,6 @@ def local_radius(profile: Profile, x: FloatArray, length: float, radius: float |
 def as_shape(profile: Profile) -> Shape:
     """Return a profile with the methods of `Shape`: itself, or smooth and without measured points."""
     return profile if isinstance(profile, Shape) else Shape()
-
-
-def end_slope(profile: Profile, x: float, length: float, side: int) -> float:
-    """Slope of the drop at `x` from the side of larger (`side` = 1) or smaller x (-1), from three drops."""
-    step = side * SLOPE_STEP * length
-    drops = checked_drop(profile, x + step * np.array([0.0, 1.0, 2.0]), length)
-    return float((-3 * drops[0] + 4 * drops[1] - drops[2]) / (2 * step))
 
 
 def checked_drop(profile: Profile, x: FloatArray, length: float) -> FloatArray:

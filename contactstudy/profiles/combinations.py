@@ -17,10 +17,11 @@ from contactstudy.profiles.base import (
     SlopeJumps,
     as_shape,
     checked_drop,
-    end_slope,
     in_words,
     local_radius,
 )
+
+STEP = 1e-6  # Step of the differences for a slope, over the length
 
 
 @dataclass(frozen=True, repr=False)
@@ -69,7 +70,12 @@ class Halves(Shape):
     def slope_jumps(self, length: float) -> SlopeJumps:
         """Corners of both halves, and the one at mid-length."""
         lower, upper = as_shape(self.left).slope_jumps(length), as_shape(self.right).slope_jumps(length)
-        jump = end_slope(self.right, 0.0, length, 1) - end_slope(self.left, 0.0, length, -1)
+        # Slopes at mid-length from three drops on either side.
+        steps = STEP * length * np.array([0.0, 1.0, 2.0])
+        jump = 0.0
+        for half, side in ((self.right, 1), (self.left, -1)):
+            near, next_drop, far = checked_drop(half, side * steps, length)
+            jump += float(-3 * near + 4 * next_drop - far) / (2 * steps[1])
         return SlopeJumps.merged(
             SlopeJumps(*(values[lower.positions < 0] for values in lower)),
             SlopeJumps(np.zeros(1), np.array([jump])),
@@ -92,7 +98,6 @@ class Halves(Shape):
         return np.asarray(np.where(np.asarray(x) < 0, lower, upper))
 
 
-STEP = 1e-6  # Step of the difference for the slope at an end of the effective length, over this length
 STEEPEST = 1.0  # Slope of the profile at which a corner begins at the latest: logarithmic profiles end upright
 
 

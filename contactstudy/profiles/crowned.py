@@ -36,7 +36,6 @@ class FullCrown(Shape):
 
     Examples
     --------
-    >>> import numpy as np
     >>> (1e6 * FullCrown(crown_radius=1.25).drop(np.array([0.0, 5e-3]), length=10e-3)).round(3).tolist()
     [0.0, 10.0]
     """
@@ -85,13 +84,8 @@ class PartialCrown(Shape):
     InvalidInputError
         If a value is out of range, or (on use) the parts do not fit the roller's length.
 
-    Notes
-    -----
-    A corner fillet is added as ``+ Cylinder(fillet_radius=...)``.
-
     Examples
     --------
-    >>> import numpy as np
     >>> profile = PartialCrown(straight_length=6e-3, crown_radius=1.0, dub_length=0.5e-3, dub_radius=0.02)
     >>> (1e6 * profile.drop(np.array([3e-3, 4.5e-3, 5e-3]), length=10e-3)).round(2).tolist()
     [0.0, 1.13, 8.13]
@@ -117,7 +111,19 @@ class PartialCrown(Shape):
 
     def drop(self, x: FloatArray, length: float) -> FloatArray:
         """Material removed (m) at distances `x` (m) from mid-length."""
-        begin, end = self._crown(length)
+        end = (length - self.straight_length) / 2
+        if end < 0:
+            raise InvalidInputError(
+                "straight_length", self.straight_length, f"at most the roller's length, {length:g} m"
+            )
+        begin = end - self.dub_length
+        if begin < -1e-9 * length:
+            raise InvalidInputError(
+                "dub_length", self.dub_length, f"at most {end:g} m, what the straight middle leaves of the roller"
+            )
+        begin = max(begin, 0.0)
+        if begin > self.crown_radius:
+            raise InvalidInputError("crown_radius", self.crown_radius, f"at least {begin:g} m, the length of the crown")
         distance = np.clip(np.abs(x) - self.straight_length / 2, 0.0, end)
         if self.dub_radius is None:
             return _arc(distance, self.crown_radius)
@@ -133,23 +139,6 @@ class PartialCrown(Shape):
         )
         return np.asarray(first + second)
 
-    def _crown(self, length: float) -> tuple[float, float]:
-        """Distances beyond the straight middle where the dub-off begins and where the roller ends."""
-        end = (length - self.straight_length) / 2
-        if end < 0:
-            raise InvalidInputError(
-                "straight_length", self.straight_length, f"at most the roller's length, {length:g} m"
-            )
-        begin = end - self.dub_length
-        if begin < -1e-9 * length:
-            raise InvalidInputError(
-                "dub_length", self.dub_length, f"at most {end:g} m, what the straight middle leaves of the roller"
-            )
-        begin = max(begin, 0.0)
-        if begin > self.crown_radius:
-            raise InvalidInputError("crown_radius", self.crown_radius, f"at least {begin:g} m, the length of the crown")
-        return begin, end
-
 
 @dataclass(frozen=True, repr=False)
 class Ellipsoid(Shape):
@@ -160,8 +149,7 @@ class Ellipsoid(Shape):
     Parameters
     ----------
     crown_radius : float
-        Radius of curvature ``R_x`` in the axial plane at mid-length, metres; positive. The parabola stands for the body
-        only where ``x`` is small against it.
+        Radius of curvature ``R_x`` in the axial plane at mid-length, metres; positive and large against ``x``.
 
     Raises
     ------
@@ -174,7 +162,6 @@ class Ellipsoid(Shape):
 
     Examples
     --------
-    >>> import numpy as np
     >>> Ellipsoid(crown_radius=0.5).drop(np.array([0.0, 1e-3]), length=4e-3).tolist()
     [0.0, 1e-06]
     """
@@ -205,7 +192,6 @@ class Sphere(Shape):
 
     Examples
     --------
-    >>> import numpy as np
     >>> Sphere(radius=5e-3).drop(np.array([0.0, 1e-4]), length=1e-3).tolist()
     [0.0, 1e-06]
     """

@@ -49,7 +49,14 @@ def of_instrument(path: Path) -> bool:
 def read_heights(path: Path) -> Heights:
     """Read positions and heights of an x3p file or a format of SurfaceTopography."""
     x3p = path.suffix.lower() == X3P
-    _check_installed(path, "x3pio" if x3p else "SurfaceTopography")
+    package = "x3pio" if x3p else "SurfaceTopography"
+    if find_spec(package) is None:
+        if not x3p and (words := known_otherwise(path)):
+            raise _refused(path, READ, f"it is {words}")
+        raise ContactStudyError(
+            f"reading {path} needs {package}, which the extra `measured` brings: "
+            'pip install "contactstudy[measured]"; files with columns end with .csv, .txt, .tsv or .dat'
+        )
     regular_file(path, "measured")
     heights = _x3p(path) if x3p else _topography(path)
     if heights.y is not None and heights.y.size == 1:
@@ -79,17 +86,6 @@ def turned(measured: Heights, turn: int, mirror: bool = False) -> Heights:
 def _backwards(positions: FloatArray) -> FloatArray:
     """Positions along the opposite axis, over the same range."""
     return np.asarray(positions[0] + positions[-1] - positions[::-1])
-
-
-def _check_installed(path: Path, package: str) -> None:
-    """Raise unless a package of the extra is installed; the error states the command."""
-    if find_spec(package) is None:
-        if path.suffix.lower() != X3P and (words := known_otherwise(path)):
-            raise _refused(path, READ, f"it is {words}")
-        raise ContactStudyError(
-            f"reading {path} needs {package}, which the extra `measured` brings: "
-            'pip install "contactstudy[measured]"; files with columns end with .csv, .txt, .tsv or .dat'
-        )
 
 
 def _refused(path: Path, allowed: str, hint: str = "") -> InvalidInputError:

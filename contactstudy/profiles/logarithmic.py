@@ -18,7 +18,9 @@ EDGE_SHARE = 0.5 / math.sqrt(math.e)  # Johns and Gohar's 0.3033, ``1 / (2 sqrt(
 
 
 def logarithmic_drop(amplitude: float, t: FloatArray, share: float = 1.0) -> FloatArray:
-    """Drop ``A ln(1 / (1 - share t**2))`` (m); at ``share = 1`` infinite from ``|t| = 1`` on."""
+    """Drop ``A ln(1 / (1 - share t**2))`` (m); at ``share = 1`` infinite from ``|t| = 1`` on; 0 without amplitude."""
+    if amplitude == 0:
+        return np.zeros(np.shape(t))
     with np.errstate(divide="ignore"):
         return np.asarray(-amplitude * np.log1p(-share * np.minimum(t**2, 1.0)))
 
@@ -82,13 +84,13 @@ class Logarithmic(Shape):
 class Lundberg(Logarithmic):
     """Lundberg's logarithmic profile, ``drop = delta * A * ln(1 / (1 - (2 x / length)**2))``.
 
-    At its design load on a half-space, and with ``delta = 1``, the pressure is uniform along the roller.
+    At its design load on a half-space, and with ``delta = 1``, the pressure is uniform along the roller. The drop is
+    infinite at the very ends.
 
     Parameters
     ----------
     amplitude : float
-        ``A = q / (pi E*)``, metres, with the design load per length ``q`` and the contact modulus ``E*``
-        (equivalently ``R (p0 / E*)**2``); see :meth:`for_pressure` and :meth:`for_load`. Not negative.
+        ``A = q / (pi E*) = R (p0 / E*)**2``, metres, see :meth:`for_pressure` and :meth:`for_load`. Not negative.
     delta : float
         Modification factor on the amplitude. Not negative; 0 is the cylinder.
 
@@ -96,11 +98,6 @@ class Lundberg(Logarithmic):
     ------
     InvalidInputError
         If a value is negative.
-
-    Notes
-    -----
-    The drop is infinite at the very ends: the roller does not touch there. Where exactly a factor ``delta`` enters
-    differs between authors; here it multiplies the amplitude.
 
     References
     ----------
@@ -122,8 +119,6 @@ class Lundberg(Logarithmic):
 
     def drop(self, x: FloatArray, length: float) -> FloatArray:
         """Material removed (m) at distances `x` (m) from mid-length; infinite at the very ends."""
-        if self.delta * self.amplitude == 0:
-            return np.zeros(np.shape(x))
         return logarithmic_drop(self.delta * self.amplitude, 2 * np.asarray(x) / length)
 
 
@@ -139,8 +134,7 @@ class JohnsGohar(Logarithmic):
     amplitude : float
         ``A = q / (pi E*)``, metres, as for :class:`Lundberg`. Not negative.
     half_width : float
-        Hertz half-width ``b`` at the design load, metres. Not negative; 0 is Lundberg's profile. At most
-        ``2 sqrt(e) h``; sensible well below ``h``.
+        Hertz half-width ``b`` at the design load, metres. Not negative; 0 is Lundberg's profile; at most 3.3 h.
 
     Raises
     ------
@@ -172,24 +166,17 @@ class JohnsGohar(Logarithmic):
             "half_width": hertz.line_half_width(max_pressure, radius, modulus)
         }
 
-    def _share(self, length: float) -> float:
-        """Part of Lundberg's argument that is kept, ``1 - 0.3033 b / h``."""
-        share = 1 - EDGE_SHARE * self.half_width / (length / 2)
-        if share < 0:
-            raise InvalidInputError(
-                "half_width", self.half_width, f"at most 3.3 half lengths of the roller, {length / 2 / EDGE_SHARE:g} m"
-            )
-        return float(share)
-
     def edge_drop(self, length: float) -> float:
         """Drop (m) at the ends of a roller of the given `length` (m)."""
         return float(self.drop(np.array([length / 2]), length)[0])
 
     def drop(self, x: FloatArray, length: float) -> FloatArray:
         """Material removed (m) at distances `x` (m) from mid-length."""
-        share = self._share(length)
-        if self.amplitude == 0:
-            return np.zeros(np.shape(x))
+        share = float(1 - EDGE_SHARE * self.half_width / (length / 2))
+        if share < 0:
+            raise InvalidInputError(
+                "half_width", self.half_width, f"at most 3.3 half lengths of the roller, {length / 2 / EDGE_SHARE:g} m"
+            )
         return logarithmic_drop(self.amplitude, 2 * np.asarray(x) / length, share)
 
 
@@ -216,11 +203,6 @@ class FujiwaraKawase(Logarithmic):
     InvalidInputError
         If a value is out of range.
 
-    Notes
-    -----
-    With ``k1 = k2 = 1`` and the end drop of Johns and Gohar it is their profile; with an end drop that grows without
-    bound it becomes Lundberg's.
-
     References
     ----------
     H. Fujiwara, T. Kawase, Logarithmic profiles of rollers in roller bearings and optimization of the profiles,
@@ -228,7 +210,6 @@ class FujiwaraKawase(Logarithmic):
 
     Examples
     --------
-    >>> import numpy as np
     >>> profile = FujiwaraKawase(amplitude=0.2e-6, edge_drop=5e-6, k1=2.0, k2=0.5)
     >>> profile.drop(np.array([0.0, 2.5e-3, 5e-3]), length=10e-3).round(12).tolist()
     [0.0, 0.0, 5e-06]
@@ -276,16 +257,9 @@ class IsoCylindrical(Shape):
     InvalidInputError
         If the diameter is not positive.
 
-    Notes
-    -----
-    The short profile is Lundberg's for a Hertz pressure of 3000 MPa between a steel roller and a flat steel raceway.
-    The two branches differ in their amplitude: at ``length = 2.5 D`` the drop jumps by the factor 0.0005 / 0.00035.
-    The drop is infinite at the very ends.
-
     References
     ----------
-    ISO/TS 16281:2008, Rolling bearings - Methods for calculating the modified reference rating life for universally
-    loaded bearings.
+    ISO/TS 16281:2008.
 
     Examples
     --------
@@ -311,8 +285,7 @@ class IsoCylindrical(Shape):
 class IsoTapered(Shape):
     """Reference profile of a tapered roller: ``drop = 0.00045 D ln(1 / (1 - (2 x / length)**2))``.
 
-    It is the departure from the cone. Add :class:`~contactstudy.profiles.Tapered` for a cone on a surface that is
-    parallel to the axis.
+    It is the departure from the cone; add :class:`Tapered` for a cone on a surface that is parallel to the axis.
 
     Parameters
     ----------

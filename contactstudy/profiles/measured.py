@@ -142,10 +142,9 @@ class Measured(Shape):
     -----
     The interpolation is piecewise cubic with continuous slope: at each point the slope of the parabola through it and
     its neighbours, limited so that the cubic is monotone between points except at a crest whose curvature the
-    neighbouring points share (H. T. Huynh, SIAM Journal on Numerical Analysis 30 (1993) 57-100, constraint M3). It
-    reproduces parabolas exactly, so crests keep their curvature and their position between points. `solve` adds to the
-    error of the peak the difference from a second interpolation, with harmonic-mean slopes (F. N. Fritsch, J. Butland,
-    SIAM Journal on Scientific and Statistical Computing 5 (1984) 300-304): the points do not determine this part.
+    neighbouring points share (H. T. Huynh, SIAM Journal on Numerical Analysis 30 (1993) 57-100, constraint M3). `solve`
+    adds to the error of the peak the difference from a second interpolation, with harmonic-mean slopes (F. N. Fritsch,
+    J. Butland, SIAM Journal on Scientific and Statistical Computing 5 (1984) 300-304).
 
     Examples
     --------
@@ -216,9 +215,8 @@ class Measured(Shape):
         path : str or Path
             CSV or netCDF (ending ``.nc``) with positions `x` and either `drop` (positive where material is missing)
             or `height` (positive where it is too much), all with units of length. Or an instrument's file with the
-            heights of a line or of a map: x3p (``.x3p``), or a format of SurfaceTopography; both need the
-            extra `measured`. Of a map the roller's highest line is taken, wherever it runs, averaged over the map's
-            width.
+            heights of a line or of a map, x3p or a format of SurfaceTopography, with the extra `measured`. Of a map
+            the roller's highest line is taken, averaged over the map's width.
         remove_tilt : bool
             Whether the slope of the straight line that fits the points best is taken off, about mid-length.
         remove_offset : bool
@@ -287,7 +285,7 @@ class Measured(Shape):
         x, drops = self._from_middle, self._smooth
         bends = np.zeros(x.size)
         bends[1:-1] = np.diff(np.diff(drops) / np.diff(x))
-        if self.cutoff is not None or x.size < 2 * CORNER_REACH + 1:
+        if self.cutoff is not None:
             return super().slope_jumps(length)
         size = np.abs(bends)
         padded = np.pad(size, CORNER_REACH, mode="edge")

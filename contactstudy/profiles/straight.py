@@ -32,7 +32,6 @@ class Cylinder(Shape):
 
     Examples
     --------
-    >>> import numpy as np
     >>> Cylinder(fillet_radius=1e-3).drop(np.array([0.0, 4e-3, 5e-3]), length=10e-3).tolist()
     [0.0, 0.0, 0.001]
     """
@@ -56,13 +55,9 @@ class Cylinder(Shape):
 class Tapered(Shape):
     """Tapered roller with rounded ends: a cone that lies on the body with its generatrix.
 
-    The generatrix is straight, so only the fillets drop. The radius of curvature across it varies like a cone's in the
-    plane normal to its generatrix::
-
-        R(x) = radius / cos(beta) + x tan(beta)
-
-    with `radius` of the roller at mid-length, measured at right angles to the axis. The gap is ``y**2 / (2 R(x))``:
-    the contact is narrower and the pressure higher at the small end.
+    The generatrix is straight, so only the fillets drop. The radius of curvature across it is that of a cone in the
+    plane normal to its generatrix, ``R(x) = radius / cos(beta) + x tan(beta)`` with `radius` of the roller at
+    mid-length, measured at right angles to the axis. The pressure is higher at the small end.
 
     Parameters
     ----------
@@ -80,9 +75,8 @@ class Tapered(Shape):
 
     Notes
     -----
-    `length` and `x` are measured along the generatrix. In bearings ``beta`` is up to about 0.07 rad (4 degrees), and
-    ``1 / cos(beta)`` up to 1.0025: the Hertz half-width and pressure that results are given over are those of a
-    cylinder with the roller's `radius`, without this factor.
+    `length` and `x` are measured along the generatrix. The Hertz half-width and pressure that results are given over
+    are those of a cylinder with the roller's `radius`, without ``1 / cos(beta)``: up to 1.0025 in bearings.
 
     References
     ----------
@@ -90,7 +84,6 @@ class Tapered(Shape):
 
     Examples
     --------
-    >>> import numpy as np
     >>> x = np.array([-5e-3, 0.0, 5e-3])
     >>> Tapered(half_angle=0.05).local_radius(x, length=10e-3, radius=5e-3).round(6).tolist()
     [0.004756, 0.005006, 0.005256]

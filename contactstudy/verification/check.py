@@ -23,32 +23,16 @@ class Curve:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Check:
-    """One quantity compared with its reference.
+    """One quantity compared with its reference."""
 
-    Attributes
-    ----------
-    case, quantity : str
-        Solved problem, and the compared quantity with its unit.
-    source : str
-        Source of the reference.
-    computed, expected : float
-        Both values; of a field at its worst point.
-    difference : float
-        ``computed - expected``, over ``expected`` if the quantity is relative; of a field the largest or the median.
-    tolerance : float
-        Largest difference that passes.
-    curve : Curve, optional
-        Profile for a figure.
-    """
-
-    case: str
-    quantity: str
-    source: str
-    computed: float
+    case: str  # solved problem
+    quantity: str  # with its unit
+    source: str  # of the reference
+    computed: float  # of a field at its worst point
     expected: float
-    difference: float
-    tolerance: float
-    curve: Curve | None = None
+    difference: float  # of both, over `expected` if the quantity is relative; of a field the largest or the median
+    tolerance: float  # largest difference that passes
+    curve: Curve | None = None  # for a figure
 
     @property
     def passed(self) -> bool:

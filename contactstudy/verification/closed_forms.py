@@ -109,10 +109,8 @@ def potential_stresses(
 ) -> tuple[list[NDArray[np.inexact]], list[NDArray[np.inexact]]]:
     """Stresses of a unit normal and a unit tangential (along y) load, from the potentials of Johnson, section 3.2.
 
-    With `rho^2 = x^2 + y^2 + zeta^2` the potentials are `V = 1/rho`, `L = ln(rho + zeta)` and
-    `W = zeta L - rho`. They are harmonic in `(x, y, zeta)`, while the depth `z` that multiplies them stays apart:
-    for a real source `zeta = z`. Derivatives across the axis follow from those by `s = x^2 + y^2`:
-    `f_xy = 4 x y f''` and so on.
+    With `rho^2 = x^2 + y^2 + zeta^2` the potentials are `V = 1/rho`, `L = ln(rho + zeta)` and `W = zeta L - rho`; for a
+    real source `zeta = z`. Derivatives across the axis follow from those by `s = x^2 + y^2`: `f_xy = 4 x y f''`.
     """
     rho = np.sqrt(x**2 + y**2 + zeta**2)
     d = rho + zeta
@@ -184,10 +182,8 @@ def below_rectangle_corner(z: ArrayLike, side_x: float, side_y: float) -> FloatA
 def rectangle(
     x: ArrayLike, y: ArrayLike, z: ArrayLike, half_x: float, half_y: float, poisson: float, friction: float
 ) -> Stress:
-    """Stresses below a unit pressure and `friction` times it along +y: point loads, summed by Gauss quadrature.
-
-    Accurate from depths of about a sixth of the half-widths on.
-    """
+    """Stresses below a unit pressure and `friction` times it along +y: Gauss quadrature of point loads."""
+    # Accurate from depths of about a sixth of the half-widths on.
     node, weight = np.polynomial.legendre.leggauss(64)
     xs, ys, zs = (np.asarray(c, dtype=float)[..., None, None] for c in np.broadcast_arrays(x, y, z))
     loads = half_x * half_y * np.multiply.outer(weight, weight)
@@ -207,10 +203,8 @@ def hertz_circle(
     """Stresses under `p0 sqrt(1 - r^2/a^2)` and `q = f p` along `+y`: the problem of Hamilton (1983).
 
     Hamilton and Goodman's device: the Hertz pressure has the potential of point sources of strength
-    `pi p0 (a^2 - t^2) / (2 a) dt` at the complex depths `-i t`, `-a < t < a`. Their explicit formulae are
-    this integral; here it is done by Gauss quadrature on the half circle through `t = -i a`, where the
-    integrand is smooth (`z >= 0`, also on the surface and the axis) except close to the ring `r = a, z = 0`. Twelve
-    digits and more away from there.
+    `pi p0 (a^2 - t^2) / (2 a) dt` at the complex depths `-i t`, `-a < t < a`. Gauss quadrature on the half circle
+    through `t = -i a` gives twelve digits and more except close to the ring `r = a, z = 0`.
     """
     a = radius
     angle, weight = np.polynomial.legendre.leggauss(160)
@@ -326,9 +320,9 @@ def _primitive(u: FloatArray) -> FloatArray:
 
 
 def fast_line() -> tuple[float, float]:
-    """Largest rise of a fast surface under Hertz' pressure on a line, and how far behind the middle, over a.
+    """Largest rise of a fast line over ``q0 sqrt(kappa a / (pi V)) / lambda``, and its distance behind the middle / a.
 
-    The rise is over ``q0 sqrt(kappa a / (pi V)) / lambda``: heat flows into the depth only (Blok 1937, Jaeger 1942).
+    Heat flows into the depth only (Blok 1937, Jaeger 1942).
     """
 
     def rise(behind: float) -> float:

@@ -1,8 +1,4 @@
-"""Checks against closed forms of a half-space, limits of a finite-length space, equilibrium and reciprocity.
-
-A thick body under a load that is uniform along its axis is in plane strain at mid-length; a thin one is a plate in
-plane stress, for every Poisson's ratio.
-"""
+"""Checks against closed forms of a half-space, limits of a finite-length space, equilibrium and reciprocity."""
 
 from __future__ import annotations
 

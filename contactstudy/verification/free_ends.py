@@ -1,16 +1,12 @@
-"""Checks of bodies with free ends against exact limits of a quarter space, published numbers and finite elements.
+"""Checks of bodies with free ends: exact limits of a quarter space, published numbers, finite elements (scikit-fem).
 
 * Hetenyi, *J. Appl. Mech.* 37 (1970) 70, and Keer, Lee and Mura, *Int. J. Solids Struct.* 19 (1983) 497: overlapping.
-  Far from a load P at the edge of a quarter space the equivalent loads act in a point: ``H = P + (2 / pi) V`` on the
-  top and ``V = (2 / pi) H`` on the end, each with its mirror images, so ``H = P / (1 - 4 / pi**2)`` for every
-  Poisson's ratio. The displacement along the edge is ``2 H / P`` times the half-space's.
+  Far from a load P at the edge the equivalent loads act in a point: ``H = P + (2 / pi) V`` on the top and
+  ``V = (2 / pi) H`` on the end, so ``H = P / (1 - 4 / pi**2)``. The displacement along the edge is ``2 H / P`` times
+  the half-space's.
 * Johnson, *Contact Mechanics* (1985): largest shear stresses below point and line contacts.
-* Michell, *Proc. London Math. Soc.* 32 (1900) 35; Timoshenko and Goodier, *Theory of Elasticity*: force at the vertex
-  of a wedge, the limit of a quarter space under a long line load on its edge.
-* Guilbault, *J. Tribology* 133 (2011) 031402, quoted second-hand: a mirrored load underestimates the largest edge
-  displacement by 21.90 % for Poisson's ratio 0.3 and 11.30 % for 0.15. The proportions of the load are unknown; the
-  check compares a narrow load that fits both numbers.
-* Finite elements (scikit-fem): stored data, see `stored`.
+* Michell, *Proc. London Math. Soc.* 32 (1900) 35; Timoshenko and Goodier, *Theory of Elasticity*: wedge.
+* Guilbault, *J. Tribology* 133 (2011) 031402: see docs/explanation/verification.md.
 """
 
 from __future__ import annotations
@@ -272,10 +268,7 @@ def displacement_checks(name: str) -> Iterator[Check]:
 
 
 def contact_checks(name: str) -> Iterator[Check]:
-    """Contact of a roller: pressure along its middle line, averaged over the cells.
-
-    At a sharp end inside the face neither solution resolves the singular pressure: wider tolerance within a / 2.
-    """
+    """Contact of a roller: pressure along its middle line, averaged over the cells."""
     case, stored = CONTACT_CASES[name], load_reference(CONTACT_FILE, name)
     grid = Grid(
         x_range=(0.0, case.length), y_range=(-1.75, 1.75), cells_x=round(CONTACT_CELLS * case.length), cells_y=113
@@ -292,6 +285,7 @@ def contact_checks(name: str) -> Iterator[Check]:
     label = f"{name}: contact, L = {case.length:g}a, roller from {case.distance:g}a"
     label += f", crown {case.crown:g}" if case.crown else ""
     curve = Curve(("x / a", "p / p0 at y = 0"), x, computed, expected)
+    # At a sharp end inside the face neither solution resolves the pressure: wider tolerance within a / 2.
     singular = case.distance > 0 and not case.crown
     away = slice(1, -1)
     quantity = "pressure / p0 at y = 0, away from the last cell"

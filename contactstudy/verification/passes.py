@@ -15,7 +15,7 @@ from contactstudy.fatigue import shakedown, shakedown_limit
 from contactstudy.plasticity import ElasticPlastic, eigenstrain_stress, residual_stress
 from contactstudy.verification.check import Check, Curve, Reference
 from contactstudy.verification.closed_forms import hertz_strip, rectangle_in_half_plane, von_mises
-from contactstudy.verification.problems import PASSES_CASES, PASSES_FILE, PassesCase, load_reference
+from contactstudy.verification.problems import PASSES_CASES, PASSES_FILE, load_reference
 
 STIFF = Material(1000.0, 0.3)  # A thousand times as stiff as the peak pressure of the contacts
 # Allowed differences of residual stress, and of shear summed over depth. Above the limit errors add up
@@ -28,24 +28,25 @@ TOLERANCES = {
 QUICK_CASES = ("settling", "settling_sliding")  # Passes of the quick level
 
 
-def line_contact(friction: float) -> xr.Dataset:
-    """Hertz' line contact of half-width and peak pressure 1 in plane strain, Poisson's ratio 0.3, from the top down."""
-    y, z = np.linspace(-5.0, 5.0, 161), np.linspace(0.0, 1.75, 71)
-    stress = hertz_strip(y[:, None], z, 1.0, 1.0, 0.3, friction=friction)
+def line_contact(friction: float, y: FloatArray, z: FloatArray, poisson: float = 0.3) -> xr.Dataset:
+    """Hertz' line contact of half-width and peak pressure 1 in plane strain."""
+    stress = hertz_strip(y[:, None], z, 1.0, 1.0, poisson, friction=friction)
     fields = {name: (("x", "y", "z"), values[None]) for name, values in stress.items()}
-    return xr.Dataset(fields, {"x": [0.0], "y": y, "z": z}).assign(hertz_max_pressure=1.0)
+    return xr.Dataset(fields, {"x": [0.0], "y": y, "z": z})
+
+
+def from_top(friction: float) -> xr.Dataset:
+    """Line contact from the top down, with its peak pressure."""
+    contact = line_contact(friction, np.linspace(-5.0, 5.0, 161), np.linspace(0.0, 1.75, 71))
+    return contact.assign(hertz_max_pressure=1.0)
 
 
 def on_top(friction: float) -> tuple[float, float]:
     """Least shear yield stress on the top of the line contact for no yield, and for shakedown with rho_yy."""
-    y = np.linspace(-1, 1, 20001)
-    p = np.sqrt(1 - y**2)
-    zz, yy, shear = -p, -p - 2 * friction * y, friction * p
-    xx = 0.3 * (yy + zz)
-    squared = 0.5 * ((xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2) + 3 * shear**2
+    stress = hertz_strip(np.linspace(-1, 1, 20001), 0.0, 1.0, 1.0, 0.3, friction=friction)
 
     def largest(rho: float) -> float:
-        return float(np.sqrt((squared + 2 * rho * (yy - 0.5 * (xx + zz)) + rho**2).max() / 3))
+        return float(von_mises(stress | {"sigma_yy": stress["sigma_yy"] + rho}).max() / np.sqrt(3.0))
 
     return largest(0.0), float(optimize.minimize_scalar(largest, bounds=(-2, 2), options={"xatol": 1e-9}).fun)
 
@@ -53,14 +54,14 @@ def on_top(friction: float) -> tuple[float, float]:
 def shakedown_checks() -> Iterator[Check]:
     """Limits of line contacts."""
     case, quantity = "line contact without friction", "p0 / k"
-    plane, axial = (shakedown_limit(line_contact(0.0), axial=axial) for axial in (False, True))
+    plane, axial = (shakedown_limit(from_top(0.0), axial=axial) for axial in (False, True))
     first, limit = plane["first_yield_limit"], axial["shakedown_limit"]
     on_axis = von_mises(hertz_strip(0.0, np.linspace(0.5, 1.0, 5001), 1.0, 1.0, 0.3)).max() / np.sqrt(3.0)
     at_yield = f"{quantity} at first yield"
     yield Reference(case, "McEwen (1949)").compare(at_yield, first, 1 / on_axis, 2e-3, relative=True)
     yield Reference(case, "Johnson (1962)").compare(f"{quantity} at shakedown", limit, 4.0, 2e-3, relative=True)
     for friction in (0.4, 0.6):
-        top = shakedown(line_contact(friction)).isel(x=0, z=0)
+        top = shakedown(from_top(friction)).isel(x=0, z=0)
         case = f"top of a line contact, friction {friction:g}"
         source = "closed form, one-dimensional search"
         for name, expected in zip(("first_yield_stress", "shakedown_stress"), on_top(friction), strict=True):
@@ -107,7 +108,7 @@ def residual_checks() -> Iterator[Check]:
 
 def passing_checks() -> Iterator[Check]:
     """Flow on either side of the shakedown limit."""
-    contact = line_contact(0.0).drop_vars("hertz_max_pressure").isel(z=slice(8, None, 2))
+    contact = from_top(0.0).drop_vars("hertz_max_pressure").isel(z=slice(8, None, 2))
     body = HalfSpace(material=STIFF)
     case, source = "passes of a line contact without friction", "Melan; Johnson's p0 = 4 k"
     below = ElasticPlastic(yield_stress=np.sqrt(3.0) / 4 * 1.03)
@@ -122,25 +123,17 @@ def passing_checks() -> Iterator[Check]:
     )
 
 
-def over_half_plane(case: PassesCase, z: FloatArray) -> xr.Dataset:
-    """Roll a stored case, at depths over the half-width."""
-    y = np.linspace(-4.0, 4.0, 129)
-    stress = hertz_strip(y[:, None], z, 1.0, 1.0, case.poisson, friction=case.friction)
-    fields = {name: (("x", "y", "z"), values[None]) for name, values in stress.items()}
-    contact = xr.Dataset(fields, {"x": [0.0], "y": y, "z": z})
-    hardening = STIFF.young * case.kinematic_hardening
-    plastic = ElasticPlastic(yield_stress=np.sqrt(3.0) * case.shear_yield_stress, kinematic_hardening=hardening)
-    body = HalfSpace(material=Material(STIFF.young, case.poisson))
-    result = residual_stress(contact, body, plastic, case.passes).isel(x=0)
-    # The passes end where the residual stress is steady.
-    return result.reindex(pass_number=np.arange(1, case.passes + 1), method="ffill")
-
-
 def finite_element_checks(name: str) -> Iterator[Check]:
     """Residual stress and plastic shear of each pass against finite elements."""
     case, residual = PASSES_CASES[name], load_reference(PASSES_FILE, name)
     z, tolerances = residual["z"].values, TOLERANCES[name]
-    passed = over_half_plane(case, z)
+    contact = line_contact(case.friction, np.linspace(-4.0, 4.0, 129), z, case.poisson)
+    hardening = STIFF.young * case.kinematic_hardening
+    plastic = ElasticPlastic(yield_stress=np.sqrt(3.0) * case.shear_yield_stress, kinematic_hardening=hardening)
+    body = HalfSpace(material=Material(STIFF.young, case.poisson))
+    passed = residual_stress(contact, body, plastic, case.passes).isel(x=0)
+    # The passes end where the residual stress is steady.
+    passed = passed.reindex(pass_number=np.arange(1, case.passes + 1), method="ffill")
     after = passed.isel(pass_number=-1)
     size = max(float(np.abs(residual[component]).max()) for component in ("sigma_xx", "sigma_yy"))
     label = f"{name}: p0 = {1 / case.shear_yield_stress:.3g} k, f = {case.friction:g}, {case.passes} passes"

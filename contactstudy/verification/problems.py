@@ -257,10 +257,6 @@ def data_file(name: str) -> Path:
 
 
 def load_reference(file: str, name: str) -> xr.Dataset:
-    """Load the stored solution of a case: its attributes hold case and `error_estimate`, of the field or each variable.
-
-    Stresses (x, y, z); pressure (x, y >= 0) at nodes and line load (x); or residual stresses (z) and plastic strains
-    (pass_number, z) times Young's modulus.
-    """
+    """Load the stored solution of a case: its attributes hold case and `error_estimate`, of all or each variable."""
     checks.known_name("name", name, CASES[file])
     return xr.load_dataset(data_file(file), group=name)

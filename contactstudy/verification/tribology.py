@@ -1,14 +1,12 @@
 """Checks of stick and slip, flash temperature and wear: closed forms, Kalker's coefficients, published numbers.
 
-* Kalker, *Three-Dimensional Elastic Bodies in Rolling Contact* (1990), table E.3: creep coefficients to three digits.
-  They belong to vanishing creepage, where no cell slips and the traction at the trailing edge is singular, so the error
-  is of first order in the cell; it is extrapolated from two grids.
+* Kalker, *Three-Dimensional Elastic Bodies in Rolling Contact* (1990), table E.3: creep coefficients. They belong to
+  vanishing creepage, where the traction at the trailing edge is singular; the error, of first order in the cell, is
+  extrapolated from two grids.
 * Bentall and Johnson, *Int. J. Mech. Sci.* 9 (1967) 389, recomputed by the program CONTACT: unlike rollers.
-* A traction curve by CONTACT, 48 x 44 cells: its values are 1.4 % above those here at all creepages but the largest.
-  With the slip taken half a cell late, between neighbouring cells, this solver gives CONTACT's values to 0.2 % on as
-  many cells, and on twice as many half of the difference is gone: it is the cells' error.
-* Spence, *J. Elasticity* 5 (1975) 297: pressed with friction, a sphere sticks within the same part of the contact at
-  any load, so the load is raised in steps; by the program CONTACT half of the radius at this friction.
+* A traction curve by CONTACT, 48 x 44 cells, whose error explains the difference (docs/explanation/rolling.md).
+* Spence, *J. Elasticity* 5 (1975) 297: a sphere pressed with friction sticks within the same part of the contact at any
+  load, so the load is raised in steps; by the program CONTACT half of the radius at this friction.
 """
 
 from __future__ import annotations
@@ -29,7 +27,7 @@ from contactstudy.contact import ContactSettings
 from contactstudy.contact.rolling.fastsim import POISSONS, TABLE
 from contactstudy.contact.solve import solve_contact
 from contactstudy.heat import ThermalProperties, flash_temperature
-from contactstudy.heat.moving_source import Ends, MovingBody, SourceOperator
+from contactstudy.heat.moving_source import MovingBody, SourceOperator
 from contactstudy.profiles import FullCrown
 from contactstudy.solution import solve
 from contactstudy.verification import closed_forms
@@ -271,10 +269,10 @@ def contact_program_checks() -> Iterator[Check]:
 
 STEEL_HEAT = ThermalProperties(conductivity=46.0, density=7850.0, specific_heat=470.0)
 UNIT = {"conductivity": 1.0, "density": 1.0, "specific_heat": 1.0}
-EVERYWHERE = Ends(-np.inf, np.inf)
+EVERYWHERE = -np.inf, np.inf
 
 
-def rise(grid: Grid, heat: FloatArray, speed: float, ends: Ends, depth: float = 0.0) -> FloatArray:
+def rise(grid: Grid, heat: FloatArray, speed: float, ends: tuple[float, float], depth: float = 0.0) -> FloatArray:
     """Rise of a body of unit properties."""
     body = MovingBody(ThermalProperties(**UNIT), speed, ends)
     return SourceOperator(body, grid, slice(0, grid.cells_x), depth)(np.broadcast_to(heat, grid.shape))
@@ -320,7 +318,7 @@ def band_checks() -> Iterator[Check]:
     grid = Grid(x_range=(0.0, 8.0), y_range=(-2, 2), cells_x=5, cells_y=64)
     band = np.where(np.abs(grid.y) < 1, 1.0, 0.0)
     for drift in (0.01, 0.3, 5.0, 100.0):
-        rises = rise(grid, band, 2 * drift, Ends(0.0, 8.0))[2]
+        rises = rise(grid, band, 2 * drift, (0.0, 8.0))[2]
         exact = closed_forms.moving_band(grid.y, drift)
         curve = Curve(("y / a", "T lambda / (q a)"), grid.y, rises, exact)
         case = f"band of uniform heat between two ends, Peclet number {drift:g}"
@@ -352,7 +350,7 @@ def end_checks() -> Iterator[Check]:
     edges = np.array([0.0, 0.2, 0.5, 1.0, 1.7])
     half, full = (Grid.from_edges(borders, (-1, 1), 20) for borders in (edges, np.concatenate([-edges[:0:-1], edges])))
     heat = np.array([3.0, 2.0, 1.5, 1.0])[:, None] * (np.abs(half.y) < 0.5)
-    at_end = rise(half, heat, 3.0, Ends(0.0, np.inf))
+    at_end = rise(half, heat, 3.0, (0.0, np.inf))
     doubled = rise(full, np.concatenate([heat[::-1], heat]), 3.0, EVERYWHERE)[4:]
     scale = doubled.max()
     yield Reference("heat beside an insulated end", "symmetry").compare_fields(
@@ -375,7 +373,7 @@ def heat_carried_away(speed: float) -> tuple[float, float]:
     stencil = np.array([-1, 9, -45, 0, 45, -9, 1]) / (60 * grid.dy)  # first derivative, sixth order
     outflow = 0.0
     for depth, weight in zip(40 * nodes**4, weights * 80 * nodes**3, strict=True):
-        profile = grid.dx * rise(grid, heat, speed, Ends(0.0, 2.0), depth).sum(axis=0)
+        profile = grid.dx * rise(grid, heat, speed, (0.0, 2.0), depth).sum(axis=0)
         for side, row in ((-1, 8), (1, 51)):
             outflow += side * weight * float(speed * profile[row] - stencil @ profile[row - 3 : row + 4])
     return outflow, float(heat.sum()) * grid.cell_area

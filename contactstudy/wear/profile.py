@@ -12,6 +12,7 @@ from scipy.interpolate import PchipInterpolator, make_interp_spline
 
 from contactstudy import checks
 from contactstudy.analysis.provenance import check_solved_for
+from contactstudy.arrays.grid import growing_edges
 from contactstudy.arrays.variables import require
 from contactstudy.case.case import Case
 from contactstudy.case.roller import GAP_NODES
@@ -40,9 +41,8 @@ def worn_profile(case: Case, worn: xr.Dataset, distance: float | None = None) ->
     Returns
     -------
     Sum
-        Of the unworn profile, as it was, and of the worn depth as a `Measured`, whose points are the middles and edges
-        of the columns and the roller's ends. Over columns of different widths its means are the depths that wore off;
-        between the columns and towards the ends it is smooth.
+        Of the unworn profile and of the worn depth as a smooth `Measured`. Over columns of different widths its means
+        are the depths that wore off.
 
     Raises
     ------
@@ -158,7 +158,11 @@ def _through(case: Case, columns: _Columns, ends: _Ends, depth: FloatArray) -> M
     volume = np.concatenate([[0.0], np.cumsum(remainder * np.diff(columns.edges))])
     spline = make_interp_spline(columns.edges, volume, k=min(3, depth.size)).derivative()
     borders = _borders(case, columns, depth)
-    places = _points(columns, start, stop)
+    edges, middles = columns.edges, columns.middles
+    # Points between the outer column's middle and the end, each half as far from it as the one before
+    closer = 0.5 ** np.arange(1, 11)
+    first, last = start + closer * (middles[0] - start), stop - closer * (stop - middles[-1])
+    places = np.concatenate([[start], np.sort(np.concatenate([first, last, edges[1:-1], middles])), [stop]])
     for border in borders:
         more = np.linspace(border.x[0], border.x[-1], 8 * border.x.size)  # points in each column
         apart = np.abs(places - more[:, None]).min(axis=1) > ROUNDING * case.roller.length
@@ -169,12 +173,12 @@ def _through(case: Case, columns: _Columns, ends: _Ends, depth: FloatArray) -> M
         near = (places >= border.x[0]) & (places <= border.x[-1])
         unworn = case.roller.profile.drop(places[near], case.roller.length)
         points[near] = np.maximum(border(places[near]) - unworn, 0.0)
-        corrected &= (columns.middles < border.x[0]) | (columns.middles > border.x[-1])
-    middles = np.searchsorted(places, columns.middles)
+        corrected &= (middles < border.x[0]) | (middles > border.x[-1])
+    nearest = np.searchsorted(places, middles)
     profile = _measured(half, places, points)
     for _ in range(8):  # Rounds that move the points until the interpolation has the depth of every column
         means = columns.depths(lambda x: profile.drop(x, case.roller.length))  # noqa: B023, called at once
-        points[middles] = np.maximum(points[middles] + np.where(corrected, depth - means, 0.0), 0.0)
+        points[nearest] = np.maximum(points[nearest] + np.where(corrected, depth - means, 0.0), 0.0)
         profile = _measured(half, places, points)
     return profile
 
@@ -196,30 +200,11 @@ def _borders(case: Case, columns: _Columns, depth: FloatArray) -> list[PchipInte
     return borders
 
 
-def _points(columns: _Columns, start: float, stop: float) -> FloatArray:
-    """Return the columns' edges and middles, and ever closer points towards the contact's ends."""
-    edges, middles = columns.edges, columns.middles
-    # Points between the outer column's middle and the end, each half as far from it as the one before
-    closer = 0.5 ** np.arange(1, 11)
-    first, last = start + closer * (middles[0] - start), stop - closer * (stop - middles[-1])
-    return np.concatenate([[start], np.sort(np.concatenate([first, last, edges[1:-1], middles])), [stop]])
-
-
-def _overhanging(length: float, step: float) -> FloatArray:
-    """Distances from the body's end of unworn points on a part of the roller that overhangs; none without one."""
-    if length <= ROUNDING * step:
-        return np.zeros(0)
-    # Steps that grow by a factor that a measured profile may have.
-    count = max(1, int(np.ceil(np.log2(1 + length / step))))
-    steps = 2.0 ** np.arange(count)
-    return np.asarray(length * np.cumsum(steps) / steps.sum())
-
-
 def _measured(half: float, places: FloatArray, depth: FloatArray) -> Measured:
     """Worn depth from the one end of the contact to the other as a profile of the roller's length."""
-    # Where the roller overhangs the body nothing is worn off.
-    before = _overhanging(places[0] + half, places[1] - places[0])[::-1]
-    behind = _overhanging(half - places[-1], places[-1] - places[-2])
+    # Where the roller overhangs the body nothing is worn off; a measured profile may have steps of this growth.
+    before = growing_edges(places[0] + half, places[1] - places[0], 2.0)[::-1]
+    behind = growing_edges(half - places[-1], places[-1] - places[-2], 2.0)
     x = np.concatenate([places[0] - before, places, places[-1] + behind])
     drops = np.concatenate([np.zeros(before.size), depth, np.zeros(behind.size)])
     return Measured((half + x).tolist(), drops.tolist(), largest_spike=half)

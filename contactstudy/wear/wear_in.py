@@ -154,15 +154,6 @@ class Stepper:
         slip = self.contact.slip(depth, self.law)
         return State(distance, depth, pressed.pressure, slip, error, converged=pressed.converged)
 
-    def first_step(self, state: State) -> float:
-        """Return a step that wears off little wherever the pressure is."""
-        case, grid = self.contact.case, self.contact.shape.grid
-        load = grid.dy * state.pressure.sum(axis=1)
-        sinking = case.hertz_half_width**2 / (2 * case.roller.radius)
-        fastest = float((self.rate * state.slip * load).max())
-        # Largest worn depth of the first step over the depth ``a**2 / (2 R)`` of the contact
-        return 1e-3 * sinking / fastest if fastest > 0 else np.inf
-
     def states(self, state: State, until: float, step: float) -> Iterator[tuple[State, float]]:
         """Go on to a distance; after each step give its state and the length of the next."""
         least = 1e-6 * min(step, until - state.distance)  # Shorter steps are taken in spite of their error, stated
@@ -234,6 +225,8 @@ def wear_in(
 ) -> xr.Dataset:
     """Wear the profile of a roller by Archard's law, in steps that its own estimate of the error allows.
 
+    The roller turns, so its wear is uniform along the circumference and depends on x alone; the body does not wear.
+
     Parameters
     ----------
     case : Case
@@ -251,8 +244,7 @@ def wear_in(
     grid : Grid, optional
         Cells. Default: in full sliding the columns that settle the unworn contact, else the cells of `choose_grid`.
     after : Dataset, optional
-        Result of this function from whose last state to go on; of the same roller and body, while load, friction and
-        motion may be others.
+        Result of this function from whose last state to go on, of the same roller and body.
     tolerance : float
         Error of the worn depth that one step may make, over the largest depth: from 1e-5 to 0.1.
     max_steps : int
@@ -265,8 +257,7 @@ def wear_in(
         profile (distance, x), metres, `line_load` (distance, x), N/m, `pressure` (distance, x, y), `worn_volume`, m3,
         `wear_error`, the estimated error of the depth by the steps over the largest depth (the error of the cells is
         not contained), and `next_step`, metres. In all, `volume_error`: the volume over the volume of the law, minus
-        one. Its attributes hold the unworn case and the
-        settings. See `worn_profile` for the profile itself.
+        one. See `worn_profile` for the profile itself.
 
     Raises
     ------
@@ -280,10 +271,6 @@ def wear_in(
     -----
     ConvergenceWarning
         If `max_steps` did not suffice, or a contact did not converge. The result ends with the last step.
-
-    Notes
-    -----
-    The roller turns, so its wear is uniform along the circumference and depends on x alone; the body does not wear.
 
     Examples
     --------
@@ -314,8 +301,12 @@ def wear_in(
     distance_before, depth, cells, step, error = (
         (0.0, None, _cells(case, grid), None, 0.0) if after is None else _state_of(after, case, grid)
     )
-    stops, all_steps = _stops(distance, distance_before)
-
+    all_steps = np.ndim(distance) == 0
+    stops = checks.coordinates("distance", numbers_in_si("distance", distance, "m"))
+    if (np.diff(stops) <= 0).any():
+        raise InvalidInputError("distance", stops.tolist(), "increasing (metres)")
+    if stops[0] < distance_before or stops[-1] <= distance_before:
+        raise InvalidInputError("distance", stops.tolist(), f"beyond {distance_before:g} m, where the wear begins")
     gap = case.gap(cells)
     prescribed = Prescribed(case.normal_load, case.load_position).checked(gap, cells)
     shape = Shape(case.body, cells, ArrayKey(gap), prescribed, case.counterbody, coupled_friction=case.coupled_friction)
@@ -335,7 +326,12 @@ def wear_in(
             f"{case.roller.radius:g} m",
             "coefficient is in 1/Pa, distances in metres",
         )
-    states, steps = [first], [stepper.first_step(first) if step is None else step]
+    if step is None:
+        # Largest worn depth of the first step over the depth ``a**2 / (2 R)`` of the contact
+        sinking = case.hertz_half_width**2 / (2 * case.roller.radius)
+        fastest = float((stepper.rate * first.slip * (cells.dy * first.pressure.sum(axis=1))).max())
+        step = 1e-3 * sinking / fastest if fastest > 0 else np.inf
+    states, steps = [first], [step]
     for state, ahead in _limited(stepper, first, stops, steps[0], max_steps):
         if all_steps or state.distance in stops:
             states.append(state)
@@ -358,17 +354,6 @@ def _cells(case: Case, grid: Grid | None) -> Grid:
     count = 2 * int(np.ceil(0.5 * 1.4 * refined.cells_y))
     wider = count / refined.cells_y
     return Grid.between(refined.x_edges, (wider * low, wider * high), count)
-
-
-def _stops(distance: object, first: float) -> tuple[FloatArray, bool]:
-    """Distances to reach, and whether every step is wanted."""
-    all_steps = np.ndim(distance) == 0  # type: ignore[arg-type]
-    stops = checks.coordinates("distance", numbers_in_si("distance", distance, "m"))
-    if (np.diff(stops) <= 0).any():
-        raise InvalidInputError("distance", stops.tolist(), "increasing (metres)")
-    if stops[0] < first or stops[-1] <= first:
-        raise InvalidInputError("distance", stops.tolist(), f"beyond {first:g} m, where the wear begins")
-    return stops, all_steps
 
 
 def _state_of(after: xr.Dataset, case: Case, grid: Grid | None) -> tuple[float, FloatArray, Grid, float, float]:

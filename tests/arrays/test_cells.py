@@ -32,7 +32,7 @@ def test_edges_are_what_widths_say() -> None:
     assert np.array_equal(values, data.values)
 
 
-@pytest.mark.parametrize("extent", [(0.0, np.inf), (0.0, 1.5), (-np.inf, 1.5)])
+@pytest.mark.parametrize("extent", [(0.0, np.inf), (0.0, 1.5)])
 def test_edges_follow_from_the_end_of_the_body(extent: tuple[float, float]) -> None:
     _, grid = labelled_cells("p", array(), extent=extent)
     assert np.allclose(grid.x_edges, EDGES)

@@ -3,11 +3,11 @@ import pytest
 
 from contactstudy import InvalidInputError
 from contactstudy.arrays.grid import Grid
-from contactstudy.heat.moving_source import Ends, MovingBody, SourceOperator
+from contactstudy.heat.moving_source import MovingBody, SourceOperator
 from contactstudy.verification import closed_forms
 from contactstudy.verification.tribology import heat_carried_away
 
-EVERYWHERE = Ends(-np.inf, np.inf)
+EVERYWHERE = -np.inf, np.inf
 
 
 def rise(unit, grid, heat, *, speed, ends, depth=0.0):
@@ -25,7 +25,7 @@ def rise(unit, grid, heat, *, speed, ends, depth=0.0):
 )
 def test_moving_band_is_jaegers(unit, grid, drift):
     band = np.broadcast_to(1.0 * (np.abs(grid.y) < 1), grid.shape)
-    found = rise(unit, grid, band, speed=2 * drift, ends=Ends(0.0, 8.0))
+    found = rise(unit, grid, band, speed=2 * drift, ends=(0.0, 8.0))
     exact = closed_forms.moving_band(np.sign(drift) * grid.y, abs(drift))
     assert found == pytest.approx(np.broadcast_to(exact, grid.shape), abs=2e-6 * exact.max())
 
@@ -64,7 +64,7 @@ def test_an_insulated_end_doubles_what_is_symmetric(unit, speed, graded):
     half = Grid.from_edges(edges, (-1, 1), 20)
     whole = Grid.from_edges(np.concatenate([-edges[:0:-1], edges]), (-1, 1), 20)
     heat = np.array([3.0, 2.0, 1.5, 1.0])[:, None] * (np.abs(half.y) < 0.5)
-    at_end = rise(unit, half, heat, speed=speed, ends=Ends(0.0, np.inf))
+    at_end = rise(unit, half, heat, speed=speed, ends=(0.0, np.inf))
     doubled = rise(unit, whole, np.concatenate([heat[::-1], heat]), speed=speed, ends=EVERYWHERE)
     assert at_end == pytest.approx(doubled[4:], rel=1e-10)
 
@@ -81,7 +81,7 @@ def test_two_ends_are_a_row_of_images(unit, graded):
     )
     images = np.tile(np.concatenate([heat[::-1], heat]), (len(turns), 1))
     expected = rise(unit, row, images, speed=2.0, ends=EVERYWHERE)[44:48]
-    assert rise(unit, between, heat, speed=2.0, ends=Ends(0.0, 2.0)) == pytest.approx(expected, rel=1e-6)
+    assert rise(unit, between, heat, speed=2.0, ends=(0.0, 2.0)) == pytest.approx(expected, rel=1e-6)
 
 
 def test_uniform_and_graded_columns_agree_wherever_the_ends_are(unit):
@@ -91,7 +91,7 @@ def test_uniform_and_graded_columns_agree_wherever_the_ends_are(unit):
     assert grid.uniform
     assert not same.uniform
     heat = np.cos(grid.x)[:, None] * (np.abs(grid.y) < 0.5)
-    for ends in (EVERYWHERE, Ends(-0.3, np.inf), Ends(-0.3, 2.0), Ends(0.0, 3.1)):
+    for ends in (EVERYWHERE, (-0.3, np.inf), (-0.3, 2.0), (0.0, 3.1)):
         found, other = (rise(unit, cells, heat, speed=-4.0, ends=ends) for cells in (grid, same))
         assert found == pytest.approx(other, rel=1e-7, abs=1e-9)
 
@@ -111,4 +111,4 @@ def test_below_the_surface_a_source_at_rest_is_a_point_from_afar(unit):
 def test_between_two_ends_a_surface_at_rest_has_no_steady_temperature(unit):
     grid = Grid(x_range=(0, 1), y_range=(-1, 1), cells_x=4, cells_y=4)
     with pytest.raises(InvalidInputError, match="hotter without limit"):
-        SourceOperator(MovingBody(unit, 0.0, Ends(0.0, 1.0)), grid, slice(0, 4))
+        SourceOperator(MovingBody(unit, 0.0, (0.0, 1.0)), grid, slice(0, 4))

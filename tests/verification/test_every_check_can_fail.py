@@ -22,7 +22,6 @@ from contactstudy.film import line_contact
 from contactstudy.film.newton import FilmSettings
 from contactstudy.film.problem import FilmProblem
 from contactstudy.heat import flash
-from contactstudy.heat.flash import Shared
 from contactstudy.heat.moving_source import MovingBody
 from contactstudy.kernels.load import Load
 from contactstudy.overlapping.equations import EquationSet
@@ -157,7 +156,7 @@ def better_conductors(patch: Patch) -> None:
 
 def heat_in_halves(patch: Patch) -> None:
     """The heat is shared whatever temperatures come of it, and not quite in halves."""
-    patch.setattr(flash, "shared_heat", lambda first, second, density, touching: Shared(0.49 * density, 0.0))
+    patch.setattr(flash, "shared_heat", lambda first, second, density, touching: (0.49 * density, 0.0))
 
 
 def wear_that_changes_nothing(patch: Patch) -> None:
@@ -174,8 +173,8 @@ def pressed_harder_by(factor: float) -> Callable[[Patch], None]:
     """Line contacts that pass with another pressure than the checks believe."""
 
     def patched(patch: Patch) -> None:
-        real = passes.line_contact
-        patch.setattr(passes, "line_contact", lambda friction: (factor * real(friction)).assign(hertz_max_pressure=1.0))
+        real = passes.from_top
+        patch.setattr(passes, "from_top", lambda friction: (factor * real(friction)).assign(hertz_max_pressure=1.0))
 
     return patched
 
