@@ -15,6 +15,7 @@ from scipy import fft, linalg
 from contactstudy.arrays.grid import Grid
 from contactstudy.bodies.material import Material
 from contactstudy.bodies.models import Extent, Part
+from contactstudy.cache import nbytes_of
 from contactstudy.checks import ComplexArray, FloatArray
 from contactstudy.errors import InvalidInputError
 from contactstudy.kernels.convolution import GridTransform, even_spectrum, odd_spectrum
@@ -133,10 +134,8 @@ class PartOperator:
     @property
     def nbytes(self) -> int:
         """Memory held, bytes, with the inverse that preconditioning adds."""
-        ends = self._ends.nbytes if self._ends is not None else 0
-        spectra = [spectrum.nbytes for spectrum in self._spectra.values()]
-        buffers = sum(transform.nbytes for transform in (*self._loaded.values(), *self._displaced.values()))
-        return int(sum(spectra) + max(spectra)) + ends + buffers
+        inverse = max(spectrum.nbytes for spectrum in self._spectra.values())
+        return nbytes_of([self._spectra, self._ends, self._loaded, self._displaced]) + inverse
 
 
 def _padding(extent: Extent, grid: Grid) -> tuple[bool, int]:
@@ -271,8 +270,7 @@ class ColumnsOperator:
     @property
     def nbytes(self) -> int:
         """Memory held, bytes, with the inverse that preconditioning adds."""
-        sizes = [kernel.nbytes for kernel in self._kernels.values()]
-        return sum(sizes) + max(sizes)
+        return nbytes_of(self._kernels) + max(kernel.nbytes for kernel in self._kernels.values())
 
 
 def _times(matrices: FloatArray, spectrum: ComplexArray) -> ComplexArray:

@@ -85,11 +85,6 @@ class SurfaceOperator:
         """Distance along y at which the displacement is zero, metres; infinite unless the body has two ends."""
         return reference_distance(self.body.parts[0].extent)
 
-    @property
-    def nbytes(self) -> int:
-        """Memory held, bytes."""
-        return sum(part.nbytes for _, part in self._parts)
-
 
 def surface_operator(
     body: Body, grid: Grid, loads: tuple[Load, ...] = NORMAL, directions: tuple[Load, ...] = NORMAL
@@ -98,7 +93,7 @@ def surface_operator(
     return _cached_operator(replace(body, reference_depth=None), grid, loads, directions)
 
 
-@cached("surface operators", lambda operator: operator.nbytes)
+@cached("surface operators")
 def _cached_operator(body: Body, grid: Grid, loads: tuple[Load, ...], directions: tuple[Load, ...]) -> SurfaceOperator:
     """Build an operator, or return the cached one."""
     return SurfaceOperator.of(body, grid, loads, directions)

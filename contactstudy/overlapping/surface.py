@@ -118,11 +118,6 @@ class EndKernel:
             sides.append(cell_moments(self.edges, self.positions, length - cell_edges[::-1])[:, ::-1])
         return sides
 
-    @property
-    def nbytes(self) -> int:
-        """Memory held, bytes."""
-        return sum(array.nbytes for array in chain.from_iterable(self.samples.values()))
-
 
 def sum_of_ends(sides: list[FloatArray], sign: int) -> FloatArray:
     """Sum over both ends for a load with an image of `sign` times the load; the value of a single end."""
@@ -171,7 +166,7 @@ def sampled_kernel(waves: Waves, wavenumber: float, request: EndRequest, shortes
     return kernels
 
 
-@cached("end kernels", lambda kernel: kernel.nbytes)
+@cached("end kernels")
 def end_kernel(request: EndRequest) -> EndKernel:
     """Kernel of the ends of a body."""
     length, mirrored_once = request.freed
@@ -338,12 +333,6 @@ class EndCorrection:
             for response, kernels in self.kernels.items()
         }
         return EndCorrection(self.parities, coarse, lower, 2 * self.cell)
-
-    @property
-    def nbytes(self) -> int:
-        """Memory held, bytes."""
-        arrays = chain(chain.from_iterable(self.moments.values()), chain.from_iterable(self.kernels.values()))
-        return sum(array.nbytes for array in arrays)
 
     @classmethod
     def on(cls, grid: Grid, ends: EndKernel) -> EndCorrection:

@@ -251,7 +251,7 @@ def _off_position(prescribed: Prescribed, grid: Grid, pressure: FloatArray) -> f
     return abs(float((line * (grid.x - prescribed.load_position)).sum() / line.sum())) / float(length)
 
 
-@cached("contacts", lambda referred: referred.iterate.pressure.nbytes)
+@cached("contacts")
 def _iterate(shape: Shape, settings: Settings, first: ArrayKey | None) -> Referred:
     """Pressure of a contact, and the motion of the reference lines."""
     grid, operator = shape.grid, contact_operator(shape)

@@ -94,7 +94,7 @@ class ReferenceLine(NamedTuple):
     influence: FloatArray  # (point, column, cell_y): displacement under a unit load, metres per Pa
 
 
-@cached("reference lines", lambda line: line.influence.nbytes)
+@cached("reference lines")
 def reference_line(body: Body, columns: Grid, load: Load) -> ReferenceLine:
     """Line of a body, as smooth along x as the displacement of loads at its depth."""
     low, high = np.clip(body.extent, *columns.x_range)
@@ -102,7 +102,7 @@ def reference_line(body: Body, columns: Grid, load: Load) -> ReferenceLine:
     return ReferenceLine(x, weights, normal_influence(body, columns, load, x, body.depth))
 
 
-@cached("distant columns", lambda columns: columns[1].nbytes)
+@cached("distant columns")
 def distant_columns(grid: Grid, depth: float) -> tuple[Grid, FloatArray]:
     """Columns for the field of loads at a depth, and the matrix (column, cell) that moves loads onto them."""
     # The field is a polynomial of x: the loads on both have the same moments.
