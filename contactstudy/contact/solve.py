@@ -31,7 +31,8 @@ from contactstudy.case.motion import (
 from contactstudy.checks import FloatArray
 from contactstudy.contact.normal.contact import Contact, Settings, Shape, contact_of
 from contactstudy.contact.normal.prescribed import Prescribed
-from contactstudy.contact.rolling.frictional_contact import FrictionRequest, frictional_contact, with_tractions
+from contactstudy.contact.rolling.frictional_contact import frictional_contact, with_tractions
+from contactstudy.contact.rolling.tractions import FrictionRequest
 from contactstudy.errors import InvalidInputError
 from contactstudy.fields.loads import prescribed_loads
 from contactstudy.kernels.load import Load

@@ -117,7 +117,7 @@ def _refine_in_window(case: Case, half_window: float, accuracy: float, tolerance
         cells_y = _cell_number_y(float(peak_cells.sum()) * cells.dy / (2 * window), accuracy)
         solver = _ColumnSolver(case, window, cells_y)
         # The splittings of the outermost columns determine the law of an end: begin with few columns.
-        refined = refine_columns(solver, shape, accuracy, None if rough.singular(shape) else rough.edges)
+        refined = refine_columns(solver, shape, accuracy, None if rough.singular else rough.edges)
         refined = _with_data_error(solver, refined, shape)
     full = solver.shape(refined.edges)
     contact = contact_of(full, Settings(tolerance), ArrayKey(_padded(refined.pressure, full.grid, refined.edges)))

@@ -110,29 +110,17 @@ class RefinedColumns:
         return max(error for peak, error in pairs if peak == self.peak)
 
 
-class RoughColumns(NamedTuple):
-    """A contact on the columns of the first thresholds: edges, pressure (column, y), and laws of its singular ends."""
-
-    edges: FloatArray
-    pressure: FloatArray
-    laws: Laws
-
-    def singular(self, shape: AxialShape) -> bool:
-        """Whether an end has a law, or will have one: a sharp one that is pressed."""
-        return any(self.laws) or any(shape.sharp(side) and self.pressure[-side].any() for side in (0, 1))
-
-
-def rough_columns(solve: Solve, shape: AxialShape) -> RoughColumns:
+def rough_columns(solve: Solve, shape: AxialShape) -> Refinement:
     """First columns, with a peak to some percent."""
-    state = _Refinement(solve=solve, shape=shape, edges=first_edges(shape))
+    state = Refinement(solve=solve, shape=shape, edges=first_edges(shape))
     for theta in (FIRST_THETA, SECOND_THETA):
         state.refine(theta)
-    return RoughColumns(state.edges, state.pressure, (state.laws[0], state.laws[1]))
+    return state
 
 
 def refine_columns(solve: Solve, shape: AxialShape, accuracy: float, begin: FloatArray | None = None) -> RefinedColumns:
     """Refine columns, from the edges `begin` of a rough contact, until peak and end pressures settle to `accuracy`."""
-    state = _Refinement(solve=solve, shape=shape, edges=first_edges(shape) if begin is None else begin)
+    state = Refinement(solve=solve, shape=shape, edges=first_edges(shape) if begin is None else begin)
     theta = FIRST_THETA if begin is None else SECOND_THETA
     while True:
         state.refine(theta)
@@ -145,7 +133,7 @@ def refine_columns(solve: Solve, shape: AxialShape, accuracy: float, begin: Floa
 
 
 @dataclass(kw_only=True, eq=False)
-class _Refinement:
+class Refinement:
     """Where the refinement stands."""
 
     solve: Solve
@@ -161,6 +149,11 @@ class _Refinement:
     def __post_init__(self) -> None:
         self.pressure = self.solve(self.edges, None, ROUGH).pressure
         self._sample()
+
+    @property
+    def singular(self) -> bool:
+        """Whether an end has a law, or will have one: a sharp one that is pressed."""
+        return any(self.laws) or any(self.shape.sharp(side) and self.pressure[-side].any() for side in (0, 1))
 
     def refine(self, theta: float) -> None:
         """Split columns until none is marked."""
