@@ -37,15 +37,10 @@ class Harmonics:
     of_face_load: Callable[[EquationSet, ComplexArray, ComplexArray, FloatArray, FloatArray], FloatArray]
     """From equation set, depth wavenumbers, weighted face loads (depth, column), distances from the end and depths
     to the same."""
-    even_in_y: list[int]  # components that under a pressure even in y are even or odd
-    odd_in_y: list[int]
+    count: int  # number of components
+    even_in_y: list[int]  # components that under a pressure even in y are even; the others are odd
     odd_along_x: list[int]  # components that change sign from one end to the other
     grows_under: tuple[int, ...]  # signs of mirror images with which the field between two ends grows far along y
-
-    @property
-    def count(self) -> int:
-        """Number of components."""
-        return len(self.even_in_y) + len(self.odd_in_y)
 
 
 JOINT_POINTS = 2000  # largest number of positions times depths for a joint evaluation of all tensor products. Speed.
