@@ -216,11 +216,6 @@ class Refinement:
                 marks[list(outermost)] = False
         return marks
 
-    @property
-    def length(self) -> float:
-        """Length along the axis that can be pressed, metres."""
-        return float(self.edges[-1] - self.edges[0])
-
     def _half(self, side: int) -> FloatArray:
         first_half = centres_of(self.edges) < 0.5 * (self.edges[0] + self.edges[-1])
         half: FloatArray = self.pressure[first_half if side == 0 else ~first_half]
@@ -238,7 +233,8 @@ class Refinement:
         scale = max(finite, default=float(self.pressure.max()))
         floor = scale * (theta / THETA_PER_ERROR + self.along_y)
         # Over a half-width under the mean load per length.
-        usual = float(self.pressure.sum(axis=1) @ np.diff(self.edges)) * min(1.0, self.shape.half_width / self.length)
+        length = float(self.edges[-1] - self.edges[0])
+        usual = float(self.pressure.sum(axis=1) @ np.diff(self.edges)) * min(1.0, self.shape.half_width / length)
         floors = {"peak_pressure": floor, "end_pressure": floor, "end_load": usual * floor / scale}
         errors = {
             name: [_change_error([reading[name][side] for reading in self.readings], least) for side in (0, 1)]

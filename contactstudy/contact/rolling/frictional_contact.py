@@ -45,12 +45,7 @@ class FrictionalContact:
     @property
     def loads(self) -> Loads:
         """Loads on the body."""
-        along_x, along_y = self.tractions.traction
-        return {
-            Load.NORMAL: TopLoad(self.contact.pressure),
-            Load.ALONG_X: TopLoad(along_x),
-            Load.ALONG_Y: TopLoad(along_y),
-        }
+        return dict(zip(ALL, map(TopLoad, (self.contact.pressure, *self.tractions.traction)), strict=True))
 
     @property
     def converged(self) -> bool:
