@@ -7,7 +7,7 @@ arguments of its function, so results are bit for bit the same with and without 
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable, Hashable, Mapping
+from collections.abc import Callable, Collection, Hashable, Mapping
 from dataclasses import dataclass
 from functools import wraps
 from threading import RLock
@@ -136,12 +136,13 @@ def recall(kind: str, key: Hashable) -> Any | None:
     return entry[0] if entry else None
 
 
-def retain(kind: str, key: Hashable, value: Value, nbytes: int, *, replace: bool = False) -> Value:
+def retain(kind: str, key: Hashable, value: Value, *, replace: bool = False) -> Value:
     """Cache a value, and return the one that all threads share: the first of its key, or this one to `replace` it.
 
     Its arrays become read-only.
     """
     _protect(value)
+    nbytes = nbytes_of(value)
     with _lock:
         if replace:
             _store.pop((kind, key), None)
@@ -150,10 +151,8 @@ def retain(kind: str, key: Hashable, value: Value, nbytes: int, *, replace: bool
     return value
 
 
-def cached(
-    kind: str, nbytes: Callable[[Any], int]
-) -> Callable[[Callable[Arguments, Value]], Callable[Arguments, Value]]:
-    """Cache the values of a function by its hashable arguments; `nbytes` is the size of a value."""
+def cached(kind: str) -> Callable[[Callable[Arguments, Value]], Callable[Arguments, Value]]:
+    """Cache the values of a function by its hashable arguments."""
 
     def decorator(compute: Callable[Arguments, Value]) -> Callable[Arguments, Value]:
         @wraps(compute)
@@ -161,8 +160,7 @@ def cached(
             key = (arguments, tuple(named.items()))
             value: Value | None = recall(kind, key)
             if value is None:
-                value = compute(*arguments, **named)
-                value = retain(kind, key, value, nbytes(value))
+                value = retain(kind, key, compute(*arguments, **named))
             return value
 
         return look_up
@@ -170,16 +168,27 @@ def cached(
     return decorator
 
 
+def nbytes_of(value: object) -> int:
+    """Size of a value, bytes: its own `nbytes`, or the sum over its parts."""
+    nbytes = getattr(value, "nbytes", None)
+    return sum(map(nbytes_of, _parts(value))) if nbytes is None else int(nbytes)
+
+
 def _protect(value: object) -> None:
-    """Make the arrays of a value read-only: those in mappings, sequences and objects of this package as well."""
+    """Make the arrays of a value read-only."""
     if isinstance(value, np.ndarray):
         value.flags.writeable = False
-    elif isinstance(value, (list, tuple)):
-        for item in value:
-            _protect(item)
-    elif isinstance(value, Mapping) or type(value).__module__.startswith("contactstudy."):
-        for item in (value if isinstance(value, Mapping) else vars(value)).values():
-            _protect(item)
+    for part in _parts(value):
+        _protect(part)
+
+
+def _parts(value: object) -> Collection[object]:
+    """Items of sequences and mappings, and attributes of objects of this package."""
+    if isinstance(value, (list, tuple)):
+        return value
+    if isinstance(value, Mapping):
+        return value.values()
+    return vars(value).values() if type(value).__module__.startswith("contactstudy.") else ()
 
 
 class ArrayKey:

@@ -22,14 +22,14 @@ def fresh() -> Iterator[None]:
     cache.clear()
 
 
-def recorded(kind: str) -> tuple[Callable[[str], str], list[str]]:
-    """Return a maker that keeps strings as large as they are long, and the list of what it has made."""
+def recorded(kind: str) -> tuple[Callable[[str], FloatArray], list[str]]:
+    """Return a maker that keeps as many bytes as names are long, and the list of what it has made."""
     made: list[str] = []
 
-    @cached(kind, len)
-    def make(name: str) -> str:
+    @cached(kind)
+    def make(name: str) -> FloatArray:
         made.append(name)
-        return name
+        return np.frombuffer(name.encode(), np.uint8)
 
     return make, made
 
@@ -38,7 +38,7 @@ def test_the_least_recently_used_is_dropped_first() -> None:
     cache.limit(10)
     make, made = recorded("letters")
     for name in ("aaaa", "bbbb", "aaaa", "cccc"):
-        assert make(name) == name
+        assert make(name).tobytes().decode() == name
     assert made == ["aaaa", "bbbb", "cccc"]
     make("aaaa")
     assert made == ["aaaa", "bbbb", "cccc"]
@@ -57,7 +57,7 @@ def test_a_value_larger_than_the_limit_is_not_kept_and_drops_nothing() -> None:
 
 
 def test_arguments_by_name_are_part_of_the_key() -> None:
-    @cached("products", lambda product: 1)
+    @cached("products")
     def multiply(number: int, factor: int = 1) -> int:
         return number * factor
 
@@ -106,7 +106,7 @@ def test_a_limit_is_a_number_of_bytes(bound: object) -> None:
 def test_threads_share_one_value() -> None:
     barrier, found = Barrier(4), []
 
-    @cached("shared", lambda array: array.nbytes)
+    @cached("shared")
     def make(size: int) -> np.ndarray:
         barrier.wait()  # all four have missed
         return np.zeros(size)
@@ -137,10 +137,11 @@ def test_arrays_of_values_are_read_only() -> None:
 
     Factors.__module__ = "contactstudy.tests"
 
-    @cached("read-only", lambda value: 8)
+    @cached("read-only")
     def factors(size: int) -> Factors:
         return Factors(np.ones(size), {"upper": [np.ones(size)]})
 
     value = factors(3)
     assert not value.lower.flags.writeable
     assert not value.by_name["upper"][0].flags.writeable
+    assert cache.info().nbytes == cache.nbytes_of(value) == 48

@@ -13,7 +13,7 @@ import xarray as xr
 from benchmarks.performance.peers import contact_of
 from benchmarks.performance.problems import HALF_WIDTH, STEEL, roller
 from benchmarks.performance.timing import Report, Row, medians, nudge, show
-from contactstudy import FiniteLengthSpace, Grid, HalfSpace, stress_field
+from contactstudy import FiniteLengthSpace, Grid, HalfSpace, cache, stress_field
 from contactstudy.bodies import Body
 from contactstudy.fields.surface import SurfaceOperator, surface_operator
 from contactstudy.kernels.load import Load
@@ -33,7 +33,7 @@ def building(repeats: int, _: Report) -> Iterator[Row]:
         "kept": lambda: surface_operator(body, grid),
     }
     seconds = medians(works, repeats, warm_up=False)
-    megabytes = surface_operator(body, grid).nbytes / 1e6
+    megabytes = cache.nbytes_of(surface_operator(body, grid)) / 1e6
     yield Row(
         "building the operator, 128 x 64, L = 8a",
         show(seconds["cold"]),

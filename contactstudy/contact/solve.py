@@ -13,6 +13,7 @@ from scipy.sparse.linalg import LinearOperator
 
 from contactstudy import checks
 from contactstudy.arrays.cells import cell_coordinates, labelled_cells
+from contactstudy.arrays.grid import Grid
 from contactstudy.arrays.variables import describe, in_si, without_error
 from contactstudy.bodies.counterbody import Counterbody
 from contactstudy.bodies.models import Body
@@ -31,7 +32,8 @@ from contactstudy.case.motion import (
 from contactstudy.checks import FloatArray
 from contactstudy.contact.normal.contact import Contact, Settings, Shape, contact_of
 from contactstudy.contact.normal.prescribed import Prescribed
-from contactstudy.contact.rolling.frictional_contact import FrictionRequest, frictional_contact, with_tractions
+from contactstudy.contact.rolling.frictional_contact import frictional_contact, with_tractions
+from contactstudy.contact.rolling.tractions import FrictionRequest
 from contactstudy.errors import InvalidInputError
 from contactstudy.fields.loads import prescribed_loads
 from contactstudy.kernels.load import Load
@@ -228,7 +230,7 @@ def solve_contact(
         contact = contact_of(shape, iteration)
         contact.warn_unless_converged()
         return contact_dataset(contact, on_cells, x=x, y=y)
-    start = None if after is None else _start_loads(after, motion, gap, body)
+    start = None if after is None else _start_loads(after, motion, grid, body)
     facing = np.flatnonzero(np.isfinite(clearance).any(axis=1))
     middle = 0.5 * float(grid.x_edges[facing[0]] + grid.x_edges[facing[-1] + 1])
     request = FrictionRequest(motion=motion, friction=on_cells, middle=middle, coupled=coupled, start=start)
@@ -237,16 +239,14 @@ def solve_contact(
     return with_tractions(contact_dataset(frictional.contact, on_cells, x=x, y=y), frictional)
 
 
-def _start_loads(after: xr.Dataset, motion: Motion, gap: xr.DataArray, body: Body) -> dict[Load, FloatArray]:
+def _start_loads(after: xr.Dataset, motion: Motion, grid: Grid, body: Body) -> dict[Load, FloatArray]:
     """Pressure and tractions of the preceding step, checked."""
     checks.instance("after", after, xr.Dataset, "a result of solve_contact")
     if not isinstance(motion, Shift):
         raise InvalidInputError("motion", motion, "a Shift(...) with after: rolling is steady")
-    names = {"pressure": Load.NORMAL, "traction_x": Load.ALONG_X, "traction_y": Load.ALONG_Y}
-    missing = [name for name in names if name not in after]
+    missing = [name for name in ("pressure", "traction_x", "traction_y") if name not in after]
     if missing:
         raise InvalidInputError("after", f"without {missing[0]}", "a result with stick and slip")
-    grid = labelled_cells("gap", gap, extent=body.extent, infinite=True)[1]
     previous = prescribed_loads(body, after["pressure"], 0.0, after["traction_x"], after["traction_y"])
     if (
         previous.grid.shape != grid.shape

@@ -107,12 +107,12 @@ class EigenstrainBody:
         x, z = self.airy_integrals
         right = x[0] @ (e[XX] + nu * e[YY]) @ z[2].T + x[2] @ (e[ZZ] + nu * e[YY]) @ z[0].T  # eq. (503)
         right -= 2 * x[1] @ e[XZ] @ z[1].T
-        airy = self.in_plane.solve(-young / (1 - nu**2) * right)
+        airy = self.in_plane.solve(-young / (1 - nu**2) * right.reshape(-1, 1)).reshape(right.shape)
         shear: FloatArray = np.zeros((self.across.x.count, self.across.z.count))
         if e[[XY, YZ]].any():
             x, z = self.across_integrals
             right = 2 * (x[0] @ e[XY] @ z[1].T - x[1] @ e[YZ] @ z[0].T)
-            shear = self.across.solve(-self.material.shear_modulus * right)
+            shear = self.across.solve(-self.material.shear_modulus * right.reshape(-1, 1)).reshape(right.shape)
         return EigenstrainSolution(self, e, airy, shear)
 
 
@@ -225,7 +225,7 @@ class Influence:
             influence = np.empty((together.shape[1],) * 2)
             for start in range(0, influence.shape[1], COLUMNS):
                 right = together[:, start : start + COLUMNS].toarray()
-                influence[:, start : start + COLUMNS] = averages @ function.solve_columns(right)
+                influence[:, start : start + COLUMNS] = averages @ function.solve(right)
             return influence / np.tile(areas, len(parts))[:, None] * np.repeat(counts, areas.size)
 
         of = body.airy_integrals

@@ -114,10 +114,6 @@ class StressFunction:
         ]
 
     def solve(self, right: FloatArray) -> FloatArray:
-        """Coefficients of least energy: array (function x, function z), for a right-hand side of this shape."""
-        return self.solve_columns(right.reshape(-1, 1)).reshape(right.shape)
-
-    def solve_columns(self, right: FloatArray) -> FloatArray:
-        """Coefficients of least energy for many right-hand sides: array (function, column)."""
+        """Coefficients of least energy for right-hand sides: array (function, column)."""
         factor, scale = self._factorised
         return np.asarray(scale[:, None] * factor.solve(scale[:, None] * right))

@@ -283,17 +283,10 @@ def _top_maximum(sample: _Maximum, search: Search, stress: Callable[[Points], Fl
         sample = _sampled(centres, stresses, search.off_rim[np.ix_(columns, rows)])
         if sample.largest.value <= before * (1 + TOLERANCE):
             break
-    return _with_rim_error(sample, von_mises_of(*stresses)[..., 0], search.off_rim_at(centres))
-
-
-def _with_rim_error(sample: _Maximum, values: FloatArray, off_rim: BoolArray) -> Largest:
-    """Return the largest value of cells with its error: the stress may grow towards the rim."""
-    column, row, _ = sample.indices
+    # The stress may grow towards the rim.
+    values, off_rim, (column, row, _) = von_mises_of(*stresses)[..., 0], search.off_rim_at(centres), sample.indices
     error = ON_TOP * sample.largest.value
-    for line, inner, index in (
-        (values[:, row], off_rim[:, row], column),
-        (values[column], off_rim[column], row),
-    ):
+    for line, inner, index in ((values[:, row], off_rim[:, row], column), (values[column], off_rim[column], row)):
         neighbours = slice(max(index - 1, 0), index + 2)
         if not inner[neighbours].all():
             error = max(error, (RIM + 1) * float(np.ptp(line[neighbours][inner[neighbours]])))

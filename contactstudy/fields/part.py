@@ -15,13 +15,14 @@ from scipy import fft, linalg
 from contactstudy.arrays.grid import Grid
 from contactstudy.bodies.material import Material
 from contactstudy.bodies.models import Extent, Part
+from contactstudy.cache import nbytes_of
 from contactstudy.checks import ComplexArray, FloatArray
 from contactstudy.errors import InvalidInputError
 from contactstudy.kernels.convolution import GridTransform, even_spectrum, odd_spectrum
 from contactstudy.kernels.load import NORMAL_RESPONSE, Load, Response
 from contactstudy.kernels.strips import ColumnsRequest, surface_kernel
 from contactstudy.overlapping.quadrature import Resolution
-from contactstudy.overlapping.surface import EndCorrection, EndRequest, end_kernel
+from contactstudy.overlapping.surface import EndCorrection, EndKernel, EndRequest, end_kernel
 from contactstudy.threads import one_blas_thread
 
 REFERENCE_LENGTHS = 10.0
@@ -51,18 +52,11 @@ class PartOperator:
 
     @classmethod
     def of(
-        cls, material: Material, part: Part, grid: Grid, responses: Sequence[Response], resolution: Resolution
+        cls, material: Material, extent: Extent, grid: Grid, responses: Sequence[Response], ends: EndKernel | None
     ) -> PartOperator:
         """Operator of a part of a body made of `material`, for pairs of displacement and load."""
-        ends = None
-        if part.freed:
-            check_ends(part, responses)
-            with one_blas_thread():
-                reference = reference_distance(part.extent)
-                request = EndRequest.of(part.freed, material, grid, tuple(responses), reference, resolution=resolution)
-                ends = EndCorrection.on(grid, end_kernel(request))
-        spectra = {response: _spectrum(response, material, part.extent, grid) for response in responses}
-        return cls(part.extent, grid, spectra, ends)
+        spectra = {response: _spectrum(response, material, extent, grid) for response in responses}
+        return cls(extent, grid, spectra, None if ends is None else EndCorrection.on(grid, ends))
 
     def coarsened(self, material: Material) -> PartOperator:
         """Return the operator on cells of twice the size."""
@@ -133,10 +127,8 @@ class PartOperator:
     @property
     def nbytes(self) -> int:
         """Memory held, bytes, with the inverse that preconditioning adds."""
-        ends = self._ends.nbytes if self._ends is not None else 0
-        spectra = [spectrum.nbytes for spectrum in self._spectra.values()]
-        buffers = sum(transform.nbytes for transform in (*self._loaded.values(), *self._displaced.values()))
-        return int(sum(spectra) + max(spectra)) + ends + buffers
+        inverse = max(spectrum.nbytes for spectrum in self._spectra.values())
+        return nbytes_of([self._spectra, self._ends, self._loaded, self._displaced]) + inverse
 
 
 def _padding(extent: Extent, grid: Grid) -> tuple[bool, int]:
@@ -145,16 +137,21 @@ def _padding(extent: Extent, grid: Grid) -> tuple[bool, int]:
     return any(ended), grid.cells_x if all(ended) else 2 * grid.cells_x
 
 
-def check_ends(part: Part, responses: Sequence[Response]) -> None:
-    """Raise for tangential displacements of the single-mirror model."""
-    tangential = any(response.displacement is not Load.NORMAL for response in responses)
-    if tangential and part.freed is not None and part.freed.mirrored_once:
+def end_kernel_of(
+    part: Part, material: Material, grid: Grid, responses: tuple[Response, ...], resolution: Resolution
+) -> EndKernel | None:
+    """Kernel of the ends of a part, None without; raises for tangential displacements of the single-mirror model."""
+    if part.freed is None:
+        return None
+    if part.freed.mirrored_once and any(response.displacement is not Load.NORMAL for response in responses):
         raise InvalidInputError(
             "body.model",
             "single-mirror",
             '"exact", "mirror" or "mirror-factor" for tangential displacements',
             "residual shear on its ends breaks reciprocity",
         )
+    reference = reference_distance(part.extent)
+    return end_kernel(EndRequest.of(part.freed, material, grid, responses, reference, resolution=resolution))
 
 
 def reference_distance(extent: Extent) -> float:
@@ -204,22 +201,18 @@ class ColumnsOperator:
 
     @classmethod
     def of(
-        cls, material: Material, part: Part, grid: Grid, responses: Sequence[Response], resolution: Resolution
+        cls, material: Material, extent: Extent, grid: Grid, responses: Sequence[Response], ends: EndKernel | None
     ) -> ColumnsOperator:
         """Operator of a part of a body made of `material`, for pairs of displacement and load."""
-        edges, reference = grid.x_edges, reference_distance(part.extent)
-        check_ends(part, responses)
-        columns = ColumnsRequest(edges=edges, dy=grid.dy, cells_y=grid.cells_y, extent=part.extent, reference=reference)
-        with one_blas_thread():
-            kernels = {
-                response: kernel_factor(material) * columns.kernel(response, material.poisson) for response in responses
-            }
-            if part.freed:
-                request = EndRequest.of(part.freed, material, grid, tuple(responses), reference, resolution=resolution)
-                ends = end_kernel(request)
-                for response, kernel in kernels.items():
-                    ends.add_to(kernel, response, edges)
-        return cls(part.extent, grid, kernels)
+        edges, reference = grid.x_edges, reference_distance(extent)
+        columns = ColumnsRequest(edges=edges, dy=grid.dy, cells_y=grid.cells_y, extent=extent, reference=reference)
+        kernels = {
+            response: kernel_factor(material) * columns.kernel(response, material.poisson) for response in responses
+        }
+        if ends is not None:
+            for response, kernel in kernels.items():
+                ends.add_to(kernel, response, edges)
+        return cls(extent, grid, kernels)
 
     def coarsened(self, material: Material) -> ColumnsOperator:
         """Return the operator on pairs of cells, for an initial guess."""
@@ -271,8 +264,7 @@ class ColumnsOperator:
     @property
     def nbytes(self) -> int:
         """Memory held, bytes, with the inverse that preconditioning adds."""
-        sizes = [kernel.nbytes for kernel in self._kernels.values()]
-        return sum(sizes) + max(sizes)
+        return nbytes_of(self._kernels) + max(kernel.nbytes for kernel in self._kernels.values())
 
 
 def _times(matrices: FloatArray, spectrum: ComplexArray) -> ComplexArray:

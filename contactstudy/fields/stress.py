@@ -130,7 +130,7 @@ def stresses_at(
     return superposed(loads, unit_fields)
 
 
-@cached("stress fields", lambda fields: sum(field.nbytes for by_points in fields.values() for field in by_points))
+@cached("stress fields")
 def _unit_stress(
     body: Body,
     grid: Grid,
@@ -162,7 +162,7 @@ def _unit_stress(
     return fields
 
 
-@cached("half-space stresses", lambda field: field.nbytes)
+@cached("half-space stresses")
 def _mirrored_stress(
     load: Load,
     poisson: float,

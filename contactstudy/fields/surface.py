@@ -18,7 +18,7 @@ from contactstudy.cache import cached
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 from contactstudy.fields.loads import prescribed_loads
-from contactstudy.fields.part import ColumnsOperator, PartOperator, reference_distance
+from contactstudy.fields.part import ColumnsOperator, PartOperator, end_kernel_of, reference_distance
 from contactstudy.kernels.load import Load, Response
 from contactstudy.overlapping.quadrature import Resolution
 from contactstudy.threads import one_blas_thread
@@ -47,7 +47,11 @@ class SurfaceOperator:
         body.check_span(grid)
         kind = ColumnsOperator if grid.observes_means else PartOperator
         responses = tuple(Response(direction, load) for direction in directions for load in loads)
-        parts = [(part.weight, kind.of(body.material, part, grid, responses, resolution)) for part in body.parts]
+        parts = []
+        with one_blas_thread():
+            for part in body.parts:
+                ends = end_kernel_of(part, body.material, grid, responses, resolution)
+                parts.append((part.weight, kind.of(body.material, part.extent, grid, responses, ends)))
         return cls(body, parts)
 
     def __call__(self, loads: Mapping[Load, FloatArray]) -> FloatArray:
@@ -85,10 +89,8 @@ class SurfaceOperator:
         """Distance along y at which the displacement is zero, metres; infinite unless the body has two ends."""
         return reference_distance(self.body.parts[0].extent)
 
-    @property
-    def nbytes(self) -> int:
-        """Memory held, bytes."""
-        return sum(part.nbytes for _, part in self._parts)
+
+_cached_operator = cached("surface operators")(SurfaceOperator.of)
 
 
 def surface_operator(
@@ -96,12 +98,6 @@ def surface_operator(
 ) -> SurfaceOperator:
     """Return the operator of a body; all cases with the same one share it, whatever depth they refer to."""
     return _cached_operator(replace(body, reference_depth=None), grid, loads, directions)
-
-
-@cached("surface operators", lambda operator: operator.nbytes)
-def _cached_operator(body: Body, grid: Grid, loads: tuple[Load, ...], directions: tuple[Load, ...]) -> SurfaceOperator:
-    """Build an operator, or return the cached one."""
-    return SurfaceOperator.of(body, grid, loads, directions)
 
 
 @overload

@@ -124,14 +124,8 @@ class SplitColumns(NamedTuple):
     first: int  # (cell_x, cell_y): first column along y of the load, and the load
     load: FloatArray
 
-    @property
-    def nbytes(self) -> int:
-        """Memory held, bytes."""
-        parts = (jumps for near, sides in self.jumps for part in (near, *sides) for jumps in part)
-        return self.load.nbytes + sum(jumps.nbytes for jumps in parts)
 
-
-@cached("split columns", lambda columns: columns.nbytes)
+@cached("split columns")
 def split_columns(
     cells: ArrayKey,
     shape: ArrayKey | None,

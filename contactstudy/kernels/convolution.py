@@ -181,7 +181,7 @@ def _span(numbers: IntArray) -> slice | IntArray:
     return slice(numbers[0], numbers[-1] + 1) if consecutive and numbers[0] >= 0 else numbers
 
 
-@cached("half-space kernels", lambda spectrum: spectrum.nbytes)
+@cached("half-space kernels")
 def _kernel_spectrum(request: CentredConvolution) -> FloatArray:
     """Spectrum of the kernels, without a factor i per odd direction: (component, x, y)."""
     x: FloatArray = request.dx * np.arange(request.shape[0] + 1.0)

@@ -159,11 +159,6 @@ class Jumps:
         summed = np.einsum("czek,ek->czk", fft.rfft(values, axis=3), spectrum)
         return np.asarray(fft.irfft(summed, self.size, axis=2)[..., starts])
 
-    @property
-    def nbytes(self) -> int:
-        """Memory held, bytes."""
-        return self.edges.nbytes + self.values.nbytes + (0 if self.folded is None else self.folded.nbytes)
-
 
 class EvenOffsets:
     """Uniform offsets along y of corner functions, and depths; symmetric offsets are evaluated on one side of 0."""

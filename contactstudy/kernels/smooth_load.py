@@ -127,15 +127,14 @@ class SmoothLoad:
         first, middle, last, knot, sign = (
             values[:, cell] for values in (self.first, self.middle, self.last, self.knot, self.sign)
         )
-        before = _Piece.of(first, middle, np.minimum(part, knot), knot)
-        behind = _Piece.of(middle, last, np.maximum(part - knot, 0.0), 1 - knot)
-        force, moment, second = behind.force, behind.moment, behind.second_moment
+        before = _moments(first, middle, np.minimum(part, knot), knot)
+        force, moment, second = _moments(middle, last, np.maximum(part - knot, 0.0), 1 - knot)
         second += knot * (2 * moment + knot * force)
         moment += knot * force
         return (
-            sign * width * (before.force + force),
-            sign * width**2 * (before.moment + moment),
-            sign * width**3 * (before.second_moment + second),
+            sign * width * (before[0] + force),
+            sign * width**2 * (before[1] + moment),
+            sign * width**3 * (before[2] + second),
         )
 
 
@@ -348,43 +347,18 @@ def _mean(a: FloatArray, b: FloatArray) -> FloatArray:
     return np.asarray(2 / 3 * (a * a + a * b + b * b) / np.where(total > 0, total, 1.0))  # eq. (32a)
 
 
-class _Piece(NamedTuple):
-    """Part of a function with a linear square: values at both ends, and length over the width of the cell."""
-
-    first: FloatArray
-    last: FloatArray
-    length: FloatArray
-
-    @classmethod
-    def of(cls, a: FloatArray, b: FloatArray, length: FloatArray, total: FloatArray) -> _Piece:
-        """First part, of a `length`, of a piece of length `total` with the values `a` and `b` at its ends."""
-        squared = a * a + (b * b - a * a) * (length / np.where(total > 0, total, 1.0))
-        return cls(a, np.sqrt(np.maximum(squared, 0.0)), length)
-
-    @property
-    def force(self) -> FloatArray:
-        """Integral over the piece."""
-        return self.length * _mean(self.first, self.last)
-
-    @property
-    def moment(self) -> FloatArray:
-        """First moment about the start."""
-        a, b, total = self.first, self.last, self._total
-        cubes = ((3 * b + 6 * a) * b + 4 * a * a) * b + 2 * a * a * a
-        return self.length**2 * np.asarray(2 / 15 * cubes / (total * total))
-
-    @property
-    def second_moment(self) -> FloatArray:
-        """Second moment about the start."""
-        a, b, total = self.first, self.last, self._total
-        powers = (((15 * b + 45 * a) * b + 48 * a * a) * b + 24 * a * a * a) * b + 8 * a * a * a * a
-        return self.length**3 * np.asarray(2 / 105 * powers / (total * total * total))
-
-    @property
-    def _total(self) -> FloatArray:
-        """Sum of both values, 1 where both are 0."""
-        total = self.first + self.last
-        return np.where(total > 0, total, 1.0)
+def _moments(
+    a: FloatArray, b: FloatArray, length: FloatArray, total: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Force, first and second moment about the start of the first part of a piece with a linear square."""
+    # Of length `length`; the piece has the length `total` and the values `a` and `b` at its ends.
+    squared = a * a + (b * b - a * a) * (length / np.where(total > 0, total, 1.0))
+    b = np.sqrt(np.maximum(squared, 0.0))
+    both = np.where(a + b > 0, a + b, 1.0)
+    cubes = ((3 * b + 6 * a) * b + 4 * a * a) * b + 2 * a * a * a
+    powers = (((15 * b + 45 * a) * b + 48 * a * a) * b + 24 * a * a * a) * b + 8 * a * a * a * a
+    first, second = 2 / 15 * cubes / (both * both), 2 / 105 * powers / (both * both * both)
+    return length * _mean(a, b), length**2 * np.asarray(first), length**3 * np.asarray(second)
 
 
 def _middle(mean: FloatArray, first: FloatArray, last: FloatArray) -> FloatArray:

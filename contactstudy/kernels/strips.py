@@ -240,7 +240,7 @@ class ColumnsRequest:
             if np.isfinite(high):
                 from_high = np.add.outer(high - edges, high - edges)
                 pairs.add(image * strip.sign_x * factor, strip, from_high, image=True)
-        retain("column pairs", key, pairs, pairs.nbytes, replace=True)
+        retain("column pairs", key, pairs, replace=True)
         kernel = pairs.transformed()
         if np.isfinite(low) and np.isfinite(high):
             images = FarImages(high - low, image, IMAGE_POINTS)
@@ -274,11 +274,6 @@ class _Pairs:
             total[np.ix_(same, same)] = known.total[np.ix_(index[same], index[same])]
             missing[np.ix_(same, same)] = False
         return cls(edges, lateral, total, np.tril(missing))
-
-    @property
-    def nbytes(self) -> int:
-        """Memory held, bytes."""
-        return self.total.nbytes + self.missing.nbytes
 
     def add(self, factor: float, strip: Strip, distances: FloatArray, *, image: bool = False) -> None:
         """Add `factor` times the influence of columns with edges at signed `distances`; at their sums for an image."""

@@ -87,11 +87,6 @@ class Factorisation:
         solution[self._rows] = linalg.blas.dtrsm(1.0, self._factors, upper, lower=1, diag=1, trans_a=1)
         return solution
 
-    @property
-    def nbytes(self) -> int:
-        """Memory held, bytes."""
-        return int(self._factors.nbytes + self._rows.nbytes)
-
 
 class AuxiliaryLoads(NamedTuple):
     """Loads on the auxiliary bodies, for one wavenumber along y."""
@@ -140,11 +135,6 @@ class EquationSet:
             top=top,
             factorisation=Factorisation(matrix),
         )
-
-    @property
-    def nbytes(self) -> int:
-        """Memory held, bytes."""
-        return sum(part.nbytes for part in (self.depth, self.scale, self.core, self.top, self.factorisation))
 
     def solve(self, source: FloatArray) -> FloatArray:
         """Scaled face loads ``scale * S`` from the source of a top load at the depth nodes."""

@@ -37,15 +37,10 @@ class Harmonics:
     of_face_load: Callable[[EquationSet, ComplexArray, ComplexArray, FloatArray, FloatArray], FloatArray]
     """From equation set, depth wavenumbers, weighted face loads (depth, column), distances from the end and depths
     to the same."""
-    even_in_y: list[int]  # components that under a pressure even in y are even or odd
-    odd_in_y: list[int]
+    count: int  # number of components
+    even_in_y: list[int]  # components that under a pressure even in y are even; the others are odd
     odd_along_x: list[int]  # components that change sign from one end to the other
     grows_under: tuple[int, ...]  # signs of mirror images with which the field between two ends grows far along y
-
-    @property
-    def count(self) -> int:
-        """Number of components."""
-        return len(self.even_in_y) + len(self.odd_in_y)
 
 
 JOINT_POINTS = 2000  # largest number of positions times depths for a joint evaluation of all tensor products. Speed.
@@ -99,49 +94,18 @@ class _Folded:
             for field in fields.values():
                 field[:, :, rows[:, None], columns] = field[:, :, rows, -1:]
             fields = {parity: field[:, :, :, :-1] for parity, field in fields.items()}
-        loads, count, _, *shape = next(iter(fields.values())).shape
-        result = np.empty((loads, count, self._size, *shape))
-        for number, (parity, field) in enumerate(fields.items()):
-            signs = np.array([-parity if component in odd_along_x else parity for component in range(count)])
-            if self.interpolation is None:
-                self._copy(field, signs, result, bool(number))
-            else:
-                self._interpolate(field, signs, result, bool(number))
-        return np.asarray(result.swapaxes(3, 4))
-
-    def _copy(self, field: FloatArray, signs: IntArray, result: FloatArray, added: bool) -> None:
-        """Copy or add a sum to a result at the same positions, beyond mid-length with the `signs` of its components."""
-        beyond = np.where(signs == 0, 1, signs)[:, None, None]
-        for row, (number, far) in enumerate(zip(self.where.tolist(), self.beyond.tolist(), strict=True)):
-            values = beyond * field[:, :, number] if far else field[:, :, number]
-            if added:
-                result[:, :, row] += values
-            else:
-                result[:, :, row] = values
-
-    def _interpolate(self, field: FloatArray, signs: IntArray, result: FloatArray, added: bool) -> None:
-        """Interpolate a sum to all positions."""
-        for component, sign in enumerate(signs.tolist()):
-            spread = self._spread(sign)
-            for load in range(field.shape[0]):
-                values = np.ascontiguousarray(field[load, component]).reshape(field.shape[2], -1)
-                target = result[load, component].reshape(self._size, -1)
-                if added:
-                    target += spread @ values
-                else:
-                    np.matmul(spread, values, out=target)
-
-    @property
-    def _size(self) -> int:
-        """Number of positions along x."""
-        return self.where.size if self.interpolation is None else self.interpolation.shape[0]
-
-    def _spread(self, sign: int) -> FloatArray:
-        """Matrix from the positions of the sum to all, for a field that is `sign` times its image; 0 with one end."""
-        assert self.interpolation is not None
-        spread = np.zeros((self.where.size, self.x.size))
-        spread[np.arange(self.where.size), self.where] = np.where(self.beyond, sign or 1, 1)
-        return np.asarray(self.interpolation @ spread)
+        total: FloatArray | None = None
+        for parity, field in fields.items():
+            signs = np.array([-parity if component in odd_along_x else parity for component in range(field.shape[1])])
+            # With one end no position lies beyond mid-length.
+            values = field[:, :, self.where]
+            values *= np.where(self.beyond & (parity != 0), signs[:, None], 1)[..., None, None]
+            total = values if total is None else np.add(total, values, out=total)
+        assert total is not None
+        if self.interpolation is not None:
+            flat = self.interpolation @ total.reshape(*total.shape[:3], -1)
+            total = flat.reshape(*flat.shape[:3], *total.shape[3:])
+        return np.asarray(total.swapaxes(3, 4))
 
 
 def end_fields(

@@ -92,8 +92,8 @@ def _from_end(distance: FloatArray, kappa: ComplexArray, tau: ComplexArray) -> t
 STRESS = Harmonics(  # components xx, yy, zz, xy, xz, yz
     of_equivalent_load=_stress_of_equivalent_load,
     of_face_load=_stress_of_face_load,
+    count=6,
     even_in_y=[0, 1, 2, 4],
-    odd_in_y=[3, 5],
     odd_along_x=[3, 4],
     grows_under=(-1,),  # bending
 )
@@ -145,8 +145,8 @@ def _displacement_of_face_load(
 DISPLACEMENT = Harmonics(  # components along x, y, z, times ``2 G``
     of_equivalent_load=_displacement_of_equivalent_load,
     of_face_load=_displacement_of_face_load,
+    count=3,
     even_in_y=[0, 2],
-    odd_in_y=[1],
     odd_along_x=[0],
     grows_under=(1, -1),
 )

@@ -40,7 +40,7 @@ THINNEST = 0.004
 third of it a tenth."""
 
 
-_equation_set = cached("equation sets", lambda system: system.nbytes)(EquationSet.build)
+_equation_set = cached("equation sets")(EquationSet.build)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -118,11 +118,6 @@ class EndKernel:
             sides.append(cell_moments(self.edges, self.positions, length - cell_edges[::-1])[:, ::-1])
         return sides
 
-    @property
-    def nbytes(self) -> int:
-        """Memory held, bytes."""
-        return sum(array.nbytes for array in chain.from_iterable(self.samples.values()))
-
 
 def sum_of_ends(sides: list[FloatArray], sign: int) -> FloatArray:
     """Sum over both ends for a load with an image of `sign` times the load; the value of a single end."""
@@ -171,7 +166,7 @@ def sampled_kernel(waves: Waves, wavenumber: float, request: EndRequest, shortes
     return kernels
 
 
-@cached("end kernels", lambda kernel: kernel.nbytes)
+@cached("end kernels")
 def end_kernel(request: EndRequest) -> EndKernel:
     """Kernel of the ends of a body."""
     length, mirrored_once = request.freed
@@ -183,6 +178,10 @@ def end_kernel(request: EndRequest) -> EndKernel:
     reference = request.reference if relative else None
     half = 0.5 * length if np.isfinite(length) else request.span
     edges, positions = graded_positions(half, shortest, POSITIONS_PER_PANEL)
+    offsets: FloatArray = request.dy * np.arange(request.cells_y + 1.0)
+    even_matrix, odd_matrix = spectrum_matrices(request.cells_y)
+    # From samples at the offsets to the padded grid's transform; an odd kernel is -sin(k y).
+    transforms = np.ascontiguousarray(even_matrix.T), np.ascontiguousarray(-odd_matrix.T)
     spread: dict[Response, list[FloatArray]] = {}
     shared_samples: dict[float, FloatArray] = {}  # samples at wavenumbers that kernels with either pole share
     for poles in sorted({_poles(response) for response in request.responses}):
@@ -192,7 +191,13 @@ def end_kernel(request: EndRequest) -> EndKernel:
         numbers = [request.responses.index(response) for response in responses]
         size, parities = positions.size, len(request.parities)
         totals = np.zeros((len(responses), parities, request.cells_y + 1, size**2))
-        for panel, even, odd in _lateral_transforms(panels, request.dy, request.cells_y):
+        for panel in panels:
+            even, odd = (
+                transform @ (waves.T * (request.dy * np.sinc(panel.fine * request.dy / (2 * np.pi))))
+                for transform, waves in zip(transforms, panel.waves(offsets), strict=True)
+            )
+            if panel.interpolation is not None:
+                even, odd = even @ panel.interpolation, odd @ panel.interpolation
             samples = np.zeros((len(responses), parities, panel.nodes.size, size, size))
             for node, sampled in enumerate(_samples(request, panel, positions, shortest, shared_samples)):
                 reach = sampled.shape[-1]
@@ -234,24 +239,6 @@ def _samples(
             if shared:
                 shared_samples[wavenumber] = sampled
         yield sampled
-
-
-def _lateral_transforms(
-    panels: Sequence[LateralPanel], dy: float, cells_y: int
-) -> Iterator[tuple[LateralPanel, FloatArray, FloatArray]]:
-    """Each panel, with matrices (grid wavenumber, sample) for even and odd kernels to the padded grid's transform."""
-    offsets: FloatArray = dy * np.arange(cells_y + 1.0)
-    even_matrix, odd_matrix = spectrum_matrices(cells_y)
-    # An odd kernel is -sin(k y).
-    transforms = np.ascontiguousarray(even_matrix.T), np.ascontiguousarray(-odd_matrix.T)
-    for panel in panels:
-        averaged = dy * np.sinc(panel.fine * dy / (2 * np.pi))
-        even, odd = (
-            transform @ (waves.T * averaged) for transform, waves in zip(transforms, panel.waves(offsets), strict=True)
-        )
-        if panel.interpolation is not None:
-            even, odd = even @ panel.interpolation, odd @ panel.interpolation
-        yield panel, even, odd
 
 
 def add_product(total: FloatArray, first: FloatArray, second: FloatArray) -> None:
@@ -338,12 +325,6 @@ class EndCorrection:
             for response, kernels in self.kernels.items()
         }
         return EndCorrection(self.parities, coarse, lower, 2 * self.cell)
-
-    @property
-    def nbytes(self) -> int:
-        """Memory held, bytes."""
-        arrays = chain(chain.from_iterable(self.moments.values()), chain.from_iterable(self.kernels.values()))
-        return sum(array.nbytes for array in arrays)
 
     @classmethod
     def on(cls, grid: Grid, ends: EndKernel) -> EndCorrection:

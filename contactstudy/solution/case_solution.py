@@ -32,12 +32,8 @@ from contactstudy.contact.refinement.refined_contact import (
     refined_values,
 )
 from contactstudy.contact.refinement.refined_tractions import refine_tractions
-from contactstudy.contact.rolling.frictional_contact import (
-    FrictionalContact,
-    FrictionRequest,
-    frictional_contact,
-    with_tractions,
-)
+from contactstudy.contact.rolling.frictional_contact import FrictionalContact, frictional_contact, with_tractions
+from contactstudy.contact.rolling.tractions import FrictionRequest
 from contactstudy.contact.solve import contact_dataset
 from contactstudy.errors import InvalidInputError, WindowError
 from contactstudy.fields.largest import Largest

@@ -28,7 +28,8 @@ from contactstudy.contact.normal.contact import Settings, Shape, check_window, c
 from contactstudy.contact.normal.prescribed import Prescribed, RigidMotion
 from contactstudy.contact.normal.problem import ContactOperator, ContactProblem, solve_coupled, solve_normal
 from contactstudy.contact.refinement.refined_contact import refine_contact
-from contactstudy.contact.rolling.frictional_contact import FrictionRequest, frictional_contact
+from contactstudy.contact.rolling.frictional_contact import frictional_contact
+from contactstudy.contact.rolling.tractions import FrictionRequest
 from contactstudy.errors import ConvergenceWarning, InvalidInputError
 from contactstudy.kernels.load import Load
 from contactstudy.profiles.base import checked_drop

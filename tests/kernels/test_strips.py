@@ -13,7 +13,7 @@ from scipy import fft, integrate
 from contactstudy import FiniteLengthSpace, Grid, HalfSpace, Material, QuarterSpace, cache
 from contactstudy.bodies.models import Body
 from contactstudy.checks import FloatArray
-from contactstudy.fields.part import ColumnsOperator
+from contactstudy.fields.part import ColumnsOperator, end_kernel_of
 from contactstudy.fields.surface import SurfaceOperator
 from contactstudy.kernels.load import NORMAL_RESPONSE, Load, Response
 from contactstudy.kernels.strips import (
@@ -251,13 +251,11 @@ def test_operator_is_the_averaged_displacement_of_one_on_finer_cells(body: Body)
     loads, directions = (LOADS[::2], LOADS[:1]) if sinks_only else (LOADS, LOADS)
     responses = tuple(Response(direction, load) for direction in directions for load in loads)
     own = SurfaceOperator.of(body, fine, loads, directions)
-    columns = SurfaceOperator(
-        body,
-        [
-            (part.weight, ColumnsOperator.of(body.material, part, coarse, responses, Resolution()))
-            for part in body.parts
-        ],
-    )
+    material, parts = body.material, []
+    for part in body.parts:
+        ends = end_kernel_of(part, material, coarse, responses, Resolution())
+        parts.append((part.weight, ColumnsOperator.of(material, part.extent, coarse, responses, ends)))
+    columns = SurfaceOperator(body, parts)
     for load in loads:
         displaced = own.displaced({load: np.repeat(pressure, finer, axis=0)}, directions)
         means = {each: values.reshape(cells_x, finer, cells_y).mean(axis=1) for each, values in displaced.items()}
@@ -272,7 +270,7 @@ def test_operator_converges_to_that_of_uniform_cells() -> None:
     body, cells_x, cells_y = HalfSpace(material=STEEL), 16, 8
     coarse = Grid(x_range=(0.0, LENGTH), y_range=(-1.2e-4, 1.2e-4), cells_x=cells_x, cells_y=cells_y)
     pressure = np.random.default_rng(1).random(coarse.shape)
-    operator = ColumnsOperator.of(STEEL, body.parts[0], coarse, (NORMAL_RESPONSE,), Resolution())
+    operator = ColumnsOperator.of(STEEL, body.extent, coarse, (NORMAL_RESPONSE,), None)
     columns = operator({Load.NORMAL: pressure}, (Load.NORMAL,))[Load.NORMAL]
     apart = []
     for finer in (4, 8, 16):

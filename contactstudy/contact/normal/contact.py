@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -23,8 +23,7 @@ from contactstudy.contact.normal.prescribed import (
     Referred,
     RigidMotion,
     SolveReferred,
-    line_motions,
-    solve_referred,
+    line_motion,
 )
 from contactstudy.contact.normal.problem import ContactOperator, ContactProblem, solve_coupled, solve_normal
 from contactstudy.errors import ConvergenceWarning, WindowError
@@ -34,6 +33,8 @@ from contactstudy.threads import one_blas_thread
 
 CONVERGED_TOLERANCES = 10.0  # largest violation of a converged contact over the tolerance: the last step is unchecked
 OPEN_TOLERANCES = 10.0  # least gap of `open_pressure_error`, over the tolerance and the displacement's variation
+ROUNDS = 20  # rounds after which a prescribed tilt or approach counts as not reached. Speed.
+INEXACT = 1e-3  # tolerance of the contact over the error of the motion of the reference lines. Speed.
 SYMMETRY_ROUNDING = 1e-10  # rounding of a symmetric gap over the largest, of symmetric edges over the window. Accuracy.
 
 
@@ -115,24 +116,50 @@ class Shape(NamedTuple):
         ]
 
     def referred(self, solve: SolveReferred, tolerance: float, start: FloatArray | None = None) -> Referred:
-        """Solve a contact of this shape relative to the reference lines of its bodies."""
+        """Solve a contact whose approach or tilt is prescribed relative to the reference lines of the bodies."""
+        # The operator is symmetric only relative to the body far away: the motion of the lines enters the gap, by a
+        # fixed-point iteration with Aitken's relaxation.
         bodies = [self.body] if self.counterbody is None else [self.body, self.counterbody.body]
         finite = any(np.isfinite(body.depth) for body in bodies)
+        held = (finite and self.prescribed.approach is not None, finite and self.prescribed.load_position is None)
         low, high = self.grid.x_range
-        return solve_referred(
-            solve,
-            lambda pressure: self.line_motions(self.loads(pressure), pressure),
-            held=(finite and self.prescribed.approach is not None, finite and self.prescribed.load_position is None),
-            length=high - low,
-            tolerance=tolerance,
-            start=start,
-        )
+        weights = np.array([1.0, high - low])
+        trial, previous = np.zeros(2), np.zeros(2)
+        relaxation, applications = 1.0, 0
+        guess, error = start, 1.0 if any(held) else 0.0
+        for number in range(ROUNDS):
+            inner = max(tolerance, INEXACT * error)
+            iterate = solve(RigidMotion(*trial), guess, inner)
+            applications += iterate.applications
+            guess = iterate.pressure
+            motions = self.line_motions(self.loads(guess), guess)
+            motion = np.array(motions.total)
+            residual = np.where(held, motion - trial, 0.0)
+            moved = float(np.linalg.norm(weights * motion))
+            error = float(np.linalg.norm(weights * residual)) / moved if moved else 0.0
+            if max(error, inner) <= tolerance:
+                return Referred(replace(iterate, applications=applications), motions)
+            change = weights * (residual - previous)
+            if number and change.any():
+                relaxation *= -float(weights * previous @ change) / float(change @ change)
+            trial, previous = trial + relaxation * residual, residual
+        return Referred(replace(iterate, applications=applications, converged=False), motions)
 
     def line_motions(self, loads: Mapping[Load, FloatArray], pressure: FloatArray) -> LineMotions:
         """Motions of the reference lines under loads on the body, level below the resultant of a pressure."""
-        forces = (self.grid.weights * pressure).sum(axis=1)
-        position = float(forces @ self.grid.x / max(forces.sum(), np.finfo(float).tiny))
-        return line_motions(self.body, self.counterbody, self.grid, loads, position)
+        grid, counterbody = self.grid, self.counterbody
+        forces = (grid.weights * pressure).sum(axis=1)
+        position = float(forces @ grid.x / max(forces.sum(), np.finfo(float).tiny))
+        first = line_motion(self.body, grid, loads, position)
+        if counterbody is None:
+            return LineMotions(first, first)
+        reaction = {
+            load: (1 if load is Load.NORMAL else -1) * counterbody.load_on(grid, cells) for load, cells in loads.items()
+        }
+        start = counterbody.start
+        second = line_motion(counterbody.body, counterbody.own_grid(grid), reaction, position - start)
+        total = RigidMotion(first.level + second.level - second.tilt * start, first.tilt + second.tilt)
+        return LineMotions(first, total)
 
     def loads(self, pressure: FloatArray) -> dict[Load, FloatArray]:
         """Map a pressure and its coupled friction to loads."""
@@ -251,7 +278,7 @@ def _off_position(prescribed: Prescribed, grid: Grid, pressure: FloatArray) -> f
     return abs(float((line * (grid.x - prescribed.load_position)).sum() / line.sum())) / float(length)
 
 
-@cached("contacts", lambda referred: referred.iterate.pressure.nbytes)
+@cached("contacts")
 def _iterate(shape: Shape, settings: Settings, first: ArrayKey | None) -> Referred:
     """Pressure of a contact, and the motion of the reference lines."""
     grid, operator = shape.grid, contact_operator(shape)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -11,7 +10,6 @@ import numpy as np
 from contactstudy import checks
 from contactstudy.arrays.grid import Grid
 from contactstudy.arrays.peaks import lagrange
-from contactstudy.bodies.counterbody import Counterbody
 from contactstudy.bodies.models import Body
 from contactstudy.cache import cached
 from contactstudy.checks import FloatArray
@@ -71,10 +69,6 @@ class Prescribed(NamedTuple):
         return float(np.abs(grid.x - self.load_position).max())
 
 
-ROUNDS = 20  # rounds after which a prescribed tilt or approach counts as not reached. Speed.
-INEXACT = 1e-3  # tolerance of the contact over the error of the motion of the lines. Speed.
-
-
 class RigidMotion(NamedTuple):
     """Displacement ``level + tilt x`` of a line along x into its body: metres and radians."""
 
@@ -94,7 +88,7 @@ class ReferenceLine(NamedTuple):
     influence: FloatArray  # (point, column, cell_y): displacement under a unit load, metres per Pa
 
 
-@cached("reference lines", lambda line: line.influence.nbytes)
+@cached("reference lines")
 def reference_line(body: Body, columns: Grid, load: Load) -> ReferenceLine:
     """Line of a body, as smooth along x as the displacement of loads at its depth."""
     low, high = np.clip(body.extent, *columns.x_range)
@@ -102,7 +96,7 @@ def reference_line(body: Body, columns: Grid, load: Load) -> ReferenceLine:
     return ReferenceLine(x, weights, normal_influence(body, columns, load, x, body.depth))
 
 
-@cached("distant columns", lambda columns: columns[1].nbytes)
+@cached("distant columns")
 def distant_columns(grid: Grid, depth: float) -> tuple[Grid, FloatArray]:
     """Columns for the field of loads at a depth, and the matrix (column, cell) that moves loads onto them."""
     # The field is a polynomial of x: the loads on both have the same moments.
@@ -142,22 +136,6 @@ class LineMotions(NamedTuple):
     total: RigidMotion
 
 
-def line_motions(
-    body: Body, counterbody: Counterbody | None, grid: Grid, loads: Mapping[Load, FloatArray], position: float
-) -> LineMotions:
-    """Motions of the reference lines of a contact under loads on the first body (Pa), whose pressure acts at x."""
-    first = line_motion(body, grid, loads, position)
-    if counterbody is None:
-        return LineMotions(first, first)
-    reaction = {
-        load: (1 if load is Load.NORMAL else -1) * counterbody.load_on(grid, cells) for load, cells in loads.items()
-    }
-    start = counterbody.start
-    second = line_motion(counterbody.body, counterbody.own_grid(grid), reaction, position - start)
-    total = RigidMotion(first.level + second.level - second.tilt * start, first.tilt + second.tilt)
-    return LineMotions(first, total)
-
-
 class Referred(NamedTuple):
     """A contact and the motions of its reference lines."""
 
@@ -167,38 +145,3 @@ class Referred(NamedTuple):
 
 SolveReferred = Callable[[RigidMotion, FloatArray | None, float], ContactIterate]
 """Contact on a gap less a motion of the lines, from a first guess of the pressure, to a tolerance."""
-
-
-def solve_referred(
-    solve: SolveReferred,
-    motions_of: Callable[[FloatArray], LineMotions],
-    *,
-    held: tuple[bool, bool],
-    length: float,
-    tolerance: float,
-    start: FloatArray | None,
-) -> Referred:
-    """Solve a contact whose approach or tilt is prescribed relative to the reference lines."""
-    # The operator is symmetric only relative to the body far away: the motion of the lines enters the gap, by a fixed-
-    # point iteration with Aitken's relaxation.
-    weights = np.array([1.0, length])
-    trial, previous = np.zeros(2), np.zeros(2)
-    relaxation, applications = 1.0, 0
-    guess, error = start, 1.0 if any(held) else 0.0
-    for number in range(ROUNDS):
-        inner = max(tolerance, INEXACT * error)
-        iterate = solve(RigidMotion(*trial), guess, inner)
-        applications += iterate.applications
-        guess = iterate.pressure
-        motions = motions_of(guess)
-        motion = np.array(motions.total)
-        residual = np.where(held, motion - trial, 0.0)
-        moved = float(np.linalg.norm(weights * motion))
-        error = float(np.linalg.norm(weights * residual)) / moved if moved else 0.0
-        if max(error, inner) <= tolerance:
-            return Referred(replace(iterate, applications=applications), motions)
-        change = weights * (residual - previous)
-        if number and change.any():
-            relaxation *= -float(weights * previous @ change) / float(change @ change)
-        trial, previous = trial + relaxation * residual, residual
-    return Referred(replace(iterate, applications=applications, converged=False), motions)

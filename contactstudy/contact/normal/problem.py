@@ -53,10 +53,8 @@ class ContactProblem:
 
     def level(self, motion: tuple[float, ...]) -> FloatArray:
         """Height of the shape after its rigid `motion`, metres: broadcasts to (x, y)."""
-        level = np.zeros((1, 1))
-        for amount, each in zip(motion, self.resultants.motions, strict=True):
-            level = level + amount * each
-        return level
+        heights = (amount * height for amount, height in zip(motion, self.resultants.motions, strict=True))
+        return sum(heights, np.zeros((1, 1)))
 
     def coarser(self) -> ContactProblem:
         """Return the same contact on cells joined in twos."""

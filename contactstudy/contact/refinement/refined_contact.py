@@ -65,13 +65,6 @@ class RefinedContact:
     refined: RefinedColumns
     corner: CornerLaw | None = None
 
-    @property
-    def nbytes(self) -> int:
-        """Memory held, bytes."""
-        shape = self.contact.shape
-        arrays = (self.contact.pressure, self.contact.displacement, self.refined.pressure, shape.gap.values)
-        return sum(array.nbytes for array in arrays)
-
 
 def refine_contact(case: Case, accuracy: float, tolerance: float) -> RefinedContact:
     """Contact of a case, on columns that are refined to an accuracy of peak and end pressures."""
@@ -99,7 +92,7 @@ def _refine_contact(case: Case, accuracy: float, tolerance: float) -> RefinedCon
     )
 
 
-_cached_contact = cached("refined contacts", lambda refined: refined.nbytes)(_refine_contact)
+_cached_contact = cached("refined contacts")(_refine_contact)
 
 
 def _refine_in_window(case: Case, half_window: float, accuracy: float, tolerance: float) -> RefinedContact:
@@ -124,7 +117,7 @@ def _refine_in_window(case: Case, half_window: float, accuracy: float, tolerance
         cells_y = _cell_number_y(float(peak_cells.sum()) * cells.dy / (2 * window), accuracy)
         solver = _ColumnSolver(case, window, cells_y)
         # The splittings of the outermost columns determine the law of an end: begin with few columns.
-        refined = refine_columns(solver, shape, accuracy, None if rough.singular(shape) else rough.edges)
+        refined = refine_columns(solver, shape, accuracy, None if rough.singular else rough.edges)
         refined = _with_data_error(solver, refined, shape)
     full = solver.shape(refined.edges)
     contact = contact_of(full, Settings(tolerance), ArrayKey(_padded(refined.pressure, full.grid, refined.edges)))

@@ -19,13 +19,8 @@ from contactstudy.case.case import Case
 from contactstudy.case.motion import RESULTANTS, Rolling, Shift
 from contactstudy.checks import FloatArray
 from contactstudy.contact.refinement.refined_contact import CELLS_Y, RefinedContact, contact_shape, replace_contact
-from contactstudy.contact.rolling.frictional_contact import (
-    AMPLITUDES,
-    FrictionalContact,
-    FrictionRequest,
-    frictional_contact,
-)
-from contactstudy.contact.rolling.tractions import CoarseTractions
+from contactstudy.contact.rolling.frictional_contact import AMPLITUDES, FrictionalContact, frictional_contact
+from contactstudy.contact.rolling.tractions import FrictionRequest
 
 COLUMNS_SHARE = 0.5
 """Error of the columns, over the least error of the pressure; relative to full sliding's force and moment, and to work
@@ -92,17 +87,12 @@ def _contact_on_rows(
     grid = contact.shape.grid
     if rows != grid.cells_y:
         grid = Grid.between(grid.x_edges, grid.y_range, rows)
-    friction = case.friction_on(grid.x)
-    coarse = None
-    if last is not None:
-        bound = np.asarray(friction * last.contact.pressure)
-        coarse = CoarseTractions(last.contact.shape.grid, bound, last.tractions)
     request = FrictionRequest(
         motion=case.motion,
-        friction=friction,
+        friction=case.friction_on(grid.x),
         middle=case.roller_middle,
         coupled=case.coupled,
-        coarse=coarse,
+        coarse=None if last is None else last.tractions,
         max_steps=COARSE_STEPS if last is None else None,
     )
     return frictional_contact(contact_shape(case, grid, contact.shape.prescribed), contact.settings, request)

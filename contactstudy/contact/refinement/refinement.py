@@ -110,29 +110,17 @@ class RefinedColumns:
         return max(error for peak, error in pairs if peak == self.peak)
 
 
-class RoughColumns(NamedTuple):
-    """A contact on the columns of the first thresholds: edges, pressure (column, y), and laws of its singular ends."""
-
-    edges: FloatArray
-    pressure: FloatArray
-    laws: Laws
-
-    def singular(self, shape: AxialShape) -> bool:
-        """Whether an end has a law, or will have one: a sharp one that is pressed."""
-        return any(self.laws) or any(shape.sharp(side) and self.pressure[-side].any() for side in (0, 1))
-
-
-def rough_columns(solve: Solve, shape: AxialShape) -> RoughColumns:
+def rough_columns(solve: Solve, shape: AxialShape) -> Refinement:
     """First columns, with a peak to some percent."""
-    state = _Refinement(solve=solve, shape=shape, edges=first_edges(shape))
+    state = Refinement(solve=solve, shape=shape, edges=first_edges(shape))
     for theta in (FIRST_THETA, SECOND_THETA):
         state.refine(theta)
-    return RoughColumns(state.edges, state.pressure, (state.laws[0], state.laws[1]))
+    return state
 
 
 def refine_columns(solve: Solve, shape: AxialShape, accuracy: float, begin: FloatArray | None = None) -> RefinedColumns:
     """Refine columns, from the edges `begin` of a rough contact, until peak and end pressures settle to `accuracy`."""
-    state = _Refinement(solve=solve, shape=shape, edges=first_edges(shape) if begin is None else begin)
+    state = Refinement(solve=solve, shape=shape, edges=first_edges(shape) if begin is None else begin)
     theta = FIRST_THETA if begin is None else SECOND_THETA
     while True:
         state.refine(theta)
@@ -145,7 +133,7 @@ def refine_columns(solve: Solve, shape: AxialShape, accuracy: float, begin: Floa
 
 
 @dataclass(kw_only=True, eq=False)
-class _Refinement:
+class Refinement:
     """Where the refinement stands."""
 
     solve: Solve
@@ -161,6 +149,11 @@ class _Refinement:
     def __post_init__(self) -> None:
         self.pressure = self.solve(self.edges, None, ROUGH).pressure
         self._sample()
+
+    @property
+    def singular(self) -> bool:
+        """Whether an end has a law, or will have one: a sharp one that is pressed."""
+        return any(self.laws) or any(self.shape.sharp(side) and self.pressure[-side].any() for side in (0, 1))
 
     def refine(self, theta: float) -> None:
         """Split columns until none is marked."""
@@ -223,11 +216,6 @@ class _Refinement:
                 marks[list(outermost)] = False
         return marks
 
-    @property
-    def length(self) -> float:
-        """Length along the axis that can be pressed, metres."""
-        return float(self.edges[-1] - self.edges[0])
-
     def _half(self, side: int) -> FloatArray:
         first_half = centres_of(self.edges) < 0.5 * (self.edges[0] + self.edges[-1])
         half: FloatArray = self.pressure[first_half if side == 0 else ~first_half]
@@ -245,7 +233,8 @@ class _Refinement:
         scale = max(finite, default=float(self.pressure.max()))
         floor = scale * (theta / THETA_PER_ERROR + self.along_y)
         # Over a half-width under the mean load per length.
-        usual = float(self.pressure.sum(axis=1) @ np.diff(self.edges)) * min(1.0, self.shape.half_width / self.length)
+        length = float(self.edges[-1] - self.edges[0])
+        usual = float(self.pressure.sum(axis=1) @ np.diff(self.edges)) * min(1.0, self.shape.half_width / length)
         floors = {"peak_pressure": floor, "end_pressure": floor, "end_load": usual * floor / scale}
         errors = {
             name: [_change_error([reading[name][side] for reading in self.readings], least) for side in (0, 1)]

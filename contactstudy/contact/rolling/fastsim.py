@@ -79,7 +79,8 @@ def solve_strips(motion: Rolling, surfaces: Surfaces, bound: FloatArray) -> Trac
     growth[1] = rigid["y"] / compliance["y"] + turning * (grid.x - surfaces.middle)[:, None]
     traction, lost = strip_tractions(bound, growth, grid.dy)
     slip = np.array([compliance["x"], compliance["y"]])[:, None, None] * lost
-    return Tractions.of(surfaces, rigid, traction, slip, (bound > 0) & ~lost.any(axis=0))
+    sticks = (bound > 0) & ~lost.any(axis=0)
+    return Tractions.of(surfaces, rigid, bound=bound, traction=traction, slip=slip, sticks=sticks)
 
 
 def strip_tractions(bound: FloatArray, growth: FloatArray, dy: float) -> tuple[FloatArray, FloatArray]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -11,12 +10,12 @@ import xarray as xr
 
 from contactstudy.arrays.variables import describe
 from contactstudy.cache import ArrayKey
-from contactstudy.case.motion import Rolling, Shift
+from contactstudy.case.motion import Rolling
 from contactstudy.checks import FloatArray
 from contactstudy.contact.normal.contact import Contact, Settings, Shape, contact_of
 from contactstudy.contact.normal.pair import PairOperator
 from contactstudy.contact.rolling.surfaces import TANGENTIAL, Surfaces, Tractions
-from contactstudy.contact.rolling.tractions import CoarseTractions, TractionSettings, solve_tractions
+from contactstudy.contact.rolling.tractions import FrictionRequest, solve_tractions
 from contactstudy.errors import ConvergenceWarning, WindowError
 from contactstudy.fields.loads import Loads, TopLoad
 from contactstudy.fields.surface import SurfaceOperator, surface_operator
@@ -46,12 +45,7 @@ class FrictionalContact:
     @property
     def loads(self) -> Loads:
         """Loads on the body."""
-        along_x, along_y = self.tractions.traction
-        return {
-            Load.NORMAL: TopLoad(self.contact.pressure),
-            Load.ALONG_X: TopLoad(along_x),
-            Load.ALONG_Y: TopLoad(along_y),
-        }
+        return dict(zip(ALL, map(TopLoad, (self.contact.pressure, *self.tractions.traction)), strict=True))
 
     @property
     def converged(self) -> bool:
@@ -103,23 +97,9 @@ class FrictionalContact:
         return result
 
 
-@dataclass(frozen=True, eq=False, kw_only=True)
-class FrictionRequest:
-    """Friction and motion of a contact."""
-
-    motion: Shift | Rolling  # motion of the shape against the body
-    friction: float | FloatArray  # (x, 1): coefficient of friction, not negative
-    middle: float  # position x about which spin and moment are counted, metres
-    coupled: bool  # whether the tractions also displace the surfaces normally and so change the pressure
-    start: Mapping[Load, FloatArray] | None = None  # (x, y): pressure and tractions at the start of a shift; default: 0
-    coarse: CoarseTractions | None = None  # tractions on coarser cells as a guess
-    max_steps: int | None = None  # bound on the Newton steps; default: the bound on the iterations
-
-
 def frictional_contact(shape: Shape, settings: Settings, request: FrictionRequest) -> FrictionalContact:
     """Solve a contact with the tractions of a motion."""
     motion = request.motion
-    friction = np.broadcast_to(np.asarray(request.friction, dtype=np.float64), shape.grid.shape)
     directions, materials = ALL if request.coupled else TANGENTIAL, [shape.body.material]
     operator: PairOperator | SurfaceOperator
     with one_blas_thread():
@@ -129,12 +109,6 @@ def frictional_contact(shape: Shape, settings: Settings, request: FrictionReques
             operator = PairOperator.of(shape.body, shape.counterbody, shape.grid, ALL, directions)
             materials.append(shape.counterbody.body.material)
     surfaces = Surfaces(operator, shape.grid, materials, request.middle)
-    traction_settings = TractionSettings(
-        tolerance=settings.tolerance,
-        max_steps=settings.max_iterations if request.max_steps is None else request.max_steps,
-        start=request.start,
-        coarse=request.coarse,
-    )
 
     def tractions_under(pressure: FloatArray, last: Tractions | None = None) -> Tractions:
         if isinstance(motion, Rolling) and pressure[:, -2:].any():
@@ -143,7 +117,7 @@ def frictional_contact(shape: Shape, settings: Settings, request: FrictionReques
                 "ahead: widen the window along y"
             )
         with one_blas_thread():
-            return solve_tractions(motion, surfaces, pressure, friction, replace(traction_settings, last=last))
+            return solve_tractions(request, settings, surfaces, pressure, last)
 
     contact = contact_of(shape, settings)
     tractions, converged = tractions_under(contact.pressure), True

@@ -66,6 +66,7 @@ class Tractions:
     traction: FloatArray  # (2, x, y): along x and y, Pa
     slip: FloatArray  # (2, x, y): per distance rolled, or metres in a shift; 0 where cells stick or bear no pressure
     sticks: BoolArray  # (x, y): sticking cells of the contact
+    bound: FloatArray  # (x, y): bound on the traction, Pa
     rigid: Mapping[str, float]  # amplitudes of the rigid slip: "x", "y" and, in rolling, "spin"
     resultants: Mapping[str, float]  # forces and moment on the body, N and N m, by their names in results
     work: float  # frictional work: per distance rolled, J/m, or of the shift, J
@@ -78,7 +79,14 @@ class Tractions:
 
     @classmethod
     def of(
-        cls, surfaces: Surfaces, rigid: Mapping[str, float], traction: FloatArray, slip: FloatArray, sticks: BoolArray
+        cls,
+        surfaces: Surfaces,
+        rigid: Mapping[str, float],
+        *,
+        bound: FloatArray,
+        traction: FloatArray,
+        slip: FloatArray,
+        sticks: BoolArray,
     ) -> Tractions:
         """Tractions with their resultants and work."""
         resultants = (surfaces.weights * traction).sum(axis=(1, 2, 3)).tolist()
@@ -86,6 +94,7 @@ class Tractions:
             traction=traction,
             slip=slip,
             sticks=sticks,
+            bound=bound,
             rigid=rigid,
             resultants=dict(zip(RESULTANTS.values(), resultants, strict=True)),
             work=float((traction * slip * surfaces.areas).sum()),

@@ -21,13 +21,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import NamedTuple
 
 import numpy as np
 
-from contactstudy.arrays.grid import Grid
 from contactstudy.case.motion import RESULTANTS, Rolling, Shift
 from contactstudy.checks import BoolArray, FloatArray, IntArray
+from contactstudy.contact.normal.contact import Settings
 from contactstudy.contact.normal.pair import ScaledOperator
 from contactstudy.contact.normal.problem import cell_means, halve_cells
 from contactstudy.contact.rolling.coulomb import (
@@ -60,6 +59,7 @@ PARTS = (0.25, 1.4)  # range of the part c: less is not pressed, more is another
 class RollingCells:
     """Cells of a contact in steady rolling along +y."""
 
+    bound: FloatArray  # (x, y): bound on the traction, Pa
     unknown: IntArray  # (2, unknown): row and column of the cells with unknown tractions
     offset: FloatArray  # (unknown): place of the slip in each, in cells ahead of its centre
     tied: IntArray  # (2, tied): row and column of the tied leading cells
@@ -105,6 +105,7 @@ class RollingCells:
         numbers = np.cumsum(free).reshape(free.shape) - 1
         unknown = np.argwhere(free).T
         return cls(
+            bound=bound,
             unknown=unknown,
             offset=offset[tuple(unknown)],
             tied=tied_cells,
@@ -112,9 +113,14 @@ class RollingCells:
             ratio=np.array(ratio),
         )
 
-    def on_grid(self, traction: FloatArray, shape: tuple[int, int]) -> FloatArray:
+    @property
+    def limits(self) -> FloatArray:
+        """Bounds of the unknown cells, Pa: array (unknown)."""
+        return np.asarray(self.bound[tuple(self.unknown)])
+
+    def on_grid(self, traction: FloatArray) -> FloatArray:
         """Tractions on all cells (2, x, y) from the unknown ones (2, unknown)."""
-        total = np.zeros((2, *shape))
+        total = np.zeros((2, *self.bound.shape))
         total[:, self.unknown[0], self.unknown[1]] = traction
         total[:, self.tied[0], self.tied[1]] = self.ratio * traction[:, self.to]
         return total
@@ -163,61 +169,55 @@ ROUGH_TOLERANCE = 1e-3  # tolerance on coarser cells, and of the solution that d
 LARGEST_STICKING = 0.999  # largest part of its bound of a sticking cell in a guess. Speed.
 
 
-class CoarseTractions(NamedTuple):
-    """A solution on coarser cells."""
+@dataclass(frozen=True, eq=False, kw_only=True)
+class FrictionRequest:
+    """Friction and motion of a contact."""
 
-    grid: Grid  # cells; half as many along y, and along x half as many or the same
-    bound: FloatArray  # (x, y): bound on the traction, Pa
-    tractions: Tractions  # the solution
-
-
-@dataclass(frozen=True, kw_only=True)
-class TractionSettings:
-    """Settings of a traction problem."""
-
-    tolerance: float  # violation of Coulomb's law at which the iteration stops
-    max_steps: int  # bound on the Newton steps
+    motion: Shift | Rolling  # motion of the shape against the body
+    friction: float | FloatArray  # broadcasts to (x, y): coefficient of friction, not negative
+    middle: float  # position x about which spin and moment are counted, metres
+    coupled: bool  # whether the tractions also displace the surfaces normally and so change the pressure
     start: Mapping[Load, FloatArray] | None = None  # (x, y): pressure and tractions at the start of a shift; default: 0
-    coarse: CoarseTractions | None = None  # guess; default: computed first on many uniform cells
-    last: Tractions | None = None  # guess under almost the same pressure, whose leading edges are retained
+    coarse: Tractions | None = None
+    """Guess on half as many cells along y, and along x half as many or the same; default: computed first on many
+    uniform cells."""
+    max_steps: int | None = None  # bound on the Newton steps; default: the bound on the iterations
 
 
 def solve_tractions(
-    motion: Shift | Rolling,
-    surfaces: Surfaces,
-    pressure: FloatArray,
-    friction: FloatArray,
-    settings: TractionSettings,
+    request: FrictionRequest, settings: Settings, surfaces: Surfaces, pressure: FloatArray, last: Tractions | None
 ) -> Tractions:
-    """Tractions under a pressure."""
-    grid = surfaces.grid
-    bound = friction * pressure
+    """Tractions under a pressure; `last` is a guess under almost the same one, whose leading edges are retained."""
+    grid, motion = surfaces.grid, request.motion
+    bound = np.asarray(request.friction * pressure)
     rolling = isinstance(motion, Rolling)
     shares = neighbour_shares(grid.x, grid.widths, grid.dy)
     cells = RollingCells.of(pressure, bound, shares) if rolling else _shift_cells(bound)
     check_forces(motion, bound, surfaces.weights)
     if not cells.unknown.size:
         zero = np.zeros((2, *grid.shape))
-        return Tractions.of(surfaces, motion.amplitudes, zero, zero, np.zeros(grid.shape, bool))
+        sticks = np.zeros(grid.shape, bool)
+        return Tractions.of(surfaces, motion.amplitudes, bound=bound, traction=zero, slip=zero, sticks=sticks)
     if isinstance(motion, Rolling) and motion.model == "fastsim":
         return solve_strips(motion, surfaces, bound)
     displaced = surfaces.operator.displaced({Load.NORMAL: pressure}, TANGENTIAL)
-    if settings.start is not None:
-        for direction, initial in surfaces.operator.displaced(settings.start, TANGENTIAL).items():
+    if request.start is not None:
+        for direction, initial in surfaces.operator.displaced(request.start, TANGENTIAL).items():
             displaced[direction] = displaced[direction] - initial
 
     def solve(cells: RollingCells, tolerance: float, guess: Guess | None) -> Tractions:
-        problem = _coulomb_problem(motion, surfaces, bound, cells, displaced)
-        problem = replace(problem, tolerance=tolerance, max_steps=settings.max_steps)
+        problem = _coulomb_problem(motion, surfaces, cells, displaced)
+        max_steps = settings.max_iterations if request.max_steps is None else request.max_steps
+        problem = replace(problem, tolerance=tolerance, max_steps=max_steps)
         solution = solve_with_continuation(problem, guess)
         return _complete_tractions(problem, solution, motion, cells, surfaces)
 
-    steps, last = 0, settings.last
+    steps = 0
     if last is None or last.leading is None:
-        coarse = settings.coarse
+        coarse = request.coarse
         if coarse is None and cells.unknown.shape[1] >= NESTED_CELLS:
-            coarse = _solve_coarse(motion, surfaces, pressure, bound, settings)
-        guess = None if coarse is None else guess_from_coarse(coarse, cells, bound, motion.modes)
+            coarse = _solve_coarse(request, settings, surfaces, pressure, bound)
+        guess = None if coarse is None else guess_from_coarse(coarse, cells, motion.modes)
         last = solve(cells, max(settings.tolerance, ROUGH_TOLERANCE) if rolling else settings.tolerance, guess)
         if not rolling:
             return last
@@ -227,14 +227,13 @@ def solve_tractions(
     # Marked columns and edges from each pressure of a coupled contact would alternate.
     leading = last.leading or Leading(np.asarray(~last.sticks.any(axis=1)), pressure)
     cells = RollingCells.of(pressure, bound, shares, leading)
-    tractions = solve(cells, settings.tolerance, guess_from_last(last, cells, bound, motion.modes))
+    tractions = solve(cells, settings.tolerance, guess_from_last(last, cells, motion.modes))
     return replace(_with_mean_slip(tractions, surfaces, displaced), steps=steps + tractions.steps, leading=leading)
 
 
 def _coulomb_problem(
     motion: Shift | Rolling,
     surfaces: Surfaces,
-    bound: FloatArray,
     cells: RollingCells,
     displaced: Mapping[Load, FloatArray],
 ) -> CoulombProblem:
@@ -248,7 +247,7 @@ def _coulomb_problem(
         return np.stack([-displacements[direction][tuple(cells.unknown)] for direction in TANGENTIAL])
 
     def relief(traction: FloatArray) -> FloatArray:
-        on_grid = cells.on_grid(traction, grid.shape)
+        on_grid = cells.on_grid(traction)
         return -elastic_slip(surfaces.operator.displaced(dict(zip(TANGENTIAL, on_grid, strict=True)), TANGENTIAL))
 
     amplitudes, modes, weights = motion.amplitudes, motion.modes, surfaces.weights
@@ -263,7 +262,7 @@ def _coulomb_problem(
     return CoulombProblem(
         relief=relief,
         inverse=tangential_inverse(surfaces.materials, cells.unknown, grid, rolling=rolling),
-        bound=bound[tuple(cells.unknown)],
+        bound=cells.limits,
         rigid=rigid,
         modes=np.array([unit_slips[name] for name in modes]).reshape(len(modes), *rigid.shape),
         works=works.reshape(len(modes), *rigid.shape),
@@ -274,12 +273,8 @@ def _coulomb_problem(
 
 
 def _solve_coarse(
-    motion: Shift | Rolling,
-    surfaces: Surfaces,
-    pressure: FloatArray,
-    bound: FloatArray,
-    settings: TractionSettings,
-) -> CoarseTractions | None:
+    request: FrictionRequest, settings: Settings, surfaces: Surfaces, pressure: FloatArray, bound: FloatArray
+) -> Tractions | None:
     """Solve on cells of twice the size; None on graded cells, or where these do not exist."""
     grid = surfaces.grid
     if grid.cells_x % 2 or grid.cells_y % 2 or not grid.uniform:
@@ -288,20 +283,16 @@ def _solve_coarse(
     if isinstance(operator, ScaledOperator):
         return None
     coarse_pressure, coarse_bound = cell_means(pressure), cell_means(bound)
-    coarse = grid.coarsened()
-    start = settings.start
-    tractions = solve_tractions(
-        motion,
-        surfaces._replace(operator=operator, grid=coarse),
-        coarse_pressure,
-        coarse_bound / np.where(coarse_pressure > 0, coarse_pressure, 1.0),
-        TractionSettings(
-            tolerance=ROUGH_TOLERANCE,
-            max_steps=settings.max_steps,
-            start=None if start is None else {load: cell_means(values) for load, values in start.items()},
-        ),
+    start = request.start
+    coarse = replace(
+        request,
+        friction=coarse_bound / np.where(coarse_pressure > 0, coarse_pressure, 1.0),
+        start=None if start is None else {load: cell_means(values) for load, values in start.items()},
     )
-    return CoarseTractions(coarse, coarse_bound, tractions)
+    surfaces = surfaces._replace(operator=operator, grid=grid.coarsened())
+    settings = settings._replace(tolerance=ROUGH_TOLERANCE)
+    # The friction times the pressure equals the mean of the bound up to rounding.
+    return replace(solve_tractions(coarse, settings, surfaces, coarse_pressure, None), bound=coarse_bound)
 
 
 def _complete_tractions(
@@ -316,14 +307,14 @@ def _complete_tractions(
     cell_slip = problem.slip(solution.traction, solution.amplitudes)
     scale = problem.slip_scale(solution.amplitudes)
     bound_error, slip_error = law_violation(solution.traction, cell_slip, problem.bound, solution.sticks, scale)
-    traction = cells.on_grid(solution.traction, grid.shape)
+    traction = cells.on_grid(solution.traction)
     slip, sticks = np.zeros_like(traction), np.zeros(grid.shape, bool)
     slip[:, cells.unknown[0], cells.unknown[1]] = np.where(solution.sticks, 0.0, cell_slip)
     sticks[tuple(cells.unknown)] = solution.sticks
     for row, column, number in zip(*cells.tied, cells.to, strict=True):
         slip[:, row, column], sticks[row, column] = slip[:, row, column - 1], solution.sticks[number]
     rigid = motion.amplitudes | dict(zip(motion.modes, solution.amplitudes.tolist(), strict=True))
-    tractions = Tractions.of(surfaces, rigid, traction, slip, sticks)
+    tractions = Tractions.of(surfaces, rigid, bound=cells.bound, traction=traction, slip=slip, sticks=sticks)
     largest = (np.abs(surfaces.weights).sum(axis=1) * np.hypot(*traction)).sum(axis=(1, 2)).tolist()
     errors = [
         abs(tractions.resultants[name] - motion.resultants[mode]) / max(size, 1e-300)
@@ -366,15 +357,15 @@ def _with_mean_slip(tractions: Tractions, surfaces: Surfaces, displaced: Mapping
 def _shift_cells(bound: FloatArray) -> RollingCells:
     """Cells of a shifted contact: all cells that carry a traction are unknown."""
     unknown = np.argwhere(bound > 0).T
-    empty = np.zeros((2, 0), dtype=np.int64)
-    return RollingCells(unknown=unknown, offset=np.zeros(unknown.shape[1]), tied=empty, to=empty[0], ratio=np.zeros(0))
+    offset, empty = np.zeros(unknown.shape[1]), np.zeros((2, 0), dtype=np.int64)
+    return RollingCells(bound=bound, unknown=unknown, offset=offset, tied=empty, to=empty[0], ratio=np.zeros(0))
 
 
-def guess_from_coarse(coarse: CoarseTractions, cells: RollingCells, bound: FloatArray, modes: tuple[str, ...]) -> Guess:
-    """Guess for finer cells with a bound (x, y)."""
+def guess_from_coarse(coarse: Tractions, cells: RollingCells, modes: tuple[str, ...]) -> Guess:
+    """Guess for finer cells."""
     row, column = cells.unknown
-    factor = bound.shape[0] // coarse.grid.cells_x
-    part = coarse.tractions.traction / np.where(coarse.bound > 0, coarse.bound, 1.0)
+    factor = cells.bound.shape[0] // coarse.bound.shape[0]
+    part = coarse.traction / np.where(coarse.bound > 0, coarse.bound, 1.0)
     # Slipping cells have all of their bound; inside the stick zone the part is interpolated.
     parents = row // factor, column // 2
     fine = halve_cells(part, 2)
@@ -383,15 +374,15 @@ def guess_from_coarse(coarse: CoarseTractions, cells: RollingCells, bound: Float
     smooth = fine[:, row, column]
     size = np.hypot(*smooth)
     limited = smooth * np.minimum(1.0, LARGEST_STICKING / np.where(size > 0, size, 1.0))
-    sticks = coarse.tractions.sticks[parents]
-    traction = np.where(sticks, limited, part[:, parents[0], parents[1]]) * bound[row, column]
-    return Guess(traction, np.array([coarse.tractions.rigid[name] for name in modes]))
+    sticks = coarse.sticks[parents]
+    traction = np.where(sticks, limited, part[:, parents[0], parents[1]]) * cells.limits
+    return Guess(traction, np.array([coarse.rigid[name] for name in modes]))
 
 
-def guess_from_last(last: Tractions, cells: RollingCells, bound: FloatArray, modes: tuple[str, ...]) -> Guess:
-    """Guess from tractions on the same cells under a bound (x, y) that was almost the same."""
+def guess_from_last(last: Tractions, cells: RollingCells, modes: tuple[str, ...]) -> Guess:
+    """Guess from tractions on the same cells under a bound that was almost the same."""
     unknown = tuple(cells.unknown)
-    traction, limit = last.traction[:, *unknown], bound[unknown]
+    traction, limit = last.traction[:, *unknown], cells.limits
     size = np.hypot(*traction)
     limited = np.where(last.sticks[unknown], np.minimum(size, LARGEST_STICKING * limit), limit)
     amplitudes = np.array([last.rigid[name] for name in modes])

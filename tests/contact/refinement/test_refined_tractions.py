@@ -25,8 +25,9 @@ from contactstudy.contact.normal.prescribed import Prescribed
 from contactstudy.contact.refinement import refined_tractions as module
 from contactstudy.contact.refinement.refined_contact import CELLS_Y, RefinedContact, refine_contact
 from contactstudy.contact.refinement.refined_tractions import COLUMNS_SHARE, _scales, refine_tractions
-from contactstudy.contact.rolling.frictional_contact import FrictionalContact, FrictionRequest
+from contactstudy.contact.rolling.frictional_contact import FrictionalContact
 from contactstudy.contact.rolling.surfaces import Tractions
+from contactstudy.contact.rolling.tractions import FrictionRequest
 from contactstudy.profiles import Ellipsoid
 
 STEEL = Material(210e9, 0.3)
@@ -138,7 +139,9 @@ def made_up(case: Case, pressed: float, **rigid: float) -> FrictionalContact:
     )
     resultants = dict.fromkeys(("force_x", "force_y", "moment_z"), 0.0)
     pair = np.stack([none] * 2)
-    tractions = Tractions(traction=pair, slip=pair, sticks=none > 1, rigid=rigid, resultants=resultants, work=0.0)
+    tractions = Tractions(
+        traction=pair, slip=pair, sticks=none > 1, bound=none, rigid=rigid, resultants=resultants, work=0.0
+    )
     return FrictionalContact(contact, tractions, True)
 
 

@@ -18,9 +18,8 @@ from contactstudy.contact.refinement.refinement import (
     LAST_COLUMNS,
     SHARPEST,
     ColumnPressure,
-    RoughColumns,
+    Refinement,
     _change_error,
-    _Refinement,
     refine_columns,
     replace_pressure,
     rough_columns,
@@ -299,7 +298,7 @@ def test_a_step_at_an_end_is_marked_by_what_the_line_to_the_end_adds(side: int, 
         height=np.zeros_like,
         room=(0.0, 0.0),
     )
-    state = _Refinement(solve=lambda *_: pressed(along[:, None] * np.sqrt(1 - Y**2)), shape=asked, edges=unit * edges)
+    state = Refinement(solve=lambda *_: pressed(along[:, None] * np.sqrt(1 - Y**2)), shape=asked, edges=unit * edges)
     for theta, marked in ((0.19, True), (0.21, False)):
         assert state._marks(theta)[-side] == marked
 
@@ -362,7 +361,7 @@ def test_of_two_equal_peaks_the_larger_error_counts(errors: tuple[float, float])
 
 
 def test_an_end_is_sampled_wherever_its_column_was_split(caplog: pytest.LogCaptureFixture) -> None:
-    state = _Refinement(solve=averaged(FOLLOWED["rises to one end"]), shape=shape(), edges=first_edges(shape()))
+    state = Refinement(solve=averaged(FOLLOWED["rises to one end"]), shape=shape(), edges=first_edges(shape()))
     with caplog.at_level("INFO"):
         for theta in (0.5, 0.3, 0.2):
             state.refine(theta)
@@ -409,11 +408,16 @@ def test_peak_at_a_pressed_sharp_end_has_an_infinite_error(side: int, slope: flo
 def test_a_rough_contact_is_singular_where_a_sharp_end_is_pressed_or_has_a_law(side: int, law: EndLaw | None) -> None:
     pressure = np.zeros((4, 3))
     pressure[-side] = 1.0
-    rough = RoughColumns(np.arange(5.0), pressure, (law, None) if side else (None, law))
+
+    def singular(asked: AxialShape) -> bool:
+        rough = Refinement(solve=lambda *_: pressed(pressure), shape=asked, edges=np.arange(5.0))
+        rough.laws = [law, None] if side else [None, law]
+        return rough.singular
+
     sharp, blunt = ((2.0, 0.0), (0.0, 2.0))[:: 1 - 2 * side]
-    assert rough.singular(shape(room=sharp))
-    assert rough.singular(shape(room=blunt)) == (law is not None)
-    assert rough.singular(shape(room=sharp, elastic=True)) == (law is not None)
+    assert singular(shape(room=sharp))
+    assert singular(shape(room=blunt)) == (law is not None)
+    assert singular(shape(room=sharp, elastic=True)) == (law is not None)
 
 
 def test_a_rough_contact_has_the_columns_of_the_second_threshold() -> None:
@@ -423,4 +427,4 @@ def test_a_rough_contact_has_the_columns_of_the_second_threshold() -> None:
     again = refine_columns(solve, asked, 0.02, rough.edges)
     assert again.edges == pytest.approx(fine.edges)
     assert again.first == pytest.approx(rough.edges)
-    assert rough.laws == (None, None)
+    assert rough.laws == [None, None]

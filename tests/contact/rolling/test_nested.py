@@ -10,7 +10,6 @@ from contactstudy.checks import FloatArray
 from contactstudy.contact.rolling.surfaces import Tractions
 from contactstudy.contact.rolling.tractions import (
     LARGEST_STICKING,
-    CoarseTractions,
     RollingCells,
     cell_means,
     guess_from_coarse,
@@ -22,16 +21,17 @@ FINE = Grid(x_range=(0.0, 6.0), y_range=(0.0, 4.0), cells_x=12, cells_y=8)
 ALONG_Y_ONLY = Grid(x_range=(0.0, 6.0), y_range=(0.0, 4.0), cells_x=6, cells_y=8)
 
 
-def found_on(grid: Grid, traction: FloatArray, sticks: FloatArray) -> Tractions:
+def found_under(bound: FloatArray, traction: FloatArray, sticks: FloatArray) -> Tractions:
     rigid = {"x": 0.5, "y": -0.25, "spin": 3.0}
     slip = np.zeros_like(traction)
-    return Tractions(traction=traction, slip=slip, sticks=sticks, rigid=rigid, resultants={}, work=0.0)
+    return Tractions(traction=traction, slip=slip, sticks=sticks, bound=bound, rigid=rigid, resultants={}, work=0.0)
 
 
-def all_cells(grid: Grid) -> RollingCells:
+def all_cells(bound: FloatArray) -> RollingCells:
     none = np.zeros((2, 0), dtype=np.int64)
-    unknown = np.argwhere(np.ones(grid.shape, bool)).T
-    return RollingCells(unknown=unknown, offset=np.zeros(unknown.shape[1]), tied=none, to=none[0], ratio=np.zeros(0))
+    unknown = np.argwhere(np.ones(bound.shape, bool)).T
+    offset = np.zeros(unknown.shape[1])
+    return RollingCells(bound=bound, unknown=unknown, offset=offset, tied=none, to=none[0], ratio=np.zeros(0))
 
 
 def plane(grid: Grid) -> FloatArray:
@@ -43,8 +43,8 @@ def plane(grid: Grid) -> FloatArray:
 @pytest.mark.parametrize("grid", [FINE, ALONG_Y_ONLY])
 def test_parts_of_the_bound_are_on_lines_where_cells_stick(grid: Grid) -> None:
     bound, fine_bound = 2.0 + COARSE.x[:, None] * COARSE.y, 3.0 + grid.x[:, None] + grid.y
-    coarse = CoarseTractions(COARSE, bound, found_on(COARSE, bound * plane(COARSE), np.ones(COARSE.shape, bool)))
-    guess = guess_from_coarse(coarse, all_cells(grid), fine_bound, ("y", "spin"))
+    coarse = found_under(bound, bound * plane(COARSE), np.ones(COARSE.shape, bool))
+    guess = guess_from_coarse(coarse, all_cells(fine_bound), ("y", "spin"))
     found = guess.traction.reshape(2, *grid.shape) / fine_bound
     inside = slice(2, -2) if grid is FINE else slice(None)
     assert found[:, inside, 1:-1] == pytest.approx(plane(grid)[:, inside, 1:-1], rel=1e-12)
@@ -58,8 +58,8 @@ def test_cells_that_slip_keep_their_whole_bound_and_others_less() -> None:
     direction = np.array([0.6, 0.8])[:, None, None]
     traction = direction * bound * np.where(sticks, 0.9 + 0.05 * COARSE.x[:, None], 1.0)
     fine_bound = np.full(FINE.shape, 5.0)
-    coarse = CoarseTractions(COARSE, bound, found_on(COARSE, traction, sticks))
-    found = guess_from_coarse(coarse, all_cells(FINE), fine_bound, ()).traction.reshape(2, *FINE.shape)
+    coarse = found_under(bound, traction, sticks)
+    found = guess_from_coarse(coarse, all_cells(fine_bound), ()).traction.reshape(2, *FINE.shape)
     part = np.hypot(*found) / fine_bound
     slips, bare = FINE.x > 3, FINE.y < 0.9
     assert part[slips][:, ~bare] == pytest.approx(1.0)
@@ -77,7 +77,7 @@ def test_under_almost_the_same_bound_what_slips_follows_it() -> None:
     last[:, 0] = 0.0
     sticks = FINE.x[:, None] < 3 + 0 * FINE.y
     bound = np.hypot(*last) * random.uniform(0.9, 1.1, FINE.shape) + np.where(FINE.x[:, None] < 0.5, 1.0, 0.0)
-    guess = guess_from_last(found_on(FINE, last, sticks), all_cells(FINE), bound, ("x",))
+    guess = guess_from_last(found_under(bound, last, sticks), all_cells(bound), ("x",))
     found = guess.traction.reshape(2, *FINE.shape)
     assert guess.amplitudes.tolist() == [0.5]
     size, before = np.hypot(*found), np.hypot(*last)

@@ -22,8 +22,9 @@ from contactstudy.contact.rolling.coulomb import (
     law_violation,
     solve_with_continuation,
 )
-from contactstudy.contact.rolling.frictional_contact import FrictionalContact, FrictionRequest, frictional_contact
+from contactstudy.contact.rolling.frictional_contact import FrictionalContact, frictional_contact
 from contactstudy.contact.rolling.surfaces import Tractions
+from contactstudy.contact.rolling.tractions import FrictionRequest
 from contactstudy.fields.surface import SurfaceOperator
 from contactstudy.kernels.load import Load
 from tests.contact.rolling.motions import FRICTION, LOAD, MOTIONS
