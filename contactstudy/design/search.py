@@ -7,7 +7,6 @@ import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from types import MappingProxyType
-from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -152,24 +151,29 @@ class Evaluations:
                     hint = f"an array; a function makes a number of it: lambda result: result.{self.measure}.max()"
                     raise InvalidInputError("measure", self.measure, "a scalar of the result, or a function", hint)
                 checks.known_name("measure", self.measure, scalars)
-            measured: Any = result[self.measure]
+            measured: object = result[self.measure]
             self.units = str(result[self.measure].attrs.get("units", ""))
             if f"{self.measure}_error" in result:
                 measured = (measured, result[f"{self.measure}_error"])
         else:
             measured = self.measure(result)
-        try:
-            value, stated = measured if isinstance(measured, tuple) else (measured, None)
-            if isinstance(value, str) or isinstance(stated, str):
-                raise TypeError
-            number, error = float(value), None if stated is None else float(stated)
-        except (TypeError, ValueError):
-            shape = getattr(measured, "shape", ())
-            value = f"an array of shape {shape}" if shape else measured
-            raise InvalidInputError("measure", value, "a function that returns a number, or (number, error)") from None
+        number, error = _number_and_error(measured)
         if np.isnan(number):
             raise InvalidInputError("measure", number, "a number in every case", f"NaN for {case!r}")
         return number, self.accuracy * abs(number) if error is None or np.isnan(error) else error
+
+
+def _number_and_error(measured: object) -> tuple[float, float | None]:
+    """Split the return value of a measure into number and error."""
+    try:
+        value, error = measured if isinstance(measured, tuple) else (measured, None)
+        if isinstance(value, str) or isinstance(error, str):
+            raise TypeError
+        return float(value), None if error is None else float(error)
+    except (TypeError, ValueError):
+        shape = getattr(measured, "shape", ())
+        value = f"an array of shape {shape}" if shape else measured
+        raise InvalidInputError("measure", value, "a function that returns a number, or (number, error)") from None
 
 
 def fewest(parameters: int) -> int:
