@@ -90,14 +90,17 @@ class SurfaceOperator:
         return reference_distance(self.body.parts[0].extent)
 
 
-_cached_operator = cached("surface operators")(SurfaceOperator.of)
-
-
 def surface_operator(
     body: Body, grid: Grid, loads: tuple[Load, ...] = NORMAL, directions: tuple[Load, ...] = NORMAL
 ) -> SurfaceOperator:
     """Return the operator of a body; all cases with the same one share it, whatever depth they refer to."""
     return _cached_operator(replace(body, reference_depth=None), grid, loads, directions)
+
+
+@cached("surface operators")
+def _cached_operator(body: Body, grid: Grid, loads: tuple[Load, ...], directions: tuple[Load, ...]) -> SurfaceOperator:
+    """Build an operator, or return the cached one."""
+    return SurfaceOperator.of(body, grid, loads, directions)
 
 
 @overload

@@ -187,7 +187,9 @@ def returned(strip_result: Callable[..., xr.Dataset], opened: xr.Dataset, tmp_pa
             roller=metal,
             z=depths,
         ),
-        "case_numbers": case_numbers(solved),
+        "case_numbers": xr.Dataset(
+            {name: ((), number.value, number.attributes) for name, number in case_numbers(solved).items()}
+        ),
         "self_affine": rough,
         "read_height_map": cs.roughness.read_height_map(file, grid),
         "slice_model": bearing.slice_model(case),
