@@ -1,7 +1,7 @@
 """Figures of the documentation: ``python docs/gallery/figures.py [NAME ...]`` draws them into this folder.
 
-The code of a figure is the script of its name in this folder, the page of its name in the tutorial, or a program of
-`studies`. `figures.json` contains a hash of the code; without names the program draws the figures with another hash.
+The code of a figure is the script of its name in this folder, the page of its name in the tutorial, or a program in
+`PROGRAMS`. `figures.json` contains a hash of the code; without names the program draws the figures with another hash.
 """
 
 from __future__ import annotations
@@ -16,32 +16,74 @@ import subprocess
 import sys
 import tempfile
 from pathlib import Path
+from typing import NamedTuple
 
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
 RECORD = HERE / "figures.json"
-BLOCKS = re.compile(r"^```python\n(.*?)^```", re.DOTALL | re.MULTILINE)
+BLOCKS = re.compile(r"^```(?:python|toml)\n(.*?)^```", re.DOTALL | re.MULTILINE)
+
+
+class Program(NamedTuple):
+    """Command that draws a figure, the file that it writes, and the files and folders that contain its code."""
+
+    command: str
+    file: str
+    sources: tuple[str, ...]
+
+
+def study_program(name: str, figure: str) -> Program:
+    """Return the program of `studies` that draws a figure."""
+    return Program(f"studies/{name}.py", f"results/{figure}.png", (f"studies/{name}.py",))
+
 
 PROGRAMS = {
-    "study_best_profile": ("studies/best_profile.py", "results/best_profile/best_profile.png"),
-    "study_quarter_space": ("studies/quarter_space.py", "results/quarter_space/quarter_space.png"),
-    "study_regime_map": ("studies/regime_map.py", "results/regime_map/full_crown.png"),
-    "study_regime_map_slight": ("studies/regime_map.py", "results/regime_map/0.3_crown.png"),
-    "study_regime_map_worn": ("studies/regime_map.py", "results/regime_map/worn_crown.png"),
-    "study_residual_stress": ("studies/residual_stress.py", "results/residual_stress/residual_stress.png"),
-    "study_rolling": ("studies/rolling.py", "results/rolling.png"),
-    "study_shakedown": ("studies/shakedown.py", "results/shakedown/shakedown.png"),
-    "study_worn_profile": ("studies/worn_profile.py", "results/worn_profile/worn_profile.png"),
+    "study_best_profile": study_program("best_profile", "best_profile/best_profile"),
+    "study_quarter_space": study_program("quarter_space", "quarter_space/quarter_space"),
+    "study_regime_map": study_program("regime_map", "regime_map/full_crown"),
+    "study_regime_map_slight": study_program("regime_map", "regime_map/0.3_crown"),
+    "study_regime_map_worn": study_program("regime_map", "regime_map/worn_crown"),
+    "study_residual_stress": study_program("residual_stress", "residual_stress/residual_stress"),
+    "study_rolling": study_program("rolling", "rolling"),
+    "study_shakedown": study_program("shakedown", "shakedown/shakedown"),
+    "study_worn_profile": study_program("worn_profile", "worn_profile/worn_profile"),
+    "explore": Program(
+        "-m docs.gallery.screens explore",
+        "results/explore.png",
+        ("docs/gallery/screens.py", "docs/how-to/explore.md", "contactstudy/explorer"),
+    ),
+    "report": Program(
+        "-m docs.gallery.screens report",
+        "results/report.png",
+        ("docs/gallery/screens.py", "docs/how-to/report.md", "contactstudy/report"),
+    ),
+    "verification_convergence": Program(
+        "-m benchmarks.convergence --out results/convergence",
+        "results/convergence/convergence.png",
+        ("benchmarks/convergence.py",),
+    ),
+    "verification_finite_elements": Program(
+        "-m contactstudy.cli verify --level full --out results/verification",
+        "results/verification/finite_elements.png",
+        ("contactstudy/verification/suite.py", "contactstudy/verification/free_ends.py"),
+    ),
 }
-"""Program of `studies` that draws a figure, and its file."""
+"""Programs of figures that have no script of their name."""
 
 
-def code_of(name: str) -> str:
-    """Python code of a figure."""
+def sources_of(name: str) -> list[Path]:
+    """Files that contain the code of a figure."""
     if name in PROGRAMS:
-        return (ROOT / PROGRAMS[name][0]).read_text()
+        sources = [ROOT / source for source in PROGRAMS[name].sources]
+        return [file for source in sources for file in (sorted(source.glob("*.py")) if source.is_dir() else [source])]
     page = ROOT / "docs" / "tutorial" / f"{name}.md"
-    return "\n".join(BLOCKS.findall(page.read_text())) if page.exists() else (HERE / f"{name}.py").read_text()
+    return [page if page.exists() else HERE / f"{name}.py"]
+
+
+def code_of(source: Path) -> str:
+    """Code of a module, or of a page's blocks."""
+    text = source.read_text()
+    return "\n".join(BLOCKS.findall(text)) if source.suffix == ".md" else text
 
 
 def names() -> list[str]:
@@ -56,9 +98,13 @@ def studies_of(code: str) -> list[Path]:
     return [ROOT / "studies" / file for file in sorted(set(re.findall(r"\w+\.toml", code)))]
 
 
-def statements(code: str) -> str:
-    """Syntax tree without comments and docstrings."""
-    tree = ast.parse(code)
+def statements(source: Path) -> str:
+    """Syntax tree of a module or page without comments and docstrings; settings of a study as they stand."""
+    code = code_of(source)
+    try:
+        tree = ast.parse(code)
+    except SyntaxError:
+        return code
     for node in ast.walk(tree):
         if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef):
             node.body = [entry for entry in node.body if not is_text(entry)]
@@ -72,14 +118,14 @@ def is_text(node: ast.stmt) -> bool:
 
 def digests() -> dict[str, str]:
     """Hash of each figure's code, of the study files that it names, and of the modules of `plots` that it calls."""
-    modules = [path.read_text() for path in sorted((ROOT / "contactstudy" / "plots").glob("[!_]*.py"))]
+    modules = sorted((ROOT / "contactstudy" / "plots").glob("[!_]*.py"))
     hashes = {}
     for name in names():
-        code = code_of(name)
-        studies = [study.read_text() for study in studies_of(code)]
+        sources = sources_of(name)
+        code = "\n".join(map(code_of, sources))
         called = set(re.findall(r"\bplot_\w+|\bstudy_figures", code))
-        used = [text for text in modules if called & set(re.findall(r"^def (\w+)", text, re.MULTILINE))]
-        text = "".join([*map(statements, [code, *used]), *studies])
+        used = [module for module in modules if called & set(re.findall(r"^def (\w+)", code_of(module), re.MULTILINE))]
+        text = "".join([*(statements(source) for source in sources + used), *map(Path.read_text, studies_of(code))])
         hashes[name] = hashlib.sha256(text.encode()).hexdigest()[:16]
     return hashes
 
@@ -88,18 +134,20 @@ def draw(name: str) -> None:
     """Draw a figure, and record the hash of its code."""
     (ROOT / "results").mkdir(exist_ok=True)
     environment = os.environ | {"MPLBACKEND": "Agg"}
+    code = "\n".join(map(code_of, sources_of(name)))
     if name in PROGRAMS:
-        program, figure = PROGRAMS[name]
-        for study in studies_of(code_of(name)):
-            subprocess.run([sys.executable, "-m", "contactstudy.cli", "run", study], cwd=ROOT, check=True)
-        subprocess.run([sys.executable, program], cwd=ROOT, env=environment, check=True)
-        shutil.copy(ROOT / figure, HERE / f"{name}.png")
+        program = PROGRAMS[name]
+        if program.command.startswith("studies/"):
+            for study in studies_of(code):
+                subprocess.run([sys.executable, "-m", "contactstudy.cli", "run", study], cwd=ROOT, check=True)
+        subprocess.run([sys.executable, *program.command.split()], cwd=ROOT, env=environment, check=True)
+        shutil.copy(ROOT / program.file, HERE / f"{name}.png")
     else:
         with tempfile.TemporaryDirectory() as folder:
             for shared in ("studies", "results"):
                 Path(folder, shared).symlink_to(ROOT / shared)
             script = Path(folder, f"{name}_figure.py")
-            script.write_text(code_of(name))
+            script.write_text(code)
             subprocess.run([sys.executable, script], cwd=folder, env=environment, check=True)
             shutil.copy(Path(folder, f"{name}.png"), HERE)
     stored = json.loads(RECORD.read_text()) if RECORD.exists() else {}

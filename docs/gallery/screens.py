@@ -1,4 +1,4 @@
-"""Pictures of the report and of the page to explore: ``python docs/gallery/screens.py`` writes them beside this file.
+"""Pictures of the report and of the page to explore in `results`: ``python -m docs.gallery.screens report explore``.
 
 They are taken by Chromium, without a screen; the packages of the extra `explore`, and playwright, are needed.
 """
@@ -16,23 +16,24 @@ from pathlib import Path
 from contactstudy.study import Study, run_study
 from tests.browser import browser, open_served
 
-HERE = Path(__file__).resolve().parent
+ROOT = Path(__file__).resolve().parents[2]
+RESULTS = ROOT / "results"
 
 
 def of_report(folder: Path) -> None:
     """Write the report of the page's case, and keep its top as a picture."""
-    text = (HERE.parent / "how-to" / "report.md").read_text()
+    text = (ROOT / "docs" / "how-to" / "report.md").read_text()
     (block, *_) = re.findall(r"^```python\n(.*?)^```", text, re.DOTALL | re.MULTILINE)
     with contextlib.chdir(folder):
         exec(compile(block, "report.md", "exec"), {})
     with browser(1000, 1180) as page:
         page.goto(f"file://{folder}/roller.html")
-        page.screenshot(path=HERE / "report.png")
+        page.screenshot(path=RESULTS / "report.png")
 
 
 def of_explore(folder: Path) -> None:
     """Solve the study of the page, serve it, and keep the page with two cases as a picture."""
-    text = (HERE.parent / "how-to" / "explore.md").read_text()
+    text = (ROOT / "docs" / "how-to" / "explore.md").read_text()
     (block,) = re.findall(r"^```toml\n(.*?)^```", text, re.DOTALL | re.MULTILINE)
     run_study(Study.from_mapping(tomllib.loads(block)), folder / "crowns", workers=0)
     command = [sys.executable, "-m", "contactstudy.cli", "explore", str(folder / "crowns"), "--no-browser"]
@@ -46,12 +47,12 @@ def of_explore(folder: Path) -> None:
                 page.wait_for_selector("th:has-text('second case')")
                 page.locator("select").nth(1).select_option(index=1)  # profile of the second case
                 page.wait_for_timeout(2000)
-                page.screenshot(path=HERE / "explore.png", full_page=True)
+                page.screenshot(path=RESULTS / "explore.png", full_page=True)
         finally:
             server.terminate()
 
 
 if __name__ == "__main__":
-    with tempfile.TemporaryDirectory() as place:
-        of_report(Path(place))
-        of_explore(Path(place))
+    for picture in sys.argv[1:]:
+        with tempfile.TemporaryDirectory() as folder:
+            {"report": of_report, "explore": of_explore}[picture](Path(folder))
