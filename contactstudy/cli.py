@@ -119,13 +119,13 @@ def _rerun(options: argparse.Namespace, solver: Solver | None) -> int:
 
 def _finish(report: RunReport, *, figure: bool) -> int:
     """Write summary and figures, then print the result of a run: files are complete even if the output is closed."""
-    from contactstudy.study.report import run_lines, shown, stale_lines
+    from contactstudy.study.report import format_path, run_lines, stale_lines
 
     written: list[str] = []
     if report.files:
-        written.append(f"wrote {shown(_write_summary(report.folder))}")
+        written.append(f"wrote {format_path(_write_summary(report.folder))}")
         try:
-            written += [f"wrote {shown(drawn)}" for drawn in (_draw(report.folder) if figure else [])]
+            written += [f"wrote {format_path(drawn)}" for drawn in (_draw(report.folder) if figure else [])]
         except ContactStudyError as error:
             written.append(f"  no figure: {error}")
     _print([*run_lines(report), *written, *stale_lines(report)])
@@ -167,11 +167,11 @@ def _draw(folder: Path) -> list[Path]:
 def _plan(options: argparse.Namespace, solver: Solver | None) -> int:
     from contactstudy.study import run_study
     from contactstudy.study.folder import Folder
-    from contactstudy.study.report import forecast_lines, shown, state_lines
+    from contactstudy.study.report import forecast_lines, format_path, state_lines
 
     study = _study(options)
     folder = Folder(options.out if options.out is not None else Path("results") / study.name)
-    print(f"study {study.name}: {study.size} combinations, results in {shown(folder.path)}", flush=True)
+    print(f"study {study.name}: {study.size} combinations, results in {format_path(folder.path)}", flush=True)
     if options.sample is not None:
         states = run_study(study, folder.path, sample=options.sample, solver=solver, workers=options.workers).states
     else:
@@ -185,12 +185,12 @@ def _plan(options: argparse.Namespace, solver: Solver | None) -> int:
 
 def _status(options: argparse.Namespace, solver: Solver | None) -> int:
     from contactstudy.study.folder import Folder
-    from contactstudy.study.report import forecast_lines, shown, state_lines
+    from contactstudy.study.report import forecast_lines, format_path, state_lines
 
     folder = Folder(options.path)
     study = folder.read_study()
     states = folder.states(study.plan())
-    print(f"study {study.name}: {len(states.plan)} cases, results in {shown(folder.path)}")
+    print(f"study {study.name}: {len(states.plan)} cases, results in {format_path(folder.path)}")
     for holder in folder.holders:
         print(f"locked: {holder}")
     _print([*state_lines(states, everything=options.all), *forecast_lines(states)])
@@ -198,15 +198,15 @@ def _status(options: argparse.Namespace, solver: Solver | None) -> int:
 
 
 def _collect(options: argparse.Namespace, solver: Solver | None) -> int:
-    from contactstudy.study.report import shown
+    from contactstudy.study.report import format_path
 
-    print(f"wrote {shown(_write_summary(options.path.resolve(), options.out))}")
+    print(f"wrote {format_path(_write_summary(options.path.resolve(), options.out))}")
     return ALL_OK
 
 
 def _export(options: argparse.Namespace, solver: Solver | None) -> int:
     from contactstudy.export.command import export
-    from contactstudy.study.report import shown
+    from contactstudy.study.report import format_path
 
     written = export(
         options.path,
@@ -218,18 +218,18 @@ def _export(options: argparse.Namespace, solver: Solver | None) -> int:
         out=options.out,
     )
     if written is not None:
-        print(f"wrote {shown(written.resolve())}")
+        print(f"wrote {format_path(written.resolve())}")
     return ALL_OK
 
 
 def _report(options: argparse.Namespace, solver: Solver | None) -> int:
     from contactstudy.arrays.selections import selection_of
     from contactstudy.report import write
-    from contactstudy.study.report import shown
+    from contactstudy.study.report import format_path
 
     selection = selection_of(options.select or ())
     written = write(options.path, options.out, title=options.title, selection=selection)
-    print(f"wrote {shown(written.resolve())}")
+    print(f"wrote {format_path(written.resolve())}")
     return ALL_OK
 
 
@@ -250,18 +250,18 @@ def _verify(options: argparse.Namespace, solver: Solver | None) -> int:
 
     folder = options.out if options.out is not None else Path("results/verification")
     suite.make_folder(folder)  # before the work, not after
-    shown: set[str] = set()
+    format_path: set[str] = set()
 
     def show(group: str, check: Check) -> None:
-        if group not in shown:
+        if group not in format_path:
             print(f"\n{group}\n{suite.HEADING}")
-        shown.add(group)
+        format_path.add(group)
         print(suite.line(check), flush=True)
 
     verification = suite.run(options.level, show)
     print(f"\n{suite.summary(verification)}")
     for path in suite.write(verification, folder):
-        print(f"wrote {words.shown(path.resolve())}")
+        print(f"wrote {words.format_path(path.resolve())}")
     return ALL_OK if verification.passed else SOME_FAILED
 
 

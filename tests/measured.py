@@ -15,7 +15,7 @@ import numpy as np
 import xarray as xr
 
 from contactstudy import FiniteLengthSpace, HalfSpace, Study, solve, solve_contact, stress_field
-from contactstudy.study.setup import build_setup
+from contactstudy.study.case_setup import build_setup
 from contactstudy.verification import run
 from contactstudy.verification.problems import LINE_LOAD, on_cells, unit_material
 

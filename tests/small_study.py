@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 
 from contactstudy.study import Study
-from contactstudy.study.parameters import checked, fragment, hash_of
+from contactstudy.study.parameters import check_parameters, hash_fragments, identity_fragment
 
 BASE = {
     "young": 210e9,
@@ -29,8 +29,8 @@ def small_study(name: str = "small", **changes) -> Study:
 
 def case_id(parameters: dict) -> str:
     """Identity of a case of these parameters, without the default accuracy."""
-    values = checked(parameters)
-    return hash_of(fragment(name, values[name]) for name in sorted(values)).decode()
+    values = check_parameters(parameters)
+    return hash_fragments(identity_fragment(name, values[name]) for name in sorted(values)).decode()
 
 
 def identity(**changes) -> str:

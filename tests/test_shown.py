@@ -9,7 +9,7 @@ import numpy as np
 from contactstudy import Case, FiniteLengthSpace, HalfSpace, Material, QuarterSpace, Roller, Rolling, profiles
 from contactstudy.profiles import Cylinder, FullCrown, Halves, Lundberg, Measured, Tapered
 from contactstudy.report import case_table
-from contactstudy.study.setup import build_setup
+from contactstudy.study.case_setup import build_setup
 from tests.small_study import BASE, small_study
 
 STEEL = Material(210e9, 0.3)

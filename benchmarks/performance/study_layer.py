@@ -19,8 +19,8 @@ import numpy as np
 
 from contactstudy import Study, open_study, run_study, solve
 from contactstudy.study import RunReport
+from contactstudy.study.case_setup import build_setup
 from contactstudy.study.engine import WORKER_ENVIRONMENT
-from contactstudy.study.setup import build_setup
 from contactstudy.study.worker import Solver, single_threaded
 from tests.stand_in_solver import solve_fake
 

@@ -12,7 +12,7 @@ import xarray as xr
 from contactstudy.analysis import measure, positions
 from contactstudy.analysis.axes import dimension_along
 from contactstudy.checks import Array, BoolArray, FloatArray
-from contactstudy.plots.singular import near_singular, singular_ends
+from contactstudy.plots.singular_ends import near_singular, singular_ends
 
 PIXELS = (360, 150)  # Pixels of an image, horizontal and vertical
 END_REGION = 8.0  # Length of the region near an end, over the Hertz half-width

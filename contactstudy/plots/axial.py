@@ -20,7 +20,7 @@ from contactstudy.analysis import (
 )
 from contactstudy.arrays.variables import require
 from contactstudy.errors import InvalidInputError
-from contactstudy.plots.singular import mark_at_top, near_singular, singular_ends
+from contactstudy.plots.singular_ends import mark_at_top, near_singular, singular_ends
 from contactstudy.plots.style import LEGEND_WIDTH, Units, fold_text, label_axes, line_styles, new_axes, units
 
 if TYPE_CHECKING:

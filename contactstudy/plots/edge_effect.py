@@ -14,7 +14,7 @@ from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 from contactstudy.plots.axial import plot_axial_pressure
 from contactstudy.plots.selection import describe_value
-from contactstudy.plots.singular import cap_field
+from contactstudy.plots.singular_ends import cap_field
 from contactstudy.plots.stress import plot_stress_plane
 from contactstudy.plots.style import fold_text, line_styles, units
 

@@ -22,7 +22,7 @@ from contactstudy.plots.selection import (
     select_one,
     select_values,
 )
-from contactstudy.plots.singular import SINGULAR_LABEL, SINGULAR_MARK, mark_at_top
+from contactstudy.plots.singular_ends import SINGULAR_LABEL, SINGULAR_MARK, mark_at_top
 from contactstudy.plots.style import MARKERS, escape_dollars, fold_labels, fold_text, line_styles, new_axes
 
 if TYPE_CHECKING:

@@ -12,7 +12,7 @@ from contactstudy.analysis import dimension_along, positions, single_case
 from contactstudy.arrays.engineering import unit_for
 from contactstudy.arrays.variables import require, variable_of
 from contactstudy.checks import BoolArray, FloatArray, IntArray
-from contactstudy.plots.singular import near_singular, singular_ends
+from contactstudy.plots.singular_ends import near_singular, singular_ends
 from contactstudy.plots.style import COLORS, Units, label_axes, new_axes, units
 
 if TYPE_CHECKING:

@@ -29,7 +29,7 @@ from contactstudy.plots import (
     plot_traction_map,
 )
 from contactstudy.plots.axial import draw_section_maxima
-from contactstudy.plots.singular import cap_field
+from contactstudy.plots.singular_ends import cap_field
 from contactstudy.plots.style import MILLIMETRES
 from contactstudy.profiles.base import checked_drop, local_radius
 

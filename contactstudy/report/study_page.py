@@ -23,7 +23,7 @@ from contactstudy.report.summary_table import intensity_text
 from contactstudy.study import collect
 from contactstudy.study.folder import Entry, Folder
 from contactstudy.study.parameters import PARAMETERS, with_defaults
-from contactstudy.study.plan import Plan, PlannedCase, label, listed, value_text
+from contactstudy.study.plan import Plan, PlannedCase, format_list, format_value, label
 from contactstudy.versions import PACKAGES
 
 if TYPE_CHECKING:
@@ -96,9 +96,9 @@ def study_context(path: Path, selection: Mapping[str, Any] | None = None) -> dic
         "description": study.description,
         "shape": f"{len(plan)} cases ({sizes})",
         "counts": Counter(entry.status for entry in entries),
-        "base": [(_meaning(name), value_text(name, value)) for name, value in study.base.items()],
+        "base": [(_meaning(name), format_value(name, value)) for name, value in study.base.items()],
         "swept": [
-            (_meaning(name), listed(list(dict.fromkeys(row.values[column] for row in rows if row.values[column]))))
+            (_meaning(name), format_list(list(dict.fromkeys(row.values[column] for row in rows if row.values[column]))))
             for column, name in enumerate(swept)
         ],
         "headings": [_heading(name) for name in swept],
@@ -153,7 +153,7 @@ def _swept_values(plan: Plan, case: PlannedCase, swept: list[str]) -> list[str]:
         value = labels[case.position[plan.cube.dims.index(dim)]] if dim in plan.cube.dims else parameters.get(name)
         if isinstance(parameters.get(name), dict) and value == label(name, parameters[name]):
             value = parameters[name]  # a table without a name: its values
-        texts.append("" if value is None else value_text(name, value))
+        texts.append("" if value is None else format_value(name, value))
     return texts
 
 

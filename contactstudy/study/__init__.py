@@ -9,8 +9,8 @@ from its friction alone, so results depend on neither workers, tasks, shares nor
 """
 
 from contactstudy.errors import LockedError, StoreError, StudyFileError
+from contactstudy.study.dataset import collect, load_case, open_study
 from contactstudy.study.definition import Study
-from contactstudy.study.opened import collect, load_case, open_study
 from contactstudy.study.plan import Plan, PlannedCase
 from contactstudy.study.run import RunReport, rerun_study, run_study
 

@@ -32,7 +32,7 @@ class StudyBackend(BackendEntrypoint):
         self, filename_or_obj: Any, *, drop_variables: str | list[str] | None = None, cells: str = "common"
     ) -> xr.Dataset:
         """Open a study; `cells` is that of :func:`contactstudy.open_study`."""
-        from contactstudy.study.opened import study_dataset
+        from contactstudy.study.dataset import study_dataset
 
         opened = study_dataset(filename_or_obj, cells=cells)
         return opened if drop_variables is None else opened.drop_vars(drop_variables, errors="ignore")

@@ -19,7 +19,7 @@ from contactstudy import checks as arguments
 from contactstudy.arrays.variables import describe
 from contactstudy.errors import InvalidInputError, MagnitudeWarning
 from contactstudy.study.files import write_dataset, write_text
-from contactstudy.verification import exact, film, free_ends, passes, tribology
+from contactstudy.verification import exact_solutions, film, free_ends, passes, tribology
 from contactstudy.verification.check import Check
 from contactstudy.verification.problems import FILM_CASES, PASSES_CASES
 
@@ -32,13 +32,15 @@ LEVELS = ("quick", "full")  # Levels of a run
 # Checks by the kind of their reference; the argument selects the full level
 GROUPS: dict[str, Callable[[bool], Iterator[Check]]] = {
     "half-space": lambda full: chain(
-        exact.hertz_checks(),
-        exact.circle_checks(),
-        exact.line_checks(),
-        exact.rectangle_checks(),
-        exact.point_checks(),
+        exact_solutions.hertz_checks(),
+        exact_solutions.circle_checks(),
+        exact_solutions.line_checks(),
+        exact_solutions.rectangle_checks(),
+        exact_solutions.point_checks(),
     ),
-    "limits": lambda full: chain(exact.plane_checks(), exact.plate_contact_checks(), exact.body_checks()),
+    "limits": lambda full: chain(
+        exact_solutions.plane_checks(), exact_solutions.plate_contact_checks(), exact_solutions.body_checks()
+    ),
     "quarter space": lambda full: chain(
         free_ends.edge_load_checks(),
         free_ends.extra_deflection_checks(),
@@ -73,11 +75,11 @@ GROUPS: dict[str, Callable[[bool], Iterator[Check]]] = {
         *(film.finite_element_checks(name) for name in FILM_CASES),
     ),
     "consistency": lambda full: chain(
-        exact.free_end_checks(),
-        exact.equilibrium_checks(),
-        exact.contact_condition_checks(),
-        exact.reciprocity_checks(),
-        exact.alternation_checks(),
+        exact_solutions.free_end_checks(),
+        exact_solutions.equilibrium_checks(),
+        exact_solutions.contact_condition_checks(),
+        exact_solutions.reciprocity_checks(),
+        exact_solutions.alternation_checks(),
     ),
 }
 

@@ -9,20 +9,20 @@ from contactstudy import open_study
 from contactstudy.analysis import load_between, single_case
 from contactstudy.study import run_study
 from contactstudy.study.common_cells import (
-    LEAST_WIDTH,
+    MIN_WIDTH,
     Resampling,
-    centred_cells,
-    centres,
+    cell_centres,
+    centre_cells_on,
     common_columns,
     common_rows,
-    resampled,
+    resample,
     split_cells,
 )
 from tests.small_study import small_study
 
 
 def cells_map(source, borders, outside):
-    return Resampling(source=source, axis=centres(borders), borders=borders, outside=outside)
+    return Resampling(source=source, axis=cell_centres(borders), borders=borders, outside_value=outside)
 
 
 @st.composite
@@ -38,7 +38,7 @@ def test_common_columns_cover_all_and_are_nowhere_much_narrower_than_needed(case
     assert common[0] == 0.0
     assert common[-1] == max(own[-1] for own in cases)
     narrowest = min(float(np.diff(own).min()) for own in cases)
-    assert np.diff(common).min() >= LEAST_WIDTH * narrowest * (1 - 1e-12)
+    assert np.diff(common).min() >= MIN_WIDTH * narrowest * (1 - 1e-12)
 
 
 @given(st.lists(edges(), min_size=1, max_size=4), st.integers(0, 2**32 - 1))
@@ -46,7 +46,7 @@ def test_averages_keep_the_load(cases, seed):
     common = common_columns(cases)
     for own in cases:
         values = np.random.default_rng(seed).uniform(0.0, 1.0, own.size - 1)
-        found = resampled("pressure", values, [cells_map(own, common, 0.0)])
+        found = resample("pressure", values, [cells_map(own, common, 0.0)])
         assert found @ np.diff(common) == pytest.approx(values @ np.diff(own), rel=1e-9)
 
 
@@ -54,7 +54,7 @@ def test_averages_keep_the_load(cases, seed):
 def test_a_straight_line_stays_one_between_the_centres(own, slope, offset):
     centres = 0.5 * (own[1:] + own[:-1])
     common = np.linspace(own[0], own[-1], 30)
-    found = resampled("gap", offset + slope * centres, [cells_map(own, common, np.nan)])
+    found = resample("gap", offset + slope * centres, [cells_map(own, common, np.nan)])
     at = 0.5 * (common[1:] + common[:-1])
     np.testing.assert_allclose(found, offset + slope * np.clip(at, centres[0], centres[-1]), atol=1e-12)
 
@@ -63,16 +63,16 @@ def test_beyond_the_own_cells_there_is_no_body_and_no_pressure_beside_the_window
     common = np.array([0.0, 1.0, 2.0, 3.0])
     own = np.array([0.0, 1.0, 2.0])
     along_x, along_y = cells_map(own, common, np.nan), cells_map(own, common, 0.0)
-    pressure = resampled("pressure", np.ones((2, 2)), [along_x, along_y])
+    pressure = resample("pressure", np.ones((2, 2)), [along_x, along_y])
     np.testing.assert_array_equal(pressure[:2], [[1, 1, 0], [1, 1, 0]])
     assert np.isnan(pressure[2]).all()
-    gap = resampled("gap", np.ones((2, 2)), [along_x, along_y])
+    gap = resample("gap", np.ones((2, 2)), [along_x, along_y])
     assert np.isnan(gap[:, 2]).all()
 
 
 def test_an_infinite_gap_stays_where_it_is():
     own = np.array([0.0, 1.0, 2.0, 3.0])
-    found = resampled("initial_gap", np.array([1.0, np.inf, np.inf]), [cells_map(own, own, np.nan)])
+    found = resample("initial_gap", np.array([1.0, np.inf, np.inf]), [cells_map(own, own, np.nan)])
     np.testing.assert_array_equal(found, [1.0, np.inf, np.inf])
 
 
@@ -125,11 +125,11 @@ def test_cases_on_their_own_columns_lie_on_one_axis(tmp_path):
 @given(edges(), st.lists(st.floats(0.0, 3.0), min_size=1, max_size=6, unique=True))
 def test_stress_points_of_a_study_are_centres_of_cells(source, points):
     points = np.unique(np.round(points, 3))
-    cells = centred_cells(source, points)
+    cells = centre_cells_on(source, points)
     assert np.diff(cells).min() > 0
     assert cells[[0, -1]].tolist() == source[[0, -1]].tolist()
     for point in points[(points > source[0]) & (points < source[-1])]:
-        assert np.abs(centres(cells) - point).min() < 1e-9
+        assert np.abs(cell_centres(cells) - point).min() < 1e-9
 
 
 def test_cells_between_stress_points():

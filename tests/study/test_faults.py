@@ -8,7 +8,7 @@ import pytest
 from contactstudy.cli import main
 from contactstudy.errors import ContactStudyError, InvalidInputError
 from contactstudy.study import Study, StudyFileError, open_study, run_study
-from contactstudy.study.setup import build_setup
+from contactstudy.study.case_setup import build_setup
 from tests.small_study import BASE, as_toml, case_id, small_study
 from tests.stand_in_solver import solve_fake
 

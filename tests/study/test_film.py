@@ -11,7 +11,7 @@ import xarray as xr
 from contactstudy import InvalidInputError, Sliding, solve_film
 from contactstudy.film import Asperities
 from contactstudy.study import Study, open_study, run_study
-from contactstudy.study.setup import build_setup
+from contactstudy.study.case_setup import build_setup
 from tests.small_study import case_id
 
 BASE: dict[str, Any] = {

@@ -12,11 +12,11 @@ from contactstudy.checks import PART, writing
 from contactstudy.errors import InvalidInputError
 from contactstudy.study import LockedError, StoreError, StudyFileError, load_case, open_study, run_study
 from contactstudy.study import folder as module
-from contactstudy.study.batches import batch_paths, damage, join, read_batch, write_batch
+from contactstudy.study.batches import batch_paths, describe_damage, join_batches, read_batch, write_batch
 from contactstudy.study.files import write_text
-from contactstudy.study.folder import Folder, Share, latest
+from contactstudy.study.folder import Folder, Share, select_latest
 from contactstudy.study.settings import RunSettings
-from contactstudy.study.worker import Job, Task, without_result
+from contactstudy.study.worker import Job, Task, batch_without_numbers
 from tests.small_study import identity, small_study
 from tests.stand_in_solver import solve_fake
 from tests.study.conftest import ROOT
@@ -29,12 +29,12 @@ def run(study, folder, **options):
 def failed(number, parameters, *, run=1, message="WindowError: narrow", warnings=()):
     """Batch of a case without results."""
     job = Job(f"{number:064x}", "", parameters, number)
-    return without_result(Task(jobs=(), folder="", run=run), job, "failed", message, warnings)
+    return batch_without_numbers(Task(jobs=(), folder="", run=run), job, "failed", message, warnings)
 
 
 def rows(count, **options):
     """Batch of cases without results."""
-    return join([failed(number, {"friction": 0.1}, **options) for number in range(count)])
+    return join_batches([failed(number, {"friction": 0.1}, **options) for number in range(count)])
 
 
 def test_a_second_holder_is_refused_with_the_first_named(tmp_path):
@@ -80,7 +80,7 @@ def test_a_pipe_as_lock(tmp_path):
 def test_a_batch_is_read_as_it_was_written(tmp_path):
     write_batch(tmp_path, "a", rows(3, message="Größe", warnings=["one"]))
     (path,) = batch_paths(tmp_path)
-    assert damage(path) == ""
+    assert describe_damage(path) == ""
     batch = read_batch(path, arrays=None)
     assert batch.ids.tolist() == [f"{number:064x}".encode() for number in range(3)]
     assert batch.texts["message"] == ["Größe"] * 3
@@ -91,7 +91,7 @@ def test_a_batch_is_read_as_it_was_written(tmp_path):
 def test_tables_of_parameters_are_stored_once(tmp_path):
     profiles = [{"kind": "measured", "drops": [1e-6] * 1000}, {"kind": "cylinder"}]
     parameters = [{"young": 1.0, "profile": profiles[number % 2], "friction": 0.1 * number} for number in range(40)]
-    batch = join([failed(number, entry) for number, entry in enumerate(parameters)])
+    batch = join_batches([failed(number, entry) for number, entry in enumerate(parameters)])
     write_batch(tmp_path, "a", batch)
     (path,) = batch_paths(tmp_path)
     assert read_batch(path, arrays=None).texts["parameters"] == batch.texts["parameters"]
@@ -103,7 +103,7 @@ def test_damage_is_detected(tmp_path, change):
     write_batch(tmp_path, "a", rows(2))
     (path,) = batch_paths(tmp_path)
     path.write_bytes(change(path.read_bytes()))
-    assert "checksum" in damage(path)
+    assert "checksum" in describe_damage(path)
 
 
 def test_small_batches_are_joined(tmp_path):
@@ -119,9 +119,9 @@ def test_small_batches_are_joined(tmp_path):
 
 
 def test_the_result_of_the_latest_run_counts(tmp_path):
-    batch = join([rows(2), rows(2, run=3, message="later"), rows(2, run=2)])
-    assert latest(batch).texts["message"] == ["later"] * 2
-    assert latest(batch).runs.tolist() == [3, 3]
+    batch = join_batches([rows(2), rows(2, run=3, message="later"), rows(2, run=2)])
+    assert select_latest(batch).texts["message"] == ["later"] * 2
+    assert select_latest(batch).runs.tolist() == [3, 3]
 
 
 def test_joined_batches_have_equal_results(tmp_path, monkeypatch):

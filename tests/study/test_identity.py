@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 from contactstudy.errors import InvalidInputError
 from contactstudy.profiles import Cylinder
 from contactstudy.study import parameters
-from contactstudy.study.profile_tables import SMALLEST, number
+from contactstudy.study.profile_tables import MIN_MAGNITUDE, check_number
 from tests.small_study import case_id
 
 
@@ -17,7 +17,7 @@ def test_ways_to_write_one(one):
 
 @given(st.floats(-1e12, 1e12))
 def test_digits_beyond_the_twelfth_do_not_count(value):
-    assume(value == 0 or abs(value) >= SMALLEST)
+    assume(value == 0 or abs(value) >= MIN_MAGNITUDE)
     assert case_id({"friction": value}) == case_id({"friction": float(f"{value:.12g}")})
 
 
@@ -46,7 +46,7 @@ def test_points_as_range_and_as_list_are_the_same():
 def test_a_new_parameter_with_a_default_keeps_old_identities(monkeypatch):
     before = "6c02e5292dae80f3"
     assert case_id({"friction": 0.1})[:16] == before
-    new = parameters.Parameter(name="roughness", check=number, units="1", meaning="added later", fallback=3.0)
+    new = parameters.Parameter(name="roughness", check=check_number, units="1", meaning="added later", fallback=3.0)
     monkeypatch.setitem(parameters.PARAMETERS, "roughness", new)
     assert case_id({"friction": 0.1})[:16] == before
     assert case_id({"friction": 0.1, "roughness": 3})[:16] == before

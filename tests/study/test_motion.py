@@ -10,8 +10,8 @@ import pytest
 
 from contactstudy import InvalidInputError, Rolling, Shift, Sliding, solve
 from contactstudy.study import Study, load_case, open_study, run_study
-from contactstudy.study.common_cells import resampled
-from contactstudy.study.setup import build_setup
+from contactstudy.study.case_setup import build_setup
+from contactstudy.study.common_cells import resample
 from tests.small_study import BASE, case_id, small_study
 from tests.study.test_common_cells import cells_map
 
@@ -131,5 +131,5 @@ def test_a_study_that_goes_on_has_the_same_bits(rolled: Path, tmp_path: Path) ->
 
 def test_flags_come_onto_common_cells_whole() -> None:
     cells, common = np.array([0.0, 1.0, 3.0]), np.array([0.0, 0.4, 0.9, 1.2, 3.0, 4.0])
-    stick = resampled("stick", np.array([True, False]), [cells_map(cells, common, np.nan)])
+    stick = resample("stick", np.array([True, False]), [cells_map(cells, common, np.nan)])
     assert stick.tolist() == [1, 1, 0, 0, 0]

@@ -12,8 +12,8 @@ import pytest
 from contactstudy import Material, profiles
 from contactstudy.errors import InvalidInputError
 from contactstudy.study import Study, open_study, run_study
-from contactstudy.study.profile_tables import PROFILES, profile_table, profile_text
-from contactstudy.study.setup import build_setup
+from contactstudy.study.case_setup import build_setup
+from contactstudy.study.profile_tables import PROFILES, format_profile, profile_table
 from tests.small_study import BASE, as_toml, case_id, small_study
 from tests.stand_in_solver import solve_fake
 from tests.study.conftest import ROOT
@@ -54,7 +54,9 @@ def trace(folder: Path, height: float = 1.0, name: str = "trace.csv") -> Path:
 
 def test_every_profile_has_a_kind() -> None:
     public = {getattr(profiles, name) for name in profiles.__all__}
-    assert {kind.made for kind in PROFILES.values()} == {entry for entry in public if dataclasses.is_dataclass(entry)}
+    assert {kind.profile_class for kind in PROFILES.values()} == {
+        entry for entry in public if dataclasses.is_dataclass(entry)
+    }
     assert set(EXAMPLES) == set(PROFILES)
 
 
@@ -67,7 +69,7 @@ def test_a_profile_as_object_as_table_and_after_json(kind: str) -> None:
     again = json.loads(json.dumps(table))
     assert built(again) == profile
     assert case_id({"profile": profile}) == case_id({"profile": again})
-    assert profile_text(table)
+    assert format_profile(table)
 
 
 def test_the_documented_profiles_can_be_solved(tmp_path: Path) -> None:
@@ -90,7 +92,7 @@ def test_identity_of_profiles_never_changes() -> None:
 def test_design_pressure(kind: str) -> None:
     more = {"edge_drop": 1e-6} if kind == "fujiwara-kawase" else {}
     modulus = BASE["young"] / (1 - BASE["poisson"] ** 2)
-    made = PROFILES[kind].made.for_pressure(2e9, radius=BASE["radius"], modulus=modulus, **more)  # type: ignore[attr-defined]
+    made = PROFILES[kind].profile_class.for_pressure(2e9, radius=BASE["radius"], modulus=modulus, **more)  # type: ignore[attr-defined]
     assert built({"kind": kind, "design_pressure": 2e9, **more}) == made
 
 
@@ -149,8 +151,8 @@ def test_files_are_found_from_the_study_file_and_not_needed_later(tmp_path: Path
 
 def test_labels_tell_measured_profiles_apart(tmp_path: Path) -> None:
     tables = [profile_table(profiles.Measured.from_file(trace(tmp_path, height))) for height in (1.0, 2.0)]
-    assert len({profile_text(table) for table in tables}) == 2
-    assert profile_text(profile_table(EXAMPLES["halves"])) == "cylinder | full-crown crown_radius=0.5"
+    assert len({format_profile(table) for table in tables}) == 2
+    assert format_profile(profile_table(EXAMPLES["halves"])) == "cylinder | full-crown crown_radius=0.5"
 
 
 @pytest.mark.parametrize(

@@ -35,7 +35,7 @@ def test_the_time_left_follows_from_the_finished_cases(tmp_path, monkeypatch):
         for count, time in ((1, 110.0), (3, 120.0)):
             now[0] = time
             for number in range(count):
-                progress.finished(f"case {number}", ok(number))
+                progress.record(f"case {number}", ok(number))
             progress.show()
     lines = (tmp_path / "run.log").read_text().splitlines()
     assert [re.search(r"(\d+ s left|all done)", line).group() for line in lines[1:]] == ["30 s left", "all done"]
@@ -45,8 +45,8 @@ def test_a_bar_on_a_terminal(tmp_path, monkeypatch):
     terminal = watch(monkeypatch)
     with Progress(tmp_path / "run.log") as progress:
         progress.begin(2, total=2)
-        progress.finished("case 0", ok(0))
-        progress.finished("case 1", Outcome("1" * 16, "failed", 1.0, "WindowError: too small"))
+        progress.record("case 0", ok(0))
+        progress.record("case 1", Outcome("1" * 16, "failed", 1.0, "WindowError: too small"))
         progress.show()
     assert "2/2 cases" in terminal.getvalue()
     assert "failed: case 1: WindowError: too small" in terminal.getvalue()
@@ -60,9 +60,9 @@ def test_no_bar_without_a_terminal(tmp_path, monkeypatch, quiet):
         monkeypatch.setenv("CI", "true")
     elif quiet == "no terminal":
         monkeypatch.setattr(Terminal, "isatty", lambda self: False)
-    with Progress(tmp_path / "run.log", shown=quiet != "not wanted") as progress:
+    with Progress(tmp_path / "run.log", visible=quiet != "not wanted") as progress:
         progress.begin(1, total=1)
-        progress.finished("case 0", ok(0))
+        progress.record("case 0", ok(0))
         progress.show()
     assert terminal.getvalue() == ""
 

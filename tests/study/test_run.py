@@ -164,7 +164,7 @@ def test_a_higher_level_solves_again(tmp_path):
 
 
 def test_cases_of_another_version_are_stale_and_solved_by_rerun(study, tmp_path, monkeypatch):
-    monkeypatch.setattr("contactstudy.study.worker.circumstances", lambda: {"contactstudy": "0.0.1"})
+    monkeypatch.setattr("contactstudy.study.worker.run_context", lambda: {"contactstudy": "0.0.1"})
     assert run(study, tmp_path).counts == {"stale": 4}
     monkeypatch.undo()
     assert run(study, tmp_path).solved == 0
@@ -287,13 +287,13 @@ from contactstudy.study.progress import Progress
 from tests.small_study import small_study
 from tests.stand_in_solver import solve_fake
 
-sizes, count = [], Progress.finished
+sizes, count = [], Progress.record
 
 def note(self, name, outcome):
     count(self, name, outcome)
     sizes.append(psutil.Process().memory_info().rss)
 
-Progress.finished = note
+Progress.record = note
 run.RUN = replace(run.RUN, compact_seconds=1e9)  # joined batches take memory up to batch_bytes, whenever that is
 sweep = {"e_over_a": [0, 1, 2, 3, 4], "max_pressure": [1e9 + 1e6 * number for number in range(100)]}
 assert run_study(small_study(sweep=sweep), sys.argv[1], workers=2, solver=solve_fake).counts == {"ok": 500}

@@ -8,7 +8,7 @@ import pytest
 from contactstudy import open_study, run_study
 from contactstudy.fatigue import shakedown_limit
 from contactstudy.solution import solve
-from contactstudy.study.setup import build_setup
+from contactstudy.study.case_setup import build_setup
 from tests.small_study import BASE, small_study
 
 PASSAGE = {"field_y_over_a": np.linspace(-2.0, 2.0, 17).tolist()}

@@ -6,7 +6,7 @@ import pytest
 from contactstudy import cache, solve
 from contactstudy.fields import surface
 from contactstudy.study import Study, load_case, open_study, run_study
-from contactstudy.study.setup import build_setup
+from contactstudy.study.case_setup import build_setup
 from tests.small_study import BASE, small_study
 
 

@@ -10,9 +10,9 @@ from contactstudy.case.case import Case
 from contactstudy.case.gridding import WINDOWS, widening_grids
 from contactstudy.solution import solve
 from contactstudy.study import Study
-from contactstudy.study.parameters import PARAMETERS, Parameter, taken_by
-from contactstudy.study.profile_tables import number
-from contactstudy.study.setup import build_setup
+from contactstudy.study.case_setup import build_setup
+from contactstudy.study.parameters import PARAMETERS, Parameter, keywords_of
+from contactstudy.study.profile_tables import check_number
 from tests.small_study import BASE
 from tests.study.conftest import ROOT
 
@@ -59,10 +59,10 @@ def test_defaults_are_those_that_old_cases_were_solved_with():
 def test_a_keyword_becomes_a_parameter_by_one_entry(monkeypatch):
     def takes_more(case: Case, *, sharpness: float = 0.5) -> None: ...
 
-    new = Parameter(name="sharpness", check=number, units="1", meaning="made up", taker=takes_more)
+    new = Parameter(name="sharpness", check=check_number, units="1", meaning="made up", consumer=takes_more)
     monkeypatch.setitem(PARAMETERS, "sharpness", new)
     assert new.default == 0.5
-    assert taken_by(takes_more, {"sharpness": 0.7, "friction": 0.1}) == {"sharpness": 0.7}
+    assert keywords_of(takes_more, {"sharpness": 0.7, "friction": 0.1}) == {"sharpness": 0.7}
 
 
 def test_a_study_starts_on_the_grid_of_solve():

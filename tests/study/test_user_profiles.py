@@ -12,8 +12,8 @@ import pytest
 from contactstudy import InvalidInputError, profiles
 from contactstudy.analysis import solved_case
 from contactstudy.study import Study, load_case, open_study, run_study, user_profiles
+from contactstudy.study.case_setup import build_setup
 from contactstudy.study.folder import Folder
-from contactstudy.study.setup import build_setup
 from tests.small_study import BASE, case_id, small_study
 from tests.stand_in_solver import solve_fake
 

@@ -6,7 +6,7 @@ import pytest
 from contactstudy import solve
 from contactstudy.case.gridding import first_sufficient, widening_grids
 from contactstudy.study import load_case, run_study
-from contactstudy.study.setup import build_setup
+from contactstudy.study.case_setup import build_setup
 from tests.small_study import small_study
 
 WIDE = {

@@ -26,11 +26,11 @@ from contactstudy.heat.moving_source import MovingBody
 from contactstudy.kernels.load import Load
 from contactstudy.overlapping.equations import EquationSet
 from contactstudy.overlapping.quadrature import Resolution
-from contactstudy.verification import exact, free_ends, passes, suite, tribology
+from contactstudy.verification import exact_solutions, free_ends, passes, suite, tribology
 from contactstudy.verification.check import Check
 from contactstudy.wear.wear_in import WornContact
 
-MODULES = (exact, free_ends, convergence)
+MODULES = (exact_solutions, free_ends, convergence)
 Patch = pytest.MonkeyPatch
 
 

@@ -5,8 +5,8 @@ from contactstudy.bodies.material import Material
 from contactstudy.bodies.models import HalfSpace
 from contactstudy.case.motion import Shift
 from contactstudy.errors import InvalidInputError
-from contactstudy.study.parameters import completed, counted
-from contactstudy.study.setup import build_setup, motion_of
+from contactstudy.study.case_setup import build_motion, build_setup
+from contactstudy.study.parameters import add_default_accuracy, identity_value
 from tests.small_study import BASE
 
 
@@ -133,13 +133,13 @@ def test_contradictions_about_the_roller(wrong, parameter):
 
 
 def test_default_accuracy_and_default_friction_in_the_identity():
-    assert completed({"friction": 0.1}) == {"friction": 0.1, "accuracy": 0.01}
-    assert completed({"cells_x": 4.0}) == {"cells_x": 4.0}
-    assert counted("friction", 0.0) is None
+    assert add_default_accuracy({"friction": 0.1}) == {"friction": 0.1, "accuracy": 0.01}
+    assert add_default_accuracy({"cells_x": 4.0}) == {"cells_x": 4.0}
+    assert identity_value("friction", 0.0) is None
     tapered = {"kind": "tapered", "half_angle": 0.1}
-    assert counted("profile", tapered | {"name": "ours"}) == tapered
+    assert identity_value("profile", tapered | {"name": "ours"}) == tapered
 
 
 def test_shift_from_its_parameters():
     values = {"motion": "shift", "shift_y": 1e-6, "rolling_model": "exact"}
-    assert motion_of(values) == Shift(y=1e-6)
+    assert build_motion(values) == Shift(y=1e-6)
