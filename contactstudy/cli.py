@@ -55,8 +55,8 @@ def main(arguments: Sequence[str] | None = None, *, solver: Solver | None = None
     except KeyboardInterrupt as interrupt:
         if arguments is None and threading.current_thread() is threading.main_thread():
             signal.signal(signal.SIGINT, signal.SIG_IGN)  # the process ends: more of them would break off the ending
-        words = str(interrupt) or "interrupted; finished cases are kept, the same command goes on"
-        print(f"contactstudy: {words}", file=sys.stderr)
+        message = str(interrupt) or "interrupted; finished cases are kept, the same command goes on"
+        print(f"contactstudy: {message}", file=sys.stderr)
         return 128 + (interrupt.number if isinstance(interrupt, Terminated) else signal.SIGINT)
     except BrokenPipeError:
         # Python flushes the output once more at its end, and would complain.
@@ -96,11 +96,11 @@ def _run(options: argparse.Namespace, solver: Solver | None) -> int:
 
     share = None
     if options.share is not None:
-        number, _, count = options.share.partition("/")
-        if not (number.isdecimal() and count.isdecimal()):
+        share_number, _, count = options.share.partition("/")
+        if not (share_number.isdecimal() and count.isdecimal()):
             allowed = "two numbers with a slash, such as 3/40 for the third of forty shares"
             raise InvalidInputError("share", options.share, allowed)
-        share = (int(number), int(count))
+        share = (int(share_number), int(count))
     report = run_study(_study(options), options.out, solver=solver, share=share, **_parallel(options))
     if share is None:
         return _finish(report, figure=not options.no_figure)
@@ -121,14 +121,14 @@ def _finish(report: RunReport, *, figure: bool) -> int:
     """Write summary and figures, then print the result of a run: files are complete even if the output is closed."""
     from contactstudy.study.report import format_path, run_lines, stale_lines
 
-    written: list[str] = []
+    lines: list[str] = []
     if report.files:
-        written.append(f"wrote {format_path(_write_summary(report.folder))}")
+        lines.append(f"wrote {format_path(_write_summary(report.folder))}")
         try:
-            written += [f"wrote {format_path(drawn)}" for drawn in (_draw(report.folder) if figure else [])]
+            lines += [f"wrote {format_path(figure_path)}" for figure_path in (_draw(report.folder) if figure else [])]
         except ContactStudyError as error:
-            written.append(f"  no figure: {error}")
-    _print([*run_lines(report), *written, *stale_lines(report)])
+            lines.append(f"  no figure: {error}")
+    _print([*run_lines(report), *lines, *stale_lines(report)])
     return ALL_OK if not report.failures else SOME_FAILED
 
 
@@ -156,8 +156,8 @@ def _draw(folder: Path) -> list[Path]:
         paths = []
         for name, (figure, _) in figures_of_folder(folder).items():
             paths.append(folder / f"{name}.png")
-            with writing(paths[-1]) as part:
-                figure.savefig(part, dpi=150, format="png")
+            with writing(paths[-1]) as temporary_path:
+                figure.savefig(temporary_path, dpi=150, format="png")
             pyplot.close(figure)
         return paths
     finally:
@@ -208,7 +208,7 @@ def _export(options: argparse.Namespace, solver: Solver | None) -> int:
     from contactstudy.export.command import export
     from contactstudy.study.report import format_path
 
-    written = export(
+    path = export(
         options.path,
         kind=options.format,
         variables=options.variable,
@@ -217,8 +217,8 @@ def _export(options: argparse.Namespace, solver: Solver | None) -> int:
         select=options.select or (),
         out=options.out,
     )
-    if written is not None:
-        print(f"wrote {format_path(written.resolve())}")
+    if path is not None:
+        print(f"wrote {format_path(path.resolve())}")
     return ALL_OK
 
 
@@ -228,8 +228,8 @@ def _report(options: argparse.Namespace, solver: Solver | None) -> int:
     from contactstudy.study.report import format_path
 
     selection = selection_of(options.select or ())
-    written = write(options.path, options.out, title=options.title, selection=selection)
-    print(f"wrote {format_path(written.resolve())}")
+    path = write(options.path, options.out, title=options.title, selection=selection)
+    print(f"wrote {format_path(path.resolve())}")
     return ALL_OK
 
 
@@ -270,38 +270,38 @@ Action = Callable[[argparse.Namespace, "Solver | None"], int]  # Takes the argum
 
 def command_parser() -> argparse.ArgumentParser:
     """Return the parser of the command line."""
-    parsed = argparse.ArgumentParser(
+    parser = argparse.ArgumentParser(
         prog="contactstudy",
         description="Rolling-sliding contact of a roller on an elastic body with free end faces: parametric studies.",
         epilog="Exit codes: 0 all cases or checks ok, 1 some failed or are not done, 2 wrong usage or input, "
         "129 after SIGHUP, 130 after Ctrl-C, 141 if nobody reads the output any more, 143 after SIGTERM.",
     )
-    parsed.add_argument("--version", action="store_true", help="show the version and end")
-    parsed.add_argument("--versions", action="store_true", help="show it with those of all that a result depends on")
-    parsed.add_argument("--verbose", action="store_true", help="log to the error output")
-    commands = parsed.add_subparsers(dest="command", metavar="COMMAND")
+    parser.add_argument("--version", action="store_true", help="show the version and end")
+    parser.add_argument("--versions", action="store_true", help="show it with those of all that a result depends on")
+    parser.add_argument("--verbose", action="store_true", help="log to the error output")
+    commands = parser.add_subparsers(dest="command", metavar="COMMAND")
 
     def command(action: Action, source: str, text: str) -> argparse.ArgumentParser:
-        added = commands.add_parser(action.__name__.strip("_"), help=text, description=text)
-        added.set_defaults(action=action)
+        subparser = commands.add_parser(action.__name__.strip("_"), help=text, description=text)
+        subparser.set_defaults(action=action)
         meanings = {
             "study": "study file (TOML)",
             "folder": "results of a study",
             "file_or_folder": "netCDF file of a case, or a study's folder",
         }
         if source:
-            added.add_argument("path", metavar=source.upper(), type=Path, help=meanings[source])
+            subparser.add_argument("path", metavar=source.upper(), type=Path, help=meanings[source])
         if source == "study":
-            added.add_argument("--out", metavar="FOLDER", type=Path, help="results; default results/<study name>")
-        return added
+            subparser.add_argument("--out", metavar="FOLDER", type=Path, help="results; default results/<study name>")
+        return subparser
 
-    def parallel(added: argparse.ArgumentParser) -> None:
-        added.add_argument("--workers", metavar="N", type=int, help="local processes; default one per core")
-        added.add_argument("--scheduler", metavar="ADDRESS", help="dask scheduler to use instead, tcp://...")
-        added.add_argument(
+    def parallel(subparser: argparse.ArgumentParser) -> None:
+        subparser.add_argument("--workers", metavar="N", type=int, help="local processes; default one per core")
+        subparser.add_argument("--scheduler", metavar="ADDRESS", help="dask scheduler to use instead, tcp://...")
+        subparser.add_argument(
             "--wait", metavar="SECONDS", type=float, help="longest wait for a worker of the scheduler; default 300"
         )
-        added.add_argument("--no-figure", action="store_true", help="draw no figure")
+        subparser.add_argument("--no-figure", action="store_true", help="draw no figure")
 
     run = command(_run, "study", "Solve the cases of a study that are not solved yet.")
     parallel(run)
@@ -310,38 +310,46 @@ def command_parser() -> argparse.ArgumentParser:
     plan = command(_plan, "study", text)
     plan.add_argument("--sample", metavar="N", type=int, help="solve N cases, evenly spaced, to estimate the time")
     plan.add_argument("--workers", metavar="N", type=int, help="local processes for the sample; default one per core")
-    for added in (run, plan):
-        added.add_argument("--yes", action="store_true", help=f"do not ask about {MANY_CASES} cases and more")
+    for subparser in (run, plan):
+        subparser.add_argument("--yes", action="store_true", help=f"do not ask about {MANY_CASES} cases and more")
     status = command(_status, "folder", "State of every case: done, failed, stale or missing.")
-    for added in (plan, status):
-        added.add_argument("--all", action="store_true", help="list every case")
-    added = command(_collect, "folder", "Merge the summaries of all cases into one netCDF file.")
-    added.add_argument("--out", metavar="FILE", type=Path, help="default FOLDER/summary.nc")
+    for subparser in (plan, status):
+        subparser.add_argument("--all", action="store_true", help="list every case")
+    subparser = command(_collect, "folder", "Merge the summaries of all cases into one netCDF file.")
+    subparser.add_argument("--out", metavar="FILE", type=Path, help="default FOLDER/summary.nc")
     parallel(command(_rerun, "folder", "Solve failed, stale and missing cases again."))
     text = "Check the solver against closed forms, finite elements and published numbers."
-    added = command(_verify, "", text)
-    added.add_argument("--level", choices=("quick", "full"), default="quick", help="a minute, or a few (default quick)")
-    added.add_argument("--out", metavar="FOLDER", type=Path, help="default results/verification")
+    subparser = command(_verify, "", text)
+    subparser.add_argument(
+        "--level", choices=("quick", "full"), default="quick", help="a minute, or a few (default quick)"
+    )
+    subparser.add_argument("--out", metavar="FOLDER", type=Path, help="default results/verification")
     text = "Write a study's summaries as a table (CSV), or fields of one case as CSV, VTK or MATLAB."
-    added = command(_export, "file_or_folder", text)
-    added.add_argument("--format", choices=("csv", "vtk", "mat"), help="default csv")
-    added.add_argument("--variable", metavar="NAME", action="append", help="variable or stress measure; repeatable")
-    added.add_argument("--line", metavar="X,Y,Z:X,Y,Z", help="ends of a line in metres, for csv (--line=-1e-4,0,0:...)")
-    added.add_argument("--points", metavar="N", type=int, default=101, help="points of the line; default 101")
-    added.add_argument("--select", metavar="NAME=VALUE", action="append", help="swept parameter of a study; repeatable")
-    added.add_argument("--out", metavar="FILE", type=Path, help="default beside the results; - for the screen")
+    subparser = command(_export, "file_or_folder", text)
+    subparser.add_argument("--format", choices=("csv", "vtk", "mat"), help="default csv")
+    subparser.add_argument("--variable", metavar="NAME", action="append", help="variable or stress measure; repeatable")
+    subparser.add_argument(
+        "--line", metavar="X,Y,Z:X,Y,Z", help="ends of a line in metres, for csv (--line=-1e-4,0,0:...)"
+    )
+    subparser.add_argument("--points", metavar="N", type=int, default=101, help="points of the line; default 101")
+    subparser.add_argument(
+        "--select", metavar="NAME=VALUE", action="append", help="swept parameter of a study; repeatable"
+    )
+    subparser.add_argument("--out", metavar="FILE", type=Path, help="default beside the results; - for the screen")
     explore = command(_explore, "folder", "Serve a page to look through a study, on this machine.")
     explore.add_argument("--port", metavar="N", type=int, help="default: the first free one from 5006 on")
     text = "host name that a browser may use beside localhost, such as that of a proxy; repeatable"
     explore.add_argument("--host", metavar="NAME", action="append", default=[], help=text)
     explore.add_argument("--no-browser", action="store_true", help="do not open the page in the browser")
     text = "Write one HTML page of a case or of a study, for a reader without Python."
-    added = command(_report, "file_or_folder", text)
-    added.add_argument("--title", metavar="TEXT", help="heading; default: the name of the file or of the study")
+    subparser = command(_report, "file_or_folder", text)
+    subparser.add_argument("--title", metavar="TEXT", help="heading; default: the name of the file or of the study")
     text = "value of a swept parameter that a study's figures keep to; repeatable"
-    added.add_argument("--select", metavar="NAME=VALUE", action="append", help=text)
-    added.add_argument("--out", metavar="FILE", type=Path, help="default beside the file, or report.html in the folder")
-    return parsed
+    subparser.add_argument("--select", metavar="NAME=VALUE", action="append", help=text)
+    subparser.add_argument(
+        "--out", metavar="FILE", type=Path, help="default beside the file, or report.html in the folder"
+    )
+    return parser
 
 
 if __name__ == "__main__":

@@ -20,7 +20,7 @@ from contactstudy.arrays.variables import (
     Variable,
     labels,
     require,
-    required_in_si,
+    require_in_si,
     variable_of,
 )
 from contactstudy.checks import Array
@@ -284,7 +284,7 @@ def positions_over_a(dataset: xr.Dataset) -> xr.Dataset:
     >>> row.dims, round(float(row.e_over_a), 2), round(float(row.gamma), 2)
     (('y_over_a',), 1.54, 0.1)
     """
-    dataset = required_in_si(dataset, "hertz_half_width")
+    dataset = require_in_si(dataset, "hertz_half_width")
     half_width = dataset["hertz_half_width"]
     if half_width.size == 1:
         dataset = single_case(dataset)

@@ -136,8 +136,8 @@ def write(
         hint = "a browser prints the page to PDF" if target.suffix.lower() == ".pdf" else ""
         raise InvalidInputError("path", str(path), "a name that ends in .html: the report is a page", hint)
     page = html(source, title=title, selection=selection)
-    with checks.writing(target) as part:
-        part.write_text(page, encoding="utf-8")
+    with checks.writing(target) as temporary_path:
+        temporary_path.write_text(page, encoding="utf-8")
     return target
 
 

@@ -26,7 +26,7 @@ import xarray as xr
 
 from contactstudy.analysis.provenance import RUN_ATTRIBUTE
 from contactstudy.arrays.variables import describe, labels, package_version
-from contactstudy.checks import PART, FloatArray, IntArray, writing
+from contactstudy.checks import TEMPORARY_SUFFIX, FloatArray, IntArray, writing
 from contactstudy.errors import StoreError
 from contactstudy.study.files import is_regular, netcdf_access
 
@@ -217,7 +217,7 @@ def describe_damage(path: Path) -> str:
 
 def batch_paths(folder: Path) -> list[Path]:
     """Paths with the name of a batch, in a stable order."""
-    return sorted(path for path in folder.glob(f"*{SUFFIX}") if PART not in path.name)
+    return sorted(path for path in folder.glob(f"*{SUFFIX}") if TEMPORARY_SUFFIX not in path.name)
 
 
 def count_cases(path: Path) -> int:

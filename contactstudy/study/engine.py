@@ -72,7 +72,7 @@ class Engine:
     def __post_init__(self) -> None:
         """Check the values."""
         if self.workers is not None:
-            checks.count("workers", self.workers, least=0)
+            checks.count("workers", self.workers, minimum=0)
         if isinstance(self.wait, bool) or not isinstance(self.wait, (int, float)) or not self.wait >= 0:
             raise InvalidInputError("wait", self.wait, "a number of seconds >= 0")
         if self.scheduler is not None and not isinstance(self.scheduler, str):

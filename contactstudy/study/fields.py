@@ -213,9 +213,11 @@ class Fields:
             axis = cell_centres(borders)
         axes, maps = {}, {}
         for dim, source_rows in sources.items():
-            has_points, outside = dim not in CELL_DIMS, 0.0 if dim == "y" else np.nan
+            has_points, outside_value = dim not in CELL_DIMS, 0.0 if dim == "y" else np.nan
             maps[dim] = [
-                Resampling(source=source, axis=axis, borders=borders, outside_value=outside, has_points=has_points)
+                Resampling(
+                    source=source, axis=axis, borders=borders, outside_value=outside_value, has_points=has_points
+                )
                 for source in source_rows
             ]
             is_common_axis = _all_equal(source_rows, axis if has_points else borders)

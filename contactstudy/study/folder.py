@@ -31,7 +31,7 @@ from contactstudy import checks
 from contactstudy.analysis.provenance import INPUTS_ATTRIBUTE
 from contactstudy.arrays.variables import package_version
 from contactstudy.case.serialization import to_dict
-from contactstudy.checks import PART, IntArray
+from contactstudy.checks import TEMPORARY_SUFFIX, IntArray
 from contactstudy.errors import InvalidInputError, LockedError, StoreError, StudyFileError
 from contactstudy.study.batches import (
     CASE_ATTRIBUTE,
@@ -355,7 +355,7 @@ class Folder:
     def clean(self, share: Share) -> None:
         """Remove unfinished files of runs that ended."""
         for folder in (self.batches, self.path) if share.count == 1 else (self.batches,):
-            for path in folder.glob(f"{share.prefix}*{PART}"):
+            for path in folder.glob(f"{share.prefix}*{TEMPORARY_SUFFIX}"):
                 if UNFINISHED.fullmatch(path.name):
                     with contextlib.suppress(OSError):
                         path.unlink()

@@ -17,7 +17,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from contactstudy.arrays.engineering import quantity
+from contactstudy.arrays.engineering import format_quantity
 from contactstudy.case.magnitudes import doubts, friction_doubt
 from contactstudy.checks import IntArray
 from contactstudy.errors import ContactStudyError
@@ -345,4 +345,4 @@ def format_value(name: str, value: Any) -> str:
         return "yes" if value else "no"
     if not isinstance(value, (int, float)):
         return str(value)
-    return quantity(float(value), PARAMETERS[name].units if name in PARAMETERS else "1")
+    return format_quantity(float(value), PARAMETERS[name].units if name in PARAMETERS else "1")

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from contactstudy import checks, profiles
-from contactstudy.arrays.engineering import quantity
+from contactstudy.arrays.engineering import format_quantity
 from contactstudy.case.serialization import tables_within
 from contactstudy.errors import InvalidInputError
 from contactstudy.profiles import Profile
@@ -35,7 +35,7 @@ NESTED = ("left", "right", "profile")  # Fields that contain a profile
 FILE_FLAGS = ("remove_tilt", "remove_offset")
 FILE_OPTIONS = ("file", *FILE_FLAGS, "turn")  # Keys of a measured profile that is read from a file
 DIGITS = 12  # Significant digits of a number in a study, beyond rounding
-MIN_MAGNITUDE = 1 / checks.LARGEST
+MIN_MAGNITUDE = 1 / checks.MAX_MAGNITUDE
 
 
 def round_digits(value: float) -> float:
@@ -247,10 +247,12 @@ def format_profile(table: Mapping[str, Any], *, in_units: bool = False) -> str:
         return f"{table['class']} {table['content'][:8]}"
     if kind == "effective-length":
         length = table["effective_length"]
-        length_text = quantity(length, "m") if in_units else f"{length:g} m"
+        length_text = format_quantity(length, "m") if in_units else f"{length:g} m"
         return f"{format_profile(table['profile'], in_units=in_units)} over {length_text}"
     values = {key: table[key] for key in sorted(table) if key != "kind"}
     if in_units:
-        items = (f"{key.replace('_', ' ')} {quantity(value, units.get(key, 'm'))}" for key, value in values.items())
+        items = (
+            f"{key.replace('_', ' ')} {format_quantity(value, units.get(key, 'm'))}" for key, value in values.items()
+        )
         return ", ".join([kind, *items])
     return " ".join([kind, *(f"{key}={value:g}" for key, value in values.items())])

@@ -120,12 +120,12 @@ def solve_task(task: Task, solver: Solver | None = None) -> list[Outcome]:
         groups = group_by_structure(pending)
         pending.clear()
         for batches in groups:
-            joined = join_batches(batches)
-            write_batch(Path(task.folder), f"{task.prefix}{uuid.uuid4().hex[:12]}", joined)
-            for row, identity in enumerate(joined.ids):
-                status = STATUSES[joined.status[row]]
-                seconds = float(joined.numbers["seconds"][row]) if "seconds" in joined.numbers else 0.0
-                outcomes.append(Outcome(identity.decode(), status, seconds, joined.texts["message"][row]))
+            batch = join_batches(batches)
+            write_batch(Path(task.folder), f"{task.prefix}{uuid.uuid4().hex[:12]}", batch)
+            for row, identity in enumerate(batch.ids):
+                status = STATUSES[batch.status[row]]
+                seconds = float(batch.numbers["seconds"][row]) if "seconds" in batch.numbers else 0.0
+                outcomes.append(Outcome(identity.decode(), status, seconds, batch.texts["message"][row]))
 
     last_save = time.monotonic()
     try:

@@ -59,8 +59,10 @@ def strip(x: FloatArray, y: FloatArray) -> FloatArray:
 def strip_means(x_range: Range, y_range: Range, cells: tuple[int, int]) -> xr.DataArray:
     """Means of `strip` over the cells, from its integral over y: exact resultants."""
     grid = Grid(x_range=x_range, y_range=y_range, cells_x=cells[0], cells_y=cells[1])
-    inside = np.clip(np.linspace(*y_range, grid.cells_y + 1), -1.0, 1.0)
-    return on_grid(np.diff(0.5 * (inside * np.sqrt(1 - inside**2) + np.arcsin(inside))) / grid.dy, grid)
+    clipped_edges = np.clip(np.linspace(*y_range, grid.cells_y + 1), -1.0, 1.0)
+    return on_grid(
+        np.diff(0.5 * (clipped_edges * np.sqrt(1 - clipped_edges**2) + np.arcsin(clipped_edges))) / grid.dy, grid
+    )
 
 
 def point_pressure(grid: Grid, row: int, column: int) -> xr.DataArray:
@@ -159,8 +161,8 @@ class ContactCase:
 
     def gap(self, x: FloatArray, y: FloatArray) -> FloatArray:
         """Gap at the tensor product of points, infinite beyond the roller."""
-        outside = (x < self.start) | (x > self.stop)
-        return np.asarray(np.where(outside, np.inf, self.gap_x(x))[:, None] + y[None, :] ** 2)
+        beyond_roller = (x < self.start) | (x > self.stop)
+        return np.asarray(np.where(beyond_roller, np.inf, self.gap_x(x))[:, None] + y[None, :] ** 2)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -252,8 +254,8 @@ CASES: dict[str, Mapping[str, object]] = {
 
 def data_file(name: str) -> Path:
     """Path of a data file: inside the installed package, or in the project's folder of an editable installation."""
-    inside = Path(str(files("contactstudy.verification"))) / "data" / name
-    return inside if inside.exists() else Path(__file__).resolve().parents[2] / "data" / name
+    package_path = Path(str(files("contactstudy.verification"))) / "data" / name
+    return package_path if package_path.exists() else Path(__file__).resolve().parents[2] / "data" / name
 
 
 def load_reference(file: str, name: str) -> xr.Dataset:

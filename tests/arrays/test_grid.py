@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from contactstudy import Grid, InvalidInputError
-from contactstudy.arrays.grid import STEEPEST_GRADING, growing_edges
+from contactstudy.arrays.grid import MAX_WIDTH_RATIO, growing_edges
 
 Y_RANGE = (-1.0, 1.0)
 
@@ -63,7 +63,7 @@ def test_equal_widths_make_a_uniform_grid() -> None:
 
 
 def test_widths_that_grow_as_fast_as_they_may_are_not_refused_for_rounding() -> None:
-    edges = np.append(0.0, np.cumsum(1.3e-6 * STEEPEST_GRADING ** np.arange(8)))
+    edges = np.append(0.0, np.cumsum(1.3e-6 * MAX_WIDTH_RATIO ** np.arange(8)))
     assert Grid.from_edges(0.1 + edges, Y_RANGE, 4).cells_x == 8
 
 
@@ -101,7 +101,7 @@ def test_growing_cells_reach_the_distance_and_grow_gently(distance: float, width
     assert np.all(widths > 0)
     assert widths[0] <= width * (1 + 1e-9)
     if edges.size > 1:
-        assert np.all(widths[1:] / widths[:-1] < STEEPEST_GRADING)
+        assert np.all(widths[1:] / widths[:-1] < MAX_WIDTH_RATIO)
 
 
 def test_no_distance_has_no_cells_and_an_endless_one_a_single_cell() -> None:

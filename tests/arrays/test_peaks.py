@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from contactstudy.arrays.peaks import interpolate_about, lagrange, peak_width, section_maxima
+from contactstudy.arrays.peaks import interpolate_about, lagrange_weights, peak_width, section_maxima
 
 
 @given(offset=st.floats(-0.5, 0.5), cells=st.integers(8, 40))
@@ -40,4 +40,4 @@ def test_width_of_a_crest() -> None:
 
 def test_interpolation_is_exact_for_polynomials() -> None:
     nodes, points = np.array([1.0, 1.3, 1.9, 2.2, 2.6, 3.0]), np.linspace(1.0, 3.0, 11)
-    assert lagrange(nodes, points) @ nodes**5 == pytest.approx(points**5, rel=1e-12)
+    assert lagrange_weights(nodes, points) @ nodes**5 == pytest.approx(points**5, rel=1e-12)

@@ -25,7 +25,7 @@ from contactstudy import (
     stress_field,
     surface_displacement,
 )
-from contactstudy.arrays.variables import in_si, required_in_si
+from contactstudy.arrays.variables import in_si, require_in_si
 from contactstudy.bearing import contact_law
 from contactstudy.case.motion import AxialFriction, checked_friction
 from contactstudy.design import best_profile
@@ -117,15 +117,15 @@ def test_variables_of_a_dataset_and_its_positions() -> None:
     place = ("x", [0.0, 2.0], {"units": "mm"})
     pressure = xr.DataArray([1.0, 2.0], {"x": place}, "x", attrs={"units": "GPa"})
     whole = xr.Dataset({"pressure": pressure, "gap": xr.zeros_like(pressure).assign_attrs(units="um")})
-    found = required_in_si(whole, "pressure")
+    found = require_in_si(whole, "pressure")
     assert (found.pressure.values.tolist(), found.x.values.tolist()) == ([1e9, 2e9], [0.0, 2e-3])
     assert (found.pressure.attrs["units"], found.x.attrs["units"]) == ("Pa", "m")
-    assert required_in_si(found, "pressure") is found
+    assert require_in_si(found, "pressure") is found
     for bad, message in (("1", "in SI, pressure in Pa"), ("psi", r"result.pressure.attrs\['units'\] = 'psi'")):
         with pytest.raises(InvalidInputError, match=message):
-            required_in_si(whole.assign(pressure=pressure.assign_attrs(units=bad)), "pressure", argument="result")
+            require_in_si(whole.assign(pressure=pressure.assign_attrs(units=bad)), "pressure", argument="result")
     with pytest.raises(InvalidInputError, match="traction_y is missing"):
-        required_in_si(whole, "traction_y")
+        require_in_si(whole, "traction_y")
 
 
 def test_numbers_of_contact_laws_designs_and_measured_profiles() -> None:

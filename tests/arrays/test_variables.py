@@ -36,7 +36,7 @@ from contactstudy.arrays.variables import (
     RULES,
     VARIABLES,
     describe,
-    named,
+    name_array,
     require,
     specification,
     variable_of,
@@ -321,7 +321,7 @@ def test_a_name_that_nothing_explains_is_left_alone() -> None:
 
 def test_labels_that_an_array_carries_count_for_what_is_derived_from_it() -> None:
     base = variable_of("luck", {"units": "K", "long_name": "fortune"})
-    assert named("peak_luck", xr.DataArray(1.0, attrs={"units": "m"}), base).attrs == {
+    assert name_array("peak_luck", xr.DataArray(1.0, attrs={"units": "m"}), base).attrs == {
         "units": "K",
         "long_name": "largest fortune",
     }

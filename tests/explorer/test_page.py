@@ -16,8 +16,8 @@ from contactstudy import ContactStudyError, InvalidInputError, open_study
 from contactstudy.analysis import in_plane, measure
 from contactstudy.arrays.variables import STRESSES, specification
 from contactstudy.explorer import explore, server
-from contactstudy.explorer.cases import ORDER, SUBJECTS, Cases, open_cases
-from contactstudy.explorer.figures import NEUTRAL, StudyFigure
+from contactstudy.explorer.cases import SUBJECT_ORDER, SUBJECTS, Cases, open_cases
+from contactstudy.explorer.figures import NEUTRAL_COLOR, StudyFigure
 from contactstudy.explorer.images import (
     PLANES,
     REGIONS,
@@ -55,7 +55,7 @@ any_source = pytest.mark.parametrize("page", SOURCES, indirect=True)
 def largest_drawn(page: Page) -> tuple[float, float]:
     """Largest pressure drawn along the axis, and on the top."""
     along = page.axial._lines[0].data["p"]
-    (picture,) = page.tops[0]._source.data["image"]
+    (picture,) = page.surface_figures[0]._source.data["image"]
     return float(np.nanmax(along)), float(picture.max())
 
 
@@ -85,7 +85,7 @@ def test_common_colours_of_two_cases(page: Page) -> None:
     page.choices[1]["max_pressure"].value = 2
     assert page.panes[2].visible
     assert page.axial._legend.visible
-    assert page.tops[0]._mapper.high == page.tops[1]._mapper.high > 1500
+    assert page.surface_figures[0]._mapper.high == page.surface_figures[1]._mapper.high > 1500
     assert page.table.object.count("edge factor of the contact towards end I (largest within a, over its middle)") == 1
     assert ">1 GPa<" in page.table.object
     assert ">1.5 GPa<" in page.table.object
@@ -95,7 +95,7 @@ def test_common_colours_of_two_cases(page: Page) -> None:
 def test_common_axes_of_two_cases(page: Page) -> None:
     page.compare.value = True
     page.choices[1]["max_pressure"].value = 2
-    for figures in (page.tops, page.planes):
+    for figures in (page.surface_figures, page.plane_figures):
         spans = [(each.figure.y_range.start, each.figure.y_range.end) for each in figures]
         drawn = [(each._source.data["y"][0], each._source.data["h"][0]) for each in figures]
         assert spans[0] == spans[1]
@@ -119,7 +119,7 @@ def test_failed_case(page: Page) -> None:
     page.choices[0]["friction"].value = 1
     assert ">failed<" in page.table.object
     assert "This case failed. WindowError: this friction fails in tests" in page.table.object
-    assert page.tops[0]._source.data["image"] == []
+    assert page.surface_figures[0]._source.data["image"] == []
     assert np.isnan(page.study._marked.data["v"]).all()
     assert not any(pane.visible for pane in page.panes)  # no empty axes
     assert "No case at these values" in page.table.object
@@ -129,7 +129,7 @@ def test_failed_case(page: Page) -> None:
     assert "<b>case:</b> This case failed" in page.table.object
     page.compare.value = False
     page.choices[0]["friction"].value = 0
-    assert len(page.tops[0]._source.data["image"]) == 1
+    assert len(page.surface_figures[0]._source.data["image"]) == 1
     assert "class=why" not in page.table.object
     assert [pane.visible for pane in page.panes] == [True, True, False, True, False, True]
 
@@ -147,7 +147,7 @@ def test_case_without_stresses(page: Page) -> None:
     assert "The stresses are not stored." in less.table.object
     assert [pane.visible for pane in less.panes] == [True, True, False, False, False, True]
     assert not less.plane.visible
-    assert not less.planes[0].figure.visible
+    assert not less.plane_figures[0].figure.visible
     assert page.plane.visible
     less.view()
     assert [pane.visible for pane in less.panes] == [True, True, False, False, False, True]
@@ -155,7 +155,7 @@ def test_case_without_stresses(page: Page) -> None:
 
 def test_numbers_by_subject(page: Page) -> None:
     groups = page.number.groups
-    assert list(groups) == [subject for subject in ORDER if subject in groups]
+    assert list(groups) == [subject for subject in SUBJECT_ORDER if subject in groups]
     assert list(groups)[:2] == ["pressure", "stresses"]
     assert list(groups)[-1] == "solution"
     names = [name for group in groups.values() for name in group.values()]
@@ -177,11 +177,11 @@ def test_error_bars_and_open_marks(page: Page) -> None:
     np.testing.assert_allclose(data["high"][1:], 1.1 * data["v"][1:])
     np.testing.assert_allclose(data["low"][1:], 0.9 * data["v"][1:])
     assert np.isnan([data["low"][0], data["high"][0]]).all()
-    assert data["fill"].tolist() == ["white", NEUTRAL, NEUTRAL]
+    assert data["fill"].tolist() == ["white", NEUTRAL_COLOR, NEUTRAL_COLOR]
     assert made.study.figure.title.text == "bars: estimated errors; open marks: error not estimated"
     assert made.study.figure.y_range.end > data["high"][-1]
     made.number.value = "normal_load"  # prescribed: exact
-    assert made.study._line.data["fill"].tolist() == [NEUTRAL] * 3
+    assert made.study._line.data["fill"].tolist() == [NEUTRAL_COLOR] * 3
     assert made.study.figure.title.text == ""
 
 
@@ -215,9 +215,9 @@ def test_stress_measures_of_the_plane(page: Page, solved: xr.Dataset) -> None:
     titles = {}
     for text, name in MEASURES.items():
         page.measure.value = name
-        assert ", largest " in page.planes[0].figure.title.text
-        assert page.planes[0].figure.title.text.startswith(f"{text} (MPa)\ny = 0")
-        titles[name] = float(page.planes[0]._source.data["image"][0].max())
+        assert ", largest " in page.plane_figures[0].figure.title.text
+        assert page.plane_figures[0].figure.title.text.startswith(f"{text} (MPa)\ny = 0")
+        titles[name] = float(page.plane_figures[0]._source.data["image"][0].max())
     assert titles["principal_stress_1"] < titles["maximum_shear"] < titles["von_mises"]
     case = CaseFields(solved.drop_vars(STRESSES), lambda: solved)
     expected = measure(solved, "principal_stress_1").transpose(*solved["von_mises"].dims)

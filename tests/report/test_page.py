@@ -147,7 +147,7 @@ def settled_cases(*errors: float) -> list[study_page.Row]:
 
 
 def test_reason_of_several_cases() -> None:
-    ((answer, reason, cases), (best, _, _)) = study_page._answers(settled_cases(0.1, 0.06, 0.001))
+    ((answer, reason, cases), (best, _, _)) = study_page._count_answers(settled_cases(0.1, 0.06, 0.001))
     assert (answer, len(cases), best) == ("with care", 2, "yes")
     assert reason == "the error of the peak pressure is 10.0% in the worst case, 6.0% in the best"
 
@@ -171,7 +171,9 @@ def test_open_ends_coarse_cells_and_malformed_runs(tmp_path: Path) -> None:
     assert "cylinder, fillet radius 0.1 mm" in page.text
     assert "at end" not in page.text
     scalars = [{"end_pressure_first": value, "end_pressure_last": 0.0} for value in (0.0, 1e9)]
-    names = [name for name in study_page.NUMBERS if any(study_page._has_number(numbers, name) for numbers in scalars)]
+    names = [
+        name for name in study_page.PEAK_NUMBERS if any(study_page._has_number(numbers, name) for numbers in scalars)
+    ]
     assert names == ["end_pressure_first"]
 
 

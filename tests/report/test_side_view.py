@@ -25,7 +25,7 @@ def case(body: Body | None = None, **roller: object) -> Case:
 def drawn(monkeypatch: pytest.MonkeyPatch) -> list[Figure]:
     """Figures that become pictures."""
     kept: list[Figure] = []
-    monkeypatch.setattr(figures, "as_address", lambda figure: kept.append(figure) or "data:")
+    monkeypatch.setattr(figures, "encode_figure", lambda figure: kept.append(figure) or "data:")
     return kept
 
 

@@ -8,7 +8,7 @@ import sys
 import numpy as np
 import pytest
 
-from contactstudy.checks import PART, writing
+from contactstudy.checks import TEMPORARY_SUFFIX, writing
 from contactstudy.errors import InvalidInputError
 from contactstudy.study import LockedError, StoreError, StudyFileError, load_case, open_study, run_study
 from contactstudy.study import folder as module
@@ -162,9 +162,9 @@ def test_a_failed_write_leaves_the_file_as_it_was(tmp_path):
 
 def test_unfinished_files_are_removed_and_others_stay(study, tmp_path):
     run(study, tmp_path)
-    unfinished = tmp_path / "batches" / f"ab.0123456789ab{PART}"
+    unfinished = tmp_path / "batches" / f"ab.0123456789ab{TEMPORARY_SUFFIX}"
     unfinished.write_text("half")
-    foreign = tmp_path / f"download{PART}"
+    foreign = tmp_path / f"download{TEMPORARY_SUFFIX}"
     foreign.write_text("mine")
     run(study, tmp_path)
     assert not unfinished.exists()

@@ -151,7 +151,7 @@ def slower_surfaces(patch: Patch) -> None:
 
 
 def better_conductors(patch: Patch) -> None:
-    patch.setattr(tribology, "UNIT", tribology.UNIT | {"conductivity": 1.1, "density": 1.1})
+    patch.setattr(tribology, "UNIT_PROPERTIES", tribology.UNIT_PROPERTIES | {"conductivity": 1.1, "density": 1.1})
 
 
 def heat_in_halves(patch: Patch) -> None:
