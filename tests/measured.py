@@ -119,7 +119,7 @@ def parts_of_the_main_job() -> Iterator[tuple[str, str]]:
         f"refined cells of one case, L/a = {case.body.extent[1] / case.hertz_half_width:.0f}",
         f"{result.sizes['x']} x {result.sizes['y']} cells",
     )
-    yield "contact settled to 1 %, and the traction left on the ends", f"{seconds:.1f} s"
+    yield "contact converged to 1 %, and the traction left on the ends", f"{seconds:.1f} s"
     pressure = result["pressure"]
 
     def stresses(friction: float) -> xr.Dataset:

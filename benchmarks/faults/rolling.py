@@ -100,11 +100,11 @@ def main() -> int:
     study = rolling_study(parser.parse_args().cases)
     differences: list[str] = []
     with tempfile.TemporaryDirectory(prefix="rolling-") as name:
-        calm = run(study, Path(name) / "calm", 0)
-        print(f"{study.size} cases, {int(calm['converged'].sum())} converged", flush=True)
+        undisturbed = run(study, Path(name) / "undisturbed", 0)
+        print(f"{study.size} cases, {int(undisturbed['converged'].sum())} converged", flush=True)
         for workers in (0, 2, 3):
-            found = run(study, Path(name) / f"workers-{workers}", workers, study.size // 2)
-            unlike = different(calm, found)
+            result = run(study, Path(name) / f"workers-{workers}", workers, study.size // 2)
+            unlike = different(undisturbed, result)
             differences += unlike
             print(f"killed in the middle and resumed, workers = {workers}: {unlike or 'all bits equal'}", flush=True)
     return int(bool(differences))

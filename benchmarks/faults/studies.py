@@ -94,7 +94,7 @@ def batches(folder: Path) -> list[Path]:
     return batch_paths(folder / "out" / "batches")
 
 
-def finished(folder: Path) -> dict[bytes, int]:
+def count_finished(folder: Path) -> dict[bytes, int]:
     """Identities of the cases that are done, with the number of the run that solved them."""
     results = Folder(folder / "out").results()
     return {identity: int(results.batches[batch].runs[row]) for identity, (batch, row) in results.locations.items()}
@@ -110,22 +110,22 @@ def resume(folder: Path) -> dict[str, int]:
     return dict(run_study(STUDY, folder / "out", workers=0, solver=solve_fake).counts)
 
 
-def values(folder: Path) -> xr.Dataset:
+def read_values(folder: Path) -> xr.Dataset:
     """Return the opened study without its times."""
     return open_study(folder / "out").drop_vars("seconds").load()
 
 
-def left_over(folder: Path) -> list[Path | str]:
+def list_leftovers(folder: Path) -> list[Path | str]:
     """Parts of files and held locks, which a run must not leave behind."""
     out = folder / "out"
     return [*out.glob("**/*.part"), *Folder(out).holders]
 
 
-def calm_values() -> xr.Dataset:
+def undisturbed_values() -> xr.Dataset:
     """Return the opened study of a run without faults."""
     with study_folder() as folder:
         assert resume(folder) == {"ok": CASES}
-        return values(folder)
+        return read_values(folder)
 
 
 def wait(process: subprocess.Popen[str] | Forked, condition: Callable[[], object]) -> None:

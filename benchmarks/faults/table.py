@@ -26,17 +26,17 @@ class Row:
     """
 
     fault: str
-    tried: int
+    trials: int
     passed: int
-    found: str
+    result: str
 
     def __str__(self) -> str:
-        return f"| {self.fault} | {self.tried} | {self.passed} | {self.found} |"
+        return f"| {self.fault} | {self.trials} | {self.passed} | {self.result} |"
 
 
 def write_table(page: Path, rows: list[Row]) -> None:
     """Put the table in its place on a page."""
-    before, _, rest = page.read_text(encoding="utf-8").partition(BEGIN)
-    _, _, after = rest.partition(END)
+    before, _, remaining_text = page.read_text(encoding="utf-8").partition(BEGIN)
+    _, _, after = remaining_text.partition(END)
     table = "\n".join([BEGIN, "", HEAD, *map(str, rows), "", END])
     page.write_text(before + table + after, encoding="utf-8")

@@ -198,7 +198,7 @@ def _cells(case: xr.Dataset) -> Criterion:
     relative = error / peak if peak else 0.0
     if relative > PEAK_TOLERANCE:
         return Criterion(question, WITH_CAUTION, f"the error of the peak pressure is {relative:.1%}")
-    return Criterion(question, YES, f"the peak pressure is settled to {relative:.1%}")
+    return Criterion(question, YES, f"the peak pressure has converged to {relative:.1%}")
 
 
 def _singular_edge(case: xr.Dataset) -> str:

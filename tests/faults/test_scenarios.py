@@ -15,8 +15,8 @@ PAGE = ROOT / "docs" / "explanation" / "reliability.md"
 
 
 @pytest.fixture(scope="module")
-def calm() -> xr.Dataset:
-    return studies.calm_values()
+def undisturbed() -> xr.Dataset:
+    return studies.undisturbed_values()
 
 
 def test_the_table_replaces_the_one_before(tmp_path: Path) -> None:
@@ -38,17 +38,17 @@ def test_the_page_has_a_place_for_it() -> None:
 
 
 @pytest.mark.system
-def test_faults_hold(calm: xr.Dataset) -> None:
+def test_faults_hold(undisturbed: xr.Dataset) -> None:
     for row in (
-        scenarios.damaged_files(calm, len(scenarios.DAMAGES)),
-        scenarios.kills(calm, 1),
-        hosts.two_systems(calm, 4),
+        scenarios.damaged_files(undisturbed, len(scenarios.DAMAGES)),
+        scenarios.kills(undisturbed, 1),
+        hosts.two_systems(undisturbed, 4),
     ):
-        assert row.passed == row.tried, row
+        assert row.passed == row.trials, row
 
 
 @pytest.mark.system
-def test_a_lost_file_is_counted(calm: xr.Dataset, monkeypatch) -> None:
+def test_a_lost_file_is_counted(undisturbed: xr.Dataset, monkeypatch) -> None:
     monkeypatch.setattr(scenarios, "DAMAGES", (lambda path, other: path.unlink(),))
     monkeypatch.setattr(studies, "unreadable", lambda folder: 1)
-    assert scenarios.damaged_files(calm, 1).passed == 0
+    assert scenarios.damaged_files(undisturbed, 1).passed == 0

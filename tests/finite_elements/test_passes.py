@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from benchmarks.finite_elements.passes import YOUNG, PlasticStrip, Strip
-from benchmarks.finite_elements.passes_file import PRODUCTION, solved
+from benchmarks.finite_elements.passes_file import PRODUCTION, solve_reference
 from contactstudy.verification.problems import PASSES_CASES, PASSES_FILE, PassesCase, load_reference
 
 COARSE = Strip(length=12.0, depth=6.0, width=1.0, height=0.2, fine=2.2, step=0.25)
@@ -16,7 +16,7 @@ COARSE = Strip(length=12.0, depth=6.0, width=1.0, height=0.2, fine=2.2, step=0.2
 
 def test_nothing_flows_below_first_yield() -> None:
     """First yield of a line contact is at p0 = 3.107 k."""
-    strains, stresses, _ = PlasticStrip(PassesCase(shear_yield_stress=1 / 3.0, friction=0.0, passes=1), COARSE).rolled()
+    strains, stresses, _ = PlasticStrip(PassesCase(shear_yield_stress=1 / 3.0, friction=0.0, passes=1), COARSE).roll()
     assert np.abs(strains).max() == 0
     assert np.abs(stresses).max() < 1e-12
 
@@ -24,7 +24,7 @@ def test_nothing_flows_below_first_yield() -> None:
 def test_stress_of_layers() -> None:
     """Far behind the contact plastic strain is uniform along y, its stress Hooke's with xx and yy held."""
     strip = PlasticStrip(PASSES_CASES["settling"], COARSE)
-    strains, stresses, spread = strip.rolled()
+    strains, stresses, spread = strip.roll()
     xx, yy, zz, _ = YOUNG * strains[-1]
     poisson = strip.case.poisson
     assert xx + yy + zz == pytest.approx(0, abs=1e-9)
@@ -43,12 +43,12 @@ def test_radial_return_has_its_own_tangent() -> None:
     rng = np.random.default_rng(2)
     total, plastic = rng.normal(size=(2, 4, 40)) * np.array([4e-4, 1e-5])[:, None, None]
     elastic = np.zeros((4, 40))
-    stress, after, tangent = strip.returned(total, plastic, elastic)
+    stress, after, tangent = strip.return_stress(total, plastic, elastic)
     assert 0 < np.count_nonzero((after != plastic).any(axis=0)) < 40
     for component in range(4):
         change = np.zeros((4, 1))
         change[component] = 1e-9
-        there, back = (strip.returned(total + sign * change, plastic, elastic)[0] for sign in (1, -1))
+        there, back = (strip.return_stress(total + sign * change, plastic, elastic)[0] for sign in (1, -1))
         slope = (there - back) / 2e-9 / (2 if component == 3 else 1)
         assert slope == pytest.approx(tangent[:, component], abs=1e-4 * YOUNG)
     assert np.isfinite(stress).all()
@@ -58,7 +58,7 @@ def test_radial_return_has_its_own_tangent() -> None:
 @pytest.mark.parametrize("name", ["settling", "flowing_sliding"])
 def test_coarse_mesh(name: str) -> None:
     left = load_reference(PASSES_FILE, name)
-    found = solved(PASSES_CASES[name], replace(PRODUCTION, width=1.0, step=1 / 8))
+    found = solve_reference(PASSES_CASES[name], replace(PRODUCTION, width=1.0, step=1 / 8))
     size = float(np.abs(left["sigma_xx"]).max())
     assert np.abs(found["sigma_xx"].values - left["sigma_xx"].values).max() < 0.15 * size
     shear, expected = (one["plastic_strain_yz_young"].sum("z").values for one in (found, left))

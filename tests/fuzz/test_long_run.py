@@ -11,7 +11,7 @@ import pytest
 from benchmarks.fuzz import __main__ as long_run
 from benchmarks.fuzz import outcome, properties
 from benchmarks.fuzz.outcome import Outcome, outcome_of
-from benchmarks.fuzz.solved import ViolationError
+from benchmarks.fuzz.solutions import ViolationError
 from contactstudy import InvalidInputError
 
 
@@ -20,8 +20,8 @@ def run(monkeypatch, tmp_path):
     """Run so many cases that are made up; returns the exit code and the seeds that were run."""
     seeds: list[int] = []
 
-    def made_up(chance: Random, **options) -> Outcome:
-        return Outcome("violation" if chance.random() < 0.2 else "converged", "said", ("balance",))
+    def made_up(rng: Random, **options) -> Outcome:
+        return Outcome("violation" if rng.random() < 0.2 else "converged", "said", ("balance",))
 
     real = Random
     monkeypatch.setattr(long_run, "outcome_of", made_up)
@@ -59,7 +59,7 @@ def test_foreign_errors_are_violations(monkeypatch) -> None:
         return raising
 
     for error, kind in ((ZeroDivisionError(), "violation"), (InvalidInputError("a", 1, "b"), "refused")):
-        monkeypatch.setattr(outcome, "random_drawn", fails(error))
+        monkeypatch.setattr(outcome, "draw_case", fails(error))
         assert outcome_of(Random(0)).kind == kind
     monkeypatch.undo()
     # The package's own error for a variant of a case that it has solved is one as well.
