@@ -37,7 +37,7 @@ def test_methods_are_the_functions(solved: xr.Dataset, name: str) -> None:
     assert result.identical(expected) if hasattr(result, "identical") else repr(result) == repr(expected)
 
 
-def test_signatures_are_those_of_the_functions() -> None:
+def test_accessor_signatures_match_functions() -> None:
     method, function = inspect.signature(xr.Dataset().contact.edge_factors), inspect.signature(analysis.edge_factors)
     assert list(method.parameters.values()) == list(function.parameters.values())[1:]
 
@@ -69,13 +69,13 @@ def test_a_file_opened_with_xarray(solved: xr.Dataset, tmp_path) -> None:
         "import contactstudy as cs; cs.open_study",
     ],
 )
-def test_it_is_there_whatever_is_imported_first(first: str) -> None:
+def test_accessor_is_registered_in_any_import_order(first: str) -> None:
     code = f"{first}\nimport xarray\nxarray.Dataset().contact"
     subprocess.run([sys.executable, "-c", code], check=True)
 
 
 @pytest.mark.system
-def test_it_is_there_for_a_file_that_xarray_opens_alone(solved: xr.Dataset, tmp_path) -> None:
+def test_accessor_is_registered_by_xarray_backend(solved: xr.Dataset, tmp_path) -> None:
     solved.to_netcdf(tmp_path / "case.nc")
     code = "import sys, xarray; print(xarray.open_dataset(sys.argv[1]).contact.summary())"
     run = subprocess.run([sys.executable, "-c", code, tmp_path / "case.nc"], check=True, capture_output=True, text=True)

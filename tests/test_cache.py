@@ -46,7 +46,7 @@ def test_the_least_recently_used_is_dropped_first() -> None:
     assert made[-1] == "bbbb"
 
 
-def test_a_value_larger_than_the_limit_is_not_kept_and_drops_nothing() -> None:
+def test_oversized_value_is_not_cached() -> None:
     cache.limit(5)
     make, made = recorded("letters")
     make("aaaa")
@@ -75,7 +75,7 @@ def test_kinds_do_not_meet() -> None:
     assert (kinds["first"].values, kinds["second"].values) == (1, 1)
 
 
-def test_info_counts_what_is_made_and_reused() -> None:
+def test_cache_info_counts_reuse() -> None:
     make, _ = recorded("counted")
     for name in ("aa", "aa", "bbb"):
         make(name)
@@ -84,7 +84,7 @@ def test_info_counts_what_is_made_and_reused() -> None:
     assert "counted: 2 in" in str(cache.info())
 
 
-def test_a_smaller_limit_drops_at_once_and_keeps_the_most_recent() -> None:
+def test_smaller_limit_drops_oldest_values() -> None:
     make, made = recorded("letters")
     for name in ("aaaa", "bbbb", "cccc"):
         make(name)
@@ -103,7 +103,7 @@ def test_a_limit_is_a_number_of_bytes(bound: object) -> None:
         cache.limit(bound)  # type: ignore[arg-type]
 
 
-def test_threads_share_one_value() -> None:
+def test_threads_share_cached_value() -> None:
     barrier, found = Barrier(4), []
 
     @cached("shared")

@@ -25,7 +25,7 @@ def spectrum(height: xr.DataArray, grid: Grid) -> tuple[np.ndarray, np.ndarray]:
 
 
 @given(rms=st.floats(1e-9, 1e-5), hurst=st.floats(0.0, 1.0), seed=st.integers(0, 10**6))
-def test_height_has_the_rms_and_the_band_asked_for(rms: float, hurst: float, seed: int) -> None:
+def test_self_affine_height_has_requested_spectrum(rms: float, hurst: float, seed: int) -> None:
     height = self_affine(GRID, **VALUES | {"rms_height": rms, "hurst": hurst, "seed": seed})
     assert float(np.sqrt((height**2).mean())) == pytest.approx(rms, rel=1e-12)
     assert abs(float(height.mean())) < 1e-10 * rms
@@ -52,7 +52,7 @@ def test_surface_is_isotropic_and_gaussian() -> None:
     assert np.mean(height**4) == pytest.approx(3.0, abs=0.2)
 
 
-def test_the_same_seed_is_the_same_surface() -> None:
+def test_seed_determines_surface() -> None:
     one, same = (self_affine(GRID, **VALUES) for _ in range(2))
     np.testing.assert_array_equal(one, same)
     assert np.abs(one - self_affine(GRID, **VALUES | {"seed": 2})).max() > 1e-7
@@ -165,7 +165,7 @@ def test_bad_netcdf_maps_are_named(tmp_path: Path) -> None:
         read_height_map(tmp_path / "units.nc", GRID, remove_slope="yes")
 
 
-def test_a_map_of_an_instrument_is_placed_turned_and_freed_of_its_form(tmp_path: Path) -> None:
+def test_height_map_is_placed_turned_and_detrended(tmp_path: Path) -> None:
     x, y = 2e-6 * np.arange(501), 5e-6 * np.arange(201)
     wave = 1e-7 * np.sin(2 * np.pi * x / 0.1e-3)[:, None] * np.cos(2 * np.pi * y / 0.2e-3)
     form = 1e-6 + 3e-3 * x[:, None] - 1e-3 * y - (y - 0.6e-3) ** 2 / 0.012 + 0.4 * x[:, None] * y

@@ -15,7 +15,7 @@ from tests.small_study import BASE, small_study
 STEEL = Material(210e9, 0.3)
 
 
-def test_parts_say_their_sizes_in_the_units_of_engineers() -> None:
+def test_reprs_use_engineering_units() -> None:
     shown = {
         STEEL: "Material(E = 210 GPa, nu = 0.3)",
         HalfSpace(material=STEEL): "HalfSpace(E = 210 GPa, nu = 0.3)",
@@ -31,7 +31,7 @@ def test_parts_say_their_sizes_in_the_units_of_engineers() -> None:
         assert repr(part) == text
 
 
-def test_a_measured_profile_does_not_list_its_points() -> None:
+def test_measured_profile_repr_omits_points() -> None:
     x = np.linspace(0, 10e-3, 1001)
     assert repr(Measured(x.tolist(), (1e-1 * (x - 5e-3) ** 2).tolist())) == (
         "Measured(1001 points over 10 mm, drop up to 2.5 µm)"
@@ -55,7 +55,7 @@ def test_a_case_says_load_pressure_and_place_first() -> None:
     assert "9 kN" in page
 
 
-def test_a_study_says_what_it_sweeps() -> None:
+def test_study_repr_contains_swept_parameters() -> None:
     study = small_study(description="<small>", base=BASE | {"roller_body": "rigid"})
     lines = repr(study).splitlines()
     assert lines[0] == "Study small: 4 cases before exclusions, keeping fields"
@@ -65,7 +65,7 @@ def test_a_study_says_what_it_sweeps() -> None:
     assert "20 values, 0 to 19" in repr(small_study(sweep={"e_over_a": list(range(20))}))
 
 
-def test_cases_share_their_preparation_only_if_their_numbers_are_the_same() -> None:
+def test_equal_cases_share_preparation() -> None:
     """Texts are rounded; identities are not."""
     close = [build_setup(BASE | {"e_over_a": 1.0, "young": young}).case.body for young in (210e9, 210.000001e9, 210e9)]
     assert close[0] == close[2] != close[1]

@@ -80,7 +80,7 @@ def test_states_done_by_hand(stress: xr.Dataset, expected: tuple[float, float, f
     assert principal_stresses(stress)["principal_stress"].values == pytest.approx(principal, abs=1e-12)
 
 
-def test_directions_of_a_plane_state_are_those_of_mohrs_circle() -> None:
+def test_principal_directions_match_mohrs_circle() -> None:
     result = principal_stresses(uniform(sigma_xx=5.0, sigma_yy=-1.0, tau_xy=4.0))
     first = result["principal_direction"].sel(principal=1)
     angle = 0.5 * np.arctan2(2 * 4.0, 6.0)
@@ -102,7 +102,7 @@ def test_invariants_do_not_depend_on_the_axes(tensor: Array, rotation: Array) ->
 
 
 @given(tensor=tensors())
-def test_tresca_and_von_mises_bound_each_other_and_the_trace_is_kept(tensor: Array) -> None:
+def test_tresca_and_von_mises_bound_each_other(tensor: Array) -> None:
     stress, scale = state(tensor), np.abs(tensor).max() + 1e-300
     mises, equivalent = float(von_mises(stress)), float(tresca(stress))
     assert mises <= equivalent + 1e-6 * scale
@@ -130,7 +130,7 @@ def strip() -> Callable[..., xr.Dataset]:
 
 
 @pytest.mark.parametrize("dims", [("x", "y", "z"), ("x_field", "y_field", "z")])
-def test_orthogonal_shear_of_a_line_contact_is_a_quarter_of_the_peak_pressure(
+def test_orthogonal_shear_of_line_contact(
     strip: Callable[..., xr.Dataset], dims: tuple[str, str, str]
 ) -> None:
     cycle = orthogonal_shear_range(strip(dims=dims))
@@ -145,7 +145,7 @@ def test_orthogonal_shear_of_a_line_contact_is_a_quarter_of_the_peak_pressure(
     assert {variable.attrs["units"] for variable in cycle.data_vars.values()} == {"Pa", "m"}
 
 
-def test_orthogonal_shear_range_of_a_line_contact_hardly_depends_on_friction(
+def test_orthogonal_shear_range_under_friction(
     strip: Callable[..., xr.Dataset],
 ) -> None:
     """The traction shifts both extremes alike at the depth of the largest range."""
@@ -156,7 +156,7 @@ def test_orthogonal_shear_range_of_a_line_contact_hardly_depends_on_friction(
     assert at[1] == pytest.approx(at[0], rel=5e-3)
 
 
-def test_largest_shear_and_von_mises_of_a_line_contact(strip: Callable[..., xr.Dataset]) -> None:
+def test_max_shear_and_von_mises_of_line_contact(strip: Callable[..., xr.Dataset]) -> None:
     stress = strip()
     assert float(maximum_shear(stress).max()) == pytest.approx(0.300, abs=5e-4)
     assert float(von_mises(stress).max()) == pytest.approx(0.5575, abs=1e-4)
@@ -193,6 +193,6 @@ def test_bad_shear_history_is_named(stress: xr.Dataset, message: str) -> None:
         orthogonal_shear_range(stress)
 
 
-def test_stress_that_is_not_finite_is_an_error() -> None:
+def test_nonfinite_stress_raises() -> None:
     with pytest.raises(InvalidInputError, match="finite"):
         principal_stresses(uniform(sigma_xx=np.nan))

@@ -50,7 +50,7 @@ def test_failed_case(opened: xr.Dataset) -> None:
         one.contact.slices()
 
 
-def test_more_than_one_case(opened: xr.Dataset) -> None:
+def test_several_cases_raise(opened: xr.Dataset) -> None:
     with pytest.raises(InvalidInputError, match=r"single case; select one"):
         analysis.single_case(opened)
     with pytest.raises(InvalidInputError, match="Dataset"):

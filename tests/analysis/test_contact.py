@@ -54,7 +54,7 @@ def test_interval_outside_the_cells(start, stop, message: str) -> None:
         analysis.load_between(contact(VALUES), start, stop)
 
 
-def test_results_over_a_and_one_row() -> None:
+def test_contact_results_of_normalized_data() -> None:
     scaled = analysis.normalized(contact(VALUES).assign(hertz_half_width=2.0, hertz_max_pressure=4.0))
     with pytest.raises(InvalidInputError, match=r"in SI.*analysis.normalized"):
         analysis.line_load(scaled)
@@ -129,7 +129,7 @@ def test_real_contact(solved: xr.Dataset) -> None:
     assert float(middle) == pytest.approx(hertz, rel=0.03)
 
 
-def test_study_against_its_cases(opened: xr.Dataset) -> None:
+def test_study_results_equal_case_results(opened: xr.Dataset) -> None:
     together = analysis.contact_results(opened)
     assert together["contact_area"].dims == ("e_over_a", "friction", "body")
     for e in (0.0, 1.0, 2.0):
@@ -160,7 +160,7 @@ def test_lazy_surfaces(opened: xr.Dataset) -> None:
     assert analysis.axial_profiles(opened.chunk())["half_width"].chunks is not None
 
 
-def test_nothing_in_contact() -> None:
+def test_results_without_contact() -> None:
     result = analysis.contact_results(contact([[0, 0], [0, 0]]))
     assert float(result["contact_length"]) == float(result["contact_area"]) == 0
     assert np.isnan(float(result["edge_pressure_first"]))

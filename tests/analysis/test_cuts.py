@@ -52,7 +52,7 @@ def test_positions_in_any_order() -> None:
     assert np.allclose(analysis.in_plane(shuffled, z=0.3)["von_mises"], analysis.in_plane(linear(), z=0.3)["von_mises"])
 
 
-def test_result_of_one_plane_only(opened: xr.Dataset) -> None:
+def test_cut_of_single_plane_result(opened: xr.Dataset) -> None:
     one = opened.sel(e_over_a=1, friction=0.1, body="finite-length")
     plane = analysis.in_plane(one, y=0.0, variables=["von_mises", "tresca"])
     assert plane["tresca"].dims == ("x_field", "z")

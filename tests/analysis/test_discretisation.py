@@ -46,7 +46,7 @@ def solved(case: Case, cells: int):
     [case_of(8 * HALF_WIDTH, profiles.Cylinder()), case_of(7 * HALF_WIDTH, LUNDBERG)],
     ids=["flush cylinder", "Lundberg"],
 )
-def test_estimates_bound_the_difference_from_a_much_finer_grid(case):
+def test_error_estimates_bound_fine_grid_difference(case):
     coarse, fine, finest = (solved(case, cells) for cells in (32, 64, 192))
     estimate, reference = discretisation_error(fine, coarse), discretisation_error(finest, fine)
     for name in ("peak_pressure", "end_pressure_first", "end_pressure_last", "half_width_middle"):
@@ -124,7 +124,7 @@ def test_coarse_cells_at_an_edge_radius(profile, length, cells):
     ids=repr,
 )
 @pytest.mark.parametrize("cells", [2, 8])
-def test_finite_errors_cover_what_refined_columns_settle(profile, cells):
+def test_errors_cover_refined_column_values(profile, cells):
     body = FiniteLengthSpace(length=0.5e-3, material=STEEL)
     case = Case(body=body, roller=Roller(radius=5e-3, length=0.5e-3, profile=profile), max_pressure=1e9)
     result = with_errors(case, choose_grid(case, cells_x=cells))

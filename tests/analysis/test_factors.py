@@ -38,7 +38,7 @@ def test_uniform_contact_has_no_edge(strip_result) -> None:
         assert np.allclose(factors.to_array(), 1.0), variable
 
 
-def test_field_near_one_end(strip_result) -> None:
+def test_edge_factors_of_field_near_end(strip_result) -> None:
     result = strip_result().isel(x_field=slice(0, 3))
     factors = analysis.edge_factors(result, "von_mises", result)
     assert np.isnan(float(factors["end_over_middle_first"]))
@@ -51,7 +51,7 @@ def test_fillet_makes_an_edge(solved: xr.Dataset) -> None:
     assert float(factors["end_over_middle_first"]) == pytest.approx(float(factors["end_over_middle_last"]), rel=1e-6)
 
 
-def test_a_study_against_its_half_space(opened: xr.Dataset) -> None:
+def test_edge_factors_of_study_with_reference(opened: xr.Dataset) -> None:
     half_space = opened.sel(body="half-space").isel(e_over_a=0)
     factors = analysis.edge_factors(opened.sel(body="finite-length"), "pressure", half_space)
     assert factors["over_reference_peak"].sizes == {"e_over_a": 3, "friction": 2}

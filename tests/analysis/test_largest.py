@@ -101,7 +101,7 @@ def test_points_under_a_uniform_pressure(near: np.ndarray) -> None:
     assert abs(float(found.peak_maximum_shear) - 3) <= float(found.peak_maximum_shear_error) < 0.1
 
 
-def test_points_that_miss_a_pressure_peak() -> None:
+def test_coarse_points_state_missed_peak() -> None:
     found = analysis.peak(beside_a_narrow_peak(np.array([2.0, 3.0, 4.0, 4.8, 5.3])), "maximum_shear")
     assert np.isinf(float(found.peak_maximum_shear_error))
 

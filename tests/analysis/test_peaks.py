@@ -39,7 +39,7 @@ def test_friction_shifts_the_largest_von_mises(strip_result) -> None:
     assert float(result["peak_von_mises_y"]) == pytest.approx(0.55, abs=0.05)
 
 
-def test_study_against_its_cases(opened: xr.Dataset) -> None:
+def test_study_results_equal_case_results(opened: xr.Dataset) -> None:
     for variable in ("von_mises", "pressure", "tresca", "hydrostatic"):
         together = analysis.largest_sample(opened, variable)
         for e in (0.0, 1.0, 2.0):

@@ -99,13 +99,13 @@ class Named:
         return 1e-6 * np.abs(x) / length
 
 
-def test_user_profile_is_compared_by_its_drops() -> None:
+def test_user_profiles_are_compared_by_drop() -> None:
     cases = [replace(CASE, roller=replace(CASE.roller, profile=Named())) for _ in range(2)]
     assert repr(cases[0].roller.profile) != repr(cases[1].roller.profile)
     check_solved_for(with_provenance(xr.Dataset(), cases[0], {}, {}), cases[1])
 
 
-def test_rounding_and_other_versions(result: xr.Dataset) -> None:
+def test_comparison_ignores_rounding_and_version(result: xr.Dataset) -> None:
     body = FiniteLengthSpace(length=3 * 0.1e-3, material=STEEL)
     case = Case(body=body, roller=Roller(radius=5e-3, length=0.3e-3), max_pressure=1.5e9)
     check_solved_for(with_provenance(xr.Dataset(), case, {}, {}), replace(case, end_distance=0.0))

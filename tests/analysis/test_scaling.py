@@ -20,7 +20,7 @@ def test_scaled_results(strip_result) -> None:
     assert float(small["hertz_max_pressure"]) == 1e9
 
 
-def test_scalars_scale_by_their_units(strip_result) -> None:
+def test_scalars_scale_by_units(strip_result) -> None:
     result = strip_result(2e-4, 1e9)
     scalars = analysis.contact_results(result).assign(result[["hertz_half_width", "hertz_max_pressure"]])
     scaled = analysis.normalized(scalars)

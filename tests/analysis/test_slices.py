@@ -70,7 +70,7 @@ def test_bad_input(strip_result, opened: xr.Dataset) -> None:
         analysis.slices(opened)
 
 
-def test_order_and_stresses_at_one_depth(solved: xr.Dataset) -> None:
+def test_slices_keep_order_at_single_depth(solved: xr.Dataset) -> None:
     there = analysis.slices(solved, 4)
     turned = analysis.slices(solved.isel(x=slice(None, None, -1)), 4)
     assert turned["normal_load"].values == pytest.approx(there["normal_load"].values)

@@ -25,7 +25,7 @@ def array(**coordinates: object) -> xr.DataArray:
     )
 
 
-def test_edges_are_what_widths_say() -> None:
+def test_edges_follow_from_widths() -> None:
     data = array(x_width=("x", GRID.widths))
     values, grid = labelled_cells("p", data)
     assert np.allclose(grid.x_edges, EDGES)
@@ -38,7 +38,7 @@ def test_edges_follow_from_the_end_of_the_body(extent: tuple[float, float]) -> N
     assert np.allclose(grid.x_edges, EDGES)
 
 
-def test_dimensions_in_either_order_are_the_same() -> None:
+def test_dimension_order_does_not_matter() -> None:
     data = array(x_width=("x", GRID.widths))
     values, grid = labelled_cells("p", data.transpose("y", "x"))
     assert grid.shape == GRID.shape
@@ -71,7 +71,7 @@ def test_labels_lead_back_to_the_cells(ratios: list[float]) -> None:
         assert np.allclose(found.x_edges, edges, atol=within)
 
 
-def test_part_of_the_cells_keeps_their_widths() -> None:
+def test_selected_cells_keep_widths() -> None:
     data = array(x_width=("x", GRID.widths)).isel(x=slice(1, 4))
     assert np.allclose(labelled_cells("p", data)[1].x_edges, EDGES[1:5])
 
@@ -91,12 +91,12 @@ def test_part_of_the_cells_keeps_their_widths() -> None:
     ],
     ids=["no widths", "a gap", "an overlap", "backwards", "negative", "not finite"],
 )
-def test_cells_that_do_not_tile_are_refused_with_their_place(data: xr.DataArray, message: str) -> None:
+def test_cells_with_gaps_raise(data: xr.DataArray, message: str) -> None:
     with pytest.raises(InvalidInputError, match=message):
         labelled_cells("p", data)
 
 
-def test_centres_that_do_not_follow_from_the_end_are_refused_with_their_place() -> None:
+def test_inconsistent_centres_raise() -> None:
     data = xr.DataArray(np.ones((3, 2)), coords={"x": [0.5, 0.6, 2.0], "y": [0.0, 1.0]}, dims=("x", "y"))
     with pytest.raises(InvalidInputError, match=r"a cell centre at 0.6 m.*x_width"):
         labelled_cells("p", data, extent=(0.0, np.inf))

@@ -18,7 +18,7 @@ def test_top_of_an_ellipse_wherever_the_cells_lie(offset: float, cells: int) -> 
     assert section_maxima(pressure)[0] == pytest.approx(1.0, abs=1e-9)
 
 
-def test_columns_without_a_parabola_keep_their_largest_cell() -> None:
+def test_section_maxima_without_parabola() -> None:
     pressure = np.array([[0.0, 0.0, 0.0, 0.0], [0.0, 3.0, 0.0, 0.0], [2.0, 1.0, 0.0, 0.0]])
     found = section_maxima(pressure)
     assert found[0] == 0

@@ -56,7 +56,7 @@ def test_a_pressure_in_gigapascals(on_cells: OnCells, half_space: HalfSpace) -> 
 
 
 @pytest.mark.parametrize("unit", ["inch", "Pa", "", 7])
-def test_other_units_are_refused(unit: object) -> None:
+def test_unknown_units_raise(unit: object) -> None:
     with pytest.raises(InvalidInputError, match=r"gap.attrs\['units'\]"):
         in_si("gap", xr.DataArray([1.0], attrs={"units": unit}), "m")
 
@@ -107,13 +107,13 @@ def test_yield_stress_over_depth() -> None:
         ElasticPlastic.from_hardness(hard.assign_attrs(units="HRC"))
 
 
-def test_what_was_converted_says_so() -> None:
+def test_converted_variable_has_si_units() -> None:
     found = in_si("gap", xr.DataArray([1.0], {"x": ("x", [2.0], {"units": "mm"})}, "x", attrs={"units": "um"}), "m")
     assert (found.attrs["units"], found["x"].attrs["units"]) == ("m", "m")
     xr.testing.assert_identical(in_si("gap", found, "m"), found)
 
 
-def test_variables_of_a_dataset_and_its_positions() -> None:
+def test_dataset_positions_are_converted() -> None:
     place = ("x", [0.0, 2.0], {"units": "mm"})
     pressure = xr.DataArray([1.0, 2.0], {"x": place}, "x", attrs={"units": "GPa"})
     whole = xr.Dataset({"pressure": pressure, "gap": xr.zeros_like(pressure).assign_attrs(units="um")})
@@ -176,7 +176,7 @@ def case_with(**given) -> Case:
 
 
 @pytest.mark.parametrize("name", SCALARS)
-def test_a_scalar_of_a_result_is_a_number_in_its_own_unit(name: str) -> None:
+def test_scalar_argument_is_converted(name: str) -> None:
     taken, value, units, si = SCALARS[name]
     for given in (scalar(value, units), scalar(si), np.array(si), scalar(opened(si)), scalar(opened(value), units)):
         found = taken(given)
@@ -187,20 +187,20 @@ def test_a_scalar_of_a_result_is_a_number_in_its_own_unit(name: str) -> None:
     assert len(str(caught.value)) < 200
 
 
-def test_the_largest_pressure_of_a_result_opened_with_chunks_is_that_of_the_next_case(tmp_path: Path) -> None:
+def test_lazy_scalar_is_accepted_as_pressure(tmp_path: Path) -> None:
     xr.Dataset({"pressure": ("x", [1e9, 2e9], {"units": "Pa"})}).to_netcdf(tmp_path / "a.nc")
     with xr.open_dataset(tmp_path / "a.nc", chunks={}) as result:
         assert case_with(max_pressure=result.pressure.max(keep_attrs=True)) == case_with(max_pressure=2e9)
 
 
-def test_no_message_computes_what_is_lazy() -> None:
+def test_messages_do_not_compute_lazy_arrays() -> None:
     never = da.from_delayed(dask.delayed(pytest.fail)("computed"), (), float)
     for value, kind in ((never, "Array"), (scalar(never, "N"), "DataArray"), (scalar(never).expand_dims(x=3), "")):
         with pytest.raises(InvalidInputError, match=rf"case = lazy {kind}.*type float64: must be a Case"):
             solve(value)
 
 
-def test_the_load_of_a_result_is_that_of_the_next_case() -> None:
+def test_result_scalar_is_accepted_as_load() -> None:
     load = xr.DataArray(123.0, coords={"friction": 0.1}, attrs={"units": "N", "long_name": "normal load"})
     assert case_with(load=load) == case_with(load=123.0)
 

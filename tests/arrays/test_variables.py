@@ -238,7 +238,7 @@ OF_THE_MOTION = ("slip_x", "slip_y", "friction_work")
 """Per distance rolled or of a shift: their unit tells."""
 
 
-def test_every_variable_stands_in_the_table_with_its_unit(returned: Returned) -> None:
+def test_table_contains_all_variables(returned: Returned) -> None:
     strangers, unlike = [], []
     for function, dataset in returned.items():
         for name, array in dataset.data_vars.items():
@@ -270,7 +270,7 @@ def test_every_coordinate_stands_in_a_table(returned: Returned) -> None:
     assert strangers == []
 
 
-def test_dimensions_are_those_of_the_table(returned: Returned) -> None:
+def test_dimensions_match_table(returned: Returned) -> None:
     """But for those of a study, of slices and of a contact law; of a field that was cut, fewer."""
     unlike = []
     for function, dataset in returned.items():
@@ -297,7 +297,7 @@ def test_every_row_of_the_table_is_returned(returned: Returned) -> None:
         assert made - VARIABLES.keys(), pattern
 
 
-def test_a_study_of_listed_cases_has_the_coordinate_case() -> None:
+def test_listed_cases_have_case_coordinate() -> None:
     from contactstudy.study.plan import cube_of_axes
 
     assert set(cube_of_axes([]).labels) == {"case"}
@@ -309,7 +309,7 @@ def test_no_brace_is_left_in_a_label(returned: Returned) -> None:
             assert "{" not in str(array.attrs.get("long_name", "")) + str(array.attrs.get("units", ""))
 
 
-def test_a_name_that_nothing_explains_is_left_alone() -> None:
+def test_unknown_name_keeps_attributes() -> None:
     own = xr.Dataset({"luck": ("y", [1.0])}, {"y": [0.0]})
     described = describe(own)
     assert described["luck"].attrs == {}
@@ -319,7 +319,7 @@ def test_a_name_that_nothing_explains_is_left_alone() -> None:
     assert specification("peak_") is None
 
 
-def test_labels_that_an_array_carries_count_for_what_is_derived_from_it() -> None:
+def test_derived_labels_use_array_attributes() -> None:
     base = variable_of("luck", {"units": "K", "long_name": "fortune"})
     assert name_array("peak_luck", xr.DataArray(1.0, attrs={"units": "m"}), base).attrs == {
         "units": "K",
@@ -327,7 +327,7 @@ def test_labels_that_an_array_carries_count_for_what_is_derived_from_it() -> Non
     }
 
 
-def test_what_a_quantity_is_derived_from_is_named_or_left_open() -> None:
+def test_derived_quantity_labels() -> None:
     criterion = VARIABLES["dang_van"]
     filled = specification("utilisation", criterion)
     assert filled is not None
@@ -358,7 +358,7 @@ def test_names_made_by_rule(name: str, symbol: str, units: str) -> None:
     assert (known.symbol, known.units) == (symbol, units)
 
 
-def test_names_on_axes_fit_into_one_line() -> None:
+def test_axis_labels_are_short() -> None:
     """Labels of xarray's own figures are broken after 30 characters, and the second line is cut off."""
     for name, entry in (*COORDINATES.items(), *PARAMETERS.items()):
         known = entry.attrs
@@ -385,7 +385,7 @@ def test_numbers_without_an_error_carry_the_mark(solved: xr.Dataset) -> None:
         ("hertz_half_width", "hertz_half_width is missing"),
     ],
 )
-def test_require_names_the_study_level_of_a_missing_variable(missing: str, hint: str) -> None:
+def test_require_message_contains_study_level(missing: str, hint: str) -> None:
     with pytest.raises(InvalidInputError) as caught:
         require(xr.Dataset({"gap": 0.0}), "gap", missing, argument="result")
     assert caught.value.hint == hint
@@ -403,7 +403,7 @@ def test_require_quotes_the_message_of_a_failed_case() -> None:
         require(failed, "pressure")
 
 
-def test_require_refuses_other_types() -> None:
+def test_require_raises_for_wrong_type() -> None:
     with pytest.raises(InvalidInputError, match=r"list.*Dataset"):
         require([], argument="result")
 

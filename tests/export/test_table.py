@@ -31,7 +31,7 @@ def test_all_points_of_a_variable(solved: xr.Dataset) -> None:
     assert np.array_equal(table["pressure [Pa]"].to_numpy().reshape(solved["pressure"].shape), solved["pressure"])
 
 
-def test_what_the_analysis_returns(solved: xr.Dataset) -> None:
+def test_table_of_analysis_results(solved: xr.Dataset) -> None:
     table = export.to_table(analysis.slices(solved, 7))
     assert len(table) == 7
     assert "half_width [m] (error not estimated)" in table
@@ -65,7 +65,7 @@ def test_bad_input(solved: xr.Dataset, settings: dict, message: str) -> None:
         export.to_table(solved, **settings)
 
 
-def test_more_than_one_case(opened: xr.Dataset, tmp_path) -> None:
+def test_several_cases_raise(opened: xr.Dataset, tmp_path) -> None:
     with pytest.raises(InvalidInputError, match="single case"):
         export.to_csv(opened, tmp_path / "a.csv", "pressure")
     with pytest.raises(InvalidInputError, match="path"):

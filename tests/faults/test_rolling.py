@@ -9,12 +9,12 @@ import pytest
 from benchmarks.faults import rolling
 
 
-def test_numbers_of_cases_are_what_is_asked_for() -> None:
+def test_rolling_study_has_requested_size() -> None:
     assert [rolling.rolling_study(cases).size for cases in (500, 12)] == [500, 12]
 
 
 @pytest.mark.system
-def test_rolling_cases_that_were_killed_are_those_that_were_not(tmp_path: Path) -> None:
+def test_killed_rolling_run_equals_undisturbed_run(tmp_path: Path) -> None:
     study = rolling.rolling_study(12)
     undisturbed = rolling.run(study, tmp_path / "undisturbed", 0)
     assert bool(undisturbed["converged"].all())

@@ -19,7 +19,7 @@ def undisturbed() -> xr.Dataset:
     return studies.undisturbed_values()
 
 
-def test_the_table_replaces_the_one_before(tmp_path: Path) -> None:
+def test_table_replaces_previous_table(tmp_path: Path) -> None:
     page = tmp_path / "page.md"
     page.write_text(f"before\n\n{BEGIN}\nold\n{END}\n\nafter\n")
     for passed in (1, 2):
@@ -32,7 +32,7 @@ def test_the_table_replaces_the_one_before(tmp_path: Path) -> None:
     assert text.count("| kill") == 1
 
 
-def test_the_page_has_a_place_for_it() -> None:
+def test_page_contains_table_markers() -> None:
     text = PAGE.read_text(encoding="utf-8")
     assert text.count(BEGIN) == text.count(END) == 1
 

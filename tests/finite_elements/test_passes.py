@@ -14,7 +14,7 @@ from contactstudy.verification.problems import PASSES_CASES, PASSES_FILE, Passes
 COARSE = Strip(length=12.0, depth=6.0, width=1.0, height=0.2, fine=2.2, step=0.25)
 
 
-def test_nothing_flows_below_first_yield() -> None:
+def test_no_plastic_flow_below_yield() -> None:
     """First yield of a line contact is at p0 = 3.107 k."""
     strains, stresses, _ = PlasticStrip(PassesCase(shear_yield_stress=1 / 3.0, friction=0.0, passes=1), COARSE).roll()
     assert np.abs(strains).max() == 0
@@ -37,7 +37,7 @@ def test_stress_of_layers() -> None:
     assert YOUNG * spread.max() < 0.1 * np.abs(YOUNG * strains).max()
 
 
-def test_radial_return_has_its_own_tangent() -> None:
+def test_radial_return_tangent() -> None:
     """Stresses change with strains as the tangent says, on either side of yield."""
     strip = PlasticStrip(replace(PASSES_CASES["settling"], kinematic_hardening=0.02), COARSE)
     rng = np.random.default_rng(2)

@@ -38,7 +38,7 @@ def finite_elements(depths: tuple[float, ...]) -> np.ndarray:
 
 
 @pytest.mark.slow
-def test_top_relative_to_the_line_at_the_reference_depth() -> None:
+def test_surface_displacement_relative_to_reference_depth() -> None:
     """The contact's approach is this difference, see `tests/contact/normal/test_reference.py`."""
     depths = (0.5 * LENGTH, LENGTH, 3 * LENGTH)
     material = unit_material(POISSON)

@@ -54,7 +54,7 @@ def test_displacement_of_a_line_contact() -> None:
 
 
 @pytest.mark.slow
-def test_a_long_body_loaded_in_the_middle_is_a_half_space() -> None:
+def test_long_body_equals_half_space() -> None:
     """Against the integral of Boussinesq and Cerruti loads; the ends, `6 a` away, still count a little."""
     bump = fe.Bump(6.0, 1.0)
     x, z = (6.0, 6.5, 7.5), (0.5, 1.0, 2.0)

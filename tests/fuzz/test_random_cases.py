@@ -34,7 +34,7 @@ def test_cases_on_refined_cells(rng: Random) -> None:
     look_at(rng, refined=True)
 
 
-def test_a_seed_is_one_case() -> None:
+def test_seed_determines_case() -> None:
     first, second = (outcome_of(Random(3)) for _ in range(2))
     assert (first.kind, first.message, first.checked) == (second.kind, second.message, second.checked)
     assert first.kind == "converged"

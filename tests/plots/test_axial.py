@@ -43,7 +43,7 @@ def test_bad_input(opened, one, draw):
         draw(one.drop_vars("pressure"))
 
 
-def test_one_line_and_name_per_result(solved, strip_result, assert_nothing_clipped):
+def test_comparison_labels_each_line(solved, strip_result, assert_nothing_clipped):
     ax = plots.plot_comparison({"ends": solved, "Hertz": strip_result(1e-4, 1e9)})
     assert [text.get_text() for text in ax.get_legend().get_texts()] == ["ends", "Hertz"]
     assert ax.lines[1].get_ydata().max() == pytest.approx(1.0, abs=1e-3)
@@ -104,7 +104,7 @@ def worn():
     return xr.Dataset({"wear_depth": depth, "line_load": load}, {"distance": [0.0, 10.0], "x": [0.5e-3, 1e-3, 1.5e-3]})
 
 
-def test_depth_points_down_and_loads_are_in_newton_per_millimetre(worn):
+def test_depth_axis_points_down(worn):
     ax = plots.plot_wear(worn)
     assert ax.yaxis_inverted()
     assert ax.lines[1].get_ydata()[1:] == pytest.approx([2.0, 1.0])

@@ -15,7 +15,7 @@ def test_study_figure(opened):
     assert labels[-1].startswith("half-space")
 
 
-def test_legend_is_legible_in_a_column_of_360_pixels(opened):
+def test_legend_fits_narrow_column(opened):
     figure = plots.plot_edge_effect(opened)
     (text, *_) = figure.get_axes()[0].get_legend().get_texts()
     assert text.get_fontsize() * 360 / (72 * figure.get_figwidth()) > 7
@@ -32,7 +32,7 @@ def test_study_figure_without_stresses_and_without_comparison(opened):
     assert len(figure.get_axes()[0].get_legend().get_texts()) == 2
 
 
-def test_nothing_to_draw(opened):
+def test_study_without_pressures_raises(opened):
     with pytest.raises(InvalidInputError, match="finished cases"):
         plots.plot_edge_effect(opened, selection={"friction": FAILS})
     with pytest.raises(InvalidInputError, match="finished cases"):

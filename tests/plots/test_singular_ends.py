@@ -19,7 +19,7 @@ def test_the_ends_are_found_where_the_roller_ends(sharp):
     np.testing.assert_allclose(singular_ends(sharp), [0.2e-3, 1.2e-3], rtol=1e-9)
 
 
-def test_the_pressure_stops_before_a_singular_end_and_a_mark_stands_there(sharp):
+def test_singular_end_is_marked(sharp):
     ax = plots.plot_axial_pressure(sharp)
     line, marks = ax.lines
     a, p0 = float(sharp["hertz_half_width"]), float(sharp["hertz_max_pressure"])
@@ -28,7 +28,7 @@ def test_the_pressure_stops_before_a_singular_end_and_a_mark_stands_there(sharp)
     assert np.nanmax(line.get_ydata()) < 0.5 * float(sharp["pressure"].max()) / p0
 
 
-def test_the_mark_of_an_end_beyond_the_axes_takes_no_room(sharp):
+def test_mark_beyond_axes_keeps_limits(sharp):
     ax = plots.plot_axial_pressure(sharp)
     marks = ax.lines[-1]
     first, last = marks.get_xdata()
@@ -38,7 +38,7 @@ def test_the_mark_of_an_end_beyond_the_axes_takes_no_room(sharp):
     assert marks.get_clip_on()
 
 
-def test_the_colours_of_the_map_stop_before_a_singular_end(sharp):
+def test_map_colours_exclude_singular_end(sharp):
     mesh, *_ = plots.plot_pressure_map(sharp).collections
     assert mesh.get_clim()[1] < 0.5 * float(sharp["pressure"].max() / sharp["hertz_max_pressure"])
 
@@ -48,7 +48,7 @@ def study(values):
     return xr.Dataset({"peak_pressure": peaks.assign_attrs(units="Pa")})
 
 
-def test_a_line_through_singular_cases_has_marks_and_a_limit(assert_nothing_clipped):
+def test_study_line_marks_singular_cases(assert_nothing_clipped):
     figure = plots.plot_study_lines(study([[1e9, 1.1e9], [np.inf, 1.2e9]]), x="e_over_a", hue="friction")
     first, marks, _ = figure.axes[0].lines
     assert np.isnan(first.get_ydata()[1])
@@ -58,18 +58,18 @@ def test_a_line_through_singular_cases_has_marks_and_a_limit(assert_nothing_clip
     assert_nothing_clipped(figure)
 
 
-def test_without_singular_cases_there_is_no_mark():
+def test_regular_cases_have_no_mark():
     figure = plots.plot_study_lines(study([[1e9, 1.1e9], [1.3e9, 1.2e9]]), x="e_over_a", hue="friction")
     assert len(figure.axes[0].lines) == 2
     assert not any("singular" in text.get_text() for legend in figure.legends for text in legend.get_texts())
 
 
-def test_a_map_says_where_there_is_no_limit():
+def test_study_map_labels_unbounded_values():
     ax = plots.plot_study_map(study([[1e9, 1.1e9], [np.inf, 1.2e9]]), "peak_pressure")
     assert [text.get_text() for text in ax.texts].count("\N{INFINITY}") == 1
 
 
-def test_a_largest_value_at_the_edge_of_the_points_has_an_open_marker(lines_of):
+def test_maximum_at_border_has_open_marker(lines_of):
     one = study([[1e9, 1.1e9], [1.3e9, 1.2e9]]).rename(peak_pressure="peak_von_mises")
     one["peak_von_mises_error"] = one["peak_von_mises"] * [[0.01, np.inf], [0.01, 0.01]]
     figure = plots.plot_study_lines(one, ["peak_von_mises"], x="e_over_a", hue="friction")
@@ -79,7 +79,7 @@ def test_a_largest_value_at_the_edge_of_the_points_has_an_open_marker(lines_of):
     assert any("error not estimated" in text.get_text() for legend in figure.legends for text in legend.get_texts())
 
 
-def test_colours_stop_at_the_stress_away_from_a_singular_end():
+def test_stress_colours_exclude_singular_end():
     """Positions that close in on the end have stresses without a limit: they would take all colours."""
     body = HalfSpace(material=Material(210e9, 0.3))
     case = Case(body=body, roller=Roller(radius=5e-3, length=1e-3), max_pressure=1.5e9, end_distance=0.2e-3)

@@ -7,7 +7,7 @@ from contactstudy.errors import InvalidInputError
 
 
 @pytest.mark.parametrize(("axis", "labels"), [("x", ("y/a", "z/a")), ("y", ("x/a", "z/a")), ("z", ("x/a", "y/a"))])
-def test_planes_name_their_axes(solved, assert_nothing_clipped, axis, labels):
+def test_stress_planes_have_axis_labels(solved, assert_nothing_clipped, axis, labels):
     at = {"x": 0.2e-3, "y": 1e-5, "z": 2e-5}[axis]
     ax = plots.plot_stress_plane(solved, "tresca", **{axis: at})
     assert labels[0] in ax.get_xlabel()
@@ -26,7 +26,7 @@ def test_levels_cover_the_stress_of_the_plane(solved):
     assert levels[-1] >= float(plane.max())
 
 
-def test_result_with_one_plane(one):
+def test_plot_of_single_plane_result(one):
     ax = plots.plot_stress_plane(one, "sigma_xx")
     low, high = ax.get_ylim()
     assert low > high
@@ -34,7 +34,7 @@ def test_result_with_one_plane(one):
         plots.plot_stress_plane(one, y=1e-5)
 
 
-def test_contours_meet_at_the_edge_of_the_end_face(solved, assert_nothing_clipped):
+def test_end_face_contours_are_continuous(solved, assert_nothing_clipped):
     ax = plots.plot_end_face(solved)
     filled = [collection.levels for collection in ax.collections if getattr(collection, "filled", False)]
     assert len(filled) == 2

@@ -6,7 +6,7 @@ from contactstudy import plots
 from contactstudy.errors import InvalidInputError
 
 
-def test_a_panel_for_each_quantity_and_a_line_for_each_value(opened, assert_nothing_clipped, lines_of):
+def test_panels_and_lines_of_study(opened, assert_nothing_clipped, lines_of):
     figure = plots.plot_study_lines(opened, x="e_over_a", hue="body", selection={"friction": 0.1})
     assert len(figure.axes) == 3
     assert all(len(lines_of(ax)) == 2 for ax in figure.axes)
@@ -21,7 +21,7 @@ def test_names_are_spread_evenly(opened):
     assert [tick.get_text() for tick in figure.axes[0].get_xticklabels()] == ["finite-length", "half-space"]
 
 
-def test_figures_that_suit_a_study(opened):
+def test_study_figures_depend_on_variables(opened):
     assert list(plots.study_figures(opened)) == ["edge_effect", "study"]
     assert list(plots.study_figures(opened[["status", "peak_pressure"]].isel(e_over_a=[0]))) == ["study"]
     assert plots.study_figures(opened[["status"]]) == {}
@@ -33,7 +33,7 @@ def test_parameters_must_be_swept(opened, arguments):
         plots.plot_study_lines(opened, **arguments)
 
 
-def test_quantities_must_be_there(opened):
+def test_missing_quantity_raises(opened):
     with pytest.raises(InvalidInputError, match="no_such_thing"):
         plots.plot_study_lines(opened, ["no_such_thing"], x="e_over_a")
 
@@ -48,14 +48,14 @@ def test_the_first_solved_cases_are_drawn_and_named(opened):
     assert not np.isfinite(only_failed.axes[0].lines[0].get_ydata()).any()
 
 
-def test_what_is_held_is_named_with_its_unit(opened):
+def test_title_contains_fixed_parameters(opened):
     load = xr.DataArray([200.0, 300.0], dims="load", attrs={"units": "N"})
     loaded = opened.isel(friction=0, drop=True).expand_dims(load=load)
     loaded["load"].attrs["units"] = "N"
     assert plots.plot_study_lines(loaded, x="e_over_a", hue="body").get_suptitle() == "load = 200 N, one of 2 values"
 
 
-def test_the_legend_has_the_unit_of_its_title(opened):
+def test_legend_contains_unit(opened):
     by_pressure = opened.sel(friction=0.1, body="finite-length").expand_dims(max_pressure=[1e9, 2e9])
     by_pressure["max_pressure"].attrs["units"] = "Pa"
     legend, *_ = plots.plot_study_lines(by_pressure, x="e_over_a", hue="max_pressure").legends
@@ -63,7 +63,7 @@ def test_the_legend_has_the_unit_of_its_title(opened):
     assert [text.get_text() for text in legend.get_texts()] == ["1", "2"]
 
 
-def test_parameters_that_change_together_are_named_together(opened):
+def test_zipped_parameters_share_label(opened):
     one = opened.sel(friction=0.1).isel(e_over_a=[0])
     together = one.rename(body="body_and_model").assign_coords(
         body=("body_and_model", ["finite-length", "half-space"]), model=("body_and_model", ["mirror", "exact"])
@@ -74,7 +74,7 @@ def test_parameters_that_change_together_are_named_together(opened):
     assert [text.get_text() for text in legend.get_texts()] == ["finite-length, mirror", "half-space, exact"]
 
 
-def test_stated_errors_are_bars_and_infinite_ones_are_none() -> None:
+def test_finite_errors_are_drawn_as_bars() -> None:
     steps = {"e_over_a": [0.0, 1.0, 2.0]}
     peaks = xr.DataArray([1e9, 2e9, 3e9], steps, "e_over_a", attrs={"units": "Pa"})
     errors = peaks.copy(data=[1e8, np.inf, 2e8])
@@ -86,7 +86,7 @@ def test_stated_errors_are_bars_and_infinite_ones_are_none() -> None:
     assert not without.axes[0].collections
 
 
-def test_a_place_without_an_error_has_open_markers_and_a_given_number_none(lines_of) -> None:
+def test_values_without_errors_have_open_markers(lines_of) -> None:
     steps = {"e_over_a": [0.0, 1.0]}
     peaks = xr.DataArray([1e9, 2e9], steps, "e_over_a", attrs={"units": "Pa"})
     known = {"peak_von_mises": peaks, "peak_von_mises_error": 0.1 * peaks, "peak_von_mises_z": 1e-14 * peaks}
@@ -98,7 +98,7 @@ def test_a_place_without_an_error_has_open_markers_and_a_given_number_none(lines
     assert [text.get_text() for text in legend.get_texts()] == ["error not estimated"]
 
 
-def test_a_selection_chooses_what_figures_show(opened) -> None:
+def test_figures_follow_selection(opened) -> None:
     (edge, _), (chosen, _) = (
         [figure.get_suptitle() for figure in plots.study_figures(opened, selection=selection).values()]
         for selection in ({}, {"friction": "0.10"})

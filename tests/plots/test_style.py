@@ -7,7 +7,7 @@ from contactstudy import plots
 from contactstudy.errors import InvalidInputError
 
 
-def test_colours_keep_their_order_in_grey():
+def test_colours_are_ordered_in_grey():
     colours = matplotlib.colormaps[plots.COLORS](np.linspace(0, 1, 20))[:, :3]
     assert np.all(np.diff(colours @ [0.299, 0.587, 0.114]) > 0)
 

@@ -26,7 +26,7 @@ def rolled() -> xr.Dataset:
     return solve(case, stresses=False, accuracy=0.05)
 
 
-def test_areas_are_those_of_the_case(assert_nothing_clipped) -> None:
+def test_stick_and_slip_areas_match_case(assert_nothing_clipped) -> None:
     one = rolled()
     ax = plots.plot_stick_and_slip(one)
     mesh = ax.collections[0]
@@ -37,7 +37,7 @@ def test_areas_are_those_of_the_case(assert_nothing_clipped) -> None:
     assert_nothing_clipped(ax.figure)
 
 
-def test_the_border_beside_singular_ends_is_that_of_the_pressed_cells() -> None:
+def test_contact_border_near_singular_ends() -> None:
     steel = Material(210e9, 0.3)
     case = Case(
         body=FiniteLengthSpace(length=1.4e-3, material=steel),
@@ -54,7 +54,7 @@ def test_the_border_beside_singular_ends_is_that_of_the_pressed_cells() -> None:
     assert not border.contains_point([0.7, 1.1 * half_width])
 
 
-def test_arrows_point_along_the_tractions_where_they_stand() -> None:
+def test_arrows_follow_local_tractions() -> None:
     one = rolled()
     ax = plots.plot_stick_and_slip(one, arrows=12)
     (arrows,) = (artist for artist in ax.collections if hasattr(artist, "U"))
@@ -139,7 +139,7 @@ def hot(solved):
     return solved.assign(temperature_rise=rise, frictional_heat=solved["pressure"])
 
 
-def test_map_shows_every_cell_and_the_hottest_one(hot, assert_nothing_clipped):
+def test_temperature_map_marks_maximum(hot, assert_nothing_clipped):
     ax = plots.plot_temperature_map(hot)
     assert np.asarray(ax.collections[0].get_array()).max() == pytest.approx(float(hot.temperature_rise.max()))
     hottest = hot.temperature_rise.where(hot.temperature_rise == hot.temperature_rise.max(), drop=True)

@@ -81,7 +81,7 @@ def read(path: Path) -> Page:
 def unencoded(monkeypatch: pytest.MonkeyPatch) -> None:
     """Figures are drawn, but not encoded."""
     for module in (figures, study_page):
-        monkeypatch.setattr(module, "as_address", lambda figure: "data:image/svg+xml;base64,")
+        monkeypatch.setattr(module, "encode_figure", lambda figure: "data:image/svg+xml;base64,")
 
 
 def test_page_of_a_case(solved: xr.Dataset, tmp_path: Path) -> None:
@@ -344,7 +344,7 @@ def test_malformed_run_and_settings(solved: xr.Dataset, run: dict[str, object], 
     assert "Numbers" in page
 
 
-def test_numbers_that_are_nan(solved: xr.Dataset) -> None:
+def test_page_omits_nan_numbers(solved: xr.Dataset) -> None:
     scalars = {str(name): np.nan for name, variable in solved.data_vars.items() if variable.ndim == 0}
     assert "not known" in report.html(solved.assign(scalars))
     assert "not known" in report.html(solved[["pressure"]] * np.nan)

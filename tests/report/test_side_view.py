@@ -33,7 +33,7 @@ def texts(figure: Figure) -> list[str]:
     return [text.get_text().strip() for text in figure.axes[0].texts]
 
 
-def test_one_scale(drawn: list[Figure]) -> None:
+def test_side_view_has_equal_scales(drawn: list[Figure]) -> None:
     view = side_geometry(case())
     assert view.limits == (0.0, 16e-3)
     assert view.roller == pytest.approx((1e-3, 15e-3))

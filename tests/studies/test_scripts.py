@@ -65,7 +65,7 @@ def regime_errors(tmp_path_factory):
     return module.errors(module.select_quantities(open_study(folder)))
 
 
-def test_regime_map_compares_every_model_with_the_exact_ends(regime_errors):
+def test_regime_map_compares_models_with_exact_ends(regime_errors):
     module = script("regime_map")
     full = regime_errors.sel(profile="full crown")
     assert np.isfinite(full["peak_pressure_first"]).all()
@@ -84,7 +84,7 @@ def test_regime_map_compares_every_model_with_the_exact_ends(regime_errors):
     assert module.table(regime_errors).count("\n") == 15
 
 
-def test_regime_map_marks_what_only_the_model_makes_singular(regime_errors):
+def test_regime_map_marks_singularities_of_models(regime_errors):
     """The half-space presses the ends of a slight crown without a limit."""
     module = script("regime_map")
     endless = regime_errors.copy(deep=True)
@@ -93,7 +93,7 @@ def test_regime_map_marks_what_only_the_model_makes_singular(regime_errors):
     assert any(text.get_text() == "\N{INFINITY}" for text in figure.axes[0].texts)
 
 
-def test_regime_map_says_from_where_on_errors_stay_small():
+def test_regime_map_states_distance_of_small_errors():
     module = script("regime_map")
     # Small at 0 but not at 1, and so from 2 on only; never small; small at 0, where longer distances do not exist.
     values = [[-2.0, 9.0, -0.5], [8.0, 9.0, np.nan], [-0.5, 7.0, np.nan], [0.7, np.nan, np.nan]]
@@ -106,7 +106,7 @@ def test_regime_map_says_from_where_on_errors_stay_small():
     np.testing.assert_array_equal(found.sel(below=1.0), [2.0, np.nan, 0.0])
 
 
-def test_regime_map_checks_its_accuracy_on_some_of_its_cases():
+def test_regime_map_checks_accuracy():
     module = script("regime_map")
     study = Study.from_toml(STUDIES / "regime_map.toml")
     known = {case.name for case in study.plan()}
@@ -130,7 +130,7 @@ def test_best_profile_needs_less_crown_between_free_ends():
     assert "| free ends |" in module.table(found)
 
 
-def test_real_roller_is_softer_at_its_own_ends():
+def test_elastic_roller_is_softer_at_ends():
     module = script("real_roller")
     length = 1.2e-3
     found = module.solve_all({"Lundberg": module.PROFILES["Lundberg"]}, 0.05, length, workers=0)
@@ -171,7 +171,7 @@ def near_an_edge():
     return module, shapes, module.solve_all(shapes, (0.0, 8.0))
 
 
-def test_quarter_space_is_softer_at_its_edge(near_an_edge):
+def test_quarter_space_is_softer_at_edge(near_an_edge):
     module, _, found = near_an_edge
     ball = found.sel(indenter="sphere")
     lowered = ball.sel(condition="depth")
@@ -185,7 +185,7 @@ def test_quarter_space_is_softer_at_its_edge(near_an_edge):
     assert float(found["end_traction_residual"].max()) < 1e-4
 
 
-def test_quarter_space_passes_its_checks_on_coarse_cells(near_an_edge):
+def test_quarter_space_passes_checks_on_coarse_cells(near_an_edge):
     module, shapes, _ = near_an_edge
     rows = module.checks(shapes["sphere"], shapes["cylinder"])
     *of_sphere, of_short_cylinder = (abs(row.value - row.expected) for row in rows)
@@ -203,14 +203,14 @@ def test_quarter_space_draws_and_tabulates_every_distance(near_an_edge):
     assert "nu = 0.3" in module.poisson_table(found)
 
 
-def test_quarter_space_does_not_take_the_border_of_its_points_for_the_largest_stress(near_an_edge):
+def test_quarter_space_ignores_maximum_at_border(near_an_edge):
     module, shapes, _ = near_an_edge
     shallow = replace(shapes["sphere"], z=(0.05, 0.1, 0.15, 0.2))
     with pytest.raises(ValueError, match="border of the points"):
         module.solve_with_errors(shallow, module.HALF_SPACE, None, ("load",))
 
 
-def test_worn_profile_is_flat_at_its_own_load_only():
+def test_worn_profile_is_flat_at_design_load():
     module = script("worn_profile")
     task = module.Task(length=0.6e-3, mean_depths=(1e-6, 1e-5), pressures=(1.5e9, 2e9), tilts=(0.0,))
     worn = module.wear_roller(task)
@@ -226,7 +226,7 @@ def test_worn_profile_is_flat_at_its_own_load_only():
     assert "| best crown |" in module.table(found.expand_dims(tilt=[0.0]))
 
 
-def test_rolling_draws_its_four_studies(tmp_path):
+def test_rolling_script_draws_four_studies(tmp_path):
     module = script("rolling")
     fewer = {
         "traction_curve": {"longitudinal_creepage": [0.0, 2e-3], "roller_length": [0.26e-3]},

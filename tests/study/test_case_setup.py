@@ -40,7 +40,7 @@ def test_load_and_e_over_a_together(given, e_over_a):
     assert case.roller_start == pytest.approx(e_over_a * case.hertz_half_width, rel=1e-9, abs=1e-15)
 
 
-def test_a_load_that_leaves_no_roller():
+def test_load_without_positive_roller_length_raises():
     values = {key: BASE[key] for key in ("young", "poisson", "radius")}
     with pytest.raises(InvalidInputError, match="load"):
         build_setup(values | {"gamma": 0.1, "load": 1e5, "e_over_a": 5})
@@ -52,7 +52,7 @@ AT_APPROACH = {key: BASE[key] for key in ("young", "poisson", "radius", "roller_
 }
 
 
-def test_an_approach_leaves_the_half_width_to_the_solution():
+def test_approach_leaves_half_width_undefined():
     setup = build_setup(AT_APPROACH | {"end_distance": 1e-4})
     assert setup.case.approach == 1e-6
     assert np.isnan(setup.e_over_a)
@@ -68,7 +68,7 @@ def test_an_approach_leaves_the_half_width_to_the_solution():
         ({"end_distance": 0, "load": 3.0}, "load, approach = .*one of the three, max_pressure, load or approach"),
     ],
 )
-def test_what_is_over_a_is_refused_with_an_approach(changes, message):
+def test_approach_refuses_parameters_over_half_width(changes, message):
     with pytest.raises(InvalidInputError, match=message):
         build_setup(AT_APPROACH | changes)
 
@@ -96,12 +96,12 @@ def test_stress_points_are_over_a():
         ({"e_over_a": 1, "profile": {"kind": "lundberg"}}, "profile"),
     ],
 )
-def test_what_cannot_be_solved(changes, named):
+def test_impossible_parameters_raise(changes, named):
     with pytest.raises(InvalidInputError, match=named):
         build_setup(BASE | changes)
 
 
-def test_lundberg_by_its_design_pressure():
+def test_lundberg_profile_from_design_pressure():
     table = {"kind": "lundberg", "design_pressure": 1.5e9}
     case = build_setup(BASE | {"e_over_a": 1, "profile": table}).case
     assert case.roller.profile.amplitude == pytest.approx(5e-3 * (1.5e9 / case.modulus) ** 2)
@@ -117,7 +117,7 @@ def test_elastic_rollers_tilt_and_load_offset_reach_the_case():
     assert case.hertz_half_width > build_setup({**BASE, "e_over_a": 1.0}).case.hertz_half_width
 
 
-def test_the_roller_of_one_material_needs_no_constants():
+def test_elastic_roller_defaults_to_body_material():
     case = build_setup({**BASE, "e_over_a": 1.0, "roller_body": "half-space"}).case
     assert case.roller.material == case.body.material
     assert isinstance(case.roller.body, HalfSpace)
@@ -140,6 +140,6 @@ def test_default_accuracy_and_default_friction_in_the_identity():
     assert identity_value("profile", tapered | {"name": "ours"}) == tapered
 
 
-def test_shift_from_its_parameters():
+def test_shift_motion_from_parameters():
     values = {"motion": "shift", "shift_y": 1e-6, "rolling_model": "exact"}
     assert build_motion(values) == Shift(y=1e-6)

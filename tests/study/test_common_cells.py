@@ -33,7 +33,7 @@ def edges(draw):
 
 
 @given(st.lists(edges(), min_size=1, max_size=5))
-def test_common_columns_cover_all_and_are_nowhere_much_narrower_than_needed(cases):
+def test_common_columns_resolve_all_cases(cases):
     common = common_columns(cases)
     assert common[0] == 0.0
     assert common[-1] == max(own[-1] for own in cases)
@@ -51,7 +51,7 @@ def test_averages_keep_the_load(cases, seed):
 
 
 @given(edges(), st.floats(-3.0, 3.0), st.floats(-3.0, 3.0))
-def test_a_straight_line_stays_one_between_the_centres(own, slope, offset):
+def test_interpolation_keeps_straight_lines(own, slope, offset):
     centres = 0.5 * (own[1:] + own[:-1])
     common = np.linspace(own[0], own[-1], 30)
     found = resample("gap", offset + slope * centres, [cells_map(own, common, np.nan)])
@@ -59,7 +59,7 @@ def test_a_straight_line_stays_one_between_the_centres(own, slope, offset):
     np.testing.assert_allclose(found, offset + slope * np.clip(at, centres[0], centres[-1]), atol=1e-12)
 
 
-def test_beyond_the_own_cells_there_is_no_body_and_no_pressure_beside_the_window():
+def test_values_beyond_cells_are_nan_or_zero():
     common = np.array([0.0, 1.0, 2.0, 3.0])
     own = np.array([0.0, 1.0, 2.0])
     along_x, along_y = cells_map(own, common, np.nan), cells_map(own, common, 0.0)
@@ -70,7 +70,7 @@ def test_beyond_the_own_cells_there_is_no_body_and_no_pressure_beside_the_window
     assert np.isnan(gap[:, 2]).all()
 
 
-def test_an_infinite_gap_stays_where_it_is():
+def test_infinite_gap_keeps_position():
     own = np.array([0.0, 1.0, 2.0, 3.0])
     found = resample("initial_gap", np.array([1.0, np.inf, np.inf]), [cells_map(own, own, np.nan)])
     np.testing.assert_array_equal(found, [1.0, np.inf, np.inf])
@@ -82,7 +82,7 @@ def test_rows_are_uniform_over_the_widest_window():
     assert rows[[0, -1]].tolist() == [-2.0, 2.0]
 
 
-def test_cases_on_their_own_columns_lie_on_one_axis(tmp_path):
+def test_refined_columns_share_common_axis(tmp_path):
     base = {
         "young": 210e9,
         "poisson": 0.3,
@@ -123,7 +123,7 @@ def test_cases_on_their_own_columns_lie_on_one_axis(tmp_path):
 
 
 @given(edges(), st.lists(st.floats(0.0, 3.0), min_size=1, max_size=6, unique=True))
-def test_stress_points_of_a_study_are_centres_of_cells(source, points):
+def test_stress_points_become_cell_centres(source, points):
     points = np.unique(np.round(points, 3))
     cells = centre_cells_on(source, points)
     assert np.diff(cells).min() > 0
@@ -137,6 +137,6 @@ def test_cells_between_stress_points():
     assert cells.tolist() == [0.0, 1e-06, 0.25, 1.0, 3.0]
 
 
-def test_edges_that_resolve_the_cells_of_two_cases():
+def test_common_edges_of_two_cases():
     first, second = np.array([0.0, 1.0, 2.0, 4.0]), np.array([0.0, 0.9, 4.0, 5.0])
     assert common_columns([first, second]).tolist() == [0.0, 0.9, 2.0, 4.0, 5.0]

@@ -56,7 +56,7 @@ def test_fields_are_lazy(opened, folder):
     np.testing.assert_allclose(one["x_over_a"] * one["hertz_half_width"], one["x"])
 
 
-def test_stresses_at_different_points_lie_on_a_common_axis(tmp_path):
+def test_different_stress_points_share_common_axis(tmp_path):
     base = {name: value for name, value in BASE.items() if name != "field_x_over_a"}
     cases = [{"e_over_a": e, "field_x_over_a": [0.0, 0.5 + e, 2.0, 4.0]} for e in (0.0, 1.0)]
     run_study(small_study(base=base, sweep={}, cases=cases), tmp_path, workers=0, solver=solve_fake)
@@ -110,14 +110,14 @@ def test_an_unfinished_study_opens(tmp_path):
     assert (open_study(tmp_path)["status"] == "missing").all()
 
 
-def test_opening_writes_nothing(tmp_path):
+def test_open_study_writes_no_files(tmp_path):
     run_study(small_study(), tmp_path, workers=0, solver=solve_fake)
     before = sorted(tmp_path.rglob("*"))
     open_study(tmp_path)["pressure"].load()
     assert sorted(tmp_path.rglob("*")) == before
 
 
-def test_units_with_exponents_that_differ(tmp_path):
+def test_intensities_with_different_exponents(tmp_path):
     sweep = {"roller_body": ["rigid", "finite-length"]}
     base = BASE | {"e_over_a": 3.0, "stresses": False, "accuracy": 0.1, "cells_x": None, "cells_y": None}
     base = {name: value for name, value in base.items() if value is not None and not name.startswith("field_")}
@@ -136,7 +136,7 @@ def test_collect_keeps_summaries_only(folder):
     assert summary["peak_pressure"].attrs["units"] == "Pa"
 
 
-def test_a_file_instead_of_the_folder_is_told_apart(tmp_path):
+def test_file_path_raises_folder_error(tmp_path):
     (tmp_path / "case.nc").write_text("")
     with pytest.raises(StudyFileError, match="it is a file; give the folder"):
         open_study(tmp_path / "case.nc")

@@ -29,7 +29,7 @@ def test_every_level_is_explained():
         assert f"| `{name}` |" in TEXT, name
 
 
-def test_the_tutorial_shows_one_study_as_file_and_in_python():
+def test_tutorial_file_equals_python_study():
     names = {}
     source = blocks(TUTORIAL, "python")[0]
     exec(source[: source.index("report =")], names)

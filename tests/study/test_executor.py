@@ -28,7 +28,7 @@ def test_groups_contain_the_frictions_of_a_contact(many):
     assert coupled.plan().groups.tolist() == list(range(8))
 
 
-def test_the_first_task_is_one_group_and_later_ones_follow_from_the_time(many):
+def test_task_size_follows_measured_time(many):
     tasks = tasks_of(many, [[0, 1], [2, 3], [4, 5], [6, 7]])
     first = tasks.next_task(1)
     assert len(first.jobs) == 2
@@ -37,7 +37,7 @@ def test_the_first_task_is_one_group_and_later_ones_follow_from_the_time(many):
     assert tasks.remaining == 4
 
 
-def test_cases_of_a_dead_worker_are_solved_alone_and_fail_at_the_second_death(many):
+def test_case_fails_at_second_worker_death(many):
     tasks = tasks_of(many, [[0, 1]])
     task = tasks.next_task(1)
     assert tasks.return_task(task, died=True) == []
@@ -47,7 +47,7 @@ def test_cases_of_a_dead_worker_are_solved_alone_and_fail_at_the_second_death(ma
     assert not tasks
 
 
-def test_outcomes_of_this_process(many, tmp_path):
+def test_execution_in_process_yields_outcomes(many, tmp_path):
     tasks = tasks_of(many, [[0, 1], [2, 3]], tmp_path)
     outcomes = [outcome for _, part in execute(tasks, Engine(workers=0, solver=solve_fake)) for outcome in part]
     assert [outcome.status for outcome in outcomes] == ["ok"] * 4

@@ -18,7 +18,7 @@ def run(study, folder):
 
 
 @pytest.mark.parametrize("content", ["[]", "3", '{"name": 3}', '{"nmae": "a"}', "[" * 100_000, "1" * 5000])
-def test_a_study_json_that_is_no_study(tmp_path, content):
+def test_invalid_study_json_raises(tmp_path, content):
     (tmp_path / "study.json").write_text(content)
     with pytest.raises(StudyFileError, match=r"study\.json"):
         open_study(tmp_path)
@@ -58,19 +58,19 @@ def test_extreme_cases_are_skipped_and_stop_no_plan(changes):
     assert [bool(case.reason) for case in plan] == [True]
 
 
-def test_a_missing_one_of_two_is_said_in_words():
+def test_message_contains_missing_alternatives():
     with pytest.raises(InvalidInputError, match=r"e_over_a, end_distance = 'none': must be given as one of the two"):
         build_setup(BASE)
 
 
 @pytest.mark.parametrize("call", [run_study, Study.from_mapping])
 @pytest.mark.parametrize("wrong", ["x", None, 3])
-def test_what_is_no_study(call, wrong):
+def test_invalid_study_arguments_raise(call, wrong):
     with pytest.raises(InvalidInputError, match="study"):
         call(wrong)
 
 
-def test_what_is_no_folder():
+def test_invalid_folder_raises():
     with pytest.raises(InvalidInputError, match="folder = None"):
         open_study(None)
 
@@ -128,7 +128,7 @@ def test_a_measured_profile_from_a_pipe(tmp_path, name):
         case_id({"profile": {"kind": "measured", "file": str(tmp_path / name)}})
 
 
-def test_a_measured_profile_of_more_points_than_results_can_keep():
+def test_measured_profile_with_too_many_points():
     points = [1e-8 * number for number in range(50_001)]
     with pytest.raises(InvalidInputError, match="at most 50000 points"):
         case_id({"profile": {"kind": "measured", "positions": points, "drops": points}})

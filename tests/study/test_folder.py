@@ -37,7 +37,7 @@ def rows(count, **options):
     return join_batches([failed(number, {"friction": 0.1}, **options) for number in range(count)])
 
 
-def test_a_second_holder_is_refused_with_the_first_named(tmp_path):
+def test_lock_error_contains_holder(tmp_path):
     folder = Folder(tmp_path)
     with folder.locked(Share()):
         with pytest.raises(LockedError, match=f"process {os.getpid()} on "), folder.locked(Share()):
@@ -77,7 +77,7 @@ def test_a_pipe_as_lock(tmp_path):
         pass
 
 
-def test_a_batch_is_read_as_it_was_written(tmp_path):
+def test_batch_round_trip(tmp_path):
     write_batch(tmp_path, "a", rows(3, message="Größe", warnings=["one"]))
     (path,) = batch_paths(tmp_path)
     assert describe_damage(path) == ""
@@ -88,7 +88,7 @@ def test_a_batch_is_read_as_it_was_written(tmp_path):
     assert batch.texts["parameters"] == ['{"friction": 0.1}'] * 3
 
 
-def test_tables_of_parameters_are_stored_once(tmp_path):
+def test_batch_stores_parameter_tables_once(tmp_path):
     profiles = [{"kind": "measured", "drops": [1e-6] * 1000}, {"kind": "cylinder"}]
     parameters = [{"young": 1.0, "profile": profiles[number % 2], "friction": 0.1 * number} for number in range(40)]
     batch = join_batches([failed(number, entry) for number, entry in enumerate(parameters)])
@@ -145,7 +145,7 @@ def test_a_folder_of_another_schema_is_refused(study, tmp_path, schema):
         open_study(tmp_path)
 
 
-def test_a_failed_write_leaves_the_file_as_it_was(tmp_path):
+def test_failed_write_keeps_previous_file(tmp_path):
     path = tmp_path / "a.txt"
     write_text(path, "before")
 
@@ -160,7 +160,7 @@ def test_a_failed_write_leaves_the_file_as_it_was(tmp_path):
     assert list(tmp_path.iterdir()) == [path]
 
 
-def test_unfinished_files_are_removed_and_others_stay(study, tmp_path):
+def test_cleaning_removes_only_unfinished_files(study, tmp_path):
     run(study, tmp_path)
     unfinished = tmp_path / "batches" / f"ab.0123456789ab{TEMPORARY_SUFFIX}"
     unfinished.write_text("half")
@@ -171,7 +171,7 @@ def test_unfinished_files_are_removed_and_others_stay(study, tmp_path):
     assert foreign.exists()
 
 
-def test_one_case_as_the_solver_returned_it(study, tmp_path):
+def test_loaded_case_equals_solver_result(study, tmp_path):
     run(study, tmp_path)
     case = load_case(tmp_path, identity(e_over_a=1.0, friction=0.1))
     assert case["pressure"].dims == ("x", "y")

@@ -17,7 +17,7 @@ run_study(small_study(), {folder!r}, workers=1, progress=False)
 
 
 @pytest.mark.system
-def test_a_script_without_a_guard_ends_with_what_to_do(tmp_path: Path) -> None:
+def test_unguarded_script_error_contains_remedy(tmp_path: Path) -> None:
     script = tmp_path / "script.py"
     script.write_text(SCRIPT.format(folder=str(tmp_path / "results")))
     root = Path(__file__).parents[2]

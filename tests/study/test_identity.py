@@ -11,7 +11,7 @@ from tests.small_study import case_id
 
 
 @pytest.mark.parametrize("one", [1, 1.0, np.int64(1), np.float32(1), np.float64(1), 1 + 1e-14])
-def test_ways_to_write_one(one):
+def test_equivalent_parameters_have_same_identity(one):
     assert case_id({"e_over_a": one}) == case_id({"e_over_a": 1})
 
 
@@ -38,12 +38,12 @@ def test_order_defaults_and_profile_names_do_not_count():
     assert case_id(written) == case_id(written | {"profile": Cylinder(1e-4)})
 
 
-def test_points_as_range_and_as_list_are_the_same():
+def test_range_and_list_have_same_identity():
     spaced = {"start": 0, "stop": 1, "count": 3}
     assert case_id({"field_z_over_a": spaced}) == case_id({"field_z_over_a": [0, 0.5, 1]})
 
 
-def test_a_new_parameter_with_a_default_keeps_old_identities(monkeypatch):
+def test_new_default_parameter_keeps_identities(monkeypatch):
     before = "6c02e5292dae80f3"
     assert case_id({"friction": 0.1})[:16] == before
     new = parameters.Parameter(name="roughness", check=check_number, units="1", meaning="added later", fallback=3.0)
@@ -59,6 +59,6 @@ def test_identity_never_changes():
 
 
 @pytest.mark.parametrize("value", [float("nan"), float("inf"), "much", True, None.__class__])
-def test_values_that_are_no_numbers(value):
+def test_non_numeric_values_raise(value):
     with pytest.raises(InvalidInputError, match="friction"):
         case_id({"friction": value})

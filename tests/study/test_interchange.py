@@ -31,7 +31,7 @@ def files(tmp_path_factory):
 
 
 @pytest.mark.system
-def test_a_reader_without_the_hdf5_library_finds_header_and_values(files):
+def test_batch_is_readable_without_hdf5_library(files):
     """Pyfive reads the bytes in pure Python: what it finds does not hang on the library that wrote them."""
     import pyfive  # of the `dev` extra: it needs newer companions than the package does
 
@@ -46,7 +46,7 @@ def test_a_reader_without_the_hdf5_library_finds_header_and_values(files):
 
 
 @pytest.mark.system
-def test_the_public_checker_finds_nothing(files):
+def test_cf_checker_finds_no_errors(files):
     checker = Path(sys.executable).with_name("compliance-checker")
     for path in files:
         done = subprocess.run([checker, "--test=cf:1.11", str(path)], capture_output=True, text=True, check=False)
@@ -54,7 +54,7 @@ def test_the_public_checker_finds_nothing(files):
         assert "All tests passed!" in done.stdout, done.stdout
 
 
-def test_rules_of_cf_that_need_no_checker(files):
+def test_batch_follows_cf_rules(files):
     for path in files:
         with netCDF4.Dataset(path) as file:
             assert file.Conventions == "CF-1.11"
@@ -75,7 +75,7 @@ def test_rules_of_cf_that_need_no_checker(files):
                         assert variable.size == 1 or (np.diff(variable[:]) > 0).all(), name
 
 
-def test_netcdf4_and_h5netcdf_read_the_same(files):
+def test_netcdf4_and_h5netcdf_read_equal_values(files):
     for path in files:
         with netCDF4.Dataset(path) as one, h5netcdf.File(path, "r") as other:
             one.set_auto_mask(False)

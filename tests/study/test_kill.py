@@ -63,7 +63,7 @@ def test_interrupted_run_releases_the_lock_and_goes_on(large, tmp_path, number, 
 
 @pytest.mark.system
 @pytest.mark.parametrize("begun", [True, False])
-def test_many_interruptions_end_it_quickly_and_quietly(large, tmp_path, begun):
+def test_repeated_interrupts_end_run_quietly(large, tmp_path, begun):
     """Eight times Ctrl-C, which a terminal sends to the workers as well: while they solve, and while they start."""
     folder = tmp_path / "out"
     process = start_run(large, folder, "--workers", "2", tickets=3 if begun else 0)
@@ -80,7 +80,7 @@ def test_many_interruptions_end_it_quickly_and_quietly(large, tmp_path, begun):
 
 
 @pytest.mark.system
-def test_a_second_run_is_refused_while_the_first_goes_on(large, tmp_path):
+def test_concurrent_run_is_refused(large, tmp_path):
     folder = tmp_path / "out"
     first = start_run(large, folder, "--workers", "1", tickets=1)
     wait_for(first, lambda: finished(folder) == 1)

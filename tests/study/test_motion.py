@@ -70,7 +70,7 @@ def test_parameters_make_the_motion(given: dict[str, Any], expected: object) -> 
         ({"motion": "rolling", "spin": "fast"}, "spin = 'fast'"),
     ],
 )
-def test_what_a_motion_does_not_have_is_refused(given: dict[str, Any], message: str) -> None:
+def test_parameter_of_other_motion_raises(given: dict[str, Any], message: str) -> None:
     with pytest.raises(InvalidInputError, match=message):
         build_setup(BASE | {"e_over_a": 0.0} | given)
 
@@ -80,7 +80,7 @@ def test_a_study_lists_impossible_motions_as_skipped() -> None:
     assert [bool(case.reason) for case in study.plan()] == [True, False]
 
 
-def test_motions_differ_in_identity_and_the_default_does_not_count() -> None:
+def test_identity_contains_motion_without_defaults() -> None:
     assert case_id({"friction": 0.1, "motion": "sliding", "rolling_model": "exact"}) == case_id({"friction": 0.1})
     rolling = {"friction": 0.1, "motion": "rolling"}
     assert len({case_id(rolling | more) for more in ({}, {"spin": 1.0}, {"force_y": 0.0}, {"force_x": 0.0})}) == 4
@@ -94,7 +94,7 @@ def rolled(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-def test_results_are_those_of_the_solver_and_lie_on_one_axis(rolled: Path) -> None:
+def test_motion_results_equal_solver_results(rolled: Path) -> None:
     study = rolling_study()
     opened = open_study(rolled)
     for case in study.plan():
@@ -119,7 +119,7 @@ def test_results_are_those_of_the_solver_and_lie_on_one_axis(rolled: Path) -> No
     assert opened["longitudinal_creepage"].attrs["units"] == "1"
 
 
-def test_a_study_that_goes_on_has_the_same_bits(rolled: Path, tmp_path: Path) -> None:
+def test_resumed_motion_study_is_bit_identical(rolled: Path, tmp_path: Path) -> None:
     first, study = rolling_study(sweep={"longitudinal_creepage": [5e-4], "max_pressure": [1.0e9]}), rolling_study()
     run_study(first, tmp_path / "parts", workers=0, progress=False)
     report = run_study(study, tmp_path / "parts", workers=0, progress=False)

@@ -61,7 +61,7 @@ def test_every_profile_has_a_kind() -> None:
 
 
 @pytest.mark.parametrize("kind", EXAMPLES)
-def test_a_profile_as_object_as_table_and_after_json(kind: str) -> None:
+def test_profile_object_table_and_json_agree(kind: str) -> None:
     profile = EXAMPLES[kind]
     assert built(profile) == profile
     table = profile_table(profile)
@@ -103,13 +103,13 @@ def test_design_load() -> None:
     assert profile == profiles.Lundberg.for_load(100.0, length=BASE["roller_length"], **about)
 
 
-def test_sizes_that_follow_the_roller() -> None:
+def test_profile_defaults_scale_with_radius() -> None:
     assert built("sphere") == profiles.Sphere(BASE["radius"])
     assert built("iso-cylindrical") == profiles.IsoCylindrical(2 * BASE["radius"])
     assert built({"kind": "iso-tapered", "diameter": 1e-2}) == profiles.IsoTapered(1e-2)
 
 
-def test_the_content_of_a_file_is_the_case_and_not_its_place(tmp_path: Path) -> None:
+def test_identity_depends_on_file_content_only(tmp_path: Path) -> None:
     def identity(path: Path, **options) -> str:
         return case_id(BASE | {"profile": {"kind": "measured", "file": str(path), **options}})
 
@@ -124,7 +124,7 @@ def test_the_content_of_a_file_is_the_case_and_not_its_place(tmp_path: Path) -> 
     assert filtered.cutoff == 1e-4
 
 
-def test_files_are_found_from_the_study_file_and_not_needed_later(tmp_path: Path, monkeypatch) -> None:
+def test_profile_paths_are_relative_to_study_file(tmp_path: Path, monkeypatch) -> None:
     path = trace(tmp_path / "traces")
     entries = [
         {"kind": "measured", "file": "traces/trace.csv"},

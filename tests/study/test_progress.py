@@ -67,7 +67,7 @@ def test_no_bar_without_a_terminal(tmp_path, monkeypatch, quiet):
     assert terminal.getvalue() == ""
 
 
-def test_another_process_reads_the_log_at_once(tmp_path):
+def test_log_is_flushed_after_each_line(tmp_path):
     with Progress(tmp_path / "run.log") as progress:
         progress.begin(2, total=5)
         assert "2 of 5 cases to solve" in (tmp_path / "run.log").read_text()

@@ -26,7 +26,7 @@ def run(study, folder, **options):
     return run_study(study, folder, **({"workers": 0, "solver": solve_fake} | options))
 
 
-def test_a_second_run_solves_nothing(study, tmp_path):
+def test_second_run_solves_no_case(study, tmp_path):
     assert run(study, tmp_path).solved == 4
     assert run(study, tmp_path).solved == 0
 
@@ -38,7 +38,7 @@ def test_growing_a_study_solves_only_the_new_cases(study, tmp_path):
     assert repr(report) == f"RunReport(6 cases: 6 ok; 2 solved now; folder={str(report.folder)!r})"
 
 
-def test_a_failed_case_is_recorded_and_the_rest_goes_on(tmp_path):
+def test_failed_case_does_not_stop_run(tmp_path):
     study = small_study(sweep={"e_over_a": [0, 1], "friction": [FAILS, 0.1]})
     report = run(study, tmp_path)
     assert report.counts == {"failed": 2, "ok": 2}
@@ -48,7 +48,7 @@ def test_a_failed_case_is_recorded_and_the_rest_goes_on(tmp_path):
     assert rerun_study(tmp_path, workers=0, solver=solve_fake).solved == 2
 
 
-def test_a_case_larger_than_the_memory_fails_alone(tmp_path):
+def test_memory_error_fails_single_case(tmp_path):
     report = run(small_study(sweep={"e_over_a": [0], "friction": [IS_LARGE, 0.1]}), tmp_path)
     assert report.counts == {"failed": 1, "ok": 1}
     assert report.failures[0][1] == "MemoryError: Unable to allocate 7 EiB"
@@ -69,7 +69,7 @@ def test_rerun_repairs(tmp_path):
 
 
 @pytest.mark.parametrize(("number", "kind"), [(signal.SIGINT, KeyboardInterrupt), (signal.SIGTERM, Terminated)])
-def test_an_interruption_says_what_is_kept_and_leaves_out_where_the_solver_was(study, tmp_path, number, kind):
+def test_interrupt_message_contains_finished_cases(study, tmp_path, number, kind):
     solved = []
 
     def interrupted(case, grid, **settings):
@@ -118,7 +118,7 @@ def two_batches(study, tmp_path, monkeypatch):
 
 
 @pytest.mark.parametrize("content", [b"", b"no netCDF"])
-def test_a_damaged_batch_costs_its_cases_only(study, two_batches, content):
+def test_damaged_batch_loses_only_contained_cases(study, two_batches, content):
     path = batch_paths(two_batches / "batches")[0]
     path.write_bytes(content)
     opened = open_study(two_batches)
@@ -143,7 +143,7 @@ def test_a_changed_byte_is_found(study, tmp_path):
     assert (tmp_path / "set-aside" / path.name).exists()
 
 
-def test_foreign_files_are_set_aside_and_others_stay(study, two_batches):
+def test_foreign_files_are_set_aside(study, two_batches):
     batches = two_batches / "batches"
     first, second = batch_paths(batches)
     shutil.copy(first, second)  # another batch under this name
@@ -163,7 +163,7 @@ def test_a_higher_level_solves_again(tmp_path):
     assert run(small_study(level="summary"), tmp_path).solved == 0
 
 
-def test_cases_of_another_version_are_stale_and_solved_by_rerun(study, tmp_path, monkeypatch):
+def test_rerun_solves_stale_cases(study, tmp_path, monkeypatch):
     monkeypatch.setattr("contactstudy.study.worker.run_context", lambda: {"contactstudy": "0.0.1"})
     assert run(study, tmp_path).counts == {"stale": 4}
     monkeypatch.undo()
@@ -182,7 +182,7 @@ def test_a_study_without_a_possible_case(tmp_path):
         run(small_study(sweep={"e_over_a": [-9]}), tmp_path)
 
 
-def test_a_folder_that_cannot_be_made(study, tmp_path):
+def test_uncreatable_folder_raises(study, tmp_path):
     (tmp_path / "file").write_text("")
     with pytest.raises(StoreError, match="cannot make"):
         run(study, tmp_path / "file")
@@ -234,7 +234,7 @@ def test_a_folder_without_permission(study, open_place, closed):
 
 
 @pytest.mark.skipif(not hasattr(os, "geteuid"), reason="permissions of POSIX")
-def test_a_folder_that_may_not_be_made(study, open_place):
+def test_forbidden_folder_raises(study, open_place):
     open_place.chmod(0o555)
     with ordinary_user(), pytest.raises(StoreError, match=r"cannot make .*[Pp]ermission"):
         run(study, open_place / "new")
@@ -269,7 +269,7 @@ def test_a_full_disk(small_disk, study, workers):
 
 
 @pytest.mark.system
-def test_a_worker_that_dies_costs_its_case_only(tmp_path):
+def test_dead_local_worker_fails_one_case(tmp_path):
     sweep = {"e_over_a": [0, 1, 2], "friction": [0, DIES]}
     study = small_study(sweep=sweep, exclude=[{"e_over_a": [0, 2], "friction": DIES}])
     report = run(study, tmp_path, workers=2)
@@ -340,7 +340,7 @@ def test_a_deleted_working_directory(study, tmp_path, monkeypatch):
         run(study, None)
 
 
-def test_a_case_that_cannot_be_set_up_is_skipped_by_the_worker(tmp_path, monkeypatch):
+def test_worker_skips_impossible_case(tmp_path, monkeypatch):
     monkeypatch.setattr("contactstudy.study.plan.RUN", RunSettings(checked_groups=1))
     report = run(small_study(sweep={"e_over_a": [0, -9, -8], "friction": [0.0]}), tmp_path)
     assert report.counts == {"ok": 1, "skipped": 2}

@@ -15,7 +15,7 @@ PASSAGE = {"field_y_over_a": np.linspace(-2.0, 2.0, 17).tolist()}
 
 
 @pytest.mark.slow
-def test_cases_keep_their_limits_where_stresses_span_the_passage(tmp_path):
+def test_shakedown_limits_with_sufficient_positions(tmp_path):
     run_study(small_study(base=BASE | PASSAGE, level="summary"), tmp_path, workers=0)
     study = open_study(tmp_path)
     assert study["shakedown_limit"].dims == ("e_over_a", "friction")
@@ -29,7 +29,7 @@ def test_cases_keep_their_limits_where_stresses_span_the_passage(tmp_path):
         np.testing.assert_allclose(kept[name], found[name], rtol=1e-6)
 
 
-def test_cases_with_stresses_at_few_positions_along_y_keep_none(tmp_path):
+def test_shakedown_limits_missing_with_few_positions(tmp_path):
     run_study(small_study(sweep={"e_over_a": [0.0]}, level="summary"), tmp_path, workers=0)
     study = open_study(tmp_path)
     assert "peak_von_mises" in study

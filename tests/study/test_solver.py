@@ -10,7 +10,7 @@ from contactstudy.study.case_setup import build_setup
 from tests.small_study import BASE, small_study
 
 
-def test_quarter_space_with_the_roller_at_a_distance_from_its_end(tmp_path):
+def test_quarter_space_with_distant_roller(tmp_path):
     study = small_study(sweep={"body": ["quarter-space"], "e_over_a": [0.0, 2.0]})
     assert run_study(study, tmp_path, workers=0).counts == {"ok": 2}
     opened = open_study(tmp_path).sel(body="quarter-space")
@@ -25,7 +25,7 @@ def test_quarter_space_with_the_roller_at_a_distance_from_its_end(tmp_path):
     assert float(opened["end_pressure_over_p0_first"].sel(e_over_a=2.0)) > 1.0
 
 
-def test_a_study_gives_what_the_solver_gives(tmp_path):
+def test_study_equals_solver_result(tmp_path):
     study = small_study(sweep={"body": ["quarter-space"], "e_over_a": [1.0], "friction": [0.1]})
     run_study(study, tmp_path, workers=0)
     (case,) = study.plan()
@@ -59,14 +59,14 @@ def test_comparison_models_beside_the_exact_ends(tmp_path):
     assert len({round(value, 4) for value in ends.tolist()}) == 3
 
 
-def test_one_is_one_case(tmp_path):
+def test_number_types_have_same_identity(tmp_path):
     base = BASE | {"body": "half-space", "stresses": False}
     for number, one in enumerate([1, 1.0, np.int64(1), np.float32(1)]):
         study = small_study(base=base, sweep={"e_over_a": [one], "friction": [0]})
         assert run_study(study, tmp_path, workers=0).solved == (number == 0)
 
 
-def test_cases_that_share_an_operator_make_it_once(tmp_path, monkeypatch):
+def test_common_operator_is_computed_once(tmp_path, monkeypatch):
     made = []
     build = surface.SurfaceOperator.of
     monkeypatch.setattr(surface.SurfaceOperator, "of", lambda *request: made.append(request) or build(*request))
@@ -79,7 +79,7 @@ def test_cases_that_share_an_operator_make_it_once(tmp_path, monkeypatch):
     assert cache.info().limit <= 2**31
 
 
-def test_a_study_over_the_approach_has_loads_with_their_errors(tmp_path) -> None:
+def test_study_over_approach_contains_load_errors(tmp_path) -> None:
     base = {"young": 210e9, "poisson": 0.3, "radius": 5e-3, "roller_length": 0.3e-3, "end_distance": 0.1e-3}
     study = Study(
         name="pressed",

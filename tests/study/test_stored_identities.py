@@ -51,12 +51,12 @@ def test_identities_of_stored_studies_never_change(name):
     assert (len(cases), together[:16]) == STORED[name]
 
 
-def test_defaults_are_those_that_old_cases_were_solved_with():
+def test_defaults_match_stored_cases():
     """They come from the signatures of Case, choose_grid and solve: one that changes there needs a new SCHEMA here."""
     assert {name: entry.default for name, entry in PARAMETERS.items() if entry.default is not None} == DEFAULTS
 
 
-def test_a_keyword_becomes_a_parameter_by_one_entry(monkeypatch):
+def test_new_table_entry_adds_parameter(monkeypatch):
     def takes_more(case: Case, *, sharpness: float = 0.5) -> None: ...
 
     new = Parameter(name="sharpness", check=check_number, units="1", meaning="made up", consumer=takes_more)
@@ -75,6 +75,6 @@ def test_a_study_starts_on_the_grid_of_solve():
 
 
 @pytest.mark.parametrize("chosen", [{"window": 2.2}, {"margin": 3.0}])
-def test_a_window_of_the_studys_own_is_kept(chosen):
+def test_explicit_window_is_kept(chosen):
     setup = build_setup(BASE | {"e_over_a": 1.0} | chosen)
     assert list(setup.grids) == [setup.grid]

@@ -50,7 +50,7 @@ def test_shared_numbers_units_words_and_profiles() -> None:
     assert ids(study) == ids(expected)
 
 
-def test_values_along_two_dimensions_and_missing_ones_are_cases() -> None:
+def test_two_dimensional_table_makes_explicit_cases() -> None:
     pressure = xr.DataArray([[1.0, 1.5], [np.nan, 2.0]], dims=("e_over_a", "friction"), attrs={"units": "GPa"})
     load = xr.DataArray([[np.nan, np.nan], [40.0, np.nan]], dims=("e_over_a", "friction"), attrs={"units": "N"})
     table = xr.Dataset(
@@ -82,12 +82,12 @@ def test_profile_tables_are_labels_of_two_dimensions() -> None:
         ({"young": ("case", [1e9])}, "base = 'young': must be a parameter that the table does not have"),
     ],
 )
-def test_what_is_no_table_of_parameters(table: dict, message: str) -> None:
+def test_invalid_parameter_table_raises(table: dict, message: str) -> None:
     with pytest.raises(InvalidInputError, match=message):
         Study.from_dataset(xr.Dataset(table), base=BASE)
 
 
-def test_other_things_than_datasets_are_refused() -> None:
+def test_table_of_wrong_type_raises() -> None:
     with pytest.raises(InvalidInputError, match=r"an xarray.Dataset of parameters"):
         Study.from_dataset({"friction": [0.1]})
 
@@ -131,7 +131,7 @@ def test_a_selection_of_an_opened_study(tmp_path) -> None:
         Study.from_dataset(part, base={"tilt": 0.0})
 
 
-def test_a_coordinate_that_is_no_parameter_is_refused_even_where_nothing_else_has_it() -> None:
+def test_unknown_coordinate_raises() -> None:
     table = xr.Dataset(coords={"max_pressure": [1e9, 1.5e9], "tillt": [0.0, 1e-3]})
     with pytest.raises(InvalidInputError, match=r"variable of the table = 'tillt'.*did you mean 'tilt'"):
         Study.from_dataset(table)

@@ -24,7 +24,7 @@ WIDE = {
 }
 
 
-def test_a_study_without_a_window_widens_it(tmp_path):
+def test_default_window_is_widened(tmp_path):
     study = small_study(base=WIDE, sweep={})
     report = run_study(study, tmp_path, workers=0, progress=False)
     assert report.counts == {"ok": 1}
@@ -37,14 +37,14 @@ def test_a_study_without_a_window_widens_it(tmp_path):
     assert stored.sizes["y"] == alone.sizes["y"]
 
 
-def test_a_window_of_its_own_is_too_narrow(tmp_path):
+def test_narrow_explicit_window_raises(tmp_path):
     report = run_study(small_study(base=WIDE | {"window": 1.9}, sweep={}), tmp_path, workers=0, progress=False)
     (failure,) = report.failures
     assert failure[1].startswith("WindowError")
 
 
 @pytest.mark.parametrize("name", ["x", "y", "z"])
-def test_no_coordinate_of_a_result_has_a_mark_for_missing_values(tmp_path, name):
+def test_coordinates_have_no_fill_value(tmp_path, name):
     import netCDF4
 
     result = solve(build_setup(WIDE | {"stresses": True, "field_y_over_a": [0.0], "profile": "cylinder"}).case)

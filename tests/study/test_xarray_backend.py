@@ -25,7 +25,7 @@ def test_a_folder_opens_as_a_study(folder: Path, chunks: dict[str, int] | None) 
     xr.testing.assert_identical(xr.open_dataset(folder, chunks=chunks).load(), open_study(folder).load())
 
 
-def test_its_arguments_are_those_of_the_study(folder: Path) -> None:
+def test_backend_arguments_match_open_study(folder: Path) -> None:
     own = xr.open_dataset(str(folder), engine="contactstudy", cells="original", drop_variables="von_mises")
     assert "x_index" in own.dims
     assert "von_mises" not in own
@@ -33,7 +33,7 @@ def test_its_arguments_are_those_of_the_study(folder: Path) -> None:
         xr.open_dataset(folder, cells="each")
 
 
-def test_files_and_other_folders_are_not_its_business(folder: Path, tmp_path: Path) -> None:
+def test_backend_ignores_files_and_other_folders(folder: Path, tmp_path: Path) -> None:
     case = next((folder / "batches").glob("*.nc"))
     with xr.open_dataset(case) as opened:
         assert Path(opened.encoding["source"]) == case

@@ -31,7 +31,7 @@ def test_worst_point_of_fields(expected: list[float], place: int) -> None:
 
 
 @pytest.mark.parametrize("wrong", [np.nan, np.inf, -np.inf])
-def test_what_is_not_a_number_fails(wrong: float) -> None:
+def test_nan_fails_check(wrong: float) -> None:
     assert not Reference("case", "source").compare("quantity", wrong, 1.0, 1e9).passed
     assert not Reference("case", "source").compare_fields("field", [1.0, wrong], [1.0, 1.0], 1e9).passed
     assert not Reference("case", "source").compare_fields("field", [1.0, 1.0, np.nan], 1.0, 1e9, median=True).passed

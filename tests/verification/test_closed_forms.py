@@ -226,7 +226,7 @@ def test_point_loads_against_newmark() -> None:
     assert stress["sigma_zz"] == pytest.approx(ref.below_rectangle_corner(z, 2.0, 1.0), abs=1e-9)
 
 
-def test_plane_of_a_wedge_carries_its_load() -> None:
+def test_wedge_stress_balances_load() -> None:
     """The radial field of a quarter plane loaded at its corner: forces across any arc."""
     angle, weight = np.polynomial.legendre.leggauss(20)
     angle, weight = 0.25 * np.pi * (angle + 1), 0.25 * np.pi * weight

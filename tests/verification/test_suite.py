@@ -68,7 +68,7 @@ def test_unit_problems_raise_no_doubts(monkeypatch: pytest.MonkeyPatch) -> None:
         assert suite.run().passed
 
 
-def test_nothing_checked_is_not_a_pass() -> None:
+def test_empty_verification_fails() -> None:
     assert not Verification("quick").passed
 
 
@@ -86,7 +86,7 @@ def test_impossible_folder(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -
     assert captured.out == ""
 
 
-def test_command_knows_its_levels(capsys: pytest.CaptureFixture[str]) -> None:
+def test_command_accepts_levels(capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit):
         main(["verify", "--level", "thorough"])
     assert "quick" in capsys.readouterr().err
