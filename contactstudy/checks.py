@@ -44,7 +44,7 @@ UNIT_SIZES: dict[str, dict[str, float]] = {
     "rad/m": {"rad/m": 1.0, "1/m": 1.0, "rad/mm": 1e3, "1/mm": 1e3},
     "1": {"1": 1.0, "%": 0.01, "percent": 0.01},
 }
-"""Units that input may have, by the one in SI, and their sizes in it."""
+"""Input units by their SI unit, and their sizes in this unit."""
 
 
 def factor_to(unit: str, name: str, input_unit: object) -> float:
@@ -137,7 +137,7 @@ def count(name: str, value: object, minimum: int = 1) -> int:
 
 
 def instance(name: str, value: object, kind: type | tuple[type, ...], allowed: str) -> None:
-    """Raise if `value` is not an instance of `kind`; `allowed` names it for the reader."""
+    """Raise if `value` is not an instance of `kind`; `allowed` describes the expected type."""
     if not isinstance(value, kind):
         raise InvalidInputError(name, value, f"{allowed}, not {type(value).__name__}")
 
@@ -157,9 +157,9 @@ def known_name(name: str, value: str, names: Iterable[str]) -> str:
 
 @contextmanager
 def writing(path: Path, name: Callable[[Path], str] | None = None) -> Iterator[Path]:
-    """Yield a new file beside `path`, which it replaces when it is complete, or has the name ``name(part)``.
+    """Yield a temporary path; the complete file replaces `path`, or has the name ``name(temporary_path)``.
 
-    The previous file stays if writing fails, with a StoreError. A device or pipe is written to directly.
+    After a failed write the previous file remains, and a StoreError is raised. A device or pipe is written to directly.
     """
     if path.is_dir():
         raise StoreError(f"cannot write {path}: it is a folder")

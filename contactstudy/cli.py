@@ -282,26 +282,26 @@ def command_parser() -> argparse.ArgumentParser:
     commands = parser.add_subparsers(dest="command", metavar="COMMAND")
 
     def command(action: Action, source: str, text: str) -> argparse.ArgumentParser:
-        subparser = commands.add_parser(action.__name__.strip("_"), help=text, description=text)
-        subparser.set_defaults(action=action)
+        child = commands.add_parser(action.__name__.strip("_"), help=text, description=text)
+        child.set_defaults(action=action)
         meanings = {
             "study": "study file (TOML)",
             "folder": "results of a study",
             "file_or_folder": "netCDF file of a case, or a study's folder",
         }
         if source:
-            subparser.add_argument("path", metavar=source.upper(), type=Path, help=meanings[source])
+            child.add_argument("path", metavar=source.upper(), type=Path, help=meanings[source])
         if source == "study":
-            subparser.add_argument("--out", metavar="FOLDER", type=Path, help="results; default results/<study name>")
-        return subparser
+            child.add_argument("--out", metavar="FOLDER", type=Path, help="results; default results/<study name>")
+        return child
 
-    def parallel(subparser: argparse.ArgumentParser) -> None:
-        subparser.add_argument("--workers", metavar="N", type=int, help="local processes; default one per core")
-        subparser.add_argument("--scheduler", metavar="ADDRESS", help="dask scheduler to use instead, tcp://...")
-        subparser.add_argument(
+    def parallel(child: argparse.ArgumentParser) -> None:
+        child.add_argument("--workers", metavar="N", type=int, help="local processes; default one per core")
+        child.add_argument("--scheduler", metavar="ADDRESS", help="dask scheduler to use instead, tcp://...")
+        child.add_argument(
             "--wait", metavar="SECONDS", type=float, help="longest wait for a worker of the scheduler; default 300"
         )
-        subparser.add_argument("--no-figure", action="store_true", help="draw no figure")
+        child.add_argument("--no-figure", action="store_true", help="draw no figure")
 
     run = command(_run, "study", "Solve the cases of a study that are not solved yet.")
     parallel(run)
@@ -310,45 +310,37 @@ def command_parser() -> argparse.ArgumentParser:
     plan = command(_plan, "study", text)
     plan.add_argument("--sample", metavar="N", type=int, help="solve N cases, evenly spaced, to estimate the time")
     plan.add_argument("--workers", metavar="N", type=int, help="local processes for the sample; default one per core")
-    for subparser in (run, plan):
-        subparser.add_argument("--yes", action="store_true", help=f"do not ask about {MANY_CASES} cases and more")
+    for child in (run, plan):
+        child.add_argument("--yes", action="store_true", help=f"do not ask about {MANY_CASES} cases and more")
     status = command(_status, "folder", "State of every case: done, failed, stale or missing.")
-    for subparser in (plan, status):
-        subparser.add_argument("--all", action="store_true", help="list every case")
-    subparser = command(_collect, "folder", "Merge the summaries of all cases into one netCDF file.")
-    subparser.add_argument("--out", metavar="FILE", type=Path, help="default FOLDER/summary.nc")
+    for child in (plan, status):
+        child.add_argument("--all", action="store_true", help="list every case")
+    child = command(_collect, "folder", "Merge the summaries of all cases into one netCDF file.")
+    child.add_argument("--out", metavar="FILE", type=Path, help="default FOLDER/summary.nc")
     parallel(command(_rerun, "folder", "Solve failed, stale and missing cases again."))
     text = "Check the solver against closed forms, finite elements and published numbers."
-    subparser = command(_verify, "", text)
-    subparser.add_argument(
-        "--level", choices=("quick", "full"), default="quick", help="a minute, or a few (default quick)"
-    )
-    subparser.add_argument("--out", metavar="FOLDER", type=Path, help="default results/verification")
+    child = command(_verify, "", text)
+    child.add_argument("--level", choices=("quick", "full"), default="quick", help="a minute, or a few (default quick)")
+    child.add_argument("--out", metavar="FOLDER", type=Path, help="default results/verification")
     text = "Write a study's summaries as a table (CSV), or fields of one case as CSV, VTK or MATLAB."
-    subparser = command(_export, "file_or_folder", text)
-    subparser.add_argument("--format", choices=("csv", "vtk", "mat"), help="default csv")
-    subparser.add_argument("--variable", metavar="NAME", action="append", help="variable or stress measure; repeatable")
-    subparser.add_argument(
-        "--line", metavar="X,Y,Z:X,Y,Z", help="ends of a line in metres, for csv (--line=-1e-4,0,0:...)"
-    )
-    subparser.add_argument("--points", metavar="N", type=int, default=101, help="points of the line; default 101")
-    subparser.add_argument(
-        "--select", metavar="NAME=VALUE", action="append", help="swept parameter of a study; repeatable"
-    )
-    subparser.add_argument("--out", metavar="FILE", type=Path, help="default beside the results; - for the screen")
+    child = command(_export, "file_or_folder", text)
+    child.add_argument("--format", choices=("csv", "vtk", "mat"), help="default csv")
+    child.add_argument("--variable", metavar="NAME", action="append", help="variable or stress measure; repeatable")
+    child.add_argument("--line", metavar="X,Y,Z:X,Y,Z", help="ends of a line in metres, for csv (--line=-1e-4,0,0:...)")
+    child.add_argument("--points", metavar="N", type=int, default=101, help="points of the line; default 101")
+    child.add_argument("--select", metavar="NAME=VALUE", action="append", help="swept parameter of a study; repeatable")
+    child.add_argument("--out", metavar="FILE", type=Path, help="default beside the results; - for the screen")
     explore = command(_explore, "folder", "Serve a page to look through a study, on this machine.")
     explore.add_argument("--port", metavar="N", type=int, help="default: the first free one from 5006 on")
     text = "host name that a browser may use beside localhost, such as that of a proxy; repeatable"
     explore.add_argument("--host", metavar="NAME", action="append", default=[], help=text)
     explore.add_argument("--no-browser", action="store_true", help="do not open the page in the browser")
     text = "Write one HTML page of a case or of a study, for a reader without Python."
-    subparser = command(_report, "file_or_folder", text)
-    subparser.add_argument("--title", metavar="TEXT", help="heading; default: the name of the file or of the study")
+    child = command(_report, "file_or_folder", text)
+    child.add_argument("--title", metavar="TEXT", help="heading; default: the name of the file or of the study")
     text = "value of a swept parameter that a study's figures keep to; repeatable"
-    subparser.add_argument("--select", metavar="NAME=VALUE", action="append", help=text)
-    subparser.add_argument(
-        "--out", metavar="FILE", type=Path, help="default beside the file, or report.html in the folder"
-    )
+    child.add_argument("--select", metavar="NAME=VALUE", action="append", help=text)
+    child.add_argument("--out", metavar="FILE", type=Path, help="default beside the file, or report.html in the folder")
     return parser
 
 

@@ -36,7 +36,7 @@ def self_affine(
     """Isotropic self-affine surface with Gaussian heights.
 
     Filtered white noise: the power spectral density is ``q**(-2 (1 + hurst))`` between the wavenumbers
-    ``2 pi / longest`` and ``2 pi / shortest``, and nothing outside.
+    ``2 pi / longest`` and ``2 pi / shortest``, and zero outside.
 
     Parameters
     ----------
@@ -137,7 +137,7 @@ def read_height_map(
         Whether the y axis points the other way, after the turn: z points into the body, so an instrument's y of its
         surface runs against this one; the roller's does not.
     corner : tuple of float, optional
-        Where the first point along x and y comes to lie, metres, after turning. Default: the file's
+        Position of the first point along x and y, metres, after turning. Default: the file's
         position, mostly (0, 0) for an instrument.
 
     Returns

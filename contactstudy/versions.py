@@ -8,7 +8,7 @@ from importlib.metadata import PackageNotFoundError, version
 
 PACKAGES = ("numpy", "scipy", "xarray", "netCDF4", "pyfftw")  # Packages on which results depend
 OPTIONAL_PACKAGES = ("dask", "matplotlib", "pandas", "panel", "clarabel")
-"""Further packages; the last two come with the extras `explore` and `shakedown`."""
+"""Optional packages; the extras `explore` and `shakedown` install the last two."""
 
 
 @cache

@@ -109,9 +109,9 @@ def test_status_collect_and_export(study_file, tmp_path, capsys):
     assert command("status", "results/small") == 0
     assert "4 ok" in capsys.readouterr().out
     assert command("collect", "results/small", "--out", tmp_path / "all.nc") == 0
-    with xr.open_dataset(tmp_path / "all.nc") as merged:
-        assert merged["peak_pressure"].dims == ("e_over_a", "friction")
-        assert (merged["status"] == "ok").all()
+    with xr.open_dataset(tmp_path / "all.nc") as dataset:
+        assert dataset["peak_pressure"].dims == ("e_over_a", "friction")
+        assert (dataset["status"] == "ok").all()
     assert command("export", "results/small") == 0
     with open(tmp_path / "results" / "small" / "summary.csv", newline="") as file:
         rows = list(csv.DictReader(file))
@@ -140,9 +140,9 @@ def test_usage_error_returns_code_2(tmp_path, monkeypatch, capsys, arguments):
 
 @pytest.mark.parametrize("arguments", [("fly",), ("run",), ("run", "a.toml", "--workers", "many")])
 def test_wrong_arguments_give_code_2(arguments, capsys):
-    with pytest.raises(SystemExit) as ended:
+    with pytest.raises(SystemExit) as error:
         command(*arguments)
-    assert ended.value.code == 2
+    assert error.value.code == 2
 
 
 def test_wrong_number_of_workers(study_file, capsys):
@@ -211,8 +211,8 @@ def test_many_cases_need_confirmation(study_file, capsys, monkeypatch):
         assert "fewer than 10; or say --yes" in captured.err
     assert command("plan", study_file, "--yes") == 0
     monkeypatch.setattr("sys.stdin.isatty", lambda: True, raising=False)
-    for answer, code in (("", 2), ("n", 2), ("y", 0)):
-        monkeypatch.setattr("builtins.input", lambda question, answer=answer: answer)
+    for reply, code in (("", 2), ("n", 2), ("y", 0)):
+        monkeypatch.setattr("builtins.input", lambda question, reply=reply: reply)
         assert command("plan", study_file) == code
 
 

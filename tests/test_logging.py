@@ -1,4 +1,4 @@
-"""The package logs its stages where somebody listens, and is silent otherwise."""
+"""The package logs its stages to configured loggers, and is silent by default."""
 
 from __future__ import annotations
 
@@ -23,10 +23,10 @@ CASE = Case(body=BODY, roller=Roller(radius=5e-3, length=0.3e-3), max_pressure=1
 def test_solution_stages_are_logged(caplog: pytest.LogCaptureFixture) -> None:
     with caplog.at_level(logging.INFO, "contactstudy"):
         result = solve(CASE, y=[0.0], z=[1e-5])
-    said = [record.getMessage() for record in caplog.records]
+    messages = [record.getMessage() for record in caplog.records]
     assert all(record.name.startswith("contactstudy.") for record in caplog.records)
     for beginning in ("refined to ", "contact: ", "stresses: "):
-        assert any(text.startswith(beginning) for text in said), beginning
+        assert any(text.startswith(beginning) for text in messages), beginning
     run = attribute(result, RUN_ATTRIBUTE)
     assert set(run["stages"]) == {"contact", "stresses"}
     assert run["seconds"] == pytest.approx(sum(run["stages"].values()), abs=1e-3)
@@ -35,8 +35,8 @@ def test_solution_stages_are_logged(caplog: pytest.LogCaptureFixture) -> None:
 
 def test_study_progress_is_logged(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
     base = {"young": 210e9, "poisson": 0.3, "radius": 5e-3, "roller_length": 0.2e-3, "max_pressure": 1.5e9}
-    coarse = {"body": "half-space", "cells_x": 4, "cells_y": 8, "stresses": False, "e_over_a": 0}
-    study = small_study(base=base | coarse, sweep={"friction": [0.0]})
+    parameters = {"body": "half-space", "cells_x": 4, "cells_y": 8, "stresses": False, "e_over_a": 0}
+    study = small_study(base=base | parameters, sweep={"friction": [0.0]})
     with caplog.at_level(logging.INFO, "contactstudy"):
         run_study(study, tmp_path, workers=0, progress=False)
     assert any("1/1 cases" in record.getMessage() for record in caplog.records)

@@ -1,4 +1,4 @@
-"""The package's public names, and what importing it costs."""
+"""The package's public names, and the cost of its import."""
 
 from __future__ import annotations
 
@@ -29,11 +29,11 @@ def test_every_public_name_can_be_imported() -> None:
 
 
 def test_modules_do_not_hide_public_names() -> None:
-    """Importing a submodule sets it as an attribute of the package, over a function of the same name."""
+    """Importing a submodule overwrites a package attribute of the same name."""
     modules = {path.stem for path in Path(contactstudy.__file__).parent.iterdir()}
-    shared = modules & set(contactstudy.__all__)
-    assert {"analysis", "plots", "profiles"} <= shared
-    for name in shared:
+    hidden_names = modules & set(contactstudy.__all__)
+    assert {"analysis", "plots", "profiles"} <= hidden_names
+    for name in hidden_names:
         assert getattr(contactstudy, name) is importlib.import_module(f"contactstudy.{name}"), name
 
 

@@ -1,4 +1,4 @@
-"""What cases, rollers, bodies, profiles and studies say of themselves: what an engineer wants first, in his units."""
+"""Texts of cases, rollers, bodies, profiles and studies, in engineering units."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ STEEL = Material(210e9, 0.3)
 
 
 def test_reprs_use_engineering_units() -> None:
-    shown = {
+    expected_texts = {
         STEEL: "Material(E = 210 GPa, nu = 0.3)",
         HalfSpace(material=STEEL): "HalfSpace(E = 210 GPa, nu = 0.3)",
         QuarterSpace(material=STEEL, model="mirror"): "QuarterSpace(E = 210 GPa, nu = 0.3, model='mirror')",
@@ -27,8 +27,8 @@ def test_reprs_use_engineering_units() -> None:
         FullCrown(1.25) + Cylinder(3e-4): "FullCrown(crown_radius=1250 mm) + Cylinder(fillet_radius=0.3 mm)",
         Halves(Cylinder(), FullCrown(1.0)): "Halves(left=Cylinder(), right=FullCrown(crown_radius=1000 mm))",
     }
-    for part, text in shown.items():
-        assert repr(part) == text
+    for value, text in expected_texts.items():
+        assert repr(value) == text
 
 
 def test_measured_profile_repr_omits_points() -> None:

@@ -25,7 +25,7 @@ def _system(name: str) -> list[str]:
 
 
 def two_systems(undisturbed: xr.Dataset, count: int) -> Row:
-    """A second run, on this system, while the first goes on in another one; the first ends, or is killed."""
+    """A second run on this system during the first run on another; the first run ends, or is killed."""
     fault = "a run in another system (host or container, of another name or the same) that shares the folder"
     names = ["another-host", socket.gethostname()]
     possible = (
@@ -43,7 +43,7 @@ def two_systems(undisturbed: xr.Dataset, count: int) -> Row:
 
 
 def _survives(undisturbed: xr.Dataset, name: str, *, killed: bool) -> bool:
-    """Whether nothing was lost or done twice."""
+    """Whether each case was solved exactly once."""
     with studies.study_folder() as folder:
         out, study = folder / "out", folder / "study.toml"
         first = start_run(study, out, "--workers", "0", tickets=2, within=_system(name))

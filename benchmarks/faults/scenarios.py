@@ -1,4 +1,4 @@
-"""What is done to a study, and what has to be right afterwards."""
+"""Faults of a study, and checks of the state after each fault."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ rng = random.Random(17)
 
 
 def kills(undisturbed: xr.Dataset, count: int, *, workers: int = 0) -> Row:
-    """SIGKILL to the run and its workers, a random while after it began."""
+    """SIGKILL to the run and its workers, at a random time."""
     passed = total = 0
     run_seconds = _seconds_of_a_run(workers)
     with studies.study_folder() as folder:
@@ -65,7 +65,7 @@ def _start_until_batch(folder: Path, workers: int) -> subprocess.Popen[str] | st
 
 
 def _seconds_of_a_run(workers: int) -> float:
-    """Time from the lock to the end if nothing happens, on this machine now."""
+    """Time from the lock to the end of an undisturbed run, on this machine."""
     with studies.study_folder() as folder:
         process = _start_until_batch(folder, workers)
         studies.wait(process, partial(_holds_the_lock, process.pid, folder / "out"))
@@ -75,7 +75,7 @@ def _seconds_of_a_run(workers: int) -> float:
 
 
 def full_disks(undisturbed: xr.Dataset, count: int) -> Row:
-    """A file system of its own that fills up; without the right to mount one, files that may not grow."""
+    """A full file system; without the right to mount one, a limit on the size of files."""
     passed = cases = 0
     mounted = False
     for _ in range(count):
@@ -219,7 +219,7 @@ def damaged_records(undisturbed: xr.Dataset, count: int) -> Row:
 
 
 def two_runs(undisturbed: xr.Dataset, count: int) -> Row:
-    """Others begin while a run goes on."""
+    """Further runs begin during a run."""
     passed = 0
     with studies.study_folder() as folder:
         out = folder / "out"
@@ -276,7 +276,7 @@ def clock_steps(undisturbed: xr.Dataset, count: int) -> Row:
 
 
 class _jumping_clock:  # noqa: N801
-    """Replaces what the study layer reads the time of day from."""
+    """Replaces the clock of the study layer."""
 
     def __enter__(self) -> None:
         class Jumping(datetime):
@@ -301,7 +301,7 @@ class _jumping_clock:  # noqa: N801
 
 
 def edited_study(undisturbed: xr.Dataset, count: int) -> Row:
-    """The file of the study is changed while a run goes on."""
+    """The file of the study changes during a run."""
     passed = 0
     for _ in range(count):
         with studies.study_folder() as folder:
@@ -319,5 +319,5 @@ def edited_study(undisturbed: xr.Dataset, count: int) -> Row:
 
 
 def _holds_the_lock(pid: int, out: Path) -> bool:
-    """Whether a process, and not one that was killed before, has begun to work in a folder."""
+    """Whether a living process works in a folder."""
     return out.exists() and any(f"process {pid} on " in holder for holder in Folder(out).holders)

@@ -18,11 +18,11 @@ class Row:
     Attributes
     ----------
     fault : str
-        What was done to the study.
+        Fault of the study.
     tried, passed : int
         How often, and how often everything that was looked at was right.
     found : str
-        What was looked at, with figures.
+        Checked properties, with figures.
     """
 
     fault: str

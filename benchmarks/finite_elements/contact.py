@@ -2,7 +2,7 @@
 
 The pressure is a product of hat functions: along x on nodes graded to where the roller or the body ends, along y on
 uniform nodes. For each wavenumber along y the finite elements give the flexibility of the top between the hats along
-x; the integral over the wavenumber makes of it the flexibility between any two hats. The contact is then the convex
+x; the integral over the wavenumber is the flexibility between any two hats. The contact is then the convex
 problem
 
     minimise  p A p / 2 + g p   for  p >= 0,  w p = load,
@@ -90,7 +90,7 @@ def flexibility(case: ContactCase, resolution: Resolution) -> Flexibility:
 def between_strips(flexible: Flexibility, step: float, count: int) -> Array:
     """Flexibility `[offset, i, j]` between hats `offset * step` apart along y, but for a constant times `w_i w_j`.
 
-    It grows like a constant times `w_i w_j / k` at small wavenumbers: that part, taken from one pair of hats, is
+    The flexibility grows like `w_i w_j / k` at small wavenumbers: this term, from one pair of hats, is
     integrated with `cos(k y) - 1`, which only changes the approach.
     """
     resolution, weights = flexible.resolution, flexible.weights
@@ -128,7 +128,7 @@ def solve(case: ContactCase, flexible: Flexibility, step: float, window: float, 
     strips = between_strips(flexible, step, 2 * y.size - 1)
     merge = _coarsen(flexible.nodes, stride)
     row = np.arange(y.size)
-    multiplicity = np.where(row == 0, 1.0, 2.0)  # a hat off the middle comes with its mirror image
+    multiplicity = np.where(row == 0, 1.0, 2.0)  # a hat away from the middle includes its mirror image
     # Unknowns are pairs in y as well: rows of a pair add up.
     difference, total = np.abs(row[:, None] - row), row[:, None] + row
     folded = strips[difference] + strips[total]
@@ -165,7 +165,7 @@ def _moments(function: Callable[[Array], Array], nodes: Array) -> Array:
 
 def complementarity(matrix: Array, gap: Array, weights: Array, load: float) -> Array:
     """Pressure `>= 0` of the given load that minimises the energy; the approach is found by bracketing."""
-    # A constant between all hats only shifts the approach: enough of it makes the matrix positive definite.
+    # A constant between all hats only shifts the approach; a large constant makes the matrix positive definite.
     constant = 10 * np.abs(matrix).sum() / weights.sum() ** 2
     factor = linalg.cholesky(matrix + constant * np.multiply.outer(weights, weights))
     of_gap, of_weights = (linalg.solve_triangular(factor, v, trans="T") for v in (gap, weights))

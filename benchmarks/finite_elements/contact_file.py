@@ -2,7 +2,7 @@
 
 The finite elements are made worse in one way at a time (element order, mesh, depth of the body, quadrature in k), and
 the pressure is found on hats of twice the width along y and along x. Hats err like the square of their width, so a
-third of those changes is the error of the finer ones; the sum of all is the estimate.
+third of each change is the error of the finer mesh; the sum is the estimate.
 """
 
 from __future__ import annotations

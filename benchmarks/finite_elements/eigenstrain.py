@@ -15,7 +15,7 @@ Array = NDArray[np.float64]
 
 
 def graded_nodes(points: Array, smallest: float, largest: float) -> Array:
-    """Element edges that pass through the points and are small beside each of them."""
+    """Element edges that pass through the points, with small elements at each point."""
     edges = [points[:1]]
     for low, high in pairwise(points):
         half_length, steps, width = 0.5 * (high - low), [0.0], smallest

@@ -72,7 +72,7 @@ class Line:
         value, slope = (sp.lil_matrix((len(points), self.basis.N)) for _ in range(2))
         for i, cell, weight in rows:
             local = np.array([[(points[i] - edges[cell]) / (edges[cell + 1] - edges[cell])]])
-            element = ElementLinePp(self.order)  # a fresh one: it keeps the values of the points seen last
+            element = ElementLinePp(self.order)  # a new basis: an evaluated basis caches values of the last points
             for j in range(self.basis.Nbfun):
                 shape = element.gbasis(self.basis.mapping, local, j, tind=np.array([cell]))[0]
                 dof = self.basis.element_dofs[j, cell]

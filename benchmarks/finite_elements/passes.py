@@ -212,7 +212,7 @@ class PlasticStrip:
             size = np.abs(out_of_balance).max()
             if size <= tolerance:
                 return displacement, values.reshape(shape), stress.reshape(shape)
-            # The stiffness of the increment before serves as long as it leads on.
+            # The previous stiffness is used while the iteration converges.
             if self.factors is None or size > SLOW * previous_force:
                 matrix = self.stiffness(tangent.reshape(4, 4, *shape[1:]))
                 options = {"SymmetricMode": True}

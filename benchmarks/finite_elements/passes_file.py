@@ -2,7 +2,7 @@
 
 Every case is solved at the production resolution, with steps of four times the length, and with these and one thing
 more made worse: width or height of the elements, size of the strip. Steps err in proportion to their length, elements
-like the square of their size, so a third of what they change is the error that is left. The sum of the largest changes
+like the square of their size, so a third of their change is the remaining error. The sum of the largest changes
 is stored as the error estimate.
 """
 
@@ -74,7 +74,7 @@ def write(path: Path) -> None:
 
 
 def add(path: Path, name: str) -> None:
-    """Solve one case at all resolutions and add it to the file."""
+    """Solve one case at all resolutions and add the case to the file."""
     start, case = time.perf_counter(), PASSES_CASES[name]
     strip = replace(PRODUCTION, step=LONGER_STEPS.get(name, PRODUCTION.step))
     lower = replace(strip, step=4 * strip.step)

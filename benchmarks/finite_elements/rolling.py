@@ -5,7 +5,7 @@ elements give the mean displacement of each column under each; the integral over
 displacement of strips. Bodies and motion are even about mid-length: pressure and the traction along y are even, the
 traction along x is odd, so one half of the columns is unknown.
 
-Rolling begins at rest and goes on strip by strip. In every step the material of a strip comes from the strip ahead,
+Rolling begins at rest and advances strip by strip. In every step the material of a strip comes from the strip ahead,
 and the tractions q minimise
 
     q A q - 2 q A q_before    for    |q| <= f p    in every cell and a prescribed sum of the q along y,
@@ -134,7 +134,7 @@ class Rolled:
 
 
 def _blocks(strips: Array, count: int, *, odd: bool = False) -> Array:
-    """Matrix between cells, numbered column first, from displacements by offset; odd ones change sign behind."""
+    """Matrix between cells, numbered column first, by offset; odd ones change sign for negative offsets."""
     offset = np.arange(count)[:, None] - np.arange(count)
     blocks = strips[np.abs(offset)]
     if odd:
@@ -159,7 +159,7 @@ def roll(
     pressure = complementarity(0.5 * (normal + normal.T), np.tile(0.5 * y**2, half_columns), areas, load)
     cross = between_strips(flexible, "cross", width, strips) / (1 - flexible.poisson)
     along_y = _blocks(of["y"], strips)
-    # A constant between all tractions along y is a displacement of the whole body. It makes the program convex.
+    # A constant between all tractions along y displaces the whole body and makes the program convex.
     along_y = along_y - 1.01 * min(float(np.linalg.eigvalsh(along_y + along_y.T)[0]) / 2, 0.0) / areas.size
     cross_blocks = _blocks(cross, strips, odd=True)
     matrix = np.block([[_blocks(of["x"], strips), cross_blocks], [cross_blocks.T, along_y]])

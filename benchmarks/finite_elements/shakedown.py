@@ -1,6 +1,6 @@
 """Melan's bound by equilibrium finite elements: linear stresses in triangles, tractions that match between them.
 
-The elements are those of S. W. Sloan, Lower bound limit analysis using finite elements and linear programming, Int. J.
+The elements follow S. W. Sloan, Lower bound limit analysis using finite elements and linear programming, Int. J.
 Numer. Anal. Meth. Geomech. 12 (1988) 61: in each triangle the stress is linear and in equilibrium; across each side
 the tractions are continuous, and on the faces zero.
 """

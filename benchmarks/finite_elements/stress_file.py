@@ -40,13 +40,13 @@ VARIANTS = {  # name: (variant, reference)
 
 
 def coordinates(case: LoadCase) -> dict[str, Sequence[float]]:
-    """Points of a case: with friction nothing is even in y, so both sides."""
+    """Points of a case; with friction on both sides of y = 0."""
     y = Y if case.friction == 0 else tuple(-v for v in Y[:0:-1]) + Y
     return {"x": X[case.length], "y": y, "z": Z}
 
 
 def evaluate(case: LoadCase, harmonic: Harmonics, shapes: list[tuple[object, bool]]) -> xr.Dataset:
-    """Stresses, and where it has a meaning the displacement, from the harmonics of a body."""
+    """Stresses, and the displacement where defined, from the harmonics of a body."""
     positions = coordinates(case)
     normal = shapes.index((case.g, "z"))
     tangential = shapes.index((case.g, "y")) if case.friction else None

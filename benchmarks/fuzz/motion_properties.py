@@ -17,7 +17,7 @@ SAME_TRACTION = 0.02
 
 
 def law_of_friction(solution: SolvedCase) -> bool:
-    """From the result alone: no traction above its bound; slip along the traction, and none where it sticks."""
+    """Tractions are below their bound; slip is along the traction, and zero in sticking cells."""
     result, friction = solution.result, solution.random_case.case.friction
     q, slip = (np.stack([result[f"{name}_{axis}"].values for axis in "xy"]) for name in ("traction", "slip"))
     in_contact, sticks = result["pressure"].values > 0, result["stick"].values.astype(bool)
@@ -86,7 +86,7 @@ def work_is_lost(solution: SolvedCase) -> bool:
     """Friction takes work, at most the work of full sliding under the largest slip.
 
     Forces and creepages determine the work. On two or three cells along rolling it is a few percent too small, and
-    without slip it is a difference of large numbers.
+    without slip the work is a difference of large numbers.
     """
     result = solution.result
     loaded_rows = int((result["pressure"].values > 0).any(axis=0).sum())
@@ -178,7 +178,7 @@ ALWAYS: tuple[Callable[[SolvedCase], bool], ...] = (
     work_is_lost,
     slip_sums_to_the_work,
 )
-"""Cheap ones."""
+"""Cheap properties."""
 
 IN_TURN: tuple[Callable[[SolvedCase], bool], ...] = (turned_round, other_units)
-"""Those that solve again."""
+"""Properties that need a second solution."""

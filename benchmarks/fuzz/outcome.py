@@ -37,9 +37,9 @@ class Outcome:
 
 
 def outcome_of(rng: Random, *, refined: bool | None = None) -> Outcome:
-    """Draw a case, solve it and look at its properties; nothing that goes wrong leaves this function.
+    """Draw a case, solve the case and check its properties; errors become outcomes.
 
-    `refined` decides whether cells are refined or given; None leaves it to rng.
+    `refined` decides whether cells are refined or given; None: random.
     """
     start_time = time.perf_counter()
     checked: list[str] = []
@@ -65,7 +65,7 @@ def outcome_of(rng: Random, *, refined: bool | None = None) -> Outcome:
 
 
 def _check_properties(random_case: RandomCase, rng: Random, checked: list[str]) -> tuple[str, str]:
-    """Solve a case and note each property as it is looked at."""
+    """Solve a case and record each checked property."""
     result = run(random_case)
     if not bool(result["converged"]):
         return "not converged", ""
@@ -77,7 +77,7 @@ def _check_properties(random_case: RandomCase, rng: Random, checked: list[str]) 
         checked.append(holds.__name__)
         if not holds(solution):
             checked.pop()
-    # One that there is anything to look at for.
+    # The first applicable property.
     for holds in rng.sample(in_turn, len(in_turn)):
         checked.append(holds.__name__)
         if holds(solution):

@@ -88,7 +88,7 @@ def complementarity(solution: SolvedCase) -> bool:
         return False
     friction = case.friction if case.coupled else 0.0
     displacement = result["displacement_z"].values
-    # The displacement refers to a line in the body: it differs from the displacement of the top by a rigid motion.
+    # The displacement refers to a line in the body and differs from the displacement of the top by a rigid motion.
     rigid = surface_displacement(case.body, result["pressure"], friction).values - displacement
     line = np.polynomial.polynomial.polyfit(solution.grid.x, rigid[:, 0], min(1, rigid.shape[0] - 1))
     fitted = np.polynomial.polynomial.polyval(solution.grid.x, line)[:, None]
@@ -238,7 +238,7 @@ def reciprocity(solution: SolvedCase) -> bool:
 
 
 RECIPROCITY = 1e-2
-"""Centres stand for means over cells, which differ in width: exact on uniform cells, roughly so on others."""
+"""Values at centres replace means over cells: exact on uniform cells, approximate on others."""
 
 
 def inner_points(solution: SolvedCase) -> dict[str, list[float]]:
@@ -266,7 +266,7 @@ def equilibrium(solution: SolvedCase) -> bool:
     size = max(a, float(grid.widths.max()), grid.dy)
     depth = rng.uniform(1.0, 2.0) * size
     step = 0.02 * min(size, high - low)
-    # There the load's cells change from fine to whole, and on few cells the stresses by up to 1e-3 of the peak.
+    # Here the load's cells change from fine to coarse, and on few cells the stresses by up to 1e-3 of the peak.
     for change in (REACH * grid.dy, REACH * float(grid.widths.max())):
         if abs(depth - change) < 2 * step:
             depth = change + 2 * step
@@ -350,7 +350,7 @@ def same_points_among_others(solution: SolvedCase) -> bool:
 
 
 def free_ends(solution: SolvedCase) -> bool:
-    """The ends of a body that frees them carry no traction, from a quarter of a cell below the top on.
+    """Free ends carry no traction, from a quarter of a cell below the top on.
 
     Nearer to the top the traction depends on the edges of the cells; `end_traction_residual` bounds it on coarse cells.
     On few columns in a thin body a larger traction has to be stated.

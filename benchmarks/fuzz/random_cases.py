@@ -39,7 +39,7 @@ class RandomCase:
     accuracy: float = 0.05
 
     def from_other_end(self) -> RandomCase:
-        """The same seen from the other end of the body; for bodies that look alike from there."""
+        """Return the case mirrored about mid-length, for symmetric bodies."""
         case, grid = self.case, self.grid
         low, high = case.body.extent
         total = low + high if np.isfinite(high) else 2 * case.roller_start + case.roller.length
@@ -60,7 +60,7 @@ class RandomCase:
         return replace(self, case=mirrored_case, grid=regrid(grid, edges, grid.y_range))
 
     def scale(self, length: float, modulus: float) -> RandomCase:
-        """The same with every length and every modulus multiplied: strains stay."""
+        """Return the case with every length and every modulus multiplied: strains are unchanged."""
         case, grid = self.case, self.grid
 
         def material(drawn_material: Material) -> Material:
@@ -156,7 +156,7 @@ def draw_case(rng: Random, *, refined: bool | None = None) -> RandomCase:
 
 
 def _random_body(rng: Random, material: Material, length: float, half_width: float) -> Body:
-    """A body with room for the roller, or about as long."""
+    """A body longer than the roller, or about as long."""
     kind = rng.choice((FiniteLengthSpace, FiniteLengthSpace, FiniteLengthSpace, QuarterSpace, HalfSpace))
     if kind is HalfSpace:
         return HalfSpace(material=material)

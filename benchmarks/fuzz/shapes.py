@@ -48,7 +48,7 @@ def random_profile(rng: Random, radius: float, length: float, depth: float) -> P
 
 
 def _single_profile(rng: Random, radius: float, length: float, depth: float) -> Profile:
-    """A profile of one of the kinds."""
+    """A profile of a random kind."""
     drop = depth * magnitude(rng, 0.1, 10.0)
     arc = max(length**2 / (8 * drop), 0.6 * length)
     makers: dict[str, Callable[[], Profile]] = {
@@ -73,7 +73,7 @@ def _single_profile(rng: Random, radius: float, length: float, depth: float) -> 
 
 
 def _measured_profile(rng: Random, length: float, drop: float) -> Measured:
-    """A crown with a skew, as if it had been measured."""
+    """A skewed crown as measured points."""
     x = np.linspace(-0.5, 0.5, 41)
     shape = (2 * x) ** 2 + rng.uniform(-0.5, 0.5) * x
     return Measured(positions=tuple(x * length), drops=tuple(drop * (shape - shape.min())))
@@ -93,7 +93,7 @@ def _burr(rng: Random, length: float, drop: float) -> Measured:
 
 
 def _level(profile: Profile) -> Profile:
-    """The profile, or a cylinder if it does not begin with drop 0 at mid-length, where halves have to meet."""
+    """The profile, or a cylinder if the drop at mid-length is not 0, because halves must meet."""
     try:
         min_drop = float(profile.drop(np.zeros(1), 1.0)[0])
     except ValueError:

@@ -49,7 +49,7 @@ class SolvedCase:
 
     @property
     def moves(self) -> bool:
-        """Whether it rolls or is shifted, with stick and slip, instead of sliding."""
+        """Whether the motion is rolling or a shift, with stick and slip."""
         return not isinstance(self.random_case.case.motion, Sliding)
 
     @property

@@ -27,7 +27,7 @@ Notes = dict[str, Any]
 
 
 def read_notes(file: Path, key: str) -> dict[str, Notes]:
-    """Lines of JSON by one of their entries; the last one of each counts."""
+    """Lines of JSON by one of their entries; the last line of each is used."""
     lines = file.read_text(encoding="utf-8").splitlines() if file.exists() else []
     return {note[key]: note for note in map(json.loads, lines)}
 

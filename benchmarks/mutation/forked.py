@@ -48,9 +48,9 @@ class Reached:
     test : str
         Name.
     passed : bool
-        Whether it passes.
+        Whether the test passes.
     seconds : float
-        Processor time that it takes alone.
+        Processor time of the test.
     lines : dict of str to list of str
         Texts of the core's lines that the test runs, by source; texts do not depend on inserted lines.
     """

@@ -34,7 +34,7 @@ class Mutant:
     start, stop : int
         Characters that are replaced.
     text : str
-        What they become.
+        Replacement of the text.
     lines : tuple of str
         Lines of the statement around it, without those of statements within.
     where : str

@@ -35,7 +35,7 @@ INTENSITIES = ("end_intensity_first", "end_intensity_last")
 
 @dataclass(frozen=True)
 class RandomCase:
-    """A random case and its name; or why it is none."""
+    """A random case and its name, or the reason of its refusal."""
 
     number: int
     name: str

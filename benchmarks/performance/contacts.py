@@ -33,7 +33,7 @@ def difference(pressure: FloatArray, limit: FloatArray) -> float:
 
 
 def loosest_setting(solve: Solver, problem: Problem, goal: float = GOAL) -> tuple[float, float]:
-    """Loosest tolerance at which a code comes within `goal` of its own limit, and how near it then is.
+    """Loosest tolerance with an error below `goal` relative to the code's limit, and this error.
 
     Parameters
     ----------
@@ -68,7 +68,7 @@ def loosest_setting(solve: Solver, problem: Problem, goal: float = GOAL) -> tupl
 
 
 def compare(problem: Problem, names: tuple[str, ...], repeats: int, report: Report) -> tuple[dict[str, float], str]:
-    """Median seconds of each code at equal measured accuracy, and a note on the settings that it took."""
+    """Median seconds of each code at equal measured accuracy, and a note on its settings."""
     works: dict[str, Callable[[], object]] = {}
     notes = []
     limits: dict[str, FloatArray] = {}

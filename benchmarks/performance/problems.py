@@ -88,7 +88,7 @@ def roller(cells: tuple[int, int], length: float, *, free_ends: bool, overhang: 
     free_ends : bool
         Whether the body ends at the window's edges along x.
     overhang : float
-        How far the window goes on beyond either end of the roller, in half-widths.
+        Distance of the window beyond either end of the roller, in half-widths.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""Rows on refined columns: a roller with a real edge radius, against the uniform cells that it takes otherwise."""
+"""Rows on refined columns: a roller with a real edge radius, against uniform cells."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ CELLS = 16
 
 
 def roller_case() -> Case:
-    """A roller as long as the body; every call is another body, for which nothing is kept."""
+    """A roller as long as the body; every call makes a new body, without cached values."""
     # Bodies that differ by rounding alone share their kernels.
     length = LENGTH * (1 + 1e6 * (nudge() - 1))
     roller = Roller(radius=RADIUS, length=length, profile=profiles.Cylinder(FILLET))

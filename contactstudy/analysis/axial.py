@@ -266,7 +266,7 @@ def load_between(dataset: xr.Dataset, start: xr.DataArray | float, stop: xr.Data
 def half_width(dataset: xr.Dataset) -> xr.Dataset:
     """Return the half-width of the contact at each position along the roller's axis, and its middle.
 
-    The border follows from the pressure alone; with few loaded cells across y it is the face of a cell.
+    The border follows from the pressure alone; with few loaded cells across y the border is the face of a cell.
 
     Parameters
     ----------

@@ -71,7 +71,7 @@ def contact_numbers(pressure: Array, under_roller: Array, x: Array, y: Array, dx
 
 
 def _range(centres: Array, mask: Array) -> tuple[Array, Array]:
-    """First and last position of a mask along the last axis; infinite if it is empty."""
+    """First and last position of a mask along the last axis; infinite for an empty mask."""
     return np.where(mask, centres, np.inf).min(axis=-1), np.where(mask, centres, -np.inf).max(axis=-1)
 
 
@@ -89,7 +89,7 @@ def contact_results(dataset: xr.Dataset, about: float | None = None) -> xr.Datas
     Returns
     -------
     Dataset
-        `peak_pressure` with ``_x`` and ``_y``: settled, with its error, where a whole result has it, otherwise of the
+        `peak_pressure` with ``_x`` and ``_y``: refined, with its error, in a complete result, otherwise of the
         highest cell; `edge_pressure_first`, `edge_pressure_last` (Pa); `contact_area` (m2), `contact_length`,
         `contact_width` (m), in whole cells; `contact_length_loss` (m, facing length without contact); `resultant` (N),
         `load_position` (m, its position x) and `moment` (N m, positive beyond `about`). NaN for cases without pressure.
@@ -131,7 +131,7 @@ def contact_results(dataset: xr.Dataset, about: float | None = None) -> xr.Datas
 
 
 def _peak_pressure(dataset: xr.Dataset, resultant: xr.DataArray) -> xr.Dataset:
-    """Largest pressure and its position: settled if the contact is whole."""
+    """Largest pressure and its position: refined if the contact is complete."""
     largest_pressure = largest_sample(dataset, "pressure")
     names = ("peak_pressure", "peak_pressure_error")
     if not {*names, "normal_load"} <= set(dataset.variables):
@@ -186,7 +186,7 @@ def edge_pressure(dataset: xr.Dataset) -> xr.Dataset:
     edges = {}
     for end, value, cut in zip(("first", "last"), values, cut_ends(dataset), strict=True):
         edge = value.where(cut == 0)
-        # The mean of a cell beside a singular end depends on the cell alone.
+        # The mean of a cell at a singular end depends on the cell only.
         singular = np.isinf(dataset.get(f"end_pressure_{end}", xr.DataArray(0.0)))
         edges[f"edge_pressure_{end}"] = name_array(
             f"edge_pressure_{end}", edge.where(~singular | edge.isnull(), np.inf)
@@ -343,6 +343,6 @@ def _values(dataset: xr.Dataset, variable: str, reach: xr.DataArray | float) -> 
     distance = abs(points - 0.5 * (borders[0] + borders[1]))
     nearest = distance.fillna(np.inf).argmin(x)
     width = cell_size(profile, "x")
-    # Beyond the points there is no value.
+    # Positions beyond the points have no value.
     within = distance.min(x) <= (width.isel({x: nearest}) if x in width.dims else width)
     return values | {"middle": profile.isel({x: nearest}).where(within), "peak": profile.max(x)}

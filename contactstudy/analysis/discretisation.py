@@ -12,7 +12,7 @@ from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 
 # Assumed orders of convergence, of extrapolated end pressures the second. Accuracy: below the measured ones, 1.5 to 2
-# for smooth pressures and 0.86 beside a flush end, so the estimate errs on the high side
+# for smooth pressures and 0.86 at a flush end, so the estimate is conservative
 ASSUMED_ORDER, END_ORDER = 1.0, 0.8
 FITTED_COLUMNS = 3  # Columns of cells in the extrapolation to the end of the shape
 RESOLVED_TURN = 0.9  # Largest turn of the shape between columns (`_largest_turn`) that resolves a peak
@@ -45,7 +45,7 @@ def discretisation_error(fine: xr.Dataset, coarse: xr.Dataset) -> xr.Dataset:
     Dataset
         `peak_pressure` (Pa), between the cells by parabolas, or at an end with more; `end_pressure_first` and
         `end_pressure_last` (Pa), the largest pressure across y extrapolated to the first and last end of the shape or
-        the body, 0 without contact there; `half_width_middle` (metres), in the middle between these ends (NaN without
+        the body, 0 without contact; `half_width_middle` (metres), in the middle between these ends (NaN without
         contact). All are values of the finer grid. Each has its ``<name>_error`` in the same unit; the peak error
         covers the ends; an infinite error has a `comment` with the reason and advice.
 

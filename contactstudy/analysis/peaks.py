@@ -232,7 +232,7 @@ def peak(dataset: xr.Dataset, variable: str = "von_mises") -> xr.Dataset:
     samples = measure(case, variable)
     result = interpolated_peak(case, components, samples, lambda stresses: measure(stresses, variable))
     if "pressure" in case and result.position.get("z") == 0:
-        # At the border of the contact a measure may have a kink, beside much larger values.
+        # At the border of the contact a measure may have a kink next to much larger values.
         excess = result.value - float(samples.max()) + ON_TOP * (float(abs(samples).max()) - abs(result.value))
         result = result._replace(error=result.error + max(excess, 0.0))
     return label_peak(variable, result, variable_of(variable, samples.attrs))
@@ -312,7 +312,7 @@ def label_largest_stress(
 
 
 def _explain_unbounded(case: xr.Dataset, axes: dict[str, FloatArray], index: tuple[int, ...]) -> str:
-    """Why the largest sample does not bound the largest value; empty if it does."""
+    """Reason why the largest sample does not bound the largest value, or empty."""
     if "peak_pressure" in case and np.isinf(float(case["peak_pressure"])):
         return SINGULAR
     extent = _extent(case)
@@ -326,7 +326,7 @@ def _explain_unbounded(case: xr.Dataset, axes: dict[str, FloatArray], index: tup
 
 
 def _explain_unresolved(case: xr.Dataset, axes: dict[str, FloatArray], sample: dict[str, float]) -> str:
-    """Where the samples are too far apart for the pressure above, at its peak and at the largest sample; else empty."""
+    """Location with too coarse samples for the pressure above, at its peak and at the largest sample, or empty."""
     if not {"pressure", "x", "y"} <= {str(name) for name in case.variables} or case["y"].size < 2:
         return ""
     pressure, x = case["pressure"].transpose("x", "y").values, case["x"].values
@@ -338,7 +338,7 @@ def _explain_unresolved(case: xr.Dataset, axes: dict[str, FloatArray], sample: d
     column = int(np.where(in_range, axial, -1.0).argmax())
     width = min(variation_lengths(pressure, x, dy, column))
     locations = [(column, {"x": float(x[column])})]
-    # On the flank of the peak the stresses vary as below it.
+    # On the flank of the peak the stresses vary as below the peak.
     if "x" in sample and abs(sample["x"] - x[column]) > 2 * width:
         locations.append((int(np.abs(x - sample["x"]).argmin()), sample))
     for column, location in locations:

@@ -65,7 +65,7 @@ class Columns(NamedTuple):
 
 
 def step_errors(values: FloatArray) -> FloatArray:
-    """Error in each step between values: half of it; the full step and the error before it where a contact ends."""
+    """Error in each step between values: half the step; at the end of a contact the full step plus the error before."""
     steps = np.abs(np.diff(values))
     neighbours = larger_step(OPEN_STEP * steps)
     # A contact may end anywhere up to the middle of the next column.
@@ -118,7 +118,7 @@ def power_means(columns: Columns, borders: FloatArray, power: float) -> tuple[Fl
 
 
 def border_load_errors(line_load: Columns, borders: FloatArray) -> FloatArray:
-    """Return the load that may lie beyond the borders of each part, because it is uniform in each column, N."""
+    """Return the load that may lie beyond the borders of each slice, because the columns' loads are uniform, N."""
     low, high = line_load.edges.T
     load_errors = larger_step(np.abs(np.diff(line_load.values))) * np.minimum(high - low, np.diff(borders).min())
     errors = np.zeros(borders.size)
@@ -132,8 +132,8 @@ def border_load_errors(line_load: Columns, borders: FloatArray) -> FloatArray:
 
 
 def pressure_errors(result: xr.Dataset) -> tuple[float, float]:
-    """Relative error of the largest pressure on either half: infinite at a singular end, NaN if it is not estimated."""
-    # The errors are those of a whole contact on its own cells, not of a part, or on common cells of a study.
+    """Relative error of the largest pressure on either half: infinite at a singular end, NaN without an estimate."""
+    # The errors refer to a complete contact on its original cells, not to a part or to common cells of a study.
     if "normal_load" not in result or result["pressure"].attrs.get(ERROR_KIND) == NOT_ESTIMATED:
         return np.nan, np.nan
     across, along = (cell_size(result["pressure"], axis) for axis in "xy")
@@ -232,7 +232,7 @@ def slices(dataset: xr.Dataset, count: int = 30) -> xr.Dataset:
 def _with_errors(
     case: xr.Dataset, borders: FloatArray, pressure: Columns, line_load: Columns, load: FloatArray
 ) -> xr.Dataset:
-    """Load and largest pressure of each slice with their errors, from the settled pressures and the columns."""
+    """Load and largest pressure of each slice with their errors, from the refined pressures and the columns."""
     maxima, column_error = maximum_between(pressure, borders)
     relative = pressure_errors(case)
     mid_length, rounding = 0.5 * (borders[0] + borders[-1]), ROUNDING * (borders[-1] - borders[0])

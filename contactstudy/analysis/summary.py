@@ -22,7 +22,7 @@ COMMENTS = {
 
 
 def pressure_numbers(dataset: xr.Dataset) -> dict[str, float]:
-    """Numbers of the pressure; at the ends those of the Dataset, else of the outer pressed columns."""
+    """Numbers of the pressure; end pressures of the Dataset, else of the outermost loaded columns."""
     require(dataset, "pressure", "hertz_max_pressure")
     array = dataset["pressure"].transpose("x", "y")
     pressure, x, y, scale = array.values, array["x"].values, array["y"].values, float(dataset["hertz_max_pressure"])
@@ -73,7 +73,7 @@ class Number(NamedTuple):
 
 
 def case_numbers(dataset: xr.Dataset) -> dict[str, Number]:
-    """All numbers of a solved case by name: scalars of the Dataset (settled), then those of its cells."""
+    """All numbers of a solved case by name: scalars of the Dataset (refined), then numbers of its cells."""
     numbers = {}
     for name, value in pressure_numbers(dataset).items():
         estimate = {"comment": COMMENTS[name], ERROR_KIND: NOT_ESTIMATED} if name in COMMENTS else {}

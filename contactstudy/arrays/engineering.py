@@ -33,7 +33,7 @@ def unit_for(size: float, units: str) -> tuple[float, str]:
 
 
 def format_value(value: float, digits: int = DIGITS) -> str:
-    """Write a number with so many digits, and without an exponent where that stays short."""
+    """Return a number with these digits, without an exponent if the text remains short."""
     if not math.isfinite(value):
         return "not known" if math.isnan(value) else f"{'-' if value < 0 else ''}\N{INFINITY}"
     return f"{value:.{digits}g}" if not 1e3 <= abs(value) < 1e6 else f"{value:.{max(digits, 4)}g}"

@@ -8,7 +8,7 @@ import numpy as np
 
 from contactstudy.checks import FloatArray
 
-FLANK = 0.8  # fraction of a peak at which its width is read; a half-ellipse is 1 / 0.6 times as wide there
+FLANK = 0.8  # fraction of a peak at which its width is read; a half-ellipse is 1 / 0.6 times as wide at its base
 SAMPLES_BETWEEN = 17  # points between the two neighbours of a sample at which the interpolating polynomial is evaluated
 
 

@@ -19,7 +19,7 @@ from contactstudy.errors import InvalidInputError
 from contactstudy.versions import version_of
 
 DERIVED = "follows from the other parameters"  # comment of a coordinate that a study does not sweep
-ERROR_KIND = "error_kind"  # attribute of a number: how its error is stated, one of the two values below
+ERROR_KIND = "error_kind"  # attribute of a number: kind of its error, one of the two values below
 
 ESTIMATED, NOT_ESTIMATED = "estimated", "not estimated"
 """The variable ``<name>_error`` contains the error, or no error is stated."""
@@ -80,7 +80,7 @@ def package_version() -> str:
 
 
 def without_error(dataset: xr.Dataset, *names: str) -> xr.Dataset:
-    """Return `dataset` with the error kind "not estimated" on the named variables that it has."""
+    """Return `dataset` with the error kind "not estimated" on the named variables, if present."""
     result = dataset.copy()
     for name in names:
         if name in result:
@@ -89,7 +89,7 @@ def without_error(dataset: xr.Dataset, *names: str) -> xr.Dataset:
 
 
 def describe(dataset: xr.Dataset, title: str | None = None) -> xr.Dataset:
-    """Return `dataset` with units and meanings from the table; attributes already there stay."""
+    """Return `dataset` with units and meanings from the table; existing attributes remain."""
     result = dataset.copy()
     for name, variable in result.variables.items():
         variable.attrs = labels(str(name), coordinate=name in result.coords) | variable.attrs

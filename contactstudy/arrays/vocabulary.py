@@ -15,7 +15,7 @@ class Variable(NamedTuple):
     units: str  # SI, in the spelling of the CF conventions
     symbol: str  # LaTeX, without dollar signs
     long_name: str
-    """Meaning. ``{variable}`` stands for the meaning of the variable that a quantity was derived from, and
+    """Meaning. ``{variable}`` is replaced by the meaning of the variable that a quantity was derived from, and
     ``{symbol}`` for its symbol, or its meaning if it has none. Those of coordinates are short: they stand on
     axes, where xarray breaks them after 30 characters, which is cut off."""
     comment: str = ""  # addition to the short meaning

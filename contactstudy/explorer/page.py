@@ -79,14 +79,8 @@ class Page:
         self.table = pn.pane.HTML("", stylesheets=[STYLE], sizing_mode="stretch_width")
         self.axial, self.study = AxialFigure(), StudyFigure()
         self.surface_figures, self.plane_figures = [ImageFigure()], [ImageFigure(downwards=True)]
-        figures = (
-            self.axial.figure,
-            self.surface_figures[0].figure,
-            None,
-            self.plane_figures[0].figure,
-            None,
-            self.study.figure,
-        )
+        surface, plane = self.surface_figures[0].figure, self.plane_figures[0].figure
+        figures = (self.axial.figure, surface, None, plane, None, self.study.figure)
         self.panes = [pn.pane.Bokeh(figure, sizing_mode="stretch_width") for figure in figures]
         self._settings = (self.region, self.measure, self.plane, self.fraction, self.number, self.parameter)
         for widget in (self.compare, self.units, *self._settings):

@@ -36,7 +36,7 @@ SWITCH_INTERVAL = 2e-4
 
 
 def explore(study: xr.Dataset | str | Path) -> Any:
-    """Return the page of a study for a notebook: the last expression of a cell shows it.
+    """Return the page of a study for a notebook: the last expression of a cell displays the page.
 
     Parameters
     ----------
@@ -105,7 +105,7 @@ class AccessControl:
             return urlsplit(f"//{request.host}").hostname in self._hosts and (
                 origin is None or urlsplit(origin).netloc.lower() == request.host.lower()
             )
-        except ValueError:  # an address that is not one
+        except ValueError:  # an invalid address
             return False
 
     def _is_token(self, text: str) -> bool:
@@ -190,7 +190,7 @@ def serve(folder: str | Path, *, port: int | None = None, hosts: Sequence[str] =
     port : int, optional
         Port of the page; default: the first free one from 5006 on.
     hosts : sequence of str
-        Host names, beside localhost, 127.0.0.1 and [::1], that a browser may use, such as the name of a proxy.
+        Host names, in addition to localhost, 127.0.0.1 and [::1], that a browser may use, such as the name of a proxy.
     show : bool
         Whether to open it in the browser.
 

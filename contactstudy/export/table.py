@@ -102,7 +102,7 @@ def to_table(
     return frame[names].rename(columns=headings(fields, [str(name) for name in names]))
 
 
-FORMULA = ("=", "+", "-", "@", "\t", "\r")  # First characters of a formula in a spreadsheet, which would run it
+FORMULA = ("=", "+", "-", "@", "\t", "\r")  # First characters of a formula, which a spreadsheet would run
 
 
 def _escape(entry: object) -> object:

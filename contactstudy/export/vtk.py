@@ -93,7 +93,7 @@ def to_vtk(dataset: xr.Dataset, path: str | Path, variables: str | Sequence[str]
 
 
 def _on_points(fields: dict[str, xr.DataArray]) -> tuple[list[FloatArray], dict[str, FloatArray]]:
-    """Increasing positions along x, y and z, and the values there (x, y, z, ...)."""
+    """Increasing positions along x, y and z, and the values at these points (x, y, z, ...)."""
     first = next(iter(fields.values()))
     along = axis_dimensions(first)
     # The format requires increasing positions; an axis without positions is a plane at 0.

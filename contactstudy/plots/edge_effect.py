@@ -22,12 +22,12 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-Entry = tuple[float, xr.Dataset]  # e/a and the case there
+Entry = tuple[float, xr.Dataset]  # e/a and the case
 LoadCase = Callable[[xr.Dataset], xr.Dataset]  # from the part of a study with one case to the case
 
 EDGE_AXES = ("e_over_a", "body")  # Parameters with several values in the figure
 TITLE_WIDTH = 60  # letters of a line
-PLATEAU = 0.1  # Relative deviation from the pressure at mid-length up to which a curve counts as level
+PLATEAU = 0.1  # Relative deviation from the pressure at mid-length up to which a curve is treated as level
 
 
 def plot_edge_effect(

@@ -21,7 +21,7 @@ HALF_RANGE = 1.4
 
 
 def plot_film_map(dataset: xr.Dataset, ax: Axes | None = None, *, fringes: int = 12, si: bool = False) -> Axes:
-    """Film thickness with contours, as an interferogram shows it.
+    """Film thickness with contours, like an interferogram.
 
     Parameters
     ----------

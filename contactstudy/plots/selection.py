@@ -39,7 +39,7 @@ def select_one(array: xr.DataArray, axes: tuple[str, ...], selection: Mapping[st
 
 
 def most_solved(array: xr.DataArray, axes: tuple[str, ...], selection: Mapping[str, Any]) -> dict[str, Any]:
-    """Values of the parameters beside `axes`: the selected ones, or the first with most solved cases."""
+    """Values of the parameters other than `axes`: selected values, or the first with most solved cases."""
     dims = [str(dim) for dim in array.dims if str(dim) not in axes]
     choices = [[selection[dim]] if dim in selection else list(array[dim].values) for dim in dims]
     combinations = [dict(zip(dims, values, strict=True)) for values in itertools.product(*choices)]

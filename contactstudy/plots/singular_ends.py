@@ -1,4 +1,4 @@
-"""Singular ends in figures: the pressure is unbounded there, so figures omit it and mark the end."""
+"""Singular ends in figures: figures omit the unbounded pressure and mark the end."""
 
 from __future__ import annotations
 

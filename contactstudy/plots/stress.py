@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from matplotlib.contour import QuadContourSet
 
 LEVELS = 12  # Approximate number of contours
-NEAR_PLANE = 0.15  # Distance from a plane, over the Hertz half-width, within which the largest value is marked in it
+NEAR_PLANE = 0.15  # Distance from a plane, over the Hertz half-width, within which the plane marks the largest value
 
 
 def _draw_contours(ax: Axes, across: FloatArray, down: FloatArray, values: FloatArray, levels: Any) -> QuadContourSet:

@@ -38,7 +38,7 @@ ESTIMATED_PREFIXES = ("peak_", "end_pressure_", "end_load_", "end_intensity", "c
 """Prefixes of results whose error is estimated or missing; prescribed scalars, such as a load, have other names."""
 
 LINE_HEIGHT = 0.17  # inches
-TICK_WIDTH, LEGEND_COLUMN = 18, 22  # letters of a name at the axis and in the legend beside the axes
+TICK_WIDTH, LEGEND_COLUMN = 18, 22  # letters of a name at the axis and in the legend next to the axes
 FORCES = {"longitudinal_creepage": ("force_y", "F_y"), "lateral_creepage": ("force_x", "F_x")}
 """Force conjugate to a creepage, and its symbol."""
 
@@ -171,7 +171,7 @@ def _draw_panel(
 
 
 def _draw_legend(figure: Figure, ax: Axes, values: xr.DataArray, hue: str) -> None:
-    """Draw the legend beside the panels."""
+    """Draw the legend next to the panels."""
     numeric = np.issubdtype(values.dtype, np.number) and not _parameters_along(values, hue)
     title = scale_values(values, hue)[1] if numeric else hue.replace("_", " ")
     handles, labels = ax.get_legend_handles_labels()
@@ -187,7 +187,7 @@ def _draw_legend(figure: Figure, ax: Axes, values: xr.DataArray, hue: str) -> No
 
 
 def _extra_lines(ax: Axes) -> int:
-    """Lines below an axis beyond one of numbers and one of the label."""
+    """Return the number of text lines below an axis, without one line of numbers and one of the label."""
     names = max((tick.get_text().count("\n") for tick in ax.get_xticklabels()), default=0)
     return names + ax.get_xlabel().count("\n")
 

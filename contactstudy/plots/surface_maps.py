@@ -24,7 +24,7 @@ STICK_COLOR, SLIP_COLOR = "0.55", "0.88"
 CONTACT_BORDER: dict[str, Any] = {"colors": "0.35", "linewidths": 0.9}
 STICK_BORDER: dict[str, Any] = {"colors": "#e8513a", "linewidths": 1.8}  # legible on every colour of the map
 BORDER_LEVEL = 0.01
-"""Squared pressure at the border over its largest value beside singular ends: linear in the distance from it."""
+"""Squared pressure at the border over its largest value away from singular ends: linear in the distance to it."""
 
 MARGIN = 0.1  # Margin around the contact over its width
 ARROW_LENGTH = 1.5  # of the longest arrow over the spacing along x
@@ -55,7 +55,7 @@ class Surface(NamedTuple):
 
     @property
     def away_from_singular_ends(self) -> BoolArray:
-        """Columns without those near a singular end; all columns if all are near one."""
+        """Mask of the columns away from singular ends; all columns if every column is near an end."""
         x = positions(self.case["pressure"], "x").values
         near_end = near_singular(self.case, singular_ends(self.case), x)
         return ~near_end | near_end.all()
@@ -91,8 +91,8 @@ def _outer_edges(centres: FloatArray) -> FloatArray:
     return np.concatenate([[centres[0] - 0.5 * first], centres, [centres[-1] + 0.5 * last]])
 
 
-def _extend_beyond_contact(values: FloatArray, in_contact: BoolArray) -> FloatArray:
-    """Values over (y, x), continued along y from the contact to the cells beside it; 0 in columns without contact."""
+def _extend(values: FloatArray, in_contact: BoolArray) -> FloatArray:
+    """Values over (y, x), continued along y from the contact to the adjacent cells; 0 in columns without contact."""
     rows = np.arange(len(values))[:, None]
     first, last = in_contact.argmax(axis=0), len(values) - 1 - in_contact[::-1].argmax(axis=0)
     extended = np.take_along_axis(values, np.clip(rows, first, last), axis=0)
@@ -100,7 +100,7 @@ def _extend_beyond_contact(values: FloatArray, in_contact: BoolArray) -> FloatAr
 
 
 def _draw_contact_border(ax: Axes, surface: Surface, *artists: Any) -> None:
-    """Draw the border of the contact, and clip artists to it."""
+    """Draw the border of the contact, and clip artists to this border."""
     squared = surface.pressure**2
     threshold = BORDER_LEVEL * float(squared[:, surface.away_from_singular_ends].max())
     border = _draw_border(ax, surface, squared, threshold, **CONTACT_BORDER)
@@ -138,7 +138,7 @@ def plot_pressure_map(dataset: xr.Dataset, ax: Axes | None = None, *, si: bool =
     Returns
     -------
     Axes
-        Cropped to the contact. Beside a singular end the colours stop at the pressure 0.05 a from it.
+        Cropped to the contact. Near a singular end the colours stop at the pressure 0.05 a from it.
 
     Raises
     ------
@@ -204,12 +204,7 @@ def plot_stick_and_slip(dataset: xr.Dataset, ax: Axes | None = None, *, si: bool
     ax = new_axes(ax)
     slip = np.where(surface.values("stick") > 0, 0.0, 1.0)
     mesh = _draw_mesh(
-        ax,
-        surface,
-        _extend_beyond_contact(slip, surface.in_contact),
-        cmap=ListedColormap([STICK_COLOR, SLIP_COLOR]),
-        vmin=0,
-        vmax=1,
+        ax, surface, _extend(slip, surface.in_contact), cmap=ListedColormap([STICK_COLOR, SLIP_COLOR]), vmin=0, vmax=1
     )
     _draw_contact_border(ax, surface, mesh)
     rows, columns = _arrow_cells(surface, arrows)
@@ -283,12 +278,8 @@ def plot_traction_map(
     if variable == "slip":
         factor, unit = unit_for(max_traction, str(surface.case["slip_y"].attrs.get("units", "1")))
         label = f"slip ({unit})" if unit else "slip per distance rolled"
-    mesh = _draw_mesh(
-        ax, surface, _extend_beyond_contact(magnitude / factor, surface.in_contact), cmap=COLORS, vmin=0.0
-    )
-    stick = _draw_border(
-        ax, surface, _extend_beyond_contact(surface.values("stick"), surface.in_contact), 0.5, **STICK_BORDER
-    )
+    mesh = _draw_mesh(ax, surface, _extend(magnitude / factor, surface.in_contact), cmap=COLORS, vmin=0.0)
+    stick = _draw_border(ax, surface, _extend(surface.values("stick"), surface.in_contact), 0.5, **STICK_BORDER)
     _draw_contact_border(ax, surface, mesh, stick)
     _crop(ax, surface)
     _label(ax, surface, mesh, label)
@@ -329,14 +320,12 @@ def plot_temperature_map(
     """
     checks.known_name("surface", surface, SURFACES)
     name = SURFACES[surface]
-    surface_map = _surface(dataset, (name, "frictional_heat"), si=si, load="frictional_heat")
+    field = _surface(dataset, (name, "frictional_heat"), si=si, load="frictional_heat")
     ax = new_axes(ax)
-    rise = surface_map.values(name)
-    mesh = _draw_mesh(ax, surface_map, rise, cmap=HEAT_COLORS)
-    _draw_border(
-        ax, surface_map, surface_map.pressure, 1e-3 * float(surface_map.pressure.max()), colors="white", linewidths=0.8
-    )
+    rise = field.values(name)
+    mesh = _draw_mesh(ax, field, rise, cmap=HEAT_COLORS)
+    _draw_border(ax, field, field.pressure, 1e-3 * float(field.pressure.max()), colors="white", linewidths=0.8)
     row, column = divmod(int(rise.argmax()), rise.shape[1])
-    ax.plot(surface_map.x[column], surface_map.y[row], "+", color="black", markersize=9)
-    _label(ax, surface_map, mesh, f"{variable_of(name, surface_map.case[name].attrs).long_name} (K)")
+    ax.plot(field.x[column], field.y[row], "+", color="black", markersize=9)
+    _label(ax, field, mesh, f"{variable_of(name, field.case[name].attrs).long_name} (K)")
     return ax

@@ -16,7 +16,7 @@ from contactstudy.arrays.engineering import format_quantity
 from contactstudy.case.serialization import tables_within
 from contactstudy.report.summary_table import NOT_ESTIMATED, Quantity, Summary, summary
 
-YES, WITH_CAUTION, NO, UNKNOWN = (
+YES, CAUTION, NO, UNKNOWN = (
     "yes",
     "with care",
     "no",
@@ -47,7 +47,7 @@ class Assessment:
     def overall(self) -> str:
         """Worst answer, without "not known"."""
         answers = {criterion.answer for criterion in self.criteria}
-        return next((answer for answer in (NO, WITH_CAUTION, YES) if answer in answers), UNKNOWN)
+        return next((answer for answer in (NO, CAUTION, YES) if answer in answers), UNKNOWN)
 
     @property
     def verdict(self) -> str:
@@ -55,7 +55,7 @@ class Assessment:
         reason = next((criterion.reason for criterion in self.criteria if criterion.answer == self.overall), "")
         return {
             YES: "all criteria hold",
-            WITH_CAUTION: reason,
+            CAUTION: reason,
             NO: f"do not rely on it; {reason}",
             UNKNOWN: "the result contains no criterion",
         }[self.overall]
@@ -111,15 +111,11 @@ def _criteria(case: xr.Dataset, table: Summary) -> Iterator[Criterion]:
     yield _free_ends(case)
     yield _cells(case)
     profile = attribute(case, INPUTS_ATTRIBUTE).get("case", {}).get("roller", {}).get("profile", {})
-    yield from (
-        _measured_profile(profile_table)
-        for profile_table in tables_within(profile)
-        if profile_table["kind"] == "Measured"
-    )
+    yield from (_measured_profile(entry) for entry in tables_within(profile) if entry["kind"] == "Measured")
     if "peak_von_mises" in table:
         yield _peak_stress(case, table["peak_von_mises"])
     for text in attribute(case, RUN_ATTRIBUTE).get("warnings", []):
-        yield Criterion("Was there a warning?", WITH_CAUTION, str(text))
+        yield Criterion("Was there a warning?", CAUTION, str(text))
 
 
 def _converged(case: xr.Dataset) -> Criterion:
@@ -157,7 +153,7 @@ def _contact_conditions(case: xr.Dataset) -> Criterion:
         f"gap or overlap under pressure is {_digit(overlap)} of the displacement, pressure over a gap "
         f"{_digit(pressure)} of the peak"
     )
-    return Criterion(question, YES if holds else WITH_CAUTION, reason)
+    return Criterion(question, YES if holds else CAUTION, reason)
 
 
 def _friction(case: xr.Dataset) -> Criterion:
@@ -165,7 +161,7 @@ def _friction(case: xr.Dataset) -> Criterion:
     errors = {name: _size(case, name) for name in ("bound_error", "slip_error", "force_error") if name in case}
     reason = ", ".join(f"{name.replace('_', ' ')} {_digit(value)}" for name, value in errors.items())
     holds = all(not value > RESIDUAL_TOLERANCE for value in errors.values())
-    return Criterion("Do stick and slip follow Coulomb's law?", YES if holds else WITH_CAUTION, reason)
+    return Criterion("Do stick and slip follow Coulomb's law?", YES if holds else CAUTION, reason)
 
 
 def _free_ends(case: xr.Dataset) -> Criterion:
@@ -178,8 +174,8 @@ def _free_ends(case: xr.Dataset) -> Criterion:
         return _unknown(question, "end_traction_residual")
     reason = f"the traction there is {_digit(residual)} of the peak pressure"
     if body.get("model", "exact") != "exact":
-        return Criterion(question, WITH_CAUTION, f"{reason}: the model {body['model']!r} serves comparisons only")
-    return Criterion(question, YES if residual <= RESIDUAL_TOLERANCE else WITH_CAUTION, reason)
+        return Criterion(question, CAUTION, f"{reason}: the model {body['model']!r} serves comparisons only")
+    return Criterion(question, YES if residual <= RESIDUAL_TOLERANCE else CAUTION, reason)
 
 
 def _cells(case: xr.Dataset) -> Criterion:
@@ -188,16 +184,16 @@ def _cells(case: xr.Dataset) -> Criterion:
     peak, error = (float(case.get(name, np.nan)) for name in ("peak_pressure", "peak_pressure_error"))
     if np.isinf(peak):
         reason = f"the pressure is singular at {_singular_edge(case)}: its intensity replaces the peak"
-        return Criterion(question, WITH_CAUTION, reason)
+        return Criterion(question, CAUTION, reason)
     if np.isnan(error):
         reason = "the error on the given cells was not estimated; numbers at the ends may depend on the cells"
-        return Criterion(question, WITH_CAUTION if "pressure" in case else UNKNOWN, reason)
+        return Criterion(question, CAUTION if "pressure" in case else UNKNOWN, reason)
     if np.isinf(error):
         reason = str(case["peak_pressure_error"].attrs.get("comment", "two grids show no limit: take finer cells"))
-        return Criterion(question, WITH_CAUTION, reason)
+        return Criterion(question, CAUTION, reason)
     relative = error / peak if peak else 0.0
     if relative > PEAK_TOLERANCE:
-        return Criterion(question, WITH_CAUTION, f"the error of the peak pressure is {relative:.1%}")
+        return Criterion(question, CAUTION, f"the error of the peak pressure is {relative:.1%}")
     return Criterion(question, YES, f"the peak pressure has converged to {relative:.1%}")
 
 
@@ -224,7 +220,7 @@ def _measured_profile(profile: Mapping[str, Any]) -> Criterion:
             "its points are unfiltered, and the pressure contains their noise, even of a tenth of a micrometre: choose "
             "a cutoff on which the peak does not depend"
         )
-        return Criterion(question, WITH_CAUTION, reason)
+        return Criterion(question, CAUTION, reason)
     reason = f"the cut-off is {format_quantity(cutoff, 'm')}; a second one shows whether the peak depends on it"
     return Criterion(question, YES, reason)
 
@@ -235,9 +231,9 @@ def _peak_stress(case: xr.Dataset, row: Quantity) -> Criterion:
     if "peak_von_mises_error" not in case and "von_mises" in case:
         flat = [axis for axis, dim in axis_dimensions(case["von_mises"]).items() if case.sizes[dim] == 1]
         if flat:
-            return Criterion(question, WITH_CAUTION, f"the stresses have one position along {' and '.join(flat)} only")
+            return Criterion(question, CAUTION, f"the stresses have one position along {' and '.join(flat)} only")
     if not np.isfinite(row.error) or np.isinf(row.value):
-        return Criterion(question, WITH_CAUTION, row.remark or NOT_ESTIMATED)
+        return Criterion(question, CAUTION, row.remark or NOT_ESTIMATED)
     return Criterion(question, YES, row.text)
 
 
@@ -247,7 +243,7 @@ def _unknown(question: str, name: str) -> Criterion:
 
 
 def _size(case: xr.Dataset, name: str) -> float:
-    """Absolute value of a scalar; NaN without it."""
+    """Absolute value of a scalar; NaN if the scalar is missing."""
     return abs(float(case.get(name, np.nan)))
 
 

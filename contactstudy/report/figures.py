@@ -200,7 +200,7 @@ def _draw_profile(roller: Roller, figure: Figure, result: xr.Dataset) -> str:
 
 
 def _cap_remark(result: xr.Dataset) -> str:
-    """Remark on the limit of the colours beside a singular end."""
+    """Note on the limit of the colours near a singular end."""
     _, limit = cap_field(result, result["von_mises"])
     return f" Beside a singular end the stress exceeds the largest colour, {format_quantity(limit, 'Pa')}." * (
         limit < np.inf
@@ -273,7 +273,7 @@ def side_geometry(case: Case) -> SideView:
 
 
 def _magnification(crown: float, height: float) -> float:
-    """Factor on a crown, 1, 2 or 5 times a power of ten, up to 0.16 of the height; 1 if it is visible without."""
+    """Factor on a crown, 1, 2 or 5 times a power of ten, up to 0.16 of the height; 1 for a visible crown."""
     if crown <= 0 or crown >= 0.02 * height:
         return 1.0
     limit = 0.16 * height / crown
@@ -307,7 +307,7 @@ def side_view(case: Case) -> Picture:
 
 
 def _draw_body(ax: Axes, view: SideView, depth: float) -> None:
-    """Body with its free ends as lines, and dashed edges where it continues."""
+    """Body with its free ends as lines, and dashed edges where the body continues."""
     ends = [max(view.body[0], view.limits[0]), min(view.body[1], view.limits[1])]
     ax.fill_between(ends, -depth, 0.0, color=BODY, linewidth=0)
     ax.plot(ends, [0.0, 0.0], color=LINE, linewidth=1.5)

@@ -105,7 +105,7 @@ def write(
     source : Dataset, str or Path
         As for :func:`html`.
     path : str or Path, optional
-        The file, ``.html``; an existing link is replaced, not followed. Default: beside the netCDF file, or
+        The file, ``.html``; an existing link is replaced, not followed. Default: next to the netCDF file, or
         ``report.html`` in the study's folder.
     title, selection : optional
         As for :func:`html`.

@@ -1,4 +1,4 @@
-"""Sources of the methods that a result used, to be cited beside it."""
+"""Sources of the methods that a result used, to be cited with the result."""
 
 from __future__ import annotations
 

@@ -17,7 +17,7 @@ from contactstudy.analysis.provenance import RUN_ATTRIBUTE, attribute
 from contactstudy.arrays.engineering import format_quantity, format_with_error
 from contactstudy.plots.selection import select_values
 from contactstudy.plots.study_lines import figures_with_selections
-from contactstudy.report.assessment import NO, UNKNOWN, WITH_CAUTION, YES, assess
+from contactstudy.report.assessment import CAUTION, NO, UNKNOWN, YES, assess
 from contactstudy.report.figures import PIXELS_PER_INCH, Picture, encode_figure
 from contactstudy.report.summary_table import intensity_text
 from contactstudy.study import collect
@@ -61,7 +61,7 @@ CAPTIONS = {
 
 FIELDS = ("pressure", "initial_gap", "von_mises")  # Variables of a case in the figures of a study
 PERCENTAGE = re.compile(r" ([0-9.]+)%$")  # Size of an error at the end of a reason
-RATINGS_WORST_FIRST = (NO, WITH_CAUTION, UNKNOWN, YES)
+RATINGS_WORST_FIRST = (NO, CAUTION, UNKNOWN, YES)
 
 
 class Row(NamedTuple):
@@ -245,8 +245,8 @@ def _verdict(rows: list[Row]) -> tuple[str, str]:
     count = Counter(row.answer for row in rows if row.answer)
     worst = next((answer for answer in RATINGS_WORST_FIRST if answer in count), UNKNOWN)
     if worst in (YES, UNKNOWN) and any(row.status != "ok" for row in rows):
-        worst = WITH_CAUTION
-    phrases = {NO: "not to be relied on", WITH_CAUTION: "real with care", UNKNOWN: "not known to be real", YES: "real"}
+        worst = CAUTION
+    phrases = {NO: "not to be relied on", CAUTION: "real with care", UNKNOWN: "not known to be real", YES: "real"}
     return worst, ", ".join(f"{count[answer]} {phrases[answer]}" for answer in RATINGS_WORST_FIRST if count[answer])
 
 

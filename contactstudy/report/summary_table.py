@@ -161,7 +161,7 @@ def _rows(case: xr.Dataset) -> Iterator[Quantity]:
 
 
 def _row(case: xr.Dataset, name: str, meaning: str, remark: str | None = None) -> Quantity:
-    """Row of a scalar with its error, or with the reason why it has none; without an error if a remark is given."""
+    """Row of a scalar with its error, with the reason for a missing error, or with a remark instead."""
     value, error = float(case[name]), np.nan if remark is not None else float(case.get(f"{name}_error", np.nan))
     units = variable_of(name, case[name].attrs).units
     if remark is None:
@@ -179,7 +179,7 @@ def _row(case: xr.Dataset, name: str, meaning: str, remark: str | None = None) -
 
 
 def _peak_pressure(case: xr.Dataset) -> Iterator[Quantity]:
-    """Row of the largest pressure: settled, or of a cell."""
+    """Row of the largest pressure: refined, or of a cell."""
     peak = float(case.get("peak_pressure", np.nan))
     if "peak_pressure_error" in case or np.isinf(peak):
         yield _row(case, "peak_pressure", "largest pressure")
@@ -196,7 +196,7 @@ def intensity_text(value: float, error: float, exponent: float) -> str:
 
 
 def _peak_stress(case: xr.Dataset) -> Iterator[Quantity]:
-    """Rows of the largest von Mises stress and its position; unbounded beside a singular end."""
+    """Rows of the largest von Mises stress and its position; unbounded at a singular end."""
     name, meaning = "peak_von_mises", "largest von Mises stress"
     singular = np.isinf(float(case.get("peak_pressure", np.nan)))
     if name not in case:
@@ -244,7 +244,7 @@ def _mark_rounding(case: xr.Dataset, row: Quantity) -> Quantity:
     """Row of a force or moment, with the text 0 if it is below the tolerance of the iteration."""
     force = max((abs(float(case[name])) for name in ("force_x", "force_y") if name in case), default=0.0)
     arms = {"force_x": 1.0, "force_y": 1.0, "moment_z": float(case.get("hertz_half_width", 0.0))}
-    # A contact that is symmetric about y = 0 leaves up to 3e-8 of the largest force across it.
+    # The transverse force of a contact symmetric about y = 0 is up to 3e-8 of the largest force.
     limit = TOLERANCE * force * arms.get(row.name, 0.0)
     # A value larger than its error differs from zero, however small; an error above the limit is worth showing.
     zero = np.isnan(row.error) or abs(row.value) <= row.error < limit

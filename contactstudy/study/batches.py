@@ -44,11 +44,7 @@ SUFFIX = ".nc"
 IDENTITY_LENGTH = 64
 CHUNK = 2**15  # Values of a ragged array that are compressed together. Speed of reading one case, against size
 CASE_ATTRIBUTE = "contactstudy_case"  # Attribute of a case: its parameters as JSON
-SHARED_ATTRIBUTE, TABLES_ATTRIBUTE, COORDINATES_ATTRIBUTE = (
-    "contactstudy_shared",
-    "contactstudy_tables",
-    "contactstudy_coordinates",
-)
+SHARED_ATTR, TABLES_ATTR, COORDINATES_ATTR = "contactstudy_shared", "contactstudy_tables", "contactstudy_coordinates"
 """Attributes: parameters of all cases, tables that parameters refer to by number, names of coordinates."""
 
 
@@ -65,7 +61,7 @@ class Batch:
 
     ids: npt.NDArray[np.bytes_]  # identities, 64 hexadecimal digits
     status: npt.NDArray[np.int8]  # indices in STATUSES
-    runs: IntArray  # number of the run of each case: of two results of a case, the larger one counts
+    runs: IntArray  # number of the run of each case: of two results of a case, the later run is used
     texts: dict[str, list[str]]  # columns of TEXTS
     numbers: dict[str, FloatArray] = field(default_factory=dict)  # columns (case), NaN without the number
     sizes: dict[str, IntArray] = field(default_factory=dict)  # sizes of the arrays' dimensions (case), 0 without arrays
@@ -96,7 +92,7 @@ class Batch:
         }
 
     def take(self, rows: IntArray) -> Batch:
-        """Return the batch of some of the cases."""
+        """Return a batch with the cases of these rows."""
         selected_arrays = {}
         for name, (dims, values) in self.arrays.items():
             starts = self._offsets[dims]
@@ -243,13 +239,13 @@ def _write_variables(path: Path, batch: Batch) -> None:
         _write_text(
             file, "case_id", [text.decode() for text in batch.ids], "identity of the case, a hash of its parameters"
         )
-        status_attributes = {
+        status_attrs = {
             "long_name": "state of the case",
             "units": "1",
             "flag_values": np.arange(len(STATUSES), dtype=np.int8),
             "flag_meanings": " ".join(STATUSES),
         }
-        create("status", "i1", ("case",), status_attributes)[:] = batch.status
+        create("status", "i1", ("case",), status_attrs)[:] = batch.status
         create("run", "i4", ("case",), {"long_name": "number of the run", "units": "1"})[:] = batch.runs
         shared, tables, parameters = _factor_out_shared([json.loads(text) for text in batch.texts["parameters"]])
         for name, meaning in TEXTS.items():
@@ -274,9 +270,9 @@ def _write_variables(path: Path, batch: Batch) -> None:
                 "source": f"contactstudy {package_version()}",
                 "history": f"{batch.texts['time'][-1]} written by contactstudy",
                 RUN_ATTRIBUTE: json.dumps(batch.run_context),
-                SHARED_ATTRIBUTE: json.dumps(shared),
-                TABLES_ATTRIBUTE: json.dumps(tables),
-                COORDINATES_ATTRIBUTE: json.dumps(sorted(batch.coordinates)),
+                SHARED_ATTR: json.dumps(shared),
+                TABLES_ATTR: json.dumps(tables),
+                COORDINATES_ATTR: json.dumps(sorted(batch.coordinates)),
             }
         )
 
@@ -288,11 +284,11 @@ def _sample_dimension(dims: Iterable[str]) -> str:
 
 def _file_attributes(name: str, attributes: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
     """Attributes of a variable as netCDF contains them: texts and numbers, others as JSON."""
-    all_attributes = {"long_name": name.replace("_", " "), **labels(name), **attributes.get(name, {})}
+    complete = {"long_name": name.replace("_", " "), **labels(name), **attributes.get(name, {})}
     types = (str, int, float, np.number)
     return {
         key: value if isinstance(value, types) and not isinstance(value, bool) else json.dumps(value, default=str)
-        for key, value in all_attributes.items()
+        for key, value in complete.items()
     }
 
 
@@ -371,7 +367,7 @@ def read_batch(path: Path, *, arrays: Iterable[str] | None = (), texts: Iterable
             name: [text.decode() for text in _read_text(file[name])] if name in text_names else [] for name in TEXTS
         }
         if "parameters" in text_names:
-            shared, tables = json.loads(file.getncattr(SHARED_ATTRIBUTE)), json.loads(file.getncattr(TABLES_ATTRIBUTE))
+            shared, tables = json.loads(file.getncattr(SHARED_ATTR)), json.loads(file.getncattr(TABLES_ATTR))
             columns["parameters"] = [_restore_parameters(shared, tables, text) for text in columns["parameters"]]
         return Batch(
             ids=ids,
@@ -382,7 +378,7 @@ def read_batch(path: Path, *, arrays: Iterable[str] | None = (), texts: Iterable
             sizes=sizes,
             arrays=ragged,
             attributes=attributes,
-            coordinates=frozenset(json.loads(file.getncattr(COORDINATES_ATTRIBUTE))),
+            coordinates=frozenset(json.loads(file.getncattr(COORDINATES_ATTR))),
             run_context=json.loads(file.getncattr(RUN_ATTRIBUTE)),
         )
 
@@ -394,7 +390,7 @@ def _read_text(variable: Any) -> npt.NDArray[np.bytes_]:
 
 
 def read_slices(path: Path, bounds: Mapping[str, Sequence[tuple[int, int]]]) -> dict[str, list[npt.NDArray[Any]]]:
-    """Read parts of ragged arrays: of each named one those between pairs of first and last value."""
+    """Read slices of the named ragged arrays, between pairs of first and last value."""
     import netCDF4
 
     with netcdf_access(path, "read"), netCDF4.Dataset(path) as file:

@@ -33,7 +33,7 @@ from contactstudy.study.parameters import (
 )
 from contactstudy.study.profile_tables import build_profile
 
-POSITIONS_OVER_HALF_WIDTH = ("field_x_over_a", "field_y_over_a", "field_z_over_a")
+SCALED_POSITIONS = ("field_x_over_a", "field_y_over_a", "field_z_over_a")
 """Parameters that are positions over the half-width."""
 
 LUBRICANT_PAIRS = {"lubricant": "temperature", "viscosity": "pressure_viscosity"}
@@ -47,7 +47,7 @@ MOTION_PARAMETERS = {
     "shift": ("shift_x", "shift_y", "force_x", "force_y"),
     "rolling": ("longitudinal_creepage", "lateral_creepage", "spin", "force_x", "force_y", "moment_z"),
 }
-"""Parameters of each motion: arguments of its class, but for the start of those of a shift."""
+"""Parameters of each motion: arguments of its class, in a shift with the prefix `shift_`."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -63,7 +63,7 @@ class Dimensions:
 
     @classmethod
     def of(cls, values: Mapping[str, Any], modulus: float) -> Dimensions:
-        """Dimensions of a case; under a load ``a`` depends on the length and conversely; with an approach it is NaN."""
+        """Dimensions of a case; under a load ``a`` and length depend on each other; with an approach ``a`` is NaN."""
         radius = checks.positive("radius", values["radius"], "metres")
 
         def compute_dimensions(half_width: float) -> Dimensions:
@@ -122,7 +122,7 @@ class Setup:
 
     @property
     def grids(self) -> Iterator[Grid | None]:
-        """Grids of increasing windows: the first one that contains the contact counts."""
+        """Grids of increasing windows: the solver uses the first that contains the contact."""
         return widening_grids(self.case, **self.cells) if self.cells else iter((self.grid,))
 
     @property
@@ -151,11 +151,9 @@ def _check_choices(values: Mapping[str, Any]) -> None:
         if len(stated) != 1:
             *first, last = names
             count = "two" if len(names) == 2 else "three"
-            stated_values = tuple(values[name] for name in stated) if stated else "none"
+            given = tuple(values[name] for name in stated) if stated else "none"
             raise InvalidInputError(
-                ", ".join(stated or names),
-                stated_values,
-                f"given as one of the {count}, {', '.join(first)} or {last}",
+                ", ".join(stated or names), given, f"given as one of the {count}, {', '.join(first)} or {last}"
             )
 
 
@@ -164,7 +162,7 @@ def _check_approach(parameters: Mapping[str, Any]) -> None:
     if "approach" not in parameters:
         return
     remedies = dict.fromkeys(UNIFORM_CELLS, "leave it out: columns are refined, to `accuracy`") | dict.fromkeys(
-        POSITIONS_OVER_HALF_WIDTH, "leave it out: the solver chooses the points, after the half-width"
+        SCALED_POSITIONS, "leave it out: the solver chooses the points, after the half-width"
     )
     remedies |= {"e_over_a": "give end_distance (metres)", "load_offset": "prescribe the load instead"}
     for name, remedy in remedies.items():
@@ -223,11 +221,7 @@ def _lubricant(values: Mapping[str, Any]) -> Lubricant | None:
     if len(sources) > 1:
         raise InvalidInputError(", ".join(sources), tuple(values[name] for name in sources), "one of the two")
     required = (*sources, *(LUBRICANT_PAIRS[name] for name in sources), "entrainment_speed")
-    excluded = (
-        [*LUBRICANT_PAIRS.values(), *UNIFORM_CELLS, *POSITIONS_OVER_HALF_WIDTH]
-        if sources
-        else [*LUBRICANT_PAIRS.values(), *FILM_PARAMETERS]
-    )
+    excluded = [*LUBRICANT_PAIRS.values(), *((*UNIFORM_CELLS, *SCALED_POSITIONS) if sources else FILM_PARAMETERS)]
     for name in excluded:
         if name not in required[:-1] and values.get(name) != PARAMETERS[name].default:
             raise InvalidInputError(name, values[name], f"left out {'for' if sources else 'without'} a film")
@@ -246,8 +240,7 @@ def _stress_points(
 ) -> dict[str, FloatArray | None]:
     """Stress points in metres; None where the solver chooses."""
     x, y, z = (
-        half_width * checks.coordinates(name, values[name]) if name in values else None
-        for name in POSITIONS_OVER_HALF_WIDTH
+        half_width * checks.coordinates(name, values[name]) if name in values else None for name in SCALED_POSITIONS
     )
     if z is not None and z.min() < 0:
         raise InvalidInputError("field_z_over_a", float(z.min() / half_width), "not below zero")

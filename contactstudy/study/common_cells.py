@@ -1,6 +1,6 @@
 """Common cells of a study: positions over the half-width on which the surfaces and stresses of all cases lie.
 
-The common edges along x are edges of the cases, thinned to half the width of the narrowest cell of any case there, with
+The common edges along x are edges of the cases, thinned to half the width of the narrowest cell at each position, with
 further edges where stress points are denser. Pressure and traction are averaged over a common cell, so loads remain;
 flags have the value of the case's cell at the centre; other quantities are interpolated linearly.
 """
@@ -17,7 +17,7 @@ import numpy.typing as npt
 from contactstudy.arrays.grid import SPACING_TOLERANCE
 from contactstudy.checks import FloatArray
 
-MIN_WIDTH = 0.5  # Least width of a common cell over the narrowest cell of any case there. Accuracy
+MIN_WIDTH = 0.5  # Width of a common cell over the narrowest cell of all cases at this position. Accuracy
 AVERAGED = frozenset({"pressure", "traction_x", "traction_y"})  # Variables that are averaged over a common cell
 FLAGS = frozenset({"stick"})  # Variables that are true or false
 
@@ -101,7 +101,7 @@ class Resampling:
     source: FloatArray  # edges of the case's cells, or its points, over the half-width
     axis: FloatArray
     borders: FloatArray  # borders around each position of the axis
-    outside_value: float = np.nan  # average beyond the case's cells: 0 outside the contact, NaN where the body ends
+    fill: float = np.nan  # average beyond the case's cells: 0 outside the contact, NaN where the body ends
     has_points: bool = False
 
     @property
@@ -122,7 +122,7 @@ class Resampling:
         lever_arms = np.where(overlap > 0, 0.5 * (low + high) - midpoints, 0.0)
         slopes = _limited_slopes(midpoints, values)
         result = sparse.csr_array(overlap) @ values + sparse.csr_array(overlap * lever_arms) @ slopes
-        result[~overlap.any(axis=1)] = self.outside_value
+        result[~overlap.any(axis=1)] = self.fill
         return np.asarray(result)
 
     def select_containing(self, values: FloatArray) -> FloatArray:
@@ -146,7 +146,7 @@ class Resampling:
             fraction = fraction.reshape(-1, *(1,) * (values.ndim - 1))
             with np.errstate(invalid="ignore"):
                 result = (1 - fraction) * values[cells] + fraction * values[cells + 1]
-            # Interpolation beside an infinite gap is impossible.
+            # Interpolation next to an infinite gap is impossible.
             nearest = np.clip(np.searchsorted(positions, self.axis), 0, positions.size - 1)
             if not self.has_points:
                 nearest = np.clip(np.searchsorted(self.source, self.axis) - 1, 0, positions.size - 1)
@@ -158,7 +158,7 @@ class Resampling:
 def resample(name: str, values: npt.NDArray[Any], maps: Iterable[Resampling | None]) -> npt.NDArray[Any]:
     """Values of a variable on the common cells; an axis without a map remains."""
     result = np.asarray(values, dtype=np.float64)
-    # Along x last: beyond the body values are NaN, beside the window the pressure is 0.
+    # Along x last: beyond the body values are NaN, outside the window the pressure is 0.
     for axis, resampling in reversed(list(enumerate(maps))):
         if resampling is None:
             continue
@@ -175,7 +175,7 @@ def resample(name: str, values: npt.NDArray[Any], maps: Iterable[Resampling | No
 
 
 def _limited_slopes(centres: FloatArray, values: FloatArray) -> FloatArray:
-    """Slope of each cell: the smaller one to either neighbour, 0 at a local extreme and at the outermost cells."""
+    """Slope of each cell: the smaller slope to either neighbour, 0 at a local extreme and at the outermost cells."""
     slopes = np.zeros_like(values)
     if centres.size > 2:
         steps = np.diff(values, axis=0) / np.diff(centres)[:, None]

@@ -1,4 +1,4 @@
-"""A study as its author writes it: in Python or in a TOML file, with the same meaning."""
+"""Definition of a study in Python or in a TOML file."""
 
 from __future__ import annotations
 
@@ -51,11 +51,11 @@ class Study:
         Parameters that all cases share, see :data:`contactstudy.study.parameters.PARAMETERS`.
     sweep : mapping of lists
         Parameters that are combined each with each; every one becomes a dimension. For evenly spaced numbers a mapping
-        ``{"start": ..., "stop": ..., "count": ...}`` stands for the list.
+        ``{"start": ..., "stop": ..., "count": ...}`` replaces the list.
     zip : mapping of lists, or list of such mappings
         Parameters that change together: lists of equal length; every mapping becomes one dimension.
     cases : list of mappings
-        Explicit cases, each on top of `base`, beside the product.
+        Explicit cases, each added to `base`, in addition to the product.
     exclude : list of mappings
         Combinations to leave out: every named parameter has the value, or one of the values. A profile is named by its
         label.
@@ -234,9 +234,9 @@ class Study:
             Variables and coordinates named after parameters. Variables along one dimension change together, dimensions
             are combined each with each; variables along several dimensions have a value for each combination, numbers
             without a dimension are shared. NaN and an empty text leave a parameter out. Known `units` are converted,
-            others refused. An opened study, or a selection of it, gives its cases again.
+            others refused. An opened study, or a selection of it, makes a study of its cases.
         name, level, description : str, optional
-            See the class. The default of an opened study is its own.
+            See the class. An opened study provides the defaults.
         base : mapping, optional
             Further parameters that all cases share; of an opened study, parameters to change.
 
@@ -354,7 +354,7 @@ def content_of_table(table: xr.Dataset, base: Mapping[str, Any]) -> dict[str, An
 
 
 def _python_value(value: Any) -> Any:
-    """Return a value of an array as Python's own; None where it is missing."""
+    """Return a value of an array as a Python object; None for a missing value."""
     python_value = value.item() if isinstance(value, np.generic) else value
     missing = python_value is None or python_value == "" or (isinstance(python_value, float) and np.isnan(python_value))
     return None if missing else python_value

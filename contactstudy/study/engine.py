@@ -41,7 +41,7 @@ WORKER_ENVIRONMENT = {
     "MALLOC_MMAP_THRESHOLD_": str(32 * 2**20),
     "MALLOC_TRIM_THRESHOLD_": str(512 * 2**20),
 }
-"""Environment of a worker: one thread, and freed memory of arrays stays with the process (half the time of a case)."""
+"""Environment of a worker: one thread, and the process keeps freed memory of arrays (half the time of a case)."""
 
 # Dask's logs of messages, tasks and records grow with the number of cases.
 SHORT_LOGS = {"distributed.admin.log-length": 20, "distributed.admin.low-level-log-length": 20}
@@ -245,7 +245,7 @@ class Tasks:
         return bool(self._groups or self._returned)
 
     def next_task(self, workers: int) -> Task:
-        """Return the next task for one of several workers."""
+        """Return the next task, sized for the number of workers."""
         if self._returned:
             task = self._returned.popleft()
         else:
@@ -282,7 +282,7 @@ TaskResults = Generator[tuple[list[Job], list[Outcome]], None, None]
 
 
 def execute(tasks: Tasks, engine: Engine, notify: Callable[[str], None] = print) -> TaskResults:
-    """Solve tasks and yield the jobs and outcomes of each as it finishes; `notify` takes messages for the user."""
+    """Solve tasks and yield the jobs and outcomes of each finished task; `notify` takes messages for the user."""
     if not tasks:
         return
     if engine.scheduler is None and engine.workers == 0:

@@ -35,9 +35,9 @@ CELL_DIMS = ("x", "y")  # Dimensions of cells; positions along other dimensions 
 class Positions:
     """Positions of all cases along one dimension of their arrays."""
 
-    position_index: IntArray  # number of each case's positions among the different ones; -1 without
+    position_index: IntArray  # index of each case's position array in `values`; -1 if the case has none
     values: list[FloatArray] = field(default_factory=list)  # different positions, metres
-    # widths of the cells there; empty for uniform cells and points
+    # widths of the cells; empty for uniform cells and points
     widths: list[FloatArray] = field(default_factory=list)
     scales: list[float] = field(default_factory=list)  # half-widths, metres
 
@@ -183,7 +183,7 @@ class Fields:
             return (
                 (name, rows[0])
                 if _all_equal(rows, rows[0])
-                else self._padded_coordinate(name, rows, positions.position_index, size)
+                else self._pad_rows(name, rows, positions.position_index, size)
             )
 
         coordinates = {dim: coordinate(positions.values)}
@@ -213,11 +213,9 @@ class Fields:
             axis = cell_centres(borders)
         axes, maps = {}, {}
         for dim, source_rows in sources.items():
-            has_points, outside_value = dim not in CELL_DIMS, 0.0 if dim == "y" else np.nan
+            has_points, fill = dim not in CELL_DIMS, 0.0 if dim == "y" else np.nan
             maps[dim] = [
-                Resampling(
-                    source=source, axis=axis, borders=borders, outside_value=outside_value, has_points=has_points
-                )
+                Resampling(source=source, axis=axis, borders=borders, fill=fill, has_points=has_points)
                 for source in source_rows
             ]
             is_common_axis = _all_equal(source_rows, axis if has_points else borders)
@@ -235,15 +233,15 @@ class Fields:
             positions = self._positions[dim]
             scaled_maps = zip(resamplings, positions.scales, strict=True)
             rows = [scale * np.where(resampling.is_outside, np.nan, axis) for resampling, scale in scaled_maps]
-            coordinates[dim] = self._padded_coordinate(over_a, rows, positions.position_index, axis.size)
+            coordinates[dim] = self._pad_rows(over_a, rows, positions.position_index, axis.size)
         positions, sources = self._positions[first_dim], [resampling.source for resampling in maps[first_dim]]
         uniform = not positions.has_widths and _all_equal(sources, borders) and np.ptp(np.diff(borders)) == 0
         if first_dim == "x" and not uniform:
             rows = [np.diff(borders) * scale for scale in positions.scales]
-            coordinates["x_width"] = self._padded_coordinate(over_a, rows, positions.position_index, axis.size)
+            coordinates["x_width"] = self._pad_rows(over_a, rows, positions.position_index, axis.size)
         return coordinates
 
-    def _padded_coordinate(
+    def _pad_rows(
         self, name: str, rows: Sequence[FloatArray], position_index: IntArray, size: int
     ) -> tuple[tuple[str, ...], FloatArray]:
         """Dimensions and values of a coordinate of every case along the dimension `name`, padded with NaN."""
@@ -302,9 +300,7 @@ class CaseArray(BackendArray):
             if batch is None or self._name not in batch.arrays:
                 continue
             starts = case_offsets(batch.sizes, self._dims, len(batch))
-            indices = [
-                index for index, case in enumerate(cases.tolist()) if case >= 0 and batch_of[case] == batch_index
-            ]
+            indices = [i for i, case in enumerate(cases.tolist()) if case >= 0 and batch_of[case] == batch_index]
             rows = [int(row_of[cases[index]]) for index in indices]
             bounds = [(int(starts[row]), int(starts[row + 1])) for row in rows]
             flat = read_slices(self._states.results.paths[batch_index], {self._name: bounds})[self._name]

@@ -1,4 +1,4 @@
-"""Files that appear complete or not at all, and one door to the netCDF library, which is not safe in threads."""
+"""Atomic writes of files, and exclusive access to the netCDF library, which is not safe in threads."""
 
 from __future__ import annotations
 

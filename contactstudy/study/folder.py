@@ -5,7 +5,7 @@
     FOLDER/study.json                 the study
     FOLDER/batches/*.nc               finished cases, see :mod:`contactstudy.study.batches`
     FOLDER/set-aside/                 damaged or foreign files
-    FOLDER/run.log, run.lock          log of all runs; lock of the one that runs
+    FOLDER/run.log, run.lock          log of all runs; lock of the current run
     FOLDER/run-3-of-40.log, .lock     the same of a share
 """
 
@@ -106,7 +106,7 @@ class Results:
                 self.batches.append(read_batch(path, texts=("message",)))
                 self.paths.append(path)
             except StoreError as error:
-                if path.exists() or path.is_symlink():  # another run may have joined it meanwhile
+                if path.exists() or path.is_symlink():  # another run may have joined the batch meanwhile
                     self.damaged[path] = str(error)
         self._batches_with_texts: dict[int, Batch] = {}
 
@@ -209,7 +209,7 @@ class States:
         return batch, row
 
     def numbers(self, name: str) -> npt.NDArray[np.float64]:
-        """One number of every case, in the order of the plan; NaN where it is absent."""
+        """Values of a number of every case, in the order of the plan; NaN for an absent value."""
         values = np.full(len(self.plan), np.nan)
         batch, row = self.locations
         for batch_index, source_batch in enumerate(self.results.batches):
@@ -295,7 +295,7 @@ class Folder:
     def locked(self, share: Share) -> Iterator[None]:
         """Hold the lock of the folder, or of a share of its study, or raise :class:`LockedError`.
 
-        The operating system releases the lock of a process that ends. A run of the whole study and one of a share
+        The operating system releases the lock of a process that ends. A run of the whole study and a run of a share
         exclude each other; different shares do not.
         """
         with contextlib.ExitStack() as locks:
@@ -312,7 +312,7 @@ class Folder:
 
     @contextlib.contextmanager
     def _hold(self, name: str, seconds: float) -> Iterator[None]:
-        """Hold one lock, waiting for it for some seconds."""
+        """Hold a lock; wait for some seconds."""
         path = self.path / f"{name}.lock"
         if path.is_symlink() or (path.exists() and not is_regular(path)):
             raise LockedError(f"{path} is not a regular file: delete it if no run uses {self.path}")

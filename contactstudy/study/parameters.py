@@ -1,4 +1,4 @@
-"""The parameters of a study's case, in one table: name, check, unit, meaning, and the function that takes it.
+"""The parameters of a study's case, in one table: name, check, unit, meaning, and the function that uses the parameter.
 
 A new parameter is one entry of :data:`PARAMETERS` if `Case`, `choose_grid` or `solver_settings` has a keyword of the
 same name: the signature contains the default, and the function receives the value. Every other parameter is used by
@@ -56,7 +56,7 @@ def check_positive(name: str, value: object) -> float:
 
 
 def check_points(name: str, value: object) -> list[float]:
-    """Return points given as a list, or as a table {start, stop, count} of evenly spaced ones."""
+    """Return points given as a list, or as a table {start, stop, count} of even spacing."""
     if isinstance(value, Mapping):
         for key in value:
             checks.known_name(f"{name} key", str(key), ("start", "stop", "count"))
@@ -78,13 +78,11 @@ class Parameter:
     """Specification of one parameter."""
 
     name: str
-    check: Check = (
-        check_number  # takes name and value; returns the value in the normalised form of identities, or raises
-    )
+    check: Check = check_number  # normalises the value of a name for identities, or raises
     units: str = ""  # empty for a word
     meaning: str  # comment of the coordinate, and the documentation
-    consumer: Callable[..., Any] | None = None  # takes an argument of this name, with the default
-    fallback: Any = None  # default without a taker; None: required or optional
+    consumer: Callable[..., Any] | None = None  # has a keyword of this name, with the default
+    fallback: Any = None  # default without a consumer; None: required or optional
     absent: str = ""  # meaning of a missing parameter without a default, for the documentation
     note: str = ""  # addition to the meaning, for the documentation
     label: str = ""  # long name of the coordinate, short enough for an axis; default: that of a result, or the name
@@ -110,7 +108,7 @@ class Parameter:
 
 
 UNIFORM_CELLS = ("cells_x", "cells_y", "window", "margin")
-"""Parameters of uniform cells; a case that gives one of them has such cells."""
+"""Parameters of uniform cells; a case with any of these parameters has uniform cells."""
 
 BODIES = ("finite-length", "quarter-space", "half-space")
 
@@ -175,12 +173,7 @@ _PARAMETERS = (
         absent="or `load`",
         note="load and a result: give `end_distance`, and leave out uniform cells and stress points, which are over a",
     ),
-    Parameter(
-        name="friction",
-        units="1",
-        meaning="coefficient of friction",
-        consumer=Case,
-    ),
+    Parameter(name="friction", units="1", meaning="coefficient of friction", consumer=Case),
     Parameter(
         name="profile",
         check=lambda _, value: profile_table(value),
@@ -386,7 +379,7 @@ REQUIRED = (
     ("e_over_a", "end_distance"),
     ("max_pressure", "load", "approach"),
 )
-"""Groups of parameters; every case has exactly one of each group."""
+"""Groups of parameters; every case has exactly one parameter of each group."""
 
 
 def keywords_of(function: Callable[..., Any], values: Mapping[str, Any]) -> dict[str, Any]:
@@ -443,7 +436,7 @@ def hash_fragments(fragments: Iterable[str]) -> bytes:
 
 
 def _format_default(value: Any) -> str:
-    """Return a default as it is written in a study file."""
+    """Return a default in the notation of a study file."""
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, dict):
@@ -452,7 +445,7 @@ def _format_default(value: Any) -> str:
 
 
 def parameter_table() -> str:
-    """Return the table of all parameters in Markdown, as the documentation shows it."""
+    """Return the table of all parameters in Markdown, for the documentation."""
     rows = ["| parameter | default | unit | meaning |", "|---|---|---|---|"]
     for name, entry in PARAMETERS.items():
         default = entry.absent if entry.default is None else f"`{_format_default(entry.default)}`"

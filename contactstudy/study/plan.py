@@ -32,7 +32,7 @@ from contactstudy.study.parameters import (
 from contactstudy.study.profile_tables import format_profile
 from contactstudy.study.settings import RUN
 
-LEVELS = ("summary", "surface", "fields")  # Arrays that a study retains: none; those on (x, y); also the stresses
+LEVELS = ("summary", "surface", "fields")  # Arrays that a study retains: none; arrays on (x, y); also the stresses
 MAX_LISTED = 12  # Values of a swept parameter that are all shown
 MAX_CUBE_CELLS = 4  # Cells per case that a cube may have; sparser explicit cases are listed along one dimension `case`
 BYTES_PER_CASE, BYTES_PER_CELL, BYTES_PER_POINT = 700, 4 * 8, 7 * 4
@@ -44,7 +44,7 @@ LOCAL_PARAMETERS = frozenset(
 """Parameters that do not change the operator of the surface. Speed."""
 
 Axis = tuple[dict[str, Any], ...]
-"""One factor of a product: the parameters that each step of a swept one, or of several zipped ones, sets."""
+"""One factor of a product: the parameters of each step of a swept parameter, or of zipped parameters."""
 
 
 @dataclass(frozen=True)
@@ -109,7 +109,7 @@ class Review(NamedTuple):
     """Result of setting up one case of each group, or of a sample of the groups."""
 
     reasons: dict[int, str]  # why a group cannot be solved
-    # questions on values of a size that is mostly a mistake in the unit, with the number of groups
+    # warnings of values outside the usual range, with the number of groups
     doubts: Counter[str]
     checked: int  # groups that were set up
     groups: int
@@ -160,7 +160,7 @@ class Plan(Sequence[PlannedCase]):
         return math.prod(self.shape) if self.axes or not self.explicit else 0
 
     def varying(self, index: int) -> dict[str, Any]:
-        """Parameters of a case beside the base."""
+        """Parameters of a case in addition to the base."""
         product_index = int(self.chosen[index])
         if product_index >= self.products:
             return dict(self.explicit[product_index - self.products])
@@ -200,7 +200,7 @@ class Plan(Sequence[PlannedCase]):
         return self._layout[1]
 
     def spread(self, values: npt.NDArray[Any], fill: Any) -> npt.NDArray[Any]:
-        """Values (case, ...) at the positions of the cases in the cube, with `fill` where it has none."""
+        """Values (case, ...) at the positions of the cases in the cube, with `fill` at empty positions."""
         table = np.full((math.prod(self.cube.shape), *values.shape[1:]), fill, dtype=values.dtype)
         table[self.cube_indices] = values
         return table.reshape((*self.cube.shape, *values.shape[1:]))
@@ -286,7 +286,7 @@ class Plan(Sequence[PlannedCase]):
 
     @cached_property
     def unique(self) -> list[int]:
-        """Cases to solve by their number, each once even if the study contains it twice."""
+        """Indices of the cases to solve; of duplicates the first."""
         skipped = set(self.skipped)
         first: dict[bytes, int] = {}
         for index, identity in enumerate(self.ids.tolist()):
@@ -296,7 +296,7 @@ class Plan(Sequence[PlannedCase]):
 
     @property
     def doubts(self) -> tuple[str, ...]:
-        """Questions on values of a size that is mostly a mistake in the unit, each with the number of contacts."""
+        """Warnings of values outside the usual range, which suggest a wrong unit, with the number of contacts."""
         return tuple(f"{warning} ({count} contact{'s' * (count > 1)})" for warning, count in self.review.doubts.items())
 
     @property
@@ -311,7 +311,7 @@ class Plan(Sequence[PlannedCase]):
 
 
 def _hash_without(fragments: tuple[str, ...], local: tuple[str, ...]) -> int:
-    """Key of a case without the fragments that start with one of `local`."""
+    """Hash of a case's fragments except those that start with a prefix in `local`."""
     return hash(tuple(text for text in fragments if text and not text.startswith(local)))
 
 
@@ -322,7 +322,7 @@ def _number_keys(keys: Iterable[int], count: int) -> IntArray:
 
 
 def label(name: str, value: Any) -> Any:
-    """Value of a parameter as a coordinate contains it."""
+    """Value of a parameter in a coordinate."""
     if name == "profile" and value is not None:
         return format_profile(value)
     if isinstance(value, list):

@@ -82,7 +82,7 @@ class ProfileKind:
         return {key: values[key] for key in keys if key in values and values[key] != self.defaults.get(key)}
 
     def _require(self, table: Mapping[str, Any], design_fields: tuple[str, ...] = ()) -> None:
-        """Raise unless a table has every required field but those that a design determines."""
+        """Raise unless a table has every required field except `design_fields`."""
         for name, default in self.defaults.items():
             if default is MISSING and name not in table and name not in design_fields:
                 raise InvalidInputError("profile", dict(table), f"given with {name}")

@@ -59,7 +59,7 @@ class Progress:
             self._file.write(f"{now} {message}\n")
 
     def notify(self, message: str) -> None:
-        """Write a line to the log and, if progress is wanted, to the screen; safe in a handler of signals."""
+        """Write a line to the log and, if progress is visible, to the screen; safe in a handler of signals."""
         self.log(message)
         if self._messages_shown:
             with contextlib.suppress(OSError, ValueError):

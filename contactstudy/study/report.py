@@ -16,14 +16,14 @@ MAX_REASONS = 20  # Reasons on the screen; ``--all`` lists every case with its r
 
 
 def format_path(path: Path) -> str:
-    """Path relative to the current folder where it lies within it."""
+    """Return a path, relative to the current folder if inside the folder."""
     with contextlib.suppress(ValueError, OSError):
         return str(path.relative_to(Path.cwd()))
     return str(path)
 
 
 def format_bytes(size: float) -> str:
-    """Size of files in words."""
+    """Return a size of files with a unit."""
     for unit in ("bytes", "kB", "MB"):
         if size < 1000:
             return f"{size:.3g} {unit}"
@@ -51,7 +51,7 @@ def run_lines(report: RunReport) -> Iterator[str]:
 
 
 def stale_lines(report: RunReport) -> Iterator[str]:
-    """Lines on cases that another version solved and the run left as they are."""
+    """Lines on cases of another version that the run did not solve again."""
     if stale_cases := report.states.indices("stale"):
         rerun_command = f"contactstudy rerun {format_path(report.folder)}"
         yield f"{len(stale_cases)} stale ({report.states.reasons[stale_cases[0]]}); again with: {rerun_command}"
@@ -96,7 +96,7 @@ def state_lines(states: States, *, everything: bool) -> Iterator[str]:
 
 
 def forecast_lines(states: States) -> Iterator[str]:
-    """Lines on exclusions without effect and doubtful magnitudes, and on bytes and time of the cases to come."""
+    """Lines on exclusions without effect, unusual magnitudes, and bytes and time of the remaining cases."""
     plan = states.plan
     yield from (f"  {message}" for message in plan.unknown[:MAX_REASONS])
     for warning in plan.doubts[:MAX_REASONS]:

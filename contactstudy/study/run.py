@@ -29,7 +29,7 @@ from contactstudy.study.worker import Solver, Task, batch_without_numbers
 if TYPE_CHECKING:
     from distributed import Client
 
-MAX_WARNINGS = 5  # Questions on magnitudes that a run repeats; `plan` shows more
+MAX_WARNINGS = 5  # Warnings of magnitudes that a run repeats; `plan` lists more
 RERUN_STATUSES = ("failed", "stale", "skipped")  # States that can be solved anew
 
 
@@ -86,13 +86,13 @@ class RunReport:
 
 @contextlib.contextmanager
 def _interruptible(notify: Callable[[str], None]) -> Iterator[None]:
-    """Let the first Ctrl-C, SIGTERM or SIGHUP end the block; further ones do not break off the work after it."""
+    """End the block at the first Ctrl-C, SIGTERM or SIGHUP; ignore further signals during the cleanup."""
     if threading.current_thread() is not threading.main_thread():
         yield
         return
     numbers = [signal.SIGINT, signal.SIGTERM, *([signal.SIGHUP] if hasattr(signal, "SIGHUP") else [])]
     previous = {signal_number: signal.getsignal(signal_number) for signal_number in numbers}
-    # nohup makes a process ignore SIGHUP, which stays so.
+    # A process under nohup continues to ignore SIGHUP.
     handled_signals = [signal_number for signal_number in numbers if previous[signal_number] != signal.SIG_IGN]
 
     def handler(signal_number: int, frame: FrameType | None) -> None:
@@ -130,14 +130,14 @@ def run_study(
     """Solve every case of a study that is not solved yet.
 
     A run may be interrupted in any way and called again: finished cases are not solved twice. A script that calls this
-    function needs the guard ``if __name__ == "__main__":``, because the workers are processes that import it.
+    function needs the guard ``if __name__ == "__main__":``, because the worker processes import the script.
 
     Parameters
     ----------
     study : Study
         The study.
     folder : str or Path, optional
-        Folder of its files; default ``results/<name>``. It belongs to this study.
+        Folder of its files; default ``results/<name>``. A folder contains a single study.
     workers : int, optional
         Number of local processes; default one per core. 0 solves in this process, without dask.
     scheduler : str or distributed.Client, optional
@@ -249,7 +249,7 @@ def _check_share(share: tuple[int, int] | None) -> Share:
 
 
 def _groups_to_solve(states: States, again: tuple[str, ...], share: Share, sample: int | None) -> list[list[int]]:
-    """Cases that are not done, group by group, those with a common operator together, the expensive ones first."""
+    """Cases to solve, group by group, ordered by their operator, expensive groups first."""
     for status in again:
         checks.known_name("again", status, RERUN_STATUSES)
     plan = states.plan
@@ -293,7 +293,7 @@ def _groups_to_solve(states: States, again: tuple[str, ...], share: Share, sampl
 def _collect_outcomes(
     results: TaskResults, template: Task, results_folder: Folder, share: Share, log: Progress
 ) -> None:
-    """Take in the outcomes as they come, and join small batches meanwhile and at the end."""
+    """Record the outcomes, and join small batches during the run and at the end."""
     last_compaction = time.monotonic()
     try:
         with contextlib.closing(results):

@@ -149,7 +149,7 @@ def _digest(content: object) -> str:
 
 
 def _copy_by_pickle(profile: Profile, name: str, content: str) -> Profile:
-    """Copy of a profile by its pickle, as a worker receives it."""
+    """Copy of a profile by its pickle, as in a worker."""
     import pickle
 
     import cloudpickle  # type: ignore[import-untyped]

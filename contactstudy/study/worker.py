@@ -147,7 +147,7 @@ def solve_task(task: Task, solver: Solver | None = None) -> list[Outcome]:
 
 
 def group_by_structure(batches: Iterable[Batch]) -> list[list[Batch]]:
-    """Batches that can be joined; those without arrays join the first of the others."""
+    """Group batches that can be joined; batches without arrays belong to the first group."""
     groups: dict[Any, list[Batch]] = {}
     for batch in batches:
         groups.setdefault(batch.structure, []).append(batch)
@@ -205,7 +205,7 @@ def batch_without_numbers(task: Task, job: Job, status: str, message: str = "", 
 def _solve_case(
     task: Task, job: Job, setup: Setup, solver: Solver | None, film: xr.Dataset | None
 ) -> tuple[Batch, xr.Dataset | None]:
-    """Solve one case, a film from that of another speed; the result is None if it fails."""
+    """Solve one case, starting from the film of another speed; the result of a failed case is None."""
     # Planning and opening a study need no solver.
     from contactstudy.fatigue.shakedown import shakedown_summary
     from contactstudy.fields.edge_tension import edge_tension_summary

@@ -1,7 +1,7 @@
 """``xarray.open_dataset`` for the folder of a study, and ``dataset.contact`` for every file that xarray opens.
 
-Before it opens anything, xarray imports the modules that pyproject.toml lists in the group ``xarray.backends``, such as
-this one. It is light, because every program of an environment with contactstudy imports it.
+Before opening a file, xarray imports all modules of the group ``xarray.backends`` in pyproject.toml. This module is
+light, because every program of an environment with contactstudy imports the module.
 """
 
 from __future__ import annotations

@@ -166,7 +166,7 @@ def rectangle_displacement(x: ArrayLike, y: ArrayLike, half_x: float, half_y: fl
     for side_x in (-1, 1):
         for side_y in (-1, 1):
             u, v = side_x * xs + half_x, side_y * ys + half_y
-            # ln(v + r) by asinh, which does not cancel for negative v; the rest, ln |u|, goes out with its opposite.
+            # ln(v + r) by asinh, which does not cancel for negative v; the rest, ln |u|, cancels with its opposite.
             total += u * np.arcsinh(v / np.abs(u)) + v * np.arcsinh(u / np.abs(v))
     return np.asarray(total / (np.pi * modulus))
 
@@ -259,7 +259,7 @@ def rectangle_in_half_plane(
 ) -> FloatArray:
     """Stresses xx, yy, zz, xz of plane strain outside or inside a rectangle with eigenstrains xx, yy, zz, xz.
 
-    The eigenstrain acts like forces on the sides and leaves its own stress inside (J. D. Eshelby, Proc. R. Soc. A 241
+    The eigenstrain acts like forces on the sides and causes stress inside (J. D. Eshelby, Proc. R. Soc. A 241
     (1957) 376). A force in a half-plane with a free face: N. I. Muskhelishvili, Some Basic Problems of the
     Mathematical Theory of Elasticity, chapter 19; with the potentials phi, psi of the force in the whole plane the
     potentials of its images are ``-w phibar'(w) - psibar(w)``, and ``-phibar(w)`` less w times the derivative of the
@@ -270,17 +270,12 @@ def rectangle_in_half_plane(
     shear, lame = young / (2 * (1 + poisson)), young * poisson / ((1 + poisson) * (1 - 2 * poisson))
     trace = lame * (e_xx + e_yy + e_zz)
     misfit = np.array([trace + 2 * shear * e_xx, trace + 2 * shear * e_yy, trace + 2 * shear * e_zz, 2 * shear * e_xz])
-    # Gauss nodes along a side; points have to stay a tenth of a side away from it
+    # Gauss nodes along a side; points must be at least a tenth of a side away
     node, weight = np.polynomial.legendre.leggauss(400)
     kappa = 3 - 4 * poisson
     point = (xs + 1j * zs).ravel()[:, None]
     slope, curvature, second = (np.zeros(point.size, np.complex128) for _ in range(3))
-    for normal, edge in (
-        ((1, 0), x_range[1]),
-        ((-1, 0), x_range[0]),
-        ((0, 1), z_range[1]),
-        ((0, -1), z_range[0]),
-    ):
+    for normal, edge in (((1, 0), x_range[1]), ((-1, 0), x_range[0]), ((0, 1), z_range[1]), ((0, -1), z_range[0])):
         low, high = z_range if normal[0] else x_range
         position = low + 0.5 * (high - low) * (1 + node)
         source = edge + 1j * position if normal[0] else position + 1j * edge

@@ -28,7 +28,7 @@ from contactstudy.verification.check import Check, Curve, Reference
 from contactstudy.verification.free_ends import FINITE_ELEMENTS
 from contactstudy.verification.problems import FILM_CASES, FILM_FILE, load_reference
 
-# Moes' numbers M, L: central and least film H of Barus oil of constant density, settled by extrapolation, of an inlet
+# Moes' numbers M, L: central and least film H of Barus oil of constant density, extrapolated, of an inlet
 # four half-widths long below M = 100; two programs agree to 0.2 %
 TABLE = {
     (2.0, 5.0): (4.451, 3.470),

@@ -68,7 +68,7 @@ def edge_load_checks() -> Iterator[Check]:
         grid = Grid(x_range=(0.0, 0.16), y_range=(-4.1, 4.1), cells_x=8, cells_y=41)
         distance = np.abs(grid.y)[None, :]
         ratio = _scaled_displacement(poisson, grid, (0, 20), distance)[0, 20:]
-        # Displacement along the edge under a point load on it, over the half-space's; for every Poisson's ratio
+        # Displacement along the edge under a point load on the edge, over the half-space's; for every Poisson's ratio
         yield Reference(f"point load on the edge, nu = {poisson:g}", EXACT_LIMIT).compare(
             "u_z along the edge over the half-space's", 2 * ratio[20] - ratio[10], 3.362954, 0.01
         )
@@ -131,11 +131,11 @@ def corner_checks() -> Iterator[Check]:
 
 
 def antiplane_checks() -> Iterator[Check]:
-    """Check that a traction uniform along y needs no equivalent load on the end: the mirror image frees it."""
+    """Check that a traction uniform along y needs no equivalent load on the end: the mirror image frees the end."""
     (modes,) = axial_modes(np.inf, 1e-9, 1e-2, Resolution())
     system = EquationSet.build(modes, 1e-9, 0.3, 1e-2, Resolution())
     spectrum = modes.load_weights * modes.cosine(np.array([1.0]))[:, 0]
-    near_surface = system.depth > 1e-3  # below the wavelength along y there is always some
+    near_surface = system.depth > 1e-3  # below one wavelength along y the residual traction does not vanish
     under_traction, under_pressure = (
         system.source(load, spectrum)[near_surface] for load in (Load.ALONG_Y, Load.NORMAL)
     )

@@ -36,7 +36,7 @@ def unit_material(poisson: float = 0.3) -> Material:
 def on_cells(
     function: Callable[[FloatArray, FloatArray], FloatArray], x_range: Range, y_range: Range, cells: tuple[int, int]
 ) -> xr.DataArray:
-    """Values of a function of (x, y) at cell centres; it is called with a column of x and a row of y."""
+    """Values of a function of (x, y) at cell centres; the arguments are a column of x and a row of y."""
     grid = Grid(x_range=x_range, y_range=y_range, cells_x=cells[0], cells_y=cells[1])
     return on_grid(function(grid.x[:, None], grid.y[None, :]), grid)
 

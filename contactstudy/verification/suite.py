@@ -99,7 +99,7 @@ class Verification:
 
     @property
     def passed(self) -> bool:
-        """Whether there are checks and every one passed."""
+        """Whether checks exist and all passed."""
         return bool(self.checks) and all(check.passed for check in self.checks)
 
     def to_dataset(self) -> xr.Dataset:

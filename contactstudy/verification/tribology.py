@@ -122,17 +122,15 @@ def slope_checks(*, full: bool) -> Iterator[Check]:
 
 def spence_checks() -> Iterator[Check]:
     """Press a rigid sphere with friction, without any shift."""
-    half_space, half_window, cells, steps = HalfSpace(material=material(1.0, 0.0)), 1.25, 40, 9
-    gap = on_cells(
-        lambda x, y: 0.05 * (x**2 + y**2), (-half_window, half_window), (-half_window, half_window), (cells, cells)
-    )
+    half_space, edge, cells, steps = HalfSpace(material=material(1.0, 0.0)), 1.25, 40, 9
+    gap = on_cells(lambda x, y: 0.05 * (x**2 + y**2), (-edge, edge), (-edge, edge), (cells, cells))
     load = 4 / 3 * half_space.material.plane_strain_modulus * 0.1
     result: xr.Dataset | None = None
-    for radius_fraction in np.linspace(0.2, 1.0, steps):  # equal steps of the radius
+    for ratio in np.linspace(0.2, 1.0, steps):  # equal steps of the radius
         result = solve_contact(
             half_space,
             gap,
-            load=load * radius_fraction**3,
+            load=load * ratio**3,
             friction=0.2986,
             motion=Shift(),
             settings=ContactSettings(coupled=True, after=result, tolerance=1e-5),
@@ -140,23 +138,16 @@ def spence_checks() -> Iterator[Check]:
     assert result is not None
     areas = [float(result["stick"].sum()), float((result["pressure"] > 0).sum())]
     case, source = "rigid sphere pressed on a plane, f = 0.2986", "Spence (1975) by CONTACT"
-    radius_fraction = np.sqrt(areas[0] / areas[1])
-    yield Reference(case, source).compare(
-        "radius of the stick zone over the contact's", radius_fraction, 0.5, half_window / cells
-    )
+    ratio = np.sqrt(areas[0] / areas[1])
+    yield Reference(case, source).compare("radius of the stick zone over the contact's", ratio, 0.5, edge / cells)
 
 
 def shift_checks() -> Iterator[Check]:
     """Shift a sphere on a plane."""
     shear, poisson, radius, load, friction, load_fraction = 200e6, 0.42, 0.05, 9.1954, 0.4, 0.875
     rubber = material(shear, poisson)
-    half_window, cells = 1.25e-3, 76
-    gap = on_cells(
-        lambda x, y: (x**2 + y**2) / (2 * radius),
-        (-half_window, half_window),
-        (-half_window, half_window),
-        (cells, cells),
-    )
+    edge, cells = 1.25e-3, 76
+    gap = on_cells(lambda x, y: (x**2 + y**2) / (2 * radius), (-edge, edge), (-edge, edge), (cells, cells))
     result = solve_contact(
         HalfSpace(material=rubber),
         gap,
@@ -168,7 +159,7 @@ def shift_checks() -> Iterator[Check]:
     case, source = "sphere shifted on a plane, 7/8 of full sliding's force", "Cattaneo (1938); Mindlin (1949)"
     expected = closed_forms.mindlin_shift(load_fraction, load, friction, 1e-3, shear, poisson=poisson)
     yield Reference(case, source).compare("shift", result["shift_y"], expected, 3e-3, relative=True)
-    step = 2 * half_window / cells
+    step = 2 * edge / cells
     stick = step * np.sqrt(float(result["stick"].sum()) / np.pi)
     yield Reference(case, source).compare("radius of the stick zone / a", stick / 1e-3, 0.5, 0.5 * step / 1e-3)
 
@@ -243,7 +234,7 @@ def kalker_checks(*, full: bool) -> Iterator[Check]:
                 force = float(result["force_y" if motion.longitudinal_creepage else "force_x"])
                 forces.append(force / (SMALL_CREEPAGE * across * (np.sqrt(across) if motion.spin else 1.0)))
             coefficients.append(forces)
-        # Of first order in the cells that a semi-axis has, without the three beside the contact.
+        # Of first order in the cells that a semi-axis has, without the three next to the contact.
         coarse_count, fine_count = (count - 6 for count in counts)
         extrapolated = (fine_count * np.array(coefficients[1][:2]) - coarse_count * np.array(coefficients[0][:2])) / (
             fine_count - coarse_count
@@ -271,7 +262,7 @@ def contact_program_checks() -> Iterator[Check]:
         source = "CONTACT, 48 x 44 cells, which are 1.4 % off"
         yield Reference(case, source).compare("force over full sliding's", force, expected, 0.016, relative=True)
     soft, source = material(23e9, 0.31), "Bentall and Johnson (1967) by CONTACT"
-    # The creepage grows with the half-width over the pair's radius, 0.1 mm over 25 mm there and 1 here.
+    # The creepage grows with the half-width over the pair's radius, 0.1 mm over 25 mm in the reference and 1 here.
     scale = 0.1 / 25
     for position, expected in ((0.0, 4.294e-4), (-0.75, 2.108e-4)):
         modulus = 1 / (1 / soft.plane_strain_modulus + 1 / steel.plane_strain_modulus)
@@ -297,8 +288,8 @@ def line_case() -> tuple[Case, xr.Dataset]:
     """Hertz' line pressure along a whole body, with friction."""
     body = FiniteLengthSpace(length=1e-3, material=Material(210e9, 0.3))
     case = Case(body=body, roller=Roller(radius=5e-3, length=1e-3), max_pressure=1.5e9, friction=0.05)
-    half_window = 1.5 * case.hertz_half_width
-    grid = Grid(x_range=(0.0, 1e-3), y_range=(-half_window, half_window), cells_x=4, cells_y=96)
+    edge = 1.5 * case.hertz_half_width
+    grid = Grid(x_range=(0.0, 1e-3), y_range=(-edge, edge), cells_x=4, cells_y=96)
     pressure = 1.5e9 * np.sqrt(np.maximum(1 - (grid.y / case.hertz_half_width) ** 2, 0)) + 0 * grid.x[:, None]
     fields = {"pressure": (("x", "y"), pressure), "traction_y": (("x", "y"), 0.05 * pressure)}
     return case, xr.Dataset(fields, coords={"x": grid.x, "y": grid.y})

@@ -45,15 +45,15 @@ def test_edge_factors_of_field_near_end(strip_result) -> None:
     assert float(factors["over_reference_first"]) == 1.0
 
 
-def test_fillet_makes_an_edge(solved: xr.Dataset) -> None:
-    factors = analysis.edge_factors(solved)
+def test_fillet_makes_an_edge(case_result: xr.Dataset) -> None:
+    factors = analysis.edge_factors(case_result)
     assert float(factors["end_over_middle_first"]) > 1.2
     assert float(factors["end_over_middle_first"]) == pytest.approx(float(factors["end_over_middle_last"]), rel=1e-6)
 
 
-def test_edge_factors_of_study_with_reference(opened: xr.Dataset) -> None:
-    half_space = opened.sel(body="half-space").isel(e_over_a=0)
-    factors = analysis.edge_factors(opened.sel(body="finite-length"), "pressure", half_space)
+def test_edge_factors_of_study_with_reference(study_dataset: xr.Dataset) -> None:
+    half_space = study_dataset.sel(body="half-space").isel(e_over_a=0)
+    factors = analysis.edge_factors(study_dataset.sel(body="finite-length"), "pressure", half_space)
     assert factors["over_reference_peak"].sizes == {"e_over_a": 3, "friction": 2}
     assert float(factors["over_reference_first"].sel(e_over_a=0, friction=0.1)) == pytest.approx(1.0, rel=0.05)
 

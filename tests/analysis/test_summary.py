@@ -41,8 +41,11 @@ def test_no_contact_at_all():
 
 @given(st.floats(0.1, 1e9))
 def test_ratios_do_not_depend_on_the_unit(scale):
-    one, other = pressure_numbers(contact(VALUES)), pressure_numbers(contact(np.multiply(VALUES, scale), 2 * scale))
-    assert other["end_pressure_over_p0"] == pytest.approx(one["end_pressure_over_p0"])
+    numbers, scaled_numbers = (
+        pressure_numbers(contact(VALUES)),
+        pressure_numbers(contact(np.multiply(VALUES, scale), 2 * scale)),
+    )
+    assert scaled_numbers["end_pressure_over_p0"] == pytest.approx(numbers["end_pressure_over_p0"])
 
 
 def test_summary_with_separate_stress_points():

@@ -1,4 +1,4 @@
-"""Labelled arrays on cells of any width: where their edges come from, and what does not tile."""
+"""Labelled arrays on cells of any width: their edges, and cells that do not tile."""
 
 from __future__ import annotations
 
@@ -60,15 +60,15 @@ def test_labels_lead_back_to_the_cells(ratios: list[float]) -> None:
     dataset = xr.Dataset(
         {"p": (("x", "y"), np.ones(grid.shape))}, coords={"x": grid.x, "y": grid.y, **cell_coordinates(grid)}
     )
-    for found in (
+    for grid_of_labels in (
         labelled_cells("p", dataset["p"])[1],
         labelled_cells("p", dataset["p"].drop_vars(["x_width", "x_bounds"], errors="ignore"), extent=(0.0, edges[-1]))[
             1
         ],
     ):
         # The centres alone determine edges by a recursion that doubles no error. Nearly uniform cells become uniform.
-        within = SPACING_TOLERANCE * grid.widths.max() if found.uniform else 1e-9 * edges[-1]
-        assert np.allclose(found.x_edges, edges, atol=within)
+        within = SPACING_TOLERANCE * grid.widths.max() if grid_of_labels.uniform else 1e-9 * edges[-1]
+        assert np.allclose(grid_of_labels.x_edges, edges, atol=within)
 
 
 def test_selected_cells_keep_widths() -> None:
@@ -111,12 +111,12 @@ def test_result_on_graded_cells_survives_a_file(tmp_path: Path, engine: str) -> 
     assert {"x_width", "x_bounds"} <= set(result.coords)
     assert np.allclose(result.x_bounds[:, 1] - result.x_bounds[:, 0], result.x_width, rtol=1e-9)
     result.to_netcdf(tmp_path / "result.nc", engine=engine)
-    with xr.open_dataset(tmp_path / "result.nc", engine=engine) as opened:
-        opened.load()
-    assert np.array_equal(opened.x_width, result.x_width)
+    with xr.open_dataset(tmp_path / "result.nc", engine=engine) as stored_result:
+        stored_result.load()
+    assert np.array_equal(stored_result.x_width, result.x_width)
     stresses = [
-        cs.stress_field(body, each.pressure, friction=0.1, x=[0.0, 1e-4], y=[0.0], z=[2e-5, 5e-5])
-        for each in (result, opened)
+        cs.stress_field(body, dataset.pressure, friction=0.1, x=[0.0, 1e-4], y=[0.0], z=[2e-5, 5e-5])
+        for dataset in (result, stored_result)
     ]
     for name in stresses[0].data_vars:
         assert np.array_equal(stresses[0][name], stresses[1][name])

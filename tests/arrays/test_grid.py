@@ -1,4 +1,4 @@
-"""Grids of any cell edges: what they know of their cells, and errors that say where."""
+"""Grids of any cell edges: properties of their cells, and errors with positions."""
 
 from __future__ import annotations
 
@@ -36,23 +36,23 @@ def test_cells_tile_range(ratios: list[float]) -> None:
 @given(ratios=RATIOS)
 def test_grids_of_equal_edges_are_equal(ratios: list[float]) -> None:
     edges = edges_of(ratios)
-    one, other = (Grid.from_edges(edges, Y_RANGE, 4) for _ in range(2))
-    assert one == other
-    assert hash(one) == hash(other)
-    moved = [*edges[:-1], edges[-1] * 1.01]
-    assert Grid.from_edges(moved, Y_RANGE, 4) != one
+    first, second = (Grid.from_edges(edges, Y_RANGE, 4) for _ in range(2))
+    assert first == second
+    assert hash(first) == hash(second)
+    shifted_edges = [*edges[:-1], edges[-1] * 1.01]
+    assert Grid.from_edges(shifted_edges, Y_RANGE, 4) != first
 
 
 @given(ratios=RATIOS)
 def test_coarsened_grid_keeps_alternate_edges(ratios: list[float]) -> None:
-    """Also where the joined ones differ by more than cells that are given may."""
+    """Coarsened cells may differ by more than the limit of given cells."""
     grid = Grid.from_edges(edges_of(ratios), Y_RANGE, 4)
-    joined = grid.coarsened()
-    assert joined.cells_y == 2
-    assert joined.x_range == grid.x_range
+    coarsened = grid.coarsened()
+    assert coarsened.cells_y == 2
+    assert coarsened.x_range == grid.x_range
     if not grid.uniform:
-        assert set(joined.x_edges[:-1].tolist()) == set(grid.x_edges[:-1:2].tolist())
-        assert float(joined.widths.sum()) == pytest.approx(float(grid.widths.sum()))
+        assert set(coarsened.x_edges[:-1].tolist()) == set(grid.x_edges[:-1:2].tolist())
+        assert float(coarsened.widths.sum()) == pytest.approx(float(grid.widths.sum()))
 
 
 def test_equal_widths_make_a_uniform_grid() -> None:

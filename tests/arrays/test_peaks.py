@@ -20,10 +20,10 @@ def test_top_of_an_ellipse_wherever_the_cells_lie(offset: float, cells: int) -> 
 
 def test_section_maxima_without_parabola() -> None:
     pressure = np.array([[0.0, 0.0, 0.0, 0.0], [0.0, 3.0, 0.0, 0.0], [2.0, 1.0, 0.0, 0.0]])
-    found = section_maxima(pressure)
-    assert found[0] == 0
-    assert (found[1:] >= [3.0, 2.0]).all()
-    assert (found[1:] <= 1.25 * np.array([3.0, 2.0])).all()
+    maxima = section_maxima(pressure)
+    assert maxima[0] == 0
+    assert (maxima[1:] >= [3.0, 2.0]).all()
+    assert (maxima[1:] <= 1.25 * np.array([3.0, 2.0])).all()
 
 
 def test_polynomials_about_a_sample() -> None:

@@ -41,17 +41,17 @@ def test_a_gap_in_millimetres_on_cells_in_micrometres(on_cells: OnCells, half_sp
     scaled = (1e3 * gap).assign_attrs(units="mm").assign_coords(x=1e6 * gap.x, y=1e6 * gap.y)
     for axis in ("x", "y"):
         scaled[axis].attrs["units"] = "um"
-    expected, found = (solve_contact(half_space, each, load=4 / 3) for each in (gap, scaled))
-    np.testing.assert_allclose(found["pressure"], expected["pressure"], rtol=1e-7, atol=1e-9)
-    np.testing.assert_allclose(found["x"], expected["x"], rtol=1e-12)
+    expected, computed = (solve_contact(half_space, input_gap, load=4 / 3) for input_gap in (gap, scaled))
+    np.testing.assert_allclose(computed["pressure"], expected["pressure"], rtol=1e-7, atol=1e-9)
+    np.testing.assert_allclose(computed["x"], expected["x"], rtol=1e-12)
 
 
 def test_a_pressure_in_gigapascals(on_cells: OnCells, half_space: HalfSpace) -> None:
     pressure = on_cells(lambda x, y: 1.0 + 0 * x + 0 * y, (-1.0, 1.0), (-1.0, 1.0), (8, 8))
     scaled = (1e-9 * pressure).assign_attrs(units="GPa")
-    sunk = [surface_displacement(half_space, each) for each in (scaled, pressure)]
-    np.testing.assert_allclose(*sunk, rtol=1e-12)
-    stresses = [stress_field(half_space, each, z=[0.5]).sigma_zz for each in (scaled, pressure)]
+    displacements = [surface_displacement(half_space, load) for load in (scaled, pressure)]
+    np.testing.assert_allclose(*displacements, rtol=1e-12)
+    stresses = [stress_field(half_space, load, z=[0.5]).sigma_zz for load in (scaled, pressure)]
     np.testing.assert_allclose(*stresses, rtol=1e-12)
 
 
@@ -90,8 +90,8 @@ def test_friction_and_roughness_are_converted_or_refused(half_space: HalfSpace) 
 def test_depths_in_micrometres(on_cells: OnCells, half_space: HalfSpace) -> None:
     pressure = on_cells(lambda x, y: 1.0 + 0 * x + 0 * y, (-1.0, 1.0), (-1.0, 1.0), (8, 8))
     depths = xr.DataArray([0.5e6], dims="z", attrs={"units": "um"})
-    expected, found = (stress_field(half_space, pressure, z=z) for z in ([0.5], depths))
-    xr.testing.assert_allclose(found, expected)
+    expected, computed = (stress_field(half_space, pressure, z=z) for z in ([0.5], depths))
+    xr.testing.assert_allclose(computed, expected)
     with pytest.raises(InvalidInputError, match=r"z.attrs\['units'\] = '1'"):
         stress_field(half_space, pressure, z=depths.assign_attrs(units="1"))
 
@@ -99,8 +99,8 @@ def test_depths_in_micrometres(on_cells: OnCells, half_space: HalfSpace) -> None
 def test_yield_stress_over_depth() -> None:
     over = xr.DataArray([600.0, 400.0], {"z": ("z", [0.0, 1.0], {"units": "mm"})}, "z", attrs={"units": "MPa"})
     material = ElasticPlastic(yield_stress=over)
-    for each in (material, replace(material, isotropic_hardening=1e9)):
-        np.testing.assert_allclose(each.yield_stress_at(np.array([0.5e-3])), 500e6)
+    for material_variant in (material, replace(material, isotropic_hardening=1e9)):
+        np.testing.assert_allclose(material_variant.yield_stress_at(np.array([0.5e-3])), 500e6)
     hard = xr.DataArray([750.0], {"z": [0.0]}, "z", attrs={"units": "HV"})
     assert ElasticPlastic.from_hardness(hard).yield_stress_at(np.zeros(1))[0] == pytest.approx(750 * 9.80665e6 / 3)
     with pytest.raises(InvalidInputError, match="HV, or left out"):
@@ -108,24 +108,24 @@ def test_yield_stress_over_depth() -> None:
 
 
 def test_converted_variable_has_si_units() -> None:
-    found = in_si("gap", xr.DataArray([1.0], {"x": ("x", [2.0], {"units": "mm"})}, "x", attrs={"units": "um"}), "m")
-    assert (found.attrs["units"], found["x"].attrs["units"]) == ("m", "m")
-    xr.testing.assert_identical(in_si("gap", found, "m"), found)
+    converted = in_si("gap", xr.DataArray([1.0], {"x": ("x", [2.0], {"units": "mm"})}, "x", attrs={"units": "um"}), "m")
+    assert (converted.attrs["units"], converted["x"].attrs["units"]) == ("m", "m")
+    xr.testing.assert_identical(in_si("gap", converted, "m"), converted)
 
 
 def test_dataset_positions_are_converted() -> None:
-    place = ("x", [0.0, 2.0], {"units": "mm"})
-    pressure = xr.DataArray([1.0, 2.0], {"x": place}, "x", attrs={"units": "GPa"})
-    whole = xr.Dataset({"pressure": pressure, "gap": xr.zeros_like(pressure).assign_attrs(units="um")})
-    found = require_in_si(whole, "pressure")
-    assert (found.pressure.values.tolist(), found.x.values.tolist()) == ([1e9, 2e9], [0.0, 2e-3])
-    assert (found.pressure.attrs["units"], found.x.attrs["units"]) == ("Pa", "m")
-    assert require_in_si(found, "pressure") is found
+    position = ("x", [0.0, 2.0], {"units": "mm"})
+    pressure = xr.DataArray([1.0, 2.0], {"x": position}, "x", attrs={"units": "GPa"})
+    dataset = xr.Dataset({"pressure": pressure, "gap": xr.zeros_like(pressure).assign_attrs(units="um")})
+    converted = require_in_si(dataset, "pressure")
+    assert (converted.pressure.values.tolist(), converted.x.values.tolist()) == ([1e9, 2e9], [0.0, 2e-3])
+    assert (converted.pressure.attrs["units"], converted.x.attrs["units"]) == ("Pa", "m")
+    assert require_in_si(converted, "pressure") is converted
     for bad, message in (("1", "in SI, pressure in Pa"), ("psi", r"result.pressure.attrs\['units'\] = 'psi'")):
         with pytest.raises(InvalidInputError, match=message):
-            require_in_si(whole.assign(pressure=pressure.assign_attrs(units=bad)), "pressure", argument="result")
+            require_in_si(dataset.assign(pressure=pressure.assign_attrs(units=bad)), "pressure", argument="result")
     with pytest.raises(InvalidInputError, match="traction_y is missing"):
-        require_in_si(whole, "traction_y")
+        require_in_si(dataset, "traction_y")
 
 
 def test_numbers_of_contact_laws_designs_and_measured_profiles() -> None:
@@ -141,14 +141,14 @@ def test_numbers_of_contact_laws_designs_and_measured_profiles() -> None:
     measured = Measured(x, xr.DataArray(np.full(6, 2.0), dims="x", attrs={"units": "micron"}))
     assert measured == Measured(1e-3 * x.values, np.full(6, 2.0) * 1e-6)
     loads = xr.DataArray([0.03], dims="load", attrs={"units": "kN"})
-    found = best_profile(
+    design = best_profile(
         case, FullCrown, bounds={"crown_radius": (0.005, 0.02)}, loads=loads, accuracy=0.1, evaluations=8
     )
-    assert found["case_load"].values.tolist() == [30.0]
+    assert design["case_load"].values.tolist() == [30.0]
 
 
-def opened(value: float) -> da.Array:
-    """Return a number as it is in a file that was opened with chunks."""
+def lazy_array(value: float) -> da.Array:
+    """Return a number as a lazy array, as in a file opened with chunks."""
     return da.from_array(np.array(value))
 
 
@@ -177,13 +177,19 @@ def case_with(**given) -> Case:
 
 @pytest.mark.parametrize("name", SCALARS)
 def test_scalar_argument_is_converted(name: str) -> None:
-    taken, value, units, si = SCALARS[name]
-    for given in (scalar(value, units), scalar(si), np.array(si), scalar(opened(si)), scalar(opened(value), units)):
-        found = taken(given)
-        assert type(found) is float
-        assert found == pytest.approx(si, rel=1e-15)
+    read_argument, value, units, si = SCALARS[name]
+    for argument in (
+        scalar(value, units),
+        scalar(si),
+        np.array(si),
+        scalar(lazy_array(si)),
+        scalar(lazy_array(value), units),
+    ):
+        argument_value = read_argument(argument)
+        assert type(argument_value) is float
+        assert argument_value == pytest.approx(si, rel=1e-15)
     with pytest.raises(InvalidInputError, match=rf"{name}.attrs\['units'\] = 'furlong': must be one of") as caught:
-        taken(scalar(value, "furlong"))
+        read_argument(scalar(value, "furlong"))
     assert len(str(caught.value)) < 200
 
 
@@ -214,7 +220,7 @@ def test_a_study_takes_scalars_with_units() -> None:
 
 
 @pytest.mark.parametrize(
-    ("value", "shown"),
+    ("value", "message"),
     [
         (scalar(np.ones((40, 20)), "m"), "DataArray of shape (40, 20) and type float64"),
         (np.ones(3), "ndarray of shape (3,) and type float64"),
@@ -224,13 +230,13 @@ def test_a_study_takes_scalars_with_units() -> None:
         (scalar("a"), "'a'"),
         (xr.Dataset({"a": 1, "b": 2}), "Dataset of 2 variables"),
         ([np.ones((2, 2))], "[array([[1., 1.], [1., 1.]])]"),
-        (scalar(opened(-5.0), "mm"), "lazy DataArray of type float64"),
+        (scalar(lazy_array(-5.0), "mm"), "lazy DataArray of type float64"),
         (scalar(da.ones((40, 20))), "lazy DataArray of shape (40, 20) and type float64"),
         (xr.Dataset, repr(xr.Dataset)),
         (da.Array, repr(da.Array)),
     ],
 )
-def test_no_message_shows_a_whole_array(value: object, shown: str) -> None:
+def test_no_message_shows_a_whole_array(value: object, message: str) -> None:
     with pytest.raises(InvalidInputError) as caught:
         Roller(radius=value, length=1e-3)
-    assert str(caught.value) == f"radius = {shown}: must be a positive finite number (metres)"
+    assert str(caught.value) == f"radius = {message}: must be a positive finite number (metres)"

@@ -81,18 +81,21 @@ class Outputs:
     """Parser of text blocks that directly follow Python blocks."""
 
     def __call__(self, document: Document) -> Iterable[Region]:
-        for found in OUTPUT.finditer(document.text):
-            yield Region(found.start(1), found.end(1), found[2], compare_output)
+        for match in OUTPUT.finditer(document.text):
+            yield Region(match.start(1), match.end(1), match[2], compare_output)
 
 
 def compare_output(example: Example) -> None:
     """Compare what is shown with what was printed: words as they are, numbers to a percent."""
-    shown, printed = example.parsed.split(), example.namespace["_printed"].split()
-    assert len(shown) == len(printed), example.namespace["_printed"]
-    for one, other in zip(shown, printed, strict=True):
-        if one != other:
+    expected_words, printed = example.parsed.split(), example.namespace["_printed"].split()
+    assert len(expected_words) == len(printed), example.namespace["_printed"]
+    for first, second in zip(expected_words, printed, strict=True):
+        if first != second:
             tail = ",:;"
-            assert float(one.strip(tail)) == pytest.approx(float(other.strip(tail)), rel=0.01, abs=2e-3), (one, other)
+            assert float(first.strip(tail)) == pytest.approx(float(second.strip(tail)), rel=0.01, abs=2e-3), (
+                first,
+                second,
+            )
 
 
 class ReasonedSkips(SkipParser):

@@ -28,13 +28,13 @@ def docs_only() -> set[str]:
 
 def cited() -> set[str]:
     """Equations that comments and docstrings of the package cite."""
-    numbers: set[str] = set()
+    values: set[str] = set()
     for path in CODE:
         for citation in re.findall(r"\beqs?\.\s+(\(\w+\)(?:(?:,| and| to|, and)\s+\(\w+\))*)", path.read_text()):
-            numbers |= set(re.findall(r"\((\w+)\)", citation))
+            values |= set(re.findall(r"\((\w+)\)", citation))
             for first, last in re.findall(r"\((\d+)\) to \((\d+)\)", citation):
-                numbers |= {str(number) for number in np.arange(int(first), int(last) + 1)}
-    return numbers
+                values |= {str(index) for index in np.arange(int(first), int(last) + 1)}
+    return values
 
 
 def test_numbers_are_unique() -> None:

@@ -14,9 +14,9 @@ from tests.stand_in_solver import solve_fake
 
 
 @pytest.fixture(scope="module")
-def case(solved: xr.Dataset, tmp_path_factory):
+def case(case_result: xr.Dataset, tmp_path_factory):
     path = tmp_path_factory.mktemp("file") / "case.nc"
-    solved.to_netcdf(path)
+    case_result.to_netcdf(path)
     return path
 
 

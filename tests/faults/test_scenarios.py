@@ -1,4 +1,4 @@
-"""The table of faults stands in its page, and a scenario counts what went wrong."""
+"""The page contains the table of faults, and a scenario counts failures."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The finite elements of passes checked where something is known of them, and against what is stored."""
+"""Checks of the finite elements of passes against closed forms and stored results."""
 
 from __future__ import annotations
 
@@ -38,13 +38,13 @@ def test_stress_of_layers() -> None:
 
 
 def test_radial_return_tangent() -> None:
-    """Stresses change with strains as the tangent says, on either side of yield."""
+    """The tangent equals the derivative of stresses, below and above yield."""
     strip = PlasticStrip(replace(PASSES_CASES["settling"], kinematic_hardening=0.02), COARSE)
     rng = np.random.default_rng(2)
     total, plastic = rng.normal(size=(2, 4, 40)) * np.array([4e-4, 1e-5])[:, None, None]
     elastic = np.zeros((4, 40))
-    stress, after, tangent = strip.return_stress(total, plastic, elastic)
-    assert 0 < np.count_nonzero((after != plastic).any(axis=0)) < 40
+    stress, plastic_after, tangent = strip.return_stress(total, plastic, elastic)
+    assert 0 < np.count_nonzero((plastic_after != plastic).any(axis=0)) < 40
     for component in range(4):
         change = np.zeros((4, 1))
         change[component] = 1e-9
@@ -57,11 +57,11 @@ def test_radial_return_tangent() -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["settling", "flowing_sliding"])
 def test_coarse_mesh(name: str) -> None:
-    left = load_reference(PASSES_FILE, name)
-    found = solve_reference(PASSES_CASES[name], replace(PRODUCTION, width=1.0, step=1 / 8))
-    size = float(np.abs(left["sigma_xx"]).max())
-    assert np.abs(found["sigma_xx"].values - left["sigma_xx"].values).max() < 0.15 * size
-    shear, expected = (one["plastic_strain_yz_young"].sum("z").values for one in (found, left))
-    # What flows in every pass adds up, and so do the errors of a coarse mesh.
-    part = 0.3 if name.startswith("flowing") else 0.15
-    assert shear == pytest.approx(expected, abs=part * float(np.abs(expected).max()))
+    reference = load_reference(PASSES_FILE, name)
+    result = solve_reference(PASSES_CASES[name], replace(PRODUCTION, width=1.0, step=1 / 8))
+    size = float(np.abs(reference["sigma_xx"]).max())
+    assert np.abs(result["sigma_xx"].values - reference["sigma_xx"].values).max() < 0.15 * size
+    shear, expected = (dataset["plastic_strain_yz_young"].sum("z").values for dataset in (result, reference))
+    # Flow accumulates over the passes, with the errors of a coarse mesh.
+    tolerance = 0.3 if name.startswith("flowing") else 0.15
+    assert shear == pytest.approx(expected, abs=tolerance * float(np.abs(expected).max()))

@@ -1,4 +1,4 @@
-"""Cases that random ones led to, by name."""
+"""Regression cases from random runs, by name."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The long run: it goes on where it was ended, and tells violations from what the package says itself."""
+"""The long run resumes, and distinguishes violations from errors of the package."""
 
 from __future__ import annotations
 
@@ -38,14 +38,14 @@ def run(monkeypatch, tmp_path):
 def test_resumed_run(run, tmp_path, capsys) -> None:
     assert run("--cases", "3")[1] == [0, 1, 2]
     with (tmp_path / "notes").open("a") as file:
-        file.write('{"seed": 3, "ki')  # ended while it was writing
+        file.write('{"seed": 3, "ki')  # an interrupted write
     code, seeds = run("--cases", "8")
     assert seeds == [3, 4, 5, 6, 7]
-    shown = capsys.readouterr().out
+    output = capsys.readouterr().out
     violations = [seed for seed in range(8) if Random(seed).random() < 0.2]
     assert code == 1
-    assert f"{len(violations)} violation" in shown
-    assert all(f"seed {seed}: said" in shown for seed in violations)
+    assert f"{len(violations)} violation" in output
+    assert all(f"seed {seed}: said" in output for seed in violations)
     assert run("--cases", "8")[1] == []
     lines = (tmp_path / "notes").read_text().splitlines()
     assert json.loads(lines[-1])["seed"] == 7

@@ -14,10 +14,10 @@ SLOW = [HealthCheck.too_slow, HealthCheck.data_too_large]
 
 
 def look_at(rng: Random, *, refined: bool) -> None:
-    """Run a case and count what became of it."""
-    found = outcome_of(rng, refined=refined)
-    event(found.kind)
-    assert found.kind != "violation", found.message
+    """Run a case and count its outcome."""
+    outcome = outcome_of(rng, refined=refined)
+    event(outcome.kind)
+    assert outcome.kind != "violation", outcome.message
 
 
 @pytest.mark.fuzz

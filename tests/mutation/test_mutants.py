@@ -21,8 +21,8 @@ def function(x: float | None = -1.5) -> float:
 
 
 def test_mutants_of_source() -> None:
-    found = [(mutant.description, len(mutant.lines)) for mutant in mutants_of("a.py", SOURCE)]
-    assert sorted(found) == [
+    mutants = [(mutant.description, len(mutant.lines)) for mutant in mutants_of("a.py", SOURCE)]
+    assert sorted(mutants) == [
         ("* (2.0 - x))  ->  * (2.0 + x))", 2),
         ("* (2.0 - x))  ->  * (2.2 - x))", 2),
         ("* (2.0 - x))  ->  / (2.0 - x))", 2),

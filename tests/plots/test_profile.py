@@ -1,4 +1,4 @@
-"""Figures of profiles show the profile, and say what they show."""
+"""Figures of profiles contain the profile and its labels."""
 
 from __future__ import annotations
 

@@ -20,7 +20,7 @@ def test_saved_for_screen_and_journal(tmp_path):
     assert png.read_bytes().startswith(b"\x89PNG")
     content = pdf.read_bytes()
     assert content.startswith(b"%PDF")
-    # Text stays text: TrueType, not drawn outlines.
+    # Text remains text: TrueType, not outlines.
     assert b"TrueType" in content or b"CIDFontType2" in content
 
 

@@ -22,7 +22,7 @@ def case(body: Body | None = None, **roller: object) -> Case:
 
 
 @pytest.fixture
-def drawn(monkeypatch: pytest.MonkeyPatch) -> list[Figure]:
+def drawn_figures(monkeypatch: pytest.MonkeyPatch) -> list[Figure]:
     """Figures that become pictures."""
     kept: list[Figure] = []
     monkeypatch.setattr(figures, "encode_figure", lambda figure: kept.append(figure) or "data:")
@@ -33,7 +33,7 @@ def texts(figure: Figure) -> list[str]:
     return [text.get_text().strip() for text in figure.axes[0].texts]
 
 
-def test_side_view_has_equal_scales(drawn: list[Figure]) -> None:
+def test_side_view_has_equal_scales(drawn_figures: list[Figure]) -> None:
     view = side_geometry(case())
     assert view.limits == (0.0, 16e-3)
     assert view.roller == pytest.approx((1e-3, 15e-3))
@@ -41,7 +41,7 @@ def test_side_view_has_equal_scales(drawn: list[Figure]) -> None:
     assert view.magnification == 1
     caption = side_view(case()).caption
     assert "so is the profile" in caption
-    (figure,) = drawn
+    (figure,) = drawn_figures
     assert figure.axes[0].get_aspect() == 1
     assert {"L = 14 mm", "R = 4 mm", "body 16 mm", "end I: e = 1 mm", "end II: e = 1 mm"} <= {*texts(figure)}
 
@@ -56,19 +56,19 @@ def test_magnification_of_a_crown(crown_radius: float) -> None:
 
 
 @pytest.mark.parametrize("body", [HalfSpace(material=STEEL), QuarterSpace(material=STEEL)])
-def test_bodies_without_ends(body: Body, drawn: list[Figure]) -> None:
+def test_bodies_without_ends(body: Body, drawn_figures: list[Figure]) -> None:
     caption = side_view(case(body, profile=profiles.Lundberg(2e-7), radius=50e-3)).caption
-    labels = " ".join(texts(drawn[0]))
+    labels = " ".join(texts(drawn_figures[0]))
     assert ("end I:" in labels) == isinstance(body, QuarterSpace)
     assert "end II:" not in labels
     assert "cut below its axis" in caption
 
 
-def test_flush_roller_within_rounding(drawn: list[Figure]) -> None:
+def test_flush_roller_within_rounding(drawn_figures: list[Figure]) -> None:
     body = FiniteLengthSpace(length=1.2e-3, material=STEEL)
     roller = Roller(radius=4e-3, length=0.9e-3)
     side_view(Case(body=body, roller=roller, max_pressure=1e9, end_distance=0.3e-3 * (1 + 1e-14)))
-    assert any(text.startswith("end II: e = 0 ") for text in texts(drawn[0]))
+    assert any(text.startswith("end II: e = 0 ") for text in texts(drawn_figures[0]))
 
 
 def test_cone_in_the_caption() -> None:

@@ -29,8 +29,8 @@ def start_run(study: Path, folder: Path, *more: str, tickets: int, within: Seque
 
     `within` is a command that runs another one, such as one in a container.
     """
-    held = tickets_of(folder)
-    give_tickets(held, tickets)
+    initial_tickets = tickets_of(folder)
+    give_tickets(initial_tickets, tickets)
     command = [sys.executable, "-m", "tests.study.fake_run", "run", str(study), "--out", str(folder), "--no-figure"]
     return subprocess.Popen(
         [*within, *command, *more],
@@ -39,11 +39,11 @@ def start_run(study: Path, folder: Path, *more: str, tickets: int, within: Seque
         text=True,
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
-        env=os.environ | {HELD: str(held)},
+        env=os.environ | {HELD: str(initial_tickets)},
     )
 
 
-def finished(folder: Path) -> int:
+def count_finished(folder: Path) -> int:
     """Number of cases in the batches of a folder that are written now."""
     results = Folder(folder).results()
     return len(results.locations)

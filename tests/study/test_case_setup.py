@@ -26,16 +26,16 @@ def test_gamma_fixes_the_body():
 
 def test_half_space_keeps_roller_and_coordinates():
     finite = build_setup(BASE | {"e_over_a": 2})
-    half = build_setup(BASE | {"e_over_a": 2, "body": "half-space"})
-    assert isinstance(half.case.body, HalfSpace)
-    assert half.case.contact_range == finite.case.contact_range
-    assert half.case.roller == finite.case.roller
+    half_space = build_setup(BASE | {"e_over_a": 2, "body": "half-space"})
+    assert isinstance(half_space.case.body, HalfSpace)
+    assert half_space.case.contact_range == finite.case.contact_range
+    assert half_space.case.roller == finite.case.roller
 
 
 @pytest.mark.parametrize("e_over_a", [-1.0, 0.0, 3.0])
-@pytest.mark.parametrize("given", [{"gamma": 0.5}, {"roller_length": 2e-3}])
-def test_load_and_e_over_a_together(given, e_over_a):
-    values = {key: BASE[key] for key in ("young", "poisson", "radius")} | given
+@pytest.mark.parametrize("parameters", [{"gamma": 0.5}, {"roller_length": 2e-3}])
+def test_load_and_e_over_a_together(parameters, e_over_a):
+    values = {key: BASE[key] for key in ("young", "poisson", "radius")} | parameters
     case = build_setup(values | {"load": 300.0, "e_over_a": e_over_a}).case
     assert case.roller_start == pytest.approx(e_over_a * case.hertz_half_width, rel=1e-9, abs=1e-15)
 
@@ -108,8 +108,8 @@ def test_lundberg_profile_from_design_pressure():
 
 
 def test_elastic_rollers_tilt_and_load_offset_reach_the_case():
-    words = {**BASE, "e_over_a": 1.0, "roller_body": "finite-length", "roller_poisson": 0.25, "load_offset": 1e-5}
-    case = build_setup(words).case
+    parameters = {**BASE, "e_over_a": 1.0, "roller_body": "finite-length", "roller_poisson": 0.25, "load_offset": 1e-5}
+    case = build_setup(parameters).case
     assert case.roller.body is not None
     assert case.roller.material == Material(BASE["young"], 0.25)
     assert case.load_position == pytest.approx(case.roller_start + 0.5 * case.roller.length + 1e-5)

@@ -18,7 +18,7 @@ from tests.study.conftest import start_run, tickets_of
 LARGE = {"e_over_a": [0.0, 0.5, 1.0, 1.5, 2.0], "friction": [0.0, 0.05, 0.1, 0.2]}
 
 
-def opened(folder):
+def load_dataset(folder):
     """All that a study holds except how long it took."""
     return open_study(folder).drop_vars("seconds").load()
 
@@ -44,8 +44,8 @@ def test_missing_scheduler_is_announced_before_error(tmp_path, monkeypatch):
 def test_silent_listener_raises_scheduler_error(tmp_path, monkeypatch):
     """Dask alone would wait without end for the rest of a greeting."""
     monkeypatch.setattr(engine, "RUN", RunSettings(start_seconds=0.3, close_seconds=0.3))
-    with socket.create_server(("127.0.0.1", 0)) as listening:
-        address = f"tcp://127.0.0.1:{listening.getsockname()[1]}"
+    with socket.create_server(("127.0.0.1", 0)) as listener:
+        address = f"tcp://127.0.0.1:{listener.getsockname()[1]}"
         with pytest.raises(StudyFileError, match="no dask scheduler"):
             run_study(small_study(), tmp_path, scheduler=address, solver=solve_fake)
 
@@ -61,7 +61,7 @@ def test_cluster_of_separate_processes(tmp_path):
         for scheduler in (address, client):
             folder = tmp_path / type(scheduler).__name__
             assert run_study(study, folder, scheduler=scheduler, solver=solve_fake).counts == {"ok": 20}
-            assert opened(folder).identical(opened(tmp_path / "calm"))
+            assert load_dataset(folder).identical(load_dataset(tmp_path / "calm"))
         assert client.status == "running"
 
 
@@ -133,20 +133,20 @@ def test_results_do_not_depend_on_workers(tmp_path):
         assert run_study(study, tmp_path / str(workers), workers=workers).counts == {"ok": 4}
     with cluster(tmp_path) as address:
         run_study(study, tmp_path / "cluster", scheduler=address)
-    first = opened(tmp_path / "0")
+    first = load_dataset(tmp_path / "0")
     assert float(first["von_mises"].max()) > 1e8
     for name in ("2", "cluster"):
-        assert opened(tmp_path / name).identical(first), name
+        assert load_dataset(tmp_path / name).identical(first), name
 
 
 @pytest.mark.system
 def test_single_solution_equals_study_result(tmp_path):
     """The former cases of a worker do not change a bit of the next one."""
     run_study(small_study(), tmp_path / "all", workers=0)
-    alone = small_study(sweep={"e_over_a": [1.0], "friction": [0.1]})
-    run_study(alone, tmp_path / "alone", workers=1)
-    both = [
+    single_case_study = small_study(sweep={"e_over_a": [1.0], "friction": [0.1]})
+    run_study(single_case_study, tmp_path / "alone", workers=1)
+    studies = [
         load_case(tmp_path / name, identity(e_over_a=1.0, friction=0.1)).drop_vars("seconds")
         for name in ("all", "alone")
     ]
-    assert both[0].equals(both[1])
+    assert studies[0].equals(studies[1])

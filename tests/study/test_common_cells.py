@@ -21,8 +21,8 @@ from contactstudy.study.common_cells import (
 from tests.small_study import small_study
 
 
-def cells_map(source, borders, outside):
-    return Resampling(source=source, axis=cell_centres(borders), borders=borders, outside_value=outside)
+def cells_map(source, borders, fill):
+    return Resampling(source=source, axis=cell_centres(borders), borders=borders, fill=fill)
 
 
 @st.composite
@@ -37,8 +37,8 @@ def test_common_columns_resolve_all_cases(cases):
     common = common_columns(cases)
     assert common[0] == 0.0
     assert common[-1] == max(own[-1] for own in cases)
-    narrowest = min(float(np.diff(own).min()) for own in cases)
-    assert np.diff(common).min() >= MIN_WIDTH * narrowest * (1 - 1e-12)
+    min_width = min(float(np.diff(own).min()) for own in cases)
+    assert np.diff(common).min() >= MIN_WIDTH * min_width * (1 - 1e-12)
 
 
 @given(st.lists(edges(), min_size=1, max_size=4), st.integers(0, 2**32 - 1))
@@ -46,23 +46,23 @@ def test_averages_keep_the_load(cases, seed):
     common = common_columns(cases)
     for own in cases:
         values = np.random.default_rng(seed).uniform(0.0, 1.0, own.size - 1)
-        found = resample("pressure", values, [cells_map(own, common, 0.0)])
-        assert found @ np.diff(common) == pytest.approx(values @ np.diff(own), rel=1e-9)
+        averages = resample("pressure", values, [cells_map(own, common, 0.0)])
+        assert averages @ np.diff(common) == pytest.approx(values @ np.diff(own), rel=1e-9)
 
 
 @given(edges(), st.floats(-3.0, 3.0), st.floats(-3.0, 3.0))
 def test_interpolation_keeps_straight_lines(own, slope, offset):
     centres = 0.5 * (own[1:] + own[:-1])
     common = np.linspace(own[0], own[-1], 30)
-    found = resample("gap", offset + slope * centres, [cells_map(own, common, np.nan)])
-    at = 0.5 * (common[1:] + common[:-1])
-    np.testing.assert_allclose(found, offset + slope * np.clip(at, centres[0], centres[-1]), atol=1e-12)
+    interpolated = resample("gap", offset + slope * centres, [cells_map(own, common, np.nan)])
+    positions = 0.5 * (common[1:] + common[:-1])
+    np.testing.assert_allclose(interpolated, offset + slope * np.clip(positions, centres[0], centres[-1]), atol=1e-12)
 
 
 def test_values_beyond_cells_are_nan_or_zero():
     common = np.array([0.0, 1.0, 2.0, 3.0])
-    own = np.array([0.0, 1.0, 2.0])
-    along_x, along_y = cells_map(own, common, np.nan), cells_map(own, common, 0.0)
+    edges = np.array([0.0, 1.0, 2.0])
+    along_x, along_y = cells_map(edges, common, np.nan), cells_map(edges, common, 0.0)
     pressure = resample("pressure", np.ones((2, 2)), [along_x, along_y])
     np.testing.assert_array_equal(pressure[:2], [[1, 1, 0], [1, 1, 0]])
     assert np.isnan(pressure[2]).all()
@@ -71,9 +71,9 @@ def test_values_beyond_cells_are_nan_or_zero():
 
 
 def test_infinite_gap_keeps_position():
-    own = np.array([0.0, 1.0, 2.0, 3.0])
-    found = resample("initial_gap", np.array([1.0, np.inf, np.inf]), [cells_map(own, own, np.nan)])
-    np.testing.assert_array_equal(found, [1.0, np.inf, np.inf])
+    edges = np.array([0.0, 1.0, 2.0, 3.0])
+    gap = resample("initial_gap", np.array([1.0, np.inf, np.inf]), [cells_map(edges, edges, np.nan)])
+    np.testing.assert_array_equal(gap, [1.0, np.inf, np.inf])
 
 
 def test_rows_are_uniform_over_the_widest_window():
@@ -96,24 +96,24 @@ def test_refined_columns_share_common_axis(tmp_path):
     sweep = {"max_pressure": [1.0e9, 1.5e9], "e_over_a": [0.0, 2.0]}
     study = small_study(base=base, sweep=sweep, level="surface")
     assert run_study(study, tmp_path, workers=0, progress=False).counts == {"ok": 4}
-    common, own = open_study(tmp_path), open_study(tmp_path, cells="original")
+    common, original = open_study(tmp_path), open_study(tmp_path, cells="original")
     assert common["pressure"].dims == ("max_pressure", "e_over_a", "x_over_a", "y_over_a")
-    assert own["pressure"].dims == ("max_pressure", "e_over_a", "x_index", "y_over_a")
+    assert original["pressure"].dims == ("max_pressure", "e_over_a", "x_index", "y_over_a")
     assert "averaged" in common["pressure"].attrs["comment"]
     for p0 in (1.0e9, 1.5e9):
         for e in (0.0, 2.0):
-            on_common, on_own = (each.sel(max_pressure=p0, e_over_a=e) for each in (common, own))
+            on_common, on_own = (study_dataset.sel(max_pressure=p0, e_over_a=e) for study_dataset in (common, original))
             # All of the load, and that on the last half-width, which no common cell straddles unevenly for a fine axis.
-            whole = load_between(on_common, -np.inf, np.inf)
-            assert float(whole) == pytest.approx(float(on_own["normal_load"]), rel=1e-6)
+            total_load = load_between(on_common, -np.inf, np.inf)
+            assert float(total_load) == pytest.approx(float(on_own["normal_load"]), rel=1e-6)
             a = float(on_own["hertz_half_width"])
             last = load_between(on_own, e * a, (e + 1) * a)
             assert float(last) == pytest.approx(float(on_own["end_load_first"]), rel=1e-6, abs=1e-9)
-            alone = single_case(on_own)
-            assert alone["pressure"].dims == ("x", "y")
-            assert alone["x_width"].dims == ("x",)
-            assert float(alone["pressure"].max()) >= float(on_common["pressure"].max())
-    # Everything that a bearing engineer varies is there, swept or not.
+            single = single_case(on_own)
+            assert single["pressure"].dims == ("x", "y")
+            assert single["x_width"].dims == ("x",)
+            assert float(single["pressure"].max()) >= float(on_common["pressure"].max())
+    # All parameters of a bearing engineer are present, swept or not.
     assert common["gamma"].dims == ("max_pressure", "e_over_a")
     np.testing.assert_allclose(
         common["gamma"], (0.5e-3 + 2 * common["e_over_a"] * common["hertz_half_width"]).T / 5e-3, rtol=1e-12

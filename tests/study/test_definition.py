@@ -39,9 +39,9 @@ def test_json_round_trip():
             "friction": (0.0, 0.1),
         },
     )
-    again = Study.from_mapping(json.loads(study.to_json()))
-    assert again.to_json() == study.to_json()
-    assert ids(again) == ids(study)
+    restored_study = Study.from_mapping(json.loads(study.to_json()))
+    assert restored_study.to_json() == study.to_json()
+    assert ids(restored_study) == ids(study)
 
 
 def test_zip_makes_single_dimension():
@@ -123,9 +123,9 @@ def test_unknown_names_are_answered_with_the_nearest(content, hint):
 
 
 def test_missing_file_appears_once_in_message(tmp_path):
-    with pytest.raises(StudyFileError) as refused:
+    with pytest.raises(StudyFileError) as error:
         Study.from_toml(tmp_path / "nowhere.toml")
-    assert str(refused.value).count("nowhere.toml") == 1
+    assert str(error.value).count("nowhere.toml") == 1
 
 
 def test_unknown_key_of_the_file(tmp_path):
@@ -189,11 +189,11 @@ def test_default_uniform_cells_contradict_accuracy():
 
 def test_exclusion_keeps_remaining_cases():
     sweep, cases = {"friction": [0.0, 0.1]}, [{"cells_x": 12}]
-    plain = small_study(sweep=sweep, cases=cases, base={**small_study().base, "e_over_a": 0.0, "cells_x": None})
-    ruled = replace(plain, exclude=[{"friction": 0.1, "cells_x": 12}])
-    kept = {case.id: case.parameters for case in ruled.plan()}
-    assert kept.items() <= {case.id: case.parameters for case in plain.plan()}.items()
-    assert ruled.plan()[0].parameters == plain.plan()[0].parameters
+    full_study = small_study(sweep=sweep, cases=cases, base={**small_study().base, "e_over_a": 0.0, "cells_x": None})
+    reduced_study = replace(full_study, exclude=[{"friction": 0.1, "cells_x": 12}])
+    remaining_cases = {case.id: case.parameters for case in reduced_study.plan()}
+    assert remaining_cases.items() <= {case.id: case.parameters for case in full_study.plan()}.items()
+    assert reduced_study.plan()[0].parameters == full_study.plan()[0].parameters
 
 
 @pytest.mark.parametrize(
@@ -211,13 +211,13 @@ def test_study_without_required_parameter_raises(missing, message):
     with pytest.raises(InvalidInputError, match=message):
         small_study(base=base)
     value = small_study().base[missing]
-    others = {"e_over_a": [0.0, 1.0]}
-    for given in (
-        {"sweep": others | {missing: [value]}},
-        {"sweep": others, "zip": {missing: [value]}},
-        {"sweep": others, "cases": [{missing: value}]},
+    other_sweep = {"e_over_a": [0.0, 1.0]}
+    for arguments in (
+        {"sweep": other_sweep | {missing: [value]}},
+        {"sweep": other_sweep, "zip": {missing: [value]}},
+        {"sweep": other_sweep, "cases": [{missing: value}]},
     ):
-        assert small_study(base=base, **given).size
+        assert small_study(base=base, **arguments).size
     assert len(small_study(base=base, sweep={}, cases=[{missing: value, "e_over_a": 0.0}]).plan().unique) == 1
 
 

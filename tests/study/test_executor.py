@@ -24,8 +24,8 @@ def many():
 
 def test_groups_contain_the_frictions_of_a_contact(many):
     assert many.plan().groups.tolist() == [0, 0, 1, 1, 2, 2, 3, 3]
-    coupled = small_study(base=dict(many.base) | {"coupled": True}, sweep=dict(many.sweep))
-    assert coupled.plan().groups.tolist() == list(range(8))
+    coupled_study = small_study(base=dict(many.base) | {"coupled": True}, sweep=dict(many.sweep))
+    assert coupled_study.plan().groups.tolist() == list(range(8))
 
 
 def test_task_size_follows_measured_time(many):
@@ -41,15 +41,19 @@ def test_case_fails_at_second_worker_death(many):
     tasks = tasks_of(many, [[0, 1]])
     task = tasks.next_task(1)
     assert tasks.return_task(task, died=True) == []
-    alone = [tasks.next_task(1) for _ in range(2)]
-    assert [len(task.jobs) for task in alone] == [1, 1]
-    assert [job.name for job in tasks.return_task(alone[0], died=True)] == ids(alone[0])
+    single_tasks = [tasks.next_task(1) for _ in range(2)]
+    assert [len(task.jobs) for task in single_tasks] == [1, 1]
+    assert [job.name for job in tasks.return_task(single_tasks[0], died=True)] == ids(single_tasks[0])
     assert not tasks
 
 
 def test_execution_in_process_yields_outcomes(many, tmp_path):
     tasks = tasks_of(many, [[0, 1], [2, 3]], tmp_path)
-    outcomes = [outcome for _, part in execute(tasks, Engine(workers=0, solver=solve_fake)) for outcome in part]
+    outcomes = [
+        outcome
+        for _, task_outcomes in execute(tasks, Engine(workers=0, solver=solve_fake))
+        for outcome in task_outcomes
+    ]
     assert [outcome.status for outcome in outcomes] == ["ok"] * 4
     assert len(list(tmp_path.glob("*.nc"))) == 2
 

@@ -1,4 +1,4 @@
-"""What stands in folders, files and studies by mistake or malice ends in an error with a name, or does no harm."""
+"""Wrong or hostile content of folders, files and studies raises a package error, or has no effect."""
 
 import json
 import os
@@ -129,7 +129,7 @@ def test_a_measured_profile_from_a_pipe(tmp_path, name):
 
 
 def test_measured_profile_with_too_many_points():
-    points = [1e-8 * number for number in range(50_001)]
+    points = [1e-8 * index for index in range(50_001)]
     with pytest.raises(InvalidInputError, match="at most 50000 points"):
         case_id({"profile": {"kind": "measured", "positions": points, "drops": points}})
 

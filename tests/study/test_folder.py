@@ -26,7 +26,7 @@ def run(study, folder, **options):
     return run_study(study, folder, **({"workers": 0, "solver": solve_fake, "progress": False} | options))
 
 
-def failed(number, parameters, *, run=1, message="WindowError: narrow", warnings=()):
+def failed_batch(number, parameters, *, run=1, message="WindowError: narrow", warnings=()):
     """Batch of a case without results."""
     job = Job(f"{number:064x}", "", parameters, number)
     return batch_without_numbers(Task(jobs=(), folder="", run=run), job, "failed", message, warnings)
@@ -34,7 +34,7 @@ def failed(number, parameters, *, run=1, message="WindowError: narrow", warnings
 
 def rows(count, **options):
     """Batch of cases without results."""
-    return join_batches([failed(number, {"friction": 0.1}, **options) for number in range(count)])
+    return join_batches([failed_batch(index, {"friction": 0.1}, **options) for index in range(count)])
 
 
 def test_lock_error_contains_holder(tmp_path):
@@ -82,7 +82,7 @@ def test_batch_round_trip(tmp_path):
     (path,) = batch_paths(tmp_path)
     assert describe_damage(path) == ""
     batch = read_batch(path, arrays=None)
-    assert batch.ids.tolist() == [f"{number:064x}".encode() for number in range(3)]
+    assert batch.ids.tolist() == [f"{index:064x}".encode() for index in range(3)]
     assert batch.texts["message"] == ["Größe"] * 3
     assert batch.run(0)["warnings"] == ["one"]
     assert batch.texts["parameters"] == ['{"friction": 0.1}'] * 3
@@ -90,8 +90,8 @@ def test_batch_round_trip(tmp_path):
 
 def test_batch_stores_parameter_tables_once(tmp_path):
     profiles = [{"kind": "measured", "drops": [1e-6] * 1000}, {"kind": "cylinder"}]
-    parameters = [{"young": 1.0, "profile": profiles[number % 2], "friction": 0.1 * number} for number in range(40)]
-    batch = join_batches([failed(number, entry) for number, entry in enumerate(parameters)])
+    parameters = [{"young": 1.0, "profile": profiles[index % 2], "friction": 0.1 * index} for index in range(40)]
+    batch = join_batches([failed_batch(index, entry) for index, entry in enumerate(parameters)])
     write_batch(tmp_path, "a", batch)
     (path,) = batch_paths(tmp_path)
     assert read_batch(path, arrays=None).texts["parameters"] == batch.texts["parameters"]
@@ -109,8 +109,8 @@ def test_damage_is_detected(tmp_path, change):
 def test_small_batches_are_joined(tmp_path):
     folder = Folder(tmp_path)
     folder.create()
-    for number in range(20):
-        write_batch(folder.batches, f"a{number}", failed(number, {}))
+    for index in range(20):
+        write_batch(folder.batches, f"a{index}", failed_batch(index, {}))
         folder.compact(Share())
     assert len(batch_paths(folder.batches)) < 10
     folder.compact(Share(), at_end=True)
@@ -126,14 +126,14 @@ def test_the_result_of_the_latest_run_counts(tmp_path):
 
 def test_joined_batches_have_equal_results(tmp_path, monkeypatch):
     study = small_study(sweep={"e_over_a": [0.0, 1.0, 2.0], "friction": [0.0, 0.1]})
-    for name, largest in (("one", 2**13), ("many", 1)):
-        monkeypatch.setattr(module, "RUN", RunSettings(batch_cases=largest))
-        for number in (1, 2, 3):
-            run(study, tmp_path / name, share=(number, 3))
+    for name, batch_cases in (("one", 2**13), ("many", 1)):
+        monkeypatch.setattr(module, "RUN", RunSettings(batch_cases=batch_cases))
+        for index in (1, 2, 3):
+            run(study, tmp_path / name, share=(index, 3))
         run(study, tmp_path / name)
-    one, many = (open_study(tmp_path / name).drop_vars("seconds").load() for name in ("one", "many"))
+    single_batch, many_batches = (open_study(tmp_path / name).drop_vars("seconds").load() for name in ("one", "many"))
     assert len(batch_paths(tmp_path / "one" / "batches")) == 1 < len(batch_paths(tmp_path / "many" / "batches"))
-    assert one.identical(many)
+    assert single_batch.identical(many_batches)
 
 
 @pytest.mark.parametrize("schema", [1, None])
@@ -150,8 +150,8 @@ def test_failed_write_keeps_previous_file(tmp_path):
     write_text(path, "before")
 
     def fail():
-        with writing(path) as part:
-            part.write_text("half")
+        with writing(path) as temporary_path:
+            temporary_path.write_text("half")
             raise OSError("no space")
 
     with pytest.raises(StoreError, match="no space"):
@@ -162,12 +162,12 @@ def test_failed_write_keeps_previous_file(tmp_path):
 
 def test_cleaning_removes_only_unfinished_files(study, tmp_path):
     run(study, tmp_path)
-    unfinished = tmp_path / "batches" / f"ab.0123456789ab{TEMPORARY_SUFFIX}"
-    unfinished.write_text("half")
+    unfinished_path = tmp_path / "batches" / f"ab.0123456789ab{TEMPORARY_SUFFIX}"
+    unfinished_path.write_text("half")
     foreign = tmp_path / f"download{TEMPORARY_SUFFIX}"
     foreign.write_text("mine")
     run(study, tmp_path)
-    assert not unfinished.exists()
+    assert not unfinished_path.exists()
     assert foreign.exists()
 
 

@@ -1,4 +1,4 @@
-"""Profiles in studies: every kind, files of measured ones, and what they do to a case's identity."""
+"""Profiles in studies: every kind, files of measured profiles, and identities of cases."""
 
 from __future__ import annotations
 
@@ -66,15 +66,17 @@ def test_profile_object_table_and_json_agree(kind: str) -> None:
     assert built(profile) == profile
     table = profile_table(profile)
     assert table["kind"] == kind
-    again = json.loads(json.dumps(table))
-    assert built(again) == profile
-    assert case_id({"profile": profile}) == case_id({"profile": again})
+    restored_table = json.loads(json.dumps(table))
+    assert built(restored_table) == profile
+    assert case_id({"profile": profile}) == case_id({"profile": restored_table})
     assert format_profile(table)
 
 
 def test_the_documented_profiles_can_be_solved(tmp_path: Path) -> None:
     text = (ROOT / "docs" / "reference" / "study_file.md").read_text()
-    block = next(part for part in text.split("```toml\n") if part.startswith("[[sweep.profile]]")).split("```")[0]
+    block = next(section for section in text.split("```toml\n") if section.startswith("[[sweep.profile]]")).split(
+        "```"
+    )[0]
     trace(tmp_path / "traces", name="roller_7.csv")
     file = tmp_path / "documented.toml"
     file.write_text(as_toml(small_study(sweep={"e_over_a": [1.0]})) + block)
@@ -92,8 +94,8 @@ def test_identity_of_profiles_never_changes() -> None:
 def test_design_pressure(kind: str) -> None:
     more = {"edge_drop": 1e-6} if kind == "fujiwara-kawase" else {}
     modulus = BASE["young"] / (1 - BASE["poisson"] ** 2)
-    made = PROFILES[kind].profile_class.for_pressure(2e9, radius=BASE["radius"], modulus=modulus, **more)  # type: ignore[attr-defined]
-    assert built({"kind": kind, "design_pressure": 2e9, **more}) == made
+    profile = PROFILES[kind].profile_class.for_pressure(2e9, radius=BASE["radius"], modulus=modulus, **more)  # type: ignore[attr-defined]
+    assert built({"kind": kind, "design_pressure": 2e9, **more}) == profile
 
 
 def test_design_load() -> None:
@@ -120,8 +122,10 @@ def test_identity_depends_on_file_content_only(tmp_path: Path) -> None:
     assert identity(tmp_path / "one" / "trace.csv", remove_offset=True) == first
     assert identity(tmp_path / "one" / "trace.csv", largest_spike=1e-3) != first
     assert identity(tmp_path / "one" / "trace.csv", cutoff=1e-4) != first
-    filtered = built({"kind": "measured", "file": str(tmp_path / "one" / "trace.csv"), "cutoff": 1e-4, "turn": 180})
-    assert filtered.cutoff == 1e-4
+    filtered_profile = built(
+        {"kind": "measured", "file": str(tmp_path / "one" / "trace.csv"), "cutoff": 1e-4, "turn": 180}
+    )
+    assert filtered_profile.cutoff == 1e-4
 
 
 def test_profile_paths_are_relative_to_study_file(tmp_path: Path, monkeypatch) -> None:
@@ -144,9 +148,9 @@ def test_profile_paths_are_relative_to_study_file(tmp_path: Path, monkeypatch) -
     path.unlink()
     report = run_study(study, tmp_path / "results", workers=0, solver=solve_fake, progress=False)
     assert report.counts == {"ok": 2}
-    opened = open_study(tmp_path / "results")
-    assert opened["profile"].values.tolist() == ["trace", "both"]
-    assert (opened["status"] == "ok").all()
+    dataset = open_study(tmp_path / "results")
+    assert dataset["profile"].values.tolist() == ["trace", "both"]
+    assert (dataset["status"] == "ok").all()
 
 
 def test_labels_tell_measured_profiles_apart(tmp_path: Path) -> None:

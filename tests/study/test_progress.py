@@ -23,8 +23,8 @@ def watch(monkeypatch):
     return screen
 
 
-def ok(number):
-    return Outcome(f"{number:016x}", "ok", 1.0)
+def ok(index):
+    return Outcome(f"{index:016x}", "ok", 1.0)
 
 
 def test_the_time_left_follows_from_the_finished_cases(tmp_path, monkeypatch):
@@ -34,8 +34,8 @@ def test_the_time_left_follows_from_the_finished_cases(tmp_path, monkeypatch):
         progress.begin(4, total=4)
         for count, time in ((1, 110.0), (3, 120.0)):
             now[0] = time
-            for number in range(count):
-                progress.record(f"case {number}", ok(number))
+            for index in range(count):
+                progress.record(f"case {index}", ok(index))
             progress.show()
     lines = (tmp_path / "run.log").read_text().splitlines()
     assert [re.search(r"(\d+ s left|all done)", line).group() for line in lines[1:]] == ["30 s left", "all done"]

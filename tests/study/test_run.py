@@ -17,7 +17,7 @@ from contactstudy.study.folder import Folder
 from contactstudy.study.settings import RunSettings
 from tests.small_study import small_study
 from tests.stand_in_solver import DIES, FAILS, IS_LARGE, IS_WRONG, solve_fake
-from tests.study.conftest import ROOT, finished, intact
+from tests.study.conftest import ROOT, count_finished, intact
 
 NOBODY = 65534
 
@@ -54,7 +54,7 @@ def test_memory_error_fails_single_case(tmp_path):
     assert report.failures[0][1] == "MemoryError: Unable to allocate 7 EiB"
 
 
-def repaired(case, grid, **settings):
+def run_quietly(case, grid, **settings):
     settings_of_failed_case = case.friction
     assert settings_of_failed_case == FAILS
     object.__setattr__(case, "friction", 0.0)
@@ -64,28 +64,28 @@ def repaired(case, grid, **settings):
 def test_rerun_repairs(tmp_path):
     study = small_study(sweep={"e_over_a": [0, 1], "friction": [FAILS, 0.1]})
     run(study, tmp_path)
-    assert rerun_study(tmp_path, workers=0, solver=repaired).counts == {"ok": 4}
+    assert rerun_study(tmp_path, workers=0, solver=run_quietly).counts == {"ok": 4}
     assert "failed" not in open_study(tmp_path)["status"]
 
 
-@pytest.mark.parametrize(("number", "kind"), [(signal.SIGINT, KeyboardInterrupt), (signal.SIGTERM, Terminated)])
-def test_interrupt_message_contains_finished_cases(study, tmp_path, number, kind):
-    solved = []
+@pytest.mark.parametrize(("signal_number", "kind"), [(signal.SIGINT, KeyboardInterrupt), (signal.SIGTERM, Terminated)])
+def test_interrupt_message_contains_finished_cases(study, tmp_path, signal_number, kind):
+    solved_cases = []
 
     def interrupted(case, grid, **settings):
-        solved.append(case)
-        if len(solved) == 3:
-            signal.raise_signal(number)
+        solved_cases.append(case)
+        if len(solved_cases) == 3:
+            signal.raise_signal(signal_number)
         return solve_fake(case, grid, **settings)
 
     with pytest.raises(KeyboardInterrupt) as caught:
         run(study, tmp_path, solver=interrupted)
-    said = f"interrupted: 2 of 4 cases are kept in {tmp_path}; run again to go on"
-    assert (type(caught.value), str(caught.value)) == (kind, said)
-    shown = "".join(traceback.format_exception(caught.value))
-    assert "interrupted(case" not in shown
-    assert shown.count("File ") == 3  # this test, its helper and the door of the package
-    assert said in (tmp_path / "run.log").read_text()
+    message = f"interrupted: 2 of 4 cases are kept in {tmp_path}; run again to go on"
+    assert (type(caught.value), str(caught.value)) == (kind, message)
+    traceback_text = "".join(traceback.format_exception(caught.value))
+    assert "interrupted(case" not in traceback_text
+    assert traceback_text.count("File ") == 3  # this test, its helper and the public function
+    assert message in (tmp_path / "run.log").read_text()
     assert run(study, tmp_path).solved == 2
 
 
@@ -96,7 +96,7 @@ def test_an_error_of_the_program_stops_the_run(tmp_path, workers):
         run(study, tmp_path, workers=workers)
     assert "friction=0.88" in caught.value.__notes__[0]
     assert not Folder(tmp_path).holders
-    assert finished(tmp_path) >= 1
+    assert count_finished(tmp_path) >= 1
     assert "ZeroDivisionError" in (tmp_path / "run.log").read_text()
 
 
@@ -121,11 +121,11 @@ def two_batches(study, tmp_path, monkeypatch):
 def test_damaged_batch_loses_only_contained_cases(study, two_batches, content):
     path = batch_paths(two_batches / "batches")[0]
     path.write_bytes(content)
-    opened = open_study(two_batches)
-    lost = opened["status"] == "missing"
+    dataset = open_study(two_batches)
+    lost = dataset["status"] == "missing"
     assert int(lost.sum()) == 2
-    assert path.name in str(opened["message"].values[lost.values][0])
-    assert float(opened["peak_pressure"].where(~lost).min()) > 0
+    assert path.name in str(dataset["message"].values[lost.values][0])
+    assert float(dataset["peak_pressure"].where(~lost).min()) > 0
     report = run(study, two_batches)
     assert (report.solved, report.counts) == (2, {"ok": 4})
     assert (two_batches / "set-aside" / path.name).read_bytes() == content
@@ -207,26 +207,26 @@ def ordinary_user():
 @pytest.fixture
 def open_place():
     """A folder that every user may enter, as pytest's own is not."""
-    place = Path(tempfile.mkdtemp())
-    place.chmod(0o777)
-    yield place
-    for folder in (place, *place.glob("**/")):
+    path = Path(tempfile.mkdtemp())
+    path.chmod(0o777)
+    yield path
+    for folder in (path, *path.glob("**/")):
         folder.chmod(0o777)
-    shutil.rmtree(place)
+    shutil.rmtree(path)
 
 
 @pytest.mark.skipif(not hasattr(os, "geteuid"), reason="permissions of POSIX")
-@pytest.mark.parametrize("closed", ["", "batches"])
-def test_a_folder_without_permission(study, open_place, closed):
+@pytest.mark.parametrize("closed_folder", ["", "batches"])
+def test_a_folder_without_permission(study, open_place, closed_folder):
     folder = open_place / "out"
     run(study, folder)
     with_more = small_study(sweep={"e_over_a": [0, 1], "friction": [0, 0.1, 0.2]})
     for path in (folder, *folder.glob("**/*")):
         path.chmod(0o777)
-    (folder / closed).chmod(0o555)
+    (folder / closed_folder).chmod(0o555)
     with ordinary_user(), pytest.raises(StoreError, match=r"cannot write .*[Pp]ermission"):
         run(with_more, folder)
-    (folder / closed).chmod(0o777)
+    (folder / closed_folder).chmod(0o777)
     assert not Folder(folder).holders
     assert intact(folder)
     report = run(with_more, folder)
@@ -242,28 +242,28 @@ def test_forbidden_folder_raises(study, open_place):
 
 @pytest.fixture
 def small_disk(tmp_path):
-    """A file system of its own, too small for a study."""
-    place = tmp_path / "disk"
-    place.mkdir()
-    mount = ["mount", "-t", "tmpfs", "-o", "size=1200k", "tmpfs", str(place)]
+    """A file system too small for a study."""
+    path = tmp_path / "disk"
+    path.mkdir()
+    mount = ["mount", "-t", "tmpfs", "-o", "size=1200k", "tmpfs", str(path)]
     if shutil.which("mount") is None or subprocess.run(mount, capture_output=True, check=False).returncode:
         pytest.skip("needs the right to mount a file system")
-    yield place
-    subprocess.run(["umount", "-l", str(place)], check=True)
+    yield path
+    subprocess.run(["umount", "-l", str(path)], check=True)
 
 
 @pytest.mark.system
 @pytest.mark.parametrize("workers", [0, 1])
 def test_a_full_disk(small_disk, study, workers):
-    rest = small_disk / "other.bin"
-    rest.write_bytes(bytes(1_060_000))
+    filler = small_disk / "other.bin"
+    filler.write_bytes(bytes(1_060_000))
     with pytest.raises(StoreError, match=r"disk is full|No space"):
         run(study, small_disk / "out", workers=workers)
     assert not list(small_disk.glob("**/*.part-*"))
     assert not Folder(small_disk / "out").holders
     assert intact(small_disk / "out")
-    done = finished(small_disk / "out")
-    rest.unlink()
+    done = count_finished(small_disk / "out")
+    filler.unlink()
     report = run(study, small_disk / "out")
     assert (report.counts, report.solved) == ({"ok": 4}, 4 - done)
 
@@ -316,11 +316,13 @@ def test_a_sample_is_solved_for_an_estimate(study, tmp_path):
 
 
 def test_shares_are_independent_and_make_up_the_study(study, tmp_path):
-    for number in (2, 1, 3):
-        run(study, tmp_path / "shares", share=(number, 3))
+    for share_number in (2, 1, 3):
+        run(study, tmp_path / "shares", share=(share_number, 3))
     run(study, tmp_path / "whole")
-    shared, whole = (open_study(tmp_path / name).drop_vars("seconds").load() for name in ("shares", "whole"))
-    assert shared.identical(whole)
+    shared_study, whole_study = (
+        open_study(tmp_path / name).drop_vars("seconds").load() for name in ("shares", "whole")
+    )
+    assert shared_study.identical(whole_study)
     assert (tmp_path / "shares" / "run-2-of-3.log").exists()
     assert run(study, tmp_path / "shares").solved == 0
 

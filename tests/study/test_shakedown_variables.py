@@ -1,4 +1,4 @@
-"""Limits of first yield and shakedown among what a study keeps of each case."""
+"""Limits of first yield and shakedown in a study."""
 
 from __future__ import annotations
 
@@ -23,10 +23,10 @@ def test_shakedown_limits_with_sufficient_positions(tmp_path):
     assert (study["shakedown_limit"] > study["first_yield_limit"]).all()
     assert (study["shakedown_limit"].sel(friction=0.1) < study["shakedown_limit"].sel(friction=0.0)).all()
     setup = build_setup(BASE | PASSAGE | {"e_over_a": 1.0, "friction": 0.1})
-    found = shakedown_limit(solve(setup.case, setup.grid, **setup.options))
-    kept = study.sel(e_over_a=1.0, friction=0.1)
+    limit = shakedown_limit(solve(setup.case, setup.grid, **setup.options))
+    study_case = study.sel(e_over_a=1.0, friction=0.1)
     for name in ("shakedown_limit", "first_yield_limit", "peak_shakedown_stress_z"):
-        np.testing.assert_allclose(kept[name], found[name], rtol=1e-6)
+        np.testing.assert_allclose(study_case[name], limit[name], rtol=1e-6)
 
 
 def test_shakedown_limits_missing_with_few_positions(tmp_path):

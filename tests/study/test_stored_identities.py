@@ -52,16 +52,16 @@ def test_identities_of_stored_studies_never_change(name):
 
 
 def test_defaults_match_stored_cases():
-    """They come from the signatures of Case, choose_grid and solve: one that changes there needs a new SCHEMA here."""
+    """Defaults come from the signatures of Case, choose_grid and solve: a changed default needs a new SCHEMA."""
     assert {name: entry.default for name, entry in PARAMETERS.items() if entry.default is not None} == DEFAULTS
 
 
 def test_new_table_entry_adds_parameter(monkeypatch):
     def takes_more(case: Case, *, sharpness: float = 0.5) -> None: ...
 
-    new = Parameter(name="sharpness", check=check_number, units="1", meaning="made up", consumer=takes_more)
-    monkeypatch.setitem(PARAMETERS, "sharpness", new)
-    assert new.default == 0.5
+    new_parameter = Parameter(name="sharpness", check=check_number, units="1", meaning="made up", consumer=takes_more)
+    monkeypatch.setitem(PARAMETERS, "sharpness", new_parameter)
+    assert new_parameter.default == 0.5
     assert keywords_of(takes_more, {"sharpness": 0.7, "friction": 0.1}) == {"sharpness": 0.7}
 
 

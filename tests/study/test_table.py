@@ -106,8 +106,8 @@ ROUND_TRIPS = {
 @pytest.mark.parametrize("study", ROUND_TRIPS.values(), ids=ROUND_TRIPS)
 def test_an_opened_study_is_the_study(study: Study, tmp_path) -> None:
     run_study(study, tmp_path, workers=0, solver=solve_fake, progress=False)
-    again = Study.from_dataset(open_study(tmp_path))
-    assert again.to_json() == study.to_json()
+    restored_study = Study.from_dataset(open_study(tmp_path))
+    assert restored_study.to_json() == study.to_json()
     assert Study.from_dataset(collect(tmp_path), "other", level="summary").level == "summary"
 
 
@@ -117,18 +117,18 @@ def test_a_selection_of_an_opened_study(tmp_path) -> None:
         zip={"profile": [{"kind": "cylinder", "name": "sharp"}, "ellipsoid"], "tilt": [0.0, 1e-4]},
     )
     run_study(study, tmp_path, workers=0, solver=solve_fake, progress=False)
-    opened = collect(tmp_path)
-    part = opened.sel(e_over_a=[0, 2], friction=0.1)
-    again = Study.from_dataset(part, "finer", base={"cells_x": 8})
-    assert again.sweep == {"e_over_a": [0.0, 2.0], "friction": [0.1]}
-    assert again.zip[0]["profile"][0]["name"] == "sharp"
-    assert again.base["cells_x"] == 8.0
-    same = Study.from_dataset(part)
-    assert set(ids(same)) == set(part["case_id"].values.ravel())
-    some = opened.stack(all=opened["case_id"].dims).isel(all=[0, 3, 7])
-    assert set(ids(Study.from_dataset(some))) == set(some["case_id"].values)
+    dataset = collect(tmp_path)
+    selection = dataset.sel(e_over_a=[0, 2], friction=0.1)
+    finer_study = Study.from_dataset(selection, "finer", base={"cells_x": 8})
+    assert finer_study.sweep == {"e_over_a": [0.0, 2.0], "friction": [0.1]}
+    assert finer_study.zip[0]["profile"][0]["name"] == "sharp"
+    assert finer_study.base["cells_x"] == 8.0
+    equal_study = Study.from_dataset(selection)
+    assert set(ids(equal_study)) == set(selection["case_id"].values.ravel())
+    listed_cases = dataset.stack(all=dataset["case_id"].dims).isel(all=[0, 3, 7])
+    assert set(ids(Study.from_dataset(listed_cases))) == set(listed_cases["case_id"].values)
     with pytest.raises(InvalidInputError, match="base = 'tilt': must be a parameter that is not swept"):
-        Study.from_dataset(part, base={"tilt": 0.0})
+        Study.from_dataset(selection, base={"tilt": 0.0})
 
 
 def test_unknown_coordinate_raises() -> None:

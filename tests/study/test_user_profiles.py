@@ -1,4 +1,4 @@
-"""Profiles of the user's own in a study: identity by content, on workers, in the files, and what is refused."""
+"""User profiles in a study: identity by content, on workers, in files, and refused profiles."""
 
 from __future__ import annotations
 
@@ -54,9 +54,9 @@ def test_a_changed_formula_is_another_profile() -> None:
         def drop(self, x, length):
             return super().drop(x, length) + 1e-7 * (x / length) ** 4
 
-    before = identity(Now(2e-6))
+    first_identity = identity(Now(2e-6))
     Now.drop = Cosine.drop
-    assert identity(Now(2e-6)) != before
+    assert identity(Now(2e-6)) != first_identity
 
 
 def test_case_keeps_unmodified_profile() -> None:
@@ -78,13 +78,13 @@ def test_workers_solve_user_profile(tmp_path: Path) -> None:
     swept = {"profile": [Local(1e-4), Cosine(2e-6), "cylinder"], "friction": [0.0]}
     study = small_study(base=BASE | {"e_over_a": 1.0}, sweep=swept)
     assert run_study(study, tmp_path, workers=1, progress=False).counts == {"ok": 3}
-    opened = open_study(tmp_path)
-    assert opened.profile.values[1:].tolist() == ["Cosine(depth=2e-06, waves=1)", "cylinder"]
-    assert opened.profile.values[0].startswith("Local ")
+    dataset = open_study(tmp_path)
+    assert dataset.profile.values[1:].tolist() == ["Cosine(depth=2e-06, waves=1)", "cylinder"]
+    assert dataset.profile.values[0].startswith("Local ")
     first = load_case(tmp_path, study.plan()[0].id)
     assert '"class": "Local", "values": {"slope": 0.0001}' in first.attrs["contactstudy_case"]
-    kept = solved_case(first).roller.profile.drop(np.array([1e-4, 2e-4]), 0.5e-3)
-    np.testing.assert_allclose(kept, [1e-8, 2e-8])
+    drop = solved_case(first).roller.profile.drop(np.array([1e-4, 2e-4]), 0.5e-3)
+    np.testing.assert_allclose(drop, [1e-8, 2e-8])
 
 
 def test_process_without_user_profile_refuses_to_solve(tmp_path: Path, monkeypatch) -> None:
@@ -92,10 +92,10 @@ def test_process_without_user_profile_refuses_to_solve(tmp_path: Path, monkeypat
     run_study(study, tmp_path, workers=0, solver=solve_fake, progress=False)
     monkeypatch.setattr(user_profiles, "_registry", {})
     assert open_study(tmp_path).status.values.tolist() == ["ok"]
-    again = Folder(tmp_path).read_study()
-    assert run_study(again, tmp_path, workers=0, progress=False).counts == {"ok": 1}
+    restored_study = Folder(tmp_path).read_study()
+    assert run_study(restored_study, tmp_path, workers=0, progress=False).counts == {"ok": 1}
     with pytest.raises(InvalidInputError, match=r"profile = 'Wedge .*run the study from the script that makes this"):
-        run_study(again, tmp_path / "anew", workers=0, progress=False)
+        run_study(restored_study, tmp_path / "anew", workers=0, progress=False)
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,4 @@
-"""A contact wider than the usual window: a study solves it as solve does."""
+"""A study widens the window for a wide contact like `solve`."""
 
 import numpy as np
 import pytest
@@ -30,11 +30,11 @@ def test_default_window_is_widened(tmp_path):
     assert report.counts == {"ok": 1}
     setup = build_setup(WIDE)
     first = setup.grid
-    alone = first_sufficient(widening_grids(setup.case), lambda grid: solve(setup.case, grid, stresses=False))
-    stored = load_case(tmp_path, study.plan()[0].id)
-    assert alone.sizes["y"] > first.cells_y
-    np.testing.assert_array_equal(stored["pressure"], alone["pressure"])
-    assert stored.sizes["y"] == alone.sizes["y"]
+    separate_result = first_sufficient(widening_grids(setup.case), lambda grid: solve(setup.case, grid, stresses=False))
+    stored_case = load_case(tmp_path, study.plan()[0].id)
+    assert separate_result.sizes["y"] > first.cells_y
+    np.testing.assert_array_equal(stored_case["pressure"], separate_result["pressure"])
+    assert stored_case.sizes["y"] == separate_result.sizes["y"]
 
 
 def test_narrow_explicit_window_raises(tmp_path):
