@@ -111,8 +111,8 @@ def parts_of_the_main_job() -> Iterator[tuple[str, str]]:
 
     def time_work(work: Callable[[], T]) -> tuple[float, T]:
         start_time = time.perf_counter()
-        found = work()
-        return time.perf_counter() - start_time, found
+        output = work()
+        return time.perf_counter() - start_time, output
 
     seconds, result = time_work(lambda: solve(case, stresses=False))
     yield (

@@ -29,7 +29,7 @@ FUNCTIONS = sorted(
 
 
 @pytest.mark.parametrize("name", [*FUNCTIONS, "summary", "assess", "citations"])
-def test_methods_are_the_functions(case_result: xr.Dataset, name: str) -> None:
+def test_accessor_methods_equal_functions(case_result: xr.Dataset, name: str) -> None:
     arguments = ARGUMENTS.get(name, ())
     positional, options = ((), arguments) if isinstance(arguments, dict) else (arguments, {})
     result = getattr(case_result.contact, name)(*positional, **options)
@@ -49,7 +49,7 @@ def test_the_accessor_shows_the_main_numbers(case_result: xr.Dataset, study_data
     assert "<pre>study of" in study_dataset.contact._repr_html_()
 
 
-def test_a_file_opened_with_xarray(case_result: xr.Dataset, tmp_path) -> None:
+def test_accessor_of_opened_file(case_result: xr.Dataset, tmp_path) -> None:
     case_result.to_netcdf(tmp_path / "case.nc")
     with xr.open_dataset(tmp_path / "case.nc") as stored_result:
         assert float(stored_result.contact.largest_sample()["peak_von_mises"]) == float(case_result["von_mises"].max())

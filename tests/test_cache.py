@@ -24,17 +24,17 @@ def fresh() -> Iterator[None]:
 
 def recording_function(kind: str) -> tuple[Callable[[str], FloatArray], list[str]]:
     """Return a cached function of values as long as their names, and the list of its calls."""
-    made: list[str] = []
+    call_list: list[str] = []
 
     @cached(kind)
     def make(name: str) -> FloatArray:
-        made.append(name)
+        call_list.append(name)
         return np.frombuffer(name.encode(), np.uint8)
 
-    return make, made
+    return make, call_list
 
 
-def test_the_least_recently_used_is_dropped_first() -> None:
+def test_cache_drops_least_recently_used_value() -> None:
     cache.limit(10)
     make, calls = recording_function("letters")
     for name in ("aaaa", "bbbb", "aaaa", "cccc"):
@@ -56,7 +56,7 @@ def test_oversized_value_is_not_cached() -> None:
     assert calls == ["aaaa", "larger than all", "larger than all"]
 
 
-def test_arguments_by_name_are_part_of_the_key() -> None:
+def test_keyword_arguments_belong_to_key() -> None:
     @cached("products")
     def multiply(value: int, factor: int = 1) -> int:
         return value * factor
@@ -98,7 +98,7 @@ def test_smaller_limit_drops_oldest_values() -> None:
 
 
 @pytest.mark.parametrize("bound", [-1, 1.5, "1 GB"])
-def test_a_limit_is_a_number_of_bytes(bound: object) -> None:
+def test_invalid_cache_limit_raises(bound: object) -> None:
     with pytest.raises(InvalidInputError, match="nbytes"):
         cache.limit(bound)  # type: ignore[arg-type]
 

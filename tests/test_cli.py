@@ -75,7 +75,7 @@ def test_plan_solves_no_case(study_file, tmp_path, capsys):
     assert not (tmp_path / "results").exists()
 
 
-def test_plan_after_a_run_forecasts_the_new_cases(study_file, capsys):
+def test_plan_forecasts_new_cases(study_file, capsys):
     run(study_file)
     study_file.write_text(as_toml(small_study(sweep={"e_over_a": [0, 1, -9], "friction": [0, 0.1, 0.2]})))
     capsys.readouterr()
@@ -150,7 +150,7 @@ def test_wrong_number_of_workers(study_file, capsys):
     assert "workers = -1" in capsys.readouterr().err
 
 
-def test_an_error_of_the_program_is_not_hidden(study_file):
+def test_program_error_is_raised(study_file):
     study_file.write_text(as_toml(small_study(sweep={"e_over_a": [0], "friction": [IS_WRONG]})))
     with pytest.raises(ZeroDivisionError):
         run(study_file)
@@ -216,7 +216,7 @@ def test_many_cases_need_confirmation(study_file, capsys, monkeypatch):
         assert command("plan", study_file) == code
 
 
-def test_a_million_cases_are_refused(study_file, capsys):
+def test_oversized_study_raises(study_file, capsys):
     sweep = {"e_over_a": [n / 1000 for n in range(1001)], "friction": [n / 1000 for n in range(1000)]}
     study_file.write_text(as_toml(small_study(sweep=sweep)))
     assert command("plan", study_file, "--yes") == 2

@@ -42,7 +42,7 @@ def test_study_progress_is_logged(tmp_path: Path, caplog: pytest.LogCaptureFixtu
     assert any("1/1 cases" in record.getMessage() for record in caplog.records)
 
 
-def test_the_command_is_verbose_if_asked(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
+def test_verbose_option_logs_to_stderr(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
     (tmp_path / "small.toml").write_text(as_toml(small_study()))
     arguments = ["run", str(tmp_path / "small.toml"), "--out", str(tmp_path / "out"), "--workers", "0", "--no-figure"]
     logger = logging.getLogger("contactstudy")

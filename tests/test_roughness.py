@@ -127,7 +127,7 @@ def test_bad_values_are_named(changes, message: str) -> None:
         self_affine(GRID, **VALUES | changes)
 
 
-def test_a_grid_is_needed(tmp_path: Path) -> None:
+def test_missing_grid_raises(tmp_path: Path) -> None:
     with pytest.raises(InvalidInputError, match="grid = 'fine'"):
         self_affine("fine", **VALUES)
     with pytest.raises(InvalidInputError, match="grid = None"):

@@ -63,7 +63,7 @@ def fields(node: ast.ClassDef, classes: dict[str, ast.ClassDef]) -> set[str]:
     )
 
 
-def test_the_package_obeys_the_rules() -> None:
+def test_package_follows_rules() -> None:
     assert not violations(MODULES)
 
 

@@ -38,7 +38,7 @@ def test_measured_profile_repr_omits_points() -> None:
     )
 
 
-def test_a_case_says_load_pressure_and_place_first() -> None:
+def test_case_repr_begins_with_load() -> None:
     body = FiniteLengthSpace(length=16e-3, material=STEEL)
     roller = Roller(radius=6e-3, length=14e-3, profile=profiles.PartialCrown(6e-3, 2.0), material=STEEL)
     case = Case(body=body, roller=roller, load=9e3, friction=0.05, tilt=1e-3)
@@ -47,8 +47,8 @@ def test_a_case_says_load_pressure_and_place_first() -> None:
     assert lines[0].endswith("e = 1 mm")
     assert "end drop 4 µm, E = 210 GPa" in lines[1]
     assert lines[3] == "  friction 0.05, full sliding along +y; tilt 1 mrad"
-    balanced = replace(case, tilt=0.0, load_position=8e-3)
-    assert repr(balanced).splitlines()[3].endswith("load at x = 8 mm")
+    balanced_case = replace(case, tilt=0.0, load_position=8e-3)
+    assert repr(balanced_case).splitlines()[3].endswith("load at x = 8 mm")
     assert "Rolling(" in repr(replace(case, motion=Rolling(longitudinal_creepage=1e-3)))
     page = case_table(case)._repr_html_()
     assert page.count("<tr>") == page.count("</tr>") > 15

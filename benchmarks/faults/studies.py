@@ -16,7 +16,7 @@ import xarray as xr
 
 from contactstudy.cli import main
 from contactstudy.study import open_study, run_study, worker
-from contactstudy.study.batches import batch_paths, describe_damage
+from contactstudy.study.batches import batch_paths, find_damage
 from contactstudy.study.folder import Folder
 from contactstudy.study.settings import RunSettings
 from tests.small_study import as_toml, small_study
@@ -102,7 +102,7 @@ def count_finished(folder: Path) -> dict[bytes, int]:
 
 def unreadable(folder: Path) -> int:
     """Number of batches that are damaged."""
-    return sum(bool(describe_damage(path)) for path in batches(folder))
+    return sum(bool(find_damage(path)) for path in batches(folder))
 
 
 def resume(folder: Path) -> dict[str, int]:

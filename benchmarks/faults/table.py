@@ -8,7 +8,7 @@ from pathlib import Path
 BEGIN, END = "<!-- faults -->", "<!-- end of faults -->"
 """Lines of the page between which the table stands."""
 
-HEAD = "| fault | tried | passed | what was looked at |\n|---|---|---|---|"
+HEAD = "| fault | trials | passed | checked properties |\n|---|---|---|---|"
 
 
 @dataclass(frozen=True)

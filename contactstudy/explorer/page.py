@@ -196,10 +196,8 @@ class Page:
                 tops[side] = top_image(case, scale, limits)
                 planes[side] = plane_image(case, scale, limits, kind, fraction, name=self.measure.value)
         measure = next(text for text, name in MEASURES.items() if name == self.measure.value)
-        for images, figures, quantity in (
-            (tops, self.surface_figures, "pressure"),
-            (planes, self.plane_figures, measure),
-        ):
+        rows = (tops, self.surface_figures, "pressure"), (planes, self.plane_figures, measure)
+        for images, figures, quantity in rows:
             present = [image for image in images if image is not None]
             limit = max((image.limit for image in present), default=1.0)
             vertical = (
@@ -219,9 +217,8 @@ class Page:
 
     def _hide_empty(self, cases: list[CaseFields | None], sides: list[int]) -> str:
         """Hide figures without data, and return the reasons."""
-        tops, planes = (
-            [figure.has_image for figure in figures] for figures in (self.surface_figures, self.plane_figures)
-        )
+        tops = [figure.has_image for figure in self.surface_figures]
+        planes = [figure.has_image for figure in self.plane_figures]
         self._set_visible(0, any(tops))
         for pane, images in ((1, tops), (3, planes)):
             for side in (0, 1):

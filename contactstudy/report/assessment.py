@@ -16,12 +16,7 @@ from contactstudy.arrays.engineering import format_quantity
 from contactstudy.case.serialization import tables_within
 from contactstudy.report.summary_table import NOT_ESTIMATED, Quantity, Summary, summary
 
-YES, CAUTION, NO, UNKNOWN = (
-    "yes",
-    "with care",
-    "no",
-    "not known",
-)  # Answers; "not known" if the result lacks the number
+YES, CAUTION, NO, UNKNOWN = "yes", "with care", "no", "not known"  # Answers; "not known" without the number
 LOAD_TOLERANCE, RESIDUAL_TOLERANCE, VIOLATION_TOLERANCE = 1e-6, 1e-3, 1e-4
 """Largest relative error of the load, residual of free ends and of Coulomb's law, and violation of the contact
 conditions: each is below the digits that a summary prints."""

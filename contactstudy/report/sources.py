@@ -86,11 +86,9 @@ def citations(dataset: xr.Dataset) -> Citations:
     if any(name in dataset for name in STRESSES):
         sources.append(SUBSURFACE)
     profile_tables = list(tables_within(profile))
-    kinds = {_normalize_kind(table["kind"]) for table in profile_tables}
-    sources += [
-        (f"profile {kind}", source) for kind, source in sorted(PROFILES.items()) if _normalize_kind(kind) in kinds
-    ]
-    if any(_normalize_kind(table["kind"]) == "measured" and "cutoff" in table for table in profile_tables):
+    kinds = {_normalize(table["kind"]) for table in profile_tables}
+    sources += [(f"profile {kind}", source) for kind, source in sorted(PROFILES.items()) if _normalize(kind) in kinds]
+    if any(_normalize(table["kind"]) == "measured" and "cutoff" in table for table in profile_tables):
         sources.append(FILTER)
     return Citations(tuple(dict.fromkeys(sources)))
 
@@ -120,6 +118,6 @@ def _models_of_study(study: dict[str, Any]) -> tuple[set[str], Any]:
     return models, [{"kind": profile} if isinstance(profile, str) else profile for profile in profiles]
 
 
-def _normalize_kind(kind: str) -> str:
+def _normalize(kind: str) -> str:
     """Kind of a profile in the spelling that classes and study files share."""
     return str(kind).replace("-", "").lower()

@@ -199,7 +199,7 @@ def checksum(path: Path) -> int:
     return code
 
 
-def describe_damage(path: Path) -> str:
+def find_damage(path: Path) -> str:
     """Reason why a file is not an intact batch, or empty."""
     if not is_regular(path):
         return "it is not a regular file"

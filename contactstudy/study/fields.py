@@ -177,14 +177,10 @@ class Fields:
         positions = self._positions[dim]
         equal_positions = all(np.array_equal(values, positions.values[0]) for values in positions.values)
         name = dim if equal_positions else f"{dim}_index"
-        size = max(values.size for values in positions.values)
+        size, index = max(values.size for values in positions.values), positions.position_index
 
         def coordinate(rows: list[FloatArray]) -> tuple[Any, ...]:
-            return (
-                (name, rows[0])
-                if _all_equal(rows, rows[0])
-                else self._pad_rows(name, rows, positions.position_index, size)
-            )
+            return (name, rows[0]) if _all_equal(rows, rows[0]) else self._pad_rows(name, rows, index, size)
 
         coordinates = {dim: coordinate(positions.values)}
         if positions.has_widths:

@@ -40,7 +40,7 @@ from contactstudy.study.batches import (
     batch_paths,
     common_attributes,
     count_cases,
-    describe_damage,
+    find_damage,
     join_batches,
     read_batch,
     read_case,
@@ -388,7 +388,7 @@ class Folder:
         """Results after every byte was verified, and messages on files that were damaged and are set aside."""
         paths = batch_paths(self.batches)
         damaged = {
-            path: reason for path in paths if path.name.startswith(share.prefix) and (reason := describe_damage(path))
+            path: reason for path in paths if path.name.startswith(share.prefix) and (reason := find_damage(path))
         }
         results = Results([path for path in paths if path not in damaged])
         if share.count == 1:

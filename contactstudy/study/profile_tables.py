@@ -62,10 +62,8 @@ class ProfileKind:
     @cached_property
     def defaults(self) -> dict[str, Any]:
         """Default of every field; MISSING where a value is required."""
-        return {
-            entry.name: None if entry.name in self.radius_multiples else entry.default
-            for entry in fields(self.profile_class)
-        }
+        entries = fields(self.profile_class)
+        return {entry.name: None if entry.name in self.radius_multiples else entry.default for entry in entries}
 
     def read(self, table: Mapping[str, Any], depth: int) -> Table:
         """Check keys and values of a table without `kind` and `name`; omit defaults."""

@@ -105,10 +105,8 @@ def resultant_checks() -> Iterator[Check]:
         spectrum = modes.load_weights * modes.cosine(np.array([distance]))[:, 0]
         solution = system.solve(system.source(Load.NORMAL, spectrum))
         on_top = system.on_top(solution) / modes.weights
-        small_wavenumbers = np.abs(modes.ray) < 3e-3  # against 1 / distance; the lateral wavenumber is smaller still
-        top = 1 + 0.5 * np.pi * float(
-            np.interp(1e-3, np.abs(modes.ray[small_wavenumbers]), on_top.real[small_wavenumbers])
-        )
+        low = np.abs(modes.ray) < 3e-3  # against 1 / distance; the lateral wavenumber is smaller still
+        top = 1 + 0.5 * np.pi * float(np.interp(1e-3, np.abs(modes.ray[low]), on_top.real[low]))
         end = -0.5 * np.pi * float(np.interp(1e-3, system.depth, solution / system.scale))
         case = f"equivalent loads of a unit load, nu = {poisson:g}"
         yield Reference(case, EXACT_LIMIT).compare("resultant on the top", top, TOP_RESULTANT, 5e-3)

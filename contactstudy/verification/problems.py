@@ -59,10 +59,8 @@ def strip(x: FloatArray, y: FloatArray) -> FloatArray:
 def strip_means(x_range: Range, y_range: Range, cells: tuple[int, int]) -> xr.DataArray:
     """Means of `strip` over the cells, from its integral over y: exact resultants."""
     grid = Grid(x_range=x_range, y_range=y_range, cells_x=cells[0], cells_y=cells[1])
-    clipped_edges = np.clip(np.linspace(*y_range, grid.cells_y + 1), -1.0, 1.0)
-    return on_grid(
-        np.diff(0.5 * (clipped_edges * np.sqrt(1 - clipped_edges**2) + np.arcsin(clipped_edges))) / grid.dy, grid
-    )
+    edges = np.clip(np.linspace(*y_range, grid.cells_y + 1), -1.0, 1.0)
+    return on_grid(np.diff(0.5 * (edges * np.sqrt(1 - edges**2) + np.arcsin(edges))) / grid.dy, grid)
 
 
 def point_pressure(grid: Grid, row: int, column: int) -> xr.DataArray:

@@ -204,7 +204,7 @@ KALKER = ((1.0, 0.25), (1.0, 0.5), (0.5, 0.0), (5.0, 0.25))
 WHOLE_RANGE = (0.1, 0.3, 1.0, 1 / 0.4, 10.0)
 # Cells each way of the two grids; of an ellipse of 10 to 1 those along rolling, which would be long otherwise
 KALKER_CELLS, LONG_CELLS = (34, 62), (62, 118)
-SMALL_CREEPAGE = 1e-6  # Creepage without slip but in a few cells
+CREEPAGE = 1e-6  # Creepage without slip but in a few cells
 
 
 def kalker_checks(*, full: bool) -> Iterator[Check]:
@@ -216,11 +216,7 @@ def kalker_checks(*, full: bool) -> Iterator[Check]:
     }
     further = [pair for pair in published if full and pair[0] in WHOLE_RANGE and pair not in KALKER]
     names = ("c11", "c22")
-    motions = (
-        Rolling(longitudinal_creepage=SMALL_CREEPAGE),
-        Rolling(lateral_creepage=SMALL_CREEPAGE),
-        Rolling(spin=-SMALL_CREEPAGE),
-    )
+    motions = Rolling(longitudinal_creepage=CREEPAGE), Rolling(lateral_creepage=CREEPAGE), Rolling(spin=-CREEPAGE)
     for ratio, poisson in (*KALKER, *further):
         table = published[ratio, poisson]
         within, counts = 0.015, KALKER_CELLS if ratio < 10 else LONG_CELLS
@@ -232,7 +228,7 @@ def kalker_checks(*, full: bool) -> Iterator[Check]:
             for motion in motions:
                 result = rolling_ellipse(across, 1.0, 0.01, steel, 1.0, motion=motion, cells=cells)
                 force = float(result["force_y" if motion.longitudinal_creepage else "force_x"])
-                forces.append(force / (SMALL_CREEPAGE * across * (np.sqrt(across) if motion.spin else 1.0)))
+                forces.append(force / (CREEPAGE * across * (np.sqrt(across) if motion.spin else 1.0)))
             coefficients.append(forces)
         # Of first order in the cells that a semi-axis has, without the three next to the contact.
         coarse_count, fine_count = (count - 6 for count in counts)
@@ -309,12 +305,10 @@ def fast_checks() -> Iterator[Check]:
     distance = -hot.max_temperature_rise_y / a
     yield Reference(name, source).compare("distance behind the middle / a", distance, behind, 0.02)
     yield Reference(name, "symmetry").compare("part of the heat in the body", hot.body_heat_share, 0.5, 2e-3)
-    surface_difference = abs(hot.temperature_rise - hot.roller_temperature_rise).where(result.pressure > 0)
-    max_difference, quantity = (
-        surface_difference.max() / hot.max_temperature_rise,
-        "surfaces' difference where they touch, over the rise",
-    )
-    yield Reference(name, "shared heat").compare(quantity, max_difference, 0.0, 1e-6)
+    difference = abs(hot.temperature_rise - hot.roller_temperature_rise).where(result.pressure > 0)
+    quantity = "surfaces' difference where they touch, over the rise"
+    relative_difference = difference.max() / hot.max_temperature_rise
+    yield Reference(name, "shared heat").compare(quantity, relative_difference, 0.0, 1e-6)
     motion = Sliding(body_speed=-400.0, roller_speed=-100.0)
     unlike = flash_temperature(replace(case, motion=motion), result, body=STEEL_HEAT, roller=STEEL_HEAT)
     name = "fast line contact, the body four times as fast"

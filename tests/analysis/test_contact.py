@@ -22,7 +22,7 @@ def contact(values: list[list[float]]) -> xr.Dataset:
 VALUES = [[0, 0, 0], [0, 1, 0], [2, 3, 2], [0, 4, 1], [0, 0, 0]]
 
 
-def test_along_the_axis_by_hand() -> None:
+def test_axial_profiles_equal_manual_reduction() -> None:
     profiles = analysis.axial_profiles(contact(VALUES))
     assert profiles["axial_pressure"].values.tolist() == [0, 1, 3, 4, 0]
     assert profiles["line_load"].values.tolist() == [0, 1, 7, 5, 0]
@@ -92,9 +92,9 @@ def test_moment_about_another_point(about: float) -> None:
 def test_contact_length_loss(strip_result) -> None:
     result = strip_result()
     assert float(analysis.contact_results(result)["contact_length_loss"]) == pytest.approx(0, abs=1e-12)
-    lifted = result.assign(pressure=result["pressure"].where(result["x"] > 2, 0.0))
-    assert float(analysis.contact_results(lifted)["contact_length_loss"]) == pytest.approx(1)
-    assert float(analysis.contact_results(lifted)["moment"]) > 0
+    partial_contact = result.assign(pressure=result["pressure"].where(result["x"] > 2, 0.0))
+    assert float(analysis.contact_results(partial_contact)["contact_length_loss"]) == pytest.approx(1)
+    assert float(analysis.contact_results(partial_contact)["moment"]) > 0
 
 
 @given(half_width=st.floats(0.4, 1.9), centre=st.floats(-0.3, 0.3))
@@ -229,6 +229,8 @@ def test_cut_of_a_solved_contact(case_result: xr.Dataset) -> None:
 
 
 def test_order_of_positions(case_result: xr.Dataset) -> None:
-    mixed = case_result.isel(x=slice(None, None, -1), y=np.random.default_rng(1).permutation(case_result.sizes["y"]))
-    xr.testing.assert_identical(analysis.edge_pressure(mixed), analysis.edge_pressure(case_result))
-    xr.testing.assert_identical(analysis.half_width(mixed).sortby("x"), analysis.half_width(case_result))
+    shuffled_result = case_result.isel(
+        x=slice(None, None, -1), y=np.random.default_rng(1).permutation(case_result.sizes["y"])
+    )
+    xr.testing.assert_identical(analysis.edge_pressure(shuffled_result), analysis.edge_pressure(case_result))
+    xr.testing.assert_identical(analysis.half_width(shuffled_result).sortby("x"), analysis.half_width(case_result))

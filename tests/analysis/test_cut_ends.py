@@ -43,8 +43,8 @@ def test_ends_of_halves(flush: xr.Dataset, with_attributes: bool) -> None:
 
 
 def test_missing_cells(flush: xr.Dataset) -> None:
-    thinned = flush.isel(x=slice(None, None, 2))
-    assert not np.isnan(ends(thinned)).any()
+    sparse_result = flush.isel(x=slice(None, None, 2))
+    assert not np.isnan(ends(sparse_result)).any()
 
 
 def test_pressures_in_megapascals(flush: xr.Dataset) -> None:

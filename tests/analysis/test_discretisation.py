@@ -80,7 +80,7 @@ def test_contact_inside_the_profile():
     assert float(result.end_pressure_first) == float(result.end_pressure_first_error) == 0.0
 
 
-def test_the_fine_grid_must_be_finer():
+def test_coarser_reference_raises():
     contact = solve_on_cells(case_of(8 * HALF_WIDTH, profiles.Cylinder()), 16)
     with pytest.raises(InvalidInputError, match="coarse"):
         discretisation_error(contact, contact)
@@ -181,7 +181,7 @@ def test_advice_for_coarse_cells():
 
 
 @pytest.mark.parametrize("wider", [1.5, 1.0005])
-def test_uneven_columns_are_not_told_a_uniform_grid(wider):
+def test_graded_columns_get_no_grid_advice(wider):
     """The middles of columns of two widths in turn have equal distances; their widths may differ by nanometres."""
     case = case_of(8 * HALF_WIDTH, profiles.Cylinder(fillet_radius=0.05e-3))
     edges = np.cumsum([0.0, *np.tile([1.0, wider], 16)])

@@ -108,12 +108,12 @@ def test_needs_pressure_and_gap(missing):
         contact_edges(ellipsoid(1.8, 16).drop_vars(missing))
 
 
-def test_not_a_dataset():
+def test_wrong_type_raises():
     with pytest.raises(InvalidInputError, match="Dataset"):
         contact_edges([1.0])
 
 
-def test_area_with_a_border_short_of_a_centre():
+def test_contact_area_near_cell_centres():
     """A small fillet, where the pressure piles up: the fitted border may lie within the outermost loaded column."""
     material, modulus = Material(210e9, 0.3), 0.5 * Material(210e9, 0.3).plane_strain_modulus
     half_width = 2 * 1.5e9 * 5e-3 / modulus

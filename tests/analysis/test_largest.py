@@ -85,14 +85,14 @@ def test_unresolved_pressure_peak(x: float, z: float, axis: str) -> None:
     assert f"m apart along {axis}, the pressure varies within 0.2 m: take at most 0.1 m" in comment
 
 
-def beside_a_narrow_peak(near: np.ndarray) -> xr.Dataset:
+def beside_a_narrow_peak(point_x: np.ndarray) -> xr.Dataset:
     """A uniform pressure with a peak 0.1 wide at x = 5, and a distant hill of stress at 0.3."""
     positions = np.arange(-2.0, 6.0, 0.02)
     line = 1.0 + np.sqrt(np.maximum(1 - ((positions - 5.0) / 0.1) ** 2, 0.0))
     pressure = xr.DataArray(
         line[:, None] * np.ones(40), coords={"x": positions, "y": 0.1 * np.arange(40)}, dims=("x", "y")
     )
-    x = np.concatenate([np.arange(-1.0, 1.5, 0.3), near])
+    x = np.concatenate([np.arange(-1.0, 1.5, 0.3), point_x])
     return hill(x, np.arange(0.0, 2.0, 0.04)).rename(x="x_field", y="y_field").assign(pressure=pressure)
 
 

@@ -111,7 +111,7 @@ def test_positions_in_millimetres(strip_result) -> None:
     assert np.allclose(analysis.positions_over_a(in_mm)["x_over_a"], analysis.positions_over_a(result)["x_over_a"])
 
 
-def test_positions_over_a_twice(strip_result) -> None:
+def test_positions_over_a_are_idempotent(strip_result) -> None:
     scaled = analysis.normalized(strip_result(1e-4, 1e9))
     with pytest.raises(InvalidInputError, match="already"):
         analysis.positions_over_a(scaled)

@@ -63,7 +63,7 @@ def test_summary_with_separate_stress_points():
     }
 
 
-def test_a_field_without_a_number_is_no_result():
+def test_nan_field_has_no_peak():
     with pytest.raises(InvalidInputError, match="nan"):
         stress_summary(xr.Dataset({"von_mises": ("x", [np.nan])}))
 

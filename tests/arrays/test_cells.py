@@ -54,7 +54,7 @@ def test_uniform_cells_need_no_more_coordinates() -> None:
 
 @given(ratios=st.lists(st.floats(0.35, 2.9), min_size=2, max_size=20))
 @example(ratios=[1.0, 0.99999])
-def test_labels_lead_back_to_the_cells(ratios: list[float]) -> None:
+def test_labels_restore_grid(ratios: list[float]) -> None:
     edges = np.append(0.0, np.cumsum(np.cumprod([1.0, *ratios])))
     grid = Grid.from_edges(edges, (-1.0, 1.0), 4)
     dataset = xr.Dataset(

@@ -94,7 +94,7 @@ def test_cells_along_y_are_checked(y_range: tuple[float, float], cells_y: int) -
 
 
 @given(distance=st.floats(1e-3, 1e4), width=st.floats(1e-3, 10.0))
-def test_growing_cells_reach_the_distance_and_grow_gently(distance: float, width: float) -> None:
+def test_growing_edges_cover_distance(distance: float, width: float) -> None:
     edges = growing_edges(distance, width)
     assert edges[-1] == pytest.approx(distance)
     widths = np.diff(np.append(0.0, edges))

@@ -11,7 +11,7 @@ from contactstudy.arrays.peaks import interpolate_about, lagrange_weights, peak_
 
 
 @given(offset=st.floats(-0.5, 0.5), cells=st.integers(8, 40))
-def test_top_of_an_ellipse_wherever_the_cells_lie(offset: float, cells: int) -> None:
+def test_section_maxima_of_shifted_ellipse(offset: float, cells: int) -> None:
     step = 3.0 / cells
     y = step * (np.arange(cells) - 0.5 * cells + 0.5 + offset)
     pressure = np.sqrt(np.maximum(1 - y**2, 0.0))[None, :]

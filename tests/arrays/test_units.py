@@ -36,7 +36,7 @@ from contactstudy.roughness import heights_on
 OnCells = Callable[..., xr.DataArray]
 
 
-def test_a_gap_in_millimetres_on_cells_in_micrometres(on_cells: OnCells, half_space: HalfSpace) -> None:
+def test_gap_and_cells_in_other_units(on_cells: OnCells, half_space: HalfSpace) -> None:
     gap = on_cells(lambda x, y: 0.5 * (x**2 + y**2), (-1.5, 1.5), (-1.5, 1.5), (24, 24))
     scaled = (1e3 * gap).assign_attrs(units="mm").assign_coords(x=1e6 * gap.x, y=1e6 * gap.y)
     for axis in ("x", "y"):
@@ -46,7 +46,7 @@ def test_a_gap_in_millimetres_on_cells_in_micrometres(on_cells: OnCells, half_sp
     np.testing.assert_allclose(computed["x"], expected["x"], rtol=1e-12)
 
 
-def test_a_pressure_in_gigapascals(on_cells: OnCells, half_space: HalfSpace) -> None:
+def test_pressure_in_gigapascals(on_cells: OnCells, half_space: HalfSpace) -> None:
     pressure = on_cells(lambda x, y: 1.0 + 0 * x + 0 * y, (-1.0, 1.0), (-1.0, 1.0), (8, 8))
     scaled = (1e-9 * pressure).assign_attrs(units="GPa")
     displacements = [surface_displacement(half_space, load) for load in (scaled, pressure)]
@@ -211,7 +211,7 @@ def test_result_scalar_is_accepted_as_load() -> None:
     assert case_with(load=load) == case_with(load=123.0)
 
 
-def test_a_study_takes_scalars_with_units() -> None:
+def test_study_converts_scalars_with_units() -> None:
     base = {"young": scalar(210, "GPa"), "poisson": 0.3, "radius": scalar(5, "mm"), "roller_length": 1e-3}
     study = Study(name="a", base=base | {"e_over_a": 0}, sweep={"max_pressure": [scalar(1500, "MPa"), 1e9]})
     assert (study.base["young"], study.base["radius"], study.sweep["max_pressure"]) == (210e9, 5e-3, [1.5e9, 1e9])
@@ -236,7 +236,7 @@ def test_a_study_takes_scalars_with_units() -> None:
         (da.Array, repr(da.Array)),
     ],
 )
-def test_no_message_shows_a_whole_array(value: object, message: str) -> None:
+def test_messages_abbreviate_arrays(value: object, message: str) -> None:
     with pytest.raises(InvalidInputError) as caught:
         Roller(radius=value, length=1e-3)
     assert str(caught.value) == f"radius = {message}: must be a positive finite number (metres)"

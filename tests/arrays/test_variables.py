@@ -122,12 +122,14 @@ def returned_datasets(strip_result: Callable[..., xr.Dataset], study_dataset: xr
     case_result = cs.solve(case, grid, y=grid.y[::4], x=grid.x[::4], z=depths)
     pressure = case_result["pressure"]
     contact = cs.solve_contact(body, case_result["initial_gap"], load=case.normal_load)
-    coarse = cs.solve(case, grid.coarsened(), stresses=False)
+    coarse_result = cs.solve(case, grid.coarsened(), stresses=False)
     # Sharp rigid ends inside the face: the pressure is singular at both.
     wider = cs.FiniteLengthSpace(length=2 * length, material=steel)
     sharp = cs.Case(body=wider, roller=cs.Roller(radius=5e-3, length=length), max_pressure=1.5e9)
     chamfer = cs.profiles.Chamfer(width=0.1e-3, angle=0.01)
-    chamfered = cs.Case(body=body, roller=cs.Roller(radius=5e-3, length=length, profile=chamfer), max_pressure=1.5e9)
+    chamfered_case = cs.Case(
+        body=body, roller=cs.Roller(radius=5e-3, length=length, profile=chamfer), max_pressure=1.5e9
+    )
     strip = strip_result(half_width, 1.5e9)
     limits = fatigue.FatigueLimits(bending=500e6, torsion=300e6)
     criterion = fatigue.dang_van(strip, limits)
@@ -136,17 +138,17 @@ def returned_datasets(strip_result: Callable[..., xr.Dataset], study_dataset: xr
     file = tmp_path_factory.mktemp("rough") / "map.nc"
     rough.to_netcdf(file)
     check = Reference("case", "closed form").compare("peak pressure", 1.0, 1.0, 0.1)
-    checked = suite.Verification("full", {"one": [check]})
+    verification = suite.Verification("full", {"one": [check]})
     law = bearing.ContactLaw(law_table(Presser(case, 0.1, 1e-4), NODES, np.full((2, *NODES.load.shape), 0.01)))
     smooth = cs.Roller(radius=5e-3, length=length, profile=cs.profiles.Lundberg(1e-7), material=steel)
-    crowned = cs.Case(body=body, roller=smooth, max_pressure=1.5e9)
-    oiled = replace(
-        crowned,
+    crowned_case = cs.Case(body=body, roller=smooth, max_pressure=1.5e9)
+    oiled_case = replace(
+        crowned_case,
         motion=cs.Sliding(body_speed=2.0, roller_speed=2.0),
         lubricant=cs.Lubricant.preset("heavy machine oil", 60.0).replaced(conductivity=0.14),
     )
-    lubricated = film.solve_film(
-        oiled,
+    film_result = film.solve_film(
+        oiled_case,
         accuracy=0.2,
         asperities=film.Asperities(rms=2e-7),
         resolution=film.FilmResolution(finest=1.1, finest_share=0.25, inner=0.3, columns=0.5, levels=3),
@@ -154,7 +156,7 @@ def returned_datasets(strip_result: Callable[..., xr.Dataset], study_dataset: xr
     values: dict[str, xr.Dataset | xr.DataArray] = {
         "solve": case_result,
         "solve on refined columns": cs.solve(sharp, x=[2e-4, 4e-4], y=[-1e-5, 0.0, 1e-5], z=depths, accuracy=0.1),
-        "solve, chamfered": cs.solve(chamfered, stresses=False, accuracy=0.1),
+        "solve, chamfered": cs.solve(chamfered_case, stresses=False, accuracy=0.1),
         "solve_contact": contact,
         "solve_contact, rolling": _contact_with_motion(case, contact, cs.Rolling(longitudinal_creepage=1e-3)),
         "solve_contact, shifted": _contact_with_motion(case, contact, cs.Shift(y=1e-8)),
@@ -168,18 +170,18 @@ def returned_datasets(strip_result: Callable[..., xr.Dataset], study_dataset: xr
         "contact_law": law.table,
         "at": law.at([2e-6, 3e-6], [0.0, 1e-4]),
         "under": bearing.Raceways(law, law).under([1e4, 2e4], [0.0, 1.0]),
-        "lamina_factors": bearing.lamina_factors(cs.solve(crowned, grid, stresses=False), laminae=4),
-        "reference_life": bearing.reference_life(crowned, crowned, (1e3, 1e3), laminae=4, accuracy=0.1),
+        "lamina_factors": bearing.lamina_factors(cs.solve(crowned_case, grid, stresses=False), laminae=4),
+        "reference_life": bearing.reference_life(crowned_case, crowned_case, (1e3, 1e3), laminae=4, accuracy=0.1),
         "best_profile": design.best_profile(
-            crowned,
+            crowned_case,
             cs.profiles.Lundberg,
             bounds={"amplitude": (1e-7, 4e-7)},
             measure=lambda result: (1.0, 1.0),
             accuracy=0.1,
             evaluations=8,
         ),
-        "solve_film": lubricated,
-        "film_traction": film.film_traction(oiled, lubricated, [0.0, 0.1]),
+        "solve_film": film_result,
+        "film_traction": film.film_traction(oiled_case, film_result, [0.0, 0.1]),
         "flash_temperature": heat.flash_temperature(
             replace(case, motion=cs.Sliding(body_speed=-1.0, roller_speed=1.0)),
             case_result,
@@ -188,7 +190,10 @@ def returned_datasets(strip_result: Callable[..., xr.Dataset], study_dataset: xr
             z=depths,
         ),
         "case_numbers": xr.Dataset(
-            {name: ((), number.value, number.attributes) for name, number in case_numbers(case_result).items()}
+            {
+                name: ((), entry_number.value, entry_number.attributes)
+                for name, entry_number in case_numbers(case_result).items()
+            }
         ),
         "self_affine": rough,
         "read_height_map": cs.roughness.read_height_map(file, grid),
@@ -199,7 +204,7 @@ def returned_datasets(strip_result: Callable[..., xr.Dataset], study_dataset: xr
         "collect": study_dataset.drop_dims(
             [dim for dim in study_dataset.dims if dim not in study_dataset["status"].dims]
         ),
-        "verify": checked.to_dataset(),
+        "verify": verification.to_dataset(),
         "load_between": analysis.load_between(case_result, 0.0, 1e-4),
         "peak": xr.merge([analysis.largest_sample(case_result, name) for name in ("pressure", "von_mises")]),
         "edge_factors": analysis.edge_factors(case_result, reference=case_result),
@@ -209,7 +214,7 @@ def returned_datasets(strip_result: Callable[..., xr.Dataset], study_dataset: xr
         **{f"measure, {rank}": analysis.measure(case_result, f"principal_stress_{rank}") for rank in (1, 2, 3)},
         "edge_tension": edge_tension(case_result),
         "positions": analysis.positions(pressure, "x"),
-        "discretisation_error": analysis.discretisation_error(case_result, coarse),
+        "discretisation_error": analysis.discretisation_error(case_result, coarse_result),
         "slices": analysis.slices(case_result, 4),
         "dang_van": criterion,
         "crossland": fatigue.crossland(strip, limits),
@@ -261,7 +266,7 @@ def test_table_contains_all_variables(returned_datasets: Returned) -> None:
     assert unlike == []
 
 
-def test_every_coordinate_stands_in_a_table(returned_datasets: Returned) -> None:
+def test_tables_contain_all_coordinates(returned_datasets: Returned) -> None:
     known_names = {*PARAMETERS}
     strangers = [
         (function, name)
@@ -288,7 +293,7 @@ def test_dimensions_match_table(returned_datasets: Returned) -> None:
     assert unlike == []
 
 
-def test_every_row_of_the_table_is_returned(returned_datasets: Returned) -> None:
+def test_results_cover_variable_table(returned_datasets: Returned) -> None:
     names = {str(name) for dataset in returned_datasets.values() for name in dataset.data_vars}
     assert VARIABLES.keys() - names == set()
     coordinates = {str(name) for dataset in returned_datasets.values() for name in dataset.coords}
@@ -305,7 +310,7 @@ def test_listed_cases_have_case_coordinate() -> None:
     assert set(cube_of_axes([]).labels) == {"case"}
 
 
-def test_no_brace_is_left_in_a_label(returned_datasets: Returned) -> None:
+def test_labels_contain_no_braces(returned_datasets: Returned) -> None:
     for dataset in returned_datasets.values():
         for array in dataset.variables.values():
             assert "{" not in str(array.attrs.get("long_name", "")) + str(array.attrs.get("units", ""))
@@ -313,9 +318,9 @@ def test_no_brace_is_left_in_a_label(returned_datasets: Returned) -> None:
 
 def test_unknown_name_keeps_attributes() -> None:
     dataset = xr.Dataset({"luck": ("y", [1.0])}, {"y": [0.0]})
-    described = describe(dataset)
-    assert described["luck"].attrs == {}
-    assert described["y"].attrs["units"] == "m"
+    labelled_dataset = describe(dataset)
+    assert labelled_dataset["luck"].attrs == {}
+    assert labelled_dataset["y"].attrs["units"] == "m"
     assert dataset["y"].attrs == {}
     assert specification("peak_luck") is None
     assert specification("peak_") is None
@@ -367,13 +372,13 @@ def test_axis_labels_are_short() -> None:
         assert len(f"{attributes['long_name']} [{attributes.get('units', '')}]") <= 30, name
 
 
-def test_numbers_without_an_error_carry_the_mark(case_result: xr.Dataset) -> None:
+def test_numbers_without_error_are_marked(case_result: xr.Dataset) -> None:
     """Every scalar in SI of a result or its summary has an error, is an input, or is marked as not estimated."""
     input_names = ("normal_load", "hertz_half_width", "hertz_max_pressure", "tilt", "end_traction_residual")
-    for stated in (case_result, analysis.contact_results(case_result), analysis.edge_factors(case_result)):
-        for name, value in stated.data_vars.items():
+    for dataset in (case_result, analysis.contact_results(case_result), analysis.edge_factors(case_result)):
+        for name, value in dataset.data_vars.items():
             is_number = value.ndim == 0 and value.dtype.kind == "f" and not str(name).endswith("_error")
-            if is_number and name not in input_names and f"{name}_error" not in stated:
+            if is_number and name not in input_names and f"{name}_error" not in dataset:
                 assert value.attrs[ERROR_KIND] == NOT_ESTIMATED, name
     values = (case_result["load_position"], *analysis.axial_profiles(case_result).data_vars.values())
     assert all(value.attrs[ERROR_KIND] == NOT_ESTIMATED for value in values)
@@ -399,7 +404,7 @@ def test_require_suggests_the_nearest_variable() -> None:
         require(xr.Dataset({"gap": 0.0, "peak_von_mises": 0.0}), "peak_vonmises")
 
 
-def test_require_quotes_the_message_of_a_failed_case() -> None:
+def test_require_message_contains_case_failure() -> None:
     failed = xr.Dataset({"status": "failed", "message": "too narrow"})
     with pytest.raises(InvalidInputError, match=r"a failed case.*too narrow"):
         require(failed, "pressure")

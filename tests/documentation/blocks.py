@@ -122,14 +122,14 @@ def run_toml(example: Example) -> None:
 
 
 @functools.cache
-def furnished() -> Path:
+def make_working_folder() -> Path:
     """Folder whose content every page finds."""
     folder = Path(tempfile.mkdtemp(prefix="contactstudy-page-"))
     (folder / "studies").mkdir()
     for study in (ROOT / "studies").glob("*.toml"):
         shutil.copy(study, folder / "studies")
     x = np.linspace(0, 10, 201)
-    rows = (f"{at:.3f}, {0.2 * (at - 4.9) ** 2:.5f}" for at in x)
+    rows = (f"{position:.3f}, {0.2 * (position - 4.9) ** 2:.5f}" for position in x)
     (folder / "roller_7.csv").write_text("\n".join(["x [mm], drop [um]", *rows]))
     return folder
 
@@ -137,7 +137,7 @@ def furnished() -> Path:
 def begin_page(names: dict[str, Any]) -> None:
     """Go to a copy of the furnished folder."""
     folder = tempfile.mkdtemp(prefix="contactstudy-page-")
-    shutil.copytree(furnished(), folder, dirs_exist_ok=True)
+    shutil.copytree(make_working_folder(), folder, dirs_exist_ok=True)
     names |= {"result": solved_case(), "_before": os.getcwd(), "_folder": folder}
     os.chdir(folder)
 

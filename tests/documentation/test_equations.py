@@ -26,7 +26,7 @@ def docs_only() -> set[str]:
     return set(chain.from_iterable(comment.split(", ") for comment in comments))
 
 
-def cited() -> set[str]:
+def cited_equations() -> set[str]:
     """Equations that comments and docstrings of the package cite."""
     values: set[str] = set()
     for path in CODE:
@@ -42,8 +42,8 @@ def test_numbers_are_unique() -> None:
 
 
 def test_equations_are_cited() -> None:
-    assert set(tags()) - cited() == docs_only()
-    assert cited() <= set(tags())
+    assert set(tags()) - cited_equations() == docs_only()
+    assert cited_equations() <= set(tags())
 
 
 @cache

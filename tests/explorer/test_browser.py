@@ -35,7 +35,7 @@ def address(folder: Path) -> Iterator[str]:
             server.terminate()
 
 
-def test_the_page_shows_a_study_and_follows(address: str) -> None:
+def test_page_follows_widgets(address: str) -> None:
     with browser(1400, 900) as page:
         errors: list[str] = []
         page.on("pageerror", lambda error: errors.append(str(error)))

@@ -67,7 +67,7 @@ def test_choices_of_swept_parameters(page: Page) -> None:
 
 
 @any_source
-def test_figures_and_numbers_of_a_choice(page: Page) -> None:
+def test_figures_follow_chosen_case(page: Page) -> None:
     first_maximum = largest_drawn(page)
     assert ">1 GPa<" in page.table.object
     page.choices[0]["max_pressure"].value = 2
@@ -187,7 +187,7 @@ def test_error_bars_and_open_marks(page: Page) -> None:
     assert error_page.study.figure.title.text == ""
 
 
-def test_planes_against_the_analysis(folder: Path) -> None:
+def test_planes_equal_analysis_cuts(folder: Path) -> None:
     case = open_cases(folder).load((0, 0, 0))
     scale = choose_scale(case, relative=False)
     limits = region_limits(case, REGIONS[0])
@@ -241,7 +241,7 @@ def test_singular_end_is_not_drawn(case_result: xr.Dataset) -> None:
     assert high - low <= 8 * float(case_result["hertz_half_width"])
 
 
-def test_ticks_change_only_with_the_parameter(page: Page) -> None:
+def test_ticks_change_with_parameter_only(page: Page) -> None:
     axis = page.study.figure.xaxis[0]
     numeric_ticker = axis.ticker
     page.choices[0]["max_pressure"].value = 1
@@ -257,14 +257,14 @@ def test_ticks_change_only_with_the_parameter(page: Page) -> None:
     assert axis.major_label_overrides == {}
 
 
-def test_pixels_are_linear_and_constant_beyond_the_points() -> None:
+def test_pixel_interpolation_is_linear_inside_points() -> None:
     x, y = np.array([0.0, 1.0, 4.0]), np.array([0.0, 2.0])
     image = to_pixels(x[:, None] + y, (x, y), ((-1.0, 5.0), (0.0, 2.0)), (6, 2))
     assert image.shape == (2, 6)
     assert image[0].tolist() == [0.5, 1.0, 2.0, 3.0, 4.0, 4.5]
 
 
-def test_push_to_a_notebook(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_notebook_receives_updates(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     import panel as pn
     from bokeh.document import Document
     from panel.io.model import add_to_doc

@@ -104,8 +104,8 @@ SOCKET = {
 def test_hosts_and_tokens(server_port: tuple[int, str]) -> None:
     port, token = server_port
     cookie = {"Cookie": f"contactstudy-{port}={token}"}
-    allowed = (f"localhost:{port}", "localhost:9999", "127.0.0.1:1", "[::1]:5006", "LOCALHOST", "proxy.example")
-    for host in allowed:
+    allowed_hosts = (f"localhost:{port}", "localhost:9999", "127.0.0.1:1", "[::1]:5006", "LOCALHOST", "proxy.example")
+    for host in allowed_hosts:
         assert request(port, "/", Host=host, **cookie).status == 200, host
     for host in ("rebound.example", f"rebound.example:{port}", "localhost.example", "192.168.0.7", "", "[::1"):
         for path in ("/", f"/?token={token}", "/ws"):

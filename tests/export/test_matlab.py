@@ -16,12 +16,12 @@ from contactstudy.errors import StoreError
 from contactstudy.stress import tresca
 
 
-def read(path: Path) -> dict:
+def read_mat(path: Path) -> dict:
     return loadmat(path, simplify_cells=True)
 
 
 def test_round_trip(case_result: xr.Dataset, tmp_path: Path) -> None:
-    content = read(export.to_mat(case_result, tmp_path / "case.mat"))
+    content = read_mat(export.to_mat(case_result, tmp_path / "case.mat"))
     for name, array in case_result.variables.items():
         np.testing.assert_array_equal(np.squeeze(content[name]), np.squeeze(array.values), err_msg=name)
         if array.ndim > 1:
@@ -35,7 +35,7 @@ def test_round_trip(case_result: xr.Dataset, tmp_path: Path) -> None:
 
 
 def test_study(study_dataset: xr.Dataset, tmp_path: Path) -> None:
-    content = read(export.to_mat(study_dataset, tmp_path / "study.mat"))
+    content = read_mat(export.to_mat(study_dataset, tmp_path / "study.mat"))
     assert content["pressure"].shape == study_dataset["pressure"].shape
     np.testing.assert_array_equal(content["peak_pressure"], study_dataset["peak_pressure"])
     np.testing.assert_array_equal(content["status"], study_dataset["status"].values.astype(object))
@@ -44,10 +44,10 @@ def test_study(study_dataset: xr.Dataset, tmp_path: Path) -> None:
 
 
 def test_measures_tables_and_single_variables(case_result: xr.Dataset, tmp_path: Path) -> None:
-    content = read(export.to_mat(case_result, tmp_path / "one.mat", "tresca"))
+    content = read_mat(export.to_mat(case_result, tmp_path / "one.mat", "tresca"))
     np.testing.assert_allclose(content["tresca"], tresca(case_result))
     assert set(content["units"]) == {"tresca", *map(str, tresca(case_result).coords)}
-    assert "half_width" in read(export.to_mat(slices(case_result, 5), tmp_path / "slices.mat"))
+    assert "half_width" in read_mat(export.to_mat(slices(case_result, 5), tmp_path / "slices.mat"))
 
 
 def test_bad_input(case_result: xr.Dataset, tmp_path: Path) -> None:
@@ -67,9 +67,9 @@ def test_bad_input(case_result: xr.Dataset, tmp_path: Path) -> None:
     assert not list(tmp_path.iterdir())
 
 
-def test_from_the_command_line(case_result: xr.Dataset, tmp_path: Path, capsys) -> None:
+def test_export_by_command_line(case_result: xr.Dataset, tmp_path: Path, capsys) -> None:
     case_result.to_netcdf(tmp_path / "case.nc")
     assert main(["export", str(tmp_path / "case.nc"), "--format", "mat"]) == 0
-    assert read(tmp_path / "case.mat")["normal_load"] == float(case_result["normal_load"])
+    assert read_mat(tmp_path / "case.mat")["normal_load"] == float(case_result["normal_load"])
     assert main(["export", str(tmp_path / "case.nc"), "--format", "mat", "--line=0,0,0:1,0,0"]) == 2
     assert "left out for MAT" in capsys.readouterr().err

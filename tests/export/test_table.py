@@ -96,7 +96,7 @@ def test_no_link_is_followed(case_result: xr.Dataset, tmp_path, write) -> None:
     assert {path.suffix for path in link.parent.iterdir()} <= {suffix, ".pdf"}
 
 
-def test_a_failed_write_keeps_the_previous_file(tmp_path) -> None:
+def test_failed_write_keeps_previous_content(tmp_path) -> None:
     path = tmp_path / "result.csv"
     path.write_text("previous")
     with pytest.raises(UnicodeEncodeError), checks.writing(path) as temporary_path:

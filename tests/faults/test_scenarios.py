@@ -48,7 +48,7 @@ def test_faults_hold(undisturbed: xr.Dataset) -> None:
 
 
 @pytest.mark.system
-def test_a_lost_file_is_counted(undisturbed: xr.Dataset, monkeypatch) -> None:
+def test_lost_file_is_counted(undisturbed: xr.Dataset, monkeypatch) -> None:
     monkeypatch.setattr(scenarios, "DAMAGES", (lambda path, other: path.unlink(),))
     monkeypatch.setattr(studies, "unreadable", lambda folder: 1)
     assert scenarios.damaged_files(undisturbed, 1).passed == 0

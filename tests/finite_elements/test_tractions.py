@@ -76,8 +76,11 @@ def test_displacements_of_the_top(bump: Bump, lateral: float) -> None:
     body = HarmonicBody(Line(mesh.mesh_x(LENGTH), 6), Line(depth[:deep_enough], 6), POISSON)
     amplitudes = body.solve(lateral, [(bump, NAMES[load]) for load in NAMES])
     for index, load in enumerate(NAMES):
-        result = {each: body.surface(amplitudes, AT.tolist(), "xyz".index(NAMES[each]))[index] for each in NAMES}
-        maximum = max(float(np.abs(each).max()) for each in result.values())
+        result = {
+            component: body.surface(amplitudes, AT.tolist(), "xyz".index(NAMES[component]))[index]
+            for component in NAMES
+        }
+        maximum = max(float(np.abs(component).max()) for component in result.values())
         for direction, expected in result.items():
             # Odd in y, the package has the factor of -sin(k y); under a traction along y the elements have -cos(k y).
             sign = -1 if Y in (direction, load) else 1

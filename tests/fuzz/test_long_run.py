@@ -20,11 +20,11 @@ def run(monkeypatch, tmp_path):
     """Run so many cases that are made up; returns the exit code and the seeds that were run."""
     seeds: list[int] = []
 
-    def made_up(rng: Random, **options) -> Outcome:
+    def make_outcome(rng: Random, **options) -> Outcome:
         return Outcome("violation" if rng.random() < 0.2 else "converged", "said", ("balance",))
 
     real = Random
-    monkeypatch.setattr(long_run, "outcome_of", made_up)
+    monkeypatch.setattr(long_run, "outcome_of", make_outcome)
     monkeypatch.setattr(long_run, "Random", lambda seed: seeds.append(seed) or real(seed))
 
     def command(*arguments: str) -> tuple[int, list[int]]:
@@ -53,10 +53,10 @@ def test_resumed_run(run, tmp_path, capsys) -> None:
 
 def test_foreign_errors_are_violations(monkeypatch) -> None:
     def fails(error: Exception):
-        def raising(*arguments: object, **options: object) -> None:
+        def raise_error(*arguments: object, **options: object) -> None:
             raise error
 
-        return raising
+        return raise_error
 
     for error, kind in ((ZeroDivisionError(), "violation"), (InvalidInputError("a", 1, "b"), "refused")):
         monkeypatch.setattr(outcome, "draw_case", fails(error))

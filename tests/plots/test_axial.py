@@ -116,7 +116,7 @@ def test_depth_axis_points_down(wear_result):
     assert not loads.yaxis_inverted()
 
 
-def test_lines_differ_and_are_named_by_the_distance(wear_result, assert_nothing_clipped):
+def test_wear_lines_have_distance_labels(wear_result, assert_nothing_clipped):
     ax = plots.plot_wear(wear_result)
     assert [text.get_text() for text in ax.get_legend().get_texts()] == ["0 m", "10 m"]
     wear_axes = plots.plot_wear(wear_result.assign_coords(distance=[1e4 / 3, 2e4]))

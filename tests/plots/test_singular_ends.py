@@ -15,7 +15,7 @@ def sharp():
     return solve(case, stresses=False, accuracy=0.05)
 
 
-def test_the_ends_are_found_where_the_roller_ends(sharp):
+def test_singular_ends_lie_at_roller_ends(sharp):
     np.testing.assert_allclose(singular_ends(sharp), [0.2e-3, 1.2e-3], rtol=1e-9)
 
 

@@ -43,11 +43,13 @@ def test_end_face_contours_are_continuous(case_result, assert_nothing_clipped):
     # Four half-widths are known along y: two on either side of the fold.
     assert low == pytest.approx(-2.0)
     assert high == pytest.approx(4.0)
-    assert [tick.get_text() for tick in ax.get_xticklabels()] == [f"{abs(at):g}" for at in ax.get_xticks()]
+    assert [tick.get_text() for tick in ax.get_xticklabels()] == [
+        f"{abs(tick_position):g}" for tick_position in ax.get_xticks()
+    ]
     assert_nothing_clipped(ax.figure)
 
 
-def test_both_ends_of_a_symmetric_case_look_alike(case_result, inks):
+def test_symmetric_case_has_equal_end_faces(case_result, inks):
     pictures = [inks(plots.plot_end_face(case_result, end=end).figure) for end in ("first", "last")]
     assert (np.abs(pictures[0].astype(int) - pictures[1]).max(axis=-1) > 40).mean() < 0.01
 

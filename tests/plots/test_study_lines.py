@@ -38,7 +38,7 @@ def test_missing_quantity_raises(study_dataset):
         plots.plot_study_lines(study_dataset, ["no_such_thing"], x="e_over_a")
 
 
-def test_the_first_solved_cases_are_drawn_and_named(study_dataset):
+def test_lines_show_first_solved_cases(study_dataset):
     failed_first = study_dataset.isel(friction=[1, 0])
     figure = plots.plot_study_lines(failed_first, x="e_over_a", hue="body")
     assert figure.get_suptitle() == "friction = 0.1, one of 2 values"

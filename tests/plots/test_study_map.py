@@ -21,7 +21,7 @@ def test_map_of_a_study(study_dataset, assert_nothing_clipped):
     assert_nothing_clipped(ax.figure)
 
 
-def test_listed_cases_are_spread_and_the_gaps_counted(assert_nothing_clipped):
+def test_map_counts_missing_listed_cases(assert_nothing_clipped):
     listed_cases = xr.Dataset(
         {"peak_pressure": ("case", [1e9, 2e9, 3e9, np.nan]), "status": ("case", ["ok", "ok", "ok", "failed"])},
         coords={"e_over_a": ("case", [0.0, 0.0, 1.0, 2.0]), "friction": ("case", [0.0, 0.1, 0.1, 0.0])},
@@ -34,7 +34,7 @@ def test_listed_cases_are_spread_and_the_gaps_counted(assert_nothing_clipped):
         plots.plot_study_map(listed_cases.assign_coords(friction=("case", np.zeros(4))), "peak_pressure")
 
 
-def test_a_full_map_has_no_legend(study_dataset):
+def test_complete_map_has_no_legend(study_dataset):
     complete_study = study_dataset.isel(friction=[0]).sel(body="finite-length")
     assert plots.plot_study_map(complete_study, "peak_von_mises").get_legend() is None
 

@@ -94,8 +94,8 @@ def test_traction_map_contains_magnitude_and_stick_border(assert_nothing_clipped
     assert_nothing_clipped(ax.figure)
     slip = plots.plot_traction_map(result, variable="slip")
     assert slip.figure.axes[-1].get_ylabel() == "slip per distance rolled"
-    shifted = result.assign({name: result[name].assign_attrs(units="m") for name in ("slip_x", "slip_y")})
-    assert "mm" in plots.plot_traction_map(shifted, variable="slip").figure.axes[-1].get_ylabel()
+    shift_result = result.assign({name: result[name].assign_attrs(units="m") for name in ("slip_x", "slip_y")})
+    assert "mm" in plots.plot_traction_map(shift_result, variable="slip").figure.axes[-1].get_ylabel()
     with pytest.raises(InvalidInputError, match="heat"):
         plots.plot_traction_map(result, variable="heat")
     with pytest.raises(InvalidInputError, match="stick"):
@@ -134,22 +134,24 @@ def test_bad_input(study_dataset, study_case, draw):
 
 
 @pytest.fixture(scope="module")
-def hot(case_result):
+def heated_result(case_result):
     rise = 1e-8 * case_result["pressure"].copy()
     return case_result.assign(temperature_rise=rise, frictional_heat=case_result["pressure"])
 
 
-def test_temperature_map_marks_maximum(hot, assert_nothing_clipped):
-    ax = plots.plot_temperature_map(hot)
-    assert np.asarray(ax.collections[0].get_array()).max() == pytest.approx(float(hot.temperature_rise.max()))
-    hottest = hot.temperature_rise.where(hot.temperature_rise == hot.temperature_rise.max(), drop=True)
-    assert ax.lines[0].get_xdata()[0] == pytest.approx(float(hottest.x[0] / hot.hertz_half_width))
+def test_temperature_map_marks_maximum(heated_result, assert_nothing_clipped):
+    ax = plots.plot_temperature_map(heated_result)
+    assert np.asarray(ax.collections[0].get_array()).max() == pytest.approx(float(heated_result.temperature_rise.max()))
+    hottest_cell = heated_result.temperature_rise.where(
+        heated_result.temperature_rise == heated_result.temperature_rise.max(), drop=True
+    )
+    assert ax.lines[0].get_xdata()[0] == pytest.approx(float(hottest_cell.x[0] / heated_result.hertz_half_width))
     assert "x/a" in ax.get_xlabel()
     assert_nothing_clipped(ax.figure)
 
 
-def test_a_surface_without_temperature_is_refused(hot):
+def test_surface_without_temperature_raises(heated_result):
     with pytest.raises(InvalidInputError, match="roller_temperature_rise"):
-        plots.plot_temperature_map(hot, surface="roller")
+        plots.plot_temperature_map(heated_result, surface="roller")
     with pytest.raises(InvalidInputError, match="surface"):
-        plots.plot_temperature_map(hot, surface="ball")
+        plots.plot_temperature_map(heated_result, surface="ball")

@@ -68,7 +68,7 @@ class Page(HTMLParser):
         return " ".join(" ".join(self.words).split())
 
 
-def read(path: Path) -> Page:
+def read_page(path: Path) -> Page:
     text = path.read_text(encoding="utf-8")
     page = Page(text)
     assert all(address.startswith("data:image/svg+xml;base64,") for address in page.fetched)
@@ -78,7 +78,7 @@ def read(path: Path) -> Page:
 
 
 @pytest.fixture
-def unencoded(monkeypatch: pytest.MonkeyPatch) -> None:
+def without_encoding(monkeypatch: pytest.MonkeyPatch) -> None:
     """Figures are drawn, but not encoded."""
     for module in (figures, study_page):
         monkeypatch.setattr(module, "encode_figure", lambda figure: "data:image/svg+xml;base64,")
@@ -86,7 +86,7 @@ def unencoded(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_page_of_a_case(case_result: xr.Dataset, tmp_path: Path) -> None:
     case_result.to_netcdf(tmp_path / "roller.nc")
-    page = read(report.write(tmp_path / "roller.nc"))
+    page = read_page(report.write(tmp_path / "roller.nc"))
     for text in (
         *("roller", "0.52 mm apart", "E = 210 GPa", "fillet radius 0.1 mm", "1.5 GPa", "friction coefficient 0.1"),
         *("Is this number real?", "With care", "was not estimated", "to scale in both directions", "numpy"),
@@ -98,7 +98,7 @@ def test_page_of_a_case(case_result: xr.Dataset, tmp_path: Path) -> None:
     assert len(page.fetched) == 7
 
 
-@pytest.mark.usefixtures("unencoded")
+@pytest.mark.usefixtures("without_encoding")
 def test_singular_peak(case_result: xr.Dataset) -> None:
     singular = case_result.assign(
         peak_pressure=np.inf, peak_pressure_error=np.inf, end_pressure_first=np.inf, end_intensity_first=1e6
@@ -109,7 +109,7 @@ def test_singular_peak(case_result: xr.Dataset) -> None:
     assert "its intensity replaces the peak" in page.text
 
 
-@pytest.mark.usefixtures("unencoded")
+@pytest.mark.usefixtures("without_encoding")
 def test_dataset_without_inputs(case_result: xr.Dataset) -> None:
     page = Page(report.html(case_result.drop_attrs()))
     assert "contains no inputs" in page.text
@@ -126,7 +126,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def page(folder: Path) -> Page:
-    return read(report.write(folder))
+    return read_page(report.write(folder))
 
 
 def test_page_of_a_study(page: Page) -> None:
@@ -152,7 +152,7 @@ def test_reason_of_several_cases() -> None:
     assert reason == "the error of the peak pressure is 10.0% in the worst case, 6.0% in the best"
 
 
-@pytest.mark.usefixtures("unencoded")
+@pytest.mark.usefixtures("without_encoding")
 def test_open_ends_coarse_cells_and_malformed_runs(tmp_path: Path) -> None:
     assert study_page._verdict(settled_cases(0.1, 0.001)) == ("with care", "1 real with care, 1 real")
     assert study_page._verdict(settled_cases(0.001, 0.001)) == ("yes", "2 real")
@@ -177,7 +177,7 @@ def test_open_ends_coarse_cells_and_malformed_runs(tmp_path: Path) -> None:
     assert names == ["end_pressure_first"]
 
 
-@pytest.mark.usefixtures("unencoded")
+@pytest.mark.usefixtures("without_encoding")
 def test_inputs_in_engineers_units(tmp_path: Path) -> None:
     profile = {"kind": "cylinder", "fillet_radius": 5e-5}
     study = small_study(base=BASE | {"e_over_a": 1.0}, sweep={"tilt": [0.0, 3e-4], "profile": ["cylinder", profile]})
@@ -191,7 +191,7 @@ def test_inputs_in_engineers_units(tmp_path: Path) -> None:
     pyplot.close("all")
 
 
-@pytest.mark.usefixtures("unencoded")
+@pytest.mark.usefixtures("without_encoding")
 def test_numbers_and_figure_of_singular_ends(tmp_path: Path) -> None:
     def sharp(case: Case, *given, **more) -> xr.Dataset:
         units = {"units": "Pa m^0.5" if case.friction == 0 else "Pa m^0.34"}
@@ -220,7 +220,7 @@ def test_numbers_and_figure_of_singular_ends(tmp_path: Path) -> None:
 
 @pytest.mark.browser
 @pytest.mark.skipif(chromium() is None, reason="Chromium is not installed")
-def test_width_of_a_study_on_screens(folder: Path, tmp_path: Path) -> None:
+def test_figure_widths_on_screens(folder: Path, tmp_path: Path) -> None:
     pytest.importorskip("playwright")
     path = report.write(folder, tmp_path / "study.html")
     natural_widths = {}
@@ -232,17 +232,17 @@ def test_width_of_a_study_on_screens(folder: Path, tmp_path: Path) -> None:
             natural_widths[width] = page.evaluate(widths)
             hints = page.locator(".hint").evaluate_all("all => all.filter(each => each.offsetParent).length")
             assert bool(hints) == (width == 420)
-    assert all(shown <= 1.4 * natural + 4 for shown, natural in natural_widths[1400])
-    assert all(shown < 400 or shown <= 0.5 * natural + 2 for shown, natural in natural_widths[420])
+    assert all(shown_width <= 1.4 * natural + 4 for shown_width, natural in natural_widths[1400])
+    assert all(shown_width < 400 or shown_width <= 0.5 * natural + 2 for shown_width, natural in natural_widths[420])
 
 
-@pytest.mark.usefixtures("unencoded")
+@pytest.mark.usefixtures("without_encoding")
 def test_page_of_a_case_of_a_study(folder: Path, tmp_path: Path, capsys) -> None:
     path = tmp_path / "case.nc"
     load_case(folder, str(open_study(folder)["case_id"].values.ravel()[0])).to_netcdf(path)
     assert main(["report", str(path), "--out", str(tmp_path / "case.html"), "--title", "Case"]) == 0
     assert "case.html" in capsys.readouterr().out
-    page = read(tmp_path / "case.html")
+    page = read_page(tmp_path / "case.html")
     for text in ("E = 210 GPa", "two free ends", "study small", "length L 0.5 mm"):
         assert text in page.text, text
 
@@ -272,18 +272,18 @@ def test_report_without_distributed(tmp_path: Path) -> None:
     subprocess.run([sys.executable, "-c", WITHOUT, str(tmp_path)], check=True)
 
 
-def test_suffix_of_the_page(tmp_path: Path) -> None:
+def test_page_suffix_is_checked(tmp_path: Path) -> None:
     with pytest.raises(InvalidInputError, match=r"x.pdf': must be a name that ends in .html.*prints the page to PDF"):
         report.write(xr.Dataset(), tmp_path / "x.pdf")
 
 
-@pytest.mark.usefixtures("unencoded")
+@pytest.mark.usefixtures("without_encoding")
 def test_selection_of_figures(page: Page, folder: Path, tmp_path: Path, capsys) -> None:
     assert "Of coefficient of friction and roller profile the figure has the value in its title" in page.text
     assert "contactstudy report FOLDER --select friction=0.66" in page.text
     chosen = ["--select", "profile=<b>rounded</b>", "--select", "friction=0"]
     assert main(["report", str(folder), "--out", str(tmp_path / "one.html"), *chosen]) == 0
-    selected_page = read(tmp_path / "one.html")
+    selected_page = read_page(tmp_path / "one.html")
     assert "the figure has the value" not in selected_page.text
     assert {f"case-{index}" for index in range(1, 13)} <= selected_page.anchors
     assert main(["report", str(folder), "--select", "speed=1"]) == 2
@@ -307,7 +307,7 @@ def test_only_drawn_cases_are_loaded(folder: Path, monkeypatch) -> None:
     assert len(set(loaded)) == 2  # of four that are solved: two over e/a
 
 
-@pytest.mark.usefixtures("unencoded")
+@pytest.mark.usefixtures("without_encoding")
 def test_rolling_case(case_result: xr.Dataset) -> None:
     in_contact = (case_result["pressure"] > 0).drop_attrs()
     sticking = in_contact & (in_contact["y"] > 0)
@@ -337,8 +337,10 @@ MALFORMED_SETTINGS = ({"cells": "given"}, {"cells": "given", "tolerance": "x", "
 @pytest.mark.parametrize(("run", "settings"), [*zip(MALFORMED, MALFORMED_SETTINGS, strict=True)])
 def test_malformed_run_and_settings(case_result: xr.Dataset, run: dict[str, object], settings: object) -> None:
     attributes = {"contactstudy_run": run, "contactstudy_inputs": {"settings": settings}}
-    changed = {name: json.dumps(json.loads(case_result.attrs[name]) | entries) for name, entries in attributes.items()}
-    page = report.html(case_result[["normal_load", "iterations"]].assign_attrs(changed))
+    changed_attributes = {
+        name: json.dumps(json.loads(case_result.attrs[name]) | entries) for name, entries in attributes.items()
+    }
+    page = report.html(case_result[["normal_load", "iterations"]].assign_attrs(changed_attributes))
     assert "many" not in page
     assert "numpy" in page
     assert "Numbers" in page

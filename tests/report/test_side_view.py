@@ -24,9 +24,9 @@ def case(body: Body | None = None, **roller: object) -> Case:
 @pytest.fixture
 def drawn_figures(monkeypatch: pytest.MonkeyPatch) -> list[Figure]:
     """Figures that become pictures."""
-    kept: list[Figure] = []
-    monkeypatch.setattr(figures, "encode_figure", lambda figure: kept.append(figure) or "data:")
-    return kept
+    figure_list: list[Figure] = []
+    monkeypatch.setattr(figures, "encode_figure", lambda figure: figure_list.append(figure) or "data:")
+    return figure_list
 
 
 def texts(figure: Figure) -> list[str]:
@@ -48,9 +48,9 @@ def test_side_view_has_equal_scales(drawn_figures: list[Figure]) -> None:
 
 @pytest.mark.parametrize("crown_radius", [0.5, 1.0, 20.0])
 def test_magnification_of_a_crown(crown_radius: float) -> None:
-    crowned = case(profile=profiles.FullCrown(crown_radius))
-    view = side_geometry(crowned)
-    factor = float(re.search(r"magnified (\S+) times", side_view(crowned).caption)[1])
+    crowned_case = case(profile=profiles.FullCrown(crown_radius))
+    view = side_geometry(crowned_case)
+    factor = float(re.search(r"magnified (\S+) times", side_view(crowned_case).caption)[1])
     assert view.generatrix.max() == pytest.approx(factor * 7e-3**2 / (2 * crown_radius), rel=0.01)
     assert not view.clipped
 

@@ -85,11 +85,11 @@ def test_stick_and_slip(case_result: xr.Dataset) -> None:
     assert (view["sticking_part"].text, view["sticking_part"].remark) == ("0", "error not estimated")
     assert view["largest_traction"].text == "50 MPa"
     assert view["largest_slip"].text == "0.002 per distance rolled"
-    shifted = rolling_result.assign(slip_y=(2e-6 * in_contact).assign_attrs(units="m"), shift_y=3e-6)
-    assert summary(shifted)["largest_slip"].text == "2 \N{MICRO SIGN}m"
-    assert summary(shifted)["shift_y"].remark == "error not estimated"
+    shift_result = rolling_result.assign(slip_y=(2e-6 * in_contact).assign_attrs(units="m"), shift_y=3e-6)
+    assert summary(shift_result)["largest_slip"].text == "2 \N{MICRO SIGN}m"
+    assert summary(shift_result)["shift_y"].remark == "error not estimated"
     inputs = {"contactstudy_inputs": '{"case": {"motion": {"kind": "Shift", "y": 3e-6}}}'}
-    assert summary(shifted.assign_attrs(inputs))["shift_y"].remark == ""
+    assert summary(shift_result.assign_attrs(inputs))["shift_y"].remark == ""
 
 
 def test_singular_values(singular: xr.Dataset) -> None:
@@ -123,8 +123,10 @@ def test_answers(case_result: xr.Dataset) -> None:
         assert rate(criterion, **good) == "yes", criterion
         assert rate(criterion, **bad) in ("with care", "no"), criterion
     assert assess(case_result.assign(converged=False)).overall == "no"
-    sampled = case_result.drop_vars([name for name in case_result.data_vars if str(name).startswith("peak_von_mises")])
-    flat = sampled.isel(z=[2])
+    without_peak = case_result.drop_vars(
+        [name for name in case_result.data_vars if str(name).startswith("peak_von_mises")]
+    )
+    flat = without_peak.isel(z=[2])
     assert any("one position along z only" in entry.reason for entry in assess(flat).criteria)
     assert assess(xr.Dataset({"pressure": ("x", [1.0])})).overall != "yes"
 
@@ -187,8 +189,8 @@ def test_citations_of_a_study() -> None:
 
 
 def test_failed_case() -> None:
-    failed = xr.Dataset({"status": "failed", "message": "WindowError: too wide", "converged": np.nan})
-    assessment = assess(failed.assign(iterations=np.nan))
+    failed_case = xr.Dataset({"status": "failed", "message": "WindowError: too wide", "converged": np.nan})
+    assessment = assess(failed_case.assign(iterations=np.nan))
     assert assessment.overall == "no"
     assert "the case is failed: WindowError: too wide" in repr(assessment)
     assert len(assessment.criteria) == 1
@@ -209,8 +211,8 @@ def test_tension_at_the_trailing_edge() -> None:
     assert row.value == float(expected["edge_tension"].max())
     assert 0 < row.error < 0.5 * row.value
     assert row.remark.startswith("x = ")
-    for changed in (result.drop_attrs(), result.assign(traction_y=0.0 * result["traction_y"])):
-        assert "peak_edge_tension" not in summary(changed)
+    for changed_result in (result.drop_attrs(), result.assign(traction_y=0.0 * result["traction_y"])):
+        assert "peak_edge_tension" not in summary(changed_result)
 
 
 def test_texts_of_intensity_material_and_body() -> None:

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from contactstudy.study import Study
-from contactstudy.study.batches import batch_paths, describe_damage
+from contactstudy.study.batches import batch_paths, find_damage
 from contactstudy.study.folder import Folder
 from tests.small_study import as_toml, small_study
 from tests.stand_in_solver import HELD, give_tickets
@@ -51,7 +51,7 @@ def count_finished(folder: Path) -> int:
 
 def intact(folder: Path) -> bool:
     """Whether every batch of a folder has its checksum."""
-    return not any(describe_damage(path) for path in batch_paths(folder / "batches"))
+    return not any(find_damage(path) for path in batch_paths(folder / "batches"))
 
 
 @pytest.fixture

@@ -107,7 +107,7 @@ def test_lundberg_profile_from_design_pressure():
     assert case.roller.profile.amplitude == pytest.approx(5e-3 * (1.5e9 / case.modulus) ** 2)
 
 
-def test_elastic_rollers_tilt_and_load_offset_reach_the_case():
+def test_case_contains_elastic_roller_tilt_and_offset():
     parameters = {**BASE, "e_over_a": 1.0, "roller_body": "finite-length", "roller_poisson": 0.25, "load_offset": 1e-5}
     case = build_setup(parameters).case
     assert case.roller.body is not None
@@ -127,12 +127,12 @@ def test_elastic_roller_defaults_to_body_material():
     ("wrong", "parameter"),
     [({"roller_young": 70e9}, "roller_young"), ({"roller_body": "rubber"}, "roller_body"), ({"tilt": 1.0}, "tilt")],
 )
-def test_contradictions_about_the_roller(wrong, parameter):
+def test_contradictory_roller_parameters_raise(wrong, parameter):
     with pytest.raises(InvalidInputError, match=parameter):
         build_setup({**BASE, "e_over_a": 1.0, **wrong})
 
 
-def test_default_accuracy_and_default_friction_in_the_identity():
+def test_identity_contains_default_accuracy():
     assert add_default_accuracy({"friction": 0.1}) == {"friction": 0.1, "accuracy": 0.01}
     assert add_default_accuracy({"cells_x": 4.0}) == {"cells_x": 4.0}
     assert identity_value("friction", 0.0) is None

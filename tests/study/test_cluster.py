@@ -77,7 +77,7 @@ def test_dead_cluster_worker_fails_one_case(tmp_path):
 
 
 @pytest.mark.parametrize("scheduler", [3, ["tcp://127.0.0.1:1"]])
-def test_a_wrong_scheduler(tmp_path, scheduler):
+def test_invalid_scheduler_raises(tmp_path, scheduler):
     with pytest.raises(InvalidInputError, match="scheduler"):
         run_study(small_study(), tmp_path, scheduler=scheduler, solver=solve_fake)
 
@@ -90,7 +90,7 @@ def test_no_worker_at_all(study, tmp_path):
 
 
 @pytest.mark.slow
-def test_a_worker_with_another_version(study, tmp_path, monkeypatch):
+def test_worker_version_mismatch_is_reported(study, tmp_path, monkeypatch):
     monkeypatch.setattr(engine, "RUN", RunSettings(announce_seconds=0.0))
     unfit = pytest.raises(StudyFileError, match=r"none of the 1 workers can be used: it has version 0.0.0")
     with cluster(tmp_path, workers=0, lame=1) as address, unfit:

@@ -36,25 +36,25 @@ def edges(draw):
 def test_common_columns_resolve_all_cases(cases):
     common = common_columns(cases)
     assert common[0] == 0.0
-    assert common[-1] == max(own[-1] for own in cases)
-    min_width = min(float(np.diff(own).min()) for own in cases)
+    assert common[-1] == max(case_edges[-1] for case_edges in cases)
+    min_width = min(float(np.diff(case_edges).min()) for case_edges in cases)
     assert np.diff(common).min() >= MIN_WIDTH * min_width * (1 - 1e-12)
 
 
 @given(st.lists(edges(), min_size=1, max_size=4), st.integers(0, 2**32 - 1))
-def test_averages_keep_the_load(cases, seed):
+def test_averaging_keeps_load(cases, seed):
     common = common_columns(cases)
-    for own in cases:
-        values = np.random.default_rng(seed).uniform(0.0, 1.0, own.size - 1)
-        averages = resample("pressure", values, [cells_map(own, common, 0.0)])
-        assert averages @ np.diff(common) == pytest.approx(values @ np.diff(own), rel=1e-9)
+    for case_edges in cases:
+        values = np.random.default_rng(seed).uniform(0.0, 1.0, case_edges.size - 1)
+        averages = resample("pressure", values, [cells_map(case_edges, common, 0.0)])
+        assert averages @ np.diff(common) == pytest.approx(values @ np.diff(case_edges), rel=1e-9)
 
 
 @given(edges(), st.floats(-3.0, 3.0), st.floats(-3.0, 3.0))
-def test_interpolation_keeps_straight_lines(own, slope, offset):
-    centres = 0.5 * (own[1:] + own[:-1])
-    common = np.linspace(own[0], own[-1], 30)
-    interpolated = resample("gap", offset + slope * centres, [cells_map(own, common, np.nan)])
+def test_interpolation_keeps_straight_lines(case_edges, slope, offset):
+    centres = 0.5 * (case_edges[1:] + case_edges[:-1])
+    common = np.linspace(case_edges[0], case_edges[-1], 30)
+    interpolated = resample("gap", offset + slope * centres, [cells_map(case_edges, common, np.nan)])
     positions = 0.5 * (common[1:] + common[:-1])
     np.testing.assert_allclose(interpolated, offset + slope * np.clip(positions, centres[0], centres[-1]), atol=1e-12)
 

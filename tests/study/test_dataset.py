@@ -32,7 +32,7 @@ def test_swept_parameters_are_the_dimensions(study_dataset):
     assert "lundberg" in study_dataset.attrs["contactstudy_study"]
 
 
-def test_the_state_of_every_case_is_data(study_dataset):
+def test_dataset_contains_status_of_cases(study_dataset):
     status = study_dataset["status"]
     assert (status.sel(e_over_a=-9) == "skipped").all()
     assert status.sel(e_over_a=1, friction=FAILS).values.tolist() == ["excluded", "failed"]
@@ -80,7 +80,7 @@ def test_different_stress_points_share_common_axis(tmp_path):
     assert "x_field_index" in open_study(tmp_path, cells="original").dims
 
 
-def test_positions_over_a_are_common_where_metres_differ(tmp_path):
+def test_positions_over_a_are_common(tmp_path):
     study = small_study(sweep={"e_over_a": [0], "max_pressure": [1e9, 2e9]})
     run_study(study, tmp_path, workers=0, solver=solve_fake)
     study_dataset = open_study(tmp_path)
@@ -89,13 +89,13 @@ def test_positions_over_a_are_common_where_metres_differ(tmp_path):
     assert study_dataset["z_over_a"].dims == ("z_over_a",)
 
 
-def test_a_study_without_a_sweep(tmp_path):
+def test_open_study_without_sweep(tmp_path):
     run_study(small_study(sweep={}, base=BASE | {"e_over_a": 1}), tmp_path, workers=0, solver=solve_fake)
     study_dataset = open_study(tmp_path)
     assert study_dataset["pressure"].isel(case=0).max() > 0
 
 
-def test_a_swept_load_is_not_doubled(tmp_path):
+def test_swept_load_is_dimension_only(tmp_path):
     base = {key: value for key, value in BASE.items() if key != "max_pressure"}
     study = small_study(base=base, sweep={"load": [50, 100], "e_over_a": [0]})
     run_study(study, tmp_path, workers=0, solver=solve_fake)
@@ -144,6 +144,6 @@ def test_file_path_raises_folder_error(tmp_path):
         open_study(tmp_path / "case.nc")
 
 
-def test_a_folder_without_a_study(tmp_path):
+def test_folder_without_study_raises(tmp_path):
     with pytest.raises(StudyFileError, match="not the folder of a study"):
         open_study(tmp_path)

@@ -68,7 +68,7 @@ def test_sparse_explicit_cases_are_listed():
     assert cube.labels["poisson"][0] == "case"
 
 
-def test_explicit_cases_beside_the_product():
+def test_explicit_cases_extend_product():
     plan = small_study(cases=[{"e_over_a": 2, "friction": 0}]).plan()
     assert plan.cube.shape == (3, 2)
     assert len(plan) == 5
@@ -79,14 +79,14 @@ def test_excluded_combinations():
     assert [case.position for case in plan] == [(0, 0), (0, 1), (1, 0)]
 
 
-def test_exclusion_by_a_default():
+def test_exclusion_by_default_value():
     plan = small_study(
         sweep={"e_over_a": [0, 1]}, exclude=[{"coupled": False, "e_over_a": 1, "body": "finite-length"}]
     ).plan()
     assert len(plan) == 1
 
 
-def test_impossible_combinations_are_skipped_with_the_reason():
+def test_impossible_combinations_are_skipped():
     plan = small_study(sweep={"e_over_a": [0, -9]}).plan()
     assert [bool(case.reason) for case in plan] == [False, True]
     assert "body length" in plan.reason(plan.skipped[0])
@@ -117,7 +117,7 @@ def test_study_without_sweep_has_single_case():
         ({"exclude": [{"e_over_b": 1}]}, "e_over_a"),
     ],
 )
-def test_unknown_names_are_answered_with_the_nearest(content, hint):
+def test_unknown_name_error_contains_closest_name(content, hint):
     with pytest.raises(InvalidInputError, match=f"did you mean '{hint}'"):
         small_study(**content)
 
@@ -128,7 +128,7 @@ def test_missing_file_appears_once_in_message(tmp_path):
     assert str(error.value).count("nowhere.toml") == 1
 
 
-def test_unknown_key_of_the_file(tmp_path):
+def test_unknown_file_key_raises(tmp_path):
     path = tmp_path / "s.toml"
     path.write_text("[bsae]\nyoung = 1.0\n")
     with pytest.raises(InvalidInputError, match="did you mean 'base'"):

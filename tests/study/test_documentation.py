@@ -16,7 +16,7 @@ def blocks(text, language):
     return re.findall(rf"```{language}\n(.*?)```", text, re.DOTALL)
 
 
-def test_the_example_is_a_study():
+def test_documented_example_is_study():
     first, single, _ = (tomllib.loads(block) for block in blocks(TEXT, "toml"))
     assert {*first, *single} == set(KEYS)
     plan = Study.from_mapping(first).plan()

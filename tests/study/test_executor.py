@@ -59,7 +59,7 @@ def test_execution_in_process_yields_outcomes(many, tmp_path):
 
 
 @pytest.mark.parametrize("wait", [-1.0, float("nan"), "long", True])
-def test_a_wrong_wait(wait):
+def test_invalid_wait_raises(wait):
     with pytest.raises(ValueError, match="wait"):
         Engine(wait=wait)
 
@@ -81,9 +81,9 @@ class FakeClient:
 def test_workers_of_another_version_are_left_out():
     from contactstudy.arrays.variables import package_version
 
-    remarks = []
-    workers = Workers(FakeClient({"old": "0.0.1", "none": None, "new": package_version()}), 1.0, remarks.append)
+    messages = []
+    workers = Workers(FakeClient({"old": "0.0.1", "none": None, "new": package_version()}), 1.0, messages.append)
     assert workers.usable(busy=False) == {"new"}
-    assert len(remarks) == 2
+    assert len(messages) == 2
     with pytest.raises(StudyFileError, match=r"none of the 1 workers can be used: it has version 0\.0\.1"):
-        Workers(FakeClient({"old": "0.0.1"}), 0.0, remarks.append).usable(busy=False)
+        Workers(FakeClient({"old": "0.0.1"}), 0.0, messages.append).usable(busy=False)

@@ -76,19 +76,19 @@ def test_invalid_folder_raises():
 
 
 @pytest.mark.parametrize("arguments", [("collect",), ("export",)])
-def test_a_folder_in_place_of_a_file(study, tmp_path, arguments, capsys):
+def test_folder_as_study_file_raises(study, tmp_path, arguments, capsys):
     run(study, tmp_path)
     assert main([*arguments, str(tmp_path), "--out", str(tmp_path)]) == 2
     assert "it is a folder" in capsys.readouterr().err
 
 
-def test_a_pipe_as_study(tmp_path):
+def test_pipe_as_study_raises(tmp_path):
     os.mkfifo(tmp_path / "study.json")
     with pytest.raises(StudyFileError, match="not a regular file"):
         open_study(tmp_path)
 
 
-def test_a_stored_study_names_no_file(study, tmp_path):
+def test_stored_study_with_file_raises(study, tmp_path):
     run(study, tmp_path)
     content = json.loads((tmp_path / "study.json").read_text())
     content["base"]["profile"] = {"kind": "sum", "terms": [{"kind": "measured", "file": "/etc/passwd"}]}
@@ -98,7 +98,7 @@ def test_a_stored_study_names_no_file(study, tmp_path):
 
 
 @pytest.mark.parametrize("name", ["run.log", "run.lock", "batches"])
-def test_links_in_the_folder_of_a_stranger(study, tmp_path, name):
+def test_links_in_foreign_folder_raise(study, tmp_path, name):
     folder, target = tmp_path / "out", tmp_path / "target"
     folder.mkdir()
     if name == "batches":
@@ -122,7 +122,7 @@ def test_written_files_replace_links(tmp_path):
 
 
 @pytest.mark.parametrize("name", ["pipe.csv", "pipe.nc"])
-def test_a_measured_profile_from_a_pipe(tmp_path, name):
+def test_measured_profile_from_pipe_raises(tmp_path, name):
     os.mkfifo(tmp_path / name)
     with pytest.raises(InvalidInputError, match="a regular file"):
         case_id({"profile": {"kind": "measured", "file": str(tmp_path / name)}})
@@ -134,7 +134,7 @@ def test_measured_profile_with_too_many_points():
         case_id({"profile": {"kind": "measured", "positions": points, "drops": points}})
 
 
-def test_a_byte_order_mark(tmp_path):
+def test_byte_order_mark_is_accepted(tmp_path):
     path = tmp_path / "marked.toml"
     path.write_text("\ufeff" + as_toml(small_study()), encoding="utf-8")
     assert len(Study.from_toml(path).plan()) == 4

@@ -12,7 +12,7 @@ from contactstudy.checks import TEMPORARY_SUFFIX, writing
 from contactstudy.errors import InvalidInputError
 from contactstudy.study import LockedError, StoreError, StudyFileError, load_case, open_study, run_study
 from contactstudy.study import folder as module
-from contactstudy.study.batches import batch_paths, describe_damage, join_batches, read_batch, write_batch
+from contactstudy.study.batches import batch_paths, find_damage, join_batches, read_batch, write_batch
 from contactstudy.study.files import write_text
 from contactstudy.study.folder import Folder, Share, select_latest
 from contactstudy.study.settings import RunSettings
@@ -26,9 +26,9 @@ def run(study, folder, **options):
     return run_study(study, folder, **({"workers": 0, "solver": solve_fake, "progress": False} | options))
 
 
-def failed_batch(number, parameters, *, run=1, message="WindowError: narrow", warnings=()):
+def failed_batch(index, parameters, *, run=1, message="WindowError: narrow", warnings=()):
     """Batch of a case without results."""
-    job = Job(f"{number:064x}", "", parameters, number)
+    job = Job(f"{index:064x}", "", parameters, index)
     return batch_without_numbers(Task(jobs=(), folder="", run=run), job, "failed", message, warnings)
 
 
@@ -48,7 +48,7 @@ def test_lock_error_contains_holder(tmp_path):
         pass
 
 
-def test_shares_exclude_a_run_and_themselves_only(tmp_path, monkeypatch):
+def test_share_lock_excludes_run_and_same_share(tmp_path, monkeypatch):
     monkeypatch.setattr(module, "RUN", RunSettings(share_seconds=0.1))
     folder = Folder(tmp_path)
     with folder.locked(Share(1, 3)), folder.locked(Share(2, 3)):
@@ -59,7 +59,7 @@ def test_shares_exclude_a_run_and_themselves_only(tmp_path, monkeypatch):
         pass
 
 
-def test_the_lock_of_a_killed_process_is_free(tmp_path):
+def test_killed_process_releases_lock(tmp_path):
     code = (
         "import os, signal, sys\n"
         "from contactstudy.study.folder import Folder, Share\n"
@@ -71,7 +71,7 @@ def test_the_lock_of_a_killed_process_is_free(tmp_path):
         pass
 
 
-def test_a_pipe_as_lock(tmp_path):
+def test_pipe_as_lock_raises(tmp_path):
     os.mkfifo(tmp_path / "run.lock")
     with pytest.raises(LockedError, match="not a regular file"), Folder(tmp_path).locked(Share()):
         pass
@@ -80,7 +80,7 @@ def test_a_pipe_as_lock(tmp_path):
 def test_batch_round_trip(tmp_path):
     write_batch(tmp_path, "a", rows(3, message="Größe", warnings=["one"]))
     (path,) = batch_paths(tmp_path)
-    assert describe_damage(path) == ""
+    assert find_damage(path) == ""
     batch = read_batch(path, arrays=None)
     assert batch.ids.tolist() == [f"{index:064x}".encode() for index in range(3)]
     assert batch.texts["message"] == ["Größe"] * 3
@@ -103,7 +103,7 @@ def test_damage_is_detected(tmp_path, change):
     write_batch(tmp_path, "a", rows(2))
     (path,) = batch_paths(tmp_path)
     path.write_bytes(change(path.read_bytes()))
-    assert "checksum" in describe_damage(path)
+    assert "checksum" in find_damage(path)
 
 
 def test_small_batches_are_joined(tmp_path):
@@ -118,7 +118,7 @@ def test_small_batches_are_joined(tmp_path):
     assert len(folder.results().locations) == len(read_batch(path)) == 20
 
 
-def test_the_result_of_the_latest_run_counts(tmp_path):
+def test_latest_run_replaces_results(tmp_path):
     batch = join_batches([rows(2), rows(2, run=3, message="later"), rows(2, run=2)])
     assert select_latest(batch).texts["message"] == ["later"] * 2
     assert select_latest(batch).runs.tolist() == [3, 3]
@@ -137,7 +137,7 @@ def test_joined_batches_have_equal_results(tmp_path, monkeypatch):
 
 
 @pytest.mark.parametrize("schema", [1, None])
-def test_a_folder_of_another_schema_is_refused(study, tmp_path, schema):
+def test_folder_of_other_schema_raises(study, tmp_path, schema):
     run(study, tmp_path)
     content = json.loads((tmp_path / "study.json").read_text())
     (tmp_path / "study.json").write_text(json.dumps(content | {"schema": schema}))

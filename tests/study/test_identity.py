@@ -16,7 +16,7 @@ def test_equivalent_parameters_have_same_identity(value):
 
 
 @given(st.floats(-1e12, 1e12))
-def test_digits_beyond_the_twelfth_do_not_count(value):
+def test_identity_rounds_to_twelve_digits(value):
     assume(value == 0 or abs(value) >= MIN_MAGNITUDE)
     assert case_id({"friction": value}) == case_id({"friction": float(f"{value:.12g}")})
 

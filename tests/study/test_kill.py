@@ -42,7 +42,7 @@ def large(tmp_path):
 
 @pytest.mark.system
 @pytest.mark.parametrize(("signal_number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143), (signal.SIGHUP, 129)])
-def test_interrupted_run_releases_the_lock_and_goes_on(large, tmp_path, signal_number, code):
+def test_interrupted_run_releases_lock_and_resumes(large, tmp_path, signal_number, code):
     folder = tmp_path / "out"
     process = start_run(large, folder, "--workers", "2", tickets=3)
     wait_for(process, lambda: count_finished(folder) == 3)

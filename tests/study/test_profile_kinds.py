@@ -52,7 +52,7 @@ def trace(folder: Path, height: float = 1.0, name: str = "trace.csv") -> Path:
     return path
 
 
-def test_every_profile_has_a_kind() -> None:
+def test_profile_classes_have_kinds() -> None:
     public = {getattr(profiles, name) for name in profiles.__all__}
     assert {kind.profile_class for kind in PROFILES.values()} == {
         entry for entry in public if dataclasses.is_dataclass(entry)

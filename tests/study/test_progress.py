@@ -27,7 +27,7 @@ def ok(index):
     return Outcome(f"{index:016x}", "ok", 1.0)
 
 
-def test_the_time_left_follows_from_the_finished_cases(tmp_path, monkeypatch):
+def test_remaining_time_follows_from_finished_cases(tmp_path, monkeypatch):
     now = [100.0]
     monkeypatch.setattr(module.time, "monotonic", lambda: now[0])
     with Progress(tmp_path / "run.log") as progress:
@@ -41,7 +41,7 @@ def test_the_time_left_follows_from_the_finished_cases(tmp_path, monkeypatch):
     assert [re.search(r"(\d+ s left|all done)", line).group() for line in lines[1:]] == ["30 s left", "all done"]
 
 
-def test_a_bar_on_a_terminal(tmp_path, monkeypatch):
+def test_terminal_has_progress_bar(tmp_path, monkeypatch):
     terminal = watch(monkeypatch)
     with Progress(tmp_path / "run.log") as progress:
         progress.begin(2, total=2)
@@ -54,7 +54,7 @@ def test_a_bar_on_a_terminal(tmp_path, monkeypatch):
 
 
 @pytest.mark.parametrize("quiet", ["CI", "no terminal", "not wanted"])
-def test_no_bar_without_a_terminal(tmp_path, monkeypatch, quiet):
+def test_pipe_has_no_progress_bar(tmp_path, monkeypatch, quiet):
     terminal = watch(monkeypatch)
     if quiet == "CI":
         monkeypatch.setenv("CI", "true")
@@ -73,7 +73,7 @@ def test_log_is_flushed_after_each_line(tmp_path):
         assert "2 of 5 cases to solve" in (tmp_path / "run.log").read_text()
 
 
-def test_a_link_is_not_followed(tmp_path):
+def test_log_refuses_links(tmp_path):
     (tmp_path / "run.log").symlink_to(tmp_path / "target")
     with pytest.raises(StoreError, match=r"run\.log"), Progress(tmp_path / "run.log"):
         pass

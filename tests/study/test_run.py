@@ -31,7 +31,7 @@ def test_second_run_solves_no_case(study, tmp_path):
     assert run(study, tmp_path).solved == 0
 
 
-def test_growing_a_study_solves_only_the_new_cases(study, tmp_path):
+def test_extended_study_solves_only_new_cases(study, tmp_path):
     run(study, tmp_path)
     report = run(small_study(sweep={"e_over_a": [0, 1], "friction": [0, 0.1, 0.2]}), tmp_path)
     assert (report.solved, report.counts) == (2, {"ok": 6})
@@ -72,14 +72,14 @@ def test_rerun_repairs(tmp_path):
 def test_interrupt_message_contains_finished_cases(study, tmp_path, signal_number, kind):
     solved_cases = []
 
-    def interrupted(case, grid, **settings):
+    def solve_then_interrupt(case, grid, **settings):
         solved_cases.append(case)
         if len(solved_cases) == 3:
             signal.raise_signal(signal_number)
         return solve_fake(case, grid, **settings)
 
     with pytest.raises(KeyboardInterrupt) as caught:
-        run(study, tmp_path, solver=interrupted)
+        run(study, tmp_path, solver=solve_then_interrupt)
     message = f"interrupted: 2 of 4 cases are kept in {tmp_path}; run again to go on"
     assert (type(caught.value), str(caught.value)) == (kind, message)
     traceback_text = "".join(traceback.format_exception(caught.value))
@@ -90,7 +90,7 @@ def test_interrupt_message_contains_finished_cases(study, tmp_path, signal_numbe
 
 
 @pytest.mark.parametrize("workers", [0, pytest.param(1, marks=pytest.mark.system)])
-def test_an_error_of_the_program_stops_the_run(tmp_path, workers):
+def test_program_error_stops_run(tmp_path, workers):
     study = small_study(sweep={"e_over_a": [0, 1], "friction": [0.1, IS_WRONG]})
     with pytest.raises(ZeroDivisionError) as caught:
         run(study, tmp_path, workers=workers)
@@ -100,7 +100,7 @@ def test_an_error_of_the_program_stops_the_run(tmp_path, workers):
     assert "ZeroDivisionError" in (tmp_path / "run.log").read_text()
 
 
-def part(**changes):
+def partial_study(**changes):
     """One half of the small study, whose cases lie in a batch alone."""
     return small_study(sweep={"e_over_a": [changes["e_over_a"]], "friction": [0.0, 0.1]})
 
@@ -111,7 +111,7 @@ def two_batches(study, tmp_path, monkeypatch):
     monkeypatch.setattr(Folder, "compact", lambda self, share, at_end=False: None)
     monkeypatch.setattr(worker, "RUN", RunSettings(save_seconds=60.0))
     for e_over_a in (0.0, 1.0):
-        run(part(e_over_a=e_over_a), tmp_path)
+        run(partial_study(e_over_a=e_over_a), tmp_path)
     Folder(tmp_path).write_study(study)
     assert [len(batch) for batch in Folder(tmp_path).results().batches] == [2, 2]
     return tmp_path
@@ -133,7 +133,7 @@ def test_damaged_batch_loses_only_contained_cases(study, two_batches, content):
     assert float(open_study(two_batches)["peak_pressure"].min()) > 0
 
 
-def test_a_changed_byte_is_found(study, tmp_path):
+def test_changed_byte_is_detected(study, tmp_path):
     run(study, tmp_path)
     (path,) = batch_paths(tmp_path / "batches")
     data = bytearray(path.read_bytes())
@@ -157,7 +157,7 @@ def test_foreign_files_are_set_aside(study, two_batches):
     assert aside == {second.name, "notes.nc", "pipe.nc", "fifo.nc"}
 
 
-def test_a_higher_level_solves_again(tmp_path):
+def test_higher_level_solves_cases_again(tmp_path):
     run(small_study(level="summary"), tmp_path)
     assert run(small_study(level="fields"), tmp_path).solved == 4
     assert run(small_study(level="summary"), tmp_path).solved == 0
@@ -171,13 +171,13 @@ def test_rerun_solves_stale_cases(study, tmp_path, monkeypatch):
     assert rerun_study(tmp_path, workers=0, solver=solve_fake).counts == {"ok": 4}
 
 
-def test_the_folder_of_another_study(study, tmp_path):
+def test_folder_of_other_study_raises(study, tmp_path):
     run(study, tmp_path)
     with pytest.raises(StoreError, match="'small', not 'other'"):
         run(small_study("other"), tmp_path)
 
 
-def test_a_study_without_a_possible_case(tmp_path):
+def test_study_without_possible_case_raises(tmp_path):
     with pytest.raises(StudyFileError, match="body length"):
         run(small_study(sweep={"e_over_a": [-9]}), tmp_path)
 
@@ -217,7 +217,7 @@ def open_place():
 
 @pytest.mark.skipif(not hasattr(os, "geteuid"), reason="permissions of POSIX")
 @pytest.mark.parametrize("closed_folder", ["", "batches"])
-def test_a_folder_without_permission(study, open_place, closed_folder):
+def test_folder_without_permission_raises(study, open_place, closed_folder):
     folder = open_place / "out"
     run(study, folder)
     with_more = small_study(sweep={"e_over_a": [0, 1], "friction": [0, 0.1, 0.2]})
@@ -254,7 +254,7 @@ def small_disk(tmp_path):
 
 @pytest.mark.system
 @pytest.mark.parametrize("workers", [0, 1])
-def test_a_full_disk(small_disk, study, workers):
+def test_full_disk_raises(small_disk, study, workers):
     filler = small_disk / "other.bin"
     filler.write_bytes(bytes(1_060_000))
     with pytest.raises(StoreError, match=r"disk is full|No space"):
@@ -302,20 +302,20 @@ print(max(sizes[250:]) - sizes[250])
 
 
 @pytest.mark.slow
-def test_memory_of_the_parent_is_flat(tmp_path):
+def test_parent_memory_does_not_grow(tmp_path):
     """Over the second half of 500 cases of two workers that retain fields."""
     command = [sys.executable, "-c", MEMORY_OF_A_RUN, str(tmp_path)]
     growth = subprocess.run(command, cwd=ROOT, check=True, capture_output=True, text=True).stdout
     assert float(growth.split()[-1]) < 8e6
 
 
-def test_a_sample_is_solved_for_an_estimate(study, tmp_path):
+def test_sample_solves_evenly_spaced_cases(study, tmp_path):
     report = run(study, tmp_path, sample=2)
     assert (report.solved, report.counts) == (2, {"ok": 2, "missing": 2})
     assert report.states.status.tolist()[0] == report.states.status.tolist()[-1] == 0
 
 
-def test_shares_are_independent_and_make_up_the_study(study, tmp_path):
+def test_shares_complete_study(study, tmp_path):
     for share_number in (2, 1, 3):
         run(study, tmp_path / "shares", share=(share_number, 3))
     run(study, tmp_path / "whole")
@@ -328,12 +328,12 @@ def test_shares_are_independent_and_make_up_the_study(study, tmp_path):
 
 
 @pytest.mark.parametrize("share", [(0, 3), (4, 3), (1, 2, 3), "1/3", (1.0, 2)])
-def test_a_wrong_share(study, tmp_path, share):
+def test_invalid_share_raises(study, tmp_path, share):
     with pytest.raises(InvalidInputError, match="share"):
         run(study, tmp_path, share=share)
 
 
-def test_a_deleted_working_directory(study, tmp_path, monkeypatch):
+def test_deleted_working_directory_raises(study, tmp_path, monkeypatch):
     gone = tmp_path / "gone"
     gone.mkdir()
     monkeypatch.chdir(gone)

@@ -36,7 +36,7 @@ def test_study_equals_solver_result(tmp_path):
     np.testing.assert_array_equal(stored_case["tau_xz"], separate_result["tau_xz"].astype(np.float32))
 
 
-def test_comparison_models_beside_the_exact_ends(tmp_path):
+def test_study_over_end_models(tmp_path):
     study = small_study(
         level="surface",
         base=BASE
@@ -67,15 +67,17 @@ def test_number_types_have_same_identity(tmp_path):
 
 
 def test_common_operator_is_computed_once(tmp_path, monkeypatch):
-    created = []
+    computed_bodies = []
     build = surface.SurfaceOperator.of
-    monkeypatch.setattr(surface.SurfaceOperator, "of", lambda *request: created.append(request) or build(*request))
+    monkeypatch.setattr(
+        surface.SurfaceOperator, "of", lambda *request: computed_bodies.append(request) or build(*request)
+    )
     # Friction outside: in the study's order the operators would alternate.
     sweep = {"friction": [0.0, 0.1, 0.2], "e_over_a": [0.0, 1.0]}
     study = small_study(base=BASE | {"stresses": False, "radius": 5.001e-3}, sweep=sweep, level="summary")
     assert run_study(study, tmp_path, workers=0).counts == {"ok": 6}
-    assert len([entry for entry in created if entry[0].model == "exact"]) == 2
-    assert len(created) == len(set(created))
+    assert len([entry for entry in computed_bodies if entry[0].model == "exact"]) == 2
+    assert len(computed_bodies) == len(set(computed_bodies))
     assert cache.info().limit <= 2**31
 
 

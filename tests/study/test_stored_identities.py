@@ -65,7 +65,7 @@ def test_new_table_entry_adds_parameter(monkeypatch):
     assert keywords_of(takes_more, {"sharpness": 0.7, "friction": 0.1}) == {"sharpness": 0.7}
 
 
-def test_a_study_starts_on_the_grid_of_solve():
+def test_study_uses_default_grid():
     case = build_setup(BASE | {"e_over_a": 1.0, "cells_x": None, "cells_y": None})
     assert case.grid == choose_grid(case.case)
     assert list(case.grids) == list(widening_grids(case.case))

@@ -17,7 +17,7 @@ def ids(study: Study) -> list[str]:
     return [case.id for case in study.plan()]
 
 
-def test_a_grid_is_a_product() -> None:
+def test_table_of_coordinates_is_product() -> None:
     table = xr.Dataset(coords={"e_over_a": [0.0, 1.0], "friction": [0.0, 0.1]})
     study = Study.from_dataset(table, "small", base=BASE)
     assert study == small_study(sweep={"e_over_a": [0.0, 1.0], "friction": [0.0, 0.1]})
@@ -104,14 +104,14 @@ ROUND_TRIPS = {
 
 
 @pytest.mark.parametrize("study", ROUND_TRIPS.values(), ids=ROUND_TRIPS)
-def test_an_opened_study_is_the_study(study: Study, tmp_path) -> None:
+def test_study_from_opened_dataset_equals_study(study: Study, tmp_path) -> None:
     run_study(study, tmp_path, workers=0, solver=solve_fake, progress=False)
     restored_study = Study.from_dataset(open_study(tmp_path))
     assert restored_study.to_json() == study.to_json()
     assert Study.from_dataset(collect(tmp_path), "other", level="summary").level == "summary"
 
 
-def test_a_selection_of_an_opened_study(tmp_path) -> None:
+def test_study_from_selection_of_dataset(tmp_path) -> None:
     study = small_study(
         sweep={"e_over_a": [0.0, 1.0, 2.0], "friction": [0.0, 0.1]},
         zip={"profile": [{"kind": "cylinder", "name": "sharp"}, "ellipsoid"], "tilt": [0.0, 1e-4]},

@@ -49,7 +49,7 @@ def test_user_profiles_differ_by_content() -> None:
     assert len({identity(profile) for profile in different}) == len(different)
 
 
-def test_a_changed_formula_is_another_profile() -> None:
+def test_changed_formula_changes_identity() -> None:
     class Now(Cosine):
         def drop(self, x, length):
             return super().drop(x, length) + 1e-7 * (x / length) ** 4

@@ -56,7 +56,7 @@ def test_convergence_by_error_and_order() -> None:
     assert len(failing_quantities((0.001, 0.001, 0.001))) == 1
 
 
-def test_every_setting_of_the_quadratures() -> None:
+def test_check_fails_for_each_quadrature_setting() -> None:
     from dataclasses import asdict
 
     from contactstudy.overlapping.quadrature import Resolution

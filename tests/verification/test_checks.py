@@ -11,7 +11,11 @@ from contactstudy.verification.check import Check
 from tests.verification import listed
 
 LISTED = listed.read()
-FULL = [entry for entry in LISTED if entry.group in {each.group for each in LISTED if each.level == "full"}]
+FULL = [
+    entry
+    for entry in LISTED
+    if entry.group in {listed_check.group for listed_check in LISTED if listed_check.level == "full"}
+]
 """Checks of the groups that have more at the full level."""
 LONG = ("film", "passes")
 """Groups whose quick level, a part of the full one, takes too long for the default tier."""
@@ -62,7 +66,7 @@ def test_check(entry: listed.Listed) -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("entry", parameters(slow=True))
-def test_check_of_the_full_level(entry: listed.Listed) -> None:
+def test_full_level_check_passes(entry: listed.Listed) -> None:
     (check,) = [
         c for c in full_verification().groups[entry.group] if (c.case, c.quantity) == (entry.case, entry.quantity)
     ]
@@ -70,14 +74,14 @@ def test_check_of_the_full_level(entry: listed.Listed) -> None:
 
 
 @pytest.mark.parametrize("group", [group for group in suite.GROUPS if group not in LONG])
-def test_the_list_is_complete(group: str) -> None:
+def test_list_contains_all_checks(group: str) -> None:
     entries = [(entry.case, entry.quantity) for entry in LISTED if (entry.level, entry.group) == ("quick", group)]
     assert entries
     assert sorted(entries) == sorted(quick(group))
 
 
 @pytest.mark.slow
-def test_the_list_of_the_full_level_is_complete() -> None:
+def test_list_contains_all_full_checks() -> None:
     assert sorted(entry[1:] for entry in FULL) == sorted(listed.names(full_verification()))
     data = full_verification().to_dataset()
     assert bool(data["passed"].all())

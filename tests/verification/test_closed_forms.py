@@ -89,9 +89,9 @@ def test_circle_on_the_surface() -> None:
     assert frictionless["sigma_yy"] == pytest.approx(hoop, abs=1e-9)
     x, y = np.array([0.1, 0.4, -0.3]), np.array([0.2, -0.5, 0.6])
     shear = ref.hertz_circle(x, y, 0.0, 1.0, 1.0, NU, 1.0)
-    plain = ref.hertz_circle(x, y, 0.0, 1.0, 1.0, NU)
+    circle_stress = ref.hertz_circle(x, y, 0.0, 1.0, 1.0, NU)
     for name, value in sliding_circle_surface(x, y, 1.0, 1.0, NU).items():
-        assert shear[name] - plain[name] == pytest.approx(value, abs=1e-9), name
+        assert shear[name] - circle_stress[name] == pytest.approx(value, abs=1e-9), name
 
 
 def test_circle_on_the_axis_and_far_away() -> None:
@@ -215,7 +215,7 @@ def test_ellipse_touches_a_paraboloid(ratio: float) -> None:
         assert displacement == pytest.approx(paraboloid, abs=2e-3 * contact.approach)
 
 
-def test_ellipse_with_exchanged_radii_is_an_error() -> None:
+def test_ellipse_with_exchanged_radii_raises() -> None:
     with pytest.raises(InvalidInputError, match="long_radius"):
         ref.hertz_ellipse(1.0, 1.0, 2.0, 1.0)
 

@@ -26,8 +26,8 @@ from contactstudy.verification.problems import (
 def test_stored_contacts(name: str) -> None:
     """Load, sign, and symmetry; errors small where the pressure is smooth."""
     case, contact = CONTACT_CASES[name], load_reference(CONTACT_FILE, name)
-    stated = [contact.attrs[key] for key in ("length", "distance", "crown", "poisson")]
-    assert stated == [case.length, case.distance, case.crown, case.poisson]
+    attributes = [contact.attrs[key] for key in ("length", "distance", "crown", "poisson")]
+    assert attributes == [case.length, case.distance, case.crown, case.poisson]
     pressure = contact["pressure"]
     assert float(pressure.min()) >= 0
     assert float(contact["line_load"].integrate("x")) == pytest.approx(case.load, rel=1e-6)
@@ -52,8 +52,8 @@ def test_stored_films(name: str) -> None:
 def test_stored_passes(name: str) -> None:
     """No change of volume, stresses of layers with strains xx and yy held, errors worth comparing with."""
     case, reference = PASSES_CASES[name], load_reference(PASSES_FILE, name)
-    stated = [reference.attrs[key] for key in ("shear_yield_stress", "friction", "kinematic_hardening", "poisson")]
-    assert stated == [case.shear_yield_stress, case.friction, case.kinematic_hardening, case.poisson]
+    attributes = [reference.attrs[key] for key in ("shear_yield_stress", "friction", "kinematic_hardening", "poisson")]
+    assert attributes == [case.shear_yield_stress, case.friction, case.kinematic_hardening, case.poisson]
     assert reference.sizes["pass_number"] == case.passes
     xx, yy, zz = (reference[f"plastic_strain_{pair}_young"] for pair in ("xx", "yy", "zz"))
     assert np.abs(xx + yy + zz).max() < 1e-6
@@ -109,6 +109,6 @@ def test_unknown_names_are_errors(file: str) -> None:
 @pytest.mark.parametrize("name", [STRESS_FILE, CONTACT_FILE, PASSES_FILE, FILM_FILE])
 def test_files(name: str) -> None:
     assert data_file(name).stat().st_size < 300_000
-    stated = xr.load_dataset(data_file(name)).attrs
-    assert "scikit-fem" in stated["software"]
-    assert stated["regenerate"].startswith("python -m benchmarks.finite_elements.generate")
+    attributes = xr.load_dataset(data_file(name)).attrs
+    assert "scikit-fem" in attributes["software"]
+    assert attributes["regenerate"].startswith("python -m benchmarks.finite_elements.generate")
