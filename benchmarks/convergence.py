@@ -111,16 +111,16 @@ def point_contact() -> Table:
     for count in cells:
         gap = on_cells(lambda x, y: 0.5 * (x**2 + y**2), (-1.5, 1.5), (-1.5, 1.5), (count, count))
         contact = solve_contact(body, gap, load=4 / 3, settings=ContactSettings(tolerance=1e-8))
-        middle = contact["pressure"].sel(y=0, method="nearest")
-        exact = peak * np.sqrt(np.maximum(1 - middle["x"] ** 2, 0))
-        errors.append((abs(float(contact["approach"]) - approach), float(abs(middle - exact).mean()) / peak))
-    sunk, mean = zip(*errors, strict=True)
+        line = contact["pressure"].sel(y=0, method="nearest")
+        exact = peak * np.sqrt(np.maximum(1 - line["x"] ** 2, 0))
+        errors.append((abs(float(contact["approach"]) - approach), float(abs(line - exact).mean()) / peak))
+    displacement_errors, mean = zip(*errors, strict=True)
     return Table(
         title="Hertz point contact",
         setting="number of cells across",
         source="Hertz",
         values=cells,
-        errors={"approach": sunk, "mean error of the pressure / p0 along y = 0": mean},
+        errors={"approach": displacement_errors, "mean error of the pressure / p0 along y = 0": mean},
         tolerance=1e-3,
         used=257,
         order=1.4,
@@ -141,13 +141,13 @@ def stress_grid() -> Table:
         stress = stress_field(body, load, friction=case.friction, **points, inside_cells=load)
         difference = np.abs(components(stress) - expected)
         errors.append((float(difference.max()), float(difference.mean())))
-    largest, mean = zip(*errors, strict=True)
+    max_errors, mean = zip(*errors, strict=True)
     return Table(
         title="stresses under a smooth load on both ends, L = 8a, f = 0.3, z >= 0.1a",
         setting="number of cells over its width",
         source="finite elements",
         values=cells,
-        errors={"largest difference / p0": largest, "mean difference / p0": mean},
+        errors={"largest difference / p0": max_errors, "mean difference / p0": mean},
         tolerance=5e-4,
         used=64,
         order=1.8,
@@ -160,7 +160,7 @@ def contact_grid() -> Table:
     counts = (4, 8, 16, 32)
     marks = np.array([0.25, 0.5, 1.0, 2.0])  # edges of cells on every grid
 
-    def solved(count: int) -> FloatArray:
+    def solve_on(count: int) -> FloatArray:
         gap = on_cells(lambda x, y: y**2 + 0 * x, (0, 8), (-1.75, 1.75), (8 * count, 7 * count // 2 + 1 - count % 2))
         load = (
             solve_contact(body, gap, load=8 * LINE_LOAD, settings=ContactSettings(tolerance=1e-8))["pressure"].sum("y")
@@ -170,8 +170,8 @@ def contact_grid() -> Table:
         resultant = np.append(0.0, np.cumsum(load.values)) * 8 / load.size
         return np.asarray(resultant[np.round(marks * count).astype(int)])
 
-    best = solved(96)
-    errors = np.array([np.abs(solved(count) - best) for count in counts])
+    reference = solve_on(96)
+    errors = np.array([np.abs(solve_on(count) - reference) for count in counts])
     return Table(
         title="rigid cylinder on a body of its own length, 8a",
         setting="number of cells per a",
@@ -187,7 +187,7 @@ def contact_grid() -> Table:
     )
 
 
-FINEST = Resolution(
+FINEST_RESOLUTION = Resolution(
     step=0.12,
     angle=np.pi / 6.5,
     reach=1000.0,
@@ -238,8 +238,10 @@ def _from_ends(resolution: Resolution) -> tuple[FloatArray, FloatArray]:
 
 def _quadrature_errors(resolution: Resolution) -> tuple[float, float]:
     """Largest errors of the stresses and of the displacement, against every setting much finer."""
-    stress, sunk = (float(np.abs(a - b).max()) for a, b in zip(_from_ends(resolution), _from_ends(FINEST), strict=True))
-    return stress, sunk
+    stress, displacement_error = (
+        float(np.abs(a - b).max()) for a, b in zip(_from_ends(resolution), _from_ends(FINEST_RESOLUTION), strict=True)
+    )
+    return stress, displacement_error
 
 
 def quadrature_checks() -> Iterator[Check]:
@@ -271,13 +273,13 @@ def window() -> Table:
     body = FiniteLengthSpace(length=8.0, material=unit_material())
     widths = (1.3125, 1.75, 2.625, 3.5)
 
-    def solved(half: float) -> FloatArray:
-        gap = on_cells(lambda x, y: y**2 + 0 * x, (0, 8), (-half, half), (64, round(32 * half)))
+    def solve_in_window(half_window: float) -> FloatArray:
+        gap = on_cells(lambda x, y: y**2 + 0 * x, (0, 8), (-half_window, half_window), (64, round(32 * half_window)))
         pressure = solve_contact(body, gap, load=8 * LINE_LOAD, settings=ContactSettings(tolerance=1e-8))["pressure"]
         return pressure.sel(y=slice(-1.3, 1.3)).values
 
-    best = solved(7.0)
-    errors = tuple(float(np.abs(solved(width) - best).max()) for width in widths)
+    reference = solve_in_window(7.0)
+    errors = tuple(float(np.abs(solve_in_window(width) - reference).max()) for width in widths)
     return Table(
         title="rigid cylinder on a body of its own length, 8a, 16 cells per a across",
         setting="half of the window over a",
@@ -314,10 +316,10 @@ def plot_convergence(tables: list[Table]) -> Figure:
     figure, axes = panels(len(tables))
     for ax, table in zip(axes, tables, strict=True):
         used = table.values.index(table.used)
-        for number, (quantity, errors) in enumerate(table.errors.items()):
+        for index, (quantity, errors) in enumerate(table.errors.items()):
             visible = np.maximum(errors, 1e-12)
-            ax.plot(table.values, visible, color=f"C{number}", marker=".", label=textwrap.shorten(quantity, 36))
-            ax.plot(table.used, visible[used], marker="o", color=f"C{number}")
+            ax.plot(table.values, visible, color=f"C{index}", marker=".", label=textwrap.shorten(quantity, 36))
+            ax.plot(table.used, visible[used], marker="o", color=f"C{index}")
         ax.set_xscale("log", base=2)
         ax.set_yscale("log")
         ax.set_xticks(table.values, [f"{value:.3g}" for value in table.values])

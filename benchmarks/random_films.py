@@ -25,43 +25,43 @@ from contactstudy.film.levels import RESOLUTION
 STEEL = cs.Material(210e9, 0.3)
 RADIUS = 5e-3
 VISCOSITY = 0.05
-LARGEST_LOAD, LONGEST = 80.0, 90.0  # Number M and length over a of films that are compared with finer cells
+MAX_LOAD, MAX_LENGTH = 80.0, 90.0  # Number M and length over a of films that are compared with finer cells
 FILMS = ("central_film", "least_film", "least_film_middle", "least_film_first", "least_film_last")
-QUARTERED = ("finest", "finest_share", "inner", "inner_inlet")
-HALVED = ("growth", "columns", "columns_inlet")
+QUARTERED_SETTINGS = ("finest", "finest_share", "inner", "inner_inlet")
+HALVED_SETTINGS = ("growth", "columns", "columns_inlet")
 FINER = replace(
     RESOLUTION,
-    **{name: 0.25 * getattr(RESOLUTION, name) for name in QUARTERED},
-    **{name: 0.5 * getattr(RESOLUTION, name) for name in HALVED},
+    **{name: 0.25 * getattr(RESOLUTION, name) for name in QUARTERED_SETTINGS},
+    **{name: 0.5 * getattr(RESOLUTION, name) for name in HALVED_SETTINGS},
 )
 COARSE_ACCURACY = 0.2  # Accuracy of the films on finer cells, which the fewest levels reach
 
 
-def random_profile(chance: Random, amplitude: float, half_width: float, length: float) -> cs.profiles.Profile:
+def random_profile(rng: Random, amplitude: float, half_width: float, length: float) -> cs.profiles.Profile:
     """A profile with drops about those that a design for the pressure has."""
-    drop = amplitude * magnitude(chance, 0.5, 3.0)
-    kind = chance.choice(("Lundberg", "logarithmic", "crown", "partial crown"))
+    drop = amplitude * magnitude(rng, 0.5, 3.0)
+    kind = rng.choice(("Lundberg", "logarithmic", "crown", "partial crown"))
     if kind == "Lundberg":
-        return cs.profiles.Lundberg(amplitude=drop, delta=chance.choice((0.0, 1.0)))
+        return cs.profiles.Lundberg(amplitude=drop, delta=rng.choice((0.0, 1.0)))
     if kind == "logarithmic":
         return cs.profiles.JohnsGohar(amplitude=drop, half_width=half_width)
     depth = 4 * drop
     if kind == "crown":
         return cs.profiles.FullCrown(length**2 / (8 * depth))
-    straight = chance.uniform(0.3, 0.8) * length
+    straight = rng.uniform(0.3, 0.8) * length
     return cs.profiles.PartialCrown(straight, (length - straight) ** 2 / (8 * depth))
 
 
-def random_case(chance: Random) -> cs.Case:
+def random_case(rng: Random) -> cs.Case:
     """A case with speed and lubricant."""
-    half_width = magnitude(chance, 30e-6, 90e-6)
-    rigid = chance.random() < 0.5
+    half_width = magnitude(rng, 30e-6, 90e-6)
+    rigid = rng.random() < 0.5
     modulus = STEEL.plane_strain_modulus / (1 if rigid else 2)
     pressure = half_width * modulus / (2 * RADIUS)
-    length = half_width * magnitude(chance, 8.0, 250.0)
-    profile = random_profile(chance, half_width**2 / (4 * RADIUS), half_width, length)
-    distance = chance.choice((0.0, 0.0, chance.uniform(0.0, 5.0))) * half_width
-    tilt = chance.choice((0.0, 0.0, chance.uniform(-0.3, 0.3))) * half_width**2 / RADIUS / length
+    length = half_width * magnitude(rng, 8.0, 250.0)
+    profile = random_profile(rng, half_width**2 / (4 * RADIUS), half_width, length)
+    distance = rng.choice((0.0, 0.0, rng.uniform(0.0, 5.0))) * half_width
+    tilt = rng.choice((0.0, 0.0, rng.uniform(-0.3, 0.3))) * half_width**2 / RADIUS / length
     roller = cs.Roller(radius=RADIUS, length=length, profile=profile, material=None if rigid else STEEL)
     case = cs.Case(
         body=cs.FiniteLengthSpace(length=length + 2 * distance, material=STEEL),
@@ -70,15 +70,15 @@ def random_case(chance: Random) -> cs.Case:
         tilt=tilt,
         max_pressure=pressure,
     )
-    load, lubricant = magnitude(chance, 5.0, 2000.0), chance.uniform(2.0, 16.0)
+    load, lubricant = magnitude(rng, 5.0, 2000.0), rng.uniform(2.0, 16.0)
     stiffness = 2 * case.modulus
     root = case.normal_load / (case.contact_length * stiffness * RADIUS * load)
     speed = 0.5 * root**2 * stiffness * RADIUS / VISCOSITY
     oil = cs.Lubricant(
         viscosity=VISCOSITY,
         pressure_viscosity=lubricant / (stiffness * root**0.5),
-        viscosity_law=chance.choice(("barus", "roelands")),
-        density_law=chance.choice(("constant", "dowson-higginson")),
+        viscosity_law=rng.choice(("barus", "roelands")),
+        density_law=rng.choice(("constant", "dowson-higginson")),
     )
     return replace(case, lubricant=oil, motion=cs.Sliding(body_speed=speed, roller_speed=speed))
 
@@ -96,7 +96,7 @@ def moes_numbers(case: cs.Case) -> tuple[float, float, float]:
 def outcome(seed: int, accuracy: float) -> tuple[str, str]:
     """Run one seed: its kind, and what to print."""
     case = random_case(Random(seed))
-    began = time.perf_counter()
+    start_time = time.perf_counter()
     kind, text = "smooth", ""
     try:
         try:
@@ -119,13 +119,13 @@ def outcome(seed: int, accuracy: float) -> tuple[str, str]:
         kind, text = "failed", f"{kind}: {error}"
     except cs.InvalidInputError as error:
         kind, text = "refused", str(error)
-    return kind, f"{text}, {time.perf_counter() - began:.1f} s"
+    return kind, f"{text}, {time.perf_counter() - start_time:.1f} s"
 
 
 def compare_errors(seed: int, accuracy: float) -> dict[str, tuple[float, float]] | None:
     """Stated errors and changes to finer cells, of each film; None for a case whose finer film takes long."""
     case = random_case(Random(seed))
-    if moes_numbers(case)[0] > LARGEST_LOAD or case.contact_length > LONGEST * case.hertz_half_width:
+    if moes_numbers(case)[0] > MAX_LOAD or case.contact_length > MAX_LENGTH * case.hertz_half_width:
         return None
     film = solve_film(case, accuracy=accuracy)
     finer = solve_film(case, accuracy=COARSE_ACCURACY, resolution=FINER, start=film)

@@ -49,8 +49,8 @@ from .fields.surface import surface_displacement as surface_displacement
 from .film.solve import solve_film as solve_film
 from .solution import roller_stress as roller_stress
 from .solution import solve as solve
+from .study.dataset import open_study as open_study
 from .study.definition import Study as Study
-from .study.opened import open_study as open_study
 from .study.run import run_study as run_study
 from .versions import show_versions as show_versions
 

@@ -118,7 +118,7 @@ def limit(nbytes: int) -> None:
     >>> cache.limit(cache.LIMIT)
     """
     global _store
-    bound = checks.count("nbytes", nbytes, least=0)
+    bound = checks.count("nbytes", nbytes, minimum=0)
     with _lock:
         smaller = _empty_store(bound)
         while _store:

@@ -44,7 +44,7 @@ UNIT_SIZES: dict[str, dict[str, float]] = {
     "rad/m": {"rad/m": 1.0, "1/m": 1.0, "rad/mm": 1e3, "1/mm": 1e3},
     "1": {"1": 1.0, "%": 0.01, "percent": 0.01},
 }
-"""Units that input may have, by the one in SI, and their sizes in it."""
+"""Input units by their SI unit, and their sizes in this unit."""
 
 
 def factor_to(unit: str, name: str, input_unit: object) -> float:
@@ -61,7 +61,7 @@ FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 IntArray = npt.NDArray[np.int64]
 BoolArray = npt.NDArray[np.bool_]
-PART = ".part"  # Suffix of an unfinished file
+TEMPORARY_SUFFIX = ".part"  # Suffix of an unfinished file
 REAL = "biufO"  # Kinds of arrays whose values can be real numbers: not complex ones, dates or texts
 
 
@@ -71,7 +71,7 @@ def store(checked: object, **values: object) -> None:
         object.__setattr__(checked, name, value)
 
 
-LARGEST = 1e50
+MAX_MAGNITUDE = 1e50
 """Largest number that is taken, and one over the smallest positive one: far beyond every quantity in SI units, and
 small enough for products of a few to be numbers as well."""
 
@@ -84,7 +84,7 @@ def _float(value: Real) -> float:
         return np.inf
 
 
-SI_WORDS = {"": "1", "metres": "m", "radians": "rad"}  # Units by their words in messages
+SI_UNITS = {"": "1", "metres": "m", "radians": "rad"}  # Units by their words in messages
 
 
 def scalar(name: str, value: Any, unit: str = "") -> Any:
@@ -93,7 +93,7 @@ def scalar(name: str, value: Any, unit: str = "") -> Any:
         return value
     # Through numpy: a lazy array lacks item().
     number, unit_attribute = np.asarray(value).item(), getattr(value, "attrs", {}).get("units")
-    symbol = SI_WORDS.get(unit, unit.partition(",")[0])  # "m/s, of rolling" is in m/s
+    symbol = SI_UNITS.get(unit, unit.partition(",")[0])  # "m/s, of rolling" is in m/s
     if unit_attribute is None or unit_attribute == symbol or isinstance(number, bool) or not isinstance(number, Real):
         return number
     return factor_to(symbol, f"{name}.attrs['units']", unit_attribute) * _float(number)
@@ -101,43 +101,43 @@ def scalar(name: str, value: Any, unit: str = "") -> Any:
 
 def finite(name: str, value: object, unit: str = "") -> float:
     """Return `value` as a float, or raise if it is not a finite real number."""
-    return _within(name, value, unit, -LARGEST, "a finite number")
+    return _check_range(name, value, unit, -MAX_MAGNITUDE, "a finite number")
 
 
 def positive(name: str, value: object, unit: str = "") -> float:
     """Return `value` as a float, or raise if it is not a positive finite number."""
-    return _within(name, value, unit, 1 / LARGEST, "a positive finite number")
+    return _check_range(name, value, unit, 1 / MAX_MAGNITUDE, "a positive finite number")
 
 
 def not_negative(name: str, value: object, unit: str = "") -> float:
     """Return `value` as a float, or raise if it is not a finite number >= 0."""
-    return _within(name, value, unit, 0.0, "a finite number not below zero")
+    return _check_range(name, value, unit, 0.0, "a finite number not below zero")
 
 
-def _within(name: str, value: object, unit: str, least: float, allowed: str) -> float:
-    """Return a real number from `least` to `LARGEST`, or raise."""
+def _check_range(name: str, value: object, unit: str, minimum: float, allowed: str) -> float:
+    """Return a real number from `minimum` to `MAX_MAGNITUDE`, or raise."""
     allowed += f" ({unit})" if unit else ""
     number = scalar(name, value, unit)
     if not isinstance(number, bool) and isinstance(number, Real):
         real = _float(number)
-        if least <= real <= LARGEST:
+        if minimum <= real <= MAX_MAGNITUDE:
             return real
-        if np.isfinite(real) and (real > 0 or least < 0):
-            sizes = f"{1 / LARGEST:g} to {LARGEST:g}"
+        if np.isfinite(real) and (real > 0 or minimum < 0):
+            sizes = f"{1 / MAX_MAGNITUDE:g} to {MAX_MAGNITUDE:g}"
             raise InvalidInputError(name, value, f"{allowed}, of a size from {sizes}", "units are SI")
     raise InvalidInputError(name, value, allowed)
 
 
-def count(name: str, value: object, least: int = 1) -> int:
-    """Return `value` as an int, or raise if it is not a whole number >= `least`."""
+def count(name: str, value: object, minimum: int = 1) -> int:
+    """Return `value` as an int, or raise if it is not a whole number >= `minimum`."""
     value = scalar(name, value)
-    if isinstance(value, bool) or not isinstance(value, Integral) or int(value) < least:
-        raise InvalidInputError(name, value, f"a whole number not below {least}")
+    if isinstance(value, bool) or not isinstance(value, Integral) or int(value) < minimum:
+        raise InvalidInputError(name, value, f"a whole number not below {minimum}")
     return int(value)
 
 
 def instance(name: str, value: object, kind: type | tuple[type, ...], allowed: str) -> None:
-    """Raise if `value` is not an instance of `kind`; `allowed` names it for the reader."""
+    """Raise if `value` is not an instance of `kind`; `allowed` describes the expected type."""
     if not isinstance(value, kind):
         raise InvalidInputError(name, value, f"{allowed}, not {type(value).__name__}")
 
@@ -148,33 +148,33 @@ def known_name(name: str, value: str, names: Iterable[str]) -> str:
     names = sorted(names)
     if value in names:
         return value
-    near = get_close_matches(value, names, n=1, cutoff=0.5)
-    hint = f"did you mean {near[0]!r}?" if near else ""
-    listed = names if len(names) <= 20 else get_close_matches(value, names, n=3, cutoff=0.0)
-    more = "" if listed is names else f", or one of {len(names) - 3} further names"
-    raise InvalidInputError(name, value, f"one of {', '.join(listed)}{more}", hint)
+    close_matches = get_close_matches(value, names, n=1, cutoff=0.5)
+    hint = f"did you mean {close_matches[0]!r}?" if close_matches else ""
+    listed_names = names if len(names) <= 20 else get_close_matches(value, names, n=3, cutoff=0.0)
+    more = "" if listed_names is names else f", or one of {len(names) - 3} further names"
+    raise InvalidInputError(name, value, f"one of {', '.join(listed_names)}{more}", hint)
 
 
 @contextmanager
 def writing(path: Path, name: Callable[[Path], str] | None = None) -> Iterator[Path]:
-    """Yield a new file beside `path`, which it replaces when it is complete, or has the name ``name(part)``.
+    """Yield a temporary path; the complete file replaces `path`, or has the name ``name(temporary_path)``.
 
-    The previous file stays if writing fails, with a StoreError. A device or pipe is written to directly.
+    After a failed write the previous file remains, and a StoreError is raised. A device or pipe is written to directly.
     """
     if path.is_dir():
         raise StoreError(f"cannot write {path}: it is a folder")
-    part = path.with_name(f"{path.name}.{uuid.uuid4().hex[:12]}{PART}")
+    temporary_path = path.with_name(f"{path.name}.{uuid.uuid4().hex[:12]}{TEMPORARY_SUFFIX}")
     try:
         if path.exists() and not path.is_file():
             yield path
             return
         try:
-            yield part
-            with open(part, "rb+") as file:
+            yield temporary_path
+            with open(temporary_path, "rb+") as file:
                 os.fsync(file.fileno())
-            os.replace(part, path if name is None else path.with_name(name(part)))
+            os.replace(temporary_path, path if name is None else path.with_name(name(temporary_path)))
         finally:
-            part.unlink(missing_ok=True)
+            temporary_path.unlink(missing_ok=True)
     except OSError as error:
         raise StoreError(f"cannot write {path}: {error.strerror or error}") from error
 
@@ -192,8 +192,8 @@ def coordinates(name: str, values: object, unit: str = "m") -> FloatArray:
     bad = np.flatnonzero(~np.isfinite(array))
     if bad.size:
         raise InvalidInputError(name, f"{array[bad[0]]} at position {bad[0]}", f"finite everywhere ({unit})")
-    large = np.flatnonzero(np.abs(array) > LARGEST)
+    large = np.flatnonzero(np.abs(array) > MAX_MAGNITUDE)
     if large.size:
-        allowed = f"at most {LARGEST:g} everywhere ({unit})"
+        allowed = f"at most {MAX_MAGNITUDE:g} everywhere ({unit})"
         raise InvalidInputError(name, f"{array[large[0]]} at position {large[0]}", allowed, "units are SI")
     return array

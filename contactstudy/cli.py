@@ -55,8 +55,8 @@ def main(arguments: Sequence[str] | None = None, *, solver: Solver | None = None
     except KeyboardInterrupt as interrupt:
         if arguments is None and threading.current_thread() is threading.main_thread():
             signal.signal(signal.SIGINT, signal.SIG_IGN)  # the process ends: more of them would break off the ending
-        words = str(interrupt) or "interrupted; finished cases are kept, the same command goes on"
-        print(f"contactstudy: {words}", file=sys.stderr)
+        message = str(interrupt) or "interrupted; finished cases are kept, the same command goes on"
+        print(f"contactstudy: {message}", file=sys.stderr)
         return 128 + (interrupt.number if isinstance(interrupt, Terminated) else signal.SIGINT)
     except BrokenPipeError:
         # Python flushes the output once more at its end, and would complain.
@@ -96,11 +96,11 @@ def _run(options: argparse.Namespace, solver: Solver | None) -> int:
 
     share = None
     if options.share is not None:
-        number, _, count = options.share.partition("/")
-        if not (number.isdecimal() and count.isdecimal()):
+        share_number, _, count = options.share.partition("/")
+        if not (share_number.isdecimal() and count.isdecimal()):
             allowed = "two numbers with a slash, such as 3/40 for the third of forty shares"
             raise InvalidInputError("share", options.share, allowed)
-        share = (int(number), int(count))
+        share = (int(share_number), int(count))
     report = run_study(_study(options), options.out, solver=solver, share=share, **_parallel(options))
     if share is None:
         return _finish(report, figure=not options.no_figure)
@@ -119,16 +119,16 @@ def _rerun(options: argparse.Namespace, solver: Solver | None) -> int:
 
 def _finish(report: RunReport, *, figure: bool) -> int:
     """Write summary and figures, then print the result of a run: files are complete even if the output is closed."""
-    from contactstudy.study.report import run_lines, shown, stale_lines
+    from contactstudy.study.report import format_path, run_lines, stale_lines
 
-    written: list[str] = []
+    lines: list[str] = []
     if report.files:
-        written.append(f"wrote {shown(_write_summary(report.folder))}")
+        lines.append(f"wrote {format_path(_write_summary(report.folder))}")
         try:
-            written += [f"wrote {shown(drawn)}" for drawn in (_draw(report.folder) if figure else [])]
+            lines += [f"wrote {format_path(figure_path)}" for figure_path in (_draw(report.folder) if figure else [])]
         except ContactStudyError as error:
-            written.append(f"  no figure: {error}")
-    _print([*run_lines(report), *written, *stale_lines(report)])
+            lines.append(f"  no figure: {error}")
+    _print([*run_lines(report), *lines, *stale_lines(report)])
     return ALL_OK if not report.failures else SOME_FAILED
 
 
@@ -156,8 +156,8 @@ def _draw(folder: Path) -> list[Path]:
         paths = []
         for name, (figure, _) in figures_of_folder(folder).items():
             paths.append(folder / f"{name}.png")
-            with writing(paths[-1]) as part:
-                figure.savefig(part, dpi=150, format="png")
+            with writing(paths[-1]) as temporary_path:
+                figure.savefig(temporary_path, dpi=150, format="png")
             pyplot.close(figure)
         return paths
     finally:
@@ -167,11 +167,11 @@ def _draw(folder: Path) -> list[Path]:
 def _plan(options: argparse.Namespace, solver: Solver | None) -> int:
     from contactstudy.study import run_study
     from contactstudy.study.folder import Folder
-    from contactstudy.study.report import forecast_lines, shown, state_lines
+    from contactstudy.study.report import forecast_lines, format_path, state_lines
 
     study = _study(options)
     folder = Folder(options.out if options.out is not None else Path("results") / study.name)
-    print(f"study {study.name}: {study.size} combinations, results in {shown(folder.path)}", flush=True)
+    print(f"study {study.name}: {study.size} combinations, results in {format_path(folder.path)}", flush=True)
     if options.sample is not None:
         states = run_study(study, folder.path, sample=options.sample, solver=solver, workers=options.workers).states
     else:
@@ -185,12 +185,12 @@ def _plan(options: argparse.Namespace, solver: Solver | None) -> int:
 
 def _status(options: argparse.Namespace, solver: Solver | None) -> int:
     from contactstudy.study.folder import Folder
-    from contactstudy.study.report import forecast_lines, shown, state_lines
+    from contactstudy.study.report import forecast_lines, format_path, state_lines
 
     folder = Folder(options.path)
     study = folder.read_study()
     states = folder.states(study.plan())
-    print(f"study {study.name}: {len(states.plan)} cases, results in {shown(folder.path)}")
+    print(f"study {study.name}: {len(states.plan)} cases, results in {format_path(folder.path)}")
     for holder in folder.holders:
         print(f"locked: {holder}")
     _print([*state_lines(states, everything=options.all), *forecast_lines(states)])
@@ -198,17 +198,17 @@ def _status(options: argparse.Namespace, solver: Solver | None) -> int:
 
 
 def _collect(options: argparse.Namespace, solver: Solver | None) -> int:
-    from contactstudy.study.report import shown
+    from contactstudy.study.report import format_path
 
-    print(f"wrote {shown(_write_summary(options.path.resolve(), options.out))}")
+    print(f"wrote {format_path(_write_summary(options.path.resolve(), options.out))}")
     return ALL_OK
 
 
 def _export(options: argparse.Namespace, solver: Solver | None) -> int:
     from contactstudy.export.command import export
-    from contactstudy.study.report import shown
+    from contactstudy.study.report import format_path
 
-    written = export(
+    path = export(
         options.path,
         kind=options.format,
         variables=options.variable,
@@ -217,19 +217,19 @@ def _export(options: argparse.Namespace, solver: Solver | None) -> int:
         select=options.select or (),
         out=options.out,
     )
-    if written is not None:
-        print(f"wrote {shown(written.resolve())}")
+    if path is not None:
+        print(f"wrote {format_path(path.resolve())}")
     return ALL_OK
 
 
 def _report(options: argparse.Namespace, solver: Solver | None) -> int:
     from contactstudy.arrays.selections import selection_of
     from contactstudy.report import write
-    from contactstudy.study.report import shown
+    from contactstudy.study.report import format_path
 
     selection = selection_of(options.select or ())
-    written = write(options.path, options.out, title=options.title, selection=selection)
-    print(f"wrote {shown(written.resolve())}")
+    path = write(options.path, options.out, title=options.title, selection=selection)
+    print(f"wrote {format_path(path.resolve())}")
     return ALL_OK
 
 
@@ -250,18 +250,18 @@ def _verify(options: argparse.Namespace, solver: Solver | None) -> int:
 
     folder = options.out if options.out is not None else Path("results/verification")
     suite.make_folder(folder)  # before the work, not after
-    shown: set[str] = set()
+    format_path: set[str] = set()
 
     def show(group: str, check: Check) -> None:
-        if group not in shown:
+        if group not in format_path:
             print(f"\n{group}\n{suite.HEADING}")
-        shown.add(group)
+        format_path.add(group)
         print(suite.line(check), flush=True)
 
     verification = suite.run(options.level, show)
     print(f"\n{suite.summary(verification)}")
     for path in suite.write(verification, folder):
-        print(f"wrote {words.shown(path.resolve())}")
+        print(f"wrote {words.format_path(path.resolve())}")
     return ALL_OK if verification.passed else SOME_FAILED
 
 
@@ -270,38 +270,38 @@ Action = Callable[[argparse.Namespace, "Solver | None"], int]  # Takes the argum
 
 def command_parser() -> argparse.ArgumentParser:
     """Return the parser of the command line."""
-    parsed = argparse.ArgumentParser(
+    parser = argparse.ArgumentParser(
         prog="contactstudy",
         description="Rolling-sliding contact of a roller on an elastic body with free end faces: parametric studies.",
         epilog="Exit codes: 0 all cases or checks ok, 1 some failed or are not done, 2 wrong usage or input, "
         "129 after SIGHUP, 130 after Ctrl-C, 141 if nobody reads the output any more, 143 after SIGTERM.",
     )
-    parsed.add_argument("--version", action="store_true", help="show the version and end")
-    parsed.add_argument("--versions", action="store_true", help="show it with those of all that a result depends on")
-    parsed.add_argument("--verbose", action="store_true", help="log to the error output")
-    commands = parsed.add_subparsers(dest="command", metavar="COMMAND")
+    parser.add_argument("--version", action="store_true", help="show the version and end")
+    parser.add_argument("--versions", action="store_true", help="show it with those of all that a result depends on")
+    parser.add_argument("--verbose", action="store_true", help="log to the error output")
+    commands = parser.add_subparsers(dest="command", metavar="COMMAND")
 
     def command(action: Action, source: str, text: str) -> argparse.ArgumentParser:
-        added = commands.add_parser(action.__name__.strip("_"), help=text, description=text)
-        added.set_defaults(action=action)
+        child = commands.add_parser(action.__name__.strip("_"), help=text, description=text)
+        child.set_defaults(action=action)
         meanings = {
             "study": "study file (TOML)",
             "folder": "results of a study",
             "file_or_folder": "netCDF file of a case, or a study's folder",
         }
         if source:
-            added.add_argument("path", metavar=source.upper(), type=Path, help=meanings[source])
+            child.add_argument("path", metavar=source.upper(), type=Path, help=meanings[source])
         if source == "study":
-            added.add_argument("--out", metavar="FOLDER", type=Path, help="results; default results/<study name>")
-        return added
+            child.add_argument("--out", metavar="FOLDER", type=Path, help="results; default results/<study name>")
+        return child
 
-    def parallel(added: argparse.ArgumentParser) -> None:
-        added.add_argument("--workers", metavar="N", type=int, help="local processes; default one per core")
-        added.add_argument("--scheduler", metavar="ADDRESS", help="dask scheduler to use instead, tcp://...")
-        added.add_argument(
+    def parallel(child: argparse.ArgumentParser) -> None:
+        child.add_argument("--workers", metavar="N", type=int, help="local processes; default one per core")
+        child.add_argument("--scheduler", metavar="ADDRESS", help="dask scheduler to use instead, tcp://...")
+        child.add_argument(
             "--wait", metavar="SECONDS", type=float, help="longest wait for a worker of the scheduler; default 300"
         )
-        added.add_argument("--no-figure", action="store_true", help="draw no figure")
+        child.add_argument("--no-figure", action="store_true", help="draw no figure")
 
     run = command(_run, "study", "Solve the cases of a study that are not solved yet.")
     parallel(run)
@@ -310,38 +310,38 @@ def command_parser() -> argparse.ArgumentParser:
     plan = command(_plan, "study", text)
     plan.add_argument("--sample", metavar="N", type=int, help="solve N cases, evenly spaced, to estimate the time")
     plan.add_argument("--workers", metavar="N", type=int, help="local processes for the sample; default one per core")
-    for added in (run, plan):
-        added.add_argument("--yes", action="store_true", help=f"do not ask about {MANY_CASES} cases and more")
+    for child in (run, plan):
+        child.add_argument("--yes", action="store_true", help=f"do not ask about {MANY_CASES} cases and more")
     status = command(_status, "folder", "State of every case: done, failed, stale or missing.")
-    for added in (plan, status):
-        added.add_argument("--all", action="store_true", help="list every case")
-    added = command(_collect, "folder", "Merge the summaries of all cases into one netCDF file.")
-    added.add_argument("--out", metavar="FILE", type=Path, help="default FOLDER/summary.nc")
+    for child in (plan, status):
+        child.add_argument("--all", action="store_true", help="list every case")
+    child = command(_collect, "folder", "Merge the summaries of all cases into one netCDF file.")
+    child.add_argument("--out", metavar="FILE", type=Path, help="default FOLDER/summary.nc")
     parallel(command(_rerun, "folder", "Solve failed, stale and missing cases again."))
     text = "Check the solver against closed forms, finite elements and published numbers."
-    added = command(_verify, "", text)
-    added.add_argument("--level", choices=("quick", "full"), default="quick", help="a minute, or a few (default quick)")
-    added.add_argument("--out", metavar="FOLDER", type=Path, help="default results/verification")
+    child = command(_verify, "", text)
+    child.add_argument("--level", choices=("quick", "full"), default="quick", help="a minute, or a few (default quick)")
+    child.add_argument("--out", metavar="FOLDER", type=Path, help="default results/verification")
     text = "Write a study's summaries as a table (CSV), or fields of one case as CSV, VTK or MATLAB."
-    added = command(_export, "file_or_folder", text)
-    added.add_argument("--format", choices=("csv", "vtk", "mat"), help="default csv")
-    added.add_argument("--variable", metavar="NAME", action="append", help="variable or stress measure; repeatable")
-    added.add_argument("--line", metavar="X,Y,Z:X,Y,Z", help="ends of a line in metres, for csv (--line=-1e-4,0,0:...)")
-    added.add_argument("--points", metavar="N", type=int, default=101, help="points of the line; default 101")
-    added.add_argument("--select", metavar="NAME=VALUE", action="append", help="swept parameter of a study; repeatable")
-    added.add_argument("--out", metavar="FILE", type=Path, help="default beside the results; - for the screen")
+    child = command(_export, "file_or_folder", text)
+    child.add_argument("--format", choices=("csv", "vtk", "mat"), help="default csv")
+    child.add_argument("--variable", metavar="NAME", action="append", help="variable or stress measure; repeatable")
+    child.add_argument("--line", metavar="X,Y,Z:X,Y,Z", help="ends of a line in metres, for csv (--line=-1e-4,0,0:...)")
+    child.add_argument("--points", metavar="N", type=int, default=101, help="points of the line; default 101")
+    child.add_argument("--select", metavar="NAME=VALUE", action="append", help="swept parameter of a study; repeatable")
+    child.add_argument("--out", metavar="FILE", type=Path, help="default beside the results; - for the screen")
     explore = command(_explore, "folder", "Serve a page to look through a study, on this machine.")
     explore.add_argument("--port", metavar="N", type=int, help="default: the first free one from 5006 on")
     text = "host name that a browser may use beside localhost, such as that of a proxy; repeatable"
     explore.add_argument("--host", metavar="NAME", action="append", default=[], help=text)
     explore.add_argument("--no-browser", action="store_true", help="do not open the page in the browser")
     text = "Write one HTML page of a case or of a study, for a reader without Python."
-    added = command(_report, "file_or_folder", text)
-    added.add_argument("--title", metavar="TEXT", help="heading; default: the name of the file or of the study")
+    child = command(_report, "file_or_folder", text)
+    child.add_argument("--title", metavar="TEXT", help="heading; default: the name of the file or of the study")
     text = "value of a swept parameter that a study's figures keep to; repeatable"
-    added.add_argument("--select", metavar="NAME=VALUE", action="append", help=text)
-    added.add_argument("--out", metavar="FILE", type=Path, help="default beside the file, or report.html in the folder")
-    return parsed
+    child.add_argument("--select", metavar="NAME=VALUE", action="append", help=text)
+    child.add_argument("--out", metavar="FILE", type=Path, help="default beside the file, or report.html in the folder")
+    return parser
 
 
 if __name__ == "__main__":

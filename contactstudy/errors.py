@@ -90,7 +90,7 @@ class WindowError(ContactStudyError):
 
 
 class Terminated(KeyboardInterrupt):
-    """A signal with this number, SIGTERM or SIGHUP, ended a run, with all that Ctrl-C does as well."""
+    """SIGTERM or SIGHUP ended a run; the cleanup equals that of Ctrl-C."""
 
     number = 15
 
@@ -100,7 +100,7 @@ class ConvergenceWarning(UserWarning):
 
 
 class MagnitudeWarning(UserWarning):
-    """A value is of a size that is mostly a mistake in the unit; it is taken as it is."""
+    """A value lies outside its usual range, which suggests a wrong unit; the calculation uses the value unchanged."""
 
 
 class TemperatureWarning(UserWarning):
@@ -108,4 +108,4 @@ class TemperatureWarning(UserWarning):
 
 
 class BoundWarning(UserWarning):
-    """A best value lies at the bound of where it was sought."""
+    """The optimum equals a bound of the search range."""

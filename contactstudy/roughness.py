@@ -13,21 +13,21 @@ import xarray as xr
 from contactstudy import checks
 from contactstudy.arrays.cells import labelled_cells
 from contactstudy.arrays.grid import Grid
-from contactstudy.arrays.variables import in_si, labels, named
+from contactstudy.arrays.variables import in_si, labels, name_array
 from contactstudy.case.magnitudes import warn_doubtful_values
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 from contactstudy.profiles.instruments import Heights, of_instrument, read_heights, turned
 from contactstudy.profiles.measurements import check_positions, check_values, read_columns, read_netcdf, unit_in_metres
 
-SAME_PLACE = 1e-3  # Difference of equal cells, over a cell. Accuracy
+COORDINATE_TOLERANCE = 1e-3  # Difference of equal cells, over a cell. Accuracy
 
 
 def _height_map(grid: Grid, heights: FloatArray, source: str) -> xr.DataArray:
     """Heights on a grid with their CF attributes."""
     positions = {"x": grid.x, "y": grid.y}
     coordinates = {name: (name, values, labels(name, coordinate=True)) for name, values in positions.items()}
-    return named("height", xr.DataArray(heights, coordinates, ("x", "y"))).assign_attrs(source=source)
+    return name_array("height", xr.DataArray(heights, coordinates, ("x", "y"))).assign_attrs(source=source)
 
 
 def self_affine(
@@ -36,7 +36,7 @@ def self_affine(
     """Isotropic self-affine surface with Gaussian heights.
 
     Filtered white noise: the power spectral density is ``q**(-2 (1 + hurst))`` between the wavenumbers
-    ``2 pi / longest`` and ``2 pi / shortest``, and nothing outside.
+    ``2 pi / longest`` and ``2 pi / shortest``, and zero outside.
 
     Parameters
     ----------
@@ -81,13 +81,13 @@ def self_affine(
     if not 0 <= hurst <= 1:
         raise InvalidInputError("hurst", hurst, "between 0 and 1")
     longest, shortest = checks.positive("longest", longest, "metres"), checks.positive("shortest", shortest, "metres")
-    seed = checks.count("seed", seed, least=0)
-    finest = 2 * max(grid.dx, grid.dy)
-    if shortest < finest * (1 - 1e-12):
-        raise InvalidInputError("shortest", shortest, f"at least two cells, {finest:g} m", "or take a finer grid")
-    widest = max(grid.dx * grid.cells_x, grid.dy * grid.cells_y)
-    if not shortest <= longest <= widest * (1 + 1e-12):
-        raise InvalidInputError("longest", longest, f"between shortest and the grid's larger side, {widest:g} m")
+    seed = checks.count("seed", seed, minimum=0)
+    minimum = 2 * max(grid.dx, grid.dy)
+    if shortest < minimum * (1 - 1e-12):
+        raise InvalidInputError("shortest", shortest, f"at least two cells, {minimum:g} m", "or take a finer grid")
+    maximum = max(grid.dx * grid.cells_x, grid.dy * grid.cells_y)
+    if not shortest <= longest <= maximum * (1 + 1e-12):
+        raise InvalidInputError("longest", longest, f"between shortest and the grid's larger side, {maximum:g} m")
     x, y = np.fft.fftfreq(grid.cells_x, grid.dx), np.fft.rfftfreq(grid.cells_y, grid.dy)
     frequency = np.hypot(x[:, None], y[None, :])
     rough = (frequency >= (1 - 1e-9) / longest) & (frequency <= (1 + 1e-9) / shortest)
@@ -137,7 +137,7 @@ def read_height_map(
         Whether the y axis points the other way, after the turn: z points into the body, so an instrument's y of its
         surface runs against this one; the roller's does not.
     corner : tuple of float, optional
-        Where the first point along x and y comes to lie, metres, after turning. Default: the file's
+        Position of the first point along x and y, metres, after turning. Default: the file's
         position, mostly (0, 0) for an instrument.
 
     Returns
@@ -158,10 +158,10 @@ def read_height_map(
     for name, value in (("remove_slope", remove_slope), ("remove_form", remove_form)):
         checks.instance(name, value, bool, "True or False")
     if of_instrument(path):
-        measured = read_heights(path)
+        height_map = read_heights(path)
     else:
-        measured = _read_netcdf(path) if path.suffix.lower() == ".nc" else _read_csv(path)
-    x, y, heights = turned(measured, turn, mirror)
+        height_map = _read_netcdf(path) if path.suffix.lower() == ".nc" else _read_csv(path)
+    x, y, heights = turned(height_map, turn, mirror)
     if y is None:
         raise InvalidInputError("path", str(path), "a file with heights over x and y", "it holds one line")
     if corner is not None:
@@ -175,7 +175,7 @@ def read_height_map(
     _check_cover(x, y, grid)
     if remove_slope or remove_form:
         heights = heights - _form(x, y, heights, order=2 if remove_form else 1)
-    return _height_map(grid, _interpolated(x, y, heights, grid), f"measured, {path.name}")
+    return _height_map(grid, _interpolate(x, y, heights, grid), f"measured, {path.name}")
 
 
 def heights_on(grid: Grid, heights: xr.DataArray) -> FloatArray:
@@ -209,32 +209,32 @@ def heights_on(grid: Grid, heights: xr.DataArray) -> FloatArray:
     values, cells = labelled_cells("roughness", in_si("roughness", heights, "m"))
     warn_doubtful_values(roughness=float(np.ptp(values)))
     if cells.shape == grid.shape and all(
-        np.allclose(position, centres, rtol=0.0, atol=SAME_PLACE * step)
+        np.allclose(position, centres, rtol=0.0, atol=COORDINATE_TOLERANCE * step)
         for position, centres, step in ((cells.x, grid.x, grid.dx), (cells.y, grid.y, grid.dy))
     ):
         return values
     _check_cover(cells.x, cells.y, grid, "roughness, grid")
-    return _interpolated(cells.x, cells.y, values, grid)
+    return _interpolate(cells.x, cells.y, values, grid)
 
 
-def _check_cover(x: FloatArray, y: FloatArray, grid: Grid, called: str = "grid") -> None:
+def _check_cover(x: FloatArray, y: FloatArray, grid: Grid, argument: str = "grid") -> None:
     """Raise unless the measured positions cover the cell centres."""
-    for name, measured, centres in (("x", x, grid.x), ("y", y, grid.y)):
-        slack = 1e-9 * (measured[-1] - measured[0])
-        if centres[0] < measured[0] - slack or centres[-1] > measured[-1] + slack:
+    for name, map_centres, centres in (("x", x, grid.x), ("y", y, grid.y)):
+        slack = 1e-9 * (map_centres[-1] - map_centres[0])
+        if centres[0] < map_centres[0] - slack or centres[-1] > map_centres[-1] + slack:
             raise InvalidInputError(
-                f"{called}.{name}",
+                f"{argument}.{name}",
                 f"{centres[0]:g} to {centres[-1]:g} m",
-                f"within the measured {measured[0]:g} to {measured[-1]:g} m",
+                f"within the measured {map_centres[0]:g} to {map_centres[-1]:g} m",
             )
 
 
-def _interpolated(x: FloatArray, y: FloatArray, heights: FloatArray, grid: Grid) -> FloatArray:
+def _interpolate(x: FloatArray, y: FloatArray, heights: FloatArray, grid: Grid) -> FloatArray:
     """Heights at the cell centres, bilinear between the positions."""
     from scipy.interpolate import RegularGridInterpolator
 
-    inside = np.clip(grid.x, x[0], x[-1])[:, None], np.clip(grid.y, y[0], y[-1])[None, :]
-    return np.asarray(RegularGridInterpolator((x, y), heights)(inside))
+    clipped_positions = np.clip(grid.x, x[0], x[-1])[:, None], np.clip(grid.y, y[0], y[-1])[None, :]
+    return np.asarray(RegularGridInterpolator((x, y), heights)(clipped_positions))
 
 
 def _form(x: FloatArray, y: FloatArray, heights: FloatArray, order: int) -> FloatArray:
@@ -262,8 +262,8 @@ def _read_csv(path: Path) -> Heights:
     points, counts = np.unique(at_x * y.size + at_y, return_counts=True)
     if (counts > 1).any():
         point = int(points[counts.argmax()])
-        where = f"x = {x[point // y.size]:g} m, y = {y[point % y.size]:g} m"
-        raise InvalidInputError("height", f"{counts.max()} values at {where}", "one value at every point")
+        location = f"x = {x[point // y.size]:g} m, y = {y[point % y.size]:g} m"
+        raise InvalidInputError("height", f"{counts.max()} values at {location}", "one value at every point")
     heights = np.full((x.size, y.size), np.nan)
     heights[at_x, at_y] = columns["height"]
     return Heights(x, y, heights)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from contactstudy.arrays.variables import AXES, STRESSES, describe, named, require
+from contactstudy.arrays.variables import AXES, STRESSES, describe, name_array, require
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 
@@ -37,7 +37,7 @@ def von_mises(stress: xr.Dataset) -> xr.DataArray:
     1.732051
     """
     require(stress, *STRESSES, argument="stress")
-    return named("von_mises", xr.apply_ufunc(von_mises_of, *(stress[name] for name in STRESSES), dask="allowed"))
+    return name_array("von_mises", xr.apply_ufunc(von_mises_of, *(stress[name] for name in STRESSES), dask="allowed"))
 
 
 def von_mises_of(
@@ -116,7 +116,7 @@ def tresca(stress: xr.Dataset) -> xr.DataArray:
     """
     principal = principal_stresses(stress)["principal_stress"]
     difference = principal.sel({PRINCIPAL: 1}, drop=True) - principal.sel({PRINCIPAL: 3}, drop=True)
-    return named("tresca", difference)
+    return name_array("tresca", difference)
 
 
 def maximum_shear(stress: xr.Dataset) -> xr.DataArray:
@@ -138,7 +138,7 @@ def maximum_shear(stress: xr.Dataset) -> xr.DataArray:
     >>> float(maximum_shear(tension))
     0.5
     """
-    return named("maximum_shear", 0.5 * tresca(stress))
+    return name_array("maximum_shear", 0.5 * tresca(stress))
 
 
 def hydrostatic(stress: xr.Dataset) -> xr.DataArray:
@@ -162,7 +162,7 @@ def hydrostatic(stress: xr.Dataset) -> xr.DataArray:
     normal = STRESSES[:3]
     require(stress, *normal, argument="stress")
     xx, yy, zz = (stress[name] for name in normal)
-    return named("hydrostatic", (xx + yy + zz) / 3)
+    return name_array("hydrostatic", (xx + yy + zz) / 3)
 
 
 def orthogonal_shear_range(stress: xr.Dataset) -> xr.Dataset:
@@ -210,4 +210,4 @@ def orthogonal_shear_range(stress: xr.Dataset) -> xr.Dataset:
         "y_of_largest_shear": shear.idxmax(along),
         "y_of_smallest_shear": shear.idxmin(along),
     }
-    return xr.Dataset({name: named(name, value) for name, value in values.items()})
+    return xr.Dataset({name: name_array(name, value) for name, value in values.items()})

@@ -1,4 +1,4 @@
-"""Control of the threads that the linear algebra starts on its own."""
+"""Limit on the threads of the linear algebra."""
 
 from __future__ import annotations
 

@@ -7,8 +7,8 @@ from functools import cache
 from importlib.metadata import PackageNotFoundError, version
 
 PACKAGES = ("numpy", "scipy", "xarray", "netCDF4", "pyfftw")  # Packages on which results depend
-FURTHER = ("dask", "matplotlib", "pandas", "panel", "clarabel")
-"""Further packages; the last two come with the extras `explore` and `shakedown`."""
+OPTIONAL_PACKAGES = ("dask", "matplotlib", "pandas", "panel", "clarabel")
+"""Optional packages; the extras `explore` and `shakedown` install the last two."""
 
 
 @cache
@@ -35,7 +35,7 @@ def show_versions() -> None:
     >>> show_versions()  # doctest: +ELLIPSIS
     contactstudy ...
     """
-    further = {name: release for name in FURTHER if (release := version_of(name)) != "unknown"}
+    further = {name: release for name in OPTIONAL_PACKAGES if (release := version_of(name)) != "unknown"}
     rows = versions() | further | {"system": platform.platform()}
     width = max(map(len, rows))
     print("\n".join(f"{name:{width}} {release}" for name, release in rows.items()))

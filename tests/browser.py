@@ -24,7 +24,7 @@ def chromium() -> str | None:
 
 
 def open_served(page: Any, address: str) -> None:
-    """Open the page of a server that listens a moment after it has said where, and wait for its figures."""
+    """Open the page of a server, and wait for its figures."""
     end = time.monotonic() + SECONDS
     while time.monotonic() < end:
         with suppress(Exception):

@@ -76,7 +76,7 @@ LINE_LOAD = 0.5 * np.pi
 def strip_result() -> Callable[..., xr.Dataset]:
     """Make a result of Hertz' line contact in closed form, the same in every cross-section of a roller of length 4a.
 
-    The body goes on for 1a beyond either end of the roller.
+    The body extends 1a beyond either end of the roller.
     """
 
     def build(
@@ -108,14 +108,14 @@ def strip_result() -> Callable[..., xr.Dataset]:
 
 
 @pytest.fixture(scope="session")
-def solved() -> xr.Dataset:
+def case_result() -> xr.Dataset:
     """Steel with two free ends, a roller that begins one half-width inside, friction: the real solver."""
     return solved_case()
 
 
 @pytest.fixture(scope="session")
-def opened(tmp_path_factory: pytest.TempPathFactory) -> xr.Dataset:
-    """A study opened: e/a, a friction that fails, two bodies of which one for e = 0 only; made-up fields."""
+def study_dataset(tmp_path_factory: pytest.TempPathFactory) -> xr.Dataset:
+    """Dataset of a study with made-up fields: e/a, a failing friction, two bodies, the half-space for e = 0 only."""
     folder = tmp_path_factory.mktemp("results")
     study = small_study(
         sweep={"e_over_a": [0.0, 1.0, 2.0], "friction": [0.1, FAILS], "body": ["finite-length", "half-space"]},

@@ -1,4 +1,4 @@
-"""A short crowned steel roller on a body that is 20 half-widths long: cases that differ in what is asked."""
+"""Cases of a short crowned steel roller on a body that is 20 half-widths long."""
 
 from __future__ import annotations
 
@@ -12,6 +12,6 @@ CROWNED = profiles.Lundberg.for_pressure(1.5e9, radius=5e-3, modulus=STEEL.plane
 
 
 def case_with(**arguments) -> Case:
-    """The crowned roller at 1 GPa, or what `arguments` make of it."""
+    """The crowned roller at 1 GPa, changed by `arguments`."""
     roller = Roller(radius=5e-3, length=16 * HALF_WIDTH, profile=CROWNED)
     return Case(**({"body": BODY, "roller": roller, "max_pressure": 1e9} | arguments))

@@ -15,12 +15,12 @@ import numpy as np
 import xarray as xr
 
 from contactstudy import FiniteLengthSpace, HalfSpace, Study, solve, solve_contact, stress_field
-from contactstudy.study.setup import build_setup
+from contactstudy.study.case_setup import build_setup
 from contactstudy.verification import run
 from contactstudy.verification.problems import LINE_LOAD, on_cells, unit_material
 
 T = TypeVar("T")
-ROWS = {  # what the table calls it: group, part of the case, part of the quantity, unit
+ROWS = {  # label in the table: group, part of the case's name, part of the quantity's name, unit
     "Hertz point contact, 129 x 129 cells: peak pressure": ("half-space", "point contact", "peak pressure", ""),
     "... approach": ("half-space", "point contact", "approach", ""),
     "Hertz elliptic contact, axes 2.5 to 1: peak pressure": ("half-space", "elliptic", "peak pressure", ""),
@@ -81,13 +81,13 @@ def accuracy() -> Iterator[tuple[str, str]]:
     verification = run("full")
     assert verification.passed
     for label, (group, case, quantity, unit) in ROWS.items():
-        found = [c for c in verification.groups[group] if case in c.case and quantity in c.quantity]
-        yield label, f"{max(abs(check.difference) for check in found):.1e} {unit}".strip()
+        checks = [c for c in verification.groups[group] if case in c.case and quantity in c.quantity]
+        yield label, f"{max(abs(check.difference) for check in checks):.1e} {unit}".strip()
     yield "checks of `contactstudy verify --level full`, all passed", str(len(verification.checks))
 
 
 def ends() -> Iterator[tuple[str, str]]:
-    """What free ends change, in one number each."""
+    """Effects of free ends, one number each."""
     gap = on_cells(lambda x, y: y**2 + 0 * x, (0, 8), (-2, 2), (129, 65))
     body = FiniteLengthSpace(length=8.0, material=unit_material())
     along = solve_contact(body, gap, load=8 * LINE_LOAD)["pressure"].max("y")
@@ -107,37 +107,37 @@ def parts_of_the_main_job() -> Iterator[tuple[str, str]]:
     plan = Study.from_toml(Path(__file__).parents[1] / "studies" / "edge_effect.toml").plan()
     setup = build_setup(next(c.parameters for c in plan if c.parameters.get("e_over_a") == 1.0))
     case = setup.case
-    at = {name: setup.options[name] for name in ("x", "y", "z")}
+    positions = {name: setup.options[name] for name in ("x", "y", "z")}
 
-    def timed(work: Callable[[], T]) -> tuple[float, T]:
-        began = time.perf_counter()
-        found = work()
-        return time.perf_counter() - began, found
+    def time_work(work: Callable[[], T]) -> tuple[float, T]:
+        start_time = time.perf_counter()
+        output = work()
+        return time.perf_counter() - start_time, output
 
-    seconds, result = timed(lambda: solve(case, stresses=False))
+    seconds, result = time_work(lambda: solve(case, stresses=False))
     yield (
         f"refined cells of one case, L/a = {case.body.extent[1] / case.hertz_half_width:.0f}",
         f"{result.sizes['x']} x {result.sizes['y']} cells",
     )
-    yield "contact settled to 1 %, and the traction left on the ends", f"{seconds:.1f} s"
+    yield "contact converged to 1 %, and the traction left on the ends", f"{seconds:.1f} s"
     pressure = result["pressure"]
 
     def stresses(friction: float) -> xr.Dataset:
-        return stress_field(case.body, pressure, friction=friction, **at, inside_cells=pressure)
+        return stress_field(case.body, pressure, friction=friction, **positions, inside_cells=pressure)
 
-    seconds, _ = timed(lambda: stresses(0.0))
-    yield f"six stresses at {' x '.join(str(len(axis)) for axis in at.values())} points", f"{seconds:.1f} s"
-    seconds, _ = timed(lambda: stresses(0.1))
+    seconds, _ = time_work(lambda: stresses(0.0))
+    yield f"six stresses at {' x '.join(str(len(axis)) for axis in positions.values())} points", f"{seconds:.1f} s"
+    seconds, _ = time_work(lambda: stresses(0.1))
     yield "... with friction, the first time", f"{seconds:.1f} s"
-    seconds, _ = timed(lambda: stresses(0.2))
+    seconds, _ = time_work(lambda: stresses(0.2))
     yield "... with any further friction", f"{seconds:.2f} s"
 
 
 def main() -> None:
     """Print the table."""
     print("| quantity | measured |\n|---|---|")
-    for part in (accuracy, ends, parts_of_the_main_job):
-        for quantity, value in part():
+    for section in (accuracy, ends, parts_of_the_main_job):
+        for quantity, value in section():
             print(f"| {quantity} | {value} |", flush=True)
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 
 from contactstudy.study import Study
-from contactstudy.study.parameters import checked, fragment, hash_of
+from contactstudy.study.parameters import check_parameters, hash_fragments, identity_fragment
 
 BASE = {
     "young": 210e9,
@@ -22,15 +22,15 @@ BASE = {
 
 
 def small_study(name: str = "small", **changes) -> Study:
-    """Four cases, or what `changes` make of it."""
+    """A study of four cases, changed by `changes`."""
     content = {"base": BASE, "sweep": {"e_over_a": [0.0, 1.0], "friction": [0.0, 0.1]}} | changes
     return Study(name=name, **content)
 
 
 def case_id(parameters: dict) -> str:
     """Identity of a case of these parameters, without the default accuracy."""
-    values = checked(parameters)
-    return hash_of(fragment(name, values[name]) for name in sorted(values)).decode()
+    values = check_parameters(parameters)
+    return hash_fragments(identity_fragment(name, values[name]) for name in sorted(values)).decode()
 
 
 def identity(**changes) -> str:
@@ -41,7 +41,7 @@ def identity(**changes) -> str:
 def as_toml(study: Study) -> str:
     """A study as a TOML file; JSON's numbers, texts and lists are TOML as well."""
     lines = [f"name = {json.dumps(study.name)}", f"level = {json.dumps(study.level)}"]
-    for part in ("base", "sweep"):
-        lines.append(f"[{part}]")
-        lines += [f"{key} = {json.dumps(value)}" for key, value in getattr(study, part).items()]
+    for table in ("base", "sweep"):
+        lines.append(f"[{table}]")
+        lines += [f"{key} = {json.dumps(value)}" for key, value in getattr(study, table).items()]
     return "\n".join(lines) + "\n"

@@ -1,4 +1,4 @@
-"""One real case, solved once in each process: what tests and pages look at."""
+"""A solved case for tests and pages, once per process."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from contactstudy.profiles import Cylinder
 
 
 @functools.cache
-def _solved() -> xr.Dataset:
+def _solve_case() -> xr.Dataset:
     material = Material(young=210e9, poisson=0.3)
     half_width = 65e-6
     case = Case(
@@ -32,4 +32,4 @@ def _solved() -> xr.Dataset:
 
 def solved_case() -> xr.Dataset:
     """Steel with two free ends, a roller that begins one half-width inside, friction: the real solver."""
-    return _solved().copy(deep=True)
+    return _solve_case().copy(deep=True)

@@ -1,6 +1,6 @@
 """A stand-in for the solver: Hertz' pressure with a made-up end effect, at once; and ways to go wrong on demand.
 
-Only the study layer is tested with it: what it returns has the form of a result, not its physics.
+Tests of the study layer use this solver: its result has the form of a result, not the physics.
 """
 
 from __future__ import annotations
@@ -51,9 +51,9 @@ def solve_fake(
         raise MemoryError("Unable to allocate 7 EiB")
     half_width, peak = case.hertz_half_width, case.hertz_max_pressure
     start, stop = case.contact_range
-    inside = (grid.x > start) & (grid.x < stop)
+    in_contact = (grid.x > start) & (grid.x < stop)
     profile = np.sqrt(np.clip(1 - (grid.y / half_width) ** 2, 0, None))
-    pressure = peak * np.outer(inside * (1 + 0.1 * np.cos(grid.x / half_width)), profile)
+    pressure = peak * np.outer(in_contact * (1 + 0.1 * np.cos(grid.x / half_width)), profile)
     cells = {"x": grid.x, "y": grid.y}
     result = xr.Dataset(
         {
@@ -76,24 +76,24 @@ def solve_fake(
         }
         shape = tuple(axis.size for axis in points.values())
         depth = np.broadcast_to(points["z"] / half_width, shape)
-        # Largest in the middle of the points, so that it does not lie at their edge.
+        # The maximum lies in the middle of the points, not at their border.
         x, y = (np.linspace(-1, 1, size) if size > 1 else np.zeros(1) for size in shape[:2])
         hill = (1 - 0.1 * x[:, None, None] ** 2) * (1 - 0.1 * y[:, None] ** 2)
-        for number, name in enumerate(STRESSES):
-            result[name] = (tuple(points), -peak * hill * np.exp(-depth) / (1 + number))
+        for index, name in enumerate(STRESSES):
+            result[name] = (tuple(points), -peak * hill * np.exp(-depth) / (1 + index))
         result = result.assign_coords(points)
         result["von_mises"] = von_mises(result)
-        largest = analysis.largest_sample(result, "von_mises")
-        result = result.assign(largest.data_vars).assign(peak_von_mises_error=0.01 * largest["peak_von_mises"])
+        max_stress = analysis.largest_sample(result, "von_mises")
+        result = result.assign(max_stress.data_vars).assign(peak_von_mises_error=0.01 * max_stress["peak_von_mises"])
     return describe(result, "made up for tests")
 
 
 HELD = "CONTACTSTUDY_TEST_HELD"
-"""Environment variable that names a folder of tickets: files, each of which lets `solve_held` solve one case."""
+"""Environment variable with a folder of tickets: each file permits `solve_held` to solve one case."""
 
 
 def solve_held(case: Case, grid: Grid | None, **settings) -> xr.Dataset:
-    """Solve while there are tickets left; the other cases wait until more are given, however long that takes."""
+    """Solve a case per ticket; further cases wait for new tickets."""
     folder = Path(os.environ[HELD])
     worker.RUN = RunSettings(save_seconds=0.0)  # every case is written at once, so that tests count them
     while not _take_ticket(folder):
@@ -109,7 +109,7 @@ def give_tickets(folder: Path, count: int) -> None:
 
 
 def _take_ticket(folder: Path) -> bool:
-    """Take one; that a file can be removed once only makes it safe among processes."""
+    """Take a ticket; removing a file is atomic among processes."""
     for ticket in folder.iterdir():
         try:
             ticket.unlink()

@@ -29,31 +29,33 @@ FUNCTIONS = sorted(
 
 
 @pytest.mark.parametrize("name", [*FUNCTIONS, "summary", "assess", "citations"])
-def test_methods_are_the_functions(solved: xr.Dataset, name: str) -> None:
+def test_accessor_methods_equal_functions(case_result: xr.Dataset, name: str) -> None:
     arguments = ARGUMENTS.get(name, ())
     positional, options = ((), arguments) if isinstance(arguments, dict) else (arguments, {})
-    result = getattr(solved.contact, name)(*positional, **options)
-    expected = getattr(analysis if name in FUNCTIONS else report, name)(solved, *positional, **options)
+    result = getattr(case_result.contact, name)(*positional, **options)
+    expected = getattr(analysis if name in FUNCTIONS else report, name)(case_result, *positional, **options)
     assert result.identical(expected) if hasattr(result, "identical") else repr(result) == repr(expected)
 
 
-def test_signatures_are_those_of_the_functions() -> None:
+def test_accessor_signatures_match_functions() -> None:
     method, function = inspect.signature(xr.Dataset().contact.edge_factors), inspect.signature(analysis.edge_factors)
     assert list(method.parameters.values()) == list(function.parameters.values())[1:]
 
 
-def test_the_accessor_shows_the_main_numbers(solved: xr.Dataset, opened: xr.Dataset) -> None:
-    assert repr(solved.contact) == repr(solved.contact.summary())
-    assert "1.5 GPa" in solved.contact._repr_html_()
-    assert repr(opened.contact).startswith("study of 12 cases over e_over_a (3), friction (2), body (2): ")
-    assert "<pre>study of" in opened.contact._repr_html_()
+def test_the_accessor_shows_the_main_numbers(case_result: xr.Dataset, study_dataset: xr.Dataset) -> None:
+    assert repr(case_result.contact) == repr(case_result.contact.summary())
+    assert "1.5 GPa" in case_result.contact._repr_html_()
+    assert repr(study_dataset.contact).startswith("study of 12 cases over e_over_a (3), friction (2), body (2): ")
+    assert "<pre>study of" in study_dataset.contact._repr_html_()
 
 
-def test_a_file_opened_with_xarray(solved: xr.Dataset, tmp_path) -> None:
-    solved.to_netcdf(tmp_path / "case.nc")
-    with xr.open_dataset(tmp_path / "case.nc") as again:
-        assert float(again.contact.largest_sample()["peak_von_mises"]) == float(solved["von_mises"].max())
-        assert np.array_equal(again.contact.half_width()["half_width"], solved.contact.half_width()["half_width"])
+def test_accessor_of_opened_file(case_result: xr.Dataset, tmp_path) -> None:
+    case_result.to_netcdf(tmp_path / "case.nc")
+    with xr.open_dataset(tmp_path / "case.nc") as stored_result:
+        assert float(stored_result.contact.largest_sample()["peak_von_mises"]) == float(case_result["von_mises"].max())
+        assert np.array_equal(
+            stored_result.contact.half_width()["half_width"], case_result.contact.half_width()["half_width"]
+        )
 
 
 @pytest.mark.system
@@ -69,14 +71,14 @@ def test_a_file_opened_with_xarray(solved: xr.Dataset, tmp_path) -> None:
         "import contactstudy as cs; cs.open_study",
     ],
 )
-def test_it_is_there_whatever_is_imported_first(first: str) -> None:
+def test_accessor_is_registered_in_any_import_order(first: str) -> None:
     code = f"{first}\nimport xarray\nxarray.Dataset().contact"
     subprocess.run([sys.executable, "-c", code], check=True)
 
 
 @pytest.mark.system
-def test_it_is_there_for_a_file_that_xarray_opens_alone(solved: xr.Dataset, tmp_path) -> None:
-    solved.to_netcdf(tmp_path / "case.nc")
+def test_accessor_is_registered_by_xarray_backend(case_result: xr.Dataset, tmp_path) -> None:
+    case_result.to_netcdf(tmp_path / "case.nc")
     code = "import sys, xarray; print(xarray.open_dataset(sys.argv[1]).contact.summary())"
     run = subprocess.run([sys.executable, "-c", code, tmp_path / "case.nc"], check=True, capture_output=True, text=True)
     assert "Hertz pressure p0" in run.stdout

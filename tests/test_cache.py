@@ -1,4 +1,4 @@
-"""What is kept, what is dropped first, and what threads share."""
+"""Cached values: limits, order of removal, and threads."""
 
 from __future__ import annotations
 
@@ -22,101 +22,101 @@ def fresh() -> Iterator[None]:
     cache.clear()
 
 
-def recorded(kind: str) -> tuple[Callable[[str], FloatArray], list[str]]:
-    """Return a maker that keeps as many bytes as names are long, and the list of what it has made."""
-    made: list[str] = []
+def recording_function(kind: str) -> tuple[Callable[[str], FloatArray], list[str]]:
+    """Return a cached function of values as long as their names, and the list of its calls."""
+    call_list: list[str] = []
 
     @cached(kind)
     def make(name: str) -> FloatArray:
-        made.append(name)
+        call_list.append(name)
         return np.frombuffer(name.encode(), np.uint8)
 
-    return make, made
+    return make, call_list
 
 
-def test_the_least_recently_used_is_dropped_first() -> None:
+def test_cache_drops_least_recently_used_value() -> None:
     cache.limit(10)
-    make, made = recorded("letters")
+    make, calls = recording_function("letters")
     for name in ("aaaa", "bbbb", "aaaa", "cccc"):
         assert make(name).tobytes().decode() == name
-    assert made == ["aaaa", "bbbb", "cccc"]
+    assert calls == ["aaaa", "bbbb", "cccc"]
     make("aaaa")
-    assert made == ["aaaa", "bbbb", "cccc"]
+    assert calls == ["aaaa", "bbbb", "cccc"]
     make("bbbb")
-    assert made[-1] == "bbbb"
+    assert calls[-1] == "bbbb"
 
 
-def test_a_value_larger_than_the_limit_is_not_kept_and_drops_nothing() -> None:
+def test_oversized_value_is_not_cached() -> None:
     cache.limit(5)
-    make, made = recorded("letters")
+    make, calls = recording_function("letters")
     make("aaaa")
     make("larger than all")
     make("larger than all")
     make("aaaa")
-    assert made == ["aaaa", "larger than all", "larger than all"]
+    assert calls == ["aaaa", "larger than all", "larger than all"]
 
 
-def test_arguments_by_name_are_part_of_the_key() -> None:
+def test_keyword_arguments_belong_to_key() -> None:
     @cached("products")
-    def multiply(number: int, factor: int = 1) -> int:
-        return number * factor
+    def multiply(value: int, factor: int = 1) -> int:
+        return value * factor
 
     assert [multiply(2, factor=factor) for factor in (3, 4, 3)] == [6, 8, 6]
     assert cache.info().kinds["products"].computed == 2
 
 
 def test_kinds_do_not_meet() -> None:
-    first, _ = recorded("first")
-    second, made = recorded("second")
+    first, _ = recording_function("first")
+    second, calls = recording_function("second")
     first("same")
     second("same")
-    assert made == ["same"]
+    assert calls == ["same"]
     kinds = cache.info().kinds
     assert (kinds["first"].values, kinds["second"].values) == (1, 1)
 
 
-def test_info_counts_what_is_made_and_reused() -> None:
-    make, _ = recorded("counted")
+def test_cache_info_counts_reuse() -> None:
+    make, _ = recording_function("counted")
     for name in ("aa", "aa", "bbb"):
         make(name)
-    found = cache.info().kinds["counted"]
-    assert (found.values, found.nbytes, found.computed, found.reused) == (2, 5, 2, 1)
+    info = cache.info().kinds["counted"]
+    assert (info.values, info.nbytes, info.computed, info.reused) == (2, 5, 2, 1)
     assert "counted: 2 in" in str(cache.info())
 
 
-def test_a_smaller_limit_drops_at_once_and_keeps_the_most_recent() -> None:
-    make, made = recorded("letters")
+def test_smaller_limit_drops_oldest_values() -> None:
+    make, calls = recording_function("letters")
     for name in ("aaaa", "bbbb", "cccc"):
         make(name)
     cache.limit(8)
     assert cache.info().nbytes == 8
     make("cccc")
     make("bbbb")
-    assert made == ["aaaa", "bbbb", "cccc"]
+    assert calls == ["aaaa", "bbbb", "cccc"]
     cache.limit(0)
     assert cache.info().nbytes == 0
 
 
 @pytest.mark.parametrize("bound", [-1, 1.5, "1 GB"])
-def test_a_limit_is_a_number_of_bytes(bound: object) -> None:
+def test_invalid_cache_limit_raises(bound: object) -> None:
     with pytest.raises(InvalidInputError, match="nbytes"):
         cache.limit(bound)  # type: ignore[arg-type]
 
 
-def test_threads_share_one_value() -> None:
-    barrier, found = Barrier(4), []
+def test_threads_share_cached_value() -> None:
+    barrier, values = Barrier(4), []
 
     @cached("shared")
     def make(size: int) -> np.ndarray:
         barrier.wait()  # all four have missed
         return np.zeros(size)
 
-    threads = [Thread(target=lambda: found.append(make(8))) for _ in range(4)]
+    threads = [Thread(target=lambda: values.append(make(8))) for _ in range(4)]
     for thread in threads:
         thread.start()
     for thread in threads:
         thread.join()
-    assert all(value is found[0] for value in found)
+    assert all(value is values[0] for value in values)
     assert cache.info().nbytes == 64
 
 

@@ -29,7 +29,7 @@ def run(study_file, *more):
     return command("run", study_file, "--workers", 0, "--no-figure", *more)
 
 
-def test_run_names_what_it_wrote(study_file, tmp_path, capsys):
+def test_run_prints_written_files(study_file, tmp_path, capsys):
     assert command("run", study_file, "--workers", 0) == 0
     output = capsys.readouterr().out
     folder = tmp_path / "results" / "small"
@@ -54,7 +54,7 @@ def test_failures_give_code_1_and_are_named(study_file, capsys):
     assert command("rerun", "results/small", "--workers", 0) == 1
 
 
-def test_status_says_an_equal_reason_once(study_file, capsys):
+def test_status_groups_equal_reasons(study_file, capsys):
     study_file.write_text(as_toml(small_study(sweep={"e_over_a": [0, 1, 2], "friction": [FAILS]})))
     run(study_file)
     capsys.readouterr()
@@ -67,7 +67,7 @@ def test_status_says_an_equal_reason_once(study_file, capsys):
     assert capsys.readouterr().out.count("this friction fails") == 3
 
 
-def test_plan_solves_nothing(study_file, tmp_path, capsys):
+def test_plan_solves_no_case(study_file, tmp_path, capsys):
     assert command("plan", study_file) == 0
     output = capsys.readouterr().out
     assert "4 missing" in output
@@ -75,7 +75,7 @@ def test_plan_solves_nothing(study_file, tmp_path, capsys):
     assert not (tmp_path / "results").exists()
 
 
-def test_plan_after_a_run_forecasts_the_new_cases(study_file, capsys):
+def test_plan_forecasts_new_cases(study_file, capsys):
     run(study_file)
     study_file.write_text(as_toml(small_study(sweep={"e_over_a": [0, 1, -9], "friction": [0, 0.1, 0.2]})))
     capsys.readouterr()
@@ -93,7 +93,7 @@ def test_skipped_cases_are_listed_with_the_reason(study_file, capsys):
         assert re.search(reason, capsys.readouterr().out), arguments[0]
 
 
-def test_equal_reasons_are_said_once_and_a_conflict_of_all_cases_fails(study_file, capsys):
+def test_plan_groups_equal_reasons(study_file, capsys):
     study_file.write_text(as_toml(small_study(base=BASE | {"load": 3.0})))
     assert command("plan", study_file) == 2
     output = capsys.readouterr().out
@@ -109,9 +109,9 @@ def test_status_collect_and_export(study_file, tmp_path, capsys):
     assert command("status", "results/small") == 0
     assert "4 ok" in capsys.readouterr().out
     assert command("collect", "results/small", "--out", tmp_path / "all.nc") == 0
-    with xr.open_dataset(tmp_path / "all.nc") as merged:
-        assert merged["peak_pressure"].dims == ("e_over_a", "friction")
-        assert (merged["status"] == "ok").all()
+    with xr.open_dataset(tmp_path / "all.nc") as dataset:
+        assert dataset["peak_pressure"].dims == ("e_over_a", "friction")
+        assert (dataset["status"] == "ok").all()
     assert command("export", "results/small") == 0
     with open(tmp_path / "results" / "small" / "summary.csv", newline="") as file:
         rows = list(csv.DictReader(file))
@@ -133,16 +133,16 @@ def test_wrong_files_give_code_2(study_file, capsys, content, expected):
 
 
 @pytest.mark.parametrize("arguments", [("status", "nowhere"), ("plan", "nothing.toml"), ()])
-def test_other_misuse_gives_code_2(tmp_path, monkeypatch, capsys, arguments):
+def test_usage_error_returns_code_2(tmp_path, monkeypatch, capsys, arguments):
     monkeypatch.chdir(tmp_path)
     assert command(*arguments) == 2
 
 
 @pytest.mark.parametrize("arguments", [("fly",), ("run",), ("run", "a.toml", "--workers", "many")])
 def test_wrong_arguments_give_code_2(arguments, capsys):
-    with pytest.raises(SystemExit) as ended:
+    with pytest.raises(SystemExit) as error:
         command(*arguments)
-    assert ended.value.code == 2
+    assert error.value.code == 2
 
 
 def test_wrong_number_of_workers(study_file, capsys):
@@ -150,7 +150,7 @@ def test_wrong_number_of_workers(study_file, capsys):
     assert "workers = -1" in capsys.readouterr().err
 
 
-def test_an_error_of_the_program_is_not_hidden(study_file):
+def test_program_error_is_raised(study_file):
     study_file.write_text(as_toml(small_study(sweep={"e_over_a": [0], "friction": [IS_WRONG]})))
     with pytest.raises(ZeroDivisionError):
         run(study_file)
@@ -162,7 +162,7 @@ def test_version(capsys):
 
 
 @pytest.mark.system
-def test_help_imports_nothing_heavy():
+def test_help_avoids_heavy_imports():
     code = (
         "import sys; sys.argv = ['contactstudy', '--help']\n"
         "from contactstudy.cli import main\n"
@@ -176,7 +176,7 @@ def test_help_imports_nothing_heavy():
 
 
 @pytest.mark.system
-def test_a_reader_who_stops_reading_is_no_error(study_file, tmp_path):
+def test_closed_output_pipe_is_no_error(study_file, tmp_path):
     """The shell's `contactstudy ... | head -1`: silence, and everything written."""
     for arguments in (["run", str(study_file), "--workers", "0", "--no-figure"], ["status", "results/small", "--all"]):
         read, write = os.pipe()
@@ -201,7 +201,7 @@ def many(count):
     return as_toml(small_study(sweep={"e_over_a": [n / 100 for n in range(count)], "friction": [0.0, 0.1]}))
 
 
-def test_so_many_cases_are_meant_only_if_somebody_says_so(study_file, capsys, monkeypatch):
+def test_many_cases_need_confirmation(study_file, capsys, monkeypatch):
     monkeypatch.setattr("contactstudy.cli.MANY_CASES", 10)
     study_file.write_text(many(5))
     for arguments in (("plan", study_file), ("run", study_file, "--workers", 0)):
@@ -211,12 +211,12 @@ def test_so_many_cases_are_meant_only_if_somebody_says_so(study_file, capsys, mo
         assert "fewer than 10; or say --yes" in captured.err
     assert command("plan", study_file, "--yes") == 0
     monkeypatch.setattr("sys.stdin.isatty", lambda: True, raising=False)
-    for answer, code in (("", 2), ("n", 2), ("y", 0)):
-        monkeypatch.setattr("builtins.input", lambda question, answer=answer: answer)
+    for reply, code in (("", 2), ("n", 2), ("y", 0)):
+        monkeypatch.setattr("builtins.input", lambda question, reply=reply: reply)
         assert command("plan", study_file) == code
 
 
-def test_a_million_cases_are_refused(study_file, capsys):
+def test_oversized_study_raises(study_file, capsys):
     sweep = {"e_over_a": [n / 1000 for n in range(1001)], "friction": [n / 1000 for n in range(1000)]}
     study_file.write_text(as_toml(small_study(sweep=sweep)))
     assert command("plan", study_file, "--yes") == 2
@@ -247,7 +247,7 @@ def test_labels_are_no_formulas_and_no_mathematics(study_file, tmp_path):
     assert labels == ["'=HYPERLINK(A1)", "$\\frac{$", "'@sum"]
 
 
-def test_what_is_not_netcdf_is_said_in_our_words(tmp_path, capsys):
+def test_non_netcdf_file_raises_package_error(tmp_path, capsys):
     (tmp_path / "s.toml").write_text("[base]")
     assert command("export", tmp_path / "s.toml") == 2
     errors = capsys.readouterr().err

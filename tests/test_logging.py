@@ -1,4 +1,4 @@
-"""The package logs its stages where somebody listens, and is silent otherwise."""
+"""The package logs its stages to configured loggers, and is silent by default."""
 
 from __future__ import annotations
 
@@ -20,29 +20,29 @@ BODY = HalfSpace(material=Material(210e9, 0.3))
 CASE = Case(body=BODY, roller=Roller(radius=5e-3, length=0.3e-3), max_pressure=1.5e9)
 
 
-def test_the_stages_of_a_case_are_logged_and_timed(caplog: pytest.LogCaptureFixture) -> None:
+def test_solution_stages_are_logged(caplog: pytest.LogCaptureFixture) -> None:
     with caplog.at_level(logging.INFO, "contactstudy"):
         result = solve(CASE, y=[0.0], z=[1e-5])
-    said = [record.getMessage() for record in caplog.records]
+    messages = [record.getMessage() for record in caplog.records]
     assert all(record.name.startswith("contactstudy.") for record in caplog.records)
     for beginning in ("refined to ", "contact: ", "stresses: "):
-        assert any(text.startswith(beginning) for text in said), beginning
+        assert any(text.startswith(beginning) for text in messages), beginning
     run = attribute(result, RUN_ATTRIBUTE)
     assert set(run["stages"]) == {"contact", "stresses"}
     assert run["seconds"] == pytest.approx(sum(run["stages"].values()), abs=1e-3)
     assert min(run["stages"].values()) > 0
 
 
-def test_a_study_logs_its_progress(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
+def test_study_progress_is_logged(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
     base = {"young": 210e9, "poisson": 0.3, "radius": 5e-3, "roller_length": 0.2e-3, "max_pressure": 1.5e9}
-    coarse = {"body": "half-space", "cells_x": 4, "cells_y": 8, "stresses": False, "e_over_a": 0}
-    study = small_study(base=base | coarse, sweep={"friction": [0.0]})
+    parameters = {"body": "half-space", "cells_x": 4, "cells_y": 8, "stresses": False, "e_over_a": 0}
+    study = small_study(base=base | parameters, sweep={"friction": [0.0]})
     with caplog.at_level(logging.INFO, "contactstudy"):
         run_study(study, tmp_path, workers=0, progress=False)
     assert any("1/1 cases" in record.getMessage() for record in caplog.records)
 
 
-def test_the_command_is_verbose_if_asked(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
+def test_verbose_option_logs_to_stderr(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
     (tmp_path / "small.toml").write_text(as_toml(small_study()))
     arguments = ["run", str(tmp_path / "small.toml"), "--out", str(tmp_path / "out"), "--workers", "0", "--no-figure"]
     logger = logging.getLogger("contactstudy")
@@ -61,7 +61,7 @@ def test_versions_from_the_command(capsys: pytest.CaptureFixture[str]) -> None:
 
 
 @pytest.mark.system
-def test_nothing_is_said_unasked() -> None:
+def test_default_logging_is_silent() -> None:
     code = "import logging, contactstudy as cs; logging.getLogger('contactstudy.x').error('lost')"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout == done.stderr == ""

@@ -17,7 +17,7 @@ MODULE = "import pytest\n\npytest.importorskip('no_such_module')\n\ndef test_a()
 @pytest.mark.system
 @pytest.mark.parametrize("content", [PROGRAM, MODULE])
 @pytest.mark.parametrize(("ci", "fails"), [("1", True), ("", False)])
-def test_a_skip_fails_in_ci(tmp_path: Path, content: str, ci: str, fails: bool) -> None:
+def test_skipped_test_fails_in_ci(tmp_path: Path, content: str, ci: str, fails: bool) -> None:
     (tmp_path / "test_it.py").write_text(content)
     (tmp_path / "pytest.ini").write_text("[pytest]\n")
     command = [sys.executable, "-m", "pytest", "-p", "tests.no_silent_skip", "--rootdir", tmp_path, tmp_path]

@@ -33,7 +33,7 @@ on_grids = pytest.mark.parametrize(
 )
 
 
-def labelled(grid: Grid, cells: np.ndarray) -> xr.DataArray:
+def label_pressure(grid: Grid, cells: np.ndarray) -> xr.DataArray:
     coords = {"x": grid.x, "y": grid.y, "x_width": ("x", grid.widths)}
     return xr.DataArray(cells, coords, ("x", "y"))
 
@@ -41,16 +41,19 @@ def labelled(grid: Grid, cells: np.ndarray) -> xr.DataArray:
 def arguments(grid: Grid, cells: np.ndarray, load: str) -> dict[str, xr.DataArray]:
     """Keywords of the labelled functions for one load."""
     if load == "pressure":
-        return {"pressure": labelled(grid, cells)}
-    return {"pressure": labelled(grid, 0 * cells), load: labelled(grid, cells)}
+        return {"pressure": label_pressure(grid, cells)}
+    return {"pressure": label_pressure(grid, 0 * cells), load: label_pressure(grid, cells)}
 
 
 def check_transpose(operator) -> None:
     generator = np.random.default_rng(0)
-    right, left = generator.standard_normal(operator.shape[1]), generator.standard_normal(operator.shape[0])
-    forward, backward = operator @ right, operator.T @ left
-    scale = np.linalg.norm(forward) * np.linalg.norm(left)
-    assert left @ forward == pytest.approx(right @ backward, abs=1e-9 * scale)
+    column_vector, row_vector = (
+        generator.standard_normal(operator.shape[1]),
+        generator.standard_normal(operator.shape[0]),
+    )
+    forward, backward = operator @ column_vector, operator.T @ row_vector
+    scale = np.linalg.norm(forward) * np.linalg.norm(row_vector)
+    assert row_vector @ forward == pytest.approx(column_vector @ backward, abs=1e-9 * scale)
 
 
 @on_grids
@@ -71,8 +74,8 @@ def test_stress_on_planes(body, grid: Grid, load: str) -> None:
 def test_surface_displacement(body, grid: Grid, load: str, component: str) -> None:
     cells = np.random.default_rng(2).random(grid.shape)
     operator = surface_displacement(body, grid, load, component)
-    displaced = displacement_of(body, **arguments(grid, cells, load), components=component)
-    expected = displaced[f"displacement_{component}"].values.ravel()
+    displacements = displacement_of(body, **arguments(grid, cells, load), components=component)
+    expected = displacements[f"displacement_{component}"].values.ravel()
     assert operator @ cells.ravel() == pytest.approx(expected, abs=1e-12 * np.abs(expected).max() + 1e-30)
     check_transpose(operator)
 

@@ -1,4 +1,4 @@
-"""The package's public names, and what importing it costs."""
+"""The package's public names, and the cost of its import."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ import contactstudy
 
 
 @pytest.mark.system
-def test_import_is_fast_because_it_imports_nothing_heavy() -> None:
+def test_import_avoids_heavy_modules() -> None:
     code = (
         "import contactstudy, sys; print(sorted({'numpy', 'xarray', 'scipy', 'matplotlib', 'dask'} & set(sys.modules)))"
     )
@@ -28,16 +28,16 @@ def test_every_public_name_can_be_imported() -> None:
     assert sorted(contactstudy.__all__) == contactstudy.__all__
 
 
-def test_no_public_name_is_hidden_by_a_module_of_that_name() -> None:
-    """Importing a submodule sets it as an attribute of the package, over a function of the same name."""
+def test_modules_do_not_hide_public_names() -> None:
+    """Importing a submodule overwrites a package attribute of the same name."""
     modules = {path.stem for path in Path(contactstudy.__file__).parent.iterdir()}
-    shared = modules & set(contactstudy.__all__)
-    assert {"analysis", "plots", "profiles"} <= shared
-    for name in shared:
+    hidden_names = modules & set(contactstudy.__all__)
+    assert {"analysis", "plots", "profiles"} <= hidden_names
+    for name in hidden_names:
         assert getattr(contactstudy, name) is importlib.import_module(f"contactstudy.{name}"), name
 
 
-def test_the_version_is_that_of_the_installation() -> None:
+def test_version_matches_installation() -> None:
     assert contactstudy.__version__ == importlib.metadata.version("contactstudy")
 
 

@@ -1,4 +1,4 @@
-"""Height maps: their statistics, their files, and what is wrong with a file."""
+"""Height maps: statistics, files, and invalid files."""
 
 from __future__ import annotations
 
@@ -25,13 +25,13 @@ def spectrum(height: xr.DataArray, grid: Grid) -> tuple[np.ndarray, np.ndarray]:
 
 
 @given(rms=st.floats(1e-9, 1e-5), hurst=st.floats(0.0, 1.0), seed=st.integers(0, 10**6))
-def test_height_has_the_rms_and_the_band_asked_for(rms: float, hurst: float, seed: int) -> None:
+def test_self_affine_height_has_requested_spectrum(rms: float, hurst: float, seed: int) -> None:
     height = self_affine(GRID, **VALUES | {"rms_height": rms, "hurst": hurst, "seed": seed})
     assert float(np.sqrt((height**2).mean())) == pytest.approx(rms, rel=1e-12)
     assert abs(float(height.mean())) < 1e-10 * rms
     frequency, power = spectrum(height, GRID)
-    outside = (frequency < 1 / 0.41e-3) | (frequency > 1 / 19.9e-6)
-    assert power[outside].max() < 1e-20 * power.max()
+    outside_band = (frequency < 1 / 0.41e-3) | (frequency > 1 / 19.9e-6)
+    assert power[outside_band].max() < 1e-20 * power.max()
 
 
 @pytest.mark.parametrize("hurst", [0.3, 0.8, 1.0])
@@ -39,8 +39,8 @@ def test_spectrum_falls_with_the_hurst_exponent(hurst: float) -> None:
     grid = Grid(x_range=(0.0, 1.0), y_range=(0.0, 2.0), cells_x=256, cells_y=512)
     height = self_affine(grid, rms_height=1.0, hurst=hurst, longest=0.5, shortest=0.02, seed=3)
     frequency, power = spectrum(height, grid)
-    inside = (frequency > 2.0) & (frequency < 50.0)
-    slope = np.polyfit(np.log(frequency[inside]), np.log(power[inside]), 1)[0]
+    in_band = (frequency > 2.0) & (frequency < 50.0)
+    slope = np.polyfit(np.log(frequency[in_band]), np.log(power[in_band]), 1)[0]
     assert slope == pytest.approx(-2 * (1 + hurst), abs=0.1)
 
 
@@ -52,10 +52,10 @@ def test_surface_is_isotropic_and_gaussian() -> None:
     assert np.mean(height**4) == pytest.approx(3.0, abs=0.2)
 
 
-def test_the_same_seed_is_the_same_surface() -> None:
-    one, same = (self_affine(GRID, **VALUES) for _ in range(2))
-    np.testing.assert_array_equal(one, same)
-    assert np.abs(one - self_affine(GRID, **VALUES | {"seed": 2})).max() > 1e-7
+def test_seed_determines_surface() -> None:
+    first_surface, second_surface = (self_affine(GRID, **VALUES) for _ in range(2))
+    np.testing.assert_array_equal(first_surface, second_surface)
+    assert np.abs(first_surface - self_affine(GRID, **VALUES | {"seed": 2})).max() > 1e-7
 
 
 def test_a_smooth_surface_is_allowed() -> None:
@@ -71,7 +71,7 @@ def test_attributes_follow_cf_and_survive_a_file(tmp_path: Path) -> None:
     np.testing.assert_allclose(read_height_map(tmp_path / "map.nc", GRID), height, atol=1e-18)
 
 
-def tilted(x, y):
+def tilted_plane(x, y):
     return 1e-6 + 2e-3 * x - 5e-3 * y
 
 
@@ -81,26 +81,26 @@ X, Y = 1e-3 * np.arange(0, 11) / 10, 1e-3 * np.arange(-5, 6) / 10
 def csv_map(
     path: Path, drop: tuple[int, ...] = (), more: str = "", header: str = "x [mm], y [mm], height [um]"
 ) -> Path:
-    rows = [f"{1e3 * x:.9g}, {1e3 * y:.9g}, {1e6 * tilted(x, y):.9g}" for x in X for y in Y]
+    rows = [f"{1e3 * x:.9g}, {1e3 * y:.9g}, {1e6 * tilted_plane(x, y):.9g}" for x in X for y in Y]
     path.write_text("\n".join([header, *(row for index, row in enumerate(rows) if index not in drop)]) + more)
     return path
 
 
 def test_csv_is_read_and_interpolated(tmp_path: Path) -> None:
     height = read_height_map(csv_map(tmp_path / "map.csv"), GRID)
-    np.testing.assert_allclose(height, tilted(GRID.x[:, None], GRID.y[None, :]), atol=1e-14)
+    np.testing.assert_allclose(height, tilted_plane(GRID.x[:, None], GRID.y[None, :]), atol=1e-14)
     assert height.attrs["source"] == "measured, map.csv"
 
 
 def test_netcdf_is_read_in_any_order_of_dimensions(tmp_path: Path) -> None:
     values = xr.DataArray(
-        1e9 * tilted(X, Y[:, None]), {"y": 1e6 * Y, "x": X}, ("y", "x"), name="height", attrs={"units": "nm"}
+        1e9 * tilted_plane(X, Y[:, None]), {"y": 1e6 * Y, "x": X}, ("y", "x"), name="height", attrs={"units": "nm"}
     )
     values["x"].attrs["units"] = "m"
     values["y"].attrs["units"] = "um"
     values.to_netcdf(tmp_path / "map.nc")
     height = read_height_map(tmp_path / "map.nc", GRID)
-    np.testing.assert_allclose(height, tilted(GRID.x[:, None], GRID.y[None, :]), atol=1e-14)
+    np.testing.assert_allclose(height, tilted_plane(GRID.x[:, None], GRID.y[None, :]), atol=1e-14)
 
 
 def test_slope_is_removed_on_request(tmp_path: Path) -> None:
@@ -127,7 +127,7 @@ def test_bad_values_are_named(changes, message: str) -> None:
         self_affine(GRID, **VALUES | changes)
 
 
-def test_a_grid_is_needed(tmp_path: Path) -> None:
+def test_missing_grid_raises(tmp_path: Path) -> None:
     with pytest.raises(InvalidInputError, match="grid = 'fine'"):
         self_affine("fine", **VALUES)
     with pytest.raises(InvalidInputError, match="grid = None"):
@@ -165,19 +165,19 @@ def test_bad_netcdf_maps_are_named(tmp_path: Path) -> None:
         read_height_map(tmp_path / "units.nc", GRID, remove_slope="yes")
 
 
-def test_a_map_of_an_instrument_is_placed_turned_and_freed_of_its_form(tmp_path: Path) -> None:
+def test_height_map_is_placed_turned_and_detrended(tmp_path: Path) -> None:
     x, y = 2e-6 * np.arange(501), 5e-6 * np.arange(201)
     wave = 1e-7 * np.sin(2 * np.pi * x / 0.1e-3)[:, None] * np.cos(2 * np.pi * y / 0.2e-3)
     form = 1e-6 + 3e-3 * x[:, None] - 1e-3 * y - (y - 0.6e-3) ** 2 / 0.012 + 0.4 * x[:, None] * y
     x3pio.write(tmp_path / "map.x3p", (wave + form).T, x_scale=2e-6, y_scale=5e-6)
     corner = (GRID.x_range[0], GRID.y_range[0])
-    plain = read_height_map(tmp_path / "map.x3p", GRID, corner=corner, remove_form=True)
+    height_map = read_height_map(tmp_path / "map.x3p", GRID, corner=corner, remove_form=True)
     expected = np.sin(2 * np.pi * GRID.x / 0.1e-3)[:, None] * np.cos(2 * np.pi * (GRID.y - corner[1]) / 0.2e-3)
-    np.testing.assert_allclose(plain, 1e-7 * expected, atol=3e-9)
-    sloped = read_height_map(tmp_path / "map.x3p", GRID, corner=corner, remove_slope=True)
-    assert float(sloped.max() - sloped.min()) > 10 * float(plain.max() - plain.min())
+    np.testing.assert_allclose(height_map, 1e-7 * expected, atol=3e-9)
+    without_slope = read_height_map(tmp_path / "map.x3p", GRID, corner=corner, remove_slope=True)
+    assert float(without_slope.max() - without_slope.min()) > 10 * float(height_map.max() - height_map.min())
     back = read_height_map(tmp_path / "map.x3p", GRID, corner=corner, turn=180, mirror=True, remove_form=True)
-    np.testing.assert_allclose(back.values[::-1], plain.values, atol=3e-9)
+    np.testing.assert_allclose(back.values[::-1], height_map.values, atol=3e-9)
 
 
 def test_bad_maps_of_instruments_are_named(tmp_path: Path) -> None:

@@ -63,7 +63,7 @@ def fields(node: ast.ClassDef, classes: dict[str, ast.ClassDef]) -> set[str]:
     )
 
 
-def test_the_package_obeys_the_rules() -> None:
+def test_package_follows_rules() -> None:
     assert not violations(MODULES)
 
 
@@ -91,5 +91,5 @@ NUMPYDOC = '\n    """Solve.\n\n    Parameters\n    ----------\n    a, b, c, d, e
         ("class A:\n    def solve(self, a, b, c, d, e, f, g, h): ...", 2),
     ],
 )
-def test_a_violation_is_one(text: str, count: int) -> None:
+def test_rule_detects_violation(text: str, count: int) -> None:
     assert len(violations({"module.py": text})) == count

@@ -1,4 +1,4 @@
-"""What cases, rollers, bodies, profiles and studies say of themselves: what an engineer wants first, in his units."""
+"""Texts of cases, rollers, bodies, profiles and studies, in engineering units."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ import numpy as np
 from contactstudy import Case, FiniteLengthSpace, HalfSpace, Material, QuarterSpace, Roller, Rolling, profiles
 from contactstudy.profiles import Cylinder, FullCrown, Halves, Lundberg, Measured, Tapered
 from contactstudy.report import case_table
-from contactstudy.study.setup import build_setup
+from contactstudy.study.case_setup import build_setup
 from tests.small_study import BASE, small_study
 
 STEEL = Material(210e9, 0.3)
 
 
-def test_parts_say_their_sizes_in_the_units_of_engineers() -> None:
-    shown = {
+def test_reprs_use_engineering_units() -> None:
+    expected_texts = {
         STEEL: "Material(E = 210 GPa, nu = 0.3)",
         HalfSpace(material=STEEL): "HalfSpace(E = 210 GPa, nu = 0.3)",
         QuarterSpace(material=STEEL, model="mirror"): "QuarterSpace(E = 210 GPa, nu = 0.3, model='mirror')",
@@ -27,18 +27,18 @@ def test_parts_say_their_sizes_in_the_units_of_engineers() -> None:
         FullCrown(1.25) + Cylinder(3e-4): "FullCrown(crown_radius=1250 mm) + Cylinder(fillet_radius=0.3 mm)",
         Halves(Cylinder(), FullCrown(1.0)): "Halves(left=Cylinder(), right=FullCrown(crown_radius=1000 mm))",
     }
-    for part, text in shown.items():
-        assert repr(part) == text
+    for value, text in expected_texts.items():
+        assert repr(value) == text
 
 
-def test_a_measured_profile_does_not_list_its_points() -> None:
+def test_measured_profile_repr_omits_points() -> None:
     x = np.linspace(0, 10e-3, 1001)
     assert repr(Measured(x.tolist(), (1e-1 * (x - 5e-3) ** 2).tolist())) == (
         "Measured(1001 points over 10 mm, drop up to 2.5 µm)"
     )
 
 
-def test_a_case_says_load_pressure_and_place_first() -> None:
+def test_case_repr_begins_with_load() -> None:
     body = FiniteLengthSpace(length=16e-3, material=STEEL)
     roller = Roller(radius=6e-3, length=14e-3, profile=profiles.PartialCrown(6e-3, 2.0), material=STEEL)
     case = Case(body=body, roller=roller, load=9e3, friction=0.05, tilt=1e-3)
@@ -47,15 +47,15 @@ def test_a_case_says_load_pressure_and_place_first() -> None:
     assert lines[0].endswith("e = 1 mm")
     assert "end drop 4 µm, E = 210 GPa" in lines[1]
     assert lines[3] == "  friction 0.05, full sliding along +y; tilt 1 mrad"
-    balanced = replace(case, tilt=0.0, load_position=8e-3)
-    assert repr(balanced).splitlines()[3].endswith("load at x = 8 mm")
+    balanced_case = replace(case, tilt=0.0, load_position=8e-3)
+    assert repr(balanced_case).splitlines()[3].endswith("load at x = 8 mm")
     assert "Rolling(" in repr(replace(case, motion=Rolling(longitudinal_creepage=1e-3)))
     page = case_table(case)._repr_html_()
     assert page.count("<tr>") == page.count("</tr>") > 15
     assert "9 kN" in page
 
 
-def test_a_study_says_what_it_sweeps() -> None:
+def test_study_repr_contains_swept_parameters() -> None:
     study = small_study(description="<small>", base=BASE | {"roller_body": "rigid"})
     lines = repr(study).splitlines()
     assert lines[0] == "Study small: 4 cases before exclusions, keeping fields"
@@ -65,7 +65,7 @@ def test_a_study_says_what_it_sweeps() -> None:
     assert "20 values, 0 to 19" in repr(small_study(sweep={"e_over_a": list(range(20))}))
 
 
-def test_cases_share_their_preparation_only_if_their_numbers_are_the_same() -> None:
+def test_equal_cases_share_preparation() -> None:
     """Texts are rounded; identities are not."""
     close = [build_setup(BASE | {"e_over_a": 1.0, "young": young}).case.body for young in (210e9, 210.000001e9, 210e9)]
     assert close[0] == close[2] != close[1]

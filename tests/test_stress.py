@@ -28,7 +28,7 @@ UPPER = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
 
 
 def state(tensor: Array) -> xr.Dataset:
-    return xr.Dataset({name: float(tensor[at]) for name, at in zip(STRESSES, UPPER, strict=True)})
+    return xr.Dataset({name: float(tensor[index]) for name, index in zip(STRESSES, UPPER, strict=True)})
 
 
 def uniform(**components: float) -> xr.Dataset:
@@ -80,7 +80,7 @@ def test_states_done_by_hand(stress: xr.Dataset, expected: tuple[float, float, f
     assert principal_stresses(stress)["principal_stress"].values == pytest.approx(principal, abs=1e-12)
 
 
-def test_directions_of_a_plane_state_are_those_of_mohrs_circle() -> None:
+def test_principal_directions_match_mohrs_circle() -> None:
     result = principal_stresses(uniform(sigma_xx=5.0, sigma_yy=-1.0, tau_xy=4.0))
     first = result["principal_direction"].sel(principal=1)
     angle = 0.5 * np.arctan2(2 * 4.0, 6.0)
@@ -92,17 +92,17 @@ def test_directions_of_a_plane_state_are_those_of_mohrs_circle() -> None:
 @given(tensor=tensors(), rotation=rotations())
 def test_invariants_do_not_depend_on_the_axes(tensor: Array, rotation: Array) -> None:
     scale = np.abs(tensor).max() + 1e-300
-    before, after = state(tensor), state(rotation @ tensor @ rotation.T)
+    original_state, rotated_state = state(tensor), state(rotation @ tensor @ rotation.T)
     # Von Mises' stress of an almost hydrostatic state is the root of a cancelled difference.
-    assert abs(float(von_mises(before)) ** 2 - float(von_mises(after)) ** 2) <= 1e-12 * scale**2
+    assert abs(float(von_mises(original_state)) ** 2 - float(von_mises(rotated_state)) ** 2) <= 1e-12 * scale**2
     for invariant in (tresca, maximum_shear, hydrostatic):
-        assert abs(float(invariant(before)) - float(invariant(after))) <= 1e-12 * scale
-    values = [principal_stresses(stress)["principal_stress"].values for stress in (before, after)]
+        assert abs(float(invariant(original_state)) - float(invariant(rotated_state))) <= 1e-12 * scale
+    values = [principal_stresses(stress)["principal_stress"].values for stress in (original_state, rotated_state)]
     assert np.abs(values[0] - values[1]).max() <= 1e-12 * scale
 
 
 @given(tensor=tensors())
-def test_tresca_and_von_mises_bound_each_other_and_the_trace_is_kept(tensor: Array) -> None:
+def test_tresca_and_von_mises_bound_each_other(tensor: Array) -> None:
     stress, scale = state(tensor), np.abs(tensor).max() + 1e-300
     mises, equivalent = float(von_mises(stress)), float(tresca(stress))
     assert mises <= equivalent + 1e-6 * scale
@@ -130,33 +130,29 @@ def strip() -> Callable[..., xr.Dataset]:
 
 
 @pytest.mark.parametrize("dims", [("x", "y", "z"), ("x_field", "y_field", "z")])
-def test_orthogonal_shear_of_a_line_contact_is_a_quarter_of_the_peak_pressure(
-    strip: Callable[..., xr.Dataset], dims: tuple[str, str, str]
-) -> None:
+def test_orthogonal_shear_of_line_contact(strip: Callable[..., xr.Dataset], dims: tuple[str, str, str]) -> None:
     cycle = orthogonal_shear_range(strip(dims=dims))
     assert cycle["orthogonal_shear_range"].dims == (dims[0], "z")
     amplitude = cycle["orthogonal_shear_amplitude"].isel({dims[0]: 0})
     assert float(amplitude.max()) == pytest.approx(0.25, abs=1e-5)
-    deepest = amplitude.idxmax("z")
-    assert float(deepest) == pytest.approx(0.5, abs=0.011)
-    at = cycle.isel({dims[0]: 0}).sel(z=deepest)
-    assert abs(float(at["y_of_largest_shear"])) == pytest.approx(np.sqrt(0.75), abs=0.006)
-    assert float(at["y_of_largest_shear"]) == pytest.approx(-float(at["y_of_smallest_shear"]), abs=1e-9)
+    depth = amplitude.idxmax("z")
+    assert float(depth) == pytest.approx(0.5, abs=0.011)
+    column = cycle.isel({dims[0]: 0}).sel(z=depth)
+    assert abs(float(column["y_of_largest_shear"])) == pytest.approx(np.sqrt(0.75), abs=0.006)
+    assert float(column["y_of_largest_shear"]) == pytest.approx(-float(column["y_of_smallest_shear"]), abs=1e-9)
     assert {variable.attrs["units"] for variable in cycle.data_vars.values()} == {"Pa", "m"}
 
 
-def test_orthogonal_shear_range_of_a_line_contact_hardly_depends_on_friction(
-    strip: Callable[..., xr.Dataset],
-) -> None:
-    """The traction shifts both extremes alike at the depth of the largest range."""
-    at = [
+def test_orthogonal_shear_range_under_friction(strip: Callable[..., xr.Dataset]) -> None:
+    """At the depth of the largest range the traction shifts both extremes equally."""
+    columns = [
         float(orthogonal_shear_range(strip(friction))["orthogonal_shear_range"].isel(x=0).max())
         for friction in (0, 0.1)
     ]
-    assert at[1] == pytest.approx(at[0], rel=5e-3)
+    assert columns[1] == pytest.approx(columns[0], rel=5e-3)
 
 
-def test_largest_shear_and_von_mises_of_a_line_contact(strip: Callable[..., xr.Dataset]) -> None:
+def test_max_shear_and_von_mises_of_line_contact(strip: Callable[..., xr.Dataset]) -> None:
     stress = strip()
     assert float(maximum_shear(stress).max()) == pytest.approx(0.300, abs=5e-4)
     assert float(von_mises(stress).max()) == pytest.approx(0.5575, abs=1e-4)
@@ -193,6 +189,6 @@ def test_bad_shear_history_is_named(stress: xr.Dataset, message: str) -> None:
         orthogonal_shear_range(stress)
 
 
-def test_stress_that_is_not_finite_is_an_error() -> None:
+def test_nonfinite_stress_raises() -> None:
     with pytest.raises(InvalidInputError, match="finite"):
         principal_stresses(uniform(sigma_xx=np.nan))

@@ -37,7 +37,7 @@ POINTS = {"x": [0.0, 1e-4], "y": [0.0, 2e-5], "z": [0.0, 1e-5, 5e-5]}
 
 
 @pytest.fixture
-def switching() -> Iterator[None]:
+def fast_switching() -> Iterator[None]:
     """Switch between threads every ten microseconds; BLAS, whose threads the process shares, on one."""
     interval = sys.getswitchinterval()
     sys.setswitchinterval(1e-5)
@@ -66,12 +66,12 @@ def calls() -> dict[str, Callable[[], xr.Dataset | xr.DataArray]]:
 
 
 @pytest.mark.slow
-@pytest.mark.usefixtures("switching")
+@pytest.mark.usefixtures("fast_switching")
 def test_threads_get_serial_results() -> None:
     serial = calls()
     names = list(serial)
     expected = {name: serial[name]() for name in names}
-    cache.clear()  # the first round fills it, the others share its values
+    cache.clear()  # the first round fills the cache, the others share its values
 
     def run(start: int) -> list[str]:
         order = names[start:] + names[:start]

@@ -1,4 +1,4 @@
-"""Versions are those that are installed."""
+"""Reported versions equal the installed versions."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from contactstudy.versions import versions
 
 def test_versions_are_shown(capsys) -> None:
     show_versions()
-    shown = dict(line.split(maxsplit=1) for line in capsys.readouterr().out.splitlines())
-    assert shown["numpy"] == versions()["numpy"] == version("numpy")
-    assert shown["python"] == platform.python_version()
-    assert shown["dask"] == version("dask")
+    printed_versions = dict(line.split(maxsplit=1) for line in capsys.readouterr().out.splitlines())
+    assert printed_versions["numpy"] == versions()["numpy"] == version("numpy")
+    assert printed_versions["python"] == platform.python_version()
+    assert printed_versions["dask"] == version("dask")

@@ -1,1 +1,1 @@
-"""Studies under faults: what is tried, how often, and what held, as a table made by command."""
+"""Studies under faults: trials, their number and outcome, as a table."""

@@ -34,11 +34,11 @@ def stand_in_study(cases: int) -> Study:
 
 def seconds_of(study: Study, folder: Path, client: Client | None) -> float:
     """Time of a run on the client, or on two local workers."""
-    began = time.monotonic()
+    start_time = time.monotonic()
     options = {"workers": 2} if client is None else {"scheduler": client}
     report = run_study(study, folder, solver=solve_fake, progress=False, **options)  # type: ignore[arg-type]
     assert report.counts == {"ok": study.size}, report.counts
-    return time.monotonic() - began
+    return time.monotonic() - start_time
 
 
 def kill_one_worker(client: Client, folder: Path) -> None:
@@ -64,9 +64,9 @@ def main() -> int:
         Client(cluster) as client,
     ):
         root = Path(name)
-        for number in range(options.rounds):
-            times["local"].append(seconds_of(study, root / f"local-{number}", None))
-            times["client"].append(seconds_of(study, root / f"client-{number}", client))
+        for round_index in range(options.rounds):
+            times["local"].append(seconds_of(study, root / f"local-{round_index}", None))
+            times["client"].append(seconds_of(study, root / f"client-{round_index}", client))
             print({kind: round(entries[-1], 1) for kind, entries in times.items()}, flush=True)
         ratio = statistics.median(times["client"]) / statistics.median(times["local"])
         print(f"{study.size} cases: a client takes {ratio:.2f} of the time of workers=2")

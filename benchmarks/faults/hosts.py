@@ -24,8 +24,8 @@ def _system(name: str) -> list[str]:
     return [*separate, "sh", "-c", 'hostname "$0" && exec "$@"', name]
 
 
-def two_systems(calm: xr.Dataset, count: int) -> Row:
-    """A second run, on this system, while the first goes on in another one; the first ends, or is killed."""
+def two_systems(undisturbed: xr.Dataset, count: int) -> Row:
+    """A second run on this system during the first run on another; the first run ends, or is killed."""
     fault = "a run in another system (host or container, of another name or the same) that shares the folder"
     names = ["another-host", socket.gethostname()]
     possible = (
@@ -34,34 +34,34 @@ def two_systems(calm: xr.Dataset, count: int) -> Row:
     )
     if not possible:
         return Row(fault, 0, 0, "not tried: no right to make a system with a name of its own")
-    passed = sum(_passed(calm, names[number % 2], killed=number % 4 > 1) for number in range(count))
-    found = (
+    passed = sum(_survives(undisturbed, names[index % 2], killed=index % 4 > 1) for index in range(count))
+    description = (
         "while it goes on: code 2, its host is named, and it ends bit for bit; after a kill its lock is free, and "
         "a run resumes bit for bit"
     )
-    return Row(fault, count, passed, found)
+    return Row(fault, count, passed, description)
 
 
-def _passed(calm: xr.Dataset, name: str, *, killed: bool) -> bool:
-    """Whether nothing was lost or done twice."""
+def _survives(undisturbed: xr.Dataset, name: str, *, killed: bool) -> bool:
+    """Whether each case was solved exactly once."""
     with studies.study_folder() as folder:
         out, study = folder / "out", folder / "study.toml"
         first = start_run(study, out, "--workers", "0", tickets=2, within=_system(name))
-        studies.wait(first, lambda: len(studies.finished(folder)) == 2)
-        right = _refused(folder, name)
+        studies.wait(first, lambda: len(studies.count_finished(folder)) == 2)
+        right = _is_refused(folder, name)
         if killed:
             os.killpg(first.pid, signal.SIGKILL)
             first.communicate()
-            right = right and len(studies.finished(folder)) == 2
+            right = right and len(studies.count_finished(folder)) == 2
             right = right and studies.resume(folder) == {"ok": CASES}
         else:
             give_tickets(tickets_of(out), CASES)
             first.communicate(timeout=SECONDS)
-            right = right and first.returncode == 0 and not studies.left_over(folder)
-        return right and studies.values(folder).identical(calm)
+            right = right and first.returncode == 0 and not studies.list_leftovers(folder)
+        return right and studies.read_values(folder).identical(undisturbed)
 
 
-def _refused(folder: Path, name: str) -> bool:
+def _is_refused(folder: Path, name: str) -> bool:
     """Whether a run on this system is refused and told who holds the lock."""
     second = studies.start(folder, "--workers", "0")
     _, errors = second.communicate(timeout=SECONDS)

@@ -1,4 +1,4 @@
-"""A study of rolling cases, killed in its middle and resumed, against one that nothing happened to, bit for bit.
+"""A study of rolling cases, killed and resumed, against an undisturbed run, bit for bit.
 
 ``python -m benchmarks.faults.rolling --cases 500`` compares every case, with one process and with several.
 """
@@ -23,14 +23,14 @@ from tests.small_study import BASE, as_toml
 from tests.study.conftest import ROOT
 
 CREEPAGES, LATERAL = 25, 5
-"""Longitudinal creepages, and lateral ones for each: the frictions make up the number of cases."""
+"""Longitudinal creepages, lateral creepages for each; frictions complete the number of cases."""
 
 SECONDS = 3600.0
 """Longest wait for a run."""
 
 
 def rolling_study(cases: int) -> Study:
-    """So many cases of steady rolling on a half-space: it has no ends to certify, which takes longest."""
+    """Return a study of this many cases of steady rolling on a half-space, without the slow certificate of ends."""
     creepages = min(cases, CREEPAGES)
     lateral = min(LATERAL, cases // creepages)
     frictions = cases // (creepages * lateral)
@@ -48,7 +48,7 @@ def rolling_study(cases: int) -> Study:
 
 
 def begin(folder: Path, workers: int) -> subprocess.Popen[str]:
-    """Begin the study in a folder, or go on with it, in a new group of processes."""
+    """Start or resume the study in a folder, in a new group of processes."""
     command = ["run", str(folder / "study.toml"), "--out", str(folder / "out"), "--no-figure"]
     return subprocess.Popen(
         [sys.executable, "-m", "contactstudy.cli", *command, "--workers", str(workers)],
@@ -94,17 +94,17 @@ def different(first: xr.Dataset, second: xr.Dataset) -> list[str]:
 
 
 def main() -> int:
-    """Compare what is asked for."""
+    """Compare the requested runs."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.faults.rolling", description=__doc__)
     parser.add_argument("--cases", type=int, default=500, help="number of cases")
     study = rolling_study(parser.parse_args().cases)
     differences: list[str] = []
     with tempfile.TemporaryDirectory(prefix="rolling-") as name:
-        calm = run(study, Path(name) / "calm", 0)
-        print(f"{study.size} cases, {int(calm['converged'].sum())} converged", flush=True)
+        undisturbed = run(study, Path(name) / "undisturbed", 0)
+        print(f"{study.size} cases, {int(undisturbed['converged'].sum())} converged", flush=True)
         for workers in (0, 2, 3):
-            found = run(study, Path(name) / f"workers-{workers}", workers, study.size // 2)
-            unlike = different(calm, found)
+            result = run(study, Path(name) / f"workers-{workers}", workers, study.size // 2)
+            unlike = different(undisturbed, result)
             differences += unlike
             print(f"killed in the middle and resumed, workers = {workers}: {unlike or 'all bits equal'}", flush=True)
     return int(bool(differences))

@@ -1,4 +1,4 @@
-"""What is done to a study, and what has to be right afterwards."""
+"""Faults of a study, and checks of the state after each fault."""
 
 from __future__ import annotations
 
@@ -27,30 +27,30 @@ from tests.stand_in_solver import HELD, give_tickets, solve_fake
 from tests.study.cluster import cluster
 from tests.study.conftest import start_run, tickets_of
 
-chance = random.Random(17)
+rng = random.Random(17)
 
 
-def kills(calm: xr.Dataset, count: int, *, workers: int = 0) -> Row:
-    """SIGKILL to the run and its workers, a random while after it began."""
+def kills(undisturbed: xr.Dataset, count: int, *, workers: int = 0) -> Row:
+    """SIGKILL to the run and its workers, at a random time."""
     passed = total = 0
-    longest = _seconds_of_a_run(workers)
+    run_seconds = _seconds_of_a_run(workers)
     with studies.study_folder() as folder:
         for _ in range(count):
-            if len(studies.finished(folder)) > 0.7 * CASES:  # results to lose are needed until the last kill
+            if len(studies.count_finished(folder)) > 0.7 * CASES:  # results to lose are needed until the last kill
                 shutil.rmtree(folder / "out" / "batches")
-            before = studies.finished(folder)
-            process = _started(folder, workers)
+            count_before = studies.count_finished(folder)
+            process = _start_until_batch(folder, workers)
             studies.wait(process, partial(_holds_the_lock, process.pid, folder / "out"))
-            time.sleep(chance.uniform(0.0, longest))
+            time.sleep(rng.uniform(0.0, run_seconds))
             os.killpg(process.pid, signal.SIGKILL)
             process.communicate()
-            after = studies.finished(folder)
-            total += len(set(after) - set(before))
-            lost = [identity for identity, run in before.items() if after.get(identity) != run]
+            count_after = studies.count_finished(folder)
+            total += len(set(count_after) - set(count_before))
+            lost = [identity for identity, run in count_before.items() if count_after.get(identity) != run]
             passed += not lost and not studies.unreadable(folder)
         complete = studies.resume(folder) == {"ok": CASES}
-        complete &= studies.values(folder).identical(calm)
-        complete &= not studies.left_over(folder) and not (folder / "out" / "set-aside").exists()
+        complete &= studies.read_values(folder).identical(undisturbed)
+        complete &= not studies.list_leftovers(folder) and not (folder / "out" / "set-aside").exists()
     kind = "alone" if workers == 0 else f"with {workers} workers"
     result = (
         f"no written case lost or solved again ({total} between the kills), every batch intact; resumed "
@@ -59,51 +59,51 @@ def kills(calm: xr.Dataset, count: int, *, workers: int = 0) -> Row:
     return Row(f"run {kind}: SIGKILL at a random moment", count, passed if complete else 0, result)
 
 
-def _started(folder: Path, workers: int) -> subprocess.Popen[str] | studies.Forked:
+def _start_until_batch(folder: Path, workers: int) -> subprocess.Popen[str] | studies.Forked:
     """Begin a run: alone in a fork of this process, or with its workers in new processes."""
     return studies.start(folder, "--workers", str(workers)) if workers else studies.Forked(folder)
 
 
 def _seconds_of_a_run(workers: int) -> float:
-    """Time from the lock to the end if nothing happens, on this machine now."""
+    """Time from the lock to the end of an undisturbed run, on this machine."""
     with studies.study_folder() as folder:
-        process = _started(folder, workers)
+        process = _start_until_batch(folder, workers)
         studies.wait(process, partial(_holds_the_lock, process.pid, folder / "out"))
-        began = time.monotonic()
+        start_time = time.monotonic()
         process.communicate(timeout=SECONDS)
-        return time.monotonic() - began
+        return time.monotonic() - start_time
 
 
-def full_disks(calm: xr.Dataset, count: int) -> Row:
-    """A file system of its own that fills up; without the right to mount one, files that may not grow."""
+def full_disks(undisturbed: xr.Dataset, count: int) -> Row:
+    """A full file system; without the right to mount one, a limit on the size of files."""
     passed = cases = 0
     mounted = False
     for _ in range(count):
         with studies.study_folder() as folder:
             disk = folder / "out"
             disk.mkdir()
-            size = chance.randint(150, 500)
+            size = rng.randint(150, 500)
             mount = ["mount", "-t", "tmpfs", "-o", f"size={size}k", "tmpfs", str(disk)]
-            own = shutil.which("mount") and not subprocess.run(mount, capture_output=True, check=False).returncode
-            mounted = mounted or bool(own)
+            can_mount = shutil.which("mount") and not subprocess.run(mount, capture_output=True, check=False).returncode
+            mounted = mounted or bool(can_mount)
             try:
                 process = studies.start(
-                    folder, "--workers", "0", largest_file=None if own else chance.randint(3000, 9000)
+                    folder, "--workers", "0", largest_file=None if can_mount else rng.randint(3000, 9000)
                 )
                 _, errors = process.communicate(timeout=SECONDS)
-                said = process.returncode == 2 and "Traceback" not in errors
-                cases += len(studies.finished(folder))
-                right = said and not studies.left_over(folder) and not studies.unreadable(folder)
-                if own:
+                is_reported = process.returncode == 2 and "Traceback" not in errors
+                cases += len(studies.count_finished(folder))
+                right = is_reported and not studies.list_leftovers(folder) and not studies.unreadable(folder)
+                if can_mount:
                     subprocess.run(["mount", "-o", "remount,size=50m", str(disk)], check=True)
                 right = right and studies.resume(folder) == {"ok": CASES}
-                passed += right and studies.values(folder).identical(calm)
+                passed += right and studies.read_values(folder).identical(undisturbed)
             finally:
-                if own:
+                if can_mount:
                     subprocess.run(["umount", "-l", str(disk)], check=True)
-    how = "file system of 150 to 500 kB" if mounted else "limit on the size of files (no right to mount)"
+    medium = "file system of 150 to 500 kB" if mounted else "limit on the size of files (no right to mount)"
     return Row(
-        f"full disk: {how}",
+        f"full disk: {medium}",
         count,
         passed,
         f"code 2 and a message, no traceback, no lock held and no torn file left, {cases} cases kept in all; "
@@ -111,41 +111,41 @@ def full_disks(calm: xr.Dataset, count: int) -> Row:
     )
 
 
-def dead_schedulers(calm: xr.Dataset, count: int) -> Row:
+def dead_schedulers(undisturbed: xr.Dataset, count: int) -> Row:
     """The scheduler of a cluster is killed while its worker solves."""
     passed = 0
     for _ in range(count):
         with studies.study_folder() as folder:
             out = folder / "out"
             with mock.patch.dict(os.environ, {HELD: str(tickets_of(out))}), cluster(folder, workers=1) as address:
-                enough = chance.randint(1, 20)
+                enough = rng.randint(1, 20)
                 process = start_run(folder / "study.toml", out, "--scheduler", address, tickets=enough)
-                studies.wait(process, partial(studies.finished, folder))
-                time.sleep(chance.uniform(0.0, 1.0))
+                studies.wait(process, partial(studies.count_finished, folder))
+                time.sleep(rng.uniform(0.0, 1.0))
                 address.processes[0].kill()
                 _, errors = process.communicate(timeout=SECONDS)
             right = process.returncode == 2 and "scheduler has gone away" in errors and "Traceback" not in errors
             right = right and not Folder(out).holders and not studies.unreadable(folder)
             right = right and studies.resume(folder) == {"ok": CASES}
-            passed += right and studies.values(folder).identical(calm)
+            passed += right and studies.read_values(folder).identical(undisturbed)
     return Row("scheduler of a cluster killed", count, passed, "code 2, message, no lock held; resumed bit for bit")
 
 
-def damaged_files(calm: xr.Dataset, count: int) -> Row:
+def damaged_files(undisturbed: xr.Dataset, count: int) -> Row:
     """Batches are torn, changed, exchanged, or foreign."""
     passed = 0
     with studies.study_folder() as folder:
         aside = folder / "out" / "set-aside"
-        for number in range(count):
+        for index in range(count):
             shutil.rmtree(folder / "out", ignore_errors=True)
             with mock.patch.object(Folder, "compact", return_value=None):
                 studies.resume(folder)  # every group is a batch, for none is joined
-            path, other = chance.sample(studies.batches(folder), 2)
+            path, second_path = rng.sample(studies.batches(folder), 2)
             lost = len(read_batch(path))
-            DAMAGES[number % len(DAMAGES)](path, other)
+            DAMAGES[index % len(DAMAGES)](path, second_path)
             report = run_study(STUDY, folder / "out", workers=0, solver=solve_fake)
             right = report.counts == {"ok": CASES} and report.solved == lost and not studies.unreadable(folder)
-            passed += right and len(list(aside.iterdir())) == 1 and studies.values(folder).identical(calm)
+            passed += right and len(list(aside.iterdir())) == 1 and studies.read_values(folder).identical(undisturbed)
     return Row(
         "a batch torn, with changed bytes, empty, a text, a folder, exchanged with another or a dangling link",
         count,
@@ -154,117 +154,119 @@ def damaged_files(calm: xr.Dataset, count: int) -> Row:
     )
 
 
-def _torn(path: Path, other: Path) -> None:
+def _tear(path: Path, other: Path) -> None:
     data = path.read_bytes()
-    path.write_bytes(data[: chance.randrange(len(data))])
+    path.write_bytes(data[: rng.randrange(len(data))])
 
 
-def _changed(path: Path, other: Path) -> None:
+def _change_bytes(path: Path, other: Path) -> None:
     data = bytearray(path.read_bytes())
     for _ in range(8):
-        data[chance.randrange(len(data))] ^= 1 << chance.randrange(8)
+        data[rng.randrange(len(data))] ^= 1 << rng.randrange(8)
     path.write_bytes(bytes(data))
 
 
-def _foreign(path: Path, other: Path) -> None:
+def _write_foreign_text(path: Path, other: Path) -> None:
     path.write_text("not ours")
 
 
-def _empty(path: Path, other: Path) -> None:
+def _write_empty(path: Path, other: Path) -> None:
     path.write_bytes(b"")
 
 
-def _exchanged(path: Path, other: Path) -> None:
+def _exchange(path: Path, other: Path) -> None:
     shutil.copy(other, path)
 
 
-def _dangling(path: Path, other: Path) -> None:
+def _link_to_nothing(path: Path, other: Path) -> None:
     path.unlink()
     path.symlink_to(path.with_name("nowhere"))
 
 
-def _folder(path: Path, other: Path) -> None:
+def _make_folder(path: Path, other: Path) -> None:
     path.unlink()
     path.mkdir()
 
 
 DAMAGES: tuple[Callable[[Path, Path], None], ...] = (
-    _torn,
-    _changed,
-    _foreign,
-    _empty,
-    _exchanged,
-    _dangling,
-    _folder,
+    _tear,
+    _change_bytes,
+    _write_foreign_text,
+    _write_empty,
+    _exchange,
+    _link_to_nothing,
+    _make_folder,
 )
 
 
-def damaged_records(calm: xr.Dataset, count: int) -> Row:
+def damaged_records(undisturbed: xr.Dataset, count: int) -> Row:
     """Log or lock of a folder is torn, changed, or full of something else."""
     passed = 0
     with studies.study_folder() as folder:
         studies.resume(folder)
         out = folder / "out"
         records = [path for path in out.iterdir() if path.is_file() and path.name not in ("study.json", "study.toml")]
-        for number in range(count):
-            path = records[number % len(records)]
+        for index in range(count):
+            path = records[index % len(records)]
             data = bytearray(path.read_bytes()) or bytearray(b"x")
             for _ in range(20):
-                data[chance.randrange(len(data))] = chance.randrange(256)
-            path.write_bytes(bytes(data[: chance.randrange(1, len(data) + 1)]))
+                data[rng.randrange(len(data))] = rng.randrange(256)
+            path.write_bytes(bytes(data[: rng.randrange(1, len(data) + 1)]))
             report = run_study(STUDY, out, workers=0, solver=solve_fake)
-            passed += report.counts == {"ok": CASES} and studies.values(folder).identical(calm)
+            passed += report.counts == {"ok": CASES} and studies.read_values(folder).identical(undisturbed)
     names = ", ".join(f"`{path.name}`" for path in sorted(records))
     return Row(f"changed and torn bytes in {names}", count, passed, "all cases found again, bit for bit")
 
 
-def two_runs(calm: xr.Dataset, count: int) -> Row:
-    """Others begin while a run goes on."""
+def two_runs(undisturbed: xr.Dataset, count: int) -> Row:
+    """Further runs begin during a run."""
     passed = 0
     with studies.study_folder() as folder:
         out = folder / "out"
         first = start_run(folder / "study.toml", out, "--workers", "0", tickets=2)
-        studies.wait(first, lambda: len(studies.finished(folder)) == 2)
+        studies.wait(first, lambda: len(studies.count_finished(folder)) == 2)
         seconds = [start_run(folder / "study.toml", out, "--workers", "0", tickets=0) for _ in range(count)]
         for second in seconds:
             _, errors = second.communicate(timeout=SECONDS)
             passed += second.returncode == 2 and f"process {first.pid} on " in errors and "Traceback" not in errors
         give_tickets(tickets_of(out), CASES)
         first.communicate(timeout=SECONDS)
-        whole = first.returncode == 0 and studies.values(folder).identical(calm)
+        is_complete = first.returncode == 0 and studies.read_values(folder).identical(undisturbed)
     return Row(
         "a second run while the first goes on",
         count,
-        passed if whole else 0,
+        passed if is_complete else 0,
         "code 2, the holder named; the first run ends bit for bit",
     )
 
 
-def at_once(calm: xr.Dataset, count: int) -> Row:
+def at_once(undisturbed: xr.Dataset, count: int) -> Row:
     """Two runs begin at the same moment."""
     passed = 0
     for _ in range(count):
         with studies.study_folder() as folder:
             runs = [studies.start(folder, "--workers", "0") for _ in range(2)]
-            said = [run.communicate(timeout=SECONDS)[1] for run in runs]
+            error_texts = [run.communicate(timeout=SECONDS)[1] for run in runs]
             codes = [run.returncode for run in runs]
             # Both may run to the end, one after the other.
-            right = codes in ([0, 2], [2, 0], [0, 0]) and not any("Traceback" in errors for errors in said)
-            passed += right and not studies.left_over(folder) and studies.values(folder).identical(calm)
+            right = codes in ([0, 2], [2, 0], [0, 0]) and not any("Traceback" in errors for errors in error_texts)
+            passed += (
+                right and not studies.list_leftovers(folder) and studies.read_values(folder).identical(undisturbed)
+            )
     return Row(
         "two runs begun at once", count, passed, "one solves, the other is refused or finds all done; bit for bit"
     )
 
 
-def clock_steps(calm: xr.Dataset, count: int) -> Row:
+def clock_steps(undisturbed: xr.Dataset, count: int) -> Row:
     """The time of day jumps by up to ten years either way at every reading, in this process."""
     passed = 0
     for _ in range(count):
         with studies.study_folder() as folder, _jumping_clock():
-            right = studies.resume(folder) == {"ok": CASES} and not studies.left_over(folder)
+            right = studies.resume(folder) == {"ok": CASES} and not studies.list_leftovers(folder)
             studies.batches(folder)[0].unlink()
             right = right and studies.resume(folder) == {"ok": CASES}
-            passed += right and studies.values(folder).identical(calm)
+            passed += right and studies.read_values(folder).identical(undisturbed)
     return Row(
         "time of day jumps by up to ten years at every reading",
         count,
@@ -274,20 +276,20 @@ def clock_steps(calm: xr.Dataset, count: int) -> Row:
 
 
 class _jumping_clock:  # noqa: N801
-    """Replaces what the study layer reads the time of day from."""
+    """Replaces the clock of the study layer."""
 
     def __enter__(self) -> None:
         class Jumping(datetime):
             @classmethod
             def now(cls, tz=None):
-                return datetime.now(tz or UTC) + timedelta(days=chance.uniform(-3650, 3650))
+                return datetime.now(tz or UTC) + timedelta(days=rng.uniform(-3650, 3650))
 
         real = time.time
         modules = ("folder", "progress", "worker", "files")
         self._patches = [mock.patch(f"contactstudy.study.{name}.datetime", Jumping) for name in modules]
 
         def jumping() -> float:
-            return real() + chance.uniform(-3e8, 3e8)
+            return real() + rng.uniform(-3e8, 3e8)
 
         self._patches.append(mock.patch("time.time", jumping))
         for patch in self._patches:
@@ -298,20 +300,24 @@ class _jumping_clock:  # noqa: N801
             patch.stop()
 
 
-def edited_study(calm: xr.Dataset, count: int) -> Row:
-    """The file of the study is changed while a run goes on."""
+def edited_study(undisturbed: xr.Dataset, count: int) -> Row:
+    """The file of the study changes during a run."""
     passed = 0
     for _ in range(count):
         with studies.study_folder() as folder:
             process = studies.start(folder, "--workers", "0")
             studies.wait(process, partial(_holds_the_lock, process.pid, folder / "out"))
             text = as_toml(STUDY)
-            (folder / "study.toml").write_text(text[: chance.randrange(len(text))])
+            (folder / "study.toml").write_text(text[: rng.randrange(len(text))])
             _, errors = process.communicate(timeout=SECONDS)
-            passed += process.returncode == 0 and "Traceback" not in errors and studies.values(folder).identical(calm)
+            passed += (
+                process.returncode == 0
+                and "Traceback" not in errors
+                and studies.read_values(folder).identical(undisturbed)
+            )
     return Row("the study's file torn while it runs", count, passed, "the run goes on with what it read, bit for bit")
 
 
 def _holds_the_lock(pid: int, out: Path) -> bool:
-    """Whether a process, and not one that was killed before, has begun to work in a folder."""
+    """Whether a living process works in a folder."""
     return out.exists() and any(f"process {pid} on " in holder for holder in Folder(out).holders)

@@ -16,7 +16,7 @@ import xarray as xr
 
 from contactstudy.cli import main
 from contactstudy.study import open_study, run_study, worker
-from contactstudy.study.batches import batch_paths, damage
+from contactstudy.study.batches import batch_paths, find_damage
 from contactstudy.study.folder import Folder
 from contactstudy.study.settings import RunSettings
 from tests.small_study import as_toml, small_study
@@ -94,7 +94,7 @@ def batches(folder: Path) -> list[Path]:
     return batch_paths(folder / "out" / "batches")
 
 
-def finished(folder: Path) -> dict[bytes, int]:
+def count_finished(folder: Path) -> dict[bytes, int]:
     """Identities of the cases that are done, with the number of the run that solved them."""
     results = Folder(folder / "out").results()
     return {identity: int(results.batches[batch].runs[row]) for identity, (batch, row) in results.locations.items()}
@@ -102,7 +102,7 @@ def finished(folder: Path) -> dict[bytes, int]:
 
 def unreadable(folder: Path) -> int:
     """Number of batches that are damaged."""
-    return sum(bool(damage(path)) for path in batches(folder))
+    return sum(bool(find_damage(path)) for path in batches(folder))
 
 
 def resume(folder: Path) -> dict[str, int]:
@@ -110,22 +110,22 @@ def resume(folder: Path) -> dict[str, int]:
     return dict(run_study(STUDY, folder / "out", workers=0, solver=solve_fake).counts)
 
 
-def values(folder: Path) -> xr.Dataset:
+def read_values(folder: Path) -> xr.Dataset:
     """Return the opened study without its times."""
     return open_study(folder / "out").drop_vars("seconds").load()
 
 
-def left_over(folder: Path) -> list[Path | str]:
+def list_leftovers(folder: Path) -> list[Path | str]:
     """Parts of files and held locks, which a run must not leave behind."""
     out = folder / "out"
     return [*out.glob("**/*.part"), *Folder(out).holders]
 
 
-def calm_values() -> xr.Dataset:
+def undisturbed_values() -> xr.Dataset:
     """Return the opened study of a run without faults."""
     with study_folder() as folder:
         assert resume(folder) == {"ok": CASES}
-        return values(folder)
+        return read_values(folder)
 
 
 def wait(process: subprocess.Popen[str] | Forked, condition: Callable[[], object]) -> None:

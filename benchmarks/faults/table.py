@@ -8,7 +8,7 @@ from pathlib import Path
 BEGIN, END = "<!-- faults -->", "<!-- end of faults -->"
 """Lines of the page between which the table stands."""
 
-HEAD = "| fault | tried | passed | what was looked at |\n|---|---|---|---|"
+HEAD = "| fault | trials | passed | checked properties |\n|---|---|---|---|"
 
 
 @dataclass(frozen=True)
@@ -18,25 +18,25 @@ class Row:
     Attributes
     ----------
     fault : str
-        What was done to the study.
+        Fault of the study.
     tried, passed : int
         How often, and how often everything that was looked at was right.
     found : str
-        What was looked at, with figures.
+        Checked properties, with figures.
     """
 
     fault: str
-    tried: int
+    trials: int
     passed: int
-    found: str
+    result: str
 
     def __str__(self) -> str:
-        return f"| {self.fault} | {self.tried} | {self.passed} | {self.found} |"
+        return f"| {self.fault} | {self.trials} | {self.passed} | {self.result} |"
 
 
 def write_table(page: Path, rows: list[Row]) -> None:
     """Put the table in its place on a page."""
-    before, _, rest = page.read_text(encoding="utf-8").partition(BEGIN)
-    _, _, after = rest.partition(END)
+    before, _, remaining_text = page.read_text(encoding="utf-8").partition(BEGIN)
+    _, _, after = remaining_text.partition(END)
     table = "\n".join([BEGIN, "", HEAD, *map(str, rows), "", END])
     page.write_text(before + table + after, encoding="utf-8")

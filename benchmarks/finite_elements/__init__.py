@@ -1,4 +1,4 @@
-"""Independent finite elements for bodies with free ends: where the stored references come from.
+"""Independent finite elements for bodies with free ends: the source of the stored references.
 
 * `harmonics`: the body for one wavenumber along y, with scikit-fem;
 * `superpose`: stresses under a load, the integral over the wavenumber;

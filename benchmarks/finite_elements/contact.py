@@ -2,7 +2,7 @@
 
 The pressure is a product of hat functions: along x on nodes graded to where the roller or the body ends, along y on
 uniform nodes. For each wavenumber along y the finite elements give the flexibility of the top between the hats along
-x; the integral over the wavenumber makes of it the flexibility between any two hats. The contact is then the convex
+x; the integral over the wavenumber is the flexibility between any two hats. The contact is then the convex
 problem
 
     minimise  p A p / 2 + g p   for  p >= 0,  w p = load,
@@ -29,28 +29,28 @@ from contactstudy.verification.problems import ContactCase
 Array = NDArray[np.float64]
 STEPS = (0.01, 0.025, 0.05, 0.085, 0.13, 0.19, 0.27, 0.38, 0.52, 0.7, 1.0)
 """Distances of nodes from an end, in half-widths."""
-COARSEST = 0.3
+MAX_STEP = 0.3
 """Largest distance between nodes."""
 
 
 def graded_nodes(start: float, stop: float) -> Array:
     """Nodes from `start` to `stop`, graded to both."""
-    near = np.array(STEPS)
-    near = near[near < 0.4 * (stop - start)]
-    middle = stop - start - 2 * near[-1]
-    inner = np.linspace(start + near[-1], stop - near[-1], 2 * int(np.ceil(0.5 * middle / COARSEST)) + 1)
-    return np.concatenate([[start], start + near[:-1], inner, stop - near[-2::-1], [stop]])
+    end_steps = np.array(STEPS)
+    end_steps = end_steps[end_steps < 0.4 * (stop - start)]
+    mid_length = stop - start - 2 * end_steps[-1]
+    inner = np.linspace(start + end_steps[-1], stop - end_steps[-1], 2 * int(np.ceil(0.5 * mid_length / MAX_STEP)) + 1)
+    return np.concatenate([[start], start + end_steps[:-1], inner, stop - end_steps[-2::-1], [stop]])
 
 
 def hat_pairs(nodes: Array) -> list[Callable[[Array], Array]]:
     """Hats on the first half of the nodes, each with its mirror image about the middle."""
 
-    def pair(number: int) -> Callable[[Array], Array]:
+    def pair(index: int) -> Callable[[Array], Array]:
         heights = np.zeros(nodes.size)
-        heights[[number, nodes.size - 1 - number]] = 1.0
+        heights[[index, nodes.size - 1 - index]] = 1.0
         return lambda x: np.interp(x, nodes, heights, left=0.0, right=0.0)
 
-    return [pair(number) for number in range((nodes.size + 1) // 2)]
+    return [pair(index) for index in range((nodes.size + 1) // 2)]
 
 
 @dataclass(frozen=True)
@@ -90,26 +90,26 @@ def flexibility(case: ContactCase, resolution: Resolution) -> Flexibility:
 def between_strips(flexible: Flexibility, step: float, count: int) -> Array:
     """Flexibility `[offset, i, j]` between hats `offset * step` apart along y, but for a constant times `w_i w_j`.
 
-    It grows like a constant times `w_i w_j / k` at small wavenumbers: that part, taken from one pair of hats, is
+    The flexibility grows like `w_i w_j / k` at small wavenumbers: this term, from one pair of hats, is
     integrated with `cos(k y) - 1`, which only changes the approach.
     """
     resolution, weights = flexible.resolution, flexible.weights
     n = resolution.nodes
-    coarse = np.linalg.inv(legendre.legvander(legendre.leggauss(n)[0], n - 1))
+    inverse_legendre = np.linalg.inv(legendre.legvander(legendre.leggauss(n)[0], n - 1))
     offsets = step * np.arange(count)
-    scaled = flexible.values / np.multiply.outer(weights, weights)
-    base = scaled[:, -1, -1]
-    total = np.zeros((count, *scaled.shape[1:]))
+    density = flexible.values / np.multiply.outer(weights, weights)
+    base = density[:, -1, -1]
+    total = np.zeros((count, *density.shape[1:]))
     for i, (low, high) in enumerate(zip(resolution.panels[:-1], resolution.panels[1:], strict=True)):
-        part = slice(i * n, (i + 1) * n)
+        nodes = slice(i * n, (i + 1) * n)
         node, weight = legendre.leggauss(24 + int(2 * (high - low)))
         k = low + 0.5 * (high - low) * (node + 1)
         hat = step * np.sinc(k * step / (2 * np.pi)) ** 2
         factor = 0.5 * (high - low) * weight * hat**2 / np.pi
-        interpolate = legendre.legvander(node, n - 1) @ coarse
+        interpolate = legendre.legvander(node, n - 1) @ inverse_legendre
         waves = np.cos(np.outer(offsets, k))
-        total += np.tensordot(waves * factor @ interpolate, scaled[part] - base[part, None, None], axes=1)
-        total += ((waves - 1) / k * factor @ interpolate @ (flexible.k[part] * base[part]))[:, None, None]
+        total += np.tensordot(waves * factor @ interpolate, density[nodes] - base[nodes, None, None], axes=1)
+        total += ((waves - 1) / k * factor @ interpolate @ (flexible.k[nodes] * base[nodes]))[:, None, None]
     return total * np.multiply.outer(weights, weights)
 
 
@@ -126,32 +126,32 @@ def solve(case: ContactCase, flexible: Flexibility, step: float, window: float, 
     """Contact with hats `step` apart along y up to `window`; `every` second node along x if 2."""
     y = step * np.arange(round(window / step) + 1)
     strips = between_strips(flexible, step, 2 * y.size - 1)
-    merge = _coarser(flexible.nodes, stride)
-    number = np.arange(y.size)
-    twice = np.where(number == 0, 1.0, 2.0)  # a hat off the middle comes with its mirror image
+    merge = _coarsen(flexible.nodes, stride)
+    row = np.arange(y.size)
+    multiplicity = np.where(row == 0, 1.0, 2.0)  # a hat away from the middle includes its mirror image
     # Unknowns are pairs in y as well: rows of a pair add up.
-    near, far = np.abs(number[:, None] - number), number[:, None] + number
-    folded = strips[near] + strips[far]
-    folded *= (0.5 * np.multiply.outer(twice, twice))[..., None, None]
+    difference, total = np.abs(row[:, None] - row), row[:, None] + row
+    folded = strips[difference] + strips[total]
+    folded *= (0.5 * np.multiply.outer(multiplicity, multiplicity))[..., None, None]
     matrix = np.einsum("ai,mnij,bj->manb", merge, folded, merge, optimize=True)
     size = matrix.shape[0] * matrix.shape[1]
     matrix = matrix.reshape(size, size) / (1 - case.poisson)  # 2 G = E* (1 - nu), and E* is 1
     matrix = 0.5 * (matrix + matrix.T)
-    weights = np.outer(twice * step, merge @ flexible.weights).ravel()
-    gaps = np.outer(twice * step, merge @ _moments(case.gap_x, flexible.nodes))
+    weights = np.outer(multiplicity * step, merge @ flexible.weights).ravel()
+    gaps = np.outer(multiplicity * step, merge @ _moments(case.gap_x, flexible.nodes))
     # Integral of y**2 times a hat: step (y**2 + step**2 / 6).
-    gaps += np.outer(twice * step * (y**2 + step**2 / 6), merge @ flexible.weights)
+    gaps += np.outer(multiplicity * step * (y**2 + step**2 / 6), merge @ flexible.weights)
     pressure = complementarity(matrix, gaps.ravel(), weights, case.load)
-    half = merge.T @ pressure.reshape(y.size, -1).T
-    pressure_both_sides = np.concatenate([half, half[: flexible.nodes.size // 2][::-1]])
+    half_pressure = merge.T @ pressure.reshape(y.size, -1).T
+    pressure_both_sides = np.concatenate([half_pressure, half_pressure[: flexible.nodes.size // 2][::-1]])
     return SolvedContact(flexible.nodes, y, pressure_both_sides)
 
 
-def _coarser(nodes: Array, stride: int) -> Array:
+def _coarsen(nodes: Array, stride: int) -> Array:
     """Hat pairs on every so many nodes, as sums of hat pairs on all: array (coarse, fine)."""
-    half = nodes[: (nodes.size + 1) // 2]
-    coarse_nodes = np.unique(np.append(np.arange(0, half.size, stride), half.size - 1))
-    return np.array([np.interp(half, half[coarse_nodes], row) for row in np.eye(coarse_nodes.size)])
+    half_nodes = nodes[: (nodes.size + 1) // 2]
+    coarse_nodes = np.unique(np.append(np.arange(0, half_nodes.size, stride), half_nodes.size - 1))
+    return np.array([np.interp(half_nodes, half_nodes[coarse_nodes], row) for row in np.eye(coarse_nodes.size)])
 
 
 def _moments(function: Callable[[Array], Array], nodes: Array) -> Array:
@@ -165,7 +165,7 @@ def _moments(function: Callable[[Array], Array], nodes: Array) -> Array:
 
 def complementarity(matrix: Array, gap: Array, weights: Array, load: float) -> Array:
     """Pressure `>= 0` of the given load that minimises the energy; the approach is found by bracketing."""
-    # A constant between all hats only shifts the approach: enough of it makes the matrix positive definite.
+    # A constant between all hats only shifts the approach; a large constant makes the matrix positive definite.
     constant = 10 * np.abs(matrix).sum() / weights.sum() ** 2
     factor = linalg.cholesky(matrix + constant * np.multiply.outer(weights, weights))
     of_gap, of_weights = (linalg.solve_triangular(factor, v, trans="T") for v in (gap, weights))
@@ -174,8 +174,11 @@ def complementarity(matrix: Array, gap: Array, weights: Array, load: float) -> A
         return np.asarray(optimize.nnls(factor, approach * of_weights - of_gap, maxiter=50 * gap.size)[0])
 
     # With the constant c the approach is near c times the load.
-    middle = constant * load
+    mid_approach = constant * load
     root = optimize.root_scalar(
-        lambda approach: float(weights @ pressure(approach)) / load - 1, x0=middle, x1=1.05 * middle, rtol=1e-12
+        lambda approach: float(weights @ pressure(approach)) / load - 1,
+        x0=mid_approach,
+        x1=1.05 * mid_approach,
+        rtol=1e-12,
     )
     return pressure(root.root)

@@ -2,7 +2,7 @@
 
 The finite elements are made worse in one way at a time (element order, mesh, depth of the body, quadrature in k), and
 the pressure is found on hats of twice the width along y and along x. Hats err like the square of their width, so a
-third of those changes is the error of the finer ones; the sum of all is the estimate.
+third of each change is the error of the finer mesh; the sum is the estimate.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ VARIANTS = {  # name: (variant, reference)
 STEP, WINDOW = 1 / 16, 1.75
 
 
-def solved(case: ContactCase) -> xr.Dataset:
+def solve_reference(case: ContactCase) -> xr.Dataset:
     """The contact with its error estimate."""
     flexibilities = {
         r: flexibility(case, r) for r in dict.fromkeys([PRODUCTION, LOWER, *(v for v, _ in VARIANTS.values())])
@@ -85,7 +85,7 @@ def write(path: Path) -> None:
     )
     for name, case in CONTACT_CASES.items():
         start = time.perf_counter()
-        solution = solved(case)
+        solution = solve_reference(case)
         append_case(path, name, solution)
         worst = float(solution["pressure_error"].sel(y=0).max())
         print(f"{name}: {time.perf_counter() - start:.0f} s, largest error estimate at y = 0: {worst:.1e}", flush=True)

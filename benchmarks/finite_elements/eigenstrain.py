@@ -14,16 +14,16 @@ from benchmarks.finite_elements.harmonics import HarmonicBody, Line
 Array = NDArray[np.float64]
 
 
-def graded(points: Array, smallest: float, largest: float) -> Array:
-    """Element edges that pass through the points and are small beside each of them."""
+def graded_nodes(points: Array, smallest: float, largest: float) -> Array:
+    """Element edges that pass through the points, with small elements at each point."""
     edges = [points[:1]]
     for low, high in pairwise(points):
-        half, steps, width = 0.5 * (high - low), [0.0], smallest
-        while steps[-1] + width < half:
+        half_length, steps, width = 0.5 * (high - low), [0.0], smallest
+        while steps[-1] + width < half_length:
             steps.append(steps[-1] + width)
             width = min(2.0 * width, largest)
         inner = np.array(steps[1:])
-        edges.append(np.concatenate([low + inner, [low + half], high - inner[::-1], [high]]))
+        edges.append(np.concatenate([low + inner, [low + half_length], high - inner[::-1], [high]]))
     return np.concatenate(edges)
 
 
@@ -45,8 +45,8 @@ def residual_stress(
 ) -> Array:
     """Stresses (6, x, z) over the shear modulus of eigenstrains (xx, yy, zz, xy, xz, yz) in one rectangle."""
     (x_low, x_high), (z_low, z_high) = rectangle
-    across = Line(graded(np.unique([0.0, x_low, x_high, length]), smallest, 0.3 * length), order)
-    depth = graded(np.unique([0.0, z_low, z_high, 2 * length]), smallest, 0.5 * length)
+    across = Line(graded_nodes(np.unique([0.0, x_low, x_high, length]), smallest, 0.3 * length), order)
+    depth = graded_nodes(np.unique([0.0, z_low, z_high, 2 * length]), smallest, 0.5 * length)
     depth_line = Line(np.append(depth, 2 * length * np.array([1.5, 2, 3, 4, 6])), order)
     body = HarmonicBody(across, depth_line, poisson)
     lam = 2 * poisson / (1 - 2 * poisson)
@@ -66,6 +66,6 @@ def residual_stress(
             eigenstress[2] * np.outer(v_x, s_z) + eigenstress[4] * np.outer(s_x, v_z),
         ]
     )
-    displacement = body.displaced(right[None])
-    inside = in_x(x)[:, None] * in_z(z)
-    return body.stresses(0.0, displacement, x, z)[0] - eigenstress[:, None, None] * inside
+    displacement = body.displacements(right[None])
+    in_rectangle = in_x(x)[:, None] * in_z(z)
+    return body.stresses(0.0, displacement, x, z)[0] - eigenstress[:, None, None] * in_rectangle

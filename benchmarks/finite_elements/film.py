@@ -35,13 +35,13 @@ START_FILM, CLOSING = 0.3, 0.6
 def compliance(case: LubricatedCase, x_edges: Array, y_edges: Array, resolution: Resolution) -> Array:
     """``E* u_z / a`` of columns at the cells' centres under unit pressure on cells (x, y, x, y), up to a constant."""
     widths, y, lengths = np.diff(x_edges), 0.5 * (y_edges[1:] + y_edges[:-1]), np.diff(y_edges)
-    middles = x_edges[:-1] + 0.5 * widths
-    x = Line(np.sort(np.concatenate([x_edges, middles])), resolution.order)
+    midpoints = x_edges[:-1] + 0.5 * widths
+    x = Line(np.sort(np.concatenate([x_edges, midpoints])), resolution.order)
     shapes = [(lambda at, low=low, high=high: 1.0 * ((at > low) & (at < high)), "z") for low, high in pairwise(x_edges)]
     loads = np.array([x.load(shape) for shape, _ in shapes])
     depth, n = resolution.mesh_z(), resolution.nodes
     node = legendre.leggauss(n)[0]
-    coarse = np.linalg.inv(legendre.legvander(node, n - 1))
+    inverse_legendre = np.linalg.inv(legendre.legvander(node, n - 1))
     ends = [(y[:, None] - y + 0.5 * side * lengths).ravel() for side in (1, -1)]
     total = np.zeros((y.size**2, widths.size, widths.size))
     for low, high in pairwise(resolution.panels):
@@ -51,9 +51,11 @@ def compliance(case: LubricatedCase, x_edges: Array, y_edges: Array, resolution:
         # 2 G = E* (1 - nu); means over the displaced column, per length of the loaded one.
         tops = [np.stack([u[2] @ body.top for u in body.solve(float(wave), shapes)]) for wave in k]
         response = np.array([2 * loads @ top.T for top in tops]) / ((1 - case.poisson) * np.outer(widths, widths))
-        fine, weight = legendre.leggauss(24 + int(0.7 * np.abs(ends).max() * (high - low)))
-        wave = low + 0.5 * (high - low) * (fine + 1)
-        interpolate = legendre.legvander(fine, n - 1) @ coarse * (0.5 * (high - low) * weight / np.pi)[:, None]
+        fine_nodes, weight = legendre.leggauss(24 + int(0.7 * np.abs(ends).max() * (high - low)))
+        wave = low + 0.5 * (high - low) * (fine_nodes + 1)
+        interpolate = (
+            legendre.legvander(fine_nodes, n - 1) @ inverse_legendre * (0.5 * (high - low) * weight / np.pi)[:, None]
+        )
         transform = (np.sin(np.outer(ends[0], wave)) - np.sin(np.outer(ends[1], wave))) / wave
         # The part like 1 / k at small k, equal for all columns, is integrated with cos(k y) - 1: it moves the rest.
         base = response[:, 0, -1]
@@ -78,10 +80,12 @@ class Reynolds:
     def outflow(self, pressure: Array, film: Array) -> Array:
         """Net outflow of each cell per width along x."""
         # Q of Barus' oil, eq. (402); a negative pressure, which ends in cavitation, has the ambient viscosity.
-        full, coefficient = np.where(pressure.real > 0, pressure, 0.0), self.pressure_viscosity
-        reduced = np.where(pressure.real > 0, -np.expm1(-coefficient * full) / coefficient, pressure)
-        through = self._couette(film) - self._driven(reduced, film, self.y_edges)
-        across = -self._driven(reduced.T, film.T, self.x_edges).T
+        positive_pressure, coefficient = np.where(pressure.real > 0, pressure, 0.0), self.pressure_viscosity
+        reduced_pressure = np.where(
+            pressure.real > 0, -np.expm1(-coefficient * positive_pressure) / coefficient, pressure
+        )
+        through = self._couette(film) - self._driven(reduced_pressure, film, self.y_edges)
+        across = -self._driven(reduced_pressure.T, film.T, self.x_edges).T
         return (
             np.diff(through, axis=1) + np.diff(across, axis=0) * np.diff(self.y_edges) / np.diff(self.x_edges)[:, None]
         )
@@ -92,20 +96,20 @@ class Reynolds:
         y = 0.5 * (edges[1:] + edges[:-1])
         faces = []
         for face, edge in enumerate(edges):
-            near = slice(max(face - 2, 0), min(max(face + 1, 2), cells))
-            ahead = y[near] - edge
+            columns = slice(max(face - 2, 0), min(max(face + 1, 2), cells))
+            ahead = y[columns] - edge
             weights = np.linalg.solve(np.vander(ahead, increasing=True).T, np.eye(ahead.size)[0])
-            value, upstream = film[:, near] @ weights, film[:, max(face - 1, 0)]
+            value, upstream = film[:, columns] @ weights, film[:, max(face - 1, 0)]
             value = np.where(value.real < FACE_FILM[0] * upstream.real, FACE_FILM[0] * upstream, value)
             faces.append(np.where(value.real > FACE_FILM[1] * upstream.real, FACE_FILM[1] * upstream, value))
         return np.stack(faces, axis=1)
 
-    def _driven(self, reduced: Array, film: Array, edges: Array) -> Array:
+    def _driven(self, reduced_pressure: Array, film: Array, edges: Array) -> Array:
         """Flow along the last axis that the pressure drives, reversed; ambient pressure on the outermost faces."""
         centres = np.concatenate([edges[:1], 0.5 * (edges[1:] + edges[:-1]), edges[-1:]])
-        before, after = np.pad(film, ((0, 0), (1, 0)), "edge"), np.pad(film, ((0, 0), (0, 1)), "edge")
-        slope = np.diff(np.pad(reduced, ((0, 0), (1, 1)))) / np.diff(centres)
-        return 2 * (before * after) ** 2 / (before + after) / self.speed * slope
+        film_before, film_after = np.pad(film, ((0, 0), (1, 0)), "edge"), np.pad(film, ((0, 0), (0, 1)), "edge")
+        slope = np.diff(np.pad(reduced_pressure, ((0, 0), (1, 1)))) / np.diff(centres)
+        return 2 * (film_before * film_after) ** 2 / (film_before + film_after) / self.speed * slope
 
     def derivatives(self, pressure: Array, film: Array) -> tuple[Array, Array]:
         """Matrices (cell, cell) of the derivatives of the outflow by the pressure and by the film: complex steps.
@@ -140,9 +144,9 @@ def solve(
     film += START_FILM - film.min()
     reynolds = Reynolds(x_edges, y_edges, case.speed, case.pressure_viscosity)
     for time in (*TIMES, np.inf):
-        former, inverse = film, lengths / time
+        previous_film, inverse = film, lengths / time
         for _ in range(60 if np.isinf(time) else 8):
-            outflow = (reynolds.outflow(pressure, film) + inverse * (film - former)).ravel()
+            outflow = (reynolds.outflow(pressure, film) + inverse * (film - previous_film)).ravel()
             by_pressure, by_film = reynolds.derivatives(pressure, film)
             by_film += np.diag(np.tile(inverse, x.size))
             jacobian = by_pressure + by_film @ matrix
@@ -154,10 +158,10 @@ def solve(
                 np.where(broken, -pressure.ravel(), -outflow / scale), case.load - areas @ pressure.ravel()
             )
             change = np.linalg.solve(np.block([[rows, by_height[:, None]], [areas, np.zeros(1)]]), right)
-            moved = change[-1] + matrix @ change[:-1]
-            part = min(1.0, CLOSING / max((-moved / film.ravel()).max(), 1e-300))
-            pressure = pressure + part * change[:-1].reshape(gap.shape)
-            film = film + part * moved.reshape(gap.shape)
+            film_change = change[-1] + matrix @ change[:-1]
+            step_fraction = min(1.0, CLOSING / max((-film_change / film.ravel()).max(), 1e-300))
+            pressure = pressure + step_fraction * change[:-1].reshape(gap.shape)
+            film = film + step_fraction * film_change.reshape(gap.shape)
             if np.abs(change[:-1]).max() < tolerance:
                 break
     if np.abs(change[:-1]).max() >= tolerance:

@@ -20,22 +20,24 @@ PRODUCTION = Resolution(order=4, growth=1.8, smallest=0.02, nodes=5)
 COARSE = replace(PRODUCTION, order=3, growth=2.4, smallest=0.04, nodes=4)
 
 
-def solved(name: str) -> xr.Dataset:
+def solve_reference(name: str) -> xr.Dataset:
     """The film, and its largest change from coarser finite elements."""
     case, film = FILM_CASES[name], coarse_film(name)
     cells = cells_of(film, Level(), film.contact_ends)[0]
     edges = cells.x_edges, cells.y_edges
-    best, coarse = (solve(case, compliance(case, *edges, resolution), *edges) for resolution in (PRODUCTION, COARSE))
+    reference, coarse = (
+        solve(case, compliance(case, *edges, resolution), *edges) for resolution in (PRODUCTION, COARSE)
+    )
     return xr.Dataset(
         {
-            "pressure": (("x", "y"), best[0], {"units": "p0"}),
-            "film": (("x", "y"), best[1], {"units": "a^2 / R"}),
+            "pressure": (("x", "y"), reference[0], {"units": "p0"}),
+            "film": (("x", "y"), reference[1], {"units": "a^2 / R"}),
         },
         coords={"x": ("x", cells.x, {"units": "a"}), "y": ("y", cells.y, {"units": "a"})},
         attrs=vars(case)
         | {
-            "pressure_error": float(np.abs(coarse[0] - best[0]).max()),
-            "film_error": float(np.abs(coarse[1] / best[1] - 1).max()),
+            "pressure_error": float(np.abs(coarse[0] - reference[0]).max()),
+            "film_error": float(np.abs(coarse[1] / reference[1] - 1).max()),
         },
     )
 
@@ -53,7 +55,7 @@ def write(path: Path) -> None:
     )
     for name in FILM_CASES:
         start = time.perf_counter()
-        solution = solved(name)
+        solution = solve_reference(name)
         append_case(path, name, solution)
         errors = {key: solution.attrs[f"{key}_error"] for key in ("film", "pressure")}
         print(f"{name}: {time.perf_counter() - start:.0f} s, error estimates {errors}", flush=True)

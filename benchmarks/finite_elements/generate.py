@@ -15,7 +15,7 @@ DATA = Path(__file__).resolve().parents[2] / "data"
 
 
 def main() -> None:
-    """Make one of the files."""
+    """Write a reference file."""
     parser = argparse.ArgumentParser(description="Make a file of finite-element references anew.")
     parser.add_argument("kind", choices=("stress", "contact", "passes", "film"))
     parser.add_argument("--out", metavar="FOLDER", type=Path, default=DATA, help="default: the project's data")

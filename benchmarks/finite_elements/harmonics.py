@@ -72,7 +72,7 @@ class Line:
         value, slope = (sp.lil_matrix((len(points), self.basis.N)) for _ in range(2))
         for i, cell, weight in rows:
             local = np.array([[(points[i] - edges[cell]) / (edges[cell + 1] - edges[cell])]])
-            element = ElementLinePp(self.order)  # a fresh one: it keeps the values of the points seen last
+            element = ElementLinePp(self.order)  # a new basis: an evaluated basis caches values of the last points
             for j in range(self.basis.Nbfun):
                 shape = element.gbasis(self.basis.mapping, local, j, tind=np.array([cell]))[0]
                 dof = self.basis.element_dofs[j, cell]
@@ -88,23 +88,23 @@ class HarmonicBody:
         self.x, self.z, self.poisson = x, z, poisson
         lam = 2 * poisson / (1 - 2 * poisson)
         top = z.basis.get_dofs(lambda c: np.isclose(c[0], z.edges[0])).all()
-        fixed = z.basis.get_dofs(lambda c: np.isclose(c[0], z.edges[-1])).all()
+        fixed_dofs = z.basis.get_dofs(lambda c: np.isclose(c[0], z.edges[-1])).all()
         self.top = np.zeros(z.basis.N)
         self.top[top] = 1.0
         keep = np.ones((3, x.basis.N, z.basis.N), dtype=bool)
-        keep[:, :, fixed] = False
+        keep[:, :, fixed_dofs] = False
         self._free = np.flatnonzero(keep)
         mm, sm, ms = (sp.kron(*ab) for ab in ((x.mass, z.mass), (x.stiffness, z.mass), (x.mass, z.stiffness)))
         xm, mz = sp.kron(x.mixed, z.mass), sp.kron(x.mass, z.mixed)
         xz = lam * sp.kron(x.mixed, z.mixed.T) + sp.kron(x.mixed.T, z.mixed)
         xy, yz = lam * xm - xm.T, lam * mz.T - mz
         none = None
-        parts = (
+        blocks = (
             [[(lam + 2) * sm + ms, none, xz], [none, sm + ms, none], [xz.T, none, (lam + 2) * ms + sm]],
             [[none, xy, none], [xy.T, none, yz], [none, yz.T, none]],
             [[mm, none, none], [none, (lam + 2) * mm, none], [none, none, mm]],
         )
-        self._parts = [self._restrict(sp.bmat(p, format="csr")) for p in parts]
+        self._parts = [self._restrict(sp.bmat(p, format="csr")) for p in blocks]
 
     def _restrict(self, matrix: sp.csr_matrix) -> sp.csc_matrix:
         return matrix[self._free][:, self._free].tocsc()
@@ -115,18 +115,18 @@ class HarmonicBody:
         for load, (g, direction) in zip(loads, shapes, strict=True):
             axial_load = np.outer(self.x.load(g), self.top)
             load["xyz".index(direction)] = -axial_load if direction == "y" else axial_load
-        return self.displaced(loads, k)
+        return self.displacements(loads, k)
 
-    def displaced(self, loads: Array, k: float = 0.0) -> Array:
+    def displacements(self, loads: Array, k: float = 0.0) -> Array:
         """Amplitudes `[load, component, x, z]` for generalised forces on all shape functions, of the same shape."""
         constant, linear, square = self._parts
         matrix = (constant + k * linear + k**2 * square).tocsc()
         factor = splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
         right = loads.reshape(len(loads), -1)[:, self._free].T
-        answer = factor.solve(right)
-        answer += factor.solve(right - matrix @ answer)
+        solution = factor.solve(right)
+        solution += factor.solve(right - matrix @ solution)
         amplitudes = np.zeros((len(loads), loads[0].size))
-        amplitudes[:, self._free] = answer.T
+        amplitudes[:, self._free] = solution.T
         return amplitudes.reshape(loads.shape)
 
     def stresses(self, k: float, amplitudes: Array, x: Sequence[float], z: Sequence[float]) -> Array:
@@ -137,7 +137,7 @@ class HarmonicBody:
         (x0, x1), (z0, z1) = self.x.evaluate(x), self.z.evaluate(z)
 
         def sample(a: sp.csr_matrix, u: Array, b: sp.csr_matrix) -> Array:
-            return np.stack([(b @ (a @ part).T).T for part in u])
+            return np.stack([(b @ (a @ amplitude).T).T for amplitude in u])
 
         ux, uy, uz = (amplitudes[:, i] for i in range(3))
         lam = 2 * self.poisson / (1 - 2 * self.poisson)

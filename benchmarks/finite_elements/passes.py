@@ -109,18 +109,18 @@ class PlasticStrip:
         across = np.zeros(basis.N)
         across[basis.split_indices()[1]] = 1.0
         node_numbers = np.unique(np.stack([y, z, across]), axis=1, return_inverse=True)[1].ravel()
-        free = np.zeros(node_numbers.max() + 1, dtype=bool)
-        free[node_numbers[z < strip.depth - 1e-9]] = True
-        numbers = np.where(free, np.cumsum(free) - 1, -1)
-        return np.asarray(numbers[node_numbers][basis.element_dofs])
+        is_free = np.zeros(node_numbers.max() + 1, dtype=bool)
+        is_free[node_numbers[z < strip.depth - 1e-9]] = True
+        indices = np.where(is_free, np.cumsum(is_free) - 1, -1)
+        return np.asarray(indices[node_numbers][basis.element_dofs])
 
     @cached_property
     def strains(self) -> Array:
         """Strains xx, yy, zz, 2 yz at each point of integration per displacement: (function, 4, element, point)."""
         values = np.zeros((self.basis.Nbfun, 4, *self.basis.dx.shape))
-        for number, (function,) in enumerate(self.basis.basis):
+        for index, (function,) in enumerate(self.basis.basis):
             (yy, yz), (zy, zz) = function.grad
-            values[number, 1], values[number, 2], values[number, 3] = yy, zz, yz + zy
+            values[index, 1], values[index, 2], values[index, 3] = yy, zz, yz + zy
         return values
 
     @cached_property
@@ -137,7 +137,7 @@ class PlasticStrip:
         elements, points = self.order
         return np.asarray(np.asarray(self.basis.global_coordinates())[1][elements[:, 0], points[:, 0]])
 
-    def elastic(self, position: float) -> Array:
+    def elastic_stress(self, position: float) -> Array:
         """Stress (4, element, point) of the elastic contact at this place along y."""
         y, z = np.asarray(self.basis.global_coordinates())
         distance = (y - position + 0.5 * self.strip.length) % self.strip.length - 0.5 * self.strip.length
@@ -151,7 +151,7 @@ class PlasticStrip:
         stress[:3] += lame * strain[:3].sum(axis=0)
         return np.asarray(stress)
 
-    def returned(self, total: Array, plastic: Array, elastic: Array) -> tuple[Array, Array, Array]:
+    def return_stress(self, total: Array, plastic: Array, elastic: Array) -> tuple[Array, Array, Array]:
         """Stress without the contact's, plastic strain and tangent for total strains, from the plastic strain before.
 
         The tangent is (4, 4, point) with the strain 2 yz; `total` and `plastic` are tensors (4, point).
@@ -169,62 +169,64 @@ class PlasticStrip:
         values = plastic + multiplier * normal
         # Simo and Taylor, eq. (3.19), with hardening.
         factors = 1 - 2 * shear * multiplier / size
-        turned = 2 * shear / (2 * shear + hardening) - (1 - factors)
+        rotation = 2 * shear / (2 * shear + hardening) - (1 - factors)
         unit = np.diag([1.0, 1.0, 1.0, 0.5])
         unit[:3, :3] -= 1 / 3
         bulk = YOUNG / (3 * (1 - 2 * self.case.poisson))
         volume = np.zeros((4, 4))
         volume[:3, :3] = bulk
         outer = normal[:, None] * normal[None]
-        tangent = volume[..., None] + 2 * shear * (factors * unit[..., None] - turned * outer)
+        tangent = volume[..., None] + 2 * shear * (factors * unit[..., None] - rotation * outer)
         return stress - elastic - 2 * shear * multiplier * normal, values, tangent
 
     def force(self, stress: Array) -> Array:
         """Forces on the unknowns of stresses (4, element, point)."""
-        weighted = np.einsum("aiep,iep,ep->ae", self.strains, stress, self.basis.dx)
-        free = self.unknowns >= 0
-        return np.asarray(np.bincount(self.unknowns[free], weighted[free]), dtype=np.float64)
+        nodal_forces = np.einsum("aiep,iep,ep->ae", self.strains, stress, self.basis.dx)
+        is_free = self.unknowns >= 0
+        return np.asarray(np.bincount(self.unknowns[is_free], nodal_forces[is_free]), dtype=np.float64)
 
     def stiffness(self, tangent: Array) -> sparse.csc_matrix:
         """Matrix of the unknowns, of tangents (4, 4, element, point)."""
-        stressed = np.einsum("ijep,bjep,ep->biep", tangent, self.strains, self.basis.dx, optimize=True)
-        values = np.einsum("aiep,biep->abe", self.strains, stressed, optimize=True)
+        stress_change = np.einsum("ijep,bjep,ep->biep", tangent, self.strains, self.basis.dx, optimize=True)
+        values = np.einsum("aiep,biep->abe", self.strains, stress_change, optimize=True)
         i = np.broadcast_to(self.unknowns[:, None], values.shape)
         j = np.broadcast_to(self.unknowns[None], values.shape)
-        free = (i >= 0) & (j >= 0)
+        is_free = (i >= 0) & (j >= 0)
         count = self.unknowns.max() + 1
-        return sparse.csc_matrix((values[free], (i[free], j[free])), shape=(count, count))
+        return sparse.csc_matrix((values[is_free], (i[is_free], j[is_free])), shape=(count, count))
 
-    def increment(self, displaced: Array, plastic: Array, elastic: Array, accuracy: float = 1e-5) -> tuple[Array, ...]:
+    def increment(
+        self, displacement: Array, plastic: Array, elastic: Array, accuracy: float = 1e-5
+    ) -> tuple[Array, ...]:
         """Displacements, plastic strain and residual stress in equilibrium with the contact's elastic stress."""
         shape = plastic.shape
-        allowed = accuracy * self.strip.width * self.case.shear_yield_stress
-        before = np.inf
+        tolerance = accuracy * self.strip.width * self.case.shear_yield_stress
+        previous_force = np.inf
         for _ in range(100):
-            inside = np.append(displaced, 0.0)[self.unknowns]  # the bottom is held
-            total = np.einsum("aiep,ae->iep", self.strains, inside)
+            nodal_displacement = np.append(displacement, 0.0)[self.unknowns]  # the bottom is held
+            total = np.einsum("aiep,ae->iep", self.strains, nodal_displacement)
             total[3] *= 0.5
             flat = (array.reshape(4, -1) for array in (total, plastic, elastic))
-            stress, values, tangent = self.returned(*flat)
+            stress, values, tangent = self.return_stress(*flat)
             out_of_balance = self.force(stress.reshape(shape))
             size = np.abs(out_of_balance).max()
-            if size <= allowed:
-                return displaced, values.reshape(shape), stress.reshape(shape)
-            # The stiffness of the increment before serves as long as it leads on.
-            if self.factors is None or size > SLOW * before:
+            if size <= tolerance:
+                return displacement, values.reshape(shape), stress.reshape(shape)
+            # The previous stiffness is used while the iteration converges.
+            if self.factors is None or size > SLOW * previous_force:
                 matrix = self.stiffness(tangent.reshape(4, 4, *shape[1:]))
                 options = {"SymmetricMode": True}
                 self.factors = splu(matrix, permc_spec="MMD_AT_PLUS_A", options=options, diag_pivot_thresh=0.1)
-            before = size
-            displaced = displaced - self.factors.solve(out_of_balance)
-        raise RuntimeError(f"no equilibrium: {size:.2g} is left, {allowed:.2g} is allowed")
+            previous_force = size
+            displacement = displacement - self.factors.solve(out_of_balance)
+        raise RuntimeError(f"no equilibrium: {size:.2g} is left, {tolerance:.2g} is allowed")
 
     def rows(self, field: Array) -> Array:
         """A field (..., element, point) as rows of equal depth (..., depth, along y)."""
         elements, points = self.order
         return np.asarray(field[..., elements, points])
 
-    def rolled(self) -> tuple[Array, Array, Array]:
+    def roll(self) -> tuple[Array, Array, Array]:
         """Roll.
 
         Returns
@@ -237,19 +239,19 @@ class PlasticStrip:
             Half the range of the plastic strain along y in the same places.
         """
         plastic = np.zeros((4, *self.basis.dx.shape))
-        displaced = np.zeros(self.unknowns.max() + 1)
+        displacement = np.zeros(self.unknowns.max() + 1)
         per_pass = round(self.strip.length / self.strip.step)
-        fields = [self.elastic(number * self.strip.step) for number in range(per_pass)]
-        for part in (0.25, 0.5, 0.75):
-            displaced, plastic, _ = self.increment(displaced, plastic, part * fields[0])
+        fields = [self.elastic_stress(index * self.strip.step) for index in range(per_pass)]
+        for fraction in (0.25, 0.5, 0.75):
+            displacement, plastic, _ = self.increment(displacement, plastic, fraction * fields[0])
         factors = []
         y = np.linspace(0, self.strip.length, self.order[0].shape[1], endpoint=False)
         opposite = np.abs(y - 0.5 * self.strip.length) < 2.0
         for _ in range(self.case.passes):
             for elastic in [*fields[1:], fields[0]]:
-                displaced, plastic, _ = self.increment(displaced, plastic, elastic)
+                displacement, plastic, _ = self.increment(displacement, plastic, elastic)
             factors.append(self.rows(plastic)[..., opposite].mean(axis=-1))
         spread = 0.5 * np.ptp(self.rows(plastic)[..., opposite], axis=-1)
-        for part in (0.75, 0.5, 0.25, 0.0):
-            displaced, plastic, stress = self.increment(displaced, plastic, part * fields[0])
+        for fraction in (0.75, 0.5, 0.25, 0.0):
+            displacement, plastic, stress = self.increment(displacement, plastic, fraction * fields[0])
         return np.array(factors), self.rows(stress).mean(axis=-1), spread

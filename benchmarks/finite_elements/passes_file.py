@@ -2,7 +2,7 @@
 
 Every case is solved at the production resolution, with steps of four times the length, and with these and one thing
 more made worse: width or height of the elements, size of the strip. Steps err in proportion to their length, elements
-like the square of their size, so a third of what they change is the error that is left. The sum of the largest changes
+like the square of their size, so a third of their change is the remaining error. The sum of the largest changes
 is stored as the error estimate.
 """
 
@@ -22,7 +22,7 @@ from contactstudy.verification.problems import PASSES_CASES, PassesCase
 PRODUCTION = Strip(length=20.0, depth=10.0, width=0.5, height=0.1, fine=2.2, step=1 / 32)
 LONGER_STEPS = {"flowing": 1 / 16, "flowing_sliding": 1 / 16}
 """Steps of cases in which most elements flow, and each step takes more iterations. Speed."""
-WORSE: dict[str, tuple[dict[str, float], float]] = {  # name: (changes, remaining part)
+COARSER_VARIANTS: dict[str, tuple[dict[str, float], float]] = {  # name: (changes, remaining part)
     "width": ({"width": 1.0}, 1 / 3),
     "height": ({"height": 0.2}, 1 / 3),
     "strip": ({"length": 14.0, "depth": 7.0}, 1.0),
@@ -30,16 +30,16 @@ WORSE: dict[str, tuple[dict[str, float], float]] = {  # name: (changes, remainin
 NAMES = ("sigma_xx", "sigma_yy", "plastic_strain_yy_young", "plastic_strain_yz_young")
 
 
-def solved(case: PassesCase, strip: Strip) -> xr.Dataset:
+def solve_reference(case: PassesCase, strip: Strip) -> xr.Dataset:
     """Passes on one mesh: means over the heights of its fine elements."""
-    strains, stresses, _ = PlasticStrip(case, strip).rolled()
+    strains, stresses, _ = PlasticStrip(case, strip).roll()
     rows = round(strip.fine / strip.height)
 
-    def averaged(field: np.ndarray) -> np.ndarray:
+    def average(field: np.ndarray) -> np.ndarray:
         return np.asarray(0.5 * (field[..., 0 : 2 * rows : 2] + field[..., 1 : 2 * rows : 2]))
 
-    stress = dict(zip(PAIRS, averaged(stresses), strict=True))
-    strain = dict(zip(PAIRS, np.moveaxis(averaged(YOUNG * strains), 1, 0), strict=True))
+    stress = dict(zip(PAIRS, average(stresses), strict=True))
+    strain = dict(zip(PAIRS, np.moveaxis(average(YOUNG * strains), 1, 0), strict=True))
     data = xr.Dataset(
         {f"sigma_{pair}": ("z", stress[pair], {"units": "p0"}) for pair in ("xx", "yy")}
         | {f"plastic_strain_{pair}_young": (("pass_number", "z"), strain[pair], {"units": "p0"}) for pair in PAIRS},
@@ -53,8 +53,8 @@ def solved(case: PassesCase, strip: Strip) -> xr.Dataset:
 
 def change(worse: xr.Dataset, better: xr.Dataset, name: str) -> float:
     """Largest change, of means over the coarser heights."""
-    parts = better.sizes["z"] // worse.sizes["z"]
-    return float(np.abs(better[name].coarsen(z=parts).mean().values - worse[name].values).max())
+    factor = better.sizes["z"] // worse.sizes["z"]
+    return float(np.abs(better[name].coarsen(z=factor).mean().values - worse[name].values).max())
 
 
 def write(path: Path) -> None:
@@ -74,16 +74,16 @@ def write(path: Path) -> None:
 
 
 def add(path: Path, name: str) -> None:
-    """Solve one case at all resolutions and add it to the file."""
+    """Solve one case at all resolutions and add the case to the file."""
     start, case = time.perf_counter(), PASSES_CASES[name]
     strip = replace(PRODUCTION, step=LONGER_STEPS.get(name, PRODUCTION.step))
     lower = replace(strip, step=4 * strip.step)
-    best, coarse = solved(case, strip), solved(case, lower)
-    estimates = {"step": {of: change(coarse, best, of) / 3 for of in NAMES}}
-    for variant, (changes, part) in WORSE.items():
-        worse = solved(case, replace(lower, **changes))
-        estimates[variant] = {of: part * change(worse, coarse, of) for of in NAMES}
-    best.attrs = {
+    reference, coarse = solve_reference(case, strip), solve_reference(case, lower)
+    estimates = {"step": {of: change(coarse, reference, of) / 3 for of in NAMES}}
+    for variant, (changes, fraction) in COARSER_VARIANTS.items():
+        worse = solve_reference(case, replace(lower, **changes))
+        estimates[variant] = {of: fraction * change(worse, coarse, of) for of in NAMES}
+    reference.attrs = {
         "shear_yield_stress": case.shear_yield_stress,
         "friction": case.friction,
         "kinematic_hardening": case.kinematic_hardening,
@@ -91,8 +91,10 @@ def add(path: Path, name: str) -> None:
         "step": strip.step,
     }
     for of in NAMES:
-        best[of].attrs |= {f"change_{variant}": changes[of] for variant, changes in estimates.items()}
-        best[of].attrs["error_estimate"] = sum(changes[of] for changes in estimates.values())
-    append_case(path, name, best)
-    sizes = {of: f"{best[of].attrs['error_estimate']:.1e} of {float(abs(best[of]).max()):.1e}" for of in NAMES}
+        reference[of].attrs |= {f"change_{variant}": changes[of] for variant, changes in estimates.items()}
+        reference[of].attrs["error_estimate"] = sum(changes[of] for changes in estimates.values())
+    append_case(path, name, reference)
+    sizes = {
+        of: f"{reference[of].attrs['error_estimate']:.1e} of {float(abs(reference[of]).max()):.1e}" for of in NAMES
+    }
     print(f"{name}: {time.perf_counter() - start:.0f} s, largest error estimates: {sizes}", flush=True)

@@ -5,7 +5,7 @@ elements give the mean displacement of each column under each; the integral over
 displacement of strips. Bodies and motion are even about mid-length: pressure and the traction along y are even, the
 traction along x is odd, so one half of the columns is unknown.
 
-Rolling begins at rest and goes on strip by strip. In every step the material of a strip comes from the strip ahead,
+Rolling begins at rest and advances strip by strip. In every step the material of a strip comes from the strip ahead,
 and the tractions q minimise
 
     q A q - 2 q A q_before    for    |q| <= f p    in every cell and a prescribed sum of the q along y,
@@ -54,17 +54,19 @@ class ColumnFlexibility:
 def flexibility(length: float, columns: int, poisson: float, resolution: Resolution) -> ColumnFlexibility:
     """Solve for every wavenumber on an even number of columns; the body is cut where a panel's load has decayed."""
     edges = np.linspace(0.0, length, columns + 1)
-    near = resolution.mesh_x(length)
-    near = near[near < 0.9 * edges[1]]
-    x = Line(np.unique(np.concatenate([edges, near, length - near])), resolution.order)
-    step, half = edges[1], columns // 2
+    nodes_x = resolution.mesh_x(length)
+    nodes_x = nodes_x[nodes_x < 0.9 * edges[1]]
+    x = Line(np.unique(np.concatenate([edges, nodes_x, length - nodes_x])), resolution.order)
+    step, half_columns = edges[1], columns // 2
 
     def column(low: float, mirrored: float) -> Array:
         """Forces of a pair of columns: 1 on the one, 1 or -1 on its mirror image."""
-        unit_load, other = (x.load(lambda x, s=s: 1.0 * (x > s) * (x < s + step)) for s in (low, length - low - step))
-        return unit_load + mirrored * other
+        unit_load, mirrored_load = (
+            x.load(lambda x, s=s: 1.0 * (x > s) * (x < s + step)) for s in (low, length - low - step)
+        )
+        return unit_load + mirrored * mirrored_load
 
-    even, odd = (np.array([column(edges[i], sign) for i in range(half)]) for sign in (1.0, -1.0))
+    even, odd = (np.array([column(edges[i], sign) for i in range(half_columns)]) for sign in (1.0, -1.0))
     depth, node = resolution.mesh_z(), legendre.leggauss(resolution.nodes)[0]
     flexibilities: dict[str, list[Array]] = {"z": [], "x": [], "y": [], "cross": []}
     ks = []
@@ -72,13 +74,13 @@ def flexibility(length: float, columns: int, poisson: float, resolution: Resolut
         deep_enough = int(np.searchsorted(depth, 40 / low)) + 1 if low else depth.size
         body = HarmonicBody(x, Line(depth[:deep_enough], resolution.order), poisson)
         for k in low + 0.5 * (high - low) * (node + 1):
-            loads = np.zeros((3, half, 3, x.basis.N, body.z.basis.N))
+            loads = np.zeros((3, half_columns, 3, x.basis.N, body.z.basis.N))
             for component_load, component, forces, sign in zip(
                 loads, (2, 0, 1), (even, odd, even), (1, 1, -1), strict=True
             ):
                 component_load[:, component] = sign * forces[:, :, None] * body.top
-            amplitudes = body.displaced(loads.reshape(-1, *loads.shape[2:]), float(k))
-            top = 2 * (amplitudes @ body.top).reshape(3, half, 3, -1)
+            amplitudes = body.displacements(loads.reshape(-1, *loads.shape[2:]), float(k))
+            top = 2 * (amplitudes @ body.top).reshape(3, half_columns, 3, -1)
             # A pair's mean is that of its first column: the functional of both, halved.
             mean = 0.5 / step
             flexibilities["z"].append(mean * even @ top[0, :, 2].T)
@@ -103,20 +105,20 @@ def between_strips(flexible: ColumnFlexibility, name: str, width: float, count: 
     """
     values, odd, resultant = getattr(flexible, name), name == "cross", name in "yz"
     resolution, n = flexible.resolution, flexible.resolution.nodes
-    coarse = np.linalg.inv(legendre.legvander(legendre.leggauss(n)[0], n - 1))
+    inverse_legendre = np.linalg.inv(legendre.legvander(legendre.leggauss(n)[0], n - 1))
     offsets = width * np.arange(count)
     base = values[:, -1, -1] if resultant else np.zeros(flexible.k.size)
     total = np.zeros((count, *values.shape[1:]))
     for i, (low, high) in enumerate(zip(resolution.panels[:-1], resolution.panels[1:], strict=True)):
-        part = slice(i * n, (i + 1) * n)
+        nodes = slice(i * n, (i + 1) * n)
         node, weight = legendre.leggauss(24 + int(0.6 * (high - low) * offsets[-1]))
         k = low + 0.5 * (high - low) * (node + 1)
         factor = 0.5 * (high - low) * weight * width * np.sinc(k * width / (2 * np.pi)) / np.pi
-        interpolate = legendre.legvander(node, n - 1) @ coarse
+        interpolate = legendre.legvander(node, n - 1) @ inverse_legendre
         waves = (np.sin if odd else np.cos)(np.outer(offsets, k))
-        total += np.tensordot(waves * factor @ interpolate, values[part] - base[part, None, None], axes=1)
+        total += np.tensordot(waves * factor @ interpolate, values[nodes] - base[nodes, None, None], axes=1)
         if resultant:
-            total += ((waves - 1) / k * factor @ interpolate @ (flexible.k[part] * base[part]))[:, None, None]
+            total += ((waves - 1) / k * factor @ interpolate @ (flexible.k[nodes] * base[nodes]))[:, None, None]
     return total
 
 
@@ -132,7 +134,7 @@ class Rolled:
 
 
 def _blocks(strips: Array, count: int, *, odd: bool = False) -> Array:
-    """Matrix between cells, numbered column first, from displacements by offset; odd ones change sign behind."""
+    """Matrix between cells, numbered column first, by offset; odd ones change sign for negative offsets."""
     offset = np.arange(count)[:, None] - np.arange(count)
     blocks = strips[np.abs(offset)]
     if odd:
@@ -148,36 +150,36 @@ def roll(
 
     The force along y is a part of full sliding's.
     """
-    half, width = flexible.edges.size // 2, 2 * window / strips
+    half_columns, width = flexible.edges.size // 2, 2 * window / strips
     # 2 G = (1 - nu) E', of one body.
     of = {name: between_strips(flexible, name, width, strips) / (1 - flexible.poisson) for name in ("z", "x", "y")}
     normal = 2 * _blocks(of["z"], strips)
     y = (np.arange(strips) + 0.5) * width - window
-    areas = np.full(half * strips, 2 * width * flexible.edges[1])
-    pressure = complementarity(0.5 * (normal + normal.T), np.tile(0.5 * y**2, half), areas, load)
+    areas = np.full(half_columns * strips, 2 * width * flexible.edges[1])
+    pressure = complementarity(0.5 * (normal + normal.T), np.tile(0.5 * y**2, half_columns), areas, load)
     cross = between_strips(flexible, "cross", width, strips) / (1 - flexible.poisson)
     along_y = _blocks(of["y"], strips)
-    # A constant between all tractions along y is a displacement of the whole body. It makes the program convex.
+    # A constant between all tractions along y displaces the whole body and makes the program convex.
     along_y = along_y - 1.01 * min(float(np.linalg.eigvalsh(along_y + along_y.T)[0]) / 2, 0.0) / areas.size
-    coupled = _blocks(cross, strips, odd=True)
-    matrix = np.block([[_blocks(of["x"], strips), coupled], [coupled.T, along_y]])
+    cross_blocks = _blocks(cross, strips, odd=True)
+    matrix = np.block([[_blocks(of["x"], strips), cross_blocks], [cross_blocks.T, along_y]])
     matrix = 0.5 * (matrix + matrix.T)
-    pressed = np.flatnonzero(pressure > 0)
-    count, unknown = pressed.size, np.concatenate([pressed, areas.size + pressed])
+    loaded = np.flatnonzero(pressure > 0)
+    count, unknown = loaded.size, np.concatenate([loaded, areas.size + loaded])
     force = part * friction * pressure.sum()
     # The sum of the q along y, then (f p, q_x, q_y) cell by cell in a cone.
-    numbers = np.arange(count)
-    rows = np.concatenate([np.zeros(count, int), 3 * numbers + 2, 3 * numbers + 3])
-    columns = np.concatenate([count + numbers, numbers, count + numbers])
+    indices = np.arange(count)
+    rows = np.concatenate([np.zeros(count, int), 3 * indices + 2, 3 * indices + 3])
+    columns = np.concatenate([count + indices, indices, count + indices])
     values = np.concatenate([np.ones(count), -np.ones(2 * count)])
     constraints = sp.csc_matrix((values, (rows, columns)), (1 + 3 * count, 2 * count))
     limits = np.zeros(1 + 3 * count)
-    limits[0], limits[1::3] = force, friction * pressure[pressed]
+    limits[0], limits[1::3] = force, friction * pressure[loaded]
     cones = [clarabel.ZeroConeT(1), *[clarabel.SecondOrderConeT(3)] * count]
     upper = sp.csc_matrix(np.triu(2 * matrix[np.ix_(unknown, unknown)]))
     settings = clarabel.DefaultSettings()
     settings.verbose = False
-    traction, change, creepage = np.zeros((2, half, strips)), np.inf, np.nan
+    traction, change, creepage = np.zeros((2, half_columns, strips)), np.inf, np.nan
     for _ in range(steps):
         ahead = np.zeros_like(traction)
         ahead[:, :, :-1] = traction[:, :, 1:]
@@ -187,4 +189,4 @@ def roll(
         forces[unknown] = solution.x
         change = float(np.abs(forces - traction.ravel()).max() / (friction * pressure.max()))
         traction, creepage = forces.reshape(traction.shape), -solution.z[0] / width
-    return Rolled(creepage, pressure.reshape(half, -1), traction[0], traction[1], change)
+    return Rolled(creepage, pressure.reshape(half_columns, -1), traction[0], traction[1], change)

@@ -1,6 +1,6 @@
 """Melan's bound by equilibrium finite elements: linear stresses in triangles, tractions that match between them.
 
-The elements are those of S. W. Sloan, Lower bound limit analysis using finite elements and linear programming, Int. J.
+The elements follow S. W. Sloan, Lower bound limit analysis using finite elements and linear programming, Int. J.
 Numer. Anal. Meth. Geomech. 12 (1988) 61: in each triangle the stress is linear and in equilibrium; across each side
 the tractions are continuous, and on the faces zero.
 """
@@ -41,13 +41,13 @@ class Elements:
         """All equations: in the triangles, across their sides, on the faces."""
         rows: list[dict[int, float]] = []
         sides: dict[tuple[tuple[float, ...], ...], list[tuple[int, Array]]] = defaultdict(list)
-        for number, corners in enumerate(self.triangles):
+        for index, corners in enumerate(self.triangles):
             slopes = np.linalg.inv(np.column_stack([np.ones(3), corners]))[1:]
-            for row_component, other in ((0, 2), (2, 1)):  # xx,x + xz,z and xz,x + zz,z
+            for row_component, shear_component in ((0, 2), (2, 1)):  # xx,x + xz,z and xz,x + zz,z
                 row: dict[int, float] = defaultdict(float)
                 for corner in range(3):
-                    row[9 * number + 3 * corner + row_component] += slopes[0, corner]
-                    row[9 * number + 3 * corner + other] += slopes[1, corner]
+                    row[9 * index + 3 * corner + row_component] += slopes[0, corner]
+                    row[9 * index + 3 * corner + shear_component] += slopes[1, corner]
                 rows.append(row)
             for first in range(3):
                 second = (first + 1) % 3
@@ -56,11 +56,11 @@ class Elements:
                 normal = np.array([tangent[1], -tangent[0]]) / np.hypot(*tangent)
                 for end in ends:
                     corner = first if tuple(corners[first]) == end else second
-                    sides[(*ends, end)].append((9 * number + 3 * corner, normal))
-        for sharing in sides.values():
+                    sides[(*ends, end)].append((9 * index + 3 * corner, normal))
+        for elements in sides.values():
             for direction in range(2):
                 row = defaultdict(float)
-                for sign, (start, normal) in zip((1.0, -1.0), sharing, strict=False):
+                for sign, (start, normal) in zip((1.0, -1.0), elements, strict=False):
                     components = (0, 2) if direction == 0 else (2, 1)
                     row[start + components[0]] += sign * normal[0]
                     row[start + components[1]] += sign * normal[1]
@@ -77,23 +77,23 @@ class Elements:
             for j, pz in enumerate(z):
                 rectangle = (i // 2) * (self.z.size - 1) + j // 2
                 upper = OFFSETS[1][j % 2] > OFFSETS[0][i % 2]
-                number = 2 * rectangle + int(upper)
-                corners = self.triangles[number]
-                shares = np.linalg.solve(np.vstack([np.ones(3), corners.T]), [1.0, px, pz])
+                element = 2 * rectangle + int(upper)
+                corners = self.triangles[element]
+                weights = np.linalg.solve(np.vstack([np.ones(3), corners.T]), [1.0, px, pz])
                 for component in range(3):
                     for corner in range(3):
-                        matrices[component][i * z.size + j, 9 * number + 3 * corner + component] = shares[corner]
+                        matrices[component][i * z.size + j, 9 * element + 3 * corner + component] = weights[corner]
         return [matrix.tocsr() for matrix in matrices]
 
 
-def least_shear_yield_stress(history: Array, x: Array, z: Array) -> float:
+def min_shear_yield_stress(history: Array, x: Array, z: Array) -> float:
     """Least k for histories (point, instant, 6) at the points of a mesh with these edges."""
     elements = Elements(x, z)
     equations, (xx, zz, xz) = elements.equilibrium(), elements.at_points()
     count, instants = history.shape[:2]
     root = np.sqrt(3.0)
     sxx, syy, szz, sxy, sxz, syz = np.moveaxis(history, -1, 0)
-    parts = [
+    blocks = [
         np.zeros((count, instants)),
         syy - 0.5 * (sxx + szz),
         0.5 * root * (sxx - szz),
@@ -109,16 +109,16 @@ def least_shear_yield_stress(history: Array, x: Array, z: Array) -> float:
         return spread @ matrix
 
     bound = cone(0, sparse.csr_array(np.ones((rows.size, 1))))
-    free = cone(1, sparse.csr_array((np.ones(rows.size), (rows, point)), shape=(rows.size, count)))
+    free_stress = cone(1, sparse.csr_array((np.ones(rows.size), (rows, point)), shape=(rows.size, count)))
     stress = cone(2, 0.5 * root * (xx - zz)[point]) + cone(3, root * xz[point])
     constraints = sparse.hstack([sparse.csr_array((equations.shape[0], 1 + count)), equations])
-    matrix = sparse.vstack([constraints, sparse.hstack([bound, free, stress])], format="csc")
-    right = np.concatenate([np.zeros(equations.shape[0]), np.stack(parts, axis=-1).ravel()])
+    matrix = sparse.vstack([constraints, sparse.hstack([bound, free_stress, stress])], format="csc")
+    right = np.concatenate([np.zeros(equations.shape[0]), np.stack(blocks, axis=-1).ravel()])
     cost = np.zeros(1 + count + elements.count)
     cost[0] = 1.0
     settings = clarabel.DefaultSettings()
     settings.verbose = False
     cones = [clarabel.ZeroConeT(equations.shape[0])] + [clarabel.SecondOrderConeT(5)] * rows.size
-    nothing = sparse.csc_array((cost.size, cost.size))
-    solution = clarabel.DefaultSolver(nothing, cost, matrix, right, cones, settings).solve()
+    zero_matrix = sparse.csc_array((cost.size, cost.size))
+    solution = clarabel.DefaultSolver(zero_matrix, cost, matrix, right, cones, settings).solve()
     return float(solution.obj_val) / root

@@ -24,6 +24,6 @@ def create_file(path: Path, kind: str, **attributes: str) -> None:
 
 def append_case(path: Path, name: str, solution: xr.Dataset) -> None:
     """Add a case: fields in single precision, coordinates as they are."""
-    stored = solution.astype("float32").assign_coords(dict(solution.coords))
-    encoding = {key: {"_FillValue": None, "zlib": True, "complevel": 4} for key in stored.data_vars}
-    stored.to_netcdf(path, mode="a", group=name, encoding=encoding)
+    dataset = solution.astype("float32").assign_coords(dict(solution.coords))
+    encoding = {key: {"_FillValue": None, "zlib": True, "complevel": 4} for key in dataset.data_vars}
+    dataset.to_netcdf(path, mode="a", group=name, encoding=encoding)

@@ -40,13 +40,13 @@ VARIANTS = {  # name: (variant, reference)
 
 
 def coordinates(case: LoadCase) -> dict[str, Sequence[float]]:
-    """Points of a case: with friction nothing is even in y, so both sides."""
+    """Points of a case; with friction on both sides of y = 0."""
     y = Y if case.friction == 0 else tuple(-v for v in Y[:0:-1]) + Y
     return {"x": X[case.length], "y": y, "z": Z}
 
 
 def evaluate(case: LoadCase, harmonic: Harmonics, shapes: list[tuple[object, bool]]) -> xr.Dataset:
-    """Stresses, and where it has a meaning the displacement, from the harmonics of a body."""
+    """Stresses, and the displacement where defined, from the harmonics of a body."""
     positions = coordinates(case)
     normal = shapes.index((case.g, "z"))
     tangential = shapes.index((case.g, "y")) if case.friction else None
@@ -74,8 +74,8 @@ def changes(worse: xr.Dataset, better: xr.Dataset) -> tuple[float, float, float]
     """Largest and median change of the stresses, largest change of the displacement."""
     stress = np.array([np.abs(worse[n] - better[n]) for n in COMPONENTS])
     name = "displacement_z_young"
-    moved = float(np.abs(worse[name] - better[name]).max()) if name in better else 0.0
-    return float(stress.max()), float(np.median(stress)), moved
+    difference = float(np.abs(worse[name] - better[name]).max()) if name in better else 0.0
+    return float(stress.max()), float(np.median(stress)), difference
 
 
 def write(path: Path) -> None:
@@ -104,19 +104,19 @@ def write(path: Path) -> None:
             print(f"length {length}: {resolution} in {time.perf_counter() - start:.0f} s", flush=True)
         for name, case in cases.items():
             estimates = {v: changes(results[w][name], results[b][name]) for v, (w, b) in VARIANTS.items()}
-            stored = results[PRODUCTION][name]
-            stored.attrs = {"length": length, "poisson": poisson, "friction": case.friction, "g": str(case.g)}
+            dataset = results[PRODUCTION][name]
+            dataset.attrs = {"length": length, "poisson": poisson, "friction": case.friction, "g": str(case.g)}
             for variant, (largest, median, _) in estimates.items():
-                stored.attrs |= {f"change_{variant}": largest, f"change_{variant}_median": median}
-            stored.attrs["error_estimate"] = sum(c[0] for c in estimates.values())
-            stored.attrs["error_estimate_median"] = sum(c[1] for c in estimates.values())
-            if "displacement_z_young" in stored:
-                stored["displacement_z_young"].attrs["error_estimate"] = sum(c[2] for c in estimates.values())
-            stored = stored.assign_coords({k: list(v) for k, v in coordinates(case).items()})
-            append_case(path, name, stored)
+                dataset.attrs |= {f"change_{variant}": largest, f"change_{variant}_median": median}
+            dataset.attrs["error_estimate"] = sum(c[0] for c in estimates.values())
+            dataset.attrs["error_estimate_median"] = sum(c[1] for c in estimates.values())
+            if "displacement_z_young" in dataset:
+                dataset["displacement_z_young"].attrs["error_estimate"] = sum(c[2] for c in estimates.values())
+            dataset = dataset.assign_coords({k: list(v) for k, v in coordinates(case).items()})
+            append_case(path, name, dataset)
             print(
                 name,
-                stored.attrs["error_estimate"],
+                dataset.attrs["error_estimate"],
                 {v: f"{c[0]:.1e}, {c[1]:.1e}, {c[2]:.1e}" for v, c in estimates.items()},
                 flush=True,
             )

@@ -47,12 +47,12 @@ class Resolution:
     def mesh_x(self, length: float) -> Array:
         """Edges graded to both ends; beyond the grading they are every multiple of 1/2, where loads begin and end."""
         step = min(0.5, 0.25 * length)
-        half = [0.0]
-        while half[-1] < 0.25:
-            half.append(max(self.smallest, self.growth * 1.2 * half[-1]))
-        first = step / half[-1] * np.array(half)
-        middle = np.linspace(step, length - step, round(length / step) - 1)
-        return np.concatenate([first[:-1], middle, (length - first[::-1])[1:]])
+        half_nodes = [0.0]
+        while half_nodes[-1] < 0.25:
+            half_nodes.append(max(self.smallest, self.growth * 1.2 * half_nodes[-1]))
+        first = step / half_nodes[-1] * np.array(half_nodes)
+        inner_nodes = np.linspace(step, length - step, round(length / step) - 1)
+        return np.concatenate([first[:-1], inner_nodes, (length - first[::-1])[1:]])
 
     def mesh_z(self) -> Array:
         edges = [0.0, self.smallest]
@@ -97,12 +97,12 @@ def harmonics(
 def _panels(resolution: Resolution, transform: Callable[[Array], Array]) -> Iterator[tuple[slice, Array, Array, Array]]:
     """For each panel: its slice of the nodes, fine nodes, their weights times `h(k) / pi`, interpolation."""
     n = resolution.nodes
-    coarse = np.linalg.inv(legendre.legvander(legendre.leggauss(n)[0], n - 1))
+    inverse_legendre = np.linalg.inv(legendre.legvander(legendre.leggauss(n)[0], n - 1))
     for i, (low, high) in enumerate(zip(resolution.panels[:-1], resolution.panels[1:], strict=True)):
         node, weight = legendre.leggauss(24 + int(2 * (high - low)))
-        fine = low + 0.5 * (high - low) * (node + 1)
-        weights = 0.5 * (high - low) * weight * transform(fine) / np.pi
-        yield slice(i * n, (i + 1) * n), fine, weights, legendre.legvander(node, n - 1) @ coarse
+        fine_nodes = low + 0.5 * (high - low) * (node + 1)
+        weights = 0.5 * (high - low) * weight * transform(fine_nodes) / np.pi
+        yield slice(i * n, (i + 1) * n), fine_nodes, weights, legendre.legvander(node, n - 1) @ inverse_legendre
 
 
 def stresses(
@@ -117,12 +117,12 @@ def stresses(
     ys = np.asarray(y, dtype=float)
     total = np.zeros((len(COMPONENTS), ys.size, *harmonic.stress.shape[3:]))
     sine = np.array([name in ("tau_xy", "tau_yz") for name in COMPONENTS])
-    for part, k, weight, interpolate in _panels(harmonic.resolution, transform):
+    for panel, k, weight, interpolate in _panels(harmonic.resolution, transform):
         cos, sin = ((np.cos, np.sin)[i](np.outer(ys, k)) * weight @ interpolate for i in (0, 1))
         for index, factor, even, odd in ((normal, 1.0, cos, sin), (tangential, friction, sin, -cos)):
             if index is None:
                 continue
-            values = harmonic.stress[part, index]
+            values = harmonic.stress[panel, index]
             total[~sine] += factor * np.einsum("yk,kcxz->cyxz", even, values[:, ~sine])
             total[sine] += factor * np.einsum("yk,kcxz->cyxz", odd, values[:, sine])
     return {name: field.transpose(1, 0, 2) for name, field in zip(COMPONENTS, total, strict=True)}
@@ -144,13 +144,13 @@ def displacement(
     """
     ys = np.asarray(y, dtype=float)
     total = np.zeros((ys.size, harmonic.surface.shape[2]))
-    for part, k, weight, interpolate in _panels(harmonic.resolution, transform):
-        phases, scaled = np.outer(ys, k), harmonic.k[part]
-        surface = harmonic.surface[part, normal]
+    for panel, k, weight, interpolate in _panels(harmonic.resolution, transform):
+        phases, scaled = np.outer(ys, k), harmonic.k[panel]
+        surface = harmonic.surface[panel, normal]
         base = surface[:, reference]
         total += np.cos(phases) * weight @ interpolate @ (surface - base[:, None])
         total += ((np.cos(phases) - 1) / k * weight @ interpolate @ (scaled * base))[:, None]
         if tangential is not None:
-            drag = harmonic.surface[part, tangential] * scaled[:, None]
+            drag = harmonic.surface[panel, tangential] * scaled[:, None]
             total += case.friction * (np.sin(phases) / k * weight @ interpolate @ drag)
     return (1 + case.poisson) * total.T

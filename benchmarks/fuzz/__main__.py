@@ -13,11 +13,11 @@ from dataclasses import asdict
 from pathlib import Path
 from random import Random
 
-from benchmarks.fuzz.drawn import random_drawn
 from benchmarks.fuzz.outcome import outcome_of
+from benchmarks.fuzz.random_cases import draw_case
 from contactstudy import cache
 
-KEPT_BYTES = 100_000_000
+CACHE_BYTES = 100_000_000
 """Of operators and contacts: random cases have none in common."""
 
 
@@ -60,10 +60,10 @@ def main() -> int:
     parser.add_argument("--seed", type=int, help="run this case only, and show it")
     options = parser.parse_args()
     if options.seed is not None:
-        print(random_drawn(Random(options.seed)))
+        print(draw_case(Random(options.seed)))
         print(outcome_of(Random(options.seed)))
         return 0
-    cache.limit(KEPT_BYTES)
+    cache.limit(CACHE_BYTES)
     notes = read_notes(options.out) if options.out else {}
     for seed in range(options.first, options.first + options.cases):
         if seed in notes:

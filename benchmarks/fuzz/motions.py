@@ -8,53 +8,51 @@ from random import Random
 from contactstudy import Case, Rolling, Shift
 from contactstudy.case.motion import Motion
 
-OF_X = ("lateral_creepage", "spin", "moment_z", "force_x", "x")
+SIGNED_QUANTITIES = ("lateral_creepage", "spin", "moment_z", "force_x", "x")
 """Quantities that change sign for a roller turned end for end."""
 
 UNITS = {"force_x": (2, 1), "force_y": (2, 1), "moment_z": (3, 1), "spin": (-1, 0), "x": (1, 0), "y": (1, 0)}
 """Powers of length and modulus in the unit of each."""
 
 
-def random_motion(chance: Random, case: Case, friction: float) -> Motion:
+def random_motion(rng: Random, case: Case, friction: float) -> Motion:
     """From hardly any slip to full sliding."""
     half_width, radius, full_sliding = case.hertz_half_width, case.roller.radius, friction * case.normal_load
-    if chance.random() < 0.35:
+    if rng.random() < 0.35:
         shift = 0.5 * friction * half_width**2 / radius
         return Shift(
-            **{
-                name: value
-                for axis in "xy"
-                for name, value in _either(chance, axis, f"force_{axis}", shift, full_sliding)
-            }
+            **{name: value for axis in "xy" for name, value in _either(rng, axis, f"force_{axis}", shift, full_sliding)}
         )
     creepage, spin = friction * half_width / radius, friction / radius
     turns = full_sliding * 0.25 * case.roller.length
     values = dict(
         [
-            *_either(chance, "longitudinal_creepage", "force_y", creepage, full_sliding),
-            *_either(chance, "lateral_creepage", "force_x", creepage, full_sliding),
-            *_either(chance, "spin", "moment_z", spin, turns),
+            *_either(rng, "longitudinal_creepage", "force_y", creepage, full_sliding),
+            *_either(rng, "lateral_creepage", "force_x", creepage, full_sliding),
+            *_either(rng, "spin", "moment_z", spin, turns),
         ]
     )
-    if chance.random() < 0.1:
+    if rng.random() < 0.1:
         values = {name: value for name, value in values.items() if name.endswith("creepage") or name == "spin"}
         return Rolling(**values, model="fastsim")
     return Rolling(**values)
 
 
-def _either(chance: Random, move: str, force: str, of_move: float, of_force: float) -> list[tuple[str, float]]:
+def _either(rng: Random, move: str, force: str, of_move: float, of_force: float) -> list[tuple[str, float]]:
     """A move or the force that it makes, or neither."""
-    chosen = chance.random()
+    chosen = rng.random()
     if chosen < 0.3:
         return []
     if chosen < 0.75:
-        return [(move, chance.choice((0.1, 1.0, 3.0)) * chance.uniform(-1.0, 1.0) * of_move)]
-    return [(force, chance.uniform(-0.5, 0.5) * of_force)]
+        return [(move, rng.choice((0.1, 1.0, 3.0)) * rng.uniform(-1.0, 1.0) * of_move)]
+    return [(force, rng.uniform(-0.5, 0.5) * of_force)]
 
 
 def turned_motion(motion: Motion) -> Motion:
     """The same seen from the other end."""
-    return replace(motion, **{name: -value for name, value in _prescribed_values(motion).items() if name in OF_X})
+    return replace(
+        motion, **{name: -value for name, value in _prescribed_values(motion).items() if name in SIGNED_QUANTITIES}
+    )
 
 
 def scaled_motion(motion: Motion, length: float, modulus: float) -> Motion:

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from random import Random
 
 from benchmarks.fuzz import motion_properties, properties
-from benchmarks.fuzz.drawn import Drawn, random_drawn
-from benchmarks.fuzz.solved import Solved, ViolationError, run
+from benchmarks.fuzz.random_cases import RandomCase, draw_case
+from benchmarks.fuzz.solutions import SolvedCase, ViolationError, run
 from contactstudy import ContactStudyError, MagnitudeWarning
 
 
@@ -36,21 +36,21 @@ class Outcome:
     seconds: float = 0.0
 
 
-def outcome_of(chance: Random, *, refined: bool | None = None) -> Outcome:
-    """Draw a case, solve it and look at its properties; nothing that goes wrong leaves this function.
+def outcome_of(rng: Random, *, refined: bool | None = None) -> Outcome:
+    """Draw a case, solve the case and check its properties; errors become outcomes.
 
-    `refined` decides whether cells are refined or given; None leaves it to chance.
+    `refined` decides whether cells are refined or given; None: random.
     """
-    began = time.perf_counter()
+    start_time = time.perf_counter()
     checked: list[str] = []
     now = "drawing"
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("error")
             warnings.simplefilter("ignore", MagnitudeWarning)  # scaled cases are of any size
-            drawn = random_drawn(chance, refined=refined)
+            random_case = draw_case(rng, refined=refined)
             now = "solve"
-            kind, message = _checked(drawn, chance, checked)
+            kind, message = _check_properties(random_case, rng, checked)
     except ViolationError as violation:
         now = checked.pop() if checked else now
         kind, message = "violation", f"{now}: {violation}"
@@ -61,26 +61,26 @@ def outcome_of(chance: Random, *, refined: bool | None = None) -> Outcome:
     except Exception as error:
         frame = traceback.extract_tb(error.__traceback__)[-1]
         kind, message = "violation", f"{(checked or [now])[-1]}: {error!r} in {frame.filename}:{frame.lineno}"
-    return Outcome(kind, message, tuple(checked), time.perf_counter() - began)
+    return Outcome(kind, message, tuple(checked), time.perf_counter() - start_time)
 
 
-def _checked(drawn: Drawn, chance: Random, checked: list[str]) -> tuple[str, str]:
-    """Solve a case and note each property as it is looked at."""
-    result = run(drawn)
+def _check_properties(random_case: RandomCase, rng: Random, checked: list[str]) -> tuple[str, str]:
+    """Solve a case and record each checked property."""
+    result = run(random_case)
     if not bool(result["converged"]):
         return "not converged", ""
-    solved = Solved(drawn, result, chance)
+    solution = SolvedCase(random_case, result, rng)
     always, in_turn = properties.ALWAYS, properties.IN_TURN
-    if solved.moves:
+    if solution.moves:
         always, in_turn = always + motion_properties.ALWAYS, motion_properties.IN_TURN
     for holds in always:
         checked.append(holds.__name__)
-        if not holds(solved):
+        if not holds(solution):
             checked.pop()
-    # One that there is anything to look at for.
-    for holds in chance.sample(in_turn, len(in_turn)):
+    # The first applicable property.
+    for holds in rng.sample(in_turn, len(in_turn)):
         checked.append(holds.__name__)
-        if holds(solved):
+        if holds(solution):
             break
         checked.pop()
     return "converged", ""

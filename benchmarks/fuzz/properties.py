@@ -17,10 +17,10 @@ import xarray as xr
 from scipy import ndimage
 
 from benchmarks.fuzz.shapes import magnitude
-from benchmarks.fuzz.solved import (
+from benchmarks.fuzz.solutions import (
     SAME_PRESSURE,
     TOLERANCE,
-    Solved,
+    SolvedCase,
     ViolationError,
     close,
     contact,
@@ -46,33 +46,33 @@ from contactstudy.contact.normal.contact import CONVERGED_TOLERANCES
 from contactstudy.kernels.fine_cells import REACH
 
 
-def finite_values(solved: Solved) -> bool:
+def finite_values(solution: SolvedCase) -> bool:
     """No NaN is marked converged, pressure is not negative, the gap is infinite beyond the roller only."""
-    for key, values in solved.result.data_vars.items():
+    for key, values in solution.result.data_vars.items():
         name = str(key)
         array = np.asarray(values.values)
         exponent = name.removesuffix("_error").replace("intensity", "exponent")
-        unknown = name.startswith("end_intensity") and float(solved.result[exponent]) == 0  # a logarithm has none
+        unknown = name.startswith("end_intensity") and float(solution.result[exponent]) == 0  # a logarithm has none
         if array.dtype.kind == "f" and not unknown:
             require(not np.isnan(array).any(), f"{name} holds NaN")
-    pressure, gap = solved.result["pressure"].values, solved.result["gap"].values
+    pressure, gap = solution.result["pressure"].values, solution.result["gap"].values
     require(np.isfinite(pressure).all() and pressure.min() >= 0 and pressure.max() > 0, "pressure out of range")
-    require((np.isinf(gap) == np.isinf(solved.result["initial_gap"].values)).all(), "the gap is infinite elsewhere")
+    require((np.isinf(gap) == np.isinf(solution.result["initial_gap"].values)).all(), "the gap is infinite elsewhere")
     return True
 
 
-def certificate(solved: Solved) -> bool:
+def certificate(solution: SolvedCase) -> bool:
     """The stated violations are within the tolerance."""
     for name in ("load_error", "penetration_error", "open_pressure_error", "load_position_error"):
-        value = abs(float(solved.result[name]))
+        value = abs(float(solution.result[name]))
         require(value <= CONVERGED_TOLERANCES * TOLERANCE, f"{name} = {value:.3g} in a converged result")
     return True
 
 
-def balance(solved: Solved) -> bool:
+def balance(solution: SolvedCase) -> bool:
     """The pressure carries the load, where the load acts."""
-    case, grid = solved.drawn.case, solved.grid
-    forces = solved.result["pressure"].values.sum(axis=1) * grid.widths * grid.dy
+    case, grid = solution.random_case.case, solution.grid
+    forces = solution.result["pressure"].values.sum(axis=1) * grid.widths * grid.dy
     off = abs(float(forces.sum()) / case.normal_load - 1)
     require(off <= 1e-5, f"the pressure carries {off:.3g} more or less than the load")
     if case.load_position is not None:
@@ -81,120 +81,137 @@ def balance(solved: Solved) -> bool:
     return True
 
 
-def complementarity(solved: Solved) -> bool:
+def complementarity(solution: SolvedCase) -> bool:
     """From the public functions alone: touching cells lie on the rigid roller, the others outside."""
-    case, result = solved.drawn.case, solved.result
-    if case.roller.material is not None or (solved.moves and case.coupled):
+    case, result = solution.random_case.case, solution.result
+    if case.roller.material is not None or (solution.moves and case.coupled):
         return False
     friction = case.friction if case.coupled else 0.0
-    sunk = result["displacement_z"].values
-    # The displacement refers to a line in the body: it differs from the displacement of the top by a rigid motion.
-    rigid = surface_displacement(case.body, result["pressure"], friction).values - sunk
-    line = np.polynomial.polynomial.polyfit(solved.grid.x, rigid[:, 0], min(1, rigid.shape[0] - 1))
-    fitted = np.polynomial.polynomial.polyval(solved.grid.x, line)[:, None]
-    close("rigid motion of the reference line", rigid, fitted + 0 * rigid, float(np.ptp(sunk)), 1e-6)
-    arm = (solved.grid.x - (case.load_position or 0.0))[:, None]
+    displacement = result["displacement_z"].values
+    # The displacement refers to a line in the body and differs from the displacement of the top by a rigid motion.
+    rigid = surface_displacement(case.body, result["pressure"], friction).values - displacement
+    line = np.polynomial.polynomial.polyfit(solution.grid.x, rigid[:, 0], min(1, rigid.shape[0] - 1))
+    fitted = np.polynomial.polynomial.polyval(solution.grid.x, line)[:, None]
+    close("rigid motion of the reference line", rigid, fitted + 0 * rigid, float(np.ptp(displacement)), 1e-6)
+    arm = (solution.grid.x - (case.load_position or 0.0))[:, None]
     tilt = float(result["tilt"]) - case.tilt
-    opening = result["initial_gap"].values + sunk - float(result["approach"]) - tilt * arm
-    touching = result["pressure"].values > 0
-    variation = float(np.ptp(sunk))
-    worst = max(float(np.abs(opening[touching]).max()), float(-opening.min())) / variation
+    opening = result["initial_gap"].values + displacement - float(result["approach"]) - tilt * arm
+    in_contact = result["pressure"].values > 0
+    variation = float(np.ptp(displacement))
+    worst = max(float(np.abs(opening[in_contact]).max()), float(-opening.min())) / variation
     require(worst <= 2e-5, f"gap or overlap of {worst:.3g} of the displacement under pressure")
     return True
 
 
-def symmetry_across(solved: Solved) -> bool:
+def symmetry_across(solution: SolvedCase) -> bool:
     """Without coupled friction the pressure is symmetric in y, in a symmetric window."""
-    low, high = solved.grid.y_range
-    if solved.drawn.case.coupled or abs(low + high) > 1e-9 * high:
+    low, high = solution.grid.y_range
+    if solution.random_case.case.coupled or abs(low + high) > 1e-9 * high:
         return False
-    pressure = solved.result["pressure"].values
-    close("pressure at +y and -y", pressure, pressure[:, ::-1], solved.peak, SAME_PRESSURE)
+    pressure = solution.result["pressure"].values
+    close("pressure at +y and -y", pressure, pressure[:, ::-1], solution.peak, SAME_PRESSURE)
     return True
 
 
-def reversed_friction(solved: Solved) -> bool:
+def reversed_friction(solution: SolvedCase) -> bool:
     """Friction that acts the other way mirrors the pressure across y."""
-    low, high = solved.grid.y_range
-    drawn = solved.cells
-    if not drawn.case.coupled or abs(low + high) > 1e-9 * high:
+    low, high = solution.grid.y_range
+    given_case = solution.cells
+    if not given_case.case.coupled or abs(low + high) > 1e-9 * high:
         return False
-    other = solve_again(replace(drawn, case=replace(drawn.case, friction=-drawn.case.friction)))
-    if other is None:
+    reversed_pressure = solve_again(
+        replace(given_case, case=replace(given_case.case, friction=-given_case.case.friction))
+    )
+    if reversed_pressure is None:
         return False
-    pressure = solved.result["pressure"].values
-    close("pressure under -f", pressure, other[:, ::-1], solved.peak, SAME_PRESSURE)
+    pressure = solution.result["pressure"].values
+    close("pressure under -f", pressure, reversed_pressure[:, ::-1], solution.peak, SAME_PRESSURE)
     return True
 
 
-def turned_round(solved: Solved) -> bool:
+def turned_round(solution: SolvedCase) -> bool:
     """A case turned end for end has the mirrored pressure."""
-    if not isinstance(solved.drawn.case.body, (FiniteLengthSpace, HalfSpace)):
+    if not isinstance(solution.random_case.case.body, (FiniteLengthSpace, HalfSpace)):
         return False
-    other = solve_again(solved.cells.turned())
-    if other is None:
+    mirrored_pressure = solve_again(solution.cells.from_other_end())
+    if mirrored_pressure is None:
         return False
-    pressure = solved.result["pressure"].values
-    close("pressure turned round", pressure, other[::-1], solved.peak, SAME_PRESSURE)
+    pressure = solution.result["pressure"].values
+    close("pressure turned round", pressure, mirrored_pressure[::-1], solution.peak, SAME_PRESSURE)
     return True
 
 
-def other_units(solved: Solved) -> bool:
+def other_units(solution: SolvedCase) -> bool:
     """Lengths and moduli in other units: a power of two, so that not even rounding differs."""
-    length, modulus = (2.0 ** solved.chance.randint(-12, 12) for _ in range(2))
-    other = solve_again(solved.cells.scaled(length, modulus))
-    if other is None:
+    length, modulus = (2.0 ** solution.rng.randint(-12, 12) for _ in range(2))
+    scaled_pressure = solve_again(solution.cells.scale(length, modulus))
+    if scaled_pressure is None:
         return False
-    pressure = modulus * solved.result["pressure"].values
-    scale = modulus * solved.peak
-    close(f"lengths x {length:g}, moduli x {modulus:g}", pressure, other, scale, SAME_PRESSURE)
+    pressure = modulus * solution.result["pressure"].values
+    scale = modulus * solution.peak
+    close(f"lengths x {length:g}, moduli x {modulus:g}", pressure, scaled_pressure, scale, SAME_PRESSURE)
     return True
 
 
-def same_load_by_pressure(solved: Solved) -> bool:
+def same_load_by_pressure(solution: SolvedCase) -> bool:
     """A load, and the Hertz pressure of that load, are one case."""
-    case = solved.drawn.case
+    case = solution.random_case.case
     by_pressure = case.load is None
     value = {"load": case.normal_load} if by_pressure else {"max_pressure": case.hertz_max_pressure}
-    other = solve_again(replace(solved.cells, case=replace(case, **({"load": None, "max_pressure": None} | value))))
-    if other is None:
+    second_pressure = solve_again(
+        replace(solution.cells, case=replace(case, **({"load": None, "max_pressure": None} | value)))
+    )
+    if second_pressure is None:
         return False
-    close("load or pressure", solved.result["pressure"].values, other, solved.peak, SAME_PRESSURE)
+    close("load or pressure", solution.result["pressure"].values, second_pressure, solution.peak, SAME_PRESSURE)
     return True
 
 
-def parts(solved: Solved) -> bool:
+def contact_of_gap(solution: SolvedCase) -> bool:
     """`solve_contact` of the initial gap gives the pressure that `solve` gave."""
-    case, result = solved.drawn.case, solved.result
+    case, result = solution.random_case.case, solution.result
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", ConvergenceWarning)
-        other = contact(case, result["initial_gap"])
-    if not bool(other["converged"]):
+        second_result = contact(case, result["initial_gap"])
+    if not bool(second_result["converged"]):
         return False
-    close("solve_contact", other["pressure"].values, result["pressure"].values, solved.peak, SAME_PRESSURE)
-    close("shear traction", result["traction_y"].values, case.friction * result["pressure"].values, solved.peak, 1e-12)
+    close("solve_contact", second_result["pressure"].values, result["pressure"].values, solution.peak, SAME_PRESSURE)
+    close(
+        "shear traction", result["traction_y"].values, case.friction * result["pressure"].values, solution.peak, 1e-12
+    )
     return True
 
 
-def superposition(solved: Solved) -> bool:
+def superposition(solution: SolvedCase) -> bool:
     """Stresses and displacements are linear in the pressure and in the friction."""
-    case, grid, chance = solved.drawn.case, solved.grid, solved.chance
-    pressure = solved.result["pressure"]
-    peak = solved.peak
-    noise = np.random.default_rng(chance.randrange(2**32)).random(grid.shape)
-    other = pressure.copy(data=peak * noise)
-    pressure_sum = pressure + 0.5 * other
-    friction = chance.uniform(-1.0, 1.0)
-    points = inner_points(solved)
-    inside = {"inside_cells": chance.choice([pressure, "uniform"]), **points}
+    case, grid, rng = solution.random_case.case, solution.grid, solution.rng
+    pressure = solution.result["pressure"]
+    peak = solution.peak
+    noise = np.random.default_rng(rng.randrange(2**32)).random(grid.shape)
+    second_load = pressure.copy(data=peak * noise)
+    pressure_sum = pressure + 0.5 * second_load
+    friction = rng.uniform(-1.0, 1.0)
+    points = inner_points(solution)
+    options = {"inside_cells": rng.choice([pressure, "uniform"]), **points}
     fields = [
-        stacked(stress_field(case.body, load, friction=friction, **inside)) for load in (pressure, other, pressure_sum)
+        stack_components(stress_field(case.body, load, friction=friction, **options))
+        for load in (pressure, second_load, pressure_sum)
     ]
     close("stresses of a sum", fields[0] + 0.5 * fields[1], fields[2], peak, 1e-9)
-    frictionless, full = (stacked(stress_field(case.body, pressure, friction=f, **inside)) for f in (0.0, 1.0))
-    close("stresses with friction", frictionless + friction * (full - frictionless), fields[0], peak, 1e-9)
-    sunk = [surface_displacement(case.body, load, friction).values for load in (pressure, other, pressure_sum)]
-    close("displacements of a sum", sunk[0] + 0.5 * sunk[1], sunk[2], float(np.abs(sunk[2]).max()), 1e-9)
+    frictionless, with_friction = (
+        stack_components(stress_field(case.body, pressure, friction=f, **options)) for f in (0.0, 1.0)
+    )
+    close("stresses with friction", frictionless + friction * (with_friction - frictionless), fields[0], peak, 1e-9)
+    displacements = [
+        surface_displacement(case.body, load, friction).values for load in (pressure, second_load, pressure_sum)
+    ]
+    close(
+        "displacements of a sum",
+        displacements[0] + 0.5 * displacements[1],
+        displacements[2],
+        float(np.abs(displacements[2]).max()),
+        1e-9,
+    )
     return True
 
 
@@ -202,59 +219,61 @@ QUADRATURE = 2e-5
 """The positions on the faces depend on the nearest position of the stresses."""
 
 
-def reciprocity(solved: Solved) -> bool:
+def reciprocity(solution: SolvedCase) -> bool:
     """Two pressures do equal work on the displacement of each other (Betti)."""
-    body, grid = solved.drawn.case.body, solved.grid
+    body, grid = solution.random_case.case.body, solution.grid
     if isinstance(body, EndedBody) and body.model != "exact":
         return False
-    first = solved.result["pressure"]
-    noise = np.random.default_rng(solved.chance.randrange(2**32)).random(grid.shape)
-    second = first.copy(data=solved.peak * noise)
-    sunk = [surface_displacement(body, load).values for load in (first, second)]
-    works = [float((grid.weights * p.values * u).sum()) for p, u in ((first, sunk[1]), (second, sunk[0]))]
-    size = float((grid.weights * second.values * np.abs(sunk[0])).sum()) + abs(works[0])
+    first = solution.result["pressure"]
+    noise = np.random.default_rng(solution.rng.randrange(2**32)).random(grid.shape)
+    second = first.copy(data=solution.peak * noise)
+    displacements = [surface_displacement(body, load).values for load in (first, second)]
+    works = [
+        float((grid.weights * p.values * u).sum()) for p, u in ((first, displacements[1]), (second, displacements[0]))
+    ]
+    size = float((grid.weights * second.values * np.abs(displacements[0])).sum()) + abs(works[0])
     off = abs(works[0] - works[1]) / size
     require(off <= RECIPROCITY, f"works differ by {off:.3g}")
     return True
 
 
 RECIPROCITY = 1e-2
-"""Centres stand for means over cells, which differ in width: exact on uniform cells, roughly so on others."""
+"""Values at centres replace means over cells: exact on uniform cells, approximate on others."""
 
 
-def inner_points(solved: Solved) -> dict[str, list[float]]:
+def inner_points(solution: SolvedCase) -> dict[str, list[float]]:
     """Random positions inside the body."""
-    grid, chance, a = solved.grid, solved.chance, solved.drawn.case.hertz_half_width
+    grid, rng, a = solution.grid, solution.rng, solution.random_case.case.hertz_half_width
     low, high = grid.x_range
     return {
-        "x": [low + chance.uniform(0.05, 0.95) * (high - low) for _ in range(2)],
-        "y": [chance.uniform(-1.5, 1.5) * a],
-        "z": [chance.uniform(0.05, 3.0) * a, 0.0],
+        "x": [low + rng.uniform(0.05, 0.95) * (high - low) for _ in range(2)],
+        "y": [rng.uniform(-1.5, 1.5) * a],
+        "z": [rng.uniform(0.05, 3.0) * a, 0.0],
     }
 
 
-def stacked(field: xr.Dataset) -> np.ndarray:
+def stack_components(field: xr.Dataset) -> np.ndarray:
     """Stresses (6, x, y, z)."""
     return np.stack([field[name].values for name in STRESSES])
 
 
-def equilibrium(solved: Solved) -> bool:
+def equilibrium(solution: SolvedCase) -> bool:
     """The divergence of the stresses inside vanishes, by central differences."""
-    case, grid, chance = solved.drawn.case, solved.grid, solved.chance
-    a, peak = case.hertz_half_width, solved.peak
+    case, grid, rng = solution.random_case.case, solution.grid, solution.rng
+    a, peak = case.hertz_half_width, solution.peak
     low, high = grid.x_range
     # Below the steps of the cells, and away from the ends by more than a step.
     size = max(a, float(grid.widths.max()), grid.dy)
-    depth = chance.uniform(1.0, 2.0) * size
+    depth = rng.uniform(1.0, 2.0) * size
     step = 0.02 * min(size, high - low)
-    # There the load's cells change from fine to whole, and on few cells the stresses by up to 1e-3 of the peak.
+    # Here the load's cells change from fine to coarse, and on few cells the stresses by up to 1e-3 of the peak.
     for change in (REACH * grid.dy, REACH * float(grid.widths.max())):
         if abs(depth - change) < 2 * step:
             depth = change + 2 * step
-    position = [low + chance.uniform(0.1, 0.9) * (high - low), chance.uniform(-1.0, 1.0) * a, depth]
+    position = [low + rng.uniform(0.1, 0.9) * (high - low), rng.uniform(-1.0, 1.0) * a, depth]
     axes = {axis: [centre - step, centre, centre + step] for axis, centre in zip("xyz", position, strict=True)}
-    pressure = solved.result["pressure"]
-    field = stacked(stress_field(case.body, pressure, friction=case.friction, **axes, inside_cells=pressure))
+    pressure = solution.result["pressure"]
+    field = stack_components(stress_field(case.body, pressure, friction=case.friction, **axes, inside_cells=pressure))
     stress_rows = np.stack(
         [
             field[:, 2, 1, 1] - field[:, 0, 1, 1],
@@ -276,13 +295,13 @@ EQUILIBRIUM = 5e-3
 """Divergence times the length of variation of the stresses, over the peak: the error of the differences."""
 
 
-def loads_on_the_top(solved: Solved) -> bool:
+def loads_on_the_top(solution: SolvedCase) -> bool:
     """On the top the stresses equal the loads, uniform in each cell or smooth."""
-    case, grid = solved.drawn.case, solved.grid
-    pressure = solved.result["pressure"]
+    case, grid = solution.random_case.case, solution.grid
+    pressure = solution.result["pressure"]
     if isinstance(case.body, EndedBody) and case.body.model == "mirror-factor":
         return False  # its weights add up to one, but its mirrors do not end where the body does
-    i, j = (solved.chance.randrange(count) for count in grid.shape)
+    i, j = (solution.rng.randrange(count) for count in grid.shape)
     p = float(pressure[i, j])
     for smooth in (False, True):
         field = stress_field(
@@ -296,15 +315,15 @@ def loads_on_the_top(solved: Solved) -> bool:
         )
         # A smooth load keeps the force of a cell; in its middle it may differ, up to the steepest that a cell can hold.
         stress = -field["sigma_zz"].item() if smooth else p
-        low, high = -MOMENTS * solved.peak, 1.5 * p * (1 + 1e-6) + MOMENTS * solved.peak
+        low, high = -MOMENTS * solution.peak, 1.5 * p * (1 + 1e-6) + MOMENTS * solution.peak
         require(
             p == 0 or low <= stress <= high,
-            f"a smooth load of {stress / solved.peak:.6g}, its mean is {p / solved.peak:.6g}",
+            f"a smooth load of {stress / solution.peak:.6g}, its mean is {p / solution.peak:.6g}",
         )
         for name, expected in (("sigma_zz", -stress), ("tau_yz", -case.friction * stress), ("tau_xz", 0.0)):
             value = field[name].item()
-            off = abs(value - expected) / solved.peak
-            require(off <= 1e-6, f"{name} = {value / solved.peak:.6g} on the top, not {expected / solved.peak:.6g}")
+            off = abs(value - expected) / solution.peak
+            require(off <= 1e-6, f"{name} = {value / solution.peak:.6g} on the top, not {expected / solution.peak:.6g}")
     return True
 
 
@@ -312,42 +331,44 @@ MOMENTS = 0.03
 """Load of a fine cell for the moments of its neighbours, where a load falls steeply to zero in few cells."""
 
 
-def same_points_among_others(solved: Solved) -> bool:
+def same_points_among_others(solution: SolvedCase) -> bool:
     """Stresses at the cells' centres do not depend on further positions, which exclude the use of symmetry."""
-    case, grid, chance = solved.drawn.case, solved.grid, solved.chance
-    pressure = solved.result["pressure"]
-    depth = [chance.uniform(0.2, 2.0) * case.hertz_half_width]
-    alone = stacked(stress_field(case.body, pressure, friction=case.friction, z=depth, inside_cells=pressure))
+    case, grid, rng = solution.random_case.case, solution.grid, solution.rng
+    pressure = solution.result["pressure"]
+    depth = [rng.uniform(0.2, 2.0) * case.hertz_half_width]
+    separate_fields = stack_components(
+        stress_field(case.body, pressure, friction=case.friction, z=depth, inside_cells=pressure)
+    )
     aside = [
         np.sort(np.append(position, position[0] + 0.31 * (position[1] - position[0]))) for position in (grid.x, grid.y)
     ]
     points = {"x": aside[0], "y": aside[1], "z": depth, "inside_cells": pressure}
-    stresses = stacked(stress_field(case.body, pressure, friction=case.friction, **points))
+    stresses = stack_components(stress_field(case.body, pressure, friction=case.friction, **points))
     index = np.ix_(range(6), *(np.arange(position.size) != 1 for position in aside))
-    close("stresses among others", stresses[index], alone, solved.peak, QUADRATURE)
+    close("stresses among others", stresses[index], separate_fields, solution.peak, QUADRATURE)
     return True
 
 
-def free_ends(solved: Solved) -> bool:
-    """The ends of a body that frees them carry no traction, from a quarter of a cell below the top on.
+def free_ends(solution: SolvedCase) -> bool:
+    """Free ends carry no traction, from a quarter of a cell below the top on.
 
     Nearer to the top the traction depends on the edges of the cells; `end_traction_residual` bounds it on coarse cells.
     On few columns in a thin body a larger traction has to be stated.
     """
-    case, grid, chance = solved.drawn.case, solved.grid, solved.chance
+    case, grid, rng = solution.random_case.case, solution.grid, solution.rng
     ends = [end for end in case.body.extent if np.isfinite(end)]
     if not ends or not isinstance(case.body, EndedBody) or case.body.model != "exact":
         return False
     size = max(grid.dy, float(grid.widths[[0, -1]].max()))
-    depths = [magnitude(chance, 0.25, 4.0) * size for _ in range(2)]
-    across = [chance.uniform(*grid.y_range) for _ in range(3)]
-    pressure = solved.result["pressure"]
+    depths = [magnitude(rng, 0.25, 4.0) * size for _ in range(2)]
+    across = [rng.uniform(*grid.y_range) for _ in range(3)]
+    pressure = solution.result["pressure"]
     field = stress_field(case.body, pressure, friction=case.friction, x=ends, y=across, z=depths, inside_cells=pressure)
     end_traction = (
-        max(float(np.abs(field[name].values).max()) for name in ("sigma_xx", "tau_xy", "tau_xz")) / solved.peak
+        max(float(np.abs(field[name].values).max()) for name in ("sigma_xx", "tau_xy", "tau_xz")) / solution.peak
     )
     position = {"x": [float(grid.x.mean())], "y": [0.0], "z": [case.hertz_half_width]}
-    residual = float(run(solved.drawn, **position)["end_traction_residual"])
+    residual = float(run(solution.random_case, **position)["end_traction_residual"])
     require(
         end_traction <= max(FREE, SAMPLED * residual),
         f"traction of {end_traction:.3g} is left on the ends, {residual:.3g} is stated",
@@ -359,41 +380,42 @@ FREE, SAMPLED = 2e-3, 1.5
 """Largest traction on the ends, and its ratio to the stated one, which is a sample."""
 
 
-def stated_errors(solved: Solved) -> bool:
+def stated_errors(solution: SolvedCase) -> bool:
     """The errors that refined cells state cover the difference from cells refined further."""
-    if solved.drawn.grid is not None or solved.drawn.accuracy < 0.02:
+    if solution.random_case.grid is not None or solution.random_case.accuracy < 0.02:
         return False
-    position = {"x": [float(solved.result.x.mean())], "y": [0.0], "z": [solved.drawn.case.hertz_half_width]}
+    position = {"x": [float(solution.result.x.mean())], "y": [0.0], "z": [solution.random_case.case.hertz_half_width]}
     rough, finer = (
-        run(replace(solved.drawn, accuracy=share * solved.drawn.accuracy), **position) for share in (1.0, 0.25)
+        run(replace(solution.random_case, accuracy=factor * solution.random_case.accuracy), **position)
+        for factor in (1.0, 0.25)
     )
     for name in ("peak_pressure", "end_pressure_first", "end_pressure_last", "peak_von_mises"):
         error, stress = float(rough[f"{name}_error"]), float(finer[f"{name}_error"])
         if not np.isfinite(error + stress):
             continue
         difference = abs(float(rough[name]) - float(finer[name]))
-        allowed = error + stress
+        tolerance = error + stress
         require(
-            difference <= allowed,
-            f"{name}: stated {error / solved.peak:.3g} of the peak, off by {difference / solved.peak:.3g}",
+            difference <= tolerance,
+            f"{name}: stated {error / solution.peak:.3g} of the peak, off by {difference / solution.peak:.3g}",
         )
     return True
 
 
-def largest_stress(solved: Solved) -> bool:
+def largest_stress(solution: SolvedCase) -> bool:
     """The stated largest stress and its error bound the stresses on the top off the rim and below; the body has it."""
-    case, grid, chance = solved.drawn.case, solved.grid, solved.chance
-    if solved.drawn.grid is not None:
+    case, grid, rng = solution.random_case.case, solution.grid, solution.rng
+    if solution.random_case.grid is not None:
         return False
     position = {"x": [float(grid.x.mean())], "y": [0.0], "z": [case.hertz_half_width]}
-    result = run(solved.drawn, **position)
-    most = float(result["peak_von_mises"] + result["peak_von_mises_error"])
-    if not np.isfinite(most):
+    result = run(solution.random_case, **position)
+    upper_bound = float(result["peak_von_mises"] + result["peak_von_mises_error"])
+    if not np.isfinite(upper_bound):
         return False
     loaded = result["pressure"].values > 0
-    inside = ndimage.binary_erosion(loaded, iterations=2, border_value=1)
+    inner = ndimage.binary_erosion(loaded, iterations=2, border_value=1)
     columns, rows = (
-        np.sort(chance.sample(list(indices), min(len(indices), 25)))
+        np.sort(rng.sample(list(indices), min(len(indices), 25)))
         for indices in (np.flatnonzero(loaded.any(axis=1)), np.flatnonzero(loaded.any(axis=0)))
     )
     depths = case.hertz_half_width * np.array([0.0, 0.1, 0.2, 0.4, 0.7, 1.0])
@@ -403,34 +425,37 @@ def largest_stress(solved: Solved) -> bool:
     field = stress_field(case.body, pressure, friction=case.friction, **positions, inside_cells=pressure)[
         "von_mises"
     ].values
-    field[..., 0][~inside[np.ix_(columns, rows)]] = 0.0
-    require(field.max() <= most, f"a von Mises stress of {field.max() / most:.4g} of the stated largest")
+    field[..., 0][~inner[np.ix_(columns, rows)]] = 0.0
+    require(field.max() <= upper_bound, f"a von Mises stress of {field.max() / upper_bound:.4g} of the stated largest")
     if float(result["peak_von_mises_z"]) > 0:
         point = {axis: [float(result[f"peak_von_mises_{axis}"])] for axis in "xyz"}
         field = stress_field(case.body, pressure, friction=case.friction, **point, inside_cells=pressure)
-        least = float(result["peak_von_mises"] - result["peak_von_mises_error"])
+        lower_bound = float(result["peak_von_mises"] - result["peak_von_mises_error"])
         stress = 1.005 * float(field["von_mises"])  # the representations of the load differ by less
-        require(stress >= least, f"a von Mises stress of {stress / least:.4g} of the stated largest at its position")
+        require(
+            stress >= lower_bound,
+            f"a von Mises stress of {stress / lower_bound:.4g} of the stated largest at its position",
+        )
     return True
 
 
-def equivalent_loads_are_finite(solved: Solved) -> bool:
+def equivalent_loads_are_finite(solution: SolvedCase) -> bool:
     """The method's equivalent loads exist for every pressure of `solve`."""
-    case = solved.drawn.case
+    case = solution.random_case.case
     if not isinstance(case.body, EndedBody) or case.body.model != "exact":
         return False
-    depth = solved.chance.uniform(0.1, 3.0) * case.hertz_half_width
-    loads = equivalent_loads(case.body, solved.result["pressure"], float(case.friction), z=[depth])
+    depth = solution.rng.uniform(0.1, 3.0) * case.hertz_half_width
+    loads = equivalent_loads(case.body, solution.result["pressure"], float(case.friction), z=[depth])
     require(all(np.isfinite(values).all() for values in loads.values()), "an equivalent load is not finite")
     return True
 
 
-def single_plane(solved: Solved) -> bool:
+def single_plane(solution: SolvedCase) -> bool:
     """The risk of a single plane is refused: it needs a volume."""
-    case, pressure = solved.drawn.case, solved.result["pressure"]
+    case, pressure = solution.random_case.case, solution.result["pressure"]
     depths = case.hertz_half_width * np.array([0.2, 0.5, 1.0])
     field = stress_field(
-        case.body, pressure, friction=case.friction, x=solved.grid.x, y=[0.0], z=depths, inside_cells=pressure
+        case.body, pressure, friction=case.friction, x=solution.grid.x, y=[0.0], z=depths, inside_cells=pressure
     ).assign(hertz_max_pressure=case.hertz_max_pressure)
     try:
         fatigue.lundberg_palmgren(field)
@@ -439,9 +464,9 @@ def single_plane(solved: Solved) -> bool:
     raise ViolationError("the risk of a single plane is not refused")
 
 
-def two_threads(solved: Solved) -> bool:
+def two_threads(solution: SolvedCase) -> bool:
     """Two threads that solve a case without a cache return the pressure of one thread."""
-    cells = solved.cells
+    cells = solution.cells
     assert cells.grid is not None
     gap = on_cells(cells.grid, cells.case.gap(cells.grid))
     cache.clear()
@@ -451,7 +476,7 @@ def two_threads(solved: Solved) -> bool:
     return True
 
 
-ALWAYS: tuple[Callable[[Solved], bool], ...] = (
+ALWAYS: tuple[Callable[[SolvedCase], bool], ...] = (
     finite_values,
     certificate,
     balance,
@@ -462,12 +487,12 @@ ALWAYS: tuple[Callable[[Solved], bool], ...] = (
 )
 """Properties that need no other solution, and the stated errors."""
 
-IN_TURN: tuple[Callable[[Solved], bool], ...] = (
+IN_TURN: tuple[Callable[[SolvedCase], bool], ...] = (
     reversed_friction,
     turned_round,
     other_units,
     same_load_by_pressure,
-    parts,
+    contact_of_gap,
     superposition,
     reciprocity,
     equilibrium,

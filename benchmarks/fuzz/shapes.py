@@ -28,88 +28,86 @@ from contactstudy.profiles import (
 )
 
 
-def magnitude(chance: Random, low: float, high: float) -> float:
+def magnitude(rng: Random, low: float, high: float) -> float:
     """A number whose logarithm is uniform."""
-    return math.exp(chance.uniform(math.log(low), math.log(high)))
+    return math.exp(rng.uniform(math.log(low), math.log(high)))
 
 
-def random_profile(chance: Random, radius: float, length: float, depth: float) -> Profile:
+def random_profile(rng: Random, radius: float, length: float, depth: float) -> Profile:
     """A profile that a roller of these dimensions can have; `depth` is how far a cylinder sinks."""
-    kind = chance.choice(("cylinder", "one", "one", "one", "sum", "halves"))
+    kind = rng.choice(("cylinder", "one", "one", "one", "sum", "halves"))
     if kind == "cylinder":
         return Cylinder()
-    profile = _single_profile(chance, radius, length, depth)
+    profile = _single_profile(rng, radius, length, depth)
     if kind == "one":
         return profile
-    other = _single_profile(chance, radius, length, depth)
+    second_profile = _single_profile(rng, radius, length, depth)
     if kind == "sum":
-        return Sum((profile, other))
-    return Halves(_level(profile), _level(other))
+        return Sum((profile, second_profile))
+    return Halves(_level(profile), _level(second_profile))
 
 
-def _single_profile(chance: Random, radius: float, length: float, depth: float) -> Profile:
-    """A profile of one of the kinds."""
-    drop = depth * magnitude(chance, 0.1, 10.0)
+def _single_profile(rng: Random, radius: float, length: float, depth: float) -> Profile:
+    """A profile of a random kind."""
+    drop = depth * magnitude(rng, 0.1, 10.0)
     arc = max(length**2 / (8 * drop), 0.6 * length)
     makers: dict[str, Callable[[], Profile]] = {
-        "fillet": lambda: Cylinder(chance.uniform(0.0, 0.5) * length),
-        "crown": lambda: FullCrown(2 * arc, centre=chance.uniform(-0.4, 0.4) * length),
-        "partial crown": lambda: PartialCrown(chance.uniform(0.0, 1.0) * length, arc),
+        "fillet": lambda: Cylinder(rng.uniform(0.0, 0.5) * length),
+        "crown": lambda: FullCrown(2 * arc, centre=rng.uniform(-0.4, 0.4) * length),
+        "partial crown": lambda: PartialCrown(rng.uniform(0.0, 1.0) * length, arc),
         "dub-off": lambda: PartialCrown(0.4 * length, 4 * arc, 0.1 * length, arc),
         "ellipsoid": lambda: Ellipsoid(arc),
         "sphere": lambda: Sphere(radius),
-        "Lundberg": lambda: Lundberg(0.5 * drop, chance.choice((0.0, 0.5, 1.0, 2.0))),
-        "Johns and Gohar": lambda: JohnsGohar(0.5 * drop, chance.uniform(0.0, 1.0) * length),
-        "Fujiwara and Kawase": lambda: FujiwaraKawase(
-            0.5 * drop, drop, chance.uniform(0.5, 2.0), chance.uniform(0.1, 1)
-        ),
+        "Lundberg": lambda: Lundberg(0.5 * drop, rng.choice((0.0, 0.5, 1.0, 2.0))),
+        "Johns and Gohar": lambda: JohnsGohar(0.5 * drop, rng.uniform(0.0, 1.0) * length),
+        "Fujiwara and Kawase": lambda: FujiwaraKawase(0.5 * drop, drop, rng.uniform(0.5, 2.0), rng.uniform(0.1, 1)),
         "ISO cylindrical": lambda: IsoCylindrical(2 * radius),
         "ISO tapered": lambda: IsoTapered(2 * radius),
-        "taper": lambda: Tapered(0.8 * chance.uniform(-1, 1) * min(0.1, radius / length), 0.05 * length),
-        "measured": lambda: _measured(chance, length, drop),
-        "roof": lambda: _roof(chance, length, drop),
-        "burr": lambda: _burr(chance, length, drop),
-        "chamfer": lambda: Chamfer(depth=drop, width=chance.uniform(0.05, 0.3) * length),
+        "taper": lambda: Tapered(0.8 * rng.uniform(-1, 1) * min(0.1, radius / length), 0.05 * length),
+        "measured": lambda: _measured_profile(rng, length, drop),
+        "roof": lambda: _roof(rng, length, drop),
+        "burr": lambda: _burr(rng, length, drop),
+        "chamfer": lambda: Chamfer(depth=drop, width=rng.uniform(0.05, 0.3) * length),
     }
-    return makers[chance.choice(tuple(makers))]()
+    return makers[rng.choice(tuple(makers))]()
 
 
-def _measured(chance: Random, length: float, drop: float) -> Measured:
-    """A crown with a skew, as if it had been measured."""
+def _measured_profile(rng: Random, length: float, drop: float) -> Measured:
+    """A skewed crown as measured points."""
     x = np.linspace(-0.5, 0.5, 41)
-    shape = (2 * x) ** 2 + chance.uniform(-0.5, 0.5) * x
+    shape = (2 * x) ** 2 + rng.uniform(-0.5, 0.5) * x
     return Measured(positions=tuple(x * length), drops=tuple(drop * (shape - shape.min())))
 
 
-def _roof(chance: Random, length: float, drop: float) -> Measured:
+def _roof(rng: Random, length: float, drop: float) -> Measured:
     """Two planes with a convex corner between them."""
-    x, corner = np.linspace(-0.5, 0.5, 41), chance.uniform(-0.3, 0.3)
+    x, corner = np.linspace(-0.5, 0.5, 41), rng.uniform(-0.3, 0.3)
     return Measured(positions=tuple(x * length), drops=tuple(drop * np.abs(x - corner)))
 
 
-def _burr(chance: Random, length: float, drop: float) -> Measured:
+def _burr(rng: Random, length: float, drop: float) -> Measured:
     """A crown with a narrow ridge of a tenth of its drop."""
-    x, crest = np.linspace(-0.5, 0.5, 401), chance.uniform(-0.4, 0.4)
+    x, crest = np.linspace(-0.5, 0.5, 401), rng.uniform(-0.4, 0.4)
     shape = (2 * x) ** 2 - 0.1 * np.exp(-(((x - crest) / 0.01) ** 2))
     return Measured(positions=tuple(x * length), drops=tuple(drop * (shape - shape.min())))
 
 
 def _level(profile: Profile) -> Profile:
-    """The profile, or a cylinder if it does not begin with drop 0 at mid-length, where halves have to meet."""
+    """The profile, or a cylinder if the drop at mid-length is not 0, because halves must meet."""
     try:
-        lowest = float(profile.drop(np.zeros(1), 1.0)[0])
+        min_drop = float(profile.drop(np.zeros(1), 1.0)[0])
     except ValueError:
-        lowest = math.inf
-    return profile if lowest == 0 and not isinstance(profile, Measured) else Cylinder()
+        min_drop = math.inf
+    return profile if min_drop == 0 and not isinstance(profile, Measured) else Cylinder()
 
 
-def mirrored(profile: Profile) -> Profile:
+def mirror_profile(profile: Profile) -> Profile:
     """The profile of the same roller turned end for end."""
     match profile:
         case Sum(terms):
-            return Sum(tuple(mirrored(term) for term in terms))
+            return Sum(tuple(mirror_profile(term) for term in terms))
         case Halves(left, right):
-            return Halves(mirrored(right), mirrored(left))
+            return Halves(mirror_profile(right), mirror_profile(left))
         case FullCrown(crown_radius, centre):
             return FullCrown(crown_radius, -centre)
         case Tapered(half_angle, fillet_radius):
@@ -119,13 +117,13 @@ def mirrored(profile: Profile) -> Profile:
     return profile
 
 
-def stretched(profile: Profile, factor: float) -> Profile:
+def stretch_profile(profile: Profile, factor: float) -> Profile:
     """The profile with every length multiplied."""
     match profile:
         case Sum(terms):
-            return Sum(tuple(stretched(term, factor) for term in terms))
+            return Sum(tuple(stretch_profile(term, factor) for term in terms))
         case Halves(left, right):
-            return Halves(stretched(left, factor), stretched(right, factor))
+            return Halves(stretch_profile(left, factor), stretch_profile(right, factor))
         case Tapered(half_angle, fillet_radius):
             return Tapered(half_angle, factor * fillet_radius)
         case Chamfer(depth=float(depth), width=float(width)):

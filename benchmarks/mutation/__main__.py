@@ -26,13 +26,13 @@ from benchmarks.mutation.mutants import PACKAGES, Mutant, all_mutants
 Notes = dict[str, Any]
 
 
-def read(file: Path, key: str) -> dict[str, Notes]:
-    """Lines of JSON by one of their entries; the last one of each counts."""
+def read_notes(file: Path, key: str) -> dict[str, Notes]:
+    """Lines of JSON by one of their entries; the last line of each is used."""
     lines = file.read_text(encoding="utf-8").splitlines() if file.exists() else []
     return {note[key]: note for note in map(json.loads, lines)}
 
 
-def shared(work: Callable[[Any], Notes], jobs: list[Any], file: Path, processes: int) -> None:
+def share_work(work: Callable[[Any], Notes], jobs: list[Any], file: Path, processes: int) -> None:
     """Do jobs in some processes and append each result to a file.
 
     Raises
@@ -40,11 +40,11 @@ def shared(work: Callable[[Any], Notes], jobs: list[Any], file: Path, processes:
     RuntimeError
         If a process ended before it had done its jobs.
     """
-    for number in range(processes):
+    for process_index in range(processes):
         if os.fork():
             continue
         try:
-            for job in jobs[number::processes]:
+            for job in jobs[process_index::processes]:
                 line = json.dumps(work(job))
                 with file.open("a", encoding="utf-8") as notes:
                     notes.write(f"{line}\n")
@@ -53,8 +53,8 @@ def shared(work: Callable[[Any], Notes], jobs: list[Any], file: Path, processes:
             traceback.print_exc()
         finally:
             os._exit(1)
-    ended = [os.wait()[1] for _ in range(processes)]
-    if any(ended):
+    exit_codes = [os.wait()[1] for _ in range(processes)]
+    if any(exit_codes):
         raise RuntimeError("a process ended early: begin again, what was tried is kept")
 
 
@@ -82,8 +82,8 @@ class Trials:
     def tests(self, mutant: Mutant) -> list[tuple[str, float]]:
         """Tests that run a changed statement, with their seconds: the most promising first."""
         reaching = set().union(*(self.by_line[mutant.file, line] for line in mutant.lines))
-        noticed = self.noticed[mutant.file]
-        promising = sorted(reaching, key=lambda test: (self.taken[test] + 0.05) / (1 + 5 * noticed[test]))
+        noticed_tests = self.noticed[mutant.file]
+        promising = sorted(reaching, key=lambda test: (self.taken[test] + 0.05) / (1 + 5 * noticed_tests[test]))
         chosen, total = [], 0.0
         for test in promising:
             if total + self.taken[test] <= self.seconds:
@@ -91,7 +91,7 @@ class Trials:
                 total += self.taken[test]
         return chosen
 
-    def tried(self, mutant: Mutant) -> Notes:
+    def try_mutant(self, mutant: Mutant) -> Notes:
         """Try a change and return the failing test."""
         tests = self.tests(mutant)
         by = self.session.first_failure(tests, mutant)
@@ -105,12 +105,12 @@ def summary(notes: dict[str, Notes]) -> str:
     lines = []
     for package in PACKAGES:
         notes_of_package = [note for key, note in notes.items() if f"/{package}/" in key]
-        missed = [note for note in notes_of_package if not note["by"]]
-        equivalent = [note for note in missed if note["change"] in EQUIVALENT]
+        survivors = [note for note in notes_of_package if not note["by"]]
+        equivalent = [note for note in survivors if note["change"] in EQUIVALENT]
         lines.append(
-            f"{package}: {len(notes_of_package)} tried, {len(notes_of_package) - len(missed)} noticed, "
+            f"{package}: {len(notes_of_package)} tried, {len(notes_of_package) - len(survivors)} noticed, "
             f"{len(equivalent)} equivalent, "
-            f"{len(missed) - len(equivalent)} missed"
+            f"{len(survivors) - len(equivalent)} missed"
         )
     return "\n".join(
         lines + [f"  missed: {key}" for key, note in notes.items() if not note["by"] and key not in EQUIVALENT]
@@ -129,21 +129,23 @@ def main() -> None:
     parser.add_argument("--processes", type=int, default=1, help="processes that share the work")
     options = parser.parse_args()
     options.notes.mkdir(parents=True, exist_ok=True)
-    reached, tried = options.notes / "reached.jsonl", options.notes / "tried.jsonl"
+    reached_path, tried_path = options.notes / "reached.jsonl", options.notes / "tried.jsonl"
 
     def work(session: Session) -> None:
-        durations = read(reached, "test")
+        durations = read_notes(reached_path, "test")
         tests = [test for test in session.items if test not in durations]
-        shared(lambda test: asdict(session.reached(test)), tests, reached, options.processes)
-        trials = Trials(session, (Reached(**note) for note in read(reached, "test").values()), options.seconds)
-        notes = read(tried, "change")
+        share_work(lambda test: asdict(session.reached(test)), tests, reached_path, options.processes)
+        trials = Trials(
+            session, (Reached(**note) for note in read_notes(reached_path, "test").values()), options.seconds
+        )
+        notes = read_notes(tried_path, "change")
         trials.learn(notes)
         finished = {key for key, note in notes.items() if note["by"] or not options.again}
         mutants = [mutant for mutant in all_mutants() if options.only in mutant.key]
         Random(0).shuffle(mutants)
         remaining = [mutant for mutant in mutants[: options.sample] if mutant.key not in finished | set(EQUIVALENT)]
-        shared(trials.tried, remaining, tried, options.processes)
-        print(summary(read(tried, "change")))
+        share_work(trials.try_mutant, remaining, tried_path, options.processes)
+        print(summary(read_notes(tried_path, "change")))
 
     with_session(work, options.tests)
 

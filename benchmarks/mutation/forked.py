@@ -33,7 +33,7 @@ TESTS = (
 MEMORY = 6 * 2**30
 """Bound on the bytes of a fork; a change that exceeds it fails."""
 
-SPARE, TIMES = 2.0, 5.0
+SPARE_SECONDS, TIMES = 2.0, 5.0
 """Bound on the processor time of a test: seconds, and a multiple of the time without a change."""
 
 CORE = tuple(str(ROOT / "contactstudy" / package) for package in PACKAGES)
@@ -48,9 +48,9 @@ class Reached:
     test : str
         Name.
     passed : bool
-        Whether it passes.
+        Whether the test passes.
     seconds : float
-        Processor time that it takes alone.
+        Processor time of the test.
     lines : dict of str to list of str
         Texts of the core's lines that the test runs, by source; texts do not depend on inserted lines.
     """
@@ -90,18 +90,18 @@ class Session:
 
         def work(send: Callable[[str], None]) -> None:
             sys.settrace(_tracer(lines))
-            began = time.process_time()
+            start_time = time.process_time()
             failed = self._fails(test)
             sys.settrace(None)
             statements = {}
             for name, line_numbers in lines.items():
                 texts = Path(name).read_text(encoding="utf-8").splitlines()
                 statements[str(Path(name).relative_to(ROOT))] = sorted(
-                    {texts[number - 1].strip() for number in line_numbers}
+                    {texts[line_number - 1].strip() for line_number in line_numbers}
                 )
-            send(json.dumps(asdict(Reached(test, not failed, time.process_time() - began, statements))))
+            send(json.dumps(asdict(Reached(test, not failed, time.process_time() - start_time, statements))))
 
-        message, _ = forked(work)
+        message, _ = run_forked(work)
         return Reached(**json.loads(message[-1])) if message else Reached(test, False, 0.0, {})
 
     def first_failure(self, tests: Iterable[tuple[str, float]], mutant: Mutant | None = None) -> str:
@@ -112,13 +112,13 @@ class Session:
                 self._install(mutant)
             for test, seconds in tests:
                 send(test)
-                signal.setitimer(signal.ITIMER_PROF, SPARE + TIMES * seconds)
+                signal.setitimer(signal.ITIMER_PROF, SPARE_SECONDS + TIMES * seconds)
                 if self._fails(test):
                     return
             send("")
 
-        message, ended = forked(work)
-        return message[-1] + (f" (ended by {signal.Signals(ended).name})" if ended else "")
+        message, exit_code = run_forked(work)
+        return message[-1] + (f" (ended by {signal.Signals(exit_code).name})" if exit_code else "")
 
     def _fails(self, test: str) -> bool:
         """Whether a test with its fixtures fails."""
@@ -190,7 +190,7 @@ def _tracer(lines: dict[str, set[int]]) -> Callable[[FrameType, str, Any], Any]:
     return trace_call
 
 
-def forked(work: Callable[[Callable[[str], None]], None]) -> tuple[list[str], int]:
+def run_forked(work: Callable[[Callable[[str], None]], None]) -> tuple[list[str], int]:
     """Run a function in a fork: its messages, and the signal that ended it or 0."""
     read, write = os.pipe()
     process = os.fork()

@@ -13,7 +13,7 @@ ROOT = Path(__file__).parents[2]
 PACKAGES = ("kernels", "overlapping", "contact")
 """The solver's core."""
 
-OTHER = {ast.Add: ("+", "-"), ast.Sub: ("-", "+"), ast.Mult: ("*", "/"), ast.Div: ("/", "*")}
+OTHER_OPERATORS = {ast.Add: ("+", "-"), ast.Sub: ("-", "+"), ast.Mult: ("*", "/"), ast.Div: ("/", "*")}
 """Arithmetic signs and their changes."""
 
 REVERSED = {ast.Lt: ("<", ">"), ast.Gt: (">", "<"), ast.LtE: ("<=", ">="), ast.GtE: (">=", "<=")}
@@ -34,7 +34,7 @@ class Mutant:
     start, stop : int
         Characters that are replaced.
     text : str
-        What they become.
+        Replacement of the text.
     lines : tuple of str
         Lines of the statement around it, without those of statements within.
     where : str
@@ -76,20 +76,20 @@ def mutants_of(file: str, source: str) -> Iterator[Mutant]:
     texts, times = source.splitlines(), Counter[str]()
 
     def mutant(lines: range, where: str, start: int, stop: int, text: str) -> Mutant:
-        number = source.count("\n", 0, start) + 1
-        changed = source[:start] + text + source[stop:]
-        before, after = (version.splitlines()[number - 1].strip() for version in (source, changed))
+        line_number = source.count("\n", 0, start) + 1
+        changed_source = source[:start] + text + source[stop:]
+        before, after = (version.splitlines()[line_number - 1].strip() for version in (source, changed_source))
         description = f"{before}  ->  {after}"
         times[where + description] += 1
         if times[where + description] > 1:
             description += f"  (no. {times[where + description]})"
-        statement = tuple(texts[number - 1].strip() for number in lines)
+        statement = tuple(texts[line_number - 1].strip() for line_number in lines)
         return Mutant(file, source, start, stop, text, statement, where, description)
 
     for node, lines, where in _in_functions(ast.parse(source)):
         match node:
-            case ast.BinOp(left=left, op=op) if type(op) in OTHER:
-                symbol, replacement = OTHER[type(op)]
+            case ast.BinOp(left=left, op=op) if type(op) in OTHER_OPERATORS:
+                symbol, replacement = OTHER_OPERATORS[type(op)]
                 offset = _between(source, offset_of(left.end_lineno or 0, left.end_col_offset or 0), symbol)
                 if not (isinstance(left, ast.Constant) and isinstance(left.value, str)):
                     yield mutant(lines, where, offset, offset + len(symbol), replacement)
@@ -115,10 +115,10 @@ def _in_functions(tree: ast.AST, where: str = "") -> Iterator[tuple[ast.AST, ran
         yield from _in_functions(node, name)
         if isinstance(node, ast.FunctionDef):
             for statement in node.body:
-                yield from ((part, lines, name) for part, lines in _computing(statement, range(0)))
+                yield from ((part, lines, name) for part, lines in _computing_nodes(statement, range(0)))
 
 
-def _computing(node: ast.AST, lines: range) -> Iterator[tuple[ast.AST, range]]:
+def _computing_nodes(node: ast.AST, lines: range) -> Iterator[tuple[ast.AST, range]]:
     """Nodes below one, without errors that are raised, texts, types and functions within, which come by themselves."""
     if isinstance(node, (ast.Raise, ast.JoinedStr, ast.FunctionDef, ast.Assert)):
         return
@@ -131,7 +131,7 @@ def _computing(node: ast.AST, lines: range) -> Iterator[tuple[ast.AST, range]]:
             continue
         for child in value if isinstance(value, list) else [value]:
             if isinstance(child, ast.AST):
-                yield from _computing(child, lines)
+                yield from _computing_nodes(child, lines)
 
 
 def _between(source: str, start: int, sign: str) -> int:

@@ -1,10 +1,10 @@
-"""How often the stated errors hold: random cases, settled loosely and tightly.
+"""How often the stated errors hold: random cases, solved with a loose and a tight accuracy.
 
 Usage: ``python -m benchmarks.performance.accuracy [--cases 60] [--seed 1] [--first 0] [--accuracy 0.02]
 [--reference 0.002] [--markdown FILE]``.
 
 Each case has a random body, roller length, profile, tilt or load position, end distance, roller material and load. It
-is settled to `accuracy` and to `reference`. A value is covered if the two differ by no more than the error stated with
+is solved to `accuracy` and to `reference`. A value is covered if the two differ by no more than the error stated with
 the first. A singular end is covered if both runs say so; its intensity K is counted apart. Case ``n`` of a seed is the
 same whatever the number of cases, so a single one is repeated with ``--first n --cases 1``.
 """
@@ -34,8 +34,8 @@ INTENSITIES = ("end_intensity_first", "end_intensity_last")
 
 
 @dataclass(frozen=True)
-class Drawn:
-    """A random case and its name; or why it is none."""
+class RandomCase:
+    """A random case and its name, or the reason of its refusal."""
 
     number: int
     name: str
@@ -47,14 +47,14 @@ class Comparison:
     """One value of one case, over the Hertz pressure (an intensity: over that and the root of the half-width; a load:
     over that of a half-width under the mean load per length)."""
 
-    drawn: Drawn
+    random_case: RandomCase
     value: str
     loose: float
     error: float
     tight: float
 
     @property
-    def covered(self) -> bool:
+    def is_covered(self) -> bool:
         """Whether the stated error covers the difference, or both runs find the end singular."""
         if np.isinf(self.loose) or np.isinf(self.tight):
             return bool(self.loose == self.tight)
@@ -65,7 +65,7 @@ def _log_uniform(rng: np.random.Generator, low: float, high: float) -> float:
     return float(np.exp(rng.uniform(np.log(low), np.log(high))))
 
 
-def drawn_case(seed: int, number: int) -> Drawn:
+def draw_case(seed: int, number: int) -> RandomCase:
     """Draw case `number` of a seed."""
     rng = np.random.default_rng([seed, number])
     p0 = rng.uniform(0.8e9, 3e9)
@@ -88,8 +88,8 @@ def drawn_case(seed: int, number: int) -> Drawn:
     if body_kind == "quarter":
         body = QuarterSpace(material=STEEL)
     elif body_kind == "finite":
-        other = distance if rng.random() < 0.5 else a * rng.uniform(0.0, 5)
-        body = FiniteLengthSpace(length=length + distance + other, material=STEEL)
+        second_distance = distance if rng.random() < 0.5 else a * rng.uniform(0.0, 5)
+        body = FiniteLengthSpace(length=length + distance + second_distance, material=STEEL)
     inclination: dict[str, float] = {}
     slope = min(1.0, 20 * a / length)
     if (choice := rng.random()) < 0.3:
@@ -103,7 +103,7 @@ def drawn_case(seed: int, number: int) -> Drawn:
         + "".join(f", {key} {value:.2e}" for key, value in inclination.items())
     )
     try:
-        return Drawn(
+        return RandomCase(
             number,
             name,
             Case(
@@ -115,7 +115,7 @@ def drawn_case(seed: int, number: int) -> Drawn:
             ),
         )
     except ContactStudyError as error:
-        return Drawn(number, f"{name}: {error}", None)
+        return RandomCase(number, f"{name}: {error}", None)
 
 
 def _profile(rng: np.random.Generator, p0: float, length: float, modulus: float) -> tuple[str, profiles.Profile]:
@@ -123,18 +123,18 @@ def _profile(rng: np.random.Generator, p0: float, length: float, modulus: float)
     fillet = min(_log_uniform(rng, 0.02e-3, 0.5e-3), 0.3 * length)
     sag = _log_uniform(rng, 0.2e-6, 20e-6) * min(1.0, length / 10e-3)
     crown = profiles.FullCrown(crown_radius=length**2 / (8 * sag))
-    rounded = profiles.Cylinder(fillet_radius=fillet)
+    rounded_cylinder = profiles.Cylinder(fillet_radius=fillet)
     kind = ("sharp", "fillet", "crown", "crown + fillet", "lundberg", "partial crown", "measured")[rng.integers(7)]
     detail = {"fillet": f" {1e3 * fillet:.3f} mm", "crown": f" {1e6 * sag:.1f} um"}
     name = kind + "".join(text for word, text in detail.items() if word in kind and kind != "partial crown")
     if kind == "sharp":
         return name, profiles.Cylinder()
     if kind == "fillet":
-        return name, rounded
+        return name, rounded_cylinder
     if kind == "crown":
         return name, crown
     if kind == "crown + fillet":
-        return name, crown + rounded
+        return name, crown + rounded_cylinder
     if kind == "lundberg":
         pressure = p0 * rng.uniform(0.6, 1.2)
         return name, profiles.Lundberg.for_pressure(pressure, radius=RADIUS, modulus=modulus)
@@ -143,31 +143,33 @@ def _profile(rng: np.random.Generator, p0: float, length: float, modulus: float)
         radius = _log_uniform(rng, 0.1, 3.0)
         return f"{name} {straight / length:.2f} L, R {radius:.2f} m", profiles.PartialCrown(straight, radius)
     x = np.linspace(-0.5 * length, 0.5 * length, 401)
-    drops = (crown + rounded).drop(x, length)
+    drops = (crown + rounded_cylinder).drop(x, length)
     return f"{name} crown {1e6 * sag:.1f} um + fillet {1e3 * fillet:.3f} mm", profiles.Measured(
         x.tolist(), drops.tolist()
     )
 
 
-def compared(drawn: Drawn, accuracy: float, reference: float) -> Iterator[Comparison]:
+def compare_values(random_case: RandomCase, accuracy: float, reference: float) -> Iterator[Comparison]:
     """Settle a case twice and compare its values."""
-    assert drawn.case is not None
-    case = drawn.case
+    assert random_case.case is not None
+    case = random_case.case
     loose, tight = (_values(case, row) for row in (accuracy, reference))
     scale = case.hertz_max_pressure
     for value in VALUES:
         error = float(loose[f"{value}_error"]) / scale
-        yield Comparison(drawn, value, float(loose[value]) / scale, error, float(tight[value]) / scale)
-    usual = case.normal_load * case.hertz_half_width / case.contact_length
+        yield Comparison(random_case, value, float(loose[value]) / scale, error, float(tight[value]) / scale)
+    mean_end_load = case.normal_load * case.hertz_half_width / case.contact_length
     for value in LOADS:
-        error = float(loose[f"{value}_error"]) / usual
-        yield Comparison(drawn, value, float(loose[value]) / usual, error, float(tight[value]) / usual)
+        error = float(loose[f"{value}_error"]) / mean_end_load
+        yield Comparison(
+            random_case, value, float(loose[value]) / mean_end_load, error, float(tight[value]) / mean_end_load
+        )
     for value in INTENSITIES:
         power = float(loose.get(value.replace("intensity", "exponent"), 0.0))
         if value in loose and value in tight and case.roller.material is None and power:
             unit = scale * case.hertz_half_width**power
             error = float(loose[f"{value}_error"]) / unit
-            yield Comparison(drawn, value, float(loose[value]) / unit, error, float(tight[value]) / unit)
+            yield Comparison(random_case, value, float(loose[value]) / unit, error, float(tight[value]) / unit)
 
 
 def _values(case: Case, accuracy: float) -> xr.Dataset:
@@ -184,20 +186,25 @@ def _table(comparisons: list[Comparison], refused: list[str], took: dict[str, fl
         rows = [row for row in comparisons if row.value == value]
         finite = [row for row in rows if np.isfinite([row.loose, row.tight]).all() and row.loose]
         if rows:
-            covered = sum(row.covered for row in rows)
-            apart = np.median([abs(row.loose - row.tight) for row in finite]) if finite else np.nan
+            covered = sum(row.is_covered for row in rows)
+            median_difference = np.median([abs(row.loose - row.tight) for row in finite]) if finite else np.nan
             error = np.median([row.error for row in finite]) if finite else np.nan
-            share = 100 * covered / len(rows)
-            lines.append(f"| {value} | {len(rows)} | {covered} | {share:.1f} | {apart:.4f} | {error:.4f} |")
-    numbers = sorted({row.drawn.number for row in comparisons})
-    missed = {row.drawn.number for row in comparisons if not row.covered and row.value in VALUES}
-    lines += ["", f"{len(numbers) - len(missed)} of {len(numbers)} cases have all three pressures covered."]
+            percentage = 100 * covered / len(rows)
+            lines.append(
+                f"| {value} | {len(rows)} | {covered} | {percentage:.1f} | {median_difference:.4f} | {error:.4f} |"
+            )
+    case_numbers = sorted({row.random_case.number for row in comparisons})
+    missed_cases = {row.random_case.number for row in comparisons if not row.is_covered and row.value in VALUES}
+    lines += [
+        "",
+        f"{len(case_numbers) - len(missed_cases)} of {len(case_numbers)} cases have all three pressures covered.",
+    ]
     lines += [f"Seconds per case: {', '.join(f'{name} {value:.2f}' for name, value in took.items())}.", "", "Misses:"]
     lines += [
-        f"* {row.drawn.number}: {row.drawn.name}: {row.value} {row.loose:.4f} +- {row.error:.4f}, "
+        f"* {row.random_case.number}: {row.random_case.name}: {row.value} {row.loose:.4f} +- {row.error:.4f}, "
         f"tightly {row.tight:.4f}"
         for row in comparisons
-        if not row.covered
+        if not row.is_covered
     ]
     return "\n".join([*lines, "", f"Refused: {len(refused)}", *(f"* {row}" for row in refused)])
 
@@ -216,23 +223,23 @@ def main() -> None:
     refused: list[str] = []
     start = time.perf_counter()
     for number in range(options.first, options.first + options.cases):
-        drawn = drawn_case(options.seed, number)
-        if drawn.case is None:
-            refused.append(f"{number}: {drawn.name}")
+        random_case = draw_case(options.seed, number)
+        if random_case.case is None:
+            refused.append(f"{number}: {random_case.name}")
             continue
         try:
             with one_blas_thread():
-                rows = list(compared(drawn, options.accuracy, options.reference))
+                rows = list(compare_values(random_case, options.accuracy, options.reference))
         except ContactStudyError as error:
-            refused.append(f"{number}: {drawn.name}: {type(error).__name__}: {error}")
+            refused.append(f"{number}: {random_case.name}: {type(error).__name__}: {error}")
             print(refused[-1], flush=True)
             continue
         comparisons += rows
         marks = ", ".join(
-            f"{row.value} {row.loose:.4f} +- {row.error:.4f} / {row.tight:.4f}{'' if row.covered else ' MISSED'}"
+            f"{row.value} {row.loose:.4f} +- {row.error:.4f} / {row.tight:.4f}{'' if row.is_covered else ' MISSED'}"
             for row in rows
         )
-        print(f"{number}: {drawn.name}: {marks}", flush=True)
+        print(f"{number}: {random_case.name}: {marks}", flush=True)
     table = _table(comparisons, refused, {"both": (time.perf_counter() - start) / max(options.cases, 1)})
     print(table)
     if options.markdown:

@@ -22,7 +22,7 @@ LONG_CELLS = (250, 500, 1000)
 MEMORY_BAR = 2000.0  # megabytes
 
 
-def building(repeats: int, _: Report) -> Iterator[Row]:
+def build_bodies(repeats: int, _: Report) -> Iterator[Row]:
     """Operator of a body with ends, and the time of a second case."""
     grid = Grid(x_range=(0.0, 8 * HALF_WIDTH), y_range=(-1.5 * HALF_WIDTH, 1.5 * HALF_WIDTH), cells_x=128, cells_y=64)
     body = FiniteLengthSpace(length=8 * HALF_WIDTH, material=STEEL)
@@ -63,15 +63,15 @@ def stresses(repeats: int, _: Report) -> Iterator[Row]:
         # Kernels are kept by depth: other depths have none.
         return stress_field(body, pressure, friction=friction, z=z * nudge() if cold else z, inside_cells=pressure)
 
-    def timed(friction: float, load: np.ndarray, cold: bool) -> dict[str, float]:
+    def time_stresses(friction: float, load: np.ndarray, cold: bool) -> dict[str, float]:
         works: dict[str, Callable[[], object]] = {
             name: partial(field, body, friction, load, cold) for name, body in bodies.items()
         }
         return medians(works, repeats)
 
-    sliding = timed(0.3, line, False)
-    cold = timed(0.0, line, True)
-    for name, seconds, bar in (("", cold, 0.26), ("..., same cells", timed(0.0, line, False), 0.11)):
+    sliding = time_stresses(0.3, line, False)
+    cold = time_stresses(0.0, line, True)
+    for name, seconds, bar in (("", cold, 0.26), ("..., same cells", time_stresses(0.0, line, False), 0.11)):
         yield Row(
             f"six stresses 128 x 128 x 32, uniform along x, half-space{name}",
             show(seconds["half-space"]),
@@ -80,15 +80,17 @@ def stresses(repeats: int, _: Report) -> Iterator[Row]:
             notes="with friction " + show(sliding["half-space"]) if name else "",
         )
         yield _against_half_space(f"... finite-length{name}", seconds)
-    for name, new in (("", True), ("..., same cells", False)):
-        yield _against_half_space(f"... under an elliptic pressure, finite-length{name}", timed(0.0, ellipse, new))
+    for name, is_cold in (("", True), ("..., same cells", False)):
+        yield _against_half_space(
+            f"... under an elliptic pressure, finite-length{name}", time_stresses(0.0, ellipse, is_cold)
+        )
 
 
 def _against_half_space(work: str, seconds: dict[str, float]) -> Row:
     """Row on a body with ends, whose bar is twice the half-space's time."""
     ratio = seconds["finite-length"] / seconds["half-space"]
-    seconds_finite, half = show(seconds["finite-length"]), "our half-space " + show(seconds["half-space"])
-    return Row(work, seconds_finite, half, f"{ratio:.2f}", "2x the half-space", ratio <= 2)
+    seconds_finite, half_space_text = show(seconds["finite-length"]), "our half-space " + show(seconds["half-space"])
+    return Row(work, seconds_finite, half_space_text, f"{ratio:.2f}", "2x the half-space", ratio <= 2)
 
 
 def long_rollers(repeats: int, report: Report) -> Iterator[Row]:
@@ -129,7 +131,7 @@ def memory(report: Report) -> Iterator[Row]:
         [sys.executable, "-m", "benchmarks.performance.memory"], capture_output=True, text=True, check=False
     )
     if process.returncode:
-        report.remark(f"the measurement of memory failed: {process.stderr.strip().splitlines()[-1]}")
+        report.add_remark(f"the measurement of memory failed: {process.stderr.strip().splitlines()[-1]}")
         return
     idle, contact, stress = (float(word) for word in process.stdout.split())
     yield Row(

@@ -41,8 +41,8 @@ def solve_classic(problem: Problem, tolerance: float) -> FloatArray:
     spectrum = influence(problem)
 
     def apply(pressure: FloatArray) -> FloatArray:
-        full = fft.irfft2(fft.rfft2(pressure, s=padded) * spectrum, s=padded)
-        return np.asarray(full[: cells[0], : cells[1]])
+        convolution = fft.irfft2(fft.rfft2(pressure, s=padded) * spectrum, s=padded)
+        return np.asarray(convolution[: cells[0], : cells[1]])
 
     total = problem.load * cells[0] * cells[1] / (problem.size[0] * problem.size[1])
     pressure = np.full(cells, total / gap.size)
@@ -58,12 +58,12 @@ def solve_classic(problem: Problem, tolerance: float) -> FloatArray:
         displacement = apply(direction)
         displacement -= displacement[contact].mean()
         step = float((height[contact] * direction[contact]).sum() / (displacement[contact] * direction[contact]).sum())
-        before = pressure
+        previous_pressure = pressure
         pressure = np.where(contact, np.maximum(pressure - step * direction, 0.0), 0.0)
         overlapping = (pressure == 0) & (height < 0)
         restart = 0.0 if overlapping.any() else 1.0
         pressure = np.where(overlapping, pressure - step * height, pressure)
         pressure *= total / pressure.sum()
-        if float(np.abs(pressure - before).sum()) / total < tolerance:
+        if float(np.abs(pressure - previous_pressure).sum()) / total < tolerance:
             return pressure
     raise RuntimeError(f"no convergence to {tolerance:g} in {MAX_ITERATIONS} iterations")

@@ -33,7 +33,7 @@ def difference(pressure: FloatArray, limit: FloatArray) -> float:
 
 
 def loosest_setting(solve: Solver, problem: Problem, goal: float = GOAL) -> tuple[float, float]:
-    """Loosest tolerance at which a code comes within `goal` of its own limit, and how near it then is.
+    """Loosest tolerance with an error below `goal` relative to the code's limit, and this error.
 
     Parameters
     ----------
@@ -68,24 +68,24 @@ def loosest_setting(solve: Solver, problem: Problem, goal: float = GOAL) -> tupl
 
 
 def compare(problem: Problem, names: tuple[str, ...], repeats: int, report: Report) -> tuple[dict[str, float], str]:
-    """Median seconds of each code at equal measured accuracy, and a note on the settings that it took."""
+    """Median seconds of each code at equal measured accuracy, and a note on its settings."""
     works: dict[str, Callable[[], object]] = {}
     notes = []
     limits: dict[str, FloatArray] = {}
-    for name, solve in available(names, report.remark):
+    for name, solve in available(names, report.add_remark):
         with quietly():
             try:
                 setting, error = loosest_setting(solve, problem)
             except RuntimeError as reason:
-                report.remark(f"{name} is skipped for {problem.gap.shape} cells: {reason}")
+                report.add_remark(f"{name} is skipped for {problem.gap.shape} cells: {reason}")
                 continue
             limits[name] = solve(problem, setting)
         works[name] = partial(solve, problem, setting)
         notes.append(f"{name} {error:.0e} at {setting:.0e}")
     with quietly():
         seconds = medians(works, repeats, warm_up=False)
-    apart = max(difference(pressure, limits[OURS]) for pressure in limits.values())
-    return seconds, f"measured error at setting: {', '.join(notes)}; codes agree within {apart:.0e}"
+    max_difference = max(difference(pressure, limits[OURS]) for pressure in limits.values())
+    return seconds, f"measured error at setting: {', '.join(notes)}; codes agree within {max_difference:.0e}"
 
 
 def point_contact(repeats: int, report: Report) -> Iterator[Row]:
@@ -111,7 +111,7 @@ def half_space_roller(repeats: int, report: Report) -> Iterator[Row]:
     """Cylinder with sharp ends on a half-space, rectangular cells."""
     problem = roller(ROLLER_CELLS, ROLLER_WINDOW, free_ends=False)
     seconds, note = compare(problem, PEERS[1:], repeats, report)
-    report.remark("aspher has square cells only: no roller on 512 x 64")
+    report.add_remark("aspher has square cells only: no roller on 512 x 64")
     ours = seconds.pop(OURS)
     yield Row(
         "half-space roller 512 x 64",
@@ -127,16 +127,18 @@ def half_space_roller(repeats: int, report: Report) -> Iterator[Row]:
 def finite_length_roller(repeats: int, report: Report) -> Iterator[Row]:
     """Contact with free ends on the same cells, once the operator is built."""
     bar = 2.0
-    half = roller(ROLLER_CELLS, ROLLER_WINDOW, free_ends=False)
+    half_space = roller(ROLLER_CELLS, ROLLER_WINDOW, free_ends=False)
     for overhang, label in ((2.0, "ends 2a inside the body's"), (0.0, "roller as long as the body")):
-        ended = roller(ROLLER_CELLS, ROLLER_WINDOW, free_ends=True, overhang=overhang)
+        with_ends = roller(ROLLER_CELLS, ROLLER_WINDOW, free_ends=True, overhang=overhang)
         works: dict[str, Callable[[], object]] = {
-            "finite": partial(contact_of, ended),
-            "built": partial(contact_of, half),
-            "cold": partial(solve_ours, half, 1e-6),
+            "finite": partial(contact_of, with_ends),
+            "built": partial(contact_of, half_space),
+            "cold": partial(solve_ours, half_space, 1e-6),
         }
         seconds = medians(works, repeats)
-        count = {name: int(contact_of(problem)["iterations"]) for name, problem in (("f", ended), ("h", half))}
+        count = {
+            name: int(contact_of(problem)["iterations"]) for name, problem in (("f", with_ends), ("h", half_space))
+        }
         ratio = seconds["finite"] / seconds["built"]
         yield Row(
             f"finite-length contact 512 x 64, built; {label}",
@@ -164,6 +166,6 @@ def iterations(_: int, report: Report) -> Iterator[Row]:
                 problem.body, problem.labelled(), load=problem.load, settings=ContactSettings(tolerance=tolerance)
             )
             if not bool(contact["converged"]):
-                report.remark(f"not converged: {name} at {tolerance:g}")
+                report.add_remark(f"not converged: {name} at {tolerance:g}")
             counts.append(f"{name}: {int(contact['iterations'])}")
         yield Row(f"operator applications at {tolerance:.0e}", ", ".join(counts), bar="aspher: 8 at 1e-6")

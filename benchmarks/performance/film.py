@@ -19,7 +19,7 @@ from contactstudy.profiles import Shape
 RADIUS, LENGTH, HALF_WIDTH = 5e-3, 10e-3, 65e-6
 MOES_LOAD, MOES_LUBRICANT = 20.0, 10.0
 SPEED = 1.0
-NEXT = (0.8, 1.25)
+NEXT_SPEED = (0.8, 1.25)
 """Next speeds over the first."""
 
 ACCURACY = 0.02
@@ -36,7 +36,7 @@ class LogarithmicDrop(Shape):
         return np.asarray(-self.amplitude * np.log(1 - 0.998 * (2 * x / length) ** 2))
 
 
-def roller_case(speed: float, *, free: bool) -> Case:
+def roller_case(speed: float, *, free_ends: bool) -> Case:
     """A rigid roller on a flush steel body, or on a half-space, in an oil with the numbers M and L at `SPEED`."""
     modulus = STEEL.plane_strain_modulus
     pressure = modulus * HALF_WIDTH / (2 * RADIUS)
@@ -46,7 +46,7 @@ def roller_case(speed: float, *, free: bool) -> Case:
         viscosity=root**2 * modulus * RADIUS / SPEED, pressure_viscosity=MOES_LUBRICANT / (2 * modulus * root**0.5)
     )
     return Case(
-        body=FiniteLengthSpace(length=LENGTH, material=STEEL) if free else HalfSpace(material=STEEL),
+        body=FiniteLengthSpace(length=LENGTH, material=STEEL) if free_ends else HalfSpace(material=STEEL),
         roller=Roller(radius=RADIUS, length=LENGTH, profile=LogarithmicDrop(HALF_WIDTH**2 / (4 * RADIUS))),
         max_pressure=pressure,
         motion=Sliding(body_speed=speed, roller_speed=speed),
@@ -56,19 +56,19 @@ def roller_case(speed: float, *, free: bool) -> Case:
 
 def timed_film(case: Case, start: xr.Dataset | None = None) -> tuple[float, xr.Dataset]:
     """Seconds of a film and the film."""
-    began = time.perf_counter()
+    start_time = time.perf_counter()
     film = solve_film(case, accuracy=ACCURACY, start=start)
-    return time.perf_counter() - began, film
+    return time.perf_counter() - start_time, film
 
 
 def films(_: int, report: Report) -> Iterator[Row]:
     """Films from the dry contact, once each: operators that an earlier film has kept serve the next."""
     seconds, film = timed_film(roller_case(SPEED, free=True))
     on_half_space, half_space = timed_film(roller_case(SPEED, free=False))
-    least, error = 1e9 * float(film["least_film"]), 1e9 * float(film["least_film_error"])
+    min_film, error = 1e9 * float(film["least_film"]), 1e9 * float(film["least_film_error"])
     least_half_space = 1e9 * float(half_space["least_film"])
     if error > ACCURACY * 1e9 * float(film["central_film"]):
-        report.remark("the least film is not settled to 2 % of the central film")
+        report.add_remark("the least film has not converged to 2 % of the central film")
     yield Row(
         f"film of a rigid roller, 10 mm, M = {MOES_LOAD:g}, L = {MOES_LUBRICANT:g}",
         show(seconds),
@@ -76,9 +76,9 @@ def films(_: int, report: Report) -> Iterator[Row]:
         f"{seconds / on_half_space:.2f}",
         "20 s; 2",
         seconds <= 20 and seconds <= 2 * on_half_space,
-        f"least film {least:.1f} +- {error:.1f} nm at the end, half-space {least_half_space:.1f} nm",
+        f"least film {min_film:.1f} +- {error:.1f} nm at the end, half-space {least_half_space:.1f} nm",
     )
-    for factor in NEXT:
+    for factor in NEXT_SPEED:
         next_seconds, _film = timed_film(roller_case(factor * SPEED, free=True), start=film)
         yield Row(
             f"film at {factor:g} of the speed",

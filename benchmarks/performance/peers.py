@@ -24,7 +24,7 @@ LIMIT_SETTING = 1e-10
 
 
 def solve_ours(problem: Problem, tolerance: float) -> FloatArray:
-    """Pressure by this package, from scratch: nothing is kept from an earlier call."""
+    """Pressure by this package, with an empty cache."""
     return np.asarray(contact_of(problem, tolerance, stretch=nudge())["pressure"].values)
 
 
@@ -32,7 +32,7 @@ def contact_of(problem: Problem, tolerance: float = 1e-6, *, stretch: float = 1.
     """Contact by this package, which never repeats a load; with the same `stretch` the operator is kept."""
     return solve_contact(
         problem.body,
-        problem.labelled(stretch),
+        problem.as_arrays(stretch),
         load=problem.nudged_load(),
         settings=ContactSettings(tolerance=tolerance, max_iterations=5000),
     )
@@ -63,12 +63,12 @@ def _tamaas() -> Solver:
     tamaas.set_log_level(tamaas.LogLevel.error)
 
     def solve(problem: Problem, tolerance: float) -> FloatArray:
-        # Its stopping rule has units, so it gets numbers near 1.
+        # The stopping rule has units, so inputs are scaled to about 1.
         unit, depth = problem.size[1], float(np.ptp(problem.gap[np.isfinite(problem.gap)]))
         scale = problem.contact_modulus * depth / unit
         size = [length / unit for length in problem.size]
         model = tamaas.ModelFactory.createModel(tamaas.model_type.basic_2d, size, list(problem.gap.shape))
-        # The operator takes the modulus that it finds when it is registered.
+        # The operator uses the modulus at its registration.
         model.E, model.nu = 1.0, 0.0
         tamaas.ModelFactory.registerNonPeriodic(model, "dcfft")
         solver = tamaas.PolonskyKeerRey(model, -problem.finite_gap / depth, tolerance)

@@ -18,7 +18,7 @@ STEEL = Material(210e9, 0.3)
 HALF_WIDTH = 1e-4
 RADIUS = 8e-3
 # Where a roller cannot touch, peers get a gap of this many times the largest finite one.
-OUT_OF_REACH = 10.0
+DISTANT_GAP = 10.0
 
 
 @dataclass(frozen=True)
@@ -51,9 +51,9 @@ class Problem:
     def finite_gap(self) -> FloatArray:
         """Gap for codes without infinite gaps."""
         finite = np.isfinite(self.gap)
-        return np.where(finite, self.gap, OUT_OF_REACH * self.gap[finite].max())
+        return np.where(finite, self.gap, DISTANT_GAP * self.gap[finite].max())
 
-    def labelled(self, stretch: float = 1.0) -> xr.DataArray:
+    def as_arrays(self, stretch: float = 1.0) -> xr.DataArray:
         """Gap with its coordinates; a stretch next to 1 makes a grid for which no operator is kept."""
         cells_x, cells_y = self.gap.shape
         x = (np.arange(cells_x) + 0.5) * self.size[0] / cells_x * stretch
@@ -88,7 +88,7 @@ def roller(cells: tuple[int, int], length: float, *, free_ends: bool, overhang: 
     free_ends : bool
         Whether the body ends at the window's edges along x.
     overhang : float
-        How far the window goes on beyond either end of the roller, in half-widths.
+        Distance of the window beyond either end of the roller, in half-widths.
 
     Returns
     -------
@@ -98,8 +98,8 @@ def roller(cells: tuple[int, int], length: float, *, free_ends: bool, overhang: 
     x = (np.arange(cells[0]) + 0.5) * size_x / cells[0] - size_x / 2
     y = (np.arange(cells[1]) + 0.5 - cells[1] / 2) * size_y / cells[1]
     roller_length = size_x - 2 * overhang * HALF_WIDTH
-    touching = np.where(np.abs(x) <= roller_length / 2, 0.0, np.inf)
-    gap = touching[:, None] + y**2 / (2 * RADIUS)
+    gap_values = np.where(np.abs(x) <= roller_length / 2, 0.0, np.inf)
+    gap = gap_values[:, None] + y**2 / (2 * RADIUS)
     body: Body = HalfSpace(material=STEEL)
     if free_ends:
         body = FiniteLengthSpace(length=size_x, material=STEEL)

@@ -9,18 +9,18 @@ from collections.abc import Callable, Iterator
 from importlib import metadata
 from pathlib import Path
 
-from benchmarks.performance import bodies, contacts, film, rolling, settled
+from benchmarks.performance import bodies, contacts, film, refinement, rolling
 from benchmarks.performance.timing import Report, Row
 
 PARTS: dict[str, Callable[[int, Report], Iterator[Row]]] = {
     "point": contacts.point_contact,
     "roller": contacts.half_space_roller,
     "finite": contacts.finite_length_roller,
-    "building": bodies.building,
+    "building": bodies.build_bodies,
     "stresses": bodies.stresses,
     "long": bodies.long_rollers,
     "rolling": rolling.steady_rolling,
-    "refined": settled.refined_columns,
+    "refined": refinement.refined_columns,
     "film": film.films,
     "iterations": contacts.iterations,
 }
@@ -51,7 +51,7 @@ def main() -> None:
         for row in PARTS[name](max(1, arguments.repeats), report):
             report.rows.append(row)
             print(row.plain(), flush=True)
-    report.remark(f"{versions()}; medians of {arguments.repeats}; {time.perf_counter() - started:.0f} s in all")
+    report.add_remark(f"{versions()}; medians of {arguments.repeats}; {time.perf_counter() - started:.0f} s in all")
     print("\n" + report.markdown())
     if arguments.markdown:
         arguments.markdown.write_text(report.markdown() + "\n", encoding="utf-8")

@@ -19,8 +19,8 @@ import numpy as np
 
 from contactstudy import Study, open_study, run_study, solve
 from contactstudy.study import RunReport
+from contactstudy.study.case_setup import build_setup
 from contactstudy.study.engine import WORKER_ENVIRONMENT
-from contactstudy.study.setup import build_setup
 from contactstudy.study.worker import Solver, single_threaded
 from tests.stand_in_solver import solve_fake
 
@@ -49,9 +49,9 @@ TABLE = {
 
 def run(study: Study, folder: Path, workers: int, solver: Solver | None = None) -> tuple[RunReport, float]:
     """Run a study; return the report and the seconds on the wall clock, start of workers included."""
-    began = time.perf_counter()
+    start_time = time.perf_counter()
     report = run_study(study, folder, workers=workers, progress=False, solver=solver)
-    seconds = time.perf_counter() - began
+    seconds = time.perf_counter() - start_time
     assert report.counts == {"ok": len(report.plan)}, report.counts
     return report, seconds
 
@@ -60,15 +60,18 @@ def overhead(frictions: int) -> None:
     """Print the processor time of cases beyond their contact: 8 contacts, solved once before and kept in memory."""
     contacts = {"max_pressure": [1e9, 1.5e9], "e_over_a": [0.0, 1.0, 2.0, 4.0]}
     seconds = []
-    for number in (2, 1, frictions):  # the first run solves the contacts
-        swept = contacts | {"friction": (0.3 * np.arange(1, number + 1) / number).tolist()}
+    for friction_count in (2, 1, frictions):  # the first run solves the contacts
+        swept = contacts | {"friction": (0.3 * np.arange(1, friction_count + 1) / friction_count).tolist()}
         study = Study(name="overhead", level="summary", base=TABLE, sweep=swept)
         with tempfile.TemporaryDirectory() as folder:
-            began = time.process_time()
+            start_time = time.process_time()
             run(study, Path(folder), workers=0)
-            seconds.append(time.process_time() - began)
-    each = (seconds[2] - seconds[1]) / (8 * (frictions - 1))
-    print(f"overhead: {1e3 * each:.2f} ms of processor time per case beyond its contact (bar 5 ms)", flush=True)
+            seconds.append(time.process_time() - start_time)
+    seconds_per_case = (seconds[2] - seconds[1]) / (8 * (frictions - 1))
+    print(
+        f"overhead: {1e3 * seconds_per_case:.2f} ms of processor time per case beyond its contact (bar 5 ms)",
+        flush=True,
+    )
 
 
 def files(cases: int, level: str) -> None:
@@ -77,23 +80,24 @@ def files(cases: int, level: str) -> None:
     base = BASE | {"roller_length": 0.3e-3}
     study = Study(name="files", level=level, base=base, sweep=sweep | {"e_over_a": np.linspace(0, 4, 10).tolist()})
     with tempfile.TemporaryDirectory() as name:
-        began = time.process_time()
+        start_time = time.process_time()
         report, _ = run(study, Path(name), 0, solve_fake)
-        solving = time.process_time() - began
+        solving_seconds = time.process_time() - start_time
         size = sum(path.stat().st_size for path in report.files)
         count = len(report.files)
         del report
-        began = time.perf_counter()
-        opened = open_study(name)
-        opening = time.perf_counter() - began
-        began = time.perf_counter()
-        largest = float(opened["peak_pressure"].max())
-        reading = time.perf_counter() - began
+        start_time = time.perf_counter()
+        dataset = open_study(name)
+        opening_seconds = time.perf_counter() - start_time
+        start_time = time.perf_counter()
+        max_pressure = float(dataset["peak_pressure"].max())
+        reading = time.perf_counter() - start_time
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e3
     print(
         f"files, level {level}: {study.size} cases, {count} files, {size / study.size:.0f} bytes per case, "
-        f"{1e3 * solving / study.size:.1f} ms of processor time per case with the stand-in solver, opened in "
-        f"{opening:.1f} s, one number of all ({largest:.3g}) in {reading:.2f} s, largest memory {peak:.0f} MB",
+        f"{1e3 * solving_seconds / study.size:.1f} ms of processor time per case with the stand-in solver, opened in "
+        f"{opening_seconds:.1f} s, one number of all ({max_pressure:.3g}) in {reading:.2f} s, "
+        f"largest memory {peak:.0f} MB",
         flush=True,
     )
 
@@ -106,31 +110,31 @@ def planning() -> None:
         "friction": np.linspace(0, 0.2, 100).tolist(),
     }
     study = Study(name="million", base=TABLE, sweep=sweep)
-    began = time.process_time()
+    start_time = time.process_time()
     plan = study.plan()
     unique, checked = len(plan.unique), plan.review.checked
-    seconds = time.process_time() - began
+    seconds = time.process_time() - start_time
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e3
     print(f"plan: {unique} cases, {checked} contacts checked, {seconds:.1f} s (bar 10 s), {peak:.0f} MB (bar 1000 MB)")
 
 
-def solve_bare(parameters: list[dict[str, object]]) -> float:
+def solve_without_study(parameters: list[dict[str, object]]) -> float:
     """Solve cases without the layer; return the seconds."""
-    began = time.perf_counter()
+    start_time = time.perf_counter()
     with single_threaded():
         for values in parameters:
             setup = build_setup(values)
             solve(setup.case, setup.grid, **setup.options)
-    return time.perf_counter() - began
+    return time.perf_counter() - start_time
 
 
-def bare(parameters: list[dict[str, object]], processes: int) -> float:
+def time_without_study(parameters: list[dict[str, object]], processes: int) -> float:
     """Return the seconds that cases take in `processes` bare processes, start and imports not counted."""
     with ProcessPoolExecutor(processes, mp_context=multiprocessing.get_context("spawn")) as pool:
-        list(pool.map(solve_bare, [parameters[:1]] * processes))
-        began = time.perf_counter()
-        list(pool.map(solve_bare, [parameters[index::processes] for index in range(processes)]))
-        return time.perf_counter() - began
+        list(pool.map(solve_without_study, [parameters[:1]] * processes))
+        start_time = time.perf_counter()
+        list(pool.map(solve_without_study, [parameters[index::processes] for index in range(processes)]))
+        return time.perf_counter() - start_time
 
 
 def scaling(cases: int, rounds: int) -> None:
@@ -147,11 +151,11 @@ def scaling(cases: int, rounds: int) -> None:
         for workers in (1, 2):
             with tempfile.TemporaryDirectory() as folder:
                 seconds[workers] = run(study, Path(folder), workers)[1]
-        alone = {processes: bare(parameters, processes) for processes in (1, 2)}
+        direct = {processes: time_without_study(parameters, processes) for processes in (1, 2)}
         print(
             f"scaling: {len(parameters)} cases, 1 worker {seconds[1]:.1f} s, 2 workers {seconds[2]:.1f} s: "
-            f"{seconds[1] / seconds[2]:.2f} times as fast (bar 1.7); bare processes {alone[1]:.1f} s, "
-            f"{alone[2]:.1f} s: {alone[1] / alone[2]:.2f} times; load of the machine {os.getloadavg()[0]:.1f}",
+            f"{seconds[1] / seconds[2]:.2f} times as fast (bar 1.7); bare processes {direct[1]:.1f} s, "
+            f"{direct[2]:.1f} s: {direct[1] / direct[2]:.2f} times; load of the machine {os.getloadavg()[0]:.1f}",
             flush=True,
         )
 

@@ -57,7 +57,7 @@ class Report:
     rows: list[Row] = field(default_factory=list)
     remarks: list[str] = field(default_factory=list)
 
-    def remark(self, text: str) -> None:
+    def add_remark(self, text: str) -> None:
         """Keep a remark once."""
         if text not in self.remarks:
             self.remarks.append(text)

@@ -20,7 +20,7 @@ from contactstudy.arrays.variables import (
     Variable,
     labels,
     require,
-    required_in_si,
+    require_in_si,
     variable_of,
 )
 from contactstudy.checks import Array
@@ -209,7 +209,7 @@ def normalized(dataset: xr.Dataset) -> xr.Dataset:
     Dataset
         The same variables; each variable with a unit in `POWERS` is divided by its scale, has the unit ``1``, and names
         the scale. `hertz_half_width` and `hertz_max_pressure` stay in SI; so do swept parameters, and positions in
-        metres that cases of different a share: use the coordinates ``x_over_a`` and similar there.
+        metres that cases of different a share: use the coordinates ``x_over_a`` and similar for these.
 
     Raises
     ------
@@ -231,7 +231,7 @@ def normalized(dataset: xr.Dataset) -> xr.Dataset:
     def scaled(array: xr.DataArray, specification: Variable) -> xr.Variable:
         powers = POWERS[specification.units]
         result = array.variable / (half_width ** powers[0] * pressure ** powers[1])
-        # Dimensions of the study come first, as in the result.
+        # Dimensions of the study precede, as in the result.
         result = result.transpose(*(dim for dim in result.dims if dim not in array.dims), *array.dims)
         a, p0 = powers
         scale = " ".join(["p0"] * p0 + ([f"a**{a}"] if a > 1 else ["a"] * a))  # such as p0 a**2
@@ -284,7 +284,7 @@ def positions_over_a(dataset: xr.Dataset) -> xr.Dataset:
     >>> row.dims, round(float(row.e_over_a), 2), round(float(row.gamma), 2)
     (('y_over_a',), 1.54, 0.1)
     """
-    dataset = required_in_si(dataset, "hertz_half_width")
+    dataset = require_in_si(dataset, "hertz_half_width")
     half_width = dataset["hertz_half_width"]
     if half_width.size == 1:
         dataset = single_case(dataset)
@@ -312,7 +312,7 @@ def positions_over_a(dataset: xr.Dataset) -> xr.Dataset:
 
 
 def _case_coordinates(result: xr.Dataset) -> dict[str, Any]:
-    """Coordinates of a result that identify its case: e/a, friction, gamma and profile, as far as it has them."""
+    """Coordinates of a result that identify its case: e/a, friction, gamma and profile, as far as present."""
     if "case" not in attribute(result, INPUTS_ATTRIBUTE):
         return {}
     case = solved_case(result)

@@ -13,11 +13,11 @@ from contactstudy import checks
 from contactstudy.analysis.axes import cell_size, dimension_along, positions, reduce_dims, single_case, sort_positions
 from contactstudy.arrays.cells import labelled_cells
 from contactstudy.arrays.grid import Grid
-from contactstudy.arrays.variables import describe, named, require, required_in_si, without_error
+from contactstudy.arrays.variables import describe, name_array, require, require_in_si, without_error
 from contactstudy.checks import Array, FloatArray, IntArray
 from contactstudy.errors import InvalidInputError
 
-SKIPPED, FITTED = 2, 5  # Cells beside an edge that carry the error of the cut cell, and cells behind them in the fit
+SKIPPED_CELLS, FITTED_CELLS = 2, 5  # Cells next to an edge, with the error of the cut cell; following cells in the fit
 # Largest error of an edge in cells, measured on Hertz contacts at all positions of the edge in a cell
 EDGE_UNCERTAINTY = 0.04
 
@@ -40,7 +40,7 @@ def _last_edges(pressure: FloatArray, gap: FloatArray) -> FloatArray:
     edges = np.full(pressure.shape[0], np.nan)
     rows = np.flatnonzero(pressure.any(axis=1))
     last = pressure.shape[1] - 1 - (pressure[rows, ::-1] > 0).argmax(axis=1)
-    begin_inside, begin_outside = last - SKIPPED, last + 1 + SKIPPED
+    begin_inside, begin_outside = last - SKIPPED_CELLS, last + 1 + SKIPPED_CELLS
     squared = _samples(pressure[rows], begin_inside, -1) ** 2
     opening = _samples(gap[rows], begin_outside, 1) ** (2 / 3)
     face = last + 0.5
@@ -53,20 +53,20 @@ def _last_edges(pressure: FloatArray, gap: FloatArray) -> FloatArray:
 
 
 def _samples(values: FloatArray, begin: IntArray, direction: int) -> FloatArray:
-    """Values of each row from the cell `begin`: array (row, `FITTED`); NaN unless all are positive and finite."""
-    cells = begin[:, None] + direction * np.arange(FITTED)
-    inside = (cells >= 0) & (cells < values.shape[1])
-    samples = np.take_along_axis(values, np.where(inside, cells, 0), axis=1)
-    valid = (inside & (samples > 0) & np.isfinite(samples)).all(axis=1)
+    """Values of each row from the cell `begin`: array (row, `FITTED_CELLS`); NaN unless all are positive and finite."""
+    cells = begin[:, None] + direction * np.arange(FITTED_CELLS)
+    in_range = (cells >= 0) & (cells < values.shape[1])
+    samples = np.take_along_axis(values, np.where(in_range, cells, 0), axis=1)
+    valid = (in_range & (samples > 0) & np.isfinite(samples)).all(axis=1)
     return np.where(valid[:, None], samples, np.nan)
 
 
 def _distance_to_zero(values: FloatArray) -> FloatArray:
     """Return the steps from the zero of the fitted quadratic to the first of growing values; NaN without a zero."""
-    to_quadratic = np.linalg.pinv(np.vander(np.arange(float(FITTED)), 3))
-    bend, slope, level = to_quadratic @ values.T
+    to_quadratic = np.linalg.pinv(np.vander(np.arange(float(FITTED_CELLS)), 3))
+    bend, slope, constant_term = to_quadratic @ values.T
     with np.errstate(invalid="ignore", divide="ignore"):
-        return np.asarray(2 * level / (slope + np.sqrt(slope**2 - 4 * bend * level)))
+        return np.asarray(2 * constant_term / (slope + np.sqrt(slope**2 - 4 * bend * constant_term)))
 
 
 def contact_edges(dataset: xr.Dataset) -> xr.Dataset:
@@ -108,27 +108,27 @@ def contact_edges(dataset: xr.Dataset) -> xr.Dataset:
     require(contact, "pressure", "gap")
     pressure, grid = labelled_cells("dataset.pressure", contact["pressure"])
     gap, _ = labelled_cells("dataset.gap", contact["gap"], infinite=True)
-    left, right = contact_borders(pressure, grid.y, gap)
+    low, high = contact_borders(pressure, grid.y, gap)
     touches, faces = bool(pressure.any()), grid.x_edges
     first = last = np.nan
     if touches and grid.uniform:
         starts, stops = contact_borders(pressure.T, grid.x, gap.T)
         # A smooth end is not beyond the face of the shape or the body.
-        facing = np.flatnonzero(np.isfinite(gap).any(axis=1))
-        first = float(max(np.nanmin(starts), faces[facing[0]]))
-        last = float(min(np.nanmax(stops), faces[facing[-1] + 1]))
+        under_roller = np.flatnonzero(np.isfinite(gap).any(axis=1))
+        first = float(max(np.nanmin(starts), faces[under_roller[0]]))
+        last = float(min(np.nanmax(stops), faces[under_roller[-1] + 1]))
     elif touches:
         loaded = np.flatnonzero(pressure.any(axis=1))
         first, last = float(faces[loaded[0]]), float(faces[loaded[-1] + 1])
     result = xr.Dataset(
         {
-            "y_left": ("x", left),
-            "y_right": ("x", right),
-            "half_width": ("x", 0.5 * (right - left)),
+            "y_left": ("x", low),
+            "y_right": ("x", high),
+            "half_width": ("x", 0.5 * (high - low)),
             "x_first": first,
             "x_last": last,
             "contact_length": last - first if touches else 0.0,
-            "contact_area": _area(grid, gap, right - left, (first, last)) if touches else 0.0,
+            "contact_area": _area(grid, gap, high - low, (first, last)) if touches else 0.0,
         },
         coords={"x": contact["x"].values},
     )
@@ -146,7 +146,7 @@ def _area(grid: Grid, gap: FloatArray, width: FloatArray, ends: tuple[float, flo
         for neighbour in (columns[0] - 1, columns[-1] + 1)
     ]
     # Columns near an end that are too narrow for the fits would spoil the spline, which has the zero of a smooth end.
-    wide = columns[width[columns] > 2 * (SKIPPED + FITTED) * grid.dy]
+    wide = columns[width[columns] > 2 * (SKIPPED_CELLS + FITTED_CELLS) * grid.dy]
     columns = columns[(columns >= wide[0]) & (columns <= wide[-1])] if wide.size > 3 else columns
     # The border within an outermost column may lie short of its centre.
     columns = columns[(grid.x[columns] > first) & (grid.x[columns] < last)]
@@ -186,8 +186,8 @@ def axial_pressure(dataset: xr.Dataset) -> xr.DataArray:
     >>> axial_pressure(xr.Dataset({"pressure": pressure})).values.tolist()
     [1.0, 2.0]
     """
-    pressure = required_in_si(dataset, "pressure", normalized=True)["pressure"]
-    return named("axial_pressure", pressure.max(dimension_along(pressure, "y")))
+    pressure = require_in_si(dataset, "pressure", normalized=True)["pressure"]
+    return name_array("axial_pressure", pressure.max(dimension_along(pressure, "y")))
 
 
 def line_load(dataset: xr.Dataset) -> xr.DataArray:
@@ -215,11 +215,11 @@ def line_load(dataset: xr.Dataset) -> xr.DataArray:
     >>> line_load(xr.Dataset({"pressure": pressure})).values.tolist()
     [1.0, 5.0]
     """
-    pressure = required_in_si(dataset, "pressure")["pressure"]
+    pressure = require_in_si(dataset, "pressure")["pressure"]
     y = dimension_along(pressure, "y")
     if pressure.sizes[y] < 2:
         raise InvalidInputError("dataset", dict(pressure.sizes), "a result with two positions along y or more")
-    return named("line_load", pressure.sum(y, min_count=1) * cell_size(pressure, "y"))
+    return name_array("line_load", pressure.sum(y, min_count=1) * cell_size(pressure, "y"))
 
 
 def load_between(dataset: xr.Dataset, start: xr.DataArray | float, stop: xr.DataArray | float) -> xr.DataArray:
@@ -260,13 +260,13 @@ def load_between(dataset: xr.Dataset, start: xr.DataArray | float, stop: xr.Data
         raise InvalidInputError("start, stop", (start, stop), f"a part of the cells, {low:.4g} to {high:.4g} m")
     overlap = (np.minimum(x + half_cell, stop) - np.maximum(x - half_cell, start)).clip(0.0)
     total = (load * overlap).sum(dimension_along(load, "x"), min_count=1)
-    return named("normal_load", total).assign_attrs(comment="between two positions along the axis")
+    return name_array("normal_load", total).assign_attrs(comment="between two positions along the axis")
 
 
 def half_width(dataset: xr.Dataset) -> xr.Dataset:
     """Return the half-width of the contact at each position along the roller's axis, and its middle.
 
-    The border follows from the pressure alone; with few loaded cells across y it is the face of a cell.
+    The border follows from the pressure alone; with few loaded cells across y the border is the face of a cell.
 
     Parameters
     ----------
@@ -290,12 +290,14 @@ def half_width(dataset: xr.Dataset) -> xr.Dataset:
     >>> half_width(xr.Dataset({"pressure": pressure})).half_width.values.round(9).tolist()
     [1.0]
     """
-    pressure = sort_positions(required_in_si(dataset, "pressure", normalized=True)["pressure"], "y")
+    pressure = sort_positions(require_in_si(dataset, "pressure", normalized=True)["pressure"], "y")
     y = dimension_along(pressure, "y")
     low, high = reduce_dims(contact_borders, [(pressure, [y]), (positions(pressure, "y"), [y])], 2)
     width = (0.5 * (high - low)).fillna(0.0).where(pressure.notnull().any(y))
-    middle = 0.5 * (low + high)
-    return xr.Dataset({"half_width": named("half_width", width), "contact_middle": named("contact_middle", middle)})
+    mid_length = 0.5 * (low + high)
+    return xr.Dataset(
+        {"half_width": name_array("half_width", width), "contact_middle": name_array("contact_middle", mid_length)}
+    )
 
 
 def unloaded_gap(dataset: xr.Dataset) -> xr.DataArray:
@@ -324,8 +326,8 @@ def unloaded_gap(dataset: xr.Dataset) -> xr.DataArray:
     """
     require(dataset, "initial_gap")
     gap = dataset["initial_gap"]
-    smallest = gap.min(dimension_along(gap, "y"))
-    return named("unloaded_gap", smallest.where(np.isfinite(smallest)))
+    min_gap = gap.min(dimension_along(gap, "y"))
+    return name_array("unloaded_gap", min_gap.where(np.isfinite(min_gap)))
 
 
 def axial_profiles(dataset: xr.Dataset) -> xr.Dataset:

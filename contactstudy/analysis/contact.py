@@ -21,7 +21,7 @@ from contactstudy.analysis.axes import (
 from contactstudy.analysis.axial import axial_pressure, unloaded_gap
 from contactstudy.analysis.peaks import largest_sample, measure
 from contactstudy.analysis.provenance import INPUTS_ATTRIBUTE, attribute, solved_case
-from contactstudy.arrays.variables import named, required_in_si, variable_of, without_error
+from contactstudy.arrays.variables import name_array, require_in_si, variable_of, without_error
 from contactstudy.checks import Array
 from contactstudy.errors import InvalidInputError
 
@@ -38,14 +38,14 @@ class ContactNumbers(NamedTuple):
     contact_length_loss: Array  # m, facing length without contact
     resultant: Array  # N
     load_position: Array  # m, along x
-    facing_middle: Array  # m
+    mid_position: Array  # m
 
 
-def contact_numbers(pressure: Array, facing: Array, x: Array, y: Array, dx: Array, dy: Array) -> ContactNumbers:
-    """Return the scalars of pressures (..., x, y), with `facing`, `x`, `dx` (..., x), and `y`, `dy` (..., y)."""
-    solved = np.asarray(~np.isnan(pressure).all(axis=(-2, -1)))
+def contact_numbers(pressure: Array, under_roller: Array, x: Array, y: Array, dx: Array, dy: Array) -> ContactNumbers:
+    """Return the scalars of pressures (..., x, y), with `under_roller`, `x`, `dx` (..., x), and `y`, `dy` (..., y)."""
+    has_pressure = np.asarray(~np.isnan(pressure).all(axis=(-2, -1)))
     # A failed case lacks positions.
-    x, y, dx, dy = (np.where(solved[..., None], values, 0.0) for values in (x, y, dx, dy))
+    x, y, dx, dy = (np.where(has_pressure[..., None], values, 0.0) for values in (x, y, dx, dy))
     loaded = np.asarray(pressure > 0)
 
     def length(centres: Array, mask: Array, width: Array) -> Array:
@@ -57,21 +57,21 @@ def contact_numbers(pressure: Array, facing: Array, x: Array, y: Array, dx: Arra
     resultant = np.nansum(load, axis=-1)
     moment = np.nansum(load * x, axis=-1)
     position = np.divide(moment, resultant, out=np.full(np.shape(moment), np.nan), where=resultant > 0)
-    first, last = _range(x, facing)
+    first, last = _range(x, under_roller)
     numbers = (
         np.nansum(loaded * dx[..., :, None] * dy[..., None, :], axis=(-2, -1)),
         along,
         length(y, np.asarray(loaded.any(axis=-2)), dy),
-        length(x, facing, dx) - along,
+        length(x, under_roller, dx) - along,
         resultant,
         position,
         0.5 * np.where(first <= last, first, np.nan) + 0.5 * last,
     )
-    return ContactNumbers(*(np.where(solved, number, np.nan) for number in numbers))
+    return ContactNumbers(*(np.where(has_pressure, value, np.nan) for value in numbers))
 
 
 def _range(centres: Array, mask: Array) -> tuple[Array, Array]:
-    """First and last position of a mask along the last axis; infinite if it is empty."""
+    """First and last position of a mask along the last axis; infinite for an empty mask."""
     return np.where(mask, centres, np.inf).min(axis=-1), np.where(mask, centres, -np.inf).max(axis=-1)
 
 
@@ -89,7 +89,7 @@ def contact_results(dataset: xr.Dataset, about: float | None = None) -> xr.Datas
     Returns
     -------
     Dataset
-        `peak_pressure` with ``_x`` and ``_y``: settled, with its error, where a whole result has it, otherwise of the
+        `peak_pressure` with ``_x`` and ``_y``: refined, with its error, in a complete result, otherwise of the
         highest cell; `edge_pressure_first`, `edge_pressure_last` (Pa); `contact_area` (m2), `contact_length`,
         `contact_width` (m), in whole cells; `contact_length_loss` (m, facing length without contact); `resultant` (N),
         `load_position` (m, its position x) and `moment` (N m, positive beyond `about`). NaN for cases without pressure.
@@ -107,23 +107,23 @@ def contact_results(dataset: xr.Dataset, about: float | None = None) -> xr.Datas
     >>> [float(result[name]) for name in ("contact_area", "contact_length_loss", "resultant", "moment")]
     [4.0, 2.0, 8.0, -2.0]
     """
-    dataset = required_in_si(dataset, "pressure", normalized=True)
+    dataset = require_in_si(dataset, "pressure", normalized=True)
     pressure = dataset["pressure"]
     x, y = dimension_along(pressure, "x"), dimension_along(pressure, "y")
-    facing = (unloaded_gap(dataset) if "initial_gap" in dataset else axial_pressure(dataset)).notnull()
+    under_roller = (unloaded_gap(dataset) if "initial_gap" in dataset else axial_pressure(dataset)).notnull()
     arguments = [
         (pressure, [x, y]),
-        (facing, [x]),
+        (under_roller, [x]),
         *((positions(pressure, axis), [dim]) for axis, dim in (("x", x), ("y", y))),
         *((cell_widths(pressure, axis), [dim]) for axis, dim in (("x", x), ("y", y))),
     ]
     numbers = dict(zip(ContactNumbers._fields, reduce_dims(contact_numbers, arguments, 7), strict=True))
-    middle, loss = numbers.pop("facing_middle"), numbers.pop("contact_length_loss")
-    centre = middle if about is None else checks.finite("about", about, "metres")
+    mid_position, loss = numbers.pop("mid_position"), numbers.pop("contact_length_loss")
+    centre = mid_position if about is None else checks.finite("about", about, "metres")
     numbers["moment"] = numbers["resultant"] * (numbers["load_position"] - centre)
     if "initial_gap" in dataset:
         numbers["contact_length_loss"] = loss
-    scalars = {name: named(name, value) for name, value in numbers.items()}
+    scalars = {name: name_array(name, value) for name, value in numbers.items()}
     for name in ("contact_area", "contact_length"):
         scalars[name].attrs["comment"] = "in whole cells"
     peak = _peak_pressure(dataset, numbers["resultant"])
@@ -131,18 +131,18 @@ def contact_results(dataset: xr.Dataset, about: float | None = None) -> xr.Datas
 
 
 def _peak_pressure(dataset: xr.Dataset, resultant: xr.DataArray) -> xr.Dataset:
-    """Largest pressure and its position: settled if the contact is whole."""
-    sampled = largest_sample(dataset, "pressure")
+    """Largest pressure and its position: refined if the contact is complete."""
+    largest_pressure = largest_sample(dataset, "pressure")
     names = ("peak_pressure", "peak_pressure_error")
     if not {*names, "normal_load"} <= set(dataset.variables):
-        return sampled
-    whole = resultant > (1 - MISSING_LOAD) * dataset["normal_load"]
-    settled = dataset[list(names)].reset_coords(drop=True)
-    peak = settled["peak_pressure"].where(whole, sampled["peak_pressure"])
+        return largest_pressure
+    covers_contact = resultant > (1 - MISSING_LOAD) * dataset["normal_load"]
+    stored_peak = dataset[list(names)].reset_coords(drop=True)
+    peak = stored_peak["peak_pressure"].where(covers_contact, largest_pressure["peak_pressure"])
     comment = "settled where the contact is whole, otherwise of the highest cell"
-    return sampled.assign(
-        peak_pressure=named("peak_pressure", peak).assign_attrs(comment=comment),
-        peak_pressure_error=settled["peak_pressure_error"].where(whole),
+    return largest_pressure.assign(
+        peak_pressure=name_array("peak_pressure", peak).assign_attrs(comment=comment),
+        peak_pressure_error=stored_peak["peak_pressure_error"].where(covers_contact),
     )
 
 
@@ -179,16 +179,18 @@ def edge_pressure(dataset: xr.Dataset) -> xr.Dataset:
         loaded = values > 0
         indices = loaded.argmax(axis=-1), values.shape[-1] - 1 - loaded[..., ::-1].argmax(axis=-1)
         first, last = (np.take_along_axis(values, index[..., None], axis=-1)[..., 0] for index in indices)
-        none = ~loaded.any(axis=-1)
-        return np.where(none, np.nan, first), np.where(none, np.nan, last)
+        without_contact = ~loaded.any(axis=-1)
+        return np.where(without_contact, np.nan, first), np.where(without_contact, np.nan, last)
 
     values = reduce_dims(first_and_last, [(axial, [dimension_along(axial, "x")])], 2)
     edges = {}
     for end, value, cut in zip(("first", "last"), values, cut_ends(dataset), strict=True):
         edge = value.where(cut == 0)
-        # The mean of a cell beside a singular end depends on the cell alone.
+        # The mean of a cell at a singular end depends on the cell only.
         singular = np.isinf(dataset.get(f"end_pressure_{end}", xr.DataArray(0.0)))
-        edges[f"edge_pressure_{end}"] = named(f"edge_pressure_{end}", edge.where(~singular | edge.isnull(), np.inf))
+        edges[f"edge_pressure_{end}"] = name_array(
+            f"edge_pressure_{end}", edge.where(~singular | edge.isnull(), np.inf)
+        )
         edges[f"edge_pressure_{end}"].attrs["comment"] = "mean of the outermost loaded cell"
     return without_error(xr.Dataset(edges), *edges)
 
@@ -217,12 +219,12 @@ def cut_ends(dataset: xr.Dataset) -> tuple[xr.DataArray, xr.DataArray]:
     >>> [[float(end) for end in cut_ends(part)] for part in (contact, contact.isel(x=[1, 2]), contact.isel(x=[0, 1]))]
     [[0.0, 0.0], [1.0, 1.0], [0.0, 1.0]]
     """
-    dataset = required_in_si(dataset, "pressure", normalized=True)
+    dataset = require_in_si(dataset, "pressure", normalized=True)
     pressure = dataset["pressure"]
-    scaled = pressure.attrs.get("units") == "1"
-    if "normal_load" not in dataset or scaled or pressure.sizes[dimension_along(pressure, "y")] < 2:
+    is_normalized = pressure.attrs.get("units") == "1"
+    if "normal_load" not in dataset or is_normalized or pressure.sizes[dimension_along(pressure, "y")] < 2:
         return xr.DataArray(0.0), xr.DataArray(0.0)
-    dataset = required_in_si(dataset, "normal_load")
+    dataset = require_in_si(dataset, "normal_load")
     for axis in "xy":
         pressure = sort_positions(pressure, axis)
     x, y = dimension_along(pressure, "x"), dimension_along(pressure, "y")
@@ -249,19 +251,19 @@ def _find_cuts(
     x, dx = (np.broadcast_to(values, cells.shape) for values in (x, dx))
     resultant = np.nansum(pressure * dx[..., :, None] * dy[..., None, :], axis=(-2, -1))
     gaps = np.abs(np.diff(x, axis=-1) - 0.5 * (dx[..., 1:] + dx[..., :-1])) > END_TOLERANCE * dx[..., 1:]
-    pressed = pressure > 0
+    in_contact = pressure > 0
     # A cut along y, or cells left out, also reduce the resultant.
-    short = (resultant < (1 - MISSING_LOAD) * load) & ~pressed[..., [0, -1]].any(axis=(-2, -1)) & ~gaps.any(axis=-1)
+    cut = (resultant < (1 - MISSING_LOAD) * load) & ~in_contact[..., [0, -1]].any(axis=(-2, -1)) & ~gaps.any(axis=-1)
 
     def outermost(values: Array, *, first: bool) -> Array:
         last = cells.sum(axis=-1, keepdims=True) - 1
         index = np.zeros_like(last) if first else np.maximum(last, 0)
         return np.asarray(np.take_along_axis(values, index, axis=-1)[..., 0])
 
-    loaded, slack = pressed.any(axis=-1), END_TOLERANCE * dx
+    loaded, slack = in_contact.any(axis=-1), END_TOLERANCE * dx
     starts_inside, stops_inside = x - 0.5 * dx > start + slack, x + 0.5 * dx < stop - slack
     first, last = outermost(loaded & starts_inside, first=True), outermost(loaded & stops_inside, first=False)
-    return (short & first).astype(np.float64), (short & last).astype(np.float64)
+    return (cut & first).astype(np.float64), (cut & last).astype(np.float64)
 
 
 def edge_factors(
@@ -301,17 +303,19 @@ def edge_factors(
     >>> float(result.end_over_middle_first), float(result.end_over_middle_last)
     (3.0, 2.0)
     """
-    dataset = required_in_si(dataset, "pressure", "hertz_half_width")
+    dataset = require_in_si(dataset, "pressure", "hertz_half_width")
     checks.instance("variable", variable, str, "a name; a second result is given as reference=")
     length = dataset["hertz_half_width"] if reach is None else checks.positive("reach", reach, "metres")
     values = _values(dataset, variable, length)
     factors = {f"end_over_middle_{end}": values[end] / values["middle"] for end in ("first", "last")}
     if reference is not None:
-        reference = required_in_si(reference, "pressure", argument="reference")
+        reference = require_in_si(reference, "pressure", argument="reference")
         reference_values = _values(reference, variable, length)
         factors |= {f"over_reference_{name}": value / reference_values[name] for name, value in values.items()}
     base = variable_of(variable, dataset[variable].attrs if variable in dataset else {})
-    result = xr.Dataset({name: named(name, value.reset_coords(drop=True), base) for name, value in factors.items()})
+    result = xr.Dataset(
+        {name: name_array(name, value.reset_coords(drop=True), base) for name, value in factors.items()}
+    )
     return without_error(result, *factors)
 
 
@@ -339,6 +343,6 @@ def _values(dataset: xr.Dataset, variable: str, reach: xr.DataArray | float) -> 
     distance = abs(points - 0.5 * (borders[0] + borders[1]))
     nearest = distance.fillna(np.inf).argmin(x)
     width = cell_size(profile, "x")
-    # Beyond the points there is no value.
+    # Positions beyond the points have no value.
     within = distance.min(x) <= (width.isel({x: nearest}) if x in width.dims else width)
     return values | {"middle": profile.isel({x: nearest}).where(within), "peak": profile.max(x)}

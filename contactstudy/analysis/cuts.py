@@ -24,9 +24,9 @@ def fields_on_same_points(
         fields = {name: measure(dataset, name) for name in names}
     else:
         axes = {str(name): axis_dimensions(array) for name, array in dataset.data_vars.items()}
-        wide = [name for name, dims in axes.items() if len(dims) > 1 and set(along) <= set(dims)]
-        inside = [name for name in wide if "z" in axes[name]]
-        fields = {name: dataset[name] for name in inside or wide}
+        spatial = [name for name, dims in axes.items() if len(dims) > 1 and set(along) <= set(dims)]
+        stresses = [name for name in spatial if "z" in axes[name]]
+        fields = {name: dataset[name] for name in stresses or spatial}
     points = {tuple(axis_dimensions(array).values()) for array in fields.values()}
     if len(points) != 1 or points == {()}:
         raise InvalidInputError(
@@ -84,7 +84,7 @@ def along_line(
     >>> cut.tresca.values.tolist()
     [0.0, 1.5, 3.0]
     """
-    count = checks.count("points", points, least=2)
+    count = checks.count("points", points, minimum=2)
     fields = fields_on_same_points(single_case(dataset), variables, along=("x", "y"))
     first, last = (checks.coordinates(name, values) for name, values in (("start", start), ("end", end)))
     if first.size not in (2, 3) or last.size != first.size:
@@ -163,10 +163,10 @@ def _clip_rounding(name: str, values: FloatArray, points: FloatArray) -> FloatAr
     low, high = float(points.min()), float(points.max())
     # Distance beyond the points of a result, over their range, that is rounding
     rounding = 1e-9 * max(high - low, abs(high), abs(low))
-    outside = (values < low - rounding) | (values > high + rounding)
-    if outside.any():
+    is_outside = (values < low - rounding) | (values > high + rounding)
+    if is_outside.any():
         hint = "solve with positions there" if low < high else "the result contains this plane only"
-        raise InvalidInputError(name, float(values[outside][0]), f"within the result, {low:g} to {high:g} m", hint)
+        raise InvalidInputError(name, float(values[is_outside][0]), f"within the result, {low:g} to {high:g} m", hint)
     return np.clip(values, low, high)
 
 
@@ -188,7 +188,7 @@ def _interpolate(array: xr.DataArray, targets: dict[str, xr.DataArray]) -> xr.Da
             values = array[dim].values
             right = int(np.clip(np.searchsorted(values, position), 1, values.size - 1))
             weight = float((position - values[right - 1]) / (values[right] - values[right - 1]))
-            before, after = (array.isel({dim: index}, drop=True) for index in (right - 1, right))
+            first, second = (array.isel({dim: index}, drop=True) for index in (right - 1, right))
             # At a plane itself the neighbouring plane, which may be infinite, has zero weight.
-            array = before if weight == 0 else after if weight == 1 else (1 - weight) * before + weight * after
+            array = first if weight == 0 else second if weight == 1 else (1 - weight) * first + weight * second
     return (array.interp(lines) if lines else array).assign_attrs(attributes).reset_coords(drop=True)

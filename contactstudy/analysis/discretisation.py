@@ -12,14 +12,14 @@ from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 
 # Assumed orders of convergence, of extrapolated end pressures the second. Accuracy: below the measured ones, 1.5 to 2
-# for smooth pressures and 0.86 beside a flush end, so the estimate errs on the high side
+# for smooth pressures and 0.86 at a flush end, so the estimate is conservative
 ASSUMED_ORDER, END_ORDER = 1.0, 0.8
-FITTED = 3  # Columns of cells in the extrapolation to the end of the shape
+FITTED_COLUMNS = 3  # Columns of cells in the extrapolation to the end of the shape
 RESOLVED_TURN = 0.9  # Largest turn of the shape between columns (`_largest_turn`) that resolves a peak
 ENDS = "end_pressure_first", "end_pressure_last"
 PRESSURES = "peak_pressure", *ENDS
 
-SHARP = (
+SHARP_EDGE_ADVICE = (
     "no limit: the shape ends sharply inside the body's top, and the pressure there grows with every finer grid; "
     "leave the grid out, for columns that are refined beside the end, and for its law"
 )
@@ -45,7 +45,7 @@ def discretisation_error(fine: xr.Dataset, coarse: xr.Dataset) -> xr.Dataset:
     Dataset
         `peak_pressure` (Pa), between the cells by parabolas, or at an end with more; `end_pressure_first` and
         `end_pressure_last` (Pa), the largest pressure across y extrapolated to the first and last end of the shape or
-        the body, 0 without contact there; `half_width_middle` (metres), in the middle between these ends (NaN without
+        the body, 0 without contact; `half_width_middle` (metres), in the middle between these ends (NaN without
         contact). All are values of the finer grid. Each has its ``<name>_error`` in the same unit; the peak error
         covers the ends; an infinite error has a `comment` with the reason and advice.
 
@@ -76,8 +76,8 @@ def discretisation_error(fine: xr.Dataset, coarse: xr.Dataset) -> xr.Dataset:
     # At a pressed end of the shape inside the body's top the pressure has no limit, and then the peak has none.
     axial = fine["pressure"].transpose("x", "y").values.max(axis=1)
     first, last = _shape_columns(fine)
-    pressed = (first > 0 and axial[first] > 0, last < axial.size - 1 and axial[last] > 0)
-    singular = {name for name, sharp in zip(ENDS, pressed, strict=True) if sharp}
+    end_in_contact = (first > 0 and axial[first] > 0, last < axial.size - 1 and axial[last] > 0)
+    singular = {name for name, sharp in zip(ENDS, end_in_contact, strict=True) if sharp}
     singular |= {"peak_pressure"} if singular else set()
     turn = _largest_turn(fine)
     unresolved = {name for name in PRESSURES if values[name] > 0} if turn > RESOLVED_TURN else set()
@@ -108,7 +108,7 @@ def discretisation_error(fine: xr.Dataset, coarse: xr.Dataset) -> xr.Dataset:
     for name, value in values.items():
         result[name], result[f"{name}_error"] = value, errors[name]
         if name in singular:
-            result[f"{name}_error"].attrs["comment"] = SHARP
+            result[f"{name}_error"].attrs["comment"] = SHARP_EDGE_ADVICE
         elif np.isinf(errors[name]):
             columns, rows = cells
             reason = "the cells are too coarse for the shape's turn" if name in unresolved else "no limit in sight"
@@ -120,10 +120,10 @@ def discretisation_error(fine: xr.Dataset, coarse: xr.Dataset) -> xr.Dataset:
 
 def _shape_columns(contact: xr.Dataset) -> tuple[int, int]:
     """First and last column of cells where the shape faces the body."""
-    facing = np.flatnonzero(np.isfinite(contact["gap"].transpose("x", "y").values).any(axis=1))
-    if not facing.size:
+    under_roller = np.flatnonzero(np.isfinite(contact["gap"].transpose("x", "y").values).any(axis=1))
+    if not under_roller.size:
         raise InvalidInputError("gap", "infinite everywhere", "finite where the shape can touch the body")
-    return int(facing[0]), int(facing[-1])
+    return int(under_roller[0]), int(under_roller[-1])
 
 
 def _largest_turn(contact: xr.Dataset) -> float:
@@ -133,33 +133,33 @@ def _largest_turn(contact: xr.Dataset) -> float:
     heights = shape.transpose("x", "y").values[first : last + 1]
     pressure = contact["pressure"].transpose("x", "y").values[first : last + 1]
     x, y, axial = contact["x"].values[first : last + 1], contact["y"].values, pressure.max(axis=1)
-    pressed = np.flatnonzero(axial)
-    if x.size < 3 or not pressed.size:
+    in_contact = np.flatnonzero(axial)
+    if x.size < 3 or not in_contact.size:
         return 0.0
-    middle = (pressed[0] + pressed[-1]) // 2
-    top = int(pressure[middle].argmax())
-    farthest = int(np.abs(y - y[top]).argmax())
-    curvature = 2 * (heights[middle, farthest] - heights[middle, top]) / (y[farthest] - y[top]) ** 2
-    if not (curvature > 0 and axial[middle] > 0):
+    mid_column = (in_contact[0] + in_contact[-1]) // 2
+    top = int(pressure[mid_column].argmax())
+    farthest_row = int(np.abs(y - y[top]).argmax())
+    curvature = 2 * (heights[mid_column, farthest_row] - heights[mid_column, top]) / (y[farthest_row] - y[top]) ** 2
+    if not (curvature > 0 and axial[mid_column] > 0):
         return 0.0
     # Of the middle column, p = E* a / (2 R), w = pi p a / 2. A turn causes a pressure of modulus times angle.
-    modulus = np.pi * axial[middle] ** 2 / (curvature * pressure[middle].sum() * (y[1] - y[0]))
+    modulus = np.pi * axial[mid_column] ** 2 / (curvature * pressure[mid_column].sum() * (y[1] - y[0]))
     # Far from the contact the displacement of an elastic roller varies little between columns.
-    turns = np.pad(np.abs(np.diff(np.diff(heights[:, farthest]) / np.diff(x))), 1, mode="edge")
+    turns = np.pad(np.abs(np.diff(np.diff(heights[:, farthest_row]) / np.diff(x))), 1, mode="edge")
     return float((modulus * turns * axial).max() / axial.max() ** 2)
 
 
 def _advice(contact: xr.Dataset, factor: float) -> str:
     """Advice for coarse cells: refined columns, or more uniform cells."""
-    refined = "leave the grid out, for columns that are refined"
+    remedy = "leave the grid out, for columns that are refined"
     x, y = (contact[axis].values for axis in ("x", "y"))
     widths = contact["x_width"].values if "x_width" in contact else np.diff(x)
     uniform = np.allclose(widths, widths[0], rtol=1e-6, atol=0.0)
     if "hertz_half_width" not in contact or not uniform:
-        return f"{refined}, or take {'twice' if factor == 2 else f'{factor:.2g} times'} as many"
+        return f"{remedy}, or take {'twice' if factor == 2 else f'{factor:.2g} times'} as many"
     half_width = float(contact["hertz_half_width"])
     cells_x, cells_y = factor * half_width / widths[0], 2 * half_width / (y[1] - y[0])
-    return f"{refined}, or try choose_grid(case, cells_x={cells_x:.3g}, cells_y={cells_y:.3g})"
+    return f"{remedy}, or try choose_grid(case, cells_x={cells_x:.3g}, cells_y={cells_y:.3g})"
 
 
 def _quantities(name: str, contact: xr.Dataset) -> dict[str, float]:
@@ -168,13 +168,13 @@ def _quantities(name: str, contact: xr.Dataset) -> dict[str, float]:
     pressure, grid = labelled_cells(f"{name}.pressure", contact["pressure"])
     first, last = _shape_columns(contact)
     axial = np.array([_peak(pressure[column : column + 1]) for column in range(first, last + 1)])
-    middle = 0.5 * (grid.x[first] + grid.x[last])
-    ends = _end_pressure(axial[:FITTED]), _end_pressure(axial[: -FITTED - 1 : -1])
+    mid_length = 0.5 * (grid.x[first] + grid.x[last])
+    ends = _end_pressure(axial[:FITTED_COLUMNS]), _end_pressure(axial[: -FITTED_COLUMNS - 1 : -1])
     return {
         "peak_pressure": max(_peak(pressure), *ends),
         "end_pressure_first": ends[0],
         "end_pressure_last": ends[1],
-        "half_width_middle": float(np.interp(middle, grid.x, edges["half_width"].values)),
+        "half_width_middle": float(np.interp(mid_length, grid.x, edges["half_width"].values)),
     }
 
 
@@ -190,12 +190,12 @@ def _end_pressure(columns: FloatArray) -> float:
 def _peak(pressure: FloatArray) -> float:
     """Largest pressure (x, y), between the cells by a parabola along each direction with loaded neighbours."""
     index = np.unravel_index(int(pressure.argmax()), pressure.shape)
-    peak = highest = float(pressure[index])
+    peak = sample = float(pressure[index])
     for axis in (0, 1):
         line = np.take(pressure, index[1 - axis], axis=1 - axis)
         i = int(index[axis])
         if 0 < i < line.size - 1 and line[i - 1] > 0 and line[i + 1] > 0:
-            slope, bend = 0.5 * (line[i + 1] - line[i - 1]), line[i + 1] - 2 * highest + line[i - 1]
+            slope, bend = 0.5 * (line[i + 1] - line[i - 1]), line[i + 1] - 2 * sample + line[i - 1]
             if bend < 0:
                 peak -= float(0.5 * slope**2 / bend)
     return peak

@@ -17,7 +17,15 @@ from contactstudy import checks
 from contactstudy.analysis.axes import axis_dimensions, positions, reduce_dims, single_case
 from contactstudy.arrays.grid import ON_TOP
 from contactstudy.arrays.peaks import interpolate_about, variation_lengths
-from contactstudy.arrays.variables import STRESSES, Variable, named, require, required_in_si, variable_of, without_error
+from contactstudy.arrays.variables import (
+    STRESSES,
+    Variable,
+    name_array,
+    require,
+    require_in_si,
+    variable_of,
+    without_error,
+)
 from contactstudy.checks import Array, FloatArray
 from contactstudy.errors import InvalidInputError
 from contactstudy.stress import (
@@ -32,7 +40,7 @@ from contactstudy.stress import (
 NEIGHBOURS = 2  # Samples on either side of the largest one in the polynomial
 # Largest distance of samples over the length of variation of the pressure above. Accuracy: polynomials miss up to 2 %
 # more than they state at 0.5, 8 % at 1, 14 % at 1.5
-RESOLVED = 0.5
+MAX_SPACING_RATIO = 0.5
 SINGULAR = "the pressure is singular at an end, and so is the stress"
 
 Measure = Callable[[xr.Dataset], xr.DataArray]
@@ -40,7 +48,7 @@ Measure = Callable[[xr.Dataset], xr.DataArray]
 
 def _principal(stress: xr.Dataset, rank: int) -> xr.DataArray:
     """Principal stress of a rank, 1 the largest, Pa."""
-    return named(
+    return name_array(
         f"principal_stress_{rank}", principal_stresses(stress)["principal_stress"].sel(principal=rank, drop=True)
     )
 
@@ -94,7 +102,7 @@ def measure(dataset: xr.Dataset, name: str) -> xr.DataArray:
         return dataset[name]
     checks.known_name("variable", name, {*map(str, dataset.data_vars), *MEASURES})
     components, function = MEASURES[name]
-    stress = required_in_si(dataset, *components, normalized=True)[list(components)]
+    stress = require_in_si(dataset, *components, normalized=True)[list(components)]
     padding = xr.apply_ufunc(np.isnan, stress[components[0]], dask="allowed").compute()
     if not padding.any():
         return function(stress)
@@ -147,7 +155,9 @@ def largest_sample(dataset: xr.Dataset, variable: str = "von_mises", *, along: s
     values = reduce_dims(_maximum, [(array, list(axes.values())), *coordinates], 1 + len(axes))
     base = variable_of(variable, array.attrs)
     names = (f"peak_{variable}", *(f"peak_{variable}_{axis}" for axis in axes))
-    result = xr.Dataset({name: named(name, value, base) for name, value in zip(names, values, strict=True)}).compute()
+    result = xr.Dataset(
+        {name: name_array(name, value, base) for name, value in zip(names, values, strict=True)}
+    ).compute()
     result[names[0]].attrs["comment"] = "largest sample; unbounded beside a singular end"
     return without_error(result, *names)
 
@@ -222,7 +232,7 @@ def peak(dataset: xr.Dataset, variable: str = "von_mises") -> xr.Dataset:
     samples = measure(case, variable)
     result = interpolated_peak(case, components, samples, lambda stresses: measure(stresses, variable))
     if "pressure" in case and result.position.get("z") == 0:
-        # At the border of the contact a measure may have a kink, beside much larger values.
+        # At the border of the contact a measure may have a kink next to much larger values.
         excess = result.value - float(samples.max()) + ON_TOP * (float(abs(samples).max()) - abs(result.value))
         result = result._replace(error=result.error + max(excess, 0.0))
     return label_peak(variable, result, variable_of(variable, samples.attrs))
@@ -237,32 +247,32 @@ def interpolated_peak(case: xr.Dataset, components: list[str], samples: xr.DataA
     index = tuple(int(i) for i in np.unravel_index(int(np.nanargmax(field.values)), field.shape))
     axes = {axis: np.asarray(positions(field, axis).values, dtype=np.float64) for axis in dims}
 
-    def largest(neighbours: int, every: int = 1) -> tuple[float, list[float]]:
+    def find_maximum(neighbours: int, stride: int = 1) -> tuple[float, list[float]]:
         """Largest value between every sample or each second, and its position."""
-        numbers = [np.arange(axis.size)[i % every :: every] for axis, i in zip(axes.values(), index, strict=True)]
-        nodes = [axis[chosen] for axis, chosen in zip(axes.values(), numbers, strict=True)]
-        part = case[components].isel(dict(zip(dims.values(), numbers, strict=True))).transpose(*dims.values(), ...)
-        interpolated: dict[Hashable, Any] = {}
+        indices = [np.arange(axis.size)[i % stride :: stride] for axis, i in zip(axes.values(), index, strict=True)]
+        nodes = [axis[chosen] for axis, chosen in zip(axes.values(), indices, strict=True)]
+        near = case[components].isel(dict(zip(dims.values(), indices, strict=True))).transpose(*dims.values(), ...)
+        interpolated_fields: dict[Hashable, Any] = {}
         coordinates: dict[Hashable, xr.DataArray] = {}
-        for name, component in part.items():
-            centre = [i // every for i in index]
+        for name, component in near.items():
+            centre = [i // stride for i in index]
             points, stresses = interpolate_about(nodes, centre, component.values[None], neighbours)
-            interpolated[name] = (component.dims, stresses[0])
+            interpolated_fields[name] = (component.dims, stresses[0])
             coordinates |= {dim: component[dim] for dim in component.dims[len(dims) :] if dim in component.coords}
-        values = evaluate(xr.Dataset(interpolated, coordinates)).transpose(*dims.values()).values
+        values = evaluate(xr.Dataset(interpolated_fields, coordinates)).transpose(*dims.values()).values
         best = np.unravel_index(int(np.nanargmax(values)), values.shape)
         return float(values[best]), [float(axis[i]) for axis, i in zip(points, best, strict=True)]
 
-    value, position = largest(NEIGHBOURS)
-    error = abs(value - largest(1)[0])
-    comment = _unbounded(case, axes, index)
+    value, position = find_maximum(NEIGHBOURS)
+    error = abs(value - find_maximum(1)[0])
+    comment = _explain_unbounded(case, axes, index)
     if comment:
         error = np.inf
     else:
         if "pressure" not in case:
             # The samples alone determine whether they are close enough.
             # Fraction of the change from samples twice as far apart that is error if the pressure is not known
-            error = max(error, 0.5 * abs(value - largest(NEIGHBOURS, every=2)[0]))
+            error = max(error, 0.5 * abs(value - find_maximum(NEIGHBOURS, stride=2)[0]))
         if "peak_pressure_error" in case:
             error += abs(value) * float(case["peak_pressure_error"] / case["peak_pressure"])
     where = dict(zip(dims, position, strict=True))
@@ -277,7 +287,7 @@ def label_peak(variable: str, peak: Peak, base: Variable) -> xr.Dataset:
     values |= {f"peak_{variable}_{axis}": position for axis, position in peak.position.items()}
     of_peak = variable_of(f"peak_{variable}", {"units": base.units, "long_name": f"largest {base.long_name}"})
     labelled = {
-        name: named(name, xr.DataArray(value), of_peak if name.endswith("_error") else base)
+        name: name_array(name, xr.DataArray(value), of_peak if name.endswith("_error") else base)
         for name, value in values.items()
     }
     if peak.comment:
@@ -289,20 +299,20 @@ def label_largest_stress(
     result: xr.Dataset, value: float, error: float, position: tuple[float, float, float]
 ) -> xr.Dataset:
     """Return the largest von Mises stress, its error and its position (x, y, z) as a Dataset, see :func:`peak`."""
-    where = dict(zip("xyz", position, strict=True))
+    coordinates = dict(zip("xyz", position, strict=True))
     if "peak_pressure" in result and np.isinf(float(result["peak_pressure"])):
         stress = Peak(np.inf, np.inf, dict.fromkeys("xyz", np.nan), SINGULAR)
     elif "peak_pressure_error" in result:
         relative = float(result["peak_pressure_error"] / result["peak_pressure"])
-        stress = Peak(value, error + value * relative, where)
+        stress = Peak(value, error + value * relative, coordinates)
     else:
-        stress = Peak(value, np.nan, where, "the error on the given cells is not estimated")
+        stress = Peak(value, np.nan, coordinates, "the error on the given cells is not estimated")
     labelled = label_peak("von_mises", stress, variable_of("von_mises", result["von_mises"].attrs))
     return without_error(labelled, *(f"peak_von_mises_{axis}" for axis in "xyz"))
 
 
-def _unbounded(case: xr.Dataset, axes: dict[str, FloatArray], index: tuple[int, ...]) -> str:
-    """Why the largest sample does not bound the largest value; empty if it does."""
+def _explain_unbounded(case: xr.Dataset, axes: dict[str, FloatArray], index: tuple[int, ...]) -> str:
+    """Reason why the largest sample does not bound the largest value, or empty."""
     if "peak_pressure" in case and np.isinf(float(case["peak_pressure"])):
         return SINGULAR
     extent = _extent(case)
@@ -312,23 +322,23 @@ def _unbounded(case: xr.Dataset, axes: dict[str, FloatArray], index: tuple[int, 
             at_surface = any(np.isclose(points[i], end, rtol=0, atol=1e-9 * np.ptp(points)) for end in extent)
         if points.size > 1 and i in (0, points.size - 1) and not at_surface:
             return f"the largest sample lies at the edge of the points along {axis}"
-    return _unresolved(case, axes, {axis: float(axes[axis][i]) for axis, i in zip(axes, index, strict=True)})
+    return _explain_unresolved(case, axes, {axis: float(axes[axis][i]) for axis, i in zip(axes, index, strict=True)})
 
 
-def _unresolved(case: xr.Dataset, axes: dict[str, FloatArray], sample: dict[str, float]) -> str:
-    """Where the samples are too far apart for the pressure above, at its peak and at the largest sample; else empty."""
+def _explain_unresolved(case: xr.Dataset, axes: dict[str, FloatArray], sample: dict[str, float]) -> str:
+    """Location with too coarse samples for the pressure above, at its peak and at the largest sample, or empty."""
     if not {"pressure", "x", "y"} <= {str(name) for name in case.variables} or case["y"].size < 2:
         return ""
     pressure, x = case["pressure"].transpose("x", "y").values, case["x"].values
     dy = float(case["y"][1] - case["y"][0])
     axial = pressure.max(axis=1)
-    covered = (x >= axes["x"][0]) & (x <= axes["x"][-1]) if "x" in axes else np.ones(x.size, bool)
-    if not axial[covered].any():
+    in_range = (x >= axes["x"][0]) & (x <= axes["x"][-1]) if "x" in axes else np.ones(x.size, bool)
+    if not axial[in_range].any():
         return ""
-    column = int(np.where(covered, axial, -1.0).argmax())
+    column = int(np.where(in_range, axial, -1.0).argmax())
     width = min(variation_lengths(pressure, x, dy, column))
     locations = [(column, {"x": float(x[column])})]
-    # On the flank of the peak the stresses vary as below it.
+    # On the flank of the peak the stresses vary as below the peak.
     if "x" in sample and abs(sample["x"] - x[column]) > 2 * width:
         locations.append((int(np.abs(x - sample["x"]).argmin()), sample))
     for column, location in locations:
@@ -338,10 +348,10 @@ def _unresolved(case: xr.Dataset, axes: dict[str, FloatArray], sample: dict[str,
         scales = {"x": min(length_x, max(length_y, from_end)), "z": min(length_x, length_y)}
         for axis, scale in scales.items():
             distance = _distance(axes[axis], location.get(axis, 0.5 * scale)) if axis in axes else 0.0
-            if distance > RESOLVED * scale:
+            if distance > MAX_SPACING_RATIO * scale:
                 return (
                     f"the points are {distance:.2g} m apart along {axis}, the pressure varies within {scale:.2g} m: "
-                    f"take at most {RESOLVED * scale:.2g} m"
+                    f"take at most {MAX_SPACING_RATIO * scale:.2g} m"
                 )
     return ""
 

@@ -28,7 +28,7 @@ RELATIVE_TOLERANCE, ABSOLUTE_TOLERANCE = 1e-6, 1e-15
 DEPENDENT = ("approach", "load_position", "load", "tilt")
 # Values of a case without influence on its dry contact
 FILM_ONLY = ("motion.body_speed", "motion.roller_speed", "motion.speed", "lubricant")
-PARTS = ("roller.profile", "friction", "motion")  # Parts of a case that a message contains as a unit
+CASE_PARTS = ("roller.profile", "friction", "motion")  # Parts of a case that a message contains as a unit
 # Types of entries in the attributes of inputs and run
 KINDS: dict[str, type | tuple[type, ...]] = {
     "time": str,
@@ -51,9 +51,9 @@ def with_provenance(
 ) -> xr.Dataset:
     """Return a result with case, settings, versions and seconds of each stage in its attributes."""
     now = datetime.now(UTC).isoformat(timespec="seconds")
-    rounded = {name: round(seconds, 4) for name, seconds in stages.items()}
+    rounded_seconds = {name: round(seconds, 4) for name, seconds in stages.items()}
     inputs = {"case": to_dict(case), "settings": dict(settings)}
-    run = {**versions(), "time": now, "seconds": round(sum(stages.values()), 4), "stages": rounded}
+    run = {**versions(), "time": now, "seconds": round(sum(stages.values()), 4), "stages": rounded_seconds}
     return result.assign_attrs({INPUTS_ATTRIBUTE: json.dumps(inputs), RUN_ATTRIBUTE: json.dumps(run)})
 
 
@@ -121,14 +121,14 @@ def solved_case(dataset: xr.Dataset) -> Case:
 
 
 def check_solved_for(
-    result: xr.Dataset, part: Case | Body, argument: str = "result", *, only: tuple[str, ...] = ()
+    result: xr.Dataset, case_or_body: Case | Body, argument: str = "result", *, only: tuple[str, ...] = ()
 ) -> None:
     """Raise if the case of a result differs from a case, or its body from a body; `only` names the compared parts."""
     try:
-        solved = from_dict(attribute(result, INPUTS_ATTRIBUTE)["case"], Case)
+        stored_case = from_dict(attribute(result, INPUTS_ATTRIBUTE)["case"], Case)
     except (InvalidInputError, KeyError, TypeError):
         return
-    if isinstance(part, Case):
+    if isinstance(case_or_body, Case):
         # Scalars of a result follow a selection from joined results.
         variables = {"load": "normal_load", "tilt": "tilt", "friction": "friction"}
         scalars = {
@@ -136,9 +136,9 @@ def check_solved_for(
             for name, variable in variables.items()
             if variable in result and result[variable].ndim == 0 and np.isfinite(result[variable])
         }
-        actual, expected = _comparable(solved) | scalars, _comparable(part)
+        actual, expected = _comparable(stored_case) | scalars, _comparable(case_or_body)
     else:
-        actual, expected = (dict(_leaves({"body": to_dict(body)})) for body in (solved.body, part))
+        actual, expected = (dict(_leaves({"body": to_dict(body)})) for body in (stored_case.body, case_or_body))
     names = [
         name
         for name in {**actual, **expected}
@@ -148,11 +148,11 @@ def check_solved_for(
         and not name.startswith(FILM_ONLY)
     ]
     if names:
-        kind = "case" if isinstance(part, Case) else "body"
+        kind = "case" if isinstance(case_or_body, Case) else "body"
         raise InvalidInputError(
             argument,
-            f"solved with {_texts(actual, solved, names)}",
-            f"a result of the {kind} beside it, {_texts(expected, part, names)}",
+            f"solved with {_texts(actual, stored_case, names)}",
+            f"a result of the {kind} beside it, {_texts(expected, case_or_body, names)}",
             f"if the Dataset was joined or changed, drop its attribute {INPUTS_ATTRIBUTE}",
         )
 
@@ -176,18 +176,18 @@ def _leaves(entry: Any, name: str = "") -> Iterator[tuple[str, Any]]:
             if (entry.get("kind"), key) != ("Sampled", "label"):
                 yield from _leaves(value, f"{name}.{key}" if name else str(key))
     elif isinstance(entry, (list, tuple)):
-        for number, value in enumerate(entry):
-            yield from _leaves(value, f"{name}.{number}")
+        for index, value in enumerate(entry):
+            yield from _leaves(value, f"{name}.{index}")
     else:
         yield name, entry
 
 
-def _texts(values: Mapping[str, Any], part: Case | Body, names: list[str]) -> str:
+def _texts(values: Mapping[str, Any], case_or_body: Case | Body, names: list[str]) -> str:
     """First three of the named values as text, or the part that contains them."""
     texts: dict[str, str] = {}
     for name in names:
-        unit = next((prefix for prefix in PARTS if name.startswith(prefix)), name)
-        value = values.get(name) if name == unit else attrgetter(unit)(part)
+        unit = next((prefix for prefix in CASE_PARTS if name.startswith(prefix)), name)
+        value = values.get(name) if name == unit else attrgetter(unit)(case_or_body)
         texts[unit] = f"{unit} = {value:.6g}" if isinstance(value, float) else f"{unit} = {value}"
     return ", ".join(list(texts.values())[:3])
 

@@ -24,8 +24,8 @@ from contactstudy.arrays.variables import (
     NOT_ESTIMATED,
     STRESSES,
     describe,
-    named,
-    required_in_si,
+    name_array,
+    require_in_si,
     without_error,
 )
 from contactstudy.checks import FloatArray
@@ -43,7 +43,7 @@ class Columns(NamedTuple):
     """Columns of a contact."""
 
     edges: FloatArray  # (column, 2), first and last x, m
-    middles: FloatArray  # (column), m
+    midpoints: FloatArray  # (column), m
     values: FloatArray  # (column), a quantity
 
     def overlaps(self, borders: FloatArray) -> FloatArray:
@@ -54,7 +54,7 @@ class Columns(NamedTuple):
 
     def with_ends(self, values: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Middles and both ends, with values extrapolated linearly to the ends, not below 0."""
-        x, ends = self.middles, (self.edges[0, 0], self.edges[-1, 1])
+        x, ends = self.midpoints, (self.edges[0, 0], self.edges[-1, 1])
         if x.size == 1:
             return np.array([ends[0], x[0], ends[1]]), np.repeat(values, 3)
         first, last = (
@@ -65,7 +65,7 @@ class Columns(NamedTuple):
 
 
 def step_errors(values: FloatArray) -> FloatArray:
-    """Error in each step between values: half of it; the full step and the error before it where a contact ends."""
+    """Error in each step between values: half the step; at the end of a contact the full step plus the error before."""
     steps = np.abs(np.diff(values))
     neighbours = larger_step(OPEN_STEP * steps)
     # A contact may end anywhere up to the middle of the next column.
@@ -79,7 +79,7 @@ def larger_step(steps: FloatArray) -> FloatArray:
     return np.asarray(np.maximum(np.append(steps, 0.0), np.insert(steps, 0, 0.0)))
 
 
-def largest_between(pressure: Columns, borders: FloatArray) -> tuple[FloatArray, FloatArray]:
+def maximum_between(pressure: Columns, borders: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return the largest pressure of each part between two borders, and its error from the columns, Pa."""
     x, squares = pressure.with_ends(pressure.values**2)
     heights = np.sqrt(squares)
@@ -89,12 +89,12 @@ def largest_between(pressure: Columns, borders: FloatArray) -> tuple[FloatArray,
     values = np.concatenate([np.sqrt(np.interp(borders, x, squares)), heights])
     step = np.clip(np.searchsorted(x, borders, side="right") - 1, 0, steps.size - 1)
     bounds = values + np.concatenate([steps[step], larger_step(steps)])
-    largest, error = np.empty(borders.size - 1), np.empty(borders.size - 1)
-    for part, (low, high) in enumerate(pairwise(borders)):
-        inside = (points >= low) & (points <= high)
-        largest[part] = values[inside].max()
-        error[part] = bounds[inside].max() - largest[part]
-    return largest, error
+    maxima, error = np.empty(borders.size - 1), np.empty(borders.size - 1)
+    for index, (low, high) in enumerate(pairwise(borders)):
+        in_slice = (points >= low) & (points <= high)
+        maxima[index] = values[in_slice].max()
+        error[index] = bounds[in_slice].max() - maxima[index]
+    return maxima, error
 
 
 def power_means(columns: Columns, borders: FloatArray, power: float) -> tuple[FloatArray, FloatArray]:
@@ -102,15 +102,15 @@ def power_means(columns: Columns, borders: FloatArray, power: float) -> tuple[Fl
     x, heights = columns.with_ends(columns.values)
     steps = step_errors(heights)
     cuts = np.unique(np.concatenate([borders, x[(x > borders[0]) & (x < borders[-1])]]))
-    middles, halves = 0.5 * (cuts[1:] + cuts[:-1]), 0.5 * np.diff(cuts)
-    step = np.clip(np.searchsorted(x, middles) - 1, 0, steps.size - 1)
-    part = np.searchsorted(borders, middles) - 1
+    midpoints, halves = 0.5 * (cuts[1:] + cuts[:-1]), 0.5 * np.diff(cuts)
+    step = np.clip(np.searchsorted(x, midpoints) - 1, 0, steps.size - 1)
+    slice_index = np.searchsorted(borders, midpoints) - 1
     nodes, weights = np.polynomial.legendre.leggauss(6)  # exact for a 12th power
-    values = np.interp(middles[:, None] + halves[:, None] * nodes, x, heights)
+    values = np.interp(midpoints[:, None] + halves[:, None] * nodes, x, heights)
 
     def mean(samples: FloatArray) -> FloatArray:
         scale = max(float(samples.max()), np.finfo(float).tiny)
-        integral = np.bincount(part, halves * ((samples / scale) ** power @ weights), minlength=borders.size - 1)
+        integral = np.bincount(slice_index, halves * ((samples / scale) ** power @ weights), minlength=borders.size - 1)
         return np.asarray(scale * (integral / np.diff(borders)) ** (1 / power))
 
     means = mean(values)
@@ -118,22 +118,22 @@ def power_means(columns: Columns, borders: FloatArray, power: float) -> tuple[Fl
 
 
 def border_load_errors(line_load: Columns, borders: FloatArray) -> FloatArray:
-    """Return the load that may lie beyond the borders of each part, because it is uniform in each column, N."""
+    """Return the load that may lie beyond the borders of each slice, because the columns' loads are uniform, N."""
     low, high = line_load.edges.T
-    moved = larger_step(np.abs(np.diff(line_load.values))) * np.minimum(high - low, np.diff(borders).min())
+    load_errors = larger_step(np.abs(np.diff(line_load.values))) * np.minimum(high - low, np.diff(borders).min())
     errors = np.zeros(borders.size)
-    for number, border in enumerate(borders[1:-1], start=1):
+    for index, border in enumerate(borders[1:-1], start=1):
         first = int(np.searchsorted(high, border, side="left"))
         last = min(int(np.searchsorted(low, border, side="right")), low.size - 1)
         # Fraction of the line load's step to the next column that may lie beyond a border. Accuracy: of 629 tables 0.1
         # left 5 uncovered; at 0.25 the worst error is half of the stated one
-        errors[number] = 0.25 * moved[max(first - 1, 0) : last + 1].max()
+        errors[index] = 0.25 * load_errors[max(first - 1, 0) : last + 1].max()
     return np.asarray(errors[:-1] + errors[1:])
 
 
 def pressure_errors(result: xr.Dataset) -> tuple[float, float]:
-    """Relative error of the largest pressure on either half: infinite at a singular end, NaN if it is not estimated."""
-    # The errors are those of a whole contact on its own cells, not of a part, or on common cells of a study.
+    """Relative error of the largest pressure on either half: infinite at a singular end, NaN without an estimate."""
+    # The errors refer to a complete contact on its original cells, not to a part or to common cells of a study.
     if "normal_load" not in result or result["pressure"].attrs.get(ERROR_KIND) == NOT_ESTIMATED:
         return np.nan, np.nan
     across, along = (cell_size(result["pressure"], axis) for axis in "xy")
@@ -144,8 +144,8 @@ def pressure_errors(result: xr.Dataset) -> tuple[float, float]:
     errors = []
     for side in SIDES:
         peak, error = (float(result.get(f"peak_pressure_{side}{suffix}", np.nan)) for suffix in ("", "_error"))
-        estimated = np.isfinite(peak) and peak > 0 and not np.isnan(error)
-        errors.append(error / peak if estimated else accuracy)
+        is_estimated = np.isfinite(peak) and peak > 0 and not np.isnan(error)
+        errors.append(error / peak if is_estimated else accuracy)
     return errors[0], errors[1]
 
 
@@ -181,20 +181,20 @@ def slices(dataset: xr.Dataset, count: int = 30) -> xr.Dataset:
     >>> table["normal_load"].tolist(), table["axial_pressure"].tolist()
     ([8.0, 6.0], [3.0, 3.0])
     """
-    case = single_case(required_in_si(dataset, "pressure"))
-    number = checks.count("count", count)
+    case = single_case(require_in_si(dataset, "pressure"))
+    slice_count = checks.count("count", count)
     profiles = axial_profiles(case)
     x = dimension_along(profiles["line_load"], "x")
-    facing = profiles["unloaded_gap"].notnull() if "unloaded_gap" in profiles else profiles["line_load"].notnull()
-    cells = profiles.isel({x: np.flatnonzero(facing.values)})
+    under_roller = profiles["unloaded_gap"].notnull() if "unloaded_gap" in profiles else profiles["line_load"].notnull()
+    cells = profiles.isel({x: np.flatnonzero(under_roller.values)})
     centres = cells[x].values
-    if centres.size < number:
+    if centres.size < slice_count:
         raise InvalidInputError("count", count, f"at most the number of cells, {centres.size}")
-    half = 0.5 * cell_widths(cells["line_load"], "x").values
-    borders = np.linspace(centres[0] - half[0], centres[-1] + half[-1], number + 1)
+    half_widths = 0.5 * cell_widths(cells["line_load"], "x").values
+    borders = np.linspace(centres[0] - half_widths[0], centres[-1] + half_widths[-1], slice_count + 1)
 
-    edges = np.stack([centres - half, centres + half], axis=-1)
-    maxima = section_maxima(case["pressure"].transpose(x, ...).values[facing.values])
+    edges = np.stack([centres - half_widths, centres + half_widths], axis=-1)
+    maxima = section_maxima(case["pressure"].transpose(x, ...).values[under_roller.values])
     pressure, line_load = Columns(edges, centres, maxima), Columns(edges, centres, cells["line_load"].values)
     # A cell that a border cuts gives each slice its part of the load.
     weights = xr.DataArray(pressure.overlaps(borders), dims=("slice", x))
@@ -202,10 +202,10 @@ def slices(dataset: xr.Dataset, count: int = 30) -> xr.Dataset:
     result = xr.Dataset(
         {
             "position": ("slice", 0.5 * (borders[1:] + borders[:-1]), equal),
-            "width": ("slice", np.full(number, borders[1] - borders[0]), equal),
-            "normal_load": named("normal_load", (weights * cells["line_load"]).sum(x)),
+            "width": ("slice", np.full(slice_count, borders[1] - borders[0]), equal),
+            "normal_load": name_array("normal_load", (weights * cells["line_load"]).sum(x)),
         },
-        coords={"slice": np.arange(1, number + 1)},
+        coords={"slice": np.arange(1, slice_count + 1)},
     )
     load = result["normal_load"].values
     result = result.assign(_with_errors(case, borders, pressure, line_load, load).data_vars)
@@ -220,11 +220,11 @@ def slices(dataset: xr.Dataset, count: int = 30) -> xr.Dataset:
             stress = sections[f"peak_{name}"]
             along = dimension_along(stress, "x")
             points = stress[along].values
-            inside = (points >= borders[:-1, None] - rounding) & (points <= borders[1:, None] + rounding)
-            samples = stress.where(xr.DataArray(inside, dims=("slice", along)))
-            index, sampled = samples.fillna(-np.inf).argmax(along), samples.notnull().any(along)
+            in_slice = (points >= borders[:-1, None] - rounding) & (points <= borders[1:, None] + rounding)
+            samples = stress.where(xr.DataArray(in_slice, dims=("slice", along)))
+            index, has_samples = samples.fillna(-np.inf).argmax(along), samples.notnull().any(along)
             for variable in (f"peak_{name}", f"peak_{name}_z"):
-                value = sections[variable].isel({along: index}).where(sampled).reset_coords(drop=True)
+                value = sections[variable].isel({along: index}).where(has_samples).reset_coords(drop=True)
                 result[variable] = value.assign_attrs(sections[variable].attrs)
     return describe(without_error(result, *means))
 
@@ -232,35 +232,35 @@ def slices(dataset: xr.Dataset, count: int = 30) -> xr.Dataset:
 def _with_errors(
     case: xr.Dataset, borders: FloatArray, pressure: Columns, line_load: Columns, load: FloatArray
 ) -> xr.Dataset:
-    """Load and largest pressure of each slice with their errors, from the settled pressures and the columns."""
-    largest, column_error = largest_between(pressure, borders)
+    """Load and largest pressure of each slice with their errors, from the refined pressures and the columns."""
+    maxima, column_error = maximum_between(pressure, borders)
     relative = pressure_errors(case)
-    middle, rounding = 0.5 * (borders[0] + borders[-1]), ROUNDING * (borders[-1] - borders[0])
-    halves = (borders[:-1] < middle - rounding, borders[1:] > middle + rounding)
+    mid_length, rounding = 0.5 * (borders[0] + borders[-1]), ROUNDING * (borders[-1] - borders[0])
+    halves = (borders[:-1] < mid_length - rounding, borders[1:] > mid_length + rounding)
     peaks = [float(case.get(f"peak_pressure_{side}", np.nan)) for side in SIDES]
     pressure_error = np.max(
         [
-            np.where(inside, factor * (largest if np.isinf(peak) else peak), 0.0)
-            for inside, factor, peak in zip(halves, relative, peaks, strict=True)
+            np.where(in_half, factor * (maxima if np.isinf(peak) else peak), 0.0)
+            for in_half, factor, peak in zip(halves, relative, peaks, strict=True)
         ],
         axis=0,
     )
     error = pressure_error + column_error
     for cut, side, end in zip(cut_ends(case), SIDES, (0, -1), strict=True):
         if np.isinf(float(case.get(f"end_pressure_{side}", 0.0))) and not cut:
-            largest[end] = error[end] = np.inf
+            maxima[end] = error[end] = np.inf
     load_error = np.max(relative) * np.maximum(load, load.mean()) + border_load_errors(line_load, borders)
     source = "from the stated errors of the pressure and the distance of the columns"
     values = {
         "normal_load": (load, "of the slice"),
         "normal_load_error": (load_error, source),
-        "axial_pressure": (largest, "largest of the slice"),
+        "axial_pressure": (maxima, "largest of the slice"),
         "axial_pressure_error": (error, source),
     }
     result = xr.Dataset(
         {
-            name: named(name, xr.DataArray(numbers, dims="slice")).assign_attrs(comment=comment)
-            for name, (numbers, comment) in values.items()
+            name: name_array(name, xr.DataArray(slice_values, dims="slice")).assign_attrs(comment=comment)
+            for name, (slice_values, comment) in values.items()
         }
     )
     return without_error(result, *values) if np.isnan(relative).any() else result

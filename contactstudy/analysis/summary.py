@@ -22,20 +22,20 @@ COMMENTS = {
 
 
 def pressure_numbers(dataset: xr.Dataset) -> dict[str, float]:
-    """Numbers of the pressure; at the ends those of the Dataset, else of the outer pressed columns."""
+    """Numbers of the pressure; end pressures of the Dataset, else of the outermost loaded columns."""
     require(dataset, "pressure", "hertz_max_pressure")
     array = dataset["pressure"].transpose("x", "y")
     pressure, x, y, scale = array.values, array["x"].values, array["y"].values, float(dataset["hertz_max_pressure"])
-    pressed = pressure > 0
-    facing = np.asarray(pressed.any(axis=1))
-    columns = np.flatnonzero(facing)
+    in_contact = pressure > 0
+    has_contact = np.asarray(in_contact.any(axis=1))
+    columns = np.flatnonzero(has_contact)
     widths = [
         dataset[f"{axis}_width"].values
         if f"{axis}_width" in dataset.variables
         else np.full(centres.size, np.ptp(centres) / max(centres.size - 1, 1))
         for axis, centres in (("x", x), ("y", y))
     ]
-    numbers = contact_numbers(pressure, facing, x, y, *widths)
+    numbers = contact_numbers(pressure, has_contact, x, y, *widths)
     at_x, at_y = np.unravel_index(int(np.nanargmax(pressure)), pressure.shape)
     outermost = [float(pressure[column].max()) for column in columns[[0, -1]]] if columns.size else [np.nan, np.nan]
     first, last = (
@@ -73,7 +73,7 @@ class Number(NamedTuple):
 
 
 def case_numbers(dataset: xr.Dataset) -> dict[str, Number]:
-    """All numbers of a solved case by name: scalars of the Dataset (settled), then those of its cells."""
+    """All numbers of a solved case by name: scalars of the Dataset (refined), then numbers of its cells."""
     numbers = {}
     for name, value in pressure_numbers(dataset).items():
         estimate = {"comment": COMMENTS[name], ERROR_KIND: NOT_ESTIMATED} if name in COMMENTS else {}

@@ -7,7 +7,7 @@ import xarray as xr
 
 from contactstudy import checks
 from contactstudy.arrays.grid import SPACING_TOLERANCE, Grid, uniform_range
-from contactstudy.checks import LARGEST, REAL, FloatArray
+from contactstudy.checks import MAX_MAGNITUDE, REAL, FloatArray
 from contactstudy.errors import InvalidInputError
 
 
@@ -34,7 +34,7 @@ def labelled_cells(
         values = np.ascontiguousarray(array.transpose("x", "y").values, dtype=np.float64)
     except (TypeError, ValueError):
         raise InvalidInputError(f"{name}.dtype", array.dtype, "real numbers") from None
-    bad = ~(np.abs(values) <= LARGEST)
+    bad = ~(np.abs(values) <= MAX_MAGNITUDE)
     if infinite:
         bad &= values != np.inf
     if bad.any():
@@ -42,7 +42,7 @@ def labelled_cells(
         raise InvalidInputError(
             name,
             f"{values[i, j]} at x = {grid.x[i]:g}, y = {grid.y[j]:g}",
-            f"finite everywhere, of a size up to {LARGEST:g}",
+            f"finite everywhere, of a size up to {MAX_MAGNITUDE:g}",
             f"{bad.sum()} values are not",
         )
     return values, grid
@@ -62,8 +62,8 @@ def _grid(array: xr.DataArray, extent: tuple[float, float], y_range: tuple[float
         widths = checks.coordinates("x_width", array["x_width"].values)
         centres = checks.coordinates("x", array["x"].values)
         low, high = centres - 0.5 * widths, centres + 0.5 * widths
-        apart = np.abs(high[:-1] - low[1:])
-        wrong = np.flatnonzero(apart > SPACING_TOLERANCE * (high - low)[:-1])
+        gaps = np.abs(high[:-1] - low[1:])
+        wrong = np.flatnonzero(gaps > SPACING_TOLERANCE * (high - low)[:-1])
         if wrong.size:
             index = int(wrong[0])
             borders = f"one cell ends at {high[index]:g} m, the next begins at {low[index + 1]:g} m"

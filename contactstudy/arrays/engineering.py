@@ -32,30 +32,30 @@ def unit_for(size: float, units: str) -> tuple[float, str]:
     return factor, name
 
 
-def written(value: float, digits: int = DIGITS) -> str:
-    """Write a number with so many digits, and without an exponent where that stays short."""
+def format_value(value: float, digits: int = DIGITS) -> str:
+    """Return a number with these digits, without an exponent if the text remains short."""
     if not math.isfinite(value):
         return "not known" if math.isnan(value) else f"{'-' if value < 0 else ''}\N{INFINITY}"
     return f"{value:.{digits}g}" if not 1e3 <= abs(value) < 1e6 else f"{value:.{max(digits, 4)}g}"
 
 
-def quantity(value: float, units: str, digits: int = DIGITS) -> str:
+def format_quantity(value: float, units: str, digits: int = DIGITS) -> str:
     """Write a number of SI units in engineering units."""
     if not math.isfinite(value):
-        return written(value)
+        return format_value(value)
     factor, unit = unit_for(value, units)
-    return f"{written(value / factor, digits)} {unit}".rstrip()
+    return f"{format_value(value / factor, digits)} {unit}".rstrip()
 
 
-def with_error(value: float, error: float | None, units: str) -> str:
+def format_with_error(value: float, error: float | None, units: str) -> str:
     """Write a number and its error in one unit, as many digits as the error lets count."""
     if error is None or not math.isfinite(value) or not NEGLIGIBLE * abs(value) < error < math.inf:
-        return quantity(value, units)
+        return format_quantity(value, units)
     factor, unit = unit_for(max(abs(value), error), units)
     value, error = value / factor, error / factor
     decimals = ERROR_DIGITS - 1 - math.floor(math.log10(error))
     if abs(value) >= 1e5 or decimals > 8:
-        return f"{written(value)} ± {error:.1g} {unit}".rstrip()
+        return f"{format_value(value)} ± {error:.1g} {unit}".rstrip()
     places = max(decimals, 0)
     return f"{round(value, decimals):.{places}f} ± {round(error, decimals):.{places}f} {unit}".rstrip()
 

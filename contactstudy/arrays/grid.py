@@ -13,13 +13,13 @@ from contactstudy.errors import InvalidInputError
 SPACING_TOLERANCE = 1e-4
 """Largest deviation of the spacing of uniform cells over a cell, above single precision. Accuracy."""
 
-STEEPEST_GRADING = 4.0
+MAX_WIDTH_RATIO = 4.0
 """Largest ratio of the widths of neighbouring cells: error estimates are invalid beyond. Accuracy."""
 
 GROWTH = 3.0  # ratio of neighbouring cells outside the contact. Speed.
-LEAST_WIDTH = 1e-12  # least width of a cell over the grid's length: the rounding of the edges. Accuracy.
+MIN_WIDTH = 1e-12  # least width of a cell over the grid's length: the rounding of the edges. Accuracy.
 ON_TOP = 0.02  # relative error of stresses on the top under a pressure of cells, from the page on limits. Accuracy.
-MOST_CELLS = 10**8  # largest number of cells; more suggest a wrong unit
+MAX_CELLS = 10**8  # largest number of cells; more suggest a wrong unit
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -59,14 +59,14 @@ class Grid:
             except (TypeError, ValueError):
                 raise InvalidInputError(name, getattr(self, name), "an increasing pair (metres)") from None
             low, high = checks.finite(name, low, "metres"), checks.finite(name, high, "metres")
-            if not high - low > max(1 / checks.LARGEST, LEAST_WIDTH * max(abs(low), abs(high))):
+            if not high - low > max(1 / checks.MAX_MAGNITUDE, MIN_WIDTH * max(abs(low), abs(high))):
                 raise InvalidInputError(name, (low, high), "an increasing pair (metres), not closer than rounding is")
             checks.store(self, **{name: (low, high)})
         for name in ("cells_x", "cells_y"):
             checks.store(self, **{name: checks.count(name, getattr(self, name))})
-        if self.cells_x * self.cells_y > MOST_CELLS:
+        if self.cells_x * self.cells_y > MAX_CELLS:
             counts = (self.cells_x, self.cells_y)
-            raise InvalidInputError("cells_x, cells_y", counts, f"at most {MOST_CELLS:.0e} cells")
+            raise InvalidInputError("cells_x, cells_y", counts, f"at most {MAX_CELLS:.0e} cells")
 
     @classmethod
     def from_edges(cls, x_edges: object, y_range: tuple[float, float], cells_y: int) -> Grid:
@@ -101,7 +101,7 @@ class Grid:
         if edges.size < 2:
             raise InvalidInputError("x_edges", edges, "at least two edges (metres)")
         widths = np.diff(edges)
-        wrong = np.flatnonzero(widths <= LEAST_WIDTH * (edges[-1] - edges[0]))
+        wrong = np.flatnonzero(widths <= MIN_WIDTH * (edges[-1] - edges[0]))
         if wrong.size:
             index = int(wrong[0])
             raise InvalidInputError("x_edges", f"{edges[index]:g}, {edges[index + 1]:g} m", "increasing")
@@ -115,13 +115,13 @@ class Grid:
         edges, widths = self.x_edges, self.widths
         ratio = np.maximum(widths[1:] / widths[:-1], widths[:-1] / widths[1:])
         # An edge may be rounded.
-        steep = np.flatnonzero((ratio > STEEPEST_GRADING * (1 + SPACING_TOLERANCE)) & cells[1:] & cells[:-1])
+        steep = np.flatnonzero((ratio > MAX_WIDTH_RATIO * (1 + SPACING_TOLERANCE)) & cells[1:] & cells[:-1])
         if steep.size:
             index = int(steep[0]) + 1
             raise InvalidInputError(
                 "x_edges",
                 f"cells of {widths[index - 1]:g} and {widths[index]:g} m beside x = {edges[index]:g} m",
-                f"such that neighbouring cells differ by a factor of {STEEPEST_GRADING:g} at most",
+                f"such that neighbouring cells differ by a factor of {MAX_WIDTH_RATIO:g} at most",
             )
 
     @classmethod
@@ -192,8 +192,8 @@ class Grid:
     @property
     def y(self) -> FloatArray:
         """Cell centres along y, metres; exactly symmetric when the range is."""
-        middle = 0.5 * (self.y_range[0] + self.y_range[1])
-        return np.asarray(middle + self.dy * (np.arange(self.cells_y) - 0.5 * (self.cells_y - 1)))
+        mid_y = 0.5 * (self.y_range[0] + self.y_range[1])
+        return np.asarray(mid_y + self.dy * (np.arange(self.cells_y) - 0.5 * (self.cells_y - 1)))
 
     def coarsened(self) -> Grid:
         """Return the grid of cells of twice the size; a little more where a number of cells is odd."""

@@ -8,7 +8,7 @@ import numpy as np
 
 from contactstudy.checks import FloatArray
 
-FLANK = 0.8  # fraction of a peak at which its width is read; a half-ellipse is 1 / 0.6 times as wide there
+FLANK = 0.8  # fraction of a peak at which its width is read; a half-ellipse is 1 / 0.6 times as wide at its base
 SAMPLES_BETWEEN = 17  # points between the two neighbours of a sample at which the interpolating polynomial is evaluated
 
 
@@ -17,16 +17,16 @@ def section_maxima(pressure: FloatArray) -> FloatArray:
     # The squared pressure is nearly a parabola across the contact, through the largest cell and its neighbours.
     squared = pressure**2
     centre = np.clip(squared.argmax(axis=1), 1, squared.shape[1] - 2)
-    lower, middle, upper = (squared[np.arange(centre.size), centre + step] for step in (-1, 0, 1))
-    second_difference = np.minimum(lower - 2 * middle + upper, 0.0)
+    lower, central, upper = (squared[np.arange(centre.size), centre + step] for step in (-1, 0, 1))
+    second_difference = np.minimum(lower - 2 * central + upper, 0.0)
     with np.errstate(divide="ignore", invalid="ignore"):
         rise = np.where(second_difference < 0, -((upper - lower) ** 2) / (8 * second_difference), 0.0)
     maxima = squared.max(axis=1)
     # One or two cells do not determine a parabola.
-    return np.sqrt(np.where(maxima > 0, np.maximum(middle + np.minimum(rise, 0.25 * middle), maxima), 0.0))
+    return np.sqrt(np.where(maxima > 0, np.maximum(central + np.minimum(rise, 0.25 * central), maxima), 0.0))
 
 
-def lagrange(nodes: FloatArray, points: FloatArray) -> FloatArray:
+def lagrange_weights(nodes: FloatArray, points: FloatArray) -> FloatArray:
     """Matrix (point, node) that interpolates from `nodes` to `points` by one polynomial."""
     matrix = np.empty((points.size, nodes.size))
     for i, node in enumerate(nodes):
@@ -43,18 +43,18 @@ def interpolate_about(
     One polynomial along each axis interpolates the sample and `neighbours` samples on either side.
     """
     points, matrices = [], []
-    for number, (axis, centre) in enumerate(zip(axes, index, strict=True), start=1):
+    for axis_count, (axis, centre) in enumerate(zip(axes, index, strict=True), start=1):
         # At an edge all samples lie on one side.
         count = min(2 * neighbours + 1, axis.size)
         start = min(max(centre - neighbours, 0), axis.size - count)
         nodes = axis[start : start + count]
         low, high = axis[max(centre - 1, 0)], axis[min(centre + 1, axis.size - 1)]
-        between = np.unique(np.append(np.linspace(low, high, SAMPLES_BETWEEN), axis[centre])) if count > 1 else nodes
-        values = values[(slice(None),) * number + (slice(start, start + count),)]
-        points.append(between)
-        matrices.append(lagrange(nodes, between))
-    for number, matrix in enumerate(matrices, start=1):
-        values = np.moveaxis(np.tensordot(matrix, values, axes=(1, number)), 0, number)
+        samples = np.unique(np.append(np.linspace(low, high, SAMPLES_BETWEEN), axis[centre])) if count > 1 else nodes
+        values = values[(slice(None),) * axis_count + (slice(start, start + count),)]
+        points.append(samples)
+        matrices.append(lagrange_weights(nodes, samples))
+    for axis_count, matrix in enumerate(matrices, start=1):
+        values = np.moveaxis(np.tensordot(matrix, values, axes=(1, axis_count)), 0, axis_count)
     return points, values
 
 

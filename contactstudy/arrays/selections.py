@@ -10,13 +10,13 @@ import xarray as xr
 from contactstudy.errors import InvalidInputError
 
 
-def place_of(dataset: xr.Dataset | xr.DataArray, name: str, value: object, argument: str = "selection") -> int:
+def index_of(dataset: xr.Dataset | xr.DataArray, name: str, value: object, argument: str = "selection") -> int:
     """Return the number of a value of a swept parameter."""
     if name not in dataset.indexes:
         swept = dataset["status"].dims if isinstance(dataset, xr.Dataset) and "status" in dataset else ()
         raise InvalidInputError(argument, name, f"a swept parameter: {', '.join(map(str, swept)) or 'none'}")
     labels = dataset.indexes[name]
-    indices = [number for number, label in enumerate(labels) if _equals(value, label)]
+    indices = [index for index, label in enumerate(labels) if _equals(value, label)]
     if not indices:
         raise InvalidInputError(f"{argument}[{name!r}]", value, f"one of {', '.join(map(str, labels))}")
     return indices[0]

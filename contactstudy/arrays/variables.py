@@ -19,7 +19,7 @@ from contactstudy.errors import InvalidInputError
 from contactstudy.versions import version_of
 
 DERIVED = "follows from the other parameters"  # comment of a coordinate that a study does not sweep
-ERROR_KIND = "error_kind"  # attribute of a number: how its error is stated, one of the two values below
+ERROR_KIND = "error_kind"  # attribute of a number: kind of its error, one of the two values below
 
 ESTIMATED, NOT_ESTIMATED = "estimated", "not estimated"
 """The variable ``<name>_error`` contains the error, or no error is stated."""
@@ -32,25 +32,25 @@ def specification(name: str, base: Variable | None = None, *, coordinate: bool =
     """Specification of a variable or coordinate by its name; None if the name is unknown."""
     entry = (COORDINATES if coordinate else VARIABLES).get(name)
     if entry is not None:
-        return _filled(entry, base or Variable((), "", "", "value"))
+        return _fill_templates(entry, base or Variable((), "", "", "value"))
     for prefix, suffix in _AFFIXES:
-        middle = name.removeprefix(prefix).removesuffix(suffix)
-        if name == f"{prefix}{middle}{suffix}" and middle:
-            of = base or specification(middle) or specification(middle, coordinate=True)
-            return of and _filled(RULES[f"{prefix}{{name}}{suffix}"], of)
+        base_name = name.removeprefix(prefix).removesuffix(suffix)
+        if name == f"{prefix}{base_name}{suffix}" and base_name:
+            of = base or specification(base_name) or specification(base_name, coordinate=True)
+            return of and _fill_templates(RULES[f"{prefix}{{name}}{suffix}"], of)
     return None
 
 
-def _filled(row: Variable, base: Variable) -> Variable:
+def _fill_templates(row: Variable, base: Variable) -> Variable:
     """Row of a table with its braces filled."""
-    words = {"name": "", "variable": base.long_name, "units": base.units, "symbol": base.symbol or base.long_name}
+    fields = {"name": "", "variable": base.long_name, "units": base.units, "symbol": base.symbol or base.long_name}
     dims = base.dims if row.dims == ("{name}",) else row.dims
     symbol = row.symbol
     if "{symbol}" in symbol:
-        symbol = symbol.format(**words) if base.symbol else ""
-    long_name = row.long_name.format(**words)
-    words["variable"] = ", ".join(filter(None, (base.long_name, base.comment)))
-    return Variable(dims, row.units.format(**words), symbol, long_name, row.comment.format(**words))
+        symbol = symbol.format(**fields) if base.symbol else ""
+    long_name = row.long_name.format(**fields)
+    fields["variable"] = ", ".join(filter(None, (base.long_name, base.comment)))
+    return Variable(dims, row.units.format(**fields), symbol, long_name, row.comment.format(**fields))
 
 
 def variable_of(name: str, attributes: Mapping[Any, Any], *, coordinate: bool = False) -> Variable:
@@ -67,7 +67,7 @@ def labels(name: str, base: Variable | None = None, *, coordinate: bool = False)
     return entry.attrs if entry else {}
 
 
-def named(name: str, array: xr.DataArray, base: Variable | None = None) -> xr.DataArray:
+def name_array(name: str, array: xr.DataArray, base: Variable | None = None) -> xr.DataArray:
     """Return `array` with a name of the table and its unit and meaning."""
     renamed = array.rename(name)
     renamed.attrs = labels(name, base)
@@ -80,28 +80,28 @@ def package_version() -> str:
 
 
 def without_error(dataset: xr.Dataset, *names: str) -> xr.Dataset:
-    """Return `dataset` with the error kind "not estimated" on the named variables that it has."""
-    marked = dataset.copy()
+    """Return `dataset` with the error kind "not estimated" on the named variables, if present."""
+    result = dataset.copy()
     for name in names:
-        if name in marked:
-            marked[name].attrs[ERROR_KIND] = NOT_ESTIMATED
-    return marked
+        if name in result:
+            result[name].attrs[ERROR_KIND] = NOT_ESTIMATED
+    return result
 
 
 def describe(dataset: xr.Dataset, title: str | None = None) -> xr.Dataset:
-    """Return `dataset` with units and meanings from the table; attributes already there stay."""
-    described = dataset.copy()
-    for name, variable in described.variables.items():
-        variable.attrs = labels(str(name), coordinate=name in described.coords) | variable.attrs
-        if f"{name}_error" in described:
+    """Return `dataset` with units and meanings from the table; existing attributes remain."""
+    result = dataset.copy()
+    for name, variable in result.variables.items():
+        variable.attrs = labels(str(name), coordinate=name in result.coords) | variable.attrs
+        if f"{name}_error" in result:
             variable.attrs.setdefault(ERROR_KIND, ESTIMATED)
     if title is not None:
         conventions = {"Conventions": "CF-1.11", "source": f"contactstudy {package_version()}"}
-        described.attrs = conventions | described.attrs | {"title": title}
-    for name in described.coords:
+        result.attrs = conventions | result.attrs | {"title": title}
+    for name in result.coords:
         # CF: a coordinate has all values, without a fill value.
-        described[name].encoding["_FillValue"] = None
-    return described
+        result[name].encoding["_FillValue"] = None
+    return result
 
 
 def require(dataset: object, *names: str, argument: str = "dataset") -> None:
@@ -133,13 +133,15 @@ def in_si(name: str, array: xr.DataArray, unit: str) -> xr.DataArray:
     """Return an array with its values in `unit`, a key of `checks.UNIT_SIZES`, and its positions in metres."""
     checks.instance(name, array, xr.DataArray, "an xarray.DataArray with dimensions (x, y)")
     factors = {axis: _factor(f"{name}.{axis}", array[axis], "m") for axis in POSITIONS if axis in array.coords}
-    moved = {axis: (array[axis] * factor).assign_attrs(units="m") for axis, factor in factors.items() if factor != 1}
+    coordinates = {
+        axis: (array[axis] * factor).assign_attrs(units="m") for axis, factor in factors.items() if factor != 1
+    }
     scale = _factor(name, array, unit)
-    converted = array.assign_coords(moved) if moved else array
+    converted = array.assign_coords(coordinates) if coordinates else array
     return converted if scale == 1 else (converted * scale).assign_attrs(units=unit)
 
 
-def required_in_si(dataset: xr.Dataset, *names: str, argument: str = "dataset", normalized: bool = False) -> xr.Dataset:
+def require_in_si(dataset: xr.Dataset, *names: str, argument: str = "dataset", normalized: bool = False) -> xr.Dataset:
     """Return a Dataset that must hold some variables, with these and all positions in SI."""
     require(dataset, *names, argument=argument)
     units = {name: VARIABLES[name].units for name in names}

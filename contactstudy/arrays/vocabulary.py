@@ -15,7 +15,7 @@ class Variable(NamedTuple):
     units: str  # SI, in the spelling of the CF conventions
     symbol: str  # LaTeX, without dollar signs
     long_name: str
-    """Meaning. ``{variable}`` stands for the meaning of the variable that a quantity was derived from, and
+    """Meaning. ``{variable}`` is replaced by the meaning of the variable that a quantity was derived from, and
     ``{symbol}`` for its symbol, or its meaning if it has none. Those of coordinates are short: they stand on
     axes, where xarray breaks them after 30 characters, which is cut off."""
     comment: str = ""  # addition to the short meaning
@@ -28,8 +28,8 @@ class Variable(NamedTuple):
 
 
 X, XY, XZ, YZ, XYZ, SCALAR = ("x",), ("x", "y"), ("x", "z"), ("y", "z"), ("x", "y", "z"), ()
-SLICE, CHECK = ("slice",), ("check",)
-EVALUATION, PARAMETER, SLIDE_ROLL = ("evaluation",), ("parameter",), ("slide_roll_ratio",)  # dimensions, for short
+SLICE_DIMS, CHECK_DIMS = ("slice",), ("check",)
+EVALUATION_DIMS, PARAMETER_DIMS, SLIDE_ROLL_DIMS = ("evaluation",), ("parameter",), ("slide_roll_ratio",)
 AXES = ("x", "y", "z")  # along the roller's axis, along rolling, and into the body
 
 STRESSES = ("sigma_xx", "sigma_yy", "sigma_zz", "tau_xy", "tau_xz", "tau_yz")
@@ -52,22 +52,22 @@ COORDINATES = {  # coordinates of results; swept parameters stand in :data:`cont
     "gamma": Variable(SCALAR, "1", r"\gamma", "length over radius", "of the body over that of the roller"),
     "profile": Variable(SCALAR, "", "", "roller profile"),
     "distance": Variable(("distance",), "m", "s", "distance", "along the line, or slid or rolled"),
-    "slice": Variable(SLICE, "1", "k", "slice from end I", "its number"),
+    "slice": Variable(SLICE_DIMS, "1", "k", "slice from end I", "its number"),
     "principal": Variable(("principal",), "1", "", "principal stress", "its rank, 1 the largest"),
     "axis": Variable(("axis",), "", "", "component along this axis"),
     "case": Variable(("case",), "1", "", "number of the case"),
     "model": Variable(("model",), "", "", "model of the contacts"),
-    "evaluation": Variable(EVALUATION, "1", "", "number of the design"),
+    "evaluation": Variable(EVALUATION_DIMS, "1", "", "number of the design"),
     "case_load": Variable(("case",), "N", "W", "normal load of the case"),
     "case_tilt": Variable(("case",), "rad", r"\vartheta", "tilt of the case"),
-    "parameter": Variable(PARAMETER, "", "", "parameter of the profile"),
-    "parameter_units": Variable(PARAMETER, "", "", "unit of the parameter", "empty where it is not known"),
+    "parameter": Variable(PARAMETER_DIMS, "", "", "parameter of the profile"),
+    "parameter_units": Variable(PARAMETER_DIMS, "", "", "unit of the parameter", "empty where it is not known"),
     "raceway": Variable(("raceway",), "", "", "raceway"),
     "roller": Variable(("roller",), "1", "j", "number of the roller"),
     "approach": Variable(("approach",), "m", r"\delta", "approach", "of roller and body, relative to its reference"),
     "tilt": Variable(("tilt",), "rad", r"\vartheta", "tilt", "from its reference, positive if larger x is deeper"),
     "normal_load": Variable(("normal_load",), "N", "W", "normal load"),
-    "slide_roll_ratio": Variable(SLIDE_ROLL, "1", "S", "slide-roll ratio"),
+    "slide_roll_ratio": Variable(SLIDE_ROLL_DIMS, "1", "S", "slide-roll ratio"),
     "moment": Variable(("moment",), "N m", "M", "moment", "of the pressure, positive for a load at larger x"),
     "pass_number": Variable(("pass_number",), "1", "N", "number of the pass"),
 }
@@ -204,8 +204,8 @@ ANALYSIS = {  # variables of :mod:`contactstudy.analysis`
     "over_reference_last": Variable(SCALAR, "1", "", "{variable} at the last end, over that of the reference"),
     "over_reference_middle": Variable(SCALAR, "1", "", "{variable} in the middle, over that of the reference"),
     "over_reference_peak": Variable(SCALAR, "1", "", "{variable} at its largest, over that of the reference"),
-    "position": Variable(SLICE, "m", "x_k", "middle of the slice"),
-    "width": Variable(SLICE, "m", "", "width of the slice"),
+    "position": Variable(SLICE_DIMS, "m", "x_k", "middle of the slice"),
+    "width": Variable(SLICE_DIMS, "m", "", "width of the slice"),
 }
 
 FATIGUE = {  # variables of :mod:`contactstudy.fatigue`. The unit of a risk has the exponents of its life theory in it.
@@ -274,7 +274,9 @@ BEARING = {  # variables of :mod:`contactstudy.bearing`
     "inner_tilt": Variable(SCALAR, "rad", "", "tilt of the contact with the inner raceway"),
     "outer_approach": Variable(SCALAR, "m", "", "approach of the contact with the outer raceway"),
     "outer_tilt": Variable(SCALAR, "rad", "", "tilt of the contact with the outer raceway"),
-    "hertz_load_per_length": Variable(SLICE, "N/m", "", "load per length of the line contact with the solved pressure"),
+    "hertz_load_per_length": Variable(
+        SLICE_DIMS, "N/m", "", "load per length of the line contact with the solved pressure"
+    ),
     "stress_riser": Variable(
         ("model", "raceway", "roller", "slice"), "1", "f_k", "factor on the load of a lamina, from solved pressures"
     ),
@@ -286,23 +288,23 @@ BEARING = {  # variables of :mod:`contactstudy.bearing`
 }
 
 DESIGN = {  # variables of :mod:`contactstudy.design`. Units: the measure's.
-    "optimum": Variable(PARAMETER, "", "", "best value of the parameter"),
-    "at_bound": Variable(PARAMETER, "", "", "whether the best value is a bound"),
-    "flat_from": Variable(PARAMETER, "", "", "least value of the parameter that is as good within the errors"),
-    "flat_to": Variable(PARAMETER, "", "", "largest value of the parameter that is as good within the errors"),
-    "lower_bound": Variable(PARAMETER, "", "", "least value of the parameter that is looked at"),
-    "upper_bound": Variable(PARAMETER, "", "", "largest value of the parameter that is looked at"),
+    "optimum": Variable(PARAMETER_DIMS, "", "", "best value of the parameter"),
+    "at_bound": Variable(PARAMETER_DIMS, "", "", "whether the best value is a bound"),
+    "flat_from": Variable(PARAMETER_DIMS, "", "", "least value of the parameter that is as good within the errors"),
+    "flat_to": Variable(PARAMETER_DIMS, "", "", "largest value of the parameter that is as good within the errors"),
+    "lower_bound": Variable(PARAMETER_DIMS, "", "", "least value of the parameter that is looked at"),
+    "upper_bound": Variable(PARAMETER_DIMS, "", "", "largest value of the parameter that is looked at"),
     "measure": Variable(SCALAR, "", "", "measure of the best design in its worst case"),
     "design": Variable(("evaluation", "parameter"), "", "", "parameters of a design that was looked at"),
-    "design_measure": Variable(EVALUATION, "", "", "measure of a design in its worst case"),
+    "design_measure": Variable(EVALUATION_DIMS, "", "", "measure of a design in its worst case"),
     "case_measure": Variable(("evaluation", "case"), "", "", "measure of a design in one case"),
 }
 
-DISTANCE_X = ("distance", "x")
+DISTANCE_X_DIMS = ("distance", "x")
 
 WEAR = {  # variables of :func:`contactstudy.wear.wear_in`
-    "wear_depth": Variable(DISTANCE_X, "m", "h", "depth worn off the roller's profile"),
-    "profile_drop": Variable(DISTANCE_X, "m", "d", "drop of the worn profile"),
+    "wear_depth": Variable(DISTANCE_X_DIMS, "m", "h", "depth worn off the roller's profile"),
+    "profile_drop": Variable(DISTANCE_X_DIMS, "m", "d", "drop of the worn profile"),
     "worn_volume": Variable(("distance",), "m3", "V", "volume worn off the roller"),
     "wear_error": Variable(("distance",), "1", "", "estimated error of the worn depth, over the largest depth"),
     "next_step": Variable(("distance",), "m", "", "distance of the step that would follow"),
@@ -330,15 +332,15 @@ STUDIES = {  # variables of a study's cases
 }
 
 VERIFICATION = {  # variables of :func:`contactstudy.verification.verify`
-    "group": Variable(CHECK, "", "", "group of the check"),
-    "case": Variable(CHECK, "", "", "what was solved"),
-    "quantity": Variable(CHECK, "", "", "what is compared, with its unit"),
-    "source": Variable(CHECK, "", "", "where the reference comes from"),
-    "computed": Variable(CHECK, "", "", "value of the package, in the unit of the quantity"),
-    "expected": Variable(CHECK, "", "", "value of the reference, in the unit of the quantity"),
-    "difference": Variable(CHECK, "", "", "what is compared with the tolerance"),
-    "tolerance": Variable(CHECK, "", "", "largest difference that passes"),
-    "passed": Variable(CHECK, "", "", "whether the difference is within the tolerance"),
+    "group": Variable(CHECK_DIMS, "", "", "group of the check"),
+    "case": Variable(CHECK_DIMS, "", "", "what was solved"),
+    "quantity": Variable(CHECK_DIMS, "", "", "what is compared, with its unit"),
+    "source": Variable(CHECK_DIMS, "", "", "where the reference comes from"),
+    "computed": Variable(CHECK_DIMS, "", "", "value of the package, in the unit of the quantity"),
+    "expected": Variable(CHECK_DIMS, "", "", "value of the reference, in the unit of the quantity"),
+    "difference": Variable(CHECK_DIMS, "", "", "what is compared with the tolerance"),
+    "tolerance": Variable(CHECK_DIMS, "", "", "largest difference that passes"),
+    "passed": Variable(CHECK_DIMS, "", "", "whether the difference is within the tolerance"),
 }
 
 FILM = {  # film thickness and derived quantities
@@ -372,9 +374,11 @@ FILM = {  # film thickness and derived quantities
     "slice_film": Variable(X, "m", "", "film of each slice by Moes' formula, from the dry load per length"),
     "viscosity_ratio": Variable(SCALAR, "1", r"\kappa", "viscosity ratio of ISO 281, from the middle section's film"),
     "film_ratio": Variable(X, "1", r"\Lambda", "least film thickness across y over the composite roughness"),
-    "traction_coefficient": Variable(SLIDE_ROLL, "1", r"\mu", "traction over the load"),
-    "power_loss": Variable(SLIDE_ROLL, "W", "", "power that sliding and rolling take"),
-    "thermal_reduction": Variable(SLIDE_ROLL, "1", r"\varphi_T", "film with a heated inlet over the isothermal one"),
+    "traction_coefficient": Variable(SLIDE_ROLL_DIMS, "1", r"\mu", "traction over the load"),
+    "power_loss": Variable(SLIDE_ROLL_DIMS, "W", "", "power that sliding and rolling take"),
+    "thermal_reduction": Variable(
+        SLIDE_ROLL_DIMS, "1", r"\varphi_T", "film with a heated inlet over the isothermal one"
+    ),
     "rolling_force": Variable((), "N", "", "force along y on either surface from the film's pressure gradient"),
     "rolling_moment": Variable((), "N m", "t", "moment of the rolling force about the roller's axis"),
 }

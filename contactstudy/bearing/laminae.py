@@ -12,7 +12,7 @@ from contactstudy.analysis.axes import cell_widths, dimension_along, single_case
 from contactstudy.analysis.provenance import solved_case
 from contactstudy.analysis.slices import SIDES, Columns, power_means, pressure_errors
 from contactstudy.arrays.peaks import section_maxima
-from contactstudy.arrays.variables import ERROR_KIND, NOT_ESTIMATED, describe, require, required_in_si, without_error
+from contactstudy.arrays.variables import ERROR_KIND, NOT_ESTIMATED, describe, require, require_in_si, without_error
 from contactstudy.bodies import hertz
 from contactstudy.case.case import Case, small_tilt
 from contactstudy.checks import FloatArray
@@ -84,7 +84,7 @@ def slice_model(case: Case, *, slices: int = 30, tilt: float | None = None, edge
     from scipy.optimize import brentq
 
     checks.instance("case", case, Case, "a Case")
-    slices = checks.count("slices", slices, least=2)
+    slices = checks.count("slices", slices, minimum=2)
     if case.load_position is not None:
         raise InvalidInputError("case.load_position", case.load_position, "None: the slice model takes a tilt")
     tilt = small_tilt(case.tilt if tilt is None else tilt)
@@ -187,7 +187,7 @@ def lamina_factors(result: xr.Dataset, *, laminae: int = 30) -> xr.Dataset:
     True
     """
     require(result, "tilt", argument="result")
-    result = required_in_si(result, "pressure", argument="result")
+    result = require_in_si(result, "pressure", argument="result")
     solution = single_case(result)
     return lamina_loads(solution, solved_case(solution), laminae)[0]
 
@@ -197,7 +197,7 @@ def lamina_loads(solution: xr.Dataset, case: Case, laminae: int) -> tuple[xr.Dat
 
     This error bounds a life, where errors of columns cancel.
     """
-    count = checks.count("laminae", laminae, least=2)
+    count = checks.count("laminae", laminae, minimum=2)
     sliced = slice_model(replace(case, load_position=None, tilt=float(solution["tilt"])), slices=count)
     start, stop = case.contact_range
     borders = np.linspace(start, stop, count + 1)

@@ -11,7 +11,7 @@ import xarray as xr
 
 from contactstudy import checks
 from contactstudy.arrays.engineering import html_table
-from contactstudy.arrays.variables import describe, named, require, without_error
+from contactstudy.arrays.variables import describe, name_array, require, without_error
 from contactstudy.bearing.energy_spline import EnergySpline, Motion, Nodes
 from contactstudy.checks import FloatArray, factor_to
 from contactstudy.errors import InvalidInputError
@@ -70,7 +70,7 @@ def with_position_errors(motion: xr.Dataset) -> xr.Dataset:
         "approach_error": (tilting * load + coupling * moment) / size,
         "tilt_error": (coupling * load + normal * moment) / size,
     }
-    return motion.assign({name: named(name, error.drop_attrs()) for name, error in errors.items()})
+    return motion.assign({name: name_array(name, error.drop_attrs()) for name, error in errors.items()})
 
 
 def dataset(approach: xr.DataArray, tilt: xr.DataArray, motion: Motion, errors: FloatArray) -> xr.Dataset:

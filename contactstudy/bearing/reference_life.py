@@ -148,7 +148,7 @@ def reference_life(
     if len(cases["inner"]) != len(cases["outer"]):
         raise InvalidInputError("outer", len(cases["outer"]), f"as many rollers as inside, {len(cases['inner'])}")
     loaded = len(cases["inner"])
-    number = loaded if rollers is None else checks.count("rollers", rollers, least=loaded)
+    number = loaded if rollers is None else checks.count("rollers", rollers, minimum=loaded)
     if isinstance(inner, Case):
         number = 1  # equal rollers: the mean does not depend on their number
     checks.known_name("turning", turning, RACEWAYS)

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from contactstudy import checks
-from contactstudy.arrays.engineering import quantity
+from contactstudy.arrays.engineering import format_quantity
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 
@@ -92,7 +92,7 @@ class Lubricant:
     def __repr__(self) -> str:
         alpha = f"{1e9 * self.pressure_viscosity:.3g} 1/GPa"
         laws = f"{self.viscosity_law}, {self.density_law} density"
-        return f"Lubricant(eta0 = {quantity(self.viscosity, 'Pa s')}, alpha = {alpha}, {laws})"
+        return f"Lubricant(eta0 = {format_quantity(self.viscosity, 'Pa s')}, alpha = {alpha}, {laws})"
 
     @property
     def exponent(self) -> float:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from contactstudy import checks
-from contactstudy.arrays.engineering import quantity
+from contactstudy.arrays.engineering import format_quantity
 from contactstudy.errors import InvalidInputError
 
 
@@ -47,7 +47,7 @@ class Material:
         checks.store(self, poisson=poisson)
 
     def __repr__(self) -> str:
-        return f"Material(E = {quantity(self.young, 'Pa')}, nu = {self.poisson:g})"
+        return f"Material(E = {format_quantity(self.young, 'Pa')}, nu = {self.poisson:g})"
 
     @property
     def shear_modulus(self) -> float:

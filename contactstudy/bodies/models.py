@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from contactstudy import checks
-from contactstudy.arrays.engineering import quantity
+from contactstudy.arrays.engineering import format_quantity
 from contactstudy.arrays.grid import Grid
 from contactstudy.bodies.material import Material
 from contactstudy.errors import InvalidInputError
@@ -66,10 +66,10 @@ class Body:
 
     def __repr__(self) -> str:
         low, high = self.extent
-        values = [f"L = {quantity(high, 'm')}"] if np.isfinite(high - low) else []
-        values.append(f"E = {quantity(self.material.young, 'Pa')}, nu = {self.material.poisson:g}")
+        values = [f"L = {format_quantity(high, 'm')}"] if np.isfinite(high - low) else []
+        values.append(f"E = {format_quantity(self.material.young, 'Pa')}, nu = {self.material.poisson:g}")
         if self.reference_depth is not None:
-            values.append(f"reference depth {quantity(self.reference_depth, 'm')}")
+            values.append(f"reference depth {format_quantity(self.reference_depth, 'm')}")
         model = getattr(self, "model", "exact")
         return f"{type(self).__name__}({', '.join(values if model == 'exact' else [*values, f'model={model!r}'])})"
 

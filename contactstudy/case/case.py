@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from contactstudy import checks
-from contactstudy.arrays.engineering import quantity
+from contactstudy.arrays.engineering import format_quantity
 from contactstudy.arrays.grid import Grid
 from contactstudy.bodies import hertz
 from contactstudy.bodies.counterbody import Counterbody
@@ -135,7 +135,7 @@ class Case:
         else:
             p0, a = self.hertz_max_pressure, self.hertz_half_width
             sizes = {"W": (self.normal_load, "N"), "p0": (p0, "Pa"), "a": (a, "m")}
-        amounts = ", ".join(f"{name} = {quantity(*size)}" for name, size in sizes.items())
+        amounts = ", ".join(f"{name} = {format_quantity(*size)}" for name, size in sizes.items())
         motion = "full sliding along +y" if isinstance(self.motion, Sliding) else repr(self.motion)
         if isinstance(self.friction, AxialFriction):
             friction = f"friction from {min(self.friction.values):g} to {max(self.friction.values):g}"
@@ -143,10 +143,10 @@ class Case:
             friction = f"friction {self.friction:g}"
         details = [f"{friction}{', coupled' if self.coupled else ''}, {motion}"]
         if self.tilt:
-            details.append(f"tilt {quantity(self.tilt, 'rad')}")
+            details.append(f"tilt {format_quantity(self.tilt, 'rad')}")
         if self.load_position is not None:
-            details.append(f"load at x = {quantity(self.load_position, 'm')}")
-        heading = f"Case: {amounts}, e = {quantity(self.roller_start, 'm')}"
+            details.append(f"load at x = {format_quantity(self.load_position, 'm')}")
+        heading = f"Case: {amounts}, e = {format_quantity(self.roller_start, 'm')}"
         return "\n  ".join([heading, repr(self.roller), repr(self.body), "; ".join(details)])
 
     def _check_position(self) -> None:

@@ -8,7 +8,7 @@ from typing import TypeVar
 import numpy as np
 
 from contactstudy import checks
-from contactstudy.arrays.grid import MOST_CELLS, Grid, growing_edges
+from contactstudy.arrays.grid import MAX_CELLS, Grid, growing_edges
 from contactstudy.bodies.models import FiniteLengthSpace
 from contactstudy.case.case import Case
 from contactstudy.checks import FloatArray
@@ -100,11 +100,11 @@ def choose_grid(
             ("cells_y", 2 * half_window, cells_y),
         )
     ]
-    if not least[0] * least[1] <= MOST_CELLS:
+    if not least[0] * least[1] <= MAX_CELLS:
         raise InvalidInputError(
             "cells_x, cells_y",
             (cells_x, cells_y),
-            f"such that there are at most {MOST_CELLS:.0e} cells, not {least[0] * least[1]:.1e}",
+            f"such that there are at most {MAX_CELLS:.0e} cells, not {least[0] * least[1]:.1e}",
             f"the Hertz half-width is {half_width:.3g} m: pressures are in Pa, loads in N, lengths in metres",
         )
     counts = [next_fast_len(int(count), real=True) for count in least]

@@ -9,7 +9,7 @@ from typing import NamedTuple, TypeVar
 import numpy as np
 import xarray as xr
 
-from contactstudy.arrays.engineering import quantity
+from contactstudy.arrays.engineering import format_quantity
 from contactstudy.arrays.grid import Grid
 from contactstudy.bodies.models import FiniteLengthSpace
 from contactstudy.case.case import Case
@@ -242,5 +242,5 @@ def _load_doubt(case: Case) -> str:
         return ""
     word = "low" if half_width < usual.least else "high"
     prescribed = f"load = {case.load:g} N" if case.max_pressure is None else f"max_pressure = {case.max_pressure:g} Pa"
-    pressure = quantity(case.hertz_max_pressure, "Pa")
+    pressure = format_quantity(case.hertz_max_pressure, "Pa")
     return f"{prescribed} is very {word}: Hertz pressure {pressure}, half-width {half_width:.1g} of the roller's radius"

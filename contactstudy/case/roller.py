@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from contactstudy import checks
-from contactstudy.arrays.engineering import quantity
+from contactstudy.arrays.engineering import format_quantity
 from contactstudy.arrays.grid import Grid
 from contactstudy.bodies.material import Material
 from contactstudy.bodies.models import Body, FiniteLengthSpace, HalfSpace
@@ -103,11 +103,11 @@ class Roller:
 
     def __repr__(self) -> str:
         drop = float(self.profile.drop(np.array([0.5 * self.length]), self.length)[0])
-        material = "rigid" if self.material is None else f"E = {quantity(self.material.young, 'Pa')}"
+        material = "rigid" if self.material is None else f"E = {format_quantity(self.material.young, 'Pa')}"
         if self.material is not None and self.ends == "none":
             material += ", as a half-space"
-        sizes = f"R = {quantity(self.radius, 'm')}, L = {quantity(self.length, 'm')}"
-        return f"Roller({sizes}, {in_words(self.profile)}, end drop {quantity(drop, 'm')}, {material})"
+        sizes = f"R = {format_quantity(self.radius, 'm')}, L = {format_quantity(self.length, 'm')}"
+        return f"Roller({sizes}, {in_words(self.profile)}, end drop {format_quantity(drop, 'm')}, {material})"
 
     @staticmethod
     def combined_radius(first: float, second: float) -> float:

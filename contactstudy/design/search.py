@@ -374,7 +374,7 @@ def best_profile(
         measure=measure,
         accuracy=check_accuracy(accuracy),
         settings=dict(settings),
-        most=checks.count("evaluations", evaluations, least=fewest(len(ranges))),
+        most=checks.count("evaluations", evaluations, minimum=fewest(len(ranges))),
     )
     best = optimum(designs)
     ends = [flat_range(designs, best, index) for index in range(len(ranges))]

@@ -13,7 +13,7 @@ import xarray as xr
 
 from contactstudy.analysis import single_case
 from contactstudy.analysis.provenance import STUDY_ATTRIBUTE, attribute
-from contactstudy.arrays.engineering import quantity
+from contactstudy.arrays.engineering import format_quantity
 from contactstudy.arrays.variables import STRESSES, require, variable_of
 from contactstudy.errors import InvalidInputError
 from contactstudy.explorer.images import CaseFields
@@ -21,7 +21,7 @@ from contactstudy.explorer.server import study_title
 from contactstudy.study import collect
 from contactstudy.study.folder import Folder
 
-Place = tuple[int, ...]  # Index of a case along the study's dimensions
+CaseIndex = tuple[int, ...]  # Index of a case along the study's dimensions
 FIELDS = ("pressure", "gap", "initial_gap", "von_mises")  # Fields of each case in memory
 
 STATUS = {
@@ -32,7 +32,7 @@ STATUS = {
 }
 """Sentence for each status without figures."""
 
-CACHED = 64  # Cases in memory. Speed
+MAX_CACHED_CASES = 64  # Cases in memory. Speed
 
 SUBJECTS: dict[str, tuple[str, ...]] = {
     "pressure": ("peak_pressure", "peak_pressure_first", "peak_pressure_last", "peak_pressure_x", "peak_pressure_y"),
@@ -60,8 +60,8 @@ SUBJECTS: dict[str, tuple[str, ...]] = {
 }
 """Subjects with their numbers in order; a name with a final underscore is a prefix."""
 
-REMAINING = "further numbers"  # Subject of all numbers without one, before the cells
-ORDER = [*list(SUBJECTS)[:-2], REMAINING, *list(SUBJECTS)[-2:]]
+REMAINING_SUBJECT = "further numbers"  # Subject of all numbers without one, before the cells
+SUBJECT_ORDER = [*list(SUBJECTS)[:-2], REMAINING_SUBJECT, *list(SUBJECTS)[-2:]]
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,7 +69,7 @@ class Cases:
     """Cases of a study: scalars over the swept parameters, and fields of one case on demand."""
 
     scalars: xr.Dataset
-    load: Callable[[Place], CaseFields]
+    load: Callable[[CaseIndex], CaseFields]
     title: str
 
     @property
@@ -94,7 +94,7 @@ class Cases:
             texts = [_value_text(value, units) for value in values]
         return texts if len(set(texts)) == len(texts) else [f"{i}: {text}" for i, text in enumerate(texts, start=1)]
 
-    def index(self, chosen: dict[str, int]) -> Place:
+    def index(self, chosen: dict[str, int]) -> CaseIndex:
         """Index of the case with these values of the swept parameters, by number."""
         return tuple(chosen.get(str(dim), 0) for dim in self.scalars["status"].dims)
 
@@ -104,7 +104,7 @@ class Cases:
         index = solved[0] if len(solved) else np.zeros(self.scalars["status"].ndim, dtype=int)
         return {str(dim): int(i) for dim, i in zip(self.scalars["status"].dims, index, strict=True)}
 
-    def status(self, index: Place) -> tuple[str, str]:
+    def status(self, index: CaseIndex) -> tuple[str, str]:
         """Status of a case, and its reason."""
         entry = self.scalars[["status", "message"]].isel(dict(zip(self.scalars["status"].dims, index, strict=True)))
         return str(entry["status"].item()), str(entry["message"].item())
@@ -119,7 +119,7 @@ def _value_text(value: Any, units: str) -> str:
     """Value of a swept parameter in engineers' units."""
     if isinstance(value, (bool, np.bool_, str)):
         return str(value)
-    return quantity(float(value), units, 6)
+    return format_quantity(float(value), units, 6)
 
 
 def open_cases(study: xr.Dataset | str | Path) -> Cases:
@@ -133,8 +133,8 @@ def _cases_of_folder(folder: Path) -> Cases:
     """Cases in a study's folder; each file is read on demand."""
     scalars, results = collect(folder), Folder(folder).results()
 
-    @lru_cache(maxsize=CACHED)
-    def load(index: Place) -> CaseFields:
+    @lru_cache(maxsize=MAX_CACHED_CASES)
+    def load(index: CaseIndex) -> CaseFields:
         identity = str(scalars["case_id"].values[index])
         return CaseFields(results.case(identity, FIELDS), lambda: results.case(identity, STRESSES))
 
@@ -157,8 +157,8 @@ def _cases_of_study(study: xr.Dataset) -> Cases:
     scalars = study[[name for name, entry in study.data_vars.items() if set(entry.dims) <= set(dims)]]
     scalars = scalars.drop_vars([name for name in scalars.coords if not set(scalars[name].dims) <= set(dims)])
 
-    @lru_cache(maxsize=CACHED)
-    def load(index: Place) -> CaseFields:
+    @lru_cache(maxsize=MAX_CACHED_CASES)
+    def load(index: CaseIndex) -> CaseFields:
         entry = study.isel(dict(zip(dims, index, strict=True)))
         if str(entry["status"].item()) not in ("ok", "stale"):
             raise InvalidInputError("case", index, "a solved case")
@@ -183,10 +183,10 @@ def numbers_by_subject(scalars: xr.Dataset) -> dict[str, dict[str, str]]:
 
     def rank(name: str) -> tuple[int, int]:
         for subject, members in SUBJECTS.items():
-            for number, entry in enumerate(members):
+            for index, entry in enumerate(members):
                 if name == entry or (entry.endswith("_") and name.startswith(entry)):
-                    return ORDER.index(subject), number
-        return ORDER.index(REMAINING), 0
+                    return SUBJECT_ORDER.index(subject), index
+        return SUBJECT_ORDER.index(REMAINING_SUBJECT), 0
 
     groups: dict[str, dict[str, str]] = {}
     for (subject, _), name, meaning in sorted(
@@ -194,5 +194,5 @@ def numbers_by_subject(scalars: xr.Dataset) -> dict[str, dict[str, str]]:
     ):
         # The texts of all groups are distinct.
         text = meaning if meanings.count(meaning) == 1 else f"{meaning}, {name}"
-        groups.setdefault(ORDER[subject], {})[text] = name
+        groups.setdefault(SUBJECT_ORDER[subject], {})[text] = name
     return groups

@@ -20,11 +20,11 @@ from bokeh.plotting import figure
 from contactstudy.checks import FloatArray
 from contactstudy.explorer.images import Image, Line, Span
 
-FIRST, SECOND, NEUTRAL = "#1f4e79", "#c05a00", "#8894a0"
+FIRST_COLOR, SECOND_COLOR, NEUTRAL_COLOR = "#1f4e79", "#c05a00", "#8894a0"
 """Colours of the first case, of the second, and of all others."""
 
 PALETTE = "Viridis256"
-MARK = "#e8513a"  # legible on every colour of the palette
+MARK_COLOR = "#e8513a"  # legible on every colour of the palette
 HEIGHT = 290
 TOOLS = "pan,wheel_zoom,box_zoom,reset,save"
 TRIANGLE = {"marker": "triangle", "size": 11, "fill_color": None, "line_width": 1.5}
@@ -33,7 +33,7 @@ TRIANGLE = {"marker": "triangle", "size": 11, "fill_color": None, "line_width": 
 
 def _new_figure(**options: Any) -> Any:
     """Return a figure of the available width."""
-    new = figure(
+    result = figure(
         height=HEIGHT,
         sizing_mode="stretch_width",
         tools=TOOLS,
@@ -42,10 +42,10 @@ def _new_figure(**options: Any) -> Any:
         min_border_left=56,
         **options,
     )
-    new.toolbar.logo = None
-    new.toolbar.autohide = True
-    new.grid.grid_line_color = "#e6eaed"
-    return new
+    result.toolbar.logo = None
+    result.toolbar.autohide = True
+    result.grid.grid_line_color = "#e6eaed"
+    return result
 
 
 class AxialFigure:
@@ -56,10 +56,10 @@ class AxialFigure:
         self._lines = [ColumnDataSource({"x": [], "p": []}) for _ in range(2)]
         self._marks = [ColumnDataSource({"x": [], "p": []}) for _ in range(2)]
         renderers = []
-        for number, (color, dash) in enumerate(((FIRST, "solid"), (SECOND, "dashed"))):
+        for index, (color, dash) in enumerate(((FIRST_COLOR, "solid"), (SECOND_COLOR, "dashed"))):
             style = {"color": color, "line_width": 2, "line_dash": dash}
-            renderers.append(self.figure.line("x", "p", source=self._lines[number], **style))
-            self.figure.scatter("x", "p", source=self._marks[number], line_color=color, **TRIANGLE)
+            renderers.append(self.figure.line("x", "p", source=self._lines[index], **style))
+            self.figure.scatter("x", "p", source=self._marks[index], line_color=color, **TRIANGLE)
         names = zip(("case", "second case"), renderers, strict=True)
         items = [LegendItem(label=name, renderers=[renderer]) for name, renderer in names]
         self._legend = Legend(items=items, orientation="horizontal", border_line_color=None, padding=2)
@@ -70,8 +70,8 @@ class AxialFigure:
         top = 0.0
         for line in lines:
             if line is not None:
-                inside = line.pressure[(line.x >= limits[0]) & (line.x <= limits[1])]
-                top = max(top, float(np.nanmax(inside, initial=0.0)))
+                visible_pressure = line.pressure[(line.x >= limits[0]) & (line.x <= limits[1])]
+                top = max(top, float(np.nanmax(visible_pressure, initial=0.0)))
         top = 1.06 * top if top > 0 else 1.0
         for line, source, marks in zip(lines, self._lines, self._marks, strict=True):
             source.data = {"x": [], "p": []} if line is None else {"x": line.x, "p": line.pressure}
@@ -93,7 +93,7 @@ class ImageFigure:
         self._mapper = LinearColorMapper(palette=PALETTE, low=0.0, high=1.0)
         self.figure.image(image="image", x="x", y="y", dw="w", dh="h", source=self._source, color_mapper=self._mapper)
         self._largest = ColumnDataSource({"x": [], "y": []})
-        self.figure.scatter("x", "y", source=self._largest, marker="x", size=10, line_color=MARK, line_width=2)
+        self.figure.scatter("x", "y", source=self._largest, marker="x", size=10, line_color=MARK_COLOR, line_width=2)
         bar = ColorBar(color_mapper=self._mapper, ticker=BasicTicker(desired_num_ticks=6), width=12, padding=4)
         self.figure.add_layout(bar, "right")
         self.figure.grid.visible = False
@@ -128,11 +128,11 @@ class StudyFigure:
         self._line = ColumnDataSource({"x": [], "v": [], "fill": [], "low": [], "high": []})
         self._unbounded = ColumnDataSource({"x": [], "v": []})
         self._marked, self._marked_unbounded = (ColumnDataSource({"x": [], "v": [], "color": []}) for _ in range(2))
-        self.figure.line("x", "v", source=self._line, color=NEUTRAL, line_width=1.5)
-        bars = {"base": "x", "lower": "low", "upper": "high", "source": self._line, "line_color": NEUTRAL}
+        self.figure.line("x", "v", source=self._line, color=NEUTRAL_COLOR, line_width=1.5)
+        bars = {"base": "x", "lower": "low", "upper": "high", "source": self._line, "line_color": NEUTRAL_COLOR}
         self.figure.add_layout(Whisker(**bars, level="underlay"))
-        self.figure.scatter("x", "v", source=self._line, line_color=NEUTRAL, fill_color="fill", size=6)
-        self.figure.scatter("x", "v", source=self._unbounded, line_color=NEUTRAL, **TRIANGLE)
+        self.figure.scatter("x", "v", source=self._line, line_color=NEUTRAL_COLOR, fill_color="fill", size=6)
+        self.figure.scatter("x", "v", source=self._unbounded, line_color=NEUTRAL_COLOR, **TRIANGLE)
         self.figure.scatter("x", "v", source=self._marked, color="color", size=11)
         triangle = TRIANGLE | {"line_width": 3}
         self.figure.scatter("x", "v", source=self._marked_unbounded, line_color="color", **triangle)
@@ -156,16 +156,16 @@ class StudyFigure:
         """
         finite = np.isfinite(values)
         bars = np.zeros(values.size) if errors is None else np.nan_to_num(errors)
-        numbers = [*values[finite], *(value for _, value, _ in marked if np.isfinite(value))]
-        extremes = [*numbers, *(values + bars)[finite], *(values - bars)[finite & (bars > 0)]]
-        low, high = min([0.0, *extremes]), max([*extremes, 1e-12]) if numbers else 1.0
+        finite_values = [*values[finite], *(value for _, value, _ in marked if np.isfinite(value))]
+        extremes = [*finite_values, *(values + bars)[finite], *(values - bars)[finite & (bars > 0)]]
+        low, high = min([0.0, *extremes]), max([*extremes, 1e-12]) if finite_values else 1.0
         high += 0.06 * (high - low)
         without_error = finite & (np.isnan(errors) if errors is not None else False)
         with_bar = finite & (bars > 0)
         self._line.data = {
             "x": x,
             "v": np.where(finite, values, np.nan),
-            "fill": np.where(without_error, "white", NEUTRAL),
+            "fill": np.where(without_error, "white", NEUTRAL_COLOR),
             "low": np.where(with_bar, values - bars, np.nan),
             "high": np.where(with_bar, values + bars, np.nan),
         }
@@ -177,7 +177,7 @@ class StudyFigure:
         for source, unbounded in ((self._marked, False), (self._marked_unbounded, True)):
             cases = [case for case in marked if np.isposinf(case[1]) == unbounded]
             source.data = {
-                "x": [x[number] for number, _, _ in cases],
+                "x": [x[index] for index, _, _ in cases],
                 "v": [top if unbounded else value for _, value, _ in cases],
                 "color": [color for _, _, color in cases],
             }

@@ -12,7 +12,7 @@ import xarray as xr
 from contactstudy.analysis import measure, positions
 from contactstudy.analysis.axes import dimension_along
 from contactstudy.checks import Array, BoolArray, FloatArray
-from contactstudy.plots.singular import near_singular, singular_ends
+from contactstudy.plots.singular_ends import near_singular, singular_ends
 
 PIXELS = (360, 150)  # Pixels of an image, horizontal and vertical
 END_REGION = 8.0  # Length of the region near an end, over the Hertz half-width
@@ -94,8 +94,8 @@ class CaseFields:
     def stress_limit(self, name: str = "von_mises") -> float:
         """Largest value of a stress measure that is drawn."""
         x = self.points["x"]
-        near = self.near_singular(x) if self.has_pressure else np.zeros(x.size, dtype=bool)
-        return _limit(self.stress(name), near)
+        near_singular_end = self.near_singular(x) if self.has_pressure else np.zeros(x.size, dtype=bool)
+        return _limit(self.stress(name), near_singular_end)
 
 
 def _values(array: xr.DataArray, axes: str) -> FloatArray:
@@ -103,10 +103,10 @@ def _values(array: xr.DataArray, axes: str) -> FloatArray:
     return np.asarray(array.transpose(*(dimension_along(array, axis) for axis in axes)).values)
 
 
-def _limit(values: FloatArray, near: BoolArray) -> float:
+def _limit(values: FloatArray, near_singular_end: BoolArray) -> float:
     """Largest value away from singular ends, or of all values."""
-    drawn = values[~near] if near.any() and not near.all() else values
-    return float(np.nanmax(drawn, initial=0.0))
+    regular = values[~near_singular_end] if near_singular_end.any() and not near_singular_end.all() else values
+    return float(np.nanmax(regular, initial=0.0))
 
 
 class Scale(NamedTuple):
@@ -212,16 +212,16 @@ def _image(
     labels = {"x": "distance from the free end, x", "y": "position along rolling, y", "z": "depth, z"}
     first, second = (f"{labels[name]}{scale.length_name}" for name in names)
     (left, right), (low, high) = ((start / scale.length, stop / scale.length) for start, stop in spans)
-    clipped = np.minimum(pixels, limit / scale.stress).astype(np.float32)
+    clipped_pixels = np.minimum(pixels, limit / scale.stress).astype(np.float32)
     # The largest value of the field up to the limit, which may lie between the pixels.
     within = [(points >= start) & (points <= stop) for points, (start, stop) in zip(axes, spans, strict=True)]
-    drawn = np.where(within[0][:, None] & within[1] & (values <= limit), values, -np.inf)
-    row, column = np.unravel_index(int(drawn.argmax()), drawn.shape)
-    place = np.array([drawn[row, column], axes[0][row], axes[1][column]])
-    place /= (scale.stress, scale.length, scale.length)
-    largest = place.tolist() if place[0] > -np.inf else (np.nan, np.nan, np.nan)
+    visible = np.where(within[0][:, None] & within[1] & (values <= limit), values, -np.inf)
+    row, column = np.unravel_index(int(visible.argmax()), visible.shape)
+    maximum = np.array([visible[row, column], axes[0][row], axes[1][column]])
+    maximum /= (scale.stress, scale.length, scale.length)
+    largest = maximum.tolist() if maximum[0] > -np.inf else (np.nan, np.nan, np.nan)
     return Image(
-        values=clipped,
+        values=clipped_pixels,
         horizontal=(left, right),
         vertical=(low, high),
         limit=limit / scale.stress,

@@ -15,7 +15,7 @@ from contactstudy.arrays.variables import variable_of
 from contactstudy.checks import FloatArray
 from contactstudy.errors import ContactStudyError
 from contactstudy.explorer.cases import Cases, numbers_by_subject, status_sentence
-from contactstudy.explorer.figures import FIRST, SECOND, AxialFigure, ImageFigure, StudyFigure
+from contactstudy.explorer.figures import FIRST_COLOR, SECOND_COLOR, AxialFigure, ImageFigure, StudyFigure
 from contactstudy.explorer.images import (
     PLANES,
     REGIONS,
@@ -33,8 +33,8 @@ from contactstudy.plots.study_lines import ESTIMATED_PREFIXES
 from contactstudy.report.assessment import assess_case
 from contactstudy.report.summary_table import NOT_ESTIMATED, OPEN_END, Summary, summary
 
-NAMES, COLORS = ("case", "second case"), (FIRST, SECOND)  # Names and colours of the two cases
-LONGEST_SLIDER = 60  # Number of values of a swept parameter up to which a slider replaces a list
+NAMES, COLORS = ("case", "second case"), (FIRST_COLOR, SECOND_COLOR)  # Names and colours of the two cases
+MAX_SLIDER_OPTIONS = 60  # Number of values of a swept parameter up to which a slider replaces a list
 
 MEASURES = {
     "von Mises stress": "von_mises",
@@ -78,35 +78,36 @@ class Page:
         self.parameter = pn.widgets.Select(label="over", options=dims, visible=len(dims) > 1)
         self.table = pn.pane.HTML("", stylesheets=[STYLE], sizing_mode="stretch_width")
         self.axial, self.study = AxialFigure(), StudyFigure()
-        self.tops, self.planes = [ImageFigure()], [ImageFigure(downwards=True)]
-        figures = (self.axial.figure, self.tops[0].figure, None, self.planes[0].figure, None, self.study.figure)
+        self.surface_figures, self.plane_figures = [ImageFigure()], [ImageFigure(downwards=True)]
+        surface, plane = self.surface_figures[0].figure, self.plane_figures[0].figure
+        figures = (self.axial.figure, surface, None, plane, None, self.study.figure)
         self.panes = [pn.pane.Bokeh(figure, sizing_mode="stretch_width") for figure in figures]
         self._settings = (self.region, self.measure, self.plane, self.fraction, self.number, self.parameter)
         for widget in (self.compare, self.units, *self._settings):
-            widget.param.watch(self._follow, "value")
+            widget.param.watch(self._on_widget_change, "value")
         self.update()
 
     def _create_second(self) -> None:
         """Create widgets and figures of the second case."""
         self.choices[1] = self._create_choices("second case: ")
         self._second_choices.objects = list(self.choices[1].values())
-        self.tops.append(ImageFigure())
-        self.planes.append(ImageFigure(downwards=True))
-        self.panes[2].object, self.panes[4].object = self.tops[1].figure, self.planes[1].figure
+        self.surface_figures.append(ImageFigure())
+        self.plane_figures.append(ImageFigure(downwards=True))
+        self.panes[2].object, self.panes[4].object = self.surface_figures[1].figure, self.plane_figures[1].figure
 
     def _create_choices(self, prefix: str) -> dict[str, Any]:
         """Return a slider or a list for every swept parameter."""
         start, widgets = self.cases.first_solved(), dict[str, Any]()
         for dim in self.cases.dims:
             entry = self.cases.scalars[dim]
-            options = {text: number for number, text in enumerate(self.cases.choices(dim))}
-            names = entry.dtype.kind in "UOb" or len(options) > LONGEST_SLIDER
+            options = {text: index for index, text in enumerate(self.cases.choices(dim))}
+            names = entry.dtype.kind in "UOb" or len(options) > MAX_SLIDER_OPTIONS
             kind = pn.widgets.Select if names else pn.widgets.DiscreteSlider
             widgets[dim] = kind(label=f"{prefix}{_label(entry)}", options=options, value=start[dim])
-            widgets[dim].param.watch(self._follow, "value")
+            widgets[dim].param.watch(self._on_widget_change, "value")
         return widgets
 
-    def _follow(self, event: Any) -> None:
+    def _on_widget_change(self, event: Any) -> None:
         """Update after a change of a widget; a notebook needs a push."""
         with pn.io.hold():
             self.update()
@@ -124,9 +125,9 @@ class Page:
         sides = [0, 1] if self.compare.value else [0]
         cases = [self._load(side) if side in sides else None for side in (0, 1)]
         self._second_choices.visible = bool(self.compare.value)
-        stressed = any(case is not None and case.has_stress for case in cases)
-        self.plane.visible = self.measure.visible = stressed
-        self.fraction.visible = stressed and self.plane.value != PLANES[0]
+        has_stress = any(case is not None and case.has_stress for case in cases)
+        self.plane.visible = self.measure.visible = has_stress
+        self.fraction.visible = has_stress and self.plane.value != PLANES[0]
         self._show_axial(cases)
         self._show_fields(cases)
         self._show_study(sides)
@@ -195,7 +196,8 @@ class Page:
                 tops[side] = top_image(case, scale, limits)
                 planes[side] = plane_image(case, scale, limits, kind, fraction, name=self.measure.value)
         measure = next(text for text, name in MEASURES.items() if name == self.measure.value)
-        for images, figures, quantity in ((tops, self.tops, "pressure"), (planes, self.planes, measure)):
+        rows = (tops, self.surface_figures, "pressure"), (planes, self.plane_figures, measure)
+        for images, figures, quantity in rows:
             present = [image for image in images if image is not None]
             limit = max((image.limit for image in present), default=1.0)
             vertical = (
@@ -208,14 +210,15 @@ class Page:
                 # Two lines: the title of a narrow window is not wider than the window.
                 title = f"{name}{quantity}{unit}"
                 if image is not None:
-                    clipped = "clipped at the end" if singular else ""
-                    largest = f"largest {image.largest[0]:.4g}"
-                    title += "\n" + ", ".join(filter(None, (image.position, largest, clipped)))
+                    clipped_note = "clipped at the end" if singular else ""
+                    maximum_text = f"largest {image.largest[0]:.4g}"
+                    title += "\n" + ", ".join(filter(None, (image.position, maximum_text, clipped_note)))
                 figure.show(image, limit, title, vertical)
 
     def _hide_empty(self, cases: list[CaseFields | None], sides: list[int]) -> str:
         """Hide figures without data, and return the reasons."""
-        tops, planes = ([figure.has_image for figure in figures] for figures in (self.tops, self.planes))
+        tops = [figure.has_image for figure in self.surface_figures]
+        planes = [figure.has_image for figure in self.plane_figures]
         self._set_visible(0, any(tops))
         for pane, images in ((1, tops), (3, planes)):
             for side in (0, 1):
@@ -238,9 +241,9 @@ class Page:
             remarks.append("<p class=why>No case at these values of the other parameters has this number.</p>")
         return "".join(remarks)
 
-    def _set_visible(self, number: int, visible: bool) -> None:
+    def _set_visible(self, index: int, visible: bool) -> None:
         """Show or hide a figure: its pane and its model must agree."""
-        pane = self.panes[number]
+        pane = self.panes[index]
         if pane.object is not None:
             pane.object.visible = visible
         pane.visible = visible
@@ -270,7 +273,7 @@ class Page:
         """Positions, label and ticks of a swept parameter."""
         entry = self.cases.scalars[parameter]
         if entry.dtype.kind not in "fi":
-            ticks = {float(number): text for number, text in enumerate(self.cases.choices(parameter))}
+            ticks = {float(index): text for index, text in enumerate(self.cases.choices(parameter))}
             return np.arange(entry.size, dtype=np.float64), _label(entry), ticks
         factor, unit = unit_for(float(np.nanmax(np.abs(entry.values))), str(entry.attrs.get("units", "1")))
         label = f"{_label(entry)} ({unit})" if unit else _label(entry)
@@ -305,10 +308,10 @@ class Page:
             styles={"flex": "1 1 15rem", "max-width": "24rem", "min-width": "14rem"},
             sizing_mode="stretch_width",
         )
-        wide = {"flex": "1 1 25rem", "min-width": "min(100%, 19rem)"}
-        boxes = [pn.Column(self.table, styles=wide, sizing_mode="stretch_width")]
+        wide_style = {"flex": "1 1 25rem", "min-width": "min(100%, 19rem)"}
+        boxes = [pn.Column(self.table, styles=wide_style, sizing_mode="stretch_width")]
         for pane in self.panes:
-            pane.styles = wide
+            pane.styles = wide_style
             boxes.append(pane)
         body = pn.FlexBox(*boxes, styles={"flex": "4 1 30rem", "gap": "0.6rem"}, sizing_mode="stretch_width")
         return pn.Column(

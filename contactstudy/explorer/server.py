@@ -30,13 +30,13 @@ HOST = "localhost"
 LOCAL_HOSTS = frozenset({"localhost", "127.0.0.1", "::1"})
 """Host names of a request to this machine, with any port: users forward ports."""
 
-PORT, PORTS = 5006, 20  # First port, and number of ports that are tried
-SWITCH = 2e-4
+PORT, PORT_COUNT = 5006, 20  # First port, and number of ports that are tried
+SWITCH_INTERVAL = 2e-4
 """Switch interval in seconds while a thread reads the study, so that the server answers; Python's default is 5 ms."""
 
 
 def explore(study: xr.Dataset | str | Path) -> Any:
-    """Return the page of a study for a notebook: the last expression of a cell shows it.
+    """Return the page of a study for a notebook: the last expression of a cell displays the page.
 
     Parameters
     ----------
@@ -85,7 +85,7 @@ def _check_installed() -> None:
         )
 
 
-class Access:
+class AccessControl:
     """Access to the server: the host names of requests, and a token in the first address, then in a cookie.
 
     The host check defends against a page of another site, with a name that resolves to this machine; the token against
@@ -105,7 +105,7 @@ class Access:
             return urlsplit(f"//{request.host}").hostname in self._hosts and (
                 origin is None or urlsplit(origin).netloc.lower() == request.host.lower()
             )
-        except ValueError:  # an address that is not one
+        except ValueError:  # an invalid address
             return False
 
     def _is_token(self, text: str) -> bool:
@@ -126,17 +126,17 @@ class Access:
 
         def find_allowed(request: Any, **arguments: Any) -> Any:
             texts = [text.decode(errors="replace") for text in request.query_arguments.get("token", [])]
-            sent = request.cookies.get(cookie)
+            sent_cookie = request.cookies.get(cookie)
             if self.allows_host(request) and request.path == "/" and any(map(self._is_token, texts)):
                 return application.get_handler_delegate(request, SetCookie)
-            if self.allows_host(request) and sent is not None and self._is_token(sent.value):
+            if self.allows_host(request) and sent_cookie is not None and self._is_token(sent_cookie.value):
                 return find_handler(request, **arguments)
             return application.get_handler_delegate(request, ErrorHandler, {"status_code": 403})
 
         application.find_handler = find_allowed
 
 
-class Opening:
+class StudyLoader:
     """Study that a thread reads while browsers load the page's scripts."""
 
     def __init__(self, folder: Path) -> None:
@@ -155,7 +155,7 @@ class Opening:
             return open_cases(self._folder)
 
         loop, interval = IOLoop.current(), sys.getswitchinterval()
-        sys.setswitchinterval(SWITCH)
+        sys.setswitchinterval(SWITCH_INTERVAL)
         try:
             self._cases.set_result(await loop.run_in_executor(None, open_folder))
         except Exception as error:  # `serve` raises it
@@ -190,7 +190,7 @@ def serve(folder: str | Path, *, port: int | None = None, hosts: Sequence[str] =
     port : int, optional
         Port of the page; default: the first free one from 5006 on.
     hosts : sequence of str
-        Host names, beside localhost, 127.0.0.1 and [::1], that a browser may use, such as the name of a proxy.
+        Host names, in addition to localhost, 127.0.0.1 and [::1], that a browser may use, such as the name of a proxy.
     show : bool
         Whether to open it in the browser.
 
@@ -216,11 +216,11 @@ def serve(folder: str | Path, *, port: int | None = None, hosts: Sequence[str] =
     import panel as pn
     from tornado.ioloop import IOLoop
 
-    opening, access = Opening(path.resolve()), Access(port, hosts)
+    loader, access = StudyLoader(path.resolve()), AccessControl(port, hosts)
     # Access checks host and origin of every request; Bokeh's own list of origins would need the forwarded ports.
     logging.getLogger("bokeh.server.util").setLevel(logging.ERROR)
     server = pn.io.server.get_server(
-        {"/": opening.page},
+        {"/": loader.page},
         port=port,
         address=HOST,
         websocket_origin="*",
@@ -229,16 +229,16 @@ def serve(folder: str | Path, *, port: int | None = None, hosts: Sequence[str] =
     )
     access.protect(server._tornado)
     print(f"{access.address} shows the study until Ctrl-C", flush=True)
-    IOLoop.current().add_callback(opening.read)
+    IOLoop.current().add_callback(loader.read)
     if show:
         import webbrowser
 
         IOLoop.current().add_callback(webbrowser.open, access.address)
     server.start()
     server.io_loop.start()
-    if opening.error is not None:
+    if loader.error is not None:
         server.stop()
-        raise opening.error
+        raise loader.error
 
 
 def _title(path: Path) -> str:
@@ -257,11 +257,11 @@ def study_title(study: Mapping[str, Any], name: str) -> str:
 
 def _choose_port(port: int | None) -> int:
     """Return the port if it is free, or the first free one without it, or raise."""
-    for number in range(PORT, PORT + PORTS) if port is None else (checks.count("port", port),):
+    for candidate in range(PORT, PORT + PORT_COUNT) if port is None else (checks.count("port", port),):
         with socket.socket(socket.AF_INET, socket.SOCK_STREAM) as probe, contextlib.suppress(OSError, OverflowError):
             probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)  # a recently closed port is free
-            probe.bind((HOST, number))
-            return number
+            probe.bind((HOST, candidate))
+            return candidate
     if port is None:
-        raise InvalidInputError("port", None, f"given: all from {PORT} to {PORT + PORTS - 1} are taken")
+        raise InvalidInputError("port", None, f"given: all from {PORT} to {PORT + PORT_COUNT - 1} are taken")
     raise InvalidInputError("port", port, "a free port, at most 65535", "leave it out to take the next free one")

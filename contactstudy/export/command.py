@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from contactstudy.arrays.selections import place_of, selection_of
+from contactstudy.arrays.selections import index_of, selection_of
 from contactstudy.errors import InvalidInputError
 from contactstudy.export.matlab import to_mat
 from contactstudy.export.table import Line, csv_text, headings, to_table
@@ -21,7 +21,7 @@ SUFFIXES = {"csv": ".csv", "vtk": ".vtr", "mat": ".mat"}
 def parse_line(text: str) -> Line:
     """Return the ends of a line from ``X,Y,Z:X,Y,Z`` in metres."""
     try:
-        start, end = ([float(number) for number in part.split(",")] for part in text.split(":"))
+        start, end = ([float(coordinate) for coordinate in point.split(",")] for point in text.split(":"))
     except ValueError:
         raise InvalidInputError("line", text, "X,Y,Z:X,Y,Z in metres, for example 0,0,0:0,0,2e-4") from None
     return start, end
@@ -52,7 +52,7 @@ def export(
     kind = kind or "csv"
     dataset = open_study(path) if path.is_dir() else load_result(path, "path")
     for name, value in selection_of(select).items():
-        dataset = dataset.isel({name: place_of(dataset, name, value, "select")})
+        dataset = dataset.isel({name: index_of(dataset, name, value, "select")})
     swept = [str(dim) for dim in dataset["status"].dims if dataset.sizes[dim] > 1] if "status" in dataset else []
     if line is not None and kind != "csv":
         raise InvalidInputError("line", line, f"left out for {kind.upper()}", "write the line as CSV")

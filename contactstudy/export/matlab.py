@@ -18,7 +18,7 @@ from contactstudy.export.table import named_arrays
 SUFFIX = ".mat"
 NAME = re.compile(r"[A-Za-z]\w{0,62}", re.ASCII)  # Valid name in MATLAB
 STRUCTS = ("units", "meaning", "dims", "about")  # Names of the structs
-LARGEST = 2**31 - 1  # Bytes of an array in the format's version 5
+MAX_BYTES = 2**31 - 1  # Bytes of an array in the format's version 5
 
 
 def to_mat(dataset: xr.Dataset, path: str | Path, variables: str | Sequence[str] | None = None) -> Path:
@@ -76,7 +76,7 @@ def to_mat(dataset: xr.Dataset, path: str | Path, variables: str | Sequence[str]
         if not NAME.fullmatch(name) or name in STRUCTS:
             allowed = f"a name of up to 63 letters, digits and _ that begins with a letter, not {', '.join(STRUCTS)}"
             raise InvalidInputError("variables", name, allowed, "rename it")
-        if array.nbytes > LARGEST:
+        if array.nbytes > MAX_BYTES:
             hint = "select a part of it, or read the netCDF file, which MATLAB can"
             raise InvalidInputError("variables", f"{name} of {array.nbytes / 1e9:.1f} GB", "at most 2 GB each", hint)
         values = array.values
@@ -88,6 +88,6 @@ def to_mat(dataset: xr.Dataset, path: str | Path, variables: str | Sequence[str]
     content["about"] = {
         str(name): str(value) for name, value in dataset.attrs.items() if NAME.fullmatch(str(name))
     } or {"source": ""}
-    with checks.writing(target) as part, part.open("wb") as file:
+    with checks.writing(target) as temporary_path, temporary_path.open("wb") as file:
         savemat(file, content, long_field_names=True, do_compression=True, oned_as="column")
     return target

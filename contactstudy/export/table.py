@@ -27,9 +27,9 @@ def headings(dataset: xr.Dataset, names: Sequence[str]) -> dict[str, str]:
         if name in dataset.variables:
             array = dataset[name]
             unit = variable_of(name, array.attrs, coordinate=name in dataset.coords).units
-            unmarked = name.endswith("_error") or array.attrs.get(ERROR_KIND) != NOT_ESTIMATED
+            has_error_estimate = name.endswith("_error") or array.attrs.get(ERROR_KIND) != NOT_ESTIMATED
             texts[name] = f"{name} [{unit}]" if unit and unit != "1" else name
-            texts[name] += "" if unmarked else f" (error {NOT_ESTIMATED})"
+            texts[name] += "" if has_error_estimate else f" (error {NOT_ESTIMATED})"
     return texts
 
 
@@ -102,7 +102,7 @@ def to_table(
     return frame[names].rename(columns=headings(fields, [str(name) for name in names]))
 
 
-FORMULA = ("=", "+", "-", "@", "\t", "\r")  # First characters of a formula in a spreadsheet, which would run it
+FORMULA = ("=", "+", "-", "@", "\t", "\r")  # First characters of a formula, which a spreadsheet would run
 
 
 def _escape(entry: object) -> object:
@@ -151,6 +151,6 @@ def to_csv(
     checks.instance("path", path, (str, Path), "a path")
     target = Path(path)
     table = to_table(dataset, variables, line=line, points=points)
-    with checks.writing(target) as part:
-        part.write_text(csv_text(table), encoding="utf-8")
+    with checks.writing(target) as temporary_path:
+        temporary_path.write_text(csv_text(table), encoding="utf-8")
     return target

@@ -93,7 +93,7 @@ def to_vtk(dataset: xr.Dataset, path: str | Path, variables: str | Sequence[str]
 
 
 def _on_points(fields: dict[str, xr.DataArray]) -> tuple[list[FloatArray], dict[str, FloatArray]]:
-    """Increasing positions along x, y and z, and the values there (x, y, z, ...)."""
+    """Increasing positions along x, y and z, and the values at these points (x, y, z, ...)."""
     first = next(iter(fields.values()))
     along = axis_dimensions(first)
     # The format requires increasing positions; an axis without positions is a plane at 0.
@@ -102,8 +102,8 @@ def _on_points(fields: dict[str, xr.DataArray]) -> tuple[list[FloatArray], dict[
     data = {}
     for name, array in fields.items():
         values = array.transpose(*along.values()).values.astype(np.float64)
-        shaped = values.reshape([points[axis].size for axis in AXES])
-        data[name] = shaped[np.ix_(*order.values())]
+        field_values = values.reshape([points[axis].size for axis in AXES])
+        data[name] = field_values[np.ix_(*order.values())]
     if all(name in data for name in STRESSES):
         components = np.stack([data[name] for name in STRESSES], axis=-1)
         data["stress"] = components[..., TENSOR].reshape(*components.shape[:-1], 3, 3)
@@ -148,23 +148,23 @@ def _write(
                 element.set("NumberOfComponents", str(rows.size // len(rows)))
             content = rows.astype(rows.dtype.newbyteorder("<"), copy=False).tobytes()
             element.text = base64.b64encode(np.uint64(rows.nbytes).tobytes() + content).decode()
-    with checks.writing(path) as part:
-        ET.ElementTree(root).write(part, encoding="utf-8", xml_declaration=True)
+    with checks.writing(path) as temporary_path:
+        ET.ElementTree(root).write(temporary_path, encoding="utf-8", xml_declaration=True)
 
 
 def _cells(counts: list[int]) -> tuple[int, IntArray]:
     """Kind of the cells between so many points along each axis, and the numbers of their corners."""
-    wide = [axis for axis, count in enumerate(counts) if count > 1]
-    if len(wide) < 2:
+    extended_axes = [axis for axis, count in enumerate(counts) if count > 1]
+    if len(extended_axes) < 2:
         raise InvalidInputError(
             "variables", f"{counts} points", "on at least two points along two of x, y and z", "take .vtr or CSV"
         )
-    numbers = np.arange(int(np.prod(counts)), dtype="<i8").reshape(counts)
-    cycles = CORNERS if len(wide) == 2 else [(*corner, level) for level in (0, 1) for corner in CORNERS]
+    point_indices = np.arange(int(np.prod(counts)), dtype="<i8").reshape(counts)
+    cycles = CORNERS if len(extended_axes) == 2 else [(*corner, layer) for layer in (0, 1) for corner in CORNERS]
     corners = []
     for corner in cycles:
         corner_slices = [slice(None)] * len(counts)
-        for axis, end in zip(wide, corner, strict=True):
+        for axis, end in zip(extended_axes, corner, strict=True):
             corner_slices[axis] = slice(1, None) if end else slice(None, -1)
-        corners.append(numbers[tuple(corner_slices)].ravel())
-    return (QUADRILATERAL if len(wide) == 2 else HEXAHEDRON), np.stack(corners, axis=1)
+        corners.append(point_indices[tuple(corner_slices)].ravel())
+    return (QUADRILATERAL if len(extended_axes) == 2 else HEXAHEDRON), np.stack(corners, axis=1)

@@ -15,7 +15,7 @@ import xarray as xr
 
 from contactstudy.analysis import dimension_along
 from contactstudy.analysis.axes import reduce_dims
-from contactstudy.arrays.variables import ERROR_KIND, NOT_ESTIMATED, STRESSES, Variable, named, required_in_si
+from contactstudy.arrays.variables import ERROR_KIND, NOT_ESTIMATED, STRESSES, Variable, name_array, require_in_si
 from contactstudy.checks import Array
 from contactstudy.errors import InvalidInputError
 
@@ -26,7 +26,7 @@ COMPONENT = "stress_component"  # Dimension of the six components while a histor
 
 def histories(stress: xr.Dataset) -> tuple[xr.DataArray, str]:
     """Six stress components with the rolling direction and the component last, and the name of the former."""
-    stress = required_in_si(stress, *STRESSES, argument="stress")
+    stress = require_in_si(stress, *STRESSES, argument="stress")
     rolling = rolling_dimension(stress["tau_yz"])
     tensor = xr.concat([stress[name] for name in STRESSES], dim=COMPONENT, coords="minimal", compat="override")
     lead = [dim for dim in tensor.dims if dim not in (rolling, COMPONENT)]
@@ -68,7 +68,7 @@ def over_history(
 
 def of_points(name: str, array: xr.DataArray, base: Variable | None = None) -> xr.DataArray:
     """Values from the histories at points with name, unit and the mark of a value without an error estimate."""
-    return named(name, array, base).assign_attrs({"comment": OF_POINTS, ERROR_KIND: NOT_ESTIMATED})
+    return name_array(name, array, base).assign_attrs({"comment": OF_POINTS, ERROR_KIND: NOT_ESTIMATED})
 
 
 def window_remainder(stress: xr.Dataset) -> xr.DataArray:
@@ -105,12 +105,12 @@ def window_remainder(stress: xr.Dataset) -> xr.DataArray:
         magnitude = np.sqrt((history[:, :-1] ** 2) @ weights)
         return np.maximum(magnitude[:, 0], magnitude[:, -1]), magnitude.max(axis=1)
 
-    stress = required_in_si(stress, *STRESSES, argument="stress")
+    stress = require_in_si(stress, *STRESSES, argument="stress")
     rolling = dimension_along(stress["tau_yz"], "y")
     # Positions may be in any order.
     ordered = stress.sortby(rolling) if rolling in stress.indexes else stress
     border, largest = over_history(magnitudes, ordered, 2)
-    return named("window_remainder", (border / largest).where(largest != 0, 0.0))
+    return name_array("window_remainder", (border / largest).where(largest != 0, 0.0))
 
 
 ROUNDING = 1e-10  # A point may lie outside a ball by this fraction of its radius

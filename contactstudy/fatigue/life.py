@@ -18,7 +18,7 @@ import xarray as xr
 from contactstudy import checks
 from contactstudy.analysis import dimension_along, measure, positions
 from contactstudy.analysis.axes import axis_dimensions, reduce_dims
-from contactstudy.arrays.variables import ERROR_KIND, NOT_ESTIMATED, in_si, named, require, required_in_si
+from contactstudy.arrays.variables import ERROR_KIND, NOT_ESTIMATED, in_si, name_array, require, require_in_si
 from contactstudy.checks import Array, IntArray
 from contactstudy.errors import InvalidInputError
 from contactstudy.fatigue.history import of_points, rolling_dimension
@@ -111,7 +111,7 @@ def relative_life(risk: xr.Dataset, reference: xr.Dataset, exponents: LifeExpone
     risks, references = risk["risk"], reference["risk"]
     # Without any risk the life is infinite, unless the reference has none either.
     ratio = (references / risks.where(risks > 0)).where((risks != 0) | (references == 0), np.inf)
-    life = named("relative_life", ratio ** (1 / exponents.weibull))
+    life = name_array("relative_life", ratio ** (1 / exponents.weibull))
     if not all("risk_error" in dataset for dataset in (risk, reference)):
         return life.assign_attrs({ERROR_KIND: NOT_ESTIMATED})
     part, reference_part = (
@@ -120,7 +120,7 @@ def relative_life(risk: xr.Dataset, reference: xr.Dataset, exponents: LifeExpone
     # The longest life that the errors allow: no bound if there may be no risk at all.
     most = ((1 + reference_part) / (1 - part).clip(0.0)) ** (1 / exponents.weibull)
     error = (life * (most - 1)).reset_coords(drop=True)
-    return life.assign_coords(relative_life_error=named("relative_life_error", error))
+    return life.assign_coords(relative_life_error=name_array("relative_life_error", error))
 
 
 CUT_OFF = 0.01  # Largest part of the risk from sections with a truncated history or depth
@@ -192,7 +192,7 @@ def _along_axis(
     return xr.Dataset(
         {
             "risk_density": of_points("risk_density", density).assign_attrs(units=exponents.units(1)),
-            "risk": named("risk", risk).assign_attrs(units=exponents.units(2), **theory),
+            "risk": name_array("risk", risk).assign_attrs(units=exponents.units(2), **theory),
         }
     )
 
@@ -222,7 +222,7 @@ def _error(data: Data, of: xr.DataArray, risk: xr.DataArray, risk_of: Callable[[
 def _with_error(result: xr.Dataset, error: xr.DataArray, comment: str) -> xr.Dataset:
     """Return a result with the error of its risk; without a risk there is no error."""
     risk = result["risk"]
-    total = named("risk_error", error.where(risk != 0, 0.0))
+    total = name_array("risk_error", error.where(risk != 0, 0.0))
     return result.assign(risk_error=total.assign_attrs(units=risk.attrs["units"], comment=comment))
 
 
@@ -262,7 +262,7 @@ def lundberg_palmgren(stress: xr.Dataset, exponents: LifeExponents = ROLLER_BEAR
     2.0
     """
     checks.instance("exponents", exponents, LifeExponents, "a LifeExponents")
-    stress = required_in_si(stress, "tau_yz", argument="stress")
+    stress = require_in_si(stress, "tau_yz", argument="stress")
     rolling = rolling_dimension(stress["tau_yz"])
     shear = stress["tau_yz"].compute()  # once, not for every part of the positions
     stress = stress.assign(tau_yz=shear)

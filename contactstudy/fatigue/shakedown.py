@@ -22,7 +22,7 @@ from contactstudy import checks
 from contactstudy.analysis import dimension_along, single_case
 from contactstudy.analysis.axes import positions
 from contactstudy.analysis.peaks import interpolated_peak, label_peak
-from contactstudy.arrays.variables import STRESSES, VARIABLES, describe, named, required_in_si
+from contactstudy.arrays.variables import STRESSES, VARIABLES, describe, name_array, require_in_si
 from contactstudy.bodies.models import Body
 from contactstudy.checks import Array, FloatArray, IntArray
 from contactstudy.eigenstrain.stress_function import Splines, StressFunction
@@ -148,7 +148,7 @@ def shakedown_limit(stress: xr.Dataset, *, axial: bool = False) -> xr.Dataset:
     >>> round(float(found.peak_shakedown_stress_z), 2)
     0.5
     """
-    stress = required_in_si(stress, *STRESSES, argument="stress")
+    stress = require_in_si(stress, *STRESSES, argument="stress")
     swept = dict(stress["hertz_half_width"].sizes) if "hertz_half_width" in stress else {}
     if any(size > 1 for size in swept.values()):
         return _of_study(stress, swept, axial=axial)
@@ -186,8 +186,8 @@ def shakedown_limit(stress: xr.Dataset, *, axial: bool = False) -> xr.Dataset:
         if "hertz_max_pressure" in case and largest.value:
             name = variable.replace("stress", "limit")
             limit = float(case["hertz_max_pressure"]) / largest.value
-            result[name] = named(name, xr.DataArray(limit))
-            result[f"{name}_error"] = named(f"{name}_error", xr.DataArray(limit * largest.error / largest.value))
+            result[name] = name_array(name, xr.DataArray(limit))
+            result[f"{name}_error"] = name_array(f"{name}_error", xr.DataArray(limit * largest.error / largest.value))
     return result
 
 
@@ -328,7 +328,7 @@ def shakedown_in_plane(stress: xr.Dataset, body: Body) -> xr.Dataset:
         {name: of_points(name, template.copy(data=flat.reshape(template.shape))) for name, flat in results.items()}
     )
     result["peak_shakedown_stress"] = of_points("peak_shakedown_stress", result["shakedown_stress"].max())
-    result["program_gap"] = named("program_gap", xr.DataArray(gap))
+    result["program_gap"] = name_array("program_gap", xr.DataArray(gap))
     return result
 
 

@@ -12,7 +12,7 @@ import xarray as xr
 
 from contactstudy import checks
 from contactstudy.arrays.grid import Grid
-from contactstudy.arrays.variables import describe, named
+from contactstudy.arrays.variables import describe, name_array
 from contactstudy.bodies.models import Body
 from contactstudy.cache import cached
 from contactstudy.checks import FloatArray
@@ -185,7 +185,7 @@ def surface_displacement(
         attributes = {"reference_distance": operator.reference, "reference": reference}
     coords = {"x": pressure["x"], "y": pressure["y"]}
     labelled = {
-        name: named(name, xr.DataArray(displaced[direction], coords, dims=("x", "y"))).assign_attrs(attributes)
+        name: name_array(name, xr.DataArray(displaced[direction], coords, dims=("x", "y"))).assign_attrs(attributes)
         for name, direction in DISPLACEMENTS.items()
         if direction in displaced
     }

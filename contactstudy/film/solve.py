@@ -14,7 +14,7 @@ from scipy.interpolate import CubicSpline, PchipInterpolator
 from contactstudy import checks
 from contactstudy.analysis.provenance import with_provenance
 from contactstudy.arrays.cells import cell_coordinates
-from contactstudy.arrays.peaks import lagrange
+from contactstudy.arrays.peaks import lagrange_weights
 from contactstudy.arrays.variables import describe, require, without_error
 from contactstudy.case.case import Case
 from contactstudy.checks import BoolArray, FloatArray
@@ -314,7 +314,7 @@ def _interpolated(x: FloatArray, values: FloatArray, position: float) -> float:
     """Value at a position by the parabola through the three nearest columns."""
     first = min(max(int(np.abs(x - position).argmin()) - 1, 0), x.size - 3)
     near = slice(first, first + 3)
-    return float(lagrange(x[near], np.array([position]))[0] @ values[near])
+    return float(lagrange_weights(x[near], np.array([position]))[0] @ values[near])
 
 
 class _Least(NamedTuple):

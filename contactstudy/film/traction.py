@@ -111,7 +111,7 @@ def shear_stress(oil: Lubricant, pressure: FloatArray, rate: FloatArray) -> Floa
     >>> float(shear_stress(oil, np.array(0.0), np.array(1e6))) < 0.03 * 1e6
     True
     """
-    stress = np.minimum(oil.viscosity_at(pressure) * rate, checks.LARGEST)
+    stress = np.minimum(oil.viscosity_at(pressure) * rate, checks.MAX_MAGNITUDE)
     if oil.eyring_stress is not None:
         stress = oil.eyring_stress * np.arcsinh(stress / oil.eyring_stress)
     if oil.limiting_shear is not None:

@@ -16,7 +16,7 @@ from contactstudy.analysis.axes import single_case
 from contactstudy.analysis.provenance import check_solved_for
 from contactstudy.arrays.cells import labelled_cells
 from contactstudy.arrays.grid import Grid
-from contactstudy.arrays.variables import describe, required_in_si
+from contactstudy.arrays.variables import describe, require_in_si
 from contactstudy.case.case import Case
 from contactstudy.case.motion import Rolling, Shift, Sliding
 from contactstudy.checks import BoolArray, FloatArray
@@ -37,7 +37,7 @@ def frictional_heat(case: Case, solution: xr.Dataset, grid: Grid) -> FrictionalH
     """Heat per area and speeds of a solved case."""
     motion = case.motion
     names = ("traction_y",) if isinstance(motion, Sliding) else ("traction_x", "slip_x", "traction_y", "slip_y")
-    solution = required_in_si(solution, *names, argument="result")
+    solution = require_in_si(solution, *names, argument="result")
     fields = [labelled_cells(f"result.{name}", solution[name], extent=case.body.extent)[0] for name in names]
     area = grid.weights * grid.cell_area
     if isinstance(motion, Rolling):
@@ -168,7 +168,7 @@ def flash_temperature(
     (10, 0.51)
     """
     checks.instance("case", case, Case, "a Case")
-    solution = single_case(required_in_si(result, "pressure", argument="result"))
+    solution = single_case(require_in_si(result, "pressure", argument="result"))
     if isinstance(case.motion, Shift):
         raise InvalidInputError("case.motion", case.motion, "Sliding() or Rolling(...): a shift makes no steady heat")
     check_solved_for(result, case)

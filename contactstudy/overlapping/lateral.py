@@ -16,7 +16,7 @@ from itertools import pairwise
 import numpy as np
 
 from contactstudy.arrays.grid import Grid
-from contactstudy.arrays.peaks import lagrange
+from contactstudy.arrays.peaks import lagrange_weights
 from contactstudy.checks import FloatArray, IntArray
 from contactstudy.kernels.load import Load
 from contactstudy.overlapping.quadrature import Resolution, panel_nodes
@@ -150,7 +150,7 @@ def lateral_panels(
         pieces = int(np.ceil((high - low) * reach / (PHASE_PER_NODE * resolution.lateral_order)))
         fine, weights = panel_nodes(np.linspace(low, high, pieces + 1), resolution.lateral_order)
         panels.append(
-            LateralPanel(nodes=nodes, fine=fine, weights=weights, interpolation=lagrange(places, np.log(fine)))
+            LateralPanel(nodes=nodes, fine=fine, weights=weights, interpolation=lagrange_weights(places, np.log(fine)))
         )
     if reference is not None:
         count = poles + TERMS[poles]

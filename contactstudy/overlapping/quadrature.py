@@ -15,7 +15,7 @@ from functools import lru_cache
 import numpy as np
 
 from contactstudy import checks
-from contactstudy.arrays.peaks import lagrange
+from contactstudy.arrays.peaks import lagrange_weights
 from contactstudy.checks import ComplexArray, FloatArray
 from contactstudy.errors import InvalidInputError
 from contactstudy.kernels.load import Load
@@ -91,7 +91,7 @@ class Resolution:
 
     def __post_init__(self) -> None:
         for name in ("modes", "lateral_nodes", "lateral_order"):
-            checks.count(name, getattr(self, name), least=2)
+            checks.count(name, getattr(self, name), minimum=2)
         for name in ("reach", "ray_reach", "lateral_reach"):
             checks.positive(name, getattr(self, name))
         if not 0 < self.step <= 1:
@@ -147,7 +147,7 @@ def cell_moments(edges: FloatArray, positions: FloatArray, cell_edges: FloatArra
     for number in range(edges.size - 1):
         inside = (panel == number) & (cell >= 0) & (cell < moments.shape[1])
         nodes = slice(number * order, (number + 1) * order)
-        shares = weights[inside, None] * lagrange(positions[nodes], points[inside])
+        shares = weights[inside, None] * lagrange_weights(positions[nodes], points[inside])
         np.add.at(moments[nodes].T, cell[inside], shares)
     return moments
 
@@ -177,7 +177,7 @@ def graded_interpolation(x: FloatArray, length: float, order: int) -> tuple[Floa
         nodes = slice(number * order, (number + 1) * order)
         for side, on_side in enumerate((near_first, ~near_first)[:sides]):
             points = np.flatnonzero(inside & on_side & (panel == number))
-            matrix[points, side * count + nodes.start : side * count + nodes.stop] = lagrange(
+            matrix[points, side * count + nodes.start : side * count + nodes.stop] = lagrange_weights(
                 positions[nodes], from_end[points]
             )
     matrix[on_end, sides * count + np.arange(on_end.size)] = 1.0

@@ -19,7 +19,7 @@ from scipy.interpolate import make_interp_spline
 from contactstudy import checks
 from contactstudy.analysis import dimension_along, positions, single_case
 from contactstudy.analysis.provenance import check_solved_for
-from contactstudy.arrays.variables import STRESSES, describe, required_in_si
+from contactstudy.arrays.variables import STRESSES, describe, require_in_si
 from contactstudy.bodies.models import Body
 from contactstudy.checks import FloatArray, IntArray
 from contactstudy.eigenstrain.body import EigenstrainBody, Influence
@@ -350,7 +350,7 @@ def residual_stress(
 
 def _section(stress: xr.Dataset, body: Body, material: ElasticPlastic) -> tuple[_Section, tuple[str, str]]:
     """Check a case and return its cross-section, and its dimensions along x and z."""
-    case = single_case(required_in_si(stress, *STRESSES, argument="stress"))
+    case = single_case(require_in_si(stress, *STRESSES, argument="stress"))
     first = case[STRESSES[0]]
     dims = {axis: dimension_along(case["tau_yz"], axis) for axis in ("y", "x", "z")}
     x, y, z = (np.asarray(positions(first, axis).values, dtype=np.float64) for axis in ("x", "y", "z"))

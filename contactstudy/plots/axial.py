@@ -20,7 +20,7 @@ from contactstudy.analysis import (
 )
 from contactstudy.arrays.variables import require
 from contactstudy.errors import InvalidInputError
-from contactstudy.plots.singular import mark_at_top, near_singular, singular_ends
+from contactstudy.plots.singular_ends import mark_at_top, near_singular, singular_ends
 from contactstudy.plots.style import LEGEND_WIDTH, Units, fold_text, label_axes, line_styles, new_axes, units
 
 if TYPE_CHECKING:
@@ -127,14 +127,14 @@ def plot_comparison(
         raise InvalidInputError("results", results, "a mapping of names to results, at least one")
     ax = new_axes(ax)
     cases = {name: single_case(dataset) for name, dataset in results.items()}
-    middles = {name: _middle_of_contact(case) for name, case in cases.items()}
+    midpoints = {name: _contact_midpoint(case) for name, case in cases.items()}
     if centred is None:
         half_widths = [float(case["hertz_half_width"]) for case in cases.values() if "hertz_half_width" in case]
-        spread = max(middles.values()) - min(middles.values())
+        spread = max(midpoints.values()) - min(midpoints.values())
         centred = bool(half_widths) and spread > min(half_widths)
     for (name, case), style in zip(cases.items(), line_styles(len(cases)), strict=True):
         unit = units(case, si=si)
-        shift = -middles[name] / unit.length if centred else 0.0
+        shift = -midpoints[name] / unit.length if centred else 0.0
         draw_section_maxima(ax, case, variable, unit, shift, label=fold_text(name, LEGEND_WIDTH), **style)
     ax.set_ylim(bottom=min(0.0, ax.get_ylim()[0]))
     ax.legend(frameon=False, fontsize="small")
@@ -143,7 +143,7 @@ def plot_comparison(
     return ax
 
 
-def _middle_of_contact(case: xr.Dataset) -> float:
+def _contact_midpoint(case: xr.Dataset) -> float:
     """Middle of the loaded positions along x, metres; 0 without a pressure."""
     if "pressure" not in case:
         return 0.0
@@ -248,9 +248,9 @@ def plot_wear(worn: xr.Dataset, ax: Axes | None = None, *, variable: str = "wear
     loaded = (worn["line_load"] > 0).any("distance").values
     distances = worn["distance"].values
     depths = worn[variable].transpose("distance", "x").values
-    for number, style in enumerate(line_styles(distances.size)):
-        distance = np.format_float_positional(distances[number], precision=4, fractional=False, trim="-")
-        values = np.where(loaded, factor * depths[number], np.nan)
+    for index, style in enumerate(line_styles(distances.size)):
+        distance = np.format_float_positional(distances[index], precision=4, fractional=False, trim="-")
+        values = np.where(loaded, factor * depths[index], np.nan)
         ax.plot(1e3 * worn["x"].values, values, label=f"{distance} m", **style)
     if variable == "wear_depth" and not ax.yaxis_inverted():
         ax.invert_yaxis()

@@ -9,12 +9,12 @@ import numpy as np
 import xarray as xr
 
 from contactstudy.analysis import axial_pressure, dimension_along, in_plane, single_case
-from contactstudy.arrays.selections import place_of
+from contactstudy.arrays.selections import index_of
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 from contactstudy.plots.axial import plot_axial_pressure
 from contactstudy.plots.selection import describe_value
-from contactstudy.plots.singular import cap_field
+from contactstudy.plots.singular_ends import cap_field
 from contactstudy.plots.stress import plot_stress_plane
 from contactstudy.plots.style import fold_text, line_styles, units
 
@@ -22,12 +22,12 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-Entry = tuple[float, xr.Dataset]  # e/a and the case there
+Entry = tuple[float, xr.Dataset]  # e/a and the case
 LoadCase = Callable[[xr.Dataset], xr.Dataset]  # from the part of a study with one case to the case
 
 EDGE_AXES = ("e_over_a", "body")  # Parameters with several values in the figure
 TITLE_WIDTH = 60  # letters of a line
-PLATEAU = 0.1  # Relative deviation from the pressure at mid-length up to which a curve counts as level
+PLATEAU = 0.1  # Relative deviation from the pressure at mid-length up to which a curve is treated as level
 
 
 def plot_edge_effect(
@@ -74,13 +74,13 @@ def plot_edge_effect(
         raise InvalidInputError("dataset", dict(dataset.sizes), allowed)
     from matplotlib import pyplot
 
-    dataset, remarks = _select_beside(dataset, selection or {})
+    dataset, remarks = _select_other_dims(dataset, selection or {})
     has_bodies = "body" in dataset.dims
     bodies = [str(name) for name in np.atleast_1d(dataset["body"].values)] if "body" in dataset.coords else [""]
 
-    def solved(body: str) -> list[Entry]:
-        part = dataset.sel(body=body) if has_bodies else dataset
-        entries = [(float(e), part.isel(e_over_a=i)) for i, e in enumerate(part["e_over_a"].values)]
+    def entries_of(body: str) -> list[Entry]:
+        body_cases = dataset.sel(body=body) if has_bodies else dataset
+        entries = [(float(e), body_cases.isel(e_over_a=i)) for i, e in enumerate(body_cases["e_over_a"].values)]
         return [(e, case) for e, case in entries if np.isfinite(float(case["hertz_half_width"]))]
 
     def with_surfaces(entries: list[Entry]) -> list[Entry]:
@@ -88,35 +88,35 @@ def plot_edge_effect(
         return [(e, case) for e, case in loaded if "pressure" in case]
 
     finite = next((body for body in bodies if body != "half-space"), bodies[0])
-    candidates = solved(finite)
-    numbers = sorted(set(np.linspace(0, len(candidates) - 1, min(most, len(candidates))).round().astype(int)))
-    entries = with_surfaces([candidates[number] for number in numbers])
+    candidates = entries_of(finite)
+    indices = sorted(set(np.linspace(0, len(candidates) - 1, min(most, len(candidates))).round().astype(int)))
+    entries = with_surfaces([candidates[index] for index in indices])
     if not entries:
         raise InvalidInputError("dataset", dict(dataset.sizes), allowed)
-    half_spaces = solved("half-space") if has_bodies and "half-space" in bodies and finite != "half-space" else []
+    half_spaces = entries_of("half-space") if has_bodies and "half-space" in bodies and finite != "half-space" else []
     # On a half-space the distance shifts the coordinate only: one case suffices.
     first = [(e, case) for e, case in half_spaces if e == entries[0][0]] or half_spaces
     comparison = with_surfaces(first[:1])
-    stressed = [(e, case) for e, case in entries if "von_mises" in case]
-    height = 0.5 + 1.1 * len(stressed)
+    stress_entries = [(e, case) for e, case in entries if "von_mises" in case]
+    height = 0.5 + 1.1 * len(stress_entries)
     figure = pyplot.figure(figsize=(5.4, 4.0 + height), layout="constrained")
-    parts: Any = figure.subfigures(2, 1, height_ratios=(4.0, height)) if stressed else [figure]
-    ax = parts[0].subplots()
+    subfigures: Any = figure.subfigures(2, 1, height_ratios=(4.0, height)) if stress_entries else [figure]
+    ax = subfigures[0].subplots()
     _draw_pressures(ax, entries, comparison)
     distance = _level_distance([*entries, *comparison]) if distance is None else distance
     ax.set_xlim(0.0, distance)
-    heading = "Pressure and stress near a free end" if stressed else "Pressure near a free end"
+    heading = "Pressure and stress near a free end" if stress_entries else "Pressure near a free end"
     title = f"{heading}: {'; '.join(remarks)}" if remarks else heading
     figure.suptitle(fold_text(title, TITLE_WIDTH), fontsize="medium")
-    if stressed:
-        _draw_planes(parts[1], stressed, distance, depth)
+    if stress_entries:
+        _draw_planes(subfigures[1], stress_entries, distance, depth)
     return figure
 
 
-def _select_beside(dataset: xr.Dataset, selection: Mapping[str, Any]) -> tuple[xr.Dataset, list[str]]:
+def _select_other_dims(dataset: xr.Dataset, selection: Mapping[str, Any]) -> tuple[xr.Dataset, list[str]]:
     """One case per e/a and body, and the text of the values of the other parameters."""
     sizes = {str(dim): dataset.sizes[dim] for dim in dataset["status"].dims if dim not in EDGE_AXES}
-    places = {dim: place_of(dataset, dim, selection[dim]) if dim in selection else 0 for dim in sizes}
+    places = {dim: index_of(dataset, dim, selection[dim]) if dim in selection else 0 for dim in sizes}
     dataset = dataset.isel(places)
     scalars = {str(name): entry for name, entry in dataset["status"].coords.items() if entry.ndim == 0}
     names = [name for name in dict.fromkeys([*sizes, *scalars]) if name in scalars and name not in (*EDGE_AXES, "case")]
@@ -131,9 +131,9 @@ def _draw_pressures(ax: Axes, entries: list[Entry], comparison: list[Entry]) -> 
     """Pressure along the axis, one line per e/a."""
     for (end_distance, case), style in zip(entries, line_styles(len(entries)), strict=True):
         plot_axial_pressure(case, ax, label=f"free end, $e/a$ = {end_distance:g}", **style)
-    dotted: dict[str, Any] = {"color": "black", "linestyle": ":", "linewidth": 1.2, "zorder": 1}
+    line_style: dict[str, Any] = {"color": "black", "linestyle": ":", "linewidth": 1.2, "zorder": 1}
     for end_distance, case in comparison:
-        plot_axial_pressure(case, ax, label=f"half-space, $e/a$ = {end_distance:g}", **dotted)
+        plot_axial_pressure(case, ax, label=f"half-space, $e/a$ = {end_distance:g}", **line_style)
     curves = [np.asarray(line.get_ydata(), dtype=np.float64) for line in ax.lines]
     highest = max(float(np.nanmax(curve, initial=1.2)) for curve in curves)
     ax.set_ylim(0.0, 1.05 * highest)
@@ -149,11 +149,11 @@ def _level_distance(entries: list[Entry]) -> float:
         unit = units(case, si=False)
         axial = axial_pressure(case)
         x, values = axial[dimension_along(axial, "x")].values / unit.length, axial.values
-        middle = 0.5 * (x[0] + x[-1])
-        half = x <= middle
-        level = np.abs(values[half] / values[half][-1] - 1) < PLATEAU if half.any() else np.array([True])
-        varying = x[half][~level]
-        limits.append(min(1.25 * float(varying[-1]) + 1.0 if varying.size else 1.0, float(middle)))
+        mid_length = 0.5 * (x[0] + x[-1])
+        in_half = x <= mid_length
+        level = np.abs(values[in_half] / values[in_half][-1] - 1) < PLATEAU if in_half.any() else np.array([True])
+        varying_x = x[in_half][~level]
+        limits.append(min(1.25 * float(varying_x[-1]) + 1.0 if varying_x.size else 1.0, float(mid_length)))
     return max(limits)
 
 
@@ -171,8 +171,8 @@ def _draw_planes(figure: Any, entries: list[Entry], distance: float, depth: floa
     from matplotlib.ticker import MaxNLocator
 
     planes = [_plane_values(case) for _, case in entries]
-    largest = max(float(np.nanmax(values[x <= distance][:, z <= depth])) for x, z, values in planes)
-    levels = MaxNLocator(20).tick_values(0.0, largest)
+    max_stress = max(float(np.nanmax(values[x <= distance][:, z <= depth])) for x, z, values in planes)
+    levels = MaxNLocator(20).tick_values(0.0, max_stress)
     axes = figure.subplots(len(entries), sharex=True, sharey=True, squeeze=False)[:, 0]
     unit = units(entries[0][1], si=False)
     for ax, (end_distance, case) in zip(axes, entries, strict=True):
@@ -180,5 +180,5 @@ def _draw_planes(figure: Any, entries: list[Entry], distance: float, depth: floa
         ax.set(xlabel="", ylabel=f"$z{unit.over_length}$", ylim=(depth, 0.0), title=f"$e/a$ = {end_distance:g}")
     axes[0].set_xlim(0.0, min(distance, max(float(x.max()) for x, _, _ in planes)))
     axes[-1].set_xlabel(unit.axis("x"))
-    filled = next(entry for entry in axes[0].collections if entry.get_array() is not None)
-    figure.colorbar(filled, ax=axes, label=unit.stress_label("von_mises") + "\nin $y=0$")
+    contours = next(entry for entry in axes[0].collections if entry.get_array() is not None)
+    figure.colorbar(contours, ax=axes, label=unit.stress_label("von_mises") + "\nin $y=0$")

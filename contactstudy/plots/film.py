@@ -16,12 +16,12 @@ from contactstudy.plots.style import COLORS, label_axes, line_styles, new_axes, 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-REACH = 1.4
+HALF_RANGE = 1.4
 """Part of the plane along y in a figure, over the Hertz half-width."""
 
 
 def plot_film_map(dataset: xr.Dataset, ax: Axes | None = None, *, fringes: int = 12, si: bool = False) -> Axes:
-    """Film thickness with contours, as an interferogram shows it.
+    """Film thickness with contours, like an interferogram.
 
     Parameters
     ----------
@@ -57,14 +57,14 @@ def plot_film_map(dataset: xr.Dataset, ax: Axes | None = None, *, fringes: int =
     unit, ax = units(case, si=si), new_axes(ax)
     film = 1e6 * case["film_thickness"].transpose("y", "x")
     x, y = (film[axis].values / unit.length for axis in "xy")
-    largest = 1.5e6 * float(case["central_film"])
-    levels = np.linspace(0.0, largest, fringes + 1)
-    filled = ax.contourf(x, y, film.values, levels=levels, cmap=COLORS, extend="max")
+    max_film = 1.5e6 * float(case["central_film"])
+    levels = np.linspace(0.0, max_film, fringes + 1)
+    contours = ax.contourf(x, y, film.values, levels=levels, cmap=COLORS, extend="max")
     ax.contour(x, y, film.values, levels=levels[1:], colors="0.25", linewidths=0.5)
     ax.plot(float(case["least_film_x"]) / unit.length, float(case["least_film_y"]) / unit.length, "x", color="#e8513a")
-    reach = REACH * float(case["hertz_half_width"]) / unit.length
-    ax.set_ylim(max(-reach, y.min()), min(reach, y.max()))
-    bar = ax.figure.colorbar(filled, ax=ax, label="film thickness, $h$ (µm)")
+    half_range = HALF_RANGE * float(case["hertz_half_width"]) / unit.length
+    ax.set_ylim(max(-half_range, y.min()), min(half_range, y.max()))
+    bar = ax.figure.colorbar(contours, ax=ax, label="film thickness, $h$ (µm)")
     label_axes(ax, unit.axis("x"), unit.axis("y"), bar.ax)
     return ax
 
@@ -107,22 +107,22 @@ def plot_film_line(
     case = single_case(dataset)
     require(case, "film_thickness", "pressure", "central_film")
     unit, ax = units(case, si=si), new_axes(ax)
-    axis, fixed, position = ("x", "y", y or 0.0) if x is None else ("y", "x", x)
-    line = case[["film_thickness", "pressure"]].dropna("x").interp({fixed: position})
+    axis, fixed_axis, position = ("x", "y", y or 0.0) if x is None else ("y", "x", x)
+    line = case[["film_thickness", "pressure"]].dropna("x").interp({fixed_axis: position})
     along = line[axis].values / unit.length
     film_style, pressure_style, slice_style = line_styles(3)
     ax.plot(along, 1e6 * line["film_thickness"].values, label="film", **film_style)
     if axis == "x" and "slice_film" in case:
         slices = case["slice_film"].sel(x=line["x"])
         ax.plot(along, 1e6 * slices.values, label="slices, Moes' formula", **slice_style)
-    other = ax.twinx()
-    other.plot(along, line["pressure"].values / unit.stress, label="pressure", **pressure_style)
+    pressure_axes = ax.twinx()
+    pressure_axes.plot(along, line["pressure"].values / unit.stress, label="pressure", **pressure_style)
     ax.set_ylim(0.0, 3e6 * float(case["central_film"]))
-    other.set_ylim(bottom=0.0)
+    pressure_axes.set_ylim(bottom=0.0)
     if axis == "y":
-        reach = REACH * float(case["hertz_half_width"]) / unit.length
-        ax.set_xlim(-reach, reach)
-    other.set_ylabel(unit.stress_label("pressure"))
-    ax.legend(handles=[*ax.lines, *other.lines], loc="lower center", frameon=False, fontsize="small")
-    label_axes(ax, unit.axis(axis), "film thickness, $h$ (µm)", other)
+        half_range = HALF_RANGE * float(case["hertz_half_width"]) / unit.length
+        ax.set_xlim(-half_range, half_range)
+    pressure_axes.set_ylabel(unit.stress_label("pressure"))
+    ax.legend(handles=[*ax.lines, *pressure_axes.lines], loc="lower center", frameon=False, fontsize="small")
+    label_axes(ax, unit.axis(axis), "film thickness, $h$ (µm)", pressure_axes)
     return ax

@@ -9,15 +9,15 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from contactstudy.arrays.engineering import quantity, unit_for
-from contactstudy.arrays.selections import place_of
+from contactstudy.arrays.engineering import format_quantity, unit_for
+from contactstudy.arrays.selections import index_of
 from contactstudy.errors import InvalidInputError
 from contactstudy.plots.style import SYMBOLS, escape_dollars
 
 
 def select_values(dataset: xr.Dataset, selection: Mapping[str, Any]) -> xr.Dataset:
     """Part of a study with these values of its swept parameters; every dimension remains."""
-    return dataset.isel({name: [place_of(dataset, name, value)] for name, value in selection.items()})
+    return dataset.isel({name: [index_of(dataset, name, value)] for name, value in selection.items()})
 
 
 def select_one(array: xr.DataArray, axes: tuple[str, ...], selection: Mapping[str, Any]) -> xr.DataArray:
@@ -28,7 +28,7 @@ def select_one(array: xr.DataArray, axes: tuple[str, ...], selection: Mapping[st
             raise InvalidInputError("selection", name, f"of {', '.join(swept) or 'nothing'}")
     for dim in [str(dim) for dim in array.dims if dim not in axes]:
         if dim in selection:
-            array = array.isel({dim: place_of(array, dim, selection[dim])})
+            array = array.isel({dim: index_of(array, dim, selection[dim])})
         elif array.sizes[dim] == 1:
             array = array.isel({dim: 0})
         else:
@@ -39,7 +39,7 @@ def select_one(array: xr.DataArray, axes: tuple[str, ...], selection: Mapping[st
 
 
 def most_solved(array: xr.DataArray, axes: tuple[str, ...], selection: Mapping[str, Any]) -> dict[str, Any]:
-    """Values of the parameters beside `axes`: the selected ones, or the first with most solved cases."""
+    """Values of the parameters other than `axes`: selected values, or the first with most solved cases."""
     dims = [str(dim) for dim in array.dims if str(dim) not in axes]
     choices = [[selection[dim]] if dim in selection else list(array[dim].values) for dim in dims]
     combinations = [dict(zip(dims, values, strict=True)) for values in itertools.product(*choices)]
@@ -48,8 +48,8 @@ def most_solved(array: xr.DataArray, axes: tuple[str, ...], selection: Mapping[s
 
 def scale_of(array: xr.DataArray) -> tuple[float, str]:
     """Size in SI and name of the unit of a figure's axis; an empty name for a pure number."""
-    largest = float(abs(array).where(np.isfinite(array)).max())
-    return unit_for(largest, str(array.attrs.get("units", "1")))
+    max_magnitude = float(abs(array).where(np.isfinite(array)).max())
+    return unit_for(max_magnitude, str(array.attrs.get("units", "1")))
 
 
 def scale_values(array: xr.DataArray, name: str) -> tuple[xr.DataArray, str]:
@@ -63,7 +63,7 @@ def scale_values(array: xr.DataArray, name: str) -> tuple[xr.DataArray, str]:
 
 def describe_value(name: str, value: Any, units: str, count: int = 1) -> str:
     """Text of one value of a parameter, with the number of values of the study."""
-    number = isinstance(value, int | float | np.number) and not isinstance(value, bool)
-    text = quantity(float(value), units or "1") if number else escape_dollars(value)
+    is_number = isinstance(value, int | float | np.number) and not isinstance(value, bool)
+    text = format_quantity(float(value), units or "1") if is_number else escape_dollars(value)
     symbol = "$p_0$" if name == "max_pressure" else name.replace("_over_a", "/a").replace("_", " ")
     return f"{symbol} = {text}" + (f", one of {count} values" if count > 1 else "")

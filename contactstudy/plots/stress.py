@@ -11,7 +11,7 @@ from contactstudy import checks
 from contactstudy.analysis import dimension_along, in_plane, measure, positions, single_case
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
-from contactstudy.plots.singular import cap_field
+from contactstudy.plots.singular_ends import cap_field
 from contactstudy.plots.style import COLORS, Units, fold_labels, label_axes, new_axes, units
 
 if TYPE_CHECKING:
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from matplotlib.contour import QuadContourSet
 
 LEVELS = 12  # Approximate number of contours
-NEAR_PLANE = 0.15  # Distance from a plane, over the Hertz half-width, within which the largest value is marked in it
+NEAR_PLANE = 0.15  # Distance from a plane, over the Hertz half-width, within which the plane marks the largest value
 
 
 def _draw_contours(ax: Axes, across: FloatArray, down: FloatArray, values: FloatArray, levels: Any) -> QuadContourSet:
@@ -107,8 +107,8 @@ def plot_stress_plane(
     ax.set_title(f"plane {unit.position(normal, position)}", fontsize="medium")
     mark_largest(ax, case, variable, {normal: position}, unit)
     if colorbar:
-        capped = bound < np.inf and np.asarray(contours.levels).max() >= bound / unit.stress
-        label = unit.stress_label(variable) + (" (unbounded at the singular end)" if capped else "")
+        is_clipped = bound < np.inf and np.asarray(contours.levels).max() >= bound / unit.stress
+        label = unit.stress_label(variable) + (" (unbounded at the singular end)" if is_clipped else "")
         fold_labels(ax.figure.colorbar(contours, ax=ax, label=label).ax)
     label_axes(ax, unit.axis(across), unit.axis(down))
     return ax
@@ -120,10 +120,10 @@ def mark_largest(ax: Axes, case: xr.Dataset, variable: str, plane: dict[str, flo
     if any(f"{name}{suffix}" not in case for suffix in ("", "_x", "_y", "_z")) or not np.isfinite(float(case[name])):
         return
     ((normal, position),) = plane.items()
-    place = {axis: float(case[f"{name}_{axis}"]) for axis in "xyz"}
-    if abs(place[normal] - position) > NEAR_PLANE * float(case.get("hertz_half_width", 0.0)) + 1e-9:
+    location = {axis: float(case[f"{name}_{axis}"]) for axis in "xyz"}
+    if abs(location[normal] - position) > NEAR_PLANE * float(case.get("hertz_half_width", 0.0)) + 1e-9:
         return
-    across, down = (place[axis] / unit.length for axis in "xyz" if axis != normal)
+    across, down = (location[axis] / unit.length for axis in "xyz" if axis != normal)
     ax.plot(across, down, "+", color="#e8513a", markersize=9, markeredgewidth=1.6)
     ax.annotate(
         f"{float(case[name]) / unit.stress:.3g}",
@@ -193,26 +193,26 @@ def plot_end_face(
             "0, the end face, for the first position of stresses",
             "include the face: solve(case, x=...) with 0 among the positions",
         )
-    inside = in_plane(case, variables=variable, y=0.0)[variable]
+    in_section = in_plane(case, variables=variable, y=0.0)[variable]
     on_face = in_plane(case, variables=variable, x=face)[variable]
     y_dim = dimension_along(on_face, "y")
     outer = side * on_face[y_dim] > 0
     # The fold belongs to both halves: its values are those of the plane y = 0.
-    fold = inside.sel({dimension_along(inside, "x"): face}).reset_coords(drop=True).expand_dims({y_dim: [0.0]})
-    half = xr.concat([fold, on_face[{y_dim: outer.values}]], y_dim).rename(variable)
-    x, z, right = _plane_arrays(inside, "x", "z", unit)
-    y, _, left = _plane_arrays(half, "y", "z", unit)
+    fold = in_section.sel({dimension_along(in_section, "x"): face}).reset_coords(drop=True).expand_dims({y_dim: [0.0]})
+    half_face = xr.concat([fold, on_face[{y_dim: outer.values}]], y_dim).rename(variable)
+    x, z, right = _plane_arrays(in_section, "x", "z", unit)
+    y, _, face_values = _plane_arrays(half_face, "y", "z", unit)
     x = np.abs(x - face / unit.length)
     limit = 2 * np.abs(y).max() if distance is None else checks.positive("distance", distance)
-    near = x <= limit * (1 + 1e-9)
+    near_face = x <= limit * (1 + 1e-9)
     if levels is None or np.ndim(levels) == 0:
         from matplotlib.ticker import MaxNLocator
 
-        values = np.concatenate([right[:, near].ravel(), left.ravel()])
+        values = np.concatenate([right[:, near_face].ravel(), face_values.ravel()])
         levels = MaxNLocator(LEVELS if levels is None else levels).tick_values(values.min(), values.max())
     ax = new_axes(ax, (7.2, 3.4))
-    contours = _draw_contours(ax, x[near], z, right[:, near], levels)
-    _draw_contours(ax, -np.abs(y), z, left, levels)
+    contours = _draw_contours(ax, x[near_face], z, right[:, near_face], levels)
+    _draw_contours(ax, -np.abs(y), z, face_values, levels)
     ax.axvline(0.0, color="black", linewidth=1.0)
     ax.set_ylim(z.max(), z.min())
     ax.xaxis.set_major_formatter(lambda value, _: f"{abs(value):g}")  # distances from the fold to both sides

@@ -22,7 +22,7 @@ from contactstudy.plots.selection import (
     select_one,
     select_values,
 )
-from contactstudy.plots.singular import SINGULAR_LABEL, SINGULAR_MARK, mark_at_top
+from contactstudy.plots.singular_ends import SINGULAR_LABEL, SINGULAR_MARK, mark_at_top
 from contactstudy.plots.style import MARKERS, escape_dollars, fold_labels, fold_text, line_styles, new_axes
 
 if TYPE_CHECKING:
@@ -38,7 +38,7 @@ ESTIMATED_PREFIXES = ("peak_", "end_pressure_", "end_load_", "end_intensity", "c
 """Prefixes of results whose error is estimated or missing; prescribed scalars, such as a load, have other names."""
 
 LINE_HEIGHT = 0.17  # inches
-TICK_WIDTH, LEGEND_COLUMN = 18, 22  # letters of a name at the axis and in the legend beside the axes
+TICK_WIDTH, LEGEND_COLUMN = 18, 22  # letters of a name at the axis and in the legend next to the axes
 FORCES = {"longitudinal_creepage": ("force_y", "F_y"), "lateral_creepage": ("force_x", "F_x")}
 """Force conjugate to a creepage, and its symbol."""
 
@@ -99,10 +99,10 @@ def plot_study_lines(
     rows = len(names) // columns
     size = (4.0 * columns + (0.6 if hue is None else 2.0), 3.2 * rows + 0.4)
     figure, panels = pyplot.subplots(rows, columns, figsize=size, squeeze=False, layout="constrained", sharex=True)
-    values_beside = most_solved(dataset[names[0]], axes_of_study, selection or {})
+    fixed_parameters = most_solved(dataset[names[0]], axes_of_study, selection or {})
     marks: dict[str, dict[str, Any]] = {}
     for ax, name in zip(panels.flat, names, strict=True):
-        marks |= _draw_panel(ax, dataset, name, x, hue, values_beside=values_beside)
+        marks |= _draw_panel(ax, dataset, name, x, hue, fixed_parameters=fixed_parameters)
     figure.set_figheight(figure.get_figheight() + LINE_HEIGHT * rows * max(map(_extra_lines, panels.flat)))
     if hue is not None:
         _draw_legend(figure, panels[0, 0], dataset[hue], hue)
@@ -111,35 +111,36 @@ def plot_study_lines(
 
         handles = [Line2D([], [], color="0.3", **style) for style in marks.values()]
         figure.legend(handles, list(marks), loc="outside lower right", frameon=False, fontsize="small", ncols=2)
-    if values_beside:
+    if fixed_parameters:
         parts = [
             describe_value(dim, value, str(dataset[dim].attrs.get("units", "1")), dataset.sizes[dim])
-            for dim, value in values_beside.items()
+            for dim, value in fixed_parameters.items()
         ]
         figure.suptitle(fold_text("; ".join(parts), 40 * columns), fontsize="medium")
     return figure
 
 
 def _draw_panel(
-    ax: Axes, dataset: xr.Dataset, name: str, x: str, hue: str | None, values_beside: Mapping[str, Any]
+    ax: Axes, dataset: xr.Dataset, name: str, x: str, hue: str | None, fixed_parameters: Mapping[str, Any]
 ) -> dict[str, dict[str, Any]]:
     """Draw one quantity; return the marks to explain, by label."""
     marks: dict[str, dict[str, Any]] = {}
     axes_of_study = (x,) if hue is None else (x, hue)
-    values, label = scale_values(select_one(dataset[name], axes_of_study, values_beside), name)
-    errors, unestimated = _errors(dataset, name, axes_of_study, values_beside)
+    values, label = scale_values(select_one(dataset[name], axes_of_study, fixed_parameters), name)
+    errors, without_estimate = _errors(dataset, name, axes_of_study, fixed_parameters)
     numeric = np.issubdtype(values[x].dtype, np.number)
     across, x_label = scale_values(values[x], x) if numeric else (values[x], x.replace("_", " "))
     positions = across.values if numeric else np.arange(across.size)
     count = 1 if hue is None else values.sizes[hue]
     labels = [None] if hue is None else _value_labels(values[hue], hue)
-    for number, style in enumerate(line_styles(count)):
+    for index, style in enumerate(line_styles(count)):
         line, bars, open_cases = (
-            array.values if hue is None else array.isel({hue: number}).values for array in (values, errors, unestimated)
+            array.values if hue is None else array.isel({hue: index}).values
+            for array in (values, errors, without_estimate)
         )
-        marker, unbounded = MARKERS[number % len(MARKERS)], np.isinf(line)
+        marker, unbounded = MARKERS[index % len(MARKERS)], np.isinf(line)
         finite = np.where(unbounded, np.nan, line)
-        text = labels[number]
+        text = labels[index]
         (curve,) = ax.plot(
             positions, finite, **style, marker=marker, markersize=4, label=text and fold_text(text, LEGEND_COLUMN)
         )
@@ -170,8 +171,8 @@ def _draw_panel(
 
 
 def _draw_legend(figure: Figure, ax: Axes, values: xr.DataArray, hue: str) -> None:
-    """Draw the legend beside the panels."""
-    numeric = np.issubdtype(values.dtype, np.number) and not _zipped_parameters(values, hue)
+    """Draw the legend next to the panels."""
+    numeric = np.issubdtype(values.dtype, np.number) and not _parameters_along(values, hue)
     title = scale_values(values, hue)[1] if numeric else hue.replace("_", " ")
     handles, labels = ax.get_legend_handles_labels()
     figure.legend(
@@ -186,37 +187,38 @@ def _draw_legend(figure: Figure, ax: Axes, values: xr.DataArray, hue: str) -> No
 
 
 def _extra_lines(ax: Axes) -> int:
-    """Lines below an axis beyond one of numbers and one of the label."""
+    """Return the number of text lines below an axis, without one line of numbers and one of the label."""
     names = max((tick.get_text().count("\n") for tick in ax.get_xticklabels()), default=0)
     return names + ax.get_xlabel().count("\n")
 
 
 def _errors(
-    dataset: xr.Dataset, name: str, axes: tuple[str, ...], values_beside: Mapping[str, Any]
+    dataset: xr.Dataset, name: str, axes: tuple[str, ...], fixed_parameters: Mapping[str, Any]
 ) -> tuple[xr.DataArray, xr.DataArray]:
     """Finite errors in the unit of the panel, and the finite values without an estimated error."""
-    values = select_one(dataset[name], axes, values_beside)
+    values = select_one(dataset[name], axes, fixed_parameters)
     if f"{name}_error" in dataset:
-        errors = select_one(dataset[f"{name}_error"], axes, values_beside)
+        errors = select_one(dataset[f"{name}_error"], axes, fixed_parameters)
     else:
-        missing = np.inf if name.startswith(ESTIMATED_PREFIXES) else np.nan
-        errors = xr.full_like(values, missing, dtype=np.float64)
+        missing_error = np.inf if name.startswith(ESTIMATED_PREFIXES) else np.nan
+        errors = xr.full_like(values, missing_error, dtype=np.float64)
     factor, _ = scale_of(values)
     return errors.where(np.isfinite(errors)) / factor, (errors == np.inf) & (abs(values) < np.inf)
 
 
 def _value_labels(values: xr.DataArray, name: str) -> list[str]:
     """Values of a parameter in the unit of its label; values of zipped parameters together."""
-    if zipped := _zipped_parameters(values, name):
+    if parameters := _parameters_along(values, name):
         return [
-            ", ".join(escape_dollars(values[parameter].values[i]) for parameter in zipped) for i in range(values.size)
+            ", ".join(escape_dollars(values[parameter].values[i]) for parameter in parameters)
+            for i in range(values.size)
         ]
     if not np.issubdtype(values.dtype, np.number):
         return [escape_dollars(value) for value in values.values]
     return [f"{value:g}" for value in scale_values(values, name)[0].values]
 
 
-def _zipped_parameters(values: xr.DataArray, name: str) -> list[str]:
+def _parameters_along(values: xr.DataArray, name: str) -> list[str]:
     """Parameters that change together along a dimension of a study; empty for a parameter's dimension."""
     return [
         str(parameter)
@@ -280,9 +282,9 @@ def plot_traction_curve(
     values = select_one(dataset[name] / (dataset["friction"] * dataset["normal_load"]), axes_of_study, selection or {})
     ax = new_axes(ax)
     labels = [None] if hue is None else _value_labels(values[hue], hue)
-    for number, style in enumerate(line_styles(len(labels))):
-        line = (values if hue is None else values.isel({hue: number})).dropna(creepage)
-        text, marker = labels[number], MARKERS[number % len(MARKERS)]
+    for index, style in enumerate(line_styles(len(labels))):
+        line = (values if hue is None else values.isel({hue: index})).dropna(creepage)
+        text, marker = labels[index], MARKERS[index % len(MARKERS)]
         label = text and fold_text(text, TICK_WIDTH)
         ax.plot(line[creepage], line.values, **style, marker=marker, markersize=4, label=label)
     ax.axhline(1.0, color="0.6", linewidth=0.8)
@@ -326,8 +328,8 @@ def study_figures(dataset: xr.Dataset, *, selection: Mapping[str, Any] | None = 
     >>> list(study_figures(xr.Dataset({"peak_pressure": values, "status": values})))
     ['study']
     """
-    part = select_values(dataset, selection or {})
-    return {name: figure for name, (figure, _) in figures_with_selections(part, single_case).items()}
+    selected = select_values(dataset, selection or {})
+    return {name: figure for name, (figure, _) in figures_with_selections(selected, single_case).items()}
 
 
 def figures_with_selections(dataset: xr.Dataset, load: LoadCase) -> dict[str, tuple[Figure, list[str]]]:
@@ -336,9 +338,9 @@ def figures_with_selections(dataset: xr.Dataset, load: LoadCase) -> dict[str, tu
     swept = sorted(sizes, key=lambda dim: -sizes[dim])
     figures = {}
     if "e_over_a" in dataset.dims and "hertz_half_width" in dataset:
-        values_beside = most_solved(dataset["hertz_half_width"], EDGE_AXES, {})
+        fixed_parameters = most_solved(dataset["hertz_half_width"], EDGE_AXES, {})
         with contextlib.suppress(ContactStudyError):  # no case has a pressure
-            figure = plot_edge_effect(dataset, selection=values_beside, load=load)
+            figure = plot_edge_effect(dataset, selection=fixed_parameters, load=load)
             figures["edge_effect"] = (figure, [name for name in swept if name not in EDGE_AXES])
     names = [name for name in swept if name != "case"]
     if names and (quantities := _finite_quantities(dataset)):

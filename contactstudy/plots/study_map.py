@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 STATES = ("failed", "skipped", "excluded", "missing")  # States of cases without a result
 TICK_WIDTH = 18  # letters of a name at an axis
-MOST_NUMBERS = 80  # cells up to which every cell has its value as text
+MAX_CELL_LABELS = 80  # cells up to which every cell has its value as text
 
 
 def plot_study_map(
@@ -83,15 +83,15 @@ def plot_study_map(
         raise InvalidInputError("variable", name, "a number of each case")
     values = select_one(array, (x, y), selection or {}).transpose(y, x)
     values, meaning = scale_values(values, name)
-    numbers = np.asarray(values.values, dtype=np.float64)
-    if not np.isfinite(numbers).any():
+    array_values = np.asarray(values.values, dtype=np.float64)
+    if not np.isfinite(array_values).any():
         raise InvalidInputError("dataset", name, "with a number for at least one of these cases")
     ax = new_axes(ax, (6.4, 4.4))
     ax.set_facecolor("0.85")
     across, up = np.arange(values.sizes[x]), np.arange(values.sizes[y])
-    masked = np.ma.masked_invalid(numbers)
-    mesh = ax.pcolormesh(across, up, masked, cmap=COLORS, shading="nearest")
-    for row, column in np.argwhere(~np.isfinite(numbers)):
+    finite_values = np.ma.masked_invalid(array_values)
+    mesh = ax.pcolormesh(across, up, finite_values, cmap=COLORS, shading="nearest")
+    for row, column in np.argwhere(~np.isfinite(array_values)):
         ax.fill_between(
             [column - 0.5, column + 0.5], row - 0.5, row + 0.5, facecolor="none", edgecolor="0.6", hatch="//"
         )
@@ -100,17 +100,17 @@ def plot_study_map(
 
         # White with a dark rim is legible on every colour.
         rim: list[AbstractPathEffect] = [withStroke(linewidth=2.5, foreground="0.2")]
-        lines = ax.contour(across, up, masked, levels=levels, colors="white", linewidths=1.2)
+        lines = ax.contour(across, up, finite_values, levels=levels, colors="white", linewidths=1.2)
         lines.set_path_effects(rim)
         for number in ax.clabel(lines, fmt="%g", fontsize="small"):
             number.set_path_effects(rim)
-    for row, column in np.argwhere(np.isinf(numbers)):
+    for row, column in np.argwhere(np.isinf(array_values)):
         ax.text(column, row, "\N{INFINITY}", ha="center", va="center", color="black", fontsize="medium")
-    if levels is None and numbers.size <= MOST_NUMBERS:
-        middle = 0.5 * (masked.min() + masked.max())
-        for row, column in np.argwhere(np.isfinite(numbers)):
-            value = numbers[row, column]
-            color = "white" if value < middle else "black"
+    if levels is None and array_values.size <= MAX_CELL_LABELS:
+        mid_value = 0.5 * (finite_values.min() + finite_values.max())
+        for row, column in np.argwhere(np.isfinite(array_values)):
+            value = array_values[row, column]
+            color = "white" if value < mid_value else "black"
             ax.text(column, row, f"{value:.3g}", ha="center", va="center", color=color, fontsize="small")
     _draw_missing_legend(ax, dataset, values, selection or {})
     for parameter, ticks, axis in ((x, across, ax.xaxis), (y, up, ax.yaxis)):
@@ -127,12 +127,12 @@ def plot_study_map(
 
 def _unstack_cases(array: xr.DataArray, x: str, y: str) -> xr.DataArray:
     """Cases along one dimension, unstacked over two parameters; NaN without a case."""
-    listed = [
+    varying_names = [
         str(dim) for dim in array.dims if all(name in array.coords and array[name].dims == (dim,) for name in (x, y))
     ]
-    if x == y or not listed or listed[0] in (x, y):
+    if x == y or not varying_names or varying_names[0] in (x, y):
         return array
-    (dim,) = listed
+    (dim,) = varying_names
     stacked = array.drop_vars([name for name in array.coords if name not in (x, y)]).set_index({dim: (x, y)})
     index = stacked.indexes[dim]
     if index.has_duplicates:

@@ -42,7 +42,7 @@ SYMBOLS = {
 """Labels of swept parameters with a symbol in the theory; the table of variables contains the symbols of results."""
 
 LETTER_WIDTH = 0.073  # inches, of a label
-SHORTEST_LINE = 14  # letters
+MIN_LINE_LENGTH = 14  # letters
 LEGEND_WIDTH = 40  # letters of a name in a legend within the axes
 WORD = re.compile(r"(?:\\.|\$(?:[^$\\]|\\.)*\$|\S)+")  # formulas in one piece
 BREAKS = (";:", ",", "")  # last letters of the phrases that stay together, longest phrases first, then words
@@ -111,8 +111,8 @@ def line_styles(count: int) -> list[dict[str, Any]]:
 
     colors = matplotlib.colormaps[COLORS](np.linspace(0.0, 0.8, count))
     return [
-        {"color": color, "linestyle": DASHES[number % len(DASHES)], "linewidth": 1.8}
-        for number, color in enumerate(colors)
+        {"color": color, "linestyle": DASHES[index % len(DASHES)], "linewidth": 1.8}
+        for index, color in enumerate(colors)
     ]
 
 
@@ -124,9 +124,9 @@ def fold_text(text: str, width: int) -> str:
 def _fold_words(words: list[str], width: int, breaks: Sequence[str]) -> list[str]:
     """Lines of words, broken after the letters of the first entry of `breaks`; longer phrases after the next's."""
     lines, phrase = [""], []
-    for number, word in enumerate(words, start=1):
+    for count, word in enumerate(words, start=1):
         phrase.append(word)
-        if breaks[0] and number < len(words) and not word.endswith(tuple(breaks[0])):
+        if breaks[0] and count < len(words) and not word.endswith(tuple(breaks[0])):
             continue
         text = " ".join(phrase)
         if _visible_length(f"{lines[-1]} {text}".strip()) <= width:
@@ -151,7 +151,7 @@ def fold_labels(*axes: Axes) -> None:
     for ax in axes:
         dots = ax.get_window_extent()
         across, up = (
-            max(SHORTEST_LINE, int(size / ax.figure.dpi / LETTER_WIDTH)) for size in (dots.width, dots.height)
+            max(MIN_LINE_LENGTH, int(size / ax.figure.dpi / LETTER_WIDTH)) for size in (dots.width, dots.height)
         )
         for text, width in ((ax.xaxis.label, across), (ax.yaxis.label, up), (ax.title, across)):
             if text.get_text():
@@ -209,6 +209,6 @@ def save(figure: Figure, path: str | Path, formats: Sequence[str] = ("png", "pdf
     files = [base.with_name(f"{base.name}.{name}") for name in formats]
     with matplotlib.rc_context({"pdf.fonttype": 42}):
         for file, name in zip(files, formats, strict=True):
-            with checks.writing(file) as part:
-                figure.savefig(part, dpi=200, bbox_inches="tight", format=name)
+            with checks.writing(file) as temporary_path:
+                figure.savefig(temporary_path, dpi=200, bbox_inches="tight", format=name)
     return files

@@ -12,7 +12,7 @@ from contactstudy.analysis import dimension_along, positions, single_case
 from contactstudy.arrays.engineering import unit_for
 from contactstudy.arrays.variables import require, variable_of
 from contactstudy.checks import BoolArray, FloatArray, IntArray
-from contactstudy.plots.singular import near_singular, singular_ends
+from contactstudy.plots.singular_ends import near_singular, singular_ends
 from contactstudy.plots.style import COLORS, Units, label_axes, new_axes, units
 
 if TYPE_CHECKING:
@@ -24,7 +24,7 @@ STICK_COLOR, SLIP_COLOR = "0.55", "0.88"
 CONTACT_BORDER: dict[str, Any] = {"colors": "0.35", "linewidths": 0.9}
 STICK_BORDER: dict[str, Any] = {"colors": "#e8513a", "linewidths": 1.8}  # legible on every colour of the map
 BORDER_LEVEL = 0.01
-"""Squared pressure at the border over its largest value beside singular ends: linear in the distance from it."""
+"""Squared pressure at the border over its largest value away from singular ends: linear in the distance to it."""
 
 MARGIN = 0.1  # Margin around the contact over its width
 ARROW_LENGTH = 1.5  # of the longest arrow over the spacing along x
@@ -49,16 +49,16 @@ class Surface(NamedTuple):
         return values
 
     @property
-    def pressed(self) -> BoolArray:
+    def in_contact(self) -> BoolArray:
         """Cells in contact over (y, x)."""
         return self.pressure > 0
 
     @property
-    def beside_singular(self) -> BoolArray:
-        """Columns without those near a singular end; all columns if all are near one."""
+    def away_from_singular_ends(self) -> BoolArray:
+        """Mask of the columns away from singular ends; all columns if every column is near an end."""
         x = positions(self.case["pressure"], "x").values
-        near = near_singular(self.case, singular_ends(self.case), x)
-        return ~near | near.all()
+        near_end = near_singular(self.case, singular_ends(self.case), x)
+        return ~near_end | near_end.all()
 
 
 def _surface(dataset: xr.Dataset, names: tuple[str, ...], *, si: bool, load: str = "pressure") -> Surface:
@@ -77,33 +77,33 @@ def _draw_mesh(ax: Axes, surface: Surface, values: Any, **style: Any) -> QuadMes
     return ax.pcolormesh(surface.x, surface.y, values, shading="nearest", rasterized=True, **style)
 
 
-def _draw_border(ax: Axes, surface: Surface, values: FloatArray, level: float, **style: Any) -> Any:
+def _draw_border(ax: Axes, surface: Surface, values: FloatArray, threshold: float, **style: Any) -> Any:
     """Draw a closed contour of values over (y, x), 0 beyond the cells; None for too few cells."""
-    if min(values.shape) < 2 or values.max() <= level:
+    if min(values.shape) < 2 or values.max() <= threshold:
         return None
-    x, y = (_with_outer_edges(centres) for centres in (surface.x, surface.y))
-    return ax.contour(x, y, np.pad(values, 1), levels=[level], **style)
+    x, y = (_outer_edges(centres) for centres in (surface.x, surface.y))
+    return ax.contour(x, y, np.pad(values, 1), levels=[threshold], **style)
 
 
-def _with_outer_edges(centres: FloatArray) -> FloatArray:
+def _outer_edges(centres: FloatArray) -> FloatArray:
     """Centres of cells, with the outer edges of the first and the last cell."""
     first, last = centres[1] - centres[0], centres[-1] - centres[-2]
     return np.concatenate([[centres[0] - 0.5 * first], centres, [centres[-1] + 0.5 * last]])
 
 
-def _extend(values: FloatArray, pressed: BoolArray) -> FloatArray:
-    """Values over (y, x), continued along y from the contact to the cells beside it; 0 in columns without contact."""
+def _extend(values: FloatArray, in_contact: BoolArray) -> FloatArray:
+    """Values over (y, x), continued along y from the contact to the adjacent cells; 0 in columns without contact."""
     rows = np.arange(len(values))[:, None]
-    first, last = pressed.argmax(axis=0), len(values) - 1 - pressed[::-1].argmax(axis=0)
-    continued = np.take_along_axis(values, np.clip(rows, first, last), axis=0)
-    return np.where(pressed.any(axis=0), continued, 0.0)
+    first, last = in_contact.argmax(axis=0), len(values) - 1 - in_contact[::-1].argmax(axis=0)
+    extended = np.take_along_axis(values, np.clip(rows, first, last), axis=0)
+    return np.where(in_contact.any(axis=0), extended, 0.0)
 
 
 def _draw_contact_border(ax: Axes, surface: Surface, *artists: Any) -> None:
-    """Draw the border of the contact, and clip artists to it."""
+    """Draw the border of the contact, and clip artists to this border."""
     squared = surface.pressure**2
-    level = BORDER_LEVEL * float(squared[:, surface.beside_singular].max())
-    border = _draw_border(ax, surface, squared, level, **CONTACT_BORDER)
+    threshold = BORDER_LEVEL * float(squared[:, surface.away_from_singular_ends].max())
+    border = _draw_border(ax, surface, squared, threshold, **CONTACT_BORDER)
     for artist in artists:
         if border is not None and artist is not None:
             artist.set_clip_path(border.get_paths()[0], ax.transData)
@@ -112,7 +112,7 @@ def _draw_contact_border(ax: Axes, surface: Surface, *artists: Any) -> None:
 def _crop(ax: Axes, surface: Surface) -> None:
     """Limit the axes to the contact with a margin."""
     for centres, axis, limit in ((surface.x, 0, ax.set_xlim), (surface.y, 1, ax.set_ylim)):
-        loaded = np.flatnonzero(surface.pressed.any(axis=axis))
+        loaded = np.flatnonzero(surface.in_contact.any(axis=axis))
         if loaded.size > 1:
             low, high = centres[loaded[0]], centres[loaded[-1]]
             around = MARGIN * (high - low)
@@ -138,7 +138,7 @@ def plot_pressure_map(dataset: xr.Dataset, ax: Axes | None = None, *, si: bool =
     Returns
     -------
     Axes
-        Cropped to the contact. Beside a singular end the colours stop at the pressure 0.05 a from it.
+        Cropped to the contact. Near a singular end the colours stop at the pressure 0.05 a from it.
 
     Raises
     ------
@@ -155,12 +155,12 @@ def plot_pressure_map(dataset: xr.Dataset, ax: Axes | None = None, *, si: bool =
     """
     surface = _surface(dataset, ("pressure",), si=si)
     ax = new_axes(ax)
-    stress, regular = surface.unit.stress, surface.beside_singular
-    largest = None if regular.all() else float(surface.pressure[:, regular].max()) / stress
-    mesh = _draw_mesh(ax, surface, surface.pressure / stress, cmap=COLORS, vmin=0.0, vmax=largest)
+    stress, regular = surface.unit.stress, surface.away_from_singular_ends
+    max_value = None if regular.all() else float(surface.pressure[:, regular].max()) / stress
+    mesh = _draw_mesh(ax, surface, surface.pressure / stress, cmap=COLORS, vmin=0.0, vmax=max_value)
     _draw_contact_border(ax, surface, mesh)
     _crop(ax, surface)
-    _label(ax, surface, mesh, surface.unit.stress_label("pressure"), "neither" if largest is None else "max")
+    _label(ax, surface, mesh, surface.unit.stress_label("pressure"), "neither" if max_value is None else "max")
     return ax
 
 
@@ -204,20 +204,20 @@ def plot_stick_and_slip(dataset: xr.Dataset, ax: Axes | None = None, *, si: bool
     ax = new_axes(ax)
     slip = np.where(surface.values("stick") > 0, 0.0, 1.0)
     mesh = _draw_mesh(
-        ax, surface, _extend(slip, surface.pressed), cmap=ListedColormap([STICK_COLOR, SLIP_COLOR]), vmin=0, vmax=1
+        ax, surface, _extend(slip, surface.in_contact), cmap=ListedColormap([STICK_COLOR, SLIP_COLOR]), vmin=0, vmax=1
     )
     _draw_contact_border(ax, surface, mesh)
     rows, columns = _arrow_cells(surface, arrows)
     traction = [surface.values(f"traction_{axis}")[rows, columns] / surface.unit.stress for axis in "xy"]
-    largest = float(np.hypot(*traction).max(initial=0.0))
+    max_traction = float(np.hypot(*traction).max(initial=0.0))
     _crop(ax, surface)
-    if largest > 0:
-        scale = largest * arrows / ARROW_LENGTH
+    if max_traction > 0:
+        scale = max_traction * arrows / ARROW_LENGTH
         vectors = ax.quiver(
             surface.x[columns], surface.y[rows], *traction, scale_units="width", scale=scale, width=3e-3
         )
-        label = f"${largest:.3g}\\,p_0$" if not si else f"{largest:.3g} MPa"
-        ax.quiverkey(vectors, 0.86, 1.06, largest, label, labelpos="W", coordinates="axes")
+        label = f"${max_traction:.3g}\\,p_0$" if not si else f"{max_traction:.3g} MPa"
+        ax.quiverkey(vectors, 0.86, 1.06, max_traction, label, labelpos="W", coordinates="axes")
     handles = [Patch(facecolor=STICK_COLOR, label="stick"), Patch(facecolor=SLIP_COLOR, label="slip")]
     ax.legend(handles=handles, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2, frameon=False, fontsize="small")
     label_axes(ax, surface.unit.axis("x"), surface.unit.axis("y"))
@@ -228,12 +228,12 @@ def _arrow_cells(surface: Surface, arrows: int) -> tuple[IntArray, IntArray]:
     """Rows and columns of evenly spread cells of the contact, `arrows` along x, half as many along y."""
     indices = []
     for axis, (values, count) in enumerate(((surface.x, arrows), (surface.y, (arrows + 1) // 2))):
-        span = values[surface.pressed.any(axis=axis)]
+        span = values[surface.in_contact.any(axis=axis)]
         targets = span[0] + (np.arange(count) + 0.5) * float(np.ptp(span)) / count
         indices.append(np.unique(np.abs(values[:, None] - targets).argmin(axis=0)))
     columns, rows = (index.ravel() for index in np.meshgrid(*indices, indexing="ij"))
-    inside = surface.pressed[rows, columns]
-    return rows[inside], columns[inside]
+    in_contact = surface.in_contact[rows, columns]
+    return rows[in_contact], columns[in_contact]
 
 
 def plot_traction_map(
@@ -273,13 +273,13 @@ def plot_traction_map(
     surface = _surface(dataset, ("pressure", "stick", f"{variable}_x", f"{variable}_y"), si=si)
     ax = new_axes(ax)
     magnitude = np.hypot(surface.values(f"{variable}_x"), surface.values(f"{variable}_y"))
-    largest = float(magnitude[surface.pressed].max(initial=0.0))
+    max_traction = float(magnitude[surface.in_contact].max(initial=0.0))
     factor, label = surface.unit.stress, f"traction{' (MPa)' if si else ' over $p_0$'}"
     if variable == "slip":
-        factor, unit = unit_for(largest, str(surface.case["slip_y"].attrs.get("units", "1")))
+        factor, unit = unit_for(max_traction, str(surface.case["slip_y"].attrs.get("units", "1")))
         label = f"slip ({unit})" if unit else "slip per distance rolled"
-    mesh = _draw_mesh(ax, surface, _extend(magnitude / factor, surface.pressed), cmap=COLORS, vmin=0.0)
-    stick = _draw_border(ax, surface, _extend(surface.values("stick"), surface.pressed), 0.5, **STICK_BORDER)
+    mesh = _draw_mesh(ax, surface, _extend(magnitude / factor, surface.in_contact), cmap=COLORS, vmin=0.0)
+    stick = _draw_border(ax, surface, _extend(surface.values("stick"), surface.in_contact), 0.5, **STICK_BORDER)
     _draw_contact_border(ax, surface, mesh, stick)
     _crop(ax, surface)
     _label(ax, surface, mesh, label)
@@ -320,12 +320,12 @@ def plot_temperature_map(
     """
     checks.known_name("surface", surface, SURFACES)
     name = SURFACES[surface]
-    heated = _surface(dataset, (name, "frictional_heat"), si=si, load="frictional_heat")
+    field = _surface(dataset, (name, "frictional_heat"), si=si, load="frictional_heat")
     ax = new_axes(ax)
-    rise = heated.values(name)
-    mesh = _draw_mesh(ax, heated, rise, cmap=HEAT_COLORS)
-    _draw_border(ax, heated, heated.pressure, 1e-3 * float(heated.pressure.max()), colors="white", linewidths=0.8)
+    rise = field.values(name)
+    mesh = _draw_mesh(ax, field, rise, cmap=HEAT_COLORS)
+    _draw_border(ax, field, field.pressure, 1e-3 * float(field.pressure.max()), colors="white", linewidths=0.8)
     row, column = divmod(int(rise.argmax()), rise.shape[1])
-    ax.plot(heated.x[column], heated.y[row], "+", color="black", markersize=9)
-    _label(ax, heated, mesh, f"{variable_of(name, heated.case[name].attrs).long_name} (K)")
+    ax.plot(field.x[column], field.y[row], "+", color="black", markersize=9)
+    _label(ax, field, mesh, f"{variable_of(name, field.case[name].attrs).long_name} (K)")
     return ax

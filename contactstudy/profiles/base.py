@@ -9,7 +9,7 @@ from typing import NamedTuple, Protocol, runtime_checkable
 import numpy as np
 
 from contactstudy import checks
-from contactstudy.arrays.engineering import quantity
+from contactstudy.arrays.engineering import format_quantity
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 
@@ -87,7 +87,7 @@ class Shape:
             value = getattr(self, entry.name)
             if value != entry.default:
                 number = isinstance(value, (int, float)) and not isinstance(value, bool)
-                yield entry.name, quantity(value, UNITS.get(entry.name, "m")) if number else in_words(value)
+                yield entry.name, format_quantity(value, UNITS.get(entry.name, "m")) if number else in_words(value)
 
     def __add__(self, other: object) -> Sum:
         """Both profiles on one roller."""

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from contactstudy import checks
-from contactstudy.arrays.engineering import quantity
+from contactstudy.arrays.engineering import format_quantity
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 from contactstudy.profiles.base import (
@@ -155,7 +155,7 @@ class EffectiveLength(Shape):
         return max(self._corner(side).drop for side in (-1, 1))
 
     def __repr__(self) -> str:
-        length, drop = (quantity(value, "m") for value in (self.effective_length, self.end_drop))
+        length, drop = (format_quantity(value, "m") for value in (self.effective_length, self.end_drop))
         return f"EffectiveLength({in_words(self.profile)}, effective_length={length}, drop {drop} at its end)"
 
     def drop(self, x: FloatArray, length: float) -> FloatArray:

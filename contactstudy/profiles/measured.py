@@ -12,7 +12,7 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
 from contactstudy import checks
-from contactstudy.arrays.engineering import quantity
+from contactstudy.arrays.engineering import format_quantity
 from contactstudy.arrays.variables import numbers_in_si
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
@@ -169,8 +169,8 @@ class Measured(Shape):
             raise InvalidInputError("drops", f"{drops.size} values", f"one for each of {x.size} positions")
         check_positions("positions", x, FEWEST)
         check_values("drops", drops, ("x", x))
-        if drops.max() > checks.LARGEST:
-            raise InvalidInputError("drops", drops.max(), f"at most {checks.LARGEST:g} (metres)", "units are SI")
+        if drops.max() > checks.MAX_MAGNITUDE:
+            raise InvalidInputError("drops", drops.max(), f"at most {checks.MAX_MAGNITUDE:g} (metres)", "units are SI")
         if drops.min() < 0:
             index = int(drops.argmin())
             raise InvalidInputError(
@@ -193,8 +193,11 @@ class Measured(Shape):
         object.__setattr__(self, "drops", tuple(drops.tolist()))
 
     def __repr__(self) -> str:
-        length, drop = quantity(self.positions[-1] - self.positions[0], "m"), quantity(float(self._smooth.max()), "m")
-        filtered = "" if self.cutoff is None else f", Gaussian filter with cut-off {quantity(self.cutoff, 'm')}"
+        length, drop = (
+            format_quantity(self.positions[-1] - self.positions[0], "m"),
+            format_quantity(float(self._smooth.max()), "m"),
+        )
+        filtered = "" if self.cutoff is None else f", Gaussian filter with cut-off {format_quantity(self.cutoff, 'm')}"
         return f"Measured({len(self.positions)} points over {length}, drop up to {drop}{filtered})"
 
     @classmethod

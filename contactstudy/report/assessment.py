@@ -12,11 +12,11 @@ import xarray as xr
 from contactstudy.analysis import single_case
 from contactstudy.analysis.axes import axis_dimensions
 from contactstudy.analysis.provenance import INPUTS_ATTRIBUTE, RUN_ATTRIBUTE, attribute
-from contactstudy.arrays.engineering import quantity
+from contactstudy.arrays.engineering import format_quantity
 from contactstudy.case.serialization import tables_within
 from contactstudy.report.summary_table import NOT_ESTIMATED, Quantity, Summary, summary
 
-YES, CARE, NO, UNKNOWN = "yes", "with care", "no", "not known"  # Answers; "not known" if the result lacks the number
+YES, CAUTION, NO, UNKNOWN = "yes", "with care", "no", "not known"  # Answers; "not known" without the number
 LOAD_TOLERANCE, RESIDUAL_TOLERANCE, VIOLATION_TOLERANCE = 1e-6, 1e-3, 1e-4
 """Largest relative error of the load, residual of free ends and of Coulomb's law, and violation of the contact
 conditions: each is below the digits that a summary prints."""
@@ -42,7 +42,7 @@ class Assessment:
     def overall(self) -> str:
         """Worst answer, without "not known"."""
         answers = {criterion.answer for criterion in self.criteria}
-        return next((answer for answer in (NO, CARE, YES) if answer in answers), UNKNOWN)
+        return next((answer for answer in (NO, CAUTION, YES) if answer in answers), UNKNOWN)
 
     @property
     def verdict(self) -> str:
@@ -50,7 +50,7 @@ class Assessment:
         reason = next((criterion.reason for criterion in self.criteria if criterion.answer == self.overall), "")
         return {
             YES: "all criteria hold",
-            CARE: reason,
+            CAUTION: reason,
             NO: f"do not rely on it; {reason}",
             UNKNOWN: "the result contains no criterion",
         }[self.overall]
@@ -106,11 +106,11 @@ def _criteria(case: xr.Dataset, table: Summary) -> Iterator[Criterion]:
     yield _free_ends(case)
     yield _cells(case)
     profile = attribute(case, INPUTS_ATTRIBUTE).get("case", {}).get("roller", {}).get("profile", {})
-    yield from (_measured_profile(part) for part in tables_within(profile) if part["kind"] == "Measured")
+    yield from (_measured_profile(entry) for entry in tables_within(profile) if entry["kind"] == "Measured")
     if "peak_von_mises" in table:
         yield _peak_stress(case, table["peak_von_mises"])
     for text in attribute(case, RUN_ATTRIBUTE).get("warnings", []):
-        yield Criterion("Was there a warning?", CARE, str(text))
+        yield Criterion("Was there a warning?", CAUTION, str(text))
 
 
 def _converged(case: xr.Dataset) -> Criterion:
@@ -148,7 +148,7 @@ def _contact_conditions(case: xr.Dataset) -> Criterion:
         f"gap or overlap under pressure is {_digit(overlap)} of the displacement, pressure over a gap "
         f"{_digit(pressure)} of the peak"
     )
-    return Criterion(question, YES if holds else CARE, reason)
+    return Criterion(question, YES if holds else CAUTION, reason)
 
 
 def _friction(case: xr.Dataset) -> Criterion:
@@ -156,7 +156,7 @@ def _friction(case: xr.Dataset) -> Criterion:
     errors = {name: _size(case, name) for name in ("bound_error", "slip_error", "force_error") if name in case}
     reason = ", ".join(f"{name.replace('_', ' ')} {_digit(value)}" for name, value in errors.items())
     holds = all(not value > RESIDUAL_TOLERANCE for value in errors.values())
-    return Criterion("Do stick and slip follow Coulomb's law?", YES if holds else CARE, reason)
+    return Criterion("Do stick and slip follow Coulomb's law?", YES if holds else CAUTION, reason)
 
 
 def _free_ends(case: xr.Dataset) -> Criterion:
@@ -169,8 +169,8 @@ def _free_ends(case: xr.Dataset) -> Criterion:
         return _unknown(question, "end_traction_residual")
     reason = f"the traction there is {_digit(residual)} of the peak pressure"
     if body.get("model", "exact") != "exact":
-        return Criterion(question, CARE, f"{reason}: the model {body['model']!r} serves comparisons only")
-    return Criterion(question, YES if residual <= RESIDUAL_TOLERANCE else CARE, reason)
+        return Criterion(question, CAUTION, f"{reason}: the model {body['model']!r} serves comparisons only")
+    return Criterion(question, YES if residual <= RESIDUAL_TOLERANCE else CAUTION, reason)
 
 
 def _cells(case: xr.Dataset) -> Criterion:
@@ -179,23 +179,23 @@ def _cells(case: xr.Dataset) -> Criterion:
     peak, error = (float(case.get(name, np.nan)) for name in ("peak_pressure", "peak_pressure_error"))
     if np.isinf(peak):
         reason = f"the pressure is singular at {_singular_edge(case)}: its intensity replaces the peak"
-        return Criterion(question, CARE, reason)
+        return Criterion(question, CAUTION, reason)
     if np.isnan(error):
         reason = "the error on the given cells was not estimated; numbers at the ends may depend on the cells"
-        return Criterion(question, CARE if "pressure" in case else UNKNOWN, reason)
+        return Criterion(question, CAUTION if "pressure" in case else UNKNOWN, reason)
     if np.isinf(error):
         reason = str(case["peak_pressure_error"].attrs.get("comment", "two grids show no limit: take finer cells"))
-        return Criterion(question, CARE, reason)
+        return Criterion(question, CAUTION, reason)
     relative = error / peak if peak else 0.0
     if relative > PEAK_TOLERANCE:
-        return Criterion(question, CARE, f"the error of the peak pressure is {relative:.1%}")
-    return Criterion(question, YES, f"the peak pressure is settled to {relative:.1%}")
+        return Criterion(question, CAUTION, f"the error of the peak pressure is {relative:.1%}")
+    return Criterion(question, YES, f"the peak pressure has converged to {relative:.1%}")
 
 
 def _singular_edge(case: xr.Dataset) -> str:
     """Name of the edge with a singular pressure, and the argument for its radius."""
     if "corner_x" in case:
-        return f"the corner x = {quantity(float(case['corner_x']), 'm')}; a Chamfer may have a blend_radius"
+        return f"the corner x = {format_quantity(float(case['corner_x']), 'm')}; a Chamfer may have a blend_radius"
     inputs = attribute(case, INPUTS_ATTRIBUTE).get("case", {})
     start, length = inputs.get("end_distance"), inputs.get("body", {}).get("length", np.inf)
     overhangs = start is not None and (
@@ -215,8 +215,8 @@ def _measured_profile(profile: Mapping[str, Any]) -> Criterion:
             "its points are unfiltered, and the pressure contains their noise, even of a tenth of a micrometre: choose "
             "a cutoff on which the peak does not depend"
         )
-        return Criterion(question, CARE, reason)
-    reason = f"the cut-off is {quantity(cutoff, 'm')}; a second one shows whether the peak depends on it"
+        return Criterion(question, CAUTION, reason)
+    reason = f"the cut-off is {format_quantity(cutoff, 'm')}; a second one shows whether the peak depends on it"
     return Criterion(question, YES, reason)
 
 
@@ -226,9 +226,9 @@ def _peak_stress(case: xr.Dataset, row: Quantity) -> Criterion:
     if "peak_von_mises_error" not in case and "von_mises" in case:
         flat = [axis for axis, dim in axis_dimensions(case["von_mises"]).items() if case.sizes[dim] == 1]
         if flat:
-            return Criterion(question, CARE, f"the stresses have one position along {' and '.join(flat)} only")
+            return Criterion(question, CAUTION, f"the stresses have one position along {' and '.join(flat)} only")
     if not np.isfinite(row.error) or np.isinf(row.value):
-        return Criterion(question, CARE, row.remark or NOT_ESTIMATED)
+        return Criterion(question, CAUTION, row.remark or NOT_ESTIMATED)
     return Criterion(question, YES, row.text)
 
 
@@ -238,7 +238,7 @@ def _unknown(question: str, name: str) -> Criterion:
 
 
 def _size(case: xr.Dataset, name: str) -> float:
-    """Absolute value of a scalar; NaN without it."""
+    """Absolute value of a scalar; NaN if the scalar is missing."""
     return abs(float(case.get(name, np.nan)))
 
 

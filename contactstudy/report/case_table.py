@@ -7,7 +7,7 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
-from contactstudy.arrays.engineering import html_table, quantity
+from contactstudy.arrays.engineering import format_quantity, html_table
 from contactstudy.bodies.material import Material
 from contactstudy.bodies.models import Body, FiniteLengthSpace
 from contactstudy.case.case import Case
@@ -51,26 +51,28 @@ def case_table(case: Case) -> CaseTable:
     """
     roller = case.roller
     roller_rows = [
-        ("radius R", quantity(roller.radius, "m")),
-        ("length L", quantity(roller.length, "m")),
+        ("radius R", format_quantity(roller.radius, "m")),
+        ("length L", format_quantity(roller.length, "m")),
         ("profile", _profile(roller.profile)),
-        ("material", material_words(roller.material) if roller.material else "rigid"),
+        ("material", describe_material(roller.material) if roller.material else "rigid"),
     ]
     if roller.material is not None:
         roller_rows.append(
             ("elastic as", "its own free ends" if roller.ends == "free" else "a half-space, without ends")
         )
     drops = roller.profile.drop(np.array([0.45, 0.5]) * roller.length, roller.length).tolist()
-    roller_rows.append((f"drop at {quantity(0.45 * roller.length, 'm')} from mid-length", quantity(drops[0], "m")))
-    roller_rows.append(("drop at the very end", quantity(drops[1], "m")))
-    place = [("from end I of the body to the roller, e", quantity(case.roller_start, "m"))]
+    roller_rows.append(
+        (f"drop at {format_quantity(0.45 * roller.length, 'm')} from mid-length", format_quantity(drops[0], "m"))
+    )
+    roller_rows.append(("drop at the very end", format_quantity(drops[1], "m")))
+    position_rows = [("from end I of the body to the roller, e", format_quantity(case.roller_start, "m"))]
     if isinstance(case.body, FiniteLengthSpace):
         distance = case.body.length - case.roller_start - case.roller.length
-        place.append(("from the roller to end II", quantity(distance, "m")))
+        position_rows.append(("from the roller to end II", format_quantity(distance, "m")))
     subjects = {
         "Roller": roller_rows,
-        "Body": [("kind", body_words(case.body)), ("material", material_words(case.body.material))],
-        "Place": place,
+        "Body": [("kind", describe_body(case.body)), ("material", describe_material(case.body.material))],
+        "Place": position_rows,
         "Load": _load(case),
     }
     return CaseTable(subjects)
@@ -79,17 +81,17 @@ def case_table(case: Case) -> CaseTable:
 def _load(case: Case) -> list[Input]:
     """Load, friction, tilt and motion."""
     if case.approach is not None:
-        rows = [("approach, which takes the load that results", quantity(case.approach, "m"))]
+        rows = [("approach, which takes the load that results", format_quantity(case.approach, "m"))]
     else:
         rows = [
-            ("normal load W", quantity(case.normal_load, "N")),
-            ("Hertz pressure p0 of the line contact", quantity(case.hertz_max_pressure, "Pa")),
-            ("Hertz half-width a", quantity(case.hertz_half_width, "m")),
+            ("normal load W", format_quantity(case.normal_load, "N")),
+            ("Hertz pressure p0 of the line contact", format_quantity(case.hertz_max_pressure, "Pa")),
+            ("Hertz half-width a", format_quantity(case.hertz_half_width, "m")),
         ]
     if case.load_position is not None:
-        rows.append(("the load acts at x =", quantity(case.load_position, "m")))
+        rows.append(("the load acts at x =", format_quantity(case.load_position, "m")))
     if case.tilt:
-        rows.append(("tilt, positive if larger x is pressed deeper", quantity(case.tilt, "rad")))
+        rows.append(("tilt, positive if larger x is pressed deeper", format_quantity(case.tilt, "rad")))
     friction = case.friction
     if isinstance(friction, AxialFriction):
         rows.append(("friction along the axis", f"{min(friction.values):g} to {max(friction.values):g}"))
@@ -118,12 +120,12 @@ def _profile(profile: Profile) -> str:
     return text.replace("_", " ").replace("=", " ").replace("(", " (") if isinstance(profile, Shape) else text
 
 
-def material_words(material: Material) -> str:
+def describe_material(material: Material) -> str:
     """Material in one line."""
-    return f"E = {quantity(material.young, 'Pa')}, Poisson's ratio {material.poisson:g}"
+    return f"E = {format_quantity(material.young, 'Pa')}, Poisson's ratio {material.poisson:g}"
 
 
-def body_words(body: Body) -> str:
+def describe_body(body: Body) -> str:
     """Kind of a body in one line."""
     low, high = body.extent
     if math.isinf(low):
@@ -131,5 +133,5 @@ def body_words(body: Body) -> str:
     model = getattr(body, "model", "exact")
     note = "" if model == "exact" else f", ends by the comparison model {model!r}"
     if math.isfinite(high):
-        return f"two free ends, {quantity(high, 'm')} apart{note}"
+        return f"two free ends, {format_quantity(high, 'm')} apart{note}"
     return f"one free end, at x = 0{note}"

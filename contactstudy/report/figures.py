@@ -14,7 +14,7 @@ import numpy as np
 import xarray as xr
 
 from contactstudy.analysis import axial_pressure, largest_sample, positions
-from contactstudy.arrays.engineering import quantity
+from contactstudy.arrays.engineering import format_quantity
 from contactstudy.case.case import Case
 from contactstudy.case.roller import Roller
 from contactstudy.checks import FloatArray
@@ -29,7 +29,7 @@ from contactstudy.plots import (
     plot_traction_map,
 )
 from contactstudy.plots.axial import draw_section_maxima
-from contactstudy.plots.singular import cap_field
+from contactstudy.plots.singular_ends import cap_field
 from contactstudy.plots.style import MILLIMETRES
 from contactstudy.profiles.base import checked_drop, local_radius
 
@@ -38,12 +38,12 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 WIDTH, HEIGHT = 6.4, 3.3  # Size of a figure, inches
-END_PANEL, LONG = 6.0, 15.0
+END_PANEL, LONG_CONTACT = 6.0, 15.0
 """Length of the panel at the most loaded end, and of a contact with such a panel, over the Hertz half-width."""
 
-DOTS = 110  # Dots per inch of images within a figure
-PIXELS = 96  # Pixels of a page per inch
-SMALLEST, LARGEST, SCREEN = 0.5, 1.4, 380
+DOTS_PER_INCH = 110  # Dots per inch of images within a figure
+PIXELS_PER_INCH = 96  # Pixels of a page per inch
+MIN_SCALE, MAX_SCALE, SCREEN_WIDTH = 0.5, 1.4, 380
 """Smallest and largest scale of a figure with legible labels, and width of a narrow screen in pixels."""
 
 BLUE = "#1f4e79"
@@ -60,29 +60,29 @@ class Picture(NamedTuple):
     width: int = 0
 
     @property
-    def least(self) -> int:
+    def min_width(self) -> int:
         """Width below which the figure scrolls."""
-        return round(SMALLEST * self.width)
+        return round(MIN_SCALE * self.width)
 
     @property
-    def most(self) -> int:
+    def max_width(self) -> int:
         """Largest width."""
-        return round(LARGEST * self.width)
+        return round(MAX_SCALE * self.width)
 
     @property
     def scrolls(self) -> bool:
         """Whether the figure scrolls on a narrow screen."""
-        return self.least > SCREEN
+        return self.min_width > SCREEN_WIDTH
 
 
-def as_address(figure: Figure) -> str:
+def encode_figure(figure: Figure) -> str:
     """Return a figure as a data URL, with the same bytes in each run."""
     import matplotlib
     from matplotlib.backends.backend_svg import FigureCanvasSVG
 
     target = io.BytesIO()
     # `savefig` would draw the figure twice.
-    figure.set_dpi(DOTS)
+    figure.set_dpi(DOTS_PER_INCH)
     canvas: Any = FigureCanvasSVG(figure)
     with matplotlib.rc_context({"svg.hashsalt": "contactstudy"}):
         canvas.print_svg(target, metadata={"Date": None, "Creator": None})
@@ -102,41 +102,41 @@ def case_pictures(result: xr.Dataset, case: Case | None) -> list[Picture]:
     draw: list[Callable[[Figure, xr.Dataset], str]] = []
     if "pressure" in result and bool((result["pressure"] > 0).any()):
         top = "Pressure on the top of the body. The two axes have different scales."
-        draw += [_axial_pressure, partial(_map, plot_pressure_map, top)]
+        draw += [_draw_axial_pressure, partial(_draw_map, plot_pressure_map, top)]
         if {"stick", "traction_x", "slip_x"} <= set(result.data_vars):
-            draw += [_traction_map, _slip_map]
+            draw += [_draw_traction_map, _draw_slip_map]
     if "film_thickness" in result:
         film = "Film thickness. Cross: least film. The two axes have different scales."
-        draw += [_film_lines, partial(_map, plot_film_map, film)]
+        draw += [_draw_film_lines, partial(_draw_map, plot_film_map, film)]
     if case is not None:
         roller = case.roller
         if checked_drop(roller.profile, np.linspace(-0.5, 0.5, 201) * roller.length, roller.length).any():
-            draw.append(partial(_profile, roller))
+            draw.append(partial(_draw_profile, roller))
     if "von_mises" in result and bool(result["von_mises"].notnull().any()):
-        draw += [_axial_plane, _cross_section, _section_maxima]
+        draw += [_draw_axial_plane, _draw_cross_section, _draw_section_maxima]
     pictures = []
     for function in draw:
         figure = _new_figure()
         with contextlib.suppress(ContactStudyError):  # fewer positions than the plane needs
             caption = function(figure, result)
-            pictures.append(Picture(as_address(figure), caption))
+            pictures.append(Picture(encode_figure(figure), caption))
     return pictures
 
 
-def _axial_pressure(figure: Figure, result: xr.Dataset) -> str:
+def _draw_axial_pressure(figure: Figure, result: xr.Dataset) -> str:
     """Pressure along the axis, and near the end of larger pressure."""
     x = positions(result["pressure"], "x").values
     half_width = float(result.get("hertz_half_width", np.inf))
     panel = END_PANEL * half_width
-    zoomed = np.ptp(x) > LONG * half_width
-    axes = figure.subplots(1, 2 if zoomed else 1, squeeze=False)[0]
+    has_end_panel = np.ptp(x) > LONG_CONTACT * half_width
+    axes = figure.subplots(1, 2 if has_end_panel else 1, squeeze=False)[0]
     for ax in axes:
         plot_axial_pressure(result, ax, si=True, color=BLUE, linewidth=1.6)
         if "hertz_max_pressure" in result:
             ax.axhline(1e-6 * float(result["hertz_max_pressure"]), color="0.6", linewidth=0.9, linestyle="--")
         ax.set_ylim(bottom=0.0)
     caption = "Largest pressure across the contact, along the roller's axis. Dashed: Hertz line contact."
-    if zoomed:
+    if has_end_panel:
         along = axial_pressure(result).values
         loaded = x[along > 0]
         at_end_1 = along[x <= loaded[0] + panel].max() >= along[x >= loaded[-1] - panel].max()
@@ -151,13 +151,13 @@ def _axial_pressure(figure: Figure, result: xr.Dataset) -> str:
     return caption
 
 
-def _map(plot: Callable[..., Axes], caption: str, figure: Figure, result: xr.Dataset) -> str:
+def _draw_map(plot: Callable[..., Axes], caption: str, figure: Figure, result: xr.Dataset) -> str:
     """Draw one map."""
     plot(result, figure.subplots(), si=True)
     return caption
 
 
-def _film_lines(figure: Figure, result: xr.Dataset) -> str:
+def _draw_film_lines(figure: Figure, result: xr.Dataset) -> str:
     """Film and pressure along the axis, and along y at the least film."""
     axes = figure.subplots(1, 2)
     plot_film_line(result, axes[0], si=True)
@@ -165,61 +165,63 @@ def _film_lines(figure: Figure, result: xr.Dataset) -> str:
     return "Film and pressure along the axis at y = 0, and across the least film."
 
 
-def _traction_map(figure: Figure, result: xr.Dataset) -> str:
+def _draw_traction_map(figure: Figure, result: xr.Dataset) -> str:
     """Traction on the top, with the border of the sticking area."""
     plot_traction_map(result, figure.subplots(), si=True)
-    pressed = result["pressure"] > 0
-    if not bool(result["stick"].where(pressed, False).any()):
+    in_contact = result["pressure"] > 0
+    if not bool(result["stick"].where(in_contact, False).any()):
         border = "The surfaces slip everywhere."
-    elif bool(result["stick"].where(pressed, True).all()):
+    elif bool(result["stick"].where(in_contact, True).all()):
         border = "The surfaces stick everywhere."
     else:
         border = "The surfaces stick within the red line, and slip between it and the grey one."
     return f"Size of the traction on the body. {border} The two axes have different scales."
 
 
-def _slip_map(figure: Figure, result: xr.Dataset) -> str:
+def _draw_slip_map(figure: Figure, result: xr.Dataset) -> str:
     """Slip on the top, with the border of the sticking area."""
     plot_traction_map(result, figure.subplots(), variable="slip", si=True)
-    shifted = str(result["slip_y"].attrs.get("units", "1")) == "m"
+    is_shift = str(result["slip_y"].attrs.get("units", "1")) == "m"
     reference = (
         "in the last step"
-        if shifted
+        if is_shift
         else "per distance rolled; the contact moves along +y, so its leading edge is at the top"
     )
     return f"Size of the slip of the roller against the body, {reference}."
 
 
-def _profile(roller: Roller, figure: Figure, result: xr.Dataset) -> str:
+def _draw_profile(roller: Roller, figure: Figure, result: xr.Dataset) -> str:
     """Profile of the roller."""
     drop = checked_drop(roller.profile, np.linspace(-0.47, 0.47, 201) * roller.length, roller.length)
     crown = float(drop[np.isfinite(drop)].max(initial=0.0))
-    deepest = 3 * crown if crown > 0 else None
-    plot_profile(roller.profile, roller.length, ax=figure.subplots(), deepest=deepest, color=BLUE)
+    max_depth = 3 * crown if crown > 0 else None
+    plot_profile(roller.profile, roller.length, ax=figure.subplots(), deepest=max_depth, color=BLUE)
     return "Profile of the roller: drop from the cylinder, downwards."
 
 
 def _cap_remark(result: xr.Dataset) -> str:
-    """Remark on the limit of the colours beside a singular end."""
+    """Note on the limit of the colours near a singular end."""
     _, limit = cap_field(result, result["von_mises"])
-    return f" Beside a singular end the stress exceeds the largest colour, {quantity(limit, 'Pa')}." * (limit < np.inf)
+    return f" Beside a singular end the stress exceeds the largest colour, {format_quantity(limit, 'Pa')}." * (
+        limit < np.inf
+    )
 
 
-def _axial_plane(figure: Figure, result: xr.Dataset) -> str:
+def _draw_axial_plane(figure: Figure, result: xr.Dataset) -> str:
     """Von Mises stress in the plane of the axis."""
     plot_stress_plane(result, "von_mises", y=0.0, ax=figure.subplots(), si=True)
     return f"Von Mises stress in the plane y = 0, along the roller.{_cap_remark(result)}"
 
 
-def _cross_section(figure: Figure, result: xr.Dataset) -> str:
+def _draw_cross_section(figure: Figure, result: xr.Dataset) -> str:
     """Von Mises stress across the roller, in the section of its largest value."""
     x = float(largest_sample(result, "von_mises")["peak_von_mises_x"])
     plot_stress_plane(result, "von_mises", ax=figure.subplots(), x=x, si=True)
-    caption = f"Von Mises stress across the roller, in the section of its largest value, x = {quantity(x, 'm')}."
+    caption = f"Von Mises stress across the roller, in the section of its largest value, x = {format_quantity(x, 'm')}."
     return caption + _cap_remark(result)
 
 
-def _section_maxima(figure: Figure, result: xr.Dataset) -> str:
+def _draw_section_maxima(figure: Figure, result: xr.Dataset) -> str:
     """Largest von Mises stress of each cross-section."""
     ax = figure.subplots()
     draw_section_maxima(ax, result, "von_mises", MILLIMETRES, color=BLUE, linewidth=1.6)
@@ -227,8 +229,8 @@ def _section_maxima(figure: Figure, result: xr.Dataset) -> str:
     peak, peak_x = (float(result.get(f"peak_von_mises{suffix}", np.nan)) for suffix in ("", "_x"))
     if np.isfinite(peak) and np.isfinite(peak_x):
         ax.plot(1e3 * peak_x, 1e-6 * peak, "o", color=BLUE, markersize=5)
-        depth = quantity(float(result.get("peak_von_mises_z", np.nan)), "m")
-        caption += f" Dot: largest in the body, {quantity(peak, 'Pa')} at x = {quantity(peak_x, 'm')}, z = {depth}."
+        x, z = (format_quantity(float(result.get(f"peak_von_mises_{axis}", np.nan)), "m") for axis in "xz")
+        caption += f" Dot: largest in the body, {format_quantity(peak, 'Pa')} at x = {x}, z = {z}."
     ax.set_xlabel("distance from the free end, x (mm)")
     ax.set_ylabel("largest von Mises stress (MPa)")
     ax.set_ylim(bottom=0.0)
@@ -252,26 +254,26 @@ def side_geometry(case: Case) -> SideView:
     """Return the geometry of the side view of a case."""
     roller, ends = case.roller, (case.roller_start, case.roller_start + case.roller.length)
     low, high = case.body.extent
-    beyond = 0.12 * roller.length  # of a body without an end
+    margin = 0.12 * roller.length  # of a body without an end
     limits = (
-        min(low if math.isfinite(low) else ends[0] - beyond, ends[0]),
-        max(high if math.isfinite(high) else ends[1] + beyond, ends[1]),
+        min(low if math.isfinite(low) else ends[0] - margin, ends[0]),
+        max(high if math.isfinite(high) else ends[1] + margin, ends[1]),
     )
     height = min(roller.radius, 0.42 * (limits[1] - limits[0]))
     along = np.linspace(-0.5, 0.5, 241) * roller.length
     drop = checked_drop(roller.profile, along, roller.length)
     inner = (np.abs(along) <= 0.45 * roller.length) & np.isfinite(drop)
-    magnification, deepest = _magnification(float(drop[inner].max(initial=0.0)), height), 0.45 * height
-    generatrix = np.minimum(np.where(np.isfinite(drop), drop * magnification, deepest), deepest)
+    magnification, max_depth = _magnification(float(drop[inner].max(initial=0.0)), height), 0.45 * height
+    generatrix = np.minimum(np.where(np.isfinite(drop), drop * magnification, max_depth), max_depth)
     x = along + ends[0] + 0.5 * roller.length
-    clipped = bool((drop * magnification > deepest).any())
+    clipped = bool((drop * magnification > max_depth).any())
     return SideView(
         x, generatrix, ends, (low, high), limits, height=height, magnification=magnification, clipped=clipped
     )
 
 
 def _magnification(crown: float, height: float) -> float:
-    """Factor on a crown, 1, 2 or 5 times a power of ten, up to 0.16 of the height; 1 if it is visible without."""
+    """Factor on a crown, 1, 2 or 5 times a power of ten, up to 0.16 of the height; 1 for a visible crown."""
     if crown <= 0 or crown >= 0.02 * height:
         return 1.0
     limit = 0.16 * height / crown
@@ -288,24 +290,24 @@ def side_view(case: Case) -> Picture:
     ax = figure.subplots()
     _draw_body(ax, view, depth)
     _draw_roller(ax, view, case.roller.radius)
-    _dimension(ax, view.roller, view.height + 0.25 * depth, f"L = {quantity(case.roller.length, 'm')}")
+    _draw_dimension(ax, view.roller, view.height + 0.25 * depth, f"L = {format_quantity(case.roller.length, 'm')}")
     if all(map(math.isfinite, view.body)):
-        _dimension(ax, view.body, -1.9 * depth, f"body {quantity(view.body[1] - view.body[0], 'm')}")
+        _draw_dimension(ax, view.body, -1.9 * depth, f"body {format_quantity(view.body[1] - view.body[0], 'm')}")
     for name, edge, face, sign in zip(("I", "II"), view.body, view.roller, (1, -1), strict=True):
         if math.isfinite(edge):
             distance = sign * (face - edge)
             # The difference of two positions may be a rounding error.
-            text = f"end {name}: e = {quantity(0.0 if abs(distance) < 1e-12 else distance, 'm')}"
+            text = f"end {name}: e = {format_quantity(0.0 if abs(distance) < 1e-12 else distance, 'm')}"
             ax.plot([edge, face], [-1.15 * depth] * 2, "|-", color=LINE, linewidth=0.8)
             x, alignment = (min(edge, face), "left") if sign > 0 else (max(edge, face), "right")
             ax.text(x, -1.3 * depth, text, ha=alignment, va="top")
     ax.set_aspect("equal")
     ax.set_axis_off()
-    return Picture(as_address(figure), _side_caption(case, view))
+    return Picture(encode_figure(figure), _side_caption(case, view))
 
 
 def _draw_body(ax: Axes, view: SideView, depth: float) -> None:
-    """Body with its free ends as lines, and dashed edges where it continues."""
+    """Body with its free ends as lines, and dashed edges where the body continues."""
     ends = [max(view.body[0], view.limits[0]), min(view.body[1], view.limits[1])]
     ax.fill_between(ends, -depth, 0.0, color=BODY, linewidth=0)
     ax.plot(ends, [0.0, 0.0], color=LINE, linewidth=1.5)
@@ -322,13 +324,13 @@ def _draw_roller(ax: Axes, view: SideView, radius: float) -> None:
     ax.plot(x, z, color=LINE, linewidth=1.2)
     cut = view.height < radius
     ax.plot(view.x[[0, -1]], [view.height] * 2, color=LINE, linewidth=0.8, linestyle="--" if cut else "-.")
-    middle = float(view.x.mean())
+    mid_length = float(view.x.mean())
     arrow = ARROW | {"arrowstyle": "->" if cut else "<->"}
-    ax.annotate("", (middle, 0.0), (middle, view.height), arrowprops=arrow)
-    ax.text(middle, 0.5 * view.height, f"  R = {quantity(radius, 'm')}", va="center", color=LINE)
+    ax.annotate("", (mid_length, 0.0), (mid_length, view.height), arrowprops=arrow)
+    ax.text(mid_length, 0.5 * view.height, f"  R = {format_quantity(radius, 'm')}", va="center", color=LINE)
 
 
-def _dimension(ax: Axes, ends: tuple[float, float], z: float, text: str) -> None:
+def _draw_dimension(ax: Axes, ends: tuple[float, float], z: float, text: str) -> None:
     """Dimension line along x with its text."""
     ax.annotate("", (ends[0], z), (ends[1], z), arrowprops=ARROW)
     box = {"facecolor": "white", "edgecolor": "none", "pad": 1.5}
@@ -349,8 +351,8 @@ def _side_caption(case: Case, view: SideView) -> str:
     radii = local_radius(roller.profile, along, roller.length, roller.radius)
     if np.ptp(radii) > 1e-12:
         caption += (
-            f" The radius across the roller changes from {quantity(float(radii[0]), 'm')} to "
-            f"{quantity(float(radii[-1]), 'm')} along it; the drawing has the radius at mid-length throughout."
+            f" The radius across the roller changes from {format_quantity(float(radii[0]), 'm')} to "
+            f"{format_quantity(float(radii[-1]), 'm')} along it; the drawing has the radius at mid-length throughout."
         )
     if case.tilt or case.load_position is not None:
         caption += " The tilt is not drawn."

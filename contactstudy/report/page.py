@@ -105,7 +105,7 @@ def write(
     source : Dataset, str or Path
         As for :func:`html`.
     path : str or Path, optional
-        The file, ``.html``; an existing link is replaced, not followed. Default: beside the netCDF file, or
+        The file, ``.html``; an existing link is replaced, not followed. Default: next to the netCDF file, or
         ``report.html`` in the study's folder.
     title, selection : optional
         As for :func:`html`.
@@ -136,8 +136,8 @@ def write(
         hint = "a browser prints the page to PDF" if target.suffix.lower() == ".pdf" else ""
         raise InvalidInputError("path", str(path), "a name that ends in .html: the report is a page", hint)
     page = html(source, title=title, selection=selection)
-    with checks.writing(target) as part:
-        part.write_text(page, encoding="utf-8")
+    with checks.writing(target) as temporary_path:
+        temporary_path.write_text(page, encoding="utf-8")
     return target
 
 

@@ -1,4 +1,4 @@
-"""Sources of the methods that a result used, to be cited beside it."""
+"""Sources of the methods that a result used, to be cited with the result."""
 
 from __future__ import annotations
 
@@ -85,10 +85,10 @@ def citations(dataset: xr.Dataset) -> Citations:
         sources.append(ROLLING)
     if any(name in dataset for name in STRESSES):
         sources.append(SUBSURFACE)
-    parts = list(tables_within(profile))
-    kinds = {_normalized(part["kind"]) for part in parts}
-    sources += [(f"profile {kind}", source) for kind, source in sorted(PROFILES.items()) if _normalized(kind) in kinds]
-    if any(_normalized(part["kind"]) == "measured" and "cutoff" in part for part in parts):
+    profile_tables = list(tables_within(profile))
+    kinds = {_normalize(table["kind"]) for table in profile_tables}
+    sources += [(f"profile {kind}", source) for kind, source in sorted(PROFILES.items()) if _normalize(kind) in kinds]
+    if any(_normalize(table["kind"]) == "measured" and "cutoff" in table for table in profile_tables):
         sources.append(FILTER)
     return Citations(tuple(dict.fromkeys(sources)))
 
@@ -110,14 +110,14 @@ def _models_of_study(study: dict[str, Any]) -> tuple[set[str], Any]:
         lists = [table.get(name, []) for table in (study.get("sweep", {}), *study.get("zip", []))]
         return [*scalars, *(value for entries in lists for value in entries)] or [default]
 
-    ended = any(body != "half-space" for body in values("body", "finite-length"))
-    models = {str(model) for model in values("model", "exact")} if ended else set()
+    has_ends = any(body != "half-space" for body in values("body", "finite-length"))
+    models = {str(model) for model in values("model", "exact")} if has_ends else set()
     if "finite-length" in values("roller_body", "rigid"):
         models.add("exact")
     profiles = values("profile", "cylinder")
     return models, [{"kind": profile} if isinstance(profile, str) else profile for profile in profiles]
 
 
-def _normalized(kind: str) -> str:
+def _normalize(kind: str) -> str:
     """Kind of a profile in the spelling that classes and study files share."""
     return str(kind).replace("-", "").lower()

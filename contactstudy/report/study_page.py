@@ -14,22 +14,22 @@ import xarray as xr
 
 from contactstudy.analysis import single_case
 from contactstudy.analysis.provenance import RUN_ATTRIBUTE, attribute
-from contactstudy.arrays.engineering import quantity, with_error
+from contactstudy.arrays.engineering import format_quantity, format_with_error
 from contactstudy.plots.selection import select_values
 from contactstudy.plots.study_lines import figures_with_selections
-from contactstudy.report.assessment import CARE, NO, UNKNOWN, YES, assess
-from contactstudy.report.figures import PIXELS, Picture, as_address
+from contactstudy.report.assessment import CAUTION, NO, UNKNOWN, YES, assess
+from contactstudy.report.figures import PIXELS_PER_INCH, Picture, encode_figure
 from contactstudy.report.summary_table import intensity_text
 from contactstudy.study import collect
 from contactstudy.study.folder import Entry, Folder
 from contactstudy.study.parameters import PARAMETERS, with_defaults
-from contactstudy.study.plan import Plan, PlannedCase, label, listed, value_text
+from contactstudy.study.plan import Plan, PlannedCase, format_list, format_value, label
 from contactstudy.versions import PACKAGES
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-NUMBERS = {
+PEAK_NUMBERS = {
     "peak_pressure": "largest pressure",
     "end_pressure_first": "at end I",
     "end_pressure_last": "at end II",
@@ -61,7 +61,7 @@ CAPTIONS = {
 
 FIELDS = ("pressure", "initial_gap", "von_mises")  # Variables of a case in the figures of a study
 PERCENTAGE = re.compile(r" ([0-9.]+)%$")  # Size of an error at the end of a reason
-WORST_FIRST = (NO, CARE, UNKNOWN, YES)
+RATINGS_WORST_FIRST = (NO, CAUTION, UNKNOWN, YES)
 
 
 class Row(NamedTuple):
@@ -83,7 +83,7 @@ def study_context(path: Path, selection: Mapping[str, Any] | None = None) -> dic
     plan = study.plan()
     states = folder.states(plan)
     entries = [states.entry(index) for index in range(len(plan))]
-    names = [name for name in NUMBERS if any(_has_number(entry.numbers, name) for entry in entries)]
+    names = [name for name in PEAK_NUMBERS if any(_has_number(entry.numbers, name) for entry in entries)]
     names += [name for name in SINGULAR_NUMBERS if any(_is_singular(entry.numbers, name) for entry in entries)]
     swept = list(dict.fromkeys([*study.sweep, *(name for table in (*study.zip, *study.cases) for name in table)]))
     rows = [
@@ -96,17 +96,17 @@ def study_context(path: Path, selection: Mapping[str, Any] | None = None) -> dic
         "description": study.description,
         "shape": f"{len(plan)} cases ({sizes})",
         "counts": Counter(entry.status for entry in entries),
-        "base": [(_meaning(name), value_text(name, value)) for name, value in study.base.items()],
+        "base": [(_meaning(name), format_value(name, value)) for name, value in study.base.items()],
         "swept": [
-            (_meaning(name), listed(list(dict.fromkeys(row.values[column] for row in rows if row.values[column]))))
+            (_meaning(name), format_list(list(dict.fromkeys(row.values[column] for row in rows if row.values[column]))))
             for column, name in enumerate(swept)
         ],
         "headings": [_heading(name) for name in swept],
-        "number_headings": [(NUMBERS | SINGULAR_NUMBERS)[name] for name in names],
+        "number_headings": [(PEAK_NUMBERS | SINGULAR_NUMBERS)[name] for name in names],
         "intensities": any(name.startswith("end_intensity") for name in names),
         "rows": rows,
-        "reasons": _grouped((row for row in rows if row.status != "ok"), lambda row: (row.status, row.note)),
-        "answers": _answers(rows),
+        "reasons": _group_rows((row for row in rows if row.status != "ok"), lambda row: (row.status, row.note)),
+        "answers": _count_answers(rows),
         "verdict": _verdict(rows),
         "pictures": _pictures(path, selection),
         "provenance": _provenance([attribute(_record(entry), RUN_ATTRIBUTE) for entry in entries if entry.run]),
@@ -118,19 +118,19 @@ def figures_of_folder(
 ) -> dict[str, tuple[Figure, dict[str, str]]]:
     """Draw the figures of the study in a folder, each with its parameters of one value and another value of these."""
     results = Folder(path).results()
-    part = select_values(collect(path), selection or {})
+    selected = select_values(collect(path), selection or {})
 
     # Only files of cases with drawn surfaces are opened.
     def load(case: xr.Dataset) -> xr.Dataset:
         return single_case(results.case(str(case["case_id"].item()), FIELDS))
 
     def last_value(dim: str) -> str:
-        value = part.indexes[dim][-1]
+        value = selected.indexes[dim][-1]
         return value if isinstance(value, str) else f"{float(value):.10g}"
 
     return {
-        name: (figure, {dim: last_value(dim) for dim in fixed})
-        for name, (figure, fixed) in figures_with_selections(part, load).items()
+        name: (figure, {dim: last_value(dim) for dim in fixed_values})
+        for name, (figure, fixed_values) in figures_with_selections(selected, load).items()
     }
 
 
@@ -153,7 +153,7 @@ def _swept_values(plan: Plan, case: PlannedCase, swept: list[str]) -> list[str]:
         value = labels[case.position[plan.cube.dims.index(dim)]] if dim in plan.cube.dims else parameters.get(name)
         if isinstance(parameters.get(name), dict) and value == label(name, parameters[name]):
             value = parameters[name]  # a table without a name: its values
-        texts.append("" if value is None else value_text(name, value))
+        texts.append("" if value is None else format_value(name, value))
     return texts
 
 
@@ -185,9 +185,11 @@ def _number(scalars: Mapping[str, float], name: str) -> str:
     elif np.isinf(value) or (name.startswith("peak_von_mises") and np.isinf(scalars.get("peak_pressure", 0.0))):
         return "singular"
     elif name.endswith(("_x", "_z")):
-        return quantity(value, "m")
+        return format_quantity(value, "m")
     else:
-        text = with_error(value, error if np.isfinite(error) else None, "N" if name.startswith("end_load") else "Pa")
+        text = format_with_error(
+            value, error if np.isfinite(error) else None, "N" if name.startswith("end_load") else "Pa"
+        )
     return text if np.isfinite(error) else f"{text} (error not estimated)"
 
 
@@ -195,8 +197,8 @@ def _has_number(scalars: Mapping[str, float], name: str) -> bool:
     """Whether a case fills a column; a singular end has its intensity instead of a pressure."""
     if name not in scalars or _is_open_end(scalars, name):
         return False
-    replaced = name.startswith("end_pressure") and f"end_intensity_{name.rpartition('_')[2]}" in scalars
-    return not (replaced and np.isinf(scalars[name]))
+    has_intensity = name.startswith("end_pressure") and f"end_intensity_{name.rpartition('_')[2]}" in scalars
+    return not (has_intensity and np.isinf(scalars[name]))
 
 
 def _is_open_end(scalars: Mapping[str, float], name: str) -> bool:
@@ -215,7 +217,7 @@ def _record(entry: Entry) -> xr.Dataset:
     return xr.Dataset(scalars, attrs={RUN_ATTRIBUTE: json.dumps(entry.run)})
 
 
-def _grouped(rows: Iterable[Row], key: Callable[[Row], tuple[str, str]]) -> list[tuple[str, str, list[Row]]]:
+def _group_rows(rows: Iterable[Row], key: Callable[[Row], tuple[str, str]]) -> list[tuple[str, str, list[Row]]]:
     """Keys of two texts and the rows of each, in the order of their first row."""
     groups: dict[tuple[str, str], list[Row]] = {}
     for row in rows:
@@ -223,11 +225,11 @@ def _grouped(rows: Iterable[Row], key: Callable[[Row], tuple[str, str]]) -> list
     return [(*texts, members) for texts, members in groups.items()]
 
 
-def _answers(rows: list[Row]) -> list[tuple[str, str, list[Row]]]:
+def _count_answers(rows: list[Row]) -> list[tuple[str, str, list[Row]]]:
     """Answers and reasons with their cases, the worst first."""
     # The percentage differs from case to case.
-    groups = _grouped((row for row in rows if row.answer), lambda row: (row.answer, PERCENTAGE.sub("", row.reason)))
-    groups.sort(key=lambda group: WORST_FIRST.index(group[0]))
+    groups = _group_rows((row for row in rows if row.answer), lambda row: (row.answer, PERCENTAGE.sub("", row.reason)))
+    groups.sort(key=lambda group: RATINGS_WORST_FIRST.index(group[0]))
     answers = []
     for answer, reason, cases in groups:
         sizes = sorted(float(match[1]) for row in cases if (match := PERCENTAGE.search(row.reason)))
@@ -241,11 +243,11 @@ def _answers(rows: list[Row]) -> list[tuple[str, str, list[Row]]]:
 def _verdict(rows: list[Row]) -> tuple[str, str]:
     """Worst answer of all cases, and the number of cases of each answer; an unsolved case needs care."""
     count = Counter(row.answer for row in rows if row.answer)
-    worst = next((answer for answer in WORST_FIRST if answer in count), UNKNOWN)
+    worst = next((answer for answer in RATINGS_WORST_FIRST if answer in count), UNKNOWN)
     if worst in (YES, UNKNOWN) and any(row.status != "ok" for row in rows):
-        worst = CARE
-    words = {NO: "not to be relied on", CARE: "real with care", UNKNOWN: "not known to be real", YES: "real"}
-    return worst, ", ".join(f"{count[answer]} {words[answer]}" for answer in WORST_FIRST if count[answer])
+        worst = CAUTION
+    phrases = {NO: "not to be relied on", CAUTION: "real with care", UNKNOWN: "not known to be real", YES: "real"}
+    return worst, ", ".join(f"{count[answer]} {phrases[answer]}" for answer in RATINGS_WORST_FIRST if count[answer])
 
 
 def _pictures(path: Path, selection: Mapping[str, Any] | None) -> list[Picture]:
@@ -253,15 +255,15 @@ def _pictures(path: Path, selection: Mapping[str, Any] | None) -> list[Picture]:
     from matplotlib import pyplot
 
     pictures = []
-    for name, (figure, fixed) in figures_of_folder(path, selection).items():
+    for name, (figure, fixed_values) in figures_of_folder(path, selection).items():
         caption = CAPTIONS.get(name, name.replace("_", " "))
-        for parameter, value in list(fixed.items())[:1]:
+        for parameter, value in list(fixed_values.items())[:1]:
             option = f"{parameter}={value}"
             option = f'"{option}"' if set(option) & set(" $\\'\"()&;|<>*?#`!") else option
-            headings = " and ".join(map(_heading, fixed))
+            headings = " and ".join(map(_heading, fixed_values))
             caption += f" Of {headings} the figure has the value in its title. Another value: "
             caption += f"contactstudy report FOLDER --select {option}"
-        pictures.append(Picture(as_address(figure), caption, round(PIXELS * figure.get_figwidth())))
+        pictures.append(Picture(encode_figure(figure), caption, round(PIXELS_PER_INCH * figure.get_figwidth())))
         pyplot.close(figure)
     return pictures
 

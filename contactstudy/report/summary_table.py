@@ -12,7 +12,7 @@ import xarray as xr
 
 from contactstudy.analysis import contact_edges, cut_ends, peak, single_case
 from contactstudy.analysis.provenance import INPUTS_ATTRIBUTE, attribute
-from contactstudy.arrays.engineering import NUMBER, TEXT, html_table, quantity, with_error
+from contactstudy.arrays.engineering import NUMBER, TEXT, format_quantity, format_with_error, html_table
 from contactstudy.arrays.variables import AXES, STRESSES, variable_of
 from contactstudy.case.gridding import TOLERANCE
 from contactstudy.errors import InvalidInputError
@@ -69,16 +69,16 @@ class Summary:
 
     def __getitem__(self, name: str) -> Quantity:
         """Row of a variable."""
-        return next(number for number in self.numbers if number.name == name)
+        return next(row for row in self.numbers if row.name == name)
 
     def __contains__(self, name: object) -> bool:
         """Whether a variable has a row."""
-        return any(number.name == name for number in self.numbers)
+        return any(row.name == name for row in self.numbers)
 
     def __repr__(self) -> str:
-        meaning = max((len(row.meaning) for row in self.numbers), default=0)
+        width = max((len(row.meaning) for row in self.numbers), default=0)
         text = max((len(row.text) for row in self.numbers), default=0)
-        return "\n".join(f"{row.meaning:{meaning}}  {row.text:{text}}  {row.remark}".rstrip() for row in self.numbers)
+        return "\n".join(f"{row.meaning:{width}}  {row.text:{text}}  {row.remark}".rstrip() for row in self.numbers)
 
     def _repr_html_(self) -> str:
         rows = ((row.meaning, row.text, row.remark) for row in self.numbers)
@@ -153,15 +153,15 @@ def _rows(case: xr.Dataset) -> Iterator[Quantity]:
     for name, meaning in SCALARS.items():
         if name in case and float(case[name]) != 0 and np.isfinite(float(case[name])):
             # In a study's case a residual above zero shows that the value was prescribed.
-            balanced = name == BALANCED and float(case.get(f"{name}_error", 0.0)) > 0
-            is_given = _prescribed(case, name) is not None or balanced or name not in SOLVED
+            has_rounding_error = name == BALANCED and float(case.get(f"{name}_error", 0.0)) > 0
+            is_given = _is_prescribed(case, name) is not None or has_rounding_error or name not in SOLVED
             mark = None if f"{name}_error" in case and name != BALANCED else "" if is_given else NOT_ESTIMATED
-            yield _rounded(case, _row(case, name, meaning, mark))
+            yield _mark_rounding(case, _row(case, name, meaning, mark))
     yield from _slip(case)
 
 
 def _row(case: xr.Dataset, name: str, meaning: str, remark: str | None = None) -> Quantity:
-    """Row of a scalar with its error, or with the reason why it has none; without an error if a remark is given."""
+    """Row of a scalar with its error, with the reason for a missing error, or with a remark instead."""
     value, error = float(case[name]), np.nan if remark is not None else float(case.get(f"{name}_error", np.nan))
     units = variable_of(name, case[name].attrs).units
     if remark is None:
@@ -174,29 +174,29 @@ def _row(case: xr.Dataset, name: str, meaning: str, remark: str | None = None) -
             remark = f"{NOT_ESTIMATED}: {remark or 'two grids show no limit'}"
         elif value == 0 and error == 0 and name.startswith("end_"):
             remark = OPEN_END
-    text = with_error(value, None if np.isnan(error) else error, units)
+    text = format_with_error(value, None if np.isnan(error) else error, units)
     return Quantity(name, meaning, value, error, units, text=text, remark=remark)
 
 
 def _peak_pressure(case: xr.Dataset) -> Iterator[Quantity]:
-    """Row of the largest pressure: settled, or of a cell."""
-    stated = float(case.get("peak_pressure", np.nan))
-    if "peak_pressure_error" in case or np.isinf(stated):
+    """Row of the largest pressure: refined, or of a cell."""
+    peak = float(case.get("peak_pressure", np.nan))
+    if "peak_pressure_error" in case or np.isinf(peak):
         yield _row(case, "peak_pressure", "largest pressure")
     elif "peak_pressure" in case or "pressure" in case:
-        value = stated if "peak_pressure" in case else float(case["pressure"].max())
-        text = quantity(value, "Pa")
+        value = peak if "peak_pressure" in case else float(case["pressure"].max())
+        text = format_quantity(value, "Pa")
         yield Quantity("peak_pressure", "largest pressure", value, np.nan, "Pa", text=text, remark=CELL_MEAN)
 
 
 def intensity_text(value: float, error: float, exponent: float) -> str:
     """Intensity of a singular end in GPa mm^exponent, from SI."""
     factor = 1e9 * 1e-3**exponent
-    return with_error(value / factor, error / factor if np.isfinite(error) else None, f"GPa mm^{exponent:.3g}")
+    return format_with_error(value / factor, error / factor if np.isfinite(error) else None, f"GPa mm^{exponent:.3g}")
 
 
 def _peak_stress(case: xr.Dataset) -> Iterator[Quantity]:
-    """Rows of the largest von Mises stress and its position; unbounded beside a singular end."""
+    """Rows of the largest von Mises stress and its position; unbounded at a singular end."""
     name, meaning = "peak_von_mises", "largest von Mises stress"
     singular = np.isinf(float(case.get("peak_pressure", np.nan)))
     if name not in case:
@@ -204,7 +204,7 @@ def _peak_stress(case: xr.Dataset) -> Iterator[Quantity]:
             return
         case = case if singular else case.assign(peak(case).data_vars)
     if singular:
-        yield Quantity(name, meaning, np.inf, np.nan, "Pa", text=quantity(np.inf, "Pa"), remark=SINGULAR)
+        yield Quantity(name, meaning, np.inf, np.nan, "Pa", text=format_quantity(np.inf, "Pa"), remark=SINGULAR)
         return
     yield _row(case, name, meaning)
     for axis, coordinate in zip(AXES, ("position x", "position y", "depth"), strict=True):
@@ -224,7 +224,7 @@ def _edge_tension(case: xr.Dataset) -> Iterator[Quantity]:
             return
     if name in case:
         row = _row(case, name, "largest tension at the trailing edge")
-        position = ", ".join(f"{axis} = {quantity(float(case[f'{name}_{axis}']), 'm')}" for axis in "xy")
+        position = ", ".join(f"{axis} = {format_quantity(float(case[f'{name}_{axis}']), 'm')}" for axis in "xy")
         yield row._replace(remark=", ".join(filter(None, (position, row.remark))))
 
 
@@ -237,18 +237,18 @@ def _nearest_end(case: xr.Dataset, x: float) -> str:
     if abs(distances["end I"] - distances["end II"]) < 0.02 * float(np.ptp(loaded)):
         return "at mid-length"
     end = min(distances, key=distances.__getitem__)
-    return f"{quantity(distances[end], 'm')} from {end} of the contact"
+    return f"{format_quantity(distances[end], 'm')} from {end} of the contact"
 
 
-def _rounded(case: xr.Dataset, row: Quantity) -> Quantity:
+def _mark_rounding(case: xr.Dataset, row: Quantity) -> Quantity:
     """Row of a force or moment, with the text 0 if it is below the tolerance of the iteration."""
     force = max((abs(float(case[name])) for name in ("force_x", "force_y") if name in case), default=0.0)
     arms = {"force_x": 1.0, "force_y": 1.0, "moment_z": float(case.get("hertz_half_width", 0.0))}
-    # A contact that is symmetric about y = 0 leaves up to 3e-8 of the largest force across it.
+    # The transverse force of a contact symmetric about y = 0 is up to 3e-8 of the largest force.
     limit = TOLERANCE * force * arms.get(row.name, 0.0)
     # A value larger than its error differs from zero, however small; an error above the limit is worth showing.
     zero = np.isnan(row.error) or abs(row.value) <= row.error < limit
-    if abs(row.value) < limit and zero and not _prescribed(case, row.name):
+    if abs(row.value) < limit and zero and not _is_prescribed(case, row.name):
         remark = f"rounding: below {TOLERANCE:g} of the largest force{' times a' if row.name == 'moment_z' else ''}"
         return row._replace(text=f"0 {row.units}", remark=remark)
     return row
@@ -261,18 +261,20 @@ def _slip(case: xr.Dataset) -> Iterator[Quantity]:
     if "stick" not in case:
         return
     for name, meaning in (("traction", "largest traction"), ("slip", "largest slip")):
-        parts = [case[f"{name}_{axis}"] for axis in "xy" if f"{name}_{axis}" in case]
-        if len(parts) == 2 and "pressure" in case:
-            size = ((parts[0] ** 2 + parts[1] ** 2) ** 0.5).where(case["pressure"] > 0, 0.0)
-            units = variable_of(f"{name}_y", parts[1].attrs).units
+        components = [case[f"{name}_{axis}"] for axis in "xy" if f"{name}_{axis}" in case]
+        if len(components) == 2 and "pressure" in case:
+            size = ((components[0] ** 2 + components[1] ** 2) ** 0.5).where(case["pressure"] > 0, 0.0)
+            units = variable_of(f"{name}_y", components[1].attrs).units
             value = float(size.max())
-            text = quantity(value, units) + ("" if units == "m" or name == "traction" else " per distance rolled")
+            text = format_quantity(value, units) + (
+                "" if units == "m" or name == "traction" else " per distance rolled"
+            )
             yield Quantity(
                 f"largest_{name}", meaning, value, np.nan, units, text=text, remark=f"of a cell, {NOT_ESTIMATED}"
             )
 
 
-def _prescribed(case: xr.Dataset, name: str) -> Any:
+def _is_prescribed(case: xr.Dataset, name: str) -> Any:
     """Prescribed value of a number that otherwise follows from the solution, or None."""
     inputs = attribute(case, INPUTS_ATTRIBUTE).get("case", {})
     motion = inputs.get("motion", {})

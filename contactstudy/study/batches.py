@@ -26,7 +26,7 @@ import xarray as xr
 
 from contactstudy.analysis.provenance import RUN_ATTRIBUTE
 from contactstudy.arrays.variables import describe, labels, package_version
-from contactstudy.checks import PART, FloatArray, IntArray, writing
+from contactstudy.checks import TEMPORARY_SUFFIX, FloatArray, IntArray, writing
 from contactstudy.errors import StoreError
 from contactstudy.study.files import is_regular, netcdf_access
 
@@ -44,7 +44,7 @@ SUFFIX = ".nc"
 IDENTITY_LENGTH = 64
 CHUNK = 2**15  # Values of a ragged array that are compressed together. Speed of reading one case, against size
 CASE_ATTRIBUTE = "contactstudy_case"  # Attribute of a case: its parameters as JSON
-SHARED, TABLES, COORDINATES = "contactstudy_shared", "contactstudy_tables", "contactstudy_coordinates"
+SHARED_ATTR, TABLES_ATTR, COORDINATES_ATTR = "contactstudy_shared", "contactstudy_tables", "contactstudy_coordinates"
 """Attributes: parameters of all cases, tables that parameters refer to by number, names of coordinates."""
 
 
@@ -61,14 +61,14 @@ class Batch:
 
     ids: npt.NDArray[np.bytes_]  # identities, 64 hexadecimal digits
     status: npt.NDArray[np.int8]  # indices in STATUSES
-    runs: IntArray  # number of the run of each case: of two results of a case, the larger one counts
+    runs: IntArray  # number of the run of each case: of two results of a case, the later run is used
     texts: dict[str, list[str]]  # columns of TEXTS
     numbers: dict[str, FloatArray] = field(default_factory=dict)  # columns (case), NaN without the number
     sizes: dict[str, IntArray] = field(default_factory=dict)  # sizes of the arrays' dimensions (case), 0 without arrays
     arrays: dict[str, Ragged] = field(default_factory=dict)  # arrays and their positions
     attributes: dict[str, dict[str, Any]] = field(default_factory=dict)  # of numbers and arrays
     coordinates: frozenset[str] = frozenset()  # names of arrays that are coordinates
-    circumstances: dict[str, Any] = field(default_factory=dict)  # versions and level, equal for all cases
+    run_context: dict[str, Any] = field(default_factory=dict)  # versions and level, equal for all cases
 
     def __len__(self) -> int:
         return len(self.ids)
@@ -87,15 +87,17 @@ class Batch:
     @cached_property
     def _offsets(self) -> dict[tuple[str, ...], IntArray]:
         """Start of each case's values, and the end of the last, by the dimensions of the array."""
-        return {dims: offsets(self.sizes, dims, len(self)) for dims in {array.dims for array in self.arrays.values()}}
+        return {
+            dims: case_offsets(self.sizes, dims, len(self)) for dims in {array.dims for array in self.arrays.values()}
+        }
 
     def take(self, rows: IntArray) -> Batch:
-        """Return the batch of some of the cases."""
-        picked = {}
+        """Return a batch with the cases of these rows."""
+        selected_arrays = {}
         for name, (dims, values) in self.arrays.items():
             starts = self._offsets[dims]
-            parts = [values[starts[row] : starts[row + 1]] for row in rows]
-            picked[name] = Ragged(dims, np.concatenate(parts) if parts else values[:0])
+            slices = [values[starts[row] : starts[row + 1]] for row in rows]
+            selected_arrays[name] = Ragged(dims, np.concatenate(slices) if slices else values[:0])
         return replace(
             self,
             ids=self.ids[rows],
@@ -104,7 +106,7 @@ class Batch:
             texts={name: [column[row] for row in rows] for name, column in self.texts.items()},
             numbers={name: column[rows] for name, column in self.numbers.items()},
             sizes={name: column[rows] for name, column in self.sizes.items()},
-            arrays=picked,
+            arrays=selected_arrays,
         )
 
     def case(self, row: int) -> xr.Dataset:
@@ -122,16 +124,16 @@ class Batch:
         dataset = dataset.set_coords([name for name in self.coordinates if name in dataset])
         run, parameters = json.dumps(self.run(row)), self.texts["parameters"][row]
         attributes = {"case_id": self.ids[row].decode(), CASE_ATTRIBUTE: parameters, RUN_ATTRIBUTE: run}
-        return describe(dataset, f"case of the study {self.circumstances.get('study', '')}").assign_attrs(attributes)
+        return describe(dataset, f"case of the study {self.run_context.get('study', '')}").assign_attrs(attributes)
 
     def run(self, row: int) -> dict[str, Any]:
         """Return circumstances, warnings and time of a case."""
         warnings = json.loads(self.texts["warnings"][row] or "[]")
-        run = {**self.circumstances, "time": self.texts["time"][row], "warnings": warnings}
+        run = {**self.run_context, "time": self.texts["time"][row], "warnings": warnings}
         return run | ({"seconds": float(self.numbers["seconds"][row])} if "seconds" in self.numbers else {})
 
 
-def offsets(sizes: Mapping[str, IntArray], dims: Sequence[str], cases: int) -> IntArray:
+def case_offsets(sizes: Mapping[str, IntArray], dims: Sequence[str], cases: int) -> IntArray:
     """Start of each case's values in a ragged array along `dims`, and the end of the last."""
     counts = np.ones(cases, dtype=np.int64)
     for dim in dims:
@@ -139,7 +141,7 @@ def offsets(sizes: Mapping[str, IntArray], dims: Sequence[str], cases: int) -> I
     return np.concatenate([[0], np.cumsum(counts)])
 
 
-def join(batches: Sequence[Batch]) -> Batch:
+def join_batches(batches: Sequence[Batch]) -> Batch:
     """Join batches of equal circumstances whose arrays have an equal structure, or none."""
     first = max(batches, key=lambda batch: len(batch.arrays))
 
@@ -183,9 +185,9 @@ def common_attributes(name: str, first: Mapping[str, Any], second: Mapping[str, 
 
 def write_batch(folder: Path, name: str, batch: Batch) -> None:
     """Write a batch as a new file, whose name ends with the CRC-32 of the bytes."""
-    path, rename = folder / name, lambda part: f"{name}-{len(batch)}-{checksum(part):08x}{SUFFIX}"
-    with writing(path, rename) as part, netcdf_access(path, "write"):
-        _write(part, batch)
+    path, rename = folder / name, lambda temporary_path: f"{name}-{len(batch)}-{checksum(temporary_path):08x}{SUFFIX}"
+    with writing(path, rename) as temporary_path, netcdf_access(path, "write"):
+        _write_variables(temporary_path, batch)
 
 
 def checksum(path: Path) -> int:
@@ -197,7 +199,7 @@ def checksum(path: Path) -> int:
     return code
 
 
-def damage(path: Path) -> str:
+def find_damage(path: Path) -> str:
     """Reason why a file is not an intact batch, or empty."""
     if not is_regular(path):
         return "it is not a regular file"
@@ -211,16 +213,16 @@ def damage(path: Path) -> str:
 
 def batch_paths(folder: Path) -> list[Path]:
     """Paths with the name of a batch, in a stable order."""
-    return sorted(path for path in folder.glob(f"*{SUFFIX}") if PART not in path.name)
+    return sorted(path for path in folder.glob(f"*{SUFFIX}") if TEMPORARY_SUFFIX not in path.name)
 
 
-def cases_of(path: Path) -> int:
+def count_cases(path: Path) -> int:
     """Return the number of cases in a batch's name; 0 for another name."""
-    number = path.name.split("-")[-2:-1]
-    return int(number[0]) if number and number[0].isdecimal() else 0
+    count = path.name.split("-")[-2:-1]
+    return int(count[0]) if count and count[0].isdecimal() else 0
 
 
-def _write(path: Path, batch: Batch) -> None:
+def _write_variables(path: Path, batch: Batch) -> None:
     """Write all variables of a batch."""
     import netCDF4
 
@@ -229,27 +231,27 @@ def _write(path: Path, batch: Batch) -> None:
         file.createDimension("case", len(batch))
         column = {"zlib": True, "complevel": 1, "shuffle": True, "fletcher32": True, "chunksizes": (len(batch),)}
 
-        def create(name: str, kind: Any, dims: tuple[str, ...], attributes: Mapping[str, Any], **options: Any) -> Any:
-            variable = file.createVariable(name, kind, dims, **{**column, **options})
+        def create(name: str, dtype: Any, dims: tuple[str, ...], attributes: Mapping[str, Any], **options: Any) -> Any:
+            variable = file.createVariable(name, dtype, dims, **{**column, **options})
             variable.setncatts({key: value for key, value in attributes.items() if not isinstance(value, str) or value})
             return variable
 
         _write_text(
             file, "case_id", [text.decode() for text in batch.ids], "identity of the case, a hash of its parameters"
         )
-        codes = {
+        status_attrs = {
             "long_name": "state of the case",
             "units": "1",
             "flag_values": np.arange(len(STATUSES), dtype=np.int8),
             "flag_meanings": " ".join(STATUSES),
         }
-        create("status", "i1", ("case",), codes)[:] = batch.status
+        create("status", "i1", ("case",), status_attrs)[:] = batch.status
         create("run", "i4", ("case",), {"long_name": "number of the run", "units": "1"})[:] = batch.runs
-        shared, tables, parameters = _factored([json.loads(text) for text in batch.texts["parameters"]])
+        shared, tables, parameters = _factor_out_shared([json.loads(text) for text in batch.texts["parameters"]])
         for name, meaning in TEXTS.items():
             _write_text(file, name, parameters if name == "parameters" else batch.texts[name], meaning)
         for name, values in batch.numbers.items():
-            create(name, "f8", ("case",), _stored(name, batch.attributes))[:] = values
+            create(name, "f8", ("case",), _file_attributes(name, batch.attributes))[:] = values
         for dim, lengths in batch.sizes.items():
             attributes = {"long_name": f"size along {dim}", "units": "1", "sample_dimension": _sample_dimension((dim,))}
             create(f"{dim}_size", "i4", ("case",), attributes)[:] = lengths
@@ -258,19 +260,19 @@ def _write(path: Path, batch: Batch) -> None:
             if sample not in file.dimensions:
                 file.createDimension(sample, values.size)
             if values.size:
-                attributes = {**_stored(name, batch.attributes), "array_dimensions": " ".join(dims)}
+                attributes = {**_file_attributes(name, batch.attributes), "array_dimensions": " ".join(dims)}
                 chunks = (min(CHUNK, values.size),)
                 create(name, values.dtype, (sample,), attributes, chunksizes=chunks)[:] = values
         file.setncatts(
             {
                 "Conventions": "CF-1.11",
-                "title": f"cases of the study {batch.circumstances.get('study', '')}",
+                "title": f"cases of the study {batch.run_context.get('study', '')}",
                 "source": f"contactstudy {package_version()}",
                 "history": f"{batch.texts['time'][-1]} written by contactstudy",
-                RUN_ATTRIBUTE: json.dumps(batch.circumstances),
-                SHARED: json.dumps(shared),
-                TABLES: json.dumps(tables),
-                COORDINATES: json.dumps(sorted(batch.coordinates)),
+                RUN_ATTRIBUTE: json.dumps(batch.run_context),
+                SHARED_ATTR: json.dumps(shared),
+                TABLES_ATTR: json.dumps(tables),
+                COORDINATES_ATTR: json.dumps(sorted(batch.coordinates)),
             }
         )
 
@@ -280,12 +282,12 @@ def _sample_dimension(dims: Iterable[str]) -> str:
     return f"{'_'.join(dims)}_values"
 
 
-def _stored(name: str, attributes: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
+def _file_attributes(name: str, attributes: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
     """Attributes of a variable as netCDF contains them: texts and numbers, others as JSON."""
     complete = {"long_name": name.replace("_", " "), **labels(name), **attributes.get(name, {})}
-    plain = (str, int, float, np.number)
+    types = (str, int, float, np.number)
     return {
-        key: value if isinstance(value, plain) and not isinstance(value, bool) else json.dumps(value, default=str)
+        key: value if isinstance(value, types) and not isinstance(value, bool) else json.dumps(value, default=str)
         for key, value in complete.items()
     }
 
@@ -309,7 +311,7 @@ def _write_text(file: Any, name: str, texts: Sequence[str], meaning: str) -> Non
     variable[:] = np.array(encoded, dtype=f"S{length}").view("S1").reshape(len(encoded), length)
 
 
-def _factored(parameters: list[dict[str, Any]]) -> tuple[dict[str, Any], list[Any], list[str]]:
+def _factor_out_shared(parameters: list[dict[str, Any]]) -> tuple[dict[str, Any], list[Any], list[str]]:
     """Shared parameters, tables that cases refer to by number, and the remaining parameters of each case as JSON."""
     shared = {
         name: value for name, value in parameters[0].items() if all(case.get(name) == value for case in parameters)
@@ -325,7 +327,7 @@ def _factored(parameters: list[dict[str, Any]]) -> tuple[dict[str, Any], list[An
     return shared, [json.loads(table) for table in tables], remaining
 
 
-def _restored(shared: dict[str, Any], tables: list[Any], remaining: str) -> str:
+def _restore_parameters(shared: dict[str, Any], tables: list[Any], remaining: str) -> str:
     """Parameters of a case as JSON."""
     case = json.loads(remaining)
     for name, value in case.items():
@@ -361,23 +363,23 @@ def read_batch(path: Path, *, arrays: Iterable[str] | None = (), texts: Iterable
                 ragged[name] = Ragged(dims, variable[:] if read_values else np.empty(0, dtype=variable.dtype))
             else:
                 attributes[name], numbers[name] = attrs, variable[:]
-        read = {
+        columns = {
             name: [text.decode() for text in _read_text(file[name])] if name in text_names else [] for name in TEXTS
         }
         if "parameters" in text_names:
-            shared, tables = json.loads(file.getncattr(SHARED)), json.loads(file.getncattr(TABLES))
-            read["parameters"] = [_restored(shared, tables, text) for text in read["parameters"]]
+            shared, tables = json.loads(file.getncattr(SHARED_ATTR)), json.loads(file.getncattr(TABLES_ATTR))
+            columns["parameters"] = [_restore_parameters(shared, tables, text) for text in columns["parameters"]]
         return Batch(
             ids=ids,
             status=file["status"][:],
             runs=file["run"][:].astype(np.int64),
-            texts=read,
+            texts=columns,
             numbers=numbers,
             sizes=sizes,
             arrays=ragged,
             attributes=attributes,
-            coordinates=frozenset(json.loads(file.getncattr(COORDINATES))),
-            circumstances=json.loads(file.getncattr(RUN_ATTRIBUTE)),
+            coordinates=frozenset(json.loads(file.getncattr(COORDINATES_ATTR))),
+            run_context=json.loads(file.getncattr(RUN_ATTRIBUTE)),
         )
 
 
@@ -388,7 +390,7 @@ def _read_text(variable: Any) -> npt.NDArray[np.bytes_]:
 
 
 def read_slices(path: Path, bounds: Mapping[str, Sequence[tuple[int, int]]]) -> dict[str, list[npt.NDArray[Any]]]:
-    """Read parts of ragged arrays: of each named one those between pairs of first and last value."""
+    """Read slices of the named ragged arrays, between pairs of first and last value."""
     import netCDF4
 
     with netcdf_access(path, "read"), netCDF4.Dataset(path) as file:
@@ -407,20 +409,22 @@ def read_case(path: Path, row: int, names: Iterable[str] | None = None) -> xr.Da
     selected |= {name for name in batch.coordinates if set(batch.arrays[name].dims) <= dims}
     bounds = {}
     for name in selected & set(batch.arrays):
-        starts = offsets(batch.sizes, batch.arrays[name].dims, len(batch))
+        starts = case_offsets(batch.sizes, batch.arrays[name].dims, len(batch))
         bounds[name] = [(int(starts[row]), int(starts[row + 1]))]
     values = read_slices(path, bounds) if bounds else {}
-    single = replace(batch, arrays={}).take(np.array([row]))
-    arrays = {name: Ragged(batch.arrays[name].dims, part) for name, (part,) in values.items()}
-    return replace(single, arrays=arrays).case(0)
+    case_batch = replace(batch, arrays={}).take(np.array([row]))
+    arrays = {name: Ragged(batch.arrays[name].dims, case_values) for name, (case_values,) in values.items()}
+    return replace(case_batch, arrays=arrays).case(0)
 
 
-def with_arrays(batch: Batch, dataset: xr.Dataset, level: str) -> Batch:
+def add_arrays(batch: Batch, dataset: xr.Dataset, level: str) -> Batch:
     """Add the arrays of a solved case that a level retains; stresses and other fields in single precision."""
-    deep = {str(name): any(str(dim).startswith("z") for dim in entry.dims) for name, entry in dataset.data_vars.items()}
+    depth_flags = {
+        str(name): any(str(dim).startswith("z") for dim in entry.dims) for name, entry in dataset.data_vars.items()
+    }
     retained = [
         name
-        for name, is_deep in deep.items()
+        for name, is_deep in depth_flags.items()
         if dataset.variables[name].ndim and (level == "fields" or (level == "surface" and not is_deep))
     ]
     dims = {str(dim) for name in retained for dim in dataset.variables[name].dims}
@@ -433,7 +437,7 @@ def with_arrays(batch: Batch, dataset: xr.Dataset, level: str) -> Batch:
         values = variable.values
         if values.dtype == bool:
             values = values.astype(np.int8)
-        elif deep.get(name) and variable.ndim >= 2:
+        elif depth_flags.get(name) and variable.ndim >= 2:
             values = values.astype(np.float32)
         arrays[name] = Ragged(tuple(map(str, variable.dims)), np.ascontiguousarray(values).ravel())
     return replace(

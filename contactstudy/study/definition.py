@@ -1,4 +1,4 @@
-"""A study as its author writes it: in Python or in a TOML file, with the same meaning."""
+"""Definition of a study in Python or in a TOML file."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ from contactstudy.analysis.provenance import STUDY_ATTRIBUTE, attribute
 from contactstudy.arrays.engineering import html_table
 from contactstudy.checks import IntArray, factor_to
 from contactstudy.errors import InvalidInputError, StudyFileError
-from contactstudy.study.parameters import PARAMETERS, REQUIRED, checked, points
-from contactstudy.study.plan import LEVELS, Axis, Plan, label, listed, value_text
+from contactstudy.study.parameters import PARAMETERS, REQUIRED, check_parameters, check_points
+from contactstudy.study.plan import LEVELS, Axis, Plan, format_list, format_value, label
 from contactstudy.study.profile_tables import resolve_files
 
 KEYS = ("name", "description", "level", "base", "sweep", "zip", "cases", "exclude")
 """Keys of a study file; each is also an argument of :class:`Study`."""
 
-MOST_CASES = 1_000_000  # Combinations of one study, at most: half a gigabyte of identities and groups
+MAX_CASES = 1_000_000  # Combinations of one study, at most: half a gigabyte of identities and groups
 
 
 def _tables(name: str, value: object) -> list[Mapping[str, Any]]:
@@ -51,11 +51,11 @@ class Study:
         Parameters that all cases share, see :data:`contactstudy.study.parameters.PARAMETERS`.
     sweep : mapping of lists
         Parameters that are combined each with each; every one becomes a dimension. For evenly spaced numbers a mapping
-        ``{"start": ..., "stop": ..., "count": ...}`` stands for the list.
+        ``{"start": ..., "stop": ..., "count": ...}`` replaces the list.
     zip : mapping of lists, or list of such mappings
         Parameters that change together: lists of equal length; every mapping becomes one dimension.
     cases : list of mappings
-        Explicit cases, each on top of `base`, beside the product.
+        Explicit cases, each added to `base`, in addition to the product.
     exclude : list of mappings
         Combinations to leave out: every named parameter has the value, or one of the values. A profile is named by its
         label.
@@ -107,11 +107,11 @@ class Study:
         columns = [(name, "swept", values) for name, values in self.sweep.items()]
         columns += [(name, "together", values) for group in self.zip for name, values in group.items()]
         for name, word, values in columns:
-            yield f"{name} ({word})", listed([value_text(name, value) for value in values])
+            yield f"{name} ({word})", format_list([format_value(name, value) for value in values])
         if self.cases:
             yield "cases", f"{len(self.cases)} explicit ones"
         for name, value in self.base.items():
-            yield name, value_text(name, value)
+            yield name, format_value(name, value)
         if self.exclude:
             yield "exclude", f"{len(self.exclude)} rules"
 
@@ -124,18 +124,18 @@ class Study:
         for key in ("base", "sweep"):
             checks.instance(key, getattr(self, key), Mapping, "a table of parameters")
         set_ = object.__setattr__
-        set_(self, "base", checked(self.base, "base"))
-        set_(self, "sweep", {name: self._swept("sweep", name, values) for name, values in self.sweep.items()})
+        set_(self, "base", check_parameters(self.base, "base"))
+        set_(self, "sweep", {name: self._check_values("sweep", name, values) for name, values in self.sweep.items()})
         zipped = []
         for group in _tables("zip", self.zip):
-            columns = {name: self._swept("zip", name, values) for name, values in group.items()}
+            columns = {name: self._check_values("zip", name, values) for name, values in group.items()}
             lengths = {name: len(column) for name, column in columns.items()}
             if len(set(lengths.values())) > 1:
                 raise InvalidInputError("zip", lengths, "lists of equal length")
             zipped.append(columns)
         set_(self, "zip", tuple(group for group in zipped if group))
-        set_(self, "cases", tuple(checked(case, "cases") for case in _tables("cases", self.cases)))
-        set_(self, "exclude", tuple(self._rule(rule) for rule in _tables("exclude", self.exclude)))
+        set_(self, "cases", tuple(check_parameters(case, "cases") for case in _tables("cases", self.cases)))
+        set_(self, "exclude", tuple(self._check_rule(rule) for rule in _tables("exclude", self.exclude)))
         names = [*self.sweep, *(name for group in self.zip for name in group)]
         for name in names:
             if names.count(name) > 1:
@@ -146,12 +146,12 @@ class Study:
             raise InvalidInputError("parameters", sorted(present), allowed, "give it in base, sweep, zip or cases")
 
     @staticmethod
-    def _swept(where: str, name: str, values: object) -> list[Any]:
+    def _check_values(where: str, name: str, values: object) -> list[Any]:
         """Values of a swept parameter as a list that is not empty."""
         checks.known_name(where, str(name), PARAMETERS)
         argument = f"{where}.{name}"
         if isinstance(values, Mapping) and set(values) == {"start", "stop", "count"}:
-            values = points(argument, values)
+            values = check_points(argument, values)
         if isinstance(values, np.ndarray):
             values = values.tolist()
         if isinstance(values, (str, bytes, Mapping)) or not isinstance(values, Sequence):
@@ -159,26 +159,26 @@ class Study:
             raise InvalidInputError(argument, values, allowed)
         if not values:
             raise InvalidInputError(argument, values, "a list of at least one value")
-        column = [PARAMETERS[name].checked(value) for value in values]
+        column = [PARAMETERS[name].normalize(value) for value in values]
         if where == "sweep":
             entries = [label(name, value) for value in column]
-            if twice := [entry for entry in entries if entries.count(entry) > 1]:
-                raise InvalidInputError(argument, twice[0], "a list of different values", "it appears twice")
+            if duplicates := [entry for entry in entries if entries.count(entry) > 1]:
+                raise InvalidInputError(argument, duplicates[0], "a list of different values", "it appears twice")
         return column
 
     @staticmethod
-    def _rule(rule: Mapping[str, Any]) -> dict[str, list[Any]]:
+    def _check_rule(rule: Mapping[str, Any]) -> dict[str, list[Any]]:
         if not rule:
             raise InvalidInputError("exclude", rule, "a table with at least one parameter")
         excluded: dict[str, list[Any]] = {}
         for name, values in rule.items():
             checks.known_name("exclude", str(name), PARAMETERS)
-            several = values if isinstance(values, (list, tuple)) else [values]
+            rule_values = values if isinstance(values, (list, tuple)) else [values]
             excluded[name] = [
                 value
                 if isinstance(value, str) and not isinstance(PARAMETERS[name].default, str)
-                else label(name, PARAMETERS[name].checked(value))
-                for value in several
+                else label(name, PARAMETERS[name].normalize(value))
+                for value in rule_values
             ]
         return excluded
 
@@ -234,9 +234,9 @@ class Study:
             Variables and coordinates named after parameters. Variables along one dimension change together, dimensions
             are combined each with each; variables along several dimensions have a value for each combination, numbers
             without a dimension are shared. NaN and an empty text leave a parameter out. Known `units` are converted,
-            others refused. An opened study, or a selection of it, gives its cases again.
+            others refused. An opened study, or a selection of it, makes a study of its cases.
         name, level, description : str, optional
-            See the class. The default of an opened study is its own.
+            See the class. An opened study provides the defaults.
         base : mapping, optional
             Further parameters that all cases share; of an opened study, parameters to change.
 
@@ -260,7 +260,7 @@ class Study:
         arguments = {key: value for key, value in arguments.items() if value is not None}
         if STUDY_ATTRIBUTE in table.attrs and "case_id" in table:
             study = cls.from_mapping(attribute(table, STUDY_ATTRIBUTE))
-            content = part_of_study(study, table, base or {})
+            content = content_of_selection(study, table, base or {})
         else:
             content = content_of_table(table, base or {})
         return cls(**({"name": "table"} | content | arguments))
@@ -282,11 +282,11 @@ class Study:
         Raises
         ------
         StudyFileError
-            If there are more than :data:`MOST_CASES`.
+            If there are more than :data:`MAX_CASES`.
         """
-        if self.size > MOST_CASES:
+        if self.size > MAX_CASES:
             raise StudyFileError(
-                f"study {self.name!r} has {self.size} combinations, and {MOST_CASES} is the most that one study may "
+                f"study {self.name!r} has {self.size} combinations, and {MAX_CASES} is the most that one study may "
                 "have: sweep fewer values, or make several studies"
             )
         axes: list[Axis] = [tuple({name: value} for value in values) for name, values in self.sweep.items()]
@@ -294,15 +294,15 @@ class Study:
             axes.append(tuple(dict(zip(group, row, strict=True)) for row in zip(*group.values(), strict=True)))
         cases = tuple(self.cases)
         product = Plan(name=self.name, level=self.level, base=self.base, axes=tuple(axes), explicit=cases)
-        number_of = {name: number for number, axis in enumerate(axes) for name in axis[0]}
+        axis_of = {name: axis_index for axis_index, axis in enumerate(axes) for name in axis[0]}
         steps = np.unravel_index(np.arange(product.products), product.shape) if axes and self.exclude else ()
         # Labels of the parameters in the rules: along their axis, in every explicit case, and which of the former each
         # combination has.
         labels: dict[str, tuple[list[Any], list[Any], IntArray]] = {}
         for name in {name for rule in self.exclude for name in rule}:
             shared = self.base.get(name, PARAMETERS[name].default)
-            values = [step[name] for step in axes[number_of[name]]] if name in number_of else [shared]
-            step = steps[number_of[name]] if name in number_of else np.zeros(product.products, dtype=np.int64)
+            values = [step[name] for step in axes[axis_of[name]]] if name in axis_of else [shared]
+            step = steps[axis_of[name]] if name in axis_of else np.zeros(product.products, dtype=np.int64)
             explicit = [label(name, case.get(name, shared)) for case in cases]
             labels[name] = ([label(name, value) for value in values], explicit, step)
         excluded = np.zeros(product.products + len(cases), dtype=bool)
@@ -329,35 +329,35 @@ def content_of_table(table: xr.Dataset, base: Mapping[str, Any]) -> dict[str, An
     for name, array in ((str(key), variable) for key, variable in table.variables.items()):
         if name not in PARAMETERS:
             # The dimension of a parameter may be numbered.
-            used = any(name in other.dims for key, other in table.variables.items() if key in PARAMETERS)
-            if name not in table.indexes or not used:
+            is_parameter_dim = any(name in other.dims for key, other in table.variables.items() if key in PARAMETERS)
+            if name not in table.indexes or not is_parameter_dim:
                 checks.known_name("variable of the table", name, PARAMETERS)
             continue
-        if PARAMETERS[name].check is points and array.dims:
+        if PARAMETERS[name].check is check_points and array.dims:
             raise InvalidInputError(name, array.dims, "a list in base: it is one value of a case")
         stated_unit, unit = array.attrs.get("units"), PARAMETERS[name].units
-        equal = stated_unit is None or stated_unit == unit
-        factor = 1.0 if equal else factor_to(unit, f"{name}.attrs['units']", stated_unit)
+        is_si = stated_unit is None or stated_unit == unit
+        factor = 1.0 if is_si else factor_to(unit, f"{name}.attrs['units']", stated_unit)
         columns[name] = array if factor == 1.0 else array * factor
-    shared = {name: _plain(array.values[()]) for name, array in columns.items() if not array.dims}
+    shared = {name: _python_value(array.values[()]) for name, array in columns.items() if not array.dims}
     for name in {*base} & {*columns}:
         raise InvalidInputError("base", name, "a parameter that the table does not have")
     content: dict[str, Any] = {"base": {**base, **{name: value for name, value in shared.items() if value is not None}}}
-    if any(array.ndim and (array.ndim > 1 or None in map(_plain, array.values)) for array in columns.values()):
+    if any(array.ndim and (array.ndim > 1 or None in map(_python_value, array.values)) for array in columns.values()):
         return content | {"cases": list(_rows(table, columns))}
     groups: dict[str, dict[str, list[Any]]] = {}
     for name, array in columns.items():
         if array.dims:
-            groups.setdefault(str(array.dims[0]), {})[name] = [_plain(value) for value in array.values]
-    alone = {name: values for group in groups.values() if len(group) == 1 for name, values in group.items()}
-    return content | {"sweep": alone, "zip": [group for group in groups.values() if len(group) > 1]}
+            groups.setdefault(str(array.dims[0]), {})[name] = [_python_value(value) for value in array.values]
+    single_columns = {name: values for group in groups.values() if len(group) == 1 for name, values in group.items()}
+    return content | {"sweep": single_columns, "zip": [group for group in groups.values() if len(group) > 1]}
 
 
-def _plain(value: Any) -> Any:
-    """Return a value of an array as Python's own; None where it is missing."""
-    plain = value.item() if isinstance(value, np.generic) else value
-    missing = plain is None or plain == "" or (isinstance(plain, float) and np.isnan(plain))
-    return None if missing else plain
+def _python_value(value: Any) -> Any:
+    """Return a value of an array as a Python object; None for a missing value."""
+    python_value = value.item() if isinstance(value, np.generic) else value
+    missing = python_value is None or python_value == "" or (isinstance(python_value, float) and np.isnan(python_value))
+    return None if missing else python_value
 
 
 def _rows(table: xr.Dataset, columns: Mapping[str, xr.Variable]) -> Iterable[dict[str, Any]]:
@@ -367,12 +367,13 @@ def _rows(table: xr.Dataset, columns: Mapping[str, xr.Variable]) -> Iterable[dic
     for steps in itertools.product(*(range(table.sizes[dim]) for dim in dims)):
         step = dict(zip(dims, steps, strict=True))
         row = {
-            name: _plain(array[{dim: step[dim] for dim in array.dims}].values[()]) for name, array in varying.items()
+            name: _python_value(array[{dim: step[dim] for dim in array.dims}].values[()])
+            for name, array in varying.items()
         }
         yield {name: value for name, value in row.items() if value is not None}
 
 
-def part_of_study(study: Study, table: xr.Dataset, base: Mapping[str, Any]) -> dict[str, Any]:
+def content_of_selection(study: Study, table: xr.Dataset, base: Mapping[str, Any]) -> dict[str, Any]:
     """Return the keys of a study of the cases in a selection of its Dataset; a product where the selection is one."""
     plan = study.plan()
     identities = np.char.encode(table["case_id"].values.ravel().astype(np.str_))
@@ -399,6 +400,6 @@ def part_of_study(study: Study, table: xr.Dataset, base: Mapping[str, Any]) -> d
     sweep = {name: [values[step] for step in next(remaining)] for name, values in study.sweep.items()}
     groups = []
     for group in study.zip:
-        step_numbers = next(remaining)
-        groups.append({name: [values[step] for step in step_numbers] for name, values in group.items()})
+        group_steps = next(remaining)
+        groups.append({name: [values[step] for step in group_steps] for name, values in group.items()})
     return content | {"sweep": sweep, "zip": groups, "exclude": list(study.exclude)}

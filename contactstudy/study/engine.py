@@ -25,7 +25,7 @@ from contactstudy.errors import InvalidInputError, StudyFileError
 from contactstudy.study.plan import Plan
 from contactstudy.study.settings import RUN
 from contactstudy.study.user_profiles import user_profiles
-from contactstudy.study.worker import Job, Outcome, Solver, Task, perform
+from contactstudy.study.worker import Job, Outcome, Solver, Task, solve_task
 
 if TYPE_CHECKING:
     from distributed import Client, Future, LocalCluster
@@ -41,20 +41,20 @@ WORKER_ENVIRONMENT = {
     "MALLOC_MMAP_THRESHOLD_": str(32 * 2**20),
     "MALLOC_TRIM_THRESHOLD_": str(512 * 2**20),
 }
-"""Environment of a worker: one thread, and freed memory of arrays stays with the process (half the time of a case)."""
+"""Environment of a worker: one thread, and the process keeps freed memory of arrays (half the time of a case)."""
 
 # Dask's logs of messages, tasks and records grow with the number of cases.
 SHORT_LOGS = {"distributed.admin.log-length": 20, "distributed.admin.low-level-log-length": 20}
 
 SCHEDULER_LOST = "the dask scheduler has gone away or was restarted; finished cases remain, run again to continue"
 
-START = (
+GUARD_REMEDY = (
     "A script that runs a study needs the guard `if __name__ == '__main__':` around the run, because worker processes "
     "import the script; every worker needs about 20 open files (ulimit -n); workers=0 solves in one process"
 )
 
 
-def refuse_in_a_worker() -> None:
+def refuse_in_worker() -> None:
     """End a worker process that imports a script without a guard, and would run the script's study."""
     if getattr(multiprocessing.current_process(), "_inheriting", False):
         raise SystemExit(1)
@@ -72,7 +72,7 @@ class Engine:
     def __post_init__(self) -> None:
         """Check the values."""
         if self.workers is not None:
-            checks.count("workers", self.workers, least=0)
+            checks.count("workers", self.workers, minimum=0)
         if isinstance(self.wait, bool) or not isinstance(self.wait, (int, float)) or not self.wait >= 0:
             raise InvalidInputError("wait", self.wait, "a number of seconds >= 0")
         if self.scheduler is not None and not isinstance(self.scheduler, str):
@@ -168,7 +168,7 @@ def _local_cluster(workers: int, loop: IOLoop) -> LocalCluster:
     """Cluster of local processes."""
     from distributed import LocalCluster, SpecCluster
 
-    older = set(getattr(SpecCluster, "_instances", ()))
+    older_clusters = set(getattr(SpecCluster, "_instances", ()))
     try:
         return LocalCluster(
             n_workers=workers,
@@ -183,10 +183,10 @@ def _local_cluster(workers: int, loop: IOLoop) -> LocalCluster:
         )
     except BaseException as error:
         # At the end of the process dask would close the half-started cluster, and fail.
-        for cluster in set(getattr(SpecCluster, "_instances", ())) - older:
+        for cluster in set(getattr(SpecCluster, "_instances", ())) - older_clusters:
             cluster.shutdown_on_close = False
         if isinstance(error, RuntimeError | OSError):
-            raise StudyFileError(f"the worker processes did not start: {error} {START}") from None
+            raise StudyFileError(f"the worker processes did not start: {error} {GUARD_REMEDY}") from None
         raise
 
 
@@ -219,11 +219,11 @@ def _loop_without_interrupts() -> Iterator[IOLoop]:
     if not hasattr(signal, "pthread_sigmask"):  # Windows
         runner.start()
     else:
-        former = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+        previous_mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
         try:
             runner.start()
         finally:
-            signal.pthread_sigmask(signal.SIG_SETMASK, former)
+            signal.pthread_sigmask(signal.SIG_SETMASK, previous_mask)
     try:
         yield runner.loop
     finally:
@@ -237,7 +237,7 @@ class Tasks:
         self._plan, self._template = plan, template
         self._groups = deque(groups)
         self._returned: deque[Task] = deque()
-        self._suspects: set[str] = set()
+        self._suspect_cases: set[str] = set()
         self.remaining = sum(map(len, groups))
         self._seconds, self._cases = 0.0, 0
 
@@ -245,7 +245,7 @@ class Tasks:
         return bool(self._groups or self._returned)
 
     def next_task(self, workers: int) -> Task:
-        """Return the next task for one of several workers."""
+        """Return the next task, sized for the number of workers."""
         if self._returned:
             task = self._returned.popleft()
         else:
@@ -256,7 +256,7 @@ class Tasks:
             while self._groups and (not jobs or len(jobs) + len(self._groups[0]) <= limit):
                 for index in self._groups.popleft():
                     identity, group = plan.ids[index].decode(), int(plan.groups[index])
-                    jobs.append(Job(identity, plan.words(index), plan.parameters(index), group))
+                    jobs.append(Job(identity, plan.describe(index), plan.parameters(index), group))
             profiles = user_profiles([job.parameters for job in jobs])
             task = replace(self._template, jobs=tuple(jobs), profiles=profiles)
         self.remaining -= len(task.jobs)
@@ -268,29 +268,29 @@ class Tasks:
 
     def return_task(self, task: Task, *, died: bool) -> list[Job]:
         """Return a task to the queue, after the death of its worker case by case; returns the jobs that died twice."""
-        failed = [job for job in task.jobs if died and job.id in self._suspects]
+        failed = [job for job in task.jobs if died and job.id in self._suspect_cases]
         jobs = [job for job in task.jobs if job not in failed]
         if died:
-            self._suspects.update(job.id for job in jobs)
-        parts = [(job,) for job in jobs] if died else [tuple(jobs)]
-        self._returned.extend(replace(task, jobs=part) for part in parts if part)
+            self._suspect_cases.update(job.id for job in jobs)
+        job_sets = [(job,) for job in jobs] if died else [tuple(jobs)]
+        self._returned.extend(replace(task, jobs=job_set) for job_set in job_sets if job_set)
         self.remaining += len(jobs)
         return failed
 
 
-Results = Generator[tuple[list[Job], list[Outcome]], None, None]
+TaskResults = Generator[tuple[list[Job], list[Outcome]], None, None]
 
 
-def execute(tasks: Tasks, engine: Engine, notify: Callable[[str], None] = print) -> Results:
-    """Solve tasks and yield the jobs and outcomes of each as it finishes; `notify` takes messages for the user."""
+def execute(tasks: Tasks, engine: Engine, notify: Callable[[str], None] = print) -> TaskResults:
+    """Solve tasks and yield the jobs and outcomes of each finished task; `notify` takes messages for the user."""
     if not tasks:
         return
     if engine.scheduler is None and engine.workers == 0:
         while tasks:
             task = tasks.next_task(1)
-            began = time.monotonic()
-            outcomes = perform(task, engine.solver)
-            tasks.record(len(outcomes), time.monotonic() - began)
+            start_time = time.monotonic()
+            outcomes = solve_task(task, engine.solver)
+            tasks.record(len(outcomes), time.monotonic() - start_time)
             yield list(task.jobs), outcomes
         return
     with engine.client(tasks.remaining, notify) as client:
@@ -309,9 +309,9 @@ class Workers:
     def usable(self, busy: bool) -> set[str]:
         """Addresses of the usable workers now; raises if all have another version, or none came for too long."""
         present = set(self._client.nthreads())
-        if new := present - set(self._faults):
+        if new_workers := present - set(self._faults):
             versions: Any = self._client.get_versions(packages=["contactstudy"])
-            for worker in new & set(versions["workers"]):
+            for worker in new_workers & set(versions["workers"]):
                 version, expected = versions["workers"][worker]["packages"].get("contactstudy"), package_version()
                 self._faults[worker] = ""
                 if version != expected:
@@ -320,7 +320,7 @@ class Workers:
         if usable or busy:
             self._last_present, self._announced = time.monotonic(), False
         else:
-            self._wait_for_one(present)
+            self._wait_for_worker(present)
         return usable
 
     def exclude(self, worker: str, reason: str) -> None:
@@ -328,23 +328,23 @@ class Workers:
         self._faults[worker] = reason
         self._notify(f"worker {worker} is left out: {reason}")
 
-    def _wait_for_one(self, present: set[str]) -> None:
+    def _wait_for_worker(self, present: set[str]) -> None:
         """Inform the user about the lack of workers; raise after the wait, which is short if all are excluded."""
-        waited = time.monotonic() - self._last_present
+        waiting_time = time.monotonic() - self._last_present
         excluded = {worker for worker in present if self._faults.get(worker)}
-        if present and excluded == present and waited > min(self._wait, RUN.announce_seconds):
+        if present and excluded == present and waiting_time > min(self._wait, RUN.announce_seconds):
             raise StudyFileError(f"none of the {len(excluded)} workers can be used: {self._faults[min(excluded)]}")
-        if waited > self._wait:
+        if waiting_time > self._wait:
             state = "has answered" if present else "is connected to the dask scheduler"
             raise StudyFileError(
-                f"no worker {state} after {waited:.0f} s: start workers, or wait longer (--wait SECONDS)"
+                f"no worker {state} after {waiting_time:.0f} s: start workers, or wait longer (--wait SECONDS)"
             )
-        if waited > RUN.announce_seconds and not self._announced:
+        if waiting_time > RUN.announce_seconds and not self._announced:
             self._announced = True
             self._notify(f"no worker yet; waiting for one up to {self._wait:g} s (--wait SECONDS)")
 
 
-def _distribute(client: Client, workers: Workers, tasks: Tasks, solver: Solver | None) -> Results:
+def _distribute(client: Client, workers: Workers, tasks: Tasks, solver: Solver | None) -> TaskResults:
     """Keep every worker busy with one task until the queue is empty."""
     from distributed import KilledWorker
 
@@ -358,7 +358,7 @@ def _distribute(client: Client, workers: Workers, tasks: Tasks, solver: Solver |
                 if tasks:
                     task = tasks.next_task(len(usable))
                     future = client.submit(
-                        perform,
+                        solve_task,
                         task,
                         solver,
                         key=f"task-{id(task):x}-{time.monotonic_ns():x}",
@@ -377,11 +377,11 @@ def _distribute(client: Client, workers: Workers, tasks: Tasks, solver: Solver |
                     continue
             if future not in running:
                 continue
-            worker, task, began = running.pop(future)
+            worker, task, start_time = running.pop(future)
             error = future.exception() if future.status == "error" else None
             if future.status == "finished":
                 outcomes = future.result()
-                tasks.record(len(outcomes), time.monotonic() - began)
+                tasks.record(len(outcomes), time.monotonic() - start_time)
                 yield list(task.jobs), outcomes
             elif future.status in ("cancelled", "lost"):
                 raise StudyFileError(SCHEDULER_LOST)

@@ -15,29 +15,29 @@ from xarray.core import indexing
 
 from contactstudy.arrays.variables import ERROR_KIND, NOT_ESTIMATED
 from contactstudy.checks import FloatArray, IntArray
-from contactstudy.study.batches import offsets, read_batch, read_slices
+from contactstudy.study.batches import case_offsets, read_batch, read_slices
 from contactstudy.study.common_cells import (
     Resampling,
-    centred_cells,
-    centres,
+    cell_centres,
+    centre_cells_on,
     common_columns,
     common_rows,
-    resampled,
+    resample,
     resampling_comment,
     split_cells,
 )
 from contactstudy.study.folder import States
 
-CELLS = ("x", "y")  # Dimensions of cells; positions along other dimensions are points
+CELL_DIMS = ("x", "y")  # Dimensions of cells; positions along other dimensions are points
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Positions:
     """Positions of all cases along one dimension of their arrays."""
 
-    which: IntArray  # number of each case's positions among the different ones; -1 without
+    position_index: IntArray  # index of each case's position array in `values`; -1 if the case has none
     values: list[FloatArray] = field(default_factory=list)  # different positions, metres
-    # widths of the cells there; empty for uniform cells and points
+    # widths of the cells; empty for uniform cells and points
     widths: list[FloatArray] = field(default_factory=list)
     scales: list[float] = field(default_factory=list)  # half-widths, metres
 
@@ -51,23 +51,23 @@ class Positions:
         """Whether cells have different widths."""
         return any(widths.size for widths in self.widths)
 
-    def sources(self, *, of_points: bool) -> list[FloatArray]:
+    def sources(self, *, has_points: bool) -> list[FloatArray]:
         """Points, or edges of the cells, over the half-width."""
-        if of_points:
+        if has_points:
             return self.over_a
         result = []
-        for middles, widths, scale in zip(self.values, self.widths, self.scales, strict=True):
+        for midpoints, widths, scale in zip(self.values, self.widths, self.scales, strict=True):
             if widths.size:
-                low, high = middles - 0.5 * widths, middles + 0.5 * widths
+                low, high = midpoints - 0.5 * widths, midpoints + 0.5 * widths
                 edges = np.concatenate([low[:1], 0.5 * (high[:-1] + low[1:]), high[-1:]])
             else:
-                half = 0.5 * (middles[-1] - middles[0]) / max(middles.size - 1, 1)
-                edges = np.linspace(middles[0] - half, middles[-1] + half, middles.size + 1)
+                half_width = 0.5 * (midpoints[-1] - midpoints[0]) / max(midpoints.size - 1, 1)
+                edges = np.linspace(midpoints[0] - half_width, midpoints[-1] + half_width, midpoints.size + 1)
             result.append(edges / scale)
         return result
 
 
-def _equal(arrays: Sequence[FloatArray], first: FloatArray) -> bool:
+def _all_equal(arrays: Sequence[FloatArray], first: FloatArray) -> bool:
     """Whether all arrays equal one, except for rounding."""
     scale = float(np.abs(first).max(initial=0.0))
     return all(row.size == first.size and np.allclose(row, first, rtol=1e-9, atol=1e-12 * scale) for row in arrays)
@@ -101,8 +101,8 @@ class Fields:
         count = len(self._states.plan)
         batch_of, row_of = self._states.locations
         scales = self._states.numbers("hertz_half_width")
-        result = {dim: Positions(which=np.full(count, -1, dtype=np.int64)) for dim in self._dims}
-        numbers: dict[str, dict[Any, int]] = {dim: {} for dim in self._dims}
+        result = {dim: Positions(position_index=np.full(count, -1, dtype=np.int64)) for dim in self._dims}
+        indices: dict[str, dict[Any, int]] = {dim: {} for dim in self._dims}
         coordinates = [name for dim in self._dims for name in (dim, f"{dim}_width")]
         for batch_number, path in enumerate(self._states.results.paths):
             if not self._batches[batch_number].arrays:
@@ -111,7 +111,7 @@ class Fields:
             for dim in self._dims:
                 if dim not in batch.sizes:
                     continue
-                starts = offsets(batch.sizes, (dim,), len(batch))
+                starts = case_offsets(batch.sizes, (dim,), len(batch))
                 values, widths = (batch.arrays.get(name) for name in (dim, f"{dim}_width"))
                 for index in np.flatnonzero(batch_of == batch_number).tolist():
                     span = slice(starts[row_of[index]], starts[row_of[index] + 1])
@@ -121,15 +121,15 @@ class Fields:
                         continue
                     positions = result[dim]
                     key = (row.tobytes(), row_widths.tobytes(), scales[index])
-                    if key not in numbers[dim]:
-                        numbers[dim][key] = len(positions.values)
+                    if key not in indices[dim]:
+                        indices[dim][key] = len(positions.values)
                         positions.values.append(np.asarray(row, dtype=np.float64))
                         positions.widths.append(np.asarray(row_widths, dtype=np.float64))
                         positions.scales.append(float(scales[index]))
-                    positions.which[index] = numbers[dim][key]
+                    positions.position_index[index] = indices[dim][key]
         return {dim: positions for dim, positions in result.items() if positions.values}
 
-    def added_to(self, dataset: xr.Dataset) -> xr.Dataset:
+    def add_to(self, dataset: xr.Dataset) -> xr.Dataset:
         """Return a Dataset of the study with the arrays."""
         axes, coordinates = self._axes()
         cube = self._states.plan.cube
@@ -158,29 +158,29 @@ class Fields:
         axes: dict[str, StudyAxis] = {}
         coordinates: dict[str, Any] = {}
         positions = self._positions
-        scaled = all(np.isfinite(scale) for entry in positions.values() for scale in entry.scales)
+        has_half_widths = all(np.isfinite(scale) for entry in positions.values() for scale in entry.scales)
         for dim, entry in positions.items():
             if dim in axes:
                 continue
-            over_a = scaled and _equal(entry.over_a, entry.over_a[0]) and not entry.has_widths
-            if scaled and (self._common or over_a):
-                joint = self._common and dim == "x" and "x_field" in positions
-                added, coords = self._common_axis(["x", "x_field"] if joint else [dim])
+            equal_over_a = has_half_widths and _all_equal(entry.over_a, entry.over_a[0]) and not entry.has_widths
+            if has_half_widths and (self._common or equal_over_a):
+                includes_points = self._common and dim == "x" and "x_field" in positions
+                dim_axes, dim_coordinates = self._common_axis(["x", "x_field"] if includes_points else [dim])
             else:
-                added, coords = self._original_axis(dim)
-            axes |= added
-            coordinates |= coords
+                dim_axes, dim_coordinates = self._original_axis(dim)
+            axes |= dim_axes
+            coordinates |= dim_coordinates
         return axes, coordinates
 
     def _original_axis(self, dim: str) -> tuple[dict[str, StudyAxis], dict[str, Any]]:
         """Axis of the cases' positions, padded with NaN to the largest case where they differ."""
         positions = self._positions[dim]
-        alike = all(np.array_equal(values, positions.values[0]) for values in positions.values)
-        name = dim if alike else f"{dim}_index"
-        size = max(values.size for values in positions.values)
+        equal_positions = all(np.array_equal(values, positions.values[0]) for values in positions.values)
+        name = dim if equal_positions else f"{dim}_index"
+        size, index = max(values.size for values in positions.values), positions.position_index
 
         def coordinate(rows: list[FloatArray]) -> tuple[Any, ...]:
-            return (name, rows[0]) if _equal(rows, rows[0]) else self._swept(name, rows, positions.which, size)
+            return (name, rows[0]) if _all_equal(rows, rows[0]) else self._pad_rows(name, rows, index, size)
 
         coordinates = {dim: coordinate(positions.values)}
         if positions.has_widths:
@@ -191,61 +191,61 @@ class Fields:
 
     def _common_axis(self, dims: list[str]) -> tuple[dict[str, StudyAxis], dict[str, Any]]:
         """Axis over the half-width that all cases share along dimensions of one direction, with borders around each."""
-        first, name = dims[0], f"{dims[0]}_over_a"
-        sources = {dim: self._positions[dim].sources(of_points=dim not in CELLS) for dim in dims}
-        rows = sources[first]
-        union = common_rows if first == "y" else common_columns
-        axis = borders = rows[0] if _equal(rows, rows[0]) else union(rows)
-        if first not in CELLS:
-            borders = np.concatenate([axis[:1], centres(axis), axis[-1:]])
+        first_dim, name = dims[0], f"{dims[0]}_over_a"
+        sources = {dim: self._positions[dim].sources(has_points=dim not in CELL_DIMS) for dim in dims}
+        rows = sources[first_dim]
+        union = common_rows if first_dim == "y" else common_columns
+        axis = borders = rows[0] if _all_equal(rows, rows[0]) else union(rows)
+        if first_dim not in CELL_DIMS:
+            borders = np.concatenate([axis[:1], cell_centres(axis), axis[-1:]])
         elif "x_field" in sources:
             points = common_columns([np.sort(row) for row in sources["x_field"]])
             plan = self._states.plan
             parameters = [plan.base, *(steps[0] for steps in plan.axes), *plan.explicit]
             # Stress points that the study gives are positions of the common axis.
-            given = any("field_x_over_a" in entry for entry in parameters)
-            borders = centred_cells(borders, points) if given else split_cells(borders, points)
-        if first in CELLS:
-            axis = centres(borders)
+            has_stated_points = any("field_x_over_a" in entry for entry in parameters)
+            borders = centre_cells_on(borders, points) if has_stated_points else split_cells(borders, points)
+        if first_dim in CELL_DIMS:
+            axis = cell_centres(borders)
         axes, maps = {}, {}
         for dim, source_rows in sources.items():
-            of_points, outside = dim not in CELLS, 0.0 if dim == "y" else np.nan
+            has_points, fill = dim not in CELL_DIMS, 0.0 if dim == "y" else np.nan
             maps[dim] = [
-                Resampling(source=source, axis=axis, borders=borders, outside=outside, of_points=of_points)
+                Resampling(source=source, axis=axis, borders=borders, fill=fill, has_points=has_points)
                 for source in source_rows
             ]
-            remains = _equal(source_rows, axis if of_points else borders)
-            axes[dim] = StudyAxis(name, axis.size, None if remains else maps[dim])
+            is_common_axis = _all_equal(source_rows, axis if has_points else borders)
+            axes[dim] = StudyAxis(name, axis.size, None if is_common_axis else maps[dim])
         return axes, self._common_coordinates(maps, axis, borders)
 
     def _common_coordinates(
         self, maps: dict[str, list[Resampling]], axis: FloatArray, borders: FloatArray
     ) -> dict[str, Any]:
         """Coordinates of a common axis: over the half-width and, NaN beyond the case's cells and points, in metres."""
-        first = next(iter(maps))
-        over_a = f"{first}_over_a"
+        first_dim = next(iter(maps))
+        over_a = f"{first_dim}_over_a"
         coordinates: dict[str, Any] = {over_a: (over_a, axis)}
         for dim, resamplings in maps.items():
             positions = self._positions[dim]
-            scaled = zip(resamplings, positions.scales, strict=True)
-            rows = [scale * np.where(resampling.beyond, np.nan, axis) for resampling, scale in scaled]
-            coordinates[dim] = self._swept(over_a, rows, positions.which, axis.size)
-        positions, sources = self._positions[first], [resampling.source for resampling in maps[first]]
-        uniform = not positions.has_widths and _equal(sources, borders) and np.ptp(np.diff(borders)) == 0
-        if first == "x" and not uniform:
+            scaled_maps = zip(resamplings, positions.scales, strict=True)
+            rows = [scale * np.where(resampling.is_outside, np.nan, axis) for resampling, scale in scaled_maps]
+            coordinates[dim] = self._pad_rows(over_a, rows, positions.position_index, axis.size)
+        positions, sources = self._positions[first_dim], [resampling.source for resampling in maps[first_dim]]
+        uniform = not positions.has_widths and _all_equal(sources, borders) and np.ptp(np.diff(borders)) == 0
+        if first_dim == "x" and not uniform:
             rows = [np.diff(borders) * scale for scale in positions.scales]
-            coordinates["x_width"] = self._swept(over_a, rows, positions.which, axis.size)
+            coordinates["x_width"] = self._pad_rows(over_a, rows, positions.position_index, axis.size)
         return coordinates
 
-    def _swept(
-        self, name: str, rows: Sequence[FloatArray], which: IntArray, size: int
+    def _pad_rows(
+        self, name: str, rows: Sequence[FloatArray], position_index: IntArray, size: int
     ) -> tuple[tuple[str, ...], FloatArray]:
         """Dimensions and values of a coordinate of every case along the dimension `name`, padded with NaN."""
         plan = self._states.plan
         padded = np.full((len(rows) + 1, size), np.nan)
-        for number, row in enumerate(rows):
-            padded[number, : row.size] = row
-        return (*plan.cube.dims, name), plan.spread(padded[which], np.nan)
+        for index, row in enumerate(rows):
+            padded[index, : row.size] = row
+        return (*plan.cube.dims, name), plan.spread(padded[position_index], np.nan)
 
 
 class CaseArray(BackendArray):
@@ -260,7 +260,7 @@ class CaseArray(BackendArray):
         dtype: np.dtype[Any],
     ) -> None:
         self._states, self._name, self._dims, self._axes = states, name, tuple(axes), tuple(axes.values())
-        self._which = [positions[dim].which for dim in axes]
+        self._position_indices = [positions[dim].position_index for dim in axes]
         self.shape = (*states.plan.cube.shape, *(axis.size for axis in self._axes))
         resampling = any(axis.resamplings for axis in self._axes)
         self.dtype = np.dtype(np.float64) if resampling and dtype.kind != "f" else dtype
@@ -276,41 +276,41 @@ class CaseArray(BackendArray):
 
     def _read(self, key: tuple[Any, ...]) -> npt.NDArray[Any]:
         """Read the values at integers, slices and arrays of integers."""
-        swept = len(self._states.plan.cube.shape)
-        selected, field_key = _outer(self._cases, key[:swept]), key[swept:]
+        swept_count = len(self._states.plan.cube.shape)
+        selected, field_key = _index_axes(self._cases, key[:swept_count]), key[swept_count:]
         shape = tuple(axis.size for axis in self._axes)
         fill = np.nan if self.dtype.kind == "f" else 0
-        empty = _outer(np.full(shape, fill, dtype=self.dtype), field_key)
+        empty = _index_axes(np.full(shape, fill, dtype=self.dtype), field_key)
         result = np.broadcast_to(empty, (selected.size, *empty.shape)).copy()
         for index, values in self._values(selected.ravel()):
             padded = np.full(shape, fill, dtype=self.dtype)
             padded[tuple(slice(size) for size in values.shape)] = values
-            result[index] = _outer(padded, field_key)
+            result[index] = _index_axes(padded, field_key)
         return result.reshape((*selected.shape, *empty.shape))
 
     def _values(self, cases: IntArray) -> Iterable[tuple[int, npt.NDArray[Any]]]:
         """Yield the values of cases on the study's axes, each with its number among `cases`; batch by batch."""
         batch_of, row_of = self._states.locations
-        for number in np.unique(batch_of[cases[cases >= 0]]).tolist():
-            batch = self._states.results.batches[number] if number >= 0 else None
+        for batch_index in np.unique(batch_of[cases[cases >= 0]]).tolist():
+            batch = self._states.results.batches[batch_index] if batch_index >= 0 else None
             if batch is None or self._name not in batch.arrays:
                 continue
-            starts = offsets(batch.sizes, self._dims, len(batch))
-            indices = [index for index, case in enumerate(cases.tolist()) if case >= 0 and batch_of[case] == number]
+            starts = case_offsets(batch.sizes, self._dims, len(batch))
+            indices = [i for i, case in enumerate(cases.tolist()) if case >= 0 and batch_of[case] == batch_index]
             rows = [int(row_of[cases[index]]) for index in indices]
             bounds = [(int(starts[row]), int(starts[row + 1])) for row in rows]
-            flat = read_slices(self._states.results.paths[number], {self._name: bounds})[self._name]
+            flat = read_slices(self._states.results.paths[batch_index], {self._name: bounds})[self._name]
             for index, row, values in zip(indices, rows, flat, strict=True):
                 if values.size:
-                    shaped = values.reshape([int(batch.sizes[dim][row]) for dim in self._dims])
+                    case_values = values.reshape([int(batch.sizes[dim][row]) for dim in self._dims])
                     maps = [
-                        axis.resamplings[which[cases[index]]] if axis.resamplings else None
-                        for axis, which in zip(self._axes, self._which, strict=True)
+                        axis.resamplings[position_index[cases[index]]] if axis.resamplings else None
+                        for axis, position_index in zip(self._axes, self._position_indices, strict=True)
                     ]
-                    yield index, resampled(self._name, shaped, maps) if any(maps) else shaped
+                    yield index, resample(self._name, case_values, maps) if any(maps) else case_values
 
 
-def _outer(values: npt.NDArray[Any], key: Sequence[Any]) -> npt.NDArray[Any]:
+def _index_axes(values: npt.NDArray[Any], key: Sequence[Any]) -> npt.NDArray[Any]:
     """Index every axis independently."""
     for axis in range(len(key) - 1, -1, -1):
         values = values[(slice(None),) * axis + (key[axis],)]

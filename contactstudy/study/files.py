@@ -1,4 +1,4 @@
-"""Files that appear complete or not at all, and one door to the netCDF library, which is not safe in threads."""
+"""Atomic writes of files, and exclusive access to the netCDF library, which is not safe in threads."""
 
 from __future__ import annotations
 
@@ -29,14 +29,14 @@ def netcdf_access(path: Path, verb: str) -> Iterator[None]:
         with NETCDF_LOCK:
             yield
     except (OSError, RuntimeError, ValueError, TypeError, KeyError, IndexError, AttributeError) as error:
-        full = verb == "write" and shutil.disk_usage(path.parent).free < ALMOST_FULL
-        raise StoreError(f"cannot {verb} {path}: {'the disk is full; ' if full else ''}{error}") from error
+        disk_is_full = verb == "write" and shutil.disk_usage(path.parent).free < ALMOST_FULL
+        raise StoreError(f"cannot {verb} {path}: {'the disk is full; ' if disk_is_full else ''}{error}") from error
 
 
 def write_text(path: Path, text: str) -> None:
     """Write a text file atomically."""
-    with writing(path) as part:
-        part.write_text(text, encoding="utf-8")
+    with writing(path) as temporary_path:
+        temporary_path.write_text(text, encoding="utf-8")
 
 
 def write_dataset(path: Path, dataset: xr.Dataset) -> None:
@@ -45,8 +45,8 @@ def write_dataset(path: Path, dataset: xr.Dataset) -> None:
     described = dataset.assign_attrs(history=f"{now} written by contactstudy")
     # CF: coordinates lack a fill value.
     encoding = {name: {"_FillValue": None} for name in dataset.coords if name in dataset.dims}
-    with writing(path) as part, netcdf_access(path, "write"):
-        described.to_netcdf(part, engine="netcdf4", encoding=encoding)
+    with writing(path) as temporary_path, netcdf_access(path, "write"):
+        described.to_netcdf(temporary_path, engine="netcdf4", encoding=encoding)
 
 
 def load_result(path: Path, argument: str) -> xr.Dataset:

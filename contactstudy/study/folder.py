@@ -5,7 +5,7 @@
     FOLDER/study.json                 the study
     FOLDER/batches/*.nc               finished cases, see :mod:`contactstudy.study.batches`
     FOLDER/set-aside/                 damaged or foreign files
-    FOLDER/run.log, run.lock          log of all runs; lock of the one that runs
+    FOLDER/run.log, run.lock          log of all runs; lock of the current run
     FOLDER/run-3-of-40.log, .lock     the same of a share
 """
 
@@ -31,29 +31,29 @@ from contactstudy import checks
 from contactstudy.analysis.provenance import INPUTS_ATTRIBUTE
 from contactstudy.arrays.variables import package_version
 from contactstudy.case.serialization import to_dict
-from contactstudy.checks import PART, IntArray
+from contactstudy.checks import TEMPORARY_SUFFIX, IntArray
 from contactstudy.errors import InvalidInputError, LockedError, StoreError, StudyFileError
 from contactstudy.study.batches import (
     CASE_ATTRIBUTE,
     STATUSES,
     Batch,
     batch_paths,
-    cases_of,
     common_attributes,
-    damage,
-    join,
+    count_cases,
+    find_damage,
+    join_batches,
     read_batch,
     read_case,
     write_batch,
 )
+from contactstudy.study.case_setup import build_setup
 from contactstudy.study.definition import Study
 from contactstudy.study.files import UNFINISHED, is_regular, write_text
 from contactstudy.study.plan import LEVELS, Plan
 from contactstudy.study.profile_tables import check_without_files
 from contactstudy.study.settings import RUN
-from contactstudy.study.setup import build_setup
 from contactstudy.study.user_profiles import are_registered
-from contactstudy.study.worker import by_structure
+from contactstudy.study.worker import group_by_structure
 
 SCHEMA = 2  # Number of the meaning of study.json
 STATES = (*STATUSES, "stale", "missing", "excluded")  # States of a case of a study
@@ -106,19 +106,19 @@ class Results:
                 self.batches.append(read_batch(path, texts=("message",)))
                 self.paths.append(path)
             except StoreError as error:
-                if path.exists() or path.is_symlink():  # another run may have joined it meanwhile
+                if path.exists() or path.is_symlink():  # another run may have joined the batch meanwhile
                     self.damaged[path] = str(error)
-        self._texts: dict[int, Batch] = {}
+        self._batches_with_texts: dict[int, Batch] = {}
 
     @cached_property
     def locations(self) -> dict[bytes, Location]:
         """Location of each case by its identity: the result of the latest run."""
         locations: dict[bytes, Location] = {}
-        for number, batch in enumerate(self.batches):
+        for batch_index, batch in enumerate(self.batches):
             for row, identity in enumerate(batch.ids.tolist()):
-                former = locations.get(identity)
-                if former is None or self.batches[former.batch].runs[former.row] < batch.runs[row]:
-                    locations[identity] = Location(number, row)
+                previous = locations.get(identity)
+                if previous is None or self.batches[previous.batch].runs[previous.row] < batch.runs[row]:
+                    locations[identity] = Location(batch_index, row)
         return locations
 
     @property
@@ -126,11 +126,13 @@ class Results:
         """Largest number of a run; 0 without results."""
         return max((int(batch.runs.max()) for batch in self.batches if len(batch)), default=0)
 
-    def with_texts(self, number: int) -> Batch:
+    def batch_with_texts(self, batch_index: int) -> Batch:
         """Batch with its texts: parameters, warnings and times."""
-        if number not in self._texts:
-            self._texts[number] = read_batch(self.paths[number], texts=("parameters", "message", "warnings", "time"))
-        return self._texts[number]
+        if batch_index not in self._batches_with_texts:
+            self._batches_with_texts[batch_index] = read_batch(
+                self.paths[batch_index], texts=("parameters", "message", "warnings", "time")
+            )
+        return self._batches_with_texts[batch_index]
 
     def case(self, identity: str, names: Iterable[str] | None = None) -> xr.Dataset:
         """Return one solved case on its cells, with all arrays or the named ones."""
@@ -152,14 +154,14 @@ class Results:
         if location is None:
             return "missing", "", False
         batch = self.batches[location.batch]
-        status, version = STATUSES[batch.status[location.row]], batch.circumstances.get("contactstudy")
+        status, version = STATUSES[batch.status[location.row]], batch.run_context.get("contactstudy")
         is_current = version == package_version()
         if status != "ok":
             message = batch.texts["message"][location.row]
             return ("missing", "", False) if status == "skipped" and not is_current else (status, message, False)
-        retained = batch.circumstances.get("level")
-        if retained not in LEVELS or LEVELS.index(retained) < LEVELS.index(level):
-            return "stale", f"retains {retained}, not {level}", False
+        retained_level = batch.run_context.get("level")
+        if retained_level not in LEVELS or LEVELS.index(retained_level) < LEVELS.index(level):
+            return "stale", f"retains {retained_level}, not {level}", False
         return ("ok", "", True) if is_current else ("stale", f"solved by version {version}", True)
 
 
@@ -171,8 +173,8 @@ class States:
         self.status: npt.NDArray[np.int8] = np.full(len(plan), STATES.index("missing"), dtype=np.int8)
         self.usable: npt.NDArray[np.bool_] = np.zeros(len(plan), dtype=bool)
         self.reasons: dict[int, str] = {}
-        lost = "; ".join(results.damaged.values())
-        if not (results.batches or lost or plan.review.reasons):
+        damage = "; ".join(results.damaged.values())
+        if not (results.batches or damage or plan.review.reasons):
             return
         for index, identity in enumerate(plan.ids.tolist()):
             if reason := plan.reason(index):
@@ -181,8 +183,8 @@ class States:
                 status, reason, usable = (
                     results.state(identity, plan.level) if results.batches else ("missing", "", False)
                 )
-                if status == "missing" and lost:
-                    reason = lost
+                if status == "missing" and damage:
+                    reason = damage
             self.status[index], self.usable[index] = STATES.index(status), usable
             if reason:
                 self.reasons[index] = reason
@@ -190,8 +192,8 @@ class States:
     @property
     def counts(self) -> dict[str, int]:
         """Number of cases of each status that occurs."""
-        numbers = np.bincount(self.status, minlength=len(STATES))
-        return {state: int(number) for state, number in zip(STATES, numbers, strict=True) if number}
+        counts = np.bincount(self.status, minlength=len(STATES))
+        return {state: int(count) for state, count in zip(STATES, counts, strict=True) if count}
 
     def indices(self, *statuses: str) -> list[int]:
         """Cases of some states, by their number in the plan."""
@@ -207,13 +209,13 @@ class States:
         return batch, row
 
     def numbers(self, name: str) -> npt.NDArray[np.float64]:
-        """One number of every case, in the order of the plan; NaN where it is absent."""
+        """Values of a number of every case, in the order of the plan; NaN for an absent value."""
         values = np.full(len(self.plan), np.nan)
         batch, row = self.locations
-        for number, source in enumerate(self.results.batches):
-            if name in source.numbers:
-                cases = batch == number
-                values[cases] = source.numbers[name][row[cases]]
+        for batch_index, source_batch in enumerate(self.results.batches):
+            if name in source_batch.numbers:
+                cases = batch == batch_index
+                values[cases] = source_batch.numbers[name][row[cases]]
         return values
 
     def attributes(self, name: str) -> dict[str, Any]:
@@ -224,10 +226,10 @@ class States:
     def entry(self, index: int) -> Entry:
         """State of one case with its numbers."""
         status, reason = STATES[self.status[index]], self.reasons.get(index, "")
-        number, row = (int(values[index]) for values in self.locations)
-        if number < 0:
+        batch_index, row = (int(values[index]) for values in self.locations)
+        if batch_index < 0:
             return Entry(status, reason)
-        batch = self.results.with_texts(number)
+        batch = self.results.batch_with_texts(batch_index)
         numbers = {name: float(column[row]) for name, column in batch.numbers.items() if not np.isnan(column[row])}
         return Entry(status, reason, numbers, batch.run(row))
 
@@ -293,7 +295,7 @@ class Folder:
     def locked(self, share: Share) -> Iterator[None]:
         """Hold the lock of the folder, or of a share of its study, or raise :class:`LockedError`.
 
-        The operating system releases the lock of a process that ends. A run of the whole study and one of a share
+        The operating system releases the lock of a process that ends. A run of the whole study and a run of a share
         exclude each other; different shares do not.
         """
         with contextlib.ExitStack() as locks:
@@ -310,7 +312,7 @@ class Folder:
 
     @contextlib.contextmanager
     def _hold(self, name: str, seconds: float) -> Iterator[None]:
-        """Hold one lock, waiting for it for some seconds."""
+        """Hold a lock; wait for some seconds."""
         path = self.path / f"{name}.lock"
         if path.is_symlink() or (path.exists() and not is_regular(path)):
             raise LockedError(f"{path} is not a regular file: delete it if no run uses {self.path}")
@@ -339,24 +341,24 @@ class Folder:
     @property
     def holders(self) -> list[str]:
         """Processes that run the study, or shares of it, now."""
-        busy = []
+        holders = []
         for path in sorted(self.path.glob("run*.lock")):
             try:
                 with FileLock(path, timeout=0.0):
                     pass
             except Timeout:
-                busy.append(f"{path.stem}: {self.holder(path.stem)}")
+                holders.append(f"{path.stem}: {self.holder(path.stem)}")
             except (OSError, NotImplementedError):
                 continue
-        return busy
+        return holders
 
     def clean(self, share: Share) -> None:
         """Remove unfinished files of runs that ended."""
         for folder in (self.batches, self.path) if share.count == 1 else (self.batches,):
-            for part in folder.glob(f"{share.prefix}*{PART}"):
-                if UNFINISHED.fullmatch(part.name):
+            for path in folder.glob(f"{share.prefix}*{TEMPORARY_SUFFIX}"):
+                if UNFINISHED.fullmatch(path.name):
                     with contextlib.suppress(OSError):
-                        part.unlink()
+                        path.unlink()
 
     def set_aside(self, path: Path) -> Path:
         """Move a damaged or foreign file to ``set-aside``; return its new path."""
@@ -365,10 +367,10 @@ class Folder:
             if folder.is_symlink():
                 raise StoreError(f"{folder} is a link: delete it")
             folder.mkdir(exist_ok=True)
-            target, number = folder / path.name, 1
+            target, suffix_number = folder / path.name, 1
             while target.exists() or target.is_symlink():
-                number += 1
-                target = folder / f"{path.stem}-{number}{path.suffix}"
+                suffix_number += 1
+                target = folder / f"{path.stem}-{suffix_number}{path.suffix}"
             os.replace(path, target)
         except OSError as error:
             raise StoreError(f"cannot move {path}: {error.strerror or error}") from error
@@ -385,7 +387,9 @@ class Folder:
     def verified_results(self, share: Share) -> tuple[Results, list[str]]:
         """Results after every byte was verified, and messages on files that were damaged and are set aside."""
         paths = batch_paths(self.batches)
-        damaged = {path: reason for path in paths if path.name.startswith(share.prefix) and (reason := damage(path))}
+        damaged = {
+            path: reason for path in paths if path.name.startswith(share.prefix) and (reason := find_damage(path))
+        }
         results = Results([path for path in paths if path not in damaged])
         if share.count == 1:
             damaged |= results.damaged
@@ -396,15 +400,15 @@ class Folder:
 
     def compact(self, share: Share, *, at_end: bool = False) -> None:
         """Join small batches into larger ones, without results that later runs replaced; at the end all small ones."""
-        size_limit, least = (RUN.small_bytes, 2) if at_end else (RUN.batch_bytes, RUN.fan_in)
+        size_limit, min_count = (RUN.small_bytes, 2) if at_end else (RUN.batch_bytes, RUN.fan_in)
         tiers: dict[int, list[Path]] = {}
         for path in batch_paths(self.batches):
             with contextlib.suppress(OSError):
-                size, full = path.lstat().st_size, cases_of(path) > RUN.batch_cases // 2
-                if path.name.startswith(share.prefix) and not full and size < size_limit:
+                size, is_full = path.lstat().st_size, count_cases(path) > RUN.batch_cases // 2
+                if path.name.startswith(share.prefix) and not is_full and size < size_limit:
                     tiers.setdefault(0 if at_end else int(np.log(max(size, 1)) / np.log(RUN.fan_in)), []).append(path)
         for paths in tiers.values():
-            if len(paths) >= least:
+            if len(paths) >= min_count:
                 self._join(paths, share)
 
     def _join(self, paths: list[Path], share: Share) -> None:
@@ -413,24 +417,24 @@ class Folder:
         for path in paths:
             with contextlib.suppress(StoreError):
                 batch = read_batch(path, arrays=None)
-                groups.setdefault(json.dumps(batch.circumstances, sort_keys=True), []).append((path, batch))
-        for members in groups.values():
-            sources = {id(batch): path for path, batch in members}
-            for batches in by_structure(batch for _, batch in members):
-                for part in _portions(batches):
-                    if len(part) > 1:
-                        joined = latest(join(part))
+                groups.setdefault(json.dumps(batch.run_context, sort_keys=True), []).append((path, batch))
+        for paths_and_batches in groups.values():
+            sources = {id(batch): path for path, batch in paths_and_batches}
+            for batches in group_by_structure(batch for _, batch in paths_and_batches):
+                for portion in _split_by_size(batches):
+                    if len(portion) > 1:
+                        joined = select_latest(join_batches(portion))
                         write_batch(self.batches, f"{share.prefix}{os.urandom(6).hex()}", joined)
-                        for batch in part:
+                        for batch in portion:
                             sources[id(batch)].unlink(missing_ok=True)
 
 
-def _portions(batches: list[Batch]) -> Iterator[list[Batch]]:
+def _split_by_size(batches: list[Batch]) -> Iterator[list[Batch]]:
     """Consecutive batches that together are not too large."""
     portion: list[Batch] = []
     for batch in sorted(batches, key=len):
-        full = sum(map(len, [*portion, batch])) > RUN.batch_cases
-        if portion and (full or sum(member.nbytes for member in [*portion, batch]) > RUN.batch_bytes):
+        has_many_cases = sum(map(len, [*portion, batch])) > RUN.batch_cases
+        if portion and (has_many_cases or sum(entry.nbytes for entry in [*portion, batch]) > RUN.batch_bytes):
             yield portion
             portion = []
         portion.append(batch)
@@ -438,7 +442,7 @@ def _portions(batches: list[Batch]) -> Iterator[list[Batch]]:
         yield portion
 
 
-def latest(batch: Batch) -> Batch:
+def select_latest(batch: Batch) -> Batch:
     """Return a batch with the latest row of each case."""
     order = np.lexsort((-batch.runs, batch.ids))
     _, first = np.unique(batch.ids[order], return_index=True)

@@ -1,8 +1,8 @@
-"""The parameters of a study's case, in one table: name, check, unit, meaning, and the function that takes it.
+"""The parameters of a study's case, in one table: name, check, unit, meaning, and the function that uses the parameter.
 
 A new parameter is one entry of :data:`PARAMETERS` if `Case`, `choose_grid` or `solver_settings` has a keyword of the
-same name: its default is read from that signature, and the value is passed on. `contactstudy.study.setup.setup_of` uses
-every other parameter by name. The identity of a case is a hash of its normalised parameters.
+same name: the signature contains the default, and the function receives the value. Every other parameter is used by
+name in `contactstudy.study.case_setup.build_setup`. The identity of a case is a hash of its normalised parameters.
 """
 
 from __future__ import annotations
@@ -25,38 +25,38 @@ from contactstudy.case.case import Case
 from contactstudy.case.gridding import ACCURACY, choose_grid, solver_settings
 from contactstudy.case.motion import MODELS as ROLLING_MODELS
 from contactstudy.errors import InvalidInputError
-from contactstudy.study.profile_tables import number, profile_table
+from contactstudy.study.profile_tables import check_number, profile_table
 
-MOST_POINTS = 100_000  # Largest number of points of a table {start, stop, count}
+MAX_POINTS = 100_000  # Largest number of points of a table {start, stop, count}
 SCHEMA = 1  # Number of the meaning of the parameters; raised only if a parameter changes its meaning
 MOTIONS = ("sliding", "shift", "rolling")  # Motions by name, the default first
 Check = Callable[[str, object], Any]
 
 
-def flag(name: str, value: object) -> bool:
+def check_flag(name: str, value: object) -> bool:
     """Return True or False."""
     checks.instance(name, value, (bool, np.bool_), "true or false")
     return bool(value)
 
 
-def one_of(words: Iterable[str]) -> Check:
+def one_of(allowed_words: Iterable[str]) -> Check:
     """Return the check of a word of a list."""
-    names = tuple(words)
+    names = tuple(allowed_words)
 
-    def word(name: str, value: object) -> str:
+    def check_word(name: str, value: object) -> str:
         checks.instance(name, value, str, "text")
         return checks.known_name(name, str(value), names)
 
-    return word
+    return check_word
 
 
-def positive(name: str, value: object) -> float:
+def check_positive(name: str, value: object) -> float:
     """Return a positive number."""
-    return checks.positive(name, number(name, value))
+    return checks.positive(name, check_number(name, value))
 
 
-def points(name: str, value: object) -> list[float]:
-    """Return points given as a list, or as a table {start, stop, count} of evenly spaced ones."""
+def check_points(name: str, value: object) -> list[float]:
+    """Return points given as a list, or as a table {start, stop, count} of even spacing."""
     if isinstance(value, Mapping):
         for key in value:
             checks.known_name(f"{name} key", str(key), ("start", "stop", "count"))
@@ -65,12 +65,12 @@ def points(name: str, value: object) -> list[float]:
             raise InvalidInputError(name, dict(value), "a list, or a table with start, stop and count")
         start, stop = (checks.finite(f"{name}.{key}", value[key]) for key in ("start", "stop"))
         count = checks.count(f"{name}.count", value["count"])
-        if count > MOST_POINTS:
-            raise InvalidInputError(f"{name}.count", count, f"at most {MOST_POINTS}")
-        listed = np.linspace(start, stop, count)
+        if count > MAX_POINTS:
+            raise InvalidInputError(f"{name}.count", count, f"at most {MAX_POINTS}")
+        positions = np.linspace(start, stop, count)
     else:
-        listed = checks.coordinates(name, value, "half-widths a")
-    return [number(name, point) for point in listed.tolist()]
+        positions = checks.coordinates(name, value, "half-widths a")
+    return [check_number(name, point) for point in positions.tolist()]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -78,11 +78,11 @@ class Parameter:
     """Specification of one parameter."""
 
     name: str
-    check: Check = number  # takes name and value; returns the value in the normalised form of identities, or raises
+    check: Check = check_number  # normalises the value of a name for identities, or raises
     units: str = ""  # empty for a word
     meaning: str  # comment of the coordinate, and the documentation
-    taker: Callable[..., Any] | None = None  # takes an argument of this name, with the default
-    fallback: Any = None  # default without a taker; None: required or optional
+    consumer: Callable[..., Any] | None = None  # has a keyword of this name, with the default
+    fallback: Any = None  # default without a consumer; None: required or optional
     absent: str = ""  # meaning of a missing parameter without a default, for the documentation
     note: str = ""  # addition to the meaning, for the documentation
     label: str = ""  # long name of the coordinate, short enough for an axis; default: that of a result, or the name
@@ -90,11 +90,11 @@ class Parameter:
     @property
     def attrs(self) -> dict[str, str]:
         """Attributes of the coordinate in a Dataset."""
-        plain = COORDINATES[self.name].long_name if self.name in COORDINATES else self.name.replace("_", " ")
-        texts = {"units": self.units, "long_name": self.label or plain, "comment": self.meaning}
-        return {name: text for name, text in texts.items() if text}
+        standard_label = COORDINATES[self.name].long_name if self.name in COORDINATES else self.name.replace("_", " ")
+        attributes = {"units": self.units, "long_name": self.label or standard_label, "comment": self.meaning}
+        return {name: text for name, text in attributes.items() if text}
 
-    def checked(self, value: object) -> Any:
+    def normalize(self, value: object) -> Any:
         """Return a value in the normalised form of identities; a scalar with another unit is converted."""
         return self.check(self.name, checks.scalar(self.name, value, self.units))
 
@@ -102,20 +102,20 @@ class Parameter:
     def default(self) -> Any:
         """Value of a case without the parameter; None if it is required or optional."""
         value = self.fallback
-        if self.taker is not None:
-            value = inspect.signature(self.taker).parameters[self.name].default
+        if self.consumer is not None:
+            value = inspect.signature(self.consumer).parameters[self.name].default
         return None if value is None else self.check(self.name, value)
 
 
-UNIFORM = ("cells_x", "cells_y", "window", "margin")
-"""Parameters of uniform cells; a case that gives one of them has such cells."""
+UNIFORM_CELLS = ("cells_x", "cells_y", "window", "margin")
+"""Parameters of uniform cells; a case with any of these parameters has uniform cells."""
 
 BODIES = ("finite-length", "quarter-space", "half-space")
 
 # Ends of the roller by the name of its body; None for a rigid one.
 ROLLER_BODIES: dict[str, str | None] = {"rigid": None, "finite-length": "free", "half-space": "none"}
 
-_ENTRIES = (
+_PARAMETERS = (
     Parameter(
         name="body",
         check=one_of(BODIES),
@@ -158,27 +158,22 @@ _ENTRIES = (
         name="max_pressure",
         units="Pa",
         meaning="peak pressure p0 of the Hertz line contact",
-        taker=Case,
+        consumer=Case,
         absent="or `load`",
         label="Hertz pressure p0",
     ),
     Parameter(
-        name="load", units="N", meaning="normal load", taker=Case, absent="or `max_pressure`", label="normal load"
+        name="load", units="N", meaning="normal load", consumer=Case, absent="or `max_pressure`", label="normal load"
     ),
     Parameter(
         name="approach",
         units="m",
         meaning="approach at mid-length, from first contact without tilt",
-        taker=Case,
+        consumer=Case,
         absent="or `load`",
         note="load and a result: give `end_distance`, and leave out uniform cells and stress points, which are over a",
     ),
-    Parameter(
-        name="friction",
-        units="1",
-        meaning="coefficient of friction",
-        taker=Case,
-    ),
+    Parameter(name="friction", units="1", meaning="coefficient of friction", consumer=Case),
     Parameter(
         name="profile",
         check=lambda _, value: profile_table(value),
@@ -222,7 +217,7 @@ _ENTRIES = (
         name="tilt",
         units="rad",
         meaning="misalignment of the roller; positive if larger x is pressed deeper",
-        taker=Case,
+        consumer=Case,
     ),
     Parameter(
         name="load_offset",
@@ -232,7 +227,11 @@ _ENTRIES = (
         note="the roller tilts until it balances",
     ),
     Parameter(
-        name="coupled", check=flag, units="1", meaning="whether friction displaces the surface normally", taker=Case
+        name="coupled",
+        check=check_flag,
+        units="1",
+        meaning="whether friction displaces the surface normally",
+        consumer=Case,
     ),
     Parameter(
         name="motion",
@@ -292,27 +291,29 @@ _ENTRIES = (
     ),
     Parameter(
         name="viscosity",
-        check=positive,
+        check=check_positive,
         units="Pa s",
         meaning="viscosity at ambient pressure",
         absent="or `lubricant`; dry",
     ),
     Parameter(
         name="pressure_viscosity",
-        check=positive,
+        check=check_positive,
         units="Pa-1",
         meaning="pressure-viscosity coefficient",
         absent="with `viscosity`",
     ),
     Parameter(
         name="entrainment_speed",
-        check=positive,
+        check=check_positive,
         units="m s-1",
         meaning="mean speed of both surfaces along +y",
         absent="required for a film",
     ),
     Parameter(name="slide_roll_ratio", units="1", meaning="difference of the speeds over their mean", absent="0"),
-    Parameter(name="roughness_rms", check=positive, units="m", meaning="composite rms roughness", absent="smooth"),
+    Parameter(
+        name="roughness_rms", check=check_positive, units="m", meaning="composite rms roughness", absent="smooth"
+    ),
     Parameter(
         name="accuracy",
         units="1",
@@ -321,45 +322,53 @@ _ENTRIES = (
         note="columns are refined to it; a case with parameters of uniform cells has none",
     ),
     Parameter(
-        name="cells_x", units="1", meaning="cells per half-width a along x", taker=choose_grid, note="uniform cells"
+        name="cells_x", units="1", meaning="cells per half-width a along x", consumer=choose_grid, note="uniform cells"
     ),
     Parameter(
-        name="cells_y", units="1", meaning="cells per half-width a along y", taker=choose_grid, note="uniform cells"
+        name="cells_y", units="1", meaning="cells per half-width a along y", consumer=choose_grid, note="uniform cells"
     ),
     Parameter(
         name="window",
         units="1",
         meaning="half-width of the window in y over a",
-        taker=choose_grid,
+        consumer=choose_grid,
         note="uniform cells; the default is widened where the contact needs more; any other value is fixed",
     ),
     Parameter(
         name="margin",
         units="1",
         meaning="distance from roller to grid edge over a, where the body goes on",
-        taker=choose_grid,
+        consumer=choose_grid,
         note="uniform cells",
     ),
-    Parameter(name="tolerance", units="1", meaning="tolerance of the contact iteration", taker=solver_settings),
-    Parameter(name="stresses", check=flag, units="1", meaning="whether stresses are calculated", taker=solver_settings),
+    Parameter(name="tolerance", units="1", meaning="tolerance of the contact iteration", consumer=solver_settings),
+    Parameter(
+        name="stresses",
+        check=check_flag,
+        units="1",
+        meaning="whether stresses are calculated",
+        consumer=solver_settings,
+    ),
     Parameter(
         name="field_x_over_a",
-        check=points,
+        check=check_points,
         units="1",
         meaning="stress points: x from the free end over a",
         absent="from face to face",
         note="a list, or `{start, stop, count}`",
     ),
-    Parameter(name="field_y_over_a", check=points, units="1", meaning="stress points: y over a", absent="cell centres"),
+    Parameter(
+        name="field_y_over_a", check=check_points, units="1", meaning="stress points: y over a", absent="cell centres"
+    ),
     Parameter(
         name="field_z_over_a",
-        check=points,
+        check=check_points,
         units="1",
         meaning="stress points: depth over a",
         absent="about 23 depths to 5 a",
     ),
 )
-PARAMETERS: dict[str, Parameter] = {entry.name: entry for entry in _ENTRIES}
+PARAMETERS: dict[str, Parameter] = {entry.name: entry for entry in _PARAMETERS}
 """Every parameter that a case of a study can have."""
 
 REQUIRED = (
@@ -370,30 +379,32 @@ REQUIRED = (
     ("e_over_a", "end_distance"),
     ("max_pressure", "load", "approach"),
 )
-"""Groups of parameters; every case has exactly one of each group."""
+"""Groups of parameters; every case has exactly one parameter of each group."""
 
 
-def taken_by(taker: Callable[..., Any], values: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the parameters that are keyword arguments of `taker`."""
-    return {name: value for name, value in values.items() if PARAMETERS[name].taker is taker}
+def keywords_of(function: Callable[..., Any], values: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the parameters that are keyword arguments of `function`."""
+    return {name: value for name, value in values.items() if PARAMETERS[name].consumer is function}
 
 
-def checked(values: Mapping[str, Any], where: str = "parameter") -> dict[str, Any]:
+def check_parameters(values: Mapping[str, Any], where: str = "parameter") -> dict[str, Any]:
     """Return `values` with known names and checked types, in the table's order; a None is left out."""
     for name in values:
         checks.known_name(where, str(name), PARAMETERS)
     return {
-        name: parameter.checked(values[name]) for name, parameter in PARAMETERS.items() if values.get(name) is not None
+        name: parameter.normalize(values[name])
+        for name, parameter in PARAMETERS.items()
+        if values.get(name) is not None
     }
 
 
-def completed(values: Mapping[str, Any]) -> dict[str, Any]:
+def add_default_accuracy(values: Mapping[str, Any]) -> dict[str, Any]:
     """Return checked `values` with the default accuracy, a part of the identity, unless the cells are uniform."""
-    has_cells = any(name in values for name in ("accuracy", *UNIFORM))
+    has_cells = any(name in values for name in ("accuracy", *UNIFORM_CELLS))
     return dict(values) if has_cells else {**values, "accuracy": ACCURACY}
 
 
-def counted(name: str, value: Any) -> Any:
+def identity_value(name: str, value: Any) -> Any:
     """Part of a checked value that belongs to the identity; None for a default."""
     if name == "profile":
         value = {key: entry for key, entry in value.items() if key != "name"}
@@ -402,7 +413,7 @@ def counted(name: str, value: Any) -> Any:
 
 def without_defaults(values: Mapping[str, Any]) -> dict[str, Any]:
     """Return checked `values` without defaults and without a profile's name."""
-    pairs = ((name, counted(name, value)) for name, value in values.items())
+    pairs = ((name, identity_value(name, value)) for name, value in values.items())
     return {name: value for name, value in pairs if value is not None}
 
 
@@ -411,33 +422,33 @@ def with_defaults(values: Mapping[str, Any]) -> dict[str, Any]:
     return {name: entry.default for name, entry in PARAMETERS.items() if entry.default is not None} | dict(values)
 
 
-def fragment(name: str, value: Any) -> str:
+def identity_fragment(name: str, value: Any) -> str:
     """Part of a checked parameter in JSON with sorted keys and without spaces; empty if the value is the default."""
-    value = counted(name, value)
+    value = identity_value(name, value)
     text = json.dumps(value, sort_keys=True, separators=(",", ":"), allow_nan=False)
     return "" if value is None else f'"{name}":{text}'
 
 
-def hash_of(fragments: Iterable[str]) -> bytes:
+def hash_fragments(fragments: Iterable[str]) -> bytes:
     """Identity of a case, SHA-256 in 64 hexadecimal digits, from the fragments of its parameters, sorted by name."""
     content = ",".join(filter(None, fragments))
     return hashlib.sha256(f'{{"case":{{{content}}},"schema":{SCHEMA}}}'.encode()).hexdigest().encode()
 
 
-def _written(value: Any) -> str:
-    """Return a default as it is written in a study file."""
+def _format_default(value: Any) -> str:
+    """Return a default in the notation of a study file."""
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, dict):
-        return f"{{{', '.join(f'{key} = {_written(entry)}' for key, entry in value.items())}}}"
+        return f"{{{', '.join(f'{key} = {_format_default(entry)}' for key, entry in value.items())}}}"
     return f'"{value}"' if isinstance(value, str) else f"{value:g}"
 
 
-def documented() -> str:
-    """Return the table of all parameters in Markdown, as the documentation shows it."""
+def parameter_table() -> str:
+    """Return the table of all parameters in Markdown, for the documentation."""
     rows = ["| parameter | default | unit | meaning |", "|---|---|---|---|"]
     for name, entry in PARAMETERS.items():
-        default = entry.absent if entry.default is None else f"`{_written(entry.default)}`"
+        default = entry.absent if entry.default is None else f"`{_format_default(entry.default)}`"
         meaning = f"{entry.meaning}; {entry.note}" if entry.note else entry.meaning
         rows.append(f"| `{name}` | {default} | {entry.units if entry.units != '1' else ''} | {meaning} |")
     return "\n".join(rows)

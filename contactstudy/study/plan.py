@@ -17,28 +17,34 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from contactstudy.arrays.engineering import quantity
+from contactstudy.arrays.engineering import format_quantity
 from contactstudy.case.magnitudes import doubts, friction_doubt
 from contactstudy.checks import IntArray
 from contactstudy.errors import ContactStudyError
-from contactstudy.study.parameters import PARAMETERS, completed, fragment, hash_of, without_defaults
-from contactstudy.study.profile_tables import profile_text
+from contactstudy.study.case_setup import Setup, build_setup
+from contactstudy.study.parameters import (
+    PARAMETERS,
+    add_default_accuracy,
+    hash_fragments,
+    identity_fragment,
+    without_defaults,
+)
+from contactstudy.study.profile_tables import format_profile
 from contactstudy.study.settings import RUN
-from contactstudy.study.setup import Setup, build_setup
 
-LEVELS = ("summary", "surface", "fields")  # Arrays that a study retains: none; those on (x, y); also the stresses
-LISTED = 12  # Values of a swept parameter that are all shown
-LARGEST_FILL = 4  # Cells per case that a cube may have; sparser explicit cases are listed along one dimension `case`
+LEVELS = ("summary", "surface", "fields")  # Arrays that a study retains: none; arrays on (x, y); also the stresses
+MAX_LISTED = 12  # Values of a swept parameter that are all shown
+MAX_CUBE_CELLS = 4  # Cells per case that a cube may have; sparser explicit cases are listed along one dimension `case`
 BYTES_PER_CASE, BYTES_PER_CELL, BYTES_PER_POINT = 700, 4 * 8, 7 * 4
 """Size of the numbers of a case, and of its arrays before compression."""
 
-LOCAL = frozenset(
+LOCAL_PARAMETERS = frozenset(
     {"friction", "tilt", "load_offset", "profile", "accuracy", "tolerance", "stresses", "entrainment_speed"}
 )
 """Parameters that do not change the operator of the surface. Speed."""
 
 Axis = tuple[dict[str, Any], ...]
-"""One factor of a product: the parameters that each step of a swept one, or of several zipped ones, sets."""
+"""One factor of a product: the parameters of each step of a swept parameter, or of zipped parameters."""
 
 
 @dataclass(frozen=True)
@@ -78,7 +84,7 @@ def cube_of_cases(cases: Sequence[Mapping[str, Any]]) -> tuple[Cube, list[tuple[
     complete = all(None not in column for column in varying.values())
     indices = {name: {value: index for index, value in enumerate(column)} for name, column in varying.items()}
     positions = [tuple(indices[name][row[name]] for name in varying) for row in rows]
-    if varying and complete and cells <= LARGEST_FILL * len(cases) and len(set(positions)) == len(positions):
+    if varying and complete and cells <= MAX_CUBE_CELLS * len(cases) and len(set(positions)) == len(positions):
         labels = {name: (name, column) for name, column in varying.items()}
         return Cube(tuple(varying), tuple(len(column) for column in varying.values()), labels), positions
     labels = {"case": ("case", list(range(len(cases))))}
@@ -103,7 +109,7 @@ class Review(NamedTuple):
     """Result of setting up one case of each group, or of a sample of the groups."""
 
     reasons: dict[int, str]  # why a group cannot be solved
-    # questions on values of a size that is mostly a mistake in the unit, with the number of groups
+    # warnings of values outside the usual range, with the number of groups
     doubts: Counter[str]
     checked: int  # groups that were set up
     groups: int
@@ -130,17 +136,17 @@ class Plan(Sequence[PlannedCase]):
     def __getitem__(self, index: Any) -> Any:
         """Return one case, or a list of cases."""
         if isinstance(index, slice):
-            return [self[number] for number in range(*index.indices(len(self)))]
-        number = range(len(self))[index]
-        position = tuple(map(int, np.unravel_index(self.flat[number], self.cube.shape)))
-        parameters, identity = self.parameters(number), self.ids[number].decode()
+            return [self[case_index] for case_index in range(*index.indices(len(self)))]
+        case_index = range(len(self))[index]
+        position = tuple(map(int, np.unravel_index(self.cube_indices[case_index], self.cube.shape)))
+        parameters, identity = self.parameters(case_index), self.ids[case_index].decode()
         return PlannedCase(
-            index=number,
+            index=case_index,
             id=identity,
             parameters=parameters,
-            name=self.words(number),
+            name=self.describe(case_index),
             position=position,
-            reason=self.reason(number),
+            reason=self.reason(case_index),
         )
 
     @property
@@ -154,11 +160,11 @@ class Plan(Sequence[PlannedCase]):
         return math.prod(self.shape) if self.axes or not self.explicit else 0
 
     def varying(self, index: int) -> dict[str, Any]:
-        """Parameters of a case beside the base."""
-        number = int(self.chosen[index])
-        if number >= self.products:
-            return dict(self.explicit[number - self.products])
-        steps = np.unravel_index(number, self.shape) if self.shape else ()
+        """Parameters of a case in addition to the base."""
+        product_index = int(self.chosen[index])
+        if product_index >= self.products:
+            return dict(self.explicit[product_index - self.products])
+        steps = np.unravel_index(product_index, self.shape) if self.shape else ()
         return {name: value for axis, step in zip(self.axes, steps, strict=True) for name, value in axis[step].items()}
 
     def values(self, index: int) -> dict[str, Any]:
@@ -167,13 +173,13 @@ class Plan(Sequence[PlannedCase]):
 
     def parameters(self, index: int) -> dict[str, Any]:
         """Parameters of a case without defaults, with the accuracy of a case that gives no cells."""
-        return without_defaults(completed(self.values(index)))
+        return without_defaults(add_default_accuracy(self.values(index)))
 
-    def words(self, index: int) -> str:
+    def describe(self, index: int) -> str:
         """Swept parameters of a case, for messages."""
         labels = {name: label(name, value) for name, value in self.varying(index).items()}
-        texts = (f"{name}={text:g}" if isinstance(text, float) else f"{name}={text}" for name, text in labels.items())
-        return " ".join(texts) or "the only case"
+        words = (f"{name}={text:g}" if isinstance(text, float) else f"{name}={text}" for name, text in labels.items())
+        return " ".join(words) or "the only case"
 
     @cached_property
     def _layout(self) -> tuple[Cube, IntArray]:
@@ -189,14 +195,14 @@ class Plan(Sequence[PlannedCase]):
         return self._layout[0]
 
     @property
-    def flat(self) -> IntArray:
+    def cube_indices(self) -> IntArray:
         """Number of each case in the flattened cube."""
         return self._layout[1]
 
     def spread(self, values: npt.NDArray[Any], fill: Any) -> npt.NDArray[Any]:
-        """Values (case, ...) at the positions of the cases in the cube, with `fill` where it has none."""
+        """Values (case, ...) at the positions of the cases in the cube, with `fill` at empty positions."""
         table = np.full((math.prod(self.cube.shape), *values.shape[1:]), fill, dtype=values.dtype)
-        table[self.flat] = values
+        table[self.cube_indices] = values
         return table.reshape((*self.cube.shape, *values.shape[1:]))
 
     def _fragments(self) -> Iterator[tuple[str, ...]]:
@@ -204,66 +210,69 @@ class Plan(Sequence[PlannedCase]):
         product = self.chosen[self.chosen < self.products]
         names = {name for axis in self.axes for name in axis[0]}
         columns: dict[str, Iterable[str]] = {}
-        for name, value in completed({**self.base, **dict.fromkeys(names)}).items():
+        for name, value in add_default_accuracy({**self.base, **dict.fromkeys(names)}).items():
             if name not in names:
-                columns[name] = repeat(fragment(name, value))
+                columns[name] = repeat(identity_fragment(name, value))
         steps = np.unravel_index(product, self.shape) if self.shape else ()
         for axis, column in zip(self.axes, steps, strict=True):
             for name in axis[0]:
-                table = [fragment(name, entry[name]) for entry in axis]
+                table = [identity_fragment(name, entry[name]) for entry in axis]
                 columns[name] = map(table.__getitem__, column.tolist())
         yield from islice(zip(*(columns[name] for name in sorted(columns)), strict=False), product.size)
-        for number in self.chosen[len(product) :]:
-            values = completed({**self.base, **self.explicit[number - self.products]})
-            yield tuple(fragment(name, values[name]) for name in sorted(values))
+        for product_index in self.chosen[len(product) :]:
+            values = add_default_accuracy({**self.base, **self.explicit[product_index - self.products]})
+            yield tuple(identity_fragment(name, values[name]) for name in sorted(values))
 
     @cached_property
     def ids(self) -> npt.NDArray[np.bytes_]:
         """Identities of the cases."""
-        return np.fromiter(map(hash_of, self._fragments()), dtype="S64", count=len(self))
+        return np.fromiter(map(hash_fragments, self._fragments()), dtype="S64", count=len(self))
 
     @cached_property
     def groups(self) -> IntArray:
         """Group of each case, numbered as they appear: equal up to friction in full sliding, and a film's speed."""
-        rubbing, local = ('"motion":', '"coupled":'), ('"friction":', '"entrainment_speed":')
+        motions, local = ('"motion":', '"coupled":'), ('"friction":', '"entrainment_speed":')
         keys = (
-            _key(parts, () if any(part.startswith(rubbing) for part in parts) else local) for parts in self._fragments()
+            _hash_without(fragments, () if any(text.startswith(motions) for text in fragments) else local)
+            for fragments in self._fragments()
         )
-        return _numbered(keys, len(self))
+        return _number_keys(keys, len(self))
 
     @cached_property
     def operators(self) -> IntArray:
         """Number of the operator of each case: equal for cases that share body, load and cells."""
-        local = tuple(f'"{name}":' for name in LOCAL)
-        return _numbered((_key(parts, local) for parts in self._fragments()), len(self))
+        local = tuple(f'"{name}":' for name in LOCAL_PARAMETERS)
+        return _number_keys((_hash_without(fragments, local) for fragments in self._fragments()), len(self))
 
     @cached_property
     def review(self) -> Review:
         """Check of one case of each group, or of a sample of them."""
-        _, firsts = np.unique(self.groups, return_index=True)
-        step = max(1, -(-len(firsts) // RUN.checked_groups))
-        reasons, questions = {}, Counter[str]()
+        _, first_cases = np.unique(self.groups, return_index=True)
+        step = max(1, -(-len(first_cases) // RUN.checked_groups))
+        reasons, magnitude_warnings = {}, Counter[str]()
         cells, points, checked = 0.0, 0.0, 0
-        for index in firsts[::step].tolist():
+        for index in first_cases[::step].tolist():
             checked += 1
             try:
                 setup = self.setup(index)
             except ContactStudyError as error:
                 reasons[int(self.groups[index])] = str(error)
                 continue
-            questions.update(doubts(setup.case))
+            magnitude_warnings.update(doubts(setup.case))
             cells, points = cells + math.prod(setup.shape), points + setup.points
         # A group's cases differ in friction: its other values are checked here.
         entries = [*(entry for axis in self.axes for entry in axis), *self.explicit]
         for friction in {entry["friction"] for entry in entries if "friction" in entry}:
             if message := friction_doubt(friction):
-                questions.setdefault(message, checked)
+                magnitude_warnings.setdefault(message, checked)
         solvable = max(1, checked - len(reasons))
-        return Review(reasons, questions, checked, len(firsts), cells=cells / solvable, points=points / solvable)
+        return Review(
+            reasons, magnitude_warnings, checked, len(first_cases), cells=cells / solvable, points=points / solvable
+        )
 
     def setup(self, index: int) -> Setup:
         """Set up a case, or raise the reason why it cannot be solved."""
-        return build_setup(completed(self.values(index)))
+        return build_setup(add_default_accuracy(self.values(index)))
 
     def reason(self, index: int) -> str:
         """Reason why the plan skips a case, or empty."""
@@ -277,7 +286,7 @@ class Plan(Sequence[PlannedCase]):
 
     @cached_property
     def unique(self) -> list[int]:
-        """Cases to solve by their number, each once even if the study contains it twice."""
+        """Indices of the cases to solve; of duplicates the first."""
         skipped = set(self.skipped)
         first: dict[bytes, int] = {}
         for index, identity in enumerate(self.ids.tolist()):
@@ -287,10 +296,8 @@ class Plan(Sequence[PlannedCase]):
 
     @property
     def doubts(self) -> tuple[str, ...]:
-        """Questions on values of a size that is mostly a mistake in the unit, each with the number of contacts."""
-        return tuple(
-            f"{question} ({number} contact{'s' * (number > 1)})" for question, number in self.review.doubts.items()
-        )
+        """Warnings of values outside the usual range, which suggest a wrong unit, with the number of contacts."""
+        return tuple(f"{warning} ({count} contact{'s' * (count > 1)})" for warning, count in self.review.doubts.items())
 
     @property
     def size(self) -> float:
@@ -303,34 +310,34 @@ class Plan(Sequence[PlannedCase]):
         return size * len(self.unique)
 
 
-def _key(fragments: tuple[str, ...], local: tuple[str, ...]) -> int:
-    """Key of a case without the fragments that start with one of `local`."""
-    return hash(tuple(part for part in fragments if part and not part.startswith(local)))
+def _hash_without(fragments: tuple[str, ...], local: tuple[str, ...]) -> int:
+    """Hash of a case's fragments except those that start with a prefix in `local`."""
+    return hash(tuple(text for text in fragments if text and not text.startswith(local)))
 
 
-def _numbered(keys: Iterable[int], count: int) -> IntArray:
+def _number_keys(keys: Iterable[int], count: int) -> IntArray:
     """Return the number of each key, in the order of their first appearance."""
-    numbers: dict[int, int] = {}
-    return np.fromiter((numbers.setdefault(key, len(numbers)) for key in keys), dtype=np.int64, count=count)
+    key_numbers: dict[int, int] = {}
+    return np.fromiter((key_numbers.setdefault(key, len(key_numbers)) for key in keys), dtype=np.int64, count=count)
 
 
 def label(name: str, value: Any) -> Any:
-    """Value of a parameter as a coordinate contains it."""
+    """Value of a parameter in a coordinate."""
     if name == "profile" and value is not None:
-        return profile_text(value)
+        return format_profile(value)
     if isinstance(value, list):
         return f"{len(value)} points {value[0]:g} to {value[-1]:g}"
     return value
 
 
-def listed(texts: Sequence[str]) -> str:
+def format_list(texts: Sequence[str]) -> str:
     """Values of a swept parameter; of more than twelve the first and the last."""
-    return ", ".join(texts) if len(texts) <= LISTED else f"{len(texts)} values, {texts[0]} to {texts[-1]}"
+    return ", ".join(texts) if len(texts) <= MAX_LISTED else f"{len(texts)} values, {texts[0]} to {texts[-1]}"
 
 
-def value_text(name: str, value: Any) -> str:
+def format_value(name: str, value: Any) -> str:
     """Value of a study's parameter in the units of engineers."""
-    value = profile_text(value, in_units=True) if name == "profile" and isinstance(value, dict) else value
+    value = format_profile(value, in_units=True) if name == "profile" and isinstance(value, dict) else value
     if isinstance(value, (list, tuple)):
         ends = f"{value[0]:g}" if len(value) == 1 else f"{value[0]:g} to {value[-1]:g}"
         return f"{len(value)} value{'s' if len(value) > 1 else ''}, {ends}"
@@ -338,4 +345,4 @@ def value_text(name: str, value: Any) -> str:
         return "yes" if value else "no"
     if not isinstance(value, (int, float)):
         return str(value)
-    return quantity(float(value), PARAMETERS[name].units if name in PARAMETERS else "1")
+    return format_quantity(float(value), PARAMETERS[name].units if name in PARAMETERS else "1")

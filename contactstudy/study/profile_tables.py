@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from contactstudy import checks, profiles
-from contactstudy.arrays.engineering import quantity
+from contactstudy.arrays.engineering import format_quantity
 from contactstudy.case.serialization import tables_within
 from contactstudy.errors import InvalidInputError
 from contactstudy.profiles import Profile
@@ -22,11 +22,11 @@ from contactstudy.profiles.base import UNITS
 from contactstudy.study import user_profiles
 
 if TYPE_CHECKING:
-    from contactstudy.study.setup import Dimensions
+    from contactstudy.study.case_setup import Dimensions
 
 Table = dict[str, Any]
-DEEPEST = 16  # Largest depth of profiles within profiles
-MOST_POINTS = 50_000  # Largest number of points of a measured profile
+MAX_NESTING = 16  # Largest depth of profiles within profiles
+MAX_POINTS = 50_000  # Largest number of points of a measured profile
 DESIGN = ("design_pressure", "design_load")
 """Keys that determine the amplitude of a profile: Pa, and N on the whole roller."""
 
@@ -35,53 +35,54 @@ NESTED = ("left", "right", "profile")  # Fields that contain a profile
 FILE_FLAGS = ("remove_tilt", "remove_offset")
 FILE_OPTIONS = ("file", *FILE_FLAGS, "turn")  # Keys of a measured profile that is read from a file
 DIGITS = 12  # Significant digits of a number in a study, beyond rounding
-SMALLEST = 1 / checks.LARGEST
+MIN_MAGNITUDE = 1 / checks.MAX_MAGNITUDE
 
 
-def rounded(value: float) -> float:
+def round_digits(value: float) -> float:
     """Return `value` to twelve significant digits, with one zero instead of two."""
     return float(f"{value:.{DIGITS}g}") + 0.0
 
 
-def number(name: str, value: object) -> float:
+def check_number(name: str, value: object) -> float:
     """Return a finite number of limited size, rounded."""
     finite = checks.finite(name, value)
-    if 0 < abs(finite) < SMALLEST:
-        raise InvalidInputError(name, value, f"0, or of a size from {SMALLEST:g} on", "units are SI")
-    return rounded(finite)
+    if 0 < abs(finite) < MIN_MAGNITUDE:
+        raise InvalidInputError(name, value, f"0, or of a size from {MIN_MAGNITUDE:g} on", "units are SI")
+    return round_digits(finite)
 
 
 @dataclass(frozen=True)
 class ProfileKind:
     """Class of a profile, whose fields are the keys of its table."""
 
-    made: Any  # the dataclass
-    designed: tuple[str, ...] = ()  # fields that follow from DESIGN by the class' for_pressure or for_load
-    of_radius: Mapping[str, float] = field(default_factory=dict)  # defaults in multiples of the roller's radius
+    profile_class: Any  # the dataclass
+    design_fields: tuple[str, ...] = ()  # fields that follow from DESIGN by the class' for_pressure or for_load
+    radius_multiples: Mapping[str, float] = field(default_factory=dict)  # defaults in multiples of the roller's radius
 
     @cached_property
     def defaults(self) -> dict[str, Any]:
         """Default of every field; MISSING where a value is required."""
-        return {entry.name: None if entry.name in self.of_radius else entry.default for entry in fields(self.made)}
+        entries = fields(self.profile_class)
+        return {entry.name: None if entry.name in self.radius_multiples else entry.default for entry in entries}
 
     def read(self, table: Mapping[str, Any], depth: int) -> Table:
         """Check keys and values of a table without `kind` and `name`; omit defaults."""
-        measured = self.made is profiles.Measured
-        keys = [*self.defaults, *(DESIGN if self.designed else ()), *(FILE_OPTIONS if measured else ())]
+        is_measured = self.profile_class is profiles.Measured
+        keys = [*self.defaults, *(DESIGN if self.design_fields else ()), *(FILE_OPTIONS if is_measured else ())]
         for key in table:
             checks.known_name("profile key", str(key), [*keys, "kind", "name"])
-        given = {key: entry for key, entry in table.items() if entry is not None}
-        if measured:
-            given = _points_of_file(given)
-        values = {key: _checked_value(key, entry, depth) for key, entry in given.items()}
+        stated_entries = {key: entry for key, entry in table.items() if entry is not None}
+        if is_measured:
+            stated_entries = _read_points(stated_entries)
+        values = {key: _check_value(key, entry, depth) for key, entry in stated_entries.items()}
         if not {*POINTS, *NESTED, "terms"}.isdisjoint(self.defaults):
             self._require(values)
         return {key: values[key] for key in keys if key in values and values[key] != self.defaults.get(key)}
 
-    def _require(self, table: Mapping[str, Any], designed: tuple[str, ...] = ()) -> None:
-        """Raise unless a table has every required field but those that a design determines."""
+    def _require(self, table: Mapping[str, Any], design_fields: tuple[str, ...] = ()) -> None:
+        """Raise unless a table has every required field except `design_fields`."""
         for name, default in self.defaults.items():
-            if default is MISSING and name not in table and name not in designed:
+            if default is MISSING and name not in table and name not in design_fields:
                 raise InvalidInputError("profile", dict(table), f"given with {name}")
 
     def build(self, table: Mapping[str, Any], sizes: Dimensions) -> Profile:
@@ -95,46 +96,46 @@ class ProfileKind:
                 values[name] = tuple(build_profile(term, sizes) for term in value)
             elif name not in design:
                 values[name] = value
-        if self.designed and len(design) + any(name in values for name in self.designed) != 1:
-            choice = f"exactly one of {' with '.join(self.designed)}, {' and '.join(DESIGN)}"
+        if self.design_fields and len(design) + any(name in values for name in self.design_fields) != 1:
+            choice = f"exactly one of {' with '.join(self.design_fields)}, {' and '.join(DESIGN)}"
             raise InvalidInputError("profile", dict(table), f"given with {choice}")
-        self._require(values, self.designed if design else ())
+        self._require(values, self.design_fields if design else ())
         profile: Profile
         if not design:
-            radii = {name: factor * sizes.radius for name, factor in self.of_radius.items()}
-            profile = self.made(**(radii | values))
+            radii = {name: factor * sizes.radius for name, factor in self.radius_multiples.items()}
+            profile = self.profile_class(**(radii | values))
             return profile
         values |= {"radius": sizes.radius, "modulus": sizes.modulus}
         if "design_load" in design:
-            profile = self.made.for_load(design["design_load"], length=sizes.roller_length, **values)
+            profile = self.profile_class.for_load(design["design_load"], length=sizes.roller_length, **values)
         else:
-            profile = self.made.for_pressure(design["design_pressure"], **values)
+            profile = self.profile_class.for_pressure(design["design_pressure"], **values)
         return profile
 
 
-def _checked_value(key: str, value: object, depth: int) -> Any:
+def _check_value(key: str, value: object, depth: int) -> Any:
     """Value of a table after its check: a nested profile, a list of profiles or lengths, or a number."""
     if key in NESTED:
-        return _nested_table(value, depth)
+        return _check_nested_table(value, depth)
     if key == "terms":
         checks.instance("profile.terms", value, (list, tuple), "a list of profiles")
         assert isinstance(value, Sequence)
-        return [_nested_table(term, depth) for term in value]
+        return [_check_nested_table(term, depth) for term in value]
     if key not in POINTS:
-        return number(f"profile.{key}", value)
+        return check_number(f"profile.{key}", value)
     points = checks.coordinates(f"profile.{key}", value, "metres").tolist()
-    if len(points) > MOST_POINTS:
-        thin = "thin the points out: cells of the contact are micrometres wide"
-        raise InvalidInputError("profile", f"{len(points)} points", f"at most {MOST_POINTS} points", thin)
-    return [rounded(point) for point in points]
+    if len(points) > MAX_POINTS:
+        remedy = "thin the points out: cells of the contact are micrometres wide"
+        raise InvalidInputError("profile", f"{len(points)} points", f"at most {MAX_POINTS} points", remedy)
+    return [round_digits(point) for point in points]
 
 
-def _nested_table(value: object, depth: int) -> Table:
+def _check_nested_table(value: object, depth: int) -> Table:
     """Table of a profile within another one, without its name."""
     return {key: entry for key, entry in profile_table(value, depth + 1).items() if key != "name"}
 
 
-def _points_of_file(table: Table) -> Table:
+def _read_points(table: Table) -> Table:
     """Table of a measured profile with the points of its file: identity depends on them, not on the file's path."""
     if "file" not in table:
         for key in FILE_OPTIONS:
@@ -155,15 +156,15 @@ def _points_of_file(table: Table) -> Table:
 PROFILES: dict[str, ProfileKind] = {
     "cylinder": ProfileKind(profiles.Cylinder),
     "tapered": ProfileKind(profiles.Tapered),
-    "lundberg": ProfileKind(profiles.Lundberg, designed=("amplitude",)),
-    "johns-gohar": ProfileKind(profiles.JohnsGohar, designed=("amplitude", "half_width")),
-    "fujiwara-kawase": ProfileKind(profiles.FujiwaraKawase, designed=("amplitude",)),
-    "iso-cylindrical": ProfileKind(profiles.IsoCylindrical, of_radius={"diameter": 2.0}),
-    "iso-tapered": ProfileKind(profiles.IsoTapered, of_radius={"diameter": 2.0}),
+    "lundberg": ProfileKind(profiles.Lundberg, design_fields=("amplitude",)),
+    "johns-gohar": ProfileKind(profiles.JohnsGohar, design_fields=("amplitude", "half_width")),
+    "fujiwara-kawase": ProfileKind(profiles.FujiwaraKawase, design_fields=("amplitude",)),
+    "iso-cylindrical": ProfileKind(profiles.IsoCylindrical, radius_multiples={"diameter": 2.0}),
+    "iso-tapered": ProfileKind(profiles.IsoTapered, radius_multiples={"diameter": 2.0}),
     "full-crown": ProfileKind(profiles.FullCrown),
     "partial-crown": ProfileKind(profiles.PartialCrown),
     "ellipsoid": ProfileKind(profiles.Ellipsoid),
-    "sphere": ProfileKind(profiles.Sphere, of_radius={"radius": 1.0}),
+    "sphere": ProfileKind(profiles.Sphere, radius_multiples={"radius": 1.0}),
     "chamfer": ProfileKind(profiles.Chamfer),
     "measured": ProfileKind(profiles.Measured),
     "halves": ProfileKind(profiles.Halves),
@@ -172,13 +173,13 @@ PROFILES: dict[str, ProfileKind] = {
 }
 """Kinds of profile by their name in a study."""
 
-KIND_OF = {kind.made: name for name, kind in PROFILES.items()}  # Name of the kind of each class
+KIND_OF = {kind.profile_class: name for name, kind in PROFILES.items()}  # Name of the kind of each class
 
 
 def profile_table(value: object, depth: int = 0) -> Table:
     """Table of a profile without defaults: of a kind, a table with ``kind`` and the class' fields, or an object."""
-    if depth > DEEPEST:
-        raise InvalidInputError("profile", f"more than {DEEPEST} profiles within one another", "nested less deeply")
+    if depth > MAX_NESTING:
+        raise InvalidInputError("profile", f"more than {MAX_NESTING} profiles within one another", "nested less deeply")
     if is_dataclass(value) and type(value) in KIND_OF:
         value = {"kind": KIND_OF[type(value)], **{entry.name: getattr(value, entry.name) for entry in fields(value)}}
     elif isinstance(value, Profile) and not isinstance(value, type):
@@ -207,7 +208,7 @@ def profile_table(value: object, depth: int = 0) -> Table:
 def build_profile(table: Mapping[str, Any], sizes: Dimensions) -> Profile:
     """Profile of a table from :func:`profile_table`."""
     if table["kind"] == user_profiles.KIND:
-        return user_profiles.registered(table)
+        return user_profiles.registered_profile(table)
     values = {key: value for key, value in table.items() if key not in ("kind", "name")}
     return PROFILES[table["kind"]].build(values, sizes)
 
@@ -229,25 +230,27 @@ def check_without_files(content: Any) -> None:
             raise InvalidInputError("profile.file", table["file"], "left out of study.json, which contains the points")
 
 
-def profile_text(table: Mapping[str, Any], *, in_units: bool = False) -> str:
+def format_profile(table: Mapping[str, Any], *, in_units: bool = False) -> str:
     """Name of a profile, or its kind and values: in SI, a label of a dimension, or in the units of engineers."""
     if "name" in table:
         return str(table["name"])
     kind, units = str(table["kind"]), UNITS | {"design_pressure": "Pa", "design_load": "N"}
     if kind == "sum":
-        return " + ".join(profile_text(term, in_units=in_units) for term in table["terms"])
+        return " + ".join(format_profile(term, in_units=in_units) for term in table["terms"])
     if kind == "halves":
-        return " | ".join(profile_text(table[side], in_units=in_units) for side in ("left", "right"))
+        return " | ".join(format_profile(table[side], in_units=in_units) for side in ("left", "right"))
     if kind == "measured":
         return f"measured {hashlib.sha256(json.dumps(table).encode()).hexdigest()[:8]}"
     if kind == user_profiles.KIND:
         return f"{table['class']} {table['content'][:8]}"
     if kind == "effective-length":
         length = table["effective_length"]
-        over = quantity(length, "m") if in_units else f"{length:g} m"
-        return f"{profile_text(table['profile'], in_units=in_units)} over {over}"
+        length_text = format_quantity(length, "m") if in_units else f"{length:g} m"
+        return f"{format_profile(table['profile'], in_units=in_units)} over {length_text}"
     values = {key: table[key] for key in sorted(table) if key != "kind"}
     if in_units:
-        items = (f"{key.replace('_', ' ')} {quantity(value, units.get(key, 'm'))}" for key, value in values.items())
+        items = (
+            f"{key.replace('_', ' ')} {format_quantity(value, units.get(key, 'm'))}" for key, value in values.items()
+        )
         return ", ".join([kind, *items])
     return " ".join([kind, *(f"{key}={value:g}" for key, value in values.items())])

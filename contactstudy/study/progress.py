@@ -17,7 +17,7 @@ from contactstudy.study.worker import Outcome
 LOGGER = logging.getLogger(__name__)
 
 
-def duration(seconds: float) -> str:
+def format_duration(seconds: float) -> str:
     """Duration of a forecast in words."""
     if seconds < 100:
         return f"{seconds:.0f} s"
@@ -27,9 +27,9 @@ def duration(seconds: float) -> str:
 class Progress:
     """Bar, if `shown`, and log of one run; new lines are appended."""
 
-    def __init__(self, path: Path, *, shown: bool = True) -> None:
-        self._bar_shown = shown and sys.stderr.isatty() and not os.environ.get("CI")
-        self._messages_shown = shown
+    def __init__(self, path: Path, *, visible: bool = True) -> None:
+        self._bar_shown = visible and sys.stderr.isatty() and not os.environ.get("CI")
+        self._messages_shown = visible
         self._bar: Any = None
         self._count = self._total = self._logged = 0
         self._began = time.monotonic()
@@ -59,7 +59,7 @@ class Progress:
             self._file.write(f"{now} {message}\n")
 
     def notify(self, message: str) -> None:
-        """Write a line to the log and, if progress is wanted, to the screen; safe in a handler of signals."""
+        """Write a line to the log and, if progress is visible, to the screen; safe in a handler of signals."""
         self.log(message)
         if self._messages_shown:
             with contextlib.suppress(OSError, ValueError):
@@ -85,7 +85,7 @@ class Progress:
                 bar_format="{percentage:3.0f}%|{bar}| {n_fmt}/{total_fmt} cases [{elapsed}{postfix}]",
             )
 
-    def finished(self, name: str, outcome: Outcome) -> None:
+    def record(self, name: str, outcome: Outcome) -> None:
         """Count one case; log a failure with its reason."""
         self._count += 1
         if outcome.status != "ok":
@@ -95,8 +95,8 @@ class Progress:
 
     def show(self) -> None:
         """Log and show the number of finished cases and the time left at the present speed."""
-        remaining = (time.monotonic() - self._began) * (self._total - self._count) / max(self._count, 1)
-        forecast = f"about {duration(remaining)} left" if self._count < self._total else "all done"
+        remaining_seconds = (time.monotonic() - self._began) * (self._total - self._count) / max(self._count, 1)
+        forecast = f"about {format_duration(remaining_seconds)} left" if self._count < self._total else "all done"
         self.log(f"{self._count}/{self._total} cases, {forecast}")
         if self._bar is not None:
             self._bar.set_postfix_str(forecast, refresh=False)

@@ -9,21 +9,21 @@ from pathlib import Path
 import numpy as np
 
 from contactstudy.study.folder import STATES, States
-from contactstudy.study.progress import duration
+from contactstudy.study.progress import format_duration
 from contactstudy.study.run import RunReport
 
-MOST_REASONS = 20  # Reasons on the screen; ``--all`` lists every case with its reason
+MAX_REASONS = 20  # Reasons on the screen; ``--all`` lists every case with its reason
 
 
-def shown(path: Path) -> str:
-    """Path relative to the current folder where it lies within it."""
+def format_path(path: Path) -> str:
+    """Return a path, relative to the current folder if inside the folder."""
     with contextlib.suppress(ValueError, OSError):
         return str(path.relative_to(Path.cwd()))
     return str(path)
 
 
-def in_bytes(size: float) -> str:
-    """Size of files in words."""
+def format_bytes(size: float) -> str:
+    """Return a size of files with a unit."""
     for unit in ("bytes", "kB", "MB"):
         if size < 1000:
             return f"{size:.3g} {unit}"
@@ -35,46 +35,47 @@ def run_lines(report: RunReport) -> Iterator[str]:
     """Lines on the result of a run."""
     counts = ", ".join(f"{count} {status}" for status, count in report.counts.items())
     yield f"{len(report.plan)} cases: {counts}; {report.solved} solved now"
-    yield from _grouped(("failed", reason, case.name) for case, reason in report.failures)
+    yield from _group_reasons(("failed", reason, case.name) for case, reason in report.failures)
     if report.failures:
-        yield f"  details in {shown(report.folder / 'run.log')}"
-        yield f"  again with: contactstudy rerun {shown(report.folder)}"
+        yield f"  details in {format_path(report.folder / 'run.log')}"
+        yield f"  again with: contactstudy rerun {format_path(report.folder)}"
     yield from _reasons(report.states, "skipped")
-    for case in report.not_converged[:MOST_REASONS]:
+    for case in report.not_converged[:MAX_REASONS]:
         yield f"  not converged, do not rely on it: {case.name}"
     for remark in report.remarks:
         yield f"  {remark}"
     if files := report.files:
         size = sum(path.stat().st_size for path in files)
-        yield f"{len(files)} netCDF file{'s' * (len(files) > 1)}, {in_bytes(size)}, in {shown(files[0].parent)}"
+        folder, plural = format_path(files[0].parent), "s" * (len(files) > 1)
+        yield f"{len(files)} netCDF file{plural}, {format_bytes(size)}, in {folder}"
 
 
 def stale_lines(report: RunReport) -> Iterator[str]:
-    """Lines on cases that another version solved and the run left as they are."""
-    if stale := report.states.indices("stale"):
-        again = f"contactstudy rerun {shown(report.folder)}"
-        yield f"{len(stale)} stale ({report.states.reasons[stale[0]]}); again with: {again}"
+    """Lines on cases of another version that the run did not solve again."""
+    if stale_cases := report.states.indices("stale"):
+        rerun_command = f"contactstudy rerun {format_path(report.folder)}"
+        yield f"{len(stale_cases)} stale ({report.states.reasons[stale_cases[0]]}); again with: {rerun_command}"
 
 
 def _reasons(states: States, *statuses: str) -> Iterator[str]:
     """Lines on cases of some states, with their reasons."""
     indices = states.indices(*statuses)
-    yield from _grouped(
+    yield from _group_reasons(
         (STATES[states.status[index]], states.reasons[index], f"{states.plan[index].id[:16]} {states.plan[index].name}")
         for index in indices
         if index in states.reasons
     )
 
 
-def _grouped(cases: Iterable[tuple[str, str, str]]) -> Iterator[str]:
+def _group_reasons(cases: Iterable[tuple[str, str, str]]) -> Iterator[str]:
     """Lines on cases, each its status, reason and name: of equal reasons the first case and the number of others."""
     groups: dict[tuple[str, str], list[str]] = {}
     for status, reason, name in cases:
         groups.setdefault((status, reason), []).append(name)
-    for (status, reason), names in list(groups.items())[:MOST_REASONS]:
+    for (status, reason), names in list(groups.items())[:MAX_REASONS]:
         yield f"  {status}: {names[0]}: {reason}{f' (and {len(names) - 1} more)' if len(names) > 1 else ''}"
-    if len(groups) > MOST_REASONS:
-        yield f"  ... and {len(groups) - MOST_REASONS} more reasons"
+    if len(groups) > MAX_REASONS:
+        yield f"  ... and {len(groups) - MAX_REASONS} more reasons"
 
 
 def state_lines(states: States, *, everything: bool) -> Iterator[str]:
@@ -95,11 +96,11 @@ def state_lines(states: States, *, everything: bool) -> Iterator[str]:
 
 
 def forecast_lines(states: States) -> Iterator[str]:
-    """Lines on exclusions without effect and doubtful magnitudes, and on bytes and time of the cases to come."""
+    """Lines on exclusions without effect, unusual magnitudes, and bytes and time of the remaining cases."""
     plan = states.plan
-    yield from (f"  {unknown}" for unknown in plan.unknown[:MOST_REASONS])
-    for doubt in plan.doubts[:MOST_REASONS]:
-        yield f"  doubtful magnitude in SI units: {doubt}"
+    yield from (f"  {message}" for message in plan.unknown[:MAX_REASONS])
+    for warning in plan.doubts[:MAX_REASONS]:
+        yield f"  doubtful magnitude in SI units: {warning}"
     review = plan.review
     if review.checked < review.groups:
         yield f"  {review.checked} of {review.groups} contacts were checked; a run checks all"
@@ -110,13 +111,13 @@ def forecast_lines(states: States) -> Iterator[str]:
     solved = int(np.isfinite(seconds).sum())
     if solved:
         size = sum(path.stat().st_size for path in states.results.paths)
-        total = in_bytes(size / solved * len(plan.unique))
+        total = format_bytes(size / solved * len(plan.unique))
         yield f"files: about {total} at level {plan.level}, from {solved} solved cases"
     else:
-        yield f"files: about {in_bytes(plan.size)} at level {plan.level} before compression"
+        yield f"files: about {format_bytes(plan.size)} at level {plan.level} before compression"
     if missing and solved:
         yield (
-            f"time: about {duration(float(np.nanmean(seconds)) * missing)} of one core for {missing} cases, "
+            f"time: about {format_duration(float(np.nanmean(seconds)) * missing)} of one core for {missing} cases, "
             f"from {solved} solved ones"
         )
     elif missing:

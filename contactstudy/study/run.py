@@ -19,18 +19,18 @@ from contactstudy import checks
 from contactstudy.errors import InvalidInputError, StoreError, StudyFileError, Terminated
 from contactstudy.study.batches import write_batch
 from contactstudy.study.definition import Study
-from contactstudy.study.engine import WAIT_SECONDS, Engine, Results, Tasks, execute, refuse_in_a_worker
+from contactstudy.study.engine import WAIT_SECONDS, Engine, TaskResults, Tasks, execute, refuse_in_worker
 from contactstudy.study.folder import Folder, Share, States
 from contactstudy.study.plan import Plan, PlannedCase
 from contactstudy.study.progress import Progress
 from contactstudy.study.settings import RUN
-from contactstudy.study.worker import Solver, Task, without_result
+from contactstudy.study.worker import Solver, Task, batch_without_numbers
 
 if TYPE_CHECKING:
     from distributed import Client
 
-MOST_DOUBTS = 5  # Questions on magnitudes that a run repeats; `plan` shows more
-AGAIN = ("failed", "stale", "skipped")  # States that can be solved anew
+MAX_WARNINGS = 5  # Warnings of magnitudes that a run repeats; `plan` lists more
+RERUN_STATUSES = ("failed", "stale", "skipped")  # States that can be solved anew
 
 
 @dataclass(frozen=True)
@@ -86,32 +86,32 @@ class RunReport:
 
 @contextlib.contextmanager
 def _interruptible(notify: Callable[[str], None]) -> Iterator[None]:
-    """Let the first Ctrl-C, SIGTERM or SIGHUP end the block; further ones do not break off the work after it."""
+    """End the block at the first Ctrl-C, SIGTERM or SIGHUP; ignore further signals during the cleanup."""
     if threading.current_thread() is not threading.main_thread():
         yield
         return
     numbers = [signal.SIGINT, signal.SIGTERM, *([signal.SIGHUP] if hasattr(signal, "SIGHUP") else [])]
-    previous = {number: signal.getsignal(number) for number in numbers}
-    # nohup makes a process ignore SIGHUP, which stays so.
-    handled = [number for number in numbers if previous[number] != signal.SIG_IGN]
+    previous = {signal_number: signal.getsignal(signal_number) for signal_number in numbers}
+    # A process under nohup continues to ignore SIGHUP.
+    handled_signals = [signal_number for signal_number in numbers if previous[signal_number] != signal.SIG_IGN]
 
-    def handler(number: int, frame: FrameType | None) -> None:
-        for other in handled:
-            signal.signal(other, signal.SIG_IGN)
+    def handler(signal_number: int, frame: FrameType | None) -> None:
+        for handled_number in handled_signals:
+            signal.signal(handled_number, signal.SIG_IGN)
         notify("interrupted: ending the workers ...")
-        if number == signal.SIGINT:
+        if signal_number == signal.SIGINT:
             raise KeyboardInterrupt
-        interrupt = Terminated(f"ended by {signal.Signals(number).name}")
-        interrupt.number = number
+        interrupt = Terminated(f"ended by {signal.Signals(signal_number).name}")
+        interrupt.number = signal_number
         raise interrupt
 
-    for number in handled:
-        signal.signal(number, handler)
+    for signal_number in handled_signals:
+        signal.signal(signal_number, handler)
     try:
         yield
     finally:
-        for number in handled:
-            signal.signal(number, previous[number])
+        for signal_number in handled_signals:
+            signal.signal(signal_number, previous[signal_number])
 
 
 def run_study(
@@ -130,14 +130,14 @@ def run_study(
     """Solve every case of a study that is not solved yet.
 
     A run may be interrupted in any way and called again: finished cases are not solved twice. A script that calls this
-    function needs the guard ``if __name__ == "__main__":``, because the workers are processes that import it.
+    function needs the guard ``if __name__ == "__main__":``, because the worker processes import the script.
 
     Parameters
     ----------
     study : Study
         The study.
     folder : str or Path, optional
-        Folder of its files; default ``results/<name>``. It belongs to this study.
+        Folder of its files; default ``results/<name>``. A folder contains a single study.
     workers : int, optional
         Number of local processes; default one per core. 0 solves in this process, without dask.
     scheduler : str or distributed.Client, optional
@@ -180,10 +180,10 @@ def run_study(
     >>> run_study(study, tempfile.mkdtemp(), workers=0, progress=False).counts
     {'ok': 2}
     """
-    refuse_in_a_worker()
+    refuse_in_worker()
     checks.instance("study", study, Study, "a Study, as from Study.from_toml(path)")
     engine = Engine(workers=workers, scheduler=scheduler, wait=wait, solver=solver)
-    part = _checked_share(share)
+    run_share = _check_share(share)
     plan = study.plan()
     if not plan.unique:
         reason = plan.reason(plan.skipped[0]) if plan.skipped else "every combination is excluded"
@@ -191,25 +191,25 @@ def run_study(
     results_folder = Folder(folder if folder is not None else Path("results") / study.name)
     results_folder.create()
     with (
-        results_folder.locked(part),
-        Progress(results_folder.path / f"{part.name}.log", shown=progress) as log,
+        results_folder.locked(run_share),
+        Progress(results_folder.path / f"{run_share.name}.log", visible=progress) as log,
         _interruptible(log.notify),
     ):
         try:
-            results_folder.clean(part)
+            results_folder.clean(run_share)
             results_folder.write_study(study)
-            for message in (*plan.unknown[:MOST_DOUBTS], *plan.doubts[:MOST_DOUBTS]):
+            for message in (*plan.unknown[:MAX_WARNINGS], *plan.doubts[:MAX_WARNINGS]):
                 log.remark(message if message in plan.unknown else f"doubtful magnitude in SI units: {message}")
-            results, messages = results_folder.verified_results(part)
+            results, messages = results_folder.verified_results(run_share)
             for message in messages:
                 log.remark(message)
-            groups = _groups_to_solve(States(plan, results), again, part, sample)
-            lock = results_folder.path / f"{part.name}.lock"
+            groups = _groups_to_solve(States(plan, results), again, run_share, sample)
+            lock = results_folder.path / f"{run_share.name}.lock"
             task = Task(
                 jobs=(),
                 folder=str(results_folder.batches),
                 lock=(str(lock), lock.read_text(encoding="utf-8")),
-                prefix=part.prefix,
+                prefix=run_share.prefix,
                 level=plan.level,
                 study=plan.name,
                 run=results.latest_run + 1,
@@ -218,7 +218,7 @@ def run_study(
             solved = sum(map(len, groups))
             log.begin(solved, total=len(plan.unique))
             tasks = Tasks(plan, groups, task)
-            _collect(execute(tasks, engine, log.remark), task, results_folder, part, log)
+            _collect_outcomes(execute(tasks, engine, log.remark), task, results_folder, run_share, log)
         except KeyboardInterrupt as interrupt:
             counts = results_folder.states(plan).counts
             finished = counts.get("ok", 0) + counts.get("stale", 0)
@@ -236,7 +236,7 @@ def run_study(
     return report
 
 
-def _checked_share(share: tuple[int, int] | None) -> Share:
+def _check_share(share: tuple[int, int] | None) -> Share:
     """Share of a run."""
     if share is None:
         return Share()
@@ -249,63 +249,65 @@ def _checked_share(share: tuple[int, int] | None) -> Share:
 
 
 def _groups_to_solve(states: States, again: tuple[str, ...], share: Share, sample: int | None) -> list[list[int]]:
-    """Cases that are not done, group by group, those with a common operator together, the expensive ones first."""
+    """Cases to solve, group by group, ordered by their operator, expensive groups first."""
     for status in again:
-        checks.known_name("again", status, AGAIN)
+        checks.known_name("again", status, RERUN_STATUSES)
     plan = states.plan
-    unique = chosen = np.array(plan.unique, dtype=np.int64)
+    unique = selected = np.array(plan.unique, dtype=np.int64)
     if sample is not None:
         count = min(checks.count("sample", sample), len(unique))
-        chosen = unique[np.linspace(0, len(unique) - 1, count).astype(np.int64)]
-    missing = set(states.indices("missing", *again)) | {
+        selected = unique[np.linspace(0, len(unique) - 1, count).astype(np.int64)]
+    unsolved = set(states.indices("missing", *again)) | {
         index for index in states.indices("stale") if not states.usable[index]
     }
-    missing &= set(chosen.tolist())
+    unsolved &= set(selected.tolist())
     members: dict[tuple[int, int], list[int]] = {}
     for index in unique.tolist():
         members.setdefault((int(plan.operators[index]), int(plan.groups[index])), []).append(index)
 
-    def order_of(key: tuple[int, int]) -> tuple[bool, tuple[int, int]]:
+    def sort_key(key: tuple[int, int]) -> tuple[bool, tuple[int, int]]:
         values = plan.values(members[key][0])
         needs_no_ends = values.get("body") == "half-space" or values.get("model", "exact") != "exact"
         return needs_no_ends, key
 
-    order = sorted(members, key=order_of)
+    order = sorted(members, key=sort_key)
     groups = [members[key] for key in order]
     if share.count > 1:
         # A piece contains consecutive groups with one operator, so many at most that every share has several turns.
-        longest, pieces = max(1, len(groups) // (RUN.turns * share.count)), list[int]()
-        for _, members_of_one in groupby(operator for operator, _ in order):
+        max_groups, pieces = max(1, len(groups) // (RUN.turns * share.count)), list[int]()
+        for _, operator_groups in groupby(operator for operator, _ in order):
             first = pieces[-1] + 1 if pieces else 0
-            pieces += [first + number // longest for number, _ in enumerate(members_of_one)]
+            pieces += [first + position // max_groups for position, _ in enumerate(operator_groups)]
         groups = [group for group, piece in zip(groups, pieces, strict=True) if piece % share.count == share.number - 1]
-    remaining = []
+    unsolved_groups = []
     for group in groups:
         if "entrainment_speed" in plan.values(group[0]):
             # Films start from one another along falling speeds: all of them or none.
             films = sorted(group, key=lambda index: -plan.values(index)["entrainment_speed"])
-            remaining.append([] if missing.isdisjoint(group) else films)
+            unsolved_groups.append([] if unsolved.isdisjoint(group) else films)
         else:
-            remaining.append([index for index in group if index in missing])
-    return [group for group in remaining if group]
+            unsolved_groups.append([index for index in group if index in unsolved])
+    return [group for group in unsolved_groups if group]
 
 
-def _collect(results: Results, template: Task, results_folder: Folder, share: Share, log: Progress) -> None:
-    """Take in the outcomes as they come, and join small batches meanwhile and at the end."""
-    compacted = time.monotonic()
+def _collect_outcomes(
+    results: TaskResults, template: Task, results_folder: Folder, share: Share, log: Progress
+) -> None:
+    """Record the outcomes, and join small batches during the run and at the end."""
+    last_compaction = time.monotonic()
     try:
         with contextlib.closing(results):
             for jobs, outcomes in results:
                 job_of = {job.id: job for job in jobs}
                 for outcome in outcomes:
-                    log.finished(job_of[outcome.id].name, outcome)
+                    log.record(job_of[outcome.id].name, outcome)
                     if outcome.message.startswith("WorkerDied"):
-                        batch = without_result(template, job_of[outcome.id], outcome.status, outcome.message)
+                        batch = batch_without_numbers(template, job_of[outcome.id], outcome.status, outcome.message)
                         write_batch(Path(template.folder), f"{template.prefix}{outcome.id[:12]}", batch)
                 log.show()
-                if time.monotonic() - compacted > RUN.compact_seconds:
+                if time.monotonic() - last_compaction > RUN.compact_seconds:
                     _compact(results_folder, share, log)
-                    compacted = time.monotonic()
+                    last_compaction = time.monotonic()
     finally:
         results_folder.clean(share)
     _compact(results_folder, share, log, at_end=True)
@@ -329,4 +331,4 @@ def rerun_study(folder: str | Path, **options: Any) -> RunReport:
     **options
         `workers`, `scheduler`, `wait`, `progress` and `solver`, as for :func:`run_study`.
     """
-    return run_study(Folder(folder).read_study(), folder, again=AGAIN, **options)
+    return run_study(Folder(folder).read_study(), folder, again=RERUN_STATUSES, **options)

@@ -9,15 +9,15 @@ from dataclasses import dataclass
 class RunSettings:
     """Times and sizes of a run; results depend on none of them."""
 
-    task_seconds: float = 10.0  # longer tasks need fewer messages, shorter ones spread better
+    task_seconds: float = 10.0  # longer tasks need fewer messages, shorter tasks balance better
     save_seconds: float = 15.0  # a worker writes its finished cases: a killed worker loses no more
     compact_seconds: float = 20.0  # a run joins small batches
-    poll_seconds: float = 0.5  # a run looks for workers that came or went
+    poll_seconds: float = 0.5  # a run checks for new and lost workers
     start_seconds: float = 60.0  # longest wait for a scheduler's answer, or the start of a worker
     # time without a usable worker after which the user is informed, or, if all are excluded, the run ends
     announce_seconds: float = 10.0
     close_seconds: float = 2.0  # longest wait for the end of a connection
-    share_seconds: float = 10.0  # longest wait of a share for another one that starts at the same moment
+    share_seconds: float = 10.0  # longest wait of a share for another share that starts simultaneously
     buffer_bytes: int = 2**26  # size in memory at which a worker writes a batch
     batch_bytes: int = 2**27  # batches of this size, or of batch_cases, are not joined further
     batch_cases: int = 2**13

@@ -27,7 +27,7 @@ KEYS = ("class", "values", "content")
 LENGTHS = (1e-4, 1e-3, 1e-2, 1e-1)
 """Lengths of a roller, metres, for which drops enter the digest; a profile may be invalid for some."""
 
-LARGEST_LIST = 100  # Largest array that a file lists; a larger one is represented by its digest
+MAX_LISTED_SIZE = 100  # Largest array that a file lists; a larger one is represented by its digest
 REMEDY = "give its values as numbers, texts or lists, or the shape as profiles.Measured(x, drop)"
 
 _registry: dict[str, Profile] = {}
@@ -40,9 +40,9 @@ def register(profile: Profile) -> dict[str, Any]:
     values = _values(profile)
     content = _digest([name, values, _behaviour(profile)])
     if content not in _registry:
-        _registry[content] = _copied(profile, name, content)
-    unnamed = type(profile).__repr__ is object.__repr__
-    label = f"{name} {content[:8]}" if unnamed else in_words(profile)
+        _registry[content] = _copy_by_pickle(profile, name, content)
+    has_default_repr = type(profile).__repr__ is object.__repr__
+    label = f"{name} {content[:8]}" if has_default_repr else in_words(profile)
     return {"kind": KIND, "name": label, "class": name, "values": values, "content": content}
 
 
@@ -55,7 +55,7 @@ def read_table(table: Mapping[str, Any]) -> dict[str, Any]:
     return {key: table[key] for key in KEYS}
 
 
-def registered(table: Mapping[str, Any]) -> Profile:
+def registered_profile(table: Mapping[str, Any]) -> Profile:
     """Profile of a table; a straight line, for plans only, if this process lacks it."""
     return _registry.get(table["content"]) or Sampled(str(table["class"]), (-0.5, 0.5), (0.0, 0.0))
 
@@ -82,7 +82,7 @@ def are_registered(parameters: Any) -> bool:
     return all(table["content"] in _registry for table in tables_within(parameters) if table["kind"] == KIND)
 
 
-def receive(profiles: Mapping[str, Profile]) -> None:
+def receive_profiles(profiles: Mapping[str, Profile]) -> None:
     """Add profiles that another process sent to the registry of this worker."""
     _registry.update(profiles)
 
@@ -104,7 +104,7 @@ def _values(profile: Profile) -> dict[str, Any]:
 
 def _json_value(name: str, value: object) -> Any:
     """JSON value of an attribute."""
-    if isinstance(value, np.ndarray) and value.size > LARGEST_LIST:
+    if isinstance(value, np.ndarray) and value.size > MAX_LISTED_SIZE:
         return f"{value.size} values {_digest(_json_value(name, value.tolist()))[:16]}"
     if isinstance(value, (np.ndarray, np.generic)):
         value = value.tolist()
@@ -126,20 +126,20 @@ def _json_value(name: str, value: object) -> Any:
 def _behaviour(profile: Profile) -> list[Any]:
     """Return drops and radii for every valid length, in 9 digits, because processors differ in rounding."""
     behaviour: list[Any] = []
-    refusal: Exception | None = None
+    last_error: Exception | None = None
     for length in LENGTHS:
         x = -0.5 * length * np.cos(np.linspace(0.0, np.pi, 1001))
         try:
             drops, radii = checked_drop(profile, x, length), local_radius(profile, x, length, length)
         except (ContactStudyError, ArithmeticError, ValueError) as error:
-            refusal = error
+            last_error = error
             behaviour.append(None)
             continue
         behaviour.append([f"{value:.9g}" for value in [*(drops + 0.0), *radii]])
     if not any(behaviour):
         lengths = ", ".join(f"{length:g}" for length in LENGTHS)
         allowed = f"an object whose drop(x, length) is valid for a roller of {lengths} m, at least one of them"
-        raise InvalidInputError("profile", profile, allowed, str(refusal))
+        raise InvalidInputError("profile", profile, allowed, str(last_error))
     return behaviour
 
 
@@ -148,19 +148,19 @@ def _digest(content: object) -> str:
     return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
 
 
-def _copied(profile: Profile, name: str, content: str) -> Profile:
-    """Copy of a profile by its pickle, as a worker receives it."""
+def _copy_by_pickle(profile: Profile, name: str, content: str) -> Profile:
+    """Copy of a profile by its pickle, as in a worker."""
     import pickle
 
     import cloudpickle  # type: ignore[import-untyped]
 
-    refused = "an object that can be pickled for workers ({})"
+    requirement = "an object that can be pickled for workers ({})"
     try:
         copy: Profile = pickle.loads(cloudpickle.dumps(profile))
         content_of_copy = _digest([name, _values(copy), _behaviour(copy)])
     except Exception as error:  # a user's class may raise anything
         reason = f"{type(error).__name__}: {error}"
-        raise InvalidInputError("profile", name, refused.format(reason), REMEDY) from error
+        raise InvalidInputError("profile", name, requirement.format(reason), REMEDY) from error
     if content_of_copy != content:
-        raise InvalidInputError("profile", name, refused.format("its copy is another profile"), REMEDY)
+        raise InvalidInputError("profile", name, requirement.format("its copy is another profile"), REMEDY)
     return copy

@@ -26,11 +26,11 @@ from contactstudy.arrays.variables import DERIVED
 from contactstudy.case.gridding import first_sufficient
 from contactstudy.errors import ContactStudyError, MagnitudeWarning, StoreError
 from contactstudy.profiles import Profile
-from contactstudy.study.batches import IDENTITY_LENGTH, STATUSES, Batch, join, with_arrays, write_batch
+from contactstudy.study.batches import IDENTITY_LENGTH, STATUSES, Batch, add_arrays, join_batches, write_batch
+from contactstudy.study.case_setup import Setup, build_setup
 from contactstudy.study.parameters import PARAMETERS
 from contactstudy.study.settings import RUN
-from contactstudy.study.setup import Setup, build_setup
-from contactstudy.study.user_profiles import receive
+from contactstudy.study.user_profiles import receive_profiles
 from contactstudy.versions import versions
 
 Solver = Callable[..., xr.Dataset]  # Callable with the arguments and the result of :func:`contactstudy.solve`
@@ -70,7 +70,7 @@ class Outcome(NamedTuple):
 
 
 @cache
-def circumstances() -> dict[str, Any]:
+def run_context() -> dict[str, Any]:
     """Versions and commit of this process."""
     result: dict[str, Any] = {**versions()}
     source = Path(__file__)
@@ -78,8 +78,8 @@ def circumstances() -> dict[str, Any]:
     with contextlib.suppress(OSError, subprocess.SubprocessError):
         # Only a checkout that tracks this file is the package's repository.
         subprocess.run([*git, "ls-files", "--error-unmatch", source.name], capture_output=True, check=True, timeout=10)
-        described = [*git, "describe", "--always", "--dirty", "--abbrev=40"]
-        commit = subprocess.run(described, capture_output=True, check=True, timeout=10, text=True)
+        describe_command = [*git, "describe", "--always", "--dirty", "--abbrev=40"]
+        commit = subprocess.run(describe_command, capture_output=True, check=True, timeout=10, text=True)
         result["commit"] = commit.stdout.strip()
     return result
 
@@ -98,7 +98,7 @@ def single_threaded() -> Iterator[None]:
         pyfftw.config.NUM_THREADS = previous
 
 
-def perform(task: Task, solver: Solver | None = None) -> list[Outcome]:
+def solve_task(task: Task, solver: Solver | None = None) -> list[Outcome]:
     """Solve the cases of a task, write them in batches, and return their outcomes.
 
     A case fails with an error of the package, a lack of memory or a singular system of equations. Any other error is a
@@ -112,31 +112,31 @@ def perform(task: Task, solver: Solver | None = None) -> list[Outcome]:
     if lock != text:
         host = socket.gethostname()
         raise StoreError(f"a worker on {host} reads {lock[:200]!r} at {path}, not this run's lock; share the folder")
-    receive(task.profiles)
+    receive_profiles(task.profiles)
     pending: list[Batch] = []
     outcomes: list[Outcome] = []
 
     def flush() -> None:
-        groups = by_structure(pending)
+        groups = group_by_structure(pending)
         pending.clear()
         for batches in groups:
-            joined = join(batches)
-            write_batch(Path(task.folder), f"{task.prefix}{uuid.uuid4().hex[:12]}", joined)
-            for row, identity in enumerate(joined.ids):
-                status = STATUSES[joined.status[row]]
-                seconds = float(joined.numbers["seconds"][row]) if "seconds" in joined.numbers else 0.0
-                outcomes.append(Outcome(identity.decode(), status, seconds, joined.texts["message"][row]))
+            batch = join_batches(batches)
+            write_batch(Path(task.folder), f"{task.prefix}{uuid.uuid4().hex[:12]}", batch)
+            for row, identity in enumerate(batch.ids):
+                status = STATUSES[batch.status[row]]
+                seconds = float(batch.numbers["seconds"][row]) if "seconds" in batch.numbers else 0.0
+                outcomes.append(Outcome(identity.decode(), status, seconds, batch.texts["message"][row]))
 
-    saved = time.monotonic()
+    last_save = time.monotonic()
     try:
         with single_threaded():
             for _, jobs in groupby(task.jobs, key=lambda job: job.group):
                 for batch in _solve_group(task, list(jobs), solver):
                     pending.append(batch)
-                    full = bool(batch.arrays) and sum(entry.nbytes for entry in pending) > RUN.buffer_bytes
-                    if full or time.monotonic() - saved > RUN.save_seconds:
+                    is_full = bool(batch.arrays) and sum(entry.nbytes for entry in pending) > RUN.buffer_bytes
+                    if is_full or time.monotonic() - last_save > RUN.save_seconds:
                         flush()
-                        saved = time.monotonic()
+                        last_save = time.monotonic()
     except StoreError:
         raise
     except BaseException:
@@ -146,46 +146,46 @@ def perform(task: Task, solver: Solver | None = None) -> list[Outcome]:
     return outcomes
 
 
-def by_structure(batches: Iterable[Batch]) -> list[list[Batch]]:
-    """Batches that can be joined; those without arrays join the first of the others."""
+def group_by_structure(batches: Iterable[Batch]) -> list[list[Batch]]:
+    """Group batches that can be joined; batches without arrays belong to the first group."""
     groups: dict[Any, list[Batch]] = {}
     for batch in batches:
         groups.setdefault(batch.structure, []).append(batch)
-    without = groups.pop((), [])
-    if without and groups:
-        next(iter(groups.values())).extend(without)
-    elif without:
-        groups[()] = without
+    without_arrays = groups.pop((), [])
+    if without_arrays and groups:
+        next(iter(groups.values())).extend(without_arrays)
+    elif without_arrays:
+        groups[()] = without_arrays
     return list(groups.values())
 
 
 def _solve_group(task: Task, jobs: list[Job], solver: Solver | None) -> Iterator[Batch]:
     """Solve the cases of a group; numbers of a contact without stresses do not depend on uncoupled friction."""
-    shares = solver is None and len(jobs) > 1 and task.level == "summary"
-    solved: Batch | None = None
+    shares_contact = solver is None and len(jobs) > 1 and task.level == "summary"
+    shared_batch: Batch | None = None
     film: xr.Dataset | None = None
     for job in jobs:
-        began = time.perf_counter()
+        start_time = time.perf_counter()
         try:
             setup = build_setup(job.parameters)
         except ContactStudyError as error:
-            yield without_result(task, job, "skipped", str(error))
+            yield batch_without_numbers(task, job, "skipped", str(error))
             continue
-        if solved is None:
+        if shared_batch is None:
             batch, result = _solve_case(task, job, setup, solver, film)
             if setup.case.lubricant is not None:
                 film = result
-            elif shares and batch.status[0] == 0 and setup.grid is None and not setup.options["stresses"]:
-                solved = batch
+            elif shares_contact and batch.status[0] == 0 and setup.grid is None and not setup.options["stresses"]:
+                shared_batch = batch
         else:
-            batch = without_result(task, job, "ok")
-            batch = replace(batch, numbers=dict(solved.numbers), attributes=dict(solved.attributes))
-            batch.texts["warnings"] = solved.texts["warnings"]
-        batch.numbers["seconds"] = np.array([time.perf_counter() - began])
+            batch = batch_without_numbers(task, job, "ok")
+            batch = replace(batch, numbers=dict(shared_batch.numbers), attributes=dict(shared_batch.attributes))
+            batch.texts["warnings"] = shared_batch.texts["warnings"]
+        batch.numbers["seconds"] = np.array([time.perf_counter() - start_time])
         yield batch
 
 
-def without_result(task: Task, job: Job, status: str, message: str = "", caught: Iterable[str] = ()) -> Batch:
+def batch_without_numbers(task: Task, job: Job, status: str, message: str = "", caught: Iterable[str] = ()) -> Batch:
     """Batch of one case without numbers."""
     messages = sorted(set(caught))
     return Batch(
@@ -198,14 +198,14 @@ def without_result(task: Task, job: Job, status: str, message: str = "", caught:
             "warnings": [json.dumps(messages) if messages else ""],
             "time": [datetime.now(UTC).isoformat(timespec="seconds")],
         },
-        circumstances={**circumstances(), "study": task.study, "level": task.level},
+        run_context={**run_context(), "study": task.study, "level": task.level},
     )
 
 
 def _solve_case(
     task: Task, job: Job, setup: Setup, solver: Solver | None, film: xr.Dataset | None
 ) -> tuple[Batch, xr.Dataset | None]:
-    """Solve one case, a film from that of another speed; the result is None if it fails."""
+    """Solve one case, starting from the film of another speed; the result of a failed case is None."""
     # Planning and opening a study need no solver.
     from contactstudy.fatigue.shakedown import shakedown_summary
     from contactstudy.fields.edge_tension import edge_tension_summary
@@ -230,11 +230,11 @@ def _solve_case(
     except StoreError:
         raise
     except (ContactStudyError, MemoryError, np.linalg.LinAlgError) as error:
-        return without_result(task, job, "failed", f"{type(error).__name__}: {error}"), None
+        return batch_without_numbers(task, job, "failed", f"{type(error).__name__}: {error}"), None
     except Exception as error:
         error.add_note(f"while solving the case {job.name} ({job.id[:16]})")
         raise
-    batch = without_result(
+    batch = batch_without_numbers(
         task, job, "ok", caught=(str(entry.message) for entry in caught if entry.category is not MagnitudeWarning)
     )
     e_over_a = setup.e_over_a
@@ -247,4 +247,4 @@ def _solve_case(
         numbers={name: np.array([number.value]) for name, number in numbers.items()},
         attributes={name: number.attributes for name, number in numbers.items()},
     )
-    return with_arrays(batch, dataset, task.level) if task.level != "summary" else batch, dataset
+    return add_arrays(batch, dataset, task.level) if task.level != "summary" else batch, dataset

@@ -1,7 +1,7 @@
 """``xarray.open_dataset`` for the folder of a study, and ``dataset.contact`` for every file that xarray opens.
 
-Before it opens anything, xarray imports the modules that pyproject.toml lists in the group ``xarray.backends``, such as
-this one. It is light, because every program of an environment with contactstudy imports it.
+Before opening a file, xarray imports all modules of the group ``xarray.backends`` in pyproject.toml. This module is
+light, because every program of an environment with contactstudy imports the module.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ class StudyBackend(BackendEntrypoint):
         self, filename_or_obj: Any, *, drop_variables: str | list[str] | None = None, cells: str = "common"
     ) -> xr.Dataset:
         """Open a study; `cells` is that of :func:`contactstudy.open_study`."""
-        from contactstudy.study.opened import study_dataset
+        from contactstudy.study.dataset import study_dataset
 
         opened = study_dataset(filename_or_obj, cells=cells)
         return opened if drop_variables is None else opened.drop_vars(drop_variables, errors="ignore")

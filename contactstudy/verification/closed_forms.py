@@ -78,23 +78,23 @@ def hertz_ellipse(load: float, long_radius: float, short_radius: float, modulus:
     k, e = special.ellipk(squared), special.ellipe(squared)
     # Curvature along the long axis: 1 / (2 R') = p0 b / (E* e**2 a**2) (K - E).
     shape = np.sqrt(1 - squared)
-    long = float(np.cbrt(3 * load * long_radius * (k - e) / (np.pi * modulus * squared)))
-    short = float(shape * long)
-    peak = 1.5 * load / (np.pi * long * short)
-    return EllipticContact(long, short, float(peak), float(peak * short * k / modulus))
+    long_axis = float(np.cbrt(3 * load * long_radius * (k - e) / (np.pi * modulus * squared)))
+    short_axis = float(shape * long_axis)
+    peak = 1.5 * load / (np.pi * long_axis * short_axis)
+    return EllipticContact(long_axis, short_axis, float(peak), float(peak * short_axis * k / modulus))
 
 
 def carter_traction(y: FloatArray, stick: float) -> FloatArray:
     """Traction over ``f p0`` at distances from the middle over the half-width, rolling along +y (Johnson 8.45)."""
-    middle = 1 - stick
+    stick_centre = 1 - stick
     sliding = np.sqrt(np.maximum(1 - y**2, 0))
-    return np.asarray(sliding - stick * np.sqrt(np.maximum(1 - ((y - middle) / stick) ** 2, 0)))
+    return np.asarray(sliding - stick * np.sqrt(np.maximum(1 - ((y - stick_centre) / stick) ** 2, 0)))
 
 
-def mindlin_shift(part: float, load: float, friction: float, radius: float, shear: float, poisson: float) -> float:
+def mindlin_shift(fraction: float, load: float, friction: float, radius: float, shear: float, poisson: float) -> float:
     """Shift of two like spheres under a part of full sliding's force (Mindlin; Johnson 7.42)."""
-    full = 3 * friction * load / (16 * radius) * 2 * (2 - poisson) / shear
-    return float(full * (1 - (1 - part) ** (2 / 3)))
+    gross_slip_shift = 3 * friction * load / (16 * radius) * 2 * (2 - poisson) / shear
+    return float(gross_slip_shift * (1 - (1 - fraction) ** (2 / 3)))
 
 
 def von_mises(stress: Mapping[str, FloatArray]) -> FloatArray:
@@ -166,7 +166,7 @@ def rectangle_displacement(x: ArrayLike, y: ArrayLike, half_x: float, half_y: fl
     for side_x in (-1, 1):
         for side_y in (-1, 1):
             u, v = side_x * xs + half_x, side_y * ys + half_y
-            # ln(v + r) by asinh, which does not cancel for negative v; the rest, ln |u|, goes out with its opposite.
+            # ln(v + r) by asinh, which does not cancel for negative v; the rest, ln |u|, cancels with its opposite.
             total += u * np.arcsinh(v / np.abs(u)) + v * np.arcsinh(u / np.abs(v))
     return np.asarray(total / (np.pi * modulus))
 
@@ -259,7 +259,7 @@ def rectangle_in_half_plane(
 ) -> FloatArray:
     """Stresses xx, yy, zz, xz of plane strain outside or inside a rectangle with eigenstrains xx, yy, zz, xz.
 
-    The eigenstrain acts like forces on the sides and leaves its own stress inside (J. D. Eshelby, Proc. R. Soc. A 241
+    The eigenstrain acts like forces on the sides and causes stress inside (J. D. Eshelby, Proc. R. Soc. A 241
     (1957) 376). A force in a half-plane with a free face: N. I. Muskhelishvili, Some Basic Problems of the
     Mathematical Theory of Elasticity, chapter 19; with the potentials phi, psi of the force in the whole plane the
     potentials of its images are ``-w phibar'(w) - psibar(w)``, and ``-phibar(w)`` less w times the derivative of the
@@ -270,33 +270,36 @@ def rectangle_in_half_plane(
     shear, lame = young / (2 * (1 + poisson)), young * poisson / ((1 + poisson) * (1 - 2 * poisson))
     trace = lame * (e_xx + e_yy + e_zz)
     misfit = np.array([trace + 2 * shear * e_xx, trace + 2 * shear * e_yy, trace + 2 * shear * e_zz, 2 * shear * e_xz])
-    # Gauss nodes along a side; points have to stay a tenth of a side away from it
+    # Gauss nodes along a side; points must be at least a tenth of a side away
     node, weight = np.polynomial.legendre.leggauss(400)
     kappa = 3 - 4 * poisson
     point = (xs + 1j * zs).ravel()[:, None]
-    slope, curved, second = (np.zeros(point.size, np.complex128) for _ in range(3))
-    for normal, fixed in (((1, 0), x_range[1]), ((-1, 0), x_range[0]), ((0, 1), z_range[1]), ((0, -1), z_range[0])):
+    slope, curvature, second = (np.zeros(point.size, np.complex128) for _ in range(3))
+    for normal, edge in (((1, 0), x_range[1]), ((-1, 0), x_range[0]), ((0, 1), z_range[1]), ((0, -1), z_range[0])):
         low, high = z_range if normal[0] else x_range
         position = low + 0.5 * (high - low) * (1 + node)
-        source = fixed + 1j * position if normal[0] else position + 1j * fixed
+        source = edge + 1j * position if normal[0] else position + 1j * edge
         pull = (misfit[0] * normal[0] + misfit[3] * normal[1]) + 1j * (misfit[3] * normal[0] + misfit[2] * normal[1])
         force = pull / (2 * np.pi * (1 + kappa)) * 0.5 * (high - low) * weight
-        other, mirror = np.conj(force), np.conj(source)
+        conjugate, mirror = np.conj(force), np.conj(source)
         # In the whole plane phi = -F ln(w - w0), psi = kappa F* ln(w - w0) + F w0* / (w - w0).
-        near, far = point - source, point - mirror
-        slope += (-force / near).sum(axis=1)
-        curved += (force / near**2).sum(axis=1)
-        second += (kappa * other / near - force * mirror / near**2).sum(axis=1)
+        to_source, to_mirror = point - source, point - mirror
+        slope += (-force / to_source).sum(axis=1)
+        curvature += (force / to_source**2).sum(axis=1)
+        second += (kappa * conjugate / to_source - force * mirror / to_source**2).sum(axis=1)
         # Their images; bar of a function conjugates its constants.
-        of_phi = -other / far, other / far**2, -2 * other / far**3
-        of_psi = (kappa * force / far - other * source / far**2, -kappa * force / far**2 + 2 * other * source / far**3)
+        of_phi = -conjugate / to_mirror, conjugate / to_mirror**2, -2 * conjugate / to_mirror**3
+        of_psi = (
+            kappa * force / to_mirror - conjugate * source / to_mirror**2,
+            -kappa * force / to_mirror**2 + 2 * conjugate * source / to_mirror**3,
+        )
         image = -(of_phi[0] + point * of_phi[1]) - of_psi[0]
-        image_curved = -(2 * of_phi[1] + point * of_phi[2]) - of_psi[1]
+        image_curvature = -(2 * of_phi[1] + point * of_phi[2]) - of_psi[1]
         slope += image.sum(axis=1)
-        curved += image_curved.sum(axis=1)
-        second += (-of_phi[0] - image - point * image_curved).sum(axis=1)
+        curvature += image_curvature.sum(axis=1)
+        second += (-of_phi[0] - image - point * image_curvature).sum(axis=1)
     total = 4 * slope.real
-    difference = 2 * (np.conj(point[:, 0]) * curved + second)
+    difference = 2 * (np.conj(point[:, 0]) * curvature + second)
     xx, zz, xz = 0.5 * (total - difference.real), 0.5 * (total + difference.real), 0.5 * difference.imag
     inside = (xs > x_range[0]) & (xs < x_range[1]) & (zs > z_range[0]) & (zs < z_range[1])
     stress = np.stack([xx, poisson * (xx + zz), zz, xz]).reshape(4, *xs.shape)
@@ -308,9 +311,9 @@ def moving_band(y: FloatArray, drift: float) -> FloatArray:
 
     Jaeger (1942): the integral of ``exp(v (y - y')) K0(v |y - y'|) / pi`` over the band, ``v = V a / (2 kappa)``.
     """
-    far = drift * (np.asarray(y, dtype=np.float64) + 1)
-    near = far - 2 * drift
-    return np.asarray((_primitive(far) - _primitive(near)) / (np.pi * drift))
+    distance_from_start = drift * (np.asarray(y, dtype=np.float64) + 1)
+    distance_from_end = distance_from_start - 2 * drift
+    return np.asarray((_primitive(distance_from_start) - _primitive(distance_from_end)) / (np.pi * drift))
 
 
 def _primitive(u: FloatArray) -> FloatArray:
@@ -327,8 +330,8 @@ def fast_line() -> tuple[float, float]:
 
     def rise(behind: float) -> float:
         # s = behind - t**2 takes the root away
-        inside = integrate.quad(lambda t: 2 * np.sqrt(max(1 - (behind - t**2) ** 2, 0.0)), 0.0, np.sqrt(1 + behind))
-        return float(inside[0])
+        integral = integrate.quad(lambda t: 2 * np.sqrt(max(1 - (behind - t**2) ** 2, 0.0)), 0.0, np.sqrt(1 + behind))
+        return float(integral[0])
 
-    largest = optimize.minimize_scalar(lambda behind: -rise(behind), bounds=(0.3, 0.95), method="bounded")
-    return -float(largest.fun), float(largest.x)
+    maximum = optimize.minimize_scalar(lambda behind: -rise(behind), bounds=(0.3, 0.95), method="bounded")
+    return -float(maximum.fun), float(maximum.x)

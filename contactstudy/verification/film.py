@@ -28,7 +28,7 @@ from contactstudy.verification.check import Check, Curve, Reference
 from contactstudy.verification.free_ends import FINITE_ELEMENTS
 from contactstudy.verification.problems import FILM_CASES, FILM_FILE, load_reference
 
-# Moes' numbers M, L: central and least film H of Barus oil of constant density, settled by extrapolation, of an inlet
+# Moes' numbers M, L: central and least film H of Barus oil of constant density, extrapolated, of an inlet
 # four half-widths long below M = 100; two programs agree to 0.2 %
 TABLE = {
     (2.0, 5.0): (4.451, 3.470),
@@ -45,12 +45,12 @@ STEEL, RADIUS, HALF_WIDTH = Material(210e9, 0.3), 5e-3, 65e-6
 def line_checks(*, full: bool) -> Iterator[Check]:
     """Table, formula, rolling moment and limits of line contacts."""
     for load, lubricant in list(TABLE)[: None if full else 3]:
-        central, least = TABLE[load, lubricant]
+        central, min_film = TABLE[load, lubricant]
         inlet = 4.0 if load < 100 else None
         line = line_contact.solve_line(load, lubricant, finest=0.1, inlet=inlet)
         case, source = f"line contact, M = {load:g}, L = {lubricant:g}", "extrapolated table"
         yield Reference(case, source).compare("central film H", line.central, central, 5e-3, relative=True)
-        yield Reference(case, source).compare("least film H", line.least, least, 5e-3, relative=True)
+        yield Reference(case, source).compare("least film H", line.least, min_film, 5e-3, relative=True)
         moment = abs(line.moment) / 2
         yield Reference(case, "equilibrium").compare("w delta / 2 against t", moment, line.rolling, 2e-2, relative=True)
     for load in (50.0, 500.0) if full else (50.0,):
@@ -69,31 +69,31 @@ def line_checks(*, full: bool) -> Iterator[Check]:
 def dry_limit_checks() -> Iterator[Check]:
     """Compare a heavy load with the pressure of Hertz, and the film's exponent."""
     films = {load: line_contact.solve_line(load, 10.0) for load in (200.0, 2000.0)}
-    heavy = films[2000.0]
-    inner = np.abs(heavy.y) < 0.9
-    y, pressure = heavy.y[inner], heavy.pressure[inner]
+    heavy_film = films[2000.0]
+    inner = np.abs(heavy_film.y) < 0.9
+    y, pressure = heavy_film.y[inner], heavy_film.pressure[inner]
     hertz = np.sqrt(1 - y**2)
     curve = Curve(("y / a", "p / p0"), y, pressure, hertz)
     case = "line contact, M = 2000, L = 10"
     yield Reference(case, "Hertz").compare_fields("pressure / p0, abs(y) < 0.9 a", pressure, hertz, 0.01, curve=curve)
-    exponent = np.log10(heavy.central / films[200.0].central)
+    exponent = np.log10(heavy_film.central / films[200.0].central)
     case = "line contacts, M = 200 and 2000, L = 10"
     yield Reference(case, "Moes (1992)").compare("exponent of M in the central film", float(exponent), -0.125, 0.01)
 
 
 def crowned_case(body: Body, length: float) -> Case:
     """Crowned roller in the middle of a body, with the numbers of the stored film."""
-    stored = FILM_CASES["crowned"]
-    profile = Lundberg(amplitude=stored.amplitude * HALF_WIDTH**2 / RADIUS)
+    stored_case = FILM_CASES["crowned"]
+    profile = Lundberg(amplitude=stored_case.amplitude * HALF_WIDTH**2 / RADIUS)
     roller = Roller(radius=RADIUS, length=length, profile=profile)
     pressure = HALF_WIDTH * STEEL.plane_strain_modulus / (2 * RADIUS)
     offset = 0.5 * (body.length - length) if isinstance(body, FiniteLengthSpace) else None
     dry = Case(body=body, roller=roller, max_pressure=pressure, end_distance=offset)
     modulus = 2 * dry.modulus
-    root = dry.normal_load / (dry.contact_length * modulus * RADIUS * stored.load_number)
+    root = dry.normal_load / (dry.contact_length * modulus * RADIUS * stored_case.load_number)
     oil = Lubricant(
         viscosity=0.5 * root**2 * modulus * RADIUS,
-        pressure_viscosity=stored.lubricant_number / (modulus * root**0.5),
+        pressure_viscosity=stored_case.lubricant_number / (modulus * root**0.5),
         viscosity_law="barus",
         density_law="constant",
     )
@@ -120,9 +120,9 @@ def finite_element_checks(name: str) -> Iterator[Check]:
     """Film between two free ends against the finite elements' on the same cells."""
     stored, problem = load_reference(FILM_FILE, name), FILM_CASES[name]
     lubricated = coarse_film(name)
-    solved = film_on_level(lubricated, Level(), lubricated.contact_ends, SETTINGS)
-    cells = solved.problem.cells
-    fields = {"film": solved.solution.film, "pressure": solved.solution.fluid_pressure}
+    solution = film_on_level(lubricated, Level(), lubricated.contact_ends, SETTINGS)
+    cells = solution.problem.cells
+    fields = {"film": solution.solution.film, "pressure": solution.solution.fluid_pressure}
     computed = xr.Dataset({key: (("x", "y"), field) for key, field in fields.items()}, {"x": cells.x, "y": cells.y})
     # Both sets of cells differ by rounding alone.
     computed = computed.interp(x=stored["x"], y=stored["y"], kwargs={"fill_value": "extrapolate"})
@@ -131,8 +131,8 @@ def finite_element_checks(name: str) -> Iterator[Check]:
     axis, expected = (data["film"].interp(y=0.0).values for data in (computed, stored))
     curve = Curve(("x / a", "h R / a^2 at y = 0"), stored["x"].values, axis, expected)
     yield reference.compare_fields("film at y = 0 over the reference", axis / expected, 1.0, 0.02, curve=curve)
-    least, expected = (data["film"].min("y").values for data in (computed, stored))
-    yield reference.compare_fields("least film of each column over the reference", least / expected, 1.0, 0.02)
+    min_film, expected = (data["film"].min("y").values for data in (computed, stored))
+    yield reference.compare_fields("least film of each column over the reference", min_film / expected, 1.0, 0.02)
     yield reference.compare_fields("pressure / p0", computed["pressure"], stored["pressure"], 0.01)
 
 
@@ -151,8 +151,10 @@ def roller_checks(*, full: bool) -> Iterator[Check]:
     load, quantity = (flush["pressure"] * area).sum(), "sum of the pressure over the cells, N"
     yield Reference(case, "equilibrium").compare(quantity, load, flush["normal_load"], 1e-8, relative=True)
     if full:
-        far = crowned_film(FiniteLengthSpace(length=10 * length, material=STEEL), length)
-        half = crowned_film(HalfSpace(material=STEEL), length)
+        without_ends = crowned_film(FiniteLengthSpace(length=10 * length, material=STEEL), length)
+        half_space = crowned_film(HalfSpace(material=STEEL), length)
         case = "crowned roller, 16 a, 72 a from both free ends"
         for name in ("central_film", "least_film"):
-            yield Reference(case, "half-space").compare(f"{name}, m", far[name], half[name], 5e-3, relative=True)
+            yield Reference(case, "half-space").compare(
+                f"{name}, m", without_ends[name], half_space[name], 5e-3, relative=True
+            )

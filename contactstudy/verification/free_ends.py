@@ -68,7 +68,7 @@ def edge_load_checks() -> Iterator[Check]:
         grid = Grid(x_range=(0.0, 0.16), y_range=(-4.1, 4.1), cells_x=8, cells_y=41)
         distance = np.abs(grid.y)[None, :]
         ratio = _scaled_displacement(poisson, grid, (0, 20), distance)[0, 20:]
-        # Displacement along the edge under a point load on it, over the half-space's; for every Poisson's ratio
+        # Displacement along the edge under a point load on the edge, over the half-space's; for every Poisson's ratio
         yield Reference(f"point load on the edge, nu = {poisson:g}", EXACT_LIMIT).compare(
             "u_z along the edge over the half-space's", 2 * ratio[20] - ratio[10], 3.362954, 0.01
         )
@@ -86,12 +86,12 @@ def extra_deflection_checks() -> Iterator[Check]:
         grid = Grid(x_range=(0.0, 4.8), y_range=(-0.45, 0.45), cells_x=48, cells_y=9)
         load = point_pressure(grid, 40, 4)
         material = unit_material(poisson)
-        quarter, half = (
+        quarter, half_space = (
             float(surface_displacement(body, load)[40, 4])
             for body in (QuarterSpace(material=material), HalfSpace(material=material))
         )
         case = f"point load at 40 cells from the edge, nu = {poisson:g}"
-        kappa = (quarter - half) * 2 * np.pi * grid.x[40]
+        kappa = (quarter - half_space) * 2 * np.pi * grid.x[40]
         quantity = "kappa, the edge's deflection over (1 - nu^2) P / (2 pi E d)"
         yield Reference(case, COMPUTED).compare(quantity, kappa, expected, 5e-4)
 
@@ -103,11 +103,11 @@ def resultant_checks() -> Iterator[Check]:
         (modes,) = axial_modes(np.inf, lateral, 1e-4, settings)
         system = EquationSet.build(modes, lateral, poisson, 1e-4, settings)
         spectrum = modes.load_weights * modes.cosine(np.array([distance]))[:, 0]
-        scaled = system.solve(system.source(Load.NORMAL, spectrum))
-        on_top = system.on_top(scaled) / modes.weights
-        small = np.abs(modes.ray) < 3e-3  # against 1 / distance; the lateral wavenumber is smaller still
-        top = 1 + 0.5 * np.pi * float(np.interp(1e-3, np.abs(modes.ray[small]), on_top.real[small]))
-        end = -0.5 * np.pi * float(np.interp(1e-3, system.depth, scaled / system.scale))
+        solution = system.solve(system.source(Load.NORMAL, spectrum))
+        on_top = system.on_top(solution) / modes.weights
+        low = np.abs(modes.ray) < 3e-3  # against 1 / distance; the lateral wavenumber is smaller still
+        top = 1 + 0.5 * np.pi * float(np.interp(1e-3, np.abs(modes.ray[low]), on_top.real[low]))
+        end = -0.5 * np.pi * float(np.interp(1e-3, system.depth, solution / system.scale))
         case = f"equivalent loads of a unit load, nu = {poisson:g}"
         yield Reference(case, EXACT_LIMIT).compare("resultant on the top", top, TOP_RESULTANT, 5e-3)
         yield Reference(case, EXACT_LIMIT).compare("resultant on the end", end, END_RESULTANT, 5e-3)
@@ -129,12 +129,14 @@ def corner_checks() -> Iterator[Check]:
 
 
 def antiplane_checks() -> Iterator[Check]:
-    """Check that a traction uniform along y needs no equivalent load on the end: the mirror image frees it."""
+    """Check that a traction uniform along y needs no equivalent load on the end: the mirror image frees the end."""
     (modes,) = axial_modes(np.inf, 1e-9, 1e-2, Resolution())
     system = EquationSet.build(modes, 1e-9, 0.3, 1e-2, Resolution())
     spectrum = modes.load_weights * modes.cosine(np.array([1.0]))[:, 0]
-    near = system.depth > 1e-3  # below the wavelength along y there is always some
-    under_traction, under_pressure = (system.source(load, spectrum)[near] for load in (Load.ALONG_Y, Load.NORMAL))
+    near_surface = system.depth > 1e-3  # below one wavelength along y the residual traction does not vanish
+    under_traction, under_pressure = (
+        system.source(load, spectrum)[near_surface] for load in (Load.ALONG_Y, Load.NORMAL)
+    )
     computed = under_traction / np.abs(under_pressure).max()
     quantity = "load asked of the end, over that for an equal pressure"
     case = "traction along y that does not vary along y"
@@ -152,13 +154,13 @@ def johnson_checks() -> Iterator[Check]:
     circle = on_cells(lambda x, y: np.sqrt(np.maximum(1 - x**2 - y**2, 0)), (-1.25, 1.25), (-1.25, 1.25), (120, 120))
     long_strip = strip_means((0, 400), (-1.25, 1.25), (80, 160))
     z = np.linspace(0.3, 1.0, 141)
-    for case, pressure, x, largest, depth in (
+    for case, pressure, x, max_error, depth in (
         ("circular Hertz pressure", circle, 0.0, 0.310, 0.48),
         ("line contact's pressure", long_strip, 200.0, 0.300, 0.78),
     ):
         shear = maximum_shear(stress_field(body, pressure, x=[x], y=[0.0], z=z, inside_cells=pressure)).values.ravel()
-        source = f"Johnson (1985) 4.2, 3.4: {largest:.3f} p0 at {depth:g}a"
-        yield Reference(case, source).compare("largest shear on the axis / p0", shear.max(), largest, 1e-3)
+        source = f"Johnson (1985) 4.2, 3.4: {max_error:.3f} p0 at {depth:g}a"
+        yield Reference(case, source).compare("largest shear on the axis / p0", shear.max(), max_error, 1e-3)
         yield Reference(case, source).compare("its depth / a", z[shear.argmax()], depth, 0.015)
     around = np.linspace(1.0, 1.3, 31)
     radial = stress_field(body, circle, x=around, y=[0.0], z=[0.0], inside_cells=circle)["sigma_xx"].max()
@@ -257,19 +259,19 @@ def displacement_checks(name: str) -> Iterator[Check]:
     # Cell centres on the reference's points y, and x interpolated between them.
     body = FiniteLengthSpace(length=case.length, material=unit_material(case.poisson))
     grid = Grid(x_range=(0.0, case.length), y_range=(-1.3125, 1.3125), cells_x=round(32 * case.length), cells_y=105)
-    sunk = surface_displacement(body, on_grid(case.pressure(grid.x, grid.y), grid), case.friction)
-    inside = expected.sel(x=slice(0.5 * grid.dx, case.length - 0.5 * grid.dx))
-    interpolated = sunk.interp(x=inside["x"], y=inside["y"], method="cubic")
-    middle = float(sunk.interp(x=0.5 * case.length, y=0.0, method="cubic"))
+    displacement = surface_displacement(body, on_grid(case.pressure(grid.x, grid.y), grid), case.friction)
+    in_body = expected.sel(x=slice(0.5 * grid.dx, case.length - 0.5 * grid.dx))
+    interpolated = displacement.interp(x=in_body["x"], y=in_body["y"], method="cubic")
+    mid_displacement = float(displacement.interp(x=0.5 * case.length, y=0.0, method="cubic"))
     error = float(expected.attrs["error_estimate"])
     yield Reference(
         f"{name}: L = {case.length:g}a, {case.g}, f = {case.friction:g}", FINITE_ELEMENTS.format(error, "p0 a")
-    ).compare_fields("E u_z / (p0 a), relative to the middle", young * (interpolated - middle), inside, 1e-3)
+    ).compare_fields("E u_z / (p0 a), relative to the middle", young * (interpolated - mid_displacement), in_body, 1e-3)
 
 
 def contact_checks(name: str) -> Iterator[Check]:
     """Contact of a roller: pressure along its middle line, averaged over the cells."""
-    case, stored = CONTACT_CASES[name], load_reference(CONTACT_FILE, name)
+    case, reference = CONTACT_CASES[name], load_reference(CONTACT_FILE, name)
     grid = Grid(
         x_range=(0.0, case.length), y_range=(-1.75, 1.75), cells_x=round(CONTACT_CELLS * case.length), cells_y=113
     )
@@ -278,9 +280,9 @@ def contact_checks(name: str) -> Iterator[Check]:
     under = contact["pressure"].sel(x=slice(case.start, case.stop))
     x = under["x"].values
     edges = np.append(x - 0.5 * grid.dx, x[-1] + 0.5 * grid.dx)
-    expected = _cell_means(stored["x"].values, stored["pressure"].sel(y=0).values, edges)
+    expected = _cell_means(reference["x"].values, reference["pressure"].sel(y=0).values, edges)
     computed = under.sel(y=0, method="nearest").values
-    error = float(np.median(stored["pressure_error"].sel(y=0)))
+    error = float(np.median(reference["pressure_error"].sel(y=0)))
     source = FINITE_ELEMENTS.format(error, "p0 (median)")
     label = f"{name}: contact, L = {case.length:g}a, roller from {case.distance:g}a"
     label += f", crown {case.crown:g}" if case.crown else ""
@@ -292,13 +294,13 @@ def contact_checks(name: str) -> Iterator[Check]:
     tolerance = 0.05 if singular else 0.01
     yield Reference(label, source).compare_fields(quantity, computed[away], expected[away], tolerance, curve=curve)
     if singular:
-        far = slice(CONTACT_CELLS // 2, -CONTACT_CELLS // 2)
+        far_columns = slice(CONTACT_CELLS // 2, -CONTACT_CELLS // 2)
         quantity = "pressure / p0 at y = 0, 0.5a and more from the roller's end"
-        yield Reference(label, source).compare_fields(quantity, computed[far], expected[far], 0.01)
-        load = stored["line_load"].values
-        near = slice(None, CONTACT_CELLS // 2)
-        computed_load = float(under.isel(x=near).sum()) * grid.cell_area
-        expected_load = float((_cell_means(stored["x"].values, load, edges)[near]).sum()) * grid.dx
+        yield Reference(label, source).compare_fields(quantity, computed[far_columns], expected[far_columns], 0.01)
+        load = reference["line_load"].values
+        near_columns = slice(None, CONTACT_CELLS // 2)
+        computed_load = float(under.isel(x=near_columns).sum()) * grid.cell_area
+        expected_load = float((_cell_means(reference["x"].values, load, edges)[near_columns]).sum()) * grid.dx
         quantity = "load on the roller's last 0.5a / (p0 a^2)"
         yield Reference(label, source).compare_fields(quantity, computed_load, expected_load, 0.03)
     else:

@@ -36,7 +36,7 @@ def unit_material(poisson: float = 0.3) -> Material:
 def on_cells(
     function: Callable[[FloatArray, FloatArray], FloatArray], x_range: Range, y_range: Range, cells: tuple[int, int]
 ) -> xr.DataArray:
-    """Values of a function of (x, y) at cell centres; it is called with a column of x and a row of y."""
+    """Values of a function of (x, y) at cell centres; the arguments are a column of x and a row of y."""
     grid = Grid(x_range=x_range, y_range=y_range, cells_x=cells[0], cells_y=cells[1])
     return on_grid(function(grid.x[:, None], grid.y[None, :]), grid)
 
@@ -59,8 +59,8 @@ def strip(x: FloatArray, y: FloatArray) -> FloatArray:
 def strip_means(x_range: Range, y_range: Range, cells: tuple[int, int]) -> xr.DataArray:
     """Means of `strip` over the cells, from its integral over y: exact resultants."""
     grid = Grid(x_range=x_range, y_range=y_range, cells_x=cells[0], cells_y=cells[1])
-    inside = np.clip(np.linspace(*y_range, grid.cells_y + 1), -1.0, 1.0)
-    return on_grid(np.diff(0.5 * (inside * np.sqrt(1 - inside**2) + np.arcsin(inside))) / grid.dy, grid)
+    edges = np.clip(np.linspace(*y_range, grid.cells_y + 1), -1.0, 1.0)
+    return on_grid(np.diff(0.5 * (edges * np.sqrt(1 - edges**2) + np.arcsin(edges))) / grid.dy, grid)
 
 
 def point_pressure(grid: Grid, row: int, column: int) -> xr.DataArray:
@@ -159,8 +159,8 @@ class ContactCase:
 
     def gap(self, x: FloatArray, y: FloatArray) -> FloatArray:
         """Gap at the tensor product of points, infinite beyond the roller."""
-        outside = (x < self.start) | (x > self.stop)
-        return np.asarray(np.where(outside, np.inf, self.gap_x(x))[:, None] + y[None, :] ** 2)
+        beyond_roller = (x < self.start) | (x > self.stop)
+        return np.asarray(np.where(beyond_roller, np.inf, self.gap_x(x))[:, None] + y[None, :] ** 2)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -252,8 +252,8 @@ CASES: dict[str, Mapping[str, object]] = {
 
 def data_file(name: str) -> Path:
     """Path of a data file: inside the installed package, or in the project's folder of an editable installation."""
-    inside = Path(str(files("contactstudy.verification"))) / "data" / name
-    return inside if inside.exists() else Path(__file__).resolve().parents[2] / "data" / name
+    package_path = Path(str(files("contactstudy.verification"))) / "data" / name
+    return package_path if package_path.exists() else Path(__file__).resolve().parents[2] / "data" / name
 
 
 def load_reference(file: str, name: str) -> xr.Dataset:

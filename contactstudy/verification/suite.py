@@ -19,7 +19,7 @@ from contactstudy import checks as arguments
 from contactstudy.arrays.variables import describe
 from contactstudy.errors import InvalidInputError, MagnitudeWarning
 from contactstudy.study.files import write_dataset, write_text
-from contactstudy.verification import exact, film, free_ends, passes, tribology
+from contactstudy.verification import exact_solutions, film, free_ends, passes, tribology
 from contactstudy.verification.check import Check
 from contactstudy.verification.problems import FILM_CASES, PASSES_CASES
 
@@ -32,13 +32,15 @@ LEVELS = ("quick", "full")  # Levels of a run
 # Checks by the kind of their reference; the argument selects the full level
 GROUPS: dict[str, Callable[[bool], Iterator[Check]]] = {
     "half-space": lambda full: chain(
-        exact.hertz_checks(),
-        exact.circle_checks(),
-        exact.line_checks(),
-        exact.rectangle_checks(),
-        exact.point_checks(),
+        exact_solutions.hertz_checks(),
+        exact_solutions.circle_checks(),
+        exact_solutions.line_checks(),
+        exact_solutions.rectangle_checks(),
+        exact_solutions.point_checks(),
     ),
-    "limits": lambda full: chain(exact.plane_checks(), exact.plate_contact_checks(), exact.body_checks()),
+    "limits": lambda full: chain(
+        exact_solutions.plane_checks(), exact_solutions.plate_contact_checks(), exact_solutions.body_checks()
+    ),
     "quarter space": lambda full: chain(
         free_ends.edge_load_checks(),
         free_ends.extra_deflection_checks(),
@@ -63,7 +65,7 @@ GROUPS: dict[str, Callable[[bool], Iterator[Check]]] = {
     "passes": lambda full: chain(
         passes.shakedown_checks(),
         passes.residual_checks(),
-        passes.passing_checks(),
+        passes.pass_checks(),
         *(passes.finite_element_checks(name) for name in (PASSES_CASES if full else passes.QUICK_CASES)),
     ),
     "film": lambda full: chain(
@@ -73,11 +75,11 @@ GROUPS: dict[str, Callable[[bool], Iterator[Check]]] = {
         *(film.finite_element_checks(name) for name in FILM_CASES),
     ),
     "consistency": lambda full: chain(
-        exact.free_end_checks(),
-        exact.equilibrium_checks(),
-        exact.contact_condition_checks(),
-        exact.reciprocity_checks(),
-        exact.alternation_checks(),
+        exact_solutions.free_end_checks(),
+        exact_solutions.equilibrium_checks(),
+        exact_solutions.contact_condition_checks(),
+        exact_solutions.reciprocity_checks(),
+        exact_solutions.alternation_checks(),
     ),
 }
 
@@ -97,7 +99,7 @@ class Verification:
 
     @property
     def passed(self) -> bool:
-        """Whether there are checks and every one passed."""
+        """Whether checks exist and all passed."""
         return bool(self.checks) and all(check.passed for check in self.checks)
 
     def to_dataset(self) -> xr.Dataset:
@@ -116,7 +118,7 @@ class Verification:
 def run(level: str = "quick", report: Callable[[str, Check], None] | None = None) -> Verification:
     """Run the suite as `verify`; `report` is called with the group and each check after its comparison."""
     arguments.known_name("level", level, LEVELS)
-    began = time.perf_counter()
+    start_time = time.perf_counter()
     groups: dict[str, list[Check]] = {name: [] for name in GROUPS}
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", MagnitudeWarning)  # the problems have unit moduli and half-widths
@@ -125,7 +127,7 @@ def run(level: str = "quick", report: Callable[[str, Check], None] | None = None
                 groups[name].append(check)
                 if report is not None:
                     report(name, check)
-    return Verification(level, groups, time.perf_counter() - began)
+    return Verification(level, groups, time.perf_counter() - start_time)
 
 
 def verify(level: str = "quick") -> xr.Dataset:
@@ -162,40 +164,40 @@ HEADING = f"{'':4}  {'difference':>10}  {'allowed':>8}  {'computed':>11}  {'refe
 
 def line(check: Check) -> str:
     """One line of the table on the screen."""
-    verdict = "ok" if check.passed else "FAIL"
-    numbers = f"{check.difference:10.1e}  {check.tolerance:8.1e}  {check.computed:11.6g}  {check.expected:11.6g}"
-    return f"{verdict:4}  {numbers}  {check.case}: {check.quantity} [{check.source}]"
+    status = "ok" if check.passed else "FAIL"
+    values = f"{check.difference:10.1e}  {check.tolerance:8.1e}  {check.computed:11.6g}  {check.expected:11.6g}"
+    return f"{status:4}  {values}  {check.case}: {check.quantity} [{check.source}]"
 
 
 def summary(verification: Verification) -> str:
     """Last line on the screen."""
     checks = verification.checks
     failed = sum(not check.passed for check in checks)
-    verdict = f"{failed} failed" if failed else "all passed"
-    return f"{len(checks)} checks in {verification.seconds:.0f} s: {verdict}"
+    status = f"{failed} failed" if failed else "all passed"
+    return f"{len(checks)} checks in {verification.seconds:.0f} s: {status}"
 
 
 def page(verification: Verification, figures: dict[str, str]) -> str:
     """Markdown page; `figures` are file names by group."""
-    verdict = "every check passed" if verification.passed else "**some checks failed**"
+    status = "every check passed" if verification.passed else "**some checks failed**"
     data = verification.to_dataset()
-    parts = [
+    sections = [
         "# Verification of contactstudy",
-        f"{data.attrs['source']}, level {verification.level}: {summary(verification)}; {verdict}.",
+        f"{data.attrs['source']}, level {verification.level}: {summary(verification)}; {status}.",
         "Lengths are in half-widths a, pressures and stresses in peak pressures p0; E* = 1.",
     ]
     for name, group in verification.groups.items():
-        parts.append(f"## {name[0].upper()}{name[1:]}")
+        sections.append(f"## {name[0].upper()}{name[1:]}")
         rows = ["| case | quantity | reference | computed | expected | difference | allowed | |", "|---" * 8 + "|"]
         for check in group:
             values = [f"{check.computed:.6g}", f"{check.expected:.6g}"]
             errors = [f"{check.difference:.1e}", f"{check.tolerance:.1e}"]
-            verdict = "ok" if check.passed else "**FAIL**"
-            rows.append(row([check.case, check.quantity, check.source, *values, *errors, verdict]))
-        parts.append("\n".join(rows))
+            status = "ok" if check.passed else "**FAIL**"
+            rows.append(row([check.case, check.quantity, check.source, *values, *errors, status]))
+        sections.append("\n".join(rows))
         if name in figures:
-            parts.append(f"![{name}: computed and reference]({figures[name]})")
-    return "\n\n".join(parts) + "\n"
+            sections.append(f"![{name}: computed and reference]({figures[name]})")
+    return "\n\n".join(sections) + "\n"
 
 
 def row(cells: list[str]) -> str:
@@ -209,17 +211,17 @@ def panels(count: int) -> tuple[Figure, list[Axes]]:
 
     columns = min(count, 3)
     figure = Figure(figsize=(4.2 * columns, 3.1 * -(-count // 3)), layout="constrained")
-    return figure, [figure.add_subplot(-(-count // 3), columns, number + 1) for number in range(count)]
+    return figure, [figure.add_subplot(-(-count // 3), columns, index + 1) for index in range(count)]
 
 
 def plot_profiles(checks: list[Check]) -> Figure:
     """Draw the profiles of checks: computed as a line, the reference as circles."""
-    drawn = [(check.case, check.curve) for check in checks if check.curve is not None]
-    figure, axes = panels(len(drawn))
-    for ax, (case, curve) in zip(axes, drawn, strict=True):
-        thinned = slice(None, None, max(1, curve.positions.size // 40))
+    curves = [(check.case, check.curve) for check in checks if check.curve is not None]
+    figure, axes = panels(len(curves))
+    for ax, (case, curve) in zip(axes, curves, strict=True):
+        every_nth = slice(None, None, max(1, curve.positions.size // 40))
         ax.plot(curve.positions, curve.computed, color="C0", label="computed")
-        expected = curve.positions[thinned], curve.expected[thinned]
+        expected = curve.positions[every_nth], curve.expected[every_nth]
         ax.plot(*expected, "o", color="C1", markersize=4, markerfacecolor="none", label="reference")
         ax.set_title("\n".join(textwrap.wrap(case, 48)), fontsize="small")
         ax.set_xlabel(curve.labels[0])

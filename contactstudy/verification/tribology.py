@@ -67,18 +67,18 @@ def carter_checks() -> Iterator[Check]:
     source = "Carter (1926); Johnson (1985) 8.44 to 8.46"
     for stick in (0.2, 0.6, 0.9):
         creepage = friction * (1 - stick) / radius
-        rolled = line_contact(steel, steel, Rolling(longitudinal_creepage=creepage), friction).isel(x=0)
+        result = line_contact(steel, steel, Rolling(longitudinal_creepage=creepage), friction).isel(x=0)
         case = f"like cylinders rolling, stick zone {stick:g} of the contact"
-        step = float(rolled["y"][1] - rolled["y"][0])
-        sliding = friction * float(rolled["pressure"].sum()) * step
-        force = float(rolled["traction_y"].sum()) * step / sliding
+        step = float(result["y"][1] - result["y"][0])
+        sliding = friction * float(result["pressure"].sum()) * step
+        force = float(result["traction_y"].sum()) * step / sliding
         yield Reference(case, source).compare("force over full sliding's", force, 1 - stick**2, 1e-3)
-        width = 0.5 * float(rolled["stick"].sum()) * step
+        width = 0.5 * float(result["stick"].sum()) * step
         yield Reference(case, source).compare("half-width of the stick zone / a", width, stick, 0.5 * step + 1e-9)
-        inside = np.abs(rolled["y"].values) < 0.9
-        y = rolled["y"].values[inside]
-        peak = friction * 2 * float(rolled["pressure"].sum()) * step / np.pi
-        computed, expected = rolled["traction_y"].values[inside] / peak, closed_forms.carter_traction(y, stick)
+        in_contact = np.abs(result["y"].values) < 0.9
+        y = result["y"].values[in_contact]
+        peak = friction * 2 * float(result["pressure"].sum()) * step / np.pi
+        computed, expected = result["traction_y"].values[in_contact] / peak, closed_forms.carter_traction(y, stick)
         # The traction has a vertical slope where slip begins, between two cells.
         smooth = np.abs(y - (1 - 2 * stick)) > 2 * step
         curve = Curve(("y / a", "q / (f p0)"), y, computed, expected)
@@ -107,12 +107,12 @@ def slope_checks(*, full: bool) -> Iterator[Check]:
                 load=load,
                 friction=friction,
                 counterbody=Counterbody(body),
-                motion=Rolling(longitudinal_creepage=number * creepage),
+                motion=Rolling(longitudinal_creepage=index * creepage),
             ).isel(x=cells // 2)
-            for number in (1, 2)
+            for index in (1, 2)
         )
         step = float(gap["y"][1] - gap["y"][0])
-        forces = [step * float(rolled["traction_y"].sum()) for rolled in (first, second)]
+        forces = [step * float(result["traction_y"].sum()) for result in (first, second)]
         half_width = np.sqrt(4 * step * float(first["pressure"].sum()) / (np.pi * modulus))
         slope = (4 * forces[0] - forces[1]) / (2 * creepage)
         expected, source = 0.5 * np.pi * modulus * half_width, "Carter (1926); Johnson (1985) 8.46"
@@ -122,45 +122,45 @@ def slope_checks(*, full: bool) -> Iterator[Check]:
 
 def spence_checks() -> Iterator[Check]:
     """Press a rigid sphere with friction, without any shift."""
-    half, reach, cells, steps = HalfSpace(material=material(1.0, 0.0)), 1.25, 40, 9
-    gap = on_cells(lambda x, y: 0.05 * (x**2 + y**2), (-reach, reach), (-reach, reach), (cells, cells))
-    load = 4 / 3 * half.material.plane_strain_modulus * 0.1
-    pressed: xr.Dataset | None = None
-    for part in np.linspace(0.2, 1.0, steps):  # equal steps of the radius
-        pressed = solve_contact(
-            half,
+    half_space, edge, cells, steps = HalfSpace(material=material(1.0, 0.0)), 1.25, 40, 9
+    gap = on_cells(lambda x, y: 0.05 * (x**2 + y**2), (-edge, edge), (-edge, edge), (cells, cells))
+    load = 4 / 3 * half_space.material.plane_strain_modulus * 0.1
+    result: xr.Dataset | None = None
+    for ratio in np.linspace(0.2, 1.0, steps):  # equal steps of the radius
+        result = solve_contact(
+            half_space,
             gap,
-            load=load * part**3,
+            load=load * ratio**3,
             friction=0.2986,
             motion=Shift(),
-            settings=ContactSettings(coupled=True, after=pressed, tolerance=1e-5),
+            settings=ContactSettings(coupled=True, after=result, tolerance=1e-5),
         )
-    assert pressed is not None
-    areas = [float(pressed["stick"].sum()), float((pressed["pressure"] > 0).sum())]
+    assert result is not None
+    areas = [float(result["stick"].sum()), float((result["pressure"] > 0).sum())]
     case, source = "rigid sphere pressed on a plane, f = 0.2986", "Spence (1975) by CONTACT"
-    part = np.sqrt(areas[0] / areas[1])
-    yield Reference(case, source).compare("radius of the stick zone over the contact's", part, 0.5, reach / cells)
+    ratio = np.sqrt(areas[0] / areas[1])
+    yield Reference(case, source).compare("radius of the stick zone over the contact's", ratio, 0.5, edge / cells)
 
 
 def shift_checks() -> Iterator[Check]:
     """Shift a sphere on a plane."""
-    shear, poisson, radius, load, friction, part = 200e6, 0.42, 0.05, 9.1954, 0.4, 0.875
+    shear, poisson, radius, load, friction, load_fraction = 200e6, 0.42, 0.05, 9.1954, 0.4, 0.875
     rubber = material(shear, poisson)
-    reach, cells = 1.25e-3, 76
-    gap = on_cells(lambda x, y: (x**2 + y**2) / (2 * radius), (-reach, reach), (-reach, reach), (cells, cells))
-    shifted = solve_contact(
+    edge, cells = 1.25e-3, 76
+    gap = on_cells(lambda x, y: (x**2 + y**2) / (2 * radius), (-edge, edge), (-edge, edge), (cells, cells))
+    result = solve_contact(
         HalfSpace(material=rubber),
         gap,
         load=load,
         friction=friction,
         counterbody=Counterbody(HalfSpace(material=rubber)),
-        motion=Shift(force_y=part * friction * load),
+        motion=Shift(force_y=load_fraction * friction * load),
     )
     case, source = "sphere shifted on a plane, 7/8 of full sliding's force", "Cattaneo (1938); Mindlin (1949)"
-    expected = closed_forms.mindlin_shift(part, load, friction, 1e-3, shear, poisson=poisson)
-    yield Reference(case, source).compare("shift", shifted["shift_y"], expected, 3e-3, relative=True)
-    step = 2 * reach / cells
-    stick = step * np.sqrt(float(shifted["stick"].sum()) / np.pi)
+    expected = closed_forms.mindlin_shift(load_fraction, load, friction, 1e-3, shear, poisson=poisson)
+    yield Reference(case, source).compare("shift", result["shift_y"], expected, 3e-3, relative=True)
+    step = 2 * edge / cells
+    stick = step * np.sqrt(float(result["stick"].sum()) / np.pi)
     yield Reference(case, source).compare("radius of the stick zone / a", stick / 1e-3, 0.5, 0.5 * step / 1e-3)
 
 
@@ -168,14 +168,14 @@ def ellipse_gap(along_x: float, along_y: float, load: float, of: Material, cells
     """Gap that two like bodies close to an ellipse of given semi-axes under a load (Johnson 3.61, 4.26)."""
     modulus = 0.5 * of.plane_strain_modulus
     peak = 1.5 * load / (np.pi * along_x * along_y)
-    long, short = max(along_x, along_y), min(along_x, along_y)
-    squared = 1 - (short / long) ** 2
+    long_axis, short_axis = max(along_x, along_y), min(along_x, along_y)
+    squared = 1 - (short_axis / long_axis) ** 2
     if squared == 0:
-        gentle = steep = np.pi * peak / (4 * modulus * long)
+        gentle = steep = np.pi * peak / (4 * modulus * long_axis)
     else:
         first, second = special.ellipk(squared), special.ellipe(squared)
-        scale = peak * short / (modulus * squared * long**2)
-        gentle, steep = scale * (first - second), scale * ((long / short) ** 2 * second - first)
+        scale = peak * short_axis / (modulus * squared * long_axis**2)
+        gentle, steep = scale * (first - second), scale * ((long_axis / short_axis) ** 2 * second - first)
     of_x, of_y = (gentle, steep) if along_x >= along_y else (steep, gentle)
     x_range = along_x * cells[0] / (cells[0] - 2)
     y_range = along_y * cells[1] / (cells[1] - 6)  # rolling needs cells ahead
@@ -204,21 +204,21 @@ KALKER = ((1.0, 0.25), (1.0, 0.5), (0.5, 0.0), (5.0, 0.25))
 WHOLE_RANGE = (0.1, 0.3, 1.0, 1 / 0.4, 10.0)
 # Cells each way of the two grids; of an ellipse of 10 to 1 those along rolling, which would be long otherwise
 KALKER_CELLS, LONG_CELLS = (34, 62), (62, 118)
-SMALL = 1e-6  # Creepage without slip but in a few cells
+CREEPAGE = 1e-6  # Creepage without slip but in a few cells
 
 
 def kalker_checks(*, full: bool) -> Iterator[Check]:
     """Kalker's creep coefficients."""
-    tabulated = {
+    published = {
         (ratio, poisson): coefficients
         for ratio, *columns in TABLE
         for poisson, coefficients in zip(POISSONS, zip(*columns, strict=True), strict=True)
     }
-    further = [pair for pair in tabulated if full and pair[0] in WHOLE_RANGE and pair not in KALKER]
+    further = [pair for pair in published if full and pair[0] in WHOLE_RANGE and pair not in KALKER]
     names = ("c11", "c22")
-    motions = (Rolling(longitudinal_creepage=SMALL), Rolling(lateral_creepage=SMALL), Rolling(spin=-SMALL))
+    motions = Rolling(longitudinal_creepage=CREEPAGE), Rolling(lateral_creepage=CREEPAGE), Rolling(spin=-CREEPAGE)
     for ratio, poisson in (*KALKER, *further):
-        table = tabulated[ratio, poisson]
+        table = published[ratio, poisson]
         within, counts = 0.015, KALKER_CELLS if ratio < 10 else LONG_CELLS
         across, steel = 1.0 / ratio, material(1.0, poisson)
         coefficients = []
@@ -226,13 +226,15 @@ def kalker_checks(*, full: bool) -> Iterator[Check]:
             cells = (count if ratio < 10 else KALKER_CELLS[0], count)
             forces = []
             for motion in motions:
-                rolled = rolling_ellipse(across, 1.0, 0.01, steel, 1.0, motion=motion, cells=cells)
-                force = float(rolled["force_y" if motion.longitudinal_creepage else "force_x"])
-                forces.append(force / (SMALL * across * (np.sqrt(across) if motion.spin else 1.0)))
+                result = rolling_ellipse(across, 1.0, 0.01, steel, 1.0, motion=motion, cells=cells)
+                force = float(result["force_y" if motion.longitudinal_creepage else "force_x"])
+                forces.append(force / (CREEPAGE * across * (np.sqrt(across) if motion.spin else 1.0)))
             coefficients.append(forces)
-        # Of first order in the cells that a semi-axis has, without the three beside the contact.
-        coarse, fine = (count - 6 for count in counts)
-        extrapolated = (fine * np.array(coefficients[1][:2]) - coarse * np.array(coefficients[0][:2])) / (fine - coarse)
+        # Of first order in the cells that a semi-axis has, without the three next to the contact.
+        coarse_count, fine_count = (count - 6 for count in counts)
+        extrapolated = (fine_count * np.array(coefficients[1][:2]) - coarse_count * np.array(coefficients[0][:2])) / (
+            fine_count - coarse_count
+        )
         case = f"vanishing creepage, a/b = {ratio:g}, Poisson's ratio {poisson:g}"
         source = "Kalker (1990), table E.3"
         for name, computed, expected in zip(names, extrapolated, table[:2], strict=True):
@@ -250,31 +252,31 @@ def contact_program_checks() -> Iterator[Check]:
     steel, load, friction = material(82e9, 0.28), 106.7e3, 0.33
     for creepage, expected in CONTACT_CURVE.items():
         motion = Rolling(longitudinal_creepage=creepage)
-        rolled = rolling_ellipse(12.61e-3, 6.304e-3, load, steel, friction, motion=motion, cells=(44, 48))
+        result = rolling_ellipse(12.61e-3, 6.304e-3, load, steel, friction, motion=motion, cells=(44, 48))
         case = f"traction curve of an ellipse 2 to 1, creepage {creepage:g}"
-        force = float(rolled["force_y"]) / (friction * load)
+        force = float(result["force_y"]) / (friction * load)
         source = "CONTACT, 48 x 44 cells, which are 1.4 % off"
         yield Reference(case, source).compare("force over full sliding's", force, expected, 0.016, relative=True)
     soft, source = material(23e9, 0.31), "Bentall and Johnson (1967) by CONTACT"
-    # The creepage grows with the half-width over the pair's radius, 0.1 mm over 25 mm there and 1 here.
+    # The creepage grows with the half-width over the pair's radius, 0.1 mm over 25 mm in the reference and 1 here.
     scale = 0.1 / 25
-    for part, expected in ((0.0, 4.294e-4), (-0.75, 2.108e-4)):
+    for position, expected in ((0.0, 4.294e-4), (-0.75, 2.108e-4)):
         modulus = 1 / (1 / soft.plane_strain_modulus + 1 / steel.plane_strain_modulus)
-        force = part * 0.05 * 0.25 * np.pi * modulus
-        rolled = line_contact(soft, steel, Rolling(force_y=force), 0.05, coupled=True)
-        case = f"unlike cylinders rolling, f = 0.05, force {part:g} of full sliding's"
-        computed = scale * float(rolled["longitudinal_creepage"])
+        force = position * 0.05 * 0.25 * np.pi * modulus
+        result = line_contact(soft, steel, Rolling(force_y=force), 0.05, coupled=True)
+        case = f"unlike cylinders rolling, f = 0.05, force {position:g} of full sliding's"
+        computed = scale * float(result["longitudinal_creepage"])
         yield Reference(case, source).compare("creepage", computed, expected, 0.015, relative=True)
 
 
 STEEL_HEAT = ThermalProperties(conductivity=46.0, density=7850.0, specific_heat=470.0)
-UNIT = {"conductivity": 1.0, "density": 1.0, "specific_heat": 1.0}
+UNIT_PROPERTIES = {"conductivity": 1.0, "density": 1.0, "specific_heat": 1.0}
 EVERYWHERE = -np.inf, np.inf
 
 
 def rise(grid: Grid, heat: FloatArray, speed: float, ends: tuple[float, float], depth: float = 0.0) -> FloatArray:
     """Rise of a body of unit properties."""
-    body = MovingBody(ThermalProperties(**UNIT), speed, ends)
+    body = MovingBody(ThermalProperties(**UNIT_PROPERTIES), speed, ends)
     return SourceOperator(body, grid, slice(0, grid.cells_x), depth)(np.broadcast_to(heat, grid.shape))
 
 
@@ -282,8 +284,8 @@ def line_case() -> tuple[Case, xr.Dataset]:
     """Hertz' line pressure along a whole body, with friction."""
     body = FiniteLengthSpace(length=1e-3, material=Material(210e9, 0.3))
     case = Case(body=body, roller=Roller(radius=5e-3, length=1e-3), max_pressure=1.5e9, friction=0.05)
-    reach = 1.5 * case.hertz_half_width
-    grid = Grid(x_range=(0.0, 1e-3), y_range=(-reach, reach), cells_x=4, cells_y=96)
+    edge = 1.5 * case.hertz_half_width
+    grid = Grid(x_range=(0.0, 1e-3), y_range=(-edge, edge), cells_x=4, cells_y=96)
     pressure = 1.5e9 * np.sqrt(np.maximum(1 - (grid.y / case.hertz_half_width) ** 2, 0)) + 0 * grid.x[:, None]
     fields = {"pressure": (("x", "y"), pressure), "traction_y": (("x", "y"), 0.05 * pressure)}
     return case, xr.Dataset(fields, coords={"x": grid.x, "y": grid.y})
@@ -303,9 +305,10 @@ def fast_checks() -> Iterator[Check]:
     distance = -hot.max_temperature_rise_y / a
     yield Reference(name, source).compare("distance behind the middle / a", distance, behind, 0.02)
     yield Reference(name, "symmetry").compare("part of the heat in the body", hot.body_heat_share, 0.5, 2e-3)
-    apart = abs(hot.temperature_rise - hot.roller_temperature_rise).where(result.pressure > 0)
-    largest, quantity = apart.max() / hot.max_temperature_rise, "surfaces' difference where they touch, over the rise"
-    yield Reference(name, "shared heat").compare(quantity, largest, 0.0, 1e-6)
+    difference = abs(hot.temperature_rise - hot.roller_temperature_rise).where(result.pressure > 0)
+    quantity = "surfaces' difference where they touch, over the rise"
+    relative_difference = difference.max() / hot.max_temperature_rise
+    yield Reference(name, "shared heat").compare(quantity, relative_difference, 0.0, 1e-6)
     motion = Sliding(body_speed=-400.0, roller_speed=-100.0)
     unlike = flash_temperature(replace(case, motion=motion), result, body=STEEL_HEAT, roller=STEEL_HEAT)
     name = "fast line contact, the body four times as fast"
@@ -334,27 +337,29 @@ def resting_checks() -> Iterator[Check]:
     cells = Grid(x_range=(-1.5, 1.5), y_range=(-1.5, 1.5), cells_x=45, cells_y=45)
     square = np.where((np.abs(cells.x)[:, None] < 1) & (np.abs(cells.y) < 1), 1.0, 0.0)
     side = 0.5 * float(square[22].sum()) * cells.dy
-    middle = float(rise(cells, square, 0.0, EVERYWHERE)[22, 22]) / side
+    centre_rise = float(rise(cells, square, 0.0, EVERYWHERE)[22, 22]) / side
     expected = 4 * float(np.arcsinh(1.0)) / np.pi
     yield Reference("square of uniform heat at rest", source).compare(
-        "rise in the middle", middle, expected, 1e-5, relative=True
+        "rise in the middle", centre_rise, expected, 1e-5, relative=True
     )
     heat = np.sqrt(np.maximum(1 - grid.x[:, None] ** 2 - grid.y**2, 0))
-    middle, expected = float(rise(grid, heat, 0.0, EVERYWHERE)[30, 30]), 0.25 * np.pi
+    centre_rise, expected = float(rise(grid, heat, 0.0, EVERYWHERE)[30, 30]), 0.25 * np.pi
     case = "circle of Hertz' pressure at rest, 61 x 61 cells"
-    yield Reference(case, source).compare("rise in the middle", middle, expected, 2e-3, relative=True)
+    yield Reference(case, source).compare("rise in the middle", centre_rise, expected, 2e-3, relative=True)
 
 
 def end_checks() -> Iterator[Check]:
     """Insulated ends, and the balance of heat."""
     edges = np.array([0.0, 0.2, 0.5, 1.0, 1.7])
-    half, full = (Grid.from_edges(borders, (-1, 1), 20) for borders in (edges, np.concatenate([-edges[:0:-1], edges])))
-    heat = np.array([3.0, 2.0, 1.5, 1.0])[:, None] * (np.abs(half.y) < 0.5)
-    at_end = rise(half, heat, 3.0, (0.0, np.inf))
-    doubled = rise(full, np.concatenate([heat[::-1], heat]), 3.0, EVERYWHERE)[4:]
-    scale = doubled.max()
+    half_grid, full_grid = (
+        Grid.from_edges(borders, (-1, 1), 20) for borders in (edges, np.concatenate([-edges[:0:-1], edges]))
+    )
+    heat = np.array([3.0, 2.0, 1.5, 1.0])[:, None] * (np.abs(half_grid.y) < 0.5)
+    at_end = rise(half_grid, heat, 3.0, (0.0, np.inf))
+    mirrored_rise = rise(full_grid, np.concatenate([heat[::-1], heat]), 3.0, EVERYWHERE)[4:]
+    scale = mirrored_rise.max()
     yield Reference("heat beside an insulated end", "symmetry").compare_fields(
-        "rise over the largest", at_end / scale, doubled / scale, 1e-9
+        "rise over the largest", at_end / scale, mirrored_rise / scale, 1e-9
     )
     for speed in (1.0, -4.0):
         outflow, power = heat_carried_away(speed)
@@ -391,27 +396,27 @@ def sliding_wear_checks() -> Iterator[Check]:
     grid = choose_grid(case, cells_x=3, cells_y=6)
     name = "sharp roller inside the face, full sliding"
     distances = [0.0, 3e3, 2e5]
-    worn = wear_in(case, COEFFICIENT, distance=distances, grid=grid)
+    result = wear_in(case, COEFFICIENT, distance=distances, grid=grid)
     ideal = COEFFICIENT * case.normal_load * distances[2]
-    volume, source = worn.worn_volume[2], "Archard (1953): k W s"
+    volume, source = result.worn_volume[2], "Archard (1953): k W s"
     yield Reference(name, source).compare("worn volume", volume, ideal, 1e-9, relative=True)
-    load = worn.line_load.values[2]
+    load = result.line_load.values[2]
     under = np.isfinite(case.gap(grid)).any(axis=1)
     ratio = float(load[under].max() / load[under].min())
     source = "a steady profile wears evenly"
     yield Reference(name, source).compare("largest load per length over the smallest, worn in", ratio, 1.0, 1e-3)
     explicit = stepped_explicit(case, grid, distances[1])
-    depth, scale = worn.wear_depth.values[1], explicit.max()
+    depth, scale = result.wear_depth.values[1], explicit.max()
     curve = Curve(("x / mm", "worn depth over the largest"), 1e3 * grid.x, depth / scale, explicit / scale)
     yield Reference(name, f"{EXPLICIT_STEPS} explicit steps").compare_fields(
         "worn depth early on, over the largest", depth / scale, explicit / scale, 0.01, curve=curve
     )
-    worn_roller = replace(case.roller, profile=worn_profile(case, worn, distances[1]))
+    worn_roller = replace(case.roller, profile=worn_profile(case, result, distances[1]))
     worn_case = replace(case, roller=worn_roller)
-    pressed = grid.dy * solve(worn_case, grid, stresses=False).pressure.sum("y").values
-    load = worn.line_load.values[1]
+    line_load = grid.dy * solve(worn_case, grid, stresses=False).pressure.sum("y").values
+    load = result.line_load.values[1]
     yield Reference(name, "the contact while it wore").compare_fields(
-        "load per length of the worn profile, over the largest", pressed / load.max(), load / load.max(), 2e-3
+        "load per length of the worn profile, over the largest", line_load / load.max(), load / load.max(), 2e-3
     )
 
 
@@ -433,8 +438,8 @@ def rolling_wear_checks() -> Iterator[Check]:
     case = Case(body=body, roller=roller, max_pressure=1.5e9, friction=0.2, motion=Rolling(longitudinal_creepage=1e-3))
     grid = choose_grid(case, cells_x=3, cells_y=8, window=2.5)
     work = float(solve(case, grid, stresses=False).friction_work)
-    worn = wear_in(case, COEFFICIENT, distance=[100.0], grid=grid, law="work")
-    volume, expected = float(worn.worn_volume[-1]), COEFFICIENT * work * 100.0
+    result = wear_in(case, COEFFICIENT, distance=[100.0], grid=grid, law="work")
+    volume, expected = float(result.worn_volume[-1]), COEFFICIENT * work * 100.0
     name = "crowned roller rolling at a creepage, little worn"
     source = "k times the frictional work of the unworn contact"
     yield Reference(name, source).compare("worn volume", volume, expected, 2e-3, relative=True)

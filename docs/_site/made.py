@@ -29,7 +29,7 @@ from contactstudy.analysis.peaks import MEASURES
 from contactstudy.arrays import vocabulary
 from contactstudy.cli import command_parser
 from contactstudy.overlapping.quadrature import Resolution
-from contactstudy.study.parameters import documented
+from contactstudy.study.parameters import parameter_table
 from contactstudy.study.profile_tables import DESIGN, PROFILES
 
 ROOT = Path(__file__).parents[2]
@@ -102,14 +102,18 @@ def profile_kinds() -> str:
     for name, kind in PROFILES.items():
         keys = [
             code(entry.name) + ("" if entry.default in (MISSING, None) else f" ({entry.default:g})")
-            for entry in fields(kind.made)
+            for entry in fields(kind.profile_class)
         ]
-        if kind.designed:
+        if kind.design_fields:
             keys.append(code(*DESIGN))
         if name == "measured":
             keys.append(code("file"))
         rows.append(
-            (code(name), f"[`{kind.made.__name__}`][contactstudy.profiles.{kind.made.__name__}]", ", ".join(keys))
+            (
+                code(name),
+                f"[`{kind.profile_class.__name__}`][contactstudy.profiles.{kind.profile_class.__name__}]",
+                ", ".join(keys),
+            )
         )
     return table(("kind", "class", "keys, with a default in brackets"), rows)
 
@@ -264,7 +268,7 @@ def modules() -> str:
 
 TABLES: dict[str, Callable[[], str]] = {
     "materials": materials.documented,
-    "study-keys": documented,
+    "study-keys": parameter_table,
     "profile-kinds": profile_kinds,
     "measures": measures,
     "coordinates": coordinates,

@@ -17,10 +17,10 @@ def test_axis_without_a_single_dimension(dims: tuple[str, str]) -> None:
         analysis.dimension_along(xr.DataArray(np.zeros((1, 1)), dims=dims), "x")
 
 
-def test_positions_of_a_study(opened: xr.Dataset) -> None:
-    place = analysis.positions(opened["pressure"], "x")
-    assert place.dims == ("e_over_a", "friction", "body", "x_over_a")
-    assert axis_dimensions(opened["von_mises"]) == {"x": "x_over_a", "y": "y_field_over_a", "z": "z_over_a"}
+def test_positions_of_a_study(study_dataset: xr.Dataset) -> None:
+    positions = analysis.positions(study_dataset["pressure"], "x")
+    assert positions.dims == ("e_over_a", "friction", "body", "x_over_a")
+    assert axis_dimensions(study_dataset["von_mises"]) == {"x": "x_over_a", "y": "y_field_over_a", "z": "z_over_a"}
 
 
 def test_missing_positions() -> None:
@@ -33,25 +33,25 @@ def test_cell_size_of_padded_cells() -> None:
     assert float(cell_size(array, "x")) == 0.5
 
 
-def test_single_case_of_a_study(opened: xr.Dataset) -> None:
-    selected = opened.sel(e_over_a=1, friction=0.1, body="finite-length")
-    one = analysis.single_case(selected)
-    assert one["pressure"].dims == ("x", "y")
-    assert one["von_mises"].dims == ("x_field", "y_field", "z")
-    assert np.isfinite(one["pressure"]).all()
-    assert np.array_equal(one["x"], selected["x"].values[np.isfinite(selected["x"])])
-    assert analysis.single_case(one).identical(one)
+def test_single_case_of_a_study(study_dataset: xr.Dataset) -> None:
+    selected = study_dataset.sel(e_over_a=1, friction=0.1, body="finite-length")
+    single = analysis.single_case(selected)
+    assert single["pressure"].dims == ("x", "y")
+    assert single["von_mises"].dims == ("x_field", "y_field", "z")
+    assert np.isfinite(single["pressure"]).all()
+    assert np.array_equal(single["x"], selected["x"].values[np.isfinite(selected["x"])])
+    assert analysis.single_case(single).identical(single)
 
 
-def test_failed_case(opened: xr.Dataset) -> None:
-    one = analysis.single_case(opened.sel(e_over_a=1, friction=FAILS, body="finite-length"))
-    assert "pressure" not in one
+def test_failed_case(study_dataset: xr.Dataset) -> None:
+    single = analysis.single_case(study_dataset.sel(e_over_a=1, friction=FAILS, body="finite-length"))
+    assert "pressure" not in single
     with pytest.raises(InvalidInputError, match=r"'a failed case': must be a solved case; .*this friction fails"):
-        one.contact.slices()
+        single.contact.slices()
 
 
-def test_more_than_one_case(opened: xr.Dataset) -> None:
+def test_several_cases_raise(study_dataset: xr.Dataset) -> None:
     with pytest.raises(InvalidInputError, match=r"single case; select one"):
-        analysis.single_case(opened)
+        analysis.single_case(study_dataset)
     with pytest.raises(InvalidInputError, match="Dataset"):
-        analysis.single_case(opened["pressure"])  # type: ignore[arg-type]
+        analysis.single_case(study_dataset["pressure"])  # type: ignore[arg-type]

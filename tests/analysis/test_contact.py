@@ -22,7 +22,7 @@ def contact(values: list[list[float]]) -> xr.Dataset:
 VALUES = [[0, 0, 0], [0, 1, 0], [2, 3, 2], [0, 4, 1], [0, 0, 0]]
 
 
-def test_along_the_axis_by_hand() -> None:
+def test_axial_profiles_equal_manual_reduction() -> None:
     profiles = analysis.axial_profiles(contact(VALUES))
     assert profiles["axial_pressure"].values.tolist() == [0, 1, 3, 4, 0]
     assert profiles["line_load"].values.tolist() == [0, 1, 7, 5, 0]
@@ -54,10 +54,10 @@ def test_interval_outside_the_cells(start, stop, message: str) -> None:
         analysis.load_between(contact(VALUES), start, stop)
 
 
-def test_results_over_a_and_one_row() -> None:
-    scaled = analysis.normalized(contact(VALUES).assign(hertz_half_width=2.0, hertz_max_pressure=4.0))
+def test_contact_results_of_normalized_data() -> None:
+    normalized = analysis.normalized(contact(VALUES).assign(hertz_half_width=2.0, hertz_max_pressure=4.0))
     with pytest.raises(InvalidInputError, match=r"in SI.*analysis.normalized"):
-        analysis.line_load(scaled)
+        analysis.line_load(normalized)
     with pytest.raises(InvalidInputError, match="two positions along y or more"):
         analysis.line_load(contact(VALUES).isel(y=[1]))
     with pytest.raises(InvalidInputError, match=r"variable = 5: must be a name"):
@@ -92,19 +92,19 @@ def test_moment_about_another_point(about: float) -> None:
 def test_contact_length_loss(strip_result) -> None:
     result = strip_result()
     assert float(analysis.contact_results(result)["contact_length_loss"]) == pytest.approx(0, abs=1e-12)
-    lifted = result.assign(pressure=result["pressure"].where(result["x"] > 2, 0.0))
-    assert float(analysis.contact_results(lifted)["contact_length_loss"]) == pytest.approx(1)
-    assert float(analysis.contact_results(lifted)["moment"]) > 0
+    partial_contact = result.assign(pressure=result["pressure"].where(result["x"] > 2, 0.0))
+    assert float(analysis.contact_results(partial_contact)["contact_length_loss"]) == pytest.approx(1)
+    assert float(analysis.contact_results(partial_contact)["moment"]) > 0
 
 
-@given(half_width=st.floats(0.4, 1.9), middle=st.floats(-0.3, 0.3))
-def test_border_of_a_hertz_pressure(half_width: float, middle: float) -> None:
-    place = (np.arange(80) - 39.5) / 16
-    pressure = np.sqrt(np.maximum(1 - ((place - middle) / half_width) ** 2, 0))
-    first, last = contact_borders(pressure, place)
-    # What the outermost cell holds is not used: the border may lie anywhere in it.
-    assert float(last) == pytest.approx(middle + half_width, abs=1e-6)
-    assert float(first) == pytest.approx(middle - half_width, abs=1e-6)
+@given(half_width=st.floats(0.4, 1.9), centre=st.floats(-0.3, 0.3))
+def test_border_of_a_hertz_pressure(half_width: float, centre: float) -> None:
+    positions = (np.arange(80) - 39.5) / 16
+    pressure = np.sqrt(np.maximum(1 - ((positions - centre) / half_width) ** 2, 0))
+    first, last = contact_borders(pressure, positions)
+    # The value of the outermost cell is not used: the border may lie anywhere in this cell.
+    assert float(last) == pytest.approx(centre + half_width, abs=1e-6)
+    assert float(first) == pytest.approx(centre - half_width, abs=1e-6)
 
 
 def test_line_contact_has_hertz_load_and_half_width(strip_result) -> None:
@@ -116,51 +116,51 @@ def test_line_contact_has_hertz_load_and_half_width(strip_result) -> None:
     assert profiles["unloaded_gap"].isnull().values.tolist() == (profiles["line_load"] == 0).values.tolist()
 
 
-def test_real_contact(solved: xr.Dataset) -> None:
-    result = analysis.contact_results(solved)
-    assert float(result["resultant"]) == pytest.approx(float(solved["normal_load"]), rel=1e-9)
-    assert abs(float(result["moment"])) < 1e-6 * float(solved["normal_load"]) * 0.5e-3
-    middle = analysis.half_width(solved)["half_width"].sel(x=0.26e-3, method="nearest")
-    line_load = analysis.line_load(solved).sel(x=0.26e-3, method="nearest")
+def test_real_contact(case_result: xr.Dataset) -> None:
+    result = analysis.contact_results(case_result)
+    assert float(result["resultant"]) == pytest.approx(float(case_result["normal_load"]), rel=1e-9)
+    assert abs(float(result["moment"])) < 1e-6 * float(case_result["normal_load"]) * 0.5e-3
+    half_width = analysis.half_width(case_result)["half_width"].sel(x=0.26e-3, method="nearest")
+    line_load = analysis.line_load(case_result).sel(x=0.26e-3, method="nearest")
     # Hertz' half-width of the load that the section carries, to a fraction of a cell (a/12).
-    hertz = float(solved["hertz_half_width"]) * np.sqrt(
-        float(line_load) / (np.pi / 2 * float(solved["hertz_half_width"] * solved["hertz_max_pressure"]))
+    hertz = float(case_result["hertz_half_width"]) * np.sqrt(
+        float(line_load) / (np.pi / 2 * float(case_result["hertz_half_width"] * case_result["hertz_max_pressure"]))
     )
-    assert float(middle) == pytest.approx(hertz, rel=0.03)
+    assert float(half_width) == pytest.approx(hertz, rel=0.03)
 
 
-def test_study_against_its_cases(opened: xr.Dataset) -> None:
-    together = analysis.contact_results(opened)
+def test_study_results_equal_case_results(study_dataset: xr.Dataset) -> None:
+    together = analysis.contact_results(study_dataset)
     assert together["contact_area"].dims == ("e_over_a", "friction", "body")
     for e in (0.0, 1.0, 2.0):
         chosen = {"e_over_a": e, "friction": 0.1, "body": "finite-length"}
-        alone = analysis.contact_results(analysis.single_case(opened.sel(chosen)))
-        for name, value in alone.items():
+        case_result = analysis.contact_results(analysis.single_case(study_dataset.sel(chosen)))
+        for name, value in case_result.items():
             assert float(together[name].sel(chosen)) == pytest.approx(float(value), rel=1e-12, abs=1e-15), name
-        profile = analysis.half_width(opened.sel(chosen))["half_width"].dropna("x_over_a")
-        single = analysis.half_width(analysis.single_case(opened.sel(chosen)))["half_width"]
+        profile = analysis.half_width(study_dataset.sel(chosen))["half_width"].dropna("x_over_a")
+        single = analysis.half_width(analysis.single_case(study_dataset.sel(chosen)))["half_width"]
         assert np.array_equal(profile.values, single.values)
     assert together.sel(friction=FAILS).to_array().isnull().all()
 
 
-def test_load_between_in_a_study(opened: xr.Dataset) -> None:
-    start = opened["e_over_a"] * opened["hertz_half_width"]
-    stop = start + 2 * opened["hertz_half_width"]
-    together = analysis.load_between(opened, start, stop)
+def test_load_between_in_a_study(study_dataset: xr.Dataset) -> None:
+    start = study_dataset["e_over_a"] * study_dataset["hertz_half_width"]
+    stop = start + 2 * study_dataset["hertz_half_width"]
+    together = analysis.load_between(study_dataset, start, stop)
     assert together.dims == ("e_over_a", "friction", "body")
     for e in (0.0, 2.0):
         chosen = {"e_over_a": e, "friction": 0.1, "body": "finite-length"}
-        alone = analysis.single_case(opened.sel(chosen))
-        share = analysis.load_between(alone, float(start.sel(chosen)), float(stop.sel(chosen)))
-        assert float(together.sel(chosen)) == pytest.approx(float(share), rel=1e-12)
+        single = analysis.single_case(study_dataset.sel(chosen))
+        load = analysis.load_between(single, float(start.sel(chosen)), float(stop.sel(chosen)))
+        assert float(together.sel(chosen)) == pytest.approx(float(load), rel=1e-12)
     assert together.sel(friction=FAILS).isnull().all()
 
 
-def test_lazy_surfaces(opened: xr.Dataset) -> None:
-    assert analysis.axial_profiles(opened.chunk())["half_width"].chunks is not None
+def test_lazy_surfaces(study_dataset: xr.Dataset) -> None:
+    assert analysis.axial_profiles(study_dataset.chunk())["half_width"].chunks is not None
 
 
-def test_nothing_in_contact() -> None:
+def test_results_without_contact() -> None:
     result = analysis.contact_results(contact([[0, 0], [0, 0]]))
     assert float(result["contact_length"]) == float(result["contact_area"]) == 0
     assert np.isnan(float(result["edge_pressure_first"]))
@@ -195,7 +195,7 @@ def test_moment_about_nan() -> None:
 
 
 @pytest.mark.parametrize(
-    ("part", "first", "last"),
+    ("y_slice", "first", "last"),
     [
         (slice(None), 1.0, 4.0),
         (slice(2, None), np.nan, 4.0),
@@ -203,32 +203,34 @@ def test_moment_about_nan() -> None:
         (slice(2, 3), np.nan, np.nan),
     ],
 )
-def test_cut_ends(part: slice, first: float, last: float) -> None:
-    # Rows that carry nothing on either side of y, as in every window that holds the contact.
-    whole = contact(VALUES).pad(y=1, constant_values=0).assign_coords(y=np.arange(-2.0, 3.0), normal_load=13.0)
-    whole = whole.reset_coords("normal_load").assign(hertz_half_width=1.0)
-    selected = whole.isel(x=part).assign_coords(x_width=1.0)
-    found = analysis.edge_pressure(selected)
-    assert [float(found[f"edge_pressure_{end}"]) for end in ("first", "last")] == pytest.approx(
+def test_cut_ends(y_slice: slice, first: float, last: float) -> None:
+    # Unloaded rows on either side of y, as in every sufficient window.
+    full_contact = contact(VALUES).pad(y=1, constant_values=0).assign_coords(y=np.arange(-2.0, 3.0), normal_load=13.0)
+    full_contact = full_contact.reset_coords("normal_load").assign(hertz_half_width=1.0)
+    selected = full_contact.isel(x=y_slice).assign_coords(x_width=1.0)
+    end_pressures = analysis.edge_pressure(selected)
+    assert [float(end_pressures[f"edge_pressure_{end}"]) for end in ("first", "last")] == pytest.approx(
         [first, last], nan_ok=True
     )
     factors = analysis.edge_factors(selected)
     for end in ("first", "last"):
         assert np.isnan(float(factors[f"end_over_middle_{end}"])) == (np.isnan(first) or np.isnan(last))
-    half = analysis.edge_pressure(whole.sel(y=slice(0, None)))
-    assert [float(each) for each in half.values()] == [1.0, 4.0]
+    half_result = analysis.edge_pressure(full_contact.sel(y=slice(0, None)))
+    assert [float(pressure) for pressure in half_result.values()] == [1.0, 4.0]
 
 
-def test_cut_of_a_solved_contact(solved: xr.Dataset) -> None:
-    half = solved.sel(x=slice(0.26e-3, None))
-    assert np.isnan(analysis.edge_pressure(half)["edge_pressure_first"])
-    whole = analysis.edge_pressure(solved)["edge_pressure_last"]
-    assert float(analysis.edge_pressure(half)["edge_pressure_last"]) == float(whole)
-    assert "contact_length" in solved.contact.summary()
-    assert "contact_length" not in half.contact.summary()
+def test_cut_of_a_solved_contact(case_result: xr.Dataset) -> None:
+    half_contact = case_result.sel(x=slice(0.26e-3, None))
+    assert np.isnan(analysis.edge_pressure(half_contact)["edge_pressure_first"])
+    full_pressure = analysis.edge_pressure(case_result)["edge_pressure_last"]
+    assert float(analysis.edge_pressure(half_contact)["edge_pressure_last"]) == float(full_pressure)
+    assert "contact_length" in case_result.contact.summary()
+    assert "contact_length" not in half_contact.contact.summary()
 
 
-def test_order_of_positions(solved: xr.Dataset) -> None:
-    mixed = solved.isel(x=slice(None, None, -1), y=np.random.default_rng(1).permutation(solved.sizes["y"]))
-    xr.testing.assert_identical(analysis.edge_pressure(mixed), analysis.edge_pressure(solved))
-    xr.testing.assert_identical(analysis.half_width(mixed).sortby("x"), analysis.half_width(solved))
+def test_order_of_positions(case_result: xr.Dataset) -> None:
+    shuffled_result = case_result.isel(
+        x=slice(None, None, -1), y=np.random.default_rng(1).permutation(case_result.sizes["y"])
+    )
+    xr.testing.assert_identical(analysis.edge_pressure(shuffled_result), analysis.edge_pressure(case_result))
+    xr.testing.assert_identical(analysis.half_width(shuffled_result).sortby("x"), analysis.half_width(case_result))

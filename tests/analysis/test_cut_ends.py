@@ -19,32 +19,32 @@ BODIES = {
 @pytest.fixture(scope="module", params=BODIES)
 def flush(request: pytest.FixtureRequest) -> xr.Dataset:
     body = BODIES[request.param]
-    place = {} if request.param == "flush" else {"end_distance": 0.0}
-    return solve(Case(body=body, roller=ROLLER, max_pressure=1.5e9, **place), accuracy=0.1, stresses=False)
+    position = {} if request.param == "flush" else {"end_distance": 0.0}
+    return solve(Case(body=body, roller=ROLLER, max_pressure=1.5e9, **position), accuracy=0.1, stresses=False)
 
 
-def ends(part: xr.Dataset) -> list[float]:
-    return [float(value) for value in analysis.edge_pressure(part).values()]
+def ends(selected: xr.Dataset) -> list[float]:
+    return [float(value) for value in analysis.edge_pressure(selected).values()]
 
 
-@pytest.mark.parametrize("said", [True, False])
-def test_ends_of_halves(flush: xr.Dataset, said: bool) -> None:
-    whole = flush if said else flush.drop_attrs(deep=False)
-    middle = flush.sizes["x"] // 2
-    first, last = ends(whole)
+@pytest.mark.parametrize("with_attributes", [True, False])
+def test_ends_of_halves(flush: xr.Dataset, with_attributes: bool) -> None:
+    contact = flush if with_attributes else flush.drop_attrs(deep=False)
+    mid_column = flush.sizes["x"] // 2
+    first, last = ends(contact)
     assert first > 0
     assert last > 0
-    assert ends(whole.isel(x=slice(None, middle))) == pytest.approx([first, np.nan], nan_ok=True)
-    # Without the case it is not known where a body ends whose columns all are pressed.
+    assert ends(contact.isel(x=slice(None, mid_column))) == pytest.approx([first, np.nan], nan_ok=True)
+    # Without the case the end of a body with loaded columns only is unknown.
     reaches = bool((flush["pressure"].isel(x=-1) > 0).any())
-    expected = last if said or not reaches else np.nan
-    assert ends(whole.isel(x=slice(middle, None))) == pytest.approx([np.nan, expected], nan_ok=True)
-    assert np.isnan(ends(whole.isel(x=slice(middle - 5, middle + 5)))).all()
+    expected = last if with_attributes or not reaches else np.nan
+    assert ends(contact.isel(x=slice(mid_column, None))) == pytest.approx([np.nan, expected], nan_ok=True)
+    assert np.isnan(ends(contact.isel(x=slice(mid_column - 5, mid_column + 5)))).all()
 
 
 def test_missing_cells(flush: xr.Dataset) -> None:
-    thinned = flush.isel(x=slice(None, None, 2))
-    assert not np.isnan(ends(thinned)).any()
+    sparse_result = flush.isel(x=slice(None, None, 2))
+    assert not np.isnan(ends(sparse_result)).any()
 
 
 def test_pressures_in_megapascals(flush: xr.Dataset) -> None:
@@ -56,15 +56,15 @@ def test_pressures_in_megapascals(flush: xr.Dataset) -> None:
 
 
 def test_peaks_of_a_contact_and_a_part(flush: xr.Dataset) -> None:
-    """The settled one, with its error; infinite where an end is singular, as its edge pressure and factor are."""
-    found = analysis.contact_results(flush)
-    assert float(found["peak_pressure"]) == float(flush["peak_pressure"])
-    np.testing.assert_array_equal(found["peak_pressure_error"], flush["peak_pressure_error"])
-    middle = flush.sizes["x"] // 2
-    part = flush.isel(x=slice(middle - 5, middle + 5))
-    assert float(analysis.contact_results(part)["peak_pressure"]) == float(part["pressure"].max())
+    """The refined peak, with its error; infinite at a singular end, like its edge pressure and factor."""
+    results = analysis.contact_results(flush)
+    assert float(results["peak_pressure"]) == float(flush["peak_pressure"])
+    np.testing.assert_array_equal(results["peak_pressure_error"], flush["peak_pressure_error"])
+    mid_column = flush.sizes["x"] // 2
+    subset = flush.isel(x=slice(mid_column - 5, mid_column + 5))
+    assert float(analysis.contact_results(subset)["peak_pressure"]) == float(subset["pressure"].max())
     singular = np.isinf(float(flush["end_pressure_last"]))
-    assert np.isinf(float(found["edge_pressure_last"])) == singular
+    assert np.isinf(float(results["edge_pressure_last"])) == singular
     assert np.isinf(float(analysis.edge_factors(flush)["end_over_middle_last"])) == singular
-    assert found["edge_pressure_first"].attrs["error_kind"] == "not estimated"
+    assert results["edge_pressure_first"].attrs["error_kind"] == "not estimated"
     assert analysis.largest_sample(flush, "pressure")["peak_pressure"].attrs["error_kind"] == "not estimated"

@@ -30,12 +30,12 @@ def test_linear_field(start, end) -> None:
     assert cut["von_mises"].attrs["units"] == "Pa"
 
 
-@pytest.mark.parametrize(("axis", "others"), [("x", ("y", "z")), ("y", ("x", "z")), ("z", ("x", "y"))])
-def test_planes(axis: str, others: tuple[str, str]) -> None:
+@pytest.mark.parametrize(("axis", "plane_axes"), [("x", ("y", "z")), ("y", ("x", "z")), ("z", ("x", "y"))])
+def test_planes(axis: str, plane_axes: tuple[str, str]) -> None:
     plane = analysis.in_plane(linear(), **{axis: 0.3})
-    assert plane["von_mises"].dims == others
+    assert plane["von_mises"].dims == plane_axes
     expected = 2 * plane["x"] - 3 * plane["y"] + plane["z"]
-    assert np.allclose(plane["von_mises"], expected.transpose(*others))
+    assert np.allclose(plane["von_mises"], expected.transpose(*plane_axes))
     assert float(plane[axis]) == 0.3
 
 
@@ -52,19 +52,19 @@ def test_positions_in_any_order() -> None:
     assert np.allclose(analysis.in_plane(shuffled, z=0.3)["von_mises"], analysis.in_plane(linear(), z=0.3)["von_mises"])
 
 
-def test_result_of_one_plane_only(opened: xr.Dataset) -> None:
-    one = opened.sel(e_over_a=1, friction=0.1, body="finite-length")
-    plane = analysis.in_plane(one, y=0.0, variables=["von_mises", "tresca"])
+def test_cut_of_single_plane_result(study_dataset: xr.Dataset) -> None:
+    study_case = study_dataset.sel(e_over_a=1, friction=0.1, body="finite-length")
+    plane = analysis.in_plane(study_case, y=0.0, variables=["von_mises", "tresca"])
     assert plane["tresca"].dims == ("x_field", "z")
     with pytest.raises(InvalidInputError, match="this plane only"):
-        analysis.in_plane(one, y=1e-5)
+        analysis.in_plane(study_case, y=1e-5)
 
 
-def test_depth_of_the_largest_stress_on_a_line(solved: xr.Dataset) -> None:
-    a = float(solved["hertz_half_width"])
-    line = analysis.along_line(solved, (0.26e-3, 0, 0), (0.26e-3, 0, 1.5 * a), points=7)
-    at = solved["von_mises"].sel(x_field=0.26e-3, y_field=0, z=0.75 * a, method="nearest")
-    assert float(line["von_mises"][3]) == pytest.approx(float(at), rel=1e-9)
+def test_depth_of_the_largest_stress_on_a_line(case_result: xr.Dataset) -> None:
+    a = float(case_result["hertz_half_width"])
+    line = analysis.along_line(case_result, (0.26e-3, 0, 0), (0.26e-3, 0, 1.5 * a), points=7)
+    expected = case_result["von_mises"].sel(x_field=0.26e-3, y_field=0, z=0.75 * a, method="nearest")
+    assert float(line["von_mises"][3]) == pytest.approx(float(expected), rel=1e-9)
 
 
 @pytest.mark.parametrize(

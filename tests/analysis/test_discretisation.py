@@ -26,15 +26,15 @@ LUNDBERG = profiles.Lundberg.for_pressure(PRESSURE, radius=5e-3, modulus=STEEL.p
 
 def with_errors(case: Case, grid: Grid) -> xr.Dataset:
     """Contact on a grid, with the errors from the contact on the coarser grid."""
-    fine, coarse = (solve(case, cells, stresses=False) for cells in (grid, grid.coarsened()))
-    return fine.assign(discretisation_error(fine, coarse).data_vars)
+    fine_result, coarse_result = (solve(case, cells, stresses=False) for cells in (grid, grid.coarsened()))
+    return fine_result.assign(discretisation_error(fine_result, coarse_result).data_vars)
 
 
 def case_of(length: float, profile: profiles.Profile) -> Case:
     return Case(body=BODY, roller=Roller(radius=5e-3, length=length, profile=profile), max_pressure=PRESSURE)
 
 
-def solved(case: Case, cells: int):
+def solve_on_cells(case: Case, cells: int):
     window = 2 * case.hertz_half_width
     return solve(
         case, Grid(x_range=(0.0, BODY.length), y_range=(-window, window), cells_x=cells, cells_y=cells), stresses=False
@@ -46,9 +46,12 @@ def solved(case: Case, cells: int):
     [case_of(8 * HALF_WIDTH, profiles.Cylinder()), case_of(7 * HALF_WIDTH, LUNDBERG)],
     ids=["flush cylinder", "Lundberg"],
 )
-def test_estimates_bound_the_difference_from_a_much_finer_grid(case):
-    coarse, fine, finest = (solved(case, cells) for cells in (32, 64, 192))
-    estimate, reference = discretisation_error(fine, coarse), discretisation_error(finest, fine)
+def test_error_estimates_bound_fine_grid_difference(case):
+    coarse_result, fine_result, reference_result = (solve_on_cells(case, cells) for cells in (32, 64, 192))
+    estimate, reference = (
+        discretisation_error(fine_result, coarse_result),
+        discretisation_error(reference_result, fine_result),
+    )
     for name in ("peak_pressure", "end_pressure_first", "end_pressure_last", "half_width_middle"):
         difference = abs(float(estimate[name]) - float(reference[name]))
         assert difference <= float(estimate[f"{name}_error"]), name
@@ -57,13 +60,13 @@ def test_estimates_bound_the_difference_from_a_much_finer_grid(case):
 
 def test_symmetric_contacts_have_equal_ends():
     case = case_of(8 * HALF_WIDTH, profiles.Cylinder())
-    result = discretisation_error(solved(case, 32), solved(case, 16))
+    result = discretisation_error(solve_on_cells(case, 32), solve_on_cells(case, 16))
     assert float(result.end_pressure_first) == pytest.approx(float(result.end_pressure_last), rel=1e-6)
 
 
 def test_comment_at_a_sharp_end():
     case = case_of(5 * HALF_WIDTH, profiles.Cylinder())
-    result = discretisation_error(solved(case, 64), solved(case, 32))
+    result = discretisation_error(solve_on_cells(case, 64), solve_on_cells(case, 32))
     for name in ("peak_pressure_error", "end_pressure_first_error", "end_pressure_last_error"):
         assert np.isinf(float(result[name]))
         assert "ends sharply" in result[name].attrs["comment"]
@@ -73,19 +76,19 @@ def test_comment_at_a_sharp_end():
 
 def test_contact_inside_the_profile():
     case = case_of(7 * HALF_WIDTH, LUNDBERG)
-    result = discretisation_error(solved(case, 64), solved(case, 32))
+    result = discretisation_error(solve_on_cells(case, 64), solve_on_cells(case, 32))
     assert float(result.end_pressure_first) == float(result.end_pressure_first_error) == 0.0
 
 
-def test_the_fine_grid_must_be_finer():
-    contact = solved(case_of(8 * HALF_WIDTH, profiles.Cylinder()), 16)
+def test_coarser_reference_raises():
+    contact = solve_on_cells(case_of(8 * HALF_WIDTH, profiles.Cylinder()), 16)
     with pytest.raises(InvalidInputError, match="coarse"):
         discretisation_error(contact, contact)
 
 
 @pytest.mark.parametrize(("pressure", "cells"), [(1e9, 2), (0.8e9, 6)])
 def test_peak_at_a_sharp_end(pressure, cells):
-    """Coarse cells show the peak in the middle, though that of the end is above it: without a limit, it is the peak."""
+    """Coarse cells have their peak in the middle, although the peak at the end is higher."""
     body = FiniteLengthSpace(length=0.8e-3, material=STEEL)
     roller = Roller(radius=5e-3, length=0.5e-3, profile=profiles.FullCrown(0.1))
     case = Case(body=body, roller=roller, max_pressure=pressure)
@@ -124,33 +127,38 @@ def test_coarse_cells_at_an_edge_radius(profile, length, cells):
     ids=repr,
 )
 @pytest.mark.parametrize("cells", [2, 8])
-def test_finite_errors_cover_what_refined_columns_settle(profile, cells):
+def test_errors_cover_refined_column_values(profile, cells):
     body = FiniteLengthSpace(length=0.5e-3, material=STEEL)
     case = Case(body=body, roller=Roller(radius=5e-3, length=0.5e-3, profile=profile), max_pressure=1e9)
     result = with_errors(case, choose_grid(case, cells_x=cells))
-    settled = solve(case, stresses=False)
+    refined = solve(case, stresses=False)
     assert float(result.peak_pressure_error) < 0.06 * float(result.peak_pressure)
     for name in ("peak_pressure", "end_pressure_first", "end_pressure_last"):
-        left = float(result[f"{name}_error"]) + float(settled[f"{name}_error"])
-        assert abs(float(result[name]) - float(settled[name])) <= left, name
+        tolerance = float(result[f"{name}_error"]) + float(refined[f"{name}_error"])
+        assert abs(float(result[name]) - float(refined[name])) <= tolerance, name
 
 
 @pytest.mark.parametrize("case", [case_of(5 * HALF_WIDTH, profiles.Cylinder()), case_of(8 * HALF_WIDTH, LUNDBERG)])
 def test_end_pressures_below_the_peak(case):
-    result = discretisation_error(solved(case, 64), solved(case, 32))
+    result = discretisation_error(solve_on_cells(case, 64), solve_on_cells(case, 32))
     ends = [float(result[f"end_pressure_{end}"]) for end in ("first", "last")]
     assert float(result.peak_pressure) >= max(ends)
 
 
 @pytest.mark.parametrize("poisson", [-0.5, -0.2])
 def test_peak_at_a_free_end(poisson):
-    """A material that shrinks across when it is pressed is stiffer at its free end: the pressure rises to it."""
+    """An auxetic material is stiffer at its free end: the pressure rises towards the end."""
     body = FiniteLengthSpace(length=8 * HALF_WIDTH, material=Material(210e9, poisson))
     case = Case(body=body, roller=Roller(radius=5e-3, length=8 * HALF_WIDTH), max_pressure=PRESSURE)
-    coarse, fine, finest = (solved(case, cells) for cells in (24, 48, 96))
-    estimate, reference = discretisation_error(fine, coarse), discretisation_error(finest, fine)
-    for found in (estimate, reference):
-        assert float(found.peak_pressure) == float(max(found.end_pressure_first, found.end_pressure_last))
+    coarse_result, fine_result, reference_result = (solve_on_cells(case, cells) for cells in (24, 48, 96))
+    estimate, reference = (
+        discretisation_error(fine_result, coarse_result),
+        discretisation_error(reference_result, fine_result),
+    )
+    for estimate_or_reference in (estimate, reference):
+        assert float(estimate_or_reference.peak_pressure) == float(
+            max(estimate_or_reference.end_pressure_first, estimate_or_reference.end_pressure_last)
+        )
     difference = abs(float(estimate.peak_pressure) - float(reference.peak_pressure))
     assert difference <= float(estimate.peak_pressure_error) <= 0.12 * float(reference.peak_pressure)
 
@@ -162,16 +170,18 @@ def test_advice_for_coarse_cells():
     comment = result.peak_pressure_error.attrs["comment"]
     assert np.isinf(float(result.peak_pressure_error))
     assert f"turn on {grid.shape[0]} x {grid.shape[1]} cells: leave the grid out" in comment
-    numbers = re.search(r"choose_grid\(case, cells_x=([\d.]+), cells_y=([\d.]+)\)", comment)
-    finer = choose_grid(steep, cells_x=float(numbers[1]), cells_y=float(numbers[2]))
+    counts = re.search(r"choose_grid\(case, cells_x=([\d.]+), cells_y=([\d.]+)\)", comment)
+    finer = choose_grid(steep, cells_x=float(counts[1]), cells_y=float(counts[2]))
     assert finer.shape[0] >= 4 * grid.shape[0]
     assert finer.shape[1] == pytest.approx(2 * grid.shape[1], rel=0.1)
-    foreign = [each.drop_vars("hertz_half_width") for each in (solved(steep, 32), solved(steep, 16))]
+    foreign = [
+        dataset.drop_vars("hertz_half_width") for dataset in (solve_on_cells(steep, 32), solve_on_cells(steep, 16))
+    ]
     assert re.search(r"or take [\d.]+ times as many", discretisation_error(*foreign).peak_pressure_error.comment)
 
 
 @pytest.mark.parametrize("wider", [1.5, 1.0005])
-def test_uneven_columns_are_not_told_a_uniform_grid(wider):
+def test_graded_columns_get_no_grid_advice(wider):
     """The middles of columns of two widths in turn have equal distances; their widths may differ by nanometres."""
     case = case_of(8 * HALF_WIDTH, profiles.Cylinder(fillet_radius=0.05e-3))
     edges = np.cumsum([0.0, *np.tile([1.0, wider], 16)])

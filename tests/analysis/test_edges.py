@@ -44,24 +44,24 @@ def test_hertz_circle(window):
 
 
 def test_edges_against_counted_cells():
-    fitted, counted = [], []
+    fitted_areas, counted_areas = [], []
     for window in np.linspace(1.75, 1.85, 11):
         contact = ellipsoid(float(window), 64)
-        middle = contact.isel(x=32)
+        mid_section = contact.isel(x=32)
         step = float(contact.y[1] - contact.y[0])
-        expected = np.sqrt(1 - float(middle.x) ** 2)
-        fitted.append(float(contact_edges(contact).half_width[32]) - expected)
-        counted.append(0.5 * step * int((middle.pressure > 0).sum()) - expected)
-    assert np.abs(fitted).max() < 0.1 * np.abs(counted).max()
+        expected = np.sqrt(1 - float(mid_section.x) ** 2)
+        fitted_areas.append(float(contact_edges(contact).half_width[32]) - expected)
+        counted_areas.append(0.5 * step * int((mid_section.pressure > 0).sum()) - expected)
+    assert np.abs(fitted_areas).max() < 0.1 * np.abs(counted_areas).max()
 
 
 def test_edges_mirror_with_the_contact():
     contact = ellipsoid(1.8, 48, slimness=0.8)
     shifted = contact.assign_coords(x=contact.x + 0.3, y=contact.y + 0.2)
     mirrored = shifted.assign_coords(x=-shifted.x, y=-shifted.y).sortby(["x", "y"])
-    edges, turned = contact_edges(shifted), contact_edges(mirrored)
-    np.testing.assert_allclose(turned.y_left.values[::-1], -edges.y_right.values, atol=1e-12)
-    assert float(turned.x_first) == pytest.approx(-float(edges.x_last), abs=1e-12)
+    edges, mirrored_edges = contact_edges(shifted), contact_edges(mirrored)
+    np.testing.assert_allclose(mirrored_edges.y_left.values[::-1], -edges.y_right.values, atol=1e-12)
+    assert float(mirrored_edges.x_first) == pytest.approx(-float(edges.x_last), abs=1e-12)
 
 
 def test_area_and_length_of_an_ellipse():
@@ -108,12 +108,12 @@ def test_needs_pressure_and_gap(missing):
         contact_edges(ellipsoid(1.8, 16).drop_vars(missing))
 
 
-def test_not_a_dataset():
+def test_wrong_type_raises():
     with pytest.raises(InvalidInputError, match="Dataset"):
         contact_edges([1.0])
 
 
-def test_area_with_a_border_short_of_a_centre():
+def test_contact_area_near_cell_centres():
     """A small fillet, where the pressure piles up: the fitted border may lie within the outermost loaded column."""
     material, modulus = Material(210e9, 0.3), 0.5 * Material(210e9, 0.3).plane_strain_modulus
     half_width = 2 * 1.5e9 * 5e-3 / modulus
@@ -125,24 +125,24 @@ def test_area_with_a_border_short_of_a_centre():
     for cells in (6, 7, 8, 9):
         contact = solve(case, choose_grid(case, cells_x=cells, cells_y=16, window=2.2), stresses=False)
         areas.append(float(contact_edges(contact).contact_area))
-        counted = int((contact.pressure > 0).sum()) * float(np.diff(contact.x[:2])[0] * np.diff(contact.y[:2])[0])
-        assert areas[-1] == pytest.approx(counted, rel=0.05)
+        counted_area = int((contact.pressure > 0).sum()) * float(np.diff(contact.x[:2])[0] * np.diff(contact.y[:2])[0])
+        assert areas[-1] == pytest.approx(counted_area, rel=0.05)
     np.testing.assert_allclose(areas, areas[-1], rtol=0.03)
 
 
-def test_a_case_of_a_study(opened):
-    one = opened.sel(e_over_a=1, friction=0.1, body="finite-length")
-    assert float(one.contact.contact_edges()["contact_length"]) > 0
+def test_a_case_of_a_study(study_dataset):
+    study_case = study_dataset.sel(e_over_a=1, friction=0.1, body="finite-length")
+    assert float(study_case.contact.contact_edges()["contact_length"]) > 0
 
 
 def test_area_with_a_narrow_middle():
     x, y = -4 + 0.1 * (np.arange(80) + 0.5), 0.05 * (np.arange(40) - 19.5)
     half_width = 0.3 + 0.3 * np.exp(-((np.abs(x) - 3.5) ** 2) / 0.1)
-    outside = y**2 - half_width[:, None] ** 2
+    border_function = y**2 - half_width[:, None] ** 2
     contact = xr.Dataset(
         {
-            "pressure": (("x", "y"), np.sqrt(np.maximum(-outside, 0.0))),
-            "gap": (("x", "y"), np.maximum(outside, 0.0) ** 1.5),
+            "pressure": (("x", "y"), np.sqrt(np.maximum(-border_function, 0.0))),
+            "gap": (("x", "y"), np.maximum(border_function, 0.0) ** 1.5),
         },
         coords={"x": x, "y": y},
     )

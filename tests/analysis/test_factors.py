@@ -38,22 +38,22 @@ def test_uniform_contact_has_no_edge(strip_result) -> None:
         assert np.allclose(factors.to_array(), 1.0), variable
 
 
-def test_field_near_one_end(strip_result) -> None:
+def test_edge_factors_of_field_near_end(strip_result) -> None:
     result = strip_result().isel(x_field=slice(0, 3))
     factors = analysis.edge_factors(result, "von_mises", result)
     assert np.isnan(float(factors["end_over_middle_first"]))
     assert float(factors["over_reference_first"]) == 1.0
 
 
-def test_fillet_makes_an_edge(solved: xr.Dataset) -> None:
-    factors = analysis.edge_factors(solved)
+def test_fillet_makes_an_edge(case_result: xr.Dataset) -> None:
+    factors = analysis.edge_factors(case_result)
     assert float(factors["end_over_middle_first"]) > 1.2
     assert float(factors["end_over_middle_first"]) == pytest.approx(float(factors["end_over_middle_last"]), rel=1e-6)
 
 
-def test_a_study_against_its_half_space(opened: xr.Dataset) -> None:
-    half_space = opened.sel(body="half-space").isel(e_over_a=0)
-    factors = analysis.edge_factors(opened.sel(body="finite-length"), "pressure", half_space)
+def test_edge_factors_of_study_with_reference(study_dataset: xr.Dataset) -> None:
+    half_space = study_dataset.sel(body="half-space").isel(e_over_a=0)
+    factors = analysis.edge_factors(study_dataset.sel(body="finite-length"), "pressure", half_space)
     assert factors["over_reference_peak"].sizes == {"e_over_a": 3, "friction": 2}
     assert float(factors["over_reference_first"].sel(e_over_a=0, friction=0.1)) == pytest.approx(1.0, rel=0.05)
 

@@ -28,29 +28,29 @@ def hill(x: np.ndarray, z: np.ndarray) -> xr.Dataset:
 
 @pytest.mark.parametrize("step", [0.3, 0.2, 0.1])
 def test_peak_between_samples(step: float) -> None:
-    found = analysis.peak(hill(np.arange(-1.0, 2.0, step), np.arange(0.0, 2.0, step)), "maximum_shear")
-    assert abs(float(found.peak_maximum_shear) - 3) <= float(found.peak_maximum_shear_error) < 0.1
-    assert float(found.peak_maximum_shear_x) == pytest.approx(0.3, abs=0.1 * step)
-    assert float(found.peak_maximum_shear_z) == pytest.approx(0.7, abs=0.1 * step)
-    assert found.peak_maximum_shear_error.attrs["units"] == "Pa"
+    peak = analysis.peak(hill(np.arange(-1.0, 2.0, step), np.arange(0.0, 2.0, step)), "maximum_shear")
+    assert abs(float(peak.peak_maximum_shear) - 3) <= float(peak.peak_maximum_shear_error) < 0.1
+    assert float(peak.peak_maximum_shear_x) == pytest.approx(0.3, abs=0.1 * step)
+    assert float(peak.peak_maximum_shear_z) == pytest.approx(0.7, abs=0.1 * step)
+    assert peak.peak_maximum_shear_error.attrs["units"] == "Pa"
 
 
 @pytest.mark.parametrize(("z", "axis"), [(np.linspace(0.8, 2.0, 9), "z"), (np.linspace(0.0, 0.6, 9), "z")])
 def test_largest_sample_at_the_edge(z: np.ndarray, axis: str) -> None:
-    found = analysis.peak(hill(np.linspace(-1.0, 2.0, 9), z), "maximum_shear")
-    assert np.isinf(float(found.peak_maximum_shear_error))
-    assert f"edge of the points along {axis}" in found.peak_maximum_shear_error.attrs["comment"]
+    peak = analysis.peak(hill(np.linspace(-1.0, 2.0, 9), z), "maximum_shear")
+    assert np.isinf(float(peak.peak_maximum_shear_error))
+    assert f"edge of the points along {axis}" in peak.peak_maximum_shear_error.attrs["comment"]
 
 
 def test_peak_on_the_top() -> None:
     z = np.linspace(0.0, 2.0, 11)
     values = xr.DataArray(np.exp(-z)[None, None], dims=("x", "y", "z"), coords={"x": [0.0], "y": [0.0], "z": z})
-    found = analysis.peak(shear(values), "maximum_shear")
-    assert float(found.peak_maximum_shear_z) == 0.0
-    assert float(found.peak_maximum_shear_error) < 0.1
+    peak = analysis.peak(shear(values), "maximum_shear")
+    assert float(peak.peak_maximum_shear_z) == 0.0
+    assert float(peak.peak_maximum_shear_error) < 0.1
 
 
-def sampled(count: int, **roller: object) -> xr.Dataset:
+def solve_with_depths(count: int, **roller: object) -> xr.Dataset:
     body = FiniteLengthSpace(length=12 * A, material=STEEL)
     case = Case(body=body, roller=Roller(radius=5e-3, length=12 * A, **roller), max_pressure=1.5e9, friction=0.1)
     points = np.linspace(0.0, 6 * A, 2 * count)
@@ -59,59 +59,61 @@ def sampled(count: int, **roller: object) -> xr.Dataset:
 
 @pytest.mark.slow
 def test_coarse_and_fine_depths() -> None:
-    coarse, fine = (analysis.peak(sampled(count), "tresca") for count in (9, 25))
-    error = abs(float(coarse.peak_tresca - fine.peak_tresca))
-    assert error <= float(coarse.peak_tresca_error)
-    assert error < 0.005 * float(fine.peak_tresca)
-    assert float(coarse.peak_tresca_z) == pytest.approx(float(fine.peak_tresca_z), abs=0.03 * A)
+    coarse_result, fine_result = (analysis.peak(solve_with_depths(count), "tresca") for count in (9, 25))
+    error = abs(float(coarse_result.peak_tresca - fine_result.peak_tresca))
+    assert error <= float(coarse_result.peak_tresca_error)
+    assert error < 0.005 * float(fine_result.peak_tresca)
+    assert float(coarse_result.peak_tresca_z) == pytest.approx(float(fine_result.peak_tresca_z), abs=0.03 * A)
 
 
-def test_peak_of_a_solved_case(solved: xr.Dataset) -> None:
-    found = analysis.peak(solved)
-    assert float(found.peak_von_mises) == float(solved.peak_von_mises)
-    assert set(found.data_vars) == {f"peak_von_mises{part}" for part in ("", "_error", "_x", "_y", "_z")}
+def test_peak_of_a_solved_case(case_result: xr.Dataset) -> None:
+    peak = analysis.peak(case_result)
+    assert float(peak.peak_von_mises) == float(case_result.peak_von_mises)
+    assert set(peak.data_vars) == {f"peak_von_mises{suffix}" for suffix in ("", "_error", "_x", "_y", "_z")}
 
 
 @pytest.mark.parametrize(("x", "z", "axis"), [(0.02, 0.2, "z"), (0.15, 0.02, "x")])
 def test_unresolved_pressure_peak(x: float, z: float, axis: str) -> None:
     """A ridge 0.2 wide along x, and points that would agree well with polynomials."""
-    at = np.arange(-1.0, 1.0, 0.02)
-    ridge = np.sqrt(np.maximum(1 - (at / 0.2) ** 2, 0.0))[:, None] * np.ones(20)
-    pressed = xr.DataArray(ridge, coords={"x": at, "y": 0.1 * np.arange(20)}, dims=("x", "y"))
+    positions = np.arange(-1.0, 1.0, 0.02)
+    ridge = np.sqrt(np.maximum(1 - (positions / 0.2) ** 2, 0.0))[:, None] * np.ones(20)
+    pressure = xr.DataArray(ridge, coords={"x": positions, "y": 0.1 * np.arange(20)}, dims=("x", "y"))
     field = hill(np.arange(-0.9, 1.0, x), np.arange(0.0, 2.0, z)).rename(x="x_field", y="y_field")
-    found = analysis.peak(field.assign(pressure=pressed), "maximum_shear")
-    assert np.isinf(float(found.peak_maximum_shear_error))
-    comment = found.peak_maximum_shear_error.attrs["comment"]
+    peak = analysis.peak(field.assign(pressure=pressure), "maximum_shear")
+    assert np.isinf(float(peak.peak_maximum_shear_error))
+    comment = peak.peak_maximum_shear_error.attrs["comment"]
     assert f"m apart along {axis}, the pressure varies within 0.2 m: take at most 0.1 m" in comment
 
 
-def beside_a_narrow_peak(near: np.ndarray) -> xr.Dataset:
-    """A pressure that is uniform but for a peak 0.1 wide at x = 5, and a hill of stress at 0.3, far from it."""
-    at = np.arange(-2.0, 6.0, 0.02)
-    line = 1.0 + np.sqrt(np.maximum(1 - ((at - 5.0) / 0.1) ** 2, 0.0))
-    pressed = xr.DataArray(line[:, None] * np.ones(40), coords={"x": at, "y": 0.1 * np.arange(40)}, dims=("x", "y"))
-    x = np.concatenate([np.arange(-1.0, 1.5, 0.3), near])
-    return hill(x, np.arange(0.0, 2.0, 0.04)).rename(x="x_field", y="y_field").assign(pressure=pressed)
+def beside_a_narrow_peak(point_x: np.ndarray) -> xr.Dataset:
+    """A uniform pressure with a peak 0.1 wide at x = 5, and a distant hill of stress at 0.3."""
+    positions = np.arange(-2.0, 6.0, 0.02)
+    line = 1.0 + np.sqrt(np.maximum(1 - ((positions - 5.0) / 0.1) ** 2, 0.0))
+    pressure = xr.DataArray(
+        line[:, None] * np.ones(40), coords={"x": positions, "y": 0.1 * np.arange(40)}, dims=("x", "y")
+    )
+    x = np.concatenate([np.arange(-1.0, 1.5, 0.3), point_x])
+    return hill(x, np.arange(0.0, 2.0, 0.04)).rename(x="x_field", y="y_field").assign(pressure=pressure)
 
 
-@pytest.mark.parametrize("near", [np.array([2.0, 3.0]), np.concatenate([[2.0], np.arange(4.8, 5.2, 0.04)])])
-def test_points_under_a_uniform_pressure(near: np.ndarray) -> None:
-    """The narrow peak lies outside of the points, or they are close there."""
-    found = analysis.peak(beside_a_narrow_peak(near), "maximum_shear")
-    assert abs(float(found.peak_maximum_shear) - 3) <= float(found.peak_maximum_shear_error) < 0.1
+@pytest.mark.parametrize("x", [np.array([2.0, 3.0]), np.concatenate([[2.0], np.arange(4.8, 5.2, 0.04)])])
+def test_points_under_a_uniform_pressure(x: np.ndarray) -> None:
+    """The narrow peak lies outside the points, or the points at the peak are dense."""
+    peak = analysis.peak(beside_a_narrow_peak(x), "maximum_shear")
+    assert abs(float(peak.peak_maximum_shear) - 3) <= float(peak.peak_maximum_shear_error) < 0.1
 
 
-def test_points_that_miss_a_pressure_peak() -> None:
-    found = analysis.peak(beside_a_narrow_peak(np.array([2.0, 3.0, 4.0, 4.8, 5.3])), "maximum_shear")
-    assert np.isinf(float(found.peak_maximum_shear_error))
+def test_coarse_points_state_missed_peak() -> None:
+    peak = analysis.peak(beside_a_narrow_peak(np.array([2.0, 3.0, 4.0, 4.8, 5.3])), "maximum_shear")
+    assert np.isinf(float(peak.peak_maximum_shear_error))
 
 
 def test_singular_end() -> None:
     case = Case(body=HalfSpace(material=STEEL), roller=Roller(radius=5e-3, length=8 * A), max_pressure=1.5e9)
     depths = A * np.linspace(0.1, 1.0, 5)
-    found = analysis.peak(solve(case, accuracy=0.05, x=[0.0, A, 2 * A], y=[0.0], z=depths))
-    assert np.isinf(float(found.peak_von_mises_error))
-    assert "singular" in found.peak_von_mises_error.attrs["comment"]
+    peak = analysis.peak(solve(case, accuracy=0.05, x=[0.0, A, 2 * A], y=[0.0], z=depths))
+    assert np.isinf(float(peak.peak_von_mises_error))
+    assert "singular" in peak.peak_von_mises_error.attrs["comment"]
 
 
 def test_only_measures_of_a_point() -> None:
@@ -121,18 +123,22 @@ def test_only_measures_of_a_point() -> None:
 
 def test_order_of_points() -> None:
     z = np.linspace(0.0, 2.0, 9)
-    inside, edge = (hill(np.linspace(-1.0, 2.0, 11), depths) for depths in (z, z[:4]))
-    for stresses in (inside, edge):
+    full_depths, edge = (hill(np.linspace(-1.0, 2.0, 11), depths) for depths in (z, z[:4]))
+    for stresses in (full_depths, edge):
         there = analysis.peak(stresses, "maximum_shear")
-        other = analysis.peak(stresses.isel(z=np.roll(np.arange(stresses.sizes["z"]), 2)), "maximum_shear")
-        assert float(other.peak_maximum_shear) == pytest.approx(float(there.peak_maximum_shear), rel=1e-12)
-        assert float(other.peak_maximum_shear_error) == pytest.approx(float(there.peak_maximum_shear_error), rel=1e-9)
+        rolled_peak = analysis.peak(stresses.isel(z=np.roll(np.arange(stresses.sizes["z"]), 2)), "maximum_shear")
+        assert float(rolled_peak.peak_maximum_shear) == pytest.approx(float(there.peak_maximum_shear), rel=1e-12)
+        assert float(rolled_peak.peak_maximum_shear_error) == pytest.approx(
+            float(there.peak_maximum_shear_error), rel=1e-9
+        )
 
 
 def test_error_of_a_negative_value() -> None:
     x = np.linspace(-1.0, 1.2, 12)
-    pressed = xr.DataArray(-5 + np.exp(-(x**2)), dims="x", coords={"x": x}).expand_dims(y=[0.0], z=[1.0])
-    stresses = xr.Dataset({name: pressed if name.startswith("sigma") else xr.zeros_like(pressed) for name in STRESSES})
-    found = analysis.peak(stresses.assign(peak_pressure=10.0, peak_pressure_error=1.0), "hydrostatic")
-    assert float(found.peak_hydrostatic) == pytest.approx(-4.0, abs=0.01)
-    assert float(found.peak_hydrostatic_error) > 0.39
+    hydrostatic = xr.DataArray(-5 + np.exp(-(x**2)), dims="x", coords={"x": x}).expand_dims(y=[0.0], z=[1.0])
+    stresses = xr.Dataset(
+        {name: hydrostatic if name.startswith("sigma") else xr.zeros_like(hydrostatic) for name in STRESSES}
+    )
+    peak = analysis.peak(stresses.assign(peak_pressure=10.0, peak_pressure_error=1.0), "hydrostatic")
+    assert float(peak.peak_hydrostatic) == pytest.approx(-4.0, abs=0.01)
+    assert float(peak.peak_hydrostatic_error) > 0.39

@@ -39,23 +39,23 @@ def test_friction_shifts_the_largest_von_mises(strip_result) -> None:
     assert float(result["peak_von_mises_y"]) == pytest.approx(0.55, abs=0.05)
 
 
-def test_study_against_its_cases(opened: xr.Dataset) -> None:
+def test_study_results_equal_case_results(study_dataset: xr.Dataset) -> None:
     for variable in ("von_mises", "pressure", "tresca", "hydrostatic"):
-        together = analysis.largest_sample(opened, variable)
+        together = analysis.largest_sample(study_dataset, variable)
         for e in (0.0, 1.0, 2.0):
             chosen = {"e_over_a": e, "friction": 0.1, "body": "finite-length"}
-            alone = analysis.largest_sample(analysis.single_case(opened.sel(chosen)), variable)
-            for name, value in alone.items():
+            case_sample = analysis.largest_sample(analysis.single_case(study_dataset.sel(chosen)), variable)
+            for name, value in case_sample.items():
                 assert float(together[name].sel(chosen)) == pytest.approx(float(value), rel=1e-6), name
         assert together.sel(friction=FAILS).to_array().isnull().all()
 
 
-def test_sections_of_a_study(opened: xr.Dataset) -> None:
-    together = analysis.largest_sample(opened, along="x")
+def test_sections_of_a_study(study_dataset: xr.Dataset) -> None:
+    together = analysis.largest_sample(study_dataset, along="x")
     chosen = {"e_over_a": 1.0, "friction": 0.1, "body": "finite-length"}
-    alone = analysis.largest_sample(analysis.single_case(opened.sel(chosen)), along="x")
+    case_sample = analysis.largest_sample(analysis.single_case(study_dataset.sel(chosen)), along="x")
     sections = together["peak_von_mises"].sel(chosen).dropna("x_over_a")
-    assert np.array_equal(sections, alone["peak_von_mises"])
+    assert np.array_equal(sections, case_sample["peak_von_mises"])
 
 
 def test_unknown_measure(strip_result) -> None:
@@ -72,9 +72,9 @@ def test_variable_without_axes(strip_result) -> None:
         analysis.largest_sample(xr.Dataset({"a": ("z", [1.0])}, {"z": [0.0]}), "a", along="x")
 
 
-def test_measure_of_padding(opened: xr.Dataset) -> None:
+def test_measure_of_padding(study_dataset: xr.Dataset) -> None:
     with pytest.raises(InvalidInputError, match="nan everywhere"):
-        analysis.measure(opened.sel(friction=FAILS), "tresca")
+        analysis.measure(study_dataset.sel(friction=FAILS), "tresca")
 
 
 def test_principal_stresses_as_measures(strip_result) -> None:

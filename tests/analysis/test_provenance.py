@@ -28,7 +28,7 @@ def result() -> xr.Dataset:
 
 
 @pytest.mark.parametrize(
-    "given",
+    "case",
     [
         CASE,
         CASE.body,
@@ -36,13 +36,13 @@ def result() -> xr.Dataset:
         replace(CASE, max_pressure=None, load=CASE.normal_load),
     ],
 )
-def test_equal_cases(result: xr.Dataset, given) -> None:
-    check_solved_for(result, given)
-    check_solved_for(xr.Dataset(), given)
+def test_equal_cases(result: xr.Dataset, case) -> None:
+    check_solved_for(result, case)
+    check_solved_for(xr.Dataset(), case)
 
 
 @pytest.mark.parametrize(
-    ("given", "message"),
+    ("case", "message"),
     [
         (replace(CASE, friction=0.1), r"solved with friction = 0.05.*of the case beside it, friction = 0.1"),
         (replace(CASE, max_pressure=1.4e9), r"load = 61.2.*load = 53."),
@@ -56,56 +56,56 @@ def test_equal_cases(result: xr.Dataset, given) -> None:
         (HalfSpace(material=STEEL), r"body.kind = FiniteLengthSpace.*body.kind = HalfSpace"),
     ],
 )
-def test_differing_cases(result: xr.Dataset, given, message: str) -> None:
+def test_differing_cases(result: xr.Dataset, case, message: str) -> None:
     with pytest.raises(InvalidInputError, match=message):
-        check_solved_for(result, given)
+        check_solved_for(result, case)
 
 
 def test_comparison_of_parts(result: xr.Dataset) -> None:
     check_solved_for(result, replace(CASE, friction=0.1, max_pressure=1e9), only=("body", "roller"))
 
 
-def test_case_of_an_opened_study(opened: xr.Dataset) -> None:
-    for part in (opened, opened.isel(e_over_a=0, friction=0, body=0)):
+def test_case_of_an_opened_study(study_dataset: xr.Dataset) -> None:
+    for dataset in (study_dataset, study_dataset.isel(e_over_a=0, friction=0, body=0)):
         with pytest.raises(InvalidInputError, match=r"load_case\(folder, case_id\)"):
-            solved_case(part)
+            solved_case(dataset)
 
 
 @pytest.mark.parametrize("change", [{"max_pressure": None, "approach": 2e-6}, {"load_position": 0.31e-3}])
 def test_prescribed_results(change) -> None:
     case = replace(CASE, **change)
-    solved = solve(case, accuracy=0.1, stresses=False)
-    found = {"load_position": None, "tilt": float(solved["tilt"])} if "load_position" in change else {}
-    load = {"approach": None, "max_pressure": None, "load": float(solved["normal_load"])}
-    again = replace(case, **load, **found)
-    check_solved_for(solved, again)
-    check_solved_for(solved, case)
+    result = solve(case, accuracy=0.1, stresses=False)
+    motion = {"load_position": None, "tilt": float(result["tilt"])} if "load_position" in change else {}
+    load = {"approach": None, "max_pressure": None, "load": float(result["normal_load"])}
+    prescribed_case = replace(case, **load, **motion)
+    check_solved_for(result, prescribed_case)
+    check_solved_for(result, case)
     with pytest.raises(InvalidInputError, match="load = "):
-        check_solved_for(solved, replace(again, load=1.01 * load["load"]))
+        check_solved_for(result, replace(prescribed_case, load=1.01 * load["load"]))
 
 
 def test_joined_results(result: xr.Dataset) -> None:
     joined = xr.concat([result, result], xr.Variable("friction", [0.05, 0.1]))
-    other = joined.sel(friction=0.1)
-    check_solved_for(other, replace(CASE, friction=0.1))
+    selected = joined.sel(friction=0.1)
+    check_solved_for(selected, replace(CASE, friction=0.1))
     with pytest.raises(InvalidInputError, match=r"friction = 0.1.*friction = 0.05; .*drop its attribute"):
-        check_solved_for(other, CASE)
+        check_solved_for(selected, CASE)
 
 
 class Named:
-    """A profile of somebody's own, whose repr is another one in each session."""
+    """A user profile whose repr differs in each session."""
 
     def drop(self, x, length):
         return 1e-6 * np.abs(x) / length
 
 
-def test_user_profile_is_compared_by_its_drops() -> None:
+def test_user_profiles_are_compared_by_drop() -> None:
     cases = [replace(CASE, roller=replace(CASE.roller, profile=Named())) for _ in range(2)]
     assert repr(cases[0].roller.profile) != repr(cases[1].roller.profile)
     check_solved_for(with_provenance(xr.Dataset(), cases[0], {}, {}), cases[1])
 
 
-def test_rounding_and_other_versions(result: xr.Dataset) -> None:
+def test_comparison_ignores_rounding_and_version(result: xr.Dataset) -> None:
     body = FiniteLengthSpace(length=3 * 0.1e-3, material=STEEL)
     case = Case(body=body, roller=Roller(radius=5e-3, length=0.3e-3), max_pressure=1.5e9)
     check_solved_for(with_provenance(xr.Dataset(), case, {}, {}), replace(case, end_distance=0.0))

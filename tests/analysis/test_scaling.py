@@ -10,17 +10,17 @@ from contactstudy import InvalidInputError, analysis
 
 
 def test_scaled_results(strip_result) -> None:
-    small, large = (analysis.normalized(strip_result(*scale)) for scale in ((1e-4, 1e9), (3e-4, 3e9)))
+    small_result, large_result = (analysis.normalized(strip_result(*scale)) for scale in ((1e-4, 1e9), (3e-4, 3e9)))
     for name in ("pressure", "von_mises", "tau_yz"):
-        assert np.allclose(small[name], large[name], atol=1e-12)
-        assert small[name].attrs["units"] == "1"
+        assert np.allclose(small_result[name], large_result[name], atol=1e-12)
+        assert small_result[name].attrs["units"] == "1"
     for name in ("x", "z", "x_field"):
-        assert np.allclose(small[name], large[name])
-    assert "over p0" in small["pressure"].attrs["long_name"]
-    assert float(small["hertz_max_pressure"]) == 1e9
+        assert np.allclose(small_result[name], large_result[name])
+    assert "over p0" in small_result["pressure"].attrs["long_name"]
+    assert float(small_result["hertz_max_pressure"]) == 1e9
 
 
-def test_scalars_scale_by_their_units(strip_result) -> None:
+def test_scalars_scale_by_units(strip_result) -> None:
     result = strip_result(2e-4, 1e9)
     scalars = analysis.contact_results(result).assign(result[["hertz_half_width", "hertz_max_pressure"]])
     scaled = analysis.normalized(scalars)
@@ -29,16 +29,16 @@ def test_scalars_scale_by_their_units(strip_result) -> None:
     assert scaled["resultant"].attrs["long_name"].endswith("over p0 a**2")
 
 
-def test_scales_of_a_study(opened: xr.Dataset) -> None:
-    scaled = analysis.normalized(opened)
+def test_scales_of_a_study(study_dataset: xr.Dataset) -> None:
+    scaled = analysis.normalized(study_dataset)
     chosen = {"e_over_a": 1.0, "friction": 0.1, "body": "finite-length"}
-    expected = opened["pressure"].sel(chosen) / 1.5e9
+    expected = study_dataset["pressure"].sel(chosen) / 1.5e9
     assert np.allclose(scaled["pressure"].sel(chosen), expected, equal_nan=True)
-    assert scaled["pressure"].dims == opened["pressure"].dims
-    # Positions of each case are divided by its own a.
-    own = scaled["x"].sel(chosen)
-    assert np.allclose(own, opened["x_over_a"].where(own.notnull()), equal_nan=True)
-    assert np.allclose(scaled["y_field"].sel(chosen), opened["y_field_over_a"])
+    assert scaled["pressure"].dims == study_dataset["pressure"].dims
+    # Positions of each case are divided by the case's a.
+    case_positions = scaled["x"].sel(chosen)
+    assert np.allclose(case_positions, study_dataset["x_over_a"].where(case_positions.notnull()), equal_nan=True)
+    assert np.allclose(scaled["y_field"].sel(chosen), study_dataset["y_field_over_a"])
 
 
 def test_missing_scales() -> None:
@@ -46,46 +46,46 @@ def test_missing_scales() -> None:
         analysis.normalized(xr.Dataset({"pressure": 1.0}))
 
 
-def test_selection_over_a(solved: xr.Dataset) -> None:
-    over = analysis.positions_over_a(solved)
-    half_width = float(solved["hertz_half_width"])
-    expected = solved["pressure"].sel(x=2 * half_width, y=0.5 * half_width, method="nearest")
+def test_selection_over_a(case_result: xr.Dataset) -> None:
+    over = analysis.positions_over_a(case_result)
+    half_width = float(case_result["hertz_half_width"])
+    expected = case_result["pressure"].sel(x=2 * half_width, y=0.5 * half_width, method="nearest")
     assert float(over["pressure"].sel(x_over_a=2, y_over_a=0.5, method="nearest")) == float(expected)
     assert over["von_mises"].dims == ("x_field_over_a", "y_field_over_a", "z_over_a")
     assert over["von_mises"].sel(z_over_a=slice(0.2, 0.8)).sizes["z_over_a"] == 3
-    known = {name: over[name].item() for name in ("e_over_a", "friction", "gamma", "profile")}
-    assert known.pop("profile").startswith("Cylinder(fillet_radius=")
-    assert known == pytest.approx({"e_over_a": 1.0, "friction": 0.1, "gamma": 0.104}, rel=2e-3)
+    coordinates = {name: over[name].item() for name in ("e_over_a", "friction", "gamma", "profile")}
+    assert coordinates.pop("profile").startswith("Cylinder(fillet_radius=")
+    assert coordinates == pytest.approx({"e_over_a": 1.0, "friction": 0.1, "gamma": 0.104}, rel=2e-3)
 
 
-def test_single_case_is_the_inverse(solved: xr.Dataset) -> None:
-    back = analysis.single_case(analysis.positions_over_a(solved))
+def test_single_case_is_the_inverse(case_result: xr.Dataset) -> None:
+    back = analysis.single_case(analysis.positions_over_a(case_result))
     for name in ("pressure", "von_mises"):
-        assert back[name].dims == solved[name].dims
-        assert np.array_equal(back[name], solved[name])
-    assert np.array_equal(back["x"], solved["x"])
+        assert back[name].dims == case_result[name].dims
+        assert np.array_equal(back[name], case_result[name])
+    assert np.array_equal(back["x"], case_result["x"])
 
 
 def test_joined_results_over_a(strip_result) -> None:
-    both = [analysis.positions_over_a(strip_result(*scale)) for scale in ((1e-4, 1e9), (3e-4, 3e9))]
-    named = [one.assign_coords(e_over_a=i) for i, one in enumerate(both)]
+    results = [analysis.positions_over_a(strip_result(*scale)) for scale in ((1e-4, 1e9), (3e-4, 3e9))]
+    named = [result.assign_coords(e_over_a=i) for i, result in enumerate(results)]
     joined = xr.concat(named, "e_over_a", join="override", coords="different", compat="equals")
     pressure = joined["pressure"].sel(x_over_a=2, y_over_a=0, method="nearest") / joined["hertz_max_pressure"]
     assert np.allclose(pressure, pressure[0])
     assert joined["x"].sel(e_over_a=1, x_over_a=2, method="nearest") == pytest.approx(2.1e-4 * 3, rel=0.02)
 
 
-def test_positions_over_a_of_a_study(opened: xr.Dataset) -> None:
+def test_positions_over_a_of_a_study(study_dataset: xr.Dataset) -> None:
     # All cases share y in metres, and have one half-width.
-    over = analysis.positions_over_a(opened)
+    over = analysis.positions_over_a(study_dataset)
     assert over["pressure"].dims[-2:] == ("x_over_a", "y_over_a")
-    assert np.array_equal(over["pressure"], opened["pressure"], equal_nan=True)
-    assert np.array_equal(over["von_mises"].x_over_a, opened["x_over_a"])
+    assert np.array_equal(over["pressure"], study_dataset["pressure"], equal_nan=True)
+    assert np.array_equal(over["von_mises"].x_over_a, study_dataset["x_over_a"])
 
 
 def test_differing_positions_over_a(strip_result) -> None:
-    one = strip_result(1e-4, 1e9)
-    cases = one.assign(hertz_half_width=("load", [1e-4, 2e-4]))
+    first = strip_result(1e-4, 1e9)
+    cases = first.assign(hertz_half_width=("load", [1e-4, 2e-4]))
     with pytest.raises(InvalidInputError, match="the same x_over_a in all cases; select one case"):
         analysis.positions_over_a(cases)
     assert analysis.positions_over_a(cases.isel(load=1))["x_over_a"].max() == pytest.approx(2.9375)
@@ -111,7 +111,7 @@ def test_positions_in_millimetres(strip_result) -> None:
     assert np.allclose(analysis.positions_over_a(in_mm)["x_over_a"], analysis.positions_over_a(result)["x_over_a"])
 
 
-def test_positions_over_a_twice(strip_result) -> None:
+def test_positions_over_a_are_idempotent(strip_result) -> None:
     scaled = analysis.normalized(strip_result(1e-4, 1e9))
     with pytest.raises(InvalidInputError, match="already"):
         analysis.positions_over_a(scaled)

@@ -17,7 +17,7 @@ def contact(values, scale=2.0):
 VALUES = [[0, 0, 0], [0, 1, 0], [2, 3, 2], [0, 4, 1], [0, 0, 0]]
 
 
-def test_peak_and_its_position():
+def test_summary_contains_peak_position():
     result = pressure_numbers(contact(VALUES))
     assert [result[name] for name in ("peak_pressure", "peak_pressure_x", "peak_pressure_y")] == [4, 3.5, 0]
 
@@ -41,11 +41,14 @@ def test_no_contact_at_all():
 
 @given(st.floats(0.1, 1e9))
 def test_ratios_do_not_depend_on_the_unit(scale):
-    one, other = pressure_numbers(contact(VALUES)), pressure_numbers(contact(np.multiply(VALUES, scale), 2 * scale))
-    assert other["end_pressure_over_p0"] == pytest.approx(one["end_pressure_over_p0"])
+    numbers, scaled_numbers = (
+        pressure_numbers(contact(VALUES)),
+        pressure_numbers(contact(np.multiply(VALUES, scale), 2 * scale)),
+    )
+    assert scaled_numbers["end_pressure_over_p0"] == pytest.approx(numbers["end_pressure_over_p0"])
 
 
-def test_stress_points_of_their_own():
+def test_summary_with_separate_stress_points():
     stress = xr.DataArray(
         np.arange(8.0).reshape(2, 2, 2),
         dims=("x_field", "y_field", "z"),
@@ -60,7 +63,7 @@ def test_stress_points_of_their_own():
     }
 
 
-def test_a_field_without_a_number_is_no_result():
+def test_nan_field_has_no_peak():
     with pytest.raises(InvalidInputError, match="nan"):
         stress_summary(xr.Dataset({"von_mises": ("x", [np.nan])}))
 
@@ -70,7 +73,7 @@ def test_without_stresses():
     assert "peak_von_mises" not in case_numbers(contact(VALUES))
 
 
-def test_numbers_are_described_and_contain_the_scalars_of_the_result():
+def test_case_numbers_contain_result_scalars():
     result = case_numbers(contact(VALUES).assign(iterations=7))
     assert result["iterations"].value == 7
     assert result["end_pressure_over_p0"].attributes["units"] == "1"

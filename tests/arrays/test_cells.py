@@ -1,4 +1,4 @@
-"""Labelled arrays on cells of any width: where their edges come from, and what does not tile."""
+"""Labelled arrays on cells of any width: their edges, and cells that do not tile."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def array(**coordinates: object) -> xr.DataArray:
     )
 
 
-def test_edges_are_what_widths_say() -> None:
+def test_edges_follow_from_widths() -> None:
     data = array(x_width=("x", GRID.widths))
     values, grid = labelled_cells("p", data)
     assert np.allclose(grid.x_edges, EDGES)
@@ -38,7 +38,7 @@ def test_edges_follow_from_the_end_of_the_body(extent: tuple[float, float]) -> N
     assert np.allclose(grid.x_edges, EDGES)
 
 
-def test_dimensions_in_either_order_are_the_same() -> None:
+def test_dimension_order_does_not_matter() -> None:
     data = array(x_width=("x", GRID.widths))
     values, grid = labelled_cells("p", data.transpose("y", "x"))
     assert grid.shape == GRID.shape
@@ -54,24 +54,24 @@ def test_uniform_cells_need_no_more_coordinates() -> None:
 
 @given(ratios=st.lists(st.floats(0.35, 2.9), min_size=2, max_size=20))
 @example(ratios=[1.0, 0.99999])
-def test_labels_lead_back_to_the_cells(ratios: list[float]) -> None:
+def test_labels_restore_grid(ratios: list[float]) -> None:
     edges = np.append(0.0, np.cumsum(np.cumprod([1.0, *ratios])))
     grid = Grid.from_edges(edges, (-1.0, 1.0), 4)
     dataset = xr.Dataset(
         {"p": (("x", "y"), np.ones(grid.shape))}, coords={"x": grid.x, "y": grid.y, **cell_coordinates(grid)}
     )
-    for found in (
+    for grid_of_labels in (
         labelled_cells("p", dataset["p"])[1],
         labelled_cells("p", dataset["p"].drop_vars(["x_width", "x_bounds"], errors="ignore"), extent=(0.0, edges[-1]))[
             1
         ],
     ):
         # The centres alone determine edges by a recursion that doubles no error. Nearly uniform cells become uniform.
-        within = SPACING_TOLERANCE * grid.widths.max() if found.uniform else 1e-9 * edges[-1]
-        assert np.allclose(found.x_edges, edges, atol=within)
+        within = SPACING_TOLERANCE * grid.widths.max() if grid_of_labels.uniform else 1e-9 * edges[-1]
+        assert np.allclose(grid_of_labels.x_edges, edges, atol=within)
 
 
-def test_part_of_the_cells_keeps_their_widths() -> None:
+def test_selected_cells_keep_widths() -> None:
     data = array(x_width=("x", GRID.widths)).isel(x=slice(1, 4))
     assert np.allclose(labelled_cells("p", data)[1].x_edges, EDGES[1:5])
 
@@ -91,12 +91,12 @@ def test_part_of_the_cells_keeps_their_widths() -> None:
     ],
     ids=["no widths", "a gap", "an overlap", "backwards", "negative", "not finite"],
 )
-def test_cells_that_do_not_tile_are_refused_with_their_place(data: xr.DataArray, message: str) -> None:
+def test_cells_with_gaps_raise(data: xr.DataArray, message: str) -> None:
     with pytest.raises(InvalidInputError, match=message):
         labelled_cells("p", data)
 
 
-def test_centres_that_do_not_follow_from_the_end_are_refused_with_their_place() -> None:
+def test_inconsistent_centres_raise() -> None:
     data = xr.DataArray(np.ones((3, 2)), coords={"x": [0.5, 0.6, 2.0], "y": [0.0, 1.0]}, dims=("x", "y"))
     with pytest.raises(InvalidInputError, match=r"a cell centre at 0.6 m.*x_width"):
         labelled_cells("p", data, extent=(0.0, np.inf))
@@ -111,12 +111,12 @@ def test_result_on_graded_cells_survives_a_file(tmp_path: Path, engine: str) -> 
     assert {"x_width", "x_bounds"} <= set(result.coords)
     assert np.allclose(result.x_bounds[:, 1] - result.x_bounds[:, 0], result.x_width, rtol=1e-9)
     result.to_netcdf(tmp_path / "result.nc", engine=engine)
-    with xr.open_dataset(tmp_path / "result.nc", engine=engine) as opened:
-        opened.load()
-    assert np.array_equal(opened.x_width, result.x_width)
+    with xr.open_dataset(tmp_path / "result.nc", engine=engine) as stored_result:
+        stored_result.load()
+    assert np.array_equal(stored_result.x_width, result.x_width)
     stresses = [
-        cs.stress_field(body, each.pressure, friction=0.1, x=[0.0, 1e-4], y=[0.0], z=[2e-5, 5e-5])
-        for each in (result, opened)
+        cs.stress_field(body, dataset.pressure, friction=0.1, x=[0.0, 1e-4], y=[0.0], z=[2e-5, 5e-5])
+        for dataset in (result, stored_result)
     ]
     for name in stresses[0].data_vars:
         assert np.array_equal(stresses[0][name], stresses[1][name])

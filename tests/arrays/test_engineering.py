@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from contactstudy.arrays.engineering import TEXT, html_table, quantity, unit_for, with_error, written
+from contactstudy.arrays.engineering import TEXT, format_quantity, format_value, format_with_error, html_table, unit_for
 
 
 def test_units_of_a_size() -> None:
@@ -17,11 +17,11 @@ def test_units_of_a_size() -> None:
 
 def test_written_numbers() -> None:
     values = (0.000211234, 1531.52, 1e-9, math.inf)
-    assert [written(value) for value in values] == ["0.0002112", "1532", "1e-09", "\N{INFINITY}"]
-    assert [quantity(1.5e9, "Pa"), quantity(0.1, "1")] == ["1.5 GPa", "0.1"]
-    assert with_error(2.2531e9, 0.012e9, "Pa") == "2.253 ± 0.012 GPa"
-    assert with_error(65e-6, None, "m") == "65 \N{MICRO SIGN}m"
-    assert with_error(0.0, 0.0, "Pa") == "0 MPa"
+    assert [format_value(value) for value in values] == ["0.0002112", "1532", "1e-09", "\N{INFINITY}"]
+    assert [format_quantity(1.5e9, "Pa"), format_quantity(0.1, "1")] == ["1.5 GPa", "0.1"]
+    assert format_with_error(2.2531e9, 0.012e9, "Pa") == "2.253 ± 0.012 GPa"
+    assert format_with_error(65e-6, None, "m") == "65 \N{MICRO SIGN}m"
+    assert format_with_error(0.0, 0.0, "Pa") == "0 MPa"
 
 
 def test_table_escapes_texts() -> None:

@@ -1,4 +1,4 @@
-"""Grids of any cell edges: what they know of their cells, and errors that say where."""
+"""Grids of any cell edges: properties of their cells, and errors with positions."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from contactstudy import Grid, InvalidInputError
-from contactstudy.arrays.grid import STEEPEST_GRADING, growing_edges
+from contactstudy.arrays.grid import MAX_WIDTH_RATIO, growing_edges
 
 Y_RANGE = (-1.0, 1.0)
 
@@ -20,7 +20,7 @@ def edges_of(ratios: list[float]) -> list[float]:
 
 
 @given(ratios=RATIOS)
-def test_cells_tile_the_range_between_their_edges(ratios: list[float]) -> None:
+def test_cells_tile_range(ratios: list[float]) -> None:
     edges = np.array(edges_of(ratios))
     grid = Grid.from_edges(edges, Y_RANGE, 4)
     assert np.allclose(grid.x_edges, edges, rtol=1e-12)
@@ -36,23 +36,23 @@ def test_cells_tile_the_range_between_their_edges(ratios: list[float]) -> None:
 @given(ratios=RATIOS)
 def test_grids_of_equal_edges_are_equal(ratios: list[float]) -> None:
     edges = edges_of(ratios)
-    one, other = (Grid.from_edges(edges, Y_RANGE, 4) for _ in range(2))
-    assert one == other
-    assert hash(one) == hash(other)
-    moved = [*edges[:-1], edges[-1] * 1.01]
-    assert Grid.from_edges(moved, Y_RANGE, 4) != one
+    first, second = (Grid.from_edges(edges, Y_RANGE, 4) for _ in range(2))
+    assert first == second
+    assert hash(first) == hash(second)
+    shifted_edges = [*edges[:-1], edges[-1] * 1.01]
+    assert Grid.from_edges(shifted_edges, Y_RANGE, 4) != first
 
 
 @given(ratios=RATIOS)
-def test_cells_joined_in_twos_have_every_other_edge(ratios: list[float]) -> None:
-    """Also where the joined ones differ by more than cells that are given may."""
+def test_coarsened_grid_keeps_alternate_edges(ratios: list[float]) -> None:
+    """Coarsened cells may differ by more than the limit of given cells."""
     grid = Grid.from_edges(edges_of(ratios), Y_RANGE, 4)
-    joined = grid.coarsened()
-    assert joined.cells_y == 2
-    assert joined.x_range == grid.x_range
+    coarsened = grid.coarsened()
+    assert coarsened.cells_y == 2
+    assert coarsened.x_range == grid.x_range
     if not grid.uniform:
-        assert set(joined.x_edges[:-1].tolist()) == set(grid.x_edges[:-1:2].tolist())
-        assert float(joined.widths.sum()) == pytest.approx(float(grid.widths.sum()))
+        assert set(coarsened.x_edges[:-1].tolist()) == set(grid.x_edges[:-1:2].tolist())
+        assert float(coarsened.widths.sum()) == pytest.approx(float(grid.widths.sum()))
 
 
 def test_equal_widths_make_a_uniform_grid() -> None:
@@ -62,8 +62,8 @@ def test_equal_widths_make_a_uniform_grid() -> None:
     assert np.array_equal(grid.weights, np.ones((6, 1)))
 
 
-def test_widths_that_grow_as_fast_as_they_may_are_not_refused_for_rounding() -> None:
-    edges = np.append(0.0, np.cumsum(1.3e-6 * STEEPEST_GRADING ** np.arange(8)))
+def test_growth_limit_tolerates_rounding() -> None:
+    edges = np.append(0.0, np.cumsum(1.3e-6 * MAX_WIDTH_RATIO ** np.arange(8)))
     assert Grid.from_edges(0.1 + edges, Y_RANGE, 4).cells_x == 8
 
 
@@ -82,28 +82,28 @@ def test_widths_that_grow_as_fast_as_they_may_are_not_refused_for_rounding() -> 
         ("wide", r"x_edges"),
     ],
 )
-def test_edges_that_make_no_cells_are_refused_with_their_place(edges: object, message: str) -> None:
+def test_invalid_edges_raise(edges: object, message: str) -> None:
     with pytest.raises(InvalidInputError, match=message):
         Grid.from_edges(edges, Y_RANGE, 4)
 
 
 @pytest.mark.parametrize(("y_range", "cells_y"), [((1.0, -1.0), 4), ((0.0, np.inf), 4), ((-1.0, 1.0), 0)])
-def test_cells_along_y_are_checked_as_for_uniform_cells(y_range: tuple[float, float], cells_y: int) -> None:
+def test_cells_along_y_are_checked(y_range: tuple[float, float], cells_y: int) -> None:
     with pytest.raises(InvalidInputError):
         Grid.from_edges([0.0, 1.0, 3.0], y_range, cells_y)
 
 
 @given(distance=st.floats(1e-3, 1e4), width=st.floats(1e-3, 10.0))
-def test_growing_cells_reach_the_distance_and_grow_gently(distance: float, width: float) -> None:
+def test_growing_edges_cover_distance(distance: float, width: float) -> None:
     edges = growing_edges(distance, width)
     assert edges[-1] == pytest.approx(distance)
     widths = np.diff(np.append(0.0, edges))
     assert np.all(widths > 0)
     assert widths[0] <= width * (1 + 1e-9)
     if edges.size > 1:
-        assert np.all(widths[1:] / widths[:-1] < STEEPEST_GRADING)
+        assert np.all(widths[1:] / widths[:-1] < MAX_WIDTH_RATIO)
 
 
-def test_no_distance_has_no_cells_and_an_endless_one_a_single_cell() -> None:
+def test_growing_edges_of_extreme_distances() -> None:
     assert growing_edges(0.0, 1.0).size == 0
     assert growing_edges(np.inf, 0.5).tolist() == [0.5]

@@ -7,23 +7,23 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from contactstudy.arrays.peaks import interpolate_about, lagrange, peak_width, section_maxima
+from contactstudy.arrays.peaks import interpolate_about, lagrange_weights, peak_width, section_maxima
 
 
 @given(offset=st.floats(-0.5, 0.5), cells=st.integers(8, 40))
-def test_top_of_an_ellipse_wherever_the_cells_lie(offset: float, cells: int) -> None:
+def test_section_maxima_of_shifted_ellipse(offset: float, cells: int) -> None:
     step = 3.0 / cells
     y = step * (np.arange(cells) - 0.5 * cells + 0.5 + offset)
     pressure = np.sqrt(np.maximum(1 - y**2, 0.0))[None, :]
     assert section_maxima(pressure)[0] == pytest.approx(1.0, abs=1e-9)
 
 
-def test_columns_without_a_parabola_keep_their_largest_cell() -> None:
+def test_section_maxima_without_parabola() -> None:
     pressure = np.array([[0.0, 0.0, 0.0, 0.0], [0.0, 3.0, 0.0, 0.0], [2.0, 1.0, 0.0, 0.0]])
-    found = section_maxima(pressure)
-    assert found[0] == 0
-    assert (found[1:] >= [3.0, 2.0]).all()
-    assert (found[1:] <= 1.25 * np.array([3.0, 2.0])).all()
+    maxima = section_maxima(pressure)
+    assert maxima[0] == 0
+    assert (maxima[1:] >= [3.0, 2.0]).all()
+    assert (maxima[1:] <= 1.25 * np.array([3.0, 2.0])).all()
 
 
 def test_polynomials_about_a_sample() -> None:
@@ -40,4 +40,4 @@ def test_width_of_a_crest() -> None:
 
 def test_interpolation_is_exact_for_polynomials() -> None:
     nodes, points = np.array([1.0, 1.3, 1.9, 2.2, 2.6, 3.0]), np.linspace(1.0, 3.0, 11)
-    assert lagrange(nodes, points) @ nodes**5 == pytest.approx(points**5, rel=1e-12)
+    assert lagrange_weights(nodes, points) @ nodes**5 == pytest.approx(points**5, rel=1e-12)

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import xarray as xr
 
-from contactstudy.arrays.selections import place_of, selection_of
+from contactstudy.arrays.selections import index_of, selection_of
 
 
 def test_position_of_a_value() -> None:
     swept = xr.Dataset(coords={"friction": [0.0, 0.1]})
-    assert [place_of(swept, "friction", value) for value in (0.1, "0.10")] == [1, 1]
+    assert [index_of(swept, "friction", value) for value in (0.1, "0.10")] == [1, 1]
 
 
 def test_selection_from_texts() -> None:

@@ -25,7 +25,7 @@ from contactstudy import (
     stress_field,
     surface_displacement,
 )
-from contactstudy.arrays.variables import in_si, required_in_si
+from contactstudy.arrays.variables import in_si, require_in_si
 from contactstudy.bearing import contact_law
 from contactstudy.case.motion import AxialFriction, checked_friction
 from contactstudy.design import best_profile
@@ -36,27 +36,27 @@ from contactstudy.roughness import heights_on
 OnCells = Callable[..., xr.DataArray]
 
 
-def test_a_gap_in_millimetres_on_cells_in_micrometres(on_cells: OnCells, half_space: HalfSpace) -> None:
+def test_gap_and_cells_in_other_units(on_cells: OnCells, half_space: HalfSpace) -> None:
     gap = on_cells(lambda x, y: 0.5 * (x**2 + y**2), (-1.5, 1.5), (-1.5, 1.5), (24, 24))
     scaled = (1e3 * gap).assign_attrs(units="mm").assign_coords(x=1e6 * gap.x, y=1e6 * gap.y)
     for axis in ("x", "y"):
         scaled[axis].attrs["units"] = "um"
-    expected, found = (solve_contact(half_space, each, load=4 / 3) for each in (gap, scaled))
-    np.testing.assert_allclose(found["pressure"], expected["pressure"], rtol=1e-7, atol=1e-9)
-    np.testing.assert_allclose(found["x"], expected["x"], rtol=1e-12)
+    expected, computed = (solve_contact(half_space, input_gap, load=4 / 3) for input_gap in (gap, scaled))
+    np.testing.assert_allclose(computed["pressure"], expected["pressure"], rtol=1e-7, atol=1e-9)
+    np.testing.assert_allclose(computed["x"], expected["x"], rtol=1e-12)
 
 
-def test_a_pressure_in_gigapascals(on_cells: OnCells, half_space: HalfSpace) -> None:
+def test_pressure_in_gigapascals(on_cells: OnCells, half_space: HalfSpace) -> None:
     pressure = on_cells(lambda x, y: 1.0 + 0 * x + 0 * y, (-1.0, 1.0), (-1.0, 1.0), (8, 8))
     scaled = (1e-9 * pressure).assign_attrs(units="GPa")
-    sunk = [surface_displacement(half_space, each) for each in (scaled, pressure)]
-    np.testing.assert_allclose(*sunk, rtol=1e-12)
-    stresses = [stress_field(half_space, each, z=[0.5]).sigma_zz for each in (scaled, pressure)]
+    displacements = [surface_displacement(half_space, load) for load in (scaled, pressure)]
+    np.testing.assert_allclose(*displacements, rtol=1e-12)
+    stresses = [stress_field(half_space, load, z=[0.5]).sigma_zz for load in (scaled, pressure)]
     np.testing.assert_allclose(*stresses, rtol=1e-12)
 
 
 @pytest.mark.parametrize("unit", ["inch", "Pa", "", 7])
-def test_other_units_are_refused(unit: object) -> None:
+def test_unknown_units_raise(unit: object) -> None:
     with pytest.raises(InvalidInputError, match=r"gap.attrs\['units'\]"):
         in_si("gap", xr.DataArray([1.0], attrs={"units": unit}), "m")
 
@@ -90,8 +90,8 @@ def test_friction_and_roughness_are_converted_or_refused(half_space: HalfSpace) 
 def test_depths_in_micrometres(on_cells: OnCells, half_space: HalfSpace) -> None:
     pressure = on_cells(lambda x, y: 1.0 + 0 * x + 0 * y, (-1.0, 1.0), (-1.0, 1.0), (8, 8))
     depths = xr.DataArray([0.5e6], dims="z", attrs={"units": "um"})
-    expected, found = (stress_field(half_space, pressure, z=z) for z in ([0.5], depths))
-    xr.testing.assert_allclose(found, expected)
+    expected, computed = (stress_field(half_space, pressure, z=z) for z in ([0.5], depths))
+    xr.testing.assert_allclose(computed, expected)
     with pytest.raises(InvalidInputError, match=r"z.attrs\['units'\] = '1'"):
         stress_field(half_space, pressure, z=depths.assign_attrs(units="1"))
 
@@ -99,33 +99,33 @@ def test_depths_in_micrometres(on_cells: OnCells, half_space: HalfSpace) -> None
 def test_yield_stress_over_depth() -> None:
     over = xr.DataArray([600.0, 400.0], {"z": ("z", [0.0, 1.0], {"units": "mm"})}, "z", attrs={"units": "MPa"})
     material = ElasticPlastic(yield_stress=over)
-    for each in (material, replace(material, isotropic_hardening=1e9)):
-        np.testing.assert_allclose(each.yield_stress_at(np.array([0.5e-3])), 500e6)
+    for material_variant in (material, replace(material, isotropic_hardening=1e9)):
+        np.testing.assert_allclose(material_variant.yield_stress_at(np.array([0.5e-3])), 500e6)
     hard = xr.DataArray([750.0], {"z": [0.0]}, "z", attrs={"units": "HV"})
     assert ElasticPlastic.from_hardness(hard).yield_stress_at(np.zeros(1))[0] == pytest.approx(750 * 9.80665e6 / 3)
     with pytest.raises(InvalidInputError, match="HV, or left out"):
         ElasticPlastic.from_hardness(hard.assign_attrs(units="HRC"))
 
 
-def test_what_was_converted_says_so() -> None:
-    found = in_si("gap", xr.DataArray([1.0], {"x": ("x", [2.0], {"units": "mm"})}, "x", attrs={"units": "um"}), "m")
-    assert (found.attrs["units"], found["x"].attrs["units"]) == ("m", "m")
-    xr.testing.assert_identical(in_si("gap", found, "m"), found)
+def test_converted_variable_has_si_units() -> None:
+    converted = in_si("gap", xr.DataArray([1.0], {"x": ("x", [2.0], {"units": "mm"})}, "x", attrs={"units": "um"}), "m")
+    assert (converted.attrs["units"], converted["x"].attrs["units"]) == ("m", "m")
+    xr.testing.assert_identical(in_si("gap", converted, "m"), converted)
 
 
-def test_variables_of_a_dataset_and_its_positions() -> None:
-    place = ("x", [0.0, 2.0], {"units": "mm"})
-    pressure = xr.DataArray([1.0, 2.0], {"x": place}, "x", attrs={"units": "GPa"})
-    whole = xr.Dataset({"pressure": pressure, "gap": xr.zeros_like(pressure).assign_attrs(units="um")})
-    found = required_in_si(whole, "pressure")
-    assert (found.pressure.values.tolist(), found.x.values.tolist()) == ([1e9, 2e9], [0.0, 2e-3])
-    assert (found.pressure.attrs["units"], found.x.attrs["units"]) == ("Pa", "m")
-    assert required_in_si(found, "pressure") is found
+def test_dataset_positions_are_converted() -> None:
+    position = ("x", [0.0, 2.0], {"units": "mm"})
+    pressure = xr.DataArray([1.0, 2.0], {"x": position}, "x", attrs={"units": "GPa"})
+    dataset = xr.Dataset({"pressure": pressure, "gap": xr.zeros_like(pressure).assign_attrs(units="um")})
+    converted = require_in_si(dataset, "pressure")
+    assert (converted.pressure.values.tolist(), converted.x.values.tolist()) == ([1e9, 2e9], [0.0, 2e-3])
+    assert (converted.pressure.attrs["units"], converted.x.attrs["units"]) == ("Pa", "m")
+    assert require_in_si(converted, "pressure") is converted
     for bad, message in (("1", "in SI, pressure in Pa"), ("psi", r"result.pressure.attrs\['units'\] = 'psi'")):
         with pytest.raises(InvalidInputError, match=message):
-            required_in_si(whole.assign(pressure=pressure.assign_attrs(units=bad)), "pressure", argument="result")
+            require_in_si(dataset.assign(pressure=pressure.assign_attrs(units=bad)), "pressure", argument="result")
     with pytest.raises(InvalidInputError, match="traction_y is missing"):
-        required_in_si(whole, "traction_y")
+        require_in_si(dataset, "traction_y")
 
 
 def test_numbers_of_contact_laws_designs_and_measured_profiles() -> None:
@@ -141,14 +141,14 @@ def test_numbers_of_contact_laws_designs_and_measured_profiles() -> None:
     measured = Measured(x, xr.DataArray(np.full(6, 2.0), dims="x", attrs={"units": "micron"}))
     assert measured == Measured(1e-3 * x.values, np.full(6, 2.0) * 1e-6)
     loads = xr.DataArray([0.03], dims="load", attrs={"units": "kN"})
-    found = best_profile(
+    design = best_profile(
         case, FullCrown, bounds={"crown_radius": (0.005, 0.02)}, loads=loads, accuracy=0.1, evaluations=8
     )
-    assert found["case_load"].values.tolist() == [30.0]
+    assert design["case_load"].values.tolist() == [30.0]
 
 
-def opened(value: float) -> da.Array:
-    """Return a number as it is in a file that was opened with chunks."""
+def lazy_array(value: float) -> da.Array:
+    """Return a number as a lazy array, as in a file opened with chunks."""
     return da.from_array(np.array(value))
 
 
@@ -176,36 +176,42 @@ def case_with(**given) -> Case:
 
 
 @pytest.mark.parametrize("name", SCALARS)
-def test_a_scalar_of_a_result_is_a_number_in_its_own_unit(name: str) -> None:
-    taken, value, units, si = SCALARS[name]
-    for given in (scalar(value, units), scalar(si), np.array(si), scalar(opened(si)), scalar(opened(value), units)):
-        found = taken(given)
-        assert type(found) is float
-        assert found == pytest.approx(si, rel=1e-15)
+def test_scalar_argument_is_converted(name: str) -> None:
+    read_argument, value, units, si = SCALARS[name]
+    for argument in (
+        scalar(value, units),
+        scalar(si),
+        np.array(si),
+        scalar(lazy_array(si)),
+        scalar(lazy_array(value), units),
+    ):
+        argument_value = read_argument(argument)
+        assert type(argument_value) is float
+        assert argument_value == pytest.approx(si, rel=1e-15)
     with pytest.raises(InvalidInputError, match=rf"{name}.attrs\['units'\] = 'furlong': must be one of") as caught:
-        taken(scalar(value, "furlong"))
+        read_argument(scalar(value, "furlong"))
     assert len(str(caught.value)) < 200
 
 
-def test_the_largest_pressure_of_a_result_opened_with_chunks_is_that_of_the_next_case(tmp_path: Path) -> None:
+def test_lazy_scalar_is_accepted_as_pressure(tmp_path: Path) -> None:
     xr.Dataset({"pressure": ("x", [1e9, 2e9], {"units": "Pa"})}).to_netcdf(tmp_path / "a.nc")
     with xr.open_dataset(tmp_path / "a.nc", chunks={}) as result:
         assert case_with(max_pressure=result.pressure.max(keep_attrs=True)) == case_with(max_pressure=2e9)
 
 
-def test_no_message_computes_what_is_lazy() -> None:
+def test_messages_do_not_compute_lazy_arrays() -> None:
     never = da.from_delayed(dask.delayed(pytest.fail)("computed"), (), float)
     for value, kind in ((never, "Array"), (scalar(never, "N"), "DataArray"), (scalar(never).expand_dims(x=3), "")):
         with pytest.raises(InvalidInputError, match=rf"case = lazy {kind}.*type float64: must be a Case"):
             solve(value)
 
 
-def test_the_load_of_a_result_is_that_of_the_next_case() -> None:
+def test_result_scalar_is_accepted_as_load() -> None:
     load = xr.DataArray(123.0, coords={"friction": 0.1}, attrs={"units": "N", "long_name": "normal load"})
     assert case_with(load=load) == case_with(load=123.0)
 
 
-def test_a_study_takes_scalars_with_units() -> None:
+def test_study_converts_scalars_with_units() -> None:
     base = {"young": scalar(210, "GPa"), "poisson": 0.3, "radius": scalar(5, "mm"), "roller_length": 1e-3}
     study = Study(name="a", base=base | {"e_over_a": 0}, sweep={"max_pressure": [scalar(1500, "MPa"), 1e9]})
     assert (study.base["young"], study.base["radius"], study.sweep["max_pressure"]) == (210e9, 5e-3, [1.5e9, 1e9])
@@ -214,7 +220,7 @@ def test_a_study_takes_scalars_with_units() -> None:
 
 
 @pytest.mark.parametrize(
-    ("value", "shown"),
+    ("value", "message"),
     [
         (scalar(np.ones((40, 20)), "m"), "DataArray of shape (40, 20) and type float64"),
         (np.ones(3), "ndarray of shape (3,) and type float64"),
@@ -224,13 +230,13 @@ def test_a_study_takes_scalars_with_units() -> None:
         (scalar("a"), "'a'"),
         (xr.Dataset({"a": 1, "b": 2}), "Dataset of 2 variables"),
         ([np.ones((2, 2))], "[array([[1., 1.], [1., 1.]])]"),
-        (scalar(opened(-5.0), "mm"), "lazy DataArray of type float64"),
+        (scalar(lazy_array(-5.0), "mm"), "lazy DataArray of type float64"),
         (scalar(da.ones((40, 20))), "lazy DataArray of shape (40, 20) and type float64"),
         (xr.Dataset, repr(xr.Dataset)),
         (da.Array, repr(da.Array)),
     ],
 )
-def test_no_message_shows_a_whole_array(value: object, shown: str) -> None:
+def test_messages_abbreviate_arrays(value: object, message: str) -> None:
     with pytest.raises(InvalidInputError) as caught:
         Roller(radius=value, length=1e-3)
-    assert str(caught.value) == f"radius = {shown}: must be a positive finite number (metres)"
+    assert str(caught.value) == f"radius = {message}: must be a positive finite number (metres)"

@@ -1,4 +1,4 @@
-"""What the package returns stands in the table of variables, and what stands there is returned."""
+"""The package returns exactly the variables of the table."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ from contactstudy.arrays.variables import (
     RULES,
     VARIABLES,
     describe,
-    named,
+    name_array,
     require,
     specification,
     variable_of,
@@ -95,7 +95,7 @@ def as_dataset(value: xr.Dataset | xr.DataArray) -> xr.Dataset:
     return value.coords.to_dataset() if value.name in value.coords else value.to_dataset(name=str(value.name))
 
 
-def _rubbed(case: cs.Case, contact: xr.Dataset, motion: cs.Rolling | cs.Shift) -> xr.Dataset:
+def _contact_with_motion(case: cs.Case, contact: xr.Dataset, motion: cs.Rolling | cs.Shift) -> xr.Dataset:
     """The case's contact with stick and slip."""
     gap = case.gap(cs.Grid.from_centres(contact.x.values, contact.y.values))
     labelled = contact.pressure.copy(data=gap).assign_attrs(units="m")
@@ -109,8 +109,8 @@ def one_case(folder: Path) -> xr.Dataset:
 
 
 @pytest.fixture(scope="module")
-def returned(strip_result: Callable[..., xr.Dataset], opened: xr.Dataset, tmp_path_factory) -> Returned:
-    """What every public function returns, by its name."""
+def returned_datasets(strip_result: Callable[..., xr.Dataset], study_dataset: xr.Dataset, tmp_path_factory) -> Returned:
+    """Results of every public function, by its name."""
     steel = cs.Material(210e9, 0.3)
     metal = heat.ThermalProperties(conductivity=46.0, density=7850.0, specific_heat=470.0)
     length, half_width = 0.4e-3, 65e-6
@@ -119,15 +119,17 @@ def returned(strip_result: Callable[..., xr.Dataset], opened: xr.Dataset, tmp_pa
     case = cs.Case(body=body, roller=roller, max_pressure=1.5e9, friction=0.1)
     grid = cs.Grid(x_range=(0.0, length), y_range=(-4 * half_width, 4 * half_width), cells_x=8, cells_y=24)
     depths = half_width * np.array([0.25, 0.5, 1.0])
-    solved = cs.solve(case, grid, y=grid.y[::4], x=grid.x[::4], z=depths)
-    pressure = solved["pressure"]
-    contact = cs.solve_contact(body, solved["initial_gap"], load=case.normal_load)
-    coarse = cs.solve(case, grid.coarsened(), stresses=False)
+    case_result = cs.solve(case, grid, y=grid.y[::4], x=grid.x[::4], z=depths)
+    pressure = case_result["pressure"]
+    contact = cs.solve_contact(body, case_result["initial_gap"], load=case.normal_load)
+    coarse_result = cs.solve(case, grid.coarsened(), stresses=False)
     # Sharp rigid ends inside the face: the pressure is singular at both.
     wider = cs.FiniteLengthSpace(length=2 * length, material=steel)
     sharp = cs.Case(body=wider, roller=cs.Roller(radius=5e-3, length=length), max_pressure=1.5e9)
     chamfer = cs.profiles.Chamfer(width=0.1e-3, angle=0.01)
-    chamfered = cs.Case(body=body, roller=cs.Roller(radius=5e-3, length=length, profile=chamfer), max_pressure=1.5e9)
+    chamfered_case = cs.Case(
+        body=body, roller=cs.Roller(radius=5e-3, length=length, profile=chamfer), max_pressure=1.5e9
+    )
     strip = strip_result(half_width, 1.5e9)
     limits = fatigue.FatigueLimits(bending=500e6, torsion=300e6)
     criterion = fatigue.dang_van(strip, limits)
@@ -136,28 +138,28 @@ def returned(strip_result: Callable[..., xr.Dataset], opened: xr.Dataset, tmp_pa
     file = tmp_path_factory.mktemp("rough") / "map.nc"
     rough.to_netcdf(file)
     check = Reference("case", "closed form").compare("peak pressure", 1.0, 1.0, 0.1)
-    checked = suite.Verification("full", {"one": [check]})
+    verification = suite.Verification("full", {"one": [check]})
     law = bearing.ContactLaw(law_table(Presser(case, 0.1, 1e-4), NODES, np.full((2, *NODES.load.shape), 0.01)))
     smooth = cs.Roller(radius=5e-3, length=length, profile=cs.profiles.Lundberg(1e-7), material=steel)
-    crowned = cs.Case(body=body, roller=smooth, max_pressure=1.5e9)
-    oiled = replace(
-        crowned,
+    crowned_case = cs.Case(body=body, roller=smooth, max_pressure=1.5e9)
+    oiled_case = replace(
+        crowned_case,
         motion=cs.Sliding(body_speed=2.0, roller_speed=2.0),
         lubricant=cs.Lubricant.preset("heavy machine oil", 60.0).replaced(conductivity=0.14),
     )
-    lubricated = film.solve_film(
-        oiled,
+    film_result = film.solve_film(
+        oiled_case,
         accuracy=0.2,
         asperities=film.Asperities(rms=2e-7),
         resolution=film.FilmResolution(finest=1.1, finest_share=0.25, inner=0.3, columns=0.5, levels=3),
     )
     values: dict[str, xr.Dataset | xr.DataArray] = {
-        "solve": solved,
+        "solve": case_result,
         "solve on refined columns": cs.solve(sharp, x=[2e-4, 4e-4], y=[-1e-5, 0.0, 1e-5], z=depths, accuracy=0.1),
-        "solve, chamfered": cs.solve(chamfered, stresses=False, accuracy=0.1),
+        "solve, chamfered": cs.solve(chamfered_case, stresses=False, accuracy=0.1),
         "solve_contact": contact,
-        "solve_contact, rolling": _rubbed(case, contact, cs.Rolling(longitudinal_creepage=1e-3)),
-        "solve_contact, shifted": _rubbed(case, contact, cs.Shift(y=1e-8)),
+        "solve_contact, rolling": _contact_with_motion(case, contact, cs.Rolling(longitudinal_creepage=1e-3)),
+        "solve_contact, shifted": _contact_with_motion(case, contact, cs.Shift(y=1e-8)),
         "stress_field": cs.stress_field(body, pressure, z=depths),
         "displacement_field": cs.displacement_field(body, pressure, z=depths),
         "surface_displacement": cs.surface_displacement(body, pressure),
@@ -168,47 +170,52 @@ def returned(strip_result: Callable[..., xr.Dataset], opened: xr.Dataset, tmp_pa
         "contact_law": law.table,
         "at": law.at([2e-6, 3e-6], [0.0, 1e-4]),
         "under": bearing.Raceways(law, law).under([1e4, 2e4], [0.0, 1.0]),
-        "lamina_factors": bearing.lamina_factors(cs.solve(crowned, grid, stresses=False), laminae=4),
-        "reference_life": bearing.reference_life(crowned, crowned, (1e3, 1e3), laminae=4, accuracy=0.1),
+        "lamina_factors": bearing.lamina_factors(cs.solve(crowned_case, grid, stresses=False), laminae=4),
+        "reference_life": bearing.reference_life(crowned_case, crowned_case, (1e3, 1e3), laminae=4, accuracy=0.1),
         "best_profile": design.best_profile(
-            crowned,
+            crowned_case,
             cs.profiles.Lundberg,
             bounds={"amplitude": (1e-7, 4e-7)},
             measure=lambda result: (1.0, 1.0),
             accuracy=0.1,
             evaluations=8,
         ),
-        "solve_film": lubricated,
-        "film_traction": film.film_traction(oiled, lubricated, [0.0, 0.1]),
+        "solve_film": film_result,
+        "film_traction": film.film_traction(oiled_case, film_result, [0.0, 0.1]),
         "flash_temperature": heat.flash_temperature(
             replace(case, motion=cs.Sliding(body_speed=-1.0, roller_speed=1.0)),
-            solved,
+            case_result,
             body=metal,
             roller=metal,
             z=depths,
         ),
         "case_numbers": xr.Dataset(
-            {name: ((), number.value, number.attributes) for name, number in case_numbers(solved).items()}
+            {
+                name: ((), entry_number.value, entry_number.attributes)
+                for name, entry_number in case_numbers(case_result).items()
+            }
         ),
         "self_affine": rough,
         "read_height_map": cs.roughness.read_height_map(file, grid),
         "slice_model": bearing.slice_model(case),
         "atlas": cs.atlas(100.0, 1.0, 0.2),
-        "open_study": opened,
+        "open_study": study_dataset,
         "load_case": one_case(tmp_path_factory.mktemp("study")),
-        "collect": opened.drop_dims([dim for dim in opened.dims if dim not in opened["status"].dims]),
-        "verify": checked.to_dataset(),
-        "load_between": analysis.load_between(solved, 0.0, 1e-4),
-        "peak": xr.merge([analysis.largest_sample(solved, name) for name in ("pressure", "von_mises")]),
-        "edge_factors": analysis.edge_factors(solved, reference=solved),
+        "collect": study_dataset.drop_dims(
+            [dim for dim in study_dataset.dims if dim not in study_dataset["status"].dims]
+        ),
+        "verify": verification.to_dataset(),
+        "load_between": analysis.load_between(case_result, 0.0, 1e-4),
+        "peak": xr.merge([analysis.largest_sample(case_result, name) for name in ("pressure", "von_mises")]),
+        "edge_factors": analysis.edge_factors(case_result, reference=case_result),
         "along_line": analysis.along_line(strip, (1e-4, 0.0, 2e-5), (1e-4, 0.0, 5e-5), variables="von_mises"),
         "in_plane": analysis.in_plane(strip, y=0.0, variables="von_mises"),
-        "measure": analysis.measure(solved, "tresca"),
-        **{f"measure, {rank}": analysis.measure(solved, f"principal_stress_{rank}") for rank in (1, 2, 3)},
-        "edge_tension": edge_tension(solved),
+        "measure": analysis.measure(case_result, "tresca"),
+        **{f"measure, {rank}": analysis.measure(case_result, f"principal_stress_{rank}") for rank in (1, 2, 3)},
+        "edge_tension": edge_tension(case_result),
         "positions": analysis.positions(pressure, "x"),
-        "discretisation_error": analysis.discretisation_error(solved, coarse),
-        "slices": analysis.slices(solved, 4),
+        "discretisation_error": analysis.discretisation_error(case_result, coarse_result),
+        "slices": analysis.slices(case_result, 4),
         "dang_van": criterion,
         "crossland": fatigue.crossland(strip, limits),
         "findley": fatigue.findley(strip.isel(x_field=[3, 4], z=[5, 6]), limits),
@@ -225,32 +232,32 @@ def returned(strip_result: Callable[..., xr.Dataset], opened: xr.Dataset, tmp_pa
         "shakedown": fatigue.shakedown(strip.isel(x_field=[4]), axial=True),
     }
     for name in FUNCTIONS.keys() - values.keys():
-        values[name] = FUNCTIONS[name](strip if name == "window_remainder" else solved)  # type: ignore[assignment]
+        values[name] = FUNCTIONS[name](strip if name == "window_remainder" else case_result)  # type: ignore[assignment]
     return {name: as_dataset(value) for name, value in values.items()}
 
 
-def test_every_public_function_is_looked_at(returned: Returned) -> None:
+def test_every_public_function_is_looked_at(returned_datasets: Returned) -> None:
     assert {"solve", "contact_results", "dang_van", "open_study", "slice_model", "verify"} <= FUNCTIONS.keys()
-    assert FUNCTIONS.keys() <= returned.keys()
+    assert FUNCTIONS.keys() <= returned_datasets.keys()
 
 
 OF_THE_MOTION = ("slip_x", "slip_y", "friction_work")
-"""Per distance rolled or of a shift: their unit tells."""
+"""Slip per rolled distance or of a shift, by the unit."""
 
 
-def test_every_variable_stands_in_the_table_with_its_unit(returned: Returned) -> None:
+def test_table_contains_all_variables(returned_datasets: Returned) -> None:
     strangers, unlike = [], []
-    for function, dataset in returned.items():
+    for function, dataset in returned_datasets.items():
         for name, array in dataset.data_vars.items():
-            known = specification(str(name)) or specification(str(name), coordinate=True)
-            if known is None:
+            entry_of_table = specification(str(name)) or specification(str(name), coordinate=True)
+            if entry_of_table is None:
                 strangers.append((function, name))
             elif (
                 name not in OF_THE_MOTION
                 and not str(name).startswith(("risk", "end_intensity"))  # units depend on an exponent
                 and function not in KEEPS_WHAT_IT_GETS
             ):
-                expected = {"units": known.units} if known.units else {}
+                expected = {"units": entry_of_table.units} if entry_of_table.units else {}
                 if {key: array.attrs[key] for key in ("units",) if key in array.attrs} != expected:
                     unlike.append((function, name, array.attrs))
                 if not array.attrs.get("long_name"):
@@ -259,79 +266,79 @@ def test_every_variable_stands_in_the_table_with_its_unit(returned: Returned) ->
     assert unlike == []
 
 
-def test_every_coordinate_stands_in_a_table(returned: Returned) -> None:
-    known = {*PARAMETERS}
+def test_tables_contain_all_coordinates(returned_datasets: Returned) -> None:
+    known_names = {*PARAMETERS}
     strangers = [
         (function, name)
-        for function, dataset in returned.items()
+        for function, dataset in returned_datasets.items()
         for name in dataset.coords
-        if name not in known and specification(str(name), coordinate=True) is None
+        if name not in known_names and specification(str(name), coordinate=True) is None
     ]
     assert strangers == []
 
 
-def test_dimensions_are_those_of_the_table(returned: Returned) -> None:
-    """But for those of a study, of slices and of a contact law; of a field that was cut, fewer."""
+def test_dimensions_match_table(returned_datasets: Returned) -> None:
+    """Except variables of a study, of slices and of a contact law; a cut field has fewer."""
     unlike = []
-    for function, dataset in returned.items():
+    for function, dataset in returned_datasets.items():
         for name, array in dataset.data_vars.items():
             if name not in VARIABLES:
                 continue
             dims = {re.sub(r"^([xyz])(_field)?(_index|_over_a)?$", r"\1", str(dim)) for dim in array.dims}
-            own = {"distance"} if function in ("along_line", "wear_in") else set()
+            own_dims = {"distance"} if function in ("along_line", "wear_in") else set()
             of_a_law = {"approach", "normal_load", "moment"}
-            further = {*PARAMETERS, "case", "slice", "pass_number", *of_a_law, *own}
+            further = {*PARAMETERS, "case", "slice", "pass_number", *of_a_law, *own_dims}
             if not dims - further <= {*VARIABLES[str(name)].dims}:
                 unlike.append((function, name, array.dims))
     assert unlike == []
 
 
-def test_every_row_of_the_table_is_returned(returned: Returned) -> None:
-    names = {str(name) for dataset in returned.values() for name in dataset.data_vars}
+def test_results_cover_variable_table(returned_datasets: Returned) -> None:
+    names = {str(name) for dataset in returned_datasets.values() for name in dataset.data_vars}
     assert VARIABLES.keys() - names == set()
-    coordinates = {str(name) for dataset in returned.values() for name in dataset.coords}
+    coordinates = {str(name) for dataset in returned_datasets.values() for name in dataset.coords}
     assert COORDINATES.keys() - coordinates - {"case"} == set()
     for pattern in RULES:
         start, end = pattern.split("{name}")
-        made = {name for name in names | coordinates if name.startswith(start) and name.endswith(end)}
-        assert made - VARIABLES.keys(), pattern
+        matching_names = {name for name in names | coordinates if name.startswith(start) and name.endswith(end)}
+        assert matching_names - VARIABLES.keys(), pattern
 
 
-def test_a_study_of_listed_cases_has_the_coordinate_case() -> None:
+def test_listed_cases_have_case_coordinate() -> None:
     from contactstudy.study.plan import cube_of_axes
 
     assert set(cube_of_axes([]).labels) == {"case"}
 
 
-def test_no_brace_is_left_in_a_label(returned: Returned) -> None:
-    for dataset in returned.values():
+def test_labels_contain_no_braces(returned_datasets: Returned) -> None:
+    for dataset in returned_datasets.values():
         for array in dataset.variables.values():
             assert "{" not in str(array.attrs.get("long_name", "")) + str(array.attrs.get("units", ""))
 
 
-def test_a_name_that_nothing_explains_is_left_alone() -> None:
-    own = xr.Dataset({"luck": ("y", [1.0])}, {"y": [0.0]})
-    described = describe(own)
-    assert described["luck"].attrs == {}
-    assert described["y"].attrs["units"] == "m"
-    assert own["y"].attrs == {}
+def test_unknown_name_keeps_attributes() -> None:
+    dataset = xr.Dataset({"luck": ("y", [1.0])}, {"y": [0.0]})
+    labelled_dataset = describe(dataset)
+    assert labelled_dataset["luck"].attrs == {}
+    assert labelled_dataset["y"].attrs["units"] == "m"
+    assert dataset["y"].attrs == {}
     assert specification("peak_luck") is None
     assert specification("peak_") is None
 
 
-def test_labels_that_an_array_carries_count_for_what_is_derived_from_it() -> None:
+def test_derived_labels_use_array_attributes() -> None:
     base = variable_of("luck", {"units": "K", "long_name": "fortune"})
-    assert named("peak_luck", xr.DataArray(1.0, attrs={"units": "m"}), base).attrs == {
+    assert name_array("peak_luck", xr.DataArray(1.0, attrs={"units": "m"}), base).attrs == {
         "units": "K",
         "long_name": "largest fortune",
     }
 
 
-def test_what_a_quantity_is_derived_from_is_named_or_left_open() -> None:
+def test_derived_quantity_labels() -> None:
     criterion = VARIABLES["dang_van"]
-    filled = specification("utilisation", criterion)
-    assert filled is not None
-    assert filled.long_name == "Dang Van's equivalent shear stress, over its limit"
+    entry = specification("utilisation", criterion)
+    assert entry is not None
+    assert entry.long_name == "Dang Van's equivalent shear stress, over its limit"
     left_open = specification("peak_utilisation")
     assert left_open is not None
     assert left_open.long_name == "largest value, over its limit"
@@ -353,27 +360,27 @@ def test_what_a_quantity_is_derived_from_is_named_or_left_open() -> None:
     ],
 )
 def test_names_made_by_rule(name: str, symbol: str, units: str) -> None:
-    known = specification(name)
-    assert known is not None
-    assert (known.symbol, known.units) == (symbol, units)
+    entry = specification(name)
+    assert entry is not None
+    assert (entry.symbol, entry.units) == (symbol, units)
 
 
-def test_names_on_axes_fit_into_one_line() -> None:
+def test_axis_labels_are_short() -> None:
     """Labels of xarray's own figures are broken after 30 characters, and the second line is cut off."""
     for name, entry in (*COORDINATES.items(), *PARAMETERS.items()):
-        known = entry.attrs
-        assert len(f"{known['long_name']} [{known.get('units', '')}]") <= 30, name
+        attributes = entry.attrs
+        assert len(f"{attributes['long_name']} [{attributes.get('units', '')}]") <= 30, name
 
 
-def test_numbers_without_an_error_carry_the_mark(solved: xr.Dataset) -> None:
-    """Every scalar in SI of a result or its summary has an error beside it, is an input, or says that it has none."""
-    given = ("normal_load", "hertz_half_width", "hertz_max_pressure", "tilt", "end_traction_residual")
-    for stated in (solved, analysis.contact_results(solved), analysis.edge_factors(solved)):
-        for name, value in stated.data_vars.items():
-            number = value.ndim == 0 and value.dtype.kind == "f" and not str(name).endswith("_error")
-            if number and name not in given and f"{name}_error" not in stated:
+def test_numbers_without_error_are_marked(case_result: xr.Dataset) -> None:
+    """Every scalar in SI of a result or its summary has an error, is an input, or is marked as not estimated."""
+    input_names = ("normal_load", "hertz_half_width", "hertz_max_pressure", "tilt", "end_traction_residual")
+    for dataset in (case_result, analysis.contact_results(case_result), analysis.edge_factors(case_result)):
+        for name, value in dataset.data_vars.items():
+            is_number = value.ndim == 0 and value.dtype.kind == "f" and not str(name).endswith("_error")
+            if is_number and name not in input_names and f"{name}_error" not in dataset:
                 assert value.attrs[ERROR_KIND] == NOT_ESTIMATED, name
-    values = (solved["load_position"], *analysis.axial_profiles(solved).data_vars.values())
+    values = (case_result["load_position"], *analysis.axial_profiles(case_result).data_vars.values())
     assert all(value.attrs[ERROR_KIND] == NOT_ESTIMATED for value in values)
 
 
@@ -385,7 +392,7 @@ def test_numbers_without_an_error_carry_the_mark(solved: xr.Dataset) -> None:
         ("hertz_half_width", "hertz_half_width is missing"),
     ],
 )
-def test_require_names_the_study_level_of_a_missing_variable(missing: str, hint: str) -> None:
+def test_require_message_contains_study_level(missing: str, hint: str) -> None:
     with pytest.raises(InvalidInputError) as caught:
         require(xr.Dataset({"gap": 0.0}), "gap", missing, argument="result")
     assert caught.value.hint == hint
@@ -397,18 +404,18 @@ def test_require_suggests_the_nearest_variable() -> None:
         require(xr.Dataset({"gap": 0.0, "peak_von_mises": 0.0}), "peak_vonmises")
 
 
-def test_require_quotes_the_message_of_a_failed_case() -> None:
+def test_require_message_contains_case_failure() -> None:
     failed = xr.Dataset({"status": "failed", "message": "too narrow"})
     with pytest.raises(InvalidInputError, match=r"a failed case.*too narrow"):
         require(failed, "pressure")
 
 
-def test_require_refuses_other_types() -> None:
+def test_require_raises_for_wrong_type() -> None:
     with pytest.raises(InvalidInputError, match=r"list.*Dataset"):
         require([], argument="result")
 
 
 def test_error_kinds() -> None:
-    found = without_error(xr.Dataset({"peak_pressure": 1.0, "peak_pressure_error": 0.1, "approach": 1.0}), "approach")
-    kinds = {name: value.attrs.get(ERROR_KIND) for name, value in describe(found).data_vars.items()}
+    marked = without_error(xr.Dataset({"peak_pressure": 1.0, "peak_pressure_error": 0.1, "approach": 1.0}), "approach")
+    kinds = {name: value.attrs.get(ERROR_KIND) for name, value in describe(marked).data_vars.items()}
     assert kinds == {"peak_pressure": ESTIMATED, "peak_pressure_error": None, "approach": NOT_ESTIMATED}

@@ -81,18 +81,21 @@ class Outputs:
     """Parser of text blocks that directly follow Python blocks."""
 
     def __call__(self, document: Document) -> Iterable[Region]:
-        for found in OUTPUT.finditer(document.text):
-            yield Region(found.start(1), found.end(1), found[2], compare_output)
+        for match in OUTPUT.finditer(document.text):
+            yield Region(match.start(1), match.end(1), match[2], compare_output)
 
 
 def compare_output(example: Example) -> None:
     """Compare what is shown with what was printed: words as they are, numbers to a percent."""
-    shown, printed = example.parsed.split(), example.namespace["_printed"].split()
-    assert len(shown) == len(printed), example.namespace["_printed"]
-    for one, other in zip(shown, printed, strict=True):
-        if one != other:
+    expected_words, printed = example.parsed.split(), example.namespace["_printed"].split()
+    assert len(expected_words) == len(printed), example.namespace["_printed"]
+    for first, second in zip(expected_words, printed, strict=True):
+        if first != second:
             tail = ",:;"
-            assert float(one.strip(tail)) == pytest.approx(float(other.strip(tail)), rel=0.01, abs=2e-3), (one, other)
+            assert float(first.strip(tail)) == pytest.approx(float(second.strip(tail)), rel=0.01, abs=2e-3), (
+                first,
+                second,
+            )
 
 
 class ReasonedSkips(SkipParser):
@@ -119,14 +122,14 @@ def run_toml(example: Example) -> None:
 
 
 @functools.cache
-def furnished() -> Path:
+def make_working_folder() -> Path:
     """Folder whose content every page finds."""
     folder = Path(tempfile.mkdtemp(prefix="contactstudy-page-"))
     (folder / "studies").mkdir()
     for study in (ROOT / "studies").glob("*.toml"):
         shutil.copy(study, folder / "studies")
     x = np.linspace(0, 10, 201)
-    rows = (f"{at:.3f}, {0.2 * (at - 4.9) ** 2:.5f}" for at in x)
+    rows = (f"{position:.3f}, {0.2 * (position - 4.9) ** 2:.5f}" for position in x)
     (folder / "roller_7.csv").write_text("\n".join(["x [mm], drop [um]", *rows]))
     return folder
 
@@ -134,7 +137,7 @@ def furnished() -> Path:
 def begin_page(names: dict[str, Any]) -> None:
     """Go to a copy of the furnished folder."""
     folder = tempfile.mkdtemp(prefix="contactstudy-page-")
-    shutil.copytree(furnished(), folder, dirs_exist_ok=True)
+    shutil.copytree(make_working_folder(), folder, dirs_exist_ok=True)
     names |= {"result": solved_case(), "_before": os.getcwd(), "_folder": folder}
     os.chdir(folder)
 

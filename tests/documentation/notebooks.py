@@ -32,9 +32,9 @@ def pytest_runtest_call(item: pytest.Item):
     """Check what is stored, and run a copy in an empty folder."""
     if not _is_notebook(item):
         return (yield)
-    stored = nbformat.read(item.path, as_version=4)
-    nbformat.validate(stored)
-    for cell in stored.cells:
+    stored_case = nbformat.read(item.path, as_version=4)
+    nbformat.validate(stored_case)
+    for cell in stored_case.cells:
         assert not cell.get("outputs"), "clear the outputs before committing"
         assert cell.get("execution_count") is None, "clear the outputs before committing"
     assert item.path.stat().st_size < LARGEST

@@ -9,5 +9,5 @@ ROOT = Path(__file__).resolve().parents[2]
 
 def page(name: str) -> Path:
     """The page of this name, on whatever shelf it stands."""
-    (found,) = (ROOT / "docs").rglob(f"{name}.md")
-    return found
+    (result,) = (ROOT / "docs").rglob(f"{name}.md")
+    return result

@@ -26,15 +26,15 @@ def docs_only() -> set[str]:
     return set(chain.from_iterable(comment.split(", ") for comment in comments))
 
 
-def cited() -> set[str]:
+def cited_equations() -> set[str]:
     """Equations that comments and docstrings of the package cite."""
-    numbers: set[str] = set()
+    values: set[str] = set()
     for path in CODE:
         for citation in re.findall(r"\beqs?\.\s+(\(\w+\)(?:(?:,| and| to|, and)\s+\(\w+\))*)", path.read_text()):
-            numbers |= set(re.findall(r"\((\w+)\)", citation))
+            values |= set(re.findall(r"\((\w+)\)", citation))
             for first, last in re.findall(r"\((\d+)\) to \((\d+)\)", citation):
-                numbers |= {str(number) for number in np.arange(int(first), int(last) + 1)}
-    return numbers
+                values |= {str(index) for index in np.arange(int(first), int(last) + 1)}
+    return values
 
 
 def test_numbers_are_unique() -> None:
@@ -42,8 +42,8 @@ def test_numbers_are_unique() -> None:
 
 
 def test_equations_are_cited() -> None:
-    assert set(tags()) - cited() == docs_only()
-    assert cited() <= set(tags())
+    assert set(tags()) - cited_equations() == docs_only()
+    assert cited_equations() <= set(tags())
 
 
 @cache

@@ -1,4 +1,4 @@
-"""A study to look through: pressures, words and friction, of which one value fails."""
+"""A study for the page: pressures, words and friction, of which one value fails."""
 
 from __future__ import annotations
 

@@ -28,26 +28,26 @@ def address(folder: Path) -> Iterator[str]:
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as server:
         try:
             assert server.stdout is not None
-            said = server.stdout.readline()
-            assert "until Ctrl-C" in said
-            yield said.split()[0]
+            line = server.stdout.readline()
+            assert "until Ctrl-C" in line
+            yield line.split()[0]
         finally:
             server.terminate()
 
 
-def test_the_page_shows_a_study_and_follows(address: str) -> None:
+def test_page_follows_widgets(address: str) -> None:
     with browser(1400, 900) as page:
         errors: list[str] = []
         page.on("pageerror", lambda error: errors.append(str(error)))
         open_served(page, address)
-        number = page.locator("tr:has-text('Hertz pressure p0') td.n").first
-        assert number.text_content() == "1 GPa"
-        before = page.screenshot()
+        cell = page.locator("tr:has-text('Hertz pressure p0') td.n").first
+        assert cell.text_content() == "1 GPa"
+        first_screenshot = page.screenshot()
         handle = page.locator(".noUi-handle").first
         handle.focus()
         handle.press("ArrowRight")
         page.locator("tr:has-text('Hertz pressure p0') td.n:has-text('1.25 GPa')").first.wait_for()
-        while page.screenshot() == before:
+        while page.screenshot() == first_screenshot:
             page.wait_for_timeout(100)
         page.locator("input[type=checkbox]").first.check()
         page.wait_for_selector("th:has-text('second case')")

@@ -8,8 +8,8 @@ from contactstudy.explorer.cases import _value_text, numbers_by_subject, status_
 
 
 def test_sentence_of_an_unsolved_case():
-    skipped = status_sentence("skipped", "profile: must fit the length")
-    assert skipped == "This case cannot be solved. profile: must fit the length"
+    sentence = status_sentence("skipped", "profile: must fit the length")
+    assert sentence == "This case cannot be solved. profile: must fit the length"
     assert status_sentence("missing", "") == "This case is not solved yet."
 
 

@@ -16,8 +16,8 @@ from contactstudy import ContactStudyError, InvalidInputError, open_study
 from contactstudy.analysis import in_plane, measure
 from contactstudy.arrays.variables import STRESSES, specification
 from contactstudy.explorer import explore, server
-from contactstudy.explorer.cases import ORDER, SUBJECTS, Cases, open_cases
-from contactstudy.explorer.figures import NEUTRAL, StudyFigure
+from contactstudy.explorer.cases import SUBJECT_ORDER, SUBJECTS, Cases, open_cases
+from contactstudy.explorer.figures import NEUTRAL_COLOR, StudyFigure
 from contactstudy.explorer.images import (
     PLANES,
     REGIONS,
@@ -44,7 +44,7 @@ SOURCES: dict[str, Callable[[Path], Cases]] = {
 
 @pytest.fixture
 def page(request: pytest.FixtureRequest, folder: Path) -> Page:
-    """Page of the files, or of another source where the test names it."""
+    """Page of the files, or of the source in the test's parameter."""
     return Page(SOURCES[getattr(request, "param", "files")](folder))
 
 
@@ -55,7 +55,7 @@ any_source = pytest.mark.parametrize("page", SOURCES, indirect=True)
 def largest_drawn(page: Page) -> tuple[float, float]:
     """Largest pressure drawn along the axis, and on the top."""
     along = page.axial._lines[0].data["p"]
-    (picture,) = page.tops[0]._source.data["image"]
+    (picture,) = page.surface_figures[0]._source.data["image"]
     return float(np.nanmax(along)), float(picture.max())
 
 
@@ -67,15 +67,15 @@ def test_choices_of_swept_parameters(page: Page) -> None:
 
 
 @any_source
-def test_figures_and_numbers_of_a_choice(page: Page) -> None:
-    before = largest_drawn(page)
+def test_figures_follow_chosen_case(page: Page) -> None:
+    first_maximum = largest_drawn(page)
     assert ">1 GPa<" in page.table.object
     page.choices[0]["max_pressure"].value = 2
     assert ">1.5 GPa<" in page.table.object
-    assert largest_drawn(page)[0] == pytest.approx(1.5 * before[0], rel=0.05)
+    assert largest_drawn(page)[0] == pytest.approx(1.5 * first_maximum[0], rel=0.05)
     assert page.study._marked.data["x"] == [1.5]
     page.units.value = True
-    assert largest_drawn(page)[0] == pytest.approx(before[0] / 1000, rel=0.05)
+    assert largest_drawn(page)[0] == pytest.approx(first_maximum[0] / 1000, rel=0.05)
 
 
 def test_common_colours_of_two_cases(page: Page) -> None:
@@ -85,7 +85,7 @@ def test_common_colours_of_two_cases(page: Page) -> None:
     page.choices[1]["max_pressure"].value = 2
     assert page.panes[2].visible
     assert page.axial._legend.visible
-    assert page.tops[0]._mapper.high == page.tops[1]._mapper.high > 1500
+    assert page.surface_figures[0]._mapper.high == page.surface_figures[1]._mapper.high > 1500
     assert page.table.object.count("edge factor of the contact towards end I (largest within a, over its middle)") == 1
     assert ">1 GPa<" in page.table.object
     assert ">1.5 GPa<" in page.table.object
@@ -95,19 +95,21 @@ def test_common_colours_of_two_cases(page: Page) -> None:
 def test_common_axes_of_two_cases(page: Page) -> None:
     page.compare.value = True
     page.choices[1]["max_pressure"].value = 2
-    for figures in (page.tops, page.planes):
-        spans = [(each.figure.y_range.start, each.figure.y_range.end) for each in figures]
-        drawn = [(each._source.data["y"][0], each._source.data["h"][0]) for each in figures]
+    for figures in (page.surface_figures, page.plane_figures):
+        spans = [(axes_figure.figure.y_range.start, axes_figure.figure.y_range.end) for axes_figure in figures]
+        image_corners = [
+            (axes_figure._source.data["y"][0], axes_figure._source.data["h"][0]) for axes_figure in figures
+        ]
         assert spans[0] == spans[1]
-        assert drawn[0] != drawn[1]
-        for y, height in drawn:
+        assert image_corners[0] != image_corners[1]
+        for y, height in image_corners:
             assert min(spans[0]) <= y
             assert y + height <= max(spans[0])
 
 
-def test_number_of_cases(page: Page, solved: xr.Dataset) -> None:
+def test_number_of_cases(page: Page, case_result: xr.Dataset) -> None:
     assert ">12 cases<" in page.view()[0].object
-    assert ">1 case<" in Page(open_cases(solved)).view()[0].object
+    assert ">1 case<" in Page(open_cases(case_result)).view()[0].object
     status = page.cases.scalars["status"].astype(object)
     status[0, 0, 0] = "excluded"
     less = Page(Cases(page.cases.scalars.assign(status=status.astype(str)), page.cases.load, page.cases.title))
@@ -119,7 +121,7 @@ def test_failed_case(page: Page) -> None:
     page.choices[0]["friction"].value = 1
     assert ">failed<" in page.table.object
     assert "This case failed. WindowError: this friction fails in tests" in page.table.object
-    assert page.tops[0]._source.data["image"] == []
+    assert page.surface_figures[0]._source.data["image"] == []
     assert np.isnan(page.study._marked.data["v"]).all()
     assert not any(pane.visible for pane in page.panes)  # no empty axes
     assert "No case at these values" in page.table.object
@@ -129,7 +131,7 @@ def test_failed_case(page: Page) -> None:
     assert "<b>case:</b> This case failed" in page.table.object
     page.compare.value = False
     page.choices[0]["friction"].value = 0
-    assert len(page.tops[0]._source.data["image"]) == 1
+    assert len(page.surface_figures[0]._source.data["image"]) == 1
     assert "class=why" not in page.table.object
     assert [pane.visible for pane in page.panes] == [True, True, False, True, False, True]
 
@@ -142,12 +144,12 @@ def test_study_without_surfaces(tmp_path: Path) -> None:
 
 
 def test_case_without_stresses(page: Page) -> None:
-    bare = CaseFields(page.cases.load(page.index(0)).dataset.drop_vars("von_mises"))
-    less = Page(Cases(page.cases.scalars, lambda index: bare, page.cases.title))
+    without_stresses = CaseFields(page.cases.load(page.index(0)).dataset.drop_vars("von_mises"))
+    less = Page(Cases(page.cases.scalars, lambda index: without_stresses, page.cases.title))
     assert "The stresses are not stored." in less.table.object
     assert [pane.visible for pane in less.panes] == [True, True, False, False, False, True]
     assert not less.plane.visible
-    assert not less.planes[0].figure.visible
+    assert not less.plane_figures[0].figure.visible
     assert page.plane.visible
     less.view()
     assert [pane.visible for pane in less.panes] == [True, True, False, False, False, True]
@@ -155,7 +157,7 @@ def test_case_without_stresses(page: Page) -> None:
 
 def test_numbers_by_subject(page: Page) -> None:
     groups = page.number.groups
-    assert list(groups) == [subject for subject in ORDER if subject in groups]
+    assert list(groups) == [subject for subject in SUBJECT_ORDER if subject in groups]
     assert list(groups)[:2] == ["pressure", "stresses"]
     assert list(groups)[-1] == "solution"
     names = [name for group in groups.values() for name in group.values()]
@@ -163,29 +165,29 @@ def test_numbers_by_subject(page: Page) -> None:
     floats = {name for name, entry in page.cases.scalars.data_vars.items() if entry.dtype.kind == "f"}
     assert {name for name in floats if not name.endswith("_error")} >= set(names)
     assert len(names) == len(set(names)) == len({text for group in groups.values() for text in group})
-    known = [name for subject in SUBJECTS.values() for name in subject]
-    assert len(known) == len(set(known))
-    assert all(name.endswith("_") or specification(name) for name in known)
+    listed_names = [name for subject in SUBJECTS.values() for name in subject]
+    assert len(listed_names) == len(set(listed_names))
+    assert all(name.endswith("_") or specification(name) for name in listed_names)
 
 
 def test_error_bars_and_open_marks(page: Page) -> None:
     scalars = page.cases.scalars
     peak = scalars["peak_pressure"]
     error = (0.1 * peak).where(scalars["max_pressure"] > 1.1e9, np.inf)
-    made = Page(Cases(scalars.assign(peak_pressure_error=error), page.cases.load, page.cases.title))
-    data = made.study._line.data
+    error_page = Page(Cases(scalars.assign(peak_pressure_error=error), page.cases.load, page.cases.title))
+    data = error_page.study._line.data
     np.testing.assert_allclose(data["high"][1:], 1.1 * data["v"][1:])
     np.testing.assert_allclose(data["low"][1:], 0.9 * data["v"][1:])
     assert np.isnan([data["low"][0], data["high"][0]]).all()
-    assert data["fill"].tolist() == ["white", NEUTRAL, NEUTRAL]
-    assert made.study.figure.title.text == "bars: estimated errors; open marks: error not estimated"
-    assert made.study.figure.y_range.end > data["high"][-1]
-    made.number.value = "normal_load"  # prescribed: exact
-    assert made.study._line.data["fill"].tolist() == [NEUTRAL] * 3
-    assert made.study.figure.title.text == ""
+    assert data["fill"].tolist() == ["white", NEUTRAL_COLOR, NEUTRAL_COLOR]
+    assert error_page.study.figure.title.text == "bars: estimated errors; open marks: error not estimated"
+    assert error_page.study.figure.y_range.end > data["high"][-1]
+    error_page.number.value = "normal_load"  # prescribed: exact
+    assert error_page.study._line.data["fill"].tolist() == [NEUTRAL_COLOR] * 3
+    assert error_page.study.figure.title.text == ""
 
 
-def test_planes_against_the_analysis(folder: Path) -> None:
+def test_planes_equal_analysis_cuts(folder: Path) -> None:
     case = open_cases(folder).load((0, 0, 0))
     scale = choose_scale(case, relative=False)
     limits = region_limits(case, REGIONS[0])
@@ -196,7 +198,9 @@ def test_planes_against_the_analysis(folder: Path) -> None:
     assert image.position == "y = 0 mm"
     value, x, z = image.largest
     assert value == pytest.approx(float(expected.max()) / 1e6)
-    across, down = (int(np.abs(case.points[axis] - 1e-3 * place).argmin()) for axis, place in (("x", x), ("z", z)))
+    across, down = (
+        int(np.abs(case.points[axis] - 1e-3 * position).argmin()) for axis, position in (("x", x), ("z", z))
+    )
     assert float(expected[across, down]) == float(expected.max())
     for kind in PLANES[1:]:
         image = plane_image(case, scale, limits, kind, 0.0)
@@ -211,22 +215,22 @@ def test_planes_against_the_analysis(folder: Path) -> None:
 
 
 @any_source
-def test_stress_measures_of_the_plane(page: Page, solved: xr.Dataset) -> None:
+def test_stress_measures_of_the_plane(page: Page, case_result: xr.Dataset) -> None:
     titles = {}
     for text, name in MEASURES.items():
         page.measure.value = name
-        assert ", largest " in page.planes[0].figure.title.text
-        assert page.planes[0].figure.title.text.startswith(f"{text} (MPa)\ny = 0")
-        titles[name] = float(page.planes[0]._source.data["image"][0].max())
+        assert ", largest " in page.plane_figures[0].figure.title.text
+        assert page.plane_figures[0].figure.title.text.startswith(f"{text} (MPa)\ny = 0")
+        titles[name] = float(page.plane_figures[0]._source.data["image"][0].max())
     assert titles["principal_stress_1"] < titles["maximum_shear"] < titles["von_mises"]
-    case = CaseFields(solved.drop_vars(STRESSES), lambda: solved)
-    expected = measure(solved, "principal_stress_1").transpose(*solved["von_mises"].dims)
+    case = CaseFields(case_result.drop_vars(STRESSES), lambda: case_result)
+    expected = measure(case_result, "principal_stress_1").transpose(*case_result["von_mises"].dims)
     np.testing.assert_array_equal(case.stress("principal_stress_1"), expected)
 
 
-def test_singular_end_is_not_drawn(solved: xr.Dataset) -> None:
-    singular = solved[["pressure", "hertz_half_width", "hertz_max_pressure"]].assign(end_pressure_first=np.inf)
-    x = np.linspace(float(solved.x[0]), float(solved.x[-1]), 400)
+def test_singular_end_is_not_drawn(case_result: xr.Dataset) -> None:
+    singular = case_result[["pressure", "hertz_half_width", "hertz_max_pressure"]].assign(end_pressure_first=np.inf)
+    x = np.linspace(float(case_result.x[0]), float(case_result.x[-1]), 400)
     case = CaseFields(singular.interp(x=x).drop_vars("x_bounds", errors="ignore"))
     scale = choose_scale(case, relative=True)
     line = axial_line(case, scale)
@@ -234,45 +238,45 @@ def test_singular_end_is_not_drawn(solved: xr.Dataset) -> None:
     assert np.isnan(line.pressure[np.abs(line.x - line.singular[0]) < 0.05]).all()
     assert top_image(case, scale, region_limits(case, REGIONS[1])).limit <= np.nanmax(line.pressure) * (1 + 1e-9)
     low, high = region_limits(case, REGIONS[2])
-    assert high - low <= 8 * float(solved["hertz_half_width"])
+    assert high - low <= 8 * float(case_result["hertz_half_width"])
 
 
-def test_ticks_change_only_with_the_parameter(page: Page) -> None:
+def test_ticks_change_with_parameter_only(page: Page) -> None:
     axis = page.study.figure.xaxis[0]
-    plain = axis.ticker
+    numeric_ticker = axis.ticker
     page.choices[0]["max_pressure"].value = 1
-    assert axis.ticker is plain
+    assert axis.ticker is numeric_ticker
     page.parameter.value = "profile"
-    words = axis.ticker
-    assert list(words.ticks) == [0.0, 1.0]
+    text_ticker = axis.ticker
+    assert list(text_ticker.ticks) == [0.0, 1.0]
     assert axis.major_label_overrides == {0.0: "cylinder", 1.0: "rounded"}
     page.choices[0]["profile"].value = 1
-    assert axis.ticker is words
+    assert axis.ticker is text_ticker
     page.parameter.value = "max_pressure"
-    assert axis.ticker is plain
+    assert axis.ticker is numeric_ticker
     assert axis.major_label_overrides == {}
 
 
-def test_pixels_are_linear_and_constant_beyond_the_points() -> None:
+def test_pixel_interpolation_is_linear_inside_points() -> None:
     x, y = np.array([0.0, 1.0, 4.0]), np.array([0.0, 2.0])
     image = to_pixels(x[:, None] + y, (x, y), ((-1.0, 5.0), (0.0, 2.0)), (6, 2))
     assert image.shape == (2, 6)
     assert image[0].tolist() == [0.5, 1.0, 2.0, 3.0, 4.0, 4.5]
 
 
-def test_push_to_a_notebook(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_notebook_receives_updates(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     import panel as pn
     from bokeh.document import Document
     from panel.io.model import add_to_doc
     from pyviz_comms import Comm
 
-    sent = []
+    pushed_panes = []
 
     class Spy(Comm):
         _comm = property(lambda self: True, lambda self, value: None)  # it is open
 
         def send(self, data=None, metadata=None, buffers=()):
-            sent.append(data)
+            pushed_panes.append(data)
 
     page = Page(open_cases(folder))
     view, document, comm = page.view(), Document(), Spy()
@@ -280,13 +284,13 @@ def test_push_to_a_notebook(folder: Path, monkeypatch: pytest.MonkeyPatch) -> No
     add_to_doc(root, document, hold=True)
     monkeypatch.setitem(pn.state._views, root.ref["id"], (view, root, document, comm))
     page.choices[0]["max_pressure"].value = 1
-    assert any("ModelChanged" in str(message) for message in sent)
+    assert any("ModelChanged" in str(message) for message in pushed_panes)
 
 
-def test_explore(folder: Path, solved: xr.Dataset) -> None:
+def test_explore(folder: Path, case_result: xr.Dataset) -> None:
     assert type(explore(folder)).__name__ == "Column"
     assert type(open_study(folder).contact.explore()).__name__ == "Column"
-    assert type(solved.contact.explore()).__name__ == "Column"
+    assert type(case_result.contact.explore()).__name__ == "Column"
     with pytest.raises(InvalidInputError, match="study"):
         explore(3)  # type: ignore[arg-type]
 
@@ -301,10 +305,10 @@ def test_missing_extra(monkeypatch: pytest.MonkeyPatch, folder: Path) -> None:
 def test_taken_port() -> None:
     import socket
 
-    with socket.socket() as other:
-        other.bind(("localhost", 0))
-        other.listen()
-        port = other.getsockname()[1]
+    with socket.socket() as listener:
+        listener.bind(("localhost", 0))
+        listener.listen()
+        port = listener.getsockname()[1]
         with pytest.raises(InvalidInputError, match=f"port = {port}"):
             server._choose_port(port)
         assert server._choose_port(None) != port

@@ -69,7 +69,7 @@ def test_unreadable_study(tmp_path: Path, content: str) -> None:
 
 
 @pytest.fixture(scope="module")
-def served(folder: Path) -> Iterator[tuple[int, str]]:
+def server_port(folder: Path) -> Iterator[tuple[int, str]]:
     """Port and token of a server."""
     port = free_port()
     command = [sys.executable, "-m", "contactstudy.cli", "explore", str(folder), "--no-browser"]
@@ -101,33 +101,33 @@ SOCKET = {
 
 
 @pytest.mark.system
-def test_hosts_and_tokens(served: tuple[int, str]) -> None:
-    port, token = served
+def test_hosts_and_tokens(server_port: tuple[int, str]) -> None:
+    port, token = server_port
     cookie = {"Cookie": f"contactstudy-{port}={token}"}
-    allowed = (f"localhost:{port}", "localhost:9999", "127.0.0.1:1", "[::1]:5006", "LOCALHOST", "proxy.example")
-    for host in allowed:
+    allowed_hosts = (f"localhost:{port}", "localhost:9999", "127.0.0.1:1", "[::1]:5006", "LOCALHOST", "proxy.example")
+    for host in allowed_hosts:
         assert request(port, "/", Host=host, **cookie).status == 200, host
     for host in ("rebound.example", f"rebound.example:{port}", "localhost.example", "192.168.0.7", "", "[::1"):
         for path in ("/", f"/?token={token}", "/ws"):
             assert request(port, path, Host=host, **cookie).status == 403, (host, path)
-    for sent in ({}, {"Cookie": f"contactstudy-{port}=wrong"}, {"Cookie": "other=1"}):
+    for headers in ({}, {"Cookie": f"contactstudy-{port}=wrong"}, {"Cookie": "other=1"}):
         for path in ("/", "/?token=wrong", "/ws", "/static/js/bokeh.min.js"):
-            assert request(port, path, Host=f"localhost:{port}", **sent).status == 403, (sent, path)
-    entered = request(port, f"/?token={token}", Host=f"localhost:{port}")
-    assert (entered.status, entered.headers["Location"]) == (302, "/")
-    assert entered.headers["Set-Cookie"].startswith(cookie["Cookie"])
-    assert "HttpOnly" in entered.headers["Set-Cookie"]
+            assert request(port, path, Host=f"localhost:{port}", **headers).status == 403, (headers, path)
+    response = request(port, f"/?token={token}", Host=f"localhost:{port}")
+    assert (response.status, response.headers["Location"]) == (302, "/")
+    assert response.headers["Set-Cookie"].startswith(cookie["Cookie"])
+    assert "HttpOnly" in response.headers["Set-Cookie"]
 
 
 @pytest.mark.system
-def test_origin_of_a_websocket(served: tuple[int, str]) -> None:
-    port, token = served
+def test_origin_of_a_websocket(server_port: tuple[int, str]) -> None:
+    port, token = server_port
     cookie = {"Cookie": f"contactstudy-{port}={token}"}
     for host, origin in (("localhost:9999", "http://rebound.example"), ("rebound.example", "http://rebound.example")):
         assert request(port, "/ws", Host=host, Origin=origin, **cookie, **SOCKET).status == 403
-    forwarded = {"Host": "localhost:9999", **cookie}
-    page = request(port, "/", **forwarded).body.decode()  # type: ignore[attr-defined]
+    forwarded_headers = {"Host": "localhost:9999", **cookie}
+    page = request(port, "/", **forwarded_headers).body.decode()  # type: ignore[attr-defined]
     session = page.partition('"token":"')[2].partition('"')[0]
     protocol = {"Origin": "http://localhost:9999", "Sec-WebSocket-Protocol": f"bokeh, {session}"}
-    assert request(port, "/ws", **forwarded, **protocol, **SOCKET).status == 101
+    assert request(port, "/ws", **forwarded_headers, **protocol, **SOCKET).status == 101
     assert request(port, "/ws", Host="localhost:9999", **protocol, **SOCKET).status == 403

@@ -14,9 +14,9 @@ from tests.stand_in_solver import solve_fake
 
 
 @pytest.fixture(scope="module")
-def case(solved: xr.Dataset, tmp_path_factory):
+def case(case_result: xr.Dataset, tmp_path_factory):
     path = tmp_path_factory.mktemp("file") / "case.nc"
-    solved.to_netcdf(path)
+    case_result.to_netcdf(path)
     return path
 
 
@@ -33,7 +33,7 @@ def command(*arguments: object) -> int:
     return main(["export", *map(str, arguments)])
 
 
-def test_file_to_vtk_beside_it(case, capsys) -> None:
+def test_export_writes_vtk_next_to_file(case, capsys) -> None:
     assert command(case, "--format", "vtk", "--variable", "von_mises", "--variable", "tresca") == 0
     assert "case.vtr" in capsys.readouterr().out
     assert list(read(case.with_suffix(".vtr"))[1]) == ["von_mises", "tresca"]
@@ -56,7 +56,7 @@ def test_case_of_a_study(folder, capsys) -> None:
     assert (folder / "export.vtr").exists()
 
 
-def test_summaries_are_what_a_folder_gives_alone(folder) -> None:
+def test_folder_export_contains_only_scalars(folder) -> None:
     assert command(folder) == 0
     table = pd.read_csv(folder / "summary.csv")
     assert len(table) == 4

@@ -15,36 +15,38 @@ from contactstudy.errors import StoreError
 from contactstudy.export.table import csv_text, headings
 
 
-def test_a_line_as_csv(solved: xr.Dataset, tmp_path) -> None:
+def test_a_line_as_csv(case_result: xr.Dataset, tmp_path) -> None:
     line = ((0.26e-3, 0, 0), (0.26e-3, 0, 90e-6))
-    path = export.to_csv(solved, tmp_path / "depth.csv", ["von_mises", "tresca"], line=line, points=4)
+    path = export.to_csv(case_result, tmp_path / "depth.csv", ["von_mises", "tresca"], line=line, points=4)
     with path.open(newline="") as file:
         rows = list(csv.DictReader(file))
     assert list(rows[0]) == ["distance [m]", "x [m]", "y [m]", "z [m]", "von_mises [Pa]", "tresca [Pa]"]
-    cut = analysis.along_line(solved, *line, points=4, variables="tresca")
+    cut = analysis.along_line(case_result, *line, points=4, variables="tresca")
     assert [float(row["tresca [Pa]"]) for row in rows] == pytest.approx(cut["tresca"].values, rel=1e-12)
 
 
-def test_all_points_of_a_variable(solved: xr.Dataset) -> None:
-    table = export.to_table(solved, "pressure")
+def test_all_points_of_a_variable(case_result: xr.Dataset) -> None:
+    table = export.to_table(case_result, "pressure")
     assert table.columns.tolist() == ["x [m]", "y [m]", "pressure [Pa]"]
-    assert np.array_equal(table["pressure [Pa]"].to_numpy().reshape(solved["pressure"].shape), solved["pressure"])
+    assert np.array_equal(
+        table["pressure [Pa]"].to_numpy().reshape(case_result["pressure"].shape), case_result["pressure"]
+    )
 
 
-def test_what_the_analysis_returns(solved: xr.Dataset) -> None:
-    table = export.to_table(analysis.slices(solved, 7))
+def test_table_of_analysis_results(case_result: xr.Dataset) -> None:
+    table = export.to_table(analysis.slices(case_result, 7))
     assert len(table) == 7
     assert "half_width [m] (error not estimated)" in table
     assert "axial_pressure [Pa] (error not estimated)" in table
     assert table["axial_pressure_error [Pa]"].isnull().all()
     assert "width [m]" in table
-    assert "half_width [m] (error not estimated)" in export.to_table(analysis.axial_profiles(solved))
-    assert "von_mises" in export.to_table(analysis.normalized(solved), "von_mises")
+    assert "half_width [m] (error not estimated)" in export.to_table(analysis.axial_profiles(case_result))
+    assert "von_mises" in export.to_table(analysis.normalized(case_result), "von_mises")
 
 
-def test_a_case_of_a_study(opened: xr.Dataset) -> None:
-    one = opened.sel(e_over_a=1, friction=0.1, body="finite-length")
-    table = export.to_table(one, "pressure")
+def test_a_case_of_a_study(study_dataset: xr.Dataset) -> None:
+    study_case = study_dataset.sel(e_over_a=1, friction=0.1, body="finite-length")
+    table = export.to_table(study_case, "pressure")
     assert table.notnull().all(axis=None)
 
 
@@ -60,45 +62,45 @@ def test_a_case_of_a_study(opened: xr.Dataset) -> None:
         ({"line": ((0, 0, 0), (1, 0, 0))}, "within the result"),
     ],
 )
-def test_bad_input(solved: xr.Dataset, settings: dict, message: str) -> None:
+def test_bad_input(case_result: xr.Dataset, settings: dict, message: str) -> None:
     with pytest.raises(InvalidInputError, match=message):
-        export.to_table(solved, **settings)
+        export.to_table(case_result, **settings)
 
 
-def test_more_than_one_case(opened: xr.Dataset, tmp_path) -> None:
+def test_several_cases_raise(study_dataset: xr.Dataset, tmp_path) -> None:
     with pytest.raises(InvalidInputError, match="single case"):
-        export.to_csv(opened, tmp_path / "a.csv", "pressure")
+        export.to_csv(study_dataset, tmp_path / "a.csv", "pressure")
     with pytest.raises(InvalidInputError, match="path"):
-        export.to_csv(opened, None)  # type: ignore[arg-type]
+        export.to_csv(study_dataset, None)  # type: ignore[arg-type]
 
 
-def test_unwritable_file(solved: xr.Dataset, tmp_path) -> None:
+def test_unwritable_file(case_result: xr.Dataset, tmp_path) -> None:
     with pytest.raises(StoreError, match="cannot write"):
-        export.to_csv(solved, tmp_path / "nowhere" / "a.csv", "pressure")
+        export.to_csv(case_result, tmp_path / "nowhere" / "a.csv", "pressure")
     with pytest.raises(StoreError, match="cannot write"):
-        export.to_vtk(solved, tmp_path / "nowhere" / "a.vtr", "pressure")
+        export.to_vtk(case_result, tmp_path / "nowhere" / "a.vtr", "pressure")
 
 
 @pytest.mark.parametrize("write", [export.to_csv, report.write, plots.save])
-def test_no_link_is_followed(solved: xr.Dataset, tmp_path, write) -> None:
+def test_no_link_is_followed(case_result: xr.Dataset, tmp_path, write) -> None:
     suffix = {"to_csv": ".csv", "write": ".html", "save": ".png"}[write.__name__]
-    outside, link = tmp_path / "outside.txt", tmp_path / "folder" / f"result{suffix}"
-    outside.write_text("untouched")
+    target, link = tmp_path / "outside.txt", tmp_path / "folder" / f"result{suffix}"
+    target.write_text("untouched")
     link.parent.mkdir()
-    link.symlink_to(outside)
-    source = Figure() if write is plots.save else solved[["pressure"]]
+    link.symlink_to(target)
+    source = Figure() if write is plots.save else case_result[["pressure"]]
     write(source, link)
-    assert outside.read_text() == "untouched"
+    assert target.read_text() == "untouched"
     assert not link.is_symlink()
     assert link.read_bytes()
     assert {path.suffix for path in link.parent.iterdir()} <= {suffix, ".pdf"}
 
 
-def test_a_failed_write_keeps_the_previous_file(tmp_path) -> None:
+def test_failed_write_keeps_previous_content(tmp_path) -> None:
     path = tmp_path / "result.csv"
     path.write_text("previous")
-    with pytest.raises(UnicodeEncodeError), checks.writing(path) as part:
-        part.write_text("half \ud800", encoding="utf-8")
+    with pytest.raises(UnicodeEncodeError), checks.writing(path) as temporary_path:
+        temporary_path.write_text("half \ud800", encoding="utf-8")
     assert [entry.name for entry in tmp_path.iterdir()] == ["result.csv"]
     assert path.read_text() == "previous"
 

@@ -1,4 +1,4 @@
-"""A reader of VTK's XML format that shares nothing with the writer: Python's XML and base64."""
+"""A reader of VTK's XML format, independent of the writer: Python's XML and base64."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def read(path: Path) -> tuple[tuple[np.ndarray, ...], dict[str, np.ndarray]]:
     assert root.attrib["header_type"] == "UInt64"
     grid = root.find("RectilinearGrid")
     piece = grid.find("Piece")
-    extent = [int(number) for number in grid.attrib["WholeExtent"].split()]
+    extent = [int(bound) for bound in grid.attrib["WholeExtent"].split()]
     shape = tuple(last - first + 1 for first, last in zip(extent[::2], extent[1::2], strict=True))
 
     def array(node: ET.Element) -> np.ndarray:

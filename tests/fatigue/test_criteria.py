@@ -131,10 +131,10 @@ def test_scale_of_size_and_load(strip_result) -> None:
         assert np.allclose(large / 2e9, small, rtol=1e-6, atol=1e-9)
 
 
-def test_a_real_result_and_its_dimensions(solved: xr.Dataset) -> None:
+def test_a_real_result_and_its_dimensions(case_result: xr.Dataset) -> None:
     limits = FatigueLimits(bending=700e6, torsion=450e6)
     for criterion in CRITERIA:
-        result = criterion(solved.isel(x_field=[0, 12], z=[0, 3]), limits)
+        result = criterion(case_result.isel(x_field=[0, 12], z=[0, 3]), limits)
         assert result["utilisation"].dims == ("x_field", "z")
         assert np.isfinite(result["utilisation"]).all()
         # Both ends of the roller are alike.
@@ -142,11 +142,11 @@ def test_a_real_result_and_its_dimensions(solved: xr.Dataset) -> None:
 
 
 @pytest.mark.parametrize("criterion", CRITERIA)
-def test_a_study_padded_and_lazy(criterion, solved: xr.Dataset) -> None:
+def test_a_study_padded_and_lazy(criterion, case_result: xr.Dataset) -> None:
     """Two cases of different length as dask arrays: each as if alone, NaN where padded."""
-    solved = solved.isel(x_field=[0, 3], z=[2, 3])
-    short = solved.isel(y_field=slice(2, 15))
-    stress = [one[list(STRESSES)].reset_coords(drop=True) for one in (solved, short)]
+    case_result = case_result.isel(x_field=[0, 3], z=[2, 3])
+    short = case_result.isel(y_field=slice(2, 15))
+    stress = [one[list(STRESSES)].reset_coords(drop=True) for one in (case_result, short)]
     padded = xr.concat(stress, "case", join="outer").chunk(case=1)
     limits = FatigueLimits(bending=700e6, torsion=450e6)
     name = criterion.__name__
@@ -157,9 +157,9 @@ def test_a_study_padded_and_lazy(criterion, solved: xr.Dataset) -> None:
         assert np.allclose(together.isel(case=number), alone, rtol=1e-9)
 
 
-def test_one_position_along_y(opened: xr.Dataset) -> None:
+def test_one_position_along_y(study_dataset: xr.Dataset) -> None:
     with pytest.raises(InvalidInputError, match="at least 3"):
-        fatigue.crossland(opened, LIMITS)
+        fatigue.crossland(study_dataset, LIMITS)
 
 
 def test_remainder_of_a_window(strip_result) -> None:

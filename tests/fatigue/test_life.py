@@ -111,13 +111,13 @@ def test_too_few_positions_tell_no_error(strip_result) -> None:
     assert float(fatigue.relative_life(found, found)["relative_life_error"]) == np.inf
 
 
-def test_error_of_solved_cases(solved: xr.Dataset) -> None:
+def test_error_of_solved_cases(case_result: xr.Dataset) -> None:
     """On half of the positions the risk is within the error of that on all."""
-    whole = fatigue.lundberg_palmgren(solved)
+    whole = fatigue.lundberg_palmgren(case_result)
     assert 0 < float(whole["risk_error"]) < np.inf
-    half = fatigue.lundberg_palmgren(solved.isel(x_field=slice(None, None, 2)))
+    half = fatigue.lundberg_palmgren(case_result.isel(x_field=slice(None, None, 2)))
     assert abs(float(half["risk"] - whole["risk"])) <= float(half["risk_error"] + whole["risk_error"])
-    pair = xr.concat([solved[["tau_yz"]], 1.1 * solved[["tau_yz"]]], "case")
+    pair = xr.concat([case_result[["tau_yz"]], 1.1 * case_result[["tau_yz"]]], "case")
     alone = [fatigue.lundberg_palmgren(pair.isel(case=number))["risk_error"] for number in (0, 1)]
     np.testing.assert_allclose(fatigue.lundberg_palmgren(pair)["risk_error"], alone)
 
@@ -161,16 +161,16 @@ def test_double_length_costs_the_weibull_share(strip_result) -> None:
     assert float(lives) == pytest.approx(2 ** (-8 / 9))
 
 
-def test_free_ends_of_a_real_contact(solved: xr.Dataset) -> None:
-    result = fatigue.lundberg_palmgren(solved)
+def test_free_ends_of_a_real_contact(case_result: xr.Dataset) -> None:
+    result = fatigue.lundberg_palmgren(case_result)
     assert np.allclose(result["risk_density"], result["risk_density"][::-1], rtol=1e-3)
     # The ends of the roller, over a fillet, are at greater risk than its middle.
     middle = result["risk_density"].sel(x_field=0.26e-3, method="nearest")
     assert float(result["risk_density"].max()) > 1.5 * float(middle)
 
 
-def test_other_measures_of_the_passage(solved: xr.Dataset) -> None:
-    largest = solved["von_mises"].max("y_field")
+def test_other_measures_of_the_passage(case_result: xr.Dataset) -> None:
+    largest = case_result["von_mises"].max("y_field")
     assert float(fatigue.ioannides_harris(largest, 600e6)["risk"]) > 0
 
 

@@ -136,11 +136,11 @@ def test_scale(line_contact) -> None:
     assert np.allclose(twice["shakedown_stress"], 2e9 * once["shakedown_stress"], rtol=1e-9)
 
 
-def test_dimensions(solved: xr.Dataset) -> None:
-    found = fatigue.shakedown(solved)
+def test_dimensions(case_result: xr.Dataset) -> None:
+    found = fatigue.shakedown(case_result)
     assert found["shakedown_stress"].dims == ("x_field", "z")
     assert (found["shakedown_stress"] <= found["first_yield_stress"] * (1 + 1e-9)).all()
-    both = xr.concat([solved[list(STRESSES)].reset_coords(drop=True)] * 2, "case").chunk(case=1)
+    both = xr.concat([case_result[list(STRESSES)].reset_coords(drop=True)] * 2, "case").chunk(case=1)
     study = fatigue.shakedown(both)["shakedown_stress"]
     assert study.dims == ("case", "x_field", "z")
     assert study.chunks is not None
@@ -162,9 +162,9 @@ def test_limits_of_a_study(line_contact) -> None:
     assert found["shakedown_limit"].attrs["units"] == "1"
 
 
-def test_axial_stress_at_many_positions(solved: xr.Dataset) -> None:
+def test_axial_stress_at_many_positions(case_result: xr.Dataset) -> None:
     with pytest.raises(InvalidInputError, match="line contact"):
-        fatigue.shakedown(solved, axial=True)
+        fatigue.shakedown(case_result, axial=True)
 
 
 def test_error_of_a_narrow_window(line_contact) -> None:

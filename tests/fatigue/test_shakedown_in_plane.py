@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from benchmarks.finite_elements.shakedown import least_shear_yield_stress, points
+from benchmarks.finite_elements.shakedown import min_shear_yield_stress, points
 from contactstudy import (
     ConvergenceWarning,
     FiniteLengthSpace,
@@ -105,7 +105,7 @@ def test_equilibrium_elements_find_no_more() -> None:
     )
     flat = [stress[name].transpose("x", "z", "y").values.reshape(-1, y.size) for name in STRESSES]
     history = np.stack([np.pad(one, ((0, 0), (0, 1))) for one in flat], axis=-1)
-    elements = 1 / least_shear_yield_stress(history, x_edges, z_edges)
+    elements = 1 / min_shear_yield_stress(history, x_edges, z_edges)
     body = FiniteLengthSpace(length=length, material=SOFT)
     splines = 1 / float(fatigue.shakedown_in_plane(stress, body)["peak_shakedown_stress"])
     alone = 1 / float(fatigue.shakedown(stress)["shakedown_stress"].max())

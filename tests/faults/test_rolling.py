@@ -9,15 +9,15 @@ import pytest
 from benchmarks.faults import rolling
 
 
-def test_numbers_of_cases_are_what_is_asked_for() -> None:
+def test_rolling_study_has_requested_size() -> None:
     assert [rolling.rolling_study(cases).size for cases in (500, 12)] == [500, 12]
 
 
 @pytest.mark.system
-def test_rolling_cases_that_were_killed_are_those_that_were_not(tmp_path: Path) -> None:
+def test_killed_rolling_run_equals_undisturbed_run(tmp_path: Path) -> None:
     study = rolling.rolling_study(12)
-    calm = rolling.run(study, tmp_path / "calm", 0)
-    assert bool(calm["converged"].all())
-    assert not rolling.different(calm, rolling.run(study, tmp_path / "killed", 2, 2))
-    changed = calm.assign(force_y=calm["force_y"] + 1e-12)
-    assert rolling.different(calm, changed) == ["force_y"]
+    undisturbed = rolling.run(study, tmp_path / "undisturbed", 0)
+    assert bool(undisturbed["converged"].all())
+    assert not rolling.different(undisturbed, rolling.run(study, tmp_path / "killed", 2, 2))
+    changed = undisturbed.assign(force_y=undisturbed["force_y"] + 1e-12)
+    assert rolling.different(undisturbed, changed) == ["force_y"]

@@ -1,4 +1,4 @@
-"""The table of faults stands in its page, and a scenario counts what went wrong."""
+"""The page contains the table of faults, and a scenario counts failures."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ PAGE = ROOT / "docs" / "explanation" / "reliability.md"
 
 
 @pytest.fixture(scope="module")
-def calm() -> xr.Dataset:
-    return studies.calm_values()
+def undisturbed() -> xr.Dataset:
+    return studies.undisturbed_values()
 
 
-def test_the_table_replaces_the_one_before(tmp_path: Path) -> None:
+def test_table_replaces_previous_table(tmp_path: Path) -> None:
     page = tmp_path / "page.md"
     page.write_text(f"before\n\n{BEGIN}\nold\n{END}\n\nafter\n")
     for passed in (1, 2):
@@ -32,23 +32,23 @@ def test_the_table_replaces_the_one_before(tmp_path: Path) -> None:
     assert text.count("| kill") == 1
 
 
-def test_the_page_has_a_place_for_it() -> None:
+def test_page_contains_table_markers() -> None:
     text = PAGE.read_text(encoding="utf-8")
     assert text.count(BEGIN) == text.count(END) == 1
 
 
 @pytest.mark.system
-def test_faults_hold(calm: xr.Dataset) -> None:
+def test_faults_hold(undisturbed: xr.Dataset) -> None:
     for row in (
-        scenarios.damaged_files(calm, len(scenarios.DAMAGES)),
-        scenarios.kills(calm, 1),
-        hosts.two_systems(calm, 4),
+        scenarios.damaged_files(undisturbed, len(scenarios.DAMAGES)),
+        scenarios.kills(undisturbed, 1),
+        hosts.two_systems(undisturbed, 4),
     ):
-        assert row.passed == row.tried, row
+        assert row.passed == row.trials, row
 
 
 @pytest.mark.system
-def test_a_lost_file_is_counted(calm: xr.Dataset, monkeypatch) -> None:
+def test_lost_file_is_counted(undisturbed: xr.Dataset, monkeypatch) -> None:
     monkeypatch.setattr(scenarios, "DAMAGES", (lambda path, other: path.unlink(),))
     monkeypatch.setattr(studies, "unreadable", lambda folder: 1)
-    assert scenarios.damaged_files(calm, 1).passed == 0
+    assert scenarios.damaged_files(undisturbed, 1).passed == 0

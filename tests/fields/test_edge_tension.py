@@ -20,7 +20,7 @@ from contactstudy import (
 )
 from contactstudy.analysis import half_width, line_load
 from contactstudy.fields.edge_tension import edge_tension
-from contactstudy.study.setup import build_setup
+from contactstudy.study.case_setup import build_setup
 from tests.small_study import BASE, small_study
 
 # Uncoupled: the traction causes no normal displacement.

@@ -41,9 +41,9 @@ def test_complex_steps() -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("name", FILM_CASES)
 def test_coarse_mesh(name: str) -> None:
-    case, stored, film = FILM_CASES[name], load_reference(FILM_FILE, name), coarse_film(name)
+    case, reference, film = FILM_CASES[name], load_reference(FILM_FILE, name), coarse_film(name)
     cells = cells_of(film, Level(), film.contact_ends)[0]
     edges = cells.x_edges, cells.y_edges
     pressure, height = solve(case, compliance(case, *edges, COARSE), *edges)
-    np.testing.assert_allclose(height, stored["film"], rtol=2e-3)
-    np.testing.assert_allclose(pressure, stored["pressure"], atol=2e-3)
+    np.testing.assert_allclose(height, reference["film"], rtol=2e-3)
+    np.testing.assert_allclose(pressure, reference["pressure"], atol=2e-3)

@@ -1,4 +1,4 @@
-"""The finite elements of passes checked where something is known of them, and against what is stored."""
+"""Checks of the finite elements of passes against closed forms and stored results."""
 
 from __future__ import annotations
 
@@ -8,15 +8,15 @@ import numpy as np
 import pytest
 
 from benchmarks.finite_elements.passes import YOUNG, PlasticStrip, Strip
-from benchmarks.finite_elements.passes_file import PRODUCTION, solved
+from benchmarks.finite_elements.passes_file import PRODUCTION, solve_reference
 from contactstudy.verification.problems import PASSES_CASES, PASSES_FILE, PassesCase, load_reference
 
 COARSE = Strip(length=12.0, depth=6.0, width=1.0, height=0.2, fine=2.2, step=0.25)
 
 
-def test_nothing_flows_below_first_yield() -> None:
+def test_no_plastic_flow_below_yield() -> None:
     """First yield of a line contact is at p0 = 3.107 k."""
-    strains, stresses, _ = PlasticStrip(PassesCase(shear_yield_stress=1 / 3.0, friction=0.0, passes=1), COARSE).rolled()
+    strains, stresses, _ = PlasticStrip(PassesCase(shear_yield_stress=1 / 3.0, friction=0.0, passes=1), COARSE).roll()
     assert np.abs(strains).max() == 0
     assert np.abs(stresses).max() < 1e-12
 
@@ -24,7 +24,7 @@ def test_nothing_flows_below_first_yield() -> None:
 def test_stress_of_layers() -> None:
     """Far behind the contact plastic strain is uniform along y, its stress Hooke's with xx and yy held."""
     strip = PlasticStrip(PASSES_CASES["settling"], COARSE)
-    strains, stresses, spread = strip.rolled()
+    strains, stresses, spread = strip.roll()
     xx, yy, zz, _ = YOUNG * strains[-1]
     poisson = strip.case.poisson
     assert xx + yy + zz == pytest.approx(0, abs=1e-9)
@@ -37,18 +37,18 @@ def test_stress_of_layers() -> None:
     assert YOUNG * spread.max() < 0.1 * np.abs(YOUNG * strains).max()
 
 
-def test_radial_return_has_its_own_tangent() -> None:
-    """Stresses change with strains as the tangent says, on either side of yield."""
+def test_radial_return_tangent() -> None:
+    """The tangent equals the derivative of stresses, below and above yield."""
     strip = PlasticStrip(replace(PASSES_CASES["settling"], kinematic_hardening=0.02), COARSE)
     rng = np.random.default_rng(2)
     total, plastic = rng.normal(size=(2, 4, 40)) * np.array([4e-4, 1e-5])[:, None, None]
     elastic = np.zeros((4, 40))
-    stress, after, tangent = strip.returned(total, plastic, elastic)
-    assert 0 < np.count_nonzero((after != plastic).any(axis=0)) < 40
+    stress, plastic_after, tangent = strip.return_stress(total, plastic, elastic)
+    assert 0 < np.count_nonzero((plastic_after != plastic).any(axis=0)) < 40
     for component in range(4):
         change = np.zeros((4, 1))
         change[component] = 1e-9
-        there, back = (strip.returned(total + sign * change, plastic, elastic)[0] for sign in (1, -1))
+        there, back = (strip.return_stress(total + sign * change, plastic, elastic)[0] for sign in (1, -1))
         slope = (there - back) / 2e-9 / (2 if component == 3 else 1)
         assert slope == pytest.approx(tangent[:, component], abs=1e-4 * YOUNG)
     assert np.isfinite(stress).all()
@@ -57,11 +57,11 @@ def test_radial_return_has_its_own_tangent() -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["settling", "flowing_sliding"])
 def test_coarse_mesh(name: str) -> None:
-    left = load_reference(PASSES_FILE, name)
-    found = solved(PASSES_CASES[name], replace(PRODUCTION, width=1.0, step=1 / 8))
-    size = float(np.abs(left["sigma_xx"]).max())
-    assert np.abs(found["sigma_xx"].values - left["sigma_xx"].values).max() < 0.15 * size
-    shear, expected = (one["plastic_strain_yz_young"].sum("z").values for one in (found, left))
-    # What flows in every pass adds up, and so do the errors of a coarse mesh.
-    part = 0.3 if name.startswith("flowing") else 0.15
-    assert shear == pytest.approx(expected, abs=part * float(np.abs(expected).max()))
+    reference = load_reference(PASSES_FILE, name)
+    result = solve_reference(PASSES_CASES[name], replace(PRODUCTION, width=1.0, step=1 / 8))
+    size = float(np.abs(reference["sigma_xx"]).max())
+    assert np.abs(result["sigma_xx"].values - reference["sigma_xx"].values).max() < 0.15 * size
+    shear, expected = (dataset["plastic_strain_yz_young"].sum("z").values for dataset in (result, reference))
+    # Flow accumulates over the passes, with the errors of a coarse mesh.
+    tolerance = 0.3 if name.startswith("flowing") else 0.15
+    assert shear == pytest.approx(expected, abs=tolerance * float(np.abs(expected).max()))

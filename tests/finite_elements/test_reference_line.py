@@ -20,25 +20,25 @@ def finite_elements(depths: tuple[float, ...]) -> np.ndarray:
     mesh = RESOLUTION.mesh_x(LENGTH), RESOLUTION.mesh_z()
     body = HarmonicBody(*(Line(edges, RESOLUTION.order) for edges in mesh), POISSON)
     node, weight = legendre.leggauss(8)
-    middle = body.x.evaluate([0.5 * LENGTH])[0]
+    mid_length = body.x.evaluate([0.5 * LENGTH])[0]
     along, below = body.x.evaluate(0.5 * LENGTH * (1 + node))[0], body.z.evaluate(depths)[0]
     edges = np.array(RESOLUTION.panels, dtype=float)
     roots = legendre.leggauss(RESOLUTION.nodes)[0]
     wavenumbers = (edges[:-1, None] + 0.5 * np.diff(edges)[:, None] * (roots + 1)).ravel()
     response = []
     for k in wavenumbers:
-        sunk = body.solve(float(k), [(Linear(), "z")])[0, 2]
-        line = 0.5 * weight @ (along @ (below @ sunk.T).T)
-        response.append(2 * ((middle @ (sunk @ body.top))[0] - line))
+        displacement = body.solve(float(k), [(Linear(), "z")])[0, 2]
+        line = 0.5 * weight @ (along @ (below @ displacement.T).T)
+        response.append(2 * ((mid_length @ (displacement @ body.top))[0] - line))
     values = np.array(response)
     total = np.zeros(len(depths))
-    for part, _, weights, interpolate in superpose._panels(RESOLUTION, superpose.transform_quartic):
-        total += weights @ interpolate @ values[part]
+    for panel, _, weights, interpolate in superpose._panels(RESOLUTION, superpose.transform_quartic):
+        total += weights @ interpolate @ values[panel]
     return (1 + POISSON) * total
 
 
 @pytest.mark.slow
-def test_top_relative_to_the_line_at_the_reference_depth() -> None:
+def test_surface_displacement_relative_to_reference_depth() -> None:
     """The contact's approach is this difference, see `tests/contact/normal/test_reference.py`."""
     depths = (0.5 * LENGTH, LENGTH, 3 * LENGTH)
     material = unit_material(POISSON)
@@ -46,6 +46,6 @@ def test_top_relative_to_the_line_at_the_reference_depth() -> None:
     node, weight = legendre.leggauss(8)
     x = np.append(0.5 * LENGTH, 0.5 * LENGTH * (1 + node))
     body = FiniteLengthSpace(length=LENGTH, material=material)
-    sunk = displacement_field(body, load, x=x, y=[0.0], z=[0.0, *depths], inside_cells=load).u_z.values[:, 0]
-    difference = material.young * (sunk[0, 0] - 0.5 * weight @ sunk[1:, 1:])
+    displacement = displacement_field(body, load, x=x, y=[0.0], z=[0.0, *depths], inside_cells=load).u_z.values[:, 0]
+    difference = material.young * (displacement[0, 0] - 0.5 * weight @ displacement[1:, 1:])
     np.testing.assert_allclose(difference, finite_elements(depths), rtol=1e-3)

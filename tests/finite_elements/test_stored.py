@@ -8,16 +8,16 @@ import xarray as xr
 from benchmarks.finite_elements.stored import append_case, create_file
 
 
-def test_a_file_with_two_cases(tmp_path: Path) -> None:
+def test_file_with_two_cases(tmp_path: Path) -> None:
     path = tmp_path / "stored.nc"
     solution = xr.Dataset({"film": ("x", [0.1, 0.2], {"units": "a"})}, {"x": [0.3, 0.6]}, {"length": 8.0})
     for _ in range(2):  # A second file replaces the first.
         create_file(path, "film", title="films")
         append_case(path, "thin", solution)
     append_case(path, "thick", 2 * solution)
-    stated, thin = xr.load_dataset(path).attrs, xr.load_dataset(path, group="thin")
-    assert stated["title"] == "films"
-    assert stated["regenerate"].endswith("generate film")
+    attributes, thin = xr.load_dataset(path).attrs, xr.load_dataset(path, group="thin")
+    assert attributes["title"] == "films"
+    assert attributes["regenerate"].endswith("generate film")
     assert thin["film"].dtype == np.float32
     assert thin.attrs == {"length": 8.0}
     assert thin["film"].attrs == {"units": "a"}

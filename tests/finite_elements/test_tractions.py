@@ -31,15 +31,15 @@ def wave(direction: Load, x: FloatArray) -> FloatArray:
 def mirrored_half_space(lateral: float, response: Response) -> FloatArray:
     """``2 G u`` of the mirrored half-space per unit of the load's series, from the half-space harmonics."""
     k = np.sqrt(AXIAL**2 + lateral**2)
-    c, s, free = AXIAL / k, lateral / k, 1 - 2 * POISSON
+    c, s, surface_factor = AXIAL / k, lateral / k, 1 - 2 * POISSON
     factor = {
         (P, P): 2 * (1 - POISSON) + 0 * k,
-        (X, P): -c * free,
-        (Y, P): s * free,
-        (P, Y): -s * free,
+        (X, P): -c * surface_factor,
+        (Y, P): s * surface_factor,
+        (P, Y): -s * surface_factor,
         (Y, Y): 2 * (1 - POISSON) * s**2 + 2 * c**2,
         (X, Y): -2 * POISSON * c * s,
-        (P, X): -c * free,
+        (P, X): -c * surface_factor,
         (X, X): 2 * (1 - POISSON) * c**2 + 2 * s**2,
         (Y, X): 2 * POISSON * c * s,
     }[response.displacement, response.load]
@@ -47,7 +47,7 @@ def mirrored_half_space(lateral: float, response: Response) -> FloatArray:
 
 
 def own_displacement(bump: Bump, lateral: float, response: Response) -> FloatArray:
-    """``2 G u`` of the top at `AT` under ``bump(x) cos(k y)``; what is odd in y as the factor of -sin(k y)."""
+    """``2 G u`` of the top at `AT` under ``bump(x) cos(k y)``; components odd in y as the factor of -sin(k y)."""
     material, resolution = Material(2 * (1 + POISSON), POISSON), Resolution().for_loads([X])  # G is 1
     request = EndRequest(FreedEnds(LENGTH), material, 0.1, 1, LENGTH, FINEST, (response,), 40.0, resolution)
     low, high = (float(np.clip(bump.centre + side * bump.half_width, 0.0, LENGTH)) for side in (-1, 1))
@@ -75,11 +75,14 @@ def test_displacements_of_the_top(bump: Bump, lateral: float) -> None:
     deep_enough = int(np.searchsorted(depth, 40 / lateral)) + 1
     body = HarmonicBody(Line(mesh.mesh_x(LENGTH), 6), Line(depth[:deep_enough], 6), POISSON)
     amplitudes = body.solve(lateral, [(bump, NAMES[load]) for load in NAMES])
-    for number, load in enumerate(NAMES):
-        found = {each: body.surface(amplitudes, AT.tolist(), "xyz".index(NAMES[each]))[number] for each in NAMES}
-        largest = max(float(np.abs(each).max()) for each in found.values())
-        for direction, expected in found.items():
-            # Odd in y, ours is the factor of -sin(k y); under a traction along y the elements have -cos(k y) for u_y.
+    for index, load in enumerate(NAMES):
+        result = {
+            component: body.surface(amplitudes, AT.tolist(), "xyz".index(NAMES[component]))[index]
+            for component in NAMES
+        }
+        maximum = max(float(np.abs(component).max()) for component in result.values())
+        for direction, expected in result.items():
+            # Odd in y, the package has the factor of -sin(k y); under a traction along y the elements have -cos(k y).
             sign = -1 if Y in (direction, load) else 1
-            own = sign * own_displacement(bump, lateral, Response(direction, load))
-            assert np.abs(own - expected).max() < 1e-3 * largest, (load, direction)
+            displacement = sign * own_displacement(bump, lateral, Response(direction, load))
+            assert np.abs(displacement - expected).max() < 1e-3 * maximum, (load, direction)

@@ -1,4 +1,4 @@
-"""Cases that random ones led to, by name."""
+"""Regression cases from random runs, by name."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def test_coupled_contact_of_a_short_elastic_roller() -> None:
     assert float(result["penetration_error"]) < 1e-6
 
 
-def test_stresses_below_a_contact_one_cell_wide() -> None:
+def test_stresses_below_single_cell_contact() -> None:
     """On 13 cells across a wide window a transform of no points was asked for."""
     body = FiniteLengthSpace(material=Material(210e9, 0.3), length=0.001, model="single-mirror")
     case = Case(body=body, roller=Roller(radius=8.5e-3, length=0.25e-3), max_pressure=0.2e9)

@@ -1,4 +1,4 @@
-"""The long run: it goes on where it was ended, and tells violations from what the package says itself."""
+"""The long run resumes, and distinguishes violations from errors of the package."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import pytest
 from benchmarks.fuzz import __main__ as long_run
 from benchmarks.fuzz import outcome, properties
 from benchmarks.fuzz.outcome import Outcome, outcome_of
-from benchmarks.fuzz.solved import ViolationError
+from benchmarks.fuzz.solutions import ViolationError
 from contactstudy import InvalidInputError
 
 
@@ -20,11 +20,11 @@ def run(monkeypatch, tmp_path):
     """Run so many cases that are made up; returns the exit code and the seeds that were run."""
     seeds: list[int] = []
 
-    def made_up(chance: Random, **options) -> Outcome:
-        return Outcome("violation" if chance.random() < 0.2 else "converged", "said", ("balance",))
+    def make_outcome(rng: Random, **options) -> Outcome:
+        return Outcome("violation" if rng.random() < 0.2 else "converged", "said", ("balance",))
 
     real = Random
-    monkeypatch.setattr(long_run, "outcome_of", made_up)
+    monkeypatch.setattr(long_run, "outcome_of", make_outcome)
     monkeypatch.setattr(long_run, "Random", lambda seed: seeds.append(seed) or real(seed))
 
     def command(*arguments: str) -> tuple[int, list[int]]:
@@ -38,14 +38,14 @@ def run(monkeypatch, tmp_path):
 def test_resumed_run(run, tmp_path, capsys) -> None:
     assert run("--cases", "3")[1] == [0, 1, 2]
     with (tmp_path / "notes").open("a") as file:
-        file.write('{"seed": 3, "ki')  # ended while it was writing
+        file.write('{"seed": 3, "ki')  # an interrupted write
     code, seeds = run("--cases", "8")
     assert seeds == [3, 4, 5, 6, 7]
-    shown = capsys.readouterr().out
+    output = capsys.readouterr().out
     violations = [seed for seed in range(8) if Random(seed).random() < 0.2]
     assert code == 1
-    assert f"{len(violations)} violation" in shown
-    assert all(f"seed {seed}: said" in shown for seed in violations)
+    assert f"{len(violations)} violation" in output
+    assert all(f"seed {seed}: said" in output for seed in violations)
     assert run("--cases", "8")[1] == []
     lines = (tmp_path / "notes").read_text().splitlines()
     assert json.loads(lines[-1])["seed"] == 7
@@ -53,13 +53,13 @@ def test_resumed_run(run, tmp_path, capsys) -> None:
 
 def test_foreign_errors_are_violations(monkeypatch) -> None:
     def fails(error: Exception):
-        def raising(*arguments: object, **options: object) -> None:
+        def raise_error(*arguments: object, **options: object) -> None:
             raise error
 
-        return raising
+        return raise_error
 
     for error, kind in ((ZeroDivisionError(), "violation"), (InvalidInputError("a", 1, "b"), "refused")):
-        monkeypatch.setattr(outcome, "random_drawn", fails(error))
+        monkeypatch.setattr(outcome, "draw_case", fails(error))
         assert outcome_of(Random(0)).kind == kind
     monkeypatch.undo()
     # The package's own error for a variant of a case that it has solved is one as well.

@@ -13,28 +13,28 @@ from benchmarks.fuzz.outcome import outcome_of
 SLOW = [HealthCheck.too_slow, HealthCheck.data_too_large]
 
 
-def look_at(chance: Random, *, refined: bool) -> None:
-    """Run a case and count what became of it."""
-    found = outcome_of(chance, refined=refined)
-    event(found.kind)
-    assert found.kind != "violation", found.message
+def look_at(rng: Random, *, refined: bool) -> None:
+    """Run a case and count its outcome."""
+    outcome = outcome_of(rng, refined=refined)
+    event(outcome.kind)
+    assert outcome.kind != "violation", outcome.message
 
 
 @pytest.mark.fuzz
 @settings(max_examples=20, deadline=None, suppress_health_check=SLOW)
 @given(st.randoms(use_true_random=False))
-def test_cases_on_given_cells(chance: Random) -> None:
-    look_at(chance, refined=False)
+def test_cases_on_given_cells(rng: Random) -> None:
+    look_at(rng, refined=False)
 
 
 @pytest.mark.fuzz
 @settings(max_examples=6, deadline=None, suppress_health_check=SLOW)
 @given(st.randoms(use_true_random=False))
-def test_cases_on_refined_cells(chance: Random) -> None:
-    look_at(chance, refined=True)
+def test_cases_on_refined_cells(rng: Random) -> None:
+    look_at(rng, refined=True)
 
 
-def test_a_seed_is_one_case() -> None:
+def test_seed_determines_case() -> None:
     first, second = (outcome_of(Random(3)) for _ in range(2))
     assert (first.kind, first.message, first.checked) == (second.kind, second.message, second.checked)
     assert first.kind == "converged"

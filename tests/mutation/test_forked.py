@@ -9,13 +9,13 @@ from pathlib import Path
 
 import pytest
 
-from benchmarks.mutation.__main__ import read
+from benchmarks.mutation.__main__ import read_notes
 from benchmarks.mutation.equivalent import EQUIVALENT
 from benchmarks.mutation.mutants import ROOT, all_mutants
 
 
 @pytest.mark.system
-def test_changes_of_a_closed_form(tmp_path: Path) -> None:
+def test_mutation_run_on_closed_form(tmp_path: Path) -> None:
     command = [
         sys.executable,
         "-m",
@@ -28,7 +28,12 @@ def test_changes_of_a_closed_form(tmp_path: Path) -> None:
     ]
     for tests in ("tests/overlapping/test_slab.py", "tests/overlapping/test_quadrature.py"):
         subprocess.run([*command, tests], cwd=ROOT, env=os.environ | {"PYTHONPATH": str(ROOT)}, check=True)
-    reached, tried = read(tmp_path / "reached.jsonl", "test"), read(tmp_path / "tried.jsonl", "change")
-    assert {bool(note["lines"]) for test, note in reached.items() if "slab" in test} == {True}
-    assert set(tried) == {mutant.key for mutant in all_mutants() if "slab_factors" in mutant.key} - set(EQUIVALENT)
-    assert all("test_slab" in note["by"] for note in tried.values())
+    reached_notes, tried_notes = (
+        read_notes(tmp_path / "reached.jsonl", "test"),
+        read_notes(tmp_path / "tried.jsonl", "change"),
+    )
+    assert {bool(note["lines"]) for test, note in reached_notes.items() if "slab" in test} == {True}
+    assert set(tried_notes) == {mutant.key for mutant in all_mutants() if "slab_factors" in mutant.key} - set(
+        EQUIVALENT
+    )
+    assert all("test_slab" in note["by"] for note in tried_notes.values())

@@ -20,9 +20,9 @@ def function(x: float | None = -1.5) -> float:
 '''
 
 
-def test_what_is_changed() -> None:
-    found = [(mutant.description, len(mutant.lines)) for mutant in mutants_of("a.py", SOURCE)]
-    assert sorted(found) == [
+def test_mutants_of_source() -> None:
+    mutants = [(mutant.description, len(mutant.lines)) for mutant in mutants_of("a.py", SOURCE)]
+    assert sorted(mutants) == [
         ("* (2.0 - x))  ->  * (2.0 + x))", 2),
         ("* (2.0 - x))  ->  * (2.2 - x))", 2),
         ("* (2.0 - x))  ->  / (2.0 - x))", 2),
@@ -48,6 +48,6 @@ def test_changes_have_different_names(mutants: list[Mutant]) -> None:
     assert len({mutant.key for mutant in mutants}) == len(mutants)
 
 
-def test_equivalent_changes_are_changes_that_exist(mutants: list[Mutant]) -> None:
+def test_equivalent_list_contains_existing_mutants(mutants: list[Mutant]) -> None:
     assert set(EQUIVALENT) <= {mutant.key for mutant in mutants}
     assert all(EQUIVALENT.values())

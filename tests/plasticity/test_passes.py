@@ -159,7 +159,7 @@ def test_flow_without_convergence(passing, steel_half_space, monkeypatch) -> Non
     assert not found["converged"].all()
 
 
-def test_nothing_flows_below_first_yield(passing, steel_half_space) -> None:
+def test_no_plastic_flow_below_yield(passing, steel_half_space) -> None:
     contact = passing()
     first = float(fatigue.shakedown(contact)["first_yield_stress"].max())
     found = residual_stress(contact, steel_half_space, perfectly_plastic(1.001 * first))

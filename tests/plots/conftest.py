@@ -13,9 +13,9 @@ import xarray as xr
 
 
 @pytest.fixture
-def one(opened: xr.Dataset) -> xr.Dataset:
+def study_case(study_dataset: xr.Dataset) -> xr.Dataset:
     """One case of a study: padded positions, stresses in one plane."""
-    return opened.sel(e_over_a=1, friction=0.1, body="finite-length")
+    return study_dataset.sel(e_over_a=1, friction=0.1, body="finite-length")
 
 
 @pytest.fixture(autouse=True)
@@ -28,7 +28,7 @@ def _closed_figures() -> Iterator[None]:
 
 @pytest.fixture
 def assert_nothing_clipped() -> Callable[[matplotlib.figure.Figure], None]:
-    """Check that everything drawn lies within the figure, and that every axis says what it shows."""
+    """Check that all artists lie within the figure, and that every axis has a label."""
 
     def check(figure: matplotlib.figure.Figure) -> None:
         figure.canvas.draw()

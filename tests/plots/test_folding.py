@@ -1,4 +1,4 @@
-"""Names of any length stay within their figure."""
+"""Names of any length fit into their figure."""
 
 import numpy as np
 import pytest
@@ -47,10 +47,10 @@ def test_parameters_of_long_meaning_fit(assert_within):
     assert_within(plots.plot_study_map(study, "peak_pressure", x="profile", y="approach").figure)
 
 
-def test_results_and_profiles_of_long_names_fit(one, opened, assert_within):
-    assert_within(plots.plot_comparison({LONG: one, f"{LONG}, 2": one}).figure)
+def test_results_and_profiles_of_long_names_fit(study_case, study_dataset, assert_within):
+    assert_within(plots.plot_comparison({LONG: study_case, f"{LONG}, 2": study_case}).figure)
     assert_within(plots.plot_profiles({LONG: profiles.FullCrown(1.0), "b": profiles.FullCrown(2.0)}, 10e-3).figure)
-    assert_within(plots.plot_edge_effect(opened.assign_coords(profile=LONG)))
+    assert_within(plots.plot_edge_effect(study_dataset.assign_coords(profile=LONG)))
     creepages = {"longitudinal_creepage": [0.0, 1e-3], "profile": [LONG, f"{LONG}, 2"]}
     force = xr.DataArray([[0.0, 0.0], [0.06, 0.05]], creepages, ("longitudinal_creepage", "profile"))
     study = xr.Dataset({"force_y": force, "normal_load": xr.ones_like(force)}, {"friction": 0.1})

@@ -1,4 +1,4 @@
-"""Figures of profiles show the profile, and say what they show."""
+"""Figures of profiles contain the profile and its labels."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def test_given_axes_are_used_and_stay_upside_down():
     assert ax.yaxis_inverted()
 
 
-def test_infinite_ends_are_left_out_and_the_axis_can_be_cut():
+def test_profile_plot_omits_infinite_ends():
     ax = plot_profile(Lundberg(1e-7) + Cylinder(1e-3), 10e-3, deepest=5e-6)
     assert np.isnan(ax.lines[0].get_ydata()[[0, -1]]).all()
     assert ax.get_ylim()[0] == pytest.approx(5.0)

@@ -7,9 +7,9 @@ from contactstudy.errors import InvalidInputError
 
 
 @pytest.mark.parametrize(("axis", "labels"), [("x", ("y/a", "z/a")), ("y", ("x/a", "z/a")), ("z", ("x/a", "y/a"))])
-def test_planes_name_their_axes(solved, assert_nothing_clipped, axis, labels):
-    at = {"x": 0.2e-3, "y": 1e-5, "z": 2e-5}[axis]
-    ax = plots.plot_stress_plane(solved, "tresca", **{axis: at})
+def test_stress_planes_have_axis_labels(case_result, assert_nothing_clipped, axis, labels):
+    position = {"x": 0.2e-3, "y": 1e-5, "z": 2e-5}[axis]
+    ax = plots.plot_stress_plane(case_result, "tresca", **{axis: position})
     assert labels[0] in ax.get_xlabel()
     assert labels[1] in ax.get_ylabel()
     assert ax.get_title().startswith(f"plane ${axis}/a$ = ")
@@ -18,68 +18,70 @@ def test_planes_name_their_axes(solved, assert_nothing_clipped, axis, labels):
     assert_nothing_clipped(ax.figure)
 
 
-def test_levels_cover_the_stress_of_the_plane(solved):
-    ax = plots.plot_stress_plane(solved)
-    plane = analysis.in_plane(solved, y=0.0)["von_mises"] / 1.5e9
+def test_levels_cover_the_stress_of_the_plane(case_result):
+    ax = plots.plot_stress_plane(case_result)
+    plane = analysis.in_plane(case_result, y=0.0)["von_mises"] / 1.5e9
     levels = ax.collections[0].levels
     assert levels[0] <= float(plane.min())
     assert levels[-1] >= float(plane.max())
 
 
-def test_result_with_one_plane(one):
-    ax = plots.plot_stress_plane(one, "sigma_xx")
+def test_plot_of_single_plane_result(study_case):
+    ax = plots.plot_stress_plane(study_case, "sigma_xx")
     low, high = ax.get_ylim()
     assert low > high
     with pytest.raises(InvalidInputError, match="this plane only"):
-        plots.plot_stress_plane(one, y=1e-5)
+        plots.plot_stress_plane(study_case, y=1e-5)
 
 
-def test_contours_meet_at_the_edge_of_the_end_face(solved, assert_nothing_clipped):
-    ax = plots.plot_end_face(solved)
-    filled = [collection.levels for collection in ax.collections if getattr(collection, "filled", False)]
-    assert len(filled) == 2
-    assert np.array_equal(*filled)
-    left, right = ax.get_xlim()
+def test_end_face_contours_are_continuous(case_result, assert_nothing_clipped):
+    ax = plots.plot_end_face(case_result)
+    contour_levels = [collection.levels for collection in ax.collections if getattr(collection, "filled", False)]
+    assert len(contour_levels) == 2
+    assert np.array_equal(*contour_levels)
+    low, high = ax.get_xlim()
     # Four half-widths are known along y: two on either side of the fold.
-    assert left == pytest.approx(-2.0)
-    assert right == pytest.approx(4.0)
-    assert [tick.get_text() for tick in ax.get_xticklabels()] == [f"{abs(at):g}" for at in ax.get_xticks()]
+    assert low == pytest.approx(-2.0)
+    assert high == pytest.approx(4.0)
+    assert [tick.get_text() for tick in ax.get_xticklabels()] == [
+        f"{abs(tick_position):g}" for tick_position in ax.get_xticks()
+    ]
     assert_nothing_clipped(ax.figure)
 
 
-def test_both_ends_of_a_symmetric_case_look_alike(solved, inks):
-    pictures = [inks(plots.plot_end_face(solved, end=end).figure) for end in ("first", "last")]
+def test_symmetric_case_has_equal_end_faces(case_result, inks):
+    pictures = [inks(plots.plot_end_face(case_result, end=end).figure) for end in ("first", "last")]
     assert (np.abs(pictures[0].astype(int) - pictures[1]).max(axis=-1) > 40).mean() < 0.01
 
 
-def test_sides_differ_in_sliding(solved, inks):
-    pictures = [inks(plots.plot_end_face(solved, "tau_yz", side=side).figure) for side in (1, -1)]
+def test_sides_differ_in_sliding(case_result, inks):
+    pictures = [inks(plots.plot_end_face(case_result, "tau_yz", side=side).figure) for side in (1, -1)]
     assert not np.array_equal(*pictures)
 
 
-def test_distance_cuts_the_plane(solved):
-    ax = plots.plot_end_face(solved, distance=1.5)
+def test_distance_cuts_the_plane(case_result):
+    ax = plots.plot_end_face(case_result, distance=1.5)
     assert ax.get_xlim()[1] <= 1.5 * (1 + 1e-9)
 
 
-def test_given_axes_are_used(solved):
+def test_given_axes_are_used(case_result):
     for draw in (plots.plot_stress_plane, plots.plot_end_face):
         ax = pyplot.figure().add_subplot()
-        assert draw(solved, ax=ax) is ax
+        assert draw(case_result, ax=ax) is ax
 
 
-def test_bad_input(solved, opened, one):
+def test_bad_input(case_result, study_dataset, study_case):
     for call, message in (
-        (lambda: plots.plot_stress_plane(opened), "single case"),
-        (lambda: plots.plot_stress_plane(one.drop_vars(["von_mises", "sigma_xx"])), "level"),
-        (lambda: plots.plot_stress_plane(solved, x=0.0, z=0.0), "exactly one"),
-        (lambda: plots.plot_stress_plane(solved.isel(z=[0])), "two or more positions"),
-        (lambda: plots.plot_stress_plane(solved, "normal_load"), "same points"),
-        (lambda: plots.plot_end_face(solved, end="left"), "one of first, last"),
-        (lambda: plots.plot_end_face(solved, side=0), "side"),
-        (lambda: plots.plot_end_face(solved.isel(x_field=slice(1, None))), "end face"),
-        (lambda: plots.plot_end_face(solved, distance=-1.0), "distance"),
-        (lambda: plots.plot_end_face(one), "two or more positions"),
+        (lambda: plots.plot_stress_plane(study_dataset), "single case"),
+        (lambda: plots.plot_stress_plane(study_case.drop_vars(["von_mises", "sigma_xx"])), "level"),
+        (lambda: plots.plot_stress_plane(case_result, x=0.0, z=0.0), "exactly one"),
+        (lambda: plots.plot_stress_plane(case_result.isel(z=[0])), "two or more positions"),
+        (lambda: plots.plot_stress_plane(case_result, "normal_load"), "same points"),
+        (lambda: plots.plot_end_face(case_result, end="left"), "one of first, last"),
+        (lambda: plots.plot_end_face(case_result, side=0), "side"),
+        (lambda: plots.plot_end_face(case_result.isel(x_field=slice(1, None))), "end face"),
+        (lambda: plots.plot_end_face(case_result, distance=-1.0), "distance"),
+        (lambda: plots.plot_end_face(study_case), "two or more positions"),
     ):
         with pytest.raises(InvalidInputError, match=message):
             call()

@@ -6,66 +6,66 @@ from contactstudy import plots
 from contactstudy.errors import InvalidInputError
 
 
-def test_a_panel_for_each_quantity_and_a_line_for_each_value(opened, assert_nothing_clipped, lines_of):
-    figure = plots.plot_study_lines(opened, x="e_over_a", hue="body", selection={"friction": 0.1})
+def test_panels_and_lines_of_study(study_dataset, assert_nothing_clipped, lines_of):
+    figure = plots.plot_study_lines(study_dataset, x="e_over_a", hue="body", selection={"friction": 0.1})
     assert len(figure.axes) == 3
     assert all(len(lines_of(ax)) == 2 for ax in figure.axes)
-    expected = opened["peak_von_mises"].sel(friction=0.1, body="finite-length").values / 1e9
+    expected = study_dataset["peak_von_mises"].sel(friction=0.1, body="finite-length").values / 1e9
     np.testing.assert_allclose(figure.axes[1].lines[0].get_ydata(), expected)
     assert all("(" in ax.get_ylabel() for ax in figure.axes)
     assert_nothing_clipped(figure)
 
 
-def test_names_are_spread_evenly(opened):
-    figure = plots.plot_study_lines(opened, ["peak_pressure"], x="body", selection={"friction": 0.1})
+def test_names_are_spread_evenly(study_dataset):
+    figure = plots.plot_study_lines(study_dataset, ["peak_pressure"], x="body", selection={"friction": 0.1})
     assert [tick.get_text() for tick in figure.axes[0].get_xticklabels()] == ["finite-length", "half-space"]
 
 
-def test_figures_that_suit_a_study(opened):
-    assert list(plots.study_figures(opened)) == ["edge_effect", "study"]
-    assert list(plots.study_figures(opened[["status", "peak_pressure"]].isel(e_over_a=[0]))) == ["study"]
-    assert plots.study_figures(opened[["status"]]) == {}
+def test_study_figures_depend_on_variables(study_dataset):
+    assert list(plots.study_figures(study_dataset)) == ["edge_effect", "study"]
+    assert list(plots.study_figures(study_dataset[["status", "peak_pressure"]].isel(e_over_a=[0]))) == ["study"]
+    assert plots.study_figures(study_dataset[["status"]]) == {}
 
 
 @pytest.mark.parametrize("arguments", [{"x": "gamma"}, {"x": "e_over_a", "hue": "gamma"}])
-def test_parameters_must_be_swept(opened, arguments):
+def test_parameters_must_be_swept(study_dataset, arguments):
     with pytest.raises(InvalidInputError, match="swept"):
-        plots.plot_study_lines(opened, **arguments)
+        plots.plot_study_lines(study_dataset, **arguments)
 
 
-def test_quantities_must_be_there(opened):
+def test_missing_quantity_raises(study_dataset):
     with pytest.raises(InvalidInputError, match="no_such_thing"):
-        plots.plot_study_lines(opened, ["no_such_thing"], x="e_over_a")
+        plots.plot_study_lines(study_dataset, ["no_such_thing"], x="e_over_a")
 
 
-def test_the_first_solved_cases_are_drawn_and_named(opened):
-    failed_first = opened.isel(friction=[1, 0])
+def test_lines_show_first_solved_cases(study_dataset):
+    failed_first = study_dataset.isel(friction=[1, 0])
     figure = plots.plot_study_lines(failed_first, x="e_over_a", hue="body")
     assert figure.get_suptitle() == "friction = 0.1, one of 2 values"
     assert np.isfinite(figure.axes[0].lines[0].get_ydata()).all()
     assert list(plots.study_figures(failed_first)) == ["edge_effect", "study"]
-    only_failed = plots.plot_study_lines(opened.isel(friction=[1]), x="e_over_a", hue="body")
+    only_failed = plots.plot_study_lines(study_dataset.isel(friction=[1]), x="e_over_a", hue="body")
     assert not np.isfinite(only_failed.axes[0].lines[0].get_ydata()).any()
 
 
-def test_what_is_held_is_named_with_its_unit(opened):
+def test_title_contains_fixed_parameters(study_dataset):
     load = xr.DataArray([200.0, 300.0], dims="load", attrs={"units": "N"})
-    loaded = opened.isel(friction=0, drop=True).expand_dims(load=load)
+    loaded = study_dataset.isel(friction=0, drop=True).expand_dims(load=load)
     loaded["load"].attrs["units"] = "N"
     assert plots.plot_study_lines(loaded, x="e_over_a", hue="body").get_suptitle() == "load = 200 N, one of 2 values"
 
 
-def test_the_legend_has_the_unit_of_its_title(opened):
-    by_pressure = opened.sel(friction=0.1, body="finite-length").expand_dims(max_pressure=[1e9, 2e9])
+def test_legend_contains_unit(study_dataset):
+    by_pressure = study_dataset.sel(friction=0.1, body="finite-length").expand_dims(max_pressure=[1e9, 2e9])
     by_pressure["max_pressure"].attrs["units"] = "Pa"
     legend, *_ = plots.plot_study_lines(by_pressure, x="e_over_a", hue="max_pressure").legends
     assert "GPa" in legend.get_title().get_text()
     assert [text.get_text() for text in legend.get_texts()] == ["1", "2"]
 
 
-def test_parameters_that_change_together_are_named_together(opened):
-    one = opened.sel(friction=0.1).isel(e_over_a=[0])
-    together = one.rename(body="body_and_model").assign_coords(
+def test_zipped_parameters_share_label(study_dataset):
+    selection = study_dataset.sel(friction=0.1).isel(e_over_a=[0])
+    together = selection.rename(body="body_and_model").assign_coords(
         body=("body_and_model", ["finite-length", "half-space"]), model=("body_and_model", ["mirror", "exact"])
     )
     together["body_and_model"] = [0, 1]
@@ -74,7 +74,7 @@ def test_parameters_that_change_together_are_named_together(opened):
     assert [text.get_text() for text in legend.get_texts()] == ["finite-length, mirror", "half-space, exact"]
 
 
-def test_stated_errors_are_bars_and_infinite_ones_are_none() -> None:
+def test_finite_errors_are_drawn_as_bars() -> None:
     steps = {"e_over_a": [0.0, 1.0, 2.0]}
     peaks = xr.DataArray([1e9, 2e9, 3e9], steps, "e_over_a", attrs={"units": "Pa"})
     errors = peaks.copy(data=[1e8, np.inf, 2e8])
@@ -86,31 +86,34 @@ def test_stated_errors_are_bars_and_infinite_ones_are_none() -> None:
     assert not without.axes[0].collections
 
 
-def test_a_place_without_an_error_has_open_markers_and_a_given_number_none(lines_of) -> None:
+def test_values_without_errors_have_open_markers(lines_of) -> None:
     steps = {"e_over_a": [0.0, 1.0]}
     peaks = xr.DataArray([1e9, 2e9], steps, "e_over_a", attrs={"units": "Pa"})
-    known = {"peak_von_mises": peaks, "peak_von_mises_error": 0.1 * peaks, "peak_von_mises_z": 1e-14 * peaks}
+    with_errors = {"peak_von_mises": peaks, "peak_von_mises_error": 0.1 * peaks, "peak_von_mises_z": 1e-14 * peaks}
     names = ["peak_von_mises", "peak_von_mises_z", "normal_load"]
-    figure = plots.plot_study_lines(xr.Dataset(known | {"normal_load": peaks}), names, x="e_over_a")
+    figure = plots.plot_study_lines(xr.Dataset(with_errors | {"normal_load": peaks}), names, x="e_over_a")
     faces = [line.get_markerfacecolor() for ax in figure.axes for line in lines_of(ax)]
     assert [isinstance(face, str) and face == "white" for face in faces] == [False, True, False]
     (legend,) = figure.legends
     assert [text.get_text() for text in legend.get_texts()] == ["error not estimated"]
 
 
-def test_a_selection_chooses_what_figures_show(opened) -> None:
+def test_figures_follow_selection(study_dataset) -> None:
     (edge, _), (chosen, _) = (
-        [figure.get_suptitle() for figure in plots.study_figures(opened, selection=selection).values()]
+        [figure.get_suptitle() for figure in plots.study_figures(study_dataset, selection=selection).values()]
         for selection in ({}, {"friction": "0.10"})
     )
     assert "friction = 0.1, one of 2 values" in edge
     assert "friction = 0.1" in chosen
     assert "of 2" not in chosen
-    assert plots.study_figures(opened, selection={"body": "half-space"})["study"].get_suptitle() == "body = half-space"
+    assert (
+        plots.study_figures(study_dataset, selection={"body": "half-space"})["study"].get_suptitle()
+        == "body = half-space"
+    )
     with pytest.raises(InvalidInputError, match="swept parameter: e_over_a"):
-        plots.study_figures(opened, selection={"speed": 1.0})
+        plots.study_figures(study_dataset, selection={"speed": 1.0})
     with pytest.raises(InvalidInputError, match="one of"):
-        plots.study_figures(opened, selection={"friction": 0.7})
+        plots.study_figures(study_dataset, selection={"friction": 0.7})
 
 
 def creepage_study() -> xr.Dataset:
@@ -122,10 +125,10 @@ def creepage_study() -> xr.Dataset:
 
 def test_curve_is_over_full_sliding(assert_nothing_clipped) -> None:
     ax = plots.plot_traction_curve(creepage_study(), "e_over_a")
-    first, second, full = ax.lines
+    first, second, full_sliding = ax.lines
     assert first.get_ydata() == pytest.approx([0.0, 0.5, 0.9])
     assert second.get_ydata() == pytest.approx([0.0, 0.6])
-    assert list(full.get_ydata()) == [1.0, 1.0]
+    assert list(full_sliding.get_ydata()) == [1.0, 1.0]
     assert [text.get_text() for text in ax.get_legend().get_texts()] == ["0", "2"]
     assert_nothing_clipped(ax.figure)
     assert len(plots.plot_traction_curve(creepage_study(), selection={"e_over_a": 2.0}).lines) == 2

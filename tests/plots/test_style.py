@@ -7,7 +7,7 @@ from contactstudy import plots
 from contactstudy.errors import InvalidInputError
 
 
-def test_colours_keep_their_order_in_grey():
+def test_colours_are_ordered_in_grey():
     colours = matplotlib.colormaps[plots.COLORS](np.linspace(0, 1, 20))[:, :3]
     assert np.all(np.diff(colours @ [0.299, 0.587, 0.114]) > 0)
 
@@ -20,7 +20,7 @@ def test_saved_for_screen_and_journal(tmp_path):
     assert png.read_bytes().startswith(b"\x89PNG")
     content = pdf.read_bytes()
     assert content.startswith(b"%PDF")
-    # Text stays text: TrueType, not drawn outlines.
+    # Text remains text: TrueType, not outlines.
     assert b"TrueType" in content or b"CIDFontType2" in content
 
 

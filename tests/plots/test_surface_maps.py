@@ -13,7 +13,7 @@ from contactstudy import Case, FiniteLengthSpace, InvalidInputError, Material, R
 
 
 @functools.cache
-def rolled() -> xr.Dataset:
+def rolling_result() -> xr.Dataset:
     """Equal bodies that end together, creeping along and across."""
     steel = Material(210e9, 0.3)
     case = Case(
@@ -26,18 +26,18 @@ def rolled() -> xr.Dataset:
     return solve(case, stresses=False, accuracy=0.05)
 
 
-def test_areas_are_those_of_the_case(assert_nothing_clipped) -> None:
-    one = rolled()
-    ax = plots.plot_stick_and_slip(one)
+def test_stick_and_slip_areas_match_case(assert_nothing_clipped) -> None:
+    result = rolling_result()
+    ax = plots.plot_stick_and_slip(result)
     mesh = ax.collections[0]
-    slips = np.asarray(mesh.get_array()).reshape(one["pressure"].transpose("y", "x").shape)
-    pressed = one["pressure"].transpose("y", "x").values > 0
-    assert float(slips[pressed].sum()) == int(pressed.sum()) - int(one["stick"].sum())
+    slips = np.asarray(mesh.get_array()).reshape(result["pressure"].transpose("y", "x").shape)
+    in_contact = result["pressure"].transpose("y", "x").values > 0
+    assert float(slips[in_contact].sum()) == int(in_contact.sum()) - int(result["stick"].sum())
     assert mesh.get_clip_path() is not None  # the contact's border
     assert_nothing_clipped(ax.figure)
 
 
-def test_the_border_beside_singular_ends_is_that_of_the_pressed_cells() -> None:
+def test_contact_border_near_singular_ends() -> None:
     steel = Material(210e9, 0.3)
     case = Case(
         body=FiniteLengthSpace(length=1.4e-3, material=steel),
@@ -48,108 +48,110 @@ def test_the_border_beside_singular_ends_is_that_of_the_pressed_cells() -> None:
     result = solve(case, stresses=False, accuracy=0.05)
     ax = plots.plot_pressure_map(result, si=True)
     border = ax.collections[1].get_paths()[0]
-    pressed = result.pressure.sel(x=0.7e-3, method="nearest") > 0
-    half_width = 0.5e3 * float(np.ptp(result.y.values[pressed.values]))
+    in_contact = result.pressure.sel(x=0.7e-3, method="nearest") > 0
+    half_width = 0.5e3 * float(np.ptp(result.y.values[in_contact.values]))
     assert border.contains_points([[0.7, 0.9 * half_width], [0.7, -0.9 * half_width]]).all()
     assert not border.contains_point([0.7, 1.1 * half_width])
 
 
-def test_arrows_point_along_the_tractions_where_they_stand() -> None:
-    one = rolled()
-    ax = plots.plot_stick_and_slip(one, arrows=12)
+def test_arrows_follow_local_tractions() -> None:
+    result = rolling_result()
+    ax = plots.plot_stick_and_slip(result, arrows=12)
     (arrows,) = (artist for artist in ax.collections if hasattr(artist, "U"))
-    a, p0 = float(one["hertz_half_width"]), float(one["hertz_max_pressure"])
+    a, p0 = float(result["hertz_half_width"]), float(result["hertz_max_pressure"])
     for (x, y), u, v in list(zip(arrows.get_offsets(), arrows.U, arrows.V, strict=True))[::5]:
-        here = one.sel(x=x * a, y=y * a, method="nearest")
+        here = result.sel(x=x * a, y=y * a, method="nearest")
         assert [u, v] == pytest.approx([float(here["traction_x"]) / p0, float(here["traction_y"]) / p0])
         assert float(here["pressure"]) > 0
     assert 40 < len(arrows.U) <= 72
 
 
 def test_long_contact_fills_the_axes(assert_nothing_clipped) -> None:
-    one = rolled()
-    ax = plots.plot_stick_and_slip(one.assign_coords(x=40 * one["x"]))
+    result = rolling_result()
+    ax = plots.plot_stick_and_slip(result.assign_coords(x=40 * result["x"]))
     box = ax.get_window_extent()
     assert box.height > 0.4 * box.width
     assert_nothing_clipped(ax.figure)
 
 
 def test_si_is_mm_and_mpa() -> None:
-    ax = plots.plot_stick_and_slip(rolled(), si=True)
+    ax = plots.plot_stick_and_slip(rolling_result(), si=True)
     assert "mm" in ax.get_xlabel()
     assert any("MPa" in artist.text.get_text() for artist in ax.artists)
 
 
 def test_traction_map_contains_magnitude_and_stick_border(assert_nothing_clipped) -> None:
-    one = rolled()
-    ax = plots.plot_traction_map(one, si=True)
+    result = rolling_result()
+    ax = plots.plot_traction_map(result, si=True)
     mesh, stick, contact = ax.collections
-    largest = np.hypot(one["traction_x"], one["traction_y"]).where(one["pressure"] > 0, 0.0).max()
-    assert float(mesh.get_array().max()) == pytest.approx(float(largest) / 1e6)
+    max_traction = np.hypot(result["traction_x"], result["traction_y"]).where(result["pressure"] > 0, 0.0).max()
+    assert float(mesh.get_array().max()) == pytest.approx(float(max_traction) / 1e6)
     # The border of the stick area encloses the cells that stick.
-    cells = np.argwhere(one["stick"].transpose("x", "y").values.astype(bool))
-    centres = np.column_stack([one["x"].values[cells[:, 0]], one["y"].values[cells[:, 1]]]) * 1e3
+    cells = np.argwhere(result["stick"].transpose("x", "y").values.astype(bool))
+    centres = np.column_stack([result["x"].values[cells[:, 0]], result["y"].values[cells[:, 1]]]) * 1e3
     assert stick.get_paths()[0].contains_points(centres).mean() > 0.95
     assert len(contact.get_paths()[0].vertices) > 0
     assert_nothing_clipped(ax.figure)
-    slip = plots.plot_traction_map(one, variable="slip")
+    slip = plots.plot_traction_map(result, variable="slip")
     assert slip.figure.axes[-1].get_ylabel() == "slip per distance rolled"
-    shifted = one.assign({name: one[name].assign_attrs(units="m") for name in ("slip_x", "slip_y")})
-    assert "mm" in plots.plot_traction_map(shifted, variable="slip").figure.axes[-1].get_ylabel()
+    shift_result = result.assign({name: result[name].assign_attrs(units="m") for name in ("slip_x", "slip_y")})
+    assert "mm" in plots.plot_traction_map(shift_result, variable="slip").figure.axes[-1].get_ylabel()
     with pytest.raises(InvalidInputError, match="heat"):
-        plots.plot_traction_map(one, variable="heat")
+        plots.plot_traction_map(result, variable="heat")
     with pytest.raises(InvalidInputError, match="stick"):
-        plots.plot_traction_map(one.drop_vars("stick"))
+        plots.plot_traction_map(result.drop_vars("stick"))
 
 
 def test_bad_traction_input() -> None:
     with pytest.raises(InvalidInputError, match="stick is missing"):
-        plots.plot_stick_and_slip(rolled().drop_vars("stick"))
+        plots.plot_stick_and_slip(rolling_result().drop_vars("stick"))
     with pytest.raises(InvalidInputError, match="arrows = 0"):
-        plots.plot_stick_and_slip(rolled(), arrows=0)
+        plots.plot_stick_and_slip(rolling_result(), arrows=0)
 
 
-def test_map_shows_every_cell(solved, assert_nothing_clipped):
-    ax = plots.plot_pressure_map(solved)
-    drawn = ax.collections[0].get_array()
-    assert np.asarray(drawn).max() == pytest.approx(float(solved["pressure"].max()) / 1.5e9)
-    assert np.asarray(drawn).size == solved["pressure"].size
+def test_map_shows_every_cell(case_result, assert_nothing_clipped):
+    ax = plots.plot_pressure_map(case_result)
+    mesh_values = ax.collections[0].get_array()
+    assert np.asarray(mesh_values).max() == pytest.approx(float(case_result["pressure"].max()) / 1.5e9)
+    assert np.asarray(mesh_values).size == case_result["pressure"].size
     assert "x/a" in ax.get_xlabel()
     assert "y/a" in ax.get_ylabel()
     assert_nothing_clipped(ax.figure)
 
 
 @pytest.mark.parametrize("draw", [plots.plot_pressure_map])
-def test_given_axes_are_used(one, draw):
+def test_given_axes_are_used(study_case, draw):
     ax = pyplot.figure().add_subplot()
-    assert draw(one, ax) is ax
+    assert draw(study_case, ax) is ax
 
 
 @pytest.mark.parametrize("draw", [plots.plot_pressure_map])
-def test_bad_input(opened, one, draw):
+def test_bad_input(study_dataset, study_case, draw):
     with pytest.raises(InvalidInputError, match="single case"):
-        draw(opened)
+        draw(study_dataset)
     with pytest.raises(InvalidInputError, match="level"):
-        draw(one.drop_vars("pressure"))
+        draw(study_case.drop_vars("pressure"))
 
 
 @pytest.fixture(scope="module")
-def hot(solved):
-    rise = 1e-8 * solved["pressure"].copy()
-    return solved.assign(temperature_rise=rise, frictional_heat=solved["pressure"])
+def heated_result(case_result):
+    rise = 1e-8 * case_result["pressure"].copy()
+    return case_result.assign(temperature_rise=rise, frictional_heat=case_result["pressure"])
 
 
-def test_map_shows_every_cell_and_the_hottest_one(hot, assert_nothing_clipped):
-    ax = plots.plot_temperature_map(hot)
-    assert np.asarray(ax.collections[0].get_array()).max() == pytest.approx(float(hot.temperature_rise.max()))
-    hottest = hot.temperature_rise.where(hot.temperature_rise == hot.temperature_rise.max(), drop=True)
-    assert ax.lines[0].get_xdata()[0] == pytest.approx(float(hottest.x[0] / hot.hertz_half_width))
+def test_temperature_map_marks_maximum(heated_result, assert_nothing_clipped):
+    ax = plots.plot_temperature_map(heated_result)
+    assert np.asarray(ax.collections[0].get_array()).max() == pytest.approx(float(heated_result.temperature_rise.max()))
+    hottest_cell = heated_result.temperature_rise.where(
+        heated_result.temperature_rise == heated_result.temperature_rise.max(), drop=True
+    )
+    assert ax.lines[0].get_xdata()[0] == pytest.approx(float(hottest_cell.x[0] / heated_result.hertz_half_width))
     assert "x/a" in ax.get_xlabel()
     assert_nothing_clipped(ax.figure)
 
 
-def test_a_surface_without_temperature_is_refused(hot):
+def test_surface_without_temperature_raises(heated_result):
     with pytest.raises(InvalidInputError, match="roller_temperature_rise"):
-        plots.plot_temperature_map(hot, surface="roller")
+        plots.plot_temperature_map(heated_result, surface="roller")
     with pytest.raises(InvalidInputError, match="surface"):
-        plots.plot_temperature_map(hot, surface="ball")
+        plots.plot_temperature_map(heated_result, surface="ball")

@@ -150,7 +150,7 @@ def test_pipes_and_folders_are_no_files(tmp_path):
             read_columns(path, ("x",), ("drop",))
 
 
-def test_what_is_not_netcdf_is_said_in_our_words(tmp_path):
+def test_non_netcdf_file_raises_package_error(tmp_path):
     (tmp_path / "a.nc").write_text("text")
     with pytest.raises(InvalidInputError, match="a netCDF file that can be read") as caught:
         read_netcdf(tmp_path / "a.nc")

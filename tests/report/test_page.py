@@ -28,7 +28,7 @@ VOID = {"meta", "img", "br", "link", "input"}
 
 
 class Page(HTMLParser):
-    """Reads a page: its text, what it fetches, its anchors; and fails on tags that do not match."""
+    """Parser of a page: text, fetched addresses, anchors; fails on unmatched tags."""
 
     def __init__(self, text: str) -> None:
         super().__init__()
@@ -68,7 +68,7 @@ class Page(HTMLParser):
         return " ".join(" ".join(self.words).split())
 
 
-def read(path: Path) -> Page:
+def read_page(path: Path) -> Page:
     text = path.read_text(encoding="utf-8")
     page = Page(text)
     assert all(address.startswith("data:image/svg+xml;base64,") for address in page.fetched)
@@ -78,29 +78,29 @@ def read(path: Path) -> Page:
 
 
 @pytest.fixture
-def unencoded(monkeypatch: pytest.MonkeyPatch) -> None:
+def without_encoding(monkeypatch: pytest.MonkeyPatch) -> None:
     """Figures are drawn, but not encoded."""
     for module in (figures, study_page):
-        monkeypatch.setattr(module, "as_address", lambda figure: "data:image/svg+xml;base64,")
+        monkeypatch.setattr(module, "encode_figure", lambda figure: "data:image/svg+xml;base64,")
 
 
-def test_page_of_a_case(solved: xr.Dataset, tmp_path: Path) -> None:
-    solved.to_netcdf(tmp_path / "roller.nc")
-    page = read(report.write(tmp_path / "roller.nc"))
-    for words in (
+def test_page_of_a_case(case_result: xr.Dataset, tmp_path: Path) -> None:
+    case_result.to_netcdf(tmp_path / "roller.nc")
+    page = read_page(report.write(tmp_path / "roller.nc"))
+    for text in (
         *("roller", "0.52 mm apart", "E = 210 GPa", "fillet radius 0.1 mm", "1.5 GPa", "friction coefficient 0.1"),
         *("Is this number real?", "With care", "was not estimated", "to scale in both directions", "numpy"),
         *("Hetenyi", "Dot: largest in the body"),
         *(f"{axis} of the largest von Mises stress" for axis in ("position x", "position y", "depth")),
     ):
-        assert words in page.text, words
+        assert text in page.text, text
     assert re.search(r"(at mid-length|from end I+ of the contact), error not estimated", page.text)
     assert len(page.fetched) == 7
 
 
-@pytest.mark.usefixtures("unencoded")
-def test_singular_peak(solved: xr.Dataset) -> None:
-    singular = solved.assign(
+@pytest.mark.usefixtures("without_encoding")
+def test_singular_peak(case_result: xr.Dataset) -> None:
+    singular = case_result.assign(
         peak_pressure=np.inf, peak_pressure_error=np.inf, end_pressure_first=np.inf, end_intensity_first=1e6
     ).assign(end_exponent_first=0.5)
     page = Page(report.html(singular, title="A <sharp> end"))
@@ -109,9 +109,9 @@ def test_singular_peak(solved: xr.Dataset) -> None:
     assert "its intensity replaces the peak" in page.text
 
 
-@pytest.mark.usefixtures("unencoded")
-def test_dataset_without_inputs(solved: xr.Dataset) -> None:
-    page = Page(report.html(solved.drop_attrs()))
+@pytest.mark.usefixtures("without_encoding")
+def test_dataset_without_inputs(case_result: xr.Dataset) -> None:
+    page = Page(report.html(case_result.drop_attrs()))
     assert "contains no inputs" in page.text
 
 
@@ -126,44 +126,44 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def page(folder: Path) -> Page:
-    return read(report.write(folder))
+    return read_page(report.write(folder))
 
 
 def test_page_of_a_study(page: Page) -> None:
-    for words in (
+    for text in (
         *("Study small", "Made up.", "4 ok", "4 failed", "4 skipped", "WindowError: this friction fails in tests"),
         *("<b>rounded</b>", "5 mm", "error not estimated", "4 cases", "Are these numbers real?"),
         "(end distance over a: 3, coefficient of friction: 2, roller profile: 2)",
     ):
-        assert words in page.text, words
-    assert {f"case-{number}" for number in range(1, 13)} <= page.anchors
+        assert text in page.text, text
+    assert {f"case-{index}" for index in range(1, 13)} <= page.anchors
     assert len(page.fetched) == 2
 
 
 def settled_cases(*errors: float) -> list[study_page.Row]:
     """Rows of solved cases with relative errors of the peak."""
     scalars = [{"peak_pressure": 2e9, "peak_pressure_error": error * 2e9, "converged": 1.0} for error in errors]
-    return [study_page._row("case-1", Entry("ok", numbers=numbers), [], []) for numbers in scalars]
+    return [study_page._row("case-1", Entry("ok", numbers=case_scalars), [], []) for case_scalars in scalars]
 
 
 def test_reason_of_several_cases() -> None:
-    ((answer, reason, cases), (best, _, _)) = study_page._answers(settled_cases(0.1, 0.06, 0.001))
-    assert (answer, len(cases), best) == ("with care", 2, "yes")
+    ((rating, reason, cases), (best_group, _, _)) = study_page._count_answers(settled_cases(0.1, 0.06, 0.001))
+    assert (rating, len(cases), best_group) == ("with care", 2, "yes")
     assert reason == "the error of the peak pressure is 10.0% in the worst case, 6.0% in the best"
 
 
-@pytest.mark.usefixtures("unencoded")
+@pytest.mark.usefixtures("without_encoding")
 def test_open_ends_coarse_cells_and_malformed_runs(tmp_path: Path) -> None:
     assert study_page._verdict(settled_cases(0.1, 0.001)) == ("with care", "1 real with care, 1 real")
     assert study_page._verdict(settled_cases(0.001, 0.001)) == ("yes", "2 real")
     runs = list(MALFORMED)
 
-    def coarse(*given, **more) -> xr.Dataset:
+    def solve_coarsely(*given, **more) -> xr.Dataset:
         values = {"end_pressure_first": 0.0, "end_pressure_last": 0.0, "peak_pressure": 2e9, "peak_pressure_error": 2e8}
         return solve_fake(*given, **more).assign(values).assign_attrs(contactstudy_run=json.dumps(runs.pop()))
 
     base = BASE | {"profile": {"kind": "cylinder", "fillet_radius": 1e-4}}
-    run_study(small_study(base=base), tmp_path, workers=0, solver=coarse, progress=False)
+    run_study(small_study(base=base), tmp_path, workers=0, solver=solve_coarsely, progress=False)
     text = report.html(tmp_path)
     assert 'class="verdict with-care"' in text
     page = Page(text)
@@ -171,11 +171,13 @@ def test_open_ends_coarse_cells_and_malformed_runs(tmp_path: Path) -> None:
     assert "cylinder, fillet radius 0.1 mm" in page.text
     assert "at end" not in page.text
     scalars = [{"end_pressure_first": value, "end_pressure_last": 0.0} for value in (0.0, 1e9)]
-    names = [name for name in study_page.NUMBERS if any(study_page._has_number(numbers, name) for numbers in scalars)]
+    names = [
+        name for name in study_page.PEAK_NUMBERS if any(study_page._has_number(numbers, name) for numbers in scalars)
+    ]
     assert names == ["end_pressure_first"]
 
 
-@pytest.mark.usefixtures("unencoded")
+@pytest.mark.usefixtures("without_encoding")
 def test_inputs_in_engineers_units(tmp_path: Path) -> None:
     profile = {"kind": "cylinder", "fillet_radius": 5e-5}
     study = small_study(base=BASE | {"e_over_a": 1.0}, sweep={"tilt": [0.0, 3e-4], "profile": ["cylinder", profile]})
@@ -189,7 +191,7 @@ def test_inputs_in_engineers_units(tmp_path: Path) -> None:
     pyplot.close("all")
 
 
-@pytest.mark.usefixtures("unencoded")
+@pytest.mark.usefixtures("without_encoding")
 def test_numbers_and_figure_of_singular_ends(tmp_path: Path) -> None:
     def sharp(case: Case, *given, **more) -> xr.Dataset:
         units = {"units": "Pa m^0.5" if case.friction == 0 else "Pa m^0.34"}
@@ -202,8 +204,8 @@ def test_numbers_and_figure_of_singular_ends(tmp_path: Path) -> None:
 
     run_study(small_study(), tmp_path, workers=0, solver=sharp, progress=False)
     page = Page(report.html(tmp_path))
-    for words in ("K at end I", "0.10262 ± 0.00057 GPa mm^0.5", "GPa mm^0.34", "load on the last a, end I"):
-        assert words in page.text, words
+    for text in ("K at end I", "0.10262 ± 0.00057 GPa mm^0.5", "GPa mm^0.34", "load on the last a, end I"):
+        assert text in page.text, text
     assert "4.020 ± 0.020 N" in page.text
     assert "units" not in open_study(tmp_path)["end_intensity"].attrs  # exponents differ
     assert "at end I largest" not in page.text
@@ -218,31 +220,31 @@ def test_numbers_and_figure_of_singular_ends(tmp_path: Path) -> None:
 
 @pytest.mark.browser
 @pytest.mark.skipif(chromium() is None, reason="Chromium is not installed")
-def test_width_of_a_study_on_screens(folder: Path, tmp_path: Path) -> None:
+def test_figure_widths_on_screens(folder: Path, tmp_path: Path) -> None:
     pytest.importorskip("playwright")
     path = report.write(folder, tmp_path / "study.html")
-    own = {}
+    natural_widths = {}
     for width in (420, 1400):
         with browser(width, 900) as page:
             page.goto(path.as_uri())
             assert page.evaluate("document.documentElement.scrollWidth") <= width
             widths = "[...document.querySelectorAll('figure img')].map(each => [each.width, each.naturalWidth])"
-            own[width] = page.evaluate(widths)
+            natural_widths[width] = page.evaluate(widths)
             hints = page.locator(".hint").evaluate_all("all => all.filter(each => each.offsetParent).length")
             assert bool(hints) == (width == 420)
-    assert all(shown <= 1.4 * natural + 4 for shown, natural in own[1400])
-    assert all(shown < 400 or shown <= 0.5 * natural + 2 for shown, natural in own[420])
+    assert all(shown_width <= 1.4 * natural + 4 for shown_width, natural in natural_widths[1400])
+    assert all(shown_width < 400 or shown_width <= 0.5 * natural + 2 for shown_width, natural in natural_widths[420])
 
 
-@pytest.mark.usefixtures("unencoded")
+@pytest.mark.usefixtures("without_encoding")
 def test_page_of_a_case_of_a_study(folder: Path, tmp_path: Path, capsys) -> None:
     path = tmp_path / "case.nc"
     load_case(folder, str(open_study(folder)["case_id"].values.ravel()[0])).to_netcdf(path)
     assert main(["report", str(path), "--out", str(tmp_path / "case.html"), "--title", "Case"]) == 0
     assert "case.html" in capsys.readouterr().out
-    page = read(tmp_path / "case.html")
-    for words in ("E = 210 GPa", "two free ends", "study small", "length L 0.5 mm"):
-        assert words in page.text, words
+    page = read_page(tmp_path / "case.html")
+    for text in ("E = 210 GPa", "two free ends", "study small", "length L 0.5 mm"):
+        assert text in page.text, text
 
 
 def test_wrong_paths(tmp_path: Path, capsys) -> None:
@@ -270,29 +272,29 @@ def test_report_without_distributed(tmp_path: Path) -> None:
     subprocess.run([sys.executable, "-c", WITHOUT, str(tmp_path)], check=True)
 
 
-def test_suffix_of_the_page(tmp_path: Path) -> None:
+def test_page_suffix_is_checked(tmp_path: Path) -> None:
     with pytest.raises(InvalidInputError, match=r"x.pdf': must be a name that ends in .html.*prints the page to PDF"):
         report.write(xr.Dataset(), tmp_path / "x.pdf")
 
 
-@pytest.mark.usefixtures("unencoded")
+@pytest.mark.usefixtures("without_encoding")
 def test_selection_of_figures(page: Page, folder: Path, tmp_path: Path, capsys) -> None:
     assert "Of coefficient of friction and roller profile the figure has the value in its title" in page.text
     assert "contactstudy report FOLDER --select friction=0.66" in page.text
     chosen = ["--select", "profile=<b>rounded</b>", "--select", "friction=0"]
     assert main(["report", str(folder), "--out", str(tmp_path / "one.html"), *chosen]) == 0
-    one = read(tmp_path / "one.html")
-    assert "the figure has the value" not in one.text
-    assert {f"case-{number}" for number in range(1, 13)} <= one.anchors
+    selected_page = read_page(tmp_path / "one.html")
+    assert "the figure has the value" not in selected_page.text
+    assert {f"case-{index}" for index in range(1, 13)} <= selected_page.anchors
     assert main(["report", str(folder), "--select", "speed=1"]) == 2
     assert "swept parameter: e_over_a, friction, profile" in capsys.readouterr().err
     assert main(["report", str(folder), "--select", "friction"]) == 2
     assert "NAME=VALUE" in capsys.readouterr().err
 
 
-def test_selection_of_a_case(solved: xr.Dataset) -> None:
+def test_selection_of_a_case(case_result: xr.Dataset) -> None:
     with pytest.raises(InvalidInputError, match="selection"):
-        report.html(solved, selection={"friction": 0.1})
+        report.html(case_result, selection={"friction": 0.1})
 
 
 def test_only_drawn_cases_are_loaded(folder: Path, monkeypatch) -> None:
@@ -305,20 +307,20 @@ def test_only_drawn_cases_are_loaded(folder: Path, monkeypatch) -> None:
     assert len(set(loaded)) == 2  # of four that are solved: two over e/a
 
 
-@pytest.mark.usefixtures("unencoded")
-def test_rolling_case(solved: xr.Dataset) -> None:
-    pressed = (solved["pressure"] > 0).drop_attrs()
-    part = pressed & (pressed["y"] > 0)
-    moved = {"traction_x": 0.0, "traction_y": 4e7, "slip_x": 0.0, "slip_y": 2e-3}
-    still = solved[["pressure"]]
-    rolled = still.assign({name: value * pressed for name, value in moved.items()} | {"stick": part})
-    before, page = Page(report.html(still)), Page(report.html(rolled.assign(sticking_part=0.5)))
-    assert len(page.fetched) == len(before.fetched) + 2
-    for words in ("part of the contact that sticks", "stick within the red line", "leading edge is at the top"):
-        assert words in page.text
-        assert words not in before.text
-    assert "slip everywhere" in Page(report.html(rolled.assign(stick=0 * part))).text
-    assert "stick everywhere" in Page(report.html(rolled.assign(stick=pressed))).text
+@pytest.mark.usefixtures("without_encoding")
+def test_rolling_case(case_result: xr.Dataset) -> None:
+    in_contact = (case_result["pressure"] > 0).drop_attrs()
+    sticking = in_contact & (in_contact["y"] > 0)
+    tractions = {"traction_x": 0.0, "traction_y": 4e7, "slip_x": 0.0, "slip_y": 2e-3}
+    still = case_result[["pressure"]]
+    rolling_result = still.assign({name: value * in_contact for name, value in tractions.items()} | {"stick": sticking})
+    still_page, page = Page(report.html(still)), Page(report.html(rolling_result.assign(sticking_part=0.5)))
+    assert len(page.fetched) == len(still_page.fetched) + 2
+    for text in ("part of the contact that sticks", "stick within the red line", "leading edge is at the top"):
+        assert text in page.text
+        assert text not in still_page.text
+    assert "slip everywhere" in Page(report.html(rolling_result.assign(stick=0 * sticking))).text
+    assert "stick everywhere" in Page(report.html(rolling_result.assign(stick=in_contact))).text
 
 
 MALFORMED = (
@@ -333,16 +335,18 @@ MALFORMED_SETTINGS = ({"cells": "given"}, {"cells": "given", "tolerance": "x", "
 
 
 @pytest.mark.parametrize(("run", "settings"), [*zip(MALFORMED, MALFORMED_SETTINGS, strict=True)])
-def test_malformed_run_and_settings(solved: xr.Dataset, run: dict[str, object], settings: object) -> None:
+def test_malformed_run_and_settings(case_result: xr.Dataset, run: dict[str, object], settings: object) -> None:
     attributes = {"contactstudy_run": run, "contactstudy_inputs": {"settings": settings}}
-    changed = {name: json.dumps(json.loads(solved.attrs[name]) | entries) for name, entries in attributes.items()}
-    page = report.html(solved[["normal_load", "iterations"]].assign_attrs(changed))
+    changed_attributes = {
+        name: json.dumps(json.loads(case_result.attrs[name]) | entries) for name, entries in attributes.items()
+    }
+    page = report.html(case_result[["normal_load", "iterations"]].assign_attrs(changed_attributes))
     assert "many" not in page
     assert "numpy" in page
     assert "Numbers" in page
 
 
-def test_numbers_that_are_nan(solved: xr.Dataset) -> None:
-    scalars = {str(name): np.nan for name, variable in solved.data_vars.items() if variable.ndim == 0}
-    assert "not known" in report.html(solved.assign(scalars))
-    assert "not known" in report.html(solved[["pressure"]] * np.nan)
+def test_page_omits_nan_numbers(case_result: xr.Dataset) -> None:
+    scalars = {str(name): np.nan for name, variable in case_result.data_vars.items() if variable.ndim == 0}
+    assert "not known" in report.html(case_result.assign(scalars))
+    assert "not known" in report.html(case_result[["pressure"]] * np.nan)

@@ -22,18 +22,18 @@ def case(body: Body | None = None, **roller: object) -> Case:
 
 
 @pytest.fixture
-def drawn(monkeypatch: pytest.MonkeyPatch) -> list[Figure]:
+def drawn_figures(monkeypatch: pytest.MonkeyPatch) -> list[Figure]:
     """Figures that become pictures."""
-    kept: list[Figure] = []
-    monkeypatch.setattr(figures, "as_address", lambda figure: kept.append(figure) or "data:")
-    return kept
+    figure_list: list[Figure] = []
+    monkeypatch.setattr(figures, "encode_figure", lambda figure: figure_list.append(figure) or "data:")
+    return figure_list
 
 
 def texts(figure: Figure) -> list[str]:
     return [text.get_text().strip() for text in figure.axes[0].texts]
 
 
-def test_one_scale(drawn: list[Figure]) -> None:
+def test_side_view_has_equal_scales(drawn_figures: list[Figure]) -> None:
     view = side_geometry(case())
     assert view.limits == (0.0, 16e-3)
     assert view.roller == pytest.approx((1e-3, 15e-3))
@@ -41,34 +41,34 @@ def test_one_scale(drawn: list[Figure]) -> None:
     assert view.magnification == 1
     caption = side_view(case()).caption
     assert "so is the profile" in caption
-    (figure,) = drawn
+    (figure,) = drawn_figures
     assert figure.axes[0].get_aspect() == 1
     assert {"L = 14 mm", "R = 4 mm", "body 16 mm", "end I: e = 1 mm", "end II: e = 1 mm"} <= {*texts(figure)}
 
 
 @pytest.mark.parametrize("crown_radius", [0.5, 1.0, 20.0])
 def test_magnification_of_a_crown(crown_radius: float) -> None:
-    crowned = case(profile=profiles.FullCrown(crown_radius))
-    view = side_geometry(crowned)
-    factor = float(re.search(r"magnified (\S+) times", side_view(crowned).caption)[1])
+    crowned_case = case(profile=profiles.FullCrown(crown_radius))
+    view = side_geometry(crowned_case)
+    factor = float(re.search(r"magnified (\S+) times", side_view(crowned_case).caption)[1])
     assert view.generatrix.max() == pytest.approx(factor * 7e-3**2 / (2 * crown_radius), rel=0.01)
     assert not view.clipped
 
 
 @pytest.mark.parametrize("body", [HalfSpace(material=STEEL), QuarterSpace(material=STEEL)])
-def test_bodies_without_ends(body: Body, drawn: list[Figure]) -> None:
+def test_bodies_without_ends(body: Body, drawn_figures: list[Figure]) -> None:
     caption = side_view(case(body, profile=profiles.Lundberg(2e-7), radius=50e-3)).caption
-    labels = " ".join(texts(drawn[0]))
+    labels = " ".join(texts(drawn_figures[0]))
     assert ("end I:" in labels) == isinstance(body, QuarterSpace)
     assert "end II:" not in labels
     assert "cut below its axis" in caption
 
 
-def test_flush_roller_within_rounding(drawn: list[Figure]) -> None:
+def test_flush_roller_within_rounding(drawn_figures: list[Figure]) -> None:
     body = FiniteLengthSpace(length=1.2e-3, material=STEEL)
     roller = Roller(radius=4e-3, length=0.9e-3)
     side_view(Case(body=body, roller=roller, max_pressure=1e9, end_distance=0.3e-3 * (1 + 1e-14)))
-    assert any(text.startswith("end II: e = 0 ") for text in texts(drawn[0]))
+    assert any(text.startswith("end II: e = 0 ") for text in texts(drawn_figures[0]))
 
 
 def test_cone_in_the_caption() -> None:

@@ -12,7 +12,7 @@ from contactstudy import Case, FiniteLengthSpace, HalfSpace, InvalidInputError, 
 from contactstudy.analysis import solved_case
 from contactstudy.fields.edge_tension import edge_tension
 from contactstudy.report import assess, citations, summary
-from contactstudy.report.case_table import body_words, material_words
+from contactstudy.report.case_table import describe_body, describe_material
 from contactstudy.report.summary_table import intensity_text
 
 STEEL = Material(210e9, 0.3)
@@ -24,70 +24,72 @@ def singular() -> xr.Dataset:
     return solve(Case(body=body, roller=Roller(radius=5e-3, length=0.25e-3), max_pressure=1.5e9), z=[0.0, 2e-5])
 
 
-def test_errors_of_settled_and_given_cells(solved: xr.Dataset) -> None:
+def test_errors_of_settled_and_given_cells(case_result: xr.Dataset) -> None:
     for name in ("peak_pressure", "contact_length", "peak_von_mises_z"):
-        assert "error not estimated" in summary(solved)[name].remark, name
-    settled = solved.assign(peak_pressure=1.6234e9, peak_pressure_error=0.0121e9)
-    row = summary(settled)["peak_pressure"]
+        assert "error not estimated" in summary(case_result)[name].remark, name
+    refined = case_result.assign(peak_pressure=1.6234e9, peak_pressure_error=0.0121e9)
+    row = summary(refined)["peak_pressure"]
     assert (row.text, row.remark) == ("1.623 ± 0.012 GPa", "")
-    assert summary(settled.assign(peak_pressure_error=np.inf))["peak_pressure"].remark.startswith("error not estimated")
-    assert summary(settled.assign(normal_load=20.0, normal_load_error=0.1))["normal_load"].text == "20.00 ± 0.10 N"
-    table = summary(settled).to_dataframe()
+    assert summary(refined.assign(peak_pressure_error=np.inf))["peak_pressure"].remark.startswith("error not estimated")
+    assert summary(refined.assign(normal_load=20.0, normal_load_error=0.1))["normal_load"].text == "20.00 ± 0.10 N"
+    table = summary(refined).to_dataframe()
     assert table.loc["peak_pressure", "error"] == 0.0121e9
 
 
-def test_errors_of_a_motion(solved: xr.Dataset) -> None:
+def test_errors_of_a_motion(case_result: xr.Dataset) -> None:
     work = xr.DataArray(2.5e-3, attrs={"units": "J/m"})
-    moved = solved.assign(force_y=1.25, force_y_error=0.02, friction_work=work, friction_work_error=2e-5, spin=0.3)
-    view = summary(moved.assign(load_position=1e-3, load_position_error=1e-12))
+    motion_result = case_result.assign(
+        force_y=1.25, force_y_error=0.02, friction_work=work, friction_work_error=2e-5, spin=0.3
+    )
+    view = summary(motion_result.assign(load_position=1e-3, load_position_error=1e-12))
     assert (view["force_y"].error, view["friction_work"].error) == (0.02, 2e-5)
     assert "±" in view["friction_work"].text
-    # No estimate at all, and a certificate that is no estimate of this number.
+    # Neither an estimate nor a certificate of this number.
     assert np.isnan(view["spin"].error)
     assert np.isnan(view["load_position"].error)
 
 
-def test_rounding(solved: xr.Dataset) -> None:
-    arm = float(solved["hertz_half_width"])
-    moved = solved.assign(force_y=2.0, force_x=-5.7e-9, force_x_error=7e-9, moment_z=1e-9 * arm)
-    view = summary(moved)
+def test_rounding(case_result: xr.Dataset) -> None:
+    arm = float(case_result["hertz_half_width"])
+    motion_result = case_result.assign(force_y=2.0, force_x=-5.7e-9, force_x_error=7e-9, moment_z=1e-9 * arm)
+    view = summary(motion_result)
     assert (view["force_x"].text, view["moment_z"].text, view["force_y"].text) == ("0 N", "0 N m", "2 N")
     assert view["force_x"].remark == "rounding: below 1e-06 of the largest force"
     assert list(view.to_dataframe().loc["force_x", ["value", "error"]]) == [-5.7e-9, 7e-9]
     # Also where none was asked for.
     case = '{"case": {"motion": {"kind": "Rolling", "force_x": %s}}}'
-    assert summary(moved.assign_attrs(contactstudy_inputs=case % "0.0"))["force_x"].text == "0 N"
-    # Known better than its size, known worse than rounding, above it, without another force, and prescribed.
-    for other in (
-        moved.assign(force_x_error=1e-10),
-        moved.assign(force_x_error=1e-3),
-        moved.assign(force_x=3e-6, force_x_error=4e-6),
-        moved.assign(force_y=0.0),
-        moved.assign_attrs(contactstudy_inputs=case % "-5.7e-9"),
+    assert summary(motion_result.assign_attrs(contactstudy_inputs=case % "0.0"))["force_x"].text == "0 N"
+    # Error below the value, above rounding, value above rounding, without another force, and prescribed.
+    for exact_result in (
+        motion_result.assign(force_x_error=1e-10),
+        motion_result.assign(force_x_error=1e-3),
+        motion_result.assign(force_x=3e-6, force_x_error=4e-6),
+        motion_result.assign(force_y=0.0),
+        motion_result.assign_attrs(contactstudy_inputs=case % "-5.7e-9"),
     ):
-        row = summary(other)["force_x"]
+        row = summary(exact_result)["force_x"]
         assert "rounding" not in row.remark
         assert not row.text.startswith("0 ")
 
 
-def test_stick_and_slip(solved: xr.Dataset) -> None:
-    pressed = (solved["pressure"] > 0).drop_attrs()
+def test_stick_and_slip(case_result: xr.Dataset) -> None:
+    in_contact = (case_result["pressure"] > 0).drop_attrs()
     tractions = {
-        "traction_x": 3e7 * pressed,
-        "traction_y": 4e7 * pressed,
-        "slip_x": 0 * pressed,
-        "slip_y": 2e-3 * pressed,
+        "traction_x": 3e7 * in_contact,
+        "traction_y": 4e7 * in_contact,
+        "slip_x": 0 * in_contact,
+        "slip_y": 2e-3 * in_contact,
     }
-    rolled = solved.assign(tractions | {"stick": pressed, "sticking_part": 0.0})
-    view = summary(rolled)
+    rolling_result = case_result.assign(tractions | {"stick": in_contact, "sticking_part": 0.0})
+    view = summary(rolling_result)
     assert (view["sticking_part"].text, view["sticking_part"].remark) == ("0", "error not estimated")
     assert view["largest_traction"].text == "50 MPa"
     assert view["largest_slip"].text == "0.002 per distance rolled"
-    shifted = rolled.assign(slip_y=(2e-6 * pressed).assign_attrs(units="m"), shift_y=3e-6)
-    assert summary(shifted)["largest_slip"].text == "2 \N{MICRO SIGN}m"
-    assert summary(shifted)["shift_y"].remark == "error not estimated"
-    given = {"contactstudy_inputs": '{"case": {"motion": {"kind": "Shift", "y": 3e-6}}}'}
-    assert summary(shifted.assign_attrs(given))["shift_y"].remark == ""
+    shift_result = rolling_result.assign(slip_y=(2e-6 * in_contact).assign_attrs(units="m"), shift_y=3e-6)
+    assert summary(shift_result)["largest_slip"].text == "2 \N{MICRO SIGN}m"
+    assert summary(shift_result)["shift_y"].remark == "error not estimated"
+    inputs = {"contactstudy_inputs": '{"case": {"motion": {"kind": "Shift", "y": 3e-6}}}'}
+    assert summary(shift_result.assign_attrs(inputs))["shift_y"].remark == ""
 
 
 def test_singular_values(singular: xr.Dataset) -> None:
@@ -96,17 +98,17 @@ def test_singular_values(singular: xr.Dataset) -> None:
         assert view[name].text == "∞", name
         assert view[name].remark.startswith("singular")
     assert "GPa mm^0.5" in view["end_intensity_first"].text
-    found = assess(singular)
-    assert found.overall == "with care"
-    assert "intensity replaces the peak" in found.verdict
+    assessment = assess(singular)
+    assert assessment.overall == "with care"
+    assert "intensity replaces the peak" in assessment.verdict
 
 
-def test_answers(solved: xr.Dataset) -> None:
+def test_answers(case_result: xr.Dataset) -> None:
     """Every answer can be another one."""
 
-    def answer(question: str, **changes: object) -> str:
-        answers = assess(solved.assign(changes)).criteria
-        return next(each.answer for each in answers if each.question.startswith(question))
+    def rate(criterion: str, **changes: object) -> str:
+        answers = assess(case_result.assign(changes)).criteria
+        return next(entry.answer for entry in answers if entry.question.startswith(criterion))
 
     sound = {"peak_pressure": 1e9, "peak_pressure_error": 1e6}
     cases: dict[str, tuple[dict[str, object], dict[str, object]]] = {
@@ -117,34 +119,36 @@ def test_answers(solved: xr.Dataset) -> None:
         "Are the cells": (sound, sound | {"peak_pressure_error": 1e9}),
         "Is the largest stress": ({"peak_von_mises_error": 1e7}, {"peak_von_mises_error": np.inf}),
     }
-    for question, (good, bad) in cases.items():
-        assert answer(question, **good) == "yes", question
-        assert answer(question, **bad) in ("with care", "no"), question
-    assert assess(solved.assign(converged=False)).overall == "no"
-    sampled = solved.drop_vars([name for name in solved.data_vars if str(name).startswith("peak_von_mises")])
-    flat = sampled.isel(z=[2])
-    assert any("one position along z only" in each.reason for each in assess(flat).criteria)
+    for criterion, (good, bad) in cases.items():
+        assert rate(criterion, **good) == "yes", criterion
+        assert rate(criterion, **bad) in ("with care", "no"), criterion
+    assert assess(case_result.assign(converged=False)).overall == "no"
+    without_peak = case_result.drop_vars(
+        [name for name in case_result.data_vars if str(name).startswith("peak_von_mises")]
+    )
+    flat = without_peak.isel(z=[2])
+    assert any("one position along z only" in entry.reason for entry in assess(flat).criteria)
     assert assess(xr.Dataset({"pressure": ("x", [1.0])})).overall != "yes"
 
 
 def test_unfiltered_profile() -> None:
-    """The cells settle the pressure on noise as well as that on a crown."""
+    """The pressure converges on noise as on a crown."""
     x = np.linspace(-0.5e-3, 0.5e-3, 201)
     points = x.tolist(), (0.5 * x**2).tolist()
     for cutoff, overall in ((None, "with care"), (5e-5, "yes")):
         profile = profiles.Cylinder(fillet_radius=1e-4) + profiles.Measured(*points, cutoff=cutoff)
         roller = Roller(radius=5e-3, length=1e-3, profile=profile)
         result = solve(Case(body=HalfSpace(material=STEEL), roller=roller, load=50.0), stresses=False)
-        found = assess(result)
-        assert found.overall == overall, found
-        assert any("cut" in each.reason for each in found.criteria)
+        assessment = assess(result)
+        assert assessment.overall == overall, assessment
+        assert any("cut" in entry.reason for entry in assessment.criteria)
 
 
 def test_stored_case(singular: xr.Dataset, tmp_path) -> None:
     singular.to_netcdf(tmp_path / "case.nc")
-    with xr.open_dataset(tmp_path / "case.nc") as again:
-        case = solved_case(again)
-        assert again.contact.summary()["peak_pressure"].text == "∞"
+    with xr.open_dataset(tmp_path / "case.nc") as stored_result:
+        case = solved_case(stored_result)
+        assert stored_result.contact.summary()["peak_pressure"].text == "∞"
     assert case.roller == Roller(radius=5e-3, length=0.25e-3)
     assert case.body.material == STEEL
     with pytest.raises(InvalidInputError, match="contactstudy_inputs"):
@@ -152,43 +156,48 @@ def test_stored_case(singular: xr.Dataset, tmp_path) -> None:
 
 
 def test_citations_of_a_result(singular: xr.Dataset) -> None:
-    used = {what for what, _ in citations(singular).entries}
-    assert {"free ends", "contact iteration", "stresses"} <= used
-    assert "stick and slip" not in used
+    cited_subjects = {subject for subject, _ in citations(singular).entries}
+    assert {"free ends", "contact iteration", "stresses"} <= cited_subjects
+    assert "stick and slip" not in cited_subjects
     profile = profiles.Lundberg(2e-7) + profiles.Cylinder(1e-5)
     case = Case(
         body=HalfSpace(material=STEEL), roller=Roller(radius=5e-3, length=0.3e-3, profile=profile), max_pressure=1e9
     )
-    used = {what for what, _ in citations(solve(case, stresses=False)).entries}
-    assert "profile Lundberg" in used
-    assert not {"free ends", "stresses"} & used
+    cited_subjects = {subject for subject, _ in citations(solve(case, stresses=False)).entries}
+    assert "profile Lundberg" in cited_subjects
+    assert not {"free ends", "stresses"} & cited_subjects
 
 
 def test_citations_of_a_study() -> None:
     base = {"model": "mirror-factor", "profile": {"kind": "measured", "cutoff": 1e-4}}
     study = {"base": base, "sweep": {"body": ["half-space", "quarter-space"]}, "zip": [{"model": ["exact"]}]}
-    used = {what for what, _ in citations(xr.Dataset(attrs={"contactstudy_study": json.dumps(study)})).entries}
-    assert {"free ends", "mirror factor", "profile Measured", "filter of the measured profile"} <= used
-    plain = {"base": {"body": "half-space"}, "cases": [{"profile": "lundberg"}], "sweep": {}}
-    used = {what for what, _ in citations(xr.Dataset(attrs={"contactstudy_study": json.dumps(plain)})).entries}
-    assert "profile Lundberg" in used
-    assert "free ends" not in used
-    rolling = plain | {"sweep": {"roller_body": ["rigid", "finite-length"]}}
+    cited_subjects = {
+        subject for subject, _ in citations(xr.Dataset(attrs={"contactstudy_study": json.dumps(study)})).entries
+    }
+    assert {"free ends", "mirror factor", "profile Measured", "filter of the measured profile"} <= cited_subjects
+    half_space_study = {"base": {"body": "half-space"}, "cases": [{"profile": "lundberg"}], "sweep": {}}
+    cited_subjects = {
+        subject
+        for subject, _ in citations(xr.Dataset(attrs={"contactstudy_study": json.dumps(half_space_study)})).entries
+    }
+    assert "profile Lundberg" in cited_subjects
+    assert "free ends" not in cited_subjects
+    rolling = half_space_study | {"sweep": {"roller_body": ["rigid", "finite-length"]}}
     assert "free ends" in {
-        what for what, _ in citations(xr.Dataset(attrs={"contactstudy_study": json.dumps(rolling)})).entries
+        subject for subject, _ in citations(xr.Dataset(attrs={"contactstudy_study": json.dumps(rolling)})).entries
     }
 
 
 def test_failed_case() -> None:
-    failed = xr.Dataset({"status": "failed", "message": "WindowError: too wide", "converged": np.nan})
-    told = assess(failed.assign(iterations=np.nan))
-    assert told.overall == "no"
-    assert "the case is failed: WindowError: too wide" in repr(told)
-    assert len(told.criteria) == 1
+    failed_case = xr.Dataset({"status": "failed", "message": "WindowError: too wide", "converged": np.nan})
+    assessment = assess(failed_case.assign(iterations=np.nan))
+    assert assessment.overall == "no"
+    assert "the case is failed: WindowError: too wide" in repr(assessment)
+    assert len(assessment.criteria) == 1
 
 
-def test_marks_of_prescribed_values(solved: xr.Dataset) -> None:
-    assert solved.contact.summary()["approach"].remark == "error not estimated"
+def test_marks_of_prescribed_values(case_result: xr.Dataset) -> None:
+    assert case_result.contact.summary()["approach"].remark == "error not estimated"
     case = Case(body=HalfSpace(material=STEEL), roller=Roller(radius=5e-3, length=0.3e-3), approach=2e-6)
     assert solve(case, stresses=False, accuracy=0.1).contact.summary()["approach"].remark == ""
 
@@ -202,11 +211,11 @@ def test_tension_at_the_trailing_edge() -> None:
     assert row.value == float(expected["edge_tension"].max())
     assert 0 < row.error < 0.5 * row.value
     assert row.remark.startswith("x = ")
-    for changed in (result.drop_attrs(), result.assign(traction_y=0.0 * result["traction_y"])):
-        assert "peak_edge_tension" not in summary(changed)
+    for changed_result in (result.drop_attrs(), result.assign(traction_y=0.0 * result["traction_y"])):
+        assert "peak_edge_tension" not in summary(changed_result)
 
 
 def test_texts_of_intensity_material_and_body() -> None:
     assert intensity_text(4.5e6, np.nan, 0.5) == "0.1423 GPa mm^0.5"
-    assert material_words(STEEL) == "E = 210 GPa, Poisson's ratio 0.3"
-    assert body_words(FiniteLengthSpace(length=16e-3, material=STEEL)) == "two free ends, 16 mm apart"
+    assert describe_material(STEEL) == "E = 210 GPa, Poisson's ratio 0.3"
+    assert describe_body(FiniteLengthSpace(length=16e-3, material=STEEL)) == "two free ends, 16 mm apart"

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from contactstudy.study import Study
-from contactstudy.study.batches import batch_paths, damage
+from contactstudy.study.batches import batch_paths, find_damage
 from contactstudy.study.folder import Folder
 from tests.small_study import as_toml, small_study
 from tests.stand_in_solver import HELD, give_tickets
@@ -29,8 +29,8 @@ def start_run(study: Path, folder: Path, *more: str, tickets: int, within: Seque
 
     `within` is a command that runs another one, such as one in a container.
     """
-    held = tickets_of(folder)
-    give_tickets(held, tickets)
+    initial_tickets = tickets_of(folder)
+    give_tickets(initial_tickets, tickets)
     command = [sys.executable, "-m", "tests.study.fake_run", "run", str(study), "--out", str(folder), "--no-figure"]
     return subprocess.Popen(
         [*within, *command, *more],
@@ -39,11 +39,11 @@ def start_run(study: Path, folder: Path, *more: str, tickets: int, within: Seque
         text=True,
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
-        env=os.environ | {HELD: str(held)},
+        env=os.environ | {HELD: str(initial_tickets)},
     )
 
 
-def finished(folder: Path) -> int:
+def count_finished(folder: Path) -> int:
     """Number of cases in the batches of a folder that are written now."""
     results = Folder(folder).results()
     return len(results.locations)
@@ -51,7 +51,7 @@ def finished(folder: Path) -> int:
 
 def intact(folder: Path) -> bool:
     """Whether every batch of a folder has its checksum."""
-    return not any(damage(path) for path in batch_paths(folder / "batches"))
+    return not any(find_damage(path) for path in batch_paths(folder / "batches"))
 
 
 @pytest.fixture

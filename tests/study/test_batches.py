@@ -2,12 +2,12 @@
 
 import numpy as np
 
-from contactstudy.study.batches import common_attributes, offsets
+from contactstudy.study.batches import case_offsets, common_attributes
 
 
 def test_offsets_of_arrays_of_different_shapes():
     sizes = {"x": np.array([2, 3]), "y": np.array([2, 1])}
-    assert offsets(sizes, ("x", "y"), 2).tolist() == [0, 4, 7]
+    assert case_offsets(sizes, ("x", "y"), 2).tolist() == [0, 4, 7]
 
 
 def test_attributes_of_intensities_with_different_exponents():

@@ -18,7 +18,7 @@ from tests.study.conftest import start_run, tickets_of
 LARGE = {"e_over_a": [0.0, 0.5, 1.0, 1.5, 2.0], "friction": [0.0, 0.05, 0.1, 0.2]}
 
 
-def opened(folder):
+def load_dataset(folder):
     """All that a study holds except how long it took."""
     return open_study(folder).drop_vars("seconds").load()
 
@@ -26,7 +26,7 @@ def opened(folder):
 ROOT = Path(__file__).resolve().parents[2]
 
 
-def test_the_documentation_names_these_commands():
+def test_documentation_contains_cluster_commands():
     text = (ROOT / "docs" / "how-to" / "cluster.md").read_text()
     assert SCHEDULER in text
     assert WORKER in text
@@ -34,18 +34,18 @@ def test_the_documentation_names_these_commands():
         assert f"{name}={value}" in text
 
 
-def test_a_run_says_that_it_seeks_the_scheduler_before_it_gives_up(tmp_path, monkeypatch):
+def test_missing_scheduler_is_announced_before_error(tmp_path, monkeypatch):
     monkeypatch.setattr(engine, "RUN", RunSettings(start_seconds=0.2))
     with pytest.raises(StudyFileError, match="no dask scheduler answers"):
         run_study(small_study(), tmp_path, scheduler="tcp://127.0.0.1:1", solver=solve_fake)
     assert "connecting to the dask scheduler at tcp://127.0.0.1:1" in (tmp_path / "run.log").read_text()
 
 
-def test_what_listens_and_does_not_answer_is_no_scheduler(tmp_path, monkeypatch):
+def test_silent_listener_raises_scheduler_error(tmp_path, monkeypatch):
     """Dask alone would wait without end for the rest of a greeting."""
     monkeypatch.setattr(engine, "RUN", RunSettings(start_seconds=0.3, close_seconds=0.3))
-    with socket.create_server(("127.0.0.1", 0)) as listening:
-        address = f"tcp://127.0.0.1:{listening.getsockname()[1]}"
+    with socket.create_server(("127.0.0.1", 0)) as listener:
+        address = f"tcp://127.0.0.1:{listener.getsockname()[1]}"
         with pytest.raises(StudyFileError, match="no dask scheduler"):
             run_study(small_study(), tmp_path, scheduler=address, solver=solve_fake)
 
@@ -61,12 +61,12 @@ def test_cluster_of_separate_processes(tmp_path):
         for scheduler in (address, client):
             folder = tmp_path / type(scheduler).__name__
             assert run_study(study, folder, scheduler=scheduler, solver=solve_fake).counts == {"ok": 20}
-            assert opened(folder).identical(opened(tmp_path / "calm"))
+            assert load_dataset(folder).identical(load_dataset(tmp_path / "calm"))
         assert client.status == "running"
 
 
 @pytest.mark.system
-def test_a_worker_of_a_cluster_that_dies_costs_its_case_only(tmp_path):
+def test_dead_cluster_worker_fails_one_case(tmp_path):
     study = small_study(
         sweep={"e_over_a": [0, 1, 2], "friction": [0, DIES]}, exclude=[{"e_over_a": [0, 1], "friction": DIES}]
     )
@@ -77,7 +77,7 @@ def test_a_worker_of_a_cluster_that_dies_costs_its_case_only(tmp_path):
 
 
 @pytest.mark.parametrize("scheduler", [3, ["tcp://127.0.0.1:1"]])
-def test_a_wrong_scheduler(tmp_path, scheduler):
+def test_invalid_scheduler_raises(tmp_path, scheduler):
     with pytest.raises(InvalidInputError, match="scheduler"):
         run_study(small_study(), tmp_path, scheduler=scheduler, solver=solve_fake)
 
@@ -90,7 +90,7 @@ def test_no_worker_at_all(study, tmp_path):
 
 
 @pytest.mark.slow
-def test_a_worker_with_another_version(study, tmp_path, monkeypatch):
+def test_worker_version_mismatch_is_reported(study, tmp_path, monkeypatch):
     monkeypatch.setattr(engine, "RUN", RunSettings(announce_seconds=0.0))
     unfit = pytest.raises(StudyFileError, match=r"none of the 1 workers can be used: it has version 0.0.0")
     with cluster(tmp_path, workers=0, lame=1) as address, unfit:
@@ -98,7 +98,7 @@ def test_a_worker_with_another_version(study, tmp_path, monkeypatch):
 
 
 @pytest.mark.slow
-def test_a_fit_worker_beside_an_unfit_one(study, tmp_path, monkeypatch):
+def test_worker_of_wrong_version_is_excluded(study, tmp_path, monkeypatch):
     monkeypatch.setattr(engine, "RUN", RunSettings(announce_seconds=100.0))  # workers start slowly on a busy machine
     with cluster(tmp_path, workers=1, lame=1) as address:
         report = run_study(study, tmp_path / "out", scheduler=address, solver=solve_fake)
@@ -106,7 +106,7 @@ def test_a_fit_worker_beside_an_unfit_one(study, tmp_path, monkeypatch):
 
 
 @pytest.mark.slow
-def test_a_scheduler_that_is_killed(tmp_path, monkeypatch):
+def test_killed_scheduler_ends_run(tmp_path, monkeypatch):
     monkeypatch.setenv(HELD, str(tickets_of(tmp_path / "out")))  # the workers are started here, and hold cases too
     file = tmp_path / "long.toml"
     file.write_text(as_toml(small_study("long", sweep={"e_over_a": [0.0, 1.0, 2.0], "friction": [0.0, 0.1, 0.2, 0.3]})))
@@ -126,27 +126,27 @@ def test_a_scheduler_that_is_killed(tmp_path, monkeypatch):
 
 
 @pytest.mark.system
-def test_the_solvers_results_are_the_same_wherever_cases_are_solved(tmp_path):
+def test_results_do_not_depend_on_workers(tmp_path):
     """Bit for bit: in this process, with two workers, and on a cluster."""
     study = small_study(sweep={"e_over_a": [0.0, 1.0], "friction": [0.1], "max_pressure": [1.0e9, 1.5e9]})
     for workers in (0, 2):
         assert run_study(study, tmp_path / str(workers), workers=workers).counts == {"ok": 4}
     with cluster(tmp_path) as address:
         run_study(study, tmp_path / "cluster", scheduler=address)
-    first = opened(tmp_path / "0")
+    first = load_dataset(tmp_path / "0")
     assert float(first["von_mises"].max()) > 1e8
     for name in ("2", "cluster"):
-        assert opened(tmp_path / name).identical(first), name
+        assert load_dataset(tmp_path / name).identical(first), name
 
 
 @pytest.mark.system
-def test_a_case_solved_alone_is_the_same_as_in_a_study(tmp_path):
+def test_single_solution_equals_study_result(tmp_path):
     """The former cases of a worker do not change a bit of the next one."""
     run_study(small_study(), tmp_path / "all", workers=0)
-    alone = small_study(sweep={"e_over_a": [1.0], "friction": [0.1]})
-    run_study(alone, tmp_path / "alone", workers=1)
-    both = [
+    single_case_study = small_study(sweep={"e_over_a": [1.0], "friction": [0.1]})
+    run_study(single_case_study, tmp_path / "alone", workers=1)
+    studies = [
         load_case(tmp_path / name, identity(e_over_a=1.0, friction=0.1)).drop_vars("seconds")
         for name in ("all", "alone")
     ]
-    assert both[0].equals(both[1])
+    assert studies[0].equals(studies[1])

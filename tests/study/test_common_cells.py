@@ -9,20 +9,20 @@ from contactstudy import open_study
 from contactstudy.analysis import load_between, single_case
 from contactstudy.study import run_study
 from contactstudy.study.common_cells import (
-    LEAST_WIDTH,
+    MIN_WIDTH,
     Resampling,
-    centred_cells,
-    centres,
+    cell_centres,
+    centre_cells_on,
     common_columns,
     common_rows,
-    resampled,
+    resample,
     split_cells,
 )
 from tests.small_study import small_study
 
 
-def cells_map(source, borders, outside):
-    return Resampling(source=source, axis=centres(borders), borders=borders, outside=outside)
+def cells_map(source, borders, fill):
+    return Resampling(source=source, axis=cell_centres(borders), borders=borders, fill=fill)
 
 
 @st.composite
@@ -33,47 +33,47 @@ def edges(draw):
 
 
 @given(st.lists(edges(), min_size=1, max_size=5))
-def test_common_columns_cover_all_and_are_nowhere_much_narrower_than_needed(cases):
+def test_common_columns_resolve_all_cases(cases):
     common = common_columns(cases)
     assert common[0] == 0.0
-    assert common[-1] == max(own[-1] for own in cases)
-    narrowest = min(float(np.diff(own).min()) for own in cases)
-    assert np.diff(common).min() >= LEAST_WIDTH * narrowest * (1 - 1e-12)
+    assert common[-1] == max(case_edges[-1] for case_edges in cases)
+    min_width = min(float(np.diff(case_edges).min()) for case_edges in cases)
+    assert np.diff(common).min() >= MIN_WIDTH * min_width * (1 - 1e-12)
 
 
 @given(st.lists(edges(), min_size=1, max_size=4), st.integers(0, 2**32 - 1))
-def test_averages_keep_the_load(cases, seed):
+def test_averaging_keeps_load(cases, seed):
     common = common_columns(cases)
-    for own in cases:
-        values = np.random.default_rng(seed).uniform(0.0, 1.0, own.size - 1)
-        found = resampled("pressure", values, [cells_map(own, common, 0.0)])
-        assert found @ np.diff(common) == pytest.approx(values @ np.diff(own), rel=1e-9)
+    for case_edges in cases:
+        values = np.random.default_rng(seed).uniform(0.0, 1.0, case_edges.size - 1)
+        averages = resample("pressure", values, [cells_map(case_edges, common, 0.0)])
+        assert averages @ np.diff(common) == pytest.approx(values @ np.diff(case_edges), rel=1e-9)
 
 
 @given(edges(), st.floats(-3.0, 3.0), st.floats(-3.0, 3.0))
-def test_a_straight_line_stays_one_between_the_centres(own, slope, offset):
-    centres = 0.5 * (own[1:] + own[:-1])
-    common = np.linspace(own[0], own[-1], 30)
-    found = resampled("gap", offset + slope * centres, [cells_map(own, common, np.nan)])
-    at = 0.5 * (common[1:] + common[:-1])
-    np.testing.assert_allclose(found, offset + slope * np.clip(at, centres[0], centres[-1]), atol=1e-12)
+def test_interpolation_keeps_straight_lines(case_edges, slope, offset):
+    centres = 0.5 * (case_edges[1:] + case_edges[:-1])
+    common = np.linspace(case_edges[0], case_edges[-1], 30)
+    interpolated = resample("gap", offset + slope * centres, [cells_map(case_edges, common, np.nan)])
+    positions = 0.5 * (common[1:] + common[:-1])
+    np.testing.assert_allclose(interpolated, offset + slope * np.clip(positions, centres[0], centres[-1]), atol=1e-12)
 
 
-def test_beyond_the_own_cells_there_is_no_body_and_no_pressure_beside_the_window():
+def test_values_beyond_cells_are_nan_or_zero():
     common = np.array([0.0, 1.0, 2.0, 3.0])
-    own = np.array([0.0, 1.0, 2.0])
-    along_x, along_y = cells_map(own, common, np.nan), cells_map(own, common, 0.0)
-    pressure = resampled("pressure", np.ones((2, 2)), [along_x, along_y])
+    edges = np.array([0.0, 1.0, 2.0])
+    along_x, along_y = cells_map(edges, common, np.nan), cells_map(edges, common, 0.0)
+    pressure = resample("pressure", np.ones((2, 2)), [along_x, along_y])
     np.testing.assert_array_equal(pressure[:2], [[1, 1, 0], [1, 1, 0]])
     assert np.isnan(pressure[2]).all()
-    gap = resampled("gap", np.ones((2, 2)), [along_x, along_y])
+    gap = resample("gap", np.ones((2, 2)), [along_x, along_y])
     assert np.isnan(gap[:, 2]).all()
 
 
-def test_an_infinite_gap_stays_where_it_is():
-    own = np.array([0.0, 1.0, 2.0, 3.0])
-    found = resampled("initial_gap", np.array([1.0, np.inf, np.inf]), [cells_map(own, own, np.nan)])
-    np.testing.assert_array_equal(found, [1.0, np.inf, np.inf])
+def test_infinite_gap_keeps_position():
+    edges = np.array([0.0, 1.0, 2.0, 3.0])
+    gap = resample("initial_gap", np.array([1.0, np.inf, np.inf]), [cells_map(edges, edges, np.nan)])
+    np.testing.assert_array_equal(gap, [1.0, np.inf, np.inf])
 
 
 def test_rows_are_uniform_over_the_widest_window():
@@ -82,7 +82,7 @@ def test_rows_are_uniform_over_the_widest_window():
     assert rows[[0, -1]].tolist() == [-2.0, 2.0]
 
 
-def test_cases_on_their_own_columns_lie_on_one_axis(tmp_path):
+def test_refined_columns_share_common_axis(tmp_path):
     base = {
         "young": 210e9,
         "poisson": 0.3,
@@ -96,24 +96,24 @@ def test_cases_on_their_own_columns_lie_on_one_axis(tmp_path):
     sweep = {"max_pressure": [1.0e9, 1.5e9], "e_over_a": [0.0, 2.0]}
     study = small_study(base=base, sweep=sweep, level="surface")
     assert run_study(study, tmp_path, workers=0, progress=False).counts == {"ok": 4}
-    common, own = open_study(tmp_path), open_study(tmp_path, cells="original")
+    common, original = open_study(tmp_path), open_study(tmp_path, cells="original")
     assert common["pressure"].dims == ("max_pressure", "e_over_a", "x_over_a", "y_over_a")
-    assert own["pressure"].dims == ("max_pressure", "e_over_a", "x_index", "y_over_a")
+    assert original["pressure"].dims == ("max_pressure", "e_over_a", "x_index", "y_over_a")
     assert "averaged" in common["pressure"].attrs["comment"]
     for p0 in (1.0e9, 1.5e9):
         for e in (0.0, 2.0):
-            on_common, on_own = (each.sel(max_pressure=p0, e_over_a=e) for each in (common, own))
+            on_common, on_own = (study_dataset.sel(max_pressure=p0, e_over_a=e) for study_dataset in (common, original))
             # All of the load, and that on the last half-width, which no common cell straddles unevenly for a fine axis.
-            whole = load_between(on_common, -np.inf, np.inf)
-            assert float(whole) == pytest.approx(float(on_own["normal_load"]), rel=1e-6)
+            total_load = load_between(on_common, -np.inf, np.inf)
+            assert float(total_load) == pytest.approx(float(on_own["normal_load"]), rel=1e-6)
             a = float(on_own["hertz_half_width"])
             last = load_between(on_own, e * a, (e + 1) * a)
             assert float(last) == pytest.approx(float(on_own["end_load_first"]), rel=1e-6, abs=1e-9)
-            alone = single_case(on_own)
-            assert alone["pressure"].dims == ("x", "y")
-            assert alone["x_width"].dims == ("x",)
-            assert float(alone["pressure"].max()) >= float(on_common["pressure"].max())
-    # Everything that a bearing engineer varies is there, swept or not.
+            single = single_case(on_own)
+            assert single["pressure"].dims == ("x", "y")
+            assert single["x_width"].dims == ("x",)
+            assert float(single["pressure"].max()) >= float(on_common["pressure"].max())
+    # All parameters of a bearing engineer are present, swept or not.
     assert common["gamma"].dims == ("max_pressure", "e_over_a")
     np.testing.assert_allclose(
         common["gamma"], (0.5e-3 + 2 * common["e_over_a"] * common["hertz_half_width"]).T / 5e-3, rtol=1e-12
@@ -123,13 +123,13 @@ def test_cases_on_their_own_columns_lie_on_one_axis(tmp_path):
 
 
 @given(edges(), st.lists(st.floats(0.0, 3.0), min_size=1, max_size=6, unique=True))
-def test_stress_points_of_a_study_are_centres_of_cells(source, points):
+def test_stress_points_become_cell_centres(source, points):
     points = np.unique(np.round(points, 3))
-    cells = centred_cells(source, points)
+    cells = centre_cells_on(source, points)
     assert np.diff(cells).min() > 0
     assert cells[[0, -1]].tolist() == source[[0, -1]].tolist()
     for point in points[(points > source[0]) & (points < source[-1])]:
-        assert np.abs(centres(cells) - point).min() < 1e-9
+        assert np.abs(cell_centres(cells) - point).min() < 1e-9
 
 
 def test_cells_between_stress_points():
@@ -137,6 +137,6 @@ def test_cells_between_stress_points():
     assert cells.tolist() == [0.0, 1e-06, 0.25, 1.0, 3.0]
 
 
-def test_edges_that_resolve_the_cells_of_two_cases():
+def test_common_edges_of_two_cases():
     first, second = np.array([0.0, 1.0, 2.0, 4.0]), np.array([0.0, 0.9, 4.0, 5.0])
     assert common_columns([first, second]).tolist() == [0.0, 0.9, 2.0, 4.0, 5.0]

@@ -20,7 +20,7 @@ def test_product_in_stable_order():
     assert plan[1].id == case_id(BASE | {"e_over_a": 0, "friction": 0.1})
 
 
-def test_toml_means_the_same(tmp_path):
+def test_toml_equals_python_study(tmp_path):
     study = small_study(sweep={"e_over_a": [0, 1], "profile": ["cylinder"]})
     path = tmp_path / "small.toml"
     path.write_text(
@@ -39,12 +39,12 @@ def test_json_round_trip():
             "friction": (0.0, 0.1),
         },
     )
-    again = Study.from_mapping(json.loads(study.to_json()))
-    assert again.to_json() == study.to_json()
-    assert ids(again) == ids(study)
+    restored_study = Study.from_mapping(json.loads(study.to_json()))
+    assert restored_study.to_json() == study.to_json()
+    assert ids(restored_study) == ids(study)
 
 
-def test_zip_is_one_dimension():
+def test_zip_makes_single_dimension():
     plan = small_study(zip={"max_pressure": [1e9, 2e9], "poisson": [0.3, 0.3]}).plan()
     assert plan.cube.dims == ("e_over_a", "friction", "max_pressure")
     assert plan.cube.labels["poisson"] == ("max_pressure", [0.3, 0.3])
@@ -55,20 +55,20 @@ def test_zip_without_distinct_values_is_numbered():
     assert plan.cube.dims == ("max_pressure_and_e_over_a",)
 
 
-def test_explicit_cases_form_a_cube_if_they_fit():
+def test_complete_explicit_cases_form_cube():
     cases = [{"e_over_a": e, "friction": f} for e in (0, 1) for f in (0, 0.1)]
     assert ids(small_study(sweep={}, cases=cases)) == ids(small_study())
     assert small_study(sweep={}, cases=cases).plan().cube.dims == ("e_over_a", "friction")
 
 
-def test_explicit_cases_that_fill_no_cube_are_listed():
+def test_sparse_explicit_cases_are_listed():
     cases = [{"e_over_a": n, "friction": n / 10, "poisson": n / 20, "max_pressure": (1 + n) * 1e9} for n in range(5)]
     cube = small_study(sweep={}, cases=cases).plan().cube
     assert cube.dims == ("case",)
     assert cube.labels["poisson"][0] == "case"
 
 
-def test_explicit_cases_beside_the_product():
+def test_explicit_cases_extend_product():
     plan = small_study(cases=[{"e_over_a": 2, "friction": 0}]).plan()
     assert plan.cube.shape == (3, 2)
     assert len(plan) == 5
@@ -79,26 +79,26 @@ def test_excluded_combinations():
     assert [case.position for case in plan] == [(0, 0), (0, 1), (1, 0)]
 
 
-def test_exclusion_by_a_default():
+def test_exclusion_by_default_value():
     plan = small_study(
         sweep={"e_over_a": [0, 1]}, exclude=[{"coupled": False, "e_over_a": 1, "body": "finite-length"}]
     ).plan()
     assert len(plan) == 1
 
 
-def test_impossible_combinations_are_skipped_with_the_reason():
+def test_impossible_combinations_are_skipped():
     plan = small_study(sweep={"e_over_a": [0, -9]}).plan()
     assert [bool(case.reason) for case in plan] == [False, True]
     assert "body length" in plan.reason(plan.skipped[0])
     assert len(plan.unique) == 1
 
 
-def test_a_case_named_twice_is_solved_once():
+def test_duplicate_case_is_solved_once():
     plan = small_study(sweep={}, cases=[{"e_over_a": 1}, {"e_over_a": 1.0}]).plan()
     assert (len(plan), len(plan.unique)) == (2, 1)
 
 
-def test_no_sweep_is_one_case():
+def test_study_without_sweep_has_single_case():
     plan = small_study(sweep={}, base=BASE | {"e_over_a": 0}).plan()
     assert plan.cube.dims == ("case",)
     assert plan[0].position == (0,)
@@ -117,18 +117,18 @@ def test_no_sweep_is_one_case():
         ({"exclude": [{"e_over_b": 1}]}, "e_over_a"),
     ],
 )
-def test_unknown_names_are_answered_with_the_nearest(content, hint):
+def test_unknown_name_error_contains_closest_name(content, hint):
     with pytest.raises(InvalidInputError, match=f"did you mean '{hint}'"):
         small_study(**content)
 
 
-def test_a_missing_file_is_named_once(tmp_path):
-    with pytest.raises(StudyFileError) as refused:
+def test_missing_file_appears_once_in_message(tmp_path):
+    with pytest.raises(StudyFileError) as error:
         Study.from_toml(tmp_path / "nowhere.toml")
-    assert str(refused.value).count("nowhere.toml") == 1
+    assert str(error.value).count("nowhere.toml") == 1
 
 
-def test_unknown_key_of_the_file(tmp_path):
+def test_unknown_file_key_raises(tmp_path):
     path = tmp_path / "s.toml"
     path.write_text("[bsae]\nyoung = 1.0\n")
     with pytest.raises(InvalidInputError, match="did you mean 'base'"):
@@ -157,7 +157,7 @@ def test_wrong_content(content):
 
 
 @pytest.mark.parametrize("text", ["a = ", "\x00"])
-def test_files_that_are_not_toml(tmp_path, text):
+def test_invalid_toml_raises(tmp_path, text):
     path = tmp_path / "s.toml"
     path.write_text(text)
     with pytest.raises(StudyFileError, match=r"s\.toml"):
@@ -176,24 +176,24 @@ def test_evenly_spaced_numbers_are_swept():
         small_study(sweep={"friction": {"start": 0.0, "stop": 0.1, "count": 100_000_000}})
 
 
-def test_what_is_excluded_but_is_in_no_case_is_named():
+def test_exclusion_without_effect_is_reported():
     plan = small_study(exclude=[{"e_over_a": [1, 7], "friction": 0.1}]).plan()
     assert plan.unknown == ("exclude.e_over_a = 7.0: no case has this value, so it excludes nothing",)
     assert not small_study(exclude=[{"e_over_a": [1], "friction": 0.1}]).plan().unknown
 
 
-def test_uniform_cells_at_their_default_contradict_an_accuracy_as_well():
+def test_default_uniform_cells_contradict_accuracy():
     plan = small_study(base={**small_study().base, "cells_x": 8, "accuracy": 0.02}).plan()
     assert all("must be given as one of the two, accuracy or uniform cells" in case.reason for case in plan)
 
 
-def test_an_exclusion_changes_nothing_of_the_cases_that_stay():
+def test_exclusion_keeps_remaining_cases():
     sweep, cases = {"friction": [0.0, 0.1]}, [{"cells_x": 12}]
-    plain = small_study(sweep=sweep, cases=cases, base={**small_study().base, "e_over_a": 0.0, "cells_x": None})
-    ruled = replace(plain, exclude=[{"friction": 0.1, "cells_x": 12}])
-    kept = {case.id: case.parameters for case in ruled.plan()}
-    assert kept.items() <= {case.id: case.parameters for case in plain.plan()}.items()
-    assert ruled.plan()[0].parameters == plain.plan()[0].parameters
+    full_study = small_study(sweep=sweep, cases=cases, base={**small_study().base, "e_over_a": 0.0, "cells_x": None})
+    reduced_study = replace(full_study, exclude=[{"friction": 0.1, "cells_x": 12}])
+    remaining_cases = {case.id: case.parameters for case in reduced_study.plan()}
+    assert remaining_cases.items() <= {case.id: case.parameters for case in full_study.plan()}.items()
+    assert reduced_study.plan()[0].parameters == full_study.plan()[0].parameters
 
 
 @pytest.mark.parametrize(
@@ -206,21 +206,21 @@ def test_an_exclusion_changes_nothing_of_the_cases_that_stay():
         ("max_pressure", "have one of max_pressure, load, approach;"),
     ],
 )
-def test_what_every_case_needs_is_asked_for_when_the_study_is_made(missing, message):
+def test_study_without_required_parameter_raises(missing, message):
     base = {name: value for name, value in small_study().base.items() if name != missing}
     with pytest.raises(InvalidInputError, match=message):
         small_study(base=base)
     value = small_study().base[missing]
-    others = {"e_over_a": [0.0, 1.0]}
-    for given in (
-        {"sweep": others | {missing: [value]}},
-        {"sweep": others, "zip": {missing: [value]}},
-        {"sweep": others, "cases": [{missing: value}]},
+    other_sweep = {"e_over_a": [0.0, 1.0]}
+    for arguments in (
+        {"sweep": other_sweep | {missing: [value]}},
+        {"sweep": other_sweep, "zip": {missing: [value]}},
+        {"sweep": other_sweep, "cases": [{missing: value}]},
     ):
-        assert small_study(base=base, **given).size
+        assert small_study(base=base, **arguments).size
     assert len(small_study(base=base, sweep={}, cases=[{missing: value, "e_over_a": 0.0}]).plan().unique) == 1
 
 
-def test_all_that_is_missing_is_named_at_once():
+def test_message_lists_all_missing_parameters():
     with pytest.raises(InvalidInputError, match=r"young; poisson; radius; .*one of e_over_a, end_distance; one of max"):
         Study(name="nothing")

@@ -16,7 +16,7 @@ def blocks(text, language):
     return re.findall(rf"```{language}\n(.*?)```", text, re.DOTALL)
 
 
-def test_the_example_is_a_study():
+def test_documented_example_is_study():
     first, single, _ = (tomllib.loads(block) for block in blocks(TEXT, "toml"))
     assert {*first, *single} == set(KEYS)
     plan = Study.from_mapping(first).plan()
@@ -29,7 +29,7 @@ def test_every_level_is_explained():
         assert f"| `{name}` |" in TEXT, name
 
 
-def test_the_tutorial_shows_one_study_as_file_and_in_python():
+def test_tutorial_file_equals_python_study():
     names = {}
     source = blocks(TUTORIAL, "python")[0]
     exec(source[: source.index("report =")], names)

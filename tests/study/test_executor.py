@@ -24,11 +24,11 @@ def many():
 
 def test_groups_contain_the_frictions_of_a_contact(many):
     assert many.plan().groups.tolist() == [0, 0, 1, 1, 2, 2, 3, 3]
-    coupled = small_study(base=dict(many.base) | {"coupled": True}, sweep=dict(many.sweep))
-    assert coupled.plan().groups.tolist() == list(range(8))
+    coupled_study = small_study(base=dict(many.base) | {"coupled": True}, sweep=dict(many.sweep))
+    assert coupled_study.plan().groups.tolist() == list(range(8))
 
 
-def test_the_first_task_is_one_group_and_later_ones_follow_from_the_time(many):
+def test_task_size_follows_measured_time(many):
     tasks = tasks_of(many, [[0, 1], [2, 3], [4, 5], [6, 7]])
     first = tasks.next_task(1)
     assert len(first.jobs) == 2
@@ -37,25 +37,29 @@ def test_the_first_task_is_one_group_and_later_ones_follow_from_the_time(many):
     assert tasks.remaining == 4
 
 
-def test_cases_of_a_dead_worker_are_solved_alone_and_fail_at_the_second_death(many):
+def test_case_fails_at_second_worker_death(many):
     tasks = tasks_of(many, [[0, 1]])
     task = tasks.next_task(1)
     assert tasks.return_task(task, died=True) == []
-    alone = [tasks.next_task(1) for _ in range(2)]
-    assert [len(task.jobs) for task in alone] == [1, 1]
-    assert [job.name for job in tasks.return_task(alone[0], died=True)] == ids(alone[0])
+    single_tasks = [tasks.next_task(1) for _ in range(2)]
+    assert [len(task.jobs) for task in single_tasks] == [1, 1]
+    assert [job.name for job in tasks.return_task(single_tasks[0], died=True)] == ids(single_tasks[0])
     assert not tasks
 
 
-def test_outcomes_of_this_process(many, tmp_path):
+def test_execution_in_process_yields_outcomes(many, tmp_path):
     tasks = tasks_of(many, [[0, 1], [2, 3]], tmp_path)
-    outcomes = [outcome for _, part in execute(tasks, Engine(workers=0, solver=solve_fake)) for outcome in part]
+    outcomes = [
+        outcome
+        for _, task_outcomes in execute(tasks, Engine(workers=0, solver=solve_fake))
+        for outcome in task_outcomes
+    ]
     assert [outcome.status for outcome in outcomes] == ["ok"] * 4
     assert len(list(tmp_path.glob("*.nc"))) == 2
 
 
 @pytest.mark.parametrize("wait", [-1.0, float("nan"), "long", True])
-def test_a_wrong_wait(wait):
+def test_invalid_wait_raises(wait):
     with pytest.raises(ValueError, match="wait"):
         Engine(wait=wait)
 
@@ -77,9 +81,9 @@ class FakeClient:
 def test_workers_of_another_version_are_left_out():
     from contactstudy.arrays.variables import package_version
 
-    remarks = []
-    workers = Workers(FakeClient({"old": "0.0.1", "none": None, "new": package_version()}), 1.0, remarks.append)
+    messages = []
+    workers = Workers(FakeClient({"old": "0.0.1", "none": None, "new": package_version()}), 1.0, messages.append)
     assert workers.usable(busy=False) == {"new"}
-    assert len(remarks) == 2
+    assert len(messages) == 2
     with pytest.raises(StudyFileError, match=r"none of the 1 workers can be used: it has version 0\.0\.1"):
-        Workers(FakeClient({"old": "0.0.1"}), 0.0, remarks.append).usable(busy=False)
+        Workers(FakeClient({"old": "0.0.1"}), 0.0, messages.append).usable(busy=False)

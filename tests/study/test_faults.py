@@ -1,4 +1,4 @@
-"""What stands in folders, files and studies by mistake or malice ends in an error with a name, or does no harm."""
+"""Wrong or hostile content of folders, files and studies raises a package error, or has no effect."""
 
 import json
 import os
@@ -8,7 +8,7 @@ import pytest
 from contactstudy.cli import main
 from contactstudy.errors import ContactStudyError, InvalidInputError
 from contactstudy.study import Study, StudyFileError, open_study, run_study
-from contactstudy.study.setup import build_setup
+from contactstudy.study.case_setup import build_setup
 from tests.small_study import BASE, as_toml, case_id, small_study
 from tests.stand_in_solver import solve_fake
 
@@ -18,7 +18,7 @@ def run(study, folder):
 
 
 @pytest.mark.parametrize("content", ["[]", "3", '{"name": 3}', '{"nmae": "a"}', "[" * 100_000, "1" * 5000])
-def test_a_study_json_that_is_no_study(tmp_path, content):
+def test_invalid_study_json_raises(tmp_path, content):
     (tmp_path / "study.json").write_text(content)
     with pytest.raises(StudyFileError, match=r"study\.json"):
         open_study(tmp_path)
@@ -58,37 +58,37 @@ def test_extreme_cases_are_skipped_and_stop_no_plan(changes):
     assert [bool(case.reason) for case in plan] == [True]
 
 
-def test_a_missing_one_of_two_is_said_in_words():
+def test_message_contains_missing_alternatives():
     with pytest.raises(InvalidInputError, match=r"e_over_a, end_distance = 'none': must be given as one of the two"):
         build_setup(BASE)
 
 
 @pytest.mark.parametrize("call", [run_study, Study.from_mapping])
 @pytest.mark.parametrize("wrong", ["x", None, 3])
-def test_what_is_no_study(call, wrong):
+def test_invalid_study_arguments_raise(call, wrong):
     with pytest.raises(InvalidInputError, match="study"):
         call(wrong)
 
 
-def test_what_is_no_folder():
+def test_invalid_folder_raises():
     with pytest.raises(InvalidInputError, match="folder = None"):
         open_study(None)
 
 
 @pytest.mark.parametrize("arguments", [("collect",), ("export",)])
-def test_a_folder_in_place_of_a_file(study, tmp_path, arguments, capsys):
+def test_folder_as_study_file_raises(study, tmp_path, arguments, capsys):
     run(study, tmp_path)
     assert main([*arguments, str(tmp_path), "--out", str(tmp_path)]) == 2
     assert "it is a folder" in capsys.readouterr().err
 
 
-def test_a_pipe_as_study(tmp_path):
+def test_pipe_as_study_raises(tmp_path):
     os.mkfifo(tmp_path / "study.json")
     with pytest.raises(StudyFileError, match="not a regular file"):
         open_study(tmp_path)
 
 
-def test_a_stored_study_names_no_file(study, tmp_path):
+def test_stored_study_with_file_raises(study, tmp_path):
     run(study, tmp_path)
     content = json.loads((tmp_path / "study.json").read_text())
     content["base"]["profile"] = {"kind": "sum", "terms": [{"kind": "measured", "file": "/etc/passwd"}]}
@@ -98,7 +98,7 @@ def test_a_stored_study_names_no_file(study, tmp_path):
 
 
 @pytest.mark.parametrize("name", ["run.log", "run.lock", "batches"])
-def test_links_in_the_folder_of_a_stranger(study, tmp_path, name):
+def test_links_in_foreign_folder_raise(study, tmp_path, name):
     folder, target = tmp_path / "out", tmp_path / "target"
     folder.mkdir()
     if name == "batches":
@@ -122,19 +122,19 @@ def test_written_files_replace_links(tmp_path):
 
 
 @pytest.mark.parametrize("name", ["pipe.csv", "pipe.nc"])
-def test_a_measured_profile_from_a_pipe(tmp_path, name):
+def test_measured_profile_from_pipe_raises(tmp_path, name):
     os.mkfifo(tmp_path / name)
     with pytest.raises(InvalidInputError, match="a regular file"):
         case_id({"profile": {"kind": "measured", "file": str(tmp_path / name)}})
 
 
-def test_a_measured_profile_of_more_points_than_results_can_keep():
-    points = [1e-8 * number for number in range(50_001)]
+def test_measured_profile_with_too_many_points():
+    points = [1e-8 * index for index in range(50_001)]
     with pytest.raises(InvalidInputError, match="at most 50000 points"):
         case_id({"profile": {"kind": "measured", "positions": points, "drops": points}})
 
 
-def test_a_byte_order_mark(tmp_path):
+def test_byte_order_mark_is_accepted(tmp_path):
     path = tmp_path / "marked.toml"
     path.write_text("\ufeff" + as_toml(small_study()), encoding="utf-8")
     assert len(Study.from_toml(path).plan()) == 4

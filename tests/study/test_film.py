@@ -11,7 +11,7 @@ import xarray as xr
 from contactstudy import InvalidInputError, Sliding, solve_film
 from contactstudy.film import Asperities
 from contactstudy.study import Study, open_study, run_study
-from contactstudy.study.setup import build_setup
+from contactstudy.study.case_setup import build_setup
 from tests.small_study import case_id
 
 BASE: dict[str, Any] = {
@@ -65,7 +65,7 @@ def test_bad_values(changes: dict[str, Any], named: str) -> None:
         build_setup(BASE | changes)
 
 
-def test_a_dry_case_keeps_its_identity_and_refuses_film_parameters() -> None:
+def test_dry_case_refuses_film_parameters() -> None:
     dry = {name: value for name, value in BASE.items() if "viscosity" not in name}
     assert build_setup(dry).case.motion == Sliding()
     assert build_setup(dry).case.lubricant is None
@@ -86,7 +86,7 @@ def test_films_of_a_study(films: xr.Dataset) -> None:
     assert {"central_film_error", "least_film_error", "end_film_ratio_error"} <= set(films)
 
 
-def test_films_start_from_the_same_speeds_after_an_interruption(films: xr.Dataset, tmp_path) -> None:
+def test_interrupted_films_start_from_same_speeds(films: xr.Dataset, tmp_path) -> None:
     study = Study(name="film", base=BASE, sweep={"entrainment_speed": SPEEDS})
     for sample in (1, None):
         run_study(study, tmp_path, workers=0, progress=False, sample=sample)

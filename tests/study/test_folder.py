@@ -8,15 +8,15 @@ import sys
 import numpy as np
 import pytest
 
-from contactstudy.checks import PART, writing
+from contactstudy.checks import TEMPORARY_SUFFIX, writing
 from contactstudy.errors import InvalidInputError
 from contactstudy.study import LockedError, StoreError, StudyFileError, load_case, open_study, run_study
 from contactstudy.study import folder as module
-from contactstudy.study.batches import batch_paths, damage, join, read_batch, write_batch
+from contactstudy.study.batches import batch_paths, find_damage, join_batches, read_batch, write_batch
 from contactstudy.study.files import write_text
-from contactstudy.study.folder import Folder, Share, latest
+from contactstudy.study.folder import Folder, Share, select_latest
 from contactstudy.study.settings import RunSettings
-from contactstudy.study.worker import Job, Task, without_result
+from contactstudy.study.worker import Job, Task, batch_without_numbers
 from tests.small_study import identity, small_study
 from tests.stand_in_solver import solve_fake
 from tests.study.conftest import ROOT
@@ -26,18 +26,18 @@ def run(study, folder, **options):
     return run_study(study, folder, **({"workers": 0, "solver": solve_fake, "progress": False} | options))
 
 
-def failed(number, parameters, *, run=1, message="WindowError: narrow", warnings=()):
+def failed_batch(index, parameters, *, run=1, message="WindowError: narrow", warnings=()):
     """Batch of a case without results."""
-    job = Job(f"{number:064x}", "", parameters, number)
-    return without_result(Task(jobs=(), folder="", run=run), job, "failed", message, warnings)
+    job = Job(f"{index:064x}", "", parameters, index)
+    return batch_without_numbers(Task(jobs=(), folder="", run=run), job, "failed", message, warnings)
 
 
 def rows(count, **options):
     """Batch of cases without results."""
-    return join([failed(number, {"friction": 0.1}, **options) for number in range(count)])
+    return join_batches([failed_batch(index, {"friction": 0.1}, **options) for index in range(count)])
 
 
-def test_a_second_holder_is_refused_with_the_first_named(tmp_path):
+def test_lock_error_contains_holder(tmp_path):
     folder = Folder(tmp_path)
     with folder.locked(Share()):
         with pytest.raises(LockedError, match=f"process {os.getpid()} on "), folder.locked(Share()):
@@ -48,7 +48,7 @@ def test_a_second_holder_is_refused_with_the_first_named(tmp_path):
         pass
 
 
-def test_shares_exclude_a_run_and_themselves_only(tmp_path, monkeypatch):
+def test_share_lock_excludes_run_and_same_share(tmp_path, monkeypatch):
     monkeypatch.setattr(module, "RUN", RunSettings(share_seconds=0.1))
     folder = Folder(tmp_path)
     with folder.locked(Share(1, 3)), folder.locked(Share(2, 3)):
@@ -59,7 +59,7 @@ def test_shares_exclude_a_run_and_themselves_only(tmp_path, monkeypatch):
         pass
 
 
-def test_the_lock_of_a_killed_process_is_free(tmp_path):
+def test_killed_process_releases_lock(tmp_path):
     code = (
         "import os, signal, sys\n"
         "from contactstudy.study.folder import Folder, Share\n"
@@ -71,27 +71,27 @@ def test_the_lock_of_a_killed_process_is_free(tmp_path):
         pass
 
 
-def test_a_pipe_as_lock(tmp_path):
+def test_pipe_as_lock_raises(tmp_path):
     os.mkfifo(tmp_path / "run.lock")
     with pytest.raises(LockedError, match="not a regular file"), Folder(tmp_path).locked(Share()):
         pass
 
 
-def test_a_batch_is_read_as_it_was_written(tmp_path):
+def test_batch_round_trip(tmp_path):
     write_batch(tmp_path, "a", rows(3, message="Größe", warnings=["one"]))
     (path,) = batch_paths(tmp_path)
-    assert damage(path) == ""
+    assert find_damage(path) == ""
     batch = read_batch(path, arrays=None)
-    assert batch.ids.tolist() == [f"{number:064x}".encode() for number in range(3)]
+    assert batch.ids.tolist() == [f"{index:064x}".encode() for index in range(3)]
     assert batch.texts["message"] == ["Größe"] * 3
     assert batch.run(0)["warnings"] == ["one"]
     assert batch.texts["parameters"] == ['{"friction": 0.1}'] * 3
 
 
-def test_tables_of_parameters_are_stored_once(tmp_path):
+def test_batch_stores_parameter_tables_once(tmp_path):
     profiles = [{"kind": "measured", "drops": [1e-6] * 1000}, {"kind": "cylinder"}]
-    parameters = [{"young": 1.0, "profile": profiles[number % 2], "friction": 0.1 * number} for number in range(40)]
-    batch = join([failed(number, entry) for number, entry in enumerate(parameters)])
+    parameters = [{"young": 1.0, "profile": profiles[index % 2], "friction": 0.1 * index} for index in range(40)]
+    batch = join_batches([failed_batch(index, entry) for index, entry in enumerate(parameters)])
     write_batch(tmp_path, "a", batch)
     (path,) = batch_paths(tmp_path)
     assert read_batch(path, arrays=None).texts["parameters"] == batch.texts["parameters"]
@@ -103,14 +103,14 @@ def test_damage_is_detected(tmp_path, change):
     write_batch(tmp_path, "a", rows(2))
     (path,) = batch_paths(tmp_path)
     path.write_bytes(change(path.read_bytes()))
-    assert "checksum" in damage(path)
+    assert "checksum" in find_damage(path)
 
 
 def test_small_batches_are_joined(tmp_path):
     folder = Folder(tmp_path)
     folder.create()
-    for number in range(20):
-        write_batch(folder.batches, f"a{number}", failed(number, {}))
+    for index in range(20):
+        write_batch(folder.batches, f"a{index}", failed_batch(index, {}))
         folder.compact(Share())
     assert len(batch_paths(folder.batches)) < 10
     folder.compact(Share(), at_end=True)
@@ -118,26 +118,26 @@ def test_small_batches_are_joined(tmp_path):
     assert len(folder.results().locations) == len(read_batch(path)) == 20
 
 
-def test_the_result_of_the_latest_run_counts(tmp_path):
-    batch = join([rows(2), rows(2, run=3, message="later"), rows(2, run=2)])
-    assert latest(batch).texts["message"] == ["later"] * 2
-    assert latest(batch).runs.tolist() == [3, 3]
+def test_latest_run_replaces_results(tmp_path):
+    batch = join_batches([rows(2), rows(2, run=3, message="later"), rows(2, run=2)])
+    assert select_latest(batch).texts["message"] == ["later"] * 2
+    assert select_latest(batch).runs.tolist() == [3, 3]
 
 
 def test_joined_batches_have_equal_results(tmp_path, monkeypatch):
     study = small_study(sweep={"e_over_a": [0.0, 1.0, 2.0], "friction": [0.0, 0.1]})
-    for name, largest in (("one", 2**13), ("many", 1)):
-        monkeypatch.setattr(module, "RUN", RunSettings(batch_cases=largest))
-        for number in (1, 2, 3):
-            run(study, tmp_path / name, share=(number, 3))
+    for name, batch_cases in (("one", 2**13), ("many", 1)):
+        monkeypatch.setattr(module, "RUN", RunSettings(batch_cases=batch_cases))
+        for index in (1, 2, 3):
+            run(study, tmp_path / name, share=(index, 3))
         run(study, tmp_path / name)
-    one, many = (open_study(tmp_path / name).drop_vars("seconds").load() for name in ("one", "many"))
+    single_batch, many_batches = (open_study(tmp_path / name).drop_vars("seconds").load() for name in ("one", "many"))
     assert len(batch_paths(tmp_path / "one" / "batches")) == 1 < len(batch_paths(tmp_path / "many" / "batches"))
-    assert one.identical(many)
+    assert single_batch.identical(many_batches)
 
 
 @pytest.mark.parametrize("schema", [1, None])
-def test_a_folder_of_another_schema_is_refused(study, tmp_path, schema):
+def test_folder_of_other_schema_raises(study, tmp_path, schema):
     run(study, tmp_path)
     content = json.loads((tmp_path / "study.json").read_text())
     (tmp_path / "study.json").write_text(json.dumps(content | {"schema": schema}))
@@ -145,13 +145,13 @@ def test_a_folder_of_another_schema_is_refused(study, tmp_path, schema):
         open_study(tmp_path)
 
 
-def test_a_failed_write_leaves_the_file_as_it_was(tmp_path):
+def test_failed_write_keeps_previous_file(tmp_path):
     path = tmp_path / "a.txt"
     write_text(path, "before")
 
     def fail():
-        with writing(path) as part:
-            part.write_text("half")
+        with writing(path) as temporary_path:
+            temporary_path.write_text("half")
             raise OSError("no space")
 
     with pytest.raises(StoreError, match="no space"):
@@ -160,18 +160,18 @@ def test_a_failed_write_leaves_the_file_as_it_was(tmp_path):
     assert list(tmp_path.iterdir()) == [path]
 
 
-def test_unfinished_files_are_removed_and_others_stay(study, tmp_path):
+def test_cleaning_removes_only_unfinished_files(study, tmp_path):
     run(study, tmp_path)
-    unfinished = tmp_path / "batches" / f"ab.0123456789ab{PART}"
-    unfinished.write_text("half")
-    foreign = tmp_path / f"download{PART}"
+    unfinished_path = tmp_path / "batches" / f"ab.0123456789ab{TEMPORARY_SUFFIX}"
+    unfinished_path.write_text("half")
+    foreign = tmp_path / f"download{TEMPORARY_SUFFIX}"
     foreign.write_text("mine")
     run(study, tmp_path)
-    assert not unfinished.exists()
+    assert not unfinished_path.exists()
     assert foreign.exists()
 
 
-def test_one_case_as_the_solver_returned_it(study, tmp_path):
+def test_loaded_case_equals_solver_result(study, tmp_path):
     run(study, tmp_path)
     case = load_case(tmp_path, identity(e_over_a=1.0, friction=0.1))
     assert case["pressure"].dims == ("x", "y")

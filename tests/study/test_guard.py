@@ -1,4 +1,4 @@
-"""A script that runs a study without a guard is told what it lacks."""
+"""A script that runs a study without a guard raises an error with the remedy."""
 
 from __future__ import annotations
 
@@ -17,15 +17,15 @@ run_study(small_study(), {folder!r}, workers=1, progress=False)
 
 
 @pytest.mark.system
-def test_a_script_without_a_guard_ends_with_what_to_do(tmp_path: Path) -> None:
+def test_unguarded_script_error_contains_remedy(tmp_path: Path) -> None:
     script = tmp_path / "script.py"
     script.write_text(SCRIPT.format(folder=str(tmp_path / "results")))
     root = Path(__file__).parents[2]
-    ended = subprocess.run(
+    process = subprocess.run(
         [sys.executable, script], cwd=root, env={"PYTHONPATH": str(root), "PATH": ""}, capture_output=True, text=True
     )
-    assert ended.returncode == 1
-    last = ended.stderr.strip().splitlines()[-1]
+    assert process.returncode == 1
+    last = process.stderr.strip().splitlines()[-1]
     assert "if __name__ == '__main__':" in last
     assert "workers=0" in last
-    assert ended.stderr.count("Traceback") == 1
+    assert process.stderr.count("Traceback") == 1

@@ -6,18 +6,18 @@ from hypothesis import strategies as st
 from contactstudy.errors import InvalidInputError
 from contactstudy.profiles import Cylinder
 from contactstudy.study import parameters
-from contactstudy.study.profile_tables import SMALLEST, number
+from contactstudy.study.profile_tables import MIN_MAGNITUDE, check_number
 from tests.small_study import case_id
 
 
-@pytest.mark.parametrize("one", [1, 1.0, np.int64(1), np.float32(1), np.float64(1), 1 + 1e-14])
-def test_ways_to_write_one(one):
-    assert case_id({"e_over_a": one}) == case_id({"e_over_a": 1})
+@pytest.mark.parametrize("value", [1, 1.0, np.int64(1), np.float32(1), np.float64(1), 1 + 1e-14])
+def test_equivalent_parameters_have_same_identity(value):
+    assert case_id({"e_over_a": value}) == case_id({"e_over_a": 1})
 
 
 @given(st.floats(-1e12, 1e12))
-def test_digits_beyond_the_twelfth_do_not_count(value):
-    assume(value == 0 or abs(value) >= SMALLEST)
+def test_identity_rounds_to_twelve_digits(value):
+    assume(value == 0 or abs(value) >= MIN_MAGNITUDE)
     assert case_id({"friction": value}) == case_id({"friction": float(f"{value:.12g}")})
 
 
@@ -26,31 +26,33 @@ def test_different_values_differ():
 
 
 def test_order_defaults_and_profile_names_do_not_count():
-    written = {"friction": 0.1, "e_over_a": 1, "profile": {"kind": "cylinder", "fillet_radius": 1e-4}}
-    same = {
+    parameters = {"friction": 0.1, "e_over_a": 1, "profile": {"kind": "cylinder", "fillet_radius": 1e-4}}
+    equal_parameters = {
         "coupled": False,
         "body": "finite-length",
         "profile": {"name": "rounded", "fillet_radius": 1e-4, "kind": "cylinder"},
         "e_over_a": 1,
         "friction": 0.1,
     }
-    assert case_id(written) == case_id(same)
-    assert case_id(written) == case_id(written | {"profile": Cylinder(1e-4)})
+    assert case_id(parameters) == case_id(equal_parameters)
+    assert case_id(parameters) == case_id(parameters | {"profile": Cylinder(1e-4)})
 
 
-def test_points_as_range_and_as_list_are_the_same():
-    spaced = {"start": 0, "stop": 1, "count": 3}
-    assert case_id({"field_z_over_a": spaced}) == case_id({"field_z_over_a": [0, 0.5, 1]})
+def test_range_and_list_have_same_identity():
+    point_range = {"start": 0, "stop": 1, "count": 3}
+    assert case_id({"field_z_over_a": point_range}) == case_id({"field_z_over_a": [0, 0.5, 1]})
 
 
-def test_a_new_parameter_with_a_default_keeps_old_identities(monkeypatch):
-    before = "6c02e5292dae80f3"
-    assert case_id({"friction": 0.1})[:16] == before
-    new = parameters.Parameter(name="roughness", check=number, units="1", meaning="added later", fallback=3.0)
-    monkeypatch.setitem(parameters.PARAMETERS, "roughness", new)
-    assert case_id({"friction": 0.1})[:16] == before
-    assert case_id({"friction": 0.1, "roughness": 3})[:16] == before
-    assert case_id({"friction": 0.1, "roughness": 4})[:16] != before
+def test_new_default_parameter_keeps_identities(monkeypatch):
+    stored_identity = "6c02e5292dae80f3"
+    assert case_id({"friction": 0.1})[:16] == stored_identity
+    new_parameter = parameters.Parameter(
+        name="roughness", check=check_number, units="1", meaning="added later", fallback=3.0
+    )
+    monkeypatch.setitem(parameters.PARAMETERS, "roughness", new_parameter)
+    assert case_id({"friction": 0.1})[:16] == stored_identity
+    assert case_id({"friction": 0.1, "roughness": 3})[:16] == stored_identity
+    assert case_id({"friction": 0.1, "roughness": 4})[:16] != stored_identity
 
 
 def test_identity_never_changes():
@@ -59,6 +61,6 @@ def test_identity_never_changes():
 
 
 @pytest.mark.parametrize("value", [float("nan"), float("inf"), "much", True, None.__class__])
-def test_values_that_are_no_numbers(value):
+def test_non_numeric_values_raise(value):
     with pytest.raises(InvalidInputError, match="friction"):
         case_id({"friction": value})

@@ -1,4 +1,4 @@
-"""The files in other hands: CF conventions, and readers that are not ours."""
+"""The files follow the CF conventions, and other programs read them."""
 
 import re
 import subprocess
@@ -20,19 +20,19 @@ from tests.stand_in_solver import solve_fake
 @pytest.fixture(scope="module")
 def files(tmp_path_factory):
     """One case of every level, and the merged summary."""
-    found = []
+    paths = []
     for level in ("summary", "surface", "fields"):
         folder = tmp_path_factory.mktemp(level)
         sweep = {"e_over_a": [1.0], "friction": [0.1], "profile": [{"kind": "cylinder", "name": "sharp"}]}
         run_study(small_study(level=level, sweep=sweep), folder, workers=0, solver=solve_fake)
-        found += sorted(folder.glob("batches/*.nc"))
+        paths += sorted(folder.glob("batches/*.nc"))
     assert main(["collect", str(folder)]) == 0
-    return [*found, folder / "summary.nc"]
+    return [*paths, folder / "summary.nc"]
 
 
 @pytest.mark.system
-def test_a_reader_without_the_hdf5_library_finds_header_and_values(files):
-    """Pyfive reads the bytes in pure Python: what it finds does not hang on the library that wrote them."""
+def test_batch_is_readable_without_hdf5_library(files):
+    """Pyfive reads the bytes in pure Python, independent of the library that wrote them."""
     import pyfive  # of the `dev` extra: it needs newer companions than the package does
 
     for path in files:
@@ -41,12 +41,12 @@ def test_a_reader_without_the_hdf5_library_finds_header_and_values(files):
             assert any(name.startswith("contactstudy_") for name in file.attrs)
     with pyfive.File(files[2]) as file:
         (case,) = Folder(files[2].parents[1]).results().locations
-        stored = load_case(files[2].parents[1], case.decode())["pressure"].values
-        np.testing.assert_array_equal(file["pressure"][...], stored.ravel())
+        pressure = load_case(files[2].parents[1], case.decode())["pressure"].values
+        np.testing.assert_array_equal(file["pressure"][...], pressure.ravel())
 
 
 @pytest.mark.system
-def test_the_public_checker_finds_nothing(files):
+def test_cf_checker_finds_no_errors(files):
     checker = Path(sys.executable).with_name("compliance-checker")
     for path in files:
         done = subprocess.run([checker, "--test=cf:1.11", str(path)], capture_output=True, text=True, check=False)
@@ -54,7 +54,7 @@ def test_the_public_checker_finds_nothing(files):
         assert "All tests passed!" in done.stdout, done.stdout
 
 
-def test_rules_of_cf_that_need_no_checker(files):
+def test_batch_follows_cf_rules(files):
     for path in files:
         with netCDF4.Dataset(path) as file:
             assert file.Conventions == "CF-1.11"
@@ -75,12 +75,12 @@ def test_rules_of_cf_that_need_no_checker(files):
                         assert variable.size == 1 or (np.diff(variable[:]) > 0).all(), name
 
 
-def test_netcdf4_and_h5netcdf_read_the_same(files):
+def test_netcdf4_and_h5netcdf_read_equal_values(files):
     for path in files:
-        with netCDF4.Dataset(path) as one, h5netcdf.File(path, "r") as other:
-            one.set_auto_mask(False)
-            one.set_auto_chartostring(False)
-            assert set(one.variables) == set(other.variables)
-            for name, variable in one.variables.items():
+        with netCDF4.Dataset(path) as netcdf4_file, h5netcdf.File(path, "r") as h5netcdf_file:
+            netcdf4_file.set_auto_mask(False)
+            netcdf4_file.set_auto_chartostring(False)
+            assert set(netcdf4_file.variables) == set(h5netcdf_file.variables)
+            for name, variable in netcdf4_file.variables.items():
                 if variable.dtype is not str:
-                    np.testing.assert_array_equal(variable[...], other.variables[name][...], err_msg=name)
+                    np.testing.assert_array_equal(variable[...], h5netcdf_file.variables[name][...], err_msg=name)

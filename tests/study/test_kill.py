@@ -13,10 +13,10 @@ from contactstudy.study import open_study, run_study
 from contactstudy.study.folder import Folder
 from tests.small_study import as_toml, small_study
 from tests.stand_in_solver import give_tickets, solve_fake
-from tests.study.conftest import finished, intact, start_run, tickets_of
+from tests.study.conftest import count_finished, intact, start_run, tickets_of
 
 SECONDS = 300.0
-"""Longest wait for another process, on a machine however busy: no test depends on how fast it is."""
+"""Longest wait for another process: no test depends on the speed of the machine."""
 LARGE = {"e_over_a": [0.0, 0.5, 1.0, 1.5, 2.0], "friction": [0.0, 0.05, 0.1, 0.2]}
 
 
@@ -41,33 +41,33 @@ def large(tmp_path):
 
 
 @pytest.mark.system
-@pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143), (signal.SIGHUP, 129)])
-def test_interrupted_run_releases_the_lock_and_goes_on(large, tmp_path, number, code):
+@pytest.mark.parametrize(("signal_number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143), (signal.SIGHUP, 129)])
+def test_interrupted_run_releases_lock_and_resumes(large, tmp_path, signal_number, code):
     folder = tmp_path / "out"
     process = start_run(large, folder, "--workers", "2", tickets=3)
-    wait_for(process, lambda: finished(folder) == 3)
-    if number == signal.SIGINT:
-        os.killpg(process.pid, number)  # as a terminal does: to the workers as well
+    wait_for(process, lambda: count_finished(folder) == 3)
+    if signal_number == signal.SIGINT:
+        os.killpg(process.pid, signal_number)  # as a terminal does: to the workers as well
     else:
-        process.send_signal(number)
+        process.send_signal(signal_number)
     output, errors = process.communicate(timeout=SECONDS)
     assert process.returncode == code, output + errors
     assert f"interrupted: 3 of 20 cases are kept in {folder}; run again to go on" in errors
     assert "Traceback" not in errors
     assert not Folder(folder).holders
     assert not list(folder.glob("**/*.part-*"))
-    assert finished(folder) == 3
+    assert count_finished(folder) == 3
     report = run_study(small_study("large", sweep=LARGE), folder, workers=0, solver=solve_fake)
     assert (report.solved, report.counts) == (17, {"ok": 20})
 
 
 @pytest.mark.system
 @pytest.mark.parametrize("begun", [True, False])
-def test_many_interruptions_end_it_quickly_and_quietly(large, tmp_path, begun):
+def test_repeated_interrupts_end_run_quietly(large, tmp_path, begun):
     """Eight times Ctrl-C, which a terminal sends to the workers as well: while they solve, and while they start."""
     folder = tmp_path / "out"
     process = start_run(large, folder, "--workers", "2", tickets=3 if begun else 0)
-    wait_for(process, lambda: finished(folder) >= 1 if begun else (folder / "run.log").exists())
+    wait_for(process, lambda: count_finished(folder) >= 1 if begun else (folder / "run.log").exists())
     for _ in range(8):
         with contextlib.suppress(ProcessLookupError):
             os.killpg(process.pid, signal.SIGINT)
@@ -80,10 +80,10 @@ def test_many_interruptions_end_it_quickly_and_quietly(large, tmp_path, begun):
 
 
 @pytest.mark.system
-def test_a_second_run_is_refused_while_the_first_goes_on(large, tmp_path):
+def test_concurrent_run_is_refused(large, tmp_path):
     folder = tmp_path / "out"
     first = start_run(large, folder, "--workers", "1", tickets=1)
-    wait_for(first, lambda: finished(folder) == 1)
+    wait_for(first, lambda: count_finished(folder) == 1)
     second = start_run(large, folder, "--workers", "0", tickets=0)
     _, errors = second.communicate(timeout=SECONDS)
     assert second.returncode == 2
@@ -98,11 +98,11 @@ def test_a_second_run_is_refused_while_the_first_goes_on(large, tmp_path):
 def test_killed_run_is_taken_over(large, tmp_path):
     folder = tmp_path / "out"
     process = start_run(large, folder, "--workers", "2", tickets=3)
-    wait_for(process, lambda: finished(folder) == 3)
-    os.kill(process.pid, signal.SIGKILL)  # the parent only: its workers must not outlive it
+    wait_for(process, lambda: count_finished(folder) == 3)
+    os.kill(process.pid, signal.SIGKILL)  # the parent only: its workers must end with the parent
     process.wait()
     process.communicate(timeout=SECONDS)  # ends when the last worker has closed the pipe
-    assert finished(folder) == 3
+    assert count_finished(folder) == 3
     assert intact(folder)
     report = run_study(small_study("large", sweep=LARGE), folder, workers=0, solver=solve_fake)
     assert (report.solved, report.counts) == (17, {"ok": 20})
@@ -112,7 +112,7 @@ def test_killed_run_is_taken_over(large, tmp_path):
 def test_killed_ten_times_at_random_moments(large, tmp_path):
     folder, chance = tmp_path / "out", random.Random(1)
     for _ in range(10):
-        if finished(folder) > 16:  # results to lose are needed until the last kill
+        if count_finished(folder) > 16:  # results to lose are needed until the last kill
             shutil.rmtree(folder / "batches")
         process = start_run(large, folder, "--workers", "2", tickets=chance.randint(1, 4))
         wait_for(process, lambda: not list(tickets_of(folder).iterdir()))
@@ -123,7 +123,7 @@ def test_killed_ten_times_at_random_moments(large, tmp_path):
     output, errors = process.communicate(timeout=SECONDS)
     assert process.returncode == 0, output + errors
     run_study(small_study("large", sweep=LARGE), tmp_path / "calm", workers=0, solver=solve_fake)
-    killed, calm = (open_study(path).drop_vars("seconds").load() for path in (folder, tmp_path / "calm"))
-    assert killed.identical(calm)
+    killed_study, undisturbed = (open_study(path).drop_vars("seconds").load() for path in (folder, tmp_path / "calm"))
+    assert killed_study.identical(undisturbed)
     assert not list(folder.glob("**/*.part-*"))
     assert not (folder / "set-aside").exists()

@@ -1,4 +1,4 @@
-"""Studies of motions: what their parameters become, what is refused, and that results do not depend on the run."""
+"""Studies of motions: parameters, refused parameters, and results independent of the run."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ import pytest
 
 from contactstudy import InvalidInputError, Rolling, Shift, Sliding, solve
 from contactstudy.study import Study, load_case, open_study, run_study
-from contactstudy.study.common_cells import resampled
-from contactstudy.study.setup import build_setup
+from contactstudy.study.case_setup import build_setup
+from contactstudy.study.common_cells import resample
 from tests.small_study import BASE, case_id, small_study
 from tests.study.test_common_cells import cells_map
 
@@ -39,7 +39,7 @@ def rolling_study(**changes: Any) -> Study:
 
 
 @pytest.mark.parametrize(
-    ("given", "expected"),
+    ("parameters", "expected"),
     [
         ({}, Sliding()),
         ({"motion": "sliding"}, Sliding()),
@@ -52,12 +52,12 @@ def rolling_study(**changes: Any) -> Study:
         ({"motion": "rolling", "rolling_model": "fastsim"}, Rolling(model="fastsim")),
     ],
 )
-def test_parameters_make_the_motion(given: dict[str, Any], expected: object) -> None:
-    assert build_setup(BASE | {"e_over_a": 0.0} | given).case.motion == expected
+def test_motion_from_parameters(parameters: dict[str, Any], expected: object) -> None:
+    assert build_setup(BASE | {"e_over_a": 0.0} | parameters).case.motion == expected
 
 
 @pytest.mark.parametrize(
-    ("given", "message"),
+    ("parameters", "message"),
     [
         ({"longitudinal_creepage": 1e-3}, "longitudinal_creepage = 0.001.*left out for motion = 'sliding'.*'rolling'"),
         ({"force_y": 1.0}, "force_y = 1.0.*'shift' or 'rolling'"),
@@ -70,9 +70,9 @@ def test_parameters_make_the_motion(given: dict[str, Any], expected: object) -> 
         ({"motion": "rolling", "spin": "fast"}, "spin = 'fast'"),
     ],
 )
-def test_what_a_motion_does_not_have_is_refused(given: dict[str, Any], message: str) -> None:
+def test_parameter_of_other_motion_raises(parameters: dict[str, Any], message: str) -> None:
     with pytest.raises(InvalidInputError, match=message):
-        build_setup(BASE | {"e_over_a": 0.0} | given)
+        build_setup(BASE | {"e_over_a": 0.0} | parameters)
 
 
 def test_a_study_lists_impossible_motions_as_skipped() -> None:
@@ -80,56 +80,58 @@ def test_a_study_lists_impossible_motions_as_skipped() -> None:
     assert [bool(case.reason) for case in study.plan()] == [True, False]
 
 
-def test_motions_differ_in_identity_and_the_default_does_not_count() -> None:
+def test_identity_contains_motion_without_defaults() -> None:
     assert case_id({"friction": 0.1, "motion": "sliding", "rolling_model": "exact"}) == case_id({"friction": 0.1})
     rolling = {"friction": 0.1, "motion": "rolling"}
     assert len({case_id(rolling | more) for more in ({}, {"spin": 1.0}, {"force_y": 0.0}, {"force_x": 0.0})}) == 4
 
 
 @pytest.fixture(scope="module")
-def rolled(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def rolling_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Results of the four cases, solved at once in this process."""
     folder = tmp_path_factory.mktemp("rolled")
     assert run_study(rolling_study(), folder, workers=0, progress=False).counts == {"ok": 4}
     return folder
 
 
-def test_results_are_those_of_the_solver_and_lie_on_one_axis(rolled: Path) -> None:
+def test_motion_results_equal_solver_results(rolling_folder: Path) -> None:
     study = rolling_study()
-    opened = open_study(rolled)
+    dataset = open_study(rolling_folder)
     for case in study.plan():
         setup = build_setup(case.parameters)
-        alone = solve(setup.case, setup.grid, **setup.options)
-        stored = load_case(rolled, case.id)
+        separate_result = solve(setup.case, setup.grid, **setup.options)
+        stored_case = load_case(rolling_folder, case.id)
         for name in ("pressure", "traction_x", "traction_y", "slip_x", "slip_y", "stick"):
-            np.testing.assert_array_equal(stored[name], alone[name])
-        here = opened.isel(dict(zip(study.plan().cube.dims, case.position, strict=True)))
+            np.testing.assert_array_equal(stored_case[name], separate_result[name])
+        here = dataset.isel(dict(zip(study.plan().cube.dims, case.position, strict=True)))
         for name in ("force_y", "force_y_error", "friction_work", "sticking_part", "moment_z"):
-            assert float(here[name]) == pytest.approx(float(alone[name]), nan_ok=True)
+            assert float(here[name]) == pytest.approx(float(separate_result[name]), nan_ok=True)
         dy = float((here["y_over_a"][1] - here["y_over_a"][0]) * here["hertz_half_width"])
-        whole = dy * (here["traction_y"] * here["x_width"]).sum()
-        assert float(whole) == pytest.approx(float(alone["force_y"]), rel=1e-6, abs=1e-9)
-    # The creepage is a dimension here, so it is no variable.
-    assert opened["force_y"].dims == ("longitudinal_creepage", "max_pressure")
-    assert bool((opened["force_y"].diff("longitudinal_creepage") > 0).all())
-    assert bool((opened["sticking_part"].diff("longitudinal_creepage") < 0).all())
-    assert np.isin(opened["stick"].values, (0, 1)).all()
-    assert "cell at the centre" in opened["stick"].attrs["comment"]
-    assert "averaged" in opened["traction_x"].attrs["comment"]
-    assert opened["longitudinal_creepage"].attrs["units"] == "1"
+        total_force = dy * (here["traction_y"] * here["x_width"]).sum()
+        assert float(total_force) == pytest.approx(float(separate_result["force_y"]), rel=1e-6, abs=1e-9)
+    # The creepage is a dimension here, not a variable.
+    assert dataset["force_y"].dims == ("longitudinal_creepage", "max_pressure")
+    assert bool((dataset["force_y"].diff("longitudinal_creepage") > 0).all())
+    assert bool((dataset["sticking_part"].diff("longitudinal_creepage") < 0).all())
+    assert np.isin(dataset["stick"].values, (0, 1)).all()
+    assert "cell at the centre" in dataset["stick"].attrs["comment"]
+    assert "averaged" in dataset["traction_x"].attrs["comment"]
+    assert dataset["longitudinal_creepage"].attrs["units"] == "1"
 
 
-def test_a_study_that_goes_on_has_the_same_bits(rolled: Path, tmp_path: Path) -> None:
+def test_resumed_motion_study_is_bit_identical(rolling_folder: Path, tmp_path: Path) -> None:
     first, study = rolling_study(sweep={"longitudinal_creepage": [5e-4], "max_pressure": [1.0e9]}), rolling_study()
     run_study(first, tmp_path / "parts", workers=0, progress=False)
     report = run_study(study, tmp_path / "parts", workers=0, progress=False)
     assert (report.solved, report.counts) == (3, {"ok": 4})
     for case in study.plan():
-        one, other = (load_case(folder, case.id) for folder in (tmp_path / "parts", rolled))
-        assert one.drop_vars("seconds").identical(other.drop_vars("seconds").assign_attrs(one.attrs))
+        first_case, second_case = (load_case(folder, case.id) for folder in (tmp_path / "parts", rolling_folder))
+        assert first_case.drop_vars("seconds").identical(
+            second_case.drop_vars("seconds").assign_attrs(first_case.attrs)
+        )
 
 
 def test_flags_come_onto_common_cells_whole() -> None:
     cells, common = np.array([0.0, 1.0, 3.0]), np.array([0.0, 0.4, 0.9, 1.2, 3.0, 4.0])
-    stick = resampled("stick", np.array([True, False]), [cells_map(cells, common, np.nan)])
+    stick = resample("stick", np.array([True, False]), [cells_map(cells, common, np.nan)])
     assert stick.tolist() == [1, 1, 0, 0, 0]

@@ -1,4 +1,4 @@
-"""Profiles in studies: every kind, files of measured ones, and what they do to a case's identity."""
+"""Profiles in studies: every kind, files of measured profiles, and identities of cases."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ import pytest
 from contactstudy import Material, profiles
 from contactstudy.errors import InvalidInputError
 from contactstudy.study import Study, open_study, run_study
-from contactstudy.study.profile_tables import PROFILES, profile_table, profile_text
-from contactstudy.study.setup import build_setup
+from contactstudy.study.case_setup import build_setup
+from contactstudy.study.profile_tables import PROFILES, format_profile, profile_table
 from tests.small_study import BASE, as_toml, case_id, small_study
 from tests.stand_in_solver import solve_fake
 from tests.study.conftest import ROOT
@@ -52,27 +52,31 @@ def trace(folder: Path, height: float = 1.0, name: str = "trace.csv") -> Path:
     return path
 
 
-def test_every_profile_has_a_kind() -> None:
+def test_profile_classes_have_kinds() -> None:
     public = {getattr(profiles, name) for name in profiles.__all__}
-    assert {kind.made for kind in PROFILES.values()} == {entry for entry in public if dataclasses.is_dataclass(entry)}
+    assert {kind.profile_class for kind in PROFILES.values()} == {
+        entry for entry in public if dataclasses.is_dataclass(entry)
+    }
     assert set(EXAMPLES) == set(PROFILES)
 
 
 @pytest.mark.parametrize("kind", EXAMPLES)
-def test_a_profile_as_object_as_table_and_after_json(kind: str) -> None:
+def test_profile_object_table_and_json_agree(kind: str) -> None:
     profile = EXAMPLES[kind]
     assert built(profile) == profile
     table = profile_table(profile)
     assert table["kind"] == kind
-    again = json.loads(json.dumps(table))
-    assert built(again) == profile
-    assert case_id({"profile": profile}) == case_id({"profile": again})
-    assert profile_text(table)
+    restored_table = json.loads(json.dumps(table))
+    assert built(restored_table) == profile
+    assert case_id({"profile": profile}) == case_id({"profile": restored_table})
+    assert format_profile(table)
 
 
 def test_the_documented_profiles_can_be_solved(tmp_path: Path) -> None:
     text = (ROOT / "docs" / "reference" / "study_file.md").read_text()
-    block = next(part for part in text.split("```toml\n") if part.startswith("[[sweep.profile]]")).split("```")[0]
+    block = next(section for section in text.split("```toml\n") if section.startswith("[[sweep.profile]]")).split(
+        "```"
+    )[0]
     trace(tmp_path / "traces", name="roller_7.csv")
     file = tmp_path / "documented.toml"
     file.write_text(as_toml(small_study(sweep={"e_over_a": [1.0]})) + block)
@@ -90,8 +94,8 @@ def test_identity_of_profiles_never_changes() -> None:
 def test_design_pressure(kind: str) -> None:
     more = {"edge_drop": 1e-6} if kind == "fujiwara-kawase" else {}
     modulus = BASE["young"] / (1 - BASE["poisson"] ** 2)
-    made = PROFILES[kind].made.for_pressure(2e9, radius=BASE["radius"], modulus=modulus, **more)  # type: ignore[attr-defined]
-    assert built({"kind": kind, "design_pressure": 2e9, **more}) == made
+    profile = PROFILES[kind].profile_class.for_pressure(2e9, radius=BASE["radius"], modulus=modulus, **more)  # type: ignore[attr-defined]
+    assert built({"kind": kind, "design_pressure": 2e9, **more}) == profile
 
 
 def test_design_load() -> None:
@@ -101,13 +105,13 @@ def test_design_load() -> None:
     assert profile == profiles.Lundberg.for_load(100.0, length=BASE["roller_length"], **about)
 
 
-def test_sizes_that_follow_the_roller() -> None:
+def test_profile_defaults_scale_with_radius() -> None:
     assert built("sphere") == profiles.Sphere(BASE["radius"])
     assert built("iso-cylindrical") == profiles.IsoCylindrical(2 * BASE["radius"])
     assert built({"kind": "iso-tapered", "diameter": 1e-2}) == profiles.IsoTapered(1e-2)
 
 
-def test_the_content_of_a_file_is_the_case_and_not_its_place(tmp_path: Path) -> None:
+def test_identity_depends_on_file_content_only(tmp_path: Path) -> None:
     def identity(path: Path, **options) -> str:
         return case_id(BASE | {"profile": {"kind": "measured", "file": str(path), **options}})
 
@@ -118,11 +122,13 @@ def test_the_content_of_a_file_is_the_case_and_not_its_place(tmp_path: Path) -> 
     assert identity(tmp_path / "one" / "trace.csv", remove_offset=True) == first
     assert identity(tmp_path / "one" / "trace.csv", largest_spike=1e-3) != first
     assert identity(tmp_path / "one" / "trace.csv", cutoff=1e-4) != first
-    filtered = built({"kind": "measured", "file": str(tmp_path / "one" / "trace.csv"), "cutoff": 1e-4, "turn": 180})
-    assert filtered.cutoff == 1e-4
+    filtered_profile = built(
+        {"kind": "measured", "file": str(tmp_path / "one" / "trace.csv"), "cutoff": 1e-4, "turn": 180}
+    )
+    assert filtered_profile.cutoff == 1e-4
 
 
-def test_files_are_found_from_the_study_file_and_not_needed_later(tmp_path: Path, monkeypatch) -> None:
+def test_profile_paths_are_relative_to_study_file(tmp_path: Path, monkeypatch) -> None:
     path = trace(tmp_path / "traces")
     entries = [
         {"kind": "measured", "file": "traces/trace.csv"},
@@ -142,15 +148,15 @@ def test_files_are_found_from_the_study_file_and_not_needed_later(tmp_path: Path
     path.unlink()
     report = run_study(study, tmp_path / "results", workers=0, solver=solve_fake, progress=False)
     assert report.counts == {"ok": 2}
-    opened = open_study(tmp_path / "results")
-    assert opened["profile"].values.tolist() == ["trace", "both"]
-    assert (opened["status"] == "ok").all()
+    dataset = open_study(tmp_path / "results")
+    assert dataset["profile"].values.tolist() == ["trace", "both"]
+    assert (dataset["status"] == "ok").all()
 
 
 def test_labels_tell_measured_profiles_apart(tmp_path: Path) -> None:
     tables = [profile_table(profiles.Measured.from_file(trace(tmp_path, height))) for height in (1.0, 2.0)]
-    assert len({profile_text(table) for table in tables}) == 2
-    assert profile_text(profile_table(EXAMPLES["halves"])) == "cylinder | full-crown crown_radius=0.5"
+    assert len({format_profile(table) for table in tables}) == 2
+    assert format_profile(profile_table(EXAMPLES["halves"])) == "cylinder | full-crown crown_radius=0.5"
 
 
 @pytest.mark.parametrize(

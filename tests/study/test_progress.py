@@ -23,30 +23,30 @@ def watch(monkeypatch):
     return screen
 
 
-def ok(number):
-    return Outcome(f"{number:016x}", "ok", 1.0)
+def ok(index):
+    return Outcome(f"{index:016x}", "ok", 1.0)
 
 
-def test_the_time_left_follows_from_the_finished_cases(tmp_path, monkeypatch):
+def test_remaining_time_follows_from_finished_cases(tmp_path, monkeypatch):
     now = [100.0]
     monkeypatch.setattr(module.time, "monotonic", lambda: now[0])
     with Progress(tmp_path / "run.log") as progress:
         progress.begin(4, total=4)
         for count, time in ((1, 110.0), (3, 120.0)):
             now[0] = time
-            for number in range(count):
-                progress.finished(f"case {number}", ok(number))
+            for index in range(count):
+                progress.record(f"case {index}", ok(index))
             progress.show()
     lines = (tmp_path / "run.log").read_text().splitlines()
     assert [re.search(r"(\d+ s left|all done)", line).group() for line in lines[1:]] == ["30 s left", "all done"]
 
 
-def test_a_bar_on_a_terminal(tmp_path, monkeypatch):
+def test_terminal_has_progress_bar(tmp_path, monkeypatch):
     terminal = watch(monkeypatch)
     with Progress(tmp_path / "run.log") as progress:
         progress.begin(2, total=2)
-        progress.finished("case 0", ok(0))
-        progress.finished("case 1", Outcome("1" * 16, "failed", 1.0, "WindowError: too small"))
+        progress.record("case 0", ok(0))
+        progress.record("case 1", Outcome("1" * 16, "failed", 1.0, "WindowError: too small"))
         progress.show()
     assert "2/2 cases" in terminal.getvalue()
     assert "failed: case 1: WindowError: too small" in terminal.getvalue()
@@ -54,26 +54,26 @@ def test_a_bar_on_a_terminal(tmp_path, monkeypatch):
 
 
 @pytest.mark.parametrize("quiet", ["CI", "no terminal", "not wanted"])
-def test_no_bar_without_a_terminal(tmp_path, monkeypatch, quiet):
+def test_pipe_has_no_progress_bar(tmp_path, monkeypatch, quiet):
     terminal = watch(monkeypatch)
     if quiet == "CI":
         monkeypatch.setenv("CI", "true")
     elif quiet == "no terminal":
         monkeypatch.setattr(Terminal, "isatty", lambda self: False)
-    with Progress(tmp_path / "run.log", shown=quiet != "not wanted") as progress:
+    with Progress(tmp_path / "run.log", visible=quiet != "not wanted") as progress:
         progress.begin(1, total=1)
-        progress.finished("case 0", ok(0))
+        progress.record("case 0", ok(0))
         progress.show()
     assert terminal.getvalue() == ""
 
 
-def test_another_process_reads_the_log_at_once(tmp_path):
+def test_log_is_flushed_after_each_line(tmp_path):
     with Progress(tmp_path / "run.log") as progress:
         progress.begin(2, total=5)
         assert "2 of 5 cases to solve" in (tmp_path / "run.log").read_text()
 
 
-def test_a_link_is_not_followed(tmp_path):
+def test_log_refuses_links(tmp_path):
     (tmp_path / "run.log").symlink_to(tmp_path / "target")
     with pytest.raises(StoreError, match=r"run\.log"), Progress(tmp_path / "run.log"):
         pass

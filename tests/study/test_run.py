@@ -17,7 +17,7 @@ from contactstudy.study.folder import Folder
 from contactstudy.study.settings import RunSettings
 from tests.small_study import small_study
 from tests.stand_in_solver import DIES, FAILS, IS_LARGE, IS_WRONG, solve_fake
-from tests.study.conftest import ROOT, finished, intact
+from tests.study.conftest import ROOT, count_finished, intact
 
 NOBODY = 65534
 
@@ -26,19 +26,19 @@ def run(study, folder, **options):
     return run_study(study, folder, **({"workers": 0, "solver": solve_fake} | options))
 
 
-def test_a_second_run_solves_nothing(study, tmp_path):
+def test_second_run_solves_no_case(study, tmp_path):
     assert run(study, tmp_path).solved == 4
     assert run(study, tmp_path).solved == 0
 
 
-def test_growing_a_study_solves_only_the_new_cases(study, tmp_path):
+def test_extended_study_solves_only_new_cases(study, tmp_path):
     run(study, tmp_path)
     report = run(small_study(sweep={"e_over_a": [0, 1], "friction": [0, 0.1, 0.2]}), tmp_path)
     assert (report.solved, report.counts) == (2, {"ok": 6})
     assert repr(report) == f"RunReport(6 cases: 6 ok; 2 solved now; folder={str(report.folder)!r})"
 
 
-def test_a_failed_case_is_recorded_and_the_rest_goes_on(tmp_path):
+def test_failed_case_does_not_stop_run(tmp_path):
     study = small_study(sweep={"e_over_a": [0, 1], "friction": [FAILS, 0.1]})
     report = run(study, tmp_path)
     assert report.counts == {"failed": 2, "ok": 2}
@@ -48,13 +48,13 @@ def test_a_failed_case_is_recorded_and_the_rest_goes_on(tmp_path):
     assert rerun_study(tmp_path, workers=0, solver=solve_fake).solved == 2
 
 
-def test_a_case_larger_than_the_memory_fails_alone(tmp_path):
+def test_memory_error_fails_single_case(tmp_path):
     report = run(small_study(sweep={"e_over_a": [0], "friction": [IS_LARGE, 0.1]}), tmp_path)
     assert report.counts == {"failed": 1, "ok": 1}
     assert report.failures[0][1] == "MemoryError: Unable to allocate 7 EiB"
 
 
-def repaired(case, grid, **settings):
+def run_quietly(case, grid, **settings):
     settings_of_failed_case = case.friction
     assert settings_of_failed_case == FAILS
     object.__setattr__(case, "friction", 0.0)
@@ -64,43 +64,43 @@ def repaired(case, grid, **settings):
 def test_rerun_repairs(tmp_path):
     study = small_study(sweep={"e_over_a": [0, 1], "friction": [FAILS, 0.1]})
     run(study, tmp_path)
-    assert rerun_study(tmp_path, workers=0, solver=repaired).counts == {"ok": 4}
+    assert rerun_study(tmp_path, workers=0, solver=run_quietly).counts == {"ok": 4}
     assert "failed" not in open_study(tmp_path)["status"]
 
 
-@pytest.mark.parametrize(("number", "kind"), [(signal.SIGINT, KeyboardInterrupt), (signal.SIGTERM, Terminated)])
-def test_an_interruption_says_what_is_kept_and_leaves_out_where_the_solver_was(study, tmp_path, number, kind):
-    solved = []
+@pytest.mark.parametrize(("signal_number", "kind"), [(signal.SIGINT, KeyboardInterrupt), (signal.SIGTERM, Terminated)])
+def test_interrupt_message_contains_finished_cases(study, tmp_path, signal_number, kind):
+    solved_cases = []
 
-    def interrupted(case, grid, **settings):
-        solved.append(case)
-        if len(solved) == 3:
-            signal.raise_signal(number)
+    def solve_then_interrupt(case, grid, **settings):
+        solved_cases.append(case)
+        if len(solved_cases) == 3:
+            signal.raise_signal(signal_number)
         return solve_fake(case, grid, **settings)
 
     with pytest.raises(KeyboardInterrupt) as caught:
-        run(study, tmp_path, solver=interrupted)
-    said = f"interrupted: 2 of 4 cases are kept in {tmp_path}; run again to go on"
-    assert (type(caught.value), str(caught.value)) == (kind, said)
-    shown = "".join(traceback.format_exception(caught.value))
-    assert "interrupted(case" not in shown
-    assert shown.count("File ") == 3  # this test, its helper and the door of the package
-    assert said in (tmp_path / "run.log").read_text()
+        run(study, tmp_path, solver=solve_then_interrupt)
+    message = f"interrupted: 2 of 4 cases are kept in {tmp_path}; run again to go on"
+    assert (type(caught.value), str(caught.value)) == (kind, message)
+    traceback_text = "".join(traceback.format_exception(caught.value))
+    assert "interrupted(case" not in traceback_text
+    assert traceback_text.count("File ") == 3  # this test, its helper and the public function
+    assert message in (tmp_path / "run.log").read_text()
     assert run(study, tmp_path).solved == 2
 
 
 @pytest.mark.parametrize("workers", [0, pytest.param(1, marks=pytest.mark.system)])
-def test_an_error_of_the_program_stops_the_run(tmp_path, workers):
+def test_program_error_stops_run(tmp_path, workers):
     study = small_study(sweep={"e_over_a": [0, 1], "friction": [0.1, IS_WRONG]})
     with pytest.raises(ZeroDivisionError) as caught:
         run(study, tmp_path, workers=workers)
     assert "friction=0.88" in caught.value.__notes__[0]
     assert not Folder(tmp_path).holders
-    assert finished(tmp_path) >= 1
+    assert count_finished(tmp_path) >= 1
     assert "ZeroDivisionError" in (tmp_path / "run.log").read_text()
 
 
-def part(**changes):
+def partial_study(**changes):
     """One half of the small study, whose cases lie in a batch alone."""
     return small_study(sweep={"e_over_a": [changes["e_over_a"]], "friction": [0.0, 0.1]})
 
@@ -111,21 +111,21 @@ def two_batches(study, tmp_path, monkeypatch):
     monkeypatch.setattr(Folder, "compact", lambda self, share, at_end=False: None)
     monkeypatch.setattr(worker, "RUN", RunSettings(save_seconds=60.0))
     for e_over_a in (0.0, 1.0):
-        run(part(e_over_a=e_over_a), tmp_path)
+        run(partial_study(e_over_a=e_over_a), tmp_path)
     Folder(tmp_path).write_study(study)
     assert [len(batch) for batch in Folder(tmp_path).results().batches] == [2, 2]
     return tmp_path
 
 
 @pytest.mark.parametrize("content", [b"", b"no netCDF"])
-def test_a_damaged_batch_costs_its_cases_only(study, two_batches, content):
+def test_damaged_batch_loses_only_contained_cases(study, two_batches, content):
     path = batch_paths(two_batches / "batches")[0]
     path.write_bytes(content)
-    opened = open_study(two_batches)
-    lost = opened["status"] == "missing"
+    dataset = open_study(two_batches)
+    lost = dataset["status"] == "missing"
     assert int(lost.sum()) == 2
-    assert path.name in str(opened["message"].values[lost.values][0])
-    assert float(opened["peak_pressure"].where(~lost).min()) > 0
+    assert path.name in str(dataset["message"].values[lost.values][0])
+    assert float(dataset["peak_pressure"].where(~lost).min()) > 0
     report = run(study, two_batches)
     assert (report.solved, report.counts) == (2, {"ok": 4})
     assert (two_batches / "set-aside" / path.name).read_bytes() == content
@@ -133,7 +133,7 @@ def test_a_damaged_batch_costs_its_cases_only(study, two_batches, content):
     assert float(open_study(two_batches)["peak_pressure"].min()) > 0
 
 
-def test_a_changed_byte_is_found(study, tmp_path):
+def test_changed_byte_is_detected(study, tmp_path):
     run(study, tmp_path)
     (path,) = batch_paths(tmp_path / "batches")
     data = bytearray(path.read_bytes())
@@ -143,7 +143,7 @@ def test_a_changed_byte_is_found(study, tmp_path):
     assert (tmp_path / "set-aside" / path.name).exists()
 
 
-def test_foreign_files_are_set_aside_and_others_stay(study, two_batches):
+def test_foreign_files_are_set_aside(study, two_batches):
     batches = two_batches / "batches"
     first, second = batch_paths(batches)
     shutil.copy(first, second)  # another batch under this name
@@ -157,32 +157,32 @@ def test_foreign_files_are_set_aside_and_others_stay(study, two_batches):
     assert aside == {second.name, "notes.nc", "pipe.nc", "fifo.nc"}
 
 
-def test_a_higher_level_solves_again(tmp_path):
+def test_higher_level_solves_cases_again(tmp_path):
     run(small_study(level="summary"), tmp_path)
     assert run(small_study(level="fields"), tmp_path).solved == 4
     assert run(small_study(level="summary"), tmp_path).solved == 0
 
 
-def test_cases_of_another_version_are_stale_and_solved_by_rerun(study, tmp_path, monkeypatch):
-    monkeypatch.setattr("contactstudy.study.worker.circumstances", lambda: {"contactstudy": "0.0.1"})
+def test_rerun_solves_stale_cases(study, tmp_path, monkeypatch):
+    monkeypatch.setattr("contactstudy.study.worker.run_context", lambda: {"contactstudy": "0.0.1"})
     assert run(study, tmp_path).counts == {"stale": 4}
     monkeypatch.undo()
     assert run(study, tmp_path).solved == 0
     assert rerun_study(tmp_path, workers=0, solver=solve_fake).counts == {"ok": 4}
 
 
-def test_the_folder_of_another_study(study, tmp_path):
+def test_folder_of_other_study_raises(study, tmp_path):
     run(study, tmp_path)
     with pytest.raises(StoreError, match="'small', not 'other'"):
         run(small_study("other"), tmp_path)
 
 
-def test_a_study_without_a_possible_case(tmp_path):
+def test_study_without_possible_case_raises(tmp_path):
     with pytest.raises(StudyFileError, match="body length"):
         run(small_study(sweep={"e_over_a": [-9]}), tmp_path)
 
 
-def test_a_folder_that_cannot_be_made(study, tmp_path):
+def test_uncreatable_folder_raises(study, tmp_path):
     (tmp_path / "file").write_text("")
     with pytest.raises(StoreError, match="cannot make"):
         run(study, tmp_path / "file")
@@ -207,26 +207,26 @@ def ordinary_user():
 @pytest.fixture
 def open_place():
     """A folder that every user may enter, as pytest's own is not."""
-    place = Path(tempfile.mkdtemp())
-    place.chmod(0o777)
-    yield place
-    for folder in (place, *place.glob("**/")):
+    path = Path(tempfile.mkdtemp())
+    path.chmod(0o777)
+    yield path
+    for folder in (path, *path.glob("**/")):
         folder.chmod(0o777)
-    shutil.rmtree(place)
+    shutil.rmtree(path)
 
 
 @pytest.mark.skipif(not hasattr(os, "geteuid"), reason="permissions of POSIX")
-@pytest.mark.parametrize("closed", ["", "batches"])
-def test_a_folder_without_permission(study, open_place, closed):
+@pytest.mark.parametrize("closed_folder", ["", "batches"])
+def test_folder_without_permission_raises(study, open_place, closed_folder):
     folder = open_place / "out"
     run(study, folder)
     with_more = small_study(sweep={"e_over_a": [0, 1], "friction": [0, 0.1, 0.2]})
     for path in (folder, *folder.glob("**/*")):
         path.chmod(0o777)
-    (folder / closed).chmod(0o555)
+    (folder / closed_folder).chmod(0o555)
     with ordinary_user(), pytest.raises(StoreError, match=r"cannot write .*[Pp]ermission"):
         run(with_more, folder)
-    (folder / closed).chmod(0o777)
+    (folder / closed_folder).chmod(0o777)
     assert not Folder(folder).holders
     assert intact(folder)
     report = run(with_more, folder)
@@ -234,7 +234,7 @@ def test_a_folder_without_permission(study, open_place, closed):
 
 
 @pytest.mark.skipif(not hasattr(os, "geteuid"), reason="permissions of POSIX")
-def test_a_folder_that_may_not_be_made(study, open_place):
+def test_forbidden_folder_raises(study, open_place):
     open_place.chmod(0o555)
     with ordinary_user(), pytest.raises(StoreError, match=r"cannot make .*[Pp]ermission"):
         run(study, open_place / "new")
@@ -242,34 +242,34 @@ def test_a_folder_that_may_not_be_made(study, open_place):
 
 @pytest.fixture
 def small_disk(tmp_path):
-    """A file system of its own, too small for a study."""
-    place = tmp_path / "disk"
-    place.mkdir()
-    mount = ["mount", "-t", "tmpfs", "-o", "size=1200k", "tmpfs", str(place)]
+    """A file system too small for a study."""
+    path = tmp_path / "disk"
+    path.mkdir()
+    mount = ["mount", "-t", "tmpfs", "-o", "size=1200k", "tmpfs", str(path)]
     if shutil.which("mount") is None or subprocess.run(mount, capture_output=True, check=False).returncode:
         pytest.skip("needs the right to mount a file system")
-    yield place
-    subprocess.run(["umount", "-l", str(place)], check=True)
+    yield path
+    subprocess.run(["umount", "-l", str(path)], check=True)
 
 
 @pytest.mark.system
 @pytest.mark.parametrize("workers", [0, 1])
-def test_a_full_disk(small_disk, study, workers):
-    rest = small_disk / "other.bin"
-    rest.write_bytes(bytes(1_060_000))
+def test_full_disk_raises(small_disk, study, workers):
+    filler = small_disk / "other.bin"
+    filler.write_bytes(bytes(1_060_000))
     with pytest.raises(StoreError, match=r"disk is full|No space"):
         run(study, small_disk / "out", workers=workers)
     assert not list(small_disk.glob("**/*.part-*"))
     assert not Folder(small_disk / "out").holders
     assert intact(small_disk / "out")
-    done = finished(small_disk / "out")
-    rest.unlink()
+    done = count_finished(small_disk / "out")
+    filler.unlink()
     report = run(study, small_disk / "out")
     assert (report.counts, report.solved) == ({"ok": 4}, 4 - done)
 
 
 @pytest.mark.system
-def test_a_worker_that_dies_costs_its_case_only(tmp_path):
+def test_dead_local_worker_fails_one_case(tmp_path):
     sweep = {"e_over_a": [0, 1, 2], "friction": [0, DIES]}
     study = small_study(sweep=sweep, exclude=[{"e_over_a": [0, 2], "friction": DIES}])
     report = run(study, tmp_path, workers=2)
@@ -287,13 +287,13 @@ from contactstudy.study.progress import Progress
 from tests.small_study import small_study
 from tests.stand_in_solver import solve_fake
 
-sizes, count = [], Progress.finished
+sizes, count = [], Progress.record
 
 def note(self, name, outcome):
     count(self, name, outcome)
     sizes.append(psutil.Process().memory_info().rss)
 
-Progress.finished = note
+Progress.record = note
 run.RUN = replace(run.RUN, compact_seconds=1e9)  # joined batches take memory up to batch_bytes, whenever that is
 sweep = {"e_over_a": [0, 1, 2, 3, 4], "max_pressure": [1e9 + 1e6 * number for number in range(100)]}
 assert run_study(small_study(sweep=sweep), sys.argv[1], workers=2, solver=solve_fake).counts == {"ok": 500}
@@ -302,36 +302,38 @@ print(max(sizes[250:]) - sizes[250])
 
 
 @pytest.mark.slow
-def test_memory_of_the_parent_is_flat(tmp_path):
+def test_parent_memory_does_not_grow(tmp_path):
     """Over the second half of 500 cases of two workers that retain fields."""
     command = [sys.executable, "-c", MEMORY_OF_A_RUN, str(tmp_path)]
     growth = subprocess.run(command, cwd=ROOT, check=True, capture_output=True, text=True).stdout
     assert float(growth.split()[-1]) < 8e6
 
 
-def test_a_sample_is_solved_for_an_estimate(study, tmp_path):
+def test_sample_solves_evenly_spaced_cases(study, tmp_path):
     report = run(study, tmp_path, sample=2)
     assert (report.solved, report.counts) == (2, {"ok": 2, "missing": 2})
     assert report.states.status.tolist()[0] == report.states.status.tolist()[-1] == 0
 
 
-def test_shares_are_independent_and_make_up_the_study(study, tmp_path):
-    for number in (2, 1, 3):
-        run(study, tmp_path / "shares", share=(number, 3))
+def test_shares_complete_study(study, tmp_path):
+    for share_number in (2, 1, 3):
+        run(study, tmp_path / "shares", share=(share_number, 3))
     run(study, tmp_path / "whole")
-    shared, whole = (open_study(tmp_path / name).drop_vars("seconds").load() for name in ("shares", "whole"))
-    assert shared.identical(whole)
+    shared_study, whole_study = (
+        open_study(tmp_path / name).drop_vars("seconds").load() for name in ("shares", "whole")
+    )
+    assert shared_study.identical(whole_study)
     assert (tmp_path / "shares" / "run-2-of-3.log").exists()
     assert run(study, tmp_path / "shares").solved == 0
 
 
 @pytest.mark.parametrize("share", [(0, 3), (4, 3), (1, 2, 3), "1/3", (1.0, 2)])
-def test_a_wrong_share(study, tmp_path, share):
+def test_invalid_share_raises(study, tmp_path, share):
     with pytest.raises(InvalidInputError, match="share"):
         run(study, tmp_path, share=share)
 
 
-def test_a_deleted_working_directory(study, tmp_path, monkeypatch):
+def test_deleted_working_directory_raises(study, tmp_path, monkeypatch):
     gone = tmp_path / "gone"
     gone.mkdir()
     monkeypatch.chdir(gone)
@@ -340,7 +342,7 @@ def test_a_deleted_working_directory(study, tmp_path, monkeypatch):
         run(study, None)
 
 
-def test_a_case_that_cannot_be_set_up_is_skipped_by_the_worker(tmp_path, monkeypatch):
+def test_worker_skips_impossible_case(tmp_path, monkeypatch):
     monkeypatch.setattr("contactstudy.study.plan.RUN", RunSettings(checked_groups=1))
     report = run(small_study(sweep={"e_over_a": [0, -9, -8], "friction": [0.0]}), tmp_path)
     assert report.counts == {"ok": 1, "skipped": 2}

@@ -1,4 +1,4 @@
-"""Limits of first yield and shakedown among what a study keeps of each case."""
+"""Limits of first yield and shakedown in a study."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ import pytest
 from contactstudy import open_study, run_study
 from contactstudy.fatigue import shakedown_limit
 from contactstudy.solution import solve
-from contactstudy.study.setup import build_setup
+from contactstudy.study.case_setup import build_setup
 from tests.small_study import BASE, small_study
 
 PASSAGE = {"field_y_over_a": np.linspace(-2.0, 2.0, 17).tolist()}
 
 
 @pytest.mark.slow
-def test_cases_keep_their_limits_where_stresses_span_the_passage(tmp_path):
+def test_shakedown_limits_with_sufficient_positions(tmp_path):
     run_study(small_study(base=BASE | PASSAGE, level="summary"), tmp_path, workers=0)
     study = open_study(tmp_path)
     assert study["shakedown_limit"].dims == ("e_over_a", "friction")
@@ -23,13 +23,13 @@ def test_cases_keep_their_limits_where_stresses_span_the_passage(tmp_path):
     assert (study["shakedown_limit"] > study["first_yield_limit"]).all()
     assert (study["shakedown_limit"].sel(friction=0.1) < study["shakedown_limit"].sel(friction=0.0)).all()
     setup = build_setup(BASE | PASSAGE | {"e_over_a": 1.0, "friction": 0.1})
-    found = shakedown_limit(solve(setup.case, setup.grid, **setup.options))
-    kept = study.sel(e_over_a=1.0, friction=0.1)
+    limit = shakedown_limit(solve(setup.case, setup.grid, **setup.options))
+    study_case = study.sel(e_over_a=1.0, friction=0.1)
     for name in ("shakedown_limit", "first_yield_limit", "peak_shakedown_stress_z"):
-        np.testing.assert_allclose(kept[name], found[name], rtol=1e-6)
+        np.testing.assert_allclose(study_case[name], limit[name], rtol=1e-6)
 
 
-def test_cases_with_stresses_at_few_positions_along_y_keep_none(tmp_path):
+def test_shakedown_limits_missing_with_few_positions(tmp_path):
     run_study(small_study(sweep={"e_over_a": [0.0]}, level="summary"), tmp_path, workers=0)
     study = open_study(tmp_path)
     assert "peak_von_mises" in study

@@ -6,37 +6,37 @@ import pytest
 from contactstudy import cache, solve
 from contactstudy.fields import surface
 from contactstudy.study import Study, load_case, open_study, run_study
-from contactstudy.study.setup import build_setup
+from contactstudy.study.case_setup import build_setup
 from tests.small_study import BASE, small_study
 
 
-def test_quarter_space_with_the_roller_at_a_distance_from_its_end(tmp_path):
+def test_quarter_space_with_distant_roller(tmp_path):
     study = small_study(sweep={"body": ["quarter-space"], "e_over_a": [0.0, 2.0]})
     assert run_study(study, tmp_path, workers=0).counts == {"ok": 2}
-    opened = open_study(tmp_path).sel(body="quarter-space")
+    dataset = open_study(tmp_path).sel(body="quarter-space")
     for e_over_a in (0.0, 2.0):
-        case = opened.sel(e_over_a=e_over_a)
-        pressed = case["x_over_a"].where(case["pressure"].max("y_over_a") > 0)
+        case = dataset.sel(e_over_a=e_over_a)
+        loaded_positions = case["x_over_a"].where(case["pressure"].max("y_over_a") > 0)
         step = float(case["x_over_a"].diff("x_over_a").max())
-        assert float(pressed.min()) == pytest.approx(e_over_a + step / 2, abs=step)
+        assert float(loaded_positions.min()) == pytest.approx(e_over_a + step / 2, abs=step)
         assert float(case["end_traction_residual"]) < 1e-4
     # A sharp roller carries less at a free end than inside, where its edge presses into the face.
-    assert float(opened["end_pressure_over_p0_first"].sel(e_over_a=0.0)) < 1.0
-    assert float(opened["end_pressure_over_p0_first"].sel(e_over_a=2.0)) > 1.0
+    assert float(dataset["end_pressure_over_p0_first"].sel(e_over_a=0.0)) < 1.0
+    assert float(dataset["end_pressure_over_p0_first"].sel(e_over_a=2.0)) > 1.0
 
 
-def test_a_study_gives_what_the_solver_gives(tmp_path):
+def test_study_equals_solver_result(tmp_path):
     study = small_study(sweep={"body": ["quarter-space"], "e_over_a": [1.0], "friction": [0.1]})
     run_study(study, tmp_path, workers=0)
     (case,) = study.plan()
     setup = build_setup(case.parameters)
-    alone = solve(setup.case, setup.grid, **setup.options)
-    stored = load_case(tmp_path, case.id)
-    np.testing.assert_array_equal(stored["pressure"], alone["pressure"])
-    np.testing.assert_array_equal(stored["tau_xz"], alone["tau_xz"].astype(np.float32))
+    separate_result = solve(setup.case, setup.grid, **setup.options)
+    stored_case = load_case(tmp_path, case.id)
+    np.testing.assert_array_equal(stored_case["pressure"], separate_result["pressure"])
+    np.testing.assert_array_equal(stored_case["tau_xz"], separate_result["tau_xz"].astype(np.float32))
 
 
-def test_comparison_models_beside_the_exact_ends(tmp_path):
+def test_study_over_end_models(tmp_path):
     study = small_study(
         level="surface",
         base=BASE
@@ -49,37 +49,39 @@ def test_comparison_models_beside_the_exact_ends(tmp_path):
     )
     report = run_study(study, tmp_path, workers=0)
     assert report.counts == {"ok": 4, "skipped": 2}
-    opened = open_study(tmp_path).squeeze("e_over_a")
-    assert opened["status"].sel(body="half-space").values.tolist() == ["ok", "skipped", "skipped"]
-    assert "no free end" in opened["message"].sel(body="half-space", model="mirror").item()
-    residual = opened["end_traction_residual"].sel(body="finite-length")
+    dataset = open_study(tmp_path).squeeze("e_over_a")
+    assert dataset["status"].sel(body="half-space").values.tolist() == ["ok", "skipped", "skipped"]
+    assert "no free end" in dataset["message"].sel(body="half-space", model="mirror").item()
+    residual = dataset["end_traction_residual"].sel(body="finite-length")
     exact, once, mirror = (float(residual.sel(model=m)) for m in ("exact", "single-mirror", "mirror"))
     assert exact < 3e-4 < once < mirror  # from a depth of 0.02 a on
-    ends = opened["end_pressure_over_p0"].sel(body="finite-length").values
+    ends = dataset["end_pressure_over_p0"].sel(body="finite-length").values
     assert len({round(value, 4) for value in ends.tolist()}) == 3
 
 
-def test_one_is_one_case(tmp_path):
+def test_number_types_have_same_identity(tmp_path):
     base = BASE | {"body": "half-space", "stresses": False}
-    for number, one in enumerate([1, 1.0, np.int64(1), np.float32(1)]):
-        study = small_study(base=base, sweep={"e_over_a": [one], "friction": [0]})
-        assert run_study(study, tmp_path, workers=0).solved == (number == 0)
+    for index, value in enumerate([1, 1.0, np.int64(1), np.float32(1)]):
+        study = small_study(base=base, sweep={"e_over_a": [value], "friction": [0]})
+        assert run_study(study, tmp_path, workers=0).solved == (index == 0)
 
 
-def test_cases_that_share_an_operator_make_it_once(tmp_path, monkeypatch):
-    made = []
+def test_common_operator_is_computed_once(tmp_path, monkeypatch):
+    computed_bodies = []
     build = surface.SurfaceOperator.of
-    monkeypatch.setattr(surface.SurfaceOperator, "of", lambda *request: made.append(request) or build(*request))
+    monkeypatch.setattr(
+        surface.SurfaceOperator, "of", lambda *request: computed_bodies.append(request) or build(*request)
+    )
     # Friction outside: in the study's order the operators would alternate.
     sweep = {"friction": [0.0, 0.1, 0.2], "e_over_a": [0.0, 1.0]}
     study = small_study(base=BASE | {"stresses": False, "radius": 5.001e-3}, sweep=sweep, level="summary")
     assert run_study(study, tmp_path, workers=0).counts == {"ok": 6}
-    assert len([entry for entry in made if entry[0].model == "exact"]) == 2
-    assert len(made) == len(set(made))
+    assert len([entry for entry in computed_bodies if entry[0].model == "exact"]) == 2
+    assert len(computed_bodies) == len(set(computed_bodies))
     assert cache.info().limit <= 2**31
 
 
-def test_a_study_over_the_approach_has_loads_with_their_errors(tmp_path) -> None:
+def test_study_over_approach_contains_load_errors(tmp_path) -> None:
     base = {"young": 210e9, "poisson": 0.3, "radius": 5e-3, "roller_length": 0.3e-3, "end_distance": 0.1e-3}
     study = Study(
         name="pressed",
@@ -87,8 +89,8 @@ def test_a_study_over_the_approach_has_loads_with_their_errors(tmp_path) -> None
         sweep={"approach": [1e-6, 2e-6]},
     )
     assert run_study(study, tmp_path, workers=0, progress=False).counts == {"ok": 2}
-    opened = open_study(tmp_path)
-    assert opened.approach.dims == ("approach",)
-    assert (np.diff(opened.normal_load) > 0).all()
-    assert (opened.normal_load_error < 0.02 * opened.normal_load).all()
-    np.testing.assert_allclose(opened.e_over_a, 0.1e-3 / opened.hertz_half_width)
+    dataset = open_study(tmp_path)
+    assert dataset.approach.dims == ("approach",)
+    assert (np.diff(dataset.normal_load) > 0).all()
+    assert (dataset.normal_load_error < 0.02 * dataset.normal_load).all()
+    np.testing.assert_allclose(dataset.e_over_a, 0.1e-3 / dataset.hertz_half_width)

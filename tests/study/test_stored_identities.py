@@ -10,9 +10,9 @@ from contactstudy.case.case import Case
 from contactstudy.case.gridding import WINDOWS, widening_grids
 from contactstudy.solution import solve
 from contactstudy.study import Study
-from contactstudy.study.parameters import PARAMETERS, Parameter, taken_by
-from contactstudy.study.profile_tables import number
-from contactstudy.study.setup import build_setup
+from contactstudy.study.case_setup import build_setup
+from contactstudy.study.parameters import PARAMETERS, Parameter, keywords_of
+from contactstudy.study.profile_tables import check_number
 from tests.small_study import BASE
 from tests.study.conftest import ROOT
 
@@ -51,21 +51,21 @@ def test_identities_of_stored_studies_never_change(name):
     assert (len(cases), together[:16]) == STORED[name]
 
 
-def test_defaults_are_those_that_old_cases_were_solved_with():
-    """They come from the signatures of Case, choose_grid and solve: one that changes there needs a new SCHEMA here."""
+def test_defaults_match_stored_cases():
+    """Defaults come from the signatures of Case, choose_grid and solve: a changed default needs a new SCHEMA."""
     assert {name: entry.default for name, entry in PARAMETERS.items() if entry.default is not None} == DEFAULTS
 
 
-def test_a_keyword_becomes_a_parameter_by_one_entry(monkeypatch):
+def test_new_table_entry_adds_parameter(monkeypatch):
     def takes_more(case: Case, *, sharpness: float = 0.5) -> None: ...
 
-    new = Parameter(name="sharpness", check=number, units="1", meaning="made up", taker=takes_more)
-    monkeypatch.setitem(PARAMETERS, "sharpness", new)
-    assert new.default == 0.5
-    assert taken_by(takes_more, {"sharpness": 0.7, "friction": 0.1}) == {"sharpness": 0.7}
+    new_parameter = Parameter(name="sharpness", check=check_number, units="1", meaning="made up", consumer=takes_more)
+    monkeypatch.setitem(PARAMETERS, "sharpness", new_parameter)
+    assert new_parameter.default == 0.5
+    assert keywords_of(takes_more, {"sharpness": 0.7, "friction": 0.1}) == {"sharpness": 0.7}
 
 
-def test_a_study_starts_on_the_grid_of_solve():
+def test_study_uses_default_grid():
     case = build_setup(BASE | {"e_over_a": 1.0, "cells_x": None, "cells_y": None})
     assert case.grid == choose_grid(case.case)
     assert list(case.grids) == list(widening_grids(case.case))
@@ -75,6 +75,6 @@ def test_a_study_starts_on_the_grid_of_solve():
 
 
 @pytest.mark.parametrize("chosen", [{"window": 2.2}, {"margin": 3.0}])
-def test_a_window_of_the_studys_own_is_kept(chosen):
+def test_explicit_window_is_kept(chosen):
     setup = build_setup(BASE | {"e_over_a": 1.0} | chosen)
     assert list(setup.grids) == [setup.grid]

@@ -17,7 +17,7 @@ def ids(study: Study) -> list[str]:
     return [case.id for case in study.plan()]
 
 
-def test_a_grid_is_a_product() -> None:
+def test_table_of_coordinates_is_product() -> None:
     table = xr.Dataset(coords={"e_over_a": [0.0, 1.0], "friction": [0.0, 0.1]})
     study = Study.from_dataset(table, "small", base=BASE)
     assert study == small_study(sweep={"e_over_a": [0.0, 1.0], "friction": [0.0, 0.1]})
@@ -50,7 +50,7 @@ def test_shared_numbers_units_words_and_profiles() -> None:
     assert ids(study) == ids(expected)
 
 
-def test_values_along_two_dimensions_and_missing_ones_are_cases() -> None:
+def test_two_dimensional_table_makes_explicit_cases() -> None:
     pressure = xr.DataArray([[1.0, 1.5], [np.nan, 2.0]], dims=("e_over_a", "friction"), attrs={"units": "GPa"})
     load = xr.DataArray([[np.nan, np.nan], [40.0, np.nan]], dims=("e_over_a", "friction"), attrs={"units": "N"})
     table = xr.Dataset(
@@ -82,12 +82,12 @@ def test_profile_tables_are_labels_of_two_dimensions() -> None:
         ({"young": ("case", [1e9])}, "base = 'young': must be a parameter that the table does not have"),
     ],
 )
-def test_what_is_no_table_of_parameters(table: dict, message: str) -> None:
+def test_invalid_parameter_table_raises(table: dict, message: str) -> None:
     with pytest.raises(InvalidInputError, match=message):
         Study.from_dataset(xr.Dataset(table), base=BASE)
 
 
-def test_other_things_than_datasets_are_refused() -> None:
+def test_table_of_wrong_type_raises() -> None:
     with pytest.raises(InvalidInputError, match=r"an xarray.Dataset of parameters"):
         Study.from_dataset({"friction": [0.1]})
 
@@ -104,34 +104,34 @@ ROUND_TRIPS = {
 
 
 @pytest.mark.parametrize("study", ROUND_TRIPS.values(), ids=ROUND_TRIPS)
-def test_an_opened_study_is_the_study(study: Study, tmp_path) -> None:
+def test_study_from_opened_dataset_equals_study(study: Study, tmp_path) -> None:
     run_study(study, tmp_path, workers=0, solver=solve_fake, progress=False)
-    again = Study.from_dataset(open_study(tmp_path))
-    assert again.to_json() == study.to_json()
+    restored_study = Study.from_dataset(open_study(tmp_path))
+    assert restored_study.to_json() == study.to_json()
     assert Study.from_dataset(collect(tmp_path), "other", level="summary").level == "summary"
 
 
-def test_a_selection_of_an_opened_study(tmp_path) -> None:
+def test_study_from_selection_of_dataset(tmp_path) -> None:
     study = small_study(
         sweep={"e_over_a": [0.0, 1.0, 2.0], "friction": [0.0, 0.1]},
         zip={"profile": [{"kind": "cylinder", "name": "sharp"}, "ellipsoid"], "tilt": [0.0, 1e-4]},
     )
     run_study(study, tmp_path, workers=0, solver=solve_fake, progress=False)
-    opened = collect(tmp_path)
-    part = opened.sel(e_over_a=[0, 2], friction=0.1)
-    again = Study.from_dataset(part, "finer", base={"cells_x": 8})
-    assert again.sweep == {"e_over_a": [0.0, 2.0], "friction": [0.1]}
-    assert again.zip[0]["profile"][0]["name"] == "sharp"
-    assert again.base["cells_x"] == 8.0
-    same = Study.from_dataset(part)
-    assert set(ids(same)) == set(part["case_id"].values.ravel())
-    some = opened.stack(all=opened["case_id"].dims).isel(all=[0, 3, 7])
-    assert set(ids(Study.from_dataset(some))) == set(some["case_id"].values)
+    dataset = collect(tmp_path)
+    selection = dataset.sel(e_over_a=[0, 2], friction=0.1)
+    finer_study = Study.from_dataset(selection, "finer", base={"cells_x": 8})
+    assert finer_study.sweep == {"e_over_a": [0.0, 2.0], "friction": [0.1]}
+    assert finer_study.zip[0]["profile"][0]["name"] == "sharp"
+    assert finer_study.base["cells_x"] == 8.0
+    equal_study = Study.from_dataset(selection)
+    assert set(ids(equal_study)) == set(selection["case_id"].values.ravel())
+    listed_cases = dataset.stack(all=dataset["case_id"].dims).isel(all=[0, 3, 7])
+    assert set(ids(Study.from_dataset(listed_cases))) == set(listed_cases["case_id"].values)
     with pytest.raises(InvalidInputError, match="base = 'tilt': must be a parameter that is not swept"):
-        Study.from_dataset(part, base={"tilt": 0.0})
+        Study.from_dataset(selection, base={"tilt": 0.0})
 
 
-def test_a_coordinate_that_is_no_parameter_is_refused_even_where_nothing_else_has_it() -> None:
+def test_unknown_coordinate_raises() -> None:
     table = xr.Dataset(coords={"max_pressure": [1e9, 1.5e9], "tillt": [0.0, 1e-3]})
     with pytest.raises(InvalidInputError, match=r"variable of the table = 'tillt'.*did you mean 'tilt'"):
         Study.from_dataset(table)

@@ -1,4 +1,4 @@
-"""Profiles of the user's own in a study: identity by content, on workers, in the files, and what is refused."""
+"""User profiles in a study: identity by content, on workers, in files, and refused profiles."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ import pytest
 from contactstudy import InvalidInputError, profiles
 from contactstudy.analysis import solved_case
 from contactstudy.study import Study, load_case, open_study, run_study, user_profiles
+from contactstudy.study.case_setup import build_setup
 from contactstudy.study.folder import Folder
-from contactstudy.study.setup import build_setup
 from tests.small_study import BASE, case_id, small_study
 from tests.stand_in_solver import solve_fake
 
@@ -42,24 +42,24 @@ def identity(profile: object) -> str:
     return case_id(BASE | {"e_over_a": 1, "profile": profile})
 
 
-def test_content_is_what_tells_profiles_from_one_another() -> None:
+def test_user_profiles_differ_by_content() -> None:
     assert identity(Cosine(2e-6)) == identity(Cosine(2e-6, waves=1))
     different = [Cosine(2e-6), Cosine(3e-6), Cosine(2e-6, 3), Wedge(1e-4), Wedge(2e-4), Wedge(1e-4, note="worn")]
     different += [Cosine(2e-6) + profiles.Cylinder(1e-5), profiles.Halves(left=Wedge(1e-4), right=Cosine(2e-6))]
     assert len({identity(profile) for profile in different}) == len(different)
 
 
-def test_a_changed_formula_is_another_profile() -> None:
+def test_changed_formula_changes_identity() -> None:
     class Now(Cosine):
         def drop(self, x, length):
             return super().drop(x, length) + 1e-7 * (x / length) ** 4
 
-    before = identity(Now(2e-6))
+    first_identity = identity(Now(2e-6))
     Now.drop = Cosine.drop
-    assert identity(Now(2e-6)) != before
+    assert identity(Now(2e-6)) != first_identity
 
 
-def test_the_case_has_the_profile_as_it_was() -> None:
+def test_case_keeps_unmodified_profile() -> None:
     wedge = Wedge(1e-4)
     study = small_study(base=BASE | {"e_over_a": 1.0, "profile": wedge}, sweep={"friction": [0.0]})
     wedge.slope = 5.0
@@ -69,7 +69,7 @@ def test_the_case_has_the_profile_as_it_was() -> None:
 
 
 @pytest.mark.system
-def test_workers_solve_with_it_and_files_state_it(tmp_path: Path) -> None:
+def test_workers_solve_user_profile(tmp_path: Path) -> None:
     """The class is local to this function, so that a worker cannot import it."""
 
     class Local(Wedge):
@@ -78,24 +78,24 @@ def test_workers_solve_with_it_and_files_state_it(tmp_path: Path) -> None:
     swept = {"profile": [Local(1e-4), Cosine(2e-6), "cylinder"], "friction": [0.0]}
     study = small_study(base=BASE | {"e_over_a": 1.0}, sweep=swept)
     assert run_study(study, tmp_path, workers=1, progress=False).counts == {"ok": 3}
-    opened = open_study(tmp_path)
-    assert opened.profile.values[1:].tolist() == ["Cosine(depth=2e-06, waves=1)", "cylinder"]
-    assert opened.profile.values[0].startswith("Local ")
+    dataset = open_study(tmp_path)
+    assert dataset.profile.values[1:].tolist() == ["Cosine(depth=2e-06, waves=1)", "cylinder"]
+    assert dataset.profile.values[0].startswith("Local ")
     first = load_case(tmp_path, study.plan()[0].id)
     assert '"class": "Local", "values": {"slope": 0.0001}' in first.attrs["contactstudy_case"]
-    kept = solved_case(first).roller.profile.drop(np.array([1e-4, 2e-4]), 0.5e-3)
-    np.testing.assert_allclose(kept, [1e-8, 2e-8])
+    drop = solved_case(first).roller.profile.drop(np.array([1e-4, 2e-4]), 0.5e-3)
+    np.testing.assert_allclose(drop, [1e-8, 2e-8])
 
 
-def test_a_process_without_it_opens_the_study_and_refuses_to_solve(tmp_path: Path, monkeypatch) -> None:
+def test_process_without_user_profile_refuses_to_solve(tmp_path: Path, monkeypatch) -> None:
     study = small_study(base=BASE | {"e_over_a": 1.0, "profile": Wedge(1e-4)}, sweep={"friction": [0.0]})
     run_study(study, tmp_path, workers=0, solver=solve_fake, progress=False)
     monkeypatch.setattr(user_profiles, "_registry", {})
     assert open_study(tmp_path).status.values.tolist() == ["ok"]
-    again = Folder(tmp_path).read_study()
-    assert run_study(again, tmp_path, workers=0, progress=False).counts == {"ok": 1}
+    restored_study = Folder(tmp_path).read_study()
+    assert run_study(restored_study, tmp_path, workers=0, progress=False).counts == {"ok": 1}
     with pytest.raises(InvalidInputError, match=r"profile = 'Wedge .*run the study from the script that makes this"):
-        run_study(again, tmp_path / "anew", workers=0, progress=False)
+        run_study(restored_study, tmp_path / "anew", workers=0, progress=False)
 
 
 @pytest.mark.parametrize(
@@ -109,12 +109,12 @@ def test_a_process_without_it_opens_the_study_and_refuses_to_solve(tmp_path: Pat
         (Wedge(-1.0), "whose drop.* valid for a roller of 0.0001, .*it returned -"),
     ],
 )
-def test_what_has_no_content_is_refused_by_name(profile: Wedge, message: str) -> None:
+def test_profile_without_content_raises(profile: Wedge, message: str) -> None:
     with pytest.raises(InvalidInputError, match=message):
         Study(name="refused", base={"profile": profile})
 
 
-def test_what_cannot_be_pickled_is_refused_by_name() -> None:
+def test_unpicklable_profile_raises() -> None:
     class Bound(Wedge):
         def __reduce__(self):
             raise TypeError("bound to a file")
@@ -125,7 +125,7 @@ def test_what_cannot_be_pickled_is_refused_by_name() -> None:
         Study(name="refused", base={"profile": Bound(1e-4)})
 
 
-def test_a_copy_that_is_another_profile_is_refused() -> None:
+def test_profile_with_different_copy_raises() -> None:
     class Forgetful(Wedge):
         def __reduce__(self):
             return Wedge, (0.0,)

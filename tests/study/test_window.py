@@ -1,4 +1,4 @@
-"""A contact wider than the usual window: a study solves it as solve does."""
+"""A study widens the window for a wide contact like `solve`."""
 
 import numpy as np
 import pytest
@@ -6,7 +6,7 @@ import pytest
 from contactstudy import solve
 from contactstudy.case.gridding import first_sufficient, widening_grids
 from contactstudy.study import load_case, run_study
-from contactstudy.study.setup import build_setup
+from contactstudy.study.case_setup import build_setup
 from tests.small_study import small_study
 
 WIDE = {
@@ -24,27 +24,27 @@ WIDE = {
 }
 
 
-def test_a_study_without_a_window_widens_it(tmp_path):
+def test_default_window_is_widened(tmp_path):
     study = small_study(base=WIDE, sweep={})
     report = run_study(study, tmp_path, workers=0, progress=False)
     assert report.counts == {"ok": 1}
     setup = build_setup(WIDE)
     first = setup.grid
-    alone = first_sufficient(widening_grids(setup.case), lambda grid: solve(setup.case, grid, stresses=False))
-    stored = load_case(tmp_path, study.plan()[0].id)
-    assert alone.sizes["y"] > first.cells_y
-    np.testing.assert_array_equal(stored["pressure"], alone["pressure"])
-    assert stored.sizes["y"] == alone.sizes["y"]
+    separate_result = first_sufficient(widening_grids(setup.case), lambda grid: solve(setup.case, grid, stresses=False))
+    stored_case = load_case(tmp_path, study.plan()[0].id)
+    assert separate_result.sizes["y"] > first.cells_y
+    np.testing.assert_array_equal(stored_case["pressure"], separate_result["pressure"])
+    assert stored_case.sizes["y"] == separate_result.sizes["y"]
 
 
-def test_a_window_of_its_own_is_too_narrow(tmp_path):
+def test_narrow_explicit_window_raises(tmp_path):
     report = run_study(small_study(base=WIDE | {"window": 1.9}, sweep={}), tmp_path, workers=0, progress=False)
     (failure,) = report.failures
     assert failure[1].startswith("WindowError")
 
 
 @pytest.mark.parametrize("name", ["x", "y", "z"])
-def test_no_coordinate_of_a_result_has_a_mark_for_missing_values(tmp_path, name):
+def test_coordinates_have_no_fill_value(tmp_path, name):
     import netCDF4
 
     result = solve(build_setup(WIDE | {"stresses": True, "field_y_over_a": [0.0], "profile": "cylinder"}).case)

@@ -1,4 +1,4 @@
-"""xarray opens the folder of a study as contactstudy does, and leaves files to its own engines."""
+"""xarray opens the folder of a study like `open_study`, and ignores files."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ from tests.stand_in_solver import solve_fake
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    place = tmp_path_factory.mktemp("study")
-    run_study(small_study(), place, workers=0, solver=solve_fake, progress=False)
-    return place
+    path = tmp_path_factory.mktemp("study")
+    run_study(small_study(), path, workers=0, solver=solve_fake, progress=False)
+    return path
 
 
 @pytest.mark.parametrize("chunks", [None, {}])
@@ -25,18 +25,18 @@ def test_a_folder_opens_as_a_study(folder: Path, chunks: dict[str, int] | None) 
     xr.testing.assert_identical(xr.open_dataset(folder, chunks=chunks).load(), open_study(folder).load())
 
 
-def test_its_arguments_are_those_of_the_study(folder: Path) -> None:
-    own = xr.open_dataset(str(folder), engine="contactstudy", cells="original", drop_variables="von_mises")
-    assert "x_index" in own.dims
-    assert "von_mises" not in own
+def test_backend_arguments_match_open_study(folder: Path) -> None:
+    study_dataset = xr.open_dataset(str(folder), engine="contactstudy", cells="original", drop_variables="von_mises")
+    assert "x_index" in study_dataset.dims
+    assert "von_mises" not in study_dataset
     with pytest.raises(InvalidInputError, match="cells"):
         xr.open_dataset(folder, cells="each")
 
 
-def test_files_and_other_folders_are_not_its_business(folder: Path, tmp_path: Path) -> None:
+def test_backend_ignores_files_and_other_folders(folder: Path, tmp_path: Path) -> None:
     case = next((folder / "batches").glob("*.nc"))
-    with xr.open_dataset(case) as opened:
-        assert Path(opened.encoding["source"]) == case
-        assert opened.sizes["case"] == 4
+    with xr.open_dataset(case) as dataset:
+        assert Path(dataset.encoding["source"]) == case
+        assert dataset.sizes["case"] == 4
     with pytest.raises((OSError, ValueError)):
         xr.open_dataset(tmp_path)

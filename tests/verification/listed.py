@@ -29,7 +29,7 @@ class Listed(NamedTuple):
 
 def names(verification: Verification) -> list[tuple[str, str, str]]:
     """Group, case and quantity of every check."""
-    return [(group, check.case, check.quantity) for group, found in verification.groups.items() for check in found]
+    return [(group, check.case, check.quantity) for group, checks in verification.groups.items() for check in checks]
 
 
 def read() -> list[Listed]:
@@ -40,11 +40,11 @@ def read() -> list[Listed]:
 
 def write() -> None:
     """Run the suite and list its checks."""
-    quick, full = (names(suite.run(level)) for level in suite.LEVELS)
+    quick_names, full_names = (names(suite.run(level)) for level in suite.LEVELS)
     with LIST.open("w", newline="") as file:
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(Listed._fields)
-        writer.writerows(("quick" if key in quick else "full", *key) for key in full)
+        writer.writerows(("quick" if key in quick_names else "full", *key) for key in full_names)
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""A check passes within its tolerance and fails beyond it, and for anything that is not a number."""
+"""A check passes within its tolerance, and fails beyond and for NaN."""
 
 from __future__ import annotations
 
@@ -22,23 +22,23 @@ def test_tolerance(computed: float, expected: float, tolerance: float) -> None:
 
 
 @given(st.lists(FINITE, min_size=1, max_size=8), st.integers(0, 7))
-def test_worst_point_of_fields(expected: list[float], place: int) -> None:
+def test_worst_point_of_fields(expected: list[float], index: int) -> None:
     computed = np.array(expected)
-    computed[place % computed.size] += 1.0
+    computed[index % computed.size] += 1.0
     check = Reference("case", "source").compare_fields("field", computed, expected, 0.5)
     assert check.difference == pytest.approx(1.0, abs=1e-6)
     assert not check.passed
 
 
 @pytest.mark.parametrize("wrong", [np.nan, np.inf, -np.inf])
-def test_what_is_not_a_number_fails(wrong: float) -> None:
+def test_nan_fails_check(wrong: float) -> None:
     assert not Reference("case", "source").compare("quantity", wrong, 1.0, 1e9).passed
     assert not Reference("case", "source").compare_fields("field", [1.0, wrong], [1.0, 1.0], 1e9).passed
     assert not Reference("case", "source").compare_fields("field", [1.0, 1.0, np.nan], 1.0, 1e9, median=True).passed
 
 
 def test_convergence_by_error_and_order() -> None:
-    def failing(errors: tuple[float, ...]) -> list[str]:
+    def failing_quantities(errors: tuple[float, ...]) -> list[str]:
         table = Table(
             title="case",
             setting="cells",
@@ -51,12 +51,12 @@ def test_convergence_by_error_and_order() -> None:
         )
         return [check.quantity for check in table.checks() if not check.passed]
 
-    assert failing((0.16, 0.04, 0.01)) == []
-    assert failing((0.016, 0.014, 0.012)) == ["error, error", "order in the cells, at least 1.5, shortfall"]
-    assert len(failing((0.001, 0.001, 0.001))) == 1
+    assert failing_quantities((0.16, 0.04, 0.01)) == []
+    assert failing_quantities((0.016, 0.014, 0.012)) == ["error, error", "order in the cells, at least 1.5, shortfall"]
+    assert len(failing_quantities((0.001, 0.001, 0.001))) == 1
 
 
-def test_every_setting_of_the_quadratures() -> None:
+def test_check_fails_for_each_quadrature_setting() -> None:
     from dataclasses import asdict
 
     from contactstudy.overlapping.quadrature import Resolution

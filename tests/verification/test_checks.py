@@ -11,7 +11,11 @@ from contactstudy.verification.check import Check
 from tests.verification import listed
 
 LISTED = listed.read()
-FULL = [entry for entry in LISTED if entry.group in {each.group for each in LISTED if each.level == "full"}]
+FULL = [
+    entry
+    for entry in LISTED
+    if entry.group in {listed_check.group for listed_check in LISTED if listed_check.level == "full"}
+]
 """Checks of the groups that have more at the full level."""
 LONG = ("film", "passes")
 """Groups whose quick level, a part of the full one, takes too long for the default tier."""
@@ -21,28 +25,28 @@ TIGHTER = {
     "traction on the ends / p0, z = 0.02a, 0.05a": 1e-5,
     "traction on the ends / p0, z >= 0.1a": 1e-5,
 }
-"""Bounds near what is reached, where the suite states what is promised."""
+"""Bounds near the computed differences, tighter than the suite's tolerances."""
 
 
 @functools.cache
 def quick(group: str) -> dict[tuple[str, str], Check]:
     """Checks of a group at the quick level."""
     checks = list(suite.GROUPS[group](False))
-    found = {(check.case, check.quantity): check for check in checks}
-    assert len(found) == len(checks), "two checks have one name"
-    return found
+    check_of_name = {(check.case, check.quantity): check for check in checks}
+    assert len(check_of_name) == len(checks), "two checks have one name"
+    return check_of_name
 
 
 @functools.cache
-def full() -> Verification:
-    """The full level, without the groups that are there what they are at the quick one."""
+def full_verification() -> Verification:
+    """The full level, without the groups equal to the quick level's."""
     more = {entry.group for entry in FULL}
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(suite, "GROUPS", {name: make for name, make in suite.GROUPS.items() if name in more})
         return suite.run("full")
 
 
-def verdict(check: Check) -> None:
+def assert_check_passed(check: Check) -> None:
     """Fail with the line that the command prints."""
     assert check.passed, suite.line(check)
     assert check.source
@@ -57,26 +61,28 @@ def parameters(*, slow: bool) -> list[object]:
 
 @pytest.mark.parametrize("entry", parameters(slow=False))
 def test_check(entry: listed.Listed) -> None:
-    verdict(quick(entry.group)[entry.case, entry.quantity])
+    assert_check_passed(quick(entry.group)[entry.case, entry.quantity])
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("entry", parameters(slow=True))
-def test_check_of_the_full_level(entry: listed.Listed) -> None:
-    (check,) = [c for c in full().groups[entry.group] if (c.case, c.quantity) == (entry.case, entry.quantity)]
-    verdict(check)
+def test_full_level_check_passes(entry: listed.Listed) -> None:
+    (check,) = [
+        c for c in full_verification().groups[entry.group] if (c.case, c.quantity) == (entry.case, entry.quantity)
+    ]
+    assert_check_passed(check)
 
 
 @pytest.mark.parametrize("group", [group for group in suite.GROUPS if group not in LONG])
-def test_the_list_is_complete(group: str) -> None:
+def test_list_contains_all_checks(group: str) -> None:
     entries = [(entry.case, entry.quantity) for entry in LISTED if (entry.level, entry.group) == ("quick", group)]
     assert entries
     assert sorted(entries) == sorted(quick(group))
 
 
 @pytest.mark.slow
-def test_the_list_of_the_full_level_is_complete() -> None:
-    assert sorted(entry[1:] for entry in FULL) == sorted(listed.names(full()))
-    data = full().to_dataset()
+def test_list_contains_all_full_checks() -> None:
+    assert sorted(entry[1:] for entry in FULL) == sorted(listed.names(full_verification()))
+    data = full_verification().to_dataset()
     assert bool(data["passed"].all())
     assert data.sizes["check"] == len(FULL)

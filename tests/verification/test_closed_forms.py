@@ -89,9 +89,9 @@ def test_circle_on_the_surface() -> None:
     assert frictionless["sigma_yy"] == pytest.approx(hoop, abs=1e-9)
     x, y = np.array([0.1, 0.4, -0.3]), np.array([0.2, -0.5, 0.6])
     shear = ref.hertz_circle(x, y, 0.0, 1.0, 1.0, NU, 1.0)
-    plain = ref.hertz_circle(x, y, 0.0, 1.0, 1.0, NU)
+    circle_stress = ref.hertz_circle(x, y, 0.0, 1.0, 1.0, NU)
     for name, value in sliding_circle_surface(x, y, 1.0, 1.0, NU).items():
-        assert shear[name] - plain[name] == pytest.approx(value, abs=1e-9), name
+        assert shear[name] - circle_stress[name] == pytest.approx(value, abs=1e-9), name
 
 
 def test_circle_on_the_axis_and_far_away() -> None:
@@ -100,30 +100,30 @@ def test_circle_on_the_axis_and_far_away() -> None:
     stress = ref.hertz_circle(0.0, 0.0, z, 2.0, 3.0, NU)
     assert stress["sigma_zz"] == pytest.approx(zz, abs=1e-10)
     assert stress["sigma_xx"] == pytest.approx(rr, abs=1e-10)
-    fine = np.linspace(0.3, 0.7, 401)
-    zz, rr = ref.hertz_circle_axis(fine, 1.0, 1.0, NU)
+    depths = np.linspace(0.3, 0.7, 401)
+    zz, rr = ref.hertz_circle_axis(depths, 1.0, 1.0, NU)
     shear = 0.5 * np.abs(zz - rr)
     assert shear.max() == pytest.approx(0.310, abs=5e-4)
-    assert fine[shear.argmax()] == pytest.approx(0.48, abs=0.01)
+    assert depths[shear.argmax()] == pytest.approx(0.48, abs=0.01)
     x, y, depth = np.array([30.0, -5.0]), np.array([10.0, 40.0]), np.array([20.0, 7.0])
     total = 2 / 3 * np.pi
-    far = ref.hertz_circle(x, y, depth, 1.0, 1.0, NU, 0.5)
+    distant_stress = ref.hertz_circle(x, y, depth, 1.0, 1.0, NU, 0.5)
     point = ref.point_load(x, y, depth, NU, total, 0.5 * total)
     for name in ref.COMPONENTS:
-        assert far[name] == pytest.approx(point[name], abs=2e-3 * np.abs(point["sigma_zz"]).max()), name
+        assert distant_stress[name] == pytest.approx(point[name], abs=2e-3 * np.abs(point["sigma_zz"]).max()), name
 
 
 def test_circle_symmetries() -> None:
     x, y, z = np.array([0.4, 1.1]), np.array([0.7, -0.2]), np.array([0.2, 0.9])
     odd_in_x, odd_in_y = {"tau_xy", "tau_xz"}, {"tau_xy", "tau_yz"}
-    plain, slid = (ref.hertz_circle(x, y, z, 1.0, 1.0, NU, f) for f in (0.0, 1.0))
+    frictionless, sliding = (ref.hertz_circle(x, y, z, 1.0, 1.0, NU, f) for f in (0.0, 1.0))
     plain_y, slid_y = (ref.hertz_circle(x, -y, z, 1.0, 1.0, NU, f) for f in (0.0, 1.0))
     slid_x = ref.hertz_circle(-x, y, z, 1.0, 1.0, NU, 1.0)
     for name in ref.COMPONENTS:
         sign = -1 if name in odd_in_y else 1
-        assert plain_y[name] == pytest.approx(sign * plain[name], abs=1e-12)
-        assert slid_y[name] - plain_y[name] == pytest.approx(-sign * (slid[name] - plain[name]), abs=1e-12)
-        assert slid_x[name] == pytest.approx((-1 if name in odd_in_x else 1) * slid[name], abs=1e-12)
+        assert plain_y[name] == pytest.approx(sign * frictionless[name], abs=1e-12)
+        assert slid_y[name] - plain_y[name] == pytest.approx(-sign * (sliding[name] - frictionless[name]), abs=1e-12)
+        assert slid_x[name] == pytest.approx((-1 if name in odd_in_x else 1) * sliding[name], abs=1e-12)
 
 
 def test_hertz_dimensions() -> None:
@@ -142,14 +142,14 @@ def test_strip_on_the_surface() -> None:
     stress = ref.hertz_strip(y, 0.0, 1.0, 1.0, NU, 0.2)
     assert stress["sigma_zz"] == pytest.approx(-p, abs=1e-12)
     assert stress["tau_yz"] == pytest.approx(-0.2 * p, abs=1e-12)
-    inside = np.abs(y) < 1
-    assert stress["sigma_yy"][inside] == pytest.approx((-p - 0.4 * y)[inside], abs=1e-12)
-    outside = -0.4 * (y - np.sign(y) * np.sqrt(np.clip(y**2 - 1, 0, None)))
-    assert stress["sigma_yy"][~inside] == pytest.approx(outside[~inside], abs=1e-12)
+    in_strip = np.abs(y) < 1
+    assert stress["sigma_yy"][in_strip] == pytest.approx((-p - 0.4 * y)[in_strip], abs=1e-12)
+    expected_outside = -0.4 * (y - np.sign(y) * np.sqrt(np.clip(y**2 - 1, 0, None)))
+    assert stress["sigma_yy"][~in_strip] == pytest.approx(expected_outside[~in_strip], abs=1e-12)
 
 
 @pytest.mark.parametrize(
-    ("friction", "largest", "y_at", "z_at", "surface"),
+    ("friction", "maximum", "y_at", "z_at", "surface"),
     [
         (0.0, 0.5575, 0.0, 0.70, 0.400),
         (0.1, 0.5654, 0.29, 0.67, 0.438),
@@ -158,15 +158,15 @@ def test_strip_on_the_surface() -> None:
         (0.3, None, None, None, 0.667),
     ],
 )
-def test_strip_von_mises(friction: float, largest: float | None, y_at: float, z_at: float, surface: float) -> None:
+def test_strip_von_mises(friction: float, maximum: float | None, y_at: float, z_at: float, surface: float) -> None:
     """The table of largest von Mises stresses of a sliding line contact, Poisson's ratio 0.3."""
     y, z = np.linspace(-1.2, 1.2, 481)[:, None], np.linspace(0, 1.5, 301)[None, :]
     mises = ref.von_mises(ref.hertz_strip(y, z, 1.0, 1.0, NU, friction))
     assert mises[:, 0].max() == pytest.approx(surface, abs=1e-3)
-    if largest is not None:
+    if maximum is not None:
         below = mises[:, 40:]
         i, j = np.unravel_index(below.argmax(), below.shape)
-        assert below.max() == pytest.approx(largest, abs=1e-4)
+        assert below.max() == pytest.approx(maximum, abs=1e-4)
         assert (abs(y[i, 0]), z[0, 40 + j]) == pytest.approx((y_at, z_at), abs=0.012)
 
 
@@ -198,24 +198,24 @@ def test_ellipse_touches_a_paraboloid(ratio: float) -> None:
     assert contact.long >= contact.short
     count = 80
     edge = np.linspace(-1, 1, count + 1)
-    middle = 0.5 * (edge[1:] + edge[:-1])
-    pressure = np.sqrt(np.clip(1 - middle[:, None] ** 2 - middle**2, 0, None))
+    midpoints = 0.5 * (edge[1:] + edge[:-1])
+    pressure = np.sqrt(np.clip(1 - midpoints[:, None] ** 2 - midpoints**2, 0, None))
     pressure *= contact.max_pressure * 2 / 3 * np.pi / (pressure.sum() * (2 / count) ** 2) / contact.max_pressure
     for x, y in ((0.003, 0.002), (0.503, 0.0021), (0.0033, 0.603)):
-        at = (x * contact.long, y * contact.short)
+        point = (x * contact.long, y * contact.short)
         patches = ref.rectangle_displacement(
-            at[0] - contact.long * middle[:, None],
-            at[1] - contact.short * middle,
+            point[0] - contact.long * midpoints[:, None],
+            point[1] - contact.short * midpoints,
             contact.long / count,
             contact.short / count,
             1.5,
         )
-        sunk = contact.max_pressure * float((pressure * patches).sum())
-        paraboloid = contact.approach - at[0] ** 2 / (2 * ratio) - at[1] ** 2 / 2
-        assert sunk == pytest.approx(paraboloid, abs=2e-3 * contact.approach)
+        displacement = contact.max_pressure * float((pressure * patches).sum())
+        paraboloid = contact.approach - point[0] ** 2 / (2 * ratio) - point[1] ** 2 / 2
+        assert displacement == pytest.approx(paraboloid, abs=2e-3 * contact.approach)
 
 
-def test_ellipse_with_exchanged_radii_is_an_error() -> None:
+def test_ellipse_with_exchanged_radii_raises() -> None:
     with pytest.raises(InvalidInputError, match="long_radius"):
         ref.hertz_ellipse(1.0, 1.0, 2.0, 1.0)
 
@@ -226,7 +226,7 @@ def test_point_loads_against_newmark() -> None:
     assert stress["sigma_zz"] == pytest.approx(ref.below_rectangle_corner(z, 2.0, 1.0), abs=1e-9)
 
 
-def test_plane_of_a_wedge_carries_its_load() -> None:
+def test_wedge_stress_balances_load() -> None:
     """The radial field of a quarter plane loaded at its corner: forces across any arc."""
     angle, weight = np.polynomial.legendre.leggauss(20)
     angle, weight = 0.25 * np.pi * (angle + 1), 0.25 * np.pi * weight

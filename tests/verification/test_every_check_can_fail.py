@@ -1,4 +1,4 @@
-"""Every check of the suite fails when the physics behind it is switched off."""
+"""Every check of the suite fails when its physics is switched off."""
 
 from __future__ import annotations
 
@@ -26,17 +26,17 @@ from contactstudy.heat.moving_source import MovingBody
 from contactstudy.kernels.load import Load
 from contactstudy.overlapping.equations import EquationSet
 from contactstudy.overlapping.quadrature import Resolution
-from contactstudy.verification import exact, free_ends, passes, suite, tribology
+from contactstudy.verification import exact_solutions, free_ends, passes, suite, tribology
 from contactstudy.verification.check import Check
 from contactstudy.wear.wear_in import WornContact
 
-MODULES = (exact, free_ends, convergence)
+MODULES = (exact_solutions, free_ends, convergence)
 Patch = pytest.MonkeyPatch
 
 
 @contextmanager
 def switched_off(physics: Callable[[Patch], None]) -> Iterator[None]:
-    """Change the physics; what was solved and kept before would hide it."""
+    """Change the physics with an empty cache; cached values would hide the change."""
     with pytest.MonkeyPatch.context() as patch:
         cache.clear()
         physics(patch)
@@ -45,7 +45,7 @@ def switched_off(physics: Callable[[Patch], None]) -> Iterator[None]:
 
 
 def everywhere(patch: Patch, name: str, value: object) -> None:
-    """Replace what the modules of checks have imported under a name."""
+    """Replace a name that the modules of checks import."""
     for module in MODULES:
         if hasattr(module, name):
             patch.setattr(module, name, value)
@@ -80,7 +80,7 @@ def no_friction(patch: Patch) -> None:
 
 
 def first_round_only(patch: Patch) -> None:
-    """What the top asks of the ends is answered, what the ends then ask of the top is not."""
+    """The first correction at the ends is applied, the following correction of the top is not."""
     patch.setattr(EquationSet, "solve", lambda system, source: (system.scale * source.T).T)
 
 
@@ -89,7 +89,7 @@ def shear_that_needs_ends(patch: Patch) -> None:
     patch.setattr(EquationSet, "source", lambda system, load, spectrum: source(system, Load.NORMAL, spectrum))
 
 
-def distorted(patch: Patch) -> None:
+def distort_stress(patch: Patch) -> None:
     """Results that are wrong by some percent, differently in different places."""
     real_stress, real_sunk, real_contact = stress.stress_field, surface.surface_displacement, contact.solve_contact
 
@@ -114,13 +114,13 @@ def distorted(patch: Patch) -> None:
     everywhere(patch, "solve_contact", wrong_contact)
 
 
-def distorted_between_ends(patch: Patch) -> None:
-    """Wrong where there are two ends only."""
+def distort_between_ends(patch: Patch) -> None:
+    """Distort the stress between two ends only."""
     real = stress.stress_field
 
     def wrong(body, *arguments, **named):
-        found = real(body, *arguments, **named)
-        return found * 1.05 if isinstance(body, FiniteLengthSpace) else found
+        distorted_stress = real(body, *arguments, **named)
+        return distorted_stress * 1.05 if isinstance(body, FiniteLengthSpace) else distorted_stress
 
     everywhere(patch, "stress_field", wrong)
 
@@ -146,16 +146,16 @@ def conducting_ends(patch: Patch) -> None:
 
 
 def slower_surfaces(patch: Patch) -> None:
-    """Heat stays behind a surface that moves away."""
+    """Omit the heat behind a moving surface."""
     patch.setattr(MovingBody, "drift", property(lambda body: 1e-3 * body.speed / (2 * body.properties.diffusivity)))
 
 
 def better_conductors(patch: Patch) -> None:
-    patch.setattr(tribology, "UNIT", tribology.UNIT | {"conductivity": 1.1, "density": 1.1})
+    patch.setattr(tribology, "UNIT_PROPERTIES", tribology.UNIT_PROPERTIES | {"conductivity": 1.1, "density": 1.1})
 
 
 def heat_in_halves(patch: Patch) -> None:
-    """The heat is shared whatever temperatures come of it, and not quite in halves."""
+    """Partition the heat by a constant near one half, without equal temperatures."""
     patch.setattr(flash, "shared_heat", lambda first, second, density, touching: (0.49 * density, 0.0))
 
 
@@ -172,11 +172,11 @@ def milder_wear(patch: Patch) -> None:
 def pressed_harder_by(factor: float) -> Callable[[Patch], None]:
     """Line contacts that pass with another pressure than the checks believe."""
 
-    def patched(patch: Patch) -> None:
+    def patch_pressure(patch: Patch) -> None:
         real = passes.from_top
         patch.setattr(passes, "from_top", lambda friction: (factor * real(friction)).assign(hertz_max_pressure=1.0))
 
-    return patched
+    return patch_pressure
 
 
 def harder_steel(patch: Patch) -> None:
@@ -208,11 +208,11 @@ def softer_line(patch: Patch) -> None:
 def shifted_pressure(patch: Patch) -> None:
     real = line_contact.solve_line
 
-    def shifted(*numbers: float, **named: object) -> line_contact.LineFilm:
+    def shifted_line_film(*numbers: float, **named: object) -> line_contact.LineFilm:
         line = real(*numbers, **named)
         return line._replace(moment=1.05 * line.moment)
 
-    patch.setattr(line_contact, "solve_line", shifted)
+    patch.setattr(line_contact, "solve_line", shifted_line_film)
 
 
 def wrong_exponent(patch: Patch) -> None:
@@ -230,7 +230,7 @@ def heavier_film(patch: Patch) -> None:
     patch.setattr(FilmProblem, "prescribed", property(lambda problem: 1.01 * real(problem)))
 
 
-def failed(checks: Iterator[Check]) -> dict[tuple[str, str], bool]:
+def failed_checks(checks: Iterator[Check]) -> dict[tuple[str, str], bool]:
     """Whether each check failed."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
@@ -238,8 +238,10 @@ def failed(checks: Iterator[Check]) -> dict[tuple[str, str], bool]:
 
 
 def coarse_quadratures(patch: Patch) -> None:
-    coarse = Resolution(step=0.6, reach=12.5, lateral_nodes=4, lateral_ratio=12.0, lateral_order=4, lateral_reach=2.5)
-    patch.setattr(convergence, "Resolution", lambda: coarse)
+    coarse_resolution = Resolution(
+        step=0.6, reach=12.5, lateral_nodes=4, lateral_ratio=12.0, lateral_order=4, lateral_reach=2.5
+    )
+    patch.setattr(convergence, "Resolution", lambda: coarse_resolution)
 
 
 def grid_without_effect(patch: Patch) -> None:
@@ -251,19 +253,19 @@ def results_that_depend_on_the_grid(patch: Patch) -> None:
     real = contact.solve_contact
 
     def wrong(body, gap, load, **named):
-        found = real(body, gap, load=load, **named)
+        result = real(body, gap, load=load, **named)
         factor = 1 + 0.05 * np.sin(gap.size)
-        return found.assign(pressure=factor * found["pressure"], approach=factor * found["approach"])
+        return result.assign(pressure=factor * result["pressure"], approach=factor * result["approach"])
 
     patch.setattr(convergence, "solve_contact", wrong)
 
 
 EVERY_WAY: dict[str, tuple[Callable[[Patch], None], ...]] = {
-    "half-space": (wrong_poisson, softer, no_friction, distorted),
-    "limits": (ends_only_mirrored, wrong_poisson, distorted_between_ends),
+    "half-space": (wrong_poisson, softer, no_friction, distort_stress),
+    "limits": (ends_only_mirrored, wrong_poisson, distort_between_ends),
     "quarter space": (ends_only_mirrored, no_ends, first_round_only, shear_that_needs_ends),
     "finite elements": (ends_only_mirrored, no_ends),
-    "published": (ends_only_mirrored, wrong_poisson, distorted),
+    "published": (ends_only_mirrored, wrong_poisson, distort_stress),
     "friction": (softer_bodies, twice_the_friction),
     "heat": (conducting_ends, slower_surfaces, better_conductors, heat_in_halves),
     "wear": (wear_that_changes_nothing, milder_wear),
@@ -275,7 +277,7 @@ EVERY_WAY: dict[str, tuple[Callable[[Patch], None], ...]] = {
         strained_more,
     ),
     "film": (faster_flow, softer_line, shifted_pressure, wrong_exponent, unfinished_iteration, heavier_film, no_ends),
-    "consistency": (ends_only_mirrored, no_friction, first_round_only, distorted),
+    "consistency": (ends_only_mirrored, no_friction, first_round_only, distort_stress),
 }
 
 
@@ -286,11 +288,11 @@ SLOW = ("limits", "quarter space", "consistency")
     "group",
     [pytest.param(group, marks=pytest.mark.slow if group in SLOW else pytest.mark.system) for group in EVERY_WAY],
 )
-def test_every_check_of_a_group_fails(group: str) -> None:
+def test_switched_off_physics_fails_checks(group: str) -> None:
     caught: dict[tuple[str, str], bool] = {}
     for physics in EVERY_WAY[group]:
         with switched_off(physics):
-            for key, fails in failed(suite.GROUPS[group](False)).items():
+            for key, fails in failed_checks(suite.GROUPS[group](False)).items():
                 caught[key] = caught.get(key, False) or fails
     assert caught
     assert [key for key, fails in caught.items() if not fails] == []
@@ -300,19 +302,19 @@ def test_every_check_of_a_group_fails(group: str) -> None:
 @pytest.mark.parametrize("table", [convergence.point_contact, convergence.contact_grid, convergence.window])
 def test_convergence_with_noise_of_the_grid(table: Callable[[], convergence.Table]) -> None:
     with switched_off(results_that_depend_on_the_grid):
-        assert all(failed(table().checks()).values())
+        assert all(failed_checks(table().checks()).values())
 
 
 @pytest.mark.slow
 def test_coarse_quadratures() -> None:
     with switched_off(coarse_quadratures):
-        assert all(failed(convergence.quadrature_checks()).values())
+        assert all(failed_checks(convergence.quadrature_checks()).values())
 
 
 @pytest.mark.system
 def test_refinement_without_effect() -> None:
     with switched_off(grid_without_effect):
-        assert all(failed(convergence.stress_grid().checks()).values())
+        assert all(failed_checks(convergence.stress_grid().checks()).values())
 
 
 def test_every_group_is_tried() -> None:

@@ -26,8 +26,8 @@ from contactstudy.verification.problems import (
 def test_stored_contacts(name: str) -> None:
     """Load, sign, and symmetry; errors small where the pressure is smooth."""
     case, contact = CONTACT_CASES[name], load_reference(CONTACT_FILE, name)
-    stated = [contact.attrs[key] for key in ("length", "distance", "crown", "poisson")]
-    assert stated == [case.length, case.distance, case.crown, case.poisson]
+    attributes = [contact.attrs[key] for key in ("length", "distance", "crown", "poisson")]
+    assert attributes == [case.length, case.distance, case.crown, case.poisson]
     pressure = contact["pressure"]
     assert float(pressure.min()) >= 0
     assert float(contact["line_load"].integrate("x")) == pytest.approx(case.load, rel=1e-6)
@@ -39,7 +39,7 @@ def test_stored_contacts(name: str) -> None:
 
 @pytest.mark.parametrize("name", FILM_CASES)
 def test_stored_films(name: str) -> None:
-    """Sign, symmetry to the one of the columns, 1e-3; errors far below the tolerances of the comparison."""
+    """Sign and symmetry of the columns, 1e-3; errors far below the tolerances of the comparison."""
     case, film = FILM_CASES[name], load_reference(FILM_FILE, name)
     assert {key: film.attrs[key] for key in vars(case)} == vars(case)
     assert float(film["pressure"].min()) >= 0
@@ -51,17 +51,19 @@ def test_stored_films(name: str) -> None:
 @pytest.mark.parametrize("name", PASSES_CASES)
 def test_stored_passes(name: str) -> None:
     """No change of volume, stresses of layers with strains xx and yy held, errors worth comparing with."""
-    case, left = PASSES_CASES[name], load_reference(PASSES_FILE, name)
-    stated = [left.attrs[key] for key in ("shear_yield_stress", "friction", "kinematic_hardening", "poisson")]
-    assert stated == [case.shear_yield_stress, case.friction, case.kinematic_hardening, case.poisson]
-    assert left.sizes["pass_number"] == case.passes
-    xx, yy, zz = (left[f"plastic_strain_{pair}_young"] for pair in ("xx", "yy", "zz"))
+    case, reference = PASSES_CASES[name], load_reference(PASSES_FILE, name)
+    attributes = [reference.attrs[key] for key in ("shear_yield_stress", "friction", "kinematic_hardening", "poisson")]
+    assert attributes == [case.shear_yield_stress, case.friction, case.kinematic_hardening, case.poisson]
+    assert reference.sizes["pass_number"] == case.passes
+    xx, yy, zz = (reference[f"plastic_strain_{pair}_young"] for pair in ("xx", "yy", "zz"))
     assert np.abs(xx + yy + zz).max() < 1e-6
-    held = -(xx + case.poisson * yy).isel(pass_number=-1) / (1 - case.poisson**2)
-    assert np.abs(left["sigma_xx"] - held).max() < 0.08 * np.abs(held).max()
-    allowed = 0.08 if name.startswith("settling") else 0.3
+    constraint_stress = -(xx + case.poisson * yy).isel(pass_number=-1) / (1 - case.poisson**2)
+    assert np.abs(reference["sigma_xx"] - constraint_stress).max() < 0.08 * np.abs(constraint_stress).max()
+    tolerance = 0.08 if name.startswith("settling") else 0.3
     for component in ("sigma_xx", "plastic_strain_yz_young"):
-        assert left[component].attrs["error_estimate"] < allowed * float(np.abs(left[component]).max()), component
+        assert reference[component].attrs["error_estimate"] < tolerance * float(np.abs(reference[component]).max()), (
+            component
+        )
 
 
 @pytest.mark.parametrize("name", LOAD_CASES)
@@ -71,8 +73,8 @@ def test_stored_case(name: str) -> None:
     error = stress.attrs["error_estimate"]
     assert error < 5e-4
     assert stress.attrs["error_estimate_median"] < 1e-5
-    stored = [stress.attrs[name] for name in ("length", "poisson", "friction", "g")]
-    assert stored == [case.length, case.poisson, case.friction, str(case.g)]
+    parameters = [stress.attrs[name] for name in ("length", "poisson", "friction", "g")]
+    assert parameters == [case.length, case.poisson, case.friction, str(case.g)]
     for component in ("sigma_xx", "tau_xy", "tau_xz"):
         for x in (0, case.length):
             assert np.abs(stress[component].sel(x=x)).max() < 2 * error, (component, x)
@@ -88,13 +90,13 @@ def test_stored_case(name: str) -> None:
 
 
 def test_stored_friction_is_a_superposition() -> None:
-    """What is even in y of the sliding case is the frictionless one (and odd, of `tau_xy` and `tau_yz`)."""
-    plain, sliding = (load_reference(STRESS_FILE, name) for name in ("full", "full_sliding"))
+    """The part even in y of the sliding case equals the frictionless case (odd, of `tau_xy` and `tau_yz`)."""
+    frictionless, sliding = (load_reference(STRESS_FILE, name) for name in ("full", "full_sliding"))
     mirrored = sliding.assign_coords(y=-sliding.y).sortby("y")
     for component in ref.COMPONENTS:
         sign = -1 if component in ("tau_xy", "tau_yz") else 1
-        even = 0.5 * (sliding[component] + sign * mirrored[component]).sel(y=plain.y)
-        assert np.abs(even - plain[component]).max() < 1e-5, component
+        even = 0.5 * (sliding[component] + sign * mirrored[component]).sel(y=frictionless.y)
+        assert np.abs(even - frictionless[component]).max() < 1e-5, component
     assert np.abs(sliding.tau_xy).max() > 0.05
 
 
@@ -107,6 +109,6 @@ def test_unknown_names_are_errors(file: str) -> None:
 @pytest.mark.parametrize("name", [STRESS_FILE, CONTACT_FILE, PASSES_FILE, FILM_FILE])
 def test_files(name: str) -> None:
     assert data_file(name).stat().st_size < 300_000
-    stated = xr.load_dataset(data_file(name)).attrs
-    assert "scikit-fem" in stated["software"]
-    assert stated["regenerate"].startswith("python -m benchmarks.finite_elements.generate")
+    attributes = xr.load_dataset(data_file(name)).attrs
+    assert "scikit-fem" in attributes["software"]
+    assert attributes["regenerate"].startswith("python -m benchmarks.finite_elements.generate")

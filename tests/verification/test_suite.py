@@ -1,4 +1,4 @@
-"""What the suite prints and writes says what it found; `test_checks` makes its checks."""
+"""Output of the suite; `test_checks` makes its checks."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from contactstudy.verification.check import Check, Curve, Reference
 
 
 def fake(full: bool) -> Iterator[Check]:
-    """Two checks, of which one fails."""
+    """A suite of two checks; one check fails."""
     x = np.linspace(0, 1, 5)
     yield Reference("good | case", "Hertz").compare(
         "pressure",
@@ -61,14 +61,14 @@ def test_command_succeeds_when_all_checks_pass(tmp_path: Path, monkeypatch: pyte
 
 
 def test_unit_problems_raise_no_doubts(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Properties of 1 are doubtful in SI units, but not in the suite's units."""
+    """Material properties of 1 are unusual in SI units, but not in the suite's units."""
     monkeypatch.setattr(suite, "GROUPS", {"heat": suite.GROUPS["heat"]})
     with warnings.catch_warnings():
         warnings.simplefilter("error", MagnitudeWarning)
         assert suite.run().passed
 
 
-def test_nothing_checked_is_not_a_pass() -> None:
+def test_empty_verification_fails() -> None:
     assert not Verification("quick").passed
 
 
@@ -86,7 +86,7 @@ def test_impossible_folder(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -
     assert captured.out == ""
 
 
-def test_command_knows_its_levels(capsys: pytest.CaptureFixture[str]) -> None:
+def test_command_accepts_levels(capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit):
         main(["verify", "--level", "thorough"])
     assert "quick" in capsys.readouterr().err

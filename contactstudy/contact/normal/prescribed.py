@@ -9,7 +9,7 @@ import numpy as np
 
 from contactstudy import checks
 from contactstudy.arrays.grid import Grid
-from contactstudy.arrays.peaks import lagrange
+from contactstudy.arrays.peaks import lagrange_weights
 from contactstudy.bodies.models import Body
 from contactstudy.cache import cached
 from contactstudy.checks import FloatArray
@@ -126,7 +126,7 @@ def line_motion(body: Body, grid: Grid, loads: Mapping[Load, FloatArray], positi
     arm = x - np.average(x, weights=weights)
     tilt = float((weights * arm) @ displacement / ((weights * arm) @ arm))
     below = np.clip([position], *np.clip(body.extent, *grid.x_range))
-    return RigidMotion(float((lagrange(x, below) @ displacement)[0]) - tilt * position, tilt)
+    return RigidMotion(float((lagrange_weights(x, below) @ displacement)[0]) - tilt * position, tilt)
 
 
 class LineMotions(NamedTuple):

@@ -8,20 +8,20 @@ from random import Random
 import numpy as np
 
 from benchmarks.fuzz.motions import random_motion, scaled_motion, turned_motion
-from benchmarks.fuzz.shapes import magnitude, mirrored, random_profile, stretched
+from benchmarks.fuzz.shapes import magnitude, mirror_profile, random_profile, stretch_profile
 from contactstudy import Case, FiniteLengthSpace, Grid, HalfSpace, Material, QuarterSpace, Roller
 from contactstudy.bodies.material import contact_modulus
 from contactstudy.bodies.models import MODELS, Body
 
-REFINED = 0.06
+REFINED_FRACTION = 0.06
 """Part of the cases whose cells are refined: they take several seconds."""
 
-MOVING = 0.2
+MOVING_FRACTION = 0.2
 """Part of the cases on given cells that roll or are shifted, with stick and slip."""
 
 
 @dataclass(frozen=True)
-class Drawn:
+class RandomCase:
     """Case and settings of the solver.
 
     Attributes
@@ -38,45 +38,45 @@ class Drawn:
     grid: Grid | None
     accuracy: float = 0.05
 
-    def turned(self) -> Drawn:
-        """The same seen from the other end of the body; for bodies that look alike from there."""
+    def from_other_end(self) -> RandomCase:
+        """Return the case mirrored about mid-length, for symmetric bodies."""
         case, grid = self.case, self.grid
         low, high = case.body.extent
         total = low + high if np.isfinite(high) else 2 * case.roller_start + case.roller.length
         position = case.load_position
-        other = replace(
+        mirrored_case = replace(
             case,
-            roller=replace(case.roller, profile=mirrored(case.roller.profile)),
+            roller=replace(case.roller, profile=mirror_profile(case.roller.profile)),
             end_distance=total - case.roller_start - case.roller.length,
             tilt=-case.tilt,
             load_position=None if position is None else total - position,
             motion=turned_motion(case.motion),
         )
         if grid is None:
-            return replace(self, case=other)
+            return replace(self, case=mirrored_case)
         edges = (total - grid.x_edges)[::-1]
         if np.isfinite(high):
             edges[0], edges[-1] = 0.0, high
-        return replace(self, case=other, grid=regrid(grid, edges, grid.y_range))
+        return replace(self, case=mirrored_case, grid=regrid(grid, edges, grid.y_range))
 
-    def scaled(self, length: float, modulus: float) -> Drawn:
-        """The same with every length and every modulus multiplied: strains stay."""
+    def scale(self, length: float, modulus: float) -> RandomCase:
+        """Return the case with every length and every modulus multiplied: strains are unchanged."""
         case, grid = self.case, self.grid
 
-        def material(material_drawn: Material) -> Material:
-            return Material(modulus * material_drawn.young, material_drawn.poisson)
+        def material(drawn_material: Material) -> Material:
+            return Material(modulus * drawn_material.young, drawn_material.poisson)
 
         def scaled(value: float | None, factor: float) -> float | None:
             return None if value is None else factor * value
 
         body, roller = case.body, case.roller
-        larger = {"length": length * body.length} if isinstance(body, FiniteLengthSpace) else {}
-        other = Case(
-            body=replace(body, material=material(body.material), **larger),
+        length_argument = {"length": length * body.length} if isinstance(body, FiniteLengthSpace) else {}
+        scaled_case = Case(
+            body=replace(body, material=material(body.material), **length_argument),
             roller=Roller(
                 radius=length * roller.radius,
                 length=length * roller.length,
-                profile=stretched(roller.profile, length),
+                profile=stretch_profile(roller.profile, length),
                 material=None if roller.material is None else material(roller.material),
                 ends=roller.ends,
             ),
@@ -90,11 +90,13 @@ class Drawn:
             motion=scaled_motion(case.motion, length, modulus),
         )
         if grid is None:
-            return replace(self, case=other)
+            return replace(self, case=scaled_case)
         edges = length * grid.x_edges
-        if np.isfinite(high := other.body.extent[1]):
+        if np.isfinite(high := scaled_case.body.extent[1]):
             edges[-1] = high
-        return replace(self, case=other, grid=regrid(grid, edges, (length * grid.y_range[0], length * grid.y_range[1])))
+        return replace(
+            self, case=scaled_case, grid=regrid(grid, edges, (length * grid.y_range[0], length * grid.y_range[1]))
+        )
 
 
 def regrid(grid: Grid, edges: np.ndarray, y_range: tuple[float, float]) -> Grid:
@@ -106,13 +108,13 @@ def regrid(grid: Grid, edges: np.ndarray, y_range: tuple[float, float]) -> Grid:
     return Grid.between(edges, y_range, grid.cells_y)
 
 
-def random_material(chance: Random) -> Material:
+def random_material(rng: Random) -> Material:
     """From rubber to diamond; Poisson's ratio often at a limit."""
-    poisson = chance.choice((0.3, 0.3, 0.0, 0.5, chance.uniform(-0.5, 0.5)))
-    return Material(chance.choice((210e9, magnitude(chance, 1e6, 1e12))), poisson)
+    poisson = rng.choice((0.3, 0.3, 0.0, 0.5, rng.uniform(-0.5, 0.5)))
+    return Material(rng.choice((210e9, magnitude(rng, 1e6, 1e12))), poisson)
 
 
-def random_drawn(chance: Random, *, refined: bool | None = None) -> Drawn:
+def draw_case(rng: Random, *, refined: bool | None = None) -> RandomCase:
     """A case and its cells, refined or given at random by default.
 
     Raises
@@ -120,97 +122,97 @@ def random_drawn(chance: Random, *, refined: bool | None = None) -> Drawn:
     ContactStudyError
         If the parts contradict each other.
     """
-    material = random_material(chance)
-    radius = chance.choice((5e-3, magnitude(chance, 1e-7, 1.0)))
-    strain = magnitude(chance, 1e-4, 0.05)  # half-width over radius
+    material = random_material(rng)
+    radius = rng.choice((5e-3, magnitude(rng, 1e-7, 1.0)))
+    strain = magnitude(rng, 1e-4, 0.05)  # half-width over radius
     half_width = strain * radius
-    length = half_width * magnitude(chance, 0.5, 12.0)
+    length = half_width * magnitude(rng, 0.5, 12.0)
     roller = Roller(
         radius=radius,
         length=length,
-        profile=random_profile(chance, radius, length, 0.5 * half_width * strain),
-        material=chance.choice((None, None, None, material, random_material(chance))),
-        ends=chance.choice(("free", "free", "none")),
+        profile=random_profile(rng, radius, length, 0.5 * half_width * strain),
+        material=rng.choice((None, None, None, material, random_material(rng))),
+        ends=rng.choice(("free", "free", "none")),
     )
-    body = _random_body(chance, material, length, half_width)
+    body = _random_body(rng, material, length, half_width)
     pressure = 0.5 * strain * contact_modulus(material, roller.material)
     case = Case(
         body=body,
         roller=roller,
-        friction=chance.choice((0.0, 0.1, chance.uniform(-1.0, 1.0))),
-        coupled=chance.random() < 0.25,
-        end_distance=_end_distance(chance, body, length, half_width),
+        friction=rng.choice((0.0, 0.1, rng.uniform(-1.0, 1.0))),
+        coupled=rng.random() < 0.25,
+        end_distance=_end_distance(rng, body, length, half_width),
         max_pressure=pressure,
     )
-    case = replace(case, **_tilt(chance, case, strain))
-    if chance.random() < 0.3:
+    case = replace(case, **_tilt(rng, case, strain))
+    if rng.random() < 0.3:
         case = replace(case, max_pressure=None, load=case.normal_load)
-    drawn = _with_cells(chance, case, refined)
-    if drawn.grid is not None and chance.random() < MOVING:
+    random_case = _with_cells(rng, case, refined)
+    if random_case.grid is not None and rng.random() < MOVING_FRACTION:
         friction = abs(case.friction) or 0.1
-        moving = replace(case, friction=friction, motion=random_motion(chance, case, friction))
-        drawn = replace(drawn, case=moving)
-    return drawn
+        moving_case = replace(case, friction=friction, motion=random_motion(rng, case, friction))
+        random_case = replace(random_case, case=moving_case)
+    return random_case
 
 
-def _random_body(chance: Random, material: Material, length: float, half_width: float) -> Body:
-    """A body with room for the roller, or about as long."""
-    kind = chance.choice((FiniteLengthSpace, FiniteLengthSpace, FiniteLengthSpace, QuarterSpace, HalfSpace))
+def _random_body(rng: Random, material: Material, length: float, half_width: float) -> Body:
+    """A body longer than the roller, or about as long."""
+    kind = rng.choice((FiniteLengthSpace, FiniteLengthSpace, FiniteLengthSpace, QuarterSpace, HalfSpace))
     if kind is HalfSpace:
         return HalfSpace(material=material)
-    model = chance.choice(("exact", "exact", "exact", chance.choice(MODELS)))
+    model = rng.choice(("exact", "exact", "exact", rng.choice(MODELS)))
     if kind is QuarterSpace:
         return QuarterSpace(material=material, model="exact" if model == "single-mirror" else model)
-    longer = chance.choice((0.0, chance.uniform(0.0, 4.0) * half_width, chance.uniform(-0.5, 0.0) * length))
+    longer = rng.choice((0.0, rng.uniform(0.0, 4.0) * half_width, rng.uniform(-0.5, 0.0) * length))
     return FiniteLengthSpace(length=length + longer, material=material, model=model)
 
 
-def _end_distance(chance: Random, body: Body, length: float, half_width: float) -> float | None:
+def _end_distance(rng: Random, body: Body, length: float, half_width: float) -> float | None:
     """Flush, inside, or overhanging."""
     if isinstance(body, FiniteLengthSpace) and body.length < length:
-        return chance.choice((0.5, chance.random())) * (body.length - length)
-    return chance.choice((None, 0.0, chance.uniform(0.0, 3.0) * half_width, -chance.uniform(0.0, 0.4) * length))
+        return rng.choice((0.5, rng.random())) * (body.length - length)
+    return rng.choice((None, 0.0, rng.uniform(0.0, 3.0) * half_width, -rng.uniform(0.0, 0.4) * length))
 
 
-def _tilt(chance: Random, case: Case, strain: float) -> dict[str, float]:
+def _tilt(rng: Random, case: Case, strain: float) -> dict[str, float]:
     """Held tilt, a prescribed position of the load, or neither."""
-    chosen = chance.random()
+    chosen = rng.random()
     start, stop = case.contact_range
     if chosen < 0.2:
         depth = 0.5 * strain**2 * case.roller.radius
-        return {"tilt": chance.uniform(-1, 1) * min(depth / case.contact_length, 0.05)}
+        return {"tilt": rng.uniform(-1, 1) * min(depth / case.contact_length, 0.05)}
     if chosen < 0.4:
-        return {"load_position": start + chance.uniform(0.3, 0.7) * (stop - start)}
+        return {"load_position": start + rng.uniform(0.3, 0.7) * (stop - start)}
     return {}
 
 
-def _with_cells(chance: Random, case: Case, refined: bool | None) -> Drawn:
+def _with_cells(rng: Random, case: Case, refined: bool | None) -> RandomCase:
     """Uniform, graded or refined cells."""
-    form = chance.random()
-    if form < REFINED if refined is None else refined:
-        return Drawn(case, None, chance.choice((0.1, 0.1, 0.05, 0.02)))
+    form = rng.random()
+    if form < REFINED_FRACTION if refined is None else refined:
+        return RandomCase(case, None, rng.choice((0.1, 0.1, 0.05, 0.02)))
     a = case.hertz_half_width
-    half_window = chance.choice((2.0, 2.0, 3.0, 4.0)) * a
+    half_window = rng.choice((2.0, 2.0, 3.0, 4.0)) * a
     low, high = case.body.extent
     start, stop = case.roller_start, case.roller_start + case.roller.length
     margin = 2 * half_window
     first = low if np.isfinite(low) else start - margin
     last = high if np.isfinite(high) else stop + margin
     window = (-half_window, half_window)
-    if chance.random() < 0.1:  # the contact need not lie in the middle of the window
+    if rng.random() < 0.1:  # the contact need not lie in the middle of the window
         window = (-half_window, 1.3 * half_window)
-    cells_y = chance.randint(10, 20)
+    cells_y = rng.randint(10, 20)
     if form < 0.7:
-        cells_x = max(6, min(40, round((last - first) / a * chance.uniform(2.0, 5.0))))
-        if chance.random() < 0.1:
-            cells_x = 2 * chance.randint(1, 4)
-        return Drawn(case, Grid(x_range=(first, last), y_range=window, cells_x=cells_x, cells_y=cells_y))
-    return Drawn(case, Grid.from_edges(_graded(chance, first, last, chance.randint(6, 30)), window, cells_y))
+        cells_x = max(6, min(40, round((last - first) / a * rng.uniform(2.0, 5.0))))
+        if rng.random() < 0.1:
+            cells_x = 2 * rng.randint(1, 4)
+        return RandomCase(case, Grid(x_range=(first, last), y_range=window, cells_x=cells_x, cells_y=cells_y))
+    return RandomCase(case, Grid.from_edges(_graded_edges(rng, first, last, rng.randint(6, 30)), window, cells_y))
 
 
-def _graded(chance: Random, first: float, last: float, cells: int) -> np.ndarray:
+def _graded_edges(rng: Random, first: float, last: float, cells: int) -> np.ndarray:
     """Edges whose steps vary by up to a factor of 1.8 from one to the next."""
-    steps = np.exp(np.cumsum([chance.uniform(-0.55, 0.55) for _ in range(cells)]))
+    steps = np.exp(np.cumsum([rng.uniform(-0.55, 0.55) for _ in range(cells)]))
     edges = first + (last - first) * np.concatenate([[0.0], np.cumsum(steps) / steps.sum()])
     edges[-1] = last
     return np.asarray(edges)

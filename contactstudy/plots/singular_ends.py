@@ -1,4 +1,4 @@
-"""Singular ends in figures: the pressure is unbounded there, so figures omit it and mark the end."""
+"""Singular ends in figures: figures omit the unbounded pressure and mark the end."""
 
 from __future__ import annotations
 
@@ -27,13 +27,13 @@ def singular_ends(case: xr.Dataset) -> list[float]:
     x = dimension_along(pressure, "x")
     faces = case["initial_gap"] if "initial_gap" in case else xr.zeros_like(pressure)
     finite = faces.where(np.isfinite(faces)).notnull()
-    facing = np.flatnonzero(finite.any([dim for dim in faces.dims if dim != x]).values)
-    if not facing.size:
+    under_roller = np.flatnonzero(finite.any([dim for dim in faces.dims if dim != x]).values)
+    if not under_roller.size:
         return []
     centres = positions(pressure, "x").values
-    half = 0.5 * cell_widths(pressure, "x").values
-    first, last = facing[0], facing[-1]
-    borders = {"first": centres[first] - half[first], "last": centres[last] + half[last]}
+    half_widths = 0.5 * cell_widths(pressure, "x").values
+    first, last = under_roller[0], under_roller[-1]
+    borders = {"first": centres[first] - half_widths[first], "last": centres[last] + half_widths[last]}
     return [
         float(border)
         for end, border in borders.items()
@@ -43,11 +43,11 @@ def singular_ends(case: xr.Dataset) -> list[float]:
 
 def near_singular(case: xr.Dataset, ends: list[float], x: FloatArray) -> BoolArray:
     """Whether positions along x lie within `OMITTED_DISTANCE` of a singular end."""
-    near = np.zeros(x.size, dtype=bool)
+    near_end = np.zeros(x.size, dtype=bool)
     if "hertz_half_width" in case:
         for end in ends:
-            near |= np.abs(x - end) < OMITTED_DISTANCE * float(case["hertz_half_width"])
-    return near
+            near_end |= np.abs(x - end) < OMITTED_DISTANCE * float(case["hertz_half_width"])
+    return near_end
 
 
 def cap_field(case: xr.Dataset, field: xr.DataArray) -> tuple[xr.DataArray, float]:

@@ -1,4 +1,4 @@
-"""A solved random case, and how it is solved once more."""
+"""A solved random case, and solving it again."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from random import Random
 import numpy as np
 import xarray as xr
 
-from benchmarks.fuzz.drawn import Drawn
+from benchmarks.fuzz.random_cases import RandomCase
 from contactstudy import (
     Case,
     ContactStudyError,
@@ -35,12 +35,12 @@ class ViolationError(AssertionError):
 
 
 @dataclass(frozen=True)
-class Solved:
+class SolvedCase:
     """A case and its converged result, without stresses."""
 
-    drawn: Drawn
+    random_case: RandomCase
     result: xr.Dataset
-    chance: Random
+    rng: Random
 
     @property
     def peak(self) -> float:
@@ -49,19 +49,19 @@ class Solved:
 
     @property
     def moves(self) -> bool:
-        """Whether it rolls or is shifted, with stick and slip, instead of sliding."""
-        return not isinstance(self.drawn.case.motion, Sliding)
+        """Whether the motion is rolling or a shift, with stick and slip."""
+        return not isinstance(self.random_case.case.motion, Sliding)
 
     @property
-    def cells(self) -> Drawn:
-        """The case on the cells that it was solved on, whether these were refined or given."""
-        if self.drawn.grid is not None:
-            return self.drawn
+    def cells(self) -> RandomCase:
+        """The case on the cells of the solution, whether refined or given."""
+        if self.random_case.grid is not None:
+            return self.random_case
         result = self.result
         dy = float(result["y"][1] - result["y"][0])
         window = (float(result["y"][0]) - 0.5 * dy, float(result["y"][-1]) + 0.5 * dy)
         edges = np.append(result["x_bounds"][:, 0], result["x_bounds"][-1, 1])
-        return replace(self.drawn, grid=Grid.between(edges, window, result.sizes["y"]))
+        return replace(self.random_case, grid=Grid.between(edges, window, result.sizes["y"]))
 
     @property
     def grid(self) -> Grid:
@@ -77,38 +77,38 @@ def require(condition: object, message: str) -> None:
         raise ViolationError(message)
 
 
-def run(drawn: Drawn, **positions: list[float]) -> xr.Dataset:
+def run(random_case: RandomCase, **positions: list[float]) -> xr.Dataset:
     """Solve a case, with stresses at positions if given; check its warnings."""
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         result = solve(
-            drawn.case,
-            drawn.grid,
-            accuracy=None if drawn.grid is not None else drawn.accuracy,
+            random_case.case,
+            random_case.grid,
+            accuracy=None if random_case.grid is not None else random_case.accuracy,
             stresses=bool(positions),
             tolerance=TOLERANCE,
             **positions,  # type: ignore[arg-type]
         )
     kinds = {warning.category for warning in caught}
-    other = [
+    unexpected = [
         str(warning.message) for warning in caught if warning.category not in (ConvergenceWarning, MagnitudeWarning)
     ]
-    require(not other, f"an undeclared warning: {other[:1]}")
+    require(not unexpected, f"an undeclared warning: {unexpected[:1]}")
     require(
         bool(result["converged"]) == (ConvergenceWarning not in kinds), "converged and warning contradict each other"
     )
     return result
 
 
-def solve_again(drawn: Drawn) -> np.ndarray | None:
+def solve_again(random_case: RandomCase) -> np.ndarray | None:
     """Pressure of a variant of a solved case; None without convergence."""
     try:
-        if drawn.grid is None:
-            result = run(drawn)
+        if random_case.grid is None:
+            result = run(random_case)
         else:
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore", ConvergenceWarning)
-                result = contact(drawn.case, on_cells(drawn.grid, drawn.case.gap(drawn.grid)))
+                result = contact(random_case.case, on_cells(random_case.grid, random_case.case.gap(random_case.grid)))
     except ContactStudyError as error:
         raise ViolationError(f"a variant of a solved case was refused: {type(error).__name__}: {error}") from error
     return result["pressure"].values if bool(result["converged"]) else None

@@ -1,4 +1,4 @@
-"""Rows on refined columns: a roller with a real edge radius, against the uniform cells that it takes otherwise."""
+"""Rows on refined columns: a roller with a real edge radius, against uniform cells."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ CELLS = 16
 
 
 def roller_case() -> Case:
-    """A roller as long as the body; every call is another body, for which nothing is kept."""
+    """A roller as long as the body; every call makes a new body, without cached values."""
     # Bodies that differ by rounding alone share their kernels.
     length = LENGTH * (1 + 1e6 * (nudge() - 1))
     roller = Roller(radius=RADIUS, length=length, profile=profiles.Cylinder(FILLET))
     return Case(body=FiniteLengthSpace(length=length, material=STEEL), roller=roller, max_pressure=PEAK, friction=0.1)
 
 
-def solved(*, uniform: bool) -> xr.Dataset:
+def solve_roller(*, uniform: bool) -> xr.Dataset:
     """Contact and stresses at 41 x 1 x 25 points."""
     case = roller_case()
     half_width = case.hertz_half_width
@@ -35,16 +35,16 @@ def solved(*, uniform: bool) -> xr.Dataset:
 
 
 def refined_columns(repeats: int, report: Report) -> Iterator[Row]:
-    """Peak settled to 1 %, against uniform cells whose peak is not."""
+    """Peak with columns refined to 1 %, against uniform cells."""
     works: dict[str, Callable[[], object]] = {
-        "refined": partial(solved, uniform=False),
-        "uniform": partial(solved, uniform=True),
+        "refined": partial(solve_roller, uniform=False),
+        "uniform": partial(solve_roller, uniform=True),
     }
     seconds = medians(works, min(repeats, 3))
-    result = solved(uniform=False)
+    result = solve_roller(uniform=False)
     peak, error = float(result["peak_pressure"]), float(result["peak_pressure_error"])
     if error > 0.01 * peak:
-        report.remark("the refined peak is not settled to 1 %")
+        report.add_remark("the refined peak has not converged to 1 %")
     yield Row(
         "real roller, 10 mm, edge radius 0.2 mm, with stresses, nothing kept",
         show(seconds["refined"]),

@@ -22,16 +22,24 @@ from contactstudy.case.roller import Roller
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 from contactstudy.film.asperities import Asperities
-from contactstudy.study.parameters import PARAMETERS, REQUIRED, ROLLER_BODIES, UNIFORM, checked, taken_by, with_defaults
+from contactstudy.study.parameters import (
+    PARAMETERS,
+    REQUIRED,
+    ROLLER_BODIES,
+    UNIFORM_CELLS,
+    check_parameters,
+    keywords_of,
+    with_defaults,
+)
 from contactstudy.study.profile_tables import build_profile
 
-OVER_HALF_WIDTH = ("field_x_over_a", "field_y_over_a", "field_z_over_a")
+SCALED_POSITIONS = ("field_x_over_a", "field_y_over_a", "field_z_over_a")
 """Parameters that are positions over the half-width."""
 
-LUBRICANTS = {"lubricant": "temperature", "viscosity": "pressure_viscosity"}
+LUBRICANT_PAIRS = {"lubricant": "temperature", "viscosity": "pressure_viscosity"}
 """Parameters that specify a lubricant in pairs."""
 
-FILM = ("entrainment_speed", "slide_roll_ratio", "roughness_rms")
+FILM_PARAMETERS = ("entrainment_speed", "slide_roll_ratio", "roughness_rms")
 """Further parameters of a film."""
 
 MOTION_PARAMETERS = {
@@ -39,7 +47,7 @@ MOTION_PARAMETERS = {
     "shift": ("shift_x", "shift_y", "force_x", "force_y"),
     "rolling": ("longitudinal_creepage", "lateral_creepage", "spin", "force_x", "force_y", "moment_z"),
 }
-"""Parameters of each motion: arguments of its class, but for the start of those of a shift."""
+"""Parameters of each motion: arguments of its class, in a shift with the prefix `shift_`."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -55,21 +63,21 @@ class Dimensions:
 
     @classmethod
     def of(cls, values: Mapping[str, Any], modulus: float) -> Dimensions:
-        """Dimensions of a case; under a load ``a`` depends on the length and conversely; with an approach it is NaN."""
+        """Dimensions of a case; under a load ``a`` and length depend on each other; with an approach ``a`` is NaN."""
         radius = checks.positive("radius", values["radius"], "metres")
 
-        def of_half_width(half_width: float) -> Dimensions:
+        def compute_dimensions(half_width: float) -> Dimensions:
             distance = values["end_distance"] if "end_distance" in values else values["e_over_a"] * half_width
             if "gamma" in values:
-                body = checks.positive("gamma", values["gamma"]) * radius
-                roller = body - 2 * distance
+                body_length = checks.positive("gamma", values["gamma"]) * radius
+                roller_length = body_length - 2 * distance
             else:
-                roller = values["roller_length"]
-                body = roller + 2 * distance
+                roller_length = values["roller_length"]
+                body_length = roller_length + 2 * distance
             return cls(
                 radius=radius,
-                body_length=body,
-                roller_length=roller,
+                body_length=body_length,
+                roller_length=roller_length,
                 end_distance=distance,
                 half_width=half_width,
                 modulus=modulus,
@@ -77,21 +85,21 @@ class Dimensions:
 
         if "max_pressure" in values:
             pressure = checks.positive("max_pressure", values["max_pressure"], "Pa")
-            return of_half_width(hertz.line_half_width(pressure, radius, modulus))._checked()
+            return compute_dimensions(hertz.line_half_width(pressure, radius, modulus))._check_lengths()
         if "approach" in values:
-            return of_half_width(np.nan)._checked()
-        load, dimensions = checks.positive("load", values["load"], "N"), of_half_width(0.0)._checked()
+            return compute_dimensions(np.nan)._check_lengths()
+        load, dimensions = checks.positive("load", values["load"], "N"), compute_dimensions(0.0)._check_lengths()
         for _ in range(500):
             length, previous = min(dimensions.body_length, dimensions.roller_length), dimensions.half_width
             if length <= 0:
                 break
             pressure = hertz.line_max_pressure(load / length, radius, modulus)
-            dimensions = of_half_width(hertz.line_half_width(pressure, radius, modulus))
+            dimensions = compute_dimensions(hertz.line_half_width(pressure, radius, modulus))
             if abs(dimensions.half_width - previous) <= 1e-14 * dimensions.half_width:
-                return dimensions._checked()
+                return dimensions._check_lengths()
         raise InvalidInputError("load", load, "small enough for a roller of positive length at this e_over_a")
 
-    def _checked(self) -> Dimensions:
+    def _check_lengths(self) -> Dimensions:
         """Return the dimensions, or raise if a length is not positive."""
         for name, length in (("roller length", self.roller_length), ("body length", self.body_length)):
             if length <= 0:
@@ -114,7 +122,7 @@ class Setup:
 
     @property
     def grids(self) -> Iterator[Grid | None]:
-        """Grids of increasing windows: the first one that contains the contact counts."""
+        """Grids of increasing windows: the solver uses the first that contains the contact."""
         return widening_grids(self.case, **self.cells) if self.cells else iter((self.grid,))
 
     @property
@@ -137,15 +145,15 @@ class Setup:
 def _check_choices(values: Mapping[str, Any]) -> None:
     """Raise unless a case has exactly one parameter of each group of :data:`REQUIRED`."""
     for names in REQUIRED:
-        present = [name for name in names if name in values]
-        if not present and len(names) == 1:
+        stated = [name for name in names if name in values]
+        if not stated and len(names) == 1:
             raise InvalidInputError(names[0], None, "given")
-        if len(present) != 1:
+        if len(stated) != 1:
             *first, last = names
             count = "two" if len(names) == 2 else "three"
-            shown = tuple(values[name] for name in present) if present else "none"
+            given = tuple(values[name] for name in stated) if stated else "none"
             raise InvalidInputError(
-                ", ".join(present or names), shown, f"given as one of the {count}, {', '.join(first)} or {last}"
+                ", ".join(stated or names), given, f"given as one of the {count}, {', '.join(first)} or {last}"
             )
 
 
@@ -153,8 +161,8 @@ def _check_approach(parameters: Mapping[str, Any]) -> None:
     """Raise if a case at an approach has a parameter over the half-width, which follows from the solution."""
     if "approach" not in parameters:
         return
-    remedies = dict.fromkeys(UNIFORM, "leave it out: columns are refined, to `accuracy`") | dict.fromkeys(
-        OVER_HALF_WIDTH, "leave it out: the solver chooses the points, after the half-width"
+    remedies = dict.fromkeys(UNIFORM_CELLS, "leave it out: columns are refined, to `accuracy`") | dict.fromkeys(
+        SCALED_POSITIONS, "leave it out: the solver chooses the points, after the half-width"
     )
     remedies |= {"e_over_a": "give end_distance (metres)", "load_offset": "prescribe the load instead"}
     for name, remedy in remedies.items():
@@ -186,7 +194,7 @@ def _roller_material(values: Mapping[str, Any]) -> Material | None:
     )
 
 
-def motion_of(values: Mapping[str, Any]) -> Motion:
+def build_motion(values: Mapping[str, Any]) -> Motion:
     """Motion of a case, from checked parameters with their defaults."""
     kind = values["motion"]
     parameters = MOTION_PARAMETERS[kind]
@@ -203,17 +211,17 @@ def motion_of(values: Mapping[str, Any]) -> Motion:
         return Shift(**arguments)
     if "entrainment_speed" not in values:
         return Sliding()
-    speed, half = values["entrainment_speed"], 0.5 * values.get("slide_roll_ratio", 0.0)
-    return Sliding(body_speed=(1 - half) * speed, roller_speed=(1 + half) * speed)
+    speed, half_slip = values["entrainment_speed"], 0.5 * values.get("slide_roll_ratio", 0.0)
+    return Sliding(body_speed=(1 - half_slip) * speed, roller_speed=(1 + half_slip) * speed)
 
 
 def _lubricant(values: Mapping[str, Any]) -> Lubricant | None:
     """Lubricant of a case; None for a dry one."""
-    sources = [name for name in LUBRICANTS if name in values]
+    sources = [name for name in LUBRICANT_PAIRS if name in values]
     if len(sources) > 1:
         raise InvalidInputError(", ".join(sources), tuple(values[name] for name in sources), "one of the two")
-    required = (*sources, *(LUBRICANTS[name] for name in sources), "entrainment_speed")
-    excluded = [*LUBRICANTS.values(), *UNIFORM, *OVER_HALF_WIDTH] if sources else [*LUBRICANTS.values(), *FILM]
+    required = (*sources, *(LUBRICANT_PAIRS[name] for name in sources), "entrainment_speed")
+    excluded = [*LUBRICANT_PAIRS.values(), *((*UNIFORM_CELLS, *SCALED_POSITIONS) if sources else FILM_PARAMETERS)]
     for name in excluded:
         if name not in required[:-1] and values.get(name) != PARAMETERS[name].default:
             raise InvalidInputError(name, values[name], f"left out {'for' if sources else 'without'} a film")
@@ -232,7 +240,7 @@ def _stress_points(
 ) -> dict[str, FloatArray | None]:
     """Stress points in metres; None where the solver chooses."""
     x, y, z = (
-        half_width * checks.coordinates(name, values[name]) if name in values else None for name in OVER_HALF_WIDTH
+        half_width * checks.coordinates(name, values[name]) if name in values else None for name in SCALED_POSITIONS
     )
     if z is not None and z.min() < 0:
         raise InvalidInputError("field_z_over_a", float(z.min() / half_width), "not below zero")
@@ -252,13 +260,13 @@ def build_setup(parameters: Mapping[str, Any]) -> Setup:
     With ``a = 2 p0 R / E*`` and ``e = e_over_a a``: a `gamma` fixes the body, of length ``gamma R``, and the roller is
     shorter by ``2 e``; a `roller_length` fixes the roller, and the body is longer by ``2 e``.
     """
-    parameters = checked(parameters)
+    parameters = check_parameters(parameters)
     values = with_defaults(parameters)
     _check_approach(parameters)
     _check_choices(values)
     material, roller_material = Material(values["young"], values["poisson"]), _roller_material(values)
     sizes = Dimensions.of(values, contact_modulus(material, roller_material))
-    middle = sizes.end_distance + 0.5 * sizes.roller_length
+    mid_length = sizes.end_distance + 0.5 * sizes.roller_length
     case = Case(
         body=_body(values, material, sizes.body_length),
         roller=Roller(
@@ -270,26 +278,26 @@ def build_setup(parameters: Mapping[str, Any]) -> Setup:
             reference_depth=values.get("roller_reference_depth") if roller_material else None,
         ),
         end_distance=sizes.end_distance,
-        load_position=middle + values["load_offset"] if "load_offset" in values else None,
-        motion=motion_of(values),
+        load_position=mid_length + values["load_offset"] if "load_offset" in values else None,
+        motion=build_motion(values),
         lubricant=_lubricant(values),
-        **taken_by(Case, values),
+        **keywords_of(Case, values),
     )
     tolerance = checks.positive("tolerance", values["tolerance"])
-    options: dict[str, Any] = _stress_points(values, sizes.half_width, case.body.extent) | taken_by(
+    options: dict[str, Any] = _stress_points(values, sizes.half_width, case.body.extent) | keywords_of(
         solver_settings, values
     )
     options["tolerance"] = tolerance
-    given = {name: parameters[name] for name in ("accuracy", *UNIFORM) if name in parameters}
-    if "accuracy" in given and len(given) > 1:
+    stated_cells = {name: parameters[name] for name in ("accuracy", *UNIFORM_CELLS) if name in parameters}
+    if "accuracy" in stated_cells and len(stated_cells) > 1:
         allowed = "given as one of the two, accuracy or uniform cells"
-        raise InvalidInputError(", ".join(given), tuple(given.values()), allowed)
+        raise InvalidInputError(", ".join(stated_cells), tuple(stated_cells.values()), allowed)
     grid: Grid | None = None
     cells: dict[str, float] = {}
     if "accuracy" in values:
         options["accuracy"] = check_accuracy(values["accuracy"])
     else:
-        gridding = taken_by(choose_grid, values)
+        gridding = keywords_of(choose_grid, values)
         if all(gridding[name] == PARAMETERS[name].default for name in ("window", "margin")):
             cells = {name: gridding[name] for name in ("cells_x", "cells_y")}
         grid = choose_grid(case, **gridding)

@@ -5,7 +5,7 @@ import pytest
 import xarray as xr
 
 from contactstudy import Case, HalfSpace, Material, Roller, plots, solve
-from contactstudy.plots.singular import singular_ends
+from contactstudy.plots.singular_ends import singular_ends
 
 
 @pytest.fixture(scope="module")
@@ -15,20 +15,20 @@ def sharp():
     return solve(case, stresses=False, accuracy=0.05)
 
 
-def test_the_ends_are_found_where_the_roller_ends(sharp):
+def test_singular_ends_lie_at_roller_ends(sharp):
     np.testing.assert_allclose(singular_ends(sharp), [0.2e-3, 1.2e-3], rtol=1e-9)
 
 
-def test_the_pressure_stops_before_a_singular_end_and_a_mark_stands_there(sharp):
+def test_singular_end_is_marked(sharp):
     ax = plots.plot_axial_pressure(sharp)
     line, marks = ax.lines
     a, p0 = float(sharp["hertz_half_width"]), float(sharp["hertz_max_pressure"])
     np.testing.assert_allclose(marks.get_xdata(), np.array([0.2e-3, 1.2e-3]) / a)
-    # The narrowest columns carry far more than what is drawn.
+    # The narrowest columns carry much higher pressures than the figure.
     assert np.nanmax(line.get_ydata()) < 0.5 * float(sharp["pressure"].max()) / p0
 
 
-def test_the_mark_of_an_end_beyond_the_axes_takes_no_room(sharp):
+def test_mark_beyond_axes_keeps_limits(sharp):
     ax = plots.plot_axial_pressure(sharp)
     marks = ax.lines[-1]
     first, last = marks.get_xdata()
@@ -38,7 +38,7 @@ def test_the_mark_of_an_end_beyond_the_axes_takes_no_room(sharp):
     assert marks.get_clip_on()
 
 
-def test_the_colours_of_the_map_stop_before_a_singular_end(sharp):
+def test_map_colours_exclude_singular_end(sharp):
     mesh, *_ = plots.plot_pressure_map(sharp).collections
     assert mesh.get_clim()[1] < 0.5 * float(sharp["pressure"].max() / sharp["hertz_max_pressure"])
 
@@ -48,7 +48,7 @@ def study(values):
     return xr.Dataset({"peak_pressure": peaks.assign_attrs(units="Pa")})
 
 
-def test_a_line_through_singular_cases_has_marks_and_a_limit(assert_nothing_clipped):
+def test_study_line_marks_singular_cases(assert_nothing_clipped):
     figure = plots.plot_study_lines(study([[1e9, 1.1e9], [np.inf, 1.2e9]]), x="e_over_a", hue="friction")
     first, marks, _ = figure.axes[0].lines
     assert np.isnan(first.get_ydata()[1])
@@ -58,37 +58,39 @@ def test_a_line_through_singular_cases_has_marks_and_a_limit(assert_nothing_clip
     assert_nothing_clipped(figure)
 
 
-def test_without_singular_cases_there_is_no_mark():
+def test_regular_cases_have_no_mark():
     figure = plots.plot_study_lines(study([[1e9, 1.1e9], [1.3e9, 1.2e9]]), x="e_over_a", hue="friction")
     assert len(figure.axes[0].lines) == 2
     assert not any("singular" in text.get_text() for legend in figure.legends for text in legend.get_texts())
 
 
-def test_a_map_says_where_there_is_no_limit():
+def test_study_map_labels_unbounded_values():
     ax = plots.plot_study_map(study([[1e9, 1.1e9], [np.inf, 1.2e9]]), "peak_pressure")
     assert [text.get_text() for text in ax.texts].count("\N{INFINITY}") == 1
 
 
-def test_a_largest_value_at_the_edge_of_the_points_has_an_open_marker(lines_of):
-    one = study([[1e9, 1.1e9], [1.3e9, 1.2e9]]).rename(peak_pressure="peak_von_mises")
-    one["peak_von_mises_error"] = one["peak_von_mises"] * [[0.01, np.inf], [0.01, 0.01]]
-    figure = plots.plot_study_lines(one, ["peak_von_mises"], x="e_over_a", hue="friction")
+def test_maximum_at_border_has_open_marker(lines_of):
+    dataset = study([[1e9, 1.1e9], [1.3e9, 1.2e9]]).rename(peak_pressure="peak_von_mises")
+    dataset["peak_von_mises_error"] = dataset["peak_von_mises"] * [[0.01, np.inf], [0.01, 0.01]]
+    figure = plots.plot_study_lines(dataset, ["peak_von_mises"], x="e_over_a", hue="friction")
     _, line, marks = lines_of(figure.axes[0])
     assert np.isfinite(marks.get_ydata()).tolist() == [True, False]
     assert line.get_ydata()[0] == marks.get_ydata()[0] == pytest.approx(1.1)
     assert any("error not estimated" in text.get_text() for legend in figure.legends for text in legend.get_texts())
 
 
-def test_colours_stop_at_the_stress_away_from_a_singular_end():
+def test_stress_colours_exclude_singular_end():
     """Positions that close in on the end have stresses without a limit: they would take all colours."""
     body = HalfSpace(material=Material(210e9, 0.3))
     case = Case(body=body, roller=Roller(radius=5e-3, length=1e-3), max_pressure=1.5e9, end_distance=0.2e-3)
     a = case.hertz_half_width
     x = np.sort(np.concatenate([0.2e-3 + a * np.geomspace(1e-4, 1.0, 12), [0.1e-3, 0.7e-3]]))
-    one = solve(case, accuracy=0.05, x=x, y=[-1e-6, 0.0, 1e-6], z=a * np.array([0.0, 0.2, 0.8]))
-    ax = plots.plot_stress_plane(one)
-    (filled,) = [each for each in ax.collections if each.get_array() is not None and each.get_cmap().name != "white"][
-        :1
-    ]
-    assert filled.norm.vmax < 0.5 * float(one["von_mises"].max()) / 1.5e9
+    result = solve(case, accuracy=0.05, x=x, y=[-1e-6, 0.0, 1e-6], z=a * np.array([0.0, 0.2, 0.8]))
+    ax = plots.plot_stress_plane(result)
+    (contours,) = [
+        collection
+        for collection in ax.collections
+        if collection.get_array() is not None and collection.get_cmap().name != "white"
+    ][:1]
+    assert contours.norm.vmax < 0.5 * float(result["von_mises"].max()) / 1.5e9
     assert "unbounded at the singular end" in ax.figure.axes[-1].get_ylabel().replace("\n", " ")

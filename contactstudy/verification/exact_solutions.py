@@ -52,11 +52,11 @@ def hertz_checks() -> Iterator[Check]:
     contact = solve_contact(body, gap, load=4 / 3)
     _, peak, approach = closed_forms.hertz_point(4 / 3, 1.0, 1.0)
     case, source = "Hertz point contact, 129 x 129 cells", "Hertz; Johnson (1985) 4.22 to 4.24"
-    middle = contact["pressure"].sel(y=0, method="nearest")
-    exact = peak * np.sqrt(np.maximum(1 - middle["x"].values ** 2, 0))
-    curve = Curve(("x / a", "p / p0"), middle["x"].values, middle.values / peak, exact / peak)
-    largest = contact["pressure"].max()
-    yield Reference(case, source).compare("peak pressure", largest, peak, 2e-4, relative=True, curve=curve)
+    line = contact["pressure"].sel(y=0, method="nearest")
+    exact = peak * np.sqrt(np.maximum(1 - line["x"].values ** 2, 0))
+    curve = Curve(("x / a", "p / p0"), line["x"].values, line.values / peak, exact / peak)
+    max_pressure = contact["pressure"].max()
+    yield Reference(case, source).compare("peak pressure", max_pressure, peak, 2e-4, relative=True, curve=curve)
     yield Reference(case, source).compare("approach", contact["approach"], approach, 1e-4, relative=True)
 
     long_radius, short_radius = 4.0, 1.0
@@ -66,23 +66,23 @@ def hertz_checks() -> Iterator[Check]:
     contact = solve_contact(body, gap, load=4 / 3)
     case = f"Hertz elliptic contact, radii 4 to 1, axes {ellipse.long / ellipse.short:.2f} to 1"
     source = "Hertz; Johnson (1985) 4.26 to 4.32"
-    largest = contact["pressure"].max()
-    yield Reference(case, source).compare("peak pressure", largest, ellipse.max_pressure, 2e-4, relative=True)
+    max_pressure = contact["pressure"].max()
+    yield Reference(case, source).compare("peak pressure", max_pressure, ellipse.max_pressure, 2e-4, relative=True)
     yield Reference(case, source).compare("approach", contact["approach"], ellipse.approach, 1e-4, relative=True)
-    touched = contact["pressure"].max("y") > 0
-    half_length = 0.5 * float(touched.sum()) * float(gap["x"].diff("x")[0])
+    in_contact = contact["pressure"].max("y") > 0
+    half_length = 0.5 * float(in_contact.sum()) * float(gap["x"].diff("x")[0])
     yield Reference(case, source).compare("long semi-axis over its value", half_length / ellipse.long, 1.0, 0.015)
 
     gap = on_cells(lambda x, y: y**2 + 0 * x, (0, 60), (-2, 2), (240, 129))
     contact = solve_contact(body, gap.where(abs(gap["x"] - 30) < 28, np.inf), load=56 * LINE_LOAD)
-    middle = contact["pressure"].sel(x=30, method="nearest")
-    load = float(middle.sum()) * 4 / 129
+    line = contact["pressure"].sel(x=30, method="nearest")
+    load = float(line.sum()) * 4 / 129
     half_width, peak = closed_forms.hertz_line(load, 0.5, 1.0)
-    exact = peak * np.sqrt(np.maximum(1 - (middle["y"].values / half_width) ** 2, 0))
-    curve = Curve(("y / a", "p / p0"), middle["y"].values, middle.values, exact)
+    exact = peak * np.sqrt(np.maximum(1 - (line["y"].values / half_width) ** 2, 0))
+    curve = Curve(("y / a", "p / p0"), line["y"].values, line.values, exact)
     case, source = "Hertz line contact, middle of a roller of length 56a", "Hertz; Johnson (1985) 4.45"
     quantity = "peak pressure under the load per length there"
-    yield Reference(case, source).compare(quantity, middle.max(), peak, 2e-4, relative=True, curve=curve)
+    yield Reference(case, source).compare(quantity, line.max(), peak, 2e-4, relative=True, curve=curve)
 
 
 def circle_checks() -> Iterator[Check]:
@@ -158,11 +158,11 @@ def rectangle_checks() -> Iterator[Check]:
         "uniform pressure and traction (f = 0.3) on a rectangle 2 x 1",
         "Boussinesq and Cerruti, integrated by Gauss quadrature",
     ).compare_fields("six stresses / p", components(stress), components(exact), 1e-8)
-    sunk = surface_displacement(body, pressure)
-    centres = sunk["x"].values[:, None], sunk["y"].values
+    displacement = surface_displacement(body, pressure)
+    centres = displacement["x"].values[:, None], displacement["y"].values
     exact_sunk = closed_forms.rectangle_displacement(*centres, half_x, half_y, 1.0)
     case, source = "uniform pressure on a rectangle 2 x 1", "Love (1929); Johnson 3.25"
-    yield Reference(case, source).compare_fields("E* u_z / (p a)", sunk, exact_sunk, 1e-9)
+    yield Reference(case, source).compare_fields("E* u_z / (p a)", displacement, exact_sunk, 1e-9)
 
 
 def point_checks() -> Iterator[Check]:
@@ -222,12 +222,12 @@ def body_checks() -> Iterator[Check]:
     """Bodies with ends that are far away."""
     points: dict[str, Any] = {"y": [0.0, 0.5], "z": [0.1, 0.3, 1.0]}
     bump = on_cells(lambda x, y: np.maximum(1 - (x - 20) ** 2 - y**2, 0), (0, 40), (-1.5, 1.5), (320, 24))
-    finite, half = (
+    finite, half_space = (
         stress_field(body, bump, friction=0.2, x=[19.0, 20.0, 20.5], **points, inside_cells=bump)
         for body in (_finite(40.0), _half_space())
     )
     case, source = "body of length 40a loaded over 2a in its middle, f = 0.2", "half-space under the same load"
-    yield Reference(case, source).compare_fields("six stresses / p0", components(finite), components(half), 1e-3)
+    yield Reference(case, source).compare_fields("six stresses / p0", components(finite), components(half_space), 1e-3)
     at_x = [0.0, 0.1, 1.0, 2.5]
     for length, tolerance in ((20.0, 5e-3), (40.0, 1.25e-3)):
         fields = []
@@ -280,8 +280,8 @@ def equilibrium_checks() -> Iterator[Check]:
     y, dy = np.sinh(parameter), np.cosh(parameter) * (parameter[1] - parameter[0])
     cut = stress_field(body, pressure, friction=friction, x=x, y=y, z=[1.0], inside_cells=pressure).isel(z=0)
     load = length * 16 / 15
-    beyond = 1 - 4 / (np.pi * np.abs(y).max())
-    for component, expected in (("sigma_zz", -load), ("tau_yz", -friction * load * beyond)):
+    fraction_within = 1 - 4 / (np.pi * np.abs(y).max())
+    for component, expected in (("sigma_zz", -load), ("tau_yz", -friction * load * fraction_within)):
         resultant = float(np.einsum("xy,x,y->", cut[component].values, 0.5 * length * weight, dy))
         yield Reference(f"{case}, cut at z = a", "equilibrium").compare(
             f"resultant of {component} / (p0 a^2)", resultant, expected, 2e-3
@@ -299,13 +299,13 @@ def contact_condition_checks() -> Iterator[Check]:
     mirrored = [pressure[::-1], pressure[:, ::-1]]
     quantity = "pressure / p0 against its mirror images"
     yield Reference(case, "symmetry").compare_fields(quantity, [pressure, pressure], mirrored, 1e-8)
-    sunk = surface_displacement(_finite(8.0), contact["pressure"])
-    height = ((gap + sunk) / float(sunk.max() - sunk.min())).values
-    touching = pressure > 0
-    approach = height[touching].mean()
+    displacement = surface_displacement(_finite(8.0), contact["pressure"])
+    height = ((gap + displacement) / float(displacement.max() - displacement.min())).values
+    in_contact = pressure > 0
+    approach = height[in_contact].mean()
     quantity = "gap under pressure over the variation of the displacement"
-    yield Reference(case, "conditions of contact").compare_fields(quantity, height[touching], approach, 1e-5)
-    overlap = min(0.0, float((height - approach)[~touching].min()))
+    yield Reference(case, "conditions of contact").compare_fields(quantity, height[in_contact], approach, 1e-5)
+    overlap = min(0.0, float((height - approach)[~in_contact].min()))
     yield Reference(case, "conditions of contact").compare("overlap elsewhere, likewise", overlap, 0.0, 1e-5)
 
 
@@ -316,9 +316,9 @@ def reciprocity_checks() -> Iterator[Check]:
         first = on_cells(lambda x, y: np.exp(-((x - 1) ** 2) - y**2), span, (-2, 2), cells)
         second = on_cells(lambda x, y: np.exp(-((x - 2) ** 2) - 2 * y**2), span, (-2, 2), cells)
         work = (first * surface_displacement(body, second)).sum()
-        other = (second * surface_displacement(body, first)).sum()
+        second_work = (second * surface_displacement(body, first)).sum()
         case, quantity = f"two loads on a body of length {length:g}a", "work of one on the other's displacement"
-        yield Reference(case, "Betti").compare(quantity, work, other, 1e-9, relative=True)
+        yield Reference(case, "Betti").compare(quantity, work, second_work, 1e-9, relative=True)
 
 
 def alternation_checks() -> Iterator[Check]:
@@ -329,10 +329,10 @@ def alternation_checks() -> Iterator[Check]:
     source: FloatArray = system.source(
         Load.NORMAL, modes.load_weights * modes.cell_integrals(Load.NORMAL, np.array([0.0, 3.0]))[:, 0]
     )
-    explicit, face_load = system.solve(source), source.copy()
+    direct_solution, face_load = system.solve(source), source.copy()
     for _ in range(200):
         face_load = source + system.source(Load.NORMAL, modes.on_end * system.on_top(system.scale * face_load))
-    scale, alternated = np.abs(explicit).max(), system.scale * face_load
+    scale, iterated_solution = np.abs(direct_solution).max(), system.scale * face_load
     case, iteration = "equivalent loads at one wavenumber, 200 alternations", "iteration of Hetenyi (1970) and Keer"
     quantity = "face loads over the largest"
-    yield Reference(case, iteration).compare_fields(quantity, explicit / scale, alternated / scale, 1e-9)
+    yield Reference(case, iteration).compare_fields(quantity, direct_solution / scale, iterated_solution / scale, 1e-9)

@@ -5,8 +5,8 @@ from contactstudy.bodies.material import Material
 from contactstudy.bodies.models import HalfSpace
 from contactstudy.case.motion import Shift
 from contactstudy.errors import InvalidInputError
-from contactstudy.study.parameters import completed, counted
-from contactstudy.study.setup import build_setup, motion_of
+from contactstudy.study.case_setup import build_motion, build_setup
+from contactstudy.study.parameters import add_default_accuracy, identity_value
 from tests.small_study import BASE
 
 
@@ -26,21 +26,21 @@ def test_gamma_fixes_the_body():
 
 def test_half_space_keeps_roller_and_coordinates():
     finite = build_setup(BASE | {"e_over_a": 2})
-    half = build_setup(BASE | {"e_over_a": 2, "body": "half-space"})
-    assert isinstance(half.case.body, HalfSpace)
-    assert half.case.contact_range == finite.case.contact_range
-    assert half.case.roller == finite.case.roller
+    half_space = build_setup(BASE | {"e_over_a": 2, "body": "half-space"})
+    assert isinstance(half_space.case.body, HalfSpace)
+    assert half_space.case.contact_range == finite.case.contact_range
+    assert half_space.case.roller == finite.case.roller
 
 
 @pytest.mark.parametrize("e_over_a", [-1.0, 0.0, 3.0])
-@pytest.mark.parametrize("given", [{"gamma": 0.5}, {"roller_length": 2e-3}])
-def test_load_and_e_over_a_together(given, e_over_a):
-    values = {key: BASE[key] for key in ("young", "poisson", "radius")} | given
+@pytest.mark.parametrize("parameters", [{"gamma": 0.5}, {"roller_length": 2e-3}])
+def test_load_and_e_over_a_together(parameters, e_over_a):
+    values = {key: BASE[key] for key in ("young", "poisson", "radius")} | parameters
     case = build_setup(values | {"load": 300.0, "e_over_a": e_over_a}).case
     assert case.roller_start == pytest.approx(e_over_a * case.hertz_half_width, rel=1e-9, abs=1e-15)
 
 
-def test_a_load_that_leaves_no_roller():
+def test_load_without_positive_roller_length_raises():
     values = {key: BASE[key] for key in ("young", "poisson", "radius")}
     with pytest.raises(InvalidInputError, match="load"):
         build_setup(values | {"gamma": 0.1, "load": 1e5, "e_over_a": 5})
@@ -52,7 +52,7 @@ AT_APPROACH = {key: BASE[key] for key in ("young", "poisson", "radius", "roller_
 }
 
 
-def test_an_approach_leaves_the_half_width_to_the_solution():
+def test_approach_leaves_half_width_undefined():
     setup = build_setup(AT_APPROACH | {"end_distance": 1e-4})
     assert setup.case.approach == 1e-6
     assert np.isnan(setup.e_over_a)
@@ -68,7 +68,7 @@ def test_an_approach_leaves_the_half_width_to_the_solution():
         ({"end_distance": 0, "load": 3.0}, "load, approach = .*one of the three, max_pressure, load or approach"),
     ],
 )
-def test_what_is_over_a_is_refused_with_an_approach(changes, message):
+def test_approach_refuses_parameters_over_half_width(changes, message):
     with pytest.raises(InvalidInputError, match=message):
         build_setup(AT_APPROACH | changes)
 
@@ -96,20 +96,20 @@ def test_stress_points_are_over_a():
         ({"e_over_a": 1, "profile": {"kind": "lundberg"}}, "profile"),
     ],
 )
-def test_what_cannot_be_solved(changes, named):
+def test_impossible_parameters_raise(changes, named):
     with pytest.raises(InvalidInputError, match=named):
         build_setup(BASE | changes)
 
 
-def test_lundberg_by_its_design_pressure():
+def test_lundberg_profile_from_design_pressure():
     table = {"kind": "lundberg", "design_pressure": 1.5e9}
     case = build_setup(BASE | {"e_over_a": 1, "profile": table}).case
     assert case.roller.profile.amplitude == pytest.approx(5e-3 * (1.5e9 / case.modulus) ** 2)
 
 
-def test_elastic_rollers_tilt_and_load_offset_reach_the_case():
-    words = {**BASE, "e_over_a": 1.0, "roller_body": "finite-length", "roller_poisson": 0.25, "load_offset": 1e-5}
-    case = build_setup(words).case
+def test_case_contains_elastic_roller_tilt_and_offset():
+    parameters = {**BASE, "e_over_a": 1.0, "roller_body": "finite-length", "roller_poisson": 0.25, "load_offset": 1e-5}
+    case = build_setup(parameters).case
     assert case.roller.body is not None
     assert case.roller.material == Material(BASE["young"], 0.25)
     assert case.load_position == pytest.approx(case.roller_start + 0.5 * case.roller.length + 1e-5)
@@ -117,7 +117,7 @@ def test_elastic_rollers_tilt_and_load_offset_reach_the_case():
     assert case.hertz_half_width > build_setup({**BASE, "e_over_a": 1.0}).case.hertz_half_width
 
 
-def test_the_roller_of_one_material_needs_no_constants():
+def test_elastic_roller_defaults_to_body_material():
     case = build_setup({**BASE, "e_over_a": 1.0, "roller_body": "half-space"}).case
     assert case.roller.material == case.body.material
     assert isinstance(case.roller.body, HalfSpace)
@@ -127,19 +127,19 @@ def test_the_roller_of_one_material_needs_no_constants():
     ("wrong", "parameter"),
     [({"roller_young": 70e9}, "roller_young"), ({"roller_body": "rubber"}, "roller_body"), ({"tilt": 1.0}, "tilt")],
 )
-def test_contradictions_about_the_roller(wrong, parameter):
+def test_contradictory_roller_parameters_raise(wrong, parameter):
     with pytest.raises(InvalidInputError, match=parameter):
         build_setup({**BASE, "e_over_a": 1.0, **wrong})
 
 
-def test_default_accuracy_and_default_friction_in_the_identity():
-    assert completed({"friction": 0.1}) == {"friction": 0.1, "accuracy": 0.01}
-    assert completed({"cells_x": 4.0}) == {"cells_x": 4.0}
-    assert counted("friction", 0.0) is None
+def test_identity_contains_default_accuracy():
+    assert add_default_accuracy({"friction": 0.1}) == {"friction": 0.1, "accuracy": 0.01}
+    assert add_default_accuracy({"cells_x": 4.0}) == {"cells_x": 4.0}
+    assert identity_value("friction", 0.0) is None
     tapered = {"kind": "tapered", "half_angle": 0.1}
-    assert counted("profile", tapered | {"name": "ours"}) == tapered
+    assert identity_value("profile", tapered | {"name": "ours"}) == tapered
 
 
-def test_shift_from_its_parameters():
+def test_shift_motion_from_parameters():
     values = {"motion": "shift", "shift_y": 1e-6, "rolling_model": "exact"}
-    assert motion_of(values) == Shift(y=1e-6)
+    assert build_motion(values) == Shift(y=1e-6)

@@ -17,7 +17,7 @@ from contactstudy.study.folder import STATES, Folder, States
 from contactstudy.study.parameters import PARAMETERS
 from contactstudy.study.plan import label
 
-CELLS = ("common", "original")
+CELL_CHOICES = ("common", "original")
 """Axes of surfaces and stresses: common to all cases, or the cells and points of each case."""
 
 
@@ -113,13 +113,13 @@ def load_case(folder: str | Path, case_id: str) -> xr.Dataset:
 def study_dataset(folder: str | Path, *, cells: str | None) -> xr.Dataset:
     """Dataset of a study whose surfaces and fields are lazy; without them if `cells` is None."""
     if cells is not None:
-        checks.known_name("cells", cells, CELLS)
+        checks.known_name("cells", cells, CELL_CHOICES)
     results = Folder(folder)
     study = results.read_study()
     states = results.states(study.plan())
     dataset = numbers_dataset(states)
     if cells is not None and (fields := Fields(states, common=cells == "common")).names:
-        dataset = fields.added_to(dataset)
+        dataset = fields.add_to(dataset)
     dataset.attrs = {STUDY_ATTRIBUTE: study.to_json()}
     return describe(dataset, study.description or f"study {study.name}")
 
@@ -147,7 +147,7 @@ def numbers_dataset(states: States) -> xr.Dataset:
             array = plan.spread(states.numbers(name), np.nan)
             if name in ("e_over_a", "gamma"):
                 if np.isfinite(array).any():
-                    dims, array = _reduced(cube.dims, array)
+                    dims, array = _drop_constant_dims(cube.dims, array)
                     coordinates[name] = (dims, array, states.attributes(name))
             else:
                 variables[name] = (cube.dims, array, states.attributes(name))
@@ -159,7 +159,7 @@ def numbers_dataset(states: States) -> xr.Dataset:
     return xr.Dataset(variables, coords=coordinates)
 
 
-def _reduced(dims: tuple[str, ...], table: FloatArray) -> tuple[tuple[str, ...], FloatArray]:
+def _drop_constant_dims(dims: tuple[str, ...], table: FloatArray) -> tuple[tuple[str, ...], FloatArray]:
     """Drop dimensions along which a table is constant or NaN."""
     for axis in range(len(dims) - 1, -1, -1):
         present = np.isfinite(table)
