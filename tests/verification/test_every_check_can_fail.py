@@ -156,17 +156,17 @@ def better_conductors(patch: Patch) -> None:
 
 def heat_in_halves(patch: Patch) -> None:
     """The heat is shared whatever temperatures come of it, and not quite in halves."""
-    patch.setattr(flash, "shared_heat", lambda first, second, density, touching: (0.49 * density, 0.0))
+    patch.setattr(flash, "partition_heat", lambda first, second, density, in_contact: (0.49 * density, 0.0))
 
 
 def wear_that_changes_nothing(patch: Patch) -> None:
-    real = WornContact.pressed
-    patch.setattr(WornContact, "pressed", lambda contact, depth, *further: real(contact, 0 * depth, *further))
+    real = WornContact.solve
+    patch.setattr(WornContact, "solve", lambda contact, depth, *further: real(contact, 0 * depth, *further))
 
 
 def milder_wear(patch: Patch) -> None:
-    real = WornContact.slip
-    patch.setattr(WornContact, "slip", lambda contact, depth, law: 0.9 * real(contact, depth, law))
+    real = WornContact.compute_slip
+    patch.setattr(WornContact, "compute_slip", lambda contact, depth, law: 0.9 * real(contact, depth, law))
 
 
 def pressed_harder_by(factor: float) -> Callable[[Patch], None]:
