@@ -41,7 +41,7 @@ from contactstudy import (
     surface_displacement,
 )
 from contactstudy.arrays.variables import STRESSES
-from contactstudy.bodies.models import EndedBody
+from contactstudy.bodies.models import BodyWithFreeEnds
 from contactstudy.contact.normal.contact import CONVERGED_TOLERANCES
 from contactstudy.kernels.fine_cells import REACH
 
@@ -205,7 +205,7 @@ QUADRATURE = 2e-5
 def reciprocity(solved: Solved) -> bool:
     """Two pressures do equal work on the displacement of each other (Betti)."""
     body, grid = solved.drawn.case.body, solved.grid
-    if isinstance(body, EndedBody) and body.model != "exact":
+    if isinstance(body, BodyWithFreeEnds) and body.model != "exact":
         return False
     first = solved.result["pressure"]
     noise = np.random.default_rng(solved.chance.randrange(2**32)).random(grid.shape)
@@ -280,7 +280,7 @@ def loads_on_the_top(solved: Solved) -> bool:
     """On the top the stresses equal the loads, uniform in each cell or smooth."""
     case, grid = solved.drawn.case, solved.grid
     pressure = solved.result["pressure"]
-    if isinstance(case.body, EndedBody) and case.body.model == "mirror-factor":
+    if isinstance(case.body, BodyWithFreeEnds) and case.body.model == "mirror-factor":
         return False  # its weights add up to one, but its mirrors do not end where the body does
     i, j = (solved.chance.randrange(count) for count in grid.shape)
     p = float(pressure[i, j])
@@ -336,7 +336,7 @@ def free_ends(solved: Solved) -> bool:
     """
     case, grid, chance = solved.drawn.case, solved.grid, solved.chance
     ends = [end for end in case.body.extent if np.isfinite(end)]
-    if not ends or not isinstance(case.body, EndedBody) or case.body.model != "exact":
+    if not ends or not isinstance(case.body, BodyWithFreeEnds) or case.body.model != "exact":
         return False
     size = max(grid.dy, float(grid.widths[[0, -1]].max()))
     depths = [magnitude(chance, 0.25, 4.0) * size for _ in range(2)]
@@ -417,7 +417,7 @@ def largest_stress(solved: Solved) -> bool:
 def equivalent_loads_are_finite(solved: Solved) -> bool:
     """The method's equivalent loads exist for every pressure of `solve`."""
     case = solved.drawn.case
-    if not isinstance(case.body, EndedBody) or case.body.model != "exact":
+    if not isinstance(case.body, BodyWithFreeEnds) or case.body.model != "exact":
         return False
     depth = solved.chance.uniform(0.1, 3.0) * case.hertz_half_width
     loads = equivalent_loads(case.body, solved.result["pressure"], float(case.friction), z=[depth])

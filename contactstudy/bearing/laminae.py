@@ -17,7 +17,7 @@ from contactstudy.bodies import hertz
 from contactstudy.case.case import Case, small_tilt
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
-from contactstudy.profiles.base import checked_drop, local_radius
+from contactstudy.profiles.base import check_drop, local_radius
 
 SPRING = 35948e6  # The standard's spring constant 35948 N / mm**2, in N / m**2
 # Contact modulus (Pa) of the standard's constant: steel on steel, 207 GPa and 0.3
@@ -93,7 +93,7 @@ def slice_model(case: Case, *, slices: int = 30, tilt: float | None = None, edge
     length, roller = case.contact_length, case.roller
     x = start + length * (np.arange(slices) + 0.5) / slices
     x_from_middle = x - case.roller_middle
-    height = checked_drop(roller.profile, x_from_middle, roller.length) - np.tan(tilt) * x_from_middle
+    height = check_drop(roller.profile, x_from_middle, roller.length) - np.tan(tilt) * x_from_middle
     stiffness = SPRING * length ** (8 / 9) / slices * (case.modulus / STEEL_MODULUS)
     load = case.normal_load
     min_height, bound = (

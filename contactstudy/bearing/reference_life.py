@@ -13,7 +13,7 @@ from contactstudy.arrays.variables import describe
 from contactstudy.bearing.laminae import LIFE_POWER, lamina_loads
 from contactstudy.bodies.models import HalfSpace
 from contactstudy.case.case import Case
-from contactstudy.case.magnitudes import warn_doubtful_values
+from contactstudy.case.magnitudes import warn_of_values
 from contactstudy.case.motion import Sliding
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
@@ -76,7 +76,7 @@ def roller_ratings(dynamic_rating: float, rollers: int, gamma: float, *, rows: i
     diameter_ratio = checks.positive("gamma", gamma)
     if diameter_ratio >= 1:
         raise InvalidInputError("gamma", diameter_ratio, "below 1, roller diameter over pitch diameter")
-    warn_doubtful_values(dynamic_rating=rating)
+    warn_of_values(dynamic_rating=rating)
     ratio = 1.038 * ((1 - diameter_ratio) / (1 + diameter_ratio)) ** (143 / 108)
     base = rating / (RATING_REDUCTION * count * rows ** (7 / 9))
     inner = base / 0.378 * (1 + ratio**LIFE_POWER) ** (1 / LIFE_POWER)

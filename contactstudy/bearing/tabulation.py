@@ -15,8 +15,8 @@ from contactstudy import checks
 from contactstudy.arrays.variables import describe, numbers_in_si
 from contactstudy.bearing.energy_spline import EnergySpline, Nodes, estimate_fit_errors
 from contactstudy.bearing.law import MIN_NODES, ContactLaw
-from contactstudy.case.case import LARGEST_TILT, Case
-from contactstudy.case.magnitudes import warn_doubtful
+from contactstudy.case.case import MAX_TILT, Case
+from contactstudy.case.magnitudes import warn_of_magnitudes
 from contactstudy.checks import FloatArray
 from contactstudy.contact.normal.contact import Contact
 from contactstudy.contact.refinement.refined_contact import POWER, refine_contact, search_load
@@ -187,7 +187,7 @@ def contact_law(
     True
     """
     checks.instance("case", case, Case, "a Case")
-    warn_doubtful(case)
+    warn_of_magnitudes(case)
     if case.tilt:
         raise InvalidInputError("case.tilt", case.tilt, "0: give the tilts of the law")
     if case.load_position is not None:
@@ -195,8 +195,8 @@ def contact_law(
     if case.coupled:
         raise InvalidInputError("case.coupled", True, "False: with coupled friction the load derives from no energy")
     checked_tilts = _check_increasing("tilts", numbers_in_si("tilts", tilts, "rad"), "radians")
-    if np.abs(checked_tilts).max() > LARGEST_TILT:
-        raise InvalidInputError("tilts", tilts, f"small angles, at most {LARGEST_TILT} radians")
+    if np.abs(checked_tilts).max() > MAX_TILT:
+        raise InvalidInputError("tilts", tilts, f"small angles, at most {MAX_TILT} radians")
     solver = ContactSolver(case, checks.positive("accuracy", accuracy), checks.positive("tolerance", tolerance))
     if approaches is None:
         first, last = (solver.solve_at_load(factor * case.normal_load, 0.0).approach for factor in LOAD_RANGE)

@@ -22,7 +22,7 @@ import xarray as xr
 from contactstudy import checks
 from contactstudy.analysis import positions
 from contactstudy.arrays.variables import AXES, VARIABLES, describe
-from contactstudy.case.magnitudes import warn_doubtful_values
+from contactstudy.case.magnitudes import warn_of_values
 from contactstudy.checks import Array
 from contactstudy.errors import InvalidInputError
 from contactstudy.fatigue.history import enclosing_balls, label_points, map_histories, stack_history
@@ -67,7 +67,7 @@ class FatigueLimits:
             raise InvalidInputError(
                 "torsion", self.torsion, f"between half of the limit in bending and that limit, {self.bending:g} Pa"
             )
-        warn_doubtful_values(stacklevel=4, bending=self.bending, torsion=self.torsion)
+        warn_of_values(stacklevel=4, bending=self.bending, torsion=self.torsion)
 
     @property
     def ratio(self) -> float:

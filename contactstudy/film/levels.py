@@ -14,7 +14,7 @@ from contactstudy.arrays.grid import Grid
 from contactstudy.bodies import hertz
 from contactstudy.bodies.lubricant import Lubricant
 from contactstudy.case.case import Case
-from contactstudy.case.gridding import columns_of
+from contactstudy.case.gridding import graded_grid
 from contactstudy.case.motion import Sliding, SurfaceSpeeds
 from contactstudy.checks import FloatArray
 from contactstudy.contact.normal.contact import Contact, Settings, contact_of, contact_operator
@@ -319,7 +319,7 @@ def _solve_on_cells(
 ) -> FilmOnCells:
     a, scale = film.half_width, film.pressure
     case = replace(film.case, motion=Sliding(), friction=0.0, coupled=False, lubricant=None)
-    grid = columns_of(case, a * cells.x_edges, (a * window[0], a * window[1]), int(merged.edges[-1]))
+    grid = graded_grid(case, a * cells.x_edges, (a * window[0], a * window[1]), int(merged.edges[-1]))
     first = int(np.abs(grid.x_edges - a * cells.x_edges[0]).argmin())
     columns = slice(first, first + cells.shape[0])
     shape = contact_shape(case, grid)

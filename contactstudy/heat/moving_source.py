@@ -16,7 +16,7 @@ from scipy.special import erf
 
 from contactstudy import checks
 from contactstudy.arrays.grid import Grid
-from contactstudy.case.magnitudes import warn_doubtful_values
+from contactstudy.case.magnitudes import warn_of_values
 from contactstudy.checks import ComplexArray, FloatArray
 from contactstudy.errors import InvalidInputError
 
@@ -58,7 +58,7 @@ class ThermalProperties:
     def __post_init__(self) -> None:
         units = {"conductivity": "W/(m K)", "density": "kg/m3", "specific_heat": "J/(kg K)"}
         checks.store(self, **{name: checks.positive(name, getattr(self, name), unit) for name, unit in units.items()})
-        warn_doubtful_values(stacklevel=4, **{name: getattr(self, name) for name in units})
+        warn_of_values(stacklevel=4, **{name: getattr(self, name) for name in units})
 
     @property
     def heat_capacity(self) -> float:

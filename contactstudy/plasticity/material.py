@@ -9,7 +9,7 @@ import xarray as xr
 
 from contactstudy import checks
 from contactstudy.arrays.variables import in_si
-from contactstudy.case.magnitudes import warn_doubtful_values
+from contactstudy.case.magnitudes import warn_of_values
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 
@@ -63,7 +63,7 @@ class ElasticPlastic:
             checks.store(self, yield_stress=checks.positive("yield_stress", self.yield_stress, "Pa"))
         for name in ("isotropic_hardening", "kinematic_hardening"):
             checks.store(self, **{name: checks.not_negative(name, getattr(self, name), "Pa")})
-        warn_doubtful_values(stacklevel=4, yield_stress=np.asarray(self.yield_stress))
+        warn_of_values(stacklevel=4, yield_stress=np.asarray(self.yield_stress))
 
     @classmethod
     def from_hardness(cls, vickers: xr.DataArray, **hardening: float) -> ElasticPlastic:

@@ -18,7 +18,7 @@ import numpy as np
 import numpy.typing as npt
 
 from contactstudy.arrays.engineering import quantity
-from contactstudy.case.magnitudes import doubts, friction_doubt
+from contactstudy.case.magnitudes import describe_unusual_friction, list_unusual_magnitudes
 from contactstudy.checks import IntArray
 from contactstudy.errors import ContactStudyError
 from contactstudy.study.parameters import PARAMETERS, completed, fragment, hash_of, without_defaults
@@ -251,12 +251,12 @@ class Plan(Sequence[PlannedCase]):
             except ContactStudyError as error:
                 reasons[int(self.groups[index])] = str(error)
                 continue
-            questions.update(doubts(setup.case))
+            questions.update(list_unusual_magnitudes(setup.case))
             cells, points = cells + math.prod(setup.shape), points + setup.points
         # A group's cases differ in friction: its other values are checked here.
         entries = [*(entry for axis in self.axes for entry in axis), *self.explicit]
         for friction in {entry["friction"] for entry in entries if "friction" in entry}:
-            if message := friction_doubt(friction):
+            if message := describe_unusual_friction(friction):
                 questions.setdefault(message, checked)
         solvable = max(1, checked - len(reasons))
         return Review(reasons, questions, checked, len(firsts), cells=cells / solvable, points=points / solvable)

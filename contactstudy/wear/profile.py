@@ -19,7 +19,7 @@ from contactstudy.case.roller import GAP_NODES
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 from contactstudy.profiles.base import Sum
-from contactstudy.profiles.measured import Measured
+from contactstudy.profiles.measured_profile import Measured
 
 ROUNDING = 1e-9  # Relative distance that counts as rounding
 SAME_ROLLER = ("body", "roller", "end_distance")  # Attributes that wear; load, friction, motion may differ

@@ -19,9 +19,9 @@ from contactstudy.arrays.variables import describe, numbers_in_si, require
 from contactstudy.cache import ArrayKey
 from contactstudy.case.case import Case
 from contactstudy.case.gridding import choose_grid
-from contactstudy.case.magnitudes import warn_doubtful
+from contactstudy.case.magnitudes import warn_of_magnitudes
 from contactstudy.case.motion import Rolling, Shift, Sliding
-from contactstudy.case.roller import onto_ends
+from contactstudy.case.roller import snap_to_ends
 from contactstudy.checks import FloatArray
 from contactstudy.contact.normal.conjugate_gradients import ContactIterate
 from contactstudy.contact.normal.contact import Settings, Shape, check_window, contact_operator
@@ -32,7 +32,7 @@ from contactstudy.contact.rolling.frictional_contact import frictional_contact
 from contactstudy.contact.rolling.tractions import FrictionRequest
 from contactstudy.errors import ConvergenceWarning, InvalidInputError
 from contactstudy.kernels.load import Load
-from contactstudy.profiles.base import checked_drop
+from contactstudy.profiles.base import check_drop
 from contactstudy.threads import one_blas_thread
 from contactstudy.wear.profile import SAME_ROLLER
 
@@ -286,7 +286,7 @@ def wear_in(
     """
     start_time = time.perf_counter()
     checks.instance("case", case, Case, "a Case")
-    warn_doubtful(case)
+    warn_of_magnitudes(case)
     checks.known_name("law", law, LAWS)
     if isinstance(case.motion, Shift):
         raise InvalidInputError("case.motion", case.motion, "Sliding() or Rolling(...): a shift has no distance")
@@ -406,10 +406,10 @@ def _label(
     pressures = np.array([state.pressure for state in states])
     x, half_length = grid.x - case.roller_middle, 0.5 * case.roller.length
     if grid.uniform:
-        x = onto_ends(x, half_length, grid.dx)
+        x = snap_to_ends(x, half_length, grid.dx)
     under_roller = np.abs(x) <= half_length
     drop = np.full(grid.cells_x, np.nan)
-    drop[under_roller] = checked_drop(case.roller.profile, x[under_roller], case.roller.length)
+    drop[under_roller] = check_drop(case.roller.profile, x[under_roller], case.roller.length)
     volumes = length * depths @ grid.widths
     expected = length * np.array([state.worn for state in states])
     gain, expected = volumes - volumes[0], expected - expected[0]

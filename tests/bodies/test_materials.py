@@ -32,7 +32,7 @@ def test_structural_steel_has_the_shear_modulus_of_its_standard() -> None:
 def test_every_material_has_a_source_that_the_reference_shows() -> None:
     known = {name for name in materials.__all__ if isinstance(getattr(materials, name), Material)}
     assert set(materials.SOURCES) == known
-    rows = [line.strip("| ").split(" | ") for line in materials.documented().splitlines()[2:]]
+    rows = [line.strip("| ").split(" | ") for line in materials.format_table().splitlines()[2:]]
     assert {row[0].strip("`").rpartition(".")[2] for row in rows} == known
     for name, young, poisson, source in rows:
         material = getattr(materials, name.strip("`").rpartition(".")[2])

@@ -23,7 +23,7 @@ from contactstudy import (
     solve,
 )
 from contactstudy.bodies import Body
-from contactstudy.bodies.models import EndedBody
+from contactstudy.bodies.models import BodyWithFreeEnds
 from contactstudy.report import assess
 
 STEEL = Material(young=210e9, poisson=0.3)
@@ -171,7 +171,7 @@ def test_a_pressure_in_another_unit_is_refused_or_asks_for_too_many_cells() -> N
 
 
 def test_a_body_of_no_kind_is_none() -> None:
-    for kind in (Body, EndedBody):
+    for kind in (Body, BodyWithFreeEnds):
         with pytest.raises(InvalidInputError, match=f"body = '{kind.__name__}': must be a HalfSpace"):
             kind(material=STEEL)
     with pytest.raises(InvalidInputError, match=r"body = 'half-space': must be elastic.*not str"):
@@ -226,9 +226,9 @@ def test_body_edge_opens_the_gap_at_the_free_ends(body: Body, edge: profiles.Pro
     case = Case(body=body, roller=Roller(radius=5e-3, length=14e-3), load=1e3, end_distance=-2e-3, body_edge=edge)
     distances = np.array([0.0, 0.1e-3, 0.4e-3, 5e-3])
     expected = edge.drop(5e-3 - distances, 10e-3)
-    np.testing.assert_allclose(case.lowest(distances), expected, atol=1e-15)
+    np.testing.assert_allclose(case.gap_on_axis(distances), expected, atol=1e-15)
     beyond = expected if isinstance(body, FiniteLengthSpace) else 0.0
-    np.testing.assert_allclose(case.lowest(10e-3 - distances), beyond, atol=1e-15)
+    np.testing.assert_allclose(case.gap_on_axis(10e-3 - distances), beyond, atol=1e-15)
 
 
 def test_an_edge_radius_of_the_body_bounds_the_pressure_of_an_overhanging_roller() -> None:

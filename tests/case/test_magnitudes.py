@@ -28,7 +28,7 @@ from contactstudy import (
     roughness,
     solve,
 )
-from contactstudy.case.magnitudes import doubts
+from contactstudy.case.magnitudes import list_unusual_magnitudes
 from contactstudy.cli import main
 from contactstudy.heat import ThermalProperties
 from contactstudy.study import Study, run_study
@@ -64,7 +64,7 @@ def pressed(crown: profiles.Profile, length: float = 14e-3, radius: float = 6e-3
 )
 def test_usual_cases(changes) -> None:
     """From a wire to a rolling mill, rubber to diamond."""
-    assert not doubts(made(**changes))
+    assert not list_unusual_magnitudes(made(**changes))
 
 
 @pytest.mark.parametrize(
@@ -87,7 +87,7 @@ def test_usual_cases(changes) -> None:
     ],
 )
 def test_doubtful_values_of_a_case(changes, message: str) -> None:
-    assert re.search(message, "; ".join(doubts(made(**changes))))
+    assert re.search(message, "; ".join(list_unusual_magnitudes(made(**changes))))
 
 
 @pytest.mark.parametrize(
@@ -102,7 +102,7 @@ def test_doubtful_values_of_a_case(changes, message: str) -> None:
     ],
 )
 def test_crowns_in_a_wrong_unit_are_questioned(crown: profiles.Profile, message: str) -> None:
-    assert re.search(message, doubts(pressed(crown))[0])
+    assert re.search(message, list_unusual_magnitudes(pressed(crown))[0])
 
 
 @pytest.mark.parametrize(
@@ -115,13 +115,13 @@ def test_crowns_in_a_wrong_unit_are_questioned(crown: profiles.Profile, message:
 )
 def test_a_crown_radius_in_millimetres_is_questioned(crown: profiles.Profile) -> None:
     message = r"Crown.crown_radius = 200 m drops by 6.2e-08 m over half .*, less than is ground; 200 mm is 0.2 m"
-    assert re.search(message, doubts(pressed(crown, length=10e-3))[0])
+    assert re.search(message, list_unusual_magnitudes(pressed(crown, length=10e-3))[0])
 
 
 @pytest.mark.parametrize(("length", "crown_radius"), [(50e-3, 900.0), (20e-3, 300.0), (10e-3, 100.0), (0.5e-3, 2.0)])
 def test_real_crowns_are_not_called_flat(length: float, crown_radius: float) -> None:
     """A tenth of a micrometre and more, or of a pin of a watch some nanometres."""
-    assert not doubts(pressed(profiles.FullCrown(crown_radius), length=length, radius=0.5 * length))
+    assert not list_unusual_magnitudes(pressed(profiles.FullCrown(crown_radius), length=length, radius=0.5 * length))
 
 
 @pytest.mark.parametrize(
@@ -135,7 +135,7 @@ def test_real_crowns_are_not_called_flat(length: float, crown_radius: float) -> 
     ],
 )
 def test_usual_crowns_raise_no_question(crown: profiles.Profile) -> None:
-    assert not doubts(pressed(crown, length=10e-3))
+    assert not list_unusual_magnitudes(pressed(crown, length=10e-3))
 
 
 def test_solve_warns_once_at_the_line_of_the_call() -> None:
@@ -178,10 +178,10 @@ def test_a_crown_for_a_load_in_the_wrong_unit_is_questioned(pressure: float, mod
     wrong = profiles.Lundberg.for_pressure(pressure, radius=6e-3, modulus=modulus)
     case = made()
     for profile in (wrong, profiles.Halves(crown, wrong)):
-        messages = doubts(replace(case, roller=replace(case.roller, profile=profile)))
+        messages = list_unusual_magnitudes(replace(case, roller=replace(case.roller, profile=profile)))
         expected = f"Lundberg.amplitude = {wrong.amplitude:.3g} m belongs to a very {word} design load"
         assert any(expected in message for message in messages)
-    assert not doubts(replace(case, roller=replace(case.roller, profile=crown)))
+    assert not list_unusual_magnitudes(replace(case, roller=replace(case.roller, profile=crown)))
 
 
 @pytest.mark.parametrize(

@@ -14,7 +14,7 @@ from benchmarks import convergence
 from contactstudy import cache, film
 from contactstudy.arrays.variables import STRESSES
 from contactstudy.bodies.material import Material
-from contactstudy.bodies.models import WHOLE_LINE, EndedBody, FiniteLengthSpace, HalfSpace, Part
+from contactstudy.bodies.models import WHOLE_LINE, BodyTerm, BodyWithFreeEnds, FiniteLengthSpace, HalfSpace
 from contactstudy.contact import solve as contact
 from contactstudy.eigenstrain.body import EigenstrainBody
 from contactstudy.fields import stress, surface
@@ -52,11 +52,11 @@ def everywhere(patch: Patch, name: str, value: object) -> None:
 
 
 def ends_only_mirrored(patch: Patch) -> None:
-    patch.setattr(EndedBody, "parts", property(lambda body: (Part(1.0, body.extent),)))
+    patch.setattr(BodyWithFreeEnds, "terms", property(lambda body: (BodyTerm(1.0, body.extent),)))
 
 
 def no_ends(patch: Patch) -> None:
-    patch.setattr(EndedBody, "parts", property(lambda body: (Part(1.0, WHOLE_LINE),)))
+    patch.setattr(BodyWithFreeEnds, "terms", property(lambda body: (BodyTerm(1.0, WHOLE_LINE),)))
 
 
 def wrong_poisson(patch: Patch) -> None:
