@@ -17,14 +17,14 @@ from contactstudy.arrays.variables import in_si, labels, named
 from contactstudy.case.magnitudes import warn_of_values
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
-from contactstudy.profiles.instruments import Heights, is_instrument_file, read_heights, rotate_heights
-from contactstudy.profiles.measurement_files import (
+from contactstudy.profiles.column_files import (
     check_positions,
     check_values,
     read_columns,
     read_netcdf,
     unit_in_metres,
 )
+from contactstudy.profiles.instruments import Heights, is_instrument_file, read_heights, rotate_heights
 
 SAME_PLACE = 1e-3  # Difference of equal cells, over a cell. Accuracy
 

@@ -173,7 +173,7 @@ def _panel_amplitudes(
     harmonics: Harmonics,
     places: list[_Folded],
     reference: float,
-    graded_grid: Callable[[LateralPanel], LateralColumns | None],
+    columns_of: Callable[[LateralPanel], LateralColumns | None],
 ) -> Iterator[_PanelAmplitudes]:
     """Amplitudes of the columns of each panel."""
     distances = [points.distance for points in places]
@@ -184,7 +184,7 @@ def _panel_amplitudes(
     for panel in problem.panels(y, shortest, reference if grows else None):
         if panel.nodes[0] * nearest >= DECAY_LENGTHS:
             break
-        columns = graded_grid(panel)
+        columns = columns_of(panel)
         if columns is None:
             continue
         reached = [columns.nodes[0] * distance < DECAY_LENGTHS for distance in distances]

@@ -17,7 +17,7 @@ import numpy as np
 from contactstudy import checks
 from contactstudy.checks import FloatArray
 from contactstudy.errors import ContactStudyError, InvalidInputError
-from contactstudy.profiles.measurement_files import MAX_BYTES, READABLE_FILES, check_regular_file, describe_foreign_file
+from contactstudy.profiles.column_files import MAX_BYTES, READABLE_FILES, check_regular_file, describe_foreign_file
 
 X3P = ".x3p"
 

@@ -8,7 +8,7 @@ import pytest
 
 from contactstudy import InvalidInputError
 from contactstudy.profiles.instruments import read_heights
-from tests.profiles.test_measurement_files import FOREIGN_FILES
+from tests.profiles.test_column_files import FOREIGN_FILES
 
 SurfaceTopography = pytest.importorskip("SurfaceTopography", reason="the extra `measured` is not installed")
 

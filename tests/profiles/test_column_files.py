@@ -10,8 +10,8 @@ import pytest
 
 from contactstudy.errors import InvalidInputError
 from contactstudy.profiles import instruments
+from contactstudy.profiles.column_files import read_columns, read_netcdf
 from contactstudy.profiles.instruments import read_heights
-from contactstudy.profiles.measurement_files import read_columns, read_netcdf
 
 POINTS = [(0.0, 0.0), (2.5, 1.25), (5.0, 3.125)]
 COLUMNS = ("x",), ("drop",)
