@@ -93,9 +93,9 @@ def _check_group(name: str, value: npt.ArrayLike | xr.DataArray, valid_range: tu
     except (TypeError, ValueError):
         raise InvalidInputError(name, value, "numbers") from None
     low, high = valid_range
-    outside = ~((values >= low * (1 - 1e-9)) & (values <= high * (1 + 1e-9)))
-    if outside.any():
-        raise InvalidInputError(name, float(values[outside][0]), f"from {low:g} to {high:g}", "solve the case")
+    is_outside = ~((values >= low * (1 - 1e-9)) & (values <= high * (1 + 1e-9)))
+    if is_outside.any():
+        raise InvalidInputError(name, float(values[is_outside][0]), f"from {low:g} to {high:g}", "solve the case")
     if isinstance(value, xr.DataArray):
         return value.astype(float)
     if values.ndim > 1:

@@ -175,7 +175,7 @@ def lamina_factors(result: xr.Dataset, *, laminae: int = 30) -> xr.Dataset:
     Within a lamina the pressure varies. Its load is the mean that gives the same life,
     ``(mean of (pi p**2 R / E*)**(9/2))**(2/9)`` with the largest pressure p of each cross-section, so the life does not
     depend on the number of laminae. At a sharp end, where the pressure is singular, the outermost factor is
-    infinite. The factor is NaN where the lamina model has no load; `hertz_load_per_length` is finite there (equations
+    infinite. The factor is NaN where the lamina model has no load; `hertz_load_per_length` is finite (equations
     58 and 59 of ISO/TS 16281, second-hand).
 
     Examples
@@ -236,10 +236,12 @@ def _hertz_loads(result: xr.Dataset, case: Case, edges: FloatArray) -> tuple[Flo
     x = dimension_along(pressure, "x")
     position, max_pressure = result[x].values, section_maxima(pressure.values)
     half_widths = 0.5 * cell_widths(pressure, "x").values
-    middle = case.roller_middle
-    mask = np.abs(position - middle) <= 0.5 * case.roller.length
+    mid_length = case.roller_middle
+    mask = np.abs(position - mid_length) <= 0.5 * case.roller.length
     radius = np.full(position.size, case.roller.radius)
-    radius[mask] = local_radius(case.roller.profile, position[mask] - middle, case.roller.length, case.roller.radius)
+    radius[mask] = local_radius(
+        case.roller.profile, position[mask] - mid_length, case.roller.length, case.roller.radius
+    )
     line_loads = hertz.line_load(1.0, 1.0, case.modulus) * max_pressure**2 * radius
     columns = Columns(np.stack([position - half_widths, position + half_widths], axis=-1), position, line_loads)
     load, discretisation_error = power_means(columns, edges, LIFE_POWER)

@@ -229,7 +229,7 @@ def _solve_roller_loads(case: Case, laminae: int, accuracy: float) -> FloatArray
         strict=True,
     )
     width, sliced = solved[1]["width"].values, solved[1]["load_per_length"].values
-    factor, unknown = solved[1]["edge_factor"].values, [np.full_like(sliced, np.nan)] * 2
+    factor, missing = solved[1]["edge_factor"].values, [np.full_like(sliced, np.nan)] * 2
     return np.array(
         [
             width
@@ -240,9 +240,9 @@ def _solve_roller_loads(case: Case, laminae: int, accuracy: float) -> FloatArray
                     *(factors["hertz_load_per_length"].values for factors in solved),
                 ]
             ),
-            width * np.array([*unknown, *(factors["hertz_load_per_length_error"].values for factors in solved)]),
-            width * np.array([*unknown, *common]),
+            width * np.array([*missing, *(factors["hertz_load_per_length_error"].values for factors in solved)]),
+            width * np.array([*missing, *common]),
             [np.ones_like(sliced), factor, *(factors["stress_riser"].values for factors in solved)],
-            [*unknown, *(factors["stress_riser_error"].values for factors in solved)],
+            [*missing, *(factors["stress_riser_error"].values for factors in solved)],
         ]
     )

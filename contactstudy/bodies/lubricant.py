@@ -239,8 +239,8 @@ def walther(viscosities: dict[float, float], temperature: float) -> tuple[float,
         raise InvalidInputError(
             "viscosities", viscosities, "falling with the temperature, at least 2 mm2/s", "the range of ASTM D341"
         )
-    double_logarithms = [np.log10(np.log10(each + 0.7)) for each in (thick, thin)]
-    logs = [np.log10(each + KELVIN) for each in (first, last)]
+    double_logarithms = [np.log10(np.log10(viscosity_at + 0.7)) for viscosity_at in (thick, thin)]
+    logs = [np.log10(viscosity_at + KELVIN) for viscosity_at in (first, last)]
     b = (double_logarithms[0] - double_logarithms[1]) / (logs[1] - logs[0])
     kelvin = temperature + KELVIN
     power = 10 ** (double_logarithms[0] + b * logs[0] - b * np.log10(kelvin))

@@ -194,21 +194,24 @@ def describe_unusual_friction(friction: Friction | xr.DataArray) -> str:
     return _describe("friction", "friction", float(np.max(np.abs(np.asarray(values, dtype=np.float64)))))
 
 
-def _components(profile: object, kind: type[Profiles]) -> Iterator[Profiles]:
+def _find_components(profile: object, kind: type[Profiles]) -> Iterator[Profiles]:
     """Profiles of a kind in a profile: the profile itself, or the terms and halves of a composite."""
     if isinstance(profile, kind):
         yield profile
     elif isinstance(profile, tuple):
         for term in profile:
-            yield from _components(term, kind)
+            yield from _find_components(term, kind)
     elif isinstance(profile, Shape):
-        yield from _components(tuple(vars(profile).values()), kind)
+        yield from _find_components(tuple(vars(profile).values()), kind)
 
 
 def _describe_flat_crown(case: Case) -> str:
     """Message on a crown radius too large for a ground crown."""
     half_length, profile = 0.5 * case.roller.length, case.roller.profile
-    crowns: list[FullCrown | PartialCrown] = [*_components(profile, FullCrown), *_components(profile, PartialCrown)]
+    crowns: list[FullCrown | PartialCrown] = [
+        *_find_components(profile, FullCrown),
+        *_find_components(profile, PartialCrown),
+    ]
     for crown in crowns:
         radius = crown.crown_radius
         drop = 0.5 * half_length**2 / radius
@@ -222,7 +225,7 @@ def _describe_flat_crown(case: Case) -> str:
 def _describe_unusual_design(case: Case) -> str:
     """Message on the design load of a logarithmic crown."""
     usual_range, radius = RANGES["half_width"], case.roller.radius
-    for profile in _components(case.roller.profile, Logarithmic):
+    for profile in _find_components(case.roller.profile, Logarithmic):
         amplitude = profile.amplitude
         # A = R (p0 / E*)**2, so the half-width of the design load is 2 (A R)**0.5.
         half_width = 2 * np.sqrt(amplitude / radius)

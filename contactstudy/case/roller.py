@@ -157,8 +157,8 @@ class Roller:
         The circle is the parabola ``y**2 / (2 radius)``, as in Hertz' theory, with the local radius of a taper.
         `x` and `y` are distances from the roller's mid-length and from its centre line, metres.
         """
-        inside = np.abs(x) <= self.length / 2
+        under_roller = np.abs(x) <= self.length / 2
         drop = np.full(x.shape, np.inf)
-        drop[inside] = check_drop(self.profile, x[inside], self.length)
+        drop[under_roller] = check_drop(self.profile, x[under_roller], self.length)
         radius = local_radius(self.profile, x, self.length, self.radius)
         return np.asarray(drop[:, None] + y[None, :] ** 2 / (2 * radius[:, None]))

@@ -28,13 +28,13 @@ Measure = str | Callable[[xr.Dataset], object]
 RESOLUTION = 1e-9  # Fraction of a parameter's range below which two designs are equal
 SCAN_COUNT, SPREAD_COUNT = 7, 8  # Designs of the first scan: of one parameter, and factor on powers of two
 # Fractions of the range: accuracy of the optimum, and size of the first simplex. Speed and accuracy
-CLOSENESS, SIMPLEX = 0.01, 0.15
+OPTIMUM_TOLERANCE, SIMPLEX = 0.01, 0.15
 END_ACCURACY = 0.02  # Accuracy of the end of a flat range, as a fraction of the parameter's range
 MAX_ERRORS = 20.0  # Bound, in errors, on the difference from the optimum in the search for an end
 # Advice for a scan without a finite measure
-ADVICE = (
+REMEDY = (
     "a pressure or stress is infinite at a sharp end of the contact: widen the bounds until the ends drop enough, take "
-    "a profile with rounded ends, or a measure that is finite there, such as 'end_load_last'"
+    "a profile with rounded ends, or a finite measure, such as 'end_load_last'"
 )
 
 
@@ -201,7 +201,7 @@ def search_optimum(evaluations: Evaluations) -> Design:
         if evaluations.last_error is not None:
             raise evaluations.last_error
         bounds = {name: (limits.low, limits.high) for name, limits in evaluations.ranges.items()}
-        raise InvalidInputError("bounds", bounds, "such that the measure is finite somewhere within them", ADVICE)
+        raise InvalidInputError("bounds", bounds, "such that the measure is finite somewhere within them", REMEDY)
     # The search replaces an infinite measure by 1e3 times the least measure.
     ceiling = 1e3 * max(abs(first.value), np.finfo(np.float64).tiny)
 
@@ -216,7 +216,7 @@ def search_optimum(evaluations: Evaluations) -> Design:
         simplex[1:] += np.diag(np.where(first.fractions > 0.5, -SIMPLEX, SIMPLEX))
         options = {
             "initial_simplex": simplex,
-            "xatol": CLOSENESS,
+            "xatol": OPTIMUM_TOLERANCE,
             "fatol": first.error,
             "maxfev": limit,
         }
@@ -230,7 +230,7 @@ def search_optimum(evaluations: Evaluations) -> Design:
     elif limit > 1:  # Brent's method, between the neighbours of the best design; it takes two designs or more.
         start, step = float(first.fractions[0]), 1 / (SCAN_COUNT - 1)
         bracket = (max(start - step, 0.0), min(start + step, 1.0))
-        options = {"xatol": CLOSENESS, "maxiter": limit}
+        options = {"xatol": OPTIMUM_TOLERANCE, "maxiter": limit}
         optimize.minimize_scalar(finite_measure, bounds=bracket, method="bounded", options=options)
     return evaluations.best
 
@@ -261,32 +261,32 @@ def _find_flat_end(evaluations: Evaluations, best: Design, parameter: int, bound
         return float(min(design.value - best.value - design.error - best.error, MAX_ERRORS * best.error))
 
     # Earlier designs on this line, outwards from the best; the first worse design ends the flat range.
-    inside, outside = centre, None
+    flat_end, worse_end = centre, None
     for fraction in sorted(
         _fractions_on_line(evaluations, best, parameter), key=lambda fraction: abs(fraction - centre)
     ):
         if (fraction - centre) * (bound - centre) <= 0:
             continue
         if excess(fraction) > 0:
-            outside = fraction
+            worse_end = fraction
             break
-        inside = fraction
-    if outside is None:
+        flat_end = fraction
+    if worse_end is None:
         if evaluations.find_earlier(fractions_with(bound)) is None:
             if limit < 1:
-                return inside
+                return flat_end
             limit -= 1
         if excess(bound) <= 0:
             return bound
-        outside = bound
-    if abs(outside - inside) <= END_ACCURACY or limit < 1:
-        return inside
+        worse_end = bound
+    if abs(worse_end - flat_end) <= END_ACCURACY or limit < 1:
+        return flat_end
     end, state = optimize.brentq(
-        excess, inside, outside, xtol=END_ACCURACY, rtol=1e-3, maxiter=limit, full_output=True, disp=False
+        excess, flat_end, worse_end, xtol=END_ACCURACY, rtol=1e-3, maxiter=limit, full_output=True, disp=False
     )
     if state.converged:
         return float(end)
-    low, high = sorted((inside, outside))
+    low, high = sorted((flat_end, worse_end))
     inner = [fraction for fraction in _fractions_on_line(evaluations, best, parameter) if low <= fraction <= high]
     return max((fraction for fraction in inner if excess(fraction) <= 0), key=lambda fraction: abs(fraction - centre))
 

@@ -104,7 +104,7 @@ class FatigueLimits:
         return float(self.torsion * np.sqrt(1 + self.findley_slope**2))
 
 
-def _deviators(history: Array) -> tuple[Array, Array]:
+def _compute_deviators(history: Array) -> tuple[Array, Array]:
     """Deviators (point, instant, 5) in axes that preserve the tensor's norm, and hydrostatic stresses."""
     xx, yy, zz, xy, xz, yz = np.moveaxis(history, -1, 0)
     mean = (xx + yy + zz) / 3
@@ -173,7 +173,7 @@ def dang_van(stress: xr.Dataset, limits: FatigueLimits) -> xr.Dataset:
     tensor, rolling = stack_history(stress)
 
     def criterion(history: Array) -> tuple[Array, ...]:
-        deviator, mean = _deviators(history)
+        deviator, mean = _compute_deviators(history)
         centre, _ = enclosing_balls(deviator)
         shear = _max_shear(deviator - centre[:, None])
         total = shear + limits.dang_van_slope * mean
@@ -234,7 +234,7 @@ def crossland(stress: xr.Dataset, limits: FatigueLimits) -> xr.Dataset:
     slope = limits.crossland_slope
 
     def criterion(history: Array) -> tuple[Array, ...]:
-        deviator, mean = _deviators(history)
+        deviator, mean = _compute_deviators(history)
         _, radius = enclosing_balls(deviator)
         return radius / np.sqrt(2.0), mean.max(axis=1)
 

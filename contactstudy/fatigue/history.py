@@ -91,7 +91,7 @@ def window_remainder(stress: xr.Dataset) -> xr.DataArray:
     Raises
     ------
     InvalidInputError
-        If a component or the rolling direction is missing, or there are fewer than three positions along it.
+        If a component or the rolling direction is missing, or the latter has fewer than three positions.
 
     Examples
     --------
@@ -169,7 +169,7 @@ def _add_point(
     rises = squares[rows[:, None], support[:, :subset_size]] - new_height[:, None]
     square = np.einsum("pii->pi", gram) + rises
     present = used[:, :subset_size]
-    least = np.full(len(path), np.inf)
+    min_radius = np.full(len(path), np.inf)
     centre, best_subset = np.zeros_like(new_point), np.zeros_like(present)
     for subset in product((False, True), repeat=subset_size):
         mask = np.array(subset)
@@ -187,12 +187,12 @@ def _add_point(
         valid = (
             (farthest_distance <= square_radius * (1 + ROUNDING))
             & ~(mask & ~present).any(axis=1)
-            & (square_radius < least)
+            & (square_radius < min_radius)
         )
-        least = np.where(valid, square_radius, least)
+        min_radius = np.where(valid, square_radius, min_radius)
         centre[valid] = (new_point + offset)[valid]
         best_subset[valid] = mask
-    if not np.isfinite(least).all():
+    if not np.isfinite(min_radius).all():
         raise ArithmeticError("no ball around the support and a new point")
     # The points that support the new ball move to the front.
     supporting = np.zeros((len(path), slots + 1), dtype=bool)
@@ -201,7 +201,7 @@ def _add_point(
     candidates = np.concatenate([support, farthest[:, None]], axis=1)
     return (
         centre,
-        np.sqrt(least),
+        np.sqrt(min_radius),
         np.take_along_axis(candidates, order, axis=1),
         np.take_along_axis(supporting, order, axis=1),
     )

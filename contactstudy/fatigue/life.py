@@ -131,7 +131,7 @@ ERROR_ALONG_X_AND_Z = (
 ERROR_OF_POSITIONS = "from the distance of the positions alone: the result states no error of its pressure"
 
 
-def _depths(stress: xr.DataArray) -> tuple[str, xr.DataArray]:
+def _depth_positions(stress: xr.DataArray) -> tuple[str, xr.DataArray]:
     """Dimension and positions along the depth, NaN where padded."""
     dim = dimension_along(stress, "z")
     if stress.sizes[dim] < 3:
@@ -139,7 +139,7 @@ def _depths(stress: xr.DataArray) -> tuple[str, xr.DataArray]:
     return dim, positions(stress, "z")
 
 
-def _maximum(stress: Array, depth: Array) -> tuple[Array, Array]:
+def _find_maximum(stress: Array, depth: Array) -> tuple[Array, Array]:
     """Largest stress over the depth and its position, by a parabola through the three nearest points."""
     depth = np.broadcast_to(depth, stress.shape)
     filled = np.where(np.isnan(stress), -np.inf, stress)
@@ -229,7 +229,7 @@ def _estimate_error(
 
 
 def _assign_error(result: xr.Dataset, error: xr.DataArray, comment: str) -> xr.Dataset:
-    """Return a result with the error of its risk; without a risk there is no error."""
+    """Return a result with the error of its risk; zero for a risk of zero."""
     risk = result["risk"]
     total = named("risk_error", error.where(risk != 0, 0.0))
     return result.assign(risk_error=total.assign_attrs(units=risk.attrs["units"], comment=comment))
@@ -257,7 +257,7 @@ def lundberg_palmgren(stress: xr.Dataset, exponents: LifeExponents = ROLLER_BEAR
     Raises
     ------
     InvalidInputError
-        If `tau_yz` or an axis is missing, there are too few positions, or the exponents are none; if the shear is
+        If `tau_yz` or an axis is missing, positions are too few, or `exponents` has a wrong kind; if the shear is
         largest at the first or last position along y or z, so that more than 1 % of the risk is cut off.
 
     Examples
@@ -315,8 +315,8 @@ def lundberg_palmgren(stress: xr.Dataset, exponents: LifeExponents = ROLLER_BEAR
 def _shear_maximum(stress: xr.Dataset) -> tuple[xr.DataArray, xr.DataArray, xr.DataArray]:
     """Amplitude of the orthogonal shear, its maximum over the depth, and the depth of the maximum."""
     amplitude = measure(stress, "orthogonal_shear_amplitude")
-    dim, depths = _depths(amplitude)
-    max_amplitude, depth = reduce_dims(_maximum, [(amplitude, [dim]), (depths, [dim])], 2)
+    dim, depths = _depth_positions(amplitude)
+    max_amplitude, depth = reduce_dims(_find_maximum, [(amplitude, [dim]), (depths, [dim])], 2)
     return amplitude, max_amplitude, depth
 
 
@@ -375,7 +375,7 @@ def ioannides_harris(
     Raises
     ------
     InvalidInputError
-        If the measure is no DataArray along x and z, still extends along y, or there are too few positions; if it is
+        If the measure is no DataArray along x and z, extends along y, or has too few positions; if it is
         largest at the last depth, or at a first one below the top, so that more than 1 % of the risk is cut off.
 
     Examples
@@ -396,7 +396,7 @@ def ioannides_harris(
             "stress.dims", stress.dims, "without the rolling direction", "take the largest or the amplitude along y"
         )
     stress = stress.compute()
-    dim, depths = _depths(stress)
+    dim, depths = _depth_positions(stress)
     outer = (depths == depths.max(dim)) | ((depths == depths.min(dim)) & (depths > 0))
     is_truncated = stress.where(outer).max(dim) >= stress.max(dim)
 
@@ -414,7 +414,7 @@ def ioannides_harris(
         )
 
     def compute_sections(field: xr.DataArray) -> tuple[xr.DataArray, ...]:
-        dimension, depth_positions = _depths(field)
+        dimension, depth_positions = _depth_positions(field)
         return reduce_dims(compute_risks, [(field, [dimension]), (depth_positions, [dimension])], 3)
 
     density, mean, truncated = compute_sections(stress)

@@ -36,7 +36,7 @@ from contactstudy.fatigue.history import (
 )
 
 MIN_POSITIONS_FOR_ERROR = 2 * MIN_POSITIONS  # Minimum number of positions along y for an error estimate
-EQUALITY = 1e-6  # Largest difference of equal stresses over the largest stress
+EQUAL_TOLERANCE = 1e-6  # Largest difference of equal stresses over the largest stress
 
 
 def to_ball_axes(history: Array) -> tuple[Array, Array, Array]:
@@ -234,8 +234,8 @@ def _is_border_critical(case: xr.Dataset, fields: xr.Dataset, variable: str) -> 
     yield_stresses = _min_yield_stress(point + residual)
     max_stress = float(fields[variable].isel(position))
     # The unloaded state is known: an unloaded border bounds the history.
-    unloaded = np.abs(point[[0, -1]]).max(axis=-1) <= EQUALITY * max_stress
-    return bool(((yield_stresses[[0, -1]] >= max_stress * (1 - EQUALITY)) & ~unloaded).any())
+    unloaded = np.abs(point[[0, -1]]).max(axis=-1) <= EQUAL_TOLERANCE * max_stress
+    return bool(((yield_stresses[[0, -1]] >= max_stress * (1 - EQUAL_TOLERANCE)) & ~unloaded).any())
 
 
 DEGREE, CONTINUITY = 5, 3  # Degree and continuity of the stress function's polynomials: smooth stresses
@@ -271,7 +271,7 @@ def shakedown_in_plane(stress: xr.Dataset, body: Body) -> xr.Dataset:
     Raises
     ------
     InvalidInputError
-        If a component or a direction is missing, or there are fewer than five positions along x or z.
+        If a component or a direction is missing, or the result has fewer than five positions along x or z.
     ImportError
         Without the package clarabel, which solves the program.
 

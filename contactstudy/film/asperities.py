@@ -70,9 +70,9 @@ class Asperities:
             return Law(values[1], (values[2] - values[0]) / (2 * step))
         factor = 16 * np.sqrt(2) * np.pi / 15 * self.density**2 * np.sqrt(self.sharpness) * modulus  # eq. (412)
         ratio = distance / self.rms
-        return Law(factor * _overlap(ratio, 2.5), -2.5 * factor * _overlap(ratio, 1.5) / self.rms)
+        return Law(factor * _integrate_overlap(ratio, 2.5), -2.5 * factor * _integrate_overlap(ratio, 1.5) / self.rms)
 
-    def dimensionless(self, height: float, pressure: float, modulus: float) -> Callable[[FloatArray], Law]:
+    def scaled_law(self, height: float, pressure: float, modulus: float) -> Callable[[FloatArray], Law]:
         """Return the law for heights over `height`, m, and pressures over `pressure`, Pa."""
 
         def law(distance: FloatArray) -> Law:
@@ -96,7 +96,7 @@ class Asperities:
         return law
 
 
-def _overlap(ratio: FloatArray, power: float) -> FloatArray:
+def _integrate_overlap(ratio: FloatArray, power: float) -> FloatArray:
     """Integral of ``(s - ratio)**power`` over the normal distribution above `ratio`."""
     nodes, weights = np.polynomial.legendre.leggauss(NODES)
     lower_limit = np.minimum(ratio, MAX_HEIGHT)

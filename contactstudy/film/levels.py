@@ -212,8 +212,8 @@ class FilmCase:
     def fluid(self) -> Fluid:
         """Laws of the lubricant in the scales of the film."""
         radius, a = self.case.roller.radius, self.half_width
-        number = 12 * self.speed * self.lubricant.viscosity * radius**2 / (a**3 * self.pressure)  # eq. (404)
-        return Fluid.of(self.lubricant, self.pressure, number)
+        flow_number = 12 * self.speed * self.lubricant.viscosity * radius**2 / (a**3 * self.pressure)  # eq. (404)
+        return Fluid.of(self.lubricant, self.pressure, flow_number)
 
 
 class Level(NamedTuple):
@@ -349,7 +349,7 @@ def _solve_on_cells(
         load=case.normal_load / (scale * a**2),
         lever=lever,
         central_film=film.central_film / film.height,
-        asperities=None if asperities is None else asperities.dimensionless(film.height, scale, case.modulus),
+        asperities=None if asperities is None else asperities.scaled_law(film.height, scale, case.modulus),
         mean_height=None if asperities is None else asperities.mean_height(film.height),
     )
     if start is not None:

@@ -291,15 +291,15 @@ def compute_films(film: FilmCase, level_film: FilmOnCells) -> Films:
     mid_length = 0.5 * (low + high)
     within_contact = np.abs(cells.y) < 1.5 * film.contact_half_width
     rows = [_find_minimum(cells.y, cells.y_edges, row, within_contact) for row in height]
-    least = np.array([minimum.value for minimum in rows])
+    row_minima = np.array([minimum.value for minimum in rows])
     positions = np.array([minimum.position for minimum in rows])
     centre = np.array([np.interp(0.0, cells.y, row) for row in height])
     first_side = cells.x < mid_length
-    sides = [_find_minimum(cells.x, cells.x_edges, least, on_side) for on_side in (first_side, ~first_side)]
+    sides = [_find_minimum(cells.x, cells.x_edges, row_minima, on_side) for on_side in (first_side, ~first_side)]
     lowest = min(sides)
     return Films(
         central=_interpolate(cells.x, centre, mid_length),
-        middle=_interpolate(cells.x, least, mid_length),
+        middle=_interpolate(cells.x, row_minima, mid_length),
         first=sides[0].value,
         last=sides[1].value,
         least=lowest.value,
@@ -424,7 +424,7 @@ def _warn_of_viscosity(film: FilmCase, level_film: FilmOnCells) -> None:
     warnings.warn(
         f"viscosity_law = {film.lubricant.viscosity_law!r} at {pressure[row, cell]:.3g} Pa (x = {x:.3g} m, "
         f"y = {abs(y):.3g} m from the middle) is exp({ratio.max():.0f}) times the ambient viscosity: the law does not "
-        "hold there; the film, which forms at lower pressures, depends little on it, the traction does",
+        "hold at this pressure, which affects the traction; the film forms at lower pressures",
         MagnitudeWarning,
         stacklevel=3,
     )

@@ -170,7 +170,7 @@ class SourceOperator:
         x = grid.x[columns]
         length = body.ends[1] - body.ends[0]
         window = grid.dy * grid.cells_y
-        # Peclet number of the window below which a surface counts as resting
+        # Below this Peclet number of the window a surface is at rest.
         if np.isfinite(length) and abs(body.drift) * window < 1e-6:
             raise InvalidInputError(
                 "speed",

@@ -140,7 +140,7 @@ class _AndersonMixing:
             return np.asarray(iterate + change)
         steps, differences = (np.diff(np.stack(history), axis=0) for history in (self._iterates, self._changes))
         flattened = differences.reshape(len(differences), -1)
-        # Singular value over the largest below which differences between iterates count as dependent
+        # rcond: differences between iterates with smaller singular values are dependent
         weights = np.linalg.lstsq(flattened @ flattened.T, flattened @ change.ravel(), rcond=1e-10)[0]
         return np.asarray(iterate + change - np.tensordot(weights, steps + differences, axes=1))
 
@@ -259,7 +259,7 @@ def residual_stress(
     -------
     Dataset
         Along `pass_number` (from 1): the six residual stresses ``sigma_xx`` ... ``tau_yz`` (Pa), which may be
-        added to those of the contact; the plastic strains ``plastic_strain_xx`` ... (components of the tensor);
+        added to the contact's stresses; the plastic strains ``plastic_strain_xx`` ... (components of the tensor);
         `equivalent_plastic_strain`, accumulated; `plastic_flow`, the largest equivalent plastic strain of the pass;
         `residual_displacement_z` and `residual_displacement_y` of the top (m, relative to the depth; of a line contact
         relative to the last depth); `converged`, whether every pass reached the tolerance. The contact is that of
@@ -268,7 +268,7 @@ def residual_stress(
     Raises
     ------
     InvalidInputError
-        If an argument is of the wrong kind, there is more than one case, the stresses are of another body or reach
+        If an argument is of the wrong kind, the Dataset has several cases, the stresses are of another body or reach
         beyond its ends, or strains are not small.
 
     Warns

@@ -152,7 +152,7 @@ class EffectiveLength(Shape):
     @property
     def end_drop(self) -> float:
         """Larger drop at the two starts of the corners, metres."""
-        return max(self._corner(side).drop for side in (-1, 1))
+        return max(self._create_corner(side).drop for side in (-1, 1))
 
     def __repr__(self) -> str:
         length, drop = (quantity(value, "m") for value in (self.effective_length, self.end_drop))
@@ -166,7 +166,7 @@ class EffectiveLength(Shape):
                 "effective_length", self.effective_length, f"at most the roller's length, {length:g} m"
             )
         x = np.asarray(x)
-        first, last = self._corner(-1), self._corner(1)
+        first, last = self._create_corner(-1), self._create_corner(1)
         drops = check_drop(self.profile, np.clip(x, -first.start, last.start), self.effective_length)
         for side, corner in ((-1, first), (1, last)):
             width = max(half_length - corner.start, 0.0)
@@ -180,7 +180,7 @@ class EffectiveLength(Shape):
             drops = drops + offset * (2 * corner.sine * radius + offset) / denominator
         return drops
 
-    def _corner(self, side: int) -> Corner:
+    def _create_corner(self, side: int) -> Corner:
         """Return the corner at the end of smaller (-1) or larger (1) x."""
         length = self.effective_length
         half, step = 0.5 * length, STEP * length

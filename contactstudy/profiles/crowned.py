@@ -12,7 +12,7 @@ from contactstudy.errors import InvalidInputError
 from contactstudy.profiles.base import Shape
 
 
-def _arc(distance: FloatArray, radius: float) -> FloatArray:
+def _arc_drop(distance: FloatArray, radius: float) -> FloatArray:
     """Drop of a circle of `radius` at `distance` from its highest point, without cancellation."""
     return np.asarray(distance**2 / (radius + np.sqrt(radius**2 - distance**2)))
 
@@ -57,7 +57,7 @@ class FullCrown(Shape):
                 self.crown_radius,
                 f"at least {reach:g} m, the distance to the roller's farther end",
             )
-        return _arc(np.minimum(np.abs(np.asarray(x) - self.centre), reach), self.crown_radius)
+        return _arc_drop(np.minimum(np.abs(np.asarray(x) - self.centre), reach), self.crown_radius)
 
 
 @dataclass(frozen=True, repr=False)
@@ -127,7 +127,7 @@ class PartialCrown(Shape):
             raise InvalidInputError("crown_radius", self.crown_radius, f"at least {begin:g} m, the length of the crown")
         distance = np.clip(np.abs(x) - self.straight_length / 2, 0.0, end)
         if self.dub_radius is None:
-            return _arc(distance, self.crown_radius)
+            return _arc_drop(distance, self.crown_radius)
         sine = begin / self.crown_radius
         shift = self.dub_radius * sine
         if end - begin + shift > self.dub_radius:
@@ -136,8 +136,8 @@ class PartialCrown(Shape):
                 self.dub_radius,
                 f"at least {(end - begin) / (1 - sine):g} m, to reach the roller's end",
             )
-        crown_drop = _arc(np.minimum(distance, begin), self.crown_radius)
-        dub_drop = _arc(np.maximum(distance - begin, 0.0) + shift, self.dub_radius) - _arc(
+        crown_drop = _arc_drop(np.minimum(distance, begin), self.crown_radius)
+        dub_drop = _arc_drop(np.maximum(distance - begin, 0.0) + shift, self.dub_radius) - _arc_drop(
             np.array(shift), self.dub_radius
         )
         return np.asarray(crown_drop + dub_drop)

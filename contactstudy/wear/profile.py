@@ -21,7 +21,7 @@ from contactstudy.errors import InvalidInputError
 from contactstudy.profiles.base import Sum
 from contactstudy.profiles.measured_profile import Measured
 
-ROUNDING = 1e-9  # Relative distance that counts as rounding
+ROUNDING = 1e-9  # Rounding of a relative distance
 SAME_ROLLER = ("body", "roller", "end_distance")  # Attributes that wear; load, friction, motion may differ
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(GAP_NODES)  # Gauss points of the mean depth of a column
 

@@ -71,10 +71,10 @@ def test_approach_is_independent_of_slices() -> None:
 
 @given(st.floats(1e-6, 5e-3))
 def test_mirrored_tilt(tilt: float) -> None:
-    one, mirrored = slice_model(CASE, tilt=tilt), slice_model(CASE, tilt=-tilt)
-    assert (np.diff(one["load_per_length"]) >= 0).all()
-    assert float(one["load_per_length"][-1]) > 5e5
-    np.testing.assert_allclose(one["load_per_length"], mirrored["load_per_length"][::-1], rtol=1e-9, atol=1e-6)
+    tilted, mirrored = slice_model(CASE, tilt=tilt), slice_model(CASE, tilt=-tilt)
+    assert (np.diff(tilted["load_per_length"]) >= 0).all()
+    assert float(tilted["load_per_length"][-1]) > 5e5
+    np.testing.assert_allclose(tilted["load_per_length"], mirrored["load_per_length"][::-1], rtol=1e-9, atol=1e-6)
 
 
 def test_riser_equals_the_standard() -> None:

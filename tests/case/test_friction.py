@@ -43,7 +43,7 @@ def test_antisymmetric_friction() -> None:
     assert np.abs(friction_stress + friction_stress[::-1]).max() < 1e-6 * np.abs(friction_stress).max()
 
 
-def test_equal_values_equal_a_number() -> None:
+def test_uniform_array_equals_a_number() -> None:
     grid = choose_grid(create_case(0.1), cells_x=3, cells_y=8, window=1.5)
     number_result, array_result = (
         solve(create_case(friction), grid, stresses=False)
@@ -85,9 +85,9 @@ def test_prescribed_gap_with_axial_friction() -> None:
     grid = choose_grid(create_case(0.1), cells_x=3, cells_y=8, window=1.5)
     gap = xr.DataArray(create_case(0.1).gap(grid), coords={"x": grid.x, "y": grid.y}, dims=("x", "y"))
     body = FiniteLengthSpace(length=LENGTH, material=STEEL)
-    found = solve_contact(body, gap, load=100.0, friction=ANTISYMMETRIC_FRICTION)
-    assert float(found.traction_y[0].max()) <= 0 <= float(found.traction_y[-1].min())
-    displacements = surface_displacement(body, 0 * found.pressure, traction_y=found.traction_y, components="y")
+    contact = solve_contact(body, gap, load=100.0, friction=ANTISYMMETRIC_FRICTION)
+    assert float(contact.traction_y[0].max()) <= 0 <= float(contact.traction_y[-1].min())
+    displacements = surface_displacement(body, 0 * contact.pressure, traction_y=contact.traction_y, components="y")
     assert np.abs(displacements.displacement_y.values + displacements.displacement_y.values[::-1]).max() < 1e-6 * float(
         np.abs(displacements.displacement_y).max()
     )

@@ -149,7 +149,7 @@ def test_solve_warns_once_at_the_line_of_the_call() -> None:
     assert warning.filename == __file__
 
 
-def test_plan_and_run_of_a_study_contain_the_warning(tmp_path: Path, capsys) -> None:
+def test_plan_and_run_contain_the_warning(tmp_path: Path, capsys) -> None:
     study = small_study(sweep={"e_over_a": [0.0, 1.0], "friction": [0.0, 5.0]})
     assert study.plan().doubts == ("friction = 5, usual are 0 to 1.5; 5 % is 0.05 (2 contacts)",)
     (tmp_path / "small.toml").write_text(as_toml(study))
@@ -175,7 +175,7 @@ def test_plan_warns_of_lengths_in_millimetres(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(("pressure", "modulus", "rating"), [(1500.0, 113e9, "low"), (1.5e9, 113.0, "high")])
-def test_crown_of_a_load_in_the_wrong_unit_warns(pressure: float, modulus: float, rating: str) -> None:
+def test_crown_for_a_wrong_unit_warns(pressure: float, modulus: float, rating: str) -> None:
     crown = profiles.JohnsGohar.for_pressure(1.5e9, radius=6e-3, modulus=113e9)
     wrong_crown = profiles.Lundberg.for_pressure(pressure, radius=6e-3, modulus=modulus)
     case = create_case()

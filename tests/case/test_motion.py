@@ -35,7 +35,7 @@ def test_full_sliding_is_the_default() -> None:
     assert hash(create_case(Rolling(spin=1.0))) != hash(create_case(Rolling(spin=2.0)))
 
 
-def test_motion_and_its_force_exclude_each_other() -> None:
+def test_motion_and_force_exclude_each_other() -> None:
     with pytest.raises(InvalidInputError, match="longitudinal_creepage, force_y"):
         Rolling(longitudinal_creepage=1e-3, force_y=1.0)
     with pytest.raises(InvalidInputError, match="spin, moment_z"):

@@ -121,7 +121,7 @@ def test_optimum_on_a_bound_warns(solve_with) -> None:
 
 def test_tilts_and_errors_of_functions(solve_with) -> None:
     solve_with(lambda drop, k1, case: 1.0 + abs(case.tilt))
-    found = best_profile(
+    result_with_error = best_profile(
         CASE,
         crown,
         bounds=BOUNDS,
@@ -130,13 +130,13 @@ def test_tilts_and_errors_of_functions(solve_with) -> None:
         tilts=[0.0, 1e-3],
         evaluations=8,
     )
-    assert found.sizes["case"] == 4
-    assert float(found.measure) == pytest.approx(2.002)
-    assert float(found.measure_error) == 0.5
+    assert result_with_error.sizes["case"] == 4
+    assert float(result_with_error.measure) == pytest.approx(2.002)
+    assert float(result_with_error.measure_error) == 0.5
     # The measure is constant: the flat range equals the bounds, without a warning.
-    assert not found.at_bound.any()
-    assert float(found.flat_from[0]) == pytest.approx(1e-6)
-    assert float(found.flat_to[0]) == pytest.approx(1e-4)
+    assert not result_with_error.at_bound.any()
+    assert float(result_with_error.flat_from[0]) == pytest.approx(1e-6)
+    assert float(result_with_error.flat_to[0]) == pytest.approx(1e-4)
     plain_result = best_profile(
         CASE,
         crown,

@@ -159,16 +159,16 @@ def test_padded_lazy_study_equals_single_cases(criterion, solved: xr.Dataset) ->
         assert np.allclose(padded_result.isel(case=case_index), single_result, rtol=1e-9)
 
 
-def test_one_position_along_y_is_rejected(opened: xr.Dataset) -> None:
+def test_single_position_along_y_is_rejected(opened: xr.Dataset) -> None:
     with pytest.raises(InvalidInputError, match="at least 3"):
         fatigue.crossland(opened, LIMITS)
 
 
 def test_window_remainder_decreases_with_the_window(strip_result) -> None:
-    near, far = (float(fatigue.window_remainder(strip_result(window=w)).max()) for w in (1.5, 12.0))
-    assert far < 0.2 < near <= 1
-    whole = strip_result()
-    assert float(fatigue.window_remainder(whole.where(abs(whole.y_field) < 3, 0.0)).max()) == 0.0
+    near_remainder, far_remainder = (float(fatigue.window_remainder(strip_result(window=w)).max()) for w in (1.5, 12.0))
+    assert far_remainder < 0.2 < near_remainder <= 1
+    full_passage = strip_result()
+    assert float(fatigue.window_remainder(full_passage.where(abs(full_passage.y_field) < 3, 0.0)).max()) == 0.0
 
 
 @pytest.mark.parametrize("criterion", CRITERIA)

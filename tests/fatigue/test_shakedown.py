@@ -110,8 +110,8 @@ def test_shakedown_stress_is_minimal(history: np.ndarray) -> None:
     u, v, remainder = to_ball_axes(history_with_rest)
 
     def largest(rho: float, along_x: float = 0.0) -> float:
-        moved = (u + rho - 0.5 * along_x) ** 2 + (v + 0.5 * np.sqrt(3) * along_x) ** 2
-        return float(np.sqrt((moved + remainder).max() / 3))
+        squares = (u + rho - 0.5 * along_x) ** 2 + (v + 0.5 * np.sqrt(3) * along_x) ** 2
+        return float(np.sqrt((squares + remainder).max() / 3))
 
     minimum = optimize.minimize_scalar(largest, bounds=(-20, 20), options={"xatol": 1e-10}).fun
     assert float(result["shakedown_stress"]) == pytest.approx(minimum, rel=1e-7, abs=1e-9)

@@ -74,7 +74,7 @@ def test_symmetric_roller_has_a_symmetric_film(crowned):
     assert float(crowned.least_film_first_x + crowned.least_film_last_x) == pytest.approx(LENGTH, rel=1e-3)
 
 
-def test_film_at_the_ends_of_a_half_space_is_thinner(crowned):
+def test_film_at_half_space_ends_is_thinner(crowned):
     body = cs.HalfSpace(material=STEEL)
     half_space_film = coarse_film(film_case(LENGTH, 10.0, 5.0, body=body, profile=CROWN))
     assert float(half_space_film.least_film) < 0.6 * float(crowned.least_film)
@@ -92,7 +92,7 @@ def test_mid_length_film_equals_a_line_contact():
     assert middle == pytest.approx(line.central * scale, rel=0.04)
 
 
-def test_face_film_of_a_flush_roller_has_converged():
+def test_face_film_of_flush_rollers_has_converged():
     case = film_case(4 * HALF_WIDTH, 10.0, 5.0)
     cells = (replace(COARSE, columns=0.12 * factor, columns_inlet=0.4 * factor) for factor in (1.0, 0.5))
     film, narrower = (solve_film(case, accuracy=0.2, resolution=resolution) for resolution in cells)
@@ -103,7 +103,7 @@ def test_face_film_of_a_flush_roller_has_converged():
 
 
 @pytest.mark.slow
-def test_tilted_roller_has_its_minimum_film_at_the_end():
+def test_tilted_roller_has_minimum_film_at_its_end():
     """On the first columns the film seven half-widths from the end is thinner than at the end."""
     crown = cs.profiles.PartialCrown(straight_length=2.315e-3, crown_radius=97.95e-3)
     case = cs.Case(
@@ -129,8 +129,8 @@ def test_slice_films_miss_the_end_closure(crowned):
     load = dry.pressure.sum("y") * float(dry.y[1] - dry.y[0])
     root = np.sqrt(2 * oil_of(case, 10.0, 5.0).viscosity / (2 * case.modulus * RADIUS))
     for x in (3 * HALF_WIDTH, HALF_WIDTH):
-        number = float(load.sel(x=x, method="nearest")) / (2 * case.modulus * RADIUS * root)
-        expected = moes_line(number, 5.0) * RADIUS * root
+        load_number = float(load.sel(x=x, method="nearest")) / (2 * case.modulus * RADIUS * root)
+        expected = moes_line(load_number, 5.0) * RADIUS * root
         assert float(crowned.slice_film.sel(x=x, method="nearest")) == pytest.approx(float(expected), rel=1e-2)
     assert float(crowned.slice_film.min()) > 1.5 * float(crowned.least_film)
     assert crowned.slice_film.attrs["error_kind"] == "not estimated"
@@ -155,7 +155,7 @@ def test_next_speed_starts_from_the_previous_film(crowned):
         assert float(warm[f"{name}_error"]) == pytest.approx(float(cold[f"{name}_error"]), rel=1e-2)
 
 
-def test_asperities_carry_a_part_of_the_load():
+def test_asperities_carry_part_of_the_load():
     rough = Asperities(rms=1e-7)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", cs.ConvergenceWarning)

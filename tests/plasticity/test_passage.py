@@ -77,7 +77,7 @@ def integrate_rates(
     ("friction", "ratio", "hardening"),
     [(0.0, 0.95, (0.0, 20.0)), (0.2, 0.97, (0.0, 10.0)), (0.2, 0.9, (30.0, 0.0))],
 )
-def test_one_layer_against_rate_equations(
+def test_layer_agrees_with_rate_equations(
     line_contact, friction: float, ratio: float, hardening: tuple[float, float]
 ) -> None:
     contact = line_contact(friction)

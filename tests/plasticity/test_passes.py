@@ -211,11 +211,11 @@ def test_residual_stress_far_from_the_ends(line_contact, steel_between_ends) -> 
     limit = float(fatigue.shakedown(contact)["shakedown_stress"].max())
     plastic = perfectly_plastic(0.95 * limit)
     bodies_without_end = (kind(material=steel_between_ends.material) for kind in (HalfSpace, QuarterSpace))
-    between, *other_bodies = (
+    reference_stress, *other_bodies = (
         residual_stress(contact, body, plastic, passes=2).isel(pass_number=-1)["sigma_yy"]
         for body in (steel_between_ends, *bodies_without_end)
     )
-    middle = between.isel(x=2).values
+    middle = reference_stress.isel(x=2).values
     for reversed_result in other_bodies:
         assert np.abs(reversed_result.isel(x=2).values - middle).max() < 0.15 * np.abs(middle).max()
         assert float(np.abs(reversed_result).max()) > 0.02

@@ -74,7 +74,7 @@ def test_radius_across_equals_the_profile(positions: np.ndarray) -> None:
     assert drops == pytest.approx(local_radius(Tapered(0.05), inside, 0.8 * LENGTH, RADIUS))
 
 
-def test_infinite_end_drop_ends_in_a_corner_of_slope_one() -> None:
+def test_infinite_drop_continues_up_to_slope_one() -> None:
     effective = 0.9 * LENGTH
     profile = EffectiveLength(Lundberg(2e-7), effective)
     x = np.linspace(0.0, 0.5 * LENGTH, 100001)

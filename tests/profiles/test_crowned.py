@@ -21,7 +21,7 @@ def test_full_crown_lies_on_its_circle(radius: float, x: float) -> None:
     assert np.hypot(x, radius - drop) == pytest.approx(radius, rel=1e-12)
 
 
-def test_full_crown_has_its_highest_point_at_the_centre(positions: np.ndarray) -> None:
+def test_centre_is_the_highest_point_of_a_crown(positions: np.ndarray) -> None:
     drop = FullCrown(1.0, centre=1e-3).drop(positions, LENGTH)
     assert positions[drop.argmin()] == pytest.approx(1e-3)
     assert drop.min() == pytest.approx(0.0, abs=1e-18)
@@ -54,9 +54,9 @@ def test_partial_crown_equals_crown_and_cylinder_in_the_limits(positions: np.nda
 
 
 def test_dub_off_of_equal_radius_has_no_influence(positions: np.ndarray) -> None:
-    one, dubbed_crown = PartialCrown(2e-3, 0.5), PartialCrown(2e-3, 0.5, dub_length=1e-3, dub_radius=0.5)
+    plain_crown, dubbed_crown = PartialCrown(2e-3, 0.5), PartialCrown(2e-3, 0.5, dub_length=1e-3, dub_radius=0.5)
     np.testing.assert_allclose(
-        dubbed_crown.drop(positions, LENGTH), one.drop(positions, LENGTH), rtol=1e-12, atol=1e-18
+        dubbed_crown.drop(positions, LENGTH), plain_crown.drop(positions, LENGTH), rtol=1e-12, atol=1e-18
     )
 
 

@@ -54,7 +54,8 @@ def test_rotation_moves_heights_with_their_points() -> None:
             x, y = X[i] - X.mean(), Y[j] - Y.mean()
             position = np.cos(angle) * x - np.sin(angle) * y, np.sin(angle) * x + np.cos(angle) * y
             nearest = [
-                np.abs(axis - axis.mean() - place).argmin() for axis, place in zip(rotated[:2], position, strict=True)
+                np.abs(axis - axis.mean() - coordinate).argmin()
+                for axis, coordinate in zip(rotated[:2], position, strict=True)
             ]
             assert rotated.heights[tuple(nearest)] == MAP[i, j]
         assert (np.diff(rotated.x) > 0).all()

@@ -66,15 +66,15 @@ def test_tilt_and_offset_are_removed_on_request(tmp_path: Path, positions: np.nd
 
 
 @given(st.lists(st.floats(0.0, 1e-6), min_size=5, max_size=40), st.floats(-0.5, 0.5))
-def test_interpolation_overshoots_only_at_crests(drops: list[float], place: float) -> None:
+def test_interpolation_overshoots_only_at_crests(drops: list[float], position: float) -> None:
     """The overshoot between two points is at most a quarter of the neighbouring steps."""
     values = np.array(drops)
     profile = Measured(np.linspace(0, LENGTH, len(drops)), drops, largest_spike=1.0)
-    below = min(int((place + 0.5) * (len(drops) - 1)), len(drops) - 2)
-    low, high = sorted(drops[below : below + 2])
-    steps = np.abs(np.diff(values))[max(below - 1, 0) : below + 2].max()
+    interval = min(int((position + 0.5) * (len(drops) - 1)), len(drops) - 2)
+    low, high = sorted(drops[interval : interval + 2])
+    steps = np.abs(np.diff(values))[max(interval - 1, 0) : interval + 2].max()
     shift = profile.drop(np.array([-LENGTH / 2]), LENGTH)[0] - drops[0]
-    drop = float(profile.drop(np.array([place * LENGTH]), LENGTH)[0]) - shift
+    drop = float(profile.drop(np.array([position * LENGTH]), LENGTH)[0]) - shift
     assert low - 0.25 * steps - 1e-15 <= drop <= high + 0.25 * steps + 1e-15
 
 

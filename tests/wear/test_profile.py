@@ -146,7 +146,7 @@ def test_partly_worn_edge_radius_without_a_ridge() -> None:
     assert worn_peak < float(worn_result.peak_pressure) < 0.8 * unworn_peak
 
 
-def test_result_at_one_distance(uniform) -> None:
+def test_result_at_a_single_distance(uniform) -> None:
     case = worn_case()
     x = np.linspace(-0.5, 0.5, 41) * LENGTH
     selected_profile, single_profile = worn_profile(case, uniform, 1e4), worn_profile(case, uniform.sel(distance=1e4))
