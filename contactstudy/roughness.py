@@ -14,11 +14,17 @@ from contactstudy import checks
 from contactstudy.arrays.cells import labelled_cells
 from contactstudy.arrays.grid import Grid
 from contactstudy.arrays.variables import in_si, labels, name_array
-from contactstudy.case.magnitudes import warn_doubtful_values
+from contactstudy.case.magnitudes import warn_of_values
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
-from contactstudy.profiles.instruments import Heights, of_instrument, read_heights, turned
-from contactstudy.profiles.measurements import check_positions, check_values, read_columns, read_netcdf, unit_in_metres
+from contactstudy.profiles.column_files import (
+    check_positions,
+    check_values,
+    read_columns,
+    read_netcdf,
+    unit_in_metres,
+)
+from contactstudy.profiles.instruments import Heights, is_instrument_file, read_heights, rotate_heights
 
 COORDINATE_TOLERANCE = 1e-3  # Difference of equal cells, over a cell. Accuracy
 
@@ -157,11 +163,11 @@ def read_height_map(
     checks.instance("grid", grid, Grid, "a Grid")
     for name, value in (("remove_slope", remove_slope), ("remove_form", remove_form)):
         checks.instance(name, value, bool, "True or False")
-    if of_instrument(path):
+    if is_instrument_file(path):
         height_map = read_heights(path)
     else:
         height_map = _read_netcdf(path) if path.suffix.lower() == ".nc" else _read_csv(path)
-    x, y, heights = turned(height_map, turn, mirror)
+    x, y, heights = rotate_heights(height_map, turn, mirror)
     if y is None:
         raise InvalidInputError("path", str(path), "a file with heights over x and y", "it holds one line")
     if corner is not None:
@@ -207,7 +213,7 @@ def heights_on(grid: Grid, heights: xr.DataArray) -> FloatArray:
     [[1.5], [2.5]]
     """
     values, cells = labelled_cells("roughness", in_si("roughness", heights, "m"))
-    warn_doubtful_values(roughness=float(np.ptp(values)))
+    warn_of_values(roughness=float(np.ptp(values)))
     if cells.shape == grid.shape and all(
         np.allclose(position, centres, rtol=0.0, atol=COORDINATE_TOLERANCE * step)
         for position, centres, step in ((cells.x, grid.x, grid.dx), (cells.y, grid.y, grid.dy))

@@ -19,7 +19,7 @@ from scipy.spatial.distance import cdist
 from scipy.stats import qmc
 
 import contactstudy as cs
-from contactstudy.bearing.atlas import GROUPS, QUANTITIES, AtlasTable, points_of
+from contactstudy.bearing.atlas import GROUPS, QUANTITIES, AtlasTable, to_groups
 
 YOUNG, RADIUS, PRESSURE = 210e9, 5e-3, 1e9
 """Scales, which the dimensionless results do not depend on."""
@@ -55,7 +55,7 @@ SOLVER_ERRORS = {
 def groups(count: int, seed: int) -> dict[str, np.ndarray]:
     """Return the groups of the first points of a Sobol sequence, even in the coordinates of the atlas."""
     unit = qmc.Sobol(len(GROUPS), seed=seed).random_base2(int(np.ceil(np.log2(count))))[:count]
-    return dict(zip(GROUPS, points_of(unit, RANGES).T, strict=True))
+    return dict(zip(GROUPS, to_groups(unit, RANGES).T, strict=True))
 
 
 def half_widths(points: dict[str, np.ndarray]) -> np.ndarray:
@@ -145,8 +145,8 @@ def with_residuals(table: xr.Dataset) -> xr.Dataset:
 
 def left_out(atlas: AtlasTable, name: str) -> tuple[np.ndarray, np.ndarray]:
     """Difference of each point from the interpolation between the others, and its branch."""
-    samples, scaled = atlas.samples(name), atlas.scaled(name, atlas.points)
-    values = np.stack([branch.values(atlas.points, scaled) for branch in atlas.interpolators(name)])
+    samples, scaled = atlas.interpolated_samples(name), atlas.scale(name, atlas.points)
+    values = np.stack([branch.interpolate(atlas.points, scaled) for branch in atlas.interpolators(name)])
     for row, members in zip(values, atlas.branches(name), strict=True):
         row[members] -= residuals_without_each(scaled[members], samples[members])
     return samples - values.max(axis=0), values.argmax(axis=0)

@@ -41,7 +41,7 @@ from contactstudy import (
     surface_displacement,
 )
 from contactstudy.arrays.variables import STRESSES
-from contactstudy.bodies.models import EndedBody
+from contactstudy.bodies.models import BodyWithFreeEnds
 from contactstudy.contact.normal.contact import CONVERGED_TOLERANCES
 from contactstudy.kernels.fine_cells import REACH
 
@@ -222,7 +222,7 @@ QUADRATURE = 2e-5
 def reciprocity(solution: SolvedCase) -> bool:
     """Two pressures do equal work on the displacement of each other (Betti)."""
     body, grid = solution.random_case.case.body, solution.grid
-    if isinstance(body, EndedBody) and body.model != "exact":
+    if isinstance(body, BodyWithFreeEnds) and body.model != "exact":
         return False
     first = solution.result["pressure"]
     noise = np.random.default_rng(solution.rng.randrange(2**32)).random(grid.shape)
@@ -299,7 +299,7 @@ def loads_on_the_top(solution: SolvedCase) -> bool:
     """On the top the stresses equal the loads, uniform in each cell or smooth."""
     case, grid = solution.random_case.case, solution.grid
     pressure = solution.result["pressure"]
-    if isinstance(case.body, EndedBody) and case.body.model == "mirror-factor":
+    if isinstance(case.body, BodyWithFreeEnds) and case.body.model == "mirror-factor":
         return False  # its weights add up to one, but its mirrors do not end where the body does
     i, j = (solution.rng.randrange(count) for count in grid.shape)
     p = float(pressure[i, j])
@@ -357,7 +357,7 @@ def free_ends(solution: SolvedCase) -> bool:
     """
     case, grid, rng = solution.random_case.case, solution.grid, solution.rng
     ends = [end for end in case.body.extent if np.isfinite(end)]
-    if not ends or not isinstance(case.body, EndedBody) or case.body.model != "exact":
+    if not ends or not isinstance(case.body, BodyWithFreeEnds) or case.body.model != "exact":
         return False
     size = max(grid.dy, float(grid.widths[[0, -1]].max()))
     depths = [magnitude(rng, 0.25, 4.0) * size for _ in range(2)]
@@ -442,7 +442,7 @@ def largest_stress(solution: SolvedCase) -> bool:
 def equivalent_loads_are_finite(solution: SolvedCase) -> bool:
     """The method's equivalent loads exist for every pressure of `solve`."""
     case = solution.random_case.case
-    if not isinstance(case.body, EndedBody) or case.body.model != "exact":
+    if not isinstance(case.body, BodyWithFreeEnds) or case.body.model != "exact":
         return False
     depth = solution.rng.uniform(0.1, 3.0) * case.hertz_half_width
     loads = equivalent_loads(case.body, solution.result["pressure"], float(case.friction), z=[depth])

@@ -25,7 +25,7 @@ from contactstudy.arrays.variables import (
 )
 from contactstudy.checks import Array
 from contactstudy.errors import InvalidInputError
-from contactstudy.profiles.base import in_words
+from contactstudy.profiles.base import describe_profile
 
 
 def dimension_along(array: xr.DataArray, axis: str) -> str:
@@ -324,5 +324,5 @@ def _case_coordinates(result: xr.Dataset) -> dict[str, Any]:
         values["friction"] = case.friction
     if np.isfinite(high - low):
         values["gamma"] = (high - low) / case.roller.radius
-    values["profile"] = in_words(case.roller.profile)
+    values["profile"] = describe_profile(case.roller.profile)
     return {name: ((), value, labels(name, coordinate=True)) for name, value in values.items() if name not in result}

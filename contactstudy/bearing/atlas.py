@@ -1,4 +1,4 @@
-"""Atlas of logarithmic rollers: pressure, stress and stiffness from a table of solved contacts, without a solution."""
+"""Atlas of logarithmic rollers: pressure, stress and stiffness by interpolation of solved contacts."""
 
 from __future__ import annotations
 
@@ -25,10 +25,10 @@ GROUPS = ("length_over_a", "e_over_a", "crown", "tilt_ratio", "poisson")
 QUANTITIES = ("peak_pressure_ratio", "peak_von_mises_ratio", "approach_ratio", "end_load_ratio")
 # Quantities whose logarithm is interpolated: their errors are relative
 LOGARITHMIC = ("peak_pressure_ratio", "peak_von_mises_ratio", "approach_ratio")
-NEIGHBOURS = 6  # Nearest points of which one belongs to a branch that reaches so far
-RESIDUALS = 12  # Nearest points whose residuals give the local error
+NEIGHBOURS = 6  # Nearest points; a branch is defined where one of these belongs to it
+RESIDUALS = 12  # Nearest points whose mean residual is the local error
 LOAD_STEP = 0.05  # Change of the half-width, over it, for the slope of the approach
-RISE = 2 * np.log((1 + LOAD_STEP) / (1 - LOAD_STEP))  # Change of the load's logarithm over two steps
+LOAD_RISE = 2 * np.log((1 + LOAD_STEP) / (1 - LOAD_STEP))  # Change of the load's logarithm over two steps
 
 
 def atlas(
@@ -61,7 +61,7 @@ def atlas(
     Dataset
         `peak_pressure_ratio` and `peak_von_mises_ratio` over p0, `approach_ratio` over ``a**2 / R``,
         `stiffness_ratio` dP/d(approach) over ``E* L`` at a constant rotation, and `end_load_ratio`, the load on the
-        last half-width of the end that is pressed deeper over the mean load per half-width; each with its error
+        last half-width of the deeper end over the mean load per half-width; each with its error
         ``<name>_error``, of solver and interpolation, which covers 95 to 97 % of 256 other points. DataArrays are
         broadcast; other arrays of one dimension have the dimension `point`.
 
@@ -77,8 +77,8 @@ def atlas(
     (('point',), True)
     """
     table = atlas_table()
-    given = dict(zip(GROUPS, (length_over_a, e_over_a, crown, tilt_ratio, poisson), strict=True))
-    groups = xr.broadcast(*(_checked(name, value, table.ranges[name]) for name, value in given.items()))
+    arguments = dict(zip(GROUPS, (length_over_a, e_over_a, crown, tilt_ratio, poisson), strict=True))
+    groups = xr.broadcast(*(_check_group(name, value, table.ranges[name]) for name, value in arguments.items()))
     points = np.stack([group.values.ravel() for group in groups], axis=1)
     shape, dims = groups[0].shape, groups[0].dims
     columns = {name: (dims, values.reshape(shape)) for name, values in table.evaluate(points).items()}
@@ -86,16 +86,16 @@ def atlas(
     return describe(result, "atlas of logarithmic rollers between free ends")
 
 
-def _checked(name: str, value: npt.ArrayLike | xr.DataArray, allowed: tuple[float, float]) -> xr.DataArray:
-    """Group as a DataArray, inside the range of the atlas."""
+def _check_group(name: str, value: npt.ArrayLike | xr.DataArray, valid_range: tuple[float, float]) -> xr.DataArray:
+    """Return a group as a DataArray; raise outside the range of the atlas."""
     try:
         values = np.asarray(value, dtype=float)
     except (TypeError, ValueError):
         raise InvalidInputError(name, value, "numbers") from None
-    low, high = allowed
-    outside = ~((values >= low * (1 - 1e-9)) & (values <= high * (1 + 1e-9)))
-    if outside.any():
-        raise InvalidInputError(name, float(values[outside][0]), f"from {low:g} to {high:g}", "solve the case")
+    low, high = valid_range
+    is_outside = ~((values >= low * (1 - 1e-9)) & (values <= high * (1 + 1e-9)))
+    if is_outside.any():
+        raise InvalidInputError(name, float(values[is_outside][0]), f"from {low:g} to {high:g}", "solve the case")
     if isinstance(value, xr.DataArray):
         return value.astype(float)
     if values.ndim > 1:
@@ -110,8 +110,8 @@ class Branch(NamedTuple):
     tree: cKDTree
     members: npt.NDArray[np.bool_]
 
-    def values(self, coordinates: FloatArray, scaled: FloatArray) -> FloatArray:
-        """Values at coordinates (point, group), also scaled; minus infinity away from the members."""
+    def interpolate(self, coordinates: FloatArray, scaled: FloatArray) -> FloatArray:
+        """Interpolate at coordinates (point, group), also scaled; minus infinity away from the members."""
         _, nearest = self.tree.query(coordinates, NEIGHBOURS)
         values = self.interpolation(scaled)
         return np.where(self.members[nearest].any(axis=1), values, -np.inf)
@@ -126,13 +126,13 @@ class AtlasTable:
 
     @cached_property
     def ranges(self) -> dict[str, tuple[float, float]]:
-        """Least and largest value of each group."""
+        """Minimum and maximum of each group."""
         return {name: tuple(self.dataset[name].attrs["valid_range"]) for name in GROUPS}
 
     def coordinates(self, points: FloatArray) -> FloatArray:
-        """Coordinates of points (point, group), from 0 to 1: the quantities vary evenly over them."""
+        """Coordinates of points (point, group) from 0 to 1, over which the quantities vary evenly."""
         lows, highs = np.array([self.ranges[name] for name in GROUPS]).T
-        low, value, high = (_even(np.atleast_2d(each)) for each in (lows, points, highs))
+        low, value, high = (_even_variation(np.atleast_2d(groups)) for groups in (lows, points, highs))
         return np.asarray((value - low) / (high - low))
 
     @cached_property
@@ -140,13 +140,13 @@ class AtlasTable:
         """Coordinates of the solved points (point, group)."""
         return self.coordinates(np.stack([self.dataset[name].values for name in GROUPS], axis=1))
 
-    def samples(self, name: str) -> FloatArray:
-        """Interpolated values at the solved points: of some quantities the logarithm."""
+    def interpolated_samples(self, name: str) -> FloatArray:
+        """Interpolated values at the solved points: the quantity or its logarithm."""
         values = self.dataset[name].values
         return np.asarray(np.log(values) if name in LOGARITHMIC else values)
 
     def branches(self, name: str) -> list[npt.NDArray[np.bool_]]:
-        """Points of each smooth branch of a quantity: a largest value is the larger one of two local maxima."""
+        """Points of each smooth branch of a quantity; two local maxima give two branches of a maximum."""
         if f"{name}_at_end" not in self.dataset:
             return [np.ones(len(self.points), dtype=bool)]
         at_end = self.dataset[f"{name}_at_end"].values.astype(bool)
@@ -155,12 +155,10 @@ class AtlasTable:
     def interpolators(self, name: str) -> list[Branch]:
         """Interpolation of each branch of a quantity."""
         if name not in self._interpolators:
-            tree, samples = cKDTree(self.points), self.samples(name)
+            tree, samples = cKDTree(self.points), self.interpolated_samples(name)
             self._interpolators[name] = [
                 Branch(
-                    RBFInterpolator(
-                        self.scaled(name, self.points[members]), samples[members], kernel="cubic", degree=2
-                    ),
+                    RBFInterpolator(self.scale(name, self.points[members]), samples[members], kernel="cubic", degree=2),
                     tree,
                     members,
                 )
@@ -168,26 +166,26 @@ class AtlasTable:
             ]
         return self._interpolators[name]
 
-    def scaled(self, name: str, coordinates: FloatArray) -> FloatArray:
+    def scale(self, name: str, coordinates: FloatArray) -> FloatArray:
         """Coordinates (point, group) whose distances measure the variation of a quantity."""
         return np.asarray(self.dataset[name].attrs["scales"] * coordinates)
 
     def interpolate(self, name: str, coordinates: FloatArray) -> tuple[FloatArray, IntArray]:
         """Interpolated values at coordinates (point, group), and the branch of each."""
-        scaled = self.scaled(name, coordinates)
-        values = np.stack([branch.values(coordinates, scaled) for branch in self.interpolators(name)])
+        scaled = self.scale(name, coordinates)
+        values = np.stack([branch.interpolate(coordinates, scaled) for branch in self.interpolators(name)])
         return values.max(axis=0), values.argmax(axis=0)
 
     def local_residual(self, name: str, coordinates: FloatArray, branch: IntArray, first: int = 0) -> FloatArray:
         """Mean residual of the nearest points of the same branch, from the `first` nearest on."""
-        residuals, local = np.abs(self.dataset[f"{name}_residual"].values), np.zeros(len(coordinates))
-        points, scaled = self.scaled(name, self.points), self.scaled(name, coordinates)
-        for number, members in enumerate(self.branches(name)):
-            selected = branch == number
+        residuals, local_residuals = np.abs(self.dataset[f"{name}_residual"].values), np.zeros(len(coordinates))
+        points, scaled = self.scale(name, self.points), self.scale(name, coordinates)
+        for branch_index, members in enumerate(self.branches(name)):
+            selected = branch == branch_index
             if selected.any():
                 _, nearest = cKDTree(points[members]).query(scaled[selected], first + RESIDUALS)
-                local[selected] = residuals[members][nearest[:, first:]].mean(axis=1)
-        return local
+                local_residuals[selected] = residuals[members][nearest[:, first:]].mean(axis=1)
+        return local_residuals
 
     def evaluate(self, points: FloatArray) -> dict[str, FloatArray]:
         """Quantities and their errors at points (point, group)."""
@@ -195,8 +193,8 @@ class AtlasTable:
         for name in QUANTITIES:
             interpolated, branch = self.interpolate(name, coordinates)
             attributes = self.dataset[name].attrs
-            local = self.local_residual(name, coordinates, branch)
-            error = np.hypot(attributes["coverage_factor"] * local, attributes["solver_error"])
+            local_residual = self.local_residual(name, coordinates, branch)
+            error = np.hypot(attributes["coverage_factor"] * local_residual, attributes["solver_error"])
             logarithmic = name in LOGARITHMIC
             values[name] = np.exp(interpolated) if logarithmic else np.maximum(interpolated, 0.0)
             values[f"{name}_error"] = error * values[name] if logarithmic else error
@@ -206,23 +204,23 @@ class AtlasTable:
             self.interpolate("approach_ratio", self.coordinates(points / np.array([s, s, s**2, s**2, 1])))[0]
             for s in (1 - LOAD_STEP, 1 + LOAD_STEP)
         )
-        slope = 1 + (higher - lower) / RISE
+        slope = 1 + (higher - lower) / LOAD_RISE
         values["stiffness_ratio"] = np.pi / (4 * values["approach_ratio"] * slope)
         # Independent errors of the approach at both ends of the step.
-        relative = values["approach_ratio_error"] / values["approach_ratio"]
-        values["stiffness_ratio_error"] = values["stiffness_ratio"] * np.sqrt(2) * relative / (RISE * slope)
+        relative_error = values["approach_ratio_error"] / values["approach_ratio"]
+        values["stiffness_ratio_error"] = values["stiffness_ratio"] * np.sqrt(2) * relative_error / (LOAD_RISE * slope)
         return values
 
 
-def _even(points: FloatArray) -> FloatArray:
-    """Transform groups (point, group) so that the quantities vary evenly over them."""
+def _even_variation(points: FloatArray) -> FloatArray:
+    """Transform groups (point, group) to coordinates over which the quantities vary evenly."""
     length, distance, crown, tilt, poisson = points.T
     return np.stack([np.log(length), np.sqrt(distance), np.log(crown), tilt, poisson], axis=1)
 
 
-def points_of(coordinates: FloatArray, ranges: Mapping[str, tuple[float, float]]) -> FloatArray:
+def to_groups(coordinates: FloatArray, ranges: Mapping[str, tuple[float, float]]) -> FloatArray:
     """Return the groups of points with coordinates from 0 to 1: arrays (point, group)."""
-    low, high = _even(np.array([ranges[name] for name in GROUPS]).T)
+    low, high = _even_variation(np.array([ranges[name] for name in GROUPS]).T)
     length, distance, crown, tilt, poisson = (low + coordinates * (high - low)).T
     return np.stack([np.exp(length), distance**2, np.exp(crown), tilt, poisson], axis=1)
 
@@ -230,7 +228,7 @@ def points_of(coordinates: FloatArray, ranges: Mapping[str, tuple[float, float]]
 @cache
 def atlas_table() -> AtlasTable:
     """Return the table of the package."""
-    inside = Path(str(files("contactstudy.bearing"))) / "data" / "atlas.nc"
-    path = inside if inside.exists() else Path(__file__).resolve().parents[2] / "data" / "atlas.nc"
+    package_path = Path(str(files("contactstudy.bearing"))) / "data" / "atlas.nc"
+    path = package_path if package_path.exists() else Path(__file__).resolve().parents[2] / "data" / "atlas.nc"
     with xr.open_dataset(path) as dataset:
         return AtlasTable(dataset.load())

@@ -16,9 +16,9 @@ from scipy.ndimage import maximum_filter
 
 from contactstudy.checks import FloatArray
 
-# Degree of the splines that estimate the error by their difference, factor on the estimate, and steps between nodes at
-# which splines are compared. Accuracy: the estimate covers the error of springs of power 3/2 on 5 to 9 nodes
-LOWER, SAFETY, BETWEEN = 3, 3.0, 4
+# Degree of the splines whose difference estimates the error, factor on the estimate, and steps of the comparison
+# between nodes. Accuracy: the estimate covers the error of springs of power 3/2 on 5 to 9 nodes
+ERROR_DEGREE, SAFETY, BETWEEN = 3, 3.0, 4
 
 
 class Nodes(NamedTuple):
@@ -49,113 +49,113 @@ class Axis:
     degree: int
 
     @classmethod
-    def through(cls, nodes: FloatArray, degree: int) -> Axis:
-        """Axis with one spline more than nodes, its knots by de Boor's means."""
+    def interpolating(cls, nodes: FloatArray, degree: int) -> Axis:
+        """Return an axis with one spline more than nodes, and knots by de Boor's means."""
         degree = min(degree, nodes.size - 1)
         inner = [nodes[first : first + degree - 1].mean() for first in range(1, nodes.size - degree + 1)]
         first, last = (np.repeat(end, degree + 1) for end in nodes[[0, -1]])
         return cls(np.concatenate([first, inner, last]), degree)
 
     def __call__(self, points: FloatArray, derivative: int = 0) -> FloatArray:
-        """Every spline at every point: array (point, spline)."""
+        """Values of the splines at points: array (point, spline)."""
         count = self.knots.size - self.degree - 1
         return np.asarray(BSpline(self.knots, np.eye(count), self.degree)(points, nu=derivative))
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class EnergySpline:
-    """Strain energy: the exponential of a spline without tilt, and a product of splines that a tilt adds."""
+    """Strain energy: the exponential of a spline without tilt, plus a product of splines for the tilt."""
 
     approach_axis: Axis  # in the logarithm of the approach
     tilt_axis: Axis  # in the tilt over the largest
-    largest_tilt: float  # rad
-    level: FloatArray  # coefficients of the logarithm of the energy without tilt
+    tilt_scale: float  # rad
+    untilted: FloatArray  # coefficients of the logarithm of the energy without tilt
     added: FloatArray  # coefficients of the energy added by a tilt, per pair, J
 
     @classmethod
-    def fitted(cls, nodes: Nodes, degree: int = 4) -> EnergySpline:
+    def fit(cls, nodes: Nodes, degree: int = 4) -> EnergySpline:
         """Fit energy, load and moment at once."""
         u, scale = np.log(nodes.approaches), float(np.abs(nodes.tilts).max())
         t = nodes.tilts / scale
-        first, second = Axis.through(u, degree), Axis.through(t, degree)
+        first, second = Axis.interpolating(u, degree), Axis.interpolating(t, degree)
         # dU / d ln delta = delta Q, and dU / d(theta / scale) = scale M.
         load, moment = nodes.approaches[:, None] * nodes.load, scale * nodes.moment
-        straight = int(np.abs(t).argmin())
-        energy, sunk = nodes.energy[:, straight], load[:, straight]
-        level = _solved([(first(u), np.log(energy)), (first(u, 1), sunk / energy)])
+        untilted_column = int(np.abs(t).argmin())
+        energy, untilted_load = nodes.energy[:, untilted_column], load[:, untilted_column]
+        level = _solve_least_squares([(first(u), np.log(energy)), (first(u, 1), untilted_load / energy)])
         untilted = np.exp(first(u) @ level)
         # Equal weights of the loads, and of the moments at each approach.
-        turning = np.abs(moment).max(axis=1, keepdims=True) + np.zeros_like(moment)
-        # Weight of the energies, which load and moment nearly determine
+        max_moment = np.abs(moment).max(axis=1, keepdims=True) + np.zeros_like(moment)
+        # The energies have a low weight: load and moment nearly determine the energy.
         equations = (
             ((0, 0), nodes.energy - untilted[:, None], nodes.energy / 0.1),
             ((1, 0), load - (untilted * (first(u, 1) @ level))[:, None], load),
-            ((0, 1), moment, np.where(turning > 0, turning, scale * load)),
+            ((0, 1), moment, np.where(max_moment > 0, max_moment, scale * load)),
         )
         rows = [
-            (np.kron(first(u, i), second(t, j)) / size.reshape(-1, 1), (value / size).ravel())
-            for (i, j), value, size in equations
+            (np.kron(first(u, i), second(t, j)) / weight.reshape(-1, 1), (right_hand_side / weight).ravel())
+            for (i, j), right_hand_side, weight in equations
         ]
-        added = _solved(rows).reshape(first(u).shape[1], -1)
-        return cls(approach_axis=first, tilt_axis=second, largest_tilt=scale, level=level, added=added)
+        added = _solve_least_squares(rows).reshape(first(u).shape[1], -1)
+        return cls(approach_axis=first, tilt_axis=second, tilt_scale=scale, untilted=level, added=added)
 
     def __call__(self, approach: FloatArray, tilt: FloatArray) -> Motion:
         """Load, moment and stiffness at pairs of approach and tilt, of one shape."""
         shape = np.shape(approach)
         delta, theta = np.ravel(approach), np.ravel(tilt)
-        u, t, scale = np.log(delta), theta / self.largest_tilt, self.largest_tilt
+        u, t, scale = np.log(delta), theta / self.tilt_scale, self.tilt_scale
         first = [self.approach_axis(u, order) for order in range(3)]
         second = [self.tilt_axis(t, order) for order in range(3)]
 
-        def derived(i: int, j: int) -> FloatArray:
+        def tilt_derivative(i: int, j: int) -> FloatArray:
             return np.asarray(np.einsum("pi,ij,pj->p", first[i], self.added, second[j]))
 
-        untilted, slope, bend = np.exp(first[0] @ self.level), first[1] @ self.level, first[2] @ self.level
-        by_u = untilted * slope + derived(1, 0)
-        by_uu = untilted * (bend + slope**2) + derived(2, 0)
+        energy, slope, curvature = np.exp(first[0] @ self.untilted), first[1] @ self.untilted, first[2] @ self.untilted
+        by_u = energy * slope + tilt_derivative(1, 0)
+        by_uu = energy * (curvature + slope**2) + tilt_derivative(2, 0)
         values = (
             by_u / delta,
-            derived(0, 1) / scale,
+            tilt_derivative(0, 1) / scale,
             (by_uu - by_u) / delta**2,
-            derived(1, 1) / (delta * scale),
-            derived(0, 2) / scale**2,
+            tilt_derivative(1, 1) / (delta * scale),
+            tilt_derivative(0, 2) / scale**2,
         )
         return Motion(*(value.reshape(shape) for value in values))
 
 
-def _solved(rows: list[tuple[FloatArray, FloatArray]]) -> FloatArray:
-    """Least squares of several blocks of equations, scaled by columns."""
-    matrix, right = (np.concatenate(parts) for parts in zip(*rows, strict=True))
-    size = np.linalg.norm(matrix, axis=0)
-    return np.asarray(np.linalg.lstsq(matrix / size, right, rcond=None)[0] / size)
+def _solve_least_squares(rows: list[tuple[FloatArray, FloatArray]]) -> FloatArray:
+    """Solve several blocks of equations by least squares, scaled by columns."""
+    matrix, right_hand_side = (np.concatenate(blocks) for blocks in zip(*rows, strict=True))
+    norms = np.linalg.norm(matrix, axis=0)
+    return np.asarray(np.linalg.lstsq(matrix / norms, right_hand_side, rcond=None)[0] / norms)
 
 
-def fit_errors(nodes: Nodes, length: float) -> FloatArray:
-    """Errors (2, approach, tilt) of load over load, moment over load and length: at and up to the next nodes."""
+def estimate_fit_errors(nodes: Nodes, length: float) -> FloatArray:
+    """Errors (2, approach, tilt) of load over load, moment over load and length, up to the neighbouring nodes."""
     # Residuals, and differences from splines of another degree and on fewer nodes.
-    spline, lower = EnergySpline.fitted(nodes), EnergySpline.fitted(nodes, LOWER)
+    spline, lower_degree_spline = EnergySpline.fit(nodes), EnergySpline.fit(nodes, ERROR_DEGREE)
     pairs = np.meshgrid(nodes.approaches, nodes.tilts, indexing="ij")
     residual = _differences(spline(*pairs), nodes.load, nodes.moment, length)
-    pairs = np.meshgrid(np.exp(_finer(np.log(nodes.approaches))), _finer(nodes.tilts), indexing="ij")
-    lowered = lower(*pairs)
-    degree = _differences(spline(*pairs), lowered.load, lowered.moment, length)
-    # Largest value from each node to its neighbours, of values on finer steps.
-    about = maximum_filter(degree, (1, 2 * BETWEEN + 1, 2 * BETWEEN + 1), mode="nearest")[:, ::BETWEEN, ::BETWEEN]
-    lines, residuals = np.arange(nodes.approaches.size), []
-    for line in lines[1:-1]:
+    pairs = np.meshgrid(np.exp(_subdivide(np.log(nodes.approaches))), _subdivide(nodes.tilts), indexing="ij")
+    lower = lower_degree_spline(*pairs)
+    degree = _differences(spline(*pairs), lower.load, lower.moment, length)
+    # Largest difference between each node and its neighbours.
+    nearby = maximum_filter(degree, (1, 2 * BETWEEN + 1, 2 * BETWEEN + 1), mode="nearest")[:, ::BETWEEN, ::BETWEEN]
+    indices, residuals = np.arange(nodes.approaches.size), []
+    for index in indices[1:-1]:
         fewer, removed = (
-            Nodes(nodes.approaches[some], nodes.tilts, nodes.energy[some], nodes.load[some], nodes.moment[some])
-            for some in (lines != line, lines == line)
+            Nodes(nodes.approaches[rows], nodes.tilts, nodes.energy[rows], nodes.load[rows], nodes.moment[rows])
+            for rows in (indices != index, indices == index)
         )
-        motion = EnergySpline.fitted(fewer)(*np.meshgrid(removed.approaches, removed.tilts, indexing="ij"))
+        motion = EnergySpline.fit(fewer)(*np.meshgrid(removed.approaches, removed.tilts, indexing="ij"))
         residuals.append(_differences(motion, removed.load, removed.moment, length))
     return np.asarray(
-        np.maximum(residual, SAFETY * (about + np.concatenate([residuals[0], *residuals, residuals[-1]], axis=1)))
+        np.maximum(residual, SAFETY * (nearby + np.concatenate([residuals[0], *residuals, residuals[-1]], axis=1)))
     )
 
 
-def _finer(nodes: FloatArray) -> FloatArray:
-    """Return the nodes and points between them."""
+def _subdivide(nodes: FloatArray) -> FloatArray:
+    """Return the nodes and points between the nodes."""
     count = nodes.size
     return np.asarray(np.interp(np.arange(BETWEEN * (count - 1) + 1) / BETWEEN, np.arange(count), nodes))
 

@@ -17,27 +17,27 @@ from contactstudy.bodies import hertz
 from contactstudy.case.case import Case, small_tilt
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
-from contactstudy.profiles.base import checked_drop, local_radius
+from contactstudy.profiles.base import check_drop, local_radius
 
-SPRING = 35948e6  # The standard's spring constant 35948 N / mm**2 in N / m**2; the powers of its lengths add up to 2
-# Contact modulus (Pa) that the standard's constant stands for: steel on steel, 207 GPa and 0.3
-STEEL = 0.5 * 207e9 / (1 - 0.3**2)
+SPRING = 35948e6  # The standard's spring constant 35948 N / mm**2, in N / m**2
+# Contact modulus (Pa) of the standard's constant: steel on steel, 207 GPa and 0.3
+STEEL_MODULUS = 0.5 * 207e9 / (1 - 0.3**2)
 EXPONENT = 10 / 9
 
-OF_MODEL = "of independent slices"  # Comment of every variable of the model
+MODEL_COMMENT = "of independent slices"  # Comment of every variable of the model
 
 
 def slice_model(case: Case, *, slices: int = 30, tilt: float | None = None, edge_riser: bool = False) -> xr.Dataset:
     """Load and pressure along a roller by the slice model of ISO/TS 16281.
 
     Each of the ``n`` slices of a contact of length ``L`` carries ``c_s (E* / E*_steel) (2 d_k)**(10/9)`` with
-    ``c_s = 35948 L**(8/9) / n`` (N, mm) and its own deflection ``d_k = max(d + tilt x_k - drop(x_k), 0)``. The approach
+    ``c_s = 35948 L**(8/9) / n`` (N, mm) and its deflection ``d_k = max(d + tilt x_k - drop(x_k), 0)``. The approach
     ``d`` follows from the load. The pressure is that of the Hertz line contact of the slice's load per length.
 
     Parameters
     ----------
     case : Case
-        Of the body the model uses the contact modulus only. Of an overhanging roller the part over the body is cut.
+        The model uses only the body's contact modulus. An overhanging roller has slices over the body only.
     slices : int
         Number ``n`` of slices; at least 30 in the standard.
     tilt : float, optional
@@ -47,7 +47,7 @@ def slice_model(case: Case, *, slices: int = 30, tilt: float | None = None, edge
         Whether the pressure contains the standard's approximate stress riser: the load of slice ``k`` times
         ``1 - 0.01 / ln(1.985 |2 k - n - 1| / (2 n - 2))``, 2.33 at the ends and 1 in the middle. Its range:
         the standard's profiles (`IsoCylindrical`, `IsoTapered`), medium loads and tilts below 4 minutes of arc,
-        1.2 mrad; not rollers without a profile. `contactstudy.bearing.lamina_factors` has it from solved contacts.
+        1.2 mrad; not rollers without a profile. `contactstudy.bearing.lamina_factors` computes it exactly.
 
     Returns
     -------
@@ -59,7 +59,7 @@ def slice_model(case: Case, *, slices: int = 30, tilt: float | None = None, edge
     Raises
     ------
     InvalidInputError
-        If an argument is of the wrong kind or out of range, or the case prescribes where the load acts.
+        If an argument is of the wrong kind or out of range, or the case prescribes the load's position.
 
     Notes
     -----
@@ -92,17 +92,20 @@ def slice_model(case: Case, *, slices: int = 30, tilt: float | None = None, edge
     start, _ = case.contact_range
     length, roller = case.contact_length, case.roller
     x = start + length * (np.arange(slices) + 0.5) / slices
-    from_middle = x - case.roller_middle
-    height = checked_drop(roller.profile, from_middle, roller.length) - np.tan(tilt) * from_middle
-    stiffness = SPRING * length ** (8 / 9) / slices * (case.modulus / STEEL)
+    x_from_middle = x - case.roller_middle
+    height = check_drop(roller.profile, x_from_middle, roller.length) - np.tan(tilt) * x_from_middle
+    stiffness = SPRING * length ** (8 / 9) / slices * (case.modulus / STEEL_MODULUS)
     load = case.normal_load
-    lowest, largest = float(height.min()), 0.5 * (load / stiffness) ** (1 / EXPONENT)  # one slice under the whole load
+    min_height, bound = (
+        float(height.min()),
+        0.5 * (load / stiffness) ** (1 / EXPONENT),
+    )  # one slice carries the whole load
     approach = float(
         brentq(
             lambda approach: stiffness * float(np.sum((2 * np.maximum(approach - height, 0.0)) ** EXPONENT)) / load - 1,
-            lowest,
-            lowest + 1.001 * largest,
-            xtol=1e-15 * largest,
+            min_height,
+            min_height + 1.001 * bound,
+            xtol=1e-15 * bound,
             rtol=1e-14,
             maxiter=200,
         )
@@ -112,7 +115,7 @@ def slice_model(case: Case, *, slices: int = 30, tilt: float | None = None, edge
     from_ends = np.abs(2 * np.arange(1, slices + 1) - slices - 1) / (2 * slices - 2)
     with np.errstate(divide="ignore"):
         factor = 1 - 0.01 / np.log(1.985 * from_ends)  # 1 in the middle
-    radius = local_radius(roller.profile, from_middle, roller.length, roller.radius)
+    radius = local_radius(roller.profile, x_from_middle, roller.length, roller.radius)
     line_load = load_per_length * factor if edge_riser else load_per_length
     pressure = np.sqrt(line_load * case.modulus / (np.pi * radius))
     fields = {
@@ -129,27 +132,27 @@ def slice_model(case: Case, *, slices: int = 30, tilt: float | None = None, edge
         attrs={"slices": slices, "tilt": tilt},
     )
     for name in ("load_per_length", "half_width", "deflection", "edge_factor", "approach"):
-        result[name].attrs["comment"] = OF_MODEL
-    risen = ", with stress riser" if edge_riser else ""
-    result["pressure"].attrs["comment"] = f"peak of each slice{risen}; {OF_MODEL}"
+        result[name].attrs["comment"] = MODEL_COMMENT
+    riser_comment = ", with stress riser" if edge_riser else ""
+    result["pressure"].attrs["comment"] = f"peak of each slice{riser_comment}; {MODEL_COMMENT}"
     result["approach"].attrs["reference"] = "undeformed bodies, at mid-length"
     result = without_error(result, *fields, "approach")
     return describe(result, "slice model of ISO/TS 16281")
 
 
-# Power of a lamina's load that its risk of fatigue follows: the life exponent 4 of a line contact times the slope 9/8
-# of Weibull's distribution
+# Power of a lamina's load in its risk of fatigue: the life exponent 4 of a line contact times the slope 9/8 of
+# Weibull's distribution
 LIFE_POWER = 9 / 2
-OF_COLUMNS = "from the stated errors of the pressure and the distance of its columns"
+COLUMN_COMMENT = "from the stated errors of the pressure and the distance of its columns"
 
 
 def lamina_factors(result: xr.Dataset, *, laminae: int = 30) -> xr.Dataset:
-    """Factors on the loads of the lamina model that turn their Hertz pressures into the pressures of a solved contact.
+    """Factors on the loads of the lamina model: loads whose Hertz pressures equal those of a solved contact.
 
     Parameters
     ----------
     result : Dataset
-        A result of :func:`contactstudy.solve` for the roller on the inner raceway, or on the outer one.
+        Result of :func:`contactstudy.solve` for the roller on the inner or the outer raceway.
     laminae : int
         Number of laminae; at least 30 in the standard.
 
@@ -157,8 +160,8 @@ def lamina_factors(result: xr.Dataset, *, laminae: int = 30) -> xr.Dataset:
     -------
     Dataset
         Along `slice`: `position` (m, middle, from end I of the body), `width` (m); `load_per_length` (N/m) of the
-        lamina model under the same load and tilt; `hertz_load_per_length` (N/m), the one whose line contact has the
-        solved pressure; `stress_riser`, the latter over the former: ``f_i[k]`` inside, ``f_e[k]`` outside; the errors
+        lamina model under the same load and tilt; `hertz_load_per_length` (N/m), with the solved pressure in line
+        contact; `stress_riser`, the latter over the former: ``f_i[k]`` inside, ``f_e[k]`` outside; the errors
         of these two, from the stated errors of the pressures and the distance of the columns; and `edge_factor`, the
         standard's approximation. The error of the lamina model is not estimated.
 
@@ -172,7 +175,7 @@ def lamina_factors(result: xr.Dataset, *, laminae: int = 30) -> xr.Dataset:
     Within a lamina the pressure varies. Its load is the mean that gives the same life,
     ``(mean of (pi p**2 R / E*)**(9/2))**(2/9)`` with the largest pressure p of each cross-section, so the life does not
     depend on the number of laminae. At a sharp end, where the pressure is singular, the outermost factor is
-    infinite. The factor is NaN where the lamina model has no load; `hertz_load_per_length` is finite there (equations
+    infinite. The factor is NaN where the lamina model has no load; `hertz_load_per_length` is finite (equations
     58 and 59 of ISO/TS 16281, second-hand).
 
     Examples
@@ -198,67 +201,69 @@ def lamina_loads(solution: xr.Dataset, case: Case, laminae: int) -> tuple[xr.Dat
     This error bounds a life, where errors of columns cancel.
     """
     count = checks.count("laminae", laminae, minimum=2)
-    sliced = slice_model(replace(case, load_position=None, tilt=float(solution["tilt"])), slices=count)
+    slice_result = slice_model(replace(case, load_position=None, tilt=float(solution["tilt"])), slices=count)
     start, stop = case.contact_range
-    borders = np.linspace(start, stop, count + 1)
-    load, error, common = _hertz_loads(solution, case, borders)
-    sliced_load = sliced["load_per_length"].values
+    edges = np.linspace(start, stop, count + 1)
+    load, error, common_error = _hertz_loads(solution, case, edges)
+    sliced_load = slice_result["load_per_length"].values
     with np.errstate(divide="ignore", invalid="ignore"):
         riser = np.where(sliced_load > 0, load / sliced_load, np.nan)
         riser_error = np.where(sliced_load > 0, error / sliced_load, np.nan)
     values = {
-        "position": 0.5 * (borders[1:] + borders[:-1]),
+        "position": 0.5 * (edges[1:] + edges[:-1]),
         "width": np.full(count, (stop - start) / count),
         "load_per_length": sliced_load,
         "hertz_load_per_length": load,
         "hertz_load_per_length_error": error,
         "stress_riser": riser,
         "stress_riser_error": riser_error,
-        "edge_factor": sliced["edge_factor"].values,
+        "edge_factor": slice_result["edge_factor"].values,
     }
     labelled = xr.Dataset(
         {name: ("slice", array) for name, array in values.items()}, coords={"slice": np.arange(1, count + 1)}
     )
     for name in ("load_per_length", "edge_factor"):
-        labelled[name].attrs["comment"] = sliced[name].attrs["comment"]
-    estimated = not np.isnan(error).any()
+        labelled[name].attrs["comment"] = slice_result[name].attrs["comment"]
+    has_error = not np.isnan(error).any()
     for name in ("hertz_load_per_length", "stress_riser"):
-        labelled[f"{name}_error"].attrs |= {"comment": OF_COLUMNS} if estimated else {ERROR_KIND: NOT_ESTIMATED}
-    return describe(labelled, "stress riser of every lamina from solved pressures"), common
+        labelled[f"{name}_error"].attrs |= {"comment": COLUMN_COMMENT} if has_error else {ERROR_KIND: NOT_ESTIMATED}
+    return describe(labelled, "stress riser of every lamina from solved pressures"), common_error
 
 
-def _hertz_loads(result: xr.Dataset, case: Case, borders: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Load per length of every lamina whose line contact has the solved pressure, its error, and the common part."""
+def _hertz_loads(result: xr.Dataset, case: Case, edges: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Load per length of every lamina with the solved pressure in line contact, its error, and the common part."""
     pressure = result["pressure"].transpose(dimension_along(result["pressure"], "x"), ...)
     x = dimension_along(pressure, "x")
-    position, top = result[x].values, section_maxima(pressure.values)
-    half = 0.5 * cell_widths(pressure, "x").values
-    middle = case.roller_middle
-    under = np.abs(position - middle) <= 0.5 * case.roller.length
+    position, max_pressure = result[x].values, section_maxima(pressure.values)
+    half_widths = 0.5 * cell_widths(pressure, "x").values
+    mid_length = case.roller_middle
+    mask = np.abs(position - mid_length) <= 0.5 * case.roller.length
     radius = np.full(position.size, case.roller.radius)
-    radius[under] = local_radius(case.roller.profile, position[under] - middle, case.roller.length, case.roller.radius)
-    line = hertz.line_load(1.0, 1.0, case.modulus) * top**2 * radius
-    columns = Columns(np.stack([position - half, position + half], axis=-1), position, line)
-    load, left_open = power_means(columns, borders, LIFE_POWER)
-    common = _of_pressure(result, load, line, columns.overlaps(borders))
-    error = common + left_open
+    radius[mask] = local_radius(
+        case.roller.profile, position[mask] - mid_length, case.roller.length, case.roller.radius
+    )
+    line_loads = hertz.line_load(1.0, 1.0, case.modulus) * max_pressure**2 * radius
+    columns = Columns(np.stack([position - half_widths, position + half_widths], axis=-1), position, line_loads)
+    load, discretisation_error = power_means(columns, edges, LIFE_POWER)
+    common_error = _pressure_errors(result, load, line_loads, columns.overlaps(edges))
+    error = common_error + discretisation_error
     for end, side in ((0, "first"), (-1, "last")):
         if np.isinf(float(result.get(f"peak_pressure_{side}", 0.0))):
-            load[end] = error[end] = common[end] = np.inf
-    return load, error, common
+            load[end] = error[end] = common_error[end] = np.inf
+    return load, error, common_error
 
 
-def _of_pressure(result: xr.Dataset, load: FloatArray, line: FloatArray, weights: FloatArray) -> FloatArray:
-    """Errors of loads per length from the stated errors of the largest pressure on either half."""
+def _pressure_errors(result: xr.Dataset, load: FloatArray, line_loads: FloatArray, weights: FloatArray) -> FloatArray:
+    """Errors of loads per length from the stated errors of the largest pressures of both halves."""
     half = load.size // 2
     errors = []
-    for parts, side, relative in zip(
+    for parts, side, relative_error in zip(
         (slice(load.size - half), slice(half, None)), SIDES, pressure_errors(result), strict=True
     ):
-        endless = np.isinf(float(result.get(f"peak_pressure_{side}", 0.0)))
-        largest = load[parts] if endless else line[weights[parts].any(axis=0)].max()
+        is_infinite = np.isinf(float(result.get(f"peak_pressure_{side}", 0.0)))
+        max_load = load[parts] if is_infinite else line_loads[weights[parts].any(axis=0)].max()
         error = np.zeros(load.size)
         # The load is proportional to the square of the pressure.
-        error[parts] = 2 * relative * np.sqrt(load[parts] * largest)
+        error[parts] = 2 * relative_error * np.sqrt(load[parts] * max_load)
         errors.append(error)
     return np.maximum(*errors)

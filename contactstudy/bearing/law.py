@@ -16,13 +16,13 @@ from contactstudy.bearing.energy_spline import EnergySpline, Motion, Nodes
 from contactstudy.checks import FloatArray, factor_to
 from contactstudy.errors import InvalidInputError
 
-Values = float | list[float] | tuple[float, ...] | FloatArray | xr.DataArray  # A number, several, or labelled ones
+Values = float | list[float] | tuple[float, ...] | FloatArray | xr.DataArray  # A number, several, or labelled numbers
 UNITS = {"approach": "m", "tilt": "rad", "normal_load": "N", "moment": "N m"}  # Units of the arguments
 
 
-def broadcast(**values: Values) -> tuple[xr.DataArray, ...]:
-    """Arguments as arrays of the same dimensions: a sequence has a dimension of the argument's name."""
-    labelled = [_labelled(*item) for item in values.items()]
+def broadcast_arguments(**values: Values) -> tuple[xr.DataArray, ...]:
+    """Broadcast arguments; the dimension of a sequence has the argument's name."""
+    labelled = [_label_argument(*item) for item in values.items()]
     for dim in {str(dim) for argument in labelled for dim in argument.dims}:
         indexes = [argument.indexes[dim] for argument in labelled if dim in argument.indexes]
         if any(set(labels) != set(indexes[0]) for labels in indexes):
@@ -39,8 +39,8 @@ def broadcast(**values: Values) -> tuple[xr.DataArray, ...]:
     return tuple(argument.astype(np.float64) for argument in xr.broadcast(*aligned))
 
 
-def _labelled(name: str, value: Values) -> xr.DataArray:
-    """One argument as a DataArray of finite numbers."""
+def _label_argument(name: str, value: Values) -> xr.DataArray:
+    """Return an argument as a DataArray of finite numbers."""
     if isinstance(value, xr.DataArray):
         if (units := value.attrs.get("units")) is not None:
             value = value * factor_to(UNITS[name], f"{name}.attrs['units']", units)
@@ -48,32 +48,32 @@ def _labelled(name: str, value: Values) -> xr.DataArray:
         return value.drop_vars(name, errors="ignore") if name not in value.dims else value
     if np.ndim(value) == 0:
         return xr.DataArray(checks.finite(name, value, UNITS[name]))
-    numbers = checks.coordinates(name, value, UNITS[name])
-    return xr.DataArray(numbers, dims=name, coords={name: numbers})
+    checked = checks.coordinates(name, value, UNITS[name])
+    return xr.DataArray(checked, dims=name, coords={name: checked})
 
 
 def map_pairs(
     first: xr.DataArray, second: xr.DataArray, function: Callable[[float, float], tuple[float, float]]
 ) -> tuple[xr.DataArray, xr.DataArray]:
-    """Two values of a function at every pair of arguments."""
+    """Map a function of two values over the pairs of arguments."""
     values = np.vectorize(function, otypes="dd")(first.values, second.values)
     return first.copy(data=values[0]), second.copy(data=values[1])
 
 
-def with_position_errors(motion: xr.Dataset) -> xr.Dataset:
+def add_position_errors(motion: xr.Dataset) -> xr.Dataset:
     """Add the errors of approach and tilt, from the errors of load and moment, to a motion under a load."""
     names = ("normal_stiffness", "coupling_stiffness", "tilting_stiffness")
     normal, coupling, tilting = (np.abs(motion[name]) for name in names)
-    size = np.abs(motion["normal_stiffness"] * motion["tilting_stiffness"] - motion["coupling_stiffness"] ** 2)
+    determinant = np.abs(motion["normal_stiffness"] * motion["tilting_stiffness"] - motion["coupling_stiffness"] ** 2)
     load, moment = motion["normal_load_error"], motion["moment_error"]
     errors = {
-        "approach_error": (tilting * load + coupling * moment) / size,
-        "tilt_error": (coupling * load + normal * moment) / size,
+        "approach_error": (tilting * load + coupling * moment) / determinant,
+        "tilt_error": (coupling * load + normal * moment) / determinant,
     }
     return motion.assign({name: name_array(name, error.drop_attrs()) for name, error in errors.items()})
 
 
-def dataset(approach: xr.DataArray, tilt: xr.DataArray, motion: Motion, errors: FloatArray) -> xr.Dataset:
+def label_motion(approach: xr.DataArray, tilt: xr.DataArray, motion: Motion, errors: FloatArray) -> xr.Dataset:
     """Label loads and stiffness at pairs of approach and tilt; `errors` of load and moment are over the load."""
     values = {
         "approach": approach.values,
@@ -92,10 +92,10 @@ def dataset(approach: xr.DataArray, tilt: xr.DataArray, motion: Motion, errors: 
     return without_error(labelled, "normal_stiffness", "coupling_stiffness", "tilting_stiffness")
 
 
-FEWEST = 5  # Least number of approaches and of tilts
-EDGE = 1e-9  # Rounding of an argument over the range of the table
-MET = 1e-7  # Residual of load and moment, over load and load times length, at a position
-# Variables of a table that the law needs
+MIN_NODES = 5  # Minimum number of approaches and of tilts
+ROUNDING = 1e-9  # Rounding of an argument over the range of the table
+RESIDUAL_TOLERANCE = 1e-7  # Maximum residual of load and moment, over load and load times length
+# Required variables of a table
 NEEDED = ("normal_load", "moment", "strain_energy", "relative_load_error", "relative_moment_error", "contact_length")
 
 
@@ -123,12 +123,12 @@ class ContactLaw:
     --------
     >>> approach, tilt = np.geomspace(1e-6, 4e-6, 5), np.linspace(-1e-3, 1e-3, 5)
     >>> delta, theta = np.meshgrid(approach, tilt, indexing="ij")
-    >>> both = ("approach", "tilt")  # two springs of 10 N/um, 1 mm to either side of the middle
+    >>> dims = ("approach", "tilt")  # two springs of 10 N/um, 1 mm to either side of mid-length
     >>> springs = xr.Dataset(
     ...     {
-    ...         "normal_load": (both, 2e7 * delta),
-    ...         "moment": (both, 20.0 * theta),
-    ...         "strain_energy": (both, 1e7 * delta**2 + 10.0 * theta**2),
+    ...         "normal_load": (dims, 2e7 * delta),
+    ...         "moment": (dims, 20.0 * theta),
+    ...         "strain_energy": (dims, 1e7 * delta**2 + 10.0 * theta**2),
     ...         "relative_load_error": 0.0,
     ...         "relative_moment_error": 0.0,
     ...         "contact_length": 2e-3,
@@ -138,8 +138,8 @@ class ContactLaw:
     >>> law = ContactLaw(springs)
     >>> round(float(law.at(2e-6, 5e-4).normal_load), 1)
     40.0
-    >>> found = law.under(normal_load=40.0, moment=0.01)
-    >>> round(1e6 * float(found.approach), 2), round(1e3 * float(found.tilt), 2)
+    >>> motion = law.under(normal_load=40.0, moment=0.01)
+    >>> round(1e6 * float(motion.approach), 2), round(1e3 * float(motion.tilt), 2)
     (2.0, 0.5)
     """
 
@@ -148,8 +148,8 @@ class ContactLaw:
     def __post_init__(self) -> None:
         require(self.table, *NEEDED, argument="table")
         for name in ("approach", "tilt"):
-            if self.table.sizes.get(name, 0) < FEWEST:
-                raise InvalidInputError("table", dict(self.table.sizes), f"one with {FEWEST} or more along {name}")
+            if self.table.sizes.get(name, 0) < MIN_NODES:
+                raise InvalidInputError("table", dict(self.table.sizes), f"one with {MIN_NODES} or more along {name}")
 
     def __repr__(self) -> str:
         return f"ContactLaw({', '.join(f'{name} {text}' for name, text in self._rows())})"
@@ -160,17 +160,17 @@ class ContactLaw:
     def _rows(self) -> Iterator[tuple[str, str]]:
         """Ranges of the table, and its errors."""
         low, high = (1e6 * end for end in self._range("approach"))
-        least, most = (1e3 * end for end in self._range("tilt"))
+        min_tilt, max_tilt = (1e3 * end for end in self._range("tilt"))
         loads = self.table["normal_load"]
         errors = 100 * self.table["relative_load_error"].broadcast_like(loads)
-        worst = errors[errors.argmax(...)]
+        worst_node = errors[errors.argmax(...)]
         yield "approach", f"{low:.3g} to {high:.3g} um"
-        yield "tilt", f"{least:.3g} to {most:.3g} mrad"
+        yield "tilt", f"{min_tilt:.3g} to {max_tilt:.3g} mrad"
         yield "load", f"{float(loads.min()):.3g} to {float(loads.max()):.3g} N"
         yield (
             "error of the load",
             f"{float(errors.median()):.1g} % by the median, up to {float(errors.max()):.1g} % at "
-            f"{1e6 * float(worst.approach):.3g} um and {1e3 * float(worst.tilt):.3g} mrad",
+            f"{1e6 * float(worst_node.approach):.3g} um and {1e3 * float(worst_node.tilt):.3g} mrad",
         )
 
     def at(self, approach: Values, tilt: Values = 0.0) -> xr.Dataset:
@@ -179,9 +179,9 @@ class ContactLaw:
         Parameters
         ----------
         approach : float, sequence or DataArray
-            How far the roller is pressed down at its mid-length, metres, relative to the table's reference.
+            Approach at the roller's mid-length, metres, relative to the table's reference.
         tilt : float, sequence or DataArray
-            Radians, positive if larger x is pressed deeper. Two sequences give a table, DataArrays are paired along
+            Radians, positive if the end at larger x is deeper. Two sequences give a table; DataArrays are paired along
             their common dimensions.
 
         Returns
@@ -196,20 +196,20 @@ class ContactLaw:
         InvalidInputError
             Outside the table.
         """
-        delta, theta = broadcast(approach=approach, tilt=tilt)
+        delta, theta = broadcast_arguments(approach=approach, tilt=tilt)
         for name, values in (("approach", delta), ("tilt", theta)):
             low, high = self._range(name)
-            room = EDGE * (high - low)
-            outside = values.values[(values.values < low - room) | (values.values > high + room)]
-            if outside.size:
+            tolerance = ROUNDING * (high - low)
+            outer_values = values.values[(values.values < low - tolerance) | (values.values > high + tolerance)]
+            if outer_values.size:
                 raise InvalidInputError(
-                    name, float(outside[0]), f"in the table, from {low:g} to {high:g} {UNITS[name]}"
+                    name, float(outer_values[0]), f"in the table, from {low:g} to {high:g} {UNITS[name]}"
                 )
         pairs = delta.values, theta.values
-        return dataset(delta, theta, self.motion(*pairs), self.errors(*pairs))
+        return label_motion(delta, theta, self.motion(*pairs), self.errors(*pairs))
 
     def under(self, normal_load: Values, moment: Values = 0.0) -> xr.Dataset:
-        """Approach and tilt under a load and a moment, with the stiffness there.
+        """Approach and tilt under a load and a moment, with the stiffness.
 
         Parameters
         ----------
@@ -224,77 +224,77 @@ class ContactLaw:
         Raises
         ------
         InvalidInputError
-            If they belong to an approach and a tilt outside the table.
+            If approach and tilt are outside the table.
         """
-        load, turn = broadcast(normal_load=normal_load, moment=moment)
-        delta, theta = map_pairs(load, turn, self.position)
+        load, turn = broadcast_arguments(normal_load=normal_load, moment=moment)
+        delta, theta = map_pairs(load, turn, self.solve_position)
         pairs = delta.values, theta.values
-        return with_position_errors(dataset(delta, theta, self.motion(*pairs), self.errors(*pairs)))
+        return add_position_errors(label_motion(delta, theta, self.motion(*pairs), self.errors(*pairs)))
 
     def motion(self, approach: FloatArray, tilt: FloatArray) -> Motion:
-        """Load, moment and stiffness as plain arrays, at pairs inside the table: outside, the law extrapolates."""
+        """Load, moment and stiffness as arrays, at pairs inside the table; the law extrapolates outside."""
         return self._spline(np.asarray(approach, dtype=np.float64), np.asarray(tilt, dtype=np.float64))
 
-    def position(self, load: float, moment: float) -> tuple[float, float]:
+    def solve_position(self, load: float, moment: float) -> tuple[float, float]:
         """Approach and tilt under one load (N) and one moment (N m)."""
         from scipy.optimize import least_squares
 
         load = checks.positive("normal_load", load, "N")
-        (low, high), (least, most) = self._range("approach"), self._range("tilt")
+        (low, high), (min_tilt, max_tilt) = self._range("approach"), self._range("tilt")
         length, nodes = float(self.table["contact_length"]), self._nodes
         distance = np.hypot(nodes.load / load - 1, (nodes.moment - moment) / (load * length))
         line, column = np.unravel_index(int(distance.argmin()), distance.shape)
-        size = np.array([high, most - least])
+        scale = np.array([high, max_tilt - min_tilt])
 
         def residual(scaled: FloatArray) -> FloatArray:
-            motion = self.motion(*(scaled * size))
+            motion = self.motion(*(scaled * scale))
             return np.array([motion.load / load - 1, (motion.moment - moment) / (load * length)])
 
-        def slopes(scaled: FloatArray) -> FloatArray:
-            motion = self.motion(*(scaled * size))
-            turned = np.array([motion.coupling, motion.tilting]) / length
-            return np.asarray(np.array([[motion.normal, motion.coupling], turned]) / load * size)
+        def jacobian(scaled: FloatArray) -> FloatArray:
+            motion = self.motion(*(scaled * scale))
+            moment_row = np.array([motion.coupling, motion.tilting]) / length
+            return np.asarray(np.array([[motion.normal, motion.coupling], moment_row]) / load * scale)
 
-        bounds = (np.array([low, least]) / size, np.array([high, most]) / size)
-        start = np.array([nodes.approaches[line], nodes.tilts[column]]) / size
-        start = np.clip(start, bounds[0] + EDGE, bounds[1] - EDGE)
-        solution = least_squares(residual, start, slopes, bounds=bounds, xtol=1e-14, ftol=1e-14, gtol=1e-14)
-        if np.abs(solution.fun).max() > MET:
+        bounds = (np.array([low, min_tilt]) / scale, np.array([high, max_tilt]) / scale)
+        start = np.array([nodes.approaches[line], nodes.tilts[column]]) / scale
+        start = np.clip(start, bounds[0] + ROUNDING, bounds[1] - ROUNDING)
+        solution = least_squares(residual, start, jacobian, bounds=bounds, xtol=1e-14, ftol=1e-14, gtol=1e-14)
+        if np.abs(solution.fun).max() > RESIDUAL_TOLERANCE:
             raise InvalidInputError(
                 "normal_load, moment",
                 (load, moment),
                 f"of a contact in the table, whose loads go from {nodes.load.min():.4g} to {nodes.load.max():.4g} N "
-                f"and tilts from {least:g} to {most:g} rad",
+                f"and tilts from {min_tilt:g} to {max_tilt:g} rad",
                 "make the table for larger approaches or tilts",
             )
-        delta, theta = solution.x * size
+        delta, theta = solution.x * scale
         return float(delta), float(theta)
 
     def _range(self, name: str) -> tuple[float, float]:
         """First and last approach or tilt."""
         return float(self.table[name][0]), float(self.table[name][-1])
 
-    def _at_nodes(self, name: str) -> FloatArray:
+    def _node_values(self, name: str) -> FloatArray:
         """Values (approach, tilt) of a variable of the table."""
         return self.table[name].broadcast_like(self.table["normal_load"]).transpose("approach", "tilt").values
 
     @cached_property
     def _nodes(self) -> Nodes:
-        fields = (self._at_nodes(name) for name in ("strain_energy", "normal_load", "moment"))
+        fields = (self._node_values(name) for name in ("strain_energy", "normal_load", "moment"))
         return Nodes(self.table["approach"].values, self.table["tilt"].values, *fields)
 
     @cached_property
     def _spline(self) -> EnergySpline:
-        return EnergySpline.fitted(self._nodes)
+        return EnergySpline.fit(self._nodes)
 
     def errors(self, approach: FloatArray, tilt: FloatArray) -> FloatArray:
-        """Errors of load and moment over the load, at pairs inside the table: the largest of the nodes around each."""
+        """Errors of load and moment over the load, at pairs inside the table: the largest of the four nearest nodes."""
         sides = []
         for name, values in (("approach", approach), ("tilt", tilt)):
-            lines = self.table[name].values
-            right = np.clip(np.searchsorted(lines, values), 1, lines.size - 1)
-            sides.append((right - 1, right))
-        errors = [self._at_nodes(name) for name in ("relative_load_error", "relative_moment_error")]
+            nodes = self.table[name].values
+            upper = np.clip(np.searchsorted(nodes, values), 1, nodes.size - 1)
+            sides.append((upper - 1, upper))
+        errors = [self._node_values(name) for name in ("relative_load_error", "relative_moment_error")]
         load, moment = (np.max([error[i, j] for i in sides[0] for j in sides[1]], axis=0) for error in errors)
         return np.array([load, float(self.table["contact_length"]) * moment])
 
@@ -306,7 +306,7 @@ class Raceways:
     Parameters
     ----------
     inner, outer : ContactLaw
-        Of the same roller on either raceway, with x in the same direction.
+        Laws of the same roller on either raceway, with x in the same direction.
 
     Raises
     ------
@@ -315,9 +315,9 @@ class Raceways:
 
     Notes
     -----
-    Load and moment about mid-length are the same in both contacts, as nothing else acts on the roller: no centrifugal
-    force, no flange. Approaches and tilts add up to the motion of the outer raceway relative to the inner one. Each
-    contact deforms an elastic roller as if the other were absent.
+    Load and moment about mid-length are equal in both contacts, without centrifugal force and flange. Approaches
+    and tilts add up to the motion of the outer raceway relative to the inner raceway. The contacts deform an elastic
+    roller independently.
 
     Examples
     --------
@@ -326,7 +326,7 @@ class Raceways:
     >>> roller = cs.Roller(radius=5e-3, length=0.3e-3, profile=cs.profiles.FullCrown(crown_radius=0.1))
     >>> case = cs.Case(body=cs.HalfSpace(material=steel), roller=roller, load=30.0)
     >>> law = cs.bearing.contact_law(case, np.linspace(-2e-4, 2e-4, 5), 1e-6 * np.linspace(1.0, 1.8, 5), accuracy=0.1)
-    >>> raceways = Raceways(law, law)  # of two equal contacts each takes half
+    >>> raceways = Raceways(law, law)  # two equal contacts have equal approaches
     >>> round(float(raceways.at(2.6e-6).normal_load / law.at(1.3e-6).normal_load), 6)
     1.0
     """
@@ -341,34 +341,37 @@ class Raceways:
     def at(self, approach: Values, tilt: Values = 0.0) -> xr.Dataset:
         """Load, moment and stiffness at an approach and a tilt of one raceway against the other.
 
-        As :meth:`ContactLaw.at`, with the shares of the contacts in the result: `inner_approach`, `inner_tilt`,
+        As :meth:`ContactLaw.at`; the result contains the motions of the contacts: `inner_approach`, `inner_tilt`,
         `outer_approach` and `outer_tilt`.
 
         Raises
         ------
         InvalidInputError
-            If either contact would leave its table.
+            If either contact is outside its table.
         """
-        delta, theta = broadcast(approach=approach, tilt=tilt)
-        inner = map_pairs(delta, theta, self._inner_share)
-        return self._dataset(inner, (delta - inner[0], theta - inner[1]))
+        delta, theta = broadcast_arguments(approach=approach, tilt=tilt)
+        inner = map_pairs(delta, theta, self._solve_inner_position)
+        return self._label_series(inner, (delta - inner[0], theta - inner[1]))
 
     def under(self, normal_load: Values, moment: Values = 0.0) -> xr.Dataset:
-        """Approach and tilt of the raceways under a load and a moment, as :meth:`ContactLaw.under`, with the shares.
+        """Approach and tilt of the raceways under a load and a moment, as :meth:`ContactLaw.under`.
 
         Raises
         ------
         InvalidInputError
-            If either contact would leave its table.
+            If either contact is outside its table.
         """
-        load, turn = broadcast(normal_load=normal_load, moment=moment)
-        motion = self._dataset(map_pairs(load, turn, self.inner.position), map_pairs(load, turn, self.outer.position))
-        return with_position_errors(motion)
+        load, turn = broadcast_arguments(normal_load=normal_load, moment=moment)
+        motion = self._label_series(
+            map_pairs(load, turn, self.inner.solve_position),
+            map_pairs(load, turn, self.outer.solve_position),
+        )
+        return add_position_errors(motion)
 
-    def _dataset(
+    def _label_series(
         self, inner: tuple[xr.DataArray, xr.DataArray], outer: tuple[xr.DataArray, xr.DataArray]
     ) -> xr.Dataset:
-        """Label the series of two contacts at their own approaches and tilts."""
+        """Label the series of two contacts at given approaches and tilts."""
         pairs = [(self.inner, *inner), (self.outer, *outer)]
         contacts = [law.motion(delta.values, theta.values) for law, delta, theta in pairs]
         # Compliances add up.
@@ -378,16 +381,16 @@ class Raceways:
         stiffness = np.linalg.inv(sum(np.linalg.inv(matrix.reshape(*matrix.shape[:-1], 2, 2)) for matrix in matrices))
         first = contacts[0]
         motion = Motion(first.load, first.moment, stiffness[..., 0, 0], stiffness[..., 0, 1], stiffness[..., 1, 1])
-        # A softer contact decides; the larger error is a bound for either.
+        # The larger error bounds the error of either contact.
         errors = np.maximum(*(law.errors(delta.values, theta.values) for law, delta, theta in pairs))
-        labelled = dataset(inner[0] + outer[0], inner[1] + outer[1], motion, errors)
-        for name, shares in (("inner", inner), ("outer", outer)):
-            for kind, share in zip(("approach", "tilt"), shares, strict=True):
-                labelled[f"{name}_{kind}"] = (share.dims, share.values)
+        labelled = label_motion(inner[0] + outer[0], inner[1] + outer[1], motion, errors)
+        for name, motions in (("inner", inner), ("outer", outer)):
+            for kind, values in zip(("approach", "tilt"), motions, strict=True):
+                labelled[f"{name}_{kind}"] = (values.dims, values.values)
         return describe(labelled)
 
-    def _inner_share(self, approach: float, tilt: float) -> tuple[float, float]:
-        """Approach and tilt of the inner contact at which both carry the same."""
+    def _solve_inner_position(self, approach: float, tilt: float) -> tuple[float, float]:
+        """Solve for the approach and tilt of the inner contact with equal loads and moments in both."""
         from scipy.optimize import least_squares
 
         tables = self.inner.table, self.outer.table
@@ -412,13 +415,13 @@ class Raceways:
             scale = float(np.sqrt(inner.load * outer.load))
             return np.array([inner.load - outer.load, (inner.moment - outer.moment) / length]) / scale
 
-        start = np.clip(0.5 * np.array([approach, tilt]), bounds[0] + EDGE * size, bounds[1] - EDGE * size)
+        start = np.clip(0.5 * np.array([approach, tilt]), bounds[0] + ROUNDING * size, bounds[1] - ROUNDING * size)
         solution = least_squares(residual, start / size, bounds=bounds / size, xtol=1e-14, ftol=1e-14, gtol=1e-14)
-        if np.abs(solution.fun).max() > MET:
+        if np.abs(solution.fun).max() > RESIDUAL_TOLERANCE:
             raise InvalidInputError(
                 "approach, tilt",
                 (approach, tilt),
-                "such that either contact's share is in its table",
+                "such that either contact is in its table",
                 "make the tables for more approaches or tilts",
             )
         delta, theta = solution.x * size

@@ -13,7 +13,7 @@ from contactstudy.arrays.variables import describe
 from contactstudy.bearing.laminae import LIFE_POWER, lamina_loads
 from contactstudy.bodies.models import HalfSpace
 from contactstudy.case.case import Case
-from contactstudy.case.magnitudes import warn_doubtful_values
+from contactstudy.case.magnitudes import warn_of_values
 from contactstudy.case.motion import Sliding
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
@@ -22,14 +22,14 @@ from contactstudy.solution import solve
 MODELS = ("slices", "slices with riser", "half-space", "free ends")  # Models of the pressure of a lamina
 RACEWAYS = ("inner", "outer")
 
-TURNING = 4.0  # Power of the mean of a raceway that turns against the load; of one that stands it is :data:`LIFE_POWER`
-# Factor lambda nu of ISO 281's dynamic ratings for radial roller bearings, second-hand: it allows for edge stress,
-# which a lamina model has in it
-REDUCTION = 0.83
+TURNING_POWER = 4.0  # Power of the mean for the turning raceway; for the other raceway LIFE_POWER
+# Factor lambda nu of ISO 281's dynamic ratings for radial roller bearings, second-hand: an allowance for edge stress,
+# which the lamina model contains
+RATING_REDUCTION = 0.83
 MILLION = 1e6
 
 # Comment of the errors: the models of slices neglect the ends, and their error is not estimated
-OF_MODELS = "from the stated errors of the pressures; NaN for the models of slices"
+ERROR_COMMENT = "from the stated errors of the pressures; NaN for the models of slices"
 
 
 def roller_ratings(dynamic_rating: float, rollers: int, gamma: float, *, rows: int = 1) -> tuple[float, float]:
@@ -38,11 +38,11 @@ def roller_ratings(dynamic_rating: float, rollers: int, gamma: float, *, rows: i
     Parameters
     ----------
     dynamic_rating : float
-        Basic dynamic radial load rating ``C_r`` of ISO 281, as catalogues give it, N.
+        Basic dynamic radial load rating ``C_r`` of ISO 281, from the catalogue, N.
     rollers : int
-        Number Z in a row.
+        Number Z of rollers in a row.
     gamma : float
-        Roller diameter times the cosine of the contact angle, which is taken as 0, over the pitch diameter.
+        Roller diameter over pitch diameter, for a contact angle of 0.
     rows : int
         Number of rows.
 
@@ -59,7 +59,7 @@ def roller_ratings(dynamic_rating: float, rollers: int, gamma: float, *, rows: i
     Warns
     -----
     MagnitudeWarning
-        If the rating is of a doubtful size.
+        If the rating lies outside its usual range.
 
     Notes
     -----
@@ -73,12 +73,12 @@ def roller_ratings(dynamic_rating: float, rollers: int, gamma: float, *, rows: i
     """
     rating = checks.positive("dynamic_rating", dynamic_rating, "N")
     count, rows = checks.count("rollers", rollers), checks.count("rows", rows)
-    part = checks.positive("gamma", gamma)
-    if part >= 1:
-        raise InvalidInputError("gamma", part, "below 1, roller diameter over pitch diameter")
-    warn_doubtful_values(dynamic_rating=rating)
-    ratio = 1.038 * ((1 - part) / (1 + part)) ** (143 / 108)
-    base = rating / (REDUCTION * count * rows ** (7 / 9))
+    diameter_ratio = checks.positive("gamma", gamma)
+    if diameter_ratio >= 1:
+        raise InvalidInputError("gamma", diameter_ratio, "below 1, roller diameter over pitch diameter")
+    warn_of_values(dynamic_rating=rating)
+    ratio = 1.038 * ((1 - diameter_ratio) / (1 + diameter_ratio)) ** (143 / 108)
+    base = rating / (RATING_REDUCTION * count * rows ** (7 / 9))
     inner = base / 0.378 * (1 + ratio**LIFE_POWER) ** (1 / LIFE_POWER)
     outer = base / 0.364 * (1 + ratio**-LIFE_POWER) ** (1 / LIFE_POWER)
     return inner, outer
@@ -99,13 +99,13 @@ def reference_life(
     Parameters
     ----------
     inner, outer : Case or sequence of Case
-        Every loaded roller on either raceway, each with its load and tilt; a single Case stands for all rollers. The
-        radius of its roller is that relative to the raceway: ``D (1 - gamma) / 2`` inside, ``D (1 + gamma) / 2``
+        Loaded rollers on either raceway, with load and tilt; a single Case represents all rollers. The radius of its
+        roller is that relative to the raceway: ``D (1 - gamma) / 2`` inside, ``D (1 + gamma) / 2``
         outside.
     ratings : tuple of float
         Dynamic load ratings ``Q_ci`` and ``Q_ce`` of a roller, N, see :func:`roller_ratings`.
     rollers : int, optional
-        Number of rollers beside a sequence, the unloaded ones included. Default: all are given.
+        Number of rollers, including unloaded rollers, with a sequence. Default: the length of the sequence.
     turning : {"inner", "outer"}
         Raceway that turns against the load.
     laminae, accuracy
@@ -114,17 +114,17 @@ def reference_life(
     Returns
     -------
     Dataset
-        Along `model`: `reference_life` (revolutions that 9 of 10 bearings survive), and along `raceway` too
+        Along `model`: `reference_life` (revolutions that 9 of 10 bearings survive), and along `raceway`
         `raceway_life`. The models are "slices" (no edge factor), "slices with riser" (the standard's approximation),
         "half-space" (body and roller as half-spaces, under the same load and moment), and "free ends" (the Case).
         Along `raceway`, `roller` and `slice` the factors ``f_i[j, k]`` and ``f_e[j, k]``, `stress_riser`, and the
         dynamic equivalent load per lamina, `lamina_equivalent_load` (N). Each has its ``_error`` from the stated errors
-        of the pressures; it is NaN of both models of slices, whose error is not known.
+        of the pressures; it is NaN for both models of slices, whose error is unknown.
 
     Raises
     ------
     InvalidInputError
-        If a Case is none, the raceways have different numbers of rollers, or an argument is out of range.
+        If a case is no Case, the raceways have different numbers of rollers, or an argument is out of range.
 
     Notes
     -----
@@ -132,7 +132,7 @@ def reference_life(
     n**(-7/9)`` rates one of n laminae and ``q_ke = (1/Z sum over j of (f[j, k] q[j, k])**s)**(1/s)`` is its dynamic
     equivalent load, s = 4 on the raceway that turns against the load and 9/2 on the other: equations 56, 57 and 61 to
     65 of ISO/TS 16281, second-hand; they agree with Lundberg and Palmgren's theory. A singular pressure has life 0.
-    The loads of the rollers are the caller's. Contamination, lubrication and reliability other than 0.9 are not in it.
+    The model excludes contamination, lubrication and a reliability other than 0.9.
 
     Examples
     --------
@@ -144,45 +144,45 @@ def reference_life(
     >>> bool(life.sel(model="free ends") > life.sel(model="half-space"))
     True
     """
-    cases = {name: _cases(name, argument) for name, argument in zip(RACEWAYS, (inner, outer), strict=True)}
+    cases = {name: _check_cases(name, argument) for name, argument in zip(RACEWAYS, (inner, outer), strict=True)}
     if len(cases["inner"]) != len(cases["outer"]):
         raise InvalidInputError("outer", len(cases["outer"]), f"as many rollers as inside, {len(cases['inner'])}")
     loaded = len(cases["inner"])
-    number = loaded if rollers is None else checks.count("rollers", rollers, minimum=loaded)
+    roller_count = loaded if rollers is None else checks.count("rollers", rollers, minimum=loaded)
     if isinstance(inner, Case):
-        number = 1  # equal rollers: the mean does not depend on their number
+        roller_count = 1  # equal rollers: the mean does not depend on their number
     checks.known_name("turning", turning, RACEWAYS)
-    rated = checks.coordinates("ratings", ratings, "N")
-    if rated.size != len(RACEWAYS) or (rated <= 0).any():
-        raise InvalidInputError("ratings", rated.tolist(), "two positive numbers, Q_ci and Q_ce (N)")
+    checked_ratings = checks.coordinates("ratings", ratings, "N")
+    if checked_ratings.size != len(RACEWAYS) or (checked_ratings <= 0).any():
+        raise InvalidInputError("ratings", checked_ratings.tolist(), "two positive numbers, Q_ci and Q_ce (N)")
     # Arrays (model, raceway, roller, lamina).
-    rollers_loads = [[_loads_of_roller(case, laminae, accuracy) for case in cases[name]] for name in RACEWAYS]
+    rollers_loads = [[_solve_roller_loads(case, laminae, accuracy) for case in cases[name]] for name in RACEWAYS]
     loads, errors, common, risers, riser_errors = np.array(rollers_loads).transpose(2, 3, 0, 1, 4)
     count = loads.shape[-1]
-    powers = np.array([TURNING if name == turning else LIFE_POWER for name in RACEWAYS])[:, None]
-    rating = rated[:, None] * count ** (-7 / 9)
+    powers = np.array([TURNING_POWER if name == turning else LIFE_POWER for name in RACEWAYS])[:, None]
+    rating = checked_ratings[:, None] * count ** (-7 / 9)
 
-    def equivalent(roller_loads: FloatArray) -> FloatArray:
-        """Equivalent loads (model, raceway, lamina) of the loads of the rollers."""
+    def equivalent_loads(roller_loads: FloatArray) -> FloatArray:
+        """Equivalent loads (model, raceway, lamina) of the rollers."""
         power = powers[:, None]
-        return np.asarray(((roller_loads**power).sum(axis=2) / number) ** (1 / powers))
+        return np.asarray(((roller_loads**power).sum(axis=2) / roller_count) ** (1 / powers))
 
-    mean, most = equivalent(loads), equivalent(loads + errors)
-    risks = [((equivalent(loaded_by) / rating) ** LIFE_POWER).sum(axis=-1) for loaded_by in (loads, loads + common)]
-    (of_raceways, shortest), (lives, lower) = (
+    mean, upper_mean = equivalent_loads(loads), equivalent_loads(loads + errors)
+    risks = [((equivalent_loads(force) / rating) ** LIFE_POWER).sum(axis=-1) for force in (loads, loads + common)]
+    (raceway_lives, lower_raceway_lives), (lives, lower_lives) = (
         [MILLION * risk ** (-8 / 9) for risk in pair] for pair in (risks, [risk.sum(axis=-1) for risk in risks])
     )
-    endless = np.isinf(mean)
+    is_infinite = np.isinf(mean)
     result = xr.Dataset(
         {
             "reference_life": ("model", lives),
-            "reference_life_error": ("model", lives - lower),
-            "raceway_life": (("model", "raceway"), of_raceways),
-            "raceway_life_error": (("model", "raceway"), of_raceways - shortest),
+            "reference_life_error": ("model", lives - lower_lives),
+            "raceway_life": (("model", "raceway"), raceway_lives),
+            "raceway_life_error": (("model", "raceway"), raceway_lives - lower_raceway_lives),
             "lamina_equivalent_load": (("model", "raceway", "slice"), mean),
             "lamina_equivalent_load_error": (
                 ("model", "raceway", "slice"),
-                np.where(endless, np.inf, most - np.where(endless, 0.0, mean)),
+                np.where(is_infinite, np.inf, upper_mean - np.where(is_infinite, 0.0, mean)),
             ),
             "stress_riser": (("model", "raceway", "roller", "slice"), risers),
             "stress_riser_error": (("model", "raceway", "roller", "slice"), riser_errors),
@@ -196,25 +196,25 @@ def reference_life(
     )
     result.attrs = {"turning": turning, "laminae": count}
     for name in ("reference_life", "raceway_life", "lamina_equivalent_load", "stress_riser"):
-        result[f"{name}_error"].attrs["comment"] = OF_MODELS
+        result[f"{name}_error"].attrs["comment"] = ERROR_COMMENT
     return describe(result, "basic reference rating life from laminae")
 
 
-def _cases(name: str, argument: object) -> list[Case]:
-    """Cases of one raceway."""
+def _check_cases(name: str, argument: object) -> list[Case]:
+    """Return the cases of one raceway as a list."""
     cases = [argument] if isinstance(argument, Case) else list(argument) if isinstance(argument, Sequence) else []
     if not cases or not all(isinstance(case, Case) for case in cases):
         raise InvalidInputError(name, argument, "a Case, or a sequence of a Case per loaded roller")
     return cases
 
 
-def _loads_of_roller(case: Case, laminae: int, accuracy: float) -> FloatArray:
+def _solve_roller_loads(case: Case, laminae: int, accuracy: float) -> FloatArray:
     """Solve for loads of every lamina, N, errors, common part, factors, errors: array (quantity, model, lamina)."""
-    # Friction changes no pressure unless it is coupled; stick and slip would only cost time.
+    # Uncoupled friction does not change the pressure.
     case = case if case.coupled else replace(case, friction=0.0, motion=Sliding())
-    exact = solve(case, stresses=False, accuracy=accuracy)
-    # Models are compared under the same moment: their tilts differ by the compliance of the bodies.
-    position = float(exact["load_position"]) if case.tilt else case.load_position
+    exact_result = solve(case, stresses=False, accuracy=accuracy)
+    # The models have equal moments; their tilts differ by the compliance of the bodies.
+    position = float(exact_result["load_position"]) if case.tilt else case.load_position
     endless = replace(
         case,
         body=HalfSpace(material=case.body.material),
@@ -225,16 +225,24 @@ def _loads_of_roller(case: Case, laminae: int, accuracy: float) -> FloatArray:
     )
     half_space = solve(endless, stresses=False, accuracy=accuracy)
     solved, common = zip(
-        *(lamina_loads(result, model, laminae) for model, result in ((endless, half_space), (case, exact))), strict=True
+        *(lamina_loads(result, model, laminae) for model, result in ((endless, half_space), (case, exact_result))),
+        strict=True,
     )
-    width, plain = solved[1]["width"].values, solved[1]["load_per_length"].values
-    factor, unknown = solved[1]["edge_factor"].values, [np.full_like(plain, np.nan)] * 2
+    width, sliced = solved[1]["width"].values, solved[1]["load_per_length"].values
+    factor, missing = solved[1]["edge_factor"].values, [np.full_like(sliced, np.nan)] * 2
     return np.array(
         [
-            width * np.array([plain, plain * factor, *(factors["hertz_load_per_length"].values for factors in solved)]),
-            width * np.array([*unknown, *(factors["hertz_load_per_length_error"].values for factors in solved)]),
-            width * np.array([*unknown, *common]),
-            [np.ones_like(plain), factor, *(factors["stress_riser"].values for factors in solved)],
-            [*unknown, *(factors["stress_riser_error"].values for factors in solved)],
+            width
+            * np.array(
+                [
+                    sliced,
+                    sliced * factor,
+                    *(factors["hertz_load_per_length"].values for factors in solved),
+                ]
+            ),
+            width * np.array([*missing, *(factors["hertz_load_per_length_error"].values for factors in solved)]),
+            width * np.array([*missing, *common]),
+            [np.ones_like(sliced), factor, *(factors["stress_riser"].values for factors in solved)],
+            [*missing, *(factors["stress_riser_error"].values for factors in solved)],
         ]
     )

@@ -13,10 +13,10 @@ import xarray as xr
 
 from contactstudy import checks
 from contactstudy.arrays.variables import describe, numbers_in_si
-from contactstudy.bearing.energy_spline import EnergySpline, Nodes, fit_errors
-from contactstudy.bearing.law import FEWEST, ContactLaw
-from contactstudy.case.case import LARGEST_TILT, Case
-from contactstudy.case.magnitudes import warn_doubtful
+from contactstudy.bearing.energy_spline import EnergySpline, Nodes, estimate_fit_errors
+from contactstudy.bearing.law import MIN_NODES, ContactLaw
+from contactstudy.case.case import MAX_TILT, Case
+from contactstudy.case.magnitudes import warn_of_magnitudes
 from contactstudy.checks import FloatArray
 from contactstudy.contact.normal.contact import Contact
 from contactstudy.contact.refinement.refined_contact import POWER, refine_contact, search_load
@@ -25,7 +25,7 @@ from contactstudy.errors import InvalidInputError, WindowError
 
 LOGGER = logging.getLogger(__name__)
 
-MIRRORED = 1e-9  # Difference of mirror images over the length, or over the drop
+MIRRORED = 1e-9  # Maximum difference of mirror images over the length, or over the drop
 
 
 class Node(NamedTuple):
@@ -37,36 +37,36 @@ class Node(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Presser:
-    """Presses the roller of a case to given approaches and tilts."""
+class ContactSolver:
+    """Solves the contact of a case at given loads or approaches, and tilts."""
 
     case: Case
     accuracy: float  # of the peak pressure
     tolerance: float  # of each contact's iteration
 
-    def loaded(self, load: float, tilt: float) -> Contact:
+    def solve_at_load(self, load: float, tilt: float) -> Contact:
         """Return the contact under a load."""
-        with _refused(load, tilt):
+        with _name_unsolvable_contact(load, tilt):
             case = replace(self.case, load=load, max_pressure=None, tilt=tilt)
             return refine_contact(case, self.accuracy, self.tolerance).contact
 
-    def pressed(self, approach: float, tilt: float, load: float) -> Node:
+    def solve_at_approach(self, approach: float, tilt: float, load: float) -> Node:
         """Load, moment about mid-length and strain energy at an approach, from a first guess of the load."""
-        with _refused(load, tilt):
+        with _name_unsolvable_contact(load, tilt):
             solution = search_load(replace(self.case, tilt=tilt), approach, load, self.accuracy, self.tolerance)
         contact = solution.refined.contact
         contact.warn_unless_converged()
         grid = contact.shape.grid
         forces = grid.weights * contact.pressure * grid.cell_area
-        # In the contact the surfaces move apart by approach less gap.
-        sunk = np.where(contact.pressure > 0, contact.approach - contact.shape.gap.values, 0.0)
+        # In the contact the normal displacement is approach less gap.
+        normal_displacement = np.where(contact.pressure > 0, contact.approach - contact.shape.gap.values, 0.0)
         moment = float((forces * (grid.x[:, None] - self.case.roller_middle)).sum())
-        return Node(float(forces.sum()), moment, 0.5 * float((forces * sunk).sum()))
+        return Node(float(forces.sum()), moment, 0.5 * float((forces * normal_displacement).sum()))
 
 
 @contextmanager
-def _refused(load: float, tilt: float) -> Iterator[None]:
-    """Say which contact of the law cannot be solved."""
+def _name_unsolvable_contact(load: float, tilt: float) -> Iterator[None]:
+    """Name the contact of the law without a solution."""
     try:
         yield
     except (InvalidInputError, WindowError) as error:
@@ -78,25 +78,27 @@ def _refused(load: float, tilt: float) -> Iterator[None]:
         ) from error
 
 
-def solved_nodes(presser: Presser, approaches: FloatArray, tilts: FloatArray) -> Nodes:
-    """Contacts at every pair; negative tilts by reflection if roller and body are mirror images."""
-    reflected = _mirror_images(presser) and bool(np.allclose(tilts, -tilts[::-1], rtol=0, atol=MIRRORED * tilts[-1]))
+def solve_nodes(solver: ContactSolver, approaches: FloatArray, tilts: FloatArray) -> Nodes:
+    """Solve the contacts at every pair; negative tilts by reflection if roller and body are symmetric."""
+    reflected = _is_symmetric(solver) and bool(np.allclose(tilts, -tilts[::-1], rtol=0, atol=MIRRORED * tilts[-1]))
     columns = [index for index, tilt in enumerate(tilts) if not reflected or tilt >= -MIRRORED * tilts[-1]]
     values = np.full((3, approaches.size, tilts.size), np.nan)
-    level = min(columns, key=lambda index: abs(tilts[index]))
+    start_column = min(columns, key=lambda index: abs(tilts[index]))
     LOGGER.info(
         "%d contacts at %d approaches and %d tilts", len(columns) * approaches.size, approaches.size, len(columns)
     )
     # Each tilt begins with the loads of the one before it, from the least on.
-    for index in sorted(columns, key=lambda index: abs(index - level)):
-        neighbour = index + int(np.sign(level - index))
+    for index in sorted(columns, key=lambda index: abs(index - start_column)):
+        neighbour = index + int(np.sign(start_column - index))
         for line in range(approaches.size - 1, -1, -1):
             guess = values[0, line, neighbour]
-            if index == level:  # from the next larger approach, or the load of the case
-                guess = presser.case.normal_load
+            if index == start_column:  # from the next larger approach, or the load of the case
+                guess = solver.case.normal_load
                 if line + 1 < approaches.size:
-                    guess = values[0, line + 1, level] * (approaches[line] / approaches[line + 1]) ** POWER
-            values[:, line, index] = presser.pressed(float(approaches[line]), float(tilts[index]), float(guess))
+                    guess = values[0, line + 1, start_column] * (approaches[line] / approaches[line + 1]) ** POWER
+            values[:, line, index] = solver.solve_at_approach(
+                float(approaches[line]), float(tilts[index]), float(guess)
+            )
             LOGGER.info(
                 "approach %.3g m, tilt %.3g rad: %.4g N", approaches[line], tilts[index], values[0, line, index]
             )
@@ -106,33 +108,35 @@ def solved_nodes(presser: Presser, approaches: FloatArray, tilts: FloatArray) ->
     return Nodes(approaches, tilts, values[2], values[0], values[1])
 
 
-def _mirror_images(presser: Presser) -> bool:
-    """Whether the halves of roller and body are mirror images."""
-    case, (low, high) = presser.case, presser.case.body.extent
+def _is_symmetric(solver: ContactSolver) -> bool:
+    """Whether roller and body are symmetric about mid-length."""
+    case, (low, high) = solver.case, solver.case.body.extent
     length = case.roller.length
     centred = np.isinf(low) or abs(low + high - 2 * case.roller_middle) <= MIRRORED * length
-    places = 0.5 * length * np.linspace(0.01, 0.99, 50)
-    second_half, first_half = (case.roller.clearance(side * places, np.array([0.0, 1e-2 * length])) for side in (1, -1))
+    offsets = 0.5 * length * np.linspace(0.01, 0.99, 50)
+    second_half, first_half = (
+        case.roller.clearance(side * offsets, np.array([0.0, 1e-2 * length])) for side in (1, -1)
+    )
     return bool(centred) and bool(np.allclose(second_half, first_half, rtol=MIRRORED, atol=0.0))
 
 
-def discretisation_errors(presser: Presser, nodes: Nodes) -> FloatArray:
-    """Differences (load, moment) of finer contacts, at the largest approach without tilt and with the largest one."""
-    # By how much finer the contacts are whose difference from the nodes is stated as discretisation error
-    finer = replace(presser, accuracy=presser.accuracy / 4.0)
-    length = presser.case.contact_length
-    worst = np.zeros(2)
+def estimate_discretisation_errors(solver: ContactSolver, nodes: Nodes) -> FloatArray:
+    """Differences (load, moment) of finer contacts, at the largest approach without tilt and with the largest tilt."""
+    # The discretisation error is the difference to contacts of a quarter of the error.
+    fine_solver = replace(solver, accuracy=solver.accuracy / 4.0)
+    length = solver.case.contact_length
+    errors = np.zeros(2)
     sizes = np.abs(nodes.tilts)
-    # Of two largest ones the last: the first may be its reflection.
+    # The last of equal tilts: the first may be its reflection.
     for index in {int(sizes.argmin()), sizes.size - 1 - int(sizes[::-1].argmax())}:
         load, moment = nodes.load[-1, index], nodes.moment[-1, index]
-        fine = finer.pressed(float(nodes.approaches[-1]), float(nodes.tilts[index]), float(load))
-        worst = np.maximum(worst, [abs(fine.load / load - 1), abs(fine.moment - moment) / (load * length)])
-    return worst
+        fine_node = fine_solver.solve_at_approach(float(nodes.approaches[-1]), float(nodes.tilts[index]), float(load))
+        errors = np.maximum(errors, [abs(fine_node.load / load - 1), abs(fine_node.moment - moment) / (load * length)])
+    return errors
 
 
-# Loads over the case's whose approaches are the ends of the default table, and how many lines it has
-LOADS, DEFAULT_APPROACHES = (0.03, 1.5), 8
+# Loads, over the case's load, of the first and last default approach, and number of approaches
+LOAD_RANGE, APPROACH_COUNT = (0.03, 1.5), 8
 
 
 def contact_law(
@@ -148,28 +152,28 @@ def contact_law(
     Parameters
     ----------
     case : Case
-        Roller and body; its load sets the default approaches. Its own tilt is 0.
+        Roller and body; its load defines the default approaches; without a tilt.
     tilts : sequence of float
-        Five or more, increasing, radians. If they are symmetric and roller and body are, half of them are solved.
+        Five or more, increasing, radians. For symmetric tilts, roller and body the code solves half of them.
     approaches : sequence of float, optional
-        Five or more, increasing, positive, metres: how far the roller is pressed down at its mid-length. Default: eight
+        Five or more, increasing, positive, metres, at the roller's mid-length. Default: eight
         from the approach under 0.03 of the case's load to the approach under 1.5 times the load, in equal ratios.
     accuracy, tolerance : float
-        Of each contact, see :func:`contactstudy.solve` and :func:`contactstudy.solve_contact`.
+        Accuracy and tolerance of each contact, see :func:`contactstudy.solve` and :func:`contactstudy.solve_contact`.
 
     Returns
     -------
     ContactLaw
         Its `table` is a Dataset along `approach` and `tilt`: `normal_load`, `moment`, `strain_energy`,
         `normal_stiffness`, `coupling_stiffness`, `tilting_stiffness`; and `relative_load_error` (over the load) and
-        `relative_moment_error` (over load times length), the sum of the errors of interpolation, there and up to the
-        next nodes, and of discretisation.
+        `relative_moment_error` (over load times length), the sum of the errors of interpolation up to the next nodes,
+        and of discretisation.
 
     Raises
     ------
     InvalidInputError
-        If the case is tilted, prescribes where its load acts or couples friction; if approaches or tilts are too few,
-        do not increase, or are too far apart for a contact to be found.
+        If the case is tilted, prescribes its load's position or couples friction; if approaches or tilts are too few,
+        do not increase, or have no solution.
 
     Examples
     --------
@@ -178,46 +182,46 @@ def contact_law(
     >>> roller = Roller(radius=5e-3, length=0.3e-3, profile=profiles.FullCrown(crown_radius=0.1))
     >>> case = Case(body=body, roller=roller, load=30.0)
     >>> law = contact_law(case, np.linspace(-2e-4, 2e-4, 5), 1e-6 * np.linspace(1.0, 1.8, 5), accuracy=0.1)
-    >>> pressed = law.at(1.3e-6, 1e-4)
-    >>> bool(pressed.normal_stiffness > pressed.normal_load / 1.3e-6)  # the load grows faster than the approach
+    >>> contact = law.at(1.3e-6, 1e-4)
+    >>> bool(contact.normal_stiffness > contact.normal_load / 1.3e-6)  # the load grows faster than the approach
     True
     """
     checks.instance("case", case, Case, "a Case")
-    warn_doubtful(case)
+    warn_of_magnitudes(case)
     if case.tilt:
-        raise InvalidInputError("case.tilt", case.tilt, "0: the law has tilts of its own")
+        raise InvalidInputError("case.tilt", case.tilt, "0: give the tilts of the law")
     if case.load_position is not None:
         raise InvalidInputError("case.load_position", case.load_position, "None: the roller takes the law's tilts")
     if case.coupled:
         raise InvalidInputError("case.coupled", True, "False: with coupled friction the load derives from no energy")
-    turned = _increasing("tilts", numbers_in_si("tilts", tilts, "rad"), "radians")
-    if np.abs(turned).max() > LARGEST_TILT:
-        raise InvalidInputError("tilts", tilts, f"small angles, at most {LARGEST_TILT} radians")
-    presser = Presser(case, checks.positive("accuracy", accuracy), checks.positive("tolerance", tolerance))
+    checked_tilts = _check_increasing("tilts", numbers_in_si("tilts", tilts, "rad"), "radians")
+    if np.abs(checked_tilts).max() > MAX_TILT:
+        raise InvalidInputError("tilts", tilts, f"small angles, at most {MAX_TILT} radians")
+    solver = ContactSolver(case, checks.positive("accuracy", accuracy), checks.positive("tolerance", tolerance))
     if approaches is None:
-        first, last = (presser.loaded(part * case.normal_load, 0.0).approach for part in LOADS)
-        lowered = np.geomspace(first, last, DEFAULT_APPROACHES)
+        first, last = (solver.solve_at_load(factor * case.normal_load, 0.0).approach for factor in LOAD_RANGE)
+        checked_approaches = np.geomspace(first, last, APPROACH_COUNT)
     else:
-        lowered = _increasing("approaches", numbers_in_si("approaches", approaches, "m"), "metres")
-        checks.positive("approaches", float(lowered[0]), "metres")
-    nodes = solved_nodes(presser, lowered, turned)
+        checked_approaches = _check_increasing("approaches", numbers_in_si("approaches", approaches, "m"), "metres")
+        checks.positive("approaches", float(checked_approaches[0]), "metres")
+    nodes = solve_nodes(solver, checked_approaches, checked_tilts)
     length = case.contact_length
-    fit, cells = fit_errors(nodes, length), discretisation_errors(presser, nodes)
-    return ContactLaw(law_table(presser, nodes, fit + cells[:, None, None]))
+    fit, discretisation = estimate_fit_errors(nodes, length), estimate_discretisation_errors(solver, nodes)
+    return ContactLaw(label_law(solver, nodes, fit + discretisation[:, None, None]))
 
 
-def _increasing(name: str, values: object, unit: str) -> FloatArray:
-    """Return enough increasing numbers, or raise."""
-    numbers = checks.coordinates(name, values, unit)
-    if numbers.size < FEWEST or (np.diff(numbers) <= 0).any():
-        raise InvalidInputError(name, numbers.tolist(), f"{FEWEST} or more increasing numbers ({unit})")
-    return numbers
+def _check_increasing(name: str, values: object, unit: str) -> FloatArray:
+    """Return increasing numbers; raise for too few."""
+    checked = checks.coordinates(name, values, unit)
+    if checked.size < MIN_NODES or (np.diff(checked) <= 0).any():
+        raise InvalidInputError(name, checked.tolist(), f"{MIN_NODES} or more increasing numbers ({unit})")
+    return checked
 
 
-def law_table(presser: Presser, nodes: Nodes, errors: FloatArray) -> xr.Dataset:
+def label_law(solver: ContactSolver, nodes: Nodes, errors: FloatArray) -> xr.Dataset:
     """Label the nodes and their errors (2, approach, tilt), with the stiffness of their interpolation."""
     delta, theta = np.meshgrid(nodes.approaches, nodes.tilts, indexing="ij")
-    motion = EnergySpline.fitted(nodes)(delta, theta)
+    motion = EnergySpline.fit(nodes)(delta, theta)
     dims = ("approach", "tilt")
     arrays = {
         "normal_load": nodes.load,
@@ -229,12 +233,12 @@ def law_table(presser: Presser, nodes: Nodes, errors: FloatArray) -> xr.Dataset:
         "relative_load_error": errors[0],
         "relative_moment_error": errors[1],
     }
-    scalars = {"contact_length": presser.case.contact_length, "accuracy": presser.accuracy}
+    scalars = {"contact_length": solver.case.contact_length, "accuracy": solver.accuracy}
     table = xr.Dataset(
         {name: (dims, values) for name, values in arrays.items()} | scalars,
         coords={"approach": nodes.approaches, "tilt": nodes.tilts},
     )
-    reference = reference_lines(presser.case.body, presser.case.counterbody)
+    reference = reference_lines(solver.case.body, solver.case.counterbody)
     table["approach"].attrs |= {"reference": reference, "comment": "at the roller's mid-length"}
     table["tilt"].attrs |= {"reference": reference, "centre": "the roller's mid-length"}
     table["moment"].attrs["comment"] = "about the roller's mid-length"

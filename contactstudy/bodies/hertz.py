@@ -1,4 +1,4 @@
-"""Hertz' line contact: the reference for every length and pressure in the package.
+"""Hertz' line contact: the scale of lengths and pressures in the package.
 
 Source: K. L. Johnson, Contact Mechanics (1985), chapter 4.
 """

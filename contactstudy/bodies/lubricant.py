@@ -15,7 +15,7 @@ from contactstudy.errors import InvalidInputError
 VISCOSITY_LAWS, DENSITY_LAWS = ("roelands", "barus"), ("dowson-higginson", "constant")
 
 ROELANDS_PRESSURE = 1.962e8  # Reference pressure of Roelands' law, Pa
-# Viscosity towards which Roelands' law extrapolates all oils at negative pressure, Pa s
+# Limit of Roelands' law for all oils at negative pressure, Pa s
 ROELANDS_VISCOSITY = 6.31e-5
 DENSITY_PRESSURE, DENSITY_GAIN = 5.9e8, 1.34  # Constants of Dowson and Higginson's density, Pa and 1
 KELVIN = 273.15  # 0 degrees Celsius in kelvin
@@ -37,7 +37,7 @@ class Lubricant:
     viscosity_law : str
         "roelands", or "barus" for ``eta0 exp(alpha p)``, which holds below some 0.5 GPa.
     roelands_exponent : float, optional
-        Exponent ``z`` of Roelands' law; default: the one that `viscosity` and `pressure_viscosity` lead to.
+        Exponent ``z`` of Roelands' law; default: from `viscosity` and `pressure_viscosity`.
     density_law : str
         "dowson-higginson", or "constant".
     density : float, optional
@@ -96,13 +96,13 @@ class Lubricant:
 
     @property
     def exponent(self) -> float:
-        """Exponent ``z`` of Roelands' law: the one given, or ``alpha p_r / (ln eta0 + 9.67)``."""
+        """Exponent ``z`` of Roelands' law: the given exponent, or ``alpha p_r / (ln eta0 + 9.67)``."""
         if self.roelands_exponent is not None:
             return self.roelands_exponent
         return float(self.pressure_viscosity * ROELANDS_PRESSURE / np.log(self.viscosity / ROELANDS_VISCOSITY))
 
     def log_viscosity(self, pressure: FloatArray | float) -> FloatArray:
-        """Logarithm of the viscosity over the ambient one, at pressures in Pa (ambient below zero)."""
+        """Logarithm of the viscosity over the ambient viscosity, at pressures in Pa (0 below zero)."""
         p = np.maximum(pressure, 0.0)
         if self.viscosity_law == "barus":
             return np.asarray(self.pressure_viscosity * p)  # eq. (406)
@@ -111,11 +111,11 @@ class Lubricant:
 
     def viscosity_at(self, pressure: FloatArray | float) -> FloatArray:
         """Dynamic viscosity at pressures in Pa, Pa s."""
-        # Largest logarithm of a viscosity ratio: the exponential of more overflows where it is cubed
+        # The bound prevents an overflow of the cubed exponential.
         return np.asarray(self.viscosity * np.exp(np.minimum(self.log_viscosity(pressure), 400.0)))
 
     def density_ratio(self, pressure: FloatArray | float) -> FloatArray:
-        """Density at pressures in Pa over the ambient one."""
+        """Density at pressures in Pa over the ambient density."""
         p = np.maximum(pressure, 0.0)
         if self.density_law == "constant":
             return np.ones_like(p)
@@ -146,7 +146,7 @@ class Lubricant:
         pressure_viscosity: float,
         **properties: float | str,
     ) -> Lubricant:
-        """Lubricant at a temperature, from two kinematic viscosities as on data sheets (ASTM D341).
+        """Lubricant at a temperature, from two kinematic viscosities of a data sheet (ASTM D341).
 
         Parameters
         ----------
@@ -169,7 +169,7 @@ class Lubricant:
         Raises
         ------
         InvalidInputError
-            If there are not two viscosities above 2 mm2/s that fall with the temperature.
+            If `viscosities` are not two values above 2 mm2/s that decrease with temperature.
 
         Examples
         --------
@@ -179,20 +179,20 @@ class Lubricant:
         (51.7, 0.0396)
         """
         density = checks.positive("density", density, "kg/m3")
-        viscosity, fall = walther(viscosities, checks.finite("temperature", temperature, "degrees Celsius"))
-        given: dict[str, object] = {"temperature_viscosity": fall} | dict(properties)
+        viscosity, slope = walther(viscosities, checks.finite("temperature", temperature, "degrees Celsius"))
+        arguments: dict[str, object] = {"temperature_viscosity": slope} | dict(properties)
         return cls(
             viscosity=1e-6 * viscosity * density,
             density=density,
             pressure_viscosity=pressure_viscosity,
-            **given,  # type: ignore[arg-type]
+            **arguments,  # type: ignore[arg-type]
         )
 
     @classmethod
     def preset(cls, name: str, temperature: float) -> Lubricant:
         """Return an oil of the table `OILS` at a temperature between 30 and 100 degrees Celsius.
 
-        Viscosities between the table's follow Vogel's law through all three, pressure-viscosity coefficients lines.
+        Viscosities follow Vogel's law through the table's three values; pressure-viscosity coefficients are linear.
 
         Raises
         ------
@@ -211,9 +211,9 @@ class Lubricant:
             raise InvalidInputError("temperature", theta, f"from {first:g} to {last:g} degrees Celsius", SOURCE)
         temperatures, logs = np.array(OIL_TEMPERATURES), np.log(oil.viscosities)
         # ln eta = A + B / (theta - C), through three points.
-        share = (logs[0] - logs[1]) / (logs[1] - logs[2])
-        share *= (temperatures[2] - temperatures[1]) / (temperatures[1] - temperatures[0])
-        c = (share * temperatures[0] - temperatures[2]) / (share - 1)
+        ratio = (logs[0] - logs[1]) / (logs[1] - logs[2])
+        ratio *= (temperatures[2] - temperatures[1]) / (temperatures[1] - temperatures[0])
+        c = (ratio * temperatures[0] - temperatures[2]) / (ratio - 1)
         b = (logs[0] - logs[1]) / (1 / (temperatures[0] - c) - 1 / (temperatures[1] - c))
         log = logs[0] + b * (1 / (theta - c) - 1 / (temperatures[0] - c))
         return cls(
@@ -237,13 +237,13 @@ def walther(viscosities: dict[float, float], temperature: float) -> tuple[float,
     )
     if not (thick > thin >= 2 and first > -KELVIN):
         raise InvalidInputError(
-            "viscosities", viscosities, "falling with the temperature, at least 2 mm2/s", "ASTM D341 holds from there"
+            "viscosities", viscosities, "falling with the temperature, at least 2 mm2/s", "the range of ASTM D341"
         )
-    inner = [np.log10(np.log10(each + 0.7)) for each in (thick, thin)]
-    logs = [np.log10(each + KELVIN) for each in (first, last)]
-    b = (inner[0] - inner[1]) / (logs[1] - logs[0])
+    double_logarithms = [np.log10(np.log10(viscosity_at + 0.7)) for viscosity_at in (thick, thin)]
+    logs = [np.log10(viscosity_at + KELVIN) for viscosity_at in (first, last)]
+    b = (double_logarithms[0] - double_logarithms[1]) / (logs[1] - logs[0])
     kelvin = temperature + KELVIN
-    power = 10 ** (inner[0] + b * logs[0] - b * np.log10(kelvin))
+    power = 10 ** (double_logarithms[0] + b * logs[0] - b * np.log10(kelvin))
     viscosity = 10**power - 0.7
     return float(viscosity), float((viscosity + 0.7) / viscosity * power * np.log(10) * b / kelvin)
 

@@ -1,4 +1,4 @@
-"""Elastic constants of materials that rolling contacts are made of, each with its source in `SOURCES`.
+"""Elastic constants of materials of rolling contacts, with their sources in `SOURCES`.
 
 Moduli of steels differ by one or two percent between sources, and pressures by half of this difference. Prefer
 the test certificate of the steel at hand.
@@ -33,9 +33,9 @@ SOURCES = {
 """Description and source of each material."""
 
 
-def documented() -> str:
-    """Return the table of all materials in Markdown, as the documentation shows it."""
-    rows = ["| name | E, GPa | nu | what it is, and the source |", "|---|---|---|---|"]
+def format_table() -> str:
+    """Return the documentation's table of all materials in Markdown."""
+    rows = ["| name | E, GPa | nu | description and source |", "|---|---|---|---|"]
     for name, source in SOURCES.items():
         material: Material = globals()[name]
         rows.append(f"| `cs.materials.{name}` | {1e-9 * material.young:g} | {material.poisson:g} | {source} |")

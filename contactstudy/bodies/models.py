@@ -1,4 +1,4 @@
-"""The elastic bodies: where they have free end faces.
+"""The elastic bodies and their free end faces.
 
 Axes of the package: x along the roller's axis, y the rolling and sliding direction, z into the
 body from its loaded top ``z = 0``. No body has a boundary in y or at depth.
@@ -20,29 +20,29 @@ from contactstudy.errors import InvalidInputError
 Extent = tuple[float, float]
 
 
-class FreedEnds(NamedTuple):
-    """Ends whose normal stress, left by the mirrored loads, is removed."""
+class FreeEnds(NamedTuple):
+    """Ends without the normal stress of the mirrored loads."""
 
     length: float  # m; infinite for one end
     mirrored_once: bool = False  # one pair of images instead of all
 
 
-class Part(NamedTuple):
-    """One of the solutions whose weighted sum is a body's: a half-space with the load mirrored in its ends."""
+class BodyTerm(NamedTuple):
+    """Term of a body's weighted sum: a half-space with the load mirrored in the ends."""
 
     weight: float
     extent: Extent  # positions of the mirrors; infinite for none
-    freed: FreedEnds | None = None
+    freed: FreeEnds | None = None
 
 
-# Ratio of a cell's sides, and width of the window over the body's length, beyond which a unit is wrong
-LONGEST_CELL, WIDEST_WINDOW = 1e6, 1e4
+# Maximum ratio of a cell's sides, and of the window's width to the body's length: larger ratios suggest a wrong unit
+MAX_CELL_RATIO, MAX_WINDOW_RATIO = 1e6, 1e4
 WHOLE_LINE: Extent = (-np.inf, np.inf)
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)
 class Body:
-    """An elastic body below ``z = 0``; use one of its kinds.
+    """Base of the elastic bodies below ``z = 0``.
 
     Parameters
     ----------
@@ -57,7 +57,7 @@ class Body:
     reference_depth: float | None = None
 
     def __post_init__(self) -> None:
-        if type(self) in (Body, EndedBody):
+        if type(self) in (Body, BodyWithFreeEnds):
             raise InvalidInputError("body", type(self).__name__, "a HalfSpace, a QuarterSpace or a FiniteLengthSpace")
         checks.instance("material", self.material, Material, "a Material")
         if self.reference_depth is not None:
@@ -79,26 +79,26 @@ class Body:
         return WHOLE_LINE
 
     @property
-    def parts(self) -> tuple[Part, ...]:
-        """Solutions whose weighted sum is this body's."""
-        return (Part(1.0, self.extent),)
+    def terms(self) -> tuple[BodyTerm, ...]:
+        """Half-spaces whose weighted sum is the body."""
+        return (BodyTerm(1.0, self.extent),)
 
     def check_span(self, grid: Grid) -> None:
         """Raise unless a grid covers the body's x from its end, or from end to end, and is in proportion."""
         low, high = self.extent
         start, stop = grid.x_range
-        # Distance, over a cell, between the grid's edge and the body's end that rounding may leave
+        # Rounding between the grid's edge and the body's end
         tolerance = 1e-3 * grid.dx
         if np.isfinite(low) and abs(start - low) > tolerance:
             raise InvalidInputError("x", f"cells from {start:g} m", f"cells that begin at the free end, {low:g} m")
         if np.isfinite(high) and abs(stop - high) > tolerance:
             raise InvalidInputError("x", f"cells up to {stop:g} m", f"cells that end at the free end, {high:g} m")
-        if not 1 / LONGEST_CELL <= grid.dx / grid.dy <= LONGEST_CELL:
+        if not 1 / MAX_CELL_RATIO <= grid.dx / grid.dy <= MAX_CELL_RATIO:
             sides = f"{grid.dx:.3g} by {grid.dy:.3g} m"
-            raise InvalidInputError("grid", f"cells of {sides}", f"with sides in a ratio of at most {LONGEST_CELL:g}")
+            raise InvalidInputError("grid", f"cells of {sides}", f"with sides in a ratio of at most {MAX_CELL_RATIO:g}")
         window = grid.y_range[1] - grid.y_range[0]
-        if window > WIDEST_WINDOW * (high - low):
-            allowed = f"a window along y of at most {WIDEST_WINDOW:g} times the body's length, {high - low:.3g} m"
+        if window > MAX_WINDOW_RATIO * (high - low):
+            allowed = f"a window along y of at most {MAX_WINDOW_RATIO:g} times the body's length, {high - low:.3g} m"
             raise InvalidInputError("y", f"a window of {window:.3g} m", allowed)
 
     @property
@@ -124,7 +124,7 @@ MODELS = ("exact", "mirror", "mirror-factor", "single-mirror")
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)
-class EndedBody(Body):
+class BodyWithFreeEnds(Body):
     """A body with free ends; :class:`FiniteLengthSpace` describes the models."""
 
     model: str = "exact"
@@ -134,17 +134,17 @@ class EndedBody(Body):
         checks.known_name("model", self.model, MODELS)
 
     @property
-    def parts(self) -> tuple[Part, ...]:
-        """Solutions whose weighted sum is this body's."""
+    def terms(self) -> tuple[BodyTerm, ...]:
+        """Half-spaces whose weighted sum is the body."""
         if self.model == "mirror-factor":
             factor = guilbault_factor(self.material.poisson)
-            return (Part(factor, self.extent), Part(1 - factor, WHOLE_LINE))
+            return (BodyTerm(factor, self.extent), BodyTerm(1 - factor, WHOLE_LINE))
         low, high = self.extent
         if self.model == "single-mirror":
-            # A load and one image in either end: each end's own pair, and the load that both have counted.
-            freed = FreedEnds(high, mirrored_once=True)
-            return (Part(1.0, (low, np.inf), freed), Part(1.0, (-np.inf, high)), Part(-1.0, WHOLE_LINE))
-        return (Part(1.0, self.extent, FreedEnds(high) if self.model == "exact" else None),)
+            # A load and one image in either end: a pair per end, less the load in both pairs.
+            free_ends = FreeEnds(high, mirrored_once=True)
+            return (BodyTerm(1.0, (low, np.inf), free_ends), BodyTerm(1.0, (-np.inf, high)), BodyTerm(-1.0, WHOLE_LINE))
+        return (BodyTerm(1.0, self.extent, FreeEnds(high) if self.model == "exact" else None),)
 
 
 def guilbault_factor(poisson: float) -> float:
@@ -156,7 +156,7 @@ def guilbault_factor(poisson: float) -> float:
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)
-class QuarterSpace(EndedBody):
+class QuarterSpace(BodyWithFreeEnds):
     """Elastic body ``x >= 0``, ``z >= 0`` with one free end face at ``x = 0``.
 
     Parameters
@@ -186,7 +186,7 @@ class QuarterSpace(EndedBody):
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)
-class FiniteLengthSpace(EndedBody):
+class FiniteLengthSpace(BodyWithFreeEnds):
     """Elastic body ``0 <= x <= length``, ``z >= 0`` with free end faces I at ``x = 0`` and II at ``x = length``.
 
     Parameters
@@ -196,10 +196,10 @@ class FiniteLengthSpace(EndedBody):
     material : Material
         Material of the body.
     model : str
-        Model of the ends. "exact" frees the ends. The others are quick fixes in use, for comparison: "mirror" mirrors
+        Model of the ends. "exact" has free ends. The other models are for comparison: "mirror" mirrors
         the load and leaves the normal stress on the ends; "mirror-factor" multiplies the mirrored loads by
-        Guilbault's factor to make up for it. "single-mirror" mirrors the load once in either end and takes the normal
-        stress from both by two separate half-spaces: the scheme of Zhang, Wang and Wong, which leaves some shear on
+        Guilbault's factor as compensation. "single-mirror" mirrors the load once in either end and removes the normal
+        stress of both ends by two separate half-spaces: the scheme of Zhang, Wang and Wong, which leaves some shear on
         the ends.
 
     Raises

@@ -1,4 +1,4 @@
-"""One case: a roller, a body, a load and a friction."""
+"""Case: a roller, a body, a load and a friction."""
 
 from __future__ import annotations
 
@@ -23,8 +23,8 @@ from contactstudy.case.motion import (
     Motion,
     Sliding,
     check_coupled,
-    checked_friction,
-    on_columns,
+    check_friction,
+    evaluate_friction,
 )
 from contactstudy.case.roller import Roller, gap_on_cells
 from contactstudy.checks import FloatArray
@@ -32,18 +32,18 @@ from contactstudy.errors import InvalidInputError
 from contactstudy.profiles.base import SlopeJumps, as_shape
 from contactstudy.profiles.straight import Chamfer, Cylinder
 
-LARGEST_TILT = 0.1  # Largest tilt, radians: its height is proportional to the distance
+MAX_TILT = 0.1  # Largest tilt of the linear theory, radians
 INCLINED_POINTS = 41  # Points along the axis that determine the mean inclination of the roller
-# Hertz half-widths over the roller's radius beyond which a unit is wrong: the first is 10 kPa on steel
-SMALLEST_HALF_WIDTH, LARGEST_HALF_WIDTH = 1e-7, 0.5
-SHALLOWEST = 1e-12  # Least depth beyond first touch over the roller's radius: less is rounding
-TOUCH_POINTS = 2001  # Points along the axis among which first touch is sought
-SHORTEST, LONGEST = 1e-4, 1e7  # Lengths of contact and body over the Hertz half-width beyond which a unit is wrong
+# Range of the Hertz half-width over the roller's radius; the minimum is 10 kPa on steel
+MIN_HALF_WIDTH, MAX_HALF_WIDTH = 1e-7, 0.5
+MIN_DEPTH = 1e-12  # Minimum depth beyond first touch over the roller's radius: rounding
+TOUCH_POINTS = 2001  # Points along the axis in the search of first touch
+MIN_LENGTH, MAX_LENGTH = 1e-4, 1e7  # Range of the lengths of contact and body over the Hertz half-width
 
 
 @dataclass(frozen=True, kw_only=True)
 class Case:
-    """A roller pressed on a body, rolling and sliding along y.
+    """A roller in contact with a body, rolling and sliding along y.
 
     Exactly one of `max_pressure`, `load` and `approach` is given. Pressure and load follow from one another by the
     Hertz line contact of the same load per length of contact; under an approach both follow from the solution.
@@ -59,8 +59,8 @@ class Case:
     load : float, optional
         Normal load ``W``, N.
     approach : float, optional
-        Displacement of the roller towards the body at its mid-length, from where its profile's drop of 0 touches the
-        undeformed top, metres; see `reference` of `approach` in results.
+        Displacement of the roller towards the body at mid-length, metres, from the contact of the undeformed top with a
+        profile drop of 0; see `reference` of `approach` in results.
     friction : float or DataArray (x)
         Coefficient ``f``, a number or values at positions along x with lines between: in full sliding the shear
         traction on the body is ``q = f p`` along +y; in any other motion ``f p`` is the bound on it.
@@ -68,17 +68,17 @@ class Case:
         Distance ``e`` from the body's end I to the roller's nearer end, metres; negative if the roller
         overhangs. Default: the roller is centred on a finite-length space, and begins at ``x = 0`` otherwise.
     coupled : bool
-        Whether the friction also displaces the surface normally and so changes the pressure.
+        Whether the friction also displaces the surface normally, which changes the pressure.
     tilt : float
-        Misalignment about the roller's mid-length against the undeformed top, radians, positive if larger x is pressed
-        deeper. The moment that holds it is applied.
+        Prescribed misalignment about the roller's mid-length against the undeformed top, radians, positive if the end
+        at larger x is deeper.
     load_position : float, optional
-        Position x of the load, metres, on which the roller tilts until the pressure balances it; default: `tilt` holds.
+        Position x of the load, metres; the roller tilts until the pressure balances it. Default: prescribed `tilt`.
     motion : Sliding, Shift or Rolling
         Motion and speed of the roller against the body. Default: full sliding.
     body_edge : Cylinder or Chamfer, optional
-        Edge radius or chamfer of the body's top at its free ends, for the gap; default: sharp. Where the roller
-        overhangs, this edge is pressed.
+        Edge radius or chamfer of the body's top at its free ends, for the gap; default: sharp. An overhanging roller
+        loads this edge.
     lubricant : Lubricant, optional
         Lubricant between the surfaces, for `solve_film`; the dry contact does not depend on it.
 
@@ -114,7 +114,7 @@ class Case:
     def __post_init__(self) -> None:
         """Check the parameters."""
         allowed = (
-            "elastic, a HalfSpace, a QuarterSpace or a FiniteLengthSpace: two rigid bodies have no pressure to find"
+            "elastic, a HalfSpace, a QuarterSpace or a FiniteLengthSpace: two rigid bodies have no contact pressure"
         )
         checks.instance("body", self.body, Body, allowed)
         checks.instance("roller", self.roller, Roller, "a Roller")
@@ -123,7 +123,7 @@ class Case:
         kinds = "profiles.Cylinder(fillet_radius) or profiles.Chamfer(...), or None for a sharp edge"
         checks.instance("body_edge", self.body_edge, (Cylinder, Chamfer, type(None)), kinds)
         checks.instance("coupled", self.coupled, (bool, np.bool_), "True or False")
-        friction = checked_friction(self.friction)
+        friction = check_friction(self.friction)
         check_coupled(friction, self.motion, coupled=self.coupled)
         checks.store(self, friction=friction, tilt=small_tilt(self.tilt))
         self._check_position()
@@ -150,7 +150,7 @@ class Case:
         return "\n  ".join([heading, repr(self.roller), repr(self.body), "; ".join(details)])
 
     def _check_position(self) -> None:
-        """Raise unless the roller lies over the body, and the load on both."""
+        """Raise unless roller and body overlap and the load acts on both."""
         if self.end_distance is not None:
             checks.store(self, end_distance=checks.finite("end_distance", self.end_distance, "metres"))
         elif self.roller.length > (extent := self.body.extent[1] - self.body.extent[0]):
@@ -171,7 +171,7 @@ class Case:
         if self.load_position is not None:
             position = checks.finite("load_position", self.load_position, "metres")
             if not start < position < stop:
-                allowed = f"where roller and body face each other, {start:g} to {stop:g} m"
+                allowed = f"in the overlap of roller and body, {start:g} to {stop:g} m"
                 raise InvalidInputError("load_position", position, allowed)
             checks.store(self, load_position=position)
             if self.tilt:
@@ -179,26 +179,26 @@ class Case:
                     "tilt",
                     self.tilt,
                     "left out with load_position",
-                    "the load tilts the roller until the pressure balances it, wherever it begins",
+                    "the roller tilts until the pressure balances the load",
                 )
             self._check_inclination(start, stop)
 
     def _check_inclination(self, start: float, stop: float) -> None:
-        """Raise if a roller that is free to tilt would have to by more than a small angle, to lie on the body."""
+        """Raise if a roller that is free to tilt needs more than a small angle to lie on the body."""
         x = np.linspace(start, stop, INCLINED_POINTS)[1:-1]
-        lowest = self._clearance(x - self.roller_middle, np.zeros(1))[:, 0]
-        slope = float(np.polynomial.polynomial.polyfit((x - start) / (stop - start), lowest, 1)[1]) / (stop - start)
-        if abs(slope) > LARGEST_TILT:
+        gap = self._clearance(x - self.roller_middle, np.zeros(1))[:, 0]
+        slope = float(np.polynomial.polynomial.polyfit((x - start) / (stop - start), gap, 1)[1]) / (stop - start)
+        if abs(slope) > MAX_TILT:
             raise InvalidInputError(
                 "load_position",
                 self.load_position,
-                f"None, for where it faces the body the roller is inclined by {slope:.3g} rad: balanced, it would tilt "
-                f"by more than a small angle, {LARGEST_TILT} rad",
+                f"None, because the roller over the body is inclined by {slope:.3g} rad: a balanced roller would tilt "
+                f"by more than a small angle, {MAX_TILT} rad",
                 "let the roller overhang less, or hold its tilt",
             )
 
     def _check_load(self) -> None:
-        """Raise unless one of pressure, load and approach is given, and of a size that a contact can have."""
+        """Raise unless one of pressure, load and approach is given, with a possible magnitude."""
         loads = (self.max_pressure, self.load, self.approach)
         if sum(value is not None for value in loads) != 1:
             raise InvalidInputError("max_pressure, load, approach", loads, "exactly one of the three, the others None")
@@ -208,29 +208,29 @@ class Case:
         name, unit = ("load", "N") if self.max_pressure is None else ("max_pressure", "Pa")
         value = checks.positive(name, getattr(self, name), unit)
         checks.store(self, **{name: value})
-        if not SMALLEST_HALF_WIDTH <= self.hertz_half_width / self.roller.radius <= LARGEST_HALF_WIDTH:
+        if not MIN_HALF_WIDTH <= self.hertz_half_width / self.roller.radius <= MAX_HALF_WIDTH:
             raise InvalidInputError(
                 name,
                 value,
-                f"such that the Hertz half-width, {self.hertz_half_width:.3g} m, is at most {LARGEST_HALF_WIDTH:g} "
-                f"and at least {SMALLEST_HALF_WIDTH:g} of the roller's radius, {self.roller.radius:g} m",
+                f"such that the Hertz half-width, {self.hertz_half_width:.3g} m, is at most {MAX_HALF_WIDTH:g} "
+                f"and at least {MIN_HALF_WIDTH:g} of the roller's radius, {self.roller.radius:g} m",
                 f"pressures and moduli are in Pa ({self.modulus:.3g} Pa here; 1500 MPa is 1.5e9 Pa), loads in N, "
                 "lengths in metres",
             )
 
         low, high = self.body.extent
         lengths = {"roller.length": self.contact_length, "body.length": high - low}
-        for longest, length in lengths.items():
-            if np.isfinite(length) and not SHORTEST <= length / self.hertz_half_width <= LONGEST:
+        for parameter, length in lengths.items():
+            if np.isfinite(length) and not MIN_LENGTH <= length / self.hertz_half_width <= MAX_LENGTH:
                 raise InvalidInputError(
-                    longest,
+                    parameter,
                     length,
-                    f"between {SHORTEST:g} and {LONGEST:g} Hertz half-widths, {self.hertz_half_width:.3g} m",
+                    f"between {MIN_LENGTH:g} and {MAX_LENGTH:g} Hertz half-widths, {self.hertz_half_width:.3g} m",
                     "lengths are in metres, pressures and moduli in Pa, loads in N",
                 )
 
     def _check_approach(self) -> None:
-        """Raise unless the approach is one number that presses the roller, and no more than its radius."""
+        """Raise unless the approach is one number, beyond first touch by at most the roller's radius."""
         value: object = self.approach
         if isinstance(value, (list, tuple)) or (isinstance(value, (np.ndarray, xr.DataArray)) and value.ndim):
             raise InvalidInputError(
@@ -246,57 +246,57 @@ class Case:
                 "load_position", self.load_position, "None where the approach is prescribed", "prescribe the load"
             )
         radius, touch = self.roller.radius, self.first_touch
-        if not SHALLOWEST * radius < approach - touch <= radius:
+        if not MIN_DEPTH * radius < approach - touch <= radius:
             raise InvalidInputError(
                 "approach",
                 approach,
                 f"more than that of first touch, {touch:.3g} m, and beyond it no more than the roller's radius, "
                 f"{radius:g} m",
-                "approaches are in metres, and counted down from where the profile's drop is 0",
+                "approaches are in metres, relative to the contact at a profile drop of 0",
             )
 
     @property
     def first_touch(self) -> float:
-        """Approach at which the roller touches first, metres: the least gap before deformation, along its axis."""
-        return float(self.lowest(np.linspace(*self.contact_range, TOUCH_POINTS)).min())
+        """Approach of first touch, metres: the minimum gap before deformation along the roller's axis."""
+        return float(self.gap_on_axis(np.linspace(*self.contact_range, TOUCH_POINTS)).min())
 
-    def lowest(self, x: FloatArray) -> FloatArray:
-        """Return the gap before deformation along the roller's axis, metres, at positions `x`; beyond it as there."""
-        half = 0.5 * self.roller.length
-        return self._clearance(np.clip(x - self.roller_middle, -half, half), np.zeros(1))[:, 0]
+    def gap_on_axis(self, x: FloatArray) -> FloatArray:
+        """Return the gap before deformation along the roller's axis, metres, at `x`; constant beyond its ends."""
+        half_length = 0.5 * self.roller.length
+        return self._clearance(np.clip(x - self.roller_middle, -half_length, half_length), np.zeros(1))[:, 0]
 
     @property
     def slope_jumps(self) -> SlopeJumps:
-        """Corners of the roller's generatrix where it faces the body: positions x, metres, and jumps of the slope."""
+        """Corners of the generatrix over the body: positions x, metres, and jumps of the slope."""
         corners = as_shape(self.roller.profile).slope_jumps(self.roller.length)
         corners = SlopeJumps(self.roller_middle + corners.positions, corners.jumps)
         if self.body_edge is not None:
-            middle, length = self._top
+            midpoint, length = self._body_top
             edges = as_shape(self.body_edge).slope_jumps(length)
-            corners = SlopeJumps.merged(corners, SlopeJumps(middle + edges.positions, edges.jumps))
+            corners = SlopeJumps.merge(corners, SlopeJumps(midpoint + edges.positions, edges.jumps))
         start, stop = self.contact_range
-        facing = (corners.positions > start) & (corners.positions < stop)
-        return SlopeJumps(corners.positions[facing], corners.jumps[facing])
+        in_contact_range = (corners.positions > start) & (corners.positions < stop)
+        return SlopeJumps(corners.positions[in_contact_range], corners.jumps[in_contact_range])
 
     @property
     def nodes(self) -> FloatArray:
-        """Positions x between which the generatrix is smooth, metres, where it faces the body."""
+        """Positions x, metres, between which the generatrix over the body is smooth."""
         x = self.roller_middle + as_shape(self.roller.profile).nodes(self.roller.length)
         if self.body_edge is not None:
-            middle, length = self._top
-            x = np.union1d(x, middle + as_shape(self.body_edge).nodes(length))
+            midpoint, length = self._body_top
+            x = np.union1d(x, midpoint + as_shape(self.body_edge).nodes(length))
         start, stop = self.contact_range
         return np.asarray(x[(x > start) & (x < stop)])
 
     def friction_on(self, x: FloatArray) -> float | FloatArray:
         """Return the coefficient of friction on columns of cells at `x`: a number or an array (x, 1)."""
-        return on_columns(checked_friction(self.friction), x)
+        return evaluate_friction(check_friction(self.friction), x)
 
     @property
     def coupled_friction(self) -> float:
-        """Coefficient of full sliding's friction that displaces the surface normally; 0 where none does."""
-        bends = self.coupled and isinstance(self.motion, Sliding)
-        return float(self.friction) if bends and isinstance(self.friction, float) else 0.0
+        """Coefficient of full sliding's friction with normal displacement; 0 without coupling."""
+        is_coupled = self.coupled and isinstance(self.motion, Sliding)
+        return float(self.friction) if is_coupled and isinstance(self.friction, float) else 0.0
 
     @property
     def roller_start(self) -> float:
@@ -308,18 +308,18 @@ class Case:
 
     @property
     def roller_middle(self) -> float:
-        """Position x of the roller's mid-length, metres: about which it tilts, and spin and moment are taken."""
+        """Position x of the roller's mid-length, metres: the centre of tilt, spin and moment."""
         return self.roller_start + 0.5 * self.roller.length
 
     @property
     def contact_range(self) -> tuple[float, float]:
-        """First and last x where roller and body face each other, metres."""
+        """First and last x of the overlap of roller and body, metres."""
         low, high = self.body.extent
         return max(low, self.roller_start), min(high, self.roller_start + self.roller.length)
 
     @property
     def contact_length(self) -> float:
-        """Length over which roller and body face each other, metres."""
+        """Length of the overlap of roller and body, metres."""
         start, stop = self.contact_range
         return stop - start
 
@@ -330,7 +330,7 @@ class Case:
 
     @property
     def counterbody(self) -> Counterbody | None:
-        """The roller as an elastic body in its place; None if it is rigid."""
+        """Elastic roller as the second body; None for a rigid roller."""
         body = self.roller.body
         return None if body is None else Counterbody(body, self.roller_start)
 
@@ -355,7 +355,7 @@ class Case:
             raise InvalidInputError(
                 "approach",
                 self.approach,
-                "None where the load has to be known before the contact is solved",
+                "None for functions that require the load before the solution",
                 "solve the case, and give load = normal_load of its result instead",
             )
         return self.contact_length * hertz.line_load(self.hertz_max_pressure, self.roller.radius, self.modulus)
@@ -365,8 +365,8 @@ class Case:
         return gap_on_cells(self._clearance, grid, self.roller_middle, 0.5 * self.roller.length)
 
     @property
-    def _top(self) -> tuple[float, float]:
-        """Middle and length of the body's top, metres; the far end of a quarter-space lies beyond the roller."""
+    def _body_top(self) -> tuple[float, float]:
+        """Midpoint and length of the body's top, metres; the far end of a quarter-space lies beyond the roller."""
         low, high = self.body.extent
         high = high if np.isfinite(high) else 3 * (self.roller_start + self.roller.length)
         return 0.5 * (low + high), high - low
@@ -375,8 +375,8 @@ class Case:
         """Height of the roller at distances from its mid-length."""
         clearance = self.roller.clearance(from_middle, y)
         if self.body_edge is not None and np.isfinite(self.body.extent[0]):
-            middle, length = self._top
-            x = np.clip(self.roller_middle + from_middle - middle, -0.5 * length, 0.5 * length)
+            midpoint, length = self._body_top
+            x = np.clip(self.roller_middle + from_middle - midpoint, -0.5 * length, 0.5 * length)
             clearance = clearance + self.body_edge.drop(x, length)[:, None]
         return clearance - self.tilt * from_middle[:, None] if self.tilt else clearance
 
@@ -384,11 +384,11 @@ class Case:
 def small_tilt(value: object) -> float:
     """Return a tilt in radians, or raise if it is not a small angle."""
     tilt = checks.finite("tilt", value, "radians")
-    if abs(tilt) > LARGEST_TILT:
+    if abs(tilt) > MAX_TILT:
         raise InvalidInputError(
             "tilt",
             tilt,
-            f"a small angle, at most {LARGEST_TILT} radians",
+            f"a small angle, at most {MAX_TILT} radians",
             "1 mrad is 0.001, and degrees need numpy.radians",
         )
     return tilt

@@ -15,49 +15,49 @@ from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError, WindowError
 
 ACCURACY, TOLERANCE = 0.01, 1e-6  # Default error of the contact over the peak, and default tolerance of its iteration
-ACCURACIES = (1e-3, 0.1)  # Accuracies that the refinement reaches and that mean something
+ACCURACIES = (1e-3, 0.1)  # Range of the accuracy
 
 
 def check_accuracy(value: object) -> float:
     """Return an accuracy that the refinement can reach, or raise."""
     accuracy = checks.positive("accuracy", value)
-    least, most = ACCURACIES
-    if not least <= accuracy <= most:
-        raise InvalidInputError("accuracy", accuracy, f"from {least:g} to {most:g} of the peak pressure")
+    minimum, maximum = ACCURACIES
+    if not minimum <= accuracy <= maximum:
+        raise InvalidInputError("accuracy", accuracy, f"from {minimum:g} to {maximum:g} of the peak pressure")
     return accuracy
 
 
 def solver_settings(*, tolerance: float = TOLERANCE, stresses: bool = True) -> None:
-    """Take the keywords of :func:`contactstudy.solve` that a study's case may set, with the same defaults."""
+    """Keywords of :func:`contactstudy.solve` for the cases of a study, with the defaults of the solver."""
 
 
 Result = TypeVar("Result")
 Window = TypeVar("Window")  # A width, a grid, or None for columns that the solver refines
 WINDOWS = (2.0, 3.0, 5.0, 8.0)
-"""Half-widths of the window over that of the Hertz contact, tried in turn where none is given: a short or a tilted
-contact is wider than the line contact of the same load. The first is the default of :func:`choose_grid`."""
+"""Default half-widths of the window over the Hertz half-width, in increasing order: a short or tilted contact is wider
+than the line contact of the same load. The first is the default of :func:`choose_grid`."""
 
-MOST_EXTRA = 1.25  # Ratio of the cells to the requested cells, up to which the ends of an elastic roller are met
+MAX_CELL_INCREASE = 1.25  # Maximum ratio of the cells to the requested cells. Accuracy of an elastic roller's ends
 
 
-def columns_of(case: Case, edges: FloatArray, y_range: tuple[float, float], cells_y: int) -> Grid:
-    """Grid that has columns between `edges` under the roller, and few cells where the body goes on."""
+def graded_grid(case: Case, edges: FloatArray, y_range: tuple[float, float], cells_y: int) -> Grid:
+    """Return a grid with columns between `edges` under the roller, and few cells beyond."""
     low, high = case.body.extent
-    first, last = edges[1] - edges[0], edges[-1] - edges[-2]
-    before = growing_edges(edges[0] - low, first)
-    after = growing_edges(high - edges[-1], last)
+    first_width, last_width = edges[1] - edges[0], edges[-1] - edges[-2]
+    before = growing_edges(edges[0] - low, first_width)
+    after = growing_edges(high - edges[-1], last_width)
     return Grid.between(np.concatenate([edges[0] - before[::-1], edges, edges[-1] + after]), y_range, cells_y)
 
 
 def choose_grid(
     case: Case, *, cells_x: float = 8, cells_y: float = 16, window: float = 2.0, margin: float = 4.0
 ) -> Grid:
-    """Grid that suits a case.
+    """Choose a uniform grid for a case.
 
     A finite body is tiled from end to end; beyond an open end the grid stops `margin` half-widths beyond the roller.
-    The numbers of cells are rounded up to sizes that the fast Fourier transform likes; of these, for an elastic roller
-    of finite length, the number with its ends nearest to borders between cells. A rigid roller's end between two
-    borders of cells is moved to the nearer one, by at most half a cell.
+    The numbers of cells are rounded up to fast sizes of the Fourier transform; for an elastic roller of finite length,
+    to the number with edges of cells nearest to its ends. A rigid roller's end moves to the nearest edge of cells, by
+    at most half a cell.
 
     Parameters
     ----------
@@ -68,12 +68,12 @@ def choose_grid(
     window : float
         Half-width of the window in y, over ``a``.
     margin : float
-        Distance over ``a`` from the roller to the grid's edge where the body goes on.
+        Distance over ``a`` from the roller to the grid's edge on a body without an end.
 
     Raises
     ------
     InvalidInputError
-        If a setting is not positive, or so many cells would be needed that a unit must be wrong.
+        If a setting is not positive, or the number of cells suggests a wrong unit.
 
     Examples
     --------
@@ -93,24 +93,24 @@ def choose_grid(
         max(low, start - margin_x) if np.isinf(low) else low,
         min(high, stop + margin_x) if np.isinf(high) else high,
     )
-    least = [
+    min_counts = [
         max(4.0, float(np.ceil(span / half_width * checks.positive(name, cells) - 1e-9)))
         for name, span, cells in (
             ("cells_x", x_range[1] - x_range[0], cells_x),
             ("cells_y", 2 * half_window, cells_y),
         )
     ]
-    if not least[0] * least[1] <= MAX_CELLS:
+    if not min_counts[0] * min_counts[1] <= MAX_CELLS:
         raise InvalidInputError(
             "cells_x, cells_y",
             (cells_x, cells_y),
-            f"such that there are at most {MAX_CELLS:.0e} cells, not {least[0] * least[1]:.1e}",
+            f"such that there are at most {MAX_CELLS:.0e} cells, not {min_counts[0] * min_counts[1]:.1e}",
             f"the Hertz half-width is {half_width:.3g} m: pressures are in Pa, loads in N, lengths in metres",
         )
-    counts = [next_fast_len(int(count), real=True) for count in least]
+    counts = [next_fast_len(int(count), real=True) for count in min_counts]
     if isinstance(case.roller.body, FiniteLengthSpace):
         candidates = [counts[0]]
-        while candidates[-1] < MOST_EXTRA * counts[0]:
+        while candidates[-1] < MAX_CELL_INCREASE * counts[0]:
             candidates.append(next_fast_len(candidates[-1] + 1))
         ends = (np.array(case.contact_range) - x_range[0]) / (x_range[1] - x_range[0])
         counts[0] = min(
@@ -119,18 +119,18 @@ def choose_grid(
     return Grid(x_range=x_range, y_range=(-half_window, half_window), cells_x=counts[0], cells_y=counts[1])
 
 
-def widening_grids(case: Case, *, cells_x: float = 8, cells_y: float = 16) -> Iterator[Grid]:
-    """Grids of increasing windows; the first that contains the contact is the right one."""
+def create_widening_grids(case: Case, *, cells_x: float = 8, cells_y: float = 16) -> Iterator[Grid]:
+    """Yield grids of increasing windows."""
     for window in WINDOWS:
         yield choose_grid(case, cells_x=cells_x, cells_y=cells_y, window=window, margin=2 * window)
 
 
-def first_sufficient(windows: Iterable[Window], solved: Callable[[Window], Result]) -> Result:
-    """Return ``solved(window)`` of the first window or grid that contains the contact, or raise the last error."""
-    error_of_last = WindowError("there is no grid to solve the contact on")
+def solve_in_first_window(windows: Iterable[Window], solve: Callable[[Window], Result]) -> Result:
+    """Return ``solve(window)`` of the first window or grid that contains the contact, or raise the last error."""
+    error_of_last = WindowError("no grid for the contact")
     for window in windows:
         try:
-            return solved(window)
+            return solve(window)
         except WindowError as error:
             error_of_last = error
     raise error_of_last

@@ -1,4 +1,4 @@
-"""How the roller moves against the body: full sliding, a shift from rest, or steady rolling."""
+"""Motion of the roller against the body: full sliding, a shift from rest, or steady rolling."""
 
 from __future__ import annotations
 
@@ -76,7 +76,7 @@ RESULTANTS = {"x": "force_x", "y": "force_y", "spin": "moment_z"}
 
 
 class StickSlip:
-    """Base of the motions with stick and slip: each rigid motion, or the force or moment it makes, is prescribed."""
+    """Base of the motions with stick and slip: a prescribed rigid motion, force or moment per direction."""
 
     AMPLITUDES: ClassVar[Mapping[str, str]]  # parameter of each rigid motion
     UNITS: ClassVar[Mapping[str, str]]
@@ -85,14 +85,16 @@ class StickSlip:
         """Check the values, at most one of a motion and its force; the motion is 0 without both."""
         for mode, name in self.AMPLITUDES.items():
             force = RESULTANTS[mode]
-            amount, resultant = getattr(self, name), getattr(self, force)
-            if amount is not None and resultant is not None:
-                allowed = "at most one of the two", "the other one follows from it"
-                raise InvalidInputError(f"{name}, {force}", (amount, resultant), *allowed)
+            amplitude, resultant = getattr(self, name), getattr(self, force)
+            if amplitude is not None and resultant is not None:
+                allowed = "at most one of the two", "the other value follows"
+                raise InvalidInputError(f"{name}, {force}", (amplitude, resultant), *allowed)
             if resultant is not None:
                 checks.store(self, **{force: checks.finite(force, resultant, "N m" if mode == "spin" else "N")})
             else:
-                checks.store(self, **{name: checks.finite(name, 0.0 if amount is None else amount, self.UNITS[mode])})
+                checks.store(
+                    self, **{name: checks.finite(name, 0.0 if amplitude is None else amplitude, self.UNITS[mode])}
+                )
 
     @property
     def modes(self) -> tuple[str, ...]:
@@ -114,15 +116,15 @@ class StickSlip:
 class Shift(StickSlip):
     """One shift of the roller against the body, from rest, with Coulomb friction.
 
-    Along each axis either the shift or the force that it needs is prescribed. `solve_contact` goes on from the result
-    of a step before instead, if it is given.
+    Along each axis either the shift or its force is prescribed. `solve_contact` can start from the result of a previous
+    step.
 
     Parameters
     ----------
     x, y : float, optional
-        Rigid shift of the roller against the body, metres; 0 if neither it nor the force is given.
+        Rigid shift of the roller against the body, metres; default: 0 without a force.
     force_x, force_y : float, optional
-        Force on the body, N, instead.
+        Force on the body, N, instead of the shift.
 
     Raises
     ------
@@ -145,7 +147,7 @@ class Shift(StickSlip):
 
     @property
     def speeds(self) -> None:
-        """Speeds of the surfaces: a shift has none."""
+        """None: a shift has no speeds."""
 
 
 MODELS = ("exact", "fastsim")
@@ -156,18 +158,18 @@ class Rolling(StickSlip):
     """Steady rolling: the contact moves along +y over both surfaces, with Coulomb friction.
 
     A creepage is the velocity of the roller's surface relative to the body's, over the rolling speed; the spin turns
-    x to y, about the roller's middle. Each is prescribed, or the force or moment that it makes.
+    x to y, about the roller's mid-length. Each of them, or its force or moment, is prescribed.
 
     Parameters
     ----------
     longitudinal_creepage, lateral_creepage : float, optional
-        Along y and along x; 0 if neither it nor the force is given.
+        Creepage along y and along x; default: 0 without a force.
     spin : float, optional
-        Angular velocity about z over the rolling speed, rad/m; 0 if neither it nor the moment is given.
+        Angular velocity about z over the rolling speed, rad/m; default: 0 without a moment.
     force_y, force_x : float, optional
         Force on the body, N, instead of the creepage along that axis.
     moment_z : float, optional
-        Moment on the body about the roller's middle, N m, instead of the spin.
+        Moment on the body about the roller's mid-length, N m, instead of the spin.
     speed : float, optional
         Speed with which the contact moves over both surfaces, m/s; for heat and film only.
     model : {"exact", "fastsim"}
@@ -206,7 +208,7 @@ class Rolling(StickSlip):
 
     @property
     def speeds(self) -> SurfaceSpeeds | None:
-        """Speeds of the surfaces, opposite to the contact's; a free creepage counts as 0."""
+        """Speeds of the surfaces, opposite to the contact's; a free creepage is treated as 0."""
         return None if self.speed is None else self.speeds_at(self.longitudinal_creepage or 0.0)
 
     def speeds_at(self, creepage: float) -> SurfaceSpeeds:
@@ -235,7 +237,7 @@ class AxialFriction:
 Friction = float | AxialFriction  # Friction of a case
 
 
-def checked_friction(friction: object) -> Friction:
+def check_friction(friction: object) -> Friction:
     """Return a number or an `AxialFriction` from a number or a DataArray along x."""
     if isinstance(friction, AxialFriction):
         return friction
@@ -251,17 +253,17 @@ def checked_friction(friction: object) -> Friction:
     return AxialFriction(tuple(x.tolist()), tuple(values.tolist()))
 
 
-def on_columns(friction: Friction, x: FloatArray) -> float | FloatArray:
+def evaluate_friction(friction: Friction, x: FloatArray) -> float | FloatArray:
     """Coefficient on columns of cells at `x`: a number or an array (x, 1)."""
     return friction.at(x) if isinstance(friction, AxialFriction) else friction
 
 
 def check_coupled(friction: Friction, motion: Motion, *, coupled: bool) -> None:
-    """Raise if a motion cannot have this friction, or if it cannot displace the surface normally."""
+    """Raise for a friction that the motion or the coupling excludes."""
     if not isinstance(motion, Sliding):
-        least = min(friction.values) if isinstance(friction, AxialFriction) else friction
-        if least < 0:
-            allowed = "not below zero with stick and slip: the slip turns the traction round"
-            raise InvalidInputError("friction", least, allowed)
+        min_friction = min(friction.values) if isinstance(friction, AxialFriction) else friction
+        if min_friction < 0:
+            allowed = "not below zero with stick and slip: the slip reverses the traction"
+            raise InvalidInputError("friction", min_friction, allowed)
     elif coupled and isinstance(friction, AxialFriction):
         raise InvalidInputError("coupled", True, "False in full sliding with friction that varies along the axis")

@@ -1,4 +1,4 @@
-"""Gap before deformation on cells: at the centres of uniform ones, the mean along x over others."""
+"""Gap before deformation on cells: at the centres of uniform cells, else means along x."""
 
 from __future__ import annotations
 
@@ -15,34 +15,34 @@ from contactstudy.bodies.models import Body, FiniteLengthSpace, HalfSpace
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 from contactstudy.profiles import Cylinder, Profile, local_radius
-from contactstudy.profiles.base import checked_drop, in_words
+from contactstudy.profiles.base import check_drop, describe_profile
 
 GAP_NODES = 6  # Gauss points over the width of a cell for the mean gap. Accuracy
-ROUNDING = 1e-9  # Part of a cell that is rounding. Accuracy
+ROUNDING = 1e-9  # Rounding over a cell. Accuracy
 Clearance = Callable[[FloatArray, FloatArray], FloatArray]
 """Height of a roller (x, y) at distances from its mid-length and from its centre line; infinite beyond its ends."""
 
 
-def onto_ends(from_middle: FloatArray, half: float, width: float) -> FloatArray:
-    """Distances of cells' centres from mid-length; those within rounding of the roller's ends lie under it."""
-    at_end = np.abs(np.abs(from_middle) - half) <= ROUNDING * width
-    return np.where(at_end, np.copysign(half, from_middle), from_middle)
+def snap_to_ends(x: FloatArray, half_length: float, width: float) -> FloatArray:
+    """Move distances of cells' centres from mid-length onto the roller's ends if within rounding."""
+    at_end = np.abs(np.abs(x) - half_length) <= ROUNDING * width
+    return np.where(at_end, np.copysign(half_length, x), x)
 
 
-def gap_on_cells(clearance: Clearance, grid: Grid, middle: float, half: float) -> FloatArray:
+def gap_on_cells(clearance: Clearance, grid: Grid, mid_length: float, half_length: float) -> FloatArray:
     """Return the gap on the cells of a grid, metres, of a roller with its mid-length and half of its length."""
-    from_middle = grid.x - middle
+    x = grid.x - mid_length
     if not grid.observes_means:
-        return clearance(onto_ends(from_middle, half, grid.dx), grid.y)
+        return clearance(snap_to_ends(x, half_length, grid.dx), grid.y)
     nodes, weights = np.polynomial.legendre.leggauss(GAP_NODES)
-    within = from_middle[:, None] + 0.5 * grid.widths[:, None] * nodes
-    axial = clearance(within.ravel(), np.zeros(1)).reshape(within.shape)
-    under = np.isfinite(axial)
-    shares = np.maximum(under @ weights, weights.min())
-    mean = np.where(under, axial, 0.0) @ weights / shares
-    at_centre = clearance(from_middle, np.zeros(1))[:, 0]
-    moved = np.where(np.isfinite(at_centre), mean - np.where(np.isfinite(at_centre), at_centre, 0.0), 0.0)
-    return np.asarray(clearance(from_middle, grid.y) + moved[:, None])
+    points = x[:, None] + 0.5 * grid.widths[:, None] * nodes
+    axial = clearance(points.ravel(), np.zeros(1)).reshape(points.shape)
+    is_finite = np.isfinite(axial)
+    fractions = np.maximum(is_finite @ weights, weights.min())
+    mean = np.where(is_finite, axial, 0.0) @ weights / fractions
+    at_centre = clearance(x, np.zeros(1))[:, 0]
+    correction = np.where(np.isfinite(at_centre), mean - np.where(np.isfinite(at_centre), at_centre, 0.0), 0.0)
+    return np.asarray(clearance(x, grid.y) + correction[:, None])
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -60,7 +60,7 @@ class Roller:
     material : Material, optional
         Material of the roller; default: rigid.
     ends : {"free", "none"}
-        An elastic roller is a body of its length with free ends, or a half-space.
+        Model of an elastic roller: a body of its length with free ends, or a half-space.
     reference_depth : float, optional
         Distance (m) from the contact to the line in an elastic roller to which approach and tilt refer, such as its
         axis. Default: the roller's length with free ends, else far away.
@@ -85,7 +85,7 @@ class Roller:
     reference_depth: float | None = None
 
     def __post_init__(self) -> None:
-        """Check the geometry; a profile is tried once, so that it fails here and not in mid-study."""
+        """Check the geometry; a trial of the profile reveals errors before a study."""
         sizes = {name: checks.positive(name, getattr(self, name), "metres") for name in ("radius", "length")}
         checks.store(self, **sizes)
         checks.instance("profile", self.profile, Profile, "a profile from contactstudy.profiles")
@@ -96,9 +96,9 @@ class Roller:
             checks.store(self, reference_depth=depth)
             if self.material is None:
                 raise InvalidInputError("reference_depth", depth, "None for a rigid roller", "or give a material")
-        tried = np.array([0.0, 0.25 * self.length])
-        local_radius(self.profile, tried, self.length, self.radius)
-        if np.isinf(checked_drop(self.profile, tried, self.length)).all():
+        positions = np.array([0.0, 0.25 * self.length])
+        local_radius(self.profile, positions, self.length, self.radius)
+        if np.isinf(check_drop(self.profile, positions, self.length)).all():
             raise InvalidInputError("profile", self.profile, "a profile whose drop is finite but at the very ends")
 
     def __repr__(self) -> str:
@@ -107,24 +107,24 @@ class Roller:
         if self.material is not None and self.ends == "none":
             material += ", as a half-space"
         sizes = f"R = {format_quantity(self.radius, 'm')}, L = {format_quantity(self.length, 'm')}"
-        return f"Roller({sizes}, {in_words(self.profile)}, end drop {format_quantity(drop, 'm')}, {material})"
+        return f"Roller({sizes}, {describe_profile(self.profile)}, end drop {format_quantity(drop, 'm')}, {material})"
 
     @staticmethod
     def combined_radius(first: float, second: float) -> float:
         """Radius, metres, of a roller on a flat body with the gap of two curved bodies with parallel axes.
 
-        ``1 / R = 1 / R1 + 1 / R2``, as far as the contact is narrow against both radii.
+        ``1 / R = 1 / R1 + 1 / R2``, for a contact that is narrow compared with both radii.
 
         Parameters
         ----------
         first, second : float
-            Radii of curvature where they touch, metres: positive if convex, as of a roller, an inner raceway, a cam or
-            a tooth's flank; negative if hollow, as of an outer raceway.
+            Radii of curvature at the contact, metres: positive if convex (roller, inner raceway, cam, tooth flank),
+            negative if hollow (outer raceway).
 
         Raises
         ------
         InvalidInputError
-            If a radius is 0 or not finite, or a hollow one is not the larger: the bodies would fit without a gap.
+            If a radius is 0 or not finite, or a hollow radius is not the larger radius: no gap remains.
 
         Examples
         --------
@@ -138,13 +138,13 @@ class Roller:
         curvature = sum(1 / radius for radius in sizes.values())
         if not curvature > 0:
             raise InvalidInputError(
-                "first, second", (first, second), "such that a hollow radius is the larger one", "no gap would be left"
+                "first, second", (first, second), "such that a hollow radius is the larger one", "no gap would remain"
             )
         return 1 / curvature
 
     @property
     def body(self) -> Body | None:
-        """The roller as an elastic body seen from its own end I; None if it is rigid."""
+        """Elastic roller as a body in coordinates from its end I; None for a rigid roller."""
         if self.material is None:
             return None
         if self.ends == "free":
@@ -152,13 +152,13 @@ class Roller:
         return HalfSpace(material=self.material, reference_depth=self.reference_depth)
 
     def clearance(self, x: FloatArray, y: FloatArray) -> FloatArray:
-        """Height (x, y) of the roller over the plane that its cylinder touches, metres; infinite beyond its ends.
+        """Height (x, y) of the roller over the tangent plane of its cylinder, metres; infinite beyond its ends.
 
         The circle is the parabola ``y**2 / (2 radius)``, as in Hertz' theory, with the local radius of a taper.
         `x` and `y` are distances from the roller's mid-length and from its centre line, metres.
         """
-        inside = np.abs(x) <= self.length / 2
+        under_roller = np.abs(x) <= self.length / 2
         drop = np.full(x.shape, np.inf)
-        drop[inside] = checked_drop(self.profile, x[inside], self.length)
+        drop[under_roller] = check_drop(self.profile, x[under_roller], self.length)
         radius = local_radius(self.profile, x, self.length, self.radius)
         return np.asarray(drop[:, None] + y[None, :] ** 2 / (2 * radius[:, None]))

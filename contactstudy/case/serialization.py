@@ -21,10 +21,10 @@ from contactstudy.case.motion import AxialFriction, Rolling, Shift, Sliding
 from contactstudy.case.roller import Roller
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
-from contactstudy.profiles.base import Profile, Shape, Sum, checked_drop, in_words
+from contactstudy.profiles.base import Profile, Shape, Sum, check_drop, describe_profile
 
-SAMPLES = 401  # Samples of the drop of a user's profile, evenly spaced from end to end
-Part = TypeVar("Part")
+SAMPLE_COUNT = 401  # Number of samples of a user's profile, evenly spaced from end to end
+CasePart = TypeVar("CasePart")
 
 
 @dataclass(frozen=True, repr=False)
@@ -59,22 +59,22 @@ KINDS: dict[str, type[Any]] = {
 
 def to_dict(part: Any) -> dict[str, Any]:
     """JSON values, SI, of a case or one of its parts, with ``kind``; a user's profile requires its roller."""
-    return dict(_values(part, 0.0))
+    return dict(_to_json(part, 0.0))
 
 
-def _values(part: Any, length: float) -> Any:
-    """JSON values of a part; `length` is that over which a user's profile is sampled."""
+def _to_json(part: Any, length: float) -> Any:
+    """JSON values of a part; `length`: length of a user's profile, metres."""
     name = type(part).__name__
     if KINDS.get(name) is type(part):
         length = getattr(part, "effective_length", part.length if isinstance(part, Roller) else length)
-        values = {entry.name: _values(getattr(part, entry.name), length) for entry in fields(part)}
+        values = {entry.name: _to_json(getattr(part, entry.name), length) for entry in fields(part)}
         return {"kind": name, **{key: value for key, value in values.items() if value is not None}}
     if isinstance(part, Profile):
-        positions = np.linspace(-0.5, 0.5, SAMPLES)
-        drops = [float(drop) if np.isfinite(drop) else None for drop in checked_drop(part, positions * length, length)]
-        return _values(Sampled(in_words(part), tuple(positions.tolist()), tuple(drops)), length)
+        positions = np.linspace(-0.5, 0.5, SAMPLE_COUNT)
+        drops = [float(drop) if np.isfinite(drop) else None for drop in check_drop(part, positions * length, length)]
+        return _to_json(Sampled(describe_profile(part), tuple(positions.tolist()), tuple(drops)), length)
     if isinstance(part, (tuple, list)):
-        return [_values(entry, length) for entry in part]
+        return [_to_json(entry, length) for entry in part]
     if isinstance(part, (bool, np.bool_)):
         return bool(part)
     return part if part is None or isinstance(part, str) else float(part)
@@ -90,21 +90,21 @@ def tables_within(values: Any) -> Iterator[Mapping[str, Any]]:
         yield from tables_within(entry)
 
 
-def from_dict(values: Mapping[str, Any], kind: type[Part]) -> Part:
-    """Case, or another part of a `kind`, of the values that `to_dict` returns."""
-    name = kind.__name__.lower()
+def from_dict(values: Mapping[str, Any], part_class: type[CasePart]) -> CasePart:
+    """Case, or another part of a `part_class`, of the values that `to_dict` returns."""
+    name = part_class.__name__.lower()
     try:
-        part = _part(values)
+        part = _from_json(values)
     except (TypeError, KeyError) as error:
         raise InvalidInputError(name, dict(values), f"values of a {name} of this version", str(error)) from None
-    if not isinstance(part, kind):
+    if not isinstance(part, part_class):
         raise InvalidInputError(name, dict(values), f"values of a {name}")
     return part
 
 
-def _part(values: Any) -> Any:
-    """Part of a case from JSON values."""
+def _from_json(values: Any) -> Any:
+    """CasePart of a case from JSON values."""
     if isinstance(values, Mapping):
-        arguments = {str(key): _part(value) for key, value in values.items() if key != "kind"}
+        arguments = {str(key): _from_json(value) for key, value in values.items() if key != "kind"}
         return KINDS[values["kind"]](**arguments)
-    return tuple(_part(value) for value in values) if isinstance(values, list) else values
+    return tuple(_from_json(value) for value in values) if isinstance(values, list) else values

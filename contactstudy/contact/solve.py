@@ -26,8 +26,8 @@ from contactstudy.case.motion import (
     Shift,
     Sliding,
     check_coupled,
-    checked_friction,
-    on_columns,
+    check_friction,
+    evaluate_friction,
 )
 from contactstudy.checks import FloatArray
 from contactstudy.contact.normal.contact import Contact, Settings, Shape, contact_of
@@ -202,9 +202,9 @@ def solve_contact(
     checks.instance("settings", settings, ContactSettings, "a ContactSettings")
     coupled, after = bool(settings.coupled), settings.after
     checks.instance("motion", motion, KINDS, MOTIONS)
-    coefficient = checked_friction(friction)
+    coefficient = check_friction(friction)
     check_coupled(coefficient, motion, coupled=coupled)
-    on_cells = on_columns(coefficient, grid.x)
+    on_cells = evaluate_friction(coefficient, grid.x)
     if surface is not None:
         checks.instance("surface", surface, LinearOperator, "a scipy.sparse.linalg.LinearOperator")
         cells = grid.cells_x * grid.cells_y

@@ -1,4 +1,4 @@
-"""The best parameters of a profile for given loads and tilts: evaluated designs, the optimum, and its flat range."""
+"""Search of a profile's best parameters for given loads and tilts: designs, optimum, and flat range."""
 
 from __future__ import annotations
 
@@ -23,51 +23,51 @@ from contactstudy.solution import solve
 
 LOGGER = logging.getLogger(__name__)
 
-# A variable of the result, or a function of the result: a number, or a number and its error
+# A variable of the result, or a function of the result that returns a number, or a number and its error
 Measure = str | Callable[[xr.Dataset], object]
-RESOLUTION = 1e-9  # Part of a parameter's range within which two designs count as one
-SCAN, SPREAD = 7, 8  # Designs of the first scan: along one parameter, and per further parameter in powers of two
-# Parts of the range: accuracy of the optimum, and size of the first simplex. Speed and accuracy
-CLOSE, SIMPLEX = 0.01, 0.15
-END_ACCURACY = 0.02  # Accuracy of the end of a flat range, as a part of the parameter's range
-CUT = 20.0  # Errors at which a difference from the optimum is cut off in the search for an end
-# Advice where no design of the scan has a finite measure
-SHARP = (
+RESOLUTION = 1e-9  # Fraction of a parameter's range below which two designs are equal
+SCAN_COUNT, SPREAD_COUNT = 7, 8  # Designs of the first scan: of one parameter, and factor on powers of two
+# Fractions of the range: accuracy of the optimum, and size of the first simplex. Speed and accuracy
+OPTIMUM_TOLERANCE, SIMPLEX = 0.01, 0.15
+END_ACCURACY = 0.02  # Accuracy of the end of a flat range, as a fraction of the parameter's range
+MAX_ERRORS = 20.0  # Bound, in errors, on the difference from the optimum in the search for an end
+# Advice for a scan without a finite measure
+REMEDY = (
     "a pressure or stress is infinite at a sharp end of the contact: widen the bounds until the ends drop enough, take "
-    "a profile with rounded ends, or a measure that is finite there, such as 'end_load_last'"
+    "a profile with rounded ends, or a finite measure, such as 'end_load_last'"
 )
 
 
 @dataclass(frozen=True, eq=False)
 class Range:
-    """Range of a parameter, mapped to parts from 0 to 1."""
+    """Range of a parameter, mapped to fractions from 0 to 1."""
 
-    low: float  # if both bounds are positive, equal steps of the part are equal ratios
+    low: float  # if positive, equal steps of the fraction are equal ratios
     high: float
 
-    def value(self, part: float) -> float:
-        """Return the parameter at a part of the range."""
+    def parameter_at(self, fraction: float) -> float:
+        """Return the parameter at a fraction of the range."""
         ratio = self.low > 0
-        value = self.low * (self.high / self.low) ** part if ratio else self.low + (self.high - self.low) * part
+        value = self.low * (self.high / self.low) ** fraction if ratio else self.low + (self.high - self.low) * fraction
         return float(np.clip(value, self.low, self.high))
 
 
 @dataclass(frozen=True, eq=False)
 class Design:
-    """One evaluated design."""
+    """Evaluated design."""
 
-    parts: FloatArray  # (parameter), parts of the ranges
+    fractions: FloatArray  # (parameter), fractions of the ranges
     values: FloatArray  # (case), measure; infinite if invalid
     errors: FloatArray  # (case)
 
     @property
     def value(self) -> float:
-        """Measure in the worst case."""
+        """Largest measure of the cases."""
         return float(self.values.max())
 
     @property
     def error(self) -> float:
-        """Largest error of the cases whose error interval reaches the worst case."""
+        """Largest error of the cases whose error interval contains the largest measure."""
         if not np.isfinite(self.value):
             return np.inf
         candidates = self.values + self.errors >= self.value - self.errors[int(self.values.argmax())]
@@ -76,7 +76,7 @@ class Design:
 
 @dataclass(eq=False, kw_only=True)
 class Evaluations:
-    """Evaluates designs, each once, and at most `most` designs."""
+    """Evaluates at most `max_designs` designs."""
 
     cases: list[Case]
     profile: Callable[..., Profile]
@@ -84,44 +84,50 @@ class Evaluations:
     measure: Measure
     accuracy: float  # of the contacts; relative error of a measure without an error
     settings: Mapping[str, object]  # further arguments of solve
-    most: int  # bound on the number of designs
+    max_designs: int  # bound on the number of designs
     designs: list[Design] = field(default_factory=list)
     units: str = ""  # from the first result
-    refused: ContactStudyError | None = None  # of the last invalid design
+    last_error: ContactStudyError | None = None  # of the last invalid design
 
     @property
     def remaining(self) -> int:
         """Number of further designs."""
-        return self.most - len(self.designs)
+        return self.max_designs - len(self.designs)
 
     @property
     def best(self) -> Design:
         """Design of the least measure."""
         return min(self.designs, key=lambda design: design.value)
 
-    def evaluated(self, parts: FloatArray) -> Design | None:
-        """Return an earlier design at these parts of the ranges, if there is one."""
-        return next((design for design in self.designs if np.abs(design.parts - parts).max() <= RESOLUTION), None)
+    def find_earlier(self, fractions: FloatArray) -> Design | None:
+        """Return an earlier design at the fractions of the ranges, or None."""
+        return next(
+            (design for design in self.designs if np.abs(design.fractions - fractions).max() <= RESOLUTION),
+            None,
+        )
 
-    def __call__(self, parts: FloatArray) -> Design:
-        """Return the design at these parts of the ranges."""
-        clipped = np.clip(np.asarray(parts, dtype=np.float64), 0.0, 1.0)
-        design = self.evaluated(clipped)
+    def __call__(self, fractions: FloatArray) -> Design:
+        """Return the design at the fractions of the ranges."""
+        clipped = np.clip(np.asarray(fractions, dtype=np.float64), 0.0, 1.0)
+        design = self.find_earlier(clipped)
         if design is None:
-            design = self._solved(clipped)
+            design = self._solve_design(clipped)
             self.designs.append(design)
             LOGGER.info("%s: %.5g", self.parameters(clipped), design.value)
         return design
 
-    def parameters(self, parts: FloatArray) -> dict[str, float]:
-        """Return the parameters at parts of their ranges."""
-        return {name: self.ranges[name].value(float(part)) for name, part in zip(self.ranges, parts, strict=True)}
+    def parameters(self, fractions: FloatArray) -> dict[str, float]:
+        """Return the parameters at fractions of their ranges."""
+        return {
+            name: self.ranges[name].parameter_at(float(fraction))
+            for name, fraction in zip(self.ranges, fractions, strict=True)
+        }
 
-    def _solved(self, parts: FloatArray) -> Design:
+    def _solve_design(self, fractions: FloatArray) -> Design:
         """Solve every case of a design."""
         pairs = np.full((len(self.cases), 2), np.inf)
         try:
-            parameters = self.parameters(parts)
+            parameters = self.parameters(fractions)
             try:
                 profile = self.profile(**parameters)
             except TypeError as error:
@@ -129,18 +135,18 @@ class Evaluations:
                 raise InvalidInputError("bounds", list(parameters), allowed, str(error)) from None
             cases = [replace(case, roller=replace(case.roller, profile=profile)) for case in self.cases]
             with warnings.catch_warnings():
-                if self.designs:  # the first design has warned of magnitudes
+                if self.designs:  # the first design emits the warnings of magnitudes
                     warnings.simplefilter("ignore", MagnitudeWarning)
                 for index, case in enumerate(cases):
-                    pairs[index] = self._measured(case)
+                    pairs[index] = self._measure_case(case)
         except (InvalidInputError, WindowError) as error:
             if isinstance(error, InvalidInputError) and error.parameter in ("measure", "bounds"):
                 raise
-            # The bounds may contain invalid profiles, or profiles that do not carry the load.
-            self.refused = error
-        return Design(parts, pairs[:, 0], pairs[:, 1])
+            # The bounds may contain invalid profiles, or profiles without contact.
+            self.last_error = error
+        return Design(fractions, pairs[:, 0], pairs[:, 1])
 
-    def _measured(self, case: Case) -> tuple[float, float]:
+    def _measure_case(self, case: Case) -> tuple[float, float]:
         """Measure of one case and its error."""
         uniform = bool({"grid", "roughness"} & self.settings.keys())
         result = solve(case, accuracy=None if uniform else self.accuracy, **self.settings)  # type: ignore[arg-type]
@@ -148,139 +154,156 @@ class Evaluations:
             scalars = [str(name) for name, variable in result.data_vars.items() if variable.ndim == 0]
             if self.measure not in scalars:
                 if self.measure in result:
-                    hint = f"an array; a function makes a number of it: lambda result: result.{self.measure}.max()"
-                    raise InvalidInputError("measure", self.measure, "a scalar of the result, or a function", hint)
+                    remedy = f"an array; give a function, such as lambda result: result.{self.measure}.max()"
+                    raise InvalidInputError("measure", self.measure, "a scalar of the result, or a function", remedy)
                 checks.known_name("measure", self.measure, scalars)
-            measured: object = result[self.measure]
+            value_and_error: object = result[self.measure]
             self.units = str(result[self.measure].attrs.get("units", ""))
             if f"{self.measure}_error" in result:
-                measured = (measured, result[f"{self.measure}_error"])
+                value_and_error = (value_and_error, result[f"{self.measure}_error"])
         else:
-            measured = self.measure(result)
-        number, error = _number_and_error(measured)
-        if np.isnan(number):
-            raise InvalidInputError("measure", number, "a number in every case", f"NaN for {case!r}")
-        return number, self.accuracy * abs(number) if error is None or np.isnan(error) else error
+            value_and_error = self.measure(result)
+        value, error = _split_measure(value_and_error)
+        if np.isnan(value):
+            raise InvalidInputError("measure", value, "a number in every case", f"NaN for {case!r}")
+        return value, self.accuracy * abs(value) if error is None or np.isnan(error) else error
 
 
-def _number_and_error(measured: object) -> tuple[float, float | None]:
+def _split_measure(measure: object) -> tuple[float, float | None]:
     """Split the return value of a measure into number and error."""
     try:
-        value, error = measured if isinstance(measured, tuple) else (measured, None)
-        if isinstance(value, str) or isinstance(error, str):
+        number, error = measure if isinstance(measure, tuple) else (measure, None)
+        if isinstance(number, str) or isinstance(error, str):
             raise TypeError
-        return float(value), None if error is None else float(error)
+        return float(number), None if error is None else float(error)
     except (TypeError, ValueError):
-        shape = getattr(measured, "shape", ())
-        value = f"an array of shape {shape}" if shape else measured
-        raise InvalidInputError("measure", value, "a function that returns a number, or (number, error)") from None
+        shape = getattr(measure, "shape", ())
+        number = f"an array of shape {shape}" if shape else measure
+        raise InvalidInputError("measure", number, "a function that returns a number, or (number, error)") from None
 
 
-def fewest(parameters: int) -> int:
-    """Least number of designs of a search: the first scan and one more."""
-    return (SCAN if parameters == 1 else SPREAD * 2 ** (parameters - 2)) + 1
+def min_designs(parameters: int) -> int:
+    """Return the minimum number of designs of a search: the first scan and one more."""
+    return (SCAN_COUNT if parameters == 1 else SPREAD_COUNT * 2 ** (parameters - 2)) + 1
 
 
-def optimum(evaluations: Evaluations) -> Design:
-    """Return the best design of the search; some evaluations are left for the ends of the flat range."""
+def search_optimum(evaluations: Evaluations) -> Design:
+    """Return the best design; the search reserves evaluations for the ends of the flat range."""
     count = len(evaluations.ranges)
     if count == 1:
-        scan = np.linspace(0.0, 1.0, SCAN)[:, None]
+        scan = np.linspace(0.0, 1.0, SCAN_COUNT)[:, None]
     else:
         from scipy.stats.qmc import Sobol
 
-        scan = Sobol(count, scramble=False).random(fewest(count) - 1)
-    first = min((evaluations(parts) for parts in scan), key=lambda design: design.value)
+        scan = Sobol(count, scramble=False).random(min_designs(count) - 1)
+    first = min((evaluations(fractions) for fractions in scan), key=lambda design: design.value)
     if not np.isfinite(first.value):
-        if evaluations.refused is not None:
-            raise evaluations.refused
+        if evaluations.last_error is not None:
+            raise evaluations.last_error
         bounds = {name: (limits.low, limits.high) for name, limits in evaluations.ranges.items()}
-        raise InvalidInputError("bounds", bounds, "such that the measure is finite somewhere within them", SHARP)
-    # Factor on the least measure that replaces an infinite measure in the search
+        raise InvalidInputError("bounds", bounds, "such that the measure is finite somewhere within them", REMEDY)
+    # The search replaces an infinite measure by 1e3 times the least measure.
     ceiling = 1e3 * max(abs(first.value), np.finfo(np.float64).tiny)
 
-    def bounded(parts: FloatArray) -> float:
-        return min(evaluations(np.atleast_1d(parts)).value, ceiling)
+    def finite_measure(fractions: FloatArray) -> float:
+        return min(evaluations(np.atleast_1d(fractions)).value, ceiling)
 
     # Evaluations per parameter that are reserved for the ends of the flat range
-    most = max(evaluations.remaining - 4 * count, 1)
+    limit = max(evaluations.remaining - 4 * count, 1)
     if count > 1:  # Nelder and Mead's simplex tolerates errors and kinks.
-        corners = np.tile(first.parts, (count + 1, 1))
-        # Away from the nearer bound, so that no corner is cut off.
-        corners[1:] += np.diag(np.where(first.parts > 0.5, -SIMPLEX, SIMPLEX))
-        options = {"initial_simplex": corners, "xatol": CLOSE, "fatol": first.error, "maxfev": most}
-        optimize.minimize(bounded, first.parts, method="Nelder-Mead", bounds=[(0.0, 1.0)] * count, options=options)
-    elif most > 1:  # Brent's method, between the neighbours of the best design; it takes two designs or more.
-        start, step = float(first.parts[0]), 1 / (SCAN - 1)
-        between = (max(start - step, 0.0), min(start + step, 1.0))
-        options = {"xatol": CLOSE, "maxiter": most}
-        optimize.minimize_scalar(bounded, bounds=between, method="bounded", options=options)
+        simplex = np.tile(first.fractions, (count + 1, 1))
+        # The simplex points away from the nearer bound, within the range.
+        simplex[1:] += np.diag(np.where(first.fractions > 0.5, -SIMPLEX, SIMPLEX))
+        options = {
+            "initial_simplex": simplex,
+            "xatol": OPTIMUM_TOLERANCE,
+            "fatol": first.error,
+            "maxfev": limit,
+        }
+        optimize.minimize(
+            finite_measure,
+            first.fractions,
+            method="Nelder-Mead",
+            bounds=[(0.0, 1.0)] * count,
+            options=options,
+        )
+    elif limit > 1:  # Brent's method, between the neighbours of the best design; it takes two designs or more.
+        start, step = float(first.fractions[0]), 1 / (SCAN_COUNT - 1)
+        bracket = (max(start - step, 0.0), min(start + step, 1.0))
+        options = {"xatol": OPTIMUM_TOLERANCE, "maxiter": limit}
+        optimize.minimize_scalar(finite_measure, bounds=bracket, method="bounded", options=options)
     return evaluations.best
 
 
-def flat_range(evaluations: Evaluations, best: Design, parameter: int) -> tuple[float, float]:
-    """Return the part of the range within which a parameter alone changes the measure by less than the errors."""
+def find_flat_range(evaluations: Evaluations, best: Design, parameter: int) -> tuple[float, float]:
+    """Return the fractions between which a parameter alone changes the measure by less than the errors."""
     sides = 2 * (len(evaluations.ranges) - parameter)
-    low = _flat_end(evaluations, best, parameter, 0.0, most=evaluations.remaining // sides)
-    return low, _flat_end(evaluations, best, parameter, 1.0, most=evaluations.remaining // (sides - 1))
+    low = _find_flat_end(evaluations, best, parameter, 0.0, limit=evaluations.remaining // sides)
+    return low, _find_flat_end(evaluations, best, parameter, 1.0, limit=evaluations.remaining // (sides - 1))
 
 
-def _flat_end(evaluations: Evaluations, best: Design, parameter: int, bound: float, *, most: int) -> float:
-    """End of the flat part towards one bound, from at most `most` further designs."""
-    centre = float(best.parts[parameter])
+def _find_flat_end(evaluations: Evaluations, best: Design, parameter: int, bound: float, *, limit: int) -> float:
+    """End of the flat range towards one bound, with at most `limit` further designs."""
+    centre = float(best.fractions[parameter])
     if abs(centre - bound) <= RESOLUTION:
         return bound
 
-    def parts_at(part: float) -> FloatArray:
-        parts = best.parts.copy()
-        parts[parameter] = part
-        return parts
+    def fractions_with(fraction: float) -> FloatArray:
+        fractions = best.fractions.copy()
+        fractions[parameter] = fraction
+        return fractions
 
-    def excess(part: float) -> float:
+    def excess(fraction: float) -> float:
         """Difference of a design from the best beyond the errors of both."""
-        design = evaluations(parts_at(part))
+        design = evaluations(fractions_with(fraction))
         if not np.isfinite(design.value):
-            return CUT * best.error
-        return float(min(design.value - best.value - design.error - best.error, CUT * best.error))
+            return MAX_ERRORS * best.error
+        return float(min(design.value - best.value - design.error - best.error, MAX_ERRORS * best.error))
 
-    # Earlier designs on this line, from the best on; the first worse one ends the flat part.
-    inside, outside = centre, None
-    for part in sorted(_parts_on_line(evaluations, best, parameter), key=lambda part: abs(part - centre)):
-        if (part - centre) * (bound - centre) <= 0:
+    # Earlier designs on this line, outwards from the best; the first worse design ends the flat range.
+    flat_end, worse_end = centre, None
+    for fraction in sorted(
+        _fractions_on_line(evaluations, best, parameter), key=lambda fraction: abs(fraction - centre)
+    ):
+        if (fraction - centre) * (bound - centre) <= 0:
             continue
-        if excess(part) > 0:
-            outside = part
+        if excess(fraction) > 0:
+            worse_end = fraction
             break
-        inside = part
-    if outside is None:
-        if evaluations.evaluated(parts_at(bound)) is None:
-            if most < 1:
-                return inside
-            most -= 1
+        flat_end = fraction
+    if worse_end is None:
+        if evaluations.find_earlier(fractions_with(bound)) is None:
+            if limit < 1:
+                return flat_end
+            limit -= 1
         if excess(bound) <= 0:
             return bound
-        outside = bound
-    if abs(outside - inside) <= END_ACCURACY or most < 1:
-        return inside
+        worse_end = bound
+    if abs(worse_end - flat_end) <= END_ACCURACY or limit < 1:
+        return flat_end
     end, state = optimize.brentq(
-        excess, inside, outside, xtol=END_ACCURACY, rtol=1e-3, maxiter=most, full_output=True, disp=False
+        excess, flat_end, worse_end, xtol=END_ACCURACY, rtol=1e-3, maxiter=limit, full_output=True, disp=False
     )
     if state.converged:
         return float(end)
-    low, high = sorted((inside, outside))
-    within = [part for part in _parts_on_line(evaluations, best, parameter) if low <= part <= high]
-    return max((part for part in within if excess(part) <= 0), key=lambda part: abs(part - centre))
+    low, high = sorted((flat_end, worse_end))
+    inner = [fraction for fraction in _fractions_on_line(evaluations, best, parameter) if low <= fraction <= high]
+    return max((fraction for fraction in inner if excess(fraction) <= 0), key=lambda fraction: abs(fraction - centre))
 
 
-def _parts_on_line(evaluations: Evaluations, best: Design, parameter: int) -> list[float]:
-    """Parts of the designs that differ from the best in this parameter alone."""
-    further = np.delete(np.array([design.parts for design in evaluations.designs]), parameter, axis=1)
-    aligned = (np.abs(further - np.delete(best.parts, parameter)) <= RESOLUTION).all(axis=1)
-    return [float(design.parts[parameter]) for design, on in zip(evaluations.designs, aligned, strict=True) if on]
+def _fractions_on_line(evaluations: Evaluations, best: Design, parameter: int) -> list[float]:
+    """Fractions of the designs that differ from the best in this parameter alone."""
+    others = np.delete(np.array([design.fractions for design in evaluations.designs]), parameter, axis=1)
+    aligned = (np.abs(others - np.delete(best.fractions, parameter)) <= RESOLUTION).all(axis=1)
+    return [
+        float(design.fractions[parameter])
+        for design, is_aligned in zip(evaluations.designs, aligned, strict=True)
+        if is_aligned
+    ]
 
 
-AT_BOUND = 0.01  # Part of a range within which an optimum counts as lying at the bound
-# Default settings: a measure of the contact needs no stresses
+AT_BOUND = 0.01  # Fraction of a range between an optimum at a bound and the bound
+# Default settings: the default measure needs no stresses
 NO_STRESSES: Mapping[str, object] = MappingProxyType({"stresses": False})
 
 
@@ -297,7 +320,7 @@ def best_profile(
     settings: Mapping[str, object] = NO_STRESSES,
     evaluations: int = 60,
 ) -> xr.Dataset:
-    """Find the parameters of a profile for which a measure is least in the worst of several loads and tilts.
+    """Find the parameters of a profile that minimise the largest measure over loads and tilts.
 
     Parameters
     ----------
@@ -313,21 +336,21 @@ def best_profile(
     loads, max_pressures : sequence of float, optional
         Loads (N), or peak pressures of the Hertz line contact instead (Pa).
     tilts : sequence of float, optional
-        Radians; each is combined with every load.
+        Tilts, radians, for each of the loads.
     accuracy : float
         Accuracy of every contact, see :func:`contactstudy.solve`, and relative error of a measure without an error.
     settings : mapping
         Further arguments of `solve`: a measure of stresses needs ``{"y": ..., "z": ...}``.
     evaluations : int
         Bound on the number of designs, at least 8; with two, three, ... parameters at least 9, 17, ... The ends of the
-        flat range take at least four of them for each parameter, if the first scan leaves as many.
+        flat range take at least four designs per parameter, if the first scan leaves enough.
 
     Returns
     -------
     Dataset
         Along `parameter`: `optimum`; `flat_from` and `flat_to`, between which that parameter alone changes the measure
-        by less than the errors of both values; `lower_bound` and `upper_bound`, and whether the optimum lies at one of
-        them, `at_bound`; the coordinate `parameter_units`, empty for a user's function or class. `measure` of the
+        by less than the errors of both values; `lower_bound` and `upper_bound`, and whether the optimum equals one
+        of the bounds, `at_bound`; the coordinate `parameter_units`, empty for a user's function. `measure` of the
         optimum in its worst case and `measure_error`. Along `evaluation` every design: `design` (evaluation,
         parameter), `design_measure`, `design_measure_error`, and `case_measure` (evaluation, case) with the
         coordinates `case_load` (N) and `case_tilt` (rad).
@@ -342,7 +365,7 @@ def best_profile(
     Warns
     -----
     BoundWarning
-        If the optimum lies at a bound. It may be a local one: the result contains every design.
+        If the optimum equals a bound. The optimum may be local: the result contains all designs.
 
     Examples
     --------
@@ -356,7 +379,7 @@ def best_profile(
     """
     checks.instance("case", case, Case, "a Case")
     if not callable(profile):
-        raise InvalidInputError("profile", profile, "a class of profiles, or a function that makes one")
+        raise InvalidInputError("profile", profile, "a class of profiles, or a function that returns a profile")
     if not (isinstance(measure, str) or callable(measure)):
         raise InvalidInputError("measure", measure, "the name of a variable, or a function of the result")
     if not isinstance(bounds, Mapping) or not bounds:
@@ -368,81 +391,83 @@ def best_profile(
             raise InvalidInputError(f"bounds[{name!r}]", pair, "two numbers, the least and the largest value")
         ranges[str(name)] = Range(float(low), float(high))
     designs = Evaluations(
-        cases=_cases(case, loads, max_pressures, tilts),
+        cases=_create_cases(case, loads, max_pressures, tilts),
         profile=profile,
         ranges=ranges,
         measure=measure,
         accuracy=check_accuracy(accuracy),
         settings=dict(settings),
-        most=checks.count("evaluations", evaluations, minimum=fewest(len(ranges))),
+        max_designs=checks.count("evaluations", evaluations, minimum=min_designs(len(ranges))),
     )
-    best = optimum(designs)
-    ends = [flat_range(designs, best, index) for index in range(len(ranges))]
-    result = _dataset(designs, ends)
+    best = search_optimum(designs)
+    ends = [find_flat_range(designs, best, index) for index in range(len(ranges))]
+    result = _label_designs(designs, ends)
     for name in result["parameter"].values[result["at_bound"].values]:
         column = result.sel(parameter=name)
         value, low, high = (float(column[key]) for key in ("optimum", "lower_bound", "upper_bound"))
         warnings.warn(
-            f"the best {name} = {value:.4g} lies at a bound ({low:g} to {high:g}); widen the bounds if a roller can be "
-            "made so",
+            f"the best {name} = {value:.4g} lies at a bound ({low:g} to {high:g}); widen the bounds if "
+            "such a roller can be manufactured",
             BoundWarning,
             stacklevel=2,
         )
     return result
 
 
-def _numbers(name: str, values: object, unit: str) -> list[float]:
-    """Numbers in SI; none of None."""
+def _check_numbers(name: str, values: object, unit: str) -> list[float]:
+    """Return numbers in SI; an empty list for None."""
     if values is None:
         return []
     numbers = numbers_in_si(name, values, "rad" if unit == "radians" else unit)
     return [float(value) for value in checks.coordinates(name, numbers, unit)]
 
 
-def _cases(case: Case, loads: object, pressures: object, tilts: object) -> list[Case]:
-    """Every load with every tilt."""
+def _create_cases(case: Case, loads: object, pressures: object, tilts: object) -> list[Case]:
+    """Create a case per load and tilt."""
     if loads is not None and pressures is not None:
-        raise InvalidInputError("loads, max_pressures", (loads, pressures), "one of the two, the other None")
-    variants = [replace(case, load=load, max_pressure=None) for load in _numbers("loads", loads, "N")]
-    variants += [replace(case, load=None, max_pressure=peak) for peak in _numbers("max_pressures", pressures, "Pa")]
-    turned = [small_tilt(tilt) for tilt in _numbers("tilts", tilts, "radians")] or [case.tilt]
-    return [replace(loaded, tilt=tilt) for loaded in variants or [case] for tilt in turned]
+        raise InvalidInputError("loads, max_pressures", (loads, pressures), "one of both, or None")
+    variants = [replace(case, load=load, max_pressure=None) for load in _check_numbers("loads", loads, "N")]
+    variants += [
+        replace(case, load=None, max_pressure=peak) for peak in _check_numbers("max_pressures", pressures, "Pa")
+    ]
+    angles = [small_tilt(tilt) for tilt in _check_numbers("tilts", tilts, "radians")] or [case.tilt]
+    return [replace(variant, tilt=tilt) for variant in variants or [case] for tilt in angles]
 
 
-def _dataset(designs: Evaluations, ends: list[tuple[float, float]]) -> xr.Dataset:
+def _label_designs(designs: Evaluations, ends: list[tuple[float, float]]) -> xr.Dataset:
     """Label the optimum and every design."""
-    best, evaluated = designs.best, designs.designs
+    best, evaluated_designs = designs.best, designs.designs
     names, ranges = list(designs.ranges), list(designs.ranges.values())
-    flat = [
-        (limits.value(min(low, float(part))), limits.value(max(high, float(part))))
-        for limits, (low, high), part in zip(ranges, ends, best.parts, strict=True)
+    flat_ranges = [
+        (limits.parameter_at(min(low, float(fraction))), limits.parameter_at(max(high, float(fraction))))
+        for limits, (low, high), fraction in zip(ranges, ends, best.fractions, strict=True)
     ]
-    # A range that is flat throughout does not bound the optimum.
+    # An entirely flat range does not bound the optimum.
     at_bound = [
-        min(part, 1 - part) < AT_BOUND and not (low < AT_BOUND and high > 1 - AT_BOUND)
-        for (low, high), part in zip(ends, best.parts, strict=True)
+        min(fraction, 1 - fraction) < AT_BOUND and not (low < AT_BOUND and high > 1 - AT_BOUND)
+        for (low, high), fraction in zip(ends, best.fractions, strict=True)
     ]
-    parameters = [list(designs.parameters(design.parts).values()) for design in evaluated]
+    parameters = [list(designs.parameters(design.fractions).values()) for design in evaluated_designs]
     arrays: dict[str, tuple[object, object]] = {
-        "optimum": ("parameter", list(designs.parameters(best.parts).values())),
-        "flat_from": ("parameter", [low for low, _ in flat]),
-        "flat_to": ("parameter", [high for _, high in flat]),
+        "optimum": ("parameter", list(designs.parameters(best.fractions).values())),
+        "flat_from": ("parameter", [low for low, _ in flat_ranges]),
+        "flat_to": ("parameter", [high for _, high in flat_ranges]),
         "lower_bound": ("parameter", [limits.low for limits in ranges]),
         "upper_bound": ("parameter", [limits.high for limits in ranges]),
         "at_bound": ("parameter", at_bound),
         "measure": ((), best.value),
         "measure_error": ((), best.error),
         "design": (("evaluation", "parameter"), parameters),
-        "design_measure": ("evaluation", [design.value for design in evaluated]),
-        "design_measure_error": ("evaluation", [design.error for design in evaluated]),
-        "case_measure": (("evaluation", "case"), [design.values for design in evaluated]),
+        "design_measure": ("evaluation", [design.value for design in evaluated_designs]),
+        "design_measure_error": ("evaluation", [design.error for design in evaluated_designs]),
+        "case_measure": (("evaluation", "case"), [design.values for design in evaluated_designs]),
     }
     result = xr.Dataset(
         arrays,
         coords={
             "parameter": names,
             "parameter_units": ("parameter", [unit_of(designs.profile, name) for name in names]),
-            "evaluation": np.arange(1, len(evaluated) + 1),
+            "evaluation": np.arange(1, len(evaluated_designs) + 1),
             "case": np.arange(1, len(designs.cases) + 1),
             "case_load": ("case", [case.normal_load for case in designs.cases]),
             "case_tilt": ("case", [case.tilt for case in designs.cases]),

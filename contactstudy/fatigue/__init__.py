@@ -1,6 +1,6 @@
 """Fatigue of a raceway that rollers pass: measures of the stress history of every material point, and relative life.
 
-The field along y at one (x, z) is the history of the material point there, together with the unloaded state before
+The field along y at one (x, z) is the history of the material point, together with the unloaded state before
 and after; the window along y must hold the extremes, see :func:`window_remainder`. The orthogonal shear range
 is :func:`contactstudy.stress.orthogonal_shear_range`.
 """

@@ -22,15 +22,15 @@ import xarray as xr
 from contactstudy import checks
 from contactstudy.analysis import positions
 from contactstudy.arrays.variables import AXES, VARIABLES, describe
-from contactstudy.case.magnitudes import warn_doubtful_values
+from contactstudy.case.magnitudes import warn_of_values
 from contactstudy.checks import Array
 from contactstudy.errors import InvalidInputError
-from contactstudy.fatigue.history import enclosing_balls, histories, of_points, over_history
+from contactstudy.fatigue.history import enclosing_balls, label_points, map_histories, stack_history
 
 
 @dataclass(frozen=True, kw_only=True)
 class FatigueLimits:
-    """Amplitudes that the material endures for ever under fully reversed loading.
+    """Endurance limits of the material under fully reversed loading.
 
     Parameters
     ----------
@@ -42,13 +42,13 @@ class FatigueLimits:
     Raises
     ------
     InvalidInputError
-        If a limit is not positive, or their ratio is not between 1/2 and 1, where Dang Van's and Findley's criteria
-        have a meaning (Crossland's criterion requires at least 1/sqrt(3)).
+        If a limit is not positive, or their ratio is not between 1/2 and 1, the range of Dang Van's and Findley's
+        criteria (Crossland's criterion requires at least 1/sqrt(3)).
 
     Warns
     -----
     MagnitudeWarning
-        If a limit is of a size that is mostly a mistake in the unit.
+        If a limit lies outside its usual range, which suggests a wrong unit.
 
     Examples
     --------
@@ -67,7 +67,7 @@ class FatigueLimits:
             raise InvalidInputError(
                 "torsion", self.torsion, f"between half of the limit in bending and that limit, {self.bending:g} Pa"
             )
-        warn_doubtful_values(stacklevel=4, bending=self.bending, torsion=self.torsion)
+        warn_of_values(stacklevel=4, bending=self.bending, torsion=self.torsion)
 
     @property
     def ratio(self) -> float:
@@ -76,12 +76,12 @@ class FatigueLimits:
 
     @property
     def dang_van_slope(self) -> float:
-        """``alpha = 3 (tau_w / sigma_w - 1/2)``: bending, shear s/2 and hydrostatic stress s/3, is on the limit."""
+        """``alpha = 3 (tau_w / sigma_w - 1/2)``: bending (shear s/2, hydrostatic stress s/3) is at the limit."""
         return 3 * (self.ratio - 0.5)
 
     @property
     def crossland_slope(self) -> float:
-        """``A = 3 tau_w / sigma_w - sqrt(3)``: bending, sqrt(J2) s/sqrt(3), hydrostatic s/3, is on the limit."""
+        """``A = 3 tau_w / sigma_w - sqrt(3)``: bending (sqrt(J2) s/sqrt(3), hydrostatic s/3) is at the limit."""
         slope = 3 * self.ratio - np.sqrt(3)
         # A ratio of 1 / sqrt(3) gives zero up to rounding.
         if slope < -1e-9:
@@ -94,9 +94,9 @@ class FatigueLimits:
 
     @property
     def findley_slope(self) -> float:
-        """``k`` that puts bending and torsion on the limit: ``k / sqrt(1 + k**2) = 2 tau_w/sigma_w - 1``."""
-        share = 2 * self.ratio - 1
-        return float(share / np.sqrt(1 - share**2))
+        """``k`` with bending and torsion at the limit: ``k / sqrt(1 + k**2) = 2 tau_w/sigma_w - 1``."""
+        ratio = 2 * self.ratio - 1
+        return float(ratio / np.sqrt(1 - ratio**2))
 
     @property
     def findley_limit(self) -> float:
@@ -104,8 +104,8 @@ class FatigueLimits:
         return float(self.torsion * np.sqrt(1 + self.findley_slope**2))
 
 
-def _deviators(history: Array) -> tuple[Array, Array]:
-    """Deviators (point, instant, 5) in axes where their length is the tensor's, and hydrostatic stresses."""
+def _compute_deviators(history: Array) -> tuple[Array, Array]:
+    """Deviators (point, instant, 5) in axes that preserve the tensor's norm, and hydrostatic stresses."""
     xx, yy, zz, xy, xz, yz = np.moveaxis(history, -1, 0)
     mean = (xx + yy + zz) / 3
     root = np.sqrt(2.0)
@@ -114,7 +114,7 @@ def _deviators(history: Array) -> tuple[Array, Array]:
     return np.stack(vector, axis=-1), mean
 
 
-def _largest_shear(deviator: Array) -> Array:
+def _max_shear(deviator: Array) -> Array:
     """Half of Tresca's stress of deviators in Ilyushin's axes."""
     first, difference, xy, xz, yz = np.moveaxis(deviator, -1, 0)
     root = np.sqrt(2.0)
@@ -128,7 +128,7 @@ def _largest_shear(deviator: Array) -> Array:
 
 def _to_dataset(criterion: str, values: dict[str, xr.DataArray]) -> xr.Dataset:
     """Results of a criterion with their names and units."""
-    return xr.Dataset({name: of_points(name, array, VARIABLES[criterion]) for name, array in values.items()})
+    return xr.Dataset({name: label_points(name, array, VARIABLES[criterion]) for name, array in values.items()})
 
 
 def dang_van(stress: xr.Dataset, limits: FatigueLimits) -> xr.Dataset:
@@ -144,23 +144,23 @@ def dang_van(stress: xr.Dataset, limits: FatigueLimits) -> xr.Dataset:
         The six components with the rolling direction y over the whole passage, see :func:`window_remainder`; residual
         stresses may be added.
     limits : FatigueLimits
-        Of the material.
+        Limits of the material.
 
     Returns
     -------
     Dataset
-        Without the rolling direction: `dang_van` (Pa), the largest of the sum; `utilisation`, that over ``tau_w``;
-        `dang_van_shear` and `dang_van_hydrostatic` (Pa), both terms at that instant, and `dang_van_y` (m), where that
-        is (NaN for the unloaded state). Their errors are not estimated.
+        Without the rolling direction: `dang_van` (Pa), the largest sum; `utilisation`, the sum over ``tau_w``;
+        `dang_van_shear` and `dang_van_hydrostatic` (Pa), both terms at the instant of the largest sum, and
+        `dang_van_y` (m), its position (NaN for the unloaded state). Their errors are not estimated.
 
     Raises
     ------
     InvalidInputError
-        If a component or the rolling direction is missing, or the limits are none.
+        If a component or the rolling direction is missing, or `limits` are no FatigueLimits.
 
     Examples
     --------
-    A cycle of pure shear of amplitude 1: the criterion is the amplitude.
+    For a cycle of pure shear the criterion is the amplitude.
 
     >>> from contactstudy.arrays.variables import STRESSES
     >>> wave = xr.DataArray([0.0, 1.0, 0.0, -1.0], dims="y", coords={"y": [0.0, 1.0, 2.0, 3.0]})
@@ -170,27 +170,27 @@ def dang_van(stress: xr.Dataset, limits: FatigueLimits) -> xr.Dataset:
     (1.0, 1.0)
     """
     checks.instance("limits", limits, FatigueLimits, "a FatigueLimits")
-    tensor, rolling = histories(stress)
+    tensor, rolling = stack_history(stress)
 
     def criterion(history: Array) -> tuple[Array, ...]:
-        deviator, mean = _deviators(history)
+        deviator, mean = _compute_deviators(history)
         centre, _ = enclosing_balls(deviator)
-        shear = _largest_shear(deviator - centre[:, None])
+        shear = _max_shear(deviator - centre[:, None])
         total = shear + limits.dang_van_slope * mean
         instant_index = total.argmax(axis=1)[:, None]
-        chosen = [np.take_along_axis(values, instant_index, axis=1)[:, 0] for values in (total, shear, mean)]
-        return (*chosen, instant_index[:, 0].astype(np.float64))
+        terms_at_maximum = [np.take_along_axis(values, instant_index, axis=1)[:, 0] for values in (total, shear, mean)]
+        return (*terms_at_maximum, instant_index[:, 0].astype(np.float64))
 
-    total, shear, mean, instant = over_history(criterion, stress, 4)
+    total, shear, mean, instant = map_histories(criterion, stress, 4)
     instant = instant.compute()
     loaded = instant < tensor.sizes[rolling]
-    number = instant.where(loaded, 0).astype(np.int64).reset_coords(drop=True)
+    index = instant.where(loaded, 0).astype(np.int64).reset_coords(drop=True)
     values = {
         "dang_van": total,
         "utilisation": total / limits.torsion,
         "dang_van_shear": shear,
         "dang_van_hydrostatic": mean,
-        "dang_van_y": positions(tensor, "y").isel({rolling: number}).where(loaded),
+        "dang_van_y": positions(tensor, "y").isel({rolling: index}).where(loaded),
     }
     return _to_dataset("dang_van", values)
 
@@ -207,7 +207,7 @@ def crossland(stress: xr.Dataset, limits: FatigueLimits) -> xr.Dataset:
     stress : Dataset
         As for :func:`dang_van`.
     limits : FatigueLimits
-        Of the material, with a torsion limit of at least the bending limit over sqrt(3).
+        Limits of the material, with a torsion limit of at least the bending limit over sqrt(3).
 
     Returns
     -------
@@ -218,11 +218,11 @@ def crossland(stress: xr.Dataset, limits: FatigueLimits) -> xr.Dataset:
     Raises
     ------
     InvalidInputError
-        If a component or the rolling direction is missing, or the limits do not suit.
+        If a component or the rolling direction is missing, or the limits contradict the criterion.
 
     Examples
     --------
-    A push-pull cycle at the limit in bending: on the limit.
+    A push-pull cycle at the limit in bending has a utilisation of 1.
 
     >>> from contactstudy.arrays.variables import STRESSES
     >>> wave = xr.DataArray([0.0, 1.0, 0.0, -1.0], dims="y", coords={"y": [0.0, 1.0, 2.0, 3.0]})
@@ -234,11 +234,11 @@ def crossland(stress: xr.Dataset, limits: FatigueLimits) -> xr.Dataset:
     slope = limits.crossland_slope
 
     def criterion(history: Array) -> tuple[Array, ...]:
-        deviator, mean = _deviators(history)
+        deviator, mean = _compute_deviators(history)
         _, radius = enclosing_balls(deviator)
         return radius / np.sqrt(2.0), mean.max(axis=1)
 
-    shear, mean = over_history(criterion, stress, 2)
+    shear, mean = map_histories(criterion, stress, 2)
     total = shear + slope * mean
     values = {
         "crossland": total,
@@ -249,93 +249,93 @@ def crossland(stress: xr.Dataset, limits: FatigueLimits) -> xr.Dataset:
     return _to_dataset("crossland", values)
 
 
-# Planes of the first search, evenly over a hemisphere (10 degrees apart), and shear directions in each
+# Planes of the first search, evenly over a hemisphere (10 degrees apart), and shear directions per plane
 NORMALS, DIRECTIONS = 200, 8
-STARTS = 4  # Best frames of the first search that are refined
+STARTS = 4  # Number of refined frames
 # Largest and smallest rotation of plane and direction in the refinement
-FIRST_TURN, LAST_TURN = np.radians(8.0), np.radians(1e-3)
+MAX_ROTATION, MIN_ROTATION = np.radians(8.0), np.radians(1e-3)
 
 
 @cache
-def _frames() -> Array:
-    """Frames (number, 2, 3): a normal and a shear direction in its plane."""
-    number = np.arange(NORMALS) + 0.5
-    height = 1 - number / NORMALS
-    azimuth = np.pi * (1 + np.sqrt(5)) * number
+def _create_frames() -> Array:
+    """Frames (frame, 2, 3): a normal and a shear direction in its plane."""
+    index = np.arange(NORMALS) + 0.5
+    height = 1 - index / NORMALS
+    azimuth = np.pi * (1 + np.sqrt(5)) * index
     radius = np.sqrt(1 - height**2)
     normal = np.stack([radius * np.cos(azimuth), radius * np.sin(azimuth), height], axis=-1)
-    aside = np.cross(normal, np.where(np.abs(normal[:, :1]) < 0.7, [[1.0, 0, 0]], [[0, 1.0, 0]]))
-    aside /= np.linalg.norm(aside, axis=-1, keepdims=True)
-    upwards = np.cross(normal, aside)
+    first = np.cross(normal, np.where(np.abs(normal[:, :1]) < 0.7, [[1.0, 0, 0]], [[0, 1.0, 0]]))
+    first /= np.linalg.norm(first, axis=-1, keepdims=True)
+    second = np.cross(normal, first)
     angle = np.pi * np.arange(DIRECTIONS) / DIRECTIONS
     direction = (
-        aside[:, None] * np.cos(angle)[None, :, None] + upwards[:, None] * np.sin(angle)[None, :, None]
+        first[:, None] * np.cos(angle)[None, :, None] + second[:, None] * np.sin(angle)[None, :, None]
     ).reshape(-1, 3)
     return np.stack([np.repeat(normal, DIRECTIONS, axis=0), direction], axis=1)
 
 
-def _resolvers(frames: Array) -> tuple[Array, Array]:
-    """Vectors (..., 6) that give shear ``n.sigma.m`` and normal stress ``n.sigma.n`` of the six components."""
+def _resolution_vectors(frames: Array) -> tuple[Array, Array]:
+    """Vectors (..., 6) of shear ``n.sigma.m`` and normal stress ``n.sigma.n`` over the six components."""
     normal, direction = frames[..., 0, :], frames[..., 1, :]
 
-    def resolver(first: Array, second: Array) -> Array:
+    def create_resolver(first: Array, second: Array) -> Array:
         (ax, ay, az), (bx, by, bz) = np.moveaxis(first, -1, 0), np.moveaxis(second, -1, 0)
-        mixed = (ax * by + ay * bx, ax * bz + az * bx, ay * bz + az * by)
-        return np.stack([ax * bx, ay * by, az * bz, *mixed], axis=-1)
+        shear_terms = (ax * by + ay * bx, ax * bz + az * bx, ay * bz + az * by)
+        return np.stack([ax * bx, ay * by, az * bz, *shear_terms], axis=-1)
 
-    # Off the diagonal, n.sigma.n counts each component twice; the resolver does so already.
-    return resolver(normal, direction), resolver(normal, normal)
+    # The resolver contains the factor 2 of the shear components in n.sigma.n.
+    return create_resolver(normal, direction), create_resolver(normal, normal)
 
 
-def _damage(history: Array, frames: Array, slope: float) -> tuple[Array, Array, Array]:
+def _compute_damage(history: Array, frames: Array, slope: float) -> tuple[Array, Array, Array]:
     """Sum, shear amplitude and largest normal stress on one frame per point and candidate (point, candidate)."""
-    shear_of, normal_of = _resolvers(frames)
-    shear = np.einsum("ptc,pkc->pkt", history, shear_of)
-    largest = np.einsum("ptc,pkc->pkt", history, normal_of).max(axis=-1)
+    shear_vectors, normal_vectors = _resolution_vectors(frames)
+    shear = np.einsum("ptc,pkc->pkt", history, shear_vectors)
+    max_normal = np.einsum("ptc,pkc->pkt", history, normal_vectors).max(axis=-1)
     amplitude = 0.5 * (shear.max(axis=-1) - shear.min(axis=-1))
-    return amplitude + slope * largest, amplitude, largest
+    return amplitude + slope * max_normal, amplitude, max_normal
 
 
-def _turned(frames: Array, turn: Array) -> Array:
-    """Frames (frame, candidate, 2, 3): as they are, and turned by `turn` about 14 axes around each."""
+def _rotate_frames(frames: Array, angle: Array) -> Array:
+    """Frames (frame, candidate, 2, 3): unchanged, and rotated by `angle` about 14 axes."""
     from scipy.spatial.transform import Rotation
 
     corners = np.array(list(product((-1.0, 1.0), repeat=3))) / np.sqrt(3)
     axes = np.concatenate([np.eye(3), -np.eye(3), corners])
-    vectors = turn[:, None, None] * np.concatenate([np.zeros((1, 3)), axes])
-    turns = Rotation.from_rotvec(vectors.reshape(-1, 3)).as_matrix().reshape(len(frames), -1, 3, 3)
-    return np.asarray(np.einsum("fkij,fnj->fkni", turns, frames))
+    vectors = angle[:, None, None] * np.concatenate([np.zeros((1, 3)), axes])
+    rotations = Rotation.from_rotvec(vectors.reshape(-1, 3)).as_matrix().reshape(len(frames), -1, 3, 3)
+    return np.asarray(np.einsum("fkij,fnj->fkni", rotations, frames))
 
 
 def _worst_planes(history: Array, slope: float) -> tuple[Array, ...]:
-    """Sum, shear amplitude, largest normal stress and components of the normal of the worst plane of each history."""
-    first = _frames()
-    shear_of, normal_of = _resolvers(first)
+    """Sum, shear amplitude, largest normal stress and components of the normal, on the worst plane of each history."""
+    search_frames = _create_frames()
+    shear_vectors, normal_vectors = _resolution_vectors(search_frames)
     best = np.empty((len(history), STARTS, 2, 3))
-    block = max(1, 2**24 // (history.shape[1] * len(first)))  # Numbers held at once in the first search
+    block = max(1, 2**24 // (history.shape[1] * len(search_frames)))  # Bound on the memory of the first search
     for start in range(0, len(history), block):
-        part = history[start : start + block]
-        shear = part @ shear_of.T
-        largest = np.repeat((part @ normal_of[::DIRECTIONS].T).max(axis=1), DIRECTIONS, axis=1)
-        damage = 0.5 * (shear.max(axis=1) - shear.min(axis=1)) + slope * largest
-        best[start : start + block] = first[np.argpartition(damage, -STARTS, axis=1)[:, -STARTS:]]
+        block_history = history[start : start + block]
+        shear = block_history @ shear_vectors.T
+        max_normal = np.repeat((block_history @ normal_vectors[::DIRECTIONS].T).max(axis=1), DIRECTIONS, axis=1)
+        damage = 0.5 * (shear.max(axis=1) - shear.min(axis=1)) + slope * max_normal
+        best[start : start + block] = search_frames[np.argpartition(damage, -STARTS, axis=1)[:, -STARTS:]]
     frames = best.reshape(-1, 2, 3)
-    owner = np.repeat(np.arange(len(history)), STARTS)
-    turn = np.full(len(frames), FIRST_TURN)
+    point = np.repeat(np.arange(len(history)), STARTS)
+    angle = np.full(len(frames), MAX_ROTATION)
     active = np.arange(len(frames))
-    # Gains of rounding errors are none: where all planes are alike the search would wander for ever.
-    least = 1e-11 * np.abs(history).max(axis=(1, 2))  # Least gain of a turned plane over the largest stress: rounding
+    # The search ignores gains below rounding; otherwise equivalent planes prevent its end.
+    min_gain = 1e-11 * np.abs(history).max(axis=(1, 2))  # Minimum gain of a rotation: rounding
     while active.size:
-        candidates = _turned(frames[active], turn[active])
-        damage, _, _ = _damage(history[owner[active]], candidates, slope)
-        worse = np.where(damage.max(axis=1) > damage[:, 0] + least[owner[active]], damage.argmax(axis=1), 0)
-        frames[active] = candidates[np.arange(active.size), worse]
-        turn[active[worse == 0]] *= 0.5
-        active = active[turn[active] > LAST_TURN]
-    refined = frames.reshape(-1, STARTS, 2, 3)
-    damage_terms = _damage(history, refined, slope)
+        candidates = _rotate_frames(frames[active], angle[active])
+        damage, _, _ = _compute_damage(history[point[active]], candidates, slope)
+        better = np.where(damage.max(axis=1) > damage[:, 0] + min_gain[point[active]], damage.argmax(axis=1), 0)
+        frames[active] = candidates[np.arange(active.size), better]
+        angle[active[better == 0]] *= 0.5
+        active = active[angle[active] > MIN_ROTATION]
+    refined_frames = frames.reshape(-1, STARTS, 2, 3)
+    damage_terms = _compute_damage(history, refined_frames, slope)
     worst = damage_terms[0].argmax(axis=1)[:, None]
-    normal = np.take_along_axis(refined[:, :, 0], worst[..., None], axis=1)[:, 0]
+    normal = np.take_along_axis(refined_frames[:, :, 0], worst[..., None], axis=1)[:, 0]
     normal = normal * np.where(normal[:, 2] < 0, -1.0, 1.0)[:, None]
     return (*(np.take_along_axis(values, worst, axis=1)[:, 0] for values in damage_terms), *normal.T)
 
@@ -344,32 +344,32 @@ def findley(stress: xr.Dataset, limits: FatigueLimits) -> xr.Dataset:
     """Findley's criterion ``max over planes of tau_a + k sigma_n,max <= f`` for every material point.
 
     On a plane, ``tau_a`` is half of the largest range of the shear stress resolved in one direction during the history,
-    and ``sigma_n,max`` the largest normal stress, positive in tension, and not below zero of the unloaded point. The
-    worst planes are searched over a hemisphere in steps of about 10 degrees, and turned until no rotation by 0.001
-    degrees makes it worse. ``k`` and ``f`` follow from the limits.
+    and ``sigma_n,max`` the largest normal stress, positive in tension, at least zero by the unloaded state. The
+    search starts from planes of about 10 degrees, and rotates the worst planes until no rotation by 0.001
+    degrees increases the sum. ``k`` and ``f`` follow from the limits.
 
     Parameters
     ----------
     stress : Dataset
         As for :func:`contactstudy.fatigue.dang_van`.
     limits : FatigueLimits
-        Of the material.
+        Limits of the material.
 
     Returns
     -------
     Dataset
-        As of :func:`dang_van`: `findley` (Pa), the sum on the worst plane; `utilisation` (1), that over ``f``;
-        `findley_shear` and `findley_normal` (Pa), ``tau_a`` and ``sigma_n,max`` there; `findley_plane` (..., axis),
+        As of :func:`dang_van`: `findley` (Pa), the sum on the worst plane; `utilisation` (1), the sum over ``f``;
+        `findley_shear` and `findley_normal` (Pa), its ``tau_a`` and ``sigma_n,max``; `findley_plane` (..., axis),
         its unit normal with the components `axis` = x, y, z, turned towards larger depth.
 
     Raises
     ------
     InvalidInputError
-        If a component or the rolling direction is missing, or the limits are none.
+        If a component or the rolling direction is missing, or `limits` are no FatigueLimits.
 
     Examples
     --------
-    A cycle of pure shear at the limit in torsion: on the limit.
+    A cycle of pure shear at the limit in torsion has a utilisation of 1.
 
     >>> from contactstudy.arrays.variables import STRESSES
     >>> wave = xr.DataArray([0.0, 1.0, 0.0, -1.0], dims="y", coords={"y": [0.0, 1.0, 2.0, 3.0]})
@@ -378,7 +378,9 @@ def findley(stress: xr.Dataset, limits: FatigueLimits) -> xr.Dataset:
     1.0
     """
     checks.instance("limits", limits, FatigueLimits, "a FatigueLimits")
-    total, shear, normal, *plane = over_history(lambda history: _worst_planes(history, limits.findley_slope), stress, 6)
+    total, shear, normal, *plane = map_histories(
+        lambda history: _worst_planes(history, limits.findley_slope), stress, 6
+    )
     values = {
         "findley": total,
         "utilisation": total / limits.findley_limit,

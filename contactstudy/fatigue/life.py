@@ -21,7 +21,7 @@ from contactstudy.analysis.axes import axis_dimensions, reduce_dims
 from contactstudy.arrays.variables import ERROR_KIND, NOT_ESTIMATED, in_si, name_array, require, require_in_si
 from contactstudy.checks import Array, IntArray
 from contactstudy.errors import InvalidInputError
-from contactstudy.fatigue.history import of_points, rolling_dimension
+from contactstudy.fatigue.history import label_points, rolling_dimension
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -34,11 +34,11 @@ class LifeExponents:
     Parameters
     ----------
     stress : float
-        ``c``, of the stress.
+        Exponent ``c`` of the stress.
     depth : float
-        ``h``, of the depth.
+        Exponent ``h`` of the depth.
     weibull : float
-        ``e``, slope of the Weibull distribution of lives: 9/8 for line contact, 10/9 for point contact.
+        Slope ``e`` of the Weibull distribution of lives: 9/8 for line contact, 10/9 for point contact.
 
     Raises
     ------
@@ -77,7 +77,7 @@ def relative_life(risk: xr.Dataset, reference: xr.Dataset, exponents: LifeExpone
         Results of :func:`lundberg_palmgren`, or both of :func:`ioannides_harris` with the same limit; for example the
         body with free ends and the half-space.
     exponents : LifeExponents
-        Those that both were computed with.
+        Exponents of both risks.
 
     Returns
     -------
@@ -92,8 +92,8 @@ def relative_life(risk: xr.Dataset, reference: xr.Dataset, exponents: LifeExpone
 
     Examples
     --------
-    >>> one, twice = (xr.Dataset({"risk": xr.DataArray(value, attrs={"units": "1"})}) for value in (1.0, 2.0))
-    >>> round(float(relative_life(twice, one)), 6) == round(0.5 ** (8 / 9), 6)
+    >>> single, double = (xr.Dataset({"risk": xr.DataArray(value, attrs={"units": "1"})}) for value in (1.0, 2.0))
+    >>> round(float(relative_life(double, single)), 6) == round(0.5 ** (8 / 9), 6)
     True
     """
     checks.instance("exponents", exponents, LifeExponents, "a LifeExponents")
@@ -109,29 +109,29 @@ def relative_life(risk: xr.Dataset, reference: xr.Dataset, exponents: LifeExpone
                 "reference", f"{name} = {reference_value}", f"computed as risk was, {name} = {value}"
             )
     risks, references = risk["risk"], reference["risk"]
-    # Without any risk the life is infinite, unless the reference has none either.
+    # Without risk the life is infinite, unless the reference has no risk.
     ratio = (references / risks.where(risks > 0)).where((risks != 0) | (references == 0), np.inf)
     life = name_array("relative_life", ratio ** (1 / exponents.weibull))
     if not all("risk_error" in dataset for dataset in (risk, reference)):
         return life.assign_attrs({ERROR_KIND: NOT_ESTIMATED})
-    part, reference_part = (
+    relative_error, reference_error = (
         result["risk_error"] / result["risk"].where(result["risk"] > 0) for result in (risk, reference)
     )
-    # The longest life that the errors allow: no bound if there may be no risk at all.
-    most = ((1 + reference_part) / (1 - part).clip(0.0)) ** (1 / exponents.weibull)
-    error = (life * (most - 1)).reset_coords(drop=True)
+    # The longest life within the errors; infinite if the risk may be zero.
+    max_factor = ((1 + reference_error) / (1 - relative_error).clip(0.0)) ** (1 / exponents.weibull)
+    error = (life * (max_factor - 1)).reset_coords(drop=True)
     return life.assign_coords(relative_life_error=name_array("relative_life_error", error))
 
 
-CUT_OFF = 0.01  # Largest part of the risk from sections with a truncated history or depth
+MAX_TRUNCATED_RISK = 0.01  # Maximum fraction of the risk from sections with a truncated history or depth
 Data = TypeVar("Data", xr.Dataset, xr.DataArray)  # Data of a risk
-ALONG_X_AND_Z = (
-    "of the positions along x and z alone: not of those along y, over which the measure is taken, or the pressure"
+ERROR_ALONG_X_AND_Z = (
+    "of the positions along x and z alone, without the error of the positions along y and of the pressure"
 )
-POSITIONS_ALONE = "from the distance of the positions alone: the result states no error of its pressure"
+ERROR_OF_POSITIONS = "from the distance of the positions alone: the result states no error of its pressure"
 
 
-def _depths(stress: xr.DataArray) -> tuple[str, xr.DataArray]:
+def _depth_positions(stress: xr.DataArray) -> tuple[str, xr.DataArray]:
     """Dimension and positions along the depth, NaN where padded."""
     dim = dimension_along(stress, "z")
     if stress.sizes[dim] < 3:
@@ -139,8 +139,8 @@ def _depths(stress: xr.DataArray) -> tuple[str, xr.DataArray]:
     return dim, positions(stress, "z")
 
 
-def _crest(stress: Array, depth: Array) -> tuple[Array, Array]:
-    """Largest stress over the depth and where it is, by a parabola through the three points around it."""
+def _find_maximum(stress: Array, depth: Array) -> tuple[Array, Array]:
+    """Largest stress over the depth and its position, by a parabola through the three nearest points."""
     depth = np.broadcast_to(depth, stress.shape)
     filled = np.where(np.isnan(stress), -np.inf, stress)
     index = filled.argmax(axis=-1)
@@ -153,74 +153,83 @@ def _crest(stress: Array, depth: Array) -> tuple[Array, Array]:
     with np.errstate(divide="ignore", invalid="ignore"):
         slope_before, slope_after = (s2 - s1) / (z2 - z1), (s3 - s2) / (z3 - z2)
         curvature = (slope_after - slope_before) / (z3 - z1)
-        top = 0.5 * (z1 + z2) - slope_before / (2 * curvature)
-        crest = s2 + (top - z2) * (slope_before + curvature * (top - z1))
-    inside = np.isfinite(crest) & (curvature < 0)
+        position = 0.5 * (z1 + z2) - slope_before / (2 * curvature)
+        maximum = s2 + (position - z2) * (slope_before + curvature * (position - z1))
+    inside = np.isfinite(maximum) & (curvature < 0)
     finite = np.isfinite(s2)
-    return np.where(finite, np.where(inside, crest, s2), np.nan), np.where(finite, np.where(inside, top, z2), np.nan)
+    return np.where(finite, np.where(inside, maximum, s2), np.nan), np.where(
+        finite, np.where(inside, position, z2), np.nan
+    )
 
 
-def _integral(density: Array, position: Array) -> Array:
-    """Trapezoidal integral along the last axis; padded positions count nothing."""
+def _integrate(density: Array, position: Array) -> Array:
+    """Trapezoidal integral along the last axis without padded positions."""
     position = np.broadcast_to(position, density.shape)
-    absent = np.isnan(density) | np.isnan(position)
-    pieces = 0.5 * (density[..., 1:] + density[..., :-1]) * np.abs(np.diff(position, axis=-1))
-    total = np.where(absent[..., 1:] | absent[..., :-1], 0.0, pieces).sum(axis=-1)
-    return np.asarray(np.where(absent.all(axis=-1), np.nan, total))
+    padding = np.isnan(density) | np.isnan(position)
+    areas = 0.5 * (density[..., 1:] + density[..., :-1]) * np.abs(np.diff(position, axis=-1))
+    total = np.where(padding[..., 1:] | padding[..., :-1], 0.0, areas).sum(axis=-1)
+    return np.asarray(np.where(padding.all(axis=-1), np.nan, total))
 
 
-def _along_axis(
-    density: xr.DataArray, exponents: LifeExponents, theory: Mapping[str, str | float], cut: dict[str, xr.DataArray]
+def _integrate_risk(
+    density: xr.DataArray,
+    exponents: LifeExponents,
+    theory: Mapping[str, str | float],
+    cut: dict[str, xr.DataArray],
 ) -> xr.Dataset:
-    """Risk along x, and integrated over x; `cut` marks sections with a truncated stress, by the reason."""
+    """Risk along x, and integrated over x; `cut`: sections with a truncated stress, by the reason."""
     x = dimension_along(density, "x")
     if density.sizes[x] < 2:
         raise InvalidInputError("stress", dict(density.sizes), "given at two or more positions along x")
     density = density.compute()
     if (positions(density, "x").diff(x) <= 0).any():
         raise InvalidInputError("x", positions(density, "x").values, "increasing positions")
-    risk = _over_x(density)
-    for name, where in cut.items():
-        part = _over_x(density.where(where, 0.0)) / risk.where(risk > 0)
-        if (part > CUT_OFF).any():
+    risk = _sum_over_x(density)
+    for name, mask in cut.items():
+        fraction = _sum_over_x(density.where(mask, 0.0)) / risk.where(risk > 0)
+        if (fraction > MAX_TRUNCATED_RISK).any():
             raise InvalidInputError(
                 "stress",
-                f"{name} in sections with {float(part.max()):.2g} of the risk",
-                f"largest inside; at most {CUT_OFF:g} of the risk may be cut off",
+                f"{name} in sections with {float(fraction.max()):.2g} of the risk",
+                f"largest inside; at most {MAX_TRUNCATED_RISK:g} of the risk may be cut off",
                 "solve with y over the whole passage, for example from -3 to 3 half-widths, and z from 0 to 2",
             )
     return xr.Dataset(
         {
-            "risk_density": of_points("risk_density", density).assign_attrs(units=exponents.units(1)),
+            "risk_density": label_points("risk_density", density).assign_attrs(units=exponents.units(1)),
             "risk": name_array("risk", risk).assign_attrs(units=exponents.units(2), **theory),
         }
     )
 
 
-def _over_x(density: xr.DataArray) -> xr.DataArray:
+def _sum_over_x(density: xr.DataArray) -> xr.DataArray:
     """Integral of a density over x."""
     x = dimension_along(density, "x")
     pair = density, positions(density, "x")
-    risk: xr.DataArray = xr.apply_ufunc(_integral, *pair, input_core_dims=[[x], [x]], dask="allowed")
+    risk: xr.DataArray = xr.apply_ufunc(_integrate, *pair, input_core_dims=[[x], [x]], dask="allowed")
     return risk.reset_coords(drop=True)
 
 
-def _error(data: Data, of: xr.DataArray, risk: xr.DataArray, risk_of: Callable[[Data], xr.DataArray]) -> xr.DataArray:
+def _estimate_error(
+    data: Data, field: xr.DataArray, risk: xr.DataArray, compute_risk: Callable[[Data], xr.DataArray]
+) -> xr.DataArray:
     """Sum over the axes of the change with every second position; infinite with too few positions."""
     error = np.zeros(risk.shape)
-    for axis, dim in axis_dimensions(of).items():
-        parts = [np.arange(start, of.sizes[dim], 2) for start in (0, 1)]
-        if axis == "x":  # over which is integrated: with the last one
-            parts = [np.unique(np.append(parts[0], of.sizes[dim] - 1))]
-        # Least number of every second position along an axis for an error estimate; along x a risk needs two
-        if any(part.size < 3 for part in parts):
+    for axis, dim in axis_dimensions(field).items():
+        subsets = [np.arange(start, field.sizes[dim], 2) for start in (0, 1)]
+        if axis == "x":  # the integral over x includes the last position
+            subsets = [np.unique(np.append(subsets[0], field.sizes[dim] - 1))]
+        # An error estimate needs three of every second position.
+        if any(indices.size < 3 for indices in subsets):
             return xr.full_like(risk, np.inf)
-        error += np.max([np.abs(risk_of(data.isel({dim: part})).values - risk.values) for part in parts], axis=0)
+        error += np.max(
+            [np.abs(compute_risk(data.isel({dim: indices})).values - risk.values) for indices in subsets], axis=0
+        )
     return risk.copy(data=error)
 
 
-def _with_error(result: xr.Dataset, error: xr.DataArray, comment: str) -> xr.Dataset:
-    """Return a result with the error of its risk; without a risk there is no error."""
+def _assign_error(result: xr.Dataset, error: xr.DataArray, comment: str) -> xr.Dataset:
+    """Return a result with the error of its risk; zero for a risk of zero."""
     risk = result["risk"]
     total = name_array("risk_error", error.where(risk != 0, 0.0))
     return result.assign(risk_error=total.assign_attrs(units=risk.attrs["units"], comment=comment))
@@ -229,15 +238,15 @@ def _with_error(result: xr.Dataset, error: xr.DataArray, comment: str) -> xr.Dat
 def lundberg_palmgren(stress: xr.Dataset, exponents: LifeExponents = ROLLER_BEARINGS) -> xr.Dataset:
     """Risk of fatigue after Lundberg and Palmgren, section by section along the roller.
 
-    Each cross-section contributes ``tau_0**c z_0**(1 - h) dx``: its largest amplitude of the orthogonal shear, the
-    depth where that is, and a volume as deep as that depth, per length of the raceway.
+    Each cross-section contributes ``tau_0**c z_0**(1 - h) dx``, with its largest amplitude ``tau_0`` of the orthogonal
+    shear at the depth ``z_0``; the stressed volume per length of the raceway is proportional to ``z_0``.
 
     Parameters
     ----------
     stress : Dataset
         `tau_yz` with the rolling direction y over the whole passage, at three or more depths and two or more x.
     exponents : LifeExponents
-        Default: of roller bearings.
+        Exponents; default: of roller bearings.
 
     Returns
     -------
@@ -248,7 +257,7 @@ def lundberg_palmgren(stress: xr.Dataset, exponents: LifeExponents = ROLLER_BEAR
     Raises
     ------
     InvalidInputError
-        If `tau_yz` or an axis is missing, there are too few positions, or the exponents are none; if the shear is
+        If `tau_yz` or an axis is missing, positions are too few, or `exponents` has a wrong kind; if the shear is
         largest at the first or last position along y or z, so that more than 1 % of the risk is cut off.
 
     Examples
@@ -264,72 +273,76 @@ def lundberg_palmgren(stress: xr.Dataset, exponents: LifeExponents = ROLLER_BEAR
     checks.instance("exponents", exponents, LifeExponents, "a LifeExponents")
     stress = require_in_si(stress, "tau_yz", argument="stress")
     rolling = rolling_dimension(stress["tau_yz"])
-    shear = stress["tau_yz"].compute()  # once, not for every part of the positions
+    shear = stress["tau_yz"].compute()  # once for all subsets of the positions
     stress = stress.assign(tau_yz=shear)
-    amplitude, crest, depth = _shear(stress)
-    if ((crest > 0) & (depth <= 0)).any():
+    amplitude, max_amplitude, depth = _shear_maximum(stress)
+    if ((max_amplitude > 0) & (depth <= 0)).any():
         raise InvalidInputError(
             "stress",
             "orthogonal shear largest on the surface",
             "largest below it",
-            "Lundberg and Palmgren's theory is not for such friction; Ioannides and Harris' is",
+            "Lundberg and Palmgren's theory excludes such friction; use Ioannides and Harris'",
         )
     depths, dim = positions(amplitude, "z"), dimension_along(amplitude, "z")
-    along = positions(shear, "y")
-    inside = shear.where((along > along.min(rolling)) & (along < along.max(rolling)))
-    inner_amplitude = 0.5 * (inside.max(rolling) - inside.min(rolling))
-    cut = {
+    y = positions(shear, "y")
+    inner_shear = shear.where((y > y.min(rolling)) & (y < y.max(rolling)))
+    inner_amplitude = 0.5 * (inner_shear.max(rolling) - inner_shear.min(rolling))
+    truncated = {
         "orthogonal shear largest at the first or last depth": (depth <= depths.min(dim)) | (depth >= depths.max(dim)),
         "orthogonal shear largest at the first or last y": (
             (amplitude == amplitude.max(dim)) & (inner_amplitude < amplitude)
         ).any(dim),
     }
-    density = _of_shear(crest, depth, exponents)
-    result = _along_axis(density, exponents, {"theory": "Lundberg and Palmgren"}, cut).assign(
-        shear_amplitude=of_points("shear_amplitude", crest.compute()),
-        shear_depth=of_points("shear_depth", depth.compute()),
+    density = _shear_risk(max_amplitude, depth, exponents)
+    result = _integrate_risk(density, exponents, {"theory": "Lundberg and Palmgren"}, truncated).assign(
+        shear_amplitude=label_points("shear_amplitude", max_amplitude.compute()),
+        shear_depth=label_points("shear_depth", depth.compute()),
     )
 
-    def risk_of(part: xr.Dataset) -> xr.DataArray:
-        return _over_x(_of_shear(*_shear(part)[1:], exponents).compute())
+    def compute_risk(subset: xr.Dataset) -> xr.DataArray:
+        return _sum_over_x(_shear_risk(*_shear_maximum(subset)[1:], exponents).compute())
 
-    error, comment = _error(stress[["tau_yz"]], shear, result["risk"], risk_of), POSITIONS_ALONE
+    error, comment = _estimate_error(stress[["tau_yz"]], shear, result["risk"], compute_risk), ERROR_OF_POSITIONS
     if {"peak_pressure", "peak_pressure_error"} <= set(stress.variables):
         comment = "from the distance of the positions, and of the pressure"
         peak = stress["peak_pressure"]
         # At a singular end the stress is unbounded.
         relative = (stress["peak_pressure_error"] / peak.where(np.isfinite(peak), 1.0)).where(np.isfinite(peak), np.inf)
         error = error + (result["risk"] * (exponents.stress * relative)).reset_coords(drop=True)
-    return _with_error(result, error, comment)
+    return _assign_error(result, error, comment)
 
 
-def _shear(stress: xr.Dataset) -> tuple[xr.DataArray, xr.DataArray, xr.DataArray]:
-    """Amplitude of the orthogonal shear, its largest over the depth, and where that is."""
+def _shear_maximum(stress: xr.Dataset) -> tuple[xr.DataArray, xr.DataArray, xr.DataArray]:
+    """Amplitude of the orthogonal shear, its maximum over the depth, and the depth of the maximum."""
     amplitude = measure(stress, "orthogonal_shear_amplitude")
-    dim, depths = _depths(amplitude)
-    crest, depth = reduce_dims(_crest, [(amplitude, [dim]), (depths, [dim])], 2)
-    return amplitude, crest, depth
+    dim, depths = _depth_positions(amplitude)
+    max_amplitude, depth = reduce_dims(_find_maximum, [(amplitude, [dim]), (depths, [dim])], 2)
+    return amplitude, max_amplitude, depth
 
 
-def _of_shear(crest: xr.DataArray, depth: xr.DataArray, exponents: LifeExponents) -> xr.DataArray:
-    """Lundberg and Palmgren's density of the risk: none where nothing is loaded, wherever its largest may be."""
-    return (crest**exponents.stress * depth.where(depth > 0) ** (1 - exponents.depth)).where(crest != 0, 0.0)
+def _shear_risk(peak: xr.DataArray, depth: xr.DataArray, exponents: LifeExponents) -> xr.DataArray:
+    """Lundberg and Palmgren's density of the risk; zero in unloaded sections."""
+    return (peak**exponents.stress * depth.where(depth > 0) ** (1 - exponents.depth)).where(peak != 0, 0.0)
 
 
-def _beyond(excess: Array, depth: Array, exponents: LifeExponents) -> Array:
-    """Part of a section's risk above the first depth, as if uniform, and below the last one, as if it fell on so."""
+def _cut_fraction(excess: Array, depth: Array, exponents: LifeExponents) -> Array:
+    """Fraction of a section's risk above the first depth (uniform) and below the last depth (exponential decay)."""
     last = np.maximum(np.isfinite(depth).sum(axis=-1, keepdims=True) - 1, 1)
 
     def take(values: Array, index: IntArray) -> Array:
         return np.asarray(np.take_along_axis(values, index, axis=-1)[..., 0])
 
     ends = [(take(excess, index), take(depth, index)) for index in (np.zeros_like(last), last - 1, last)]
-    (head, first), (before, above), (tail, below) = ends
+    (head, top), (before, high), (tail, low) = ends
     with np.errstate(divide="ignore", invalid="ignore"):
-        below_last = np.where(tail > 0, tail * (below - above) / np.log(np.maximum(before / tail, 1.0)), 0.0)
-        # The mean depth moves as well, by a part as large.
-        part = (1 + exponents.depth) * (head * first + below_last) / _integral(excess, depth)
-    return np.where(np.isnan(part), 0.0, part)
+        below_last = np.where(
+            tail > 0,
+            tail * (low - high) / np.log(np.maximum(before / tail, 1.0)),
+            0.0,
+        )
+        # The mean depth changes by an equal fraction.
+        fraction = (1 + exponents.depth) * (head * top + below_last) / _integrate(excess, depth)
+    return np.where(np.isnan(fraction), 0.0, fraction)
 
 
 def ioannides_harris(
@@ -338,7 +351,7 @@ def ioannides_harris(
     """Risk of fatigue after Ioannides and Harris: the excess over a fatigue limit, over the stressed volume.
 
     ``risk = integral of (sigma - sigma_u)**c / z'**h dx dz`` where the stress exceeds its limit, per length of the
-    raceway. ``z'`` is the mean depth of that in each cross-section, weighted with the integrand's numerator.
+    raceway. ``z'`` is the mean depth of the excess in each cross-section, weighted with the integrand's numerator.
 
     Parameters
     ----------
@@ -347,22 +360,22 @@ def ioannides_harris(
         ``analysis.measure(result, "orthogonal_shear_amplitude")``, ``dang_van(...).dang_van``, or the largest von Mises
         stress along y.
     limit : float
-        ``sigma_u`` below which nothing fails, of the same measure, Pa.
+        Limit ``sigma_u`` of the same measure without failure below, Pa.
     exponents : LifeExponents
-        Default: of roller bearings.
+        Exponents; default: of roller bearings.
 
     Returns
     -------
     Dataset
-        `risk_density`, `risk` and `risk_error` as of :func:`lundberg_palmgren`, and `mean_depth` (m) ``z'`` along x,
-        NaN where nothing exceeds the limit. The error counts the positions along x and z, and the parts above the first
+        `risk_density`, `risk` and `risk_error` as of :func:`lundberg_palmgren`, and `mean` (m) ``z'`` along x,
+        NaN in sections below the limit. The error counts the positions along x and z, and the parts above the first
         and below the last depth; it neglects the positions along y of the measure, and the pressure. Halve the distance
         along y to find its effect: the risk grows with the stress to the power of some 10.
 
     Raises
     ------
     InvalidInputError
-        If the measure is no DataArray along x and z, still extends along y, or there are too few positions; if it is
+        If the measure is no DataArray along x and z, extends along y, or has too few positions; if it is
         largest at the last depth, or at a first one below the top, so that more than 1 % of the risk is cut off.
 
     Examples
@@ -375,7 +388,7 @@ def ioannides_harris(
     """
     checks.instance("exponents", exponents, LifeExponents, "a LifeExponents")
     checks.instance("stress", stress, xr.DataArray, "a DataArray along x and z")
-    if stress.attrs.get("units") != "1":  # a utilisation has none
+    if stress.attrs.get("units") != "1":  # a utilisation has no unit
         stress = in_si("stress", stress, "Pa")
     threshold = checks.not_negative("limit", limit, "Pa")
     if "y" in axis_dimensions(stress):
@@ -383,33 +396,37 @@ def ioannides_harris(
             "stress.dims", stress.dims, "without the rolling direction", "take the largest or the amplitude along y"
         )
     stress = stress.compute()
-    dim, depths = _depths(stress)
+    dim, depths = _depth_positions(stress)
     outer = (depths == depths.max(dim)) | ((depths == depths.min(dim)) & (depths > 0))
-    outside = stress.where(outer).max(dim) >= stress.max(dim)
+    is_truncated = stress.where(outer).max(dim) >= stress.max(dim)
 
-    def risks(stress: Array, depth: Array) -> tuple[Array, ...]:
-        """Integral over the depth of the excess, over the stress-weighted mean depth; mean depth; part beyond."""
+    def compute_risks(stress: Array, depth: Array) -> tuple[Array, ...]:
+        """Integral of the excess over the depth, over the weighted mean depth; mean depth; truncated fraction."""
         excess = np.clip(stress - threshold, 0.0, None) ** exponents.stress
-        volume, moment = _integral(excess, depth), _integral(excess * depth, depth)
+        volume, moment = _integrate(excess, depth), _integrate(excess * depth, depth)
         with np.errstate(divide="ignore", invalid="ignore"):
             mean = moment / volume
             density = np.where(volume > 0, volume / mean**exponents.depth, volume)
-        return density, mean, _beyond(np.nan_to_num(excess), np.broadcast_to(depth, excess.shape), exponents)
+        return (
+            density,
+            mean,
+            _cut_fraction(np.nan_to_num(excess), np.broadcast_to(depth, excess.shape), exponents),
+        )
 
-    def sections(part: xr.DataArray) -> tuple[xr.DataArray, ...]:
-        dimension, depth_positions = _depths(part)
-        return reduce_dims(risks, [(part, [dimension]), (depth_positions, [dimension])], 3)
+    def compute_sections(field: xr.DataArray) -> tuple[xr.DataArray, ...]:
+        dimension, depth_positions = _depth_positions(field)
+        return reduce_dims(compute_risks, [(field, [dimension]), (depth_positions, [dimension])], 3)
 
-    density, mean, beyond = sections(stress)
-    result = _along_axis(
+    density, mean, truncated = compute_sections(stress)
+    result = _integrate_risk(
         density,
         exponents,
         {"theory": "Ioannides and Harris", "fatigue_limit": threshold},
-        {"a measure largest at the first or last depth": outside},
+        {"a measure largest at the first or last depth": is_truncated},
     )
     if stress.attrs.get("units") == "1":
         for name in ("risk", "risk_density"):
             result[name].attrs["units"] = result[name].attrs["units"].split(maxsplit=1)[1]
-    error = _error(stress, stress, result["risk"], lambda part: _over_x(sections(part)[0]))
-    error = error + _over_x(density * beyond)
-    return _with_error(result.assign(mean_depth=of_points("mean_depth", mean)), error, ALONG_X_AND_Z)
+    error = _estimate_error(stress, stress, result["risk"], lambda field: _sum_over_x(compute_sections(field)[0]))
+    error = error + _sum_over_x(density * truncated)
+    return _assign_error(result.assign(mean_depth=label_points("mean_depth", mean)), error, ERROR_ALONG_X_AND_Z)

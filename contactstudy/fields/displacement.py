@@ -69,7 +69,7 @@ def displacement_field(
     displacement = displacement_under(body, prescribed.loads, prescribed.grid, positions.points, prescribed.shape)
     fields = positions.dataset({name: displacement[i] for i, name in enumerate(COMPONENTS)})
     # Far from a row of images without end the displacement grows like a logarithm, without an absolute value.
-    reference = REFERENCE_LENGTHS * min(part.extent[1] - part.extent[0] for part in body.parts)
+    reference = REFERENCE_LENGTHS * min(part.extent[1] - part.extent[0] for part in body.terms)
     if np.isfinite(reference):
         for name in COMPONENTS:
             fields[name].attrs["reference_distance"] = reference
@@ -85,7 +85,7 @@ def displacement_under(
 
     def unit_fields(directions: tuple[Load, ...], cells: FloatArray) -> dict[Load, list[FloatArray]]:
         fields = {load: np.zeros((3, *(axis.size for axis in points))) for load in directions}
-        for part in body.parts:
+        for part in body.terms:
             length, reference = part.extent[1] - part.extent[0], reference_distance(part.extent)
             from_ends: dict[Load, FloatArray] = {}
             if part.freed and cells.any():
@@ -111,7 +111,7 @@ def normal_influence(body: Body, grid: Grid, load: Load, x: FloatArray, z: float
     """Return the normal displacement at y = 0 and a depth under a unit load on each cell: array (x, cell_x, cell_y)."""
     material, normal = body.material, COMPONENTS.index("u_z")
     total = np.zeros((x.size, *grid.shape))
-    for part in body.parts:
+    for part in body.terms:
         length, reference = part.extent[1] - part.extent[0], reference_distance(part.extent)
         influence = displacement_influence(load, material.poisson, length, reference)
         for start in range(0, x.size, POINTS):

@@ -92,7 +92,7 @@ def equivalent_loads(
 
 def _reference(body: Body) -> float | None:
     """Distance along y at which equivalent loads without stress are zero, metres; None without two exact ends."""
-    freed = next((part.freed for part in body.parts if part.freed), None)
+    freed = next((part.freed for part in body.terms if part.freed), None)
     relative = freed is not None and np.isfinite(freed.length) and not freed.mirrored_once
     return REFERENCE_LENGTHS * freed.length if freed is not None and relative else None
 
@@ -104,7 +104,7 @@ def overlapping_operators(
     body.check_span(grid)
     if (depths < 0).any():
         raise InvalidInputError("z", float(depths.min()), "not negative (metres below the top)")
-    freed = next((part.freed for part in body.parts if part.freed), None)
+    freed = next((part.freed for part in body.terms if part.freed), None)
     if freed is None:
         return None
     cells = np.zeros(grid.shape) if cells is None else cells

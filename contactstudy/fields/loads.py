@@ -12,7 +12,7 @@ from contactstudy import checks
 from contactstudy.arrays.cells import labelled_cells
 from contactstudy.arrays.grid import SPACING_TOLERANCE, Grid
 from contactstudy.arrays.variables import in_si
-from contactstudy.bodies.models import Body, FreedEnds
+from contactstudy.bodies.models import Body, FreeEnds
 from contactstudy.cache import ArrayKey
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
@@ -66,7 +66,7 @@ def superposed(
 
 
 def end_problem(
-    freed: FreedEnds, poisson: float, cells: FloatArray, shape: FloatArray | None, grid: Grid, loads: tuple[Load, ...]
+    freed: FreeEnds, poisson: float, cells: FloatArray, shape: FloatArray | None, grid: Grid, loads: tuple[Load, ...]
 ) -> EndProblem:
     """Problem of the ends that a load on cells leaves, on the fine cells of a `shape` inside them."""
     finest = finest_cell(grid)
@@ -84,7 +84,7 @@ def end_problem(
     )
 
 
-def unit_problem(freed: FreedEnds, poisson: float, grid: Grid, load: Load) -> EndProblem:
+def unit_problem(freed: FreeEnds, poisson: float, grid: Grid, load: Load) -> EndProblem:
     """Problem of the ends for unit loads on the cells along x."""
     (problem,) = end_problem(freed, poisson, np.zeros(grid.shape), None, grid, loads=(load,)).alike()
     return problem

@@ -14,7 +14,7 @@ from scipy import fft, linalg
 
 from contactstudy.arrays.grid import Grid
 from contactstudy.bodies.material import Material
-from contactstudy.bodies.models import Extent, Part
+from contactstudy.bodies.models import BodyTerm, Extent
 from contactstudy.cache import nbytes_of
 from contactstudy.checks import ComplexArray, FloatArray
 from contactstudy.errors import InvalidInputError
@@ -138,7 +138,7 @@ def _padding(extent: Extent, grid: Grid) -> tuple[bool, int]:
 
 
 def end_kernel_of(
-    part: Part, material: Material, grid: Grid, responses: tuple[Response, ...], resolution: Resolution
+    part: BodyTerm, material: Material, grid: Grid, responses: tuple[Response, ...], resolution: Resolution
 ) -> EndKernel | None:
     """Kernel of the ends of a part, None without; raises for tangential displacements of the single-mirror model."""
     if part.freed is None:

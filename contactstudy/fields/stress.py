@@ -109,7 +109,7 @@ def _labelled(body: Body, grid: Grid, stresses: FloatArray, positions: FieldPosi
 
 def _free_edge(body: Body, grid: Grid, stresses: FloatArray, points: Points) -> None:
     """Set the traction on the edges between top and free ends to zero, where both auxiliary bodies have a logarithm."""
-    if all(part.freed for part in body.parts):
+    if all(part.freed for part in body.terms):
         on_end, on_top = np.isin(points.x, body.extent), points.z < CORNER_OFFSET * grid.dy
         for component in (0, 3, 4):
             stresses[component][np.ix_(on_end, np.ones(points.y.size, bool), on_top)] = 0.0
@@ -143,7 +143,7 @@ def _unit_stress(
     poisson, shape_cells = body.material.poisson, None if shape is None else shape.values
     axes = [Points(*(axis.values for axis in key)) for key in point_sets]
     fields: dict[Load, list[FloatArray]] = {}
-    for part in body.parts:
+    for part in body.terms:
         from_ends: list[dict[Load, FloatArray]] = [{} for _ in axes]
         if part.freed and cells.values.any():
             problem = end_problem(part.freed, poisson, cells.values, shape_cells, grid, loads=loads)
@@ -238,7 +238,7 @@ class StressOperator(LinearOperator):  # type: ignore[misc]
         self._half_space = np.zeros((grid.cells_x, 6, points.x.size, unique.size, points.z.size))
         self._ends: list[UnitFields] = []
         poisson = body.material.poisson
-        for part in body.parts:
+        for part in body.terms:
             for cell in range(grid.cells_x):
                 unit = np.zeros(grid.shape)
                 unit[cell, 0] = part.weight

@@ -49,7 +49,7 @@ class SurfaceOperator:
         responses = tuple(Response(direction, load) for direction in directions for load in loads)
         parts = []
         with one_blas_thread():
-            for part in body.parts:
+            for part in body.terms:
                 ends = end_kernel_of(part, body.material, grid, responses, resolution)
                 parts.append((part.weight, kind.of(body.material, part.extent, grid, responses, ends)))
         return cls(body, parts)
@@ -87,7 +87,7 @@ class SurfaceOperator:
     @property
     def reference(self) -> float:
         """Distance along y at which the displacement is zero, metres; infinite unless the body has two ends."""
-        return reference_distance(self.body.parts[0].extent)
+        return reference_distance(self.body.terms[0].extent)
 
 
 def surface_operator(

@@ -15,8 +15,8 @@ from contactstudy.film.reynolds import Law
 NODES = 64
 """Gauss points of the integral over the asperities. Accuracy."""
 
-HIGHEST = 6.0
-"""Highest asperity over the composite rms roughness: of more, one in 1e9. Accuracy."""
+MAX_HEIGHT = 6.0
+"""Highest asperity over the composite rms roughness; 1e-9 of the asperities are higher. Accuracy."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -34,8 +34,7 @@ class Asperities:
     sharpness : float
         ``sigma / beta``: `rms` over the asperities' radius; 1e-4 to 1e-2.
     pressure : callable, optional
-        Law of the user instead: pressure, Pa, at distances of the surfaces' mean planes, metres (array to array). It
-        falls with the distance.
+        Other law: pressure, Pa, at distances of the mean planes, metres (array to array), decreasing with distance.
 
     Raises
     ------
@@ -71,14 +70,14 @@ class Asperities:
             return Law(values[1], (values[2] - values[0]) / (2 * step))
         factor = 16 * np.sqrt(2) * np.pi / 15 * self.density**2 * np.sqrt(self.sharpness) * modulus  # eq. (412)
         ratio = distance / self.rms
-        return Law(factor * _overlap(ratio, 2.5), -2.5 * factor * _overlap(ratio, 1.5) / self.rms)
+        return Law(factor * _integrate_overlap(ratio, 2.5), -2.5 * factor * _integrate_overlap(ratio, 1.5) / self.rms)
 
-    def dimensionless(self, height: float, pressure: float, modulus: float) -> Callable[[FloatArray], Law]:
+    def scaled_law(self, height: float, pressure: float, modulus: float) -> Callable[[FloatArray], Law]:
         """Return the law for heights over `height`, m, and pressures over `pressure`, Pa."""
 
         def law(distance: FloatArray) -> Law:
-            values = self._law(distance * height, modulus)
-            return Law(values.value / pressure, values.slope * height / pressure)
+            dimensional_law = self._law(distance * height, modulus)
+            return Law(dimensional_law.value / pressure, dimensional_law.slope * height / pressure)
 
         return law
 
@@ -88,21 +87,21 @@ class Asperities:
 
         def law(distance: FloatArray) -> Law:
             ratio = distance / scale
-            below = 0.5 * (1 + erf(ratio / np.sqrt(2)))
+            contact_fraction = 0.5 * (1 + erf(ratio / np.sqrt(2)))
             # Far below zero the two terms cancel.
             gauss = np.exp(-0.5 * np.minimum(ratio**2, 1e3)) / np.sqrt(2 * np.pi)
-            mean = scale * np.maximum(ratio * below + gauss, gauss / (2 + ratio**2))  # eq. (413)
-            return Law(mean, np.maximum(below, 1e-300))
+            mean = scale * np.maximum(ratio * contact_fraction + gauss, gauss / (2 + ratio**2))  # eq. (413)
+            return Law(mean, np.maximum(contact_fraction, 1e-300))
 
         return law
 
 
-def _overlap(ratio: FloatArray, power: float) -> FloatArray:
+def _integrate_overlap(ratio: FloatArray, power: float) -> FloatArray:
     """Integral of ``(s - ratio)**power`` over the normal distribution above `ratio`."""
     nodes, weights = np.polynomial.legendre.leggauss(NODES)
-    low = np.minimum(ratio, HIGHEST)
-    half = 0.5 * (HIGHEST - np.maximum(low, -HIGHEST))
-    heights = HIGHEST - half[..., None] * (1 - nodes)
-    depth = np.maximum(heights - low[..., None], 0.0)
+    lower_limit = np.minimum(ratio, MAX_HEIGHT)
+    half_range = 0.5 * (MAX_HEIGHT - np.maximum(lower_limit, -MAX_HEIGHT))
+    heights = MAX_HEIGHT - half_range[..., None] * (1 - nodes)
+    depth = np.maximum(heights - lower_limit[..., None], 0.0)
     density = np.exp(-0.5 * heights**2) / np.sqrt(2 * np.pi)
-    return np.asarray(half * ((depth**power * density) @ weights))
+    return np.asarray(half_range * ((depth**power * density) @ weights))

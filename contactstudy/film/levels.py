@@ -14,16 +14,16 @@ from contactstudy.arrays.grid import Grid
 from contactstudy.bodies import hertz
 from contactstudy.bodies.lubricant import Lubricant
 from contactstudy.case.case import Case
-from contactstudy.case.gridding import columns_of
+from contactstudy.case.gridding import graded_grid
 from contactstudy.case.motion import Sliding, SurfaceSpeeds
 from contactstudy.checks import FloatArray
 from contactstudy.contact.normal.contact import Contact, Settings, contact_of, contact_operator
 from contactstudy.contact.refinement.refined_contact import contact_shape, refine_contact
 from contactstudy.film.asperities import Asperities
-from contactstudy.film.cells import JoinedCells, graded_edges, uniform_count
+from contactstudy.film.cells import MergedCells, graded_edges, uniform_count
 from contactstudy.film.formulas import moes_line
 from contactstudy.film.newton import FilmSettings, solve_from_dry, solve_newton
-from contactstudy.film.problem import FilmProblem, FilmSolution, FilmState, start_of
+from contactstudy.film.problem import FilmProblem, FilmSolution, FilmState, initial_state
 from contactstudy.film.reynolds import FilmCells, Fluid
 from contactstudy.kernels.load import Load
 from contactstudy.threads import one_blas_thread
@@ -56,13 +56,13 @@ class FilmResolution:
     inlet, outlet : float
         Distance of the window's ends from the contact's edges over the inlet length. Accuracy.
     ratio : float
-        Ratio of the cells of one level to the next one's along y; its square for the narrowest columns.
+        Ratio of the cells of two successive levels along y; its square for the narrowest columns.
     levels : int
-        Most levels of each direction, at least 3.
+        Maximum number of levels of each direction, at least 3.
     most_cells : int
-        Most uniform cells along y. Speed.
+        Maximum number of uniform cells along y. Speed.
     dry_accuracy, dry_tolerance : float
-        Accuracy of the dry contact that sets the window, and tolerance of that from which the film starts. Speed.
+        Accuracy of the dry contact that defines the window, and tolerance of the dry contact as a start. Speed.
     """
 
     finest: float = 0.55
@@ -104,7 +104,7 @@ class FilmCase:
     resolution : FilmResolution
         Cells.
     inlet : float or None
-        Distance of the inlet's meniscus from the middle, metres; None: the inlet is fully flooded.
+        Distance of the inlet's meniscus from the middle of the contact, metres; None: a fully flooded inlet.
     """
 
     case: Case
@@ -135,23 +135,23 @@ class FilmCase:
         return self.case.hertz_max_pressure
 
     @cached_property
-    def dry(self) -> Contact:
-        """Dry contact on columns that are refined for its pressure."""
+    def dry_contact(self) -> Contact:
+        """Dry contact on columns refined for its pressure."""
         case = replace(self.case, motion=Sliding(), friction=0.0, coupled=False, lubricant=None)
         return refine_contact(case, self.resolution.dry_accuracy, 1e-6).contact
 
     @cached_property
     def contact_ends(self) -> tuple[float, float]:
-        """First and last pressed x of the dry contact, over the half-width."""
-        edges, pressed = self.dry.shape.grid.x_edges, np.flatnonzero(self.dry.pressure.any(axis=1))
-        return edges[pressed[0]] / self.half_width, edges[pressed[-1] + 1] / self.half_width
+        """First and last loaded x of the dry contact, over the half-width."""
+        edges, loaded = self.dry_contact.shape.grid.x_edges, np.flatnonzero(self.dry_contact.pressure.any(axis=1))
+        return edges[loaded[0]] / self.half_width, edges[loaded[-1] + 1] / self.half_width
 
     @cached_property
-    def reach(self) -> float:
+    def contact_half_width(self) -> float:
         """Largest half-width of the dry contact over that of Hertz."""
-        grid = self.dry.shape.grid
-        pressed = self.dry.pressure.any(axis=0)
-        return float(np.abs(grid.y[pressed]).max() + 0.5 * grid.dy) / self.half_width
+        grid = self.dry_contact.shape.grid
+        loaded = self.dry_contact.pressure.any(axis=0)
+        return float(np.abs(grid.y[loaded]).max() + 0.5 * grid.dy) / self.half_width
 
     @property
     def speed_number(self) -> float:
@@ -175,14 +175,14 @@ class FilmCase:
     @cached_property
     def largest_line_load(self) -> float:
         """Largest load per length of the dry contact, N/m, over columns of a half-width and more."""
-        grid = self.dry.shape.grid
-        line = self.dry.pressure.sum(axis=1) * grid.dy
-        # A sharp end's peak is narrower than the film's inlet there.
-        total = np.concatenate([[0.0], np.cumsum(line * grid.widths)])
+        grid = self.dry_contact.shape.grid
+        line_loads = self.dry_contact.pressure.sum(axis=1) * grid.dy
+        # A sharp end's peak is narrower than the film's inlet at that end.
+        total = np.concatenate([[0.0], np.cumsum(line_loads * grid.widths)])
         span = min(2 * self.half_width, float(np.ptp(grid.x_edges)))
         centres = np.linspace(grid.x_edges[0] + 0.5 * span, grid.x_edges[-1] - 0.5 * span, 401)
-        ends = np.interp(np.add.outer(np.array([0.5, -0.5]) * span, centres), grid.x_edges, total)
-        return float((ends[0] - ends[1]).max() / span)
+        cumulative_loads = np.interp(np.add.outer(np.array([0.5, -0.5]) * span, centres), grid.x_edges, total)
+        return float((cumulative_loads[0] - cumulative_loads[1]).max() / span)
 
     @cached_property
     def central_film(self) -> float:
@@ -191,29 +191,29 @@ class FilmCase:
 
     def slice_film(self, x: FloatArray) -> FloatArray:
         """Central film of a line contact with the dry load per length at each position, metres; NaN without load."""
-        grid = self.dry.shape.grid
+        grid = self.dry_contact.shape.grid
         column = np.clip(np.searchsorted(grid.x_edges, x) - 1, 0, grid.cells_x - 1)
-        line = self.dry.pressure[column].sum(axis=1) * grid.dy
-        return np.array([self.moes_film(load) if load else np.nan for load in line.tolist()])
+        line_loads = self.dry_contact.pressure[column].sum(axis=1) * grid.dy
+        return np.array([self.moes_film(load) if load else np.nan for load in line_loads.tolist()])
 
     @cached_property
     def inlet_length(self) -> float:
-        """Length over which the film forms, over the half-width, in steps: near speeds have the same cells."""
+        """Length over which the film forms, over the half-width, in steps: similar speeds have the same cells."""
         width = hertz.line_half_width(
             hertz.line_max_pressure(self.largest_line_load, self.case.roller.radius, self.case.modulus),
             self.case.roller.radius,
             self.case.modulus,
         )
-        share = (self.central_film * self.case.roller.radius / width**2) ** (2 / 3)  # eq. (403)
+        ratio_of_lengths = (self.central_film * self.case.roller.radius / width**2) ** (2 / 3)  # eq. (403)
         ratio = self.resolution.ratio
-        return float(ratio ** np.round(np.log(share * width / self.half_width) / np.log(ratio)))
+        return float(ratio ** np.round(np.log(ratio_of_lengths * width / self.half_width) / np.log(ratio)))
 
     @cached_property
     def fluid(self) -> Fluid:
         """Laws of the lubricant in the scales of the film."""
         radius, a = self.case.roller.radius, self.half_width
-        number = 12 * self.speed * self.lubricant.viscosity * radius**2 / (a**3 * self.pressure)  # eq. (404)
-        return Fluid.of(self.lubricant, self.pressure, number)
+        flow_number = 12 * self.speed * self.lubricant.viscosity * radius**2 / (a**3 * self.pressure)  # eq. (404)
+        return Fluid.of(self.lubricant, self.pressure, flow_number)
 
 
 class Level(NamedTuple):
@@ -236,7 +236,7 @@ class FilmOnCells(NamedTuple):
         Uniform cells along y and columns over the whole body.
     columns : slice
         Columns of the grid under the roller.
-    joined : JoinedCells
+    merged : MergedCells
         Cells along y.
     """
 
@@ -244,43 +244,43 @@ class FilmOnCells(NamedTuple):
     solution: FilmSolution
     grid: Grid
     columns: slice
-    joined: JoinedCells
+    merged: MergedCells
 
 
-def cells_of(
+def create_cells(
     film: FilmCase, level: Level, closures: tuple[float, ...]
-) -> tuple[FilmCells, JoinedCells, tuple[float, float]]:
+) -> tuple[FilmCells, MergedCells, tuple[float, float]]:
     """Return the cells of a level, with narrow columns at the `closures` along x, and their window along y."""
     resolution = film.resolution
     scale, column_scale = resolution.ratio**-level.cells, resolution.ratio ** (-2 * level.columns)
     start, stop = (end / film.half_width for end in film.case.contact_range)
-    first = min(resolution.columns, resolution.columns_inlet * film.inlet_length, 0.1 * (stop - start)) * column_scale
+    narrow = min(resolution.columns, resolution.columns_inlet * film.inlet_length, 0.1 * (stop - start)) * column_scale
     growth = resolution.columns_growth * column_scale**0.35
 
-    def width(x: float) -> float:
+    def column_width(x: float) -> float:
         nearest = min(abs(x - closure) for closure in closures)
-        widest = min(resolution.widest_column, 0.2 * (stop - start))
-        return float(min(first + growth * max(nearest - 2 * first, 0.0), widest))
+        max_width = min(resolution.widest_column, 0.2 * (stop - start))
+        return float(min(narrow + growth * max(nearest - 2 * narrow, 0.0), max_width))
 
-    x_edges = graded_edges(start, stop, width)
-    delta, reach = film.inlet_length, film.reach
-    low = -reach - resolution.inlet * delta
+    x_edges = graded_edges(start, stop, column_width)
+    delta, half_width = film.inlet_length, film.contact_half_width
+    low = -half_width - resolution.inlet * delta
     if film.inlet is not None:
         low = max(low, -film.inlet / film.half_width)
-    high = reach + resolution.outlet * delta
-    finest = min(resolution.finest * delta, resolution.finest_share) * scale
-    count = min(uniform_count(high - low, finest), resolution.most_cells)
+    high = half_width + resolution.outlet * delta
+    min_size = min(resolution.finest * delta, resolution.finest_share) * scale
+    count = min(uniform_count(high - low, min_size), resolution.most_cells)
     step = (high - low) / count
 
-    def size(begin: float, end: float) -> float:
+    def max_cell_count(begin: float, end: float) -> float:
         y = low + 0.5 * (begin + end) * step
-        distance = max(0.0, min(abs(y + 1), abs(y - 1), abs(y - reach), abs(y + reach)) - delta)
+        distance = max(0.0, min(abs(y + 1), abs(y - 1), abs(y - half_width), abs(y + half_width)) - delta)
         inner = min(resolution.inner, resolution.inner_inlet * delta) * scale
-        widest = inner if abs(y) < reach else 0.25 + 0.1 * (abs(y) - reach)
-        return float(max(min(finest + resolution.growth * scale**0.5 * distance, widest) / step * 1.0001, 1.0))
+        max_width = inner if abs(y) < half_width else 0.25 + 0.1 * (abs(y) - half_width)
+        return float(max(min(min_size + resolution.growth * scale**0.5 * distance, max_width) / step * 1.0001, 1.0))
 
-    joined = JoinedCells.of(count, size)
-    return FilmCells(x_edges=x_edges, y_edges=np.asarray(low + step * joined.edges)), joined, (low, high)
+    merged = MergedCells.of(count, max_cell_count)
+    return FilmCells(x_edges=x_edges, y_edges=np.asarray(low + step * merged.edges)), merged, (low, high)
 
 
 def film_on_level(
@@ -290,120 +290,122 @@ def film_on_level(
     settings: FilmSettings,
     start: FilmOnCells | xr.Dataset | None = None,
 ) -> FilmOnCells:
-    """Solve for the film on the cells of a level, from the dry contact or a film on other cells or of another speed.
+    """Solve for the film on the cells of a level, from the dry contact or from another film.
 
     Raises
     ------
     StepFailedError
         If the iteration does not converge.
     """
-    cells, joined, window = cells_of(film, level, closures)
+    cells, merged, window = create_cells(film, level, closures)
     with one_blas_thread():
-        return _solved(film, cells, joined, window, settings, start=start)
+        return _solve_on_cells(film, cells, merged, window, settings, start=start)
 
 
-def solve_further(solved: FilmOnCells, settings: FilmSettings) -> FilmOnCells:
+def continue_solution(level_film: FilmOnCells, settings: FilmSettings) -> FilmOnCells:
     """Continue on the same cells, to the tolerance of the settings; raise StepFailedError if that fails."""
     with one_blas_thread():
-        state = _between_cells(solved, solved.problem)
-        return solved._replace(solution=solve_newton(solved.problem, state, settings, steady=True))
+        state = _transfer_state(level_film, level_film.problem)
+        return level_film._replace(solution=solve_newton(level_film.problem, state, settings, steady=True))
 
 
-def _solved(
+def _solve_on_cells(
     film: FilmCase,
     cells: FilmCells,
-    joined: JoinedCells,
+    merged: MergedCells,
     window: tuple[float, float],
     settings: FilmSettings,
     start: FilmOnCells | xr.Dataset | None,
 ) -> FilmOnCells:
     a, scale = film.half_width, film.pressure
     case = replace(film.case, motion=Sliding(), friction=0.0, coupled=False, lubricant=None)
-    grid = columns_of(case, a * cells.x_edges, (a * window[0], a * window[1]), int(joined.edges[-1]))
+    grid = graded_grid(case, a * cells.x_edges, (a * window[0], a * window[1]), int(merged.edges[-1]))
     first = int(np.abs(grid.x_edges - a * cells.x_edges[0]).argmin())
     columns = slice(first, first + cells.shape[0])
     shape = contact_shape(case, grid)
     operator = contact_operator(shape)
 
-    def displaced(load: FloatArray) -> FloatArray:
+    def displace(load: FloatArray) -> FloatArray:
         spread = np.zeros(grid.shape)
         spread[columns] = scale * load
         loads: Mapping[Load, FloatArray] = {Load.NORMAL: spread}
         return operator(loads)[columns] / film.height
 
-    # The lines to which the motion of the roller refers move as in the dry contact.
-    gap = shape.gap.values - film.dry.motions.total.height(grid.x)
-    one = np.zeros((cells.shape[0], grid.cells_y))
-    one[:, 0] = 1.0
+    # The reference lines of the roller's motion move as in the dry contact.
+    gap = shape.gap.values - film.dry_contact.motions.total.height(grid.x)
+    unit = np.zeros((cells.shape[0], grid.cells_y))
+    unit[:, 0] = 1.0
     lever = None
     if case.load_position is not None:
         lever = cells.x - case.load_position / a
         lever = lever / np.abs(lever).max()
-    rough = film.asperities
+    asperities = film.asperities
     problem = FilmProblem(
         cells=cells,
         fluid=film.fluid,
-        gap=joined.centred(gap[columns]) / film.height,
-        displace=lambda pressure: joined.centred(displaced(joined.spread(pressure))),
-        column_stiffness=joined.stiffness(displaced(one)),
+        gap=merged.to_centres(gap[columns]) / film.height,
+        displace=lambda pressure: merged.to_centres(displace(merged.to_uniform_cells(pressure))),
+        column_stiffness=merged.compute_stiffness(displace(unit)),
         load=case.normal_load / (scale * a**2),
         lever=lever,
         central_film=film.central_film / film.height,
-        asperities=None if rough is None else rough.dimensionless(film.height, scale, case.modulus),
-        mean_height=None if rough is None else rough.mean_height(film.height),
+        asperities=None if asperities is None else asperities.scaled_law(film.height, scale, case.modulus),
+        mean_height=None if asperities is None else asperities.mean_height(film.height),
     )
     if start is not None:
-        state = _between_cells(start, problem) if isinstance(start, FilmOnCells) else _of_result(film, start, problem)
-        return FilmOnCells(problem, solve_newton(problem, state, settings, steady=True), grid, columns, joined)
+        state = (
+            _transfer_state(start, problem) if isinstance(start, FilmOnCells) else _convert_result(film, start, problem)
+        )
+        return FilmOnCells(problem, solve_newton(problem, state, settings, steady=True), grid, columns, merged)
     dry = contact_of(shape, Settings(film.resolution.dry_tolerance, 500))
-    solution = solve_from_dry(problem, _dry_state(film, problem, dry, columns, joined), settings)
-    return FilmOnCells(problem, solution, grid, columns, joined)
+    solution = solve_from_dry(problem, _dry_state(film, problem, dry, columns, merged), settings)
+    return FilmOnCells(problem, solution, grid, columns, merged)
 
 
-def _dry_state(film: FilmCase, problem: FilmProblem, dry: Contact, columns: slice, joined: JoinedCells) -> FilmState:
+def _dry_state(film: FilmCase, problem: FilmProblem, dry: Contact, columns: slice, merged: MergedCells) -> FilmState:
     """Dry contact with the central film of the formula between the surfaces."""
-    pressure = joined.mean(dry.pressure[columns]) / film.pressure
-    distance = joined.centred(dry.gap[columns]) / film.height + problem.central_film
+    pressure = merged.average(dry.pressure[columns]) / film.pressure
+    distance = merged.to_centres(dry.gap[columns]) / film.height + problem.central_film
     motion = np.zeros(len(problem.motions))
     motion[0] = problem.central_film - dry.approach / film.height
     if problem.lever is not None:
         cells = problem.cells
         assert film.case.load_position is not None
-        arm = np.abs(cells.x - film.case.load_position / film.half_width).max()
-        motion[1] = -dry.tilt * arm * film.half_width / film.height
-    return start_of(problem, pressure, motion, distance)
+        max_lever = np.abs(cells.x - film.case.load_position / film.half_width).max()
+        motion[1] = -dry.tilt * max_lever * film.half_width / film.height
+    return initial_state(problem, pressure, motion, distance)
 
 
-def _between_cells(start: FilmOnCells, problem: FilmProblem) -> FilmState:
+def _transfer_state(start: FilmOnCells, problem: FilmProblem) -> FilmState:
     """Film on other cells, by lines between the centres."""
-    before, after = start.problem.cells, problem.cells
+    start_cells, cells = start.problem.cells, problem.cells
     state = start.solution.state
     pressure, distance = (
-        _interpolated(values, before.x, before.y, after) for values in (state.pressure, state.distance)
+        _interpolate_film(values, start_cells.x, start_cells.y, cells) for values in (state.pressure, state.distance)
     )
-    return start_of(problem, np.maximum(pressure, 0.0), state.motion.copy(), distance)
+    return initial_state(problem, np.maximum(pressure, 0.0), state.motion.copy(), distance)
 
 
-def _of_result(film: FilmCase, result: xr.Dataset, problem: FilmProblem) -> FilmState:
+def _convert_result(film: FilmCase, result: xr.Dataset, problem: FilmProblem) -> FilmState:
     """Film of another speed or lubricant, changed by the ratio of the formula's central films."""
-    turned = -1 if result["entrainment_speed"] < 0 else 1
+    direction = -1 if result["entrainment_speed"] < 0 else 1
     fields = result[["pressure", "film_thickness"]].transpose("x", "y").dropna("x")
     x, y = (fields[axis].values / film.half_width for axis in "xy")
     pressure, distance = (
-        _interpolated(fields[name].values[:, ::turned] / scale, x, (turned * y)[::turned], problem.cells)
+        _interpolate_film(fields[name].values[:, ::direction] / scale, x, (direction * y)[::direction], problem.cells)
         for name, scale in (("pressure", film.pressure), ("film_thickness", film.height))
     )
-    number, load = float(result["moes_load"]), film.moes_load(film.largest_line_load)
-    former = moes_line(number, float(result["moes_lubricant"])) / number
-    ratio = float(moes_line(load, film.moes_lubricant) / load / former)
+    former_load_number, load_number = float(result["moes_load"]), film.moes_load(film.largest_line_load)
+    former = moes_line(former_load_number, float(result["moes_lubricant"])) / former_load_number
+    ratio = float(moes_line(load_number, film.moes_lubricant) / load_number / former)
     central = float(result["central_film"]) / film.height
     distance = np.where(distance < central, ratio * distance, distance + (ratio - 1) * central)
-    carrying = pressure.ravel() > 0
+    loaded = pressure.ravel() > 0
     rigid = (distance - problem.gap - problem.displace(pressure)).ravel()
-    motion = np.asarray(np.linalg.lstsq(problem.motions[:, carrying].T, rigid[carrying])[0], dtype=np.float64)
-    return start_of(problem, pressure, motion, distance)
+    motion = np.asarray(np.linalg.lstsq(problem.motions[:, loaded].T, rigid[loaded])[0], dtype=np.float64)
+    return initial_state(problem, pressure, motion, distance)
 
 
-def _interpolated(values: FloatArray, x: FloatArray, y: FloatArray, cells: FilmCells) -> FloatArray:
-    along = np.stack([np.interp(cells.y, y, row) for row in values])
-    return np.stack([np.interp(cells.x, x, column) for column in along.T], axis=1)
+def _interpolate_film(values: FloatArray, x: FloatArray, y: FloatArray, cells: FilmCells) -> FloatArray:
+    rows = np.stack([np.interp(cells.y, y, row) for row in values])
+    return np.stack([np.interp(cells.x, x, column) for column in rows.T], axis=1)

@@ -1,4 +1,4 @@
-"""Film of a line contact in Moes' numbers: the special case that formulas and tables know."""
+"""Film of a line contact in Moes' numbers: the special case of formulas and tables."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from contactstudy.checks import FloatArray
 from contactstudy.film.cells import graded_edges
 from contactstudy.film.formulas import moes_line
 from contactstudy.film.newton import SETTINGS, FilmSettings, solve_from_dry, solve_newton
-from contactstudy.film.problem import FilmProblem, FilmSolution, start_of
+from contactstudy.film.problem import FilmProblem, FilmSolution, initial_state
 from contactstudy.film.reynolds import FilmCells, Fluid
 
 BARUS = Lubricant(viscosity=0.01, pressure_viscosity=1e-8, viscosity_law="barus", density_law="constant")
 """A lubricant of Barus' law and constant density."""
 
 
-COARSEST = 0.35
+COARSEST_FROM_DRY = 0.35
 """Narrowest cells, over the length on which the film forms, that are solved from the dry contact. Speed."""
 
 
@@ -77,15 +77,15 @@ def solve_line(
     finest : float
         Narrowest cells over the length on which the film forms.
     inlet : float, optional
-        Distance of the inlet from the middle over a; default: so far that it no longer matters.
+        Distance of the inlet from the middle over a; default: a distance without influence.
     oil : Lubricant
-        Laws of viscosity and density; its viscosity is of no influence, and for Barus' law its coefficient neither.
+        Laws of viscosity and density; the viscosity has no influence, nor has the coefficient of Barus' law.
     max_pressure : float, optional
         p0, Pa, for laws other than Barus'; its pressure-viscosity coefficient then follows from L.
     start : LineFilm, optional
-        Film on coarser cells. Default: of cells twice as wide, unless these are the coarsest; there the dry contact.
+        Film on coarser cells. Default: the film of cells twice as wide; the dry contact for the coarsest cells.
     """
-    if start is None and finest < COARSEST:
+    if start is None and finest < COARSEST_FROM_DRY:
         start = solve_line(
             load, lubricant, finest=2 * finest, inlet=inlet, oil=oil, max_pressure=max_pressure, settings=settings
         )
@@ -96,14 +96,14 @@ def solve_line(
 
     film = float(moes_line(load, lubricant)) * np.pi / (8 * load)
     delta = film ** (2 / 3)
-    first = -inlet if inlet is not None else -1 - 40 * delta
-    narrow = min(finest * delta, finest * 0.25)
+    inlet_edge = -inlet if inlet is not None else -1 - 40 * delta
+    min_width = min(finest * delta, finest * 0.25)
 
-    def size(y: float) -> float:
+    def cell_width(y: float) -> float:
         distance = max(0.0, min(abs(y + 1), abs(y - 1)) - delta)
-        return float(min(narrow + 0.5 * finest * distance, 0.25 * finest + 0.1 * max(0.0, abs(y) - 1)))
+        return float(min(min_width + 0.5 * finest * distance, 0.25 * finest + 0.1 * max(0.0, abs(y) - 1)))
 
-    edges = graded_edges(first, 1 + 8 * delta, size)
+    edges = graded_edges(inlet_edge, 1 + 8 * delta, cell_width)
     cells = FilmCells(x_edges=np.array([0.0, 1.0]), y_edges=edges, open_ends=False)
     y, stiffness = cells.y, line_stiffness(edges, cells.y)
     problem = FilmProblem(
@@ -118,23 +118,23 @@ def solve_line(
     )
     if start is not None:
         pressure, film_start = (np.interp(y, start.y, values)[None] for values in (start.pressure, start.film))
-        state = start_of(problem, pressure, start.solution.state.motion, film_start)
+        state = initial_state(problem, pressure, start.solution.state.motion, film_start)
         solution = solve_newton(problem, state, settings, steady=True)
     else:
         hertz = np.sqrt(np.maximum(1 - y**2, 0.0))[None]
-        sunk = problem.gap + problem.displace(hertz)
-        motion = np.array([film - sunk[0, np.abs(y).argmin()]])
-        state = start_of(problem, hertz, motion, np.maximum(sunk + motion[0], film))
+        deformed_gap = problem.gap + problem.displace(hertz)
+        motion = np.array([film - deformed_gap[0, np.abs(y).argmin()]])
+        state = initial_state(problem, hertz, motion, np.maximum(deformed_gap + motion[0], film))
         solution = solve_from_dry(problem, state, settings)
     height = solution.film[0]
     cell = int(height.argmin())
-    near = slice(cell - 1, cell + 2)
-    bend, slope, _ = np.polyfit(y[near] - y[cell], height[near], 2)
-    number = 8 * load / np.pi
+    neighbours = slice(cell - 1, cell + 2)
+    curvature, slope, _ = np.polyfit(y[neighbours] - y[cell], height[neighbours], 2)
+    film_scale = 8 * load / np.pi
     pressure = solution.fluid_pressure[0]
     return LineFilm(
-        central=number * float(np.interp(0.0, y, height)),
-        least=number * float(height[cell] - slope**2 / (4 * bend)),
+        central=film_scale * float(np.interp(0.0, y, height)),
+        least=film_scale * float(height[cell] - slope**2 / (4 * curvature)),
         y=y,
         pressure=pressure,
         film=height,

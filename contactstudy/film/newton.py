@@ -1,4 +1,4 @@
-"""Semi-smooth Newton method for the film: pressure, rigid motion and cavitation at once, on arrays."""
+"""Semi-smooth Newton method on arrays for pressure, rigid motion and cavitation of the film."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class FilmSettings:
     tolerance : float
         Tolerance: net outflow of a cell over the flow ``um h_c``, and load over the prescribed one. Accuracy.
     level_tolerance : float
-        Tolerance on levels that serve for the error and as a start. Speed.
+        Tolerance on the coarser levels, which serve as start and for the error. Speed.
     steps : tuple of float
         Pseudo-time steps, in a / um, before the steady state. Speed.
     newton_steps : int
@@ -35,14 +35,14 @@ class FilmSettings:
         Tolerance of the linear systems. Speed.
     linear_steps : int
         Bound on the steps of one linear system. Speed.
-    largest_closing : float
+    max_closing : float
         Largest relative decrease of the film of a cell in one step. Speed.
-    largest_change : float
+    max_pressure_change : float
         Change of the pressure in one step, over p0. Speed.
-    closed, nearly_closed : float
-        Film over the central one below which an iteration ends, and below which a failure counts as a closed film.
+    closed_film_ratio, nearly_closed_ratio : float
+        Film over the central film below which an iteration ends, and below which a failure is a closed film.
     speed_ratio, speed_steps : float, int
-        Ratio and number of higher speeds that are solved first where the dry contact is too far. Speed.
+        Ratio and number of the higher speeds solved first if the iteration fails from the dry contact. Speed.
     """
 
     tolerance: float = 1e-8
@@ -51,10 +51,10 @@ class FilmSettings:
     newton_steps: int = 12
     linear_tolerance: float = 1e-2
     linear_steps: int = 60
-    largest_closing: float = 0.6
-    largest_change: float = 0.3
-    closed: float = 1e-6
-    nearly_closed: float = 1e-3
+    max_closing: float = 0.6
+    max_pressure_change: float = 0.3
+    closed_film_ratio: float = 1e-6
+    nearly_closed_ratio: float = 1e-3
     speed_ratio: float = 4.0
     speed_steps: int = 4
 
@@ -64,14 +64,14 @@ SETTINGS = FilmSettings()
 
 
 class StepFailedError(ContactStudyError):
-    """A pseudo-time step did not converge; `closed` is the cell (x, y) where the film closes, or None."""
+    """A pseudo-time step did not converge; `closed_cell` is the cell (x, y) where the film closes, or None."""
 
-    def __init__(self, message: str, closed: tuple[int, int] | None = None) -> None:
-        self.closed = closed
+    def __init__(self, message: str, closed_cell: tuple[int, int] | None = None) -> None:
+        self.closed_cell = closed_cell
         super().__init__(message)
 
 
-class _Linearised(NamedTuple):
+class _LinearisedEquations(NamedTuple):
     """Equations about a state.
 
     Attributes
@@ -108,7 +108,7 @@ def solve_newton(problem: FilmProblem, start: FilmState, settings: FilmSettings,
     settings : FilmSettings
         Settings of the iteration.
     steady : bool
-        Whether the start is near: no pseudo-time steps unless the steady iteration fails.
+        Whether the steady iteration begins at the start; pseudo-time steps follow only if it fails.
     """
     iteration = _Iteration(problem, settings)
     if steady:
@@ -121,7 +121,7 @@ def solve_newton(problem: FilmProblem, start: FilmState, settings: FilmSettings,
     while pending:
         step = pending[0]
         try:
-            state = iteration.converge(state, step, iteration.mass(state)).state
+            state = iteration.converge(state, step, iteration.compute_mass(state)).state
             pending.pop(0)
         except StepFailedError:
             if step < settings.steps[0] / 30:
@@ -131,7 +131,7 @@ def solve_newton(problem: FilmProblem, start: FilmState, settings: FilmSettings,
 
 
 def solve_from_dry(problem: FilmProblem, dry: FilmState, settings: FilmSettings) -> FilmSolution:
-    """Solve for the film from the dry contact; where that fails, from films of higher speeds.
+    """Solve for the film from the dry contact, or, if the iteration fails, from films of higher speeds.
 
     Raises
     ------
@@ -145,7 +145,7 @@ def solve_from_dry(problem: FilmProblem, dry: FilmState, settings: FilmSettings)
             solution = solve_newton(faster, dry, settings, steady=False)
             break
         except StepFailedError as error:
-            if len(factors) > settings.speed_steps or error.closed is not None:
+            if len(factors) > settings.speed_steps or error.closed_cell is not None:
                 raise
             factors.append(settings.speed_ratio * factors[-1])
     LOGGER.info("speeds over the prescribed one: %s", factors[::-1])
@@ -164,18 +164,18 @@ class _Iteration:
     newton_steps: int = 0
     linear_steps: int = 0
 
-    def mass(self, state: FilmState) -> FloatArray:
+    def compute_mass(self, state: FilmState) -> FloatArray:
         """Mass of the film in each cell per area."""
         linearised = self.linearise(state, np.inf, None)
         density = self.problem.fluid.density(linearised.fluid_pressure.ravel()).value
         return np.asarray(density * linearised.film.ravel())
 
-    def linearise(self, state: FilmState, step: float, mass: FloatArray | None) -> _Linearised:
+    def linearise(self, state: FilmState, step: float, mass: FloatArray | None) -> _LinearisedEquations:
         """Residual and derivatives at a state."""
         problem = self.problem
         cells, distance = problem.cells, state.distance
         ones = np.ones(cells.shape)
-        film = problem.film(distance)
+        film = problem.compute_film(distance)
         asperities = Law(0 * ones, 0 * ones) if problem.asperities is None else problem.asperities(distance)
         fluid_pressure = state.pressure - asperities.value
         flow = cells.flow(problem.fluid, fluid_pressure, film)
@@ -186,19 +186,19 @@ class _Iteration:
             outflow = outflow + lengths * (density.value * film.value.ravel() - mass)
             by_pressure = by_pressure + sparse.diags_array(lengths * density.slope * film.value.ravel())
             by_distance = by_distance + sparse.diags_array(lengths * density.value * film.slope.ravel())
-        # The fluid carries the pressure less the part of the asperities.
+        # The fluid carries the pressure less that of the asperities.
         if problem.asperities is not None:
             by_distance = by_distance - by_pressure @ sparse.diags_array(asperities.slope.ravel())
-        elastic = _diagonals(problem.column_stiffness, by_distance)
+        elastic = _elastic_diagonal(problem.column_stiffness, by_distance)
         scale = np.abs(by_pressure.diagonal() + elastic)
         cavitated = fluid_pressure.ravel() - outflow / scale <= 0
-        # Over the film that flows through the cell: the far inlet would vanish in a norm of pressures.
-        full = sparse.diags_array(np.where(cavitated, 0.0, 1 / film.value.ravel()))
-        by_pressure = full @ by_pressure + sparse.diags_array(cavitated.astype(np.float64))
-        by_distance = full @ by_distance - sparse.diags_array(cavitated * asperities.slope.ravel())
+        # The residual is over the film of the cell: a norm of pressures would neglect the far inlet.
+        full_cells = sparse.diags_array(np.where(cavitated, 0.0, 1 / film.value.ravel()))
+        by_pressure = full_cells @ by_pressure + sparse.diags_array(cavitated.astype(np.float64))
+        by_distance = full_cells @ by_distance - sparse.diags_array(cavitated * asperities.slope.ravel())
         sums = problem.resultants @ state.pressure.ravel() - problem.prescribed
         residual = np.where(cavitated, fluid_pressure.ravel(), outflow / film.value.ravel())
-        return _Linearised(
+        return _LinearisedEquations(
             flow=flow._replace(outflow=outflow),
             residual=np.concatenate([residual, sums / problem.load]),
             by_pressure=sparse.csr_array(by_pressure),
@@ -210,43 +210,43 @@ class _Iteration:
         )
 
     def converge(self, state: FilmState, step: float, mass: FloatArray | None) -> FilmSolution:
-        """Iterate to a pseudo-time step, or, without one, to the steady state; raise if it does not converge."""
+        """Iterate to a pseudo-time step, or, without `mass`, to the steady state; raise on failure."""
         settings = self.settings
-        most = settings.newton_steps if mass is not None else 3 * settings.newton_steps
+        max_steps = settings.newton_steps if mass is not None else 3 * settings.newton_steps
 
-        def least_film(state: FilmState) -> float:
+        def min_film_ratio(state: FilmState) -> float:
             smooth = self.problem.mean_height is None
             return float(state.distance.min()) / self.problem.central_film if smooth else np.inf
 
-        for _ in range(most):
+        for _ in range(max_steps):
             linearised = self.linearise(state, step, mass)
             if not np.isfinite(linearised.residual).all():
                 break
-            solution = self.solution(state, linearised)
+            solution = self.certify(state, linearised)
             if mass is None and solution.converged:
                 return solution
             change = self.solve_linear(linearised, state.mismatch.ravel())
-            state, part, largest = self.updated(state, change)
-            if mass is not None and part == 1 and largest < 1e-3:
-                return self.solution(state, self.linearise(state, step, mass))
-            if least_film(state) < settings.closed:
+            state, step_fraction, pressure_change = self.apply_step(state, change)
+            if mass is not None and step_fraction == 1 and pressure_change < 1e-3:
+                return self.certify(state, self.linearise(state, step, mass))
+            if min_film_ratio(state) < settings.closed_film_ratio:
                 break
-        closed = None
-        if least_film(state) < settings.nearly_closed:
+        closed_cell = None
+        if min_film_ratio(state) < settings.nearly_closed_ratio:
             row, cell = np.unravel_index(int(state.distance.argmin()), state.distance.shape)
-            closed = int(row), int(cell)
-        raise StepFailedError(f"no convergence within {most} Newton steps", closed)
+            closed_cell = int(row), int(cell)
+        raise StepFailedError(f"no convergence within {max_steps} Newton steps", closed_cell)
 
-    def solution(self, state: FilmState, linearised: _Linearised) -> FilmSolution:
-        """Return a state with its certificate."""
+    def certify(self, state: FilmState, linearised: _LinearisedEquations) -> FilmSolution:
+        """Return the solution: a state and its certificate."""
         problem, shape = self.problem, self.problem.cells.shape
-        full = ~linearised.cavitated
+        full_cells = ~linearised.cavitated
         outflow = linearised.flow.outflow
-        # A cavitated cell may lose mass, and a full one none.
-        residual = float(np.abs(outflow[full]).max(initial=0.0)) / problem.central_film
-        inflow = float(np.maximum(-outflow[~full], 0.0).max(initial=0.0)) / problem.central_film
-        below = float(np.abs(linearised.fluid_pressure.ravel()[~full]).max(initial=0.0))
-        load_error = float(np.abs(linearised.residual[full.size :]).max())
+        # A cavitated cell may lose mass; a full cell loses none.
+        residual = float(np.abs(outflow[full_cells]).max(initial=0.0)) / problem.central_film
+        inflow = float(np.maximum(-outflow[~full_cells], 0.0).max(initial=0.0)) / problem.central_film
+        cavity_pressure = float(np.abs(linearised.fluid_pressure.ravel()[~full_cells]).max(initial=0.0))
+        load_error = float(np.abs(linearised.residual[full_cells.size :]).max())
         tolerance = self.settings.tolerance
         return FilmSolution(
             state=state,
@@ -258,40 +258,40 @@ class _Iteration:
             cavitated=linearised.cavitated.reshape(shape),
             residual=residual,
             load_error=load_error,
-            complementarity_error=max(inflow, below),
+            complementarity_error=max(inflow, cavity_pressure),
             mismatch=float(np.abs(state.mismatch).max()) / problem.central_film,
             newton_steps=self.newton_steps,
             linear_steps=self.linear_steps,
-            converged=max(residual, inflow, below) <= tolerance
+            converged=max(residual, inflow, cavity_pressure) <= tolerance
             and max(load_error, float(np.abs(state.mismatch).max()) / problem.central_film) <= tolerance,
         )
 
-    def updated(self, state: FilmState, change: FloatArray) -> tuple[FilmState, float, float]:
-        """Return the next state, the part of the step that was taken, and the largest change of the pressure."""
+    def apply_step(self, state: FilmState, change: FloatArray) -> tuple[FilmState, float, float]:
+        """Return the next state, the fraction of the step applied, and the largest change of the pressure."""
         problem, settings = self.problem, self.settings
         cells = problem.gap.size
         pressure = change[:cells].reshape(problem.gap.shape)
         motion = change[cells:]
         distance = problem.displace(pressure) + (motion @ problem.motions).reshape(problem.gap.shape) - state.mismatch
-        largest = float(np.abs(pressure).max())
-        part = min(1.0, settings.largest_change / max(largest, 1e-300))
-        linear = state.distance + part * distance
-        # The bound applies to a closing cell alone, and between rough surfaces the film is linear in the step, not the
-        # distance; the next step removes the mismatch.
-        film = problem.film(state.distance)
-        height = film.value + film.slope * (linear - state.distance)
-        height = np.maximum(height, (1 - settings.largest_closing) * film.value)
-        moved_distance = problem.distance(height, state.distance)
-        moved = FilmState(
-            state.pressure + part * pressure,
-            state.motion + part * motion,
-            moved_distance,
-            (1 - part) * state.mismatch + (moved_distance - linear),
+        max_change = float(np.abs(pressure).max())
+        step_fraction = min(1.0, settings.max_pressure_change / max(max_change, 1e-300))
+        linear_distance = state.distance + step_fraction * distance
+        # Only closing cells are bounded. Between rough surfaces the film, not the distance, is linear in the step; the
+        # next step removes the mismatch.
+        film = problem.compute_film(state.distance)
+        height = film.value + film.slope * (linear_distance - state.distance)
+        height = np.maximum(height, (1 - settings.max_closing) * film.value)
+        next_distance = problem.solve_distance(height, state.distance)
+        next_state = FilmState(
+            state.pressure + step_fraction * pressure,
+            state.motion + step_fraction * motion,
+            next_distance,
+            (1 - step_fraction) * state.mismatch + (next_distance - linear_distance),
         )
         self.newton_steps += 1
-        return moved, part, largest
+        return next_state, step_fraction, max_change
 
-    def solve_linear(self, linearised: _Linearised, mismatch: FloatArray) -> FloatArray:
+    def solve_linear(self, linearised: _LinearisedEquations, mismatch: FloatArray) -> FloatArray:
         """Change of pressure and rigid motion, by GMRES with eliminated columns as preconditioner, eq. (405)."""
         from scipy.sparse.linalg import LinearOperator, gmres
 
@@ -305,8 +305,8 @@ class _Iteration:
 
         def apply(unknowns: FloatArray) -> FloatArray:
             pressure, motion = unknowns[:cells], unknowns[cells:]
-            displaced = problem.displace(pressure.reshape(problem.gap.shape)).ravel()
-            rows = linearised.by_pressure @ pressure + linearised.by_distance @ displaced + by_motion @ motion
+            displacement = problem.displace(pressure.reshape(problem.gap.shape)).ravel()
+            rows = linearised.by_pressure @ pressure + linearised.by_distance @ displacement + by_motion @ motion
             return np.concatenate([rows, resultants @ pressure])
 
         def precondition(residual: FloatArray) -> FloatArray:
@@ -314,58 +314,58 @@ class _Iteration:
             motion = schur @ (resultants @ pressure - residual[cells:])
             return np.concatenate([pressure - inverse_motions @ motion, motion])
 
-        def counted(_: object) -> None:
+        def count_step(_: object) -> None:
             self.linear_steps += 1
 
         residual = linearised.residual.copy()
         residual[:cells] -= linearised.by_distance @ mismatch
         size = cells + len(motions)
         operator = LinearOperator((size, size), matvec=lambda unknowns: apply(precondition(unknowns)), dtype=np.float64)
-        solved, _ = gmres(
+        solution, _ = gmres(
             operator,
             -residual,
             rtol=self.settings.linear_tolerance,
             restart=self.settings.linear_steps,
             maxiter=1,
-            callback=counted,
+            callback=count_step,
             callback_type="pr_norm",
         )
-        return precondition(solved)
+        return precondition(solution)
 
 
-def _within_columns(matrix: sparse.csr_array, cells: int) -> sparse.coo_array:
-    """Entries between cells of the same column, of which each has some `cells`."""
+def _select_column_entries(matrix: sparse.csr_array, cells: int) -> sparse.coo_array:
+    """Entries between cells of the same column of `cells` cells."""
     entries = matrix.tocoo()
-    same = entries.row // cells == entries.col // cells
-    return sparse.coo_array((entries.data[same], (entries.row[same], entries.col[same])), entries.shape)
+    mask = entries.row // cells == entries.col // cells
+    return sparse.coo_array((entries.data[mask], (entries.row[mask], entries.col[mask])), entries.shape)
 
 
-def _diagonals(stiffness: FloatArray, by_distance: sparse.csr_array) -> FloatArray:
+def _elastic_diagonal(stiffness: FloatArray, by_distance: sparse.csr_array) -> FloatArray:
     """Diagonal of the derivative by the distance times the columns' stiffness: array (cell)."""
     columns, cells = stiffness.shape[:2]
-    entries = _within_columns(by_distance, cells)
+    entries = _select_column_entries(by_distance, cells)
     products = entries.data * stiffness[entries.row // cells, entries.col % cells, entries.row % cells]
     return np.asarray(np.bincount(entries.row, products, minlength=columns * cells), dtype=np.float64)
 
 
 @dataclass(frozen=True, eq=False)
 class _Columns:
-    """Columns that exchange lubricant, eliminated one after the other, as if all columns carried alike."""
+    """Elimination of the columns one after the other; all columns have equal pressure changes."""
 
     inverses: FloatArray  # (x, y, y): inverses of the columns' equations without the columns before
     before: FloatArray  # (x, y): coefficients of the pressures in the column before and in the one after
     after: FloatArray
 
     @classmethod
-    def of(cls, linearised: _Linearised, problem: FilmProblem) -> _Columns:
+    def of(cls, linearised: _LinearisedEquations, problem: FilmProblem) -> _Columns:
         """Eliminate column after column."""
         columns, cells = problem.cells.shape
         before, after = np.zeros((2, columns, cells))
         before[1:] = linearised.by_pressure.diagonal(-cells).reshape(-1, cells)
         after[:-1] = linearised.by_pressure.diagonal(cells).reshape(-1, cells)
-        by_distance = _within_columns(linearised.by_distance, cells).tocsr()
+        by_distance = _select_column_entries(linearised.by_distance, cells).tocsr()
         inverses = (by_distance @ problem.column_stiffness.reshape(-1, cells)).reshape(columns, cells, cells)
-        by_pressure = _within_columns(linearised.by_pressure, cells)
+        by_pressure = _select_column_entries(linearised.by_pressure, cells)
         inverses[by_pressure.row // cells, by_pressure.row % cells, by_pressure.col % cells] += by_pressure.data
         for column, matrix in enumerate(inverses):
             if column:

@@ -13,7 +13,7 @@ from contactstudy.checks import BoolArray, FloatArray
 from contactstudy.film.reynolds import FilmCells, Fluid, Law
 
 INVERSE_STEPS = 8
-"""Steps to the distance of rough surfaces at a height of the film: the next step removes what they leave. Speed."""
+"""Steps to the distance of rough surfaces at a film height; the next Newton step removes the remainder. Speed."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -31,17 +31,17 @@ class FilmProblem:
     displace : callable
         Displacement of the surfaces apart, array (x, y), under a pressure.
     column_stiffness : array (x, y, y)
-        Displacement of a column's cells under a pressure that all columns carry alike.
+        Displacement of a column's cells under a pressure that is equal in all columns.
     load : float
         Prescribed sum of the pressure times the areas.
     lever : array (x) or None
-        Distances from the load's position, over the largest of them, if the shape is free to tilt.
+        Distances from the load's position, over the largest distance, if the roller is free to tilt.
     central_film : float
         Central film as estimated before the solution: the scale of tolerances.
     asperities : callable or None
         Mean pressure of the asperities at a distance of the surfaces.
     mean_height : callable or None
-        Mean height of the film between rough surfaces at a distance of these.
+        Mean height of the film at a distance of rough surfaces.
     """
 
     cells: FilmCells
@@ -67,17 +67,17 @@ class FilmProblem:
         """Sums that the rigid motions prescribe: array (motion, cell)."""
         return np.asarray(self.motions * self.cells.areas.ravel())
 
-    def film(self, distance: FloatArray) -> Law:
+    def compute_film(self, distance: FloatArray) -> Law:
         """Mean height of the film at a distance of the surfaces."""
         return Law(distance, np.ones_like(distance)) if self.mean_height is None else self.mean_height(distance)
 
-    def distance(self, height: FloatArray, start: FloatArray) -> FloatArray:
+    def solve_distance(self, height: FloatArray, start: FloatArray) -> FloatArray:
         """Distance of the surfaces at a mean height of the film: Newton's method for its logarithm, from a `start`."""
         if self.mean_height is None:
             return height
-        # Apart, rough surfaces are at most the height that they have in touch closer than their film is high.
-        touching = self.mean_height(np.zeros_like(height)).value
-        distance = np.where(height > touching, np.maximum(start, height - touching), start)
+        # The mean height exceeds the distance of the surfaces by at most the height at distance zero.
+        touching_height = self.mean_height(np.zeros_like(height)).value
+        distance = np.where(height > touching_height, np.maximum(start, height - touching_height), start)
         for _ in range(INVERSE_STEPS):
             film = self.mean_height(distance)
             distance = distance + film.value / film.slope * np.log(height / film.value)
@@ -85,7 +85,7 @@ class FilmProblem:
 
     @property
     def prescribed(self) -> FloatArray:
-        """Values of these sums: load, and moment about the load's position."""
+        """Prescribed values of `resultants`: load, and moment about its position."""
         return np.array([self.load, 0.0][: len(self.motions)])
 
 
@@ -99,9 +99,9 @@ class FilmState(NamedTuple):
     motion : array (motion)
         Rigid motion: height and, if free, tilt.
     distance : array (x, y)
-        Distance of the surfaces, an unknown as well: a start may be interpolated from other cells.
+        Distance of the surfaces: an unknown, because a start may be interpolated from other cells.
     mismatch : array (x, y)
-        Distance less the one by pressure and motion.
+        Distance less the distance that pressure and motion cause.
     """
 
     pressure: FloatArray
@@ -110,14 +110,14 @@ class FilmState(NamedTuple):
     mismatch: FloatArray
 
 
-def start_of(problem: FilmProblem, pressure: FloatArray, motion: FloatArray, distance: FloatArray) -> FilmState:
-    """Return a state from values that need not fit together."""
+def initial_state(problem: FilmProblem, pressure: FloatArray, motion: FloatArray, distance: FloatArray) -> FilmState:
+    """Return a state with the mismatch of the given values."""
     rigid = (motion @ problem.motions).reshape(problem.gap.shape)
     return FilmState(pressure, motion, distance, distance - problem.gap - problem.displace(pressure) - rigid)
 
 
 class FilmSolution(NamedTuple):
-    """A film that has been solved.
+    """Solution of a film problem.
 
     Attributes
     ----------
@@ -133,7 +133,7 @@ class FilmSolution(NamedTuple):
         Cells with a broken film.
     residual, load_error, complementarity_error, mismatch : float
         Certificate: largest net outflow of a full cell over the central film, error of load and moment over the load,
-        largest net inflow of a cavitated cell over the central film, and largest mismatch of the distance over it.
+        and largest net inflow of a cavitated cell and mismatch of the distance, both over the central film.
     newton_steps, linear_steps : int
         Steps taken.
     converged : bool

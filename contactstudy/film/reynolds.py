@@ -40,7 +40,7 @@ class Fluid:
     density : callable
         Density over the ambient one, of the pressure.
     reduced_pressure : callable
-        Integral of the fluidity, density over viscosity, both over the ambient ones, up to the pressure.
+        Integral of the fluidity (density over viscosity, both over their ambient values) up to the pressure.
     speed : float
         ``12 eta0 um R**2 / (a**3 p0)``.
     """
@@ -97,7 +97,7 @@ class FilmCells:
     x_edges, y_edges : array
         Edges of the cells, in half-widths.
     open_ends : bool
-        Whether the film ends at ambient pressure at both ends along x; otherwise nothing flows along x through them.
+        Whether both ends along x have ambient pressure; otherwise no lubricant flows through the ends.
     """
 
     x_edges: FloatArray
@@ -139,14 +139,14 @@ class FilmCells:
         """Faces between neighbours along y."""
         rows = sparse.eye_array(self.shape[0])
         matrices = (*_neighbours(self.y.size), _gradient(self.y_edges, self.y, closed=False))
-        return Faces(*(sparse.csr_array(sparse.kron(rows, each)) for each in matrices))
+        return Faces(*(sparse.csr_array(sparse.kron(rows, matrix)) for matrix in matrices))
 
     @cached_property
     def along_x(self) -> Faces:
         """Faces between neighbours along x."""
         columns = sparse.eye_array(self.shape[1])
         matrices = (*_neighbours(self.x.size), _gradient(self.x_edges, self.x, closed=not self.open_ends))
-        return Faces(*(sparse.csr_array(sparse.kron(each, columns)) for each in matrices))
+        return Faces(*(sparse.csr_array(sparse.kron(matrix, columns)) for matrix in matrices))
 
     @cached_property
     def parabolas(self) -> sparse.csr_array:
@@ -156,18 +156,21 @@ class FilmCells:
         for face, position in enumerate(self.y_edges):
             stencil = np.arange(max(face - 2, 0), min(face + 1, cells)) if face else np.arange(min(2, cells))
             for cell in stencil:
-                others = self.y[stencil[stencil != cell]]
-                matrix[face, cell] = np.prod((position - others) / (self.y[cell] - others))
+                neighbours = self.y[stencil[stencil != cell]]
+                matrix[face, cell] = np.prod((position - neighbours) / (self.y[cell] - neighbours))
         return sparse.csr_array(sparse.kron(sparse.eye_array(self.shape[0]), matrix))
 
     def upwind(self, height: FloatArray) -> sparse.csr_array:
-        """Parabolas, bounded where the film varies much from cell to cell: the film remains positive: (face, cell)."""
+        """Parabolas, bounded where the film varies much from cell to cell, to remain positive: (face, cell)."""
         before = self.along_y.before
-        parabola, least, largest = (self.parabolas @ height, *(bound * (before @ height) for bound in FACE_FILM))
-        low, high = parabola < least, parabola > largest
-        bounds = np.where(low, FACE_FILM[0], np.where(high, FACE_FILM[1], 0.0))
-        within = sparse.diags_array(np.where(low | high, 0.0, 1.0))
-        return sparse.csr_array(within @ self.parabolas + sparse.diags_array(bounds) @ before)
+        parabola, lower, upper = (
+            self.parabolas @ height,
+            *(bound * (before @ height) for bound in FACE_FILM),
+        )
+        below_bound, above_bound = parabola < lower, parabola > upper
+        bounds = np.where(below_bound, FACE_FILM[0], np.where(above_bound, FACE_FILM[1], 0.0))
+        unbounded = sparse.diags_array(np.where(below_bound | above_bound, 0.0, 1.0))
+        return sparse.csr_array(unbounded @ self.parabolas + sparse.diags_array(bounds) @ before)
 
     @cached_property
     def outflow_y(self) -> sparse.csr_array:
@@ -195,25 +198,25 @@ class FilmCells:
         height, pressure = film.value.ravel(), pressure.ravel()
         density, reduced = fluid.density(pressure), fluid.reduced_pressure(pressure)
         upwind = self.upwind(height)
-        conducted = self.along_y.conducted(fluid.speed, reduced, height)
-        through = upwind @ (density.value * height) - conducted.flow
-        by_pressure = upwind @ sparse.diags_array(density.slope * height) - conducted.by_pressure
-        by_film = upwind @ sparse.diags_array(density.value) - conducted.by_film
-        outflow = self.outflow_y @ through
+        pressure_flow = self.along_y.conduct(fluid.speed, reduced, height)
+        face_flow = upwind @ (density.value * height) - pressure_flow.flow
+        by_pressure = upwind @ sparse.diags_array(density.slope * height) - pressure_flow.by_pressure
+        by_film = upwind @ sparse.diags_array(density.value) - pressure_flow.by_film
+        outflow = self.outflow_y @ face_flow
         by_pressure, by_film = self.outflow_y @ by_pressure, self.outflow_y @ by_film
         if self.shape[0] > 1 or self.open_ends:
-            across = self.along_x.conducted(fluid.speed, reduced, height)
-            outflow = outflow - self.outflow_x @ across.flow
-            by_pressure = by_pressure - self.outflow_x @ across.by_pressure
-            by_film = by_film - self.outflow_x @ across.by_film
+            cross_flow = self.along_x.conduct(fluid.speed, reduced, height)
+            outflow = outflow - self.outflow_x @ cross_flow.flow
+            by_pressure = by_pressure - self.outflow_x @ cross_flow.by_pressure
+            by_film = by_film - self.outflow_x @ cross_flow.by_film
         by_film = by_film @ sparse.diags_array(film.slope.ravel())
         return Flow(
-            outflow, sparse.csr_array(by_pressure), sparse.csr_array(by_film), through.reshape(self.shape[0], -1)
+            outflow, sparse.csr_array(by_pressure), sparse.csr_array(by_film), face_flow.reshape(self.shape[0], -1)
         )
 
 
-class Conducted(NamedTuple):
-    """Flow through faces that the gradient of the pressure drives, reversed, and its derivatives."""
+class ConductedFlow(NamedTuple):
+    """Flow through faces against the gradient of the pressure, with reversed sign, and its derivatives."""
 
     flow: FloatArray
     by_pressure: sparse.csr_array
@@ -222,12 +225,12 @@ class Conducted(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Faces:
-    """Faces along one axis: matrices (face, cell) of values on them.
+    """Faces along one axis: matrices (face, cell).
 
     Attributes
     ----------
     before, after : sparse array (face, cell)
-        Which cells are upstream and downstream: at the outermost faces the same one.
+        Selection of the cells upstream and downstream; equal at the outermost faces.
     gradient : sparse array (face, cell)
         Gradient; beyond the outermost faces the pressure is ambient.
     """
@@ -236,8 +239,8 @@ class Faces:
     after: sparse.csr_array
     gradient: sparse.csr_array
 
-    def conducted(self, speed: float, reduced: Law, height: FloatArray) -> Conducted:
-        """Flow that the gradient of the reduced pressure drives, eq. (402): it rises with any step of the pressure.
+    def conduct(self, speed: float, reduced: Law, height: FloatArray) -> ConductedFlow:
+        """Return the flow by the gradient of the reduced pressure, eq. (402); it rises with any step of the pressure.
 
         The flow is constant between two centres, and the film linear: the thinner film determines the flow.
         """
@@ -249,7 +252,7 @@ class Faces:
             sparse.diags_array(cube * slopes * (2 / film - 1 / (before + after))) @ cells
             for film, cells in ((before, self.before), (after, self.after))
         )
-        return Conducted(cube * slopes, sparse.csr_array(by_pressure), sparse.csr_array(by_before + by_after))
+        return ConductedFlow(cube * slopes, sparse.csr_array(by_pressure), sparse.csr_array(by_before + by_after))
 
 
 def _outflow(cells: int) -> sparse.sparray:

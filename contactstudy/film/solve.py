@@ -26,14 +26,14 @@ from contactstudy.film.levels import (
     FilmOnCells,
     FilmResolution,
     Level,
-    cells_of,
+    continue_solution,
+    create_cells,
     film_on_level,
-    solve_further,
 )
 from contactstudy.film.newton import SETTINGS, FilmSettings, StepFailedError
 
 ACCURACIES = (2e-3, 0.2)
-"""Accuracies that the levels reach and that mean something."""
+"""Accuracies that the levels reach."""
 
 SAFETY = {"cells": 1.5, "columns": 1.0}
 """Stated error over the latest change by a refinement. Accuracy."""
@@ -67,17 +67,17 @@ def solve_film(
     case : Case
         With a `lubricant` and a motion that has speeds. Friction does not displace the surfaces.
     accuracy : float
-        Error of the central and of the least films, over the central film, to which cells are refined: from 0.002
-        to 0.2. The error that is reached is stated.
+        Largest error of the central and of the least films, over the central film, from 0.002
+        to 0.2; the refinement of the cells ends below it. The result contains the error reached.
     asperities : Asperities, optional
-        Roughness that carries what the film does not. Default: the surfaces are smooth.
+        Roughness, whose asperities carry a part of the load. Default: the surfaces are smooth.
     inlet : float, optional
-        Distance of the lubricant's meniscus in the inlet from the middle of the contact, metres. Default: so far that
-        the inlet is fully flooded.
+        Distance of the lubricant's meniscus in the inlet from the middle of the contact, metres. Default: at a distance
+        that floods the inlet fully.
     start : Dataset, optional
         Film of the same case at another speed or with another lubricant, from which the iteration starts.
     resolution : FilmResolution
-        Cells of the refinable level.
+        Cells of the coarsest level, and the refinement.
     settings : FilmSettings
         Settings of the iteration.
 
@@ -86,7 +86,7 @@ def solve_film(
     Dataset
         `film_thickness` and `pressure` (x, y), with `asperity_pressure` and the film ratio `film_ratio` (x) between
         rough surfaces; `slice_film` (x), Moes' formula for the dry load per length of each slice, as bearing programs
-        compute it; `central_film` in the middle of the contact; `least_film` and its place ``_x``, ``_y``;
+        compute it; `central_film` in the middle of the contact; `least_film` and its position ``_x``, ``_y``;
         `least_film_middle` in the middle section, `least_film_first` and `least_film_last` towards either end, the
         latter two with ``_x``; each film with its error ``<name>_error``. `entrainment_speed`, `slide_roll_ratio`,
         `moes_load`, `moes_lubricant` of the largest load per length; `asperity_load_share` and the `viscosity_ratio`
@@ -105,7 +105,7 @@ def solve_film(
     ConvergenceWarning
         If the finest level does not reach the accuracy.
     MagnitudeWarning
-        If the pressure exceeds what the viscosity law holds for.
+        If the pressure exceeds the range of the viscosity law.
 
     Examples
     --------
@@ -119,30 +119,30 @@ def solve_film(
     >>> round(1e6 * float(result.central_film), 1)
     0.3
     """
-    film = _film_case(case, asperities, inlet, resolution)
+    film = _check_case(case, asperities, inlet, resolution)
     limit = checks.positive("accuracy", accuracy)
     if not ACCURACIES[0] <= limit <= ACCURACIES[1]:
         raise InvalidInputError("accuracy", limit, f"from {ACCURACIES[0]:g} to {ACCURACIES[1]:g} of the central film")
-    began = time.perf_counter()
+    start_time = time.perf_counter()
     if start is not None:
         require(start, "film_thickness", "pressure", "moes_load", argument="start")
-    refined = _refined(film, limit, settings, start)
-    result = _labelled(film, refined)
-    seconds = time.perf_counter() - began
+    refined = _refine(film, limit, settings, start)
+    result = _label_film(film, refined)
+    seconds = time.perf_counter() - start_time
     if refined.error > limit:
         warnings.warn(
-            f"the films are settled to {refined.error:.2g} of the central film, not to accuracy = {limit:g}: "
+            f"the films have converged to {refined.error:.2g} of the central film, not to accuracy = {limit:g}: "
             "allow more levels, or more error",
             ConvergenceWarning,
             stacklevel=2,
         )
-    _warn_of_viscosity(film, refined.solved)
-    described = without_error(describe(result, "lubricated contact of a roller with an elastic body"), "slice_film")
-    recorded = {"accuracy": limit, "inlet": inlet, "rms": None if asperities is None else asperities.rms}
-    return with_provenance(described, case, recorded, {"film": seconds})
+    _warn_of_viscosity(film, refined.level_film)
+    labelled = without_error(describe(result, "lubricated contact of a roller with an elastic body"), "slice_film")
+    recorded_arguments = {"accuracy": limit, "inlet": inlet, "rms": None if asperities is None else asperities.rms}
+    return with_provenance(labelled, case, recorded_arguments, {"film": seconds})
 
 
-def _film_case(case: Case, asperities: Asperities | None, inlet: float | None, resolution: FilmResolution) -> FilmCase:
+def _check_case(case: Case, asperities: Asperities | None, inlet: float | None, resolution: FilmResolution) -> FilmCase:
     """Check a case for a film."""
     checks.instance("case", case, Case, "a Case")
     if case.lubricant is None:
@@ -163,18 +163,18 @@ def _film_case(case: Case, asperities: Asperities | None, inlet: float | None, r
         resolution=resolution,
         inlet=None if inlet is None else checks.positive("inlet", inlet, "metres"),
     )
-    if film.inlet is not None and film.inlet <= film.reach * film.half_width:
+    if film.inlet is not None and film.inlet <= film.contact_half_width * film.half_width:
         raise InvalidInputError(
             "inlet",
             film.inlet,
-            f"more than the half-width of the contact, {film.reach * film.half_width:.3g} m",
+            f"more than the half-width of the contact, {film.contact_half_width * film.half_width:.3g} m",
             "a meniscus inside the contact forms no film",
         )
     return film
 
 
 class Films(NamedTuple):
-    """Films in one solution, over the scale of heights, and where they are, over the half-width."""
+    """Film thicknesses over the height scale, and their positions over the half-width."""
 
     central: float
     middle: float
@@ -202,10 +202,10 @@ NAMES = {
 """Variables of the films."""
 
 
-class _Refined(NamedTuple):
+class _RefinedFilm(NamedTuple):
     """Film on the finest level, its values and their errors, and the largest over the central film."""
 
-    solved: FilmOnCells
+    level_film: FilmOnCells
     films: Films
     errors: dict[str, float]
     error: float
@@ -214,44 +214,44 @@ class _Refined(NamedTuple):
     linear_steps: int
 
 
-def _refined(film: FilmCase, accuracy: float, settings: FilmSettings, start: xr.Dataset | None = None) -> _Refined:
-    """Film on cells that are refined, in the direction of the larger error, until the errors are below the accuracy."""
-    coarse = replace(settings, tolerance=max(settings.tolerance, settings.level_tolerance))
+def _refine(film: FilmCase, accuracy: float, settings: FilmSettings, start: xr.Dataset | None = None) -> _RefinedFilm:
+    """Film on cells that are refined in the direction of the larger error, down to the accuracy."""
+    coarse_settings = replace(settings, tolerance=max(settings.tolerance, settings.level_tolerance))
     level = Level()
     closures: tuple[float, ...] = film.contact_ends
     try:
-        solutions = [film_on_level(film, level, closures, coarse, start)]
-    except StepFailedError as failure:
+        solutions = [film_on_level(film, level, closures, coarse_settings, start)]
+    except StepFailedError as error:
         if start is not None:
-            return _refined(film, accuracy, settings)
-        raise _film_error(film, failure, level, closures) from None
-    films = [films_of(film, solutions[0])]
+            return _refine(film, accuracy, settings)
+        raise _create_film_error(film, error, level, closures) from None
+    films = [compute_films(film, solutions[0])]
     changes = {name: [np.full(len(NAMES), np.inf)] * 2 for name in Level._fields}
     while True:
-        parts = {name: _error(name, change) for name, change in changes.items()}
-        errors = np.sum([*parts.values()], axis=0) + ROUNDING * films[-1].values
-        refinable = [name for name in Level._fields if getattr(level, name) < film.resolution.levels - 1]
-        if errors.max() <= accuracy * films[-1].central or not refinable:
+        direction_errors = {name: _estimate_errors(name, change) for name, change in changes.items()}
+        errors = np.sum([*direction_errors.values()], axis=0) + ROUNDING * films[-1].values
+        directions = [name for name in Level._fields if getattr(level, name) < film.resolution.levels - 1]
+        if errors.max() <= accuracy * films[-1].central or not directions:
             break
-        direction = max(refinable, key=lambda name: float(parts[name].max()))
+        direction = max(directions, key=lambda name: float(direction_errors[name].max()))
         level = level._replace(**{direction: getattr(level, direction) + 1})
         if direction == "columns":
-            closures = (*film.contact_ends, *_least_columns(films[-1], solutions[-1]))
+            closures = (*film.contact_ends, *_columns_of_minima(films[-1], solutions[-1]))
         try:
-            solutions.append(film_on_level(film, level, closures, coarse, solutions[-1]))
-        except StepFailedError as failure:
+            solutions.append(film_on_level(film, level, closures, coarse_settings, solutions[-1]))
+        except StepFailedError as error:
             if np.isinf(errors).any():
-                raise _film_error(film, failure, level, closures) from None
+                raise _create_film_error(film, error, level, closures) from None
             break
-        films.append(films_of(film, solutions[-1]))
+        films.append(compute_films(film, solutions[-1]))
         changes[direction].append(np.abs(films[-1].values - films[-2].values))
     try:
-        solutions.append(solve_further(solutions[-1], settings))
-    except StepFailedError as failure:
-        raise _film_error(film, failure, level, closures) from None
-    return _Refined(
-        solved=solutions[-1],
-        films=films_of(film, solutions[-1]),
+        solutions.append(continue_solution(solutions[-1], settings))
+    except StepFailedError as error:
+        raise _create_film_error(film, error, level, closures) from None
+    return _RefinedFilm(
+        level_film=solutions[-1],
+        films=compute_films(film, solutions[-1]),
         errors=dict(zip(NAMES, errors.tolist(), strict=True)),
         error=float(errors.max()) / films[-1].central,
         levels=len(films),
@@ -260,46 +260,46 @@ def _refined(film: FilmCase, accuracy: float, settings: FilmSettings, start: xr.
     )
 
 
-def _error(direction: str, changes: list[FloatArray]) -> FloatArray:
-    """Error of each film from its latest two changes by refinement in one direction: one may vanish by chance."""
+def _estimate_errors(direction: str, changes: list[FloatArray]) -> FloatArray:
+    """Error of each film from its latest two changes by refinement in one direction; one may vanish by chance."""
     return np.asarray(SAFETY[direction] * np.maximum(changes[-1], DECREASE[direction] * changes[-2]))
 
 
-def _least_columns(films: Films, solved: FilmOnCells) -> tuple[float, float]:
+def _columns_of_minima(films: Films, level_film: FilmOnCells) -> tuple[float, float]:
     """Columns of the least films of both sides, over the half-width: equal for films of near speeds."""
-    x = solved.problem.cells.x
-    first, last = (float(x[np.abs(x - least).argmin()]) for least in (films.first_x, films.last_x))
+    x = level_film.problem.cells.x
+    first, last = (float(x[np.abs(x - position).argmin()]) for position in (films.first_x, films.last_x))
     return first, last
 
 
-def _film_error(film: FilmCase, failure: StepFailedError, level: Level, closures: tuple[float, ...]) -> FilmError:
-    """Return the error of a film that has not been found, with the place where it closes."""
-    if failure.closed is None:
-        return FilmError(f"the film's iteration does not converge: {failure}; another speed or load may help")
-    cells = cells_of(film, level, closures)[0]
-    x, y = (film.half_width * axis[cell] for axis, cell in zip((cells.x, cells.y), failure.closed, strict=True))
+def _create_film_error(film: FilmCase, error: StepFailedError, level: Level, closures: tuple[float, ...]) -> FilmError:
+    """Return the error of a failed iteration, with the position where the film closes."""
+    if error.closed_cell is None:
+        return FilmError(f"the film's iteration does not converge: {error}; another speed or load may help")
+    cells = create_cells(film, level, closures)[0]
+    x, y = (film.half_width * axis[cell] for axis, cell in zip((cells.x, cells.y), error.closed_cell, strict=True))
     return FilmError(
         f"the film of smooth surfaces closes at x = {x:.4g} m, y = {y:.4g} m: give asperities=Asperities(rms=...), "
         "a profile with a larger drop at the ends, or a higher speed"
     )
 
 
-def films_of(film: FilmCase, solved: FilmOnCells) -> Films:
+def compute_films(film: FilmCase, level_film: FilmOnCells) -> Films:
     """Return central and least films of a solution, between the cells and up to the end faces by parabolas."""
-    cells, height = solved.problem.cells, solved.solution.film
+    cells, height = level_film.problem.cells, level_film.solution.film
     low, high = film.contact_ends
-    middle = 0.5 * (low + high)
-    within = np.abs(cells.y) < 1.5 * film.reach
-    rows = [_least(cells.y, cells.y_edges, row, within) for row in height]
-    least = np.array([minimum.value for minimum in rows])
+    mid_length = 0.5 * (low + high)
+    within_contact = np.abs(cells.y) < 1.5 * film.contact_half_width
+    rows = [_find_minimum(cells.y, cells.y_edges, row, within_contact) for row in height]
+    row_minima = np.array([minimum.value for minimum in rows])
     positions = np.array([minimum.position for minimum in rows])
     centre = np.array([np.interp(0.0, cells.y, row) for row in height])
-    first = cells.x < middle
-    sides = [_least(cells.x, cells.x_edges, least, side) for side in (first, ~first)]
+    first_side = cells.x < mid_length
+    sides = [_find_minimum(cells.x, cells.x_edges, row_minima, on_side) for on_side in (first_side, ~first_side)]
     lowest = min(sides)
     return Films(
-        central=_interpolated(cells.x, centre, middle),
-        middle=_interpolated(cells.x, least, middle),
+        central=_interpolate(cells.x, centre, mid_length),
+        middle=_interpolate(cells.x, row_minima, mid_length),
         first=sides[0].value,
         last=sides[1].value,
         least=lowest.value,
@@ -310,59 +310,60 @@ def films_of(film: FilmCase, solved: FilmOnCells) -> Films:
     )
 
 
-def _interpolated(x: FloatArray, values: FloatArray, position: float) -> float:
+def _interpolate(x: FloatArray, values: FloatArray, position: float) -> float:
     """Value at a position by the parabola through the three nearest columns."""
-    first = min(max(int(np.abs(x - position).argmin()) - 1, 0), x.size - 3)
-    near = slice(first, first + 3)
-    return float(lagrange_weights(x[near], np.array([position]))[0] @ values[near])
+    start = min(max(int(np.abs(x - position).argmin()) - 1, 0), x.size - 3)
+    neighbours = slice(start, start + 3)
+    return float(lagrange_weights(x[neighbours], np.array([position]))[0] @ values[neighbours])
 
 
-class _Least(NamedTuple):
-    """Least value and its position."""
+class _Minimum(NamedTuple):
+    """Minimum and its position."""
 
     value: float
     position: float
 
 
-def _least(centres: FloatArray, edges: FloatArray, values: FloatArray, among: BoolArray) -> _Least:
-    """Least of positive values in the least of some cells, by the cubic spline of the logarithms of cells near it."""
-    cell = int(np.where(among, values, np.inf).argmin())
-    near = slice(max(cell - 3, 0), cell + 4)
-    spline = CubicSpline(centres[near], np.log(values[near]))
-    turns = spline.derivative().roots(extrapolate=True)
-    positions = np.clip(np.append(turns[np.isfinite(turns)], edges[[cell, cell + 1]]), edges[cell], edges[cell + 1])
+def _find_minimum(centres: FloatArray, edges: FloatArray, values: FloatArray, mask: BoolArray) -> _Minimum:
+    """Minimum of positive values within the lowest cell of a mask, by a cubic spline of logarithms of nearby cells."""
+    cell = int(np.where(mask, values, np.inf).argmin())
+    neighbours = slice(max(cell - 3, 0), cell + 4)
+    spline = CubicSpline(centres[neighbours], np.log(values[neighbours]))
+    extrema = spline.derivative().roots(extrapolate=True)
+    positions = np.clip(np.append(extrema[np.isfinite(extrema)], edges[[cell, cell + 1]]), edges[cell], edges[cell + 1])
     logarithms = spline(positions)
-    lowest = int(logarithms.argmin())
-    return _Least(float(np.exp(logarithms[lowest])), float(positions[lowest]))
+    minimum = int(logarithms.argmin())
+    return _Minimum(float(np.exp(logarithms[minimum])), float(positions[minimum]))
 
 
-def _labelled(film: FilmCase, refined: _Refined) -> xr.Dataset:
+def _label_film(film: FilmCase, refined: _RefinedFilm) -> xr.Dataset:
     """Label a film: on uniform cells along y, in the coordinates of the case."""
-    solved, solution, grid = refined.solved, refined.solved.solution, refined.solved.grid
-    # The lubricant flows along +y on the solver's cells.
-    turned = film.speeds.entrainment < 0
-    sign = -1 if turned else 1
+    solved = refined.level_film
+    solution, grid = solved.solution, solved.grid
+    # The solver's lubricant flows along +y.
+    mirrored = film.speeds.entrainment < 0
+    sign = -1 if mirrored else 1
 
-    def on_grid(values: FloatArray, outside: float) -> FloatArray:
-        full = np.full(grid.shape, outside)
-        full[solved.columns] = values
-        return full[:, ::-1] if turned else full
+    def expand(values: FloatArray, outer_value: float) -> FloatArray:
+        expanded = np.full(grid.shape, outer_value)
+        expanded[solved.columns] = values
+        return expanded[:, ::-1] if mirrored else expanded
 
-    pressure = on_grid(film.pressure * _spread(solved, solution.fluid_pressure), 0.0)
+    pressure = expand(film.pressure * _spread_pressure(solved, solution.fluid_pressure), 0.0)
     fields = {"pressure": pressure}
     if film.asperities is not None:
-        fields["asperity_pressure"] = on_grid(film.pressure * _spread(solved, solution.asperity_pressure), 0.0)
+        fields["asperity_pressure"] = expand(film.pressure * _spread_pressure(solved, solution.asperity_pressure), 0.0)
         fields["pressure"] = pressure + fields["asperity_pressure"]
     cells = solved.problem.cells
-    uniform = np.clip(grid.y / film.half_width, cells.y[0], cells.y[-1])
-    height = PchipInterpolator(cells.y, solution.film, axis=1)(uniform)
-    fields["film_thickness"] = on_grid(film.height * height, np.nan)
-    y = -grid.y[::-1] if turned else grid.y
+    uniform_y = np.clip(grid.y / film.half_width, cells.y[0], cells.y[-1])
+    height = PchipInterpolator(cells.y, solution.film, axis=1)(uniform_y)
+    fields["film_thickness"] = expand(film.height * height, np.nan)
+    y = -grid.y[::-1] if mirrored else grid.y
     films = refined.films
     scalars: dict[str, float | int | bool] = {}
-    for short, name in NAMES.items():
-        scalars[name] = film.height * getattr(films, short)
-        scalars[f"{name}_error"] = film.height * refined.errors[short]
+    for attribute, name in NAMES.items():
+        scalars[name] = film.height * getattr(films, attribute)
+        scalars[f"{name}_error"] = film.height * refined.errors[attribute]
     scalars["end_film_ratio"] = films.least / films.middle
     scalars["end_film_ratio_error"] = (refined.errors["least"] + refined.errors["middle"]) / films.middle
     scalars |= {
@@ -387,43 +388,43 @@ def _labelled(film: FilmCase, refined: _Refined) -> xr.Dataset:
     }
     profiles = {"slice_film": (("x",), film.slice_film(grid.x))}
     if film.asperities is not None:
-        narrow = np.full(grid.cells_x, np.nan)
-        narrow[solved.columns] = film.height * solution.film.min(axis=1) / film.asperities.rms
-        profiles["film_ratio"] = (("x",), narrow)
+        min_ratio = np.full(grid.cells_x, np.nan)
+        min_ratio[solved.columns] = film.height * solution.film.min(axis=1) / film.asperities.rms
+        profiles["film_ratio"] = (("x",), min_ratio)
         scalars["asperity_load_share"] = float((solution.asperity_pressure * cells.areas).sum() / solved.problem.load)
         scalars["roughness_rms"] = film.asperities.rms
         scalars["least_film_ratio"] = scalars["least_film"] / film.asperities.rms
         scalars["least_film_ratio_error"] = scalars["least_film_error"] / film.asperities.rms
         # The ends are outside ISO 281: kappa refers to the film of the middle section.
         scalars["viscosity_ratio"] = (scalars["least_film_middle"] / film.asperities.rms) ** VISCOSITY_EXPONENT
-        relative = scalars["least_film_middle_error"] / scalars["least_film_middle"]
-        scalars["viscosity_ratio_error"] = VISCOSITY_EXPONENT * relative * scalars["viscosity_ratio"]
+        relative_error = scalars["least_film_middle_error"] / scalars["least_film_middle"]
+        scalars["viscosity_ratio_error"] = VISCOSITY_EXPONENT * relative_error * scalars["viscosity_ratio"]
     return xr.Dataset(
         {name: (("x", "y"), values) for name, values in fields.items()} | profiles | scalars,
         coords={"x": grid.x, "y": y} | cell_coordinates(grid),
     )
 
 
-def _spread(solved: FilmOnCells, values: FloatArray) -> FloatArray:
-    """Pressure on the uniform cells along y: each joined cell keeps its load."""
-    edges = solved.joined.edges
-    load = np.concatenate([np.zeros((len(values), 1)), np.cumsum(values * solved.joined.counts, axis=1)], axis=1)
-    spread = np.diff(PchipInterpolator(edges, load, axis=1)(np.arange(edges[-1] + 1)), axis=1)
-    return np.asarray(np.maximum(spread, 0.0))
+def _spread_pressure(level_film: FilmOnCells, values: FloatArray) -> FloatArray:
+    """Pressure on the uniform cells along y; merged cells keep their loads."""
+    edges = level_film.merged.edges
+    load = np.concatenate([np.zeros((len(values), 1)), np.cumsum(values * level_film.merged.counts, axis=1)], axis=1)
+    spread_pressure = np.diff(PchipInterpolator(edges, load, axis=1)(np.arange(edges[-1] + 1)), axis=1)
+    return np.asarray(np.maximum(spread_pressure, 0.0))
 
 
-def _warn_of_viscosity(film: FilmCase, solved: FilmOnCells) -> None:
-    """Warn where the pressure makes a solid of the lubricant."""
-    pressure = film.pressure * solved.solution.fluid_pressure
+def _warn_of_viscosity(film: FilmCase, level_film: FilmOnCells) -> None:
+    """Warn if the lubricant is solid at the largest pressure."""
+    pressure = film.pressure * level_film.solution.fluid_pressure
     ratio = film.lubricant.log_viscosity(pressure)
     if ratio.max() <= BARUS_LIMIT:
         return
     row, cell = np.unravel_index(int(ratio.argmax()), ratio.shape)
-    x, y = film.half_width * solved.problem.cells.x[row], film.half_width * solved.problem.cells.y[cell]
+    x, y = film.half_width * level_film.problem.cells.x[row], film.half_width * level_film.problem.cells.y[cell]
     warnings.warn(
         f"viscosity_law = {film.lubricant.viscosity_law!r} at {pressure[row, cell]:.3g} Pa (x = {x:.3g} m, "
         f"y = {abs(y):.3g} m from the middle) is exp({ratio.max():.0f}) times the ambient viscosity: the law does not "
-        "hold there; the film, which forms at lower pressures, depends little on it, the traction does",
+        "hold at this pressure, which affects the traction; the film forms at lower pressures",
         MagnitudeWarning,
         stacklevel=3,
     )

@@ -1,4 +1,4 @@
-"""What a film takes from the drive: traction over the slide-roll ratio, rolling moment, power, thermal reduction."""
+"""Losses of a film: traction over the slide-roll ratio, rolling moment, power, thermal reduction."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from contactstudy.film.formulas import thermal_reduction
 def film_traction(
     case: Case, result: xr.Dataset, slide_roll_ratios: Sequence[float] | FloatArray, *, boundary_friction: float = 0.12
 ) -> xr.Dataset:
-    """Compute traction and losses of a film at slide-roll ratios, for the film of the case's entrainment speed.
+    """Compute traction and losses, at slide-roll ratios, of the film of the case's entrainment speed.
 
     The film forms in the inlet: it equals the film of pure rolling times `thermal_reduction`.
 
@@ -30,7 +30,7 @@ def film_traction(
         The case, with its lubricant. Its `eyring_stress` and `limiting_shear` limit the shear stress where given;
         without both the lubricant is Newtonian.
     result : Dataset
-        What `solve_film` returned for it.
+        Result of `solve_film` for the case.
     slide_roll_ratios : sequence of float
         Differences of the speeds over their mean, increasing.
     boundary_friction : float
@@ -57,15 +57,15 @@ def film_traction(
     >>> motion = Sliding(body_speed=2.0, roller_speed=2.0)
     >>> case = Case(body=body, roller=roller, max_pressure=1e9, motion=motion, lubricant=oil)
     >>> curve = film_traction(case, solve_film(case, accuracy=0.1), [0.0, 0.01, 0.1])
-    >>> [round(float(each), 3) for each in curve.traction_coefficient]
+    >>> [round(float(value), 3) for value in curve.traction_coefficient]
     [0.0, 0.027, 0.038]
     """
     checks.instance("case", case, Case, "a Case")
-    oil = case.lubricant
-    if oil is None:
+    lubricant = case.lubricant
+    if lubricant is None:
         raise InvalidInputError("case.lubricant", None, "a Lubricant(...) for the traction of a film")
     if "film_thickness" not in result:
-        raise InvalidInputError("result", f"{len(result)} variables", "what solve_film returns, with film_thickness")
+        raise InvalidInputError("result", f"{len(result)} variables", "a result of solve_film, with film_thickness")
     ratios = checks.coordinates("slide_roll_ratios", slide_roll_ratios)
     friction = checks.not_negative("boundary_friction", boundary_friction)
     pressure, grid = labelled_cells("result.pressure", result["pressure"], extent=case.body.extent)
@@ -73,30 +73,30 @@ def film_traction(
     asperities = np.zeros_like(pressure)
     if "asperity_pressure" in result:
         asperities = result["asperity_pressure"].transpose("x", "y").values
-    fluid = np.maximum(pressure - asperities, 0.0)
+    fluid_pressure = np.maximum(pressure - asperities, 0.0)
     area = grid.weights * grid.cell_area
     speed, load = abs(float(result["entrainment_speed"])), float(result["normal_load"])
-    forces = []
+    traction_forces = []
     for ratio in ratios:
-        shear = np.where(fluid > 0, shear_stress(oil, fluid, abs(ratio) * speed / height), 0.0)
+        shear = np.where(fluid_pressure > 0, shear_stress(lubricant, fluid_pressure, abs(ratio) * speed / height), 0.0)
         boundary = friction * asperities if ratio else 0.0
-        forces.append(np.sign(ratio) * float((area * (shear + boundary)).sum()))
-    traction = np.array(forces)
-    finite = np.where(np.isfinite(height), height, 0.0)
-    steps = 0.5 * (finite[:, 1:] + finite[:, :-1]) * np.diff(fluid, axis=1)  # eq. (415)
-    rolling = 0.5 * abs(float((grid.widths[:, None] * steps).sum()))
+        traction_forces.append(np.sign(ratio) * float((area * (shear + boundary)).sum()))
+    traction = np.array(traction_forces)
+    film = np.where(np.isfinite(height), height, 0.0)
+    forces = 0.5 * (film[:, 1:] + film[:, :-1]) * np.diff(fluid_pressure, axis=1)  # eq. (415)
+    rolling = 0.5 * abs(float((grid.widths[:, None] * forces).sum()))
     values: dict[str, object] = {
         "traction_coefficient": (("slide_roll_ratio",), traction / load),
         "power_loss": (("slide_roll_ratio",), np.abs(traction * ratios) * speed + 2 * rolling * speed),
         "rolling_force": rolling,
         "rolling_moment": rolling * case.roller.radius,
     }
-    if oil.temperature_viscosity is not None and oil.conductivity is not None:
-        loading = oil.viscosity * oil.temperature_viscosity * speed**2 / oil.conductivity
-        relative = case.hertz_max_pressure / (2 * case.modulus)
+    if lubricant.temperature_viscosity is not None and lubricant.conductivity is not None:
+        loading = lubricant.viscosity * lubricant.temperature_viscosity * speed**2 / lubricant.conductivity
+        pressure_ratio = case.hertz_max_pressure / (2 * case.modulus)
         values["thermal_reduction"] = (
             ("slide_roll_ratio",),
-            [thermal_reduction(relative, loading, float(ratio)) for ratio in ratios],
+            [thermal_reduction(pressure_ratio, loading, float(ratio)) for ratio in ratios],
         )
     curve = xr.Dataset(values, coords={"slide_roll_ratio": ratios})
     return describe(curve, "traction of a lubricated contact")

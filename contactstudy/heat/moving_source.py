@@ -16,7 +16,7 @@ from scipy.special import erf
 
 from contactstudy import checks
 from contactstudy.arrays.grid import Grid
-from contactstudy.case.magnitudes import warn_doubtful_values
+from contactstudy.case.magnitudes import warn_of_values
 from contactstudy.checks import ComplexArray, FloatArray
 from contactstudy.errors import InvalidInputError
 
@@ -42,7 +42,7 @@ class ThermalProperties:
     Warns
     -----
     MagnitudeWarning
-        If a value is of a size that is mostly a mistake in the unit.
+        If a value lies outside its usual range, which suggests a wrong unit.
 
     Examples
     --------
@@ -58,7 +58,7 @@ class ThermalProperties:
     def __post_init__(self) -> None:
         units = {"conductivity": "W/(m K)", "density": "kg/m3", "specific_heat": "J/(kg K)"}
         checks.store(self, **{name: checks.positive(name, getattr(self, name), unit) for name, unit in units.items()})
-        warn_doubtful_values(stacklevel=4, **{name: getattr(self, name) for name in units})
+        warn_of_values(stacklevel=4, **{name: getattr(self, name) for name in units})
 
     @property
     def heat_capacity(self) -> float:
@@ -74,74 +74,74 @@ class ThermalProperties:
 TAIL = 6.5  # Lengths of spreading beyond which the heat of a cell vanishes: erfc(6.5) = 4e-20
 
 
-def spread_lengths(smallest: float, step: float, window: float, drift: float) -> tuple[FloatArray, FloatArray]:
+def spread_nodes(smallest: float, step: float, window: float, drift: float) -> tuple[FloatArray, FloatArray]:
     """Nodes and weights over the length of spreading s, in which heat moves by ``drift s**2 / 2``, drift in 1/m."""
     speed = abs(drift)
-    # Cells of the window drift out of it; after that their heat is gone when it no longer reaches back.
-    # Length of spreading over the window at which a source at rest is cut off; the remainder is 1e-8
-    last = 1e8 * window
+    # The integral ends when the heat of all cells has drifted beyond the window, and for a source at rest at 1e8
+    # windows, with a remainder of 1e-8.
+    max_spread = 1e8 * window
     if speed:
-        last = min((TAIL + np.sqrt(TAIL**2 + 2 * speed * window)) / speed, last)
-    # Length of spreading, over the smallest cell, below which the middle of a cell keeps its heat
-    first = 0.125 * smallest
-    count = max(1, int(np.ceil(np.log(last / first) / np.log(2.0))))  # Ratio of neighbouring panels
-    edges = [np.zeros(1), np.geomspace(first, last, count + 1)]
+        max_spread = min((TAIL + np.sqrt(TAIL**2 + 2 * speed * window)) / speed, max_spread)
+    # Length of spreading below which the midpoint of the smallest cell keeps its heat
+    min_spread = 0.125 * smallest
+    count = max(1, int(np.ceil(np.log(max_spread / min_spread) / np.log(2.0))))  # Ratio of neighbouring panels
+    edges = [np.zeros(1), np.geomspace(min_spread, max_spread, count + 1)]
     if speed:
-        # Where the border of a cell passes the middle of another, as far as the border is still sharp.
-        passing = np.sqrt(2 * step * (np.arange(int(np.ceil(window / step)) + 1) + 0.5) / speed)
-        edges.append(passing[passing < last])
-    borders = np.unique(np.concatenate(edges))
-    borders = borders[np.concatenate([[True], np.diff(borders) > 1e-9 * borders[1:]])]
+        # Lengths at which the edge of a cell passes the midpoint of another cell and is still sharp.
+        crossings = np.sqrt(2 * step * (np.arange(int(np.ceil(window / step)) + 1) + 0.5) / speed)
+        edges.append(crossings[crossings < max_spread])
+    panel_edges = np.unique(np.concatenate(edges))
+    panel_edges = panel_edges[np.concatenate([[True], np.diff(panel_edges) > 1e-9 * panel_edges[1:]])]
     # Gauss points in each panel of the integral over the length of spreading
     points, weights = np.polynomial.legendre.leggauss(6)
-    halves = 0.5 * np.diff(borders)
-    middles = 0.5 * (borders[1:] + borders[:-1])
-    return (middles[:, None] + halves[:, None] * points).ravel(), (halves[:, None] * weights).ravel()
+    half_widths = 0.5 * np.diff(panel_edges)
+    midpoints = 0.5 * (panel_edges[1:] + panel_edges[:-1])
+    return (midpoints[:, None] + half_widths[:, None] * points).ravel(), (half_widths[:, None] * weights).ravel()
 
 
-def along_y(spread: FloatArray, distance: FloatArray, step: float, drift: float) -> FloatArray:
-    """Part of a cell's heat density left at distances along y from its middle: array (spread, distance)."""
+def lateral_factors(spread: FloatArray, distance: FloatArray, step: float, drift: float) -> FloatArray:
+    """Fraction of a cell's heat density at distances along y from its midpoint: array (spread, distance)."""
     s = spread[:, None]
-    behind = distance[None, :] - 0.5 * drift * s**2
-    return np.asarray(0.5 * (erf((behind + 0.5 * step) / s) - erf((behind - 0.5 * step) / s)))
+    drifted = distance[None, :] - 0.5 * drift * s**2
+    return np.asarray(0.5 * (erf((drifted + 0.5 * step) / s) - erf((drifted - 0.5 * step) / s)))
 
 
-def along_x(spread: FloatArray, x: FloatArray, edges: FloatArray, ends: tuple[float, float]) -> FloatArray:
-    """Part left at positions `x` of the heat of cells between `edges`: array (spread, x, cell)."""
+def axial_factors(spread: FloatArray, x: FloatArray, edges: FloatArray, ends: tuple[float, float]) -> FloatArray:
+    """Fractions at positions `x` of the heat of cells between `edges`: array (spread, x, cell)."""
     length = ends[1] - ends[0]
-    passed = _primitive(spread, x[:, None] - edges[None, :], length)
+    primitives = _primitive(spread, x[:, None] - edges[None, :], length)
     if np.isfinite(ends[0]):
-        passed = passed - _primitive(spread, x[:, None] + edges[None, :] - 2 * ends[0], length)
-    return np.asarray(passed[..., :-1] - passed[..., 1:])
+        primitives = primitives - _primitive(spread, x[:, None] + edges[None, :] - 2 * ends[0], length)
+    return np.asarray(primitives[..., :-1] - primitives[..., 1:])
 
 
 def _primitive(spread: FloatArray, distance: FloatArray, length: float) -> FloatArray:
-    """Primitive along x of the heat kernel and, for a finite length, of its copies at every second length."""
+    """Primitive along x of the heat kernel and, for a finite length, of its images at every second length."""
     distance = np.asarray(distance)
     s = spread.reshape(-1, *[1] * distance.ndim)
     if not np.isfinite(length):
         return np.asarray(0.5 * erf(distance / s))
-    turns = np.round(distance / (2 * length))
-    reduced = distance - 2 * length * turns
-    result = np.empty((spread.size, *distance.shape))
+    periods = np.round(distance / (2 * length))
+    reduced = distance - 2 * length * periods
+    primitive = np.empty((spread.size, *distance.shape))
     # Length of spreading over the distance between two ends above which the cosine series replaces the images
-    wide = spread >= 0.6 * length
+    is_wide = spread >= 0.6 * length
     # exp(-(m pi / L)**2 kappa t) with 4 kappa t = s**2
-    if wide.any():
-        # Terms of that series: the next one has lost ``exp(-(9 pi 0.6 / 2)**2)``
-        number = np.arange(1, 9) * np.pi / length
-        decay = np.exp(-0.25 * np.outer(spread[wide], number) ** 2) / (number * length)
-        waves = np.sin(number.reshape(-1, *[1] * distance.ndim) * reduced)
-        result[wide] = reduced / (2 * length) + np.tensordot(decay, waves, axes=1)
-    if not wide.all():
-        near = spread[~wide]
-        images = max(0, int(np.ceil((TAIL * near.max() / length - 1) / 2)))
-        values = 0.5 * erf(reduced / s[~wide])
+    if is_wide.any():
+        # The first neglected term is ``exp(-(9 pi 0.6 / 2)**2)``.
+        wavenumbers = np.arange(1, 9) * np.pi / length
+        decay = np.exp(-0.25 * np.outer(spread[is_wide], wavenumbers) ** 2) / (wavenumbers * length)
+        waves = np.sin(wavenumbers.reshape(-1, *[1] * distance.ndim) * reduced)
+        primitive[is_wide] = reduced / (2 * length) + np.tensordot(decay, waves, axes=1)
+    if not is_wide.all():
+        short_spreads = spread[~is_wide]
+        images = max(0, int(np.ceil((TAIL * short_spreads.max() / length - 1) / 2)))
+        values = 0.5 * erf(reduced / s[~is_wide])
         for image in range(1, images + 1):
             for shift in (-2 * length * image, 2 * length * image):
-                values += 0.5 * erf((reduced + shift) / s[~wide])
-        result[~wide] = values
-    return result + turns
+                values += 0.5 * erf((reduced + shift) / s[~is_wide])
+        primitive[~is_wide] = values
+    return primitive + periods
 
 
 class MovingBody(NamedTuple):
@@ -158,9 +158,9 @@ class MovingBody(NamedTuple):
 
 
 class SourceOperator:
-    """Temperature rise (K) at the cells' middles, at one depth, from heat (W/m2) uniform in each cell.
+    """Temperature rise (K) at the cells' midpoints, at one depth, from heat (W/m2) uniform in each cell.
 
-    Zeros pad the window along y: the wake does not come back. Columns of different widths are convolved pair by pair.
+    Zeros pad the window along y, so that the wake does not return. Columns of different widths are convolved in pairs.
     """
 
     def __init__(self, body: MovingBody, grid: Grid, columns: slice, depth: float = 0.0) -> None:
@@ -170,43 +170,42 @@ class SourceOperator:
         x = grid.x[columns]
         length = body.ends[1] - body.ends[0]
         window = grid.dy * grid.cells_y
-        # Peclet number of the window below which a surface counts as resting
+        # Below this Peclet number of the window a surface is at rest.
         if np.isfinite(length) and abs(body.drift) * window < 1e-6:
             raise InvalidInputError(
                 "speed",
                 body.speed,
                 "such that the surface of a body with two ends leaves the contact",
-                "resting under it, it gets hotter without limit: in the end the other body takes all heat, which a "
-                "stated partition says",
+                "a surface at rest gets hotter without limit, and the other body takes all heat: give partition",
             )
-        spread, weights = spread_lengths(min(float(np.diff(edges).min()), grid.dy), grid.dy, window, body.drift)
+        spread, weights = spread_nodes(min(float(np.diff(edges).min()), grid.dy), grid.dy, window, body.drift)
         # eq. (601)
         weights = weights * np.exp(-((depth / spread) ** 2)) / (body.properties.conductivity * np.sqrt(np.pi))
-        steps = np.arange(self._length)
-        steps[steps >= grid.cells_y] -= self._length
-        lateral = rfft(weights[:, None] * along_y(spread, grid.dy * steps, grid.dy, body.drift), axis=-1)
+        lags = np.arange(self._length)
+        lags[lags >= grid.cells_y] -= self._length
+        lateral = rfft(weights[:, None] * lateral_factors(spread, grid.dy * lags, grid.dy, body.drift), axis=-1)
         self._mirrored: ComplexArray | None = None
         if not grid.uniform:
             pairs = x.size * edges.size
-            self._spectrum = _summed(spread, lateral, pairs, lambda part: along_x(part, x, edges, body.ends))
+            self._spectrum = _sum_products(spread, lateral, pairs, lambda s: axial_factors(s, x, edges, body.ends))
             return
         self._height = next_fast_len(2 * x.size - 1, real=True)
         offsets = np.arange(self._height)
         offsets[offsets >= x.size] -= self._height
 
-        def kernel(first: float) -> ComplexArray:
-            """Part left at distances along x from the middle of a cell and of its images in both ends."""
-            low, high = (first + grid.dx * offsets + side * grid.dx for side in (-0.5, 0.5))
+        def kernel(distance: float) -> ComplexArray:
+            """Fractions at distances along x from the midpoint of a cell and of its images in both ends."""
+            lower, upper = (distance + grid.dx * offsets + side * grid.dx for side in (-0.5, 0.5))
 
-            def factors(part: FloatArray) -> FloatArray:
-                return _primitive(part, high, length) - _primitive(part, low, length)
+            def factors(s: FloatArray) -> FloatArray:
+                return _primitive(s, upper, length) - _primitive(s, lower, length)
 
-            return np.asarray(fft(_summed(spread, lateral, low.size, factors), axis=0))
+            return np.asarray(fft(_sum_products(spread, lateral, lower.size, factors), axis=0))
 
         self._spectrum = kernel(0.0)
         mirror = body.ends[0]
         if np.isfinite(mirror):
-            # Counted from the last one, cell j lies at x[-1] - dx j, and its image at 2 mirror - x[-1] + dx j.
+            # In reversed order cell j is at x[-1] - dx j, and its image at 2 mirror - x[-1] + dx j.
             self._mirrored = kernel(x[0] + x[-1] - 2 * mirror)
 
     def __call__(self, heat: FloatArray) -> FloatArray:
@@ -226,15 +225,15 @@ class SourceOperator:
         return result
 
 
-def _summed(
+def _sum_products(
     spread: FloatArray, lateral: ComplexArray, size: int, factors: Callable[[FloatArray], FloatArray]
 ) -> ComplexArray:
-    """Sum over the lengths of spreading of factors along x, of `size` numbers each, times spectra of those along y."""
+    """Sum, over the lengths of spreading, of axial factors (`size` numbers) times spectra of lateral factors."""
     # Real products cost half as much as complex ones.
-    parts = np.ascontiguousarray(lateral).view(np.float64)
+    real_factors = np.ascontiguousarray(lateral).view(np.float64)
     total: FloatArray = np.zeros(())
-    step = max(1, 2**22 // size)  # Numbers in the factors along x that are made at a time
+    step = max(1, 2**22 // size)  # Lengths of spreading in memory at a time
     for start in range(0, spread.size, step):
-        part = slice(start, start + step)
-        total = total + np.tensordot(factors(spread[part]), parts[part], axes=(0, 0))
+        chunk = slice(start, start + step)
+        total = total + np.tensordot(factors(spread[chunk]), real_factors[chunk], axes=(0, 0))
     return np.ascontiguousarray(total).view(np.complex128)

@@ -20,7 +20,7 @@ from scipy import linalg
 
 from contactstudy.arrays.grid import Grid
 from contactstudy.bodies.material import Material
-from contactstudy.bodies.models import FreedEnds
+from contactstudy.bodies.models import FreeEnds
 from contactstudy.cache import cached
 from contactstudy.checks import ComplexArray, FloatArray
 from contactstudy.kernels.convolution import spectrum_matrices
@@ -41,7 +41,7 @@ FINER = 8  # cells along y over the finest resolved distance from an end, if cel
 class EndRequest(NamedTuple):
     """Request of a kernel of the ends."""
 
-    freed: FreedEnds  # ends, at 0 and at its length (infinite: one end)
+    freed: FreeEnds  # ends, at 0 and at its length (infinite: one end)
     material: Material
     dy: float  # cell size along y, metres, and number of cells
     cells_y: int
@@ -54,7 +54,7 @@ class EndRequest(NamedTuple):
     @classmethod
     def of(
         cls,
-        freed: FreedEnds,
+        freed: FreeEnds,
         material: Material,
         grid: Grid,
         responses: tuple[Response, ...],

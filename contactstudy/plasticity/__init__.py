@@ -1,4 +1,4 @@
-"""Plastic flow under many passes of a contact: residual stress, plastic strain, the profile of the top.
+"""Plastic flow under many passes of a contact: residual stress, plastic strain, profile of the surface.
 
 After many passes the residual state does not depend on y: it is a field over the cross-section (x, z).
 """

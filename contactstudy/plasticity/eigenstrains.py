@@ -15,8 +15,8 @@ from contactstudy.errors import InvalidInputError
 STRAINS = tuple(f"plastic_strain_{pair}" for pair in ("xx", "yy", "zz", "xy", "xz", "yz"))
 """Plastic strains, components of the tensor."""
 
-# Elements per cell along either axis, and degree of their polynomials. Accuracy: 1e-4 of the largest stress a cell away
-# from the corners where eigenstrain ends in a step, if the cells around are as small
+# Elements per cell along either axis, and degree of their polynomials. Accuracy: 1e-4 of the largest stress at a
+# cell's distance from corners of the eigenstrain, if the neighbouring cells are as small
 SPLITS, DEGREE = 2, 5
 
 
@@ -48,7 +48,7 @@ def eigenstrain_stress(
     Returns
     -------
     Dataset
-        The six residual stresses ``sigma_xx`` ... ``tau_yz`` (x, z), Pa, in equilibrium and with free top and ends to
+        The six residual stresses ``sigma_xx`` ... ``tau_yz`` (x, z), Pa, in equilibrium, with top and ends free to
         rounding; between two cells the side at larger x and z. `residual_displacement_z` (into the body) and
         `residual_displacement_y` (x) of the top, metres, relative to the depth.
 
@@ -59,14 +59,14 @@ def eigenstrain_stress(
 
     Examples
     --------
-    Strain along y is held by stress along y alone.
+    Strain along y causes stress along y alone.
 
     >>> from contactstudy import FiniteLengthSpace, Material
     >>> body = FiniteLengthSpace(length=1.0, material=Material(2.0, 0.3))
-    >>> middles = {"x": [0.25, 0.75], "z": [1.0, 3.0, 5.0]}
-    >>> stretched = xr.Dataset({"plastic_strain_yy": (("x", "z"), np.ones((2, 3)))}, middles)
-    >>> found = eigenstrain_stress(body, stretched, x=[0.5], z=[0.1])
-    >>> round(float(found.sigma_yy.squeeze()), 3), abs(float(found.sigma_xx.squeeze())) < 1e-3
+    >>> midpoints = {"x": [0.25, 0.75], "z": [1.0, 3.0, 5.0]}
+    >>> stretched = xr.Dataset({"plastic_strain_yy": (("x", "z"), np.ones((2, 3)))}, midpoints)
+    >>> result = eigenstrain_stress(body, stretched, x=[0.5], z=[0.1])
+    >>> round(float(result.sigma_yy.squeeze()), 3), abs(float(result.sigma_xx.squeeze())) < 1e-3
     (-2.0, True)
     """
     checks.instance("body", body, Body, "a HalfSpace, a QuarterSpace or a FiniteLengthSpace")
@@ -82,16 +82,16 @@ def eigenstrain_stress(
         if argument is not None:
             edges[axis] = checks.coordinates(f"{axis}_edges", argument)
         elif positions[axis].size < 2:
-            raise InvalidInputError(f"{axis}_edges", None, "given where there is one cell", "its size is not known")
+            raise InvalidInputError(f"{axis}_edges", None, "given for one cell", "its size is unknown")
         else:
-            edges[axis] = edges_around(positions[axis], low, high)
-        centres, around = positions[axis], edges[axis]
-        if around.size != centres.size + 1 or (np.diff(around) <= 0).any():
-            raise InvalidInputError(f"{axis}_edges", around, f"{centres.size + 1} edges, increasing (metres)")
-        if around[0] < low or around[-1] > high:
-            raise InvalidInputError(f"{axis}_edges", around, f"inside the body, {low:g} to {high:g} m")
-        if (centres < around[:-1]).any() or (centres > around[1:]).any():
-            raise InvalidInputError(f"{axis}_edges", around, "such that each cell holds its position")
+            edges[axis] = edges_between(positions[axis], low, high)
+        centres, cell_edges = positions[axis], edges[axis]
+        if cell_edges.size != centres.size + 1 or (np.diff(cell_edges) <= 0).any():
+            raise InvalidInputError(f"{axis}_edges", cell_edges, f"{centres.size + 1} edges, increasing (metres)")
+        if cell_edges[0] < low or cell_edges[-1] > high:
+            raise InvalidInputError(f"{axis}_edges", cell_edges, f"inside the body, {low:g} to {high:g} m")
+        if (centres < cell_edges[:-1]).any() or (centres > cell_edges[1:]).any():
+            raise InvalidInputError(f"{axis}_edges", cell_edges, "such that each cell holds its position")
     strain = np.zeros((6, positions["x"].size, positions["z"].size))
     for name in names:
         values = np.asarray(eigenstrain[name].transpose("x", "z").values, dtype=np.float64)
@@ -109,33 +109,33 @@ def eigenstrain_stress(
         material=body.material, extent=body.extent, x_edges=edges["x"], z_edges=edges["z"], splits=SPLITS, degree=DEGREE
     )
     solution = cells.solve(strain)
-    sunk, dragged = solution.top_displacement(axes["x"])
+    normal_displacement, axial_displacement = solution.top_displacement(axes["x"])
     result = xr.Dataset(
         {name: (("x", "z"), field) for name, field in zip(STRESSES, solution.stresses(**axes), strict=True)}
-        | {"residual_displacement_z": ("x", sunk), "residual_displacement_y": ("x", dragged)},
+        | {"residual_displacement_z": ("x", normal_displacement), "residual_displacement_y": ("x", axial_displacement)},
         coords=axes,
     )
     return describe(result, "residual stress")
 
 
-def edges_around(positions: FloatArray, low: float, high: float) -> FloatArray:
+def edges_between(positions: FloatArray, low: float, high: float) -> FloatArray:
     """Edges half-way between positions; outer cells end at `low` and `high` if these are as near as the next one."""
-    middle = 0.5 * (positions[1:] + positions[:-1])
-    first = low if positions[0] - low <= positions[1] - positions[0] else 2 * positions[0] - middle[0]
-    last = high if high - positions[-1] <= positions[-1] - positions[-2] else 2 * positions[-1] - middle[-1]
-    return np.concatenate([[first], middle, [last]])
+    midpoints = 0.5 * (positions[1:] + positions[:-1])
+    first = low if positions[0] - low <= positions[1] - positions[0] else 2 * positions[0] - midpoints[0]
+    last = high if high - positions[-1] <= positions[-1] - positions[-2] else 2 * positions[-1] - midpoints[-1]
+    return np.concatenate([[first], midpoints, [last]])
 
 
-def cross_section(body: Body, x: FloatArray, z: FloatArray) -> EigenstrainBody:
-    """Cells around positions in a body, which reach from its top and its free ends."""
+def create_cross_section(body: Body, x: FloatArray, z: FloatArray) -> EigenstrainBody:
+    """Create the cells around positions in a body, up to its top and its free ends."""
     for name, points in (("x", x), ("z", z)):
         if points.size < 2 or (np.diff(points) <= 0).any():
             raise InvalidInputError(name, points, "at least two positions, increasing (metres)")
     low, high = body.extent
-    slack = 1e-9 * (x[-1] - x[0])  # Part of the positions' range that is rounding
-    if x[0] < low - slack or x[-1] > high + slack:
+    tolerance = 1e-9 * (x[-1] - x[0])  # Rounding over the positions' range
+    if x[0] < low - tolerance or x[-1] > high + tolerance:
         raise InvalidInputError("x", f"{x[0]:g} to {x[-1]:g} m", f"positions in the body, from {low:g} to {high:g} m")
-    x_edges, z_edges = edges_around(x, low, high), edges_around(z, 0.0, np.inf)
+    x_edges, z_edges = edges_between(x, low, high), edges_between(z, 0.0, np.inf)
     for name, face, edge in (("x", low, x_edges[0]), ("x", high, x_edges[-1]), ("z", 0.0, z_edges[0])):
         if np.isfinite(face) and edge != face:
             where = "the top" if name == "z" else f"the free end at {face:g} m"

@@ -1,4 +1,4 @@
-"""Elastic-plastic materials: von Mises' yield condition with linear hardening, the same everywhere or over depth."""
+"""Elastic-plastic materials: von Mises' yield condition with linear hardening, uniform or over depth."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import xarray as xr
 
 from contactstudy import checks
 from contactstudy.arrays.variables import in_si
-from contactstudy.case.magnitudes import warn_doubtful_values
+from contactstudy.case.magnitudes import warn_of_values
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 
@@ -21,7 +21,7 @@ class ElasticPlastic:
     Parameters
     ----------
     yield_stress : float or DataArray (z)
-        Yield stress in tension, Pa; over depth with the coordinate `z` in metres, between which it is linear.
+        Yield stress in tension, Pa; over depth with the coordinate `z` in metres, linear between the depths.
     isotropic_hardening : float
         Growth of the yield stress per equivalent plastic strain, Pa; 0 for none.
     kinematic_hardening : float
@@ -35,7 +35,7 @@ class ElasticPlastic:
     Warns
     -----
     MagnitudeWarning
-        If the yield stress is of a size that is mostly a mistake in the unit.
+        If the yield stress lies outside its usual range, which suggests a wrong unit.
 
     Examples
     --------
@@ -63,7 +63,7 @@ class ElasticPlastic:
             checks.store(self, yield_stress=checks.positive("yield_stress", self.yield_stress, "Pa"))
         for name in ("isotropic_hardening", "kinematic_hardening"):
             checks.store(self, **{name: checks.not_negative(name, getattr(self, name), "Pa")})
-        warn_doubtful_values(stacklevel=4, yield_stress=np.asarray(self.yield_stress))
+        warn_of_values(stacklevel=4, yield_stress=np.asarray(self.yield_stress))
 
     @classmethod
     def from_hardness(cls, vickers: xr.DataArray, **hardening: float) -> ElasticPlastic:
@@ -86,8 +86,8 @@ class ElasticPlastic:
         if vickers.attrs.get("units", "HV") not in ("HV", "1"):
             raise InvalidInputError("vickers.attrs['units']", vickers.attrs["units"], "HV, or left out")
         # HV is in kgf/mm2; hardness over yield stress is 3 (D. Tabor, The Hardness of Metals, 1951).
-        yields = (vickers * (9.80665 * 1e6 / 3.0)).assign_attrs(units="Pa")
-        return cls(yield_stress=yields, **hardening)
+        yield_stress = (vickers * (9.80665 * 1e6 / 3.0)).assign_attrs(units="Pa")
+        return cls(yield_stress=yield_stress, **hardening)
 
     @property
     def shear_yield_stress(self) -> float:

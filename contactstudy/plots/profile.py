@@ -11,7 +11,7 @@ from contactstudy import checks
 from contactstudy.errors import InvalidInputError
 from contactstudy.plots.style import LEGEND_WIDTH, fold_text, line_styles, new_axes
 from contactstudy.profiles import Profile
-from contactstudy.profiles.base import checked_drop
+from contactstudy.profiles.base import check_drop
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -57,7 +57,7 @@ def plot_profile(
     checks.instance("profile", profile, Profile, "a profile from contactstudy.profiles")
     length = checks.positive("length", length, "metres")
     x = 0.5 * length * np.linspace(-1, 1, POINTS)
-    drop = checked_drop(profile, x, length)
+    drop = check_drop(profile, x, length)
     drop = np.where(np.isfinite(drop), drop, np.nan)
     ax = new_axes(ax, (6.4, 3.2))
     ax.plot(1e3 * x, 1e6 * drop, **style)

@@ -1,14 +1,14 @@
-"""Roller profiles: how much lower than the cylinder a roller's generatrix lies (docs/reference/profiles.md).
+"""Roller profiles: drop of a roller's generatrix below the cylinder (docs/reference/profiles.md).
 
 A profile has one method ``drop(x, length)``: the material removed, in metres and not negative, at the distance `x` from
-mid-length of a roller of the given `length`, fillets included. ``one + other`` adds two up.
+mid-length of a roller of the given `length`, fillets included. ``first + second`` is their sum.
 """
 
 from contactstudy.profiles.base import Profile, Shape, Sum, local_radius
 from contactstudy.profiles.combinations import EffectiveLength, Halves
 from contactstudy.profiles.crowned import Ellipsoid, FullCrown, PartialCrown, Sphere
 from contactstudy.profiles.logarithmic import FujiwaraKawase, IsoCylindrical, IsoTapered, JohnsGohar, Lundberg
-from contactstudy.profiles.measured import Measured
+from contactstudy.profiles.measured_profile import Measured
 from contactstudy.profiles.straight import Chamfer, Cylinder, Tapered
 
 __all__ = [

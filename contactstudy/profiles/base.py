@@ -15,7 +15,7 @@ from contactstudy.errors import InvalidInputError
 
 # Units of the parameters of profiles other than lengths
 UNITS = {"half_angle": "rad", "angle": "rad", "delta": "1", "k1": "1", "k2": "1"}
-LEAST_JUMP = 1e-6  # Least jump of a slope beyond rounding
+MIN_JUMP = 1e-6  # Minimum jump of a slope at a corner
 
 
 @runtime_checkable
@@ -27,10 +27,10 @@ class Profile(Protocol):
         ...
 
 
-def in_words(profile: object) -> str:
-    """Return the repr of a profile; the class name for a user's class without a repr."""
-    silent = type(profile).__repr__ is object.__repr__
-    return f"{type(profile).__name__}()" if silent else repr(profile)
+def describe_profile(profile: object) -> str:
+    """Return the repr of a profile, or the class name of a user's class without a repr."""
+    has_no_repr = type(profile).__repr__ is object.__repr__
+    return f"{type(profile).__name__}()" if has_no_repr else repr(profile)
 
 
 class SlopeJumps(NamedTuple):
@@ -40,21 +40,21 @@ class SlopeJumps(NamedTuple):
     jumps: FloatArray  # increase of the slope of the drop; positive at a convex corner
 
     @classmethod
-    def merged(cls, *corners: SlopeJumps) -> SlopeJumps:
-        """Corners of profiles that add up: jumps at one position are added, jumps of rounding are omitted."""
-        positions = np.concatenate([corner.positions for corner in corners])
-        jumps = np.concatenate([corner.jumps for corner in corners])
+    def merge(cls, *corners: SlopeJumps) -> SlopeJumps:
+        """Merge corners of summands: add jumps at equal positions and omit jumps of rounding."""
+        positions = np.concatenate([is_corner.positions for is_corner in corners])
+        jumps = np.concatenate([is_corner.jumps for is_corner in corners])
         unique, indices = np.unique(positions, return_inverse=True)
         sums = np.bincount(indices, weights=jumps, minlength=unique.size)
-        corner = np.abs(sums) > LEAST_JUMP
-        return cls(unique[corner], np.asarray(sums[corner], dtype=np.float64))
+        is_corner = np.abs(sums) > MIN_JUMP
+        return cls(unique[is_corner], np.asarray(sums[is_corner], dtype=np.float64))
 
 
 class Shape:
     """Base of the profiles of this package: defines ``+``, the radius across the roller, corners and samples.
 
-    A user's class needs only ``drop(x, length)``. Derived from `Shape` it can be a summand, and can override the
-    methods below.
+    A user's class needs only ``drop(x, length)``. A class derived from `Shape` can be a summand and override these
+    methods.
     """
 
     def drop(self, x: FloatArray, length: float) -> FloatArray:
@@ -62,7 +62,7 @@ class Shape:
         raise NotImplementedError
 
     def local_radius(self, x: FloatArray, length: float, radius: float | FloatArray) -> FloatArray:
-        """Radius of curvature across the roller (m) at `x`, for one with `radius` (m) after preceding summands."""
+        """Radius of curvature across the roller (m) at `x`, from the `radius` (m) of the preceding summands."""
         return np.broadcast_to(np.asarray(radius, dtype=np.float64), np.shape(x))
 
     def slope_jumps(self, length: float) -> SlopeJumps:
@@ -81,16 +81,16 @@ class Shape:
         return f"{type(self).__name__}({', '.join(f'{name}={text}' for name, text in self._arguments())})"
 
     def _arguments(self) -> Iterator[tuple[str, str]]:
-        """Values that are not the default ones, in the units of engineers."""
+        """Values other than the defaults, in engineering units."""
         entries: tuple[Field[object], ...] = fields(self) if is_dataclass(self) else ()
         for entry in entries:
             value = getattr(self, entry.name)
             if value != entry.default:
-                number = isinstance(value, (int, float)) and not isinstance(value, bool)
-                yield entry.name, format_quantity(value, UNITS.get(entry.name, "m")) if number else in_words(value)
+                is_number = isinstance(value, (int, float)) and not isinstance(value, bool)
+                yield entry.name, format_quantity(value, UNITS.get(entry.name, "m")) if is_number else describe_profile(value)
 
     def __add__(self, other: object) -> Sum:
-        """Both profiles on one roller."""
+        """Return the sum of both profiles."""
         if not isinstance(other, Profile):
             return NotImplemented
         return Sum((*_terms(self), *_terms(other)))
@@ -100,12 +100,12 @@ class Shape:
 
 def unit_of(profile: object, name: str) -> str:
     """Return the unit of a parameter of a profile's class; empty for a user's class or function."""
-    packaged = isinstance(profile, type) and issubclass(profile, Shape) and is_dataclass(profile)
-    return UNITS.get(name, "m") if packaged and any(entry.name == name for entry in fields(profile)) else ""  # type: ignore[arg-type]
+    is_package_profile = isinstance(profile, type) and issubclass(profile, Shape) and is_dataclass(profile)
+    return UNITS.get(name, "m") if is_package_profile and any(entry.name == name for entry in fields(profile)) else ""  # type: ignore[arg-type]
 
 
 def _terms(profile: Shape | Profile) -> tuple[Profile, ...]:
-    """Summands of a profile; itself unless it is a sum."""
+    """Summands of a sum, or the profile."""
     return profile.terms if isinstance(profile, Sum) else (profile,)
 
 
@@ -118,31 +118,31 @@ def local_radius(profile: Profile, x: FloatArray, length: float, radius: float |
 
 
 def as_shape(profile: Profile) -> Shape:
-    """Return a profile with the methods of `Shape`: itself, or smooth and without measured points."""
+    """Return a profile with the methods of `Shape`; a user's class is smooth and without measured points."""
     return profile if isinstance(profile, Shape) else Shape()
 
 
-def checked_drop(profile: Profile, x: FloatArray, length: float) -> FloatArray:
-    """Drop (m) of any profile at distances `x` from mid-length; raises unless it is one number >= 0 for each."""
+def check_drop(profile: Profile, x: FloatArray, length: float) -> FloatArray:
+    """Return the drop (m) of a profile at distances `x` from mid-length; raise unless it has a number >= 0 for each."""
     drops = np.asarray(profile.drop(x, length))
     expected = "a profile whose drop(x, length) is an array like x, metres, not negative"
     if drops.shape != x.shape or drops.dtype.kind not in "iuf":
         raise InvalidInputError("profile", profile, expected, f"it returned {drops.dtype} of shape {drops.shape}")
-    wrong = np.flatnonzero(~(drops >= 0))
-    if wrong.size:
-        where = f"it returned {drops[wrong[0]]} at x = {x[wrong[0]]:g} m"
-        raise InvalidInputError("profile", profile, expected, where)
+    bad_indices = np.flatnonzero(~(drops >= 0))
+    if bad_indices.size:
+        reason = f"it returned {drops[bad_indices[0]]} at x = {x[bad_indices[0]]:g} m"
+        raise InvalidInputError("profile", profile, expected, reason)
     return np.asarray(drops, dtype=np.float64)
 
 
 @dataclass(frozen=True, repr=False)
 class Sum(Shape):
-    """Profiles on top of each other, usually written ``one + other``: the drops add up.
+    """Sum of profiles, usually written ``first + second``: the drops add up.
 
     Parameters
     ----------
     terms : tuple of Profile
-        At least one. Each must be valid for the roller's length.
+        At least one profile, valid for the roller's length.
 
     Raises
     ------
@@ -166,16 +166,16 @@ class Sum(Shape):
             checks.instance("terms", term, Profile, "profiles from contactstudy.profiles")
 
     def __repr__(self) -> str:
-        return " + ".join(map(in_words, self.terms))
+        return " + ".join(map(describe_profile, self.terms))
 
     def drop(self, x: FloatArray, length: float) -> FloatArray:
         """Sum of the drops (m) at distances `x` (m) from mid-length."""
-        drops = [checked_drop(term, np.asarray(x), length) for term in self.terms]
+        drops = [check_drop(term, np.asarray(x), length) for term in self.terms]
         return np.asarray(sum(drops[1:], start=drops[0]))
 
     def slope_jumps(self, length: float) -> SlopeJumps:
         """Corners of all summands."""
-        return SlopeJumps.merged(*(as_shape(term).slope_jumps(length) for term in self.terms))
+        return SlopeJumps.merge(*(as_shape(term).slope_jumps(length) for term in self.terms))
 
     def nodes(self, length: float) -> FloatArray:
         """Nodes (m) of all summands."""
@@ -186,7 +186,7 @@ class Sum(Shape):
         variants = [as_shape(term).second_interpolation() for term in self.terms]
         if not any(variants):
             return None
-        return Sum(tuple(other or term for other, term in zip(variants, self.terms, strict=True)))
+        return Sum(tuple(variant or term for variant, term in zip(variants, self.terms, strict=True)))
 
     def local_radius(self, x: FloatArray, length: float, radius: float | FloatArray) -> FloatArray:
         """Radius across the roller (m) after every summand in turn."""

@@ -1,4 +1,4 @@
-"""Profiles made of other profiles: two halves, and a profile over the length without corners."""
+"""Profiles of other profiles: two halves, and a profile over the effective length."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ from contactstudy.profiles.base import (
     Shape,
     SlopeJumps,
     as_shape,
-    checked_drop,
-    in_words,
+    check_drop,
+    describe_profile,
     local_radius,
 )
 
@@ -26,19 +26,19 @@ STEP = 1e-6  # Step of the differences for a slope, over the length
 
 @dataclass(frozen=True, repr=False)
 class Halves(Shape):
-    """One profile left and another right of mid-length.
+    """Different profiles left and right of mid-length.
 
     Each half equals a roller's half with this profile at both ends: lengths refer to the full roller.
 
     Parameters
     ----------
     left, right : Profile
-        Profiles for ``x < 0`` and ``x >= 0``. They must meet at mid-length to 1e-10 m.
+        Profiles for ``x < 0`` and ``x >= 0``, with drops that agree at mid-length to 1e-10 m.
 
     Raises
     ------
     InvalidInputError
-        If one is not a profile, or (on use) the halves do not meet.
+        If an argument is no profile, or (on use) the halves do not meet.
 
     Examples
     --------
@@ -57,26 +57,26 @@ class Halves(Shape):
 
     def drop(self, x: FloatArray, length: float) -> FloatArray:
         """Material removed (m) at distances `x` (m) from mid-length."""
-        middle = np.zeros(1)
-        left_drop, right_drop = (float(checked_drop(half, middle, length)[0]) for half in (self.left, self.right))
+        mid_length = np.zeros(1)
+        left_drop, right_drop = (float(check_drop(half, mid_length, length)[0]) for half in (self.left, self.right))
         # Largest step between the two halves at mid-length, metres: about one atom
         if abs(left_drop - right_drop) > 1e-10:
             raise InvalidInputError(
                 "left, right", (left_drop, right_drop), "equal drops at mid-length (metres), so that the halves meet"
             )
         x = np.asarray(x)
-        return np.asarray(np.where(x < 0, *(checked_drop(half, x, length) for half in (self.left, self.right))))
+        return np.asarray(np.where(x < 0, *(check_drop(half, x, length) for half in (self.left, self.right))))
 
     def slope_jumps(self, length: float) -> SlopeJumps:
-        """Corners of both halves, and the one at mid-length."""
+        """Corners of both halves, and the corner at mid-length."""
         lower, upper = as_shape(self.left).slope_jumps(length), as_shape(self.right).slope_jumps(length)
         # Slopes at mid-length from three drops on either side.
         steps = STEP * length * np.array([0.0, 1.0, 2.0])
         jump = 0.0
         for half, side in ((self.right, 1), (self.left, -1)):
-            near, next_drop, far = checked_drop(half, side * steps, length)
-            jump += float(-3 * near + 4 * next_drop - far) / (2 * steps[1])
-        return SlopeJumps.merged(
+            first_drop, next_drop, last_drop = check_drop(half, side * steps, length)
+            jump += float(-3 * first_drop + 4 * next_drop - last_drop) / (2 * steps[1])
+        return SlopeJumps.merge(
             SlopeJumps(*(values[lower.positions < 0] for values in lower)),
             SlopeJumps(np.zeros(1), np.array([jump])),
             SlopeJumps(*(values[upper.positions > 0] for values in upper)),
@@ -98,7 +98,7 @@ class Halves(Shape):
         return np.asarray(np.where(np.asarray(x) < 0, lower, upper))
 
 
-STEEPEST = 1.0  # Slope of the profile at which a corner begins at the latest: logarithmic profiles end upright
+MAX_SLOPE = 1.0  # Maximum slope of the profile at a corner's start: logarithmic profiles end with an infinite slope
 
 
 class Corner(NamedTuple):
@@ -112,11 +112,11 @@ class Corner(NamedTuple):
 
 @dataclass(frozen=True, repr=False)
 class EffectiveLength(Shape):
-    """A profile that a drawing states over the effective length, without the roller's corners.
+    """A profile over the effective length of a drawing, without the roller's corners.
 
     Within the effective length the drop is that of `profile` on a roller of this length. The corners are circles over
     the rest of the roller at either end: each begins with the profile's slope, and is perpendicular to the axis at the
-    roller's end. A profile with an infinite drop at its end, such as Lundberg's, is followed to the slope 1.
+    roller's end. A profile with an infinite drop at its end, such as Lundberg's, continues up to the slope 1.
 
     Parameters
     ----------
@@ -152,52 +152,52 @@ class EffectiveLength(Shape):
     @property
     def end_drop(self) -> float:
         """Larger drop at the two starts of the corners, metres."""
-        return max(self._corner(side).drop for side in (-1, 1))
+        return max(self._create_corner(side).drop for side in (-1, 1))
 
     def __repr__(self) -> str:
         length, drop = (format_quantity(value, "m") for value in (self.effective_length, self.end_drop))
-        return f"EffectiveLength({in_words(self.profile)}, effective_length={length}, drop {drop} at its end)"
+        return f"EffectiveLength({describe_profile(self.profile)}, effective_length={length}, drop {drop} at its end)"
 
     def drop(self, x: FloatArray, length: float) -> FloatArray:
         """Material removed (m) at distances `x` (m) from mid-length."""
-        half = 0.5 * length
-        if 0.5 * self.effective_length > half * (1 + 1e-12):
+        half_length = 0.5 * length
+        if 0.5 * self.effective_length > half_length * (1 + 1e-12):
             raise InvalidInputError(
                 "effective_length", self.effective_length, f"at most the roller's length, {length:g} m"
             )
         x = np.asarray(x)
-        first, last = self._corner(-1), self._corner(1)
-        drops = checked_drop(self.profile, np.clip(x, -first.start, last.start), self.effective_length)
+        first, last = self._create_corner(-1), self._create_corner(1)
+        drops = check_drop(self.profile, np.clip(x, -first.start, last.start), self.effective_length)
         for side, corner in ((-1, first), (1, last)):
-            width = max(half - corner.start, 0.0)
+            width = max(half_length - corner.start, 0.0)
             if width == 0:
                 continue
-            beyond = np.clip(side * x - corner.start, 0.0, width)
+            offset = np.clip(side * x - corner.start, 0.0, width)
             radius = width / (1 - corner.sine)
-            chord = np.minimum(corner.sine * radius + beyond, radius)
+            chord = np.minimum(corner.sine * radius + offset, radius)
             # R cos - sqrt(R**2 - chord**2) without cancellation: exactly 0 at the start of the corner.
             denominator = radius * corner.cosine + np.sqrt((radius - chord) * (radius + chord))
-            drops = drops + beyond * (2 * corner.sine * radius + beyond) / denominator
+            drops = drops + offset * (2 * corner.sine * radius + offset) / denominator
         return drops
 
-    def _corner(self, side: int) -> Corner:
-        """Corner at the end of smaller (-1) or larger (1) x."""
+    def _create_corner(self, side: int) -> Corner:
+        """Return the corner at the end of smaller (-1) or larger (1) x."""
         length = self.effective_length
         half, step = 0.5 * length, STEP * length
 
         def drops(*distances: float) -> FloatArray:
-            return checked_drop(self.profile, side * np.array(distances), length)
+            return check_drop(self.profile, side * np.array(distances), length)
 
         end, inside = drops(half, half - step)
         if np.isfinite(end):
-            slope = float(np.clip((end - inside) / step, 0.0, STEEPEST))
+            slope = float(np.clip((end - inside) / step, 0.0, MAX_SLOPE))
             return Corner(half, float(end), slope / float(np.hypot(1, slope)), 1 / float(np.hypot(1, slope)))
         low, high = 0.0, half
         for _ in range(60):  # Bisections for the position of the steepest slope
-            middle = 0.5 * (low + high)
-            width = STEP * (half - middle)
-            near, far = drops(middle - width, middle)
-            low, high = (middle, high) if far - near < STEEPEST * width else (low, middle)
+            midpoint = 0.5 * (low + high)
+            width = STEP * (half - midpoint)
+            inner_drop, outer_drop = drops(midpoint - width, midpoint)
+            low, high = (midpoint, high) if outer_drop - inner_drop < MAX_SLOPE * width else (low, midpoint)
         return Corner(low, float(drops(low)[0]), np.sqrt(0.5), np.sqrt(0.5))
 
     def slope_jumps(self, length: float) -> SlopeJumps:
@@ -211,8 +211,8 @@ class EffectiveLength(Shape):
 
     def second_interpolation(self) -> EffectiveLength | None:
         """Profile with the second interpolation of its measured points."""
-        other = as_shape(self.profile).second_interpolation()
-        return EffectiveLength(other, self.effective_length) if other else None
+        variant = as_shape(self.profile).second_interpolation()
+        return EffectiveLength(variant, self.effective_length) if variant else None
 
     def local_radius(self, x: FloatArray, length: float, radius: float | FloatArray) -> FloatArray:
         """Radius across the roller (m): the profile's, constant over the corners."""

@@ -12,7 +12,7 @@ from contactstudy.errors import InvalidInputError
 from contactstudy.profiles.base import Shape
 
 
-def _arc(distance: FloatArray, radius: float) -> FloatArray:
+def _arc_drop(distance: FloatArray, radius: float) -> FloatArray:
     """Drop of a circle of `radius` at `distance` from its highest point, without cancellation."""
     return np.asarray(distance**2 / (radius + np.sqrt(radius**2 - distance**2)))
 
@@ -24,8 +24,7 @@ class FullCrown(Shape):
     Parameters
     ----------
     crown_radius : float
-        Radius ``R`` of the arc in the axial plane, metres. It must reach the farther end:
-        at least ``length / 2 + |centre|``.
+        Radius ``R`` of the arc in the axial plane, metres; at least ``length / 2 + |centre|``.
     centre : float
         Distance of the highest point from mid-length, metres; within the roller.
 
@@ -54,14 +53,16 @@ class FullCrown(Shape):
         reach = length / 2 + abs(self.centre)
         if self.crown_radius < reach:
             raise InvalidInputError(
-                "crown_radius", self.crown_radius, f"at least {reach:g} m, the distance to the roller's farther end"
+                "crown_radius",
+                self.crown_radius,
+                f"at least {reach:g} m, the distance to the roller's farther end",
             )
-        return _arc(np.minimum(np.abs(np.asarray(x) - self.centre), reach), self.crown_radius)
+        return _arc_drop(np.minimum(np.abs(np.asarray(x) - self.centre), reach), self.crown_radius)
 
 
 @dataclass(frozen=True, repr=False)
 class PartialCrown(Shape):
-    """Partial crown: a straight middle, a crown of circular arcs, and if wanted a dub-off at each end.
+    """Partial crown: a straight middle, a crown of circular arcs, and an optional dub-off at each end.
 
     The crown's arc leaves the straight middle tangentially. The dub-off is a second arc with a smaller radius that
     leaves the first one tangentially, at the distance `dub_length` from the end ("two tangential radii"). With
@@ -119,25 +120,27 @@ class PartialCrown(Shape):
         begin = end - self.dub_length
         if begin < -1e-9 * length:
             raise InvalidInputError(
-                "dub_length", self.dub_length, f"at most {end:g} m, what the straight middle leaves of the roller"
+                "dub_length", self.dub_length, f"at most {end:g} m, the length beside the straight middle"
             )
         begin = max(begin, 0.0)
         if begin > self.crown_radius:
             raise InvalidInputError("crown_radius", self.crown_radius, f"at least {begin:g} m, the length of the crown")
         distance = np.clip(np.abs(x) - self.straight_length / 2, 0.0, end)
         if self.dub_radius is None:
-            return _arc(distance, self.crown_radius)
+            return _arc_drop(distance, self.crown_radius)
         sine = begin / self.crown_radius
         shift = self.dub_radius * sine
         if end - begin + shift > self.dub_radius:
             raise InvalidInputError(
-                "dub_radius", self.dub_radius, f"at least {(end - begin) / (1 - sine):g} m, to reach the roller's end"
+                "dub_radius",
+                self.dub_radius,
+                f"at least {(end - begin) / (1 - sine):g} m, to reach the roller's end",
             )
-        first = _arc(np.minimum(distance, begin), self.crown_radius)
-        second = _arc(np.maximum(distance - begin, 0.0) + shift, self.dub_radius) - _arc(
+        crown_drop = _arc_drop(np.minimum(distance, begin), self.crown_radius)
+        dub_drop = _arc_drop(np.maximum(distance - begin, 0.0) + shift, self.dub_radius) - _arc_drop(
             np.array(shift), self.dub_radius
         )
-        return np.asarray(first + second)
+        return np.asarray(crown_drop + dub_drop)
 
 
 @dataclass(frozen=True, repr=False)
@@ -188,7 +191,7 @@ class Sphere(Shape):
     Raises
     ------
     InvalidInputError
-        If the radius is not positive, or the roller has another one.
+        If the radius is not positive, or differs from the roller's.
 
     Examples
     --------
@@ -209,6 +212,9 @@ class Sphere(Shape):
         """Radius of the roller (m), which must equal the sphere's."""
         if not np.allclose(radius, self.radius, rtol=1e-9, atol=0.0):
             raise InvalidInputError(
-                "radius", self.radius, f"the roller's radius, {np.max(radius):g} m", "an Ellipsoid may have another one"
+                "radius",
+                self.radius,
+                f"the roller's radius, {np.max(radius):g} m",
+                "an Ellipsoid may have any radius",
             )
         return super().local_radius(x, length, radius)

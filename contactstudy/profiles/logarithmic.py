@@ -14,19 +14,19 @@ from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 from contactstudy.profiles.base import Shape
 
-EDGE_SHARE = 0.5 / math.sqrt(math.e)  # Johns and Gohar's 0.3033, ``1 / (2 sqrt(e))``
+EDGE_FACTOR = 0.5 / math.sqrt(math.e)  # Johns and Gohar's 0.3033, ``1 / (2 sqrt(e))``
 
 
-def logarithmic_drop(amplitude: float, t: FloatArray, share: float = 1.0) -> FloatArray:
+def logarithmic_drop(amplitude: float, t: FloatArray, factor: float = 1.0) -> FloatArray:
     """Drop ``A ln(1 / (1 - share t**2))`` (m); at ``share = 1`` infinite from ``|t| = 1`` on; 0 without amplitude."""
     if amplitude == 0:
         return np.zeros(np.shape(t))
     with np.errstate(divide="ignore"):
-        return np.asarray(-amplitude * np.log1p(-share * np.minimum(t**2, 1.0)))
+        return np.asarray(-amplitude * np.log1p(-factor * np.minimum(t**2, 1.0)))
 
 
 class Logarithmic(Shape):
-    """Base of the profiles whose amplitude follows from a design load."""
+    """Base of the profiles with an amplitude from a design load."""
 
     amplitude: float
 
@@ -45,8 +45,8 @@ class Logarithmic(Shape):
         **parameters
             Further parameters of the profile.
         """
-        kind: Any = cls
-        profile: Self = kind(**cls._design(max_pressure, radius, modulus), **parameters)
+        profile_class: Any = cls
+        profile: Self = profile_class(**cls._design(max_pressure, radius, modulus), **parameters)
         return profile
 
     @classmethod
@@ -65,7 +65,7 @@ class Logarithmic(Shape):
         load : float
             Design load, N.
         length : float
-            Length of the roller that carries it, metres.
+            Length of the loaded roller, metres.
         radius, modulus, **parameters
             As for ``for_pressure``.
 
@@ -172,17 +172,17 @@ class JohnsGohar(Logarithmic):
 
     def drop(self, x: FloatArray, length: float) -> FloatArray:
         """Material removed (m) at distances `x` (m) from mid-length."""
-        share = float(1 - EDGE_SHARE * self.half_width / (length / 2))
-        if share < 0:
+        factor = float(1 - EDGE_FACTOR * self.half_width / (length / 2))
+        if factor < 0:
             raise InvalidInputError(
-                "half_width", self.half_width, f"at most 3.3 half lengths of the roller, {length / 2 / EDGE_SHARE:g} m"
+                "half_width", self.half_width, f"at most 3.3 half lengths of the roller, {length / 2 / EDGE_FACTOR:g} m"
             )
-        return logarithmic_drop(self.amplitude, 2 * np.asarray(x) / length, share)
+        return logarithmic_drop(self.amplitude, 2 * np.asarray(x) / length, factor)
 
 
 @dataclass(frozen=True, repr=False)
 class FujiwaraKawase(Logarithmic):
-    """Fujiwara and Kawase's profile: a straight middle and a logarithmic crown with a chosen end drop.
+    """Fujiwara and Kawase's profile: a straight middle and a logarithmic crown with a given end drop.
 
     ``drop = K1 A ln(1 / (1 - (1 - exp(-z_m / (K1 A))) t**2))`` with ``t = (|x| - h) / (K2 h) + 1`` and half the
     length ``h``, and 0 where ``t < 0``; the end drop is ``z_m``.
@@ -196,7 +196,7 @@ class FujiwaraKawase(Logarithmic):
     k1 : float
         Factor ``K1`` on the design load. Positive.
     k2 : float
-        Share ``K2`` of each half of the roller that is crowned; above 0, at most 1.
+        Crowned fraction ``K2`` of each half of the roller; above 0, at most 1.
 
     Raises
     ------
@@ -250,7 +250,7 @@ class IsoCylindrical(Shape):
     Parameters
     ----------
     diameter : float
-        Diameter ``D`` of the roller, metres. The length taken is the effective one, without corners.
+        Diameter ``D`` of the roller, metres. The length is the effective length, without corners.
 
     Raises
     ------
@@ -274,23 +274,23 @@ class IsoCylindrical(Shape):
 
     def drop(self, x: FloatArray, length: float) -> FloatArray:
         """Material removed (m) at distances `x` (m) from mid-length; infinite at the very ends."""
-        crowned = 2.5 * self.diameter  # Length over diameter up to which a cylindrical roller is crowned all along
-        if length <= crowned:
+        max_crowned = 2.5 * self.diameter  # Length up to which the whole roller is crowned
+        if length <= max_crowned:
             return logarithmic_drop(0.00035 * self.diameter, 2 * np.asarray(x) / length)
-        inside = np.maximum(2 * np.abs(x) - (length - crowned), 0.0)
-        return logarithmic_drop(0.0005 * self.diameter, inside / crowned)
+        distance = np.maximum(2 * np.abs(x) - (length - max_crowned), 0.0)
+        return logarithmic_drop(0.0005 * self.diameter, distance / max_crowned)
 
 
 @dataclass(frozen=True, repr=False)
 class IsoTapered(Shape):
     """Reference profile of a tapered roller: ``drop = 0.00045 D ln(1 / (1 - (2 x / length)**2))``.
 
-    It is the departure from the cone; add :class:`Tapered` for a cone on a surface that is parallel to the axis.
+    The drop is relative to the cone; add :class:`Tapered` for a cone on a surface parallel to the axis.
 
     Parameters
     ----------
     diameter : float
-        Mean diameter ``D`` of the roller, metres. The length taken is the effective one, without corners.
+        Mean diameter ``D`` of the roller, metres. The length is the effective length, without corners.
 
     Raises
     ------

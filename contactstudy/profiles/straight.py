@@ -11,14 +11,14 @@ from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 from contactstudy.profiles.base import Shape, SlopeJumps
 
-STEEPEST = np.pi / 4  # Largest half cone angle, radians
+MAX_HALF_ANGLE = np.pi / 4  # Largest half cone angle, radians
 
 
 @dataclass(frozen=True, repr=False)
 class Cylinder(Shape):
     """Cylinder with rounded ends: straight, then a circular fillet of radius `fillet_radius` at each end.
 
-    ``drop = r0 - sqrt(r0**2 - d**2)`` where ``d`` is how far the point lies inside the fillet.
+    ``drop = r0 - sqrt(r0**2 - d**2)`` with the distance ``d`` of a point from the fillet's start.
 
     Parameters
     ----------
@@ -46,9 +46,9 @@ class Cylinder(Shape):
         radius = self.fillet_radius
         if radius > length / 2:
             raise InvalidInputError("fillet_radius", radius, f"at most half the roller's length, {length / 2:g} m")
-        inside = np.clip(np.abs(x) - (length / 2 - radius), 0.0, radius)
+        distance = np.clip(np.abs(x) - (length / 2 - radius), 0.0, radius)
         # Squares of the smallest radii underflow.
-        return np.asarray(np.maximum(radius - np.sqrt(radius**2 - inside**2), 0.0))
+        return np.asarray(np.maximum(radius - np.sqrt(radius**2 - distance**2), 0.0))
 
 
 @dataclass(frozen=True, repr=False)
@@ -75,8 +75,8 @@ class Tapered(Shape):
 
     Notes
     -----
-    `length` and `x` are measured along the generatrix. The Hertz half-width and pressure that results are given over
-    are those of a cylinder with the roller's `radius`, without ``1 / cos(beta)``: up to 1.0025 in bearings.
+    `length` and `x` are measured along the generatrix. The Hertz scales of results are those of a cylinder with the
+    roller's `radius`, without ``1 / cos(beta)``: up to 1.0025 in bearings.
 
     References
     ----------
@@ -96,7 +96,7 @@ class Tapered(Shape):
 
     def __post_init__(self) -> None:
         angle = checks.finite("half_angle", self.half_angle, "radians")
-        if abs(angle) > STEEPEST:
+        if abs(angle) > MAX_HALF_ANGLE:
             raise InvalidInputError(
                 "half_angle", angle, "between -pi/4 and pi/4 (radians)", "an angle in degrees needs numpy.radians"
             )
@@ -109,16 +109,16 @@ class Tapered(Shape):
 
     def local_radius(self, x: FloatArray, length: float, radius: float | FloatArray) -> FloatArray:
         """Radius of the cone across its generatrix (m) at distances `x` (m) from mid-length."""
-        middle = np.asarray(radius) / np.cos(self.half_angle)
+        mid_radius = np.asarray(radius) / np.cos(self.half_angle)
         slope = np.tan(self.half_angle)
-        if np.min(middle) <= abs(slope) * length / 2:
+        if np.min(mid_radius) <= abs(slope) * length / 2:
             raise InvalidInputError(
                 "half_angle",
                 self.half_angle,
                 f"below {np.arcsin(min(1.0, float(2 * np.min(radius) / length))):.3g} rad for this roller",
                 "the cone's tip would lie within the roller",
             )
-        return np.asarray(middle + slope * np.asarray(x))
+        return np.asarray(mid_radius + slope * np.asarray(x))
 
 
 @dataclass(frozen=True, repr=False, kw_only=True)
@@ -147,7 +147,7 @@ class Chamfer(Shape):
 
     Notes
     -----
-    Under a sharp corner that is pressed the pressure has no largest value: ``p = E* s / (2 pi) ln(d0 / d)`` at the
+    Under a loaded sharp corner the pressure is unbounded: ``p = E* s / (2 pi) ln(d0 / d)`` at the
     distance d, with the slope ``s = tan(angle)``. :func:`contactstudy.contact.corner_peak` returns the peak of a small
     blend radius.
 
@@ -190,19 +190,19 @@ class Chamfer(Shape):
 
     @property
     def blend(self) -> float:
-        """Axial reach of the arc to the inner side of the corner, metres."""
+        """Axial length of the arc on the inner side of the corner, metres."""
         return self.blend_radius * float(np.tan(0.5 * np.arctan(self.slope)))
 
     def drop(self, x: FloatArray, length: float) -> FloatArray:
         """Material removed (m) at distances `x` (m) from mid-length."""
-        half, width, blend = 0.5 * length, self.axial_width, self.blend
-        if width > half:
-            raise InvalidInputError("width", width, f"at most half the roller's length, {half:g} m")
+        half_length, width, blend = 0.5 * length, self.axial_width, self.blend
+        if width > half_length:
+            raise InvalidInputError("width", width, f"at most half the roller's length, {half_length:g} m")
         outer = self.blend_radius * np.sin(np.arctan(self.slope)) - blend
-        if outer > width or width + blend > half:
-            most = min(width / outer, (half - width) / blend) * self.blend_radius
-            raise InvalidInputError("blend_radius", self.blend_radius, f"at most {most:.3g} m on this chamfer")
-        distance = np.abs(x) - (half - width)
+        if outer > width or width + blend > half_length:
+            max_radius = min(width / outer, (half_length - width) / blend) * self.blend_radius
+            raise InvalidInputError("blend_radius", self.blend_radius, f"at most {max_radius:.3g} m on this chamfer")
+        distance = np.abs(x) - (half_length - width)
         straight = self.slope * np.maximum(distance, 0.0)
         if blend == 0:
             return np.asarray(straight)

@@ -13,7 +13,7 @@ from contactstudy.bodies.models import Body, FiniteLengthSpace
 from contactstudy.case.case import Case
 from contactstudy.case.motion import AxialFriction, Sliding
 from contactstudy.profiles import Cylinder, Profile, Shape
-from contactstudy.profiles.base import in_words
+from contactstudy.profiles.base import describe_profile
 
 Input = tuple[str, str]  # One row: meaning, and value with its unit
 
@@ -116,7 +116,7 @@ def _profile(profile: Profile) -> str:
     """Profile in words."""
     if profile == Cylinder():
         return "cylinder with sharp ends"
-    text = in_words(profile)
+    text = describe_profile(profile)
     return text.replace("_", " ").replace("=", " ").replace("(", " (") if isinstance(profile, Shape) else text
 
 

@@ -31,7 +31,7 @@ from contactstudy.plots import (
 from contactstudy.plots.axial import draw_section_maxima
 from contactstudy.plots.singular_ends import cap_field
 from contactstudy.plots.style import MILLIMETRES
-from contactstudy.profiles.base import checked_drop, local_radius
+from contactstudy.profiles.base import check_drop, local_radius
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -110,7 +110,7 @@ def case_pictures(result: xr.Dataset, case: Case | None) -> list[Picture]:
         draw += [_draw_film_lines, partial(_draw_map, plot_film_map, film)]
     if case is not None:
         roller = case.roller
-        if checked_drop(roller.profile, np.linspace(-0.5, 0.5, 201) * roller.length, roller.length).any():
+        if check_drop(roller.profile, np.linspace(-0.5, 0.5, 201) * roller.length, roller.length).any():
             draw.append(partial(_draw_profile, roller))
     if "von_mises" in result and bool(result["von_mises"].notnull().any()):
         draw += [_draw_axial_plane, _draw_cross_section, _draw_section_maxima]
@@ -192,7 +192,7 @@ def _draw_slip_map(figure: Figure, result: xr.Dataset) -> str:
 
 def _draw_profile(roller: Roller, figure: Figure, result: xr.Dataset) -> str:
     """Profile of the roller."""
-    drop = checked_drop(roller.profile, np.linspace(-0.47, 0.47, 201) * roller.length, roller.length)
+    drop = check_drop(roller.profile, np.linspace(-0.47, 0.47, 201) * roller.length, roller.length)
     crown = float(drop[np.isfinite(drop)].max(initial=0.0))
     max_depth = 3 * crown if crown > 0 else None
     plot_profile(roller.profile, roller.length, ax=figure.subplots(), deepest=max_depth, color=BLUE)
@@ -261,7 +261,7 @@ def side_geometry(case: Case) -> SideView:
     )
     height = min(roller.radius, 0.42 * (limits[1] - limits[0]))
     along = np.linspace(-0.5, 0.5, 241) * roller.length
-    drop = checked_drop(roller.profile, along, roller.length)
+    drop = check_drop(roller.profile, along, roller.length)
     inner = (np.abs(along) <= 0.45 * roller.length) & np.isfinite(drop)
     magnification, max_depth = _magnification(float(drop[inner].max(initial=0.0)), height), 0.45 * height
     generatrix = np.minimum(np.where(np.isfinite(drop), drop * magnification, max_depth), max_depth)

@@ -18,7 +18,7 @@ from contactstudy.arrays.grid import Grid
 from contactstudy.arrays.variables import describe
 from contactstudy.case.case import Case
 from contactstudy.case.gridding import ACCURACY, TOLERANCE, check_accuracy, choose_grid
-from contactstudy.case.magnitudes import check_balanced, check_on_its_length, inclination, warn_doubtful
+from contactstudy.case.magnitudes import check_balanced, check_on_its_length, describe_inclination, warn_of_magnitudes
 from contactstudy.case.motion import Sliding
 from contactstudy.contact.normal.contact import Contact, Settings, contact_of
 from contactstudy.contact.refinement.refined_contact import (
@@ -125,7 +125,7 @@ def contact_on_cells(case: Case, grid: Grid | None, roughness: xr.DataArray | No
         advice = f"{error}; choose_grid(case, window=..., margin=...) makes a wider one"
         if not case.tilt and case.load_position is None:
             raise WindowError(advice) from error
-        raise WindowError(f"{inclination(case)}, and so deep at the roller's end that {advice}") from error
+        raise WindowError(f"{describe_inclination(case)}, and so deep at the roller's end that {advice}") from error
     contact = _checked(case, contact)
     if not isinstance(case.motion, Sliding):
         request = FrictionRequest(
@@ -264,7 +264,7 @@ def solve(
     (True, 1.02)
     """
     checks.instance("case", case, Case, "a Case")
-    warn_doubtful(case)
+    warn_of_magnitudes(case)
     check_balanced(case)
     if grid is not None:
         checks.instance("grid", grid, Grid, "a Grid")

@@ -72,9 +72,11 @@ def roller_stress(
     grid, on_body, *_ = prescribed_loads(case.body, pressure, 0.0, traction_x, traction_y)
     if slides and traction_y is None:
         on_body = {**on_body, **sliding(on_body[Load.NORMAL].cells, case.friction_on(grid.x))}
-    body, roller_grid = case.counterbody.body, case.counterbody.own_grid(grid)
+    body, roller_grid = case.counterbody.body, case.counterbody.grid_on_body(grid)
     loads = {
-        load: TopLoad(case.counterbody.load_on(grid, top.cells), top.factor if load is Load.NORMAL else -top.factor)
+        load: TopLoad(
+            case.counterbody.transfer_load(grid, top.cells), top.factor if load is Load.NORMAL else -top.factor
+        )
         for load, top in on_body.items()
     }
     return stress_dataset(

@@ -16,7 +16,7 @@ from contactstudy.bodies.lubricant import Lubricant
 from contactstudy.bodies.material import Material, contact_modulus
 from contactstudy.bodies.models import MODELS, Body, FiniteLengthSpace, HalfSpace, QuarterSpace
 from contactstudy.case.case import Case
-from contactstudy.case.gridding import check_accuracy, choose_grid, solver_settings, widening_grids
+from contactstudy.case.gridding import check_accuracy, choose_grid, create_widening_grids, solver_settings
 from contactstudy.case.motion import Motion, Rolling, Shift, Sliding
 from contactstudy.case.roller import Roller
 from contactstudy.checks import FloatArray
@@ -123,7 +123,7 @@ class Setup:
     @property
     def grids(self) -> Iterator[Grid | None]:
         """Grids of increasing windows: the solver uses the first that contains the contact."""
-        return widening_grids(self.case, **self.cells) if self.cells else iter((self.grid,))
+        return create_widening_grids(self.case, **self.cells) if self.cells else iter((self.grid,))
 
     @property
     def shape(self) -> tuple[int, int]:

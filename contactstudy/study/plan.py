@@ -18,7 +18,7 @@ import numpy as np
 import numpy.typing as npt
 
 from contactstudy.arrays.engineering import format_quantity
-from contactstudy.case.magnitudes import doubts, friction_doubt
+from contactstudy.case.magnitudes import describe_unusual_friction, list_unusual_magnitudes
 from contactstudy.checks import IntArray
 from contactstudy.errors import ContactStudyError
 from contactstudy.study.case_setup import Setup, build_setup
@@ -258,12 +258,12 @@ class Plan(Sequence[PlannedCase]):
             except ContactStudyError as error:
                 reasons[int(self.groups[index])] = str(error)
                 continue
-            magnitude_warnings.update(doubts(setup.case))
+            magnitude_warnings.update(list_unusual_magnitudes(setup.case))
             cells, points = cells + math.prod(setup.shape), points + setup.points
         # A group's cases differ in friction: its other values are checked here.
         entries = [*(entry for axis in self.axes for entry in axis), *self.explicit]
         for friction in {entry["friction"] for entry in entries if "friction" in entry}:
-            if message := friction_doubt(friction):
+            if message := describe_unusual_friction(friction):
                 magnitude_warnings.setdefault(message, checked)
         solvable = max(1, checked - len(reasons))
         return Review(

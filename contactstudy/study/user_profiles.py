@@ -18,7 +18,7 @@ from contactstudy import checks
 from contactstudy.case.serialization import Sampled, tables_within
 from contactstudy.errors import ContactStudyError, InvalidInputError
 from contactstudy.profiles import Profile
-from contactstudy.profiles.base import checked_drop, in_words, local_radius
+from contactstudy.profiles.base import check_drop, describe_profile, local_radius
 
 KIND = "user"  # Kind of a profile of a user's class
 KEYS = ("class", "values", "content")
@@ -42,7 +42,7 @@ def register(profile: Profile) -> dict[str, Any]:
     if content not in _registry:
         _registry[content] = _copy_by_pickle(profile, name, content)
     has_default_repr = type(profile).__repr__ is object.__repr__
-    label = f"{name} {content[:8]}" if has_default_repr else in_words(profile)
+    label = f"{name} {content[:8]}" if has_default_repr else describe_profile(profile)
     return {"kind": KIND, "name": label, "class": name, "values": values, "content": content}
 
 
@@ -130,7 +130,7 @@ def _behaviour(profile: Profile) -> list[Any]:
     for length in LENGTHS:
         x = -0.5 * length * np.cos(np.linspace(0.0, np.pi, 1001))
         try:
-            drops, radii = checked_drop(profile, x, length), local_radius(profile, x, length, length)
+            drops, radii = check_drop(profile, x, length), local_radius(profile, x, length, length)
         except (ContactStudyError, ArithmeticError, ValueError) as error:
             last_error = error
             behaviour.append(None)

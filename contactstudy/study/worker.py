@@ -23,7 +23,7 @@ import xarray as xr
 from contactstudy.analysis.summary import Number, case_numbers
 from contactstudy.arrays.grid import Grid
 from contactstudy.arrays.variables import DERIVED
-from contactstudy.case.gridding import first_sufficient
+from contactstudy.case.gridding import solve_in_first_window
 from contactstudy.errors import ContactStudyError, MagnitudeWarning, StoreError
 from contactstudy.profiles import Profile
 from contactstudy.study.batches import IDENTITY_LENGTH, STATUSES, Batch, add_arrays, join_batches, write_batch
@@ -220,7 +220,7 @@ def _solve_case(
     try:
         with warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("always")
-            dataset = first_sufficient(setup.grids, solve_on)
+            dataset = solve_in_first_window(setup.grids, solve_on)
             numbers = case_numbers(dataset)
             summaries = dict(shakedown_summary(dataset).data_vars)
             if "von_mises" in dataset:

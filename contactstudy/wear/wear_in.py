@@ -19,9 +19,9 @@ from contactstudy.arrays.variables import describe, numbers_in_si, require
 from contactstudy.cache import ArrayKey
 from contactstudy.case.case import Case
 from contactstudy.case.gridding import choose_grid
-from contactstudy.case.magnitudes import warn_doubtful
+from contactstudy.case.magnitudes import warn_of_magnitudes
 from contactstudy.case.motion import Rolling, Shift, Sliding
-from contactstudy.case.roller import onto_ends
+from contactstudy.case.roller import snap_to_ends
 from contactstudy.checks import FloatArray
 from contactstudy.contact.normal.conjugate_gradients import ContactIterate
 from contactstudy.contact.normal.contact import Settings, Shape, check_window, contact_operator
@@ -32,14 +32,14 @@ from contactstudy.contact.rolling.frictional_contact import frictional_contact
 from contactstudy.contact.rolling.tractions import FrictionRequest
 from contactstudy.errors import ConvergenceWarning, InvalidInputError
 from contactstudy.kernels.load import Load
-from contactstudy.profiles.base import checked_drop
+from contactstudy.profiles.base import check_drop
 from contactstudy.threads import one_blas_thread
 from contactstudy.wear.profile import SAME_ROLLER
 
 
 @dataclass(frozen=True, eq=False)
 class WearingOperator:
-    """Displacement under a pressure, and the wear of the profile by it within a step."""
+    """Displacement under a pressure plus the wear of the profile within a step."""
 
     elastic: ContactOperator
     compliance: FloatArray  # (x, 1), worn depth per load per length, m2/N
@@ -47,13 +47,13 @@ class WearingOperator:
 
     def __call__(self, loads: Mapping[Load, FloatArray]) -> FloatArray:
         """Displacement (m) of the cell centres under `loads` (Pa): only the pressure wears."""
-        displaced = self.elastic(loads)
+        displacement = self.elastic(loads)
         if Load.NORMAL not in loads:
-            return displaced
-        return np.asarray(displaced + self.compliance * (self.step * loads[Load.NORMAL].sum(axis=1, keepdims=True)))
+            return displacement
+        return np.asarray(displacement + self.compliance * (self.step * loads[Load.NORMAL].sum(axis=1, keepdims=True)))
 
     def precondition(self, gap: FloatArray) -> FloatArray:
-        """Roughly the pressure that sinks the cells by `gap`."""
+        """Return approximately the pressure that displaces the cells by `gap`."""
         return self.elastic.precondition(gap)
 
     @property
@@ -62,7 +62,7 @@ class WearingOperator:
         return self.elastic.coarse
 
 
-class Pressed(NamedTuple):
+class PressureResult(NamedTuple):
     """A pressure (x, y), its load per length (x), and whether the iteration converged."""
 
     pressure: FloatArray
@@ -72,14 +72,14 @@ class Pressed(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class WornContact:
-    """The contact of a case on given cells, its profile worn by some depth."""
+    """Contact of a case on given cells, with a worn profile."""
 
     case: Case
     shape: Shape  # unworn
     settings: Settings
 
-    def pressed(self, depth: FloatArray, compliance: FloatArray, start: FloatArray | None) -> Pressed:
-        """Press the roller on while it wears: `compliance` (x) is further depth per load per length, m2/N."""
+    def solve(self, depth: FloatArray, compliance: FloatArray, start: FloatArray | None) -> PressureResult:
+        """Solve the contact with wear: `compliance` (x) is the further depth per load per length, m2/N."""
         shape, grid = self.shape, self.shape.grid
         with one_blas_thread():
             operator = WearingOperator(contact_operator(shape), compliance[:, None], grid.dy)  # eq. (604)
@@ -99,37 +99,37 @@ class WornContact:
 
             solution = shape.referred(solve, self.settings.tolerance).iterate
         check_window(shape.body, solution.pressure)
-        return Pressed(solution.pressure, grid.dy * solution.pressure.sum(axis=1), solution.converged)
+        return PressureResult(solution.pressure, grid.dy * solution.pressure.sum(axis=1), solution.converged)
 
-    def slip(self, depth: FloatArray, law: str) -> FloatArray:
+    def compute_slip(self, depth: FloatArray, law: str) -> FloatArray:
         """Factor (x) from load per length to wear: slip per distance, or frictional work, weighted by the pressure."""
         case, grid = self.case, self.shape.grid
         friction = np.broadcast_to(case.friction_on(grid.x), (grid.cells_x, 1))[:, 0]
         if not isinstance(case.motion, Rolling):
             return np.ones(grid.cells_x) if law == "slip" else np.abs(friction)
-        middle = case.roller_middle
+        mid_length = case.roller_middle
         shape = self.shape._replace(gap=ArrayKey(self.shape.gap.values + depth[:, None]))
-        request = FrictionRequest(motion=case.motion, friction=friction[:, None], middle=middle, coupled=False)
+        request = FrictionRequest(motion=case.motion, friction=friction[:, None], middle=mid_length, coupled=False)
         rolling = frictional_contact(shape, self.settings, request)
         rolling.warn_unless_converged()
         slip, traction = rolling.tractions.slip, rolling.tractions.traction
         pressure = rolling.contact.pressure
         if law == "slip":
-            worn = pressure * np.hypot(slip[0], slip[1])
+            wear_rate = pressure * np.hypot(slip[0], slip[1])
         else:
-            worn = np.maximum(traction[0] * slip[0] + traction[1] * slip[1], 0.0)
+            wear_rate = np.maximum(traction[0] * slip[0] + traction[1] * slip[1], 0.0)
         load = pressure.sum(axis=1)
-        return np.asarray(np.divide(worn.sum(axis=1), load, out=np.zeros_like(load), where=load > 0))
+        return np.asarray(np.divide(wear_rate.sum(axis=1), load, out=np.zeros_like(load), where=load > 0))
 
 
 # Length of either implicit stage over the length of the step: the scheme damps the stiffest wear fully (R. Alexander,
 # SIAM Journal on Numerical Analysis 14 (1977) 1006, theorem 5)
 STAGE = 1 - np.sqrt(0.5)
-SAFETY, LARGEST_GROWTH, LARGEST_CUT = 0.85, 4.0, 0.2  # Factor on the next step, and its bounds
+SAFETY, MAX_GROWTH, MIN_GROWTH = 0.85, 4.0, 0.2  # Factor on the next step, and its bounds
 
 
 class State(NamedTuple):
-    """Where the wear stands."""
+    """State of the wear integration: depth, pressure, slip, worn volume."""
 
     distance: float  # m
     depth: FloatArray  # (x), m
@@ -141,75 +141,75 @@ class State(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class Stepper:
-    """Takes steps."""
+class WearIntegrator:
+    """Integrates the wear over the sliding distance."""
 
     contact: WornContact
     rate: float  # m2/N per metre, per slip
     law: str  # slip or work
     tolerance: float  # error of the depth per step over the largest depth
 
-    def initial(self, distance: float, depth: FloatArray, error: float) -> State:
-        """Return the state of a worn depth, which is known within an error."""
-        pressed = self.contact.pressed(depth, np.zeros_like(depth), None)
-        slip = self.contact.slip(depth, self.law)
-        return State(distance, depth, pressed.pressure, slip, error, converged=pressed.converged)
+    def initial_state(self, distance: float, depth: FloatArray, error: float) -> State:
+        """Return the state of a worn depth with an error."""
+        result = self.contact.solve(depth, np.zeros_like(depth), None)
+        slip = self.contact.compute_slip(depth, self.law)
+        return State(distance, depth, result.pressure, slip, error, converged=result.converged)
 
-    def states(self, state: State, until: float, step: float) -> Iterator[tuple[State, float]]:
-        """Go on to a distance; after each step give its state and the length of the next."""
-        least = 1e-6 * min(step, until - state.distance)  # Shorter steps are taken in spite of their error, stated
-        while state.distance < until:
-            remaining = until - state.distance
+    def integrate(self, state: State, stop: float, step: float) -> Iterator[tuple[State, float]]:
+        """Integrate to a distance; yield the state after each step and the length of the next step."""
+        min_length = 1e-6 * min(step, stop - state.distance)  # The error rejects no shorter step; it is stated
+        while state.distance < stop:
+            remaining = stop - state.distance
             length = min(step, remaining)
             if remaining < 1.5 * length:
                 length = remaining
-            begin = state._replace(converged=True)
-            single = self._stepped(begin, length)
-            halved = self._stepped(self._stepped(begin, 0.5 * length), 0.5 * length)
-            # Two halves of a scheme of second order err by a quarter of a single step.
-            error = float(np.abs(halved.depth - single.depth).max()) / 3
-            allowed = self.tolerance * float(halved.depth.max())
-            growth = SAFETY * (allowed / error) ** (1 / 3) if error > 0 else LARGEST_GROWTH
-            factor = min(max(growth, LARGEST_CUT), LARGEST_GROWTH)
-            solved = halved.converged and single.converged
-            if (error > allowed or not solved) and length > least:
-                step = (factor if solved else LARGEST_CUT) * length
+            start = state._replace(converged=True)
+            full_step = self._take_step(start, length)
+            half_steps = self._take_step(self._take_step(start, 0.5 * length), 0.5 * length)
+            # Two half steps of a scheme of second order have a quarter of the error of one step.
+            error = float(np.abs(half_steps.depth - full_step.depth).max()) / 3
+            allowed_error = self.tolerance * float(half_steps.depth.max())
+            growth = SAFETY * (allowed_error / error) ** (1 / 3) if error > 0 else MAX_GROWTH
+            factor = min(max(growth, MIN_GROWTH), MAX_GROWTH)
+            all_converged = half_steps.converged and full_step.converged
+            if (error > allowed_error or not all_converged) and length > min_length:
+                step = (factor if all_converged else MIN_GROWTH) * length
                 continue
-            reached = until if length == remaining else state.distance + length
-            worn = state.worn + 0.5 * length * (self._area_per_distance(state) + self._area_per_distance(halved))
-            converged = state.converged and halved.converged
-            state = halved._replace(distance=reached, error=state.error + error, worn=worn, converged=converged)
+            distance = stop if length == remaining else state.distance + length
+            worn = state.worn + 0.5 * length * (self._worn_area_rate(state) + self._worn_area_rate(half_steps))
+            converged = state.converged and half_steps.converged
+            state = half_steps._replace(distance=distance, error=state.error + error, worn=worn, converged=converged)
             step = max(step, factor * length)
             yield state, step
 
-    def _area_per_distance(self, state: State) -> float:
+    def _worn_area_rate(self, state: State) -> float:
         """Area worn off a section along the axis by the law, per distance."""
         grid = self.contact.shape.grid
         return self.rate * grid.dy * float((grid.widths * state.slip) @ state.pressure.sum(axis=1))  # eq. (603)
 
-    def _stepped(self, state: State, length: float) -> State:
-        """One step, or a predictor and a corrector if the slip depends on the depth."""
-        stepped = self._staged(state, length, state.slip, state.slip)
-        slip = self.contact.slip(stepped.depth, self.law)
-        if np.array_equal(slip, state.slip):
-            return stepped
-        between = state.slip + STAGE * (slip - state.slip)
-        return self._staged(state, length, between, slip)
+    def _take_step(self, state: State, length: float) -> State:
+        """Take one step, or a predictor and a corrector if the slip depends on the depth."""
+        predicted = self._solve_stages(state, length, state.slip, state.slip)
+        last_slip = self.contact.compute_slip(predicted.depth, self.law)
+        if np.array_equal(last_slip, state.slip):
+            return predicted
+        first_slip = state.slip + STAGE * (last_slip - state.slip)
+        return self._solve_stages(state, length, first_slip, last_slip)
 
-    def _staged(self, state: State, length: float, first: FloatArray, last: FloatArray) -> State:
-        """Two implicit stages; the second is the result."""
-        early, late = self.rate * length * first, self.rate * length * last
-        half = self.contact.pressed(state.depth, STAGE * early, state.pressure)
-        partial = state.depth + (1 - STAGE) * early * half.line_load
-        full = self.contact.pressed(partial, STAGE * late, half.pressure)
-        depth = partial + STAGE * late * full.line_load
-        converged = state.converged and half.converged and full.converged
-        return State(state.distance + length, depth, full.pressure, last, converged=converged)
+    def _solve_stages(self, state: State, length: float, first_slip: FloatArray, last_slip: FloatArray) -> State:
+        """Solve two implicit stages and return the second."""
+        first_increment, second_increment = self.rate * length * first_slip, self.rate * length * last_slip
+        first_stage = self.contact.solve(state.depth, STAGE * first_increment, state.pressure)
+        intermediate_depth = state.depth + (1 - STAGE) * first_increment * first_stage.line_load
+        second_stage = self.contact.solve(intermediate_depth, STAGE * second_increment, first_stage.pressure)
+        depth = intermediate_depth + STAGE * second_increment * second_stage.line_load
+        converged = state.converged and first_stage.converged and second_stage.converged
+        return State(state.distance + length, depth, second_stage.pressure, last_slip, converged=converged)
 
 
 LAWS = ("slip", "work")  # Laws: wear proportional to pressure times slip, or to frictional work
-DEEPEST = 0.01  # Bound on the mean worn depth over the roller's radius: the radius counts as unchanged
-TOLERANCES = (1e-5, 0.1)  # Tolerances that the contact is solved well enough for, and that mean something
+MAX_DEPTH = 0.01  # Bound on the mean worn depth over the roller's radius: the wear leaves the radius unchanged
+TOLERANCES = (1e-5, 0.1)  # Range of the tolerance; the contact is solved more accurately
 
 
 def wear_in(
@@ -224,7 +224,7 @@ def wear_in(
     tolerance: float = 0.01,
     max_steps: int = 200,
 ) -> xr.Dataset:
-    """Wear the profile of a roller by Archard's law, in steps that its own estimate of the error allows.
+    """Wear the profile of a roller by Archard's law, in steps that an estimate of their error limits.
 
     The roller turns, so its wear is uniform along the circumference and depends on x alone; the body does not wear.
 
@@ -235,19 +235,19 @@ def wear_in(
     coefficient : float
         Worn volume k per load and distance slid (``law="slip"``), or per frictional work (``law="work"``), 1/Pa.
     distance : float or sequence of float
-        How far the contact slides, or in rolling rolls, metres; the states after every step are returned, or those at
-        the increasing distances of a sequence only.
+        Distance of sliding, or in rolling of rolling, metres. The result contains the states after every step, or
+        only the states at the increasing distances of a sequence.
     law : str
         "slip": the volume is ``k p |slip|`` per area and distance, in full sliding ``k p``; "work": ``k`` times the
         frictional work.
     circumference : float, optional
         Length along y of the surface over which the wear is spread, metres; default: the roller's, ``2 pi R``.
     grid : Grid, optional
-        Cells. Default: in full sliding the columns that settle the unworn contact, else the cells of `choose_grid`.
+        Cells. Default: in full sliding the columns refined for the unworn contact, else the cells of `choose_grid`.
     after : Dataset, optional
-        Result of this function from whose last state to go on, of the same roller and body.
+        Result of this function for the same roller and body; its last state is the start.
     tolerance : float
-        Error of the worn depth that one step may make, over the largest depth: from 1e-5 to 0.1.
+        Allowed error of the worn depth by one step, over the largest depth: from 1e-5 to 0.1.
     max_steps : int
         Bound on the steps.
 
@@ -263,15 +263,15 @@ def wear_in(
     Raises
     ------
     InvalidInputError
-        If an argument is out of range, the motion is a shift, nothing rubs, `after` is of another roller or body, or
-        so much would be worn off that the radius changes.
+        If an argument is out of range, the motion is a shift, the case has no friction or slip, `after` is of another
+        roller or body, or the wear would change the radius.
     WindowError
         If the contact grows beyond the cells.
 
     Warns
     -----
     ConvergenceWarning
-        If `max_steps` did not suffice, or a contact did not converge. The result ends with the last step.
+        If `max_steps` did not suffice, or a contact did not converge. The last step ends the result.
 
     Examples
     --------
@@ -284,23 +284,23 @@ def wear_in(
     >>> (load.max("x") / load.min("x")).values.round(2).tolist()
     [2.28, 1.37, 1.0]
     """
-    began = time.perf_counter()
+    start_time = time.perf_counter()
     checks.instance("case", case, Case, "a Case")
-    warn_doubtful(case)
+    warn_of_magnitudes(case)
     checks.known_name("law", law, LAWS)
     if isinstance(case.motion, Shift):
         raise InvalidInputError("case.motion", case.motion, "Sliding() or Rolling(...): a shift has no distance")
     if case.coupled and not isinstance(case.motion, Sliding):
         raise InvalidInputError("case.coupled", True, "False in rolling: its tractions are solved after the pressure")
     rate = checks.positive("coefficient", coefficient, "1/Pa")
-    around = 2 * np.pi * case.roller.radius if circumference is None else circumference
-    around = checks.positive("circumference", around, "metres")
+    length = 2 * np.pi * case.roller.radius if circumference is None else circumference
+    length = checks.positive("circumference", length, "metres")
     tolerance = checks.positive("tolerance", tolerance)
     if not TOLERANCES[0] <= tolerance <= TOLERANCES[1]:
         raise InvalidInputError("tolerance", tolerance, f"from {TOLERANCES[0]:g} to {TOLERANCES[1]:g}")
     max_steps = checks.count("max_steps", max_steps)
     distance_before, depth, cells, step, error = (
-        (0.0, None, _cells(case, grid), None, 0.0) if after is None else _state_of(after, case, grid)
+        (0.0, None, _choose_cells(case, grid), None, 0.0) if after is None else _read_last_state(after, case, grid)
     )
     all_steps = np.ndim(distance) == 0
     stops = checks.coordinates("distance", numbers_in_si("distance", distance, "m"))
@@ -311,74 +311,74 @@ def wear_in(
     gap = case.gap(cells)
     prescribed = Prescribed(case.normal_load, case.load_position).checked(gap, cells)
     shape = Shape(case.body, cells, ArrayKey(gap), prescribed, case.counterbody, coupled_friction=case.coupled_friction)
-    # Bound on the iterations of one contact: in large steps the contact area changes often
+    # Bound on the iterations of one contact; large steps change the contact area often
     contact = WornContact(case, shape, Settings(max_iterations=2000))
-    stepper = Stepper(contact, rate / around, law, tolerance)
-    first = stepper.initial(distance_before, np.zeros(cells.cells_x) if depth is None else depth, error)
-    if not first.slip.any():
-        raise InvalidInputError("case", f"friction = {case.friction}", "one in which something rubs")
-    until = float(stops[-1])
-    mean = stepper.rate * float(first.slip.max()) * case.normal_load / case.contact_length * until
-    if mean > DEEPEST * case.roller.radius:
+    integrator = WearIntegrator(contact, rate / length, law, tolerance)
+    start = integrator.initial_state(distance_before, np.zeros(cells.cells_x) if depth is None else depth, error)
+    if not start.slip.any():
+        raise InvalidInputError("case", f"friction = {case.friction}", "a case with friction and slip")
+    last_stop = float(stops[-1])
+    mean_depth = integrator.rate * float(start.slip.max()) * case.normal_load / case.contact_length * last_stop
+    if mean_depth > MAX_DEPTH * case.roller.radius:
         raise InvalidInputError(
             "distance",
-            until,
-            f"such that the mean worn depth, {mean:.3g} m, is at most {DEEPEST:g} of the roller's radius, "
+            last_stop,
+            f"such that the mean worn depth, {mean_depth:.3g} m, is at most {MAX_DEPTH:g} of the roller's radius, "
             f"{case.roller.radius:g} m",
             "coefficient is in 1/Pa, distances in metres",
         )
     if step is None:
-        # Largest worn depth of the first step over the depth ``a**2 / (2 R)`` of the contact
-        sinking = case.hertz_half_width**2 / (2 * case.roller.radius)
-        fastest = float((stepper.rate * first.slip * (cells.dy * first.pressure.sum(axis=1))).max())
-        step = 1e-3 * sinking / fastest if fastest > 0 else np.inf
-    states, steps = [first], [step]
-    for state, ahead in _limited(stepper, first, stops, steps[0], max_steps):
+        # The first step wears 1e-3 of the depth ``a**2 / (2 R)`` of the contact.
+        contact_depth = case.hertz_half_width**2 / (2 * case.roller.radius)
+        max_rate = float((integrator.rate * start.slip * (cells.dy * start.pressure.sum(axis=1))).max())
+        step = 1e-3 * contact_depth / max_rate if max_rate > 0 else np.inf
+    states, steps = [start], [step]
+    for state, next_step in _integrate_to_stops(integrator, start, stops, steps[0], max_steps):
         if all_steps or state.distance in stops:
             states.append(state)
-            steps.append(ahead)
-    settings = {"coefficient": rate, "law": law, "circumference": float(around), "tolerance": tolerance}
-    worn = _labelled(case, stepper, states, steps, around)
-    return with_provenance(worn, case, settings, {"wear": time.perf_counter() - began})
+            steps.append(next_step)
+    settings = {"coefficient": rate, "law": law, "circumference": float(length), "tolerance": tolerance}
+    worn = _label(case, integrator, states, steps, length)
+    return with_provenance(worn, case, settings, {"wear": time.perf_counter() - start_time})
 
 
-def _cells(case: Case, grid: Grid | None) -> Grid:
-    """Cells to wear on."""
+def _choose_cells(case: Case, grid: Grid | None) -> Grid:
+    """Choose the cells."""
     if grid is not None:
         checks.instance("grid", grid, Grid, "a Grid")
         return grid
     if not isinstance(case.motion, Sliding):
         return choose_grid(case)
-    refined = refine_contact(case, 0.01, 1e-6).contact.shape.grid
-    low, high = refined.y_range
-    # Width of the window over that which the unworn contact needs: load moves along the axis as the ends wear
-    count = 2 * int(np.ceil(0.5 * 1.4 * refined.cells_y))
-    wider = count / refined.cells_y
-    return Grid.between(refined.x_edges, (wider * low, wider * high), count)
+    refined_grid = refine_contact(case, 0.01, 1e-6).contact.shape.grid
+    low, high = refined_grid.y_range
+    # The load moves along the axis as the ends wear: the window is 1.4 times that of the unworn contact.
+    count = 2 * int(np.ceil(0.5 * 1.4 * refined_grid.cells_y))
+    width_factor = count / refined_grid.cells_y
+    return Grid.between(refined_grid.x_edges, (width_factor * low, width_factor * high), count)
 
 
-def _state_of(after: xr.Dataset, case: Case, grid: Grid | None) -> tuple[float, FloatArray, Grid, float, float]:
+def _read_last_state(after: xr.Dataset, case: Case, grid: Grid | None) -> tuple[float, FloatArray, Grid, float, float]:
     """Distance, depth, cells, next step and error of the depth of the last state of a result."""
     require(after, "wear_depth", "wear_error", "pressure", "next_step", argument="after")
     check_solved_for(after, case, "after", only=SAME_ROLLER)
     if grid is not None:
         raise InvalidInputError("grid", grid, "None with after, which has cells")
-    last = after.isel(distance=-1) if "distance" in after.dims else after
-    cells = labelled_cells("after.pressure", last["pressure"], extent=case.body.extent)[1]
-    depth = last["wear_depth"].values.astype(np.float64)
-    error = float(last["wear_error"]) * float(depth.max())
-    return float(last["distance"]), depth, cells, float(last["next_step"]), error
+    last_state = after.isel(distance=-1) if "distance" in after.dims else after
+    cells = labelled_cells("after.pressure", last_state["pressure"], extent=case.body.extent)[1]
+    depth = last_state["wear_depth"].values.astype(np.float64)
+    error = float(last_state["wear_error"]) * float(depth.max())
+    return float(last_state["distance"]), depth, cells, float(last_state["next_step"]), error
 
 
-def _limited(
-    stepper: Stepper, state: State, stops: FloatArray, step: float, max_steps: int
+def _integrate_to_stops(
+    integrator: WearIntegrator, state: State, stops: FloatArray, step: float, max_steps: int
 ) -> Iterator[tuple[State, float]]:
-    """Go to one distance after the other, in a number of steps at most."""
+    """Integrate to one distance after the other, in at most `max_steps` steps."""
     steps = 0
     for stop in stops[stops > state.distance]:
-        for reached, ahead in stepper.states(state, float(stop), step):
+        for next_state, next_step in integrator.integrate(state, float(stop), step):
             steps += 1
-            state, step = reached, ahead
+            state, step = next_state, next_step
             yield state, step
             if steps >= max_steps and state.distance < stops[-1]:
                 warnings.warn(
@@ -396,22 +396,24 @@ def _limited(
             )
 
 
-def _labelled(case: Case, stepper: Stepper, states: list[State], steps: list[float], around: float) -> xr.Dataset:
+def _label(
+    case: Case, integrator: WearIntegrator, states: list[State], steps: list[float], length: float
+) -> xr.Dataset:
     """Label the states."""
-    grid = stepper.contact.shape.grid
+    grid = integrator.contact.shape.grid
     distances = np.array([state.distance for state in states])
     depths = np.array([state.depth for state in states])
     pressures = np.array([state.pressure for state in states])
-    from_middle, half = grid.x - case.roller_middle, 0.5 * case.roller.length
+    x, half_length = grid.x - case.roller_middle, 0.5 * case.roller.length
     if grid.uniform:
-        from_middle = onto_ends(from_middle, half, grid.dx)
-    under = np.abs(from_middle) <= half
+        x = snap_to_ends(x, half_length, grid.dx)
+    under_roller = np.abs(x) <= half_length
     drop = np.full(grid.cells_x, np.nan)
-    drop[under] = checked_drop(case.roller.profile, from_middle[under], case.roller.length)
-    volumes = around * depths @ grid.widths
-    due = around * np.array([state.worn for state in states])
-    gained, due = volumes - volumes[0], due - due[0]
-    positive = due > 0
+    drop[under_roller] = check_drop(case.roller.profile, x[under_roller], case.roller.length)
+    volumes = length * depths @ grid.widths
+    expected = length * np.array([state.worn for state in states])
+    gain, expected = volumes - volumes[0], expected - expected[0]
+    positive = expected > 0
     scale = np.maximum(depths.max(axis=1), np.finfo(np.float64).tiny)
     coords = {"distance": distances, "x": grid.x, "y": grid.y} | cell_coordinates(grid)
     result = xr.Dataset(
@@ -423,7 +425,7 @@ def _labelled(case: Case, stepper: Stepper, states: list[State], steps: list[flo
             "worn_volume": ("distance", volumes),
             "wear_error": ("distance", np.array([state.error for state in states]) / scale),
             "next_step": ("distance", np.array(steps)),
-            "volume_error": float(np.abs(gained[positive] / due[positive] - 1).max(initial=0.0)),
+            "volume_error": float(np.abs(gain[positive] / expected[positive] - 1).max(initial=0.0)),
             "converged": states[-1].converged,
             "hertz_half_width": case.hertz_half_width,
             "hertz_max_pressure": case.hertz_max_pressure,

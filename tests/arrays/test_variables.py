@@ -42,7 +42,7 @@ from contactstudy.arrays.variables import (
     variable_of,
     without_error,
 )
-from contactstudy.bearing.tabulation import Presser, law_table
+from contactstudy.bearing.tabulation import ContactSolver, label_law
 from contactstudy.fields.edge_tension import edge_tension
 from contactstudy.study.parameters import PARAMETERS
 from contactstudy.verification import suite
@@ -139,7 +139,7 @@ def returned_datasets(strip_result: Callable[..., xr.Dataset], study_dataset: xr
     rough.to_netcdf(file)
     check = Reference("case", "closed form").compare("peak pressure", 1.0, 1.0, 0.1)
     verification = suite.Verification("full", {"one": [check]})
-    law = bearing.ContactLaw(law_table(Presser(case, 0.1, 1e-4), NODES, np.full((2, *NODES.load.shape), 0.01)))
+    law = bearing.ContactLaw(label_law(ContactSolver(case, 0.1, 1e-4), NODES, np.full((2, *NODES.load.shape), 0.01)))
     smooth = cs.Roller(radius=5e-3, length=length, profile=cs.profiles.Lundberg(1e-7), material=steel)
     crowned_case = cs.Case(body=body, roller=smooth, max_pressure=1.5e9)
     oiled_case = replace(

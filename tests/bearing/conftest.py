@@ -1,4 +1,4 @@
-"""One contact law that several tests look at."""
+"""A contact law of several tests."""
 
 from __future__ import annotations
 

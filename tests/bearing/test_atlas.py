@@ -20,7 +20,7 @@ def scales(groups: dict[str, float]) -> tuple[cs.Material, float, float]:
     return material, half_width, groups["length_over_a"] * half_width
 
 
-def solved(groups: dict[str, float], load_factor: float = 1.0, **options: object) -> xr.Dataset:
+def solve_groups(groups: dict[str, float], load_factor: float = 1.0, **options: object) -> xr.Dataset:
     """Roller at a multiple of the load of the Hertz pressure."""
     material, a, length = scales(groups)
     distance = groups["e_over_a"] * a
@@ -35,8 +35,8 @@ def solved(groups: dict[str, float], load_factor: float = 1.0, **options: object
 
 
 @pytest.mark.parametrize("groups", [GROUPS, TILTED], ids=["parallel", "tilted"])
-def test_pressure_stress_and_approach_of_another_roller_lie_within_the_stated_errors(groups) -> None:
-    contact, result = solved(groups, x=[0.0], y=[0.0], z=[0.0]), cs.atlas(**groups)
+def test_atlas_errors_cover_a_solved_roller(groups) -> None:
+    contact, result = solve_groups(groups, x=[0.0], y=[0.0], z=[0.0]), cs.atlas(**groups)
     _, half_width, length = scales(groups)
     mean = contact["normal_load"] * half_width / length
     expected = {
@@ -50,15 +50,15 @@ def test_pressure_stress_and_approach_of_another_roller_lie_within_the_stated_er
 
 
 @pytest.mark.parametrize("groups", [GROUPS, TILTED], ids=["parallel", "tilted"])
-def test_stiffness_is_the_slope_of_solved_loads(groups) -> None:
-    low, high = solved(groups, 0.95, stresses=False), solved(groups, 1.05, stresses=False)
+def test_atlas_stiffness_equals_the_slope_of_loads(groups) -> None:
+    low, high = solve_groups(groups, 0.95, stresses=False), solve_groups(groups, 1.05, stresses=False)
     slope = (high["normal_load"] - low["normal_load"]) / (high["approach"] - low["approach"])
     (material, _, length), result = scales(groups), cs.atlas(**groups)
     error = float(result["stiffness_ratio"] - slope / (material.plane_strain_modulus * length))
     assert abs(error) <= float(result["stiffness_ratio_error"])
 
 
-def test_arrays_are_broadcast() -> None:
+def test_atlas_broadcasts_arrays() -> None:
     crown = xr.DataArray([0.1, 0.2, 0.4], dims="crown")
     result = cs.atlas(100, xr.DataArray([0.0, 1.0], dims="e"), crown)
     assert set(result["stiffness_ratio"].dims) == {"e", "crown"}

@@ -34,40 +34,44 @@ def uniform() -> xr.Dataset:
     return solve(case, stresses=False, accuracy=0.02)
 
 
-def test_uniform_pressure(uniform: xr.Dataset) -> None:
-    found = lamina_factors(uniform)
+def test_uniform_pressure_gives_uniform_loads(uniform: xr.Dataset) -> None:
+    factors = lamina_factors(uniform)
     load = float(uniform.normal_load) / 4e-3
-    np.testing.assert_allclose(found.hertz_load_per_length[3:-3], load, rtol=0.03)
-    np.testing.assert_allclose(found.stress_riser * found.load_per_length, found.hertz_load_per_length, rtol=1e-12)
-    assert float(found.width.sum()) == pytest.approx(4e-3)
-    assert float(found.position[0]) == pytest.approx(4e-3 / 60)
-    assert 0 < float(found.stress_riser_error[10]) < 0.05
+    np.testing.assert_allclose(factors.hertz_load_per_length[3:-3], load, rtol=0.03)
+    np.testing.assert_allclose(
+        factors.stress_riser * factors.load_per_length, factors.hertz_load_per_length, rtol=1e-12
+    )
+    assert float(factors.width.sum()) == pytest.approx(4e-3)
+    assert float(factors.position[0]) == pytest.approx(4e-3 / 60)
+    assert 0 < float(factors.stress_riser_error[10]) < 0.05
 
 
-def test_slices_as_the_limit_of_long_rollers() -> None:
-    """Slices that do not know of each other are the limit of a straight roller that is long against its contact.
+def test_slice_model_is_the_limit_of_long_rollers() -> None:
+    """Independent slices are the limit of a straight roller that is long compared with its half-width.
 
-    The sharp ends of a half-space take load from the middle, flush free ends give load to it, the less the longer.
+    Sharp ends on a half-space unload the middle and flush free ends load it, less for longer rollers.
     """
-    middles: dict[str, list[float]] = {"half-space": [], "flush": []}
+    mid_factors: dict[str, list[float]] = {"half-space": [], "flush": []}
     for length in (0.5e-3, 8e-3):
         bodies = {"half-space": HalfSpace(material=STEEL), "flush": FiniteLengthSpace(length=length, material=STEEL)}
         for name, body in bodies.items():
             case = Case(body=body, roller=Roller(radius=5e-3, length=length), max_pressure=1.5e9)
             factors = lamina_factors(solve(case, stresses=False, accuracy=0.02), laminae=31)
-            middles[name].append(float(factors.stress_riser[15]))
-    assert middles["half-space"][0] < middles["half-space"][1] < 1
-    assert middles["flush"][0] > middles["flush"][1] > 1
-    assert middles["flush"][1] - middles["half-space"][1] < 0.12
+            mid_factors[name].append(float(factors.stress_riser[15]))
+    assert mid_factors["half-space"][0] < mid_factors["half-space"][1] < 1
+    assert mid_factors["flush"][0] > mid_factors["flush"][1] > 1
+    assert mid_factors["flush"][1] - mid_factors["half-space"][1] < 0.12
 
 
-def test_number_of_laminae(uniform: xr.Dataset) -> None:
-    few, many = (lamina_factors(uniform, laminae=count) for count in (30, 90))
-    risks = [float((each.hertz_load_per_length**4.5 * each.width).sum()) for each in (few, many)]
+def test_risk_is_independent_of_laminae(uniform: xr.Dataset) -> None:
+    coarse_factors, fine_factors = (lamina_factors(uniform, laminae=count) for count in (30, 90))
+    risks = [
+        float((factors.hertz_load_per_length**4.5 * factors.width).sum()) for factors in (coarse_factors, fine_factors)
+    ]
     assert risks[0] == pytest.approx(risks[1], rel=1e-9)
 
 
-def test_free_ends_relieve_the_outermost_lamina() -> None:
+def test_free_ends_lower_the_outermost_riser() -> None:
     roller = Roller(radius=5e-3, length=0.5e-3, profile=DESIGN)
     flush = FiniteLengthSpace(length=0.5e-3, material=STEEL)
     ends = [
@@ -85,11 +89,11 @@ def test_sharp_end_and_uniform_cells() -> None:
     sharp = lamina_factors(solve(case, stresses=False, accuracy=0.05))
     assert np.isinf(sharp.stress_riser[[0, -1]]).all()
     assert np.isfinite(sharp.stress_riser[1:-1]).all()
-    given = lamina_factors(solve(case, choose_grid(case), stresses=False))
-    assert np.isfinite(given.stress_riser).all()
-    assert np.isnan(given.stress_riser_error).all()
-    assert given.stress_riser_error.attrs[ERROR_KIND] == NOT_ESTIMATED
-    assert given.edge_factor.attrs["comment"] == "of independent slices"
+    uniform_factors = lamina_factors(solve(case, choose_grid(case), stresses=False))
+    assert np.isfinite(uniform_factors.stress_riser).all()
+    assert np.isnan(uniform_factors.stress_riser_error).all()
+    assert uniform_factors.stress_riser_error.attrs[ERROR_KIND] == NOT_ESTIMATED
+    assert uniform_factors.edge_factor.attrs["comment"] == "of independent slices"
 
 
 @pytest.mark.parametrize(
@@ -106,43 +110,45 @@ def test_errors_against_finer_columns(profile: profiles.Profile, tilt: float) ->
     coarse = solve(case, stresses=False, accuracy=0.01)
     fine = solve(case, split_columns(coarse, 4), stresses=False)
     for laminae in (4, 9, 30, 60):
-        found, finer = (lamina_factors(each, laminae=laminae).hertz_load_per_length for each in (coarse, fine))
+        factors, fine_loads = (
+            lamina_factors(result, laminae=laminae).hertz_load_per_length for result in (coarse, fine)
+        )
         error = lamina_factors(coarse, laminae=laminae).hertz_load_per_length_error
-        known = np.isfinite(found)
-        assert (abs(found - finer) <= error)[known].all()
-        assert float(error[known].median()) < 0.05 * float(finer[known].max())
+        finite = np.isfinite(factors)
+        assert (abs(factors - fine_loads) <= error)[finite].all()
+        assert float(error[finite].median()) < 0.05 * float(fine_loads[finite].max())
 
 
 @pytest.mark.parametrize("crown_radius", [0.01, 0.04])
 def test_errors_against_hertz_ellipse(crown_radius: float) -> None:
-    """Over the contact the load per length is that of p0 (1 - (x/b)**2)**0.5, beyond it 0: a step within a lamina."""
+    """The load per length is that of p0 (1 - (x/b)**2)**0.5, and 0 beyond the contact, within a lamina."""
     roller = Roller(radius=5e-3, length=1e-3, profile=profiles.FullCrown(crown_radius))
     case = Case(body=HalfSpace(material=STEEL), roller=roller, max_pressure=0.6e9)
     result = solve(case, stresses=False)
     contact = closed_forms.hertz_ellipse(case.normal_load, crown_radius, roller.radius, case.modulus)
-    places = np.linspace(-0.5e-3, 0.5e-3, 400001)
-    square = contact.max_pressure**2 * np.clip(1 - (places / contact.long) ** 2, 0.0, None)
+    positions = np.linspace(-0.5e-3, 0.5e-3, 400001)
+    square = contact.max_pressure**2 * np.clip(1 - (positions / contact.long) ** 2, 0.0, None)
     line = np.pi * roller.radius / case.modulus * square
     for laminae in (5, 13):
-        found = lamina_factors(result, laminae=laminae)
-        at = np.clip(((places + 0.5e-3) / 1e-3 * laminae).astype(int), 0, laminae - 1)
-        exact = (np.bincount(at, line ** (9 / 2)) / np.bincount(at)) ** (2 / 9)
-        error = found.hertz_load_per_length_error.values
-        assert (np.abs(found.hertz_load_per_length.values - exact) <= error + 1e-3).all()
+        factors = lamina_factors(result, laminae=laminae)
+        lamina_indices = np.clip(((positions + 0.5e-3) / 1e-3 * laminae).astype(int), 0, laminae - 1)
+        exact = (np.bincount(lamina_indices, line ** (9 / 2)) / np.bincount(lamina_indices)) ** (2 / 9)
+        error = factors.hertz_load_per_length_error.values
+        assert (np.abs(factors.hertz_load_per_length.values - exact) <= error + 1e-3).all()
         assert np.median(error) < 0.1 * exact.max()
 
 
-def test_unloaded_laminae() -> None:
+def test_unloaded_laminae_have_no_riser() -> None:
     roller = Roller(radius=5e-3, length=2e-3, profile=profiles.FullCrown(crown_radius=0.3))
     case = Case(body=HalfSpace(material=STEEL), roller=roller, load=60.0)
-    found = lamina_factors(solve(case, stresses=False, accuracy=0.05))
-    unloaded = found.load_per_length == 0
+    factors = lamina_factors(solve(case, stresses=False, accuracy=0.05))
+    unloaded = factors.load_per_length == 0
     assert bool(unloaded.any())
-    assert np.isnan(found.stress_riser.where(unloaded, drop=True)).all()
-    assert np.isfinite(found.hertz_load_per_length).all()
+    assert np.isnan(factors.stress_riser.where(unloaded, drop=True)).all()
+    assert np.isfinite(factors.hertz_load_per_length).all()
 
 
-def test_a_result_must_say_its_case(uniform: xr.Dataset) -> None:
+def test_result_without_case_is_rejected(uniform: xr.Dataset) -> None:
     with pytest.raises(InvalidInputError, match="contactstudy_inputs"):
         lamina_factors(uniform.drop_attrs())
     with pytest.raises(InvalidInputError, match="laminae = 1"):

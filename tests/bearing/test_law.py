@@ -10,7 +10,7 @@ import xarray as xr
 
 from contactstudy import Case, HalfSpace, InvalidInputError, Material, Roller, profiles, solve
 from contactstudy.bearing import ContactLaw, contact_law
-from contactstudy.bearing.tabulation import Presser
+from contactstudy.bearing.tabulation import ContactSolver
 
 STEEL = Material(210e9, 0.3)
 RADIUS = 5e-3
@@ -26,17 +26,17 @@ def ball() -> ContactLaw:
 
 @pytest.mark.parametrize("tilt", [0.0, 3e-3, -9e-3])
 @pytest.mark.parametrize("approach", [0.7e-6, 3e-6])
-def test_hertz_ball_pressed_and_tilted(ball: ContactLaw, approach: float, tilt: float) -> None:
-    """Tilted, a ball of radius R touches at R theta, and is deeper there by R theta**2 / 2."""
+def test_hertz_ball_with_tilt(ball: ContactLaw, approach: float, tilt: float) -> None:
+    """A tilted ball of radius R touches at R theta, deeper by R theta**2 / 2."""
     depth = approach + 0.5 * RADIUS * tilt**2
     modulus = STEEL.plane_strain_modulus
     load, slope = 4 / 3 * modulus * np.sqrt(RADIUS) * depth**1.5, 2 * modulus * np.sqrt(RADIUS * depth)
-    found = ball.at(approach, tilt)
-    assert float(found.normal_load) == pytest.approx(load, rel=5e-3)
-    assert float(found.moment) == pytest.approx(load * RADIUS * tilt, rel=5e-3, abs=2e-3 * load * 0.1e-3)
-    assert float(found.normal_stiffness) == pytest.approx(slope, rel=0.01)
-    assert float(found.coupling_stiffness) == pytest.approx(slope * RADIUS * tilt, rel=0.03, abs=0.01 * slope * 0.1e-3)
-    assert float(found.tilting_stiffness) == pytest.approx(load * RADIUS + slope * (RADIUS * tilt) ** 2, rel=0.03)
+    motion = ball.at(approach, tilt)
+    assert float(motion.normal_load) == pytest.approx(load, rel=5e-3)
+    assert float(motion.moment) == pytest.approx(load * RADIUS * tilt, rel=5e-3, abs=2e-3 * load * 0.1e-3)
+    assert float(motion.normal_stiffness) == pytest.approx(slope, rel=0.01)
+    assert float(motion.coupling_stiffness) == pytest.approx(slope * RADIUS * tilt, rel=0.03, abs=0.01 * slope * 0.1e-3)
+    assert float(motion.tilting_stiffness) == pytest.approx(load * RADIUS + slope * (RADIUS * tilt) ** 2, rel=0.03)
 
 
 def test_load_exponent_of_a_ball(ball: ContactLaw) -> None:
@@ -47,75 +47,81 @@ def test_load_exponent_of_a_ball(ball: ContactLaw) -> None:
 @pytest.mark.parametrize(("load", "tilt"), [(75.0, 6e-4), (95.0, -1.3e-3), (120.0, 2e-4)])
 def test_errors_against_direct_solutions(short_case: Case, short_law: ContactLaw, load: float, tilt: float) -> None:
     direct = solve(replace(short_case, load=load, tilt=tilt), stresses=False, accuracy=0.02)
-    found = short_law.at(float(direct.approach), tilt)
+    motion = short_law.at(float(direct.approach), tilt)
     moment = load * (float(direct.load_position) - 0.25e-3)
-    assert abs(float(found.normal_load) - load) < float(found.normal_load_error) < 0.02 * load
-    assert abs(float(found.moment) - moment) < float(found.moment_error) < 0.02 * load * 0.5e-3
+    assert abs(float(motion.normal_load) - load) < float(motion.normal_load_error) < 0.02 * load
+    assert abs(float(motion.moment) - moment) < float(motion.moment_error) < 0.02 * load * 0.5e-3
 
 
 def test_stiffness_against_finite_differences(short_case: Case, short_law: ContactLaw) -> None:
-    """The direct solutions know nothing of an energy: that their matrix is symmetric is a property of the bodies."""
-    presser, delta, theta = Presser(short_case, 0.05, 1e-7), 1.6e-6, 6e-4
+    """The stiffness matrix of direct solutions is symmetric without an energy."""
+    solver, delta, theta = ContactSolver(short_case, 0.05, 1e-7), 1.6e-6, 6e-4
     load = float(short_law.at(delta, theta).normal_load)
-    step, turn = 0.03 * delta, 6e-5
-    deeper, higher = (presser.pressed(delta + side * step, theta, load) for side in (1, -1))
-    more, less = (presser.pressed(delta, theta + side * turn, load) for side in (1, -1))
-    normal, upper = (deeper.load - higher.load) / (2 * step), (deeper.moment - higher.moment) / (2 * step)
-    lower, tilting = (more.load - less.load) / (2 * turn), (more.moment - less.moment) / (2 * turn)
+    step, tilt_step = 0.03 * delta, 6e-5
+    lower_contact, upper_contact = (solver.solve_at_approach(delta + side * step, theta, load) for side in (1, -1))
+    tilted_up, tilted_down = (solver.solve_at_approach(delta, theta + side * tilt_step, load) for side in (1, -1))
+    normal, upper = (
+        (lower_contact.load - upper_contact.load) / (2 * step),
+        (lower_contact.moment - upper_contact.moment) / (2 * step),
+    )
+    lower, tilting = (
+        (tilted_up.load - tilted_down.load) / (2 * tilt_step),
+        (tilted_up.moment - tilted_down.moment) / (2 * tilt_step),
+    )
     assert upper == pytest.approx(lower, rel=0.03)
-    found = short_law.at(delta, theta)
-    assert float(found.normal_stiffness) == pytest.approx(normal, rel=0.02)
-    assert float(found.coupling_stiffness) == pytest.approx(0.5 * (upper + lower), rel=0.05)
-    assert float(found.tilting_stiffness) == pytest.approx(tilting, rel=0.04)
+    motion = short_law.at(delta, theta)
+    assert float(motion.normal_stiffness) == pytest.approx(normal, rel=0.02)
+    assert float(motion.coupling_stiffness) == pytest.approx(0.5 * (upper + lower), rel=0.05)
+    assert float(motion.tilting_stiffness) == pytest.approx(tilting, rel=0.04)
 
 
-def test_the_inverse_finds_what_was_pressed(short_law: ContactLaw) -> None:
+def test_inverse_returns_approach_and_tilt(short_law: ContactLaw) -> None:
     approach, tilt = 1e-6 * np.array([1.1, 2.0, 2.9]), 1e-3 * np.array([-1.4, 0.0, 0.7])
-    pressed = short_law.at(approach, tilt)
-    assert dict(pressed.sizes) == {"approach": 3, "tilt": 3}
-    found = short_law.under(pressed.normal_load, pressed.moment)
-    np.testing.assert_allclose(found["normal_load"], pressed["normal_load"], rtol=1e-6)
-    np.testing.assert_allclose(found["normal_stiffness"], pressed["normal_stiffness"], rtol=1e-4)
-    alone = short_law.under(float(pressed.normal_load[1, 2]), float(pressed.moment[1, 2]))
-    assert float(alone.approach) == pytest.approx(2.0e-6, rel=1e-5)
-    assert float(alone.tilt) == pytest.approx(0.7e-3, rel=1e-4)
+    contact = short_law.at(approach, tilt)
+    assert dict(contact.sizes) == {"approach": 3, "tilt": 3}
+    motion = short_law.under(contact.normal_load, contact.moment)
+    np.testing.assert_allclose(motion["normal_load"], contact["normal_load"], rtol=1e-6)
+    np.testing.assert_allclose(motion["normal_stiffness"], contact["normal_stiffness"], rtol=1e-4)
+    single_motion = short_law.under(float(contact.normal_load[1, 2]), float(contact.moment[1, 2]))
+    assert float(single_motion.approach) == pytest.approx(2.0e-6, rel=1e-5)
+    assert float(single_motion.tilt) == pytest.approx(0.7e-3, rel=1e-4)
 
 
-def test_symmetric_law(short_law: ContactLaw) -> None:
-    one, other = short_law.at([1.2e-6, 2.5e-6], 9e-4), short_law.at([1.2e-6, 2.5e-6], -9e-4)
-    np.testing.assert_allclose(one.normal_load, other.normal_load, rtol=1e-9)
-    np.testing.assert_allclose(one.moment, -other.moment, rtol=1e-9)
+def test_mirrored_tilts_have_equal_loads(short_law: ContactLaw) -> None:
+    tilted, mirrored = short_law.at([1.2e-6, 2.5e-6], 9e-4), short_law.at([1.2e-6, 2.5e-6], -9e-4)
+    np.testing.assert_allclose(tilted.normal_load, mirrored.normal_load, rtol=1e-9)
+    np.testing.assert_allclose(tilted.moment, -mirrored.moment, rtol=1e-9)
 
 
 def test_law_from_a_file(short_law: ContactLaw, tmp_path) -> None:
     short_law.table.to_netcdf(tmp_path / "law.nc")
     with xr.open_dataset(tmp_path / "law.nc") as table:
-        again = ContactLaw(table.load())
-    assert again.at(1.7e-6, 3e-4).equals(short_law.at(1.7e-6, 3e-4))
+        reopened_law = ContactLaw(table.load())
+    assert reopened_law.at(1.7e-6, 3e-4).equals(short_law.at(1.7e-6, 3e-4))
     assert "far away" in table.approach.attrs["reference"]
-    assert repr(again) == repr(short_law)
-    assert "mrad" in repr(again)
+    assert repr(reopened_law) == repr(short_law)
+    assert "mrad" in repr(reopened_law)
 
 
-def test_every_number_has_its_unit(short_law: ContactLaw) -> None:
-    for found in (short_law.table, short_law.at(2e-6, 1e-4), short_law.under(80.0)):
-        assert all(variable.attrs["units"] for variable in found.variables.values())
+def test_variables_of_the_law_have_units(short_law: ContactLaw) -> None:
+    for motion in (short_law.table, short_law.at(2e-6, 1e-4), short_law.under(80.0)):
+        assert all(variable.attrs["units"] for variable in motion.variables.values())
 
 
 def test_default_approaches(short_case: Case, monkeypatch: pytest.MonkeyPatch) -> None:
-    seen = {}
+    recorded = {}
 
-    def solved(presser, approaches, tilts):
-        seen["approaches"] = approaches
+    def record_nodes(solver, approaches, tilts):
+        recorded["approaches"] = approaches
         raise InvalidInputError("stop", 0, "here")
 
-    monkeypatch.setattr("contactstudy.bearing.tabulation.solved_nodes", solved)
+    monkeypatch.setattr("contactstudy.bearing.tabulation.solve_nodes", record_nodes)
     with pytest.raises(InvalidInputError, match="stop"):
         contact_law(short_case, np.linspace(-1e-3, 1e-3, 5), accuracy=0.1)
-    at_load = float(solve(short_case, stresses=False, accuracy=0.1).approach)
-    assert seen["approaches"][0] < 0.1 * at_load
-    assert at_load < seen["approaches"][-1] < 1.6 * at_load
-    assert seen["approaches"].size == 8
+    approach_at_load = float(solve(short_case, stresses=False, accuracy=0.1).approach)
+    assert recorded["approaches"][0] < 0.1 * approach_at_load
+    assert approach_at_load < recorded["approaches"][-1] < 1.6 * approach_at_load
+    assert recorded["approaches"].size == 8
 
 
 @pytest.mark.parametrize(
@@ -130,7 +136,7 @@ def test_default_approaches(short_case: Case, monkeypatch: pytest.MonkeyPatch) -
         (lambda law: ContactLaw(law.table.isel(tilt=slice(3))), "5 or more along tilt"),
     ],
 )
-def test_values_outside_the_table(short_law: ContactLaw, call, message: str) -> None:
+def test_values_outside_the_table_are_rejected(short_law: ContactLaw, call, message: str) -> None:
     with pytest.raises(InvalidInputError, match=message):
         call(short_law)
 
@@ -150,20 +156,20 @@ TILTS = [-1e-3, -5e-4, 0.0, 5e-4, 1e-3]
         ({}, TILTS, [-1e-6, 1e-6, 2e-6, 3e-6, 4e-6], "approaches"),
     ],
 )
-def test_bad_arguments_are_named(short_case: Case, changes, tilts, approaches, message: str) -> None:
+def test_error_names_the_bad_argument(short_case: Case, changes, tilts, approaches, message: str) -> None:
     with pytest.raises(InvalidInputError, match=message):
         contact_law(replace(short_case, **changes), tilts, approaches)
 
 
-def test_no_load_is_refused_by_name(ball: ContactLaw) -> None:
+def test_zero_load_is_rejected(ball: ContactLaw) -> None:
     with pytest.raises(InvalidInputError, match=r"normal_load = 0.0"):
         ball.under(0.0)
 
 
 def test_labelled_arguments(ball: ContactLaw) -> None:
     loads = xr.DataArray([0.03, 0.06], {"roller": [1, 2]}, "roller", attrs={"units": "kN"})
-    found = ball.under(loads, xr.zeros_like(loads).assign_attrs(units="N m"))
-    np.testing.assert_allclose(found.approach, ball.under([30.0, 60.0]).approach)
+    motion = ball.under(loads, xr.zeros_like(loads).assign_attrs(units="N m"))
+    np.testing.assert_allclose(motion.approach, ball.under([30.0, 60.0]).approach)
     turned = xr.DataArray([1e-4, -1e-4], {"roller": [2, 1]}, "roller")
     np.testing.assert_allclose(
         ball.at(xr.DataArray([1e-6, 2e-6], {"roller": [1, 2]}, "roller"), turned).tilt, turned[::-1]
@@ -175,12 +181,12 @@ def test_labelled_arguments(ball: ContactLaw) -> None:
 
 
 def test_errors_of_approach_and_tilt(ball: ContactLaw) -> None:
-    found = ball.under(60.0, 1e-4)
-    load, moment = float(found.normal_load_error), float(found.moment_error)
-    moved = [ball.under(60.0 + 1e-3 * a * load, 1e-4 + 1e-3 * b * moment) for a in (-1, 1) for b in (-1, 1)]
+    motion = ball.under(60.0, 1e-4)
+    load, moment = float(motion.normal_load_error), float(motion.moment_error)
+    perturbed = [ball.under(60.0 + 1e-3 * a * load, 1e-4 + 1e-3 * b * moment) for a in (-1, 1) for b in (-1, 1)]
     for name in ("approach", "tilt"):
-        farthest = max(abs(float(each[name] - found[name])) for each in moved)
-        assert 1e-3 * float(found[f"{name}_error"]) == pytest.approx(farthest, rel=0.02)
-        assert found[f"{name}_error"].attrs["units"] == ("m" if name == "approach" else "rad")
-    assert found.normal_stiffness.attrs["error_kind"] == "not estimated"
-    assert "comment" not in found.approach_error.attrs
+        max_change = max(abs(float(perturbed_motion[name] - motion[name])) for perturbed_motion in perturbed)
+        assert 1e-3 * float(motion[f"{name}_error"]) == pytest.approx(max_change, rel=0.02)
+        assert motion[f"{name}_error"].attrs["units"] == ("m" if name == "approach" else "rad")
+    assert motion.normal_stiffness.attrs["error_kind"] == "not estimated"
+    assert "comment" not in motion.approach_error.attrs

@@ -18,43 +18,47 @@ RATINGS = (900.0, 1400.0)
 
 
 @pytest.fixture(scope="module")
-def one() -> xr.Dataset:
-    """A straight roller, flush with free ends: slices share its load equally, and so do free ends, nearly."""
+def flush_roller_life() -> xr.Dataset:
+    """Life of a straight roller, flush with free ends: equal slice loads, nearly equal with free ends."""
     return reference_life(CASE, CASE, RATINGS, accuracy=0.05)
 
 
 @pytest.fixture(scope="module")
-def several() -> xr.Dataset:
+def roller_lives() -> xr.Dataset:
     cases = [replace(CASE, load=load) for load in LOADS]
     return reference_life(cases, cases, RATINGS, rollers=7, accuracy=0.05)
 
 
-def test_life_of_equal_laminae(one: xr.Dataset) -> None:
-    slices = one.sel(model="slices")
+def test_life_of_equal_laminae(flush_roller_life: xr.Dataset) -> None:
+    slices = flush_roller_life.sel(model="slices")
     lives = [(rating / 70.0) ** 4 for rating in RATINGS]
-    both = sum(life ** (-9 / 8) for life in lives) ** (-8 / 9)
+    bearing_life = sum(life ** (-9 / 8) for life in lives) ** (-8 / 9)
     np.testing.assert_allclose(slices["raceway_life"], 1e6 * np.array(lives), rtol=1e-9)
-    assert float(slices["reference_life"]) == pytest.approx(1e6 * both, rel=1e-9)
+    assert float(slices["reference_life"]) == pytest.approx(1e6 * bearing_life, rel=1e-9)
 
 
-def test_models_of_a_flush_straight_roller(one: xr.Dataset) -> None:
-    life = one["reference_life"]
+def test_models_of_a_flush_straight_roller(flush_roller_life: xr.Dataset) -> None:
+    life = flush_roller_life["reference_life"]
     assert float(life.sel(model="free ends")) == pytest.approx(float(life.sel(model="slices")), rel=0.25)
     assert float(life.sel(model="half-space")) == 0  # its pressure is singular at the sharp ends
     assert float(life.sel(model="slices with riser")) < 0.7 * float(life.sel(model="slices"))
-    assert 0 < float(one["reference_life_error"].sel(model="free ends")) < 0.3 * float(life.sel(model="free ends"))
+    assert (
+        0
+        < float(flush_roller_life["reference_life_error"].sel(model="free ends"))
+        < 0.3 * float(life.sel(model="free ends"))
+    )
 
 
-NUMBERS = ("reference_life", "raceway_life", "lamina_equivalent_load", "stress_riser")
+VARIABLES = ("reference_life", "raceway_life", "lamina_equivalent_load", "stress_riser")
 
 
-def test_error_of_slice_models_is_nan(one: xr.Dataset) -> None:
-    for name in NUMBERS:
-        error = one[f"{name}_error"]
+def test_error_of_slice_models_is_nan(flush_roller_life: xr.Dataset) -> None:
+    for name in VARIABLES:
+        error = flush_roller_life[f"{name}_error"]
         assert np.isnan(error.sel(model=["slices", "slices with riser"])).all(), name
         assert not np.isnan(error.sel(model=["half-space", "free ends"])).any(), name
-        assert error.attrs["units"] == one[name].attrs["units"]
-    ends = one.sel(model="half-space").isel(slice=[0, -1])
+        assert error.attrs["units"] == flush_roller_life[name].attrs["units"]
+    ends = flush_roller_life.sel(model="half-space").isel(slice=[0, -1])
     assert np.isinf(ends["lamina_equivalent_load"]).all()
     assert np.isinf(ends["lamina_equivalent_load_error"]).all()
 
@@ -69,53 +73,56 @@ def test_errors_against_finer_columns() -> None:
         reference_life(crowned, tilted, RATINGS, accuracy=accuracy).sel(model=["half-space", "free ends"])
         for accuracy in (0.01, 0.004)
     )
-    for name in NUMBERS:
-        missed = abs(coarse[name] - fine[name])
-        assert (missed <= coarse[f"{name}_error"]).where(np.isfinite(missed), other=True).all(), name
+    for name in VARIABLES:
+        difference = abs(coarse[name] - fine[name])
+        assert (difference <= coarse[f"{name}_error"]).where(np.isfinite(difference), other=True).all(), name
     assert (coarse["reference_life_error"] < 0.15 * coarse["reference_life"]).all()
 
 
-def test_mean_over_rollers(several: xr.Dataset) -> None:
+def test_mean_over_rollers(roller_lives: xr.Dataset) -> None:
     loads = np.array(LOADS)
     turning = ((loads**4).sum() / 7) ** (1 / 4)
     standing = ((loads**4.5).sum() / 7) ** (1 / 4.5)
     lives = 1e6 * np.array([(RATINGS[0] / turning) ** 4, (RATINGS[1] / standing) ** 4])
-    np.testing.assert_allclose(several["raceway_life"].sel(model="slices"), lives, rtol=1e-9)
-    assert several.sizes["roller"] == 3
-    assert several.attrs["turning"] == "inner"
+    np.testing.assert_allclose(roller_lives["raceway_life"].sel(model="slices"), lives, rtol=1e-9)
+    assert roller_lives.sizes["roller"] == 3
+    assert roller_lives.attrs["turning"] == "inner"
 
 
-def test_the_other_raceway_may_turn(several: xr.Dataset) -> None:
+def test_outer_raceway_may_turn(roller_lives: xr.Dataset) -> None:
     cases = [replace(CASE, load=load) for load in LOADS]
-    turned = reference_life(cases, cases, RATINGS, rollers=7, accuracy=0.05, turning="outer")
-    longer = turned["raceway_life"] > several["raceway_life"]
-    assert longer.sel(model="slices").values.tolist() == [False, True]
+    outer_turning = reference_life(cases, cases, RATINGS, rollers=7, accuracy=0.05, turning="outer")
+    is_longer = outer_turning["raceway_life"] > roller_lives["raceway_life"]
+    assert is_longer.sel(model="slices").values.tolist() == [False, True]
 
 
 def line_integrals() -> tuple[float, float, float]:
-    """Mean load, and means of either raceway, the turning one first, over the largest: half of the rollers loaded."""
+    """Mean load, and means of turning and standing raceway, over the largest load; half of the rollers loaded."""
     angles = np.linspace(-np.pi / 2, np.pi / 2, 20001)
-    # Line contact: load goes with the approach to the power 10/9, as in the theory of 1952 with 1.1.
-    share = np.cos(angles) ** 1.1
-    whole = [np.trapezoid(values, angles) / (2 * np.pi) for values in (share * np.cos(angles), share**4, share**4.5)]
-    return whole[0], whole[1] ** (1 / 4), whole[2] ** (1 / 4.5)
+    # Line contact: the load grows with the approach to the power 10/9, 1.1 in the theory of 1952.
+    load_distribution = np.cos(angles) ** 1.1
+    integrals = [
+        np.trapezoid(values, angles) / (2 * np.pi)
+        for values in (load_distribution * np.cos(angles), load_distribution**4, load_distribution**4.5)
+    ]
+    return integrals[0], integrals[1] ** (1 / 4), integrals[2] ** (1 / 4.5)
 
 
-def test_ratings_against_the_bearing() -> None:
-    """With half of the rollers loaded a bearing lives a million revolutions under C, but for the factor 0.83."""
+def test_roller_ratings_agree_with_the_bearing_rating() -> None:
+    """With half of the rollers loaded the life under C is a million revolutions without the factor 0.83."""
     load, turning, standing = line_integrals()
     assert load / turning == pytest.approx(0.378, abs=0.002)
     assert load / standing == pytest.approx(0.364, abs=0.002)
     rating, count = 50e3, 14
     inner, outer = roller_ratings(rating, count, 0.18)
-    most = rating / (count * load)
-    life = ((turning * most / inner) ** 4.5 + (standing * most / outer) ** 4.5) ** (-8 / 9)
+    max_load = rating / (count * load)
+    life = ((turning * max_load / inner) ** 4.5 + (standing * max_load / outer) ** 4.5) ** (-8 / 9)
     assert life == pytest.approx(0.83**-4, rel=0.02)
 
 
 def test_ratings_of_two_rows() -> None:
-    one, two = roller_ratings(50e3, 14, 0.18), roller_ratings(50e3, 14, 0.18, rows=2)
-    np.testing.assert_allclose(np.array(one) / two, 2 ** (7 / 9))
+    single_rating, double_rating = roller_ratings(50e3, 14, 0.18), roller_ratings(50e3, 14, 0.18, rows=2)
+    np.testing.assert_allclose(np.array(single_rating) / double_rating, 2 ** (7 / 9))
 
 
 @pytest.mark.parametrize(
@@ -131,6 +138,6 @@ def test_ratings_of_two_rows() -> None:
         (lambda: roller_ratings(-1.0, 14, 0.2), "dynamic_rating"),
     ],
 )
-def test_bad_arguments_are_named(call, message: str) -> None:
+def test_error_names_the_bad_argument(call, message: str) -> None:
     with pytest.raises(InvalidInputError, match=message):
         call()

@@ -1,4 +1,4 @@
-"""The slice model of ISO/TS 16281: its equilibrium, its limits, and what it is worth beside the contact solver."""
+"""The slice model of ISO/TS 16281: equilibrium, limits, comparison with the contact solver."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ ROLLER = Roller(radius=5e-3, length=10e-3)
 CASE = Case(body=BODY, roller=ROLLER, load=5000.0)
 
 
-def total(result) -> float:
+def total_load(result) -> float:
     step = float(result["x"][1] - result["x"][0])
     return float(result["load_per_length"].sum()) * step
 
@@ -34,21 +34,21 @@ def total(result) -> float:
 )
 def test_slices_carry_the_load(load: float, tilt: float, slices: int, profile) -> None:
     result = slice_model(Case(body=BODY, roller=replace(ROLLER, profile=profile), load=load), slices=slices, tilt=tilt)
-    assert total(result) == pytest.approx(load, rel=1e-9)
+    assert total_load(result) == pytest.approx(load, rel=1e-9)
     assert result.sizes == {"x": slices}
     assert float(result["load_per_length"].min()) >= 0
 
 
 def test_standard_in_millimetres() -> None:
-    """Between two raceways of steel, with the deflection of both contacts and the profile counted twice."""
+    """Two raceways of steel, with twice the deflection and twice the profile."""
     case = replace(CASE, roller=replace(ROLLER, profile=IsoCylindrical(10e-3)))
     result = slice_model(case, slices=40, tilt=1e-4)
-    place = 1e3 * (result["x"].values - 5e-3)
-    profile = 0.00035 * 10 * np.log(1 / (1 - (2 * place / 10) ** 2))
+    position = 1e3 * (result["x"].values - 5e-3)
+    profile = 0.00035 * 10 * np.log(1 / (1 - (2 * position / 10) ** 2))
     # two contacts: twice the approach, and twice the angle between roller and raceway
-    deflection = np.maximum(2 * 1e3 * float(result["approach"]) + 2e-4 * place - 2 * profile, 0)
-    on_slices = 35948 * 10 ** (8 / 9) / 40 * deflection ** (10 / 9)
-    np.testing.assert_allclose(result["load_per_length"], on_slices / 0.25e-3, rtol=1e-6)
+    deflection = np.maximum(2 * 1e3 * float(result["approach"]) + 2e-4 * position - 2 * profile, 0)
+    slice_loads = 35948 * 10 ** (8 / 9) / 40 * deflection ** (10 / 9)
+    np.testing.assert_allclose(result["load_per_length"], slice_loads / 0.25e-3, rtol=1e-6)
 
 
 def test_straight_roller_without_tilt() -> None:
@@ -63,7 +63,7 @@ def test_approach_grows_with_the_power_nine_tenths() -> None:
     assert approaches[1] / approaches[0] == pytest.approx(32**0.9)
 
 
-def test_number_of_slices() -> None:
+def test_approach_is_independent_of_slices() -> None:
     case = replace(CASE, roller=replace(ROLLER, profile=FullCrown(2.0)))
     coarse, fine = (slice_model(case, slices=slices, tilt=1e-4) for slices in (60, 600))
     assert float(coarse["approach"]) == pytest.approx(float(fine["approach"]), rel=1e-4)
@@ -71,30 +71,30 @@ def test_number_of_slices() -> None:
 
 @given(st.floats(1e-6, 5e-3))
 def test_mirrored_tilt(tilt: float) -> None:
-    one, other = slice_model(CASE, tilt=tilt), slice_model(CASE, tilt=-tilt)
-    assert (np.diff(one["load_per_length"]) >= 0).all()
-    assert float(one["load_per_length"][-1]) > 5e5
-    np.testing.assert_allclose(one["load_per_length"], other["load_per_length"][::-1], rtol=1e-9, atol=1e-6)
+    tilted, mirrored = slice_model(CASE, tilt=tilt), slice_model(CASE, tilt=-tilt)
+    assert (np.diff(tilted["load_per_length"]) >= 0).all()
+    assert float(tilted["load_per_length"][-1]) > 5e5
+    np.testing.assert_allclose(tilted["load_per_length"], mirrored["load_per_length"][::-1], rtol=1e-9, atol=1e-6)
 
 
-def test_riser_is_that_of_the_standard() -> None:
-    plain, risen = slice_model(CASE, slices=30), slice_model(CASE, slices=30, edge_riser=True)
-    factor = plain["edge_factor"].values
+def test_riser_equals_the_standard() -> None:
+    without_riser, with_riser = slice_model(CASE, slices=30), slice_model(CASE, slices=30, edge_riser=True)
+    factor = without_riser["edge_factor"].values
     np.testing.assert_allclose(factor, factor[::-1])
     assert factor[0] == pytest.approx(1 - 0.01 / np.log(1.985 / 2))
     assert factor[0] == pytest.approx(2.328, abs=1e-3)
     assert 1.0 < factor[14] < 1.004
-    np.testing.assert_allclose(risen["pressure"], plain["pressure"] * np.sqrt(factor))
-    np.testing.assert_array_equal(risen["load_per_length"], plain["load_per_length"])
+    np.testing.assert_allclose(with_riser["pressure"], without_riser["pressure"] * np.sqrt(factor))
+    np.testing.assert_array_equal(with_riser["load_per_length"], without_riser["load_per_length"])
     assert slice_model(CASE, slices=31)["edge_factor"][15] == 1.0
 
 
-def test_error_kind_of_every_number() -> None:
+def test_errors_of_the_slice_model_are_not_estimated() -> None:
     result = slice_model(CASE, edge_riser=True)
     assert all(array.attrs[ERROR_KIND] == NOT_ESTIMATED for name, array in result.items() if name != "normal_load")
 
 
-def test_slices_over_the_body() -> None:
+def test_overhanging_roller_has_slices_over_the_body() -> None:
     body = FiniteLengthSpace(length=10e-3, material=STEEL_ON_STEEL)
     result = slice_model(replace(CASE, body=body, end_distance=-2e-3), slices=40)
     assert float(result["x"][0]) == pytest.approx(0.1e-3)
@@ -107,12 +107,12 @@ def test_pressure_of_a_taper() -> None:
 
 
 def test_crowned_roller_against_a_half_space(steel_case: Case) -> None:
-    """Approach and pressure in the middle within 8 % of the solved contact; at the end it misses a fifth."""
-    exact, model = solve(steel_case, stresses=False), slice_model(steel_case, slices=40)
-    assert float(model["approach"]) == pytest.approx(float(exact["approach"]), rel=0.08)
-    along = exact["pressure"].max("y")
-    assert float(model["pressure"].interp(x=2e-3)) == pytest.approx(float(along.interp(x=2e-3)), rel=0.05)
-    assert float(model["pressure"][0]) < 0.85 * float(along.interp(x=float(model["x"][0])))
+    """Approach and mid-length pressure are within 8 % of the solved contact; the end pressure is a fifth too low."""
+    solved, model = solve(steel_case, stresses=False), slice_model(steel_case, slices=40)
+    assert float(model["approach"]) == pytest.approx(float(solved["approach"]), rel=0.08)
+    section_maxima = solved["pressure"].max("y")
+    assert float(model["pressure"].interp(x=2e-3)) == pytest.approx(float(section_maxima.interp(x=2e-3)), rel=0.05)
+    assert float(model["pressure"][0]) < 0.85 * float(section_maxima.interp(x=float(model["x"][0])))
 
 
 @pytest.fixture(scope="module")
@@ -132,12 +132,12 @@ def steel_case() -> Case:
         (lambda: slice_model(CASE, edge_riser="yes"), "edge_riser = 'yes'"),
     ],
 )
-def test_bad_values_are_named(call, message: str) -> None:
+def test_error_names_the_bad_value(call, message: str) -> None:
     with pytest.raises(InvalidInputError, match=message):
         call()
 
 
-def test_default_tilt() -> None:
+def test_default_tilt_is_that_of_the_case() -> None:
     tilted = slice_model(replace(CASE, tilt=1e-3))
     np.testing.assert_array_equal(tilted["pressure"], slice_model(CASE, tilt=1e-3)["pressure"])
     assert tilted.attrs["tilt"] == 1e-3

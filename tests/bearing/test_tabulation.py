@@ -9,7 +9,7 @@ import pytest
 
 from contactstudy import Case, FiniteLengthSpace, HalfSpace, InvalidInputError, Material, QuarterSpace, Roller, profiles
 from contactstudy.bearing.energy_spline import Nodes
-from contactstudy.bearing.tabulation import Node, Presser, discretisation_errors, solved_nodes
+from contactstudy.bearing.tabulation import ContactSolver, Node, estimate_discretisation_errors, solve_nodes
 
 STEEL = Material(210e9, 0.3)
 BALL = Roller(radius=5e-3, length=0.8e-3, profile=profiles.FullCrown(crown_radius=5e-3))
@@ -18,17 +18,17 @@ CASE = Case(body=HalfSpace(material=STEEL), roller=BALL, load=60.0)
 
 def test_energy_of_a_ball() -> None:
     approach = 2e-6
-    load, moment, energy = Presser(CASE, 0.05, 1e-6).pressed(approach, 0.0, 20.0)
+    load, moment, energy = ContactSolver(CASE, 0.05, 1e-6).solve_at_approach(approach, 0.0, 20.0)
     assert energy == pytest.approx(0.4 * load * approach, rel=2e-3)
     assert abs(moment) < 1e-6 * load * BALL.radius
 
 
-class StandIn(Presser):
-    """Two springs of 10 N/um, 0.1 mm to either side of the middle; notes what it presses."""
+class SpringSolver(ContactSolver):
+    """Two springs of 10 N/um, 0.1 mm to either side of the middle; records the solved motions."""
 
     search_load: list[tuple[float, float]]
 
-    def pressed(self, approach: float, tilt: float, load: float) -> Node:
+    def solve_at_approach(self, approach: float, tilt: float, load: float) -> Node:
         assert load > 0
         self.search_load.append((approach, tilt))
         return Node(2e7 * approach, 0.2 * tilt, 1e7 * approach**2 + 0.1 * tilt**2)
@@ -47,32 +47,32 @@ class StandIn(Presser):
     ],
 )
 def test_solved_tilts_of_a_symmetric_case(changes, tilts, solved: int) -> None:
-    presser = StandIn(replace(CASE, **changes), 0.05, 1e-6)
-    object.__setattr__(presser, "search_load", [])
-    approaches, turned = 1e-6 * np.array([1.0, 2.0, 4.0]), 1e-3 * np.array(tilts)
-    nodes = solved_nodes(presser, approaches, turned)
-    assert len(presser.search_load) == 3 * solved
-    np.testing.assert_allclose(nodes.load, 2e7 * approaches[:, None] + 0 * turned)
-    np.testing.assert_allclose(nodes.moment, 0.2 * turned + 0 * approaches[:, None])
+    solver = SpringSolver(replace(CASE, **changes), 0.05, 1e-6)
+    object.__setattr__(solver, "search_load", [])
+    approaches, tilts_in_rad = 1e-6 * np.array([1.0, 2.0, 4.0]), 1e-3 * np.array(tilts)
+    nodes = solve_nodes(solver, approaches, tilts_in_rad)
+    assert len(solver.search_load) == 3 * solved
+    np.testing.assert_allclose(nodes.load, 2e7 * approaches[:, None] + 0 * tilts_in_rad)
+    np.testing.assert_allclose(nodes.moment, 0.2 * tilts_in_rad + 0 * approaches[:, None])
     assert np.isfinite(nodes.energy).all()
 
 
 def test_tilt_without_contact() -> None:
     with pytest.raises(InvalidInputError, match=r"tilts, approaches = 'a tilt of 0.09 rad under 1e\+07 N'.*smaller"):
-        Presser(CASE, 0.05, 1e-6).loaded(1e7, 0.09)
+        ContactSolver(CASE, 0.05, 1e-6).solve_at_load(1e7, 0.09)
 
 
 def test_errors_at_the_largest_tilt(monkeypatch) -> None:
     tilts = 1e-4 * np.array([-9.0, -6.0, -3.0, 0.0, 2.0])
     loads = np.ones((2, 5))
     nodes = Nodes(np.array([1e-6, 2e-6]), tilts, loads, loads, 0 * loads)
-    asked = []
+    solved_tilts = []
 
-    def pressed(self: Presser, approach: float, tilt: float, load: float) -> Node:
-        asked.append(tilt)
+    def solve_at_approach(self: ContactSolver, approach: float, tilt: float, load: float) -> Node:
+        solved_tilts.append(tilt)
         return Node(1.0 + abs(tilt), 0.0, 1.0)
 
-    monkeypatch.setattr(Presser, "pressed", pressed)
-    errors = discretisation_errors(Presser(CASE, 0.01, 1e-6), nodes)
-    assert sorted(asked) == [tilts[0], 0.0]
+    monkeypatch.setattr(ContactSolver, "solve_at_approach", solve_at_approach)
+    errors = estimate_discretisation_errors(ContactSolver(CASE, 0.01, 1e-6), nodes)
+    assert sorted(solved_tilts) == [tilts[0], 0.0]
     assert errors[0] == pytest.approx(9e-4)

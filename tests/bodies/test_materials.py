@@ -1,4 +1,4 @@
-"""Materials have the constants from which their sources' factors follow."""
+"""The constants of materials agree with the factors of their sources."""
 
 from pathlib import Path
 
@@ -11,29 +11,29 @@ from contactstudy.bodies.material import contact_modulus
 ROOT = Path(__file__).parents[2]
 
 
-def test_factors_of_a_gear_standard_follow() -> None:
+def test_elasticity_factors_of_the_gear_standard() -> None:
     """Elasticity factor: root of E* over pi, in N and mm; stated to four digits."""
-    for other, stated in ((materials.GEAR_STEEL, 189.8), (materials.DUCTILE_IRON, 181.4)):
-        modulus = 1e-6 * contact_modulus(materials.GEAR_STEEL, other)
-        assert np.sqrt(modulus / np.pi) == pytest.approx(stated, abs=0.05)
+    for second_material, factor in ((materials.GEAR_STEEL, 189.8), (materials.DUCTILE_IRON, 181.4)):
+        modulus = 1e-6 * contact_modulus(materials.GEAR_STEEL, second_material)
+        assert np.sqrt(modulus / np.pi) == pytest.approx(factor, abs=0.05)
 
 
-def test_factors_of_a_bearing_handbook_follow() -> None:
+def test_contact_factors_of_a_bearing_handbook() -> None:
     """Half-width of a line contact over the root of ``Q / (l sum of curvatures)``; semi-axes over a cube root."""
     modulus = 1e-6 * contact_modulus(materials.BEARING_STEEL, materials.BEARING_STEEL)
     assert np.sqrt(4 / (np.pi * modulus)) == pytest.approx(3.35e-3, abs=0.005e-3)
     assert (3 / (2 * modulus)) ** (1 / 3) == pytest.approx(0.0236, abs=0.00005)
 
 
-def test_structural_steel_has_the_shear_modulus_of_its_standard() -> None:
+def test_structural_steel_has_the_standard_shear_modulus() -> None:
     assert 1e-6 * materials.STRUCTURAL_STEEL.shear_modulus == pytest.approx(80770, abs=5)
 
 
-def test_every_material_has_a_source_that_the_reference_shows() -> None:
-    known = {name for name in materials.__all__ if isinstance(getattr(materials, name), Material)}
-    assert set(materials.SOURCES) == known
-    rows = [line.strip("| ").split(" | ") for line in materials.documented().splitlines()[2:]]
-    assert {row[0].strip("`").rpartition(".")[2] for row in rows} == known
+def test_reference_contains_the_sources_of_materials() -> None:
+    names = {name for name in materials.__all__ if isinstance(getattr(materials, name), Material)}
+    assert set(materials.SOURCES) == names
+    rows = [line.strip("| ").split(" | ") for line in materials.format_table().splitlines()[2:]]
+    assert {row[0].strip("`").rpartition(".")[2] for row in rows} == names
     for name, young, poisson, source in rows:
         material = getattr(materials, name.strip("`").rpartition(".")[2])
         assert (float(young), float(poisson)) == (pytest.approx(1e-9 * material.young), material.poisson)

@@ -1,4 +1,4 @@
-"""Cases, rollers, grids and materials: what they say of themselves and what they refuse."""
+"""Cases, rollers, grids and materials: properties and rejected input."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from contactstudy import (
     solve,
 )
 from contactstudy.bodies import Body
-from contactstudy.bodies.models import EndedBody
+from contactstudy.bodies.models import BodyWithFreeEnds
 from contactstudy.report import assess
 
 STEEL = Material(young=210e9, poisson=0.3)
@@ -32,14 +32,14 @@ BODY = FiniteLengthSpace(length=10.2e-3, material=STEEL)
 
 
 @given(st.floats(0.5e9, 3e9))
-def test_load_and_pressure_say_the_same(pressure: float) -> None:
+def test_load_and_pressure_are_equivalent(pressure: float) -> None:
     by_pressure = Case(body=BODY, roller=ROLLER, max_pressure=pressure)
     by_load = Case(body=BODY, roller=ROLLER, load=by_pressure.normal_load)
     assert by_load.hertz_max_pressure == pytest.approx(pressure, rel=1e-12)
     assert by_load.hertz_half_width == pytest.approx(by_pressure.hertz_half_width, rel=1e-12)
 
 
-def test_roller_is_centred_unless_told() -> None:
+def test_roller_is_centred_by_default() -> None:
     case = Case(body=BODY, roller=ROLLER, max_pressure=1e9)
     assert case.contact_range == pytest.approx((0.1e-3, 10.1e-3))
     assert replace(case, end_distance=0.0).contact_range == pytest.approx((0.0, 10e-3))
@@ -47,7 +47,7 @@ def test_roller_is_centred_unless_told() -> None:
     assert replace(case, body=HalfSpace(material=STEEL)).contact_range == pytest.approx((0.0, 10e-3))
 
 
-def test_gap_is_zero_at_first_touch_and_infinite_beside_the_roller() -> None:
+def test_gap_is_zero_at_first_touch() -> None:
     case = Case(body=BODY, roller=ROLLER, max_pressure=1e9)
     gap = case.gap(Grid(x_range=(0.0, 10.2e-3), y_range=(-1e-4, 1e-4), cells_x=102, cells_y=11))
     assert gap.min() == 0.0
@@ -62,21 +62,21 @@ def test_grid_follows_the_case() -> None:
     assert grid.dx <= case.hertz_half_width / 6
     assert grid.dy <= case.hertz_half_width / 12
     assert grid.y_range[1] == pytest.approx(1.7 * case.hertz_half_width)
-    on_half_space = choose_grid(replace(case, body=HalfSpace(material=STEEL)), margin=2.0)
-    assert on_half_space.x_range[0] == pytest.approx(-2 * case.hertz_half_width)
+    half_space_grid = choose_grid(replace(case, body=HalfSpace(material=STEEL)), margin=2.0)
+    assert half_space_grid.x_range[0] == pytest.approx(-2 * case.hertz_half_width)
 
 
 @given(st.floats(-1e3, 1e3), st.floats(1e-6, 1e3), st.integers(2, 200))
-def test_grid_is_found_again_from_its_centres(start: float, span: float, cells: int) -> None:
+def test_grid_from_its_centres(start: float, span: float, cells: int) -> None:
     grid = Grid(x_range=(start, start + span), y_range=(-span, span), cells_x=cells, cells_y=cells + 1)
-    assume(grid.dx > 1e-9 * abs(start))  # or the centres' differences are rounding
-    again = Grid.from_centres(grid.x, grid.y)
-    assert again.shape == grid.shape
-    assert again.dx == pytest.approx(grid.dx, rel=1e-3)
+    assume(grid.dx > 1e-9 * abs(start))  # otherwise the differences of centres are rounding
+    copy = Grid.from_centres(grid.x, grid.y)
+    assert copy.shape == grid.shape
+    assert copy.dx == pytest.approx(grid.dx, rel=1e-3)
 
 
 @pytest.mark.parametrize(
-    ("make", "message"),
+    ("create", "message"),
     [
         (lambda: Material(young=-1.0, poisson=0.3), r"young = -1.0: must be a positive finite number \(Pa\)"),
         (lambda: Material(young=1.0, poisson=0.51), r"poisson = 0.51: must be in \(-1, 0.5\]"),
@@ -121,13 +121,13 @@ def test_grid_is_found_again_from_its_centres(start: float, span: float, cells: 
         (lambda: choose_grid(Case(body=BODY, roller=ROLLER, max_pressure=1e9), window=0.0), "window = 0.0"),
     ],
 )
-def test_bad_values_are_named(make, message: str) -> None:
+def test_error_names_the_bad_value(create, message: str) -> None:
     with pytest.raises(InvalidInputError, match=message):
-        make()
+        create()
 
 
 @pytest.mark.parametrize(
-    ("material", "load", "named"),
+    ("material", "load", "message"),
     [
         (Material(210.0, 0.3), {"max_pressure": 1.5e9}, "max_pressure = .* in Pa"),
         (STEEL, {"max_pressure": 1e11}, "max_pressure = "),
@@ -149,36 +149,36 @@ def test_bad_values_are_named(make, message: str) -> None:
         "least pressure",
     ],
 )
-def test_contacts_that_no_roller_has_are_refused(material: Material, load: dict[str, float], named: str) -> None:
-    with pytest.raises(InvalidInputError, match=named):
+def test_impossible_loads_are_rejected(material: Material, load: dict[str, float], message: str) -> None:
+    with pytest.raises(InvalidInputError, match=message):
         Case(body=FiniteLengthSpace(length=10e-3, material=material), roller=replace(ROLLER, length=10e-3), **load)
 
 
 @pytest.mark.parametrize(
-    ("radius", "length", "named"),
+    ("radius", "length", "message"),
     [(1.0, 1e-9, "roller.length = 1e-09.*Hertz half-widths"), (1e-8, 1e9, "roller.length = .*Hertz half-widths")],
 )
-def test_lengths_out_of_proportion_are_refused(radius: float, length: float, named: str) -> None:
-    with pytest.raises(InvalidInputError, match=named):
+def test_lengths_out_of_proportion_are_rejected(radius: float, length: float, message: str) -> None:
+    with pytest.raises(InvalidInputError, match=message):
         Case(body=HalfSpace(material=STEEL), roller=Roller(radius=radius, length=length), max_pressure=1e9)
 
 
-def test_a_pressure_in_another_unit_is_refused_or_asks_for_too_many_cells() -> None:
+def test_pressure_in_another_unit_is_rejected() -> None:
     with pytest.raises(InvalidInputError, match=r"max_pressure = 1500.0: .* 1500 MPa is 1.5e9 Pa"):
         Case(body=BODY, roller=ROLLER, max_pressure=1500.0)
     with pytest.raises(InvalidInputError, match=r"at most 1e\+08 cells.*pressures are in Pa"):
         choose_grid(Case(body=BODY, roller=ROLLER, max_pressure=30000.0))
 
 
-def test_a_body_of_no_kind_is_none() -> None:
-    for kind in (Body, EndedBody):
-        with pytest.raises(InvalidInputError, match=f"body = '{kind.__name__}': must be a HalfSpace"):
-            kind(material=STEEL)
+def test_base_classes_of_bodies_are_rejected() -> None:
+    for body_class in (Body, BodyWithFreeEnds):
+        with pytest.raises(InvalidInputError, match=f"body = '{body_class.__name__}': must be a HalfSpace"):
+            body_class(material=STEEL)
     with pytest.raises(InvalidInputError, match=r"body = 'half-space': must be elastic.*not str"):
         Case(body="half-space", roller=ROLLER, max_pressure=1e9)  # type: ignore[arg-type]
 
 
-def test_coupled_is_yes_or_no() -> None:
+def test_coupled_must_be_boolean() -> None:
     with pytest.raises(InvalidInputError, match="coupled = 1"):
         Case(body=BODY, roller=ROLLER, max_pressure=1e9, coupled=1)  # type: ignore[arg-type]
 
@@ -187,7 +187,7 @@ def test_combined_radius_of_two_curved_bodies() -> None:
     assert Roller.combined_radius(6e-3, 30e-3) == pytest.approx(5e-3)
     assert Roller.combined_radius(30e-3, 6e-3) == pytest.approx(5e-3)
     assert Roller.combined_radius(6e-3, -42e-3) == pytest.approx(7e-3)
-    x = np.linspace(-1e-4, 1e-4, 5)  # the gap between two circles, against that of the combined one
+    x = np.linspace(-1e-4, 1e-4, 5)  # gap between two circles, and gap of the combined radius
     circles = [radius - np.sqrt(radius**2 - x**2) for radius in (6e-3, 42e-3)]
     roller = Roller(radius=Roller.combined_radius(6e-3, -42e-3), length=1e-3)
     np.testing.assert_allclose(roller.clearance(np.zeros(1), x)[0], circles[0] - circles[1], rtol=2e-4, atol=1e-15)
@@ -204,13 +204,13 @@ def test_combined_radius_of_two_curved_bodies() -> None:
         ("6 mm", 6e-3, "first = '6 mm'"),
     ],
 )
-def test_radii_that_leave_no_gap_are_refused(first, second, message: str) -> None:
+def test_radii_without_a_gap_are_rejected(first, second, message: str) -> None:
     with pytest.raises(InvalidInputError, match=message):
         Roller.combined_radius(first, second)
 
 
-def test_both_ends_of_a_roller_are_under_it_whatever_rounding_says() -> None:
-    """75 cells on 0.6 mm have middles at 0.1 and 0.5 mm, where this roller begins and ends."""
+def test_roller_ends_are_symmetric_within_rounding() -> None:
+    """75 cells on 0.6 mm have midpoints at 0.1 and 0.5 mm, at the ends of the roller."""
     grid = Grid(x_range=(0.0, 0.6e-3), y_range=(-1e-4, 1e-4), cells_x=75, cells_y=4)
     for profile, ends in ((profiles.Cylinder(), [12, 62]), (profiles.Lundberg(2e-7), [13, 61])):
         roller = Roller(radius=5e-3, length=0.4e-3, profile=profile)
@@ -226,12 +226,12 @@ def test_body_edge_opens_the_gap_at_the_free_ends(body: Body, edge: profiles.Pro
     case = Case(body=body, roller=Roller(radius=5e-3, length=14e-3), load=1e3, end_distance=-2e-3, body_edge=edge)
     distances = np.array([0.0, 0.1e-3, 0.4e-3, 5e-3])
     expected = edge.drop(5e-3 - distances, 10e-3)
-    np.testing.assert_allclose(case.lowest(distances), expected, atol=1e-15)
-    beyond = expected if isinstance(body, FiniteLengthSpace) else 0.0
-    np.testing.assert_allclose(case.lowest(10e-3 - distances), beyond, atol=1e-15)
+    np.testing.assert_allclose(case.gap_on_axis(distances), expected, atol=1e-15)
+    far_drop = expected if isinstance(body, FiniteLengthSpace) else 0.0
+    np.testing.assert_allclose(case.gap_on_axis(10e-3 - distances), far_drop, atol=1e-15)
 
 
-def test_an_edge_radius_of_the_body_bounds_the_pressure_of_an_overhanging_roller() -> None:
+def test_edge_radius_of_the_body_bounds_the_pressure() -> None:
     body = FiniteLengthSpace(length=2e-3, material=STEEL)
     roller = Roller(radius=5e-3, length=3e-3, material=STEEL)
     case = Case(body=body, roller=roller, load=300.0, end_distance=-0.5e-3)

@@ -28,7 +28,7 @@ from contactstudy import (
     roughness,
     solve,
 )
-from contactstudy.case.magnitudes import doubts
+from contactstudy.case.magnitudes import list_unusual_magnitudes
 from contactstudy.cli import main
 from contactstudy.heat import ThermalProperties
 from contactstudy.study import Study, run_study
@@ -36,17 +36,17 @@ from tests.small_study import BASE, as_toml, small_study
 from tests.stand_in_solver import solve_fake
 
 STEEL = Material(206e9, 0.3)
-USUAL = {"radius": 6e-3, "length": 14e-3, "body": 16e-3, "material": STEEL, "load": 9e3}
+TYPICAL = {"radius": 6e-3, "length": 14e-3, "body": 16e-3, "material": STEEL, "load": 9e3}
 
 
-def made(**changes) -> Case:
-    values = USUAL | changes
+def create_case(**changes) -> Case:
+    values = TYPICAL | changes
     roller = Roller(radius=values.pop("radius"), length=values.pop("length"), material=values.pop("roller", None))
     body = FiniteLengthSpace(length=values.pop("body"), material=values.pop("material"))
     return Case(body=body, roller=roller, **values)
 
 
-def pressed(crown: profiles.Profile, length: float = 14e-3, radius: float = 6e-3) -> Case:
+def create_crowned_case(crown: profiles.Profile, length: float = 14e-3, radius: float = 6e-3) -> Case:
     roller = Roller(radius=radius, length=length, profile=crown)
     return Case(body=HalfSpace(material=STEEL), roller=roller, max_pressure=1.5e9)
 
@@ -62,9 +62,9 @@ def pressed(crown: profiles.Profile, length: float = 14e-3, radius: float = 6e-3
         {"material": Material(1.1e12, 0.1), "load": None, "max_pressure": 8e9},
     ],
 )
-def test_usual_cases(changes) -> None:
-    """From a wire to a rolling mill, rubber to diamond."""
-    assert not doubts(made(**changes))
+def test_typical_cases_have_no_warning(changes) -> None:
+    """Typical cases range from a wire to a rolling mill, and from rubber to diamond."""
+    assert not list_unusual_magnitudes(create_case(**changes))
 
 
 @pytest.mark.parametrize(
@@ -86,8 +86,8 @@ def test_usual_cases(changes) -> None:
         ({"load": 6e5}, "load = 600000 N is very high: Hertz pressure"),
     ],
 )
-def test_doubtful_values_of_a_case(changes, message: str) -> None:
-    assert re.search(message, "; ".join(doubts(made(**changes))))
+def test_unusual_values_of_a_case(changes, message: str) -> None:
+    assert re.search(message, "; ".join(list_unusual_magnitudes(create_case(**changes))))
 
 
 @pytest.mark.parametrize(
@@ -101,8 +101,8 @@ def test_doubtful_values_of_a_case(changes, message: str) -> None:
         (profiles.Measured(1e-3 * np.array([-7, -6.5, 0, 6.5, 7]), [8.0, 0, 0, 0, 8.0]), "0.49 of .* µm is .*e-06 m"),
     ],
 )
-def test_crowns_in_a_wrong_unit_are_questioned(crown: profiles.Profile, message: str) -> None:
-    assert re.search(message, doubts(pressed(crown))[0])
+def test_crown_in_a_wrong_unit_warns(crown: profiles.Profile, message: str) -> None:
+    assert re.search(message, list_unusual_magnitudes(create_crowned_case(crown))[0])
 
 
 @pytest.mark.parametrize(
@@ -113,15 +113,17 @@ def test_crowns_in_a_wrong_unit_are_questioned(crown: profiles.Profile, message:
         profiles.PartialCrown(4e-3, crown_radius=200),
     ],
 )
-def test_a_crown_radius_in_millimetres_is_questioned(crown: profiles.Profile) -> None:
+def test_crown_radius_in_millimetres_warns(crown: profiles.Profile) -> None:
     message = r"Crown.crown_radius = 200 m drops by 6.2e-08 m over half .*, less than is ground; 200 mm is 0.2 m"
-    assert re.search(message, doubts(pressed(crown, length=10e-3))[0])
+    assert re.search(message, list_unusual_magnitudes(create_crowned_case(crown, length=10e-3))[0])
 
 
 @pytest.mark.parametrize(("length", "crown_radius"), [(50e-3, 900.0), (20e-3, 300.0), (10e-3, 100.0), (0.5e-3, 2.0)])
-def test_real_crowns_are_not_called_flat(length: float, crown_radius: float) -> None:
-    """A tenth of a micrometre and more, or of a pin of a watch some nanometres."""
-    assert not doubts(pressed(profiles.FullCrown(crown_radius), length=length, radius=0.5 * length))
+def test_real_crowns_have_no_flatness_warning(length: float, crown_radius: float) -> None:
+    """Real crowns drop by 0.1 um and more, on a watch pin by some nanometres."""
+    assert not list_unusual_magnitudes(
+        create_crowned_case(profiles.FullCrown(crown_radius), length=length, radius=0.5 * length)
+    )
 
 
 @pytest.mark.parametrize(
@@ -134,8 +136,8 @@ def test_real_crowns_are_not_called_flat(length: float, crown_radius: float) -> 
         profiles.IsoTapered(diameter=12e-3),
     ],
 )
-def test_usual_crowns_raise_no_question(crown: profiles.Profile) -> None:
-    assert not doubts(pressed(crown, length=10e-3))
+def test_typical_crowns_raise_no_warning(crown: profiles.Profile) -> None:
+    assert not list_unusual_magnitudes(create_crowned_case(crown, length=10e-3))
 
 
 def test_solve_warns_once_at_the_line_of_the_call() -> None:
@@ -147,7 +149,7 @@ def test_solve_warns_once_at_the_line_of_the_call() -> None:
     assert warning.filename == __file__
 
 
-def test_a_study_asks_in_its_plan_and_when_it_runs(tmp_path: Path, capsys) -> None:
+def test_plan_and_run_contain_the_warning(tmp_path: Path, capsys) -> None:
     study = small_study(sweep={"e_over_a": [0.0, 1.0], "friction": [0.0, 5.0]})
     assert study.plan().doubts == ("friction = 5, usual are 0 to 1.5; 5 % is 0.05 (2 contacts)",)
     (tmp_path / "small.toml").write_text(as_toml(study))
@@ -157,11 +159,11 @@ def test_a_study_asks_in_its_plan_and_when_it_runs(tmp_path: Path, capsys) -> No
         assert "friction = 5" in capsys.readouterr().out
         report = run_study(study, tmp_path / "results", workers=0, solver=solve_fake, progress=False)
     assert report.counts == {"ok": 4}
-    assert any("friction = 5" in remark for remark in report.remarks)
+    assert any("friction = 5" in line for line in report.remarks)
     assert "friction = 5" in (tmp_path / "results" / "run.log").read_text()
 
 
-def test_a_study_in_millimetres(tmp_path: Path) -> None:
+def test_plan_warns_of_lengths_in_millimetres(tmp_path: Path) -> None:
     base = BASE | {"radius": 6.0, "roller_length": 14.0, "max_pressure": 1.5e9, "e_over_a": 0.0}
     plan = Study(name="mm", base=base).plan()
     assert [question.split(",")[0] for question in plan.doubts] == [
@@ -172,20 +174,20 @@ def test_a_study_in_millimetres(tmp_path: Path) -> None:
     assert np.isfinite(plan.review.cells)
 
 
-@pytest.mark.parametrize(("pressure", "modulus", "word"), [(1500.0, 113e9, "low"), (1.5e9, 113.0, "high")])
-def test_a_crown_for_a_load_in_the_wrong_unit_is_questioned(pressure: float, modulus: float, word: str) -> None:
+@pytest.mark.parametrize(("pressure", "modulus", "rating"), [(1500.0, 113e9, "low"), (1.5e9, 113.0, "high")])
+def test_crown_for_a_wrong_unit_warns(pressure: float, modulus: float, rating: str) -> None:
     crown = profiles.JohnsGohar.for_pressure(1.5e9, radius=6e-3, modulus=113e9)
-    wrong = profiles.Lundberg.for_pressure(pressure, radius=6e-3, modulus=modulus)
-    case = made()
-    for profile in (wrong, profiles.Halves(crown, wrong)):
-        messages = doubts(replace(case, roller=replace(case.roller, profile=profile)))
-        expected = f"Lundberg.amplitude = {wrong.amplitude:.3g} m belongs to a very {word} design load"
+    wrong_crown = profiles.Lundberg.for_pressure(pressure, radius=6e-3, modulus=modulus)
+    case = create_case()
+    for profile in (wrong_crown, profiles.Halves(crown, wrong_crown)):
+        messages = list_unusual_magnitudes(replace(case, roller=replace(case.roller, profile=profile)))
+        expected = f"Lundberg.amplitude = {wrong_crown.amplitude:.3g} m belongs to a very {rating} design load"
         assert any(expected in message for message in messages)
-    assert not doubts(replace(case, roller=replace(case.roller, profile=crown)))
+    assert not list_unusual_magnitudes(replace(case, roller=replace(case.roller, profile=crown)))
 
 
 @pytest.mark.parametrize(
-    ("make", "message"),
+    ("create", "message"),
     [
         (lambda: fatigue.FatigueLimits(bending=500, torsion=300), r"bending = 500 Pa.*500 MPa is 5e\+08 Pa; torsion"),
         (lambda: plasticity.ElasticPlastic(yield_stress=1.8), r"yield_stress = 1.8 Pa.*1.8 GPa is 1.8e\+09 Pa"),
@@ -196,20 +198,20 @@ def test_a_crown_for_a_load_in_the_wrong_unit_is_questioned(pressure: float, mod
         (lambda: bearing.roller_ratings(50, rollers=14, gamma=0.2), r"dynamic_rating = 50 N.*50 kN is 50000 N"),
     ],
 )
-def test_materials_and_ratings_are_questioned_where_they_are_made(make, message: str) -> None:
+def test_materials_and_ratings_warn_at_creation(create, message: str) -> None:
     with pytest.warns(MagnitudeWarning, match=message) as caught:
-        make()
+        create()
     assert caught[0].filename == __file__
 
 
-def test_heights_in_micrometres_are_questioned() -> None:
+def test_heights_in_micrometres_warn() -> None:
     case = Case(body=HalfSpace(material=STEEL), roller=Roller(radius=6e-3, length=1e-3), max_pressure=1e9)
     grid = choose_grid(case)
-    rough = roughness.self_affine(grid, rms_height=0.2, hurst=0.8, longest=0.2e-3, shortest=0.05e-3, seed=1)
+    heights = roughness.self_affine(grid, rms_height=0.2, hurst=0.8, longest=0.2e-3, shortest=0.05e-3, seed=1)
     with pytest.warns(MagnitudeWarning, match=r"roughness = .* usual are 0 to 0.0002 m.* µm is"):
-        solve_or_not(case, rough)
+        solve_ignoring_window(case, heights)
 
 
-def solve_or_not(case: Case, rough: xr.DataArray) -> None:
-    with suppress(WindowError):  # heights of a metre fill no window
-        solve(case, roughness=rough, stresses=False)
+def solve_ignoring_window(case: Case, heights: xr.DataArray) -> None:
+    with suppress(WindowError):  # heights of a metre exceed the window
+        solve(case, roughness=heights, stresses=False)

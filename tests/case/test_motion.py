@@ -1,4 +1,4 @@
-"""Motions: what is prescribed, and what cannot be."""
+"""Motions: prescribed values and rejected input."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from contactstudy.case.motion import Motion, SurfaceSpeeds
 STEEL = Material(210e9, 0.3)
 
 
-def case(motion: Motion, friction: float = 0.1) -> Case:
+def create_case(motion: Motion, friction: float = 0.1) -> Case:
     return Case(
         body=HalfSpace(material=STEEL),
         roller=Roller(radius=5e-3, length=1e-3),
@@ -20,7 +20,7 @@ def case(motion: Motion, friction: float = 0.1) -> Case:
     )
 
 
-def test_what_is_not_given_does_not_move() -> None:
+def test_default_motion_is_zero() -> None:
     assert Rolling() == Rolling(longitudinal_creepage=0.0, lateral_creepage=0.0, spin=0.0)
     assert Shift() == Shift(x=0, y=0)
     assert Rolling(force_y=2).longitudinal_creepage is None
@@ -29,13 +29,13 @@ def test_what_is_not_given_does_not_move() -> None:
 
 
 def test_full_sliding_is_the_default() -> None:
-    assert case(Sliding()) == Case(
+    assert create_case(Sliding()) == Case(
         body=HalfSpace(material=STEEL), roller=Roller(radius=5e-3, length=1e-3), max_pressure=1e9, friction=0.1
     )
-    assert hash(case(Rolling(spin=1.0))) != hash(case(Rolling(spin=2.0)))
+    assert hash(create_case(Rolling(spin=1.0))) != hash(create_case(Rolling(spin=2.0)))
 
 
-def test_either_the_motion_or_its_force() -> None:
+def test_motion_and_force_exclude_each_other() -> None:
     with pytest.raises(InvalidInputError, match="longitudinal_creepage, force_y"):
         Rolling(longitudinal_creepage=1e-3, force_y=1.0)
     with pytest.raises(InvalidInputError, match="spin, moment_z"):
@@ -45,19 +45,19 @@ def test_either_the_motion_or_its_force() -> None:
 
 
 @pytest.mark.parametrize("value", [float("nan"), "fast", True])
-def test_values_are_numbers(value: object) -> None:
+def test_other_values_than_numbers_are_rejected(value: object) -> None:
     with pytest.raises(InvalidInputError, match="longitudinal_creepage"):
         Rolling(longitudinal_creepage=value)  # type: ignore[arg-type]
     with pytest.raises(InvalidInputError, match="force_y"):
         Shift(force_y=value)  # type: ignore[arg-type]
 
 
-def test_a_motion_and_its_friction() -> None:
+def test_motion_limits_the_friction() -> None:
     with pytest.raises(InvalidInputError, match="motion = 'rolling'"):
-        case("rolling")  # type: ignore[arg-type]
+        create_case("rolling")  # type: ignore[arg-type]
     with pytest.raises(InvalidInputError, match=r"friction = -0.1.*not below zero"):
-        case(Rolling(), -0.1)
-    assert case(Sliding(), -0.1).friction == -0.1
+        create_case(Rolling(), -0.1)
+    assert create_case(Sliding(), -0.1).friction == -0.1
 
 
 def test_entrainment_and_slide_roll_ratio():

@@ -3,11 +3,11 @@
 import numpy as np
 
 from contactstudy.arrays.grid import Grid
-from contactstudy.case.roller import gap_on_cells, onto_ends
+from contactstudy.case.roller import gap_on_cells, snap_to_ends
 
 
-def test_cell_centre_within_rounding_of_the_end_lies_under_the_roller():
-    assert onto_ends(np.array([0.1 + 0.2]), 0.3, 0.1) == 0.3
+def test_cell_centre_within_rounding_is_under_the_roller():
+    assert snap_to_ends(np.array([0.1 + 0.2]), 0.3, 0.1) == 0.3
 
 
 def test_gap_at_centres_of_uniform_cells():

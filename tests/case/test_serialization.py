@@ -1,4 +1,4 @@
-"""A case survives being written as a table, whatever it consists of."""
+"""Serialization of cases with any components."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ PROFILES = [
 
 @pytest.mark.parametrize("profile", PROFILES, ids=lambda profile: type(profile).__name__)
 @pytest.mark.parametrize("body", [HalfSpace(material=STEEL), QuarterSpace(material=STEEL, model="mirror")])
-def test_a_case_is_the_same_again(profile: profiles.Profile, body: HalfSpace) -> None:
+def test_case_survives_serialization(profile: profiles.Profile, body: HalfSpace) -> None:
     roller = Roller(radius=5e-3, length=1e-3, profile=profile, material=Material(3e11, 0.25))
     motion = Rolling(longitudinal_creepage=1e-3, force_x=0.0)
     friction = AxialFriction((0.0, 1e-3), (0.1, 0.2))
@@ -44,44 +44,44 @@ def test_a_case_is_the_same_again(profile: profiles.Profile, body: HalfSpace) ->
     assert from_dict(json.loads(json.dumps(to_dict(case))), Case) == case
 
 
-class Own:
-    """A profile of a user's own, infinite at the ends."""
+class UserProfile:
+    """A user's profile, infinite at the ends."""
 
     def drop(self, x, length):
         return np.where(np.abs(x) < 0.499 * length, 1e-3 * x**2, np.inf)
 
 
-def test_a_profile_of_the_users_own_is_kept_at_points() -> None:
+def test_user_profile_is_sampled() -> None:
     body = FiniteLengthSpace(length=2e-3, material=STEEL)
-    case = Case(body=body, roller=Roller(radius=5e-3, length=1e-3, profile=Own()), max_pressure=1e9)
-    again = from_dict(json.loads(json.dumps(to_dict(case))), Case).roller.profile
+    case = Case(body=body, roller=Roller(radius=5e-3, length=1e-3, profile=UserProfile()), max_pressure=1e9)
+    restored_profile = from_dict(json.loads(json.dumps(to_dict(case))), Case).roller.profile
     x = np.array([-4.2e-4, 0.0, 3e-4, 5e-4])
-    assert np.allclose(again.drop(x, 1e-3), Own().drop(x, 1e-3), rtol=1e-3, atol=1e-14)
+    assert np.allclose(restored_profile.drop(x, 1e-3), UserProfile().drop(x, 1e-3), rtol=1e-3, atol=1e-14)
 
 
 class Bowl:
-    """Another one, over the effective length only."""
+    """A user's profile over the effective length."""
 
     def drop(self, x, length):
         return 1e-5 * (2 * np.abs(x) / length) ** 4
 
 
-def test_a_profile_of_the_users_own_counts_over_the_effective_length() -> None:
+def test_user_profile_over_the_effective_length() -> None:
     profile = profiles.EffectiveLength(Bowl(), 0.8e-3)
     case = Case(
         body=HalfSpace(material=STEEL), roller=Roller(radius=5e-3, length=1e-3, profile=profile), max_pressure=1e9
     )
-    again = from_dict(to_dict(case), Case).roller.profile
+    restored_profile = from_dict(to_dict(case), Case).roller.profile
     x = np.array([-4.9e-4, 0.0, 2e-4, 4e-4])
-    assert np.allclose(again.drop(x, 1e-3), profile.drop(x, 1e-3), rtol=1e-3, atol=1e-10)
+    assert np.allclose(restored_profile.drop(x, 1e-3), profile.drop(x, 1e-3), rtol=1e-3, atol=1e-10)
 
 
 @pytest.mark.parametrize("table", [{}, {"kind": "Nothing"}, {"kind": "Material", "young": 1.0, "poisson": 0.3}])
-def test_other_tables_are_refused(table: dict[str, object]) -> None:
+def test_other_tables_are_rejected(table: dict[str, object]) -> None:
     with pytest.raises(InvalidInputError, match="case = "):
         from_dict(table, Case)
 
 
-def test_samples_of_a_users_profile_are_joined_by_lines():
+def test_samples_are_interpolated_linearly():
     wedge = Sampled("wedge", (-0.5, 0.0, 0.5), (1e-6, 0.0, 1e-6))
     assert wedge.drop(np.array([2.5e-3]), 10e-3).tolist() == [5e-07]

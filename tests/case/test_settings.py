@@ -1,4 +1,4 @@
-"""The settings that studies know are those of the solver."""
+"""The settings of studies equal those of the solver."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from contactstudy import solve
 from contactstudy.case.gridding import ACCURACY, solver_settings
 
 
-def test_defaults_are_those_of_the_solver() -> None:
-    own, solver = (inspect.signature(each).parameters for each in (solver_settings, solve))
-    assert all(solver[name].default == entry.default for name, entry in own.items())
+def test_defaults_equal_the_solver() -> None:
+    settings, solver = (inspect.signature(function).parameters for function in (solver_settings, solve))
+    assert all(solver[name].default == entry.default for name, entry in settings.items())
     assert solver["accuracy"].default is None
     assert f"default {ACCURACY:g}" in (solve.__doc__ or "")

@@ -136,7 +136,7 @@ def test_two_finite_bodies_against_quadratic_programming(start: int):
     )
 
     # The lines to which the prescribed tilt refers turn under the load.
-    carried = Counterbody(counter, start).load_on(grid, found.pressure.values)
+    carried = Counterbody(counter, start).transfer_load(grid, found.pressure.values)
     tops = (found.pressure, xr.DataArray(carried, coords={"x": own.x, "y": own.y}, dims=("x", "y")))
     slopes = [line_slope(each, top, each.length) for each, top in zip((body, counter), tops, strict=True)]
     gap = gap - sum(slopes) * gap.x
@@ -267,8 +267,8 @@ def test_loads_are_carried_over_without_loss(start: float, length: float, cells:
     grid = Grid(x_range=(0.0, 1.7), y_range=(-1.0, 1.0), cells_x=cells, cells_y=2)
     facing = (grid.x > start) & (grid.x < start + length)
     load = np.random.default_rng(cells).random(grid.shape) * facing[:, None]
-    carried = counter.load_on(grid, load)
-    assert carried.sum() * counter.own_grid(grid).cell_area == pytest.approx(load.sum() * grid.cell_area, rel=1e-12)
+    carried = counter.transfer_load(grid, load)
+    assert carried.sum() * counter.grid_on_body(grid).cell_area == pytest.approx(load.sum() * grid.cell_area, rel=1e-12)
 
 
 def test_aligned_cells_are_carried_over_as_they_are():

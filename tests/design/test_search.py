@@ -1,4 +1,4 @@
-"""The search on measures in closed form: nothing is solved."""
+"""The search on measures in closed form, without the solver."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ ERROR = 0.01
 
 
 @pytest.fixture
-def solves(monkeypatch: pytest.MonkeyPatch):
-    """Put a function of the profile's two parameters, the load and the tilt in the place of the solver."""
+def solve_with(monkeypatch: pytest.MonkeyPatch):
+    """Replace the solver by a function of the profile's two parameters and the case."""
 
     def install(function):
         def solve(case: Case, **settings: object) -> xr.Dataset:
-            own = case.roller.profile
-            value = function(own.edge_drop, own.k1, case)
+            profile = case.roller.profile
+            value = function(profile.edge_drop, profile.k1, case)
             result = xr.Dataset({"peak_pressure": value, "peak_pressure_error": ERROR, "tilt": case.tilt})
             result["peak_pressure"].attrs["units"] = "Pa"
             return result
@@ -30,115 +30,122 @@ def solves(monkeypatch: pytest.MonkeyPatch):
     return install
 
 
-def made(edge_drop: float, k1: float = 1.0) -> profiles.Profile:
+def crown(edge_drop: float, k1: float = 1.0) -> profiles.Profile:
     return profiles.FujiwaraKawase(1e-6, edge_drop, k1)
 
 
-ONE = {"edge_drop": (1e-6, 1e-4)}
-BOTH = {"edge_drop": (1e-6, 1e-4), "k1": (0.5, 4.0)}
+BOUNDS = {"edge_drop": (1e-6, 1e-4)}
+TWO_BOUNDS = {"edge_drop": (1e-6, 1e-4), "k1": (0.5, 4.0)}
 
 
-def test_smooth_optimum(solves) -> None:
+def test_smooth_optimum(solve_with) -> None:
     """Measure 1 + 4 s**2 in decades s: worse by two errors of 0.01 at s = 0.0707."""
-    solves(lambda drop, k1, case: 1 + 4 * np.log10(drop / 2e-5) ** 2)
-    found = best_profile(CASE, made, bounds=ONE)
-    assert float(np.log10(found.optimum[0] / 2e-5)) == pytest.approx(0.0, abs=0.03)
-    ends = np.log10(np.array([found.flat_from[0], found.flat_to[0]]) / 2e-5)
+    solve_with(lambda drop, k1, case: 1 + 4 * np.log10(drop / 2e-5) ** 2)
+    result = best_profile(CASE, crown, bounds=BOUNDS)
+    assert float(np.log10(result.optimum[0] / 2e-5)) == pytest.approx(0.0, abs=0.03)
+    ends = np.log10(np.array([result.flat_from[0], result.flat_to[0]]) / 2e-5)
     np.testing.assert_allclose(ends, [-0.0707, 0.0707], atol=0.045)
-    assert float(found.measure) == pytest.approx(1.0, abs=0.005)
-    assert float(found.measure_error) == ERROR
-    assert found.measure.attrs["units"] == "Pa"
-    assert found.sizes["evaluation"] < 30
-    assert float(found.design_measure.min()) == float(found.measure)
+    assert float(result.measure) == pytest.approx(1.0, abs=0.005)
+    assert float(result.measure_error) == ERROR
+    assert result.measure.attrs["units"] == "Pa"
+    assert result.sizes["evaluation"] < 30
+    assert float(result.design_measure.min()) == float(result.measure)
 
 
-@pytest.mark.parametrize("most", [8, 9, 12, 16, 60])
-def test_the_number_of_designs_is_bounded(solves, most: int) -> None:
-    solves(lambda drop, k1, case: 1 + 4 * np.log10(drop / 2e-5) ** 2)
-    assert best_profile(CASE, made, bounds=ONE, evaluations=most).sizes["evaluation"] <= most
-    solves(lambda drop, k1, case: 1 + np.log10(drop / 1e-5) ** 2 + 2 * (k1 - 2.0) ** 2)
-    result = best_profile(CASE, made, bounds=BOTH, evaluations=most + 1)
-    assert result.sizes["evaluation"] <= most + 1
+@pytest.mark.parametrize("bound", [8, 9, 12, 16, 60])
+def test_number_of_designs_is_bounded(solve_with, bound: int) -> None:
+    solve_with(lambda drop, k1, case: 1 + 4 * np.log10(drop / 2e-5) ** 2)
+    assert best_profile(CASE, crown, bounds=BOUNDS, evaluations=bound).sizes["evaluation"] <= bound
+    solve_with(lambda drop, k1, case: 1 + np.log10(drop / 1e-5) ** 2 + 2 * (k1 - 2.0) ** 2)
+    result = best_profile(CASE, crown, bounds=TWO_BOUNDS, evaluations=bound + 1)
+    assert result.sizes["evaluation"] <= bound + 1
     assert (result.flat_from <= result.optimum).all()
 
 
-def test_a_kink_between_two_cases(solves) -> None:
-    """One load wants less, the other more: the optimum is where both are equal."""
+def test_optimum_at_a_kink_of_two_cases(solve_with) -> None:
+    """The loads have opposite slopes: at the optimum both measures are equal."""
     slopes = {50.0: 1.0, 100.0: -2.0}
-    solves(lambda drop, k1, case: 3 + slopes[case.normal_load] * np.log10(drop / 1e-5))
-    found = best_profile(CASE, made, bounds=ONE, loads=list(slopes))
-    assert float(np.log10(found.optimum[0] / 1e-5)) == pytest.approx(0.0, abs=0.02)
-    assert found.case_load.values.tolist() == [50.0, 100.0]
-    np.testing.assert_allclose(found.case_measure.max("case"), found.design_measure)
-    # Towards less the second case rises twice as fast.
-    ends = np.abs(np.log10(np.array([found.flat_from[0], found.flat_to[0]]) / float(found.optimum[0])))
+    solve_with(lambda drop, k1, case: 3 + slopes[case.normal_load] * np.log10(drop / 1e-5))
+    result = best_profile(CASE, crown, bounds=BOUNDS, loads=list(slopes))
+    assert float(np.log10(result.optimum[0] / 1e-5)) == pytest.approx(0.0, abs=0.02)
+    assert result.case_load.values.tolist() == [50.0, 100.0]
+    np.testing.assert_allclose(result.case_measure.max("case"), result.design_measure)
+    # The second case rises twice as fast.
+    ends = np.abs(np.log10(np.array([result.flat_from[0], result.flat_to[0]]) / float(result.optimum[0])))
     assert (ends < 0.08).all()
 
 
-def test_two_parameters(solves) -> None:
-    solves(lambda drop, k1, case: 1 + np.log10(drop / 1e-5) ** 2 + 2 * (k1 - 2.0 + 0.5 * np.log10(drop / 1e-5)) ** 2)
-    found = best_profile(CASE, made, bounds=BOTH, evaluations=80)
-    values = found.optimum.to_series()
+def test_optimum_of_two_parameters(solve_with) -> None:
+    solve_with(
+        lambda drop, k1, case: 1 + np.log10(drop / 1e-5) ** 2 + 2 * (k1 - 2.0 + 0.5 * np.log10(drop / 1e-5)) ** 2
+    )
+    result = best_profile(CASE, crown, bounds=TWO_BOUNDS, evaluations=80)
+    values = result.optimum.to_series()
     assert np.log10(values["edge_drop"] / 1e-5) == pytest.approx(0.0, abs=0.1)
     assert values["k1"] == pytest.approx(2.0, abs=0.15)
-    assert made(**values).k1 == values["k1"]
-    assert found.flat_from.sel(parameter="k1") < values["k1"] < found.flat_to.sel(parameter="k1")
+    assert crown(**values).k1 == values["k1"]
+    assert result.flat_from.sel(parameter="k1") < values["k1"] < result.flat_to.sel(parameter="k1")
 
 
-def test_brute_force_finds_nothing_better(solves) -> None:
+def test_optimum_equals_a_brute_force_scan(solve_with) -> None:
     def bumpy(drop: float, k1: float, case: Case) -> float:
         s = np.log10(drop / 1e-6) / 2
         return float(2 + np.cos(5 * s) + 1.5 * s)
 
-    solves(bumpy)
-    found = best_profile(CASE, made, bounds=ONE)
+    solve_with(bumpy)
+    result = best_profile(CASE, crown, bounds=BOUNDS)
     scan = min(bumpy(drop, 1.0, CASE) for drop in np.geomspace(1e-6, 1e-4, 2001))
-    assert float(found.measure) == pytest.approx(scan, abs=ERROR)
+    assert float(result.measure) == pytest.approx(scan, abs=ERROR)
 
 
-def test_infinite_measures_and_impossible_profiles(solves) -> None:
+def test_infinite_measures_and_invalid_profiles(solve_with) -> None:
     def singular(drop: float, k1: float, case: Case) -> float:
         if drop > 5e-5:
             raise InvalidInputError("profile", drop, "smaller")
         return np.inf if drop < 1e-5 else 1 + np.log10(drop / 1.5e-5) ** 2
 
-    solves(singular)
-    found = best_profile(CASE, made, bounds=ONE)
-    assert float(found.optimum[0]) == pytest.approx(1.5e-5, rel=0.15)
-    assert 0.9e-5 < float(found.flat_from[0]) <= float(found.flat_to[0]) < 5e-5
-    assert np.isinf(found.design_measure).any()
+    solve_with(singular)
+    result = best_profile(CASE, crown, bounds=BOUNDS)
+    assert float(result.optimum[0]) == pytest.approx(1.5e-5, rel=0.15)
+    assert 0.9e-5 < float(result.flat_from[0]) <= float(result.flat_to[0]) < 5e-5
+    assert np.isinf(result.design_measure).any()
 
 
-def test_optimum_on_a_bound(solves) -> None:
-    solves(lambda drop, k1, case: 1 + np.log10(drop / 1e-6))
+def test_optimum_on_a_bound_warns(solve_with) -> None:
+    solve_with(lambda drop, k1, case: 1 + np.log10(drop / 1e-6))
     with pytest.warns(BoundWarning, match=r"the best edge_drop = 1e-06 lies at a bound \(1e-06 to 0.0001\)"):
-        found = best_profile(CASE, made, bounds=ONE)
-    assert float(found.flat_from[0]) == pytest.approx(float(found.lower_bound[0]))
-    assert found.at_bound.values.tolist() == [True]
+        result = best_profile(CASE, crown, bounds=BOUNDS)
+    assert float(result.flat_from[0]) == pytest.approx(float(result.lower_bound[0]))
+    assert result.at_bound.values.tolist() == [True]
 
 
-def test_tilts_and_errors_of_functions(solves) -> None:
-    solves(lambda drop, k1, case: 1.0 + abs(case.tilt))
-    found = best_profile(
+def test_tilts_and_errors_of_functions(solve_with) -> None:
+    solve_with(lambda drop, k1, case: 1.0 + abs(case.tilt))
+    result_with_error = best_profile(
         CASE,
-        made,
-        bounds=ONE,
+        crown,
+        bounds=BOUNDS,
         measure=lambda result: (2 * result.peak_pressure, 0.5),
         max_pressures=[1e9, 2e9],
         tilts=[0.0, 1e-3],
         evaluations=8,
     )
-    assert found.sizes["case"] == 4
-    assert float(found.measure) == pytest.approx(2.002)
-    assert float(found.measure_error) == 0.5
-    # All is as good as the best, so nothing is said of the bounds.
-    assert not found.at_bound.any()
-    assert float(found.flat_from[0]) == pytest.approx(1e-6)
-    assert float(found.flat_to[0]) == pytest.approx(1e-4)
-    plain = best_profile(
-        CASE, made, bounds=ONE, measure=lambda result: result.peak_pressure, accuracy=0.02, evaluations=8
+    assert result_with_error.sizes["case"] == 4
+    assert float(result_with_error.measure) == pytest.approx(2.002)
+    assert float(result_with_error.measure_error) == 0.5
+    # The measure is constant: the flat range equals the bounds, without a warning.
+    assert not result_with_error.at_bound.any()
+    assert float(result_with_error.flat_from[0]) == pytest.approx(1e-6)
+    assert float(result_with_error.flat_to[0]) == pytest.approx(1e-4)
+    plain_result = best_profile(
+        CASE,
+        crown,
+        bounds=BOUNDS,
+        measure=lambda result: result.peak_pressure,
+        accuracy=0.02,
+        evaluations=8,
     )
-    assert float(plain.measure_error) == pytest.approx(0.02)
+    assert float(plain_result.measure_error) == pytest.approx(0.02)
 
 
 @pytest.mark.parametrize(
@@ -163,13 +170,13 @@ def test_tilts_and_errors_of_functions(solves) -> None:
         ({"measure": lambda result: np.inf}, "finite somewhere"),
     ],
 )
-def test_bad_arguments_are_named(solves, arguments, message: str) -> None:
-    solves(lambda drop, k1, case: 1.0)
+def test_error_names_the_bad_argument(solve_with, arguments, message: str) -> None:
+    solve_with(lambda drop, k1, case: 1.0)
     with pytest.raises(InvalidInputError, match=message):
-        best_profile(**({"case": CASE, "profile": made, "bounds": ONE} | arguments))
+        best_profile(**({"case": CASE, "profile": crown, "bounds": BOUNDS} | arguments))
 
 
-def test_no_possible_profile(solves) -> None:
-    solves(lambda drop, k1, case: 1.0)
+def test_bounds_without_valid_profile_are_rejected(solve_with) -> None:
+    solve_with(lambda drop, k1, case: 1.0)
     with pytest.raises(InvalidInputError, match="edge_drop"):
-        best_profile(CASE, made, bounds={"edge_drop": (-2.0, -1.0)})
+        best_profile(CASE, crown, bounds={"edge_drop": (-2.0, -1.0)})

@@ -1,4 +1,4 @@
-"""Histories of a material point, done by hand."""
+"""Analytic histories of a material point."""
 
 from __future__ import annotations
 

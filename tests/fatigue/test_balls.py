@@ -1,4 +1,4 @@
-"""Smallest balls: exact for known shapes, never too small, never larger than another way finds."""
+"""Smallest balls: exact for known shapes, and minimal around any points."""
 
 from __future__ import annotations
 
@@ -13,19 +13,19 @@ from contactstudy.fatigue.history import enclosing_balls
 Array = np.ndarray
 
 
-def optimal(points: Array, centre: Array, radius: float) -> bool:
-    """Whether the centre is in the convex hull of the points that the ball touches: then none is smaller."""
+def is_minimal(points: Array, centre: Array, radius: float) -> bool:
+    """Whether the centre is in the convex hull of the support, the condition of the smallest ball."""
     from scipy.optimize import nnls
 
-    touching = points[np.linalg.norm(points - centre, axis=1) >= radius * (1 - 1e-7)] - centre
-    system = np.vstack([touching.T / radius, np.ones(len(touching))])
+    support = points[np.linalg.norm(points - centre, axis=1) >= radius * (1 - 1e-7)] - centre
+    system = np.vstack([support.T / radius, np.ones(len(support))])
     _, residual = nnls(system, np.append(np.zeros(points.shape[1]), 1.0))
     return bool(residual < 1e-6)
 
 
 @pytest.mark.parametrize("axes", [1, 2, 3, 5])
-def test_regular_simplex(axes: int) -> None:
-    """Its vertices, on a unit sphere, hold the ball together."""
+def test_vertices_of_a_simplex_support_the_ball(axes: int) -> None:
+    """The vertices, on a unit sphere, support the ball."""
     vertices = np.eye(axes + 1) - 1 / (axes + 1)
     basis = np.linalg.svd(vertices)[2][:axes]
     points = vertices @ basis.T
@@ -51,16 +51,16 @@ def test_point_and_line() -> None:
 
 
 @given(points=arrays(float, (12, 3), elements=st.integers(-4, 4).map(float)))
-def test_any_points(points: Array) -> None:
+def test_ball_of_any_points_is_minimal(points: Array) -> None:
     """Integers: many points coincide, lie on lines, in planes or on spheres."""
     centre, radius = enclosing_balls(points[None])
     assert np.linalg.norm(points - centre[0], axis=1).max() <= radius[0] * (1 + 1e-9) + 1e-12
-    assert radius[0] == 0 or optimal(points, centre[0], radius[0])
+    assert radius[0] == 0 or is_minimal(points, centre[0], radius[0])
 
 
-def test_many_random_paths_at_once() -> None:
+def test_balls_of_many_random_paths_are_minimal() -> None:
     random = np.random.default_rng(1)
     points = np.cumsum(random.normal(size=(60, 90, 5)), axis=1) * 10.0 ** random.integers(-3, 9, (60, 1, 1))
     centre, radius = enclosing_balls(points)
-    for path, middle, size in zip(points, centre, radius, strict=True):
-        assert optimal(path, middle, size)
+    for path, ball_centre, size in zip(points, centre, radius, strict=True):
+        assert is_minimal(path, ball_centre, size)

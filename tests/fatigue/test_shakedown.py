@@ -1,4 +1,4 @@
-"""Melan's bound with residual stress along rolling: line contacts, loaded corners, histories done by hand."""
+"""Melan's bound with residual stress along rolling: line contacts, loaded corners, small histories."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from scipy import optimize
 
 from contactstudy import InvalidInputError, fatigue, stress_field
 from contactstudy.arrays.variables import ERROR_KIND, NOT_ESTIMATED, STRESSES
-from contactstudy.fatigue.shakedown import in_ball_axes, shakedown_summary
+from contactstudy.fatigue.shakedown import shakedown_summary, to_ball_axes
 from contactstudy.verification.closed_forms import hertz_strip
 
 DEPTHS = np.linspace(0.0, 1.5, 61)
@@ -24,8 +24,8 @@ def line_contact():
     """Make Hertz' line contact of half-width and peak pressure 1, nu = 0.3, from the top down."""
 
     def build(friction: float) -> xr.Dataset:
-        found = hertz_strip(Y[:, None], DEPTHS, 1.0, 1.0, 0.3, friction)
-        fields = {name: (("y", "z"), values) for name, values in found.items()}
+        result = hertz_strip(Y[:, None], DEPTHS, 1.0, 1.0, 0.3, friction)
+        fields = {name: (("y", "z"), values) for name, values in result.items()}
         return xr.Dataset(fields, {"y": Y, "z": DEPTHS}).assign(hertz_max_pressure=1.0)
 
     return build
@@ -37,61 +37,61 @@ LIMITS = {
     0.4: (2.123, 2.206, 2.316),
 }
 """Pressure p0 over k for first yield, shakedown by rho_yy, and by rho_yy and rho_xx, by the friction. Johnson's is 4.0.
-From f = 0.3 on the top itself decides first yield, at 0.4 all three; see the test of the top."""
+From f = 0.3 first yield is on the surface, at 0.4 all three limits."""
 
 
 @pytest.mark.parametrize("friction", LIMITS)
-def test_line_contact(line_contact, friction: float) -> None:
-    first, rolling, both = LIMITS[friction]
+def test_line_contact_limits_equal_published_values(line_contact, friction: float) -> None:
+    first, rolling, history_with_rest = LIMITS[friction]
     result = line_contact(friction)
-    found, axial = fatigue.shakedown_limit(result), fatigue.shakedown_limit(result, axial=True)
-    assert float(found["first_yield_limit"]) == pytest.approx(first, rel=1e-3)
-    assert float(found["shakedown_limit"]) == pytest.approx(rolling, rel=1e-3)
-    assert float(axial["shakedown_limit"]) == pytest.approx(both, rel=1e-3)
-    place = "on the top" if friction == 0.4 else "below the top"
-    assert found["peak_shakedown_stress"].attrs["comment"] == place
+    computed, axial = fatigue.shakedown_limit(result), fatigue.shakedown_limit(result, axial=True)
+    assert float(computed["first_yield_limit"]) == pytest.approx(first, rel=1e-3)
+    assert float(computed["shakedown_limit"]) == pytest.approx(rolling, rel=1e-3)
+    assert float(axial["shakedown_limit"]) == pytest.approx(history_with_rest, rel=1e-3)
+    expected_comment = "on the top" if friction == 0.4 else "below the top"
+    assert computed["peak_shakedown_stress"].attrs["comment"] == expected_comment
 
 
 @pytest.mark.parametrize("friction", [0.3, 0.4])
-def test_the_top_of_a_line_contact(line_contact, friction: float) -> None:
-    """There s_zz = -p, s_yy = -p - 2 f p0 y/a, t_yz = -f p, s_xx = nu (s_yy + s_zz) (under the contact)."""
+def test_surface_of_a_line_contact(line_contact, friction: float) -> None:
+    """On the surface s_zz = -p, s_yy = -p - 2 f p0 y/a, t_yz = -f p, s_xx = nu (s_yy + s_zz) (under the contact)."""
     y = np.linspace(-1, 1, 20001)
     p = np.sqrt(1 - y**2)
     zz, yy, shear = -p, -p - 2 * friction * y, friction * p
     xx = 0.3 * (yy + zz)
     squared = 0.5 * ((xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2) + 3 * shear**2
-    on_top = fatigue.shakedown(line_contact(friction)).isel(z=0)
-    assert float(on_top["first_yield_stress"]) == pytest.approx(np.sqrt(squared.max() / 3), rel=1e-4)
+    surface_result = fatigue.shakedown(line_contact(friction)).isel(z=0)
+    assert float(surface_result["first_yield_stress"]) == pytest.approx(np.sqrt(squared.max() / 3), rel=1e-4)
 
     def largest(rho: float) -> float:
         return float(np.sqrt((squared + 2 * rho * (yy - 0.5 * (xx + zz)) + rho**2).max() / 3))
 
-    least = optimize.minimize_scalar(largest, bounds=(-2, 2), options={"xatol": 1e-9}).fun
-    assert float(on_top["shakedown_stress"]) == pytest.approx(least, rel=2e-4)
+    minimum = optimize.minimize_scalar(largest, bounds=(-2, 2), options={"xatol": 1e-9}).fun
+    assert float(surface_result["shakedown_stress"]) == pytest.approx(minimum, rel=2e-4)
 
 
-def test_error_covers_what_more_positions_change(line_contact) -> None:
+def test_error_covers_the_change_by_more_positions(line_contact) -> None:
     fine = line_contact(0.2)
-    rough = fine.isel(y=slice(None, None, 4), z=slice(None, None, 4))
-    found, reference = fatigue.shakedown_limit(rough), fatigue.shakedown_limit(fine)
+    coarse = fine.isel(y=slice(None, None, 4), z=slice(None, None, 4))
+    result, reference = fatigue.shakedown_limit(coarse), fatigue.shakedown_limit(fine)
     for name in ("shakedown_limit", "first_yield_limit"):
-        error = float(found[f"{name}_error"])
-        assert abs(float(found[name] - reference[name])) < error < 0.1 * float(found[name])
+        error = float(result[f"{name}_error"])
+        assert abs(float(result[name] - reference[name])) < error < 0.1 * float(result[name])
 
 
 def test_error_of_shallow_depths(line_contact) -> None:
-    found = fatigue.shakedown_limit(line_contact(0.0).isel(z=slice(0, 10)))
-    assert np.isinf(float(found["peak_shakedown_stress_error"]))
-    assert np.isinf(float(found["shakedown_limit_error"]))
+    result = fatigue.shakedown_limit(line_contact(0.0).isel(z=slice(0, 10)))
+    assert np.isinf(float(result["peak_shakedown_stress_error"]))
+    assert np.isinf(float(result["shakedown_limit_error"]))
 
 
 @pytest.mark.parametrize("friction", [0.0, 0.2])
-def test_loaded_corner_is_bound_by_its_pressure(short_body, strip_pressure, friction: float) -> None:
-    """Only rho_yy exists there: p / k is at most 2 / sqrt(1 + 4 f^2), and about that."""
+def test_corner_pressure_bounds_the_limit(short_body, strip_pressure, friction: float) -> None:
+    """With rho_yy alone p / k is about 2 / sqrt(1 + 4 f^2), the upper bound."""
     pressure = strip_pressure(8.0, (64, 64))
     stress = stress_field(short_body, pressure, friction=friction, x=[0.0], z=[0.0], inside_cells=pressure)
-    found = fatigue.shakedown(stress)
-    limit = float(pressure.max() / found["shakedown_stress"].squeeze())
+    result = fatigue.shakedown(stress)
+    limit = float(pressure.max() / result["shakedown_stress"].squeeze())
     bound = 2 / np.sqrt(1 + 4 * friction**2)
     assert 0.9 * bound < limit < bound * (1 + 2e-3)
 
@@ -101,80 +101,80 @@ histories = arrays(float, (1, 7, 6), elements=st.integers(-3, 3).map(float))
 
 @settings(max_examples=10)
 @given(history=histories)
-def test_nothing_is_less_than_the_least(history: np.ndarray) -> None:
-    """Against a one-dimensional search; whole numbers make many instants alike."""
+def test_shakedown_stress_is_minimal(history: np.ndarray) -> None:
+    """A one-dimensional search finds the same minimum; integers give many equal instants."""
     names = dict(zip(STRESSES, np.moveaxis(history[0], -1, 0), strict=True))
     data = xr.Dataset({name: ("y", values) for name, values in names.items()}, {"y": np.arange(7.0)})
-    found = fatigue.shakedown(data)
-    both = np.append(history[0], np.zeros((1, 6)), axis=0)
-    u, v, rest = in_ball_axes(both)
+    result = fatigue.shakedown(data)
+    history_with_rest = np.append(history[0], np.zeros((1, 6)), axis=0)
+    u, v, remainder = to_ball_axes(history_with_rest)
 
     def largest(rho: float, along_x: float = 0.0) -> float:
-        moved = (u + rho - 0.5 * along_x) ** 2 + (v + 0.5 * np.sqrt(3) * along_x) ** 2
-        return float(np.sqrt((moved + rest).max() / 3))
+        squares = (u + rho - 0.5 * along_x) ** 2 + (v + 0.5 * np.sqrt(3) * along_x) ** 2
+        return float(np.sqrt((squares + remainder).max() / 3))
 
-    least = optimize.minimize_scalar(largest, bounds=(-20, 20), options={"xatol": 1e-10}).fun
-    assert float(found["shakedown_stress"]) == pytest.approx(least, rel=1e-7, abs=1e-9)
-    assert largest(float(found["residual_sigma_yy"])) == pytest.approx(float(found["shakedown_stress"]), abs=1e-8)
+    minimum = optimize.minimize_scalar(largest, bounds=(-20, 20), options={"xatol": 1e-10}).fun
+    assert float(result["shakedown_stress"]) == pytest.approx(minimum, rel=1e-7, abs=1e-9)
+    assert largest(float(result["residual_sigma_yy"])) == pytest.approx(float(result["shakedown_stress"]), abs=1e-8)
     axial = fatigue.shakedown(data, axial=True)
-    at = [float(axial[name]) for name in ("residual_sigma_yy", "residual_sigma_xx")]
-    assert largest(*at) == pytest.approx(float(axial["shakedown_stress"]), abs=1e-8)
-    around = np.random.default_rng(3).normal(size=(200, 2)) * np.logspace(-3, 0.5, 200)[:, None]
-    assert min(largest(*(at + step)) for step in around) >= float(axial["shakedown_stress"]) * (1 - 1e-9)
+    residual = [float(axial[name]) for name in ("residual_sigma_yy", "residual_sigma_xx")]
+    assert largest(*residual) == pytest.approx(float(axial["shakedown_stress"]), abs=1e-8)
+    steps = np.random.default_rng(3).normal(size=(200, 2)) * np.logspace(-3, 0.5, 200)[:, None]
+    assert min(largest(*(residual + step)) for step in steps) >= float(axial["shakedown_stress"]) * (1 - 1e-9)
 
 
-def test_constant_stress() -> None:
-    """Between full load and none half is left, whatever is along y vanishes."""
+def test_constant_stress_halves() -> None:
+    """Between full and zero load half of the stress remains; the stress along y vanishes."""
     push = xr.DataArray([0.0, 1.0, 0.0], dims="y", coords={"y": [0.0, 1.0, 2.0]})
-    found = fatigue.shakedown(xr.Dataset({name: push * (name in ("sigma_yy", "tau_xz")) for name in STRESSES}))
-    assert float(found["shakedown_stress"]) == pytest.approx(1.0, abs=0.02)
-    assert float(found["first_yield_stress"]) == pytest.approx(np.sqrt(4 / 3))
+    result = fatigue.shakedown(xr.Dataset({name: push * (name in ("sigma_yy", "tau_xz")) for name in STRESSES}))
+    assert float(result["shakedown_stress"]) == pytest.approx(1.0, abs=0.02)
+    assert float(result["first_yield_stress"]) == pytest.approx(np.sqrt(4 / 3))
 
 
-def test_scale(line_contact) -> None:
-    once, twice = (fatigue.shakedown(factor * line_contact(0.1)) for factor in (1, 2e9))
-    assert np.allclose(twice["shakedown_stress"], 2e9 * once["shakedown_stress"], rtol=1e-9)
+def test_shakedown_stress_scales_with_load(line_contact) -> None:
+    unit, scaled = (fatigue.shakedown(factor * line_contact(0.1)) for factor in (1, 2e9))
+    assert np.allclose(scaled["shakedown_stress"], 2e9 * unit["shakedown_stress"], rtol=1e-9)
 
 
-def test_dimensions(case_result: xr.Dataset) -> None:
-    found = fatigue.shakedown(case_result)
-    assert found["shakedown_stress"].dims == ("x_field", "z")
-    assert (found["shakedown_stress"] <= found["first_yield_stress"] * (1 + 1e-9)).all()
-    both = xr.concat([case_result[list(STRESSES)].reset_coords(drop=True)] * 2, "case").chunk(case=1)
-    study = fatigue.shakedown(both)["shakedown_stress"]
+def test_dimensions_of_a_study(case_result: xr.Dataset) -> None:
+    result = fatigue.shakedown(case_result)
+    assert result["shakedown_stress"].dims == ("x_field", "z")
+    assert (result["shakedown_stress"] <= result["first_yield_stress"] * (1 + 1e-9)).all()
+    history_with_rest = xr.concat([case_result[list(STRESSES)].reset_coords(drop=True)] * 2, "case").chunk(case=1)
+    study = fatigue.shakedown(history_with_rest)["shakedown_stress"]
     assert study.dims == ("case", "x_field", "z")
     assert study.chunks is not None
-    assert np.allclose(study.isel(case=1), found["shakedown_stress"])
+    assert np.allclose(study.isel(case=1), result["shakedown_stress"])
 
 
-def test_limits_of_a_study(line_contact) -> None:
-    """Each case as if alone; one without stresses has none."""
+def test_limits_of_a_study_equal_single_cases(line_contact) -> None:
+    """The study equals the single cases; a case without stresses has NaN."""
     cases = [line_contact(friction).isel(z=slice(0, None, 8)).assign(hertz_half_width=1.0) for friction in (0.0, 0.2)]
     cases.append(cases[0] * np.nan)
     study = xr.concat(cases, xr.Variable("friction", [0.0, 0.2, 0.4])).chunk(friction=1)
-    found = fatigue.shakedown_limit(study)
-    assert found["shakedown_limit"].dims == ("friction",)
-    for number, friction in enumerate((0.0, 0.2)):
-        alone = fatigue.shakedown_limit(line_contact(friction).isel(z=slice(0, None, 8)))
+    result = fatigue.shakedown_limit(study)
+    assert result["shakedown_limit"].dims == ("friction",)
+    for index, friction in enumerate((0.0, 0.2)):
+        single_limits = fatigue.shakedown_limit(line_contact(friction).isel(z=slice(0, None, 8)))
         for name in ("shakedown_limit", "peak_shakedown_stress", "peak_shakedown_stress_z", "shakedown_limit_error"):
-            assert float(found[name][number]) == pytest.approx(float(alone[name]))
-    assert np.isnan(found["shakedown_limit"][2])
-    assert found["shakedown_limit"].attrs["units"] == "1"
+            assert float(result[name][index]) == pytest.approx(float(single_limits[name]))
+    assert np.isnan(result["shakedown_limit"][2])
+    assert result["shakedown_limit"].attrs["units"] == "1"
 
 
-def test_axial_stress_at_many_positions(case_result: xr.Dataset) -> None:
+def test_axial_stress_at_many_positions_is_rejected(case_result: xr.Dataset) -> None:
     with pytest.raises(InvalidInputError, match="line contact"):
         fatigue.shakedown(case_result, axial=True)
 
 
-def test_error_of_a_narrow_window(line_contact) -> None:
-    """The shear before and behind the contact is as large as what yields in the middle."""
-    found = fatigue.shakedown_limit(line_contact(0.0).sel(y=slice(-0.3, 0.3)))
-    assert np.isinf(float(found["shakedown_limit_error"]))
-    assert "along y" in found["peak_shakedown_stress_error"].attrs["comment"]
+def test_narrow_window_has_an_infinite_error(line_contact) -> None:
+    """The shear before and behind the contact equals the critical stress in the middle."""
+    result = fatigue.shakedown_limit(line_contact(0.0).sel(y=slice(-0.3, 0.3)))
+    assert np.isinf(float(result["shakedown_limit_error"]))
+    assert "along y" in result["peak_shakedown_stress_error"].attrs["comment"]
 
 
-def test_error_kinds(line_contact) -> None:
+def test_error_kinds_of_shakedown(line_contact) -> None:
     result = line_contact(0.1)
     assert all(array.attrs[ERROR_KIND] == NOT_ESTIMATED for array in fatigue.shakedown(result, axial=True).values())
     assert ERROR_KIND not in fatigue.shakedown_limit(result)["peak_shakedown_stress"].attrs
@@ -193,9 +193,9 @@ def test_summary_of_a_passage(line_contact) -> None:
 @pytest.mark.parametrize("absent", ["stresses", "passage", "load"])
 def test_empty_summary(line_contact, absent: str) -> None:
     result = line_contact(0.1)
-    without = {
+    incomplete_results = {
         "stresses": result.drop_vars("tau_xy"),
         "passage": result.sel(y=[0.0]),
         "load": 0.0 * result,
     }
-    assert not shakedown_summary(without[absent])
+    assert not shakedown_summary(incomplete_results[absent])

@@ -1,4 +1,4 @@
-"""Melan's bound with residual stress in the plane, as free ends allow it."""
+"""Melan's bound with residual stress in the plane, between free ends."""
 
 from __future__ import annotations
 
@@ -29,58 +29,58 @@ SOFT = Material(1.0, 0.3)
 
 @pytest.fixture(scope="module")
 def fading_line_contact() -> Callable[[float, float], xr.Dataset]:
-    """Make Hertz' line contact, weaker at both ends of a length than in its middle, by half or another part."""
+    """Make Hertz' line contact, weaker at both ends of a length than at mid-length, by half or another reduction."""
 
-    def build(length: float, friction: float, part: float = 0.5) -> xr.Dataset:
+    def build(length: float, friction: float, reduction: float = 0.5) -> xr.Dataset:
         x, y = np.linspace(0, length, 9), np.linspace(-4, 4, 81)
-        found = hertz_strip(y[:, None], DEPTHS, 1.0, 1.0, 0.3, friction)
-        share = 1 - part * np.clip(1 - np.minimum(x, length - x) / (0.4 * length), 0, 1)[:, None, None]
-        fields = {name: (("x", "y", "z"), share * values) for name, values in found.items()}
+        result = hertz_strip(y[:, None], DEPTHS, 1.0, 1.0, 0.3, friction)
+        distribution = 1 - reduction * np.clip(1 - np.minimum(x, length - x) / (0.4 * length), 0, 1)[:, None, None]
+        fields = {name: (("x", "y", "z"), distribution * values) for name, values in result.items()}
         return xr.Dataset(fields, {"x": x, "y": y, "z": DEPTHS})
 
     return build
 
 
 def test_line_contact_limit_of_a_long_body(fading_line_contact) -> None:
-    """The ends take none of it: the stress along x turns round below the depth that decides (Johnson's 4.0)."""
+    """The ends have no influence: the stress along x reverses below the critical depth (Johnson's 4.0)."""
     stress = fading_line_contact(16.0, 0.2)
-    found = fatigue.shakedown_in_plane(stress, FiniteLengthSpace(length=16.0, material=SOFT))
+    result = fatigue.shakedown_in_plane(stress, FiniteLengthSpace(length=16.0, material=SOFT))
     line = fatigue.shakedown(stress.isel(x=[4]), axial=True)["shakedown_stress"].max()
-    assert float(found["peak_shakedown_stress"]) == pytest.approx(float(line), rel=1e-3)
-    assert float(found["program_gap"]) < 1e-3
+    assert float(result["peak_shakedown_stress"]) == pytest.approx(float(line), rel=1e-3)
+    assert float(result["program_gap"]) < 1e-3
 
 
-def test_a_short_body_holds_less(fading_line_contact) -> None:
-    """A residual stress along x needs a length to build up; but rho_yy is free everywhere."""
-    alone, between = [], []
+def test_short_body_has_a_lower_limit(fading_line_contact) -> None:
+    """A residual stress along x builds up over a length; rho_yy is free everywhere."""
+    rolling_limits, in_plane = [], []
     for length in (0.4, 16.0):
         stress = fading_line_contact(length, 0.0, 0.15)
-        alone.append(float(fatigue.shakedown(stress)["shakedown_stress"].max()))
-        found = fatigue.shakedown_in_plane(stress, FiniteLengthSpace(length=length, material=SOFT))
-        between.append(float(found["peak_shakedown_stress"]))
-    assert alone[0] == pytest.approx(alone[1])
-    assert between[1] < 0.9 * alone[1]
-    assert between[1] * 1.01 < between[0] < alone[0]
+        rolling_limits.append(float(fatigue.shakedown(stress)["shakedown_stress"].max()))
+        result = fatigue.shakedown_in_plane(stress, FiniteLengthSpace(length=length, material=SOFT))
+        in_plane.append(float(result["peak_shakedown_stress"]))
+    assert rolling_limits[0] == pytest.approx(rolling_limits[1])
+    assert in_plane[1] < 0.9 * rolling_limits[1]
+    assert in_plane[1] * 1.01 < in_plane[0] < rolling_limits[0]
 
 
-def sphere_passage(counts: tuple[int, int], deepest: float) -> xr.Dataset:
+def sphere_passage(counts: tuple[int, int], max_depth: float) -> xr.Dataset:
     """Stresses of Hertz' frictionless sphere, half-width and largest pressure 1, at (x, z) positions."""
     edges = np.linspace(-1.2, 1.2, 49)
     x = (0.5 * (edges[1:] + edges[:-1]))[:, None] + (edges[1] - edges[0]) * ((np.arange(8) + 0.5) / 8 - 0.5)
     square = (1 - x.reshape(-1, 1) ** 2 - x.ravel() ** 2).clip(0)
     cells = 0.5 * (edges[1:] + edges[:-1])
     pressure = xr.DataArray(np.sqrt(square).reshape(48, 8, 48, 8).mean((1, 3)), {"x": cells, "y": cells}, ("x", "y"))
-    positions = {"x": np.linspace(-3, 3, counts[0]), "z": np.linspace(0, deepest, counts[1])}
+    positions = {"x": np.linspace(-3, 3, counts[0]), "z": np.linspace(0, max_depth, counts[1])}
     return stress_field(
         HalfSpace(material=SOFT), pressure, inside_cells=pressure, y=np.linspace(-3, 3, 41), **positions
     )
 
 
 def test_sphere_reaches_the_published_limit() -> None:
-    """p0 / k = 4.68 without friction; more positions settle the bound, without a gap."""
+    """p0 / k = 4.68 without friction; the bound converges with more positions, without a gap."""
     limits = []
-    for counts, deepest in (((19, 13), 2.4), ((31, 25), 3.0)):
-        bound = fatigue.shakedown_in_plane(sphere_passage(counts, deepest), HalfSpace(material=SOFT))
+    for counts, max_depth in (((19, 13), 2.4), ((31, 25), 3.0)):
+        bound = fatigue.shakedown_in_plane(sphere_passage(counts, max_depth), HalfSpace(material=SOFT))
         assert float(bound["program_gap"]) < 1e-4
         limits.append(1 / float(bound["peak_shakedown_stress"]))
     assert limits[1] == pytest.approx(4.68, rel=0.01)
@@ -88,43 +88,43 @@ def test_sphere_reaches_the_published_limit() -> None:
 
 
 def test_program_without_convergence_warns(fading_line_contact, monkeypatch) -> None:
-    monkeypatch.setattr(import_module("contactstudy.fatigue.shakedown"), "MOST_PROGRAMS", 1)
+    monkeypatch.setattr(import_module("contactstudy.fatigue.shakedown"), "MAX_PROGRAMS", 1)
     with pytest.warns(ConvergenceWarning, match="gap of"):
         bound = fatigue.shakedown_in_plane(fading_line_contact(16.0, 0.2), HalfSpace(material=SOFT))
     assert float(bound["program_gap"]) > 1e-4
 
 
-def test_equilibrium_elements_find_no_more() -> None:
-    """An independent program, with linear stresses in triangles: it is less free, so its load is a little lower."""
+def test_equilibrium_elements_give_a_similar_limit() -> None:
+    """An independent program with linear stresses in triangles has fewer freedoms and a slightly lower limit."""
     length, x_edges, z_edges = 0.5, np.linspace(0, 0.5, 7), np.linspace(0, 2.4, 11)
     x, z, y = points(x_edges, 0), points(z_edges, 1), np.linspace(-2.4, 2.4, 25)
-    found = hertz_strip(y[:, None], z, 1.0, 1.0, 0.3, 0.0)
-    share = 1 - 0.2 * np.abs(2 * x / length - 1)[:, None, None] ** 2
+    result = hertz_strip(y[:, None], z, 1.0, 1.0, 0.3, 0.0)
+    distribution = 1 - 0.2 * np.abs(2 * x / length - 1)[:, None, None] ** 2
     stress = xr.Dataset(
-        {name: (("x", "y", "z"), share * values) for name, values in found.items()}, {"x": x, "y": y, "z": z}
+        {name: (("x", "y", "z"), distribution * values) for name, values in result.items()}, {"x": x, "y": y, "z": z}
     )
-    flat = [stress[name].transpose("x", "z", "y").values.reshape(-1, y.size) for name in STRESSES]
-    history = np.stack([np.pad(one, ((0, 0), (0, 1))) for one in flat], axis=-1)
+    rows = [stress[name].transpose("x", "z", "y").values.reshape(-1, y.size) for name in STRESSES]
+    history = np.stack([np.pad(row, ((0, 0), (0, 1))) for row in rows], axis=-1)
     elements = 1 / min_shear_yield_stress(history, x_edges, z_edges)
     body = FiniteLengthSpace(length=length, material=SOFT)
     splines = 1 / float(fatigue.shakedown_in_plane(stress, body)["peak_shakedown_stress"])
-    alone = 1 / float(fatigue.shakedown(stress)["shakedown_stress"].max())
-    assert alone * 1.03 < elements < splines < elements * 1.03
+    rolling_limits = 1 / float(fatigue.shakedown(stress)["shakedown_stress"].max())
+    assert rolling_limits * 1.03 < elements < splines < elements * 1.03
 
 
-def test_flush_roller(short_body, strip_pressure) -> None:
-    """Ends and top stay free, nothing yields at the k found, and the loaded corner bounds it."""
+def test_flush_roller_satisfies_melan(short_body, strip_pressure) -> None:
+    """Ends and top are free, no point yields at the computed k, and the loaded corner bounds the limit."""
     pressure, friction = strip_pressure(8.0, (32, 16)), 0.1
     pressure = pressure * (0.4 + 0.6 * np.minimum(1, np.minimum(pressure.x, 8 - pressure.x) / 2))
     x, y, z = np.linspace(0, 8, 13), np.linspace(-3, 3, 33), np.linspace(0, 1.8, 10)
     stress = stress_field(short_body, pressure, friction=friction, x=x, y=y, z=z, inside_cells=pressure)
-    found = fatigue.shakedown_in_plane(stress, short_body)
-    largest = float(found["peak_shakedown_stress"])
-    assert largest < 0.97 * float(fatigue.shakedown(stress)["shakedown_stress"].max())
-    corner = 0.4 / float(found["shakedown_stress"].isel(x=0, z=0))
-    assert corner < 2 / np.sqrt(1 + 4 * friction**2) * 1.01
+    result = fatigue.shakedown_in_plane(stress, short_body)
+    peak_stress = float(result["peak_shakedown_stress"])
+    assert peak_stress < 0.97 * float(fatigue.shakedown(stress)["shakedown_stress"].max())
+    corner_limit = 0.4 / float(result["shakedown_stress"].isel(x=0, z=0))
+    assert corner_limit < 2 / np.sqrt(1 + 4 * friction**2) * 1.01
     residual = {
-        name: found[name.replace("sigma", "residual_sigma").replace("tau", "residual_tau")]
+        name: result[name.replace("sigma", "residual_sigma").replace("tau", "residual_tau")]
         for name in ("sigma_xx", "sigma_yy", "sigma_zz", "tau_xz")
     }
     size = float(abs(residual["sigma_xx"]).max())
@@ -132,27 +132,27 @@ def test_flush_roller(short_body, strip_pressure) -> None:
         assert float(abs(residual[name].isel(x=[0, -1])).max()) < 1e-9 * size
     for name in ("sigma_zz", "tau_xz"):
         assert float(abs(residual[name].isel(z=0)).max()) < 1e-9 * size
-    # What is left as history with the residual stress yields at k nowhere.
+    # The history with the residual stress yields nowhere at k.
     total = stress.assign({name: stress[name] + value for name, value in residual.items()})
     xx, yy, zz, xy, xz, yz = (total[name] for name in STRESSES)
     squared = 0.5 * ((xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2) + 3 * (xy**2 + xz**2 + yz**2)
-    held = np.sqrt(squared.max("y") / 3)
-    assert (held <= found["shakedown_stress"] * (1 + 1e-6)).all()
-    assert float(held.max()) == pytest.approx(largest, rel=1e-6)
+    max_stress = np.sqrt(squared.max("y") / 3)
+    assert (max_stress <= result["shakedown_stress"] * (1 + 1e-6)).all()
+    assert float(max_stress.max()) == pytest.approx(peak_stress, rel=1e-6)
 
 
-def test_scale(fading_line_contact) -> None:
+def test_limit_scales_with_load(fading_line_contact) -> None:
     stress, body = fading_line_contact(8.0, 0.1), HalfSpace(material=SOFT)
-    once, more = (float(fatigue.shakedown_in_plane(f * stress, body)["peak_shakedown_stress"]) for f in (1, 3e9))
-    assert more == pytest.approx(3e9 * once, rel=1e-3)
+    unit, scaled = (float(fatigue.shakedown_in_plane(f * stress, body)["peak_shakedown_stress"]) for f in (1, 3e9))
+    assert scaled == pytest.approx(3e9 * unit, rel=1e-3)
 
 
-def test_too_few_positions(fading_line_contact) -> None:
+def test_too_few_positions_are_rejected(fading_line_contact) -> None:
     with pytest.raises(InvalidInputError, match="at least 5 positions"):
         fatigue.shakedown_in_plane(fading_line_contact(8.0, 0.1).isel(x=[0, 2, 4]), HalfSpace(material=SOFT))
 
 
-def test_missing_solver(fading_line_contact, monkeypatch) -> None:
+def test_missing_solver_raises(fading_line_contact, monkeypatch) -> None:
     monkeypatch.setitem(sys.modules, "clarabel", None)
     with pytest.raises(ImportError, match=r"contactstudy\[shakedown\]"):
         fatigue.shakedown_in_plane(fading_line_contact(8.0, 0.1), HalfSpace(material=SOFT))

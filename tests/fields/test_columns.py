@@ -19,7 +19,7 @@ from contactstudy import (
     stress_field,
     surface_displacement,
 )
-from contactstudy.bodies.models import Body, EndedBody
+from contactstudy.bodies.models import Body, BodyWithFreeEnds
 from contactstudy.checks import FloatArray
 from contactstudy.fields.loads import sliding
 from contactstudy.fields.stress import end_traction_residual
@@ -123,7 +123,7 @@ def test_top_sinks_on_average_as_on_uniform_cells(body: str, loads) -> None:
 @pytest.mark.parametrize("body", ["quarter", "finite", "single-mirror"])
 def test_equivalent_loads_are_those_of_the_same_load_on_uniform_cells(body: str, loads) -> None:
     ended = BODIES[body]
-    assert isinstance(ended, EndedBody)
+    assert isinstance(ended, BodyWithFreeEnds)
     graded, uniform = (equivalent_loads(ended, load, FRICTION, z=[5e-5, 1e-4]) for load in loads)
     assert set(graded.data_vars) == set(uniform.data_vars)
     names = [name for name in uniform.data_vars if name.startswith("P_v")]

@@ -1,22 +1,22 @@
-"""Rough surfaces in the iteration: distances at given heights of the film, and states without a residual."""
+"""Rough surfaces: distances at given film heights, and states without a residual."""
 
 import numpy as np
 import pytest
 
 from contactstudy.film import Asperities
 from contactstudy.film.newton import SETTINGS, StepFailedError, solve_newton
-from contactstudy.film.problem import FilmProblem, start_of
+from contactstudy.film.problem import FilmProblem, initial_state
 from contactstudy.film.reynolds import FilmCells, Fluid, Law
 
 CELLS = FilmCells(x_edges=np.array([0.0, 1.0]), y_edges=np.linspace(-1.0, 1.0, 9), open_ends=False)
 ROUGH = Asperities(rms=1e-7)
 
 
-def problem(**named):
-    ones = Law(np.ones(8), np.zeros(8))
+def problem(**changes):
+    unit_law = Law(np.ones(8), np.zeros(8))
     values = {
         "cells": CELLS,
-        "fluid": Fluid(density=lambda _: ones, reduced_pressure=lambda p: Law(p, np.ones_like(p)), speed=1.0),
+        "fluid": Fluid(density=lambda _: unit_law, reduced_pressure=lambda p: Law(p, np.ones_like(p)), speed=1.0),
         "gap": np.ones(CELLS.shape),
         "displace": lambda pressure: 0.1 * pressure,
         "column_stiffness": 0.1 * np.eye(8)[None],
@@ -25,26 +25,26 @@ def problem(**named):
         "central_film": 1.0,
         "mean_height": ROUGH.mean_height(1e-6),
     }
-    return FilmProblem(**(values | named))
+    return FilmProblem(**(values | changes))
 
 
 @pytest.mark.parametrize("start", [-4.0, -1.0, 0.0, 3.0])
 @pytest.mark.parametrize("growth", [0.4, 1.0, 1e3, 1e6])
-def test_the_distance_at_a_height_of_the_film(start, growth):
+def test_distance_inverts_the_film_height(start, growth):
     rough = problem()
     distance = np.full(CELLS.shape, 0.1 * start)
-    height = growth * rough.film(distance).value
-    assert rough.film(rough.distance(height, distance)).value == pytest.approx(height, rel=1e-6)
+    height = growth * rough.compute_film(distance).value
+    assert rough.compute_film(rough.solve_distance(height, distance)).value == pytest.approx(height, rel=1e-6)
 
 
-def test_the_distance_of_smooth_surfaces_is_the_film():
+def test_distance_of_smooth_surfaces_equals_the_film():
     smooth = problem(mean_height=None)
     height = np.linspace(0.1, 2.0, 8)[None]
-    assert smooth.distance(height, 0 * height) == pytest.approx(height)
+    assert smooth.solve_distance(height, 0 * height) == pytest.approx(height)
 
 
-def test_a_state_without_a_residual_does_not_converge():
+def test_state_without_a_residual_raises():
     rough = problem()
-    state = start_of(rough, np.ones(CELLS.shape), np.zeros(1), np.full(CELLS.shape, np.nan))
+    state = initial_state(rough, np.ones(CELLS.shape), np.zeros(1), np.full(CELLS.shape, np.nan))
     with pytest.raises(StepFailedError):
         solve_newton(rough, state, SETTINGS, steady=False)

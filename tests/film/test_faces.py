@@ -5,12 +5,12 @@ import pytest
 
 from contactstudy.bodies.lubricant import Lubricant
 from contactstudy.film.reynolds import FilmCells, Fluid, Law
-from contactstudy.film.solve import _least
+from contactstudy.film.solve import _find_minimum
 
 CELLS = FilmCells(x_edges=np.array([0.0, 1.0]), y_edges=np.linspace(-1.0, 1.0, 21), open_ends=False)
 
 
-def test_faces_of_a_smooth_film_are_parabolas():
+def test_faces_of_a_smooth_film_follow_parabolas():
     height = 1 + CELLS.y**2
     film = CELLS.upwind(height) @ height
     assert film[2:-1] == pytest.approx(1 + CELLS.y_edges[2:-1] ** 2)
@@ -24,21 +24,21 @@ def test_faces_of_a_steep_film_are_positive_and_bounded(seed):
     assert (film <= 2 * height * (1 + 1e-12)).all()
 
 
-def test_flow_between_two_films_is_that_of_a_linear_film():
+def test_flow_between_films_equals_linear_film_flow():
     faces = FilmCells(x_edges=np.array([0.0, 1.0]), y_edges=np.array([0.0, 1.0, 3.0]), open_ends=False).along_y
     height, reduced = np.array([0.1, 2.0]), Law(np.array([1.0, 0.0]), np.ones(2))
     nodes, weights = np.polynomial.legendre.leggauss(100)
     linear = height.mean() + 0.5 * nodes * np.diff(height)
     resistance = 1.5 * 0.5 * float(weights @ linear**-3)
-    assert -faces.conducted(4.0, reduced, height).flow[1] == pytest.approx(1 / (4.0 * resistance), rel=1e-8)
+    assert -faces.conduct(4.0, reduced, height).flow[1] == pytest.approx(1 / (4.0 * resistance), rel=1e-8)
 
 
-def test_derivatives_of_the_flow_are_those_of_differences():
+def test_flow_derivatives_agree_with_differences():
     faces = FilmCells(x_edges=np.array([0.0, 1.0]), y_edges=np.linspace(0.0, 1.0, 6), open_ends=False).along_y
     height, pressure, step = np.array([0.1, 2.0, 1.0, 0.3, 0.7]), np.array([0.1, 0.4, 0.2, 0.5, 0.3]), 1e-6
 
     def flow(height, pressure):
-        return faces.conducted(2.0, Law(pressure**2, 2 * pressure), height)
+        return faces.conduct(2.0, Law(pressure**2, 2 * pressure), height)
 
     derivatives = flow(height, pressure)
     for cell in range(5):
@@ -51,13 +51,13 @@ def test_derivatives_of_the_flow_are_those_of_differences():
 
 def test_least_film_between_cells_is_positive():
     centres, edges = np.array([0.0, 1.0, 2.0]), np.array([-0.5, 0.5, 1.5, 2.5])
-    least = _least(centres, edges, np.array([0.5, 0.01, 1.0]), np.ones(3, bool))
+    least = _find_minimum(centres, edges, np.array([0.5, 0.01, 1.0]), np.ones(3, bool))
     assert 0 < least.value < 0.01
     assert 0.5 < least.position < 1.0
 
 
 @pytest.mark.parametrize("law", ["barus", "roelands"])
-def test_flow_between_two_cells_rises_with_the_step_of_the_pressure(law):
+def test_flow_rises_with_the_pressure_step(law):
     coefficient = 2e-8
     oil = Lubricant(viscosity=0.02, pressure_viscosity=coefficient, viscosity_law=law, density_law="constant")
     fluid = Fluid.of(oil, 1e9, 1.0)
@@ -66,7 +66,7 @@ def test_flow_between_two_cells_rises_with_the_step_of_the_pressure(law):
 
     def flow(pressure):
         reduced = fluid.reduced_pressure(np.array([pressure, 0.0]))
-        conducted = faces.conducted(fluid.speed, reduced, height)
+        conducted = faces.conduct(fluid.speed, reduced, height)
         assert conducted.by_pressure.toarray()[1, 0] <= 0
         return -float(conducted.flow[1])
 

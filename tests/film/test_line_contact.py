@@ -36,24 +36,24 @@ def test_table_of_compressible_roelands_oil(load, lubricant, central, least):
 
 
 @pytest.mark.slow
-def test_rigid_isoviscous_limit_is_martins():
+def test_rigid_isoviscous_limit_agrees_with_martin():
     assert 0.1 * solve_line(0.1, 0.01, finest=0.4).central == pytest.approx(2.448, rel=5e-3)
 
 
 @pytest.mark.parametrize(("load", "lubricant"), [(20, 10), (200, 10)])
-def test_rolling_moment(load, lubricant):
+def test_rolling_moment_follows_the_load(load, lubricant):
     film = solve_line(load, lubricant, inlet=4.0)
     assert film.rolling == pytest.approx(1.45 * load**-1.5, rel=0.04)
     # w delta = 2 t: the moment of the pressure is twice that of its force on the slopes.
     assert abs(film.moment) == pytest.approx(2 * film.rolling, rel=0.01)
 
 
-def test_formulas():
+def test_film_formulas_return_published_values():
     assert float(moes_line(100.0, 10.0)) == pytest.approx(4.297, abs=1e-3)
     assert nijenbanning(20.0, 10.0) == pytest.approx(4.71, abs=0.005)
 
 
-def test_pressure_of_a_heavy_load_is_that_of_hertz():
+def test_pressure_of_a_heavy_load_is_hertzian():
     film = solve_line(2000, 10)
     inner = np.abs(film.y) < 0.9
     assert np.abs(film.pressure - np.sqrt(np.maximum(1 - film.y**2, 0)))[inner].max() < 0.01

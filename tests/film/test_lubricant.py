@@ -5,20 +5,20 @@ from contactstudy import InvalidInputError, Lubricant
 from contactstudy.bodies.lubricant import OILS, walther
 
 
-def test_slope_of_the_density_is_its_derivative():
+def test_density_slope_equals_the_derivative():
     oil = Lubricant(viscosity=0.02, pressure_viscosity=2e-8)
     p = np.array([1e6, 1e8, 1e9])
     numeric = (oil.density_ratio(p * 1.0001) - oil.density_ratio(p * 0.9999)) / (2e-4 * p)
     assert oil.density_ratio_slope(p) == pytest.approx(numeric, rel=1e-5)
 
 
-def test_roelands_begins_with_the_coefficient_and_ends_below_barus():
+def test_roelands_starts_as_barus_and_ends_below():
     oil = Lubricant(viscosity=0.02, pressure_viscosity=2e-8)
     assert float(oil.log_viscosity(1e3)) == pytest.approx(2e-8 * 1e3, rel=1e-5)
     assert float(oil.log_viscosity(1e9)) < 2e-8 * 1e9
 
 
-def test_walther_through_two_viscosities():
+def test_walther_interpolates_two_viscosities():
     points = {40: 100.0, 100: 11.0}
     assert walther(points, 40.0)[0] == pytest.approx(100.0)
     step = 1e-3
@@ -27,7 +27,7 @@ def test_walther_through_two_viscosities():
 
 
 @pytest.mark.parametrize("name", OILS)
-def test_presets_meet_their_table(name):
+def test_presets_agree_with_their_table(name):
     for column, temperature in enumerate((30.0, 60.0, 100.0)):
         oil = Lubricant.preset(name, temperature)
         assert oil.viscosity == pytest.approx(OILS[name].viscosities[column])
@@ -46,12 +46,12 @@ def test_presets_meet_their_table(name):
         ({"density": -1.0}, "density"),
     ],
 )
-def test_bad_values(values, named):
+def test_bad_lubricant_is_rejected(values, named):
     with pytest.raises(InvalidInputError, match=named):
         Lubricant(**({"viscosity": 0.02, "pressure_viscosity": 2e-8} | values))
 
 
-def test_bad_temperatures():
+def test_bad_temperature_is_rejected():
     with pytest.raises(InvalidInputError, match="temperature"):
         Lubricant.preset("spindle oil", 20.0)
     with pytest.raises(InvalidInputError, match="viscosities"):

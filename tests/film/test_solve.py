@@ -20,7 +20,7 @@ PRESSURE = HALF_WIDTH * STEEL.plane_strain_modulus / (2 * RADIUS)
 
 
 def oil_of(case, load, lubricant, speed=1.0):
-    """Barus' oil of constant density with which a case has Moes' numbers."""
+    """Return Barus' oil of constant density for Moes' numbers of a case."""
     modulus = 2 * case.modulus
     root = case.normal_load / (case.contact_length * modulus * RADIUS * load)
     return cs.Lubricant(
@@ -55,33 +55,33 @@ def crowned():
     return coarse_film(film_case(LENGTH, 10.0, 5.0, profile=CROWN))
 
 
-def test_certificate(crowned):
+def test_certificate_is_small(crowned):
     assert bool(crowned.converged)
     assert float(crowned.mass_error) < 1e-6
     assert float(crowned.film_load_error) < 1e-8
     assert float(crowned.film_complementarity_error) < 1e-6
 
 
-def test_the_pressure_carries_the_load(crowned):
+def test_pressure_carries_the_load(crowned):
     dy = float(crowned.y[1] - crowned.y[0])
     load = float((crowned.pressure * crowned.x_width).sum() * dy)
     assert load == pytest.approx(float(crowned.normal_load), rel=1e-9)
     assert float(crowned.pressure.min()) >= 0.0
 
 
-def test_a_symmetric_roller_has_a_symmetric_film(crowned):
+def test_symmetric_roller_has_a_symmetric_film(crowned):
     assert float(crowned.least_film_first) == pytest.approx(float(crowned.least_film_last), rel=1e-3)
     assert float(crowned.least_film_first_x + crowned.least_film_last_x) == pytest.approx(LENGTH, rel=1e-3)
 
 
-def test_film_at_the_ends_of_a_half_space_is_thinner(crowned):
+def test_film_at_half_space_ends_is_thinner(crowned):
     body = cs.HalfSpace(material=STEEL)
-    other = coarse_film(film_case(LENGTH, 10.0, 5.0, body=body, profile=CROWN))
-    assert float(other.least_film) < 0.6 * float(crowned.least_film)
-    assert float(other.central_film) == pytest.approx(float(crowned.central_film), rel=0.05)
+    half_space_film = coarse_film(film_case(LENGTH, 10.0, 5.0, body=body, profile=CROWN))
+    assert float(half_space_film.least_film) < 0.6 * float(crowned.least_film)
+    assert float(half_space_film.central_film) == pytest.approx(float(crowned.central_film), rel=0.05)
 
 
-def test_the_middle_of_a_long_roller_is_a_line_contact():
+def test_mid_length_film_equals_a_line_contact():
     case = film_case(100 * HALF_WIDTH, profile=CROWN)
     film = coarse_film(case)
     scale = RADIUS * np.sqrt(2 * case.lubricant.viscosity / (2 * case.modulus * RADIUS))
@@ -92,10 +92,10 @@ def test_the_middle_of_a_long_roller_is_a_line_contact():
     assert middle == pytest.approx(line.central * scale, rel=0.04)
 
 
-def test_the_film_on_the_face_of_a_straight_flush_roller_does_not_follow_the_columns():
+def test_face_film_of_flush_rollers_has_converged():
     case = film_case(4 * HALF_WIDTH, 10.0, 5.0)
-    cells = (replace(COARSE, columns=0.12 * share, columns_inlet=0.4 * share) for share in (1.0, 0.5))
-    film, narrower = (solve_film(case, accuracy=0.2, resolution=each) for each in cells)
+    cells = (replace(COARSE, columns=0.12 * factor, columns_inlet=0.4 * factor) for factor in (1.0, 0.5))
+    film, narrower = (solve_film(case, accuracy=0.2, resolution=resolution) for resolution in cells)
     assert float(film.least_film_first_x) == pytest.approx(0.0, abs=1e-12)
     assert float(film.least_film_first) < 0.8 * float(film.least_film_middle)
     difference = abs(float(film.least_film_first - narrower.least_film_first))
@@ -103,7 +103,7 @@ def test_the_film_on_the_face_of_a_straight_flush_roller_does_not_follow_the_col
 
 
 @pytest.mark.slow
-def test_the_least_film_of_a_tilted_roller_is_at_its_end_and_not_in_another_minimum():
+def test_tilted_roller_has_minimum_film_at_its_end():
     """On the first columns the film seven half-widths from the end is thinner than at the end."""
     crown = cs.profiles.PartialCrown(straight_length=2.315e-3, crown_radius=97.95e-3)
     case = cs.Case(
@@ -119,30 +119,30 @@ def test_the_least_film_of_a_tilted_roller_is_at_its_end_and_not_in_another_mini
     )
     film = solve_film(case, accuracy=0.02)
     assert float(film.least_film_x) < 1.2 * float(film.hertz_half_width)
-    # Cells a quarter as wide along y and half as wide in columns compute 93.97 nm.
+    # Cells of a quarter of the width along y and half the width along x compute 93.97 nm.
     assert float(film.least_film) == pytest.approx(93.97e-9, abs=float(film.least_film_error))
 
 
-def test_slices_of_the_dry_contact_miss_the_closure_at_the_ends(crowned):
+def test_slice_films_miss_the_end_closure(crowned):
     case = replace(film_case(LENGTH, 10.0, 5.0, profile=CROWN), lubricant=None, motion=cs.Sliding())
     dry = cs.solve(case, accuracy=0.05, stresses=False)
     load = dry.pressure.sum("y") * float(dry.y[1] - dry.y[0])
     root = np.sqrt(2 * oil_of(case, 10.0, 5.0).viscosity / (2 * case.modulus * RADIUS))
     for x in (3 * HALF_WIDTH, HALF_WIDTH):
-        number = float(load.sel(x=x, method="nearest")) / (2 * case.modulus * RADIUS * root)
-        expected = moes_line(number, 5.0) * RADIUS * root
+        load_number = float(load.sel(x=x, method="nearest")) / (2 * case.modulus * RADIUS * root)
+        expected = moes_line(load_number, 5.0) * RADIUS * root
         assert float(crowned.slice_film.sel(x=x, method="nearest")) == pytest.approx(float(expected), rel=1e-2)
     assert float(crowned.slice_film.min()) > 1.5 * float(crowned.least_film)
     assert crowned.slice_film.attrs["error_kind"] == "not estimated"
 
 
-def test_surfaces_that_move_backwards_mirror_the_film(crowned):
-    turned = coarse_film(film_case(LENGTH, 10.0, 5.0, profile=CROWN, speed=-1.0))
-    assert float(turned.least_film_y) == pytest.approx(-float(crowned.least_film_y), rel=1e-6)
-    assert turned.film_thickness.values[:, ::-1] == pytest.approx(crowned.film_thickness.values, rel=1e-6)
+def test_reversed_surfaces_mirror_the_film(crowned):
+    mirrored = coarse_film(film_case(LENGTH, 10.0, 5.0, profile=CROWN, speed=-1.0))
+    assert float(mirrored.least_film_y) == pytest.approx(-float(crowned.least_film_y), rel=1e-6)
+    assert mirrored.film_thickness.values[:, ::-1] == pytest.approx(crowned.film_thickness.values, rel=1e-6)
 
 
-def test_the_next_speed_takes_cells_and_film_of_the_former_one(crowned):
+def test_next_speed_starts_from_the_previous_film(crowned):
     case = film_case(LENGTH, 10.0, 5.0, profile=CROWN)
     faster = replace(case, motion=cs.Sliding(body_speed=1.02, roller_speed=1.02))
     computed = cs.cache.info().kinds["surface operators"].computed
@@ -155,7 +155,7 @@ def test_the_next_speed_takes_cells_and_film_of_the_former_one(crowned):
         assert float(warm[f"{name}_error"]) == pytest.approx(float(cold[f"{name}_error"]), rel=1e-2)
 
 
-def test_asperities_carry_what_the_film_does_not():
+def test_asperities_carry_part_of_the_load():
     rough = Asperities(rms=1e-7)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", cs.ConvergenceWarning)
@@ -178,13 +178,13 @@ def test_asperities_carry_what_the_film_does_not():
         ({"coupled": True, "friction": 0.1}, "coupled"),
     ],
 )
-def test_bad_cases(changes, named):
+def test_bad_case_is_rejected(changes, named):
     case = replace(film_case(16 * HALF_WIDTH), **changes)
     with pytest.raises(cs.InvalidInputError, match=named):
         solve_film(case)
 
 
-def test_bad_arguments():
+def test_bad_argument_is_rejected():
     case = film_case(16 * HALF_WIDTH)
     with pytest.raises(cs.InvalidInputError, match="accuracy"):
         solve_film(case, accuracy=1e-5)

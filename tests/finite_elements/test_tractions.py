@@ -8,7 +8,7 @@ import pytest
 from benchmarks.finite_elements.harmonics import HarmonicBody, Line
 from benchmarks.finite_elements.superpose import Resolution as MeshResolution
 from contactstudy import Material
-from contactstudy.bodies.models import FreedEnds
+from contactstudy.bodies.models import FreeEnds
 from contactstudy.checks import FloatArray
 from contactstudy.kernels.load import Load, Response
 from contactstudy.overlapping.axial import axial_modes
@@ -49,7 +49,7 @@ def mirrored_half_space(lateral: float, response: Response) -> FloatArray:
 def own_displacement(bump: Bump, lateral: float, response: Response) -> FloatArray:
     """``2 G u`` of the top at `AT` under ``bump(x) cos(k y)``; components odd in y as the factor of -sin(k y)."""
     material, resolution = Material(2 * (1 + POISSON), POISSON), Resolution().for_loads([X])  # G is 1
-    request = EndRequest(FreedEnds(LENGTH), material, 0.1, 1, LENGTH, FINEST, (response,), 40.0, resolution)
+    request = EndRequest(FreeEnds(LENGTH), material, 0.1, 1, LENGTH, FINEST, (response,), 40.0, resolution)
     low, high = (float(np.clip(bump.centre + side * bump.half_width, 0.0, LENGTH)) for side in (-1, 1))
     nodes, weights = panel_nodes(np.linspace(low, high, 33), 16)
     forces = weights * bump(nodes)

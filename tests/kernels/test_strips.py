@@ -252,7 +252,7 @@ def test_operator_is_the_averaged_displacement_of_one_on_finer_cells(body: Body)
     responses = tuple(Response(direction, load) for direction in directions for load in loads)
     own = SurfaceOperator.of(body, fine, loads, directions)
     material, parts = body.material, []
-    for part in body.parts:
+    for part in body.terms:
         ends = end_kernel_of(part, material, coarse, responses, Resolution())
         parts.append((part.weight, ColumnsOperator.of(material, part.extent, coarse, responses, ends)))
     columns = SurfaceOperator(body, parts)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from contactstudy import Grid, Material
-from contactstudy.bodies.models import FreedEnds
+from contactstudy.bodies.models import FreeEnds
 from contactstudy.checks import FloatArray
 from contactstudy.kernels.load import Load, Response
 from contactstudy.overlapping.quadrature import Resolution
@@ -23,7 +23,7 @@ def request(
     edges: FloatArray, *, unit: float = 1.0, ends: int = 2, responses: tuple[Response, ...] = RESPONSES
 ) -> EndRequest:
     grid = Grid.between(unit * edges, (-unit, unit), 6)
-    freed = FreedEnds(unit * float(edges[-1]) if ends == 2 else np.inf)
+    freed = FreeEnds(unit * float(edges[-1]) if ends == 2 else np.inf)
     return EndRequest.of(freed, MATERIAL, grid, responses, 24.0 * unit, Resolution())
 
 

@@ -10,7 +10,7 @@ from scipy import integrate
 
 from contactstudy import Grid, Material
 from contactstudy.arrays.points import Points
-from contactstudy.bodies.models import FreedEnds
+from contactstudy.bodies.models import FreeEnds
 from contactstudy.kernels.load import NORMAL_RESPONSE, Load
 from contactstudy.overlapping.axial import SingleMirrorModes, axial_modes, modes_between_ends
 from contactstudy.overlapping.equations import EquationSet, load_on_end
@@ -41,7 +41,7 @@ def test_alternating_the_two_bodies_converges_to_the_explicit_solution(lateral: 
 @pytest.mark.parametrize("length", [8.0, 2.5])
 def test_correction_is_symmetric(length: float) -> None:
     grid = Grid(x_range=(0.0, length), y_range=(-2.0, 2.0), cells_x=24, cells_y=16)
-    freed = FreedEnds(length)
+    freed = FreeEnds(length)
     request = EndRequest.of(freed, Material(1.0, 0.3), grid, (NORMAL_RESPONSE,), 80.0, Resolution())
     for kernel in end_kernel(request).samples[NORMAL_RESPONSE]:
         assert np.abs(kernel - kernel.transpose(0, 2, 1)).max() < 1e-12 * np.abs(kernel).max()

@@ -12,7 +12,7 @@ from contactstudy import FiniteLengthSpace, HalfSpace, Material
 from contactstudy.verification.closed_forms import hertz_strip
 
 STEEL = Material(1000.0, 0.3)
-"""A thousand times as stiff as the peak pressure of the contacts here."""
+"""Young's modulus is a thousand times the peak pressure of the contacts."""
 
 
 @pytest.fixture(scope="session")
@@ -26,16 +26,16 @@ def steel_between_ends() -> FiniteLengthSpace:
 
 
 @pytest.fixture(scope="session")
-def passing() -> Callable[..., xr.Dataset]:
-    """Make Hertz' line contact of half-width and peak pressure 1; fading towards the ends of a length if given."""
+def line_contact() -> Callable[..., xr.Dataset]:
+    """Make Hertz' line contact of half-width and peak pressure 1; weaker towards the ends of a given length."""
 
     def build(friction: float = 0.0, length: float | None = None, positions: int = 9) -> xr.Dataset:
         y = np.linspace(-4, 4, 129)
         z = np.linspace(0.025, 1.975, 40) if length is None else np.linspace(0.05, 1.95, 20)
-        found = hertz_strip(y[:, None], z, 1.0, 1.0, 0.3, friction)
+        stresses = hertz_strip(y[:, None], z, 1.0, 1.0, 0.3, friction)
         x = np.zeros(1) if length is None else (np.arange(positions) + 0.5) * length / positions
-        share = np.ones(1) if length is None else 1 - 0.3 * np.abs(2 * x / length - 1) ** 2
-        fields = {name: (("x", "y", "z"), share[:, None, None] * values) for name, values in found.items()}
+        distribution = np.ones(1) if length is None else 1 - 0.3 * np.abs(2 * x / length - 1) ** 2
+        fields = {name: (("x", "y", "z"), distribution[:, None, None] * values) for name, values in stresses.items()}
         return xr.Dataset(fields, {"x": x, "y": y, "z": z})
 
     return build

@@ -25,13 +25,13 @@ def square() -> xr.Dataset:
 
 def test_square_in_half_space(square) -> None:
     x, z = np.array([-0.9, -0.1, 0.05]), np.array([0.2, 0.7, 0.85, 1.6])
-    found = eigenstrain_stress(HalfSpace(material=SOFT), square, x, z, z_edges=np.linspace(0.3, 1.3, 11))
+    result = eigenstrain_stress(HalfSpace(material=SOFT), square, x, z, z_edges=np.linspace(0.3, 1.3, 11))
     ranges = (-0.3, 0.3), (0.5, 1.1)
     expected = rectangle_in_half_plane(x[:, None], z, *ranges, (1.0, 0.0, -0.4, 0.3), SOFT.young, SOFT.poisson)
     names = ("sigma_xx", "sigma_yy", "sigma_zz", "tau_xz")
-    computed = np.stack([found[name].values for name in names])
+    computed = np.stack([result[name].values for name in names])
     assert np.abs(computed - expected).max() < 1e-4 * np.abs(expected).max()
-    assert found["sigma_xx"].attrs["units"] == "Pa"
+    assert result["sigma_xx"].attrs["units"] == "Pa"
 
 
 def test_cells_at_an_end() -> None:
@@ -39,10 +39,12 @@ def test_cells_at_an_end() -> None:
     x, z = 0.1 + 0.2 * np.arange(10), 0.1 + 0.2 * np.arange(6)
     strain = xr.Dataset({"plastic_strain_xx": (("x", "z"), np.outer(x, z))}, {"x": x, "z": z})
     edges = {"x_edges": np.linspace(0, 2, 11), "z_edges": np.linspace(0, 1.2, 7)}
-    given, own = (eigenstrain_stress(body, strain, x=[0.0, 1.05], z=[0.0, 0.65], **more) for more in (edges, {}))
-    assert np.allclose(given["sigma_yy"], own["sigma_yy"])
-    assert np.abs(own["sigma_xx"].sel(x=0.0)).max() < 1e-9
-    assert np.abs(own["sigma_zz"].sel(z=0.0)).max() < 1e-9
+    with_edges, without_edges = (
+        eigenstrain_stress(body, strain, x=[0.0, 1.05], z=[0.0, 0.65], **options) for options in (edges, {})
+    )
+    assert np.allclose(with_edges["sigma_yy"], without_edges["sigma_yy"])
+    assert np.abs(without_edges["sigma_xx"].sel(x=0.0)).max() < 1e-9
+    assert np.abs(without_edges["sigma_zz"].sel(z=0.0)).max() < 1e-9
 
 
 @pytest.mark.parametrize(

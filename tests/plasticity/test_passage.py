@@ -16,23 +16,23 @@ YOUNG, POISSON = 1000.0, 0.3
 LAYERS = LayerInfluence(POISSON, YOUNG)
 
 
-class Alone:
-    """Layers of which each place along y answers as if all were like it."""
+class IndependentLayers:
+    """Layers without influence between positions along y."""
 
     def stresses(self, eigenstrain: np.ndarray) -> np.ndarray:
         return LAYERS.stresses(eigenstrain.reshape(6, -1)).reshape(eigenstrain.shape)
 
 
-def passes_of(history: np.ndarray, shear_yield_stress: float, hardening: tuple[float, float], count: int) -> State:
+def solve_passes(history: np.ndarray, shear_yield_stress: float, hardening: tuple[float, float], count: int) -> State:
     """Passes over one cell of a history (instant, 6)."""
-    one = np.zeros(1, np.int64)
+    index = np.zeros(1, np.int64)
     passage = Passage(
         elastic=history.T[:, :, None],
         residual=LAYERS,
         layers=LAYERS,
-        along=Alone(),
-        places=history.shape[0] + 2,
-        box=(one, one),
+        lateral=IndependentLayers(),
+        lateral_positions=history.shape[0] + 2,
+        box=(index, index),
         yield_stress=np.full(1, np.sqrt(3) * shear_yield_stress),
         shear_modulus=YOUNG / (2 * (1 + POISSON)),
         isotropic=hardening[0],
@@ -41,54 +41,54 @@ def passes_of(history: np.ndarray, shear_yield_stress: float, hardening: tuple[f
     )
     state = State(np.zeros((6, 1)), np.zeros(1), True)
     for _ in range(count):
-        state = passage.after(state)
+        state = passage.solve(state)
     return state
 
 
-def integrated(
-    history: np.ndarray, radius: float, hardening: tuple[float, float], passes: int, parts: int
+def integrate_rates(
+    history: np.ndarray, radius: float, hardening: tuple[float, float], passes: int, substeps: int
 ) -> np.ndarray:
     """Residual stresses xx and yy of one layer, by the rate equations of Prandtl and Reuss in many small steps."""
     modulus = YOUNG / (1 - POISSON**2)
     isotropic, kinematic = hardening
     strain, accumulated = np.zeros(6), 0.0
 
-    def left(plastic: np.ndarray) -> np.ndarray:
+    def residual_of(plastic: np.ndarray) -> np.ndarray:
         xx, yy = modulus * (plastic[0] + POISSON * plastic[1]), modulus * (plastic[1] + POISSON * plastic[0])
         return -np.array([xx, yy, 0, YOUNG / (1 + POISSON) * plastic[3], 0, 0])
 
-    twice = np.array([1, 1, 1, 2, 2, 2.0])
+    counts = np.array([1, 1, 1, 2, 2, 2.0])
     for _ in range(passes):
-        for before, after in pairwise(history):
-            for part in range(parts):
-                stress = before + (part + 1) / parts * (after - before) + left(strain)
+        for stress_before, stress_after in pairwise(history):
+            for substep in range(substeps):
+                stress = stress_before + (substep + 1) / substeps * (stress_after - stress_before) + residual_of(strain)
                 dev = stress - np.array([1, 1, 1, 0, 0, 0]) * stress[:3].mean() - 2 / 3 * kinematic * strain
-                size = np.sqrt((twice * dev**2).sum())
+                size = np.sqrt((counts * dev**2).sum())
                 if size > radius + np.sqrt(2 / 3) * isotropic * accumulated:
-                    # The stress is brought back along the normal, in a body that answers to its flow by `left`.
+                    # The stress returns along the normal; the body responds to the flow by `residual_of`.
                     normal = dev / size
-                    answer = -(twice * normal * left(normal)).sum() + 2 / 3 * (kinematic + isotropic)
-                    step = (size - radius - np.sqrt(2 / 3) * isotropic * accumulated) / answer
+                    response = -(counts * normal * residual_of(normal)).sum() + 2 / 3 * (kinematic + isotropic)
+                    step = (size - radius - np.sqrt(2 / 3) * isotropic * accumulated) / response
                     strain, accumulated = strain + step * normal, accumulated + np.sqrt(2 / 3) * step
-    return left(strain)[:2]
+    return residual_of(strain)[:2]
 
 
 @pytest.mark.parametrize(
-    ("friction", "part", "hardening"),
+    ("friction", "ratio", "hardening"),
     [(0.0, 0.95, (0.0, 20.0)), (0.2, 0.97, (0.0, 10.0)), (0.2, 0.9, (30.0, 0.0))],
 )
-def test_one_layer_against_rate_equations(
-    passing, friction: float, part: float, hardening: tuple[float, float]
+def test_layer_agrees_with_rate_equations(
+    line_contact, friction: float, ratio: float, hardening: tuple[float, float]
 ) -> None:
-    contact = passing(friction)
-    needed = fatigue.shakedown(contact)["shakedown_stress"].isel(x=0)
-    decisive = int(needed.values.argmax())
-    least = part * float(needed[decisive])
-    coarse = np.stack([contact[name].isel(x=0, z=decisive).values[::-1] for name in STRESSES], axis=1)
-    at = np.linspace(0, len(coarse) - 1, 12 * (len(coarse) - 1) + 1)
-    fine = np.stack([np.interp(at, np.arange(len(coarse)), one) for one in coarse.T], axis=1)
-    state = passes_of(fine, least, hardening, 3)
+    contact = line_contact(friction)
+    yield_stresses = fatigue.shakedown(contact)["shakedown_stress"].isel(x=0)
+    depth_index = int(yield_stresses.values.argmax())
+    yield_stress = ratio * float(yield_stresses[depth_index])
+    coarse = np.stack([contact[name].isel(x=0, z=depth_index).values[::-1] for name in STRESSES], axis=1)
+    positions = np.linspace(0, len(coarse) - 1, 12 * (len(coarse) - 1) + 1)
+    fine = np.stack([np.interp(positions, np.arange(len(coarse)), values) for values in coarse.T], axis=1)
+    state = solve_passes(fine, yield_stress, hardening, 3)
     assert state.converged
-    expected = integrated(coarse, np.sqrt(2) * least, hardening, 3, 40)
+    expected = integrate_rates(coarse, np.sqrt(2) * yield_stress, hardening, 3, 40)
     assert np.abs(expected).max() > 0.01
     assert LAYERS.stresses(state.strain)[:2, 0] == pytest.approx(expected, abs=0.01 * np.abs(expected).max())

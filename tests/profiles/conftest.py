@@ -1,4 +1,4 @@
-"""A steel half-space, on which profiles are pressed, and places along a roller."""
+"""A steel half-space, on which profiles are solve_profile, and positions along a roller."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ def steel() -> Material:
 
 
 @pytest.fixture(scope="session")
-def places() -> np.ndarray:
+def positions() -> np.ndarray:
     """Distances from mid-length of a roller of length LENGTH, both ends and mid-length among them."""
     return LENGTH * (np.arange(201) - 100) / 200
 
 
 @pytest.fixture(scope="session")
-def pressed(steel: Material) -> Callable[..., xr.Dataset]:
+def solve_profile(steel: Material) -> Callable[..., xr.Dataset]:
     """Press a roller of a profile on a half-space at its Hertz pressure PRESSURE."""
 
     def press(profile: Profile, length: float, *, load: float | None = None, cells: float = 8, **grid) -> xr.Dataset:
@@ -36,17 +36,17 @@ def pressed(steel: Material) -> Callable[..., xr.Dataset]:
         case = Case(
             body=HalfSpace(material=steel), roller=roller, max_pressure=None if load else PRESSURE, load=load or None
         )
-        cells_of = choose_grid(case, cells_x=cells, cells_y=2 * cells, **grid)
-        return solve(case, cells_of, stresses=False).assign_attrs(length=length)
+        cells_grid = choose_grid(case, cells_x=cells, cells_y=2 * cells, **grid)
+        return solve(case, cells_grid, stresses=False).assign_attrs(length=length)
 
     return press
 
 
-def along(result: xr.Dataset) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def axial_results(result: xr.Dataset) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Distance from mid-length over half the length, largest pressure over p0, and load per length over its mean."""
-    middle = 0.5 * result.attrs["length"]
+    half_length = 0.5 * result.attrs["length"]
     step = float(result["y"][1] - result["y"][0])
     mean = float(result["normal_load"]) / result.attrs["length"]
     pressure = result["pressure"]
     peak = pressure.max("y").values / float(result["hertz_max_pressure"])
-    return (result["x"].values - middle) / middle, peak, pressure.sum("y").values * step / mean
+    return (result["x"].values - half_length) / half_length, peak, pressure.sum("y").values * step / mean

@@ -1,4 +1,4 @@
-"""Sums of profiles, and what every profile has in common."""
+"""Sums of profiles, and common properties of profiles."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ from contactstudy.profiles import (
 from tests.profiles.conftest import LENGTH, RADIUS
 
 FILLET = st.one_of(st.just(0.0), st.floats(1e-9, LENGTH / 2))
-EVEN = st.one_of(
+SYMMETRIC_PROFILES = st.one_of(
     st.builds(Cylinder, FILLET),
     st.builds(Tapered, st.floats(-0.1, 0.1), FILLET),
     st.builds(Lundberg, st.floats(0.0, 1e-5), st.floats(0.0, 3.0)),
@@ -46,11 +46,11 @@ EVEN = st.one_of(
     st.builds(Ellipsoid, st.floats(1e-2, 100.0)),
     st.just(Sphere(RADIUS)),
 )
-"""Every profile that is the same at both ends, over its valid range for a roller of length LENGTH."""
+"""Symmetric profiles over their valid ranges for a roller of length LENGTH."""
 
 
-@given(profile=EVEN, x=st.floats(0.0, LENGTH / 2))
-def test_drop_is_even_not_negative_and_grows_towards_the_ends(profile: Profile, x: float) -> None:
+@given(profile=SYMMETRIC_PROFILES, x=st.floats(0.0, LENGTH / 2))
+def test_drop_is_symmetric_and_increases_outwards(profile: Profile, x: float) -> None:
     drop = profile.drop(np.array([-x, x, 0.9 * x, 0.0]), LENGTH)
     assert drop.shape == (4,)
     assert drop[0] == drop[1]
@@ -58,17 +58,17 @@ def test_drop_is_even_not_negative_and_grows_towards_the_ends(profile: Profile, 
     assert drop[2] >= drop[3] == 0.0
 
 
-@given(one=EVEN, two=EVEN, three=EVEN)
-def test_a_sum_is_the_sum_of_the_drops(one: Profile, two: Profile, three: Profile) -> None:
+@given(first=SYMMETRIC_PROFILES, second=SYMMETRIC_PROFILES, third=SYMMETRIC_PROFILES)
+def test_sum_adds_the_drops(first: Profile, second: Profile, third: Profile) -> None:
     x = LENGTH * np.linspace(-0.49, 0.49, 15)
-    added = one + two + three  # type: ignore[operator]
-    assert added == Sum((one, two, three)) == one + (two + three)  # type: ignore[operator]
+    total = first + second + third  # type: ignore[operator]
+    assert total == Sum((first, second, third)) == first + (second + third)  # type: ignore[operator]
     np.testing.assert_array_equal(
-        added.drop(x, LENGTH), one.drop(x, LENGTH) + two.drop(x, LENGTH) + three.drop(x, LENGTH)
+        total.drop(x, LENGTH), first.drop(x, LENGTH) + second.drop(x, LENGTH) + third.drop(x, LENGTH)
     )
 
 
-def test_a_profile_of_ones_own_needs_only_a_drop() -> None:
+def test_user_profile_needs_only_a_drop() -> None:
     class Wedge:
         def drop(self, x, length):
             return 1e-4 * np.abs(x)
@@ -94,50 +94,55 @@ def test_a_profile_of_ones_own_needs_only_a_drop() -> None:
         (lambda x: np.full(x.shape, np.inf), "finite but at the very ends"),
     ],
 )
-def test_a_profile_of_ones_own_that_returns_no_drops(returned, named: str) -> None:
-    class Own:
+def test_invalid_drops_of_a_user_profile_are_rejected(returned, named: str) -> None:
+    class UserProfile:
         def drop(self, x, length):
             return returned(x)
 
     with pytest.raises(InvalidInputError, match=re.escape(named)):
-        Roller(radius=RADIUS, length=LENGTH, profile=Own())
+        Roller(radius=RADIUS, length=LENGTH, profile=UserProfile())
     if "very ends" not in named:
-        for combined in (Sum((Own(), Cylinder())), Halves(Cylinder(), Own())):
+        for combined in (Sum((UserProfile(), Cylinder())), Halves(Cylinder(), UserProfile())):
             with pytest.raises(InvalidInputError, match="profile = "):
                 combined.drop(np.linspace(0.0, 0.4, 5) * LENGTH, LENGTH)
 
 
-def test_a_drop_that_is_a_number_only_near_the_middle() -> None:
-    class Own:
+def test_nan_drop_near_the_end_is_rejected() -> None:
+    class UserProfile:
         def drop(self, x, length):
             return np.where(np.abs(x) > 0.4 * length, np.nan, 0.0)
 
-    roller = Roller(radius=RADIUS, length=LENGTH, profile=Own())
+    roller = Roller(radius=RADIUS, length=LENGTH, profile=UserProfile())
     with pytest.raises(InvalidInputError, match="it returned nan at x = "):
         roller.clearance(np.array([-0.45 * LENGTH, 0.0]), np.zeros(1))
 
 
-def test_a_profile_of_ones_own_has_its_name_and_no_address() -> None:
-    class Own:
+def test_repr_of_a_user_profile_is_its_name() -> None:
+    class UserProfile:
         def drop(self, x, length):
             return np.zeros_like(x)
 
-    for profile in (Own(), Sum((Own(), Cylinder())), Halves(Own(), Cylinder()), EffectiveLength(Own(), 0.5 * LENGTH)):
-        said = repr(Roller(radius=RADIUS, length=LENGTH, profile=profile))
-        assert "Own()" in said
-        assert " at 0x" not in said
+    for profile in (
+        UserProfile(),
+        Sum((UserProfile(), Cylinder())),
+        Halves(UserProfile(), Cylinder()),
+        EffectiveLength(UserProfile(), 0.5 * LENGTH),
+    ):
+        text = repr(Roller(radius=RADIUS, length=LENGTH, profile=profile))
+        assert "UserProfile()" in text
+        assert " at 0x" not in text
 
 
-def test_a_drop_may_be_a_list() -> None:
-    class Own:
+def test_drop_may_be_a_list() -> None:
+    class UserProfile:
         def drop(self, x, length):
             return [1e-6 for _ in x]
 
-    assert Roller(radius=RADIUS, length=LENGTH, profile=Own()).clearance(np.zeros(2), np.zeros(1))[0, 0] == 1e-6
+    assert Roller(radius=RADIUS, length=LENGTH, profile=UserProfile()).clearance(np.zeros(2), np.zeros(1))[0, 0] == 1e-6
 
 
 @pytest.mark.parametrize(
-    "make",
+    "create",
     [
         lambda: FullCrown(1e300),
         lambda: FullCrown(1.0, centre=1e300),
@@ -157,44 +162,44 @@ def test_a_drop_may_be_a_list() -> None:
         lambda: Measured((0, 1, 2, 3, 4), (1e300,) * 5),
     ],
 )
-def test_numbers_beyond_arithmetic_are_refused_by_name(make) -> None:
+def test_numbers_beyond_arithmetic_are_rejected(create) -> None:
     with pytest.raises(InvalidInputError, match=r"units are SI|numbers \(metres\)"):
-        make()
+        create()
 
 
-def test_the_radius_of_a_cone_survives_in_a_sum(places: np.ndarray) -> None:
+def test_sum_keeps_the_radius_of_a_cone(positions: np.ndarray) -> None:
     cone = Tapered(half_angle=0.05)
     for added in (cone + IsoTapered(LENGTH), IsoTapered(LENGTH) + cone):
         np.testing.assert_array_equal(
-            added.local_radius(places, LENGTH, RADIUS), cone.local_radius(places, LENGTH, RADIUS)
+            added.local_radius(positions, LENGTH, RADIUS), cone.local_radius(positions, LENGTH, RADIUS)
         )
 
 
 @pytest.mark.parametrize("profile", [Cylinder(), Tapered(0.1), Lundberg(1e-6), Measured((0, 1, 2, 3, 4), (0,) * 5)])
-def test_profiles_are_values(profile: Profile) -> None:
-    same = replace(profile)  # type: ignore[type-var]
-    assert same == profile
-    assert hash(same) == hash(profile)
-    assert profile + Cylinder() == same + Cylinder()  # type: ignore[operator]
+def test_equal_profiles_are_equal_and_hashable(profile: Profile) -> None:
+    copy = replace(profile)  # type: ignore[type-var]
+    assert copy == profile
+    assert hash(copy) == hash(profile)
+    assert profile + Cylinder() == copy + Cylinder()  # type: ignore[operator]
 
 
-def test_halves_are_different_left_and_right(places: np.ndarray) -> None:
+def test_halves_have_different_drops(positions: np.ndarray) -> None:
     left, right = Cylinder(1e-3), FullCrown(2.0)
-    drop = Halves(left=left, right=right).drop(places, LENGTH)
-    np.testing.assert_array_equal(drop[:100], left.drop(places[:100], LENGTH))
-    np.testing.assert_array_equal(drop[100:], right.drop(places[100:], LENGTH))
-    mirrored = Halves(left=right, right=left).drop(-places, LENGTH)
+    drop = Halves(left=left, right=right).drop(positions, LENGTH)
+    np.testing.assert_array_equal(drop[:100], left.drop(positions[:100], LENGTH))
+    np.testing.assert_array_equal(drop[100:], right.drop(positions[100:], LENGTH))
+    mirrored = Halves(left=right, right=left).drop(-positions, LENGTH)
     np.testing.assert_array_equal(mirrored, drop)
 
 
-def test_halves_keep_their_radii(places: np.ndarray) -> None:
-    radius = Halves(left=Cylinder(), right=Tapered(0.1)).local_radius(places, LENGTH, RADIUS)
+def test_halves_keep_their_radii(positions: np.ndarray) -> None:
+    radius = Halves(left=Cylinder(), right=Tapered(0.1)).local_radius(positions, LENGTH, RADIUS)
     assert (radius[:100] == RADIUS).all()
     assert (np.diff(radius[100:]) > 0).all()
 
 
 @pytest.mark.parametrize(
-    ("make", "message"),
+    ("create", "message"),
     [
         (lambda: Sum(()), r"terms = \(\): must be a tuple of at least one profile"),
         (lambda: Sum((Cylinder(), 3)), "terms = 3: must be profiles"),
@@ -205,11 +210,11 @@ def test_halves_keep_their_radii(places: np.ndarray) -> None:
         ),
     ],
 )
-def test_bad_values_are_named(make, message: str) -> None:
+def test_error_names_the_bad_value(create, message: str) -> None:
     with pytest.raises(InvalidInputError, match=message):
-        make()
+        create()
 
 
-def test_only_profiles_can_be_added() -> None:
+def test_sum_with_a_number_raises() -> None:
     with pytest.raises(TypeError, match="unsupported operand"):
         Cylinder() + 1e-6  # type: ignore[operator]

@@ -27,7 +27,7 @@ def test_two_sizes_determine_the_chamfer(sizes: dict[str, float]) -> None:
     np.testing.assert_allclose(drop, np.maximum(np.abs(X) - 0.5e-3, 0.0) * np.tan(ANGLE), atol=1e-18)
 
 
-def test_blend_is_an_arc_tangential_to_both_sides() -> None:
+def test_blend_arc_is_tangential_to_both_sides() -> None:
     radius = 5e-3
     chamfer = Chamfer(width=0.5e-3, angle=ANGLE, blend_radius=radius)
     x = np.linspace(0.0, LENGTH / 2, 200001)
@@ -48,7 +48,7 @@ def test_blend_is_an_arc_tangential_to_both_sides() -> None:
         ({"width": 1e-4, "angle": 0.5, "blend_radius": 1e-2}, "blend_radius"),
     ],
 )
-def test_sizes_out_of_range(sizes: dict[str, float], parameter: str) -> None:
+def test_sizes_out_of_range_are_rejected(sizes: dict[str, float], parameter: str) -> None:
     with pytest.raises(InvalidInputError) as caught:
         Chamfer(**sizes).drop(X, LENGTH)
     assert caught.value.parameter == parameter
@@ -68,7 +68,7 @@ RIDGE = Halves(FullCrown(0.2, centre=0.5e-3), FullCrown(0.2, centre=-0.5e-3))
         (Halves(FullCrown(1.0), FullCrown(0.5)), [], []),
     ],
 )
-def test_corners_of_formulas(profile, positions: list[float], jumps: list[float]) -> None:
+def test_slope_jumps_of_formulas(profile, positions: list[float], jumps: list[float]) -> None:
     corners = as_shape(profile).slope_jumps(LENGTH)
     np.testing.assert_allclose(corners.positions, positions, atol=1e-12)
     np.testing.assert_allclose(corners.jumps, jumps, rtol=1e-4)

@@ -25,37 +25,37 @@ from tests.profiles.conftest import LENGTH, RADIUS
 CROWN = FullCrown(0.8)
 
 
-def test_within_the_effective_length_it_is_the_profile_on_that_length(places: np.ndarray) -> None:
+def test_drop_within_the_effective_length(positions: np.ndarray) -> None:
     effective = 0.9 * LENGTH
-    inside = places[np.abs(places) <= 0.5 * effective]
+    inside = positions[np.abs(positions) <= 0.5 * effective]
     assert EffectiveLength(CROWN, effective).drop(inside, LENGTH) == pytest.approx(CROWN.drop(inside, effective))
-    assert EffectiveLength(CROWN, LENGTH).drop(places, LENGTH) == pytest.approx(CROWN.drop(places, LENGTH))
+    assert EffectiveLength(CROWN, LENGTH).drop(positions, LENGTH) == pytest.approx(CROWN.drop(positions, LENGTH))
 
 
-def test_corners_are_those_of_a_rounded_cylinder(places: np.ndarray) -> None:
-    found = EffectiveLength(Cylinder(), 0.8 * LENGTH).drop(places, LENGTH)
-    assert found == pytest.approx(Cylinder(fillet_radius=0.1 * LENGTH).drop(places, LENGTH), abs=1e-18)
+def test_corners_equal_a_rounded_cylinder(positions: np.ndarray) -> None:
+    drops = EffectiveLength(Cylinder(), 0.8 * LENGTH).drop(positions, LENGTH)
+    assert drops == pytest.approx(Cylinder(fillet_radius=0.1 * LENGTH).drop(positions, LENGTH), abs=1e-18)
 
 
 @pytest.mark.parametrize(
     "profile", [CROWN, FujiwaraKawase(2e-7, 1e-6), FujiwaraKawase(5e-7, 8e-6), JohnsGohar(1e-6, 4e-5)]
 )
-def test_corners_go_on_from_the_profile(profile: Profile) -> None:
-    """A corner that began parallel to the axis would be a ledge, pressed beside the profile that falls towards it."""
+def test_corners_continue_the_profile(profile: Profile) -> None:
+    """The corner starts with the profile's slope: a corner parallel to the axis would be a loaded ledge."""
     effective = 0.9 * LENGTH
     x = np.linspace(0.4 * LENGTH, 0.5 * LENGTH, 20001)
     drop = EffectiveLength(profile, effective).drop(x, LENGTH)
     assert np.array_equal(drop, EffectiveLength(profile, effective).drop(-x, LENGTH))
     slope = np.diff(drop) / np.diff(x)
-    # No slope above 1 within the effective length is gone on with: that is steeper than any contact.
+    # The corner continues slopes up to 1, steeper than any contact.
     assert (np.diff(np.minimum(slope, 0.99)) > -1e-9).all()
     assert slope[-1] > 50
     radius = 0.05 * LENGTH
     assert drop[-1] > EffectiveLength(profile, effective).end_drop + radius
 
 
-def test_a_corner_is_a_circle_from_the_slope_of_a_cone_to_a_right_angle() -> None:
-    """Of a straight flank of slope 3/4, the corner turns by what is left of a right angle: radius c / (1 - 0.6)."""
+def test_corner_is_a_circle_up_to_a_right_angle() -> None:
+    """The corner turns from a flank of slope 3/4 to a right angle, with the radius c / (1 - 0.6)."""
 
     class Cone(Shape):
         def drop(self, x, length):
@@ -68,13 +68,13 @@ def test_a_corner_is_a_circle_from_the_slope_of_a_cone_to_a_right_angle() -> Non
     assert EffectiveLength(Cone(), 2 * half).drop(x, LENGTH) == pytest.approx(drop, rel=1e-6)
 
 
-def test_radius_across_is_that_of_the_profile(places: np.ndarray) -> None:
-    inside = places[np.abs(places) <= 0.4 * LENGTH]
-    found = local_radius(EffectiveLength(Tapered(0.05), 0.8 * LENGTH), inside, LENGTH, RADIUS)
-    assert found == pytest.approx(local_radius(Tapered(0.05), inside, 0.8 * LENGTH, RADIUS))
+def test_radius_across_equals_the_profile(positions: np.ndarray) -> None:
+    inside = positions[np.abs(positions) <= 0.4 * LENGTH]
+    drops = local_radius(EffectiveLength(Tapered(0.05), 0.8 * LENGTH), inside, LENGTH, RADIUS)
+    assert drops == pytest.approx(local_radius(Tapered(0.05), inside, 0.8 * LENGTH, RADIUS))
 
 
-def test_infinite_end_drop_ends_in_a_corner_of_slope_one() -> None:
+def test_infinite_drop_continues_up_to_slope_one() -> None:
     effective = 0.9 * LENGTH
     profile = EffectiveLength(Lundberg(2e-7), effective)
     x = np.linspace(0.0, 0.5 * LENGTH, 100001)
@@ -86,12 +86,12 @@ def test_infinite_end_drop_ends_in_a_corner_of_slope_one() -> None:
     assert drop[-1] > 0.05 * LENGTH
 
 
-def test_it_says_the_drop_at_its_end() -> None:
+def test_repr_contains_the_end_drop() -> None:
     assert repr(EffectiveLength(FullCrown(1.0), 8e-3)).endswith("effective_length=8 mm, drop 8 µm at its end)")
 
 
 @pytest.mark.parametrize(
-    ("make", "said"),
+    ("create", "message"),
     [
         (lambda: EffectiveLength(CROWN, 0.0), "effective_length = 0.0"),
         (lambda: EffectiveLength("crown", LENGTH), "profile = 'crown'"),
@@ -101,6 +101,6 @@ def test_it_says_the_drop_at_its_end() -> None:
         ),
     ],
 )
-def test_bad_input(make, said: str) -> None:
-    with pytest.raises(InvalidInputError, match=re.escape(said)):
-        make()
+def test_bad_input_is_rejected(create, message: str) -> None:
+    with pytest.raises(InvalidInputError, match=re.escape(message)):
+        create()

@@ -21,49 +21,55 @@ def test_full_crown_lies_on_its_circle(radius: float, x: float) -> None:
     assert np.hypot(x, radius - drop) == pytest.approx(radius, rel=1e-12)
 
 
-def test_full_crown_has_its_highest_point_where_it_is_told(places: np.ndarray) -> None:
-    drop = FullCrown(1.0, centre=1e-3).drop(places, LENGTH)
-    assert places[drop.argmin()] == pytest.approx(1e-3)
+def test_centre_is_the_highest_point_of_a_crown(positions: np.ndarray) -> None:
+    drop = FullCrown(1.0, centre=1e-3).drop(positions, LENGTH)
+    assert positions[drop.argmin()] == pytest.approx(1e-3)
     assert drop.min() == pytest.approx(0.0, abs=1e-18)
 
 
-def test_full_crown_of_large_radius_is_the_parabola(places: np.ndarray) -> None:
-    np.testing.assert_allclose(FullCrown(50.0).drop(places, LENGTH), Ellipsoid(50.0).drop(places, LENGTH), rtol=1e-8)
+def test_full_crown_of_large_radius_equals_the_parabola(positions: np.ndarray) -> None:
+    np.testing.assert_allclose(
+        FullCrown(50.0).drop(positions, LENGTH), Ellipsoid(50.0).drop(positions, LENGTH), rtol=1e-8
+    )
 
 
 @given(straight=st.floats(0.0, 6e-3), crown=st.floats(0.05, 10.0), dub=st.floats(0.1e-3, 1.5e-3))
-def test_partial_crown_has_no_corner_between_its_arcs(straight: float, crown: float, dub: float) -> None:
+def test_arcs_of_a_partial_crown_join_tangentially(straight: float, crown: float, dub: float) -> None:
     """Curvature 0, 1/R1, 1/R2: its integral from mid-length is the slope, and that of the slope the drop."""
     profile = PartialCrown(straight, crown, dub, dub_radius=0.02)
     x = np.linspace(0.0, HALF, 4001)
-    middle = 0.5 * (x[1:] + x[:-1])
-    curved = np.where(middle < straight / 2, 0.0, np.where(middle < HALF - dub, 1 / crown, 1 / 0.02))
-    sine = np.concatenate([[0.0], np.cumsum(curved) * (x[1] - x[0])])
+    midpoints = 0.5 * (x[1:] + x[:-1])
+    curvature = np.where(midpoints < straight / 2, 0.0, np.where(midpoints < HALF - dub, 1 / crown, 1 / 0.02))
+    sine = np.concatenate([[0.0], np.cumsum(curvature) * (x[1] - x[0])])
     slope = sine / np.sqrt(1 - sine**2)
     drop = np.concatenate([[0.0], np.cumsum(0.5 * (slope[1:] + slope[:-1])) * (x[1] - x[0])])
     np.testing.assert_allclose(profile.drop(x, LENGTH), drop, rtol=0, atol=1e-2 * drop.max())
 
 
-def test_partial_crown_contains_the_full_crown_and_the_cylinder(places: np.ndarray) -> None:
-    np.testing.assert_array_equal(PartialCrown(0.0, 2.0).drop(places, LENGTH), FullCrown(2.0).drop(places, LENGTH))
-    np.testing.assert_array_equal(PartialCrown(LENGTH, 2.0).drop(places, LENGTH), 0.0)
+def test_partial_crown_equals_crown_and_cylinder_in_the_limits(positions: np.ndarray) -> None:
+    np.testing.assert_array_equal(
+        PartialCrown(0.0, 2.0).drop(positions, LENGTH), FullCrown(2.0).drop(positions, LENGTH)
+    )
+    np.testing.assert_array_equal(PartialCrown(LENGTH, 2.0).drop(positions, LENGTH), 0.0)
 
 
-def test_dub_off_of_the_same_radius_is_no_dub_off(places: np.ndarray) -> None:
-    one, other = PartialCrown(2e-3, 0.5), PartialCrown(2e-3, 0.5, dub_length=1e-3, dub_radius=0.5)
-    np.testing.assert_allclose(other.drop(places, LENGTH), one.drop(places, LENGTH), rtol=1e-12, atol=1e-18)
+def test_dub_off_of_equal_radius_has_no_influence(positions: np.ndarray) -> None:
+    plain_crown, dubbed_crown = PartialCrown(2e-3, 0.5), PartialCrown(2e-3, 0.5, dub_length=1e-3, dub_radius=0.5)
+    np.testing.assert_allclose(
+        dubbed_crown.drop(positions, LENGTH), plain_crown.drop(positions, LENGTH), rtol=1e-12, atol=1e-18
+    )
 
 
-def test_corner_radius_is_added(places: np.ndarray) -> None:
+def test_corner_radius_is_added(positions: np.ndarray) -> None:
     crown, corner = PartialCrown(6e-3, 1.0, 0.5e-3, 0.02), Cylinder(fillet_radius=0.2e-3)
-    drop = (crown + corner).drop(places, LENGTH)
-    before = np.abs(places) <= HALF - 0.2e-3
-    np.testing.assert_array_equal(drop[before], crown.drop(places, LENGTH)[before])
-    assert drop[-1] == pytest.approx(crown.drop(places, LENGTH)[-1] + 0.2e-3)
+    drop = (crown + corner).drop(positions, LENGTH)
+    inside = np.abs(positions) <= HALF - 0.2e-3
+    np.testing.assert_array_equal(drop[inside], crown.drop(positions, LENGTH)[inside])
+    assert drop[-1] == pytest.approx(crown.drop(positions, LENGTH)[-1] + 0.2e-3)
 
 
 @pytest.mark.parametrize(
-    ("make", "message"),
+    ("create", "message"),
     [
         (lambda: FullCrown(0.0), "crown_radius = 0.0"),
         (lambda: FullCrown(4e-3).drop(np.zeros(1), LENGTH), "crown_radius = 0.004: must be at least 0.005 m"),
@@ -80,39 +86,39 @@ def test_corner_radius_is_added(places: np.ndarray) -> None:
         (lambda: PartialCrown(9e-3, 1.0, 1e-3, 0.1).drop(np.zeros(1), LENGTH), "dub_length = 0.001: must be at most"),
     ],
 )
-def test_bad_values_are_named(make, message: str) -> None:
+def test_error_names_the_bad_value(create, message: str) -> None:
     with pytest.raises(InvalidInputError, match=message):
-        make()
+        create()
 
 
-def test_sphere_is_hertz_point_contact(pressed, steel: Material) -> None:
+def test_sphere_pressure_equals_hertz_point_contact(solve_profile, steel: Material) -> None:
     load, length = 200.0, 2e-3
-    result = pressed(Sphere(RADIUS), length, load=load, cells=4, window=4.0)
+    result = solve_profile(Sphere(RADIUS), length, load=load, cells=4, window=4.0)
     radius = np.cbrt(0.75 * load * RADIUS / steel.plane_strain_modulus)
     assert float(result["pressure"].max()) == pytest.approx(1.5 * load / (np.pi * radius**2), rel=5e-3)
     cell = float(result["x"][1] - result["x"][0]) * float(result["y"][1] - result["y"][0])
     assert float((result["pressure"] > 0).sum()) * cell == pytest.approx(np.pi * radius**2, rel=0.04)
 
 
-def test_sphere_is_an_ellipsoid_of_the_rollers_radius(places: np.ndarray) -> None:
-    np.testing.assert_array_equal(Sphere(RADIUS).drop(places, LENGTH), Ellipsoid(RADIUS).drop(places, LENGTH))
+def test_sphere_equals_an_ellipsoid_of_equal_radius(positions: np.ndarray) -> None:
+    np.testing.assert_array_equal(Sphere(RADIUS).drop(positions, LENGTH), Ellipsoid(RADIUS).drop(positions, LENGTH))
     Roller(radius=RADIUS, length=LENGTH, profile=Sphere(RADIUS))
 
 
-def test_ellipsoid_is_hertz_elliptic_contact(pressed, steel: Material) -> None:
+def test_ellipsoid_pressure_equals_hertz_elliptic_contact(solve_profile, steel: Material) -> None:
     load, length, crown = 200.0, 4e-3, 8 * RADIUS
-    result = pressed(Ellipsoid(crown), length, load=load, cells=3, window=5.0)
+    result = solve_profile(Ellipsoid(crown), length, load=load, cells=3, window=5.0)
     exact = hertz_ellipse(load, crown, RADIUS, steel.plane_strain_modulus)
     assert float(result["pressure"].max()) == pytest.approx(exact.max_pressure, rel=5e-3)
     for axis, half in (("x", exact.long), ("y", exact.short)):
         positions = result[axis].values
-        other = "y" if axis == "x" else "x"
-        touched = positions[(result["pressure"] > 0).any(other).values]
-        assert np.ptp(touched) / 2 == pytest.approx(half, abs=positions[1] - positions[0])
+        dubbed_crown = "y" if axis == "x" else "x"
+        loaded_positions = positions[(result["pressure"] > 0).any(dubbed_crown).values]
+        assert np.ptp(loaded_positions) / 2 == pytest.approx(half, abs=positions[1] - positions[0])
 
 
 @pytest.mark.parametrize(
-    ("make", "message"),
+    ("create", "message"),
     [
         (lambda: Ellipsoid(0.0), "crown_radius = 0.0"),
         (lambda: Ellipsoid("round"), "crown_radius = 'round'"),
@@ -123,6 +129,6 @@ def test_ellipsoid_is_hertz_elliptic_contact(pressed, steel: Material) -> None:
         ),
     ],
 )
-def test_bad_radii_are_named(make, message: str) -> None:
+def test_error_names_the_bad_radius(create, message: str) -> None:
     with pytest.raises(InvalidInputError, match=message):
-        make()
+        create()

@@ -11,11 +11,11 @@ from tests.documentation.pages import ROOT
 TEXT = (ROOT / "docs" / "reference" / "profiles.md").read_text()
 
 
-def test_every_profile_is_in_the_table_with_its_parameters() -> None:
+def test_table_contains_all_profiles_and_parameters() -> None:
     rows = dict(re.findall(r"^\| `(\w+)` \|(.*)$", TEXT, re.MULTILINE))
     public = (getattr(profiles, name) for name in profiles.__all__)
-    made = {entry.__name__: entry for entry in public if dataclasses.is_dataclass(entry)}
-    assert set(rows) == set(made)
+    profile_classes = {entry.__name__: entry for entry in public if dataclasses.is_dataclass(entry)}
+    assert set(rows) == set(profile_classes)
     for name, row in rows.items():
-        for entry in dataclasses.fields(made[name]):
+        for entry in dataclasses.fields(profile_classes[name]):
             assert f"`{entry.name}`" in row, (name, entry.name)

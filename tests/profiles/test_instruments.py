@@ -1,4 +1,4 @@
-"""Files of instruments: x3p, written by the library of the format; turning; what is refused."""
+"""Files of instruments: x3p, rotation, rejected files."""
 
 import zipfile
 from pathlib import Path
@@ -9,64 +9,67 @@ import x3pio
 
 from contactstudy import ContactStudyError, InvalidInputError
 from contactstudy.profiles import instruments
-from contactstudy.profiles.instruments import Heights, read_heights, turned
+from contactstudy.profiles.instruments import Heights, read_heights, rotate_heights
 
 X, Y = 2e-6 * np.arange(5), 3e-6 * np.arange(4)
 MAP = 1e-6 * np.random.default_rng(0).normal(size=(5, 4))
 
 
-def check(found: Heights, x=X, y=Y, heights=MAP) -> None:
-    np.testing.assert_allclose(found.x, x, rtol=1e-12, atol=1e-20)
-    np.testing.assert_allclose(found.y, y, rtol=1e-12, atol=1e-20)
-    np.testing.assert_allclose(found.heights, heights, rtol=1e-12)
+def assert_heights(measured: Heights, x=X, y=Y, heights=MAP) -> None:
+    np.testing.assert_allclose(measured.x, x, rtol=1e-12, atol=1e-20)
+    np.testing.assert_allclose(measured.y, y, rtol=1e-12, atol=1e-20)
+    np.testing.assert_allclose(measured.heights, heights, rtol=1e-12)
 
 
 def test_x3p_surface(tmp_path: Path) -> None:
     values = MAP.copy()
     values[2, 1] = np.nan
     x3pio.write(tmp_path / "map.x3p", values.T, x_scale=2e-6, y_scale=3e-6)
-    check(read_heights(tmp_path / "map.x3p"), heights=values)
+    assert_heights(read_heights(tmp_path / "map.x3p"), heights=values)
     x3pio.write(tmp_path / "line.x3p", MAP[:, :1].T, x_scale=2e-6, y_scale=3e-6)
     line = read_heights(tmp_path / "line.x3p")
     assert line.y is None
     np.testing.assert_allclose(line.heights, MAP[:, 0])
 
 
-def test_x3p_profile_even_or_not(tmp_path: Path) -> None:
+def test_x3p_profile_of_even_and_uneven_points(tmp_path: Path) -> None:
     x3pio.Profile.from_array(MAP[:, 0], x_scale=2e-6).save(tmp_path / "even.x3p")
     uneven = np.array([0.0, 1.0, 3.0, 4.0, 6.0]) * 1e-6
     points = np.stack([uneven, np.zeros(5), MAP[:, 0]], axis=1)
     x3pio.Profile.from_points(points).save(tmp_path / "uneven.x3p")
     for name, x in (("even", X), ("uneven", uneven)):
-        found = read_heights(tmp_path / f"{name}.x3p")
-        assert found.y is None
-        np.testing.assert_allclose(found.x, x, atol=1e-20)
-        np.testing.assert_allclose(found.heights, MAP[:, 0])
+        measured = read_heights(tmp_path / f"{name}.x3p")
+        assert measured.y is None
+        np.testing.assert_allclose(measured.x, x, atol=1e-20)
+        np.testing.assert_allclose(measured.heights, MAP[:, 0])
 
 
-def test_turns_are_those_of_a_part_on_a_table() -> None:
-    """A point at (x, y) comes to lie where a rotation takes it; its height goes with it."""
-    found = Heights(X, Y, MAP)
+def test_rotation_moves_heights_with_their_points() -> None:
+    """A point at (x, y) moves to its rotated position with its height."""
+    measured = Heights(X, Y, MAP)
     for turn in (0, 90, 180, 270):
-        there = turned(found, turn)
+        rotated = rotate_heights(measured, turn)
         angle = np.deg2rad(turn)
         for i, j in ((0, 0), (1, 3), (4, 2)):
             x, y = X[i] - X.mean(), Y[j] - Y.mean()
-            at = np.cos(angle) * x - np.sin(angle) * y, np.sin(angle) * x + np.cos(angle) * y
-            nearest = [np.abs(axis - axis.mean() - place).argmin() for axis, place in zip(there[:2], at, strict=True)]
-            assert there.heights[tuple(nearest)] == MAP[i, j]
-        assert (np.diff(there.x) > 0).all()
-        assert (np.diff(there.y) > 0).all()
-    check(turned(turned(found, 90, mirror=True), 90, mirror=True))
+            position = np.cos(angle) * x - np.sin(angle) * y, np.sin(angle) * x + np.cos(angle) * y
+            nearest = [
+                np.abs(axis - axis.mean() - coordinate).argmin()
+                for axis, coordinate in zip(rotated[:2], position, strict=True)
+            ]
+            assert rotated.heights[tuple(nearest)] == MAP[i, j]
+        assert (np.diff(rotated.x) > 0).all()
+        assert (np.diff(rotated.y) > 0).all()
+    assert_heights(rotate_heights(rotate_heights(measured, 90, mirror=True), 90, mirror=True))
 
 
 @pytest.mark.parametrize(("turn", "line"), [(45, False), (True, False), ("90", False), (90, True)])
-def test_other_turns_are_refused(turn: object, line: bool) -> None:
+def test_invalid_angles_are_rejected(turn: object, line: bool) -> None:
     with pytest.raises(InvalidInputError, match="turn = "):
-        turned(Heights(X, None, MAP[:, 0]) if line else Heights(X, Y, MAP), turn)
+        rotate_heights(Heights(X, None, MAP[:, 0]) if line else Heights(X, Y, MAP), turn)
 
 
-def test_bad_files_are_named(tmp_path: Path) -> None:
+def test_error_names_the_bad_file(tmp_path: Path) -> None:
     (tmp_path / "broken.x3p").write_bytes(b"PK\x03\x04 no such file")
     with pytest.raises(InvalidInputError, match=r"path = .*broken.x3p"):
         read_heights(tmp_path / "broken.x3p")
@@ -77,18 +80,18 @@ def test_bad_files_are_named(tmp_path: Path) -> None:
         read_heights(tmp_path / "pipe.x3p")
 
 
-def test_large_xml_is_refused_before_it_is_unpacked(tmp_path: Path, monkeypatch) -> None:
-    monkeypatch.setattr(instruments, "MOST_XML", 100_000)
+def test_large_xml_is_rejected_before_unpacking(tmp_path: Path, monkeypatch) -> None:
+    monkeypatch.setattr(instruments, "MAX_XML", 100_000)
     path = tmp_path / "bomb.x3p"
     x3pio.write(path, MAP.T, x_scale=2e-6, y_scale=3e-6)
     with zipfile.ZipFile(path, "a", zipfile.ZIP_DEFLATED) as archive:
-        archive.writestr("other.xml", b" " * (instruments.MOST_XML + 1))
+        archive.writestr("other.xml", b" " * (instruments.MAX_XML + 1))
     monkeypatch.setattr(x3pio, "read", lambda path: pytest.fail("the file is unpacked"))
-    with pytest.raises(InvalidInputError, match=rf"other.xml.*{instruments.MOST_XML + 1}"):
+    with pytest.raises(InvalidInputError, match=rf"other.xml.*{instruments.MAX_XML + 1}"):
         read_heights(path)
 
 
-def test_x3p_without_the_extra_is_not_told_to_change_its_name(tmp_path: Path, monkeypatch) -> None:
+def test_x3p_without_the_extra_names_the_extra(tmp_path: Path, monkeypatch) -> None:
     path = tmp_path / "flank.x3p"
     x3pio.write(path, MAP.T, x_scale=2e-6, y_scale=3e-6)
     monkeypatch.setattr(instruments, "find_spec", lambda name: None)
@@ -96,7 +99,7 @@ def test_x3p_without_the_extra_is_not_told_to_change_its_name(tmp_path: Path, mo
         read_heights(path)
 
 
-def test_clouds_and_layers_are_refused(tmp_path: Path) -> None:
+def test_clouds_and_layers_are_rejected(tmp_path: Path) -> None:
     x3pio.write_points(tmp_path / "cloud.x3p", np.random.default_rng(0).normal(size=(9, 3)))
     with pytest.raises(InvalidInputError, match="cloud of points"):
         read_heights(tmp_path / "cloud.x3p")
@@ -106,7 +109,7 @@ def test_clouds_and_layers_are_refused(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(("name", "package"), [("a.x3p", "x3pio"), ("a.gwy", "SurfaceTopography")])
-def test_without_the_extra_it_says_how_to_install(tmp_path: Path, monkeypatch, name: str, package: str) -> None:
+def test_missing_package_names_the_installation(tmp_path: Path, monkeypatch, name: str, package: str) -> None:
     monkeypatch.setattr(instruments, "find_spec", lambda name: None)
     with pytest.raises(ContactStudyError, match=rf'{package}.*pip install "contactstudy\[measured\]"'):
         read_heights(tmp_path / name)

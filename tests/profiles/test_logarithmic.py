@@ -10,21 +10,21 @@ from hypothesis import strategies as st
 from contactstudy import InvalidInputError, Material
 from contactstudy.bodies.hertz import line_load
 from contactstudy.profiles import Cylinder, FujiwaraKawase, IsoCylindrical, IsoTapered, JohnsGohar, Lundberg
-from tests.profiles.conftest import LENGTH, PRESSURE, RADIUS, along
+from tests.profiles.conftest import LENGTH, PRESSURE, RADIUS, axial_results
 
 HALF = LENGTH / 2
 
 
-def test_lundberg_as_two_logarithms(places: np.ndarray) -> None:
-    """The distances to both ends, in logarithms of their own."""
+def test_lundberg_equals_two_logarithms(positions: np.ndarray) -> None:
+    """The drop is a sum of logarithms of the distances to both ends."""
     profile = Lundberg(amplitude=2e-7, delta=1.5)
-    inner = places[1:-1]
+    inner = positions[1:-1]
     expected = -1.5 * 2e-7 * (np.log(HALF - inner) + np.log(HALF + inner) - 2 * np.log(HALF))
     np.testing.assert_allclose(profile.drop(inner, LENGTH), expected, rtol=1e-12, atol=1e-20)
-    assert np.isinf(profile.drop(places[[0, -1]], LENGTH)).all()
+    assert np.isinf(profile.drop(positions[[0, -1]], LENGTH)).all()
 
 
-def test_lundberg_amplitude_is_the_load_over_pi_and_modulus(steel: Material) -> None:
+def test_lundberg_amplitude_follows_from_the_load(steel: Material) -> None:
     modulus = steel.plane_strain_modulus
     half_width = 2 * PRESSURE * RADIUS / modulus
     load_per_length = 0.5 * np.pi * half_width * PRESSURE
@@ -32,64 +32,64 @@ def test_lundberg_amplitude_is_the_load_over_pi_and_modulus(steel: Material) -> 
     assert amplitude == pytest.approx(load_per_length / (np.pi * modulus))
 
 
-def test_no_crown_is_no_drop_even_at_the_ends(places: np.ndarray) -> None:
+def test_zero_amplitude_has_no_drop(positions: np.ndarray) -> None:
     for profile in (Lundberg(0.0), Lundberg(1e-6, delta=0.0), JohnsGohar(0.0, 1e-5)):
-        np.testing.assert_array_equal(profile.drop(places, LENGTH), 0.0)
+        np.testing.assert_array_equal(profile.drop(positions, LENGTH), 0.0)
 
 
-def test_lundberg_at_its_design_load_gives_a_flat_pressure(pressed, steel: Material) -> None:
+def test_lundberg_pressure_is_flat_at_the_design_load(solve_profile, steel: Material) -> None:
     """On a half-space, for a length of 62 half-widths: flat to 1.2 % over nine tenths of the length.
 
-    A sharp cylinder varies by 11 % there, a delta of 0.7 or 1.4 by more than twice as much.
+    The pressure of a sharp cylinder varies by 11 %, that of a delta of 0.7 or 1.4 by more than twice 1.2 %.
     """
 
     def variation(profile) -> float:
-        place, peak, _ = along(pressed(profile, 4e-3))
-        inside = peak[np.abs(place) < 0.9]
+        position, peak, _ = axial_results(solve_profile(profile, 4e-3))
+        inside = peak[np.abs(position) < 0.9]
         return float(np.ptp(inside))
 
-    def crowned(delta: float) -> Lundberg:
+    def lundberg(delta: float) -> Lundberg:
         return Lundberg.for_pressure(PRESSURE, radius=RADIUS, modulus=steel.plane_strain_modulus, delta=delta)
 
-    flat = variation(crowned(1.0))
-    assert flat < 0.012
+    reference = variation(lundberg(1.0))
+    assert reference < 0.012
     assert variation(Cylinder()) > 0.1
-    assert min(variation(crowned(0.7)), variation(crowned(1.4))) > 2 * flat
+    assert min(variation(lundberg(0.7)), variation(lundberg(1.4))) > 2 * reference
 
 
-def test_lundberg_below_its_design_load_loses_pressure_towards_the_ends(pressed, steel: Material) -> None:
+def test_lundberg_pressure_decreases_outwards_below_the_design_load(solve_profile, steel: Material) -> None:
     profile = Lundberg.for_pressure(2 * PRESSURE, radius=RADIUS, modulus=steel.plane_strain_modulus)
-    place, peak, _ = along(pressed(profile, 4e-3))
-    right = place > 0
+    position, peak, _ = axial_results(solve_profile(profile, 4e-3))
+    right = position > 0
     assert (np.diff(peak[right]) <= 0).all()
-    assert np.interp(0.9, place, peak) < 0.8
+    assert np.interp(0.9, position, peak) < 0.8
     assert peak[-40] == 0.0
 
 
 def test_end_drop_of_johns_and_gohar(steel: Material) -> None:
-    """Their published form: the end drop is A ln(2 sqrt(e) h / b) = A (1.1932 + ln(h / b)), h half the length."""
+    """The published end drop is A ln(2 sqrt(e) h / b) = A (1.1932 + ln(h / b)), h half the length."""
     profile = JohnsGohar.for_pressure(PRESSURE, radius=RADIUS, modulus=steel.plane_strain_modulus)
     expected = profile.amplitude * (1.1932 + np.log(HALF / profile.half_width))
     assert profile.edge_drop(LENGTH) == pytest.approx(expected, rel=1e-5)
     assert profile.half_width == pytest.approx(65e-6)
 
 
-def test_johns_and_gohar_with_their_rounded_constant(places: np.ndarray) -> None:
+def test_johns_and_gohar_with_the_rounded_constant(positions: np.ndarray) -> None:
     profile = JohnsGohar(amplitude=2e-7, half_width=1e-4)
-    expected = 2e-7 * np.log(1 / (1 - (1 - 0.3033 * 1e-4 / HALF) * (2 * places / LENGTH) ** 2))
-    np.testing.assert_allclose(profile.drop(places, LENGTH), expected, rtol=1e-4, atol=1e-22)
+    expected = 2e-7 * np.log(1 / (1 - (1 - 0.3033 * 1e-4 / HALF) * (2 * positions / LENGTH) ** 2))
+    np.testing.assert_allclose(profile.drop(positions, LENGTH), expected, rtol=1e-4, atol=1e-22)
 
 
 @given(st.floats(1e-9, 1e-5), st.floats(1e-7, 1e-3))
 def test_fujiwara_and_kawase_contain_johns_and_gohar(amplitude: float, half_width: float) -> None:
     x = HALF * np.linspace(-1, 1, 41)
     johns = JohnsGohar(amplitude, half_width)
-    same = FujiwaraKawase(amplitude, edge_drop=johns.edge_drop(LENGTH))
-    np.testing.assert_allclose(same.drop(x, LENGTH), johns.drop(x, LENGTH), rtol=1e-7, atol=1e-9 * amplitude)
+    fujiwara = FujiwaraKawase(amplitude, edge_drop=johns.edge_drop(LENGTH))
+    np.testing.assert_allclose(fujiwara.drop(x, LENGTH), johns.drop(x, LENGTH), rtol=1e-7, atol=1e-9 * amplitude)
 
 
 @given(st.floats(1e-9, 1e-5))
-def test_both_contain_lundberg(amplitude: float) -> None:
+def test_johns_gohar_and_fujiwara_contain_lundberg(amplitude: float) -> None:
     x = HALF * np.linspace(-0.999, 0.999, 41)
     lundberg = Lundberg(amplitude).drop(x, LENGTH)
     np.testing.assert_allclose(JohnsGohar(amplitude, 0.0).drop(x, LENGTH), lundberg, rtol=1e-12)
@@ -97,27 +97,27 @@ def test_both_contain_lundberg(amplitude: float) -> None:
     np.testing.assert_allclose(deep.drop(x, LENGTH), lundberg, rtol=1e-9, atol=1e-12 * amplitude)
 
 
-def test_fujiwara_and_kawase_as_printed(places: np.ndarray) -> None:
-    """With a' the crowned length of one side and y counted from the roller's end, as in the paper's figure."""
-    load, k1, k2, deepest = 1.3e-7, 2.0, 0.6, 4e-6
-    profile = FujiwaraKawase(load, deepest, k1, k2)
-    crowned = k2 * HALF
-    from_end = HALF - np.abs(places)
-    share = np.where(from_end < crowned, 1 - from_end / crowned, 0.0)
-    expected = k1 * load * np.log(1 / (1 - (1 - np.exp(-deepest / (k1 * load))) * share**2))
-    np.testing.assert_allclose(profile.drop(places, LENGTH), expected, rtol=1e-7, atol=1e-20)
-    assert profile.drop(places, LENGTH)[[0, -1]] == pytest.approx(deepest)
-    assert (profile.drop(places, LENGTH)[from_end > crowned] == 0).all()
+def test_fujiwara_and_kawase_formula(positions: np.ndarray) -> None:
+    """With the crowned length a' of one side, and y from the roller's end, as in the paper."""
+    load, k1, k2, end_drop = 1.3e-7, 2.0, 0.6, 4e-6
+    profile = FujiwaraKawase(load, end_drop, k1, k2)
+    lundberg = k2 * HALF
+    from_end = HALF - np.abs(positions)
+    scaled_distance = np.where(from_end < lundberg, 1 - from_end / lundberg, 0.0)
+    expected = k1 * load * np.log(1 / (1 - (1 - np.exp(-end_drop / (k1 * load))) * scaled_distance**2))
+    np.testing.assert_allclose(profile.drop(positions, LENGTH), expected, rtol=1e-7, atol=1e-20)
+    assert profile.drop(positions, LENGTH)[[0, -1]] == pytest.approx(end_drop)
+    assert (profile.drop(positions, LENGTH)[from_end > lundberg] == 0).all()
 
 
 def test_design_pressure_of_fujiwara_and_kawase(steel: Material) -> None:
-    about = {"radius": RADIUS, "modulus": steel.plane_strain_modulus}
-    profile = FujiwaraKawase.for_pressure(PRESSURE, edge_drop=1e-6, k1=2.0, k2=0.5, **about)
-    assert profile == FujiwaraKawase(Lundberg.for_pressure(PRESSURE, **about).amplitude, 1e-6, 2.0, 0.5)
+    contact = {"radius": RADIUS, "modulus": steel.plane_strain_modulus}
+    profile = FujiwaraKawase.for_pressure(PRESSURE, edge_drop=1e-6, k1=2.0, k2=0.5, **contact)
+    assert profile == FujiwaraKawase(Lundberg.for_pressure(PRESSURE, **contact).amplitude, 1e-6, 2.0, 0.5)
 
 
 @pytest.mark.parametrize(
-    ("make", "message"),
+    ("create", "message"),
     [
         (lambda: Lundberg(-1e-6), "amplitude = -1e-06"),
         (lambda: Lundberg(1e-6, delta=np.inf), "delta = inf"),
@@ -132,37 +132,38 @@ def test_design_pressure_of_fujiwara_and_kawase(steel: Material) -> None:
         (lambda: FujiwaraKawase(1e-6, 1e-6, k2=1.5), "k2 = 1.5: must be at most 1"),
     ],
 )
-def test_bad_values_are_named(make, message: str) -> None:
+def test_error_names_the_bad_value(create, message: str) -> None:
     with pytest.raises(InvalidInputError, match=message):
-        make()
+        create()
 
 
 @pytest.mark.parametrize(
-    ("kind", "more"), [(Lundberg, {"delta": 0.9}), (JohnsGohar, {}), (FujiwaraKawase, {"edge_drop": 1e-6})]
+    ("profile_class", "parameters"),
+    [(Lundberg, {"delta": 0.9}), (JohnsGohar, {}), (FujiwaraKawase, {"edge_drop": 1e-6})],
 )
-def test_design_load_is_that_of_the_hertz_line(kind, more: dict[str, float], steel: Material) -> None:
-    about = {"radius": RADIUS, "modulus": steel.plane_strain_modulus}
-    load = line_load(PRESSURE, **about) * 0.8 * LENGTH
-    by_load = kind.for_load(load, length=0.8 * LENGTH, **about, **more)
-    by_pressure = kind.for_pressure(PRESSURE, **about, **more)
+def test_design_load_gives_the_hertz_pressure(profile_class, parameters: dict[str, float], steel: Material) -> None:
+    contact = {"radius": RADIUS, "modulus": steel.plane_strain_modulus}
+    load = line_load(PRESSURE, **contact) * 0.8 * LENGTH
+    by_load = profile_class.for_load(load, length=0.8 * LENGTH, **contact, **parameters)
+    by_pressure = profile_class.for_pressure(PRESSURE, **contact, **parameters)
     assert by_load.amplitude == pytest.approx(by_pressure.amplitude, rel=1e-12)
     x = np.linspace(-0.49, 0.49, 11) * LENGTH
     np.testing.assert_allclose(by_load.drop(x, LENGTH), by_pressure.drop(x, LENGTH), rtol=1e-9)
     with pytest.raises(InvalidInputError, match="length = 0"):
-        kind.for_load(load, length=0, **about, **more)
+        profile_class.for_load(load, length=0, **contact, **parameters)
 
 
 DIAMETER = 10e-3
 
 
-def test_short_roller_as_printed() -> None:
-    """Millimetres, as in the standard, and a logarithm of the other base."""
+def test_iso_formula_of_a_short_roller() -> None:
+    """The formula of the standard in millimetres, with the decadic logarithm."""
     length, x = 12.0, np.linspace(-5.9, 5.9, 31)
     expected = 0.00035 * 10.0 * np.log10(1 / (1 - (2 * x / length) ** 2)) * np.log(10)
     np.testing.assert_allclose(1e3 * IsoCylindrical(DIAMETER).drop(1e-3 * x, 12e-3), expected, rtol=1e-12)
 
 
-def test_long_roller_as_printed() -> None:
+def test_iso_formula_of_a_long_roller() -> None:
     length = 40.0
     x = np.linspace(-19.9, 19.9, 81)
     inside = np.abs(x) - (length - 25.0) / 2
@@ -170,23 +171,23 @@ def test_long_roller_as_printed() -> None:
     np.testing.assert_allclose(1e3 * IsoCylindrical(DIAMETER).drop(1e-3 * x, 40e-3), expected, rtol=1e-9, atol=1e-18)
 
 
-def test_tapered_is_nine_sevenths_of_the_short_profile() -> None:
+def test_tapered_drop_is_nine_sevenths_of_the_cylindrical() -> None:
     x = np.linspace(-5e-3, 5e-3, 21)[1:-1]
     ratio = IsoTapered(DIAMETER).drop(x, 10e-3)[:9] / IsoCylindrical(DIAMETER).drop(x, 10e-3)[:9]
     np.testing.assert_allclose(ratio, 9 / 7)
 
 
 @given(st.floats(-0.999, 0.999))
-def test_both_branches_meet_in_shape_but_not_in_size(place: float) -> None:
-    """At length = 2.5 D the straight middle vanishes; the standard's amplitudes 0.00035 and 0.0005 stay different."""
+def test_iso_branches_differ_by_their_amplitudes(position: float) -> None:
+    """At length = 2.5 D the straight middle vanishes; the standard's amplitudes are 0.00035 and 0.0005."""
     length = 2.5 * DIAMETER
-    x = np.array([place * length / 2])
+    x = np.array([position * length / 2])
     profile = IsoCylindrical(DIAMETER)
     below, above = profile.drop(x, length), profile.drop(x, length * (1 + 1e-13))
     np.testing.assert_allclose(above, below * 0.0005 / 0.00035, rtol=1e-8, atol=1e-16)
 
 
-def test_short_profile_is_lundbergs_for_3000_megapascals() -> None:
+def test_short_iso_profile_is_lundbergs_for_3000_megapascals() -> None:
     """Two bodies of steel with the 207 GPa and 0.3 of the standard."""
     modulus = 207e9 / (2 * (1 - 0.3**2))
     design = Lundberg.for_pressure(3000e6, radius=DIAMETER / 2, modulus=modulus)
@@ -194,14 +195,14 @@ def test_short_profile_is_lundbergs_for_3000_megapascals() -> None:
     np.testing.assert_allclose(IsoCylindrical(DIAMETER).drop(x, 10e-3), design.drop(x, 10e-3), rtol=1e-2)
 
 
-def test_ends_are_out_of_reach() -> None:
+def test_iso_drops_are_infinite_at_the_ends() -> None:
     for profile in (IsoCylindrical(DIAMETER), IsoTapered(DIAMETER)):
         for length in (10e-3, 40e-3):
             assert np.isinf(profile.drop(np.array([-length / 2, length / 2]), length)).all()
 
 
-@pytest.mark.parametrize("kind", [IsoCylindrical, IsoTapered])
+@pytest.mark.parametrize("profile_class", [IsoCylindrical, IsoTapered])
 @pytest.mark.parametrize("diameter", [0.0, -1e-3, np.nan, "thick", True])
-def test_bad_diameters_are_named(kind, diameter) -> None:
+def test_error_names_the_bad_diameter(profile_class, diameter) -> None:
     with pytest.raises(InvalidInputError, match="diameter = "):
-        kind(diameter)
+        profile_class(diameter)

@@ -8,7 +8,7 @@ import pytest
 
 from contactstudy import InvalidInputError
 from contactstudy.profiles.instruments import read_heights
-from tests.profiles.test_measurements import FOREIGN
+from tests.profiles.test_column_files import FOREIGN_FILES
 
 SurfaceTopography = pytest.importorskip("SurfaceTopography", reason="the extra `measured` is not installed")
 
@@ -17,15 +17,15 @@ MAP = 1e-6 * np.random.default_rng(0).normal(size=(5, 4))
 
 
 @pytest.mark.parametrize(("unit", "metres"), [("um", 1e-6), ("mm", 1e-3), ("nm", 1e-9)])
-def test_profilometers_map_in_its_own_unit(tmp_path: Path, unit: str, metres: float) -> None:
-    """GWY holds metres whatever was given; the text of `to_matrix` the unit itself."""
+def test_profilometer_map_in_various_units(tmp_path: Path, unit: str, metres: float) -> None:
+    """GWY files contain metres; the text of `to_matrix` contains the given unit."""
     sizes = (X.size * 2e-6 / metres, Y.size * 3e-6 / metres)
     topography = SurfaceTopography.Topography(MAP / metres, sizes, unit=unit)
     for name in ("map.gwy", "map.asc"):
         write = topography.to_gwy if name.endswith("gwy") else topography.to_matrix
         write(str(tmp_path / name))
-        found = read_heights(tmp_path / name)
-        for values, expected in zip(found, (X, Y, MAP), strict=True):
+        measured = read_heights(tmp_path / name)
+        for values, expected in zip(measured, (X, Y, MAP), strict=True):
             np.testing.assert_allclose(values, expected, rtol=1e-12, atol=1e-20)
 
 
@@ -33,8 +33,8 @@ def test_missing_points_are_nan(tmp_path: Path) -> None:
     values = np.ma.masked_array(MAP, mask=False)
     values.mask[1, 2] = True
     SurfaceTopography.Topography(values, (10e-6, 12e-6), unit="m").to_gwy(str(tmp_path / "map.gwy"))
-    found = read_heights(tmp_path / "map.gwy").heights
-    assert np.argwhere(np.isnan(found)).tolist() == [[1, 2]]
+    measured = read_heights(tmp_path / "map.gwy").heights
+    assert np.argwhere(np.isnan(measured)).tolist() == [[1, 2]]
 
 
 def test_line_scan(tmp_path: Path) -> None:
@@ -43,20 +43,20 @@ def test_line_scan(tmp_path: Path) -> None:
     with pytest.raises(InvalidInputError, match=r"unit of .*scan.xyz = None"):
         read_heights(tmp_path / "scan.xyz")
     SurfaceTopography.NonuniformLineScan(1e6 * X, 1e6 * MAP[:, 0], unit="um").to_netcdf(str(tmp_path / "scan.cdf"))
-    found = read_heights(tmp_path / "scan.cdf")
-    assert found.y is None
-    np.testing.assert_allclose(found.x, X, atol=1e-18)
-    np.testing.assert_allclose(found.heights, MAP[:, 0], rtol=1e-9)
+    measured = read_heights(tmp_path / "scan.cdf")
+    assert measured.y is None
+    np.testing.assert_allclose(measured.x, X, atol=1e-18)
+    np.testing.assert_allclose(measured.heights, MAP[:, 0], rtol=1e-9)
 
 
 @pytest.mark.parametrize("name", ["broken.plux", "broken.sur", "broken.opd"])
-def test_bad_files_are_named(tmp_path: Path, name: str) -> None:
+def test_error_names_the_bad_file(tmp_path: Path, name: str) -> None:
     (tmp_path / name).write_bytes(b"PK\x03\x04 no such file")
     with pytest.raises(InvalidInputError, match=f"path = .*{name}"):
         read_heights(tmp_path / name)
 
 
-def test_a_file_without_a_unit_is_refused(tmp_path: Path) -> None:
+def test_file_without_a_unit_is_rejected(tmp_path: Path) -> None:
     SurfaceTopography.Topography(MAP, (1.0, 1.0)).to_matrix(str(tmp_path / "map.asc"))
     with pytest.raises(InvalidInputError, match=r"unit of .*map.asc = None: must be a unit of length"):
         read_heights(tmp_path / "map.asc")
@@ -66,12 +66,12 @@ def test_a_file_without_a_unit_is_refused(tmp_path: Path) -> None:
     ("name", "kind", "message"),
     [
         ("a.png", "picture", "a picture"),
-        ("a.prf", "unknown", "none of these knows it: export it as x3p"),
+        ("a.prf", "unknown", "its format is unknown: export it as x3p"),
     ],
 )
-def test_a_file_that_no_reader_knows(tmp_path: Path, capsys, name: str, kind: str, message: str) -> None:
-    (tmp_path / name).write_bytes(10 * FOREIGN[kind][0])
-    with pytest.raises(InvalidInputError, match=rf"columns as text.*SurfaceTopography knows; .*{message}"):
+def test_unknown_format_is_rejected(tmp_path: Path, capsys, name: str, kind: str, message: str) -> None:
+    (tmp_path / name).write_bytes(10 * FOREIGN_FILES[kind][0])
+    with pytest.raises(InvalidInputError, match=rf"columns as text.*formats of SurfaceTopography; .*{message}"):
         read_heights(tmp_path / name)
     assert logging.getLogger("igor2").hasHandlers()
     assert capsys.readouterr().err == ""

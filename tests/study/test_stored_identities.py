@@ -7,7 +7,7 @@ import pytest
 
 from contactstudy.case import choose_grid
 from contactstudy.case.case import Case
-from contactstudy.case.gridding import WINDOWS, widening_grids
+from contactstudy.case.gridding import WINDOWS, create_widening_grids
 from contactstudy.solution import solve
 from contactstudy.study import Study
 from contactstudy.study.case_setup import build_setup
@@ -68,7 +68,7 @@ def test_new_table_entry_adds_parameter(monkeypatch):
 def test_study_uses_default_grid():
     case = build_setup(BASE | {"e_over_a": 1.0, "cells_x": None, "cells_y": None})
     assert case.grid == choose_grid(case.case)
-    assert list(case.grids) == list(widening_grids(case.case))
+    assert list(case.grids) == list(create_widening_grids(case.case))
     assert len(list(case.grids)) == len(WINDOWS)
     assert set(case.options) == {"x", "y", "z", "stresses", "tolerance"}
     assert set(case.options) <= set(inspect.signature(solve).parameters)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from contactstudy import solve
-from contactstudy.case.gridding import first_sufficient, widening_grids
+from contactstudy.case.gridding import create_widening_grids, solve_in_first_window
 from contactstudy.study import load_case, run_study
 from contactstudy.study.case_setup import build_setup
 from tests.small_study import small_study
@@ -30,7 +30,9 @@ def test_default_window_is_widened(tmp_path):
     assert report.counts == {"ok": 1}
     setup = build_setup(WIDE)
     first = setup.grid
-    separate_result = first_sufficient(widening_grids(setup.case), lambda grid: solve(setup.case, grid, stresses=False))
+    separate_result = solve_in_first_window(
+        create_widening_grids(setup.case), lambda grid: solve(setup.case, grid, stresses=False)
+    )
     stored_case = load_case(tmp_path, study.plan()[0].id)
     assert separate_result.sizes["y"] > first.cells_y
     np.testing.assert_array_equal(stored_case["pressure"], separate_result["pressure"])

@@ -14,7 +14,7 @@ from benchmarks import convergence
 from contactstudy import cache, film
 from contactstudy.arrays.variables import STRESSES
 from contactstudy.bodies.material import Material
-from contactstudy.bodies.models import WHOLE_LINE, EndedBody, FiniteLengthSpace, HalfSpace, Part
+from contactstudy.bodies.models import WHOLE_LINE, BodyTerm, BodyWithFreeEnds, FiniteLengthSpace, HalfSpace
 from contactstudy.contact import solve as contact
 from contactstudy.eigenstrain.body import EigenstrainBody
 from contactstudy.fields import stress, surface
@@ -52,11 +52,11 @@ def everywhere(patch: Patch, name: str, value: object) -> None:
 
 
 def ends_only_mirrored(patch: Patch) -> None:
-    patch.setattr(EndedBody, "parts", property(lambda body: (Part(1.0, body.extent),)))
+    patch.setattr(BodyWithFreeEnds, "terms", property(lambda body: (BodyTerm(1.0, body.extent),)))
 
 
 def no_ends(patch: Patch) -> None:
-    patch.setattr(EndedBody, "parts", property(lambda body: (Part(1.0, WHOLE_LINE),)))
+    patch.setattr(BodyWithFreeEnds, "terms", property(lambda body: (BodyTerm(1.0, WHOLE_LINE),)))
 
 
 def wrong_poisson(patch: Patch) -> None:
@@ -156,17 +156,17 @@ def better_conductors(patch: Patch) -> None:
 
 def heat_in_halves(patch: Patch) -> None:
     """Partition the heat by a constant near one half, without equal temperatures."""
-    patch.setattr(flash, "shared_heat", lambda first, second, density, touching: (0.49 * density, 0.0))
+    patch.setattr(flash, "partition_heat", lambda first, second, density, in_contact: (0.49 * density, 0.0))
 
 
 def wear_that_changes_nothing(patch: Patch) -> None:
-    real = WornContact.pressed
-    patch.setattr(WornContact, "pressed", lambda contact, depth, *further: real(contact, 0 * depth, *further))
+    real = WornContact.solve
+    patch.setattr(WornContact, "solve", lambda contact, depth, *further: real(contact, 0 * depth, *further))
 
 
 def milder_wear(patch: Patch) -> None:
-    real = WornContact.slip
-    patch.setattr(WornContact, "slip", lambda contact, depth, law: 0.9 * real(contact, depth, law))
+    real = WornContact.compute_slip
+    patch.setattr(WornContact, "compute_slip", lambda contact, depth, law: 0.9 * real(contact, depth, law))
 
 
 def pressed_harder_by(factor: float) -> Callable[[Patch], None]:

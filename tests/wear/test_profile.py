@@ -1,4 +1,4 @@
-"""Worn profiles on other cells than they wore on: the pressure stays, at sharp ends too."""
+"""Worn profiles on other cells than those of the wear: the pressure remains, also at sharp ends."""
 
 from __future__ import annotations
 
@@ -12,107 +12,111 @@ from contactstudy.wear import wear_in, worn_profile
 
 STEEL = Material(210e9, 0.3)
 K = 1e-17
-LENGTH, BESIDE = 0.4e-3, 0.1e-3
-"""Of the roller, and of the body beyond either of its ends."""
+LENGTH, MARGIN = 0.4e-3, 0.1e-3
+"""Lengths of the roller and of the body beyond either end."""
 
 
-def pressed(profile=None, *, beside: float = BESIDE) -> Case:
-    body = FiniteLengthSpace(length=LENGTH + 2 * beside, material=STEEL)
+def worn_case(profile=None, *, margin: float = MARGIN) -> Case:
+    body = FiniteLengthSpace(length=LENGTH + 2 * margin, material=STEEL)
     roller = Roller(radius=5e-3, length=LENGTH, **({} if profile is None else {"profile": profile}))
     return Case(body=body, roller=roller, max_pressure=1.5e9)
 
 
 def equal_columns(count: int, cells_y: int = 48) -> Grid:
-    """Columns of one width under the roller, and wider ones beside it."""
-    beside = np.linspace(0.0, BESIDE, 6)
-    edges = np.concatenate([beside[:-1], np.linspace(BESIDE, BESIDE + LENGTH, count + 1), BESIDE + LENGTH + beside[1:]])
-    reach = 2.6 * pressed().hertz_half_width
-    return Grid.from_edges(edges, (-reach, reach), cells_y)
+    """Columns of one width under the roller, and wider columns beyond its ends."""
+    margin_edges = np.linspace(0.0, MARGIN, 6)
+    edges = np.concatenate(
+        [margin_edges[:-1], np.linspace(MARGIN, MARGIN + LENGTH, count + 1), MARGIN + LENGTH + margin_edges[1:]]
+    )
+    half_window = 2.6 * worn_case().hertz_half_width
+    return Grid.from_edges(edges, (-half_window, half_window), cells_y)
 
 
 @pytest.fixture(scope="module")
-def settled() -> xr.Dataset:
-    """Wear on columns that settle the pressure at the ends, a thousandth of a half-width wide there."""
-    return wear_in(pressed(), K, distance=[0.0, 2e4, 2e5], tolerance=0.03)
+def refined() -> xr.Dataset:
+    """Wear on columns refined at the ends to a thousandth of a half-width."""
+    return wear_in(worn_case(), K, distance=[0.0, 2e4, 2e5], tolerance=0.03)
 
 
 @pytest.fixture(scope="module")
 def coarse() -> xr.Dataset:
-    """The same wear on columns of 5 um."""
-    return wear_in(pressed(), K, distance=[0.0, 2e4, 2e5], grid=equal_columns(80), tolerance=0.03)
+    """Wear as in `refined` on columns of 5 um."""
+    return wear_in(worn_case(), K, distance=[0.0, 2e4, 2e5], grid=equal_columns(80), tolerance=0.03)
 
 
 @pytest.mark.slow
-def test_columns_of_the_unworn_contact(settled) -> None:
-    unworn = solve(pressed(), stresses=False)
-    assert settled.x.values == pytest.approx(unworn.x.values)
-    assert "x_width" in settled.coords
-    assert settled.line_load.values[0].max() > 2 * settled.line_load.values[1].max()
-    assert float(settled.volume_error) < 1e-12
+def test_columns_of_the_unworn_contact(refined) -> None:
+    unworn = solve(worn_case(), stresses=False)
+    assert refined.x.values == pytest.approx(unworn.x.values)
+    assert "x_width" in refined.coords
+    assert refined.line_load.values[0].max() > 2 * refined.line_load.values[1].max()
+    assert float(refined.volume_error) < 1e-12
 
 
-def on_top(profile, **options: object) -> xr.DataArray:
+def column_peaks(profile, **options: object) -> xr.DataArray:
     """Largest pressure of each column under a profile over p0, over the distance from the roller's end (metres)."""
-    found = solve(pressed(profile), stresses=False, **options)["pressure"].max("y") / 1.5e9
-    under = found.where(found > 0, drop=True)
-    return under.assign_coords(x=under["x"] - BESIDE).sel(x=slice(0, LENGTH / 2))
+    peaks = solve(worn_case(profile), stresses=False, **options)["pressure"].max("y") / 1.5e9
+    loaded = peaks.where(peaks > 0, drop=True)
+    return loaded.assign_coords(x=loaded["x"] - MARGIN).sel(x=slice(0, LENGTH / 2))
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("at", [1, 2])
-def test_pressure_on_finer_columns(settled, coarse, at: int) -> None:
+@pytest.mark.parametrize("index", [1, 2])
+def test_pressure_on_finer_columns(refined, coarse, index: int) -> None:
     """Columns of 5 um do not resolve the last micrometres; the profile continues to the end."""
-    found = on_top(worn_profile(pressed(), coarse, float(settled["distance"][at])))
-    wore = settled["pressure"].isel(distance=at).max("y") / 1.5e9
-    expected = wore.assign_coords(x=wore["x"] - BESIDE).interp(x=found["x"])
-    beside = found["x"] > 0.15e-6
-    assert np.abs(found / expected - 1).where(beside).max() < 0.08
-    assert np.abs(found / expected - 1).where(found["x"] > 2e-6).max() < 0.04
-    assert float(found.max()) < 2 * float(expected.max())
+    peaks = column_peaks(worn_profile(worn_case(), coarse, float(refined["distance"][index])))
+    worn_peaks = refined["pressure"].isel(distance=index).max("y") / 1.5e9
+    expected = worn_peaks.assign_coords(x=worn_peaks["x"] - MARGIN).interp(x=peaks["x"])
+    outside_end = peaks["x"] > 0.15e-6
+    assert np.abs(peaks / expected - 1).where(outside_end).max() < 0.08
+    assert np.abs(peaks / expected - 1).where(peaks["x"] > 2e-6).max() < 0.04
+    assert float(peaks.max()) < 2 * float(expected.max())
 
 
 @pytest.mark.slow
-def test_pressure_on_halved_columns(settled) -> None:
-    """Columns cut in halves carry what the whole ones do; at the end the pressure is not singular."""
-    edges = np.append(settled["x_bounds"].values[:, 0], settled["x_bounds"].values[-1, 1])
+def test_pressure_on_halved_columns(refined) -> None:
+    """Halved columns have the pressure of the whole columns; the pressure at the end is not singular."""
+    edges = np.append(refined["x_bounds"].values[:, 0], refined["x_bounds"].values[-1, 1])
     halved = np.sort(np.concatenate([edges, 0.5 * (edges[1:] + edges[:-1])]))
-    cells = Grid.from_edges(halved, (float(settled["y"][0]), float(settled["y"][-1])), settled.sizes["y"])
-    found = on_top(worn_profile(pressed(), settled), grid=cells)
-    wore = settled["pressure"].isel(distance=-1).max("y") / 1.5e9
-    expected = wore.assign_coords(x=wore["x"] - BESIDE).interp(x=found["x"])
-    assert np.abs(found / expected - 1).where(found["x"] > 0.5e-6).max() < 0.02
-    assert float(found.max()) < 1.3 * float(wore.max())
+    cells = Grid.from_edges(halved, (float(refined["y"][0]), float(refined["y"][-1])), refined.sizes["y"])
+    peaks = column_peaks(worn_profile(worn_case(), refined), grid=cells)
+    worn_peaks = refined["pressure"].isel(distance=-1).max("y") / 1.5e9
+    expected = worn_peaks.assign_coords(x=worn_peaks["x"] - MARGIN).interp(x=peaks["x"])
+    assert np.abs(peaks / expected - 1).where(peaks["x"] > 0.5e-6).max() < 0.02
+    assert float(peaks.max()) < 1.3 * float(worn_peaks.max())
 
 
 @pytest.mark.slow
-def test_shakedown_limit_beside_the_end(settled, coarse) -> None:
-    a = pressed().hertz_half_width
-    x = BESIDE + a * np.array([0.0, 0.02, 0.05, 0.1, 0.2])
-    at = {"x": x, "y": a * np.linspace(-2, 2, 25), "z": a * np.array([0.03, 0.1, 0.3, 0.6])}
-    needed = [
-        float(fatigue.shakedown(solve(pressed(worn_profile(pressed(), worn)), **at))["shakedown_stress"].max())
-        for worn in (coarse, settled)
+def test_shakedown_limit_near_the_end(refined, coarse) -> None:
+    a = worn_case().hertz_half_width
+    x = MARGIN + a * np.array([0.0, 0.02, 0.05, 0.1, 0.2])
+    positions = {"x": x, "y": a * np.linspace(-2, 2, 25), "z": a * np.array([0.03, 0.1, 0.3, 0.6])}
+    limits = [
+        float(
+            fatigue.shakedown(solve(worn_case(worn_profile(worn_case(), worn)), **positions))["shakedown_stress"].max()
+        )
+        for worn in (coarse, refined)
     ]
-    assert needed[0] == pytest.approx(needed[1], rel=0.05)
+    assert limits[0] == pytest.approx(limits[1], rel=0.05)
 
 
 @pytest.fixture(scope="module")
 def uniform() -> xr.Dataset:
     """Wear on few uniform cells."""
-    return wear_in(pressed(), K, distance=[0.0, 1e4, 2e4], grid=choose_grid(pressed(), cells_x=2, cells_y=6))
+    return wear_in(worn_case(), K, distance=[0.0, 1e4, 2e4], grid=choose_grid(worn_case(), cells_x=2, cells_y=6))
 
 
 def test_unworn_profile(uniform) -> None:
-    profile = worn_profile(pressed(), uniform, 0.0)
+    profile = worn_profile(worn_case(), uniform, 0.0)
     assert profile.drop(0.5 * LENGTH * np.linspace(-1, 1, 101), LENGTH).max() == 0.0
 
 
-def test_slope_at_a_flush_end() -> None:
-    """A free end at the roller's own: the body does not go on beyond it, and nothing steepens towards it."""
-    case = pressed(beside=0.0)
-    reach = 2.6 * case.hertz_half_width
+def test_slope_is_uniform_at_a_flush_end() -> None:
+    """A free end at the roller's end: the body ends there, and the slope does not increase towards the end."""
+    case = worn_case(margin=0.0)
+    half_window = 2.6 * case.hertz_half_width
     edges = np.linspace(0, LENGTH, 41)
-    worn = wear_in(case, K, distance=[0.0, 2e5], grid=Grid.from_edges(edges, (-reach, reach), 32))
+    worn = wear_in(case, K, distance=[0.0, 2e5], grid=Grid.from_edges(edges, (-half_window, half_window), 32))
     profile = worn_profile(case, worn)
     s = 1e-6 * np.array([0.0, 1.0, 2.0, 4.0])
     slopes = np.diff(profile.drop(s - 0.5 * LENGTH, LENGTH)) / np.diff(s)
@@ -122,8 +126,10 @@ def test_slope_at_a_flush_end() -> None:
 def test_overhanging_roller_without_a_ridge() -> None:
     body = FiniteLengthSpace(length=0.3e-3, material=STEEL)
     case = Case(body=body, roller=Roller(radius=5e-3, length=LENGTH), max_pressure=1.5e9, end_distance=-0.05e-3)
-    reach = 2.6 * case.hertz_half_width
-    worn = wear_in(case, K, distance=[0.0, 2e4], grid=Grid.from_edges(np.linspace(0, 0.3e-3, 31), (-reach, reach), 32))
+    half_window = 2.6 * case.hertz_half_width
+    worn = wear_in(
+        case, K, distance=[0.0, 2e4], grid=Grid.from_edges(np.linspace(0, 0.3e-3, 31), (-half_window, half_window), 32)
+    )
     profile = worn_profile(case, worn)
     depth = worn["wear_depth"].values[-1]
     ends = profile.drop(np.array([-0.15e-3, 0.15e-3]), LENGTH)
@@ -132,16 +138,16 @@ def test_overhanging_roller_without_a_ridge() -> None:
 
 @pytest.mark.slow
 def test_partly_worn_edge_radius_without_a_ridge() -> None:
-    """There the columns are wide: interpolated depths left a ridge that was pressed higher than the unworn radius."""
-    case = pressed(Cylinder(fillet_radius=0.1e-3))
+    """On wide columns interpolated depths left a ridge with a pressure above that of the unworn radius."""
+    case = worn_case(Cylinder(fillet_radius=0.1e-3))
     worn = wear_in(case, K, distance=[0.0, 1e4])
-    again = solve(pressed(worn_profile(case, worn)), stresses=False)
-    unworn, own = (float(worn["pressure"].isel(distance=at).max()) for at in (0, -1))
-    assert own < float(again.peak_pressure) < 0.8 * unworn
+    worn_result = solve(worn_case(worn_profile(case, worn)), stresses=False)
+    unworn_peak, worn_peak = (float(worn["pressure"].isel(distance=index).max()) for index in (0, -1))
+    assert worn_peak < float(worn_result.peak_pressure) < 0.8 * unworn_peak
 
 
-def test_result_at_one_distance(uniform) -> None:
-    case = pressed()
+def test_result_at_a_single_distance(uniform) -> None:
+    case = worn_case()
     x = np.linspace(-0.5, 0.5, 41) * LENGTH
-    chosen, alone = worn_profile(case, uniform, 1e4), worn_profile(case, uniform.sel(distance=1e4))
-    assert alone.drop(x, LENGTH) == pytest.approx(chosen.drop(x, LENGTH))
+    selected_profile, single_profile = worn_profile(case, uniform, 1e4), worn_profile(case, uniform.sel(distance=1e4))
+    assert single_profile.drop(x, LENGTH) == pytest.approx(selected_profile.drop(x, LENGTH))

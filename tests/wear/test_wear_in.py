@@ -25,7 +25,7 @@ STEEL = Material(210e9, 0.3)
 K = 1e-17
 
 
-def roller_on(length=0.6e-3, *, model="exact", **roller):
+def create_case(length=0.6e-3, *, model="exact", **roller):
     body = FiniteLengthSpace(length=length, material=STEEL, model=model)
     return Case(body=body, roller=Roller(**{"radius": 5e-3, "length": 0.4e-3} | roller), max_pressure=1.5e9)
 
@@ -33,7 +33,7 @@ def roller_on(length=0.6e-3, *, model="exact", **roller):
 @pytest.fixture(scope="module")
 def sharp():
     """A rigid roller with sharp ends inside the face, and coarse cells."""
-    case = roller_on()
+    case = create_case()
     return case, choose_grid(case, cells_x=3, cells_y=8)
 
 
@@ -43,21 +43,21 @@ def worn(sharp):
     return wear_in(case, K, distance=1e5, grid=grid)
 
 
-def spread(line_load):
-    under = line_load[line_load > 0]
-    return under.max() / under.min()
+def load_ratio(line_load):
+    loaded = line_load[line_load > 0]
+    return loaded.max() / loaded.min()
 
 
-def test_volume_is_archards_to_rounding(sharp, worn):
+def test_volume_obeys_archard_to_rounding(sharp, worn):
     expected = K * sharp[0].normal_load * worn.distance.values
     assert worn.worn_volume.values == pytest.approx(expected, rel=1e-12)
     assert float(worn.volume_error) < 1e-12
-    summed = 2 * np.pi * 5e-3 * (worn.wear_depth.sum("x") * sharp[1].dx)
-    assert worn.worn_volume.values == pytest.approx(summed.values, rel=1e-12)
+    volume = 2 * np.pi * 5e-3 * (worn.wear_depth.sum("x") * sharp[1].dx)
+    assert worn.worn_volume.values == pytest.approx(volume.values, rel=1e-12)
 
 
 def test_constant_slip_makes_the_load_uniform(worn):
-    spreads = [spread(state) for state in worn.line_load.values]
+    spreads = [load_ratio(state) for state in worn.line_load.values]
     assert spreads[0] > 2
     assert (np.diff(spreads) < 1e-6).all()
     assert spreads[-1] < 1.001
@@ -72,28 +72,28 @@ def test_step_sizes(worn):
 @pytest.mark.slow
 def test_wear_error_against_small_steps(sharp):
     case, grid = sharp
-    rough, fine = (wear_in(case, K, distance=[5e3], grid=grid, tolerance=tolerance) for tolerance in (0.03, 3e-5))
-    off = float(abs(rough.wear_depth - fine.wear_depth).isel(distance=-1).max() / fine.wear_depth.max())
-    assert off < 2 * float(rough.wear_error[-1])
-    assert off < 0.03
-    assert off > 5 * float(fine.wear_error[-1])
+    coarse, fine = (wear_in(case, K, distance=[5e3], grid=grid, tolerance=tolerance) for tolerance in (0.03, 3e-5))
+    difference = float(abs(coarse.wear_depth - fine.wear_depth).isel(distance=-1).max() / fine.wear_depth.max())
+    assert difference < 2 * float(coarse.wear_error[-1])
+    assert difference < 0.03
+    assert difference > 5 * float(fine.wear_error[-1])
 
 
 def test_uniform_wear():
-    case = roller_on(length=0.4e-3, model="mirror")
+    case = create_case(length=0.4e-3, model="mirror")
     grid = choose_grid(case, cells_x=2, cells_y=8)
-    found = wear_in(case, K, distance=[0.0, 1e5], grid=grid, circumference=0.01)
+    result = wear_in(case, K, distance=[0.0, 1e5], grid=grid, circumference=0.01)
     depth = K * case.normal_load / 0.4e-3 * 1e5 / 0.01
-    assert found.wear_depth.values[-1] == pytest.approx(depth, rel=1e-6)
-    assert found.pressure.values[-1] == pytest.approx(found.pressure.values[0], abs=1e-4 * 1.5e9)
+    assert result.wear_depth.values[-1] == pytest.approx(depth, rel=1e-6)
+    assert result.pressure.values[-1] == pytest.approx(result.pressure.values[0], abs=1e-4 * 1.5e9)
 
 
 def test_uniform_pressure_between_mirrors():
-    case = roller_on(length=0.4e-3, model="mirror", profile=FullCrown(crown_radius=0.05))
-    found = wear_in(case, K, distance=[0.0, 1e5], grid=choose_grid(case, cells_x=3, cells_y=8))
-    peaks = found.pressure.max("y").values
-    assert spread(peaks[0]) > 1.05
-    assert spread(peaks[1]) < 1.002
+    case = create_case(length=0.4e-3, model="mirror", profile=FullCrown(crown_radius=0.05))
+    result = wear_in(case, K, distance=[0.0, 1e5], grid=choose_grid(case, cells_x=3, cells_y=8))
+    peaks = result.pressure.max("y").values
+    assert load_ratio(peaks[0]) > 1.05
+    assert load_ratio(peaks[1]) < 1.002
 
 
 def test_continuation(sharp, worn):
@@ -105,33 +105,33 @@ def test_continuation(sharp, worn):
     assert float(second.distance[0]) == float(first.distance[-1])
     assert second.wear_depth.values[-1] == pytest.approx(worn.wear_depth.values[-1], rel=1e-4)
     assert float(second.volume_error) < 1e-12
-    # What was in doubt before is in doubt still.
+    # The continuation keeps the previous error.
     assert float(second.wear_error[0]) == pytest.approx(float(first.wear_error[-1]))
     assert float(second.wear_error[-1]) == pytest.approx(float(worn.wear_error[-1]), rel=0.02)
 
 
 @pytest.mark.slow
 def test_load_position_off_the_middle(sharp):
-    """The roller then wears askew, and turns with its wear."""
+    """The roller wears unevenly and tilts with the wear."""
     case, grid = sharp
-    off = Case(body=case.body, roller=case.roller, max_pressure=1.5e9, load_position=0.32e-3)
-    found = wear_in(off, K, distance=[1e5], grid=grid)
-    load, x = found.line_load.values[-1], grid.x
-    under = load > 0
-    length = grid.dx * under.sum()
+    eccentric = Case(body=case.body, roller=case.roller, max_pressure=1.5e9, load_position=0.32e-3)
+    result = wear_in(eccentric, K, distance=[1e5], grid=grid)
+    load, x = result.line_load.values[-1], grid.x
+    loaded = load > 0
+    length = grid.dx * loaded.sum()
     # w = W / L (1 + 12 e x' / L**2)
-    lever = 12 * (0.32e-3 - 0.3e-3) * (x[under] - 0.3e-3) / (length**2 - grid.dx**2)
-    expected = off.normal_load / length * (1 + lever)
-    assert load[under] == pytest.approx(expected, rel=2e-3)
-    assert float(found.volume_error) < 1e-9
+    lever = 12 * (0.32e-3 - 0.3e-3) * (x[loaded] - 0.3e-3) / (length**2 - grid.dx**2)
+    expected = eccentric.normal_load / length * (1 + lever)
+    assert load[loaded] == pytest.approx(expected, rel=2e-3)
+    assert float(result.volume_error) < 1e-9
 
 
 def test_quarter_space():
     body = QuarterSpace(material=STEEL)
     case = Case(body=body, roller=Roller(radius=5e-3, length=0.3e-3), max_pressure=1.5e9, end_distance=0.05e-3)
-    found = wear_in(case, K, distance=[1e5], grid=choose_grid(case, cells_x=3, cells_y=8))
-    assert spread(found.line_load.values[-1]) < 1.001
-    assert float(found.volume_error) < 1e-12
+    result = wear_in(case, K, distance=[1e5], grid=choose_grid(case, cells_x=3, cells_y=8))
+    assert load_ratio(result.line_load.values[-1]) < 1.001
+    assert float(result.volume_error) < 1e-12
 
 
 @pytest.mark.slow
@@ -146,7 +146,7 @@ def test_elastic_roller_with_coupled_friction():
     grid = choose_grid(case, cells_x=2, cells_y=6)
     by_slip, by_work = (wear_in(case, K, distance=[2e3], grid=grid, law=law) for law in ("slip", "work"))
     assert float(by_work.worn_volume[-1]) == pytest.approx(0.2 * float(by_slip.worn_volume[-1]), rel=1e-12)
-    assert spread(by_slip.line_load.values[-1]) < spread(by_slip.line_load.values[0])
+    assert load_ratio(by_slip.line_load.values[-1]) < load_ratio(by_slip.line_load.values[0])
 
 
 @pytest.fixture(scope="module")
@@ -173,65 +173,67 @@ def test_rolling_by_slip(rolling):
 @pytest.mark.slow
 def test_steady_wear_in_rolling(rolling):
     case, grid = rolling
-    found = wear_in(case, 1e-14, distance=[10.0, 4e4, 1e5], grid=grid, tolerance=0.05)
-    assert float(found.volume_error) < 0.02
-    under = found.line_load.values[0] > 0
-    depth = found.wear_depth.values[:, under]
-    # where the load is low the roller slips more: the middle wears last at first
-    assert spread(depth[1]) > 1.1
-    assert spread(depth[3] - depth[2]) < 1.01
+    result = wear_in(case, 1e-14, distance=[10.0, 4e4, 1e5], grid=grid, tolerance=0.05)
+    assert float(result.volume_error) < 0.02
+    loaded = result.line_load.values[0] > 0
+    depth = result.wear_depth.values[:, loaded]
+    # The roller slips more at low loads: at first the mid-length wears least.
+    assert load_ratio(depth[1]) > 1.1
+    assert load_ratio(depth[3] - depth[2]) < 1.01
 
 
 def test_worn_profile_carries_the_worn_load(sharp, worn, tmp_path):
     case, grid = sharp
     distance = float(worn.distance[6])
     profile = worn_profile(case, worn, distance)
-    again = Case(body=case.body, roller=Roller(radius=5e-3, length=0.4e-3, profile=profile), max_pressure=1.5e9)
-    found = solve(again, grid, stresses=False)
-    load = grid.dy * found.pressure.sum("y").values
+    worn_case = Case(body=case.body, roller=Roller(radius=5e-3, length=0.4e-3, profile=profile), max_pressure=1.5e9)
+    result = solve(worn_case, grid, stresses=False)
+    load = grid.dy * result.pressure.sum("y").values
     assert load == pytest.approx(worn.line_load.values[6], abs=1e-3 * load.max())
     file = tmp_path / "worn.nc"
     worn.to_netcdf(file)
-    with xr.open_dataset(file) as stored:
-        assert worn_profile(case, stored, distance) == profile
-        assert stored.profile_drop.attrs["units"] == "m"
+    with xr.open_dataset(file) as stored_result:
+        assert worn_profile(case, stored_result, distance) == profile
+        assert stored_result.profile_drop.attrs["units"] == "m"
 
 
 def test_worn_profile_of_an_overhanging_roller():
     body = FiniteLengthSpace(length=0.4e-3, material=STEEL)
     case = Case(body=body, roller=Roller(radius=5e-3, length=0.5e-3), max_pressure=1.5e9, end_distance=-0.05e-3)
     grid = choose_grid(case, cells_x=3, cells_y=8)
-    found = wear_in(case, K, distance=[1e4], grid=grid)
-    profile = worn_profile(case, found)
+    result = wear_in(case, K, distance=[1e4], grid=grid)
+    profile = worn_profile(case, result)
     drop = profile.drop(np.array([-0.24e-3, 0.0, 0.24e-3]), 0.5e-3)
     assert drop[[0, 2]].tolist() == [0.0, 0.0]
-    assert drop[1] == pytest.approx(found.wear_depth.values[-1, grid.cells_x // 2], rel=0.01)
+    assert drop[1] == pytest.approx(result.wear_depth.values[-1, grid.cells_x // 2], rel=0.01)
 
 
 @pytest.mark.slow
 def test_mean_depths_on_columns():
-    case = roller_on(profile=FullCrown(crown_radius=0.05))
-    found = wear_in(case, K, distance=[1e3])
-    edges = np.append(found.x_bounds.values[:, 0], found.x_bounds.values[-1, 1])
-    grid = Grid.from_edges(edges, (float(found.y[0]), float(found.y[-1])), found.sizes["y"])
-    again = Case(
+    case = create_case(profile=FullCrown(crown_radius=0.05))
+    result = wear_in(case, K, distance=[1e3])
+    edges = np.append(result.x_bounds.values[:, 0], result.x_bounds.values[-1, 1])
+    grid = Grid.from_edges(edges, (float(result.y[0]), float(result.y[-1])), result.sizes["y"])
+    worn_case = Case(
         body=case.body,
-        roller=Roller(radius=5e-3, length=0.4e-3, profile=worn_profile(case, found)),
+        roller=Roller(radius=5e-3, length=0.4e-3, profile=worn_profile(case, result)),
         max_pressure=1.5e9,
     )
-    wanted = (case.gap(grid) + found.wear_depth.values[-1][:, None])[:, 0]
-    under = np.isfinite(wanted)
-    assert again.gap(grid)[under, 0] == pytest.approx(wanted[under], abs=1e-5 * found.wear_depth.values.max())
+    expected_gap = (case.gap(grid) + result.wear_depth.values[-1][:, None])[:, 0]
+    loaded = np.isfinite(expected_gap)
+    assert worn_case.gap(grid)[loaded, 0] == pytest.approx(
+        expected_gap[loaded], abs=1e-5 * result.wear_depth.values.max()
+    )
 
 
-def test_profile_infinite_at_its_ends():
+def test_worn_profile_with_infinite_end_drop():
     profile = Lundberg(amplitude=0.2e-6)
     assert np.isinf(profile.drop(np.array([0.2e-3]), 0.4e-3)).all()
-    case = roller_on(profile=profile)
-    found = wear_in(case, K, distance=[1e4], grid=choose_grid(case, cells_x=3, cells_y=8))
-    taken = worn_profile(case, found)
-    assert taken.terms[0] is profile
-    assert np.isfinite(taken.terms[1].drop(np.array([-0.2e-3, 0.2e-3]), 0.4e-3)).all()
+    case = create_case(profile=profile)
+    result = wear_in(case, K, distance=[1e4], grid=choose_grid(case, cells_x=3, cells_y=8))
+    sum_profile = worn_profile(case, result)
+    assert sum_profile.terms[0] is profile
+    assert np.isfinite(sum_profile.terms[1].drop(np.array([-0.2e-3, 0.2e-3]), 0.4e-3)).all()
 
 
 @pytest.mark.parametrize(
@@ -279,35 +281,35 @@ def test_bad_cases_and_states(sharp, worn, rolling):
 
 def test_continuation_under_another_load(sharp, worn):
     case, _ = sharp
-    lighter = replace(case, max_pressure=None, load=0.5 * case.normal_load)
-    further = xr.DataArray([100.0, 150.0], dims="way", attrs={"units": "km"})
-    found = wear_in(lighter, K, distance=further, after=worn)
-    assert found.distance.values.tolist() == [1e5, 1.5e5]
-    gained = found.worn_volume[-1] - found.worn_volume[0]
-    assert float(gained) == pytest.approx(K * lighter.normal_load * 5e4, rel=1e-6)
-    smaller = replace(case, roller=replace(case.roller, radius=4e-3))
+    light_case = replace(case, max_pressure=None, load=0.5 * case.normal_load)
+    distances = xr.DataArray([100.0, 150.0], dims="way", attrs={"units": "km"})
+    result = wear_in(light_case, K, distance=distances, after=worn)
+    assert result.distance.values.tolist() == [1e5, 1.5e5]
+    added_volume = result.worn_volume[-1] - result.worn_volume[0]
+    assert float(added_volume) == pytest.approx(K * light_case.normal_load * 5e4, rel=1e-6)
+    smaller_case = replace(case, roller=replace(case.roller, radius=4e-3))
     with pytest.raises(InvalidInputError, match=r"after = 'solved with roller.radius = 0.005'"):
-        wear_in(smaller, K, distance=2e5, after=worn)
+        wear_in(smaller_case, K, distance=2e5, after=worn)
     with pytest.raises(InvalidInputError, match=r"worn = 'solved with end_distance = 0.0001'"):
         worn_profile(replace(case, end_distance=0.0), worn)
 
 
 def test_finite_drop_at_both_ends():
-    """75 cells on 0.6 mm have middles where the roller begins and ends."""
-    case = roller_on()
+    """75 cells on 0.6 mm have midpoints at the ends of the roller."""
+    case = create_case()
     worn = wear_in(
         case,
         K,
         distance=[0.0, 1e3],
         grid=Grid(x_range=(0.0, 0.6e-3), y_range=(-0.13e-3, 0.13e-3), cells_x=75, cells_y=16),
     )
-    pressed = (worn.pressure > 0).any(("distance", "y"))
-    assert np.isfinite(worn.profile_drop.isel(distance=-1)).where(pressed, True).all()
+    loaded = (worn.pressure > 0).any(("distance", "y"))
+    assert np.isfinite(worn.profile_drop.isel(distance=-1)).where(loaded, True).all()
     np.testing.assert_array_equal(np.isfinite(worn.profile_drop), np.isfinite(worn.profile_drop)[:, ::-1])
 
 
 @pytest.mark.slow
-def test_slip_and_work_of_uniform_friction() -> None:
+def test_wear_by_slip_equals_wear_by_work() -> None:
     """A slipping cell carries ``f p``, so wear by slip equals wear by work over f."""
     friction = 0.2
     body = FiniteLengthSpace(length=0.6e-3, material=Material(210e9, 0.3))

@@ -154,10 +154,11 @@ class Shape(NamedTuple):
         if counterbody is None:
             return LineMotions(first, first)
         reaction = {
-            load: (1 if load is Load.NORMAL else -1) * counterbody.load_on(grid, cells) for load, cells in loads.items()
+            load: (1 if load is Load.NORMAL else -1) * counterbody.transfer_load(grid, cells)
+            for load, cells in loads.items()
         }
         start = counterbody.start
-        second = line_motion(counterbody.body, counterbody.own_grid(grid), reaction, position - start)
+        second = line_motion(counterbody.body, counterbody.grid_on_body(grid), reaction, position - start)
         total = RigidMotion(first.level + second.level - second.tilt * start, first.tilt + second.tilt)
         return LineMotions(first, total)
 

@@ -32,7 +32,7 @@ class Shares:
         square = overlap.shape[0] == overlap.shape[1]
         if square and np.allclose(overlap, np.diag(widths), atol=1e-9 * widths.min()):
             return None
-        return cls(overlap / counterbody.own_grid(grid).widths[:, None], overlap.T / widths[:, None])
+        return cls(overlap / counterbody.grid_on_body(grid).widths[:, None], overlap.T / widths[:, None])
 
 
 def _opposed(direction: Load, values: FloatArray) -> FloatArray:
@@ -67,7 +67,7 @@ class PairOperator:
         alike = replace(counterbody.body, reference_depth=body.reference_depth) == body
         if shares is None and alike and counterbody.start == 0:
             return cls(first, first, None)
-        own = counterbody.own_grid(grid)
+        own = counterbody.grid_on_body(grid)
         return cls(first, surface_operator(counterbody.body, own, loads, directions=directions), shares)
 
     def __call__(self, loads: Mapping[Load, FloatArray]) -> FloatArray:

@@ -11,10 +11,10 @@ import xarray as xr
 from contactstudy.arrays.grid import Grid
 from contactstudy.arrays.variables import describe, without_error
 from contactstudy.bodies import hertz
-from contactstudy.bodies.models import EndedBody
+from contactstudy.bodies.models import BodyWithFreeEnds
 from contactstudy.cache import ArrayKey, cached
-from contactstudy.case.case import LARGEST_HALF_WIDTH, SMALLEST_HALF_WIDTH, Case
-from contactstudy.case.gridding import columns_of, first_sufficient
+from contactstudy.case.case import MAX_HALF_WIDTH, MIN_HALF_WIDTH, Case
+from contactstudy.case.gridding import graded_grid, solve_in_first_window
 from contactstudy.case.motion import Rolling, Sliding
 from contactstudy.checks import FloatArray
 from contactstudy.contact.normal.contact import Contact, Settings, Shape, check_window, contact_of, contact_operator
@@ -87,7 +87,7 @@ def _is_immutable(part: object) -> bool:
 
 def _refine_contact(case: Case, accuracy: float, tolerance: float) -> RefinedContact:
     """Refine in the narrowest window that contains the contact."""
-    return first_sufficient(
+    return solve_in_first_window(
         WINDOWS, lambda window: _refine_in_window(case, window * case.hertz_half_width, accuracy, tolerance)
     )
 
@@ -101,7 +101,9 @@ def _refine_in_window(case: Case, half_window: float, accuracy: float, tolerance
     with one_blas_thread():
         # The half-width depends only weakly on the end correction, which is the expensive part.
         body = case.body
-        mirrored = replace(body, model="mirror") if isinstance(body, EndedBody) and body.model == "exact" else body
+        mirrored = (
+            replace(body, model="mirror") if isinstance(body, BodyWithFreeEnds) and body.model == "exact" else body
+        )
         first = _ColumnSolver(replace(case, body=mirrored), half_window, ROUGH_CELLS_Y)
         rough = rough_columns(first, shape)
         rows = np.flatnonzero(rough.pressure.any(axis=0))
@@ -237,7 +239,7 @@ class _ColumnSolver:
 
     def grid(self, edges: FloatArray) -> Grid:
         """Cells of the body, with columns under the roller between `edges`."""
-        return columns_of(self.case, edges, (-self.half_window, self.half_window), self.cells_y)
+        return graded_grid(self.case, edges, (-self.half_window, self.half_window), self.cells_y)
 
     def shape(self, edges: FloatArray) -> Shape:
         """Contact to solve."""
@@ -287,7 +289,7 @@ def _exponent(case: Case, distance: float, near: float) -> float:
     body, roller = case.body, case.roller.body
     of_body = 1 / body.material.plane_strain_modulus
     of_roller = 0.0 if roller is None else 1 / roller.material.plane_strain_modulus
-    has_ends = isinstance(roller, EndedBody)
+    has_ends = isinstance(roller, BodyWithFreeEnds)
     if distance > near:
         return elastic_exponent(of_roller if has_ends else 0.0, of_body)
     # The body's own edge is pressed where the roller overhangs, or is a half-space.
@@ -310,13 +312,15 @@ def _axial_shape(case: Case) -> AxialShape:
         stop=stop,
         half_width=half_width,
         depth=half_width**2 / (2 * case.roller.radius),
-        height=case.lowest,
+        height=case.gap_on_axis,
         room=(room[0], room[1]),
         exponents=(_exponent(case, distances[0], near), _exponent(case, distances[1], near)),
         # The factor of the body's image is not that of the roller's.
         corners=tuple(corners.positions[corners.jumps > 0].tolist()) if resolved else (),
         nodes=case.nodes,
-        fades=case.roller.body is not None and isinstance(case.body, EndedBody) and case.body.model == "mirror-factor",
+        fades=case.roller.body is not None
+        and isinstance(case.body, BodyWithFreeEnds)
+        and case.body.model == "mirror-factor",
     )
 
 
@@ -379,7 +383,7 @@ def approach_load_error(contact: ApproachContact) -> float:
     rows = int(ROOMIER * grid.cells_y)
 
     def solve(edges: FloatArray, cells_y: int, prescribed: Prescribed | None) -> Contact:
-        shape = contact_shape(case, columns_of(case, edges, window, cells_y), prescribed)
+        shape = contact_shape(case, graded_grid(case, edges, window, cells_y), prescribed)
         return contact_of(shape._replace(coupled_friction=0.0), Settings(ROUGH_TOLERANCE))
 
     fine = solve(refined.edges, rows, None)
@@ -391,7 +395,7 @@ def approach_load_error(contact: ApproachContact) -> float:
 def _with_mirrored_ends(case: Case) -> Case:
     """Case with the mirror model of its ends."""
     body, roller = case.body, case.roller
-    if isinstance(body, EndedBody) and body.model == "exact":
+    if isinstance(body, BodyWithFreeEnds) and body.model == "exact":
         body = replace(body, model="mirror")
     return replace(case, body=body, roller=replace(roller, ends="none"))
 
@@ -401,10 +405,10 @@ def _slice_load(case: Case) -> float:
     assert case.approach is not None
     start, stop = case.contact_range
     x = np.linspace(start, stop, SLICES + 1)
-    depth = np.maximum(case.approach - case.lowest(x), 0.0)
+    depth = np.maximum(case.approach - case.gap_on_axis(x), 0.0)
     radius, modulus = case.roller.radius, case.modulus
-    half_width = np.minimum(WIDTH_PART * np.sqrt(2 * radius * depth), LARGEST_HALF_WIDTH * radius)
+    half_width = np.minimum(WIDTH_PART * np.sqrt(2 * radius * depth), MAX_HALF_WIDTH * radius)
     per_length = np.pi * modulus * half_width**2 / (4 * radius)  # Johnson, Contact Mechanics (1985), 4.43
     load = float(per_length.mean()) * (stop - start)
-    least = hertz.line_load(SMALLEST_HALF_WIDTH * modulus, radius, modulus) * (stop - start)
+    least = hertz.line_load(MIN_HALF_WIDTH * modulus, radius, modulus) * (stop - start)
     return max(load, least)

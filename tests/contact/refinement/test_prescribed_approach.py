@@ -22,7 +22,7 @@ from contactstudy import (
     solve,
 )
 from contactstudy.analysis import solved_case
-from contactstudy.case.case import SMALLEST_HALF_WIDTH
+from contactstudy.case.case import MIN_HALF_WIDTH
 from contactstudy.case.case import Case as AnyCase
 from contactstudy.contact.refinement import refined_contact
 from contactstudy.contact.refinement.refined_contact import (
@@ -130,7 +130,7 @@ def test_a_first_guess_is_hertz_line_contact_in_slices_of_a_part_of_the_cut() ->
     # Of a contact between two slices: the least load that a case may have, or a little more.
     tilted = replace(BALL, body=FiniteLengthSpace(length=2e-3, material=STEEL), end_distance=0.6e-3, tilt=4e-4)
     least = _slice_load(replace(tilted, approach=tilted.first_touch + 1e-11))
-    assert replace(BALL, approach=None, load=least).hertz_half_width == pytest.approx(2 * SMALLEST_HALF_WIDTH * RADIUS)
+    assert replace(BALL, approach=None, load=least).hertz_half_width == pytest.approx(2 * MIN_HALF_WIDTH * RADIUS)
 
 
 @pytest.mark.parametrize(("case", "most"), [(BALL, 4), (replace(SHORT, friction=0.0, coupled=False), 5)])

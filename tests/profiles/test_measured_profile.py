@@ -1,4 +1,4 @@
-"""Measured profiles: what is read is what was measured, and what is wrong with a file is said with its place."""
+"""Measured profiles: files, interpolation, filter, and errors with the position in the file."""
 
 from __future__ import annotations
 
@@ -36,15 +36,17 @@ def netcdf_file(folder: Path, units: tuple[str, str] = ("mm", "um"), name: str =
     return path
 
 
-def test_csv_and_netcdf_give_the_profile(tmp_path: Path, places: np.ndarray) -> None:
+def test_profile_from_csv_and_netcdf(tmp_path: Path, positions: np.ndarray) -> None:
     for path in (csv_file(tmp_path), netcdf_file(tmp_path), netcdf_file(tmp_path, name="height", sign=-1.0)):
         profile = Measured.from_file(path)
-        np.testing.assert_allclose(profile.drop(places, LENGTH), CROWN.drop(places, LENGTH), rtol=1e-6, atol=1e-13)
+        np.testing.assert_allclose(
+            profile.drop(positions, LENGTH), CROWN.drop(positions, LENGTH), rtol=1e-6, atol=1e-13
+        )
 
 
 @pytest.mark.parametrize("separator", [",", ";", "\t"])
 @pytest.mark.parametrize("brackets", ["[]", "()"])
-def test_ways_to_write_a_csv_file(tmp_path: Path, separator: str, brackets: str) -> None:
+def test_csv_separators_and_brackets(tmp_path: Path, separator: str, brackets: str) -> None:
     (left, right), path = brackets, tmp_path / "trace.txt"
     rows = [f"{k}{separator}{0.001 * k}{separator}note" for k in range(7)]
     path.write_text("\n".join([separator.join((f"X {left}mm{right}", f"Height {left}µm{right}", "remark")), "", *rows]))
@@ -53,30 +55,30 @@ def test_ways_to_write_a_csv_file(tmp_path: Path, separator: str, brackets: str)
     np.testing.assert_allclose(profile.drops, 1e-9 * np.arange(6, -1, -1), atol=1e-22)
 
 
-def test_tilt_and_offset_are_removed_on_request(tmp_path: Path, places: np.ndarray) -> None:
+def test_tilt_and_offset_are_removed_on_request(tmp_path: Path, positions: np.ndarray) -> None:
     path = csv_file(tmp_path, drop=DROP + 3e-6 + 2e-4 * X)
-    as_measured = Measured.from_file(path)
-    np.testing.assert_allclose(as_measured.drops, DROP + 3e-6 + 2e-4 * X, rtol=1e-6)
+    uncorrected = Measured.from_file(path)
+    np.testing.assert_allclose(uncorrected.drops, DROP + 3e-6 + 2e-4 * X, rtol=1e-6)
     straight = Measured.from_file(path, remove_tilt=True, remove_offset=True)
-    np.testing.assert_allclose(straight.drop(places, LENGTH), CROWN.drop(places, LENGTH), rtol=1e-6, atol=1e-13)
-    only_tilt = Measured.from_file(path, remove_tilt=True)
-    np.testing.assert_allclose(np.ptp(np.subtract(only_tilt.drops, straight.drops)), 0.0, atol=1e-18)
+    np.testing.assert_allclose(straight.drop(positions, LENGTH), CROWN.drop(positions, LENGTH), rtol=1e-6, atol=1e-13)
+    without_tilt = Measured.from_file(path, remove_tilt=True)
+    np.testing.assert_allclose(np.ptp(np.subtract(without_tilt.drops, straight.drops)), 0.0, atol=1e-18)
 
 
 @given(st.lists(st.floats(0.0, 1e-6), min_size=5, max_size=40), st.floats(-0.5, 0.5))
-def test_interpolation_overshoots_crests_only(drops: list[float], place: float) -> None:
-    """Between two points it leaves their drops by a quarter of the neighbouring steps at most."""
+def test_interpolation_overshoots_only_at_crests(drops: list[float], position: float) -> None:
+    """The overshoot between two points is at most a quarter of the neighbouring steps."""
     values = np.array(drops)
     profile = Measured(np.linspace(0, LENGTH, len(drops)), drops, largest_spike=1.0)
-    below = min(int((place + 0.5) * (len(drops) - 1)), len(drops) - 2)
-    low, high = sorted(drops[below : below + 2])
-    steps = np.abs(np.diff(values))[max(below - 1, 0) : below + 2].max()
+    interval = min(int((position + 0.5) * (len(drops) - 1)), len(drops) - 2)
+    low, high = sorted(drops[interval : interval + 2])
+    steps = np.abs(np.diff(values))[max(interval - 1, 0) : interval + 2].max()
     shift = profile.drop(np.array([-LENGTH / 2]), LENGTH)[0] - drops[0]
-    drop = float(profile.drop(np.array([place * LENGTH]), LENGTH)[0]) - shift
+    drop = float(profile.drop(np.array([position * LENGTH]), LENGTH)[0]) - shift
     assert low - 0.25 * steps - 1e-15 <= drop <= high + 0.25 * steps + 1e-15
 
 
-def test_parabola_is_exact_between_points() -> None:
+def test_interpolation_of_a_parabola_is_exact() -> None:
     x = np.linspace(0.0, LENGTH, 24)
     crown = (x - 0.47 * LENGTH) ** 2
     fine = np.linspace(-LENGTH / 2, LENGTH / 2, 999)
@@ -85,18 +87,18 @@ def test_parabola_is_exact_between_points() -> None:
     np.testing.assert_allclose(drop - drop.min(), expected - expected.min(), atol=1e-16)
 
 
-def test_points_are_kept(places: np.ndarray) -> None:
+def test_interpolation_contains_the_points(positions: np.ndarray) -> None:
     profile = Measured(X, DROP)
     np.testing.assert_allclose(profile.drop(X - LENGTH / 2, LENGTH), DROP, rtol=1e-12, atol=1e-20)
     assert pickle.loads(pickle.dumps(profile)) == profile
 
 
-def test_crown_and_measured_waviness_add_up(places: np.ndarray) -> None:
+def test_crown_and_measured_waviness_add_up(positions: np.ndarray) -> None:
     wave = Measured(X, 0.1e-6 * (1 - np.cos(2 * np.pi * X / 2e-3)))
-    both = Lundberg(2e-7) + wave
-    inner = places[1:-1]
+    total = Lundberg(2e-7) + wave
+    inner = positions[1:-1]
     expected = Lundberg(2e-7).drop(inner, LENGTH) + 0.1e-6 * (1 - np.cos(2 * np.pi * (inner + 5e-3) / 2e-3))
-    np.testing.assert_allclose(both.drop(inner, LENGTH), expected, atol=1.5e-10)
+    np.testing.assert_allclose(total.drop(inner, LENGTH), expected, atol=1.5e-10)
 
 
 @pytest.mark.parametrize(
@@ -111,43 +113,43 @@ def test_crown_and_measured_waviness_add_up(places: np.ndarray) -> None:
     ],
     ids=["fillet", "logarithmic", "straight", "step", "noise", "waves"],
 )
-def test_what_is_no_outlier(drop: np.ndarray) -> None:
+def test_typical_profiles_have_no_outlier(drop: np.ndarray) -> None:
     Measured(X, drop)
 
 
 @pytest.mark.parametrize("points", [41, 501, 2001])
-def test_noise_alone_is_no_outlier(points: int) -> None:
+def test_noise_has_no_outlier(points: int) -> None:
     x = np.linspace(0.0, LENGTH, points)
     for seed in range(30):
         drop = (x - 0.5 * LENGTH) ** 2 / 2 + 0.2e-6 * np.random.default_rng(seed).standard_normal(points)
         Measured(x, drop - drop.min())
 
 
-@pytest.mark.parametrize("at", [1, 3, 100, 199])
+@pytest.mark.parametrize("index", [1, 3, 100, 199])
 @pytest.mark.parametrize("spike", [1e-6, 1e-5])
 @pytest.mark.parametrize("noise", [0.0, 2e-8])
-def test_outliers_are_refused_with_their_positions(at: int, spike: float, noise: float) -> None:
-    drop = DROP + 1e-7 + noise * np.abs(np.random.default_rng(at).standard_normal(X.size))
-    drop[at] += spike
-    with pytest.raises(InvalidInputError, match=rf"1 outliers: \S+ m at x = {X[at]:g} m"):
+def test_error_contains_the_positions_of_outliers(index: int, spike: float, noise: float) -> None:
+    drop = DROP + 1e-7 + noise * np.abs(np.random.default_rng(index).standard_normal(X.size))
+    drop[index] += spike
+    with pytest.raises(InvalidInputError, match=rf"1 outliers: \S+ m at x = {X[index]:g} m"):
         Measured(X, drop)
     Measured(X, drop, largest_spike=2 * spike)
 
 
 @pytest.mark.parametrize("difference", [-0.2e-3, 0.2e-3])
-def test_longer_and_shorter_than_the_roller(difference: float) -> None:
+def test_measured_length_must_equal_the_roller(difference: float) -> None:
     word = "longer" if difference < 0 else "shorter"
     with pytest.raises(InvalidInputError, match=f"0.01 m from first to last.*{word}"):
         Roller(radius=RADIUS, length=LENGTH + difference, profile=Measured(X, DROP))
 
 
-def without(values: np.ndarray, *at: int) -> np.ndarray:
-    return np.delete(values, at)
+def remove_entries(values: np.ndarray, *indices: int) -> np.ndarray:
+    return np.delete(values, indices)
 
 
-def changed(values: np.ndarray, at: int, value: float) -> np.ndarray:
+def replace_entry(values: np.ndarray, index: int, value: float) -> np.ndarray:
     result = values.copy()
-    result[at] = value
+    result[index] = value
     return result
 
 
@@ -155,10 +157,10 @@ def changed(values: np.ndarray, at: int, value: float) -> np.ndarray:
     ("x", "drop", "message"),
     [
         (X[::-1], DROP, "positions = '0.00995 m at entry 2': must be increasing; 0.01 m is before it"),
-        (changed(X, 5, X[4]), DROP, "positions = '0.0002 m at entry 6': must be increasing; it is a duplicate"),
-        (without(X, *range(60, 65)), without(DROP, *range(60, 65)), r"1 gaps: 0.00295 to 0.00325 m"),
-        (X, changed(DROP, 7, np.nan), "missing or not finite at x = 0.00035 m"),
-        (changed(X, 7, np.inf), DROP, "positions = 'inf at position 7'"),
+        (replace_entry(X, 5, X[4]), DROP, "positions = '0.0002 m at entry 6': must be increasing; it is a duplicate"),
+        (remove_entries(X, *range(60, 65)), remove_entries(DROP, *range(60, 65)), r"1 gaps: 0.00295 to 0.00325 m"),
+        (X, replace_entry(DROP, 7, np.nan), "missing or not finite at x = 0.00035 m"),
+        (replace_entry(X, 7, np.inf), DROP, "positions = 'inf at position 7'"),
         (X, DROP[:-1], "drops = '200 values': must be one for each of 201 positions"),
         (X, DROP - 1e-6, r"drops = '-1e-06 m at x = 0.005 m': must be not below zero; remove_offset"),
         (X, ["much"] * 201, "drops = .*numbers"),
@@ -166,12 +168,12 @@ def changed(values: np.ndarray, at: int, value: float) -> np.ndarray:
         (X[:4], DROP[:4], "positions = '4 positions': must be at least 5"),
     ],
 )
-def test_bad_points_are_named(x, drop, message: str) -> None:
+def test_error_names_the_bad_points(x, drop, message: str) -> None:
     with pytest.raises(InvalidInputError, match=message):
         Measured(x, drop)
 
 
-def test_bad_spikes_are_named() -> None:
+def test_error_names_the_bad_spike() -> None:
     with pytest.raises(InvalidInputError, match="largest_spike = 0"):
         Measured(X, DROP, largest_spike=0)
 
@@ -194,14 +196,14 @@ def test_bad_spikes_are_named() -> None:
         ("x [mm], drop [um]\n0, 0\n,0\n2, 0\n3, 0\n4, 0\n5, 0", "positions = 'nan at position 1'"),
     ],
 )
-def test_bad_csv_files_are_named(tmp_path: Path, text: str, message: str) -> None:
+def test_error_names_the_bad_csv_file(tmp_path: Path, text: str, message: str) -> None:
     path = tmp_path / "trace.csv"
     path.write_text(text)
     with pytest.raises(InvalidInputError, match=message):
         Measured.from_file(path)
 
 
-def test_bad_netcdf_files_are_named(tmp_path: Path) -> None:
+def test_error_names_the_bad_netcdf_file(tmp_path: Path) -> None:
     with pytest.raises(InvalidInputError, match="unit of x = 'deg'"):
         Measured.from_file(netcdf_file(tmp_path, units=("deg", "um")))
     with pytest.raises(InvalidInputError, match="a file with x and one of drop, height"):
@@ -213,7 +215,7 @@ def test_bad_netcdf_files_are_named(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("name", ["missing.csv", "missing.nc"])
-def test_missing_files_are_named(tmp_path: Path, name: str) -> None:
+def test_error_names_the_missing_file(tmp_path: Path, name: str) -> None:
     with pytest.raises(InvalidInputError, match=f"path = .*{name}"):
         Measured.from_file(tmp_path / name)
 
@@ -222,23 +224,23 @@ NOISE = 0.05e-6 * np.random.default_rng(0).standard_normal(X.size)
 NOISY = DROP + NOISE - (DROP + NOISE).min()
 
 
-def test_a_filter_leaves_the_crown_and_takes_the_noise() -> None:
-    rough, smooth = Measured(X, NOISY), Measured(X, NOISY, cutoff=0.8e-3)
-    off = [profile.drop(X - LENGTH / 2, LENGTH) - DROP for profile in (rough, smooth)]
-    assert np.std(off[0]) == pytest.approx(0.05e-6, rel=0.2)
-    assert np.std(off[1]) < 0.4 * np.std(off[0])
-    assert 0.0 <= smooth.drop(X - LENGTH / 2, LENGTH).min() < 1e-10
-    assert "Gaussian filter with cut-off 0.8 mm" in repr(smooth)
-    assert "filter" not in repr(rough)
-    assert pickle.loads(pickle.dumps(smooth)) == smooth != rough
+def test_filter_preserves_the_crown_and_reduces_noise() -> None:
+    unfiltered, filtered = Measured(X, NOISY), Measured(X, NOISY, cutoff=0.8e-3)
+    errors = [profile.drop(X - LENGTH / 2, LENGTH) - DROP for profile in (unfiltered, filtered)]
+    assert np.std(errors[0]) == pytest.approx(0.05e-6, rel=0.2)
+    assert np.std(errors[1]) < 0.4 * np.std(errors[0])
+    assert 0.0 <= filtered.drop(X - LENGTH / 2, LENGTH).min() < 1e-10
+    assert "Gaussian filter with cut-off 0.8 mm" in repr(filtered)
+    assert "filter" not in repr(unfiltered)
+    assert pickle.loads(pickle.dumps(filtered)) == filtered != unfiltered
 
 
-def test_a_file_is_filtered_as_its_points_are(tmp_path: Path) -> None:
+def test_filter_of_a_file_equals_filter_of_points(tmp_path: Path) -> None:
     path = csv_file(tmp_path, drop=DROP + NOISE + 2e-6)
-    read = Measured.from_file(path, remove_offset=True, cutoff=0.8e-3)
-    assert read.cutoff == 0.8e-3
+    from_file = Measured.from_file(path, remove_offset=True, cutoff=0.8e-3)
+    assert from_file.cutoff == 0.8e-3
     np.testing.assert_allclose(
-        read.drop(X - LENGTH / 2, LENGTH),
+        from_file.drop(X - LENGTH / 2, LENGTH),
         Measured(X, NOISY, cutoff=0.8e-3).drop(X - LENGTH / 2, LENGTH),
         rtol=1e-5,
         atol=1e-13,
@@ -246,50 +248,50 @@ def test_a_file_is_filtered_as_its_points_are(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("cutoff", [0.0, -1e-3, 0.2e-3, 11e-3, 0.8, "0.8 mm", np.nan])
-def test_bad_cutoffs_are_named(cutoff: object) -> None:
+def test_error_names_the_bad_cutoff(cutoff: object) -> None:
     with pytest.raises(InvalidInputError, match="cutoff = "):
         Measured(X, DROP, cutoff=cutoff)
 
 
-def test_outliers_are_found_before_they_are_smeared() -> None:
+def test_outlier_check_precedes_the_filter() -> None:
     drop = DROP + 1e-6
     drop[100] += 5e-6
     with pytest.raises(InvalidInputError, match="1 outliers"):
         Measured(X, drop, cutoff=0.8e-3)
 
 
-def test_line_and_map_of_an_instrument(tmp_path: Path, places: np.ndarray) -> None:
-    """Heights of the crown; end II is lower, so that directions show."""
-    lower = -DROP - 4e-4 * np.maximum(X - 0.5 * LENGTH, 0.0)
-    across = np.linspace(0.0, 0.3e-3, 16)
-    heights = lower[:, None] - (across - 0.13e-3) ** 2 / (2 * RADIUS)
-    x3pio.Profile.from_array(lower, x_scale=X[1]).save(tmp_path / "line.x3p")
-    x3pio.write(tmp_path / "map.x3p", heights.T, x_scale=X[1], y_scale=across[1])
-    x3pio.write(tmp_path / "other.x3p", heights, x_scale=across[1], y_scale=X[1])
+def test_line_and_map_of_an_instrument(tmp_path: Path, positions: np.ndarray) -> None:
+    """Heights of the crown; end II is lower, which distinguishes directions."""
+    line = -DROP - 4e-4 * np.maximum(X - 0.5 * LENGTH, 0.0)
+    y = np.linspace(0.0, 0.3e-3, 16)
+    heights = line[:, None] - (y - 0.13e-3) ** 2 / (2 * RADIUS)
+    x3pio.Profile.from_array(line, x_scale=X[1]).save(tmp_path / "line.x3p")
+    x3pio.write(tmp_path / "map.x3p", heights.T, x_scale=X[1], y_scale=y[1])
+    x3pio.write(tmp_path / "other.x3p", heights, x_scale=y[1], y_scale=X[1])
     for name, turn, side in (("line", 0, 1), ("line", 180, -1), ("map", 0, 1), ("map", 180, -1), ("other", 270, 1)):
         profile = Measured.from_file(tmp_path / f"{name}.x3p", remove_offset=True, turn=turn)
-        expected = CROWN.drop(places, LENGTH) + 4e-4 * np.maximum(side * places, 0.0)
-        np.testing.assert_allclose(profile.drop(places, LENGTH), expected, rtol=1e-6, atol=1e-12)
+        expected = CROWN.drop(positions, LENGTH) + 4e-4 * np.maximum(side * positions, 0.0)
+        np.testing.assert_allclose(profile.drop(positions, LENGTH), expected, rtol=1e-6, atol=1e-12)
     assert np.ptp(Measured.from_file(tmp_path / "other.x3p", remove_offset=True).positions) == pytest.approx(0.3e-3)
 
 
-def test_columns_can_be_turned_end_for_end(tmp_path: Path) -> None:
+def test_rotation_exchanges_the_ends_of_columns(tmp_path: Path) -> None:
     path = csv_file(tmp_path, drop=DROP + 2e-4 * X)
-    turned = Measured.from_file(path, turn=180)
-    np.testing.assert_allclose(turned.drops, (DROP + 2e-4 * X)[::-1], rtol=1e-6)
+    rotated = Measured.from_file(path, turn=180)
+    np.testing.assert_allclose(rotated.drops, (DROP + 2e-4 * X)[::-1], rtol=1e-6)
     with pytest.raises(InvalidInputError, match="turn = 90: must be one of 0, 180"):
         Measured.from_file(path, turn=90)
 
 
 @pytest.mark.parametrize(
-    ("text", "shown"),
+    ("text", "message"),
     [
         ("0, 0\n1, 1", r"such as: x \[mm\], drop \[um\]"),
         ("", r"a header such as: x \[mm\]"),
         ("x, drop\n0, 0", r"such as x \[mm\]"),
     ],
 )
-def test_the_header_that_is_wanted_is_shown(tmp_path: Path, text: str, shown: str) -> None:
+def test_error_contains_an_example_header(tmp_path: Path, text: str, message: str) -> None:
     (tmp_path / "trace.csv").write_text(text)
-    with pytest.raises(InvalidInputError, match=shown):
+    with pytest.raises(InvalidInputError, match=message):
         Measured.from_file(tmp_path / "trace.csv")

@@ -10,28 +10,28 @@ import pytest
 
 from contactstudy.errors import InvalidInputError
 from contactstudy.profiles import instruments
+from contactstudy.profiles.column_files import read_columns, read_netcdf
 from contactstudy.profiles.instruments import read_heights
-from contactstudy.profiles.measurements import read_columns, read_netcdf
 
 POINTS = [(0.0, 0.0), (2.5, 1.25), (5.0, 3.125)]
 COLUMNS = ("x",), ("drop",)
 
 
-def written(separator: str, mark: str = ",") -> str:
+def german_table(separator: str, mark: str = ",") -> str:
     rows = [f"{x:.2f}{separator}{drop:.3f}".replace(".", mark) for x, drop in POINTS]
     return "\n".join([f"x [mm]{separator}drop [µm]", *rows])
 
 
 @pytest.mark.parametrize("encoding", ["latin-1", "cp1252", "utf-8", "utf-8-sig", "utf-16", "mac-roman"])
 @pytest.mark.parametrize("separator", [";", "\t"])
-def test_a_table_of_a_german_spreadsheet_is_read(tmp_path: Path, encoding: str, separator: str) -> None:
-    (tmp_path / "a.csv").write_bytes(written(separator).encode(encoding))
-    found = read_columns(tmp_path / "a.csv", *COLUMNS)
-    np.testing.assert_allclose(np.transpose([found["x"], found["drop"]]), np.multiply(POINTS, [1e-3, 1e-6]))
+def test_german_spreadsheet_is_readable(tmp_path: Path, encoding: str, separator: str) -> None:
+    (tmp_path / "a.csv").write_bytes(german_table(separator).encode(encoding))
+    columns = read_columns(tmp_path / "a.csv", *COLUMNS)
+    np.testing.assert_allclose(np.transpose([columns["x"], columns["drop"]]), np.multiply(POINTS, [1e-3, 1e-6]))
 
 
-def test_an_unknown_encoding_is_named_with_what_to_do(tmp_path: Path) -> None:
-    (tmp_path / "a.csv").write_bytes(written(";").encode("cp850"))
+def test_unknown_encoding_names_the_remedy(tmp_path: Path) -> None:
+    (tmp_path / "a.csv").write_bytes(german_table(";").encode("cp850"))
     with pytest.raises(InvalidInputError, match=r"unit of drop.*save the file as UTF-8"):
         read_columns(tmp_path / "a.csv", *COLUMNS)
 
@@ -44,17 +44,17 @@ def test_an_unknown_encoding_is_named_with_what_to_do(tmp_path: Path) -> None:
         ("1,234.5;2", "line 2, x = '1,234.5'"),
     ],
 )
-def test_commas_that_may_mean_something_else_are_refused(tmp_path: Path, rows: str, message: str) -> None:
+def test_ambiguous_commas_are_rejected(tmp_path: Path, rows: str, message: str) -> None:
     (tmp_path / "a.csv").write_text(f"x [mm];drop [um]\n{rows}\n")
     with pytest.raises(InvalidInputError, match=message):
         read_columns(tmp_path / "a.csv", *COLUMNS)
 
 
 @pytest.mark.parametrize("header", ["x / mm;drop / um", "x/mm; drop/um", "x (mm);drop [um]"])
-def test_units_are_read_however_a_header_sets_them_off(tmp_path: Path, header: str) -> None:
+def test_notations_of_units_in_a_header(tmp_path: Path, header: str) -> None:
     (tmp_path / "a.csv").write_text(f"{header}\n1;2\n2;3\n")
-    found = read_columns(tmp_path / "a.csv", *COLUMNS)
-    x, drop = found["x"], found["drop"]
+    columns = read_columns(tmp_path / "a.csv", *COLUMNS)
+    x, drop = columns["x"], columns["drop"]
     assert x.tolist() == pytest.approx([1e-3, 2e-3])
     assert drop.tolist() == pytest.approx([2e-6, 3e-6])
 
@@ -65,8 +65,8 @@ def workbook() -> bytes:
     return content.getvalue()
 
 
-FOREIGN = {
-    "picture": (b"\x89PNG\r\n\x1a\n and so on", "it is a picture, which shows heights but does not hold them"),
+FOREIGN_FILES = {
+    "picture": (b"\x89PNG\r\n\x1a\n and so on", "it is a picture without heights"),
     "workbook": (workbook(), "it is a workbook of a spreadsheet program: save the sheet as 'CSV UTF-8'"),
     "bitmap": (b"BM" + (1078).to_bytes(4, "little") + bytes(8), "it is a picture"),
     "netCDF": (b"CDF\x01" + bytes(8), "it is netCDF: let its name end with .nc"),
@@ -75,75 +75,75 @@ FOREIGN = {
 }
 
 
-@pytest.mark.parametrize("kind", FOREIGN)
+@pytest.mark.parametrize("kind", FOREIGN_FILES)
 @pytest.mark.parametrize("name", ["a.csv", "a"])
-def test_what_is_no_text_is_told_from_it(tmp_path: Path, kind: str, name: str) -> None:
-    content, message = FOREIGN[kind]
+def test_foreign_files_are_identified(tmp_path: Path, kind: str, name: str) -> None:
+    content, message = FOREIGN_FILES[kind]
     (tmp_path / name).write_bytes(content)
     with pytest.raises(InvalidInputError, match=rf"columns as text.*netCDF.*extra `measured`.*{message}"):
         read_columns(tmp_path / name, *COLUMNS)
 
 
-@pytest.mark.parametrize("first", ["BM nr", "CDF"])
-def test_a_first_column_may_be_named_like_the_mark_of_a_picture(tmp_path: Path, first: str) -> None:
-    (tmp_path / "a.csv").write_text(f"{first},x [mm], drop [um]\n1,0,2\n2,1,3\n")
-    found = read_columns(tmp_path / "a.csv", *COLUMNS)
-    np.testing.assert_allclose([found["x"], found["drop"]], [[0, 1e-3], [2e-6, 3e-6]])
+@pytest.mark.parametrize("column", ["BM nr", "CDF"])
+def test_column_name_equal_to_a_file_signature(tmp_path: Path, column: str) -> None:
+    (tmp_path / "a.csv").write_text(f"{column},x [mm], drop [um]\n1,0,2\n2,1,3\n")
+    columns = read_columns(tmp_path / "a.csv", *COLUMNS)
+    np.testing.assert_allclose([columns["x"], columns["drop"]], [[0, 1e-3], [2e-6, 3e-6]])
 
 
 @pytest.mark.parametrize(("name", "kind"), [("a.png", "picture"), ("a.xlsx", "workbook"), ("a.pdf", "document")])
-def test_an_extra_that_would_not_help_is_not_asked_for(tmp_path: Path, monkeypatch, name: str, kind: str) -> None:
-    content, message = FOREIGN[kind]
+def test_foreign_file_does_not_ask_for_the_extra(tmp_path: Path, monkeypatch, name: str, kind: str) -> None:
+    content, message = FOREIGN_FILES[kind]
     (tmp_path / name).write_bytes(content)
     monkeypatch.setattr(instruments, "find_spec", lambda name: None)
     with pytest.raises(InvalidInputError, match=message):
         read_heights(tmp_path / name)
 
 
-def read(path, text):
+def write_and_read(path, text):
     path.write_text(text, encoding="utf-8")
     return read_columns(path, ("x",), ("drop",))
 
 
 @pytest.mark.parametrize("field", ["1_2.5", "١٢", "1,5e", "0x10", "1 2", "--1", "1" * 200_000 + "a"])
-def test_only_plain_numbers_are_numbers(tmp_path, field):
+def test_other_number_formats_are_rejected(tmp_path, field):
     with pytest.raises(InvalidInputError, match="line 3") as caught:
-        read(tmp_path / "a.csv", f"x [m]; drop [m]\n1; 2\n3; {field}\n")
+        write_and_read(tmp_path / "a.csv", f"x [m]; drop [m]\n1; 2\n3; {field}\n")
     assert len(str(caught.value)) < 200
 
 
 @pytest.mark.parametrize("field", ["1", "+1.", "-.5e-3", " 2.5E+4 ", "nan", "", "inf"])
-def test_numbers_are_read(tmp_path, field):
+def test_number_formats(tmp_path, field):
     expected = float(field) if field.strip() else np.nan
-    found = read(tmp_path / "a.csv", f"x [m], drop [m]\n1, {field}\n")
-    np.testing.assert_equal(found["drop"], [expected])
+    columns = write_and_read(tmp_path / "a.csv", f"x [m], drop [m]\n1, {field}\n")
+    np.testing.assert_equal(columns["drop"], [expected])
 
 
 @pytest.mark.parametrize("line", ['1,"2\n', '1,"2\n3"\n', "1," + '"' + "2" * 200_000 + '"'])
-def test_quotation_marks_end_with_the_line(tmp_path, line):
+def test_unclosed_quotation_mark_is_rejected(tmp_path, line):
     with pytest.raises(InvalidInputError, match="line 2"):
-        read(tmp_path / "a.csv", f"x [m],drop [m]\n{line}")
+        write_and_read(tmp_path / "a.csv", f"x [m],drop [m]\n{line}")
 
 
-def test_little_is_quoted_of_a_foreign_file(tmp_path):
+def test_error_does_not_disclose_a_foreign_file(tmp_path):
     with pytest.raises(InvalidInputError, match="each with its unit") as caught:
-        read(tmp_path / "passwd", "root:secret-password:0:0,PASSWORD=hunter2,x\n")
+        write_and_read(tmp_path / "passwd", "root:secret-password:0:0,PASSWORD=hunter2,x\n")
     assert "secret" not in str(caught.value)
     assert "hunter2" not in str(caught.value)
 
 
-def test_names_of_columns_are_quoted(tmp_path):
+def test_error_contains_the_column_names(tmp_path):
     with pytest.raises(InvalidInputError, match=r"\['x', 'depth'\]"):
-        read(tmp_path / "a.csv", "x [mm], depth [um]\n1, 2\n")
+        write_and_read(tmp_path / "a.csv", "x [mm], depth [um]\n1, 2\n")
 
 
 @pytest.mark.parametrize("path", ["/dev/zero", "/dev/null"])
-def test_devices_are_no_files(path):
+def test_devices_are_rejected(path):
     with pytest.raises(InvalidInputError, match="a regular file"):
         read_columns(path, ("x",), ("drop",))
 
 
-def test_pipes_and_folders_are_no_files(tmp_path):
+def test_pipes_and_folders_are_rejected(tmp_path):
     os.mkfifo(tmp_path / "pipe")
     for path in (tmp_path, tmp_path / "pipe"):
         with pytest.raises(InvalidInputError, match="a regular file"):

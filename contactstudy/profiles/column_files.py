@@ -1,0 +1,305 @@
+"""Columns of measured values with units, from text files in any common encoding and number format, and from netCDF."""
+
+from __future__ import annotations
+
+import codecs
+import csv
+import re
+import stat
+import zipfile
+from array import array
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from contactstudy import checks
+from contactstudy.checks import UNIT_SIZES, FloatArray
+from contactstudy.errors import InvalidInputError
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+# Size of a file with measurements: a height map of ten million points.
+MAX_BYTES = 500_000_000
+
+BINARY_BYTES = bytes(set(range(32)) - set(b"\t\n\v\f\r\x1a\x1b"))  # Bytes outside text of single-byte encodings
+MICRO = "\N{MICRO SIGN}"
+
+FOREIGN_MICRO = "\udcb5"  # Python's surrogate of the byte 0xB5 outside UTF-8
+PICTURE_ADVICE = "a picture without heights: export the heights from the instrument's software"
+WORKBOOK_ADVICE = "a workbook of a spreadsheet program: save the sheet as 'CSV UTF-8'"
+
+# First bytes of foreign files, with advice
+SIGNATURES = (
+    (b"\x89PNG", PICTURE_ADVICE),
+    (b"\xff\xd8\xff", PICTURE_ADVICE),
+    (b"GIF8", PICTURE_ADVICE),
+    (b"BM", PICTURE_ADVICE),
+    (b"%PDF", "a PDF document: export the heights from the instrument's software"),
+    (b"CDF", "netCDF: let its name end with .nc"),
+    (b"\x89HDF", "netCDF or HDF5: let the name of a netCDF file end with .nc"),
+)
+# Readable files, as the end of the sentence "must be ..."
+READABLE_FILES = (
+    "columns as text (.csv, .txt, .tsv, .dat), netCDF (.nc), or with the extra `measured` x3p (.x3p) "
+    "and the profilometer formats of SurfaceTopography"
+)
+
+
+def check_regular_file(path: Path, kind: str = "text") -> None:
+    """Raise unless `path` is a regular file of limited size: a pipe or a device would never end."""
+    try:
+        status = path.stat()
+    except OSError as error:
+        reason = (error.strerror or str(error)).lower()
+        raise InvalidInputError("path", str(path), f"a {kind} file that can be read", reason) from error
+    if not stat.S_ISREG(status.st_mode):
+        raise InvalidInputError("path", str(path), "a regular file, not a folder, pipe or device")
+    if status.st_size > MAX_BYTES:
+        raise InvalidInputError("path", str(path), f"at most {MAX_BYTES:.0e} bytes", f"it has {status.st_size}")
+
+
+def read_lines(path: Path) -> Iterator[tuple[int, str]]:
+    """Yield the lines of a text file with their numbers, without empty lines and comments."""
+    check_regular_file(path)
+    try:
+        with open(path, encoding=_detect_encoding(path), errors="surrogateescape") as file:
+            for number, line in enumerate(file, start=1):
+                if (content := line.strip()) and not content.startswith("#"):
+                    yield number, line.replace(FOREIGN_MICRO, MICRO)
+    except (OSError, UnicodeError) as error:
+        reason = error.strerror or str(error) if isinstance(error, OSError) else "it is no text"
+        raise InvalidInputError("path", str(path), "a text file that can be read", reason.lower()) from error
+
+
+def describe_foreign_file(path: Path) -> str:
+    """Return the kind of a file without measurements, with advice; empty if unknown."""
+    head = _read_head(path)
+    for signature, description in SIGNATURES:
+        # Short signatures also occur in text: the code ignores them in text files.
+        if head.startswith(signature) and (len(signature) > 3 or _is_binary(head)):
+            return description
+    if head.startswith(b"PK"):
+        try:
+            with zipfile.ZipFile(path) as archive:
+                names = archive.namelist()
+        except (OSError, zipfile.BadZipFile, ValueError):
+            return ""
+        if any(name.startswith("xl/") for name in names) or "content.xml" in names:
+            return WORKBOOK_ADVICE
+        return "x3p: let its name end with .x3p" if "main.xml" in names else ""
+    return WORKBOOK_ADVICE if path.suffix.lower() == ".xls" else ""
+
+
+def _read_head(path: Path) -> bytes:
+    """First bytes of a file."""
+    try:
+        with open(path, "rb") as file:
+            return file.read(4096)  # The first bytes determine the kind
+    except OSError:
+        return b""  # opening the file raises the error
+
+
+def _is_binary(head: bytes) -> bool:
+    """Whether the first bytes of a file contain bytes outside any single-byte text."""
+    return head.translate(None, BINARY_BYTES) != head
+
+
+def _detect_encoding(path: Path) -> str:
+    """Return the encoding of a text file by its first bytes, or raise with its kind."""
+    head = _read_head(path)
+    if head.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+        return "utf-16"
+    if description := describe_foreign_file(path):
+        raise InvalidInputError("path", str(path), READABLE_FILES, f"it is {description}")
+    if _is_binary(head):
+        hint = "a binary file with the name of a text file: restore the profilometer's ending, or export columns"
+        raise InvalidInputError("path", str(path), READABLE_FILES, hint)
+    return "utf-8-sig"
+
+
+NUMBER = re.compile(r"\s*[+-]?(?:(?:\d+(?:\.\d*)?|\.\d+)(?:e[+-]?\d+)?|nan|inf)\s*", re.ASCII | re.IGNORECASE)
+
+# A number with a possible comma between thousands
+THOUSANDS = re.compile(r"\s*[+-]?[1-9]\d{0,2},\d{3}\s*", re.ASCII)
+MAX_QUOTE = 24
+
+
+def truncate(text: str) -> str:
+    """Return the beginning of a text, too short to disclose a foreign file."""
+    text = text.strip()
+    return text if len(text) <= MAX_QUOTE else f"{text[: MAX_QUOTE - 3]}..."
+
+
+class NumberParser:
+    """NumberParser of one file with one decimal mark.
+
+    A comma is the decimal mark unless it separates columns, a number has a point, or all may separate thousands.
+    """
+
+    def __init__(self, separator: str) -> None:
+        self._comma_allowed = separator != ","
+        self._point_number: tuple[str, str] | None = None
+        self._comma_number: tuple[str, str] | None = None
+        self._is_decimal_comma = False
+
+    def parse(self, line: int, name: str, field: str) -> float:
+        """Return a field of a column as a number; NaN for an empty field."""
+        # Python's float also accepts underscores and the digits of all scripts.
+        if NUMBER.fullmatch(field):
+            if self._point_number is None and "." in field:
+                self._point_number = f"line {line}, {name}", field
+            return float(field)
+        if not field.strip():
+            return np.nan
+        if self._comma_allowed and "." not in field and NUMBER.fullmatch(with_point := field.replace(",", ".", 1)):
+            self._comma_number = f"line {line}, {name}", field
+            self._is_decimal_comma = self._is_decimal_comma or not THOUSANDS.fullmatch(field)
+            return float(with_point)
+        allowed = "a number with a decimal point" + (" or comma" if self._comma_allowed else "")
+        raise InvalidInputError(f"line {line}, {name}", truncate(field), allowed)
+
+    def check(self) -> None:
+        """Raise if numbers with commas are ambiguous."""
+        if self._comma_number is None:
+            return
+        position, field = self._comma_number
+        if self._point_number is not None:
+            reason = f"{self._point_number[0]} is {truncate(self._point_number[1])!r}"
+            raise InvalidInputError(position, truncate(field), "a number with the decimal mark of all others", reason)
+        if not self._is_decimal_comma:
+            hint = "a decimal comma, or a comma between thousands: write decimal points"
+            raise InvalidInputError(position, truncate(field), "a number of one meaning", hint)
+
+
+MAX_STEP_RATIO = 3.0  # Width of a gap over the neighbouring steps
+# Messages quote only names of columns: the file may be foreign.
+NAME = re.compile(r"[A-Za-z]\w{0,15}", re.ASCII)
+MAX_NAMES = 8
+
+
+def read_netcdf(path: Path) -> xr.Dataset:
+    """Read a netCDF file; raise an error with its path."""
+    import xarray as xr
+
+    check_regular_file(path, "netCDF")
+    try:
+        with xr.open_dataset(path, engine="netcdf4") as dataset:
+            return dataset.load()
+    except (OSError, ValueError) as error:
+        reason = (error.strerror or "it is not netCDF") if isinstance(error, OSError) else str(error)
+        raise InvalidInputError("path", str(path), "a netCDF file that can be read", reason.lower()) from error
+
+
+def unit_in_metres(name: str, unit: object) -> float:
+    """Size of a unit of length in metres."""
+    text = str(unit).strip() if unit else ""
+    if text not in UNIT_SIZES["m"]:
+        hint = f"a header has the unit in brackets, such as {name} [mm]; netCDF in the attribute units"
+        if any("\udc80" <= sign <= "\udcff" for sign in text):  # surrogates of an unknown encoding
+            hint = "the encoding is unknown: save the file as UTF-8 (in Excel 'CSV UTF-8'), or write um"
+        raise InvalidInputError(f"unit of {name}", text or None, f"one of {', '.join(UNIT_SIZES['m'])}", hint)
+    return UNIT_SIZES["m"][text]
+
+
+def read_columns(path: str | Path, positions: tuple[str, ...], values: tuple[str, ...]) -> dict[str, FloatArray]:
+    """Columns of a CSV file by name, metres: `positions`, and exactly one of `values`; an empty field is NaN.
+
+    Format: docs/how-to/measured_profile.md.
+    """
+    path = Path(path)
+    lines = read_lines(path)
+    header_line = next(lines, None)
+    if header_line is None:
+        hint = f"a header such as: {_example_header(positions, values)}"
+        raise InvalidInputError("path", str(path), "a file with a header and data", hint)
+    separator = next((mark for mark in ";\t" if mark in header_line[1]), ",")
+    header = [_split_unit(entry) for entry in _split_fields(*header_line, separator)]
+    names = _select_columns([name for name, _ in header], positions, values, path)
+    indices = [next(index for index, (title, _) in enumerate(header) if title == name) for name in names]
+    columns, parser = [array("d") for _ in names], NumberParser(separator)
+    for number, line in lines:
+        row = _split_fields(number, line, separator)
+        if len(row) != len(header):
+            raise InvalidInputError(f"line {number}", f"{len(row)} fields", f"{len(header)} fields, as the header has")
+        for name, index, column in zip(names, indices, columns, strict=True):
+            column.append(parser.parse(number, name, row[index]))
+    parser.check()
+    return {
+        name: unit_in_metres(name, header[index][1]) * np.array(column)
+        for name, index, column in zip(names, indices, columns, strict=True)
+    }
+
+
+def _split_fields(number: int, line: str, separator: str) -> list[str]:
+    """Split one line; a quotation mark cannot extend the field to the next line."""
+    if '"' not in line:
+        return line.split(separator)
+    try:
+        return next(csv.reader((line.rstrip("\r\n"),), delimiter=separator, skipinitialspace=True, strict=True))
+    except csv.Error as error:
+        raise InvalidInputError(f"line {number}", truncate(line), "fields of numbers", str(error)) from None
+
+
+def _split_unit(entry: str) -> tuple[str, str]:
+    """Name and unit of a header's entry."""
+    match = re.fullmatch(r"\s*([^\[(]*?)\s*[\[(]\s*(.*?)\s*[\])]\s*", entry)
+    match = match or re.fullmatch(r"\s*(\w+)\s*/\s*(\S+)\s*", entry)  # DIN 1313
+    return (match[1].lower(), match[2]) if match else (entry.strip().lower(), "")
+
+
+def _select_columns(titles: list[str], positions: tuple[str, ...], values: tuple[str, ...], path: Path) -> list[str]:
+    """Return the names of the required columns; raise for missing or repeated columns."""
+    value_names = [name for name in values if name in titles]
+    if any(titles.count(name) != 1 for name in positions) or len(value_names) != 1 or titles.count(value_names[0]) != 1:
+        required = f"{', '.join(positions)} and one of {', '.join(values)}"
+        quoted_titles = [name if NAME.fullmatch(name) else "..." for name in titles[:MAX_NAMES]]
+        header = _example_header(positions, values)
+        hint = f"the first line of {path} without comments contains the names of the columns, such as: {header}"
+        raise InvalidInputError("columns", quoted_titles, f"{required}, each with its unit", hint)
+    return [*positions, value_names[0]]
+
+
+def _example_header(positions: tuple[str, ...], values: tuple[str, ...]) -> str:
+    """Return an example of a valid header."""
+    return ", ".join([*(f"{name} [mm]" for name in positions), f"{values[0]} [um]"])
+
+
+def check_positions(name: str, positions: FloatArray, min_count: int = 2) -> None:
+    """Raise unless positions are finite, increasing, and without gaps."""
+    checks.coordinates(name, positions)
+    if positions.size < min_count:
+        raise InvalidInputError(name, f"{positions.size} positions", f"at least {min_count} positions")
+    steps = np.diff(positions)
+    decreasing = np.flatnonzero(steps <= 0)
+    if decreasing.size:
+        index = int(decreasing[0]) + 1
+        hint = "it is a duplicate" if steps[index - 1] == 0 else f"{positions[index - 1]:g} m is before it"
+        raise InvalidInputError(name, f"{positions[index]:g} m at entry {index + 1}", "increasing", hint)
+    padded_steps = np.concatenate([[0.0], steps, [0.0]])
+    neighbours = np.maximum(padded_steps[:-2], padded_steps[2:])
+    gaps = np.flatnonzero(steps > MAX_STEP_RATIO * neighbours) if steps.size > 1 else np.array([], dtype=int)
+    if gaps.size:
+        intervals = ", ".join(f"{positions[index]:g} to {positions[index + 1]:g} m" for index in gaps[:5])
+        raise InvalidInputError(
+            name, f"{gaps.size} gaps: {intervals}", f"without steps over {MAX_STEP_RATIO:g} times as wide"
+        )
+
+
+def check_values(name: str, values: FloatArray, *positions: tuple[str, FloatArray]) -> None:
+    """Raise with the first positions of values that are not finite; one pair of name and positions per axis."""
+    bad_indices = np.argwhere(~np.isfinite(values))
+    if not bad_indices.size:
+        return
+    positions_text = "; ".join(
+        ", ".join(
+            f"{axis} = {values_of_axis[index]:g} m"
+            for (axis, values_of_axis), index in zip(positions, entry, strict=True)
+        )
+        for entry in bad_indices[:5]
+    )
+    hint = f"{len(bad_indices)} values are not: fill the gaps first, for example with the instrument's software"
+    raise InvalidInputError(name, f"missing or not finite at {positions_text}", "given everywhere", hint)
