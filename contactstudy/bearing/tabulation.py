@@ -19,8 +19,8 @@ from contactstudy.case.case import LARGEST_TILT, Case
 from contactstudy.case.magnitudes import warn_doubtful
 from contactstudy.checks import FloatArray
 from contactstudy.contact.normal.contact import Contact
-from contactstudy.contact.refinement.refined_contact import POWER, refine_contact, search_load
-from contactstudy.contact.solve import reference_lines
+from contactstudy.contact.refinement.refined_contact import LOAD_POWER, refine_contact, search_load
+from contactstudy.contact.solve import describe_reference_lines
 from contactstudy.errors import InvalidInputError, WindowError
 
 LOGGER = logging.getLogger(__name__)
@@ -95,7 +95,7 @@ def solved_nodes(presser: Presser, approaches: FloatArray, tilts: FloatArray) ->
             if index == level:  # from the next larger approach, or the load of the case
                 guess = presser.case.normal_load
                 if line + 1 < approaches.size:
-                    guess = values[0, line + 1, level] * (approaches[line] / approaches[line + 1]) ** POWER
+                    guess = values[0, line + 1, level] * (approaches[line] / approaches[line + 1]) ** LOAD_POWER
             values[:, line, index] = presser.pressed(float(approaches[line]), float(tilts[index]), float(guess))
             LOGGER.info(
                 "approach %.3g m, tilt %.3g rad: %.4g N", approaches[line], tilts[index], values[0, line, index]
@@ -234,7 +234,7 @@ def law_table(presser: Presser, nodes: Nodes, errors: FloatArray) -> xr.Dataset:
         {name: (dims, values) for name, values in arrays.items()} | scalars,
         coords={"approach": nodes.approaches, "tilt": nodes.tilts},
     )
-    reference = reference_lines(presser.case.body, presser.case.counterbody)
+    reference = describe_reference_lines(presser.case.body, presser.case.counterbody)
     table["approach"].attrs |= {"reference": reference, "comment": "at the roller's mid-length"}
     table["tilt"].attrs |= {"reference": reference, "centre": "the roller's mid-length"}
     table["moment"].attrs["comment"] = "about the roller's mid-length"

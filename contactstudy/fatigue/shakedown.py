@@ -335,8 +335,8 @@ def shakedown_in_plane(stress: xr.Dataset, body: Body) -> xr.Dataset:
 def _stresses(extent: tuple[float, float], x: FloatArray, z: FloatArray) -> list[sparse.csr_array]:
     """Stresses xx, zz and xz at the points per coefficient of Airy's function: arrays (point, coefficient)."""
     ends = [end if np.isfinite(end) else edge for end, edge in zip(extent, x[[0, -1]], strict=True)]
-    along_x = Splines(_elements(x, *ends), DEGREE, CONTINUITY, vanishing=2)
-    along_z = Splines(_elements(z, 0.0, z[-1]), DEGREE, CONTINUITY, vanishing=2)
+    along_x = Splines(_elements(x, *ends), DEGREE, CONTINUITY, vanishing_orders=2)
+    along_z = Splines(_elements(z, 0.0, z[-1]), DEGREE, CONTINUITY, vanishing_orders=2)
     size = 0.5 * (along_x.edges[-1] - along_x.edges[0]), 0.5 * along_z.edges[-1]
     # Both sides scaled to a length of about an element make the coefficients stresses.
     step = [half / max(splines.edges.size - 1, 1) for half, splines in zip(size, (along_x, along_z), strict=True)]

@@ -18,7 +18,7 @@ from scipy import linalg
 
 from contactstudy.checks import ComplexArray, FloatArray, IntArray
 from contactstudy.kernels.load import Load
-from contactstudy.overlapping.axial import AxialModes
+from contactstudy.overlapping.axial_modes import AxialModes
 from contactstudy.overlapping.quadrature import Resolution, ray_nodes, scale_nodes
 
 
@@ -152,7 +152,7 @@ class EquationSet:
         """Face loads that free the ends from a top load of weighted `spectrum` (wavenumber, ...) in H alone."""
         return real_product(self.load_to_faces(load), spectrum)
 
-    def on_top(self, scaled_face_load: FloatArray) -> ComplexArray:
+    def spectrum_on_top(self, scaled_face_load: FloatArray) -> ComplexArray:
         """Weighted spectrum, before `cosine`, of the top load from the faces."""
         return np.asarray(self.top @ scaled_face_load)  # eq. (26a)
 
@@ -160,8 +160,8 @@ class EquationSet:
         self, spectrum: ComplexArray, loads: Sequence[Load], *, shortest: float, resolution: Resolution
     ) -> AuxiliaryLoads:
         """Solve for the loads on H and V that free the ends from one distribution, acting in each direction in turn."""
-        equivalent = self.on_top(self.solve(np.hstack([self.source(load, spectrum) for load in loads])))
-        depth, weights = self.ray(shortest, resolution)
+        equivalent = self.spectrum_on_top(self.solve(np.hstack([self.source(load, spectrum) for load in loads])))
+        depth, weights = self.ray_nodes(shortest, resolution)
         columns = spectrum.shape[1]
         total = self.modes.on_end[:, None] * equivalent
         slices = {load: slice(i * columns, (i + 1) * columns) for i, load in enumerate(loads)}
@@ -169,13 +169,13 @@ class EquationSet:
             total[:, slices[Load.NORMAL]] += spectrum
         upper, lower = self.ray_to_faces(Load.NORMAL, depth)
         face_load = upper @ total + lower @ total.conj()  # eq. (26)
-        for load, part in slices.items():
+        for load, section in slices.items():
             if load is not Load.NORMAL:
                 upper, lower = self.ray_to_faces(load, depth)
-                face_load[:, part] += upper @ spectrum + lower @ spectrum.conj()
+                face_load[:, section] += upper @ spectrum + lower @ spectrum.conj()
         return AuxiliaryLoads(equivalent, depth, weights[:, None] * face_load)
 
-    def ray(self, shortest: float, resolution: Resolution) -> tuple[ComplexArray, ComplexArray]:
+    def ray_nodes(self, shortest: float, resolution: Resolution) -> tuple[ComplexArray, ComplexArray]:
         """Depth wavenumbers on their ray, and the weights of the quadrature."""
         return ray_nodes(0.5 * self.lateral, max(resolution.ray_reach / shortest, 4 * self.lateral), resolution)
 

@@ -9,7 +9,7 @@ import pytest
 
 from benchmarks.finite_elements.eigenstrain import residual_stress
 from contactstudy.bodies.material import Material
-from contactstudy.eigenstrain.body import DEEP_LENGTHS, EigenstrainBody, grown, towards_face
+from contactstudy.eigenstrain.body import DEEP_LENGTHS, EigenstrainBody, grade_to_face, grow_edges
 from contactstudy.verification.closed_forms import rectangle_in_half_plane
 
 WHOLE = (-np.inf, np.inf)
@@ -218,5 +218,5 @@ def test_elements_reach_the_ends_and_deep_enough() -> None:
 
 
 def test_graded_elements() -> None:
-    assert grown(0.0, 10.0, 1.0).round(2).tolist() == [0.76, 1.9, 3.6, 6.16, 10.0]
-    assert towards_face(0.0, 2.0, 0.3).round(2).tolist() == [0.21, 0.53, 1.0, 1.47, 1.79, 2.0]
+    assert grow_edges(0.0, 10.0, 1.0).round(2).tolist() == [0.76, 1.9, 3.6, 6.16, 10.0]
+    assert grade_to_face(0.0, 2.0, 0.3).round(2).tolist() == [0.21, 0.53, 1.0, 1.47, 1.79, 2.0]

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from contactstudy import FiniteLengthSpace, Grid, Material
-from contactstudy.fields.largest import RIM, place_search
 from contactstudy.fields.loads import TopLoad, sliding
+from contactstudy.fields.stress_maximum import RIM_CELLS, place_search
 from contactstudy.kernels.load import Load
 
 BODY = FiniteLengthSpace(length=10.0, material=Material(1.0, 0.3))
@@ -32,11 +32,11 @@ def test_on_the_top_cells_off_the_rim_of_the_contact_only() -> None:
     pressure[70:] = 0.0
     search = place_search(BODY, sliding(pressure, 0.0), grid)
     # The body ends with the cells: there is no rim at its end.
-    assert search.off_rim[: 70 - RIM, 1 + RIM : 19 - RIM].all()
-    assert search.off_rim.sum() == (70 - RIM) * (18 - 2 * RIM)
+    assert search.inside_rim[: 70 - RIM_CELLS, 1 + RIM_CELLS : 19 - RIM_CELLS].all()
+    assert search.inside_rim.sum() == (70 - RIM_CELLS) * (18 - 2 * RIM_CELLS)
     for points in search.samples:
         assert points.z[0] == 0.0
-        assert search.off_rim_at(points).any()
+        assert search.inside_rim_at(points).any()
         assert set(points.x) <= set(grid.x)
         assert set(points.y) <= set(grid.y)
 

@@ -20,7 +20,7 @@ from contactstudy import (
 )
 from contactstudy.bodies import Body, Counterbody
 from contactstudy.checks import FloatArray
-from contactstudy.contact.normal.pair import PairOperator
+from contactstudy.contact.normal.two_bodies import PairOperator
 from contactstudy.fields.surface import surface_operator
 from contactstudy.kernels.load import Load
 
@@ -63,7 +63,7 @@ def test_operator_is_symmetric_and_positive(name: str, cells: str) -> None:
     first, second = ({load: random.standard_normal(grid.shape) for load in ALL} for _ in range(2))
 
     def works(loads: dict[Load, FloatArray], on: dict[Load, FloatArray]) -> FloatArray:
-        displaced = operator.displaced(on, ALL)
+        displaced = operator.compute_displacements(on, ALL)
         return np.array([(grid.weights * loads[load] * displaced[load]).sum() for load in ALL])
 
     one, other = works(first, second), works(second, first)
@@ -176,11 +176,11 @@ def test_equal_bodies_do_not_couple_pressure_and_traction() -> None:
     body = BODIES["finite length"]
     pair = PairOperator.of(body, Counterbody(body), grid, ALL, ALL)
     pressure = np.random.default_rng(2).random(grid.shape)
-    moved = pair.displaced({Load.NORMAL: pressure}, ALL)
+    moved = pair.compute_displacements({Load.NORMAL: pressure}, ALL)
     for direction in (Load.ALONG_X, Load.ALONG_Y):
         assert np.abs(moved[direction]).max() < 1e-12 * np.abs(moved[Load.NORMAL]).max()
-    dragged = pair.displaced({Load.ALONG_X: pressure}, ALL)
-    own = surface_operator(body, grid, ALL, directions=ALL).displaced({Load.ALONG_X: pressure}, ALL)
+    dragged = pair.compute_displacements({Load.ALONG_X: pressure}, ALL)
+    own = surface_operator(body, grid, ALL, directions=ALL).compute_displacements({Load.ALONG_X: pressure}, ALL)
     assert dragged[Load.ALONG_X] == pytest.approx(2 * own[Load.ALONG_X], rel=1e-12)
     assert np.abs(dragged[Load.NORMAL]).max() < 1e-12 * np.abs(own[Load.ALONG_X]).max()
 

@@ -12,16 +12,16 @@ from contactstudy.arrays.points import Points
 from contactstudy.cache import ArrayKey
 from contactstudy.checks import FloatArray
 from contactstudy.kernels.column_fields import (
-    AlongY,
-    _Surroundings,
-    _surroundings,
+    LateralAxis,
+    _split_around,
+    _SplitRange,
     columns_field,
     common_step,
     split_columns,
 )
 from contactstudy.kernels.corner_sums import AlignedPoints, EvenOffsets, Layer, merge_columns, midpoint_cells
 from contactstudy.kernels.field import displacement_influence, half_space_field, stress_influence
-from contactstudy.kernels.fine_cells import FineCells, resolved_columns, with_images
+from contactstudy.kernels.fine_cells import FineCells, add_images, resolved_columns
 from contactstudy.kernels.images import Influence
 from contactstudy.kernels.load import Load
 
@@ -106,7 +106,7 @@ def test_a_column_loaded_alone_keeps_its_place_wherever_its_field_is_asked_for(
         cells_x=20,
         cells_y=9 * fine.cells.shape[1],
     )
-    smooth = fine.along_y(fine.cells, fine.cells).means(np.linspace(*uniform.y_range, uniform.cells_y + 1))
+    smooth = fine.shape_along_y(fine.cells, fine.cells).means(np.linspace(*uniform.y_range, uniform.cells_y + 1))
     spread = np.repeat(smooth, np.diff(GRADED), axis=0)
     influence, x, y = stresses_of(load), np.linspace(0.05, 1.95, 21), np.array([0.0, 0.3])
     for z in (np.array([0.15]), np.array([0.4])):
@@ -126,8 +126,8 @@ def test_a_smooth_load_on_wide_columns_is_seen_as_smooth(extent: str) -> None:
     fine = FineCells(load=cells, shape=cells, grid=graded, extent=ends)
     y_range = (float(fine.y_edges[0]), float(fine.y_edges[-1]))
     uniform = Grid(x_range=(0.0, scale * LENGTH), y_range=y_range, cells_x=100, cells_y=9 * fine.cells.shape[1])
-    along_x = fine.columns([uniform.x_edges])
-    spread = fine.along_y(along_x, along_x).means(np.linspace(*y_range, uniform.cells_y + 1))
+    along_x = fine.column_means([uniform.x_edges])
+    spread = fine.shape_along_y(along_x, along_x).means(np.linspace(*y_range, uniform.cells_y + 1))
     influence, x, y = stresses_of(Load.NORMAL), scale * np.linspace(0.1, 1.9, 13), np.array([0.0, 0.3 * scale])
     for z in (np.array([0.05 * scale]), np.array([0.3 * scale])):
         expected = half_space_field(spread, influence, uniform, Points(x, y, z), extent=ends)
@@ -148,7 +148,9 @@ def test_steps_of_a_load(column: int, extent: str, image: int, expected: list[fl
     graded = Grid.from_edges(np.linspace(0.0, LENGTH, 21)[GRADED], (-1.0, 1.0), 16)
     cells = np.zeros(graded.shape)
     cells[column] = np.sqrt(np.maximum(1 - (graded.y / 0.6) ** 2, 0))
-    steps = FineCells(load=1e-3 * cells, shape=1e-3 * cells, grid=graded, extent=EXTENTS[extent], image=image).steps
+    steps = FineCells(
+        load=1e-3 * cells, shape=1e-3 * cells, grid=graded, extent=EXTENTS[extent], image=image
+    ).step_edges
     assert np.unique(steps.round(9)).tolist() == pytest.approx(expected)
 
 
@@ -246,8 +248,8 @@ def fine(place: float = 0.0, unit: float = 1.0, *, ends: int = 2, image: int = 1
     return FineCells(load=load, shape=load, grid=grid, extent=extent, image=image)
 
 
-def around(x: float, own: FineCells, narrow: float = 0.0) -> _Surroundings:
-    return _surroundings(x, own, narrow)
+def around(x: float, own: FineCells, narrow: float = 0.0) -> _SplitRange:
+    return _split_around(x, own, narrow)
 
 
 @pytest.mark.parametrize("x", PLACES)
@@ -262,13 +264,13 @@ def test_neither_unit_nor_place_decides_anything(x: float, narrow: float, *, ste
             other = around(unit * (x + place), cells, unit * narrow)
             if x == 1e-12 and place:  # not to be told from 0 there
                 continue
-            assert (other.lowest, other.highest) == (plain.lowest, plain.highest)
+            assert (other.start, other.stop) == (plain.start, plain.stop)
             assert other.inserted / unit - place == pytest.approx(plain.inserted, abs=1e-9)
             factor = PRESSURE if unit < 1 else 1.0
             assert other.moment_loads(cells) / factor == pytest.approx(plain.moment_loads(plain_cells), abs=1e-9)
             for reach in (0.0, 0.3137, 1.0731, 9.0):
-                there = other.within(cells.edges, unit * (x + place), unit * reach)
-                assert there == plain.within(plain_cells.edges, x, reach)
+                there = other.range_within(cells.edges, unit * (x + place), unit * reach)
+                assert there == plain.range_within(plain_cells.edges, x, reach)
 
 
 @pytest.mark.parametrize("x", PLACES)
@@ -276,13 +278,13 @@ def test_neither_unit_nor_place_decides_anything(x: float, narrow: float, *, ste
 def test_columns_with_those_inserted_carry_all_of_the_force(x: float, image: int) -> None:
     own = fine(image=image)
     each = around(x, own)
-    forces = with_images(own.far_load, image, own.extent) * np.diff(own.edges)[:, None]
-    inserted = own.columns([each.inserted]) + each.moment_loads(own)
+    forces = add_images(own.far_load, image, own.extent) * np.diff(own.edges)[:, None]
+    inserted = own.column_means([each.inserted]) + each.moment_loads(own)
     inside = (inserted * np.diff(each.inserted)[:, None]).sum(axis=0)
-    outside = forces.sum(axis=0) - forces[each.lowest : each.highest].sum(axis=0)
+    outside = forces.sum(axis=0) - forces[each.start : each.stop].sum(axis=0)
     assert inside + outside == pytest.approx(forces.sum(axis=0), abs=1e-9)
-    assert each.inserted[0] == own.edges[each.lowest]
-    assert each.inserted[-1] == own.edges[each.highest]
+    assert each.inserted[0] == own.edges[each.start]
+    assert each.inserted[-1] == own.edges[each.stop]
     assert (np.diff(each.inserted) > 0).all()
 
 
@@ -307,7 +309,7 @@ def test_a_point_lies_in_the_middle_of_a_narrow_column_and_two_like_it(x: float)
 
 def test_no_column_around_a_point_reaches_over_a_step_of_the_load() -> None:
     own = fine(steps=True)
-    (step,) = own.steps[np.abs(own.steps - 0.6) < 1e-9]
+    (step,) = own.step_edges[np.abs(own.step_edges - 0.6) < 1e-9]
     for distance in (0.001, 0.004, 0.01):
         for x in (step - distance, step + distance):
             edges = around(float(x), own).inserted
@@ -342,13 +344,13 @@ def test_a_point_on_an_end_is_not_in_the_middle_of_a_column() -> None:
 
 def test_within_reach_are_columns_up_to_it_the_nearest_and_those_replaced() -> None:
     edges = np.array([0.0, 1.0, 2.0, 4.0, 5.0, 7.0])
-    none = _Surroundings(edges[:1], 2, 2)
-    assert none.within(edges, 3.0, 0.0) == (2, 3)
-    assert none.within(edges, 3.0, 1.5) == (1, 4)
-    assert none.within(edges, -3.0, 1.0) == (0, 2)
-    assert none.within(edges, 9.0, 2.5) == (2, 5)
-    assert _Surroundings(edges[:3], 0, 2).within(edges, 4.5, 0.1) == (0, 4)
-    assert _Surroundings(edges[3:], 3, 5).within(edges, 0.5, 0.1) == (0, 5)
+    none = _SplitRange(edges[:1], 2, 2)
+    assert none.range_within(edges, 3.0, 0.0) == (2, 3)
+    assert none.range_within(edges, 3.0, 1.5) == (1, 4)
+    assert none.range_within(edges, -3.0, 1.0) == (0, 2)
+    assert none.range_within(edges, 9.0, 2.5) == (2, 5)
+    assert _SplitRange(edges[:3], 0, 2).range_within(edges, 4.5, 0.1) == (0, 4)
+    assert _SplitRange(edges[3:], 3, 5).range_within(edges, 0.5, 0.1) == (0, 5)
 
 
 @pytest.mark.parametrize("parts", range(1, 9))
@@ -363,7 +365,7 @@ def test_distances_between_positions_have_a_common_step_of_up_to_six_parts(parts
 def test_points_are_in_the_middle_of_a_layers_cells(offset: float, span: float) -> None:
     places, step, start = np.array([-3, 0, 4, 20]), 0.1, 5.0
     column, edges = midpoint_cells(AlignedPoints(offset, np.arange(4), places), start, span, step)
-    layer = Layer.of(column, np.array([0.5]), np.array([0]), step=step, edges=edges, parts=1)
+    layer = Layer.of(column, np.array([0.5]), np.array([0]), step=step, edges=edges, fine_per_cell=1)
     assert layer.edges is not None
     at = (start + offset + step * places - layer.edges[0]) / step
     assert at == pytest.approx(np.floor(at) + 0.5)
@@ -381,9 +383,9 @@ def test_points_are_in_the_middle_of_a_layers_cells(offset: float, span: float) 
 
 def seen(y: FloatArray, parts: int | None) -> list[Layer]:
     grid = Grid(x_range=(0.0, 1.0), y_range=(-0.75, 1.25), cells_x=4, cells_y=8)
-    along_y, numbers = AlongY(grid, y, 1, 6), np.array([1])
+    along_y, numbers = LateralAxis(grid, y, 1, 6), np.array([1])
     z = np.array([0.1, 0.2])
-    return along_y.uniform(z, numbers) if parts is None else along_y.layers(z, numbers, fine=bool(parts))
+    return along_y.uniform_layers(z, numbers) if parts is None else along_y.shaped_layers(z, numbers, fine=bool(parts))
 
 
 def test_positions_with_a_common_step_share_cells_and_others_do_not() -> None:
@@ -435,7 +437,7 @@ def test_no_column_reaches_beyond_those_that_it_replaces(x: float) -> None:
     """Beside the first and the last edge of a load without images there is no room for narrow ones."""
     own = fine(ends=0)
     each = around(x, own)
-    assert (each.inserted[0], each.inserted[-1]) == (own.edges[each.lowest], own.edges[each.highest])
+    assert (each.inserted[0], each.inserted[-1]) == (own.edges[each.start], own.edges[each.stop])
     assert (np.diff(each.inserted) > 0).all()
 
 
@@ -448,7 +450,7 @@ def test_columns_do_not_depend_on_the_unit(*, uniform: bool) -> None:
         axes, load = (ArrayKey(unit * x), ArrayKey(unit * y), ArrayKey(unit * z)), ArrayKey(cells.load)
         found.append(split_columns(load, None if uniform else load, cells.grid, cells.extent, 1, axes))
     plain, other = found
-    assert plain.beyond[0].numbers.size == other.beyond[0].numbers.size
+    assert plain.far_layers[0].depth_indices.size == other.far_layers[0].depth_indices.size
     assert len(plain.layers) == len(other.layers)
     for (near, sides), (same, alike) in zip(plain.jumps, other.jumps, strict=True):
         for one, two in zip(near, same, strict=True):

@@ -16,7 +16,7 @@ from contactstudy.kernels.field import (
     half_space_influence,
     stress_influence,
 )
-from contactstudy.kernels.fine_cells import REACH
+from contactstudy.kernels.fine_cells import MAX_REFINED_DEPTH
 from contactstudy.kernels.load import Load
 
 EDGES = {"uniform": np.linspace(0.0, 4.0, 41), "graded": np.cumsum([0.0, *np.geomspace(0.04, 0.4, 23)])}
@@ -73,7 +73,7 @@ def test_field_does_not_jump_where_fine_cells_end(kind: str, *, aligned: bool) -
     load = pressure(grid)
     x, y = (grid.x[::6], grid.y[::4]) if aligned else (np.array([0.01, 1.3, 3.77]), np.array([-0.9, 0.033]))
     for size in (grid.dy, grid.dx):
-        z = REACH * size * np.array([1 - 1e-9, 1 + 1e-9])
+        z = MAX_REFINED_DEPTH * size * np.array([1 - 1e-9, 1 + 1e-9])
         above, below = np.moveaxis(
             half_space_field(load, INFLUENCE, grid, Points(x, y, z), extent=(0.0, 4.0), shape=load), 3, 0
         )

@@ -8,14 +8,14 @@ import pytest
 from contactstudy import Grid
 from contactstudy.checks import FloatArray
 from contactstudy.kernels.fine_cells import (
+    MAX_REFINED_DEPTH,
+    MIN_RESOLVED_WIDTH,
     PARTS_X,
     PARTS_Y,
-    REACH,
-    WIDE,
     FineCells,
-    coarsened,
+    add_images,
+    coarsen,
     resolved_columns,
-    with_images,
 )
 from contactstudy.kernels.smooth_load import SmoothLoad
 
@@ -55,8 +55,8 @@ def test_neither_unit_nor_place_decides_anything(ends: int, image: int, edges: F
     plain = fine(edges=edges, image=image, ends=ends)
     for place, unit, pressure in ((0.0, LENGTH, PRESSURE), (16.0, 1.0, 1.0), (-32.0, 1.0, 1.0)):
         other = fine(edges=edges, image=image, ends=ends, place=place, unit=unit, pressure=pressure)
-        assert other.split.tolist() == plain.split.tolist()
-        for name in ("x_edges", "edges", "steps"):
+        assert other.is_split.tolist() == plain.is_split.tolist()
+        for name in ("x_edges", "edges", "step_edges"):
             assert getattr(other, name) / unit - place == pytest.approx(getattr(plain, name), abs=1e-9), name
         for found, expected in (
             (other.far_load, plain.far_load),
@@ -82,8 +82,8 @@ def test_neither_unit_nor_place_decides_anything(ends: int, image: int, edges: F
 @pytest.mark.parametrize("edges", [EDGES, UNIFORM], ids=["graded", "uniform"])
 def test_cells_are_refined_down_to_the_reach(edges: FloatArray) -> None:
     own = fine(edges=edges)
-    assert own.split.any()
-    assert own.fine_depths(own.grid.dy * REACH * np.array([0.0, 0.99, 1.01, 3.0])).tolist() == [
+    assert own.is_split.any()
+    assert own.fine_depths(own.grid.dy * MAX_REFINED_DEPTH * np.array([0.0, 0.99, 1.01, 3.0])).tolist() == [
         True,
         True,
         False,
@@ -91,10 +91,10 @@ def test_cells_are_refined_down_to_the_reach(edges: FloatArray) -> None:
     ]
     load = np.where(np.abs(own.grid.y) < 0.7, 1.0, 0.0) * np.ones(own.grid.shape)
     even = FineCells(load=load, shape=load, grid=own.grid)
-    assert not even.split.any()
+    assert not even.is_split.any()
     assert not even.fine_depths_x(np.zeros(1)).any()
-    assert own.fine_depths_x(own.grid.dx * REACH * np.array([0.99, 1.01])).tolist() == [True, False]
-    assert even.fine_depths(own.grid.dy * REACH * np.array([0.99, 1.01])).tolist() == [True, False]
+    assert own.fine_depths_x(own.grid.dx * MAX_REFINED_DEPTH * np.array([0.99, 1.01])).tolist() == [True, False]
+    assert even.fine_depths(own.grid.dy * MAX_REFINED_DEPTH * np.array([0.99, 1.01])).tolist() == [True, False]
 
 
 @pytest.mark.parametrize("image", [1, -1])
@@ -102,21 +102,23 @@ def test_images_carry_the_mirrored_load(image: int) -> None:
     """Means over columns between any edges."""
     own = fine(image=image)
     inside = np.array([0.1, 0.3, 0.35, 0.8])
-    expected = own.columns([inside])
-    assert own.columns([-inside[::-1]])[::-1] == pytest.approx(image * expected)
+    expected = own.column_means([inside])
+    assert own.column_means([-inside[::-1]])[::-1] == pytest.approx(image * expected)
     beyond = np.array([3.0, 3.1, 3.5, 3.75])
-    assert own.columns([7.6 - beyond[::-1]])[::-1] == pytest.approx(image * own.columns([beyond]))
+    assert own.column_means([7.6 - beyond[::-1]])[::-1] == pytest.approx(image * own.column_means([beyond]))
     # Over an end: half of it is the image.
-    assert own.columns([np.array([-0.2, 0.0, 0.2])]) == pytest.approx(np.stack([image * own.cells[0], own.cells[0]]))
-    assert own.columns([inside, beyond]) == pytest.approx(np.vstack([expected, own.columns([beyond])]))
+    assert own.column_means([np.array([-0.2, 0.0, 0.2])]) == pytest.approx(
+        np.stack([image * own.cells[0], own.cells[0]])
+    )
+    assert own.column_means([inside, beyond]) == pytest.approx(np.vstack([expected, own.column_means([beyond])]))
 
 
 @pytest.mark.parametrize("ends", [0, 1, 2])
 def test_gathered_columns_keep_force_and_moment(ends: int) -> None:
     """Of the smooth load, with that of its images; a cell at the border keeps its moment if there is none."""
     own = fine(ends=ends)
-    smooth = SmoothLoad.of(own.cells.T, own.grid.x_edges).shaped(own.cells.T)
-    forces = with_images(own.far_load, 1, own.extent) * np.diff(own.edges)[:, None]
+    smooth = SmoothLoad.of(own.cells.T, own.grid.x_edges).shape_loads(own.cells.T)
+    forces = add_images(own.far_load, 1, own.extent) * np.diff(own.edges)[:, None]
     middles = 0.5 * (own.edges[1:] + own.edges[:-1])
     count = 1 + (ends > 0) + (ends > 1)
     whole = (own.cells * own.grid.widths[:, None]).sum(axis=0)
@@ -157,9 +159,9 @@ def test_columns_that_are_seen_apart_are_wide_against_their_distance(narrow: flo
         widths, distance = np.diff(edges), np.abs(0.5 * (edges[1:] + edges[:-1]) - x)
         low, high = resolved_columns(edges, x, narrow)
         first = last = int(distance.argmin())
-        while first > 0 and widths[first - 1] > WIDE * distance[first - 1]:
+        while first > 0 and widths[first - 1] > MIN_RESOLVED_WIDTH * distance[first - 1]:
             first -= 1
-        while last + 1 < widths.size and widths[last + 1] > WIDE * distance[last + 1]:
+        while last + 1 < widths.size and widths[last + 1] > MIN_RESOLVED_WIDTH * distance[last + 1]:
             last += 1
         own = [number for number in range(first, last + 1) if widths[number] > narrow]
         assert (low, high) == ((own[0], own[-1] + 1) if own else (low, low))
@@ -168,7 +170,7 @@ def test_columns_that_are_seen_apart_are_wide_against_their_distance(narrow: flo
 @pytest.mark.parametrize("parts", [PARTS_X, PARTS_Y])
 def test_whole_cells_keep_moments_to_sixth_order(parts: int) -> None:
     fine_loads = np.random.default_rng(0).random((4 * parts, 2))
-    loads = coarsened(fine_loads, parts)
+    loads = coarsen(fine_loads, parts)
 
     def moments(values: FloatArray, edges: FloatArray) -> FloatArray:
         powers = [np.diff(edges ** (order + 1)) / (order + 1) for order in range(7)]
@@ -187,7 +189,7 @@ def test_distribution_is_linear_in_the_load(ends: int, image: int) -> None:
 
     def evaluated(load: FloatArray) -> list[FloatArray]:
         cells = FineCells(load=load, shape=own.shape, grid=own.grid, extent=own.extent, image=image)
-        columns = cells.columns([np.linspace(0.1, 3.7, 30)])
+        columns = cells.column_means([np.linspace(0.1, 3.7, 30)])
         whole = cells.coarse_load(fine_x=False)[0]
         return [cells.fine_load(0.03)[0], whole, cells.end_load()[0], columns]
 
@@ -205,7 +207,7 @@ def test_columns_are_split_where_their_load_is_uneven(unit: float) -> None:
     grid = Grid.between(EDGES, (-1.2, 1.2), 12)
     along = 1 + 1e-4 * grid.x - 0.5 * np.maximum(grid.x - 2.5, 0.0)
     load = unit * along[:, None] * np.sqrt(1 - (grid.y / 1.3) ** 2)
-    split = FineCells(load=load, shape=load, grid=grid).split
+    split = FineCells(load=load, shape=load, grid=grid).is_split
     assert not split[:4].any()
     assert split[-3:].all()
 

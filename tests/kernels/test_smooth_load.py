@@ -8,12 +8,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from contactstudy.checks import FloatArray
-from contactstudy.kernels.smooth_load import ShapedLoad, SmoothLoad, _mean, _opposite_face, moment_loads
+from contactstudy.kernels.smooth_load import ShapedLoad, SmoothLoad, _mean_of_root, _opposite_face, moment_loads
 
 
-def smooth_form(cells: FloatArray, edges: FloatArray, *, spilling: bool = False) -> ShapedLoad:
+def smooth_form(cells: FloatArray, edges: FloatArray, *, extends_beyond: bool = False) -> ShapedLoad:
     """Loads of their shape: the ratio is 1."""
-    return SmoothLoad.of(cells, edges, spilling=spilling).shaped(cells)
+    return SmoothLoad.of(cells, edges, extends_beyond=extends_beyond).shape_loads(cells)
 
 
 def semicircle_integral(y: FloatArray) -> FloatArray:
@@ -28,7 +28,7 @@ def test_pressure_of_a_contact_from_its_means(cells: int, half: float) -> None:
     edges = np.linspace(-half, half, cells + 1)
     means = np.diff(semicircle_integral(edges)) / np.diff(edges)
     fine = np.linspace(-half, half, 12 * cells + 1)
-    found = smooth_form(means[None], edges, spilling=True).means(fine)[0]
+    found = smooth_form(means[None], edges, extends_beyond=True).means(fine)[0]
     expected = np.diff(semicircle_integral(fine)) / np.diff(fine)
     assert np.abs(found - expected)[np.abs(fine[1:]) < 0.9].max() < 5e-3
     # Stepwise it would be off by a third.
@@ -46,10 +46,10 @@ def rows(draw: st.DrawFn) -> tuple[FloatArray, FloatArray]:
 
 
 @settings(max_examples=60)
-@given(row=rows(), spilling=st.booleans())
-def test_force_is_kept_and_nothing_overshoots(row: tuple[FloatArray, FloatArray], spilling: bool) -> None:
+@given(row=rows(), extends_beyond=st.booleans())
+def test_force_is_kept_and_nothing_overshoots(row: tuple[FloatArray, FloatArray], extends_beyond: bool) -> None:
     loads, edges = row
-    smooth = smooth_form(loads, edges, spilling=spilling)
+    smooth = smooth_form(loads, edges, extends_beyond=extends_beyond)
     widths = np.diff(edges)
     total = smooth.integral(edges[-1:])[:, 0]
     assert np.allclose(total, loads @ widths, atol=1e-6)
@@ -65,15 +65,15 @@ def test_force_is_kept_and_nothing_overshoots(row: tuple[FloatArray, FloatArray]
 def test_reversed_load_has_the_reversed_shape(row: tuple[FloatArray, FloatArray]) -> None:
     loads, edges = row
     fine = np.linspace(edges[0], edges[-1], 60)
-    there = smooth_form(loads, edges, spilling=True).means(fine)
-    back = smooth_form(loads[:, ::-1], edges[-1] - edges[::-1], spilling=True).means(edges[-1] - fine[::-1])
+    there = smooth_form(loads, edges, extends_beyond=True).means(fine)
+    back = smooth_form(loads[:, ::-1], edges[-1] - edges[::-1], extends_beyond=True).means(edges[-1] - fine[::-1])
     assert np.allclose(there, back[:, ::-1], atol=1e-9)
 
 
 def test_uniform_load_stays_a_step() -> None:
     edges = np.linspace(0.0, 8.0, 9)
     loads = np.array([[0, 0, 2.0, 2.0, 2.0, 2.0, 0, 0]])
-    smooth = smooth_form(loads, edges, spilling=True)
+    smooth = smooth_form(loads, edges, extends_beyond=True)
     assert np.allclose(smooth.means(np.linspace(0.0, 8.0, 33)), np.repeat(loads, 4, axis=1), atol=1e-12)
 
 
@@ -106,21 +106,23 @@ def test_rounding_does_not_decide_how_a_load_ends() -> None:
 
 
 @settings(max_examples=30)
-@given(row=rows(), spilling=st.booleans())
-def test_a_multiple_of_a_load_has_the_multiple_of_its_shape(row: tuple[FloatArray, FloatArray], spilling: bool) -> None:
+@given(row=rows(), extends_beyond=st.booleans())
+def test_a_multiple_of_a_load_has_the_multiple_of_its_shape(
+    row: tuple[FloatArray, FloatArray], extends_beyond: bool
+) -> None:
     loads, edges = row
     fine = np.linspace(edges[0], edges[-1], 60)
-    one = smooth_form(loads, edges, spilling=spilling).means(fine)
+    one = smooth_form(loads, edges, extends_beyond=extends_beyond).means(fine)
     for factor in (2.0**-30, 2.0**30):
-        other = smooth_form(factor * loads, edges, spilling=spilling).means(fine)
+        other = smooth_form(factor * loads, edges, extends_beyond=extends_beyond).means(fine)
         assert np.allclose(one, other / factor, atol=1e-9)
 
 
 @settings(max_examples=30)
-@given(row=rows(), spilling=st.booleans())
-def test_moments_are_those_of_many_narrow_cells(row: tuple[FloatArray, FloatArray], spilling: bool) -> None:
+@given(row=rows(), extends_beyond=st.booleans())
+def test_moments_are_those_of_many_narrow_cells(row: tuple[FloatArray, FloatArray], extends_beyond: bool) -> None:
     loads, edges = row[0], row[1] + 0.7
-    smooth = smooth_form(loads, edges, spilling=spilling)
+    smooth = smooth_form(loads, edges, extends_beyond=extends_beyond)
     parts = 400
     fine = np.append((edges[:-1, None] + np.diff(edges)[:, None] * np.arange(parts) / parts).ravel(), edges[-1])
     forces, middles = smooth.means(fine) * np.diff(fine), 0.5 * (fine[1:] + fine[:-1])
@@ -165,15 +167,15 @@ def test_a_root_that_ends_behind_the_last_cell_is_followed_there(factor: float) 
     forces[5:7] = forces[5:7].sum(), 0.0
     loads = forces / WIDTHS
     fine = np.linspace(edges[5], edges[7], 31)
-    smooth = smooth_form(factor * loads[None], edges, spilling=True)
+    smooth = smooth_form(factor * loads[None], edges, extends_beyond=True)
     assert np.abs(smooth.means(fine)[0] / factor - root(fine, edges[6] + 0.25) / np.diff(fine)).max() < 0.06
     assert smooth.integral(edges[6:8])[0] / factor == pytest.approx([forces.sum() - 0.09, forces.sum()], abs=0.02)
     assert smooth.integral(edges[7:8])[0] == pytest.approx(factor * forces.sum())
     assert smooth.means(np.array([edges[6] + 0.4, edges[7]]))[0] == 0
     # Not where it is not wanted, nor at the end of a row, nor beside another load.
     beside = np.where(np.arange(9) == 7, 1.0, loads)
-    for row, spilling in ((loads, False), (beside, True), (loads[:6], True)):
-        kept = smooth_form(factor * row[None], edges[: row.size + 1], spilling=spilling)
+    for row, extends_beyond in ((loads, False), (beside, True), (loads[:6], True)):
+        kept = smooth_form(factor * row[None], edges[: row.size + 1], extends_beyond=extends_beyond)
         assert kept.integral(edges[6:7])[0] == pytest.approx(factor * forces.sum())
 
 
@@ -201,7 +203,7 @@ def test_a_root_that_is_cut_off_ends_in_its_own_value(factor: float) -> None:
 
 
 def test_a_load_that_is_cut_off_does_not_reach_behind_its_last_cell() -> None:
-    smooth = smooth_form(np.array([[3.0, 2.2, 1.75, 0.0, 0.0]]), np.arange(6.0), spilling=True)
+    smooth = smooth_form(np.array([[3.0, 2.2, 1.75, 0.0, 0.0]]), np.arange(6.0), extends_beyond=True)
     assert smooth.means(np.arange(6.0))[0, 3:].tolist() == [0.0, 0.0]
 
 
@@ -222,4 +224,4 @@ def test_a_load_may_end_in_the_last_cell_of_a_row(part: float) -> None:
 
 def test_the_other_end_of_a_function_whose_square_is_linear() -> None:
     first, last = np.random.default_rng(0).uniform(0.0, 2.0, (2, 50))
-    assert _opposite_face(_mean(first, last), first) == pytest.approx(last, abs=1e-12)
+    assert _opposite_face(_mean_of_root(first, last), first) == pytest.approx(last, abs=1e-12)

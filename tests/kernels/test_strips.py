@@ -13,7 +13,7 @@ from scipy import fft, integrate
 from contactstudy import FiniteLengthSpace, Grid, HalfSpace, Material, QuarterSpace, cache
 from contactstudy.bodies.models import Body
 from contactstudy.checks import FloatArray
-from contactstudy.fields.part import ColumnsOperator, end_kernel_of
+from contactstudy.fields.body_operators import ColumnsOperator, end_kernel_of
 from contactstudy.fields.surface import SurfaceOperator
 from contactstudy.kernels.load import NORMAL_RESPONSE, Load, Response
 from contactstudy.kernels.strips import (
@@ -257,9 +257,9 @@ def test_operator_is_the_averaged_displacement_of_one_on_finer_cells(body: Body)
         parts.append((part.weight, ColumnsOperator.of(material, part.extent, coarse, responses, ends)))
     columns = SurfaceOperator(body, parts)
     for load in loads:
-        displaced = own.displaced({load: np.repeat(pressure, finer, axis=0)}, directions)
+        displaced = own.compute_displacements({load: np.repeat(pressure, finer, axis=0)}, directions)
         means = {each: values.reshape(cells_x, finer, cells_y).mean(axis=1) for each, values in displaced.items()}
-        found = columns.displaced({load: pressure}, directions)
+        found = columns.compute_displacements({load: pressure}, directions)
         largest = max(float(np.ptp(each)) for each in means.values())
         for direction, mean in means.items():
             assert np.abs(found[direction] - mean).max() < 1.5e-3 * largest, (load, direction)

@@ -71,11 +71,11 @@ def test_the_correction_on_uniform_cells_is_the_kernel_between_columns(direction
     edges = np.linspace(0.0, 2.4, cells + 1)
     grid = Grid.between(edges, (-1.0, 1.0), 6)
     ends = end_kernel(request(edges))
-    correction = EndCorrection.on(grid, ends)
+    correction = EndCorrection.on_grid(grid, ends)
     random = np.random.default_rng(0)
     transforms = {load: random.standard_normal((cells, 7)) + 1j * random.standard_normal((cells, 7)) for load in Load}
-    gathered = {load: correction.gathered(load, each) for load, each in transforms.items()}
-    found = correction.displaced(direction, gathered, cells)
+    gathered = {load: correction.project_loads(load, each) for load, each in transforms.items()}
+    found = correction.compute_displacement(direction, gathered, cells)
     expected = np.zeros((cells, 7), np.complex128)
     for load, each in transforms.items():
         response = Response(direction, load)

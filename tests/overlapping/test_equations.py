@@ -12,7 +12,7 @@ from contactstudy import Grid, Material
 from contactstudy.arrays.points import Points
 from contactstudy.bodies.models import FreedEnds
 from contactstudy.kernels.load import NORMAL_RESPONSE, Load
-from contactstudy.overlapping.axial import SingleMirrorModes, axial_modes, modes_between_ends
+from contactstudy.overlapping.axial_modes import SingleMirrorModes, axial_modes, modes_between_ends
 from contactstudy.overlapping.equations import EquationSet, load_on_end
 from contactstudy.overlapping.field import end_fields
 from contactstudy.overlapping.harmonics import STRESS
@@ -32,7 +32,7 @@ def test_alternating_the_two_bodies_converges_to_the_explicit_solution(lateral: 
     explicit = system.solve(asked)
     face_load = asked.copy()
     for _ in range(200):
-        on_top = system.on_top(system.scale * face_load)
+        on_top = system.spectrum_on_top(system.scale * face_load)
         face_load = asked + system.source(Load.NORMAL, chosen.on_end * on_top)
     assert np.abs(system.scale * face_load - explicit).max() < 1e-9 * np.abs(explicit).max()
     assert np.abs(explicit - system.scale * asked).max() > 0.05 * np.abs(explicit).max()

@@ -20,7 +20,7 @@ def pressed(problem: EndProblem, x: np.ndarray, y: np.ndarray, z: np.ndarray) ->
     """Load added on the top (x, y) and loads on the faces (end, y, z) under the pressure of a problem."""
     operators = OverlappingOperators.of(problem, Points(x, y, z), reference=24.0).equivalent(Load.NORMAL)
     cells = problem.cells.ravel()
-    return (operators.added @ cells).reshape(x.size, y.size), np.array(
+    return (operators.top_load @ cells).reshape(x.size, y.size), np.array(
         [(face @ cells).reshape(y.size, z.size) for face in operators.faces]
     )
 

@@ -9,7 +9,7 @@ import pytest
 
 from contactstudy.checks import ComplexArray, FloatArray
 from contactstudy.overlapping import harmonics
-from contactstudy.overlapping.axial import AxialModes, SingleMirrorModes
+from contactstudy.overlapping.axial_modes import AxialModes, SingleMirrorModes
 from contactstudy.overlapping.equations import EquationSet, coupling_core
 from contactstudy.overlapping.quadrature import Resolution
 
@@ -115,7 +115,7 @@ def test_the_faces_of_v_carry_what_is_freed_there_and_its_top_none_but_normal_st
     freed = np.real(np.exp(1j * np.outer(Z, RAY[:2])) @ WEIGHTS[:2])
     if isinstance(modes, SingleMirrorModes):
         # Each half-space's own load; the opposite one's normal stress reaches the face, its shear stays there.
-        applied = np.exp(1j * np.outer(Z, RAY[:2])) @ (modes.applied(kappa)[:, None] * WEIGHTS[:2])
+        applied = np.exp(1j * np.outer(Z, RAY[:2])) @ (modes.load_on_face(kappa)[:, None] * WEIGHTS[:2])
         alone = SingleMirrorModes(length=1e3, parity=1, discrete=np.zeros(0), ray=RAY, weights=modes.weights)
         assert beside(alone, harmonics._stress_of_face_load)(faces[:1], Z)[0, 0] == pytest.approx(freed)
         assert np.abs(np.real(applied) - freed).max() > 1e-3 * np.abs(freed).max()

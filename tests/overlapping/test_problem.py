@@ -10,8 +10,8 @@ import pytest
 from contactstudy import Grid, InvalidInputError
 from contactstudy.checks import FloatArray
 from contactstudy.kernels.load import Load
-from contactstudy.overlapping.lateral import ALONE, BENDING_POLES, POLES, lateral_panels
-from contactstudy.overlapping.problem import FIRST, THINNEST, EndProblem, parity_parts
+from contactstudy.overlapping.lateral_modes import BENDING_POLES, POLE_PANEL_FACTOR, POLES, lateral_panels
+from contactstudy.overlapping.problem import FIRST_PANEL_FACTOR, MIN_LENGTH, EndProblem, split_by_parity
 from contactstudy.overlapping.quadrature import Resolution
 
 EDGES = np.array([0.0, 0.2, 0.5, 1.0, 1.7, 2.1, 2.4])
@@ -40,7 +40,7 @@ def asked(
 def test_wavenumbers_along_y_depend_on_window_and_positions(load: Load, reference: float | None, length: float) -> None:
     """From a part of the smallest length of body, window and positions, up to half a cell."""
     y, poles = np.array([-0.4, 1.5]), BENDING_POLES if load is Load.ALONG_X else POLES
-    alone = FIRST if reference is None else ALONE[poles]
+    alone = FIRST_PANEL_FACTOR if reference is None else POLE_PANEL_FACTOR[poles]
     for shortest, finest in ((1e-3, 0.125), (0.2, 0.2)):
         # The window ends at 1.0, the positions at 1.5.
         first = alone / min(length, 4 * max(2.4, 1.0 + 1.5))
@@ -53,13 +53,13 @@ def test_wavenumbers_along_y_depend_on_window_and_positions(load: Load, referenc
             assert len(found) == len(expected)
             for one, other in zip(found, expected, strict=True):
                 assert unit * one.nodes == pytest.approx(other.nodes)
-                assert unit * one.fine == pytest.approx(other.fine)
+                assert unit * one.fine_nodes == pytest.approx(other.fine_nodes)
                 assert one.poles == other.poles
 
 
 def test_points_beside_a_short_body_are_what_the_first_wavenumber_is_of() -> None:
     far = asked(length=1e4).panels(np.array([0.0, 20.0]), 0.2)
-    assert far[0].nodes.max() < FIRST / (4 * 21.0) < far[1].nodes.max()
+    assert far[0].nodes.max() < FIRST_PANEL_FACTOR / (4 * 21.0) < far[1].nodes.max()
 
 
 def test_columns_between_two_ends_are_symmetric_and_carry_the_same() -> None:
@@ -86,15 +86,15 @@ def test_columns_between_two_ends_are_symmetric_and_carry_the_same() -> None:
 def test_parts_of_a_load_are_even_and_odd_and_sum_up(sign_x: int, unit: float) -> None:
     """Under a load that its image reverses the even part is odd; what is negligible is left out."""
     cells = unit * np.random.default_rng(0).random((6, 4))
-    parts = parity_parts(cells, sign_x)
+    parts = split_by_parity(cells, sign_x)
     assert set(parts) == {1, -1}
     assert sum(parts.values()) == pytest.approx(cells)
     for parity, part in parts.items():
         assert part[::-1] == pytest.approx(sign_x * parity * part)
     even = cells + cells[::-1]
-    assert set(parity_parts(even, sign_x)) == {sign_x}
-    assert set(parity_parts(even * (1 + 1e-15 * np.arange(6.0))[:, None], sign_x)) == {sign_x}
-    assert set(parity_parts(even * (1 + 1e-11 * np.arange(6.0))[:, None], sign_x)) == {1, -1}
+    assert set(split_by_parity(even, sign_x)) == {sign_x}
+    assert set(split_by_parity(even * (1 + 1e-15 * np.arange(6.0))[:, None], sign_x)) == {sign_x}
+    assert set(split_by_parity(even * (1 + 1e-11 * np.arange(6.0))[:, None], sign_x)) == {1, -1}
 
 
 def test_a_body_too_thin_for_the_width_of_the_load_is_refused() -> None:
@@ -102,7 +102,7 @@ def test_a_body_too_thin_for_the_width_of_the_load_is_refused() -> None:
     own = asked()
     for shift in (0, 1, -2):
         cells = np.roll(own.cells, shift, axis=1)
-        replace(own, cells=cells, length=1.001 * THINNEST * 1.25)
+        replace(own, cells=cells, length=1.001 * MIN_LENGTH * 1.25)
         with pytest.raises(InvalidInputError, match=r"width of the contact, 1\.25 m"):
-            replace(own, cells=cells, length=0.999 * THINNEST * 1.25)
+            replace(own, cells=cells, length=0.999 * MIN_LENGTH * 1.25)
     replace(own, cells=np.zeros(own.cells.shape), length=1e-9)

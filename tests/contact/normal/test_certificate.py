@@ -17,9 +17,9 @@ PRESSURE = 1e9 * np.array([[0.0, 0.5, 2.0]])
 
 def certificate(opening: list[float], *, pressure: np.ndarray = PRESSURE, carried: float = 5.0, **other) -> Certificate:
     """Of a gap over the variation of the displacement."""
-    values = {"load": 5.0, "off_position": 0.0} | other
+    values = {"load": 5.0, "position_error": 0.0} | other
     gap = VARIATION * np.array([opening])
-    return certify(pressure, gap, DISPLACEMENT, carried=carried, tolerance=TOLERANCE, **values)
+    return certify(pressure, gap, DISPLACEMENT, carried_load=carried, tolerance=TOLERANCE, **values)
 
 
 def test_a_contact_without_violations() -> None:
@@ -42,10 +42,10 @@ def test_pressure_counts_as_open_beyond_first_share_tolerances_of_the_variation(
 
 
 def test_load_and_its_position() -> None:
-    assert certificate([0.3, 0.0, 0.0], carried=5.5).load_error == pytest.approx(0.1)
-    assert certificate([0.3, 0.0, 0.0], carried=4.5).load_error == pytest.approx(-0.1)
-    assert certificate([0.3, 0.0, 0.0], carried=5.5, load=None).load_error == 0.0
-    assert certificate([0.3, 0.0, 0.0], off_position=0.2).load_position_error == 0.2
+    assert certificate([0.3, 0.0, 0.0], carried_load=5.5).load_error == pytest.approx(0.1)
+    assert certificate([0.3, 0.0, 0.0], carried_load=4.5).load_error == pytest.approx(-0.1)
+    assert certificate([0.3, 0.0, 0.0], carried_load=5.5, load=None).load_error == 0.0
+    assert certificate([0.3, 0.0, 0.0], position_error=0.2).load_position_error == 0.2
 
 
 @pytest.mark.parametrize("name", ["load_error", "penetration_error", "open_pressure_error", "load_position_error"])

@@ -12,7 +12,7 @@ from contactstudy import FiniteLengthSpace, Grid, Material
 from contactstudy.contact.normal.conjugate_gradients import (
     Resultants,
     _descent_fraction,
-    _State,
+    _IterationState,
     solve_complementarity,
 )
 from contactstudy.fields.surface import surface_operator
@@ -107,13 +107,13 @@ def test_restored_pressures_have_the_resultants_and_stay_positive(rng: np.random
     sides = arm[pressure.any(axis=1)]
     if not sides.min() < 0 < sides.max():
         return
-    found = resultants.restored(pressure)
+    found = resultants.restore(pressure)
     met(resultants, found)
     assert ((found > 0) == (pressure > 0)).all()
     # What has the resultants stays, and a small moment is taken away by a factor that is linear in the arm.
-    assert resultants.restored(found) == pytest.approx(found, rel=1e-6)
+    assert resultants.restore(found) == pytest.approx(found, rel=1e-6)
     nearly = 1e3 * found * (1 + 0.1 * resultants.lever)
-    again = resultants.restored(nearly)
+    again = resultants.restore(nearly)
     met(resultants, again)
     factor = (again / np.where(found > 0, nearly, 1.0)).max(axis=1)
     loaded = factor > 0
@@ -124,11 +124,11 @@ def test_restored_pressures_have_the_resultants_and_stay_positive(rng: np.random
 def test_one_column_of_cells_keeps_its_moment() -> None:
     pressure = np.zeros(GRID.shape)
     pressure[3] = 2.0
-    found = Resultants(50.0, LEVER / np.abs(LEVER).max()).restored(pressure)
+    found = Resultants(50.0, LEVER / np.abs(LEVER).max()).restore(pressure)
     assert found.sum() == pytest.approx(50.0)
     assert found[3] == pytest.approx(50.0 / GRID.cells_y)
     # Where nothing is rounded, the two equations for a factor that is linear in the arm are exactly the same.
-    exact = Resultants(4.0, np.array([[-1.0], [0.5], [1.0]])).restored(np.array([[0.0], [2.0], [0.0]]))
+    exact = Resultants(4.0, np.array([[-1.0], [0.5], [1.0]])).restore(np.array([[0.0], [2.0], [0.0]]))
     assert exact.ravel().tolist() == [0.0, 4.0, 0.0]
 
 
@@ -138,7 +138,7 @@ def test_almost_all_pressure_on_one_side_is_balanced_without_overflow() -> None:
     for side in (arm, -arm):
         resultants = Resultants(50.0, side / np.abs(side).max())
         pressure = np.where(side > 0, 1.0, 1e-9) if side is -arm else np.where(side < 0, 1.0, 1e-9)
-        found = resultants.restored(pressure)
+        found = resultants.restore(pressure)
         met(resultants, found)
         assert np.isfinite(found).all()
         assert (found > 0).all()
@@ -146,13 +146,13 @@ def test_almost_all_pressure_on_one_side_is_balanced_without_overflow() -> None:
 
 def test_pressure_that_cannot_be_balanced_keeps_its_sum() -> None:
     pressure = np.where(LEVER > 0.1, 1.0, 0.0) * np.ones(GRID.shape)
-    found = Resultants(50.0, LEVER / np.abs(LEVER).max()).restored(pressure)
+    found = Resultants(50.0, LEVER / np.abs(LEVER).max()).restore(pressure)
     assert found.sum() == pytest.approx(50.0)
     assert ((found > 0) == (pressure > 0)).all()
 
 
-def state(gap: np.ndarray, resultants: Resultants, start: np.ndarray) -> _State:
-    return _State(operator, BODY_OPERATOR.precondition, gap, resultants, start)
+def state(gap: np.ndarray, resultants: Resultants, start: np.ndarray) -> _IterationState:
+    return _IterationState(operator, BODY_OPERATOR.precondition, gap, resultants, start)
 
 
 @given(rng=random)

@@ -10,8 +10,8 @@ import pytest
 from contactstudy import ConvergenceWarning, FiniteLengthSpace, Grid, HalfSpace, Material, QuarterSpace
 from contactstudy.bodies import Body, Counterbody
 from contactstudy.cache import ArrayKey
-from contactstudy.contact.normal.contact import Contact, Settings, Shape, _off_position, contact_of
-from contactstudy.contact.normal.prescribed import Prescribed
+from contactstudy.contact.normal.contact import Contact, Settings, Shape, _position_error, contact_of
+from contactstudy.contact.normal.prescribed_loads import PrescribedLoad
 
 LENGTH, PRESSURE = 2.0**-17, 2.0**37
 """Units of length and pressure, powers of two: numbers in them differ by nothing else."""
@@ -45,7 +45,7 @@ class Asked(NamedTuple):
             body = FiniteLengthSpace(material=material, length=3.0 * length)
         load = None if self.load is None else self.load * pressure * length**2
         position, approach = (None if each is None else each * length for each in (self.position, self.approach))
-        prescribed = Prescribed(load, position, approach)
+        prescribed = PrescribedLoad(load, position, approach)
         counterbody = Counterbody(HalfSpace(material=Material(0.5 * pressure, 0.2))) if self.pair else None
         return Shape(body, grid, ArrayKey(length * gap), prescribed, counterbody, self.coupled)
 
@@ -71,7 +71,7 @@ def test_units_decide_nothing(asked: Asked) -> None:
     assert plain.converged
     assert (plain.converged, plain.iterations) == (other.converged, other.iterations)
     units = {"pressure": PRESSURE, "gap": LENGTH, "displacement": LENGTH, "approach": LENGTH, "tilt": 1.0}
-    units |= {"carried": PRESSURE * LENGTH**2, "load_position": LENGTH}
+    units |= {"carried_load": PRESSURE * LENGTH**2, "load_position": LENGTH}
     for name, unit in units.items():
         value = getattr(plain, name)
         least = 1e-9 * np.abs(np.where(np.isfinite(value), value, 0.0)).max()
@@ -88,7 +88,7 @@ def test_symmetric_contacts_have_symmetric_pressures(ended: bool) -> None:
     gap = 0.05 * ((grid.x[:, None] - middle) ** 2 + grid.y**2)
     material = Material(0.91, 0.3)
     body: Body = FiniteLengthSpace(material=material, length=3.0) if ended else HalfSpace(material=material)
-    shape = Shape(body, grid, ArrayKey(gap), Prescribed(0.05))
+    shape = Shape(body, grid, ArrayKey(gap), PrescribedLoad(0.05))
     pressure = contact_of(shape, Settings()).pressure
     assert (pressure == pressure[::-1]).all()
     assert (pressure == pressure[:, ::-1]).all()
@@ -96,7 +96,7 @@ def test_symmetric_contacts_have_symmetric_pressures(ended: bool) -> None:
     off_middle = (
         (shape._replace(coupled_friction=0.3), [0]),
         (shape._replace(gap=ArrayKey(gap + 1e-6 * grid.x[:, None])), [1]),
-        (shape._replace(prescribed=Prescribed(0.05, middle + 1e-6)), [1]),
+        (shape._replace(prescribed=PrescribedLoad(0.05, middle + 1e-6)), [1]),
         (shape._replace(body=QuarterSpace(material=material)), [1]),
         (shape._replace(counterbody=Counterbody(FiniteLengthSpace(length=1.0, material=material), 0.1)), [1]),
     )
@@ -157,6 +157,6 @@ def test_distance_of_the_resultant_from_its_place_over_the_length_of_the_contact
         pressure = np.zeros(grid.shape)
         pressure[1], pressure[3] = 2.0, 1.0  # centres 1.5 and 4, widths 1 and 2: half of the load on each
         for at in (2.0, 3.5):
-            off = _off_position(Prescribed(1.0, place + at), grid, pressure)
+            off = _position_error(PrescribedLoad(1.0, place + at), grid, pressure)
             assert off == pytest.approx(abs(2.75 - at) / 4.0)
-    assert _off_position(Prescribed(1.0), grid, pressure) == 0.0
+    assert _position_error(PrescribedLoad(1.0), grid, pressure) == 0.0

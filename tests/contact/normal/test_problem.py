@@ -14,11 +14,11 @@ from contactstudy.contact.normal.conjugate_gradients import Resultants
 from contactstudy.contact.normal.problem import (
     ContactOperator,
     ContactProblem,
-    _continued_square,
-    _first_guess,
-    _levelled,
-    between_columns,
+    _continue_square,
+    _initial_guess,
+    _remove_mean_slope,
     halve_cells,
+    interpolate_columns,
     solve_coupled,
     solve_normal,
 )
@@ -86,8 +86,8 @@ def test_values_between_columns_are_on_lines(positions: FloatArray) -> None:
     centres = np.array([0.0, 1.0, 3.0, 7.0])
     values = np.random.default_rng(0).standard_normal((4, 3))
     expected = np.stack([np.interp(positions, centres, each) for each in values.T], axis=1)
-    assert between_columns(values, centres, positions) == pytest.approx(expected, abs=1e-12)
-    assert between_columns(values[:1], centres[:1], positions) == pytest.approx(
+    assert interpolate_columns(values, centres, positions) == pytest.approx(expected, abs=1e-12)
+    assert interpolate_columns(values[:1], centres[:1], positions) == pytest.approx(
         np.repeat(values[:1], positions.size, 0)
     )
 
@@ -95,7 +95,7 @@ def test_values_between_columns_are_on_lines(positions: FloatArray) -> None:
 def test_halves_of_cells_are_on_lines_between_centres() -> None:
     values = np.random.default_rng(0).standard_normal((5, 3))
     fine = (np.arange(10) + 0.5) / 2 - 0.5
-    assert halve_cells(values, 0) == pytest.approx(between_columns(values, np.arange(5.0), fine), abs=1e-12)
+    assert halve_cells(values, 0) == pytest.approx(interpolate_columns(values, np.arange(5.0), fine), abs=1e-12)
 
 
 def tilting(grid: Grid, position: float) -> tuple[FloatArray, float]:
@@ -110,7 +110,7 @@ def test_cells_joined_in_twos_keep_areas_heights_and_levers(grid: Grid) -> None:
     plane = 0.3 + 0.1 * grid.x[:, None] + 0.0 * grid.y
     coarse = ContactProblem(
         grid=grid, gap=plane, resultants=Resultants(2.0, lever), friction=0.0, tolerance=1e-6, max_iterations=500
-    ).coarser()
+    ).coarsen()
     joined = coarse.grid
     assert joined.shape == (grid.cells_x // 2, grid.cells_y // 2)
     middles = 0.5 * (grid.x_edges[2::2] + grid.x_edges[:-2:2])
@@ -126,7 +126,7 @@ def test_cells_with_nothing_to_touch_do_not_count_where_cells_are_joined() -> No
     gap[:3] = np.inf
     coarse = ContactProblem(
         grid=GRADED, gap=gap, resultants=Resultants(1.0), friction=0.0, tolerance=1e-6, max_iterations=500
-    ).coarser()
+    ).coarsen()
     assert np.isinf(coarse.gap[0]).all()
     assert coarse.gap[1] == pytest.approx(GRADED.x[3])
     middle = 0.5 * (GRADED.x_edges[4] + GRADED.x_edges[6])
@@ -142,25 +142,25 @@ def test_a_tilted_shape_that_is_free_to_tilt_is_levelled(grid: Grid) -> None:
         grid=grid, gap=tilted, resultants=Resultants(1.0, lever), friction=0.0, tolerance=1e-6, max_iterations=500
     )
     facing = np.isfinite(flat)
-    assert _levelled(asked)[facing] == pytest.approx(flat[facing], abs=1e-12)
-    assert _levelled(replace(asked, resultants=Resultants(1.0))) is asked.gap
-    assert asked.level((0.5, 0.3 * arm)) == pytest.approx(0.5 + 0.3 * (grid.x[:, None] - 0.2))
+    assert _remove_mean_slope(asked)[facing] == pytest.approx(flat[facing], abs=1e-12)
+    assert _remove_mean_slope(replace(asked, resultants=Resultants(1.0))) is asked.gap
+    assert asked.rigid_height((0.5, 0.3 * arm)) == pytest.approx(0.5 + 0.3 * (grid.x[:, None] - 0.2))
 
 
 def test_a_first_guess_follows_the_gap_below_a_level() -> None:
     """On few cells: pressed where the gap is below the level under which four tenths of the cells are."""
     asked = ball(GRID)
-    guess = _first_guess(Counting(GRID), asked)
+    guess = _initial_guess(Counting(GRID), asked)
     pressed = guess > 0
     assert pressed.mean() == pytest.approx(0.4, abs=0.02)
     assert asked.gap[pressed].max() < asked.gap[~pressed].min()
     assert np.ptp(asked.gap[pressed] + guess[pressed] ** 2) < 1e-12
     # The level lies a little higher, so that a flat shape is pressed everywhere.
     flat = replace(asked, gap=np.where(GRID.x[:, None] < 0, 0.0, 1.0) + 0 * asked.gap)
-    assert (_first_guess(Counting(GRID), flat) > 0).tolist() == (flat.gap == 0).tolist()
+    assert (_initial_guess(Counting(GRID), flat) > 0).tolist() == (flat.gap == 0).tolist()
     # A prescribed approach says itself where cells overlap.
     deep = ball(GRID, None, deep=0.02)
-    assert ((_first_guess(Counting(GRID), deep) > 0) == (deep.gap < 0)).all()
+    assert ((_initial_guess(Counting(GRID), deep) > 0) == (deep.gap < 0)).all()
 
 
 def test_the_squared_pressure_goes_on_outside_a_hertz_contact() -> None:
@@ -169,7 +169,7 @@ def test_the_squared_pressure_goes_on_outside_a_hertz_contact() -> None:
     asked = ball(grid)
     operator = Counting(grid)
     found = solve_normal(operator, asked)
-    squared = _continued_square(operator, asked, found)
+    squared = _continue_square(operator, asked, found)
     modulus, radius = BODY.material.plane_strain_modulus, 10.0
     a = (0.75 * 0.05 * radius / modulus) ** (1 / 3)
     peak = 1.5 * 0.05 / (np.pi * a**2)
@@ -189,7 +189,7 @@ def test_a_first_guess_from_coarser_cells_is_almost_the_solution(*, graded: bool
     grid = Grid.between(edges, (-1.5, 1.5), 64)
     operator = Counting(grid)
     asked = ball(grid, None, deep=0.04) if approach else ball(grid)
-    guess, found = _first_guess(operator, asked), solve_normal(operator, asked).pressure
+    guess, found = _initial_guess(operator, asked), solve_normal(operator, asked).pressure
     off = (grid.weights * np.abs(guess - found)).sum() / (grid.weights * found).sum()
     assert off < 0.03
     assert ((guess > 0) != (found > 0)).sum() < 0.05 * (found > 0).sum()

@@ -9,11 +9,11 @@ import pytest
 
 from contactstudy.checks import FloatArray
 from contactstudy.contact.refinement.columns import (
-    BENT,
+    CHORD_TOLERANCE,
     FIRST_COLUMN,
-    MOST_COLUMNS,
-    NARROWEST_BENT,
-    WIDEST,
+    MAX_COLUMNS,
+    MIN_CHORD_WIDTH,
+    MIN_COLUMNS,
     AxialShape,
     centres_of,
     first_edges,
@@ -39,7 +39,7 @@ def asked(height: Callable[[FloatArray], FloatArray], unit: float = 1.0, start: 
         half_width=unit,
         depth=0.05 * unit,
         height=lambda x: unit * height((x - start) / unit),
-        room=(0.0, 0.0),
+        face_beyond=(0.0, 0.0),
     )
 
 
@@ -60,13 +60,13 @@ def test_low_columns_follow_the_shape_and_high_ones_need_not(name: str) -> None:
     own = edges[:-1, None] + widths[:, None] * np.linspace(1e-6, 1 - 1e-6, 201)
     above = height(own).min(axis=1) - height(fine).min()
     depth = 0.05
-    followed = (widths > NARROWEST_BENT) & (above < 2.9 * depth)
-    assert bent[followed].max(initial=0.0) <= 1.03 * BENT * depth
+    followed = (widths > MIN_CHORD_WIDTH) & (above < 2.9 * depth)
+    assert bent[followed].max(initial=0.0) <= 1.03 * CHORD_TOLERANCE * depth
     # A column is split only where it leaves its chord, or beside one that is narrow.
     assert np.isin(plain, edges).all()
     if name in ("chamfer", "steps at the ends"):
-        split = ~np.isin(edges, plain)
-        assert not split.any() or (name == "chamfer" and (np.abs(edges[split] - 13.0) < 3.0).all())
+        split_columns = ~np.isin(edges, plain)
+        assert not split_columns.any() or (name == "chamfer" and (np.abs(edges[split_columns] - 13.0) < 3.0).all())
     if name == "deep wave":  # crests are never pressed
         crests = above > 6 * depth
         assert crests.any()
@@ -83,13 +83,15 @@ def test_neither_unit_nor_place_decides_anything(name: str, unit: float, start: 
 @pytest.mark.parametrize("half_width", [0.01, 0.3, 1.0, 4.0, 100.0])
 def test_columns_double_from_either_end_up_to_a_widest(half_width: float) -> None:
     edges = first_edges(
-        AxialShape(start=0.0, stop=LENGTH, half_width=half_width, depth=1.0, height=np.zeros_like, room=(0.0, 0.0))
+        AxialShape(
+            start=0.0, stop=LENGTH, half_width=half_width, depth=1.0, height=np.zeros_like, face_beyond=(0.0, 0.0)
+        )
     )
     widths = np.diff(edges)
-    narrowest = min(FIRST_COLUMN * half_width, LENGTH / (4 * WIDEST))
+    narrowest = min(FIRST_COLUMN * half_width, LENGTH / (4 * MIN_COLUMNS))
     assert 0.5 * narrowest < widths[0] <= narrowest * (1 + 1e-9)
-    assert widths.max() <= LENGTH / WIDEST * (1 + 1e-9)
-    assert widths.size < 2 * WIDEST + 2 * np.log2(LENGTH / narrowest)
+    assert widths.max() <= LENGTH / MIN_COLUMNS * (1 + 1e-9)
+    assert widths.size < 2 * MIN_COLUMNS + 2 * np.log2(LENGTH / narrowest)
     half = widths[: widths.size // 2]
     ratios = half[1:] / half[:-1]
     assert (ratios <= 2 * (1 + 1e-9)).all()
@@ -113,10 +115,10 @@ def test_a_shape_that_bends_everywhere_ends_at_the_most_columns() -> None:
             half_width=1e-3,
             depth=1e-9,
             height=lambda x: 1e-9 * np.sin(300 * x),
-            room=(0.0, 0.0),
+            face_beyond=(0.0, 0.0),
         )
     )
-    assert MOST_COLUMNS < edges.size <= 2 * MOST_COLUMNS
+    assert MAX_COLUMNS < edges.size <= 2 * MAX_COLUMNS
     assert centres_of(np.array([1.0, 2.0, 5.0])).tolist() == [1.5, 3.5]
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from contactstudy.checks import FloatArray
-from contactstudy.contact.refinement.laws import EndLaw, end_loads, from_end, read_ends
+from contactstudy.contact.refinement.laws import EndLaw, count_from_end, end_loads, extrapolate_end_pressures
 
 EDGES = 3.0 + 1e-2 * np.cumsum([0.0, 1.0, 1.5, 2.5, 4.0, 6.0, 9.0, 4.0, 7.0, 5.0, 4.0, 3.0, 2.0, 1.0])
 ACROSS = np.sqrt(np.array([0.0, 0.19, 0.91, 0.91, 0.19, 0.0]))
@@ -29,7 +29,7 @@ def test_a_pressure_that_rises_to_an_end_has_its_peak_there(tilt: float) -> None
     """Exact for a parabola, between the cells along y as well."""
     half = 0.5 * (EDGES[-1] - EDGES[0])
     powers = [1.0, tilt, 1.5]
-    peaks, ends, along_y = read_ends(EDGES, spread(means(powers, EDGES)), (None, None))
+    peaks, ends, along_y = extrapolate_end_pressures(EDGES, spread(means(powers, EDGES)), (None, None))
     exact = tuple(float(np.polynomial.polynomial.polyval(at, powers)) for at in (-half, half))
     assert ends == pytest.approx(exact, rel=1e-9)
     risen = 1 if tilt > 0 else 0
@@ -44,7 +44,7 @@ def test_a_pressure_that_rises_to_an_end_has_its_peak_there(tilt: float) -> None
 def test_a_peak_in_a_half_is_not_that_of_the_other() -> None:
     values = np.ones(EDGES.size - 1)
     values[7] = 3.0  # the second column beyond the middle
-    peaks, ends, _ = read_ends(EDGES, spread(values), (None, None))
+    peaks, ends, _ = extrapolate_end_pressures(EDGES, spread(values), (None, None))
     assert (0.5 * (EDGES[6] + EDGES[7]) - EDGES[0]) / (EDGES[-1] - EDGES[0]) > 0.5
     assert peaks == pytest.approx((1.0, 3.0))
     assert ends == pytest.approx((1.0, 1.0))
@@ -52,12 +52,12 @@ def test_a_peak_in_a_half_is_not_that_of_the_other() -> None:
 
 def test_ends_without_pressure_and_singular_ends() -> None:
     values = np.append(np.zeros(3), np.ones(EDGES.size - 4))
-    peaks, ends, _ = read_ends(EDGES, spread(values), (None, EndLaw(kind="power", exponent=0.5)))
+    peaks, ends, _ = extrapolate_end_pressures(EDGES, spread(values), (None, EndLaw(kind="power", exponent=0.5)))
     assert ends == (0.0, np.inf)
     assert peaks == (pytest.approx(1.0), np.inf)
     falling = values.copy()
     falling[:3] = 0.01, 0.5, 1.0  # the parabola through these means is negative at the end
-    assert read_ends(EDGES, spread(falling), (None, None))[1][0] == 0.0
+    assert extrapolate_end_pressures(EDGES, spread(falling), (None, None))[1][0] == 0.0
 
 
 @pytest.mark.parametrize("width", [1e-2, 2e-2, 0.1, 1.0])
@@ -72,7 +72,7 @@ def test_loads_at_the_ends_are_integrals_over_one_half_width(width: float) -> No
 
 def test_values_are_counted_from_either_end() -> None:
     values = np.arange(EDGES.size - 1.0)
-    first, last = (from_end(side, EDGES, values) for side in (0, 1))
+    first, last = (count_from_end(side, EDGES, values) for side in (0, 1))
     assert first[0][0] == last[0][0] == 0.0
     assert first[0][-1] == pytest.approx(last[0][-1])
     assert np.diff(last[0]) == pytest.approx(np.diff(EDGES)[::-1])

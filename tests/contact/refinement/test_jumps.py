@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from contactstudy.contact.refinement.refinement import LESSER_HALF, _crest_jumps, _jumps
+from contactstudy.contact.refinement.refinement import MIN_HALF_PRESSURE, _crest_jumps, _jumps
 
 
 def test_a_crest_that_is_lower_than_the_peak_is_split_by_its_own_pressure() -> None:
@@ -30,6 +30,6 @@ def test_jumps_are_over_the_largest_of_a_half(lesser: float) -> None:
     found = _jumps(edges, pressure, 2.0)
     for i in range(8):
         own = pressure[left] if i in left else pressure[4:]
-        top = max(own.max(), LESSER_HALF * pressure.max())
+        top = max(own.max(), MIN_HALF_PRESSURE * pressure.max())
         steps = [np.abs(pressure[i] ** 2 - pressure[j] ** 2).max() for j in (i - 1, i + 1) if 0 <= j < 8]
         assert found[i] == pytest.approx(max(steps) / top**2)

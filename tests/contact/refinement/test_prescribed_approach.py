@@ -26,8 +26,8 @@ from contactstudy.case.case import SMALLEST_HALF_WIDTH
 from contactstudy.case.case import Case as AnyCase
 from contactstudy.contact.refinement import refined_contact
 from contactstudy.contact.refinement.refined_contact import (
-    ABOVE,
-    WIDTH_PART,
+    LOAD_EXCESS,
+    SLICE_WIDTH,
     RefinedContact,
     _slice_load,
     contact_at_approach,
@@ -121,7 +121,7 @@ CYLINDER = Case(
 
 def test_a_first_guess_is_hertz_line_contact_in_slices_of_a_part_of_the_cut() -> None:
     """Of a slice at depth d: ``pi E* b**2 / 4 R`` with b a part of ``sqrt(2 R d)``, so the load is as all depths."""
-    part = np.pi / 2 * WIDTH_PART**2 * STEEL.plane_strain_modulus
+    part = np.pi / 2 * SLICE_WIDTH**2 * STEEL.plane_strain_modulus
     assert _slice_load(CYLINDER) == pytest.approx(part * 3e-6 * 2e-3)
     start, stop = BALL.contact_range
     x = np.linspace(start, stop, 20001)
@@ -160,8 +160,8 @@ def test_loads_follow_the_power_of_the_depth_that_the_last_two_show(monkeypatch:
     monkeypatch.setattr(refined_contact, "refine_contact", made_up)
     search_load(BALL, APPROACH, 0.2 * HERTZ, 0.1, 1e-4)
     factors = np.array(tried) / HERTZ
-    assert factors[:2] == pytest.approx([0.2, 0.2 * ABOVE * (0.2 ** (-2 / 3)) ** 1.2])
-    assert factors[2:] == pytest.approx([ABOVE])
+    assert factors[:2] == pytest.approx([0.2, 0.2 * LOAD_EXCESS * (0.2 ** (-2 / 3)) ** 1.2])
+    assert factors[2:] == pytest.approx([LOAD_EXCESS])
     tried.clear()
     search_load(BALL, APPROACH, 1.06 * HERTZ, 0.1, 1e-4)
     assert len(tried) == 1

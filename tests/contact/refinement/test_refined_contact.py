@@ -55,7 +55,7 @@ def test_stated_peak_of_a_fillet_is_within_its_error_of_finer_cells() -> None:
     found = settled(case)
     peak, error = found.refined.peak, found.refined.peak_error
     finer = finer_peak(case, found, 2)
-    assert found.refined.settled
+    assert found.refined.accurate
     assert abs(peak - finer) <= error <= 0.01 * peak
     assert abs(peak - finer) < 0.003 * peak
     assert peak / PRESSURE == pytest.approx(KNOWN_FILLETS[fillet], rel=2e-3)
@@ -137,7 +137,7 @@ def test_table_of_points_of_a_fillet_has_the_peak_of_the_fillet() -> None:
     for profile in (made, table):
         roller = Roller(radius=RADIUS, length=LENGTH, profile=profile)
         found = settled(Case(body=HALF, roller=roller, max_pressure=PRESSURE)).refined
-        assert found.settled
+        assert found.accurate
         peaks.append(found.peak)
     assert peaks[1] == pytest.approx(peaks[0], rel=0.01)
 
@@ -220,7 +220,7 @@ def test_the_face_goes_on_beyond_an_end_of_the_roller(distance: float) -> None:
     body = finite(1.5e-3)
     case = Case(body=body, roller=filleted(0.1e-3, 1e-3), max_pressure=PRESSURE, end_distance=distance)
     shape = _axial_shape(case)
-    room = shape.room
+    room = shape.face_beyond
     assert shape.depth == pytest.approx(case.hertz_half_width**2 / (2 * RADIUS))
     assert (shape.start, shape.stop) == pytest.approx((max(distance, 0.0), min(distance + 1e-3, 1.5e-3)))
     assert room == pytest.approx((max(distance, 0.0) if distance > 1e-12 else 0.0, 0.5e-3 - distance))

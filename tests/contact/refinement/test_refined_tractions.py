@@ -21,10 +21,10 @@ from contactstudy import (
 )
 from contactstudy.cache import ArrayKey
 from contactstudy.contact.normal.contact import Certificate, Contact, Settings, Shape
-from contactstudy.contact.normal.prescribed import Prescribed
+from contactstudy.contact.normal.prescribed_loads import PrescribedLoad
 from contactstudy.contact.refinement import refined_tractions as module
 from contactstudy.contact.refinement.refined_contact import CELLS_Y, RefinedContact, refine_contact
-from contactstudy.contact.refinement.refined_tractions import COLUMNS_SHARE, _scales, refine_tractions
+from contactstudy.contact.refinement.refined_tractions import COLUMN_ERROR_FACTOR, _scales, refine_tractions
 from contactstudy.contact.rolling.frictional_contact import FrictionalContact
 from contactstudy.contact.rolling.surfaces import Tractions
 from contactstudy.contact.rolling.tractions import FrictionRequest
@@ -121,7 +121,7 @@ def made_up(case: Case, pressed: float, **rigid: float) -> FrictionalContact:
     grid = Grid.between(np.array([0.0, 1e-4, 2e-4, 5e-4]), (-2e-4, 2e-4), 4)
     pressure = np.zeros(grid.shape)
     pressure[0, 3] = pressure[2, 1] = pressed
-    shape = Shape(case.body, grid, ArrayKey(np.zeros(grid.shape)), Prescribed(1.0))
+    shape = Shape(case.body, grid, ArrayKey(np.zeros(grid.shape)), PrescribedLoad(1.0))
     none = np.zeros(grid.shape)
     certificate = Certificate(0.0, 0.0, 0.0, 0.0)
     contact = Contact(
@@ -198,7 +198,7 @@ def test_cells_double_until_what_is_free_changes_by_no_more_than_the_accuracy(
     found = refine_tractions(case, settled, accuracy)
     assert rows == [cells // 2 * 2**number for number in range(min(tried, most))]
     assert found.accurate == (tried < 9)
-    of_columns = COLUMNS_SHARE * settled.refined.least_error
+    of_columns = COLUMN_ERROR_FACTOR * settled.refined.least_error
     assert found.errors["force_x"] == pytest.approx(full * (changes[len(rows) - 2] + of_columns))
     assert "longitudinal_creepage" not in found.errors
 
@@ -242,4 +242,4 @@ def test_newton_steps_on_the_first_cells_are_bounded(monkeypatch: pytest.MonkeyP
     monkeypatch.setattr(module, "frictional_contact", recorded)
     case = replace(LIKE, motion=Shift(y=1e-8))
     refine_tractions(case, refine_contact(case, 0.05, 1e-6), 0.05)
-    assert bounds[:2] == [module.COARSE_STEPS, None]
+    assert bounds[:2] == [module.MAX_COARSE_STEPS, None]

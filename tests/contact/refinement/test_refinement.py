@@ -11,12 +11,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from contactstudy.checks import BoolArray, FloatArray
-from contactstudy.contact.refinement.columns import MOST_COLUMNS, STEEPEST, AxialShape, first_edges, split
+from contactstudy.contact.refinement.columns import MAX_COLUMNS, MAX_WIDTH_RATIO, AxialShape, first_edges, split_columns
 from contactstudy.contact.refinement.laws import RIGID, EndLaw
 from contactstudy.contact.refinement.refinement import (
-    END_COLUMN,
-    LAST_COLUMNS,
-    SHARPEST,
+    EDGE_COLUMN_WIDTH,
+    END_COLUMN_WIDTH,
+    MIN_END_COLUMN,
     ColumnPressure,
     Refinement,
     _change_error,
@@ -29,15 +29,17 @@ HALF_WIDTH, LENGTH = 1.0, 20.0
 Y = (np.arange(16) - 7.5) / 8
 
 
-def shape(length: float = LENGTH, *, room: tuple[float, float] = (0.0, 0.0), elastic: bool = False) -> AxialShape:
-    known = [np.nan if elastic or each == 0 else RIGID for each in room]
+def shape(
+    length: float = LENGTH, *, face_beyond: tuple[float, float] = (0.0, 0.0), elastic: bool = False
+) -> AxialShape:
+    known = [np.nan if elastic or each == 0 else RIGID for each in face_beyond]
     return AxialShape(
         start=0.0,
         stop=length,
         half_width=HALF_WIDTH,
         depth=0.05,
         height=lambda x: np.zeros_like(x),
-        room=room,
+        face_beyond=face_beyond,
         exponents=(known[0], known[1]),
     )
 
@@ -72,14 +74,14 @@ def marked_edges(draw: st.DrawFn) -> tuple[FloatArray, BoolArray]:
 @given(marked=marked_edges())
 def test_splitting_halves_marked_columns_and_keeps_edges_and_growth(marked: tuple[FloatArray, BoolArray]) -> None:
     edges, marks = marked
-    finer = split(edges, marks)
+    finer = split_columns(edges, marks)
     assert np.all(np.isin(edges, finer))
     centres = 0.5 * (edges[1:] + edges[:-1])
     assert np.all(np.isin(centres[marks], finer))
     widths = np.diff(finer)
     assert np.all(widths > 0)
     if marks.any():
-        assert np.all(np.maximum(widths[1:] / widths[:-1], widths[:-1] / widths[1:]) <= STEEPEST * (1 + 1e-12))
+        assert np.all(np.maximum(widths[1:] / widths[:-1], widths[:-1] / widths[1:]) <= MAX_WIDTH_RATIO * (1 + 1e-12))
 
 
 @given(length=st.floats(1.0, 300.0))
@@ -89,7 +91,7 @@ def test_first_columns_are_narrow_at_both_ends_and_symmetric(length: float) -> N
     assert (edges[0], edges[-1]) == (0.0, length)
     assert widths[0] <= 0.1 * HALF_WIDTH * (1 + 1e-9)
     assert np.allclose(widths, widths[::-1])
-    assert np.all(widths[1 : widths.size // 2] / widths[: widths.size // 2 - 1] <= STEEPEST)
+    assert np.all(widths[1 : widths.size // 2] / widths[: widths.size // 2 - 1] <= MAX_WIDTH_RATIO)
 
 
 def test_first_columns_are_split_where_the_shape_bends() -> None:
@@ -100,7 +102,7 @@ def test_first_columns_are_split_where_the_shape_bends() -> None:
         half_width=HALF_WIDTH,
         depth=0.05,
         height=lambda x: 0.5 * np.maximum(x - kink, 0) ** 2 / fillet,
-        room=(0.0, 0.0),
+        face_beyond=(0.0, 0.0),
     )
     widths = np.diff(first_edges(bent))
     plain = np.diff(first_edges(shape()))
@@ -123,7 +125,7 @@ def test_stated_peak_and_ends_are_within_their_errors(name: str, accuracy: float
     along = BUMPS[name]
     found = refine_columns(averaged(along), shape(), accuracy)
     peak = float(along(np.linspace(0.0, LENGTH, 200001)).max())
-    assert found.settled
+    assert found.accurate
     assert found.laws == (None, None)
     assert abs(found.peak - peak) <= found.peak_error <= accuracy * peak * (1 + 1e-9)
     ends = along(np.array([0.0, LENGTH]))
@@ -157,7 +159,7 @@ def test_power_law_is_stated_by_intensity_and_the_other_end_by_pressure(exponent
         means = 0.7 * np.diff(first + bend * second) / np.diff(edges)
         return pressed(means[:, None] * np.sqrt(np.maximum(1 - Y**2, 0)))
 
-    found = refine_columns(exact, shape(room=(np.inf, 0.0), elastic=exponent != RIGID), 0.01)
+    found = refine_columns(exact, shape(face_beyond=(np.inf, 0.0), elastic=exponent != RIGID), 0.01)
     law, other = found.laws
     assert law is not None
     assert other is None
@@ -166,7 +168,7 @@ def test_power_law_is_stated_by_intensity_and_the_other_end_by_pressure(exponent
     ).all()
     assert law.kind == "power"
     assert law.exponent == pytest.approx(exponent, abs=0.02)
-    assert np.diff(found.edges)[0] <= SHARPEST * HALF_WIDTH
+    assert np.diff(found.edges)[0] <= MIN_END_COLUMN * HALF_WIDTH
     assert found.values["end_pressure"][1] == pytest.approx(
         0.7 * LENGTH**-exponent * (1 + bend * LENGTH), abs=found.errors["end_pressure"][1]
     )
@@ -181,8 +183,8 @@ def test_what_cannot_be_settled_ends_at_the_most_columns_and_says_so() -> None:
         return pressed((1 + noise) * np.sqrt(np.maximum(1 - Y**2, 0)))
 
     found = refine_columns(restless, shape(), 0.001)
-    assert not found.settled
-    assert found.edges.size <= 2 * MOST_COLUMNS
+    assert not found.accurate
+    assert found.edges.size <= 2 * MAX_COLUMNS
     assert found.peak_error > 0.001 * found.peak
 
 
@@ -219,11 +221,17 @@ def test_neither_units_nor_place_nor_side_decide_anything(name: str, unit: float
         back = slice(None, None, 1 - 2 * side)
         return pressed(pressure * along(own(edges)[back], None, tolerance).pressure[back])
 
-    room, known = (3.0, 0.0), (RIGID, np.nan)
+    face_beyond, known = (3.0, 0.0), (RIGID, np.nan)
     plain = refine_columns(
         along,
         AxialShape(
-            start=0.0, stop=LENGTH, half_width=HALF_WIDTH, depth=0.05, height=height, room=room, exponents=known
+            start=0.0,
+            stop=LENGTH,
+            half_width=HALF_WIDTH,
+            depth=0.05,
+            height=height,
+            face_beyond=face_beyond,
+            exponents=known,
         ),
         0.02,
     )
@@ -233,11 +241,11 @@ def test_neither_units_nor_place_nor_side_decide_anything(name: str, unit: float
         half_width=unit * HALF_WIDTH,
         depth=unit * 0.05,
         height=lambda x: unit * height(own(x)),
-        room=(unit * room[side], unit * room[1 - side]),
+        face_beyond=(unit * face_beyond[side], unit * face_beyond[1 - side]),
         exponents=known[:: 1 - 2 * side],
     )
     other = refine_columns(solve, elsewhere, 0.02)
-    assert (other.settled, other.first.size) == (plain.settled, plain.first.size)
+    assert (other.accurate, other.first_edges.size) == (plain.accurate, plain.first.size)
     assert np.sort(own(other.edges)) == pytest.approx(plain.edges, abs=1e-9)
     for key, factor in {"peak_pressure": pressure, "end_pressure": pressure, "end_load": pressure * unit}.items():
         for values, expected in ((other.values, plain.values), (other.errors, plain.errors)):
@@ -251,23 +259,23 @@ def test_neither_units_nor_place_nor_side_decide_anything(name: str, unit: float
                 assert getattr(found, key) / factor == pytest.approx(getattr(law, key), rel=1e-5, nan_ok=True)
 
 
-def outermost(name: str, room: tuple[float, float] = (0.0, 0.0)) -> tuple[float, float]:
+def outermost(name: str, face_beyond: tuple[float, float] = (0.0, 0.0)) -> tuple[float, float]:
     """Widths of the first and the last column of a refined pressure, over the half-width."""
-    widths = np.diff(refine_columns(averaged(FOLLOWED[name]), shape(room=room), 0.02).edges) / HALF_WIDTH
+    widths = np.diff(refine_columns(averaged(FOLLOWED[name]), shape(face_beyond=face_beyond), 0.02).edges) / HALF_WIDTH
     return float(widths[0]), float(widths[-1])
 
 
 def test_pressed_ends_are_resolved_the_more_the_sharper_they_are() -> None:
     for width in outermost("falls to the end"):
-        assert SHARPEST < 0.3 * END_COLUMN < width <= END_COLUMN
+        assert MIN_END_COLUMN < 0.3 * END_COLUMN_WIDTH < width <= END_COLUMN_WIDTH
     for name in ("rises to one end", "rises to one end below a peak"):
-        assert 0.3 * SHARPEST < outermost(name)[1] <= SHARPEST
-    for room in ((2.0, 0.0), (0.0, 2.0)):
-        widths = outermost("falls to the end", room)
-        sharp = room.index(2.0)
-        assert 0.1 * SHARPEST < widths[sharp] <= SHARPEST
-        assert 0.3 * END_COLUMN < widths[1 - sharp] <= END_COLUMN
-    assert min(outermost("contact's end", (2.0, 2.0))) > END_COLUMN  # neither is pressed
+        assert 0.3 * MIN_END_COLUMN < outermost(name)[1] <= MIN_END_COLUMN
+    for face_beyond in ((2.0, 0.0), (0.0, 2.0)):
+        widths = outermost("falls to the end", face_beyond)
+        sharp = face_beyond.index(2.0)
+        assert 0.1 * MIN_END_COLUMN < widths[sharp] <= MIN_END_COLUMN
+        assert 0.3 * END_COLUMN_WIDTH < widths[1 - sharp] <= END_COLUMN_WIDTH
+    assert min(outermost("contact's end", (2.0, 2.0))) > END_COLUMN_WIDTH  # neither is pressed
 
 
 def test_columns_about_the_ends_of_a_contact_are_narrow() -> None:
@@ -277,8 +285,8 @@ def test_columns_about_the_ends_of_a_contact_are_narrow() -> None:
     for end in (edges[touched[0]], edges[touched[-1] + 1]):
         near = (edges[:-1] < end + 0.99 * HALF_WIDTH) & (edges[1:] > end - 0.99 * HALF_WIDTH)
         assert near.sum() > 4
-        assert widths[near].max() <= LAST_COLUMNS * HALF_WIDTH
-    assert widths.max() > 2 * LAST_COLUMNS * HALF_WIDTH
+        assert widths[near].max() <= EDGE_COLUMN_WIDTH * HALF_WIDTH
+    assert widths.max() > 2 * EDGE_COLUMN_WIDTH * HALF_WIDTH
 
 
 @pytest.mark.parametrize("unit", [2.0**-17, 1.0, 2.0**10])
@@ -296,11 +304,11 @@ def test_a_step_at_an_end_is_marked_by_what_the_line_to_the_end_adds(side: int, 
         half_width=unit * HALF_WIDTH,
         depth=0.05 * unit,
         height=np.zeros_like,
-        room=(0.0, 0.0),
+        face_beyond=(0.0, 0.0),
     )
     state = Refinement(solve=lambda *_: pressed(along[:, None] * np.sqrt(1 - Y**2)), shape=asked, edges=unit * edges)
     for theta, marked in ((0.19, True), (0.21, False)):
-        assert state._marks(theta)[-side] == marked
+        assert state._select_columns_to_split(theta)[-side] == marked
 
 
 def test_half_of_the_last_changes_is_the_error() -> None:
@@ -322,7 +330,7 @@ def test_least_errors_of_loads_are_the_same_part_of_the_usual_as_those_of_peaks(
 
 @pytest.mark.parametrize("name", ["lesser peak", "singular"])
 def test_another_pressure_on_the_same_columns_has_errors_that_grow_with_it(name: str) -> None:
-    asked = shape(room=(3.0, 0.0))
+    asked = shape(face_beyond=(3.0, 0.0))
     found = refine_columns(averaged(FOLLOWED[name]), asked, 0.02)
     other = replace_pressure(found, 1.25 * found.pressure, asked)
     for values, expected in ((other.values, found.values), (other.errors, found.errors)):
@@ -382,8 +390,8 @@ def test_a_sharp_end_that_is_not_pressed_needs_no_law(side: int) -> None:
         place = x if side == 0 else LENGTH - x
         return np.asarray(np.where(place > 0.06, 1.0, 0.0) * (1 - 0.2 * place / LENGTH))
 
-    room = (2.0, 0.0) if side == 0 else (0.0, 2.0)
-    found = refine_columns(averaged(along), shape(room=room), 0.05)
+    face_beyond = (2.0, 0.0) if side == 0 else (0.0, 2.0)
+    found = refine_columns(averaged(along), shape(face_beyond=face_beyond), 0.05)
     assert found.laws == (None, None)
     assert found.values["end_pressure"][side] == 0.0
     assert np.isfinite(found.errors["end_pressure"]).all()
@@ -397,7 +405,7 @@ def test_peak_at_a_pressed_sharp_end_has_an_infinite_error(side: int, slope: flo
         distance = x if side == 0 else LENGTH - x
         return np.asarray(1 + slope * distance / LENGTH)
 
-    columns = refine_columns(averaged(pressure), shape(room=(2.0, 0.0) if side == 0 else (0.0, 2.0)), 0.05)
+    columns = refine_columns(averaged(pressure), shape(face_beyond=(2.0, 0.0) if side == 0 else (0.0, 2.0)), 0.05)
     for errors in (columns.errors["end_pressure"], columns.errors["peak_pressure"]):
         assert np.isinf(errors[side])
         assert np.isfinite(errors[1 - side])
@@ -415,9 +423,9 @@ def test_a_rough_contact_is_singular_where_a_sharp_end_is_pressed_or_has_a_law(s
         return rough.singular
 
     sharp, blunt = ((2.0, 0.0), (0.0, 2.0))[:: 1 - 2 * side]
-    assert singular(shape(room=sharp))
-    assert singular(shape(room=blunt)) == (law is not None)
-    assert singular(shape(room=sharp, elastic=True)) == (law is not None)
+    assert singular(shape(face_beyond=sharp))
+    assert singular(shape(face_beyond=blunt)) == (law is not None)
+    assert singular(shape(face_beyond=sharp, elastic=True)) == (law is not None)
 
 
 def test_a_rough_contact_has_the_columns_of_the_second_threshold() -> None:
@@ -426,5 +434,5 @@ def test_a_rough_contact_has_the_columns_of_the_second_threshold() -> None:
     assert np.isin(rough.edges, fine.edges).all()
     again = refine_columns(solve, asked, 0.02, rough.edges)
     assert again.edges == pytest.approx(fine.edges)
-    assert again.first == pytest.approx(rough.edges)
+    assert again.first_edges == pytest.approx(rough.edges)
     assert rough.laws == [None, None]

@@ -13,8 +13,8 @@ from contactstudy.contact.rolling.coulomb import (
     CoulombProblem,
     CoulombSolution,
     Guess,
-    _first_share,
-    _largest_excess,
+    _select_first,
+    _select_largest_excess,
     law_violation,
     limit_tractions,
     solve_coulomb,
@@ -36,14 +36,14 @@ def problem(
         modes = np.zeros((2, 2, bound.size))
         modes[0, 0] = modes[1, 1] = 1.0
     return CoulombProblem(
-        relief=lambda traction: (matrix @ traction.ravel()).reshape(traction.shape),
+        apply_compliance=lambda traction: (matrix @ traction.ravel()).reshape(traction.shape),
         inverse=lambda slip: (inverse @ slip.ravel()).reshape(slip.shape),
         bound=bound,
         rigid=rigid,
         modes=modes,
-        works=modes,
+        resultant_weights=modes,
         resultants=np.zeros(0) if forces is None else forces,
-        shares=np.random.default_rng(seed).uniform(0.1, 2.0, bound.size),
+        relative_areas=np.random.default_rng(seed).uniform(0.1, 2.0, bound.size),
         tolerance=1e-8,
     )
 
@@ -121,7 +121,7 @@ def test_every_cell_may_slip_under_a_prescribed_force_in_any_unit_of_length(leng
     modes[0, 0] = 1.0
     modes[1] = length * random.standard_normal((2, 12))
     wanted = np.array([0.1 * bound.sum(), 0.05 * length * bound.sum()])
-    asked = replace(asked, modes=modes, works=modes, resultants=wanted)
+    asked = replace(asked, modes=modes, resultant_weights=modes, resultants=wanted)
     found = solve_coulomb(asked)
     assert found.converged
     assert not found.sticks.any()
@@ -140,7 +140,7 @@ def test_half_of_the_cells_that_stick_begin_at_most_the_farthest_above_their_bou
     excess = np.random.default_rng(sticking).uniform(0.5, 2.0, 400)
     sticks = np.arange(400) < sticking
     begins = (excess > 1) & sticks
-    found = _largest_excess(begins, excess, sticks)
+    found = _select_largest_excess(begins, excess, sticks)
     assert found.sum() == min(begins.sum(), (sticking + 1) // 2)
     assert not (found & ~begins).any()
     assert excess[found].min(initial=9.0) >= excess[begins & ~found].max(initial=0.0)
@@ -150,16 +150,16 @@ def test_half_of_many_cells_begin_whatever_their_order() -> None:
     """Numbers in one order may be right by chance, so there are twenty."""
     for seed in range(20):
         excess, sticks = np.random.default_rng(seed).uniform(0.5, 2.0, 2000), np.ones(2000, bool)
-        found = _largest_excess(excess > 1, excess, sticks)
+        found = _select_largest_excess(excess > 1, excess, sticks)
         assert found.sum() == 1000
         assert excess[found].min() > excess[~found].max()
 
 
 def test_first_share_of_cells() -> None:
     cells = np.array([False, True, True, False, True, True, True])
-    assert _first_share(cells, 1.0) is cells
+    assert _select_first(cells, 1.0) is cells
     for share, count in ((0.9, 4), (0.5, 2), (0.2, 1), (0.01, 1)):
-        assert np.flatnonzero(_first_share(cells, share)).tolist() == [1, 2, 4, 5, 6][:count]
+        assert np.flatnonzero(_select_first(cells, share)).tolist() == [1, 2, 4, 5, 6][:count]
 
 
 def test_what_a_guess_slips_is_on_its_bound_and_where_it_sticks_stays() -> None:
@@ -187,11 +187,11 @@ def test_steps_and_applications_are_few(*, forces: bool, most: tuple[int, int]) 
         rigid = random.uniform(0.1, 2.0) * random.standard_normal((2, 24))
         asked = problem(rigid, bound, forces=wanted, skew=0.2 * (seed % 6), seed=seed)
 
-        def relief(traction: FloatArray, asked: CoulombProblem = asked) -> FloatArray:
+        def apply_compliance(traction: FloatArray, asked: CoulombProblem = asked) -> FloatArray:
             applications.append(1)
-            return asked.relief(traction)
+            return asked.apply_compliance(traction)
 
-        found = solve_coulomb(replace(asked, relief=relief))
+        found = solve_coulomb(replace(asked, apply_compliance=apply_compliance))
         assert found.converged
         steps += found.steps
     assert steps <= most[0]
@@ -202,16 +202,16 @@ def test_cells_that_go_round_in_circles_change_one_by_one_in_the_end(monkeypatch
     """A compliance that is another one at every look: three cells soon stick and slip as they did before."""
     random = np.random.default_rng(0)
     asked = problem(random.standard_normal((2, 3)), np.ones(3))
-    shares: list[float] = []
+    fractions: list[float] = []
 
     def noted(cells: BoolArray, share: float) -> BoolArray:
-        shares.append(share)
-        return _first_share(cells, share)
+        fractions.append(share)
+        return _select_first(cells, share)
 
-    monkeypatch.setattr(coulomb, "_first_share", noted)
-    restless = replace(asked, relief=lambda traction: random.standard_normal(traction.shape), max_steps=80)
+    monkeypatch.setattr(coulomb, "_select_first", noted)
+    restless = replace(asked, apply_compliance=lambda traction: random.standard_normal(traction.shape), max_steps=80)
     assert not solve_coulomb(restless).converged
-    steps = np.array(shares[::2])
+    steps = np.array(fractions[::2])
     assert steps[0] == steps.max() == 1.0
     assert steps.min() < 2.0**-4
     ratios = steps[1:] / steps[:-1]
@@ -225,7 +225,9 @@ def test_prescribed_forces_are_met_to_the_tolerance_of_full_slidings(seed: int) 
     bound = random.uniform(0.2, 1.0, 24)
     whole = problem(random.standard_normal((2, 24)), bound, forces=0.5 * bound.sum() * np.array([0.6, 0.7]), seed=seed)
     for unit in (1e-6, 1.0, 1e6):
-        asked = replace(whole, works=unit * whole.works, resultants=unit * whole.resultants, tolerance=1e-3)
+        asked = replace(
+            whole, resultant_weights=unit * whole.resultant_weights, resultants=unit * whole.resultants, tolerance=1e-3
+        )
         found = solve_coulomb(asked)
         assert found.converged
         assert np.abs(found.traction.sum(axis=1) - whole.resultants).max() <= 1e-3 * bound.sum()

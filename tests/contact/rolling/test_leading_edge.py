@@ -7,8 +7,8 @@ import pytest
 
 from contactstudy import Rolling
 from contactstudy.contact.rolling import tractions
-from contactstudy.contact.rolling.surfaces import Leading
-from contactstudy.contact.rolling.tractions import EDGE_OFFSET, TIED_OFFSET, RollingCells, neighbour_shares
+from contactstudy.contact.rolling.surfaces import LeadingEdges
+from contactstudy.contact.rolling.tractions import DEPENDENT_OFFSET, EDGE_OFFSET, RollingCells, averaging_weights
 from contactstudy.verification.tribology import material, rolling_ellipse
 
 
@@ -27,7 +27,7 @@ def strip(part: float, cells: int = 20) -> np.ndarray:
 def test_a_leading_cell_in_the_contact_is_an_unknown(part: float) -> None:
     pressure = 3 * strip(part)
     cells = RollingCells.of(pressure, pressure)
-    assert cells.to.size == 0
+    assert cells.source_cell.size == 0
     assert cells.unknown.shape[1] == (pressure > 0).sum()
     assert cells.offset == pytest.approx(EDGE_OFFSET + part)
 
@@ -37,9 +37,9 @@ def test_a_leading_cell_with_little_in_the_contact_is_tied(part: float) -> None:
     pressure = strip(part)
     cells = RollingCells.of(pressure, 0.3 * pressure)
     last = int(np.flatnonzero(pressure[0])[-1])
-    assert cells.tied.tolist() == [[0], [last]]
-    assert cells.unknown[1, cells.to].tolist() == [last - 1]
-    assert cells.offset == pytest.approx(TIED_OFFSET)
+    assert cells.dependent.tolist() == [[0], [last]]
+    assert cells.unknown[1, cells.source_cell].tolist() == [last - 1]
+    assert cells.offset == pytest.approx(DEPENDENT_OFFSET)
     own = np.ones((2, cells.unknown.shape[1]))
     on_grid = cells.on_grid(own)
     assert on_grid[0, 0, last] == pytest.approx(pressure[0, last] / pressure[0, last - 1])
@@ -67,7 +67,7 @@ def test_rising_pressure_leaves_the_offset_constant() -> None:
 def test_two_contacts_in_one_row_have_an_edge_each() -> None:
     one = strip(0.3)
     pressure = np.hstack([one, one])
-    assert RollingCells.of(pressure, pressure).to.size == 2
+    assert RollingCells.of(pressure, pressure).source_cell.size == 2
 
 
 def test_cells_without_friction_carry_nothing() -> None:
@@ -93,7 +93,7 @@ def test_published_lateral_creepage_and_spin_are_those_of_slip_taken_half_a_cell
     three numbers; both ways converge to 0.625 of full sliding's force (docs/explanation/rolling.md).
     """
     between_neighbours = 0.5 - EDGE_OFFSET
-    monkeypatch.setattr(tractions, "_part_inside", lambda pressure: between_neighbours)
+    monkeypatch.setattr(tractions, "_inside_length", lambda pressure: between_neighbours)
     monkeypatch.setattr(tractions, "SLIDING_OFFSET", 0.5)
     load, friction, spin, ahead = 82e3, 0.3, -0.625, 0.334 * 0.4e-3
     motion = Rolling(lateral_creepage=-6.25e-4 + spin * ahead, spin=spin)
@@ -108,14 +108,14 @@ def test_columns_nearer_than_a_cell_is_long_take_the_slip_at_one_place() -> None
     """Columns far narrower than the cells are long, and one as wide as they are long beside them."""
     pressure = np.vstack([strip(part) for part in (0.75, 1.3, 0.9)])
     x, widths, dy = np.array([0.0, 0.02, 2.0]), np.array([0.01, 0.03, 1.0]), 1.0
-    together = neighbour_shares(x, widths, dy)
+    together = averaging_weights(x, widths, dy)
     assert together is not None
     cells = RollingCells.of(pressure, pressure, together)
     first, second, third = (cells.offset[cells.unknown[0] == row][0] for row in range(3))
     assert abs(first - second) < 0.01  # their own are 0.55 apart
     assert first == pytest.approx(EDGE_OFFSET + (0.01 * 0.75 + 0.98 * 0.03 * 1.3) / (0.01 + 0.98 * 0.03))
     assert third == pytest.approx(EDGE_OFFSET + 0.9)
-    assert neighbour_shares(np.arange(4.0), np.ones(4), 0.5) is None
+    assert averaging_weights(np.arange(4.0), np.ones(4), 0.5) is None
 
 
 def test_a_single_cell_ahead_of_a_contact_is_a_contact_of_its_own() -> None:
@@ -124,15 +124,15 @@ def test_a_single_cell_ahead_of_a_contact_is_a_contact_of_its_own() -> None:
     alone = pressure.copy()
     alone[0, last + 2] = 0.1
     found = RollingCells.of(alone, alone)
-    assert found.to.size == 0
+    assert found.source_cell.size == 0
     assert found.offset[:-1] == pytest.approx(EDGE_OFFSET + 0.9)
     assert found.offset[-1] == pytest.approx(EDGE_OFFSET + 1.0)
 
 
 def test_all_cells_of_a_column_that_slides_take_the_slip_at_their_centres() -> None:
     pressure = np.vstack([strip(0.9), strip(0.3), strip(0.9)])
-    found = RollingCells.of(pressure, pressure, None, Leading(np.array([True, True, False]), pressure))
-    assert found.to.size == 0
+    found = RollingCells.of(pressure, pressure, None, LeadingEdges(np.array([True, True, False]), pressure))
+    assert found.source_cell.size == 0
     assert (found.offset[found.unknown[0] < 2] == tractions.SLIDING_OFFSET).all()
     assert found.offset[found.unknown[0] == 2] == pytest.approx(EDGE_OFFSET + 0.9)
 

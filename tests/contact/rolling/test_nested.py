@@ -9,7 +9,7 @@ from contactstudy import Grid
 from contactstudy.checks import FloatArray
 from contactstudy.contact.rolling.surfaces import Tractions
 from contactstudy.contact.rolling.tractions import (
-    LARGEST_STICKING,
+    MAX_STICKING_RATIO,
     RollingCells,
     cell_means,
     guess_from_coarse,
@@ -31,7 +31,9 @@ def all_cells(bound: FloatArray) -> RollingCells:
     none = np.zeros((2, 0), dtype=np.int64)
     unknown = np.argwhere(np.ones(bound.shape, bool)).T
     offset = np.zeros(unknown.shape[1])
-    return RollingCells(bound=bound, unknown=unknown, offset=offset, tied=none, to=none[0], ratio=np.zeros(0))
+    return RollingCells(
+        bound=bound, unknown=unknown, offset=offset, dependent=none, source_cell=none[0], ratio=np.zeros(0)
+    )
 
 
 def plane(grid: Grid) -> FloatArray:
@@ -64,7 +66,7 @@ def test_cells_that_slip_keep_their_whole_bound_and_others_less() -> None:
     slips, bare = FINE.x > 3, FINE.y < 0.9
     assert part[slips][:, ~bare] == pytest.approx(1.0)
     assert (part[slips][:, bare] == 0).all()
-    assert part[~slips][:, ~bare].max() == pytest.approx(LARGEST_STICKING)
+    assert part[~slips][:, ~bare].max() == pytest.approx(MAX_STICKING_RATIO)
     assert part[2:4, 4:] == pytest.approx(0.9 + 0.05 * np.array([1.25, 1.75])[:, None] * np.ones(4))
     assert (part[~slips][:, :1] == 0).all()
     loaded = part > 0
@@ -83,7 +85,7 @@ def test_under_almost_the_same_bound_what_slips_follows_it() -> None:
     size, before = np.hypot(*found), np.hypot(*last)
     assert found[0] * last[1] == pytest.approx(found[1] * last[0])
     assert size[~sticks] == pytest.approx(bound[~sticks])
-    assert size[sticks] == pytest.approx(np.minimum(before, LARGEST_STICKING * bound)[sticks])
+    assert size[sticks] == pytest.approx(np.minimum(before, MAX_STICKING_RATIO * bound)[sticks])
     assert (found[:, 0] == 0).all()
     assert ((found * last).sum(axis=0)[1:] > 0).all()
 

@@ -27,7 +27,7 @@ def displaced(edges: FloatArray, row: int) -> FloatArray:
     for material in MATERIALS:
         operator = surface_operator(HalfSpace(material=material), grid, TANGENTIAL, TANGENTIAL)
         for number, load in enumerate(TANGENTIAL):
-            each = operator.displaced({load: unit}, TANGENTIAL)
+            each = operator.compute_displacements({load: unit}, TANGENTIAL)
             found[:, number] += np.stack([each[direction] for direction in TANGENTIAL])
     return found
 

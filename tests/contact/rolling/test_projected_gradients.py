@@ -18,8 +18,8 @@ CELLS = 24
 def test_the_descent_ends_where_newton_does(size: float) -> None:
     random = np.random.default_rng(3)
     bound, ones = random.uniform(0.2, 1.0, CELLS), np.ones(CELLS)
-    asked = replace(problem(size * random.standard_normal((2, CELLS)), bound), shares=ones)
-    found, slip = descend_energy(asked.relief, asked.rigid, np.zeros((2, CELLS)), bound, ones)
+    asked = replace(problem(size * random.standard_normal((2, CELLS)), bound), relative_areas=ones)
+    found, slip = descend_energy(asked.apply_compliance, asked.rigid, np.zeros((2, CELLS)), bound, ones)
     assert np.abs(found - solve_coulomb(asked).traction).max() < 1e-5
     assert np.abs(slip - asked.slip(found, np.zeros(0))).max() < 1e-9 * max(size, 1.0)
 
@@ -29,10 +29,10 @@ def test_rigid_slips_make_the_prescribed_forces(part: float) -> None:
     random = np.random.default_rng(4)
     bound, ones = random.uniform(0.2, 1.0, CELLS), np.ones(CELLS)
     forces = part * bound.sum() * np.array([0.6, -0.8])
-    asked = replace(problem(0.1 * random.standard_normal((2, CELLS)), bound, forces=forces), shares=ones)
+    asked = replace(problem(0.1 * random.standard_normal((2, CELLS)), bound, forces=forces), relative_areas=ones)
     expected = solve_coulomb(asked)
     found, amplitudes = balance_tractions(asked, Guess(np.zeros((2, CELLS)), np.zeros(2)), 1.0)
-    assert (asked.works * found).sum(axis=(1, 2)) == pytest.approx(forces, abs=1e-4 * bound.sum())
+    assert (asked.resultant_weights * found).sum(axis=(1, 2)) == pytest.approx(forces, abs=1e-4 * bound.sum())
     assert np.abs(found - expected.traction).max() < 1e-3
     assert amplitudes == pytest.approx(expected.amplitudes, rel=1e-2)
 
@@ -51,7 +51,7 @@ def test_newton_begins_again_from_a_descent(monkeypatch: pytest.MonkeyPatch, pre
     bound = random.uniform(0.2, 1.0, CELLS)
     forces = 0.5 * bound.sum() * np.array([0.6, -0.8]) if prescribed else None
     asked = problem(random.standard_normal((2, CELLS)), bound, forces=forces)
-    asked = replace(asked, shares=np.ones(CELLS), symmetric=True)
+    asked = replace(asked, relative_areas=np.ones(CELLS), symmetric=True)
     found = solve_coulomb(asked)
     assert found.converged
     assert descents
@@ -65,16 +65,16 @@ def symmetric(seed: int, *, unit: float = 1.0, pressure: float = 1.0, forces: bo
     wanted = 0.6 * float((shares * bound).sum()) * np.array([0.6, -0.8]) if forces else None
     asked = problem(0.3 * unit * random.standard_normal((2, CELLS)), bound, forces=wanted, seed=seed)
     both = np.tile(shares, 2)
-    inner = np.stack([asked.relief(each.reshape(2, CELLS)).ravel() for each in np.eye(2 * CELLS)], axis=1)
+    inner = np.stack([asked.apply_compliance(each.reshape(2, CELLS)).ravel() for each in np.eye(2 * CELLS)], axis=1)
     matrix = unit / pressure * inner * both
     inverse = np.linalg.inv(matrix)
     return replace(
         asked,
-        relief=lambda traction: (matrix @ traction.ravel()).reshape(traction.shape),
+        apply_compliance=lambda traction: (matrix @ traction.ravel()).reshape(traction.shape),
         inverse=lambda slip: (inverse @ slip.ravel()).reshape(slip.shape),
-        works=0.01 * shares * asked.works,
+        resultant_weights=0.01 * shares * asked.resultant_weights,
         resultants=0.01 * asked.resultants,
-        shares=shares,
+        relative_areas=shares,
         symmetric=True,
     )
 
@@ -87,12 +87,12 @@ def test_cells_of_different_sizes_in_any_unit(unit: float, pressure: float, *, f
 
     def counted(traction: np.ndarray) -> np.ndarray:
         applied.append(1)
-        return asked.relief(traction)
+        return asked.apply_compliance(traction)
 
     expected = solve_coulomb(replace(asked, max_steps=14))
     assert expected.converged
     found, amplitudes = balance_tractions(
-        replace(asked, relief=counted), Guess(np.zeros((2, CELLS)), np.zeros(2 if forces else 0)), unit
+        replace(asked, apply_compliance=counted), Guess(np.zeros((2, CELLS)), np.zeros(2 if forces else 0)), unit
     )
     assert np.abs(found - expected.traction).max() < 1e-3 * pressure
     assert amplitudes == pytest.approx(expected.amplitudes, abs=1e-3 * unit)
@@ -105,8 +105,10 @@ def test_no_step_of_the_descent_raises_the_energy(seed: int) -> None:
     asked, energies = symmetric(seed), []
     for steps in range(12):
         zero = np.zeros((2, CELLS))
-        found, _ = descend_energy(asked.relief, asked.rigid, zero, asked.bound, asked.shares, steps)
-        energies.append(float((asked.shares * found * (0.5 * asked.relief(found) - asked.rigid)).sum()))
+        found, _ = descend_energy(asked.apply_compliance, asked.rigid, zero, asked.bound, asked.relative_areas, steps)
+        energies.append(
+            float((asked.relative_areas * found * (0.5 * asked.apply_compliance(found) - asked.rigid)).sum())
+        )
     assert (np.diff(energies) < 0).all()
 
 
@@ -114,11 +116,13 @@ def test_steps_of_the_descent_grow_where_the_slip_is_no_longer_what_it_began_wit
     """It begins with a slip that the stiffest cell gives way to, whose step is a tenth of the others'."""
     stiffness, applied = np.geomspace(1.0, 10.0, CELLS), []
 
-    def relief(traction: np.ndarray) -> np.ndarray:
+    def apply_compliance(traction: np.ndarray) -> np.ndarray:
         applied.append(traction)
         return stiffness * traction
 
     wanted = np.where(np.arange(CELLS) < CELLS - 1, 0.01, 1.0) * np.ones((2, CELLS))
-    found, _ = descend_energy(relief, stiffness * wanted, np.zeros((2, CELLS)), np.full(CELLS, 10.0), np.ones(CELLS))
+    found, _ = descend_energy(
+        apply_compliance, stiffness * wanted, np.zeros((2, CELLS)), np.full(CELLS, 10.0), np.ones(CELLS)
+    )
     assert found == pytest.approx(wanted, abs=1e-4)
     assert len(applied) < 50

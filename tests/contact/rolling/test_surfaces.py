@@ -25,17 +25,17 @@ def bound() -> FloatArray:
 )
 def test_the_largest_multiple_is_the_least_over_all_directions(wanted: list[float]) -> None:
     """Tractions along the slip of a rigid motion make the largest resultant along it: all motions, tried one by one."""
-    works, target = SURFACES.weights[: len(wanted)], np.array(wanted)
+    resultant_weights, target = SURFACES.weights[: len(wanted)], np.array(wanted)
     random = np.random.default_rng(0)
-    found = _largest_multiple(target, bound(), works)
-    sizes = np.array([(bound() * np.hypot(*work)).sum() for work in works])
+    found = _largest_multiple(target, bound(), resultant_weights)
+    sizes = np.array([(bound() * np.hypot(*work)).sum() for work in resultant_weights])
     along, spread = target / sizes / np.hypot.reduce(target / sizes), 1.0
     least = np.inf
     for _ in range(60):  # about the best so far, ever closer
         tried = along + spread * random.standard_normal((200, target.size))
         tried[0] = along
         tried = tried[(tried * target / sizes).sum(axis=1) > 0] / sizes
-        slips = np.tensordot(tried, works, axes=1)
+        slips = np.tensordot(tried, resultant_weights, axes=1)
         multiples = (bound() * np.hypot(slips[:, 0], slips[:, 1])).sum(axis=(1, 2)) / (tried @ target)
         if multiples.min() < least:
             least, along = float(multiples.min()), tried[multiples.argmin()] * sizes
@@ -43,7 +43,7 @@ def test_the_largest_multiple_is_the_least_over_all_directions(wanted: list[floa
         spread *= 0.85
     assert found == pytest.approx(least, rel=1e-4)
     for factor in (3.0, 1e-200):
-        assert _largest_multiple(factor * target, bound(), works) == pytest.approx(found / factor, rel=1e-6)
+        assert _largest_multiple(factor * target, bound(), resultant_weights) == pytest.approx(found / factor, rel=1e-6)
 
 
 def test_one_force_is_carried_up_to_the_sum_of_the_bound() -> None:

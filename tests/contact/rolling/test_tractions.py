@@ -13,7 +13,7 @@ from contactstudy.bodies import Counterbody
 from contactstudy.cache import ArrayKey
 from contactstudy.checks import FloatArray
 from contactstudy.contact.normal.contact import Settings, Shape
-from contactstudy.contact.normal.prescribed import Prescribed
+from contactstudy.contact.normal.prescribed_loads import PrescribedLoad
 from contactstudy.contact.rolling import tractions as module
 from contactstudy.contact.rolling.coulomb import (
     CoulombProblem,
@@ -59,23 +59,25 @@ def rubbed(motion: Rolling | Shift, edges: str, *, other_units: bool = False, **
     grid = Grid.between(length * EDGES[edges], (-1.3 * length, 1.3 * length), count)
     gap = 0.05 * ((grid.x[:, None] - 0.02 * length) ** 2 + grid.y**2) / length
     body = HalfSpace(material=Material(0.91 * pressure, 0.3))
-    prescribed = Prescribed(LOAD * pressure * length**2)
+    prescribed = PrescribedLoad(LOAD * pressure * length**2)
     shape = Shape(body, grid, ArrayKey(gap), prescribed, Counterbody(body))
     motion = scaled(motion) if other_units else motion
-    request = FrictionRequest(motion=motion, friction=FRICTION, middle=0.1 * length, **({"coupled": False} | named))
+    request = FrictionRequest(
+        motion=motion, friction=FRICTION, reference_x=0.1 * length, **({"coupled": False} | named)
+    )
     return frictional_contact(shape, Settings(), request)
 
 
 def count_tangential(monkeypatch: pytest.MonkeyPatch) -> list[int]:
     """List that grows with each application of the operator to tractions."""
     calls: list[int] = []
-    original = SurfaceOperator.displaced
+    original = SurfaceOperator.compute_displacements
 
     def counted(self: SurfaceOperator, loads: Any, directions: Any) -> Any:
         calls.extend([1] * (Load.ALONG_X in loads))
         return original(self, loads, directions)
 
-    monkeypatch.setattr(SurfaceOperator, "displaced", counted)
+    monkeypatch.setattr(SurfaceOperator, "compute_displacements", counted)
     return calls
 
 
@@ -130,8 +132,8 @@ def test_place_along_the_axis_decides_nothing(motion: Rolling | Shift) -> None:
         grid = Grid.between(place + EDGES["uniform"], (-1.3, 1.3), 26)
         gap = 0.05 * ((grid.x[:, None] - place - 0.02) ** 2 + grid.y**2)
         body = HalfSpace(material=Material(0.91, 0.3))
-        shape = Shape(body, grid, ArrayKey(gap), Prescribed(LOAD), Counterbody(body))
-        request = FrictionRequest(motion=motion, friction=FRICTION, middle=place + 0.1, coupled=False)
+        shape = Shape(body, grid, ArrayKey(gap), PrescribedLoad(LOAD), Counterbody(body))
+        request = FrictionRequest(motion=motion, friction=FRICTION, reference_x=place + 0.1, coupled=False)
         return frictional_contact(shape, Settings(), request)
 
     plain, other = found(0.0).tractions, found(8.0).tractions
@@ -148,8 +150,8 @@ def test_work_is_what_tractions_lose_on_the_slip(motion: Rolling) -> None:
     body = HalfSpace(material=Material(0.91, 0.1))
     for model in ("exact", "fastsim"):
         asked = replace(motion, model=model)
-        shape = Shape(body, grid, ArrayKey(gap), Prescribed(LOAD))
-        request = FrictionRequest(motion=asked, friction=FRICTION, middle=0.0, coupled=False)
+        shape = Shape(body, grid, ArrayKey(gap), PrescribedLoad(LOAD))
+        request = FrictionRequest(motion=asked, friction=FRICTION, reference_x=0.0, coupled=False)
         found = frictional_contact(shape, Settings(), request).tractions
         lost = float((found.traction * found.slip).sum() * grid.cell_area)
         assert found.work == pytest.approx(lost, rel=1e-9 if model == "fastsim" else 0.03)
@@ -215,9 +217,9 @@ def test_a_coupled_contact_does_not_depend_on_the_unit() -> None:
         grid = Grid.between(length * EDGES["uniform"], (-1.3 * length, 1.3 * length), 26)
         gap = 0.05 * ((grid.x[:, None] - 0.02 * length) ** 2 + grid.y**2) / length
         body = HalfSpace(material=Material(0.91 * pressure, 0.1))
-        shape = Shape(body, grid, ArrayKey(gap), Prescribed(LOAD * pressure * length**2))
+        shape = Shape(body, grid, ArrayKey(gap), PrescribedLoad(LOAD * pressure * length**2))
         motion = Rolling(longitudinal_creepage=0.01)
-        request = FrictionRequest(motion=motion, friction=FRICTION, middle=0.0, coupled=True)
+        request = FrictionRequest(motion=motion, friction=FRICTION, reference_x=0.0, coupled=True)
         each = frictional_contact(shape, Settings(), request)
         assert each.converged
         found.append(each.contact.pressure / pressure)
@@ -242,9 +244,9 @@ def test_few_columns_and_many_rows(columns: int) -> None:
     body = FiniteLengthSpace(length=1.0, material=Material(0.91, 0.3))
     grid = Grid(x_range=(0.0, 1.0), y_range=(-2.0, 2.0), cells_x=columns, cells_y=256)
     gap = np.broadcast_to(0.05 * grid.y**2, grid.shape)
-    shape = Shape(body, grid, ArrayKey(gap), Prescribed(0.05))
+    shape = Shape(body, grid, ArrayKey(gap), PrescribedLoad(0.05))
     motion = Rolling(longitudinal_creepage=0.01)
-    request = FrictionRequest(motion=motion, friction=0.3, middle=0.5, coupled=False)
+    request = FrictionRequest(motion=motion, friction=0.3, reference_x=0.5, coupled=False)
     found = frictional_contact(shape, Settings(), request)
     assert found.converged
     assert found.tractions.resultants["force_y"] == pytest.approx(-0.475 * 0.3 * 0.05, rel=0.04)

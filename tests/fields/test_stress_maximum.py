@@ -8,10 +8,10 @@ import xarray as xr
 
 from contactstudy import Case, FiniteLengthSpace, Grid, HalfSpace, Material, Roller, profiles, solve, stress_field
 from contactstudy.checks import FloatArray
-from contactstudy.fields.largest import Largest
 from contactstudy.fields.loads import sliding
 from contactstudy.fields.positions import field_positions
 from contactstudy.fields.stress import contact_stresses
+from contactstudy.fields.stress_maximum import StressMaximum
 from contactstudy.stress import von_mises_of
 from contactstudy.verification import closed_forms as ref
 from tests.closed_forms import hertz_circle_surface, sliding_circle_surface
@@ -28,7 +28,7 @@ def circle() -> tuple[Grid, FloatArray]:
     return grid, np.sqrt(np.maximum(1 - grid.x[:, None] ** 2 - grid.y**2, 0.0))
 
 
-def under(grid: Grid, pressure: FloatArray, friction: float) -> Largest:
+def under(grid: Grid, pressure: FloatArray, friction: float) -> StressMaximum:
     """Largest stress of a half-space, with stresses at one point far from it."""
     body = HalfSpace(material=Material(1.0, 0.3))
     positions = field_positions(body, grid, [1.2], [1.2], [2.0])

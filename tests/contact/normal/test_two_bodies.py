@@ -7,7 +7,7 @@ import pytest
 
 from contactstudy import FiniteLengthSpace, Grid, HalfSpace, Material
 from contactstudy.bodies import Counterbody
-from contactstudy.contact.normal.pair import PairOperator, ScaledOperator, Shares
+from contactstudy.contact.normal.two_bodies import CellTransfer, PairOperator, ScaledOperator
 from contactstudy.fields.surface import surface_operator
 from contactstudy.kernels.load import Load
 
@@ -55,15 +55,15 @@ def test_cells_are_the_same_but_for_rounding(unit: float) -> None:
     for start, alike in ((0.4, True), (0.4 + 1e-13, True), (0.4 + 1e-7, False), (0.45, False)):
         counterbody = Counterbody(FiniteLengthSpace(material=SOFT, length=0.8 * unit), start * unit)
         whole = Counterbody(FiniteLengthSpace(material=SOFT, length=1.6 * unit), (start - 0.4) * unit)
-        assert Shares.of(counterbody, grid) is not None  # fewer cells
-        assert (Shares.of(whole, grid) is None) == alike
+        assert CellTransfer.of(counterbody, grid) is not None  # fewer cells
+        assert (CellTransfer.of(whole, grid) is None) == alike
 
 
 def test_joined_shares_take_a_load_as_the_fine_ones_do() -> None:
     counterbody = Counterbody(FiniteLengthSpace(material=SOFT, length=0.8e-3), 4.3e-4)
     operator = PairOperator.of(BODY, counterbody, GRID, (Load.NORMAL,))
-    shares, coarse = operator._shares, operator.coarse._shares
+    shares, coarse = operator._transfer, operator.coarse._transfer
     load = np.repeat(np.random.default_rng(0).random(8), 2)
-    assert coarse.to @ load[::2] == pytest.approx((shares.to @ load).reshape(-1, 2).mean(axis=1))
-    own = np.repeat(np.random.default_rng(1).random(coarse.to.shape[0]), 2)
-    assert coarse.back @ own[::2] == pytest.approx((shares.back @ own).reshape(-1, 2).mean(axis=1))
+    assert coarse.to_second @ load[::2] == pytest.approx((shares.to_second @ load).reshape(-1, 2).mean(axis=1))
+    own = np.repeat(np.random.default_rng(1).random(coarse.to_second.shape[0]), 2)
+    assert coarse.to_first @ own[::2] == pytest.approx((shares.to_first @ own).reshape(-1, 2).mean(axis=1))

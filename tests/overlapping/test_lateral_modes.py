@@ -14,7 +14,7 @@ from scipy import integrate
 from contactstudy import Grid
 from contactstudy.checks import FloatArray
 from contactstudy.kernels.load import Load
-from contactstudy.overlapping.lateral import (
+from contactstudy.overlapping.lateral_modes import (
     BENDING_POLES,
     POLES,
     LateralPanel,
@@ -51,7 +51,7 @@ def test_columns_equal_the_load_at_every_wavenumber(seed: int, rank: int, split:
     parts = {1: pressure + mirrored, -1: pressure - mirrored} if split else {0: pressure}
     # With 20 nodes the amplitudes are interpolated to rounding.
     for panel in lateral_panels(0.05, 2.5, 60.0, replace(Resolution(), lateral_nodes=20)):
-        direct = replace(panel, nodes=panel.fine, interpolation=None)
+        direct = replace(panel, nodes=panel.fine_nodes, interpolation=None)
         np.testing.assert_allclose(integrated(panel, parts), integrated(direct, parts), atol=1e-9 * rank)
 
 
@@ -72,7 +72,7 @@ def test_product_of_x_and_y_has_one_column_per_node():
     panels = lateral_panels(0.05, 2.5, 60.0, Resolution())
     loads = [lateral_columns(panel, {0: pressure}, GRID, Y) for panel in panels]
     columns = [each.nodes.size * each.parities.size for each in loads if each is not None]
-    assert sum(columns) < 0.4 * sum(2 * panel.fine.size for panel in panels)
+    assert sum(columns) < 0.4 * sum(2 * panel.fine_nodes.size for panel in panels)
     assert columns[-1] == Resolution().lateral_nodes
 
 

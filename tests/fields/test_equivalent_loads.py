@@ -21,7 +21,7 @@ from contactstudy.arrays.points import Points
 from contactstudy.kernels.field import half_space_field, stress_influence
 from contactstudy.kernels.load import Load
 from contactstudy.overlapping import problem
-from contactstudy.overlapping.lateral import POLES
+from contactstudy.overlapping.lateral_modes import POLES
 
 
 def test_end_loads_are_what_the_mirrored_top_load_leaves_on_the_ends(
@@ -85,6 +85,6 @@ def test_eccentric_loads_do_not_depend_on_where_the_poles_begin(
 
     usual = loads()
     assert usual["P_h1"].attrs["reference_distance"] == 80.0
-    monkeypatch.setitem(problem.ALONE, POLES, 0.1 * problem.ALONE[POLES])
+    monkeypatch.setitem(problem.POLE_PANEL_FACTOR, POLES, 0.1 * problem.POLE_PANEL_FACTOR[POLES])
     for name in ("P_h1", "P_v1", "P_v2"):
         assert float(np.abs(loads()[name] - usual[name]).max()) < 1e-4 * float(np.abs(usual[name]).max())

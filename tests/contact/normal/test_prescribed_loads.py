@@ -21,7 +21,7 @@ from contactstudy import (
     solve_contact,
 )
 from contactstudy.contact import ContactSettings
-from contactstudy.contact.normal.prescribed import Prescribed
+from contactstudy.contact.normal.prescribed_loads import PrescribedLoad
 from contactstudy.roughness import self_affine
 from tests.crowned_case import BODY, HALF_WIDTH, LENGTH, STEEL, case_with
 from tests.reference_line import line_slope
@@ -274,8 +274,8 @@ def test_several_approaches_are_a_dimension(on_cells) -> None:
 def test_levers_are_over_the_largest() -> None:
     for place in (0.0, 5.0):
         grid = Grid.between(place + np.array([0.0, 1.0, 2.0, 4.0]), (0.0, 1.0), 2)
-        asked = Prescribed(3.0, place + 1.0)
-        assert asked.largest_arm(grid) == pytest.approx(2.0)
+        asked = PrescribedLoad(3.0, place + 1.0)
+        assert asked.max_arm(grid) == pytest.approx(2.0)
         found = asked.resultants(grid)
         assert found.lever is not None
         assert found.lever[:, 0] == pytest.approx([-0.25, 0.25, 1.0])
