@@ -34,7 +34,7 @@ def recorded(kind: str) -> tuple[Callable[[str], FloatArray], list[str]]:
     return make, made
 
 
-def test_the_least_recently_used_is_dropped_first() -> None:
+def test_least_recently_used_value_is_dropped() -> None:
     cache.limit(10)
     make, made = recorded("letters")
     for name in ("aaaa", "bbbb", "aaaa", "cccc"):
@@ -46,7 +46,7 @@ def test_the_least_recently_used_is_dropped_first() -> None:
     assert made[-1] == "bbbb"
 
 
-def test_a_value_larger_than_the_limit_is_not_kept_and_drops_nothing() -> None:
+def test_value_larger_than_limit_is_not_cached() -> None:
     cache.limit(5)
     make, made = recorded("letters")
     make("aaaa")
@@ -56,7 +56,7 @@ def test_a_value_larger_than_the_limit_is_not_kept_and_drops_nothing() -> None:
     assert made == ["aaaa", "larger than all", "larger than all"]
 
 
-def test_arguments_by_name_are_part_of_the_key() -> None:
+def test_keyword_arguments_are_part_of_key() -> None:
     @cached("products")
     def multiply(number: int, factor: int = 1) -> int:
         return number * factor
@@ -65,7 +65,7 @@ def test_arguments_by_name_are_part_of_the_key() -> None:
     assert cache.info().kinds["products"].computed == 2
 
 
-def test_kinds_do_not_meet() -> None:
+def test_kinds_have_separate_keys() -> None:
     first, _ = recorded("first")
     second, made = recorded("second")
     first("same")
@@ -75,7 +75,7 @@ def test_kinds_do_not_meet() -> None:
     assert (kinds["first"].values, kinds["second"].values) == (1, 1)
 
 
-def test_info_counts_what_is_made_and_reused() -> None:
+def test_info_counts_computed_and_reused_values() -> None:
     make, _ = recorded("counted")
     for name in ("aa", "aa", "bbb"):
         make(name)
@@ -84,7 +84,7 @@ def test_info_counts_what_is_made_and_reused() -> None:
     assert "counted: 2 in" in str(cache.info())
 
 
-def test_a_smaller_limit_drops_at_once_and_keeps_the_most_recent() -> None:
+def test_smaller_limit_keeps_most_recent_values() -> None:
     make, made = recorded("letters")
     for name in ("aaaa", "bbbb", "cccc"):
         make(name)
@@ -98,7 +98,7 @@ def test_a_smaller_limit_drops_at_once_and_keeps_the_most_recent() -> None:
 
 
 @pytest.mark.parametrize("bound", [-1, 1.5, "1 GB"])
-def test_a_limit_is_a_number_of_bytes(bound: object) -> None:
+def test_invalid_limit_raises_error(bound: object) -> None:
     with pytest.raises(InvalidInputError, match="nbytes"):
         cache.limit(bound)  # type: ignore[arg-type]
 

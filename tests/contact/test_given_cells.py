@@ -11,7 +11,7 @@ from tests.contact.refinement.rollers import CASES, HALF, RADIUS, SHORT, SHORT_E
 
 
 @pytest.mark.parametrize("body", [HALF, finite(SHORT)], ids=["half", "finite"])
-def test_gap_on_cells_of_any_width_has_the_contact_of_uniform_ones(body: HalfSpace | FiniteLengthSpace) -> None:
+def test_graded_cells_match_uniform_cells(body: HalfSpace | FiniteLengthSpace) -> None:
     """The verb for labelled gaps: the load is exact, the pressure that of uniform cells."""
     finite_body = isinstance(body, FiniteLengthSpace)
     kept = np.concatenate([np.arange(16), np.arange(16, 48, 2), np.arange(48, 65)])
@@ -40,7 +40,7 @@ def gap_of(contact: xr.Dataset, grid: Grid) -> xr.DataArray:
     return contact.gap.copy(data=heights)
 
 
-def test_gap_on_cells_that_grow_too_steeply_is_refused_with_the_place() -> None:
+def test_steep_cell_growth_raises_error_with_position() -> None:
     widths = np.array([1.0, 1.0, 5.0, 5.0, 5.0, 1.5, 1.5])
     x = np.cumsum(widths) - 0.5 * widths
     y = np.linspace(-1.5, 1.5, 17)
@@ -50,7 +50,7 @@ def test_gap_on_cells_that_grow_too_steeply_is_refused_with_the_place() -> None:
         solve_contact(HALF, gap, load=1.0)
 
 
-def test_cells_that_miss_an_end_of_an_elastic_roller_are_refused_with_its_place() -> None:
+def test_cells_missing_roller_end_raise_error() -> None:
     case = CASES["elastic inside"]
     edges = SHORT_ELASTIC * np.array([0.0, 0.1, 0.3, 0.6, 0.8, 1.0])
     with pytest.raises(InvalidInputError, match=r"without a border at x = "):

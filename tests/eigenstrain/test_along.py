@@ -14,7 +14,7 @@ SOFT = Material(2.0, 0.3)
 EDGES = np.linspace(0.4, 1.2, 17)
 
 
-def test_a_rectangle_in_a_half_plane() -> None:
+def test_rectangle_in_half_plane_matches_closed_form() -> None:
     """Against forces in a half-plane; the way closes on itself far off."""
     places, step = 1024, 0.05
     y = step * (np.arange(places) - places // 2)
@@ -35,14 +35,14 @@ def test_a_rectangle_in_a_half_plane() -> None:
         assert np.abs(found[component][at] - right)[:, [0, 1, 6, 7, 8, 14]].max() < 0.02 * size
 
 
-def test_what_does_not_change_leaves_the_stress_of_layers() -> None:
+def test_uniform_strain_has_stress_of_layers() -> None:
     strain = np.zeros((6, 8, 2, 16)) + np.random.default_rng(3).normal(size=(6, 1, 2, 16))
     found = PeriodicLayers(SOFT, EDGES, 8, 0.1).stresses(strain)
     expected = LayerInfluence(SOFT.poisson, SOFT.young).stresses(strain.reshape(6, -1)).reshape(strain.shape)
     assert np.allclose(found, expected, atol=1e-12)
 
 
-def test_short_waves_are_held_across_y_alone() -> None:
+def test_short_waves_have_no_stress_along_z() -> None:
     """Between planes close together no traction on them is left, and strains in them are held."""
     strain = np.zeros((6, 64, 1, 16))
     strain[:, :, 0] = np.cos(np.pi / 4 * np.arange(64))[:, None]
@@ -53,7 +53,7 @@ def test_short_waves_are_held_across_y_alone() -> None:
     assert found == pytest.approx([expected[component] for component in range(6)], abs=2e-3)
 
 
-def test_the_way_back() -> None:
+def test_reversed_path_mirrors_stresses() -> None:
     """Seen from the other side shears change their sign."""
     strain = np.random.default_rng(4).normal(size=(6, 16, 1, 16))
     mirrored = strain[:, ::-1].copy()

@@ -51,7 +51,7 @@ def test_closed_form_leaves_the_top_free() -> None:
     ("x_range", "z_range"),
     [((0.0, 0.6), (0.0, 0.5)), ((1.2, 2.0), (0.1, 0.4))],
 )
-def test_between_free_ends_as_finite_elements(in_rectangle, x_range, z_range) -> None:
+def test_stress_between_free_ends_matches_finite_elements(in_rectangle, x_range, z_range) -> None:
     """At the end and on the top; at the other end."""
     body, strain = in_rectangle((0.0, 2.0), x_range, z_range, splits=2, degree=5)
     x, z = np.array([0.05, 0.2, 0.45, 0.75, 1.1, 1.5, 1.9]), np.array([0.05, 0.15, 0.3, 0.6, 0.9, 2.0])
@@ -60,7 +60,7 @@ def test_between_free_ends_as_finite_elements(in_rectangle, x_range, z_range) ->
     assert np.abs(found - expected).max() < 1e-3 * np.abs(expected).max()
 
 
-def test_quarter_space_as_a_long_body(in_rectangle) -> None:
+def test_quarter_space_equals_long_body(in_rectangle) -> None:
     stresses = []
     for extent in ((0.0, np.inf), (0.0, 60.0)):
         body, strain = in_rectangle(extent, (0.0, 1.0), (0.2, 0.8))
@@ -68,7 +68,7 @@ def test_quarter_space_as_a_long_body(in_rectangle) -> None:
     assert np.abs(np.subtract(*stresses)).max() < 1e-3 * np.abs(stresses[0]).max()
 
 
-def test_second_end_is_the_mirror_image_of_the_first(in_rectangle) -> None:
+def test_second_end_mirrors_first_end(in_rectangle) -> None:
     """Components with one index x change sign."""
     first, strain = in_rectangle((0.0, 2.0), (0.2, 0.8), (0.1, 0.6))
     second, mirrored = in_rectangle((0.0, 2.0), (1.2, 1.8), (0.1, 0.6))
@@ -79,7 +79,7 @@ def test_second_end_is_the_mirror_image_of_the_first(in_rectangle) -> None:
     assert np.abs(seen - own).max() < 1e-7 * np.abs(own).max()
 
 
-def test_equilibrium_and_free_faces(in_rectangle) -> None:
+def test_residual_stress_is_in_equilibrium_with_free_faces(in_rectangle) -> None:
     body, strain = in_rectangle((0.0, 2.0), (0.0, 0.6), (0.0, 0.5))
     solution = body.solve(strain)
     inside = np.sqrt(2) * np.linspace(0.011, 1.4, 23), np.sqrt(2) * np.linspace(0.013, 1.0, 17)
@@ -98,7 +98,7 @@ def test_equilibrium_and_free_faces(in_rectangle) -> None:
     assert np.abs(top[[2, 4, 5]]).max() < 1e-9 * largest
 
 
-def test_strain_that_is_free_leaves_no_stress() -> None:
+def test_compatible_strain_has_no_stress() -> None:
     """Heat all over a body between ends; where the heat ends, deep below, is too far to be felt."""
     body = EigenstrainBody(
         material=ROUGH,
@@ -112,7 +112,7 @@ def test_strain_that_is_free_leaves_no_stress() -> None:
     assert np.abs(found).max() < 1e-5 * ROUGH.young
 
 
-def test_strain_along_y_is_held_by_stress_along_y_alone() -> None:
+def test_strain_along_y_causes_stress_along_y_only() -> None:
     body = EigenstrainBody(
         material=ROUGH,
         extent=(0.0, 1.0),
@@ -126,7 +126,7 @@ def test_strain_along_y_is_held_by_stress_along_y_alone() -> None:
     assert np.abs(found[[0, 2, 3, 4, 5]]).max() < 1e-5 * ROUGH.young
 
 
-def test_layer_on_the_top_of_a_half_space() -> None:
+def test_layer_on_half_space_matches_closed_form() -> None:
     """Forty times as long as deep; in the middle it is nearly as if it had no end."""
     body = EigenstrainBody(
         material=ROUGH,
@@ -145,7 +145,7 @@ def test_layer_on_the_top_of_a_half_space() -> None:
     assert found[0, 1, 0] == pytest.approx(endless, rel=0.08)
 
 
-def test_layer_across_the_whole_length_bends_no_end(in_rectangle) -> None:
+def test_full_length_layer_keeps_ends_straight(in_rectangle) -> None:
     """On every plane x = const the stress along x has no resultant: what is pressed above is pulled below."""
     body, strain = in_rectangle((0.0, 2.0), (0.0, 2.0), (0.0, 0.3))
     nodes, weights = np.polynomial.legendre.leggauss(60)
@@ -157,7 +157,7 @@ def test_layer_across_the_whole_length_bends_no_end(in_rectangle) -> None:
     assert np.abs(resultant).max() < 1e-9 * size.max()
 
 
-def test_displacement_of_the_top_does_the_work_of_the_eigenstrain() -> None:
+def test_surface_displacement_is_reciprocal_to_eigenstrain() -> None:
     """Reciprocity: a small eigenstrain sinks the top by its work on the stress of a line force there (Flamant)."""
     body = EigenstrainBody(
         material=ROUGH, extent=WHOLE, x_edges=np.linspace(-0.1, 0.1, 3), z_edges=np.linspace(0.9, 1.1, 3), degree=5
@@ -180,7 +180,7 @@ def test_displacement_of_the_top_does_the_work_of_the_eigenstrain() -> None:
         assert along == pytest.approx(float((across * w).sum()), abs=2e-3 * size)
 
 
-def test_averages_over_cells_are_those_of_the_stresses(in_rectangle) -> None:
+def test_cell_averages_match_stresses(in_rectangle) -> None:
     body, strain = in_rectangle((0.0, 2.0), (0.0, 0.6), (0.0, 0.5), cells=2)
     solution = body.solve(strain)
     node, weight = np.polynomial.legendre.leggauss(8)
@@ -205,7 +205,7 @@ def test_work_is_symmetric_and_positive(in_rectangle) -> None:
     assert work[2] < 0
 
 
-def test_elements_reach_the_ends_and_deep_enough() -> None:
+def test_elements_extend_to_ends_and_depth() -> None:
     body = EigenstrainBody(
         material=ROUGH, extent=(0.0, 3.0), x_edges=np.array([1.0, 1.5, 2.0]), z_edges=np.array([0.2, 0.4])
     )
@@ -217,6 +217,6 @@ def test_elements_reach_the_ends_and_deep_enough() -> None:
     assert {1.0, 1.5, 2.0} <= set(x)
 
 
-def test_graded_elements() -> None:
+def test_elements_grow_away_from_cells() -> None:
     assert grow_edges(0.0, 10.0, 1.0).round(2).tolist() == [0.76, 1.9, 3.6, 6.16, 10.0]
     assert grade_to_face(0.0, 2.0, 0.3).round(2).tolist() == [0.21, 0.53, 1.0, 1.47, 1.79, 2.0]

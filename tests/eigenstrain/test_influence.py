@@ -11,7 +11,7 @@ from contactstudy.eigenstrain.layers import LayerInfluence
 ROUGH = Material(2.0, 0.3)
 
 
-def test_some_cells_of_a_body() -> None:
+def test_influence_of_selected_cells_matches_body() -> None:
     body = EigenstrainBody(
         material=ROUGH, extent=(0.0, 2.0), x_edges=np.linspace(0, 2, 6), z_edges=np.linspace(0, 1, 5)
     )
@@ -24,7 +24,7 @@ def test_some_cells_of_a_body() -> None:
     assert np.allclose(found, expected, atol=1e-9)
 
 
-def test_a_layer_is_a_long_row_of_cells() -> None:
+def test_layer_influence_equals_long_row_of_cells() -> None:
     body = EigenstrainBody(
         material=ROUGH, extent=(-np.inf, np.inf), x_edges=np.linspace(-60, 60, 25), z_edges=np.array([0.0, 0.25, 0.5])
     )

@@ -72,13 +72,13 @@ def largest(field: xr.Dataset) -> float:
 
 
 @pytest.mark.parametrize("body", BODIES)
-def test_stresses_are_those_of_the_same_load_on_uniform_cells(body: str, loads) -> None:
+def test_stresses_match_uniform_cells(body: str, loads) -> None:
     graded, uniform = (stress_field(BODIES[body], load, friction=FRICTION, x=X, y=Y, z=Z) for load in loads)
     assert largest(graded - uniform) < 1e-7 * 1e9
 
 
 @pytest.mark.parametrize("body", ["half", "finite"])
-def test_a_rounding_beside_the_edge_of_a_column_stresses_are_those_on_it(body: str, smooth_loads) -> None:
+def test_stresses_are_continuous_at_column_edge(body: str, smooth_loads) -> None:
     """The smooth load has two representations that meet at some depths, and differ by up to 1e-3 of the peak there."""
     edges = GRADED.x_edges[1:-1]
     load, at = smooth_loads[0], {"y": [0.0], "z": [1e-7, 1e-6, 1e-5, 1e-4]}
@@ -92,14 +92,14 @@ def test_a_rounding_beside_the_edge_of_a_column_stresses_are_those_on_it(body: s
 
 
 @pytest.mark.parametrize("body", BODIES)
-def test_displacements_are_those_of_the_same_load_on_uniform_cells(body: str, loads) -> None:
+def test_displacements_match_uniform_cells(body: str, loads) -> None:
     points = {"x": X, "y": Y, "z": Z}
     graded, uniform = (displacement_field(BODIES[body], load, friction=FRICTION, **points) for load in loads)
     assert largest(graded - uniform) < 1e-6 * largest(uniform)
 
 
 @pytest.mark.parametrize("body", BODIES)
-def test_smooth_loads_make_nearly_the_same_fields_on_uniform_cells(body: str, smooth_loads) -> None:
+def test_smooth_loads_match_uniform_cells(body: str, smooth_loads) -> None:
     points = {"x": X, "y": Y, "z": Z}
     graded, uniform = (
         stress_field(BODIES[body], each, friction=FRICTION, **points, inside_cells=each) for each in smooth_loads
@@ -112,7 +112,7 @@ def test_smooth_loads_make_nearly_the_same_fields_on_uniform_cells(body: str, sm
 
 
 @pytest.mark.parametrize("body", BODIES)
-def test_top_sinks_on_average_as_on_uniform_cells(body: str, loads) -> None:
+def test_mean_surface_displacement_matches_uniform_cells(body: str, loads) -> None:
     graded, uniform = (surface_displacement(BODIES[body], load, FRICTION) for load in loads)
     owner = np.repeat(np.arange(GRADED.cells_x), np.diff(KEPT))
     means = np.array([uniform.values[owner == i].mean(axis=0) for i in range(GRADED.cells_x)])
@@ -121,7 +121,7 @@ def test_top_sinks_on_average_as_on_uniform_cells(body: str, loads) -> None:
 
 
 @pytest.mark.parametrize("body", ["quarter", "finite", "single-mirror"])
-def test_equivalent_loads_are_those_of_the_same_load_on_uniform_cells(body: str, loads) -> None:
+def test_equivalent_loads_match_uniform_cells(body: str, loads) -> None:
     ended = BODIES[body]
     assert isinstance(ended, EndedBody)
     graded, uniform = (equivalent_loads(ended, load, FRICTION, z=[5e-5, 1e-4]) for load in loads)
@@ -157,7 +157,7 @@ def turned(load: xr.DataArray) -> xr.DataArray:
 
 @settings(max_examples=8)
 @given(load=graded_pressure(), body=st.sampled_from(["half", "mirror", "finite"]))
-def test_turned_body_has_turned_stresses(load: xr.DataArray, body: str) -> None:
+def test_rotated_body_has_rotated_stresses(load: xr.DataArray, body: str) -> None:
     x = np.array([0.0, 2e-4, 7e-4])
     there = stress_field(BODIES[body], load, friction=FRICTION, x=x, y=Y, z=Z, inside_cells=load)
     reverse = turned(load)

@@ -65,7 +65,7 @@ def test_strains_obey_hookes_law_with_the_stresses(name: str, eccentric: xr.Data
 
 
 @pytest.mark.parametrize("name", BODIES)
-def test_on_the_top_it_is_the_tops_displacement(name: str, eccentric: xr.DataArray) -> None:
+def test_displacement_field_equals_surface_displacement_on_top(name: str, eccentric: xr.DataArray) -> None:
     friction = 0.4
     sunk = surface_displacement(BODIES[name], eccentric, friction)
     inside = displacement_field(BODIES[name], eccentric, friction=friction)["u_z"].sel(z=0.0, drop=True)
@@ -86,7 +86,7 @@ def test_symmetric_load_displaces_symmetrically(on_cells) -> None:
         np.testing.assert_allclose(values[:, ::-1], sign_y * values, atol=1e-6)
 
 
-def test_far_along_y_the_finite_body_is_at_rest_where_it_says_so(eccentric: xr.DataArray) -> None:
+def test_displacement_vanishes_at_reference_distance(eccentric: xr.DataArray) -> None:
     field = displacement_field(BODIES["finite length"], eccentric, y=[0.0, 40.0])
     assert field.u_z.attrs["reference_distance"] == pytest.approx(40.0)
     ratio = np.abs(field.u_z.sel(y=40.0)).max() / field.u_z.sel(y=0.0).max()
@@ -108,12 +108,12 @@ def test_every_component_has_its_unit(eccentric: xr.DataArray) -> None:
         ({"friction": np.inf}, "friction"),
     ],
 )
-def test_bad_input(arguments, parameter: str, eccentric: xr.DataArray) -> None:
+def test_invalid_input_raises_error(arguments, parameter: str, eccentric: xr.DataArray) -> None:
     with pytest.raises(InvalidInputError, match=parameter):
         displacement_field(BODIES["finite length"], eccentric, **arguments)
 
 
-def test_deep_displacement_does_not_depend_on_the_other_positions() -> None:
+def test_displacement_does_not_depend_on_further_positions() -> None:
     # Pressure near an end: the ends' part at a distant point depends on wavelengths of this distance.
     body = FiniteLengthSpace(length=1.0, material=Material(1.0, 0.3))
     edges = [0.0, 0.005, 0.007, 0.01, 0.02, 0.05, 0.1, 0.3, 0.5, 0.7, 0.9, 1.0]

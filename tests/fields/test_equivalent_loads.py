@@ -24,9 +24,7 @@ from contactstudy.overlapping import problem
 from contactstudy.overlapping.lateral_modes import POLES
 
 
-def test_end_loads_are_what_the_mirrored_top_load_leaves_on_the_ends(
-    short_body: FiniteLengthSpace, strip_pressure
-) -> None:
+def test_face_loads_reverse_end_stress_of_top_load(short_body: FiniteLengthSpace, strip_pressure) -> None:
     friction = 0.3
     pressure = strip_pressure(8.0, (96, 64))
     depths = np.array([0.2, 0.5, 1.0, 3.0])
@@ -75,7 +73,7 @@ def test_equivalent_loads_of_solved_pressure(kind: str, inside: float) -> None:
         assert exceeds is freed
 
 
-def test_eccentric_loads_do_not_depend_on_where_the_poles_begin(
+def test_eccentric_loads_do_not_depend_on_pole_panel(
     short_body: FiniteLengthSpace, strip_pressure, monkeypatch
 ) -> None:
     pressure = strip_pressure(8.0, (16, 16)) * (1 + 0.5 * (strip_pressure(8.0, (16, 16)).x - 4.0))

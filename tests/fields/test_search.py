@@ -12,7 +12,7 @@ from contactstudy.kernels.load import Load
 BODY = FiniteLengthSpace(length=10.0, material=Material(1.0, 0.3))
 
 
-def test_points_around_two_peaks_and_around_one_where_the_other_is_its_image() -> None:
+def test_symmetric_contact_searches_one_peak() -> None:
     grid = Grid(x_range=(0.0, 10.0), y_range=(-1.0, 1.0), cells_x=100, cells_y=20)
     ends = np.exp(-(np.minimum(grid.x - 1, 9 - grid.x) ** 2))[:, None] * np.ones(20)
     ends[:, [0, -1]] = 0.0
@@ -25,7 +25,7 @@ def test_points_around_two_peaks_and_around_one_where_the_other_is_its_image() -
         assert points.x.max() <= 10.0
 
 
-def test_on_the_top_cells_off_the_rim_of_the_contact_only() -> None:
+def test_search_on_top_excludes_rim() -> None:
     grid = Grid(x_range=(0.0, 10.0), y_range=(-1.0, 1.0), cells_x=100, cells_y=20)
     pressure = np.ones((100, 20))
     pressure[:, [0, -1]] = 0.0
@@ -41,12 +41,12 @@ def test_on_the_top_cells_off_the_rim_of_the_contact_only() -> None:
         assert set(points.y) <= set(grid.y)
 
 
-def test_nothing_is_looked_at_without_pressure() -> None:
+def test_search_without_pressure_is_empty() -> None:
     grid = Grid(x_range=(0.0, 1.0), y_range=(-1.0, 1.0), cells_x=10, cells_y=10)
     assert not place_search(BODY, sliding(np.zeros((10, 10)), 0.0), grid).samples
 
 
-def test_a_traction_along_the_axis_is_mirrored_only_if_it_turns_round() -> None:
+def test_axial_traction_is_symmetric_if_reversed() -> None:
     grid = Grid(x_range=(0.0, 10.0), y_range=(-1.0, 1.0), cells_x=100, cells_y=20)
     pressure = np.ones((100, 20))
     pressure[:, [0, -1]] = 0.0

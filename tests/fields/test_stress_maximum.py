@@ -35,7 +35,7 @@ def under(grid: Grid, pressure: FloatArray, friction: float) -> StressMaximum:
     return contact_stresses(body, sliding(pressure, friction), grid, lambda _: positions, (NOWHERE, NOWHERE))[-1]
 
 
-def test_below_a_circle_it_is_the_closed_form() -> None:
+def test_stress_maximum_below_circle_matches_closed_form() -> None:
     grid, pressure = circle()
     found = under(grid, pressure, 0.0)
     z = np.linspace(0.3, 0.7, 4001)
@@ -47,7 +47,7 @@ def test_below_a_circle_it_is_the_closed_form() -> None:
     assert found.position[:2] == pytest.approx((0.0, 0.0), abs=0.1)
 
 
-def test_with_much_friction_it_is_on_the_top_inside_the_circle() -> None:
+def test_high_friction_moves_stress_maximum_to_top() -> None:
     grid, pressure = circle()
     found = under(grid, pressure, 0.5)
     y = np.linspace(-0.95, 0.95, 381)
@@ -61,7 +61,7 @@ def test_with_much_friction_it_is_on_the_top_inside_the_circle() -> None:
     assert abs(found.position[1]) < 1
 
 
-def test_points_in_any_order_and_nearly_the_same_ones_change_nothing() -> None:
+def test_stress_maximum_does_not_depend_on_point_order() -> None:
     """Polynomials through two positions that differ by a rounding would be wild."""
     grid, pressure = circle()
     body = HalfSpace(material=Material(1.0, 0.3))
@@ -76,7 +76,7 @@ def test_points_in_any_order_and_nearly_the_same_ones_change_nothing() -> None:
         assert under(grid, uneven, 0.0).value < 0.8
 
 
-def test_no_pressure_has_none() -> None:
+def test_stress_maximum_without_pressure_is_zero() -> None:
     grid, pressure = circle()
     found = under(grid, 0 * pressure, 0.0)
     assert (found.value, found.error) == (0.0, 0.0)
@@ -94,7 +94,7 @@ def at(result: xr.Dataset) -> list[float]:
     return [float(result[f"peak_von_mises_{axis}"]) for axis in "xyz"]
 
 
-def test_it_does_not_depend_on_the_points_and_is_that_of_closer_ones() -> None:
+def test_stress_maximum_does_not_depend_on_positions() -> None:
     friction = 0.1
     case = sharp(friction)
     far = solve(case, accuracy=0.02, x=[0.0, 5 * A], y=[0.0], z=[0.5 * A])
@@ -112,21 +112,21 @@ def test_it_does_not_depend_on_the_points_and_is_that_of_closer_ones() -> None:
     assert value / float(far.von_mises.max()) > 1.4
 
 
-def test_its_error_covers_that_on_finer_cells() -> None:
+def test_stress_maximum_error_covers_finer_cells() -> None:
     coarse, fine = (solve(sharp(0.4), accuracy=each, x=[0.0], y=[0.0], z=[A]) for each in (0.02, 0.004))
     error = abs(float(coarse.peak_von_mises - fine.peak_von_mises))
     assert error <= float(coarse.peak_von_mises_error) < 0.04 * float(fine.peak_von_mises)
 
 
 @pytest.mark.slow
-def test_a_tilted_roller_has_it_at_the_other_end_when_tilted_back() -> None:
+def test_opposite_tilt_mirrors_stress_maximum() -> None:
     there, back = (solve(sharp(tilt=tilt), accuracy=0.02, x=[0.0], y=[0.0], z=[A]) for tilt in (1e-3, -1e-3))
     assert float(there.peak_von_mises) == pytest.approx(float(back.peak_von_mises), rel=1e-3)
     assert at(there)[0] == pytest.approx(20 * A - at(back)[0], abs=0.02 * A)
     assert abs(at(there)[0] - 10 * A) > 5 * A
 
 
-def test_near_a_free_end_less_pressure_does_more() -> None:
+def test_stress_maximum_near_free_end_exceeds_pressure_peak() -> None:
     """The pressure is highest at mid-length, 20 a away, and rises steeply near to the end of the body."""
     pressure, half_width = 0.75 * PRESSURE, 1.5 * A
     profile = profiles.FujiwaraKawase.for_pressure(
@@ -144,7 +144,7 @@ def test_near_a_free_end_less_pressure_does_more() -> None:
     assert min(at(found)[0], length - at(found)[0]) < 2 * half_width
 
 
-def test_given_cells_have_no_error_and_singular_ends_no_largest_stress() -> None:
+def test_given_cells_and_singular_ends_omit_error() -> None:
     body = HalfSpace(material=STEEL)
     case = Case(body=body, roller=Roller(radius=RADIUS, length=8 * A), max_pressure=PRESSURE)
     given = solve(
@@ -170,7 +170,7 @@ FREE_ENDS = {
     FREE_ENDS.values(),
     ids=FREE_ENDS,
 )
-def test_where_the_contact_reaches_a_free_end_it_is_on_the_top(
+def test_stress_maximum_at_free_end_is_on_top(
     length: float, pressure: float, friction: float, profile: profiles.Profile | None
 ) -> None:
     material = Material(208e9, 0.3)
@@ -191,7 +191,7 @@ def test_where_the_contact_reaches_a_free_end_it_is_on_the_top(
 
 
 @pytest.mark.slow
-def test_points_asked_for_do_not_worsen_the_error() -> None:
+def test_requested_points_do_not_increase_error() -> None:
     length = 1.2e-3
     body = FiniteLengthSpace(length=length, material=Material(208e9, 0.3))
     case = Case(body=body, roller=Roller(radius=4e-3, length=length), max_pressure=1.8e9)
@@ -204,7 +204,7 @@ def test_points_asked_for_do_not_worsen_the_error() -> None:
     assert float(more.peak_von_mises) == pytest.approx(float(few.peak_von_mises), rel=3e-3)
 
 
-def test_on_the_top_beside_a_narrow_peak_it_goes_with_the_friction() -> None:
+def test_friction_moves_stress_maximum_on_top() -> None:
     """What the pressure alone makes of the stress matters little there: no cell with more may be missed."""
     length = 1e-3
     crown = profiles.Lundberg.for_pressure(1.5e9, radius=RADIUS, modulus=STEEL.plane_strain_modulus, delta=0.6)
@@ -226,7 +226,7 @@ def test_on_the_top_beside_a_narrow_peak_it_goes_with_the_friction() -> None:
 
 
 @pytest.mark.slow
-def test_it_is_a_stress_of_the_body_where_polynomials_overshoot() -> None:
+def test_overshooting_polynomials_keep_sampled_maximum() -> None:
     """At this accuracy they said 1.094 GPa beside their last points, where the body has 1.067."""
     profile = profiles.Lundberg.for_pressure(1.5e9, radius=5e-3, modulus=STEEL.plane_strain_modulus)
     body, roller = FiniteLengthSpace(length=2e-3, material=STEEL), Roller(radius=5e-3, length=2e-3, profile=profile)
@@ -242,7 +242,7 @@ def test_it_is_a_stress_of_the_body_where_polynomials_overshoot() -> None:
 
 
 @pytest.mark.slow
-def test_polynomials_that_do_not_agree_give_no_stress() -> None:
+def test_disagreeing_polynomials_have_large_error() -> None:
     """From the second half the search passes the roller's end: polynomials through its last points reached 0.80 p0."""
     material = Material(210e9, 0.318)
     a = 2 * 1e9 * RADIUS / material.plane_strain_modulus

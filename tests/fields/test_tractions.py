@@ -77,7 +77,7 @@ def test_operator_is_symmetric_and_positive(name: str, cells: str) -> None:
     ("name", "load"),
     [("half-space", Y), ("mirror", X), *((name, load) for name in ("quarter space", "finite length") for load in ALL)],
 )
-def test_top_moves_as_the_field_inside_says(name: str, load: Load) -> None:
+def test_surface_displacement_equals_field_on_top(name: str, load: Load) -> None:
     """Reciprocity on the ends, against the harmonics of both auxiliary bodies at the depth 0."""
     body, loads = BODIES[name], acting(load, traction())
     top = surface_displacement(body, **loads, components="xyz")
@@ -119,7 +119,7 @@ def test_stresses_under_a_traction_along_x_follow_from_the_displacements() -> No
         assert float(found[name]) == pytest.approx(expected[place], abs=2e-3), name
 
 
-def test_reflection_turns_a_traction_along_x_round() -> None:
+def test_reflection_reverses_axial_traction() -> None:
     body, load = BODIES["finite length"], traction()
     reflected = xr.DataArray(-load.values[::-1], coords=load.coords, dims=load.dims)
     moved = surface_displacement(body, **acting(Load.ALONG_X, load), components="xyz")
@@ -131,7 +131,7 @@ def test_reflection_turns_a_traction_along_x_round() -> None:
         )
 
 
-def test_bending_changes_with_the_reference_by_pure_bending_alone() -> None:
+def test_reference_changes_displacement_by_pure_bending() -> None:
     """Two windows state the same displacement: the reference belongs to the body."""
     body = BODIES["finite length"]
     moved = []
@@ -147,7 +147,7 @@ def test_bending_changes_with_the_reference_by_pure_bending_alone() -> None:
         )
 
 
-def test_a_long_body_loaded_in_the_middle_is_dragged_like_a_half_space() -> None:
+def test_long_body_has_axial_displacement_of_half_space() -> None:
     grid = Grid(x_range=(0.0, 60.0), y_range=(-1.5, 1.5), cells_x=240, cells_y=12)
     x, y = np.meshgrid(grid.x, grid.y, indexing="ij")
     # Without a resultant, which would bend a body of any length.
@@ -161,7 +161,7 @@ def test_a_long_body_loaded_in_the_middle_is_dragged_like_a_half_space() -> None
         assert float(np.abs(finite[name] - half[name]).max()) < 2e-3 * float(np.abs(half["displacement_x"]).max()), name
 
 
-def test_a_traction_makes_equivalent_loads_that_mirror_with_it() -> None:
+def test_mirrored_traction_mirrors_equivalent_loads() -> None:
     load = traction()
     reflected = xr.DataArray(-load.values[::-1], coords=load.coords, dims=load.dims)
     body = BODIES["finite length"]
@@ -185,7 +185,7 @@ def test_equal_bodies_do_not_couple_pressure_and_traction() -> None:
     assert np.abs(dragged[Load.NORMAL]).max() < 1e-12 * np.abs(own[Load.ALONG_X]).max()
 
 
-def test_tractions_add_up_with_pressure_and_friction() -> None:
+def test_stresses_of_tractions_and_pressure_add_up() -> None:
     load = traction()
     body = BODIES["quarter space"]
     sliding = surface_displacement(body, load, 0.2)
@@ -201,7 +201,7 @@ def test_tractions_add_up_with_pressure_and_friction() -> None:
     assert both["displacement_x"].attrs["units"] == "m"
 
 
-def test_bad_input_is_named() -> None:
+def test_invalid_input_raises_error() -> None:
     load = traction()
     body = BODIES["finite length"]
     with pytest.raises(InvalidInputError, match=r"friction = 0.1.*traction_y"):

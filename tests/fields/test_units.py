@@ -49,7 +49,7 @@ def fields(kind: str, cells: str, length: float, modulus: float) -> list[np.ndar
 
 
 @pytest.mark.parametrize(("kind", "cells"), [("half", "graded"), ("quarter", "graded"), ("finite", "uniform")])
-def test_other_units_make_the_same_fields(kind: str, cells: str) -> None:
+def test_fields_scale_with_units(kind: str, cells: str) -> None:
     expected, found = fields(kind, cells, 1e-3, 2e11), fields(kind, cells, 2.0**-12 * 1e-3, 2.0**-24 * 2e11)
     assert len(expected) > 8
     for one, other in zip(expected, found, strict=True):

@@ -45,7 +45,7 @@ def displacements_of(load: Load, extent: tuple[float, float]) -> Influence:
 
 @pytest.mark.parametrize("load", Load)
 @pytest.mark.parametrize("extent", EXTENTS)
-def test_field_of_uniform_cells(load: Load, extent: str) -> None:
+def test_columns_reproduce_field_of_uniform_cells(load: Load, extent: str) -> None:
     grid = Grid(x_range=(0.0, LENGTH), y_range=(-1.0, 1.0), cells_x=20, cells_y=16)
     cells = np.random.default_rng(0).random(grid.shape)
     cells[:, :3] = 0
@@ -60,7 +60,7 @@ def test_field_of_uniform_cells(load: Load, extent: str) -> None:
 
 @pytest.mark.parametrize("load", Load)
 @pytest.mark.parametrize("extent", EXTENTS)
-def test_a_body_elsewhere_has_the_same_field(load: Load, extent: str) -> None:
+def test_shifted_body_has_equal_field(load: Load, extent: str) -> None:
     fields = []
     for place in (0.0, 8.0):
         grid = Grid.from_edges(place + np.array([0.0, 0.2, 0.7, 1.1, 1.6, LENGTH]), (-1.0, 1.0), 6)
@@ -78,7 +78,7 @@ GRADED = np.array([0, 1, 2, 3, 5, 7, 10, 14, 17, 18, 19, 20])
 
 @pytest.mark.parametrize("load", Load)
 @pytest.mark.parametrize("extent", EXTENTS)
-def test_field_of_the_same_load_on_finer_uniform_cells(load: Load, extent: str) -> None:
+def test_columns_match_finer_uniform_cells(load: Load, extent: str) -> None:
     uniform = Grid(x_range=(0.0, LENGTH), y_range=(-1.0, 1.0), cells_x=20, cells_y=16)
     graded = Grid.from_edges(uniform.x_edges[GRADED], (-1.0, 1.0), 16)
     cells = np.random.default_rng(1).random(graded.shape)
@@ -92,9 +92,7 @@ def test_field_of_the_same_load_on_finer_uniform_cells(load: Load, extent: str) 
 @pytest.mark.parametrize("load", Load)
 @pytest.mark.parametrize("extent", EXTENTS)
 @pytest.mark.parametrize("column", [7, 10])
-def test_a_column_loaded_alone_keeps_its_place_wherever_its_field_is_asked_for(
-    load: Load, extent: str, column: int
-) -> None:
+def test_single_loaded_column_keeps_position(load: Load, extent: str, column: int) -> None:
     # Columns are split so that each point lies in the middle of one, which moved the force beside a step of the load.
     graded = Grid.from_edges(np.linspace(0.0, LENGTH, 21)[GRADED], (-1.0, 1.0), 16)
     cells = np.zeros(graded.shape)
@@ -116,7 +114,7 @@ def test_a_column_loaded_alone_keeps_its_place_wherever_its_field_is_asked_for(
 
 
 @pytest.mark.parametrize("extent", EXTENTS)
-def test_a_smooth_load_on_wide_columns_is_seen_as_smooth(extent: str) -> None:
+def test_wide_columns_represent_smooth_load(extent: str) -> None:
     """In thirds of columns 0.4 wide; as steps it would be 9 % off."""
     scale = 1e-3
     graded = Grid.from_edges(scale * np.linspace(0.0, LENGTH, 21)[GRADED], (-scale, scale), 16)
@@ -144,7 +142,7 @@ def test_a_smooth_load_on_wide_columns_is_seen_as_smooth(extent: str) -> None:
         (10, "both", -1, [-2.0, -1.9, 1.9, 2.0, 2.1]),
     ],
 )
-def test_steps_of_a_load(column: int, extent: str, image: int, expected: list[float]) -> None:
+def test_step_edges_of_load(column: int, extent: str, image: int, expected: list[float]) -> None:
     graded = Grid.from_edges(np.linspace(0.0, LENGTH, 21)[GRADED], (-1.0, 1.0), 16)
     cells = np.zeros(graded.shape)
     cells[column] = np.sqrt(np.maximum(1 - (graded.y / 0.6) ** 2, 0))
@@ -155,7 +153,7 @@ def test_steps_of_a_load(column: int, extent: str, image: int, expected: list[fl
 
 
 @pytest.mark.parametrize("load", Load)
-def test_depths_that_are_seen_together_are_those_seen_alone(load: Load) -> None:
+def test_joint_depths_equal_separate_depths(load: Load) -> None:
     # What columns far away do is interpolated over the depth; at a single depth it is not.
     edges = np.concatenate([np.linspace(0.0, 2.0, 9), np.geomspace(2.5, 60.0, 24)])
     graded = Grid.from_edges(edges, (-1.0, 1.0), 16)
@@ -170,7 +168,7 @@ def test_depths_that_are_seen_together_are_those_seen_alone(load: Load) -> None:
 
 
 @pytest.mark.parametrize("load", Load)
-def test_far_away_the_field_is_that_of_a_point_load(load: Load) -> None:
+def test_distant_field_equals_point_load(load: Load) -> None:
     graded = Grid.from_edges([0.0, 0.2, 0.6, 1.0], (-1.0, 1.0), 16)
     cells = np.ones((3, 1)) * np.sqrt(np.maximum(1 - (graded.y / 0.8) ** 2, 0))
     point = Grid.from_edges([0.45, 0.55], (-0.05, 0.05), 1)
@@ -183,7 +181,7 @@ def test_far_away_the_field_is_that_of_a_point_load(load: Load) -> None:
     assert np.abs(found - expected).max() < 5e-4 * np.abs(expected).max()
 
 
-def test_nothing_loaded_leaves_nothing() -> None:
+def test_zero_load_has_zero_field() -> None:
     grid = Grid.from_edges([0.0, 0.5, 2.0], (-1.0, 1.0), 4)
     field = half_space_field(
         np.zeros(grid.shape), stresses_of(Load.NORMAL), grid, Points(X, grid.y, Z), extent=EXTENTS["both"]
@@ -203,7 +201,7 @@ def graded_loads(draw: st.DrawFn) -> tuple[Grid, FloatArray]:
 
 @settings(max_examples=10)
 @given(loaded=graded_loads(), load=st.sampled_from(list(Load)), extent=st.sampled_from(["none", "both"]))
-def test_mirrored_load_makes_the_mirrored_field(loaded: tuple[Grid, FloatArray], load: Load, extent: str) -> None:
+def test_mirrored_load_has_mirrored_field(loaded: tuple[Grid, FloatArray], load: Load, extent: str) -> None:
     grid, cells = loaded
     backwards = Grid.from_edges(LENGTH - grid.x_edges[::-1], (-1.0, 1.0), 6)
     influence, y = stresses_of(load), np.array([-0.4, 0.1])
@@ -217,7 +215,7 @@ def test_mirrored_load_makes_the_mirrored_field(loaded: tuple[Grid, FloatArray],
 
 @settings(max_examples=2)
 @given(loaded=graded_loads())
-def test_normal_stress_on_a_plane_carries_the_whole_load(loaded: tuple[Grid, FloatArray]) -> None:
+def test_normal_stress_integrates_to_load(loaded: tuple[Grid, FloatArray]) -> None:
     grid, cells = loaded
     depth, reach, points = 0.6, 40.0, 41
     # Points that crowd where the load is: y = sinh(s).
@@ -255,7 +253,7 @@ def around(x: float, own: FineCells, narrow: float = 0.0) -> _SplitRange:
 @pytest.mark.parametrize("x", PLACES)
 @pytest.mark.parametrize("narrow", [0.0, 0.15, 5.0])
 @pytest.mark.parametrize("steps", [False, True])
-def test_neither_unit_nor_place_decides_anything(x: float, narrow: float, *, steps: bool) -> None:
+def test_results_scale_with_unit_and_position(x: float, narrow: float, *, steps: bool) -> None:
     for ends in (0, 1, 2):
         plain_cells = fine(ends=ends, steps=steps)
         plain = around(x, plain_cells, narrow)
@@ -275,7 +273,7 @@ def test_neither_unit_nor_place_decides_anything(x: float, narrow: float, *, ste
 
 @pytest.mark.parametrize("x", PLACES)
 @pytest.mark.parametrize("image", [1, -1])
-def test_columns_with_those_inserted_carry_all_of_the_force(x: float, image: int) -> None:
+def test_inserted_columns_preserve_force(x: float, image: int) -> None:
     own = fine(image=image)
     each = around(x, own)
     forces = add_images(own.far_load, image, own.extent) * np.diff(own.edges)[:, None]
@@ -289,7 +287,7 @@ def test_columns_with_those_inserted_carry_all_of_the_force(x: float, image: int
 
 
 @pytest.mark.parametrize("x", [0.02, 0.07, 0.3, 0.4, 0.75, 1.5, 1.7, 2.2, 2.95])
-def test_a_point_lies_in_the_middle_of_a_narrow_column_and_two_like_it(x: float) -> None:
+def test_narrow_columns_surround_point(x: float) -> None:
     """A quarter as wide as what it lies in; on an edge as the narrower of both."""
     own = fine()
     edges = around(x, own).inserted
@@ -307,7 +305,7 @@ def test_a_point_lies_in_the_middle_of_a_narrow_column_and_two_like_it(x: float)
     assert np.isin(left, edges).all()
 
 
-def test_no_column_around_a_point_reaches_over_a_step_of_the_load() -> None:
+def test_inserted_columns_stop_at_load_step() -> None:
     own = fine(steps=True)
     (step,) = own.step_edges[np.abs(own.step_edges - 0.6) < 1e-9]
     for distance in (0.001, 0.004, 0.01):
@@ -321,7 +319,7 @@ def test_no_column_around_a_point_reaches_over_a_step_of_the_load() -> None:
 
 
 @pytest.mark.parametrize("narrow", [0.0, 0.02])
-def test_a_rounding_before_an_edge_is_as_good_as_the_edge(narrow: float) -> None:
+def test_rounding_before_edge_equals_edge(narrow: float) -> None:
     """Also before the outermost edge of those that are split, where narrow columns follow that are not."""
     edges = np.concatenate([[0.0, 1.0], np.linspace(2.0, 2.1, 11)])
     grid = Grid.between(edges, (-1.0, 1.0), 4)
@@ -332,7 +330,7 @@ def test_a_rounding_before_an_edge_is_as_good_as_the_edge(narrow: float) -> None
         assert np.diff(beside).min() == pytest.approx(np.diff(on).min(), rel=0.6)
 
 
-def test_a_point_on_an_end_is_not_in_the_middle_of_a_column() -> None:
+def test_point_on_end_adds_no_column() -> None:
     """There the mirrored load goes on smoothly, or is reversed; of a body without an end the point is like another."""
     for place in (0.0, 8.0):
         for end in (place, place + 3.0):
@@ -342,7 +340,7 @@ def test_a_point_on_an_end_is_not_in_the_middle_of_a_column() -> None:
         assert 0.5 * (beside[at] + beside[at + 1]) == pytest.approx(place + 1e-3)
 
 
-def test_within_reach_are_columns_up_to_it_the_nearest_and_those_replaced() -> None:
+def test_range_contains_near_and_replaced_columns() -> None:
     edges = np.array([0.0, 1.0, 2.0, 4.0, 5.0, 7.0])
     none = _SplitRange(edges[:1], 2, 2)
     assert none.range_within(edges, 3.0, 0.0) == (2, 3)
@@ -354,7 +352,7 @@ def test_within_reach_are_columns_up_to_it_the_nearest_and_those_replaced() -> N
 
 
 @pytest.mark.parametrize("parts", range(1, 9))
-def test_distances_between_positions_have_a_common_step_of_up_to_six_parts(parts: int) -> None:
+def test_common_step_divides_distances(parts: int) -> None:
     y = np.array([0.0, 0.1 * parts, 0.1 * parts + 0.1 * (parts + 1)])
     assert common_step(y) == (pytest.approx(0.1) if parts <= 6 else None)
     assert common_step(y[:1]) is None
@@ -362,7 +360,7 @@ def test_distances_between_positions_have_a_common_step_of_up_to_six_parts(parts
 
 @pytest.mark.parametrize("offset", [0.0, 0.03, 0.1, -0.04, 0.15, 0.35, -0.052, 0.048])
 @pytest.mark.parametrize("span", [1.6, 1.55])
-def test_points_are_in_the_middle_of_a_layers_cells(offset: float, span: float) -> None:
+def test_layer_cells_centre_points(offset: float, span: float) -> None:
     places, step, start = np.array([-3, 0, 4, 20]), 0.1, 5.0
     column, edges = midpoint_cells(AlignedPoints(offset, np.arange(4), places), start, span, step)
     layer = Layer.of(column, np.array([0.5]), np.array([0]), step=step, edges=edges, fine_per_cell=1)
@@ -388,7 +386,7 @@ def seen(y: FloatArray, parts: int | None) -> list[Layer]:
     return along_y.uniform_layers(z, numbers) if parts is None else along_y.shaped_layers(z, numbers, fine=bool(parts))
 
 
-def test_positions_with_a_common_step_share_cells_and_others_do_not() -> None:
+def test_positions_with_common_step_share_cells() -> None:
     together = seen(np.array([-0.1, 0.0, 0.3]), 5)
     assert len(together) == 1
     (layer,) = together
@@ -406,7 +404,7 @@ def test_positions_with_a_common_step_share_cells_and_others_do_not() -> None:
     assert seen(np.array([0.0]), 5)[0].edges is not None
 
 
-def test_narrow_columns_are_taken_together_wherever_they_are() -> None:
+def test_merge_preserves_force_and_moment() -> None:
     """Within three percent of their distance from the point, with their force."""
     edges, loads = np.linspace(0.0, 10.0, 401), np.random.default_rng(0).random((400, 2))
     for place in (0.0, 100.0):
@@ -433,7 +431,7 @@ def test_offsets_about_zero_are_evaluated_on_one_side(start: float, halved: bool
 
 
 @pytest.mark.parametrize("x", [0.002, 0.005, 0.01, 2.99, 2.995, 2.998])
-def test_no_column_reaches_beyond_those_that_it_replaces(x: float) -> None:
+def test_inserted_columns_stay_in_replaced_range(x: float) -> None:
     """Beside the first and the last edge of a load without images there is no room for narrow ones."""
     own = fine(ends=0)
     each = around(x, own)

@@ -23,7 +23,7 @@ EDGES = {"uniform": np.linspace(0.0, 4.0, 41), "graded": np.cumsum([0.0, *np.geo
 INFLUENCE = stress_influence(Load.NORMAL, 0.3)
 
 
-def test_unaligned_positions_have_the_field_of_each_alone() -> None:
+def test_unaligned_positions_equal_single_positions() -> None:
     grid = Grid(x_range=(0.0, 8.0), y_range=(-2.0, 2.0), cells_x=80, cells_y=16)
     load = (1 - (grid.y / 2.0) ** 2) * np.ones(grid.shape)
     x, z = np.sort(np.random.default_rng(0).uniform(0.0, 8.0, 25)), np.array([0.05, 0.5])
@@ -67,7 +67,7 @@ def test_field_is_linear_in_the_load(kind: str, *, ended: bool, shaped: bool, al
 
 @pytest.mark.parametrize("kind", EDGES)
 @pytest.mark.parametrize("aligned", [True, False])
-def test_field_does_not_jump_where_fine_cells_end(kind: str, *, aligned: bool) -> None:
+def test_field_is_continuous_at_refinement_depth(kind: str, *, aligned: bool) -> None:
     edges = EDGES[kind] * 4.0 / EDGES[kind][-1]
     grid = Grid.between(edges, (-1.2, 1.2), 24)
     load = pressure(grid)
@@ -119,7 +119,7 @@ def load() -> np.ndarray:
     ],
 )
 @pytest.mark.parametrize("cells_y", [range(-2, 20), range(-7, 3)])
-def test_symmetry_changes_nothing(
+def test_symmetric_load_has_equal_field(
     monkeypatch, compute, load: np.ndarray, extent: tuple[float, float], cells_x: range, cells_y: range
 ):
     x, y = GRID.x[0] + GRID.dx * np.array(cells_x), GRID.y[0] + GRID.dy * np.array(cells_y)
@@ -140,7 +140,7 @@ def test_symmetry_changes_nothing(
 @pytest.mark.parametrize("cells_x", [20, 21])
 @pytest.mark.parametrize("rows", [slice(None), [1, 4, 12], [17]])
 @pytest.mark.parametrize("other_half", [1.0, 1 + 1e-6, -1.0])
-def test_a_load_symmetric_about_mid_length_is_the_sum_of_its_halves(
+def test_symmetric_load_equals_sum_of_halves(
     each: Load, cells_x: int, rows: slice | list[int], other_half: float
 ) -> None:
     """Of the halves alone no wavenumber is zero."""
@@ -157,13 +157,13 @@ def test_a_load_symmetric_about_mid_length_is_the_sum_of_its_halves(
 
 
 @pytest.mark.parametrize("unit", [1e-20, 1e20])
-def test_no_unit_makes_a_load_symmetric_about_mid_length(load: np.ndarray, unit: float) -> None:
+def test_asymmetric_load_stays_asymmetric_in_any_unit(load: np.ndarray, unit: float) -> None:
     """A field is that of the load in any unit."""
     found, plain = (stresses(each, GRID.x, GRID.y, (0.0, 2.0)) for each in (unit * load, load))
     np.testing.assert_allclose(found / unit, plain, atol=1e-12 * np.abs(plain).max())
 
 
-def test_kept_kernels_belong_to_their_material_and_quantity(load: np.ndarray):
+def test_cached_kernels_depend_on_material_and_quantity(load: np.ndarray):
     y, extent = GRID.y, (0.0, 2.0)
     first = stresses(load, GRID.x, y, extent)
     softer = half_space_field(load, stress_influence(Load.NORMAL, 0.1), GRID, Points(GRID.x, y, Z), extent=extent)
@@ -175,7 +175,7 @@ def test_kept_kernels_belong_to_their_material_and_quantity(load: np.ndarray):
 @pytest.mark.parametrize("extent", [(-np.inf, np.inf), (0.0, np.inf), (0.0, 2.0)])
 @pytest.mark.parametrize("loaded", [(5, slice(None)), (slice(None), 5), (slice(None), slice(None)), (5, 5)])
 @pytest.mark.parametrize("whole", [False, True])
-def test_every_cell_counts_at_every_other(extent: tuple[float, float], loaded: tuple, whole: bool) -> None:
+def test_convolution_includes_all_cell_pairs(extent: tuple[float, float], loaded: tuple, whole: bool) -> None:
     """At periods of a fast length the farthest cells were left out of components odd in y.
 
     Where a contact is one cell wide, and looked at there, a transform of no points was asked for.
@@ -191,7 +191,7 @@ def test_every_cell_counts_at_every_other(extent: tuple[float, float], loaded: t
 
 @pytest.mark.parametrize("load", list(Load))
 @pytest.mark.parametrize("extent", [(-np.inf, np.inf), (0.0, np.inf), (-np.inf, 3.0), (0.0, 3.0)])
-def test_the_influence_of_cells_sums_to_the_field(extent: tuple[float, float], load: Load) -> None:
+def test_influences_sum_to_field(extent: tuple[float, float], load: Load) -> None:
     grid = Grid.from_edges([0.0, 0.1, 0.25, 0.5, 1.0, 1.6, 2.2, 2.7, 3.0], (-1.0, 1.0), 10)
     cells = np.random.default_rng(1).random(grid.shape)
     points = Points(np.array([0.4, 1.3, 2.9]), np.array([0.05]), np.array([0.7, 2.0]))

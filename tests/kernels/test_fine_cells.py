@@ -51,7 +51,7 @@ def fine(
     ("ends", "image", "edges"),
     [(0, 1, UNIFORM), (1, -1, UNIFORM), (2, 1, UNIFORM), (0, -1, EDGES), (1, 1, EDGES), (2, -1, EDGES)],
 )
-def test_neither_unit_nor_place_decides_anything(ends: int, image: int, edges: FloatArray) -> None:
+def test_results_scale_with_unit_and_position(ends: int, image: int, edges: FloatArray) -> None:
     plain = fine(edges=edges, image=image, ends=ends)
     for place, unit, pressure in ((0.0, LENGTH, PRESSURE), (16.0, 1.0, 1.0), (-32.0, 1.0, 1.0)):
         other = fine(edges=edges, image=image, ends=ends, place=place, unit=unit, pressure=pressure)
@@ -80,7 +80,7 @@ def test_neither_unit_nor_place_decides_anything(ends: int, image: int, edges: F
 
 
 @pytest.mark.parametrize("edges", [EDGES, UNIFORM], ids=["graded", "uniform"])
-def test_cells_are_refined_down_to_the_reach(edges: FloatArray) -> None:
+def test_refinement_ends_at_maximum_depth(edges: FloatArray) -> None:
     own = fine(edges=edges)
     assert own.is_split.any()
     assert own.fine_depths(own.grid.dy * MAX_REFINED_DEPTH * np.array([0.0, 0.99, 1.01, 3.0])).tolist() == [
@@ -98,7 +98,7 @@ def test_cells_are_refined_down_to_the_reach(edges: FloatArray) -> None:
 
 
 @pytest.mark.parametrize("image", [1, -1])
-def test_images_carry_the_mirrored_load(image: int) -> None:
+def test_images_contain_mirrored_load(image: int) -> None:
     """Means over columns between any edges."""
     own = fine(image=image)
     inside = np.array([0.1, 0.3, 0.35, 0.8])
@@ -114,7 +114,7 @@ def test_images_carry_the_mirrored_load(image: int) -> None:
 
 
 @pytest.mark.parametrize("ends", [0, 1, 2])
-def test_gathered_columns_keep_force_and_moment(ends: int) -> None:
+def test_far_load_keeps_force_and_moment(ends: int) -> None:
     """Of the smooth load, with that of its images; a cell at the border keeps its moment if there is none."""
     own = fine(ends=ends)
     smooth = SmoothLoad.of(own.cells.T, own.grid.x_edges).shape_loads(own.cells.T)
@@ -131,7 +131,7 @@ def test_gathered_columns_keep_force_and_moment(ends: int) -> None:
 
 
 @pytest.mark.parametrize("offset", [0.0, 0.03, -0.03, 0.07, -0.1, 0.1])
-def test_points_are_in_the_middle_of_fine_cells_that_carry_all(offset: float) -> None:
+def test_fine_cells_centre_points_and_keep_force(offset: float) -> None:
     own = fine(edges=UNIFORM, ends=1)
     cells, grid = own.fine_load(offset)
     step = own.grid.dy / PARTS_Y
@@ -151,7 +151,7 @@ def test_points_are_in_the_middle_of_fine_cells_that_carry_all(offset: float) ->
 
 
 @pytest.mark.parametrize("narrow", [0.0, 0.3, 1.0])
-def test_columns_that_are_seen_apart_are_wide_against_their_distance(narrow: float) -> None:
+def test_resolved_columns_are_wide_over_distance(narrow: float) -> None:
     random = np.random.default_rng(0)
     for _ in range(200):
         edges = 5.0 + np.cumsum(np.cumprod(random.uniform(0.4, 2.5, 12)))
@@ -168,7 +168,7 @@ def test_columns_that_are_seen_apart_are_wide_against_their_distance(narrow: flo
 
 
 @pytest.mark.parametrize("parts", [PARTS_X, PARTS_Y])
-def test_whole_cells_keep_moments_to_sixth_order(parts: int) -> None:
+def test_coarse_cells_keep_six_moments(parts: int) -> None:
     fine_loads = np.random.default_rng(0).random((4 * parts, 2))
     loads = coarsen(fine_loads, parts)
 
@@ -202,7 +202,7 @@ def test_distribution_is_linear_in_the_load(ends: int, image: int) -> None:
 
 
 @pytest.mark.parametrize("unit", [1e-9, 1.0, 1e9])
-def test_columns_are_split_where_their_load_is_uneven(unit: float) -> None:
+def test_uneven_columns_are_split(unit: float) -> None:
     """By more than 0.3 % of the largest load, whatever its unit."""
     grid = Grid.between(EDGES, (-1.2, 1.2), 12)
     along = 1 + 1e-4 * grid.x - 0.5 * np.maximum(grid.x - 2.5, 0.0)
@@ -213,7 +213,7 @@ def test_columns_are_split_where_their_load_is_uneven(unit: float) -> None:
 
 
 @pytest.mark.parametrize("offset", [0.0, 0.03])
-def test_fine_cells_carry_a_load_up_to_the_border(offset: float) -> None:
+def test_fine_cells_extend_to_load_border(offset: float) -> None:
     """Also what lies in the last cells of the grid along y."""
     grid = Grid.between(UNIFORM, (-1.2, 1.2), 12)
     cells = load_on(grid.x, 0.6 * grid.y)

@@ -19,7 +19,7 @@ def corner_at(depth: float):  # type: ignore[no-untyped-def]
 
 
 @pytest.mark.parametrize(("length", "unit"), [(0.5, 2.0**-17), (2.0, 1.0), (12.0, 2.0**17)])
-def test_images_are_summed_to_any_distance(length: float, unit: float) -> None:
+def test_image_sum_converges(length: float, unit: float) -> None:
     dx, dy = 0.25 * unit, 0.2 * unit
     x = dx * np.arange(-int(length / 0.25), int(length / 0.25) + 1.0)
     y = dy * np.arange(-12, 13.0)
@@ -40,7 +40,7 @@ def test_images_are_summed_to_any_distance(length: float, unit: float) -> None:
 
 @pytest.mark.parametrize("unit", [1e-6, 1.0, 1e6])
 @pytest.mark.parametrize("middle", [0.0, 7.0, -7.0])
-def test_few_points_tell_what_loads_far_away_do(unit: float, middle: float) -> None:
+def test_chebyshev_interpolation_of_distant_loads(unit: float, middle: float) -> None:
     at = unit * (middle + np.linspace(-2.0, 2.0, 200))
     points, matrix = interpolation_points(at, 2.0 * unit, 1e-6)
     assert matrix is not None

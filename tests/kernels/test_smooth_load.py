@@ -24,7 +24,7 @@ def semicircle_integral(y: FloatArray) -> FloatArray:
 
 @pytest.mark.parametrize("cells", [33, 40, 61])
 @pytest.mark.parametrize("half", [1.1, 1.2])
-def test_pressure_of_a_contact_from_its_means(cells: int, half: float) -> None:
+def test_hertz_pressure_from_cell_means(cells: int, half: float) -> None:
     edges = np.linspace(-half, half, cells + 1)
     means = np.diff(semicircle_integral(edges)) / np.diff(edges)
     fine = np.linspace(-half, half, 12 * cells + 1)
@@ -47,7 +47,7 @@ def rows(draw: st.DrawFn) -> tuple[FloatArray, FloatArray]:
 
 @settings(max_examples=60)
 @given(row=rows(), extends_beyond=st.booleans())
-def test_force_is_kept_and_nothing_overshoots(row: tuple[FloatArray, FloatArray], extends_beyond: bool) -> None:
+def test_smooth_load_keeps_force_without_overshoot(row: tuple[FloatArray, FloatArray], extends_beyond: bool) -> None:
     loads, edges = row
     smooth = smooth_form(loads, edges, extends_beyond=extends_beyond)
     widths = np.diff(edges)
@@ -70,14 +70,14 @@ def test_reversed_load_has_the_reversed_shape(row: tuple[FloatArray, FloatArray]
     assert np.allclose(there, back[:, ::-1], atol=1e-9)
 
 
-def test_uniform_load_stays_a_step() -> None:
+def test_uniform_load_ends_in_step() -> None:
     edges = np.linspace(0.0, 8.0, 9)
     loads = np.array([[0, 0, 2.0, 2.0, 2.0, 2.0, 0, 0]])
     smooth = smooth_form(loads, edges, extends_beyond=True)
     assert np.allclose(smooth.means(np.linspace(0.0, 8.0, 33)), np.repeat(loads, 4, axis=1), atol=1e-12)
 
 
-def test_load_that_rises_to_its_end_ends_in_a_step() -> None:
+def test_rising_load_ends_in_step() -> None:
     edges = np.linspace(0.0, 5.0, 6)
     loads = np.array([[0.0, 3.0, 1.5, 1.0, 1.0]])
     means = smooth_form(loads, edges).means(np.linspace(0.0, 5.0, 51))[0]
@@ -86,7 +86,7 @@ def test_load_that_rises_to_its_end_ends_in_a_step() -> None:
 
 
 @given(row=rows())
-def test_sent_loads_have_the_moments_alone(row: tuple[FloatArray, FloatArray]) -> None:
+def test_moment_loads_have_no_resultant(row: tuple[FloatArray, FloatArray]) -> None:
     loads, edges = row
     if edges.size < 3:
         return
@@ -96,7 +96,7 @@ def test_sent_loads_have_the_moments_alone(row: tuple[FloatArray, FloatArray]) -
     assert np.allclose(forces @ centres, loads.sum(axis=1), atol=1e-9)
 
 
-def test_rounding_does_not_decide_how_a_load_ends() -> None:
+def test_rounding_keeps_shape_of_load_end() -> None:
     """Four cells of which the two in the middle are alike but for rounding, either way."""
     edges = np.linspace(-1.0, 1.0, 5)
     rows = np.array([[0.4, 1.0, 1.0, 0.4]]) * (1 + 1e-12 * np.array([[0, 1, -1, 0], [0, -1, 1, 0], [0, 0, 0, 0]]))
@@ -107,9 +107,7 @@ def test_rounding_does_not_decide_how_a_load_ends() -> None:
 
 @settings(max_examples=30)
 @given(row=rows(), extends_beyond=st.booleans())
-def test_a_multiple_of_a_load_has_the_multiple_of_its_shape(
-    row: tuple[FloatArray, FloatArray], extends_beyond: bool
-) -> None:
+def test_shape_is_linear_in_load(row: tuple[FloatArray, FloatArray], extends_beyond: bool) -> None:
     loads, edges = row
     fine = np.linspace(edges[0], edges[-1], 60)
     one = smooth_form(loads, edges, extends_beyond=extends_beyond).means(fine)
@@ -120,7 +118,7 @@ def test_a_multiple_of_a_load_has_the_multiple_of_its_shape(
 
 @settings(max_examples=30)
 @given(row=rows(), extends_beyond=st.booleans())
-def test_moments_are_those_of_many_narrow_cells(row: tuple[FloatArray, FloatArray], extends_beyond: bool) -> None:
+def test_moments_match_narrow_cells(row: tuple[FloatArray, FloatArray], extends_beyond: bool) -> None:
     loads, edges = row[0], row[1] + 0.7
     smooth = smooth_form(loads, edges, extends_beyond=extends_beyond)
     parts = 400
@@ -140,13 +138,13 @@ def test_moments_are_those_of_many_narrow_cells(row: tuple[FloatArray, FloatArra
         assert np.allclose(found @ centres, total[:, -1], atol=2e-3)
 
 
-def test_nothing_is_loaded_before_the_first_edge_and_behind_the_last() -> None:
+def test_load_vanishes_outside_edges() -> None:
     edges = np.array([0.0, 1.0, 2.5, 3.0])
     smooth = smooth_form(np.array([[1.0, 2.0, 3.0]]), edges)
     assert smooth.integral(np.array([-1.0, 0.0, 3.0, 3.1, 9.0]))[0] == pytest.approx([0, 0, 5.5, 5.5, 5.5])
 
 
-def test_a_load_that_does_not_fall_in_its_last_cell_ends_in_a_step() -> None:
+def test_constant_last_cell_ends_in_step() -> None:
     means = smooth_form(np.array([[1.2, 1.1, 1.0, 1.0]]), np.linspace(0.0, 4.0, 5)).means(np.linspace(0.0, 4.0, 41))
     assert means[0, 30:] == pytest.approx(1.0)
 
@@ -160,7 +158,7 @@ WIDTHS = np.array([1.0, 0.8, 1.2, 1.0, 0.9, 1.1, 0.7, 1.5, 1.0])
 
 
 @pytest.mark.parametrize("factor", [1.0, 5.0])
-def test_a_root_that_ends_behind_the_last_cell_is_followed_there(factor: float) -> None:
+def test_root_extends_beyond_last_cell(factor: float) -> None:
     """Contacts solved on cells press the last cell whose middle is in the contact, with what belongs to the next."""
     edges = np.append(0.0, np.cumsum(WIDTHS))
     forces = root(edges, edges[6] + 0.25)
@@ -181,7 +179,7 @@ def test_a_root_that_ends_behind_the_last_cell_is_followed_there(factor: float) 
 
 @pytest.mark.parametrize("moved", [0.1, 0.4])
 @pytest.mark.parametrize("factor", [0.01, 5.0])
-def test_a_root_that_ends_early_in_the_last_cell_is_shared_by_the_last_two(moved: float, factor: float) -> None:
+def test_narrow_last_cell_shares_force(moved: float, factor: float) -> None:
     """Contacts solved on cells put too little into the last cell, and too much into the one before."""
     edges = np.append(0.0, np.cumsum(WIDTHS))
     border = edges[5] + 0.25
@@ -194,7 +192,7 @@ def test_a_root_that_ends_early_in_the_last_cell_is_shared_by_the_last_two(moved
 
 
 @pytest.mark.parametrize("factor", [1.0, 5.0])
-def test_a_root_that_is_cut_off_ends_in_its_own_value(factor: float) -> None:
+def test_truncated_root_keeps_end_value(factor: float) -> None:
     edges = np.append(0.0, np.cumsum(WIDTHS[:5]))
     loads = root(edges, edges[5] + 0.3) / WIDTHS[:5]
     smooth = smooth_form(factor * loads[None], edges)
@@ -202,13 +200,13 @@ def test_a_root_that_is_cut_off_ends_in_its_own_value(factor: float) -> None:
     assert smooth.integral(edges[5:])[0] == pytest.approx(factor * loads @ WIDTHS[:5])
 
 
-def test_a_load_that_is_cut_off_does_not_reach_behind_its_last_cell() -> None:
+def test_truncated_load_stays_in_last_cell() -> None:
     smooth = smooth_form(np.array([[3.0, 2.2, 1.75, 0.0, 0.0]]), np.arange(6.0), extends_beyond=True)
     assert smooth.means(np.arange(6.0))[0, 3:].tolist() == [0.0, 0.0]
 
 
 @pytest.mark.parametrize("part", [0.05, 0.2, 0.45, 0.8])
-def test_a_load_may_end_in_the_last_cell_of_a_row(part: float) -> None:
+def test_load_ends_in_last_cell_of_row(part: float) -> None:
     """With little force in it, which it shares with the cell before: as if there were more cells."""
     edges = np.arange(10.0)
     end = 8.0 + part
@@ -222,6 +220,6 @@ def test_a_load_may_end_in_the_last_cell_of_a_row(part: float) -> None:
         assert own.cell_means.sum() == pytest.approx(load.sum())
 
 
-def test_the_other_end_of_a_function_whose_square_is_linear() -> None:
+def test_opposite_face_from_mean() -> None:
     first, last = np.random.default_rng(0).uniform(0.0, 2.0, (2, 50))
     assert _opposite_face(_mean_of_root(first, last), first) == pytest.approx(last, abs=1e-12)

@@ -96,7 +96,7 @@ EDGES = np.array([0.0, 0.02, 0.05, 0.12, 0.3, 0.62, 0.9, 1.4, 1.9])
 @strips
 @pytest.mark.parametrize("image", [1, -1])
 @pytest.mark.parametrize("extent", [WHOLE, ONE_END, (-np.inf, 3.0), TWO_ENDS], ids=str)
-def test_a_body_elsewhere_has_the_same_influence(strip: Strip, image: int, extent: tuple[float, float]) -> None:
+def test_shifted_body_has_equal_influence(strip: Strip, image: int, extent: tuple[float, float]) -> None:
     edges = np.array([0.0, 0.2, 0.7, 1.9, 2.5, 3.0])
     here = influence(strip, edges, 0.3, 5, extent, 20.0, image)
     there = influence(strip, edges + 8.0, 0.3, 5, (extent[0] + 8.0, extent[1] + 8.0), 20.0, image)
@@ -116,7 +116,7 @@ def test_influence_between_columns_is_the_double_integral(strip: Strip, seen: in
 
 @pytest.mark.parametrize("image", [1, -1])
 @strips
-def test_image_in_an_end_is_the_column_behind_it(strip: Strip, image: int) -> None:
+def test_image_equals_mirrored_column(strip: Strip, image: int) -> None:
     dy, cells_y, end = 0.2, 6, -0.1
     plain = along_y(influence(strip, EDGES, dy, cells_y, WHOLE), strip)
     mirrored = along_y(influence(strip, EDGES, dy, cells_y, (end, np.inf), image=image), strip) - plain
@@ -128,7 +128,7 @@ def test_image_in_an_end_is_the_column_behind_it(strip: Strip, image: int) -> No
 
 
 @strips
-def test_derivatives_and_primitive_of_a_strip_belong_to_its_kernel(strip: Strip) -> None:
+def test_strip_derivatives_and_primitives_match_kernel(strip: Strip) -> None:
     step = 1e-4
     x, y = np.meshgrid(np.linspace(0.3, 4.0, 7), np.array([0.05, 0.4, 2.0]))
     before, here, after = (strip.kernel(x + move, y) for move in (-step, 0.0, step))
@@ -166,7 +166,7 @@ def test_influence_is_reciprocal_to_the_last_bit(edges: FloatArray, strip: Strip
 
 @settings(max_examples=30)
 @given(edges=increasing_edges(), strip=SAMPLED, two=st.booleans())
-def test_columns_seen_from_the_other_side_act_the_same(edges: FloatArray, strip: Strip, two: bool) -> None:
+def test_reversed_columns_have_reversed_influence(edges: FloatArray, strip: Strip, two: bool) -> None:
     extent = TWO_ENDS if two else WHOLE
     kernel = influence(strip, edges, 0.1, 6, extent, 30.0)
     backwards = influence(strip, 3.0 - edges[::-1], 0.1, 6, extent, 30.0)
@@ -175,14 +175,14 @@ def test_columns_seen_from_the_other_side_act_the_same(edges: FloatArray, strip:
 
 @settings(max_examples=30)
 @given(edges=increasing_edges())
-def test_pressure_does_work_on_a_half_space_whatever_the_columns(edges: FloatArray) -> None:
+def test_influence_is_positive_definite(edges: FloatArray) -> None:
     for matrix in influence(INVERSE, edges, 0.1, 6, WHOLE):
         assert np.linalg.eigvalsh(matrix).min() > 0
 
 
 @settings(max_examples=30)
 @given(edges=increasing_edges(), strip=SAMPLED, two=st.booleans(), at=st.integers(0, 20))
-def test_split_columns_act_as_the_one_they_were(edges: FloatArray, strip: Strip, two: bool, at: int) -> None:
+def test_split_columns_sum_to_original_column(edges: FloatArray, strip: Strip, two: bool, at: int) -> None:
     """Galerkin's averages are consistent: forces on the halves in the whole's proportion, displacements averaged."""
     at %= edges.size - 1
     extent = TWO_ENDS if two else WHOLE
@@ -196,7 +196,7 @@ def test_split_columns_act_as_the_one_they_were(edges: FloatArray, strip: Strip,
 
 
 @strips
-def test_expansion_of_far_columns_meets_the_integral(strip: Strip) -> None:
+def test_far_expansion_matches_integral(strip: Strip) -> None:
     dy, cells_y = 0.01, 4
     edges = np.array([0.0, 1e-3, 2e-3, 4e-3, 1.0, 1.03])
     kernel = along_y(influence(strip, edges, dy, cells_y, WHOLE), strip)
@@ -240,7 +240,7 @@ LOADS = (Load.NORMAL, Load.ALONG_X, Load.ALONG_Y)
 
 
 @pytest.mark.parametrize("body", BODIES, ids=lambda body: f"{type(body).__name__}-{getattr(body, 'model', '')}")
-def test_operator_is_the_averaged_displacement_of_one_on_finer_cells(body: Body) -> None:
+def test_operator_averages_displacement_of_finer_cells(body: Body) -> None:
     finer, cells_x, cells_y = 8, 24, 12
     y_range = (-1.2e-4, 1.2e-4)
     fine, coarse = (
@@ -265,7 +265,7 @@ def test_operator_is_the_averaged_displacement_of_one_on_finer_cells(body: Body)
             assert np.abs(found[direction] - mean).max() < 1.5e-3 * largest, (load, direction)
 
 
-def test_operator_converges_to_that_of_uniform_cells() -> None:
+def test_operator_converges_to_uniform_cells() -> None:
     """What is left of the difference above is the finer cells' own: it falls with their square."""
     body, cells_x, cells_y = HalfSpace(material=STEEL), 16, 8
     coarse = Grid(x_range=(0.0, LENGTH), y_range=(-1.2e-4, 1.2e-4), cells_x=cells_x, cells_y=cells_y)
@@ -287,7 +287,7 @@ P, X, Y = Load.NORMAL, Load.ALONG_X, Load.ALONG_Y
 @pytest.mark.parametrize("unit", [2.0**-17, 1.0, 2.0**10])
 @pytest.mark.parametrize("poisson", [0.0, 0.3, 0.5])
 @pytest.mark.parametrize("response", [Response(P, P), Response(Y, Y)])
-def test_a_row_of_images_displaces_nothing_at_the_reference(response: Response, poisson: float, unit: float) -> None:
+def test_image_row_vanishes_at_reference(response: Response, poisson: float, unit: float) -> None:
     """And about that, like a line load: ``2 (1 - nu) / L ln(r / y)`` per force."""
     length, reference, cell = 0.8 * unit, 8.0 * unit, 0.1 * unit
     x, y = cell * np.arange(4.0), cell * np.array([40.0, 80.0, 160.0])
@@ -304,7 +304,7 @@ def test_a_row_of_images_displaces_nothing_at_the_reference(response: Response, 
     assert found == pytest.approx(expected, abs=2e-3 * cell**2 / length)
 
 
-def test_rows_without_a_net_load_need_no_level() -> None:
+def test_image_rows_without_net_load_have_zero_level() -> None:
     for displacement in (P, X, Y):
         for load in (P, X, Y):
             found = row_level(strips_of(Response(displacement, load), 0.3), load.sign_x, 0.8, 8.0)
@@ -312,7 +312,7 @@ def test_rows_without_a_net_load_need_no_level() -> None:
 
 
 @pytest.mark.parametrize("response", [Response(Load.NORMAL, Load.NORMAL), Response(Load.ALONG_X, Load.NORMAL)])
-def test_influences_of_split_columns_do_not_depend_on_those_computed_before(response: Response) -> None:
+def test_influences_do_not_depend_on_cached_columns(response: Response) -> None:
     coarse = np.array([0.0, 0.02, 0.05, 0.2, 0.4, 0.8, 1.0])
     fine = np.sort(np.append(coarse, [0.01, 0.3, 0.9]))
 

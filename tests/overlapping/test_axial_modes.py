@@ -21,7 +21,7 @@ def represented(modes: AxialModes, waves: np.ndarray, height: float) -> np.ndarr
 
 @pytest.mark.parametrize("length", [3.0, 5.0])
 @pytest.mark.parametrize("height", [0.15, 1.0])
-def test_ray_and_first_modes_are_the_sum_over_all_modes(length: float, height: float) -> None:
+def test_ray_and_discrete_modes_equal_full_sum(length: float, height: float) -> None:
     for modes, parity in zip(axial_modes(length, 0.5, 0.05, Resolution()), (1, -1), strict=True):
         numbers = np.arange(0 if parity > 0 else 1, 4000, 2)
         k = np.pi * numbers / length
@@ -33,7 +33,7 @@ def test_ray_and_first_modes_are_the_sum_over_all_modes(length: float, height: f
 
 
 @pytest.mark.parametrize("height", [0.15, 1.0])
-def test_a_ray_is_the_integral_over_all_wavenumbers_of_one_end(height: float) -> None:
+def test_ray_equals_integral_of_single_end(height: float) -> None:
     (modes,) = axial_modes(np.inf, 0.05, 0.05, Resolution())
     exact = 2 / np.pi / (height**2 + X**2)
     assert represented(modes, modes.cosine(X), height) == pytest.approx(height * exact, abs=1e-5)
@@ -42,7 +42,7 @@ def test_a_ray_is_the_integral_over_all_wavenumbers_of_one_end(height: float) ->
 
 @pytest.mark.parametrize("length", [3.0, np.inf])
 @pytest.mark.parametrize("load", [Load.NORMAL, Load.ALONG_X])
-def test_integrals_over_cells_are_those_of_the_waves(load: Load, length: float) -> None:
+def test_cell_integrals_match_waves(load: Load, length: float) -> None:
     edges = np.array([0.0, 0.4, 1.7, 3.0])
     for modes in axial_modes(length, 0.5, 0.05, Resolution()):
         found = modes.cell_integrals(load, edges)
@@ -55,7 +55,7 @@ def test_integrals_over_cells_are_those_of_the_waves(load: Load, length: float) 
             np.testing.assert_allclose(weights_of * found[few, cell], weights_of * expected[few], atol=1e-9)
 
 
-def test_wavenumbers_end_where_nothing_nearer_matters() -> None:
+def test_shortest_distance_bounds_wavenumbers() -> None:
     for lateral, shortest in ((0.5, 0.05), (0.5, 5.0), (60.0, 5.0)):
         last = max(Resolution().reach / shortest, 4 * lateral)
         for length in (0.4, np.inf):

@@ -36,7 +36,7 @@ def kernel(edges: FloatArray, response: Response, *, unit: float = 1.0, ends: in
 
 @pytest.mark.parametrize("response", RESPONSES, ids=lambda pair: f"{pair.displacement.name} by {pair.load.name}")
 @pytest.mark.parametrize(("ends", "unit"), [(1, LENGTH), (2, LENGTH), (1, 2.0**7)])
-def test_the_unit_of_length_decides_nothing(ends: int, unit: float, response: Response) -> None:
+def test_unit_of_length_scales_kernel(ends: int, unit: float, response: Response) -> None:
     """A force per area of the unit; transformed along y, displacements over forces per length are without unit."""
     plain, other = kernel(EDGES, response, ends=ends), kernel(EDGES, response, unit=unit, ends=ends)
     assert other == pytest.approx(plain, abs=1e-7 * np.abs(plain).max())
@@ -66,7 +66,7 @@ def test_loads_and_displacements_are_reciprocal(ends: int) -> None:
 
 @pytest.mark.parametrize("cells", [6, 7])
 @pytest.mark.parametrize("direction", Load)
-def test_the_correction_on_uniform_cells_is_the_kernel_between_columns(direction: Load, cells: int) -> None:
+def test_correction_on_cells_equals_kernel_between_columns(direction: Load, cells: int) -> None:
     """Folded about the middle, transformed and back: an even and an odd number of cells."""
     edges = np.linspace(0.0, 2.4, cells + 1)
     grid = Grid.between(edges, (-1.0, 1.0), 6)
@@ -86,7 +86,7 @@ def test_the_correction_on_uniform_cells_is_the_kernel_between_columns(direction
     assert found == pytest.approx(expected, abs=1e-9 * np.abs(expected).max())
 
 
-def test_the_kernel_is_resolved_as_finely_as_the_cells_at_the_ends_ask() -> None:
+def test_end_cells_determine_kernel_resolution() -> None:
     """Uniform cells by their width; graded ones by a cell along y, or an eighth of it if cells at an end are narrow."""
     dy = 2.0 / 6
     assert request(np.linspace(0.0, 2.4, 9)).finest == pytest.approx(0.3)
@@ -102,7 +102,7 @@ def test_the_kernel_is_resolved_as_finely_as_the_cells_at_the_ends_ask() -> None
         assert request(wide, unit=unit).finest / unit == pytest.approx(dy)
 
 
-def test_wavenumbers_along_y_reach_as_far_as_the_cells_along_y_ask() -> None:
+def test_lateral_cells_bound_lateral_wavenumbers() -> None:
     """Also where cells along x are wide: with finer quadratures the kernel is the same."""
     edges = np.linspace(0.0, 6.0, 5)
     usual = request(edges, responses=(Response(Load.NORMAL, Load.NORMAL),))

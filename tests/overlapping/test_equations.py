@@ -47,7 +47,7 @@ def test_correction_is_symmetric(length: float) -> None:
         assert np.abs(kernel - kernel.transpose(0, 2, 1)).max() < 1e-12 * np.abs(kernel).max()
 
 
-def test_no_internal_setting_matters() -> None:
+def test_resolution_settings_are_converged() -> None:
     grid = Grid(x_range=(0.0, 8.0), y_range=(-1.0, 1.0), cells_x=32, cells_y=24)
     pressure = np.broadcast_to((1 - grid.y**2) ** 2, grid.shape)
     points = (np.array([0.0, 0.1, 1.0, 4.0]), np.array([0.0, 0.5]), np.array([0.05, 0.5, 3.0]))
@@ -85,7 +85,7 @@ ON_THE_END = {
 
 
 @pytest.mark.parametrize("load", Load)
-def test_face_loads_are_the_cosine_transform_of_the_stress_reversed(load: Load) -> None:
+def test_face_loads_reverse_cosine_transform_of_stress(load: Load) -> None:
     nu, lateral = 0.3, 0.7
     axial, depth = np.array([0.0, 0.4, 2.0]), np.array([0.2, 1.5])
     waves = axial.astype(complex)
@@ -101,7 +101,7 @@ def test_face_loads_are_the_cosine_transform_of_the_stress_reversed(load: Load) 
 
 
 @pytest.mark.parametrize("length", [3.0, np.inf])
-def test_wavenumbers_in_other_units(length: float) -> None:
+def test_wavenumbers_scale_with_unit(length: float) -> None:
     for shortest, lateral in ((0.02, 0.7), (200.0, 40.0)):
         one = axial_modes(length, lateral, shortest, Resolution())
         other = axial_modes(1e-3 * length, 1e3 * lateral, 1e-3 * shortest, Resolution())
@@ -121,7 +121,7 @@ def test_wavenumbers_in_other_units(length: float) -> None:
             assert reached > 0.5 * max(Resolution().ray_reach / shortest, 4 * lateral)
 
 
-def test_wavenumbers_of_loads_that_are_mirrored_once_reach_as_far() -> None:
+def test_single_mirror_wavenumbers_have_equal_bound() -> None:
     for shortest, lateral in ((0.02, 0.7), (200.0, 4.0)):
         for modes in modes_between_ends(3.0, lateral, shortest, Resolution(), mirrored_once=True):
             assert modes.discrete.size == 0

@@ -26,7 +26,7 @@ def pressed(problem: EndProblem, x: np.ndarray, y: np.ndarray, z: np.ndarray) ->
 
 
 @pytest.mark.parametrize("mirrored_once", [False, True])
-def test_a_symmetric_load_has_the_same_at_both_ends(*, mirrored_once: bool) -> None:
+def test_symmetric_load_has_equal_end_loads(*, mirrored_once: bool) -> None:
     cells = np.where(np.abs(GRID.y) < 0.5, 1.0, 0.0) * np.ones(GRID.shape)
     problem = EndProblem(
         length=2.4,
@@ -49,7 +49,7 @@ def test_a_symmetric_load_has_the_same_at_both_ends(*, mirrored_once: bool) -> N
     assert np.abs(added[3] - added[2]).max() > 0.05 * np.abs(added).max()
 
 
-def test_an_eccentric_load_is_at_either_corner_what_it_is_nearby() -> None:
+def test_equivalent_load_is_continuous_at_corners() -> None:
     """The corner is not taken for that of the other end."""
     cells = np.where(np.abs(GRID.y) < 0.5, 1.0, 0.0) * np.linspace(2.0, 0.5, GRID.cells_x)[:, None]
     problem = EndProblem(length=2.4, poisson=0.3, cells=cells, loads=(Load.NORMAL,), grid=GRID, resolution=Resolution())
@@ -61,7 +61,7 @@ def test_an_eccentric_load_is_at_either_corner_what_it_is_nearby() -> None:
     assert corner != pytest.approx(second_corner, rel=0.1)
 
 
-def test_a_face_load_frees_its_end_of_what_the_opposite_half_space_leaves_there_too() -> None:
+def test_single_mirror_face_load_frees_end() -> None:
     """Where loads are mirrored once: in real space, with the load and its two images side by side, which are alike."""
     length, top, face = (
         2.4,

@@ -26,7 +26,7 @@ PLACES = (
 
 
 @pytest.mark.parametrize(("length", "points"), [(8.0, 0), (8.0, 10_000), (np.inf, 10_000)])
-def test_a_place_has_the_same_field_alone_and_among_others(
+def test_field_does_not_depend_on_further_positions(
     length: float, points: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     grid = Grid(x_range=(0.0, 8.0), y_range=(-1.0, 1.0), cells_x=16, cells_y=16)
@@ -66,7 +66,7 @@ def evaluated(places: list[Points]) -> tuple[int, int]:
     return len(sizes), sum(sizes)
 
 
-def test_few_points_are_evaluated_at_once_and_many_where_they_are_wanted() -> None:
+def test_joint_evaluation_of_few_points() -> None:
     """A line along the top and one into the depth: together they are as many points as their rectangle has."""
     for count, together in ((5, True), (60, False)):
         across, x, z = np.zeros(1), np.linspace(0.1, 1.0, count), np.linspace(0.1, 1.0, count)

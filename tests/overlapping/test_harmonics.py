@@ -81,7 +81,7 @@ BODIES = {
 
 @pytest.mark.parametrize("name", MODES)
 @pytest.mark.parametrize("body", BODIES)
-def test_stresses_are_hookes_of_the_displacements_and_in_balance(body: str, name: str) -> None:
+def test_stresses_follow_hookes_law_in_equilibrium(body: str, name: str) -> None:
     """What is even in y goes like ``cos(k y)``, what is odd like ``-sin(k y)``; displacements are times ``2 G``."""
     of, displaced, stressed = BODIES[body]
     moved, loaded = of(MODES[name], displaced), of(MODES[name], stressed)
@@ -98,7 +98,7 @@ def test_stresses_are_hookes_of_the_displacements_and_in_balance(body: str, name
 
 
 @pytest.mark.parametrize("name", MODES)
-def test_the_top_of_h_carries_the_equivalent_load_alone(name: str) -> None:
+def test_top_of_h_carries_equivalent_load(name: str) -> None:
     modes = MODES[name]
     found = below(modes, harmonics._stress_of_equivalent_load)(X, np.zeros(1))[:, :, 0]
     load = np.real(modes.cosine(X).T @ WEIGHTS[: modes.wavenumbers.size])
@@ -107,7 +107,7 @@ def test_the_top_of_h_carries_the_equivalent_load_alone(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", MODES)
-def test_the_faces_of_v_carry_what_is_freed_there_and_its_top_none_but_normal_stress(name: str) -> None:
+def test_faces_and_top_of_v_have_no_shear(name: str) -> None:
     modes = MODES[name]
     faces = np.array([0.0, modes.length]) if modes.parity else np.zeros(1)
     found = beside(modes, harmonics._stress_of_face_load)(faces, Z)
@@ -139,7 +139,7 @@ def weighted(modes: AxialModes, load: Callable[[FloatArray], FloatArray]) -> Com
 
 
 @pytest.mark.parametrize("name", ["even", "odd"])
-def test_what_v_leaves_on_the_top_is_its_normal_stress_there(name: str) -> None:
+def test_normal_stress_of_v_on_top(name: str) -> None:
     """Per scaled face load, in the spectrum of the loads on H, mode by mode."""
     modes = MODES[name]
     depth = np.array([0.4, 1.7])

@@ -55,7 +55,7 @@ def test_columns_equal_the_load_at_every_wavenumber(seed: int, rank: int, split:
         np.testing.assert_allclose(integrated(panel, parts), integrated(direct, parts), atol=1e-9 * rank)
 
 
-def test_few_positions_have_two_columns_each_and_the_same_integrals():
+def test_few_positions_use_two_columns_each():
     pressure = np.random.default_rng(2).random(GRID.shape)
     parts = {1: pressure + pressure[::-1], -1: pressure - pressure[::-1]}
     for panel in lateral_panels(0.05, 2.5, 60.0, Resolution()):
@@ -76,7 +76,7 @@ def test_product_of_x_and_y_has_one_column_per_node():
     assert columns[-1] == Resolution().lateral_nodes
 
 
-def test_a_load_that_is_even_in_y_has_no_odd_columns():
+def test_even_load_has_no_odd_columns():
     pressure = np.ones(GRID.shape)
     loads = lateral_columns(lateral_panels(0.05, 2.5, 60.0, Resolution())[1], {0: pressure}, GRID, Y)
     assert loads is not None
@@ -99,7 +99,7 @@ def test_moments_of_the_poles(moments: Callable[..., FloatArray], y: float):
     np.testing.assert_allclose(far - near, expected, atol=1e-12)
 
 
-def test_poles_are_relative_to_the_reference():
+def test_pole_integrals_vanish_at_reference():
     """All wavenumbers of the cosines' poles sum up to nothing at the reference, the first one without curvature."""
     step, reference = 1e-3, 10.0
     y = reference + step * np.arange(-1.0, 2.0)
@@ -112,7 +112,7 @@ def test_poles_are_relative_to_the_reference():
 
 
 @pytest.mark.parametrize("y", [0.02, 0.3, -2.0])
-def test_moments_of_a_sine_are_those_of_a_cosine_integrated_along_y(y: float):
+def test_sine_moments_integrate_cosine_moments(y: float):
     """``sin(k y) / k**3`` grows along y as ``cos(k y) / k**2``, motions included, and so on."""
     step, reference = 1e-4, 3.0
     there, back = (sine_moments(0.7, np.array([y + side * step]), reference)[:, 0] for side in (1, -1))
@@ -121,7 +121,7 @@ def test_moments_of_a_sine_are_those_of_a_cosine_integrated_along_y(y: float):
 
 
 @pytest.mark.parametrize("poles", [POLES, BENDING_POLES])
-def test_an_answer_with_poles_is_integrated_whatever_the_first_panel(poles: int):
+def test_pole_integral_does_not_depend_on_first_panel(poles: int):
     y, totals = np.array([0.0, 0.4, 2.0]), []
     for first in (0.02, 0.1, 0.6):
         total = np.zeros((2, y.size))

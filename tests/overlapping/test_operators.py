@@ -47,7 +47,7 @@ def check_transpose(operator: LinearOperator) -> None:
     ids=["slab", "single", "quarter"],
 )
 @pytest.mark.parametrize("load", list(Load))
-def test_transposes(grid: Grid, length: float, load: Load, *, mirrored_once: bool) -> None:
+def test_operators_match_their_transposes(grid: Grid, length: float, load: Load, *, mirrored_once: bool) -> None:
     operators = overlapping(grid, length, load, mirrored_once=mirrored_once)
     equivalent = operators.equivalent(load)
     for operator in (
@@ -63,7 +63,7 @@ def test_transposes(grid: Grid, length: float, load: Load, *, mirrored_once: boo
         check_transpose(operator)
 
 
-def test_several_loads() -> None:
+def test_problem_of_several_loads_sums_single_loads() -> None:
     added, faces = overlapping(COLUMNS, 2.0, Load.NORMAL).equivalent(Load.NORMAL)
     loads = np.random.default_rng(1).random((COLUMNS.cells_x * COLUMNS.cells_y, 3))
     for operator in (added, *faces):

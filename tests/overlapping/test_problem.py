@@ -57,12 +57,12 @@ def test_wavenumbers_along_y_depend_on_window_and_positions(load: Load, referenc
                 assert one.poles == other.poles
 
 
-def test_points_beside_a_short_body_are_what_the_first_wavenumber_is_of() -> None:
+def test_distant_points_determine_first_wavenumber() -> None:
     far = asked(length=1e4).panels(np.array([0.0, 20.0]), 0.2)
     assert far[0].nodes.max() < FIRST_PANEL_FACTOR / (4 * 21.0) < far[1].nodes.max()
 
 
-def test_columns_between_two_ends_are_symmetric_and_carry_the_same() -> None:
+def test_columns_between_ends_are_symmetric() -> None:
     for unit in (1.0, UNIT, 2.0**-40):
         own = asked(unit=unit)
         edges, cells = own.column_edges, own.cells[own.cell_of_column]
@@ -83,7 +83,7 @@ def test_columns_between_two_ends_are_symmetric_and_carry_the_same() -> None:
 
 @pytest.mark.parametrize("sign_x", [1, -1])
 @pytest.mark.parametrize("unit", [1e-9, 1.0, 1e9])
-def test_parts_of_a_load_are_even_and_odd_and_sum_up(sign_x: int, unit: float) -> None:
+def test_parity_components_sum_to_load(sign_x: int, unit: float) -> None:
     """Under a load that its image reverses the even part is odd; what is negligible is left out."""
     cells = unit * np.random.default_rng(0).random((6, 4))
     parts = split_by_parity(cells, sign_x)
@@ -97,7 +97,7 @@ def test_parts_of_a_load_are_even_and_odd_and_sum_up(sign_x: int, unit: float) -
     assert set(split_by_parity(even * (1 + 1e-11 * np.arange(6.0))[:, None], sign_x)) == {1, -1}
 
 
-def test_a_body_too_thin_for_the_width_of_the_load_is_refused() -> None:
+def test_too_thin_body_raises_error() -> None:
     """Five cells of 0.25 are loaded, wherever they lie."""
     own = asked()
     for shift in (0, 1, -2):

@@ -48,7 +48,7 @@ def bad_guess(rng: np.random.Generator, gap: np.ndarray) -> np.ndarray:
 
 
 @given(rng=random, sharp=st.booleans())
-def test_a_prescribed_approach_against_non_negative_least_squares(rng: np.random.Generator, sharp: bool):
+def test_prescribed_approach_matches_nonnegative_least_squares(rng: np.random.Generator, sharp: bool):
     gap = rough_gap(rng, sharp) - 0.5
     found = solve_complementarity(
         operator,
@@ -67,9 +67,7 @@ def test_a_prescribed_approach_against_non_negative_least_squares(rng: np.random
 
 
 @given(rng=random, sharp=st.booleans(), resultants=st.sampled_from([Resultants(50.0), TILTING]))
-def test_a_prescribed_load_meets_the_conditions_of_contact(
-    rng: np.random.Generator, sharp: bool, resultants: Resultants
-):
+def test_prescribed_load_satisfies_contact_conditions(rng: np.random.Generator, sharp: bool, resultants: Resultants):
     gap = rough_gap(rng, sharp)
     found = solve_complementarity(
         operator,
@@ -100,7 +98,7 @@ def met(resultants: Resultants, pressure: np.ndarray) -> None:
 
 
 @given(rng=random, at=st.floats(0.1, 2.9), unit=st.sampled_from([1e-12, 1.0, 1e9]))
-def test_restored_pressures_have_the_resultants_and_stay_positive(rng: np.random.Generator, at: float, unit: float):
+def test_restored_pressure_is_positive_with_resultants(rng: np.random.Generator, at: float, unit: float):
     arm = GRID.x[:, None] - at
     resultants = Resultants(50.0 * unit, arm / np.abs(arm).max())
     pressure = unit * np.where(rng.random(GRID.shape) < 0.3, rng.random(GRID.shape) ** 4, 0.0)
@@ -121,7 +119,7 @@ def test_restored_pressures_have_the_resultants_and_stay_positive(rng: np.random
     assert np.polynomial.polynomial.polyval(arm[loaded, 0], line) == pytest.approx(factor[loaded], rel=1e-6)
 
 
-def test_one_column_of_cells_keeps_its_moment() -> None:
+def test_single_column_keeps_moment() -> None:
     pressure = np.zeros(GRID.shape)
     pressure[3] = 2.0
     found = Resultants(50.0, LEVER / np.abs(LEVER).max()).restore(pressure)
@@ -132,7 +130,7 @@ def test_one_column_of_cells_keeps_its_moment() -> None:
     assert exact.ravel().tolist() == [0.0, 4.0, 0.0]
 
 
-def test_almost_all_pressure_on_one_side_is_balanced_without_overflow() -> None:
+def test_one_sided_pressure_is_balanced_without_overflow() -> None:
     """The few cells on the other side have to carry 1e9 times what they did."""
     arm = np.where(GRID.x[:, None] < 1.0, GRID.x[:, None] - 1.0, 1e-3 * (GRID.x[:, None] - 1.0))
     for side in (arm, -arm):
@@ -144,7 +142,7 @@ def test_almost_all_pressure_on_one_side_is_balanced_without_overflow() -> None:
         assert (found > 0).all()
 
 
-def test_pressure_that_cannot_be_balanced_keeps_its_sum() -> None:
+def test_unbalanced_pressure_keeps_sum() -> None:
     pressure = np.where(LEVER > 0.1, 1.0, 0.0) * np.ones(GRID.shape)
     found = Resultants(50.0, LEVER / np.abs(LEVER).max()).restore(pressure)
     assert found.sum() == pytest.approx(50.0)
@@ -156,7 +154,7 @@ def state(gap: np.ndarray, resultants: Resultants, start: np.ndarray) -> _Iterat
 
 
 @given(rng=random)
-def test_a_guess_on_one_side_of_the_load_gets_a_little_pressure_everywhere(rng: np.random.Generator):
+def test_one_sided_guess_adds_pressure_everywhere(rng: np.random.Generator):
     gap = rough_gap(rng, True)
     start = np.where(LEVER < -0.3, rng.random(GRID.shape), 0.0)
     found = state(gap, TILTING, start).pressure
@@ -168,13 +166,13 @@ def test_a_guess_on_one_side_of_the_load_gets_a_little_pressure_everywhere(rng: 
 
 
 @given(rng=random, sharp=st.booleans(), far=st.booleans())
-def test_a_guess_is_scaled_to_the_approach(rng: np.random.Generator, sharp: bool, far: bool):
+def test_guess_is_scaled_to_approach(rng: np.random.Generator, sharp: bool, far: bool):
     """Of all its multiples the one with the least energy; one that lies where nothing overlaps is replaced."""
     gap = rough_gap(rng, sharp) - 0.5
     start = np.where((gap > 0.5) & np.isfinite(gap) if far else gap < 0, 1.0 + rng.random(GRID.shape), 0.0)
     begun = state(gap, Resultants(None), start)
     height = np.where(np.isfinite(gap), gap, 0.0) + operator(begun.pressure)
-    assert begun.sunk == pytest.approx(operator(begun.pressure))
+    assert begun.displacement == pytest.approx(operator(begun.pressure))
     assert float((begun.pressure * height).sum()) == pytest.approx(0.0, abs=1e-9 * float(begun.pressure.sum()))
     assert ((begun.pressure > 0) == (gap < 0)).all()
     if not far:
@@ -189,23 +187,21 @@ def energy(gap: np.ndarray, pressure: np.ndarray) -> float:
 
 @settings(max_examples=10)
 @given(rng=random, sharp=st.booleans(), resultants=st.sampled_from([Resultants(50.0), TILTING, Resultants(None)]))
-def test_no_change_of_the_area_raises_the_energy_or_loses_the_resultants(
-    rng: np.random.Generator, sharp: bool, resultants: Resultants
-):
+def test_area_change_reduces_energy_and_keeps_resultants(rng: np.random.Generator, sharp: bool, resultants: Resultants):
     gap = rough_gap(rng, sharp) - (0.5 if resultants.total is None else 0.0)
     begun = state(gap, resultants, bad_guess(rng, gap) + np.where(gap < 0, 1e-3, 0.0))
     before = energy(gap, begun.pressure)
     for number in range(8):
-        opening = begun.opening()
-        step, along, _ = begun.search(np.where(begun.contact, opening, 0.0))
+        opening = begun.compute_opening()
+        step, along, _ = begun.search_step(np.where(begun.contact, opening, 0.0))
         if number % 2:
             begun._step_to_border(step, along)
         else:
             closed = ~begun.contact & (opening < 0)
             begun.change_area(begun.pressure - step * begun.direction, closed, opening, step, along)
-        begun.contact, begun.fresh = begun.pressure > 0, True
+        begun.contact, begun.area_changed = begun.pressure > 0, True
         assert begun.pressure.min() >= 0
-        assert begun.sunk == pytest.approx(operator(begun.pressure), rel=1e-9)
+        assert begun.displacement == pytest.approx(operator(begun.pressure), rel=1e-9)
         if resultants.total is not None:
             met(resultants, begun.pressure)
         if number % 2 or closed.any():
@@ -215,7 +211,7 @@ def test_no_change_of_the_area_raises_the_energy_or_loses_the_resultants(
 
 
 @given(slope=st.floats(-2.0, 2.0), curvature=st.floats(0.01, 5.0))
-def test_the_part_of_a_change_that_descends(slope: float, curvature: float):
+def test_descent_fraction_minimises_energy(slope: float, curvature: float):
     """The energy over the part taken is a parabola: all of it if that is below the start, else its least value."""
     change, opening = np.array([2.0, 0.0]), np.array([-0.5 * slope, np.inf])
     part = _descent_fraction(change, np.array([0.5 * curvature, 1.0]), opening)
@@ -234,7 +230,7 @@ def test_the_part_of_a_change_that_descends(slope: float, curvature: float):
 
 @settings(max_examples=10)
 @given(rng=random)
-def test_it_ends_when_violation_and_change_are_small_in_any_unit(rng: np.random.Generator):
+def test_iteration_ends_at_small_violation_and_change(rng: np.random.Generator):
     gap = rough_gap(rng, False)
     for unit in (1e-9, 1e9):
         found = solve_complementarity(
@@ -253,17 +249,17 @@ def test_it_ends_when_violation_and_change_are_small_in_any_unit(rng: np.random.
 
 
 @pytest.mark.parametrize(("slope", "part"), [(0.45, 0.45), (0.49, 0.49), (0.51, 1.0), (0.54, 1.0), (2.0, 1.0)])
-def test_all_of_a_change_is_taken_if_that_descends(slope: float, part: float) -> None:
+def test_descending_change_is_complete(slope: float, part: float) -> None:
     assert _descent_fraction(np.ones(1), np.ones(1), np.array([-slope])) == pytest.approx(part)
 
 
 @pytest.mark.parametrize("unit", [1e-12, 1.0, 1e12])
-def test_cells_that_enter_press_as_their_overlap_asks_in_any_unit(unit: float) -> None:
+def test_entering_cells_scale_with_overlap(unit: float) -> None:
     gap = (GRID.x[:, None] - 1.5) ** 2 / 4 + GRID.y**2 / 2 - 0.3
     start = np.where(np.hypot(GRID.x[:, None] - 1.5, GRID.y) < 0.3, 1.0, 0.0)
     begun = state(unit * gap, Resultants(None), unit * start)
-    opening = begun.opening()
-    step, along, _ = begun.search(np.where(begun.contact, opening, 0.0))
+    opening = begun.compute_opening()
+    step, along, _ = begun.search_step(np.where(begun.contact, opening, 0.0))
     closed = ~begun.contact & (opening < 0)
     begun.change_area(begun.pressure - step * begun.direction, closed, opening, step, along)
     assert begun.pressure[closed].sum() > 0.05 * begun.pressure.sum()
@@ -274,13 +270,13 @@ def test_cells_that_enter_press_as_their_overlap_asks_in_any_unit(unit: float) -
     assert tilting._balance_sides(unit * one_sided) == pytest.approx(unit * (one_sided + 0.1))
     if unit == 1.0:
         return
-    opening = plain.opening()
-    step, along, _ = plain.search(np.where(plain.contact, opening, 0.0))
+    opening = plain.compute_opening()
+    step, along, _ = plain.search_step(np.where(plain.contact, opening, 0.0))
     plain.change_area(plain.pressure - step * plain.direction, closed, opening, step, along)
     assert begun.pressure / unit == pytest.approx(plain.pressure, rel=1e-6)
 
 
-def test_directions_forgive_what_rounding_leaves_of_the_last_ones() -> None:
+def test_directions_tolerate_unsymmetric_preconditioner() -> None:
     """As many stiffnesses as cells, and no preconditioner: 73 iterations, but more than 500 if it adds up."""
     stiffness = 1.0 + np.arange(SIZE).reshape(GRID.shape)
     start = 2.0 + np.random.default_rng(0).random(GRID.shape)

@@ -66,7 +66,7 @@ ASKED = {
 
 
 @pytest.mark.parametrize("asked", ASKED.values(), ids=ASKED)
-def test_units_decide_nothing(asked: Asked) -> None:
+def test_results_scale_with_units(asked: Asked) -> None:
     plain, other = contact_of(asked.shape(), Settings()), contact_of(asked.shape(LENGTH, PRESSURE), Settings())
     assert plain.converged
     assert (plain.converged, plain.iterations) == (other.converged, other.iterations)
@@ -112,7 +112,7 @@ def moved(found: Contact) -> Any:
 
 
 @pytest.mark.parametrize("name", ["load", "approach", "ends", "position"])
-def test_the_gap_is_that_of_the_displaced_body_and_the_shape_where_it_is_stated(name: str) -> None:
+def test_gap_follows_from_displacement_and_shape(name: str) -> None:
     found = contact_of(ASKED[name].shape(), Settings())
     facing = np.isfinite(found.gap)
     expected = found.shape.gap.values + found.displacement - moved(found)
@@ -139,18 +139,18 @@ MOST = {
 
 
 @pytest.mark.parametrize("name", MOST)
-def test_the_operator_is_applied_a_few_times_only(name: str) -> None:
+def test_operator_applications_are_few(name: str) -> None:
     assert contact_of(ASKED[name].shape(), Settings()).iterations <= MOST[name]
 
 
-def test_a_warning_points_at_who_asked() -> None:
+def test_warning_refers_to_caller() -> None:
     found = contact_of(ASKED["load"].shape(), Settings(1e-6, 3))
     with pytest.warns(ConvergenceWarning, match="after 3 operator applications|max_iterations .now 3") as said:
         found.warn_unless_converged()
     assert said[0].filename == __file__
 
 
-def test_distance_of_the_resultant_from_its_place_over_the_length_of_the_contact() -> None:
+def test_position_error_is_relative_to_contact_length() -> None:
     """Of two columns with the resultant halfway between: each weighted by its width, and in any place."""
     for place in (0.0, 5.0):
         grid = Grid.between(place + np.array([0.0, 1.0, 2.0, 3.0, 5.0, 6.0]), (0.0, 1.0), 2)

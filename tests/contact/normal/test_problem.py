@@ -69,7 +69,7 @@ def test_applications_are_counted(grid: Grid, friction: float) -> None:
     assert found.applications == operator.number
 
 
-def test_rounds_end_when_friction_bends_nothing_any_more() -> None:
+def test_coupled_rounds_end_without_bending_change() -> None:
     """The pressure under its own friction is that of the next round, to the tolerance and no more than needed."""
     asked = ball(GRID, friction=0.4)
     operator = Counting(GRID)
@@ -82,7 +82,7 @@ def test_rounds_end_when_friction_bends_nothing_any_more() -> None:
 
 
 @pytest.mark.parametrize("positions", [np.linspace(-1.0, 8.0, 46), np.array([0.0, 1.0, 3.0, 7.0])])
-def test_values_between_columns_are_on_lines(positions: FloatArray) -> None:
+def test_column_interpolation_is_linear(positions: FloatArray) -> None:
     centres = np.array([0.0, 1.0, 3.0, 7.0])
     values = np.random.default_rng(0).standard_normal((4, 3))
     expected = np.stack([np.interp(positions, centres, each) for each in values.T], axis=1)
@@ -92,7 +92,7 @@ def test_values_between_columns_are_on_lines(positions: FloatArray) -> None:
     )
 
 
-def test_halves_of_cells_are_on_lines_between_centres() -> None:
+def test_halved_cells_are_linear_between_centres() -> None:
     values = np.random.default_rng(0).standard_normal((5, 3))
     fine = (np.arange(10) + 0.5) / 2 - 0.5
     assert halve_cells(values, 0) == pytest.approx(interpolate_columns(values, np.arange(5.0), fine), abs=1e-12)
@@ -105,7 +105,7 @@ def tilting(grid: Grid, position: float) -> tuple[FloatArray, float]:
 
 
 @pytest.mark.parametrize("grid", [GRID, GRADED, UNLIKE], ids=["uniform", "graded", "unlike neighbours"])
-def test_cells_joined_in_twos_keep_areas_heights_and_levers(grid: Grid) -> None:
+def test_merged_cells_keep_areas_heights_and_levers(grid: Grid) -> None:
     lever, _ = tilting(grid, 0.2)
     plane = 0.3 + 0.1 * grid.x[:, None] + 0.0 * grid.y
     coarse = ContactProblem(
@@ -121,7 +121,7 @@ def test_cells_joined_in_twos_keep_areas_heights_and_levers(grid: Grid) -> None:
     assert coarse.resultants.total == pytest.approx(2.0 * grid.cell_area / joined.cell_area)
 
 
-def test_cells_with_nothing_to_touch_do_not_count_where_cells_are_joined() -> None:
+def test_merged_cells_ignore_infinite_gaps() -> None:
     gap = np.broadcast_to(GRADED.x[:, None], GRADED.shape).copy()
     gap[:3] = np.inf
     coarse = ContactProblem(
@@ -134,7 +134,7 @@ def test_cells_with_nothing_to_touch_do_not_count_where_cells_are_joined() -> No
 
 
 @pytest.mark.parametrize("grid", [GRID, GRADED], ids=["uniform", "graded"])
-def test_a_tilted_shape_that_is_free_to_tilt_is_levelled(grid: Grid) -> None:
+def test_free_tilt_removes_mean_slope(grid: Grid) -> None:
     lever, arm = tilting(grid, 0.2)
     flat = np.where(grid.x[:, None] > 1.2, np.inf, 0.05 * grid.y**2 + 0.0 * grid.x[:, None])
     tilted = flat + 0.3 * (grid.x[:, None] - 0.2)
@@ -147,7 +147,7 @@ def test_a_tilted_shape_that_is_free_to_tilt_is_levelled(grid: Grid) -> None:
     assert asked.rigid_height((0.5, 0.3 * arm)) == pytest.approx(0.5 + 0.3 * (grid.x[:, None] - 0.2))
 
 
-def test_a_first_guess_follows_the_gap_below_a_level() -> None:
+def test_initial_guess_follows_gap_below_level() -> None:
     """On few cells: pressed where the gap is below the level under which four tenths of the cells are."""
     asked = ball(GRID)
     guess = _initial_guess(Counting(GRID), asked)
@@ -163,7 +163,7 @@ def test_a_first_guess_follows_the_gap_below_a_level() -> None:
     assert ((_initial_guess(Counting(GRID), deep) > 0) == (deep.gap < 0)).all()
 
 
-def test_the_squared_pressure_goes_on_outside_a_hertz_contact() -> None:
+def test_squared_pressure_continues_outside_hertz_contact() -> None:
     """Inside it is ``p0**2 (1 - r**2 / a**2)``; just outside it falls on with about the same slope."""
     grid = Grid(x_range=(-1.5, 1.5), y_range=(-1.5, 1.5), cells_x=60, cells_y=60)
     asked = ball(grid)
@@ -184,7 +184,7 @@ def test_the_squared_pressure_goes_on_outside_a_hertz_contact() -> None:
 
 @pytest.mark.parametrize("approach", [False, True])
 @pytest.mark.parametrize("graded", [False, True])
-def test_a_first_guess_from_coarser_cells_is_almost_the_solution(*, graded: bool, approach: bool) -> None:
+def test_initial_guess_from_coarse_cells_approximates_solution(*, graded: bool, approach: bool) -> None:
     edges = np.linspace(-1.5, 1.5, 65) + (0.1 * np.linspace(-1, 1, 65) ** 2 if graded else 0.0)
     grid = Grid.between(edges, (-1.5, 1.5), 64)
     operator = Counting(grid)
@@ -198,9 +198,7 @@ def test_a_first_guess_from_coarser_cells_is_almost_the_solution(*, graded: bool
 @pytest.mark.parametrize("unit", [2.0**-17, 1.0])
 @pytest.mark.parametrize("friction", [0.4, 1.0, 1.5])
 @pytest.mark.parametrize("tolerance", [1e-2, 1e-3, 1e-4])
-def test_the_last_round_bends_the_surface_by_less_than_the_tolerance(
-    tolerance: float, friction: float, unit: float
-) -> None:
+def test_last_round_changes_surface_within_tolerance(tolerance: float, friction: float, unit: float) -> None:
     """Of the displacement's variation, in any unit: strong friction settles slowly."""
     grid = Grid(x_range=(-1.5 * unit, 1.5 * unit), y_range=(-1.5 * unit, 1.5 * unit), cells_x=16, cells_y=16)
     body = HalfSpace(material=Material(0.91, 0.0))

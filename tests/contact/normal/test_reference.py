@@ -55,7 +55,7 @@ def crowned(**arguments: float) -> Case:
     return Case(body=body, roller=roller, end_distance=0.5e-3, **arguments)
 
 
-def test_a_prescribed_tilt_and_a_prescribed_position_of_its_load_agree() -> None:
+def test_prescribed_tilt_equals_prescribed_position() -> None:
     case = crowned(load=1500.0, tilt=5e-4)
     grid = choose_grid(case, cells_x=4, cells_y=8)
     tilted = solve(case, grid, stresses=False)
@@ -74,7 +74,7 @@ def test_gap_is_initial_gap_and_displacement_less_the_approach() -> None:
     np.testing.assert_allclose(gap.values, result.gap.values, atol=1e-12)
 
 
-def test_the_line_of_the_body_is_at_rest() -> None:
+def test_reference_line_of_body_is_at_rest() -> None:
     case = crowned(load=1500.0, tilt=5e-4)
     result = solve(case, stresses=False, accuracy=0.05)
     x = np.linspace(0.1e-3, 5.9e-3, 16)
@@ -87,7 +87,7 @@ def test_the_line_of_the_body_is_at_rest() -> None:
     assert abs(slope) > 1e-6
 
 
-def test_depths_of_half_spaces_and_bad_depths() -> None:
+def test_half_space_depths_and_invalid_depths() -> None:
     roller = Roller(radius=RADIUS, length=4e-3, profile=CROWN)
     far, near = (
         solve(

@@ -21,7 +21,7 @@ def random_load(grid: Grid = GRID) -> dict[Load, np.ndarray]:
 
 
 @pytest.mark.parametrize("cells", [8, 9])
-def test_the_coarse_operator_sinks_as_the_fine_one(cells: int) -> None:
+def test_coarse_operator_matches_fine_operator(cells: int) -> None:
     """Also if the second body has an odd number of cells: the first then stands for both."""
     counterbody = Counterbody(FiniteLengthSpace(material=SOFT, length=cells * 1e-4, model="mirror"), 4e-4)
     operator = PairOperator.of(BODY, counterbody, GRID, (Load.NORMAL,))
@@ -34,7 +34,7 @@ def test_the_coarse_operator_sinks_as_the_fine_one(cells: int) -> None:
     assert found[facing] == pytest.approx(fine[facing], rel=0.25 if cells % 2 else 0.03)
 
 
-def test_like_half_spaces_are_twice_as_soft_and_so_is_what_scales_one() -> None:
+def test_equal_half_spaces_double_compliance() -> None:
     half = HalfSpace(material=STEEL)
     one = surface_operator(half, GRID)
     unlike = PairOperator.of(half, Counterbody(HalfSpace(material=SOFT)), GRID, (Load.NORMAL,))
@@ -50,7 +50,7 @@ def test_like_half_spaces_are_twice_as_soft_and_so_is_what_scales_one() -> None:
 
 
 @pytest.mark.parametrize("unit", [1.0, 1e-3, 1e6])
-def test_cells_are_the_same_but_for_rounding(unit: float) -> None:
+def test_transfer_ignores_rounding_of_cells(unit: float) -> None:
     grid = Grid(x_range=(0.0, 1.6 * unit), y_range=(-unit, unit), cells_x=16, cells_y=4)
     for start, alike in ((0.4, True), (0.4 + 1e-13, True), (0.4 + 1e-7, False), (0.45, False)):
         counterbody = Counterbody(FiniteLengthSpace(material=SOFT, length=0.8 * unit), start * unit)
@@ -59,7 +59,7 @@ def test_cells_are_the_same_but_for_rounding(unit: float) -> None:
         assert (CellTransfer.of(whole, grid) is None) == alike
 
 
-def test_joined_shares_take_a_load_as_the_fine_ones_do() -> None:
+def test_coarse_transfer_matches_fine_transfer() -> None:
     counterbody = Counterbody(FiniteLengthSpace(material=SOFT, length=0.8e-3), 4.3e-4)
     operator = PairOperator.of(BODY, counterbody, GRID, (Load.NORMAL,))
     shares, coarse = operator._transfer, operator.coarse._transfer

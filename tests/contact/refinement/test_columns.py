@@ -52,7 +52,7 @@ def bends(height: Callable[[FloatArray], FloatArray], low: FloatArray, high: Flo
 
 
 @pytest.mark.parametrize("name", SHAPES)
-def test_low_columns_follow_the_shape_and_high_ones_need_not(name: str) -> None:
+def test_overlooked_columns_leave_low_shape(name: str) -> None:
     height = SHAPES[name]
     edges, plain = first_edges(asked(height)), first_edges(asked(np.zeros_like))
     widths, bent = np.diff(edges), bends(height, edges[:-1], edges[1:])
@@ -75,13 +75,13 @@ def test_low_columns_follow_the_shape_and_high_ones_need_not(name: str) -> None:
 
 @pytest.mark.parametrize("name", SHAPES)
 @pytest.mark.parametrize(("unit", "start"), [(2.0**-17, 0.0), (1.0, -8.0), (1.0, 32.0)])
-def test_neither_unit_nor_place_decides_anything(name: str, unit: float, start: float) -> None:
+def test_results_scale_with_unit_and_position(name: str, unit: float, start: float) -> None:
     plain, other = first_edges(asked(SHAPES[name])), first_edges(asked(SHAPES[name], unit, start))
     assert (other - start) / unit == pytest.approx(plain, abs=1e-9)
 
 
 @pytest.mark.parametrize("half_width", [0.01, 0.3, 1.0, 4.0, 100.0])
-def test_columns_double_from_either_end_up_to_a_widest(half_width: float) -> None:
+def test_first_columns_double_from_ends(half_width: float) -> None:
     edges = first_edges(
         AxialShape(
             start=0.0, stop=LENGTH, half_width=half_width, depth=1.0, height=np.zeros_like, face_beyond=(0.0, 0.0)
@@ -101,13 +101,13 @@ def test_columns_double_from_either_end_up_to_a_widest(half_width: float) -> Non
 
 
 @pytest.mark.parametrize("slope", [0.1, -0.1])
-def test_a_straight_incline_has_the_columns_of_a_level(slope: float) -> None:
+def test_straight_incline_adds_no_columns(slope: float) -> None:
     """It rises by more than the depth within a column, but never leaves its chord."""
     plain, inclined = first_edges(asked(np.zeros_like)), first_edges(asked(lambda x: slope * x))
     assert inclined == pytest.approx(plain)
 
 
-def test_a_shape_that_bends_everywhere_ends_at_the_most_columns() -> None:
+def test_curved_shape_reaches_maximum_columns() -> None:
     edges = first_edges(
         AxialShape(
             start=0.0,

@@ -25,7 +25,7 @@ def chamfered():
     return solved(Chamfer(width=0.5e-3, angle=ANGLE), accuracy=0.02)
 
 
-def test_no_largest_pressure_at_a_corner(chamfered) -> None:
+def test_peak_at_corner_is_infinite(chamfered) -> None:
     assert np.isinf(chamfered.peak_pressure)
     slope = np.tan(ANGLE)
     assert float(chamfered.corner_slope) == pytest.approx(slope)
@@ -35,7 +35,7 @@ def test_no_largest_pressure_at_a_corner(chamfered) -> None:
     assert float(ridge.corner_x) == pytest.approx(LENGTH / 2)
 
 
-def test_pressure_follows_the_logarithm(chamfered) -> None:
+def test_corner_pressure_follows_logarithm(chamfered) -> None:
     """Columns up to 0.05 of d0 on both sides, against the mean of the law."""
     distance = float(chamfered.corner_distance)
     low, high = (chamfered.x_bounds.values - float(chamfered.corner_x)).T
@@ -49,7 +49,7 @@ def test_pressure_follows_the_logarithm(chamfered) -> None:
 
 
 @pytest.mark.parametrize("radius", [50e-6])
-def test_peak_of_a_blend_radius_is_that_of_the_solved_blend(chamfered, radius: float) -> None:
+def test_corner_peak_matches_solved_blend(chamfered, radius: float) -> None:
     blended = solved(Chamfer(width=0.5e-3, angle=ANGLE, blend_radius=radius))
     law = corner_peak(
         float(chamfered.corner_intensity), float(chamfered.corner_distance), float(chamfered.corner_slope), radius
@@ -57,13 +57,13 @@ def test_peak_of_a_blend_radius_is_that_of_the_solved_blend(chamfered, radius: f
     assert law == pytest.approx(float(blended.peak_pressure), rel=0.01)
 
 
-def test_wide_blend_is_refused(chamfered) -> None:
+def test_wide_blend_raises_error(chamfered) -> None:
     with pytest.raises(cs.InvalidInputError) as caught:
         corner_peak(float(chamfered.corner_intensity), 40e-6, 0.035, 1e-3)
     assert caught.value.parameter == "blend_radius"
 
 
-def test_contact_that_ends_at_a_steep_chamfer_has_the_law_of_a_sharp_end() -> None:
+def test_steep_chamfer_has_law_of_sharp_end() -> None:
     sharp = solved(Chamfer(width=0.1e-3, angle=np.radians(45)), accuracy=0.02)
     assert "0.1" in sharp.corner_intensity.attrs["comment"]
     assert float(sharp.end_exponent) == 0.5
@@ -73,7 +73,7 @@ def test_contact_that_ends_at_a_steep_chamfer_has_the_law_of_a_sharp_end() -> No
     assert law == pytest.approx(float(blended.peak_pressure), rel=0.1)
 
 
-def test_measured_corner_leaves_the_peak_open() -> None:
+def test_measured_corner_has_infinite_peak_error() -> None:
     x = np.linspace(-LENGTH / 2, LENGTH / 2, 401)
     result = solved(Measured(x, Chamfer(width=0.5e-3, angle=ANGLE).drop(x, LENGTH)))
     assert np.isfinite(result.peak_pressure)

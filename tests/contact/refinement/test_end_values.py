@@ -25,7 +25,7 @@ def spread(along: FloatArray) -> FloatArray:
 
 
 @pytest.mark.parametrize("tilt", [2.0, -2.0])
-def test_a_pressure_that_rises_to_an_end_has_its_peak_there(tilt: float) -> None:
+def test_pressure_rising_to_end_peaks_at_end(tilt: float) -> None:
     """Exact for a parabola, between the cells along y as well."""
     half = 0.5 * (EDGES[-1] - EDGES[0])
     powers = [1.0, tilt, 1.5]
@@ -41,7 +41,7 @@ def test_a_pressure_that_rises_to_an_end_has_its_peak_there(tilt: float) -> None
     assert 1 + along_y == pytest.approx(1 / ACROSS.max())
 
 
-def test_a_peak_in_a_half_is_not_that_of_the_other() -> None:
+def test_halves_have_separate_peaks() -> None:
     values = np.ones(EDGES.size - 1)
     values[7] = 3.0  # the second column beyond the middle
     peaks, ends, _ = extrapolate_end_pressures(EDGES, spread(values), (None, None))
@@ -61,7 +61,7 @@ def test_ends_without_pressure_and_singular_ends() -> None:
 
 
 @pytest.mark.parametrize("width", [1e-2, 2e-2, 0.1, 1.0])
-def test_loads_at_the_ends_are_integrals_over_one_half_width(width: float) -> None:
+def test_end_loads_integrate_one_half_width(width: float) -> None:
     values = np.random.default_rng(0).uniform(1.0, 2.0, EDGES.size - 1)
     fine = np.linspace(EDGES[0], EDGES[-1], 200001)
     centres, step = 0.5 * (fine[1:] + fine[:-1]), fine[1] - fine[0]
@@ -70,7 +70,7 @@ def test_loads_at_the_ends_are_integrals_over_one_half_width(width: float) -> No
     assert end_loads(EDGES, spread(values), width) == pytest.approx(expected, rel=1e-3)
 
 
-def test_values_are_counted_from_either_end() -> None:
+def test_values_mirror_with_side() -> None:
     values = np.arange(EDGES.size - 1.0)
     first, last = (count_from_end(side, EDGES, values) for side in (0, 1))
     assert first[0][0] == last[0][0] == 0.0

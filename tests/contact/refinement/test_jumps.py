@@ -8,7 +8,7 @@ import pytest
 from contactstudy.contact.refinement.refinement import MIN_HALF_PRESSURE, _crest_jumps, _jumps
 
 
-def test_a_crest_that_is_lower_than_the_peak_is_split_by_its_own_pressure() -> None:
+def test_low_crest_jumps_relative_to_own_pressure() -> None:
     """Beside the contact's end, seen by one column: 1.4 of a peak of 3."""
     top = np.array([0.0, 0.0, 0.8, 1.4, 1.2, 2.0, 2.8, 3.0, 3.0, 2.8])
     steps = _crest_jumps(top[:, None])
@@ -20,7 +20,7 @@ def test_a_crest_that_is_lower_than_the_peak_is_split_by_its_own_pressure() -> N
 
 
 @pytest.mark.parametrize("lesser", [0.5, 0.02])
-def test_jumps_are_over_the_largest_of_a_half(lesser: float) -> None:
+def test_jumps_are_relative_to_half_peak(lesser: float) -> None:
     """Of a power of the pressure, to either neighbour and in any row; a half that is hardly pressed does not count."""
     random = np.random.default_rng(0)
     edges = np.array([3.0, 4.0, 4.5, 5.5, 6.0, 7.0, 8.0, 9.0, 10.0])

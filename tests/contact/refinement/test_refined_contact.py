@@ -49,7 +49,7 @@ KNOWN_FILLETS = {0.5e-3: 2.8565, 0.2e-3: 3.6418, 0.1e-3: 4.4744, 0.05e-3: 5.556}
 """Peaks over p0 on a half-space from an independent refinement to 570 columns down to 0.0004 a."""
 
 
-def test_stated_peak_of_a_fillet_is_within_its_error_of_finer_cells() -> None:
+def test_fillet_peak_error_covers_finer_cells() -> None:
     fillet = 0.2e-3
     case = Case(body=HALF, roller=filleted(fillet), max_pressure=PRESSURE)
     found = settled(case)
@@ -63,7 +63,7 @@ def test_stated_peak_of_a_fillet_is_within_its_error_of_finer_cells() -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("fillet", KNOWN_FILLETS)
-def test_stated_peak_of_a_fillet_is_within_its_error_of_four_times_finer_cells(fillet: float) -> None:
+def test_fillet_peak_error_covers_four_times_finer_cells(fillet: float) -> None:
     case = Case(body=HALF, roller=filleted(fillet), max_pressure=PRESSURE)
     found = settled(case)
     finer = finer_peak(case, found, 4)
@@ -74,7 +74,7 @@ def test_stated_peak_of_a_fillet_is_within_its_error_of_four_times_finer_cells(f
 
 @pytest.mark.slow
 @pytest.mark.parametrize("body", [finite(), QuarterSpace(material=STEEL)], ids=["finite", "quarter"])
-def test_stated_peak_between_free_ends_is_within_its_error_of_finer_cells(
+def test_peak_error_between_free_ends_covers_finer_cells(
     body: FiniteLengthSpace | QuarterSpace,
 ) -> None:
     case = Case(body=body, roller=filleted(0.2e-3), max_pressure=PRESSURE)
@@ -83,7 +83,7 @@ def test_stated_peak_between_free_ends_is_within_its_error_of_finer_cells(
 
 
 @pytest.mark.parametrize("name", [name for name in CASES if name not in ("inside", "tilt")])
-def test_contact_is_that_on_uniform_cells(name: str) -> None:
+def test_refined_contact_matches_uniform_cells(name: str) -> None:
     case = CASES[name]
     found = solve(case, stresses=False)
     uniform = solve(case, choose_grid(case, cells_x=24, cells_y=16, window=3.0), stresses=False)
@@ -128,7 +128,7 @@ def test_mirrored_case_has_the_mirrored_contact(name: str) -> None:
     assert np.allclose(there.pressure.max(axis=1), back.pressure[::-1].max(axis=1), atol=1e-4 * there.peak)
 
 
-def test_table_of_points_of_a_fillet_has_the_peak_of_the_fillet() -> None:
+def test_measured_fillet_has_peak_of_fillet() -> None:
     made = filleted(0.2e-3).profile
     near = np.concatenate([np.linspace(0, 0.2e-3, 401), np.linspace(0.21e-3, 1e-3, 80)])
     x = np.unique(np.concatenate([-LENGTH / 2 + near, np.linspace(-4e-3, 4e-3, 161), LENGTH / 2 - near]))
@@ -143,13 +143,13 @@ def test_table_of_points_of_a_fillet_has_the_peak_of_the_fillet() -> None:
 
 
 @pytest.mark.parametrize("accuracy", [0.0, -0.01, 9e-4, 0.11, np.nan, "high"])
-def test_accuracy_that_cannot_be_reached_is_refused(accuracy: object) -> None:
+def test_invalid_accuracy_raises_error(accuracy: object) -> None:
     with pytest.raises(InvalidInputError, match="accuracy"):
         solve(CASES["half-space"], accuracy=accuracy, stresses=False)  # type: ignore[arg-type]
 
 
 @pytest.mark.slow
-def test_coupled_friction_is_in_the_values_that_are_stated() -> None:
+def test_coupled_friction_changes_stated_values() -> None:
     """The columns follow the uncoupled contact, but the values belong to the pressure that is returned."""
     body = FiniteLengthSpace(length=8 * A, material=Material(210e9, 0.1))
     roller = Roller(radius=RADIUS, length=8 * A)
@@ -164,7 +164,7 @@ def test_coupled_friction_is_in_the_values_that_are_stated() -> None:
 
 
 @pytest.mark.parametrize(("accuracy", "least"), [(0.05, 8), (0.01, 17)])
-def test_the_peak_has_cells_across_it_as_the_accuracy_asks(accuracy: float, least: int) -> None:
+def test_accuracy_determines_cells_across_peak(accuracy: float, least: int) -> None:
     found = refine_contact(CASES["half-space"], accuracy, 1e-6)
     pressure = found.contact.pressure
     assert int((pressure[int(pressure.max(axis=1).argmax())] > 0).sum()) >= least
@@ -180,7 +180,7 @@ class _Crown:
         return np.asarray(x**2 / (2 * self.radius))
 
 
-def test_contacts_are_kept_for_values_only() -> None:
+def test_cache_compares_cases_by_value() -> None:
     case = Case(body=HALF, roller=filleted(0.2e-3, SHORT), max_pressure=PRESSURE)
     first = refine_contact(case, 0.05, 1e-6)
     assert refine_contact(replace(case, friction=0.2), 0.05, 1e-6) is first
@@ -193,7 +193,7 @@ def test_contacts_are_kept_for_values_only() -> None:
     assert refine_contact(changed, 0.05, 1e-6).refined.peak > 1.05 * before
 
 
-def test_what_a_user_does_to_a_result_does_not_reach_the_next_one() -> None:
+def test_modified_result_does_not_change_next_result() -> None:
     first = solve(CASES["half-space"], stresses=False, accuracy=0.05)
     kept = first["pressure"].values.copy()
     for name in ("pressure", "gap", "displacement_z", "initial_gap"):
@@ -203,7 +203,7 @@ def test_what_a_user_does_to_a_result_does_not_reach_the_next_one() -> None:
 
 @pytest.mark.parametrize("part", [0.2, 0.5, 0.75, 0.95])
 @pytest.mark.parametrize("accuracy", [0.2, 0.05, 0.01, 0.002])
-def test_cells_across_are_the_fewest_that_leave_a_quarter_of_the_accuracy(accuracy: float, part: float) -> None:
+def test_cell_number_is_least_sufficient_one(accuracy: float, part: float) -> None:
     """What lies between cells is 0.7 over the square of their number across the contact."""
     cells = _cell_number_y(part, accuracy)
 
@@ -215,7 +215,7 @@ def test_cells_across_are_the_fewest_that_leave_a_quarter_of_the_accuracy(accura
 
 
 @pytest.mark.parametrize("distance", [-0.2e-3, 0.0, 1e-15, 1e-9, 0.3e-3])
-def test_the_face_goes_on_beyond_an_end_of_the_roller(distance: float) -> None:
+def test_face_length_beyond_roller_end(distance: float) -> None:
     """By what is left to the end of the body; by nothing where both end together, or where the roller overhangs."""
     body = finite(1.5e-3)
     case = Case(body=body, roller=filleted(0.1e-3, 1e-3), max_pressure=PRESSURE, end_distance=distance)
@@ -227,7 +227,7 @@ def test_the_face_goes_on_beyond_an_end_of_the_roller(distance: float) -> None:
     assert room[0] == 0.0 or distance > 1e-12
 
 
-def test_a_contact_that_needs_the_widest_window_gets_it(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_wide_contact_has_widest_window(monkeypatch: pytest.MonkeyPatch) -> None:
     case, tried = Case(body=HALF, roller=filleted(0.2e-3), max_pressure=PRESSURE), []
 
     def too_narrow(case: Case, half_window: float, accuracy: float, tolerance: float) -> object:
@@ -252,7 +252,7 @@ FITTED = {
 
 
 @pytest.mark.parametrize("name", FITTED)
-def test_the_window_fits_the_contact(name: str) -> None:
+def test_window_fits_contact(name: str) -> None:
     """A tenth wider at least, and by no more than one step of the windows that cases share, and a rough cell."""
     contact = settled(FITTED[name], 0.05).contact
     grid = contact.shape.grid
@@ -260,7 +260,7 @@ def test_the_window_fits_the_contact(name: str) -> None:
     assert 1.05 < grid.y_range[1] / reach < 1.1 * 2 ** (1 / 6) * 1.15
 
 
-def test_columns_of_a_grid_that_begins_elsewhere() -> None:
+def test_roller_columns_of_shifted_grid() -> None:
     grid = Grid.between(np.array([-3.0, -2.0, -1.0, 1.0, 1.5, 2.0, 4.0]), (0.0, 1.0), 2)
     assert _roller_columns(grid, np.array([1.0, 1.5, 2.0])) == slice(3, 5)
     assert _roller_columns(grid, np.array([-2.0 + 1e-12, -1.0])) == slice(1, 2)
@@ -279,7 +279,7 @@ class Wavy(profiles.Shape):
         return np.asarray(x) ** 2 / (2 * self.crown_radius) + waves
 
 
-def test_every_crest_of_a_wavy_profile_is_followed() -> None:
+def test_wavy_profile_crests_are_resolved() -> None:
     """Some are pressed though they lie deeper than the first columns look: the approach is several a**2/2R."""
     length, wave = 2e-3, 0.2e-3
     roller = Roller(radius=RADIUS, length=length, profile=Wavy(0.5, 0.6e-6, wave))

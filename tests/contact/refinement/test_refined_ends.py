@@ -23,7 +23,7 @@ from tests.contact.refinement.rollers import (
 )
 
 
-def test_sharp_rigid_end_in_a_face_is_a_square_root_with_its_intensity() -> None:
+def test_sharp_rigid_end_has_square_root_law() -> None:
     case = Case(body=HALF, roller=Roller(radius=RADIUS, length=LENGTH), max_pressure=PRESSURE)
     values = refined_values(settled(case))
     assert np.isinf(values.peak_pressure)
@@ -36,7 +36,7 @@ def test_sharp_rigid_end_in_a_face_is_a_square_root_with_its_intensity() -> None
         assert abs(intensity / (PRESSURE * np.sqrt(A)) - 0.8125) * PRESSURE * np.sqrt(A) <= error < 0.01 * intensity
 
 
-def test_peak_from_the_intensity_is_that_of_a_small_fillet() -> None:
+def test_edge_peak_matches_small_fillet() -> None:
     fillet = 0.01e-3
     sharp = settled(Case(body=HALF, roller=Roller(radius=RADIUS, length=LENGTH), max_pressure=PRESSURE))
     law = sharp.refined.laws[0]
@@ -56,7 +56,7 @@ def test_flush_end_of_a_free_body_has_a_finite_pressure() -> None:
     assert found.peak / PRESSURE == pytest.approx(1.013, abs=0.004)
 
 
-def test_same_end_without_its_own_freedom_is_a_logarithm_when_tilted() -> None:
+def test_tilted_end_without_correction_has_logarithm() -> None:
     body = FiniteLengthSpace(length=LENGTH, material=STEEL, model="mirror")
     case = Case(body=body, roller=Roller(radius=RADIUS, length=LENGTH), max_pressure=PRESSURE, tilt=5e-4)
     laws = settled(case).refined.laws
@@ -68,7 +68,7 @@ def test_same_end_without_its_own_freedom_is_a_logarithm_when_tilted() -> None:
     assert freed.values["end_pressure"][0] < freed.values["end_pressure"][1] < freed.peak
 
 
-def test_a_singular_end_and_the_other_half_free_of_contact() -> None:
+def test_singular_end_with_unloaded_half() -> None:
     roller = Roller(radius=RADIUS, length=0.3e-3, profile=profiles.FullCrown(0.5))
     found = settled(Case(body=HALF, roller=roller, max_pressure=PRESSURE, tilt=0.02), 0.1).refined
     assert found.accurate
@@ -76,7 +76,7 @@ def test_a_singular_end_and_the_other_half_free_of_contact() -> None:
     assert found.values["end_load"][0] == 0.0
 
 
-def test_sharp_elastic_end_in_a_face_grows_with_a_smaller_power() -> None:
+def test_sharp_elastic_end_has_smaller_exponent() -> None:
     """A 90 degree edge on a half-space of the same material, without friction: about 0.226."""
     half_width = 2 * A
     roller = Roller(radius=RADIUS, length=30 * half_width, material=STEEL)
@@ -88,7 +88,7 @@ def test_sharp_elastic_end_in_a_face_grows_with_a_smaller_power() -> None:
         assert 0.2 < law.exponent < 0.24
 
 
-def test_crown_that_leaves_the_ends_free_has_its_peak_in_the_middle() -> None:
+def test_crowned_roller_peaks_at_mid_length() -> None:
     crown = profiles.Lundberg.for_pressure(PRESSURE, radius=RADIUS, modulus=STEEL.plane_strain_modulus)
     case = Case(body=finite(), roller=Roller(radius=RADIUS, length=LENGTH, profile=crown), max_pressure=PRESSURE)
     found = settled(case)
@@ -99,9 +99,7 @@ def test_crown_that_leaves_the_ends_free_has_its_peak_in_the_middle() -> None:
 
 
 @pytest.mark.parametrize(("material", "distance"), [(None, 1e-3), (STEEL, -1e-2)])
-def test_end_close_to_that_of_the_body_has_the_contact_of_a_flush_one(
-    material: Material | None, distance: float
-) -> None:
+def test_end_near_free_end_matches_flush_end(material: Material | None, distance: float) -> None:
     """The room that is left is much narrower than the columns; its cells are accepted by every verb."""
     case, flush = (
         Case(
@@ -122,7 +120,7 @@ def test_end_close_to_that_of_the_body_has_the_contact_of_a_flush_one(
 
 
 @pytest.mark.parametrize("distance", [1e-4, 0.05])
-def test_a_sharp_end_close_to_a_free_end_is_never_a_plain_number(distance: float) -> None:
+def test_sharp_end_near_free_end_has_infinite_error(distance: float) -> None:
     """At 1e-4 a no column shows the law; at 0.05 a the fitted intensity says that it is no better than some percent."""
     case = Case(
         body=finite(LENGTH + 2 * distance * A), roller=Roller(radius=RADIUS, length=LENGTH), max_pressure=PRESSURE
@@ -135,7 +133,7 @@ def test_a_sharp_end_close_to_a_free_end_is_never_a_plain_number(distance: float
         assert float(found["end_intensity_first_error"] / found["end_intensity_first"]) > 0.05
 
 
-def test_an_end_that_fades_is_never_a_plain_number() -> None:
+def test_fading_end_has_infinite_error() -> None:
     """The first column's pressure falls by 5 % with each halving, from 0.64 to 0.47 p0 and on."""
     rubber = Material(6e8, 0.0)
     roller = Roller(radius=RADIUS, length=0.13e-3, material=rubber)
@@ -145,7 +143,7 @@ def test_an_end_that_fades_is_never_a_plain_number() -> None:
     assert 0 < float(found["peak_pressure_first_error"]) < 0.02 * float(found["peak_pressure_first"])
 
 
-def test_a_sharp_end_that_alone_is_pressed_has_its_law() -> None:
+def test_single_loaded_sharp_end_has_law() -> None:
     body = finite(3e-3)
     case = Case(body=body, roller=Roller(radius=RADIUS, length=2e-3), load=100.0, end_distance=0.5e-3, tilt=2e-3)
     free, law = settled(case, 0.05).refined.laws

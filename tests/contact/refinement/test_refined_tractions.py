@@ -54,7 +54,7 @@ WHOLE = 0.1 * LIKE.normal_load
     ],
     ids=["creepages and spin", "forces", "shift", "shifting force"],
 )
-def test_default_cells_agree_with_fine_uniform_ones_to_the_errors_that_are_stated(motion: Rolling | Shift) -> None:
+def test_stated_errors_cover_fine_uniform_cells(motion: Rolling | Shift) -> None:
     case = replace(LIKE, motion=motion)
     found = solve(case, stresses=False)
     assert bool(found.converged)
@@ -79,7 +79,7 @@ def test_default_cells_agree_with_fine_uniform_ones_to_the_errors_that_are_state
     assert float(found["friction_work"]) == pytest.approx(float(fine["friction_work"]), abs=5e-3 * put_in)
 
 
-def test_the_columns_are_those_without_motion() -> None:
+def test_motion_keeps_columns() -> None:
     rolling = replace(INSIDE, motion=Rolling(longitudinal_creepage=2e-2))
     still, moved = (solve(case, stresses=False, accuracy=0.1) for case in (INSIDE, rolling))
     assert np.array_equal(still["x"], moved["x"])
@@ -89,14 +89,14 @@ def test_the_columns_are_those_without_motion() -> None:
     assert float((np.hypot(moved["traction_x"], moved["traction_y"]) - bound).max()) < 1e-6 * float(bound.max())
 
 
-def test_creepages_share_one_settled_contact() -> None:
+def test_creepages_share_one_contact() -> None:
     first = refine_contact(replace(LIKE, motion=Rolling(longitudinal_creepage=1e-3)), 0.05, 1e-6)
     assert refine_contact(replace(LIKE, motion=Rolling(force_y=1.0)), 0.05, 1e-6) is first
     assert refine_contact(LIKE, 0.05, 1e-6) is not first  # its window is narrower
 
 
 @pytest.mark.slow
-def test_coupled_tractions_are_in_the_values_that_are_stated() -> None:
+def test_coupled_tractions_change_stated_values() -> None:
     """A rigid roller on compressible material: what drives it lifts the surface."""
     body = HalfSpace(material=Material(210e9, 0.0))
     case = replace(INSIDE, body=body, coupled=True, friction=0.5, motion=Rolling(longitudinal_creepage=0.05))
@@ -107,7 +107,7 @@ def test_coupled_tractions_are_in_the_values_that_are_stated() -> None:
     assert float(found["force_y"]) == pytest.approx(0.5 * case.normal_load, rel=0.02)
 
 
-def test_given_columns_are_taken() -> None:
+def test_given_columns_are_used() -> None:
     edges = LIKE.body.extent[1] * np.concatenate([np.linspace(0, 0.2, 9)[:-1], np.linspace(0.2, 1, 13)])
     half = LIKE.hertz_half_width
     case = replace(LIKE, motion=Rolling(longitudinal_creepage=1e-3))
@@ -145,7 +145,7 @@ def made_up(case: Case, pressed: float, **rigid: float) -> FrictionalContact:
     return FrictionalContact(contact, tractions, True)
 
 
-def test_changes_are_related_to_full_sliding_and_to_the_slip_of_a_line_contact() -> None:
+def test_changes_are_relative_to_full_sliding() -> None:
     """Forces and moment of full sliding; creepages of ``f a / R``, shifts of ``f a**2 / R``, or more if they are."""
     pressed = 1e9
     slip = 0.1 * LIKE.hertz_half_width / 5e-3
@@ -173,7 +173,7 @@ def test_changes_are_related_to_full_sliding_and_to_the_slip_of_a_line_contact()
 @pytest.mark.parametrize(
     ("changes", "accuracy", "tried"), [([0.5], 0.6, 2), ([0.5, 0.3, 0.1], 0.2, 4), ([0.9] * 9, 0.1, 9)]
 )
-def test_cells_double_until_what_is_free_changes_by_no_more_than_the_accuracy(
+def test_cells_double_until_changes_meet_accuracy(
     changes: list[float], accuracy: float, tried: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Of full sliding's force; what is prescribed may change, and the error that is stated is the last change
@@ -203,7 +203,7 @@ def test_cells_double_until_what_is_free_changes_by_no_more_than_the_accuracy(
     assert "longitudinal_creepage" not in found.errors
 
 
-def test_fastsim_takes_the_cells_of_the_normal_contact(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_fastsim_uses_cells_of_normal_contact(monkeypatch: pytest.MonkeyPatch) -> None:
     """Finer cells do not reduce the error of its model."""
     rows: list[int] = []
     original = module.frictional_contact

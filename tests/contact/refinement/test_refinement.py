@@ -72,7 +72,7 @@ def marked_edges(draw: st.DrawFn) -> tuple[FloatArray, BoolArray]:
 
 
 @given(marked=marked_edges())
-def test_splitting_halves_marked_columns_and_keeps_edges_and_growth(marked: tuple[FloatArray, BoolArray]) -> None:
+def test_split_halves_marked_columns(marked: tuple[FloatArray, BoolArray]) -> None:
     edges, marks = marked
     finer = split_columns(edges, marks)
     assert np.all(np.isin(edges, finer))
@@ -85,7 +85,7 @@ def test_splitting_halves_marked_columns_and_keeps_edges_and_growth(marked: tupl
 
 
 @given(length=st.floats(1.0, 300.0))
-def test_first_columns_are_narrow_at_both_ends_and_symmetric(length: float) -> None:
+def test_first_columns_are_symmetric_and_narrow_at_ends(length: float) -> None:
     edges = first_edges(shape(length))
     widths = np.diff(edges)
     assert (edges[0], edges[-1]) == (0.0, length)
@@ -94,7 +94,7 @@ def test_first_columns_are_narrow_at_both_ends_and_symmetric(length: float) -> N
     assert np.all(widths[1 : widths.size // 2] / widths[: widths.size // 2 - 1] <= MAX_WIDTH_RATIO)
 
 
-def test_first_columns_are_split_where_the_shape_bends() -> None:
+def test_first_columns_split_at_curvature() -> None:
     fillet, kink = 3.0, 17.0
     bent = AxialShape(
         start=0.0,
@@ -121,7 +121,7 @@ BUMPS: dict[str, Callable[[FloatArray], FloatArray]] = {
 
 @pytest.mark.parametrize("accuracy", [0.05, 0.01, 0.003])
 @pytest.mark.parametrize("name", BUMPS)
-def test_stated_peak_and_ends_are_within_their_errors(name: str, accuracy: float) -> None:
+def test_errors_cover_peak_and_ends(name: str, accuracy: float) -> None:
     along = BUMPS[name]
     found = refine_columns(averaged(along), shape(), accuracy)
     peak = float(along(np.linspace(0.0, LENGTH, 200001)).max())
@@ -151,7 +151,7 @@ def test_mirrored_pressure_is_refined_to_mirrored_columns(at: float, height: flo
 
 
 @pytest.mark.parametrize("exponent", [0.5, 0.25])
-def test_power_law_is_stated_by_intensity_and_the_other_end_by_pressure(exponent: float) -> None:
+def test_singular_end_has_intensity_and_regular_end_pressure(exponent: float) -> None:
     bend = 0.02
 
     def exact(edges: FloatArray, start: FloatArray | None, tolerance: float) -> ColumnPressure:
@@ -176,7 +176,7 @@ def test_power_law_is_stated_by_intensity_and_the_other_end_by_pressure(exponent
     assert law.intensity == pytest.approx(0.7 * np.sqrt(1 - Y[7] ** 2), rel=0.01)
 
 
-def test_what_cannot_be_settled_ends_at_the_most_columns_and_says_so() -> None:
+def test_unresolved_pressure_ends_at_maximum_columns() -> None:
     def restless(edges: FloatArray, start: FloatArray | None, tolerance: float) -> ColumnPressure:
         noise = np.random.default_rng(edges.size).random((edges.size - 1, 1))
         noise[[0, 1, -2, -1]] = 0.0
@@ -206,7 +206,7 @@ FOLLOWED = BUMPS | {
     ("unit", "place", "side"), [(2.0**-17, 0.0, 0), (1.0, -8.0, 0), (1.0, 64.0, 1), (2.0**-17, 0.0, 1)]
 )
 @pytest.mark.parametrize("name", FOLLOWED)
-def test_neither_units_nor_place_nor_side_decide_anything(name: str, unit: float, place: float, side: int) -> None:
+def test_refinement_scales_with_units_position_and_side(name: str, unit: float, place: float, side: int) -> None:
     """Found from either end, elsewhere and in other units, of length and of pressure, the columns are the same."""
     pressure, along = 2.0**37 if unit < 1 else 1.0, averaged(FOLLOWED[name])
 
@@ -245,7 +245,7 @@ def test_neither_units_nor_place_nor_side_decide_anything(name: str, unit: float
         exponents=known[:: 1 - 2 * side],
     )
     other = refine_columns(solve, elsewhere, 0.02)
-    assert (other.accurate, other.first_edges.size) == (plain.accurate, plain.first.size)
+    assert (other.accurate, other.first_edges.size) == (plain.accurate, plain.first_edges.size)
     assert np.sort(own(other.edges)) == pytest.approx(plain.edges, abs=1e-9)
     for key, factor in {"peak_pressure": pressure, "end_pressure": pressure, "end_load": pressure * unit}.items():
         for values, expected in ((other.values, plain.values), (other.errors, plain.errors)):
@@ -265,7 +265,7 @@ def outermost(name: str, face_beyond: tuple[float, float] = (0.0, 0.0)) -> tuple
     return float(widths[0]), float(widths[-1])
 
 
-def test_pressed_ends_are_resolved_the_more_the_sharper_they_are() -> None:
+def test_sharper_ends_have_narrower_columns() -> None:
     for width in outermost("falls to the end"):
         assert MIN_END_COLUMN < 0.3 * END_COLUMN_WIDTH < width <= END_COLUMN_WIDTH
     for name in ("rises to one end", "rises to one end below a peak"):
@@ -278,7 +278,7 @@ def test_pressed_ends_are_resolved_the_more_the_sharper_they_are() -> None:
     assert min(outermost("contact's end", (2.0, 2.0))) > END_COLUMN_WIDTH  # neither is pressed
 
 
-def test_columns_about_the_ends_of_a_contact_are_narrow() -> None:
+def test_columns_near_contact_ends_are_narrow() -> None:
     found = refine_columns(averaged(FOLLOWED["contact's end"]), shape(), 0.05)
     edges, widths = found.edges, np.diff(found.edges)
     touched = np.flatnonzero(found.pressure.any(axis=1))
@@ -291,7 +291,7 @@ def test_columns_about_the_ends_of_a_contact_are_narrow() -> None:
 
 @pytest.mark.parametrize("unit", [2.0**-17, 1.0, 2.0**10])
 @pytest.mark.parametrize("side", [0, 1])
-def test_a_step_at_an_end_is_marked_by_what_the_line_to_the_end_adds(side: int, unit: float) -> None:
+def test_end_step_marks_end_columns(side: int, unit: float) -> None:
     """Half the difference of two like columns counts four times; its square, 0.03 of the largest one, does not."""
     edges = np.concatenate([0.01 * np.arange(11), np.linspace(0.2, LENGTH, 100)])
     along = np.where(np.arange(edges.size - 1) == 0, 0.1, 0.2)
@@ -311,7 +311,7 @@ def test_a_step_at_an_end_is_marked_by_what_the_line_to_the_end_adds(side: int, 
         assert state._select_columns_to_split(theta)[-side] == marked
 
 
-def test_half_of_the_last_changes_is_the_error() -> None:
+def test_error_is_half_of_last_changes() -> None:
     assert _change_error([5.0, 1.0, 1.2, 1.25], 0.0) == pytest.approx(0.5 * 0.25)
     assert _change_error([1.0, 1.25, 1.2], 0.2) == 0.2
     assert _change_error([1.0, np.inf, 1.2], 0.0) == pytest.approx(0.1)
@@ -320,7 +320,7 @@ def test_half_of_the_last_changes_is_the_error() -> None:
 
 
 @pytest.mark.parametrize("length", [20.0, 0.5])
-def test_least_errors_of_loads_are_the_same_part_of_the_usual_as_those_of_peaks(length: float) -> None:
+def test_load_and_peak_errors_have_equal_floor(length: float) -> None:
     found = refine_columns(averaged(BUMPS["even"]), shape(length), 0.02)
     usual = float(found.pressure[0].sum()) * min(HALF_WIDTH, length)
     assert found.values["end_load"] == pytest.approx((usual, usual))
@@ -329,7 +329,7 @@ def test_least_errors_of_loads_are_the_same_part_of_the_usual_as_those_of_peaks(
 
 
 @pytest.mark.parametrize("name", ["lesser peak", "singular"])
-def test_another_pressure_on_the_same_columns_has_errors_that_grow_with_it(name: str) -> None:
+def test_replaced_pressure_scales_errors(name: str) -> None:
     asked = shape(face_beyond=(3.0, 0.0))
     found = refine_columns(averaged(FOLLOWED[name]), asked, 0.02)
     other = replace_pressure(found, 1.25 * found.pressure, asked)
@@ -344,7 +344,7 @@ def test_another_pressure_on_the_same_columns_has_errors_that_grow_with_it(name:
             assert again.intensity == pytest.approx(1.25 * law.intensity)
 
 
-def test_an_end_that_was_not_pressed_before_is_all_in_doubt() -> None:
+def test_newly_loaded_end_has_error_of_its_pressure() -> None:
     # Random case 4008736: coupled friction presses an end that the pressure alone does not reach.
     asked = shape()
     found = refine_columns(averaged(FOLLOWED["contact's end"]), asked, 0.02)
@@ -358,7 +358,7 @@ def test_an_end_that_was_not_pressed_before_is_all_in_doubt() -> None:
 
 
 @pytest.mark.parametrize("errors", [(0.1, np.inf), (np.inf, 0.1)])
-def test_of_two_equal_peaks_the_larger_error_counts(errors: tuple[float, float]) -> None:
+def test_equal_peaks_take_larger_error(errors: tuple[float, float]) -> None:
     found = refine_columns(averaged(FOLLOWED["even"]), shape(), 0.02)
 
     def peak_error(peaks: tuple[float, ...]) -> float:
@@ -368,7 +368,7 @@ def test_of_two_equal_peaks_the_larger_error_counts(errors: tuple[float, float])
     assert peak_error((1.0, 0.5)[:: 1 if errors[0] < 1 else -1]) == 0.1
 
 
-def test_an_end_is_sampled_wherever_its_column_was_split(caplog: pytest.LogCaptureFixture) -> None:
+def test_end_samples_follow_splitting(caplog: pytest.LogCaptureFixture) -> None:
     state = Refinement(solve=averaged(FOLLOWED["rises to one end"]), shape=shape(), edges=first_edges(shape()))
     with caplog.at_level("INFO"):
         for theta in (0.5, 0.3, 0.2):
@@ -383,7 +383,7 @@ def test_an_end_is_sampled_wherever_its_column_was_split(caplog: pytest.LogCaptu
 
 
 @pytest.mark.parametrize("side", [0, 1])
-def test_a_sharp_end_that_is_not_pressed_needs_no_law(side: int) -> None:
+def test_unloaded_sharp_end_has_no_law(side: int) -> None:
     """The other end is pressed and settles; the pressure begins one column behind the sharp end."""
 
     def along(x: FloatArray) -> FloatArray:
@@ -400,7 +400,7 @@ def test_a_sharp_end_that_is_not_pressed_needs_no_law(side: int) -> None:
 
 @pytest.mark.parametrize("slope", [0.5, -0.5])
 @pytest.mark.parametrize("side", [0, 1])
-def test_peak_at_a_pressed_sharp_end_has_an_infinite_error(side: int, slope: float) -> None:
+def test_peak_at_sharp_end_has_infinite_error(side: int, slope: float) -> None:
     def pressure(x: FloatArray) -> FloatArray:
         distance = x if side == 0 else LENGTH - x
         return np.asarray(1 + slope * distance / LENGTH)
@@ -413,7 +413,7 @@ def test_peak_at_a_pressed_sharp_end_has_an_infinite_error(side: int, slope: flo
 
 @pytest.mark.parametrize("side", [0, 1])
 @pytest.mark.parametrize("law", [None, EndLaw(kind="power", exponent=0.5)])
-def test_a_rough_contact_is_singular_where_a_sharp_end_is_pressed_or_has_a_law(side: int, law: EndLaw | None) -> None:
+def test_loaded_sharp_end_makes_contact_singular(side: int, law: EndLaw | None) -> None:
     pressure = np.zeros((4, 3))
     pressure[-side] = 1.0
 
@@ -428,7 +428,7 @@ def test_a_rough_contact_is_singular_where_a_sharp_end_is_pressed_or_has_a_law(s
     assert singular(shape(face_beyond=sharp, elastic=True)) == (law is not None)
 
 
-def test_a_rough_contact_has_the_columns_of_the_second_threshold() -> None:
+def test_rough_contact_uses_second_threshold() -> None:
     solve, asked = averaged(FOLLOWED["lesser peak"]), shape()
     rough, fine = rough_columns(solve, asked), refine_columns(solve, asked, 0.02)
     assert np.isin(rough.edges, fine.edges).all()

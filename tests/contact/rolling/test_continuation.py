@@ -18,7 +18,7 @@ from contactstudy.contact.rolling.coulomb import (
 from tests.contact.rolling.test_coulomb import holds, problem
 
 
-def test_forces_are_raised_where_the_first_try_fails(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_failed_newton_raises_forces_stepwise(monkeypatch: pytest.MonkeyPatch) -> None:
     bound = np.random.default_rng(5).uniform(0.2, 1.0, 30)
     asked = problem(np.zeros((2, 30)), bound, forces=0.9 * bound.sum() * np.array([0.6, 0.8]), skew=0.5)
     whole: list[float] = []
@@ -48,13 +48,13 @@ def test_forces_are_raised_where_the_first_try_fails(monkeypatch: pytest.MonkeyP
     assert found.traction.sum(axis=1) == pytest.approx(asked.resultants, abs=1e-6 * bound.sum())
 
 
-def test_what_cannot_be_reached_says_so() -> None:
+def test_unreachable_forces_do_not_converge() -> None:
     bound = np.ones(6)
     asked = problem(np.zeros((2, 6)), bound, forces=np.array([0.0, 6.5]))
     assert not solve_with_continuation(replace(asked, max_steps=200)).converged
 
 
-def test_steps_go_along_a_line_and_are_counted(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_continuation_steps_are_linear_and_counted(monkeypatch: pytest.MonkeyPatch) -> None:
     """From the resultants without unknown slips to the prescribed ones: longer steps after success, else shorter."""
     bound = np.random.default_rng(5).uniform(0.2, 1.0, 12)
     random = np.random.default_rng(6)

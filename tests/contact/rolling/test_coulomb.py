@@ -74,7 +74,7 @@ def test_the_law_holds_from_stick_to_full_sliding(size: float, skew: float, seed
 
 
 @pytest.mark.parametrize("part", [0.0, 0.4, 0.95])
-def test_forces_are_met_by_the_rigid_slip(part: float) -> None:
+def test_rigid_slip_satisfies_prescribed_forces(part: float) -> None:
     bound = np.random.default_rng(5).uniform(0.2, 1.0, 30)
     force = part * bound.sum() * np.array([0.6, 0.8])
     asked = problem(np.zeros((2, 30)), bound, forces=force, skew=0.5)
@@ -84,7 +84,7 @@ def test_forces_are_met_by_the_rigid_slip(part: float) -> None:
     assert found.traction.sum(axis=1) == pytest.approx(force, abs=1e-6 * bound.sum())
 
 
-def test_a_guess_changes_the_work_and_not_the_result() -> None:
+def test_guess_changes_steps_only() -> None:
     random = np.random.default_rng(7)
     bound = random.uniform(0.2, 1.0, 40)
     asked = problem(random.standard_normal((2, 40)), bound, skew=0.5)
@@ -94,13 +94,13 @@ def test_a_guess_changes_the_work_and_not_the_result() -> None:
     assert guessed.traction == pytest.approx(plain.traction, abs=1e-6)
 
 
-def test_what_does_not_converge_says_so() -> None:
+def test_unconverged_solution_is_reported() -> None:
     random = np.random.default_rng(0)
     asked = problem(random.standard_normal((2, 24)), random.uniform(0.2, 1.0, 24))
     assert not solve_coulomb(CoulombProblem(**{**vars(asked), "max_steps": 1})).converged
 
 
-def test_violations_are_seen() -> None:
+def test_law_violation_measures_violations() -> None:
     traction, bound = np.array([[1.0, 0.5], [0.0, 0.0]]), np.array([1.0, 1.0])
     sticks = np.array([False, True])
     right = law_violation(traction, np.array([[2.0, 0.0], [0.0, 0.0]]), bound, sticks, 1.0)
@@ -111,7 +111,7 @@ def test_violations_are_seen() -> None:
 
 
 @pytest.mark.parametrize("length", [1.0, 1e-9])
-def test_every_cell_may_slip_under_a_prescribed_force_in_any_unit_of_length(length: float) -> None:
+def test_all_cells_slip_under_prescribed_force(length: float) -> None:
     """Along one axis the rigid slip is prescribed and large; force and moment are not, and no cell is left to stick."""
     random = np.random.default_rng(3)
     bound = random.uniform(0.2, 1.0, 12)
@@ -129,14 +129,14 @@ def test_every_cell_may_slip_under_a_prescribed_force_in_any_unit_of_length(leng
     assert (modes[1] * found.traction).sum() == pytest.approx(wanted[1], rel=1e-6)
 
 
-def test_tractions_beyond_their_bound_are_put_back_onto_it() -> None:
+def test_limit_projects_tractions_onto_bound() -> None:
     traction = np.array([[3.0, 0.3, 0.0, 0.0], [4.0, 0.4, 0.0, -2.0]])
     found = limit_tractions(traction, np.array([1.0, 1.0, 1.0, 0.5]))
     assert found == pytest.approx(np.array([[0.6, 0.3, 0.0, 0.0], [0.8, 0.4, 0.0, -0.5]]))
 
 
 @pytest.mark.parametrize("sticking", [1, 2, 5, 6, 150, 400])
-def test_half_of_the_cells_that_stick_begin_at_most_the_farthest_above_their_bound(sticking: int) -> None:
+def test_at_most_half_of_sticking_cells_slip(sticking: int) -> None:
     excess = np.random.default_rng(sticking).uniform(0.5, 2.0, 400)
     sticks = np.arange(400) < sticking
     begins = (excess > 1) & sticks
@@ -146,7 +146,7 @@ def test_half_of_the_cells_that_stick_begin_at_most_the_farthest_above_their_bou
     assert excess[found].min(initial=9.0) >= excess[begins & ~found].max(initial=0.0)
 
 
-def test_half_of_many_cells_begin_whatever_their_order() -> None:
+def test_half_of_cells_slip_in_any_order() -> None:
     """Numbers in one order may be right by chance, so there are twenty."""
     for seed in range(20):
         excess, sticks = np.random.default_rng(seed).uniform(0.5, 2.0, 2000), np.ones(2000, bool)
@@ -155,14 +155,14 @@ def test_half_of_many_cells_begin_whatever_their_order() -> None:
         assert excess[found].min() > excess[~found].max()
 
 
-def test_first_share_of_cells() -> None:
+def test_first_fraction_of_cells() -> None:
     cells = np.array([False, True, True, False, True, True, True])
     assert _select_first(cells, 1.0) is cells
     for share, count in ((0.9, 4), (0.5, 2), (0.2, 1), (0.01, 1)):
         assert np.flatnonzero(_select_first(cells, share)).tolist() == [1, 2, 4, 5, 6][:count]
 
 
-def test_what_a_guess_slips_is_on_its_bound_and_where_it_sticks_stays() -> None:
+def test_guess_keeps_slip_on_bound_and_sticking_tractions() -> None:
     """A cell just below its bound counts as slipping; one on which nothing acts sticks. One step is all it takes."""
     random = np.random.default_rng(7)
     bound = random.uniform(0.2, 1.0, 40)
@@ -198,7 +198,7 @@ def test_steps_and_applications_are_few(*, forces: bool, most: tuple[int, int]) 
     assert len(applications) <= most[1]
 
 
-def test_cells_that_go_round_in_circles_change_one_by_one_in_the_end(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_cycling_cells_change_singly(monkeypatch: pytest.MonkeyPatch) -> None:
     """A compliance that is another one at every look: three cells soon stick and slip as they did before."""
     random = np.random.default_rng(0)
     asked = problem(random.standard_normal((2, 3)), np.ones(3))
@@ -219,7 +219,7 @@ def test_cells_that_go_round_in_circles_change_one_by_one_in_the_end(monkeypatch
 
 
 @pytest.mark.parametrize("seed", range(8))
-def test_prescribed_forces_are_met_to_the_tolerance_of_full_slidings(seed: int) -> None:
+def test_prescribed_forces_meet_tolerance_of_full_sliding(seed: int) -> None:
     """However small the unit of the forces is, or large."""
     random = np.random.default_rng(seed)
     bound = random.uniform(0.2, 1.0, 24)

@@ -66,7 +66,7 @@ def holds(result: xr.Dataset) -> None:
 
 
 @pytest.mark.parametrize("motion", MOTIONS.values(), ids=MOTIONS)
-def test_the_law_holds(motion: Rolling | Shift) -> None:
+def test_coulomb_law_holds(motion: Rolling | Shift) -> None:
     result = rolled(motion)
     holds(result)
     area = float(result.x[1] - result.x[0]) * float(result.y[1] - result.y[0])
@@ -80,7 +80,7 @@ def test_the_law_holds(motion: Rolling | Shift) -> None:
             assert float(result[name]) == pytest.approx(wanted, abs=1e-6 * FRICTION * LOAD)
 
 
-def test_slip_is_that_of_the_displacements() -> None:
+def test_slip_follows_from_displacements() -> None:
     """Of a shift: the rigid shift less what the surfaces give way, from the public operator."""
     result = rolled(Shift(y=0.012, x=0.005))
     moved = surface_displacement(
@@ -95,7 +95,7 @@ def test_slip_is_that_of_the_displacements() -> None:
     assert [float(again.shift_x), float(again.shift_y)] == pytest.approx([0.005, 0.012], rel=1e-5)
 
 
-def test_rolling_under_the_force_of_a_creepage_has_that_creepage() -> None:
+def test_prescribed_force_reproduces_creepage() -> None:
     creepages = {"longitudinal_creepage": 0.006, "lateral_creepage": -0.004, "spin": 0.008}
     first = rolled(Rolling(**creepages))
     forces = {name: float(first[name]) for name in ("force_x", "force_y", "moment_z")}
@@ -119,7 +119,7 @@ def test_large_creepage_is_full_sliding() -> None:
     holds(result)
 
 
-def test_sticking_cells_lead() -> None:
+def test_sticking_cells_are_at_leading_edge() -> None:
     """Rolling along +y, material enters at the leading edge without traction and sticks first."""
     result = rolled(Rolling(longitudinal_creepage=0.01))
     middle = result.isel(x=13)
@@ -132,7 +132,7 @@ def test_sticking_cells_lead() -> None:
 @pytest.mark.parametrize(
     "motion", [Rolling(longitudinal_creepage=0.008, spin=0.01), Shift(y=0.012)], ids=["roll", "shift"]
 )
-def test_material_mismatch_makes_slip_and_couples(motion: Rolling | Shift) -> None:
+def test_material_mismatch_causes_slip(motion: Rolling | Shift) -> None:
     rigid = rolled(motion, counterbody=None)
     holds(rigid)
     coupled = rolled(motion, counterbody=None, coupled=True)
@@ -145,7 +145,7 @@ def test_material_mismatch_makes_slip_and_couples(motion: Rolling | Shift) -> No
     assert float(np.abs(like.pressure - unchanged.pressure).max()) < 1e-9 * float(like.pressure.max())
 
 
-def test_free_rolling_of_unlike_bodies_has_a_creepage() -> None:
+def test_free_rolling_of_different_bodies_has_creepage() -> None:
     """Of a rigid ball on a compressible body, without any force."""
     result = rolled(Rolling(force_y=0.0, force_x=0.0), counterbody=None)
     holds(result)
@@ -163,7 +163,7 @@ ENDED: dict[str, Body] = {
 @pytest.mark.parametrize(
     ("name", "motion"), [("quarter space", "shift"), ("finite length", "all"), ("finite length", "forces")]
 )
-def test_the_law_holds_at_free_ends(name: str, motion: str) -> None:
+def test_coulomb_law_holds_at_free_ends(name: str, motion: str) -> None:
     body, gap = ENDED[name], ball(26)
     gap = gap.assign_coords(x=gap.x + 1.3)
     counterbody = Counterbody(body) if isinstance(body, FiniteLengthSpace) else None
@@ -186,7 +186,7 @@ def test_rolling_between_free_ends_is_symmetric_about_the_middle() -> None:
     assert abs(float(result.force_x)) < 1e-6 * float(result.force_y)
 
 
-def test_like_bodies_that_end_together_do_not_slip_by_pressure_alone() -> None:
+def test_equal_flush_bodies_do_not_slip_under_pressure() -> None:
     grid = Grid(x_range=(0.0, 3.0), y_range=(-1.4, 1.4), cells_x=15, cells_y=28)
     gap = xr.DataArray(0.5 * grid.y**2 + 0 * grid.x[:, None], coords={"x": grid.x, "y": grid.y}, dims=("x", "y"))
     longer, same = FiniteLengthSpace(length=3.0, material=STEEL), FiniteLengthSpace(length=3.0, material=STEEL)
@@ -199,7 +199,7 @@ def test_like_bodies_that_end_together_do_not_slip_by_pressure_alone() -> None:
     assert float(moved.friction_work) > 0
 
 
-def test_friction_takes_no_work_where_every_cell_sticks() -> None:
+def test_sticking_contact_has_no_friction_work() -> None:
     """The elastic roller overhangs both ends of a body much narrower than its contact."""
     body = FiniteLengthSpace(length=0.29, material=STEEL, model="mirror")
     roller = Roller(radius=5e3, length=0.5, material=STEEL)
@@ -213,13 +213,13 @@ def test_friction_takes_no_work_where_every_cell_sticks() -> None:
     assert float(result.friction_work) == 0.0
 
 
-def test_without_friction_there_is_no_traction() -> None:
+def test_zero_friction_has_zero_traction() -> None:
     result = rolled(Rolling(longitudinal_creepage=0.1), friction=0.0)
     assert not result.traction_y.any()
     assert result.converged
 
 
-def test_a_history_of_shifts() -> None:
+def test_history_of_shifts_continues_tractions() -> None:
     """Mindlin and Deresiewicz (1953): unloading doubles the slip's reach; a closed cycle returns to its state."""
     largest = 0.6 * FRICTION * LOAD
     steps = [rolled(Shift(force_y=largest))]
@@ -244,7 +244,7 @@ def test_a_history_of_shifts() -> None:
     assert np.abs(unmoved.traction_y - loaded.traction_y).max() < 1e-3 * bound
 
 
-def test_bad_input_is_named() -> None:
+def test_invalid_input_raises_error() -> None:
     with pytest.raises(InvalidInputError, match=r"friction = -0.1.*not below zero"):
         rolled(Rolling(), friction=-0.1)
     with pytest.raises(InvalidInputError, match=r"force_y = .* less than full sliding's force_y = .*Sliding\(\)"):
@@ -272,7 +272,7 @@ GRADED = Grid.from_edges(np.concatenate([np.linspace(-1.3, 0.4, 15), np.linspace
 
 
 @pytest.mark.parametrize("name", ["all", "moment", "shift"])
-def test_cells_of_different_widths(name: str) -> None:
+def test_rolling_on_graded_cells_matches_uniform_cells(name: str) -> None:
     """Coulomb's law and the resultants on them, close to those on uniform cells."""
     gap = xr.DataArray(
         0.05 * (GRADED.x[:, None] ** 2 + GRADED.y**2),
@@ -289,7 +289,7 @@ def test_cells_of_different_widths(name: str) -> None:
         assert float(graded[name]) == pytest.approx(float(uniform[name]), abs=0.01 * size)
 
 
-def test_fastsim_on_cells_of_different_widths() -> None:
+def test_fastsim_on_graded_cells_matches_uniform_cells() -> None:
     gap = xr.DataArray(
         0.05 * (GRADED.x[:, None] ** 2 + GRADED.y**2),
         coords={"x": GRADED.x, "y": GRADED.y, "x_width": ("x", GRADED.widths)},
@@ -310,7 +310,7 @@ def test_convergence_warning() -> None:
     assert float(result.slip_error) > 1e-6 or float(result.bound_error) > 1e-6
 
 
-def test_the_middle_of_the_shape_is_where_it_can_touch() -> None:
+def test_reference_x_is_middle_of_finite_gap() -> None:
     """Cells on one side with nothing to touch, and another place along x, change no moment and no spin."""
     motion = Rolling(longitudinal_creepage=0.005, spin=0.02)
     plain, gap = rolled(motion, gap=ball(off=0.2)), ball(off=0.2)
@@ -324,7 +324,7 @@ def test_the_middle_of_the_shape_is_where_it_can_touch() -> None:
         assert float(other[name]) == pytest.approx(float(plain[name]), rel=1e-5)
 
 
-def test_the_part_that_sticks_is_of_the_pressed_area() -> None:
+def test_sticking_part_is_relative_to_loaded_area() -> None:
     result = rolled(MOTIONS["all"])
     pressed = result.pressure > 0
     assert 0.05 < float(result.sticking_part) < 0.95

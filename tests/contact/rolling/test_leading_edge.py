@@ -24,7 +24,7 @@ def strip(part: float, cells: int = 20) -> np.ndarray:
 
 
 @pytest.mark.parametrize("part", [0.75, 0.9, 1.3])
-def test_a_leading_cell_in_the_contact_is_an_unknown(part: float) -> None:
+def test_leading_cell_inside_contact_is_unknown(part: float) -> None:
     pressure = 3 * strip(part)
     cells = RollingCells.of(pressure, pressure)
     assert cells.source_cell.size == 0
@@ -33,7 +33,7 @@ def test_a_leading_cell_in_the_contact_is_an_unknown(part: float) -> None:
 
 
 @pytest.mark.parametrize("part", [0.3, 0.5])
-def test_a_leading_cell_with_little_in_the_contact_is_tied(part: float) -> None:
+def test_narrow_leading_cell_is_dependent(part: float) -> None:
     pressure = strip(part)
     cells = RollingCells.of(pressure, 0.3 * pressure)
     last = int(np.flatnonzero(pressure[0])[-1])
@@ -64,18 +64,18 @@ def test_rising_pressure_leaves_the_offset_constant() -> None:
         assert RollingCells.of(pressure, pressure).offset == pytest.approx(EDGE_OFFSET + 1)
 
 
-def test_two_contacts_in_one_row_have_an_edge_each() -> None:
+def test_two_contacts_in_row_have_two_edges() -> None:
     one = strip(0.3)
     pressure = np.hstack([one, one])
     assert RollingCells.of(pressure, pressure).source_cell.size == 2
 
 
-def test_cells_without_friction_carry_nothing() -> None:
+def test_cells_without_friction_have_no_traction() -> None:
     pressure = strip(0.9)
     assert RollingCells.of(pressure, 0 * pressure).unknown.size == 0
 
 
-def test_change_is_exact_for_parabolas_wherever_it_is_taken() -> None:
+def test_derivative_is_exact_for_parabolas() -> None:
     pressure, dy = strip(0.9), 0.25
     cells = RollingCells.of(pressure, pressure)
     y = dy * np.arange(pressure.shape[1])
@@ -84,7 +84,7 @@ def test_change_is_exact_for_parabolas_wherever_it_is_taken() -> None:
     assert cells.derivative(displaced, dy) == pytest.approx(3 - 1.4 * at)
 
 
-def test_published_lateral_creepage_and_spin_are_those_of_slip_taken_half_a_cell_late(
+def test_half_cell_offset_matches_published_creepage(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """The program CONTACT on the same 1276 cells, with plain differences: force, moment and cells that stick.
@@ -104,7 +104,7 @@ def test_published_lateral_creepage_and_spin_are_those_of_slip_taken_half_a_cell
     assert int(found["stick"].sum()) == pytest.approx(356, abs=2)
 
 
-def test_columns_nearer_than_a_cell_is_long_take_the_slip_at_one_place() -> None:
+def test_close_columns_share_slip_offset() -> None:
     """Columns far narrower than the cells are long, and one as wide as they are long beside them."""
     pressure = np.vstack([strip(part) for part in (0.75, 1.3, 0.9)])
     x, widths, dy = np.array([0.0, 0.02, 2.0]), np.array([0.01, 0.03, 1.0]), 1.0
@@ -118,7 +118,7 @@ def test_columns_nearer_than_a_cell_is_long_take_the_slip_at_one_place() -> None
     assert averaging_weights(np.arange(4.0), np.ones(4), 0.5) is None
 
 
-def test_a_single_cell_ahead_of_a_contact_is_a_contact_of_its_own() -> None:
+def test_single_cell_ahead_is_separate_contact() -> None:
     pressure = strip(0.9)
     last = int(np.flatnonzero(pressure[0])[-1])
     alone = pressure.copy()
@@ -129,7 +129,7 @@ def test_a_single_cell_ahead_of_a_contact_is_a_contact_of_its_own() -> None:
     assert found.offset[-1] == pytest.approx(EDGE_OFFSET + 1.0)
 
 
-def test_all_cells_of_a_column_that_slides_take_the_slip_at_their_centres() -> None:
+def test_sliding_columns_use_slip_at_centres() -> None:
     pressure = np.vstack([strip(0.9), strip(0.3), strip(0.9)])
     found = RollingCells.of(pressure, pressure, None, LeadingEdges(np.array([True, True, False]), pressure))
     assert found.source_cell.size == 0
@@ -137,7 +137,7 @@ def test_all_cells_of_a_column_that_slides_take_the_slip_at_their_centres() -> N
     assert found.offset[found.unknown[0] == 2] == pytest.approx(EDGE_OFFSET + 0.9)
 
 
-def test_beyond_the_last_cell_a_displacement_stays() -> None:
+def test_displacement_is_constant_beyond_last_cell() -> None:
     pressure = np.ones((1, 6))
     displacement = np.random.default_rng(0).standard_normal((1, 6))
     found = RollingCells.of(pressure, pressure)

@@ -43,7 +43,7 @@ def plane(grid: Grid) -> FloatArray:
 
 
 @pytest.mark.parametrize("grid", [FINE, ALONG_Y_ONLY])
-def test_parts_of_the_bound_are_on_lines_where_cells_stick(grid: Grid) -> None:
+def test_sticking_guess_is_linear_in_bound(grid: Grid) -> None:
     bound, fine_bound = 2.0 + COARSE.x[:, None] * COARSE.y, 3.0 + grid.x[:, None] + grid.y
     coarse = found_under(bound, bound * plane(COARSE), np.ones(COARSE.shape, bool))
     guess = guess_from_coarse(coarse, all_cells(fine_bound), ("y", "spin"))
@@ -53,7 +53,7 @@ def test_parts_of_the_bound_are_on_lines_where_cells_stick(grid: Grid) -> None:
     assert guess.amplitudes.tolist() == [-0.25, 3.0]
 
 
-def test_cells_that_slip_keep_their_whole_bound_and_others_less() -> None:
+def test_slipping_guess_keeps_bound() -> None:
     """Towards cells that slip, those that stick come near the bound; what has none carries nothing."""
     sticks = np.broadcast_to(COARSE.x[:, None] < 3, COARSE.shape)
     bound = np.where(COARSE.y > 1, 2.0, 0.0) * np.ones(COARSE.shape)
@@ -73,7 +73,7 @@ def test_cells_that_slip_keep_their_whole_bound_and_others_less() -> None:
     assert (found[1] / found[0].clip(1e-9))[loaded] == pytest.approx(4 / 3)
 
 
-def test_under_almost_the_same_bound_what_slips_follows_it() -> None:
+def test_guess_keeps_slip_direction_under_similar_bound() -> None:
     random = np.random.default_rng(0)
     last = random.standard_normal((2, *FINE.shape))
     last[:, 0] = 0.0
@@ -90,5 +90,5 @@ def test_under_almost_the_same_bound_what_slips_follows_it() -> None:
     assert ((found * last).sum(axis=0)[1:] > 0).all()
 
 
-def test_cells_of_twice_the_size_have_the_mean() -> None:
+def test_coarse_cells_have_mean_values() -> None:
     assert cell_means(np.arange(8.0).reshape(2, 4)).tolist() == [[2.5, 4.5]]

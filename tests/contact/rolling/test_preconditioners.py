@@ -54,7 +54,7 @@ def matrix_on(*, uniform: bool) -> FloatArray:
 
 @pytest.mark.parametrize("uniform", [True, False])
 @pytest.mark.parametrize("rolling", [False, True])
-def test_it_is_the_inverse_on_cells_that_repeat(*, uniform: bool, rolling: bool) -> None:
+def test_preconditioner_inverts_periodic_compliance(*, uniform: bool, rolling: bool) -> None:
     edges = STEP * np.arange(ROWS + 3.0) if uniform else np.concatenate([[-4e-5], GRADED, [12e-5]])
     grid = Grid.between(edges, (0.0, (COLUMNS + 2) * DY), COLUMNS + 2)
     mask = np.zeros(grid.shape, bool)

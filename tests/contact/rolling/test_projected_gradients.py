@@ -15,7 +15,7 @@ CELLS = 24
 
 
 @pytest.mark.parametrize("size", [0.01, 0.3, 1.0, 30.0])
-def test_the_descent_ends_where_newton_does(size: float) -> None:
+def test_descent_and_newton_agree(size: float) -> None:
     random = np.random.default_rng(3)
     bound, ones = random.uniform(0.2, 1.0, CELLS), np.ones(CELLS)
     asked = replace(problem(size * random.standard_normal((2, CELLS)), bound), relative_areas=ones)
@@ -38,7 +38,7 @@ def test_rigid_slips_make_the_prescribed_forces(part: float) -> None:
 
 
 @pytest.mark.parametrize("prescribed", [False, True])
-def test_newton_begins_again_from_a_descent(monkeypatch: pytest.MonkeyPatch, prescribed: bool) -> None:
+def test_newton_restarts_from_descent(monkeypatch: pytest.MonkeyPatch, prescribed: bool) -> None:
     monkeypatch.setattr(coulomb, "DESCENT_INTERVAL", 3)
     descents = []
 
@@ -81,7 +81,7 @@ def symmetric(seed: int, *, unit: float = 1.0, pressure: float = 1.0, forces: bo
 
 @pytest.mark.parametrize(("unit", "pressure"), [(1e-6, 1.0), (1.0, 1.0), (1.0, 1e-9), (1e3, 1e9)])
 @pytest.mark.parametrize("forces", [False, True])
-def test_cells_of_different_sizes_in_any_unit(unit: float, pressure: float, *, forces: bool) -> None:
+def test_descent_on_graded_cells_in_any_unit(unit: float, pressure: float, *, forces: bool) -> None:
     asked = symmetric(8, unit=unit, pressure=pressure, forces=forces)
     applied: list[int] = []
 
@@ -100,7 +100,7 @@ def test_cells_of_different_sizes_in_any_unit(unit: float, pressure: float, *, f
 
 
 @pytest.mark.parametrize("seed", range(3))
-def test_no_step_of_the_descent_raises_the_energy(seed: int) -> None:
+def test_descent_steps_reduce_energy(seed: int) -> None:
     """So it cannot go round in circles."""
     asked, energies = symmetric(seed), []
     for steps in range(12):
@@ -112,7 +112,7 @@ def test_no_step_of_the_descent_raises_the_energy(seed: int) -> None:
     assert (np.diff(energies) < 0).all()
 
 
-def test_steps_of_the_descent_grow_where_the_slip_is_no_longer_what_it_began_with() -> None:
+def test_descent_step_length_adapts() -> None:
     """It begins with a slip that the stiffest cell gives way to, whose step is a tenth of the others'."""
     stiffness, applied = np.geomspace(1.0, 10.0, CELLS), []
 

@@ -23,7 +23,7 @@ def bound() -> FloatArray:
 @pytest.mark.parametrize(
     "wanted", [[0.3, -0.1], [0.3, -0.1, 0.02], [0.0, 0.0, -1.0], [0.2, 0.0, 0.05], [1e3, 1e3, 30.0]]
 )
-def test_the_largest_multiple_is_the_least_over_all_directions(wanted: list[float]) -> None:
+def test_largest_multiple_is_minimum_over_directions(wanted: list[float]) -> None:
     """Tractions along the slip of a rigid motion make the largest resultant along it: all motions, tried one by one."""
     resultant_weights, target = SURFACES.weights[: len(wanted)], np.array(wanted)
     random = np.random.default_rng(0)
@@ -46,7 +46,7 @@ def test_the_largest_multiple_is_the_least_over_all_directions(wanted: list[floa
         assert _largest_multiple(factor * target, bound(), resultant_weights) == pytest.approx(found / factor, rel=1e-6)
 
 
-def test_one_force_is_carried_up_to_the_sum_of_the_bound() -> None:
+def test_single_force_is_limited_by_bound_sum() -> None:
     most = float((bound() * SURFACES.areas).sum())
     check_forces(Rolling(force_y=0.9999 * most), bound(), SURFACES.weights)
     check_forces(Rolling(force_y=5e-324), bound(), SURFACES.weights)

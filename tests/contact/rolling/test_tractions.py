@@ -106,7 +106,7 @@ def value_of(tractions: Tractions, name: str) -> FloatArray | float:
         *(("nested", name) for name in ("lateral", "all", "moment", "shifting force")),
     ],
 )
-def test_units_decide_nothing(edges: str, name: str) -> None:
+def test_results_scale_with_units(edges: str, name: str) -> None:
     motion = MOTIONS[name]
     plain, other = rubbed(motion, edges).tractions, rubbed(motion, edges, other_units=True).tractions
     assert plain.steps == other.steps
@@ -125,7 +125,7 @@ def test_units_decide_nothing(edges: str, name: str) -> None:
 
 
 @pytest.mark.parametrize("motion", [MOTIONS["all"], MOTIONS["shift"], replace(MOTIONS["all"], model="fastsim")])
-def test_place_along_the_axis_decides_nothing(motion: Rolling | Shift) -> None:
+def test_position_along_axis_does_not_change_tractions(motion: Rolling | Shift) -> None:
     """Spin and moment are about the middle, wherever that is."""
 
     def found(place: float) -> FrictionalContact:
@@ -143,7 +143,7 @@ def test_place_along_the_axis_decides_nothing(motion: Rolling | Shift) -> None:
 
 
 @pytest.mark.parametrize("motion", [Rolling(longitudinal_creepage=0.03), Rolling(lateral_creepage=-0.03, spin=0.02)])
-def test_work_is_what_tractions_lose_on_the_slip(motion: Rolling) -> None:
+def test_work_is_traction_times_slip(motion: Rolling) -> None:
     """Of a rigid ball on a soft body, which the pressure moves along the surface as well."""
     grid = Grid(x_range=(-1.3, 1.3), y_range=(-1.3, 1.3), cells_x=40, cells_y=40)
     gap = 0.05 * (grid.x[:, None] ** 2 + grid.y**2)
@@ -183,7 +183,7 @@ def test_warnings_name_the_iteration() -> None:
             each.warn_unless_converged()
 
 
-def test_violations_are_over_the_rigid_slip(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_violations_are_relative_to_rigid_slip(monkeypatch: pytest.MonkeyPatch) -> None:
     """Of prescribed and unknown motions together, about a middle that is not that of the contact."""
     scales: list[float] = []
 
@@ -203,14 +203,14 @@ def test_violations_are_over_the_rigid_slip(monkeypatch: pytest.MonkeyPatch) -> 
     assert mirrored[pressed].max() != pytest.approx(expected, rel=0.04)
 
 
-def test_strips_turn_with_the_spin_as_the_exact_theory_does() -> None:
+def test_fastsim_spin_sign_matches_exact_theory() -> None:
     motion = Rolling(spin=0.003)
     exact, strips = (rubbed(each, "uniform").tractions.traction for each in (motion, replace(motion, model="fastsim")))
     for one, other in zip(exact, strips, strict=True):
         assert float((one * other).sum()) > 0.7 * float(np.sqrt((one**2).sum() * (other**2).sum()))
 
 
-def test_a_coupled_contact_does_not_depend_on_the_unit() -> None:
+def test_coupled_contact_scales_with_unit() -> None:
     """A rigid ball on a compressible body: tractions and pressure are found in turns."""
     found = []
     for length, pressure in ((1.0, 1.0), (LENGTH, PRESSURE), (2.0**17, 2.0**-37)):
@@ -227,7 +227,7 @@ def test_a_coupled_contact_does_not_depend_on_the_unit() -> None:
     assert found[2] == pytest.approx(found[0], abs=1e-9)
 
 
-def test_a_leading_cell_that_slips_has_a_slip() -> None:
+def test_slipping_leading_cell_has_slip() -> None:
     """Under spin some of a column sticks, but not its leading cell, which is tied to the one behind."""
     found = rubbed(Rolling(lateral_creepage=0.03, spin=0.1), "uniform")
     pressed, sticks = found.contact.pressure > 0, found.tractions.sticks
@@ -239,7 +239,7 @@ def test_a_leading_cell_that_slips_has_a_slip() -> None:
 
 
 @pytest.mark.parametrize("columns", [1, 4])
-def test_few_columns_and_many_rows(columns: int) -> None:
+def test_contact_with_few_columns_and_many_rows(columns: int) -> None:
     """Coarser cells exist down to a single column between free ends."""
     body = FiniteLengthSpace(length=1.0, material=Material(0.91, 0.3))
     grid = Grid(x_range=(0.0, 1.0), y_range=(-2.0, 2.0), cells_x=columns, cells_y=256)
@@ -256,7 +256,7 @@ def test_few_columns_and_many_rows(columns: int) -> None:
     "motion", [Rolling(longitudinal_creepage=0.01), Rolling(longitudinal_creepage=0.006, spin=0.05)]
 )
 @pytest.mark.parametrize("edges", EDGES)
-def test_the_work_equals_the_sum_of_traction_times_slip(motion: Rolling, edges: str) -> None:
+def test_work_equals_sum_of_traction_times_slip(motion: Rolling, edges: str) -> None:
     contact = rubbed(motion, edges)
     tractions, grid = contact.tractions, contact.contact.shape.grid
     power = (tractions.traction * tractions.slip).sum(axis=0) * grid.weights * grid.cell_area
