@@ -93,14 +93,14 @@ def test_friction_moves_contact_of_different_materials(first: Material, second: 
         return FiniteLengthSpace(length=1.0, material=material, model="mirror")
 
     counter = None if second is None else Counterbody(bar(second))
-    found = solve_contact(
+    computed = solve_contact(
         bar(first), gap, load=load, friction=friction, counterbody=counter, settings=ContactSettings(coupled=True)
     ).pressure.isel(x=1)
     assert abs(exact.centre) > 0.03 * exact.half_width
-    expected = exact.pressure(found.y.values)
-    assert np.abs(found.values - expected).max() < 0.04 * expected.max()  # in the cell at the steep edge
-    assert np.median(np.abs(found.values - expected)[expected > 0]) < 5e-4 * expected.max()
-    centroid, expected_centroid = (np.average(found.y, weights=weights) for weights in (found.values, expected))
+    expected = exact.pressure(computed.y.values)
+    assert np.abs(computed.values - expected).max() < 0.04 * expected.max()  # in the cell at the steep edge
+    assert np.median(np.abs(computed.values - expected)[expected > 0]) < 5e-4 * expected.max()
+    centroid, expected_centroid = (np.average(computed.y, weights=weights) for weights in (computed.values, expected))
     assert centroid == pytest.approx(expected_centroid, abs=1e-3 * exact.half_width)
 
 
@@ -108,8 +108,8 @@ def flexibility(body: FiniteLengthSpace, grid: Grid) -> np.ndarray:
     """Displacement of every cell under unit pressure on every other: array (x, y, x, y)."""
     unit = np.eye(grid.cells_x * grid.cells_y).reshape(-1, *grid.shape)
     columns = [
-        surface_displacement(body, xr.DataArray(each, coords={"x": grid.x, "y": grid.y}, dims=("x", "y"))).values
-        for each in unit
+        surface_displacement(body, xr.DataArray(variant, coords={"x": grid.x, "y": grid.y}, dims=("x", "y"))).values
+        for variant in unit
     ]
     return np.array(columns).reshape(*grid.shape, *grid.shape)
 
@@ -121,8 +121,8 @@ def test_two_finite_bodies_match_quadratic_programming(start: int):
     body = FiniteLengthSpace(length=8.0, material=Material(1.0, 0.3))
     counter = FiniteLengthSpace(length=6.0, material=Material(2.0, 0.25))
     grid, own = (
-        Grid(x_range=(0.0, each.length), y_range=across, cells_x=round(per_unit * each.length), cells_y=9)
-        for each in (body, counter)
+        Grid(x_range=(0.0, variant.length), y_range=across, cells_x=round(per_unit * variant.length), cells_y=9)
+        for variant in (body, counter)
     )
     both = flexibility(body, grid)
     shift = per_unit * start
@@ -131,14 +131,14 @@ def test_two_finite_bodies_match_quadratic_programming(start: int):
     both[first:last, :, first:last] += flexibility(counter, own)[own_range, :, own_range]
     gap = on_cells(lambda x, y: (x - start - 3) ** 2 / 40 + y**2 / 2, (0.0, 8.0), across, grid.shape)
     gap = gap.where((gap.x > start) & (gap.x < start + 6), np.inf)
-    found = solve_contact(
+    computed = solve_contact(
         body, gap, load=load, counterbody=Counterbody(counter, start), settings=ContactSettings(tolerance=1e-8)
     )
 
     # The lines to which the prescribed tilt refers turn under the load.
-    carried = Counterbody(counter, start).load_on(grid, found.pressure.values)
-    tops = (found.pressure, xr.DataArray(carried, coords={"x": own.x, "y": own.y}, dims=("x", "y")))
-    slopes = [line_slope(each, top, each.length) for each, top in zip((body, counter), tops, strict=True)]
+    carried = Counterbody(counter, start).load_on(grid, computed.pressure.values)
+    tops = (computed.pressure, xr.DataArray(carried, coords={"x": own.x, "y": own.y}, dims=("x", "y")))
+    slopes = [line_slope(variant, top, variant.length) for variant, top in zip((body, counter), tops, strict=True)]
     gap = gap - sum(slopes) * gap.x
 
     possible = np.isfinite(gap.values).ravel()
@@ -150,7 +150,7 @@ def test_two_finite_bodies_match_quadratic_programming(start: int):
     pressure, _ = optimize.nnls(factor.T, np.linalg.solve(factor, right), maxiter=10_000)
     expected = np.zeros(possible.size)
     expected[possible] = pressure * load / (pressure.sum() * area)
-    np.testing.assert_allclose(found.pressure.values.ravel(), expected, atol=1e-5 * expected.max())
+    np.testing.assert_allclose(computed.pressure.values.ravel(), expected, atol=1e-5 * expected.max())
 
 
 def test_exchanged_bodies_have_equal_pressure():
@@ -160,10 +160,10 @@ def test_exchanged_bodies_have_equal_pressure():
     gap = contact_shape(first, below, 32, first.length)
     exchanged = gap.isel(x=slice(4, 28)).assign_coords(x=gap.x[4:28] - HALF_WIDTH)
     settings = ContactSettings(coupled=True, tolerance=1e-8)
-    one = solve_contact(first, gap, load=100.0, friction=0.4, counterbody=below, settings=settings)
-    other = solve_contact(second, exchanged, load=100.0, friction=-0.4, counterbody=above, settings=settings)
-    pressure = one.pressure.values[4:28]
-    assert np.abs(pressure - other.pressure.values).max() < 2e-6 * pressure.max()
+    item = solve_contact(first, gap, load=100.0, friction=0.4, counterbody=below, settings=settings)
+    variant = solve_contact(second, exchanged, load=100.0, friction=-0.4, counterbody=above, settings=settings)
+    pressure = item.pressure.values[4:28]
+    assert np.abs(pressure - variant.pressure.values).max() < 2e-6 * pressure.max()
 
 
 def test_equal_flush_bodies_have_equal_displacements():
@@ -174,7 +174,7 @@ def test_equal_flush_bodies_have_equal_displacements():
         roller=Roller(radius=5e-3, length=8 * HALF_WIDTH),
         max_pressure=1.5e9,
     )
-    pressure, rigid = (solve(each, stresses=False, accuracy=0.05).pressure.values for each in (case, soft))
+    pressure, rigid = (solve(variant, stresses=False, accuracy=0.05).pressure.values for variant in (case, soft))
     np.testing.assert_allclose(pressure, rigid, atol=1e-6 * rigid.max())
     np.testing.assert_allclose(pressure, pressure[::-1], atol=1e-6 * rigid.max())
 

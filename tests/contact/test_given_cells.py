@@ -14,9 +14,9 @@ from tests.contact.refinement.rollers import CASES, HALF, RADIUS, SHORT, SHORT_E
 def test_graded_cells_match_uniform_cells(body: HalfSpace | FiniteLengthSpace) -> None:
     """The verb for labelled gaps: the load is exact, the pressure that of uniform cells."""
     finite_body = isinstance(body, FiniteLengthSpace)
-    kept = np.concatenate([np.arange(16), np.arange(16, 48, 2), np.arange(48, 65)])
+    retained = np.concatenate([np.arange(16), np.arange(16, 48, 2), np.arange(48, 65)])
     uniform = Grid(x_range=(0.0, SHORT), y_range=(-2 * A, 2 * A), cells_x=64, cells_y=32)
-    graded = Grid.from_edges(uniform.x_edges[kept], uniform.y_range, 32)
+    graded = Grid.from_edges(uniform.x_edges[retained], uniform.y_range, 32)
     contacts = []
     for grid in (graded, uniform):
         inside = (grid.x > 0) & (grid.x < SHORT) if finite_body else (grid.x > 0.5 * A) & (grid.x < SHORT - 0.5 * A)
@@ -25,7 +25,7 @@ def test_graded_cells_match_uniform_cells(body: HalfSpace | FiniteLengthSpace) -
         contacts.append(solve_contact(body, gap, load=CASES["flush"].normal_load))
     there, here = contacts
     assert bool(there.converged)
-    middles = [float(each.pressure.sel(x=SHORT / 2, method="nearest").max()) for each in contacts]
+    middles = [float(contact.pressure.sel(x=SHORT / 2, method="nearest").max()) for contact in contacts]
     assert middles[0] == pytest.approx(middles[1], rel=5e-3)
     assert float(there.approach) == pytest.approx(float(here.approach), rel=5e-3)
     total = float((there.pressure * graded.widths[:, None]).sum()) * graded.dy

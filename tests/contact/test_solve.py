@@ -104,14 +104,14 @@ def test_pressure_converges_with_cells(short_body: FiniteLengthSpace, cylinder_g
 
 def test_friction_moves_the_contact_only_when_coupled(short_body: FiniteLengthSpace, cylinder_gap) -> None:
     gap = cylinder_gap(8.0, (48, 64))
-    plain = solve_contact(short_body, gap, load=8 * LINE_LOAD, friction=0.4)
+    baseline = solve_contact(short_body, gap, load=8 * LINE_LOAD, friction=0.4)
     coupled = solve_contact(short_body, gap, load=8 * LINE_LOAD, friction=0.4, settings=ContactSettings(coupled=True))
-    assert np.allclose(plain["traction_y"], 0.4 * plain["pressure"])
+    assert np.allclose(baseline["traction_y"], 0.4 * baseline["pressure"])
 
     def centre(contact: xr.Dataset) -> float:
         return float((contact["pressure"] * contact["y"]).sum() / contact["pressure"].sum())
 
-    assert abs(centre(plain)) < 1e-6
+    assert abs(centre(baseline)) < 1e-6
     # The traction along +y raises the surface behind and lowers it ahead, so the contact moves back.
     assert -0.2 < centre(coupled) < -0.02
     assert bool(coupled["converged"])
@@ -121,9 +121,9 @@ def test_friction_moves_the_contact_only_when_coupled(short_body: FiniteLengthSp
 def test_coupling_vanishes_for_an_incompressible_half_space(cylinder_gap) -> None:
     body = HalfSpace(material=Material(0.75, 0.5))
     gap = sphere_gap(48)
-    plain = solve_contact(body, gap, load=4 / 3, friction=0.3)
+    baseline = solve_contact(body, gap, load=4 / 3, friction=0.3)
     coupled = solve_contact(body, gap, load=4 / 3, friction=0.3, settings=ContactSettings(coupled=True))
-    assert np.abs(plain["pressure"] - coupled["pressure"]).max() < 1e-5
+    assert np.abs(baseline["pressure"] - coupled["pressure"]).max() < 1e-5
 
 
 def test_early_stop_warns_and_is_not_converged(half_space: HalfSpace) -> None:

@@ -81,8 +81,8 @@ def test_eccentric_loads_do_not_depend_on_pole_panel(
     def loads():
         return equivalent_loads(short_body, pressure, 0.3, z=[0.2, 1.0])
 
-    usual = loads()
-    assert usual["P_h1"].attrs["reference_distance"] == 80.0
+    baseline = loads()
+    assert baseline["P_h1"].attrs["reference_distance"] == 80.0
     monkeypatch.setitem(problem.POLE_PANEL_FACTOR, POLES, 0.1 * problem.POLE_PANEL_FACTOR[POLES])
     for name in ("P_h1", "P_v1", "P_v2"):
-        assert float(np.abs(loads()[name] - usual[name]).max()) < 1e-4 * float(np.abs(usual[name]).max())
+        assert float(np.abs(loads()[name] - baseline[name]).max()) < 1e-4 * float(np.abs(baseline[name]).max())

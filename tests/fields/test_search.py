@@ -18,7 +18,7 @@ def test_symmetric_contact_searches_one_peak() -> None:
     ends[:, [0, -1]] = 0.0
     uneven = np.where(grid.x[:, None] > 5, 0.9, 1.0) * ends
     low = np.where(grid.x[:, None] > 5, 0.3, 1.0) * ends
-    counts = [len(place_search(BODY, sliding(each, 0.0), grid).samples) for each in (ends, uneven, low)]
+    counts = [len(place_search(BODY, sliding(variant, 0.0), grid).samples) for variant in (ends, uneven, low)]
     assert counts == [2, 3, 2]
     for points in place_search(BODY, sliding(uneven, 0.0), grid).samples:
         assert points.x.min() >= 0.0

@@ -74,9 +74,9 @@ def test_loaded_corner_matches_theory(short_body: FiniteLengthSpace, strip_press
 def test_friction_is_linear(short_body: FiniteLengthSpace, strip_pressure) -> None:
     pressure = strip_pressure(8.0, (32, 32))
     points = {"x": [0.0, 1.0], "y": [0.3], "z": [0.0, 0.4]}
-    none, some, more = (stress_field(short_body, pressure, friction=f, **points) for f in (0.0, 0.2, 0.4))
+    empty, some, additional = (stress_field(short_body, pressure, friction=f, **points) for f in (0.0, 0.2, 0.4))
     for name in STRESSES:
-        assert np.allclose(more[name] - none[name], 2 * (some[name] - none[name]), atol=1e-10), name
+        assert np.allclose(additional[name] - empty[name], 2 * (some[name] - empty[name]), atol=1e-10), name
 
 
 def test_stresses_do_not_depend_on_order_of_points(short_body: FiniteLengthSpace, strip_pressure) -> None:
@@ -114,9 +114,9 @@ def test_too_thin_body_raises_error(on_cells) -> None:
 
 def test_points_near_end_snap_to_end(short_body: FiniteLengthSpace, strip_pressure) -> None:
     pressure = strip_pressure(8.0, (16, 16))
-    on_end, beside = (stress_field(short_body, pressure, x=[x], z=[0.5]) for x in (0.0, 5e-324))
-    assert beside["x"].item() == 0.0
-    np.testing.assert_array_equal(beside["sigma_zz"], on_end["sigma_zz"])
+    on_end, adjacent = (stress_field(short_body, pressure, x=[x], z=[0.5]) for x in (0.0, 5e-324))
+    assert adjacent["x"].item() == 0.0
+    np.testing.assert_array_equal(adjacent["sigma_zz"], on_end["sigma_zz"])
 
 
 @pytest.mark.parametrize(("axis", "far"), [("y", 1e6), ("y", -1e45), ("z", 1e45)])

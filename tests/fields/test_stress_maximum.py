@@ -28,7 +28,7 @@ def circle() -> tuple[Grid, FloatArray]:
     return grid, np.sqrt(np.maximum(1 - grid.x[:, None] ** 2 - grid.y**2, 0.0))
 
 
-def under(grid: Grid, pressure: FloatArray, friction: float) -> StressMaximum:
+def maximum_under(grid: Grid, pressure: FloatArray, friction: float) -> StressMaximum:
     """Largest stress of a half-space, with stresses at one point far from it."""
     body = HalfSpace(material=Material(1.0, 0.3))
     positions = field_positions(body, grid, [1.2], [1.2], [2.0])
@@ -37,28 +37,28 @@ def under(grid: Grid, pressure: FloatArray, friction: float) -> StressMaximum:
 
 def test_stress_maximum_below_circle_matches_closed_form() -> None:
     grid, pressure = circle()
-    found = under(grid, pressure, 0.0)
+    computed = maximum_under(grid, pressure, 0.0)
     z = np.linspace(0.3, 0.7, 4001)
     radial, axial = ref.hertz_circle_axis(z, 1.0, 1.0, 0.3)
     known = np.abs(axial - radial)
-    assert found.value == pytest.approx(known.max(), rel=2e-3)
-    assert abs(found.value - known.max()) <= found.error + 2e-3 * found.value
-    assert found.position[2] == pytest.approx(z[known.argmax()], abs=0.03)
-    assert found.position[:2] == pytest.approx((0.0, 0.0), abs=0.1)
+    assert computed.value == pytest.approx(known.max(), rel=2e-3)
+    assert abs(computed.value - known.max()) <= computed.error + 2e-3 * computed.value
+    assert computed.position[2] == pytest.approx(z[known.argmax()], abs=0.03)
+    assert computed.position[:2] == pytest.approx((0.0, 0.0), abs=0.1)
 
 
 def test_high_friction_moves_stress_maximum_to_top() -> None:
     grid, pressure = circle()
-    found = under(grid, pressure, 0.5)
+    computed = maximum_under(grid, pressure, 0.5)
     y = np.linspace(-0.95, 0.95, 381)
     radial, hoop = hertz_circle_surface(np.abs(y), 1.0, 1.0, 0.3)
     pressed, zero = np.sqrt(1 - y**2), np.zeros_like(y)
     traction = sliding_circle_surface(zero, y, 1.0, 0.5, 0.3)
     components = (hoop + traction["sigma_xx"], radial + traction["sigma_yy"], -pressed, zero, zero, 0.5 * pressed)
     known = von_mises_of(*components)
-    assert found.position[2] == 0.0
-    assert abs(found.value - known.max()) <= found.error == 0.02 * found.value
-    assert abs(found.position[1]) < 1
+    assert computed.position[2] == 0.0
+    assert abs(computed.value - known.max()) <= computed.error == 0.02 * computed.value
+    assert abs(computed.position[1]) < 1
 
 
 def test_stress_maximum_does_not_depend_on_point_order() -> None:
@@ -67,20 +67,20 @@ def test_stress_maximum_does_not_depend_on_point_order() -> None:
     body = HalfSpace(material=Material(1.0, 0.3))
     x = np.array([0.4, -0.4, np.nextafter(0.4, 1.0), 0.1, 0.1 + 1e-12])
     positions = field_positions(body, grid, x, [0.2, -0.2, 0.2 + 1e-15], [0.5, 0.3, 0.5 + 1e-15])
-    found = contact_stresses(body, sliding(pressure, 0.0), grid, lambda _: positions, (NOWHERE, NOWHERE))[-1]
-    assert found.value == pytest.approx(under(grid, pressure, 0.0).value, rel=1e-3)
+    computed = contact_stresses(body, sliding(pressure, 0.0), grid, lambda _: positions, (NOWHERE, NOWHERE))[-1]
+    assert computed.value == pytest.approx(maximum_under(grid, pressure, 0.0).value, rel=1e-3)
     for end in (5.0, 1.0):
         # Positions from both ends of the contact meet at its middle, but for rounding.
         strip = np.where((grid.x > -end) & (grid.x < end), 1.0, 0.0)[:, None] * np.sqrt(np.maximum(1 - grid.y**2, 0))
         uneven = strip * (1 + 0.01 * grid.x[:, None])
-        assert under(grid, uneven, 0.0).value < 0.8
+        assert maximum_under(grid, uneven, 0.0).value < 0.8
 
 
 def test_stress_maximum_without_pressure_is_zero() -> None:
     grid, pressure = circle()
-    found = under(grid, 0 * pressure, 0.0)
-    assert (found.value, found.error) == (0.0, 0.0)
-    assert np.isnan(found.position).all()
+    computed = maximum_under(grid, 0 * pressure, 0.0)
+    assert (computed.value, computed.error) == (0.0, 0.0)
+    assert np.isnan(computed.position).all()
 
 
 def sharp(friction: float = 0.0, distance: float = 0.5, tilt: float = 0.0) -> Case:
@@ -90,7 +90,7 @@ def sharp(friction: float = 0.0, distance: float = 0.5, tilt: float = 0.0) -> Ca
     return Case(body=body, roller=roller, max_pressure=PRESSURE, friction=friction, tilt=tilt)
 
 
-def at(result: xr.Dataset) -> list[float]:
+def maximum_position(result: xr.Dataset) -> list[float]:
     return [float(result[f"peak_von_mises_{axis}"]) for axis in "xyz"]
 
 
@@ -101,19 +101,19 @@ def test_stress_maximum_does_not_depend_on_positions() -> None:
     near = solve(case, accuracy=0.02, x=A * np.linspace(0, 8, 9), y=[0.0], z=A * np.linspace(0, 3, 4))
     value = float(far.peak_von_mises)
     assert float(near.peak_von_mises) == pytest.approx(value, rel=2e-3)
-    x, y, z = at(far)
+    x, y, z = maximum_position(far)
     step = 0.01 * A
     offsets = 2 * step * np.arange(-2.0, 3.0)
     depths = z + 0.4 * step * np.arange(-4.0, 5.0)
-    beside = stress_field(
+    adjacent = stress_field(
         case.body, far.pressure, friction=friction, x=x + offsets, y=y + offsets, z=depths, inside_cells=far.pressure
     )
-    assert float(beside.von_mises.max()) == pytest.approx(value, rel=3e-3)
+    assert float(adjacent.von_mises.max()) == pytest.approx(value, rel=3e-3)
     assert value / float(far.von_mises.max()) > 1.4
 
 
 def test_stress_maximum_error_covers_finer_cells() -> None:
-    coarse, fine = (solve(sharp(0.4), accuracy=each, x=[0.0], y=[0.0], z=[A]) for each in (0.02, 0.004))
+    coarse, fine = (solve(sharp(0.4), accuracy=value, x=[0.0], y=[0.0], z=[A]) for value in (0.02, 0.004))
     error = abs(float(coarse.peak_von_mises - fine.peak_von_mises))
     assert error <= float(coarse.peak_von_mises_error) < 0.04 * float(fine.peak_von_mises)
 
@@ -122,8 +122,8 @@ def test_stress_maximum_error_covers_finer_cells() -> None:
 def test_opposite_tilt_mirrors_stress_maximum() -> None:
     there, back = (solve(sharp(tilt=tilt), accuracy=0.02, x=[0.0], y=[0.0], z=[A]) for tilt in (1e-3, -1e-3))
     assert float(there.peak_von_mises) == pytest.approx(float(back.peak_von_mises), rel=1e-3)
-    assert at(there)[0] == pytest.approx(20 * A - at(back)[0], abs=0.02 * A)
-    assert abs(at(there)[0] - 10 * A) > 5 * A
+    assert maximum_position(there)[0] == pytest.approx(20 * A - maximum_position(back)[0], abs=0.02 * A)
+    assert abs(maximum_position(there)[0] - 10 * A) > 5 * A
 
 
 def test_stress_maximum_near_free_end_exceeds_pressure_peak() -> None:
@@ -135,13 +135,13 @@ def test_stress_maximum_near_free_end_exceeds_pressure_peak() -> None:
     length = 10e-3
     roller = Roller(radius=RADIUS, length=length, profile=profile, material=STEEL, ends="none")
     case = Case(body=FiniteLengthSpace(length=length, material=STEEL), roller=roller, max_pressure=pressure)
-    found = solve(case, accuracy=0.05, x=[0.5 * length], y=[0.0], z=[half_width])
+    computed = solve(case, accuracy=0.05, x=[0.5 * length], y=[0.0], z=[half_width])
     x, z = half_width * np.linspace(0.2, 2, 37), half_width * np.linspace(0.1, 1, 19)
-    near = stress_field(case.body, found.pressure, x=x, y=[0.0], z=z, inside_cells=found.pressure)
-    line = found.pressure.max("y")
+    near = stress_field(case.body, computed.pressure, x=x, y=[0.0], z=z, inside_cells=computed.pressure)
+    line = computed.pressure.max("y")
     assert float(line.sel(x=half_width, method="nearest")) < 0.97 * float(line.max())
-    assert float(found.peak_von_mises) == pytest.approx(float(near.von_mises.max()), rel=3e-3)
-    assert min(at(found)[0], length - at(found)[0]) < 2 * half_width
+    assert float(computed.peak_von_mises) == pytest.approx(float(near.von_mises.max()), rel=3e-3)
+    assert min(maximum_position(computed)[0], length - maximum_position(computed)[0]) < 2 * half_width
 
 
 def test_given_cells_and_singular_ends_omit_error() -> None:
@@ -154,7 +154,7 @@ def test_given_cells_and_singular_ends_omit_error() -> None:
     assert "given cells" in given.peak_von_mises_error.attrs["comment"]
     refined = solve(case, accuracy=0.05, x=[0.0], y=[0.0], z=[A])
     assert np.isinf(float(refined.peak_von_mises))
-    assert np.isnan(at(refined)).all()
+    assert np.isnan(maximum_position(refined)).all()
 
 
 FREE_ENDS = {
@@ -185,8 +185,8 @@ def test_stress_maximum_at_free_end_is_on_top(
     inside = far.pressure.sel(x=dense.x, y=dense.y) > 0.3 * float(far.pressure.max())
     largest = float(dense.von_mises.where(inside).max())
     assert float(far.peak_von_mises) == pytest.approx(largest, rel=5e-3)
-    assert at(far)[2] == 0.0
-    assert min(at(far)[0], length - at(far)[0]) < a
+    assert maximum_position(far)[2] == 0.0
+    assert min(maximum_position(far)[0], length - maximum_position(far)[0]) < a
     assert float(far.peak_von_mises_error) < 0.04 * float(far.peak_von_mises)
 
 
@@ -198,10 +198,10 @@ def test_requested_points_do_not_increase_error() -> None:
     few = solve(case, accuracy=0.003)
     where = float(few.peak_von_mises_x)
     depths = [0.0, 1e-7, 3e-7, 1e-6, 2e-6, 15e-6]
-    more = solve(case, accuracy=0.003, x=[where, length - where], y=[0.0], z=depths)
-    assert float(more.peak_von_mises) >= float(more.von_mises.sel(z=0.0).max())
-    assert float(more.peak_von_mises_error) == pytest.approx(float(few.peak_von_mises_error), rel=0.1)
-    assert float(more.peak_von_mises) == pytest.approx(float(few.peak_von_mises), rel=3e-3)
+    additional = solve(case, accuracy=0.003, x=[where, length - where], y=[0.0], z=depths)
+    assert float(additional.peak_von_mises) >= float(additional.von_mises.sel(z=0.0).max())
+    assert float(additional.peak_von_mises_error) == pytest.approx(float(few.peak_von_mises_error), rel=0.1)
+    assert float(additional.peak_von_mises) == pytest.approx(float(few.peak_von_mises), rel=3e-3)
 
 
 def test_friction_moves_stress_maximum_on_top() -> None:
@@ -210,7 +210,7 @@ def test_friction_moves_stress_maximum_on_top() -> None:
     crown = profiles.Lundberg.for_pressure(1.5e9, radius=RADIUS, modulus=STEEL.plane_strain_modulus, delta=0.6)
     body = FiniteLengthSpace(length=length + 8 * A, material=STEEL)
     roller = Roller(radius=RADIUS, length=length, profile=crown)
-    found = [
+    computed = [
         solve(
             Case(body=body, roller=roller, max_pressure=1.5e9, friction=friction),
             accuracy=0.05,
@@ -220,8 +220,8 @@ def test_friction_moves_stress_maximum_on_top() -> None:
         )
         for friction in (0.3, 0.5)
     ]
-    assert [at(one)[2] for one in found] == [0.0, 0.0]
-    first, second = (float(one.peak_von_mises) for one in found)
+    assert [maximum_position(variant)[2] for variant in computed] == [0.0, 0.0]
+    first, second = (float(variant.peak_von_mises) for variant in computed)
     assert second / first == pytest.approx(5 / 3, rel=0.05)
 
 
@@ -231,14 +231,14 @@ def test_overshooting_polynomials_keep_sampled_maximum() -> None:
     profile = profiles.Lundberg.for_pressure(1.5e9, radius=5e-3, modulus=STEEL.plane_strain_modulus)
     body, roller = FiniteLengthSpace(length=2e-3, material=STEEL), Roller(radius=5e-3, length=2e-3, profile=profile)
     case = Case(body=body, roller=roller, max_pressure=1.5e9, tilt=0.8e-3, friction=0.1)
-    found = solve(case, accuracy=0.005, y=[0.0], z=[1e-5])
-    x, y, z = (float(found[f"peak_von_mises_{axis}"]) for axis in "xyz")
+    computed = solve(case, accuracy=0.005, y=[0.0], z=[1e-5])
+    x, y, z = (float(computed[f"peak_von_mises_{axis}"]) for axis in "xyz")
     there = stress_field(
-        body, found.pressure, friction=0.1, x=[x], y=[y], z=[z], inside_cells=found.pressure
+        body, computed.pressure, friction=0.1, x=[x], y=[y], z=[z], inside_cells=computed.pressure
     ).von_mises.item()
-    assert float(found["peak_von_mises"]) == pytest.approx(there, rel=5e-3)
+    assert float(computed["peak_von_mises"]) == pytest.approx(there, rel=5e-3)
     fine = solve(case, accuracy=0.002, y=[0.0], z=[1e-5])
-    assert abs(float(found["peak_von_mises"] - fine["peak_von_mises"])) <= float(found["peak_von_mises_error"])
+    assert abs(float(computed["peak_von_mises"] - fine["peak_von_mises"])) <= float(computed["peak_von_mises_error"])
 
 
 @pytest.mark.slow

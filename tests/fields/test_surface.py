@@ -22,9 +22,9 @@ from contactstudy.kernels.load import Load
 def test_hertz_pressure_has_parabolic_displacement(on_cells, half_space: HalfSpace) -> None:
     peak = 2 / np.pi
     pressure = on_cells(lambda x, y: peak * np.sqrt(np.maximum(1 - x**2 - y**2, 0)), (-1.5, 1.5), (-1.5, 1.5), (96, 96))
-    sunk = surface_displacement(half_space, pressure)
+    displacement = surface_displacement(half_space, pressure)
     radius2 = pressure.x**2 + pressure.y**2
-    assert float(np.abs(sunk - (1 - radius2 / 2)).where(radius2 < 0.8).max()) < 2e-3
+    assert float(np.abs(displacement - (1 - radius2 / 2)).where(radius2 < 0.8).max()) < 2e-3
 
 
 @pytest.mark.parametrize("tangential", [False, True])
@@ -74,10 +74,10 @@ def test_friction_lowers_the_surface_ahead(short_body: FiniteLengthSpace, strip_
 
 
 def test_attributes_state_the_reference(short_body: FiniteLengthSpace, strip_pressure) -> None:
-    sunk = surface_displacement(short_body, strip_pressure(8.0, (16, 16)))
-    assert sunk.attrs["reference_distance"] == pytest.approx(80.0)
-    assert sunk.attrs["units"] == "m"
-    assert sunk.name == "displacement_z"
+    displacement = surface_displacement(short_body, strip_pressure(8.0, (16, 16)))
+    assert displacement.attrs["reference_distance"] == pytest.approx(80.0)
+    assert displacement.attrs["units"] == "m"
+    assert displacement.name == "displacement_z"
 
 
 def test_invalid_input_raises_error(short_body: FiniteLengthSpace, strip_pressure) -> None:
@@ -104,13 +104,15 @@ def test_coarse_operator_approximates_operator_on_coarse_cells(short_body, unit_
 @pytest.mark.parametrize("model", ["exact", "mirror"])
 def test_displacement_vanishes_at_reference(unit_material: Material, model: str) -> None:
     body = FiniteLengthSpace(length=1.0, material=unit_material, model=model)
-    sunk = []
+    displacement = []
     for window, cells in ((10.5, 210), (2.5, 50)):
         grid = Grid(x_range=(0.0, 1.0), y_range=(-window, window), cells_x=8, cells_y=cells)
         load = np.zeros(grid.shape)
         load[:, cells // 2 - 3 : cells // 2 + 3] = 1.0
         pressure = xr.DataArray(load, coords={"x": grid.x, "y": grid.y}, dims=("x", "y"))
-        sunk.append(surface_displacement(body, pressure))
-    far = sunk[0].interp(y=sunk[0].attrs["reference_distance"])
-    assert float(np.abs(far).max()) < 1e-3 * float(sunk[0].max())
-    np.testing.assert_allclose(sunk[0].sel(y=slice(-2.5, 2.5)), sunk[1], atol=1e-5 * float(sunk[0].max()))
+        displacement.append(surface_displacement(body, pressure))
+    far = displacement[0].interp(y=displacement[0].attrs["reference_distance"])
+    assert float(np.abs(far).max()) < 1e-3 * float(displacement[0].max())
+    np.testing.assert_allclose(
+        displacement[0].sel(y=slice(-2.5, 2.5)), displacement[1], atol=1e-5 * float(displacement[0].max())
+    )

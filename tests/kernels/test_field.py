@@ -27,12 +27,12 @@ def test_unaligned_positions_equal_single_positions() -> None:
     grid = Grid(x_range=(0.0, 8.0), y_range=(-2.0, 2.0), cells_x=80, cells_y=16)
     load = (1 - (grid.y / 2.0) ** 2) * np.ones(grid.shape)
     x, z = np.sort(np.random.default_rng(0).uniform(0.0, 8.0, 25)), np.array([0.05, 0.5])
-    together, *alone = (
-        half_space_field(load, INFLUENCE, grid, Points(each, grid.y[::4], z), extent=(0.0, 8.0))
-        for each in (x, *x[:, None])
+    together, *single = (
+        half_space_field(load, INFLUENCE, grid, Points(variant, grid.y[::4], z), extent=(0.0, 8.0))
+        for variant in (x, *x[:, None])
     )
     # Far columns are taken together.
-    np.testing.assert_allclose(together, np.concatenate(alone, axis=1), rtol=0, atol=1e-5 * np.abs(together).max())
+    np.testing.assert_allclose(together, np.concatenate(single, axis=1), rtol=0, atol=1e-5 * np.abs(together).max())
 
 
 def pressure(grid: Grid) -> FloatArray:
@@ -57,12 +57,12 @@ def test_field_is_linear_in_the_load(kind: str, *, ended: bool, shaped: bool, al
     first, second = pressure(grid) * random.random(grid.shape), random.random(grid.shape) * (np.abs(grid.y) < 0.5)
     x, y = (grid.x[::6], grid.y[::4]) if aligned else (np.array([0.01, 1.3, 3.77]), np.array([-0.9, 0.033]))
     z = np.array([0.0, 0.05, 0.3, 1.5])
-    one, other, both = (
+    item, variant, both = (
         half_space_field(load, INFLUENCE, grid, Points(x, y, z), extent=extent, shape=shape)
         for load in (first, second, first + 2 * second)
     )
     # The images' sums amplify rounding.
-    assert np.abs(one + 2 * other - both).max() < (1e-10 if np.isfinite(extent).all() else 1e-12)
+    assert np.abs(item + 2 * variant - both).max() < (1e-10 if np.isfinite(extent).all() else 1e-12)
 
 
 @pytest.mark.parametrize("kind", EDGES)
@@ -86,16 +86,18 @@ Z = np.array([0.0, 0.05, 0.4])
 
 def stresses(load: np.ndarray, x: np.ndarray, y: np.ndarray, extent: tuple[float, float]) -> np.ndarray:
     """Stresses under steps of a load in each direction."""
-    influences = [stress_influence(each, 0.3) for each in Load]
-    return np.stack([half_space_field(load, each, GRID, Points(x, y, Z), extent=extent) for each in influences])
+    influences = [stress_influence(direction, 0.3) for direction in Load]
+    return np.stack(
+        [half_space_field(load, direction, GRID, Points(x, y, Z), extent=extent) for direction in influences]
+    )
 
 
 def displacements(load: np.ndarray, x: np.ndarray, y: np.ndarray, extent: tuple[float, float]) -> np.ndarray:
     """Displacements likewise."""
     length = extent[1] - extent[0]
     fields = []
-    for each in Load:
-        influence = displacement_influence(each, 0.3, length, 20.0)
+    for direction in Load:
+        influence = displacement_influence(direction, 0.3, length, 20.0)
         fields.append(half_space_field(load, influence, GRID, Points(x, y, Z), extent=extent))
     return np.stack(fields)
 
@@ -128,12 +130,12 @@ def test_symmetric_load_has_equal_field(
     monkeypatch.setattr(field, "centred_field", lambda *a, **k: calls.append(1) or real(*a, **k))
     by_symmetry = compute(load, x, y, extent)
     # One more position along y that lies otherwise: all are convolved with the whole kernel.
-    whole = compute(load, x, np.append(y, y[0] + 0.3 * GRID.dy), extent)[:, :, :, :-1]
+    complete = compute(load, x, np.append(y, y[0] + 0.3 * GRID.dy), extent)[:, :, :, :-1]
     # Mirrored tractions along x take the general way.
     assert len(calls) == (3 if np.isinf(extent[0]) else 2)
     # Images are interpolated over another span along y.
     tolerance = 1e-13 if np.isinf(extent[1]) else 2e-8
-    np.testing.assert_allclose(by_symmetry, whole, atol=tolerance * np.abs(whole).max())
+    np.testing.assert_allclose(by_symmetry, complete, atol=tolerance * np.abs(complete).max())
 
 
 @pytest.mark.parametrize("each", [Load.NORMAL, Load.ALONG_Y])
@@ -150,17 +152,17 @@ def test_symmetric_load_equals_sum_of_halves(
     x = np.atleast_1d(grid.x[rows])
     influence = stress_influence(each, 0.3)
     parts = (half, other_half * half[::-1], half + other_half * half[::-1])
-    one, other, both = (
+    item, variant, both = (
         half_space_field(cells, influence, grid, Points(x, grid.y, Z), extent=(0.0, 2.0)) for cells in parts
     )
-    np.testing.assert_allclose(both, one + other, atol=1e-13 * np.abs(one).max())
+    np.testing.assert_allclose(both, item + variant, atol=1e-13 * np.abs(item).max())
 
 
 @pytest.mark.parametrize("unit", [1e-20, 1e20])
 def test_asymmetric_load_stays_asymmetric_in_any_unit(load: np.ndarray, unit: float) -> None:
     """A field is that of the load in any unit."""
-    found, plain = (stresses(each, GRID.x, GRID.y, (0.0, 2.0)) for each in (unit * load, load))
-    np.testing.assert_allclose(found / unit, plain, atol=1e-12 * np.abs(plain).max())
+    computed, baseline = (stresses(variant, GRID.x, GRID.y, (0.0, 2.0)) for variant in (unit * load, load))
+    np.testing.assert_allclose(computed / unit, baseline, atol=1e-12 * np.abs(baseline).max())
 
 
 def test_cached_kernels_depend_on_material_and_quantity(load: np.ndarray):
@@ -184,9 +186,9 @@ def test_convolution_includes_all_cell_pairs(extent: tuple[float, float], loaded
     load[loaded] = 1.0
     x, y = (GRID.x, GRID.y) if whole else (np.atleast_1d(GRID.x[loaded[0]]), np.atleast_1d(GRID.y[loaded[1]]))
     # With a position that lies otherwise beside each, nothing is taken by symmetry.
-    beside = [(values[:, None] + 0.013 * np.arange(2)).ravel() for values in (x, y)]
-    apart = stresses(load, *beside, extent)[:, :, ::2, ::2]
-    np.testing.assert_allclose(stresses(load, x, y, extent), apart, atol=1e-8)
+    adjacent = [(values[:, None] + 0.013 * np.arange(2)).ravel() for values in (x, y)]
+    separate = stresses(load, *adjacent, extent)[:, :, ::2, ::2]
+    np.testing.assert_allclose(stresses(load, x, y, extent), separate, atol=1e-8)
 
 
 @pytest.mark.parametrize("load", list(Load))

@@ -28,14 +28,14 @@ def test_image_sum_converges(length: float, unit: float) -> None:
     exact = np.zeros((x.size, y.size))
     for number in numbers:
         exact += cell_kernel(corner, x - 2 * length * unit * number, y, dx, dy)
-    own = cell_kernel(corner, x, y, dx, dy)
-    found = mirrored_kernel(corner, x, y, dx, dy, length * unit)
+    cell_influence = cell_kernel(corner, x, y, dx, dy)
+    computed = mirrored_kernel(corner, x, y, dx, dy, length * unit)
     # Those beyond 1500 periods: a line of the rest, evenly spread, on either side.
     rest = 0.3 * 0.25 * 0.2 / (2 * length) / (3001 * length) ** 2
-    assert found == pytest.approx(own + exact + rest, abs=5e-6 * np.abs(own).max())
+    assert computed == pytest.approx(cell_influence + exact + rest, abs=5e-6 * np.abs(cell_influence).max())
     beyond = image_kernel(corner, x, y, dx, dy, length * unit, nearest=4 * length * unit)
     near = sum(cell_kernel(corner, x - shift * length * unit, y, dx, dy) for shift in (-2, 2))
-    assert found - own == pytest.approx(beyond + near, abs=4e-6 * np.abs(own).max())
+    assert computed - cell_influence == pytest.approx(beyond + near, abs=4e-6 * np.abs(cell_influence).max())
 
 
 @pytest.mark.parametrize("unit", [1e-6, 1.0, 1e6])

@@ -34,8 +34,8 @@ def test_distant_rectangle_equals_point_load(kind: str) -> None:
     """Boussinesq and Cerruti."""
     point = (6.0, -8.0, 5.0)
     exact = ref.point_load(*point, poisson=0.3, **{k: float(k == kind) for k in CORNERS})
-    found = rectangle(kind, *point, size=(0.1, 0.1)) / 0.01
-    assert found == pytest.approx([float(exact[c]) for c in ref.COMPONENTS], rel=1e-3, abs=1e-8)
+    computed = rectangle(kind, *point, size=(0.1, 0.1)) / 0.01
+    assert computed == pytest.approx([float(exact[c]) for c in ref.COMPONENTS], rel=1e-3, abs=1e-8)
 
 
 @given(st.sampled_from(sorted(CORNERS)), st.floats(-3, 3), st.floats(-3, 3), st.floats(0.2, 3))
@@ -82,14 +82,14 @@ def test_kernel_includes_all_images(
     dx = length / cells_x
     corner = partial(CORNERS[kind], z=depth, poisson=0.3)
     x, y = dx * np.arange(0, cells_x + 1), dy * np.arange(cells_y)
-    found = images.mirrored_kernel(corner, x, y, dx, dy, length)
+    computed = images.mirrored_kernel(corner, x, y, dx, dy, length)
     near, far = (
         sum(images.cell_kernel(corner, x + 2 * length * number, y, dx, dy) for number in numbers)
         for numbers in (range(-400, 401), [*range(-800, -400), *range(401, 801)])
     )
     limit = near + 2 * far
     # Far below the length of the body there is next to nothing left of one cell's load.
-    assert np.abs(found - limit).max() < allowed / length
+    assert np.abs(computed - limit).max() < allowed / length
 
 
 @pytest.mark.parametrize("span", [0.3, 1.0, 4.0])
@@ -153,23 +153,23 @@ def test_displacements_inside_match_surface_kernel(load: Load):
 
     inside = DISPLACEMENT_CORNERS[load](x, y, 0.0, NU)
     for direction, expected in zip((Load.ALONG_X, Load.ALONG_Y, Load.NORMAL), inside, strict=True):
-        found = mixed_difference(corner_function(strips_of(Response(direction, load), NU))(x, y))
-        np.testing.assert_allclose(found, mixed_difference(expected), rtol=1e-12, atol=1e-15)
+        computed = mixed_difference(corner_function(strips_of(Response(direction, load), NU))(x, y))
+        np.testing.assert_allclose(computed, mixed_difference(expected), rtol=1e-12, atol=1e-15)
 
 
 @pytest.mark.parametrize("load", list(Load))
 @pytest.mark.parametrize("at", [(0.5, 0.0), (0.0, -0.5), (0.0, 0.0)])
 def test_corner_functions_are_continuous(load: Load, at: tuple[float, float]):
     corner, (x, y) = DISPLACEMENT_CORNERS[load], at
-    found = corner(np.array([x]), np.array([y]), 0.0, NU)
-    beside = corner(np.array([x + 1e-9]), np.array([y + 1e-9]), 0.0, NU)
-    np.testing.assert_allclose(found, beside, atol=1e-7)
+    computed = corner(np.array([x]), np.array([y]), 0.0, NU)
+    adjacent = corner(np.array([x + 1e-9]), np.array([y + 1e-9]), 0.0, NU)
+    np.testing.assert_allclose(computed, adjacent, atol=1e-7)
 
 
 EDGES = {"uniform": np.linspace(0.0, 3.0, 9), "graded": np.array([0.0, 0.2, 0.5, 1.0, 1.6, 2.3, 3.0])}
 
 
-def displaced(
+def compute_displacements(
     load: Load, edges: FloatArray, *, place: float = 0.0, unit: float = 1.0, smooth: bool = True
 ) -> FloatArray:
     grid = Grid.between(unit * (edges + place), (-unit, unit), 8)
@@ -185,11 +185,11 @@ def displaced(
 @pytest.mark.parametrize("load", Load)
 @pytest.mark.parametrize("smooth", [True, False])
 def test_results_scale_with_unit_and_position(load: Load, name: str, *, smooth: bool) -> None:
-    plain = displaced(load, EDGES[name], smooth=smooth)
+    baseline = compute_displacements(load, EDGES[name], smooth=smooth)
     # Uniform cells of a body with ends begin at 0.
-    for place, unit in ((0.0, 2.0**-17), *(() if name == "uniform" else ((8.0, 1.0), (-32.0, 1.0)))):
-        other = displaced(load, EDGES[name], place=place, unit=unit, smooth=smooth)
-        assert other / unit == pytest.approx(plain, abs=1e-7 * np.abs(plain).max())
+    for position, unit in ((0.0, 2.0**-17), *(() if name == "uniform" else ((8.0, 1.0), (-32.0, 1.0)))):
+        variant = compute_displacements(load, EDGES[name], place=position, unit=unit, smooth=smooth)
+        assert variant / unit == pytest.approx(baseline, abs=1e-7 * np.abs(baseline).max())
 
 
 def test_unit_traction_on_the_top() -> None:

@@ -28,11 +28,11 @@ def test_hertz_pressure_from_cell_means(cells: int, half: float) -> None:
     edges = np.linspace(-half, half, cells + 1)
     means = np.diff(semicircle_integral(edges)) / np.diff(edges)
     fine = np.linspace(-half, half, 12 * cells + 1)
-    found = smooth_form(means[None], edges, extends_beyond=True).means(fine)[0]
+    computed = smooth_form(means[None], edges, extends_beyond=True).means(fine)[0]
     expected = np.diff(semicircle_integral(fine)) / np.diff(fine)
-    assert np.abs(found - expected)[np.abs(fine[1:]) < 0.9].max() < 5e-3
+    assert np.abs(computed - expected)[np.abs(fine[1:]) < 0.9].max() < 5e-3
     # Stepwise it would be off by a third.
-    assert np.abs(found - expected).max() < 0.06
+    assert np.abs(computed - expected).max() < 0.06
 
 
 @st.composite
@@ -110,10 +110,10 @@ def test_rounding_keeps_shape_of_load_end() -> None:
 def test_shape_is_linear_in_load(row: tuple[FloatArray, FloatArray], extends_beyond: bool) -> None:
     loads, edges = row
     fine = np.linspace(edges[0], edges[-1], 60)
-    one = smooth_form(loads, edges, extends_beyond=extends_beyond).means(fine)
+    item = smooth_form(loads, edges, extends_beyond=extends_beyond).means(fine)
     for factor in (2.0**-30, 2.0**30):
-        other = smooth_form(factor * loads, edges, extends_beyond=extends_beyond).means(fine)
-        assert np.allclose(one, other / factor, atol=1e-9)
+        variant = smooth_form(factor * loads, edges, extends_beyond=extends_beyond).means(fine)
+        assert np.allclose(item, variant / factor, atol=1e-9)
 
 
 @settings(max_examples=30)
@@ -125,17 +125,17 @@ def test_moments_match_narrow_cells(row: tuple[FloatArray, FloatArray], extends_
     fine = np.append((edges[:-1, None] + np.diff(edges)[:, None] * np.arange(parts) / parts).ravel(), edges[-1])
     forces, middles = smooth.means(fine) * np.diff(fine), 0.5 * (fine[1:] + fine[:-1])
     about = np.repeat(0.5 * (edges[1:] + edges[:-1]), parts)
-    own = (forces * (middles - about)).reshape(loads.shape[0], -1, parts).sum(axis=2)
-    assert np.allclose(smooth.moments, own, atol=1e-4)
+    expected = (forces * (middles - about)).reshape(loads.shape[0], -1, parts).sum(axis=2)
+    assert np.allclose(smooth.moments, expected, atol=1e-4)
     total = np.cumsum(forces * (middles - edges[0]), axis=1)
     if edges.size < 3:
         return
-    other = np.linspace(edges[0] - 0.3, edges[-1] + 0.2, 9)
-    for gathered, cells in ((smooth.equivalent_means(edges), edges), (smooth.equivalent_means(other), other)):
-        found = gathered * np.diff(cells)
-        assert np.allclose(found.sum(axis=1), forces.sum(axis=1), atol=1e-9)
+    variant = np.linspace(edges[0] - 0.3, edges[-1] + 0.2, 9)
+    for gathered, cells in ((smooth.equivalent_means(edges), edges), (smooth.equivalent_means(variant), variant)):
+        computed = gathered * np.diff(cells)
+        assert np.allclose(computed.sum(axis=1), forces.sum(axis=1), atol=1e-9)
         centres = 0.5 * (cells[1:] + cells[:-1]) - edges[0]
-        assert np.allclose(found @ centres, total[:, -1], atol=2e-3)
+        assert np.allclose(computed @ centres, total[:, -1], atol=2e-3)
 
 
 def test_load_vanishes_outside_edges() -> None:
@@ -171,10 +171,10 @@ def test_root_extends_beyond_last_cell(factor: float) -> None:
     assert smooth.integral(edges[7:8])[0] == pytest.approx(factor * forces.sum())
     assert smooth.means(np.array([edges[6] + 0.4, edges[7]]))[0] == 0
     # Not where it is not wanted, nor at the end of a row, nor beside another load.
-    beside = np.where(np.arange(9) == 7, 1.0, loads)
-    for row, extends_beyond in ((loads, False), (beside, True), (loads[:6], True)):
-        kept = smooth_form(factor * row[None], edges[: row.size + 1], extends_beyond=extends_beyond)
-        assert kept.integral(edges[6:7])[0] == pytest.approx(factor * forces.sum())
+    adjacent = np.where(np.arange(9) == 7, 1.0, loads)
+    for row, extends_beyond in ((loads, False), (adjacent, True), (loads[:6], True)):
+        retained = smooth_form(factor * row[None], edges[: row.size + 1], extends_beyond=extends_beyond)
+        assert retained.integral(edges[6:7])[0] == pytest.approx(factor * forces.sum())
 
 
 @pytest.mark.parametrize("moved", [0.1, 0.4])
@@ -213,11 +213,11 @@ def test_load_ends_in_last_cell_of_row(part: float) -> None:
     exact = (end**1.5 - np.maximum(end - edges, 0.0) ** 1.5) / 1.5
     cells = np.diff(exact)[None, :]
     for load in (cells, -cells[:, ::-1]):
-        own = smooth_form(load, edges)
+        smooth_load = smooth_form(load, edges)
         longer = smooth_form(np.pad(load, ((0, 0), (1, 1))), np.arange(-1.0, 11.0))
         for name in ("first", "middle", "last", "knot"):
-            assert getattr(own.shape, name) == pytest.approx(getattr(longer.shape, name)[:, 1:-1]), name
-        assert own.cell_means.sum() == pytest.approx(load.sum())
+            assert getattr(smooth_load.shape, name) == pytest.approx(getattr(longer.shape, name)[:, 1:-1]), name
+        assert smooth_load.cell_means.sum() == pytest.approx(load.sum())
 
 
 def test_opposite_face_from_mean() -> None:

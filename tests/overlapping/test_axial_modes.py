@@ -14,7 +14,7 @@ from contactstudy.overlapping.quadrature import Resolution
 X = np.array([0.02, 0.6, 1.5, 2.7])
 
 
-def represented(modes: AxialModes, waves: np.ndarray, height: float) -> np.ndarray:
+def represent_load(modes: AxialModes, waves: np.ndarray, height: float) -> np.ndarray:
     """Sum of the waves times ``exp(-k height)``, with the weights of a load's spectrum."""
     return np.asarray(((modes.load_weights * np.exp(-modes.wavenumbers * height))[:, None] * waves).sum(axis=0).real)
 
@@ -29,15 +29,15 @@ def test_ray_and_discrete_modes_equal_full_sum(length: float, height: float) -> 
         assert modes.parity == parity
         for waves, wave in ((modes.cosine, np.cos), (modes.sine, np.sin)):
             expected = weights @ wave(np.outer(k, X))
-            assert represented(modes, waves(X), height) == pytest.approx(expected, abs=4e-6)
+            assert represent_load(modes, waves(X), height) == pytest.approx(expected, abs=4e-6)
 
 
 @pytest.mark.parametrize("height", [0.15, 1.0])
 def test_ray_equals_integral_of_single_end(height: float) -> None:
     (modes,) = axial_modes(np.inf, 0.05, 0.05, Resolution())
     exact = 2 / np.pi / (height**2 + X**2)
-    assert represented(modes, modes.cosine(X), height) == pytest.approx(height * exact, abs=1e-5)
-    assert represented(modes, modes.sine(X), height) == pytest.approx(X * exact, abs=1e-5)
+    assert represent_load(modes, modes.cosine(X), height) == pytest.approx(height * exact, abs=1e-5)
+    assert represent_load(modes, modes.sine(X), height) == pytest.approx(X * exact, abs=1e-5)
 
 
 @pytest.mark.parametrize("length", [3.0, np.inf])
@@ -45,14 +45,14 @@ def test_ray_equals_integral_of_single_end(height: float) -> None:
 def test_cell_integrals_match_waves(load: Load, length: float) -> None:
     edges = np.array([0.0, 0.4, 1.7, 3.0])
     for modes in axial_modes(length, 0.5, 0.05, Resolution()):
-        found = modes.cell_integrals(load, edges)
+        computed = modes.cell_integrals(load, edges)
         few = np.abs(modes.wavenumbers) < 20
         weights_of = np.abs(modes.load_weights)[few]  # as few digits are left at wavenumbers next to 0 as weight
         for cell, (low, high) in enumerate(pairwise(edges)):
             nodes, weights = np.polynomial.legendre.leggauss(60)
             at = 0.5 * (high + low) + 0.5 * (high - low) * nodes
             expected = 0.5 * (high - low) * modes.wave(load, at) @ weights
-            np.testing.assert_allclose(weights_of * found[few, cell], weights_of * expected[few], atol=1e-9)
+            np.testing.assert_allclose(weights_of * computed[few, cell], weights_of * expected[few], atol=1e-9)
 
 
 def test_shortest_distance_bounds_wavenumbers() -> None:

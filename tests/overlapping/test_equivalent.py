@@ -16,7 +16,9 @@ from contactstudy.overlapping.quadrature import Resolution
 GRID = Grid(x_range=(0.0, 2.4), y_range=(-1.0, 1.0), cells_x=8, cells_y=8)
 
 
-def pressed(problem: EndProblem, x: np.ndarray, y: np.ndarray, z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def equivalent_loads_of(
+    problem: EndProblem, x: np.ndarray, y: np.ndarray, z: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
     """Load added on the top (x, y) and loads on the faces (end, y, z) under the pressure of a problem."""
     operators = OverlappingOperators.of(problem, Points(x, y, z), reference=24.0).equivalent(Load.NORMAL)
     cells = problem.cells.ravel()
@@ -40,7 +42,7 @@ def test_symmetric_load_has_equal_end_loads(*, mirrored_once: bool) -> None:
     offset = problem.corner_offset
     x = np.array([0.0, 0.5 * offset, offset, 0.3, 1.2, 2.1, 2.4 - offset, 2.4 - 0.5 * offset, 2.4])
     y, z = np.array([0.0, 0.6]), np.array([0.0, 0.5 * offset, offset, 0.4])
-    added, (first, second) = pressed(problem, x, y, z)
+    added, (first, second) = equivalent_loads_of(problem, x, y, z)
     assert added == pytest.approx(added[::-1], abs=1e-6)
     assert first == pytest.approx(second, abs=1e-6)
     # Nearer to a corner than a part of a cell it is that at this distance.
@@ -55,7 +57,7 @@ def test_equivalent_load_is_continuous_at_corners() -> None:
     problem = EndProblem(length=2.4, poisson=0.3, cells=cells, loads=(Load.NORMAL,), grid=GRID, resolution=Resolution())
     offset = problem.corner_offset
     x = np.array([0.0, offset, 2.4 - offset, 2.4])
-    added, _ = pressed(problem, x, np.array([0.0]), np.array([0.4]))
+    added, _ = equivalent_loads_of(problem, x, np.array([0.0]), np.array([0.4]))
     corner, near_corner, near_second, second_corner = added[:, 0]
     assert (corner, second_corner) == pytest.approx((near_corner, near_second))
     assert corner != pytest.approx(second_corner, rel=0.1)
@@ -78,7 +80,7 @@ def test_single_mirror_face_load_frees_end() -> None:
         resolution=Resolution(),
         mirrored_once=True,
     )
-    added, (first, second) = pressed(problem, top.x, top.y, face.x)
+    added, (first, second) = equivalent_loads_of(problem, top.x, top.y, face.x)
     y, z = top.y[16:24:3], face.x[2:20:4]
     copies, three = (
         np.concatenate([cells + added] * 3),

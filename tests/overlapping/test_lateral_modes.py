@@ -29,7 +29,7 @@ GRID = Grid(x_range=(0.0, 4.0), y_range=(-1.0, 1.0), cells_x=12, cells_y=40)
 Y = np.array([-1.5, -0.2, 0.0, 0.7])
 
 
-def integrated(panel: LateralPanel, parts: dict[int, np.ndarray], y: np.ndarray = Y) -> np.ndarray:
+def integrate_kernel(panel: LateralPanel, parts: dict[int, np.ndarray], y: np.ndarray = Y) -> np.ndarray:
     """Integrals over the panel of ``exp(-0.3 k)`` times each load: array (load, part of y, parity, cell, y)."""
     total = np.zeros((2, 2, len(parts), GRID.cells_x, y.size))
     columns = lateral_columns(panel, parts, GRID, y)
@@ -52,7 +52,7 @@ def test_columns_equal_the_load_at_every_wavenumber(seed: int, rank: int, split:
     # With 20 nodes the amplitudes are interpolated to rounding.
     for panel in lateral_panels(0.05, 2.5, 60.0, replace(Resolution(), lateral_nodes=20)):
         direct = replace(panel, nodes=panel.fine_nodes, interpolation=None)
-        np.testing.assert_allclose(integrated(panel, parts), integrated(direct, parts), atol=1e-9 * rank)
+        np.testing.assert_allclose(integrate_kernel(panel, parts), integrate_kernel(direct, parts), atol=1e-9 * rank)
 
 
 def test_few_positions_use_two_columns_each():
@@ -62,16 +62,16 @@ def test_few_positions_use_two_columns_each():
         few = lateral_columns(panel, parts, GRID, Y[:1])
         assert few is not None
         assert few.parities.size <= 4
-        for number in range(Y.size):
-            position = integrated(panel, parts, Y[number : number + 1])
-            np.testing.assert_allclose(position[..., 0], integrated(panel, parts)[..., number], atol=1e-12)
+        for index in range(Y.size):
+            position = integrate_kernel(panel, parts, Y[index : index + 1])
+            np.testing.assert_allclose(position[..., 0], integrate_kernel(panel, parts)[..., index], atol=1e-12)
 
 
 def test_product_of_x_and_y_has_one_column_per_node():
     pressure = np.outer(np.arange(1.0, 13.0), (1 - GRID.y**2) * (2 + GRID.y))
     panels = lateral_panels(0.05, 2.5, 60.0, Resolution())
     loads = [lateral_columns(panel, {0: pressure}, GRID, Y) for panel in panels]
-    columns = [each.nodes.size * each.parities.size for each in loads if each is not None]
+    columns = [load.nodes.size * load.parities.size for load in loads if load is not None]
     assert sum(columns) < 0.4 * sum(2 * panel.fine_nodes.size for panel in panels)
     assert columns[-1] == Resolution().lateral_nodes
 
@@ -126,10 +126,10 @@ def test_pole_integral_does_not_depend_on_first_panel(poles: int):
     for first in (0.02, 0.1, 0.6):
         total = np.zeros((2, y.size))
         for panel in lateral_panels(first, 3.0, 60.0, Resolution(), 30.0, poles):
-            answer = np.exp(-panel.nodes) / panel.nodes**poles
+            response = np.exp(-panel.nodes) / panel.nodes**poles
             if panel.interpolation is not None:
-                answer = panel.interpolation @ answer
-            total += [answer @ waves for waves in panel.waves(y)]
+                response = panel.interpolation @ response
+            total += [response @ waves for waves in panel.waves(y)]
         totals.append(total[0] - total[0, :1] if poles == BENDING_POLES else total[0])
     np.testing.assert_allclose(totals[0], totals[1], atol=2e-4 if poles == POLES else 1e-5)
     if poles == BENDING_POLES:

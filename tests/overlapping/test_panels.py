@@ -14,9 +14,9 @@ def test_interpolation_is_exact_for_polynomials(finite: bool) -> None:
     rng = np.random.default_rng(0)
     for length in rng.uniform(1e-3, 1e3, 20):
         x = np.sort(np.concatenate([length * rng.random(200), [0.0, 0.5 * length, length]]))
-        found = graded_interpolation(x, length if finite else np.inf, 8)
-        assert found is not None
-        positions, matrix = found
+        computed = graded_interpolation(x, length if finite else np.inf, 8)
+        assert computed is not None
+        positions, matrix = computed
         for power in (0, 1, 5):
             assert matrix @ (positions / length) ** power == pytest.approx((x / length) ** power, abs=1e-9)
 
@@ -51,9 +51,9 @@ def test_cell_moments_are_exact_for_polynomials(unit: float) -> None:
 @pytest.mark.parametrize("unit", [2.0**-17, 1.0])
 def test_interpolation_is_symmetric_in_any_unit(length: float, unit: float) -> None:
     x = np.sort(np.append(np.random.default_rng(0).uniform(0.0, 3.0, 600), [0.0, 3.0]))
-    found = graded_interpolation(unit * x, unit * length, 8)
-    assert found is not None
-    positions, matrix = found
+    computed = graded_interpolation(unit * x, unit * length, 8)
+    assert computed is not None
+    positions, matrix = computed
     assert positions.size < x.size
 
     def near_ends(at: np.ndarray) -> np.ndarray:
@@ -67,5 +67,5 @@ def test_interpolation_is_symmetric_in_any_unit(length: float, unit: float) -> N
     # Never more positions than there were.
     for count in range(2, 160):
         few = np.linspace(0.0, 3.0, count)
-        other = graded_interpolation(unit * few, unit * length, 8)
-        assert other is None or other[0].size < count
+        variant = graded_interpolation(unit * few, unit * length, 8)
+        assert variant is None or variant[0].size < count

@@ -40,29 +40,29 @@ def single_mirror(length: float, material: Material) -> FiniteLengthSpace:
 
 
 @pytest.fixture(scope="module")
-def eccentric(strip_pressure) -> xr.DataArray:
+def eccentric_load(strip_pressure) -> xr.DataArray:
     """A strip, a third heavier at end II than at end I, on a body four half-widths long."""
     pressure = strip_pressure(4.0, (32, 48))
     return pressure * (1 + 0.3 * (pressure.x / 4.0 - 0.5))
 
 
-def test_single_mirror_ends_keep_shear(eccentric: xr.DataArray, unit_material: Material) -> None:
-    grid = Grid.from_centres(eccentric.x.values, eccentric.y.values)
+def test_single_mirror_ends_keep_shear(eccentric_load: xr.DataArray, unit_material: Material) -> None:
+    grid = Grid.from_centres(eccentric_load.x.values, eccentric_load.y.values)
     body = single_mirror(4.0, unit_material)
-    place = Points(np.array([0.0, 4.0]), ACROSS, DEPTHS)
-    (stress,) = stresses_at(body, sliding(eccentric.values, FRICTION), grid, [place], eccentric.values)
+    position = Points(np.array([0.0, 4.0]), ACROSS, DEPTHS)
+    (stress,) = stresses_at(body, sliding(eccentric_load.values, FRICTION), grid, [position], eccentric_load.values)
     assert np.abs(stress[0]).max() < 6e-5
     assert np.abs(stress[4]).max() > 3e-3
 
 
-def test_top_traction_equals_load(eccentric: xr.DataArray) -> None:
+def test_top_traction_equals_load(eccentric_load: xr.DataArray) -> None:
     """Before anything is imposed: H under the added load and V under the face loads cancel on the top."""
-    grid = Grid.from_centres(eccentric.x.values, eccentric.y.values)
+    grid = Grid.from_centres(eccentric_load.x.values, eccentric_load.y.values)
     both = (Load.NORMAL, Load.ALONG_Y)
     problem = EndProblem(
         length=4.0,
         poisson=0.3,
-        cells=eccentric.values,
+        cells=eccentric_load.values,
         loads=both,
         grid=grid,
         resolution=Resolution(),
@@ -88,18 +88,20 @@ def test_equivalent_load_displaces_half_space_equally(on_cells, unit_material: M
     load = equivalent_loads(body, pressure, z=[1.0])["P_h1"].values
     three = on_cells(lambda x, y: 0 * x * y, (-4.0, 8.0), window, (96, 240))
     by_hand = surface_displacement(half_space, three + np.concatenate([load[::-1], load, load[::-1]]))
-    sunk = surface_displacement(body, pressure.isel(y=middle)).values
-    difference = sunk - by_hand.values[32:64, middle]
+    displacement = surface_displacement(body, pressure.isel(y=middle)).values
+    difference = displacement - by_hand.values[32:64, middle]
     assert np.abs(difference).max() < 1e-2
-    own = pressure.values
-    images = surface_displacement(half_space, three + np.concatenate([own[::-1], own, own[::-1]]))
-    assert np.abs(sunk - images.values[32:64, middle]).max() > 0.1
+    cell_pressure = pressure.values
+    images = surface_displacement(
+        half_space, three + np.concatenate([cell_pressure[::-1], cell_pressure, cell_pressure[::-1]])
+    )
+    assert np.abs(displacement - images.values[32:64, middle]).max() > 0.1
 
 
-def test_displacement_is_continuous_at_top(eccentric: xr.DataArray, unit_material: Material) -> None:
+def test_displacement_is_continuous_at_top(eccentric_load: xr.DataArray, unit_material: Material) -> None:
     body = single_mirror(4.0, unit_material)
-    on_top = surface_displacement(body, eccentric, FRICTION)
-    inside = displacement_field(body, eccentric, friction=FRICTION, y=eccentric.y.values[[24, 30]])
+    on_top = surface_displacement(body, eccentric_load, FRICTION)
+    inside = displacement_field(body, eccentric_load, friction=FRICTION, y=eccentric_load.y.values[[24, 30]])
     difference = np.abs(on_top.values[:, [24, 30]] - inside.u_z.values[..., 0]).max()
     assert difference < 5e-4 * float(on_top.max())
     assert "reference_distance" not in on_top.attrs

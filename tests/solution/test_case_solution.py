@@ -91,9 +91,9 @@ def test_result_survives_netcdf(result, tmp_path) -> None:
     import xarray as xr
 
     result.to_netcdf(tmp_path / "case.nc")
-    with xr.open_dataset(tmp_path / "case.nc") as again:
+    with xr.open_dataset(tmp_path / "case.nc") as repeated:
         for name in STRESSES:
-            assert np.array_equal(again[name], result[name])
+            assert np.array_equal(repeated[name], result[name])
 
 
 def test_stresses_at_given_positions() -> None:
@@ -127,10 +127,10 @@ def test_short_contact_has_sufficient_window(body) -> None:
     case = Case(body=body, roller=strongly_crowned, load=400.0)
     with pytest.raises(WindowError, match="choose_grid"):
         solve(case, choose_grid(case), stresses=False)
-    found = solve(case, stresses=False)
-    assert bool(found.converged)
+    computed = solve(case, stresses=False)
+    assert bool(computed.converged)
     wide = solve(case, choose_grid(case, window=6.0, margin=12.0), stresses=False)
-    assert float(found.pressure.max()) == pytest.approx(float(wide.pressure.max()), rel=5e-3)
+    assert float(computed.pressure.max()) == pytest.approx(float(wide.pressure.max()), rel=5e-3)
 
 
 def test_rough_surface_determines_window() -> None:
@@ -166,8 +166,8 @@ def test_rolling_case_stresses_include_tractions() -> None:
     tractions = {name: result[name] for name in ("traction_x", "traction_y")}
     inside = roller_stress(case, result.pressure, z=[5e-5], **tractions)
     reversed_case = replace(case, motion=Rolling(longitudinal_creepage=-1e-3, spin=-1.0))
-    other = solve(reversed_case, grid, z=[5e-5])
-    assert np.allclose(inside.von_mises.values, other.von_mises.values, rtol=1e-4, atol=1e-4 * peak)
+    variant = solve(reversed_case, grid, z=[5e-5])
+    assert np.allclose(inside.von_mises.values, variant.von_mises.values, rtol=1e-4, atol=1e-4 * peak)
     with pytest.raises(InvalidInputError, match="traction_x, traction_y"):
         roller_stress(case, result.pressure, z=[5e-5])
 

@@ -53,7 +53,7 @@ def test_load_errors_measure_size_and_position() -> None:
 @pytest.mark.parametrize("name", ["load_error", "penetration_error", "open_pressure_error", "load_position_error"])
 @pytest.mark.parametrize("sign", [1, -1])
 def test_certificate_fails_beyond_bound(name: str, sign: int) -> None:
-    whole = asdict(certificate([0.3, 0.0, 0.0]))
+    complete = asdict(certificate([0.3, 0.0, 0.0]))
     bound = CONVERGED_TOLERANCES * TOLERANCE
-    assert Certificate(**(whole | {name: 0.9 * sign * bound})).holds(TOLERANCE)
-    assert not Certificate(**(whole | {name: 1.1 * sign * bound})).holds(TOLERANCE)
+    assert Certificate(**(complete | {name: 0.9 * sign * bound})).holds(TOLERANCE)
+    assert not Certificate(**(complete | {name: 1.1 * sign * bound})).holds(TOLERANCE)

@@ -143,10 +143,10 @@ def test_roughness_on_other_cells_is_interpolated():
         heights = 1e-3 * (on.x[:, None] - 0.5 * LENGTH) + 2e-3 * on.y
         return xr.DataArray(heights, coords={"x": on.x, "y": on.y}, dims=("x", "y"))
 
-    own, other = (solve(case, grid, roughness=sloping(on), stresses=False) for on in (grid, wider))
-    np.testing.assert_allclose(other.initial_gap, own.initial_gap, atol=1e-18)
+    expected, variant = (solve(case, grid, roughness=sloping(on), stresses=False) for on in (grid, wider))
+    np.testing.assert_allclose(variant.initial_gap, expected.initial_gap, atol=1e-18)
     tilted = solve(case_with(tilt=1e-3), grid, stresses=False)
-    assert float(own.load_position) == pytest.approx(float(tilted.load_position), abs=1e-2 * HALF_WIDTH)
+    assert float(expected.load_position) == pytest.approx(float(tilted.load_position), abs=1e-2 * HALF_WIDTH)
 
 
 def test_flat_height_map_changes_approach_only():
@@ -255,28 +255,28 @@ def test_several_approaches_form_dimension(on_cells) -> None:
     gap = on_cells(lambda x, y: 0.5 * (x**2 + y**2), (-1.6, 1.6), (-1.6, 1.6), (32, 32))
     body = HalfSpace(material=Material(0.75, 0.5))
     steps = [0.25, 0.5, 1.0]
-    found = solve_contact(body, gap, approach=steps)
-    assert found["pressure"].dims == ("approach", "x", "y")
-    assert found["approach"].values.tolist() == steps
-    assert found["approach"].attrs["units"] == "m"
+    computed = solve_contact(body, gap, approach=steps)
+    assert computed["pressure"].dims == ("approach", "x", "y")
+    assert computed["approach"].values.tolist() == steps
+    assert computed["approach"].attrs["units"] == "m"
     xr.testing.assert_allclose(
-        found.sel(approach=0.5).drop_vars("approach"), solve_contact(body, gap, approach=0.5).drop_vars("approach")
+        computed.sel(approach=0.5).drop_vars("approach"), solve_contact(body, gap, approach=0.5).drop_vars("approach")
     )
     # Hertz: W = 4/3 E* R**(1/2) d**(3/2), with E* = R = 1
-    np.testing.assert_allclose(found["normal_load"], 4 / 3 * np.array(steps) ** 1.5, rtol=0.02)
+    np.testing.assert_allclose(computed["normal_load"], 4 / 3 * np.array(steps) ** 1.5, rtol=0.02)
     for wrong in ([], [0.1, np.nan], [[0.1]], "deep"):
         with pytest.raises(InvalidInputError, match="approach"):
             solve_contact(body, gap, approach=wrong)
     with pytest.raises(InvalidInputError, match="after"):
-        solve_contact(body, gap, approach=steps, settings=ContactSettings(after=found))
+        solve_contact(body, gap, approach=steps, settings=ContactSettings(after=computed))
 
 
 def test_levers_are_relative_to_largest() -> None:
-    for place in (0.0, 5.0):
-        grid = Grid.between(place + np.array([0.0, 1.0, 2.0, 4.0]), (0.0, 1.0), 2)
-        asked = PrescribedLoad(3.0, place + 1.0)
-        assert asked.max_arm(grid) == pytest.approx(2.0)
-        found = asked.resultants(grid)
-        assert found.lever is not None
-        assert found.lever[:, 0] == pytest.approx([-0.25, 0.25, 1.0])
-        assert found.total == pytest.approx(3.0 / grid.cell_area)
+    for position in (0.0, 5.0):
+        grid = Grid.between(position + np.array([0.0, 1.0, 2.0, 4.0]), (0.0, 1.0), 2)
+        request = PrescribedLoad(3.0, position + 1.0)
+        assert request.max_arm(grid) == pytest.approx(2.0)
+        computed = request.resultants(grid)
+        assert computed.lever is not None
+        assert computed.lever[:, 0] == pytest.approx([-0.25, 0.25, 1.0])
+        assert computed.total == pytest.approx(3.0 / grid.cell_area)

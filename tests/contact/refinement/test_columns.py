@@ -31,7 +31,7 @@ SHAPES: dict[str, Callable[[FloatArray], FloatArray]] = {
 }
 
 
-def asked(height: Callable[[FloatArray], FloatArray], unit: float = 1.0, start: float = 0.0) -> AxialShape:
+def axial_shape(height: Callable[[FloatArray], FloatArray], unit: float = 1.0, start: float = 0.0) -> AxialShape:
     """Half-width 1, depth 0.05; lengths in some unit, and from some place on."""
     return AxialShape(
         start=start,
@@ -43,7 +43,7 @@ def asked(height: Callable[[FloatArray], FloatArray], unit: float = 1.0, start: 
     )
 
 
-def bends(height: Callable[[FloatArray], FloatArray], low: FloatArray, high: FloatArray) -> FloatArray:
+def chord_deviation(height: Callable[[FloatArray], FloatArray], low: FloatArray, high: FloatArray) -> FloatArray:
     """Distance of the shape from its chord between some positions."""
     part = np.linspace(1e-6, 1 - 1e-6, 201)
     heights = height(low[:, None] + (high - low)[:, None] * part)
@@ -54,18 +54,18 @@ def bends(height: Callable[[FloatArray], FloatArray], low: FloatArray, high: Flo
 @pytest.mark.parametrize("name", SHAPES)
 def test_overlooked_columns_leave_low_shape(name: str) -> None:
     height = SHAPES[name]
-    edges, plain = first_edges(asked(height)), first_edges(asked(np.zeros_like))
-    widths, bent = np.diff(edges), bends(height, edges[:-1], edges[1:])
+    edges, baseline = first_edges(axial_shape(height)), first_edges(axial_shape(np.zeros_like))
+    widths, bent = np.diff(edges), chord_deviation(height, edges[:-1], edges[1:])
     fine = np.linspace(1e-6, LENGTH - 1e-6, 20001)
-    own = edges[:-1, None] + widths[:, None] * np.linspace(1e-6, 1 - 1e-6, 201)
-    above = height(own).min(axis=1) - height(fine).min()
+    positions = edges[:-1, None] + widths[:, None] * np.linspace(1e-6, 1 - 1e-6, 201)
+    above = height(positions).min(axis=1) - height(fine).min()
     depth = 0.05
     followed = (widths > MIN_CHORD_WIDTH) & (above < 2.9 * depth)
     assert bent[followed].max(initial=0.0) <= 1.03 * CHORD_TOLERANCE * depth
     # A column is split only where it leaves its chord, or beside one that is narrow.
-    assert np.isin(plain, edges).all()
+    assert np.isin(baseline, edges).all()
     if name in ("chamfer", "steps at the ends"):
-        split_columns = ~np.isin(edges, plain)
+        split_columns = ~np.isin(edges, baseline)
         assert not split_columns.any() or (name == "chamfer" and (np.abs(edges[split_columns] - 13.0) < 3.0).all())
     if name == "deep wave":  # crests are never pressed
         crests = above > 6 * depth
@@ -76,8 +76,8 @@ def test_overlooked_columns_leave_low_shape(name: str) -> None:
 @pytest.mark.parametrize("name", SHAPES)
 @pytest.mark.parametrize(("unit", "start"), [(2.0**-17, 0.0), (1.0, -8.0), (1.0, 32.0)])
 def test_results_scale_with_unit_and_position(name: str, unit: float, start: float) -> None:
-    plain, other = first_edges(asked(SHAPES[name])), first_edges(asked(SHAPES[name], unit, start))
-    assert (other - start) / unit == pytest.approx(plain, abs=1e-9)
+    baseline, variant = first_edges(axial_shape(SHAPES[name])), first_edges(axial_shape(SHAPES[name], unit, start))
+    assert (variant - start) / unit == pytest.approx(baseline, abs=1e-9)
 
 
 @pytest.mark.parametrize("half_width", [0.01, 0.3, 1.0, 4.0, 100.0])
@@ -103,8 +103,8 @@ def test_first_columns_double_from_ends(half_width: float) -> None:
 @pytest.mark.parametrize("slope", [0.1, -0.1])
 def test_straight_incline_adds_no_columns(slope: float) -> None:
     """It rises by more than the depth within a column, but never leaves its chord."""
-    plain, inclined = first_edges(asked(np.zeros_like)), first_edges(asked(lambda x: slope * x))
-    assert inclined == pytest.approx(plain)
+    baseline, inclined = first_edges(axial_shape(np.zeros_like)), first_edges(axial_shape(lambda x: slope * x))
+    assert inclined == pytest.approx(baseline)
 
 
 def test_curved_shape_reaches_maximum_columns() -> None:
@@ -126,7 +126,7 @@ def test_curved_shape_reaches_maximum_columns() -> None:
 @pytest.mark.parametrize("width", [0.02, 0.1])
 def test_first_columns_contain_narrow_ridges(position: float, width: float) -> None:
     """Ridges of a measured profile, narrower than the widest first column by a factor of 12 to 60."""
-    shape = asked(lambda x: 4e-3 * (x - 9.0) ** 2 - 0.05 * np.exp(-(((x - position) / width) ** 2)))
+    shape = axial_shape(lambda x: 4e-3 * (x - 9.0) ** 2 - 0.05 * np.exp(-(((x - position) / width) ** 2)))
     edges = first_edges(shape)
     columns = np.diff(edges)[np.abs(centres_of(edges) - position) < 0.1]
     assert columns.size

@@ -15,12 +15,12 @@ ACROSS = np.sqrt(np.array([0.0, 0.19, 0.91, 0.91, 0.19, 0.0]))
 
 def means(powers: list[float], edges: FloatArray) -> FloatArray:
     """Means over columns of a polynomial in the distance from the middle."""
-    whole = np.polynomial.polynomial.polyint(powers)
+    complete = np.polynomial.polynomial.polyint(powers)
     middle = 0.5 * (edges[0] + edges[-1])
-    return np.asarray(np.diff(np.polynomial.polynomial.polyval(edges - middle, whole)) / np.diff(edges))
+    return np.asarray(np.diff(np.polynomial.polynomial.polyval(edges - middle, complete)) / np.diff(edges))
 
 
-def spread(along: FloatArray) -> FloatArray:
+def spread_load(along: FloatArray) -> FloatArray:
     return np.asarray(along[:, None] * ACROSS)
 
 
@@ -29,22 +29,22 @@ def test_pressure_rising_to_end_peaks_at_end(tilt: float) -> None:
     """Exact for a parabola, between the cells along y as well."""
     half = 0.5 * (EDGES[-1] - EDGES[0])
     powers = [1.0, tilt, 1.5]
-    peaks, ends, along_y = extrapolate_end_pressures(EDGES, spread(means(powers, EDGES)), (None, None))
+    peaks, ends, along_y = extrapolate_end_pressures(EDGES, spread_load(means(powers, EDGES)), (None, None))
     exact = tuple(float(np.polynomial.polynomial.polyval(at, powers)) for at in (-half, half))
     assert ends == pytest.approx(exact, rel=1e-9)
     risen = 1 if tilt > 0 else 0
     assert peaks[risen] == pytest.approx(exact[risen], rel=1e-9)
     # The other half is largest in the middle, between two columns, or on its own last one where that is more.
     centres, values = 0.5 * (EDGES[1:] + EDGES[:-1]) - EDGES[0], means(powers, EDGES)
-    own = values[(centres < half) if risen else (centres > half)].max()
-    assert peaks[1 - risen] == pytest.approx(max(own, np.interp(half, centres, values)))
+    expected = values[(centres < half) if risen else (centres > half)].max()
+    assert peaks[1 - risen] == pytest.approx(max(expected, np.interp(half, centres, values)))
     assert 1 + along_y == pytest.approx(1 / ACROSS.max())
 
 
 def test_halves_have_separate_peaks() -> None:
     values = np.ones(EDGES.size - 1)
     values[7] = 3.0  # the second column beyond the middle
-    peaks, ends, _ = extrapolate_end_pressures(EDGES, spread(values), (None, None))
+    peaks, ends, _ = extrapolate_end_pressures(EDGES, spread_load(values), (None, None))
     assert (0.5 * (EDGES[6] + EDGES[7]) - EDGES[0]) / (EDGES[-1] - EDGES[0]) > 0.5
     assert peaks == pytest.approx((1.0, 3.0))
     assert ends == pytest.approx((1.0, 1.0))
@@ -52,12 +52,12 @@ def test_halves_have_separate_peaks() -> None:
 
 def test_ends_without_pressure_and_singular_ends() -> None:
     values = np.append(np.zeros(3), np.ones(EDGES.size - 4))
-    peaks, ends, _ = extrapolate_end_pressures(EDGES, spread(values), (None, EndLaw(kind="power", exponent=0.5)))
+    peaks, ends, _ = extrapolate_end_pressures(EDGES, spread_load(values), (None, EndLaw(kind="power", exponent=0.5)))
     assert ends == (0.0, np.inf)
     assert peaks == (pytest.approx(1.0), np.inf)
     falling = values.copy()
     falling[:3] = 0.01, 0.5, 1.0  # the parabola through these means is negative at the end
-    assert extrapolate_end_pressures(EDGES, spread(falling), (None, None))[1][0] == 0.0
+    assert extrapolate_end_pressures(EDGES, spread_load(falling), (None, None))[1][0] == 0.0
 
 
 @pytest.mark.parametrize("width", [1e-2, 2e-2, 0.1, 1.0])
@@ -67,7 +67,7 @@ def test_end_loads_integrate_one_half_width(width: float) -> None:
     centres, step = 0.5 * (fine[1:] + fine[:-1]), fine[1] - fine[0]
     own = values[np.searchsorted(EDGES, centres) - 1] * ACROSS.sum() * step
     expected = own[centres < EDGES[0] + width].sum(), own[centres > EDGES[-1] - width].sum()
-    assert end_loads(EDGES, spread(values), width) == pytest.approx(expected, rel=1e-3)
+    assert end_loads(EDGES, spread_load(values), width) == pytest.approx(expected, rel=1e-3)
 
 
 def test_values_mirror_with_side() -> None:

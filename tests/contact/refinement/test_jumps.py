@@ -27,9 +27,9 @@ def test_jumps_are_relative_to_half_peak(lesser: float) -> None:
     left = np.array([0, 1, 2, 3])  # the middle, 6.5, lies in the fifth column, whose centre it is
     pressure = random.uniform(0.5, 1.0, (8, 5))
     pressure[left] *= lesser
-    found = _jumps(edges, pressure, 2.0)
+    computed = _jumps(edges, pressure, 2.0)
     for i in range(8):
-        own = pressure[left] if i in left else pressure[4:]
-        top = max(own.max(), MIN_HALF_PRESSURE * pressure.max())
+        cell_pressure = pressure[left] if i in left else pressure[4:]
+        top = max(cell_pressure.max(), MIN_HALF_PRESSURE * pressure.max())
         steps = [np.abs(pressure[i] ** 2 - pressure[j] ** 2).max() for j in (i - 1, i + 1) if 0 <= j < 8]
-        assert found[i] == pytest.approx(max(steps) / top**2)
+        assert computed[i] == pytest.approx(max(steps) / top**2)

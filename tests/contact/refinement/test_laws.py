@@ -38,12 +38,10 @@ def test_intensity_uses_row_of_end_peak() -> None:
     # Random case 4007234: friction pressed both ends at different places along y, the other end more.
     edges = graded_edges(1e-3)
     end = column_means(edges, 0.5, 2.0, 0.0)
-    elsewhere = np.where(edges[1:] > 0.03, 10 * end.max(), 0.0)
-    law = EndLaw(kind="power", exponent=0.5).with_intensity(
-        edges, np.stack([0.5 * end, end, elsewhere], axis=1), np.inf
-    )
+    shifted = np.where(edges[1:] > 0.03, 10 * end.max(), 0.0)
+    law = EndLaw(kind="power", exponent=0.5).with_intensity(edges, np.stack([0.5 * end, end, shifted], axis=1), np.inf)
     assert law.intensity == pytest.approx(2.0, rel=1e-6)
-    lifted = law.with_intensity(edges, np.stack([elsewhere, elsewhere], axis=1), np.inf)
+    lifted = law.with_intensity(edges, np.stack([shifted, shifted], axis=1), np.inf)
     assert (lifted.intensity, lifted.intensity_error) == (0.0, np.inf)
 
 
@@ -179,19 +177,19 @@ def test_fit_uses_columns_from_3_to_64_widths(unit: float) -> None:
     pressure = column_means(unit * EDGES, 0.5, 2.0, 0.01 / unit)[:, None]
 
     def found(first: float) -> EndLaw:
-        other = pressure.copy()
-        other[int(np.flatnonzero(first == EDGES)[0])] *= 1.5
-        return EndLaw(kind="power", exponent=0.5).with_intensity(unit * EDGES, other, np.inf)
+        variant = pressure.copy()
+        variant[int(np.flatnonzero(first == EDGES)[0])] *= 1.5
+        return EndLaw(kind="power", exponent=0.5).with_intensity(unit * EDGES, variant, np.inf)
 
-    plain = EndLaw(kind="power", exponent=0.5).with_intensity(unit * EDGES, pressure, np.inf)
-    assert plain.intensity == pytest.approx(2.0)
+    baseline = EndLaw(kind="power", exponent=0.5).with_intensity(unit * EDGES, pressure, np.inf)
+    assert baseline.intensity == pytest.approx(2.0)
     for first in (2.0, 128.0):
-        assert found(first) == plain
+        assert found(first) == baseline
     for first in (3.0, 38.0):
         assert found(first).intensity != pytest.approx(2.0, rel=1e-3)
     for first in (64.0, 90.0):
         assert found(first).intensity == pytest.approx(2.0)
-        assert found(first).intensity_error > 2 * plain.intensity_error
+        assert found(first).intensity_error > 2 * baseline.intensity_error
 
 
 @pytest.mark.parametrize("width", [1e-5, 1.0, 1e3])
@@ -219,6 +217,6 @@ def test_rigid_exponent_bounds_elastic_exponent() -> None:
 
 def test_logarithm_law_does_not_depend_on_splitting() -> None:
     widths = 0.1 * np.cumprod([1.0, 0.25, 0.25, 0.25, 0.5, 0.5])
-    law = law_of([Sample(float(each), float(1 - 0.1 * np.log(each))) for each in widths], np.nan)
+    law = law_of([Sample(float(width), float(1 - 0.1 * np.log(width))) for width in widths], np.nan)
     assert law is not None
     assert law.kind == "logarithm"

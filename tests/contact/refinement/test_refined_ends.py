@@ -48,12 +48,12 @@ def test_edge_peak_matches_small_fillet() -> None:
 
 def test_flush_end_of_a_free_body_has_a_finite_pressure() -> None:
     """0.497 p0 from an extrapolation of columns down to 0.003 a."""
-    found = settled(Case(body=finite(), roller=Roller(radius=RADIUS, length=LENGTH), max_pressure=PRESSURE)).refined
-    assert found.laws == (None, None)
-    for end, error in zip(found.values["end_pressure"], found.errors["end_pressure"], strict=True):
+    computed = settled(Case(body=finite(), roller=Roller(radius=RADIUS, length=LENGTH), max_pressure=PRESSURE)).refined
+    assert computed.laws == (None, None)
+    for end, error in zip(computed.values["end_pressure"], computed.errors["end_pressure"], strict=True):
         assert end / PRESSURE == pytest.approx(0.497, abs=0.005)
         assert abs(end / PRESSURE - 0.497) <= error / PRESSURE <= 0.01
-    assert found.peak / PRESSURE == pytest.approx(1.013, abs=0.004)
+    assert computed.peak / PRESSURE == pytest.approx(1.013, abs=0.004)
 
 
 def test_tilted_end_without_correction_has_logarithm() -> None:
@@ -70,10 +70,10 @@ def test_tilted_end_without_correction_has_logarithm() -> None:
 
 def test_singular_end_with_unloaded_half() -> None:
     roller = Roller(radius=RADIUS, length=0.3e-3, profile=profiles.FullCrown(0.5))
-    found = settled(Case(body=HALF, roller=roller, max_pressure=PRESSURE, tilt=0.02), 0.1).refined
-    assert found.accurate
-    assert found.values["peak_pressure"] == (0.0, np.inf)
-    assert found.values["end_load"][0] == 0.0
+    computed = settled(Case(body=HALF, roller=roller, max_pressure=PRESSURE, tilt=0.02), 0.1).refined
+    assert computed.accurate
+    assert computed.values["peak_pressure"] == (0.0, np.inf)
+    assert computed.values["end_load"][0] == 0.0
 
 
 def test_sharp_elastic_end_has_smaller_exponent() -> None:
@@ -91,11 +91,11 @@ def test_sharp_elastic_end_has_smaller_exponent() -> None:
 def test_crowned_roller_peaks_at_mid_length() -> None:
     crown = profiles.Lundberg.for_pressure(PRESSURE, radius=RADIUS, modulus=STEEL.plane_strain_modulus)
     case = Case(body=finite(), roller=Roller(radius=RADIUS, length=LENGTH, profile=crown), max_pressure=PRESSURE)
-    found = settled(case)
-    assert found.refined.values["end_pressure"] == (0.0, 0.0)
-    assert found.refined.errors["end_pressure"] == [0.0, 0.0]
-    assert abs(found.refined.peak - finer_peak(case, found, 2)) <= found.refined.peak_error
-    assert found.refined.peak / PRESSURE == pytest.approx(1.044, abs=0.005)
+    computed = settled(case)
+    assert computed.refined.values["end_pressure"] == (0.0, 0.0)
+    assert computed.refined.errors["end_pressure"] == [0.0, 0.0]
+    assert abs(computed.refined.peak - finer_peak(case, computed, 2)) <= computed.refined.peak_error
+    assert computed.refined.peak / PRESSURE == pytest.approx(1.044, abs=0.005)
 
 
 @pytest.mark.parametrize(("material", "distance"), [(None, 1e-3), (STEEL, -1e-2)])
@@ -106,17 +106,19 @@ def test_end_near_free_end_matches_flush_end(material: Material | None, distance
             body=QuarterSpace(material=STEEL),
             roller=filleted(0.2e-3, SHORT, material),
             max_pressure=PRESSURE,
-            end_distance=each * A,
+            end_distance=variant * A,
         )
-        for each in (distance, 0.0)
+        for variant in (distance, 0.0)
     )
-    found = solve(case, accuracy=0.05, y=[0.0], z=[0.3 * A], x=[0.0, A])
+    computed = solve(case, accuracy=0.05, y=[0.0], z=[0.3 * A], x=[0.0, A])
     same = solve(flush, accuracy=0.05, stresses=False)
-    assert bool(found.converged)
-    assert float(found.peak_pressure) == pytest.approx(float(same.peak_pressure), rel=0.01)
-    again = stress_field(case.body, found.pressure, x=[0.0, A], y=[0.0], z=[0.3 * A], inside_cells=found.pressure)
+    assert bool(computed.converged)
+    assert float(computed.peak_pressure) == pytest.approx(float(same.peak_pressure), rel=0.01)
+    repeated = stress_field(
+        case.body, computed.pressure, x=[0.0, A], y=[0.0], z=[0.3 * A], inside_cells=computed.pressure
+    )
     # The certificate shares the quadrature of the stresses in solve.
-    assert np.allclose(again.von_mises.values, found.von_mises.values, rtol=1e-5)
+    assert np.allclose(repeated.von_mises.values, computed.von_mises.values, rtol=1e-5)
 
 
 @pytest.mark.parametrize("distance", [1e-4, 0.05])
@@ -125,12 +127,12 @@ def test_sharp_end_near_free_end_has_infinite_error(distance: float) -> None:
     case = Case(
         body=finite(LENGTH + 2 * distance * A), roller=Roller(radius=RADIUS, length=LENGTH), max_pressure=PRESSURE
     )
-    found = refined_values(settled(case))
-    assert np.isinf(found["end_pressure_first_error"])
+    computed = refined_values(settled(case))
+    assert np.isinf(computed["end_pressure_first_error"])
     if distance > 1e-3:
-        intensity = found["end_intensity_first"] / (PRESSURE * np.sqrt(A))
+        intensity = computed["end_intensity_first"] / (PRESSURE * np.sqrt(A))
         assert float(intensity) == pytest.approx(0.1015, rel=0.06)
-        assert float(found["end_intensity_first_error"] / found["end_intensity_first"]) > 0.05
+        assert float(computed["end_intensity_first_error"] / computed["end_intensity_first"]) > 0.05
 
 
 def test_fading_end_has_infinite_error() -> None:
@@ -138,9 +140,9 @@ def test_fading_end_has_infinite_error() -> None:
     rubber = Material(6e8, 0.0)
     roller = Roller(radius=RADIUS, length=0.13e-3, material=rubber)
     body = QuarterSpace(material=rubber, model="mirror-factor")
-    found = refined_values(settled(Case(body=body, roller=roller, max_pressure=2e6), 0.02))
-    assert np.isinf(found["end_pressure_first_error"])
-    assert 0 < float(found["peak_pressure_first_error"]) < 0.02 * float(found["peak_pressure_first"])
+    computed = refined_values(settled(Case(body=body, roller=roller, max_pressure=2e6), 0.02))
+    assert np.isinf(computed["end_pressure_first_error"])
+    assert 0 < float(computed["peak_pressure_first_error"]) < 0.02 * float(computed["peak_pressure_first"])
 
 
 def test_single_loaded_sharp_end_has_law() -> None:

@@ -17,22 +17,22 @@ STEEL = material(82e9, 0.28)
 )
 def test_small_creepages_match_kalker_forces(motion: Rolling) -> None:
     along, across = 6e-3, 4e-3
-    found = rolling_ellipse(across, along, 80e3, STEEL, 0.3, motion, (44, 50))
+    computed = rolling_ellipse(across, along, 80e3, STEEL, 0.3, motion, (44, 50))
     c11, c22, _ = creep_coefficients(along / across, 0.28)
     lateral = bool(motion.lateral_creepage)
-    force = float(found["force_x" if lateral else "force_y"])
+    force = float(computed["force_x" if lateral else "force_y"])
     assert force == pytest.approx(82e9 * along * across * (c22 if lateral else c11) * 1e-6, rel=0.02)
 
 
 def test_fastsim_matches_published_spin_case() -> None:
     """Published: 0.602 of full sliding with an elliptic bound (the program CONTACT's FASTSIM)."""
     motion = Rolling(lateral_creepage=-6.25e-4, spin=-0.625, model="fastsim")
-    found = rolling_ellipse(4e-3, 8e-3, 82e3, STEEL, 0.3, motion, (44, 50))
-    assert float(found["force_x"]) / (0.3 * 82e3) == pytest.approx(0.602, abs=0.012)
-    bound = 0.3 * found["pressure"]
-    size = np.hypot(found["traction_x"], found["traction_y"])
+    computed = rolling_ellipse(4e-3, 8e-3, 82e3, STEEL, 0.3, motion, (44, 50))
+    assert float(computed["force_x"]) / (0.3 * 82e3) == pytest.approx(0.602, abs=0.012)
+    bound = 0.3 * computed["pressure"]
+    size = np.hypot(computed["traction_x"], computed["traction_y"])
     assert float((size - bound).max()) < 1e-9 * float(bound.max())
-    slips = (found["pressure"] > 0) & ~found["stick"].astype(bool)
+    slips = (computed["pressure"] > 0) & ~computed["stick"].astype(bool)
     assert float(np.abs(size - bound).where(slips, 0.0).max()) < 1e-9 * float(bound.max())
 
 

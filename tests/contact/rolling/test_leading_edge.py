@@ -65,8 +65,8 @@ def test_rising_pressure_leaves_the_offset_constant() -> None:
 
 
 def test_two_contacts_in_row_have_two_edges() -> None:
-    one = strip(0.3)
-    pressure = np.hstack([one, one])
+    item = strip(0.3)
+    pressure = np.hstack([item, item])
     assert RollingCells.of(pressure, pressure).source_cell.size == 2
 
 
@@ -97,11 +97,11 @@ def test_half_cell_offset_matches_published_creepage(
     monkeypatch.setattr(tractions, "SLIDING_OFFSET", 0.5)
     load, friction, spin, ahead = 82e3, 0.3, -0.625, 0.334 * 0.4e-3
     motion = Rolling(lateral_creepage=-6.25e-4 + spin * ahead, spin=spin)
-    found = rolling_ellipse(4e-3, 8e-3, load, material(82e9, 0.28), friction, motion, (42, 46))
-    assert int((found["pressure"] > 0).sum()) == 1276
-    assert float(found["force_x"]) / (friction * load) == pytest.approx(0.6074, abs=2e-4)
-    assert float(found["moment_z"]) == pytest.approx(-48.21, abs=0.02)
-    assert int(found["stick"].sum()) == pytest.approx(356, abs=2)
+    computed = rolling_ellipse(4e-3, 8e-3, load, material(82e9, 0.28), friction, motion, (42, 46))
+    assert int((computed["pressure"] > 0).sum()) == 1276
+    assert float(computed["force_x"]) / (friction * load) == pytest.approx(0.6074, abs=2e-4)
+    assert float(computed["moment_z"]) == pytest.approx(-48.21, abs=0.02)
+    assert int(computed["stick"].sum()) == pytest.approx(356, abs=2)
 
 
 def test_close_columns_share_slip_offset() -> None:
@@ -121,25 +121,25 @@ def test_close_columns_share_slip_offset() -> None:
 def test_single_cell_ahead_is_separate_contact() -> None:
     pressure = strip(0.9)
     last = int(np.flatnonzero(pressure[0])[-1])
-    alone = pressure.copy()
-    alone[0, last + 2] = 0.1
-    found = RollingCells.of(alone, alone)
-    assert found.source_cell.size == 0
-    assert found.offset[:-1] == pytest.approx(EDGE_OFFSET + 0.9)
-    assert found.offset[-1] == pytest.approx(EDGE_OFFSET + 1.0)
+    single = pressure.copy()
+    single[0, last + 2] = 0.1
+    computed = RollingCells.of(single, single)
+    assert computed.source_cell.size == 0
+    assert computed.offset[:-1] == pytest.approx(EDGE_OFFSET + 0.9)
+    assert computed.offset[-1] == pytest.approx(EDGE_OFFSET + 1.0)
 
 
 def test_sliding_columns_use_slip_at_centres() -> None:
     pressure = np.vstack([strip(0.9), strip(0.3), strip(0.9)])
-    found = RollingCells.of(pressure, pressure, None, LeadingEdges(np.array([True, True, False]), pressure))
-    assert found.source_cell.size == 0
-    assert (found.offset[found.unknown[0] < 2] == tractions.SLIDING_OFFSET).all()
-    assert found.offset[found.unknown[0] == 2] == pytest.approx(EDGE_OFFSET + 0.9)
+    computed = RollingCells.of(pressure, pressure, None, LeadingEdges(np.array([True, True, False]), pressure))
+    assert computed.source_cell.size == 0
+    assert (computed.offset[computed.unknown[0] < 2] == tractions.SLIDING_OFFSET).all()
+    assert computed.offset[computed.unknown[0] == 2] == pytest.approx(EDGE_OFFSET + 0.9)
 
 
 def test_displacement_is_constant_beyond_last_cell() -> None:
     pressure = np.ones((1, 6))
     displacement = np.random.default_rng(0).standard_normal((1, 6))
-    found = RollingCells.of(pressure, pressure)
-    whole = np.pad(displacement, ((0, 0), (0, 2)), mode="edge")
-    assert found.derivative(displacement, 0.5) == pytest.approx(found.derivative(whole, 0.5))
+    computed = RollingCells.of(pressure, pressure)
+    complete = np.pad(displacement, ((0, 0), (0, 2)), mode="edge")
+    assert computed.derivative(displacement, 0.5) == pytest.approx(computed.derivative(complete, 0.5))
