@@ -107,7 +107,7 @@ def limit(nbytes: int) -> None:
     Raises
     ------
     InvalidInputError
-        If it is not a whole number, or below zero.
+        If `nbytes` is not a whole number, or below zero.
 
     Examples
     --------
@@ -169,7 +169,7 @@ def cached(kind: str) -> Callable[[Callable[Arguments, Value]], Callable[Argumen
 
 
 def nbytes_of(value: object) -> int:
-    """Size of a value, bytes: its own `nbytes`, or the sum over its parts."""
+    """Size of a value, bytes: its `nbytes`, or the sum over its items."""
     nbytes = getattr(value, "nbytes", None)
     return sum(map(nbytes_of, _children(value))) if nbytes is None else int(nbytes)
 

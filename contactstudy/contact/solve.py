@@ -111,7 +111,7 @@ def solve_contact(
         shape. On a finite-length space the cells span the body from end to end; elsewhere they must leave room
         around the contact.
     load : float, optional
-        Normal load, N. Either this or `approach` is previous.
+        Normal load, N; either `load` or `approach`.
     friction : float or DataArray (x)
         Coefficient ``f``, a number or values at positions along x with lines between: in full sliding the shear
         traction on the body is ``f`` times the pressure along +y; in any other motion that is the bound on it.
@@ -197,7 +197,7 @@ def solve_contact(
     initial_gap, grid = labelled_cells("gap", gap, extent=body.extent, infinite=True)
     if not np.isfinite(initial_gap).any():
         raise InvalidInputError("gap", "infinite everywhere", "finite where the shape can touch the body")
-    # Where nothing can be pressed, cells may be as narrow as the room that is left to an end.
+    # Columns without finite gap may be as narrow as the face beyond the shape.
     grid.check_growth(np.asarray(np.isfinite(initial_gap).any(axis=1)))
     checks.instance("settings", settings, ContactSettings, "a ContactSettings")
     coupled, previous_step = bool(settings.coupled), settings.after
@@ -242,7 +242,7 @@ def solve_contact(
 
 
 def _start_loads(after: xr.Dataset, motion: Motion, grid: Grid, body: Body) -> dict[Load, FloatArray]:
-    """Pressure and tractions of the preceding step, checked."""
+    """Check and return pressure and tractions of the preceding step."""
     checks.instance("after", after, xr.Dataset, "a result of solve_contact")
     if not isinstance(motion, Shift):
         raise InvalidInputError("motion", motion, "a Shift(...) with after: rolling is steady")
@@ -291,7 +291,7 @@ def contact_dataset(contact: Contact, friction: float | FloatArray, *, x: FloatA
 
 
 def describe_reference_lines(body: Body, counterbody: Counterbody | None) -> str:
-    """Material lines to which approach and tilt refer, in words."""
+    """Return a sentence on the material lines to which approach and tilt refer."""
     bodies = {"body": body} if counterbody is None else {"body": body, "counterbody": counterbody.body}
     lines = [
         f"{name} at a depth of {elastic.depth:g} m" if np.isfinite(elastic.depth) else f"{name} far away"

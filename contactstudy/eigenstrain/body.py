@@ -168,7 +168,7 @@ class EigenstrainSolution:
 
     def top_displacement(self, x: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Displacements z (into the body) and y of the top at positions x, metres, relative to the depth."""
-        # They are the integrals of the strains zz and yz, eigenstrains included, over the depth.
+        # The displacements are integrals of the strains zz and yz, eigenstrains included, over the depth.
         body, material = self.body, self.body.material
         nu, young = material.poisson, material.young
         z_elements = body.elements[1]
@@ -210,7 +210,7 @@ class Influence:
 
     @classmethod
     def of(cls, body: EigenstrainBody, along_x: IntArray, along_z: IntArray) -> Influence:
-        """Influence of the cells with these numbers along x and along z on each other."""
+        """Influence of the cells with these indices along x and along z on each other."""
         areas = np.diff(body.x_edges)[along_x] * np.diff(body.z_edges)[along_z]
 
         def columns(integrals: Factors, i: int, j: int) -> sparse.csc_array:

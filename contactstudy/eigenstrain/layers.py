@@ -46,7 +46,7 @@ class PeriodicLayers:
 
     material: Material
     z_edges: FloatArray  # edges of the layers, metres
-    positions: int  # places along y
+    positions: int  # number of positions along y
     step: float  # distance from one place to the next, metres; negative where y falls
 
     @cached_property
@@ -94,7 +94,7 @@ class PeriodicLayers:
         return -self.material.shear_modulus * self._matrices(DEGREE - 1, 1)
 
     def stresses(self, eigenstrain: FloatArray) -> FloatArray:
-        """Residual stresses (6, place, column, layer) from eigenstrains of this shape; every column is on its own."""
+        """Residual stresses (6, position, column, layer) from eigenstrains of this shape; columns are independent."""
         e, nu = eigenstrain, self.material.poisson
         stress = np.zeros_like(e)
         stress[[YY, ZZ, YZ]] = self._apply(self._in_plane, np.stack([e[YY] + nu * e[XX], e[ZZ] + nu * e[XX], e[YZ]]))
@@ -104,7 +104,7 @@ class PeriodicLayers:
         return stress
 
     def _apply(self, matrices: FloatArray, strains: FloatArray) -> FloatArray:
-        """Stresses (part, place, column, layer) of strains of this shape; the last part is over i."""
+        """Stresses (component, position, column, layer) of strains of this shape; the last component is over i."""
         components, positions, columns, layers = strains.shape
         waves = np.fft.rfft(strains, axis=1)
         waves[-1] *= -1j * np.sign(self.step)

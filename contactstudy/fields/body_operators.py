@@ -38,7 +38,7 @@ class UniformOperator:
         self.extent, self.grid = extent, grid
         self._spectra, self._ends = spectra, ends
         mirrored, padded = _padding(extent, grid)
-        # A body with the second mirror alone is reversed.
+        # A body with only the second mirror is reversed.
         self._flipped = mirrored and bool(np.isinf(extent[0]))
 
         def make_transforms(directions: Sequence[Load]) -> dict[Load, GridTransform]:
@@ -128,7 +128,7 @@ class UniformOperator:
 
     @property
     def nbytes(self) -> int:
-        """Memory held, bytes, with the inverse that preconditioning adds."""
+        """Memory, bytes, with the inverse that preconditioning adds."""
         inverse = max(spectrum.nbytes for spectrum in self._spectra.values())
         return nbytes_of([self._spectra, self._ends, self._loaded, self._displaced]) + inverse
 
@@ -267,7 +267,7 @@ class ColumnsOperator:
 
     @property
     def nbytes(self) -> int:
-        """Memory held, bytes, with the inverse that preconditioning adds."""
+        """Memory, bytes, with the inverse that preconditioning adds."""
         return nbytes_of(self._kernels) + max(kernel.nbytes for kernel in self._kernels.values())
 
 

@@ -68,7 +68,7 @@ def superpose(
 def end_problem(
     freed: FreedEnds, poisson: float, cells: FloatArray, shape: FloatArray | None, grid: Grid, loads: tuple[Load, ...]
 ) -> EndProblem:
-    """Problem of the ends that a load on cells leaves, on the fine cells of a `shape` inside them."""
+    """Problem of the free ends under a load on cells, on the fine cells of a `shape` inside the cells."""
     finest = finest_cell(grid)
     if shape is not None:
         cells, grid = FineCells(load=cells, shape=shape, grid=grid, extent=(0.0, freed.length)).end_load()

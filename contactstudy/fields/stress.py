@@ -172,7 +172,7 @@ def _mirrored_stress(
     points: tuple[ArrayKey, ...],
     shape: ArrayKey | None,
 ) -> FloatArray:
-    """Stresses (6, x, y, z) in the half-space; the stresses under a pressure are shared by all frictions."""
+    """Stresses (6, x, y, z) in the half-space; all frictions share the stresses under a pressure."""
     axes = Points(*(axis.values for axis in points))
     values = None if shape is None else shape.values
     influence = stress_influence(load, poisson)

@@ -37,16 +37,16 @@ AXIS_DEPTHS = np.array([0.1, 0.2, 0.35, 0.5, 0.7, 1.0])  # depths below the axis
 MIN_SECOND_PEAK = 0.6
 """Least peak of a half of the contact that is searched, over the largest: at a free end a lower peak may cause more."""
 
-SLIP_TOLERANCE = 1e-6  # part of its bound by which the traction of a slipping cell may miss it
+SLIP_TOLERANCE = 1e-6  # tolerance of the traction of a slipping cell, over its bound
 RIM_CELLS = 2  # cells at the rim of the contact without accurate stresses on the top. Accuracy.
 
 
 class Border(NamedTuple):
-    """Border between stick and slip on the top, where the stress has a cusp that no centre of a cell reaches."""
+    """Border between stick and slip on the top, where the stress has a cusp between the centres of cells."""
 
     # The second sticking cell from the border represents it: the values of the first one are too smooth.
 
-    traction: FloatArray  # (2, x, y): tractions of the cells, at the border in the cells that represent it, Pa
+    traction: FloatArray  # (2, x, y): tractions of the cells, at the border in the representing cells, Pa
     rise: FloatArray  # (x, y): pressure at the border less that of the cell that represents it, Pa; otherwise 0
     poisson: float  # Poisson's ratio of the body
 
@@ -102,7 +102,7 @@ class Search(NamedTuple):
         return np.asarray(self.inside_rim[np.ix_(*self.cells(points))])
 
     def top_stresses(self, points: Points, stresses: FloatArray) -> FloatArray:
-        """Stresses (6, x, y, 1) at centres of cells on the top, at the border in the cells that represent it."""
+        """Stresses (6, x, y, 1) at centres of cells on the top, at the border in the representing cells."""
         columns, rows = np.ix_(*self.cells(points))
         corrected, rise = stresses.copy(), self.border.rise[columns, rows, None]
         corrected[:3] -= np.array([2 * self.border.poisson, 1.0, 1.0])[:, None, None, None] * rise
@@ -120,7 +120,7 @@ def place_search(body: Body, loads: Loads, grid: Grid) -> Search:
     if not maxima.any():
         return Search(grid, extent, inside_rim, border, [])
     samples: list[Points] = []
-    symmetric = bool(  # about the middle of the window, as far as the solver does not break it
+    symmetric = bool(  # about the middle of the window, up to errors of the solver
         np.isinf(extent[0]) == np.isinf(extent[1])
         and np.allclose(grid.widths, grid.widths[::-1])
         and all(

@@ -57,7 +57,7 @@ class SurfaceOperator:
         return cls(body, weighted_operators)
 
     def __call__(self, loads: Mapping[Load, FloatArray]) -> FloatArray:
-        """Sink the cells by `loads` (Pa): normal displacement (m), array (x, y)."""
+        """Displacement (m) of the cells along z under `loads` (Pa): array (x, y)."""
         return self.compute_displacements(loads, (Load.NORMAL,))[Load.NORMAL]
 
     def compute_displacements(
@@ -97,7 +97,7 @@ class SurfaceOperator:
 def surface_operator(
     body: Body, grid: Grid, loads: tuple[Load, ...] = NORMAL, directions: tuple[Load, ...] = NORMAL
 ) -> SurfaceOperator:
-    """Return the operator of a body; all cases with the same one share it, whatever depth they refer to."""
+    """Return the operator of a body, shared by all cases of the body at any reference depth."""
     return _cached_operator(replace(body, reference_depth=None), grid, loads, directions)
 
 
@@ -199,4 +199,4 @@ def surface_displacement(
 
 
 DISPLACEMENTS = {"displacement_x": Load.ALONG_X, "displacement_y": Load.ALONG_Y, "displacement_z": Load.NORMAL}
-"""Variables of the top's displacement."""
+"""Variables of the surface displacement."""

@@ -82,7 +82,7 @@ class LateralAxis:
             return []
         dy, depths, span = self.grid.dy, z[depth_indices], self.count * self.grid.dy
         step = common_step(self.y) if len(self.aligned_groups) > 1 else None
-        # The time is proportional to the total number of cells, of one layer or of separate ones.
+        # The time is proportional to the total number of cells, in one layer or in separate layers.
         if step is not None and dy <= step * len(self.aligned_groups) * PARTS_Y:
             # One set of cells, with every point in the middle of a cell.
             cells = _odd_count(step / dy)

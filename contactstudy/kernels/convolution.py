@@ -26,7 +26,7 @@ def even_spectrum(kernel: FloatArray) -> FloatArray:
 def odd_spectrum(kernel: FloatArray) -> FloatArray:
     """Spectrum along y, without its factor i, of a kernel that is odd in y, given at offsets 0 .. N (last axis)."""
     spectrum = np.zeros_like(kernel)
-    if kernel.shape[-1] > 2:  # an odd kernel on a single cell is nothing
+    if kernel.shape[-1] > 2:  # an odd kernel on a single cell vanishes
         spectrum[..., 1:-1] = -fft.dst(kernel[..., 1:-1], type=1, axis=-1)
     return spectrum
 
@@ -76,7 +76,7 @@ class GridTransform:
 
     @property
     def _buffers(self) -> _Buffers:
-        """Buffers of this thread: operators are shared by all."""
+        """Buffers of this thread: all threads share the operators."""
         buffers: _Buffers | None = getattr(self._thread, "buffers", None)
         if buffers is None:
             buffers = _Buffers(self.cells_x, self.cells_y, self.padded_x, self.mirror)

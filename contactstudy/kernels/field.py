@@ -1,4 +1,4 @@
-"""A field in the half-space, alone or with all mirrored loads, under a load on cells.
+"""A field in the half-space, with or without mirrored loads, under a load on cells.
 
 Points with equal offsets from uniform cells share one kernel and one fast convolution; the field at other points and
 under columns is a sum over the corners of cells. Deep points and far columns need only the moments of the cells.

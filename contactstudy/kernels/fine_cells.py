@@ -1,9 +1,9 @@
 """Finer cells under a load: its means near the top, its moments on whole cells below.
 
 Below a few cell sizes loads of equal moments cause equal fields. Nearer to the top the distribution inside the cells
-matters, and on the top itself a step of traction makes the stresses infinite. There the load has the shape of a given
+matters, and on the top a step of traction makes the stresses infinite. Near the top the load has the shape of a given
 pressure (smooth_load.py), averaged over finer cells with a point in the middle of each. Shape, cells and switches do
-not depend on the load, and the field is linear in it.
+not depend on the load, and the field is linear in the load.
 """
 
 from __future__ import annotations
@@ -125,7 +125,7 @@ class FineCells:
     @cached_property
     def far_load(self) -> FloatArray:
         """Load on the cells with forces and first moments of the smooth load: array (cell_x, y)."""
-        # Joined cells of the smooth load have other means than the cells.
+        # Coupled cells of the smooth load have other means than the cells.
         return np.asarray(self._along_x.cell_means.T + self._without_images(self.x_moments.total.T))
 
     def fine_depths(self, z: FloatArray) -> BoolArray:

@@ -1,4 +1,4 @@
-"""Influence of one cell on a uniform grid: alone, or with all its mirror images in two ends.
+"""Influence of one cell on a uniform grid, without or with all mirror images in two ends.
 
 Mirroring a load evenly in both ends repeats it with the period ``2 length`` along x. Their fields vary
 smoothly over one period: the nearest few images are evaluated at Chebyshev points and interpolated, and a uniformly

@@ -20,8 +20,8 @@ MAX_FACE_RATIO = 1.4
 """Largest value on a face over the smaller neighbour: above 1.5 a cell cannot keep its force. Accuracy."""
 
 MIN_EQUAL_RATIO = 0.999
-"""Least ratio of neighbouring loads that count as equal. Accuracy: on few cells the middle two differ by rounding,
-which must not determine the end of a load."""
+"""Least ratio of equal neighbouring loads. Accuracy: on few cells the middle two differ by rounding, which must not
+determine the end of a load."""
 
 MIN_NEIGHBOUR_RATIO = 0.5
 """Least mean of the shape in a neighbouring cell, over the mean in the cell, for a determined ratio. Accuracy."""
@@ -86,7 +86,7 @@ class SmoothLoad:
 
     def shape_loads(self, cells: FloatArray) -> ShapedLoad:
         """Return loads `cells` (row, cell) of this shape: the shape times a ratio that is linear in each cell."""
-        # Where the shape is 0, the load equals the ratio. Each cell keeps its force; joined cells keep their sum.
+        # Where the shape is 0, the load equals the ratio. Each cell keeps its force; coupled cells keep their sum.
         widths, (rows, count) = np.diff(self.edges), cells.shape
         force, moment, _ = self.moments_up_to(np.arange(count), self.edges[1:])
         empty = force == 0
@@ -96,7 +96,7 @@ class SmoothLoad:
         )
         shape = replace(self, sign=sign, first=first, middle=middle, last=last)
         total, centroid = cells * widths, self.edges[:-1] + moment / force
-        # Joined cells form a group with one ratio; other groups contain one cell.
+        # Coupled cells form a group with one ratio; other groups contain one cell.
         before = np.pad(self.coupled_to_next[:, :-1], ((0, 0), (1, 0)))
         start = np.maximum.accumulate(np.where(before, 0, np.arange(count)), axis=1)
         stop = np.minimum.accumulate(np.where(self.coupled_to_next, count, np.arange(count))[:, ::-1], axis=1)[:, ::-1]

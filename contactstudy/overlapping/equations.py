@@ -3,7 +3,7 @@
 With the coupling core ``M``, eq. (17), a top load ``P`` has on the ends, in H, the normal stress ``-(4/pi) M / k`` per
 unit (cosine transform along z), and a face load ``S`` has on the top, in V, ``4 M T / kappa`` per unit (cosine
 coefficients along x), where ``k**2 = k_x**2 + k_y**2``, ``kappa**2 = k_y**2 + k_z**2`` and ``T`` is the factor of the
-slab (axial.py). The ends are free when ``S`` solves eqs. (26) and (26a), a linear system at the depth nodes whose
+slab (axial_modes.py). The ends are free when ``S`` solves eqs. (26) and (26a), a linear system at the depth nodes whose
 matrix is symmetric after scaling, eq. (27): Hetenyi's and Keer's alternating scheme, solved at once.
 """
 
@@ -39,7 +39,7 @@ def load_on_end(
     load: Load, axial: ComplexArray, depth: ComplexArray | FloatArray, lateral: float, poisson: float
 ) -> ComplexArray:
     """Face load that frees the end from a unit load on the top: array (depth, axial)."""
-    # Tractions: along y without its factor i, along x as a sine series. A traction along x makes
+    # A traction along y omits the factor i; a traction along x uses a sine series. A traction along x causes
     # ``(k_x / k) [2 + 2 nu k_y**2 / k**2 - (k_x / k)**2 k z] exp(-k z)`` on the end (along y with x and y exchanged),
     # with the cosine transform along z of opposite sign.
     if load is Load.NORMAL:
@@ -141,7 +141,7 @@ class EquationSet:
         return self.factorisation.solve(source)
 
     def load_to_faces(self, load: Load) -> ComplexArray:
-        """Face loads that free the ends from unit modes of a top load in H alone: array (depth, wavenumber)."""
+        """Face loads that free the ends from unit modes of a top load in H: array (depth, wavenumber)."""
         # The matrix of a traction along y lacks its factor i; the modes of a traction along x are sines.
         axial = self.modes.wavenumbers
         if load is Load.NORMAL:  # as load_on_end, from the stored core

@@ -1,4 +1,4 @@
-"""A field of the free ends beside the mirrored half-space's, from the equivalent loads.
+"""A field of the free ends, added to that of the mirrored half-space, from the equivalent loads.
 
 For each wavenumber along y the equivalent load ``R`` (in H) and the face loads ``S`` (in V) are evaluated on their
 rays, where every factor decays with the distance from the loaded corner; the field is a sum of separable terms
@@ -113,7 +113,7 @@ class _FoldedPositions:
 def end_fields(
     problem: EndProblem, harmonics: Harmonics, point_sets: Sequence[Points], reference: float = np.inf
 ) -> list[dict[Load, FloatArray]]:
-    """Field of the free ends beside the half-space with all mirrored loads: arrays (component, x, y, z)."""
+    """Field of the free ends, without the half-space with all mirrored loads: arrays (component, x, y, z)."""
     # A field that grows with distance is relative to ``|y| = reference`` if that is finite.
     fields: list[dict[Load, FloatArray]] = [{} for _ in point_sets]
     with one_blas_thread():

@@ -1,4 +1,4 @@
-"""Stresses and displacements of the free ends beside the mirrored half-space's: harmonics of H and of V."""
+"""Stresses and displacements of the free ends, without the mirrored half-space: harmonics of H and of V."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The overlapping as linear operators between the cells of the top, the modes of H and the faces of V.
+"""The overlapping method as linear operators between the cells of the top, the modes of H and the faces of V.
 
 A *band* is one equation set: a node of the wavenumber along y in one set of axial modes. Every operator is block
 diagonal over the bands; within a band it is a real matrix along x and z, equal at all positions y. Vectors:

@@ -36,8 +36,8 @@ FIRST_PANEL_FACTOR = 0.1
 """End of the first panel along ``k_y``, over the smallest length of the problem, of a field without poles. Accuracy."""
 
 MIN_LENGTH = 0.004
-"""Least length of a body over the width of the load. Accuracy: at this one the ends keep 6e-4 of the pressure, at a
-third of it a tenth."""
+"""Least length of a body over the width of the load. Accuracy: at this length the ends keep 6e-4 of the pressure, at a
+third of the length a tenth."""
 
 
 _equation_set = cached("equation sets")(EquationSet.build)
@@ -100,7 +100,7 @@ class EndProblem:
 
     @property
     def corner_offset(self) -> float:
-        """Distance from the corner below which nothing is evaluated, metres."""
+        """Least distance of evaluated positions from the corner, metres."""
         return CORNER_OFFSET * self.finest_size
 
     @property
@@ -109,9 +109,9 @@ class EndProblem:
         return self.finest or finest_cell(self.grid)
 
     def smallest_scale(self, nearest: float) -> float:
-        """Smallest distance from a corner that matters, for positions no nearer to it than `nearest`, metres."""
-        # The field of a load near a corner depends on its steps there, at distant positions as well; every edge counts,
-        # so that the field is additive.
+        """Smallest relevant distance from a corner, for positions at least `nearest` from the corner, metres."""
+        # The field of a load near a corner depends on its steps there, at distant positions as well; every edge is
+        # included, so that the field is additive.
         inner = self.column_edges[1:-1]
         return max(min(nearest, float(self.from_end(inner).min(initial=nearest))), self.corner_offset)
 

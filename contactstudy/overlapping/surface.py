@@ -164,7 +164,7 @@ def sampled_kernel(waves: PositionWaves, wavenumber: float, request: EndRequest,
             # Reciprocity up to rounding, which two ends amplify.
             reverse = kernel if displacement is load else sources[load].T @ face_loads[displacement]
             kernel = 0.5 * (kernel + reverse.T)
-        # Without the factor i of an odd kernel: the conjugate of ``i s`` does the work.
+        # Without the factor i of an odd kernel: the conjugate of ``i s`` includes the sign.
         sign = -1 if displacement.sign_y < 0 < load.sign_y else 1
         kernels.append(factor * sign * kernel)
     return kernels
@@ -177,7 +177,7 @@ def end_kernel(request: EndRequest) -> EndKernel:
     relative = np.isfinite(length) and not mirrored_once
     window = 2 * request.dy * request.cells_y
     shortest = 0.5 * request.finest
-    # So far that a load on a single cell at the edge is right to 1e-4 there; smooth ones need half of it.
+    # A load on a single cell at the edge is accurate to 1e-4 at the edge; smooth loads need half of the range.
     last = 2 * max(2.0 * np.pi / request.dy, 6.0 / request.finest)
     reference = request.reference if relative else None
     half = 0.5 * length if np.isfinite(length) else request.span
@@ -227,7 +227,7 @@ def _sample_panel(
     shortest: float,
     shared_samples: dict[float, FloatArray],
 ) -> Iterator[FloatArray]:
-    """Kernel at each of a panel's wavenumbers, if not yet `known`: arrays (parity, response, position, position)."""
+    """Kernel at a panel's wavenumbers, or from `shared_samples`: arrays (parity, response, position, position)."""
     length, mirrored_once = request.freed
     first = float(panel.nodes[0])
     modes = modes_between_ends(length, first, shortest, request.resolution, mirrored_once=mirrored_once)
@@ -300,7 +300,7 @@ class EndCorrection:
         half = (cells + 1) // 2
         near, far = values[:half], values[::-1][:half]
         even, odd = near + far, near - far
-        if cells % 2:  # the middle cell has met itself
+        if cells % 2:  # the middle cell is its own image
             even[-1] *= 0.5
         return [even, odd] if sign_x > 0 else [odd, even]
 

@@ -153,7 +153,7 @@ def _with_load(case: Case, contact: Contact) -> Case:
 
 
 def _check_contact(case: Case, contact: Contact) -> Contact:
-    """Contact; raises if the roller touches with its end only, warns unless it converged."""
+    """Contact; raises if only the end of the roller touches, warns unless it converged."""
     shape = contact.shape
     check_on_its_length(_with_load(case, contact), shape.grid, shape.gap.values, contact.pressure)
     contact.warn_unless_converged()
@@ -229,7 +229,7 @@ def solve(
     z : sequence of float, optional
         Depths of the stresses, metres; default: from 0 to 5 Hertz half-widths, narrow at the largest stress.
     stresses : bool
-        Whether to compute the stresses at all.
+        Whether to compute the stresses.
     roughness : DataArray (x, y), optional
         Heights of the surfaces in metres, positive outward, as from `contactstudy.roughness`; on other cells they are
         interpolated linearly to the cell centres, which they must cover.

@@ -2,10 +2,9 @@
 
 The scheme of I. A. Polonsky and L. M. Keer, Wear 231 (1999) 206, with two changes that save most of its iterations:
 the descent direction is preconditioned by the inverse of the operator's spectrum, restricted to the contact (J. Zhao,
-E. A. H. Vollebregt, C. W. Oosterlee, Math. Comput. Sci. 9 (2015) 375, use the like for Hertz' problem), and the gap is
-updated along the search direction while the contact area stays as it is. And one that keeps it from going astray after
-a bad guess: cells that enter the contact all at once may press too hard, so of a change of the area that would raise
-the energy only the part is taken that lowers it most.
+E. A. H. Vollebregt, C. W. Oosterlee, Math. Comput. Sci. 9 (2015) 375, do the same for Hertz' problem), and the gap is
+updated along the search direction while the contact area does not change. A safeguard limits each change of the contact
+area to the fraction that minimises the energy: many cells that enter at once may overshoot.
 """
 
 from __future__ import annotations
@@ -62,7 +61,7 @@ class Resultants:
         return np.asarray(pressure * factor)
 
     def _exponential_factor(self, line: FloatArray, arm: FloatArray) -> FloatArray:
-        """Factor ``C exp(s arm)``, positive whatever the moment; without pressure on both sides, only the sum's."""
+        """Factor ``C exp(s arm)``, always positive; without pressure on both sides it restores the sum only."""
         assert self.total is not None
         loaded = line > 0
         line, lever = line[loaded], arm[loaded]
@@ -84,13 +83,13 @@ class Resultants:
         return np.asarray((factor * (self.total / float((line * factor[loaded]).sum())))[:, None])
 
     def position_error(self, pressure: FloatArray) -> float:
-        """Distance of the pressure's resultant from where it is to act, over the largest arm."""
+        """Distance of the pressure's resultant from its prescribed position, over the largest arm."""
         return 0.0 if self.lever is None else abs(float((pressure * self.lever).sum() / pressure.sum()))
 
 
 @dataclass(frozen=True, kw_only=True)
 class ContactIterate:
-    """Where the iteration ended."""
+    """Result of the iteration."""
 
     pressure: FloatArray  # (x, y): pressure, Pa, with the prescribed resultants
     motion: tuple[float, ...]  # the free rigid motions: approach, metres, and tilt about the point of application
@@ -136,7 +135,7 @@ def solve_complementarity(
 
 
 class _IterationState:
-    """Where the iteration stands."""
+    """State of the iteration."""
 
     def __init__(
         self, operator: Operator, preconditioner: Operator, gap: FloatArray, resultants: Resultants, start: FloatArray
@@ -166,7 +165,7 @@ class _IterationState:
         """Scale the guess: the work of the prescribed approach equals the work of the displacement."""
         gap = self._gap
         work = -float((self.pressure * np.where(self._possible, gap, 0.0)).sum())
-        if work <= 0:  # a guess that lies where the shape does not reach
+        if work <= 0:  # the guess lies outside the shape's overlap
             self.pressure = np.where(gap < 0, 1.0, 0.0)
             self.displacement, work = self._apply(self.pressure), -float(gap[gap < 0].sum())
         factor = work / float((self.pressure * self.displacement).sum())
@@ -183,7 +182,7 @@ class _IterationState:
         return pressure + np.where(self._possible, ADDED_PRESSURE * pressure.max(), 0.0)
 
     def compute_opening(self) -> FloatArray:
-        """Gap after the rigid motion that leaves the descent without resultants: the prescribed ones stay."""
+        """Gap after the rigid motion that removes the resultants of the descent: the prescribed resultants stay."""
         motions = self._motions
         if self.area_changed:
             self._weights = [
@@ -207,7 +206,7 @@ class _IterationState:
         if self.area_changed or self._slope == 0.0:
             direction = descent
         else:
-            # Polak and Ribiere's form forgives that the preconditioner is not exactly symmetric on the contact.
+            # Polak and Ribiere's form tolerates a preconditioner that is slightly unsymmetric on the contact.
             beta = float(((residual - self._residual) * descent).sum()) / self._slope
             direction = descent + beta * self.direction
         self._slope, self._residual = float((residual * descent).sum()), residual
@@ -220,7 +219,7 @@ class _IterationState:
     def change_area(
         self, trial: FloatArray, entering: BoolArray, opening: FloatArray, step: float, response: FloatArray
     ) -> None:
-        """Take cells out of the contact whose pressure has become negative, and cells that overlap into it."""
+        """Remove cells with negative pressure from the contact, and add cells that overlap."""
         trial[trial < 0] = 0.0
         if entering.any():
             # As in Polonsky and Keer: overlapping points enter with the step along the gap itself.
@@ -243,7 +242,7 @@ class _IterationState:
         self.area_changed = True
 
     def _step_to_border(self, step: float, response: FloatArray) -> None:
-        """Follow the direction until the first cell leaves the contact: that keeps the resultants and descends."""
+        """Follow the direction until the first cell leaves the contact: a descent that keeps the resultants."""
         change = -step * self.direction
         falling = self.contact & (change < 0)
         steps_to_zero = self.pressure[falling] / -change[falling]
@@ -254,7 +253,7 @@ class _IterationState:
 
 
 def _descent_fraction(change: FloatArray, displacement_change: FloatArray, opening: FloatArray) -> float:
-    """Part of a change of the pressure to take: all, unless the energy increases; then the parabola's minimum."""
+    """Fraction of a change of the pressure: 1, unless the energy increases; then the minimum of the parabola."""
     slope = -float((change * np.where(np.isfinite(opening), opening, 0.0)).sum())
     curvature = float((change * displacement_change).sum())
     if slope <= 0:

@@ -1,4 +1,4 @@
-"""A contact in plain arrays: bodies, cells, gap and load; pressure and certificate."""
+"""A contact in arrays without labels: bodies, cells, gap and load; pressure and certificate."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ from contactstudy.threads import one_blas_thread
 
 CONVERGED_TOLERANCES = 10.0  # largest violation of a converged contact over the tolerance: the last step is unchecked
 OPEN_TOLERANCES = 10.0  # least gap of `open_pressure_error`, over the tolerance and the displacement's variation
-MAX_ROUNDS = 20  # rounds after which a prescribed tilt or approach counts as not reached. Speed.
+MAX_ROUNDS = 20  # rounds after which a prescribed tilt or approach is not reached. Speed.
 INNER_TOLERANCE = 1e-3  # tolerance of the contact over the error of the motion of the reference lines. Speed.
 SYMMETRY_ROUNDING = 1e-10  # rounding of a symmetric gap over the largest, of symmetric edges over the window. Accuracy.
 

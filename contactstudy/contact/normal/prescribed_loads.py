@@ -26,7 +26,7 @@ class PrescribedLoad(NamedTuple):
 
     load: float | None = None  # normal load, N
     load_position: float | None = None  # position x of the load, metres; None: the shape keeps its inclination
-    approach: float | None = None  # how far the shape is pressed down from first touch, metres
+    approach: float | None = None  # displacement of the shape from first touch, metres
 
     def check(self, gap: FloatArray, grid: Grid) -> PrescribedLoad:
         """Return floats, or raise if the values contradict each other or the initial gap (x, y)."""
@@ -53,18 +53,18 @@ class PrescribedLoad(NamedTuple):
 
     @property
     def lowering(self) -> float:
-        """How far the shape is lowered before the iteration, metres."""
+        """Displacement of the shape before the iteration, metres."""
         return 0.0 if self.approach is None else self.approach
 
     def resultants(self, grid: Grid) -> Resultants:
-        """Return what the pressure on the cells has to sum up to."""
+        """Return the prescribed resultants of the pressure on the cells."""
         if self.load is None:
             return Resultants(None)
         lever = None if self.load_position is None else (grid.x[:, None] - self.load_position) / self.max_arm(grid)
         return Resultants(self.load / grid.cell_area, lever)
 
     def max_arm(self, grid: Grid) -> float:
-        """Return the largest distance of a cell from where the load acts, metres."""
+        """Return the largest distance of a cell from the load, metres."""
         assert self.load_position is not None
         return float(np.abs(grid.x - self.load_position).max())
 

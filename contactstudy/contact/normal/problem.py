@@ -13,7 +13,7 @@ from contactstudy.checks import FloatArray
 from contactstudy.contact.normal.conjugate_gradients import ContactIterate, Resultants, solve_complementarity
 from contactstudy.kernels.load import Load
 
-MAX_COUPLED_ROUNDS = 60  # rounds of a coupled contact after which it counts as not converged. Speed.
+MAX_COUPLED_ROUNDS = 60  # rounds of a coupled contact after which the contact is not converged. Speed.
 ROUND_ACCURACY = 0.03  # part of a round's change to which the next one is solved. Speed.
 ROUGH_TOLERANCE = 1e-2  # tolerance of the first coupled round. Speed.
 NESTED_CELLS = 4096  # cells from which on the contact is first solved on coarser ones. Speed.
@@ -31,18 +31,18 @@ class ContactOperator(Protocol):
         ...
 
     def precondition(self, gap: FloatArray) -> FloatArray:
-        """Roughly the pressure that sinks the cells by `gap`."""
+        """Approximate pressure for a normal displacement `gap`."""
         ...
 
     @property
     def coarse(self) -> ContactOperator:
-        """The operator on cells of twice the size, roughly."""
+        """Approximate operator on cells of twice the size."""
         ...
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ContactProblem:
-    """A contact to solve, checked."""
+    """A checked contact to solve."""
 
     grid: Grid
     gap: FloatArray  # (x, y): initial gap less a prescribed approach, metres; infinite where nothing can touch
@@ -57,7 +57,7 @@ class ContactProblem:
         return sum(heights, np.zeros((1, 1)))
 
     def coarsen(self) -> ContactProblem:
-        """Return the same contact on cells joined in twos."""
+        """Return the contact on cells of twice the size."""
         grid = self.grid.coarsened()
         cells = self.gap.reshape(grid.cells_x, 2, grid.cells_y, 2)
         possible = np.isfinite(cells)
@@ -75,7 +75,7 @@ class ContactProblem:
 
 
 def _initial_guess(operator: ContactOperator, problem: ContactProblem) -> FloatArray:
-    """Pressure to begin with: the solution on coarser cells, or, on few cells, one that follows the gap."""
+    """Pressure at the start: the solution on coarser cells, or, on few cells, a pressure that follows the gap."""
     gap = problem.gap
     possible = np.isfinite(gap)
     if gap.size >= NESTED_CELLS and not any(cells % 2 for cells in problem.grid.shape):

@@ -1,4 +1,4 @@
-"""Two elastic bodies pressed on each other: how far they move apart, each on cells along x that suit it."""
+"""Two elastic bodies in contact: their relative displacement, each body on its own cells along x."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class CellTransfer:
 
     @classmethod
     def of(cls, counterbody: Counterbody, grid: Grid) -> CellTransfer | None:
-        """Shares of the counterbody's cells in those of `grid`; None if they are the same cells."""
+        """Transfer between the cells of `grid` and of the counterbody; None for equal cells."""
         overlap, widths = counterbody.overlap(grid), grid.widths
         square = overlap.shape[0] == overlap.shape[1]
         if square and np.allclose(overlap, np.diag(widths), atol=1e-9 * widths.min()):
@@ -36,7 +36,7 @@ class CellTransfer:
 
 
 def _reverse_tangential(direction: Load, values: FloatArray) -> FloatArray:
-    """Reverse a load or a displacement along the surface, as the second body has it."""
+    """Reverse a tangential load or displacement: the second body has the opposite one."""
     return values if direction is Load.NORMAL else -values
 
 
@@ -63,7 +63,7 @@ class PairOperator:
         """Operator of two bodies for `loads` and displacements of given directions, on the cells of the first."""
         first = surface_operator(body, grid, loads, directions=directions)
         transfer = CellTransfer.of(counterbody, grid)
-        # Cells from labels may miss the counterbody's own by rounding; like bodies share one operator all the same.
+        # Equal bodies share one operator although the cells may differ by rounding.
         same_body = replace(counterbody.body, reference_depth=body.reference_depth) == body
         if transfer is None and same_body and counterbody.start == 0:
             return cls(first, first, None)
@@ -105,7 +105,7 @@ class PairOperator:
         return relative
 
     def precondition(self, gap: FloatArray) -> FloatArray:
-        """Roughly the pressure that closes the gap."""
+        """Approximate pressure that closes the gap."""
         return self.body.precondition(gap) / self._softer
 
     @cached_property
@@ -131,7 +131,7 @@ class ScaledOperator:
         return self.factor * self.operator(loads)
 
     def precondition(self, gap: FloatArray) -> FloatArray:
-        """Roughly the pressure that sinks the cells by `gap`."""
+        """Approximate pressure for a normal displacement `gap`."""
         return self.operator.precondition(gap) / self.factor
 
     @property
@@ -152,7 +152,7 @@ class PrescribedSurface:
         return np.asarray(self.operator.matvec(loads[Load.NORMAL].ravel()).reshape(self.body.grid.shape))
 
     def precondition(self, gap: FloatArray) -> FloatArray:
-        """Pressure that roughly closes the gap."""
+        """Approximate pressure that closes the gap."""
         return self.body.precondition(gap)
 
     @property

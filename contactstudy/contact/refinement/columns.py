@@ -1,4 +1,4 @@
-"""The shape that is pressed, seen along the axis, and the columns under it: the first ones, and how they are split."""
+"""Shape of the indenter along the axis, the first columns under the shape, and their splitting."""
 
 from __future__ import annotations
 
@@ -24,14 +24,14 @@ crest that is missed then carries 0.14 of the Hertz pressure at most."""
 
 MIN_CHORD_WIDTH = 0.1  # width over the half-width below which a first column is not split for its shape. Speed.
 MAX_WIDTH_RATIO = 2.6  # largest ratio of neighbouring widths. Accuracy.
-MAX_COLUMNS = 600  # columns at which the refinement ends, whatever is settled
+MAX_COLUMNS = 600  # columns at which the refinement ends without convergence
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class AxialShape:
     """Shape of the indenter along the axis."""
 
-    start: float  # where it can be pressed, metres
+    start: float  # range of possible contact, metres
     stop: float
     half_width: float  # Hertz half-width ``a``, metres
     depth: float  # depth ``a**2 / 2R`` to which a cylinder sinks, metres
@@ -49,7 +49,7 @@ class AxialShape:
         return self.height(self.nodes)
 
     def is_singular(self, side: int) -> bool:
-        """Whether an end is singular if it is pressed."""
+        """Whether a loaded end is singular."""
         return self.exponents[side] > 0
 
 
@@ -68,7 +68,7 @@ def first_edges(shape: AxialShape) -> FloatArray:
     while True:
         heights = _heights(shape, edges)
         lowest = _min_heights(shape, edges, heights)
-        # Only where the shape is low enough to be pressed for certain.
+        # Only where the shape is low enough for certain contact.
         is_marked = _leaves_chord(shape, edges, heights) & (lowest - lowest.min() < 3 * shape.depth)
         is_marked &= np.diff(edges) > MIN_CHORD_WIDTH * shape.half_width
         if not is_marked.any() or edges.size > MAX_COLUMNS:
@@ -117,9 +117,9 @@ def _with_edges(edges: FloatArray, corners: tuple[float, ...]) -> FloatArray:
 
 
 def find_overlooked(shape: AxialShape, edges: FloatArray, loaded: BoolArray, opening: FloatArray) -> BoolArray:
-    """Columns inside which a solved contact misses details of the shape: a pressed shape off its chord, or a crest."""
-    # An open column counts where the shape comes below the displaced top, except beside a contact, which ends inside
-    # it.
+    """Columns inside which a solved contact misses details of the shape: a loaded shape off its chord, or a crest."""
+    # An open column is overlooked if the shape lies below the displaced surface, except next to a contact that ends
+    # in the column.
     heights = _heights(shape, edges)
     rigid_height = heights.mean(axis=1) - opening
     lowest_point = heights.argmin(axis=1)

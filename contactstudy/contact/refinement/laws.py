@@ -105,7 +105,7 @@ def elastic_exponent(edge: float, face: float) -> float:
 
 
 def law_of(samples: list[Sample], exponent: float) -> EndLaw | None:
-    """Law of a pressed end; None if its pressure is finite."""
+    """Law of a loaded end; None for a finite pressure."""
     # Without an exponent of the materials (NaN) the growth of the outermost column between splittings determines it.
     if not np.isnan(exponent):
         return EndLaw(kind="power", exponent=exponent) if samples[-1].pressure > 0 else None
@@ -188,13 +188,13 @@ class CornerLaw:
     intensity: float  # ``E* s / (2 pi)``, Pa
     distance: float = np.nan  # ``d0`` and its estimated error, metres; NaN where the contact ends at the corner
     distance_error: float = np.nan
-    end: EndLaw | None = None  # law where the contact ends at the corner: too steep a chamfer is not pressed
+    end: EndLaw | None = None  # law where the contact ends at the corner: too steep a chamfer has no contact
 
 
 def corner_law(
     corner: tuple[float, float], modulus: float, exponent: float, edges: FloatArray, pressure: FloatArray
 ) -> CornerLaw | None:
-    """Law of a corner (position, jump of the slope) from the pressure (column, y); None where it is not pressed."""
+    """Law of a corner (position, jump of the slope) from the pressure (column, y); None without contact."""
     # The mean of ``ln d`` over a column determines d0 from its pressure; the mean of both sides removes odd terms.
     x, slope = corner
     intensity = modulus * slope / (2 * np.pi)  # eq. (42a)
@@ -275,7 +275,7 @@ Laws = tuple[EndLaw | None, EndLaw | None]
 def extrapolate_end_pressures(
     edges: FloatArray, pressure: FloatArray, laws: Sequence[EndLaw | None]
 ) -> tuple[Pair, Pair, float]:
-    """Peak of either half, pressure at either end, and by how much the parabola across lifts the largest pressure."""
+    """Peak of either half, pressure at either end, and relative increase of the peak by the parabola along y."""
     line = section_maxima(pressure)
     lateral_excess = float(line.max() / pressure.max()) - 1
     half = 0.5 * (edges[-1] - edges[0])
@@ -284,9 +284,9 @@ def extrapolate_end_pressures(
         distances, row = count_from_end(side, edges, line)
         end_pressure = _extrapolate_to_end(distances, row)
         half_row = row[centres_of(distances) < half]
-        # Where the pressure rises through the middle, the largest of a half lies there.
+        # Where the pressure rises through mid-length, the peak of a half lies at mid-length.
         half_peak = max(float(half_row.max()), float(np.interp(half, centres_of(distances), row)))
-        # Only where the pressure rises to the end is the largest one beyond the outermost column's mean.
+        # The peak exceeds the mean of the outermost column only if the pressure rises to the end.
         peaks.append(np.inf if laws[side] else max(half_peak, end_pressure) if half_row.argmax() == 0 else half_peak)
         ends.append(np.inf if laws[side] else end_pressure)
     return (peaks[0], peaks[1]), (ends[0], ends[1]), lateral_excess

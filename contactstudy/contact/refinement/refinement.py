@@ -1,4 +1,4 @@
-"""Where the pressure jumps from column to column, so that these are split."""
+"""Columns are split where the pressure jumps from column to column."""
 
 from __future__ import annotations
 
@@ -134,7 +134,7 @@ def rough_columns(solve: Solve, shape: AxialShape) -> Refinement:
 
 
 def refine_columns(solve: Solve, shape: AxialShape, accuracy: float, start: FloatArray | None = None) -> RefinedColumns:
-    """Refine columns, from the edges `start` of a rough contact, until peak and end pressures settle to `accuracy`."""
+    """Refine columns from the edges `start` of a rough contact, until peak and end pressures converge to `accuracy`."""
     refinement = Refinement(solve=solve, shape=shape, edges=first_edges(shape) if start is None else start)
     theta = FIRST_THETA if start is None else SECOND_THETA
     while True:
@@ -149,7 +149,7 @@ def refine_columns(solve: Solve, shape: AxialShape, accuracy: float, start: Floa
 
 @dataclass(kw_only=True, eq=False)
 class Refinement:
-    """Where the refinement stands."""
+    """State of the refinement."""
 
     solve: Solve
     shape: AxialShape
@@ -171,7 +171,7 @@ class Refinement:
         return any(self.laws) or any(self.shape.is_singular(side) and self.pressure[-side].any() for side in (0, 1))
 
     def refine(self, theta: float) -> None:
-        """Split columns until none is marked."""
+        """Split columns until no column is marked."""
         while True:
             while self.edges.size <= MAX_COLUMNS and (is_marked := self._select_columns_to_split(theta)).any():
                 self._split(is_marked)
@@ -193,7 +193,7 @@ class Refinement:
         self._record_samples()
 
     def _record_samples(self) -> None:
-        """Note the outermost columns wherever they have been split, and decide on their law."""
+        """Record the outermost columns after each splitting, and determine their law."""
         for side, samples in enumerate(self.samples):
             edges, pressure = count_from_end(side, self.edges, self.pressure)
             width = float(edges[1])
@@ -239,7 +239,7 @@ class Refinement:
         return pressure
 
     def record_values(self) -> None:
-        """Note the values of either half and end."""
+        """Record the values of either half and end."""
         values, self.lateral_excess = evaluate_pairs(self.edges, self.pressure, self.shape, self.laws)
         self.history.append(values)
 
@@ -259,7 +259,7 @@ class Refinement:
         }
         for side in (0, 1):
             fades_out = self.shape.has_fading_end and self.shape.face_beyond[side] == 0
-            # The pressure at an end, sharp or fading at the end of the face, does not settle and has no law.
+            # The pressure at an end, sharp or fading at the end of the face, does not converge and has no law.
             diverges = (self.shape.is_singular(side) or fades_out) and self.laws[side] is None
             if diverges and self.pressure[-side].any():
                 errors["end_pressure"][side] = np.inf
@@ -299,7 +299,7 @@ def replace_pressure(refined: RefinedColumns, pressure: FloatArray, shape: Axial
 def evaluate_pairs(
     edges: FloatArray, pressure: FloatArray, shape: AxialShape, laws: Sequence[EndLaw | None]
 ) -> tuple[ValuePairs, float]:
-    """Values of a pressure (column, y), and by how much the parabola across lifts the largest pressure."""
+    """Values of a pressure (column, y), and relative increase of the peak by the parabola along y."""
     peaks, end_pressures, lateral_excess = extrapolate_end_pressures(edges, pressure, laws)
     mid_x = 0.5 * (edges[0] + edges[-1])
     for corner in shape.corners:
@@ -320,7 +320,7 @@ def _fit_laws(laws: Sequence[EndLaw | None], edges: FloatArray, pressure: FloatA
 
 
 def _change_error(values: list[float], floor: float) -> float:
-    """Error of the last of some values; infinite for one that is, 0 for a pressure that stays 0."""
+    """Error of the last value; infinite for an infinite value, 0 for a pressure that stays 0."""
     last_value = values[-1]
     if not np.isfinite(last_value):
         return np.inf

@@ -83,7 +83,7 @@ def law_violation(
     traction: FloatArray, slip: FloatArray, bound: FloatArray, sticks: BoolArray, scale: float
 ) -> tuple[float, float]:
     """Violations of law (43): of the bound, over the largest bound, and of the slip, over `scale`."""
-    # A sticking cell counts its slip, another the component across the traction and against it.
+    # A sticking cell violates the law by its slip, a slipping cell by the components across and against the traction.
     size = np.hypot(*traction)
     max_bound = float(bound.max(initial=0.0))
     excess = float(np.maximum(size - bound, 0.0).max(initial=0.0)) / max_bound if max_bound else 0.0  # eq. (43)
@@ -187,7 +187,7 @@ def _select_first(cells: BoolArray, fraction: float) -> BoolArray:
 
 def _select_largest_excess(exceeds: BoolArray, excess: FloatArray, sticks: BoolArray) -> BoolArray:
     """At most half of the sticking cells, those farthest above their bound; of a single cell, that cell."""
-    # If all began to slip at once, the rigid slip of a prescribed resultant would be nearly undetermined.
+    # If all cells slipped at once, the rigid slip of a prescribed resultant would be nearly undetermined.
     max_cells = (int(sticks.sum()) + 1) // 2
     if exceeds.sum() <= max_cells:
         return exceeds
@@ -234,7 +234,7 @@ class _NewtonSystem:
     def solve(
         self, traction: FloatArray, slip: FloatArray, amplitudes: FloatArray, accuracy: float
     ) -> tuple[FloatArray, FloatArray]:
-        """Tractions and amplitudes of the rigid slips that reduce the residual to a part `accuracy`."""
+        """Tractions and amplitudes of the rigid slips that reduce the residual by the factor `accuracy`."""
         from scipy.sparse.linalg import LinearOperator, gmres
 
         problem = self._problem

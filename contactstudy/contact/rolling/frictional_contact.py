@@ -24,9 +24,9 @@ from contactstudy.threads import one_blas_thread
 
 DIRECTIONS = (Load.NORMAL, *TANGENTIAL)
 
-MAX_ROUNDS = 30  # rounds of pressure and tractions after which a coupled contact counts as not converged. Speed.
+MAX_ROUNDS = 30  # rounds of pressure and tractions after which a coupled contact is not converged. Speed.
 
-MIN_ACCURACY = 1e-5  # change of the pressure to which coupled rounds settle at any tolerance. Accuracy.
+MIN_ACCURACY = 1e-5  # least change of the pressure that ends coupled rounds. Accuracy.
 
 AMPLITUDES = {  # names in results of the rigid motions, in rolling and in a shift
     True: Rolling.AMPLITUDES,

@@ -26,7 +26,7 @@ class Surfaces(NamedTuple):
     operator: PairOperator | SurfaceOperator  # displacements relative to each other
     grid: Grid
     materials: list[Material]  # of the elastic bodies
-    reference_x: float  # position x about which spin and moment are counted, metres
+    reference_x: float  # position x reference of spin and moment, metres
 
     @property
     def areas(self) -> FloatArray:
@@ -53,7 +53,7 @@ class Surfaces(NamedTuple):
 
 
 class LeadingEdges(NamedTuple):
-    """Sliding columns and pressure that determine the places of the slip in the cells of a rolling contact."""
+    """Sliding columns and pressure that determine the positions of the slip in the cells of a rolling contact."""
 
     slides_fully: BoolArray  # (x): columns without sticking cells
     pressure: FloatArray  # (x, y): pressure whose extrapolation is the leading edge, Pa
@@ -75,7 +75,7 @@ class Tractions:
     force_error: float = 0.0  # certificate: error of prescribed resultants, over the largest
     steps: int = 0  # Newton steps
     converged: bool = True  # whether the tolerance was reached
-    leading: LeadingEdges | None = None  # origin of the places of the slip in rolling
+    leading: LeadingEdges | None = None  # origin of the positions of the slip in rolling
 
     @classmethod
     def of(

@@ -49,7 +49,7 @@ from contactstudy.kernels.load import Load
 
 MIN_LEADING_LENGTH = 0.72  # part c of the leading cell in the contact below which its traction is no unknown. Accuracy.
 
-EDGE_OFFSET = -0.84  # place of the slip less c. Accuracy.
+EDGE_OFFSET = -0.84  # position b of the slip less c. Accuracy.
 DEPENDENT_OFFSET, SLIDING_OFFSET = 0.475, 0.0
 """Position b of the slip in columns with a dependent leading cell, and in sliding columns. Accuracy."""
 MIN_CELLS = 6  # least number of cells along y with which the pressure determines the edge. Accuracy.
@@ -62,10 +62,10 @@ class RollingCells:
 
     bound: FloatArray  # (x, y): bound on the traction, Pa
     unknown: IntArray  # (2, unknown): row and column of the cells with unknown tractions
-    offset: FloatArray  # (unknown): place of the slip in each, in cells ahead of its centre
-    dependent: IntArray  # (2, tied): row and column of the tied leading cells
-    source_cell: IntArray  # (tied): number of the unknown cell behind each
-    ratio: FloatArray  # (tied): their traction over the traction of the cell behind
+    offset: FloatArray  # (unknown): position of the slip in each cell, in cells ahead of the centre
+    dependent: IntArray  # (2, dependent): row and column of the dependent leading cells
+    source_cell: IntArray  # (dependent): index of the unknown cell behind each
+    ratio: FloatArray  # (dependent): their traction over the traction of the cell behind
 
     @classmethod
     def of(
@@ -102,7 +102,7 @@ class RollingCells:
         is_unknown = loaded.copy()
         tied_cells = np.array(dependent, dtype=np.int64).reshape(-1, 2).T
         is_unknown[tuple(tied_cells)] = False
-        # A tied cell has the number of the last unknown cell before it.
+        # A dependent cell has the index of the last unknown cell before it.
         unknown_indices = np.cumsum(is_unknown).reshape(is_unknown.shape) - 1
         unknown = np.argwhere(is_unknown).T
         return cls(
@@ -176,7 +176,7 @@ class FrictionRequest:
 
     motion: Shift | Rolling  # motion of the shape against the body
     friction: float | FloatArray  # broadcasts to (x, y): coefficient of friction, not negative
-    reference_x: float  # position x about which spin and moment are counted, metres
+    reference_x: float  # position x reference of spin and moment, metres
     coupled: bool  # whether the tractions also displace the surfaces normally and so change the pressure
     start: Mapping[Load, FloatArray] | None = None  # (x, y): pressure and tractions at the start of a shift; default: 0
     coarse: Tractions | None = None
@@ -188,7 +188,7 @@ class FrictionRequest:
 def solve_tractions(
     request: FrictionRequest, settings: Settings, surfaces: Surfaces, pressure: FloatArray, previous: Tractions | None
 ) -> Tractions:
-    """Tractions under a pressure; `previous` is a guess under almost the same one, whose leading edges are retained."""
+    """Tractions under a pressure; `previous` is a guess under a similar pressure with leading edges to retain."""
     grid, motion = surfaces.grid, request.motion
     bound = np.asarray(request.friction * pressure)
     rolling = isinstance(motion, Rolling)
@@ -385,7 +385,7 @@ def guess_from_coarse(coarse: Tractions, cells: RollingCells, modes: tuple[str, 
 
 
 def guess_from_last(previous: Tractions, cells: RollingCells, modes: tuple[str, ...]) -> Guess:
-    """Guess from tractions on the same cells under a bound that was almost the same."""
+    """Guess from tractions on the same cells under a similar bound."""
     unknown = tuple(cells.unknown)
     traction, limit = previous.traction[:, *unknown], cells.limits
     size = np.hypot(*traction)
