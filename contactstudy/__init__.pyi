@@ -43,7 +43,7 @@ from .errors import StudyFileError as StudyFileError
 from .errors import TemperatureWarning as TemperatureWarning
 from .errors import WindowError as WindowError
 from .fields.displacement import displacement_field as displacement_field
-from .fields.equivalent import equivalent_loads as equivalent_loads
+from .fields.equivalent_loads import equivalent_loads as equivalent_loads
 from .fields.stress import stress_field as stress_field
 from .fields.surface import surface_displacement as surface_displacement
 from .film.solve import solve_film as solve_film

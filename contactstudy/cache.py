@@ -107,7 +107,7 @@ def limit(nbytes: int) -> None:
     Raises
     ------
     InvalidInputError
-        If it is not a whole number, or below zero.
+        If `nbytes` is not a whole number, or below zero.
 
     Examples
     --------
@@ -169,20 +169,20 @@ def cached(kind: str) -> Callable[[Callable[Arguments, Value]], Callable[Argumen
 
 
 def nbytes_of(value: object) -> int:
-    """Size of a value, bytes: its own `nbytes`, or the sum over its parts."""
+    """Size of a value, bytes: its `nbytes`, or the sum over its items."""
     nbytes = getattr(value, "nbytes", None)
-    return sum(map(nbytes_of, _parts(value))) if nbytes is None else int(nbytes)
+    return sum(map(nbytes_of, _children(value))) if nbytes is None else int(nbytes)
 
 
 def _protect(value: object) -> None:
     """Make the arrays of a value read-only."""
     if isinstance(value, np.ndarray):
         value.flags.writeable = False
-    for part in _parts(value):
-        _protect(part)
+    for child in _children(value):
+        _protect(child)
 
 
-def _parts(value: object) -> Collection[object]:
+def _children(value: object) -> Collection[object]:
     """Items of sequences and mappings, and attributes of objects of this package."""
     if isinstance(value, (list, tuple)):
         return value

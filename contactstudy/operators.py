@@ -18,7 +18,7 @@ from contactstudy.arrays.grid import Grid
 from contactstudy.bodies.models import Body
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
-from contactstudy.fields.equivalent import overlapping_operators
+from contactstudy.fields.equivalent_loads import overlapping_operators
 from contactstudy.fields.positions import Positions, field_positions
 from contactstudy.fields.stress import StressOperator
 from contactstudy.fields.surface import surface_operator
@@ -124,8 +124,8 @@ class Overlapping:
     @cached_property
     def P_h1(self) -> LinearOperator:  # noqa: N802
         """Operator from the load to the equivalent pressure on H, (x, y): the matrix MA."""
-        added = self._operators.equivalent(self._load).added
-        return added + aslinearoperator(np.eye(added.shape[0])) if self._load is Load.NORMAL else added
+        top_load = self._operators.equivalent(self._load).top_load
+        return top_load + aslinearoperator(np.eye(top_load.shape[0])) if self._load is Load.NORMAL else top_load
 
     @cached_property
     def P_v1(self) -> LinearOperator:  # noqa: N802
@@ -191,16 +191,17 @@ def surface_displacement(body: Body, grid: Grid, load: str = "pressure", compone
     # On columns the displacement is a mean: forces on the cells and means are conjugate.
     weights = grid.weights if grid.observes_means else np.ones((1, 1))
 
-    def displaced(vector: FloatArray) -> FloatArray:
+    def apply(vector: FloatArray) -> FloatArray:
         with one_blas_thread():
-            return np.array(forward.displaced({loaded: vector.reshape(grid.shape)}, (direction,))[direction]).ravel()
+            cells = vector.reshape(grid.shape)
+            return np.array(forward.compute_displacements({loaded: cells}, (direction,))[direction]).ravel()
 
-    def transposed(vector: FloatArray) -> FloatArray:
+    def apply_transposed(vector: FloatArray) -> FloatArray:
         with one_blas_thread():
             cells = vector.reshape(grid.shape) / weights
-            return (weights * np.array(backward.displaced({direction: cells}, (loaded,))[loaded])).ravel()
+            return (weights * np.array(backward.compute_displacements({direction: cells}, (loaded,))[loaded])).ravel()
 
-    return LinearOperator((grid.x.size * grid.y.size,) * 2, matvec=displaced, rmatvec=transposed, dtype=np.float64)
+    return LinearOperator((grid.x.size * grid.y.size,) * 2, matvec=apply, rmatvec=apply_transposed, dtype=np.float64)
 
 
 def stress(

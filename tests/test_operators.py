@@ -58,7 +58,7 @@ def check_transpose(operator) -> None:
 
 @on_grids
 @pytest.mark.parametrize("load", LOADS)
-def test_stress_on_planes(body, grid: Grid, load: str) -> None:
+def test_stress_operator_matches_stress_field(body, grid: Grid, load: str) -> None:
     cells = np.random.default_rng(1).random(grid.shape)
     for axes in ({"x": [0.0, 0.6], "y": [0.1], "z": [0.0, 0.4]}, {"x": [0.0], "y": [-0.6, 0.75], "z": [0.2]}):
         operator = stress(body, grid, load=load, **axes)
@@ -71,7 +71,7 @@ def test_stress_on_planes(body, grid: Grid, load: str) -> None:
 @on_grids
 @pytest.mark.parametrize("component", ["x", "y", "z"])
 @pytest.mark.parametrize("load", LOADS)
-def test_surface_displacement(body, grid: Grid, load: str, component: str) -> None:
+def test_displacement_operator_matches_surface_displacement(body, grid: Grid, load: str, component: str) -> None:
     cells = np.random.default_rng(2).random(grid.shape)
     operator = surface_displacement(body, grid, load, component)
     displacements = displacement_of(body, **arguments(grid, cells, load), components=component)
@@ -81,7 +81,7 @@ def test_surface_displacement(body, grid: Grid, load: str, component: str) -> No
 
 
 @pytest.mark.parametrize("load", LOADS)
-def test_equivalent_loads(load: str) -> None:
+def test_load_operators_match_equivalent_loads(load: str) -> None:
     body, grid = BODIES[2], GRIDS[1]
     cells = np.random.default_rng(3).random(grid.shape)
     method = Overlapping(body=body, grid=grid, z=[0.2, 0.5], load=load)
@@ -92,7 +92,7 @@ def test_equivalent_loads(load: str) -> None:
     np.testing.assert_allclose(method.P_v2 @ units, np.stack([method.P_v2 @ unit for unit in units.T], axis=1))
 
 
-def test_refused() -> None:
+def test_invalid_operator_raises_error() -> None:
     single = FiniteLengthSpace(length=2.0, material=STEEL, model="single-mirror")
     with pytest.raises(InvalidInputError, match="single-mirror"):
         surface_displacement(single, GRIDS[0])

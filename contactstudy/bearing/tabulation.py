@@ -19,8 +19,8 @@ from contactstudy.case.case import MAX_TILT, Case
 from contactstudy.case.magnitudes import warn_of_magnitudes
 from contactstudy.checks import FloatArray
 from contactstudy.contact.normal.contact import Contact
-from contactstudy.contact.refinement.refined_contact import POWER, refine_contact, search_load
-from contactstudy.contact.solve import reference_lines
+from contactstudy.contact.refinement.refined_contact import LOAD_POWER, refine_contact, search_load
+from contactstudy.contact.solve import describe_reference_lines
 from contactstudy.errors import InvalidInputError, WindowError
 
 LOGGER = logging.getLogger(__name__)
@@ -95,7 +95,7 @@ def solve_nodes(solver: ContactSolver, approaches: FloatArray, tilts: FloatArray
             if index == start_column:  # from the next larger approach, or the load of the case
                 guess = solver.case.normal_load
                 if line + 1 < approaches.size:
-                    guess = values[0, line + 1, start_column] * (approaches[line] / approaches[line + 1]) ** POWER
+                    guess = values[0, line + 1, start_column] * (approaches[line] / approaches[line + 1]) ** LOAD_POWER
             values[:, line, index] = solver.solve_at_approach(
                 float(approaches[line]), float(tilts[index]), float(guess)
             )
@@ -238,7 +238,7 @@ def label_law(solver: ContactSolver, nodes: Nodes, errors: FloatArray) -> xr.Dat
         {name: (dims, values) for name, values in arrays.items()} | scalars,
         coords={"approach": nodes.approaches, "tilt": nodes.tilts},
     )
-    reference = reference_lines(solver.case.body, solver.case.counterbody)
+    reference = describe_reference_lines(solver.case.body, solver.case.counterbody)
     table["approach"].attrs |= {"reference": reference, "comment": "at the roller's mid-length"}
     table["tilt"].attrs |= {"reference": reference, "centre": "the roller's mid-length"}
     table["moment"].attrs["comment"] = "about the roller's mid-length"

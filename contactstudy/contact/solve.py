@@ -31,7 +31,7 @@ from contactstudy.case.motion import (
 )
 from contactstudy.checks import FloatArray
 from contactstudy.contact.normal.contact import Contact, Settings, Shape, contact_of
-from contactstudy.contact.normal.prescribed import Prescribed
+from contactstudy.contact.normal.prescribed_loads import PrescribedLoad
 from contactstudy.contact.rolling.frictional_contact import frictional_contact, with_tractions
 from contactstudy.contact.rolling.tractions import FrictionRequest
 from contactstudy.errors import InvalidInputError
@@ -111,7 +111,7 @@ def solve_contact(
         shape. On a finite-length space the cells span the body from end to end; elsewhere they must leave room
         around the contact.
     load : float, optional
-        Normal load, N. Either this or `approach` is previous.
+        Normal load, N; either `load` or `approach`.
     friction : float or DataArray (x)
         Coefficient ``f``, a number or values at positions along x with lines between: in full sliding the shear
         traction on the body is ``f`` times the pressure along +y; in any other motion that is the bound on it.
@@ -194,17 +194,17 @@ def solve_contact(
     if counterbody is not None:
         checks.instance("counterbody", counterbody, Counterbody, "a Counterbody")
     gap = in_si("gap", gap, "m")
-    clearance, grid = labelled_cells("gap", gap, extent=body.extent, infinite=True)
-    if not np.isfinite(clearance).any():
+    initial_gap, grid = labelled_cells("gap", gap, extent=body.extent, infinite=True)
+    if not np.isfinite(initial_gap).any():
         raise InvalidInputError("gap", "infinite everywhere", "finite where the shape can touch the body")
-    # Where nothing can be pressed, cells may be as narrow as the room that is left to an end.
-    grid.check_growth(np.asarray(np.isfinite(clearance).any(axis=1)))
+    # Columns without finite gap may be as narrow as the face beyond the shape.
+    grid.check_growth(np.asarray(np.isfinite(initial_gap).any(axis=1)))
     checks.instance("settings", settings, ContactSettings, "a ContactSettings")
-    coupled, after = bool(settings.coupled), settings.after
+    coupled, previous_step = bool(settings.coupled), settings.after
     checks.instance("motion", motion, KINDS, MOTIONS)
     coefficient = check_friction(friction)
     check_coupled(coefficient, motion, coupled=coupled)
-    on_cells = evaluate_friction(coefficient, grid.x)
+    cell_friction = evaluate_friction(coefficient, grid.x)
     if surface is not None:
         checks.instance("surface", surface, LinearOperator, "a scipy.sparse.linalg.LinearOperator")
         cells = grid.cells_x * grid.cells_y
@@ -217,11 +217,13 @@ def solve_contact(
     shape = Shape(
         body=body,
         grid=grid,
-        gap=ArrayKey(clearance),
-        prescribed=Prescribed(load, settings.load_position, approach).checked(clearance, grid),
+        gap=ArrayKey(initial_gap),
+        prescribed=PrescribedLoad(load, settings.load_position, approach).check(initial_gap, grid),
         counterbody=counterbody,
         # Friction that does not bend the surface does not change the pressure: one contact serves all of a sweep.
-        coupled_friction=on_cells if coupled and isinstance(motion, Sliding) and isinstance(on_cells, float) else 0.0,
+        coupled_friction=cell_friction
+        if coupled and isinstance(motion, Sliding) and isinstance(cell_friction, float)
+        else 0.0,
         surface=surface,
     )
     iteration = Settings(settings.tolerance, settings.max_iterations)
@@ -229,18 +231,18 @@ def solve_contact(
     if isinstance(motion, Sliding):
         contact = contact_of(shape, iteration)
         contact.warn_unless_converged()
-        return contact_dataset(contact, on_cells, x=x, y=y)
-    start = None if after is None else _start_loads(after, motion, grid, body)
-    facing = np.flatnonzero(np.isfinite(clearance).any(axis=1))
-    middle = 0.5 * float(grid.x_edges[facing[0]] + grid.x_edges[facing[-1] + 1])
-    request = FrictionRequest(motion=motion, friction=on_cells, middle=middle, coupled=coupled, start=start)
+        return contact_dataset(contact, cell_friction, x=x, y=y)
+    start = None if previous_step is None else _start_loads(previous_step, motion, grid, body)
+    under_shape = np.flatnonzero(np.isfinite(initial_gap).any(axis=1))
+    middle = 0.5 * float(grid.x_edges[under_shape[0]] + grid.x_edges[under_shape[-1] + 1])
+    request = FrictionRequest(motion=motion, friction=cell_friction, reference_x=middle, coupled=coupled, start=start)
     frictional = frictional_contact(shape, iteration, request)
     frictional.warn_unless_converged()
-    return with_tractions(contact_dataset(frictional.contact, on_cells, x=x, y=y), frictional)
+    return with_tractions(contact_dataset(frictional.contact, cell_friction, x=x, y=y), frictional)
 
 
 def _start_loads(after: xr.Dataset, motion: Motion, grid: Grid, body: Body) -> dict[Load, FloatArray]:
-    """Pressure and tractions of the preceding step, checked."""
+    """Check and return pressure and tractions of the preceding step."""
     checks.instance("after", after, xr.Dataset, "a result of solve_contact")
     if not isinstance(motion, Shift):
         raise InvalidInputError("motion", motion, "a Shift(...) with after: rolling is steady")
@@ -268,7 +270,7 @@ def contact_dataset(contact: Contact, friction: float | FloatArray, *, x: FloatA
         "displacement_z": contact.displacement.copy(),
     }
     scalars: dict[str, float | int | bool] = {
-        "normal_load": contact.carried if shape.prescribed.load is None else shape.prescribed.load,
+        "normal_load": contact.carried_load if shape.prescribed.load is None else shape.prescribed.load,
         "approach": contact.approach,
         "tilt": contact.tilt,
         "load_position": contact.load_position,
@@ -281,18 +283,18 @@ def contact_dataset(contact: Contact, friction: float | FloatArray, *, x: FloatA
         coords={"x": x, "y": y} | cell_coordinates(shape.grid),
     )
     for name in ("approach", "tilt", "displacement_z"):
-        other = None if name == "displacement_z" else shape.counterbody
-        result[name].attrs["reference"] = reference_lines(shape.body, other)
+        counterbody = None if name == "displacement_z" else shape.counterbody
+        result[name].attrs["reference"] = describe_reference_lines(shape.body, counterbody)
     prescribed = {"approach": shape.prescribed.approach, "load_position": shape.prescribed.load_position}
     result = without_error(result, *(name for name, value in prescribed.items() if value is None))
     return describe(result, "contact of a shape with an elastic body")
 
 
-def reference_lines(body: Body, counterbody: Counterbody | None) -> str:
-    """Material lines to which approach and tilt refer, in words."""
+def describe_reference_lines(body: Body, counterbody: Counterbody | None) -> str:
+    """Return a sentence on the material lines to which approach and tilt refer."""
     bodies = {"body": body} if counterbody is None else {"body": body, "counterbody": counterbody.body}
     lines = [
-        f"{name} at a depth of {part.depth:g} m" if np.isfinite(part.depth) else f"{name} far away"
-        for name, part in bodies.items()
+        f"{name} at a depth of {elastic.depth:g} m" if np.isfinite(elastic.depth) else f"{name} far away"
+        for name, elastic in bodies.items()
     ]
     return f"material line below the load: {', '.join(lines)}"

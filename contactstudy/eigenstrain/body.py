@@ -17,10 +17,10 @@ from contactstudy.checks import FloatArray, IntArray
 from contactstudy.eigenstrain.stress_function import Factors, Splines, StressFunction
 
 DEGREE = 4  # of the polynomials of Airy's function. Accuracy.
-WIDEST = 0.2  # largest element near the cells, over the distance of two ends. Accuracy.
+MAX_ELEMENT_SIZE = 0.2  # largest element near the cells, over the distance of two ends. Accuracy.
 GROWTH = 1.5  # ratio of neighbouring elements beyond the cells. Accuracy.
 
-FAR = 1000.0
+FAR_DISTANCE = 1000.0
 """Without an end: distance of the last element, over the extent of the cells. Accuracy: the error of the stress falls
 with its square, of the top's displacement with its first power."""
 
@@ -31,7 +31,7 @@ resultant decays like exp(-4.2 z / L) there."""
 XX, YY, ZZ, XY, XZ, YZ = range(6)  # components in the order of every array of stresses
 
 
-def grown(start: float, stop: float, first: float) -> FloatArray:
+def grow_edges(start: float, stop: float, first: float) -> FloatArray:
     """Edges from `start` (left out) to `stop`, the first element of about width `first` and growing."""
     distance = abs(stop - start)
     if distance <= 0:
@@ -43,12 +43,12 @@ def grown(start: float, stop: float, first: float) -> FloatArray:
     return np.asarray(edges)
 
 
-def towards_face(start: float, face: float, first: float) -> FloatArray:
+def grade_to_face(start: float, face: float, first: float) -> FloatArray:
     """Edges from `start` (left out) to a free face, fine at both."""
-    middle = 0.5 * (start + face)
+    midpoint = 0.5 * (start + face)
     if start == face:
         return np.zeros(0)
-    near = grown(start, middle, first)
+    near = grow_edges(start, midpoint, first)
     return np.concatenate([near, start + face - np.append(start, near[:-1])[::-1]])
 
 
@@ -67,27 +67,27 @@ class EigenstrainBody:
     def elements(self) -> tuple[FloatArray, FloatArray]:
         """Edges of the elements along x and z, metres."""
         length = self.extent[1] - self.extent[0]
-        x, z = (_split(edges, self.splits, WIDEST * length) for edges in (self.x_edges, self.z_edges))
-        far = FAR * max(np.ptp(x), z[-1])
+        x, z = (_split_cells(edges, self.splits, MAX_ELEMENT_SIZE * length) for edges in (self.x_edges, self.z_edges))
+        far = FAR_DISTANCE * max(np.ptp(x), z[-1])
         sides = []
         for end, edge, width, sign in zip(self.extent, x[[0, -1]], np.diff(x)[[0, -1]], (-1, 1), strict=True):
-            free = np.isfinite(end)
-            sides.append(towards_face(edge, end, width) if free else grown(edge, edge + sign * far, width))
-        above = towards_face(z[0], 0.0, z[1] - z[0])[::-1]
-        deep = z[-1] + (min(DEEP_LENGTHS * length, far) if np.isfinite(length) else far)
-        below = grown(z[-1], deep, z[-1] - z[-2])
+            is_free = np.isfinite(end)
+            sides.append(grade_to_face(edge, end, width) if is_free else grow_edges(edge, edge + sign * far, width))
+        above = grade_to_face(z[0], 0.0, z[1] - z[0])[::-1]
+        bottom = z[-1] + (min(DEEP_LENGTHS * length, far) if np.isfinite(length) else far)
+        below = grow_edges(z[-1], bottom, z[-1] - z[-2])
         return np.concatenate([sides[0][::-1], x, sides[1]]), np.concatenate([above, z, below])
 
     @cached_property
     def in_plane(self) -> StressFunction:
         """Airy's function."""
-        x, z = (Splines(edges, self.degree, continuity=1, vanishing=2) for edges in self.elements)
+        x, z = (Splines(edges, self.degree, continuity=1, vanishing_orders=2) for edges in self.elements)
         return StressFunction(x, z)
 
     @cached_property
     def across(self) -> StressFunction:
         """Function of the stresses xy and yz."""
-        x, z = (Splines(edges, self.degree - 1, continuity=0, vanishing=1) for edges in self.elements)
+        x, z = (Splines(edges, self.degree - 1, continuity=0, vanishing_orders=1) for edges in self.elements)
         return StressFunction(x, z)
 
     @cached_property
@@ -128,7 +128,7 @@ class EigenstrainSolution:
     def stresses(self, x: FloatArray, z: FloatArray) -> FloatArray:
         """Residual stresses at the tensor product of positions: array (6, x, z), xx, yy, zz, xy, xz, yz in Pa."""
         functions = self.body.in_plane.values(x, z), self.body.across.values(x, z)
-        return self._assembled(*functions, self.eigenstrain_at(x, z))
+        return self._assemble_stresses(*functions, self.eigenstrain_at(x, z))
 
     def cell_averages(self) -> FloatArray:
         """Residual stresses averaged over the cells: array (6, cell x, cell z), Pa."""
@@ -138,9 +138,9 @@ class EigenstrainSolution:
             ([matrix.T / widths for matrix in along_x], [matrix.T / heights for matrix in along_z])
             for along_x, along_z in (body.airy_integrals, body.across_integrals)
         )
-        return self._assembled(airy, across, self.eigenstrain)
+        return self._assemble_stresses(airy, across, self.eigenstrain)
 
-    def _assembled(self, airy: Factors, across: Factors, eigenstrain: FloatArray) -> FloatArray:
+    def _assemble_stresses(self, airy: Factors, across: Factors, eigenstrain: FloatArray) -> FloatArray:
         """Stresses from the functions' derivatives along x and z."""
         (x, z), material = airy, self.body.material
         stress = np.zeros((6, x[0].shape[0], z[0].shape[0]))
@@ -157,18 +157,18 @@ class EigenstrainSolution:
     def eigenstrain_at(self, x: FloatArray, z: FloatArray) -> FloatArray:
         """Eigenstrains at the tensor product of positions: array (6, x, z); zero beyond the cells."""
         body = self.body
-        numbers, inside = [], []
+        indices, inside = [], []
         for points, edges in ((x, body.x_edges), (z, body.z_edges)):
-            number = np.searchsorted(edges, points, side="right") - 1
-            number[points == edges[-1]] = edges.size - 2
-            inside.append((number >= 0) & (number < edges.size - 1))
-            numbers.append(np.clip(number, 0, edges.size - 2))
-        strain = self.eigenstrain[:, numbers[0][:, None], numbers[1]]
+            index = np.searchsorted(edges, points, side="right") - 1
+            index[points == edges[-1]] = edges.size - 2
+            inside.append((index >= 0) & (index < edges.size - 1))
+            indices.append(np.clip(index, 0, edges.size - 2))
+        strain = self.eigenstrain[:, indices[0][:, None], indices[1]]
         return np.where(inside[0][:, None] & inside[1], strain, 0.0)
 
     def top_displacement(self, x: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Displacements z (into the body) and y of the top at positions x, metres, relative to the depth."""
-        # They are the integrals of the strains zz and yz, eigenstrains included, over the depth.
+        # The displacements are integrals of the strains zz and yz, eigenstrains included, over the depth.
         body, material = self.body, self.body.material
         nu, young = material.poisson, material.young
         z_elements = body.elements[1]
@@ -186,15 +186,17 @@ class EigenstrainSolution:
         return -strain_zz, -(s_yz / material.shear_modulus + 2 * e[YZ])
 
 
-def _split(edges: FloatArray, splits: int, widest: float) -> FloatArray:
-    """Edges of cells and of equal parts of them, none wider than `widest`."""
+def _split_cells(edges: FloatArray, splits: int, max_width: float) -> FloatArray:
+    """Edges of cells and of equal parts of them, none wider than `max_width`."""
     widths = np.diff(edges)
-    parts = np.maximum(splits, np.ceil(widths / widest - 1e-9)).astype(int)
-    inner = [edge + width * np.arange(count) / count for edge, width, count in zip(edges, widths, parts, strict=False)]
-    return np.append(np.concatenate(inner), edges[-1])
+    counts = np.maximum(splits, np.ceil(widths / max_width - 1e-9)).astype(int)
+    starts = [
+        edge + width * np.arange(count) / count for edge, width, count in zip(edges, widths, counts, strict=False)
+    ]
+    return np.append(np.concatenate(starts), edges[-1])
 
 
-COLUMNS = 256  # Right-hand sides that are solved for at once. Speed.
+COLUMNS_PER_SOLUTION = 256  # Right-hand sides that are solved for at once. Speed.
 
 
 @dataclass(frozen=True, eq=False)
@@ -208,31 +210,31 @@ class Influence:
 
     @classmethod
     def of(cls, body: EigenstrainBody, along_x: IntArray, along_z: IntArray) -> Influence:
-        """Influence of the cells with these numbers along x and along z on each other."""
+        """Influence of the cells with these indices along x and along z on each other."""
         areas = np.diff(body.x_edges)[along_x] * np.diff(body.z_edges)[along_z]
 
-        def columns(of: Factors, i: int, j: int) -> sparse.csc_array:
+        def columns(integrals: Factors, i: int, j: int) -> sparse.csc_array:
             """Integrals of the functions' derivatives over each of the cells: array (function, cell)."""
-            x, z = (sparse.csc_array(m) for m in (of[0][i][:, along_x], of[1][j][:, along_z]))
+            x, z = (sparse.csc_array(m) for m in (integrals[0][i][:, along_x], integrals[1][j][:, along_z]))
             return sparse.csc_array(
                 sparse.hstack([sparse.kron(x[:, [n]], z[:, [n]], format="csc") for n in range(along_x.size)])
             )
 
-        def matrix(function: StressFunction, parts: list[sparse.csc_array], counts: FloatArray) -> FloatArray:
+        def matrix(function: StressFunction, blocks: list[sparse.csc_array], counts: FloatArray) -> FloatArray:
             """Averages of the stresses per eigenstrains times `counts`, over minus the modulus."""
-            together = sparse.csc_array(sparse.hstack(parts))
-            averages = sparse.csr_array(together.T)
-            influence = np.empty((together.shape[1],) * 2)
-            for start in range(0, influence.shape[1], COLUMNS):
-                right = together[:, start : start + COLUMNS].toarray()
-                influence[:, start : start + COLUMNS] = averages @ function.solve(right)
-            return influence / np.tile(areas, len(parts))[:, None] * np.repeat(counts, areas.size)
+            stacked = sparse.csc_array(sparse.hstack(blocks))
+            averages = sparse.csr_array(stacked.T)
+            influence = np.empty((stacked.shape[1],) * 2)
+            for start in range(0, influence.shape[1], COLUMNS_PER_SOLUTION):
+                right = stacked[:, start : start + COLUMNS_PER_SOLUTION].toarray()
+                influence[:, start : start + COLUMNS_PER_SOLUTION] = averages @ function.solve(right)
+            return influence / np.tile(areas, len(blocks))[:, None] * np.repeat(counts, areas.size)
 
-        of = body.airy_integrals
-        airy = [columns(of, 0, 2), columns(of, 2, 0), -columns(of, 1, 1)]
+        integrals = body.airy_integrals
+        airy = [columns(integrals, 0, 2), columns(integrals, 2, 0), -columns(integrals, 1, 1)]
         in_plane = matrix(body.in_plane, airy, np.array([1.0, 1.0, 2.0]))
-        of = body.across_integrals
-        shear = [columns(of, 0, 1), -columns(of, 1, 0)]
+        integrals = body.across_integrals
+        shear = [columns(integrals, 0, 1), -columns(integrals, 1, 0)]
         across = matrix(body.across, shear, np.array([2.0, 2.0]))
         material = body.material
         modulus = material.plane_strain_modulus

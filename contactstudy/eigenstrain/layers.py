@@ -19,7 +19,7 @@ import numpy as np
 
 from contactstudy.bodies.material import Material
 from contactstudy.checks import FloatArray
-from contactstudy.eigenstrain.body import DEGREE, FAR, XX, XY, XZ, YY, YZ, ZZ, grown, towards_face
+from contactstudy.eigenstrain.body import DEGREE, FAR_DISTANCE, XX, XY, XZ, YY, YZ, ZZ, grade_to_face, grow_edges
 from contactstudy.eigenstrain.stress_function import Splines
 
 
@@ -46,24 +46,24 @@ class PeriodicLayers:
 
     material: Material
     z_edges: FloatArray  # edges of the layers, metres
-    places: int  # places along y
+    positions: int  # number of positions along y
     step: float  # distance from one place to the next, metres; negative where y falls
 
     @cached_property
     def _waves(self) -> FloatArray:
         """Wavenumbers along the way from 0 on, 1/m."""
-        return np.asarray(2 * np.pi * np.fft.rfftfreq(self.places, abs(self.step)))
+        return np.asarray(2 * np.pi * np.fft.rfftfreq(self.positions, abs(self.step)))
 
     @cached_property
     def _elements(self) -> FloatArray:
         """Edges of the elements over depth: the layers, and elements above and below."""
         z = self.z_edges
-        above = towards_face(z[0], 0.0, z[1] - z[0])[::-1]
-        return np.concatenate([above, z, grown(z[-1], FAR * z[-1], z[-1] - z[-2])])
+        above = grade_to_face(z[0], 0.0, z[1] - z[0])[::-1]
+        return np.concatenate([above, z, grow_edges(z[-1], FAR_DISTANCE * z[-1], z[-1] - z[-2])])
 
     def _matrices(self, degree: int, order: int) -> FloatArray:
         """Stresses (or their part over i) in the layers per eigenstrain, over minus the modulus, for every wave."""
-        splines = Splines(self._elements, degree, continuity=order - 1, vanishing=order)
+        splines = Splines(self._elements, degree, continuity=order - 1, vanishing_orders=order)
         products = [splines.products(derivative).toarray() for derivative in range(order + 1)]
         parts = [splines.integrals(self.z_edges, derivative) for derivative in range(order + 1)]
         heights = np.tile(np.diff(self.z_edges), order + 1)
@@ -94,7 +94,7 @@ class PeriodicLayers:
         return -self.material.shear_modulus * self._matrices(DEGREE - 1, 1)
 
     def stresses(self, eigenstrain: FloatArray) -> FloatArray:
-        """Residual stresses (6, place, column, layer) from eigenstrains of this shape; every column is on its own."""
+        """Residual stresses (6, position, column, layer) from eigenstrains of this shape; columns are independent."""
         e, nu = eigenstrain, self.material.poisson
         stress = np.zeros_like(e)
         stress[[YY, ZZ, YZ]] = self._apply(self._in_plane, np.stack([e[YY] + nu * e[XX], e[ZZ] + nu * e[XX], e[YZ]]))
@@ -104,12 +104,12 @@ class PeriodicLayers:
         return stress
 
     def _apply(self, matrices: FloatArray, strains: FloatArray) -> FloatArray:
-        """Stresses (part, place, column, layer) of strains of this shape; the last part is over i."""
-        parts, places, columns, layers = strains.shape
+        """Stresses (component, position, column, layer) of strains of this shape; the last component is over i."""
+        components, positions, columns, layers = strains.shape
         waves = np.fft.rfft(strains, axis=1)
         waves[-1] *= -1j * np.sign(self.step)
-        waves = waves.transpose(1, 0, 3, 2).reshape(-1, parts * layers, columns)
+        waves = waves.transpose(1, 0, 3, 2).reshape(-1, components * layers, columns)
         products = matrices @ np.concatenate([waves.real, waves.imag], axis=2)
-        waves = (products[..., :columns] + 1j * products[..., columns:]).reshape(-1, parts, layers, columns)
+        waves = (products[..., :columns] + 1j * products[..., columns:]).reshape(-1, components, layers, columns)
         waves[:, -1] *= 1j * np.sign(self.step)
-        return np.fft.irfft(waves.transpose(1, 0, 3, 2), n=places, axis=1)
+        return np.fft.irfft(waves.transpose(1, 0, 3, 2), n=positions, axis=1)

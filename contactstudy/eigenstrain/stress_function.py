@@ -35,12 +35,12 @@ class Splines:
     edges: FloatArray  # edges of the elements, metres, increasing
     degree: int  # of the polynomials
     continuity: int  # derivatives that are continuous between elements
-    vanishing: int  # how many of value, slope, ... vanish on both sides.
+    vanishing_orders: int  # how many of value, slope, ... vanish on both sides.
 
     @property
     def count(self) -> int:
         """Number of functions."""
-        return self._knots.size - self.degree - 1 - 2 * self.vanishing
+        return self._knots.size - self.degree - 1 - 2 * self.vanishing_orders
 
     @cached_property
     def _knots(self) -> FloatArray:
@@ -52,7 +52,7 @@ class Splines:
         """Functions, or a derivative of them, at points: array (point, function). Between elements the right one's."""
         count = self._knots.size - self.degree - 1
         values = BSpline(self._knots, np.eye(count), self.degree)(points, nu=derivative)
-        return np.asarray(values[:, self.vanishing : count - self.vanishing])
+        return np.asarray(values[:, self.vanishing_orders : count - self.vanishing_orders])
 
     @cached_property
     def _gauss(self) -> tuple[FloatArray, FloatArray]:
@@ -85,10 +85,10 @@ class StressFunction:
     z: Splines
 
     @cached_property
-    def _factorised(self) -> tuple[sparse.linalg.SuperLU, FloatArray]:
+    def _factorisation(self) -> tuple[sparse.linalg.SuperLU, FloatArray]:
         """Factors of the energy, and the scale of each function that makes its own energy 1."""
-        parts = {(i, j): sparse.kron(self.x.products(i), self.z.products(j)) for i, j in self._derivatives}
-        matrix = sum(weight * parts[pair] for pair, weight in self._derivatives.items())
+        products = {(i, j): sparse.kron(self.x.products(i), self.z.products(j)) for i, j in self._derivatives}
+        matrix = sum(weight * products[pair] for pair, weight in self._derivatives.items())
         scale = 1 / np.sqrt(matrix.diagonal())
         scaled = sparse.csc_array(sparse.diags_array(scale) @ matrix @ sparse.diags_array(scale))
         factor = splu(scaled, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
@@ -97,23 +97,23 @@ class StressFunction:
     @property
     def _derivatives(self) -> dict[tuple[int, int], float]:
         """Weight of the square of each derivative (along x, along z) in the energy."""
-        if self.x.vanishing == 2:
+        if self.x.vanishing_orders == 2:
             return {(2, 0): 1.0, (0, 2): 1.0, (1, 1): 2.0}
         return {(1, 0): 1.0, (0, 1): 1.0}
 
     def values(self, x: FloatArray, z: FloatArray) -> Factors:
         """Functions and their derivatives at positions: arrays (point, function)."""
-        orders = range(self.x.vanishing + 1)
+        orders = range(self.x.vanishing_orders + 1)
         return [self.x.values(x, order) for order in orders], [self.z.values(z, order) for order in orders]
 
     def integrals(self, x_edges: FloatArray, z_edges: FloatArray) -> Factors:
         """Integrals of the functions and their derivatives over cells: arrays (function, cell)."""
-        orders = range(self.x.vanishing + 1)
+        orders = range(self.x.vanishing_orders + 1)
         return [self.x.integrals(x_edges, order) for order in orders], [
             self.z.integrals(z_edges, order) for order in orders
         ]
 
     def solve(self, right: FloatArray) -> FloatArray:
         """Coefficients of least energy for right-hand sides: array (function, column)."""
-        factor, scale = self._factorised
+        factor, scale = self._factorisation
         return np.asarray(scale[:, None] * factor.solve(scale[:, None] * right))

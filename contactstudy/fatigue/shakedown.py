@@ -341,8 +341,8 @@ def shakedown_in_plane(stress: xr.Dataset, body: Body) -> xr.Dataset:
 def _stress_matrices(extent: tuple[float, float], x: FloatArray, z: FloatArray) -> list[sparse.csr_array]:
     """Stresses xx, zz and xz at the points per coefficient of Airy's function: arrays (point, coefficient)."""
     ends = [end if np.isfinite(end) else edge for end, edge in zip(extent, x[[0, -1]], strict=True)]
-    splines_x = Splines(_element_edges(x, *ends), DEGREE, CONTINUITY, vanishing=2)
-    splines_z = Splines(_element_edges(z, 0.0, z[-1]), DEGREE, CONTINUITY, vanishing=2)
+    splines_x = Splines(_element_edges(x, *ends), DEGREE, CONTINUITY, vanishing_orders=2)
+    splines_z = Splines(_element_edges(z, 0.0, z[-1]), DEGREE, CONTINUITY, vanishing_orders=2)
     lengths = 0.5 * (splines_x.edges[-1] - splines_x.edges[0]), 0.5 * splines_z.edges[-1]
     # A scale of about an element's length gives coefficients in units of stress.
     scales = [

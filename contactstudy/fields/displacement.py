@@ -10,8 +10,8 @@ from contactstudy.arrays.points import Points
 from contactstudy.arrays.variables import describe
 from contactstudy.bodies.models import Body
 from contactstudy.checks import FloatArray
-from contactstudy.fields.loads import UNIFORM, Loads, end_problem, prescribed_loads, superposed, unit_problem
-from contactstudy.fields.part import REFERENCE_LENGTHS, kernel_factor, reference_distance
+from contactstudy.fields.body_operators import REFERENCE_LENGTHS, kernel_factor, reference_distance
+from contactstudy.fields.loads import UNIFORM, Loads, end_problem, prescribed_loads, superpose, unit_problem
 from contactstudy.fields.positions import Positions, field_positions
 from contactstudy.kernels.field import displacement_influence, half_space_field, half_space_influence
 from contactstudy.kernels.load import Load
@@ -85,22 +85,22 @@ def displacement_under(
 
     def unit_fields(directions: tuple[Load, ...], cells: FloatArray) -> dict[Load, list[FloatArray]]:
         fields = {load: np.zeros((3, *(axis.size for axis in points))) for load in directions}
-        for part in body.terms:
-            length, reference = part.extent[1] - part.extent[0], reference_distance(part.extent)
-            from_ends: dict[Load, FloatArray] = {}
-            if part.freed and cells.any():
-                problem = end_problem(part.freed, material.poisson, cells, shape, grid, loads=directions)
-                (from_ends,) = end_fields(problem, DISPLACEMENT, [points], reference)
+        for body_part in body.terms:
+            length, reference = body_part.extent[1] - body_part.extent[0], reference_distance(body_part.extent)
+            end_terms: dict[Load, FloatArray] = {}
+            if body_part.freed and cells.any():
+                problem = end_problem(body_part.freed, material.poisson, cells, shape, grid, loads=directions)
+                (end_terms,) = end_fields(problem, DISPLACEMENT, [points], reference)
             for load, total in fields.items():
                 influence = displacement_influence(load, material.poisson, length, reference)
-                field = half_space_field(cells, influence, grid, points, extent=part.extent, shape=shape)
+                field = half_space_field(cells, influence, grid, points, extent=body_part.extent, shape=shape)
                 field = kernel_factor(material) * field
-                if load in from_ends:
-                    field += from_ends[load] / (2 * material.shear_modulus)
-                total += part.weight * field
+                if load in end_terms:
+                    field += end_terms[load] / (2 * material.shear_modulus)
+                total += body_part.weight * field
         return {load: [field] for load, field in fields.items()}
 
-    (displacement,) = superposed(loads, unit_fields)
+    (displacement,) = superpose(loads, unit_fields)
     return displacement
 
 

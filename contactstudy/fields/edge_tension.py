@@ -29,7 +29,7 @@ TERMS = 4  # terms of the Chebyshev series. Accuracy: the last one is part of th
 DISTANCES = np.array([0.35, 0.5, 0.7, 1.0])
 """Distances from the edge, over the half-width, at which the field of the cells is accurate to 1e-3. Accuracy."""
 
-FEWEST_CELLS = 8  # least number of loaded cells across a section, for edges accurate to a few hundredths of a cell
+MIN_CELLS = 8  # least number of loaded cells across a section, for edges accurate to a few hundredths of a cell
 
 
 class _Section(NamedTuple):
@@ -87,20 +87,26 @@ def edge_tension(result: xr.Dataset, x: Positions | None = None) -> xr.Dataset:
     traction = case["traction_y"].transpose("x", "y").values
     if not traction.any():
         raise InvalidInputError("result", "a contact without friction", "one in full sliding")
-    centres, line = case["x"].values, case["pressure"].transpose("x", "y").values.max(axis=1)
+    centres, maxima = case["x"].values, case["pressure"].transpose("x", "y").values.max(axis=1)
     if x is None:
-        half = centres.size // 2
-        columns = np.unique([int(line[:half].argmax()), half, half + int(line[half:].argmax())])
+        middle = centres.size // 2
+        columns = np.unique(
+            [
+                int(maxima[:middle].argmax()),
+                middle,
+                middle + int(maxima[middle:].argmax()),
+            ]
+        )
     else:
         columns = np.unique(np.abs(centres - np.atleast_1d(np.asarray(x, dtype=np.float64))[:, None]).argmin(axis=1))
     edges, sign = contact_edges(case), float(np.sign(traction.sum()))
-    relative = 0.0
+    relative_error = 0.0
     if "peak_pressure_error" in case and np.isfinite(float(case["peak_pressure"])):
-        relative = float(case["peak_pressure_error"] / case["peak_pressure"])
+        relative_error = float(case["peak_pressure_error"] / case["peak_pressure"])
     sections: dict[int, _Section] = {}
     for column in columns.tolist():
         limits = float(edges["y_left"][column]), float(edges["y_right"][column])
-        if np.count_nonzero(traction[column]) >= FEWEST_CELLS and np.isfinite(limits).all():
+        if np.count_nonzero(traction[column]) >= MIN_CELLS and np.isfinite(limits).all():
             sections[column] = _section(
                 sign * case["y"].values, sign * traction[column], sorted(sign * np.array(limits))
             )
@@ -129,7 +135,7 @@ def edge_tension(result: xr.Dataset, x: Positions | None = None) -> xr.Dataset:
         error = (
             abs(intercept - smooth[0])
             + 2 * abs(section.coefficients[-1])
-            + abs(tension) * (relative + EDGE_UNCERTAINTY * section.cell / section.half_width)
+            + abs(tension) * (relative_error + EDGE_UNCERTAINTY * section.cell / section.half_width)
         )
         rows.append((tension, float(error), sign * section.edge))
     names = ("edge_tension", "edge_tension_error", "trailing_edge")
@@ -156,8 +162,8 @@ def edge_tension_summary(dataset: xr.Dataset) -> xr.Dataset:
 def _section(y: FloatArray, traction: FloatArray, limits: list[float]) -> _Section:
     """Chebyshev series of the traction of a section along +y, by least squares of the means of its cells."""
     start, end = limits
-    half_width, middle, cell = 0.5 * (end - start), 0.5 * (start + end), abs(float(y[1] - y[0]))
-    points = (y[:, None] + cell * ((np.arange(40) + 0.5) / 40 - 0.5) - middle) / half_width
+    half_width, centre, cell = 0.5 * (end - start), 0.5 * (start + end), abs(float(y[1] - y[0]))
+    points = (y[:, None] + cell * ((np.arange(40) + 0.5) / 40 - 0.5) - centre) / half_width
     angles = np.arccos(np.clip(points, -1.0, 1.0))
     # sqrt(1 - t**2) U_n(t) = sin((n + 1) arccos t)
     means = np.stack([np.sin((n + 1) * angles).mean(axis=1) for n in range(TERMS)], axis=1)

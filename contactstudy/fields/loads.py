@@ -47,7 +47,7 @@ def sliding(pressure: FloatArray, friction: float | FloatArray) -> Loads:
     return loads | {Load.ALONG_Y: TopLoad(pressure, friction)} if friction else loads
 
 
-def superposed(
+def superpose(
     loads: Loads, unit_fields: Callable[[tuple[Load, ...], FloatArray], Mapping[Load, Sequence[FloatArray]]]
 ) -> list[FloatArray]:
     """Sum the fields of all loads, from one call of `unit_fields` for all loads with the same distribution."""
@@ -55,11 +55,11 @@ def superposed(
     for load, (cells, _) in loads.items():
         groups.setdefault(ArrayKey(cells), []).append(load)
     fields: dict[Load, Sequence[FloatArray]] = {}
-    for shared, directions in groups.items():
-        fields |= unit_fields(tuple(directions), shared.values)
-    first, *remaining = loads
+    for distribution, directions in groups.items():
+        fields |= unit_fields(tuple(directions), distribution.values)
+    first, *other_loads = loads
     totals = [np.multiply(loads[first].factor, field, order="K") for field in fields[first]]
-    for load in remaining:
+    for load in other_loads:
         for total, field in zip(totals, fields[load], strict=True):
             total += loads[load].factor * field
     return totals
@@ -68,7 +68,7 @@ def superposed(
 def end_problem(
     freed: FreeEnds, poisson: float, cells: FloatArray, shape: FloatArray | None, grid: Grid, loads: tuple[Load, ...]
 ) -> EndProblem:
-    """Problem of the ends that a load on cells leaves, on the fine cells of a `shape` inside them."""
+    """Problem of the free ends under a load on cells, on the fine cells of a `shape` inside the cells."""
     finest = finest_cell(grid)
     if shape is not None:
         cells, grid = FineCells(load=cells, shape=shape, grid=grid, extent=(0.0, freed.length)).end_load()
@@ -86,7 +86,7 @@ def end_problem(
 
 def unit_problem(freed: FreeEnds, poisson: float, grid: Grid, load: Load) -> EndProblem:
     """Problem of the ends for unit loads on the cells along x."""
-    (problem,) = end_problem(freed, poisson, np.zeros(grid.shape), None, grid, loads=(load,)).alike()
+    (problem,) = end_problem(freed, poisson, np.zeros(grid.shape), None, grid, loads=(load,)).split_by_mirror_sign()
     return problem
 
 
@@ -124,10 +124,10 @@ def prescribed_loads(
         ("traction_y", Load.ALONG_Y, traction_y),
     ):
         if traction is not None:
-            loads[load] = TopLoad(_on_cells(name, traction, grid, body))
+            loads[load] = TopLoad(_values_on_cells(name, traction, grid, body))
     shape = None
     if not isinstance(inside_cells, str):
-        shape = _on_cells("inside_cells", inside_cells, grid, body)
+        shape = _values_on_cells("inside_cells", inside_cells, grid, body)
         if not shape.any():
             raise InvalidInputError(
                 "inside_cells", "zero everywhere", f"a pressure with a nonzero value, or {UNIFORM!r}"
@@ -137,7 +137,7 @@ def prescribed_loads(
     return PrescribedLoads(grid, loads, (pressure["x"].values, pressure["y"].values), shape)
 
 
-def _on_cells(name: str, traction: xr.DataArray, grid: Grid, body: Body) -> FloatArray:
+def _values_on_cells(name: str, traction: xr.DataArray, grid: Grid, body: Body) -> FloatArray:
     """Values of a load that lies on the cells of the pressure."""
     values, cells = labelled_cells(name, in_si(name, traction, "Pa"), extent=body.extent)
     tolerance = SPACING_TOLERANCE * min(float(grid.widths.min()), grid.dy)

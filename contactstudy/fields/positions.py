@@ -18,10 +18,10 @@ from contactstudy.bodies.models import Body, Extent
 from contactstudy.checks import BoolArray, FloatArray
 from contactstudy.errors import InvalidInputError
 
-FARTHEST = 1e4  # largest distance of a position over the size of load and body: the work grows with it along y
+MAX_DISTANCE = 1e4  # largest distance of a position over the size of load and body: the work grows with it along y
 GROWTH = 0.5  # growth of the default spacing of stresses with the distance from a feature
-WIDEST = 0.2  # default spacing at a free end and below the top, over the Hertz half-width
-DEEPEST = 5.0  # largest default depth, over the Hertz half-width
+MAX_SPACING = 0.2  # default spacing at a free end and below the top, over the Hertz half-width
+MAX_DEFAULT_DEPTH = 5.0  # largest default depth, over the Hertz half-width
 
 Positions = Sequence[float] | npt.ArrayLike
 Labels = tuple[FloatArray, FloatArray]
@@ -47,9 +47,9 @@ def field_positions(
 ) -> FieldPositions:
     """Positions of a field in a body."""
     body.check_span(grid)
-    chosen = {"x": grid.x if x is None else x, "y": grid.y if y is None else y, "z": z}
-    points = Points(*(checks.coordinates(axis, numbers_in_si(axis, values, "m")) for axis, values in chosen.items()))
-    points = points._replace(x=_inside_body(body, points.x, grid))
+    axes = {"x": grid.x if x is None else x, "y": grid.y if y is None else y, "z": z}
+    points = Points(*(checks.coordinates(axis, numbers_in_si(axis, values, "m")) for axis, values in axes.items()))
+    points = points._replace(x=_snap_into_body(body, points.x, grid))
     if (points.z < 0).any():
         raise InvalidInputError("z", float(points.z.min()), "not negative (metres below the top)")
     low, high = body.extent
@@ -57,15 +57,15 @@ def field_positions(
     size = max(size, high - low) if np.isfinite([low, high]).all() else size
     for name, values in zip("xyz", points, strict=True):
         farthest = float(values[np.abs(values).argmax()])
-        if abs(farthest) > FARTHEST * size:
+        if abs(farthest) > MAX_DISTANCE * size:
             raise InvalidInputError(
-                name, farthest, f"within {FARTHEST:g} times the size of load and body, {FARTHEST * size:g} m"
+                name, farthest, f"within {MAX_DISTANCE:g} times the size of load and body, {MAX_DISTANCE * size:g} m"
             )
     label_x, label_y = labels or (grid.x, grid.y)
     return FieldPositions(points, label_x if x is None else points.x, label_y if y is None else points.y)
 
 
-def _inside_body(body: Body, x: FloatArray, grid: Grid) -> FloatArray:
+def _snap_into_body(body: Body, x: FloatArray, grid: Grid) -> FloatArray:
     """Positions, moved to an end within rounding; raise for any outside."""
     low, high = body.extent
     rounding = 1e-9 * grid.dx
@@ -75,30 +75,34 @@ def _inside_body(body: Body, x: FloatArray, grid: Grid) -> FloatArray:
     return np.where(x < low + rounding, low, np.where(x > high - rounding, high, x))
 
 
-def default_columns(grid: Grid, extent: Extent, pressed: BoolArray, half_width: float) -> FloatArray:
+def default_columns(grid: Grid, extent: Extent, loaded: BoolArray, half_width: float) -> FloatArray:
     """Positions along x from one end of the body, or of the grid, to the other."""
     # The spacing equals two widths of a pressed column at its centre, and a fifth of the half-width at the ends.
     ends = [end if np.isfinite(end) else edge for end, edge in zip(extent, grid.x_range, strict=True)]
-    spacings = np.append(2 * grid.widths[pressed], np.full(2, WIDEST * half_width))
-    return _graded(ends, np.append(grid.x[pressed], ends), spacings)
+    spacings = np.append(2 * grid.widths[loaded], np.full(2, MAX_SPACING * half_width))
+    return _grade_positions(ends, np.append(grid.x[loaded], ends), spacings)
 
 
 def default_depths(half_width: float, depth: float) -> FloatArray:
     """Depths from 0 to five half-widths, narrow from the top to the depth of the largest stress."""
     # The depth is rounded to a power of the square root of 2, so that similar cases share their positions.
     shallow = 2.0 ** (0.5 * round(2 * np.log2(max(depth / half_width, 0.01)))) if np.isfinite(depth) else 0.5
-    narrow, fixed = min(0.2 * shallow, WIDEST), {0.0, min(shallow, 1.0), DEEPEST}
-    depths = _graded(sorted(fixed), np.array([0.0, shallow, 0.5, 1.0]), np.array([narrow, narrow, WIDEST, WIDEST]))
+    narrow, fixed = min(0.2 * shallow, MAX_SPACING), {0.0, min(shallow, 1.0), MAX_DEFAULT_DEPTH}
+    depths = _grade_positions(
+        sorted(fixed),
+        np.array([0.0, shallow, 0.5, 1.0]),
+        np.array([narrow, narrow, MAX_SPACING, MAX_SPACING]),
+    )
     return half_width * depths
 
 
-def _graded(fixed: Sequence[float], centres: FloatArray, spacings: FloatArray) -> FloatArray:
+def _grade_positions(fixed: Sequence[float], centres: FloatArray, spacings: FloatArray) -> FloatArray:
     """Positions between increasing fixed ones; the spacing grows with the distance from each centre."""
-    parts = []
+    sections = []
     for start, stop in itertools.pairwise(fixed):
         steps = [0.0]
         while steps[-1] < stop - start:
             distance = np.abs(start + steps[-1] - centres)
             steps.append(steps[-1] + float((spacings + GROWTH * distance).min()))
-        parts.append(start + np.array(steps[:-1]) * ((stop - start) / steps[-1]))
-    return np.append(np.concatenate(parts), fixed[-1])
+        sections.append(start + np.array(steps[:-1]) * ((stop - start) / steps[-1]))
+    return np.append(np.concatenate(sections), fixed[-1])

@@ -14,10 +14,10 @@ from contactstudy.arrays.variables import STRESSES, describe
 from contactstudy.bodies.models import Body
 from contactstudy.cache import ArrayKey, cached
 from contactstudy.checks import FloatArray
-from contactstudy.fields.largest import Largest, largest_stress, largest_with_points, place_search
-from contactstudy.fields.loads import UNIFORM, Loads, end_problem, prescribed_loads, superposed, unit_problem
-from contactstudy.fields.part import reference_distance
+from contactstudy.fields.body_operators import reference_distance
+from contactstudy.fields.loads import UNIFORM, Loads, end_problem, prescribed_loads, superpose, unit_problem
 from contactstudy.fields.positions import FieldPositions, Positions, field_positions
+from contactstudy.fields.stress_maximum import StressMaximum, find_stress_maximum, include_points, place_search
 from contactstudy.kernels.field import half_space_field, stress_influence
 from contactstudy.kernels.load import Load
 from contactstudy.overlapping.field import UnitFields, end_fields, unit_fields
@@ -96,18 +96,18 @@ def stress_dataset(
 ) -> xr.Dataset:
     """Stresses under `loads` on the cells of `grid`, labelled."""
     (stresses,) = stresses_at(body, loads, grid, [positions.points], shape)
-    return _labelled(body, grid, stresses, positions)
+    return _label_stresses(body, grid, stresses, positions)
 
 
-def _labelled(body: Body, grid: Grid, stresses: FloatArray, positions: FieldPositions) -> xr.Dataset:
+def _label_stresses(body: Body, grid: Grid, stresses: FloatArray, positions: FieldPositions) -> xr.Dataset:
     """Label stresses (6, x, y, z)."""
-    _free_edge(body, grid, stresses, positions.points)
+    _free_edges(body, grid, stresses, positions.points)
     fields = positions.dataset({name: stresses[i] for i, name in enumerate(STRESSES)})
     fields["von_mises"] = von_mises(fields)
     return describe(fields, "stresses under a prescribed pressure")
 
 
-def _free_edge(body: Body, grid: Grid, stresses: FloatArray, points: Points) -> None:
+def _free_edges(body: Body, grid: Grid, stresses: FloatArray, points: Points) -> None:
     """Set the traction on the edges between top and free ends to zero, where both auxiliary bodies have a logarithm."""
     if all(part.freed for part in body.terms):
         on_end, on_top = np.isin(points.x, body.extent), points.z < CORNER_OFFSET * grid.dy
@@ -127,7 +127,7 @@ def stresses_at(
     def unit_fields(directions: tuple[Load, ...], cells: FloatArray) -> dict[Load, list[FloatArray]]:
         return _unit_stress(body, grid, directions, ArrayKey(cells), keys, shape=shape_cells)
 
-    return superposed(loads, unit_fields)
+    return superpose(loads, unit_fields)
 
 
 @cached("stress fields")
@@ -144,21 +144,21 @@ def _unit_stress(
     axes = [Points(*(axis.values for axis in key)) for key in point_sets]
     fields: dict[Load, list[FloatArray]] = {}
     for part in body.terms:
-        from_ends: list[dict[Load, FloatArray]] = [{} for _ in axes]
+        end_terms: list[dict[Load, FloatArray]] = [{} for _ in axes]
         if part.freed and cells.values.any():
             problem = end_problem(part.freed, poisson, cells.values, shape_cells, grid, loads=loads)
-            from_ends = end_fields(problem, STRESS, axes, reference_distance(part.extent))
+            end_terms = end_fields(problem, STRESS, axes, reference_distance(part.extent))
         for load in loads:
-            added = []
-            for key, points, by_load in zip(point_sets, axes, from_ends, strict=True):
+            terms = []
+            for key, points, by_load in zip(point_sets, axes, end_terms, strict=True):
                 field = _mirrored_stress(load, poisson, part.extent, grid, cells, points=key, shape=shape)
                 if load in by_load:
                     # The two auxiliary bodies leave no traction on the top, by construction.
                     for component in (2, 4, 5):  # eq. (1)
                         by_load[load][component][..., points.z == 0] = 0.0
                     field = np.add(by_load[load], field, out=by_load[load])
-                added.append(field if part.weight == 1 else part.weight * field)
-            fields[load] = [a + b for a, b in zip(fields[load], added, strict=True)] if load in fields else added
+                terms.append(field if part.weight == 1 else part.weight * field)
+            fields[load] = [a + b for a, b in zip(fields[load], terms, strict=True)] if load in fields else terms
     return fields
 
 
@@ -172,7 +172,7 @@ def _mirrored_stress(
     points: tuple[ArrayKey, ...],
     shape: ArrayKey | None,
 ) -> FloatArray:
-    """Stresses (6, x, y, z) in the half-space; the stresses under a pressure are shared by all frictions."""
+    """Stresses (6, x, y, z) in the half-space; all frictions share the stresses under a pressure."""
     axes = Points(*(axis.values for axis in points))
     values = None if shape is None else shape.values
     influence = stress_influence(load, poisson)
@@ -183,42 +183,42 @@ def contact_stresses(
     body: Body,
     loads: Loads,
     grid: Grid,
-    positions: Callable[[Largest], FieldPositions],
+    positions: Callable[[StressMaximum], FieldPositions],
     on_ends: tuple[FloatArray, FloatArray],
-) -> tuple[xr.Dataset, float, Largest]:
+) -> tuple[xr.Dataset, float, StressMaximum]:
     """Stresses at positions that may depend on the largest stress, residual on the ends, and the largest stress."""
-    ends, search = _ends(body), place_search(body, loads, grid)
+    end_positions, search = _end_positions(body), place_search(body, loads, grid)
     pressure = loads[Load.NORMAL].values
 
     def stress(points: Points) -> FloatArray:
         return stresses_at(body, loads, grid, [points], pressure)[0]
 
-    point_sets = [*search.samples, *([Points(ends, *on_ends)] if ends.size else [])]
+    point_sets = [*search.samples, *([Points(end_positions, *on_ends)] if end_positions.size else [])]
     stresses = stresses_at(body, loads, grid, point_sets, pressure)
-    residual = _residual(loads, stresses[-1]) if ends.size else 0.0
-    largest = largest_stress(search, stresses[: len(search.samples)], stress)
-    located = positions(largest)
-    points = located.points
+    residual = _traction_residual(loads, stresses[-1]) if end_positions.size else 0.0
+    largest = find_stress_maximum(search, stresses[: len(search.samples)], stress)
+    chosen = positions(largest)
+    points = chosen.points
     field = stress(points)
-    largest = largest_with_points(largest, points, field, search, stress)
-    return _labelled(body, grid, field, located), residual, largest
+    largest = include_points(largest, points, field, search, stress)
+    return _label_stresses(body, grid, field, chosen), residual, largest
 
 
 def end_traction_residual(body: Body, loads: Loads, grid: Grid, y: FloatArray, z: FloatArray) -> float:
     """Largest traction on the free ends at `y` and `z` over the peak pressure; 0 for a body without ends."""
-    ends = _ends(body)
+    ends = _end_positions(body)
     if not ends.size:
         return 0.0
     (stresses,) = stresses_at(body, loads, grid, [Points(ends, y, z)], loads[Load.NORMAL].values)
-    return _residual(loads, stresses)
+    return _traction_residual(loads, stresses)
 
 
-def _ends(body: Body) -> FloatArray:
+def _end_positions(body: Body) -> FloatArray:
     """Positions of the free ends, metres."""
     return np.array([end for end in body.extent if np.isfinite(end)])
 
 
-def _residual(loads: Loads, stresses: FloatArray) -> float:
+def _traction_residual(loads: Loads, stresses: FloatArray) -> float:
     """Largest traction among stresses (6, ...) on the ends, over the peak pressure."""
     peak = float(loads[Load.NORMAL].values.max())
     return float(np.sqrt((stresses[[0, 3, 4]] ** 2).sum(axis=0)).max() / peak) if peak else 0.0  # eq. (2)
@@ -236,32 +236,32 @@ class StressOperator(LinearOperator):  # type: ignore[misc]
         unique, indices = np.unique(np.round(distances / grid.dy, 9), return_inverse=True)
         self._distance = indices.reshape(distances.shape)
         self._half_space = np.zeros((grid.cells_x, 6, points.x.size, unique.size, points.z.size))
-        self._ends: list[UnitFields] = []
+        self._end_fields: list[UnitFields] = []
         poisson = body.material.poisson
         for part in body.terms:
             for cell in range(grid.cells_x):
                 unit = np.zeros(grid.shape)
                 unit[cell, 0] = part.weight
-                lattice = points._replace(y=unique * grid.dy)
+                distance_points = points._replace(y=unique * grid.dy)
                 self._half_space[cell] += half_space_field(
-                    unit, stress_influence(load, poisson), grid, lattice, extent=part.extent
+                    unit, stress_influence(load, poisson), grid, distance_points, extent=part.extent
                 )
             if part.freed:
                 problem = unit_problem(part.freed, poisson, grid, load)
                 for amplitudes, filters in unit_fields(problem, STRESS, points, reference_distance(part.extent)):
                     amplitudes[[2, 4, 5]] *= (points.z != 0) * part.weight
                     amplitudes[[0, 1, 3]] *= part.weight
-                    self._ends.append(UnitFields(amplitudes, filters))
+                    self._end_fields.append(UnitFields(amplitudes, filters))
         self._mask = np.ones(self._shape)
-        _free_edge(body, grid, self._mask, points)
+        _free_edges(body, grid, self._mask, points)
         super().__init__(np.float64, (int(np.prod(self._shape)), grid.cells_x * grid.cells_y))
 
     def _matvec(self, vector: FloatArray) -> FloatArray:
         cells = vector.reshape(self._grid.shape)
         stresses = np.zeros(self._shape)
-        for number, distance in enumerate(self._distance):
-            stresses[:, :, number] = np.tensordot(cells, self._half_space[:, :, :, distance], ([0, 1], [0, 3]))
-        for amplitudes, filters in self._ends:
+        for index, distance in enumerate(self._distance):
+            stresses[:, :, index] = np.tensordot(cells, self._half_space[:, :, :, distance], ([0, 1], [0, 3]))
+        for amplitudes, filters in self._end_fields:
             filtered = np.einsum("ij,cnjy->cniy", cells, filters, optimize=True)
             stresses += np.einsum("cxniz,cniy->cxyz", amplitudes, filtered, optimize=True)
         return (self._mask * stresses).ravel()
@@ -269,10 +269,10 @@ class StressOperator(LinearOperator):  # type: ignore[misc]
     def _rmatvec(self, vector: FloatArray) -> FloatArray:
         stresses = self._mask * vector.reshape(self._shape)
         cells = np.zeros(self._grid.shape)
-        for number, distance in enumerate(self._distance):
+        for index, distance in enumerate(self._distance):
             kernel = self._half_space[:, :, :, distance]
-            cells += np.tensordot(kernel, stresses[:, :, number], ([1, 2, 4], [0, 1, 2]))
-        for amplitudes, filters in self._ends:
+            cells += np.tensordot(kernel, stresses[:, :, index], ([1, 2, 4], [0, 1, 2]))
+        for amplitudes, filters in self._end_fields:
             filtered = np.einsum("cxniz,cxyz->cniy", amplitudes, stresses, optimize=True)
             cells += np.einsum("cniy,cnjy->ij", filtered, filters, optimize=True)
         return cells.ravel()

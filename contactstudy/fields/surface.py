@@ -17,8 +17,8 @@ from contactstudy.bodies.models import Body
 from contactstudy.cache import cached
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
+from contactstudy.fields.body_operators import ColumnsOperator, UniformOperator, end_kernel_of, reference_distance
 from contactstudy.fields.loads import prescribed_loads
-from contactstudy.fields.part import ColumnsOperator, PartOperator, end_kernel_of, reference_distance
 from contactstudy.kernels.load import Load, Response
 from contactstudy.overlapping.quadrature import Resolution
 from contactstudy.threads import one_blas_thread
@@ -30,7 +30,7 @@ RESOLUTION = Resolution()  # quadrature settings of the free ends' part
 class SurfaceOperator:
     """Displacements of the top from pressure and traction, for one body and one grid."""
 
-    def __init__(self, body: Body, parts: Sequence[tuple[float, PartOperator | ColumnsOperator]]) -> None:
+    def __init__(self, body: Body, parts: Sequence[tuple[float, UniformOperator | ColumnsOperator]]) -> None:
         self.body, self._parts = body, parts
 
     @classmethod
@@ -45,20 +45,24 @@ class SurfaceOperator:
         """Build the operator from loads, the pressure first, to displacements in some directions."""
         # Between ends the cells begin at ``x = 0`` and span the body.
         body.check_span(grid)
-        kind = ColumnsOperator if grid.observes_means else PartOperator
+        operator_class = ColumnsOperator if grid.observes_means else UniformOperator
         responses = tuple(Response(direction, load) for direction in directions for load in loads)
-        parts = []
+        weighted_operators = []
         with one_blas_thread():
             for part in body.terms:
                 ends = end_kernel_of(part, body.material, grid, responses, resolution)
-                parts.append((part.weight, kind.of(body.material, part.extent, grid, responses, ends)))
-        return cls(body, parts)
+                weighted_operators.append(
+                    (part.weight, operator_class.of(body.material, part.extent, grid, responses, ends))
+                )
+        return cls(body, weighted_operators)
 
     def __call__(self, loads: Mapping[Load, FloatArray]) -> FloatArray:
-        """Sink the cells by `loads` (Pa): normal displacement (m), array (x, y)."""
-        return self.displaced(loads, (Load.NORMAL,))[Load.NORMAL]
+        """Displacement (m) of the cells along z under `loads` (Pa): array (x, y)."""
+        return self.compute_displacements(loads, (Load.NORMAL,))[Load.NORMAL]
 
-    def displaced(self, loads: Mapping[Load, FloatArray], directions: Sequence[Load]) -> dict[Load, FloatArray]:
+    def compute_displacements(
+        self, loads: Mapping[Load, FloatArray], directions: Sequence[Load]
+    ) -> dict[Load, FloatArray]:
         """Displacements (m) of the cells in some `directions` under `loads` (Pa): arrays (x, y)."""
         weight, first = self._parts[0]
         displacements = first(loads, directions)
@@ -76,8 +80,8 @@ class SurfaceOperator:
     @cached_property
     def coarse(self) -> SurfaceOperator:
         """Approximate operator on cells of twice the size, for an initial guess."""
-        parts = [(weight, part.coarsened(self.body.material)) for weight, part in self._parts]
-        return SurfaceOperator(self.body, parts)
+        weighted_operators = [(weight, part.coarsen(self.body.material)) for weight, part in self._parts]
+        return SurfaceOperator(self.body, weighted_operators)
 
     @property
     def grid(self) -> Grid:
@@ -93,7 +97,7 @@ class SurfaceOperator:
 def surface_operator(
     body: Body, grid: Grid, loads: tuple[Load, ...] = NORMAL, directions: tuple[Load, ...] = NORMAL
 ) -> SurfaceOperator:
-    """Return the operator of a body; all cases with the same one share it, whatever depth they refer to."""
+    """Return the operator of a body, shared by all cases of the body at any reference depth."""
     return _cached_operator(replace(body, reference_depth=None), grid, loads, directions)
 
 
@@ -171,28 +175,28 @@ def surface_displacement(
     """
     prescribed = prescribed_loads(body, pressure, friction, traction_x, traction_y)
     axes = {name[-1]: direction for name, direction in DISPLACEMENTS.items()}
-    chosen = "z" if components is None else components
-    directions = tuple(dict.fromkeys(axes[checks.known_name("components", axis, axes)] for axis in chosen))
+    selected = "z" if components is None else components
+    directions = tuple(dict.fromkeys(axes[checks.known_name("components", axis, axes)] for axis in selected))
     if not directions:
         raise InvalidInputError("components", components, "at least one of x, y and z, or None")
     grid, loads = prescribed.grid, prescribed.loads
     operator = surface_operator(body, grid, tuple(loads), directions=directions)
     with one_blas_thread():
-        displaced = operator.displaced({load: top.values for load, top in loads.items()}, directions)
+        displacements = operator.compute_displacements({load: top.values for load, top in loads.items()}, directions)
     attributes: dict[str, str | float] = {}
     if np.isfinite(operator.reference):
         reference = "zero at |y| = reference_distance (m) on the top"
         attributes = {"reference_distance": operator.reference, "reference": reference}
     coords = {"x": pressure["x"], "y": pressure["y"]}
-    labelled = {
-        name: name_array(name, xr.DataArray(displaced[direction], coords, dims=("x", "y"))).assign_attrs(attributes)
+    fields = {
+        name: name_array(name, xr.DataArray(displacements[direction], coords, dims=("x", "y"))).assign_attrs(attributes)
         for name, direction in DISPLACEMENTS.items()
-        if direction in displaced
+        if direction in displacements
     }
     if components is None:
-        return labelled["displacement_z"]
-    return describe(xr.Dataset(labelled), "displacements of the top under a prescribed load")
+        return fields["displacement_z"]
+    return describe(xr.Dataset(fields), "displacements of the top under a prescribed load")
 
 
 DISPLACEMENTS = {"displacement_x": Load.ALONG_X, "displacement_y": Load.ALONG_Y, "displacement_z": Load.NORMAL}
-"""Variables of the top's displacement."""
+"""Variables of the surface displacement."""

@@ -26,15 +26,15 @@ def even_spectrum(kernel: FloatArray) -> FloatArray:
 def odd_spectrum(kernel: FloatArray) -> FloatArray:
     """Spectrum along y, without its factor i, of a kernel that is odd in y, given at offsets 0 .. N (last axis)."""
     spectrum = np.zeros_like(kernel)
-    if kernel.shape[-1] > 2:  # an odd kernel on a single cell is nothing
+    if kernel.shape[-1] > 2:  # an odd kernel on a single cell vanishes
         spectrum[..., 1:-1] = -fft.dst(kernel[..., 1:-1], type=1, axis=-1)
     return spectrum
 
 
 def spectrum_matrices(cells: int) -> tuple[FloatArray, FloatArray]:
     """Matrices (offset, wavenumber) of `even_spectrum` and of `odd_spectrum`, at offsets 0 .. `cells`."""
-    numbers = np.arange(cells + 1)
-    phase = np.pi * np.outer(numbers, numbers) / cells
+    indices = np.arange(cells + 1)
+    phase = np.pi * np.outer(indices, indices) / cells
     ends = np.full(cells + 1, 2.0)
     ends[[0, -1]] = 1.0
     return ends[:, None] * np.cos(phase), np.where(ends == 1.0, 0.0, -2.0)[:, None] * np.sin(phase)
@@ -52,17 +52,17 @@ class _Buffers:
         options = {"threads": 1, "flags": ("FFTW_ESTIMATE",)}
         # The padding rows stay zero.
         rows = slice(0, cells_x)
-        self.to_lateral = pyfftw.FFTW(self.real[rows], self.lateral[rows], axes=(1,), **options)
-        self.from_lateral = pyfftw.FFTW(
+        self.forward_y = pyfftw.FFTW(self.real[rows], self.lateral[rows], axes=(1,), **options)
+        self.inverse_y = pyfftw.FFTW(
             self.lateral[rows], self.real[rows], axes=(1,), direction="FFTW_BACKWARD", **options
         )
         if mirror:
             view, kind = self.lateral.view(np.float64), "REDFT" if mirror > 0 else "RODFT"
-            self.along = pyfftw.FFTW(view, view, axes=(0,), direction=f"FFTW_{kind}10", **options)
-            self.back = pyfftw.FFTW(view, view, axes=(0,), direction=f"FFTW_{kind}01", **options)
+            self.forward_x = pyfftw.FFTW(view, view, axes=(0,), direction=f"FFTW_{kind}10", **options)
+            self.inverse_x = pyfftw.FFTW(view, view, axes=(0,), direction=f"FFTW_{kind}01", **options)
         else:
-            self.along = pyfftw.FFTW(self.lateral, self.lateral, axes=(0,), **options)
-            self.back = pyfftw.FFTW(self.lateral, self.lateral, axes=(0,), direction="FFTW_BACKWARD", **options)
+            self.forward_x = pyfftw.FFTW(self.lateral, self.lateral, axes=(0,), **options)
+            self.inverse_x = pyfftw.FFTW(self.lateral, self.lateral, axes=(0,), direction="FFTW_BACKWARD", **options)
         self.real[:] = 0.0
 
 
@@ -76,7 +76,7 @@ class GridTransform:
 
     @property
     def _buffers(self) -> _Buffers:
-        """Buffers of this thread: operators are shared by all."""
+        """Buffers of this thread: all threads share the operators."""
         buffers: _Buffers | None = getattr(self._thread, "buffers", None)
         if buffers is None:
             buffers = _Buffers(self.cells_x, self.cells_y, self.padded_x, self.mirror)
@@ -89,13 +89,13 @@ class GridTransform:
         buffers.real[: self.cells_x, : self.cells_y] = values
         buffers.real[: self.cells_x, self.cells_y :] = 0.0
         buffers.lateral[self.cells_x :] = 0.0
-        buffers.to_lateral.execute()
+        buffers.forward_y.execute()
         return np.asarray(buffers.lateral[: self.cells_x])
 
     def transform_x(self) -> ComplexArray:
         """Transform the buffer of `transform_y` along x, in place: returns the buffer, to be multiplied in place."""
         buffers = self._buffers
-        buffers.along.execute()
+        buffers.forward_x.execute()
         return np.asarray(buffers.lateral)
 
     @property
@@ -111,10 +111,10 @@ class GridTransform:
     def invert(self, spectrum_correction: ComplexArray | None = None) -> FloatArray:
         """Cell values of the spectrum in the buffer, plus a correction (cell, wavenumber) transformed along y only."""
         buffers = self._buffers
-        buffers.back.execute()
+        buffers.inverse_x.execute()
         if spectrum_correction is not None:
             buffers.lateral[: self.cells_x] += spectrum_correction / (self._scale * 2 * self.cells_y)
-        buffers.from_lateral.execute()
+        buffers.inverse_y.execute()
         return np.asarray(buffers.real[: self.cells_x, : self.cells_y] * self._scale)
 
 
@@ -133,28 +133,28 @@ class CentredConvolution:
     shape: tuple[int, int]  # largest offsets of the kernel, in cells: half the periods of the transforms
     depth: float  # depth of the points
 
-    def fill(self, layer: FloatArray, transformed: ComplexArray, rows: IntArray, columns: IntArray) -> None:
-        """Fill a `layer` (component, row, column) from the load's transform, without odd wavenumbers if `symmetric`."""
+    def fill_layer(self, layer: FloatArray, transformed: ComplexArray, rows: IntArray, columns: IntArray) -> None:
+        """Fill a `layer` (component, row, column) from the load's transform, without odd wavenumbers if symmetric."""
         spectrum = _kernel_spectrum(self)
         odd_x = np.array(self.influence.sign_along_x) < 0
         beyond, near_rows = np.zeros(rows.size, bool), rows
-        if self.symmetric(transformed):
+        if self.is_symmetric(transformed):
             beyond, near_rows = rows >= transformed.shape[0], np.minimum(rows, self.shape[0] - 1 - rows)
-        distinct, where = np.unique(near_rows, return_inverse=True)
-        for odd, members in ((False, np.flatnonzero(~odd_x)), (True, np.flatnonzero(odd_x))):
-            if members.size:
-                along_y = self._back_along_x(spectrum[members], transformed, distinct, odd=odd)
-                along_y[np.array(self.influence.sign_along_y)[members] < 0] *= 1j
-                values = fft.irfft(along_y, 2 * self.shape[1], axis=2)[..., _span(columns)]
-                layer[members] = values[:, _span(where)]
+        distinct, row_indices = np.unique(near_rows, return_inverse=True)
+        for odd, components in ((False, np.flatnonzero(~odd_x)), (True, np.flatnonzero(odd_x))):
+            if components.size:
+                along_y = self._invert_along_x(spectrum[components], transformed, distinct, odd=odd)
+                along_y[np.array(self.influence.sign_along_y)[components] < 0] *= 1j
+                values = fft.irfft(along_y, 2 * self.shape[1], axis=2)[..., _as_slice(columns)]
+                layer[components] = values[:, _as_slice(row_indices)]
                 if odd and beyond.any():
-                    layer[np.ix_(members, beyond)] *= -1
+                    layer[np.ix_(components, beyond)] *= -1
 
-    def symmetric(self, transformed: ComplexArray) -> bool:
+    def is_symmetric(self, transformed: ComplexArray) -> bool:
         """Whether this is the transform of a load that is symmetric about mid-length."""
         return self.mirrored and transformed.shape[0] < self.shape[0]
 
-    def _back_along_x(
+    def _invert_along_x(
         self, spectrum: FloatArray, transformed: ComplexArray, rows: IntArray, *, odd: bool
     ) -> ComplexArray:
         """Transform along y (component, row, wavenumber) of components even or odd along x."""
@@ -167,7 +167,7 @@ class CentredConvolution:
                 product[:, : half + 1] *= 1j
                 product[:, half + 1 :] *= -1j
             return np.asarray(fft.ifft(product, axis=1, overwrite_x=True)[:, rows])
-        step = 2 if self.symmetric(transformed) else 1
+        step = 2 if self.is_symmetric(transformed) else 1
         if odd:
             product = np.zeros((spectrum.shape[0], *transformed.shape), np.complex128)
             np.multiply(-spectrum[:, step:half:step], transformed[1:], out=product[:, :-1])
@@ -175,10 +175,10 @@ class CentredConvolution:
         return np.asarray(fft.idct(spectrum[:, :half:step] * transformed, type=2, axis=1, overwrite_x=True)[:, rows])
 
 
-def _span(numbers: IntArray) -> slice | IntArray:
+def _as_slice(indices: IntArray) -> slice | IntArray:
     """Index of ascending numbers, as a slice if they are consecutive."""
-    consecutive = bool((np.diff(numbers) == 1).all())
-    return slice(numbers[0], numbers[-1] + 1) if consecutive and numbers[0] >= 0 else numbers
+    consecutive = bool((np.diff(indices) == 1).all())
+    return slice(indices[0], indices[-1] + 1) if consecutive and indices[0] >= 0 else indices
 
 
 @cached("half-space kernels")
@@ -189,10 +189,10 @@ def _kernel_spectrum(request: CentredConvolution) -> FloatArray:
     influence = request.influence
     spectrum = influence.kernel(x, y, request.dx, request.dy, length=request.length, depth=request.depth)
     for axis, signs in ((1, influence.sign_along_x), (2, influence.sign_along_y)):
-        moved = spectrum.swapaxes(axis, 2)
+        axis_last = spectrum.swapaxes(axis, 2)
         even = np.array(signs) > 0
-        transformed = np.empty_like(moved)
-        transformed[even], transformed[~even] = even_spectrum(moved[even]), odd_spectrum(moved[~even])
+        transformed = np.empty_like(axis_last)
+        transformed[even], transformed[~even] = even_spectrum(axis_last[even]), odd_spectrum(axis_last[~even])
         spectrum = transformed.swapaxes(axis, 2)
     return np.ascontiguousarray(spectrum)
 
@@ -223,14 +223,14 @@ def centred_field(
     along_y = fft.rfft(load, 2 * shape[1], axis=1)
     transformed = fft.dct(along_y, type=2, n=half, axis=0) if mirrored else fft.fft(along_y, 2 * half, axis=0)
     if mirrored and np.isfinite(length) and half % 2 == 0:
-        odd, most = np.abs(transformed[1::2]).max(), np.abs(transformed).max()
-        if odd <= NEGLIGIBLE * most:
+        odd_amplitude, max_amplitude = np.abs(transformed[1::2]).max(), np.abs(transformed).max()
+        if odd_amplitude <= NEGLIGIBLE * max_amplitude:
             # Equals the transform of the first half of the load, mirrored at mid-length.
             transformed = 0.5 * transformed[::2]
     field = np.empty((influence.components, rows.size, z.size, columns.size))
-    for number, depth in enumerate(z.tolist()):
+    for depth_index, depth in enumerate(z.tolist()):
         convolution = CentredConvolution(
             influence=influence, dx=cell[0], dy=cell[1], length=length, mirrored=mirrored, shape=shape, depth=depth
         )
-        convolution.fill(field[:, :, number], transformed, rows, columns)
+        convolution.fill_layer(field[:, :, depth_index], transformed, rows, columns)
     return field.swapaxes(2, 3)

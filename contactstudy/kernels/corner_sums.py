@@ -8,8 +8,8 @@ import numpy as np
 from scipy import fft
 
 from contactstudy.checks import BoolArray, ComplexArray, FloatArray, IntArray
-from contactstudy.kernels.fine_cells import NEIGHBOURS, coarsened
-from contactstudy.kernels.images import Influence, snapped
+from contactstudy.kernels.fine_cells import NEIGHBOURS, coarsen
+from contactstudy.kernels.images import Influence, snap_offsets
 from contactstudy.kernels.smooth_load import ShapedLoad
 
 OFFSET_TOLERANCE = 1e-6  # largest difference of equal offsets from the cell centre, over a cell. Accuracy.
@@ -47,10 +47,10 @@ class Layer:
 
     points: IntArray  # indices of the positions along y, and of the offsets between position and first corner
     offset_indices: IntArray
-    numbers: IntArray  # depths
+    depth_indices: IntArray  # depths
     corners: EvenOffsets  # offsets and depths of the corner functions
     edges: FloatArray | None  # edges along y of fine cells; None for the grid's cells
-    parts: int  # fine cells per cell of the layer; the cell carries their moments
+    fine_per_cell: int  # fine cells per cell of the layer; the cell carries their moments
 
     @classmethod
     def of(
@@ -61,32 +61,32 @@ class Layer:
         *,
         step: float,
         edges: FloatArray | None,
-        parts: int,
+        fine_per_cell: int,
     ) -> Layer:
         """Layer of points with equal offsets from the corners of cells of size `step`."""
-        # The cells of the points are counted from the first of the `edges`, or of `parts` grid cells if they are None.
-        count = parts if edges is None else (edges.size - 1) // parts
+        # The cells of the points are counted from the first of the `edges`, or of the grid cells if they are None.
+        count = fine_per_cell if edges is None else (edges.size - 1) // fine_per_cell
         cells = column.cells
         if edges is None:
-            parts = 1
-        elif parts > 1:
+            fine_per_cell = 1
+        elif fine_per_cell > 1:
             count, cells = count + 2 * NEIGHBOURS, cells + NEIGHBOURS
         lowest = int(cells.min()) - count
         offsets: FloatArray = column.offset + step * np.arange(lowest, int(cells.max()) + 1.0)
         return cls(
             points=column.points,
             offset_indices=cells - int(cells.min()),
-            numbers=numbers,
+            depth_indices=numbers,
             corners=EvenOffsets(offsets, z),
             edges=edges,
-            parts=parts,
+            fine_per_cell=fine_per_cell,
         )
 
     def loads(self, load: ShapedLoad) -> FloatArray:
         """Return loads of columns (column, y) on the cells of the layer."""
         assert self.edges is not None
         fine = load.equivalent_means(self.edges)
-        return fine if self.parts == 1 else np.ascontiguousarray(coarsened(fine.T, self.parts).T)
+        return fine if self.fine_per_cell == 1 else np.ascontiguousarray(coarsen(fine.T, self.fine_per_cell).T)
 
 
 def midpoint_cells(column: AlignedPoints, start: float, span: float, step: float) -> tuple[AlignedPoints, FloatArray]:
@@ -102,41 +102,43 @@ def midpoint_cells(column: AlignedPoints, start: float, span: float, step: float
 class Jumps:
     """Nonzero mixed jumps of a load at the edges along x: array (edge, corner), backwards along y."""
 
-    # For few points along y the jumps are `folded` onto the distinct distances of the corner functions: array (edge and
+    # For few points along y the jumps are folded onto the distinct distances of the corner functions: array (edge and
     # distance, point and parity).
 
     edges: FloatArray
     values: FloatArray
-    folded: FloatArray | None
+    folded_values: FloatArray | None
     size: int
-    least: float
+    min_width: float
 
     @classmethod
     def of(cls, edges: FloatArray, loads: FloatArray, layer: Layer) -> Jumps:
         """Jumps of `loads` (column, cell) for the points of a layer."""
-        least = float(np.diff(edges).min())
+        min_width = float(np.diff(edges).min())
         jumps = np.diff(np.diff(np.pad(loads, 1), axis=0), axis=1)
         loaded = jumps.any(axis=1)
         backwards, corners = jumps[loaded, ::-1], layer.corners
         size = fft.next_fast_len(jumps.shape[1] + int(layer.offset_indices.max()), real=True)
         folded = None
         if layer.offset_indices.size <= FEW_POINTS and corners.index is not None:
-            folded = np.stack([corners.folded(backwards, start) for start in layer.offset_indices.tolist()], axis=1)
+            folded = np.stack([corners.fold_jumps(backwards, start) for start in layer.offset_indices.tolist()], axis=1)
             folded = folded.reshape(-1, 2 * layer.offset_indices.size)
-        return cls(edges=edges[loaded], values=backwards, folded=folded, size=size, least=least)
+        return cls(edges=edges[loaded], values=backwards, folded_values=folded, size=size, min_width=min_width)
 
     def field(self, influence: Influence, corners: EvenOffsets, x: float, starts: IntArray) -> FloatArray:
         """Field (component, depth, point) at `x` of the corners from the offset indices `starts` on."""
-        distances = snapped(x - self.edges, self.least)
+        distances = snap_offsets(x - self.edges, self.min_width)
         step = max(1, BLOCK // max(1, distances.size * corners.along_y.size))
         spectrum = None if starts.size <= FEW_POINTS else fft.rfft(self.values, self.size, axis=1).conj()
-        parts = [
-            self._at_depths(influence, corners, corners.z[start : start + step], distances, starts, spectrum=spectrum)
+        fields = [
+            self._field_at_depths(
+                influence, corners, corners.z[start : start + step], distances, starts, spectrum=spectrum
+            )
             for start in range(0, corners.z.size, step)
         ]
-        return np.concatenate(parts, axis=1)
+        return np.concatenate(fields, axis=1)
 
-    def _at_depths(
+    def _field_at_depths(
         self,
         influence: Influence,
         corners: EvenOffsets,
@@ -149,8 +151,8 @@ class Jumps:
         values = influence.corner(distances[:, None], corners.along_y, z[:, None, None], influence.poisson)
         # A primitive is even where its kernel is odd, and odd where it is even.
         odd = np.array(influence.sign_along_y) > 0
-        if self.folded is not None:
-            sums = values.reshape(*values.shape[:2], -1) @ self.folded
+        if self.folded_values is not None:
+            sums = values.reshape(*values.shape[:2], -1) @ self.folded_values
             return np.where(odd[:, None, None], sums[..., 1::2], sums[..., ::2])
         values, count = corners.unfold(values, odd, self.size), self.values.shape[1]
         if spectrum is None:
@@ -168,15 +170,15 @@ class EvenOffsets:
     def __init__(self, offsets: FloatArray, z: FloatArray) -> None:
         self.z = z
         self.along_y = offsets
-        self._sides: FloatArray = np.ones(1)
+        self._signs: FloatArray = np.ones(1)
         self.index: IntArray | None = None
         if offsets.size > 1:
             step = offsets[1] - offsets[0]
-            twice = np.round(2 * offsets / step).astype(np.int64)
-            if np.abs(2 * offsets / step - twice).max() < OFFSET_TOLERANCE:
-                distances, self.index = np.unique(np.abs(twice), return_inverse=True)
+            half_steps = np.round(2 * offsets / step).astype(np.int64)
+            if np.abs(2 * offsets / step - half_steps).max() < OFFSET_TOLERANCE:
+                distances, self.index = np.unique(np.abs(half_steps), return_inverse=True)
                 self.along_y = 0.5 * step * distances
-                self._sides = np.where(twice < 0, -1.0, 1.0)
+                self._signs = np.where(half_steps < 0, -1.0, 1.0)
         self._folding_matrices: dict[tuple[int, int], FloatArray] = {}
 
     def unfold(self, values: FloatArray, odd: BoolArray, size: int) -> FloatArray:
@@ -185,7 +187,7 @@ class EvenOffsets:
         if self.index is None:
             unfolded[..., : values.shape[-1]] = values
             return unfolded
-        negative, count = int((self._sides < 0).sum()), self.index.size
+        negative, count = int((self._signs < 0).sum()), self.index.size
         # Copies of contiguous ranges are several times faster than an index array.
         if negative:
             mirrored = values[..., self.index[negative - 1] : self.index[0] + 1][..., ::-1]
@@ -195,7 +197,7 @@ class EvenOffsets:
             unfolded[..., negative:count] = values[..., self.index[negative] : self.index[-1] + 1]
         return unfolded
 
-    def folded(self, jumps: FloatArray, start: int) -> FloatArray:
+    def fold_jumps(self, jumps: FloatArray, start: int) -> FloatArray:
         """Jumps (edge, corner) from offset `start` on summed over both sides of 0: (edge and distance, parity)."""
         assert self.index is not None
         count = jumps.shape[1]
@@ -203,15 +205,15 @@ class EvenOffsets:
             window, corners = slice(start, start + count), np.arange(count)
             matrix = np.zeros((count, self.along_y.size, 2))
             matrix[corners, self.index[window], 0] = 1.0
-            matrix[corners, self.index[window], 1] = self._sides[window]
+            matrix[corners, self.index[window], 1] = self._signs[window]
             self._folding_matrices[start, count] = matrix.reshape(count, -1)
         return (jumps @ self._folding_matrices[start, count]).reshape(-1, 2)
 
 
 def merge_columns(edges: FloatArray, loads: FloatArray, x: float) -> tuple[FloatArray, FloatArray]:
     """Merge columns (column, y) that are narrow against their distance from `x` into two of equal force and moment."""
-    middles, widths = 0.5 * (edges[1:] + edges[:-1]), np.diff(edges)
-    distances = np.abs(middles - x)
+    midpoints, widths = 0.5 * (edges[1:] + edges[:-1]), np.diff(edges)
+    distances = np.abs(midpoints - x)
     rings = np.log(distances / distances.min()) // np.log1p(MERGED_WIDTH)
     starts = np.flatnonzero(np.append(True, np.diff(rings) != 0))
     if starts.size == loads.shape[0]:
@@ -221,8 +223,8 @@ def merge_columns(edges: FloatArray, loads: FloatArray, x: float) -> tuple[Float
     centres = first + 0.5 * size[:, 0]
     group = np.repeat(np.arange(starts.size), stops - starts)
     force = np.add.reduceat(loads * widths[:, None], starts, axis=0) / size
-    moment = np.add.reduceat(loads * (widths * (middles - centres[group]))[:, None], starts, axis=0) / size**2
-    halved = np.stack([np.ones(starts.size, bool), stops - starts > 1], axis=1)
-    difference = np.where(halved[:, 1:], 4 * moment, 0.0)
-    parts = np.stack([force - difference, force + difference], axis=1)[halved]
-    return np.append(np.stack([first, centres], axis=1)[halved], edges[-1]), parts
+    moment = np.add.reduceat(loads * (widths * (midpoints - centres[group]))[:, None], starts, axis=0) / size**2
+    is_halved = np.stack([np.ones(starts.size, bool), stops - starts > 1], axis=1)
+    difference = np.where(is_halved[:, 1:], 4 * moment, 0.0)
+    merged_loads = np.stack([force - difference, force + difference], axis=1)[is_halved]
+    return np.append(np.stack([first, centres], axis=1)[is_halved], edges[-1]), merged_loads

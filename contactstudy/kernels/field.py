@@ -1,4 +1,4 @@
-"""A field in the half-space, alone or with all mirrored loads, under a load on cells.
+"""A field in the half-space, with or without mirrored loads, under a load on cells.
 
 Points with equal offsets from uniform cells share one kernel and one fast convolution; the field at other points and
 under columns is a sum over the corners of cells. Deep points and far columns need only the moments of the cells.
@@ -17,8 +17,8 @@ from contactstudy.checks import FloatArray, IntArray
 from contactstudy.kernels.column_fields import columns_field
 from contactstudy.kernels.convolution import centred_field
 from contactstudy.kernels.corner_sums import OFFSET_TOLERANCE, AlignedPoints, aligned_points
-from contactstudy.kernels.fine_cells import FineCells, mirrored
-from contactstudy.kernels.images import CHEBYSHEV_X, FarImages, Influence, snapped
+from contactstudy.kernels.fine_cells import FineCells, mirror_edges
+from contactstudy.kernels.images import CHEBYSHEV_X, FarImages, Influence, snap_offsets
 from contactstudy.kernels.load import Load, Response
 from contactstudy.kernels.patch import DISPLACEMENT_CORNERS, STRESS_CORNERS
 from contactstudy.kernels.strips import row_level, strips_of
@@ -93,7 +93,7 @@ def _uniform_field(
 ) -> FloatArray:
     """Field at points with equal offsets from uniform cells, by fast convolution."""
     x, y, z = points
-    in_first, in_second = bool(np.isfinite(extent[0])), bool(np.isfinite(extent[1]))
+    mirrored_at_first, mirrored_at_second = bool(np.isfinite(extent[0])), bool(np.isfinite(extent[1]))
     loaded = np.flatnonzero(load.any(axis=0))
     first, last = int(loaded[0]), int(loaded[-1]) + 1
     load = load[:, first:last]
@@ -101,16 +101,16 @@ def _uniform_field(
     rows = aligned_points(x, float(grid.x[0]), grid.dx)
     on_centres = len(rows) == len(columns) == 1 and rows[0].offset == columns[0].offset == 0
     image = influence.load.sign_x
-    if on_centres and (in_first or not in_second) and (image > 0 or not in_first):
+    if on_centres and (mirrored_at_first or not mirrored_at_second) and (image > 0 or not mirrored_at_first):
         cell = (grid.dx, grid.dy)
         return centred_field(load, influence, cell, rows[0].cells, columns[0].cells, z=z, extent=extent)
     start = grid.x[0]
-    if in_first:  # the mirrored load precedes the load
+    if mirrored_at_first:  # the mirrored load precedes the load
         load = np.concatenate([image * load[::-1], load])
         start -= grid.cells_x * grid.dx
-    elif in_second:
+    elif mirrored_at_second:
         load = np.concatenate([load, image * load[::-1]])
-    length = extent[1] if in_first and in_second else np.inf
+    length = extent[1] if mirrored_at_first and mirrored_at_second else np.inf
     cells = _LoadedCells(load=load, influence=influence, dx=grid.dx, dy=grid.dy, length=length)
     field = np.empty((influence.components, x.size, z.size, y.size)).swapaxes(2, 3)
     for column in columns:
@@ -124,8 +124,10 @@ def half_space_influence(
 ) -> FloatArray:
     """Field (component, x, cell, y, z) of a unit load on each cell along x, with all images, at distances y from it."""
     image, columns, half = influence.load.sign_x, grid.cells_x, 0.5 * grid.dy
-    distances = snapped(points.x[:, None] - mirrored(grid.x_edges, extent), float(grid.widths.min()))[..., None]
-    far = FarImages(extent[1] - extent[0], image, CHEBYSHEV_X)
+    distances = snap_offsets(points.x[:, None] - mirror_edges(grid.x_edges, extent), float(grid.widths.min()))[
+        ..., None
+    ]
+    far_images = FarImages(extent[1] - extent[0], image, CHEBYSHEV_X)
     first = columns if np.isfinite(extent[0]) else 0
     layers = []
     for depth in points.z.tolist():
@@ -137,9 +139,11 @@ def half_space_influence(
             if start != first:
                 field += image * cells[:, :, start : start + columns][:, :, ::-1]
         if np.isfinite(extent).all():
-            kernel = far.influence(corner, points.y, grid.dy, np.array(influence.image_level))
-            loaded = far.means(grid.x_edges - extent[0]) * grid.widths
-            field += np.einsum("xp,cpqy,qi->cxiy", far.values(points.x - extent[0]), kernel, loaded, optimize=True)
+            kernel = far_images.influence(corner, points.y, grid.dy, np.array(influence.image_level))
+            loaded = far_images.means(grid.x_edges - extent[0]) * grid.widths
+            field += np.einsum(
+                "xp,cpqy,qi->cxiy", far_images.interpolation(points.x - extent[0]), kernel, loaded, optimize=True
+            )
         layers.append(field)
     return np.stack(layers, axis=-1)
 
@@ -172,14 +176,14 @@ def _aligned_field(
         shape = (fft.next_fast_len(size, real=True), fft.next_fast_len(y.size, real=True))
     x = cells.dx * np.arange(first, first + size) + offset
     spectrum = fft.rfft2(cells.load, shape)
-    at_x, at_y = (rows - first) % shape[0], column.cells - first_y
+    row_indices, column_indices = (rows - first) % shape[0], column.cells - first_y
 
-    def layer(depth: float) -> FloatArray:
+    def evaluate_layer(depth: float) -> FloatArray:
         kernel = _kernel_by_symmetry(cells, depth, x, y)
         values = fft.irfft2(fft.rfft2(kernel, shape, axes=(1, 2)) * spectrum, shape, axes=(1, 2))
-        return np.asarray(values[:, at_x[:, None], at_y[None, :]])
+        return np.asarray(values[:, row_indices[:, None], column_indices[None, :]])
 
-    return np.stack([layer(depth) for depth in z.tolist()], axis=-1)
+    return np.stack([evaluate_layer(depth) for depth in z.tolist()], axis=-1)
 
 
 def _kernel_by_symmetry(cells: _LoadedCells, depth: float, x: FloatArray, y: FloatArray) -> FloatArray:
@@ -189,13 +193,13 @@ def _kernel_by_symmetry(cells: _LoadedCells, depth: float, x: FloatArray, y: Flo
         return cells.influence.kernel(offsets, y, cells.dx, cells.dy, length=cells.length, depth=depth)
 
     steps = x / cells.dx
-    before = round(-float(steps[0]))
-    after = x.size - 1 - before
-    if abs(steps[0] + before) > OFFSET_TOLERANCE or min(before, after) < 1:
+    count_before = round(-float(steps[0]))
+    count_after = x.size - 1 - count_before
+    if abs(steps[0] + count_before) > OFFSET_TOLERANCE or min(count_before, count_after) < 1:
         return evaluate(x)
-    ahead = evaluate(cells.dx * np.arange(max(before, after) + 1.0))
-    behind = ahead[:, before:0:-1] * np.array(cells.influence.sign_along_x)[:, None, None]
-    return np.concatenate([behind, ahead[:, : after + 1]], axis=1)
+    kernel_ahead = evaluate(cells.dx * np.arange(max(count_before, count_after) + 1.0))
+    kernel_behind = kernel_ahead[:, count_before:0:-1] * np.array(cells.influence.sign_along_x)[:, None, None]
+    return np.concatenate([kernel_behind, kernel_ahead[:, : count_after + 1]], axis=1)
 
 
 STRESS_PARITIES = ((1, 1, 1, -1, -1, 1), (1, 1, 1, -1, 1, -1))

@@ -1,9 +1,9 @@
 """Finer cells under a load: its means near the top, its moments on whole cells below.
 
 Below a few cell sizes loads of equal moments cause equal fields. Nearer to the top the distribution inside the cells
-matters, and on the top itself a step of traction makes the stresses infinite. There the load has the shape of a given
+matters, and on the top a step of traction makes the stresses infinite. Near the top the load has the shape of a given
 pressure (smooth_load.py), averaged over finer cells with a point in the middle of each. Shape, cells and switches do
-not depend on the load, and the field is linear in it.
+not depend on the load, and the field is linear in the load.
 """
 
 from __future__ import annotations
@@ -17,16 +17,16 @@ from contactstudy.arrays.grid import Grid
 from contactstudy.checks import Array, BoolArray, FloatArray
 from contactstudy.kernels.smooth_load import MomentLoads, ShapedLoad, SmoothLoad, moment_loads
 
-REACH = 5.0
+MAX_REFINED_DEPTH = 5.0
 """Largest depth of refined cells, over the cell size along y and along x. Accuracy: below it whole cells with the
 moments of the fine cells are exact to 5e-6 of the pressure."""
 
 PARTS_X = 3  # fine cells per cell along x. Accuracy.
 PARTS_Y = 5  # fine cells per cell along y. Accuracy: 3 leave 6e-4 of the pressure on an end at a depth of 0.2 cells.
 NEIGHBOURS = 3  # whole cells on either side that carry the moments of a fine cell, up to the order 6. Accuracy.
-WIDE = 0.3  # least width of a resolved column, over its distance. Accuracy.
-FLAT = 3e-3  # neglected deviation of a shape from its mean in the cell, over the largest value. Accuracy.
-SPARE = 1  # cells beyond the loaded cells along y: a shape may extend into the first of them. Accuracy.
+MIN_RESOLVED_WIDTH = 0.3  # least width of a resolved column, over its distance. Accuracy.
+FLATNESS_TOLERANCE = 3e-3  # neglected deviation of a shape from its mean in the cell, over the largest value. Accuracy.
+SPARE_CELLS = 1  # cells beyond the loaded cells along y: a shape may extend into the first of them. Accuracy.
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -39,20 +39,20 @@ class FineCells:
     extent: tuple[float, float] = (-np.inf, np.inf)  # positions of the mirrors; infinite for none
     image: int = 1  # sign of the load's mirror image
     first: int = field(init=False)
-    """First cell along y in the grid, and number of cells: the cells of load and shape, and `SPARE` beyond."""
+    """First cell along y in the grid, and number of cells: the cells of load and shape, and `SPARE_CELLS` beyond."""
     count: int = field(init=False)
 
     def __post_init__(self) -> None:
         loaded = np.flatnonzero((self.load != 0).any(axis=0) | (self.shape != 0).any(axis=0))
-        object.__setattr__(self, "first", int(loaded[0]) - SPARE)
-        object.__setattr__(self, "count", int(loaded[-1]) + 1 + SPARE - self.first)
+        object.__setattr__(self, "first", int(loaded[0]) - SPARE_CELLS)
+        object.__setattr__(self, "count", int(loaded[-1]) + 1 + SPARE_CELLS - self.first)
 
     @cached_property
     def y_edges(self) -> FloatArray:
         """Edges of the cells along y, metres."""
         return np.asarray(self.grid.y_range[0] + self.grid.dy * np.arange(self.first, self.first + self.count + 1.0))
 
-    def _cropped(self, cells: FloatArray) -> FloatArray:
+    def _crop(self, cells: FloatArray) -> FloatArray:
         """Cells between `y_edges`: array (cell_x, y)."""
         stop = self.first + self.count
         inside = cells[:, max(self.first, 0) : stop]
@@ -61,7 +61,7 @@ class FineCells:
     @cached_property
     def cells(self) -> FloatArray:
         """Load on the cells between `y_edges`: array (cell_x, y)."""
-        return self._cropped(self.load)
+        return self._crop(self.load)
 
     @cached_property
     def shape_cells(self) -> FineCells:
@@ -76,67 +76,67 @@ class FineCells:
     @cached_property
     def _smooth(self) -> SmoothLoad:
         """Smooth shape along x: rows along y."""
-        return SmoothLoad.of(self._cropped(self.shape).T, self.grid.x_edges)
+        return SmoothLoad.of(self._crop(self.shape).T, self.grid.x_edges)
 
     @cached_property
     def _along_x(self) -> ShapedLoad:
-        return self._smooth.shaped(self.cells.T)
+        return self._smooth.shape_loads(self.cells.T)
 
     @cached_property
-    def split(self) -> BoolArray:
+    def is_split(self) -> BoolArray:
         """Columns that are split along x."""
         shape = self.shape_cells
-        edges = _split(self.grid.x_edges, np.ones(self.grid.cells_x, bool))
+        edges = _split_edges(self.grid.x_edges, np.ones(self.grid.cells_x, bool))
         fine = shape._along_x.means(edges).reshape(-1, self.grid.cells_x, PARTS_X)
         deviation = np.abs(fine - shape.cells.T[..., None]).max(axis=(0, 2))
-        uneven = deviation > FLAT * np.abs(self.shape).max()
+        uneven = deviation > FLATNESS_TOLERANCE * np.abs(self.shape).max()
         return np.full(uneven.shape, uneven.any()) if self.grid.uniform else uneven
 
     @cached_property
     def x_edges(self) -> FloatArray:
         """Edges of the fine cells along x and of their nearest images, metres."""
-        return mirrored(_split(self.grid.x_edges, self.split), self.extent)
+        return mirror_edges(_split_edges(self.grid.x_edges, self.is_split), self.extent)
 
     @cached_property
-    def steps(self) -> FloatArray:
+    def step_edges(self) -> FloatArray:
         """Edges of load and nearest images with a step of the shape along x, metres."""
         shape, image = self._smooth, self.image
         first, last = shape.sign * shape.first, shape.sign * shape.last
         low, high = (image * np.isfinite(end) for end in self.extent)
         before, behind = np.column_stack([low * first[:, 0], last]), np.column_stack([first, high * last[:, -1]])
-        edges = self.grid.x_edges[np.abs(behind - before).max(axis=0) > FLAT * np.abs(self.shape).max()]
+        edges = self.grid.x_edges[np.abs(behind - before).max(axis=0) > FLATNESS_TOLERANCE * np.abs(self.shape).max()]
         return np.concatenate([edges, *(2 * end - edges for end in self.extent if np.isfinite(end))])
 
     @cached_property
     def edges(self) -> FloatArray:
         """Edges of the cells along x and of their nearest images, metres."""
-        return mirrored(self.grid.x_edges, self.extent)
+        return mirror_edges(self.grid.x_edges, self.extent)
 
     @cached_property
-    def unsplit(self) -> BoolArray:
+    def is_unsplit(self) -> BoolArray:
         """Columns and nearest images that are never split."""
-        return ~with_images(self.split, 1, self.extent)
+        return ~add_images(self.is_split, 1, self.extent)
 
     @cached_property
     def x_moments(self) -> MomentLoads:
         """Loads with the moments along x of the cells and their nearest images: arrays (y, cell)."""
-        return moment_loads(self.edges, with_images(self._along_x.moments.T, -self.image, self.extent).T)
+        return moment_loads(self.edges, add_images(self._along_x.moments.T, -self.image, self.extent).T)
 
     @cached_property
     def far_load(self) -> FloatArray:
         """Load on the cells with forces and first moments of the smooth load: array (cell_x, y)."""
-        # Joined cells of the smooth load have other means than the cells.
+        # Coupled cells of the smooth load have other means than the cells.
         return np.asarray(self._along_x.cell_means.T + self._without_images(self.x_moments.total.T))
 
     def fine_depths(self, z: FloatArray) -> BoolArray:
         """Whether cells along y are refined at depths `z`."""
-        return np.asarray(z < REACH * self.grid.dy)
+        return np.asarray(z < MAX_REFINED_DEPTH * self.grid.dy)
 
     def fine_depths_x(self, z: FloatArray) -> BoolArray:
         """Whether uniform cells along x are refined at depths `z`."""
-        return np.asarray((z < REACH * self.grid.dx) & self.split.any())
+        return np.asarray((z < MAX_REFINED_DEPTH * self.grid.dx) & self.is_split.any())
 
-    def columns(self, edges: list[FloatArray]) -> FloatArray:
+    def column_means(self, edges: list[FloatArray]) -> FloatArray:
         """Means over the columns between the edges of each array: array (column, y); edges may lie among images."""
         low, high = self.extent
         x = np.concatenate(edges)
@@ -152,32 +152,32 @@ class FineCells:
         between[np.cumsum([array.size for array in edges[:-1]], dtype=int) - 1] = False
         return np.asarray(np.diff(integral, axis=1)[:, between].T / np.diff(x)[between, None])
 
-    def along_y(self, columns: FloatArray, shape: FloatArray) -> ShapedLoad:
+    def shape_along_y(self, columns: FloatArray, shape: FloatArray) -> ShapedLoad:
         """Load along y of columns (column, y) with a shape (column, y)."""
-        return SmoothLoad.of(shape, self.y_edges, spilling=True).shaped(columns)
+        return SmoothLoad.of(shape, self.y_edges, extends_beyond=True).shape_loads(columns)
 
     def coarse_load(self, *, fine_x: bool) -> tuple[FloatArray, Grid]:
         """Load on uniform cells with the moments of the fine cells: whole along y, fine or whole along x."""
         fine, grid = self.fine_load(0.0)
         margin = NEIGHBOURS * self.grid.dy
         y_range = (float(self.y_edges[0]) - margin, float(self.y_edges[-1]) + margin)
-        loads = coarsened(fine.T, PARTS_Y).T
+        loads = coarsen(fine.T, PARTS_Y).T
         cells = Grid.between(grid.x_edges, y_range, loads.shape[1])
         return (loads, cells) if fine_x else self.coarsen_x(loads, cells)
 
     def coarsen_x(self, loads: FloatArray, grid: Grid) -> tuple[FloatArray, Grid]:
         """Load on uniform cells, whole along x with the moments of the fine cells, and the grid."""
-        if not self.split.any():
+        if not self.is_split.any():
             return loads, grid
-        spare, ended = NEIGHBOURS * PARTS_X, np.isfinite(self.extent)
+        margin, has_end = NEIGHBOURS * PARTS_X, np.isfinite(self.extent)
         padded = loads
-        for end, pad in zip(ended, ((spare, 0), (0, spare)), strict=True):
-            more = np.pad(loads, (pad, (0, 0)), mode="symmetric" if end else "constant")
-            beyond = self.image * (more[: pad[0]] if pad[0] else more[more.shape[0] - pad[1] :])
+        for end, pad in zip(has_end, ((margin, 0), (0, margin)), strict=True):
+            extended = np.pad(loads, (pad, (0, 0)), mode="symmetric" if end else "constant")
+            beyond = self.image * (extended[: pad[0]] if pad[0] else extended[extended.shape[0] - pad[1] :])
             padded = np.concatenate([beyond, padded] if pad[0] else [padded, beyond])
         # The moments extend beyond the cells, or into the image at an end.
-        loads = coarsened(padded, PARTS_X)[NEIGHBOURS:-NEIGHBOURS]
-        step, (before, behind) = self.grid.dx, (0 if end else NEIGHBOURS for end in ended)
+        loads = coarsen(padded, PARTS_X)[NEIGHBOURS:-NEIGHBOURS]
+        step, (before, behind) = self.grid.dx, (0 if end else NEIGHBOURS for end in has_end)
         loads = loads[NEIGHBOURS - before : loads.shape[0] - NEIGHBOURS + behind]
         first, last = self.grid.x_range
         x_edges = np.linspace(first - before * step, last + behind * step, loads.shape[0] + 1)
@@ -185,45 +185,45 @@ class FineCells:
 
     def end_load(self) -> tuple[FloatArray, Grid]:
         """Load on cells that are split along y, and along x near the ends, over the whole grid."""
-        split = np.zeros(self.split.size, bool)
+        is_split = np.zeros(self.is_split.size, bool)
         for end in self.extent:
             if np.isfinite(end):
-                split[slice(*resolved_columns(self.grid.x_edges, end))] = True
-        split &= self.split
-        edges = _split(self.grid.x_edges, split)
-        unsplit = with_images(~split, 1, self.extent)
+                is_split[slice(*resolved_columns(self.grid.x_edges, end))] = True
+        is_split &= self.is_split
+        edges = _split_edges(self.grid.x_edges, is_split)
+        unsplit = add_images(~is_split, 1, self.extent)
 
-        def columns(cells: FineCells) -> FloatArray:
+        def column_means(cells: FineCells) -> FloatArray:
             # The neighbours of unsplit columns carry their moments.
             moments = MomentLoads(*(np.where(unsplit, loads, 0.0) for loads in cells.x_moments)).total.T
-            return cells.columns([edges]) + np.repeat(
-                self._without_images(moments), np.where(split, PARTS_X, 1), axis=0
+            return cells.column_means([edges]) + np.repeat(
+                self._without_images(moments), np.where(is_split, PARTS_X, 1), axis=0
             )
 
-        loaded, _ = self._refined(edges, columns(self), columns(self.shape_cells), 0.0)
+        loaded, _ = self._refine_along_y(edges, column_means(self), column_means(self.shape_cells), 0.0)
         # The positions on the faces follow from the grid, not from the loaded cells: the field is additive.
-        beyond = self.grid.cells_y + SPARE - (self.first + self.count)
-        cells = np.pad(loaded, ((0, 0), (PARTS_Y * (self.first + SPARE), PARTS_Y * beyond)))
+        beyond = self.grid.cells_y + SPARE_CELLS - (self.first + self.count)
+        cells = np.pad(loaded, ((0, 0), (PARTS_Y * (self.first + SPARE_CELLS), PARTS_Y * beyond)))
         low, high = self.grid.y_range
-        margin = SPARE * self.grid.dy
+        margin = SPARE_CELLS * self.grid.dy
         return cells, Grid.between(edges, (low - margin, high + margin), cells.shape[1])
 
     def fine_load(self, offset: float) -> tuple[FloatArray, Grid]:
         """Load on uniform cells split along y, and along x where the shape is not flat, and the grid."""
         # Points at the distance `offset` along y from the middles of cells are in the middles of fine cells.
-        edges = _split(self.grid.x_edges, self.split)
-        return self._refined(edges, self.columns([edges]), self.shape_cells.columns([edges]), offset)
+        edges = _split_edges(self.grid.x_edges, self.is_split)
+        return self._refine_along_y(edges, self.column_means([edges]), self.shape_cells.column_means([edges]), offset)
 
-    def _refined(
+    def _refine_along_y(
         self, edges: FloatArray, columns: FloatArray, shape: FloatArray, offset: float
     ) -> tuple[FloatArray, Grid]:
         """Load of columns on cells that are split along y, and the grid."""
         step = self.grid.dy / PARTS_Y
-        moved = offset - step * np.round(offset / step)
-        y_edges = self.y_edges[0] + moved + step * np.arange(PARTS_Y * self.count + 1.0)
-        if moved:  # one more cell covers the remaining part of the first or the last
-            y_edges = np.append(y_edges, y_edges[-1] + step) if moved < 0 else np.append(y_edges[0] - step, y_edges)
-        cells = self.along_y(columns, shape).equivalent_means(y_edges)
+        shift = offset - step * np.round(offset / step)
+        y_edges = self.y_edges[0] + shift + step * np.arange(PARTS_Y * self.count + 1.0)
+        if shift:  # one more cell covers the remaining part of the first or the last
+            y_edges = np.append(y_edges, y_edges[-1] + step) if shift < 0 else np.append(y_edges[0] - step, y_edges)
+        cells = self.shape_along_y(columns, shape).equivalent_means(y_edges)
         return cells, Grid.between(edges, (float(y_edges[0]), float(y_edges[-1])), cells.shape[1])
 
     def _without_images(self, columns: FloatArray) -> FloatArray:
@@ -232,10 +232,10 @@ class FineCells:
         return columns[images : images + self.grid.cells_x]
 
 
-def coarsened(fine: FloatArray, parts: int) -> FloatArray:
+def coarsen(fine: FloatArray, fine_per_cell: int) -> FloatArray:
     """Return loads with the moments of `fine` loads (fine cell, ...): (cell, ...), `NEIGHBOURS` more at either side."""
     cells = np.arange(-NEIGHBOURS, NEIGHBOURS + 1.0)
-    middles = (np.arange(parts) - 0.5 * (parts - 1)) / parts
+    midpoints = (np.arange(fine_per_cell) - 0.5 * (fine_per_cell - 1)) / fine_per_cell
     orders = np.arange(cells.size)[:, None]
 
     def moments(centres: FloatArray, width: float) -> FloatArray:
@@ -243,15 +243,15 @@ def coarsened(fine: FloatArray, parts: int) -> FloatArray:
             ((centres + 0.5 * width) ** (orders + 1) - (centres - 0.5 * width) ** (orders + 1)) / (width * (orders + 1))
         )
 
-    weights = np.linalg.solve(moments(cells, 1.0), moments(middles, 1 / parts)) / parts  # eq. (32c)
-    by_cell = fine.reshape(fine.shape[0] // parts, parts, *fine.shape[1:])
+    weights = np.linalg.solve(moments(cells, 1.0), moments(midpoints, 1 / fine_per_cell)) / fine_per_cell  # eq. (32c)
+    by_cell = fine.reshape(fine.shape[0] // fine_per_cell, fine_per_cell, *fine.shape[1:])
     loads = np.zeros((by_cell.shape[0] + 2 * NEIGHBOURS, *fine.shape[1:]))
-    for number, row in enumerate(weights):
-        loads[number : number + by_cell.shape[0]] += np.tensordot(by_cell, row, axes=(1, 0))
+    for index, row in enumerate(weights):
+        loads[index : index + by_cell.shape[0]] += np.tensordot(by_cell, row, axes=(1, 0))
     return loads
 
 
-def mirrored(edges: FloatArray, extent: tuple[float, float]) -> FloatArray:
+def mirror_edges(edges: FloatArray, extent: tuple[float, float]) -> FloatArray:
     """Edges of columns and their nearest images; each end of the body is an edge."""
     low, high = extent
     all_edges = [edges]
@@ -262,30 +262,30 @@ def mirrored(edges: FloatArray, extent: tuple[float, float]) -> FloatArray:
     return np.concatenate(all_edges)
 
 
-def with_images(columns: Array, image: int, extent: tuple[float, float]) -> Array:
+def add_images(columns: Array, image: int, extent: tuple[float, float]) -> Array:
     """Columns (column, y) between their nearest images."""
     low, high = (bool(np.isfinite(end)) for end in extent)
     images = [columns[::-1] if image > 0 else -columns[::-1]]
     return np.concatenate([*images[:low], columns, *images[:high]])
 
 
-def resolved_columns(edges: FloatArray, x: float, narrow: float = 0.0) -> tuple[int, int]:
+def resolved_columns(edges: FloatArray, x: float, min_width: float = 0.0) -> tuple[int, int]:
     """First column around `x` wider than a part of its distance, and the column behind the last; equal without any."""
-    # Columns up to the width `narrow` at either end are left out.
+    # Columns up to the width `min_width` at either end are left out.
     widths = np.diff(edges)
     distance = np.abs(0.5 * (edges[1:] + edges[:-1]) - x)
-    wide = widths > WIDE * distance
+    wide = widths > MIN_RESOLVED_WIDTH * distance
     nearest = int(distance.argmin())
     before, behind = np.flatnonzero(~wide[:nearest]), np.flatnonzero(~wide[nearest:])
     lowest = int(before[-1]) + 1 if before.size else 0
     highest = nearest + int(behind[0]) if behind.size else widths.size
-    resolved = np.flatnonzero(widths[lowest:highest] > narrow)
+    resolved = np.flatnonzero(widths[lowest:highest] > min_width)
     return (lowest + int(resolved[0]), lowest + int(resolved[-1]) + 1) if resolved.size else (nearest, nearest)
 
 
-def _split(edges: FloatArray, columns: BoolArray) -> FloatArray:
+def _split_edges(edges: FloatArray, split_columns: BoolArray) -> FloatArray:
     """Edges of columns, some of them split."""
     inner = edges[:-1, None] + np.diff(edges)[:, None] * np.arange(PARTS_X) / PARTS_X
     selected = np.ones(inner.shape, bool)
-    selected[:, 1:] = columns[:, None]
+    selected[:, 1:] = split_columns[:, None]
     return np.append(inner[selected], edges[-1])

@@ -1,4 +1,4 @@
-"""Influence of one cell on a uniform grid: alone, or with all its mirror images in two ends.
+"""Influence of one cell on a uniform grid, without or with all mirror images in two ends.
 
 Mirroring a load evenly in both ends repeats it with the period ``2 length`` along x. Their fields vary
 smoothly over one period: the nearest few images are evaluated at Chebyshev points and interpolated, and a uniformly
@@ -32,12 +32,12 @@ INTERPOLATION_ERROR = 1.5e-8  # relative error of the interpolated influence of 
 
 def cell_kernel(corner: CornerFunction, x: FloatArray, y: FloatArray, dx: float, dy: float) -> FloatArray:
     """Influence of a unit load on one cell at uniform offsets `x` and `y` from its centre: array (..., x, y)."""
-    x_edges = snapped(np.append(x - 0.5 * dx, x[-1] + 0.5 * dx), dx)
+    x_edges = snap_offsets(np.append(x - 0.5 * dx, x[-1] + 0.5 * dx), dx)
     y_edges = np.append(y - 0.5 * dy, y[-1] + 0.5 * dy)
     return np.diff(np.diff(corner(x_edges[:, None], y_edges[None, :]), axis=-1), axis=-2)
 
 
-def snapped(offsets: FloatArray, size: float) -> FloatArray:
+def snap_offsets(offsets: FloatArray, size: float) -> FloatArray:
     """Offsets from edges without rounding about 0, where a step of traction has a logarithm, cut off at 0."""
     return np.where(np.abs(offsets) < ROUNDING * size, 0.0, offsets)
 
@@ -62,26 +62,26 @@ def image_kernel(
     shifts: list[float] = []
     weights: list[float] = []
 
-    def add(start: float, stop: float, weight: float) -> None:
+    def add_spread_load(start: float, stop: float, weight: float) -> None:
         """Add a unit load per length between two distances on either side."""
         shifts.extend((start, stop, -stop, -start))
         weights.extend((-weight, weight, -weight, weight))
 
-    for number in range(NEAR_IMAGES):
-        add(nearest + period * number - 0.5 * dx, nearest + period * number + 0.5 * dx, 1.0)
-    add(spread_from, spread_to, dx / period)
+    for index in range(NEAR_IMAGES):
+        add_spread_load(nearest + period * index - 0.5 * dx, nearest + period * index + 0.5 * dx, 1.0)
+    add_spread_load(spread_from, spread_to, dx / period)
     step = 0.1 * length
     for side in (-step, step):
         slope = period / 24 * np.sign(side) / (2 * step)  # eq. (32e)
-        add(spread_from + side - 0.5 * dx, spread_from + side + 0.5 * dx, slope)
+        add_spread_load(spread_from + side - 0.5 * dx, spread_from + side + 0.5 * dx, slope)
 
-    nodes_x, to_x = _chebyshev_points(x, length + dx, CHEBYSHEV_X)
-    nodes_y, to_y = interpolation_points(y, length)
+    nodes_x, interpolation_x = _chebyshev_points(x, length + dx, CHEBYSHEV_X)
+    nodes_y, interpolation_y = interpolation_points(y, length)
     positions = np.add.outer(shifts, nodes_x)[..., None]
     values = corner(positions, nodes_y + 0.5 * dy) - corner(positions, nodes_y - 0.5 * dy)
     images = np.tensordot(weights, values, axes=(0, -3))
-    images = to_x @ images
-    return np.asarray(images if to_y is None else images @ to_y.T)
+    images = interpolation_x @ images
+    return np.asarray(images if interpolation_y is None else images @ interpolation_y.T)
 
 
 @dataclass(frozen=True)
@@ -100,7 +100,7 @@ class FarImages:
     def _coefficients(self) -> FloatArray:
         return np.asarray(np.linalg.inv(chebyshev.chebvander(self._nodes, self.count - 1)))
 
-    def values(self, x: FloatArray) -> FloatArray:
+    def interpolation(self, x: FloatArray) -> FloatArray:
         """Matrix (position, point) that interpolates to distances from the first end."""
         return np.asarray(chebyshev.chebvander(2 * x / self.length - 1, self.count - 1) @ self._coefficients)
 
@@ -147,7 +147,7 @@ def interpolation_points(
 
 
 def _chebyshev_points(values: FloatArray, span: float, count: int) -> tuple[FloatArray, FloatArray]:
-    """Chebyshev points of ``-span..span``, and the interpolation matrix to `values`."""
+    """Chebyshev points of ``-span..span``, and the interpolation matrix to `interpolation`."""
     points = chebyshev.chebpts1(count)
     matrix = np.linalg.solve(
         chebyshev.chebvander(points, count - 1).T, chebyshev.chebvander(values / span, count - 1).T
@@ -210,32 +210,32 @@ def far_images(
     """Field of all images of a load except the nearest; `first` is its first column along y in the grid."""
     low, length = extent[0], extent[1] - extent[0]
     images = FarImages(length, influence.load.sign_x, LOAD_POINTS)
-    gathered = (images.means(grid.x_edges - low) * grid.widths) @ load
-    before = max(-first, 0)
-    behind = max(first + load.shape[1] - grid.cells_y, 0)
-    centres = grid.y_range[0] + grid.dy * (np.arange(-before, grid.cells_y + behind) + 0.5)
-    (nodes_load, from_load), (nodes_y, to_y), (depths, to_z) = (
+    point_loads = (images.means(grid.x_edges - low) * grid.widths) @ load
+    count_before = max(-first, 0)
+    count_behind = max(first + load.shape[1] - grid.cells_y, 0)
+    centres = grid.y_range[0] + grid.dy * (np.arange(-count_before, grid.cells_y + count_behind) + 0.5)
+    (nodes_load, load_interpolation), (nodes_y, interpolation_y), (depths, interpolation_z) = (
         interpolation_points(axis, length) for axis in (centres, points.y, points.z)
     )
-    loaded = slice(before + first, before + first + load.shape[1])
-    if from_load is not None:
-        gathered = gathered @ from_load[loaded]
+    loaded = slice(count_before + first, count_before + first + load.shape[1])
+    if load_interpolation is not None:
+        point_loads = point_loads @ load_interpolation[loaded]
     else:
-        gathered = np.pad(gathered, ((0, 0), (loaded.start, centres.size - loaded.stop)))
+        point_loads = np.pad(point_loads, ((0, 0), (loaded.start, centres.size - loaded.stop)))
     digits = int(np.ceil(-np.log10(ROUNDING * grid.dy)))
-    offsets, number = np.unique(np.subtract.outer(nodes_y, nodes_load).round(digits), return_inverse=True)
-    number = number.reshape(nodes_y.size, nodes_load.size)
+    offsets, offset_indices = np.unique(np.subtract.outer(nodes_y, nodes_load).round(digits), return_inverse=True)
+    offset_indices = offset_indices.reshape(nodes_y.size, nodes_load.size)
     field = np.zeros((influence.components, LOAD_POINTS, nodes_y.size, depths.size))
     for depth in range(depths.size):
         corner = influence.corner_at(float(depths[depth]))
         kernel = images.influence(corner, offsets, grid.dy, np.array(influence.image_level))
         for row in range(nodes_y.size):
-            field[:, :, row, depth] = np.tensordot(kernel[..., number[row]], gathered, axes=2)
-    to_x = images.values(points.x - low)
-    field = np.tensordot(field, to_x, axes=(1, 1))
-    if to_z is not None:
-        field = np.tensordot(field, to_z, axes=(2, 1))
+            field[:, :, row, depth] = np.tensordot(kernel[..., offset_indices[row]], point_loads, axes=2)
+    interpolation_x = images.interpolation(points.x - low)
+    field = np.tensordot(field, interpolation_x, axes=(1, 1))
+    if interpolation_z is not None:
+        field = np.tensordot(field, interpolation_z, axes=(2, 1))
         field = field.swapaxes(2, 3)
-    if to_y is not None:
-        field = np.moveaxis(np.tensordot(field, to_y, axes=(1, 1)), 3, 1)
+    if interpolation_y is not None:
+        field = np.moveaxis(np.tensordot(field, interpolation_y, axes=(1, 1)), 3, 1)
     return np.asarray(field.transpose(0, 3, 1, 2))

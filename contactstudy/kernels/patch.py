@@ -39,7 +39,7 @@ def _angle(opposite: FloatArray, adjacent: FloatArray) -> FloatArray:
     return np.arctan(opposite / np.maximum(adjacent, TINY))
 
 
-def _stacked(*components: FloatArray) -> FloatArray:
+def _stack_components(*components: FloatArray) -> FloatArray:
     """Components over ``2 pi`` as one array (component, ...)."""
     stacked = np.empty((len(components), *components[0].shape))
     for target, values in zip(stacked, components, strict=True):
@@ -59,7 +59,7 @@ def normal_corner(x: FloatArray, y: FloatArray, z: FloatArray | float, poisson: 
     along_y = 1.0 / np.maximum(r * (yy + z * z), TINY)
     v_xx, v_yy = -xy * along_x, -xy * along_y
     free = 1 - 2 * poisson
-    return _stacked(
+    return _stack_components(
         2 * poisson * v_z - free * chi_xx - z * v_xx,
         2 * poisson * v_z - free * chi_yy - z * v_yy,
         v_z + z * (v_xx + v_yy),
@@ -77,7 +77,7 @@ def tangential_corner(x: FloatArray, y: FloatArray, z: FloatArray | float, poiss
     v_y = _inverse_sinh_ratio(x, yy + zz, r)
     along_y = 1.0 / np.maximum(r * (yy + zz), TINY)
     x_r, y_r, term = x / r_z, y / r_z, z * x * along_y
-    return _stacked(
+    return _stack_components(
         2 * poisson * (v_y - x_r) - z / safe_r * x_r,
         2 * v_y + 2 * poisson * x_r + z / safe_r * x_r - z * term,
         z * term,
@@ -132,11 +132,11 @@ def tangential_displacement_inside(x: FloatArray, y: FloatArray, z: FloatArray |
     )
 
 
-def _corners(normal: Corner, tangential: Corner, exchanged: list[int]) -> dict[Load, Corner]:
-    """Corner functions by the direction of the load; those along +x are those along +y with x and y `exchanged`."""
+def _corners(normal: Corner, tangential: Corner, exchanged_order: list[int]) -> dict[Load, Corner]:
+    """Corner functions by the direction of the load; those along +x are those along +y with x and y exchanged."""
 
     def axial(x: FloatArray, y: FloatArray, z: FloatArray | float, poisson: float) -> FloatArray:
-        return tangential(y, x, z, poisson)[exchanged]
+        return tangential(y, x, z, poisson)[exchanged_order]
 
     return {Load.NORMAL: normal, Load.ALONG_X: axial, Load.ALONG_Y: tangential}
 

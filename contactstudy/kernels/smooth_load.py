@@ -16,17 +16,17 @@ import numpy as np
 
 from contactstudy.checks import BoolArray, FloatArray, IntArray
 
-STEEPEST_FACE = 1.4
+MAX_FACE_RATIO = 1.4
 """Largest value on a face over the smaller neighbour: above 1.5 a cell cannot keep its force. Accuracy."""
 
-EQUAL = 0.999
-"""Least ratio of neighbouring loads that count as equal. Accuracy: on few cells the middle two differ by rounding,
-which must not determine the end of a load."""
+MIN_EQUAL_RATIO = 0.999
+"""Least ratio of equal neighbouring loads. Accuracy: on few cells the middle two differ by rounding, which must not
+determine the end of a load."""
 
-LEAST_NEIGHBOUR = 0.5
+MIN_NEIGHBOUR_RATIO = 0.5
 """Least mean of the shape in a neighbouring cell, over the mean in the cell, for a determined ratio. Accuracy."""
 
-NARROW = 0.5
+MIN_LOADED_FRACTION = 0.5
 """Loaded part of the last cell below which the last two cells share their force. Accuracy: the discrete contact puts
 too little force into a last cell with a smaller loaded part, and too much into its neighbour."""
 
@@ -43,50 +43,52 @@ class SmoothLoad:
     middle: FloatArray
     last: FloatArray
     knot: FloatArray  # (row, cell): position of the knot in the cell, from 0 to 1
-    joined: BoolArray  # (row, cell): cells that exchange force with the next cell of their row
+    coupled_to_next: BoolArray  # (row, cell): cells that exchange force with the next cell of their row
 
     @classmethod
-    def of(cls, cells: FloatArray, edges: FloatArray, *, spilling: bool = False) -> SmoothLoad:
-        """Smooth functions through the loads `cells` (row, cell); `spilling`: half a cell further."""
+    def of(cls, cells: FloatArray, edges: FloatArray, *, extends_beyond: bool = False) -> SmoothLoad:
+        """Smooth functions through the loads `cells` (row, cell); `extends_beyond`: half a cell further."""
         loads, widths = np.abs(cells), np.diff(edges)
         sign = np.sign(cells)
         rows = loads.shape[0]
         # The load is zero on faces where the sign changes.
         squared = loads**2
-        between = (squared[:, :-1] * widths[1:] + squared[:, 1:] * widths[:-1]) / (widths[1:] + widths[:-1])
-        least = np.minimum(loads[:, :-1], loads[:, 1:])
+        face_squares = (squared[:, :-1] * widths[1:] + squared[:, 1:] * widths[:-1]) / (widths[1:] + widths[:-1])
+        smaller = np.minimum(loads[:, :-1], loads[:, 1:])
         equal_signs = sign[:, :-1] == sign[:, 1:]
         faces = np.zeros((rows, widths.size + 1))
-        faces[:, 1:-1] = np.where(equal_signs, np.minimum(np.sqrt(between), STEEPEST_FACE * least), 0.0)
+        faces[:, 1:-1] = np.where(equal_signs, np.minimum(np.sqrt(face_squares), MAX_FACE_RATIO * smaller), 0.0)
         first, last = faces[:, :-1].copy(), faces[:, 1:].copy()
         middle, knot = np.zeros(loads.shape), np.full(loads.shape, 0.5)
-        fixed, joined = np.zeros(loads.shape, bool), np.zeros(loads.shape, bool)
-        forwards = _Row(
+        fixed, coupled_to_next = np.zeros(loads.shape, bool), np.zeros(loads.shape, bool)
+        forwards = _DirectedRows(
             loads=loads, sign=sign, widths=widths, first=first, middle=middle, last=last, knot=knot, fixed=fixed
         )
-        for cell_row, cell in forwards.shape_ends(spilling=spilling):
-            joined[cell_row, cell] = True
-        backwards = forwards.reversed()
+        for cell_row, cell in forwards.shape_ends(extends_beyond=extends_beyond):
+            coupled_to_next[cell_row, cell] = True
+        backwards = forwards.reverse()
         np.subtract(1.0, knot, out=knot)
-        for cell_row, cell in backwards.shape_ends(spilling=spilling):
-            joined[cell_row, widths.size - 2 - cell] = True
+        for cell_row, cell in backwards.shape_ends(extends_beyond=extends_beyond):
+            coupled_to_next[cell_row, widths.size - 2 - cell] = True
         np.subtract(1.0, knot, out=knot)
         free = ~fixed & (loads > 0)
-        middle[free] = _middle(loads[free], first[free], last[free])
-        return cls(edges=edges, sign=sign, first=first, middle=middle, last=last, knot=knot, joined=joined)
+        middle[free] = _solve_knot_value(loads[free], first[free], last[free])
+        return cls(
+            edges=edges, sign=sign, first=first, middle=middle, last=last, knot=knot, coupled_to_next=coupled_to_next
+        )
 
     @property
     def cell_means(self) -> FloatArray:
         """Mean in each cell: array (row, cell)."""
         return self.sign * (
-            self.knot * _mean(self.first, self.middle) + (1 - self.knot) * _mean(self.middle, self.last)
+            self.knot * _mean_of_root(self.first, self.middle) + (1 - self.knot) * _mean_of_root(self.middle, self.last)
         )
 
-    def shaped(self, cells: FloatArray) -> ShapedLoad:
+    def shape_loads(self, cells: FloatArray) -> ShapedLoad:
         """Return loads `cells` (row, cell) of this shape: the shape times a ratio that is linear in each cell."""
-        # Where the shape is 0, the load equals the ratio. Each cell keeps its force; joined cells keep their sum.
+        # Where the shape is 0, the load equals the ratio. Each cell keeps its force; coupled cells keep their sum.
         widths, (rows, count) = np.diff(self.edges), cells.shape
-        force, moment, _ = self.moments_in(np.arange(count), self.edges[1:])
+        force, moment, _ = self.moments_up_to(np.arange(count), self.edges[1:])
         empty = force == 0
         force, moment = np.where(empty, widths, force), np.where(empty, 0.5 * widths**2, moment)
         sign, first, middle, last = (
@@ -94,41 +96,45 @@ class SmoothLoad:
         )
         shape = replace(self, sign=sign, first=first, middle=middle, last=last)
         total, centroid = cells * widths, self.edges[:-1] + moment / force
-        # Joined cells form a group with one ratio; other groups contain one cell.
-        before = np.pad(self.joined[:, :-1], ((0, 0), (1, 0)))
+        # Coupled cells form a group with one ratio; other groups contain one cell.
+        before = np.pad(self.coupled_to_next[:, :-1], ((0, 0), (1, 0)))
         start = np.maximum.accumulate(np.where(before, 0, np.arange(count)), axis=1)
-        stop = np.minimum.accumulate(np.where(self.joined, count, np.arange(count))[:, ::-1], axis=1)[:, ::-1]
-        if self.joined.any():
+        stop = np.minimum.accumulate(np.where(self.coupled_to_next, count, np.arange(count))[:, ::-1], axis=1)[:, ::-1]
+        if self.coupled_to_next.any():
             moment = force * centroid
             total, force, moment = (_group_sums(values, start) for values in (total, force, moment))
             centroid = moment / force
         ratio = total / force
         mean = np.abs(force / (self.edges[1:][stop] - self.edges[:-1][start]))
-        distances, rises = [], []
+        distances, ratio_changes = [], []
         row = np.arange(rows)[:, None]
         for neighbour, exists in (
             (np.maximum(start - 1, 0), start > 0),
             (np.minimum(stop + 1, count - 1), stop < count - 1),
         ):
             # A neighbour with a small mean determines its ratio badly.
-            valid = exists & ~empty & ~empty[row, neighbour] & (mean[row, neighbour] > LEAST_NEIGHBOUR * mean)
+            valid = exists & ~empty & ~empty[row, neighbour] & (mean[row, neighbour] > MIN_NEIGHBOUR_RATIO * mean)
             distances.append(np.where(valid, centroid[row, neighbour] - centroid, 0.0))
-            rises.append(ratio[row, neighbour] - ratio)
+            ratio_changes.append(ratio[row, neighbour] - ratio)
         # The slope of the parabola through the ratios of both neighbours; with one neighbour the ratio is constant.
-        (back, ahead), (fall, rise) = distances, rises
-        product = np.where((back < 0) & (ahead > 0), back * ahead * (ahead - back), np.inf)
-        slope = (fall * ahead**2 - rise * back**2) / product
+        (distance_back, distance_ahead), (first_change, last_change) = distances, ratio_changes
+        product = np.where(
+            (distance_back < 0) & (distance_ahead > 0),
+            distance_back * distance_ahead * (distance_ahead - distance_back),
+            np.inf,
+        )
+        slope = (first_change * distance_ahead**2 - last_change * distance_back**2) / product
         return ShapedLoad(shape, ratio + slope * (self.edges[:-1] - centroid), slope)
 
-    def moments_in(self, cell: IntArray, x: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    def moments_up_to(self, cell: IntArray, x: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Force, first and second moment between the start of each `cell` and `x`, about the start: arrays (row, x)."""
         width = np.diff(self.edges)[cell]
-        part = np.clip((x - self.edges[cell]) / width, 0.0, 1.0)
+        fraction = np.clip((x - self.edges[cell]) / width, 0.0, 1.0)
         first, middle, last, knot, sign = (
             values[:, cell] for values in (self.first, self.middle, self.last, self.knot, self.sign)
         )
-        before = _moments(first, middle, np.minimum(part, knot), knot)
-        force, moment, second = _moments(middle, last, np.maximum(part - knot, 0.0), 1 - knot)
+        before = _moments_of_root(first, middle, np.minimum(fraction, knot), knot)
+        force, moment, second = _moments_of_root(middle, last, np.maximum(fraction - knot, 0.0), 1 - knot)
         second += knot * (2 * moment + knot * force)
         moment += knot * force
         return (
@@ -155,11 +161,11 @@ class ShapedLoad:
     def _cell_moments(self) -> tuple[FloatArray, FloatArray]:
         """Force and first moment about its start of each cell: arrays (row, cell)."""
         cell = np.arange(self.edges.size - 1)
-        return self._moments_in(cell, self.edges[1:])
+        return self._moments_up_to(cell, self.edges[1:])
 
-    def _moments_in(self, cell: IntArray, x: FloatArray) -> tuple[FloatArray, FloatArray]:
+    def _moments_up_to(self, cell: IntArray, x: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Force and first moment between the start of each `cell` and `x`, about the start: arrays (row, x)."""
-        force, moment, second = self.shape.moments_in(cell, x)
+        force, moment, second = self.shape.moments_up_to(cell, x)
         ratio, slope = self.ratio[:, cell], self.slope[:, cell]
         return ratio * force + slope * moment, ratio * moment + slope * second
 
@@ -178,7 +184,7 @@ class ShapedLoad:
         """Integral of the load up to the positions: array (row, x)."""
         cell = np.clip(np.searchsorted(self.edges, x, side="right") - 1, 0, self.edges.size - 2)
         before = np.pad(np.cumsum(self._cell_moments[0], axis=1), ((0, 0), (1, 0)))
-        return np.asarray(before[:, cell] + self._moments_in(cell, x)[0])
+        return np.asarray(before[:, cell] + self._moments_up_to(cell, x)[0])
 
     def means(self, edges: FloatArray) -> FloatArray:
         """Means between other edges, metres: array (row, cell)."""
@@ -186,22 +192,22 @@ class ShapedLoad:
 
     def equivalent_means(self, edges: FloatArray) -> FloatArray:
         """Return loads on cells between other edges, with forces and first moments of the load: array (row, cell)."""
-        inner = self.edges[(self.edges > edges[0]) & (self.edges < edges[-1])]
-        points = np.union1d(edges, inner)
-        middles = 0.5 * (points[1:] + points[:-1])
-        cell = np.clip(np.searchsorted(self.edges, middles, side="right") - 1, 0, self.edges.size - 2)
+        inner_edges = self.edges[(self.edges > edges[0]) & (self.edges < edges[-1])]
+        points = np.union1d(edges, inner_edges)
+        midpoints = 0.5 * (points[1:] + points[:-1])
+        cell = np.clip(np.searchsorted(self.edges, midpoints, side="right") - 1, 0, self.edges.size - 2)
         # Differences of sums over all cells would lose digits.
-        upto, start = self._moments_in(cell, points[1:]), self._moments_in(cell[:1], points[:1])
+        sums_to_points, sums_to_start = self._moments_up_to(cell, points[1:]), self._moments_up_to(cell[:1], points[:1])
         cell_starts = np.append(True, np.diff(cell) > 0)
-        piece = np.clip(np.searchsorted(edges, middles, side="right") - 1, 0, edges.size - 2)
-        first = np.flatnonzero(np.append(True, np.diff(piece) > 0))
+        cell_of_point = np.clip(np.searchsorted(edges, midpoints, side="right") - 1, 0, edges.size - 2)
+        first = np.flatnonzero(np.append(True, np.diff(cell_of_point) > 0))
         force, moment = (
             sums - np.where(cell_starts, 0.0, np.concatenate([initial, sums[:, :-1]], axis=1))
-            for sums, initial in zip(upto, start, strict=True)
+            for sums, initial in zip(sums_to_points, sums_to_start, strict=True)
         )
-        force[:, 0] -= start[0][:, 0]
-        moment[:, 0] -= start[1][:, 0]
-        moment -= (0.5 * (edges[1:] + edges[:-1])[piece] - self.edges[cell]) * force
+        force[:, 0] -= sums_to_start[0][:, 0]
+        moment[:, 0] -= sums_to_start[1][:, 0]
+        moment -= (0.5 * (edges[1:] + edges[:-1])[cell_of_point] - self.edges[cell]) * force
         force, moment = (np.add.reduceat(values, first, axis=1) for values in (force, moment))
         return force / np.diff(edges) + moment_loads(edges, moment).total
 
@@ -236,19 +242,19 @@ def moment_loads(edges: FloatArray, moments: FloatArray) -> MomentLoads:
     spacings = 0.5 * (widths[1:] + widths[:-1])
     # The first and the last cell have one neighbour.
     ahead, back = np.append(spacings, np.inf), np.append(np.inf, spacings)
-    share = np.ones(widths.size)
-    share[1:-1] = back[1:-1] / (ahead[1:-1] + back[1:-1])
-    behind = moments * share / ahead  # eq. (32d)
-    share = np.ones(widths.size)
-    share[1:-1] = ahead[1:-1] / (ahead[1:-1] + back[1:-1])
-    before = -moments * share / back
+    weight = np.ones(widths.size)
+    weight[1:-1] = back[1:-1] / (ahead[1:-1] + back[1:-1])
+    behind = moments * weight / ahead  # eq. (32d)
+    weight = np.ones(widths.size)
+    weight[1:-1] = ahead[1:-1] / (ahead[1:-1] + back[1:-1])
+    before = -moments * weight / back
     return MomentLoads(
         before / np.append(1.0, widths[:-1]), -(before + behind) / widths, behind / np.append(widths[1:], 1.0)
     )
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class _Row:
+class _DirectedRows:
     """Rows of cells in one direction; their loads end at the last loaded cells."""
 
     loads: FloatArray
@@ -260,12 +266,12 @@ class _Row:
     knot: FloatArray
     fixed: BoolArray
 
-    def reversed(self) -> _Row:
+    def reverse(self) -> _DirectedRows:
         """Return the same arrays in the opposite direction."""
-        flipped = {name: values[..., ::-1] for name, values in vars(self).items()}
-        return _Row(**{**flipped, "first": flipped["last"], "last": flipped["first"]})
+        reversed_arrays = {name: values[..., ::-1] for name, values in vars(self).items()}
+        return _DirectedRows(**{**reversed_arrays, "first": reversed_arrays["last"], "last": reversed_arrays["first"]})
 
-    def shape_ends(self, *, spilling: bool) -> list[tuple[IntArray, IntArray]]:
+    def shape_ends(self, *, extends_beyond: bool) -> list[tuple[IntArray, IntArray]]:
         """Shape the last loaded cells; return rows and cells that exchange force with the next cell."""
         loads, sign = self.loads, self.sign
         loaded = loads > 0
@@ -275,15 +281,17 @@ class _Row:
         end_load = loads[row, cell]
         self.last[row, cell] = end_load
 
-        def previous(steps: int) -> FloatArray:
+        def previous_loads(steps: int) -> FloatArray:
             """Return loads of the cells some steps before; 0 for another sign."""
             index = np.maximum(cell - steps, 0)
             values = np.where(sign[row, index] == sign[row, cell], loads[row, index], 0.0)
             return np.where(cell >= steps, values, 0.0)
 
-        load_1, load_2, load_3 = previous(1), previous(2), previous(3)
+        load_1, load_2, load_3 = previous_loads(1), previous_loads(2), previous_loads(3)
         face, width = self._face(cell, load_1, load_2, 1), self.widths[cell]
-        falling = np.flatnonzero((load_2 > EQUAL * load_1) & (load_1 > end_load / EQUAL) & (face > 0))
+        falling = np.flatnonzero(
+            (load_2 > MIN_EQUAL_RATIO * load_1) & (load_1 > end_load / MIN_EQUAL_RATIO) & (face > 0)
+        )
         row, cell = row[falling], cell[falling]
         end_load, load_1, load_2, load_3, face, width = (
             values[falling] for values in (end_load, load_1, load_2, load_3, face, width)
@@ -291,46 +299,46 @@ class _Row:
         self.first[row, cell] = face
         self.last[row, cell - 1] = face
         # The square falls linearly from the face to zero; the force determines the distance over the width.
-        reach = 1.5 * end_load / face  # eq. (32b)
-        inside = reach <= 1
+        length_ratio = 1.5 * end_load / face  # eq. (32b)
+        inside = length_ratio <= 1
         index = row[inside], cell[inside]
-        self.knot[index], self.middle[index], self.last[index], self.fixed[index] = reach[inside], 0.0, 0.0, True
+        self.knot[index], self.middle[index], self.last[index], self.fixed[index] = length_ratio[inside], 0.0, 0.0, True
         # The load extends neither into the last cell of the row nor to a cell beside another contact.
         last = self.widths.size - 1
-        beyond = spilling & (reach > 1) & (reach < 1.5) & (cell < last)
+        beyond = extends_beyond & (length_ratio > 1) & (length_ratio < 1.5) & (cell < last)
         beyond &= loads[row, np.minimum(cell + 2, last)] == 0
         full = ~inside & ~beyond
         index = row[full], cell[full]
         self.last[index] = np.minimum(_opposite_face(end_load[full], face[full]), end_load[full])
-        self._spill(row[beyond], cell[beyond], face[beyond], reach[beyond])
-        spilled = row[beyond], cell[beyond]
+        self._extend_beyond(row[beyond], cell[beyond], face[beyond], length_ratio[beyond])
+        extended = row[beyond], cell[beyond]
         # A narrow loaded part of the last cell: the last two cells share their force.
         face = self._face(cell, load_2, load_3, 2)
         previous_width = self.widths[np.maximum(cell - 1, 0)]
         length = 1.5 * (load_1 * previous_width + end_load * width) / np.where(face > 0, face, np.inf)
-        shared = np.flatnonzero(
-            (reach < NARROW)
-            & (load_3 > EQUAL * load_2)
+        narrow = np.flatnonzero(
+            (length_ratio < MIN_LOADED_FRACTION)
+            & (load_3 > MIN_EQUAL_RATIO * load_2)
             & (face > 0)
             & (length > previous_width)
             & (length < previous_width + width)
         )
-        row, cell = row[shared], cell[shared]
-        face, previous_width, width, length = (values[shared] for values in (face, previous_width, width, length))
+        row, cell = row[narrow], cell[narrow]
+        face, previous_width, width, length = (values[narrow] for values in (face, previous_width, width, length))
         self.last[row, cell - 2] = self.first[row, cell - 1] = face
         self.middle[row, cell - 1] = face * np.sqrt(1 - 0.5 * previous_width / length)
         self.last[row, cell - 1] = self.first[row, cell] = face * np.sqrt(1 - previous_width / length)
         self.knot[row, cell - 1], self.fixed[row, cell - 1] = 0.5, True
         self.knot[row, cell] = (length - previous_width) / width
-        return [spilled, (row, cell - 1)]
+        return [extended, (row, cell - 1)]
 
-    def _spill(self, row: IntArray, cell: IntArray, face: FloatArray, reach: FloatArray) -> None:
+    def _extend_beyond(self, row: IntArray, cell: IntArray, face: FloatArray, length_ratio: FloatArray) -> None:
         """Shape the last loaded cell and the next, in which the square falls to zero."""
-        self.middle[row, cell] = face * np.sqrt(1 - 0.5 / reach)
-        self.last[row, cell] = self.first[row, cell + 1] = face * np.sqrt(1 - 1 / reach)
+        self.middle[row, cell] = face * np.sqrt(1 - 0.5 / length_ratio)
+        self.last[row, cell] = self.first[row, cell + 1] = face * np.sqrt(1 - 1 / length_ratio)
         self.fixed[row, cell] = True
-        width = self.widths[cell] / self.widths[cell + 1]
-        self.knot[row, cell + 1] = (reach - 1) * width
+        width_ratio = self.widths[cell] / self.widths[cell + 1]
+        self.knot[row, cell + 1] = (length_ratio - 1) * width_ratio
         self.sign[row, cell + 1] = self.sign[row, cell]
 
     def _face(self, cell: IntArray, near: FloatArray, far: FloatArray, steps: int) -> FloatArray:
@@ -341,31 +349,31 @@ class _Row:
         return np.sqrt(np.maximum(squared, 0.0))
 
 
-def _mean(a: FloatArray, b: FloatArray) -> FloatArray:
+def _mean_of_root(a: FloatArray, b: FloatArray) -> FloatArray:
     """Mean of a function with a linear square, from the values at both ends."""
     total = a + b
     return np.asarray(2 / 3 * (a * a + a * b + b * b) / np.where(total > 0, total, 1.0))  # eq. (32a)
 
 
-def _moments(
+def _moments_of_root(
     a: FloatArray, b: FloatArray, length: FloatArray, total: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Force, first and second moment about the start of the first part of a piece with a linear square."""
     # Of length `length`; the piece has the length `total` and the values `a` and `b` at its ends.
-    squared = a * a + (b * b - a * a) * (length / np.where(total > 0, total, 1.0))
-    b = np.sqrt(np.maximum(squared, 0.0))
-    both = np.where(a + b > 0, a + b, 1.0)
+    end_square = a * a + (b * b - a * a) * (length / np.where(total > 0, total, 1.0))
+    b = np.sqrt(np.maximum(end_square, 0.0))
+    value_sum = np.where(a + b > 0, a + b, 1.0)
     cubes = ((3 * b + 6 * a) * b + 4 * a * a) * b + 2 * a * a * a
     powers = (((15 * b + 45 * a) * b + 48 * a * a) * b + 24 * a * a * a) * b + 8 * a * a * a * a
-    first, second = 2 / 15 * cubes / (both * both), 2 / 105 * powers / (both * both * both)
-    return length * _mean(a, b), length**2 * np.asarray(first), length**3 * np.asarray(second)
+    first, second = 2 / 15 * cubes / (value_sum * value_sum), 2 / 105 * powers / (value_sum * value_sum * value_sum)
+    return length * _mean_of_root(a, b), length**2 * np.asarray(first), length**3 * np.asarray(second)
 
 
-def _middle(mean: FloatArray, first: FloatArray, last: FloatArray) -> FloatArray:
+def _solve_knot_value(mean: FloatArray, first: FloatArray, last: FloatArray) -> FloatArray:
     """Value in the middle of a cell with a given mean, by Newton's method: the mean is convex in the value."""
     value = 1.5 * mean
     for _ in range(8):
-        excess = 0.5 * (_mean(first, value) + _mean(value, last)) - mean
+        excess = 0.5 * (_mean_of_root(first, value) + _mean_of_root(value, last)) - mean
         slope = sum((value**2 + 2 * value * face) / (value + face) ** 2 for face in (first, last)) / 3
         value = np.maximum(value - excess / slope, 1e-12 * mean)
     return np.asarray(value)

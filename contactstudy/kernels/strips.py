@@ -46,7 +46,7 @@ class Strip:
     double_primitive: Function  # double primitive of k in X, up to terms that cancel in the differences
     sign_x: int  # 1 or -1 if the kernel of a point load is even or odd in X and in Y
     sign_y: int
-    row: float | None = None
+    row_integral: float | None = None
     """For a kernel with a divergent row of images: the integral over X is ``2 ln(2 X / Y) + row``."""
 
 
@@ -69,7 +69,7 @@ INVERSE = Strip(  # of 1 / R, with R**2 = X**2 + Y**2
     ),
     sign_x=1,
     sign_y=1,
-    row=0.0,
+    row_integral=0.0,
 )
 
 SQUARE_X = Strip(  # of X**2 / R**3
@@ -80,7 +80,7 @@ SQUARE_X = Strip(  # of X**2 / R**3
     double_primitive=lambda x, y: x * y * np.arcsinh(x / y) - y * x * x / (np.hypot(x, y) + y),
     sign_x=1,
     sign_y=1,
-    row=-2.0,
+    row_integral=-2.0,
 )
 
 GRADIENT_Y = Strip(  # of Y / R**2
@@ -122,15 +122,15 @@ def strips_of(response: Response, poisson: float) -> Strips:
     """Return strips, with factors, whose sum is ``4 pi G u`` (Cerruti; Johnson, Contact Mechanics, section 3.6)."""
     # With the potentials V, chi, Theta of patch.py: u_z[p] = 2 (1 - nu) V, u_x[p] = -(1 - 2 nu) chi_x = -u_z[q_x],
     # u_x[q_x] = 2 V + 2 nu Theta_xx, u_y[q_x] = u_x[q_y] = 2 nu Theta_xy, and with x and y exchanged.
-    free = 1 - 2 * poisson
+    compressibility = 1 - 2 * poisson
     return {
         Response(P, P): ((2 * (1 - poisson), INVERSE),),
         Response(X, X): ((2 * (1 - poisson), INVERSE), (2 * poisson, SQUARE_X)),
         Response(Y, Y): ((2.0, INVERSE), (-2 * poisson, SQUARE_X)),
-        Response(P, X): ((free, GRADIENT_X),),
-        Response(P, Y): ((free, GRADIENT_Y),),
-        Response(X, P): ((-free, GRADIENT_X),),
-        Response(Y, P): ((-free, GRADIENT_Y),),
+        Response(P, X): ((compressibility, GRADIENT_X),),
+        Response(P, Y): ((compressibility, GRADIENT_Y),),
+        Response(X, P): ((-compressibility, GRADIENT_X),),
+        Response(Y, P): ((-compressibility, GRADIENT_Y),),
         Response(X, Y): ((2 * poisson, MIXED),),
         Response(Y, X): ((2 * poisson, MIXED),),
     }[response]
@@ -158,7 +158,11 @@ def row_level(strips: Strips, image: int, length: float, reference: float) -> fl
         return 0.0
     logarithm = np.log(2 * FAR_LIMIT * length / reference)
     return float(
-        sum(-factor * (logarithm + 0.5 * strip.row) / length for factor, strip in strips if strip.row is not None)
+        sum(
+            -factor * (logarithm + 0.5 * strip.row_integral) / length
+            for factor, strip in strips
+            if strip.row_integral is not None
+        )
     )
 
 
@@ -189,7 +193,7 @@ BLOCK = 16_384  # distances along x and y per evaluation. Speed: the values fit 
 
 
 @dataclass(frozen=True)
-class Lateral:
+class LateralCells:
     """Cells along y: values at their edges to the transform on twice as many cells."""
 
     dy: float  # cell size along y, metres
@@ -229,24 +233,24 @@ class ColumnsRequest:
     def influence(self, strips: Strips, image: int) -> FloatArray:
         """Influence of strips with factors, and of their images of sign `image`: array (wavenumber, cell, cell)."""
         edges, (low, high) = self.edges, self.extent
-        lateral = Lateral(self.dy, self.cells_y, strips[0][1].sign_y > 0)
+        lateral = LateralCells(self.dy, self.cells_y, strips[0][1].sign_y > 0)
         # Columns that have been split share the influences between the others, to the last bit.
         key = (strips, image, lateral, self.extent)
-        pairs = _Pairs.of(edges, lateral, recall("column pairs", key))
+        pairs = _PairSums.of(edges, lateral, recall("column pairs", key))
         for factor, strip in strips:
-            pairs.add(factor, strip, np.subtract.outer(edges, edges))
+            pairs.add_strip(factor, strip, np.subtract.outer(edges, edges))
             if np.isfinite(low):
-                pairs.add(image * factor, strip, np.add.outer(edges - low, edges - low), image=True)
+                pairs.add_strip(image * factor, strip, np.add.outer(edges - low, edges - low), image=True)
             if np.isfinite(high):
                 from_high = np.add.outer(high - edges, high - edges)
-                pairs.add(image * strip.sign_x * factor, strip, from_high, image=True)
+                pairs.add_strip(image * strip.sign_x * factor, strip, from_high, image=True)
         retain("column pairs", key, pairs, replace=True)
-        kernel = pairs.transformed()
+        kernel = pairs.transform()
         if np.isfinite(low) and np.isfinite(high):
             images = FarImages(high - low, image, IMAGE_POINTS)
-            level = row_level(strips, image, high - low, self.reference)
+            reference_level = row_level(strips, image, high - low, self.reference)
             offsets = self.dy * np.arange(self.cells_y + 1.0)
-            far = images.influence(corner_function(strips), offsets, self.dy, np.array(level))
+            far = images.influence(corner_function(strips), offsets, self.dy, np.array(reference_level))
             spectrum = even_spectrum(far) if lateral.even else odd_spectrum(far)
             means = images.means(edges - low)
             kernel += means.T @ np.ascontiguousarray(spectrum.transpose(2, 0, 1)) @ means
@@ -254,28 +258,28 @@ class ColumnsRequest:
 
 
 @dataclass(frozen=True, eq=False)
-class _Pairs:
+class _PairSums:
     """Sum of influences between columns, before the transform along y."""
 
     edges: FloatArray  # edges of the columns, metres
-    lateral: Lateral  # cells along y
+    lateral: LateralCells  # cells along y
     total: FloatArray  # (cell, cell, offset): the sum, contiguous along y
-    missing: BoolArray  # (cell, cell): pairs below the diagonal and on it that are to be added
+    is_missing: BoolArray  # (cell, cell): pairs below the diagonal and on it that are to be added
 
     @classmethod
-    def of(cls, edges: FloatArray, lateral: Lateral, known: _Pairs | None) -> _Pairs:
-        """Zero influence between columns with these edges; those between columns of `known` are complete."""
+    def of(cls, edges: FloatArray, lateral: LateralCells, stored: _PairSums | None) -> _PairSums:
+        """Zero influence between columns with these edges; those between columns of `stored` are complete."""
         count = edges.size - 1
         total = np.zeros((count, count, lateral.edges.size))
         missing = np.ones((count, count), bool)
-        if known is not None:
-            index = np.minimum(np.searchsorted(known.edges[:-1], edges[:-1]), known.edges.size - 2)
-            same = np.flatnonzero((known.edges[index] == edges[:-1]) & (known.edges[index + 1] == edges[1:]))
-            total[np.ix_(same, same)] = known.total[np.ix_(index[same], index[same])]
-            missing[np.ix_(same, same)] = False
+        if stored is not None:
+            index = np.minimum(np.searchsorted(stored.edges[:-1], edges[:-1]), stored.edges.size - 2)
+            common = np.flatnonzero((stored.edges[index] == edges[:-1]) & (stored.edges[index + 1] == edges[1:]))
+            total[np.ix_(common, common)] = stored.total[np.ix_(index[common], index[common])]
+            missing[np.ix_(common, common)] = False
         return cls(edges, lateral, total, np.tril(missing))
 
-    def add(self, factor: float, strip: Strip, distances: FloatArray, *, image: bool = False) -> None:
+    def add_strip(self, factor: float, strip: Strip, distances: FloatArray, *, image: bool = False) -> None:
         """Add `factor` times the influence of columns with edges at signed `distances`; at their sums for an image."""
         widths, total, y = np.diff(self.edges), self.total, self.lateral.edges
         separation = 0.25 * (distances[1:, 1:] + distances[1:, :-1] + distances[:-1, 1:] + distances[:-1, :-1])
@@ -283,43 +287,43 @@ class _Pairs:
         # Edges of columns near each other.
         near = np.zeros(distances.shape, bool)
         for corner in product((slice(None, -1), slice(1, None)), repeat=2):
-            near[corner] |= self.missing & ~far
-        backwards = 1 if image else strip.sign_x
+            near[corner] |= self.is_missing & ~far
+        exchange_sign = 1 if image else strip.sign_x
         table = np.empty((*distances.shape, y.size))
         for rows, columns in _blocks(near | near.T, y.size):
             values = strip.double_primitive(distances[rows, columns, None], y)
-            table[columns, rows] = backwards * values
+            table[columns, rows] = exchange_sign * values
             table[rows, columns] = values
-        for rows, columns in _blocks(self.missing & ~far, y.size):
+        for rows, columns in _blocks(self.is_missing & ~far, y.size):
             values = table[rows + 1, columns] + table[rows, columns + 1]
             values -= table[rows + 1, columns + 1]
             values -= table[rows, columns]
             # The edges of an image run backwards; eq. (37).
             values *= ((-factor if image else factor) / (widths[rows] * widths[columns]))[:, None]
-            _add_both(total, rows, columns, values, backwards)
-        for rows, columns in _blocks(self.missing & far, y.size):
+            _add_to_pairs(total, rows, columns, values, exchange_sign)
+        for rows, columns in _blocks(self.is_missing & far, y.size):
             x, squares = separation[rows, columns, None], (widths[rows] ** 2 + widths[columns] ** 2)[:, None]
             # Expansion of eq. (35) about the centres, to fourth order.
             values = factor * (strip.kernel(x, y) + squares / 24 * strip.curvature(x, y))
-            _add_both(total, rows, columns, values, backwards)
+            _add_to_pairs(total, rows, columns, values, exchange_sign)
 
-    def transformed(self) -> FloatArray:
+    def transform(self) -> FloatArray:
         """Return the sum over the wavenumber along y: array (wavenumber, cell, cell)."""
         cells = self.edges.size - 1
         flat = self.total.reshape(cells**2, -1)
         return np.asarray((self.lateral.matrix.T @ flat.T).reshape(-1, cells, cells))
 
 
-def _add_both(total: FloatArray, rows: IntArray, columns: IntArray, values: FloatArray, backwards: int) -> None:
-    """Add the influences (pair, offset) of pairs of columns, and `backwards` times them of the exchanged pairs."""
+def _add_to_pairs(total: FloatArray, rows: IntArray, columns: IntArray, values: FloatArray, exchange_sign: int) -> None:
+    """Add the influences (pair, offset) of pairs of columns, and `exchange_sign` times them of the exchanged pairs."""
     total[rows, columns] += values
-    above = rows > columns  # the image of a column may be far from the column
-    total[columns[above], rows[above]] += backwards * values[above]
+    off_diagonal = rows > columns  # the image of a column may be far from the column
+    total[columns[off_diagonal], rows[off_diagonal]] += exchange_sign * values[off_diagonal]
 
 
-def _blocks(marked: BoolArray, offsets: int) -> Iterator[tuple[IntArray, IntArray]]:
+def _blocks(selected: BoolArray, offsets: int) -> Iterator[tuple[IntArray, IntArray]]:
     """Yield blocks of marked pairs below the diagonal and on it."""
-    rows, columns = np.nonzero(np.tril(marked))
+    rows, columns = np.nonzero(np.tril(selected))
     step = max(1, BLOCK // offsets)
     for start in range(0, rows.size, step):
         yield rows[start : start + step], columns[start : start + step]

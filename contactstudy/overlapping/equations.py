@@ -3,7 +3,7 @@
 With the coupling core ``M``, eq. (17), a top load ``P`` has on the ends, in H, the normal stress ``-(4/pi) M / k`` per
 unit (cosine transform along z), and a face load ``S`` has on the top, in V, ``4 M T / kappa`` per unit (cosine
 coefficients along x), where ``k**2 = k_x**2 + k_y**2``, ``kappa**2 = k_y**2 + k_z**2`` and ``T`` is the factor of the
-slab (axial.py). The ends are free when ``S`` solves eqs. (26) and (26a), a linear system at the depth nodes whose
+slab (axial_modes.py). The ends are free when ``S`` solves eqs. (26) and (26a), a linear system at the depth nodes whose
 matrix is symmetric after scaling, eq. (27): Hetenyi's and Keer's alternating scheme, solved at once.
 """
 
@@ -18,7 +18,7 @@ from scipy import linalg
 
 from contactstudy.checks import ComplexArray, FloatArray, IntArray
 from contactstudy.kernels.load import Load
-from contactstudy.overlapping.axial import AxialModes
+from contactstudy.overlapping.axial_modes import AxialModes
 from contactstudy.overlapping.quadrature import Resolution, ray_nodes, scale_nodes
 
 
@@ -39,7 +39,7 @@ def load_on_end(
     load: Load, axial: ComplexArray, depth: ComplexArray | FloatArray, lateral: float, poisson: float
 ) -> ComplexArray:
     """Face load that frees the end from a unit load on the top: array (depth, axial)."""
-    # Tractions: along y without its factor i, along x as a sine series. A traction along x makes
+    # A traction along y omits the factor i; a traction along x uses a sine series. A traction along x causes
     # ``(k_x / k) [2 + 2 nu k_y**2 / k**2 - (k_x / k)**2 k z] exp(-k z)`` on the end (along y with x and y exchanged),
     # with the cosine transform along z of opposite sign.
     if load is Load.NORMAL:
@@ -141,7 +141,7 @@ class EquationSet:
         return self.factorisation.solve(source)
 
     def load_to_faces(self, load: Load) -> ComplexArray:
-        """Face loads that free the ends from unit modes of a top load in H alone: array (depth, wavenumber)."""
+        """Face loads that free the ends from unit modes of a top load in H: array (depth, wavenumber)."""
         # The matrix of a traction along y lacks its factor i; the modes of a traction along x are sines.
         axial = self.modes.wavenumbers
         if load is Load.NORMAL:  # as load_on_end, from the stored core
@@ -152,7 +152,7 @@ class EquationSet:
         """Face loads that free the ends from a top load of weighted `spectrum` (wavenumber, ...) in H alone."""
         return real_product(self.load_to_faces(load), spectrum)
 
-    def on_top(self, scaled_face_load: FloatArray) -> ComplexArray:
+    def spectrum_on_top(self, scaled_face_load: FloatArray) -> ComplexArray:
         """Weighted spectrum, before `cosine`, of the top load from the faces."""
         return np.asarray(self.top @ scaled_face_load)  # eq. (26a)
 
@@ -160,8 +160,8 @@ class EquationSet:
         self, spectrum: ComplexArray, loads: Sequence[Load], *, shortest: float, resolution: Resolution
     ) -> AuxiliaryLoads:
         """Solve for the loads on H and V that free the ends from one distribution, acting in each direction in turn."""
-        equivalent = self.on_top(self.solve(np.hstack([self.source(load, spectrum) for load in loads])))
-        depth, weights = self.ray(shortest, resolution)
+        equivalent = self.spectrum_on_top(self.solve(np.hstack([self.source(load, spectrum) for load in loads])))
+        depth, weights = self.ray_nodes(shortest, resolution)
         columns = spectrum.shape[1]
         total = self.modes.on_end[:, None] * equivalent
         slices = {load: slice(i * columns, (i + 1) * columns) for i, load in enumerate(loads)}
@@ -169,13 +169,13 @@ class EquationSet:
             total[:, slices[Load.NORMAL]] += spectrum
         upper, lower = self.ray_to_faces(Load.NORMAL, depth)
         face_load = upper @ total + lower @ total.conj()  # eq. (26)
-        for load, part in slices.items():
+        for load, section in slices.items():
             if load is not Load.NORMAL:
                 upper, lower = self.ray_to_faces(load, depth)
-                face_load[:, part] += upper @ spectrum + lower @ spectrum.conj()
+                face_load[:, section] += upper @ spectrum + lower @ spectrum.conj()
         return AuxiliaryLoads(equivalent, depth, weights[:, None] * face_load)
 
-    def ray(self, shortest: float, resolution: Resolution) -> tuple[ComplexArray, ComplexArray]:
+    def ray_nodes(self, shortest: float, resolution: Resolution) -> tuple[ComplexArray, ComplexArray]:
         """Depth wavenumbers on their ray, and the weights of the quadrature."""
         return ray_nodes(0.5 * self.lateral, max(resolution.ray_reach / shortest, 4 * self.lateral), resolution)
 

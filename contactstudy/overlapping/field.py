@@ -1,4 +1,4 @@
-"""A field of the free ends beside the mirrored half-space's, from the equivalent loads.
+"""A field of the free ends, added to that of the mirrored half-space, from the equivalent loads.
 
 For each wavenumber along y the equivalent load ``R`` (in H) and the face loads ``S`` (in V) are evaluated on their
 rays, where every factor decays with the distance from the loaded corner; the field is a sum of separable terms
@@ -17,10 +17,10 @@ import numpy as np
 from contactstudy.arrays.points import Points
 from contactstudy.checks import BoolArray, ComplexArray, FloatArray, IntArray
 from contactstudy.kernels.load import Load
-from contactstudy.overlapping.axial import DECAY_LENGTHS
+from contactstudy.overlapping.axial_modes import DECAY_LENGTHS
 from contactstudy.overlapping.equations import AuxiliaryLoads, EquationSet
-from contactstudy.overlapping.lateral import LateralColumns, LateralPanel, lateral_columns
-from contactstudy.overlapping.problem import EndProblem, View, make_views, parity_parts
+from contactstudy.overlapping.lateral_modes import LateralColumns, LateralPanel, lateral_columns
+from contactstudy.overlapping.problem import EndProblem, View, make_views, split_by_parity
 from contactstudy.overlapping.quadrature import POSITIONS_PER_PANEL, graded_interpolation
 from contactstudy.threads import one_blas_thread
 
@@ -40,31 +40,31 @@ class Harmonics:
     count: int  # number of components
     even_in_y: list[int]  # components that under a pressure even in y are even; the others are odd
     odd_along_x: list[int]  # components that change sign from one end to the other
-    grows_under: tuple[int, ...]  # signs of mirror images with which the field between two ends grows far along y
+    growing_signs: tuple[int, ...]  # signs of mirror images with which the field between two ends grows far along y
 
 
 JOINT_POINTS = 2000  # largest number of positions times depths for a joint evaluation of all tensor products. Speed.
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class _Folded:
+class _FoldedPositions:
     """Positions of the sum over wavenumbers: few, by their distance from the nearest end, off the loaded corner."""
 
     x: FloatArray  # positions of the sum; the last depth is a little below the corner if the corner is a position
     y: FloatArray
     z: FloatArray
-    where: IntArray  # index of each position in `x`, and whether the far end is nearer
-    beyond: BoolArray
+    distance_indices: IntArray  # index of each position in `x`, and whether the far end is nearer
+    in_far_half: BoolArray
     interpolation: FloatArray | None  # from the positions of the sum to all positions; None where they are equal
     corner: tuple[IntArray, IntArray] | None
     """Indices of `x` and of the depths on the corner; None if the corner is not a position."""
 
     @classmethod
-    def of(cls, problem: EndProblem, points: Points) -> _Folded:
+    def of(cls, problem: EndProblem, points: Points) -> _FoldedPositions:
         """Fold positions: many positions along x are interpolated from fewer, graded towards the ends."""
         length, offset = problem.length, problem.corner_offset
-        fewer = graded_interpolation(points.x, length, POSITIONS_PER_PANEL)
-        positions, interpolation = (points.x, None) if fewer is None else fewer
+        graded = graded_interpolation(points.x, length, POSITIONS_PER_PANEL)
+        positions, interpolation = (points.x, None) if graded is None else graded
         if np.isinf(length):
             x, where = positions, np.arange(positions.size)
         else:
@@ -77,7 +77,9 @@ class _Folded:
         z = np.append(points.z, offset) if has_corner else points.z
         corner = on_corner if has_corner else None
         beyond = positions > 0.5 * length
-        return cls(x=x, y=points.y, z=z, where=where, beyond=beyond, interpolation=interpolation, corner=corner)
+        return cls(
+            x=x, y=points.y, z=z, distance_indices=where, in_far_half=beyond, interpolation=interpolation, corner=corner
+        )
 
     @property
     def distance(self) -> FloatArray:
@@ -87,7 +89,7 @@ class _Folded:
             distance[self.corner[0][:, None], self.corner[1]] = np.inf
         return distance
 
-    def unfolded(self, fields: Mapping[int, FloatArray], odd_along_x: list[int]) -> FloatArray:
+    def unfold(self, fields: Mapping[int, FloatArray], odd_along_x: list[int]) -> FloatArray:
         """Field (load, component, x, y, z) at all positions from the sums by parity (load, component, x, z, y)."""
         if self.corner is not None:
             rows, columns = self.corner
@@ -98,8 +100,8 @@ class _Folded:
         for parity, field in fields.items():
             signs = np.array([-parity if component in odd_along_x else parity for component in range(field.shape[1])])
             # With one end no position lies beyond mid-length.
-            values = field[:, :, self.where]
-            values *= np.where(self.beyond & (parity != 0), signs[:, None], 1)[..., None, None]
+            values = field[:, :, self.distance_indices]
+            values *= np.where(self.in_far_half & (parity != 0), signs[:, None], 1)[..., None, None]
             total = values if total is None else np.add(total, values, out=total)
         assert total is not None
         if self.interpolation is not None:
@@ -109,41 +111,45 @@ class _Folded:
 
 
 def end_fields(
-    problem: EndProblem, harmonics: Harmonics, places: Sequence[Points], reference: float = np.inf
+    problem: EndProblem, harmonics: Harmonics, point_sets: Sequence[Points], reference: float = np.inf
 ) -> list[dict[Load, FloatArray]]:
-    """Field of the free ends beside the half-space with all mirrored loads: arrays (component, x, y, z)."""
+    """Field of the free ends, without the half-space with all mirrored loads: arrays (component, x, y, z)."""
     # A field that grows with distance is relative to ``|y| = reference`` if that is finite.
-    fields: list[dict[Load, FloatArray]] = [{} for _ in places]
+    fields: list[dict[Load, FloatArray]] = [{} for _ in point_sets]
     with one_blas_thread():
-        for alike in problem.alike():
-            folded = [_Folded.of(alike, points) for points in places]
-            cells = alike.cells[alike.cell_of_column]
-            parts = {0: cells} if np.isinf(alike.length) else parity_parts(cells, alike.sign_x)
-            sums = _sum_over_wavenumbers(alike, harmonics, folded, reference, parts)
-            for by_load, points, parities in zip(fields, folded, sums, strict=True):
-                by_load |= dict(zip(alike.loads, points.unfolded(parities, harmonics.odd_along_x), strict=True))
+        for subproblem in problem.split_by_mirror_sign():
+            folded_sets = [_FoldedPositions.of(subproblem, points) for points in point_sets]
+            cells = subproblem.cells[subproblem.cell_of_column]
+            parity_loads = {0: cells} if np.isinf(subproblem.length) else split_by_parity(cells, subproblem.sign_x)
+            parity_fields = _sum_over_wavenumbers(subproblem, harmonics, folded_sets, reference, parity_loads)
+            for by_load, points, sums in zip(fields, folded_sets, parity_fields, strict=True):
+                by_load |= dict(zip(subproblem.loads, points.unfold(sums, harmonics.odd_along_x), strict=True))
     return fields
 
 
 def _sum_over_wavenumbers(
     problem: EndProblem,
     harmonics: Harmonics,
-    places: list[_Folded],
+    point_sets: list[_FoldedPositions],
     reference: float,
-    parts: Mapping[int, FloatArray],
+    parity_loads: Mapping[int, FloatArray],
 ) -> list[dict[int, FloatArray]]:
     """Field (load, component, x, z, y) by parity: the integral over the wavenumber along y."""
     counts = (len(problem.loads), harmonics.count)
     result = [
-        {parity: np.zeros((*counts, points.x.size, points.z.size, points.y.size)) for parity in parts}
-        for points in places
+        {parity: np.zeros((*counts, points.x.size, points.z.size, points.y.size)) for parity in parity_loads}
+        for points in point_sets
     ]
-    ends = np.cumsum([points.y.size for points in places])
-    y = np.concatenate([points.y for points in places])
+    ends = np.cumsum([points.y.size for points in point_sets])
+    y = np.concatenate([points.y for points in point_sets])
     for _, columns, indices, amplitudes in _panel_amplitudes(
-        problem, harmonics, places, reference, lambda panel: lateral_columns(panel, parts, problem.grid, y)
+        problem,
+        harmonics,
+        point_sets,
+        reference,
+        lambda panel: lateral_columns(panel, parity_loads, problem.grid, y),
     ):
-        for parity in parts:
+        for parity in parity_loads:
             for i, load in enumerate(problem.loads):
                 even, odd = columns.synthesis(load, parity)
                 for total, (rows, depths), stop, near_points in zip(result, indices, ends, amplitudes, strict=True):
@@ -151,7 +157,7 @@ def _sum_over_wavenumbers(
                         continue
                     columns_of_parity = near_points[i][..., columns.parities == parity]
                     section = slice(stop - total[parity].shape[-1], stop)
-                    shape, block = (rows.size, depths.size, -1), _block(rows, depths)
+                    shape, block = (rows.size, depths.size, -1), _block_index(rows, depths)
                     for component in range(harmonics.count):
                         wave = even if component in harmonics.even_in_y else odd
                         flat = columns_of_parity[component].reshape(rows.size * depths.size, -1)
@@ -171,30 +177,30 @@ class _PanelAmplitudes(NamedTuple):
 def _panel_amplitudes(
     problem: EndProblem,
     harmonics: Harmonics,
-    places: list[_Folded],
+    point_sets: list[_FoldedPositions],
     reference: float,
-    columns_of: Callable[[LateralPanel], LateralColumns | None],
+    make_columns: Callable[[LateralPanel], LateralColumns | None],
 ) -> Iterator[_PanelAmplitudes]:
     """Amplitudes of the columns of each panel."""
-    distances = [points.distance for points in places]
+    distances = [points.distance for points in point_sets]
     nearest = min(float(distance.min()) for distance in distances)
     shortest = problem.smallest_scale(nearest)
-    grows = np.isfinite(reference) and problem.sign_x in harmonics.grows_under
-    y = np.concatenate([points.y for points in places])
+    grows = np.isfinite(reference) and problem.sign_x in harmonics.growing_signs
+    y = np.concatenate([points.y for points in point_sets])
     for panel in problem.panels(y, shortest, reference if grows else None):
         if panel.nodes[0] * nearest >= DECAY_LENGTHS:
             break
-        columns = columns_of(panel)
+        columns = make_columns(panel)
         if columns is None:
             continue
-        reached = [columns.nodes[0] * distance < DECAY_LENGTHS for distance in distances]
+        is_near = [columns.nodes[0] * distance < DECAY_LENGTHS for distance in distances]
         indices = [
             (np.flatnonzero(near_points.any(axis=1)), np.flatnonzero(near_points.any(axis=0)))
-            for near_points in reached
+            for near_points in is_near
         ]
         if not any(rows.size for rows, _ in indices):
             break
-        axes = [(points.x[rows], points.z[depths]) for points, (rows, depths) in zip(places, indices, strict=True)]
+        axes = [(points.x[rows], points.z[depths]) for points, (rows, depths) in zip(point_sets, indices, strict=True)]
         amplitudes = _amplitudes(problem, harmonics, axes, columns, shortest)
         yield _PanelAmplitudes(panel, columns, indices, amplitudes)
 
@@ -211,30 +217,33 @@ class UnitFields(NamedTuple):
 def unit_fields(problem: EndProblem, harmonics: Harmonics, points: Points, reference: float) -> Iterator[UnitFields]:
     """Yield the field of the free ends under unit loads in the direction of a problem, panel by panel."""
     (load,) = problem.loads
-    folded = _Folded.of(problem, points)
+    folded = _FoldedPositions.of(problem, points)
     cells = np.eye(problem.grid.cells_x)[problem.cell_of_column]
-    parts = {0: cells} if np.isinf(problem.length) else parity_parts(cells, problem.sign_x)
-    parities, unit_loads = np.repeat(list(parts), problem.grid.cells_x), np.concatenate(list(parts.values()), axis=1)
+    parity_loads = {0: cells} if np.isinf(problem.length) else split_by_parity(cells, problem.sign_x)
+    parities, unit_loads = (
+        np.repeat(list(parity_loads), problem.grid.cells_x),
+        np.concatenate(list(parity_loads.values()), axis=1),
+    )
     for panel, _, ((rows, depths),), (near_points,) in _panel_amplitudes(
-        problem, harmonics, [folded], reference, lambda panel: LateralColumns.unit(panel, unit_loads, parities)
+        problem, harmonics, [folded], reference, lambda panel: LateralColumns.of_unit_loads(panel, unit_loads, parities)
     ):
         shape = (1, harmonics.count, folded.x.size, folded.z.size, panel.nodes.size, problem.grid.cells_x)
         fields = {}
-        for parity in parts:
+        for parity in parity_loads:
             field = np.zeros(shape)
-            field[(slice(None), slice(None), *_block(rows, depths))] = near_points[..., parities == parity]
+            field[(slice(None), slice(None), *_block_index(rows, depths))] = near_points[..., parities == parity]
             fields[parity] = field.reshape(*shape[:4], -1)
-        unfolded = folded.unfolded(fields, harmonics.odd_along_x)[0]
+        field_at_nodes = folded.unfold(fields, harmonics.odd_along_x)[0]
         even, odd = panel.filters(problem.grid, points.y)
         even, odd = (even, odd) if load.sign_y > 0 else (odd, -even)
-        filters = np.stack([even if number in harmonics.even_in_y else odd for number in range(harmonics.count)])
+        filters = np.stack([even if component in harmonics.even_in_y else odd for component in range(harmonics.count)])
         count, size = harmonics.count, points.x.size
-        yield UnitFields(unfolded.reshape(count, size, panel.nodes.size, -1, points.z.size), filters)
+        yield UnitFields(field_at_nodes.reshape(count, size, panel.nodes.size, -1, points.z.size), filters)
 
 
-def _block(rows: IntArray, columns: IntArray) -> tuple[slice | IntArray, slice | IntArray]:
+def _block_index(rows: IntArray, columns: IntArray) -> tuple[slice | IntArray, slice | IntArray]:
     """Index of rows and columns in ascending order, as slices if the range is complete: faster."""
-    if all(numbers[-1] - numbers[0] + 1 == numbers.size for numbers in (rows, columns)):
+    if all(indices[-1] - indices[0] + 1 == indices.size for indices in (rows, columns)):
         return slice(rows[0], rows[-1] + 1), slice(columns[0], columns[-1] + 1)
     return rows[:, None], columns
 
@@ -256,37 +265,37 @@ def _amplitudes(
     depths = np.concatenate([z for _, z in points])
     for view in make_views(problem, columns, np.concatenate([x for x, _ in points]), shortest):
         view_rows = [np.flatnonzero((view.rows >= low) & (view.rows < high)) for low, high in pairwise(starts)]
-        together = view.x.size * depths.size <= JOINT_POINTS
-        for number, lateral in enumerate(columns.nodes.tolist()):
+        joint = view.x.size * depths.size <= JOINT_POINTS
+        for node, lateral in enumerate(columns.nodes.tolist()):
             system = problem.equation_set(view.modes, lateral, shortest)
-            spectrum = view.spectra[:, number if view.spectra.shape[1] > 1 else 0]
+            spectrum = view.spectra[:, node if view.spectra.shape[1] > 1 else 0]
             loads = system.auxiliary_loads(spectrum, problem.loads, shortest=shortest, resolution=problem.resolution)
-            fields = _evaluate(harmonics, system, loads, view, slice(None), z=depths) if together else None
-            for amplitude, (_, z), start, stop, selected in zip(
+            fields = _evaluate_fields(harmonics, system, loads, view, slice(None), z=depths) if joint else None
+            for amplitude, (_, z), start, stop, view_indices in zip(
                 amplitudes, points, starts, stops, view_rows, strict=False
             ):
-                if not selected.size:
+                if not view_indices.size:
                     continue
                 if fields is None:
-                    field = _evaluate(harmonics, system, loads, view, selected, z=z)
+                    field = _evaluate_fields(harmonics, system, loads, view, view_indices, z=z)
                 else:
-                    field = fields[:, selected, stop - z.size : stop]
+                    field = fields[:, view_indices, stop - z.size : stop]
                 by_load = field.reshape(*field.shape[:3], count, -1)
-                rows, numbers = (view.rows[selected] - start)[:, None, None], np.arange(z.size)[:, None]
+                rows, depth_indices = (view.rows[view_indices] - start)[:, None, None], np.arange(z.size)[:, None]
                 for i in range(count):
-                    amplitude[i][:, rows, numbers, number, view.columns] = by_load[:, :, :, i]
+                    amplitude[i][:, rows, depth_indices, node, view.columns] = by_load[:, :, :, i]
     return amplitudes
 
 
-def _evaluate(
+def _evaluate_fields(
     harmonics: Harmonics,
     system: EquationSet,
     loads: AuxiliaryLoads,
     view: View,
-    selected: IntArray | slice,
+    indices: IntArray | slice,
     z: FloatArray,
 ) -> FloatArray:
     """Field of both auxiliary bodies at some of a view's positions: array (component, x, z, column)."""
-    field = harmonics.of_equivalent_load(system, loads.equivalent, view.cosine[:, selected], view.sine[:, selected], z)
-    field += harmonics.of_face_load(system, loads.depth, loads.face_load, view.x[selected], z)
+    field = harmonics.of_equivalent_load(system, loads.equivalent, view.cosine[:, indices], view.sine[:, indices], z)
+    field += harmonics.of_face_load(system, loads.depth, loads.face_load, view.x[indices], z)
     return field

@@ -1,4 +1,4 @@
-"""Stresses and displacements of the free ends beside the mirrored half-space's: harmonics of H and of V."""
+"""Stresses and displacements of the free ends, without the mirrored half-space: harmonics of H and of V."""
 
 from __future__ import annotations
 
@@ -46,24 +46,24 @@ def _stress_of_face_load(
     nu, lateral, modes = system.poisson, system.lateral, system.modes
     kappa, tau, right = _face_waves(system, depth, face_load, z)
     # Sums over both ends of exp(-X), and of (tau + X) exp(-X) for even and odd components.
-    decay, ramp = _from_end(x, kappa, tau)
-    alike = reversed_ = ramp
+    decay, ramp = _decay_from_end(x, kappa, tau)
+    even_ramp = odd_ramp = ramp
     if modes.parity:
-        far_decay, ramp = _from_end(modes.length - x, kappa, tau)
+        far_decay, ramp = _decay_from_end(modes.length - x, kappa, tau)
         decay += modes.parity * far_decay
-        alike = alike + modes.parity * ramp
-        reversed_ = reversed_ - modes.parity * ramp
-    potential = (1 - 2 * nu) * decay - alike
+        even_ramp = even_ramp + modes.parity * ramp
+        odd_ramp = odd_ramp - modes.parity * ramp
+    potential = (1 - 2 * nu) * decay - even_ramp
     lateral_part = 2 * nu * decay
     # eqs. (11) and (12) with the waves of eq. (25)
     cosine_z: ComplexArray = np.empty((4, x.size, depth.size), np.complex128)  # xx, yy, zz, xy
     sine_z: ComplexArray = np.empty((2, x.size, depth.size), np.complex128)  # yz, xz
-    np.add(decay, alike, out=cosine_z[0])
+    np.add(decay, even_ramp, out=cosine_z[0])
     np.add((lateral / kappa) ** 2 * potential, lateral_part, out=cosine_z[1])
     np.add((depth / kappa) ** 2 * potential, lateral_part, out=cosine_z[2])
-    np.multiply(-lateral / kappa, reversed_, out=cosine_z[3])
+    np.multiply(-lateral / kappa, odd_ramp, out=cosine_z[3])
     np.multiply(lateral * depth / kappa**2, potential, out=sine_z[0])
-    np.multiply(depth / kappa, reversed_, out=sine_z[1])
+    np.multiply(depth / kappa, odd_ramp, out=sine_z[1])
     result = np.empty((6, x.size, z.size, face_load.shape[1]))
     result[[0, 1, 2, 3]] = real_product(cosine_z, right)
     result[[5, 4]] = real_product(-1j * sine_z, right)
@@ -80,7 +80,7 @@ def _face_waves(
     return kappa, tau, waves[..., None] * (amplitude[:, None] * face_load)[:, None, :]
 
 
-def _from_end(distance: FloatArray, kappa: ComplexArray, tau: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
+def _decay_from_end(distance: FloatArray, kappa: ComplexArray, tau: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
     """Return ``exp(-X)`` and ``(tau + X) exp(-X)`` at distances from an end: arrays (distance, depth)."""
     scaled = np.outer(distance, kappa)
     decay = np.exp(-scaled)
@@ -95,7 +95,7 @@ STRESS = Harmonics(  # components xx, yy, zz, xy, xz, yz
     count=6,
     even_in_y=[0, 1, 2, 4],
     odd_along_x=[3, 4],
-    grows_under=(-1,),  # bending
+    growing_signs=(-1,),  # bending
 )
 
 
@@ -148,5 +148,5 @@ DISPLACEMENT = Harmonics(  # components along x, y, z, times ``2 G``
     count=3,
     even_in_y=[0, 2],
     odd_along_x=[0],
-    grows_under=(1, -1),
+    growing_signs=(1, -1),
 )

@@ -1,4 +1,4 @@
-"""The overlapping as linear operators between the cells of the top, the modes of H and the faces of V.
+"""The overlapping method as linear operators between the cells of the top, the modes of H and the faces of V.
 
 A *band* is one equation set: a node of the wavenumber along y in one set of axial modes. Every operator is block
 diagonal over the bands; within a band it is a real matrix along x and z, equal at all positions y. Vectors:
@@ -22,7 +22,7 @@ from contactstudy.arrays.points import Points
 from contactstudy.checks import FloatArray
 from contactstudy.kernels.load import Load
 from contactstudy.overlapping.equations import EquationSet
-from contactstudy.overlapping.lateral import LateralColumns
+from contactstudy.overlapping.lateral_modes import LateralColumns
 from contactstudy.overlapping.problem import EndProblem, View, make_views
 from contactstudy.threads import one_blas_thread
 
@@ -36,12 +36,12 @@ class Band:
     filters: dict[int, FloatArray]  # (cell_y, y): from loads even (1) or odd (-1) along y to the part of the node at y
 
 
-def paired(columns: Any) -> FloatArray:
+def stack_real_and_imaginary(columns: Any) -> FloatArray:
     """Real matrix to modes of a complex matrix whose rows are wavenumbers: real parts before imaginary parts."""
     return np.concatenate([np.real(columns), np.imag(columns)])
 
 
-def real_part(rows: Any) -> FloatArray:
+def real_part_matrix(rows: Any) -> FloatArray:
     """Real matrix from modes for the real part of a product with a complex matrix whose columns are wavenumbers."""
     return np.concatenate([np.real(rows), -np.imag(rows)], axis=1)
 
@@ -54,12 +54,12 @@ class BandOperator(LinearOperator):  # type: ignore[misc]
         super().__init__(np.float64, tuple(count * sum(matrix.shape[axis] for matrix in matrices) for axis in (0, 1)))
 
     def _matvec(self, vector: FloatArray) -> FloatArray:
-        parts = _split(vector, [matrix.shape[1] for matrix in self.matrices], self.count)
-        return np.concatenate([(matrix @ part).ravel() for matrix, part in zip(self.matrices, parts, strict=True)])
+        blocks = _split_by_band(vector, [matrix.shape[1] for matrix in self.matrices], self.count)
+        return np.concatenate([(matrix @ block).ravel() for matrix, block in zip(self.matrices, blocks, strict=True)])
 
     def _rmatvec(self, vector: FloatArray) -> FloatArray:
-        parts = _split(vector, [matrix.shape[0] for matrix in self.matrices], self.count)
-        return np.concatenate([(matrix.T @ part).ravel() for matrix, part in zip(self.matrices, parts, strict=True)])
+        blocks = _split_by_band(vector, [matrix.shape[0] for matrix in self.matrices], self.count)
+        return np.concatenate([(matrix.T @ block).ravel() for matrix, block in zip(self.matrices, blocks, strict=True)])
 
 
 def solution_matrix(system: EquationSet) -> LinearOperator:
@@ -101,27 +101,29 @@ class SumOperator(LinearOperator):  # type: ignore[misc]
         super().__init__(np.float64, (self._values_y * matrices[0].shape[0], count * columns))
 
     def _matvec(self, vector: FloatArray) -> FloatArray:
-        parts = _split(vector, [matrix.shape[1] for matrix in self.matrices], self.count)
+        blocks = _split_by_band(vector, [matrix.shape[1] for matrix in self.matrices], self.count)
         total = np.zeros((self.matrices[0].shape[0], self._values_y))
-        for matrix, lateral, part in zip(self.matrices, self.filters, parts, strict=True):
-            total += matrix @ part if lateral is None else (matrix @ part) @ lateral
+        for matrix, lateral, block in zip(self.matrices, self.filters, blocks, strict=True):
+            total += matrix @ block if lateral is None else (matrix @ block) @ lateral
         return np.asarray((total.T if self._y_first else total).ravel())
 
     def _rmatvec(self, vector: FloatArray) -> FloatArray:
         total = vector.reshape(self._values_y, -1).T if self._y_first else vector.reshape(-1, self._values_y)
         filtered = (total if lateral is None else total @ lateral.T for lateral in self.filters)
-        return np.concatenate([(matrix.T @ part).ravel() for matrix, part in zip(self.matrices, filtered, strict=True)])
+        return np.concatenate(
+            [(matrix.T @ block).ravel() for matrix, block in zip(self.matrices, filtered, strict=True)]
+        )
 
 
-def _split(vector: FloatArray, rows: Sequence[int], count: int) -> list[FloatArray]:
+def _split_by_band(vector: FloatArray, rows: Sequence[int], count: int) -> list[FloatArray]:
     """Parts (row, y) of a vector, one per band."""
-    return [part.reshape(-1, count) for part in np.split(vector.ravel(), count * np.cumsum(rows)[:-1])]
+    return [block.reshape(-1, count) for block in np.split(vector.ravel(), count * np.cumsum(rows)[:-1])]
 
 
 class EquivalentOperators(NamedTuple):
     """Operators from a load on the cells to the equivalent loads, positive in compression."""
 
-    added: LinearOperator
+    top_load: LinearOperator
     """To the load of V on the top of H, (x, y): ``P_h1`` of a pressure is the pressure plus this load."""
     faces: list[LinearOperator]  # to ``P_v1`` and, with two ends, ``P_v2``: (y, z)
 
@@ -150,12 +152,12 @@ class OverlappingOperators:
         bands = []
         with one_blas_thread():
             for panel in problem.panels(y, shortest, reference):
-                columns = LateralColumns.unit(panel, unit_loads, parities)
+                columns = LateralColumns.of_unit_loads(panel, unit_loads, parities)
                 even, odd = panel.filters(problem.grid, y)
                 for view in make_views(problem, columns, x, shortest):
-                    for number, lateral in enumerate(panel.nodes.tolist()):
+                    for node, lateral in enumerate(panel.nodes.tolist()):
                         system = problem.equation_set(view.modes, lateral, shortest)
-                        bands.append(Band(system, view, {1: even[number], -1: odd[number]}))
+                        bands.append(Band(system, view, {1: even[node], -1: odd[node]}))
         return cls(problem, Points(x, y, z), bands)
 
     @cached_property
@@ -167,7 +169,10 @@ class OverlappingOperators:
 
     def modes(self, load: Load) -> LinearOperator:
         """Return the operator from a load on the cells to modes, eqs. (6) and (7)."""
-        matrices = {id(view): paired(view.spectra[:, 0]) for view in {id(b.view): b.view for b in self.bands}.values()}
+        matrices = {
+            id(view): stack_real_and_imaginary(view.spectra[:, 0])
+            for view in {id(b.view): b.view for b in self.bands}.values()
+        }
         return SumOperator(
             [matrices[id(band.view)].T for band in self.bands],
             self.positions.y.size,
@@ -176,14 +181,14 @@ class OverlappingOperators:
 
     def to_faces(self, load: Load) -> LinearOperator:
         """Return the operator from modes of a load on H to the normal stress that it leaves on the ends, reversed."""
-        return self._band_operator(lambda band: real_part(band.system.load_to_faces(load)))
+        return self._band_operator(lambda band: real_part_matrix(band.system.load_to_faces(load)))
 
     @cached_property
     def to_top(self) -> LinearOperator:
         """Operator from faces to the modes of the load of V on the top of H."""
         return self._band_operator(
             # eq. (26a)
-            lambda band: paired(band.view.modes.on_end[:, None] * band.system.top * band.system.scale)
+            lambda band: stack_real_and_imaginary(band.view.modes.on_end[:, None] * band.system.top * band.system.scale)
         )
 
     @cached_property
@@ -210,13 +215,13 @@ class OverlappingOperators:
     def _face_matrix(self, band: Band, load: Load, end: int) -> FloatArray:
         """Matrix from the modes of a band to the equivalent load on one face at the depths."""
         modes, system = band.view.modes, band.system
-        depth, weights = system.ray(self._shortest, self.problem.resolution)
+        depth, weights = system.ray_nodes(self._shortest, self.problem.resolution)
         first, second = system.ray_to_faces(load, depth)
         waves = np.exp(1j * np.outer(self.positions.z, depth))  # eq. (8)
-        waves = waves * weights * modes.applied(np.sqrt(depth**2 + system.lateral**2))
+        waves = waves * weights * modes.load_on_face(np.sqrt(depth**2 + system.lateral**2))
         # The second end's load follows from the first's by parity; separate ends have a view each.
         sign = modes.parity**end if modes.parity else int(band.view.flipped == bool(end))
-        return -sign * real_part(waves @ first + np.conj(waves @ second))
+        return -sign * real_part_matrix(waves @ first + np.conj(waves @ second))
 
     def equivalent(self, load: Load) -> EquivalentOperators:
         """Return the operators from a load on the cells to the equivalent loads, without iteration."""

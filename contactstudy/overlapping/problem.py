@@ -13,12 +13,12 @@ from contactstudy.cache import cached
 from contactstudy.checks import ComplexArray, FloatArray, IntArray
 from contactstudy.errors import InvalidInputError
 from contactstudy.kernels.load import Load
-from contactstudy.overlapping.axial import AxialModes, modes_between_ends
+from contactstudy.overlapping.axial_modes import AxialModes, modes_between_ends
 from contactstudy.overlapping.equations import EquationSet
-from contactstudy.overlapping.lateral import (
-    ALONE,
+from contactstudy.overlapping.lateral_modes import (
     BENDING_POLES,
     NEGLIGIBLE,
+    POLE_PANEL_FACTOR,
     POLES,
     LateralColumns,
     LateralPanel,
@@ -32,12 +32,12 @@ logarithm there; their sum is finite."""
 
 EDGE_ROUNDING = 1e-12  # rounding of an edge and its image over the length. Accuracy.
 
-FIRST = 0.1
+FIRST_PANEL_FACTOR = 0.1
 """End of the first panel along ``k_y``, over the smallest length of the problem, of a field without poles. Accuracy."""
 
-THINNEST = 0.004
-"""Least length of a body over the width of the load. Accuracy: at this one the ends keep 6e-4 of the pressure, at a
-third of it a tenth."""
+MIN_LENGTH = 0.004
+"""Least length of a body over the width of the load. Accuracy: at this length the ends keep 6e-4 of the pressure, at a
+third of the length a tenth."""
 
 
 _equation_set = cached("equation sets")(EquationSet.build)
@@ -59,12 +59,12 @@ class EndProblem:
     def __post_init__(self) -> None:
         loaded = np.flatnonzero(self.cells.any(axis=0))
         width = self.grid.dy * (loaded[-1] - loaded[0] + 1) if loaded.size else 0.0
-        if self.length < THINNEST * width:
+        if self.length < MIN_LENGTH * width:
             raise InvalidInputError(
                 "body.length",
                 self.length,
-                f"at least {THINNEST:g} of the width of the contact, {width:.3g} m: the traction left on the ends of a "
-                "thinner body exceeds 1e-3 of the pressure",
+                f"at least {MIN_LENGTH:g} of the width of the contact, {width:.3g} m: the traction left on the ends of "
+                "a thinner body exceeds 1e-3 of the pressure",
                 "such a disc is in plane stress",
             )
 
@@ -91,7 +91,7 @@ class EndProblem:
         """1 if a mirror image keeps the loads, -1 if it reverses them."""
         return self.loads[0].sign_x
 
-    def alike(self) -> Iterator[EndProblem]:
+    def split_by_mirror_sign(self) -> Iterator[EndProblem]:
         """Yield the problem of loads that images keep, and the problem of loads that images reverse."""
         for sign in (1, -1):
             loads = tuple(load for load in self.loads if load.sign_x == sign)
@@ -100,7 +100,7 @@ class EndProblem:
 
     @property
     def corner_offset(self) -> float:
-        """Distance from the corner below which nothing is evaluated, metres."""
+        """Least distance of evaluated positions from the corner, metres."""
         return CORNER_OFFSET * self.finest_size
 
     @property
@@ -109,9 +109,9 @@ class EndProblem:
         return self.finest or finest_cell(self.grid)
 
     def smallest_scale(self, nearest: float) -> float:
-        """Smallest distance from a corner that matters, for positions no nearer to it than `nearest`, metres."""
-        # The field of a load near a corner depends on its steps there, at distant positions as well; every edge counts,
-        # so that the field is additive.
+        """Smallest relevant distance from a corner, for positions at least `nearest` from the corner, metres."""
+        # The field of a load near a corner depends on its steps there, at distant positions as well; every edge is
+        # included, so that the field is additive.
         inner = self.column_edges[1:-1]
         return max(min(nearest, float(self.from_end(inner).min(initial=nearest))), self.corner_offset)
 
@@ -122,13 +122,13 @@ class EndProblem:
     def panels(self, y: FloatArray, shortest: float, reference: float | None = None) -> list[LateralPanel]:
         """Panels along ``k_y`` for points at `y` no nearer than `shortest` to a loaded corner."""
         grid = self.grid
-        reach = max(map(abs, grid.y_range)) + np.abs(y).max()
+        max_distance = max(map(abs, grid.y_range)) + np.abs(y).max()
         poles = BENDING_POLES if self.sign_x < 0 else POLES
-        alone = FIRST if reference is None else ALONE[poles]
-        first = alone / min(self.length, 4 * max(grid.x_range[1], reach))
+        first_panel_factor = FIRST_PANEL_FACTOR if reference is None else POLE_PANEL_FACTOR[poles]
+        first = first_panel_factor / min(self.length, 4 * max(grid.x_range[1], max_distance))
         # Along y the load is uniform in cells: half a cell is the finest scale.
         last = self.resolution.lateral_reach / max(shortest, 0.5 * self.finest_size)
-        return lateral_panels(first, reach, last, self.resolution, reference, poles=poles)
+        return lateral_panels(first, max_distance, last, self.resolution, reference, poles=poles)
 
     def equation_set(self, modes: AxialModes, lateral: float, shortest: float) -> EquationSet:
         """Equation set of some axial modes at the wavenumber `lateral`, cached."""
@@ -140,11 +140,11 @@ def finest_cell(grid: Grid) -> float:
     return min(grid.dx, grid.dy) if grid.uniform else grid.dy
 
 
-def parity_parts(cells: FloatArray, sign_x: int) -> dict[int, FloatArray]:
+def split_by_parity(cells: FloatArray, sign_x: int) -> dict[int, FloatArray]:
     """Parts of a load (x, y) even (1) and odd (-1) about mid-length, but negligible ones; `sign_x` -1 swaps them."""
-    parts = {parity: 0.5 * (cells + sign_x * parity * cells[::-1]) for parity in (1, -1)}
-    least = NEGLIGIBLE * np.abs(cells).max()
-    return {parity: part for parity, part in parts.items() if np.abs(part).max() > least}
+    loads = {parity: 0.5 * (cells + sign_x * parity * cells[::-1]) for parity in (1, -1)}
+    min_amplitude = NEGLIGIBLE * np.abs(cells).max()
+    return {parity: values for parity, values in loads.items() if np.abs(values).max() > min_amplitude}
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -178,14 +178,14 @@ def make_views(problem: EndProblem, load: LateralColumns, x: FloatArray, shortes
             continue
         integrals = modes.load_weights[:, None] * modes.cell_integrals(problem.loads[0], edges)
         for flipped in (False, True) if np.isfinite(length) and not modes.parity and not split else (False,):
-            facing = problem.sign_x * integrals[:, ::-1] if flipped else integrals
+            oriented = problem.sign_x * integrals[:, ::-1] if flipped else integrals
             distance = length - x if flipped else x
             rows = np.flatnonzero(distance <= modes.reach)
             distance = distance[rows]
             views.append(
                 View(
                     modes=modes,
-                    spectra=np.tensordot(facing, load.along_x[..., columns], axes=1),
+                    spectra=np.tensordot(oriented, load.along_x[..., columns], axes=1),
                     columns=columns,
                     rows=rows,
                     x=distance,

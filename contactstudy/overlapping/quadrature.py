@@ -22,7 +22,7 @@ from contactstudy.kernels.load import Load
 
 
 @lru_cache(maxsize=32)
-def _gauss(order: int) -> tuple[FloatArray, FloatArray]:
+def _gauss_nodes(order: int) -> tuple[FloatArray, FloatArray]:
     nodes, weights = np.polynomial.legendre.leggauss(order)
     nodes.flags.writeable = weights.flags.writeable = False
     return nodes, weights
@@ -30,17 +30,17 @@ def _gauss(order: int) -> tuple[FloatArray, FloatArray]:
 
 def panel_nodes(edges: FloatArray, order: int) -> tuple[FloatArray, FloatArray]:
     """Nodes and weights of composite Gauss-Legendre quadrature on the panels between `edges`."""
-    nodes, weights = _gauss(order)
+    nodes, weights = _gauss_nodes(order)
     half = 0.5 * np.diff(edges)[:, None]
-    middle = 0.5 * (edges[1:] + edges[:-1])[:, None]
-    return (middle + half * nodes).ravel(), (half * weights).ravel()
+    midpoint = 0.5 * (edges[1:] + edges[:-1])[:, None]
+    return (midpoint + half * nodes).ravel(), (half * weights).ravel()
 
 
 AXIAL_STEP, AXIAL_REACH = 0.16, 1000.0
 """Largest step and least reach under loads along x. Accuracy: where they bend the body, H and V grow and cancel; on a
 corner their normal stress on the end is singular."""
 
-START, LOWEST = 0.3, -2.8
+START_FACTOR, MIN_LOGARITHM = 0.3, -2.8
 """Wavenumber about which the nodes begin to thin out towards 0, over the smallest scale, and the least ``u``.
 Accuracy: below it lies 1e-7 of that scale."""
 
@@ -111,8 +111,8 @@ class Resolution:
 def scale_nodes(first: float, last: float, step: float) -> tuple[FloatArray, FloatArray]:
     """Nodes and weights from 0 to about `last`, for integrands smooth over the logarithm from `first` on."""
     # The trapezoidal rule over ``u`` with ``k = start exp(u - exp(-u))``, where k falls to 0 doubly exponentially.
-    start = START * first
-    lowest, highest = int(np.floor(LOWEST / step)), int(np.ceil(np.log(last / start) / step))
+    start = START_FACTOR * first
+    lowest, highest = int(np.floor(MIN_LOGARITHM / step)), int(np.ceil(np.log(last / start) / step))
     u = step * np.arange(lowest, highest + 1.0)
     nodes = start * np.exp(u - np.exp(-u))
     return nodes, step * nodes * (1 + np.exp(-u))
@@ -121,17 +121,17 @@ def scale_nodes(first: float, last: float, step: float) -> tuple[FloatArray, Flo
 def ray_nodes(first: float, last: float, resolution: Resolution) -> tuple[ComplexArray, ComplexArray]:
     """Nodes and weights along the ray from 0 at the resolution's angle, of scales from `first` to `last`."""
     nodes, weights = scale_nodes(first, last, resolution.step)
-    turn = np.exp(1j * resolution.angle)
-    return nodes * turn, weights * turn
+    rotation = np.exp(1j * resolution.angle)
+    return nodes * rotation, weights * rotation
 
 
 POSITIONS_PER_PANEL = 8  # Gauss positions per panel along x. Accuracy.
 
 
-def graded_positions(reach: float, finest: float, order: int) -> tuple[FloatArray, FloatArray]:
-    """Edges of panels from 0 to `reach` that double from `finest`, and `order` Gauss positions in each."""
-    panels = max(1, int(np.ceil(np.log2(reach / finest) - 1e-9)))
-    edges = np.append(0.0, reach / 2.0**panels * 2.0 ** np.arange(panels + 1))
+def graded_positions(stop: float, finest: float, order: int) -> tuple[FloatArray, FloatArray]:
+    """Edges of panels from 0 to `stop` that double from `finest`, and `order` Gauss positions in each."""
+    panels = max(1, int(np.ceil(np.log2(stop / finest) - 1e-9)))
+    edges = np.append(0.0, stop / 2.0**panels * 2.0 ** np.arange(panels + 1))
     return edges, panel_nodes(edges, order)[0]
 
 
@@ -141,14 +141,14 @@ def cell_moments(edges: FloatArray, positions: FloatArray, cell_edges: FloatArra
     moments = np.zeros((positions.size, cell_edges.size - 1))
     breaks = np.union1d(edges, np.clip(cell_edges, edges[0], edges[-1]))
     points, weights = panel_nodes(breaks, order)
-    middles = np.repeat(0.5 * (breaks[1:] + breaks[:-1]), order)
-    panel = np.clip(np.searchsorted(edges, middles) - 1, 0, edges.size - 2)
-    cell = np.searchsorted(cell_edges, middles) - 1
-    for number in range(edges.size - 1):
-        inside = (panel == number) & (cell >= 0) & (cell < moments.shape[1])
-        nodes = slice(number * order, (number + 1) * order)
-        shares = weights[inside, None] * lagrange_weights(positions[nodes], points[inside])
-        np.add.at(moments[nodes].T, cell[inside], shares)
+    midpoints = np.repeat(0.5 * (breaks[1:] + breaks[:-1]), order)
+    panel = np.clip(np.searchsorted(edges, midpoints) - 1, 0, edges.size - 2)
+    cell = np.searchsorted(cell_edges, midpoints) - 1
+    for index in range(edges.size - 1):
+        inside = (panel == index) & (cell >= 0) & (cell < moments.shape[1])
+        nodes = slice(index * order, (index + 1) * order)
+        contributions = weights[inside, None] * lagrange_weights(positions[nodes], points[inside])
+        np.add.at(moments[nodes].T, cell[inside], contributions)
     return moments
 
 
@@ -173,13 +173,13 @@ def graded_interpolation(x: FloatArray, length: float, order: int) -> tuple[Floa
         return None
     matrix = np.zeros((x.size, sides * count + on_end.size))
     panel = np.clip(np.searchsorted(edges, from_end) - 1, 0, panels - 1)
-    for number in range(panels):
-        nodes = slice(number * order, (number + 1) * order)
+    for index in range(panels):
+        nodes = slice(index * order, (index + 1) * order)
         for side, on_side in enumerate((near_first, ~near_first)[:sides]):
-            points = np.flatnonzero(inside & on_side & (panel == number))
+            points = np.flatnonzero(inside & on_side & (panel == index))
             matrix[points, side * count + nodes.start : side * count + nodes.stop] = lagrange_weights(
                 positions[nodes], from_end[points]
             )
     matrix[on_end, sides * count + np.arange(on_end.size)] = 1.0
-    parts = [positions, length - positions] if sides == 2 else [positions]
-    return np.concatenate([*parts, x[on_end]]), matrix
+    sides_positions = [positions, length - positions] if sides == 2 else [positions]
+    return np.concatenate([*sides_positions, x[on_end]]), matrix

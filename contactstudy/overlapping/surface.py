@@ -25,17 +25,21 @@ from contactstudy.cache import cached
 from contactstudy.checks import ComplexArray, FloatArray
 from contactstudy.kernels.convolution import spectrum_matrices
 from contactstudy.kernels.load import Load, Response
-from contactstudy.overlapping.axial import AxialModes, SingleMirrorModes, modes_between_ends
+from contactstudy.overlapping.axial_modes import AxialModes, SingleMirrorModes, modes_between_ends
 from contactstudy.overlapping.equations import EquationSet
-from contactstudy.overlapping.lateral import ALONE, BENDING_POLES, POLES, LateralPanel, lateral_panels
+from contactstudy.overlapping.lateral_modes import BENDING_POLES, POLE_PANEL_FACTOR, POLES, LateralPanel, lateral_panels
 from contactstudy.overlapping.quadrature import POSITIONS_PER_PANEL, Resolution, cell_moments, graded_positions
 
-MORE_NODES = 2
+EXTRA_NODES = 2
 """Wavenumbers along y per panel beyond those for a field: an operator is built once for every load. Accuracy."""
 
-STEEPER = 1.25  # angle of the axial ray, and step along it, over those for a field: no ray of depths limits it. Speed.
+RAY_FACTOR = (
+    1.25  # angle of the axial ray, and step along it, over those for a field: no ray of depths limits it. Speed.
+)
 
-FINER = 8  # cells along y over the finest resolved distance from an end, if cells along x are narrow there. Accuracy.
+CELLS_PER_FINEST = (
+    8  # cells along y over the finest resolved distance from an end, if cells along x are narrow there. Accuracy.
+)
 
 
 class EndRequest(NamedTuple):
@@ -66,13 +70,13 @@ class EndRequest(NamedTuple):
         if not grid.uniform:
             # Next to a loaded end the pressure follows the ends' part down to some hundredths of the contact's width.
             end_width = min(grid.widths[0], grid.widths[-1]) if np.isfinite(freed.length) else grid.widths[0]
-            finest = grid.dy / FINER if end_width <= 2 * grid.dy else grid.dy
+            finest = grid.dy / CELLS_PER_FINEST if end_width <= 2 * grid.dy else grid.dy
         resolution = resolution.for_loads(chain.from_iterable(responses))
         finer = replace(
             resolution,
-            angle=STEEPER * resolution.angle,
-            step=STEEPER * resolution.step,
-            lateral_nodes=resolution.lateral_nodes + MORE_NODES,
+            angle=RAY_FACTOR * resolution.angle,
+            step=RAY_FACTOR * resolution.step,
+            lateral_nodes=resolution.lateral_nodes + EXTRA_NODES,
         )
         return cls(
             freed=freed,
@@ -125,7 +129,7 @@ def sum_of_ends(sides: list[FloatArray], sign: int) -> FloatArray:
 
 
 @dataclass(frozen=True, eq=False)
-class Waves:
+class PositionWaves:
     """Positions in axial modes: shared by all wavenumbers along y of these modes."""
 
     modes: AxialModes
@@ -133,14 +137,14 @@ class Waves:
     by_load: Mapping[Load, ComplexArray]  # (mode, position): weighted spectra of unit loads at the positions
 
     @classmethod
-    def of(cls, modes: AxialModes, positions: FloatArray, responses: Sequence[Response]) -> Waves:
+    def of(cls, modes: AxialModes, positions: FloatArray, responses: Sequence[Response]) -> PositionWaves:
         """Waves for all directions of some responses."""
         within, weights = positions[positions <= modes.reach], modes.load_weights[:, None]
         by_load = {load: weights * modes.wave(load, within) for load in dict.fromkeys(chain.from_iterable(responses))}
         return cls(modes, within, by_load)
 
 
-def sampled_kernel(waves: Waves, wavenumber: float, request: EndRequest, shortest: float) -> list[FloatArray]:
+def sampled_kernel(waves: PositionWaves, wavenumber: float, request: EndRequest, shortest: float) -> list[FloatArray]:
     """Correction between the graded positions within reach at one wavenumber, for each of the responses."""
     modes, material, responses = waves.modes, request.material, request.responses
     factor = (1 - material.poisson) / material.shear_modulus * (np.pi if modes.parity else np.pi / 2)
@@ -149,7 +153,7 @@ def sampled_kernel(waves: Waves, wavenumber: float, request: EndRequest, shortes
     if isinstance(modes, SingleMirrorModes):  # no reciprocity: its ends carry shear
         k = np.sqrt(modes.wavenumbers**2 + wavenumber**2)  # eq. (28)
         compliance = modes.cosine(waves.positions) * ((1 - material.poisson) / material.shear_modulus / k)[:, None]
-        top = {load: system.on_top(system.solve(system.source(load, waves.by_load[load]))) for load in loads}
+        top = {load: system.spectrum_on_top(system.solve(system.source(load, waves.by_load[load]))) for load in loads}
         return [np.real(compliance.T @ top[response.load]) for response in responses]
     sources = {load: system.source(load, spectrum) for load, spectrum in waves.by_load.items()}
     face_loads = {load: system.solve(sources[load]) for load in loads}
@@ -160,7 +164,7 @@ def sampled_kernel(waves: Waves, wavenumber: float, request: EndRequest, shortes
             # Reciprocity up to rounding, which two ends amplify.
             reverse = kernel if displacement is load else sources[load].T @ face_loads[displacement]
             kernel = 0.5 * (kernel + reverse.T)
-        # Without the factor i of an odd kernel: the conjugate of ``i s`` does the work.
+        # Without the factor i of an odd kernel: the conjugate of ``i s`` includes the sign.
         sign = -1 if displacement.sign_y < 0 < load.sign_y else 1
         kernels.append(factor * sign * kernel)
     return kernels
@@ -173,7 +177,7 @@ def end_kernel(request: EndRequest) -> EndKernel:
     relative = np.isfinite(length) and not mirrored_once
     window = 2 * request.dy * request.cells_y
     shortest = 0.5 * request.finest
-    # So far that a load on a single cell at the edge is right to 1e-4 there; smooth ones need half of it.
+    # A load on a single cell at the edge is accurate to 1e-4 at the edge; smooth loads need half of the range.
     last = 2 * max(2.0 * np.pi / request.dy, 6.0 / request.finest)
     reference = request.reference if relative else None
     half = 0.5 * length if np.isfinite(length) else request.span
@@ -182,33 +186,33 @@ def end_kernel(request: EndRequest) -> EndKernel:
     even_matrix, odd_matrix = spectrum_matrices(request.cells_y)
     # From samples at the offsets to the padded grid's transform; an odd kernel is -sin(k y).
     transforms = np.ascontiguousarray(even_matrix.T), np.ascontiguousarray(-odd_matrix.T)
-    spread: dict[Response, list[FloatArray]] = {}
+    samples_by_response: dict[Response, list[FloatArray]] = {}
     shared_samples: dict[float, FloatArray] = {}  # samples at wavenumbers that kernels with either pole share
     for poles in sorted({_poles(response) for response in request.responses}):
-        first = ALONE[poles] / min(length, 4 * max(request.span, window))
+        first = POLE_PANEL_FACTOR[poles] / min(length, 4 * max(request.span, window))
         panels = lateral_panels(first, 0.5 * window, last, request.resolution, reference, poles=poles)
         responses = [response for response in request.responses if _poles(response) == poles]
-        numbers = [request.responses.index(response) for response in responses]
+        indices = [request.responses.index(response) for response in responses]
         size, parities = positions.size, len(request.parities)
         totals = np.zeros((len(responses), parities, request.cells_y + 1, size**2))
         for panel in panels:
             even, odd = (
-                transform @ (waves.T * (request.dy * np.sinc(panel.fine * request.dy / (2 * np.pi))))
+                transform @ (waves.T * (request.dy * np.sinc(panel.fine_nodes * request.dy / (2 * np.pi))))
                 for transform, waves in zip(transforms, panel.waves(offsets), strict=True)
             )
             if panel.interpolation is not None:
                 even, odd = even @ panel.interpolation, odd @ panel.interpolation
             samples = np.zeros((len(responses), parities, panel.nodes.size, size, size))
-            for node, sampled in enumerate(_samples(request, panel, positions, shortest, shared_samples)):
-                reach = sampled.shape[-1]
-                samples[:, :, node, :reach, :reach] = sampled[:, numbers].swapaxes(0, 1)
+            for node, sampled in enumerate(_sample_panel(request, panel, positions, shortest, shared_samples)):
+                count = sampled.shape[-1]
+                samples[:, :, node, :count, :count] = sampled[:, indices].swapaxes(0, 1)
             for response, total, response_samples in zip(responses, totals, samples, strict=True):
                 for sums, parity_samples in zip(total, response_samples, strict=True):
                     add_product(sums, even if response.sign_y > 0 else odd, parity_samples.reshape(-1, size**2))
         shape = (request.cells_y + 1, size, size)
         for response, total in zip(responses, totals, strict=True):
-            spread[response] = [sums.reshape(shape) for sums in total]
-    return EndKernel(request, edges, positions, spread)
+            samples_by_response[response] = [sums.reshape(shape) for sums in total]
+    return EndKernel(request, edges, positions, samples_by_response)
 
 
 def _poles(response: Response) -> int:
@@ -216,29 +220,29 @@ def _poles(response: Response) -> int:
     return BENDING_POLES if Load.ALONG_X in response else POLES
 
 
-def _samples(
+def _sample_panel(
     request: EndRequest,
     panel: LateralPanel,
     positions: FloatArray,
     shortest: float,
     shared_samples: dict[float, FloatArray],
 ) -> Iterator[FloatArray]:
-    """Kernel at each of a panel's wavenumbers, if not yet `known`: arrays (parity, response, position, position)."""
+    """Kernel at a panel's wavenumbers, or from `shared_samples`: arrays (parity, response, position, position)."""
     length, mirrored_once = request.freed
-    smallest = float(panel.nodes[0])
-    modes = modes_between_ends(length, smallest, shortest, request.resolution, mirrored_once=mirrored_once)
-    waves = [Waves.of(mode, positions, request.responses) for mode in modes]
-    shared = len({_poles(response) for response in request.responses}) > 1
+    first = float(panel.nodes[0])
+    modes = modes_between_ends(length, first, shortest, request.resolution, mirrored_once=mirrored_once)
+    waves = [PositionWaves.of(mode, positions, request.responses) for mode in modes]
+    is_shared = len({_poles(response) for response in request.responses}) > 1
     for wavenumber in panel.nodes.tolist():
-        sampled = shared_samples.get(wavenumber)
-        if sampled is None:
-            sampled = np.array([sampled_kernel(mode_waves, wavenumber, request, shortest) for mode_waves in waves])
+        kernel = shared_samples.get(wavenumber)
+        if kernel is None:
+            kernel = np.array([sampled_kernel(mode_waves, wavenumber, request, shortest) for mode_waves in waves])
             # Ends without interaction: either parity has half of a quarter space.
             if len(request.parities) > len(modes):
-                sampled = 0.5 * np.repeat(sampled, 2, axis=0)
-            if shared:
-                shared_samples[wavenumber] = sampled
-        yield sampled
+                kernel = 0.5 * np.repeat(kernel, 2, axis=0)
+            if is_shared:
+                shared_samples[wavenumber] = kernel
+        yield kernel
 
 
 def add_product(total: FloatArray, first: FloatArray, second: FloatArray) -> None:
@@ -260,35 +264,35 @@ class EndCorrection:
     the factor i of kernels odd along y."""
     cell: float  # cell size along x
 
-    def gathered(self, load: Load, transform: ComplexArray) -> list[FloatArray]:
+    def project_loads(self, load: Load, transform: ComplexArray) -> list[FloatArray]:
         """Per parity, a load's transform on the graded positions: (real or imaginary part, wavenumber, position)."""
         # A product of a kernel with one column at a time is three times faster than with both.
         # The operator is real: real products on pairs of real and imaginary part are four times faster.
         pairs = np.ascontiguousarray(transform).view(np.float64)
-        folded = zip(self.moments[load], self._folded(pairs, load.sign_x), strict=True)
+        folded = zip(self.moments[load], self._fold(pairs, load.sign_x), strict=True)
         return [
-            np.ascontiguousarray((moments @ part).reshape(len(moments), -1, 2).transpose(2, 1, 0))
-            for moments, part in folded
+            np.ascontiguousarray((moments @ parity_values).reshape(len(moments), -1, 2).transpose(2, 1, 0))
+            for moments, parity_values in folded
         ]
 
-    def displaced(self, direction: Load, loads: Mapping[Load, list[FloatArray]], cells: int) -> ComplexArray:
-        """Displacement in one direction, transformed along y (cell, wavenumber), from all `gathered` loads."""
-        sunk: list[FloatArray] = []
-        for number, moments in enumerate(self.moments[direction]):
-            total = np.zeros_like(next(iter(loads.values()))[number])
-            for load, gathered in loads.items():
+    def compute_displacement(self, direction: Load, loads: Mapping[Load, list[FloatArray]], cells: int) -> ComplexArray:
+        """Displacement in one direction, transformed along y (cell, wavenumber), from all `project_loads` loads."""
+        terms: list[FloatArray] = []
+        for index, moments in enumerate(self.moments[direction]):
+            total = np.zeros_like(next(iter(loads.values()))[index])
+            for load, projected in loads.items():
                 response = Response(direction, load)
-                kernel, (real, imaginary) = self.kernels[response][number], gathered[number]
+                kernel, (real, imaginary) = self.kernels[response][index], projected[index]
                 if response.sign_y > 0:
-                    total[0] += _product(kernel, real)
-                    total[1] += _product(kernel, imaginary)
+                    total[0] += _multiply_columns(kernel, real)
+                    total[1] += _multiply_columns(kernel, imaginary)
                 else:  # times i
-                    total[0] -= _product(kernel, imaginary)
-                    total[1] += _product(kernel, real)
-            sunk.append(moments.T @ np.ascontiguousarray(total.transpose(2, 1, 0)).reshape(len(moments), -1))
-        return np.asarray(self._unfolded(sunk, cells, direction.sign_x).view(np.complex128) / self.cell)
+                    total[0] -= _multiply_columns(kernel, imaginary)
+                    total[1] += _multiply_columns(kernel, real)
+            terms.append(moments.T @ np.ascontiguousarray(total.transpose(2, 1, 0)).reshape(len(moments), -1))
+        return np.asarray(self._unfold(terms, cells, direction.sign_x).view(np.complex128) / self.cell)
 
-    def _folded(self, values: FloatArray, sign_x: int) -> list[FloatArray]:
+    def _fold(self, values: FloatArray, sign_x: int) -> list[FloatArray]:
         """Sum and difference of the cells on either side of the middle, by parity; with one end, the cells."""
         if len(self.parities) == 1:
             return [values]
@@ -296,30 +300,30 @@ class EndCorrection:
         half = (cells + 1) // 2
         near, far = values[:half], values[::-1][:half]
         even, odd = near + far, near - far
-        if cells % 2:  # the middle cell has met itself
+        if cells % 2:  # the middle cell is its own image
             even[-1] *= 0.5
         return [even, odd] if sign_x > 0 else [odd, even]
 
-    def _unfolded(self, parts: list[FloatArray], cells: int, sign_x: int) -> FloatArray:
-        """Undo `_folded`, up to its factor."""
-        if len(parts) == 1:
-            return parts[0]
-        even, odd = parts if sign_x > 0 else parts[::-1]
+    def _unfold(self, parity_values: list[FloatArray], cells: int, sign_x: int) -> FloatArray:
+        """Undo `_fold`, up to its factor."""
+        if len(parity_values) == 1:
+            return parity_values[0]
+        even, odd = parity_values if sign_x > 0 else parity_values[::-1]
         values = np.empty((cells, even.shape[1]))
         np.add(even, odd, out=values[: even.shape[0]])
         np.subtract(even[: cells // 2], odd[: cells // 2], out=values[::-1][: cells // 2])
         return values
 
-    def coarsened(self) -> EndCorrection:
+    def coarsen(self) -> EndCorrection:
         """Return the correction on cells of twice the size, for a first guess: the lower half of the wavenumbers."""
         coarse: dict[Load, list[FloatArray]] = {}
         for direction, moments in self.moments.items():
-            joined = []
+            coarse_moments = []
             for parity, fine in zip(self.parities, moments, strict=True):
                 if parity and fine.shape[1] % 2:  # the middle cell of the coarse grid lies on both sides
                     fine = np.hstack([fine, parity * direction.sign_x * fine[:, -1:]])
-                joined.append(fine[:, ::2] + fine[:, 1::2])
-            coarse[direction] = joined
+                coarse_moments.append(fine[:, ::2] + fine[:, 1::2])
+            coarse[direction] = coarse_moments
         lower = {
             response: [kernel[: (len(kernel) - 1) // 2 + 1] for kernel in kernels]
             for response, kernels in self.kernels.items()
@@ -327,7 +331,7 @@ class EndCorrection:
         return EndCorrection(self.parities, coarse, lower, 2 * self.cell)
 
     @classmethod
-    def on(cls, grid: Grid, ends: EndKernel) -> EndCorrection:
+    def on_grid(cls, grid: Grid, ends: EndKernel) -> EndCorrection:
         """Correction on uniform cells that begin at ``x = 0``."""
         near = (grid.cells_x + 1) // 2
         parities, sides = ends.request.parities, ends.moments(grid.x_edges)
@@ -341,6 +345,6 @@ class EndCorrection:
         return cls(parities, moments, ends.samples, grid.dx)
 
 
-def _product(kernel: FloatArray, values: FloatArray) -> FloatArray:
+def _multiply_columns(kernel: FloatArray, values: FloatArray) -> FloatArray:
     """Product of a matrix for each wavenumber (wavenumber, position, position) with its column."""
     return np.asarray(np.matmul(kernel, values[..., None])[..., 0])

@@ -87,7 +87,10 @@ class Shape:
             value = getattr(self, entry.name)
             if value != entry.default:
                 is_number = isinstance(value, (int, float)) and not isinstance(value, bool)
-                yield entry.name, format_quantity(value, UNITS.get(entry.name, "m")) if is_number else describe_profile(value)
+                yield (
+                    entry.name,
+                    format_quantity(value, UNITS.get(entry.name, "m")) if is_number else describe_profile(value),
+                )
 
     def __add__(self, other: object) -> Sum:
         """Return the sum of both profiles."""

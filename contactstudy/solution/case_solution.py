@@ -22,8 +22,8 @@ from contactstudy.case.magnitudes import check_balanced, check_on_its_length, de
 from contactstudy.case.motion import Sliding
 from contactstudy.contact.normal.contact import Contact, Settings, contact_of
 from contactstudy.contact.refinement.refined_contact import (
+    ROUGH_ACCURACY,
     ROUGH_TOLERANCE,
-    ROUGHLY,
     ApproachContact,
     approach_load_error,
     contact_at_approach,
@@ -36,10 +36,10 @@ from contactstudy.contact.rolling.frictional_contact import FrictionalContact, f
 from contactstudy.contact.rolling.tractions import FrictionRequest
 from contactstudy.contact.solve import contact_dataset
 from contactstudy.errors import InvalidInputError, WindowError
-from contactstudy.fields.largest import Largest
 from contactstudy.fields.loads import TopLoad, sliding
 from contactstudy.fields.positions import FieldPositions, Positions, default_columns, default_depths, field_positions
 from contactstudy.fields.stress import contact_stresses
+from contactstudy.fields.stress_maximum import StressMaximum
 from contactstudy.kernels.load import Load
 from contactstudy.roughness import heights_on
 
@@ -89,11 +89,18 @@ def refined_case_contact(case: Case, accuracy: float, tolerance: float) -> CaseC
         solution = ApproachContact(case, refine_contact(case, accuracy, tolerance))
     else:
         solution = contact_at_approach(case, accuracy, tolerance)
-    loaded, normal = solution
-    contact, values, tractions = _checked(loaded, normal.contact), refined_values(normal), None
+    loaded_case, refined_contact = solution
+    contact, values, tractions = (
+        _check_contact(loaded_case, refined_contact.contact),
+        refined_values(refined_contact),
+        None,
+    )
     if not isinstance(case.motion, Sliding):
-        refined = refine_tractions(loaded, normal, accuracy)
-        tractions, values = refined.contact, refined_values(refined.normal).assign(refined.error_dataset().data_vars)
+        refined_tractions = refine_tractions(loaded_case, refined_contact, accuracy)
+        tractions, values = (
+            refined_tractions.contact,
+            refined_values(refined_tractions.normal).assign(refined_tractions.error_dataset().data_vars),
+        )
         tractions.warn_unless_converged()
         contact = tractions.contact
     if case.approach is not None:
@@ -108,8 +115,8 @@ def contact_on_cells(case: Case, grid: Grid | None, roughness: xr.DataArray | No
     cells: Cells = "chosen" if grid is None else "given"
     if grid is None:
         # At an approach the smooth roller determines the cells; the rough one carries another load.
-        loaded = case if case.approach is None else contact_at_approach(case, ROUGHLY, ROUGH_TOLERANCE).case
-        grid = choose_grid(loaded)
+        loaded_case = case if case.approach is None else contact_at_approach(case, ROUGH_ACCURACY, ROUGH_TOLERANCE).case
+        grid = choose_grid(loaded_case)
     clearance, tractions = case.gap(grid), None
     if not np.isfinite(clearance).any():
         raise InvalidInputError(
@@ -126,12 +133,12 @@ def contact_on_cells(case: Case, grid: Grid | None, roughness: xr.DataArray | No
         if not case.tilt and case.load_position is None:
             raise WindowError(advice) from error
         raise WindowError(f"{describe_inclination(case)}, and so deep at the roller's end that {advice}") from error
-    contact = _checked(case, contact)
+    contact = _check_contact(case, contact)
     if not isinstance(case.motion, Sliding):
         request = FrictionRequest(
             motion=case.motion,
             friction=case.friction_on(grid.x),
-            middle=case.roller_middle,
+            reference_x=case.roller_middle,
             coupled=case.coupled,
         )
         tractions = frictional_contact(contact.shape, contact.settings, request)
@@ -142,11 +149,11 @@ def contact_on_cells(case: Case, grid: Grid | None, roughness: xr.DataArray | No
 
 def _with_load(case: Case, contact: Contact) -> Case:
     """Case with a prescribed load in place of its approach."""
-    return case if case.approach is None else replace(case, load=contact.carried, approach=None)
+    return case if case.approach is None else replace(case, load=contact.carried_load, approach=None)
 
 
-def _checked(case: Case, contact: Contact) -> Contact:
-    """Contact; raises if the roller touches with its end only, warns unless it converged."""
+def _check_contact(case: Case, contact: Contact) -> Contact:
+    """Contact; raises if only the end of the roller touches, warns unless it converged."""
     shape = contact.shape
     check_on_its_length(_with_load(case, contact), shape.grid, shape.gap.values, contact.pressure)
     contact.warn_unless_converged()
@@ -171,7 +178,7 @@ def with_stresses(
     case, grid, loads, scale = contact.case, contact.grid, contact.loads, contact.case.hertz_half_width
     refined = contact.cells == "refined"
 
-    def positions(largest: Largest) -> FieldPositions:
+    def positions(largest: StressMaximum) -> FieldPositions:
         pressed = np.asarray(contact.contact.pressure.any(axis=1))
         columns = default_columns(grid, case.body.extent, pressed, scale) if x is None and refined else x
         depths = default_depths(scale, largest.position[2]) if z is None else z
@@ -222,7 +229,7 @@ def solve(
     z : sequence of float, optional
         Depths of the stresses, metres; default: from 0 to 5 Hertz half-widths, narrow at the largest stress.
     stresses : bool
-        Whether to compute the stresses at all.
+        Whether to compute the stresses.
     roughness : DataArray (x, y), optional
         Heights of the surfaces in metres, positive outward, as from `contactstudy.roughness`; on other cells they are
         interpolated linearly to the cell centres, which they must cover.

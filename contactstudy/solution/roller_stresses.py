@@ -64,20 +64,20 @@ def roller_stress(
     checks.instance("case", case, Case, "a Case")
     if case.counterbody is None:
         raise InvalidInputError("case.roller.material", None, "a Material: a rigid roller has no stresses")
-    slides = isinstance(case.motion, Sliding)
-    if not slides and (traction_x is None or traction_y is None):
+    slides_fully = isinstance(case.motion, Sliding)
+    if not slides_fully and (traction_x is None or traction_y is None):
         raise InvalidInputError(
             "traction_x, traction_y", None, "those of the result: they do not follow from the pressure"
         )
-    grid, on_body, *_ = prescribed_loads(case.body, pressure, 0.0, traction_x, traction_y)
-    if slides and traction_y is None:
-        on_body = {**on_body, **sliding(on_body[Load.NORMAL].cells, case.friction_on(grid.x))}
+    grid, body_loads, *_ = prescribed_loads(case.body, pressure, 0.0, traction_x, traction_y)
+    if slides_fully and traction_y is None:
+        body_loads = {**body_loads, **sliding(body_loads[Load.NORMAL].cells, case.friction_on(grid.x))}
     body, roller_grid = case.counterbody.body, case.counterbody.grid_on_body(grid)
     loads = {
         load: TopLoad(
             case.counterbody.transfer_load(grid, top.cells), top.factor if load is Load.NORMAL else -top.factor
         )
-        for load, top in on_body.items()
+        for load, top in body_loads.items()
     }
     return stress_dataset(
         body, loads, roller_grid, field_positions(body, roller_grid, x, y, z), loads[Load.NORMAL].values

@@ -16,7 +16,7 @@ from contactstudy.fields.loads import sliding
 from contactstudy.fields.stress import end_traction_residual, stress_field
 from contactstudy.fields.surface import surface_displacement
 from contactstudy.kernels.load import Load
-from contactstudy.overlapping.axial import axial_modes
+from contactstudy.overlapping.axial_modes import axial_modes
 from contactstudy.overlapping.equations import EquationSet
 from contactstudy.overlapping.quadrature import Resolution
 from contactstudy.verification import closed_forms
@@ -331,7 +331,7 @@ def alternation_checks() -> Iterator[Check]:
     )
     direct_solution, face_load = system.solve(source), source.copy()
     for _ in range(200):
-        face_load = source + system.source(Load.NORMAL, modes.on_end * system.on_top(system.scale * face_load))
+        face_load = source + system.source(Load.NORMAL, modes.on_end * system.spectrum_on_top(system.scale * face_load))
     scale, iterated_solution = np.abs(direct_solution).max(), system.scale * face_load
     case, iteration = "equivalent loads at one wavenumber, 200 alternations", "iteration of Hetenyi (1970) and Keer"
     quantity = "face loads over the largest"

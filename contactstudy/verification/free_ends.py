@@ -25,7 +25,7 @@ from contactstudy.contact.solve import solve_contact
 from contactstudy.fields.stress import stress_field
 from contactstudy.fields.surface import surface_displacement
 from contactstudy.kernels.load import Load
-from contactstudy.overlapping.axial import axial_modes
+from contactstudy.overlapping.axial_modes import axial_modes
 from contactstudy.overlapping.equations import EquationSet
 from contactstudy.overlapping.quadrature import Resolution
 from contactstudy.stress import maximum_shear, von_mises
@@ -104,7 +104,7 @@ def resultant_checks() -> Iterator[Check]:
         system = EquationSet.build(modes, lateral, poisson, 1e-4, settings)
         spectrum = modes.load_weights * modes.cosine(np.array([distance]))[:, 0]
         solution = system.solve(system.source(Load.NORMAL, spectrum))
-        on_top = system.on_top(solution) / modes.weights
+        on_top = system.spectrum_on_top(solution) / modes.weights
         low = np.abs(modes.ray) < 3e-3  # against 1 / distance; the lateral wavenumber is smaller still
         top = 1 + 0.5 * np.pi * float(np.interp(1e-3, np.abs(modes.ray[low]), on_top.real[low]))
         end = -0.5 * np.pi * float(np.interp(1e-3, system.depth, solution / system.scale))

@@ -25,7 +25,7 @@ from contactstudy.case.roller import snap_to_ends
 from contactstudy.checks import FloatArray
 from contactstudy.contact.normal.conjugate_gradients import ContactIterate
 from contactstudy.contact.normal.contact import Settings, Shape, check_window, contact_operator
-from contactstudy.contact.normal.prescribed import Prescribed, RigidMotion
+from contactstudy.contact.normal.prescribed_loads import PrescribedLoad, RigidMotion
 from contactstudy.contact.normal.problem import ContactOperator, ContactProblem, solve_coupled, solve_normal
 from contactstudy.contact.refinement.refined_contact import refine_contact
 from contactstudy.contact.rolling.frictional_contact import frictional_contact
@@ -97,7 +97,7 @@ class WornContact:
                     return solve_coupled(operator, problem)
                 return solve_normal(operator, problem, start if guess is None else guess)
 
-            solution = shape.referred(solve, self.settings.tolerance).iterate
+            solution = shape.solve_relative_to_reference(solve, self.settings.tolerance).iterate
         check_window(shape.body, solution.pressure)
         return PressureResult(solution.pressure, grid.dy * solution.pressure.sum(axis=1), solution.converged)
 
@@ -109,7 +109,7 @@ class WornContact:
             return np.ones(grid.cells_x) if law == "slip" else np.abs(friction)
         mid_length = case.roller_middle
         shape = self.shape._replace(gap=ArrayKey(self.shape.gap.values + depth[:, None]))
-        request = FrictionRequest(motion=case.motion, friction=friction[:, None], middle=mid_length, coupled=False)
+        request = FrictionRequest(motion=case.motion, friction=friction[:, None], reference_x=mid_length, coupled=False)
         rolling = frictional_contact(shape, self.settings, request)
         rolling.warn_unless_converged()
         slip, traction = rolling.tractions.slip, rolling.tractions.traction
@@ -309,7 +309,7 @@ def wear_in(
     if stops[0] < distance_before or stops[-1] <= distance_before:
         raise InvalidInputError("distance", stops.tolist(), f"beyond {distance_before:g} m, where the wear begins")
     gap = case.gap(cells)
-    prescribed = Prescribed(case.normal_load, case.load_position).checked(gap, cells)
+    prescribed = PrescribedLoad(case.normal_load, case.load_position).check(gap, cells)
     shape = Shape(case.body, cells, ArrayKey(gap), prescribed, case.counterbody, coupled_friction=case.coupled_friction)
     # Bound on the iterations of one contact; large steps change the contact area often
     contact = WornContact(case, shape, Settings(max_iterations=2000))

@@ -46,7 +46,7 @@ def contact_shape(body, counter: Counterbody, cells: int, length: float, radius_
     return xr.DataArray(np.where(facing, gap, np.inf), coords={"x": grid.x, "y": grid.y}, dims=("x", "y"))
 
 
-def test_two_half_spaces_are_one_of_the_combined_modulus():
+def test_two_half_spaces_equal_combined_modulus():
     rigid = Case(
         body=HalfSpace(material=Material(STEEL.young / 2, 0.3)),
         roller=Roller(radius=5e-3, length=8 * HALF_WIDTH),
@@ -62,7 +62,7 @@ def test_two_half_spaces_are_one_of_the_combined_modulus():
     assert np.abs(first - second).max() < 1e-9 * first.max()
 
 
-def test_equal_materials_as_half_spaces_do_not_couple_with_friction():
+def test_equal_half_spaces_do_not_couple_friction():
     roller = Roller(radius=5e-3, length=8 * HALF_WIDTH, material=STEEL, ends="none", profile=FILLET)
     cases = [
         Case(body=HalfSpace(material=STEEL), roller=roller, max_pressure=1e9, friction=0.5, coupled=coupled)
@@ -82,7 +82,7 @@ def test_equal_materials_as_half_spaces_do_not_couple_with_friction():
         (STEEL, ALUMINIUM),
     ],
 )
-def test_friction_moves_the_contact_of_unlike_materials(first: Material, second: Material | None):
+def test_friction_moves_contact_of_different_materials(first: Material, second: Material | None):
     """Bodies with mirrored ends only are in plane strain; the wrong sign would put the centre on the other side."""
     friction, radius, load = 0.5, 1.0, 2e-4 * first.plane_strain_modulus
     exact = sliding_line(load, radius, friction, first, second)
@@ -93,14 +93,14 @@ def test_friction_moves_the_contact_of_unlike_materials(first: Material, second:
         return FiniteLengthSpace(length=1.0, material=material, model="mirror")
 
     counter = None if second is None else Counterbody(bar(second))
-    found = solve_contact(
+    computed = solve_contact(
         bar(first), gap, load=load, friction=friction, counterbody=counter, settings=ContactSettings(coupled=True)
     ).pressure.isel(x=1)
     assert abs(exact.centre) > 0.03 * exact.half_width
-    expected = exact.pressure(found.y.values)
-    assert np.abs(found.values - expected).max() < 0.04 * expected.max()  # in the cell at the steep edge
-    assert np.median(np.abs(found.values - expected)[expected > 0]) < 5e-4 * expected.max()
-    centroid, expected_centroid = (np.average(found.y, weights=weights) for weights in (found.values, expected))
+    expected = exact.pressure(computed.y.values)
+    assert np.abs(computed.values - expected).max() < 0.04 * expected.max()  # in the cell at the steep edge
+    assert np.median(np.abs(computed.values - expected)[expected > 0]) < 5e-4 * expected.max()
+    centroid, expected_centroid = (np.average(computed.y, weights=weights) for weights in (computed.values, expected))
     assert centroid == pytest.approx(expected_centroid, abs=1e-3 * exact.half_width)
 
 
@@ -108,21 +108,21 @@ def flexibility(body: FiniteLengthSpace, grid: Grid) -> np.ndarray:
     """Displacement of every cell under unit pressure on every other: array (x, y, x, y)."""
     unit = np.eye(grid.cells_x * grid.cells_y).reshape(-1, *grid.shape)
     columns = [
-        surface_displacement(body, xr.DataArray(each, coords={"x": grid.x, "y": grid.y}, dims=("x", "y"))).values
-        for each in unit
+        surface_displacement(body, xr.DataArray(variant, coords={"x": grid.x, "y": grid.y}, dims=("x", "y"))).values
+        for variant in unit
     ]
     return np.array(columns).reshape(*grid.shape, *grid.shape)
 
 
 @pytest.mark.parametrize("start", [-2, 1])
-def test_two_finite_bodies_against_quadratic_programming(start: int):
+def test_two_finite_bodies_match_quadratic_programming(start: int):
     """Flexibilities of both bodies added up by hand, and the least energy found by Lawson and Hanson's active sets."""
     per_unit, across, load = 2, (-1.5, 1.5), 1.5
     body = FiniteLengthSpace(length=8.0, material=Material(1.0, 0.3))
     counter = FiniteLengthSpace(length=6.0, material=Material(2.0, 0.25))
     grid, own = (
-        Grid(x_range=(0.0, each.length), y_range=across, cells_x=round(per_unit * each.length), cells_y=9)
-        for each in (body, counter)
+        Grid(x_range=(0.0, variant.length), y_range=across, cells_x=round(per_unit * variant.length), cells_y=9)
+        for variant in (body, counter)
     )
     both = flexibility(body, grid)
     shift = per_unit * start
@@ -131,14 +131,14 @@ def test_two_finite_bodies_against_quadratic_programming(start: int):
     both[first:last, :, first:last] += flexibility(counter, own)[own_range, :, own_range]
     gap = on_cells(lambda x, y: (x - start - 3) ** 2 / 40 + y**2 / 2, (0.0, 8.0), across, grid.shape)
     gap = gap.where((gap.x > start) & (gap.x < start + 6), np.inf)
-    found = solve_contact(
+    computed = solve_contact(
         body, gap, load=load, counterbody=Counterbody(counter, start), settings=ContactSettings(tolerance=1e-8)
     )
 
     # The lines to which the prescribed tilt refers turn under the load.
-    carried = Counterbody(counter, start).transfer_load(grid, found.pressure.values)
-    tops = (found.pressure, xr.DataArray(carried, coords={"x": own.x, "y": own.y}, dims=("x", "y")))
-    slopes = [line_slope(each, top, each.length) for each, top in zip((body, counter), tops, strict=True)]
+    carried = Counterbody(counter, start).transfer_load(grid, computed.pressure.values)
+    tops = (computed.pressure, xr.DataArray(carried, coords={"x": own.x, "y": own.y}, dims=("x", "y")))
+    slopes = [line_slope(variant, top, variant.length) for variant, top in zip((body, counter), tops, strict=True)]
     gap = gap - sum(slopes) * gap.x
 
     possible = np.isfinite(gap.values).ravel()
@@ -150,23 +150,23 @@ def test_two_finite_bodies_against_quadratic_programming(start: int):
     pressure, _ = optimize.nnls(factor.T, np.linalg.solve(factor, right), maxiter=10_000)
     expected = np.zeros(possible.size)
     expected[possible] = pressure * load / (pressure.sum() * area)
-    np.testing.assert_allclose(found.pressure.values.ravel(), expected, atol=1e-5 * expected.max())
+    np.testing.assert_allclose(computed.pressure.values.ravel(), expected, atol=1e-5 * expected.max())
 
 
-def test_exchanged_bodies_press_alike():
+def test_exchanged_bodies_have_equal_pressure():
     first = FiniteLengthSpace(length=8 * HALF_WIDTH, material=STEEL)
     second = FiniteLengthSpace(length=6 * HALF_WIDTH, material=ALUMINIUM)
     below, above = Counterbody(second, HALF_WIDTH), Counterbody(first, -HALF_WIDTH)
     gap = contact_shape(first, below, 32, first.length)
     exchanged = gap.isel(x=slice(4, 28)).assign_coords(x=gap.x[4:28] - HALF_WIDTH)
     settings = ContactSettings(coupled=True, tolerance=1e-8)
-    one = solve_contact(first, gap, load=100.0, friction=0.4, counterbody=below, settings=settings)
-    other = solve_contact(second, exchanged, load=100.0, friction=-0.4, counterbody=above, settings=settings)
-    pressure = one.pressure.values[4:28]
-    assert np.abs(pressure - other.pressure.values).max() < 2e-6 * pressure.max()
+    item = solve_contact(first, gap, load=100.0, friction=0.4, counterbody=below, settings=settings)
+    variant = solve_contact(second, exchanged, load=100.0, friction=-0.4, counterbody=above, settings=settings)
+    pressure = item.pressure.values[4:28]
+    assert np.abs(pressure - variant.pressure.values).max() < 2e-6 * pressure.max()
 
 
-def test_flush_bodies_of_one_material_sink_alike_and_symmetrically():
+def test_equal_flush_bodies_have_equal_displacements():
     body = FiniteLengthSpace(length=8 * HALF_WIDTH, material=STEEL)
     case = Case(body=body, roller=Roller(radius=5e-3, length=8 * HALF_WIDTH, material=STEEL), max_pressure=1.5e9)
     soft = Case(
@@ -174,13 +174,13 @@ def test_flush_bodies_of_one_material_sink_alike_and_symmetrically():
         roller=Roller(radius=5e-3, length=8 * HALF_WIDTH),
         max_pressure=1.5e9,
     )
-    pressure, rigid = (solve(each, stresses=False, accuracy=0.05).pressure.values for each in (case, soft))
+    pressure, rigid = (solve(variant, stresses=False, accuracy=0.05).pressure.values for variant in (case, soft))
     np.testing.assert_allclose(pressure, rigid, atol=1e-6 * rigid.max())
     np.testing.assert_allclose(pressure, pressure[::-1], atol=1e-6 * rigid.max())
 
 
 @pytest.mark.parametrize("distance", [-1.5, 1.0])
-def test_a_very_stiff_roller_is_a_rigid_one(distance: float):
+def test_stiff_roller_equals_rigid_roller(distance: float):
     body = FiniteLengthSpace(length=9 * HALF_WIDTH, material=STEEL)
     pressures = [
         solve(
@@ -198,7 +198,7 @@ def test_a_very_stiff_roller_is_a_rigid_one(distance: float):
     np.testing.assert_allclose(pressures[1], pressures[0], atol=1e-5 * pressures[0].max())
 
 
-def test_a_steel_roller_tilted_onto_its_sharp_end_converges():
+def test_tilted_steel_roller_converges():
     # The overlap of the first guess is deep here, and cells that enter the contact all at once overshoot.
     case = Case(
         body=FiniteLengthSpace(length=4.2e-3, material=STEEL),
@@ -212,7 +212,7 @@ def test_a_steel_roller_tilted_onto_its_sharp_end_converges():
     assert int(result.iterations) < 110
 
 
-def test_ends_between_the_borders_of_cells_cost_little():
+def test_ends_between_cell_edges_change_little():
     """A roller whose ends cut cells: the error falls with their size, and is small away from the fillet's peak."""
     body = FiniteLengthSpace(length=14 * HALF_WIDTH, material=STEEL)
     roller = Roller(radius=5e-3, length=10 * HALF_WIDTH, material=STEEL, profile=FILLET)
@@ -228,13 +228,13 @@ def test_ends_between_the_borders_of_cells_cost_little():
     assert errors[1] < 0.005
 
 
-def test_the_other_bodies_work_below_an_elastic_roller():
+def test_all_bodies_support_elastic_roller():
     roller = Roller(radius=5e-3, length=4 * HALF_WIDTH, material=ALUMINIUM, profile=FILLET)
     for body in (HalfSpace(material=STEEL), QuarterSpace(material=STEEL)):
         assert bool(solve(Case(body=body, roller=roller, max_pressure=1e9), stresses=False, accuracy=0.1).converged)
 
 
-def test_the_grid_meets_the_ends_of_an_elastic_roller():
+def test_grid_edges_contain_ends_of_elastic_roller():
     body = FiniteLengthSpace(length=14e-3, material=STEEL)
     case = Case(body=body, roller=Roller(radius=5e-3, length=10e-3, material=STEEL), max_pressure=1.5e9)
     grid = choose_grid(case, cells_x=2, cells_y=4)
@@ -242,7 +242,7 @@ def test_the_grid_meets_the_ends_of_an_elastic_roller():
     assert abs(borders - round(borders)) < 0.02
 
 
-def test_stresses_of_the_roller_carry_the_opposite_traction():
+def test_roller_stresses_have_opposite_traction():
     body = FiniteLengthSpace(length=4 * HALF_WIDTH, material=STEEL)
     roller = Roller(radius=5e-3, length=4 * HALF_WIDTH, material=STEEL)
     case = Case(body=body, roller=roller, max_pressure=1e9, friction=0.3)
@@ -254,7 +254,7 @@ def test_stresses_of_the_roller_carry_the_opposite_traction():
     np.testing.assert_allclose(mirrored.von_mises.values, result.von_mises.values, rtol=1e-5)
 
 
-def test_a_rigid_roller_has_no_stresses(short_body):
+def test_stresses_of_rigid_roller_raise_error(short_body):
     case = Case(body=short_body, roller=Roller(radius=100.0, length=8.0), load=0.1)
     pressure = solve(case, stresses=False, accuracy=0.1).pressure
     with pytest.raises(InvalidInputError, match="rigid"):
@@ -262,7 +262,7 @@ def test_a_rigid_roller_has_no_stresses(short_body):
 
 
 @given(st.floats(-0.5, 1.0), st.floats(0.6, 2.0), st.integers(4, 40))
-def test_loads_are_carried_over_without_loss(start: float, length: float, cells: int):
+def test_transfer_preserves_loads(start: float, length: float, cells: int):
     counter = Counterbody(FiniteLengthSpace(length=length, material=STEEL), start)
     grid = Grid(x_range=(0.0, 1.7), y_range=(-1.0, 1.0), cells_x=cells, cells_y=2)
     facing = (grid.x > start) & (grid.x < start + length)
@@ -271,7 +271,7 @@ def test_loads_are_carried_over_without_loss(start: float, length: float, cells:
     assert carried.sum() * counter.grid_on_body(grid).cell_area == pytest.approx(load.sum() * grid.cell_area, rel=1e-12)
 
 
-def test_aligned_cells_are_carried_over_as_they_are():
+def test_transfer_of_aligned_cells_is_identity():
     counter = Counterbody(FiniteLengthSpace(length=1.0, material=STEEL), 0.5)
     overlap = counter.overlap(Grid(x_range=(0.0, 2.0), y_range=(-1.0, 1.0), cells_x=16, cells_y=2))
     np.testing.assert_allclose(overlap, np.eye(16)[4:12] / 8, atol=1e-12)
@@ -280,17 +280,17 @@ def test_aligned_cells_are_carried_over_as_they_are():
 @pytest.mark.parametrize(
     "arguments", [{"material": "steel"}, {"material": STEEL, "ends": "loose"}, {"material": STEEL, "ends": 1}]
 )
-def test_bad_rollers(arguments):
+def test_invalid_rollers_raise_error(arguments):
     with pytest.raises(InvalidInputError):
         Roller(radius=5e-3, length=1e-3, **arguments)
 
 
-def test_a_counterbody_needs_a_place():
+def test_counterbody_requires_position():
     with pytest.raises(InvalidInputError, match="counterbody"):
         Counterbody(QuarterSpace(material=STEEL))
 
 
-def test_the_counterbody_argument_is_checked(short_body):
+def test_invalid_counterbody_raises_error(short_body):
     gap = contact_shape(short_body, Counterbody(short_body), 16, 8.0)
     with pytest.raises(InvalidInputError, match="counterbody"):
         solve_contact(short_body, gap, load=1.0, counterbody=STEEL)

@@ -11,12 +11,12 @@ from tests.contact.refinement.rollers import CASES, HALF, RADIUS, SHORT, SHORT_E
 
 
 @pytest.mark.parametrize("body", [HALF, finite(SHORT)], ids=["half", "finite"])
-def test_gap_on_cells_of_any_width_has_the_contact_of_uniform_ones(body: HalfSpace | FiniteLengthSpace) -> None:
+def test_graded_cells_match_uniform_cells(body: HalfSpace | FiniteLengthSpace) -> None:
     """The verb for labelled gaps: the load is exact, the pressure that of uniform cells."""
     finite_body = isinstance(body, FiniteLengthSpace)
-    kept = np.concatenate([np.arange(16), np.arange(16, 48, 2), np.arange(48, 65)])
+    retained = np.concatenate([np.arange(16), np.arange(16, 48, 2), np.arange(48, 65)])
     uniform = Grid(x_range=(0.0, SHORT), y_range=(-2 * A, 2 * A), cells_x=64, cells_y=32)
-    graded = Grid.from_edges(uniform.x_edges[kept], uniform.y_range, 32)
+    graded = Grid.from_edges(uniform.x_edges[retained], uniform.y_range, 32)
     contacts = []
     for grid in (graded, uniform):
         inside = (grid.x > 0) & (grid.x < SHORT) if finite_body else (grid.x > 0.5 * A) & (grid.x < SHORT - 0.5 * A)
@@ -25,7 +25,7 @@ def test_gap_on_cells_of_any_width_has_the_contact_of_uniform_ones(body: HalfSpa
         contacts.append(solve_contact(body, gap, load=CASES["flush"].normal_load))
     there, here = contacts
     assert bool(there.converged)
-    middles = [float(each.pressure.sel(x=SHORT / 2, method="nearest").max()) for each in contacts]
+    middles = [float(contact.pressure.sel(x=SHORT / 2, method="nearest").max()) for contact in contacts]
     assert middles[0] == pytest.approx(middles[1], rel=5e-3)
     assert float(there.approach) == pytest.approx(float(here.approach), rel=5e-3)
     total = float((there.pressure * graded.widths[:, None]).sum()) * graded.dy
@@ -40,7 +40,7 @@ def gap_of(contact: xr.Dataset, grid: Grid) -> xr.DataArray:
     return contact.gap.copy(data=heights)
 
 
-def test_gap_on_cells_that_grow_too_steeply_is_refused_with_the_place() -> None:
+def test_steep_cell_growth_raises_error_with_position() -> None:
     widths = np.array([1.0, 1.0, 5.0, 5.0, 5.0, 1.5, 1.5])
     x = np.cumsum(widths) - 0.5 * widths
     y = np.linspace(-1.5, 1.5, 17)
@@ -50,7 +50,7 @@ def test_gap_on_cells_that_grow_too_steeply_is_refused_with_the_place() -> None:
         solve_contact(HALF, gap, load=1.0)
 
 
-def test_cells_that_miss_an_end_of_an_elastic_roller_are_refused_with_its_place() -> None:
+def test_cells_missing_roller_end_raise_error() -> None:
     case = CASES["elastic inside"]
     edges = SHORT_ELASTIC * np.array([0.0, 0.1, 0.3, 0.6, 0.8, 1.0])
     with pytest.raises(InvalidInputError, match=r"without a border at x = "):

@@ -30,7 +30,7 @@ def sphere_gap(cells: int, window: float = 1.5) -> xr.DataArray:
     )
 
 
-def test_sphere_on_an_even_number_of_cells_has_hertz_pressure_and_radius(half_space: HalfSpace) -> None:
+def test_sphere_on_even_cells_matches_hertz(half_space: HalfSpace) -> None:
     """No cell lies in the middle; the suite's checks have one there."""
     cells = 64
     radius, peak, _ = ref.hertz_point(load=4 / 3, radius=1.0, modulus=1.0)
@@ -53,9 +53,7 @@ def test_load_is_exact_and_the_certificate_holds(short_body: FiniteLengthSpace, 
     assert float(contact["open_pressure_error"]) == 0.0
 
 
-def test_pressure_falls_towards_a_free_end_where_a_half_space_makes_it_rise(
-    short_body: FiniteLengthSpace, half_space: HalfSpace, cylinder_gap
-) -> None:
+def test_free_end_reduces_end_pressure(short_body: FiniteLengthSpace, half_space: HalfSpace, cylinder_gap) -> None:
     peaks = {}
     for cells in (64, 128):
         gap = cylinder_gap(8.0, (cells, 64))
@@ -79,9 +77,7 @@ def _island(gap: xr.DataArray) -> xr.DataArray:
 
 @settings(max_examples=10)
 @given(length=st.floats(1.5, 12.0), poisson=st.floats(0.05, 0.5), factor=st.floats(0.3, 2.0))
-def test_end_pressure_stays_below_the_middle_for_any_length_load_and_poisson(
-    length: float, poisson: float, factor: float
-) -> None:
+def test_end_pressure_stays_below_mid_length_pressure(length: float, poisson: float, factor: float) -> None:
     body = FiniteLengthSpace(length=length, material=Material(1 - poisson**2, poisson))
     y = np.linspace(-1.9375 * factor, 1.9375 * factor, 32)
     x = length * (np.arange(16) + 0.5) / 16
@@ -93,7 +89,7 @@ def test_end_pressure_stays_below_the_middle_for_any_length_load_and_poisson(
     assert abs(float(contact["load_error"])) < 1e-10
 
 
-def test_mesh_is_no_part_of_the_answer(short_body: FiniteLengthSpace, cylinder_gap) -> None:
+def test_pressure_converges_with_cells(short_body: FiniteLengthSpace, cylinder_gap) -> None:
     middles = [
         float(
             solve_contact(short_body, cylinder_gap(8.0, cells), load=8 * LINE_LOAD)["pressure"].sel(
@@ -108,14 +104,14 @@ def test_mesh_is_no_part_of_the_answer(short_body: FiniteLengthSpace, cylinder_g
 
 def test_friction_moves_the_contact_only_when_coupled(short_body: FiniteLengthSpace, cylinder_gap) -> None:
     gap = cylinder_gap(8.0, (48, 64))
-    plain = solve_contact(short_body, gap, load=8 * LINE_LOAD, friction=0.4)
+    baseline = solve_contact(short_body, gap, load=8 * LINE_LOAD, friction=0.4)
     coupled = solve_contact(short_body, gap, load=8 * LINE_LOAD, friction=0.4, settings=ContactSettings(coupled=True))
-    assert np.allclose(plain["traction_y"], 0.4 * plain["pressure"])
+    assert np.allclose(baseline["traction_y"], 0.4 * baseline["pressure"])
 
     def centre(contact: xr.Dataset) -> float:
         return float((contact["pressure"] * contact["y"]).sum() / contact["pressure"].sum())
 
-    assert abs(centre(plain)) < 1e-6
+    assert abs(centre(baseline)) < 1e-6
     # The traction along +y raises the surface behind and lowers it ahead, so the contact moves back.
     assert -0.2 < centre(coupled) < -0.02
     assert bool(coupled["converged"])
@@ -125,18 +121,20 @@ def test_friction_moves_the_contact_only_when_coupled(short_body: FiniteLengthSp
 def test_coupling_vanishes_for_an_incompressible_half_space(cylinder_gap) -> None:
     body = HalfSpace(material=Material(0.75, 0.5))
     gap = sphere_gap(48)
-    plain = solve_contact(body, gap, load=4 / 3, friction=0.3)
+    baseline = solve_contact(body, gap, load=4 / 3, friction=0.3)
     coupled = solve_contact(body, gap, load=4 / 3, friction=0.3, settings=ContactSettings(coupled=True))
-    assert np.abs(plain["pressure"] - coupled["pressure"]).max() < 1e-5
+    assert np.abs(baseline["pressure"] - coupled["pressure"]).max() < 1e-5
 
 
-def test_stopping_early_is_said_and_warned(half_space: HalfSpace) -> None:
+def test_early_stop_warns_and_is_not_converged(half_space: HalfSpace) -> None:
     with pytest.warns(ConvergenceWarning, match="max_iterations"):
         contact = solve_contact(half_space, sphere_gap(64), load=4 / 3, settings=ContactSettings(max_iterations=2))
     assert not bool(contact["converged"])
 
 
-def test_flooded_window_is_an_error(half_space: HalfSpace, short_body: FiniteLengthSpace, cylinder_gap) -> None:
+def test_contact_at_window_edge_raises_error(
+    half_space: HalfSpace, short_body: FiniteLengthSpace, cylinder_gap
+) -> None:
     with pytest.raises(WindowError, match=r"y_min.*widen"):
         solve_contact(half_space, sphere_gap(32, window=0.8), load=4 / 3)
     with pytest.raises(WindowError, match="y_min"):
@@ -162,13 +160,13 @@ def press(coupled: bool = False, tolerance: float = 1e-6, max_iterations: int = 
         ({"body": "steel"}, "body = 'steel'"),
     ],
 )
-def test_bad_arguments_are_named(half_space: HalfSpace, change: dict[str, object], message: str) -> None:
+def test_invalid_arguments_raise_error(half_space: HalfSpace, change: dict[str, object], message: str) -> None:
     arguments = {"body": half_space, "gap": sphere_gap(16), "load": 1.0} | change
     with pytest.raises(InvalidInputError, match=message):
         press(**arguments)  # type: ignore[arg-type]
 
 
-def test_bad_gaps_are_named(half_space: HalfSpace, short_body: FiniteLengthSpace) -> None:
+def test_invalid_gaps_raise_error(half_space: HalfSpace, short_body: FiniteLengthSpace) -> None:
     good = sphere_gap(16)
     with pytest.raises(InvalidInputError, match=r"nan at x = .*finite everywhere"):
         solve_contact(half_space, good.where(good > 0.1), load=1.0)
@@ -193,7 +191,7 @@ def test_bad_gaps_are_named(half_space: HalfSpace, short_body: FiniteLengthSpace
 
 
 @pytest.mark.parametrize("load", [1.0, 1e45])
-def test_a_window_full_of_contact_is_a_named_error_and_no_warning(short_body, cylinder_gap, load: float) -> None:
+def test_full_window_raises_error_without_warning(short_body, cylinder_gap, load: float) -> None:
     """All cells of the coarse first guess touch and sink alike."""
     with pytest.raises(WindowError, match="y_min"):
         solve_contact(short_body, cylinder_gap(8.0, (16, 16)) * (0.0 if load == 1 else 1.0), load=load)
@@ -203,7 +201,7 @@ def test_a_window_full_of_contact_is_a_named_error_and_no_warning(short_body, cy
     ("window", "cells", "named"),
     [(1e6, (16, 16), "y = 'a window of 2e\\+06 m'"), (1e4, (10**5, 4), "cells of .*sides in a ratio")],
 )
-def test_cells_and_windows_out_of_proportion_are_refused(short_body, window, cells, named: str) -> None:
+def test_disproportionate_windows_raise_error(short_body, window, cells, named: str) -> None:
     y = window * (2 * (np.arange(cells[1]) + 0.5) / cells[1] - 1)
     x = 8.0 * (np.arange(cells[0]) + 0.5) / cells[0]
     gap = xr.DataArray(np.broadcast_to(y**2, cells), coords={"x": x, "y": y}, dims=("x", "y"))
@@ -211,7 +209,7 @@ def test_cells_and_windows_out_of_proportion_are_refused(short_body, window, cel
         solve_contact(short_body, gap, load=1.0)
 
 
-def test_too_many_cells_are_refused_before_any_memory_is_asked_for() -> None:
+def test_too_many_cells_raise_error_before_allocation() -> None:
     with pytest.raises(InvalidInputError, match=r"at most 1e\+08 cells"):
         Grid(x_range=(0.0, 1.0), y_range=(-1.0, 1.0), cells_x=10**6, cells_y=10**6)
     with pytest.raises(InvalidInputError, match="not closer than rounding"):

@@ -17,11 +17,11 @@ POLYMER = Material(3e9, 0.35)
 SQUARE = Grid(x_range=(-0.16e-3, 0.16e-3), y_range=(-0.16e-3, 0.16e-3), cells_x=64, cells_y=64)
 
 
-def labelled(grid: Grid, values: np.ndarray) -> xr.DataArray:
+def label(grid: Grid, values: np.ndarray) -> xr.DataArray:
     return xr.DataArray(values, {"x": grid.x, "y": grid.y}, ("x", "y"))
 
 
-SPHERE = labelled(SQUARE, (SQUARE.x[:, None] ** 2 + SQUARE.y**2) / (2 * RADIUS))
+SPHERE = label(SQUARE, (SQUARE.x[:, None] ** 2 + SQUARE.y**2) / (2 * RADIUS))
 
 
 def layer(material: Material, thickness: float, grid: Grid) -> LinearOperator:
@@ -40,11 +40,11 @@ def layer(material: Material, thickness: float, grid: Grid) -> LinearOperator:
     return LinearOperator((grid.cells_x * grid.cells_y,) * 2, displacement, rmatvec=displacement)
 
 
-def test_sum_of_two_bodies() -> None:
+def test_surface_operator_sums_two_bodies() -> None:
     length, grid = 1e-3, Grid(x_range=(0.0, 1e-3), y_range=(-0.1e-3, 0.1e-3), cells_x=32, cells_y=32)
     first, second = (FiniteLengthSpace(length=length, material=Material(*e)) for e in ((210e9, 0.3), (310e9, 0.26)))
     waves = 0.2e-6 * np.cos(3 * np.pi * grid.x / length) + 0.1e-6 * np.cos(5 * np.pi * grid.x / length + 0.4)
-    gap = labelled(grid, (waves.max() - waves)[:, None] + grid.y**2 / (2 * RADIUS))
+    gap = label(grid, (waves.max() - waves)[:, None] + grid.y**2 / (2 * RADIUS))
     surface = surface_displacement(first, grid) + surface_displacement(second, grid)
     settings = ContactSettings(load_position=0.5 * length)
     contact = solve_contact(first, gap, load=60.0, surface=surface, settings=settings)
@@ -53,7 +53,7 @@ def test_sum_of_two_bodies() -> None:
     assert np.abs(contact.pressure - pair.pressure).max() < 1e-5 * pair.pressure.max()
 
 
-def test_thin_layer_is_a_foundation_of_independent_columns() -> None:
+def test_thin_layer_equals_winkler_foundation() -> None:
     thickness, approach, nu = 2e-6, 1e-6, POLYMER.poisson
     contact = solve_contact(
         HalfSpace(material=POLYMER), SPHERE, approach=approach, surface=layer(POLYMER, thickness, SQUARE)
@@ -63,14 +63,14 @@ def test_thin_layer_is_a_foundation_of_independent_columns() -> None:
     assert float(contact.pressure.max()) == pytest.approx(stiffness * approach, rel=3e-3)
 
 
-def test_thick_layer_is_a_half_space() -> None:
+def test_thick_layer_equals_half_space() -> None:
     load = 0.2
     contact = solve_contact(HalfSpace(material=POLYMER), SPHERE, load=load, surface=layer(POLYMER, 1e-3, SQUARE))
     hertz = (6 * load * POLYMER.plane_strain_modulus**2 / (np.pi**3 * RADIUS**2)) ** (1 / 3)
     assert float(contact.pressure.max()) == pytest.approx(hertz, rel=3e-3)
 
 
-def test_refused() -> None:
+def test_invalid_operator_raises_error() -> None:
     body, surface = HalfSpace(material=POLYMER), layer(POLYMER, 1e-6, SQUARE)
     with pytest.raises(InvalidInputError, match="surface"):
         solve_contact(body, SPHERE, load=1.0, surface=aslinearoperator(np.eye(3)))

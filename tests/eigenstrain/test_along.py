@@ -14,17 +14,17 @@ SOFT = Material(2.0, 0.3)
 EDGES = np.linspace(0.4, 1.2, 17)
 
 
-def test_a_rectangle_in_a_half_plane() -> None:
+def test_rectangle_in_half_plane_matches_closed_form() -> None:
     """Against forces in a half-plane; the way closes on itself far off."""
-    places, step = 1024, 0.05
-    y = step * (np.arange(places) - places // 2)
+    positions, step = 1024, 0.05
+    y = step * (np.arange(positions) - positions // 2)
     z = 0.5 * (EDGES[1:] + EDGES[:-1])
     inside = ((np.abs(y) < 0.325)[:, None] & (np.abs(z - 0.8) < 0.2)).astype(float)
-    strain = np.zeros((6, places, 1, 16))
+    strain = np.zeros((6, positions, 1, 16))
     own = {YY: 1.0, XX: 0.5, ZZ: -0.3, YZ: 0.4}
     for component, value in own.items():
         strain[component, :, 0] = value * inside
-    found = PeriodicLayers(SOFT, EDGES, places, step).stresses(strain)[:, :, 0]
+    computed = PeriodicLayers(SOFT, EDGES, positions, step).stresses(strain)[:, :, 0]
     at = np.searchsorted(y, [-1.0 - 1e-9, -0.6 - 1e-9, 0.2 - 1e-9, 0.7 - 1e-9])
     # There the axis along which the rectangle does not end is y, here it is x.
     expected = rectangle_in_half_plane(
@@ -32,33 +32,33 @@ def test_a_rectangle_in_a_half_plane() -> None:
     )
     size = np.abs(expected).max()
     for component, right in zip((YY, XX, ZZ, YZ), expected, strict=True):
-        assert np.abs(found[component][at] - right)[:, [0, 1, 6, 7, 8, 14]].max() < 0.02 * size
+        assert np.abs(computed[component][at] - right)[:, [0, 1, 6, 7, 8, 14]].max() < 0.02 * size
 
 
-def test_what_does_not_change_leaves_the_stress_of_layers() -> None:
+def test_uniform_strain_has_stress_of_layers() -> None:
     strain = np.zeros((6, 8, 2, 16)) + np.random.default_rng(3).normal(size=(6, 1, 2, 16))
-    found = PeriodicLayers(SOFT, EDGES, 8, 0.1).stresses(strain)
+    computed = PeriodicLayers(SOFT, EDGES, 8, 0.1).stresses(strain)
     expected = LayerInfluence(SOFT.poisson, SOFT.young).stresses(strain.reshape(6, -1)).reshape(strain.shape)
-    assert np.allclose(found, expected, atol=1e-12)
+    assert np.allclose(computed, expected, atol=1e-12)
 
 
-def test_short_waves_are_held_across_y_alone() -> None:
+def test_short_waves_have_no_stress_along_z() -> None:
     """Between planes close together no traction on them is left, and strains in them are held."""
     strain = np.zeros((6, 64, 1, 16))
     strain[:, :, 0] = np.cos(np.pi / 4 * np.arange(64))[:, None]
-    found = PeriodicLayers(SOFT, 40 * EDGES, 64, 0.01).stresses(strain)[:, 0, 0, 8]
+    computed = PeriodicLayers(SOFT, 40 * EDGES, 64, 0.01).stresses(strain)[:, 0, 0, 8]
     modulus = SOFT.plane_strain_modulus
     held = -modulus * (1 + SOFT.poisson)
     expected = {XX: held, YY: 0.0, ZZ: held, XY: 0.0, XZ: -2 * SOFT.shear_modulus, YZ: 0.0}
-    assert found == pytest.approx([expected[component] for component in range(6)], abs=2e-3)
+    assert computed == pytest.approx([expected[component] for component in range(6)], abs=2e-3)
 
 
-def test_the_way_back() -> None:
+def test_reversed_path_mirrors_stresses() -> None:
     """Seen from the other side shears change their sign."""
     strain = np.random.default_rng(4).normal(size=(6, 16, 1, 16))
     mirrored = strain[:, ::-1].copy()
     mirrored[[XY, YZ]] *= -1
-    there, back = (PeriodicLayers(SOFT, EDGES, 16, 0.2).stresses(one) for one in (strain, mirrored))
+    there, back = (PeriodicLayers(SOFT, EDGES, 16, 0.2).stresses(variant) for variant in (strain, mirrored))
     back[[XY, YZ]] *= -1
     assert np.allclose(there, back[:, ::-1], atol=1e-9)
     falling = PeriodicLayers(SOFT, EDGES, 16, -0.2).stresses(strain[:, ::-1])

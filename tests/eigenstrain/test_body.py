@@ -9,7 +9,7 @@ import pytest
 
 from benchmarks.finite_elements.eigenstrain import residual_stress
 from contactstudy.bodies.material import Material
-from contactstudy.eigenstrain.body import DEEP_LENGTHS, EigenstrainBody, grown, towards_face
+from contactstudy.eigenstrain.body import DEEP_LENGTHS, EigenstrainBody, grade_to_face, grow_edges
 from contactstudy.verification.closed_forms import rectangle_in_half_plane
 
 WHOLE = (-np.inf, np.inf)
@@ -24,12 +24,12 @@ def in_rectangle() -> Callable[..., tuple[EigenstrainBody, np.ndarray]]:
 
     def build(extent, x_range, z_range, cells=8, **settings):
         edges = []
-        for (low, high), (least, most) in zip((x_range, z_range), (extent, (0.0, np.inf)), strict=True):
+        for (low, high), (minimum, maximum) in zip((x_range, z_range), (extent, (0.0, np.inf)), strict=True):
             width = (high - low) / cells
             own = low + width * np.arange(-3, cells + 4)
-            edges.append(own[(own > least - 1e-9) & (own < most + 1e-9)])
-            edges[-1] = np.where(np.abs(edges[-1] - least) < 1e-9, least, edges[-1])
-            edges[-1] = np.where(np.abs(edges[-1] - most) < 1e-9, most, edges[-1])
+            edges.append(own[(own > minimum - 1e-9) & (own < maximum + 1e-9)])
+            edges[-1] = np.where(np.abs(edges[-1] - minimum) < 1e-9, minimum, edges[-1])
+            edges[-1] = np.where(np.abs(edges[-1] - maximum) < 1e-9, maximum, edges[-1])
         strain = np.zeros((6, edges[0].size - 1, edges[1].size - 1))
         here = [
             (own[:-1] >= low - 1e-9) & (own[1:] <= high + 1e-9)
@@ -42,25 +42,27 @@ def in_rectangle() -> Callable[..., tuple[EigenstrainBody, np.ndarray]]:
 
 
 def test_closed_form_leaves_the_top_free() -> None:
-    found = rectangle_in_half_plane(np.linspace(-2, 2, 9), 0.0, (-0.5, 0.7), (0.4, 1.1), (1, 0.5, -0.3, 0.4), 2.0, 0.3)
-    assert np.abs(found[2:]).max() < 1e-9
-    assert np.abs(found[0]).max() > 0.1
+    computed = rectangle_in_half_plane(
+        np.linspace(-2, 2, 9), 0.0, (-0.5, 0.7), (0.4, 1.1), (1, 0.5, -0.3, 0.4), 2.0, 0.3
+    )
+    assert np.abs(computed[2:]).max() < 1e-9
+    assert np.abs(computed[0]).max() > 0.1
 
 
 @pytest.mark.parametrize(
     ("x_range", "z_range"),
     [((0.0, 0.6), (0.0, 0.5)), ((1.2, 2.0), (0.1, 0.4))],
 )
-def test_between_free_ends_as_finite_elements(in_rectangle, x_range, z_range) -> None:
+def test_stress_between_free_ends_matches_finite_elements(in_rectangle, x_range, z_range) -> None:
     """At the end and on the top; at the other end."""
     body, strain = in_rectangle((0.0, 2.0), x_range, z_range, splits=2, degree=5)
     x, z = np.array([0.05, 0.2, 0.45, 0.75, 1.1, 1.5, 1.9]), np.array([0.05, 0.15, 0.3, 0.6, 0.9, 2.0])
-    found = body.solve(strain).stresses(x, z)
+    computed = body.solve(strain).stresses(x, z)
     expected = residual_stress(2.0, (x_range, z_range), EVERY, 0.3, x, z) * ROUGH.shear_modulus
-    assert np.abs(found - expected).max() < 1e-3 * np.abs(expected).max()
+    assert np.abs(computed - expected).max() < 1e-3 * np.abs(expected).max()
 
 
-def test_quarter_space_as_a_long_body(in_rectangle) -> None:
+def test_quarter_space_equals_long_body(in_rectangle) -> None:
     stresses = []
     for extent in ((0.0, np.inf), (0.0, 60.0)):
         body, strain = in_rectangle(extent, (0.0, 1.0), (0.2, 0.8))
@@ -68,18 +70,18 @@ def test_quarter_space_as_a_long_body(in_rectangle) -> None:
     assert np.abs(np.subtract(*stresses)).max() < 1e-3 * np.abs(stresses[0]).max()
 
 
-def test_second_end_is_the_mirror_image_of_the_first(in_rectangle) -> None:
+def test_second_end_mirrors_first_end(in_rectangle) -> None:
     """Components with one index x change sign."""
     first, strain = in_rectangle((0.0, 2.0), (0.2, 0.8), (0.1, 0.6))
     second, mirrored = in_rectangle((0.0, 2.0), (1.2, 1.8), (0.1, 0.6))
     signs = np.array([1, 1, 1, -1, -1, 1.0])[:, None, None]
     x, z = np.array([0.1, 0.51, 1.3]), np.array([0.21, 0.7])
-    seen = signs * second.solve(signs * mirrored).stresses(2 - x, z)
-    own = first.solve(strain).stresses(x, z)
-    assert np.abs(seen - own).max() < 1e-7 * np.abs(own).max()
+    observed = signs * second.solve(signs * mirrored).stresses(2 - x, z)
+    expected = first.solve(strain).stresses(x, z)
+    assert np.abs(observed - expected).max() < 1e-7 * np.abs(expected).max()
 
 
-def test_equilibrium_and_free_faces(in_rectangle) -> None:
+def test_residual_stress_is_in_equilibrium_with_free_faces(in_rectangle) -> None:
     body, strain = in_rectangle((0.0, 2.0), (0.0, 0.6), (0.0, 0.5))
     solution = body.solve(strain)
     inside = np.sqrt(2) * np.linspace(0.011, 1.4, 23), np.sqrt(2) * np.linspace(0.013, 1.0, 17)
@@ -90,15 +92,15 @@ def test_equilibrium_and_free_faces(in_rectangle) -> None:
         for axis in (0, 1)
     )
     along_x, along_z = (right - left) / (2 * step), (below - above) / (2 * step)
-    for one, other in ((0, 4), (4, 2), (3, 5)):  # xx,x + xz,z; xz,x + zz,z; xy,x + yz,z
-        assert np.abs(along_x[one] + along_z[other]).max() < 1e-6 * np.abs(along_x).max()
+    for item, variant in ((0, 4), (4, 2), (3, 5)):  # xx,x + xz,z; xz,x + zz,z; xy,x + yz,z
+        assert np.abs(along_x[item] + along_z[variant]).max() < 1e-6 * np.abs(along_x).max()
     ends = solution.stresses(np.array([0.0, 2.0]), inside[1])
     top = solution.stresses(inside[0], np.array([0.0]))
     assert np.abs(ends[[0, 3, 4]]).max() < 1e-9 * largest
     assert np.abs(top[[2, 4, 5]]).max() < 1e-9 * largest
 
 
-def test_strain_that_is_free_leaves_no_stress() -> None:
+def test_compatible_strain_has_no_stress() -> None:
     """Heat all over a body between ends; where the heat ends, deep below, is too far to be felt."""
     body = EigenstrainBody(
         material=ROUGH,
@@ -108,11 +110,11 @@ def test_strain_that_is_free_leaves_no_stress() -> None:
     )
     strain = np.zeros((6, 4, 5))
     strain[[0, 2]] = 1.0
-    found = body.solve(strain).stresses(np.linspace(0, 1, 9), np.array([0.0, 0.3, 1.0]))
-    assert np.abs(found).max() < 1e-5 * ROUGH.young
+    computed = body.solve(strain).stresses(np.linspace(0, 1, 9), np.array([0.0, 0.3, 1.0]))
+    assert np.abs(computed).max() < 1e-5 * ROUGH.young
 
 
-def test_strain_along_y_is_held_by_stress_along_y_alone() -> None:
+def test_strain_along_y_causes_stress_along_y_only() -> None:
     body = EigenstrainBody(
         material=ROUGH,
         extent=(0.0, 1.0),
@@ -121,12 +123,12 @@ def test_strain_along_y_is_held_by_stress_along_y_alone() -> None:
     )
     strain = np.zeros((6, 4, 5))
     strain[1] = 1.0
-    found = body.solve(strain).stresses(np.linspace(0, 1, 9), np.array([0.0, 0.3, 1.0]))
-    assert found[1] == pytest.approx(-ROUGH.young, rel=1e-5)
-    assert np.abs(found[[0, 2, 3, 4, 5]]).max() < 1e-5 * ROUGH.young
+    computed = body.solve(strain).stresses(np.linspace(0, 1, 9), np.array([0.0, 0.3, 1.0]))
+    assert computed[1] == pytest.approx(-ROUGH.young, rel=1e-5)
+    assert np.abs(computed[[0, 2, 3, 4, 5]]).max() < 1e-5 * ROUGH.young
 
 
-def test_layer_on_the_top_of_a_half_space() -> None:
+def test_layer_on_half_space_matches_closed_form() -> None:
     """Forty times as long as deep; in the middle it is nearly as if it had no end."""
     body = EigenstrainBody(
         material=ROUGH,
@@ -137,27 +139,27 @@ def test_layer_on_the_top_of_a_half_space() -> None:
     strain = np.zeros((6, 42, 2))
     strain[:, 1:-1, 0] = EVERY[:, None]
     x, z = np.array([-3.1, 0.0]), np.array([0.2, 0.7])
-    found = body.solve(strain).stresses(x, z)
+    computed = body.solve(strain).stresses(x, z)
     own = tuple(EVERY[[0, 1, 2, 4]])
     expected = rectangle_in_half_plane(x[:, None], z, (-10.0, 10.0), (0.0, 0.5), own, ROUGH.young, ROUGH.poisson)
-    assert np.abs(found[[0, 1, 2, 4]] - expected).max() < 1e-4 * np.abs(expected).max()
+    assert np.abs(computed[[0, 1, 2, 4]] - expected).max() < 1e-4 * np.abs(expected).max()
     endless = -ROUGH.plane_strain_modulus * (EVERY[0] + ROUGH.poisson * EVERY[1])
-    assert found[0, 1, 0] == pytest.approx(endless, rel=0.08)
+    assert computed[0, 1, 0] == pytest.approx(endless, rel=0.08)
 
 
-def test_layer_across_the_whole_length_bends_no_end(in_rectangle) -> None:
+def test_full_length_layer_keeps_ends_straight(in_rectangle) -> None:
     """On every plane x = const the stress along x has no resultant: what is pressed above is pulled below."""
     body, strain = in_rectangle((0.0, 2.0), (0.0, 2.0), (0.0, 0.3))
     nodes, weights = np.polynomial.legendre.leggauss(60)
     edges = body.elements[1]
     z = (edges[:-1, None] + 0.5 * np.diff(edges)[:, None] * (1 + nodes)).ravel()
     dz = (0.5 * np.diff(edges)[:, None] * weights).ravel()
-    found = body.solve(strain).stresses(np.array([0.3, 1.0]), z)
-    resultant, size = found[0] @ dz, np.abs(found[0]) @ dz
+    computed = body.solve(strain).stresses(np.array([0.3, 1.0]), z)
+    resultant, size = computed[0] @ dz, np.abs(computed[0]) @ dz
     assert np.abs(resultant).max() < 1e-9 * size.max()
 
 
-def test_displacement_of_the_top_does_the_work_of_the_eigenstrain() -> None:
+def test_surface_displacement_is_reciprocal_to_eigenstrain() -> None:
     """Reciprocity: a small eigenstrain sinks the top by its work on the stress of a line force there (Flamant)."""
     body = EigenstrainBody(
         material=ROUGH, extent=WHOLE, x_edges=np.linspace(-0.1, 0.1, 3), z_edges=np.linspace(0.9, 1.1, 3), degree=5
@@ -165,22 +167,22 @@ def test_displacement_of_the_top_does_the_work_of_the_eigenstrain() -> None:
     strain = np.zeros((6, 2, 2))
     strain[:] = EVERY[:, None, None]
     x = np.array([-1.0, 0.0, 0.6])
-    sunk, dragged = body.solve(strain).top_displacement(x)
+    displacement, axial_displacement = body.solve(strain).top_displacement(x)
     # Flamant's stress under a unit force into the body at x: -2 / pi x'^i z^(3-i) / r^4, averaged over the square.
     node, weight = np.polynomial.legendre.leggauss(6)
     px, pz, w = 0.1 * node[:, None], 1 + 0.1 * node, 0.01 * weight[:, None] * weight
-    for at, found, along in zip(x, sunk, dragged, strict=True):
-        apart, squared = px - at, (px - at) ** 2 + pz**2
-        xx, zz, xz = (-2 / np.pi * apart**i * pz ** (3 - i) / squared**2 for i in (2, 0, 1))
+    for at, computed, along in zip(x, displacement, axial_displacement, strict=True):
+        separate, squared = px - at, (px - at) ** 2 + pz**2
+        xx, zz, xz = (-2 / np.pi * separate**i * pz ** (3 - i) / squared**2 for i in (2, 0, 1))
         size = 0.04 * np.abs(EVERY).max() * 2 / np.pi
         work = EVERY[0] * xx + EVERY[2] * zz + 2 * EVERY[4] * xz + EVERY[1] * 0.3 * (xx + zz)
-        assert found == pytest.approx(float((work * w).sum()), abs=2e-3 * size)
+        assert computed == pytest.approx(float((work * w).sum()), abs=2e-3 * size)
         # A unit force along y: antiplane, t_xy = -x' / (pi r^2), t_yz = -z / (pi r^2).
-        across = -2 * (EVERY[3] * apart + EVERY[5] * pz) / (np.pi * squared)
+        across = -2 * (EVERY[3] * separate + EVERY[5] * pz) / (np.pi * squared)
         assert along == pytest.approx(float((across * w).sum()), abs=2e-3 * size)
 
 
-def test_averages_over_cells_are_those_of_the_stresses(in_rectangle) -> None:
+def test_cell_averages_match_stresses(in_rectangle) -> None:
     body, strain = in_rectangle((0.0, 2.0), (0.0, 0.6), (0.0, 0.5), cells=2)
     solution = body.solve(strain)
     node, weight = np.polynomial.legendre.leggauss(8)
@@ -195,17 +197,17 @@ def test_work_is_symmetric_and_positive(in_rectangle) -> None:
     body, strain = in_rectangle((0.0, 2.0), (0.0, 0.6), (0.0, 0.5), cells=3)
     random = np.random.default_rng(0)
     areas = np.diff(body.x_edges)[:, None] * np.diff(body.z_edges)
-    twice = np.array([1, 1, 1, 2, 2, 2.0])[:, None, None]
-    one, other = random.normal(size=(2, *strain.shape))
+    doubled = np.array([1, 1, 1, 2, 2, 2.0])[:, None, None]
+    item, variant = random.normal(size=(2, *strain.shape))
     work = [
-        float((twice * areas * e * body.solve(f).cell_averages()).sum())
-        for e, f in ((one, other), (other, one), (one, one))
+        float((doubled * areas * e * body.solve(f).cell_averages()).sum())
+        for e, f in ((item, variant), (variant, item), (item, item))
     ]
     assert work[0] == pytest.approx(work[1], rel=1e-8)
     assert work[2] < 0
 
 
-def test_elements_reach_the_ends_and_deep_enough() -> None:
+def test_elements_extend_to_ends_and_depth() -> None:
     body = EigenstrainBody(
         material=ROUGH, extent=(0.0, 3.0), x_edges=np.array([1.0, 1.5, 2.0]), z_edges=np.array([0.2, 0.4])
     )
@@ -217,6 +219,6 @@ def test_elements_reach_the_ends_and_deep_enough() -> None:
     assert {1.0, 1.5, 2.0} <= set(x)
 
 
-def test_graded_elements() -> None:
-    assert grown(0.0, 10.0, 1.0).round(2).tolist() == [0.76, 1.9, 3.6, 6.16, 10.0]
-    assert towards_face(0.0, 2.0, 0.3).round(2).tolist() == [0.21, 0.53, 1.0, 1.47, 1.79, 2.0]
+def test_elements_grow_away_from_cells() -> None:
+    assert grow_edges(0.0, 10.0, 1.0).round(2).tolist() == [0.76, 1.9, 3.6, 6.16, 10.0]
+    assert grade_to_face(0.0, 2.0, 0.3).round(2).tolist() == [0.21, 0.53, 1.0, 1.47, 1.79, 2.0]

@@ -11,20 +11,20 @@ from contactstudy.eigenstrain.layers import LayerInfluence
 ROUGH = Material(2.0, 0.3)
 
 
-def test_some_cells_of_a_body() -> None:
+def test_influence_of_selected_cells_matches_body() -> None:
     body = EigenstrainBody(
         material=ROUGH, extent=(0.0, 2.0), x_edges=np.linspace(0, 2, 6), z_edges=np.linspace(0, 1, 5)
     )
     along_x, along_z = np.array([0, 1, 4, 4]), np.array([0, 2, 1, 3])
     few = np.random.default_rng(5).normal(size=(6, 4))
-    whole = np.zeros((6, 5, 4))
-    whole[:, along_x, along_z] = few
-    expected = body.solve(whole).cell_averages()[:, along_x, along_z]
-    found = Influence.of(body, along_x, along_z).stresses(few)
-    assert np.allclose(found, expected, atol=1e-9)
+    complete = np.zeros((6, 5, 4))
+    complete[:, along_x, along_z] = few
+    expected = body.solve(complete).cell_averages()[:, along_x, along_z]
+    computed = Influence.of(body, along_x, along_z).stresses(few)
+    assert np.allclose(computed, expected, atol=1e-9)
 
 
-def test_a_layer_is_a_long_row_of_cells() -> None:
+def test_layer_influence_equals_long_row_of_cells() -> None:
     body = EigenstrainBody(
         material=ROUGH, extent=(-np.inf, np.inf), x_edges=np.linspace(-60, 60, 25), z_edges=np.array([0.0, 0.25, 0.5])
     )

@@ -43,7 +43,7 @@ BODIES: dict[str, Body] = {
 }
 
 
-def labelled(values: FloatArray, grid: Grid) -> xr.DataArray:
+def label(values: FloatArray, grid: Grid) -> xr.DataArray:
     return xr.DataArray(values, coords={"x": grid.x, "y": grid.y, "x_width": ("x", grid.widths)}, dims=("x", "y"))
 
 
@@ -52,7 +52,7 @@ def loads() -> tuple[xr.DataArray, xr.DataArray]:
     """The same pressure on graded and on uniform cells."""
     values = 1e9 * np.random.default_rng(0).random(GRADED.shape)
     values[:, :8] = 0
-    return labelled(values, GRADED), labelled(np.repeat(values, np.diff(KEPT), axis=0), UNIFORM)
+    return label(values, GRADED), label(np.repeat(values, np.diff(KEPT), axis=0), UNIFORM)
 
 
 @pytest.fixture(scope="module")
@@ -62,7 +62,7 @@ def smooth_loads() -> tuple[xr.DataArray, xr.DataArray]:
     def pressure(grid: Grid) -> xr.DataArray:
         across = np.sqrt(np.maximum(1 - (grid.y / 1.2e-4) ** 2, 0.0))
         # Means over the columns of a linear function are its values in their middles.
-        return labelled(1e9 * (1 - 0.4 * grid.x[:, None] / LENGTH) * across, grid)
+        return label(1e9 * (1 - 0.4 * grid.x[:, None] / LENGTH) * across, grid)
 
     return pressure(GRADED), pressure(UNIFORM)
 
@@ -72,37 +72,38 @@ def largest(field: xr.Dataset) -> float:
 
 
 @pytest.mark.parametrize("body", BODIES)
-def test_stresses_are_those_of_the_same_load_on_uniform_cells(body: str, loads) -> None:
+def test_stresses_match_uniform_cells(body: str, loads) -> None:
     graded, uniform = (stress_field(BODIES[body], load, friction=FRICTION, x=X, y=Y, z=Z) for load in loads)
     assert largest(graded - uniform) < 1e-7 * 1e9
 
 
 @pytest.mark.parametrize("body", ["half", "finite"])
-def test_a_rounding_beside_the_edge_of_a_column_stresses_are_those_on_it(body: str, smooth_loads) -> None:
+def test_stresses_are_continuous_at_column_edge(body: str, smooth_loads) -> None:
     """The smooth load has two representations that meet at some depths, and differ by up to 1e-3 of the peak there."""
     edges = GRADED.x_edges[1:-1]
     load, at = smooth_loads[0], {"y": [0.0], "z": [1e-7, 1e-6, 1e-5, 1e-4]}
-    places = [np.nextafter(edges, -1.0), edges, np.nextafter(edges, 1.0), edges * (1 - 1e-12)]
+    positions = [np.nextafter(edges, -1.0), edges, np.nextafter(edges, 1.0), edges * (1 - 1e-12)]
     before, on, beyond, near = (
-        stress_field(BODIES[body], load, friction=FRICTION, x=x, **at, inside_cells=load) for x in places
+        stress_field(BODIES[body], load, friction=FRICTION, x=x, **at, inside_cells=load) for x in positions
     )
-    for other in (before, beyond, near):
+    for variant in (before, beyond, near):
         for name in on.data_vars:
-            assert np.abs(other[name].values - on[name].values).max() < 1e-3 * 1e9
+            assert np.abs(variant[name].values - on[name].values).max() < 1e-3 * 1e9
 
 
 @pytest.mark.parametrize("body", BODIES)
-def test_displacements_are_those_of_the_same_load_on_uniform_cells(body: str, loads) -> None:
+def test_displacements_match_uniform_cells(body: str, loads) -> None:
     points = {"x": X, "y": Y, "z": Z}
     graded, uniform = (displacement_field(BODIES[body], load, friction=FRICTION, **points) for load in loads)
     assert largest(graded - uniform) < 1e-6 * largest(uniform)
 
 
 @pytest.mark.parametrize("body", BODIES)
-def test_smooth_loads_make_nearly_the_same_fields_on_uniform_cells(body: str, smooth_loads) -> None:
+def test_smooth_loads_match_uniform_cells(body: str, smooth_loads) -> None:
     points = {"x": X, "y": Y, "z": Z}
     graded, uniform = (
-        stress_field(BODIES[body], each, friction=FRICTION, **points, inside_cells=each) for each in smooth_loads
+        stress_field(BODIES[body], smooth_load, friction=FRICTION, **points, inside_cells=smooth_load)
+        for smooth_load in smooth_loads
     )
     assert largest(graded - uniform) < 1e-3 * 1e9
     graded, uniform = (
@@ -112,7 +113,7 @@ def test_smooth_loads_make_nearly_the_same_fields_on_uniform_cells(body: str, sm
 
 
 @pytest.mark.parametrize("body", BODIES)
-def test_top_sinks_on_average_as_on_uniform_cells(body: str, loads) -> None:
+def test_mean_surface_displacement_matches_uniform_cells(body: str, loads) -> None:
     graded, uniform = (surface_displacement(BODIES[body], load, FRICTION) for load in loads)
     owner = np.repeat(np.arange(GRADED.cells_x), np.diff(KEPT))
     means = np.array([uniform.values[owner == i].mean(axis=0) for i in range(GRADED.cells_x)])
@@ -121,7 +122,7 @@ def test_top_sinks_on_average_as_on_uniform_cells(body: str, loads) -> None:
 
 
 @pytest.mark.parametrize("body", ["quarter", "finite", "single-mirror"])
-def test_equivalent_loads_are_those_of_the_same_load_on_uniform_cells(body: str, loads) -> None:
+def test_equivalent_loads_match_uniform_cells(body: str, loads) -> None:
     ended = BODIES[body]
     assert isinstance(ended, BodyWithFreeEnds)
     graded, uniform = (equivalent_loads(ended, load, FRICTION, z=[5e-5, 1e-4]) for load in loads)
@@ -146,10 +147,10 @@ def graded_pressure(draw: st.DrawFn) -> xr.DataArray:
     ratios = draw(st.lists(st.floats(0.4, 2.5), min_size=2, max_size=10))
     edges = np.append(0.0, np.cumsum(np.cumprod([1.0, *ratios])))
     grid = Grid.from_edges(LENGTH * edges / edges[-1], Y_RANGE, 12)
-    return labelled(1e9 * np.random.default_rng(draw(st.integers(0, 1000))).random(grid.shape), grid)
+    return label(1e9 * np.random.default_rng(draw(st.integers(0, 1000))).random(grid.shape), grid)
 
 
-def turned(load: xr.DataArray) -> xr.DataArray:
+def mirror_load(load: xr.DataArray) -> xr.DataArray:
     """The same load seen from the other end."""
     backwards = load.isel(x=slice(None, None, -1))
     return backwards.assign_coords(x=LENGTH - backwards.x.values)
@@ -157,10 +158,10 @@ def turned(load: xr.DataArray) -> xr.DataArray:
 
 @settings(max_examples=8)
 @given(load=graded_pressure(), body=st.sampled_from(["half", "mirror", "finite"]))
-def test_turned_body_has_turned_stresses(load: xr.DataArray, body: str) -> None:
+def test_rotated_body_has_rotated_stresses(load: xr.DataArray, body: str) -> None:
     x = np.array([0.0, 2e-4, 7e-4])
     there = stress_field(BODIES[body], load, friction=FRICTION, x=x, y=Y, z=Z, inside_cells=load)
-    reverse = turned(load)
+    reverse = mirror_load(load)
     back = stress_field(
         BODIES[body], reverse, friction=FRICTION, x=(LENGTH - x)[::-1], y=Y, z=Z, inside_cells=reverse
     ).isel(x=slice(None, None, -1))
@@ -173,8 +174,8 @@ def test_turned_body_has_turned_stresses(load: xr.DataArray, body: str) -> None:
 @settings(max_examples=8)
 @given(load=graded_pressure(), factor=st.floats(0.1, 10.0))
 def test_stresses_scale_with_the_load(load: xr.DataArray, factor: float) -> None:
-    one, other = (
-        stress_field(BODIES["half"], each, friction=FRICTION, x=X, y=Y, z=Z, inside_cells=each)
-        for each in (load, factor * load)
+    one, variant = (
+        stress_field(BODIES["half"], item, friction=FRICTION, x=X, y=Y, z=Z, inside_cells=item)
+        for item in (load, factor * load)
     )
-    assert np.allclose(other["von_mises"], factor * one["von_mises"], rtol=1e-9)
+    assert np.allclose(variant["von_mises"], factor * one["von_mises"], rtol=1e-9)

@@ -32,7 +32,7 @@ BODIES = {
 
 
 @pytest.fixture(scope="module")
-def eccentric(on_cells) -> xr.DataArray:
+def eccentric_load(on_cells) -> xr.DataArray:
     """Hertz pressure about x = 1.3 on cells that span 0 to 4."""
     return on_cells(lambda x, y: np.sqrt(np.maximum(1 - (x - 1.3) ** 2 - y**2, 0.0)), (0.0, 4.0), (-1.5, 1.5), (64, 48))
 
@@ -44,19 +44,19 @@ def strain_of(body, pressure, friction: float, point: tuple[float, float, float]
     gradient = np.empty((3, 3))
     for i, name in enumerate(("u_x", "u_y", "u_z")):
         for j, axis in enumerate("xyz"):
-            along = field[name].isel({other: 1 for other in "xyz" if other != axis}).values
+            along = field[name].isel({variant: 1 for variant in "xyz" if variant != axis}).values
             gradient[i, j] = (along[2] - along[0]) / (2 * step)
     return 0.5 * (gradient + gradient.T)
 
 
 @pytest.mark.parametrize("name", BODIES)
-def test_strains_obey_hookes_law_with_the_stresses(name: str, eccentric: xr.DataArray) -> None:
+def test_strains_obey_hookes_law_with_the_stresses(name: str, eccentric_load: xr.DataArray) -> None:
     friction = 0.4
     body, shear, nu = BODIES[name], MATERIAL.shear_modulus, MATERIAL.poisson
     for point in ((0.25, 0.2, 0.4), (1.5, -0.6, 0.8), (3.7, 0.1, 1.5)):
-        strain = strain_of(body, eccentric, friction, point)
+        strain = strain_of(body, eccentric_load, friction, point)
         expected = 2 * shear * (strain + nu / (1 - 2 * nu) * np.trace(strain) * np.eye(3))
-        stress = stress_field(body, eccentric, friction=friction, x=point[:1], y=point[1:2], z=point[2:]).squeeze()
+        stress = stress_field(body, eccentric_load, friction=friction, x=point[:1], y=point[1:2], z=point[2:]).squeeze()
         for i, j, component in (
             *((0, 0, "sigma_xx"), (1, 1, "sigma_yy"), (2, 2, "sigma_zz")),
             *((0, 1, "tau_xy"), (0, 2, "tau_xz"), (1, 2, "tau_yz")),
@@ -65,16 +65,16 @@ def test_strains_obey_hookes_law_with_the_stresses(name: str, eccentric: xr.Data
 
 
 @pytest.mark.parametrize("name", BODIES)
-def test_on_the_top_it_is_the_tops_displacement(name: str, eccentric: xr.DataArray) -> None:
+def test_displacement_field_equals_surface_displacement_on_top(name: str, eccentric_load: xr.DataArray) -> None:
     friction = 0.4
-    sunk = surface_displacement(BODIES[name], eccentric, friction)
-    inside = displacement_field(BODIES[name], eccentric, friction=friction)["u_z"].sel(z=0.0, drop=True)
+    displacement = surface_displacement(BODIES[name], eccentric_load, friction)
+    inside = displacement_field(BODIES[name], eccentric_load, friction=friction)["u_z"].sel(z=0.0, drop=True)
     tolerance = {"half-space": 1e-12, "mirror": 1e-7}.get(name, 1e-3)
-    assert float(np.abs(inside - sunk).max()) < tolerance * float(sunk.max() - sunk.min())
-    smooth = displacement_field(BODIES[name], eccentric, friction=friction, inside_cells=eccentric)["u_z"].sel(
-        z=0.0, drop=True
-    )
-    assert float(np.abs(smooth - sunk).max()) < 2e-3 * float(sunk.max() - sunk.min())
+    assert float(np.abs(inside - displacement).max()) < tolerance * float(displacement.max() - displacement.min())
+    smooth = displacement_field(BODIES[name], eccentric_load, friction=friction, inside_cells=eccentric_load)[
+        "u_z"
+    ].sel(z=0.0, drop=True)
+    assert float(np.abs(smooth - displacement).max()) < 2e-3 * float(displacement.max() - displacement.min())
 
 
 def test_symmetric_load_displaces_symmetrically(on_cells) -> None:
@@ -86,15 +86,15 @@ def test_symmetric_load_displaces_symmetrically(on_cells) -> None:
         np.testing.assert_allclose(values[:, ::-1], sign_y * values, atol=1e-6)
 
 
-def test_far_along_y_the_finite_body_is_at_rest_where_it_says_so(eccentric: xr.DataArray) -> None:
-    field = displacement_field(BODIES["finite length"], eccentric, y=[0.0, 40.0])
+def test_displacement_vanishes_at_reference_distance(eccentric_load: xr.DataArray) -> None:
+    field = displacement_field(BODIES["finite length"], eccentric_load, y=[0.0, 40.0])
     assert field.u_z.attrs["reference_distance"] == pytest.approx(40.0)
     ratio = np.abs(field.u_z.sel(y=40.0)).max() / field.u_z.sel(y=0.0).max()
     assert float(ratio) < 2e-3
 
 
-def test_every_component_has_its_unit(eccentric: xr.DataArray) -> None:
-    field = displacement_field(BODIES["half-space"], eccentric, x=[0.0], y=[0.0], z=[1.0])
+def test_every_component_has_its_unit(eccentric_load: xr.DataArray) -> None:
+    field = displacement_field(BODIES["half-space"], eccentric_load, x=[0.0], y=[0.0], z=[1.0])
     assert [field[name].attrs["units"] for name in ("u_x", "u_y", "u_z")] == ["m"] * 3
 
 
@@ -108,12 +108,12 @@ def test_every_component_has_its_unit(eccentric: xr.DataArray) -> None:
         ({"friction": np.inf}, "friction"),
     ],
 )
-def test_bad_input(arguments, parameter: str, eccentric: xr.DataArray) -> None:
+def test_invalid_input_raises_error(arguments, parameter: str, eccentric_load: xr.DataArray) -> None:
     with pytest.raises(InvalidInputError, match=parameter):
-        displacement_field(BODIES["finite length"], eccentric, **arguments)
+        displacement_field(BODIES["finite length"], eccentric_load, **arguments)
 
 
-def test_deep_displacement_does_not_depend_on_the_other_positions() -> None:
+def test_displacement_does_not_depend_on_further_positions() -> None:
     # Pressure near an end: the ends' part at a distant point depends on wavelengths of this distance.
     body = FiniteLengthSpace(length=1.0, material=Material(1.0, 0.3))
     edges = [0.0, 0.005, 0.007, 0.01, 0.02, 0.05, 0.1, 0.3, 0.5, 0.7, 0.9, 1.0]
@@ -126,9 +126,9 @@ def test_deep_displacement_does_not_depend_on_the_other_positions() -> None:
         points = Points(np.array(x), np.zeros(1), np.array(z))
         return float(displacement_under(body, loads, grid, points)[2, -1, 0, -1])
 
-    alone = sunk([0.6], [1.0])
-    assert sunk([0.001, 0.6], [0.001, 1.0]) == pytest.approx(alone, rel=1e-6)
-    assert sunk([0.1, 0.6], [1.0]) == pytest.approx(alone, rel=1e-6)
+    single = sunk([0.6], [1.0])
+    assert sunk([0.001, 0.6], [0.001, 1.0]) == pytest.approx(single, rel=1e-6)
+    assert sunk([0.1, 0.6], [1.0]) == pytest.approx(single, rel=1e-6)
 
 
 def test_influence_on_a_plane_sums_to_the_displacement() -> None:

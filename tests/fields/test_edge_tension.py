@@ -29,7 +29,7 @@ STEEL = Material(210e9, 0.3)
 P0, RADIUS = 1e9, 5e-3
 
 
-def solved(material: Material, friction: float) -> xr.Dataset:
+def solve_sliding(material: Material, friction: float) -> xr.Dataset:
     length = 20 * 2 * P0 * RADIUS / material.plane_strain_modulus
     body = FiniteLengthSpace(length=length, material=material)
     case = Case(body=body, roller=Roller(radius=RADIUS, length=length), max_pressure=P0, friction=friction)
@@ -37,9 +37,9 @@ def solved(material: Material, friction: float) -> xr.Dataset:
 
 
 @pytest.mark.parametrize(("friction", "material"), [(0.05, STEEL), (0.3, INCOMPRESSIBLE)])
-def test_sliding_cylinder(material: Material, friction: float) -> None:
+def test_edge_tension_of_sliding_cylinder(material: Material, friction: float) -> None:
     """The stress per friction is 2 p0 of the section; the normal load adds a stress of its own."""
-    results = [solved(material, value) for value in (friction, 1e-6)]
+    results = [solve_sliding(material, value) for value in (friction, 1e-6)]
     middle = 0.5 * float(results[0]["x"][0] + results[0]["x"][-1])
     tension, normal = (edge_tension(result, [middle]) for result in results)
     width = float(half_width(results[0])["half_width"].sel(x=middle, method="nearest"))
@@ -51,14 +51,14 @@ def test_sliding_cylinder(material: Material, friction: float) -> None:
     assert float(tension["trailing_edge"][0]) == pytest.approx(-width, rel=1e-2)
 
 
-def test_mirror() -> None:
-    first, second = (edge_tension(solved(STEEL, friction)) for friction in (0.2, -0.2))
+def test_edge_tension_of_mirrored_case() -> None:
+    first, second = (edge_tension(solve_sliding(STEEL, friction)) for friction in (0.2, -0.2))
     np.testing.assert_allclose(first["edge_tension"], second["edge_tension"], rtol=1e-6)
     np.testing.assert_allclose(first["trailing_edge"], -second["trailing_edge"], rtol=1e-6)
     assert first["edge_tension"].attrs["error_kind"] == "estimated"
 
 
-def test_contacts_without_sliding() -> None:
+def test_contact_without_sliding_has_no_edge_tension() -> None:
     case = Case(body=HalfSpace(material=STEEL), roller=Roller(radius=RADIUS, length=1e-3), max_pressure=P0)
     with pytest.raises(InvalidInputError, match="without friction"):
         edge_tension(solve(case, stresses=False, accuracy=0.1))
@@ -68,7 +68,7 @@ def test_contacts_without_sliding() -> None:
         edge_tension(solve(rolling, stresses=False, accuracy=0.1))
 
 
-def test_a_study_contains_the_largest_tension(tmp_path) -> None:
+def test_study_contains_largest_tension(tmp_path) -> None:
     run_study(
         small_study(base=BASE | {"e_over_a": 1.0}, sweep={"friction": [0.0, 0.1]}, level="summary"), tmp_path, workers=0
     )

@@ -5,48 +5,48 @@ from __future__ import annotations
 import numpy as np
 
 from contactstudy import FiniteLengthSpace, Grid, Material
-from contactstudy.fields.largest import RIM, place_search
 from contactstudy.fields.loads import TopLoad, sliding
+from contactstudy.fields.stress_maximum import RIM_CELLS, place_search
 from contactstudy.kernels.load import Load
 
 BODY = FiniteLengthSpace(length=10.0, material=Material(1.0, 0.3))
 
 
-def test_points_around_two_peaks_and_around_one_where_the_other_is_its_image() -> None:
+def test_symmetric_contact_searches_one_peak() -> None:
     grid = Grid(x_range=(0.0, 10.0), y_range=(-1.0, 1.0), cells_x=100, cells_y=20)
     ends = np.exp(-(np.minimum(grid.x - 1, 9 - grid.x) ** 2))[:, None] * np.ones(20)
     ends[:, [0, -1]] = 0.0
     uneven = np.where(grid.x[:, None] > 5, 0.9, 1.0) * ends
     low = np.where(grid.x[:, None] > 5, 0.3, 1.0) * ends
-    counts = [len(place_search(BODY, sliding(each, 0.0), grid).samples) for each in (ends, uneven, low)]
+    counts = [len(place_search(BODY, sliding(variant, 0.0), grid).samples) for variant in (ends, uneven, low)]
     assert counts == [2, 3, 2]
     for points in place_search(BODY, sliding(uneven, 0.0), grid).samples:
         assert points.x.min() >= 0.0
         assert points.x.max() <= 10.0
 
 
-def test_on_the_top_cells_off_the_rim_of_the_contact_only() -> None:
+def test_search_on_top_excludes_rim() -> None:
     grid = Grid(x_range=(0.0, 10.0), y_range=(-1.0, 1.0), cells_x=100, cells_y=20)
     pressure = np.ones((100, 20))
     pressure[:, [0, -1]] = 0.0
     pressure[70:] = 0.0
     search = place_search(BODY, sliding(pressure, 0.0), grid)
     # The body ends with the cells: there is no rim at its end.
-    assert search.off_rim[: 70 - RIM, 1 + RIM : 19 - RIM].all()
-    assert search.off_rim.sum() == (70 - RIM) * (18 - 2 * RIM)
+    assert search.inside_rim[: 70 - RIM_CELLS, 1 + RIM_CELLS : 19 - RIM_CELLS].all()
+    assert search.inside_rim.sum() == (70 - RIM_CELLS) * (18 - 2 * RIM_CELLS)
     for points in search.samples:
         assert points.z[0] == 0.0
-        assert search.off_rim_at(points).any()
+        assert search.inside_rim_at(points).any()
         assert set(points.x) <= set(grid.x)
         assert set(points.y) <= set(grid.y)
 
 
-def test_nothing_is_looked_at_without_pressure() -> None:
+def test_search_without_pressure_is_empty() -> None:
     grid = Grid(x_range=(0.0, 1.0), y_range=(-1.0, 1.0), cells_x=10, cells_y=10)
     assert not place_search(BODY, sliding(np.zeros((10, 10)), 0.0), grid).samples
 
 
-def test_a_traction_along_the_axis_is_mirrored_only_if_it_turns_round() -> None:
+def test_axial_traction_is_symmetric_if_reversed() -> None:
     grid = Grid(x_range=(0.0, 10.0), y_range=(-1.0, 1.0), cells_x=100, cells_y=20)
     pressure = np.ones((100, 20))
     pressure[:, [0, -1]] = 0.0

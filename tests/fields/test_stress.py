@@ -53,7 +53,7 @@ def test_stress_is_in_equilibrium_inside(short_body: FiniteLengthSpace, strip_pr
             assert abs(sum(slope(term, axis) for axis, term in enumerate(terms))) < 5e-3
 
 
-def test_symmetries(short_body: FiniteLengthSpace, strip_pressure) -> None:
+def test_stresses_follow_symmetries_of_load(short_body: FiniteLengthSpace, strip_pressure) -> None:
     x, y = [0.0, 0.7, 4.0, 7.3, 8.0], [-0.6, 0.0, 0.6]
     stress = stress_field(short_body, strip_pressure(8.0, (48, 32)), x=x, y=y, z=[0.2, 1.0])
     for name in ("sigma_xx", "sigma_yy", "sigma_zz", "tau_yz", "tau_xy", "tau_xz"):
@@ -64,7 +64,7 @@ def test_symmetries(short_body: FiniteLengthSpace, strip_pressure) -> None:
         assert np.abs(values - along_y * values[:, ::-1]).max() < 1e-7, name
 
 
-def test_corner_under_pressure_carries_exactly_what_theory_says(short_body: FiniteLengthSpace, strip_pressure) -> None:
+def test_loaded_corner_matches_theory(short_body: FiniteLengthSpace, strip_pressure) -> None:
     stress = stress_field(short_body, strip_pressure(8.0, (64, 65)), x=[0.0], y=[0.0], z=[0.0]).isel(x=0, y=0, z=0)
     assert float(stress["sigma_zz"]) == pytest.approx(-1.0, abs=1e-3)
     assert float(stress["sigma_xx"]) == 0.0
@@ -74,12 +74,12 @@ def test_corner_under_pressure_carries_exactly_what_theory_says(short_body: Fini
 def test_friction_is_linear(short_body: FiniteLengthSpace, strip_pressure) -> None:
     pressure = strip_pressure(8.0, (32, 32))
     points = {"x": [0.0, 1.0], "y": [0.3], "z": [0.0, 0.4]}
-    none, some, more = (stress_field(short_body, pressure, friction=f, **points) for f in (0.0, 0.2, 0.4))
+    empty, some, additional = (stress_field(short_body, pressure, friction=f, **points) for f in (0.0, 0.2, 0.4))
     for name in STRESSES:
-        assert np.allclose(more[name] - none[name], 2 * (some[name] - none[name]), atol=1e-10), name
+        assert np.allclose(additional[name] - empty[name], 2 * (some[name] - empty[name]), atol=1e-10), name
 
 
-def test_order_and_repetition_of_the_points_do_not_matter(short_body: FiniteLengthSpace, strip_pressure) -> None:
+def test_stresses_do_not_depend_on_order_of_points(short_body: FiniteLengthSpace, strip_pressure) -> None:
     pressure = strip_pressure(8.0, (32, 32))
     sorted_points = stress_field(short_body, pressure, x=[0.5, 3.0], y=[0.0], z=[0.5, 1.0])
     shuffled = stress_field(short_body, pressure, x=[3.0, 0.5], y=[0.0], z=[1.0, 0.5])
@@ -98,29 +98,29 @@ def test_order_and_repetition_of_the_points_do_not_matter(short_body: FiniteLeng
         ({"friction": "rough"}, "friction = 'rough'"),
     ],
 )
-def test_bad_points_are_named(
+def test_invalid_positions_raise_error(
     short_body: FiniteLengthSpace, strip_pressure, change: dict[str, object], message: str
 ) -> None:
     with pytest.raises(InvalidInputError, match=message):
         stress_field(short_body, strip_pressure(8.0, (16, 16)), **change)  # type: ignore[arg-type]
 
 
-def test_a_body_too_thin_to_be_freed_is_refused(on_cells) -> None:
+def test_too_thin_body_raises_error(on_cells) -> None:
     pressure = on_cells(lambda x, y: np.sqrt(np.maximum(1 - y**2, 0)) + 0 * x, (0.0, 0.005), (-1.5, 1.5), (4, 48))
     thin = FiniteLengthSpace(material=Material(1.0, 0.3), length=0.005)
     with pytest.raises(InvalidInputError, match=r"body.length = 0.005: must be at least 0.004 of the width"):
         stress_field(thin, pressure, z=[0.1])
 
 
-def test_points_within_rounding_of_an_end_lie_on_it(short_body: FiniteLengthSpace, strip_pressure) -> None:
+def test_points_near_end_snap_to_end(short_body: FiniteLengthSpace, strip_pressure) -> None:
     pressure = strip_pressure(8.0, (16, 16))
-    on_end, beside = (stress_field(short_body, pressure, x=[x], z=[0.5]) for x in (0.0, 5e-324))
-    assert beside["x"].item() == 0.0
-    np.testing.assert_array_equal(beside["sigma_zz"], on_end["sigma_zz"])
+    on_end, adjacent = (stress_field(short_body, pressure, x=[x], z=[0.5]) for x in (0.0, 5e-324))
+    assert adjacent["x"].item() == 0.0
+    np.testing.assert_array_equal(adjacent["sigma_zz"], on_end["sigma_zz"])
 
 
 @pytest.mark.parametrize(("axis", "far"), [("y", 1e6), ("y", -1e45), ("z", 1e45)])
-def test_points_out_of_reach_are_refused(short_body: FiniteLengthSpace, strip_pressure, axis: str, far: float) -> None:
+def test_too_distant_points_raise_error(short_body: FiniteLengthSpace, strip_pressure, axis: str, far: float) -> None:
     points = {"x": [4.0], "y": [0.0], "z": [0.5]} | {axis: [far]}
     with pytest.raises(InvalidInputError, match=f"^{axis} = .* within 10000 times the size"):
         stress_field(short_body, strip_pressure(8.0, (16, 16)), **points)

@@ -19,12 +19,12 @@ from contactstudy.fields.surface import SurfaceOperator, surface_operator
 from contactstudy.kernels.load import Load
 
 
-def test_hertz_pressure_sinks_the_inside_as_a_paraboloid(on_cells, half_space: HalfSpace) -> None:
+def test_hertz_pressure_has_parabolic_displacement(on_cells, half_space: HalfSpace) -> None:
     peak = 2 / np.pi
     pressure = on_cells(lambda x, y: peak * np.sqrt(np.maximum(1 - x**2 - y**2, 0)), (-1.5, 1.5), (-1.5, 1.5), (96, 96))
-    sunk = surface_displacement(half_space, pressure)
+    displacement = surface_displacement(half_space, pressure)
     radius2 = pressure.x**2 + pressure.y**2
-    assert float(np.abs(sunk - (1 - radius2 / 2)).where(radius2 < 0.8).max()) < 2e-3
+    assert float(np.abs(displacement - (1 - radius2 / 2)).where(radius2 < 0.8).max()) < 2e-3
 
 
 @pytest.mark.parametrize("tangential", [False, True])
@@ -41,7 +41,7 @@ def test_operator_is_reciprocal_or_antisymmetric_in_y(short_body: FiniteLengthSp
         assert works[0] == pytest.approx(works[1], rel=1e-12)
 
 
-def test_long_body_loaded_in_the_middle_sinks_like_a_half_space(on_cells, unit_material: Material) -> None:
+def test_long_body_has_displacement_of_half_space(on_cells, unit_material: Material) -> None:
     pressure = on_cells(lambda x, y: np.maximum(1 - (x - 30) ** 2 - y**2, 0.0), (0.0, 60.0), (-1.5, 1.5), (480, 24))
     finite = surface_displacement(FiniteLengthSpace(length=60.0, material=unit_material), pressure, 0.2)
     half = surface_displacement(HalfSpace(material=unit_material), pressure, 0.2)
@@ -49,7 +49,7 @@ def test_long_body_loaded_in_the_middle_sinks_like_a_half_space(on_cells, unit_m
     assert float(difference.max() - difference.min()) < 2e-3 * float(half.max())
 
 
-def test_incompressible_edge_is_half_as_stiff_and_more(unit_material: Material) -> None:
+def test_incompressible_edge_is_half_as_stiff(unit_material: Material) -> None:
     """A point load on the edge of a quarter space sinks the edge 3.362954 times as far as on a half-space."""
     length, cells = 20.0, 200
     x = length * (np.arange(cells) + 0.5) / cells
@@ -74,13 +74,13 @@ def test_friction_lowers_the_surface_ahead(short_body: FiniteLengthSpace, strip_
 
 
 def test_attributes_state_the_reference(short_body: FiniteLengthSpace, strip_pressure) -> None:
-    sunk = surface_displacement(short_body, strip_pressure(8.0, (16, 16)))
-    assert sunk.attrs["reference_distance"] == pytest.approx(80.0)
-    assert sunk.attrs["units"] == "m"
-    assert sunk.name == "displacement_z"
+    displacement = surface_displacement(short_body, strip_pressure(8.0, (16, 16)))
+    assert displacement.attrs["reference_distance"] == pytest.approx(80.0)
+    assert displacement.attrs["units"] == "m"
+    assert displacement.name == "displacement_z"
 
 
-def test_bad_input_is_named(short_body: FiniteLengthSpace, strip_pressure) -> None:
+def test_invalid_input_raises_error(short_body: FiniteLengthSpace, strip_pressure) -> None:
     with pytest.raises(InvalidInputError, match="friction = nan"):
         surface_displacement(short_body, strip_pressure(8.0, (16, 16)), np.nan)
     with pytest.raises(InvalidInputError, match="end at the free end"):
@@ -88,7 +88,7 @@ def test_bad_input_is_named(short_body: FiniteLengthSpace, strip_pressure) -> No
 
 
 @pytest.mark.parametrize("cells", [(64, 48), (50, 48)], ids=["even halves", "odd halves"])
-def test_the_coarse_operator_is_close_to_one_built_on_coarse_cells(short_body, unit_material, cells):
+def test_coarse_operator_approximates_operator_on_coarse_cells(short_body, unit_material, cells):
     random = np.random.default_rng(3)
     for body in (short_body, QuarterSpace(material=unit_material), HalfSpace(material=unit_material)):
         grids = (
@@ -102,15 +102,17 @@ def test_the_coarse_operator_is_close_to_one_built_on_coarse_cells(short_body, u
 
 
 @pytest.mark.parametrize("model", ["exact", "mirror"])
-def test_displacement_is_zero_at_its_reference_whatever_the_window(unit_material: Material, model: str) -> None:
+def test_displacement_vanishes_at_reference(unit_material: Material, model: str) -> None:
     body = FiniteLengthSpace(length=1.0, material=unit_material, model=model)
-    sunk = []
+    displacement = []
     for window, cells in ((10.5, 210), (2.5, 50)):
         grid = Grid(x_range=(0.0, 1.0), y_range=(-window, window), cells_x=8, cells_y=cells)
         load = np.zeros(grid.shape)
         load[:, cells // 2 - 3 : cells // 2 + 3] = 1.0
         pressure = xr.DataArray(load, coords={"x": grid.x, "y": grid.y}, dims=("x", "y"))
-        sunk.append(surface_displacement(body, pressure))
-    far = sunk[0].interp(y=sunk[0].attrs["reference_distance"])
-    assert float(np.abs(far).max()) < 1e-3 * float(sunk[0].max())
-    np.testing.assert_allclose(sunk[0].sel(y=slice(-2.5, 2.5)), sunk[1], atol=1e-5 * float(sunk[0].max()))
+        displacement.append(surface_displacement(body, pressure))
+    far = displacement[0].interp(y=displacement[0].attrs["reference_distance"])
+    assert float(np.abs(far).max()) < 1e-3 * float(displacement[0].max())
+    np.testing.assert_allclose(
+        displacement[0].sel(y=slice(-2.5, 2.5)), displacement[1], atol=1e-5 * float(displacement[0].max())
+    )

@@ -20,7 +20,7 @@ from contactstudy import (
 )
 from contactstudy.bodies import Body, Counterbody
 from contactstudy.checks import FloatArray
-from contactstudy.contact.normal.pair import PairOperator
+from contactstudy.contact.normal.two_bodies import PairOperator
 from contactstudy.fields.surface import surface_operator
 from contactstudy.kernels.load import Load
 
@@ -49,7 +49,7 @@ def traction(cells: int = 24, along_x: float = 0.3) -> xr.DataArray:
     return xr.DataArray(values, coords={"x": grid.x, "y": grid.y}, dims=("x", "y"))
 
 
-def acting(load: Load, values: xr.DataArray) -> dict[str, xr.DataArray]:
+def acting_loads(load: Load, values: xr.DataArray) -> dict[str, xr.DataArray]:
     """Arguments of a load in one direction alone."""
     names = {Load.NORMAL: "pressure", Load.ALONG_X: "traction_x", Load.ALONG_Y: "traction_y"}
     return {"pressure": 0 * values} | {names[load]: values}
@@ -63,13 +63,13 @@ def test_operator_is_symmetric_and_positive(name: str, cells: str) -> None:
     first, second = ({load: random.standard_normal(grid.shape) for load in ALL} for _ in range(2))
 
     def works(loads: dict[Load, FloatArray], on: dict[Load, FloatArray]) -> FloatArray:
-        displaced = operator.displaced(on, ALL)
+        displaced = operator.compute_displacements(on, ALL)
         return np.array([(grid.weights * loads[load] * displaced[load]).sum() for load in ALL])
 
-    one, other = works(first, second), works(second, first)
-    assert abs(one.sum() - other.sum()) < 1e-12 * np.abs(one).sum()
+    item, variant = works(first, second), works(second, first)
+    assert abs(item.sum() - variant.sum()) < 1e-12 * np.abs(item).sum()
     for _ in range(5):
-        load = {each: random.standard_normal(grid.shape) for each in ALL}
+        load = {direction: random.standard_normal(grid.shape) for direction in ALL}
         assert works(load, load).sum() > 0
 
 
@@ -77,98 +77,102 @@ def test_operator_is_symmetric_and_positive(name: str, cells: str) -> None:
     ("name", "load"),
     [("half-space", Y), ("mirror", X), *((name, load) for name in ("quarter space", "finite length") for load in ALL)],
 )
-def test_top_moves_as_the_field_inside_says(name: str, load: Load) -> None:
+def test_surface_displacement_equals_field_on_top(name: str, load: Load) -> None:
     """Reciprocity on the ends, against the harmonics of both auxiliary bodies at the depth 0."""
-    body, loads = BODIES[name], acting(load, traction())
+    body, loads = BODIES[name], acting_loads(load, traction())
     top = surface_displacement(body, **loads, components="xyz")
     inside = displacement_field(body, **loads)
     largest = max(float(np.ptp(top[name].values)) for name in top)
     # Columns at a loaded end are averaged: their displacement has a logarithm's slope there under a traction along x.
     inner = slice(0.3, LENGTH - 0.3) if load is Load.ALONG_X else slice(None)
     for axis in "xyz":
-        apart = (top[f"displacement_{axis}"] - inside[f"u_{axis}"].isel(z=0)).sel(x=inner)
-        assert float(np.abs(apart).max()) < 2e-3 * largest, axis
+        separate = (top[f"displacement_{axis}"] - inside[f"u_{axis}"].isel(z=0)).sel(x=inner)
+        assert float(np.abs(separate).max()) < 2e-3 * largest, axis
 
 
 @pytest.mark.parametrize("body", [BODIES["quarter space"], BODIES["finite length"]], ids=["quarter", "finite"])
 @pytest.mark.parametrize("load", ALL)
 def test_ends_are_free_of_traction(body: Body, load: Load) -> None:
     ends = [end for end in body.extent if np.isfinite(end)]
-    stress = stress_field(body, **acting(load, traction(48)), x=ends, y=[-1.2, -0.5, 0.0, 0.7], z=[0.05, 0.2, 1.0, 4.0])
+    stress = stress_field(
+        body, **acting_loads(load, traction(48)), x=ends, y=[-1.2, -0.5, 0.0, 0.7], z=[0.05, 0.2, 1.0, 4.0]
+    )
     for name in ("sigma_xx", "tau_xy", "tau_xz"):
         assert float(np.abs(stress[name]).max()) < 1e-4, name
 
 
 def test_stresses_under_a_traction_along_x_follow_from_the_displacements() -> None:
     """Hooke's law, at a point between two ends that the force bends."""
-    body, loads = BODIES["finite length"], acting(Load.ALONG_X, traction())
+    body, loads = BODIES["finite length"], acting_loads(Load.ALONG_X, traction())
     at, step = {"x": 0.4, "y": 0.3, "z": 0.6}, 0.02
     offsets, weights = np.arange(-3, 4) * step, np.array([-1, 9, -45, 0, 45, -9, 1]) / (60 * step)
     gradient = np.empty((3, 3))
     for column, axis in enumerate("xyz"):
         points = {name: [value] for name, value in at.items()} | {axis: at[axis] + offsets}
-        moved = displacement_field(body, **loads, **points)
-        gradient[:, column] = [float(weights @ moved[name].values.ravel()) for name in ("u_x", "u_y", "u_z")]
+        shifted = displacement_field(body, **loads, **points)
+        gradient[:, column] = [float(weights @ shifted[name].values.ravel()) for name in ("u_x", "u_y", "u_z")]
     strain = 0.5 * (gradient + gradient.T)
     nu = MATERIAL.poisson
     lame = MATERIAL.young * nu / ((1 + nu) * (1 - 2 * nu))
     expected = lame * np.trace(strain) * np.eye(3) + 2 * MATERIAL.shear_modulus * strain
-    found = stress_field(body, **loads, **{name: [value] for name, value in at.items()}).isel(x=0, y=0, z=0)
+    computed = stress_field(body, **loads, **{name: [value] for name, value in at.items()}).isel(x=0, y=0, z=0)
     pairs = {"sigma_xx": (0, 0), "sigma_yy": (1, 1), "sigma_zz": (2, 2), "tau_xy": (0, 1), "tau_xz": (0, 2)}
-    for name, place in pairs.items():
-        assert float(found[name]) == pytest.approx(expected[place], abs=2e-3), name
+    for name, position in pairs.items():
+        assert float(computed[name]) == pytest.approx(expected[position], abs=2e-3), name
 
 
-def test_reflection_turns_a_traction_along_x_round() -> None:
+def test_reflection_reverses_axial_traction() -> None:
     body, load = BODIES["finite length"], traction()
     reflected = xr.DataArray(-load.values[::-1], coords=load.coords, dims=load.dims)
-    moved = surface_displacement(body, **acting(Load.ALONG_X, load), components="xyz")
-    other = surface_displacement(body, **acting(Load.ALONG_X, reflected), components="xyz")
+    shifted = surface_displacement(body, **acting_loads(Load.ALONG_X, load), components="xyz")
+    variant = surface_displacement(body, **acting_loads(Load.ALONG_X, reflected), components="xyz")
     for axis, sign in (("x", -1), ("y", 1), ("z", 1)):
         name = f"displacement_{axis}"
-        assert np.abs(moved[name].values - sign * other[name].values[::-1]).max() < 1e-9 * float(
-            np.ptp(moved[name].values)
+        assert np.abs(shifted[name].values - sign * variant[name].values[::-1]).max() < 1e-9 * float(
+            np.ptp(shifted[name].values)
         )
 
 
-def test_bending_changes_with_the_reference_by_pure_bending_alone() -> None:
+def test_reference_changes_displacement_by_pure_bending() -> None:
     """Two windows state the same displacement: the reference belongs to the body."""
     body = BODIES["finite length"]
-    moved = []
+    shifted = []
     for reach, cells in ((2.0, 20), (5.0, 50)):
         grid = Grid(x_range=(0.0, LENGTH), y_range=(-reach, reach), cells_x=15, cells_y=cells)
         load = xr.DataArray(np.zeros(grid.shape), coords={"x": grid.x, "y": grid.y}, dims=("x", "y"))
         load[:, cells // 2 - 3 : cells // 2 + 3] = 1.0
-        moved.append(surface_displacement(body, **acting(Load.ALONG_X, load), components="xyz"))
-    narrow, wide = moved[0], moved[1].sel(y=moved[0].y, method="nearest")
+        shifted.append(surface_displacement(body, **acting_loads(Load.ALONG_X, load), components="xyz"))
+    narrow, wide = shifted[0], shifted[1].sel(y=shifted[0].y, method="nearest")
     for name in narrow:
         assert np.abs(narrow[name].values - wide[name].values).max() < 2e-4 * float(
             np.ptp(narrow["displacement_x"].values)
         )
 
 
-def test_a_long_body_loaded_in_the_middle_is_dragged_like_a_half_space() -> None:
+def test_long_body_has_axial_displacement_of_half_space() -> None:
     grid = Grid(x_range=(0.0, 60.0), y_range=(-1.5, 1.5), cells_x=240, cells_y=12)
     x, y = np.meshgrid(grid.x, grid.y, indexing="ij")
     # Without a resultant, which would bend a body of any length.
     values = np.where(np.abs(x - 30) < 1.5, np.sin(np.pi * (x - 30) / 1.5), 0.0) * (1 - y**2 / 2.25)
     load = xr.DataArray(values, coords={"x": grid.x, "y": grid.y}, dims=("x", "y"))
     finite, half = (
-        surface_displacement(body, **acting(Load.ALONG_X, load), components="xyz").sel(x=slice(28, 32))
+        surface_displacement(body, **acting_loads(Load.ALONG_X, load), components="xyz").sel(x=slice(28, 32))
         for body in (FiniteLengthSpace(length=60.0, material=MATERIAL), HalfSpace(material=MATERIAL))
     )
     for name in half:
         assert float(np.abs(finite[name] - half[name]).max()) < 2e-3 * float(np.abs(half["displacement_x"]).max()), name
 
 
-def test_a_traction_makes_equivalent_loads_that_mirror_with_it() -> None:
+def test_mirrored_traction_mirrors_equivalent_loads() -> None:
     load = traction()
     reflected = xr.DataArray(-load.values[::-1], coords=load.coords, dims=load.dims)
     body = BODIES["finite length"]
-    found, other = (equivalent_loads(body, **acting(Load.ALONG_X, each), z=[0.3, 1.0]) for each in (load, reflected))
-    largest = float(np.abs(found.P_v1).max())
-    assert float(np.abs(found.P_v1 - other.P_v2).max()) < 1e-6 * largest
-    assert np.abs(found.P_h1.values - other.P_h1.values[::-1]).max() < 1e-6 * float(np.abs(found.P_h1).max())
+    computed, variant = (
+        equivalent_loads(body, **acting_loads(Load.ALONG_X, item), z=[0.3, 1.0]) for item in (load, reflected)
+    )
+    largest = float(np.abs(computed.P_v1).max())
+    assert float(np.abs(computed.P_v1 - variant.P_v2).max()) < 1e-6 * largest
+    assert np.abs(computed.P_h1.values - variant.P_h1.values[::-1]).max() < 1e-6 * float(np.abs(computed.P_h1).max())
 
 
 def test_equal_bodies_do_not_couple_pressure_and_traction() -> None:
@@ -176,32 +180,32 @@ def test_equal_bodies_do_not_couple_pressure_and_traction() -> None:
     body = BODIES["finite length"]
     pair = PairOperator.of(body, Counterbody(body), grid, ALL, ALL)
     pressure = np.random.default_rng(2).random(grid.shape)
-    moved = pair.displaced({Load.NORMAL: pressure}, ALL)
+    shifted = pair.compute_displacements({Load.NORMAL: pressure}, ALL)
     for direction in (Load.ALONG_X, Load.ALONG_Y):
-        assert np.abs(moved[direction]).max() < 1e-12 * np.abs(moved[Load.NORMAL]).max()
-    dragged = pair.displaced({Load.ALONG_X: pressure}, ALL)
-    own = surface_operator(body, grid, ALL, directions=ALL).displaced({Load.ALONG_X: pressure}, ALL)
-    assert dragged[Load.ALONG_X] == pytest.approx(2 * own[Load.ALONG_X], rel=1e-12)
-    assert np.abs(dragged[Load.NORMAL]).max() < 1e-12 * np.abs(own[Load.ALONG_X]).max()
+        assert np.abs(shifted[direction]).max() < 1e-12 * np.abs(shifted[Load.NORMAL]).max()
+    axial_displacement = pair.compute_displacements({Load.ALONG_X: pressure}, ALL)
+    single_body = surface_operator(body, grid, ALL, directions=ALL).compute_displacements({Load.ALONG_X: pressure}, ALL)
+    assert axial_displacement[Load.ALONG_X] == pytest.approx(2 * single_body[Load.ALONG_X], rel=1e-12)
+    assert np.abs(axial_displacement[Load.NORMAL]).max() < 1e-12 * np.abs(single_body[Load.ALONG_X]).max()
 
 
-def test_tractions_add_up_with_pressure_and_friction() -> None:
+def test_stresses_of_tractions_and_pressure_add_up() -> None:
     load = traction()
     body = BODIES["quarter space"]
     sliding = surface_displacement(body, load, 0.2)
-    named = surface_displacement(body, load, traction_y=0.2 * load)
-    assert np.allclose(sliding, named, rtol=1e-12)
+    messages = surface_displacement(body, load, traction_y=0.2 * load)
+    assert np.allclose(sliding, messages, rtol=1e-12)
     both = surface_displacement(body, load, traction_x=0.1 * load, components="xz")
-    apart = surface_displacement(body, load, components="xz") + 0.1 * surface_displacement(
+    separate = surface_displacement(body, load, components="xz") + 0.1 * surface_displacement(
         body, 0 * load, traction_x=load, components="xz"
     )
     for name in ("displacement_x", "displacement_z"):
-        assert np.allclose(both[name], apart[name], atol=1e-12)
+        assert np.allclose(both[name], separate[name], atol=1e-12)
     assert set(both) == {"displacement_x", "displacement_z"}
     assert both["displacement_x"].attrs["units"] == "m"
 
 
-def test_bad_input_is_named() -> None:
+def test_invalid_input_raises_error() -> None:
     load = traction()
     body = BODIES["finite length"]
     with pytest.raises(InvalidInputError, match=r"friction = 0.1.*traction_y"):

@@ -34,24 +34,24 @@ def fields(kind: str, cells: str, length: float, modulus: float) -> list[np.ndar
     pressure = 1e-3 * modulus * np.sqrt(np.maximum(0.7 - y**2, 0)) * (1 + 0.3 * x[:, None])
     coordinates = {"x": length * x, "y": length * y, "x_width": ("x", length * np.diff(EDGES[cells]))}
     load = xr.DataArray(pressure, coordinates, ("x", "y"))
-    own = body(kind, length, modulus)
+    scaled_body = body(kind, length, modulus)
     at = {"friction": 0.2, "x": length * np.array([0.0, 0.5, 2.9]), "y": length * np.array([-0.3, 0.4])}
-    stress = stress_field(own, load, **at, z=[0.02 * length, 0.7 * length], traction_x=0.1 * load)
-    moved = displacement_field(own, load, **at, z=[0.0, 0.7 * length])
-    top = surface_displacement(own, load, 0.2)
-    found = [stress[name].values / modulus for name in stress.data_vars]
-    found += [moved[name].values / length for name in moved.data_vars]
-    found += [(top if isinstance(top, xr.DataArray) else top.to_dataarray()).values / length]
+    stress = stress_field(scaled_body, load, **at, z=[0.02 * length, 0.7 * length], traction_x=0.1 * load)
+    shifted = displacement_field(scaled_body, load, **at, z=[0.0, 0.7 * length])
+    top = surface_displacement(scaled_body, load, 0.2)
+    computed = [stress[name].values / modulus for name in stress.data_vars]
+    computed += [shifted[name].values / length for name in shifted.data_vars]
+    computed += [(top if isinstance(top, xr.DataArray) else top.to_dataarray()).values / length]
     if kind != "half":
-        loads = equivalent_loads(own, load, 0.2)
-        found += [loads[name].values / modulus for name in loads.data_vars if loads[name].attrs.get("units") == "Pa"]
-    return found
+        loads = equivalent_loads(scaled_body, load, 0.2)
+        computed += [loads[name].values / modulus for name in loads.data_vars if loads[name].attrs.get("units") == "Pa"]
+    return computed
 
 
 @pytest.mark.parametrize(("kind", "cells"), [("half", "graded"), ("quarter", "graded"), ("finite", "uniform")])
-def test_other_units_make_the_same_fields(kind: str, cells: str) -> None:
-    expected, found = fields(kind, cells, 1e-3, 2e11), fields(kind, cells, 2.0**-12 * 1e-3, 2.0**-24 * 2e11)
+def test_fields_scale_with_units(kind: str, cells: str) -> None:
+    expected, computed = fields(kind, cells, 1e-3, 2e11), fields(kind, cells, 2.0**-12 * 1e-3, 2.0**-24 * 2e11)
     assert len(expected) > 8
-    for one, other in zip(expected, found, strict=True):
-        scale = np.abs(one[np.isfinite(one)]).max()  # displacements of mirrored rows are differences of large numbers
-        np.testing.assert_allclose(other, one, rtol=0, atol=1e-7 * scale)
+    for item, variant in zip(expected, computed, strict=True):
+        scale = np.abs(item[np.isfinite(item)]).max()  # displacements of mirrored rows are differences of large numbers
+        np.testing.assert_allclose(variant, item, rtol=0, atol=1e-7 * scale)

@@ -26,7 +26,7 @@ def test_rolling_between_free_ends(monkeypatch: pytest.MonkeyPatch) -> None:
     mesh = Resolution(order=4, growth=2.0, smallest=0.05, panels=(*PANELS, 200))
     expected = roll(flexibility(LENGTH, COLUMNS, POISSON, mesh), STRIPS, WINDOW, LOAD, FRICTION, PART, 2 * STRIPS)
     assert expected.change < 1e-3
-    monkeypatch.setattr(tractions, "_part_inside", lambda pressure: 0.5 - tractions.EDGE_OFFSET)
+    monkeypatch.setattr(tractions, "_inside_length", lambda pressure: 0.5 - tractions.EDGE_OFFSET)
     monkeypatch.setattr(tractions, "SLIDING_OFFSET", 0.5)
     gap = on_cells(lambda x, y: 0.5 * y**2 + 0 * x, (0, LENGTH), (-WINDOW, WINDOW), (COLUMNS, STRIPS))
     body = FiniteLengthSpace(length=LENGTH, material=Material(1 - POISSON**2, POISSON))

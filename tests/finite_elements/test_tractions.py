@@ -11,9 +11,9 @@ from contactstudy import Material
 from contactstudy.bodies.models import FreeEnds
 from contactstudy.checks import FloatArray
 from contactstudy.kernels.load import Load, Response
-from contactstudy.overlapping.axial import axial_modes
+from contactstudy.overlapping.axial_modes import axial_modes
 from contactstudy.overlapping.quadrature import Resolution, panel_nodes
-from contactstudy.overlapping.surface import EndRequest, Waves, sampled_kernel
+from contactstudy.overlapping.surface import EndRequest, PositionWaves, sampled_kernel
 from contactstudy.verification.problems import Bump
 
 LENGTH, POISSON, FINEST = 4.0, 0.3, 0.02
@@ -57,7 +57,7 @@ def own_displacement(bump: Bump, lateral: float, response: Response) -> FloatArr
     spectrum = weight * (wave(response.load, nodes) @ forces)
     total = wave(response.displacement, AT).T @ (mirrored_half_space(lateral, response) * spectrum)
     for modes in axial_modes(LENGTH, lateral, FINEST, resolution):
-        waves = Waves.of(modes, np.concatenate([nodes, AT]), (response,))
+        waves = PositionWaves.of(modes, np.concatenate([nodes, AT]), (response,))
         kernel = sampled_kernel(waves, lateral, request, 0.5 * FINEST)[0]
         total += 2 * kernel[nodes.size :, : nodes.size] @ forces
     return np.asarray(total)

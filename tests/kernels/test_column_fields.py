@@ -12,16 +12,16 @@ from contactstudy.arrays.points import Points
 from contactstudy.cache import ArrayKey
 from contactstudy.checks import FloatArray
 from contactstudy.kernels.column_fields import (
-    AlongY,
-    _Surroundings,
-    _surroundings,
+    LateralAxis,
+    _split_around,
+    _SplitRange,
     columns_field,
     common_step,
     split_columns,
 )
 from contactstudy.kernels.corner_sums import AlignedPoints, EvenOffsets, Layer, merge_columns, midpoint_cells
 from contactstudy.kernels.field import displacement_influence, half_space_field, stress_influence
-from contactstudy.kernels.fine_cells import FineCells, resolved_columns, with_images
+from contactstudy.kernels.fine_cells import FineCells, add_images, resolved_columns
 from contactstudy.kernels.images import Influence
 from contactstudy.kernels.load import Load
 
@@ -45,7 +45,7 @@ def displacements_of(load: Load, extent: tuple[float, float]) -> Influence:
 
 @pytest.mark.parametrize("load", Load)
 @pytest.mark.parametrize("extent", EXTENTS)
-def test_field_of_uniform_cells(load: Load, extent: str) -> None:
+def test_columns_reproduce_field_of_uniform_cells(load: Load, extent: str) -> None:
     grid = Grid(x_range=(0.0, LENGTH), y_range=(-1.0, 1.0), cells_x=20, cells_y=16)
     cells = np.random.default_rng(0).random(grid.shape)
     cells[:, :3] = 0
@@ -53,21 +53,21 @@ def test_field_of_uniform_cells(load: Load, extent: str) -> None:
     for influence, allowed in ((stresses_of(load), 2e-7), (displacements_of(load, EXTENTS[extent]), 3e-6)):
         for y in (grid.y, np.array([0.1, 0.33])):
             expected = half_space_field(cells, influence, grid, Points(X, y, Z), extent=EXTENTS[extent])
-            found = columns_field(cells, None, influence, grid, Points(X, y, Z), extent=EXTENTS[extent])
-            assert found.shape == expected.shape
-            assert np.abs(found - expected).max() < allowed * np.abs(expected).max()
+            computed = columns_field(cells, None, influence, grid, Points(X, y, Z), extent=EXTENTS[extent])
+            assert computed.shape == expected.shape
+            assert np.abs(computed - expected).max() < allowed * np.abs(expected).max()
 
 
 @pytest.mark.parametrize("load", Load)
 @pytest.mark.parametrize("extent", EXTENTS)
-def test_a_body_elsewhere_has_the_same_field(load: Load, extent: str) -> None:
+def test_shifted_body_has_equal_field(load: Load, extent: str) -> None:
     fields = []
-    for place in (0.0, 8.0):
-        grid = Grid.from_edges(place + np.array([0.0, 0.2, 0.7, 1.1, 1.6, LENGTH]), (-1.0, 1.0), 6)
-        ends = (EXTENTS[extent][0] + place, EXTENTS[extent][1] + place)
+    for position in (0.0, 8.0):
+        grid = Grid.from_edges(position + np.array([0.0, 0.2, 0.7, 1.1, 1.6, LENGTH]), (-1.0, 1.0), 6)
+        ends = (EXTENTS[extent][0] + position, EXTENTS[extent][1] + position)
         cells = np.random.default_rng(2).random(grid.shape)
         fields.append(
-            columns_field(cells, None, stresses_of(load), grid, Points(place + X, np.array([0.1]), Z), extent=ends)
+            columns_field(cells, None, stresses_of(load), grid, Points(position + X, np.array([0.1]), Z), extent=ends)
         )
     assert np.abs(fields[1] - fields[0]).max() < 1e-9 * np.abs(fields[0]).max()
 
@@ -78,23 +78,21 @@ GRADED = np.array([0, 1, 2, 3, 5, 7, 10, 14, 17, 18, 19, 20])
 
 @pytest.mark.parametrize("load", Load)
 @pytest.mark.parametrize("extent", EXTENTS)
-def test_field_of_the_same_load_on_finer_uniform_cells(load: Load, extent: str) -> None:
+def test_columns_match_finer_uniform_cells(load: Load, extent: str) -> None:
     uniform = Grid(x_range=(0.0, LENGTH), y_range=(-1.0, 1.0), cells_x=20, cells_y=16)
     graded = Grid.from_edges(uniform.x_edges[GRADED], (-1.0, 1.0), 16)
     cells = np.random.default_rng(1).random(graded.shape)
     spread = np.repeat(cells, np.diff(GRADED), axis=0)
     influence, y = stresses_of(load), np.array([-0.4, 0.0, 0.1, 0.33, 0.9])
     expected = half_space_field(spread, influence, uniform, Points(X, y, Z), extent=EXTENTS[extent])
-    found = columns_field(cells, None, influence, graded, Points(X, y, Z), extent=EXTENTS[extent])
-    assert np.abs(found - expected).max() < 2e-7 * np.abs(expected).max()
+    computed = columns_field(cells, None, influence, graded, Points(X, y, Z), extent=EXTENTS[extent])
+    assert np.abs(computed - expected).max() < 2e-7 * np.abs(expected).max()
 
 
 @pytest.mark.parametrize("load", Load)
 @pytest.mark.parametrize("extent", EXTENTS)
 @pytest.mark.parametrize("column", [7, 10])
-def test_a_column_loaded_alone_keeps_its_place_wherever_its_field_is_asked_for(
-    load: Load, extent: str, column: int
-) -> None:
+def test_single_loaded_column_keeps_position(load: Load, extent: str, column: int) -> None:
     # Columns are split so that each point lies in the middle of one, which moved the force beside a step of the load.
     graded = Grid.from_edges(np.linspace(0.0, LENGTH, 21)[GRADED], (-1.0, 1.0), 16)
     cells = np.zeros(graded.shape)
@@ -106,17 +104,17 @@ def test_a_column_loaded_alone_keeps_its_place_wherever_its_field_is_asked_for(
         cells_x=20,
         cells_y=9 * fine.cells.shape[1],
     )
-    smooth = fine.along_y(fine.cells, fine.cells).means(np.linspace(*uniform.y_range, uniform.cells_y + 1))
+    smooth = fine.shape_along_y(fine.cells, fine.cells).means(np.linspace(*uniform.y_range, uniform.cells_y + 1))
     spread = np.repeat(smooth, np.diff(GRADED), axis=0)
     influence, x, y = stresses_of(load), np.linspace(0.05, 1.95, 21), np.array([0.0, 0.3])
     for z in (np.array([0.15]), np.array([0.4])):
         expected = half_space_field(spread, influence, uniform, Points(x, y, z), extent=EXTENTS[extent])
-        found = columns_field(cells, cells, influence, graded, Points(x, y, z), extent=EXTENTS[extent])
-        assert np.abs(found - expected).max() < 1e-3 * np.abs(expected).max()
+        computed = columns_field(cells, cells, influence, graded, Points(x, y, z), extent=EXTENTS[extent])
+        assert np.abs(computed - expected).max() < 1e-3 * np.abs(expected).max()
 
 
 @pytest.mark.parametrize("extent", EXTENTS)
-def test_a_smooth_load_on_wide_columns_is_seen_as_smooth(extent: str) -> None:
+def test_wide_columns_represent_smooth_load(extent: str) -> None:
     """In thirds of columns 0.4 wide; as steps it would be 9 % off."""
     scale = 1e-3
     graded = Grid.from_edges(scale * np.linspace(0.0, LENGTH, 21)[GRADED], (-scale, scale), 16)
@@ -126,13 +124,13 @@ def test_a_smooth_load_on_wide_columns_is_seen_as_smooth(extent: str) -> None:
     fine = FineCells(load=cells, shape=cells, grid=graded, extent=ends)
     y_range = (float(fine.y_edges[0]), float(fine.y_edges[-1]))
     uniform = Grid(x_range=(0.0, scale * LENGTH), y_range=y_range, cells_x=100, cells_y=9 * fine.cells.shape[1])
-    along_x = fine.columns([uniform.x_edges])
-    spread = fine.along_y(along_x, along_x).means(np.linspace(*y_range, uniform.cells_y + 1))
+    along_x = fine.column_means([uniform.x_edges])
+    spread = fine.shape_along_y(along_x, along_x).means(np.linspace(*y_range, uniform.cells_y + 1))
     influence, x, y = stresses_of(Load.NORMAL), scale * np.linspace(0.1, 1.9, 13), np.array([0.0, 0.3 * scale])
     for z in (np.array([0.05 * scale]), np.array([0.3 * scale])):
         expected = half_space_field(spread, influence, uniform, Points(x, y, z), extent=ends)
-        found = columns_field(cells, cells, influence, graded, Points(x, y, z), extent=ends)
-        assert np.abs(found - expected).max() < 0.02 * np.abs(expected).max()
+        computed = columns_field(cells, cells, influence, graded, Points(x, y, z), extent=ends)
+        assert np.abs(computed - expected).max() < 0.02 * np.abs(expected).max()
 
 
 @pytest.mark.parametrize(
@@ -144,16 +142,18 @@ def test_a_smooth_load_on_wide_columns_is_seen_as_smooth(extent: str) -> None:
         (10, "both", -1, [-2.0, -1.9, 1.9, 2.0, 2.1]),
     ],
 )
-def test_steps_of_a_load(column: int, extent: str, image: int, expected: list[float]) -> None:
+def test_step_edges_of_load(column: int, extent: str, image: int, expected: list[float]) -> None:
     graded = Grid.from_edges(np.linspace(0.0, LENGTH, 21)[GRADED], (-1.0, 1.0), 16)
     cells = np.zeros(graded.shape)
     cells[column] = np.sqrt(np.maximum(1 - (graded.y / 0.6) ** 2, 0))
-    steps = FineCells(load=1e-3 * cells, shape=1e-3 * cells, grid=graded, extent=EXTENTS[extent], image=image).steps
+    steps = FineCells(
+        load=1e-3 * cells, shape=1e-3 * cells, grid=graded, extent=EXTENTS[extent], image=image
+    ).step_edges
     assert np.unique(steps.round(9)).tolist() == pytest.approx(expected)
 
 
 @pytest.mark.parametrize("load", Load)
-def test_depths_that_are_seen_together_are_those_seen_alone(load: Load) -> None:
+def test_joint_depths_equal_separate_depths(load: Load) -> None:
     # What columns far away do is interpolated over the depth; at a single depth it is not.
     edges = np.concatenate([np.linspace(0.0, 2.0, 9), np.geomspace(2.5, 60.0, 24)])
     graded = Grid.from_edges(edges, (-1.0, 1.0), 16)
@@ -162,26 +162,26 @@ def test_depths_that_are_seen_together_are_those_seen_alone(load: Load) -> None:
     x, extent = np.array([0.0, 0.7, 9.0, 40.0, 60.0]), (0.0, 60.0)
     together = columns_field(cells, cells, influence, graded, Points(x, y, z), extent=extent)
     for number in (0, 1, 8, 24):
-        alone = columns_field(cells, cells, influence, graded, Points(x, y, z[number : number + 1]), extent=extent)
+        single = columns_field(cells, cells, influence, graded, Points(x, y, z[number : number + 1]), extent=extent)
         # Nearer to the top than the others see it, columns are split into more.
-        assert np.abs(together[..., number] - alone[..., 0]).max() < 2e-4 * np.abs(together).max()
+        assert np.abs(together[..., number] - single[..., 0]).max() < 2e-4 * np.abs(together).max()
 
 
 @pytest.mark.parametrize("load", Load)
-def test_far_away_the_field_is_that_of_a_point_load(load: Load) -> None:
+def test_distant_field_equals_point_load(load: Load) -> None:
     graded = Grid.from_edges([0.0, 0.2, 0.6, 1.0], (-1.0, 1.0), 16)
     cells = np.ones((3, 1)) * np.sqrt(np.maximum(1 - (graded.y / 0.8) ** 2, 0))
     point = Grid.from_edges([0.45, 0.55], (-0.05, 0.05), 1)
     force = float((cells * graded.widths[:, None]).sum() * graded.dy)
     influence, x, y, z = stresses_of(load), np.array([-60.0, 50.0, 70.0]), np.array([0.0, 3.0]), np.array([1.0, 40.0])
-    found = columns_field(cells, cells, influence, graded, Points(x, y, z), extent=EXTENTS["none"])
+    computed = columns_field(cells, cells, influence, graded, Points(x, y, z), extent=EXTENTS["none"])
     expected = columns_field(
         np.full((1, 1), force / 0.01), None, influence, point, Points(x, y, z), extent=EXTENTS["none"]
     )
-    assert np.abs(found - expected).max() < 5e-4 * np.abs(expected).max()
+    assert np.abs(computed - expected).max() < 5e-4 * np.abs(expected).max()
 
 
-def test_nothing_loaded_leaves_nothing() -> None:
+def test_zero_load_has_zero_field() -> None:
     grid = Grid.from_edges([0.0, 0.5, 2.0], (-1.0, 1.0), 4)
     field = half_space_field(
         np.zeros(grid.shape), stresses_of(Load.NORMAL), grid, Points(X, grid.y, Z), extent=EXTENTS["both"]
@@ -201,7 +201,7 @@ def graded_loads(draw: st.DrawFn) -> tuple[Grid, FloatArray]:
 
 @settings(max_examples=10)
 @given(loaded=graded_loads(), load=st.sampled_from(list(Load)), extent=st.sampled_from(["none", "both"]))
-def test_mirrored_load_makes_the_mirrored_field(loaded: tuple[Grid, FloatArray], load: Load, extent: str) -> None:
+def test_mirrored_load_has_mirrored_field(loaded: tuple[Grid, FloatArray], load: Load, extent: str) -> None:
     grid, cells = loaded
     backwards = Grid.from_edges(LENGTH - grid.x_edges[::-1], (-1.0, 1.0), 6)
     influence, y = stresses_of(load), np.array([-0.4, 0.1])
@@ -215,7 +215,7 @@ def test_mirrored_load_makes_the_mirrored_field(loaded: tuple[Grid, FloatArray],
 
 @settings(max_examples=2)
 @given(loaded=graded_loads())
-def test_normal_stress_on_a_plane_carries_the_whole_load(loaded: tuple[Grid, FloatArray]) -> None:
+def test_normal_stress_integrates_to_load(loaded: tuple[Grid, FloatArray]) -> None:
     grid, cells = loaded
     depth, reach, points = 0.6, 40.0, 41
     # Points that crowd where the load is: y = sinh(s).
@@ -234,7 +234,9 @@ UNIT, PRESSURE = 2.0**-17, 2.0**37
 PLACES = (0.0, 1e-12, 0.02, 0.05, 0.07, 0.3, 0.4, 0.75, 1.5, 1.7, 2.2, 2.95, 3.0)
 
 
-def fine(place: float = 0.0, unit: float = 1.0, *, ends: int = 2, image: int = 1, steps: bool = False) -> FineCells:
+def make_fine_cells(
+    place: float = 0.0, unit: float = 1.0, *, ends: int = 2, image: int = 1, steps: bool = False
+) -> FineCells:
     """A load that is pressed at both ends, and may end in steps between columns."""
     grid = Grid.between(unit * (EDGES + place), (-unit, unit), 8)
     x, y = grid.x[:, None] / unit - place, grid.y / unit
@@ -246,113 +248,113 @@ def fine(place: float = 0.0, unit: float = 1.0, *, ends: int = 2, image: int = 1
     return FineCells(load=load, shape=load, grid=grid, extent=extent, image=image)
 
 
-def around(x: float, own: FineCells, narrow: float = 0.0) -> _Surroundings:
-    return _surroundings(x, own, narrow)
+def split_around(x: float, own: FineCells, narrow: float = 0.0) -> _SplitRange:
+    return _split_around(x, own, narrow)
 
 
 @pytest.mark.parametrize("x", PLACES)
 @pytest.mark.parametrize("narrow", [0.0, 0.15, 5.0])
 @pytest.mark.parametrize("steps", [False, True])
-def test_neither_unit_nor_place_decides_anything(x: float, narrow: float, *, steps: bool) -> None:
+def test_results_scale_with_unit_and_position(x: float, narrow: float, *, steps: bool) -> None:
     for ends in (0, 1, 2):
-        plain_cells = fine(ends=ends, steps=steps)
-        plain = around(x, plain_cells, narrow)
-        for place, unit in ((0.0, UNIT), (8.0, 1.0), (-32.0, 1.0)):
-            cells = fine(place, unit, ends=ends, steps=steps)
-            other = around(unit * (x + place), cells, unit * narrow)
-            if x == 1e-12 and place:  # not to be told from 0 there
+        plain_cells = make_fine_cells(ends=ends, steps=steps)
+        baseline = split_around(x, plain_cells, narrow)
+        for position, unit in ((0.0, UNIT), (8.0, 1.0), (-32.0, 1.0)):
+            cells = make_fine_cells(position, unit, ends=ends, steps=steps)
+            variant = split_around(unit * (x + position), cells, unit * narrow)
+            if x == 1e-12 and position:  # not to be told from 0 there
                 continue
-            assert (other.lowest, other.highest) == (plain.lowest, plain.highest)
-            assert other.inserted / unit - place == pytest.approx(plain.inserted, abs=1e-9)
+            assert (variant.start, variant.stop) == (baseline.start, baseline.stop)
+            assert variant.inserted / unit - position == pytest.approx(baseline.inserted, abs=1e-9)
             factor = PRESSURE if unit < 1 else 1.0
-            assert other.moment_loads(cells) / factor == pytest.approx(plain.moment_loads(plain_cells), abs=1e-9)
+            assert variant.moment_loads(cells) / factor == pytest.approx(baseline.moment_loads(plain_cells), abs=1e-9)
             for reach in (0.0, 0.3137, 1.0731, 9.0):
-                there = other.within(cells.edges, unit * (x + place), unit * reach)
-                assert there == plain.within(plain_cells.edges, x, reach)
+                there = variant.range_within(cells.edges, unit * (x + position), unit * reach)
+                assert there == baseline.range_within(plain_cells.edges, x, reach)
 
 
 @pytest.mark.parametrize("x", PLACES)
 @pytest.mark.parametrize("image", [1, -1])
-def test_columns_with_those_inserted_carry_all_of_the_force(x: float, image: int) -> None:
-    own = fine(image=image)
-    each = around(x, own)
-    forces = with_images(own.far_load, image, own.extent) * np.diff(own.edges)[:, None]
-    inserted = own.columns([each.inserted]) + each.moment_loads(own)
-    inside = (inserted * np.diff(each.inserted)[:, None]).sum(axis=0)
-    outside = forces.sum(axis=0) - forces[each.lowest : each.highest].sum(axis=0)
+def test_inserted_columns_preserve_force(x: float, image: int) -> None:
+    cells = make_fine_cells(image=image)
+    item = split_around(x, cells)
+    forces = add_images(cells.far_load, image, cells.extent) * np.diff(cells.edges)[:, None]
+    inserted = cells.column_means([item.inserted]) + item.moment_loads(cells)
+    inside = (inserted * np.diff(item.inserted)[:, None]).sum(axis=0)
+    outside = forces.sum(axis=0) - forces[item.start : item.stop].sum(axis=0)
     assert inside + outside == pytest.approx(forces.sum(axis=0), abs=1e-9)
-    assert each.inserted[0] == own.edges[each.lowest]
-    assert each.inserted[-1] == own.edges[each.highest]
-    assert (np.diff(each.inserted) > 0).all()
+    assert item.inserted[0] == cells.edges[item.start]
+    assert item.inserted[-1] == cells.edges[item.stop]
+    assert (np.diff(item.inserted) > 0).all()
 
 
 @pytest.mark.parametrize("x", [0.02, 0.07, 0.3, 0.4, 0.75, 1.5, 1.7, 2.2, 2.95])
-def test_a_point_lies_in_the_middle_of_a_narrow_column_and_two_like_it(x: float) -> None:
+def test_narrow_columns_surround_point(x: float) -> None:
     """A quarter as wide as what it lies in; on an edge as the narrower of both."""
-    own = fine()
-    edges = around(x, own).inserted
+    cells = make_fine_cells()
+    edges = split_around(x, cells).inserted
     at = int(np.searchsorted(edges, x)) - 1
     assert 0.5 * (edges[at] + edges[at + 1]) == pytest.approx(x)
     widths = np.diff(edges)
     assert widths[at - 1] == pytest.approx(widths[at])
     assert widths[at + 1] == pytest.approx(widths[at])
-    split = own.x_edges
-    beside = np.flatnonzero((split[:-1] <= x + 1e-12) & (split[1:] >= x - 1e-12))
-    assert widths[at] == pytest.approx(0.25 * np.diff(split)[beside].min())
-    low, high = resolved_columns(own.edges, x)
-    assert np.isin(edges[[0, -1]], own.edges[[max(low - 1, 0), min(high + 1, own.edges.size - 1)]]).all()
-    left = split[(split > own.edges[low]) & (split < own.edges[high]) & (np.abs(split - x) > 2.1 * widths[at])]
+    split = cells.x_edges
+    adjacent = np.flatnonzero((split[:-1] <= x + 1e-12) & (split[1:] >= x - 1e-12))
+    assert widths[at] == pytest.approx(0.25 * np.diff(split)[adjacent].min())
+    low, high = resolved_columns(cells.edges, x)
+    assert np.isin(edges[[0, -1]], cells.edges[[max(low - 1, 0), min(high + 1, cells.edges.size - 1)]]).all()
+    left = split[(split > cells.edges[low]) & (split < cells.edges[high]) & (np.abs(split - x) > 2.1 * widths[at])]
     assert np.isin(left, edges).all()
 
 
-def test_no_column_around_a_point_reaches_over_a_step_of_the_load() -> None:
-    own = fine(steps=True)
-    (step,) = own.steps[np.abs(own.steps - 0.6) < 1e-9]
+def test_inserted_columns_stop_at_load_step() -> None:
+    cells = make_fine_cells(steps=True)
+    (step,) = cells.step_edges[np.abs(cells.step_edges - 0.6) < 1e-9]
     for distance in (0.001, 0.004, 0.01):
         for x in (step - distance, step + distance):
-            edges = around(float(x), own).inserted
+            edges = split_around(float(x), cells).inserted
             at = int(np.searchsorted(edges, x)) - 1
             assert 0.5 * (edges[at] + edges[at + 1]) == pytest.approx(x)
             assert not edges[at - 1] < step - 1e-12 < step + 1e-12 < edges[at + 2]
-    edges = around(float(step), own).inserted  # on the step itself as little as may be
+    edges = split_around(float(step), cells).inserted  # on the step itself as little as may be
     assert np.diff(edges).min() == pytest.approx(1e-3 * 0.1, rel=0.5)
 
 
 @pytest.mark.parametrize("narrow", [0.0, 0.02])
-def test_a_rounding_before_an_edge_is_as_good_as_the_edge(narrow: float) -> None:
+def test_rounding_before_edge_equals_edge(narrow: float) -> None:
     """Also before the outermost edge of those that are split, where narrow columns follow that are not."""
     edges = np.concatenate([[0.0, 1.0], np.linspace(2.0, 2.1, 11)])
     grid = Grid.between(edges, (-1.0, 1.0), 4)
-    own = FineCells(load=PRESSURE * np.ones(grid.shape), shape=PRESSURE * np.ones(grid.shape), grid=grid)
-    on = around(2.0, own, narrow).inserted
+    cells = FineCells(load=PRESSURE * np.ones(grid.shape), shape=PRESSURE * np.ones(grid.shape), grid=grid)
+    on = split_around(2.0, cells, narrow).inserted
     for towards in (-np.inf, np.inf):
-        beside = around(float(np.nextafter(2.0, towards)), own, narrow).inserted
-        assert np.diff(beside).min() == pytest.approx(np.diff(on).min(), rel=0.6)
+        adjacent = split_around(float(np.nextafter(2.0, towards)), cells, narrow).inserted
+        assert np.diff(adjacent).min() == pytest.approx(np.diff(on).min(), rel=0.6)
 
 
-def test_a_point_on_an_end_is_not_in_the_middle_of_a_column() -> None:
+def test_point_on_end_adds_no_column() -> None:
     """There the mirrored load goes on smoothly, or is reversed; of a body without an end the point is like another."""
-    for place in (0.0, 8.0):
-        for end in (place, place + 3.0):
-            assert np.abs(around(end, fine(place)).inserted - end).min() < 1e-12
-        beside = around(place + 1e-3, fine(place)).inserted
-        at = int(np.searchsorted(beside, place + 1e-3)) - 1
-        assert 0.5 * (beside[at] + beside[at + 1]) == pytest.approx(place + 1e-3)
+    for position in (0.0, 8.0):
+        for end in (position, position + 3.0):
+            assert np.abs(split_around(end, make_fine_cells(position)).inserted - end).min() < 1e-12
+        adjacent = split_around(position + 1e-3, make_fine_cells(position)).inserted
+        at = int(np.searchsorted(adjacent, position + 1e-3)) - 1
+        assert 0.5 * (adjacent[at] + adjacent[at + 1]) == pytest.approx(position + 1e-3)
 
 
-def test_within_reach_are_columns_up_to_it_the_nearest_and_those_replaced() -> None:
+def test_range_contains_near_and_replaced_columns() -> None:
     edges = np.array([0.0, 1.0, 2.0, 4.0, 5.0, 7.0])
-    none = _Surroundings(edges[:1], 2, 2)
-    assert none.within(edges, 3.0, 0.0) == (2, 3)
-    assert none.within(edges, 3.0, 1.5) == (1, 4)
-    assert none.within(edges, -3.0, 1.0) == (0, 2)
-    assert none.within(edges, 9.0, 2.5) == (2, 5)
-    assert _Surroundings(edges[:3], 0, 2).within(edges, 4.5, 0.1) == (0, 4)
-    assert _Surroundings(edges[3:], 3, 5).within(edges, 0.5, 0.1) == (0, 5)
+    empty = _SplitRange(edges[:1], 2, 2)
+    assert empty.range_within(edges, 3.0, 0.0) == (2, 3)
+    assert empty.range_within(edges, 3.0, 1.5) == (1, 4)
+    assert empty.range_within(edges, -3.0, 1.0) == (0, 2)
+    assert empty.range_within(edges, 9.0, 2.5) == (2, 5)
+    assert _SplitRange(edges[:3], 0, 2).range_within(edges, 4.5, 0.1) == (0, 4)
+    assert _SplitRange(edges[3:], 3, 5).range_within(edges, 0.5, 0.1) == (0, 5)
 
 
 @pytest.mark.parametrize("parts", range(1, 9))
-def test_distances_between_positions_have_a_common_step_of_up_to_six_parts(parts: int) -> None:
+def test_common_step_divides_distances(parts: int) -> None:
     y = np.array([0.0, 0.1 * parts, 0.1 * parts + 0.1 * (parts + 1)])
     assert common_step(y) == (pytest.approx(0.1) if parts <= 6 else None)
     assert common_step(y[:1]) is None
@@ -360,12 +362,12 @@ def test_distances_between_positions_have_a_common_step_of_up_to_six_parts(parts
 
 @pytest.mark.parametrize("offset", [0.0, 0.03, 0.1, -0.04, 0.15, 0.35, -0.052, 0.048])
 @pytest.mark.parametrize("span", [1.6, 1.55])
-def test_points_are_in_the_middle_of_a_layers_cells(offset: float, span: float) -> None:
-    places, step, start = np.array([-3, 0, 4, 20]), 0.1, 5.0
-    column, edges = midpoint_cells(AlignedPoints(offset, np.arange(4), places), start, span, step)
-    layer = Layer.of(column, np.array([0.5]), np.array([0]), step=step, edges=edges, parts=1)
+def test_layer_cells_centre_points(offset: float, span: float) -> None:
+    positions, step, start = np.array([-3, 0, 4, 20]), 0.1, 5.0
+    column, edges = midpoint_cells(AlignedPoints(offset, np.arange(4), positions), start, span, step)
+    layer = Layer.of(column, np.array([0.5]), np.array([0]), step=step, edges=edges, fine_per_cell=1)
     assert layer.edges is not None
-    at = (start + offset + step * places - layer.edges[0]) / step
+    at = (start + offset + step * positions - layer.edges[0]) / step
     assert at == pytest.approx(np.floor(at) + 0.5)
     # All that is loaded, and no more than a cell beyond it.
     assert start - step - 1e-9 < layer.edges[0] <= start + 1e-9
@@ -373,21 +375,21 @@ def test_points_are_in_the_middle_of_a_layers_cells(offset: float, span: float) 
     assert layer.edges[1:] - layer.edges[:-1] == pytest.approx(step)
     # Distances from every point to every corner are among the offsets.
     count = layer.edges.size
-    for place, first in zip(places, layer.offset_indices, strict=True):
-        distances = np.sort(start + offset + step * place - layer.edges)
+    for position, first in zip(positions, layer.offset_indices, strict=True):
+        distances = np.sort(start + offset + step * position - layer.edges)
         offsets = layer.corners.along_y[layer.corners.index[first : first + count]]
         assert np.sort(offsets) == pytest.approx(np.sort(np.abs(distances)))
 
 
-def seen(y: FloatArray, parts: int | None) -> list[Layer]:
+def make_layers(y: FloatArray, parts: int | None) -> list[Layer]:
     grid = Grid(x_range=(0.0, 1.0), y_range=(-0.75, 1.25), cells_x=4, cells_y=8)
-    along_y, numbers = AlongY(grid, y, 1, 6), np.array([1])
+    along_y, numbers = LateralAxis(grid, y, 1, 6), np.array([1])
     z = np.array([0.1, 0.2])
-    return along_y.uniform(z, numbers) if parts is None else along_y.layers(z, numbers, fine=bool(parts))
+    return along_y.uniform_layers(z, numbers) if parts is None else along_y.shaped_layers(z, numbers, fine=bool(parts))
 
 
-def test_positions_with_a_common_step_share_cells_and_others_do_not() -> None:
-    together = seen(np.array([-0.1, 0.0, 0.3]), 5)
+def test_positions_with_common_step_share_cells() -> None:
+    together = make_layers(np.array([-0.1, 0.0, 0.3]), 5)
     assert len(together) == 1
     (layer,) = together
     assert layer.edges is not None
@@ -396,25 +398,25 @@ def test_positions_with_a_common_step_share_cells_and_others_do_not() -> None:
         assert at == pytest.approx(np.floor(at) + 0.5)
     # No wider than a fifth of a cell, and an odd part of the step of 0.1.
     assert np.diff(layer.edges)[0] == pytest.approx(0.1 / 3)
-    assert len(seen(np.array([-0.1, 0.0, 0.1 * np.pi]), 5)) == 3
-    assert len(seen(np.array([-0.1, 0.0, 0.3]), None)) == 3
-    assert len(seen(np.array([-0.25, 0.0, 0.5]), 5)) == 1
-    assert len(seen(np.array([0.0, 0.003, 0.999]), 5)) == 3
-    assert len(seen(np.linspace(-0.7, 1.1, 601), 5)) == 1
-    assert seen(np.array([0.0]), 5)[0].edges is not None
+    assert len(make_layers(np.array([-0.1, 0.0, 0.1 * np.pi]), 5)) == 3
+    assert len(make_layers(np.array([-0.1, 0.0, 0.3]), None)) == 3
+    assert len(make_layers(np.array([-0.25, 0.0, 0.5]), 5)) == 1
+    assert len(make_layers(np.array([0.0, 0.003, 0.999]), 5)) == 3
+    assert len(make_layers(np.linspace(-0.7, 1.1, 601), 5)) == 1
+    assert make_layers(np.array([0.0]), 5)[0].edges is not None
 
 
-def test_narrow_columns_are_taken_together_wherever_they_are() -> None:
+def test_merge_preserves_force_and_moment() -> None:
     """Within three percent of their distance from the point, with their force."""
     edges, loads = np.linspace(0.0, 10.0, 401), np.random.default_rng(0).random((400, 2))
-    for place in (0.0, 100.0):
+    for position in (0.0, 100.0):
         for x in (-1.0, 10.5, 20.0):
-            found, together = merge_columns(edges + place, loads, x + place)
-            assert (together * np.diff(found)[:, None]).sum(axis=0) == pytest.approx(loads.sum(axis=0) * 0.025)
-            widths, distance = np.diff(found), np.abs(0.5 * (found[1:] + found[:-1]) - place - x)
+            computed, together = merge_columns(edges + position, loads, x + position)
+            assert (together * np.diff(computed)[:, None]).sum(axis=0) == pytest.approx(loads.sum(axis=0) * 0.025)
+            widths, distance = np.diff(computed), np.abs(0.5 * (computed[1:] + computed[:-1]) - position - x)
             assert (widths <= 0.0301 * distance + 0.0251).all()
             assert widths.size < 0.8 * 400
-            assert np.array_equal(found - place, merge_columns(edges, loads, x)[0]) or place
+            assert np.array_equal(computed - position, merge_columns(edges, loads, x)[0]) or position
 
 
 @pytest.mark.parametrize(
@@ -431,28 +433,28 @@ def test_offsets_about_zero_are_evaluated_on_one_side(start: float, halved: bool
 
 
 @pytest.mark.parametrize("x", [0.002, 0.005, 0.01, 2.99, 2.995, 2.998])
-def test_no_column_reaches_beyond_those_that_it_replaces(x: float) -> None:
+def test_inserted_columns_stay_in_replaced_range(x: float) -> None:
     """Beside the first and the last edge of a load without images there is no room for narrow ones."""
-    own = fine(ends=0)
-    each = around(x, own)
-    assert (each.inserted[0], each.inserted[-1]) == (own.edges[each.lowest], own.edges[each.highest])
-    assert (np.diff(each.inserted) > 0).all()
+    cells = make_fine_cells(ends=0)
+    item = split_around(x, cells)
+    assert (item.inserted[0], item.inserted[-1]) == (cells.edges[item.start], cells.edges[item.stop])
+    assert (np.diff(item.inserted) > 0).all()
 
 
 @pytest.mark.parametrize("uniform", [True, False])
 def test_columns_do_not_depend_on_the_unit(*, uniform: bool) -> None:
-    found = []
+    computed = []
     for unit in (1.0, UNIT):
-        cells = fine(unit=unit)
+        cells = make_fine_cells(unit=unit)
         x, y, z = np.array([0.3, 1.3, 2.9]), np.array([-0.1, 0.0, 0.3]), np.linspace(0.01, 6.0, 30)
         axes, load = (ArrayKey(unit * x), ArrayKey(unit * y), ArrayKey(unit * z)), ArrayKey(cells.load)
-        found.append(split_columns(load, None if uniform else load, cells.grid, cells.extent, 1, axes))
-    plain, other = found
-    assert plain.beyond[0].numbers.size == other.beyond[0].numbers.size
-    assert len(plain.layers) == len(other.layers)
-    for (near, sides), (same, alike) in zip(plain.jumps, other.jumps, strict=True):
-        for one, two in zip(near, same, strict=True):
-            assert two.edges / UNIT == pytest.approx(one.edges, abs=1e-9)
+        computed.append(split_columns(load, None if uniform else load, cells.grid, cells.extent, 1, axes))
+    baseline, variant = computed
+    assert baseline.far_layers[0].depth_indices.size == variant.far_layers[0].depth_indices.size
+    assert len(baseline.layers) == len(variant.layers)
+    for (near, sides), (same, alike) in zip(baseline.jumps, variant.jumps, strict=True):
+        for item, two in zip(near, same, strict=True):
+            assert two.edges / UNIT == pytest.approx(item.edges, abs=1e-9)
         assert [[jumps.edges.size for jumps in side] for side in sides] == [
             [jumps.edges.size for jumps in side] for side in alike
         ]

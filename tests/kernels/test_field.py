@@ -16,23 +16,23 @@ from contactstudy.kernels.field import (
     half_space_influence,
     stress_influence,
 )
-from contactstudy.kernels.fine_cells import REACH
+from contactstudy.kernels.fine_cells import MAX_REFINED_DEPTH
 from contactstudy.kernels.load import Load
 
 EDGES = {"uniform": np.linspace(0.0, 4.0, 41), "graded": np.cumsum([0.0, *np.geomspace(0.04, 0.4, 23)])}
 INFLUENCE = stress_influence(Load.NORMAL, 0.3)
 
 
-def test_unaligned_positions_have_the_field_of_each_alone() -> None:
+def test_unaligned_positions_equal_single_positions() -> None:
     grid = Grid(x_range=(0.0, 8.0), y_range=(-2.0, 2.0), cells_x=80, cells_y=16)
     load = (1 - (grid.y / 2.0) ** 2) * np.ones(grid.shape)
     x, z = np.sort(np.random.default_rng(0).uniform(0.0, 8.0, 25)), np.array([0.05, 0.5])
-    together, *alone = (
-        half_space_field(load, INFLUENCE, grid, Points(each, grid.y[::4], z), extent=(0.0, 8.0))
-        for each in (x, *x[:, None])
+    together, *single = (
+        half_space_field(load, INFLUENCE, grid, Points(variant, grid.y[::4], z), extent=(0.0, 8.0))
+        for variant in (x, *x[:, None])
     )
     # Far columns are taken together.
-    np.testing.assert_allclose(together, np.concatenate(alone, axis=1), rtol=0, atol=1e-5 * np.abs(together).max())
+    np.testing.assert_allclose(together, np.concatenate(single, axis=1), rtol=0, atol=1e-5 * np.abs(together).max())
 
 
 def pressure(grid: Grid) -> FloatArray:
@@ -57,23 +57,23 @@ def test_field_is_linear_in_the_load(kind: str, *, ended: bool, shaped: bool, al
     first, second = pressure(grid) * random.random(grid.shape), random.random(grid.shape) * (np.abs(grid.y) < 0.5)
     x, y = (grid.x[::6], grid.y[::4]) if aligned else (np.array([0.01, 1.3, 3.77]), np.array([-0.9, 0.033]))
     z = np.array([0.0, 0.05, 0.3, 1.5])
-    one, other, both = (
+    item, variant, both = (
         half_space_field(load, INFLUENCE, grid, Points(x, y, z), extent=extent, shape=shape)
         for load in (first, second, first + 2 * second)
     )
     # The images' sums amplify rounding.
-    assert np.abs(one + 2 * other - both).max() < (1e-10 if np.isfinite(extent).all() else 1e-12)
+    assert np.abs(item + 2 * variant - both).max() < (1e-10 if np.isfinite(extent).all() else 1e-12)
 
 
 @pytest.mark.parametrize("kind", EDGES)
 @pytest.mark.parametrize("aligned", [True, False])
-def test_field_does_not_jump_where_fine_cells_end(kind: str, *, aligned: bool) -> None:
+def test_field_is_continuous_at_refinement_depth(kind: str, *, aligned: bool) -> None:
     edges = EDGES[kind] * 4.0 / EDGES[kind][-1]
     grid = Grid.between(edges, (-1.2, 1.2), 24)
     load = pressure(grid)
     x, y = (grid.x[::6], grid.y[::4]) if aligned else (np.array([0.01, 1.3, 3.77]), np.array([-0.9, 0.033]))
     for size in (grid.dy, grid.dx):
-        z = REACH * size * np.array([1 - 1e-9, 1 + 1e-9])
+        z = MAX_REFINED_DEPTH * size * np.array([1 - 1e-9, 1 + 1e-9])
         above, below = np.moveaxis(
             half_space_field(load, INFLUENCE, grid, Points(x, y, z), extent=(0.0, 4.0), shape=load), 3, 0
         )
@@ -86,16 +86,18 @@ Z = np.array([0.0, 0.05, 0.4])
 
 def stresses(load: np.ndarray, x: np.ndarray, y: np.ndarray, extent: tuple[float, float]) -> np.ndarray:
     """Stresses under steps of a load in each direction."""
-    influences = [stress_influence(each, 0.3) for each in Load]
-    return np.stack([half_space_field(load, each, GRID, Points(x, y, Z), extent=extent) for each in influences])
+    influences = [stress_influence(direction, 0.3) for direction in Load]
+    return np.stack(
+        [half_space_field(load, direction, GRID, Points(x, y, Z), extent=extent) for direction in influences]
+    )
 
 
 def displacements(load: np.ndarray, x: np.ndarray, y: np.ndarray, extent: tuple[float, float]) -> np.ndarray:
     """Displacements likewise."""
     length = extent[1] - extent[0]
     fields = []
-    for each in Load:
-        influence = displacement_influence(each, 0.3, length, 20.0)
+    for direction in Load:
+        influence = displacement_influence(direction, 0.3, length, 20.0)
         fields.append(half_space_field(load, influence, GRID, Points(x, y, Z), extent=extent))
     return np.stack(fields)
 
@@ -119,7 +121,7 @@ def load() -> np.ndarray:
     ],
 )
 @pytest.mark.parametrize("cells_y", [range(-2, 20), range(-7, 3)])
-def test_symmetry_changes_nothing(
+def test_symmetric_load_has_equal_field(
     monkeypatch, compute, load: np.ndarray, extent: tuple[float, float], cells_x: range, cells_y: range
 ):
     x, y = GRID.x[0] + GRID.dx * np.array(cells_x), GRID.y[0] + GRID.dy * np.array(cells_y)
@@ -128,19 +130,19 @@ def test_symmetry_changes_nothing(
     monkeypatch.setattr(field, "centred_field", lambda *a, **k: calls.append(1) or real(*a, **k))
     by_symmetry = compute(load, x, y, extent)
     # One more position along y that lies otherwise: all are convolved with the whole kernel.
-    whole = compute(load, x, np.append(y, y[0] + 0.3 * GRID.dy), extent)[:, :, :, :-1]
+    complete = compute(load, x, np.append(y, y[0] + 0.3 * GRID.dy), extent)[:, :, :, :-1]
     # Mirrored tractions along x take the general way.
     assert len(calls) == (3 if np.isinf(extent[0]) else 2)
     # Images are interpolated over another span along y.
     tolerance = 1e-13 if np.isinf(extent[1]) else 2e-8
-    np.testing.assert_allclose(by_symmetry, whole, atol=tolerance * np.abs(whole).max())
+    np.testing.assert_allclose(by_symmetry, complete, atol=tolerance * np.abs(complete).max())
 
 
 @pytest.mark.parametrize("each", [Load.NORMAL, Load.ALONG_Y])
 @pytest.mark.parametrize("cells_x", [20, 21])
 @pytest.mark.parametrize("rows", [slice(None), [1, 4, 12], [17]])
 @pytest.mark.parametrize("other_half", [1.0, 1 + 1e-6, -1.0])
-def test_a_load_symmetric_about_mid_length_is_the_sum_of_its_halves(
+def test_symmetric_load_equals_sum_of_halves(
     each: Load, cells_x: int, rows: slice | list[int], other_half: float
 ) -> None:
     """Of the halves alone no wavenumber is zero."""
@@ -150,20 +152,20 @@ def test_a_load_symmetric_about_mid_length_is_the_sum_of_its_halves(
     x = np.atleast_1d(grid.x[rows])
     influence = stress_influence(each, 0.3)
     parts = (half, other_half * half[::-1], half + other_half * half[::-1])
-    one, other, both = (
+    item, variant, both = (
         half_space_field(cells, influence, grid, Points(x, grid.y, Z), extent=(0.0, 2.0)) for cells in parts
     )
-    np.testing.assert_allclose(both, one + other, atol=1e-13 * np.abs(one).max())
+    np.testing.assert_allclose(both, item + variant, atol=1e-13 * np.abs(item).max())
 
 
 @pytest.mark.parametrize("unit", [1e-20, 1e20])
-def test_no_unit_makes_a_load_symmetric_about_mid_length(load: np.ndarray, unit: float) -> None:
+def test_asymmetric_load_stays_asymmetric_in_any_unit(load: np.ndarray, unit: float) -> None:
     """A field is that of the load in any unit."""
-    found, plain = (stresses(each, GRID.x, GRID.y, (0.0, 2.0)) for each in (unit * load, load))
-    np.testing.assert_allclose(found / unit, plain, atol=1e-12 * np.abs(plain).max())
+    computed, baseline = (stresses(variant, GRID.x, GRID.y, (0.0, 2.0)) for variant in (unit * load, load))
+    np.testing.assert_allclose(computed / unit, baseline, atol=1e-12 * np.abs(baseline).max())
 
 
-def test_kept_kernels_belong_to_their_material_and_quantity(load: np.ndarray):
+def test_cached_kernels_depend_on_material_and_quantity(load: np.ndarray):
     y, extent = GRID.y, (0.0, 2.0)
     first = stresses(load, GRID.x, y, extent)
     softer = half_space_field(load, stress_influence(Load.NORMAL, 0.1), GRID, Points(GRID.x, y, Z), extent=extent)
@@ -175,7 +177,7 @@ def test_kept_kernels_belong_to_their_material_and_quantity(load: np.ndarray):
 @pytest.mark.parametrize("extent", [(-np.inf, np.inf), (0.0, np.inf), (0.0, 2.0)])
 @pytest.mark.parametrize("loaded", [(5, slice(None)), (slice(None), 5), (slice(None), slice(None)), (5, 5)])
 @pytest.mark.parametrize("whole", [False, True])
-def test_every_cell_counts_at_every_other(extent: tuple[float, float], loaded: tuple, whole: bool) -> None:
+def test_convolution_includes_all_cell_pairs(extent: tuple[float, float], loaded: tuple, whole: bool) -> None:
     """At periods of a fast length the farthest cells were left out of components odd in y.
 
     Where a contact is one cell wide, and looked at there, a transform of no points was asked for.
@@ -184,14 +186,14 @@ def test_every_cell_counts_at_every_other(extent: tuple[float, float], loaded: t
     load[loaded] = 1.0
     x, y = (GRID.x, GRID.y) if whole else (np.atleast_1d(GRID.x[loaded[0]]), np.atleast_1d(GRID.y[loaded[1]]))
     # With a position that lies otherwise beside each, nothing is taken by symmetry.
-    beside = [(values[:, None] + 0.013 * np.arange(2)).ravel() for values in (x, y)]
-    apart = stresses(load, *beside, extent)[:, :, ::2, ::2]
-    np.testing.assert_allclose(stresses(load, x, y, extent), apart, atol=1e-8)
+    adjacent = [(values[:, None] + 0.013 * np.arange(2)).ravel() for values in (x, y)]
+    separate = stresses(load, *adjacent, extent)[:, :, ::2, ::2]
+    np.testing.assert_allclose(stresses(load, x, y, extent), separate, atol=1e-8)
 
 
 @pytest.mark.parametrize("load", list(Load))
 @pytest.mark.parametrize("extent", [(-np.inf, np.inf), (0.0, np.inf), (-np.inf, 3.0), (0.0, 3.0)])
-def test_the_influence_of_cells_sums_to_the_field(extent: tuple[float, float], load: Load) -> None:
+def test_influences_sum_to_field(extent: tuple[float, float], load: Load) -> None:
     grid = Grid.from_edges([0.0, 0.1, 0.25, 0.5, 1.0, 1.6, 2.2, 2.7, 3.0], (-1.0, 1.0), 10)
     cells = np.random.default_rng(1).random(grid.shape)
     points = Points(np.array([0.4, 1.3, 2.9]), np.array([0.05]), np.array([0.7, 2.0]))

@@ -8,14 +8,14 @@ import pytest
 from contactstudy import Grid
 from contactstudy.checks import FloatArray
 from contactstudy.kernels.fine_cells import (
+    MAX_REFINED_DEPTH,
+    MIN_RESOLVED_WIDTH,
     PARTS_X,
     PARTS_Y,
-    REACH,
-    WIDE,
     FineCells,
-    coarsened,
+    add_images,
+    coarsen,
     resolved_columns,
-    with_images,
 )
 from contactstudy.kernels.smooth_load import SmoothLoad
 
@@ -27,11 +27,11 @@ LENGTH, PRESSURE = 2.0**-17, 2.0**37
 
 def load_on(x: FloatArray, y: FloatArray) -> FloatArray:
     """A contact's pressure, inclined, which is pressed at the first end of the body and not at the other."""
-    place = 1 - (y / 0.8) ** 2 - np.maximum((x[:, None] - 1.5) / 1.6, 0.0) ** 2
-    return np.asarray(np.sqrt(np.maximum(place, 0.0)) * (1 + 0.3 * x[:, None]))
+    position = 1 - (y / 0.8) ** 2 - np.maximum((x[:, None] - 1.5) / 1.6, 0.0) ** 2
+    return np.asarray(np.sqrt(np.maximum(position, 0.0)) * (1 + 0.3 * x[:, None]))
 
 
-def fine(
+def make_fine_cells(
     *,
     edges: FloatArray = EDGES,
     place: float = 0.0,
@@ -51,105 +51,107 @@ def fine(
     ("ends", "image", "edges"),
     [(0, 1, UNIFORM), (1, -1, UNIFORM), (2, 1, UNIFORM), (0, -1, EDGES), (1, 1, EDGES), (2, -1, EDGES)],
 )
-def test_neither_unit_nor_place_decides_anything(ends: int, image: int, edges: FloatArray) -> None:
-    plain = fine(edges=edges, image=image, ends=ends)
-    for place, unit, pressure in ((0.0, LENGTH, PRESSURE), (16.0, 1.0, 1.0), (-32.0, 1.0, 1.0)):
-        other = fine(edges=edges, image=image, ends=ends, place=place, unit=unit, pressure=pressure)
-        assert other.split.tolist() == plain.split.tolist()
-        for name in ("x_edges", "edges", "steps"):
-            assert getattr(other, name) / unit - place == pytest.approx(getattr(plain, name), abs=1e-9), name
-        for found, expected in (
-            (other.far_load, plain.far_load),
-            (other.cells, plain.cells),
+def test_results_scale_with_unit_and_position(ends: int, image: int, edges: FloatArray) -> None:
+    baseline = make_fine_cells(edges=edges, image=image, ends=ends)
+    for position, unit, pressure in ((0.0, LENGTH, PRESSURE), (16.0, 1.0, 1.0), (-32.0, 1.0, 1.0)):
+        variant = make_fine_cells(edges=edges, image=image, ends=ends, place=position, unit=unit, pressure=pressure)
+        assert variant.is_split.tolist() == baseline.is_split.tolist()
+        for name in ("x_edges", "edges", "step_edges"):
+            assert getattr(variant, name) / unit - position == pytest.approx(getattr(baseline, name), abs=1e-9), name
+        for computed, expected in (
+            (variant.far_load, baseline.far_load),
+            (variant.cells, baseline.cells),
         ):
-            assert found / pressure == pytest.approx(expected, abs=1e-9)
+            assert computed / pressure == pytest.approx(expected, abs=1e-9)
         z = np.array([0.0, 0.1, 0.5, 1.19, 1.21, 2.5, 2.6, 4.0])
-        assert other.fine_depths(unit * z).tolist() == plain.fine_depths(z).tolist()
+        assert variant.fine_depths(unit * z).tolist() == baseline.fine_depths(z).tolist()
         refined = [
             [
                 cells.end_load(),
                 cells.fine_load(0.03 * size),
                 *([cells.coarse_load(fine_x=False)] if edges is UNIFORM else []),
             ]
-            for cells, size in ((other, unit), (plain, 1.0))
+            for cells, size in ((variant, unit), (baseline, 1.0))
         ]
-        for (found, grid), (expected, own) in zip(*refined, strict=True):
-            assert found / pressure == pytest.approx(expected, abs=1e-9)
-            assert grid.x_edges / unit - place == pytest.approx(own.x_edges, abs=1e-9)
+        for (computed, grid), (expected, own) in zip(*refined, strict=True):
+            assert computed / pressure == pytest.approx(expected, abs=1e-9)
+            assert grid.x_edges / unit - position == pytest.approx(own.x_edges, abs=1e-9)
             assert np.array(grid.y_range) / unit == pytest.approx(own.y_range)
 
 
 @pytest.mark.parametrize("edges", [EDGES, UNIFORM], ids=["graded", "uniform"])
-def test_cells_are_refined_down_to_the_reach(edges: FloatArray) -> None:
-    own = fine(edges=edges)
-    assert own.split.any()
-    assert own.fine_depths(own.grid.dy * REACH * np.array([0.0, 0.99, 1.01, 3.0])).tolist() == [
+def test_refinement_ends_at_maximum_depth(edges: FloatArray) -> None:
+    cells = make_fine_cells(edges=edges)
+    assert cells.is_split.any()
+    assert cells.fine_depths(cells.grid.dy * MAX_REFINED_DEPTH * np.array([0.0, 0.99, 1.01, 3.0])).tolist() == [
         True,
         True,
         False,
         False,
     ]
-    load = np.where(np.abs(own.grid.y) < 0.7, 1.0, 0.0) * np.ones(own.grid.shape)
-    even = FineCells(load=load, shape=load, grid=own.grid)
-    assert not even.split.any()
+    load = np.where(np.abs(cells.grid.y) < 0.7, 1.0, 0.0) * np.ones(cells.grid.shape)
+    even = FineCells(load=load, shape=load, grid=cells.grid)
+    assert not even.is_split.any()
     assert not even.fine_depths_x(np.zeros(1)).any()
-    assert own.fine_depths_x(own.grid.dx * REACH * np.array([0.99, 1.01])).tolist() == [True, False]
-    assert even.fine_depths(own.grid.dy * REACH * np.array([0.99, 1.01])).tolist() == [True, False]
+    assert cells.fine_depths_x(cells.grid.dx * MAX_REFINED_DEPTH * np.array([0.99, 1.01])).tolist() == [True, False]
+    assert even.fine_depths(cells.grid.dy * MAX_REFINED_DEPTH * np.array([0.99, 1.01])).tolist() == [True, False]
 
 
 @pytest.mark.parametrize("image", [1, -1])
-def test_images_carry_the_mirrored_load(image: int) -> None:
+def test_images_contain_mirrored_load(image: int) -> None:
     """Means over columns between any edges."""
-    own = fine(image=image)
+    cells = make_fine_cells(image=image)
     inside = np.array([0.1, 0.3, 0.35, 0.8])
-    expected = own.columns([inside])
-    assert own.columns([-inside[::-1]])[::-1] == pytest.approx(image * expected)
+    expected = cells.column_means([inside])
+    assert cells.column_means([-inside[::-1]])[::-1] == pytest.approx(image * expected)
     beyond = np.array([3.0, 3.1, 3.5, 3.75])
-    assert own.columns([7.6 - beyond[::-1]])[::-1] == pytest.approx(image * own.columns([beyond]))
+    assert cells.column_means([7.6 - beyond[::-1]])[::-1] == pytest.approx(image * cells.column_means([beyond]))
     # Over an end: half of it is the image.
-    assert own.columns([np.array([-0.2, 0.0, 0.2])]) == pytest.approx(np.stack([image * own.cells[0], own.cells[0]]))
-    assert own.columns([inside, beyond]) == pytest.approx(np.vstack([expected, own.columns([beyond])]))
+    assert cells.column_means([np.array([-0.2, 0.0, 0.2])]) == pytest.approx(
+        np.stack([image * cells.cells[0], cells.cells[0]])
+    )
+    assert cells.column_means([inside, beyond]) == pytest.approx(np.vstack([expected, cells.column_means([beyond])]))
 
 
 @pytest.mark.parametrize("ends", [0, 1, 2])
-def test_gathered_columns_keep_force_and_moment(ends: int) -> None:
+def test_far_load_keeps_force_and_moment(ends: int) -> None:
     """Of the smooth load, with that of its images; a cell at the border keeps its moment if there is none."""
-    own = fine(ends=ends)
-    smooth = SmoothLoad.of(own.cells.T, own.grid.x_edges).shaped(own.cells.T)
-    forces = with_images(own.far_load, 1, own.extent) * np.diff(own.edges)[:, None]
-    middles = 0.5 * (own.edges[1:] + own.edges[:-1])
+    cells = make_fine_cells(ends=ends)
+    smooth = SmoothLoad.of(cells.cells.T, cells.grid.x_edges).shape_loads(cells.cells.T)
+    forces = add_images(cells.far_load, 1, cells.extent) * np.diff(cells.edges)[:, None]
+    middles = 0.5 * (cells.edges[1:] + cells.edges[:-1])
     count = 1 + (ends > 0) + (ends > 1)
-    whole = (own.cells * own.grid.widths[:, None]).sum(axis=0)
-    assert forces.sum(axis=0) == pytest.approx(count * whole)
+    complete = (cells.cells * cells.grid.widths[:, None]).sum(axis=0)
+    assert forces.sum(axis=0) == pytest.approx(count * complete)
     if not ends:
-        about_middles = smooth.moments + own.grid.x * smooth.cell_means * own.grid.widths
+        about_middles = smooth.moments + cells.grid.x * smooth.cell_means * cells.grid.widths
         assert (forces * middles[:, None]).sum(axis=0) == pytest.approx(about_middles.sum(axis=1))
     elif ends == 1:  # about the end the images' moments are opposite
-        assert (forces * middles[:, None]).sum(axis=0) == pytest.approx(np.zeros(whole.size), abs=1e-9)
+        assert (forces * middles[:, None]).sum(axis=0) == pytest.approx(np.zeros(complete.size), abs=1e-9)
 
 
 @pytest.mark.parametrize("offset", [0.0, 0.03, -0.03, 0.07, -0.1, 0.1])
-def test_points_are_in_the_middle_of_fine_cells_that_carry_all(offset: float) -> None:
-    own = fine(edges=UNIFORM, ends=1)
-    cells, grid = own.fine_load(offset)
-    step = own.grid.dy / PARTS_Y
+def test_fine_cells_centre_points_and_keep_force(offset: float) -> None:
+    fine_cells = make_fine_cells(edges=UNIFORM, ends=1)
+    cells, grid = fine_cells.fine_load(offset)
+    step = fine_cells.grid.dy / PARTS_Y
     assert grid.dy == pytest.approx(step)
-    place = (own.grid.y + offset - grid.y_range[0]) / step - 0.5
-    assert place == pytest.approx(np.round(place), abs=1e-9)
-    assert grid.y_range[0] <= own.y_edges[0] + 1e-12
-    assert grid.y_range[1] >= own.y_edges[-1] - 1e-12
-    assert grid.cells_y - PARTS_Y * own.count == (abs(offset) in (0.03, 0.07, 0.1))
+    position = (fine_cells.grid.y + offset - grid.y_range[0]) / step - 0.5
+    assert position == pytest.approx(np.round(position), abs=1e-9)
+    assert grid.y_range[0] <= fine_cells.y_edges[0] + 1e-12
+    assert grid.y_range[1] >= fine_cells.y_edges[-1] - 1e-12
+    assert grid.cells_y - PARTS_Y * fine_cells.count == (abs(offset) in (0.03, 0.07, 0.1))
     force = cells.sum(axis=1) * step * grid.widths
-    expected = own.cells.sum(axis=1) * own.grid.dy * own.grid.widths
+    expected = fine_cells.cells.sum(axis=1) * fine_cells.grid.dy * fine_cells.grid.widths
     assert force.sum() == pytest.approx(expected.sum())
-    whole = force.reshape(own.grid.cells_x, -1).sum(axis=1)
-    assert whole == pytest.approx(expected, rel=0.05, abs=0.02 * expected.max())
+    complete = force.reshape(fine_cells.grid.cells_x, -1).sum(axis=1)
+    assert complete == pytest.approx(expected, rel=0.05, abs=0.02 * expected.max())
     moment = (cells.T * grid.widths).sum(axis=1) @ grid.y * step
     assert moment == pytest.approx(0.0, abs=1e-9)
 
 
 @pytest.mark.parametrize("narrow", [0.0, 0.3, 1.0])
-def test_columns_that_are_seen_apart_are_wide_against_their_distance(narrow: float) -> None:
+def test_resolved_columns_are_wide_over_distance(narrow: float) -> None:
     random = np.random.default_rng(0)
     for _ in range(200):
         edges = 5.0 + np.cumsum(np.cumprod(random.uniform(0.4, 2.5, 12)))
@@ -157,18 +159,18 @@ def test_columns_that_are_seen_apart_are_wide_against_their_distance(narrow: flo
         widths, distance = np.diff(edges), np.abs(0.5 * (edges[1:] + edges[:-1]) - x)
         low, high = resolved_columns(edges, x, narrow)
         first = last = int(distance.argmin())
-        while first > 0 and widths[first - 1] > WIDE * distance[first - 1]:
+        while first > 0 and widths[first - 1] > MIN_RESOLVED_WIDTH * distance[first - 1]:
             first -= 1
-        while last + 1 < widths.size and widths[last + 1] > WIDE * distance[last + 1]:
+        while last + 1 < widths.size and widths[last + 1] > MIN_RESOLVED_WIDTH * distance[last + 1]:
             last += 1
-        own = [number for number in range(first, last + 1) if widths[number] > narrow]
-        assert (low, high) == ((own[0], own[-1] + 1) if own else (low, low))
+        resolved = [index for index in range(first, last + 1) if widths[index] > narrow]
+        assert (low, high) == ((resolved[0], resolved[-1] + 1) if resolved else (low, low))
 
 
 @pytest.mark.parametrize("parts", [PARTS_X, PARTS_Y])
-def test_whole_cells_keep_moments_to_sixth_order(parts: int) -> None:
+def test_coarse_cells_keep_six_moments(parts: int) -> None:
     fine_loads = np.random.default_rng(0).random((4 * parts, 2))
-    loads = coarsened(fine_loads, parts)
+    loads = coarsen(fine_loads, parts)
 
     def moments(values: FloatArray, edges: FloatArray) -> FloatArray:
         powers = [np.diff(edges ** (order + 1)) / (order + 1) for order in range(7)]
@@ -181,40 +183,42 @@ def test_whole_cells_keep_moments_to_sixth_order(parts: int) -> None:
 @pytest.mark.parametrize(("ends", "image"), [(0, 1), (1, -1), (2, 1)])
 def test_distribution_is_linear_in_the_load(ends: int, image: int) -> None:
     """For one shape, also outside it; the shape as a load is its smooth form, bit for bit."""
-    own = fine(edges=UNIFORM, ends=ends, image=image)
+    fine_cells = make_fine_cells(edges=UNIFORM, ends=ends, image=image)
     random = np.random.default_rng(1)
-    first, second = random.random(own.grid.shape), random.random(own.grid.shape) * (own.load > 0)
+    first, second = random.random(fine_cells.grid.shape), random.random(fine_cells.grid.shape) * (fine_cells.load > 0)
 
     def evaluated(load: FloatArray) -> list[FloatArray]:
-        cells = FineCells(load=load, shape=own.shape, grid=own.grid, extent=own.extent, image=image)
-        columns = cells.columns([np.linspace(0.1, 3.7, 30)])
-        whole = cells.coarse_load(fine_x=False)[0]
-        return [cells.fine_load(0.03)[0], whole, cells.end_load()[0], columns]
+        cells = FineCells(
+            load=load, shape=fine_cells.shape, grid=fine_cells.grid, extent=fine_cells.extent, image=image
+        )
+        columns = cells.column_means([np.linspace(0.1, 3.7, 30)])
+        complete = cells.coarse_load(fine_x=False)[0]
+        return [cells.fine_load(0.03)[0], complete, cells.end_load()[0], columns]
 
     # The cells along y span load and shape.
     second[:, [0, -1]] = first[:, [0, -1]] = 1.0
-    for one, other, both in zip(evaluated(first), evaluated(second), evaluated(first + 2 * second), strict=True):
-        assert both == pytest.approx(one + 2 * other, abs=1e-12)
-    for one, half in zip(evaluated(own.load), evaluated(0.5 * own.load), strict=True):
-        assert np.array_equal(one, 2 * half)
+    for item, variant, both in zip(evaluated(first), evaluated(second), evaluated(first + 2 * second), strict=True):
+        assert both == pytest.approx(item + 2 * variant, abs=1e-12)
+    for item, half in zip(evaluated(fine_cells.load), evaluated(0.5 * fine_cells.load), strict=True):
+        assert np.array_equal(item, 2 * half)
 
 
 @pytest.mark.parametrize("unit", [1e-9, 1.0, 1e9])
-def test_columns_are_split_where_their_load_is_uneven(unit: float) -> None:
+def test_uneven_columns_are_split(unit: float) -> None:
     """By more than 0.3 % of the largest load, whatever its unit."""
     grid = Grid.between(EDGES, (-1.2, 1.2), 12)
     along = 1 + 1e-4 * grid.x - 0.5 * np.maximum(grid.x - 2.5, 0.0)
     load = unit * along[:, None] * np.sqrt(1 - (grid.y / 1.3) ** 2)
-    split = FineCells(load=load, shape=load, grid=grid).split
+    split = FineCells(load=load, shape=load, grid=grid).is_split
     assert not split[:4].any()
     assert split[-3:].all()
 
 
 @pytest.mark.parametrize("offset", [0.0, 0.03])
-def test_fine_cells_carry_a_load_up_to_the_border(offset: float) -> None:
+def test_fine_cells_extend_to_load_border(offset: float) -> None:
     """Also what lies in the last cells of the grid along y."""
     grid = Grid.between(UNIFORM, (-1.2, 1.2), 12)
     cells = load_on(grid.x, 0.6 * grid.y)
     assert cells[:, [0, -1]].any()
-    found, own = FineCells(load=cells, shape=cells, grid=grid).fine_load(offset)
-    assert found.sum() * own.cell_area == pytest.approx(cells.sum() * grid.cell_area)
+    computed, fine_cells = FineCells(load=cells, shape=cells, grid=grid).fine_load(offset)
+    assert computed.sum() * fine_cells.cell_area == pytest.approx(cells.sum() * grid.cell_area)

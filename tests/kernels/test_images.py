@@ -19,7 +19,7 @@ def corner_at(depth: float):  # type: ignore[no-untyped-def]
 
 
 @pytest.mark.parametrize(("length", "unit"), [(0.5, 2.0**-17), (2.0, 1.0), (12.0, 2.0**17)])
-def test_images_are_summed_to_any_distance(length: float, unit: float) -> None:
+def test_image_sum_converges(length: float, unit: float) -> None:
     dx, dy = 0.25 * unit, 0.2 * unit
     x = dx * np.arange(-int(length / 0.25), int(length / 0.25) + 1.0)
     y = dy * np.arange(-12, 13.0)
@@ -28,19 +28,19 @@ def test_images_are_summed_to_any_distance(length: float, unit: float) -> None:
     exact = np.zeros((x.size, y.size))
     for number in numbers:
         exact += cell_kernel(corner, x - 2 * length * unit * number, y, dx, dy)
-    own = cell_kernel(corner, x, y, dx, dy)
-    found = mirrored_kernel(corner, x, y, dx, dy, length * unit)
+    cell_influence = cell_kernel(corner, x, y, dx, dy)
+    computed = mirrored_kernel(corner, x, y, dx, dy, length * unit)
     # Those beyond 1500 periods: a line of the rest, evenly spread, on either side.
     rest = 0.3 * 0.25 * 0.2 / (2 * length) / (3001 * length) ** 2
-    assert found == pytest.approx(own + exact + rest, abs=5e-6 * np.abs(own).max())
+    assert computed == pytest.approx(cell_influence + exact + rest, abs=5e-6 * np.abs(cell_influence).max())
     beyond = image_kernel(corner, x, y, dx, dy, length * unit, nearest=4 * length * unit)
     near = sum(cell_kernel(corner, x - shift * length * unit, y, dx, dy) for shift in (-2, 2))
-    assert found - own == pytest.approx(beyond + near, abs=4e-6 * np.abs(own).max())
+    assert computed - cell_influence == pytest.approx(beyond + near, abs=4e-6 * np.abs(cell_influence).max())
 
 
 @pytest.mark.parametrize("unit", [1e-6, 1.0, 1e6])
 @pytest.mark.parametrize("middle", [0.0, 7.0, -7.0])
-def test_few_points_tell_what_loads_far_away_do(unit: float, middle: float) -> None:
+def test_chebyshev_interpolation_of_distant_loads(unit: float, middle: float) -> None:
     at = unit * (middle + np.linspace(-2.0, 2.0, 200))
     points, matrix = interpolation_points(at, 2.0 * unit, 1e-6)
     assert matrix is not None

@@ -30,12 +30,12 @@ def rectangle(kind: str, x: float, y: float, z: float, size: tuple[float, float]
 
 
 @pytest.mark.parametrize("kind", sorted(CORNERS))
-def test_far_away_a_rectangle_is_a_point_load(kind: str) -> None:
+def test_distant_rectangle_equals_point_load(kind: str) -> None:
     """Boussinesq and Cerruti."""
     point = (6.0, -8.0, 5.0)
     exact = ref.point_load(*point, poisson=0.3, **{k: float(k == kind) for k in CORNERS})
-    found = rectangle(kind, *point, size=(0.1, 0.1)) / 0.01
-    assert found == pytest.approx([float(exact[c]) for c in ref.COMPONENTS], rel=1e-3, abs=1e-8)
+    computed = rectangle(kind, *point, size=(0.1, 0.1)) / 0.01
+    assert computed == pytest.approx([float(exact[c]) for c in ref.COMPONENTS], rel=1e-3, abs=1e-8)
 
 
 @given(st.sampled_from(sorted(CORNERS)), st.floats(-3, 3), st.floats(-3, 3), st.floats(0.2, 3))
@@ -55,14 +55,14 @@ def test_stress_is_in_equilibrium(kind: str, x: float, y: float, z: float) -> No
 
 
 @pytest.mark.parametrize(("kind", "component"), [("normal", 2), ("tangential", 5)])
-def test_surface_carries_the_load_and_nothing_else(kind: str, component: int) -> None:
+def test_surface_traction_equals_load(kind: str, component: int) -> None:
     inside, outside = rectangle(kind, 0.2, -0.3, 0.0), rectangle(kind, 0.9, 0.2, 0.0)
     for number in (2, 4, 5):
         assert inside[number] == pytest.approx(-1.0 if number == component else 0.0, abs=1e-12)
         assert outside[number] == pytest.approx(0.0, abs=1e-12)
 
 
-def test_corners_and_edges_on_the_surface_give_numbers() -> None:
+def test_corners_and_edges_have_finite_stress() -> None:
     edges = np.array([-1.0, 0.0, 1.0])
     for corner in CORNERS.values():
         assert np.isfinite(corner(edges[:, None], edges[None, :], 0.0, 0.3)).all()
@@ -75,25 +75,25 @@ def test_corners_and_edges_on_the_surface_give_numbers() -> None:
     [(2.0, 0.2, 3, 20, 1e-8), (0.2, 0.12, 30, 20, 3e-8), (2.0, 0.2, 3, 2, 1e-5)],
     ids=["long", "thin", "two cells"],
 )
-def test_all_images_are_summed(
+def test_kernel_includes_all_images(
     kind: str, depth: float, length: float, dy: float, cells_y: int, cells_x: int, allowed: float
 ) -> None:
     """Against a plain sum over many images, extrapolated to infinitely many; also seen from many lengths aside."""
     dx = length / cells_x
     corner = partial(CORNERS[kind], z=depth, poisson=0.3)
     x, y = dx * np.arange(0, cells_x + 1), dy * np.arange(cells_y)
-    found = images.mirrored_kernel(corner, x, y, dx, dy, length)
+    computed = images.mirrored_kernel(corner, x, y, dx, dy, length)
     near, far = (
         sum(images.cell_kernel(corner, x + 2 * length * number, y, dx, dy) for number in numbers)
         for numbers in (range(-400, 401), [*range(-800, -400), *range(401, 801)])
     )
     limit = near + 2 * far
     # Far below the length of the body there is next to nothing left of one cell's load.
-    assert np.abs(found - limit).max() < allowed / length
+    assert np.abs(computed - limit).max() < allowed / length
 
 
 @pytest.mark.parametrize("span", [0.3, 1.0, 4.0])
-def test_few_points_stand_for_many_a_length_away(span: float) -> None:
+def test_chebyshev_interpolation_of_far_images(span: float) -> None:
     length, values = 1.0, np.linspace(2.0, 2.0 + span, 200)
     points, matrix = images.interpolation_points(values, length)
     assert matrix is not None
@@ -106,7 +106,7 @@ def test_few_points_stand_for_many_a_length_away(span: float) -> None:
         )
 
 
-def test_points_at_one_place_are_one() -> None:
+def test_coincident_points_are_merged() -> None:
     points, matrix = images.interpolation_points(np.full(3, 0.7), 1.0)
     assert points.tolist() == [0.7]
     assert np.array_equal(np.ones((3, 1)), matrix)
@@ -123,7 +123,7 @@ def on_rectangle(corner, x, y, z, size=(1e-3, 1e-3)):
 
 
 @pytest.mark.parametrize("point", [(0.7, -0.4, 0.5), (-0.2, 0.3, 0.05), (1.0, 2.0, 0.0)])
-def test_small_rectangle_is_boussinesqs_and_cerrutis_point_load(point):
+def test_small_rectangle_equals_point_load_displacements(point):
     x, y, z = point
     r = np.sqrt(x * x + y * y + z * z)
     free = 1 - 2 * NU
@@ -145,7 +145,7 @@ def test_small_rectangle_is_boussinesqs_and_cerrutis_point_load(point):
 
 
 @pytest.mark.parametrize("load", list(Load))
-def test_on_the_surface_they_are_the_surfaces_functions(load: Load):
+def test_displacements_inside_match_surface_kernel(load: Load):
     x, y = np.meshgrid([-0.7, 0.0, 0.2, 1.1], [-0.3, 0.0, 0.4, 0.9], indexing="ij")
 
     def mixed_difference(values):
@@ -153,23 +153,23 @@ def test_on_the_surface_they_are_the_surfaces_functions(load: Load):
 
     inside = DISPLACEMENT_CORNERS[load](x, y, 0.0, NU)
     for direction, expected in zip((Load.ALONG_X, Load.ALONG_Y, Load.NORMAL), inside, strict=True):
-        found = mixed_difference(corner_function(strips_of(Response(direction, load), NU))(x, y))
-        np.testing.assert_allclose(found, mixed_difference(expected), rtol=1e-12, atol=1e-15)
+        computed = mixed_difference(corner_function(strips_of(Response(direction, load), NU))(x, y))
+        np.testing.assert_allclose(computed, mixed_difference(expected), rtol=1e-12, atol=1e-15)
 
 
 @pytest.mark.parametrize("load", list(Load))
 @pytest.mark.parametrize("at", [(0.5, 0.0), (0.0, -0.5), (0.0, 0.0)])
-def test_on_the_lines_through_a_corner_they_are_continuous(load: Load, at: tuple[float, float]):
+def test_corner_functions_are_continuous(load: Load, at: tuple[float, float]):
     corner, (x, y) = DISPLACEMENT_CORNERS[load], at
-    found = corner(np.array([x]), np.array([y]), 0.0, NU)
-    beside = corner(np.array([x + 1e-9]), np.array([y + 1e-9]), 0.0, NU)
-    np.testing.assert_allclose(found, beside, atol=1e-7)
+    computed = corner(np.array([x]), np.array([y]), 0.0, NU)
+    adjacent = corner(np.array([x + 1e-9]), np.array([y + 1e-9]), 0.0, NU)
+    np.testing.assert_allclose(computed, adjacent, atol=1e-7)
 
 
 EDGES = {"uniform": np.linspace(0.0, 3.0, 9), "graded": np.array([0.0, 0.2, 0.5, 1.0, 1.6, 2.3, 3.0])}
 
 
-def displaced(
+def compute_displacements(
     load: Load, edges: FloatArray, *, place: float = 0.0, unit: float = 1.0, smooth: bool = True
 ) -> FloatArray:
     grid = Grid.between(unit * (edges + place), (-unit, unit), 8)
@@ -184,12 +184,12 @@ def displaced(
 @pytest.mark.parametrize("name", EDGES)
 @pytest.mark.parametrize("load", Load)
 @pytest.mark.parametrize("smooth", [True, False])
-def test_neither_unit_nor_place_decides_anything(load: Load, name: str, *, smooth: bool) -> None:
-    plain = displaced(load, EDGES[name], smooth=smooth)
+def test_results_scale_with_unit_and_position(load: Load, name: str, *, smooth: bool) -> None:
+    baseline = compute_displacements(load, EDGES[name], smooth=smooth)
     # Uniform cells of a body with ends begin at 0.
-    for place, unit in ((0.0, 2.0**-17), *(() if name == "uniform" else ((8.0, 1.0), (-32.0, 1.0)))):
-        other = displaced(load, EDGES[name], place=place, unit=unit, smooth=smooth)
-        assert other / unit == pytest.approx(plain, abs=1e-7 * np.abs(plain).max())
+    for position, unit in ((0.0, 2.0**-17), *(() if name == "uniform" else ((8.0, 1.0), (-32.0, 1.0)))):
+        variant = compute_displacements(load, EDGES[name], place=position, unit=unit, smooth=smooth)
+        assert variant / unit == pytest.approx(baseline, abs=1e-7 * np.abs(baseline).max())
 
 
 def test_unit_traction_on_the_top() -> None:

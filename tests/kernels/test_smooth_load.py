@@ -8,12 +8,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from contactstudy.checks import FloatArray
-from contactstudy.kernels.smooth_load import ShapedLoad, SmoothLoad, _mean, _opposite_face, moment_loads
+from contactstudy.kernels.smooth_load import ShapedLoad, SmoothLoad, _mean_of_root, _opposite_face, moment_loads
 
 
-def smooth_form(cells: FloatArray, edges: FloatArray, *, spilling: bool = False) -> ShapedLoad:
+def smooth_form(cells: FloatArray, edges: FloatArray, *, extends_beyond: bool = False) -> ShapedLoad:
     """Loads of their shape: the ratio is 1."""
-    return SmoothLoad.of(cells, edges, spilling=spilling).shaped(cells)
+    return SmoothLoad.of(cells, edges, extends_beyond=extends_beyond).shape_loads(cells)
 
 
 def semicircle_integral(y: FloatArray) -> FloatArray:
@@ -24,15 +24,15 @@ def semicircle_integral(y: FloatArray) -> FloatArray:
 
 @pytest.mark.parametrize("cells", [33, 40, 61])
 @pytest.mark.parametrize("half", [1.1, 1.2])
-def test_pressure_of_a_contact_from_its_means(cells: int, half: float) -> None:
+def test_hertz_pressure_from_cell_means(cells: int, half: float) -> None:
     edges = np.linspace(-half, half, cells + 1)
     means = np.diff(semicircle_integral(edges)) / np.diff(edges)
     fine = np.linspace(-half, half, 12 * cells + 1)
-    found = smooth_form(means[None], edges, spilling=True).means(fine)[0]
+    computed = smooth_form(means[None], edges, extends_beyond=True).means(fine)[0]
     expected = np.diff(semicircle_integral(fine)) / np.diff(fine)
-    assert np.abs(found - expected)[np.abs(fine[1:]) < 0.9].max() < 5e-3
+    assert np.abs(computed - expected)[np.abs(fine[1:]) < 0.9].max() < 5e-3
     # Stepwise it would be off by a third.
-    assert np.abs(found - expected).max() < 0.06
+    assert np.abs(computed - expected).max() < 0.06
 
 
 @st.composite
@@ -46,10 +46,10 @@ def rows(draw: st.DrawFn) -> tuple[FloatArray, FloatArray]:
 
 
 @settings(max_examples=60)
-@given(row=rows(), spilling=st.booleans())
-def test_force_is_kept_and_nothing_overshoots(row: tuple[FloatArray, FloatArray], spilling: bool) -> None:
+@given(row=rows(), extends_beyond=st.booleans())
+def test_smooth_load_keeps_force_without_overshoot(row: tuple[FloatArray, FloatArray], extends_beyond: bool) -> None:
     loads, edges = row
-    smooth = smooth_form(loads, edges, spilling=spilling)
+    smooth = smooth_form(loads, edges, extends_beyond=extends_beyond)
     widths = np.diff(edges)
     total = smooth.integral(edges[-1:])[:, 0]
     assert np.allclose(total, loads @ widths, atol=1e-6)
@@ -65,19 +65,19 @@ def test_force_is_kept_and_nothing_overshoots(row: tuple[FloatArray, FloatArray]
 def test_reversed_load_has_the_reversed_shape(row: tuple[FloatArray, FloatArray]) -> None:
     loads, edges = row
     fine = np.linspace(edges[0], edges[-1], 60)
-    there = smooth_form(loads, edges, spilling=True).means(fine)
-    back = smooth_form(loads[:, ::-1], edges[-1] - edges[::-1], spilling=True).means(edges[-1] - fine[::-1])
+    there = smooth_form(loads, edges, extends_beyond=True).means(fine)
+    back = smooth_form(loads[:, ::-1], edges[-1] - edges[::-1], extends_beyond=True).means(edges[-1] - fine[::-1])
     assert np.allclose(there, back[:, ::-1], atol=1e-9)
 
 
-def test_uniform_load_stays_a_step() -> None:
+def test_uniform_load_ends_in_step() -> None:
     edges = np.linspace(0.0, 8.0, 9)
     loads = np.array([[0, 0, 2.0, 2.0, 2.0, 2.0, 0, 0]])
-    smooth = smooth_form(loads, edges, spilling=True)
+    smooth = smooth_form(loads, edges, extends_beyond=True)
     assert np.allclose(smooth.means(np.linspace(0.0, 8.0, 33)), np.repeat(loads, 4, axis=1), atol=1e-12)
 
 
-def test_load_that_rises_to_its_end_ends_in_a_step() -> None:
+def test_rising_load_ends_in_step() -> None:
     edges = np.linspace(0.0, 5.0, 6)
     loads = np.array([[0.0, 3.0, 1.5, 1.0, 1.0]])
     means = smooth_form(loads, edges).means(np.linspace(0.0, 5.0, 51))[0]
@@ -86,7 +86,7 @@ def test_load_that_rises_to_its_end_ends_in_a_step() -> None:
 
 
 @given(row=rows())
-def test_sent_loads_have_the_moments_alone(row: tuple[FloatArray, FloatArray]) -> None:
+def test_moment_loads_have_no_resultant(row: tuple[FloatArray, FloatArray]) -> None:
     loads, edges = row
     if edges.size < 3:
         return
@@ -96,7 +96,7 @@ def test_sent_loads_have_the_moments_alone(row: tuple[FloatArray, FloatArray]) -
     assert np.allclose(forces @ centres, loads.sum(axis=1), atol=1e-9)
 
 
-def test_rounding_does_not_decide_how_a_load_ends() -> None:
+def test_rounding_keeps_shape_of_load_end() -> None:
     """Four cells of which the two in the middle are alike but for rounding, either way."""
     edges = np.linspace(-1.0, 1.0, 5)
     rows = np.array([[0.4, 1.0, 1.0, 0.4]]) * (1 + 1e-12 * np.array([[0, 1, -1, 0], [0, -1, 1, 0], [0, 0, 0, 0]]))
@@ -106,45 +106,45 @@ def test_rounding_does_not_decide_how_a_load_ends() -> None:
 
 
 @settings(max_examples=30)
-@given(row=rows(), spilling=st.booleans())
-def test_a_multiple_of_a_load_has_the_multiple_of_its_shape(row: tuple[FloatArray, FloatArray], spilling: bool) -> None:
+@given(row=rows(), extends_beyond=st.booleans())
+def test_shape_is_linear_in_load(row: tuple[FloatArray, FloatArray], extends_beyond: bool) -> None:
     loads, edges = row
     fine = np.linspace(edges[0], edges[-1], 60)
-    one = smooth_form(loads, edges, spilling=spilling).means(fine)
+    item = smooth_form(loads, edges, extends_beyond=extends_beyond).means(fine)
     for factor in (2.0**-30, 2.0**30):
-        other = smooth_form(factor * loads, edges, spilling=spilling).means(fine)
-        assert np.allclose(one, other / factor, atol=1e-9)
+        variant = smooth_form(factor * loads, edges, extends_beyond=extends_beyond).means(fine)
+        assert np.allclose(item, variant / factor, atol=1e-9)
 
 
 @settings(max_examples=30)
-@given(row=rows(), spilling=st.booleans())
-def test_moments_are_those_of_many_narrow_cells(row: tuple[FloatArray, FloatArray], spilling: bool) -> None:
+@given(row=rows(), extends_beyond=st.booleans())
+def test_moments_match_narrow_cells(row: tuple[FloatArray, FloatArray], extends_beyond: bool) -> None:
     loads, edges = row[0], row[1] + 0.7
-    smooth = smooth_form(loads, edges, spilling=spilling)
+    smooth = smooth_form(loads, edges, extends_beyond=extends_beyond)
     parts = 400
     fine = np.append((edges[:-1, None] + np.diff(edges)[:, None] * np.arange(parts) / parts).ravel(), edges[-1])
     forces, middles = smooth.means(fine) * np.diff(fine), 0.5 * (fine[1:] + fine[:-1])
     about = np.repeat(0.5 * (edges[1:] + edges[:-1]), parts)
-    own = (forces * (middles - about)).reshape(loads.shape[0], -1, parts).sum(axis=2)
-    assert np.allclose(smooth.moments, own, atol=1e-4)
+    expected = (forces * (middles - about)).reshape(loads.shape[0], -1, parts).sum(axis=2)
+    assert np.allclose(smooth.moments, expected, atol=1e-4)
     total = np.cumsum(forces * (middles - edges[0]), axis=1)
     if edges.size < 3:
         return
-    other = np.linspace(edges[0] - 0.3, edges[-1] + 0.2, 9)
-    for gathered, cells in ((smooth.equivalent_means(edges), edges), (smooth.equivalent_means(other), other)):
-        found = gathered * np.diff(cells)
-        assert np.allclose(found.sum(axis=1), forces.sum(axis=1), atol=1e-9)
+    variant = np.linspace(edges[0] - 0.3, edges[-1] + 0.2, 9)
+    for gathered, cells in ((smooth.equivalent_means(edges), edges), (smooth.equivalent_means(variant), variant)):
+        computed = gathered * np.diff(cells)
+        assert np.allclose(computed.sum(axis=1), forces.sum(axis=1), atol=1e-9)
         centres = 0.5 * (cells[1:] + cells[:-1]) - edges[0]
-        assert np.allclose(found @ centres, total[:, -1], atol=2e-3)
+        assert np.allclose(computed @ centres, total[:, -1], atol=2e-3)
 
 
-def test_nothing_is_loaded_before_the_first_edge_and_behind_the_last() -> None:
+def test_load_vanishes_outside_edges() -> None:
     edges = np.array([0.0, 1.0, 2.5, 3.0])
     smooth = smooth_form(np.array([[1.0, 2.0, 3.0]]), edges)
     assert smooth.integral(np.array([-1.0, 0.0, 3.0, 3.1, 9.0]))[0] == pytest.approx([0, 0, 5.5, 5.5, 5.5])
 
 
-def test_a_load_that_does_not_fall_in_its_last_cell_ends_in_a_step() -> None:
+def test_constant_last_cell_ends_in_step() -> None:
     means = smooth_form(np.array([[1.2, 1.1, 1.0, 1.0]]), np.linspace(0.0, 4.0, 5)).means(np.linspace(0.0, 4.0, 41))
     assert means[0, 30:] == pytest.approx(1.0)
 
@@ -158,28 +158,28 @@ WIDTHS = np.array([1.0, 0.8, 1.2, 1.0, 0.9, 1.1, 0.7, 1.5, 1.0])
 
 
 @pytest.mark.parametrize("factor", [1.0, 5.0])
-def test_a_root_that_ends_behind_the_last_cell_is_followed_there(factor: float) -> None:
+def test_root_extends_beyond_last_cell(factor: float) -> None:
     """Contacts solved on cells press the last cell whose middle is in the contact, with what belongs to the next."""
     edges = np.append(0.0, np.cumsum(WIDTHS))
     forces = root(edges, edges[6] + 0.25)
     forces[5:7] = forces[5:7].sum(), 0.0
     loads = forces / WIDTHS
     fine = np.linspace(edges[5], edges[7], 31)
-    smooth = smooth_form(factor * loads[None], edges, spilling=True)
+    smooth = smooth_form(factor * loads[None], edges, extends_beyond=True)
     assert np.abs(smooth.means(fine)[0] / factor - root(fine, edges[6] + 0.25) / np.diff(fine)).max() < 0.06
     assert smooth.integral(edges[6:8])[0] / factor == pytest.approx([forces.sum() - 0.09, forces.sum()], abs=0.02)
     assert smooth.integral(edges[7:8])[0] == pytest.approx(factor * forces.sum())
     assert smooth.means(np.array([edges[6] + 0.4, edges[7]]))[0] == 0
     # Not where it is not wanted, nor at the end of a row, nor beside another load.
-    beside = np.where(np.arange(9) == 7, 1.0, loads)
-    for row, spilling in ((loads, False), (beside, True), (loads[:6], True)):
-        kept = smooth_form(factor * row[None], edges[: row.size + 1], spilling=spilling)
-        assert kept.integral(edges[6:7])[0] == pytest.approx(factor * forces.sum())
+    adjacent = np.where(np.arange(9) == 7, 1.0, loads)
+    for row, extends_beyond in ((loads, False), (adjacent, True), (loads[:6], True)):
+        retained = smooth_form(factor * row[None], edges[: row.size + 1], extends_beyond=extends_beyond)
+        assert retained.integral(edges[6:7])[0] == pytest.approx(factor * forces.sum())
 
 
 @pytest.mark.parametrize("moved", [0.1, 0.4])
 @pytest.mark.parametrize("factor", [0.01, 5.0])
-def test_a_root_that_ends_early_in_the_last_cell_is_shared_by_the_last_two(moved: float, factor: float) -> None:
+def test_narrow_last_cell_shares_force(moved: float, factor: float) -> None:
     """Contacts solved on cells put too little into the last cell, and too much into the one before."""
     edges = np.append(0.0, np.cumsum(WIDTHS))
     border = edges[5] + 0.25
@@ -192,7 +192,7 @@ def test_a_root_that_ends_early_in_the_last_cell_is_shared_by_the_last_two(moved
 
 
 @pytest.mark.parametrize("factor", [1.0, 5.0])
-def test_a_root_that_is_cut_off_ends_in_its_own_value(factor: float) -> None:
+def test_truncated_root_keeps_end_value(factor: float) -> None:
     edges = np.append(0.0, np.cumsum(WIDTHS[:5]))
     loads = root(edges, edges[5] + 0.3) / WIDTHS[:5]
     smooth = smooth_form(factor * loads[None], edges)
@@ -200,26 +200,26 @@ def test_a_root_that_is_cut_off_ends_in_its_own_value(factor: float) -> None:
     assert smooth.integral(edges[5:])[0] == pytest.approx(factor * loads @ WIDTHS[:5])
 
 
-def test_a_load_that_is_cut_off_does_not_reach_behind_its_last_cell() -> None:
-    smooth = smooth_form(np.array([[3.0, 2.2, 1.75, 0.0, 0.0]]), np.arange(6.0), spilling=True)
+def test_truncated_load_stays_in_last_cell() -> None:
+    smooth = smooth_form(np.array([[3.0, 2.2, 1.75, 0.0, 0.0]]), np.arange(6.0), extends_beyond=True)
     assert smooth.means(np.arange(6.0))[0, 3:].tolist() == [0.0, 0.0]
 
 
 @pytest.mark.parametrize("part", [0.05, 0.2, 0.45, 0.8])
-def test_a_load_may_end_in_the_last_cell_of_a_row(part: float) -> None:
+def test_load_ends_in_last_cell_of_row(part: float) -> None:
     """With little force in it, which it shares with the cell before: as if there were more cells."""
     edges = np.arange(10.0)
     end = 8.0 + part
     exact = (end**1.5 - np.maximum(end - edges, 0.0) ** 1.5) / 1.5
     cells = np.diff(exact)[None, :]
     for load in (cells, -cells[:, ::-1]):
-        own = smooth_form(load, edges)
+        smooth_load = smooth_form(load, edges)
         longer = smooth_form(np.pad(load, ((0, 0), (1, 1))), np.arange(-1.0, 11.0))
         for name in ("first", "middle", "last", "knot"):
-            assert getattr(own.shape, name) == pytest.approx(getattr(longer.shape, name)[:, 1:-1]), name
-        assert own.cell_means.sum() == pytest.approx(load.sum())
+            assert getattr(smooth_load.shape, name) == pytest.approx(getattr(longer.shape, name)[:, 1:-1]), name
+        assert smooth_load.cell_means.sum() == pytest.approx(load.sum())
 
 
-def test_the_other_end_of_a_function_whose_square_is_linear() -> None:
+def test_opposite_face_from_mean() -> None:
     first, last = np.random.default_rng(0).uniform(0.0, 2.0, (2, 50))
-    assert _opposite_face(_mean(first, last), first) == pytest.approx(last, abs=1e-12)
+    assert _opposite_face(_mean_of_root(first, last), first) == pytest.approx(last, abs=1e-12)

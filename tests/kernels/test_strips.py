@@ -13,7 +13,7 @@ from scipy import fft, integrate
 from contactstudy import FiniteLengthSpace, Grid, HalfSpace, Material, QuarterSpace, cache
 from contactstudy.bodies.models import Body
 from contactstudy.checks import FloatArray
-from contactstudy.fields.part import ColumnsOperator, end_kernel_of
+from contactstudy.fields.body_operators import ColumnsOperator, end_kernel_of
 from contactstudy.fields.surface import SurfaceOperator
 from contactstudy.kernels.load import NORMAL_RESPONSE, Load, Response
 from contactstudy.kernels.strips import (
@@ -96,7 +96,7 @@ EDGES = np.array([0.0, 0.02, 0.05, 0.12, 0.3, 0.62, 0.9, 1.4, 1.9])
 @strips
 @pytest.mark.parametrize("image", [1, -1])
 @pytest.mark.parametrize("extent", [WHOLE, ONE_END, (-np.inf, 3.0), TWO_ENDS], ids=str)
-def test_a_body_elsewhere_has_the_same_influence(strip: Strip, image: int, extent: tuple[float, float]) -> None:
+def test_shifted_body_has_equal_influence(strip: Strip, image: int, extent: tuple[float, float]) -> None:
     edges = np.array([0.0, 0.2, 0.7, 1.9, 2.5, 3.0])
     here = influence(strip, edges, 0.3, 5, extent, 20.0, image)
     there = influence(strip, edges + 8.0, 0.3, 5, (extent[0] + 8.0, extent[1] + 8.0), 20.0, image)
@@ -116,27 +116,27 @@ def test_influence_between_columns_is_the_double_integral(strip: Strip, seen: in
 
 @pytest.mark.parametrize("image", [1, -1])
 @strips
-def test_image_in_an_end_is_the_column_behind_it(strip: Strip, image: int) -> None:
+def test_image_equals_mirrored_column(strip: Strip, image: int) -> None:
     dy, cells_y, end = 0.2, 6, -0.1
-    plain = along_y(influence(strip, EDGES, dy, cells_y, WHOLE), strip)
-    mirrored = along_y(influence(strip, EDGES, dy, cells_y, (end, np.inf), image=image), strip) - plain
-    for seen, loaded, offset in ((0, 0, 0), (2, 5, 1), (7, 7, 3)):
+    baseline = along_y(influence(strip, EDGES, dy, cells_y, WHOLE), strip)
+    mirrored = along_y(influence(strip, EDGES, dy, cells_y, (end, np.inf), image=image), strip) - baseline
+    for observed, loaded, offset in ((0, 0, 0), (2, 5, 1), (7, 7, 3)):
         behind = (2 * end - EDGES[loaded + 1], 2 * end - EDGES[loaded])
-        pair = (EDGES[seen], EDGES[seen + 1])
+        pair = (EDGES[observed], EDGES[observed + 1])
         exact = image * mean_influence(strip, pair, behind, (offset - 0.5) * dy, (offset + 0.5) * dy)
-        assert mirrored[offset, seen, loaded] == pytest.approx(exact, rel=2e-9, abs=1e-12)
+        assert mirrored[offset, observed, loaded] == pytest.approx(exact, rel=2e-9, abs=1e-12)
 
 
 @strips
-def test_derivatives_and_primitive_of_a_strip_belong_to_its_kernel(strip: Strip) -> None:
+def test_strip_derivatives_and_primitives_match_kernel(strip: Strip) -> None:
     step = 1e-4
     x, y = np.meshgrid(np.linspace(0.3, 4.0, 7), np.array([0.05, 0.4, 2.0]))
     before, here, after = (strip.kernel(x + move, y) for move in (-step, 0.0, step))
     assert np.allclose((after - 2 * here + before) / step**2, strip.curvature(x, y), rtol=1e-5, atol=2e-7)
     rise = (strip.primitive(x + step, y) - strip.primitive(x - step, y)) / (2 * step)
     # What does not depend on y is left out.
-    apart = rise - here
-    assert np.allclose(apart, apart[:1], atol=1e-7)
+    separate = rise - here
+    assert np.allclose(separate, separate[:1], atol=1e-7)
 
 
 @st.composite
@@ -156,17 +156,17 @@ SAMPLED = st.sampled_from(STRIPS)
 def test_influence_is_reciprocal_to_the_last_bit(edges: FloatArray, strip: Strip) -> None:
     """What an odd strip with images of one sign does is reciprocal to one with images of the other."""
     for extent in (WHOLE, ONE_END):
-        kernel, other = (influence(strip, edges, 0.1, 6, extent, image=image) for image in (1, strip.sign_x))
-        assert np.array_equal(kernel, strip.sign_x * other.transpose(0, 2, 1))
-    kernel, other = (influence(strip, edges, 0.1, 6, TWO_ENDS, 30.0, image=image) for image in (1, strip.sign_x))
+        kernel, variant = (influence(strip, edges, 0.1, 6, extent, image=image) for image in (1, strip.sign_x))
+        assert np.array_equal(kernel, strip.sign_x * variant.transpose(0, 2, 1))
+    kernel, variant = (influence(strip, edges, 0.1, 6, TWO_ENDS, 30.0, image=image) for image in (1, strip.sign_x))
     # Far images of a traction are differences of large numbers; the contact's matrix is that of the pressure.
     allowed = 1e-12 if strip is INVERSE else 1e-7
-    assert np.abs(kernel - strip.sign_x * other.transpose(0, 2, 1)).max() < allowed * np.abs(kernel).max()
+    assert np.abs(kernel - strip.sign_x * variant.transpose(0, 2, 1)).max() < allowed * np.abs(kernel).max()
 
 
 @settings(max_examples=30)
 @given(edges=increasing_edges(), strip=SAMPLED, two=st.booleans())
-def test_columns_seen_from_the_other_side_act_the_same(edges: FloatArray, strip: Strip, two: bool) -> None:
+def test_reversed_columns_have_reversed_influence(edges: FloatArray, strip: Strip, two: bool) -> None:
     extent = TWO_ENDS if two else WHOLE
     kernel = influence(strip, edges, 0.1, 6, extent, 30.0)
     backwards = influence(strip, 3.0 - edges[::-1], 0.1, 6, extent, 30.0)
@@ -175,28 +175,28 @@ def test_columns_seen_from_the_other_side_act_the_same(edges: FloatArray, strip:
 
 @settings(max_examples=30)
 @given(edges=increasing_edges())
-def test_pressure_does_work_on_a_half_space_whatever_the_columns(edges: FloatArray) -> None:
+def test_influence_is_positive_definite(edges: FloatArray) -> None:
     for matrix in influence(INVERSE, edges, 0.1, 6, WHOLE):
         assert np.linalg.eigvalsh(matrix).min() > 0
 
 
 @settings(max_examples=30)
 @given(edges=increasing_edges(), strip=SAMPLED, two=st.booleans(), at=st.integers(0, 20))
-def test_split_columns_act_as_the_one_they_were(edges: FloatArray, strip: Strip, two: bool, at: int) -> None:
+def test_split_columns_sum_to_original_column(edges: FloatArray, strip: Strip, two: bool, at: int) -> None:
     """Galerkin's averages are consistent: forces on the halves in the whole's proportion, displacements averaged."""
     at %= edges.size - 1
     extent = TWO_ENDS if two else WHOLE
     finer = np.insert(edges, at + 1, edges[at] + 0.3 * (edges[at + 1] - edges[at]))
     widths, owner = np.diff(finer), np.searchsorted(edges, 0.5 * (finer[1:] + finer[:-1])) - 1
-    shares = np.zeros((edges.size - 1, widths.size))
-    shares[owner, np.arange(widths.size)] = widths / np.diff(edges)[owner]
+    fractions = np.zeros((edges.size - 1, widths.size))
+    fractions[owner, np.arange(widths.size)] = widths / np.diff(edges)[owner]
     coarse = influence(strip, edges, 0.1, 6, extent, 30.0)
-    fine = shares @ influence(strip, finer, 0.1, 6, extent, 30.0) @ shares.T
+    fine = fractions @ influence(strip, finer, 0.1, 6, extent, 30.0) @ fractions.T
     assert np.abs(fine - coarse).max() < 1e-7 * np.abs(coarse).max()
 
 
 @strips
-def test_expansion_of_far_columns_meets_the_integral(strip: Strip) -> None:
+def test_far_expansion_matches_integral(strip: Strip) -> None:
     dy, cells_y = 0.01, 4
     edges = np.array([0.0, 1e-3, 2e-3, 4e-3, 1.0, 1.03])
     kernel = along_y(influence(strip, edges, dy, cells_y, WHOLE), strip)
@@ -215,13 +215,13 @@ def test_very_narrow_columns_keep_their_digits() -> None:
     edges = np.insert(edges, 0, 0.0)
     kernel = along_y(influence(INVERSE, edges, 0.1, 4, WHOLE), INVERSE)
     last, y = edges.size - 2, (-0.05, 0.05)
-    for seen, loaded in ((0, 0), (5, 0), (0, last), (last, last)):
-        pair = (edges[seen], edges[seen + 1]), (edges[loaded], edges[loaded + 1])
-        apart = 0.5 * (sum(pair[0]) - sum(pair[1]))
+    for observed, loaded in ((0, 0), (5, 0), (0, last), (last, last)):
+        pair = (edges[observed], edges[observed + 1]), (edges[loaded], edges[loaded + 1])
+        separate = 0.5 * (sum(pair[0]) - sum(pair[1]))
         # Far from each other both are points.
-        far = abs(apart) > 1
-        exact = strip_kernel(INVERSE, abs(apart), *y) if far else mean_influence(INVERSE, *pair, *y)
-        assert kernel[0, seen, loaded] == pytest.approx(exact, rel=1e-6)
+        far = abs(separate) > 1
+        exact = strip_kernel(INVERSE, abs(separate), *y) if far else mean_influence(INVERSE, *pair, *y)
+        assert kernel[0, observed, loaded] == pytest.approx(exact, rel=1e-6)
 
 
 STEEL = Material(210e9, 0.3)
@@ -240,7 +240,7 @@ LOADS = (Load.NORMAL, Load.ALONG_X, Load.ALONG_Y)
 
 
 @pytest.mark.parametrize("body", BODIES, ids=lambda body: f"{type(body).__name__}-{getattr(body, 'model', '')}")
-def test_operator_is_the_averaged_displacement_of_one_on_finer_cells(body: Body) -> None:
+def test_operator_averages_displacement_of_finer_cells(body: Body) -> None:
     finer, cells_x, cells_y = 8, 24, 12
     y_range = (-1.2e-4, 1.2e-4)
     fine, coarse = (
@@ -250,35 +250,37 @@ def test_operator_is_the_averaged_displacement_of_one_on_finer_cells(body: Body)
     sinks_only = getattr(body, "model", "") == "single-mirror"
     loads, directions = (LOADS[::2], LOADS[:1]) if sinks_only else (LOADS, LOADS)
     responses = tuple(Response(direction, load) for direction in directions for load in loads)
-    own = SurfaceOperator.of(body, fine, loads, directions)
+    fine_operator = SurfaceOperator.of(body, fine, loads, directions)
     material, parts = body.material, []
     for part in body.terms:
         ends = end_kernel_of(part, material, coarse, responses, Resolution())
         parts.append((part.weight, ColumnsOperator.of(material, part.extent, coarse, responses, ends)))
     columns = SurfaceOperator(body, parts)
     for load in loads:
-        displaced = own.displaced({load: np.repeat(pressure, finer, axis=0)}, directions)
-        means = {each: values.reshape(cells_x, finer, cells_y).mean(axis=1) for each, values in displaced.items()}
-        found = columns.displaced({load: pressure}, directions)
-        largest = max(float(np.ptp(each)) for each in means.values())
+        displaced = fine_operator.compute_displacements({load: np.repeat(pressure, finer, axis=0)}, directions)
+        means = {value: values.reshape(cells_x, finer, cells_y).mean(axis=1) for value, values in displaced.items()}
+        computed = columns.compute_displacements({load: pressure}, directions)
+        largest = max(float(np.ptp(value)) for value in means.values())
         for direction, mean in means.items():
-            assert np.abs(found[direction] - mean).max() < 1.5e-3 * largest, (load, direction)
+            assert np.abs(computed[direction] - mean).max() < 1.5e-3 * largest, (load, direction)
 
 
-def test_operator_converges_to_that_of_uniform_cells() -> None:
+def test_operator_converges_to_uniform_cells() -> None:
     """What is left of the difference above is the finer cells' own: it falls with their square."""
     body, cells_x, cells_y = HalfSpace(material=STEEL), 16, 8
     coarse = Grid(x_range=(0.0, LENGTH), y_range=(-1.2e-4, 1.2e-4), cells_x=cells_x, cells_y=cells_y)
     pressure = np.random.default_rng(1).random(coarse.shape)
     operator = ColumnsOperator.of(STEEL, body.extent, coarse, (NORMAL_RESPONSE,), None)
     columns = operator({Load.NORMAL: pressure}, (Load.NORMAL,))[Load.NORMAL]
-    apart = []
+    separate = []
     for finer in (4, 8, 16):
         fine = Grid(x_range=(0.0, LENGTH), y_range=(-1.2e-4, 1.2e-4), cells_x=cells_x * finer, cells_y=cells_y)
-        own = SurfaceOperator.of(body, fine)({Load.NORMAL: np.repeat(pressure, finer, axis=0)})
-        apart.append(np.abs(own.reshape(cells_x, finer, cells_y).mean(axis=1) - columns).max() / np.ptp(columns))
-    assert apart[1] < 0.35 * apart[0]
-    assert apart[2] < 0.35 * apart[1]
+        fine_operator = SurfaceOperator.of(body, fine)({Load.NORMAL: np.repeat(pressure, finer, axis=0)})
+        separate.append(
+            np.abs(fine_operator.reshape(cells_x, finer, cells_y).mean(axis=1) - columns).max() / np.ptp(columns)
+        )
+    assert separate[1] < 0.35 * separate[0]
+    assert separate[2] < 0.35 * separate[1]
 
 
 P, X, Y = Load.NORMAL, Load.ALONG_X, Load.ALONG_Y
@@ -287,32 +289,32 @@ P, X, Y = Load.NORMAL, Load.ALONG_X, Load.ALONG_Y
 @pytest.mark.parametrize("unit", [2.0**-17, 1.0, 2.0**10])
 @pytest.mark.parametrize("poisson", [0.0, 0.3, 0.5])
 @pytest.mark.parametrize("response", [Response(P, P), Response(Y, Y)])
-def test_a_row_of_images_displaces_nothing_at_the_reference(response: Response, poisson: float, unit: float) -> None:
+def test_image_row_vanishes_at_reference(response: Response, poisson: float, unit: float) -> None:
     """And about that, like a line load: ``2 (1 - nu) / L ln(r / y)`` per force."""
     length, reference, cell = 0.8 * unit, 8.0 * unit, 0.1 * unit
     x, y = cell * np.arange(4.0), cell * np.array([40.0, 80.0, 160.0])
-    found = np.stack(
+    computed = np.stack(
         [
-            surface_kernel(response, poisson, x, one * np.ones(1), (cell, cell), length=length, reference=reference)[
-                :, 0
-            ]
-            for one in y
+            surface_kernel(
+                response, poisson, x, variant * np.ones(1), (cell, cell), length=length, reference=reference
+            )[:, 0]
+            for variant in y
         ]
     )
     row = cell**2 * 2 * (1 - poisson) / length
     expected = row * np.log(reference / y)[:, None] * np.ones(4)
-    assert found == pytest.approx(expected, abs=2e-3 * cell**2 / length)
+    assert computed == pytest.approx(expected, abs=2e-3 * cell**2 / length)
 
 
-def test_rows_without_a_net_load_need_no_level() -> None:
+def test_image_rows_without_net_load_have_zero_level() -> None:
     for displacement in (P, X, Y):
         for load in (P, X, Y):
-            found = row_level(strips_of(Response(displacement, load), 0.3), load.sign_x, 0.8, 8.0)
-            assert (found != 0) == ((displacement, load) in ((P, P), (Y, Y)))
+            computed = row_level(strips_of(Response(displacement, load), 0.3), load.sign_x, 0.8, 8.0)
+            assert (computed != 0) == ((displacement, load) in ((P, P), (Y, Y)))
 
 
 @pytest.mark.parametrize("response", [Response(Load.NORMAL, Load.NORMAL), Response(Load.ALONG_X, Load.NORMAL)])
-def test_influences_of_split_columns_do_not_depend_on_those_computed_before(response: Response) -> None:
+def test_influences_do_not_depend_on_cached_columns(response: Response) -> None:
     coarse = np.array([0.0, 0.02, 0.05, 0.2, 0.4, 0.8, 1.0])
     fine = np.sort(np.append(coarse, [0.01, 0.3, 0.9]))
 
@@ -321,7 +323,7 @@ def test_influences_of_split_columns_do_not_depend_on_those_computed_before(resp
         return request.kernel(response, 0.3)
 
     cache.clear()
-    alone = kernel(fine)
+    single = kernel(fine)
     cache.clear()
     kernel(coarse)
-    np.testing.assert_array_equal(kernel(fine), alone)
+    np.testing.assert_array_equal(kernel(fine), single)

@@ -36,10 +36,10 @@ def kernel(edges: FloatArray, response: Response, *, unit: float = 1.0, ends: in
 
 @pytest.mark.parametrize("response", RESPONSES, ids=lambda pair: f"{pair.displacement.name} by {pair.load.name}")
 @pytest.mark.parametrize(("ends", "unit"), [(1, LENGTH), (2, LENGTH), (1, 2.0**7)])
-def test_the_unit_of_length_decides_nothing(ends: int, unit: float, response: Response) -> None:
+def test_unit_of_length_scales_kernel(ends: int, unit: float, response: Response) -> None:
     """A force per area of the unit; transformed along y, displacements over forces per length are without unit."""
-    plain, other = kernel(EDGES, response, ends=ends), kernel(EDGES, response, unit=unit, ends=ends)
-    assert other == pytest.approx(plain, abs=1e-7 * np.abs(plain).max())
+    baseline, variant = kernel(EDGES, response, ends=ends), kernel(EDGES, response, unit=unit, ends=ends)
+    assert variant == pytest.approx(baseline, abs=1e-7 * np.abs(baseline).max())
 
 
 @pytest.mark.parametrize("response", RESPONSES, ids=lambda pair: f"{pair.displacement.name} by {pair.load.name}")
@@ -47,8 +47,8 @@ def test_mirrored_columns_have_the_mirrored_kernel(response: Response) -> None:
     """The other end sees the same: what a reflection turns round changes its sign."""
     sign = response.displacement.sign_x * response.load.sign_x
     mirrored = EDGES[-1] - EDGES[::-1]
-    found, expected = kernel(mirrored, response), kernel(EDGES, response)
-    assert found == pytest.approx(sign * expected[:, ::-1, ::-1], abs=1e-6 * np.abs(expected).max())
+    computed, expected = kernel(mirrored, response), kernel(EDGES, response)
+    assert computed == pytest.approx(sign * expected[:, ::-1, ::-1], abs=1e-6 * np.abs(expected).max())
 
 
 @pytest.mark.parametrize("ends", [1, 2])
@@ -66,27 +66,27 @@ def test_loads_and_displacements_are_reciprocal(ends: int) -> None:
 
 @pytest.mark.parametrize("cells", [6, 7])
 @pytest.mark.parametrize("direction", Load)
-def test_the_correction_on_uniform_cells_is_the_kernel_between_columns(direction: Load, cells: int) -> None:
+def test_correction_on_cells_equals_kernel_between_columns(direction: Load, cells: int) -> None:
     """Folded about the middle, transformed and back: an even and an odd number of cells."""
     edges = np.linspace(0.0, 2.4, cells + 1)
     grid = Grid.between(edges, (-1.0, 1.0), 6)
     ends = end_kernel(request(edges))
-    correction = EndCorrection.on(grid, ends)
+    correction = EndCorrection.on_grid(grid, ends)
     random = np.random.default_rng(0)
     transforms = {load: random.standard_normal((cells, 7)) + 1j * random.standard_normal((cells, 7)) for load in Load}
-    gathered = {load: correction.gathered(load, each) for load, each in transforms.items()}
-    found = correction.displaced(direction, gathered, cells)
+    gathered = {load: correction.project_loads(load, item) for load, item in transforms.items()}
+    computed = correction.compute_displacement(direction, gathered, cells)
     expected = np.zeros((cells, 7), np.complex128)
-    for load, each in transforms.items():
+    for load, item in transforms.items():
         response = Response(direction, load)
         factor = 1.0 if response.sign_y > 0 else 1j
         between = np.zeros((7, cells, cells))
         ends.add_to(between, response, edges)
-        expected += factor * np.einsum("kij,jk->ik", between, each) * grid.dx
-    assert found == pytest.approx(expected, abs=1e-9 * np.abs(expected).max())
+        expected += factor * np.einsum("kij,jk->ik", between, item) * grid.dx
+    assert computed == pytest.approx(expected, abs=1e-9 * np.abs(expected).max())
 
 
-def test_the_kernel_is_resolved_as_finely_as_the_cells_at_the_ends_ask() -> None:
+def test_end_cells_determine_kernel_resolution() -> None:
     """Uniform cells by their width; graded ones by a cell along y, or an eighth of it if cells at an end are narrow."""
     dy = 2.0 / 6
     assert request(np.linspace(0.0, 2.4, 9)).finest == pytest.approx(0.3)
@@ -102,19 +102,19 @@ def test_the_kernel_is_resolved_as_finely_as_the_cells_at_the_ends_ask() -> None
         assert request(wide, unit=unit).finest / unit == pytest.approx(dy)
 
 
-def test_wavenumbers_along_y_reach_as_far_as_the_cells_along_y_ask() -> None:
+def test_lateral_cells_bound_lateral_wavenumbers() -> None:
     """Also where cells along x are wide: with finer quadratures the kernel is the same."""
     edges = np.linspace(0.0, 6.0, 5)
-    usual = request(edges, responses=(Response(Load.NORMAL, Load.NORMAL),))
-    assert usual.finest > 4 * usual.dy
-    found, finer = (
+    baseline = request(edges, responses=(Response(Load.NORMAL, Load.NORMAL),))
+    assert baseline.finest > 4 * baseline.dy
+    computed, finer = (
         np.sum(
             [
-                each.moments(edges)[0].T @ samples @ each.moments(edges)[0]
-                for samples in each.samples[usual.responses[0]]
+                variant.moments(edges)[0].T @ samples @ variant.moments(edges)[0]
+                for samples in variant.samples[baseline.responses[0]]
             ],
             axis=0,
         )
-        for each in (end_kernel(usual), end_kernel(usual._replace(finest=usual.dy)))
+        for variant in (end_kernel(baseline), end_kernel(baseline._replace(finest=baseline.dy)))
     )
-    assert found == pytest.approx(finer, abs=1e-3 * np.abs(finer).max())
+    assert computed == pytest.approx(finer, abs=1e-3 * np.abs(finer).max())

@@ -12,7 +12,7 @@ from contactstudy import Grid, Material
 from contactstudy.arrays.points import Points
 from contactstudy.bodies.models import FreeEnds
 from contactstudy.kernels.load import NORMAL_RESPONSE, Load
-from contactstudy.overlapping.axial import SingleMirrorModes, axial_modes, modes_between_ends
+from contactstudy.overlapping.axial_modes import SingleMirrorModes, axial_modes, modes_between_ends
 from contactstudy.overlapping.equations import EquationSet, load_on_end
 from contactstudy.overlapping.field import end_fields
 from contactstudy.overlapping.harmonics import STRESS
@@ -28,14 +28,14 @@ def test_alternating_the_two_bodies_converges_to_the_explicit_solution(lateral: 
     chosen = modes[min(parity, len(modes) - 1)]
     system = EquationSet.build(chosen, lateral, 0.3, 0.05, Resolution())
     load = chosen.load_weights * chosen.cell_integrals(Load.NORMAL, np.array([0.0, 3.0]))[:, 0]
-    asked = system.source(Load.NORMAL, load)
-    explicit = system.solve(asked)
-    face_load = asked.copy()
+    request = system.source(Load.NORMAL, load)
+    explicit = system.solve(request)
+    face_load = request.copy()
     for _ in range(200):
-        on_top = system.on_top(system.scale * face_load)
-        face_load = asked + system.source(Load.NORMAL, chosen.on_end * on_top)
+        on_top = system.spectrum_on_top(system.scale * face_load)
+        face_load = request + system.source(Load.NORMAL, chosen.on_end * on_top)
     assert np.abs(system.scale * face_load - explicit).max() < 1e-9 * np.abs(explicit).max()
-    assert np.abs(explicit - system.scale * asked).max() > 0.05 * np.abs(explicit).max()
+    assert np.abs(explicit - system.scale * request).max() > 0.05 * np.abs(explicit).max()
 
 
 @pytest.mark.parametrize("length", [8.0, 2.5])
@@ -47,7 +47,7 @@ def test_correction_is_symmetric(length: float) -> None:
         assert np.abs(kernel - kernel.transpose(0, 2, 1)).max() < 1e-12 * np.abs(kernel).max()
 
 
-def test_no_internal_setting_matters() -> None:
+def test_resolution_settings_are_converged() -> None:
     grid = Grid(x_range=(0.0, 8.0), y_range=(-1.0, 1.0), cells_x=32, cells_y=24)
     pressure = np.broadcast_to((1 - grid.y**2) ** 2, grid.shape)
     points = (np.array([0.0, 0.1, 1.0, 4.0]), np.array([0.0, 0.5]), np.array([0.05, 0.5, 3.0]))
@@ -61,7 +61,7 @@ def test_no_internal_setting_matters() -> None:
         )[0]
         return np.stack([fields[load] for load in both])
 
-    usual = stress(Resolution())
+    baseline = stress(Resolution())
     finer = {
         "step": 0.15,
         "lateral_ratio": 3.0,
@@ -73,7 +73,7 @@ def test_no_internal_setting_matters() -> None:
         "lateral_reach": 16.0,
     }
     for name, value in finer.items():
-        assert np.abs(stress(replace(Resolution(), **{name: value})) - usual).max() < 2e-5, name
+        assert np.abs(stress(replace(Resolution(), **{name: value})) - baseline).max() < 2e-5, name
 
 
 ON_THE_END = {
@@ -85,31 +85,31 @@ ON_THE_END = {
 
 
 @pytest.mark.parametrize("load", Load)
-def test_face_loads_are_the_cosine_transform_of_the_stress_reversed(load: Load) -> None:
+def test_face_loads_reverse_cosine_transform_of_stress(load: Load) -> None:
     nu, lateral = 0.3, 0.7
     axial, depth = np.array([0.0, 0.4, 2.0]), np.array([0.2, 1.5])
     waves = axial.astype(complex)
-    found = load_on_end(load, waves, depth, lateral, nu)
-    for i, j in np.ndindex(found.shape):
+    computed = load_on_end(load, waves, depth, lateral, nu)
+    for i, j in np.ndindex(computed.shape):
         k = np.hypot(axial[j], lateral)
 
         def transformed(z: float, i: int = i, j: int = j, k: float = k) -> float:
             return float(ON_THE_END[load](axial[j], lateral, k, z, nu) * np.exp(-k * z) * np.cos(depth[i] * z))
 
         integral = integrate.quad(transformed, 0, 60 / k, limit=200)[0]
-        assert found[i, j] == pytest.approx(-2 / np.pi * integral, abs=1e-9)
+        assert computed[i, j] == pytest.approx(-2 / np.pi * integral, abs=1e-9)
 
 
 @pytest.mark.parametrize("length", [3.0, np.inf])
-def test_wavenumbers_in_other_units(length: float) -> None:
+def test_wavenumbers_scale_with_unit(length: float) -> None:
     for shortest, lateral in ((0.02, 0.7), (200.0, 40.0)):
         one = axial_modes(length, lateral, shortest, Resolution())
-        other = axial_modes(1e-3 * length, 1e3 * lateral, 1e-3 * shortest, Resolution())
-        for modes, scaled in zip(one, other, strict=True):
+        variant = axial_modes(1e-3 * length, 1e3 * lateral, 1e-3 * shortest, Resolution())
+        for modes, scaled in zip(one, variant, strict=True):
             assert scaled.wavenumbers == pytest.approx(1e3 * modes.wavenumbers)
             system, there = (
-                EquationSet.build(each, rate * lateral, 0.3, shortest / rate, Resolution())
-                for each, rate in ((modes, 1.0), (scaled, 1e3))
+                EquationSet.build(item, rate * lateral, 0.3, shortest / rate, Resolution())
+                for item, rate in ((modes, 1.0), (scaled, 1e3))
             )
             assert there.depth == pytest.approx(1e3 * system.depth)
             assert abs(modes.ray[-1]) > 0.5 * max(Resolution().reach / shortest, 4 * lateral)
@@ -121,12 +121,12 @@ def test_wavenumbers_in_other_units(length: float) -> None:
             assert reached > 0.5 * max(Resolution().ray_reach / shortest, 4 * lateral)
 
 
-def test_wavenumbers_of_loads_that_are_mirrored_once_reach_as_far() -> None:
+def test_single_mirror_wavenumbers_have_equal_bound() -> None:
     for shortest, lateral in ((0.02, 0.7), (200.0, 4.0)):
         for modes in modes_between_ends(3.0, lateral, shortest, Resolution(), mirrored_once=True):
             assert modes.discrete.size == 0
             assert abs(modes.ray[-1]) > 0.5 * max(Resolution().reach / shortest, 4 * lateral)
     for lateral, mirrored_once in ((0.7, False), (7.0, True), (7.0, False)):
-        found = modes_between_ends(3.0, lateral, 0.02, Resolution(), mirrored_once=mirrored_once)
-        assert not any(isinstance(modes, SingleMirrorModes) for modes in found)
-        assert len(found) == (2 if lateral < 1 else 1)
+        computed = modes_between_ends(3.0, lateral, 0.02, Resolution(), mirrored_once=mirrored_once)
+        assert not any(isinstance(modes, SingleMirrorModes) for modes in computed)
+        assert len(computed) == (2 if lateral < 1 else 1)

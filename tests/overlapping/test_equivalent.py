@@ -16,17 +16,19 @@ from contactstudy.overlapping.quadrature import Resolution
 GRID = Grid(x_range=(0.0, 2.4), y_range=(-1.0, 1.0), cells_x=8, cells_y=8)
 
 
-def pressed(problem: EndProblem, x: np.ndarray, y: np.ndarray, z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def equivalent_loads_of(
+    problem: EndProblem, x: np.ndarray, y: np.ndarray, z: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
     """Load added on the top (x, y) and loads on the faces (end, y, z) under the pressure of a problem."""
     operators = OverlappingOperators.of(problem, Points(x, y, z), reference=24.0).equivalent(Load.NORMAL)
     cells = problem.cells.ravel()
-    return (operators.added @ cells).reshape(x.size, y.size), np.array(
+    return (operators.top_load @ cells).reshape(x.size, y.size), np.array(
         [(face @ cells).reshape(y.size, z.size) for face in operators.faces]
     )
 
 
 @pytest.mark.parametrize("mirrored_once", [False, True])
-def test_a_symmetric_load_has_the_same_at_both_ends(*, mirrored_once: bool) -> None:
+def test_symmetric_load_has_equal_end_loads(*, mirrored_once: bool) -> None:
     cells = np.where(np.abs(GRID.y) < 0.5, 1.0, 0.0) * np.ones(GRID.shape)
     problem = EndProblem(
         length=2.4,
@@ -40,7 +42,7 @@ def test_a_symmetric_load_has_the_same_at_both_ends(*, mirrored_once: bool) -> N
     offset = problem.corner_offset
     x = np.array([0.0, 0.5 * offset, offset, 0.3, 1.2, 2.1, 2.4 - offset, 2.4 - 0.5 * offset, 2.4])
     y, z = np.array([0.0, 0.6]), np.array([0.0, 0.5 * offset, offset, 0.4])
-    added, (first, second) = pressed(problem, x, y, z)
+    added, (first, second) = equivalent_loads_of(problem, x, y, z)
     assert added == pytest.approx(added[::-1], abs=1e-6)
     assert first == pytest.approx(second, abs=1e-6)
     # Nearer to a corner than a part of a cell it is that at this distance.
@@ -49,19 +51,19 @@ def test_a_symmetric_load_has_the_same_at_both_ends(*, mirrored_once: bool) -> N
     assert np.abs(added[3] - added[2]).max() > 0.05 * np.abs(added).max()
 
 
-def test_an_eccentric_load_is_at_either_corner_what_it_is_nearby() -> None:
+def test_equivalent_load_is_continuous_at_corners() -> None:
     """The corner is not taken for that of the other end."""
     cells = np.where(np.abs(GRID.y) < 0.5, 1.0, 0.0) * np.linspace(2.0, 0.5, GRID.cells_x)[:, None]
     problem = EndProblem(length=2.4, poisson=0.3, cells=cells, loads=(Load.NORMAL,), grid=GRID, resolution=Resolution())
     offset = problem.corner_offset
     x = np.array([0.0, offset, 2.4 - offset, 2.4])
-    added, _ = pressed(problem, x, np.array([0.0]), np.array([0.4]))
+    added, _ = equivalent_loads_of(problem, x, np.array([0.0]), np.array([0.4]))
     corner, near_corner, near_second, second_corner = added[:, 0]
     assert (corner, second_corner) == pytest.approx((near_corner, near_second))
     assert corner != pytest.approx(second_corner, rel=0.1)
 
 
-def test_a_face_load_frees_its_end_of_what_the_opposite_half_space_leaves_there_too() -> None:
+def test_single_mirror_face_load_frees_end() -> None:
     """Where loads are mirrored once: in real space, with the load and its two images side by side, which are alike."""
     length, top, face = (
         2.4,
@@ -78,7 +80,7 @@ def test_a_face_load_frees_its_end_of_what_the_opposite_half_space_leaves_there_
         resolution=Resolution(),
         mirrored_once=True,
     )
-    added, (first, second) = pressed(problem, top.x, top.y, face.x)
+    added, (first, second) = equivalent_loads_of(problem, top.x, top.y, face.x)
     y, z = top.y[16:24:3], face.x[2:20:4]
     copies, three = (
         np.concatenate([cells + added] * 3),

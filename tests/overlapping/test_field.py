@@ -26,7 +26,7 @@ PLACES = (
 
 
 @pytest.mark.parametrize(("length", "points"), [(8.0, 0), (8.0, 10_000), (np.inf, 10_000)])
-def test_a_place_has_the_same_field_alone_and_among_others(
+def test_field_does_not_depend_on_further_positions(
     length: float, points: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     grid = Grid(x_range=(0.0, 8.0), y_range=(-1.0, 1.0), cells_x=16, cells_y=16)
@@ -39,16 +39,16 @@ def test_a_place_has_the_same_field_alone_and_among_others(
         grid=grid,
         resolution=Resolution(),
     )
-    places = PLACES if np.isfinite(length) else PLACES[:1] + PLACES[2:]
-    alone = [end_fields(problem, STRESS, [place])[0] for place in places]
+    positions = PLACES if np.isfinite(length) else PLACES[:1] + PLACES[2:]
+    single = [end_fields(problem, STRESS, [position])[0] for position in positions]
     monkeypatch.setattr(field, "JOINT_POINTS", points)
-    for found, expected in zip(end_fields(problem, STRESS, places), alone, strict=True):
+    for computed, expected in zip(end_fields(problem, STRESS, positions), single, strict=True):
         for load in problem.loads:
             # Panels along y are those for the points that are farthest and nearest of all.
-            assert np.abs(found[load] - expected[load]).max() < 2e-5, load
+            assert np.abs(computed[load] - expected[load]).max() < 2e-5, load
 
 
-def evaluated(places: list[Points]) -> tuple[int, int]:
+def evaluate_field(places: list[Points]) -> tuple[int, int]:
     """How often a field is evaluated, and at how many points in all."""
     grid = Grid(x_range=(0.0, 8.0), y_range=(-1.0, 1.0), cells_x=4, cells_y=4)
     sizes = []
@@ -66,17 +66,17 @@ def evaluated(places: list[Points]) -> tuple[int, int]:
     return len(sizes), sum(sizes)
 
 
-def test_few_points_are_evaluated_at_once_and_many_where_they_are_wanted() -> None:
+def test_joint_evaluation_of_few_points() -> None:
     """A line along the top and one into the depth: together they are as many points as their rectangle has."""
     for count, together in ((5, True), (60, False)):
         across, x, z = np.zeros(1), np.linspace(0.1, 1.0, count), np.linspace(0.1, 1.0, count)
         lines = [Points(x, across, z[:1]), Points(x[:1], across, z)]
-        alone = [evaluated([line]) for line in lines]
-        times, points = evaluated(lines)
+        single = [evaluate_field([line]) for line in lines]
+        times, points = evaluate_field(lines)
         if together:
-            assert times == max(alone)[0]
+            assert times == max(single)[0]
         else:
-            assert points < 1.5 * sum(own for _, own in alone)
+            assert points < 1.5 * sum(own for _, own in single)
 
 
 @pytest.mark.parametrize(("length", "loads"), [(8.0, (Load.NORMAL, Load.ALONG_Y)), (np.inf, (Load.ALONG_X,))])
@@ -87,12 +87,12 @@ def test_fields_of_loads_add_up(length: float, loads: tuple[Load, ...]) -> None:
     rough = np.random.default_rng(1).random(grid.shape) * (np.abs(grid.y) < 1)
     spot = np.zeros(grid.shape)
     spot[2:5, 7:9] = 1.0
-    place = Points(np.array([0.0, 0.05, 3.0]), np.array([-1.0, 0.1]), np.array([0.0, 0.02, 0.3]))
+    position = Points(np.array([0.0, 0.05, 3.0]), np.array([-1.0, 0.1]), np.array([0.0, 0.02, 0.3]))
 
     def fields(cells: FloatArray) -> list[FloatArray]:
         problem = EndProblem(length=length, poisson=0.3, cells=cells, loads=loads, grid=grid, resolution=Resolution())
-        (stress,) = end_fields(problem, STRESS, [place], 80.0)
-        (displacement,) = end_fields(problem, DISPLACEMENT, [place], 10 * length)
+        (stress,) = end_fields(problem, STRESS, [position], 80.0)
+        (displacement,) = end_fields(problem, DISPLACEMENT, [position], 10 * length)
         return [field[load] for field in (stress, displacement) for load in loads]
 
     parts = [fields(cells) for cells in (tilted, rough, spot)]

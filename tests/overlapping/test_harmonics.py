@@ -9,7 +9,7 @@ import pytest
 
 from contactstudy.checks import ComplexArray, FloatArray
 from contactstudy.overlapping import harmonics
-from contactstudy.overlapping.axial import AxialModes, SingleMirrorModes
+from contactstudy.overlapping.axial_modes import AxialModes, SingleMirrorModes
 from contactstudy.overlapping.equations import EquationSet, coupling_core
 from contactstudy.overlapping.quadrature import Resolution
 
@@ -55,7 +55,7 @@ def below(modes: AxialModes, field: Callable[..., FloatArray]) -> Field:
     return lambda x, z: field(system, load, modes.cosine(x), modes.sine(x), z)
 
 
-def beside(
+def evaluate_beside_end(
     modes: AxialModes,
     field: Callable[..., FloatArray],
     depth: ComplexArray = RAY[:2],
@@ -75,63 +75,63 @@ def along(field: Field, axis: int) -> FloatArray:
 FIELDS = (harmonics._stress_of_face_load, harmonics._displacement_of_face_load)
 BODIES = {
     "below": (below, harmonics._displacement_of_equivalent_load, harmonics._stress_of_equivalent_load),
-    "beside": (beside, harmonics._displacement_of_face_load, harmonics._stress_of_face_load),
+    "beside": (evaluate_beside_end, harmonics._displacement_of_face_load, harmonics._stress_of_face_load),
 }
 
 
 @pytest.mark.parametrize("name", MODES)
 @pytest.mark.parametrize("body", BODIES)
-def test_stresses_are_hookes_of_the_displacements_and_in_balance(body: str, name: str) -> None:
+def test_stresses_follow_hookes_law_in_equilibrium(body: str, name: str) -> None:
     """What is even in y goes like ``cos(k y)``, what is odd like ``-sin(k y)``; displacements are times ``2 G``."""
     of, displaced, stressed = BODIES[body]
-    moved, loaded = of(MODES[name], displaced), of(MODES[name], stressed)
-    (ux, uy, uz), over_x, over_z = moved(X, Z), along(moved, 0), along(moved, 1)
+    shifted, loaded = of(MODES[name], displaced), of(MODES[name], stressed)
+    (ux, uy, uz), over_x, over_z = shifted(X, Z), along(shifted, 0), along(shifted, 1)
     direct = np.array([over_x[0], -LATERAL * uy, over_z[2]])
     normal = direct + POISSON / (1 - 2 * POISSON) * direct.sum(axis=0)
     shear = 0.5 * np.array([LATERAL * ux + over_x[1], over_z[0] + over_x[2], over_z[1] + LATERAL * uz])
-    found = loaded(X, Z)
-    yy, xy, yz = found[[1, 3, 5]]
-    assert found == pytest.approx(np.concatenate([normal, shear]), abs=1e-6 * np.abs(found).max())
+    computed = loaded(X, Z)
+    yy, xy, yz = computed[[1, 3, 5]]
+    assert computed == pytest.approx(np.concatenate([normal, shear]), abs=1e-6 * np.abs(computed).max())
     sx, sz = along(loaded, 0), along(loaded, 1)
     balance = (sx[0] - LATERAL * xy + sz[4], sx[3] + LATERAL * yy + sz[5], sx[4] - LATERAL * yz + sz[2])
     assert np.abs(balance).max() < 1e-5 * np.abs(sx).max()
 
 
 @pytest.mark.parametrize("name", MODES)
-def test_the_top_of_h_carries_the_equivalent_load_alone(name: str) -> None:
+def test_top_of_h_carries_equivalent_load(name: str) -> None:
     modes = MODES[name]
-    found = below(modes, harmonics._stress_of_equivalent_load)(X, np.zeros(1))[:, :, 0]
+    computed = below(modes, harmonics._stress_of_equivalent_load)(X, np.zeros(1))[:, :, 0]
     load = np.real(modes.cosine(X).T @ WEIGHTS[: modes.wavenumbers.size])
-    assert found[2] == pytest.approx(-load)
-    assert np.abs(found[4:]).max() < 1e-12 * np.abs(found).max()
+    assert computed[2] == pytest.approx(-load)
+    assert np.abs(computed[4:]).max() < 1e-12 * np.abs(computed).max()
 
 
 @pytest.mark.parametrize("name", MODES)
-def test_the_faces_of_v_carry_what_is_freed_there_and_its_top_none_but_normal_stress(name: str) -> None:
+def test_faces_and_top_of_v_have_no_shear(name: str) -> None:
     modes = MODES[name]
     faces = np.array([0.0, modes.length]) if modes.parity else np.zeros(1)
-    found = beside(modes, harmonics._stress_of_face_load)(faces, Z)
+    computed = evaluate_beside_end(modes, harmonics._stress_of_face_load)(faces, Z)
     kappa = np.sqrt(RAY[:2] ** 2 + LATERAL**2)
     freed = np.real(np.exp(1j * np.outer(Z, RAY[:2])) @ WEIGHTS[:2])
     if isinstance(modes, SingleMirrorModes):
         # Each half-space's own load; the opposite one's normal stress reaches the face, its shear stays there.
-        applied = np.exp(1j * np.outer(Z, RAY[:2])) @ (modes.applied(kappa)[:, None] * WEIGHTS[:2])
-        alone = SingleMirrorModes(length=1e3, parity=1, discrete=np.zeros(0), ray=RAY, weights=modes.weights)
-        assert beside(alone, harmonics._stress_of_face_load)(faces[:1], Z)[0, 0] == pytest.approx(freed)
+        applied = np.exp(1j * np.outer(Z, RAY[:2])) @ (modes.load_on_face(kappa)[:, None] * WEIGHTS[:2])
+        single = SingleMirrorModes(length=1e3, parity=1, discrete=np.zeros(0), ray=RAY, weights=modes.weights)
+        assert evaluate_beside_end(single, harmonics._stress_of_face_load)(faces[:1], Z)[0, 0] == pytest.approx(freed)
         assert np.abs(np.real(applied) - freed).max() > 1e-3 * np.abs(freed).max()
     else:
-        assert np.abs(found[3:5]).max() < 1e-12 * np.abs(found).max()
-    assert found[0, 0] == pytest.approx(freed)
+        assert np.abs(computed[3:5]).max() < 1e-12 * np.abs(computed).max()
+    assert computed[0, 0] == pytest.approx(freed)
     if modes.parity:
-        assert found[0, 1] == pytest.approx(modes.parity * freed)
+        assert computed[0, 1] == pytest.approx(modes.parity * freed)
     # Cosines along z: neither shear nor a normal displacement is left on the top.
     real, top = (RAY[:2].real + 0j, WEIGHTS[:2].real + 0j), np.zeros(1)
-    stressed, moved = (each(modes, of, *real) for each, of in zip([beside] * 2, FIELDS, strict=True))
+    stressed, shifted = (item(modes, of, *real) for item, of in zip([evaluate_beside_end] * 2, FIELDS, strict=True))
     assert np.abs(stressed(X, top)[4:]).max() < 1e-12 * np.abs(stressed(X, Z)).max()
-    assert np.abs(moved(X, top)[2]).max() < 1e-12 * np.abs(moved(X, Z)).max()
+    assert np.abs(shifted(X, top)[2]).max() < 1e-12 * np.abs(shifted(X, Z)).max()
 
 
-def weighted(modes: AxialModes, load: Callable[[FloatArray], FloatArray]) -> ComplexArray:
+def weigh(modes: AxialModes, load: Callable[[FloatArray], FloatArray]) -> ComplexArray:
     """Weighted spectrum of a load on the top between the ends, by Gauss's rule."""
     nodes, rule = np.polynomial.legendre.leggauss(80)
     x = 0.5 * modes.length * (nodes + 1)
@@ -139,7 +139,7 @@ def weighted(modes: AxialModes, load: Callable[[FloatArray], FloatArray]) -> Com
 
 
 @pytest.mark.parametrize("name", ["even", "odd"])
-def test_what_v_leaves_on_the_top_is_its_normal_stress_there(name: str) -> None:
+def test_normal_stress_of_v_on_top(name: str) -> None:
     """Per scaled face load, in the spectrum of the loads on H, mode by mode."""
     modes = MODES[name]
     depth = np.array([0.4, 1.7])
@@ -147,12 +147,12 @@ def test_what_v_leaves_on_the_top_is_its_normal_stress_there(name: str) -> None:
     system = system_of(modes)
     factor = np.real(modes.face_factor(kappa))
     core = coupling_core(modes.wavenumbers, depth, LATERAL, POISSON)
-    found = modes.load_on_top(core, depth, LATERAL, POISSON)
-    for number in range(2):
-        one, own = np.ones((1, 1), np.complex128), depth[number : number + 1] + 0j
+    computed = modes.load_on_top(core, depth, LATERAL, POISSON)
+    for index in range(2):
+        one, own = np.ones((1, 1), np.complex128), depth[index : index + 1] + 0j
 
         def load(x: FloatArray, own: ComplexArray = own, one: ComplexArray = one) -> FloatArray:
             return np.asarray(harmonics._stress_of_face_load(system, own, one, x, np.zeros(1))[2, :, 0, 0])
 
-        expected = weighted(modes, load) * kappa[number] / factor[number]
-        assert found[: modes.discrete.size, number] == pytest.approx(expected[: modes.discrete.size])
+        expected = weigh(modes, load) * kappa[index] / factor[index]
+        assert computed[: modes.discrete.size, index] == pytest.approx(expected[: modes.discrete.size])

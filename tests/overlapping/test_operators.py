@@ -47,7 +47,7 @@ def check_transpose(operator: LinearOperator) -> None:
     ids=["slab", "single", "quarter"],
 )
 @pytest.mark.parametrize("load", list(Load))
-def test_transposes(grid: Grid, length: float, load: Load, *, mirrored_once: bool) -> None:
+def test_operators_match_their_transposes(grid: Grid, length: float, load: Load, *, mirrored_once: bool) -> None:
     operators = overlapping(grid, length, load, mirrored_once=mirrored_once)
     equivalent = operators.equivalent(load)
     for operator in (
@@ -57,13 +57,13 @@ def test_transposes(grid: Grid, length: float, load: Load, *, mirrored_once: boo
         operators.solution,
         operators.top_values,
         operators.face_values(load, 0),
-        equivalent.added,
+        equivalent.top_load,
         *equivalent.faces,
     ):
         check_transpose(operator)
 
 
-def test_several_loads() -> None:
+def test_problem_of_several_loads_sums_single_loads() -> None:
     added, faces = overlapping(COLUMNS, 2.0, Load.NORMAL).equivalent(Load.NORMAL)
     loads = np.random.default_rng(1).random((COLUMNS.cells_x * COLUMNS.cells_y, 3))
     for operator in (added, *faces):
@@ -79,7 +79,7 @@ def test_iteration_from_both_ends_equals_the_direct_solution(load: Load) -> None
     faces, to_faces = source, operators.to_faces(Load.NORMAL)
     for _ in range(40):
         faces = source + to_faces @ (operators.to_top @ faces)
-    direct = operators.equivalent(load).added @ cells
+    direct = operators.equivalent(load).top_load @ cells
     assert operators.top_values @ faces == pytest.approx(direct, abs=1e-10)
     assert np.abs(direct).max() > 0.1
 
@@ -89,7 +89,7 @@ def test_long_waves_stall_the_iteration_and_gmres_converges() -> None:
     cells = (np.linspace(1.5, 0.5, UNIFORM.cells_x)[:, None] * np.ones(UNIFORM.cells_y)).ravel()
     to_faces, to_top = operators.to_faces(Load.NORMAL), operators.to_top
     source = to_faces @ (operators.modes(Load.NORMAL) @ cells)
-    direct = operators.equivalent(Load.NORMAL).added @ cells
+    direct = operators.equivalent(Load.NORMAL).top_load @ cells
     faces = source
     for _ in range(50):
         faces = source + to_faces @ (to_top @ faces)

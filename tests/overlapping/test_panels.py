@@ -9,19 +9,19 @@ from contactstudy.overlapping.quadrature import cell_moments, graded_interpolati
 
 
 @pytest.mark.parametrize("finite", [True, False])
-def test_polynomials_are_interpolated_exactly_whatever_the_positions(finite: bool) -> None:
+def test_interpolation_is_exact_for_polynomials(finite: bool) -> None:
     """In the middle rounding decides whether a position lies in the last panel or behind it."""
     rng = np.random.default_rng(0)
     for length in rng.uniform(1e-3, 1e3, 20):
         x = np.sort(np.concatenate([length * rng.random(200), [0.0, 0.5 * length, length]]))
-        found = graded_interpolation(x, length if finite else np.inf, 8)
-        assert found is not None
-        positions, matrix = found
+        computed = graded_interpolation(x, length if finite else np.inf, 8)
+        assert computed is not None
+        positions, matrix = computed
         for power in (0, 1, 5):
             assert matrix @ (positions / length) ** power == pytest.approx((x / length) ** power, abs=1e-9)
 
 
-def test_few_positions_and_those_on_the_ends_are_left_alone() -> None:
+def test_few_positions_are_not_interpolated() -> None:
     assert graded_interpolation(np.linspace(0.0, 1.0, 11), 1.0, 8) is None
     assert graded_interpolation(np.array([0.0, 1.0]), 1.0, 8) is None
     positions, matrix = graded_interpolation(np.linspace(0.0, 1.0, 401), 1.0, 8) or (np.empty(0), np.empty(0))
@@ -30,7 +30,7 @@ def test_few_positions_and_those_on_the_ends_are_left_alone() -> None:
 
 
 @pytest.mark.parametrize("unit", [2.0**-17, 1.0, 2.0**17])
-def test_integrals_over_any_cells_are_exact_for_polynomials_in_any_unit(unit: float) -> None:
+def test_cell_moments_are_exact_for_polynomials(unit: float) -> None:
     """Of the degree that the positions of a panel hold; parts of cells outside the panels count nothing."""
     random = np.random.default_rng(0)
     edges, positions = graded_positions(4.0 * unit, 0.1 * unit, 6)
@@ -49,11 +49,11 @@ def test_integrals_over_any_cells_are_exact_for_polynomials_in_any_unit(unit: fl
 
 @pytest.mark.parametrize("length", [3.0, np.inf])
 @pytest.mark.parametrize("unit", [2.0**-17, 1.0])
-def test_interpolation_from_either_end_in_any_unit(length: float, unit: float) -> None:
+def test_interpolation_is_symmetric_in_any_unit(length: float, unit: float) -> None:
     x = np.sort(np.append(np.random.default_rng(0).uniform(0.0, 3.0, 600), [0.0, 3.0]))
-    found = graded_interpolation(unit * x, unit * length, 8)
-    assert found is not None
-    positions, matrix = found
+    computed = graded_interpolation(unit * x, unit * length, 8)
+    assert computed is not None
+    positions, matrix = computed
     assert positions.size < x.size
 
     def near_ends(at: np.ndarray) -> np.ndarray:
@@ -67,5 +67,5 @@ def test_interpolation_from_either_end_in_any_unit(length: float, unit: float) -
     # Never more positions than there were.
     for count in range(2, 160):
         few = np.linspace(0.0, 3.0, count)
-        other = graded_interpolation(unit * few, unit * length, 8)
-        assert other is None or other[0].size < count
+        variant = graded_interpolation(unit * few, unit * length, 8)
+        assert variant is None or variant[0].size < count

@@ -10,15 +10,15 @@ import pytest
 from contactstudy import Grid, InvalidInputError
 from contactstudy.checks import FloatArray
 from contactstudy.kernels.load import Load
-from contactstudy.overlapping.lateral import ALONE, BENDING_POLES, POLES, lateral_panels
-from contactstudy.overlapping.problem import FIRST, THINNEST, EndProblem, parity_parts
+from contactstudy.overlapping.lateral_modes import BENDING_POLES, POLE_PANEL_FACTOR, POLES, lateral_panels
+from contactstudy.overlapping.problem import FIRST_PANEL_FACTOR, MIN_LENGTH, EndProblem, split_by_parity
 from contactstudy.overlapping.quadrature import Resolution
 
 EDGES = np.array([0.0, 0.2, 0.5, 1.0, 1.7, 2.1, 2.4])
 UNIT = 2.0**-17
 
 
-def asked(
+def end_problem(
     *,
     unit: float = 1.0,
     edges: FloatArray = EDGES,
@@ -40,69 +40,69 @@ def asked(
 def test_wavenumbers_along_y_depend_on_window_and_positions(load: Load, reference: float | None, length: float) -> None:
     """From a part of the smallest length of body, window and positions, up to half a cell."""
     y, poles = np.array([-0.4, 1.5]), BENDING_POLES if load is Load.ALONG_X else POLES
-    alone = FIRST if reference is None else ALONE[poles]
+    single = FIRST_PANEL_FACTOR if reference is None else POLE_PANEL_FACTOR[poles]
     for shortest, finest in ((1e-3, 0.125), (0.2, 0.2)):
         # The window ends at 1.0, the positions at 1.5.
-        first = alone / min(length, 4 * max(2.4, 1.0 + 1.5))
+        first = single / min(length, 4 * max(2.4, 1.0 + 1.5))
         last = Resolution().lateral_reach / finest
         expected = lateral_panels(first, 1.0 + 1.5, last, Resolution(), reference, poles)
         for unit in (1.0, UNIT):
-            found = asked(unit=unit, load=load, length=length).panels(
+            computed = end_problem(unit=unit, load=load, length=length).panels(
                 unit * y, unit * shortest, None if reference is None else unit * reference
             )
-            assert len(found) == len(expected)
-            for one, other in zip(found, expected, strict=True):
-                assert unit * one.nodes == pytest.approx(other.nodes)
-                assert unit * one.fine == pytest.approx(other.fine)
-                assert one.poles == other.poles
+            assert len(computed) == len(expected)
+            for item, variant in zip(computed, expected, strict=True):
+                assert unit * item.nodes == pytest.approx(variant.nodes)
+                assert unit * item.fine_nodes == pytest.approx(variant.fine_nodes)
+                assert item.poles == variant.poles
 
 
-def test_points_beside_a_short_body_are_what_the_first_wavenumber_is_of() -> None:
-    far = asked(length=1e4).panels(np.array([0.0, 20.0]), 0.2)
-    assert far[0].nodes.max() < FIRST / (4 * 21.0) < far[1].nodes.max()
+def test_distant_points_determine_first_wavenumber() -> None:
+    far = end_problem(length=1e4).panels(np.array([0.0, 20.0]), 0.2)
+    assert far[0].nodes.max() < FIRST_PANEL_FACTOR / (4 * 21.0) < far[1].nodes.max()
 
 
-def test_columns_between_two_ends_are_symmetric_and_carry_the_same() -> None:
+def test_columns_between_ends_are_symmetric() -> None:
     for unit in (1.0, UNIT, 2.0**-40):
-        own = asked(unit=unit)
-        edges, cells = own.column_edges, own.cells[own.cell_of_column]
+        problem = end_problem(unit=unit)
+        edges, cells = problem.column_edges, problem.cells[problem.cell_of_column]
         assert edges + edges[::-1] == pytest.approx(edges[-1])
-        assert (edges[0], edges[-1]) == (0.0, own.length)
+        assert (edges[0], edges[-1]) == (0.0, problem.length)
         # 0.2, 0.5, 1.0, 1.7, 2.1 and their images 0.3, 0.7, 1.4, 1.9, 2.2
         assert edges / unit == pytest.approx(np.array([0, 0.2, 0.3, 0.5, 0.7, 1, 1.4, 1.7, 1.9, 2.1, 2.2, 2.4]))
         middles = 0.5 * (edges[1:] + edges[:-1]) / unit
-        assert np.array_equal(cells, own.cells[np.searchsorted(EDGES, middles) - 1])
+        assert np.array_equal(cells, problem.cells[np.searchsorted(EDGES, middles) - 1])
     # Edges whose images differ by rounding only are one.
-    nearly = np.array([0.0, 0.7, 1.2 + 1e-14, 1.7 + 3e-14, 2.0, 2.2, 2.4])
-    own = asked(edges=nearly)
-    edges = own.column_edges
+    approximate = np.array([0.0, 0.7, 1.2 + 1e-14, 1.7 + 3e-14, 2.0, 2.2, 2.4])
+    problem = end_problem(edges=approximate)
+    edges = problem.column_edges
     assert edges == pytest.approx(np.array([0, 0.2, 0.4, 0.7, 1.2, 1.7, 2.0, 2.2, 2.4]))
-    assert own.cell_of_column.size == edges.size - 1
-    assert np.array_equal(asked(edges=EDGES, length=np.inf).column_edges, EDGES)
+    assert problem.cell_of_column.size == edges.size - 1
+    assert np.array_equal(end_problem(edges=EDGES, length=np.inf).column_edges, EDGES)
 
 
 @pytest.mark.parametrize("sign_x", [1, -1])
 @pytest.mark.parametrize("unit", [1e-9, 1.0, 1e9])
-def test_parts_of_a_load_are_even_and_odd_and_sum_up(sign_x: int, unit: float) -> None:
+def test_parity_components_sum_to_load(sign_x: int, unit: float) -> None:
     """Under a load that its image reverses the even part is odd; what is negligible is left out."""
     cells = unit * np.random.default_rng(0).random((6, 4))
-    parts = parity_parts(cells, sign_x)
+    parts = split_by_parity(cells, sign_x)
     assert set(parts) == {1, -1}
     assert sum(parts.values()) == pytest.approx(cells)
     for parity, part in parts.items():
         assert part[::-1] == pytest.approx(sign_x * parity * part)
     even = cells + cells[::-1]
-    assert set(parity_parts(even, sign_x)) == {sign_x}
-    assert set(parity_parts(even * (1 + 1e-15 * np.arange(6.0))[:, None], sign_x)) == {sign_x}
-    assert set(parity_parts(even * (1 + 1e-11 * np.arange(6.0))[:, None], sign_x)) == {1, -1}
+    assert set(split_by_parity(even, sign_x)) == {sign_x}
+    assert set(split_by_parity(even * (1 + 1e-15 * np.arange(6.0))[:, None], sign_x)) == {sign_x}
+    assert set(split_by_parity(even * (1 + 1e-11 * np.arange(6.0))[:, None], sign_x)) == {1, -1}
 
 
-def test_a_body_too_thin_for_the_width_of_the_load_is_refused() -> None:
+def test_too_thin_body_raises_error() -> None:
     """Five cells of 0.25 are loaded, wherever they lie."""
-    own = asked()
+    problem = end_problem()
     for shift in (0, 1, -2):
-        cells = np.roll(own.cells, shift, axis=1)
-        replace(own, cells=cells, length=1.001 * THINNEST * 1.25)
+        cells = np.roll(problem.cells, shift, axis=1)
+        replace(problem, cells=cells, length=1.001 * MIN_LENGTH * 1.25)
         with pytest.raises(InvalidInputError, match=r"width of the contact, 1\.25 m"):
-            replace(own, cells=cells, length=0.999 * THINNEST * 1.25)
-    replace(own, cells=np.zeros(own.cells.shape), length=1e-9)
+            replace(problem, cells=cells, length=0.999 * MIN_LENGTH * 1.25)
+    replace(problem, cells=np.zeros(problem.cells.shape), length=1e-9)

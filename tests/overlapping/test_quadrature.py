@@ -26,7 +26,7 @@ from contactstudy.overlapping.quadrature import Resolution, scale_nodes
         ("angle", 0.0),
     ],
 )
-def test_settings_too_coarse_for_anything_are_refused(name: str, value: float):
+def test_invalid_resolution_raises_error(name: str, value: float):
     with pytest.raises(InvalidInputError, match=name):
         Resolution(**{name: value})
 

@@ -40,29 +40,29 @@ def single_mirror(length: float, material: Material) -> FiniteLengthSpace:
 
 
 @pytest.fixture(scope="module")
-def eccentric(strip_pressure) -> xr.DataArray:
+def eccentric_load(strip_pressure) -> xr.DataArray:
     """A strip, a third heavier at end II than at end I, on a body four half-widths long."""
     pressure = strip_pressure(4.0, (32, 48))
     return pressure * (1 + 0.3 * (pressure.x / 4.0 - 0.5))
 
 
-def test_ends_are_free_of_normal_stress_and_carry_some_shear(eccentric: xr.DataArray, unit_material: Material) -> None:
-    grid = Grid.from_centres(eccentric.x.values, eccentric.y.values)
+def test_single_mirror_ends_keep_shear(eccentric_load: xr.DataArray, unit_material: Material) -> None:
+    grid = Grid.from_centres(eccentric_load.x.values, eccentric_load.y.values)
     body = single_mirror(4.0, unit_material)
-    place = Points(np.array([0.0, 4.0]), ACROSS, DEPTHS)
-    (stress,) = stresses_at(body, sliding(eccentric.values, FRICTION), grid, [place], eccentric.values)
+    position = Points(np.array([0.0, 4.0]), ACROSS, DEPTHS)
+    (stress,) = stresses_at(body, sliding(eccentric_load.values, FRICTION), grid, [position], eccentric_load.values)
     assert np.abs(stress[0]).max() < 6e-5
     assert np.abs(stress[4]).max() > 3e-3
 
 
-def test_top_carries_the_load_and_nothing_else(eccentric: xr.DataArray) -> None:
+def test_top_traction_equals_load(eccentric_load: xr.DataArray) -> None:
     """Before anything is imposed: H under the added load and V under the face loads cancel on the top."""
-    grid = Grid.from_centres(eccentric.x.values, eccentric.y.values)
+    grid = Grid.from_centres(eccentric_load.x.values, eccentric_load.y.values)
     both = (Load.NORMAL, Load.ALONG_Y)
     problem = EndProblem(
         length=4.0,
         poisson=0.3,
-        cells=eccentric.values,
+        cells=eccentric_load.values,
         loads=both,
         grid=grid,
         resolution=Resolution(),
@@ -76,7 +76,7 @@ def test_top_carries_the_load_and_nothing_else(eccentric: xr.DataArray) -> None:
     assert np.abs(added[:, 0]).max() > 0.03
 
 
-def test_added_load_and_its_two_images_sink_a_plain_half_space_as_much(on_cells, unit_material: Material) -> None:
+def test_equivalent_load_displaces_half_space_equally(on_cells, unit_material: Material) -> None:
     """Built by hand from the labelled equivalent load: three copies side by side on a half-space.
 
     The added load spreads like 1/y, so the window along y is wide; at the ends it grows like a logarithm, which cells
@@ -88,25 +88,27 @@ def test_added_load_and_its_two_images_sink_a_plain_half_space_as_much(on_cells,
     load = equivalent_loads(body, pressure, z=[1.0])["P_h1"].values
     three = on_cells(lambda x, y: 0 * x * y, (-4.0, 8.0), window, (96, 240))
     by_hand = surface_displacement(half_space, three + np.concatenate([load[::-1], load, load[::-1]]))
-    sunk = surface_displacement(body, pressure.isel(y=middle)).values
-    difference = sunk - by_hand.values[32:64, middle]
+    displacement = surface_displacement(body, pressure.isel(y=middle)).values
+    difference = displacement - by_hand.values[32:64, middle]
     assert np.abs(difference).max() < 1e-2
-    own = pressure.values
-    images = surface_displacement(half_space, three + np.concatenate([own[::-1], own, own[::-1]]))
-    assert np.abs(sunk - images.values[32:64, middle]).max() > 0.1
+    cell_pressure = pressure.values
+    images = surface_displacement(
+        half_space, three + np.concatenate([cell_pressure[::-1], cell_pressure, cell_pressure[::-1]])
+    )
+    assert np.abs(displacement - images.values[32:64, middle]).max() > 0.1
 
 
-def test_displacement_inside_meets_that_of_the_top(eccentric: xr.DataArray, unit_material: Material) -> None:
+def test_displacement_is_continuous_at_top(eccentric_load: xr.DataArray, unit_material: Material) -> None:
     body = single_mirror(4.0, unit_material)
-    on_top = surface_displacement(body, eccentric, FRICTION)
-    inside = displacement_field(body, eccentric, friction=FRICTION, y=eccentric.y.values[[24, 30]])
+    on_top = surface_displacement(body, eccentric_load, FRICTION)
+    inside = displacement_field(body, eccentric_load, friction=FRICTION, y=eccentric_load.y.values[[24, 30]])
     difference = np.abs(on_top.values[:, [24, 30]] - inside.u_z.values[..., 0]).max()
     assert difference < 5e-4 * float(on_top.max())
     assert "reference_distance" not in on_top.attrs
     assert "reference_distance" not in inside.u_z.attrs
 
 
-def test_shear_left_on_the_ends_falls_with_the_length(strip_pressure, unit_material: Material) -> None:
+def test_residual_shear_decreases_with_length(strip_pressure, unit_material: Material) -> None:
     """Largest traction left on the ends over the peak pressure; uniform strip, friction 0.3, depths 0.02a to 2L.
 
     ======  =============  =======
@@ -136,7 +138,7 @@ def test_shear_left_on_the_ends_falls_with_the_length(strip_pressure, unit_mater
     assert (np.diff(residuals[:, 0]) < 0).all()
 
 
-def test_long_body_is_the_exact_one(on_cells, unit_material: Material) -> None:
+def test_long_body_equals_exact_model(on_cells, unit_material: Material) -> None:
     pressure = on_cells(lambda x, y: np.maximum(1 - (x - 1) ** 2 - y**2, 0), (0.0, 60.0), (-1.5, 1.5), (240, 16))
     points = {"x": [0.0, 0.4, 1.0, 2.0, 50.0], "y": [0.0, 0.6], "z": [0.05, 0.5, 2.0]}
     stress = stress_field(single_mirror(60.0, unit_material), pressure, friction=FRICTION, **points)
@@ -145,7 +147,7 @@ def test_long_body_is_the_exact_one(on_cells, unit_material: Material) -> None:
         assert np.abs(stress[name] - exact[name]).max() < 3e-4, name
 
 
-def test_contact_nears_the_exact_one_in_a_longer_body(cylinder_gap, unit_material: Material) -> None:
+def test_contact_converges_to_exact_model_with_length(cylinder_gap, unit_material: Material) -> None:
     difference = []
     for length in (2.5, 8.0, 24.0):
         gap = cylinder_gap(length, (int(8 * length), 32))
@@ -163,6 +165,6 @@ def test_contact_nears_the_exact_one_in_a_longer_body(cylinder_gap, unit_materia
     assert difference[2] < 5e-3
 
 
-def test_one_end_is_refused(unit_material: Material) -> None:
+def test_single_end_raises_error(unit_material: Material) -> None:
     with pytest.raises(InvalidInputError, match=r"model = 'single-mirror'.*exact for one end"):
         QuarterSpace(material=unit_material, model="single-mirror")

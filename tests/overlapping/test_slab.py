@@ -7,13 +7,13 @@ from math import factorial
 import numpy as np
 import pytest
 
-from contactstudy.overlapping.axial import slab_factors
+from contactstudy.overlapping.axial_modes import slab_factors
 
 KAPPA = np.array([1e-3, 0.05, 0.2, 0.4, 0.49, 0.51, 1.0, 3.0, 12.0])
 
 
 @pytest.mark.parametrize("length", [1.0, 0.7])
-def test_factors_are_the_closed_forms(length: float) -> None:
+def test_slab_factors_match_closed_forms(length: float) -> None:
     t = 0.5 * KAPPA * length
     even, tau_even = slab_factors(KAPPA, length, 1)
     assert even == pytest.approx(2 * np.sinh(t) ** 2 / (np.sinh(2 * t) + 2 * t))
@@ -25,7 +25,7 @@ def test_factors_are_the_closed_forms(length: float) -> None:
     assert tau_odd == pytest.approx(t * (np.tanh(t) - 1))
 
 
-def test_one_end_is_that_of_a_half_space() -> None:
+def test_single_end_factors_equal_half_space() -> None:
     factor, tau = slab_factors(KAPPA, np.inf, 0)
     assert (factor == 1).all()
     assert (tau == 0).all()

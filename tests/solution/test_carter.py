@@ -42,7 +42,7 @@ def largest_under_carter(friction: float, stick: float) -> float:
 
 
 @pytest.mark.parametrize(("friction", "part"), [(0.3, 0.25), (0.5, 0.8), (1.0, 0.5)])
-def test_largest_stress_at_the_border_of_stick_and_slip(friction: float, part: float) -> None:
+def test_stress_maximum_at_stick_slip_border(friction: float, part: float) -> None:
     profile = cs.profiles.Lundberg.for_pressure(
         PRESSURE, radius=RADIUS, modulus=STEEL.plane_strain_modulus / 2, delta=2
     )

@@ -35,7 +35,7 @@ def result():
     return solve(CASE, accuracy=0.1)
 
 
-def test_everything_the_interface_promises_is_there_with_its_unit(result) -> None:
+def test_result_contains_documented_variables_with_units(result) -> None:
     promised = (
         *("pressure", "traction_y", "gap", "initial_gap", "displacement_z", *STRESSES, "von_mises"),
         *(
@@ -73,14 +73,14 @@ def test_everything_the_interface_promises_is_there_with_its_unit(result) -> Non
     assert result.attrs["Conventions"].startswith("CF")
 
 
-def test_certificate_is_good(result) -> None:
+def test_certificate_is_within_tolerance(result) -> None:
     assert bool(result["converged"])
     assert abs(float(result["load_error"])) < 1e-10
     assert float(result["end_traction_residual"]) < 1e-4
     assert float(result["penetration_error"]) < 1e-5
 
 
-def test_top_carries_the_load(result) -> None:
+def test_normal_stress_on_top_equals_pressure(result) -> None:
     top = solve(CASE, x=result["x"].values, z=[0.0]).isel(z=0)
     away = top["pressure"].values > 0.75e9  # nearer to the contact's border the pressure bends within a cell
     for stress, load, bound in (("sigma_zz", "pressure", 1.5e-2), ("tau_yz", "traction_y", 1.5e-3)):
@@ -91,23 +91,23 @@ def test_result_survives_netcdf(result, tmp_path) -> None:
     import xarray as xr
 
     result.to_netcdf(tmp_path / "case.nc")
-    with xr.open_dataset(tmp_path / "case.nc") as again:
+    with xr.open_dataset(tmp_path / "case.nc") as repeated:
         for name in STRESSES:
-            assert np.array_equal(again[name], result[name])
+            assert np.array_equal(repeated[name], result[name])
 
 
-def test_stresses_may_have_positions_of_their_own() -> None:
+def test_stresses_at_given_positions() -> None:
     result = solve(CASE, x=[0.0, 0.3e-3], y=[0.0], z=[50e-6])
     assert result["von_mises"].dims == ("x_field", "y_field", "z")
     assert abs(result["sigma_xx"].values[0, 0, 0]) < 1e-5 * CASE.hertz_max_pressure  # what is left on the free end
 
 
-def test_half_space_has_nothing_left_on_its_ends() -> None:
+def test_half_space_has_zero_end_traction() -> None:
     case = Case(body=HalfSpace(material=STEEL), roller=CASE.roller, max_pressure=1.5e9)
     assert float(solve(case, x=[0.0], y=[0.0], z=[50e-6])["end_traction_residual"]) == 0.0
 
 
-def test_grid_beside_the_roller_is_refused() -> None:
+def test_grid_beside_roller_raises_error() -> None:
     case = Case(body=HalfSpace(material=STEEL), roller=CASE.roller, max_pressure=1.5e9)
     with pytest.raises(InvalidInputError, match="lies under the roller"):
         solve(case, Grid(x_range=(1.0, 2.0), y_range=(-1e-4, 1e-4), cells_x=8, cells_y=8))
@@ -122,18 +122,18 @@ def test_grid_beside_the_roller_is_refused() -> None:
         pytest.param(HalfSpace(material=STEEL), id="half-space"),
     ],
 )
-def test_a_short_contact_gets_the_room_it_asks_for(body) -> None:
+def test_short_contact_has_sufficient_window(body) -> None:
     strongly_crowned = Roller(radius=5e-3, length=4e-3, profile=profiles.FullCrown(0.02))
     case = Case(body=body, roller=strongly_crowned, load=400.0)
     with pytest.raises(WindowError, match="choose_grid"):
         solve(case, choose_grid(case), stresses=False)
-    found = solve(case, stresses=False)
-    assert bool(found.converged)
+    computed = solve(case, stresses=False)
+    assert bool(computed.converged)
     wide = solve(case, choose_grid(case, window=6.0, margin=12.0), stresses=False)
-    assert float(found.pressure.max()) == pytest.approx(float(wide.pressure.max()), rel=5e-3)
+    assert float(computed.pressure.max()) == pytest.approx(float(wide.pressure.max()), rel=5e-3)
 
 
-def test_rough_surfaces_keep_the_window_they_cover() -> None:
+def test_rough_surface_determines_window() -> None:
     case = Case(
         body=FiniteLengthSpace(length=4e-3, material=STEEL),
         roller=Roller(radius=5e-3, length=4e-3, profile=profiles.FullCrown(0.02)),
@@ -146,7 +146,7 @@ def test_rough_surfaces_keep_the_window_they_cover() -> None:
 
 
 @pytest.mark.slow
-def test_a_rolling_case_has_the_stresses_of_its_tractions() -> None:
+def test_rolling_case_stresses_include_tractions() -> None:
     """Of two equal bodies with free ends: opposite tractions make equal stresses but for a reflection along y."""
     steel = Material(210e9, 0.3)
     body = FiniteLengthSpace(length=0.5e-3, material=steel)
@@ -166,13 +166,13 @@ def test_a_rolling_case_has_the_stresses_of_its_tractions() -> None:
     tractions = {name: result[name] for name in ("traction_x", "traction_y")}
     inside = roller_stress(case, result.pressure, z=[5e-5], **tractions)
     reversed_case = replace(case, motion=Rolling(longitudinal_creepage=-1e-3, spin=-1.0))
-    other = solve(reversed_case, grid, z=[5e-5])
-    assert np.allclose(inside.von_mises.values, other.von_mises.values, rtol=1e-4, atol=1e-4 * peak)
+    variant = solve(reversed_case, grid, z=[5e-5])
+    assert np.allclose(inside.von_mises.values, variant.von_mises.values, rtol=1e-4, atol=1e-4 * peak)
     with pytest.raises(InvalidInputError, match="traction_x, traction_y"):
         roller_stress(case, result.pressure, z=[5e-5])
 
 
-def test_given_cells_take_no_accuracy() -> None:
+def test_accuracy_with_given_cells_raises_error() -> None:
     case = Case(body=HalfSpace(material=STEEL), roller=Roller(radius=5e-3, length=1e-3), max_pressure=1e9)
     with pytest.raises(InvalidInputError, match=r"accuracy = 0\.01"):
         solve(case, choose_grid(case), accuracy=0.01)

@@ -37,7 +37,7 @@ def roller_case(end_distance: float = 0.0, body: float | None = None, **settings
         pytest.param(roller_case(HALF_WIDTH, tilt=2e-4), id="tilted", marks=pytest.mark.slow),
     ],
 )
-def test_largest_stress_drawn_and_stated(case: Case) -> None:
+def test_default_positions_contain_stress_maximum(case: Case) -> None:
     result = solve(case, y=[0.0], accuracy=0.05)
     x = result["x_field"].values
     assert x[0] == 0.0

@@ -6,7 +6,7 @@ import pytest
 from contactstudy import Case, FiniteLengthSpace, Material, Roller, choose_grid
 from contactstudy.cache import ArrayKey
 from contactstudy.contact.normal.contact import Settings, Shape
-from contactstudy.contact.normal.prescribed import Prescribed
+from contactstudy.contact.normal.prescribed_loads import PrescribedLoad
 from contactstudy.wear.wear_in import WearIntegrator, WornContact
 
 
@@ -16,7 +16,7 @@ def integrator():
     case = Case(body=body, roller=Roller(radius=5e-3, length=0.4e-3), max_pressure=1.5e9)
     grid = choose_grid(case, cells_x=3, cells_y=6)
     gap = case.gap(grid)
-    shape = Shape(case.body, grid, ArrayKey(gap), Prescribed(case.normal_load).checked(gap, grid))
+    shape = Shape(case.body, grid, ArrayKey(gap), PrescribedLoad(case.normal_load).check(gap, grid))
     return WearIntegrator(WornContact(case, shape, Settings()), 1e-17 / (2 * np.pi * 5e-3), "slip", 0.01)
 
 

@@ -1,4 +1,4 @@
-"""A contact in plain arrays: bodies, cells, gap and load; pressure and certificate."""
+"""A contact in arrays without labels: bodies, cells, gap and load; pressure and certificate."""
 
 from __future__ import annotations
 
@@ -16,16 +16,16 @@ from contactstudy.bodies.models import Body
 from contactstudy.cache import ArrayKey, cached
 from contactstudy.checks import FloatArray
 from contactstudy.contact.normal.conjugate_gradients import ContactIterate
-from contactstudy.contact.normal.pair import PairOperator, PrescribedSurface
-from contactstudy.contact.normal.prescribed import (
+from contactstudy.contact.normal.prescribed_loads import (
     LineMotions,
-    Prescribed,
-    Referred,
+    PrescribedLoad,
+    ReferencedContact,
     RigidMotion,
-    SolveReferred,
+    SolveAtMotion,
     line_motion,
 )
 from contactstudy.contact.normal.problem import ContactOperator, ContactProblem, solve_coupled, solve_normal
+from contactstudy.contact.normal.two_bodies import PairOperator, PrescribedSurface
 from contactstudy.errors import ConvergenceWarning, WindowError
 from contactstudy.fields.surface import SurfaceOperator, surface_operator
 from contactstudy.kernels.load import Load
@@ -33,8 +33,8 @@ from contactstudy.threads import one_blas_thread
 
 CONVERGED_TOLERANCES = 10.0  # largest violation of a converged contact over the tolerance: the last step is unchecked
 OPEN_TOLERANCES = 10.0  # least gap of `open_pressure_error`, over the tolerance and the displacement's variation
-ROUNDS = 20  # rounds after which a prescribed tilt or approach counts as not reached. Speed.
-INEXACT = 1e-3  # tolerance of the contact over the error of the motion of the reference lines. Speed.
+MAX_ROUNDS = 20  # rounds after which a prescribed tilt or approach is not reached. Speed.
+INNER_TOLERANCE = 1e-3  # tolerance of the contact over the error of the motion of the reference lines. Speed.
 SYMMETRY_ROUNDING = 1e-10  # rounding of a symmetric gap over the largest, of symmetric edges over the window. Accuracy.
 
 
@@ -59,21 +59,21 @@ def certify(
     opening: FloatArray,
     displacement: FloatArray,
     *,
-    carried: float,
+    carried_load: float,
     load: float | None,
-    off_position: float,
+    position_error: float,
     tolerance: float,
 ) -> Certificate:
     """Measure the violations."""
-    touching = pressure > 0
+    in_contact = pressure > 0
     variation = float(np.ptp(displacement))
-    violation = max(float(np.abs(opening[touching]).max()), float(-opening.min()))  # eq. (34)
+    violation = max(float(np.abs(opening[in_contact]).max()), float(-opening.min()))  # eq. (34)
     open_pressure = pressure[opening > OPEN_TOLERANCES * tolerance * variation]
     return Certificate(
-        load_error=0.0 if load is None else carried / load - 1,
+        load_error=0.0 if load is None else carried_load / load - 1,
         penetration_error=violation / variation,
         open_pressure_error=float(open_pressure.max(initial=0.0) / pressure.max()),
-        load_position_error=off_position,
+        load_position_error=position_error,
     )
 
 
@@ -83,7 +83,7 @@ class Shape(NamedTuple):
     body: Body  # the elastic body
     grid: Grid
     gap: ArrayKey  # (x, y): initial gap, metres; infinite beside the shape
-    prescribed: Prescribed  # load or approach
+    prescribed: PrescribedLoad  # load or approach
     counterbody: Counterbody | None = None  # second elastic body; None: the shape is rigid
     coupled_friction: float = 0.0  # friction that displaces the surfaces normally
     surface: LinearOperator | None = None  # displacement of the surfaces under a pressure, in place of the body's
@@ -115,35 +115,40 @@ class Shape(NamedTuple):
             if even and np.abs(gap - np.flip(gap, axis)).max() <= SYMMETRY_ROUNDING * gap.max()
         ]
 
-    def referred(self, solve: SolveReferred, tolerance: float, start: FloatArray | None = None) -> Referred:
+    def solve_relative_to_reference(
+        self, solve: SolveAtMotion, tolerance: float, start: FloatArray | None = None
+    ) -> ReferencedContact:
         """Solve a contact whose approach or tilt is prescribed relative to the reference lines of the bodies."""
         # The operator is symmetric only relative to the body far away: the motion of the lines enters the gap, by a
         # fixed-point iteration with Aitken's relaxation.
         bodies = [self.body] if self.counterbody is None else [self.body, self.counterbody.body]
         finite = any(np.isfinite(body.depth) for body in bodies)
-        held = (finite and self.prescribed.approach is not None, finite and self.prescribed.load_position is None)
+        fixed = (
+            finite and self.prescribed.approach is not None,
+            finite and self.prescribed.load_position is None,
+        )
         low, high = self.grid.x_range
         weights = np.array([1.0, high - low])
         trial, previous = np.zeros(2), np.zeros(2)
         relaxation, applications = 1.0, 0
-        guess, error = start, 1.0 if any(held) else 0.0
-        for number in range(ROUNDS):
-            inner = max(tolerance, INEXACT * error)
-            iterate = solve(RigidMotion(*trial), guess, inner)
+        guess, error = start, 1.0 if any(fixed) else 0.0
+        for round_index in range(MAX_ROUNDS):
+            inner_tolerance = max(tolerance, INNER_TOLERANCE * error)
+            iterate = solve(RigidMotion(*trial), guess, inner_tolerance)
             applications += iterate.applications
             guess = iterate.pressure
             motions = self.line_motions(self.loads(guess), guess)
             motion = np.array(motions.total)
-            residual = np.where(held, motion - trial, 0.0)
-            moved = float(np.linalg.norm(weights * motion))
-            error = float(np.linalg.norm(weights * residual)) / moved if moved else 0.0
-            if max(error, inner) <= tolerance:
-                return Referred(replace(iterate, applications=applications), motions)
+            residual = np.where(fixed, motion - trial, 0.0)
+            motion_norm = float(np.linalg.norm(weights * motion))
+            error = float(np.linalg.norm(weights * residual)) / motion_norm if motion_norm else 0.0
+            if max(error, inner_tolerance) <= tolerance:
+                return ReferencedContact(replace(iterate, applications=applications), motions)
             change = weights * (residual - previous)
-            if number and change.any():
+            if round_index and change.any():
                 relaxation *= -float(weights * previous @ change) / float(change @ change)
             trial, previous = trial + relaxation * residual, residual
-        return Referred(replace(iterate, applications=applications, converged=False), motions)
+        return ReferencedContact(replace(iterate, applications=applications, converged=False), motions)
 
     def line_motions(self, loads: Mapping[Load, FloatArray], pressure: FloatArray) -> LineMotions:
         """Motions of the reference lines under loads on the body, level below the resultant of a pressure."""
@@ -192,7 +197,7 @@ class Contact:
     certificate: Certificate  # violations of the conditions
 
     @property
-    def carried(self) -> float:
+    def carried_load(self) -> float:
         """Resultant of the pressure, N."""
         grid = self.shape.grid
         return float((grid.weights * self.pressure).sum() * grid.cell_area)
@@ -209,10 +214,10 @@ class Contact:
         if self.converged:
             return
         violations = ", ".join(f"{name} = {value:.2g}" for name, value in asdict(self.certificate).items() if value)
-        tolerance, most = self.settings
+        tolerance, bound = self.settings
         warnings.warn(
             f"the contact iteration stopped after {self.iterations} operator applications without reaching "
-            f"tolerance = {tolerance:g} ({violations}); raise max_iterations (now {most}) or coarsen the grid",
+            f"tolerance = {tolerance:g} ({violations}); raise max_iterations (now {bound}) or coarsen the grid",
             ConvergenceWarning,
             stacklevel=2,
         )
@@ -236,21 +241,21 @@ def contact_of(shape: Shape, settings: Settings, start: ArrayKey | None = None) 
     height = clearance + relative - motions.total.height(grid.x)
     tilt = 0.0
     if prescribed.load_position is not None:
-        tilt = iterate.motion[1] / prescribed.largest_arm(grid) - motions.total.tilt
+        tilt = iterate.motion[1] / prescribed.max_arm(grid) - motions.total.tilt
         height = height - tilt * (grid.x[:, None] - prescribed.load_position)
-    touching, forces = pressure > 0, grid.weights * pressure
+    in_contact, forces = pressure > 0, grid.weights * pressure
     total = forces.sum()
-    approach = prescribed.lowered
+    approach = prescribed.lowering
     if prescribed.approach is None:
-        approach = float((forces * np.where(touching, height, 0.0)).sum() / total)
+        approach = float((forces * np.where(in_contact, height, 0.0)).sum() / total)
     opening = height - approach  # eq. (33)
     certificate = certify(
         pressure,
         opening,
         relative,
-        carried=float(total * grid.cell_area),
+        carried_load=float(total * grid.cell_area),
         load=prescribed.load,
-        off_position=_off_position(prescribed, grid, pressure),
+        position_error=_position_error(prescribed, grid, pressure),
         tolerance=settings.tolerance,
     )
     return Contact(
@@ -268,26 +273,26 @@ def contact_of(shape: Shape, settings: Settings, start: ArrayKey | None = None) 
     )
 
 
-def _off_position(prescribed: Prescribed, grid: Grid, pressure: FloatArray) -> float:
+def _position_error(prescribed: PrescribedLoad, grid: Grid, pressure: FloatArray) -> float:
     """Distance of the resultant from its prescribed position, over the length of the contact."""
     if prescribed.load_position is None:
         return 0.0
     line = (grid.weights * pressure).sum(axis=1)
-    touching = np.flatnonzero(line)
+    loaded_columns = np.flatnonzero(line)
     edges = grid.x_edges
-    length = edges[touching[-1] + 1] - edges[touching[0]]
+    length = edges[loaded_columns[-1] + 1] - edges[loaded_columns[0]]
     return abs(float((line * (grid.x - prescribed.load_position)).sum() / line.sum())) / float(length)
 
 
 @cached("contacts")
-def _iterate(shape: Shape, settings: Settings, first: ArrayKey | None) -> Referred:
+def _iterate(shape: Shape, settings: Settings, first: ArrayKey | None) -> ReferencedContact:
     """Pressure of a contact, and the motion of the reference lines."""
     grid, operator = shape.grid, contact_operator(shape)
 
     def solve(motion: RigidMotion, start: FloatArray | None, tolerance: float) -> ContactIterate:
         problem = ContactProblem(
             grid=grid,
-            gap=shape.gap.values - shape.prescribed.lowered - motion.height(grid.x),
+            gap=shape.gap.values - shape.prescribed.lowering - motion.height(grid.x),
             resultants=shape.prescribed.resultants(grid),
             friction=shape.coupled_friction,
             tolerance=tolerance,
@@ -295,7 +300,7 @@ def _iterate(shape: Shape, settings: Settings, first: ArrayKey | None) -> Referr
         )
         return solve_coupled(operator, problem) if shape.coupled_friction else solve_normal(operator, problem, start)
 
-    return shape.referred(solve, settings.tolerance, None if first is None else first.values)
+    return shape.solve_relative_to_reference(solve, settings.tolerance, None if first is None else first.values)
 
 
 def contact_operator(shape: Shape) -> ContactOperator:

@@ -13,7 +13,7 @@ from contactstudy.checks import FloatArray
 from contactstudy.contact.normal.conjugate_gradients import ContactIterate, Resultants, solve_complementarity
 from contactstudy.kernels.load import Load
 
-COUPLED_ROUNDS = 60  # rounds of a coupled contact after which it counts as not converged. Speed.
+MAX_COUPLED_ROUNDS = 60  # rounds of a coupled contact after which the contact is not converged. Speed.
 ROUND_ACCURACY = 0.03  # part of a round's change to which the next one is solved. Speed.
 ROUGH_TOLERANCE = 1e-2  # tolerance of the first coupled round. Speed.
 NESTED_CELLS = 4096  # cells from which on the contact is first solved on coarser ones. Speed.
@@ -31,18 +31,18 @@ class ContactOperator(Protocol):
         ...
 
     def precondition(self, gap: FloatArray) -> FloatArray:
-        """Roughly the pressure that sinks the cells by `gap`."""
+        """Approximate pressure for a normal displacement `gap`."""
         ...
 
     @property
     def coarse(self) -> ContactOperator:
-        """The operator on cells of twice the size, roughly."""
+        """Approximate operator on cells of twice the size."""
         ...
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ContactProblem:
-    """A contact to solve, checked."""
+    """A checked contact to solve."""
 
     grid: Grid
     gap: FloatArray  # (x, y): initial gap less a prescribed approach, metres; infinite where nothing can touch
@@ -51,19 +51,19 @@ class ContactProblem:
     tolerance: float  # tolerance of the iteration
     max_iterations: int  # bound on the iterations
 
-    def level(self, motion: tuple[float, ...]) -> FloatArray:
+    def rigid_height(self, motion: tuple[float, ...]) -> FloatArray:
         """Height of the shape after its rigid `motion`, metres: broadcasts to (x, y)."""
-        heights = (amount * height for amount, height in zip(motion, self.resultants.motions, strict=True))
+        heights = (component * height for component, height in zip(motion, self.resultants.motions, strict=True))
         return sum(heights, np.zeros((1, 1)))
 
-    def coarser(self) -> ContactProblem:
-        """Return the same contact on cells joined in twos."""
+    def coarsen(self) -> ContactProblem:
+        """Return the contact on cells of twice the size."""
         grid = self.grid.coarsened()
         cells = self.gap.reshape(grid.cells_x, 2, grid.cells_y, 2)
         possible = np.isfinite(cells)
-        shares = possible * self.grid.weights.reshape(-1, 2, 1, 1)
-        total = shares.sum(axis=(1, 3))
-        mean = (np.where(possible, cells, 0.0) * shares).sum(axis=(1, 3)) / np.where(total > 0, total, 1.0)
+        areas = possible * self.grid.weights.reshape(-1, 2, 1, 1)
+        total = areas.sum(axis=(1, 3))
+        mean = (np.where(possible, cells, 0.0) * areas).sum(axis=(1, 3)) / np.where(total > 0, total, 1.0)
         lever = self.resultants.lever
         if lever is not None:
             weights = self.grid.weights.reshape(-1, 2)
@@ -74,36 +74,38 @@ class ContactProblem:
         )
 
 
-def _first_guess(operator: ContactOperator, problem: ContactProblem) -> FloatArray:
-    """Pressure to begin with: the solution on coarser cells, or, on few cells, one that follows the gap."""
+def _initial_guess(operator: ContactOperator, problem: ContactProblem) -> FloatArray:
+    """Pressure at the start: the solution on coarser cells, or, on few cells, a pressure that follows the gap."""
     gap = problem.gap
     possible = np.isfinite(gap)
     if gap.size >= NESTED_CELLS and not any(cells % 2 for cells in problem.grid.shape):
-        coarse = problem.coarser()
-        squared = _continued_square(operator.coarse, coarse, solve_normal(operator.coarse, coarse))
-        finer = between_columns(halve_cells(squared.T, 0).T, coarse.grid.x, problem.grid.x)
-        guess = np.sqrt(np.maximum(np.where(possible, finer, 0.0), 0.0))
+        coarse = problem.coarsen()
+        squared = _continue_square(operator.coarse, coarse, solve_normal(operator.coarse, coarse))
+        fine_square = interpolate_columns(halve_cells(squared.T, 0).T, coarse.grid.x, problem.grid.x)
+        guess = np.sqrt(np.maximum(np.where(possible, fine_square, 0.0), 0.0))
     else:
-        heights = _levelled(problem)
-        under = heights[possible]
+        heights = _remove_mean_slope(problem)
+        heights_in_reach = heights[possible]
         sinks = problem.resultants.total is not None
-        level = np.quantile(under, GUESSED_CONTACT) + GUESSED_DEPTH * np.ptp(under) if sinks else 0.0
+        level = (
+            np.quantile(heights_in_reach, GUESSED_CONTACT) + GUESSED_DEPTH * np.ptp(heights_in_reach) if sinks else 0.0
+        )
         guess = np.sqrt(np.maximum(level - np.where(possible, heights, np.inf), 0.0))
     return np.asarray(guess if guess.any() else possible.astype(np.float64))
 
 
-def _levelled(problem: ContactProblem) -> FloatArray:
+def _remove_mean_slope(problem: ContactProblem) -> FloatArray:
     """Gap less its mean slope along the axis, where the shape is free to tilt."""
     lever = problem.resultants.lever
     if lever is None:
         return problem.gap
-    facing = np.isfinite(problem.gap).any(axis=1)
-    lowest, arm = problem.gap[facing].min(axis=1), lever[facing, 0]
+    under_shape = np.isfinite(problem.gap).any(axis=1)
+    lowest, arm = problem.gap[under_shape].min(axis=1), lever[under_shape, 0]
     slope = np.polynomial.polynomial.polyfit(arm, lowest, 1)[1] if arm.size > 1 else 0.0
     return problem.gap - slope * lever
 
 
-def _continued_square(operator: ContactOperator, problem: ContactProblem, iterate: ContactIterate) -> FloatArray:
+def _continue_square(operator: ContactOperator, problem: ContactProblem, iterate: ContactIterate) -> FloatArray:
     """Squared pressure, continued smoothly below zero outside the contact."""
     # Near an edge the squared pressure and the opening to the power 2/3 are linear in the distance from it (Johnson,
     # Contact Mechanics, section 5.1): interpolated to finer cells the zero puts the edge within a cell.
@@ -112,7 +114,9 @@ def _continued_square(operator: ContactOperator, problem: ContactProblem, iterat
     squared = iterate.pressure**2
     contact = squared > 0
     height = np.where(np.isfinite(problem.gap), problem.gap, 0.0) + operator({Load.NORMAL: iterate.pressure})
-    opened = np.where(contact | np.isinf(problem.gap), 0.0, np.maximum(height - problem.level(iterate.motion), 0.0))
+    opened = np.where(
+        contact | np.isinf(problem.gap), 0.0, np.maximum(height - problem.rigid_height(iterate.motion), 0.0)
+    )
     opening = opened**OPENING_POWER
     inner = contact & binary_dilation(~contact)
     outer = (opening > 0) & binary_dilation(contact)
@@ -132,27 +136,27 @@ def halve_cells(values: FloatArray, axis: int) -> FloatArray:
     first, last = np.take(values, [0], axis=axis), np.take(values, [-1], axis=axis)
     padded = np.concatenate([first, values, last], axis=axis)
     count = values.shape[axis]
-    middle, low, high = (np.take(padded, np.arange(start, start + count), axis=axis) for start in (1, 0, 2))
-    halves = np.stack([0.75 * middle + 0.25 * low, 0.75 * middle + 0.25 * high], axis=axis + 1)
+    centre, low, high = (np.take(padded, np.arange(start, start + count), axis=axis) for start in (1, 0, 2))
+    halves = np.stack([0.75 * centre + 0.25 * low, 0.75 * centre + 0.25 * high], axis=axis + 1)
     shape = list(values.shape)
     shape[axis] *= 2
     return halves.reshape(shape)
 
 
-def between_columns(values: FloatArray, centres: FloatArray, x: FloatArray) -> FloatArray:
+def interpolate_columns(values: FloatArray, centres: FloatArray, x: FloatArray) -> FloatArray:
     """Values (x, y) at other positions along x, linear between the centres and constant beyond them."""
     if centres.size == 1:
         return np.repeat(values, x.size, axis=0)
     right = np.clip(np.searchsorted(centres, x), 1, centres.size - 1)
-    part = np.clip((x - centres[right - 1]) / (centres[right] - centres[right - 1]), 0.0, 1.0)[:, None]
-    return np.asarray((1 - part) * values[right - 1] + part * values[right])
+    fraction = np.clip((x - centres[right - 1]) / (centres[right] - centres[right - 1]), 0.0, 1.0)[:, None]
+    return np.asarray((1 - fraction) * values[right - 1] + fraction * values[right])
 
 
 def solve_normal(operator: ContactOperator, problem: ContactProblem, start: FloatArray | None = None) -> ContactIterate:
     """Contact without the displacement from friction."""
     # The unknowns are forces on the cells, pressure times weight: conjugate to displacements in the plain product.
     weights = problem.grid.weights
-    guess = _first_guess(operator, problem) if start is None else start
+    guess = _initial_guess(operator, problem) if start is None else start
     iterate = solve_complementarity(
         lambda forces: operator({Load.NORMAL: forces / weights}),
         lambda gap: weights * operator.precondition(gap),
@@ -172,18 +176,18 @@ def solve_coupled(operator: ContactOperator, problem: ContactProblem) -> Contact
     iterate = solve_normal(operator, replace(problem, tolerance=tolerance))
     scale = float(np.ptp(operator({Load.NORMAL: iterate.pressure})))
     applications = iterate.applications + 1
-    bent: FloatArray = np.zeros_like(iterate.pressure)
+    bending: FloatArray = np.zeros_like(iterate.pressure)
     change = ROUGH_TOLERANCE
-    for _ in range(COUPLED_ROUNDS):
-        previous, bent_before = iterate.pressure, bent
-        bent = operator({Load.ALONG_Y: problem.friction * previous})
+    for _ in range(MAX_COUPLED_ROUNDS):
+        previous, previous_bending = iterate.pressure, bending
+        bending = operator({Load.ALONG_Y: problem.friction * previous})
         applications += 1
         # Difference of the displacements under the last two tractions.
-        bending_change = float(np.ptp((bent - bent_before)[previous > 0])) / scale
+        bending_change = float(np.ptp((bending - previous_bending)[previous > 0])) / scale
         if max(tolerance, change) <= problem.tolerance and bending_change <= 0.5 * problem.tolerance:
             return replace(iterate, pressure=previous, applications=applications, converged=True)
         tolerance = max(0.5 * problem.tolerance, ROUND_ACCURACY * change)
-        iterate = solve_normal(operator, replace(problem, gap=problem.gap + bent, tolerance=tolerance), previous)
+        iterate = solve_normal(operator, replace(problem, gap=problem.gap + bending, tolerance=tolerance), previous)
         applications += iterate.applications
         if not iterate.converged:
             break

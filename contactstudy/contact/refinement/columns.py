@@ -1,4 +1,4 @@
-"""The shape that is pressed, seen along the axis, and the columns under it: the first ones, and how they are split."""
+"""Shape of the indenter along the axis, the first columns under the shape, and their splitting."""
 
 from __future__ import annotations
 
@@ -11,34 +11,35 @@ import numpy as np
 from contactstudy.checks import BoolArray, FloatArray
 
 FIRST_COLUMN = 0.1  # width of the first columns at the ends, over the half-width. Accuracy: wider ones miss sharp ends.
-WIDEST = 16  # least number of columns over the length. Accuracy.
-BENT = 0.1  # depth, over ``a**2 / 2R``, by which the shape may leave its chord inside a first column. Accuracy.
+MIN_COLUMNS = 16  # least number of columns over the length. Accuracy.
+CHORD_TOLERANCE = 0.1  # distance of the shape from its chord in a first column, over ``a**2 / 2R``. Accuracy.
 
-PART = np.linspace(0.0, 1.0, 257)
+SAMPLE_POSITIONS = np.linspace(0.0, 1.0, 257)
 """Sampling points of the shape in a column. Accuracy: in the widest first columns they are 1/4096 of the length apart,
 and narrower ridges are missed."""
 
-MISSED = 0.02
+PENETRATION_TOLERANCE = 0.02
 """Depth, over ``a**2 / 2R``, by which the shape may come below the displaced top in a column that is open. Accuracy: a
 crest that is missed then carries 0.14 of the Hertz pressure at most."""
 
-NARROWEST_BENT = 0.1  # width over the half-width below which a first column is not split for its shape. Speed.
-STEEPEST = 2.6  # largest ratio of neighbouring widths. Accuracy.
-MOST_COLUMNS = 600  # columns at which the refinement ends, whatever is settled
+MIN_CHORD_WIDTH = 0.1  # width over the half-width below which a first column is not split for its shape. Speed.
+MAX_WIDTH_RATIO = 2.6  # largest ratio of neighbouring widths. Accuracy.
+MAX_COLUMNS = 600  # columns at which the refinement ends without convergence
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class AxialShape:
     """Shape of the indenter along the axis."""
 
-    start: float  # where it can be pressed, metres
+    start: float  # range of possible contact, metres
     stop: float
     half_width: float  # Hertz half-width ``a``, metres
     depth: float  # depth ``a**2 / 2R`` to which a cylinder sinks, metres
     height: Callable[[FloatArray], FloatArray]  # height along the axis over the plane that the shape touches, metres
-    room: tuple[float, float]  # length of the body's face beyond either end, metres; 0 or less where it ends
+    face_beyond: tuple[float, float]  # length of the body's face beyond either end, metres; 0 or less where it ends
     exponents: tuple[float, float] = (np.nan, np.nan)  # ``m`` of ``K d**-m`` at sharp ends; NaN without a law
-    fades: bool = False  # whether the pressure falls towards a common end by a small power, which no columns settle
+    has_fading_end: bool = False
+    """Whether the pressure falls towards a common end by a small power, which no columns resolve."""
     corners: tuple[float, ...] = ()  # positions of convex corners, metres: edges of columns
     nodes: FloatArray = field(default_factory=lambda: np.zeros(0))  # positions between which the shape is smooth, m
 
@@ -47,53 +48,54 @@ class AxialShape:
         """Heights at the nodes, metres."""
         return self.height(self.nodes)
 
-    def sharp(self, side: int) -> bool:
-        """Whether an end is singular if it is pressed."""
+    def is_singular(self, side: int) -> bool:
+        """Whether a loaded end is singular."""
         return self.exponents[side] > 0
 
 
 def first_edges(shape: AxialShape) -> FloatArray:
     """Columns that double from either end, halved where the shape bends."""
     length = shape.stop - shape.start
-    width = min(FIRST_COLUMN * shape.half_width, length / (4 * WIDEST))
+    width = min(FIRST_COLUMN * shape.half_width, length / (4 * MIN_COLUMNS))
     widths = [width]
     while sum(widths) < 0.5 * length:
-        widths.append(min(2 * widths[-1], length / WIDEST))
-    side = np.append(0.0, np.cumsum(widths)) * (0.5 * length / sum(widths))
-    edges = shape.start + np.concatenate([side, length - side[-2::-1]])
+        widths.append(min(2 * widths[-1], length / MIN_COLUMNS))
+    half_edges = np.append(0.0, np.cumsum(widths)) * (0.5 * length / sum(widths))
+    edges = shape.start + np.concatenate([half_edges, length - half_edges[-2::-1]])
     edges[-1] = shape.stop
     if shape.corners:
-        edges = split(_with_edges(edges, shape.corners), np.zeros(0, dtype=bool))
+        edges = split_columns(_with_edges(edges, shape.corners), np.zeros(0, dtype=bool))
     while True:
         heights = _heights(shape, edges)
-        lowest = _lowest(shape, edges, heights)
-        # Only where the shape is low enough to be pressed for certain.
-        marks = _curved(shape, edges, heights) & (lowest - lowest.min() < 3 * shape.depth)
-        marks &= np.diff(edges) > NARROWEST_BENT * shape.half_width
-        if not marks.any() or edges.size > MOST_COLUMNS:
+        lowest = _min_heights(shape, edges, heights)
+        # Only where the shape is low enough for certain contact.
+        is_marked = _leaves_chord(shape, edges, heights) & (lowest - lowest.min() < 3 * shape.depth)
+        is_marked &= np.diff(edges) > MIN_CHORD_WIDTH * shape.half_width
+        if not is_marked.any() or edges.size > MAX_COLUMNS:
             return edges
-        edges = split(edges, marks)
+        edges = split_columns(edges, is_marked)
 
 
 def _heights(shape: AxialShape, edges: FloatArray) -> FloatArray:
     """Heights of the shape at points along each column: array (column, point)."""
     # Just inside: the shape may step at its ends.
-    inside = np.clip(PART, 1e-9, 1 - 1e-9)
-    return shape.height((edges[:-1, None] + np.diff(edges)[:, None] * inside).ravel()).reshape(-1, PART.size)
+    inside = np.clip(SAMPLE_POSITIONS, 1e-9, 1 - 1e-9)
+    positions = edges[:-1, None] + np.diff(edges)[:, None] * inside
+    return shape.height(positions.ravel()).reshape(positions.shape)
 
 
-def _curved(shape: AxialShape, edges: FloatArray, heights: FloatArray) -> BoolArray:
+def _leaves_chord(shape: AxialShape, edges: FloatArray, heights: FloatArray) -> BoolArray:
     """Columns inside which the shape leaves its chord."""
     rise = heights[:, -1] - heights[:, 0]
-    deviations = np.abs(heights - heights[:, :1] - rise[:, None] * PART).max(axis=1)
+    deviations = np.abs(heights - heights[:, :1] - rise[:, None] * SAMPLE_POSITIONS).max(axis=1)
     if shape.nodes.size:
-        column = np.clip(np.searchsorted(edges, shape.nodes, side="right") - 1, 0, edges.size - 2)
-        fraction = (shape.nodes - edges[column]) / np.diff(edges)[column]
-        np.maximum.at(deviations, column, np.abs(shape.node_heights - heights[column, 0] - rise[column] * fraction))
-    return np.asarray(deviations > BENT * shape.depth)
+        columns = np.clip(np.searchsorted(edges, shape.nodes, side="right") - 1, 0, edges.size - 2)
+        fraction = (shape.nodes - edges[columns]) / np.diff(edges)[columns]
+        np.maximum.at(deviations, columns, np.abs(shape.node_heights - heights[columns, 0] - rise[columns] * fraction))
+    return np.asarray(deviations > CHORD_TOLERANCE * shape.depth)
 
 
-def _lowest(shape: AxialShape, edges: FloatArray, heights: FloatArray) -> FloatArray:
+def _min_heights(shape: AxialShape, edges: FloatArray, heights: FloatArray) -> FloatArray:
     """Least height inside each column, nodes included."""
     lowest = heights.min(axis=1)
     if shape.nodes.size:
@@ -106,42 +108,42 @@ def _with_edges(edges: FloatArray, corners: tuple[float, ...]) -> FloatArray:
     """Edges with the corners among them; an edge closer to a corner than a quarter of its column moves there."""
     for corner in corners:
         nearest = int(np.abs(edges - corner).argmin())
-        inner = 0 < nearest < edges.size - 1
-        if inner and abs(edges[nearest] - corner) < 0.25 * np.diff(edges)[nearest - 1 : nearest + 1].min():
+        is_inner = 0 < nearest < edges.size - 1
+        if is_inner and abs(edges[nearest] - corner) < 0.25 * np.diff(edges)[nearest - 1 : nearest + 1].min():
             edges[nearest] = corner
         else:
             edges = np.sort(np.append(edges, corner))
     return edges
 
 
-def overlooked(shape: AxialShape, edges: FloatArray, pressed: BoolArray, opening: FloatArray) -> BoolArray:
-    """Columns inside which a solved contact misses details of the shape: a pressed shape off its chord, or a crest."""
-    # An open column counts where the shape comes below the displaced top, except beside a contact, which ends inside
-    # it.
+def find_overlooked(shape: AxialShape, edges: FloatArray, loaded: BoolArray, opening: FloatArray) -> BoolArray:
+    """Columns inside which a solved contact misses details of the shape: a loaded shape off its chord, or a crest."""
+    # An open column is overlooked if the shape lies below the displaced surface, except next to a contact that ends
+    # in the column.
     heights = _heights(shape, edges)
-    level = heights.mean(axis=1) - opening
-    deepest = heights.argmin(axis=1)
-    neighbour = np.zeros_like(pressed)
-    neighbour[1:] |= pressed[:-1] & (deepest[1:] == 0)
-    neighbour[:-1] |= pressed[1:] & (deepest[:-1] == PART.size - 1)
-    lowest = _lowest(shape, edges, heights)
+    rigid_height = heights.mean(axis=1) - opening
+    lowest_point = heights.argmin(axis=1)
+    neighbour = np.zeros_like(loaded)
+    neighbour[1:] |= loaded[:-1] & (lowest_point[1:] == 0)
+    neighbour[:-1] |= loaded[1:] & (lowest_point[:-1] == SAMPLE_POSITIONS.size - 1)
+    lowest = _min_heights(shape, edges, heights)
     neighbour &= lowest >= heights.min(axis=1)
-    missed = ~pressed & ~neighbour & (level - lowest > MISSED * shape.depth)
-    wide = np.diff(edges) > NARROWEST_BENT * shape.half_width
-    return np.asarray(wide & (missed | (pressed & _curved(shape, edges, heights))))
+    is_missed = ~loaded & ~neighbour & (rigid_height - lowest > PENETRATION_TOLERANCE * shape.depth)
+    is_wide = np.diff(edges) > MIN_CHORD_WIDTH * shape.half_width
+    return np.asarray(is_wide & (is_missed | (loaded & _leaves_chord(shape, edges, heights))))
 
 
-def split(edges: FloatArray, marks: BoolArray) -> FloatArray:
+def split_columns(edges: FloatArray, is_marked: BoolArray) -> FloatArray:
     """Halve marked columns, and every column that is then much wider than a neighbour."""
-    edges = np.sort(np.concatenate([edges, centres_of(edges)[marks]])) if marks.any() else edges
+    edges = np.sort(np.concatenate([edges, centres_of(edges)[is_marked]])) if is_marked.any() else edges
     while True:
         widths = np.diff(edges)
-        steep = np.zeros(widths.size, dtype=bool)
-        steep[:-1] |= widths[:-1] > STEEPEST * widths[1:]
-        steep[1:] |= widths[1:] > STEEPEST * widths[:-1]
-        if not steep.any():
+        is_too_wide = np.zeros(widths.size, dtype=bool)
+        is_too_wide[:-1] |= widths[:-1] > MAX_WIDTH_RATIO * widths[1:]
+        is_too_wide[1:] |= widths[1:] > MAX_WIDTH_RATIO * widths[:-1]
+        if not is_too_wide.any():
             return edges
-        edges = np.sort(np.concatenate([edges, centres_of(edges)[steep]]))
+        edges = np.sort(np.concatenate([edges, centres_of(edges)[is_too_wide]]))
 
 
 def centres_of(edges: FloatArray) -> FloatArray:

@@ -26,18 +26,18 @@ from contactstudy.contact.refinement.columns import centres_of
 from contactstudy.errors import InvalidInputError
 
 RIGID = 0.5  # exponent at a sharp rigid end
-LEAST_GROWTH = 0.12  # least exponent of the growth between two halvings of a power law. Accuracy.
-LASTING_STEPS = 0.5  # least ratio of the last two steps of a logarithm to the two preceding ones. Accuracy.
-NEAREST, FARTHEST = 3.0, 64.0  # distances over the outermost width between which the intensity is fitted. Accuracy.
-FEWEST = 3  # least number of columns of a fitted intensity
+MIN_GROWTH_EXPONENT = 0.12  # least exponent of the growth between two halvings of a power law. Accuracy.
+MIN_STEP_RATIO = 0.5  # least ratio of the last two steps of a logarithm to the two preceding ones. Accuracy.
+FIT_START, FIT_STOP = 3.0, 64.0  # distances over the outermost width between which the intensity is fitted. Accuracy.
+MIN_FIT_COLUMNS = 3  # least number of columns of a fitted intensity
 
-LEAST_ROOM, NARROW_ERROR = 0.5, 0.08
+MAX_FIT_RATIO, NARROW_FACE_ERROR = 0.5, 0.08
 """Largest reach of the fit over the room beyond an end, and the additional error over K beyond this reach. Accuracy:
 measured as 5 % at 2.5 times the room, 0.8 % at 0.6."""
 
 STEP_ERROR = 3e-3  # error over the intensity from the pressure's steps. Accuracy: the residual of every fit.
 
-ELASTIC_SHARE = 1.5
+ELASTIC_ERROR_FACTOR = 1.5
 """Error of the intensity of an elastic end over its change when both limits of the fit double. Accuracy: unlike a rigid
 end its next power is not a whole number."""
 
@@ -61,8 +61,8 @@ class EndLaw:
     intensity_error: float = np.nan
     fitted: bool = False  # whether the exponent is fitted
 
-    def with_intensity(self, edges: FloatArray, pressure: FloatArray, room: float) -> EndLaw:
-        """Law with the intensity fitted to the pressure (column, y) at distances much smaller than the `room`."""
+    def with_intensity(self, edges: FloatArray, pressure: FloatArray, face_beyond: float) -> EndLaw:
+        """Law with the intensity fitted to the pressure (column, y) at distances much smaller than `face_beyond`."""
         # A lifted end has the intensity 0, a contact too narrow for a fit that of the outermost column, with infinite
         # errors.
         if self.kind != "power":
@@ -75,19 +75,19 @@ class EndLaw:
         if fitted:
             from scipy.optimize import minimize_scalar
 
-            bounds = (LEAST_GROWTH, RIGID)
+            bounds = (MIN_GROWTH_EXPONENT, RIGID)
             optimum = minimize_scalar(lambda m: _fit(edges, row, width, m)[1], bounds=bounds, method="bounded")
             exponent = float(optimum.x)
         fits = [_fit(edges, row, width * factor, exponent)[0] for factor in (1.0, 2.0)]
         if not np.isfinite(fits).all():  # pressed on too few columns
             outermost = float((1 - exponent) * row[0] * width**exponent)
             return replace(self, exponent=exponent, intensity=outermost, intensity_error=np.inf, fitted=fitted)
-        share = 1.0 if exponent == RIGID else ELASTIC_SHARE
-        error = share * abs(fits[0] - fits[1]) + STEP_ERROR * fits[0]
-        if 0 < room < NEAREST * width:  # the columns do not resolve the law
+        error_factor = 1.0 if exponent == RIGID else ELASTIC_ERROR_FACTOR
+        error = error_factor * abs(fits[0] - fits[1]) + STEP_ERROR * fits[0]
+        if 0 < face_beyond < FIT_START * width:  # the columns do not resolve the law
             error = np.inf
-        elif FARTHEST * width > LEAST_ROOM * room:
-            error += NARROW_ERROR * fits[0]
+        elif FIT_STOP * width > MAX_FIT_RATIO * face_beyond:
+            error += NARROW_FACE_ERROR * fits[0]
         return replace(self, exponent=exponent, intensity=fits[0], intensity_error=error, fitted=fitted)
 
 
@@ -105,7 +105,7 @@ def elastic_exponent(edge: float, face: float) -> float:
 
 
 def law_of(samples: list[Sample], exponent: float) -> EndLaw | None:
-    """Law of a pressed end; None if its pressure is finite."""
+    """Law of a loaded end; None for a finite pressure."""
     # Without an exponent of the materials (NaN) the growth of the outermost column between splittings determines it.
     if not np.isnan(exponent):
         return EndLaw(kind="power", exponent=exponent) if samples[-1].pressure > 0 else None
@@ -113,15 +113,16 @@ def law_of(samples: list[Sample], exponent: float) -> EndLaw | None:
     if len(samples) < 4 or pressures[-1] <= pressures[-2] or min(pressures[-3:]) <= 0:
         return None
     growth = [
-        np.log(after.pressure / before.pressure) / np.log(before.width / after.width)
-        for before, after in pairwise(samples[-3:])
+        np.log(finer.pressure / coarser.pressure) / np.log(coarser.width / finer.width)
+        for coarser, finer in pairwise(samples[-3:])
     ]
-    if min(growth) > LEAST_GROWTH:
+    if min(growth) > MIN_GROWTH_EXPONENT:
         return EndLaw(kind="power", exponent=exponent)
     steps = [
-        (after.pressure - before.pressure) / np.log(before.width / after.width) for before, after in pairwise(samples)
+        (finer.pressure - coarser.pressure) / np.log(coarser.width / finer.width)
+        for coarser, finer in pairwise(samples)
     ]
-    if len(steps) >= 4 and sum(steps[-2:]) > LASTING_STEPS * sum(steps[-4:-2]) > 0:
+    if len(steps) >= 4 and sum(steps[-2:]) > MIN_STEP_RATIO * sum(steps[-4:-2]) > 0:
         return EndLaw(kind="logarithm", exponent=0.0)
     return None
 
@@ -129,9 +130,9 @@ def law_of(samples: list[Sample], exponent: float) -> EndLaw | None:
 def _fit(edges: FloatArray, row: FloatArray, width: float, exponent: float) -> tuple[float, float]:
     """Least-squares K of the columns' means of ``K d**-m (1 + c d)``, relative to each, and the residual."""
     low, high = edges[:-1], edges[1:]
-    used = (low >= 0.999 * NEAREST * width) & (high <= 1.001 * FARTHEST * width) & (row > 0)
-    low, high, values = low[used], high[used], row[used]
-    if values.size < FEWEST:
+    in_range = (low >= 0.999 * FIT_START * width) & (high <= 1.001 * FIT_STOP * width) & (row > 0)
+    low, high, values = low[in_range], high[in_range], row[in_range]
+    if values.size < MIN_FIT_COLUMNS:
         return np.nan, np.inf
     powers = [1 - exponent, 2 - exponent]
     # eq. (41)
@@ -174,8 +175,8 @@ def edge_peak(intensity: float, modulus: float, edge_radius: float) -> float:
     return float(EDGE_FACTOR * (k**2 * modulus / radius) ** (1 / 3))  # eq. (42)
 
 
-CORNER_NEAREST, CORNER_FARTHEST = 2.0, 32.0  # distances over the column at a corner where d0 is fitted. Accuracy.
-WIDEST_BLEND = 0.1  # width b of a blend over d0 up to which its peak follows from the law. Accuracy: 1 % at 0.1.
+CORNER_FIT_START, CORNER_FIT_STOP = 2.0, 32.0  # distances over the column at a corner where d0 is fitted. Accuracy.
+MAX_BLEND_WIDTH = 0.1  # width b of a blend over d0 up to which its peak follows from the law. Accuracy: 1 % at 0.1.
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -187,27 +188,27 @@ class CornerLaw:
     intensity: float  # ``E* s / (2 pi)``, Pa
     distance: float = np.nan  # ``d0`` and its estimated error, metres; NaN where the contact ends at the corner
     distance_error: float = np.nan
-    end: EndLaw | None = None  # law where the contact ends at the corner: too steep a chamfer is not pressed
+    end: EndLaw | None = None  # law where the contact ends at the corner: too steep a chamfer has no contact
 
 
 def corner_law(
     corner: tuple[float, float], modulus: float, exponent: float, edges: FloatArray, pressure: FloatArray
 ) -> CornerLaw | None:
-    """Law of a corner (position, jump of the slope) from the pressure (column, y); None where it is not pressed."""
+    """Law of a corner (position, jump of the slope) from the pressure (column, y); None without contact."""
     # The mean of ``ln d`` over a column determines d0 from its pressure; the mean of both sides removes odd terms.
     x, slope = corner
     intensity = modulus * slope / (2 * np.pi)  # eq. (42a)
     index = int(np.abs(edges - x).argmin())
     if not 0 < index < edges.size - 1 or not pressure[index - 1 : index + 1].any():
         return None
-    outward = (edges[index:] - x, pressure[index:]), (x - edges[index::-1], pressure[index - 1 :: -1])
-    pressed = [bool(values[0].any()) for _, values in outward]
-    if not all(pressed):
-        room = max(float(distances[-1]) for distances, _ in outward)
-        end = EndLaw(kind="power", exponent=exponent).with_intensity(*outward[pressed.index(True)], room)
+    both_sides = (edges[index:] - x, pressure[index:]), (x - edges[index::-1], pressure[index - 1 :: -1])
+    is_loaded = [bool(values[0].any()) for _, values in both_sides]
+    if not all(is_loaded):
+        face_beyond = max(float(distances[-1]) for distances, _ in both_sides)
+        end = EndLaw(kind="power", exponent=exponent).with_intensity(*both_sides[is_loaded.index(True)], face_beyond)
         return CornerLaw(x=x, slope=slope, intensity=intensity, end=end)
     centre = int((pressure[index - 1] + pressure[index]).argmax())
-    sides = [(distances, values[:, centre]) for distances, values in outward]
+    sides = [(distances, values[:, centre]) for distances, values in both_sides]
     width = max(float(distances[1]) for distances, _ in sides)
     fits = [[_log_distance(*side, width * factor, intensity) for side in sides] for factor in (1.0, 2.0)]
     logs = np.mean(fits, axis=1)
@@ -221,8 +222,8 @@ def corner_law(
 def _log_distance(edges: FloatArray, row: FloatArray, width: float, intensity: float) -> float:
     """Logarithm of d0 on one side: the value at distance 0 of the line fitted to those of the columns."""
     low, high = edges[:-1], edges[1:]
-    near = (low >= 0.999 * CORNER_NEAREST * width) & (high <= 1.001 * CORNER_FARTHEST * width) & (row > 0)
-    low, high, row = low[near], high[near], row[near]
+    in_range = (low >= 0.999 * CORNER_FIT_START * width) & (high <= 1.001 * CORNER_FIT_STOP * width) & (row > 0)
+    low, high, row = low[in_range], high[in_range], row[in_range]
     if row.size < 2:
         return np.nan
     mean_log = (high * np.log(high) - low * np.log(low)) / (high - low) - 1
@@ -258,35 +259,37 @@ def corner_peak(intensity: float, distance: float, slope: float, blend_radius: f
     >>> round(corner_peak(1.3e9, 50e-6, 0.035, 20e-6) / 1e9, 2)
     7.75
     """
-    strength = checks.positive("intensity", intensity, "Pa")
+    corner_intensity = checks.positive("intensity", intensity, "Pa")
     distance = checks.positive("distance", distance, "metres")
     width = checks.positive("blend_radius", blend_radius, "metres") * checks.positive("slope", slope)
-    if width > WIDEST_BLEND * distance:
-        most = WIDEST_BLEND * distance / slope
-        raise InvalidInputError("blend_radius", blend_radius, f"at most {most:.3g} m", "solve the blended profile")
-    return float(strength * (np.log(2 * distance / width) + 1))  # eq. (42b)
+    if width > MAX_BLEND_WIDTH * distance:
+        bound = MAX_BLEND_WIDTH * distance / slope
+        raise InvalidInputError("blend_radius", blend_radius, f"at most {bound:.3g} m", "solve the blended profile")
+    return float(corner_intensity * (np.log(2 * distance / width) + 1))  # eq. (42b)
 
 
 Pair = tuple[float, float]
 Laws = tuple[EndLaw | None, EndLaw | None]
 
 
-def read_ends(edges: FloatArray, pressure: FloatArray, laws: Sequence[EndLaw | None]) -> tuple[Pair, Pair, float]:
-    """Peak of either half, pressure at either end, and by how much the parabola across lifts the largest pressure."""
-    top = section_maxima(pressure)
-    along_y = float(top.max() / pressure.max()) - 1
+def extrapolate_end_pressures(
+    edges: FloatArray, pressure: FloatArray, laws: Sequence[EndLaw | None]
+) -> tuple[Pair, Pair, float]:
+    """Peak of either half, pressure at either end, and relative increase of the peak by the parabola along y."""
+    line = section_maxima(pressure)
+    lateral_excess = float(line.max() / pressure.max()) - 1
     half = 0.5 * (edges[-1] - edges[0])
     peaks, ends = [], []
     for side in (0, 1):
-        distances, row = from_end(side, edges, top)
-        end = _extrapolated(distances, row)
+        distances, row = count_from_end(side, edges, line)
+        end_pressure = _extrapolate_to_end(distances, row)
         half_row = row[centres_of(distances) < half]
-        # Where the pressure rises through the middle, the largest of a half lies there.
-        largest = max(float(half_row.max()), float(np.interp(half, centres_of(distances), row)))
-        # Only where the pressure rises to the end is the largest one beyond the outermost column's mean.
-        peaks.append(np.inf if laws[side] else max(largest, end) if half_row.argmax() == 0 else largest)
-        ends.append(np.inf if laws[side] else end)
-    return (peaks[0], peaks[1]), (ends[0], ends[1]), along_y
+        # Where the pressure rises through mid-length, the peak of a half lies at mid-length.
+        half_peak = max(float(half_row.max()), float(np.interp(half, centres_of(distances), row)))
+        # The peak exceeds the mean of the outermost column only if the pressure rises to the end.
+        peaks.append(np.inf if laws[side] else max(half_peak, end_pressure) if half_row.argmax() == 0 else half_peak)
+        ends.append(np.inf if laws[side] else end_pressure)
+    return (peaks[0], peaks[1]), (ends[0], ends[1]), lateral_excess
 
 
 def end_loads(edges: FloatArray, pressure: FloatArray, half_width: float) -> Pair:
@@ -294,17 +297,17 @@ def end_loads(edges: FloatArray, pressure: FloatArray, half_width: float) -> Pai
     sums = pressure.sum(axis=1)
     loads = []
     for side in (0, 1):
-        distances, row = from_end(side, edges, sums)
+        distances, row = count_from_end(side, edges, sums)
         loads.append(float(row @ np.diff(np.minimum(distances, half_width))))
     return loads[0], loads[1]
 
 
-def from_end(side: int, edges: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]:
+def count_from_end(side: int, edges: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Distances of the edges from an end of the shape, and the values counted from there."""
     return (edges - edges[0], values) if side == 0 else (edges[-1] - edges[::-1], values[::-1])
 
 
-def _extrapolated(edges: FloatArray, row: FloatArray) -> float:
+def _extrapolate_to_end(edges: FloatArray, row: FloatArray) -> float:
     """Pressure at the end, from the means of the three outermost columns."""
     if row[0] <= 0:
         return 0.0

@@ -18,7 +18,7 @@ from contactstudy.case.gridding import graded_grid, solve_in_first_window
 from contactstudy.case.motion import Rolling, Sliding
 from contactstudy.checks import FloatArray
 from contactstudy.contact.normal.contact import Contact, Settings, Shape, check_window, contact_of, contact_operator
-from contactstudy.contact.normal.prescribed import Prescribed
+from contactstudy.contact.normal.prescribed_loads import PrescribedLoad
 from contactstudy.contact.normal.problem import ContactProblem, solve_normal
 from contactstudy.contact.refinement.columns import AxialShape
 from contactstudy.contact.refinement.laws import RIGID, CornerLaw, EndLaw, corner_law, elastic_exponent
@@ -36,7 +36,7 @@ from contactstudy.threads import one_blas_thread
 
 WINDOWS = (2.0, 3.0, 5.0, 8.0, 12.0)  # Half-widths of the window over that of the Hertz contact, tried in turn. Speed.
 
-ROOM, COUPLED_ROOM, MOVED_ROOM = 1.1, 1.4, 1.5
+WINDOW_FACTOR, WINDOW_FACTOR_COUPLED, WINDOW_FACTOR_ROLLING = 1.1, 1.4, 1.5
 """Least window over the extent of the contact along y: in full sliding, with coupled friction, with stick and slip,
 which also solve the contact on half of the cells and depend on two cells ahead. Speed."""
 
@@ -46,13 +46,13 @@ SMALL_SLOPE = 0.1  # slope of a corner up to which strains are small
 CELLS_Y, ROUGH_CELLS_Y = (32, 64, 128, 256), 16
 """Numbers of cells along y: the first sufficient one, and the number of the first contact. Accuracy."""
 
-CORNER_SHARE = 0.2
+MAX_CORNER_JUMP = 0.2
 """Jump of the slope of measured points times E*, over the peak, above which the peak is unbounded. Accuracy: the
 pressure at the corner grows by 3 % with each halving of its width."""
 
 DATA_ERROR = 1.5  # error over the difference of two interpolations of measured points. Accuracy.
 
-BETWEEN_CELLS, SHARE_OF_Y = 0.7, 0.25
+PEAK_ERROR_FACTOR, ACCURACY_FRACTION_Y = 0.7, 0.25
 """Part of the peak between its cells along y times the square of their number across the contact, and the share of the
 accuracy for this part. Accuracy."""
 
@@ -75,14 +75,14 @@ def refine_contact(case: Case, accuracy: float, tolerance: float) -> RefinedCont
     return refine(case if case.coupled else replace(case, friction=0.0), accuracy, tolerance)
 
 
-def _is_immutable(part: object) -> bool:
+def _is_immutable(value: object) -> bool:
     """Whether a part of a case is compared by constant values: profiles of users may be mutable."""
-    if is_dataclass(part):
-        frozen = bool(getattr(type(part), "__dataclass_params__").frozen)  # noqa: B009 - mypy does not know it
-        return frozen and all(_is_immutable(getattr(part, field.name)) for field in fields(part))
-    if isinstance(part, tuple):
-        return all(_is_immutable(item) for item in part)
-    return part is None or isinstance(part, (str, int, float, np.number, np.bool_))
+    if is_dataclass(value):
+        frozen = bool(getattr(type(value), "__dataclass_params__").frozen)  # noqa: B009 - mypy does not know it
+        return frozen and all(_is_immutable(getattr(value, field.name)) for field in fields(value))
+    if isinstance(value, tuple):
+        return all(_is_immutable(item) for item in value)
+    return value is None or isinstance(value, (str, int, float, np.number, np.bool_))
 
 
 def _refine_contact(case: Case, accuracy: float, tolerance: float) -> RefinedContact:
@@ -104,25 +104,26 @@ def _refine_in_window(case: Case, half_window: float, accuracy: float, tolerance
         mirrored = (
             replace(body, model="mirror") if isinstance(body, BodyWithFreeEnds) and body.model == "exact" else body
         )
-        first = _ColumnSolver(replace(case, body=mirrored), half_window, ROUGH_CELLS_Y)
-        rough = rough_columns(first, shape)
+        rough_solver = _ColumnSolver(replace(case, body=mirrored), half_window, ROUGH_CELLS_Y)
+        rough = rough_columns(rough_solver, shape)
         rows = np.flatnonzero(rough.pressure.any(axis=0))
-        cells = first.grid(rough.edges)
-        reach = float(np.abs(cells.y[rows]).max()) + 0.5 * cells.dy
+        cells = rough_solver.grid(rough.edges)
+        extent = float(np.abs(cells.y[rows]).max()) + 0.5 * cells.dy
         # Coupled friction moves the contact along y.
-        room = COUPLED_ROOM if case.coupled else ROOM
+        factor = WINDOW_FACTOR_COUPLED if case.coupled else WINDOW_FACTOR
         if not isinstance(case.motion, Sliding):
-            room = MOVED_ROOM
-        least = room * reach / case.hertz_half_width
-        window = float(case.hertz_half_width * WINDOW_STEP ** np.ceil(np.log(least) / np.log(WINDOW_STEP)))
+            factor = WINDOW_FACTOR_ROLLING
+        minimum = factor * extent / case.hertz_half_width
+        window = float(case.hertz_half_width * WINDOW_STEP ** np.ceil(np.log(minimum) / np.log(WINDOW_STEP)))
         peak_cells = rough.pressure[int(rough.pressure.max(axis=1).argmax())] > 0
         cells_y = _cell_number_y(float(peak_cells.sum()) * cells.dy / (2 * window), accuracy)
         solver = _ColumnSolver(case, window, cells_y)
         # The splittings of the outermost columns determine the law of an end: begin with few columns.
         refined = refine_columns(solver, shape, accuracy, None if rough.singular else rough.edges)
-        refined = _with_data_error(solver, refined, shape)
+        refined = _add_data_error(solver, refined, shape)
     full = solver.shape(refined.edges)
-    contact = contact_of(full, Settings(tolerance), ArrayKey(_padded(refined.pressure, full.grid, refined.edges)))
+    guess = ArrayKey(_pad_to_grid(refined.pressure, full.grid, refined.edges))
+    contact = contact_of(full, Settings(tolerance), guess)
     if contact.shape.coupled_friction or contact.motions.total.tilt:
         refined = replace_pressure(refined, contact.pressure[_roller_columns(contact.shape.grid, refined.edges)], shape)
     return RefinedContact(contact, refined, _strongest_corner(case, refined))
@@ -132,28 +133,28 @@ def _strongest_corner(case: Case, refined: RefinedColumns) -> CornerLaw | None:
     """Law of the pressed convex corner with the largest intensity; None without one."""
     if as_shape(case.roller.profile).second_interpolation() is not None:
         return None
-    corners = zip(*(values.tolist() for values in case.slope_jumps), strict=True)
+    slope_jumps = zip(*(values.tolist() for values in case.slope_jumps), strict=True)
     exponent = RIGID if case.roller.body is None else np.nan
     laws = [
         corner_law(corner, case.modulus, exponent, refined.edges, refined.pressure)
-        for corner in corners
+        for corner in slope_jumps
         if corner[1] > 0
     ]
     return max(filter(None, laws), key=lambda law: law.intensity, default=None)
 
 
-def _with_data_error(solver: _ColumnSolver, refined: RefinedColumns, shape: AxialShape) -> RefinedColumns:
+def _add_data_error(solver: _ColumnSolver, refined: RefinedColumns, shape: AxialShape) -> RefinedColumns:
     """Add the error of measured points, the change under their second interpolation; infinite at unresolved corners."""
     case = solver.case
-    other = as_shape(case.roller.profile).second_interpolation()
-    if other is None:
+    other_profile = as_shape(case.roller.profile).second_interpolation()
+    if other_profile is None:
         return refined
-    solver = replace(solver, case=replace(case, roller=replace(case.roller, profile=other)))
-    moved = replace_pressure(refined, solver(refined.edges, refined.pressure, POLISHED).pressure, shape)
+    solver = replace(solver, case=replace(case, roller=replace(case.roller, profile=other_profile)))
+    recomputed = replace_pressure(refined, solver(refined.edges, refined.pressure, POLISHED).pressure, shape)
     errors = {
         name: [
-            error + DATA_ERROR * (abs(value - other) if np.isfinite(value) else 0.0)
-            for error, value, other in zip(errors, refined.values[name], moved.values[name], strict=True)
+            error + DATA_ERROR * (abs(value - new_value) if np.isfinite(value) else 0.0)
+            for error, value, new_value in zip(errors, refined.values[name], recomputed.values[name], strict=True)
         ]
         for name, errors in refined.errors.items()
     }
@@ -161,30 +162,30 @@ def _with_data_error(solver: _ColumnSolver, refined: RefinedColumns, shape: Axia
         column = int(np.clip(np.searchsorted(refined.edges, x) - 1, 0, refined.edges.size - 2))
         side = int(x > 0.5 * (shape.start + shape.stop))
         peak = refined.values["peak_pressure"][side]
-        if jump * case.modulus > CORNER_SHARE * peak and refined.pressure[column].any():
+        if jump * case.modulus > MAX_CORNER_JUMP * peak and refined.pressure[column].any():
             errors["peak_pressure"][side] = np.inf
     return replace(refined, errors=errors)
 
 
-def _cell_number_y(part: float, accuracy: float) -> int:
-    """Least number of cells along y that resolve a peak; the contact covers a `part` of the window there."""
-    needed = np.sqrt(BETWEEN_CELLS / (SHARE_OF_Y * accuracy)) / part
+def _cell_number_y(fraction: float, accuracy: float) -> int:
+    """Least number of cells along y that resolve a peak; the contact covers a `fraction` of the window there."""
+    needed = np.sqrt(PEAK_ERROR_FACTOR / (ACCURACY_FRACTION_Y * accuracy)) / fraction
     return next((cells for cells in CELLS_Y if cells >= needed), CELLS_Y[-1])
 
 
-def refined_values(settled: RefinedContact) -> xr.Dataset:
+def refined_values(refined_contact: RefinedContact) -> xr.Dataset:
     """Labelled values with their errors; at a singular end the law instead of the pressure."""
-    refined, corner = settled.refined, settled.corner
+    refined, corner = refined_contact.refined, refined_contact.corner
     values = {"peak_pressure": refined.peak, "peak_pressure_error": refined.peak_error}
-    dy = settled.contact.shape.grid.dy
+    dy = refined_contact.contact.shape.grid.dy
     for side, end in enumerate(("first", "last")):
         for name, pair in refined.values.items():
             unit = dy if name == "end_load" else 1.0
             values[f"{name}_{end}"] = unit * pair[side]
             values[f"{name}_{end}_error"] = unit * refined.errors[name][side]
         values |= _law_values(refined.laws[side], f"_{end}")
-    sharper = max((law for law in refined.laws if law), key=lambda law: np.nan_to_num(law.intensity), default=None)
-    values |= _law_values(sharper)
+    sharper_law = max((law for law in refined.laws if law), key=lambda law: np.nan_to_num(law.intensity), default=None)
+    values |= _law_values(sharper_law)
     if corner is not None:
         values |= {"corner_x": corner.x, "corner_slope": corner.slope, "corner_intensity": corner.intensity}
         if corner.end is None:
@@ -199,7 +200,7 @@ def refined_values(settled: RefinedContact) -> xr.Dataset:
         if str(key).startswith("end_intensity"):
             exponent = float(result[str(key).replace("intensity", "exponent").removesuffix("_error")])
             intensity.attrs["units"] = f"Pa m{exponent:.3g}"
-    if not refined.settled:
+    if not refined.accurate:
         result["peak_pressure_error"].attrs["comment"] = "more than the accuracy: the most columns were reached"
     return describe(result)
 
@@ -212,18 +213,20 @@ def _law_values(law: EndLaw | None, end: str = "") -> dict[str, float]:
     return {f"end_exponent{end}": law.exponent, intensity: law.intensity, f"{intensity}_error": law.intensity_error}
 
 
-def contact_shape(case: Case, grid: Grid, prescribed: Prescribed | None = None, gap: FloatArray | None = None) -> Shape:
+def contact_shape(
+    case: Case, grid: Grid, prescribed: PrescribedLoad | None = None, gap: FloatArray | None = None
+) -> Shape:
     """Contact of a case to solve on cells; default: the load or approach, and the gap, of the case."""
     gap = case.gap(grid) if gap is None else gap
     if prescribed is None and case.approach is not None:
-        prescribed = Prescribed(approach=case.approach)
-    prescribed = (prescribed or Prescribed(case.normal_load, case.load_position)).checked(gap, grid)
+        prescribed = PrescribedLoad(approach=case.approach)
+    prescribed = (prescribed or PrescribedLoad(case.normal_load, case.load_position)).check(gap, grid)
     return Shape(case.body, grid, ArrayKey(gap), prescribed, case.counterbody, coupled_friction=case.coupled_friction)
 
 
-def replace_contact(settled: RefinedContact, contact: Contact, case: Case) -> RefinedContact:
+def replace_contact(refined_contact: RefinedContact, contact: Contact, case: Case) -> RefinedContact:
     """Refined contact with another pressure on the same columns, from friction or finer cells along y."""
-    refined = settled.refined
+    refined = refined_contact.refined
     pressure = contact.pressure[_roller_columns(contact.shape.grid, refined.edges)]
     refined = replace_pressure(refined, pressure, _axial_shape(case))
     return RefinedContact(contact, refined, _strongest_corner(case, refined))
@@ -251,7 +254,7 @@ class _ColumnSolver:
         grid = shape.grid
         gap = shape.gap.values
         columns = _roller_columns(grid, edges)
-        guess = _padded(start, grid, edges) if start is not None and start.any() else None
+        guess = _pad_to_grid(start, grid, edges) if start is not None and start.any() else None
         problem = ContactProblem(
             grid=grid,
             gap=gap,
@@ -265,7 +268,7 @@ class _ColumnSolver:
         check_window(shape.body, iterate.pressure)
 
         def opening() -> FloatArray:
-            opened = gap + operator({Load.NORMAL: iterate.pressure}) - problem.level(iterate.motion)
+            opened = gap + operator({Load.NORMAL: iterate.pressure}) - problem.rigid_height(iterate.motion)
             return np.asarray(opened[columns].min(axis=1))
 
         return ColumnPressure(iterate.pressure[columns], opening)
@@ -277,67 +280,68 @@ def _roller_columns(grid: Grid, edges: FloatArray) -> slice:
     return slice(first, first + edges.size - 1)
 
 
-def _padded(pressure: FloatArray, grid: Grid, edges: FloatArray) -> FloatArray:
+def _pad_to_grid(pressure: FloatArray, grid: Grid, edges: FloatArray) -> FloatArray:
     """Pressure (column, y) between `edges` on all cells of a grid."""
     padded = np.zeros(grid.shape)
     padded[_roller_columns(grid, edges)] = pressure
     return padded
 
 
-def _exponent(case: Case, distance: float, near: float) -> float:
+def _end_exponent(case: Case, distance: float, rounding: float) -> float:
     """Exponent of the pressure at an end, at a distance from the end of the face; NaN without a theory."""
     body, roller = case.body, case.roller.body
     of_body = 1 / body.material.plane_strain_modulus
     of_roller = 0.0 if roller is None else 1 / roller.material.plane_strain_modulus
-    has_ends = isinstance(roller, BodyWithFreeEnds)
-    if distance > near:
-        return elastic_exponent(of_roller if has_ends else 0.0, of_body)
+    roller_has_ends = isinstance(roller, BodyWithFreeEnds)
+    if distance > rounding:
+        return elastic_exponent(of_roller if roller_has_ends else 0.0, of_body)
     # The body's own edge is pressed where the roller overhangs, or is a half-space.
-    pressed = of_roller > 0 and (distance < -near or not has_ends)
-    return elastic_exponent(of_body, of_roller) if pressed and getattr(body, "model", "") == "exact" else np.nan
+    is_loaded = of_roller > 0 and (distance < -rounding or not roller_has_ends)
+    return elastic_exponent(of_body, of_roller) if is_loaded and getattr(body, "model", "") == "exact" else np.nan
 
 
 def _axial_shape(case: Case) -> AxialShape:
     """Axial shape of a case."""
     start, stop = case.contact_range
-    low, high = case.body.extent
-    half_width = case.hertz_half_width
-    near = 1e-9 * (stop - start)
+    body, half_width = case.body, case.hertz_half_width
+    low, high = body.extent
+    rounding = 1e-9 * (stop - start)
     distances = case.roller_start - low, high - (case.roller_start + case.roller.length)
-    room = [distance if distance > near else 0.0 for distance in distances]
+    beyond = [distance if distance > rounding else 0.0 for distance in distances]
     corners = case.slope_jumps
-    resolved = as_shape(case.roller.profile).second_interpolation() is None
+    has_fading_end = (
+        isinstance(body, BodyWithFreeEnds) and body.model == "mirror-factor" and case.roller.body is not None
+    )
+    is_resolved = as_shape(case.roller.profile).second_interpolation() is None
     return AxialShape(
         start=start,
         stop=stop,
         half_width=half_width,
         depth=half_width**2 / (2 * case.roller.radius),
         height=case.gap_on_axis,
-        room=(room[0], room[1]),
-        exponents=(_exponent(case, distances[0], near), _exponent(case, distances[1], near)),
+        face_beyond=(beyond[0], beyond[1]),
+        exponents=(_end_exponent(case, distances[0], rounding), _end_exponent(case, distances[1], rounding)),
         # The factor of the body's image is not that of the roller's.
-        corners=tuple(corners.positions[corners.jumps > 0].tolist()) if resolved else (),
+        corners=tuple(corners.positions[corners.jumps > 0].tolist()) if is_resolved else (),
         nodes=case.nodes,
-        fades=case.roller.body is not None
-        and isinstance(case.body, BodyWithFreeEnds)
-        and case.body.model == "mirror-factor",
+        has_fading_end=has_fading_end,
     )
 
 
-POWER, POWERS = 1.2, (1.0, 2.0)
+LOAD_POWER, LOAD_POWER_RANGE = 1.2, (1.0, 2.0)
 """Exponent of the load as a power of the depth from first touch: the first one, and its bounds. A line contact has
 10/9, a point contact 3/2. Speed."""
 
-DEEPER, SHALLOWER, ROUNDS = 0.05, 0.005, 12
+MAX_EXCESS_DEPTH, MAX_MISSING_DEPTH, MAX_CORRECTIONS = 0.05, 0.005, 12
 """Parts of the depth by which a contact may be deeper or shallower than the approach with the same columns and window,
 and the largest number of corrections of the load. Speed."""
 
-ABOVE = 1.02  # factor on a corrected load: the window of a shallower contact is too narrow. Speed.
+LOAD_EXCESS = 1.02  # factor on a corrected load: the window of a shallower contact is too narrow. Speed.
 
-ROUGHLY, ROUGH_TOLERANCE = 0.1, 1e-4  # accuracy and tolerance of contacts that determine a load. Speed.
-ROOMIER = 1.5  # factor on the window for half as many cells along y, which reach farther beyond the contact. Speed.
+ROUGH_ACCURACY, ROUGH_TOLERANCE = 0.1, 1e-4  # accuracy and tolerance of contacts that determine a load. Speed.
+WINDOW_FACTOR_COARSE = 1.5  # factor on the window for half as many cells along y. Speed.
 
-SLICES, WIDTH_PART = 200, 0.3  # slices of a first load; their half-width over that of the undeformed overlap. Speed.
+SLICES, SLICE_WIDTH = 200, 0.3  # slices of a first load; their half-width over that of the undeformed overlap. Speed.
 
 
 class ApproachContact(NamedTuple):
@@ -350,28 +354,28 @@ class ApproachContact(NamedTuple):
 def contact_at_approach(case: Case, accuracy: float, tolerance: float) -> ApproachContact:
     """Contact of a case that prescribes its approach, on columns that are refined to an accuracy."""
     assert case.approach is not None
-    rough = search_load(_with_mirrored_ends(case), case.approach, _slice_load(case), ROUGHLY, ROUGH_TOLERANCE)
+    rough = search_load(_with_mirrored_ends(case), case.approach, _slice_load(case), ROUGH_ACCURACY, ROUGH_TOLERANCE)
     return search_load(case, case.approach, rough.case.normal_load, accuracy, tolerance)
 
 
 def search_load(case: Case, approach: float, load: float, accuracy: float, tolerance: float) -> ApproachContact:
     """Contact of a case at an approach, from a first guess of its load."""
-    power, last = POWER, (0.0, 0.0)
-    for _ in range(ROUNDS):
+    power, previous = LOAD_POWER, (0.0, 0.0)
+    for _ in range(MAX_CORRECTIONS):
         loaded = replace(case, load=load, max_pressure=None, approach=None)
         refined = refine_contact(loaded, accuracy, tolerance)
         shape = refined.contact.shape
-        touch = float(shape.gap.values.min())
-        depth, prescribed_depth = refined.contact.approach - touch, approach - touch
-        if 1 - SHALLOWER <= depth / prescribed_depth <= 1 + DEEPER:
+        first_touch = float(shape.gap.values.min())
+        depth, prescribed_depth = refined.contact.approach - first_touch, approach - first_touch
+        if 1 - MAX_MISSING_DEPTH <= depth / prescribed_depth <= 1 + MAX_EXCESS_DEPTH:
             break
-        if 0 < last[1] != depth:
-            power = float(np.clip(np.log(load / last[0]) / np.log(depth / last[1]), *POWERS))
-        last = (load, depth)
-        load *= ABOVE * (prescribed_depth / depth) ** power
-    prescribed = Prescribed(approach=approach).checked(shape.gap.values, shape.grid)
+        if 0 < previous[1] != depth:
+            power = float(np.clip(np.log(load / previous[0]) / np.log(depth / previous[1]), *LOAD_POWER_RANGE))
+        previous = (load, depth)
+        load *= LOAD_EXCESS * (prescribed_depth / depth) ** power
+    prescribed = PrescribedLoad(approach=approach).check(shape.gap.values, shape.grid)
     contact = contact_of(shape._replace(prescribed=prescribed), Settings(tolerance))
-    case = replace(loaded, load=contact.carried)
+    case = replace(loaded, load=contact.carried_load)
     return ApproachContact(case, replace_contact(refined, contact, case))
 
 
@@ -379,17 +383,17 @@ def approach_load_error(contact: ApproachContact) -> float:
     """Error of the load of an approach, N: its changes on coarser columns and half the cells along y, without ends."""
     refined, grid = contact.refined.refined, contact.refined.contact.shape.grid
     case = _with_mirrored_ends(contact.case)
-    window = ROOMIER * grid.y_range[0], ROOMIER * grid.y_range[1]
-    rows = int(ROOMIER * grid.cells_y)
+    window = WINDOW_FACTOR_COARSE * grid.y_range[0], WINDOW_FACTOR_COARSE * grid.y_range[1]
+    rows = int(WINDOW_FACTOR_COARSE * grid.cells_y)
 
-    def solve(edges: FloatArray, cells_y: int, prescribed: Prescribed | None) -> Contact:
+    def solve(edges: FloatArray, cells_y: int, prescribed: PrescribedLoad | None) -> Contact:
         shape = contact_shape(case, graded_grid(case, edges, window, cells_y), prescribed)
         return contact_of(shape._replace(coupled_friction=0.0), Settings(ROUGH_TOLERANCE))
 
     fine = solve(refined.edges, rows, None)
-    deep = Prescribed(approach=fine.approach)
-    coarser = solve(refined.first, rows, deep), solve(refined.edges, rows // 2, deep)
-    return sum(abs(contact.carried - fine.carried) for contact in coarser)
+    deep = PrescribedLoad(approach=fine.approach)
+    coarser = solve(refined.first_edges, rows, deep), solve(refined.edges, rows // 2, deep)
+    return sum(abs(contact.carried_load - fine.carried_load) for contact in coarser)
 
 
 def _with_mirrored_ends(case: Case) -> Case:
@@ -407,8 +411,8 @@ def _slice_load(case: Case) -> float:
     x = np.linspace(start, stop, SLICES + 1)
     depth = np.maximum(case.approach - case.gap_on_axis(x), 0.0)
     radius, modulus = case.roller.radius, case.modulus
-    half_width = np.minimum(WIDTH_PART * np.sqrt(2 * radius * depth), MAX_HALF_WIDTH * radius)
+    half_width = np.minimum(SLICE_WIDTH * np.sqrt(2 * radius * depth), MAX_HALF_WIDTH * radius)
     per_length = np.pi * modulus * half_width**2 / (4 * radius)  # Johnson, Contact Mechanics (1985), 4.43
     load = float(per_length.mean()) * (stop - start)
-    least = hertz.line_load(MIN_HALF_WIDTH * modulus, radius, modulus) * (stop - start)
-    return max(load, least)
+    min_load = hertz.line_load(MIN_HALF_WIDTH * modulus, radius, modulus) * (stop - start)
+    return max(load, min_load)

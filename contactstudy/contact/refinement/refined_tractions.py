@@ -22,11 +22,11 @@ from contactstudy.contact.refinement.refined_contact import CELLS_Y, RefinedCont
 from contactstudy.contact.rolling.frictional_contact import AMPLITUDES, FrictionalContact, frictional_contact
 from contactstudy.contact.rolling.tractions import FrictionRequest
 
-COLUMNS_SHARE = 0.5
+COLUMN_ERROR_FACTOR = 0.5
 """Error of the columns, over the least error of the pressure; relative to full sliding's force and moment, and to work
 and creepages themselves. Accuracy: without it one in ten of these errors was too small."""
 
-COARSE_STEPS = 60
+MAX_COARSE_STEPS = 60
 """Bound on the Newton steps on half of the cells along y, whose tractions are a guess. Speed: in a few shifts the
 active sets cycle there, and converge on finer cells."""
 
@@ -53,33 +53,33 @@ class RefinedTractions(NamedTuple):
 def refine_tractions(case: Case, normal: RefinedContact, accuracy: float) -> RefinedTractions:
     """Tractions of a case on the columns of its normal contact."""
     rows = normal.contact.shape.grid.cells_y
-    last = _contact_on_rows(case, normal, rows // 2, None)
+    previous = _contact_on_rows(case, normal, rows // 2, None)
     # FASTSIM's error is that of its model: its strips do not become accurate on finer cells.
-    most_rows = rows if isinstance(case.motion, Rolling) and case.motion.model == "fastsim" else CELLS_Y[-1]
+    max_rows = rows if isinstance(case.motion, Rolling) and case.motion.model == "fastsim" else CELLS_Y[-1]
     while True:
-        contact = _contact_on_rows(case, normal, rows, last)
-        changes, scales = _values(contact) - _values(last), _scales(case, contact)
-        free = [name not in _prescribed_names(case) for name in scales]
-        accurate = bool((np.abs(changes) <= accuracy * np.array(list(scales.values())))[free].all())
-        if accurate or rows >= most_rows:
+        contact = _contact_on_rows(case, normal, rows, previous)
+        changes, scales = _values(contact) - _values(previous), _scales(case, contact)
+        is_adjustable = [name not in _prescribed_names(case) for name in scales]
+        accurate = bool((np.abs(changes) <= accuracy * np.array(list(scales.values())))[is_adjustable].all())
+        if accurate or rows >= max_rows:
             break
-        rows, last = 2 * rows, contact
+        rows, previous = 2 * rows, contact
     # Forces and moments may be small differences of large ones; work and rigid motions are not.
     sizes = [
         size if name in RESULTANTS.values() else min(size, abs(float(value)))
         for (name, size), value in zip(scales.items(), _values(contact), strict=True)
     ]
-    column_error = COLUMNS_SHARE * normal.refined.least_error
+    column_error = COLUMN_ERROR_FACTOR * normal.refined.least_error
     errors = {
         name: abs(float(change)) + column_error * size
-        for name, size, change, is_free in zip(scales, sizes, changes, free, strict=True)
-        if is_free
+        for name, size, change, adjustable in zip(scales, sizes, changes, is_adjustable, strict=True)
+        if adjustable
     }
     return RefinedTractions(contact, replace_contact(normal, contact.contact, case), errors, accurate)
 
 
 def _contact_on_rows(
-    case: Case, normal: RefinedContact, rows: int, last: FrictionalContact | None
+    case: Case, normal: RefinedContact, rows: int, coarse_contact: FrictionalContact | None
 ) -> FrictionalContact:
     """Contact on the columns with a number of cells along y, from a contact on half as many."""
     assert isinstance(case.motion, Shift | Rolling)
@@ -90,10 +90,10 @@ def _contact_on_rows(
     request = FrictionRequest(
         motion=case.motion,
         friction=case.friction_on(grid.x),
-        middle=case.roller_middle,
+        reference_x=case.roller_middle,
         coupled=case.coupled,
-        coarse=None if last is None else last.tractions,
-        max_steps=COARSE_STEPS if last is None else None,
+        coarse=None if coarse_contact is None else coarse_contact.tractions,
+        max_steps=MAX_COARSE_STEPS if coarse_contact is None else None,
     )
     return frictional_contact(contact_shape(case, grid, contact.shape.prescribed), contact.settings, request)
 
@@ -114,11 +114,11 @@ def _scales(case: Case, contact: FrictionalContact) -> dict[str, float]:
     slip = float(np.max(case.friction_on(grid.x))) * case.hertz_half_width / case.roller.radius
     force, moment = float(loads.sum()), float((loads * arms).sum())
     rolling = isinstance(case.motion, Rolling)
-    usual = {"x": slip, "y": slip, "spin": slip * force / moment if moment else 0.0}
+    sliding = {"x": slip, "y": slip, "spin": slip * force / moment if moment else 0.0}
     if not rolling:
-        usual = {name: size * case.hertz_half_width for name, size in usual.items()}
+        sliding = {name: size * case.hertz_half_width for name, size in sliding.items()}
     names = AMPLITUDES[rolling]
-    rigid = {name: max(abs(amplitude), usual[name]) for name, amplitude in contact.tractions.rigid.items()}
+    rigid = {name: max(abs(amplitude), sliding[name]) for name, amplitude in contact.tractions.rigid.items()}
     largest = max(abs(rigid["x"]), abs(rigid["y"]), rigid.get("spin", 0.0) * moment / force if force else 0.0)
     return {"force_x": force, "force_y": force, "moment_z": moment, "friction_work": force * largest} | {
         names[name]: size for name, size in rigid.items()

@@ -27,29 +27,29 @@ Operator = Callable[[FloatArray], FloatArray]
 GUESS_TOLERANCE = 1e-6  # part of the bound by which the traction of a slipping cell of a guess may miss it. Speed.
 DESCENT_INTERVAL = 15  # Newton steps without convergence after which a descent of the energy gives a new start. Speed.
 
-CONTINUATION_STEPS = 40  # Newton steps without convergence after which resultants are raised by steps. Speed.
-SHORTEST_STEP = 1e-3  # least of these steps over the whole way. Speed.
+MAX_DIRECT_STEPS = 40  # Newton steps without convergence after which resultants are raised by steps. Speed.
+MIN_CONTINUATION_STEP = 1e-3  # least of these steps over the whole way. Speed.
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class CoulombProblem:
     """Coulomb's law on the cells of a contact."""
 
-    relief: Operator  # ``B``: slip (2, cell) that tractions (2, cell) relieve
+    apply_compliance: Operator  # ``B``: slip (2, cell) that tractions (2, cell) relieve
     inverse: Operator  # approximate inverse of ``B``
     bound: FloatArray  # (cell): largest traction, Pa; positive
     rigid: FloatArray  # (2, cell): prescribed slip of rigid surfaces
     modes: FloatArray  # (mode, 2, cell): rigid slips of unknown amplitude
-    works: FloatArray  # (mode, 2, cell): weights of the tractions in the resultant of each mode
+    resultant_weights: FloatArray  # (mode, 2, cell): weights of the tractions in the resultant of each mode
     resultants: FloatArray  # (mode): prescribed resultants
-    shares: FloatArray  # (cell): areas over their mean: the linear systems are symmetric, their residual a mean
+    relative_areas: FloatArray  # (cell): areas over their mean: the linear systems are symmetric, their residual a mean
     tolerance: float = 1e-6  # violation, over the largest bound and rigid slip, at which the iteration stops
     max_steps: int = 40  # bound on the Newton steps
     symmetric: bool = False  # whether B is symmetric, so that the tractions minimise an energy
 
     def slip(self, traction: FloatArray, amplitudes: FloatArray) -> FloatArray:
         """Slip (2, cell) under tractions."""
-        return self.rigid_slip(amplitudes) - self.relief(traction)
+        return self.rigid_slip(amplitudes) - self.apply_compliance(traction)
 
     def rigid_slip(self, amplitudes: FloatArray) -> FloatArray:
         """Slip (2, cell) of rigid surfaces."""
@@ -83,10 +83,10 @@ def law_violation(
     traction: FloatArray, slip: FloatArray, bound: FloatArray, sticks: BoolArray, scale: float
 ) -> tuple[float, float]:
     """Violations of law (43): of the bound, over the largest bound, and of the slip, over `scale`."""
-    # A sticking cell counts its slip, another the component across the traction and against it.
+    # A sticking cell violates the law by its slip, a slipping cell by the components across and against the traction.
     size = np.hypot(*traction)
-    largest = float(bound.max(initial=0.0))
-    excess = float(np.maximum(size - bound, 0.0).max(initial=0.0)) / largest if largest else 0.0  # eq. (43)
+    max_bound = float(bound.max(initial=0.0))
+    excess = float(np.maximum(size - bound, 0.0).max(initial=0.0)) / max_bound if max_bound else 0.0  # eq. (43)
     direction = traction / np.where(size > 0, size, 1.0)
     parallel = (slip * direction).sum(axis=0)
     across = slip[0] * direction[1] - slip[1] * direction[0]
@@ -98,26 +98,27 @@ def solve_with_continuation(problem: CoulombProblem, start: Guess | None = None)
     """Solve Coulomb's law; where Newton's method does not converge, raise prescribed resultants step by step."""
     # Near full sliding few cells stick. Resultants between two admissible ones are admissible: a solution exists on the
     # line.
-    if not len(problem.modes) or problem.max_steps <= CONTINUATION_STEPS:
+    if not len(problem.modes) or problem.max_steps <= MAX_DIRECT_STEPS:
         return solve_coulomb(problem, start)
-    solution = solve_coulomb(replace(problem, max_steps=CONTINUATION_STEPS), start)
+    solution = solve_coulomb(replace(problem, max_steps=MAX_DIRECT_STEPS), start)
     if solution.converged:
         return solution
     no_modes = problem.modes[:0]
-    first = solve_coulomb(replace(problem, modes=no_modes, works=no_modes, resultants=problem.resultants[:0]))
-    steps = solution.steps + first.steps
-    resultants = (problem.works * first.traction).sum(axis=(1, 2))
-    guess, reached, step = Guess(first.traction, np.zeros(len(problem.modes))), 0.0, 0.5
-    while reached < 1 and step > SHORTEST_STEP and steps < problem.max_steps:
-        part = min(1.0, reached + step)
-        raised = (1 - part) * resultants + part * problem.resultants
-        solution = solve_coulomb(replace(problem, resultants=raised, max_steps=CONTINUATION_STEPS), guess)
+    unconstrained = replace(problem, modes=no_modes, resultant_weights=no_modes, resultants=problem.resultants[:0])
+    without_modes = solve_coulomb(unconstrained)
+    steps = solution.steps + without_modes.steps
+    resultants = (problem.resultant_weights * without_modes.traction).sum(axis=(1, 2))
+    guess, load_fraction, step = Guess(without_modes.traction, np.zeros(len(problem.modes))), 0.0, 0.5
+    while load_fraction < 1 and step > MIN_CONTINUATION_STEP and steps < problem.max_steps:
+        trial_fraction = min(1.0, load_fraction + step)
+        trial_resultants = (1 - trial_fraction) * resultants + trial_fraction * problem.resultants
+        solution = solve_coulomb(replace(problem, resultants=trial_resultants, max_steps=MAX_DIRECT_STEPS), guess)
         steps += solution.steps
         if solution.converged:
-            reached, step, guess = part, 2 * step, Guess(solution.traction, solution.amplitudes)
+            load_fraction, step, guess = trial_fraction, 2 * step, Guess(solution.traction, solution.amplitudes)
         else:
             step *= 0.5
-    return replace(solution, steps=steps, converged=solution.converged and reached == 1)
+    return replace(solution, steps=steps, converged=solution.converged and load_fraction == 1)
 
 
 def solve_coulomb(problem: CoulombProblem, start: Guess | None = None) -> CoulombSolution:
@@ -133,7 +134,7 @@ def solve_coulomb(problem: CoulombProblem, start: Guess | None = None) -> Coulom
         traction = start.traction * np.where(sticks, 1.0, bound / np.where(size > 0, size, 1.0))
         slip = problem.slip(traction, amplitudes)
     steps, converged, accuracy, violation = 0, False, 0.1, np.inf
-    visited, share, diagonal = {sticks.tobytes()}, 1.0, _diagonal(problem)
+    visited, change_fraction, diagonal = {sticks.tobytes()}, 1.0, _diagonal(problem)
     while steps < problem.max_steps and not converged:
         steps += 1
         active_set = sticks
@@ -143,55 +144,55 @@ def solve_coulomb(problem: CoulombProblem, start: Guess | None = None) -> Coulom
         size = np.hypot(*traction)
         begins_slip = (size > bound) & sticks
         if len(problem.modes):
-            begins_slip = _largest_excess(begins_slip, size / bound, sticks)
-        begins_slip = _first_share(begins_slip, share)
+            begins_slip = _select_largest_excess(begins_slip, size / bound, sticks)
+        begins_slip = _select_first(begins_slip, change_fraction)
         traction = traction * np.where(~sticks | begins_slip, bound / np.where(size > 0, size, 1.0), 1.0)
         slip = problem.slip(traction, amplitudes)
-        begins_stick = _first_share(~sticks & ((slip * traction).sum(axis=0) < 0), share)
+        begins_stick = _select_first(~sticks & ((slip * traction).sum(axis=0) < 0), change_fraction)
         sticks = (sticks & ~begins_slip) | begins_stick
         scale = problem.slip_scale(amplitudes)
-        missing = np.abs((problem.works * traction).sum(axis=(1, 2)) - problem.resultants)
-        largest = np.abs(problem.works).sum(axis=1) @ bound if len(problem.works) else np.ones(0)
-        last = violation
+        missing = np.abs((problem.resultant_weights * traction).sum(axis=(1, 2)) - problem.resultants)
+        largest = np.abs(problem.resultant_weights).sum(axis=1) @ bound if len(problem.modes) else np.ones(0)
+        previous_violation = violation
         violation = max(
             *law_violation(traction, slip, bound, sticks, scale), float((missing / largest).max(initial=0.0))
         )
         converged = violation <= problem.tolerance
         unchanged = np.array_equal(sticks, active_set)
         # The linear systems are solved more accurately where the last step did not reduce the violation. Speed.
-        accuracy = 1e-2 if unchanged or violation > 0.8 * last else 0.1
+        accuracy = 1e-2 if unchanged or violation > 0.8 * previous_violation else 0.1
         if not unchanged:
             # A repeated active set halves the share of cells that may change at once, in the limit to one (Murty).
-            share = 0.5 * share if sticks.tobytes() in visited else min(1.0, 2 * share)
+            change_fraction = 0.5 * change_fraction if sticks.tobytes() in visited else min(1.0, 2 * change_fraction)
             visited.add(sticks.tobytes())
         if problem.symmetric and steps % DESCENT_INTERVAL == 0 and not converged:
             start = Guess(limit_tractions(traction, bound), amplitudes)
             traction, amplitudes = balance_tractions(problem, start, scale)
-            slip, share = problem.slip(traction, amplitudes), 1.0
+            slip, change_fraction = problem.slip(traction, amplitudes), 1.0
             sticks, visited = np.hypot(*traction) < (1 - GUESS_TOLERANCE) * bound, set()
     return CoulombSolution(
         traction=traction, slip=slip, sticks=sticks, amplitudes=amplitudes, steps=steps, converged=converged
     )
 
 
-def _first_share(cells: BoolArray, share: float) -> BoolArray:
+def _select_first(cells: BoolArray, fraction: float) -> BoolArray:
     """First cells of a set, a share of their number and at least one."""
-    if share == 1:
+    if fraction == 1:
         return cells
-    numbers = np.flatnonzero(cells)
+    indices = np.flatnonzero(cells)
     first = np.zeros_like(cells)
-    first[numbers[: max(1, int(share * numbers.size))]] = True
+    first[indices[: max(1, int(fraction * indices.size))]] = True
     return first
 
 
-def _largest_excess(exceeds: BoolArray, excess: FloatArray, sticks: BoolArray) -> BoolArray:
+def _select_largest_excess(exceeds: BoolArray, excess: FloatArray, sticks: BoolArray) -> BoolArray:
     """At most half of the sticking cells, those farthest above their bound; of a single cell, that cell."""
-    # If all began to slip at once, the rigid slip of a prescribed resultant would be nearly undetermined.
-    most = (int(sticks.sum()) + 1) // 2
-    if exceeds.sum() <= most:
+    # If all cells slipped at once, the rigid slip of a prescribed resultant would be nearly undetermined.
+    max_cells = (int(sticks.sum()) + 1) // 2
+    if exceeds.sum() <= max_cells:
         return exceeds
-    least = np.partition(excess[exceeds], -most)[-most]
-    return np.asarray(exceeds & (excess >= least))
+    min_excess = np.partition(excess[exceeds], -max_cells)[-max_cells]
+    return np.asarray(exceeds & (excess >= min_excess))
 
 
 class _NewtonSystem:
@@ -206,7 +207,7 @@ class _NewtonSystem:
         diagonal: FloatArray,
     ) -> None:
         self._problem, self._sticks, self._diagonal = problem, sticks, diagonal
-        self._root = np.sqrt(problem.shares)
+        self._root = np.sqrt(problem.relative_areas)
         size = np.hypot(*traction)
         direction = np.where(sticks, 0.0, traction / np.where(size > 0, size, 1.0))
         across = np.stack([-direction[1], direction[0]])
@@ -233,7 +234,7 @@ class _NewtonSystem:
     def solve(
         self, traction: FloatArray, slip: FloatArray, amplitudes: FloatArray, accuracy: float
     ) -> tuple[FloatArray, FloatArray]:
-        """Tractions and amplitudes of the rigid slips that reduce the residual to a part `accuracy`."""
+        """Tractions and amplitudes of the rigid slips that reduce the residual by the factor `accuracy`."""
         from scipy.sparse.linalg import LinearOperator, gmres
 
         problem = self._problem
@@ -242,9 +243,11 @@ class _NewtonSystem:
         # Spin (1/m) and moment (N m) in the units of slip, for one residual of all unknowns.
         sizes = np.hypot(problem.modes[:, 0], problem.modes[:, 1]).max(axis=1, initial=np.finfo(float).tiny)
         modes = np.array([self._components(mode) for mode in problem.modes]).reshape(shape) / sizes[:, None]
-        works = np.array([self._components(work / problem.shares) for work in problem.works]).reshape(shape)
-        unit = (np.abs(works).sum(axis=1) + np.finfo(float).tiny) / float(self._diagonal.mean())
-        works = works / unit[:, None]
+        weights = np.array(
+            [self._components(work / problem.relative_areas) for work in problem.resultant_weights]
+        ).reshape(shape)
+        unit = (np.abs(weights).sum(axis=1) + np.finfo(float).tiny) / float(self._diagonal.mean())
+        weights = weights / unit[:, None]
         diagonal = np.concatenate([self._diagonal, self._diagonal[self._sticks]])
         damping = np.sqrt(diagonal / (diagonal + turning))
 
@@ -252,22 +255,22 @@ class _NewtonSystem:
             return np.asarray(damping * self._components(problem.inverse(self._tractions(damping * slip))))
 
         inverse_modes = np.array([invert(mode) for mode in modes]).reshape(modes.shape)
-        schur = works @ inverse_modes.T
+        schur = weights @ inverse_modes.T
 
         def multiply(unknowns: FloatArray) -> FloatArray:
             tractions, rigid = unknowns[:count], unknowns[count:]
-            relief = self._components(problem.relief(self._tractions(tractions))) + turning * tractions
-            return np.concatenate([relief - rigid @ modes, works @ tractions])
+            slip = self._components(problem.apply_compliance(self._tractions(tractions))) + turning * tractions
+            return np.concatenate([slip - rigid @ modes, weights @ tractions])
 
         def precondition(residual: FloatArray) -> FloatArray:
             tractions = invert(residual[:count])
             if not len(modes):
                 return tractions
-            rigid = np.linalg.lstsq(schur, residual[count:] - works @ tractions, rcond=None)[0]
+            rigid = np.linalg.lstsq(schur, residual[count:] - weights @ tractions, rcond=None)[0]
             return np.concatenate([tractions + rigid @ inverse_modes, rigid])
 
-        missing = (problem.resultants - (problem.works * traction).sum(axis=(1, 2))) / unit
-        residual = np.concatenate([self._components(slip), missing])
+        resultant_errors = (problem.resultants - (problem.resultant_weights * traction).sum(axis=(1, 2))) / unit
+        residual = np.concatenate([self._components(slip), resultant_errors])
         # Preconditioned from the right: the residual is that of the system. 60 directions, 5 restarts. Speed.
         shape = (residual.size, residual.size)
         operator = LinearOperator(shape, lambda vector: multiply(precondition(vector)), dtype=float)
@@ -278,8 +281,8 @@ class _NewtonSystem:
 def _diagonal(problem: CoulombProblem) -> FloatArray:
     """Slip that a traction relieves in its cell, per traction: array (cell), one value for each width of cells."""
     diagonal = np.empty_like(problem.bound)
-    for share in np.unique(problem.shares):
-        cells = problem.shares == share
+    for area in np.unique(problem.relative_areas):
+        cells = problem.relative_areas == area
         unit = np.zeros_like(problem.rigid)
         largest = int(np.where(cells, problem.bound, 0.0).argmax())
         unit[1, largest] = 1.0
@@ -295,26 +298,28 @@ def balance_tractions(problem: CoulombProblem, start: Guess, scale: float) -> tu
     from scipy.optimize import minimize
 
     traction, amplitudes = start
-    bound, shares, works = problem.bound, problem.shares, problem.works
+    bound, areas, weights = problem.bound, problem.relative_areas, problem.resultant_weights
 
     def minimize_energy(amplitudes: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         nonlocal traction
         rigid = problem.rigid_slip(amplitudes)
-        traction, slip = descend_energy(problem.relief, rigid - problem.relief(traction), traction, bound, shares)
+        traction, slip = descend_energy(
+            problem.apply_compliance, rigid - problem.apply_compliance(traction), traction, bound, areas
+        )
         return traction, slip, rigid
 
     if not amplitudes.size:
         return minimize_energy(amplitudes)[0], amplitudes
-    area = float((works[0] / shares).max())
-    largest = np.abs(works).sum(axis=1) @ bound
-    unit = scale * float(largest.max())
+    area = float((weights[0] / areas).max())
+    max_resultants = np.abs(weights).sum(axis=1) @ bound
+    unit = scale * float(max_resultants.max())
 
     def dual_energy(scaled: FloatArray) -> tuple[float, FloatArray]:
         tractions, slip, rigid = minimize_energy(scale * scaled)
-        energy = 0.5 * area * float((shares * tractions * (rigid + slip)).sum()) - float(
+        energy = 0.5 * area * float((areas * tractions * (rigid + slip)).sum()) - float(
             scale * scaled @ problem.resultants
         )
-        return energy / unit, ((works * tractions).sum(axis=(1, 2)) - problem.resultants) * scale / unit
+        return energy / unit, ((weights * tractions).sum(axis=(1, 2)) - problem.resultants) * scale / unit
 
     # The gradient is the missing resultants over full sliding. Speed.
     optimum = minimize(dual_energy, amplitudes / scale, jac=True, method="BFGS", options={"gtol": 1e-5})
@@ -329,30 +334,30 @@ def limit_tractions(traction: FloatArray, bound: FloatArray) -> FloatArray:
 
 
 def descend_energy(
-    relief: Operator,
+    apply_compliance: Operator,
     slip: FloatArray,
     traction: FloatArray,
     bound: FloatArray,
-    shares: FloatArray,
+    areas: FloatArray,
     max_steps: int = 500,
 ) -> tuple[FloatArray, FloatArray]:
     """Descend from tractions (2, cell) within their bound and their slip; return both at the minimum."""
 
     def product(first: FloatArray, second: FloatArray) -> float:
-        return float((shares * first * second).sum())
+        return float((areas * first * second).sum())
 
-    relieved = relief(slip)
-    curvature = product(slip, relieved)
-    length = product(slip, slip) / curvature if curvature > 0 else 0.0
+    slip_change = apply_compliance(slip)
+    curvature = product(slip, slip_change)
+    step_length = product(slip, slip) / curvature if curvature > 0 else 0.0
     for _ in range(max_steps):
-        change = limit_tractions(traction + length * slip, bound) - traction
+        change = limit_tractions(traction + step_length * slip, bound) - traction
         if float(np.abs(change).max()) <= 1e-7 * float(bound.max()):  # Speed.
             break
-        relieved = relief(change)
-        curvature = product(change, relieved)
+        slip_change = apply_compliance(change)
+        curvature = product(change, slip_change)
         # The energy is least on the way to the projected point, or at it.
-        part = min(1.0, product(slip, change) / curvature) if curvature > 0 else 1.0
-        traction, slip = traction + part * change, slip - part * relieved
+        fraction = min(1.0, product(slip, change) / curvature) if curvature > 0 else 1.0
+        traction, slip = traction + fraction * change, slip - fraction * slip_change
         if curvature > 0:
-            length = product(change, change) / curvature
+            step_length = product(change, change) / curvature
     return traction, slip

@@ -45,8 +45,8 @@ def creep_coefficients(ratio: float, poisson: float) -> FloatArray:
     ratios = np.log([row[0] for row in TABLE])
     logarithm = float(np.clip(np.log(ratio), ratios[0], ratios[-1]))
     coefficients = []
-    for number in (1, 2, 3):
-        values = PchipInterpolator(ratios, np.array([row[number] for row in TABLE]))(logarithm)
+    for column in (1, 2, 3):
+        values = PchipInterpolator(ratios, np.array([row[column] for row in TABLE]))(logarithm)
         coefficients.append(
             np.polynomial.polynomial.polyval(poisson, np.polynomial.polynomial.polyfit(POISSONS, values, 2))
         )
@@ -55,12 +55,12 @@ def creep_coefficients(ratio: float, poisson: float) -> FloatArray:
 
 def flexibilities(half_widths: tuple[float, float], shear_modulus: float, poisson: float) -> dict[str, float]:
     """Flexibilities L, m/Pa, of the creepages along x and y and of the spin."""
-    across, along = half_widths
-    c11, c22, c23 = creep_coefficients(along / across, poisson)
+    half_width_x, half_width_y = half_widths
+    c11, c22, c23 = creep_coefficients(half_width_y / half_width_x, poisson)
     return {
-        "x": 8 * along / (3 * shear_modulus * c22),
-        "y": 8 * along / (3 * shear_modulus * c11),
-        "spin": np.pi * along * np.sqrt(along / across) / (4 * shear_modulus * c23),
+        "x": 8 * half_width_y / (3 * shear_modulus * c22),
+        "y": 8 * half_width_y / (3 * shear_modulus * c11),
+        "spin": np.pi * half_width_y * np.sqrt(half_width_y / half_width_x) / (4 * shear_modulus * c23),
     }
 
 
@@ -73,30 +73,32 @@ def solve_strips(motion: Rolling, surfaces: Surfaces, bound: FloatArray) -> Trac
     shear_compliance = 0.5 * sum(1 / material.shear_modulus for material in surfaces.materials)
     coupling = 0.5 * sum(material.poisson / material.shear_modulus for material in surfaces.materials)
     compliance = flexibilities(half_widths, 1 / shear_compliance, coupling / shear_compliance)
-    turning = rigid["spin"] / compliance["spin"]
+    spin_growth = rigid["spin"] / compliance["spin"]
     growth = np.zeros((2, *grid.shape))
-    growth[0] = rigid["x"] / compliance["x"] - turning * grid.y
-    growth[1] = rigid["y"] / compliance["y"] + turning * (grid.x - surfaces.middle)[:, None]
-    traction, lost = strip_tractions(bound, growth, grid.dy)
-    slip = np.array([compliance["x"], compliance["y"]])[:, None, None] * lost
-    sticks = (bound > 0) & ~lost.any(axis=0)
+    growth[0] = rigid["x"] / compliance["x"] - spin_growth * grid.y
+    growth[1] = rigid["y"] / compliance["y"] + spin_growth * (grid.x - surfaces.reference_x)[:, None]
+    traction, lost_growth = strip_tractions(bound, growth, grid.dy)
+    slip = np.array([compliance["x"], compliance["y"]])[:, None, None] * lost_growth
+    sticks = (bound > 0) & ~lost_growth.any(axis=0)
     return Tractions.of(surfaces, rigid, bound=bound, traction=traction, slip=slip, sticks=sticks)
 
 
 def strip_tractions(bound: FloatArray, growth: FloatArray, dy: float) -> tuple[FloatArray, FloatArray]:
     """Tractions, and the loss of their growth to slip, (2, x, y): material enters strips at the leading edge."""
     traction, lost = np.zeros_like(growth), np.zeros_like(growth)
-    last, last_growth = np.zeros(growth.shape[:2]), np.zeros(growth.shape[:2])
-    entered = np.zeros(bound.shape[0], bool)
+    previous, previous_growth = np.zeros(growth.shape[:2]), np.zeros(growth.shape[:2])
+    behind_edge = np.zeros(bound.shape[0], bool)
     for column in range(bound.shape[1] - 1, -1, -1):
         inside, cell_growth = bound[:, column] > 0, growth[:, :, column]
         # The first centre lies half a cell behind the edge; between two centres the growth is the mean of both.
-        added = np.where(entered, 0.5 * (cell_growth + last_growth) * dy, 0.5 * cell_growth * dy)
-        stuck = last + added
+        growth_step = np.where(behind_edge, 0.5 * (cell_growth + previous_growth) * dy, 0.5 * cell_growth * dy)
+        stuck = previous + growth_step
         size = np.hypot(*stuck)
-        part = np.minimum(bound[:, column] / np.where(size > 0, size, 1.0), 1.0)
-        limited = np.where(inside, stuck * part, 0.0)
+        fraction = np.minimum(bound[:, column] / np.where(size > 0, size, 1.0), 1.0)
+        limited = np.where(inside, stuck * fraction, 0.0)
         traction[:, :, column] = limited
-        lost[:, :, column] = np.where(inside & (part < 1), (stuck - limited) / np.where(entered, dy, 0.5 * dy), 0.0)
-        last, last_growth, entered = limited, cell_growth, inside
+        lost[:, :, column] = np.where(
+            inside & (fraction < 1), (stuck - limited) / np.where(behind_edge, dy, 0.5 * dy), 0.0
+        )
+        previous, previous_growth, behind_edge = limited, cell_growth, inside
     return traction, lost

@@ -13,7 +13,7 @@ from contactstudy.cache import ArrayKey
 from contactstudy.case.motion import Rolling
 from contactstudy.checks import FloatArray
 from contactstudy.contact.normal.contact import Contact, Settings, Shape, contact_of
-from contactstudy.contact.normal.pair import PairOperator
+from contactstudy.contact.normal.two_bodies import PairOperator
 from contactstudy.contact.rolling.surfaces import TANGENTIAL, Surfaces, Tractions
 from contactstudy.contact.rolling.tractions import FrictionRequest, solve_tractions
 from contactstudy.errors import ConvergenceWarning, WindowError
@@ -22,11 +22,11 @@ from contactstudy.fields.surface import SurfaceOperator, surface_operator
 from contactstudy.kernels.load import Load
 from contactstudy.threads import one_blas_thread
 
-ALL = (Load.NORMAL, *TANGENTIAL)
+DIRECTIONS = (Load.NORMAL, *TANGENTIAL)
 
-ROUNDS = 30  # rounds of pressure and tractions after which a coupled contact counts as not converged. Speed.
+MAX_ROUNDS = 30  # rounds of pressure and tractions after which a coupled contact is not converged. Speed.
 
-LEAST_ACCURACY = 1e-5  # change of the pressure to which coupled rounds settle at any tolerance. Accuracy.
+MIN_ACCURACY = 1e-5  # least change of the pressure that ends coupled rounds. Accuracy.
 
 AMPLITUDES = {  # names in results of the rigid motions, in rolling and in a shift
     True: Rolling.AMPLITUDES,
@@ -45,7 +45,7 @@ class FrictionalContact:
     @property
     def loads(self) -> Loads:
         """Loads on the body."""
-        return dict(zip(ALL, map(TopLoad, (self.contact.pressure, *self.tractions.traction)), strict=True))
+        return dict(zip(DIRECTIONS, map(TopLoad, (self.contact.pressure, *self.tractions.traction)), strict=True))
 
     @property
     def converged(self) -> bool:
@@ -62,7 +62,7 @@ class FrictionalContact:
             f"Newton's method stopped after {tractions.steps} steps (bound_error = {tractions.bound_error:.2g}, "
             f"slip_error = {tractions.slip_error:.2g}, force_error = {tractions.force_error:.2g})"
             if not tractions.converged
-            else f"pressure and tractions still change each other after {ROUNDS} rounds"
+            else f"pressure and tractions still change each other after {MAX_ROUNDS} rounds"
         )
         warnings.warn(
             f"stick and slip did not converge: {reason}; raise max_iterations or change the grid",
@@ -86,8 +86,8 @@ class FrictionalContact:
         scalars |= tractions.resultants
         for name in ("bound_error", "slip_error", "force_error"):
             scalars[name] = getattr(tractions, name)
-        areas, pressed = shape.grid.weights, self.contact.pressure > 0
-        scalars["sticking_part"] = float((areas * tractions.sticks).sum() / (areas * pressed).sum())
+        areas, loaded = shape.grid.weights, self.contact.pressure > 0
+        scalars["sticking_part"] = float((areas * tractions.sticks).sum() / (areas * loaded).sum())
         scalars["friction_work"] = tractions.work
         scalars["friction_steps"] = tractions.steps
         result = xr.Dataset({name: (("x", "y"), values) for name, values in fields.items()} | scalars)
@@ -100,42 +100,43 @@ class FrictionalContact:
 def frictional_contact(shape: Shape, settings: Settings, request: FrictionRequest) -> FrictionalContact:
     """Solve a contact with the tractions of a motion."""
     motion = request.motion
-    directions, materials = ALL if request.coupled else TANGENTIAL, [shape.body.material]
+    directions, materials = DIRECTIONS if request.coupled else TANGENTIAL, [shape.body.material]
     operator: PairOperator | SurfaceOperator
     with one_blas_thread():
         if shape.counterbody is None:
-            operator = surface_operator(shape.body, shape.grid, ALL, directions=directions)
+            operator = surface_operator(shape.body, shape.grid, DIRECTIONS, directions=directions)
         else:
-            operator = PairOperator.of(shape.body, shape.counterbody, shape.grid, ALL, directions)
+            operator = PairOperator.of(shape.body, shape.counterbody, shape.grid, DIRECTIONS, directions)
             materials.append(shape.counterbody.body.material)
-    surfaces = Surfaces(operator, shape.grid, materials, request.middle)
+    surfaces = Surfaces(operator, shape.grid, materials, request.reference_x)
 
-    def tractions_under(pressure: FloatArray, last: Tractions | None = None) -> Tractions:
+    def solve_under(pressure: FloatArray, guess: Tractions | None = None) -> Tractions:
         if isinstance(motion, Rolling) and pressure[:, -2:].any():
             raise WindowError(
                 "the contact reaches the last two cells along +y, and the slip of rolling follows from the two cells "
                 "ahead: widen the window along y"
             )
         with one_blas_thread():
-            return solve_tractions(request, settings, surfaces, pressure, last)
+            return solve_tractions(request, settings, surfaces, pressure, guess)
 
     contact = contact_of(shape, settings)
-    tractions, converged = tractions_under(contact.pressure), True
+    tractions, converged = solve_under(contact.pressure), True
     if request.coupled:
         converged = False
-        tolerance = max(settings.tolerance, LEAST_ACCURACY)
-        for number in range(ROUNDS):
-            bent = operator.displaced(dict(zip(TANGENTIAL, tractions.traction, strict=True)), (Load.NORMAL,))
-            last = contact.pressure
-            contact = contact_of(shape._replace(gap=ArrayKey(shape.gap.values + bent[Load.NORMAL])), settings)
+        tolerance = max(settings.tolerance, MIN_ACCURACY)
+        for round_index in range(MAX_ROUNDS):
+            loads = dict(zip(TANGENTIAL, tractions.traction, strict=True))
+            bending = operator.compute_displacements(loads, (Load.NORMAL,))
+            previous_pressure = contact.pressure
+            contact = contact_of(shape._replace(gap=ArrayKey(shape.gap.values + bending[Load.NORMAL])), settings)
             # The first coupled pressure determines sliding columns and leading edges; otherwise the rounds alternate.
-            tractions = tractions_under(contact.pressure, tractions if number else None)
-            change = float(np.abs(contact.pressure - last).sum() / contact.pressure.sum())
+            tractions = solve_under(contact.pressure, tractions if round_index else None)
+            change = float(np.abs(contact.pressure - previous_pressure).sum() / contact.pressure.sum())
             if change <= tolerance:
                 converged = True
                 break
-        body = surface_operator(shape.body, shape.grid, ALL, directions=ALL)
-        loads = dict(zip(ALL, (contact.pressure, *tractions.traction), strict=True))
+        body = surface_operator(shape.body, shape.grid, DIRECTIONS, directions=DIRECTIONS)
+        loads = dict(zip(DIRECTIONS, (contact.pressure, *tractions.traction), strict=True))
         with one_blas_thread():
             contact = replace(contact, shape=shape, displacement=body(loads))
     return FrictionalContact(contact, tractions, converged)

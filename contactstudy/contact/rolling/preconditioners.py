@@ -22,27 +22,29 @@ class TangentialInverse:
         first = cells.min(axis=1)
         self._cells, self._root = tuple(cells - first[:, None]), _leading_root(cells, rolling=rolling)
         size = cells.max(axis=1) - first + 1
-        self._shape = tuple(fft.next_fast_len(int(2 * number), real=True) for number in size)
+        self._shape = tuple(fft.next_fast_len(int(2 * count), real=True) for count in size)
         xx, xy, yy = (self._compliance(materials, direction, load, cell) for direction, load in COMPONENTS)
         if rolling:
             derivative = _derivative(self._shape[1], cell[1])
             xx, xy, yy = derivative * xx, derivative * xy, derivative * yy
         determinant = xx * yy - xy * xy
         # Single precision suffices for a preconditioner. Speed.
-        parts = (yy / determinant, -xy / determinant, xx / determinant)
-        self._inverse = tuple(part.astype(np.complex64) for part in parts)
+        entries = (yy / determinant, -xy / determinant, xx / determinant)
+        self._inverse = tuple(entry.astype(np.complex64) for entry in entries)
 
     def _compliance(
         self, materials: list[Material], direction: Load, load: Load, cell: tuple[float, float]
     ) -> ComplexArray:
         """Spectrum of the displacement in one direction under a load in another."""
         response = Response(direction, load)
-        x, y = (step * np.arange(number // 2 + 1.0) for number, step in zip(self._shape, cell, strict=True))
+        x, y = (step * np.arange(count // 2 + 1.0) for count, step in zip(self._shape, cell, strict=True))
         kernel = np.zeros((x.size, y.size))
         for material in materials:
             normalised = surface_kernel(response, material.poisson, x, y, cell)
             kernel += normalised / (4 * np.pi * material.shear_modulus)
-        period = _unfold(_unfold(kernel, self._shape[0], response.sign_x, 0), self._shape[1], response.sign_y, 1)
+        period = _unfold_kernel(
+            _unfold_kernel(kernel, self._shape[0], response.sign_x, 0), self._shape[1], response.sign_y, 1
+        )
         return np.asarray(fft.rfft2(period))
 
     def __call__(self, slip: FloatArray) -> FloatArray:
@@ -132,8 +134,8 @@ def _leading_root(cells: IntArray, *, rolling: bool) -> FloatArray:
 COMPONENTS = ((Load.ALONG_X, Load.ALONG_X), (Load.ALONG_X, Load.ALONG_Y), (Load.ALONG_Y, Load.ALONG_Y))
 
 
-def _unfold(kernel: FloatArray, number: int, sign: int, axis: int) -> FloatArray:
+def _unfold_kernel(kernel: FloatArray, period: int, sign: int, axis: int) -> FloatArray:
     """Values at all offsets of a period, from the values at non-negative offsets."""
     half = kernel.shape[axis]
-    back = np.flip(np.take(kernel, np.arange(1, number - half + 1), axis=axis), axis=axis)
-    return np.concatenate([kernel, sign * back], axis=axis)
+    mirrored = np.flip(np.take(kernel, np.arange(1, period - half + 1), axis=axis), axis=axis)
+    return np.concatenate([kernel, sign * mirrored], axis=axis)

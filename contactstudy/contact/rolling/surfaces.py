@@ -12,7 +12,7 @@ from contactstudy.arrays.grid import Grid
 from contactstudy.bodies.material import Material
 from contactstudy.case.motion import RESULTANTS, Rolling, Shift
 from contactstudy.checks import BoolArray, FloatArray
-from contactstudy.contact.normal.pair import PairOperator
+from contactstudy.contact.normal.two_bodies import PairOperator
 from contactstudy.errors import InvalidInputError
 from contactstudy.fields.surface import SurfaceOperator
 from contactstudy.kernels.load import Load
@@ -26,7 +26,7 @@ class Surfaces(NamedTuple):
     operator: PairOperator | SurfaceOperator  # displacements relative to each other
     grid: Grid
     materials: list[Material]  # of the elastic bodies
-    middle: float  # position x about which spin and moment are counted, metres
+    reference_x: float  # position x reference of spin and moment, metres
 
     @property
     def areas(self) -> FloatArray:
@@ -39,12 +39,12 @@ class Surfaces(NamedTuple):
         grid = self.grid
         weights = np.zeros((3, 2, *grid.shape))
         weights[0, 0] = weights[1, 1] = 1.0
-        weights[2, 0], weights[2, 1] = -grid.y, (grid.x - self.middle)[:, None]
+        weights[2, 0], weights[2, 1] = -grid.y, (grid.x - self.reference_x)[:, None]
         return weights * self.areas
 
     def rigid_slip(self, name: str, x: FloatArray, y: FloatArray) -> FloatArray:
         """Slip (2, ...) of a rigid motion of unit amplitude at positions."""
-        x, y = np.broadcast_arrays(x - self.middle, y)
+        x, y = np.broadcast_arrays(x - self.reference_x, y)
         if name == "spin":
             return np.stack([-y, x])  # eq. (44)
         slip = np.zeros((2, *x.shape))
@@ -52,10 +52,10 @@ class Surfaces(NamedTuple):
         return slip
 
 
-class Leading(NamedTuple):
-    """Sliding columns and pressure that determine the places of the slip in the cells of a rolling contact."""
+class LeadingEdges(NamedTuple):
+    """Sliding columns and pressure that determine the positions of the slip in the cells of a rolling contact."""
 
-    slides: BoolArray  # (x): columns without sticking cells
+    slides_fully: BoolArray  # (x): columns without sticking cells
     pressure: FloatArray  # (x, y): pressure whose extrapolation is the leading edge, Pa
 
 
@@ -75,7 +75,7 @@ class Tractions:
     force_error: float = 0.0  # certificate: error of prescribed resultants, over the largest
     steps: int = 0  # Newton steps
     converged: bool = True  # whether the tolerance was reached
-    leading: Leading | None = None  # origin of the places of the slip in rolling
+    leading: LeadingEdges | None = None  # origin of the positions of the slip in rolling
 
     @classmethod
     def of(
@@ -123,32 +123,35 @@ def check_forces(motion: Shift | Rolling, bound: FloatArray, weights: FloatArray
     )
 
 
-def _largest_multiple(resultants: FloatArray, bound: FloatArray, works: FloatArray) -> float:
+def _largest_multiple(resultants: FloatArray, bound: FloatArray, weights: FloatArray) -> float:
     """Largest multiple of the resultants that tractions within their bound (x, y) make."""
     # Tractions along a slip ``d . works`` make the largest resultant along d: the multiple is the least over the
     # directions d of a convex function, so a descent approaches it from above.
     from scipy.optimize import minimize
 
-    pressed = bound > 0
-    bounds, works = bound[pressed], works[:, :, pressed]
-    sizes = np.array([float((bounds * np.hypot(*work)).sum()) for work in works])
+    loaded = bound > 0
+    bounds, weights = bound[loaded], weights[:, :, loaded]
+    sizes = np.array([float((bounds * np.hypot(*work)).sum()) for work in weights])
     able = sizes > 0
     if resultants[~able].any() or not able.any():
         return 0.0
-    works, target = works[able] / sizes[able, None, None], resultants[able] / sizes[able]
+    weights, target = (
+        weights[able] / sizes[able, None, None],
+        resultants[able] / sizes[able],
+    )
     # The square of a very small target would vanish.
     scale = float(np.abs(target).max())
     target = target / scale
     direction = target / (target @ target)
     across = np.linalg.svd(direction[None, :])[2][1:]
 
-    def resultant(turn: FloatArray) -> tuple[float, FloatArray]:
-        slip = np.tensordot(direction + turn @ across, works, axes=1)
+    def evaluate_resultant(turn: FloatArray) -> tuple[float, FloatArray]:
+        slip = np.tensordot(direction + turn @ across, weights, axes=1)
         size = np.hypot(*slip)
-        gradient = (works * (bounds * slip / np.where(size > 0, size, 1.0))).sum(axis=(1, 2))
+        gradient = (weights * (bounds * slip / np.where(size > 0, size, 1.0))).sum(axis=(1, 2))
         return float((bounds * size).sum()), across @ gradient
 
     start = np.zeros(len(target) - 1)
     if not start.size:
-        return resultant(start)[0] / scale
-    return float(minimize(resultant, start, jac=True, method="BFGS").fun) / scale
+        return evaluate_resultant(start)[0] / scale
+    return float(minimize(evaluate_resultant, start, jac=True, method="BFGS").fun) / scale

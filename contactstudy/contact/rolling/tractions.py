@@ -27,8 +27,8 @@ import numpy as np
 from contactstudy.case.motion import RESULTANTS, Rolling, Shift
 from contactstudy.checks import BoolArray, FloatArray, IntArray
 from contactstudy.contact.normal.contact import Settings
-from contactstudy.contact.normal.pair import ScaledOperator
 from contactstudy.contact.normal.problem import cell_means, halve_cells
+from contactstudy.contact.normal.two_bodies import ScaledOperator
 from contactstudy.contact.rolling.coulomb import (
     CoulombProblem,
     CoulombSolution,
@@ -40,19 +40,20 @@ from contactstudy.contact.rolling.fastsim import solve_strips
 from contactstudy.contact.rolling.preconditioners import tangential_inverse
 from contactstudy.contact.rolling.surfaces import (
     TANGENTIAL,
-    Leading,
+    LeadingEdges,
     Surfaces,
     Tractions,
     check_forces,
 )
 from contactstudy.kernels.load import Load
 
-LEAST_PART = 0.72  # part of the leading cell in the contact below which it is tied to the cell behind. Accuracy.
+MIN_LEADING_LENGTH = 0.72  # part c of the leading cell in the contact below which its traction is no unknown. Accuracy.
 
-EDGE_OFFSET = -0.84  # place of the slip less c. Accuracy.
-TIED_OFFSET, SLIDING_OFFSET = 0.475, 0.0  # place of the slip behind a tied leading cell, in sliding columns. Accuracy.
-FEWEST_CELLS = 6  # least number of cells along y with which the pressure determines the edge. Accuracy.
-PARTS = (0.25, 1.4)  # range of the part c: less is not pressed, more is another pressed cell. Accuracy.
+EDGE_OFFSET = -0.84  # position b of the slip less c. Accuracy.
+DEPENDENT_OFFSET, SLIDING_OFFSET = 0.475, 0.0
+"""Position b of the slip in columns with a dependent leading cell, and in sliding columns. Accuracy."""
+MIN_CELLS = 6  # least number of cells along y with which the pressure determines the edge. Accuracy.
+LEADING_LENGTH_RANGE = (0.25, 1.4)  # range of the part c: less is not pressed, more is another pressed cell. Accuracy.
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -61,55 +62,55 @@ class RollingCells:
 
     bound: FloatArray  # (x, y): bound on the traction, Pa
     unknown: IntArray  # (2, unknown): row and column of the cells with unknown tractions
-    offset: FloatArray  # (unknown): place of the slip in each, in cells ahead of its centre
-    tied: IntArray  # (2, tied): row and column of the tied leading cells
-    to: IntArray  # (tied): number of the unknown cell behind each
-    ratio: FloatArray  # (tied): their traction over the traction of the cell behind
+    offset: FloatArray  # (unknown): position of the slip in each cell, in cells ahead of the centre
+    dependent: IntArray  # (2, dependent): row and column of the dependent leading cells
+    source_cell: IntArray  # (dependent): index of the unknown cell behind each
+    ratio: FloatArray  # (dependent): their traction over the traction of the cell behind
 
     @classmethod
     def of(
         cls,
         pressure: FloatArray,
         bound: FloatArray,
-        shares: FloatArray | None = None,
-        leading: Leading | None = None,
+        weights: FloatArray | None = None,
+        leading: LeadingEdges | None = None,
     ) -> RollingCells:
         """Cells of a contact under `pressure` (x, y), with the bound on the traction."""
-        slides, edge_pressure = (np.zeros(pressure.shape[0], bool), pressure) if leading is None else leading
+        slides_fully, edge_pressure = (np.zeros(pressure.shape[0], bool), pressure) if leading is None else leading
         loaded: BoolArray = (pressure > 0) & (bound > 0)
         leading_cells = np.argwhere(loaded & ~np.pad(loaded, ((0, 0), (0, 1)))[:, 1:])
         offset = np.full(pressure.shape, EDGE_OFFSET + 1.0)
-        tied, ratio = [], []
-        for row, last in leading_cells:
-            unloaded = np.flatnonzero(~loaded[row, : last + 1])
+        dependent, ratio = [], []
+        for row, last_column in leading_cells:
+            unloaded = np.flatnonzero(~loaded[row, : last_column + 1])
             first = int(unloaded[-1]) + 1 if unloaded.size else 0
-            if slides[row]:
-                offset[row, first : last + 1] = SLIDING_OFFSET
+            if slides_fully[row]:
+                offset[row, first : last_column + 1] = SLIDING_OFFSET
                 continue
-            if last + 1 - first < FEWEST_CELLS:
+            if last_column + 1 - first < MIN_CELLS:
                 continue
-            part = _part_inside(edge_pressure[row, first : last + 1])
-            if part >= LEAST_PART:
-                offset[row, first : last + 1] = EDGE_OFFSET + part  # eq. (44a)
+            leading_length = _inside_length(edge_pressure[row, first : last_column + 1])
+            if leading_length >= MIN_LEADING_LENGTH:
+                offset[row, first : last_column + 1] = EDGE_OFFSET + leading_length  # eq. (44a)
             else:
-                offset[row, first : last + 1] = TIED_OFFSET
-                tied.append((row, last))
-                ratio.append(bound[row, last] / bound[row, last - 1])
-        if shares is not None:
-            weight = shares @ loaded
-            offset = shares @ (loaded * offset) / np.where(weight > 0, weight, 1.0)
-        free = loaded.copy()
-        tied_cells = np.array(tied, dtype=np.int64).reshape(-1, 2).T
-        free[tuple(tied_cells)] = False
-        # A tied cell has the number of the last unknown cell before it.
-        numbers = np.cumsum(free).reshape(free.shape) - 1
-        unknown = np.argwhere(free).T
+                offset[row, first : last_column + 1] = DEPENDENT_OFFSET
+                dependent.append((row, last_column))
+                ratio.append(bound[row, last_column] / bound[row, last_column - 1])
+        if weights is not None:
+            weight = weights @ loaded
+            offset = weights @ (loaded * offset) / np.where(weight > 0, weight, 1.0)
+        is_unknown = loaded.copy()
+        tied_cells = np.array(dependent, dtype=np.int64).reshape(-1, 2).T
+        is_unknown[tuple(tied_cells)] = False
+        # A dependent cell has the index of the last unknown cell before it.
+        unknown_indices = np.cumsum(is_unknown).reshape(is_unknown.shape) - 1
+        unknown = np.argwhere(is_unknown).T
         return cls(
             bound=bound,
             unknown=unknown,
             offset=offset[tuple(unknown)],
-            tied=tied_cells,
-            to=numbers[tuple(tied_cells)],
+            dependent=tied_cells,
+            source_cell=unknown_indices[tuple(tied_cells)],
             ratio=np.array(ratio),
         )
 
@@ -122,16 +123,16 @@ class RollingCells:
         """Tractions on all cells (2, x, y) from the unknown ones (2, unknown)."""
         total = np.zeros((2, *self.bound.shape))
         total[:, self.unknown[0], self.unknown[1]] = traction
-        total[:, self.tied[0], self.tied[1]] = self.ratio * traction[:, self.to]
+        total[:, self.dependent[0], self.dependent[1]] = self.ratio * traction[:, self.source_cell]
         return total
 
     def gather(self, weights: FloatArray) -> FloatArray:
         """Weights (..., unknown) of a sum over the unknown cells, equal to weights (..., x, y) over all cells."""
-        gathered = weights[..., self.unknown[0], self.unknown[1]].copy()
-        tied = self.ratio * weights[..., self.tied[0], self.tied[1]]
-        for number, unknown in enumerate(self.to):
-            gathered[..., unknown] += tied[..., number]
-        return np.asarray(gathered)
+        sums = weights[..., self.unknown[0], self.unknown[1]].copy()
+        dependent_weights = self.ratio * weights[..., self.dependent[0], self.dependent[1]]
+        for index, unknown in enumerate(self.source_cell):
+            sums[..., unknown] += dependent_weights[..., index]
+        return np.asarray(sums)
 
     def derivative(self, displacement: FloatArray, dy: float) -> FloatArray:
         """Return the derivative (unknown) along y of a displacement (x, y), constant beyond the last cell."""
@@ -141,7 +142,7 @@ class RollingCells:
         return np.asarray(((b - 1.5) * u0 + (2 - 2 * b) * u1 + (b - 0.5) * u2) / dy)
 
 
-def neighbour_shares(x: FloatArray, widths: FloatArray, dy: float) -> FloatArray | None:
+def averaging_weights(x: FloatArray, widths: FloatArray, dy: float) -> FloatArray | None:
     """Shares of columns in the offset of the slip of each (column, column); None if all columns are far apart."""
     # At different offsets the slips of neighbours nearer than a cell's length would differ by more than their
     # tractions.
@@ -149,24 +150,24 @@ def neighbour_shares(x: FloatArray, widths: FloatArray, dy: float) -> FloatArray
     return near * widths if np.count_nonzero(near) > x.size else None
 
 
-def _part_inside(pressure: FloatArray) -> float:
+def _inside_length(pressure: FloatArray) -> float:
     """Cells between the inner border of the last cell and the contact's edge."""
     # A parabola through the squared pressure of the third to fifth last cell: the edge affects the last two. The
     # contact may reach into the next cell, which then has no pressure.
     third, second, first = pressure[-5:-2] ** 2  # at 2, 1 and 0 cells behind the third last
     bend, slope = 0.5 * (third - 2 * second + first), 0.5 * (third - 4 * second + 3 * first)
     # first + slope s + bend s**2 = 0, s ahead of the third last centre
-    root = slope**2 - 4 * bend * first
-    if root < 0 or slope >= 0:
+    discriminant = slope**2 - 4 * bend * first
+    if discriminant < 0 or slope >= 0:
         return 1.0
-    distance = 2 * first / (np.sqrt(root) - slope)
+    distance = 2 * first / (np.sqrt(discriminant) - slope)
     # 1.5 cells lie between the third last centre and the inner border of the last cell.
-    return float(np.clip(distance - 1.5, *PARTS))
+    return float(np.clip(distance - 1.5, *LEADING_LENGTH_RANGE))
 
 
 NESTED_CELLS = 600  # least number of cells of a contact that is first solved on coarser cells. Speed.
 ROUGH_TOLERANCE = 1e-3  # tolerance on coarser cells, and of the solution that determines the sliding columns. Speed.
-LARGEST_STICKING = 0.999  # largest part of its bound of a sticking cell in a guess. Speed.
+MAX_STICKING_RATIO = 0.999  # largest part of its bound of a sticking cell in a guess. Speed.
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -175,7 +176,7 @@ class FrictionRequest:
 
     motion: Shift | Rolling  # motion of the shape against the body
     friction: float | FloatArray  # broadcasts to (x, y): coefficient of friction, not negative
-    middle: float  # position x about which spin and moment are counted, metres
+    reference_x: float  # position x reference of spin and moment, metres
     coupled: bool  # whether the tractions also displace the surfaces normally and so change the pressure
     start: Mapping[Load, FloatArray] | None = None  # (x, y): pressure and tractions at the start of a shift; default: 0
     coarse: Tractions | None = None
@@ -185,14 +186,14 @@ class FrictionRequest:
 
 
 def solve_tractions(
-    request: FrictionRequest, settings: Settings, surfaces: Surfaces, pressure: FloatArray, last: Tractions | None
+    request: FrictionRequest, settings: Settings, surfaces: Surfaces, pressure: FloatArray, previous: Tractions | None
 ) -> Tractions:
-    """Tractions under a pressure; `last` is a guess under almost the same one, whose leading edges are retained."""
+    """Tractions under a pressure; `previous` is a guess under a similar pressure with leading edges to retain."""
     grid, motion = surfaces.grid, request.motion
     bound = np.asarray(request.friction * pressure)
     rolling = isinstance(motion, Rolling)
-    shares = neighbour_shares(grid.x, grid.widths, grid.dy)
-    cells = RollingCells.of(pressure, bound, shares) if rolling else _shift_cells(bound)
+    weights = averaging_weights(grid.x, grid.widths, grid.dy)
+    cells = RollingCells.of(pressure, bound, weights) if rolling else _shift_cells(bound)
     check_forces(motion, bound, surfaces.weights)
     if not cells.unknown.size:
         zero = np.zeros((2, *grid.shape))
@@ -200,35 +201,35 @@ def solve_tractions(
         return Tractions.of(surfaces, motion.amplitudes, bound=bound, traction=zero, slip=zero, sticks=sticks)
     if isinstance(motion, Rolling) and motion.model == "fastsim":
         return solve_strips(motion, surfaces, bound)
-    displaced = surfaces.operator.displaced({Load.NORMAL: pressure}, TANGENTIAL)
+    displacements = surfaces.operator.compute_displacements({Load.NORMAL: pressure}, TANGENTIAL)
     if request.start is not None:
-        for direction, initial in surfaces.operator.displaced(request.start, TANGENTIAL).items():
-            displaced[direction] = displaced[direction] - initial
+        for direction, initial in surfaces.operator.compute_displacements(request.start, TANGENTIAL).items():
+            displacements[direction] = displacements[direction] - initial
 
     def solve(cells: RollingCells, tolerance: float, guess: Guess | None) -> Tractions:
-        problem = _coulomb_problem(motion, surfaces, cells, displaced)
+        problem = _coulomb_problem(motion, surfaces, cells, displacements)
         max_steps = settings.max_iterations if request.max_steps is None else request.max_steps
         problem = replace(problem, tolerance=tolerance, max_steps=max_steps)
         solution = solve_with_continuation(problem, guess)
         return _complete_tractions(problem, solution, motion, cells, surfaces)
 
     steps = 0
-    if last is None or last.leading is None:
+    if previous is None or previous.leading is None:
         coarse = request.coarse
         if coarse is None and cells.unknown.shape[1] >= NESTED_CELLS:
             coarse = _solve_coarse(request, settings, surfaces, pressure, bound)
         guess = None if coarse is None else guess_from_coarse(coarse, cells, motion.modes)
-        last = solve(cells, max(settings.tolerance, ROUGH_TOLERANCE) if rolling else settings.tolerance, guess)
+        previous = solve(cells, max(settings.tolerance, ROUGH_TOLERANCE) if rolling else settings.tolerance, guess)
         if not rolling:
-            return last
-        if not last.converged:
-            return _with_mean_slip(last, surfaces, displaced)
-        steps = last.steps
+            return previous
+        if not previous.converged:
+            return _with_mean_slip(previous, surfaces, displacements)
+        steps = previous.steps
     # Marked columns and edges from each pressure of a coupled contact would alternate.
-    leading = last.leading or Leading(np.asarray(~last.sticks.any(axis=1)), pressure)
-    cells = RollingCells.of(pressure, bound, shares, leading)
-    tractions = solve(cells, settings.tolerance, guess_from_last(last, cells, motion.modes))
-    return replace(_with_mean_slip(tractions, surfaces, displaced), steps=steps + tractions.steps, leading=leading)
+    leading = previous.leading or LeadingEdges(np.asarray(~previous.sticks.any(axis=1)), pressure)
+    cells = RollingCells.of(pressure, bound, weights, leading)
+    tractions = solve(cells, settings.tolerance, guess_from_last(previous, cells, motion.modes))
+    return replace(_with_mean_slip(tractions, surfaces, displacements), steps=steps + tractions.steps, leading=leading)
 
 
 def _coulomb_problem(
@@ -246,28 +247,29 @@ def _coulomb_problem(
             return np.stack([cells.derivative(displacements[direction], grid.dy) for direction in TANGENTIAL])
         return np.stack([-displacements[direction][tuple(cells.unknown)] for direction in TANGENTIAL])
 
-    def relief(traction: FloatArray) -> FloatArray:
+    def apply_compliance(traction: FloatArray) -> FloatArray:
         on_grid = cells.on_grid(traction)
-        return -elastic_slip(surfaces.operator.displaced(dict(zip(TANGENTIAL, on_grid, strict=True)), TANGENTIAL))
+        loads = dict(zip(TANGENTIAL, on_grid, strict=True))
+        return -elastic_slip(surfaces.operator.compute_displacements(loads, TANGENTIAL))
 
     amplitudes, modes, weights = motion.amplitudes, motion.modes, surfaces.weights
-    row, column = cells.unknown
-    x, y = grid.x[row], grid.y[column] + cells.offset * grid.dy
+    rows, columns = cells.unknown
+    x, y = grid.x[rows], grid.y[columns] + cells.offset * grid.dy
     unit_slips = {name: surfaces.rigid_slip(name, x, y) for name in amplitudes}
     rigid = elastic_slip(displaced) + sum(
         (amplitude * unit_slips[name] for name, amplitude in amplitudes.items() if name not in modes),
         np.zeros((2, 1)),
     )  # eq. (44)
-    works = np.array([cells.gather(weights[list(amplitudes).index(name)]) for name in modes])
+    mode_weights = np.array([cells.gather(weights[list(amplitudes).index(name)]) for name in modes])
     return CoulombProblem(
-        relief=relief,
+        apply_compliance=apply_compliance,
         inverse=tangential_inverse(surfaces.materials, cells.unknown, grid, rolling=rolling),
         bound=cells.limits,
         rigid=rigid,
         modes=np.array([unit_slips[name] for name in modes]).reshape(len(modes), *rigid.shape),
-        works=works.reshape(len(modes), *rigid.shape),
+        resultant_weights=mode_weights.reshape(len(modes), *rigid.shape),
         resultants=np.array(list(motion.resultants.values())),
-        shares=np.broadcast_to(grid.weights, grid.shape)[tuple(cells.unknown)],
+        relative_areas=np.broadcast_to(grid.weights, grid.shape)[tuple(cells.unknown)],
         symmetric=not rolling,
     )
 
@@ -311,14 +313,14 @@ def _complete_tractions(
     slip, sticks = np.zeros_like(traction), np.zeros(grid.shape, bool)
     slip[:, cells.unknown[0], cells.unknown[1]] = np.where(solution.sticks, 0.0, cell_slip)
     sticks[tuple(cells.unknown)] = solution.sticks
-    for row, column, number in zip(*cells.tied, cells.to, strict=True):
-        slip[:, row, column], sticks[row, column] = slip[:, row, column - 1], solution.sticks[number]
+    for row, column, index in zip(*cells.dependent, cells.source_cell, strict=True):
+        slip[:, row, column], sticks[row, column] = slip[:, row, column - 1], solution.sticks[index]
     rigid = motion.amplitudes | dict(zip(motion.modes, solution.amplitudes.tolist(), strict=True))
     tractions = Tractions.of(surfaces, rigid, bound=cells.bound, traction=traction, slip=slip, sticks=sticks)
-    largest = (np.abs(surfaces.weights).sum(axis=1) * np.hypot(*traction)).sum(axis=(1, 2)).tolist()
+    max_resultants = (np.abs(surfaces.weights).sum(axis=1) * np.hypot(*traction)).sum(axis=(1, 2)).tolist()
     errors = [
         abs(tractions.resultants[name] - motion.resultants[mode]) / max(size, 1e-300)
-        for (mode, name), size in zip(RESULTANTS.items(), largest, strict=True)
+        for (mode, name), size in zip(RESULTANTS.items(), max_resultants, strict=True)
         if mode in motion.modes
     ]
     return replace(
@@ -331,24 +333,25 @@ def _complete_tractions(
     )
 
 
-def _with_mean_slip(tractions: Tractions, surfaces: Surfaces, displaced: Mapping[Load, FloatArray]) -> Tractions:
+def _with_mean_slip(tractions: Tractions, surfaces: Surfaces, displacements: Mapping[Load, FloatArray]) -> Tractions:
     """Tractions of rolling with the frictional work per distance, and the mean slip of each slipping cell."""
     # Means over cells are central differences: by reciprocity the sum then equals the work of the rigid slip. The slip
     # is scaled to that work (without slip the sum is an error of the differences); a cell inside which slip begins
     # counts as sticking; beside a cell without pressure the slip is kept.
     grid, traction = surfaces.grid, tractions.traction
-    moved = surfaces.operator.displaced(dict(zip(TANGENTIAL, traction, strict=True)), TANGENTIAL)
-    total = np.stack([displaced[direction] + moved[direction] for direction in TANGENTIAL])
+    loads = dict(zip(TANGENTIAL, traction, strict=True))
+    response = surfaces.operator.compute_displacements(loads, TANGENTIAL)
+    total = np.stack([displacements[direction] + response[direction] for direction in TANGENTIAL])
     mean = np.gradient(total, grid.dy, axis=2)  # eq. (44)
     for name, amplitude in tractions.rigid.items():
         mean += amplitude * surfaces.rigid_slip(name, grid.x[:, None], grid.y)
     work = float((traction * mean * surfaces.areas).sum())
     size = np.hypot(*traction)
     direction = traction / np.where(size > 0, size, 1.0)
-    loaded = np.pad(size > 0, ((0, 0), (1, 1)))
-    parallel = (mean * direction).sum(axis=0)
-    inner = loaded[:, :-2] & loaded[:, 2:] & ~tractions.sticks & (parallel > 0)
-    slip = np.where(inner, parallel * direction, tractions.slip)
+    is_loaded = np.pad(size > 0, ((0, 0), (1, 1)))
+    slip_along_traction = (mean * direction).sum(axis=0)
+    slips_inside = is_loaded[:, :-2] & is_loaded[:, 2:] & ~tractions.sticks & (slip_along_traction > 0)
+    slip = np.where(slips_inside, slip_along_traction * direction, tractions.slip)
     cells_work = float((traction * slip * surfaces.areas).sum())
     scale = work / cells_work if min(work, cells_work) > 0 else 1.0
     return replace(tractions, slip=slip * scale, work=cells_work * scale)
@@ -358,32 +361,34 @@ def _shift_cells(bound: FloatArray) -> RollingCells:
     """Cells of a shifted contact: all cells that carry a traction are unknown."""
     unknown = np.argwhere(bound > 0).T
     offset, empty = np.zeros(unknown.shape[1]), np.zeros((2, 0), dtype=np.int64)
-    return RollingCells(bound=bound, unknown=unknown, offset=offset, tied=empty, to=empty[0], ratio=np.zeros(0))
+    return RollingCells(
+        bound=bound, unknown=unknown, offset=offset, dependent=empty, source_cell=empty[0], ratio=np.zeros(0)
+    )
 
 
 def guess_from_coarse(coarse: Tractions, cells: RollingCells, modes: tuple[str, ...]) -> Guess:
     """Guess for finer cells."""
     row, column = cells.unknown
     factor = cells.bound.shape[0] // coarse.bound.shape[0]
-    part = coarse.traction / np.where(coarse.bound > 0, coarse.bound, 1.0)
+    fraction = coarse.traction / np.where(coarse.bound > 0, coarse.bound, 1.0)
     # Slipping cells have all of their bound; inside the stick zone the part is interpolated.
     parents = row // factor, column // 2
-    fine = halve_cells(part, 2)
+    fine_fraction = halve_cells(fraction, 2)
     if factor == 2:
-        fine = halve_cells(fine, 1)
-    smooth = fine[:, row, column]
-    size = np.hypot(*smooth)
-    limited = smooth * np.minimum(1.0, LARGEST_STICKING / np.where(size > 0, size, 1.0))
+        fine_fraction = halve_cells(fine_fraction, 1)
+    interpolated = fine_fraction[:, row, column]
+    size = np.hypot(*interpolated)
+    limited = interpolated * np.minimum(1.0, MAX_STICKING_RATIO / np.where(size > 0, size, 1.0))
     sticks = coarse.sticks[parents]
-    traction = np.where(sticks, limited, part[:, parents[0], parents[1]]) * cells.limits
+    traction = np.where(sticks, limited, fraction[:, parents[0], parents[1]]) * cells.limits
     return Guess(traction, np.array([coarse.rigid[name] for name in modes]))
 
 
-def guess_from_last(last: Tractions, cells: RollingCells, modes: tuple[str, ...]) -> Guess:
-    """Guess from tractions on the same cells under a bound that was almost the same."""
+def guess_from_last(previous: Tractions, cells: RollingCells, modes: tuple[str, ...]) -> Guess:
+    """Guess from tractions on the same cells under a similar bound."""
     unknown = tuple(cells.unknown)
-    traction, limit = last.traction[:, *unknown], cells.limits
+    traction, limit = previous.traction[:, *unknown], cells.limits
     size = np.hypot(*traction)
-    limited = np.where(last.sticks[unknown], np.minimum(size, LARGEST_STICKING * limit), limit)
-    amplitudes = np.array([last.rigid[name] for name in modes])
+    limited = np.where(previous.sticks[unknown], np.minimum(size, MAX_STICKING_RATIO * limit), limit)
+    amplitudes = np.array([previous.rigid[name] for name in modes])
     return Guess(traction * (limited / np.where(size > 0, size, 1.0)), amplitudes)

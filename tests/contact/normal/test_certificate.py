@@ -15,43 +15,45 @@ VARIATION = 6e-5
 PRESSURE = 1e9 * np.array([[0.0, 0.5, 2.0]])
 
 
-def certificate(opening: list[float], *, pressure: np.ndarray = PRESSURE, carried: float = 5.0, **other) -> Certificate:
+def certificate(
+    opening: list[float], *, pressure: np.ndarray = PRESSURE, carried_load: float = 5.0, **other
+) -> Certificate:
     """Of a gap over the variation of the displacement."""
-    values = {"load": 5.0, "off_position": 0.0} | other
+    values = {"load": 5.0, "position_error": 0.0} | other
     gap = VARIATION * np.array([opening])
-    return certify(pressure, gap, DISPLACEMENT, carried=carried, tolerance=TOLERANCE, **values)
+    return certify(pressure, gap, DISPLACEMENT, carried_load=carried_load, tolerance=TOLERANCE, **values)
 
 
-def test_a_contact_without_violations() -> None:
+def test_exact_contact_has_no_violations() -> None:
     assert set(asdict(certificate([0.3, 0.0, 0.0])).values()) == {0.0}
     assert certificate([0.3, 0.0, 0.0]).holds(TOLERANCE)
     assert certificate([np.inf, 0.0, 0.0]).holds(TOLERANCE)
 
 
 @pytest.mark.parametrize("opening", [[0.3, 2e-3, 0.0], [0.3, -2e-3, 0.0], [-2e-3, 0.0, 1e-3]])
-def test_gaps_under_pressure_and_overlaps_anywhere(opening: list[float]) -> None:
+def test_gaps_and_overlaps_are_violations(opening: list[float]) -> None:
     assert certificate(opening).penetration_error == pytest.approx(2e-3)
     assert not certificate(opening).holds(TOLERANCE)
 
 
-def test_pressure_counts_as_open_beyond_first_share_tolerances_of_the_variation() -> None:
+def test_open_pressure_begins_beyond_tolerances() -> None:
     for factor, error in ((0.5, 0.0), (1.5, 0.25)):
         opening = [0.3, factor * OPEN_TOLERANCES * TOLERANCE, 0.0]
         assert certificate(opening).open_pressure_error == pytest.approx(error)
     assert not certificate([0.3, 1.5 * OPEN_TOLERANCES * TOLERANCE, 0.0]).holds(TOLERANCE)
 
 
-def test_load_and_its_position() -> None:
-    assert certificate([0.3, 0.0, 0.0], carried=5.5).load_error == pytest.approx(0.1)
-    assert certificate([0.3, 0.0, 0.0], carried=4.5).load_error == pytest.approx(-0.1)
-    assert certificate([0.3, 0.0, 0.0], carried=5.5, load=None).load_error == 0.0
-    assert certificate([0.3, 0.0, 0.0], off_position=0.2).load_position_error == 0.2
+def test_load_errors_measure_size_and_position() -> None:
+    assert certificate([0.3, 0.0, 0.0], carried_load=5.5).load_error == pytest.approx(0.1)
+    assert certificate([0.3, 0.0, 0.0], carried_load=4.5).load_error == pytest.approx(-0.1)
+    assert certificate([0.3, 0.0, 0.0], carried_load=5.5, load=None).load_error == 0.0
+    assert certificate([0.3, 0.0, 0.0], position_error=0.2).load_position_error == 0.2
 
 
 @pytest.mark.parametrize("name", ["load_error", "penetration_error", "open_pressure_error", "load_position_error"])
 @pytest.mark.parametrize("sign", [1, -1])
-def test_any_violation_beyond_the_bound_means_not_converged(name: str, sign: int) -> None:
-    whole = asdict(certificate([0.3, 0.0, 0.0]))
+def test_certificate_fails_beyond_bound(name: str, sign: int) -> None:
+    complete = asdict(certificate([0.3, 0.0, 0.0]))
     bound = CONVERGED_TOLERANCES * TOLERANCE
-    assert Certificate(**(whole | {name: 0.9 * sign * bound})).holds(TOLERANCE)
-    assert not Certificate(**(whole | {name: 1.1 * sign * bound})).holds(TOLERANCE)
+    assert Certificate(**(complete | {name: 0.9 * sign * bound})).holds(TOLERANCE)
+    assert not Certificate(**(complete | {name: 1.1 * sign * bound})).holds(TOLERANCE)

@@ -10,8 +10,8 @@ import pytest
 from contactstudy import ConvergenceWarning, FiniteLengthSpace, Grid, HalfSpace, Material, QuarterSpace
 from contactstudy.bodies import Body, Counterbody
 from contactstudy.cache import ArrayKey
-from contactstudy.contact.normal.contact import Contact, Settings, Shape, _off_position, contact_of
-from contactstudy.contact.normal.prescribed import Prescribed
+from contactstudy.contact.normal.contact import Contact, Settings, Shape, _position_error, contact_of
+from contactstudy.contact.normal.prescribed_loads import PrescribedLoad
 
 LENGTH, PRESSURE = 2.0**-17, 2.0**37
 """Units of length and pressure, powers of two: numbers in them differ by nothing else."""
@@ -45,7 +45,7 @@ class Asked(NamedTuple):
             body = FiniteLengthSpace(material=material, length=3.0 * length)
         load = None if self.load is None else self.load * pressure * length**2
         position, approach = (None if each is None else each * length for each in (self.position, self.approach))
-        prescribed = Prescribed(load, position, approach)
+        prescribed = PrescribedLoad(load, position, approach)
         counterbody = Counterbody(HalfSpace(material=Material(0.5 * pressure, 0.2))) if self.pair else None
         return Shape(body, grid, ArrayKey(length * gap), prescribed, counterbody, self.coupled)
 
@@ -66,18 +66,18 @@ ASKED = {
 
 
 @pytest.mark.parametrize("asked", ASKED.values(), ids=ASKED)
-def test_units_decide_nothing(asked: Asked) -> None:
-    plain, other = contact_of(asked.shape(), Settings()), contact_of(asked.shape(LENGTH, PRESSURE), Settings())
-    assert plain.converged
-    assert (plain.converged, plain.iterations) == (other.converged, other.iterations)
+def test_results_scale_with_units(asked: Asked) -> None:
+    baseline, variant = contact_of(asked.shape(), Settings()), contact_of(asked.shape(LENGTH, PRESSURE), Settings())
+    assert baseline.converged
+    assert (baseline.converged, baseline.iterations) == (variant.converged, variant.iterations)
     units = {"pressure": PRESSURE, "gap": LENGTH, "displacement": LENGTH, "approach": LENGTH, "tilt": 1.0}
-    units |= {"carried": PRESSURE * LENGTH**2, "load_position": LENGTH}
+    units |= {"carried_load": PRESSURE * LENGTH**2, "load_position": LENGTH}
     for name, unit in units.items():
-        value = getattr(plain, name)
-        least = 1e-9 * np.abs(np.where(np.isfinite(value), value, 0.0)).max()
-        assert getattr(other, name) / unit == pytest.approx(value, rel=1e-6, abs=least), name
-    for name, value in vars(plain.certificate).items():
-        assert getattr(other.certificate, name) == pytest.approx(value, rel=0.1, abs=1e-10), name
+        value = getattr(baseline, name)
+        minimum = 1e-9 * np.abs(np.where(np.isfinite(value), value, 0.0)).max()
+        assert getattr(variant, name) / unit == pytest.approx(value, rel=1e-6, abs=minimum), name
+    for name, value in vars(baseline.certificate).items():
+        assert getattr(variant.certificate, name) == pytest.approx(value, rel=0.1, abs=1e-10), name
 
 
 @pytest.mark.parametrize("ended", [False, True])
@@ -88,7 +88,7 @@ def test_symmetric_contacts_have_symmetric_pressures(ended: bool) -> None:
     gap = 0.05 * ((grid.x[:, None] - middle) ** 2 + grid.y**2)
     material = Material(0.91, 0.3)
     body: Body = FiniteLengthSpace(material=material, length=3.0) if ended else HalfSpace(material=material)
-    shape = Shape(body, grid, ArrayKey(gap), Prescribed(0.05))
+    shape = Shape(body, grid, ArrayKey(gap), PrescribedLoad(0.05))
     pressure = contact_of(shape, Settings()).pressure
     assert (pressure == pressure[::-1]).all()
     assert (pressure == pressure[:, ::-1]).all()
@@ -96,15 +96,15 @@ def test_symmetric_contacts_have_symmetric_pressures(ended: bool) -> None:
     off_middle = (
         (shape._replace(coupled_friction=0.3), [0]),
         (shape._replace(gap=ArrayKey(gap + 1e-6 * grid.x[:, None])), [1]),
-        (shape._replace(prescribed=Prescribed(0.05, middle + 1e-6)), [1]),
+        (shape._replace(prescribed=PrescribedLoad(0.05, middle + 1e-6)), [1]),
         (shape._replace(body=QuarterSpace(material=material)), [1]),
         (shape._replace(counterbody=Counterbody(FiniteLengthSpace(length=1.0, material=material), 0.1)), [1]),
     )
-    for other, axes in off_middle:
-        assert other.reflections() == axes
+    for variant, axes in off_middle:
+        assert variant.reflections() == axes
 
 
-def moved(found: Contact) -> Any:
+def rigid_approach(found: Contact) -> Any:
     """How far the surfaces have come towards each other, from what is stated of the shape."""
     at = found.shape.prescribed.load_position
     turned = 0.0 if at is None else found.tilt * (found.shape.grid.x[:, None] - at)
@@ -112,14 +112,14 @@ def moved(found: Contact) -> Any:
 
 
 @pytest.mark.parametrize("name", ["load", "approach", "ends", "position"])
-def test_the_gap_is_that_of_the_displaced_body_and_the_shape_where_it_is_stated(name: str) -> None:
-    found = contact_of(ASKED[name].shape(), Settings())
-    facing = np.isfinite(found.gap)
-    expected = found.shape.gap.values + found.displacement - moved(found)
-    assert found.gap[facing] == pytest.approx(expected[facing], abs=1e-9)
-    assert (np.abs(found.tilt) > 1e-4) == (name == "position")
+def test_gap_follows_from_displacement_and_shape(name: str) -> None:
+    computed = contact_of(ASKED[name].shape(), Settings())
+    facing = np.isfinite(computed.gap)
+    expected = computed.shape.gap.values + computed.displacement - rigid_approach(computed)
+    assert computed.gap[facing] == pytest.approx(expected[facing], abs=1e-9)
+    assert (np.abs(computed.tilt) > 1e-4) == (name == "position")
     if name == "position":
-        assert found.load_position == pytest.approx(1.75, abs=1e-5)
+        assert computed.load_position == pytest.approx(1.75, abs=1e-5)
 
 
 MOST = {
@@ -139,24 +139,24 @@ MOST = {
 
 
 @pytest.mark.parametrize("name", MOST)
-def test_the_operator_is_applied_a_few_times_only(name: str) -> None:
+def test_operator_applications_are_few(name: str) -> None:
     assert contact_of(ASKED[name].shape(), Settings()).iterations <= MOST[name]
 
 
-def test_a_warning_points_at_who_asked() -> None:
-    found = contact_of(ASKED["load"].shape(), Settings(1e-6, 3))
-    with pytest.warns(ConvergenceWarning, match="after 3 operator applications|max_iterations .now 3") as said:
-        found.warn_unless_converged()
-    assert said[0].filename == __file__
+def test_warning_refers_to_caller() -> None:
+    computed = contact_of(ASKED["load"].shape(), Settings(1e-6, 3))
+    with pytest.warns(ConvergenceWarning, match="after 3 operator applications|max_iterations .now 3") as message:
+        computed.warn_unless_converged()
+    assert message[0].filename == __file__
 
 
-def test_distance_of_the_resultant_from_its_place_over_the_length_of_the_contact() -> None:
+def test_position_error_is_relative_to_contact_length() -> None:
     """Of two columns with the resultant halfway between: each weighted by its width, and in any place."""
-    for place in (0.0, 5.0):
-        grid = Grid.between(place + np.array([0.0, 1.0, 2.0, 3.0, 5.0, 6.0]), (0.0, 1.0), 2)
+    for position in (0.0, 5.0):
+        grid = Grid.between(position + np.array([0.0, 1.0, 2.0, 3.0, 5.0, 6.0]), (0.0, 1.0), 2)
         pressure = np.zeros(grid.shape)
         pressure[1], pressure[3] = 2.0, 1.0  # centres 1.5 and 4, widths 1 and 2: half of the load on each
         for at in (2.0, 3.5):
-            off = _off_position(Prescribed(1.0, place + at), grid, pressure)
+            off = _position_error(PrescribedLoad(1.0, position + at), grid, pressure)
             assert off == pytest.approx(abs(2.75 - at) / 4.0)
-    assert _off_position(Prescribed(1.0), grid, pressure) == 0.0
+    assert _position_error(PrescribedLoad(1.0), grid, pressure) == 0.0

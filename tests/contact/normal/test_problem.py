@@ -14,11 +14,11 @@ from contactstudy.contact.normal.conjugate_gradients import Resultants
 from contactstudy.contact.normal.problem import (
     ContactOperator,
     ContactProblem,
-    _continued_square,
-    _first_guess,
-    _levelled,
-    between_columns,
+    _continue_square,
+    _initial_guess,
+    _remove_mean_slope,
     halve_cells,
+    interpolate_columns,
     solve_coupled,
     solve_normal,
 )
@@ -64,53 +64,53 @@ GRADED = Grid.between(np.concatenate([np.linspace(-1.5, 0.3, 11), np.linspace(0.
 @pytest.mark.parametrize("grid", [GRID, GRADED], ids=["uniform", "graded"])
 def test_applications_are_counted(grid: Grid, friction: float) -> None:
     operator = Counting(grid)
-    found = (solve_coupled if friction else solve_normal)(operator, ball(grid, friction=friction))
-    assert found.converged
-    assert found.applications == operator.number
+    computed = (solve_coupled if friction else solve_normal)(operator, ball(grid, friction=friction))
+    assert computed.converged
+    assert computed.applications == operator.number
 
 
-def test_rounds_end_when_friction_bends_nothing_any_more() -> None:
+def test_coupled_rounds_end_without_bending_change() -> None:
     """The pressure under its own friction is that of the next round, to the tolerance and no more than needed."""
-    asked = ball(GRID, friction=0.4)
+    request = ball(GRID, friction=0.4)
     operator = Counting(GRID)
-    found = solve_coupled(operator, asked)
-    bent = operator({Load.ALONG_Y: asked.friction * found.pressure})
-    again = solve_normal(operator, replace(asked, gap=asked.gap + bent, tolerance=1e-10))
-    assert found.pressure == pytest.approx(again.pressure, abs=3e-6 * again.pressure.max())
-    alone = solve_normal(operator, asked)
-    assert np.abs(alone.pressure - again.pressure).max() > 1e-2 * again.pressure.max()
+    computed = solve_coupled(operator, request)
+    bent = operator({Load.ALONG_Y: request.friction * computed.pressure})
+    repeated = solve_normal(operator, replace(request, gap=request.gap + bent, tolerance=1e-10))
+    assert computed.pressure == pytest.approx(repeated.pressure, abs=3e-6 * repeated.pressure.max())
+    single = solve_normal(operator, request)
+    assert np.abs(single.pressure - repeated.pressure).max() > 1e-2 * repeated.pressure.max()
 
 
 @pytest.mark.parametrize("positions", [np.linspace(-1.0, 8.0, 46), np.array([0.0, 1.0, 3.0, 7.0])])
-def test_values_between_columns_are_on_lines(positions: FloatArray) -> None:
+def test_column_interpolation_is_linear(positions: FloatArray) -> None:
     centres = np.array([0.0, 1.0, 3.0, 7.0])
     values = np.random.default_rng(0).standard_normal((4, 3))
-    expected = np.stack([np.interp(positions, centres, each) for each in values.T], axis=1)
-    assert between_columns(values, centres, positions) == pytest.approx(expected, abs=1e-12)
-    assert between_columns(values[:1], centres[:1], positions) == pytest.approx(
+    expected = np.stack([np.interp(positions, centres, value) for value in values.T], axis=1)
+    assert interpolate_columns(values, centres, positions) == pytest.approx(expected, abs=1e-12)
+    assert interpolate_columns(values[:1], centres[:1], positions) == pytest.approx(
         np.repeat(values[:1], positions.size, 0)
     )
 
 
-def test_halves_of_cells_are_on_lines_between_centres() -> None:
+def test_halved_cells_are_linear_between_centres() -> None:
     values = np.random.default_rng(0).standard_normal((5, 3))
     fine = (np.arange(10) + 0.5) / 2 - 0.5
-    assert halve_cells(values, 0) == pytest.approx(between_columns(values, np.arange(5.0), fine), abs=1e-12)
+    assert halve_cells(values, 0) == pytest.approx(interpolate_columns(values, np.arange(5.0), fine), abs=1e-12)
 
 
-def tilting(grid: Grid, position: float) -> tuple[FloatArray, float]:
+def tilted_gap(grid: Grid, position: float) -> tuple[FloatArray, float]:
     """Lever about a position, over the largest arm, and that arm."""
     arm = grid.x[:, None] - position
     return arm / np.abs(arm).max(), float(np.abs(arm).max())
 
 
 @pytest.mark.parametrize("grid", [GRID, GRADED, UNLIKE], ids=["uniform", "graded", "unlike neighbours"])
-def test_cells_joined_in_twos_keep_areas_heights_and_levers(grid: Grid) -> None:
-    lever, _ = tilting(grid, 0.2)
+def test_merged_cells_keep_areas_heights_and_levers(grid: Grid) -> None:
+    lever, _ = tilted_gap(grid, 0.2)
     plane = 0.3 + 0.1 * grid.x[:, None] + 0.0 * grid.y
     coarse = ContactProblem(
         grid=grid, gap=plane, resultants=Resultants(2.0, lever), friction=0.0, tolerance=1e-6, max_iterations=500
-    ).coarser()
+    ).coarsen()
     joined = coarse.grid
     assert joined.shape == (grid.cells_x // 2, grid.cells_y // 2)
     middles = 0.5 * (grid.x_edges[2::2] + grid.x_edges[:-2:2])
@@ -121,12 +121,12 @@ def test_cells_joined_in_twos_keep_areas_heights_and_levers(grid: Grid) -> None:
     assert coarse.resultants.total == pytest.approx(2.0 * grid.cell_area / joined.cell_area)
 
 
-def test_cells_with_nothing_to_touch_do_not_count_where_cells_are_joined() -> None:
+def test_merged_cells_ignore_infinite_gaps() -> None:
     gap = np.broadcast_to(GRADED.x[:, None], GRADED.shape).copy()
     gap[:3] = np.inf
     coarse = ContactProblem(
         grid=GRADED, gap=gap, resultants=Resultants(1.0), friction=0.0, tolerance=1e-6, max_iterations=500
-    ).coarser()
+    ).coarsen()
     assert np.isinf(coarse.gap[0]).all()
     assert coarse.gap[1] == pytest.approx(GRADED.x[3])
     middle = 0.5 * (GRADED.x_edges[4] + GRADED.x_edges[6])
@@ -134,90 +134,88 @@ def test_cells_with_nothing_to_touch_do_not_count_where_cells_are_joined() -> No
 
 
 @pytest.mark.parametrize("grid", [GRID, GRADED], ids=["uniform", "graded"])
-def test_a_tilted_shape_that_is_free_to_tilt_is_levelled(grid: Grid) -> None:
-    lever, arm = tilting(grid, 0.2)
+def test_free_tilt_removes_mean_slope(grid: Grid) -> None:
+    lever, arm = tilted_gap(grid, 0.2)
     flat = np.where(grid.x[:, None] > 1.2, np.inf, 0.05 * grid.y**2 + 0.0 * grid.x[:, None])
     tilted = flat + 0.3 * (grid.x[:, None] - 0.2)
-    asked = ContactProblem(
+    request = ContactProblem(
         grid=grid, gap=tilted, resultants=Resultants(1.0, lever), friction=0.0, tolerance=1e-6, max_iterations=500
     )
     facing = np.isfinite(flat)
-    assert _levelled(asked)[facing] == pytest.approx(flat[facing], abs=1e-12)
-    assert _levelled(replace(asked, resultants=Resultants(1.0))) is asked.gap
-    assert asked.level((0.5, 0.3 * arm)) == pytest.approx(0.5 + 0.3 * (grid.x[:, None] - 0.2))
+    assert _remove_mean_slope(request)[facing] == pytest.approx(flat[facing], abs=1e-12)
+    assert _remove_mean_slope(replace(request, resultants=Resultants(1.0))) is request.gap
+    assert request.rigid_height((0.5, 0.3 * arm)) == pytest.approx(0.5 + 0.3 * (grid.x[:, None] - 0.2))
 
 
-def test_a_first_guess_follows_the_gap_below_a_level() -> None:
+def test_initial_guess_follows_gap_below_level() -> None:
     """On few cells: pressed where the gap is below the level under which four tenths of the cells are."""
-    asked = ball(GRID)
-    guess = _first_guess(Counting(GRID), asked)
+    request = ball(GRID)
+    guess = _initial_guess(Counting(GRID), request)
     pressed = guess > 0
     assert pressed.mean() == pytest.approx(0.4, abs=0.02)
-    assert asked.gap[pressed].max() < asked.gap[~pressed].min()
-    assert np.ptp(asked.gap[pressed] + guess[pressed] ** 2) < 1e-12
+    assert request.gap[pressed].max() < request.gap[~pressed].min()
+    assert np.ptp(request.gap[pressed] + guess[pressed] ** 2) < 1e-12
     # The level lies a little higher, so that a flat shape is pressed everywhere.
-    flat = replace(asked, gap=np.where(GRID.x[:, None] < 0, 0.0, 1.0) + 0 * asked.gap)
-    assert (_first_guess(Counting(GRID), flat) > 0).tolist() == (flat.gap == 0).tolist()
+    flat = replace(request, gap=np.where(GRID.x[:, None] < 0, 0.0, 1.0) + 0 * request.gap)
+    assert (_initial_guess(Counting(GRID), flat) > 0).tolist() == (flat.gap == 0).tolist()
     # A prescribed approach says itself where cells overlap.
     deep = ball(GRID, None, deep=0.02)
-    assert ((_first_guess(Counting(GRID), deep) > 0) == (deep.gap < 0)).all()
+    assert ((_initial_guess(Counting(GRID), deep) > 0) == (deep.gap < 0)).all()
 
 
-def test_the_squared_pressure_goes_on_outside_a_hertz_contact() -> None:
+def test_squared_pressure_continues_outside_hertz_contact() -> None:
     """Inside it is ``p0**2 (1 - r**2 / a**2)``; just outside it falls on with about the same slope."""
     grid = Grid(x_range=(-1.5, 1.5), y_range=(-1.5, 1.5), cells_x=60, cells_y=60)
-    asked = ball(grid)
+    request = ball(grid)
     operator = Counting(grid)
-    found = solve_normal(operator, asked)
-    squared = _continued_square(operator, asked, found)
+    computed = solve_normal(operator, request)
+    squared = _continue_square(operator, request, computed)
     modulus, radius = BODY.material.plane_strain_modulus, 10.0
     a = (0.75 * 0.05 * radius / modulus) ** (1 / 3)
     peak = 1.5 * 0.05 / (np.pi * a**2)
-    place = np.hypot(grid.x[:, None] - 0.1, grid.y) / a
-    exact = peak**2 * (1 - place**2)
-    inside, beside = place < 0.9, (place > 1.03) & (place < 1.15)
+    position = np.hypot(grid.x[:, None] - 0.1, grid.y) / a
+    exact = peak**2 * (1 - position**2)
+    inside, adjacent = position < 0.9, (position > 1.03) & (position < 1.15)
     assert squared[inside] == pytest.approx(exact[inside], abs=0.02 * peak**2)
-    assert (squared[place > 1.1] < 0).all()
-    assert squared[beside] / exact[beside] == pytest.approx(np.ones(beside.sum()), abs=0.5)
-    assert np.median(squared[beside] / exact[beside]) == pytest.approx(0.65, abs=0.1)
+    assert (squared[position > 1.1] < 0).all()
+    assert squared[adjacent] / exact[adjacent] == pytest.approx(np.ones(adjacent.sum()), abs=0.5)
+    assert np.median(squared[adjacent] / exact[adjacent]) == pytest.approx(0.65, abs=0.1)
 
 
 @pytest.mark.parametrize("approach", [False, True])
 @pytest.mark.parametrize("graded", [False, True])
-def test_a_first_guess_from_coarser_cells_is_almost_the_solution(*, graded: bool, approach: bool) -> None:
+def test_initial_guess_from_coarse_cells_approximates_solution(*, graded: bool, approach: bool) -> None:
     edges = np.linspace(-1.5, 1.5, 65) + (0.1 * np.linspace(-1, 1, 65) ** 2 if graded else 0.0)
     grid = Grid.between(edges, (-1.5, 1.5), 64)
     operator = Counting(grid)
-    asked = ball(grid, None, deep=0.04) if approach else ball(grid)
-    guess, found = _first_guess(operator, asked), solve_normal(operator, asked).pressure
-    off = (grid.weights * np.abs(guess - found)).sum() / (grid.weights * found).sum()
+    request = ball(grid, None, deep=0.04) if approach else ball(grid)
+    guess, computed = _initial_guess(operator, request), solve_normal(operator, request).pressure
+    off = (grid.weights * np.abs(guess - computed)).sum() / (grid.weights * computed).sum()
     assert off < 0.03
-    assert ((guess > 0) != (found > 0)).sum() < 0.05 * (found > 0).sum()
+    assert ((guess > 0) != (computed > 0)).sum() < 0.05 * (computed > 0).sum()
 
 
 @pytest.mark.parametrize("unit", [2.0**-17, 1.0])
 @pytest.mark.parametrize("friction", [0.4, 1.0, 1.5])
 @pytest.mark.parametrize("tolerance", [1e-2, 1e-3, 1e-4])
-def test_the_last_round_bends_the_surface_by_less_than_the_tolerance(
-    tolerance: float, friction: float, unit: float
-) -> None:
+def test_last_round_changes_surface_within_tolerance(tolerance: float, friction: float, unit: float) -> None:
     """Of the displacement's variation, in any unit: strong friction settles slowly."""
     grid = Grid(x_range=(-1.5 * unit, 1.5 * unit), y_range=(-1.5 * unit, 1.5 * unit), cells_x=16, cells_y=16)
     body = HalfSpace(material=Material(0.91, 0.0))
-    own = surface_operator(body, grid, LOADS)
+    expected = surface_operator(body, grid, LOADS)
     bent: list[FloatArray] = []
 
     class Noting(Counting):
         def __call__(self, loads: Mapping[Load, FloatArray]) -> FloatArray:
-            found = own(loads)
+            computed = expected(loads)
             if Load.ALONG_Y in loads:
-                bent.append(found)
-            return found
+                bent.append(computed)
+            return computed
 
     operator = Noting(grid)
-    operator.own = own
+    operator.own = expected
     gap = 0.05 * (grid.x[:, None] ** 2 + grid.y**2) / unit
-    asked = ContactProblem(
+    request = ContactProblem(
         grid=grid,
         gap=gap,
         resultants=Resultants(0.05 * unit**2 / grid.cell_area),
@@ -225,7 +223,7 @@ def test_the_last_round_bends_the_surface_by_less_than_the_tolerance(
         tolerance=tolerance,
         max_iterations=500,
     )
-    found = solve_coupled(operator, asked)
-    assert found.converged
-    moved = float(np.ptp((bent[-1] - bent[-2])[found.pressure > 0]))
-    assert moved <= 0.55 * tolerance * float(np.ptp(own({Load.NORMAL: found.pressure})))
+    computed = solve_coupled(operator, request)
+    assert computed.converged
+    shifted = float(np.ptp((bent[-1] - bent[-2])[computed.pressure > 0]))
+    assert shifted <= 0.55 * tolerance * float(np.ptp(expected({Load.NORMAL: computed.pressure})))

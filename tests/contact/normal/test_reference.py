@@ -49,33 +49,33 @@ def test_approach_grows_with_the_logarithm_of_the_depth_beyond_three_lengths() -
 CROWN = profiles.FullCrown(2.0)
 
 
-def crowned(**arguments: float) -> Case:
+def crowned_roller(**arguments: float) -> Case:
     body = FiniteLengthSpace(length=6e-3, material=STEEL, reference_depth=9e-3)
     roller = Roller(radius=6e-3, length=4e-3, profile=CROWN, material=STEEL, reference_depth=6e-3)
     return Case(body=body, roller=roller, end_distance=0.5e-3, **arguments)
 
 
-def test_a_prescribed_tilt_and_a_prescribed_position_of_its_load_agree() -> None:
-    case = crowned(load=1500.0, tilt=5e-4)
+def test_prescribed_tilt_equals_prescribed_position() -> None:
+    case = crowned_roller(load=1500.0, tilt=5e-4)
     grid = choose_grid(case, cells_x=4, cells_y=8)
     tilted = solve(case, grid, stresses=False)
-    balanced = solve(crowned(load=1500.0, load_position=float(tilted.load_position)), grid, stresses=False)
+    balanced = solve(crowned_roller(load=1500.0, load_position=float(tilted.load_position)), grid, stresses=False)
     assert float(balanced.tilt) == pytest.approx(5e-4, rel=2e-3)
     assert float(balanced.pressure.max()) == pytest.approx(float(tilted.pressure.max()), rel=2e-3)
-    pressed = solve(crowned(approach=float(tilted.approach), tilt=5e-4), grid, stresses=False)
+    pressed = solve(crowned_roller(approach=float(tilted.approach), tilt=5e-4), grid, stresses=False)
     # The approach of a tilted roller is that at mid-length; `tilted` states it there, too.
     assert float(pressed.normal_load) == pytest.approx(1500.0, rel=3e-3)
 
 
 def test_gap_is_initial_gap_and_displacement_less_the_approach() -> None:
-    case = replace(crowned(load=1500.0, tilt=5e-4), roller=Roller(radius=6e-3, length=4e-3, profile=CROWN))
+    case = replace(crowned_roller(load=1500.0, tilt=5e-4), roller=Roller(radius=6e-3, length=4e-3, profile=CROWN))
     result = solve(case, stresses=False, accuracy=0.1)
     gap = result.initial_gap + result.displacement_z - result.approach
     np.testing.assert_allclose(gap.values, result.gap.values, atol=1e-12)
 
 
-def test_the_line_of_the_body_is_at_rest() -> None:
-    case = crowned(load=1500.0, tilt=5e-4)
+def test_reference_line_of_body_is_at_rest() -> None:
+    case = crowned_roller(load=1500.0, tilt=5e-4)
     result = solve(case, stresses=False, accuracy=0.05)
     x = np.linspace(0.1e-3, 5.9e-3, 16)
     middle = float(result.load_position)
@@ -87,7 +87,7 @@ def test_the_line_of_the_body_is_at_rest() -> None:
     assert abs(slope) > 1e-6
 
 
-def test_depths_of_half_spaces_and_bad_depths() -> None:
+def test_half_space_depths_and_invalid_depths() -> None:
     roller = Roller(radius=RADIUS, length=4e-3, profile=CROWN)
     far, near = (
         solve(

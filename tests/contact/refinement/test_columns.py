@@ -9,11 +9,11 @@ import pytest
 
 from contactstudy.checks import FloatArray
 from contactstudy.contact.refinement.columns import (
-    BENT,
+    CHORD_TOLERANCE,
     FIRST_COLUMN,
-    MOST_COLUMNS,
-    NARROWEST_BENT,
-    WIDEST,
+    MAX_COLUMNS,
+    MIN_CHORD_WIDTH,
+    MIN_COLUMNS,
     AxialShape,
     centres_of,
     first_edges,
@@ -31,7 +31,7 @@ SHAPES: dict[str, Callable[[FloatArray], FloatArray]] = {
 }
 
 
-def asked(height: Callable[[FloatArray], FloatArray], unit: float = 1.0, start: float = 0.0) -> AxialShape:
+def axial_shape(height: Callable[[FloatArray], FloatArray], unit: float = 1.0, start: float = 0.0) -> AxialShape:
     """Half-width 1, depth 0.05; lengths in some unit, and from some place on."""
     return AxialShape(
         start=start,
@@ -39,11 +39,11 @@ def asked(height: Callable[[FloatArray], FloatArray], unit: float = 1.0, start: 
         half_width=unit,
         depth=0.05 * unit,
         height=lambda x: unit * height((x - start) / unit),
-        room=(0.0, 0.0),
+        face_beyond=(0.0, 0.0),
     )
 
 
-def bends(height: Callable[[FloatArray], FloatArray], low: FloatArray, high: FloatArray) -> FloatArray:
+def chord_deviation(height: Callable[[FloatArray], FloatArray], low: FloatArray, high: FloatArray) -> FloatArray:
     """Distance of the shape from its chord between some positions."""
     part = np.linspace(1e-6, 1 - 1e-6, 201)
     heights = height(low[:, None] + (high - low)[:, None] * part)
@@ -52,21 +52,21 @@ def bends(height: Callable[[FloatArray], FloatArray], low: FloatArray, high: Flo
 
 
 @pytest.mark.parametrize("name", SHAPES)
-def test_low_columns_follow_the_shape_and_high_ones_need_not(name: str) -> None:
+def test_overlooked_columns_leave_low_shape(name: str) -> None:
     height = SHAPES[name]
-    edges, plain = first_edges(asked(height)), first_edges(asked(np.zeros_like))
-    widths, bent = np.diff(edges), bends(height, edges[:-1], edges[1:])
+    edges, baseline = first_edges(axial_shape(height)), first_edges(axial_shape(np.zeros_like))
+    widths, bent = np.diff(edges), chord_deviation(height, edges[:-1], edges[1:])
     fine = np.linspace(1e-6, LENGTH - 1e-6, 20001)
-    own = edges[:-1, None] + widths[:, None] * np.linspace(1e-6, 1 - 1e-6, 201)
-    above = height(own).min(axis=1) - height(fine).min()
+    positions = edges[:-1, None] + widths[:, None] * np.linspace(1e-6, 1 - 1e-6, 201)
+    above = height(positions).min(axis=1) - height(fine).min()
     depth = 0.05
-    followed = (widths > NARROWEST_BENT) & (above < 2.9 * depth)
-    assert bent[followed].max(initial=0.0) <= 1.03 * BENT * depth
+    followed = (widths > MIN_CHORD_WIDTH) & (above < 2.9 * depth)
+    assert bent[followed].max(initial=0.0) <= 1.03 * CHORD_TOLERANCE * depth
     # A column is split only where it leaves its chord, or beside one that is narrow.
-    assert np.isin(plain, edges).all()
+    assert np.isin(baseline, edges).all()
     if name in ("chamfer", "steps at the ends"):
-        split = ~np.isin(edges, plain)
-        assert not split.any() or (name == "chamfer" and (np.abs(edges[split] - 13.0) < 3.0).all())
+        split_columns = ~np.isin(edges, baseline)
+        assert not split_columns.any() or (name == "chamfer" and (np.abs(edges[split_columns] - 13.0) < 3.0).all())
     if name == "deep wave":  # crests are never pressed
         crests = above > 6 * depth
         assert crests.any()
@@ -75,21 +75,23 @@ def test_low_columns_follow_the_shape_and_high_ones_need_not(name: str) -> None:
 
 @pytest.mark.parametrize("name", SHAPES)
 @pytest.mark.parametrize(("unit", "start"), [(2.0**-17, 0.0), (1.0, -8.0), (1.0, 32.0)])
-def test_neither_unit_nor_place_decides_anything(name: str, unit: float, start: float) -> None:
-    plain, other = first_edges(asked(SHAPES[name])), first_edges(asked(SHAPES[name], unit, start))
-    assert (other - start) / unit == pytest.approx(plain, abs=1e-9)
+def test_results_scale_with_unit_and_position(name: str, unit: float, start: float) -> None:
+    baseline, variant = first_edges(axial_shape(SHAPES[name])), first_edges(axial_shape(SHAPES[name], unit, start))
+    assert (variant - start) / unit == pytest.approx(baseline, abs=1e-9)
 
 
 @pytest.mark.parametrize("half_width", [0.01, 0.3, 1.0, 4.0, 100.0])
-def test_columns_double_from_either_end_up_to_a_widest(half_width: float) -> None:
+def test_first_columns_double_from_ends(half_width: float) -> None:
     edges = first_edges(
-        AxialShape(start=0.0, stop=LENGTH, half_width=half_width, depth=1.0, height=np.zeros_like, room=(0.0, 0.0))
+        AxialShape(
+            start=0.0, stop=LENGTH, half_width=half_width, depth=1.0, height=np.zeros_like, face_beyond=(0.0, 0.0)
+        )
     )
     widths = np.diff(edges)
-    narrowest = min(FIRST_COLUMN * half_width, LENGTH / (4 * WIDEST))
+    narrowest = min(FIRST_COLUMN * half_width, LENGTH / (4 * MIN_COLUMNS))
     assert 0.5 * narrowest < widths[0] <= narrowest * (1 + 1e-9)
-    assert widths.max() <= LENGTH / WIDEST * (1 + 1e-9)
-    assert widths.size < 2 * WIDEST + 2 * np.log2(LENGTH / narrowest)
+    assert widths.max() <= LENGTH / MIN_COLUMNS * (1 + 1e-9)
+    assert widths.size < 2 * MIN_COLUMNS + 2 * np.log2(LENGTH / narrowest)
     half = widths[: widths.size // 2]
     ratios = half[1:] / half[:-1]
     assert (ratios <= 2 * (1 + 1e-9)).all()
@@ -99,13 +101,13 @@ def test_columns_double_from_either_end_up_to_a_widest(half_width: float) -> Non
 
 
 @pytest.mark.parametrize("slope", [0.1, -0.1])
-def test_a_straight_incline_has_the_columns_of_a_level(slope: float) -> None:
+def test_straight_incline_adds_no_columns(slope: float) -> None:
     """It rises by more than the depth within a column, but never leaves its chord."""
-    plain, inclined = first_edges(asked(np.zeros_like)), first_edges(asked(lambda x: slope * x))
-    assert inclined == pytest.approx(plain)
+    baseline, inclined = first_edges(axial_shape(np.zeros_like)), first_edges(axial_shape(lambda x: slope * x))
+    assert inclined == pytest.approx(baseline)
 
 
-def test_a_shape_that_bends_everywhere_ends_at_the_most_columns() -> None:
+def test_curved_shape_reaches_maximum_columns() -> None:
     edges = first_edges(
         AxialShape(
             start=0.0,
@@ -113,10 +115,10 @@ def test_a_shape_that_bends_everywhere_ends_at_the_most_columns() -> None:
             half_width=1e-3,
             depth=1e-9,
             height=lambda x: 1e-9 * np.sin(300 * x),
-            room=(0.0, 0.0),
+            face_beyond=(0.0, 0.0),
         )
     )
-    assert MOST_COLUMNS < edges.size <= 2 * MOST_COLUMNS
+    assert MAX_COLUMNS < edges.size <= 2 * MAX_COLUMNS
     assert centres_of(np.array([1.0, 2.0, 5.0])).tolist() == [1.5, 3.5]
 
 
@@ -124,7 +126,7 @@ def test_a_shape_that_bends_everywhere_ends_at_the_most_columns() -> None:
 @pytest.mark.parametrize("width", [0.02, 0.1])
 def test_first_columns_contain_narrow_ridges(position: float, width: float) -> None:
     """Ridges of a measured profile, narrower than the widest first column by a factor of 12 to 60."""
-    shape = asked(lambda x: 4e-3 * (x - 9.0) ** 2 - 0.05 * np.exp(-(((x - position) / width) ** 2)))
+    shape = axial_shape(lambda x: 4e-3 * (x - 9.0) ** 2 - 0.05 * np.exp(-(((x - position) / width) ** 2)))
     edges = first_edges(shape)
     columns = np.diff(edges)[np.abs(centres_of(edges) - position) < 0.1]
     assert columns.size

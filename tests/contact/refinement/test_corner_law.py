@@ -14,67 +14,70 @@ LENGTH = 2e-3
 ANGLE = np.radians(2)
 
 
-def solved(profile: Profile, accuracy: float = 0.01):
+def solve_profile(profile: Profile, accuracy: float = 0.01):
     roller = cs.Roller(radius=6e-3, length=LENGTH, profile=profile)
     case = cs.Case(body=cs.HalfSpace(material=STEEL), roller=roller, max_pressure=1e9)
     return cs.solve(case, stresses=False, accuracy=accuracy)
 
 
 @pytest.fixture(scope="module")
-def chamfered():
-    return solved(Chamfer(width=0.5e-3, angle=ANGLE), accuracy=0.02)
+def chamfered_roller():
+    return solve_profile(Chamfer(width=0.5e-3, angle=ANGLE), accuracy=0.02)
 
 
-def test_no_largest_pressure_at_a_corner(chamfered) -> None:
-    assert np.isinf(chamfered.peak_pressure)
+def test_peak_at_corner_is_infinite(chamfered_roller) -> None:
+    assert np.isinf(chamfered_roller.peak_pressure)
     slope = np.tan(ANGLE)
-    assert float(chamfered.corner_slope) == pytest.approx(slope)
-    assert float(chamfered.corner_intensity) == pytest.approx(STEEL.plane_strain_modulus * slope / (2 * np.pi))
-    ridge = solved(Halves(FullCrown(0.2, centre=0.5e-3), FullCrown(0.2, centre=-0.5e-3)), accuracy=0.05)
+    assert float(chamfered_roller.corner_slope) == pytest.approx(slope)
+    assert float(chamfered_roller.corner_intensity) == pytest.approx(STEEL.plane_strain_modulus * slope / (2 * np.pi))
+    ridge = solve_profile(Halves(FullCrown(0.2, centre=0.5e-3), FullCrown(0.2, centre=-0.5e-3)), accuracy=0.05)
     assert np.isinf(ridge.peak_pressure)
     assert float(ridge.corner_x) == pytest.approx(LENGTH / 2)
 
 
-def test_pressure_follows_the_logarithm(chamfered) -> None:
+def test_corner_pressure_follows_logarithm(chamfered_roller) -> None:
     """Columns up to 0.05 of d0 on both sides, against the mean of the law."""
-    distance = float(chamfered.corner_distance)
-    low, high = (chamfered.x_bounds.values - float(chamfered.corner_x)).T
+    distance = float(chamfered_roller.corner_distance)
+    low, high = (chamfered_roller.x_bounds.values - float(chamfered_roller.corner_x)).T
     for near, far in ((low, high), (-high, -low)):
         inside = (near > 0) & (far < 0.05 * distance)
         assert inside.sum() > 3
         near, far = near[inside], far[inside]
         mean_log = (far * np.log(far) - near * np.log(near)) / (far - near) - 1
-        law = float(chamfered.corner_intensity) * (np.log(distance) - mean_log)
-        np.testing.assert_allclose(chamfered.pressure.max("y").values[inside], law, rtol=0.05)
+        law = float(chamfered_roller.corner_intensity) * (np.log(distance) - mean_log)
+        np.testing.assert_allclose(chamfered_roller.pressure.max("y").values[inside], law, rtol=0.05)
 
 
 @pytest.mark.parametrize("radius", [50e-6])
-def test_peak_of_a_blend_radius_is_that_of_the_solved_blend(chamfered, radius: float) -> None:
-    blended = solved(Chamfer(width=0.5e-3, angle=ANGLE, blend_radius=radius))
+def test_corner_peak_matches_solved_blend(chamfered_roller, radius: float) -> None:
+    blended = solve_profile(Chamfer(width=0.5e-3, angle=ANGLE, blend_radius=radius))
     law = corner_peak(
-        float(chamfered.corner_intensity), float(chamfered.corner_distance), float(chamfered.corner_slope), radius
+        float(chamfered_roller.corner_intensity),
+        float(chamfered_roller.corner_distance),
+        float(chamfered_roller.corner_slope),
+        radius,
     )
     assert law == pytest.approx(float(blended.peak_pressure), rel=0.01)
 
 
-def test_wide_blend_is_refused(chamfered) -> None:
+def test_wide_blend_raises_error(chamfered_roller) -> None:
     with pytest.raises(cs.InvalidInputError) as caught:
-        corner_peak(float(chamfered.corner_intensity), 40e-6, 0.035, 1e-3)
+        corner_peak(float(chamfered_roller.corner_intensity), 40e-6, 0.035, 1e-3)
     assert caught.value.parameter == "blend_radius"
 
 
-def test_contact_that_ends_at_a_steep_chamfer_has_the_law_of_a_sharp_end() -> None:
-    sharp = solved(Chamfer(width=0.1e-3, angle=np.radians(45)), accuracy=0.02)
+def test_steep_chamfer_has_law_of_sharp_end() -> None:
+    sharp = solve_profile(Chamfer(width=0.1e-3, angle=np.radians(45)), accuracy=0.02)
     assert "0.1" in sharp.corner_intensity.attrs["comment"]
     assert float(sharp.end_exponent) == 0.5
     radius = 20e-6
-    blended = solved(Chamfer(width=0.1e-3, angle=np.radians(45), blend_radius=radius))
+    blended = solve_profile(Chamfer(width=0.1e-3, angle=np.radians(45), blend_radius=radius))
     law = edge_peak(float(sharp.end_intensity), STEEL.plane_strain_modulus, radius)
     assert law == pytest.approx(float(blended.peak_pressure), rel=0.1)
 
 
-def test_measured_corner_leaves_the_peak_open() -> None:
+def test_measured_corner_has_infinite_peak_error() -> None:
     x = np.linspace(-LENGTH / 2, LENGTH / 2, 401)
-    result = solved(Measured(x, Chamfer(width=0.5e-3, angle=ANGLE).drop(x, LENGTH)))
+    result = solve_profile(Measured(x, Chamfer(width=0.5e-3, angle=ANGLE).drop(x, LENGTH)))
     assert np.isfinite(result.peak_pressure)
     assert np.isinf(result.peak_pressure_error)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from contactstudy.checks import FloatArray
-from contactstudy.contact.refinement.laws import EndLaw, end_loads, from_end, read_ends
+from contactstudy.contact.refinement.laws import EndLaw, count_from_end, end_loads, extrapolate_end_pressures
 
 EDGES = 3.0 + 1e-2 * np.cumsum([0.0, 1.0, 1.5, 2.5, 4.0, 6.0, 9.0, 4.0, 7.0, 5.0, 4.0, 3.0, 2.0, 1.0])
 ACROSS = np.sqrt(np.array([0.0, 0.19, 0.91, 0.91, 0.19, 0.0]))
@@ -15,36 +15,36 @@ ACROSS = np.sqrt(np.array([0.0, 0.19, 0.91, 0.91, 0.19, 0.0]))
 
 def means(powers: list[float], edges: FloatArray) -> FloatArray:
     """Means over columns of a polynomial in the distance from the middle."""
-    whole = np.polynomial.polynomial.polyint(powers)
+    complete = np.polynomial.polynomial.polyint(powers)
     middle = 0.5 * (edges[0] + edges[-1])
-    return np.asarray(np.diff(np.polynomial.polynomial.polyval(edges - middle, whole)) / np.diff(edges))
+    return np.asarray(np.diff(np.polynomial.polynomial.polyval(edges - middle, complete)) / np.diff(edges))
 
 
-def spread(along: FloatArray) -> FloatArray:
+def spread_load(along: FloatArray) -> FloatArray:
     return np.asarray(along[:, None] * ACROSS)
 
 
 @pytest.mark.parametrize("tilt", [2.0, -2.0])
-def test_a_pressure_that_rises_to_an_end_has_its_peak_there(tilt: float) -> None:
+def test_pressure_rising_to_end_peaks_at_end(tilt: float) -> None:
     """Exact for a parabola, between the cells along y as well."""
     half = 0.5 * (EDGES[-1] - EDGES[0])
     powers = [1.0, tilt, 1.5]
-    peaks, ends, along_y = read_ends(EDGES, spread(means(powers, EDGES)), (None, None))
+    peaks, ends, along_y = extrapolate_end_pressures(EDGES, spread_load(means(powers, EDGES)), (None, None))
     exact = tuple(float(np.polynomial.polynomial.polyval(at, powers)) for at in (-half, half))
     assert ends == pytest.approx(exact, rel=1e-9)
     risen = 1 if tilt > 0 else 0
     assert peaks[risen] == pytest.approx(exact[risen], rel=1e-9)
     # The other half is largest in the middle, between two columns, or on its own last one where that is more.
     centres, values = 0.5 * (EDGES[1:] + EDGES[:-1]) - EDGES[0], means(powers, EDGES)
-    own = values[(centres < half) if risen else (centres > half)].max()
-    assert peaks[1 - risen] == pytest.approx(max(own, np.interp(half, centres, values)))
+    expected = values[(centres < half) if risen else (centres > half)].max()
+    assert peaks[1 - risen] == pytest.approx(max(expected, np.interp(half, centres, values)))
     assert 1 + along_y == pytest.approx(1 / ACROSS.max())
 
 
-def test_a_peak_in_a_half_is_not_that_of_the_other() -> None:
+def test_halves_have_separate_peaks() -> None:
     values = np.ones(EDGES.size - 1)
     values[7] = 3.0  # the second column beyond the middle
-    peaks, ends, _ = read_ends(EDGES, spread(values), (None, None))
+    peaks, ends, _ = extrapolate_end_pressures(EDGES, spread_load(values), (None, None))
     assert (0.5 * (EDGES[6] + EDGES[7]) - EDGES[0]) / (EDGES[-1] - EDGES[0]) > 0.5
     assert peaks == pytest.approx((1.0, 3.0))
     assert ends == pytest.approx((1.0, 1.0))
@@ -52,27 +52,27 @@ def test_a_peak_in_a_half_is_not_that_of_the_other() -> None:
 
 def test_ends_without_pressure_and_singular_ends() -> None:
     values = np.append(np.zeros(3), np.ones(EDGES.size - 4))
-    peaks, ends, _ = read_ends(EDGES, spread(values), (None, EndLaw(kind="power", exponent=0.5)))
+    peaks, ends, _ = extrapolate_end_pressures(EDGES, spread_load(values), (None, EndLaw(kind="power", exponent=0.5)))
     assert ends == (0.0, np.inf)
     assert peaks == (pytest.approx(1.0), np.inf)
     falling = values.copy()
     falling[:3] = 0.01, 0.5, 1.0  # the parabola through these means is negative at the end
-    assert read_ends(EDGES, spread(falling), (None, None))[1][0] == 0.0
+    assert extrapolate_end_pressures(EDGES, spread_load(falling), (None, None))[1][0] == 0.0
 
 
 @pytest.mark.parametrize("width", [1e-2, 2e-2, 0.1, 1.0])
-def test_loads_at_the_ends_are_integrals_over_one_half_width(width: float) -> None:
+def test_end_loads_integrate_one_half_width(width: float) -> None:
     values = np.random.default_rng(0).uniform(1.0, 2.0, EDGES.size - 1)
     fine = np.linspace(EDGES[0], EDGES[-1], 200001)
     centres, step = 0.5 * (fine[1:] + fine[:-1]), fine[1] - fine[0]
     own = values[np.searchsorted(EDGES, centres) - 1] * ACROSS.sum() * step
     expected = own[centres < EDGES[0] + width].sum(), own[centres > EDGES[-1] - width].sum()
-    assert end_loads(EDGES, spread(values), width) == pytest.approx(expected, rel=1e-3)
+    assert end_loads(EDGES, spread_load(values), width) == pytest.approx(expected, rel=1e-3)
 
 
-def test_values_are_counted_from_either_end() -> None:
+def test_values_mirror_with_side() -> None:
     values = np.arange(EDGES.size - 1.0)
-    first, last = (from_end(side, EDGES, values) for side in (0, 1))
+    first, last = (count_from_end(side, EDGES, values) for side in (0, 1))
     assert first[0][0] == last[0][0] == 0.0
     assert first[0][-1] == pytest.approx(last[0][-1])
     assert np.diff(last[0]) == pytest.approx(np.diff(EDGES)[::-1])

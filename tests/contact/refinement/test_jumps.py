@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from contactstudy.contact.refinement.refinement import LESSER_HALF, _crest_jumps, _jumps
+from contactstudy.contact.refinement.refinement import MIN_HALF_PRESSURE, _crest_jumps, _jumps
 
 
-def test_a_crest_that_is_lower_than_the_peak_is_split_by_its_own_pressure() -> None:
+def test_low_crest_jumps_relative_to_own_pressure() -> None:
     """Beside the contact's end, seen by one column: 1.4 of a peak of 3."""
     top = np.array([0.0, 0.0, 0.8, 1.4, 1.2, 2.0, 2.8, 3.0, 3.0, 2.8])
     steps = _crest_jumps(top[:, None])
@@ -20,16 +20,16 @@ def test_a_crest_that_is_lower_than_the_peak_is_split_by_its_own_pressure() -> N
 
 
 @pytest.mark.parametrize("lesser", [0.5, 0.02])
-def test_jumps_are_over_the_largest_of_a_half(lesser: float) -> None:
+def test_jumps_are_relative_to_half_peak(lesser: float) -> None:
     """Of a power of the pressure, to either neighbour and in any row; a half that is hardly pressed does not count."""
     random = np.random.default_rng(0)
     edges = np.array([3.0, 4.0, 4.5, 5.5, 6.0, 7.0, 8.0, 9.0, 10.0])
     left = np.array([0, 1, 2, 3])  # the middle, 6.5, lies in the fifth column, whose centre it is
     pressure = random.uniform(0.5, 1.0, (8, 5))
     pressure[left] *= lesser
-    found = _jumps(edges, pressure, 2.0)
+    computed = _jumps(edges, pressure, 2.0)
     for i in range(8):
-        own = pressure[left] if i in left else pressure[4:]
-        top = max(own.max(), LESSER_HALF * pressure.max())
+        cell_pressure = pressure[left] if i in left else pressure[4:]
+        top = max(cell_pressure.max(), MIN_HALF_PRESSURE * pressure.max())
         steps = [np.abs(pressure[i] ** 2 - pressure[j] ** 2).max() for j in (i - 1, i + 1) if 0 <= j < 8]
-        assert found[i] == pytest.approx(max(steps) / top**2)
+        assert computed[i] == pytest.approx(max(steps) / top**2)

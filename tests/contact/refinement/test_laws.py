@@ -26,7 +26,7 @@ def graded_edges(width: float) -> FloatArray:
 
 
 @given(intensity=st.floats(1e-3, 1e9), bend=st.floats(-3.0, 3.0))
-def test_intensity_of_a_rigid_end_is_that_of_the_power_law(intensity: float, bend: float) -> None:
+def test_rigid_end_intensity_matches_power_law(intensity: float, bend: float) -> None:
     edges = graded_edges(1e-3)
     pressure = column_means(edges, 0.5, intensity, bend)[:, None] * np.array([0.4, 1.0, 0.4])
     law = EndLaw(kind="power", exponent=0.5).with_intensity(edges, pressure, np.inf)
@@ -34,21 +34,19 @@ def test_intensity_of_a_rigid_end_is_that_of_the_power_law(intensity: float, ben
     assert 0 < law.intensity_error < 5e-3 * intensity
 
 
-def test_intensity_is_read_where_the_end_itself_is_pressed_most() -> None:
+def test_intensity_uses_row_of_end_peak() -> None:
     # Random case 4007234: friction pressed both ends at different places along y, the other end more.
     edges = graded_edges(1e-3)
     end = column_means(edges, 0.5, 2.0, 0.0)
-    elsewhere = np.where(edges[1:] > 0.03, 10 * end.max(), 0.0)
-    law = EndLaw(kind="power", exponent=0.5).with_intensity(
-        edges, np.stack([0.5 * end, end, elsewhere], axis=1), np.inf
-    )
+    shifted = np.where(edges[1:] > 0.03, 10 * end.max(), 0.0)
+    law = EndLaw(kind="power", exponent=0.5).with_intensity(edges, np.stack([0.5 * end, end, shifted], axis=1), np.inf)
     assert law.intensity == pytest.approx(2.0, rel=1e-6)
-    lifted = law.with_intensity(edges, np.stack([elsewhere, elsewhere], axis=1), np.inf)
+    lifted = law.with_intensity(edges, np.stack([shifted, shifted], axis=1), np.inf)
     assert (lifted.intensity, lifted.intensity_error) == (0.0, np.inf)
 
 
 @pytest.mark.parametrize("exponent", [0.5, np.nan])
-def test_an_end_pressed_on_few_columns_has_no_error_of_its_intensity(exponent: float) -> None:
+def test_few_columns_have_infinite_intensity_error(exponent: float) -> None:
     # Random case 4004708: friction left a contact of five columns.
     edges = graded_edges(1e-3)
     pressure = column_means(edges, 0.5, 2.0, 0.0)[:, None].copy()
@@ -95,14 +93,14 @@ def slope_of_a_wedge(angle: float, s: float) -> float:
 
 
 @pytest.mark.parametrize("s", [0.55, 0.7, 0.7736, 0.9])
-def test_slopes_of_wedges_are_those_of_the_exponents_equation(s: float) -> None:
+def test_elastic_exponent_satisfies_wedge_equation(s: float) -> None:
     quarter = np.sin(np.pi * s) / (2 * (np.sin(0.5 * np.pi * s) ** 2 - s**2))
     half = 1 / np.tan(np.pi * s)
     assert slope_of_a_wedge(0.5 * np.pi, s) / slope_of_a_wedge(np.pi, s) == pytest.approx(quarter / half)
 
 
 @given(ratio=st.floats(1e-3, 1e3))
-def test_exponents_between_those_of_a_rigid_edge_and_a_rigid_face(ratio: float) -> None:
+def test_elastic_exponent_lies_between_rigid_limits(ratio: float) -> None:
     exponent = elastic_exponent(ratio, 1.0)
     assert 0 < exponent < RIGID
     assert exponent == pytest.approx(elastic_exponent(5 * ratio, 5.0))
@@ -114,7 +112,7 @@ def samples(pressure: FloatArray) -> list[Sample]:
 
 
 @given(exponent=st.floats(0.15, 0.5))
-def test_growing_as_a_power_is_told(exponent: float) -> None:
+def test_power_growth_has_power_law(exponent: float) -> None:
     known, unknown = (law_of(samples(HALVINGS**-exponent), theory) for theory in (RIGID, np.nan))
     assert known == EndLaw(kind="power", exponent=RIGID)
     assert unknown is not None
@@ -123,7 +121,7 @@ def test_growing_as_a_power_is_told(exponent: float) -> None:
 
 
 @given(share=st.floats(0.02, 0.2))
-def test_growing_as_a_logarithm_is_told(share: float) -> None:
+def test_logarithmic_growth_has_logarithm_law(share: float) -> None:
     growing = samples(1 + share * np.log(1 / HALVINGS))
     law = law_of(growing, np.nan)
     assert law is not None
@@ -133,7 +131,7 @@ def test_growing_as_a_logarithm_is_told(share: float) -> None:
 
 
 @given(power=st.floats(0.6, 2.0), share=st.floats(0.0, 1.0))
-def test_an_end_that_settles_has_no_law(power: float, share: float) -> None:
+def test_converged_end_has_no_singular_law(power: float, share: float) -> None:
     assert law_of(samples(1 - share * HALVINGS**power), np.nan) is None
 
 
@@ -142,11 +140,11 @@ def test_few_samples_and_falling_pressures_have_no_law() -> None:
     assert law_of(samples(HALVINGS**0.5), np.nan) is None
 
 
-def test_an_end_that_is_pressed_on_first_share_columns_only_has_no_law() -> None:
+def test_end_loaded_on_some_columns_has_no_law() -> None:
     assert law_of(samples(np.array([1.0, 1.0, 1.0, 1.0, 0.5, 0.0, 0.3])), np.nan) is None
 
 
-def test_exponent_of_theory_is_the_law_of_a_pressed_end() -> None:
+def test_loaded_end_has_theoretical_exponent() -> None:
     assert law_of(samples(np.array([1.0, 1.0, 1.0, 1.0, 0.9, 0.9, 0.8])), RIGID) == EndLaw(kind="power", exponent=RIGID)
     assert law_of(samples(np.array([1.0, 1.0, 1.0, 1.0, 0.5, 0.2, 0.0])), RIGID) is None
 
@@ -163,7 +161,7 @@ def test_peak_at_an_edge_scales_as_its_formula(intensity: float, radius: float, 
     ("arguments", "name"),
     [((0.0, 1e9, 1e-5), "intensity"), ((1e7, -1.0, 1e-5), "modulus"), ((1e7, 1e9, np.nan), "edge_radius")],
 )
-def test_impossible_edges_are_refused(arguments: tuple[float, float, float], name: str) -> None:
+def test_invalid_edges_raise_error(arguments: tuple[float, float, float], name: str) -> None:
     with pytest.raises(InvalidInputError, match=name):
         edge_peak(*arguments)
 
@@ -174,28 +172,28 @@ EDGES = np.array(
 
 
 @pytest.mark.parametrize("unit", [1.0, 1e-6, 1e3])
-def test_columns_between_3_and_64_widths_from_the_end_count(unit: float) -> None:
+def test_fit_uses_columns_from_3_to_64_widths(unit: float) -> None:
     """And between 6 and 128 of them for the error; what is nearer or farther may be anything."""
     pressure = column_means(unit * EDGES, 0.5, 2.0, 0.01 / unit)[:, None]
 
     def found(first: float) -> EndLaw:
-        other = pressure.copy()
-        other[int(np.flatnonzero(first == EDGES)[0])] *= 1.5
-        return EndLaw(kind="power", exponent=0.5).with_intensity(unit * EDGES, other, np.inf)
+        variant = pressure.copy()
+        variant[int(np.flatnonzero(first == EDGES)[0])] *= 1.5
+        return EndLaw(kind="power", exponent=0.5).with_intensity(unit * EDGES, variant, np.inf)
 
-    plain = EndLaw(kind="power", exponent=0.5).with_intensity(unit * EDGES, pressure, np.inf)
-    assert plain.intensity == pytest.approx(2.0)
+    baseline = EndLaw(kind="power", exponent=0.5).with_intensity(unit * EDGES, pressure, np.inf)
+    assert baseline.intensity == pytest.approx(2.0)
     for first in (2.0, 128.0):
-        assert found(first) == plain
+        assert found(first) == baseline
     for first in (3.0, 38.0):
         assert found(first).intensity != pytest.approx(2.0, rel=1e-3)
     for first in (64.0, 90.0):
         assert found(first).intensity == pytest.approx(2.0)
-        assert found(first).intensity_error > 2 * plain.intensity_error
+        assert found(first).intensity_error > 2 * baseline.intensity_error
 
 
 @pytest.mark.parametrize("width", [1e-5, 1.0, 1e3])
-def test_an_end_close_to_that_of_the_body_has_a_larger_error(width: float) -> None:
+def test_end_near_free_end_has_larger_error(width: float) -> None:
     """Beyond half of the room between them the law does not hold; the fit reaches to 64 widths."""
     edges = width * EDGES
     pressure = column_means(edges, 0.5, 2.0, 0.0)[:, None]
@@ -209,7 +207,7 @@ def test_an_end_close_to_that_of_the_body_has_a_larger_error(width: float) -> No
     assert nearly_flush.intensity_error == np.inf
 
 
-def test_no_elastic_end_is_sharper_than_a_rigid_one() -> None:
+def test_rigid_exponent_bounds_elastic_exponent() -> None:
     edges = graded_edges(1e-3)
     law = EndLaw(kind="power", exponent=np.nan).with_intensity(
         edges, column_means(edges, 0.54, 2.0, 0.0)[:, None], np.inf
@@ -217,8 +215,8 @@ def test_no_elastic_end_is_sharper_than_a_rigid_one() -> None:
     assert 0.49 < law.exponent <= 0.5
 
 
-def test_a_logarithm_is_told_however_the_columns_were_split() -> None:
+def test_logarithm_law_does_not_depend_on_splitting() -> None:
     widths = 0.1 * np.cumprod([1.0, 0.25, 0.25, 0.25, 0.5, 0.5])
-    law = law_of([Sample(float(each), float(1 - 0.1 * np.log(each))) for each in widths], np.nan)
+    law = law_of([Sample(float(width), float(1 - 0.1 * np.log(width))) for width in widths], np.nan)
     assert law is not None
     assert law.kind == "logarithm"

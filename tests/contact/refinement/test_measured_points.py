@@ -19,7 +19,7 @@ def peak(profile: Profile, length: float = 2e-3, accuracy: float = 0.01, **load:
 
 
 @pytest.mark.parametrize("step", [10e-6, 7e-6])
-def test_stated_error_covers_an_edge_radius_of_few_points(step: float) -> None:
+def test_error_covers_edge_radius_of_few_points(step: float) -> None:
     """The points begin the corner on a sample, or between two."""
     formula = Cylinder(0.1e-3)
     x = np.linspace(-1e-3, 1e-3, round(2e-3 / step) + 1)
@@ -38,7 +38,7 @@ def test_crest_between_points_keeps_its_curvature() -> None:
 
 
 @pytest.mark.parametrize("position", [0.231, pytest.param(0.487, marks=pytest.mark.slow)])
-def test_ridge_is_resolved_wherever_it_lies(position: float) -> None:
+def test_ridge_is_resolved_at_any_position(position: float) -> None:
     """A burr of 0.4 um over ten points carries several times the pressure of the cylinder."""
     length = 4e-3
     x = np.linspace(-length / 2, length / 2, 801)

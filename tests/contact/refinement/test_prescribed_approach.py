@@ -26,8 +26,8 @@ from contactstudy.case.case import MIN_HALF_WIDTH
 from contactstudy.case.case import Case as AnyCase
 from contactstudy.contact.refinement import refined_contact
 from contactstudy.contact.refinement.refined_contact import (
-    ABOVE,
-    WIDTH_PART,
+    LOAD_EXCESS,
+    SLICE_WIDTH,
     RefinedContact,
     _slice_load,
     contact_at_approach,
@@ -53,7 +53,7 @@ SHORT = Case(
 )
 
 
-def test_a_ball_carries_hertz_load() -> None:
+def test_ball_carries_hertz_load() -> None:
     result = solve(BALL, stresses=False)
     assert abs(float(result.normal_load) - HERTZ) < float(result.normal_load_error) < 2e-3 * HERTZ
     assert float(result.approach) == APPROACH
@@ -63,18 +63,18 @@ def test_a_ball_carries_hertz_load() -> None:
 
 
 @pytest.mark.slow
-def test_between_free_ends_it_is_the_approach_of_the_load() -> None:
+def test_approach_between_free_ends_reproduces_load() -> None:
     pressed = solve(SHORT, stresses=False, accuracy=0.1)
     loaded = replace(SHORT, approach=None, load=float(pressed.normal_load))
-    other = solve(loaded, stresses=False, accuracy=0.1)
+    variant = solve(loaded, stresses=False, accuracy=0.1)
     assert float(pressed.approach) == SHORT.approach
-    assert float(other.approach) == pytest.approx(SHORT.approach, rel=1e-3)
-    assert float(pressed.peak_pressure) == pytest.approx(float(other.peak_pressure), rel=0.01)
+    assert float(variant.approach) == pytest.approx(SHORT.approach, rel=1e-3)
+    assert float(pressed.peak_pressure) == pytest.approx(float(variant.peak_pressure), rel=0.01)
     assert float(pressed.hertz_half_width) == pytest.approx(loaded.hertz_half_width)
-    assert "normal_load_error" not in other
+    assert "normal_load_error" not in variant
 
 
-def test_tractions_are_found_at_the_approach() -> None:
+def test_tractions_at_prescribed_approach() -> None:
     rolling = replace(BALL, friction=0.1, motion=Rolling(longitudinal_creepage=5e-4))
     result = solve(rolling, stresses=False, accuracy=0.1)
     assert float(result.approach) == APPROACH
@@ -83,7 +83,7 @@ def test_tractions_are_found_at_the_approach() -> None:
     assert "normal_load_error" in result
 
 
-def test_given_cells_and_rough_surfaces_take_it_too() -> None:
+def test_approach_on_given_cells_and_rough_surfaces() -> None:
     cells = Grid(x_range=(0.2e-3, 0.6e-3), y_range=(-0.2e-3, 0.2e-3), cells_x=64, cells_y=64)
     assert float(solve(BALL, cells, stresses=False).normal_load) == pytest.approx(HERTZ, rel=0.02)
     flat = xr.DataArray(np.zeros((2, 2)), dims=("x", "y"), coords={"x": [-1e-2, 1e-2], "y": [-1e-2, 1e-2]})
@@ -94,14 +94,14 @@ def test_given_cells_and_rough_surfaces_take_it_too() -> None:
     )
 
 
-def test_a_far_first_guess_is_corrected() -> None:
+def test_distant_initial_load_is_corrected() -> None:
     """A steep crown carries a hundredth of what its slices as line contacts would."""
     steep = replace(BALL, roller=replace(BALL.roller, radius=0.5, profile=profiles.FullCrown(crown_radius=1e-3)))
-    found = contact_at_approach(steep, 0.1, 1e-4)
-    assert found.refined.contact.approach == APPROACH
+    computed = contact_at_approach(steep, 0.1, 1e-4)
+    assert computed.refined.contact.approach == APPROACH
 
 
-def test_results_keep_what_was_asked_and_what_needs_a_load_says_so() -> None:
+def test_result_keeps_approach_and_requires_load() -> None:
     result = solve(BALL, stresses=False, accuracy=0.1)
     case = solved_case(result)
     assert case == BALL
@@ -119,9 +119,9 @@ CYLINDER = Case(
 )
 
 
-def test_a_first_guess_is_hertz_line_contact_in_slices_of_a_part_of_the_cut() -> None:
+def test_slice_load_sums_hertz_line_contacts() -> None:
     """Of a slice at depth d: ``pi E* b**2 / 4 R`` with b a part of ``sqrt(2 R d)``, so the load is as all depths."""
-    part = np.pi / 2 * WIDTH_PART**2 * STEEL.plane_strain_modulus
+    part = np.pi / 2 * SLICE_WIDTH**2 * STEEL.plane_strain_modulus
     assert _slice_load(CYLINDER) == pytest.approx(part * 3e-6 * 2e-3)
     start, stop = BALL.contact_range
     x = np.linspace(start, stop, 20001)
@@ -129,39 +129,39 @@ def test_a_first_guess_is_hertz_line_contact_in_slices_of_a_part_of_the_cut() ->
     assert _slice_load(BALL) == pytest.approx(part * depth.mean() * (stop - start), rel=0.01)
     # Of a contact between two slices: the least load that a case may have, or a little more.
     tilted = replace(BALL, body=FiniteLengthSpace(length=2e-3, material=STEEL), end_distance=0.6e-3, tilt=4e-4)
-    least = _slice_load(replace(tilted, approach=tilted.first_touch + 1e-11))
-    assert replace(BALL, approach=None, load=least).hertz_half_width == pytest.approx(2 * MIN_HALF_WIDTH * RADIUS)
+    minimum = _slice_load(replace(tilted, approach=tilted.first_touch + 1e-11))
+    assert replace(BALL, approach=None, load=minimum).hertz_half_width == pytest.approx(2 * MIN_HALF_WIDTH * RADIUS)
 
 
 @pytest.mark.parametrize(("case", "most"), [(BALL, 4), (replace(SHORT, friction=0.0, coupled=False), 5)])
-def test_few_loads_are_tried(case: Case, most: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    tried: list[float] = []
+def test_load_search_needs_few_loads(case: Case, most: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    attempts: list[float] = []
 
     def noted(loaded: AnyCase, accuracy: float, tolerance: float) -> RefinedContact:
-        tried.append(loaded.normal_load)
+        attempts.append(loaded.normal_load)
         return refine_contact(loaded, accuracy, tolerance)
 
     monkeypatch.setattr(refined_contact, "refine_contact", noted)
     contact_at_approach(case, 0.1, 1e-4)
-    assert len(tried) <= most
+    assert len(attempts) <= most
 
 
-def test_loads_follow_the_power_of_the_depth_that_the_last_two_show(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_load_search_fits_power_of_depth(monkeypatch: pytest.MonkeyPatch) -> None:
     """Of a contact whose depth is made up: as a ball's."""
-    own = refine_contact(replace(BALL, approach=None, load=HERTZ), 0.1, 1e-4)
-    tried: list[float] = []
+    contact_at_load = refine_contact(replace(BALL, approach=None, load=HERTZ), 0.1, 1e-4)
+    attempts: list[float] = []
 
     def made_up(loaded: AnyCase, accuracy: float, tolerance: float) -> RefinedContact:
-        tried.append(loaded.normal_load)
-        touch = float(own.contact.shape.gap.values.min())
+        attempts.append(loaded.normal_load)
+        touch = float(contact_at_load.contact.shape.gap.values.min())
         depth = (APPROACH - touch) * (loaded.normal_load / HERTZ) ** (2 / 3)
-        return replace(own, contact=replace(own.contact, approach=touch + depth))
+        return replace(contact_at_load, contact=replace(contact_at_load.contact, approach=touch + depth))
 
     monkeypatch.setattr(refined_contact, "refine_contact", made_up)
     search_load(BALL, APPROACH, 0.2 * HERTZ, 0.1, 1e-4)
-    factors = np.array(tried) / HERTZ
-    assert factors[:2] == pytest.approx([0.2, 0.2 * ABOVE * (0.2 ** (-2 / 3)) ** 1.2])
-    assert factors[2:] == pytest.approx([ABOVE])
-    tried.clear()
+    factors = np.array(attempts) / HERTZ
+    assert factors[:2] == pytest.approx([0.2, 0.2 * LOAD_EXCESS * (0.2 ** (-2 / 3)) ** 1.2])
+    assert factors[2:] == pytest.approx([LOAD_EXCESS])
+    attempts.clear()
     search_load(BALL, APPROACH, 1.06 * HERTZ, 0.1, 1e-4)
-    assert len(tried) == 1
+    assert len(attempts) == 1

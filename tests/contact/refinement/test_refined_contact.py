@@ -49,13 +49,13 @@ KNOWN_FILLETS = {0.5e-3: 2.8565, 0.2e-3: 3.6418, 0.1e-3: 4.4744, 0.05e-3: 5.556}
 """Peaks over p0 on a half-space from an independent refinement to 570 columns down to 0.0004 a."""
 
 
-def test_stated_peak_of_a_fillet_is_within_its_error_of_finer_cells() -> None:
+def test_fillet_peak_error_covers_finer_cells() -> None:
     fillet = 0.2e-3
     case = Case(body=HALF, roller=filleted(fillet), max_pressure=PRESSURE)
-    found = settled(case)
-    peak, error = found.refined.peak, found.refined.peak_error
-    finer = finer_peak(case, found, 2)
-    assert found.refined.settled
+    computed = settled(case)
+    peak, error = computed.refined.peak, computed.refined.peak_error
+    finer = finer_peak(case, computed, 2)
+    assert computed.refined.accurate
     assert abs(peak - finer) <= error <= 0.01 * peak
     assert abs(peak - finer) < 0.003 * peak
     assert peak / PRESSURE == pytest.approx(KNOWN_FILLETS[fillet], rel=2e-3)
@@ -63,46 +63,46 @@ def test_stated_peak_of_a_fillet_is_within_its_error_of_finer_cells() -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("fillet", KNOWN_FILLETS)
-def test_stated_peak_of_a_fillet_is_within_its_error_of_four_times_finer_cells(fillet: float) -> None:
+def test_fillet_peak_error_covers_four_times_finer_cells(fillet: float) -> None:
     case = Case(body=HALF, roller=filleted(fillet), max_pressure=PRESSURE)
-    found = settled(case)
-    finer = finer_peak(case, found, 4)
+    computed = settled(case)
+    finer = finer_peak(case, computed, 4)
     assert finer / PRESSURE == pytest.approx(KNOWN_FILLETS[fillet], rel=1e-3)
-    assert abs(found.refined.peak - finer) <= found.refined.peak_error <= 0.01 * found.refined.peak
-    assert abs(found.refined.peak - finer) < 0.01 * finer
+    assert abs(computed.refined.peak - finer) <= computed.refined.peak_error <= 0.01 * computed.refined.peak
+    assert abs(computed.refined.peak - finer) < 0.01 * finer
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("body", [finite(), QuarterSpace(material=STEEL)], ids=["finite", "quarter"])
-def test_stated_peak_between_free_ends_is_within_its_error_of_finer_cells(
+def test_peak_error_between_free_ends_covers_finer_cells(
     body: FiniteLengthSpace | QuarterSpace,
 ) -> None:
     case = Case(body=body, roller=filleted(0.2e-3), max_pressure=PRESSURE)
-    found = settled(case)
-    assert abs(found.refined.peak - finer_peak(case, found, 2)) <= found.refined.peak_error
+    computed = settled(case)
+    assert abs(computed.refined.peak - finer_peak(case, computed, 2)) <= computed.refined.peak_error
 
 
 @pytest.mark.parametrize("name", [name for name in CASES if name not in ("inside", "tilt")])
-def test_contact_is_that_on_uniform_cells(name: str) -> None:
+def test_refined_contact_matches_uniform_cells(name: str) -> None:
     case = CASES[name]
-    found = solve(case, stresses=False)
+    computed = solve(case, stresses=False)
     uniform = solve(case, choose_grid(case, cells_x=24, cells_y=16, window=3.0), stresses=False)
-    peak, error = float(found.peak_pressure), float(found.peak_pressure_error)
-    assert bool(found.converged)
+    peak, error = float(computed.peak_pressure), float(computed.peak_pressure_error)
+    assert bool(computed.converged)
     assert error <= 0.01 * peak
     # A fillet of 3 a is within half a percent on these uniform cells, an edge of the body within three.
     allowed = 0.03 if case.roller.material is not None else 0.006
     assert peak == pytest.approx(top_of(uniform.pressure.values), rel=allowed)
-    assert float(found.approach) == pytest.approx(float(uniform.approach), rel=1e-3)
-    assert float(found.tilt) == pytest.approx(float(uniform.tilt), rel=5e-3, abs=1e-9)
-    assert abs(float(found.load_error)) < 1e-9
-    forces = found.pressure * found.x_width * float(found.y[1] - found.y[0])
+    assert float(computed.approach) == pytest.approx(float(uniform.approach), rel=1e-3)
+    assert float(computed.tilt) == pytest.approx(float(uniform.tilt), rel=5e-3, abs=1e-9)
+    assert abs(float(computed.load_error)) < 1e-9
+    forces = computed.pressure * computed.x_width * float(computed.y[1] - computed.y[0])
     assert float(forces.sum()) == pytest.approx(case.normal_load, rel=1e-9)
     if case.load_position is not None:
-        assert float((forces * found.x).sum() / forces.sum()) == pytest.approx(case.load_position, rel=1e-9)
+        assert float((forces * computed.x).sum() / forces.sum()) == pytest.approx(case.load_position, rel=1e-9)
     # The load per length, over the same parts of the roller.
     parts = np.linspace(*case.contact_range, 9)
-    loads = [load_up_to(each, parts) for each in (found, uniform)]
+    loads = [load_up_to(variant, parts) for variant in (computed, uniform)]
     assert np.abs(loads[0] - loads[1]).max() < 2e-3 * case.normal_load
 
 
@@ -123,12 +123,12 @@ def test_mirrored_case_has_the_mirrored_contact(name: str) -> None:
         settled(Case(body=CASES[name].body, roller=CASES[name].roller, max_pressure=PRESSURE, tilt=tilt), 0.02)
         for tilt in (8e-4, -8e-4)
     ]
-    there, back = (each.refined for each in tilts)
+    there, back = (variant.refined for variant in tilts)
     assert there.peak == pytest.approx(back.peak, rel=1e-4)
     assert np.allclose(there.pressure.max(axis=1), back.pressure[::-1].max(axis=1), atol=1e-4 * there.peak)
 
 
-def test_table_of_points_of_a_fillet_has_the_peak_of_the_fillet() -> None:
+def test_measured_fillet_has_peak_of_fillet() -> None:
     made = filleted(0.2e-3).profile
     near = np.concatenate([np.linspace(0, 0.2e-3, 401), np.linspace(0.21e-3, 1e-3, 80)])
     x = np.unique(np.concatenate([-LENGTH / 2 + near, np.linspace(-4e-3, 4e-3, 161), LENGTH / 2 - near]))
@@ -136,37 +136,37 @@ def test_table_of_points_of_a_fillet_has_the_peak_of_the_fillet() -> None:
     peaks = []
     for profile in (made, table):
         roller = Roller(radius=RADIUS, length=LENGTH, profile=profile)
-        found = settled(Case(body=HALF, roller=roller, max_pressure=PRESSURE)).refined
-        assert found.settled
-        peaks.append(found.peak)
+        computed = settled(Case(body=HALF, roller=roller, max_pressure=PRESSURE)).refined
+        assert computed.accurate
+        peaks.append(computed.peak)
     assert peaks[1] == pytest.approx(peaks[0], rel=0.01)
 
 
 @pytest.mark.parametrize("accuracy", [0.0, -0.01, 9e-4, 0.11, np.nan, "high"])
-def test_accuracy_that_cannot_be_reached_is_refused(accuracy: object) -> None:
+def test_invalid_accuracy_raises_error(accuracy: object) -> None:
     with pytest.raises(InvalidInputError, match="accuracy"):
         solve(CASES["half-space"], accuracy=accuracy, stresses=False)  # type: ignore[arg-type]
 
 
 @pytest.mark.slow
-def test_coupled_friction_is_in_the_values_that_are_stated() -> None:
+def test_coupled_friction_changes_stated_values() -> None:
     """The columns follow the uncoupled contact, but the values belong to the pressure that is returned."""
     body = FiniteLengthSpace(length=8 * A, material=Material(210e9, 0.1))
     roller = Roller(radius=RADIUS, length=8 * A)
     case = Case(body=body, roller=roller, max_pressure=PRESSURE, friction=0.5, coupled=True)
-    found = solve(case, stresses=False)
+    computed = solve(case, stresses=False)
     fine = solve(case, choose_grid(case, cells_x=32, cells_y=32), stresses=False)
     uncoupled = solve(Case(body=body, roller=roller, max_pressure=PRESSURE), stresses=False)
-    difference = abs(float(found["peak_pressure"] - fine["pressure"].max()))
-    assert difference < float(found["peak_pressure_error"])
-    assert float(found["peak_pressure"]) == pytest.approx(float(found["pressure"].max()), rel=3e-3)
-    assert abs(float(found["peak_pressure"] / uncoupled["peak_pressure"]) - 1) > 1e-3
+    difference = abs(float(computed["peak_pressure"] - fine["pressure"].max()))
+    assert difference < float(computed["peak_pressure_error"])
+    assert float(computed["peak_pressure"]) == pytest.approx(float(computed["pressure"].max()), rel=3e-3)
+    assert abs(float(computed["peak_pressure"] / uncoupled["peak_pressure"]) - 1) > 1e-3
 
 
 @pytest.mark.parametrize(("accuracy", "least"), [(0.05, 8), (0.01, 17)])
-def test_the_peak_has_cells_across_it_as_the_accuracy_asks(accuracy: float, least: int) -> None:
-    found = refine_contact(CASES["half-space"], accuracy, 1e-6)
-    pressure = found.contact.pressure
+def test_accuracy_determines_cells_across_peak(accuracy: float, least: int) -> None:
+    computed = refine_contact(CASES["half-space"], accuracy, 1e-6)
+    pressure = computed.contact.pressure
     assert int((pressure[int(pressure.max(axis=1).argmax())] > 0).sum()) >= least
 
 
@@ -180,30 +180,30 @@ class _Crown:
         return np.asarray(x**2 / (2 * self.radius))
 
 
-def test_contacts_are_kept_for_values_only() -> None:
+def test_cache_compares_cases_by_value() -> None:
     case = Case(body=HALF, roller=filleted(0.2e-3, SHORT), max_pressure=PRESSURE)
     first = refine_contact(case, 0.05, 1e-6)
     assert refine_contact(replace(case, friction=0.2), 0.05, 1e-6) is first
     assert refine_contact(case, 0.04, 1e-6) is not first
     assert refine_contact(replace(case, friction=0.2, coupled=True), 0.05, 1e-6) is not first
-    own = _Crown(5e-3)
-    changed = Case(body=HALF, roller=Roller(radius=5e-3, length=SHORT, profile=own), max_pressure=PRESSURE)
+    expected = _Crown(5e-3)
+    changed = Case(body=HALF, roller=Roller(radius=5e-3, length=SHORT, profile=expected), max_pressure=PRESSURE)
     before = refine_contact(changed, 0.05, 1e-6).refined.peak
-    own.radius = 2.5e-3
+    expected.radius = 2.5e-3
     assert refine_contact(changed, 0.05, 1e-6).refined.peak > 1.05 * before
 
 
-def test_what_a_user_does_to_a_result_does_not_reach_the_next_one() -> None:
+def test_modified_result_does_not_change_next_result() -> None:
     first = solve(CASES["half-space"], stresses=False, accuracy=0.05)
-    kept = first["pressure"].values.copy()
+    retained = first["pressure"].values.copy()
     for name in ("pressure", "gap", "displacement_z", "initial_gap"):
         first[name].values[:] = 0.0
-    np.testing.assert_array_equal(solve(CASES["half-space"], stresses=False, accuracy=0.05)["pressure"], kept)
+    np.testing.assert_array_equal(solve(CASES["half-space"], stresses=False, accuracy=0.05)["pressure"], retained)
 
 
 @pytest.mark.parametrize("part", [0.2, 0.5, 0.75, 0.95])
 @pytest.mark.parametrize("accuracy", [0.2, 0.05, 0.01, 0.002])
-def test_cells_across_are_the_fewest_that_leave_a_quarter_of_the_accuracy(accuracy: float, part: float) -> None:
+def test_cell_number_is_least_sufficient_one(accuracy: float, part: float) -> None:
     """What lies between cells is 0.7 over the square of their number across the contact."""
     cells = _cell_number_y(part, accuracy)
 
@@ -215,30 +215,30 @@ def test_cells_across_are_the_fewest_that_leave_a_quarter_of_the_accuracy(accura
 
 
 @pytest.mark.parametrize("distance", [-0.2e-3, 0.0, 1e-15, 1e-9, 0.3e-3])
-def test_the_face_goes_on_beyond_an_end_of_the_roller(distance: float) -> None:
+def test_face_length_beyond_roller_end(distance: float) -> None:
     """By what is left to the end of the body; by nothing where both end together, or where the roller overhangs."""
     body = finite(1.5e-3)
     case = Case(body=body, roller=filleted(0.1e-3, 1e-3), max_pressure=PRESSURE, end_distance=distance)
     shape = _axial_shape(case)
-    room = shape.room
+    room = shape.face_beyond
     assert shape.depth == pytest.approx(case.hertz_half_width**2 / (2 * RADIUS))
     assert (shape.start, shape.stop) == pytest.approx((max(distance, 0.0), min(distance + 1e-3, 1.5e-3)))
     assert room == pytest.approx((max(distance, 0.0) if distance > 1e-12 else 0.0, 0.5e-3 - distance))
     assert room[0] == 0.0 or distance > 1e-12
 
 
-def test_a_contact_that_needs_the_widest_window_gets_it(monkeypatch: pytest.MonkeyPatch) -> None:
-    case, tried = Case(body=HALF, roller=filleted(0.2e-3), max_pressure=PRESSURE), []
+def test_wide_contact_has_widest_window(monkeypatch: pytest.MonkeyPatch) -> None:
+    case, attempts = Case(body=HALF, roller=filleted(0.2e-3), max_pressure=PRESSURE), []
 
     def too_narrow(case: Case, half_window: float, accuracy: float, tolerance: float) -> object:
-        tried.append(half_window / case.hertz_half_width)
-        if len(tried) < 5:
+        attempts.append(half_window / case.hertz_half_width)
+        if len(attempts) < 5:
             raise WindowError("too narrow")
         return "found"
 
     monkeypatch.setattr(module, "_refine_in_window", too_narrow)
     assert module._refine_contact(case, 0.01, 1e-6) == "found"
-    assert tried == pytest.approx([2.0, 3.0, 5.0, 8.0, 12.0])
+    assert attempts == pytest.approx([2.0, 3.0, 5.0, 8.0, 12.0])
 
 
 FITTED = {
@@ -252,7 +252,7 @@ FITTED = {
 
 
 @pytest.mark.parametrize("name", FITTED)
-def test_the_window_fits_the_contact(name: str) -> None:
+def test_window_fits_contact(name: str) -> None:
     """A tenth wider at least, and by no more than one step of the windows that cases share, and a rough cell."""
     contact = settled(FITTED[name], 0.05).contact
     grid = contact.shape.grid
@@ -260,7 +260,7 @@ def test_the_window_fits_the_contact(name: str) -> None:
     assert 1.05 < grid.y_range[1] / reach < 1.1 * 2 ** (1 / 6) * 1.15
 
 
-def test_columns_of_a_grid_that_begins_elsewhere() -> None:
+def test_roller_columns_of_shifted_grid() -> None:
     grid = Grid.between(np.array([-3.0, -2.0, -1.0, 1.0, 1.5, 2.0, 4.0]), (0.0, 1.0), 2)
     assert _roller_columns(grid, np.array([1.0, 1.5, 2.0])) == slice(3, 5)
     assert _roller_columns(grid, np.array([-2.0 + 1e-12, -1.0])) == slice(1, 2)
@@ -279,7 +279,7 @@ class Wavy(profiles.Shape):
         return np.asarray(x) ** 2 / (2 * self.crown_radius) + waves
 
 
-def test_every_crest_of_a_wavy_profile_is_followed() -> None:
+def test_wavy_profile_crests_are_resolved() -> None:
     """Some are pressed though they lie deeper than the first columns look: the approach is several a**2/2R."""
     length, wave = 2e-3, 0.2e-3
     roller = Roller(radius=RADIUS, length=length, profile=Wavy(0.5, 0.6e-6, wave))
@@ -290,8 +290,8 @@ def test_every_crest_of_a_wavy_profile_is_followed() -> None:
         at = abs(abs(refined.x - length / 2) - crest * wave) < 0.35 * wave
         others = abs(abs(uniform.x - length / 2) - crest * wave) < 0.35 * wave
         loads = [
-            float((one.pressure.sum("y") * widths).where(where).sum() * (one.y[1] - one.y[0]))
-            for one, widths, where in (
+            float((item.pressure.sum("y") * widths).where(where).sum() * (item.y[1] - item.y[0]))
+            for item, widths, where in (
                 (refined, refined.x_width, at),
                 (uniform, float(uniform.x[1] - uniform.x[0]), others),
             )

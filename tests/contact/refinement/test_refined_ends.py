@@ -23,7 +23,7 @@ from tests.contact.refinement.rollers import (
 )
 
 
-def test_sharp_rigid_end_in_a_face_is_a_square_root_with_its_intensity() -> None:
+def test_sharp_rigid_end_has_square_root_law() -> None:
     case = Case(body=HALF, roller=Roller(radius=RADIUS, length=LENGTH), max_pressure=PRESSURE)
     values = refined_values(settled(case))
     assert np.isinf(values.peak_pressure)
@@ -36,27 +36,27 @@ def test_sharp_rigid_end_in_a_face_is_a_square_root_with_its_intensity() -> None
         assert abs(intensity / (PRESSURE * np.sqrt(A)) - 0.8125) * PRESSURE * np.sqrt(A) <= error < 0.01 * intensity
 
 
-def test_peak_from_the_intensity_is_that_of_a_small_fillet() -> None:
+def test_edge_peak_matches_small_fillet() -> None:
     fillet = 0.01e-3
     sharp = settled(Case(body=HALF, roller=Roller(radius=RADIUS, length=LENGTH), max_pressure=PRESSURE))
     law = sharp.refined.laws[0]
     assert law is not None
     solved = settled(Case(body=HALF, roller=filleted(fillet), max_pressure=PRESSURE))
-    assert solved.refined.settled
+    assert solved.refined.accurate
     assert edge_peak(law.intensity, STEEL.plane_strain_modulus, fillet) == pytest.approx(solved.refined.peak, rel=0.01)
 
 
 def test_flush_end_of_a_free_body_has_a_finite_pressure() -> None:
     """0.497 p0 from an extrapolation of columns down to 0.003 a."""
-    found = settled(Case(body=finite(), roller=Roller(radius=RADIUS, length=LENGTH), max_pressure=PRESSURE)).refined
-    assert found.laws == (None, None)
-    for end, error in zip(found.values["end_pressure"], found.errors["end_pressure"], strict=True):
+    computed = settled(Case(body=finite(), roller=Roller(radius=RADIUS, length=LENGTH), max_pressure=PRESSURE)).refined
+    assert computed.laws == (None, None)
+    for end, error in zip(computed.values["end_pressure"], computed.errors["end_pressure"], strict=True):
         assert end / PRESSURE == pytest.approx(0.497, abs=0.005)
         assert abs(end / PRESSURE - 0.497) <= error / PRESSURE <= 0.01
-    assert found.peak / PRESSURE == pytest.approx(1.013, abs=0.004)
+    assert computed.peak / PRESSURE == pytest.approx(1.013, abs=0.004)
 
 
-def test_same_end_without_its_own_freedom_is_a_logarithm_when_tilted() -> None:
+def test_tilted_end_without_correction_has_logarithm() -> None:
     body = FiniteLengthSpace(length=LENGTH, material=STEEL, model="mirror")
     case = Case(body=body, roller=Roller(radius=RADIUS, length=LENGTH), max_pressure=PRESSURE, tilt=5e-4)
     laws = settled(case).refined.laws
@@ -68,15 +68,15 @@ def test_same_end_without_its_own_freedom_is_a_logarithm_when_tilted() -> None:
     assert freed.values["end_pressure"][0] < freed.values["end_pressure"][1] < freed.peak
 
 
-def test_a_singular_end_and_the_other_half_free_of_contact() -> None:
+def test_singular_end_with_unloaded_half() -> None:
     roller = Roller(radius=RADIUS, length=0.3e-3, profile=profiles.FullCrown(0.5))
-    found = settled(Case(body=HALF, roller=roller, max_pressure=PRESSURE, tilt=0.02), 0.1).refined
-    assert found.settled
-    assert found.values["peak_pressure"] == (0.0, np.inf)
-    assert found.values["end_load"][0] == 0.0
+    computed = settled(Case(body=HALF, roller=roller, max_pressure=PRESSURE, tilt=0.02), 0.1).refined
+    assert computed.accurate
+    assert computed.values["peak_pressure"] == (0.0, np.inf)
+    assert computed.values["end_load"][0] == 0.0
 
 
-def test_sharp_elastic_end_in_a_face_grows_with_a_smaller_power() -> None:
+def test_sharp_elastic_end_has_smaller_exponent() -> None:
     """A 90 degree edge on a half-space of the same material, without friction: about 0.226."""
     half_width = 2 * A
     roller = Roller(radius=RADIUS, length=30 * half_width, material=STEEL)
@@ -88,64 +88,64 @@ def test_sharp_elastic_end_in_a_face_grows_with_a_smaller_power() -> None:
         assert 0.2 < law.exponent < 0.24
 
 
-def test_crown_that_leaves_the_ends_free_has_its_peak_in_the_middle() -> None:
+def test_crowned_roller_peaks_at_mid_length() -> None:
     crown = profiles.Lundberg.for_pressure(PRESSURE, radius=RADIUS, modulus=STEEL.plane_strain_modulus)
     case = Case(body=finite(), roller=Roller(radius=RADIUS, length=LENGTH, profile=crown), max_pressure=PRESSURE)
-    found = settled(case)
-    assert found.refined.values["end_pressure"] == (0.0, 0.0)
-    assert found.refined.errors["end_pressure"] == [0.0, 0.0]
-    assert abs(found.refined.peak - finer_peak(case, found, 2)) <= found.refined.peak_error
-    assert found.refined.peak / PRESSURE == pytest.approx(1.044, abs=0.005)
+    computed = settled(case)
+    assert computed.refined.values["end_pressure"] == (0.0, 0.0)
+    assert computed.refined.errors["end_pressure"] == [0.0, 0.0]
+    assert abs(computed.refined.peak - finer_peak(case, computed, 2)) <= computed.refined.peak_error
+    assert computed.refined.peak / PRESSURE == pytest.approx(1.044, abs=0.005)
 
 
 @pytest.mark.parametrize(("material", "distance"), [(None, 1e-3), (STEEL, -1e-2)])
-def test_end_close_to_that_of_the_body_has_the_contact_of_a_flush_one(
-    material: Material | None, distance: float
-) -> None:
+def test_end_near_free_end_matches_flush_end(material: Material | None, distance: float) -> None:
     """The room that is left is much narrower than the columns; its cells are accepted by every verb."""
     case, flush = (
         Case(
             body=QuarterSpace(material=STEEL),
             roller=filleted(0.2e-3, SHORT, material),
             max_pressure=PRESSURE,
-            end_distance=each * A,
+            end_distance=variant * A,
         )
-        for each in (distance, 0.0)
+        for variant in (distance, 0.0)
     )
-    found = solve(case, accuracy=0.05, y=[0.0], z=[0.3 * A], x=[0.0, A])
+    computed = solve(case, accuracy=0.05, y=[0.0], z=[0.3 * A], x=[0.0, A])
     same = solve(flush, accuracy=0.05, stresses=False)
-    assert bool(found.converged)
-    assert float(found.peak_pressure) == pytest.approx(float(same.peak_pressure), rel=0.01)
-    again = stress_field(case.body, found.pressure, x=[0.0, A], y=[0.0], z=[0.3 * A], inside_cells=found.pressure)
+    assert bool(computed.converged)
+    assert float(computed.peak_pressure) == pytest.approx(float(same.peak_pressure), rel=0.01)
+    repeated = stress_field(
+        case.body, computed.pressure, x=[0.0, A], y=[0.0], z=[0.3 * A], inside_cells=computed.pressure
+    )
     # The certificate shares the quadrature of the stresses in solve.
-    assert np.allclose(again.von_mises.values, found.von_mises.values, rtol=1e-5)
+    assert np.allclose(repeated.von_mises.values, computed.von_mises.values, rtol=1e-5)
 
 
 @pytest.mark.parametrize("distance", [1e-4, 0.05])
-def test_a_sharp_end_close_to_a_free_end_is_never_a_plain_number(distance: float) -> None:
+def test_sharp_end_near_free_end_has_infinite_error(distance: float) -> None:
     """At 1e-4 a no column shows the law; at 0.05 a the fitted intensity says that it is no better than some percent."""
     case = Case(
         body=finite(LENGTH + 2 * distance * A), roller=Roller(radius=RADIUS, length=LENGTH), max_pressure=PRESSURE
     )
-    found = refined_values(settled(case))
-    assert np.isinf(found["end_pressure_first_error"])
+    computed = refined_values(settled(case))
+    assert np.isinf(computed["end_pressure_first_error"])
     if distance > 1e-3:
-        intensity = found["end_intensity_first"] / (PRESSURE * np.sqrt(A))
+        intensity = computed["end_intensity_first"] / (PRESSURE * np.sqrt(A))
         assert float(intensity) == pytest.approx(0.1015, rel=0.06)
-        assert float(found["end_intensity_first_error"] / found["end_intensity_first"]) > 0.05
+        assert float(computed["end_intensity_first_error"] / computed["end_intensity_first"]) > 0.05
 
 
-def test_an_end_that_fades_is_never_a_plain_number() -> None:
+def test_fading_end_has_infinite_error() -> None:
     """The first column's pressure falls by 5 % with each halving, from 0.64 to 0.47 p0 and on."""
     rubber = Material(6e8, 0.0)
     roller = Roller(radius=RADIUS, length=0.13e-3, material=rubber)
     body = QuarterSpace(material=rubber, model="mirror-factor")
-    found = refined_values(settled(Case(body=body, roller=roller, max_pressure=2e6), 0.02))
-    assert np.isinf(found["end_pressure_first_error"])
-    assert 0 < float(found["peak_pressure_first_error"]) < 0.02 * float(found["peak_pressure_first"])
+    computed = refined_values(settled(Case(body=body, roller=roller, max_pressure=2e6), 0.02))
+    assert np.isinf(computed["end_pressure_first_error"])
+    assert 0 < float(computed["peak_pressure_first_error"]) < 0.02 * float(computed["peak_pressure_first"])
 
 
-def test_a_sharp_end_that_alone_is_pressed_has_its_law() -> None:
+def test_single_loaded_sharp_end_has_law() -> None:
     body = finite(3e-3)
     case = Case(body=body, roller=Roller(radius=RADIUS, length=2e-3), load=100.0, end_distance=0.5e-3, tilt=2e-3)
     free, law = settled(case, 0.05).refined.laws

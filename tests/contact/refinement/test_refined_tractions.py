@@ -21,10 +21,10 @@ from contactstudy import (
 )
 from contactstudy.cache import ArrayKey
 from contactstudy.contact.normal.contact import Certificate, Contact, Settings, Shape
-from contactstudy.contact.normal.prescribed import Prescribed
+from contactstudy.contact.normal.prescribed_loads import PrescribedLoad
 from contactstudy.contact.refinement import refined_tractions as module
 from contactstudy.contact.refinement.refined_contact import CELLS_Y, RefinedContact, refine_contact
-from contactstudy.contact.refinement.refined_tractions import COLUMNS_SHARE, _scales, refine_tractions
+from contactstudy.contact.refinement.refined_tractions import COLUMN_ERROR_FACTOR, _scales, refine_tractions
 from contactstudy.contact.rolling.frictional_contact import FrictionalContact
 from contactstudy.contact.rolling.surfaces import Tractions
 from contactstudy.contact.rolling.tractions import FrictionRequest
@@ -54,82 +54,82 @@ WHOLE = 0.1 * LIKE.normal_load
     ],
     ids=["creepages and spin", "forces", "shift", "shifting force"],
 )
-def test_default_cells_agree_with_fine_uniform_ones_to_the_errors_that_are_stated(motion: Rolling | Shift) -> None:
+def test_stated_errors_cover_fine_uniform_cells(motion: Rolling | Shift) -> None:
     case = replace(LIKE, motion=motion)
-    found = solve(case, stresses=False)
-    assert bool(found.converged)
+    computed = solve(case, stresses=False)
+    assert bool(computed.converged)
     fine = solve(case, choose_grid(case, cells_x=8, cells_y=40, window=1.5), stresses=False)
     scales = {"force_x": WHOLE, "force_y": WHOLE, "moment_z": WHOLE * 0.1e-3}
     for name, scale in scales.items():
-        error = float(found.get(f"{name}_error", 0.0))
+        error = float(computed.get(f"{name}_error", 0.0))
         assert error <= 0.01 * scale
-        assert float(found[name]) == pytest.approx(float(fine[name]), abs=max(error, 2e-3 * scale))
+        assert float(computed[name]) == pytest.approx(float(fine[name]), abs=max(error, 2e-3 * scale))
     for name in ("longitudinal_creepage", "lateral_creepage", "shift_x", "shift_y"):
-        if name in found:
-            error = float(found.get(f"{name}_error", 0.0))
-            usual = 0.1 * case.hertz_half_width / 5e-3 * (case.hertz_half_width if "shift" in name else 1.0)
-            assert float(found[name]) == pytest.approx(
-                float(fine[name]), abs=max(error, 2e-3 * usual, 1e-3 * abs(float(found[name])))
+        if name in computed:
+            error = float(computed.get(f"{name}_error", 0.0))
+            baseline = 0.1 * case.hertz_half_width / 5e-3 * (case.hertz_half_width if "shift" in name else 1.0)
+            assert float(computed[name]) == pytest.approx(
+                float(fine[name]), abs=max(error, 2e-3 * baseline, 1e-3 * abs(float(computed[name])))
             )
     # What is lost is a difference of what is put in and what is stored.
     names = ("shift_x", "shift_y") if isinstance(motion, Shift) else ("lateral_creepage", "longitudinal_creepage")
     put_in = sum(
-        abs(float(found[force] * found[name])) for force, name in zip(("force_x", "force_y"), names, strict=True)
+        abs(float(computed[force] * computed[name])) for force, name in zip(("force_x", "force_y"), names, strict=True)
     )
-    assert float(found["friction_work"]) == pytest.approx(float(fine["friction_work"]), abs=5e-3 * put_in)
+    assert float(computed["friction_work"]) == pytest.approx(float(fine["friction_work"]), abs=5e-3 * put_in)
 
 
-def test_the_columns_are_those_without_motion() -> None:
+def test_motion_keeps_columns() -> None:
     rolling = replace(INSIDE, motion=Rolling(longitudinal_creepage=2e-2))
-    still, moved = (solve(case, stresses=False, accuracy=0.1) for case in (INSIDE, rolling))
-    assert np.array_equal(still["x"], moved["x"])
-    assert float(moved["end_intensity_first"]) == pytest.approx(float(still["end_intensity_first"]), rel=0.01)
-    assert 0 < float(moved["force_y"]) < 0.1 * INSIDE.normal_load
-    bound = 0.1 * moved["pressure"]
-    assert float((np.hypot(moved["traction_x"], moved["traction_y"]) - bound).max()) < 1e-6 * float(bound.max())
+    still, shifted = (solve(case, stresses=False, accuracy=0.1) for case in (INSIDE, rolling))
+    assert np.array_equal(still["x"], shifted["x"])
+    assert float(shifted["end_intensity_first"]) == pytest.approx(float(still["end_intensity_first"]), rel=0.01)
+    assert 0 < float(shifted["force_y"]) < 0.1 * INSIDE.normal_load
+    bound = 0.1 * shifted["pressure"]
+    assert float((np.hypot(shifted["traction_x"], shifted["traction_y"]) - bound).max()) < 1e-6 * float(bound.max())
 
 
-def test_creepages_share_one_settled_contact() -> None:
+def test_creepages_share_one_contact() -> None:
     first = refine_contact(replace(LIKE, motion=Rolling(longitudinal_creepage=1e-3)), 0.05, 1e-6)
     assert refine_contact(replace(LIKE, motion=Rolling(force_y=1.0)), 0.05, 1e-6) is first
     assert refine_contact(LIKE, 0.05, 1e-6) is not first  # its window is narrower
 
 
 @pytest.mark.slow
-def test_coupled_tractions_are_in_the_values_that_are_stated() -> None:
+def test_coupled_tractions_change_stated_values() -> None:
     """A rigid roller on compressible material: what drives it lifts the surface."""
     body = HalfSpace(material=Material(210e9, 0.0))
     case = replace(INSIDE, body=body, coupled=True, friction=0.5, motion=Rolling(longitudinal_creepage=0.05))
-    found = solve(case, stresses=False, accuracy=0.1)
+    computed = solve(case, stresses=False, accuracy=0.1)
     free = solve(replace(case, coupled=False), stresses=False, accuracy=0.1)
-    assert bool(found.converged)
-    assert abs(float(found["end_load_first"] / free["end_load_first"]) - 1) > 1e-3
-    assert float(found["force_y"]) == pytest.approx(0.5 * case.normal_load, rel=0.02)
+    assert bool(computed.converged)
+    assert abs(float(computed["end_load_first"] / free["end_load_first"]) - 1) > 1e-3
+    assert float(computed["force_y"]) == pytest.approx(0.5 * case.normal_load, rel=0.02)
 
 
-def test_given_columns_are_taken() -> None:
+def test_given_columns_are_used() -> None:
     edges = LIKE.body.extent[1] * np.concatenate([np.linspace(0, 0.2, 9)[:-1], np.linspace(0.2, 1, 13)])
     half = LIKE.hertz_half_width
     case = replace(LIKE, motion=Rolling(longitudinal_creepage=1e-3))
-    found = solve(case, Grid.from_edges(edges, (-1.5 * half, 1.5 * half), 40), stresses=False)
-    assert found.sizes["x"] == edges.size - 1
-    assert float(found["force_y"]) == pytest.approx(float(solve(case, stresses=False)["force_y"]), rel=3e-3)
+    computed = solve(case, Grid.from_edges(edges, (-1.5 * half, 1.5 * half), 40), stresses=False)
+    assert computed.sizes["x"] == edges.size - 1
+    assert float(computed["force_y"]) == pytest.approx(float(solve(case, stresses=False)["force_y"]), rel=3e-3)
 
 
-def made_up(case: Case, pressed: float, **rigid: float) -> FrictionalContact:
+def make_contact(case: Case, pressed: float, **rigid: float) -> FrictionalContact:
     """A contact of a case under one and the same pressure on two cells, with some rigid motions."""
     grid = Grid.between(np.array([0.0, 1e-4, 2e-4, 5e-4]), (-2e-4, 2e-4), 4)
     pressure = np.zeros(grid.shape)
     pressure[0, 3] = pressure[2, 1] = pressed
-    shape = Shape(case.body, grid, ArrayKey(np.zeros(grid.shape)), Prescribed(1.0))
-    none = np.zeros(grid.shape)
+    shape = Shape(case.body, grid, ArrayKey(np.zeros(grid.shape)), PrescribedLoad(1.0))
+    empty = np.zeros(grid.shape)
     certificate = Certificate(0.0, 0.0, 0.0, 0.0)
     contact = Contact(
         shape=shape,
         settings=Settings(),
         pressure=pressure,
-        gap=none,
-        displacement=none,
+        gap=empty,
+        displacement=empty,
         approach=0.0,
         tilt=0.0,
         iterations=1,
@@ -138,14 +138,14 @@ def made_up(case: Case, pressed: float, **rigid: float) -> FrictionalContact:
         certificate=certificate,
     )
     resultants = dict.fromkeys(("force_x", "force_y", "moment_z"), 0.0)
-    pair = np.stack([none] * 2)
+    pair = np.stack([empty] * 2)
     tractions = Tractions(
-        traction=pair, slip=pair, sticks=none > 1, bound=none, rigid=rigid, resultants=resultants, work=0.0
+        traction=pair, slip=pair, sticks=empty > 1, bound=empty, rigid=rigid, resultants=resultants, work=0.0
     )
     return FrictionalContact(contact, tractions, True)
 
 
-def test_changes_are_related_to_full_sliding_and_to_the_slip_of_a_line_contact() -> None:
+def test_changes_are_relative_to_full_sliding() -> None:
     """Forces and moment of full sliding; creepages of ``f a / R``, shifts of ``f a**2 / R``, or more if they are."""
     pressed = 1e9
     slip = 0.1 * LIKE.hertz_half_width / 5e-3
@@ -153,34 +153,34 @@ def test_changes_are_related_to_full_sliding_and_to_the_slip_of_a_line_contact()
     # About the roller's middle, 0.25 mm: the cells' centres are 0.2 and 0.1 mm from it along x.
     moment = 0.1 * pressed * (1e-8 * np.hypot(2e-4, 1.5e-4) + 3e-8 * np.hypot(1e-4, 0.5e-4))
     case = replace(LIKE, motion=Rolling(longitudinal_creepage=0.0))
-    found = made_up(case, pressed, x=0.0, y=1e-9, spin=0.0)
-    usual = {"lateral_creepage": slip, "longitudinal_creepage": slip, "spin": slip * force / moment}
-    assert _scales(case, found) == pytest.approx(
-        usual | {"force_x": force, "force_y": force, "moment_z": moment, "friction_work": force * slip}
+    computed = make_contact(case, pressed, x=0.0, y=1e-9, spin=0.0)
+    baseline = {"lateral_creepage": slip, "longitudinal_creepage": slip, "spin": slip * force / moment}
+    assert _scales(case, computed) == pytest.approx(
+        baseline | {"force_x": force, "force_y": force, "moment_z": moment, "friction_work": force * slip}
     )
-    fast = made_up(case, pressed, x=-3 * slip, y=2 * slip, spin=9 * slip * force / moment)
+    fast = make_contact(case, pressed, x=-3 * slip, y=2 * slip, spin=9 * slip * force / moment)
     scales = _scales(case, fast)
     assert scales["lateral_creepage"] == pytest.approx(3 * slip)
     assert scales["friction_work"] == pytest.approx(force * 9 * slip)
     case = replace(LIKE, motion=Shift(y=1e-9))
-    moved = made_up(case, pressed, x=0.0, y=1e-12)
-    assert _scales(case, moved)["shift_x"] == pytest.approx(slip * LIKE.hertz_half_width)
-    assert _scales(case, moved)["friction_work"] == pytest.approx(force * slip * LIKE.hertz_half_width)
-    bare = made_up(replace(LIKE, friction=0.0), pressed, x=0.0, y=0.0, spin=0.0)
-    assert _scales(replace(LIKE, friction=0.0, motion=Rolling()), bare)["friction_work"] == 0.0
+    shifted = make_contact(case, pressed, x=0.0, y=1e-12)
+    assert _scales(case, shifted)["shift_x"] == pytest.approx(slip * LIKE.hertz_half_width)
+    assert _scales(case, shifted)["friction_work"] == pytest.approx(force * slip * LIKE.hertz_half_width)
+    frictionless = make_contact(replace(LIKE, friction=0.0), pressed, x=0.0, y=0.0, spin=0.0)
+    assert _scales(replace(LIKE, friction=0.0, motion=Rolling()), frictionless)["friction_work"] == 0.0
 
 
 @pytest.mark.parametrize(
     ("changes", "accuracy", "tried"), [([0.5], 0.6, 2), ([0.5, 0.3, 0.1], 0.2, 4), ([0.9] * 9, 0.1, 9)]
 )
-def test_cells_double_until_what_is_free_changes_by_no_more_than_the_accuracy(
+def test_cells_double_until_changes_meet_accuracy(
     changes: list[float], accuracy: float, tried: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Of full sliding's force; what is prescribed may change, and the error that is stated is the last change
     and what the columns leave.
     """
     case = replace(LIKE, motion=Rolling(longitudinal_creepage=1e-3))
-    contact = made_up(case, 1e9, x=0.0, y=1e-3, spin=0.0)
+    contact = make_contact(case, 1e9, x=0.0, y=1e-3, spin=0.0)
     full, forces, rows = 0.1 * 1e9 * 4e-8, np.cumsum([3.0, *changes]), []
 
     def on(case: Case, settled: RefinedContact, cells: int, before: FrictionalContact | None) -> FrictionalContact:
@@ -192,18 +192,18 @@ def test_cells_double_until_what_is_free_changes_by_no_more_than_the_accuracy(
 
     settled = refine_contact(replace(LIKE, friction=0.0), 0.05, 1e-6)
     cells = settled.contact.shape.grid.cells_y
-    most = 1 + int(np.log2(CELLS_Y[-1] / cells)) + 1
+    maximum = 1 + int(np.log2(CELLS_Y[-1] / cells)) + 1
     monkeypatch.setattr(module, "_contact_on_rows", on)
     monkeypatch.setattr(module, "replace_contact", lambda settled, contact, case: settled)
-    found = refine_tractions(case, settled, accuracy)
-    assert rows == [cells // 2 * 2**number for number in range(min(tried, most))]
-    assert found.accurate == (tried < 9)
-    of_columns = COLUMNS_SHARE * settled.refined.least_error
-    assert found.errors["force_x"] == pytest.approx(full * (changes[len(rows) - 2] + of_columns))
-    assert "longitudinal_creepage" not in found.errors
+    computed = refine_tractions(case, settled, accuracy)
+    assert rows == [cells // 2 * 2**index for index in range(min(tried, maximum))]
+    assert computed.accurate == (tried < 9)
+    of_columns = COLUMN_ERROR_FACTOR * settled.refined.least_error
+    assert computed.errors["force_x"] == pytest.approx(full * (changes[len(rows) - 2] + of_columns))
+    assert "longitudinal_creepage" not in computed.errors
 
 
-def test_fastsim_takes_the_cells_of_the_normal_contact(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_fastsim_uses_cells_of_normal_contact(monkeypatch: pytest.MonkeyPatch) -> None:
     """Finer cells do not reduce the error of its model."""
     rows: list[int] = []
     original = module.frictional_contact
@@ -242,4 +242,4 @@ def test_newton_steps_on_the_first_cells_are_bounded(monkeypatch: pytest.MonkeyP
     monkeypatch.setattr(module, "frictional_contact", recorded)
     case = replace(LIKE, motion=Shift(y=1e-8))
     refine_tractions(case, refine_contact(case, 0.05, 1e-6), 0.05)
-    assert bounds[:2] == [module.COARSE_STEPS, None]
+    assert bounds[:2] == [module.MAX_COARSE_STEPS, None]

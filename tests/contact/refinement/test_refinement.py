@@ -11,12 +11,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from contactstudy.checks import BoolArray, FloatArray
-from contactstudy.contact.refinement.columns import MOST_COLUMNS, STEEPEST, AxialShape, first_edges, split
+from contactstudy.contact.refinement.columns import MAX_COLUMNS, MAX_WIDTH_RATIO, AxialShape, first_edges, split_columns
 from contactstudy.contact.refinement.laws import RIGID, EndLaw
 from contactstudy.contact.refinement.refinement import (
-    END_COLUMN,
-    LAST_COLUMNS,
-    SHARPEST,
+    EDGE_COLUMN_WIDTH,
+    END_COLUMN_WIDTH,
+    MIN_END_COLUMN,
     ColumnPressure,
     Refinement,
     _change_error,
@@ -29,25 +29,27 @@ HALF_WIDTH, LENGTH = 1.0, 20.0
 Y = (np.arange(16) - 7.5) / 8
 
 
-def shape(length: float = LENGTH, *, room: tuple[float, float] = (0.0, 0.0), elastic: bool = False) -> AxialShape:
-    known = [np.nan if elastic or each == 0 else RIGID for each in room]
+def shape(
+    length: float = LENGTH, *, face_beyond: tuple[float, float] = (0.0, 0.0), elastic: bool = False
+) -> AxialShape:
+    known = [np.nan if elastic or variant == 0 else RIGID for variant in face_beyond]
     return AxialShape(
         start=0.0,
         stop=length,
         half_width=HALF_WIDTH,
         depth=0.05,
         height=lambda x: np.zeros_like(x),
-        room=room,
+        face_beyond=face_beyond,
         exponents=(known[0], known[1]),
     )
 
 
-def pressed(pressure: FloatArray) -> ColumnPressure:
+def column_pressure(pressure: FloatArray) -> ColumnPressure:
     """Contact whose columns that are not pressed are far from it."""
     return ColumnPressure(np.asarray(pressure), lambda: np.where(pressure.any(axis=1), 0.0, np.inf))
 
 
-def averaged(along: Callable[[FloatArray], FloatArray]) -> Callable[..., ColumnPressure]:
+def make_column_solver(along: Callable[[FloatArray], FloatArray]) -> Callable[..., ColumnPressure]:
     """Solver that returns means over columns of a made-up pressure along the axis, elliptic across."""
     nodes, weights = np.polynomial.legendre.leggauss(20)
 
@@ -56,7 +58,7 @@ def averaged(along: Callable[[FloatArray], FloatArray]) -> Callable[..., ColumnP
             assert start.shape == (edges.size - 1, Y.size)
         within = 0.5 * (edges[1:] + edges[:-1])[:, None] + 0.5 * np.diff(edges)[:, None] * nodes
         means = 0.5 * along(within) @ weights
-        return pressed(means[:, None] * np.sqrt(np.maximum(1 - Y**2, 0)))
+        return column_pressure(means[:, None] * np.sqrt(np.maximum(1 - Y**2, 0)))
 
     return solve
 
@@ -70,29 +72,29 @@ def marked_edges(draw: st.DrawFn) -> tuple[FloatArray, BoolArray]:
 
 
 @given(marked=marked_edges())
-def test_splitting_halves_marked_columns_and_keeps_edges_and_growth(marked: tuple[FloatArray, BoolArray]) -> None:
+def test_split_halves_marked_columns(marked: tuple[FloatArray, BoolArray]) -> None:
     edges, marks = marked
-    finer = split(edges, marks)
+    finer = split_columns(edges, marks)
     assert np.all(np.isin(edges, finer))
     centres = 0.5 * (edges[1:] + edges[:-1])
     assert np.all(np.isin(centres[marks], finer))
     widths = np.diff(finer)
     assert np.all(widths > 0)
     if marks.any():
-        assert np.all(np.maximum(widths[1:] / widths[:-1], widths[:-1] / widths[1:]) <= STEEPEST * (1 + 1e-12))
+        assert np.all(np.maximum(widths[1:] / widths[:-1], widths[:-1] / widths[1:]) <= MAX_WIDTH_RATIO * (1 + 1e-12))
 
 
 @given(length=st.floats(1.0, 300.0))
-def test_first_columns_are_narrow_at_both_ends_and_symmetric(length: float) -> None:
+def test_first_columns_are_symmetric_and_narrow_at_ends(length: float) -> None:
     edges = first_edges(shape(length))
     widths = np.diff(edges)
     assert (edges[0], edges[-1]) == (0.0, length)
     assert widths[0] <= 0.1 * HALF_WIDTH * (1 + 1e-9)
     assert np.allclose(widths, widths[::-1])
-    assert np.all(widths[1 : widths.size // 2] / widths[: widths.size // 2 - 1] <= STEEPEST)
+    assert np.all(widths[1 : widths.size // 2] / widths[: widths.size // 2 - 1] <= MAX_WIDTH_RATIO)
 
 
-def test_first_columns_are_split_where_the_shape_bends() -> None:
+def test_first_columns_split_at_curvature() -> None:
     fillet, kink = 3.0, 17.0
     bent = AxialShape(
         start=0.0,
@@ -100,12 +102,12 @@ def test_first_columns_are_split_where_the_shape_bends() -> None:
         half_width=HALF_WIDTH,
         depth=0.05,
         height=lambda x: 0.5 * np.maximum(x - kink, 0) ** 2 / fillet,
-        room=(0.0, 0.0),
+        face_beyond=(0.0, 0.0),
     )
     widths = np.diff(first_edges(bent))
-    plain = np.diff(first_edges(shape()))
-    assert widths.size > plain.size
-    assert widths[-len(plain) // 3 :].max() < plain.max()
+    baseline = np.diff(first_edges(shape()))
+    assert widths.size > baseline.size
+    assert widths[-len(baseline) // 3 :].max() < baseline.max()
 
 
 BUMPS: dict[str, Callable[[FloatArray], FloatArray]] = {
@@ -119,20 +121,23 @@ BUMPS: dict[str, Callable[[FloatArray], FloatArray]] = {
 
 @pytest.mark.parametrize("accuracy", [0.05, 0.01, 0.003])
 @pytest.mark.parametrize("name", BUMPS)
-def test_stated_peak_and_ends_are_within_their_errors(name: str, accuracy: float) -> None:
+def test_errors_cover_peak_and_ends(name: str, accuracy: float) -> None:
     along = BUMPS[name]
-    found = refine_columns(averaged(along), shape(), accuracy)
+    computed = refine_columns(make_column_solver(along), shape(), accuracy)
     peak = float(along(np.linspace(0.0, LENGTH, 200001)).max())
-    assert found.settled
-    assert found.laws == (None, None)
-    assert abs(found.peak - peak) <= found.peak_error <= accuracy * peak * (1 + 1e-9)
+    assert computed.accurate
+    assert computed.laws == (None, None)
+    assert abs(computed.peak - peak) <= computed.peak_error <= accuracy * peak * (1 + 1e-9)
     ends = along(np.array([0.0, LENGTH]))
-    for end, error, exact in zip(found.values["end_pressure"], found.errors["end_pressure"], ends, strict=True):
+    for end, error, exact in zip(computed.values["end_pressure"], computed.errors["end_pressure"], ends, strict=True):
         assert abs(end - exact) <= error + 1e-12
 
 
 def test_tighter_accuracy_takes_more_columns() -> None:
-    sizes = [refine_columns(averaged(BUMPS["narrow"]), shape(), each).edges.size for each in (0.02, 0.003, 0.0015)]
+    sizes = [
+        refine_columns(make_column_solver(BUMPS["narrow"]), shape(), value).edges.size
+        for value in (0.02, 0.003, 0.0015)
+    ]
     assert sizes[0] < sizes[1] < sizes[2]
 
 
@@ -141,49 +146,49 @@ def test_mirrored_pressure_is_refined_to_mirrored_columns(at: float, height: flo
     def bump(x: FloatArray) -> FloatArray:
         return np.asarray(1 + height * np.exp(-(((x - at) / width) ** 2)))
 
-    there = refine_columns(averaged(bump), shape(), 0.02)
-    back = refine_columns(averaged(lambda x: bump(LENGTH - x)), shape(), 0.02)
+    there = refine_columns(make_column_solver(bump), shape(), 0.02)
+    back = refine_columns(make_column_solver(lambda x: bump(LENGTH - x)), shape(), 0.02)
     assert back.peak == pytest.approx(there.peak, rel=2e-3)
     assert abs(back.edges.size - there.edges.size) <= 4
     assert abs(there.peak - float(bump(np.linspace(0, LENGTH, 20001)).max())) <= there.peak_error
 
 
 @pytest.mark.parametrize("exponent", [0.5, 0.25])
-def test_power_law_is_stated_by_intensity_and_the_other_end_by_pressure(exponent: float) -> None:
+def test_singular_end_has_intensity_and_regular_end_pressure(exponent: float) -> None:
     bend = 0.02
 
     def exact(edges: FloatArray, start: FloatArray | None, tolerance: float) -> ColumnPressure:
         first, second = (edges**power / power for power in (1 - exponent, 2 - exponent))
         means = 0.7 * np.diff(first + bend * second) / np.diff(edges)
-        return pressed(means[:, None] * np.sqrt(np.maximum(1 - Y**2, 0)))
+        return column_pressure(means[:, None] * np.sqrt(np.maximum(1 - Y**2, 0)))
 
-    found = refine_columns(exact, shape(room=(np.inf, 0.0), elastic=exponent != RIGID), 0.01)
-    law, other = found.laws
+    computed = refine_columns(exact, shape(face_beyond=(np.inf, 0.0), elastic=exponent != RIGID), 0.01)
+    law, variant = computed.laws
     assert law is not None
-    assert other is None
+    assert variant is None
     assert np.isinf(
-        [found.peak, found.peak_error, found.values["end_pressure"][0], found.errors["end_pressure"][0]]
+        [computed.peak, computed.peak_error, computed.values["end_pressure"][0], computed.errors["end_pressure"][0]]
     ).all()
     assert law.kind == "power"
     assert law.exponent == pytest.approx(exponent, abs=0.02)
-    assert np.diff(found.edges)[0] <= SHARPEST * HALF_WIDTH
-    assert found.values["end_pressure"][1] == pytest.approx(
-        0.7 * LENGTH**-exponent * (1 + bend * LENGTH), abs=found.errors["end_pressure"][1]
+    assert np.diff(computed.edges)[0] <= MIN_END_COLUMN * HALF_WIDTH
+    assert computed.values["end_pressure"][1] == pytest.approx(
+        0.7 * LENGTH**-exponent * (1 + bend * LENGTH), abs=computed.errors["end_pressure"][1]
     )
     # K is that of the row of cells beside y = 0.
     assert law.intensity == pytest.approx(0.7 * np.sqrt(1 - Y[7] ** 2), rel=0.01)
 
 
-def test_what_cannot_be_settled_ends_at_the_most_columns_and_says_so() -> None:
+def test_unresolved_pressure_ends_at_maximum_columns() -> None:
     def restless(edges: FloatArray, start: FloatArray | None, tolerance: float) -> ColumnPressure:
         noise = np.random.default_rng(edges.size).random((edges.size - 1, 1))
         noise[[0, 1, -2, -1]] = 0.0
-        return pressed((1 + noise) * np.sqrt(np.maximum(1 - Y**2, 0)))
+        return column_pressure((1 + noise) * np.sqrt(np.maximum(1 - Y**2, 0)))
 
-    found = refine_columns(restless, shape(), 0.001)
-    assert not found.settled
-    assert found.edges.size <= 2 * MOST_COLUMNS
-    assert found.peak_error > 0.001 * found.peak
+    computed = refine_columns(restless, shape(), 0.001)
+    assert not computed.accurate
+    assert computed.edges.size <= 2 * MAX_COLUMNS
+    assert computed.peak_error > 0.001 * computed.peak
 
 
 def power_law(x: FloatArray) -> FloatArray:
@@ -204,9 +209,9 @@ FOLLOWED = BUMPS | {
     ("unit", "place", "side"), [(2.0**-17, 0.0, 0), (1.0, -8.0, 0), (1.0, 64.0, 1), (2.0**-17, 0.0, 1)]
 )
 @pytest.mark.parametrize("name", FOLLOWED)
-def test_neither_units_nor_place_nor_side_decide_anything(name: str, unit: float, place: float, side: int) -> None:
+def test_refinement_scales_with_units_position_and_side(name: str, unit: float, place: float, side: int) -> None:
     """Found from either end, elsewhere and in other units, of length and of pressure, the columns are the same."""
-    pressure, along = 2.0**37 if unit < 1 else 1.0, averaged(FOLLOWED[name])
+    pressure, along = 2.0**37 if unit < 1 else 1.0, make_column_solver(FOLLOWED[name])
 
     def own(x: FloatArray) -> FloatArray:
         """Distances from the first end, in the plain unit."""
@@ -217,93 +222,104 @@ def test_neither_units_nor_place_nor_side_decide_anything(name: str, unit: float
 
     def solve(edges: FloatArray, start: FloatArray | None, tolerance: float) -> ColumnPressure:
         back = slice(None, None, 1 - 2 * side)
-        return pressed(pressure * along(own(edges)[back], None, tolerance).pressure[back])
+        return column_pressure(pressure * along(own(edges)[back], None, tolerance).pressure[back])
 
-    room, known = (3.0, 0.0), (RIGID, np.nan)
-    plain = refine_columns(
+    face_beyond, known = (3.0, 0.0), (RIGID, np.nan)
+    baseline = refine_columns(
         along,
         AxialShape(
-            start=0.0, stop=LENGTH, half_width=HALF_WIDTH, depth=0.05, height=height, room=room, exponents=known
+            start=0.0,
+            stop=LENGTH,
+            half_width=HALF_WIDTH,
+            depth=0.05,
+            height=height,
+            face_beyond=face_beyond,
+            exponents=known,
         ),
         0.02,
     )
-    elsewhere = AxialShape(
+    shifted = AxialShape(
         start=unit * place,
         stop=unit * (place + LENGTH),
         half_width=unit * HALF_WIDTH,
         depth=unit * 0.05,
         height=lambda x: unit * height(own(x)),
-        room=(unit * room[side], unit * room[1 - side]),
+        face_beyond=(unit * face_beyond[side], unit * face_beyond[1 - side]),
         exponents=known[:: 1 - 2 * side],
     )
-    other = refine_columns(solve, elsewhere, 0.02)
-    assert (other.settled, other.first.size) == (plain.settled, plain.first.size)
-    assert np.sort(own(other.edges)) == pytest.approx(plain.edges, abs=1e-9)
+    variant = refine_columns(solve, shifted, 0.02)
+    assert (variant.accurate, variant.first_edges.size) == (baseline.accurate, baseline.first_edges.size)
+    assert np.sort(own(variant.edges)) == pytest.approx(baseline.edges, abs=1e-9)
     for key, factor in {"peak_pressure": pressure, "end_pressure": pressure, "end_load": pressure * unit}.items():
-        for values, expected in ((other.values, plain.values), (other.errors, plain.errors)):
+        for values, expected in ((variant.values, baseline.values), (variant.errors, baseline.errors)):
             assert np.array(values[key])[:: 1 - 2 * side] / factor == pytest.approx(expected[key], rel=1e-6), key
-    for found, law in zip(other.laws if side == 0 else other.laws[::-1], plain.laws, strict=True):
-        assert (found is None) == (law is None)
-        if found and law:
+    for computed, law in zip(variant.laws if side == 0 else variant.laws[::-1], baseline.laws, strict=True):
+        assert (computed is None) == (law is None)
+        if computed and law:
             factor = pressure * unit**law.exponent
-            assert (found.kind, found.exponent) == (law.kind, pytest.approx(law.exponent))
+            assert (computed.kind, computed.exponent) == (law.kind, pytest.approx(law.exponent))
             for key in ("intensity", "intensity_error"):
-                assert getattr(found, key) / factor == pytest.approx(getattr(law, key), rel=1e-5, nan_ok=True)
+                assert getattr(computed, key) / factor == pytest.approx(getattr(law, key), rel=1e-5, nan_ok=True)
 
 
-def outermost(name: str, room: tuple[float, float] = (0.0, 0.0)) -> tuple[float, float]:
+def outermost_widths(name: str, face_beyond: tuple[float, float] = (0.0, 0.0)) -> tuple[float, float]:
     """Widths of the first and the last column of a refined pressure, over the half-width."""
-    widths = np.diff(refine_columns(averaged(FOLLOWED[name]), shape(room=room), 0.02).edges) / HALF_WIDTH
+    widths = (
+        np.diff(refine_columns(make_column_solver(FOLLOWED[name]), shape(face_beyond=face_beyond), 0.02).edges)
+        / HALF_WIDTH
+    )
     return float(widths[0]), float(widths[-1])
 
 
-def test_pressed_ends_are_resolved_the_more_the_sharper_they_are() -> None:
-    for width in outermost("falls to the end"):
-        assert SHARPEST < 0.3 * END_COLUMN < width <= END_COLUMN
+def test_sharper_ends_have_narrower_columns() -> None:
+    for width in outermost_widths("falls to the end"):
+        assert MIN_END_COLUMN < 0.3 * END_COLUMN_WIDTH < width <= END_COLUMN_WIDTH
     for name in ("rises to one end", "rises to one end below a peak"):
-        assert 0.3 * SHARPEST < outermost(name)[1] <= SHARPEST
-    for room in ((2.0, 0.0), (0.0, 2.0)):
-        widths = outermost("falls to the end", room)
-        sharp = room.index(2.0)
-        assert 0.1 * SHARPEST < widths[sharp] <= SHARPEST
-        assert 0.3 * END_COLUMN < widths[1 - sharp] <= END_COLUMN
-    assert min(outermost("contact's end", (2.0, 2.0))) > END_COLUMN  # neither is pressed
+        assert 0.3 * MIN_END_COLUMN < outermost_widths(name)[1] <= MIN_END_COLUMN
+    for face_beyond in ((2.0, 0.0), (0.0, 2.0)):
+        widths = outermost_widths("falls to the end", face_beyond)
+        sharp = face_beyond.index(2.0)
+        assert 0.1 * MIN_END_COLUMN < widths[sharp] <= MIN_END_COLUMN
+        assert 0.3 * END_COLUMN_WIDTH < widths[1 - sharp] <= END_COLUMN_WIDTH
+    assert min(outermost_widths("contact's end", (2.0, 2.0))) > END_COLUMN_WIDTH  # neither is pressed
 
 
-def test_columns_about_the_ends_of_a_contact_are_narrow() -> None:
-    found = refine_columns(averaged(FOLLOWED["contact's end"]), shape(), 0.05)
-    edges, widths = found.edges, np.diff(found.edges)
-    touched = np.flatnonzero(found.pressure.any(axis=1))
+def test_columns_near_contact_ends_are_narrow() -> None:
+    computed = refine_columns(make_column_solver(FOLLOWED["contact's end"]), shape(), 0.05)
+    edges, widths = computed.edges, np.diff(computed.edges)
+    touched = np.flatnonzero(computed.pressure.any(axis=1))
     for end in (edges[touched[0]], edges[touched[-1] + 1]):
         near = (edges[:-1] < end + 0.99 * HALF_WIDTH) & (edges[1:] > end - 0.99 * HALF_WIDTH)
         assert near.sum() > 4
-        assert widths[near].max() <= LAST_COLUMNS * HALF_WIDTH
-    assert widths.max() > 2 * LAST_COLUMNS * HALF_WIDTH
+        assert widths[near].max() <= EDGE_COLUMN_WIDTH * HALF_WIDTH
+    assert widths.max() > 2 * EDGE_COLUMN_WIDTH * HALF_WIDTH
 
 
 @pytest.mark.parametrize("unit", [2.0**-17, 1.0, 2.0**10])
 @pytest.mark.parametrize("side", [0, 1])
-def test_a_step_at_an_end_is_marked_by_what_the_line_to_the_end_adds(side: int, unit: float) -> None:
+def test_end_step_marks_end_columns(side: int, unit: float) -> None:
     """Half the difference of two like columns counts four times; its square, 0.03 of the largest one, does not."""
     edges = np.concatenate([0.01 * np.arange(11), np.linspace(0.2, LENGTH, 100)])
     along = np.where(np.arange(edges.size - 1) == 0, 0.1, 0.2)
     along[40:] = 1.0
     if side:
         edges, along = LENGTH - edges[::-1], along[::-1]
-    asked = AxialShape(
+    request = AxialShape(
         start=0.0,
         stop=unit * LENGTH,
         half_width=unit * HALF_WIDTH,
         depth=0.05 * unit,
         height=np.zeros_like,
-        room=(0.0, 0.0),
+        face_beyond=(0.0, 0.0),
     )
-    state = Refinement(solve=lambda *_: pressed(along[:, None] * np.sqrt(1 - Y**2)), shape=asked, edges=unit * edges)
+    state = Refinement(
+        solve=lambda *_: column_pressure(along[:, None] * np.sqrt(1 - Y**2)), shape=request, edges=unit * edges
+    )
     for theta, marked in ((0.19, True), (0.21, False)):
-        assert state._marks(theta)[-side] == marked
+        assert state._select_columns_to_split(theta)[-side] == marked
 
 
-def test_half_of_the_last_changes_is_the_error() -> None:
+def test_error_is_half_of_last_changes() -> None:
     assert _change_error([5.0, 1.0, 1.2, 1.25], 0.0) == pytest.approx(0.5 * 0.25)
     assert _change_error([1.0, 1.25, 1.2], 0.2) == 0.2
     assert _change_error([1.0, np.inf, 1.2], 0.0) == pytest.approx(0.1)
@@ -312,56 +328,58 @@ def test_half_of_the_last_changes_is_the_error() -> None:
 
 
 @pytest.mark.parametrize("length", [20.0, 0.5])
-def test_least_errors_of_loads_are_the_same_part_of_the_usual_as_those_of_peaks(length: float) -> None:
-    found = refine_columns(averaged(BUMPS["even"]), shape(length), 0.02)
-    usual = float(found.pressure[0].sum()) * min(HALF_WIDTH, length)
-    assert found.values["end_load"] == pytest.approx((usual, usual))
-    parts = np.array(found.errors["peak_pressure"]) / found.values["peak_pressure"]
-    assert np.array(found.errors["end_load"]) / usual == pytest.approx(parts)
+def test_load_and_peak_errors_have_equal_floor(length: float) -> None:
+    computed = refine_columns(make_column_solver(BUMPS["even"]), shape(length), 0.02)
+    baseline = float(computed.pressure[0].sum()) * min(HALF_WIDTH, length)
+    assert computed.values["end_load"] == pytest.approx((baseline, baseline))
+    parts = np.array(computed.errors["peak_pressure"]) / computed.values["peak_pressure"]
+    assert np.array(computed.errors["end_load"]) / baseline == pytest.approx(parts)
 
 
 @pytest.mark.parametrize("name", ["lesser peak", "singular"])
-def test_another_pressure_on_the_same_columns_has_errors_that_grow_with_it(name: str) -> None:
-    asked = shape(room=(3.0, 0.0))
-    found = refine_columns(averaged(FOLLOWED[name]), asked, 0.02)
-    other = replace_pressure(found, 1.25 * found.pressure, asked)
-    for values, expected in ((other.values, found.values), (other.errors, found.errors)):
+def test_replaced_pressure_scales_errors(name: str) -> None:
+    request = shape(face_beyond=(3.0, 0.0))
+    computed = refine_columns(make_column_solver(FOLLOWED[name]), request, 0.02)
+    variant = replace_pressure(computed, 1.25 * computed.pressure, request)
+    for values, expected in ((variant.values, computed.values), (variant.errors, computed.errors)):
         for key in ("peak_pressure", "end_pressure"):
-            assert values[key] == pytest.approx([1.25 * each for each in expected[key]]), key
-    assert other.values["end_load"] == pytest.approx([1.25 * each for each in found.values["end_load"]])
-    assert other.errors["end_load"] == found.errors["end_load"]
-    for law, again in zip(found.laws, other.laws, strict=True):
-        assert (law is None) == (again is None)
-        if law and again:
-            assert again.intensity == pytest.approx(1.25 * law.intensity)
+            assert values[key] == pytest.approx([1.25 * value for value in expected[key]]), key
+    assert variant.values["end_load"] == pytest.approx([1.25 * value for value in computed.values["end_load"]])
+    assert variant.errors["end_load"] == computed.errors["end_load"]
+    for law, repeated in zip(computed.laws, variant.laws, strict=True):
+        assert (law is None) == (repeated is None)
+        if law and repeated:
+            assert repeated.intensity == pytest.approx(1.25 * law.intensity)
 
 
-def test_an_end_that_was_not_pressed_before_is_all_in_doubt() -> None:
+def test_newly_loaded_end_has_error_of_its_pressure() -> None:
     # Random case 4008736: coupled friction presses an end that the pressure alone does not reach.
-    asked = shape()
-    found = refine_columns(averaged(FOLLOWED["contact's end"]), asked, 0.02)
-    assert (found.values["end_pressure"], found.errors["end_pressure"]) == ((0.0, 0.0), [0.0, 0.0])
-    pressed = found.pressure.copy()
-    pressed[:20] += 0.02 * found.pressure.max()
-    other = replace_pressure(found, pressed, asked)
-    first, last = other.values["end_pressure"]
+    request = shape()
+    computed = refine_columns(make_column_solver(FOLLOWED["contact's end"]), request, 0.02)
+    assert (computed.values["end_pressure"], computed.errors["end_pressure"]) == ((0.0, 0.0), [0.0, 0.0])
+    column_pressure = computed.pressure.copy()
+    column_pressure[:20] += 0.02 * computed.pressure.max()
+    variant = replace_pressure(computed, column_pressure, request)
+    first, last = variant.values["end_pressure"]
     assert first > 0
-    assert other.errors["end_pressure"] == [first, last] == [first, 0.0]
+    assert variant.errors["end_pressure"] == [first, last] == [first, 0.0]
 
 
 @pytest.mark.parametrize("errors", [(0.1, np.inf), (np.inf, 0.1)])
-def test_of_two_equal_peaks_the_larger_error_counts(errors: tuple[float, float]) -> None:
-    found = refine_columns(averaged(FOLLOWED["even"]), shape(), 0.02)
+def test_equal_peaks_take_larger_error(errors: tuple[float, float]) -> None:
+    computed = refine_columns(make_column_solver(FOLLOWED["even"]), shape(), 0.02)
 
     def peak_error(peaks: tuple[float, ...]) -> float:
-        return replace(found, values={"peak_pressure": peaks}, errors={"peak_pressure": errors}).peak_error
+        return replace(computed, values={"peak_pressure": peaks}, errors={"peak_pressure": errors}).peak_error
 
     assert np.isinf(peak_error((1.0, 1.0)))
     assert peak_error((1.0, 0.5)[:: 1 if errors[0] < 1 else -1]) == 0.1
 
 
-def test_an_end_is_sampled_wherever_its_column_was_split(caplog: pytest.LogCaptureFixture) -> None:
-    state = Refinement(solve=averaged(FOLLOWED["rises to one end"]), shape=shape(), edges=first_edges(shape()))
+def test_end_samples_follow_splitting(caplog: pytest.LogCaptureFixture) -> None:
+    state = Refinement(
+        solve=make_column_solver(FOLLOWED["rises to one end"]), shape=shape(), edges=first_edges(shape())
+    )
     with caplog.at_level("INFO"):
         for theta in (0.5, 0.3, 0.2):
             state.refine(theta)
@@ -375,29 +393,31 @@ def test_an_end_is_sampled_wherever_its_column_was_split(caplog: pytest.LogCaptu
 
 
 @pytest.mark.parametrize("side", [0, 1])
-def test_a_sharp_end_that_is_not_pressed_needs_no_law(side: int) -> None:
+def test_unloaded_sharp_end_has_no_law(side: int) -> None:
     """The other end is pressed and settles; the pressure begins one column behind the sharp end."""
 
     def along(x: FloatArray) -> FloatArray:
-        place = x if side == 0 else LENGTH - x
-        return np.asarray(np.where(place > 0.06, 1.0, 0.0) * (1 - 0.2 * place / LENGTH))
+        position = x if side == 0 else LENGTH - x
+        return np.asarray(np.where(position > 0.06, 1.0, 0.0) * (1 - 0.2 * position / LENGTH))
 
-    room = (2.0, 0.0) if side == 0 else (0.0, 2.0)
-    found = refine_columns(averaged(along), shape(room=room), 0.05)
-    assert found.laws == (None, None)
-    assert found.values["end_pressure"][side] == 0.0
-    assert np.isfinite(found.errors["end_pressure"]).all()
-    assert np.isfinite(found.errors["peak_pressure"]).all()
+    face_beyond = (2.0, 0.0) if side == 0 else (0.0, 2.0)
+    computed = refine_columns(make_column_solver(along), shape(face_beyond=face_beyond), 0.05)
+    assert computed.laws == (None, None)
+    assert computed.values["end_pressure"][side] == 0.0
+    assert np.isfinite(computed.errors["end_pressure"]).all()
+    assert np.isfinite(computed.errors["peak_pressure"]).all()
 
 
 @pytest.mark.parametrize("slope", [0.5, -0.5])
 @pytest.mark.parametrize("side", [0, 1])
-def test_peak_at_a_pressed_sharp_end_has_an_infinite_error(side: int, slope: float) -> None:
+def test_peak_at_sharp_end_has_infinite_error(side: int, slope: float) -> None:
     def pressure(x: FloatArray) -> FloatArray:
         distance = x if side == 0 else LENGTH - x
         return np.asarray(1 + slope * distance / LENGTH)
 
-    columns = refine_columns(averaged(pressure), shape(room=(2.0, 0.0) if side == 0 else (0.0, 2.0)), 0.05)
+    columns = refine_columns(
+        make_column_solver(pressure), shape(face_beyond=(2.0, 0.0) if side == 0 else (0.0, 2.0)), 0.05
+    )
     for errors in (columns.errors["end_pressure"], columns.errors["peak_pressure"]):
         assert np.isinf(errors[side])
         assert np.isfinite(errors[1 - side])
@@ -405,26 +425,26 @@ def test_peak_at_a_pressed_sharp_end_has_an_infinite_error(side: int, slope: flo
 
 @pytest.mark.parametrize("side", [0, 1])
 @pytest.mark.parametrize("law", [None, EndLaw(kind="power", exponent=0.5)])
-def test_a_rough_contact_is_singular_where_a_sharp_end_is_pressed_or_has_a_law(side: int, law: EndLaw | None) -> None:
+def test_loaded_sharp_end_makes_contact_singular(side: int, law: EndLaw | None) -> None:
     pressure = np.zeros((4, 3))
     pressure[-side] = 1.0
 
     def singular(asked: AxialShape) -> bool:
-        rough = Refinement(solve=lambda *_: pressed(pressure), shape=asked, edges=np.arange(5.0))
+        rough = Refinement(solve=lambda *_: column_pressure(pressure), shape=asked, edges=np.arange(5.0))
         rough.laws = [law, None] if side else [None, law]
         return rough.singular
 
     sharp, blunt = ((2.0, 0.0), (0.0, 2.0))[:: 1 - 2 * side]
-    assert singular(shape(room=sharp))
-    assert singular(shape(room=blunt)) == (law is not None)
-    assert singular(shape(room=sharp, elastic=True)) == (law is not None)
+    assert singular(shape(face_beyond=sharp))
+    assert singular(shape(face_beyond=blunt)) == (law is not None)
+    assert singular(shape(face_beyond=sharp, elastic=True)) == (law is not None)
 
 
-def test_a_rough_contact_has_the_columns_of_the_second_threshold() -> None:
-    solve, asked = averaged(FOLLOWED["lesser peak"]), shape()
-    rough, fine = rough_columns(solve, asked), refine_columns(solve, asked, 0.02)
+def test_rough_contact_uses_second_threshold() -> None:
+    solve, request = make_column_solver(FOLLOWED["lesser peak"]), shape()
+    rough, fine = rough_columns(solve, request), refine_columns(solve, request, 0.02)
     assert np.isin(rough.edges, fine.edges).all()
-    again = refine_columns(solve, asked, 0.02, rough.edges)
-    assert again.edges == pytest.approx(fine.edges)
-    assert again.first == pytest.approx(rough.edges)
+    repeated = refine_columns(solve, request, 0.02, rough.edges)
+    assert repeated.edges == pytest.approx(fine.edges)
+    assert repeated.first_edges == pytest.approx(rough.edges)
     assert rough.laws == [None, None]

@@ -15,51 +15,53 @@ from contactstudy.contact.rolling.coulomb import (
     solve_coulomb,
     solve_with_continuation,
 )
-from tests.contact.rolling.test_coulomb import holds, problem
+from tests.contact.rolling.test_coulomb import check_law, problem
 
 
-def test_forces_are_raised_where_the_first_try_fails(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_failed_newton_raises_forces_stepwise(monkeypatch: pytest.MonkeyPatch) -> None:
     bound = np.random.default_rng(5).uniform(0.2, 1.0, 30)
-    asked = problem(np.zeros((2, 30)), bound, forces=0.9 * bound.sum() * np.array([0.6, 0.8]), skew=0.5)
-    whole: list[float] = []
+    request = problem(np.zeros((2, 30)), bound, forces=0.9 * bound.sum() * np.array([0.6, 0.8]), skew=0.5)
+    complete: list[float] = []
 
     def fails_far_away(each: CoulombProblem, start: Guess | None = None) -> CoulombSolution:
-        found = solve_coulomb(each, start)
+        computed = solve_coulomb(each, start)
         if not len(each.modes):
-            return found
-        whole.append(float(np.hypot(*each.resultants) / np.hypot(*asked.resultants)))
-        return replace(found, converged=found.converged and (start is not None) and whole[-1] - reached[-1] < 0.3)
+            return computed
+        complete.append(float(np.hypot(*each.resultants) / np.hypot(*request.resultants)))
+        return replace(
+            computed, converged=computed.converged and (start is not None) and complete[-1] - reached[-1] < 0.3
+        )
 
     reached = [0.0]
     monkeypatch.setattr(coulomb, "solve_coulomb", fails_far_away)
-    near = replace(asked, max_steps=500)
+    near = replace(request, max_steps=500)
     original = coulomb.Guess
 
     def noted(traction: np.ndarray, amplitudes: np.ndarray) -> Guess:
-        reached.append(whole[-1] if len(whole) > 1 else 0.0)
+        reached.append(complete[-1] if len(complete) > 1 else 0.0)
         return original(traction, amplitudes)
 
     monkeypatch.setattr(coulomb, "Guess", noted)
-    found = solve_with_continuation(near)
-    assert found.converged
-    assert whole[0] == whole[-1] == pytest.approx(1.0)
-    assert len(whole) >= 5
-    holds(asked, found)
-    assert found.traction.sum(axis=1) == pytest.approx(asked.resultants, abs=1e-6 * bound.sum())
+    computed = solve_with_continuation(near)
+    assert computed.converged
+    assert complete[0] == complete[-1] == pytest.approx(1.0)
+    assert len(complete) >= 5
+    check_law(request, computed)
+    assert computed.traction.sum(axis=1) == pytest.approx(request.resultants, abs=1e-6 * bound.sum())
 
 
-def test_what_cannot_be_reached_says_so() -> None:
+def test_unreachable_forces_do_not_converge() -> None:
     bound = np.ones(6)
-    asked = problem(np.zeros((2, 6)), bound, forces=np.array([0.0, 6.5]))
-    assert not solve_with_continuation(replace(asked, max_steps=200)).converged
+    request = problem(np.zeros((2, 6)), bound, forces=np.array([0.0, 6.5]))
+    assert not solve_with_continuation(replace(request, max_steps=200)).converged
 
 
-def test_steps_go_along_a_line_and_are_counted(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_continuation_steps_are_linear_and_counted(monkeypatch: pytest.MonkeyPatch) -> None:
     """From the resultants without unknown slips to the prescribed ones: longer steps after success, else shorter."""
     bound = np.random.default_rng(5).uniform(0.2, 1.0, 12)
     random = np.random.default_rng(6)
-    wanted = 0.5 * bound.sum() * np.array([0.6, 0.8])
-    asked = replace(problem(random.standard_normal((2, 12)), bound, forces=wanted), max_steps=500)
+    requested = 0.5 * bound.sum() * np.array([0.6, 0.8])
+    request = replace(problem(random.standard_normal((2, 12)), bound, forces=requested), max_steps=500)
     parts: list[float] = []
     counts: list[int] = []
     fails = [True, True, False, False, True, True, True, False, False]
@@ -69,19 +71,19 @@ def test_steps_go_along_a_line_and_are_counted(monkeypatch: pytest.MonkeyPatch) 
         nonlocal first
         steps = int(random.integers(1, 5))
         counts.append(steps)
-        found = solve_coulomb(each, start)
+        computed = solve_coulomb(each, start)
         if not len(each.modes):
-            first = found.traction.sum(axis=1)
-            return replace(found, steps=steps)
+            first = computed.traction.sum(axis=1)
+            return replace(computed, steps=steps)
         if len(counts) > 1:
-            along = (each.resultants - first) @ (wanted - first) / ((wanted - first) @ (wanted - first))
-            assert each.resultants == pytest.approx(first + along * (wanted - first))
+            along = (each.resultants - first) @ (requested - first) / ((requested - first) @ (requested - first))
+            assert each.resultants == pytest.approx(first + along * (requested - first))
             parts.append(float(along))
         failed = fails.pop(0) if fails else False
-        return replace(found, steps=steps, converged=not failed)
+        return replace(computed, steps=steps, converged=not failed)
 
     monkeypatch.setattr(coulomb, "solve_coulomb", told)
-    found = solve_with_continuation(asked)
-    assert found.converged
+    computed = solve_with_continuation(request)
+    assert computed.converged
     assert parts == pytest.approx([0.5, 0.25, 0.75, 1.0, 1.0, 1.0, 0.875, 1.0])
-    assert found.steps == sum(counts)
+    assert computed.steps == sum(counts)

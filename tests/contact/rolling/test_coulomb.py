@@ -13,8 +13,8 @@ from contactstudy.contact.rolling.coulomb import (
     CoulombProblem,
     CoulombSolution,
     Guess,
-    _first_share,
-    _largest_excess,
+    _select_first,
+    _select_largest_excess,
     law_violation,
     limit_tractions,
     solve_coulomb,
@@ -36,19 +36,19 @@ def problem(
         modes = np.zeros((2, 2, bound.size))
         modes[0, 0] = modes[1, 1] = 1.0
     return CoulombProblem(
-        relief=lambda traction: (matrix @ traction.ravel()).reshape(traction.shape),
+        apply_compliance=lambda traction: (matrix @ traction.ravel()).reshape(traction.shape),
         inverse=lambda slip: (inverse @ slip.ravel()).reshape(slip.shape),
         bound=bound,
         rigid=rigid,
         modes=modes,
-        works=modes,
+        resultant_weights=modes,
         resultants=np.zeros(0) if forces is None else forces,
-        shares=np.random.default_rng(seed).uniform(0.1, 2.0, bound.size),
+        relative_areas=np.random.default_rng(seed).uniform(0.1, 2.0, bound.size),
         tolerance=1e-8,
     )
 
 
-def holds(asked: CoulombProblem, found: CoulombSolution) -> None:
+def check_law(asked: CoulombProblem, found: CoulombSolution) -> None:
     """Every condition, looked at cell by cell."""
     slip = asked.slip(found.traction, found.amplitudes)
     size = np.hypot(*found.traction)
@@ -67,40 +67,40 @@ def holds(asked: CoulombProblem, found: CoulombSolution) -> None:
 def test_the_law_holds_from_stick_to_full_sliding(size: float, skew: float, seed: int) -> None:
     random = np.random.default_rng(seed)
     bound = random.uniform(0.2, 1.0, 24)
-    asked = problem(size * random.standard_normal((2, 24)), bound, skew=skew, seed=seed)
-    found = solve_coulomb(asked)
-    assert found.converged
-    holds(asked, found)
+    request = problem(size * random.standard_normal((2, 24)), bound, skew=skew, seed=seed)
+    computed = solve_coulomb(request)
+    assert computed.converged
+    check_law(request, computed)
 
 
 @pytest.mark.parametrize("part", [0.0, 0.4, 0.95])
-def test_forces_are_met_by_the_rigid_slip(part: float) -> None:
+def test_rigid_slip_satisfies_prescribed_forces(part: float) -> None:
     bound = np.random.default_rng(5).uniform(0.2, 1.0, 30)
     force = part * bound.sum() * np.array([0.6, 0.8])
-    asked = problem(np.zeros((2, 30)), bound, forces=force, skew=0.5)
-    found = solve_coulomb(asked)
-    assert found.converged
-    holds(asked, found)
-    assert found.traction.sum(axis=1) == pytest.approx(force, abs=1e-6 * bound.sum())
+    request = problem(np.zeros((2, 30)), bound, forces=force, skew=0.5)
+    computed = solve_coulomb(request)
+    assert computed.converged
+    check_law(request, computed)
+    assert computed.traction.sum(axis=1) == pytest.approx(force, abs=1e-6 * bound.sum())
 
 
-def test_a_guess_changes_the_work_and_not_the_result() -> None:
+def test_guess_changes_steps_only() -> None:
     random = np.random.default_rng(7)
     bound = random.uniform(0.2, 1.0, 40)
-    asked = problem(random.standard_normal((2, 40)), bound, skew=0.5)
-    plain = solve_coulomb(asked)
-    guessed = solve_coulomb(asked, Guess(plain.traction, plain.amplitudes))
-    assert guessed.steps < plain.steps
-    assert guessed.traction == pytest.approx(plain.traction, abs=1e-6)
+    request = problem(random.standard_normal((2, 40)), bound, skew=0.5)
+    baseline = solve_coulomb(request)
+    guessed = solve_coulomb(request, Guess(baseline.traction, baseline.amplitudes))
+    assert guessed.steps < baseline.steps
+    assert guessed.traction == pytest.approx(baseline.traction, abs=1e-6)
 
 
-def test_what_does_not_converge_says_so() -> None:
+def test_unconverged_solution_is_reported() -> None:
     random = np.random.default_rng(0)
-    asked = problem(random.standard_normal((2, 24)), random.uniform(0.2, 1.0, 24))
-    assert not solve_coulomb(CoulombProblem(**{**vars(asked), "max_steps": 1})).converged
+    request = problem(random.standard_normal((2, 24)), random.uniform(0.2, 1.0, 24))
+    assert not solve_coulomb(CoulombProblem(**{**vars(request), "max_steps": 1})).converged
 
 
-def test_violations_are_seen() -> None:
+def test_law_violation_measures_violations() -> None:
     traction, bound = np.array([[1.0, 0.5], [0.0, 0.0]]), np.array([1.0, 1.0])
     sticks = np.array([False, True])
     right = law_violation(traction, np.array([[2.0, 0.0], [0.0, 0.0]]), bound, sticks, 1.0)
@@ -111,69 +111,69 @@ def test_violations_are_seen() -> None:
 
 
 @pytest.mark.parametrize("length", [1.0, 1e-9])
-def test_every_cell_may_slip_under_a_prescribed_force_in_any_unit_of_length(length: float) -> None:
+def test_all_cells_slip_under_prescribed_force(length: float) -> None:
     """Along one axis the rigid slip is prescribed and large; force and moment are not, and no cell is left to stick."""
     random = np.random.default_rng(3)
     bound = random.uniform(0.2, 1.0, 12)
     rigid = np.stack([np.zeros(12), np.full(12, 30.0)])
-    asked = problem(rigid, bound, skew=0.5)
+    request = problem(rigid, bound, skew=0.5)
     modes = np.zeros((2, 2, 12))
     modes[0, 0] = 1.0
     modes[1] = length * random.standard_normal((2, 12))
-    wanted = np.array([0.1 * bound.sum(), 0.05 * length * bound.sum()])
-    asked = replace(asked, modes=modes, works=modes, resultants=wanted)
-    found = solve_coulomb(asked)
-    assert found.converged
-    assert not found.sticks.any()
-    assert found.traction[0].sum() == pytest.approx(wanted[0], rel=1e-6)
-    assert (modes[1] * found.traction).sum() == pytest.approx(wanted[1], rel=1e-6)
+    requested = np.array([0.1 * bound.sum(), 0.05 * length * bound.sum()])
+    request = replace(request, modes=modes, resultant_weights=modes, resultants=requested)
+    computed = solve_coulomb(request)
+    assert computed.converged
+    assert not computed.sticks.any()
+    assert computed.traction[0].sum() == pytest.approx(requested[0], rel=1e-6)
+    assert (modes[1] * computed.traction).sum() == pytest.approx(requested[1], rel=1e-6)
 
 
-def test_tractions_beyond_their_bound_are_put_back_onto_it() -> None:
+def test_limit_projects_tractions_onto_bound() -> None:
     traction = np.array([[3.0, 0.3, 0.0, 0.0], [4.0, 0.4, 0.0, -2.0]])
-    found = limit_tractions(traction, np.array([1.0, 1.0, 1.0, 0.5]))
-    assert found == pytest.approx(np.array([[0.6, 0.3, 0.0, 0.0], [0.8, 0.4, 0.0, -0.5]]))
+    computed = limit_tractions(traction, np.array([1.0, 1.0, 1.0, 0.5]))
+    assert computed == pytest.approx(np.array([[0.6, 0.3, 0.0, 0.0], [0.8, 0.4, 0.0, -0.5]]))
 
 
 @pytest.mark.parametrize("sticking", [1, 2, 5, 6, 150, 400])
-def test_half_of_the_cells_that_stick_begin_at_most_the_farthest_above_their_bound(sticking: int) -> None:
+def test_at_most_half_of_sticking_cells_slip(sticking: int) -> None:
     excess = np.random.default_rng(sticking).uniform(0.5, 2.0, 400)
     sticks = np.arange(400) < sticking
     begins = (excess > 1) & sticks
-    found = _largest_excess(begins, excess, sticks)
-    assert found.sum() == min(begins.sum(), (sticking + 1) // 2)
-    assert not (found & ~begins).any()
-    assert excess[found].min(initial=9.0) >= excess[begins & ~found].max(initial=0.0)
+    computed = _select_largest_excess(begins, excess, sticks)
+    assert computed.sum() == min(begins.sum(), (sticking + 1) // 2)
+    assert not (computed & ~begins).any()
+    assert excess[computed].min(initial=9.0) >= excess[begins & ~computed].max(initial=0.0)
 
 
-def test_half_of_many_cells_begin_whatever_their_order() -> None:
+def test_half_of_cells_slip_in_any_order() -> None:
     """Numbers in one order may be right by chance, so there are twenty."""
     for seed in range(20):
         excess, sticks = np.random.default_rng(seed).uniform(0.5, 2.0, 2000), np.ones(2000, bool)
-        found = _largest_excess(excess > 1, excess, sticks)
-        assert found.sum() == 1000
-        assert excess[found].min() > excess[~found].max()
+        computed = _select_largest_excess(excess > 1, excess, sticks)
+        assert computed.sum() == 1000
+        assert excess[computed].min() > excess[~computed].max()
 
 
-def test_first_share_of_cells() -> None:
+def test_first_fraction_of_cells() -> None:
     cells = np.array([False, True, True, False, True, True, True])
-    assert _first_share(cells, 1.0) is cells
-    for share, count in ((0.9, 4), (0.5, 2), (0.2, 1), (0.01, 1)):
-        assert np.flatnonzero(_first_share(cells, share)).tolist() == [1, 2, 4, 5, 6][:count]
+    assert _select_first(cells, 1.0) is cells
+    for fraction, count in ((0.9, 4), (0.5, 2), (0.2, 1), (0.01, 1)):
+        assert np.flatnonzero(_select_first(cells, fraction)).tolist() == [1, 2, 4, 5, 6][:count]
 
 
-def test_what_a_guess_slips_is_on_its_bound_and_where_it_sticks_stays() -> None:
+def test_guess_keeps_slip_on_bound_and_sticking_tractions() -> None:
     """A cell just below its bound counts as slipping; one on which nothing acts sticks. One step is all it takes."""
     random = np.random.default_rng(7)
     bound = random.uniform(0.2, 1.0, 40)
-    asked = replace(problem(random.standard_normal((2, 40)), bound, skew=0.5), max_steps=1)
-    plain = solve_coulomb(replace(asked, max_steps=40))
-    nearly = np.where(plain.sticks, 1.0, 1 - 1e-7) * plain.traction
-    for guess in (plain.traction, nearly):
-        found = solve_coulomb(asked, Guess(guess, plain.amplitudes))
-        assert found.converged
-        assert found.traction == pytest.approx(plain.traction, abs=1e-6)
-        assert np.array_equal(found.sticks, plain.sticks)
+    request = replace(problem(random.standard_normal((2, 40)), bound, skew=0.5), max_steps=1)
+    baseline = solve_coulomb(replace(request, max_steps=40))
+    approximate = np.where(baseline.sticks, 1.0, 1 - 1e-7) * baseline.traction
+    for guess in (baseline.traction, approximate):
+        computed = solve_coulomb(request, Guess(guess, baseline.amplitudes))
+        assert computed.converged
+        assert computed.traction == pytest.approx(baseline.traction, abs=1e-6)
+        assert np.array_equal(computed.sticks, baseline.sticks)
 
 
 @pytest.mark.parametrize(("forces", "most"), [(False, (83, 468)), (True, (94, 520))])
@@ -183,35 +183,37 @@ def test_steps_and_applications_are_few(*, forces: bool, most: tuple[int, int]) 
     for seed in range(12):
         random = np.random.default_rng(seed)
         bound = random.uniform(0.2, 1.0, 24)
-        wanted = random.uniform(-0.5, 0.5, 2) * bound.sum() if forces else None
+        requested = random.uniform(-0.5, 0.5, 2) * bound.sum() if forces else None
         rigid = random.uniform(0.1, 2.0) * random.standard_normal((2, 24))
-        asked = problem(rigid, bound, forces=wanted, skew=0.2 * (seed % 6), seed=seed)
+        asked = problem(rigid, bound, forces=requested, skew=0.2 * (seed % 6), seed=seed)
 
-        def relief(traction: FloatArray, asked: CoulombProblem = asked) -> FloatArray:
+        def apply_compliance(traction: FloatArray, asked: CoulombProblem = asked) -> FloatArray:
             applications.append(1)
-            return asked.relief(traction)
+            return asked.apply_compliance(traction)
 
-        found = solve_coulomb(replace(asked, relief=relief))
-        assert found.converged
-        steps += found.steps
+        computed = solve_coulomb(replace(asked, apply_compliance=apply_compliance))
+        assert computed.converged
+        steps += computed.steps
     assert steps <= most[0]
     assert len(applications) <= most[1]
 
 
-def test_cells_that_go_round_in_circles_change_one_by_one_in_the_end(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_cycling_cells_change_singly(monkeypatch: pytest.MonkeyPatch) -> None:
     """A compliance that is another one at every look: three cells soon stick and slip as they did before."""
     random = np.random.default_rng(0)
-    asked = problem(random.standard_normal((2, 3)), np.ones(3))
-    shares: list[float] = []
+    request = problem(random.standard_normal((2, 3)), np.ones(3))
+    fractions: list[float] = []
 
     def noted(cells: BoolArray, share: float) -> BoolArray:
-        shares.append(share)
-        return _first_share(cells, share)
+        fractions.append(share)
+        return _select_first(cells, share)
 
-    monkeypatch.setattr(coulomb, "_first_share", noted)
-    restless = replace(asked, relief=lambda traction: random.standard_normal(traction.shape), max_steps=80)
-    assert not solve_coulomb(restless).converged
-    steps = np.array(shares[::2])
+    monkeypatch.setattr(coulomb, "_select_first", noted)
+    random_problem = replace(
+        request, apply_compliance=lambda traction: random.standard_normal(traction.shape), max_steps=80
+    )
+    assert not solve_coulomb(random_problem).converged
+    steps = np.array(fractions[::2])
     assert steps[0] == steps.max() == 1.0
     assert steps.min() < 2.0**-4
     ratios = steps[1:] / steps[:-1]
@@ -219,13 +221,20 @@ def test_cells_that_go_round_in_circles_change_one_by_one_in_the_end(monkeypatch
 
 
 @pytest.mark.parametrize("seed", range(8))
-def test_prescribed_forces_are_met_to_the_tolerance_of_full_slidings(seed: int) -> None:
+def test_prescribed_forces_meet_tolerance_of_full_sliding(seed: int) -> None:
     """However small the unit of the forces is, or large."""
     random = np.random.default_rng(seed)
     bound = random.uniform(0.2, 1.0, 24)
-    whole = problem(random.standard_normal((2, 24)), bound, forces=0.5 * bound.sum() * np.array([0.6, 0.7]), seed=seed)
+    complete = problem(
+        random.standard_normal((2, 24)), bound, forces=0.5 * bound.sum() * np.array([0.6, 0.7]), seed=seed
+    )
     for unit in (1e-6, 1.0, 1e6):
-        asked = replace(whole, works=unit * whole.works, resultants=unit * whole.resultants, tolerance=1e-3)
-        found = solve_coulomb(asked)
-        assert found.converged
-        assert np.abs(found.traction.sum(axis=1) - whole.resultants).max() <= 1e-3 * bound.sum()
+        request = replace(
+            complete,
+            resultant_weights=unit * complete.resultant_weights,
+            resultants=unit * complete.resultants,
+            tolerance=1e-3,
+        )
+        computed = solve_coulomb(request)
+        assert computed.converged
+        assert np.abs(computed.traction.sum(axis=1) - complete.resultants).max() <= 1e-3 * bound.sum()

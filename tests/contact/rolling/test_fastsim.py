@@ -15,28 +15,28 @@ STEEL = material(82e9, 0.28)
 @pytest.mark.parametrize(
     "motion", [Rolling(longitudinal_creepage=1e-6, model="fastsim"), Rolling(lateral_creepage=1e-6, model="fastsim")]
 )
-def test_small_creepages_make_kalkers_forces(motion: Rolling) -> None:
+def test_small_creepages_match_kalker_forces(motion: Rolling) -> None:
     along, across = 6e-3, 4e-3
-    found = rolling_ellipse(across, along, 80e3, STEEL, 0.3, motion, (44, 50))
+    computed = rolling_ellipse(across, along, 80e3, STEEL, 0.3, motion, (44, 50))
     c11, c22, _ = creep_coefficients(along / across, 0.28)
     lateral = bool(motion.lateral_creepage)
-    force = float(found["force_x" if lateral else "force_y"])
+    force = float(computed["force_x" if lateral else "force_y"])
     assert force == pytest.approx(82e9 * along * across * (c22 if lateral else c11) * 1e-6, rel=0.02)
 
 
-def test_spin_case() -> None:
+def test_fastsim_matches_published_spin_case() -> None:
     """Published: 0.602 of full sliding with an elliptic bound (the program CONTACT's FASTSIM)."""
     motion = Rolling(lateral_creepage=-6.25e-4, spin=-0.625, model="fastsim")
-    found = rolling_ellipse(4e-3, 8e-3, 82e3, STEEL, 0.3, motion, (44, 50))
-    assert float(found["force_x"]) / (0.3 * 82e3) == pytest.approx(0.602, abs=0.012)
-    bound = 0.3 * found["pressure"]
-    size = np.hypot(found["traction_x"], found["traction_y"])
+    computed = rolling_ellipse(4e-3, 8e-3, 82e3, STEEL, 0.3, motion, (44, 50))
+    assert float(computed["force_x"]) / (0.3 * 82e3) == pytest.approx(0.602, abs=0.012)
+    bound = 0.3 * computed["pressure"]
+    size = np.hypot(computed["traction_x"], computed["traction_y"])
     assert float((size - bound).max()) < 1e-9 * float(bound.max())
-    slips = (found["pressure"] > 0) & ~found["stick"].astype(bool)
+    slips = (computed["pressure"] > 0) & ~computed["stick"].astype(bool)
     assert float(np.abs(size - bound).where(slips, 0.0).max()) < 1e-9 * float(bound.max())
 
 
-def test_coefficients_between_and_beyond_the_table() -> None:
+def test_creep_coefficients_between_and_beyond_table() -> None:
     assert creep_coefficients(0.3, 0.5) == pytest.approx([4.80, 2.81, 0.889])
     assert (np.diff([creep_coefficients(ratio, 0.3) for ratio in (0.5, 0.75, 1.1, 3.0)], axis=0) > 0).all()
     assert creep_coefficients(0.05, 0.3)[:2] == pytest.approx([np.pi**2 / 2.8, np.pi**2 / 4])
@@ -44,7 +44,7 @@ def test_coefficients_between_and_beyond_the_table() -> None:
 
 
 @pytest.mark.parametrize(("poisson", "table"), [(0.0, 0.334), (0.25, 0.473), (0.5, 0.731)])
-def test_spin_of_a_narrow_contact_turns_as_kalkers_asymptote(poisson: float, table: float) -> None:
+def test_narrow_contact_follows_kalker_spin_asymptote(poisson: float, table: float) -> None:
     # Kalker's own form has Lambda = ln(16 / g**2).
     for ratio in (0.03, 0.0999):
         half = 0.5 * np.log(16 / ratio**2)
@@ -53,7 +53,7 @@ def test_spin_of_a_narrow_contact_turns_as_kalkers_asymptote(poisson: float, tab
     assert expected == pytest.approx(table, rel=0.07)
 
 
-def test_a_strip_grows_until_it_slips_and_loses_the_rest() -> None:
+def test_strip_traction_grows_to_bound() -> None:
     """Material enters at the right; half a cell behind the edge, then a cell on and on."""
     bound = np.array([[0.0, 2.2, 2.2, 2.2, 2.2, 0.0], [0.0, 0.3, 0.3, 0.3, 0.3, 0.0]])
     growth = np.stack([np.full(bound.shape, 1.2), np.full(bound.shape, -1.6)])
@@ -68,7 +68,7 @@ def test_a_strip_grows_until_it_slips_and_loses_the_rest() -> None:
     assert lost[1] == pytest.approx(-0.8 * lost_sizes)
 
 
-def test_it_takes_creepages_only() -> None:
+def test_fastsim_accepts_creepages_only() -> None:
     with pytest.raises(InvalidInputError, match=r"model = 'fastsim'.*takes forces"):
         Rolling(force_y=1.0, model="fastsim")
     with pytest.raises(InvalidInputError, match="did you mean 'fastsim'"):

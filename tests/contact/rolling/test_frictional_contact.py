@@ -39,7 +39,7 @@ def ball(cells: int = 26, reach: float = 1.3, off: float = 0.0) -> xr.DataArray:
     return xr.DataArray(0.05 * ((at[:, None] - off) ** 2 + at**2), coords={"x": at, "y": at}, dims=("x", "y"))
 
 
-def rolled(motion: Rolling | Shift, **named: object) -> xr.Dataset:
+def solve_rolling(motion: Rolling | Shift, **named: object) -> xr.Dataset:
     """A ball on a half-space of its material."""
     arguments = {"counterbody": PAIR, "gap": ball(), "load": LOAD, "friction": FRICTION, "body": HALF} | named
     values = {name: arguments.pop(name) for name in ("coupled", "after", "max_iterations") if name in arguments}
@@ -47,7 +47,7 @@ def rolled(motion: Rolling | Shift, **named: object) -> xr.Dataset:
     return solve_contact(**arguments, motion=motion, settings=settings)  # type: ignore[arg-type]
 
 
-def holds(result: xr.Dataset) -> None:
+def check_law(result: xr.Dataset) -> None:
     """Coulomb's law, cell by cell, from what is returned alone."""
     assert result.converged
     size, slip = np.hypot(result.traction_x, result.traction_y), np.hypot(result.slip_x, result.slip_y)
@@ -66,62 +66,62 @@ def holds(result: xr.Dataset) -> None:
 
 
 @pytest.mark.parametrize("motion", MOTIONS.values(), ids=MOTIONS)
-def test_the_law_holds(motion: Rolling | Shift) -> None:
-    result = rolled(motion)
-    holds(result)
+def test_coulomb_law_holds(motion: Rolling | Shift) -> None:
+    result = solve_rolling(motion)
+    check_law(result)
     area = float(result.x[1] - result.x[0]) * float(result.y[1] - result.y[0])
     forces = [float(result[f"traction_{axis}"].sum()) * area for axis in "xy"]
     assert [float(result.force_x), float(result.force_y)] == pytest.approx(forces, rel=1e-9, abs=1e-12)
     turning = result.traction_y * result.x - result.traction_x * result.y
     assert float(result.moment_z) == pytest.approx(float(turning.sum()) * area, rel=1e-9, abs=1e-12)
     for name in ("force_x", "force_y", "moment_z"):
-        wanted = getattr(motion, name, None)
-        if wanted is not None:
-            assert float(result[name]) == pytest.approx(wanted, abs=1e-6 * FRICTION * LOAD)
+        requested = getattr(motion, name, None)
+        if requested is not None:
+            assert float(result[name]) == pytest.approx(requested, abs=1e-6 * FRICTION * LOAD)
 
 
-def test_slip_is_that_of_the_displacements() -> None:
+def test_slip_follows_from_displacements() -> None:
     """Of a shift: the rigid shift less what the surfaces give way, from the public operator."""
-    result = rolled(Shift(y=0.012, x=0.005))
-    moved = surface_displacement(
+    result = solve_rolling(Shift(y=0.012, x=0.005))
+    shifted = surface_displacement(
         HALF, 0 * result.pressure, traction_x=result.traction_x, traction_y=result.traction_y, components="xy"
     )
     slips = (result.pressure > 0) & ~result.stick.astype(bool)
     for axis, shift in (("x", 0.005), ("y", 0.012)):
-        expected = shift - 2 * moved[f"displacement_{axis}"]
+        expected = shift - 2 * shifted[f"displacement_{axis}"]
         assert float(np.abs(result[f"slip_{axis}"] - expected).where(slips).max()) < 1e-9
     # The same force, prescribed, needs the same shift.
-    again = rolled(Shift(force_y=float(result.force_y), force_x=float(result.force_x)))
-    assert [float(again.shift_x), float(again.shift_y)] == pytest.approx([0.005, 0.012], rel=1e-5)
+    repeated = solve_rolling(Shift(force_y=float(result.force_y), force_x=float(result.force_x)))
+    assert [float(repeated.shift_x), float(repeated.shift_y)] == pytest.approx([0.005, 0.012], rel=1e-5)
 
 
-def test_rolling_under_the_force_of_a_creepage_has_that_creepage() -> None:
+def test_prescribed_force_reproduces_creepage() -> None:
     creepages = {"longitudinal_creepage": 0.006, "lateral_creepage": -0.004, "spin": 0.008}
-    first = rolled(Rolling(**creepages))
+    first = solve_rolling(Rolling(**creepages))
     forces = {name: float(first[name]) for name in ("force_x", "force_y", "moment_z")}
-    second = rolled(Rolling(**forces))
+    second = solve_rolling(Rolling(**forces))
     for name, value in creepages.items():
         assert float(second[name]) == pytest.approx(value, rel=1e-4)
 
 
 def test_reversed_creepage_reverses_the_tractions() -> None:
-    first = rolled(Rolling(longitudinal_creepage=0.006, lateral_creepage=0.004, spin=0.01))
-    second = rolled(Rolling(longitudinal_creepage=-0.006, lateral_creepage=-0.004, spin=-0.01))
+    first = solve_rolling(Rolling(longitudinal_creepage=0.006, lateral_creepage=0.004, spin=0.01))
+    second = solve_rolling(Rolling(longitudinal_creepage=-0.006, lateral_creepage=-0.004, spin=-0.01))
     for axis in "xy":
         assert np.abs(first[f"traction_{axis}"] + second[f"traction_{axis}"]).max() < 1e-6 * float(first.pressure.max())
 
 
 def test_large_creepage_is_full_sliding() -> None:
-    result = rolled(Rolling(longitudinal_creepage=50.0))
+    result = solve_rolling(Rolling(longitudinal_creepage=50.0))
     assert float(result.force_y) == pytest.approx(FRICTION * LOAD, rel=1e-5)
     assert not result.stick.any()
     assert float(result.friction_work) == pytest.approx(50.0 * FRICTION * LOAD, rel=0.02)
-    holds(result)
+    check_law(result)
 
 
-def test_sticking_cells_lead() -> None:
+def test_sticking_cells_are_at_leading_edge() -> None:
     """Rolling along +y, material enters at the leading edge without traction and sticks first."""
-    result = rolled(Rolling(longitudinal_creepage=0.01))
+    result = solve_rolling(Rolling(longitudinal_creepage=0.01))
     middle = result.isel(x=13)
     sticks = result.y.values[middle.stick.values.astype(bool)]
     slips = result.y.values[(middle.pressure.values > 0) & ~middle.stick.values.astype(bool)]
@@ -132,23 +132,23 @@ def test_sticking_cells_lead() -> None:
 @pytest.mark.parametrize(
     "motion", [Rolling(longitudinal_creepage=0.008, spin=0.01), Shift(y=0.012)], ids=["roll", "shift"]
 )
-def test_material_mismatch_makes_slip_and_couples(motion: Rolling | Shift) -> None:
-    rigid = rolled(motion, counterbody=None)
-    holds(rigid)
-    coupled = rolled(motion, counterbody=None, coupled=True)
-    holds(coupled)
+def test_material_mismatch_causes_slip(motion: Rolling | Shift) -> None:
+    rigid = solve_rolling(motion, counterbody=None)
+    check_law(rigid)
+    coupled = solve_rolling(motion, counterbody=None, coupled=True)
+    check_law(coupled)
     change = np.abs(coupled.pressure - rigid.pressure).max() / rigid.pressure.max()
     assert 1e-3 < float(change) < 0.2
     assert float(coupled.penetration_error) < 1e-5
-    like = rolled(motion)
-    unchanged = rolled(motion, coupled=True)
+    like = solve_rolling(motion)
+    unchanged = solve_rolling(motion, coupled=True)
     assert float(np.abs(like.pressure - unchanged.pressure).max()) < 1e-9 * float(like.pressure.max())
 
 
-def test_free_rolling_of_unlike_bodies_has_a_creepage() -> None:
+def test_free_rolling_of_different_bodies_has_creepage() -> None:
     """Of a rigid ball on a compressible body, without any force."""
-    result = rolled(Rolling(force_y=0.0, force_x=0.0), counterbody=None)
-    holds(result)
+    result = solve_rolling(Rolling(force_y=0.0, force_x=0.0), counterbody=None)
+    check_law(result)
     assert abs(float(result.longitudinal_creepage)) > 1e-4
     assert abs(float(result.lateral_creepage)) < 1e-8
     assert float(np.hypot(result.traction_x, result.traction_y).max()) > 0
@@ -163,11 +163,11 @@ ENDED: dict[str, Body] = {
 @pytest.mark.parametrize(
     ("name", "motion"), [("quarter space", "shift"), ("finite length", "all"), ("finite length", "forces")]
 )
-def test_the_law_holds_at_free_ends(name: str, motion: str) -> None:
+def test_coulomb_law_holds_at_free_ends(name: str, motion: str) -> None:
     body, gap = ENDED[name], ball(26)
     gap = gap.assign_coords(x=gap.x + 1.3)
     counterbody = Counterbody(body) if isinstance(body, FiniteLengthSpace) else None
-    holds(rolled(MOTIONS[motion], body=body, gap=gap, counterbody=counterbody))
+    check_law(solve_rolling(MOTIONS[motion], body=body, gap=gap, counterbody=counterbody))
 
 
 def test_rolling_between_free_ends_is_symmetric_about_the_middle() -> None:
@@ -177,7 +177,7 @@ def test_rolling_between_free_ends_is_symmetric_about_the_middle() -> None:
     result = solve_contact(
         body, gap, load=1.0, friction=FRICTION, counterbody=Counterbody(body), motion=Rolling(longitudinal_creepage=0.1)
     )
-    holds(result)
+    check_law(result)
     peak = float(result.pressure.max())
     assert np.abs(result.traction_y.values - result.traction_y.values[::-1]).max() < 1e-6 * peak
     assert np.abs(result.traction_x.values + result.traction_x.values[::-1]).max() < 1e-6 * peak
@@ -186,7 +186,7 @@ def test_rolling_between_free_ends_is_symmetric_about_the_middle() -> None:
     assert abs(float(result.force_x)) < 1e-6 * float(result.force_y)
 
 
-def test_like_bodies_that_end_together_do_not_slip_by_pressure_alone() -> None:
+def test_equal_flush_bodies_do_not_slip_under_pressure() -> None:
     grid = Grid(x_range=(0.0, 3.0), y_range=(-1.4, 1.4), cells_x=15, cells_y=28)
     gap = xr.DataArray(0.5 * grid.y**2 + 0 * grid.x[:, None], coords={"x": grid.x, "y": grid.y}, dims=("x", "y"))
     longer, same = FiniteLengthSpace(length=3.0, material=STEEL), FiniteLengthSpace(length=3.0, material=STEEL)
@@ -194,12 +194,12 @@ def test_like_bodies_that_end_together_do_not_slip_by_pressure_alone() -> None:
     assert float(np.hypot(still.traction_x, still.traction_y).max()) < 1e-8 * float(still.pressure.max())
     inside = Counterbody(FiniteLengthSpace(length=2.0, material=STEEL), start=0.4)
     shorter = gap.where((gap.x > 0.4) & (gap.x < 2.4), np.inf)
-    moved = solve_contact(longer, shorter, load=0.7, friction=0.1, counterbody=inside, motion=Rolling())
-    assert float(np.abs(moved.traction_x).max()) > 0.03 * float(moved.pressure.max())
-    assert float(moved.friction_work) > 0
+    shifted = solve_contact(longer, shorter, load=0.7, friction=0.1, counterbody=inside, motion=Rolling())
+    assert float(np.abs(shifted.traction_x).max()) > 0.03 * float(shifted.pressure.max())
+    assert float(shifted.friction_work) > 0
 
 
-def test_friction_takes_no_work_where_every_cell_sticks() -> None:
+def test_sticking_contact_has_no_friction_work() -> None:
     """The elastic roller overhangs both ends of a body much narrower than its contact."""
     body = FiniteLengthSpace(length=0.29, material=STEEL, model="mirror")
     roller = Roller(radius=5e3, length=0.5, material=STEEL)
@@ -213,74 +213,74 @@ def test_friction_takes_no_work_where_every_cell_sticks() -> None:
     assert float(result.friction_work) == 0.0
 
 
-def test_without_friction_there_is_no_traction() -> None:
-    result = rolled(Rolling(longitudinal_creepage=0.1), friction=0.0)
+def test_zero_friction_has_zero_traction() -> None:
+    result = solve_rolling(Rolling(longitudinal_creepage=0.1), friction=0.0)
     assert not result.traction_y.any()
     assert result.converged
 
 
-def test_a_history_of_shifts() -> None:
+def test_history_of_shifts_continues_tractions() -> None:
     """Mindlin and Deresiewicz (1953): unloading doubles the slip's reach; a closed cycle returns to its state."""
     largest = 0.6 * FRICTION * LOAD
-    steps = [rolled(Shift(force_y=largest))]
+    steps = [solve_rolling(Shift(force_y=largest))]
     for force in (0.0, -largest, 0.0, largest):
-        steps.append(rolled(Shift(force_y=force), after=steps[-1]))
-    loaded, unloaded, reversed_, _, again = steps
+        steps.append(solve_rolling(Shift(force_y=force), after=steps[-1]))
+    loaded, unloaded, reversed_, _, repeated = steps
     for step in steps:
         assert step.converged
     bound = FRICTION * float(loaded.pressure.max())
     assert np.abs(loaded.traction_y + reversed_.traction_y).max() < 1e-3 * bound
-    assert np.abs(loaded.traction_y - again.traction_y).max() < 1e-3 * bound
+    assert np.abs(loaded.traction_y - repeated.traction_y).max() < 1e-3 * bound
     # Without force tractions remain: slip back at the edge, the old direction inside.
     assert float(unloaded.traction_y.min()) < -0.02 * bound < 0.02 * bound < float(unloaded.traction_y.max())
     # Each half of a cycle has the shift of twice the friction and half the force, doubled.
     shift = float(loaded.shift_y)
     back = float(unloaded.shift_y) + float(reversed_.shift_y)
     assert back == pytest.approx(-2 * shift, rel=1e-3)
-    stepped = rolled(Shift(force_y=0.3 * FRICTION * LOAD))
-    stepped = rolled(Shift(force_y=largest), after=stepped)
+    stepped = solve_rolling(Shift(force_y=0.3 * FRICTION * LOAD))
+    stepped = solve_rolling(Shift(force_y=largest), after=stepped)
     assert np.abs(stepped.traction_y - loaded.traction_y).max() < 2e-3 * bound
-    unmoved = rolled(Shift(), after=loaded)
+    unmoved = solve_rolling(Shift(), after=loaded)
     assert np.abs(unmoved.traction_y - loaded.traction_y).max() < 1e-3 * bound
 
 
-def test_bad_input_is_named() -> None:
+def test_invalid_input_raises_error() -> None:
     with pytest.raises(InvalidInputError, match=r"friction = -0.1.*not below zero"):
-        rolled(Rolling(), friction=-0.1)
+        solve_rolling(Rolling(), friction=-0.1)
     with pytest.raises(InvalidInputError, match=r"force_y = .* less than full sliding's force_y = .*Sliding\(\)"):
-        rolled(Rolling(force_y=1.01 * FRICTION * LOAD))
+        solve_rolling(Rolling(force_y=1.01 * FRICTION * LOAD))
     with pytest.raises(InvalidInputError, match=r"force_y = .*full sliding"):
-        rolled(Rolling(force_y=0.0), friction=0.0)
+        solve_rolling(Rolling(force_y=0.0), friction=0.0)
     with pytest.raises(InvalidInputError, match=r"force_y, moment_z = .*force_y = .* N, moment_z = .* N m"):
-        rolled(Rolling(force_y=0.9 * FRICTION * LOAD, moment_z=0.4 * FRICTION * LOAD))
-    shifted = rolled(Shift(y=0.01))
+        solve_rolling(Rolling(force_y=0.9 * FRICTION * LOAD, moment_z=0.4 * FRICTION * LOAD))
+    shifted = solve_rolling(Shift(y=0.01))
     with pytest.raises(InvalidInputError, match="rolling is steady"):
-        rolled(Rolling(), after=shifted)
+        solve_rolling(Rolling(), after=shifted)
     with pytest.raises(InvalidInputError, match=r"after = .*cells"):
-        rolled(Shift(y=0.01), after=shifted, gap=ball(20))
+        solve_rolling(Shift(y=0.01), after=shifted, gap=ball(20))
     with pytest.raises(InvalidInputError, match="after = 'without traction_x'"):
-        rolled(Shift(y=0.01), after=shifted.drop_vars("traction_x"))
+        solve_rolling(Shift(y=0.01), after=shifted.drop_vars("traction_x"))
     with pytest.raises(InvalidInputError, match=r"load = 0.0.*positive"):
-        rolled(Shift(y=0.01), after=shifted, load=0.0)
+        solve_rolling(Shift(y=0.01), after=shifted, load=0.0)
     with pytest.raises(InvalidInputError, match="motion = 'rolls'"):
-        rolled("rolls")  # type: ignore[arg-type]
+        solve_rolling("rolls")  # type: ignore[arg-type]
     with pytest.raises(WindowError, match=r"last two cells along \+y"):
-        rolled(Rolling(), gap=ball(26, 1.04))
+        solve_rolling(Rolling(), gap=ball(26, 1.04))
 
 
 GRADED = Grid.from_edges(np.concatenate([np.linspace(-1.3, 0.4, 15), np.linspace(0.5, 1.3, 19)]), (-1.3, 1.3), 26)
 
 
 @pytest.mark.parametrize("name", ["all", "moment", "shift"])
-def test_cells_of_different_widths(name: str) -> None:
+def test_rolling_on_graded_cells_matches_uniform_cells(name: str) -> None:
     """Coulomb's law and the resultants on them, close to those on uniform cells."""
     gap = xr.DataArray(
         0.05 * (GRADED.x[:, None] ** 2 + GRADED.y**2),
         coords={"x": GRADED.x, "y": GRADED.y, "x_width": ("x", GRADED.widths)},
         dims=("x", "y"),
     )
-    graded, uniform = rolled(MOTIONS[name], gap=gap), rolled(MOTIONS[name])
-    holds(graded)
+    graded, uniform = solve_rolling(MOTIONS[name], gap=gap), solve_rolling(MOTIONS[name])
+    check_law(graded)
     areas = GRADED.widths[:, None] * GRADED.dy
     for axis in "xy":
         assert float((graded[f"traction_{axis}"] * areas).sum()) == pytest.approx(float(graded[f"force_{axis}"]))
@@ -289,43 +289,43 @@ def test_cells_of_different_widths(name: str) -> None:
         assert float(graded[name]) == pytest.approx(float(uniform[name]), abs=0.01 * size)
 
 
-def test_fastsim_on_cells_of_different_widths() -> None:
+def test_fastsim_on_graded_cells_matches_uniform_cells() -> None:
     gap = xr.DataArray(
         0.05 * (GRADED.x[:, None] ** 2 + GRADED.y**2),
         coords={"x": GRADED.x, "y": GRADED.y, "x_width": ("x", GRADED.widths)},
         dims=("x", "y"),
     )
     motion = Rolling(longitudinal_creepage=0.01, spin=0.01, model="fastsim")
-    graded, uniform = rolled(motion, gap=gap), rolled(motion)
+    graded, uniform = solve_rolling(motion, gap=gap), solve_rolling(motion)
     assert float(graded.force_y) == pytest.approx(float(uniform.force_y), abs=0.01 * FRICTION * LOAD)
 
 
 def test_convergence_warning() -> None:
     motion = Rolling(longitudinal_creepage=0.01)
-    pressure = rolled(motion)
+    pressure = solve_rolling(motion)
     with pytest.warns(ConvergenceWarning):
-        result = rolled(motion, max_iterations=2)
+        result = solve_rolling(motion, max_iterations=2)
     assert pressure.converged
     assert not result.converged
     assert float(result.slip_error) > 1e-6 or float(result.bound_error) > 1e-6
 
 
-def test_the_middle_of_the_shape_is_where_it_can_touch() -> None:
+def test_reference_x_is_middle_of_finite_gap() -> None:
     """Cells on one side with nothing to touch, and another place along x, change no moment and no spin."""
     motion = Rolling(longitudinal_creepage=0.005, spin=0.02)
-    plain, gap = rolled(motion, gap=ball(off=0.2)), ball(off=0.2)
+    baseline, gap = solve_rolling(motion, gap=ball(off=0.2)), ball(off=0.2)
     step = float(gap.x[1] - gap.x[0])
     wider = np.concatenate([gap.x.values, gap.x.values[-1] + step * np.arange(1.0, 9.0)]) + 5.0
-    bare = xr.DataArray(
+    frictionless = xr.DataArray(
         np.vstack([gap.values, np.full((8, gap.y.size), np.inf)]), coords={"x": wider, "y": gap.y}, dims=("x", "y")
     )
-    other = rolled(motion, gap=bare)
+    variant = solve_rolling(motion, gap=frictionless)
     for name in ("moment_z", "force_y", "friction_work"):
-        assert float(other[name]) == pytest.approx(float(plain[name]), rel=1e-5)
+        assert float(variant[name]) == pytest.approx(float(baseline[name]), rel=1e-5)
 
 
-def test_the_part_that_sticks_is_of_the_pressed_area() -> None:
-    result = rolled(MOTIONS["all"])
+def test_sticking_part_is_relative_to_loaded_area() -> None:
+    result = solve_rolling(MOTIONS["all"])
     pressed = result.pressure > 0
     assert 0.05 < float(result.sticking_part) < 0.95
     assert float(result.sticking_part) == pytest.approx(float(result.stick.sum() / pressed.sum()))

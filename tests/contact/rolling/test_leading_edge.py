@@ -7,8 +7,8 @@ import pytest
 
 from contactstudy import Rolling
 from contactstudy.contact.rolling import tractions
-from contactstudy.contact.rolling.surfaces import Leading
-from contactstudy.contact.rolling.tractions import EDGE_OFFSET, TIED_OFFSET, RollingCells, neighbour_shares
+from contactstudy.contact.rolling.surfaces import LeadingEdges
+from contactstudy.contact.rolling.tractions import DEPENDENT_OFFSET, EDGE_OFFSET, RollingCells, averaging_weights
 from contactstudy.verification.tribology import material, rolling_ellipse
 
 
@@ -24,22 +24,22 @@ def strip(part: float, cells: int = 20) -> np.ndarray:
 
 
 @pytest.mark.parametrize("part", [0.75, 0.9, 1.3])
-def test_a_leading_cell_in_the_contact_is_an_unknown(part: float) -> None:
+def test_leading_cell_inside_contact_is_unknown(part: float) -> None:
     pressure = 3 * strip(part)
     cells = RollingCells.of(pressure, pressure)
-    assert cells.to.size == 0
+    assert cells.source_cell.size == 0
     assert cells.unknown.shape[1] == (pressure > 0).sum()
     assert cells.offset == pytest.approx(EDGE_OFFSET + part)
 
 
 @pytest.mark.parametrize("part", [0.3, 0.5])
-def test_a_leading_cell_with_little_in_the_contact_is_tied(part: float) -> None:
+def test_narrow_leading_cell_is_dependent(part: float) -> None:
     pressure = strip(part)
     cells = RollingCells.of(pressure, 0.3 * pressure)
     last = int(np.flatnonzero(pressure[0])[-1])
-    assert cells.tied.tolist() == [[0], [last]]
-    assert cells.unknown[1, cells.to].tolist() == [last - 1]
-    assert cells.offset == pytest.approx(TIED_OFFSET)
+    assert cells.dependent.tolist() == [[0], [last]]
+    assert cells.unknown[1, cells.source_cell].tolist() == [last - 1]
+    assert cells.offset == pytest.approx(DEPENDENT_OFFSET)
     own = np.ones((2, cells.unknown.shape[1]))
     on_grid = cells.on_grid(own)
     assert on_grid[0, 0, last] == pytest.approx(pressure[0, last] / pressure[0, last - 1])
@@ -64,18 +64,18 @@ def test_rising_pressure_leaves_the_offset_constant() -> None:
         assert RollingCells.of(pressure, pressure).offset == pytest.approx(EDGE_OFFSET + 1)
 
 
-def test_two_contacts_in_one_row_have_an_edge_each() -> None:
-    one = strip(0.3)
-    pressure = np.hstack([one, one])
-    assert RollingCells.of(pressure, pressure).to.size == 2
+def test_two_contacts_in_row_have_two_edges() -> None:
+    item = strip(0.3)
+    pressure = np.hstack([item, item])
+    assert RollingCells.of(pressure, pressure).source_cell.size == 2
 
 
-def test_cells_without_friction_carry_nothing() -> None:
+def test_cells_without_friction_have_no_traction() -> None:
     pressure = strip(0.9)
     assert RollingCells.of(pressure, 0 * pressure).unknown.size == 0
 
 
-def test_change_is_exact_for_parabolas_wherever_it_is_taken() -> None:
+def test_derivative_is_exact_for_parabolas() -> None:
     pressure, dy = strip(0.9), 0.25
     cells = RollingCells.of(pressure, pressure)
     y = dy * np.arange(pressure.shape[1])
@@ -84,7 +84,7 @@ def test_change_is_exact_for_parabolas_wherever_it_is_taken() -> None:
     assert cells.derivative(displaced, dy) == pytest.approx(3 - 1.4 * at)
 
 
-def test_published_lateral_creepage_and_spin_are_those_of_slip_taken_half_a_cell_late(
+def test_half_cell_offset_matches_published_creepage(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """The program CONTACT on the same 1276 cells, with plain differences: force, moment and cells that stick.
@@ -93,53 +93,53 @@ def test_published_lateral_creepage_and_spin_are_those_of_slip_taken_half_a_cell
     three numbers; both ways converge to 0.625 of full sliding's force (docs/explanation/rolling.md).
     """
     between_neighbours = 0.5 - EDGE_OFFSET
-    monkeypatch.setattr(tractions, "_part_inside", lambda pressure: between_neighbours)
+    monkeypatch.setattr(tractions, "_inside_length", lambda pressure: between_neighbours)
     monkeypatch.setattr(tractions, "SLIDING_OFFSET", 0.5)
     load, friction, spin, ahead = 82e3, 0.3, -0.625, 0.334 * 0.4e-3
     motion = Rolling(lateral_creepage=-6.25e-4 + spin * ahead, spin=spin)
-    found = rolling_ellipse(4e-3, 8e-3, load, material(82e9, 0.28), friction, motion, (42, 46))
-    assert int((found["pressure"] > 0).sum()) == 1276
-    assert float(found["force_x"]) / (friction * load) == pytest.approx(0.6074, abs=2e-4)
-    assert float(found["moment_z"]) == pytest.approx(-48.21, abs=0.02)
-    assert int(found["stick"].sum()) == pytest.approx(356, abs=2)
+    computed = rolling_ellipse(4e-3, 8e-3, load, material(82e9, 0.28), friction, motion, (42, 46))
+    assert int((computed["pressure"] > 0).sum()) == 1276
+    assert float(computed["force_x"]) / (friction * load) == pytest.approx(0.6074, abs=2e-4)
+    assert float(computed["moment_z"]) == pytest.approx(-48.21, abs=0.02)
+    assert int(computed["stick"].sum()) == pytest.approx(356, abs=2)
 
 
-def test_columns_nearer_than_a_cell_is_long_take_the_slip_at_one_place() -> None:
+def test_close_columns_share_slip_offset() -> None:
     """Columns far narrower than the cells are long, and one as wide as they are long beside them."""
     pressure = np.vstack([strip(part) for part in (0.75, 1.3, 0.9)])
     x, widths, dy = np.array([0.0, 0.02, 2.0]), np.array([0.01, 0.03, 1.0]), 1.0
-    together = neighbour_shares(x, widths, dy)
+    together = averaging_weights(x, widths, dy)
     assert together is not None
     cells = RollingCells.of(pressure, pressure, together)
     first, second, third = (cells.offset[cells.unknown[0] == row][0] for row in range(3))
     assert abs(first - second) < 0.01  # their own are 0.55 apart
     assert first == pytest.approx(EDGE_OFFSET + (0.01 * 0.75 + 0.98 * 0.03 * 1.3) / (0.01 + 0.98 * 0.03))
     assert third == pytest.approx(EDGE_OFFSET + 0.9)
-    assert neighbour_shares(np.arange(4.0), np.ones(4), 0.5) is None
+    assert averaging_weights(np.arange(4.0), np.ones(4), 0.5) is None
 
 
-def test_a_single_cell_ahead_of_a_contact_is_a_contact_of_its_own() -> None:
+def test_single_cell_ahead_is_separate_contact() -> None:
     pressure = strip(0.9)
     last = int(np.flatnonzero(pressure[0])[-1])
-    alone = pressure.copy()
-    alone[0, last + 2] = 0.1
-    found = RollingCells.of(alone, alone)
-    assert found.to.size == 0
-    assert found.offset[:-1] == pytest.approx(EDGE_OFFSET + 0.9)
-    assert found.offset[-1] == pytest.approx(EDGE_OFFSET + 1.0)
+    single = pressure.copy()
+    single[0, last + 2] = 0.1
+    computed = RollingCells.of(single, single)
+    assert computed.source_cell.size == 0
+    assert computed.offset[:-1] == pytest.approx(EDGE_OFFSET + 0.9)
+    assert computed.offset[-1] == pytest.approx(EDGE_OFFSET + 1.0)
 
 
-def test_all_cells_of_a_column_that_slides_take_the_slip_at_their_centres() -> None:
+def test_sliding_columns_use_slip_at_centres() -> None:
     pressure = np.vstack([strip(0.9), strip(0.3), strip(0.9)])
-    found = RollingCells.of(pressure, pressure, None, Leading(np.array([True, True, False]), pressure))
-    assert found.to.size == 0
-    assert (found.offset[found.unknown[0] < 2] == tractions.SLIDING_OFFSET).all()
-    assert found.offset[found.unknown[0] == 2] == pytest.approx(EDGE_OFFSET + 0.9)
+    computed = RollingCells.of(pressure, pressure, None, LeadingEdges(np.array([True, True, False]), pressure))
+    assert computed.source_cell.size == 0
+    assert (computed.offset[computed.unknown[0] < 2] == tractions.SLIDING_OFFSET).all()
+    assert computed.offset[computed.unknown[0] == 2] == pytest.approx(EDGE_OFFSET + 0.9)
 
 
-def test_beyond_the_last_cell_a_displacement_stays() -> None:
+def test_displacement_is_constant_beyond_last_cell() -> None:
     pressure = np.ones((1, 6))
     displacement = np.random.default_rng(0).standard_normal((1, 6))
-    found = RollingCells.of(pressure, pressure)
-    whole = np.pad(displacement, ((0, 0), (0, 2)), mode="edge")
-    assert found.derivative(displacement, 0.5) == pytest.approx(found.derivative(whole, 0.5))
+    computed = RollingCells.of(pressure, pressure)
+    complete = np.pad(displacement, ((0, 0), (0, 2)), mode="edge")
+    assert computed.derivative(displacement, 0.5) == pytest.approx(computed.derivative(complete, 0.5))

@@ -9,7 +9,7 @@ from contactstudy import Grid
 from contactstudy.checks import FloatArray
 from contactstudy.contact.rolling.surfaces import Tractions
 from contactstudy.contact.rolling.tractions import (
-    LARGEST_STICKING,
+    MAX_STICKING_RATIO,
     RollingCells,
     cell_means,
     guess_from_coarse,
@@ -21,17 +21,19 @@ FINE = Grid(x_range=(0.0, 6.0), y_range=(0.0, 4.0), cells_x=12, cells_y=8)
 ALONG_Y_ONLY = Grid(x_range=(0.0, 6.0), y_range=(0.0, 4.0), cells_x=6, cells_y=8)
 
 
-def found_under(bound: FloatArray, traction: FloatArray, sticks: FloatArray) -> Tractions:
+def solve_under(bound: FloatArray, traction: FloatArray, sticks: FloatArray) -> Tractions:
     rigid = {"x": 0.5, "y": -0.25, "spin": 3.0}
     slip = np.zeros_like(traction)
     return Tractions(traction=traction, slip=slip, sticks=sticks, bound=bound, rigid=rigid, resultants={}, work=0.0)
 
 
 def all_cells(bound: FloatArray) -> RollingCells:
-    none = np.zeros((2, 0), dtype=np.int64)
+    empty = np.zeros((2, 0), dtype=np.int64)
     unknown = np.argwhere(np.ones(bound.shape, bool)).T
     offset = np.zeros(unknown.shape[1])
-    return RollingCells(bound=bound, unknown=unknown, offset=offset, tied=none, to=none[0], ratio=np.zeros(0))
+    return RollingCells(
+        bound=bound, unknown=unknown, offset=offset, dependent=empty, source_cell=empty[0], ratio=np.zeros(0)
+    )
 
 
 def plane(grid: Grid) -> FloatArray:
@@ -41,52 +43,52 @@ def plane(grid: Grid) -> FloatArray:
 
 
 @pytest.mark.parametrize("grid", [FINE, ALONG_Y_ONLY])
-def test_parts_of_the_bound_are_on_lines_where_cells_stick(grid: Grid) -> None:
+def test_sticking_guess_is_linear_in_bound(grid: Grid) -> None:
     bound, fine_bound = 2.0 + COARSE.x[:, None] * COARSE.y, 3.0 + grid.x[:, None] + grid.y
-    coarse = found_under(bound, bound * plane(COARSE), np.ones(COARSE.shape, bool))
+    coarse = solve_under(bound, bound * plane(COARSE), np.ones(COARSE.shape, bool))
     guess = guess_from_coarse(coarse, all_cells(fine_bound), ("y", "spin"))
-    found = guess.traction.reshape(2, *grid.shape) / fine_bound
+    computed = guess.traction.reshape(2, *grid.shape) / fine_bound
     inside = slice(2, -2) if grid is FINE else slice(None)
-    assert found[:, inside, 1:-1] == pytest.approx(plane(grid)[:, inside, 1:-1], rel=1e-12)
+    assert computed[:, inside, 1:-1] == pytest.approx(plane(grid)[:, inside, 1:-1], rel=1e-12)
     assert guess.amplitudes.tolist() == [-0.25, 3.0]
 
 
-def test_cells_that_slip_keep_their_whole_bound_and_others_less() -> None:
+def test_slipping_guess_keeps_bound() -> None:
     """Towards cells that slip, those that stick come near the bound; what has none carries nothing."""
     sticks = np.broadcast_to(COARSE.x[:, None] < 3, COARSE.shape)
     bound = np.where(COARSE.y > 1, 2.0, 0.0) * np.ones(COARSE.shape)
     direction = np.array([0.6, 0.8])[:, None, None]
     traction = direction * bound * np.where(sticks, 0.9 + 0.05 * COARSE.x[:, None], 1.0)
     fine_bound = np.full(FINE.shape, 5.0)
-    coarse = found_under(bound, traction, sticks)
-    found = guess_from_coarse(coarse, all_cells(fine_bound), ()).traction.reshape(2, *FINE.shape)
-    part = np.hypot(*found) / fine_bound
-    slips, bare = FINE.x > 3, FINE.y < 0.9
-    assert part[slips][:, ~bare] == pytest.approx(1.0)
-    assert (part[slips][:, bare] == 0).all()
-    assert part[~slips][:, ~bare].max() == pytest.approx(LARGEST_STICKING)
+    coarse = solve_under(bound, traction, sticks)
+    computed = guess_from_coarse(coarse, all_cells(fine_bound), ()).traction.reshape(2, *FINE.shape)
+    part = np.hypot(*computed) / fine_bound
+    slips, frictionless = FINE.x > 3, FINE.y < 0.9
+    assert part[slips][:, ~frictionless] == pytest.approx(1.0)
+    assert (part[slips][:, frictionless] == 0).all()
+    assert part[~slips][:, ~frictionless].max() == pytest.approx(MAX_STICKING_RATIO)
     assert part[2:4, 4:] == pytest.approx(0.9 + 0.05 * np.array([1.25, 1.75])[:, None] * np.ones(4))
     assert (part[~slips][:, :1] == 0).all()
     loaded = part > 0
-    assert (found[1] / found[0].clip(1e-9))[loaded] == pytest.approx(4 / 3)
+    assert (computed[1] / computed[0].clip(1e-9))[loaded] == pytest.approx(4 / 3)
 
 
-def test_under_almost_the_same_bound_what_slips_follows_it() -> None:
+def test_guess_keeps_slip_direction_under_similar_bound() -> None:
     random = np.random.default_rng(0)
     last = random.standard_normal((2, *FINE.shape))
     last[:, 0] = 0.0
     sticks = FINE.x[:, None] < 3 + 0 * FINE.y
     bound = np.hypot(*last) * random.uniform(0.9, 1.1, FINE.shape) + np.where(FINE.x[:, None] < 0.5, 1.0, 0.0)
-    guess = guess_from_last(found_under(bound, last, sticks), all_cells(bound), ("x",))
-    found = guess.traction.reshape(2, *FINE.shape)
+    guess = guess_from_last(solve_under(bound, last, sticks), all_cells(bound), ("x",))
+    computed = guess.traction.reshape(2, *FINE.shape)
     assert guess.amplitudes.tolist() == [0.5]
-    size, before = np.hypot(*found), np.hypot(*last)
-    assert found[0] * last[1] == pytest.approx(found[1] * last[0])
+    size, before = np.hypot(*computed), np.hypot(*last)
+    assert computed[0] * last[1] == pytest.approx(computed[1] * last[0])
     assert size[~sticks] == pytest.approx(bound[~sticks])
-    assert size[sticks] == pytest.approx(np.minimum(before, LARGEST_STICKING * bound)[sticks])
-    assert (found[:, 0] == 0).all()
-    assert ((found * last).sum(axis=0)[1:] > 0).all()
+    assert size[sticks] == pytest.approx(np.minimum(before, MAX_STICKING_RATIO * bound)[sticks])
+    assert (computed[:, 0] == 0).all()
+    assert ((computed * last).sum(axis=0)[1:] > 0).all()
 
 
-def test_cells_of_twice_the_size_have_the_mean() -> None:
+def test_coarse_cells_have_mean_values() -> None:
     assert cell_means(np.arange(8.0).reshape(2, 4)).tolist() == [[2.5, 4.5]]

@@ -19,17 +19,17 @@ STEP = 3e-5
 GRADED = 1e-5 * np.cumsum([0.0, 1.0, 2.0, 4.0])
 
 
-def displaced(edges: FloatArray, row: int) -> FloatArray:
+def compute_displacements(edges: FloatArray, row: int) -> FloatArray:
     """Displacements (direction, load, row, offset along y) of two half-spaces under a unit traction on a row."""
     grid = Grid.between(edges, (-(COLUMNS + 0.5) * DY, (COLUMNS + 0.5) * DY), 2 * COLUMNS + 1)
-    unit, found = np.zeros(grid.shape), np.zeros((2, 2, *grid.shape))
+    unit, computed = np.zeros(grid.shape), np.zeros((2, 2, *grid.shape))
     unit[row, COLUMNS] = 1.0
     for material in MATERIALS:
         operator = surface_operator(HalfSpace(material=material), grid, TANGENTIAL, TANGENTIAL)
-        for number, load in enumerate(TANGENTIAL):
-            each = operator.displaced({load: unit}, TANGENTIAL)
-            found[:, number] += np.stack([each[direction] for direction in TANGENTIAL])
-    return found
+        for index, load in enumerate(TANGENTIAL):
+            item = operator.compute_displacements({load: unit}, TANGENTIAL)
+            computed[:, index] += np.stack([item[direction] for direction in TANGENTIAL])
+    return computed
 
 
 def offsets(period: int) -> IntArray:
@@ -42,11 +42,11 @@ def matrix_on(*, uniform: bool) -> FloatArray:
     """Compliance (direction, row, column, load, row, column) on cells that repeat with twice the patch."""
     at_y = offsets(2 * COLUMNS)
     if uniform:
-        table = displaced(STEP * np.arange(2 * ROWS + 2.0), ROWS)
+        table = compute_displacements(STEP * np.arange(2 * ROWS + 2.0), ROWS)
         at_x = offsets(2 * ROWS)
-        found = table[:, :, (at_x + ROWS)[:, :, None, None], (at_y + COLUMNS)[None, None]]
-        return found.transpose(0, 2, 4, 1, 3, 5)
-    tables = np.stack([displaced(GRADED, row) for row in range(ROWS)], axis=3)
+        computed = table[:, :, (at_x + ROWS)[:, :, None, None], (at_y + COLUMNS)[None, None]]
+        return computed.transpose(0, 2, 4, 1, 3, 5)
+    tables = np.stack([compute_displacements(GRADED, row) for row in range(ROWS)], axis=3)
     # Cells half a period away lie on both sides.
     tables[..., 0] = tables[..., -1] = 0.5 * (tables[..., 0] + tables[..., -1])
     return tables[..., at_y + COLUMNS].transpose(0, 2, 4, 1, 3, 5)
@@ -54,7 +54,7 @@ def matrix_on(*, uniform: bool) -> FloatArray:
 
 @pytest.mark.parametrize("uniform", [True, False])
 @pytest.mark.parametrize("rolling", [False, True])
-def test_it_is_the_inverse_on_cells_that_repeat(*, uniform: bool, rolling: bool) -> None:
+def test_preconditioner_inverts_periodic_compliance(*, uniform: bool, rolling: bool) -> None:
     edges = STEP * np.arange(ROWS + 3.0) if uniform else np.concatenate([[-4e-5], GRADED, [12e-5]])
     grid = Grid.between(edges, (0.0, (COLUMNS + 2) * DY), COLUMNS + 2)
     mask = np.zeros(grid.shape, bool)
@@ -75,8 +75,8 @@ def test_it_is_the_inverse_on_cells_that_repeat(*, uniform: bool, rolling: bool)
     spread = np.zeros(shape)
     spread[:, cells[0] - 1, cells[1] - 1] = slip / root
     expected = np.linalg.solve(matrix, spread.ravel()).reshape(shape)[:, cells[0] - 1, cells[1] - 1] * root
-    found = tangential_inverse(MATERIALS, cells, grid, rolling=rolling)(slip)
-    assert found == pytest.approx(expected, abs=1e-5 * np.abs(expected).max())
+    computed = tangential_inverse(MATERIALS, cells, grid, rolling=rolling)(slip)
+    assert computed == pytest.approx(expected, abs=1e-5 * np.abs(expected).max())
     assert tangential_inverse(MATERIALS, cells, grid, rolling=rolling)(3e-9 * slip) == pytest.approx(
         3e-9 * expected, abs=3e-14 * np.abs(expected).max()
     )

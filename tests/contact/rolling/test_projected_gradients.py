@@ -9,19 +9,19 @@ import pytest
 
 from contactstudy.contact.rolling import coulomb
 from contactstudy.contact.rolling.coulomb import CoulombProblem, Guess, balance_tractions, descend_energy, solve_coulomb
-from tests.contact.rolling.test_coulomb import holds, problem
+from tests.contact.rolling.test_coulomb import check_law, problem
 
 CELLS = 24
 
 
 @pytest.mark.parametrize("size", [0.01, 0.3, 1.0, 30.0])
-def test_the_descent_ends_where_newton_does(size: float) -> None:
+def test_descent_and_newton_agree(size: float) -> None:
     random = np.random.default_rng(3)
     bound, ones = random.uniform(0.2, 1.0, CELLS), np.ones(CELLS)
-    asked = replace(problem(size * random.standard_normal((2, CELLS)), bound), shares=ones)
-    found, slip = descend_energy(asked.relief, asked.rigid, np.zeros((2, CELLS)), bound, ones)
-    assert np.abs(found - solve_coulomb(asked).traction).max() < 1e-5
-    assert np.abs(slip - asked.slip(found, np.zeros(0))).max() < 1e-9 * max(size, 1.0)
+    request = replace(problem(size * random.standard_normal((2, CELLS)), bound), relative_areas=ones)
+    computed, slip = descend_energy(request.apply_compliance, request.rigid, np.zeros((2, CELLS)), bound, ones)
+    assert np.abs(computed - solve_coulomb(request).traction).max() < 1e-5
+    assert np.abs(slip - request.slip(computed, np.zeros(0))).max() < 1e-9 * max(size, 1.0)
 
 
 @pytest.mark.parametrize("part", [0.05, 0.5, 0.9])
@@ -29,16 +29,16 @@ def test_rigid_slips_make_the_prescribed_forces(part: float) -> None:
     random = np.random.default_rng(4)
     bound, ones = random.uniform(0.2, 1.0, CELLS), np.ones(CELLS)
     forces = part * bound.sum() * np.array([0.6, -0.8])
-    asked = replace(problem(0.1 * random.standard_normal((2, CELLS)), bound, forces=forces), shares=ones)
-    expected = solve_coulomb(asked)
-    found, amplitudes = balance_tractions(asked, Guess(np.zeros((2, CELLS)), np.zeros(2)), 1.0)
-    assert (asked.works * found).sum(axis=(1, 2)) == pytest.approx(forces, abs=1e-4 * bound.sum())
-    assert np.abs(found - expected.traction).max() < 1e-3
+    request = replace(problem(0.1 * random.standard_normal((2, CELLS)), bound, forces=forces), relative_areas=ones)
+    expected = solve_coulomb(request)
+    computed, amplitudes = balance_tractions(request, Guess(np.zeros((2, CELLS)), np.zeros(2)), 1.0)
+    assert (request.resultant_weights * computed).sum(axis=(1, 2)) == pytest.approx(forces, abs=1e-4 * bound.sum())
+    assert np.abs(computed - expected.traction).max() < 1e-3
     assert amplitudes == pytest.approx(expected.amplitudes, rel=1e-2)
 
 
 @pytest.mark.parametrize("prescribed", [False, True])
-def test_newton_begins_again_from_a_descent(monkeypatch: pytest.MonkeyPatch, prescribed: bool) -> None:
+def test_newton_restarts_from_descent(monkeypatch: pytest.MonkeyPatch, prescribed: bool) -> None:
     monkeypatch.setattr(coulomb, "DESCENT_INTERVAL", 3)
     descents = []
 
@@ -50,75 +50,85 @@ def test_newton_begins_again_from_a_descent(monkeypatch: pytest.MonkeyPatch, pre
     random = np.random.default_rng(5)
     bound = random.uniform(0.2, 1.0, CELLS)
     forces = 0.5 * bound.sum() * np.array([0.6, -0.8]) if prescribed else None
-    asked = problem(random.standard_normal((2, CELLS)), bound, forces=forces)
-    asked = replace(asked, shares=np.ones(CELLS), symmetric=True)
-    found = solve_coulomb(asked)
-    assert found.converged
+    request = problem(random.standard_normal((2, CELLS)), bound, forces=forces)
+    request = replace(request, relative_areas=np.ones(CELLS), symmetric=True)
+    computed = solve_coulomb(request)
+    assert computed.converged
     assert descents
-    holds(asked, found)
+    check_law(request, computed)
 
 
-def symmetric(seed: int, *, unit: float = 1.0, pressure: float = 1.0, forces: bool = False) -> CoulombProblem:
+def graded_problem(seed: int, *, unit: float = 1.0, pressure: float = 1.0, forces: bool = False) -> CoulombProblem:
     """Cells of different sizes in some units, on which the compliance times the areas is symmetric."""
     random = np.random.default_rng(seed)
-    bound, shares = pressure * random.uniform(0.2, 1.0, CELLS), random.uniform(0.2, 2.0, CELLS)
-    wanted = 0.6 * float((shares * bound).sum()) * np.array([0.6, -0.8]) if forces else None
-    asked = problem(0.3 * unit * random.standard_normal((2, CELLS)), bound, forces=wanted, seed=seed)
-    both = np.tile(shares, 2)
-    inner = np.stack([asked.relief(each.reshape(2, CELLS)).ravel() for each in np.eye(2 * CELLS)], axis=1)
+    bound, fractions = pressure * random.uniform(0.2, 1.0, CELLS), random.uniform(0.2, 2.0, CELLS)
+    requested = 0.6 * float((fractions * bound).sum()) * np.array([0.6, -0.8]) if forces else None
+    request = problem(0.3 * unit * random.standard_normal((2, CELLS)), bound, forces=requested, seed=seed)
+    both = np.tile(fractions, 2)
+    inner = np.stack(
+        [request.apply_compliance(column.reshape(2, CELLS)).ravel() for column in np.eye(2 * CELLS)], axis=1
+    )
     matrix = unit / pressure * inner * both
     inverse = np.linalg.inv(matrix)
     return replace(
-        asked,
-        relief=lambda traction: (matrix @ traction.ravel()).reshape(traction.shape),
+        request,
+        apply_compliance=lambda traction: (matrix @ traction.ravel()).reshape(traction.shape),
         inverse=lambda slip: (inverse @ slip.ravel()).reshape(slip.shape),
-        works=0.01 * shares * asked.works,
-        resultants=0.01 * asked.resultants,
-        shares=shares,
+        resultant_weights=0.01 * fractions * request.resultant_weights,
+        resultants=0.01 * request.resultants,
+        relative_areas=fractions,
         symmetric=True,
     )
 
 
 @pytest.mark.parametrize(("unit", "pressure"), [(1e-6, 1.0), (1.0, 1.0), (1.0, 1e-9), (1e3, 1e9)])
 @pytest.mark.parametrize("forces", [False, True])
-def test_cells_of_different_sizes_in_any_unit(unit: float, pressure: float, *, forces: bool) -> None:
-    asked = symmetric(8, unit=unit, pressure=pressure, forces=forces)
+def test_descent_on_graded_cells_in_any_unit(unit: float, pressure: float, *, forces: bool) -> None:
+    request = graded_problem(8, unit=unit, pressure=pressure, forces=forces)
     applied: list[int] = []
 
     def counted(traction: np.ndarray) -> np.ndarray:
         applied.append(1)
-        return asked.relief(traction)
+        return request.apply_compliance(traction)
 
-    expected = solve_coulomb(replace(asked, max_steps=14))
+    expected = solve_coulomb(replace(request, max_steps=14))
     assert expected.converged
-    found, amplitudes = balance_tractions(
-        replace(asked, relief=counted), Guess(np.zeros((2, CELLS)), np.zeros(2 if forces else 0)), unit
+    computed, amplitudes = balance_tractions(
+        replace(request, apply_compliance=counted), Guess(np.zeros((2, CELLS)), np.zeros(2 if forces else 0)), unit
     )
-    assert np.abs(found - expected.traction).max() < 1e-3 * pressure
+    assert np.abs(computed - expected.traction).max() < 1e-3 * pressure
     assert amplitudes == pytest.approx(expected.amplitudes, abs=1e-3 * unit)
     assert len(applied) < (330 if forces else 84)
 
 
 @pytest.mark.parametrize("seed", range(3))
-def test_no_step_of_the_descent_raises_the_energy(seed: int) -> None:
+def test_descent_steps_reduce_energy(seed: int) -> None:
     """So it cannot go round in circles."""
-    asked, energies = symmetric(seed), []
+    request, energies = graded_problem(seed), []
     for steps in range(12):
         zero = np.zeros((2, CELLS))
-        found, _ = descend_energy(asked.relief, asked.rigid, zero, asked.bound, asked.shares, steps)
-        energies.append(float((asked.shares * found * (0.5 * asked.relief(found) - asked.rigid)).sum()))
+        computed, _ = descend_energy(
+            request.apply_compliance, request.rigid, zero, request.bound, request.relative_areas, steps
+        )
+        energies.append(
+            float(
+                (request.relative_areas * computed * (0.5 * request.apply_compliance(computed) - request.rigid)).sum()
+            )
+        )
     assert (np.diff(energies) < 0).all()
 
 
-def test_steps_of_the_descent_grow_where_the_slip_is_no_longer_what_it_began_with() -> None:
+def test_descent_step_length_adapts() -> None:
     """It begins with a slip that the stiffest cell gives way to, whose step is a tenth of the others'."""
     stiffness, applied = np.geomspace(1.0, 10.0, CELLS), []
 
-    def relief(traction: np.ndarray) -> np.ndarray:
+    def apply_compliance(traction: np.ndarray) -> np.ndarray:
         applied.append(traction)
         return stiffness * traction
 
-    wanted = np.where(np.arange(CELLS) < CELLS - 1, 0.01, 1.0) * np.ones((2, CELLS))
-    found, _ = descend_energy(relief, stiffness * wanted, np.zeros((2, CELLS)), np.full(CELLS, 10.0), np.ones(CELLS))
-    assert found == pytest.approx(wanted, abs=1e-4)
+    requested = np.where(np.arange(CELLS) < CELLS - 1, 0.01, 1.0) * np.ones((2, CELLS))
+    computed, _ = descend_energy(
+        apply_compliance, stiffness * requested, np.zeros((2, CELLS)), np.full(CELLS, 10.0), np.ones(CELLS)
+    )
+    assert computed == pytest.approx(requested, abs=1e-4)
     assert len(applied) < 50

@@ -16,44 +16,46 @@ SURFACES = Surfaces(None, GRID, [Material(1.0, 0.3)], 5.45)  # type: ignore[arg-
 
 def bound() -> FloatArray:
     """Friction times a pressure that is not symmetric."""
-    place = ((GRID.x[:, None] - 5.55) / 0.45) ** 2 + (GRID.y / 0.35) ** 2
-    return np.asarray(np.sqrt(np.maximum(1 - place, 0.0)) * (1 + GRID.y))
+    position = ((GRID.x[:, None] - 5.55) / 0.45) ** 2 + (GRID.y / 0.35) ** 2
+    return np.asarray(np.sqrt(np.maximum(1 - position, 0.0)) * (1 + GRID.y))
 
 
 @pytest.mark.parametrize(
     "wanted", [[0.3, -0.1], [0.3, -0.1, 0.02], [0.0, 0.0, -1.0], [0.2, 0.0, 0.05], [1e3, 1e3, 30.0]]
 )
-def test_the_largest_multiple_is_the_least_over_all_directions(wanted: list[float]) -> None:
+def test_largest_multiple_is_minimum_over_directions(wanted: list[float]) -> None:
     """Tractions along the slip of a rigid motion make the largest resultant along it: all motions, tried one by one."""
-    works, target = SURFACES.weights[: len(wanted)], np.array(wanted)
+    resultant_weights, target = SURFACES.weights[: len(wanted)], np.array(wanted)
     random = np.random.default_rng(0)
-    found = _largest_multiple(target, bound(), works)
-    sizes = np.array([(bound() * np.hypot(*work)).sum() for work in works])
+    computed = _largest_multiple(target, bound(), resultant_weights)
+    sizes = np.array([(bound() * np.hypot(*work)).sum() for work in resultant_weights])
     along, spread = target / sizes / np.hypot.reduce(target / sizes), 1.0
-    least = np.inf
+    minimum = np.inf
     for _ in range(60):  # about the best so far, ever closer
-        tried = along + spread * random.standard_normal((200, target.size))
-        tried[0] = along
-        tried = tried[(tried * target / sizes).sum(axis=1) > 0] / sizes
-        slips = np.tensordot(tried, works, axes=1)
-        multiples = (bound() * np.hypot(slips[:, 0], slips[:, 1])).sum(axis=(1, 2)) / (tried @ target)
-        if multiples.min() < least:
-            least, along = float(multiples.min()), tried[multiples.argmin()] * sizes
+        attempts = along + spread * random.standard_normal((200, target.size))
+        attempts[0] = along
+        attempts = attempts[(attempts * target / sizes).sum(axis=1) > 0] / sizes
+        slips = np.tensordot(attempts, resultant_weights, axes=1)
+        multiples = (bound() * np.hypot(slips[:, 0], slips[:, 1])).sum(axis=(1, 2)) / (attempts @ target)
+        if multiples.min() < minimum:
+            minimum, along = float(multiples.min()), attempts[multiples.argmin()] * sizes
             along = along / np.hypot.reduce(along)
         spread *= 0.85
-    assert found == pytest.approx(least, rel=1e-4)
+    assert computed == pytest.approx(minimum, rel=1e-4)
     for factor in (3.0, 1e-200):
-        assert _largest_multiple(factor * target, bound(), works) == pytest.approx(found / factor, rel=1e-6)
+        assert _largest_multiple(factor * target, bound(), resultant_weights) == pytest.approx(
+            computed / factor, rel=1e-6
+        )
 
 
-def test_one_force_is_carried_up_to_the_sum_of_the_bound() -> None:
-    most = float((bound() * SURFACES.areas).sum())
-    check_forces(Rolling(force_y=0.9999 * most), bound(), SURFACES.weights)
+def test_single_force_is_limited_by_bound_sum() -> None:
+    maximum = float((bound() * SURFACES.areas).sum())
+    check_forces(Rolling(force_y=0.9999 * maximum), bound(), SURFACES.weights)
     check_forces(Rolling(force_y=5e-324), bound(), SURFACES.weights)
-    check_forces(Rolling(force_y=most * (1 - 5e-9)), bound(), SURFACES.weights)
+    check_forces(Rolling(force_y=maximum * (1 - 5e-9)), bound(), SURFACES.weights)
     for part in (1 - 1e-10, 1.0001):
         with pytest.raises(InvalidInputError, match="force_y"):
-            check_forces(Rolling(force_y=part * most), bound(), SURFACES.weights)
+            check_forces(Rolling(force_y=part * maximum), bound(), SURFACES.weights)
     turning = float((bound() * SURFACES.areas * np.hypot(GRID.x[:, None] - 5.45, GRID.y)).sum())
     check_forces(Rolling(moment_z=0.999 * turning), bound(), SURFACES.weights)
     with pytest.raises(InvalidInputError, match="moment_z"):
@@ -62,6 +64,6 @@ def test_one_force_is_carried_up_to_the_sum_of_the_bound() -> None:
 
 def test_resultants_are_the_work_on_rigid_motions() -> None:
     """Motions about `middle`, anticlockwise seen from above."""
-    for number, name in enumerate(("x", "y", "spin")):
+    for index, name in enumerate(("x", "y", "spin")):
         slip = SURFACES.rigid_slip(name, GRID.x[:, None], GRID.y)
-        assert slip * SURFACES.areas == pytest.approx(SURFACES.weights[number], abs=1e-15)
+        assert slip * SURFACES.areas == pytest.approx(SURFACES.weights[index], abs=1e-15)

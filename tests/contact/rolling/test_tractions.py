@@ -13,7 +13,7 @@ from contactstudy.bodies import Counterbody
 from contactstudy.cache import ArrayKey
 from contactstudy.checks import FloatArray
 from contactstudy.contact.normal.contact import Settings, Shape
-from contactstudy.contact.normal.prescribed import Prescribed
+from contactstudy.contact.normal.prescribed_loads import PrescribedLoad
 from contactstudy.contact.rolling import tractions as module
 from contactstudy.contact.rolling.coulomb import (
     CoulombProblem,
@@ -41,41 +41,45 @@ POWERS = {"spin": (-1, 0), "force_x": (2, 1), "force_y": (2, 1), "moment_z": (3,
 """Powers of both that what a motion prescribes has; creepages have none, shifts are lengths."""
 
 
-def scaled(motion: Rolling | Shift) -> Rolling | Shift:
+def scale_units(motion: Rolling | Shift) -> Rolling | Shift:
     """Return a motion in the other units."""
     changes: dict[str, Any] = {}
-    for each in fields(motion):
-        value = getattr(motion, each.name)
+    for parameter in fields(motion):
+        value = getattr(motion, parameter.name)
         if isinstance(value, float):
-            length, pressure = POWERS.get(each.name, (1, 0) if isinstance(motion, Shift) else (0, 0))
-            changes[each.name] = value * LENGTH**length * PRESSURE**pressure
+            length, pressure = POWERS.get(parameter.name, (1, 0) if isinstance(motion, Shift) else (0, 0))
+            changes[parameter.name] = value * LENGTH**length * PRESSURE**pressure
     return replace(motion, **changes)
 
 
-def rubbed(motion: Rolling | Shift, edges: str, *, other_units: bool = False, **named: Any) -> FrictionalContact:
+def solve_friction(
+    motion: Rolling | Shift, edges: str, *, other_units: bool = False, **named: Any
+) -> FrictionalContact:
     """A ball on a body of its material, a little off the origin."""
     length, pressure = (LENGTH, PRESSURE) if other_units else (1.0, 1.0)
     count = 48 if edges == "nested" else 26
     grid = Grid.between(length * EDGES[edges], (-1.3 * length, 1.3 * length), count)
     gap = 0.05 * ((grid.x[:, None] - 0.02 * length) ** 2 + grid.y**2) / length
     body = HalfSpace(material=Material(0.91 * pressure, 0.3))
-    prescribed = Prescribed(LOAD * pressure * length**2)
+    prescribed = PrescribedLoad(LOAD * pressure * length**2)
     shape = Shape(body, grid, ArrayKey(gap), prescribed, Counterbody(body))
-    motion = scaled(motion) if other_units else motion
-    request = FrictionRequest(motion=motion, friction=FRICTION, middle=0.1 * length, **({"coupled": False} | named))
+    motion = scale_units(motion) if other_units else motion
+    request = FrictionRequest(
+        motion=motion, friction=FRICTION, reference_x=0.1 * length, **({"coupled": False} | named)
+    )
     return frictional_contact(shape, Settings(), request)
 
 
 def count_tangential(monkeypatch: pytest.MonkeyPatch) -> list[int]:
     """List that grows with each application of the operator to tractions."""
     calls: list[int] = []
-    original = SurfaceOperator.displaced
+    original = SurfaceOperator.compute_displacements
 
     def counted(self: SurfaceOperator, loads: Any, directions: Any) -> Any:
         calls.extend([1] * (Load.ALONG_X in loads))
         return original(self, loads, directions)
 
-    monkeypatch.setattr(SurfaceOperator, "displaced", counted)
+    monkeypatch.setattr(SurfaceOperator, "compute_displacements", counted)
     return calls
 
 
@@ -85,8 +89,8 @@ def test_applications_of_the_operator_are_few(
 ) -> None:
     sums, calls = {Rolling: 0, Shift: 0}, count_tangential(monkeypatch)
     for motion in MOTIONS.values():
-        found = rubbed(motion, edges).tractions
-        assert found.converged
+        computed = solve_friction(motion, edges).tractions
+        assert computed.converged
         sums[type(motion)] += len(calls)
         calls.clear()
     assert sums[Rolling] < most[0]
@@ -104,59 +108,64 @@ def value_of(tractions: Tractions, name: str) -> FloatArray | float:
         *(("nested", name) for name in ("lateral", "all", "moment", "shifting force")),
     ],
 )
-def test_units_decide_nothing(edges: str, name: str) -> None:
+def test_results_scale_with_units(edges: str, name: str) -> None:
     motion = MOTIONS[name]
-    plain, other = rubbed(motion, edges).tractions, rubbed(motion, edges, other_units=True).tractions
-    assert plain.steps == other.steps
+    baseline, variant = (
+        solve_friction(motion, edges).tractions,
+        solve_friction(motion, edges, other_units=True).tractions,
+    )
+    assert baseline.steps == variant.steps
     rolls = isinstance(motion, Rolling)
     units = {"traction": (0, 1), "slip": (0, 0) if rolls else (1, 0), "work": (2, 1) if rolls else (3, 1)}
     for name, (length, pressure) in (units | {key: POWERS[key] for key in ("force_x", "force_y", "moment_z")}).items():
-        value, unit = value_of(plain, name), LENGTH**length * PRESSURE**pressure
-        least = 1e-9 * np.abs(value).max() if np.ndim(value) else 1e-9 * FRICTION * LOAD
-        assert value_of(other, name) / unit == pytest.approx(value, rel=1e-6, abs=least), name
-    for name, amount in plain.rigid.items():
+        value, unit = value_of(baseline, name), LENGTH**length * PRESSURE**pressure
+        minimum = 1e-9 * np.abs(value).max() if np.ndim(value) else 1e-9 * FRICTION * LOAD
+        assert value_of(variant, name) / unit == pytest.approx(value, rel=1e-6, abs=minimum), name
+    for name, amount in baseline.rigid.items():
         length, pressure = POWERS.get(name, (0, 0) if rolls else (1, 0))
-        assert other.rigid[name] == pytest.approx(amount * LENGTH**length * PRESSURE**pressure, rel=1e-6)
-    assert np.array_equal(plain.sticks, other.sticks)
+        assert variant.rigid[name] == pytest.approx(amount * LENGTH**length * PRESSURE**pressure, rel=1e-6)
+    assert np.array_equal(baseline.sticks, variant.sticks)
     for name in ("bound_error", "slip_error", "force_error"):  # differences of the values above
-        assert getattr(other, name) == pytest.approx(getattr(plain, name), rel=1e-3, abs=1e-9)
+        assert getattr(variant, name) == pytest.approx(getattr(baseline, name), rel=1e-3, abs=1e-9)
 
 
 @pytest.mark.parametrize("motion", [MOTIONS["all"], MOTIONS["shift"], replace(MOTIONS["all"], model="fastsim")])
-def test_place_along_the_axis_decides_nothing(motion: Rolling | Shift) -> None:
+def test_position_along_axis_does_not_change_tractions(motion: Rolling | Shift) -> None:
     """Spin and moment are about the middle, wherever that is."""
 
     def found(place: float) -> FrictionalContact:
         grid = Grid.between(place + EDGES["uniform"], (-1.3, 1.3), 26)
         gap = 0.05 * ((grid.x[:, None] - place - 0.02) ** 2 + grid.y**2)
         body = HalfSpace(material=Material(0.91, 0.3))
-        shape = Shape(body, grid, ArrayKey(gap), Prescribed(LOAD), Counterbody(body))
-        request = FrictionRequest(motion=motion, friction=FRICTION, middle=place + 0.1, coupled=False)
+        shape = Shape(body, grid, ArrayKey(gap), PrescribedLoad(LOAD), Counterbody(body))
+        request = FrictionRequest(motion=motion, friction=FRICTION, reference_x=place + 0.1, coupled=False)
         return frictional_contact(shape, Settings(), request)
 
-    plain, other = found(0.0).tractions, found(8.0).tractions
-    assert other.traction == pytest.approx(plain.traction, abs=1e-6 * plain.traction.max())
+    baseline, variant = found(0.0).tractions, found(8.0).tractions
+    assert variant.traction == pytest.approx(baseline.traction, abs=1e-6 * baseline.traction.max())
     for name in ("force_x", "force_y", "moment_z", "work"):
-        assert value_of(other, name) == pytest.approx(value_of(plain, name), rel=1e-5), name
+        assert value_of(variant, name) == pytest.approx(value_of(baseline, name), rel=1e-5), name
 
 
 @pytest.mark.parametrize("motion", [Rolling(longitudinal_creepage=0.03), Rolling(lateral_creepage=-0.03, spin=0.02)])
-def test_work_is_what_tractions_lose_on_the_slip(motion: Rolling) -> None:
+def test_work_is_traction_times_slip(motion: Rolling) -> None:
     """Of a rigid ball on a soft body, which the pressure moves along the surface as well."""
     grid = Grid(x_range=(-1.3, 1.3), y_range=(-1.3, 1.3), cells_x=40, cells_y=40)
     gap = 0.05 * (grid.x[:, None] ** 2 + grid.y**2)
     body = HalfSpace(material=Material(0.91, 0.1))
     for model in ("exact", "fastsim"):
         asked = replace(motion, model=model)
-        shape = Shape(body, grid, ArrayKey(gap), Prescribed(LOAD))
-        request = FrictionRequest(motion=asked, friction=FRICTION, middle=0.0, coupled=False)
-        found = frictional_contact(shape, Settings(), request).tractions
-        lost = float((found.traction * found.slip).sum() * grid.cell_area)
-        assert found.work == pytest.approx(lost, rel=1e-9 if model == "fastsim" else 0.03)
-        pushed = found.rigid["x"] * found.resultants["force_x"] + found.rigid["y"] * found.resultants["force_y"]
-        pushed += found.rigid["spin"] * found.resultants["moment_z"]
+        shape = Shape(body, grid, ArrayKey(gap), PrescribedLoad(LOAD))
+        request = FrictionRequest(motion=asked, friction=FRICTION, reference_x=0.0, coupled=False)
+        computed = frictional_contact(shape, Settings(), request).tractions
+        lost = float((computed.traction * computed.slip).sum() * grid.cell_area)
+        assert computed.work == pytest.approx(lost, rel=1e-9 if model == "fastsim" else 0.03)
+        pushed = (
+            computed.rigid["x"] * computed.resultants["force_x"] + computed.rigid["y"] * computed.resultants["force_y"]
+        )
+        pushed += computed.rigid["spin"] * computed.resultants["moment_z"]
         if model == "exact":  # the rest is done on what the pressure displaces
-            assert abs(found.work - pushed) > 0.2 * pushed
+            assert abs(computed.work - pushed) > 0.2 * pushed
 
 
 @pytest.mark.parametrize("name", ["all", "shift", "forces"])
@@ -169,19 +178,19 @@ def test_steps_are_counted(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
         return solution
 
     monkeypatch.setattr(module, "solve_with_continuation", noted)
-    assert rubbed(MOTIONS[name], "uniform").tractions.steps == sum(steps)
+    assert solve_friction(MOTIONS[name], "uniform").tractions.steps == sum(steps)
 
 
 def test_warnings_name_the_iteration() -> None:
-    found = rubbed(MOTIONS["all"], "uniform")
-    unsettled = replace(found, tractions=replace(found.tractions, converged=False))
-    unpressed = replace(found, contact=replace(found.contact, converged=False))
-    for each, reason in ((unsettled, "stick and slip did not converge"), (unpressed, "the contact iteration stopped")):
+    computed = solve_friction(MOTIONS["all"], "uniform")
+    unsettled = replace(computed, tractions=replace(computed.tractions, converged=False))
+    unpressed = replace(computed, contact=replace(computed.contact, converged=False))
+    for item, reason in ((unsettled, "stick and slip did not converge"), (unpressed, "the contact iteration stopped")):
         with pytest.warns(ConvergenceWarning, match=reason):
-            each.warn_unless_converged()
+            item.warn_unless_converged()
 
 
-def test_violations_are_over_the_rigid_slip(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_violations_are_relative_to_rigid_slip(monkeypatch: pytest.MonkeyPatch) -> None:
     """Of prescribed and unknown motions together, about a middle that is not that of the contact."""
     scales: list[float] = []
 
@@ -190,72 +199,74 @@ def test_violations_are_over_the_rigid_slip(monkeypatch: pytest.MonkeyPatch) -> 
         return law_violation(traction, slip, bound, sticks, scale)
 
     monkeypatch.setattr(module, "law_violation", noted)
-    found = rubbed(MOTIONS["moment"], "uniform")
-    rigid, grid = found.tractions.rigid, found.contact.shape.grid
+    computed = solve_friction(MOTIONS["moment"], "uniform")
+    rigid, grid = computed.tractions.rigid, computed.contact.shape.grid
     along_x = rigid["x"] - rigid["spin"] * grid.y
     along_y = rigid["y"] + rigid["spin"] * (grid.x[:, None] - 0.1)
-    pressed = found.contact.pressure > 0
+    pressed = computed.contact.pressure > 0
     expected = np.hypot(along_x, along_y)[pressed].max()
     mirrored = np.hypot(rigid["x"] + rigid["spin"] * grid.y, rigid["y"] - rigid["spin"] * (grid.x[:, None] - 0.1))
     assert scales[-1] == pytest.approx(expected, rel=0.03)
     assert mirrored[pressed].max() != pytest.approx(expected, rel=0.04)
 
 
-def test_strips_turn_with_the_spin_as_the_exact_theory_does() -> None:
+def test_fastsim_spin_sign_matches_exact_theory() -> None:
     motion = Rolling(spin=0.003)
-    exact, strips = (rubbed(each, "uniform").tractions.traction for each in (motion, replace(motion, model="fastsim")))
-    for one, other in zip(exact, strips, strict=True):
-        assert float((one * other).sum()) > 0.7 * float(np.sqrt((one**2).sum() * (other**2).sum()))
+    exact, strips = (
+        solve_friction(item, "uniform").tractions.traction for item in (motion, replace(motion, model="fastsim"))
+    )
+    for one, variant in zip(exact, strips, strict=True):
+        assert float((one * variant).sum()) > 0.7 * float(np.sqrt((one**2).sum() * (variant**2).sum()))
 
 
-def test_a_coupled_contact_does_not_depend_on_the_unit() -> None:
+def test_coupled_contact_scales_with_unit() -> None:
     """A rigid ball on a compressible body: tractions and pressure are found in turns."""
-    found = []
+    computed = []
     for length, pressure in ((1.0, 1.0), (LENGTH, PRESSURE), (2.0**17, 2.0**-37)):
         grid = Grid.between(length * EDGES["uniform"], (-1.3 * length, 1.3 * length), 26)
         gap = 0.05 * ((grid.x[:, None] - 0.02 * length) ** 2 + grid.y**2) / length
         body = HalfSpace(material=Material(0.91 * pressure, 0.1))
-        shape = Shape(body, grid, ArrayKey(gap), Prescribed(LOAD * pressure * length**2))
+        shape = Shape(body, grid, ArrayKey(gap), PrescribedLoad(LOAD * pressure * length**2))
         motion = Rolling(longitudinal_creepage=0.01)
-        request = FrictionRequest(motion=motion, friction=FRICTION, middle=0.0, coupled=True)
-        each = frictional_contact(shape, Settings(), request)
-        assert each.converged
-        found.append(each.contact.pressure / pressure)
-    assert found[1] == pytest.approx(found[0], abs=1e-9)
-    assert found[2] == pytest.approx(found[0], abs=1e-9)
+        request = FrictionRequest(motion=motion, friction=FRICTION, reference_x=0.0, coupled=True)
+        item = frictional_contact(shape, Settings(), request)
+        assert item.converged
+        computed.append(item.contact.pressure / pressure)
+    assert computed[1] == pytest.approx(computed[0], abs=1e-9)
+    assert computed[2] == pytest.approx(computed[0], abs=1e-9)
 
 
-def test_a_leading_cell_that_slips_has_a_slip() -> None:
+def test_slipping_leading_cell_has_slip() -> None:
     """Under spin some of a column sticks, but not its leading cell, which is tied to the one behind."""
-    found = rubbed(Rolling(lateral_creepage=0.03, spin=0.1), "uniform")
-    pressed, sticks = found.contact.pressure > 0, found.tractions.sticks
+    computed = solve_friction(Rolling(lateral_creepage=0.03, spin=0.1), "uniform")
+    pressed, sticks = computed.contact.pressure > 0, computed.tractions.sticks
     leading = pressed & ~np.pad(pressed, ((0, 0), (0, 1)))[:, 1:]
     assert (leading & ~sticks & sticks.any(axis=1)[:, None]).any()
-    slip = np.hypot(*found.tractions.slip)
+    slip = np.hypot(*computed.tractions.slip)
     assert (slip[pressed & ~sticks] > 0).all()
     assert (slip[leading & ~sticks] > 1e-3).all()
 
 
 @pytest.mark.parametrize("columns", [1, 4])
-def test_few_columns_and_many_rows(columns: int) -> None:
+def test_contact_with_few_columns_and_many_rows(columns: int) -> None:
     """Coarser cells exist down to a single column between free ends."""
     body = FiniteLengthSpace(length=1.0, material=Material(0.91, 0.3))
     grid = Grid(x_range=(0.0, 1.0), y_range=(-2.0, 2.0), cells_x=columns, cells_y=256)
     gap = np.broadcast_to(0.05 * grid.y**2, grid.shape)
-    shape = Shape(body, grid, ArrayKey(gap), Prescribed(0.05))
+    shape = Shape(body, grid, ArrayKey(gap), PrescribedLoad(0.05))
     motion = Rolling(longitudinal_creepage=0.01)
-    request = FrictionRequest(motion=motion, friction=0.3, middle=0.5, coupled=False)
-    found = frictional_contact(shape, Settings(), request)
-    assert found.converged
-    assert found.tractions.resultants["force_y"] == pytest.approx(-0.475 * 0.3 * 0.05, rel=0.04)
+    request = FrictionRequest(motion=motion, friction=0.3, reference_x=0.5, coupled=False)
+    computed = frictional_contact(shape, Settings(), request)
+    assert computed.converged
+    assert computed.tractions.resultants["force_y"] == pytest.approx(-0.475 * 0.3 * 0.05, rel=0.04)
 
 
 @pytest.mark.parametrize(
     "motion", [Rolling(longitudinal_creepage=0.01), Rolling(longitudinal_creepage=0.006, spin=0.05)]
 )
 @pytest.mark.parametrize("edges", EDGES)
-def test_the_work_equals_the_sum_of_traction_times_slip(motion: Rolling, edges: str) -> None:
-    contact = rubbed(motion, edges)
+def test_work_equals_sum_of_traction_times_slip(motion: Rolling, edges: str) -> None:
+    contact = solve_friction(motion, edges)
     tractions, grid = contact.tractions, contact.contact.shape.grid
     power = (tractions.traction * tractions.slip).sum(axis=0) * grid.weights * grid.cell_area
     assert float(power.sum()) == pytest.approx(tractions.work, rel=1e-9)

@@ -8,10 +8,10 @@ import xarray as xr
 
 from contactstudy import Case, FiniteLengthSpace, Grid, HalfSpace, Material, Roller, profiles, solve, stress_field
 from contactstudy.checks import FloatArray
-from contactstudy.fields.largest import Largest
 from contactstudy.fields.loads import sliding
 from contactstudy.fields.positions import field_positions
 from contactstudy.fields.stress import contact_stresses
+from contactstudy.fields.stress_maximum import StressMaximum
 from contactstudy.stress import von_mises_of
 from contactstudy.verification import closed_forms as ref
 from tests.closed_forms import hertz_circle_surface, sliding_circle_surface
@@ -28,59 +28,59 @@ def circle() -> tuple[Grid, FloatArray]:
     return grid, np.sqrt(np.maximum(1 - grid.x[:, None] ** 2 - grid.y**2, 0.0))
 
 
-def under(grid: Grid, pressure: FloatArray, friction: float) -> Largest:
+def maximum_under(grid: Grid, pressure: FloatArray, friction: float) -> StressMaximum:
     """Largest stress of a half-space, with stresses at one point far from it."""
     body = HalfSpace(material=Material(1.0, 0.3))
     positions = field_positions(body, grid, [1.2], [1.2], [2.0])
     return contact_stresses(body, sliding(pressure, friction), grid, lambda _: positions, (NOWHERE, NOWHERE))[-1]
 
 
-def test_below_a_circle_it_is_the_closed_form() -> None:
+def test_stress_maximum_below_circle_matches_closed_form() -> None:
     grid, pressure = circle()
-    found = under(grid, pressure, 0.0)
+    computed = maximum_under(grid, pressure, 0.0)
     z = np.linspace(0.3, 0.7, 4001)
     radial, axial = ref.hertz_circle_axis(z, 1.0, 1.0, 0.3)
     known = np.abs(axial - radial)
-    assert found.value == pytest.approx(known.max(), rel=2e-3)
-    assert abs(found.value - known.max()) <= found.error + 2e-3 * found.value
-    assert found.position[2] == pytest.approx(z[known.argmax()], abs=0.03)
-    assert found.position[:2] == pytest.approx((0.0, 0.0), abs=0.1)
+    assert computed.value == pytest.approx(known.max(), rel=2e-3)
+    assert abs(computed.value - known.max()) <= computed.error + 2e-3 * computed.value
+    assert computed.position[2] == pytest.approx(z[known.argmax()], abs=0.03)
+    assert computed.position[:2] == pytest.approx((0.0, 0.0), abs=0.1)
 
 
-def test_with_much_friction_it_is_on_the_top_inside_the_circle() -> None:
+def test_high_friction_moves_stress_maximum_to_top() -> None:
     grid, pressure = circle()
-    found = under(grid, pressure, 0.5)
+    computed = maximum_under(grid, pressure, 0.5)
     y = np.linspace(-0.95, 0.95, 381)
     radial, hoop = hertz_circle_surface(np.abs(y), 1.0, 1.0, 0.3)
     pressed, zero = np.sqrt(1 - y**2), np.zeros_like(y)
     traction = sliding_circle_surface(zero, y, 1.0, 0.5, 0.3)
     components = (hoop + traction["sigma_xx"], radial + traction["sigma_yy"], -pressed, zero, zero, 0.5 * pressed)
     known = von_mises_of(*components)
-    assert found.position[2] == 0.0
-    assert abs(found.value - known.max()) <= found.error == 0.02 * found.value
-    assert abs(found.position[1]) < 1
+    assert computed.position[2] == 0.0
+    assert abs(computed.value - known.max()) <= computed.error == 0.02 * computed.value
+    assert abs(computed.position[1]) < 1
 
 
-def test_points_in_any_order_and_nearly_the_same_ones_change_nothing() -> None:
+def test_stress_maximum_does_not_depend_on_point_order() -> None:
     """Polynomials through two positions that differ by a rounding would be wild."""
     grid, pressure = circle()
     body = HalfSpace(material=Material(1.0, 0.3))
     x = np.array([0.4, -0.4, np.nextafter(0.4, 1.0), 0.1, 0.1 + 1e-12])
     positions = field_positions(body, grid, x, [0.2, -0.2, 0.2 + 1e-15], [0.5, 0.3, 0.5 + 1e-15])
-    found = contact_stresses(body, sliding(pressure, 0.0), grid, lambda _: positions, (NOWHERE, NOWHERE))[-1]
-    assert found.value == pytest.approx(under(grid, pressure, 0.0).value, rel=1e-3)
+    computed = contact_stresses(body, sliding(pressure, 0.0), grid, lambda _: positions, (NOWHERE, NOWHERE))[-1]
+    assert computed.value == pytest.approx(maximum_under(grid, pressure, 0.0).value, rel=1e-3)
     for end in (5.0, 1.0):
         # Positions from both ends of the contact meet at its middle, but for rounding.
         strip = np.where((grid.x > -end) & (grid.x < end), 1.0, 0.0)[:, None] * np.sqrt(np.maximum(1 - grid.y**2, 0))
         uneven = strip * (1 + 0.01 * grid.x[:, None])
-        assert under(grid, uneven, 0.0).value < 0.8
+        assert maximum_under(grid, uneven, 0.0).value < 0.8
 
 
-def test_no_pressure_has_none() -> None:
+def test_stress_maximum_without_pressure_is_zero() -> None:
     grid, pressure = circle()
-    found = under(grid, 0 * pressure, 0.0)
-    assert (found.value, found.error) == (0.0, 0.0)
-    assert np.isnan(found.position).all()
+    computed = maximum_under(grid, 0 * pressure, 0.0)
+    assert (computed.value, computed.error) == (0.0, 0.0)
+    assert np.isnan(computed.position).all()
 
 
 def sharp(friction: float = 0.0, distance: float = 0.5, tilt: float = 0.0) -> Case:
@@ -90,43 +90,43 @@ def sharp(friction: float = 0.0, distance: float = 0.5, tilt: float = 0.0) -> Ca
     return Case(body=body, roller=roller, max_pressure=PRESSURE, friction=friction, tilt=tilt)
 
 
-def at(result: xr.Dataset) -> list[float]:
+def maximum_position(result: xr.Dataset) -> list[float]:
     return [float(result[f"peak_von_mises_{axis}"]) for axis in "xyz"]
 
 
-def test_it_does_not_depend_on_the_points_and_is_that_of_closer_ones() -> None:
+def test_stress_maximum_does_not_depend_on_positions() -> None:
     friction = 0.1
     case = sharp(friction)
     far = solve(case, accuracy=0.02, x=[0.0, 5 * A], y=[0.0], z=[0.5 * A])
     near = solve(case, accuracy=0.02, x=A * np.linspace(0, 8, 9), y=[0.0], z=A * np.linspace(0, 3, 4))
     value = float(far.peak_von_mises)
     assert float(near.peak_von_mises) == pytest.approx(value, rel=2e-3)
-    x, y, z = at(far)
+    x, y, z = maximum_position(far)
     step = 0.01 * A
     offsets = 2 * step * np.arange(-2.0, 3.0)
     depths = z + 0.4 * step * np.arange(-4.0, 5.0)
-    beside = stress_field(
+    adjacent = stress_field(
         case.body, far.pressure, friction=friction, x=x + offsets, y=y + offsets, z=depths, inside_cells=far.pressure
     )
-    assert float(beside.von_mises.max()) == pytest.approx(value, rel=3e-3)
+    assert float(adjacent.von_mises.max()) == pytest.approx(value, rel=3e-3)
     assert value / float(far.von_mises.max()) > 1.4
 
 
-def test_its_error_covers_that_on_finer_cells() -> None:
-    coarse, fine = (solve(sharp(0.4), accuracy=each, x=[0.0], y=[0.0], z=[A]) for each in (0.02, 0.004))
+def test_stress_maximum_error_covers_finer_cells() -> None:
+    coarse, fine = (solve(sharp(0.4), accuracy=value, x=[0.0], y=[0.0], z=[A]) for value in (0.02, 0.004))
     error = abs(float(coarse.peak_von_mises - fine.peak_von_mises))
     assert error <= float(coarse.peak_von_mises_error) < 0.04 * float(fine.peak_von_mises)
 
 
 @pytest.mark.slow
-def test_a_tilted_roller_has_it_at_the_other_end_when_tilted_back() -> None:
+def test_opposite_tilt_mirrors_stress_maximum() -> None:
     there, back = (solve(sharp(tilt=tilt), accuracy=0.02, x=[0.0], y=[0.0], z=[A]) for tilt in (1e-3, -1e-3))
     assert float(there.peak_von_mises) == pytest.approx(float(back.peak_von_mises), rel=1e-3)
-    assert at(there)[0] == pytest.approx(20 * A - at(back)[0], abs=0.02 * A)
-    assert abs(at(there)[0] - 10 * A) > 5 * A
+    assert maximum_position(there)[0] == pytest.approx(20 * A - maximum_position(back)[0], abs=0.02 * A)
+    assert abs(maximum_position(there)[0] - 10 * A) > 5 * A
 
 
-def test_near_a_free_end_less_pressure_does_more() -> None:
+def test_stress_maximum_near_free_end_exceeds_pressure_peak() -> None:
     """The pressure is highest at mid-length, 20 a away, and rises steeply near to the end of the body."""
     pressure, half_width = 0.75 * PRESSURE, 1.5 * A
     profile = profiles.FujiwaraKawase.for_pressure(
@@ -135,16 +135,16 @@ def test_near_a_free_end_less_pressure_does_more() -> None:
     length = 10e-3
     roller = Roller(radius=RADIUS, length=length, profile=profile, material=STEEL, ends="none")
     case = Case(body=FiniteLengthSpace(length=length, material=STEEL), roller=roller, max_pressure=pressure)
-    found = solve(case, accuracy=0.05, x=[0.5 * length], y=[0.0], z=[half_width])
+    computed = solve(case, accuracy=0.05, x=[0.5 * length], y=[0.0], z=[half_width])
     x, z = half_width * np.linspace(0.2, 2, 37), half_width * np.linspace(0.1, 1, 19)
-    near = stress_field(case.body, found.pressure, x=x, y=[0.0], z=z, inside_cells=found.pressure)
-    line = found.pressure.max("y")
+    near = stress_field(case.body, computed.pressure, x=x, y=[0.0], z=z, inside_cells=computed.pressure)
+    line = computed.pressure.max("y")
     assert float(line.sel(x=half_width, method="nearest")) < 0.97 * float(line.max())
-    assert float(found.peak_von_mises) == pytest.approx(float(near.von_mises.max()), rel=3e-3)
-    assert min(at(found)[0], length - at(found)[0]) < 2 * half_width
+    assert float(computed.peak_von_mises) == pytest.approx(float(near.von_mises.max()), rel=3e-3)
+    assert min(maximum_position(computed)[0], length - maximum_position(computed)[0]) < 2 * half_width
 
 
-def test_given_cells_have_no_error_and_singular_ends_no_largest_stress() -> None:
+def test_given_cells_and_singular_ends_omit_error() -> None:
     body = HalfSpace(material=STEEL)
     case = Case(body=body, roller=Roller(radius=RADIUS, length=8 * A), max_pressure=PRESSURE)
     given = solve(
@@ -154,7 +154,7 @@ def test_given_cells_have_no_error_and_singular_ends_no_largest_stress() -> None
     assert "given cells" in given.peak_von_mises_error.attrs["comment"]
     refined = solve(case, accuracy=0.05, x=[0.0], y=[0.0], z=[A])
     assert np.isinf(float(refined.peak_von_mises))
-    assert np.isnan(at(refined)).all()
+    assert np.isnan(maximum_position(refined)).all()
 
 
 FREE_ENDS = {
@@ -170,7 +170,7 @@ FREE_ENDS = {
     FREE_ENDS.values(),
     ids=FREE_ENDS,
 )
-def test_where_the_contact_reaches_a_free_end_it_is_on_the_top(
+def test_stress_maximum_at_free_end_is_on_top(
     length: float, pressure: float, friction: float, profile: profiles.Profile | None
 ) -> None:
     material = Material(208e9, 0.3)
@@ -185,32 +185,32 @@ def test_where_the_contact_reaches_a_free_end_it_is_on_the_top(
     inside = far.pressure.sel(x=dense.x, y=dense.y) > 0.3 * float(far.pressure.max())
     largest = float(dense.von_mises.where(inside).max())
     assert float(far.peak_von_mises) == pytest.approx(largest, rel=5e-3)
-    assert at(far)[2] == 0.0
-    assert min(at(far)[0], length - at(far)[0]) < a
+    assert maximum_position(far)[2] == 0.0
+    assert min(maximum_position(far)[0], length - maximum_position(far)[0]) < a
     assert float(far.peak_von_mises_error) < 0.04 * float(far.peak_von_mises)
 
 
 @pytest.mark.slow
-def test_points_asked_for_do_not_worsen_the_error() -> None:
+def test_requested_points_do_not_increase_error() -> None:
     length = 1.2e-3
     body = FiniteLengthSpace(length=length, material=Material(208e9, 0.3))
     case = Case(body=body, roller=Roller(radius=4e-3, length=length), max_pressure=1.8e9)
     few = solve(case, accuracy=0.003)
     where = float(few.peak_von_mises_x)
     depths = [0.0, 1e-7, 3e-7, 1e-6, 2e-6, 15e-6]
-    more = solve(case, accuracy=0.003, x=[where, length - where], y=[0.0], z=depths)
-    assert float(more.peak_von_mises) >= float(more.von_mises.sel(z=0.0).max())
-    assert float(more.peak_von_mises_error) == pytest.approx(float(few.peak_von_mises_error), rel=0.1)
-    assert float(more.peak_von_mises) == pytest.approx(float(few.peak_von_mises), rel=3e-3)
+    additional = solve(case, accuracy=0.003, x=[where, length - where], y=[0.0], z=depths)
+    assert float(additional.peak_von_mises) >= float(additional.von_mises.sel(z=0.0).max())
+    assert float(additional.peak_von_mises_error) == pytest.approx(float(few.peak_von_mises_error), rel=0.1)
+    assert float(additional.peak_von_mises) == pytest.approx(float(few.peak_von_mises), rel=3e-3)
 
 
-def test_on_the_top_beside_a_narrow_peak_it_goes_with_the_friction() -> None:
+def test_friction_moves_stress_maximum_on_top() -> None:
     """What the pressure alone makes of the stress matters little there: no cell with more may be missed."""
     length = 1e-3
     crown = profiles.Lundberg.for_pressure(1.5e9, radius=RADIUS, modulus=STEEL.plane_strain_modulus, delta=0.6)
     body = FiniteLengthSpace(length=length + 8 * A, material=STEEL)
     roller = Roller(radius=RADIUS, length=length, profile=crown)
-    found = [
+    computed = [
         solve(
             Case(body=body, roller=roller, max_pressure=1.5e9, friction=friction),
             accuracy=0.05,
@@ -220,29 +220,29 @@ def test_on_the_top_beside_a_narrow_peak_it_goes_with_the_friction() -> None:
         )
         for friction in (0.3, 0.5)
     ]
-    assert [at(one)[2] for one in found] == [0.0, 0.0]
-    first, second = (float(one.peak_von_mises) for one in found)
+    assert [maximum_position(variant)[2] for variant in computed] == [0.0, 0.0]
+    first, second = (float(variant.peak_von_mises) for variant in computed)
     assert second / first == pytest.approx(5 / 3, rel=0.05)
 
 
 @pytest.mark.slow
-def test_it_is_a_stress_of_the_body_where_polynomials_overshoot() -> None:
+def test_overshooting_polynomials_keep_sampled_maximum() -> None:
     """At this accuracy they said 1.094 GPa beside their last points, where the body has 1.067."""
     profile = profiles.Lundberg.for_pressure(1.5e9, radius=5e-3, modulus=STEEL.plane_strain_modulus)
     body, roller = FiniteLengthSpace(length=2e-3, material=STEEL), Roller(radius=5e-3, length=2e-3, profile=profile)
     case = Case(body=body, roller=roller, max_pressure=1.5e9, tilt=0.8e-3, friction=0.1)
-    found = solve(case, accuracy=0.005, y=[0.0], z=[1e-5])
-    x, y, z = (float(found[f"peak_von_mises_{axis}"]) for axis in "xyz")
+    computed = solve(case, accuracy=0.005, y=[0.0], z=[1e-5])
+    x, y, z = (float(computed[f"peak_von_mises_{axis}"]) for axis in "xyz")
     there = stress_field(
-        body, found.pressure, friction=0.1, x=[x], y=[y], z=[z], inside_cells=found.pressure
+        body, computed.pressure, friction=0.1, x=[x], y=[y], z=[z], inside_cells=computed.pressure
     ).von_mises.item()
-    assert float(found["peak_von_mises"]) == pytest.approx(there, rel=5e-3)
+    assert float(computed["peak_von_mises"]) == pytest.approx(there, rel=5e-3)
     fine = solve(case, accuracy=0.002, y=[0.0], z=[1e-5])
-    assert abs(float(found["peak_von_mises"] - fine["peak_von_mises"])) <= float(found["peak_von_mises_error"])
+    assert abs(float(computed["peak_von_mises"] - fine["peak_von_mises"])) <= float(computed["peak_von_mises_error"])
 
 
 @pytest.mark.slow
-def test_polynomials_that_do_not_agree_give_no_stress() -> None:
+def test_disagreeing_polynomials_have_large_error() -> None:
     """From the second half the search passes the roller's end: polynomials through its last points reached 0.80 p0."""
     material = Material(210e9, 0.318)
     a = 2 * 1e9 * RADIUS / material.plane_strain_modulus

@@ -7,7 +7,7 @@ import pytest
 
 from contactstudy import FiniteLengthSpace, Grid, HalfSpace, Material
 from contactstudy.bodies import Counterbody
-from contactstudy.contact.normal.pair import PairOperator, ScaledOperator, Shares
+from contactstudy.contact.normal.two_bodies import CellTransfer, PairOperator, ScaledOperator
 from contactstudy.fields.surface import surface_operator
 from contactstudy.kernels.load import Load
 
@@ -21,7 +21,7 @@ def random_load(grid: Grid = GRID) -> dict[Load, np.ndarray]:
 
 
 @pytest.mark.parametrize("cells", [8, 9])
-def test_the_coarse_operator_sinks_as_the_fine_one(cells: int) -> None:
+def test_coarse_operator_matches_fine_operator(cells: int) -> None:
     """Also if the second body has an odd number of cells: the first then stands for both."""
     counterbody = Counterbody(FiniteLengthSpace(material=SOFT, length=cells * 1e-4, model="mirror"), 4e-4)
     operator = PairOperator.of(BODY, counterbody, GRID, (Load.NORMAL,))
@@ -29,41 +29,41 @@ def test_the_coarse_operator_sinks_as_the_fine_one(cells: int) -> None:
     smooth = np.exp(-(((GRID.x[:, None] - 8e-4) / 2e-4) ** 2) - (GRID.y / 1e-4) ** 2)
     coarse = smooth.reshape(8, 2, 6, 2).mean(axis=(1, 3))
     fine = operator({Load.NORMAL: smooth}).reshape(8, 2, 6, 2).mean(axis=(1, 3))
-    found = operator.coarse({Load.NORMAL: coarse})
+    computed = operator.coarse({Load.NORMAL: coarse})
     facing = coarse > 0.1
-    assert found[facing] == pytest.approx(fine[facing], rel=0.25 if cells % 2 else 0.03)
+    assert computed[facing] == pytest.approx(fine[facing], rel=0.25 if cells % 2 else 0.03)
 
 
-def test_like_half_spaces_are_twice_as_soft_and_so_is_what_scales_one() -> None:
+def test_equal_half_spaces_double_compliance() -> None:
     half = HalfSpace(material=STEEL)
-    one = surface_operator(half, GRID)
+    item = surface_operator(half, GRID)
     unlike = PairOperator.of(half, Counterbody(HalfSpace(material=SOFT)), GRID, (Load.NORMAL,))
     factor = 1 + STEEL.plane_strain_modulus / SOFT.plane_strain_modulus
-    scaled, load = ScaledOperator(one, factor), random_load()
-    assert unlike(load) == pytest.approx(factor * one(load))
+    scaled, load = ScaledOperator(item, factor), random_load()
+    assert unlike(load) == pytest.approx(factor * item(load))
     assert scaled(load) == pytest.approx(unlike(load))
     gap = random_load()[Load.NORMAL]
-    assert unlike.precondition(gap) == pytest.approx(one.precondition(gap) / factor)
+    assert unlike.precondition(gap) == pytest.approx(item.precondition(gap) / factor)
     assert scaled.precondition(gap) == pytest.approx(unlike.precondition(gap))
     coarse = {Load.NORMAL: load[Load.NORMAL][::2, ::2]}
-    assert scaled.coarse(coarse) == pytest.approx(factor * one.coarse(coarse))
+    assert scaled.coarse(coarse) == pytest.approx(factor * item.coarse(coarse))
 
 
 @pytest.mark.parametrize("unit", [1.0, 1e-3, 1e6])
-def test_cells_are_the_same_but_for_rounding(unit: float) -> None:
+def test_transfer_ignores_rounding_of_cells(unit: float) -> None:
     grid = Grid(x_range=(0.0, 1.6 * unit), y_range=(-unit, unit), cells_x=16, cells_y=4)
     for start, alike in ((0.4, True), (0.4 + 1e-13, True), (0.4 + 1e-7, False), (0.45, False)):
         counterbody = Counterbody(FiniteLengthSpace(material=SOFT, length=0.8 * unit), start * unit)
-        whole = Counterbody(FiniteLengthSpace(material=SOFT, length=1.6 * unit), (start - 0.4) * unit)
-        assert Shares.of(counterbody, grid) is not None  # fewer cells
-        assert (Shares.of(whole, grid) is None) == alike
+        complete = Counterbody(FiniteLengthSpace(material=SOFT, length=1.6 * unit), (start - 0.4) * unit)
+        assert CellTransfer.of(counterbody, grid) is not None  # fewer cells
+        assert (CellTransfer.of(complete, grid) is None) == alike
 
 
-def test_joined_shares_take_a_load_as_the_fine_ones_do() -> None:
+def test_coarse_transfer_matches_fine_transfer() -> None:
     counterbody = Counterbody(FiniteLengthSpace(material=SOFT, length=0.8e-3), 4.3e-4)
     operator = PairOperator.of(BODY, counterbody, GRID, (Load.NORMAL,))
-    shares, coarse = operator._shares, operator.coarse._shares
+    fractions, coarse = operator._transfer, operator.coarse._transfer
     load = np.repeat(np.random.default_rng(0).random(8), 2)
-    assert coarse.to @ load[::2] == pytest.approx((shares.to @ load).reshape(-1, 2).mean(axis=1))
-    own = np.repeat(np.random.default_rng(1).random(coarse.to.shape[0]), 2)
-    assert coarse.back @ own[::2] == pytest.approx((shares.back @ own).reshape(-1, 2).mean(axis=1))
+    assert coarse.to_second @ load[::2] == pytest.approx((fractions.to_second @ load).reshape(-1, 2).mean(axis=1))
+    expected = np.repeat(np.random.default_rng(1).random(coarse.to_second.shape[0]), 2)
+    assert coarse.to_first @ expected[::2] == pytest.approx((fractions.to_first @ expected).reshape(-1, 2).mean(axis=1))

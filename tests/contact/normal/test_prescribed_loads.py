@@ -21,14 +21,14 @@ from contactstudy import (
     solve_contact,
 )
 from contactstudy.contact import ContactSettings
-from contactstudy.contact.normal.prescribed import Prescribed
+from contactstudy.contact.normal.prescribed_loads import PrescribedLoad
 from contactstudy.roughness import self_affine
 from tests.crowned_case import BODY, HALF_WIDTH, LENGTH, STEEL, case_with
 from tests.reference_line import line_slope
 
 
 @pytest.mark.parametrize("offset", [-2.5, 0.0])
-def test_the_resultant_acts_where_it_was_prescribed(offset: float):
+def test_resultant_acts_at_prescribed_position(offset: float):
     position = 0.5 * LENGTH + offset * HALF_WIDTH
     result = solve(case_with(load_position=position), stresses=False, accuracy=0.05)
     assert bool(result.converged)
@@ -42,7 +42,7 @@ def test_the_resultant_acts_where_it_was_prescribed(offset: float):
     assert float(result.penetration_error) < 1e-5
 
 
-def test_the_tilt_that_follows_from_the_position_gives_the_position():
+def test_resulting_tilt_reproduces_position():
     case = case_with(load_position=0.5 * LENGTH + HALF_WIDTH)
     grid = choose_grid(case, cells_x=8, cells_y=8)
     free = solve(case, grid, stresses=False)
@@ -58,14 +58,14 @@ def test_opposite_tilts_mirror_the_pressure():
     assert float(results[0].load_position) > 0.5 * LENGTH + 0.1 * HALF_WIDTH
 
 
-def test_a_load_on_mid_length_does_not_tilt():
+def test_load_at_mid_length_has_no_tilt():
     free, held = (solve(case_with(load_position=at), stresses=False) for at in (0.5 * LENGTH, None))
     assert abs(float(free.tilt)) < 1e-9
     np.testing.assert_allclose(free.pressure, held.pressure, atol=1e-5 * float(held.pressure.max()))
 
 
 @pytest.mark.parametrize("body", [BODY, HalfSpace(material=STEEL)], ids=["finite", "half-space"])
-def test_approach_and_load_are_two_ways_to_prescribe_one_contact(body):
+def test_prescribed_approach_equals_prescribed_load(body):
     case = case_with(body=body, end_distance=2 * HALF_WIDTH)
     grid = choose_grid(case)
     gap = xr.DataArray(case.gap(grid), coords={"x": grid.x, "y": grid.y}, dims=("x", "y"))
@@ -77,7 +77,7 @@ def test_approach_and_load_are_two_ways_to_prescribe_one_contact(body):
     assert float(by_approach.approach) == float(by_load.approach)
 
 
-def test_hertz_point_contact_by_its_approach():
+def test_approach_of_hertz_point_contact():
     centres = np.linspace(-1.5, 1.5, 97)
     gap = xr.DataArray(0.5 * (centres[:, None] ** 2 + centres**2), coords={"x": centres, "y": centres}, dims=("x", "y"))
     contact = solve_contact(HalfSpace(material=Material(0.75, 0.5)), gap, approach=1.0)  # contact radius 1, load 4/3
@@ -86,7 +86,7 @@ def test_hertz_point_contact_by_its_approach():
 
 
 @pytest.mark.parametrize("closure", [0.2, 0.8, 1.2])
-def test_wavy_surface_against_westergaards_solution(closure: float):
+def test_wavy_surface_matches_westergaard(closure: float):
     """Part of a wave that touches, and the pressure on it, under a given mean pressure (Johnson, section 13.2).
 
     The body with mirrored ends repeats without end, and a wave is so short that along y the mean pressure is uniform.
@@ -143,13 +143,13 @@ def test_roughness_on_other_cells_is_interpolated():
         heights = 1e-3 * (on.x[:, None] - 0.5 * LENGTH) + 2e-3 * on.y
         return xr.DataArray(heights, coords={"x": on.x, "y": on.y}, dims=("x", "y"))
 
-    own, other = (solve(case, grid, roughness=sloping(on), stresses=False) for on in (grid, wider))
-    np.testing.assert_allclose(other.initial_gap, own.initial_gap, atol=1e-18)
+    expected, variant = (solve(case, grid, roughness=sloping(on), stresses=False) for on in (grid, wider))
+    np.testing.assert_allclose(variant.initial_gap, expected.initial_gap, atol=1e-18)
     tilted = solve(case_with(tilt=1e-3), grid, stresses=False)
-    assert float(own.load_position) == pytest.approx(float(tilted.load_position), abs=1e-2 * HALF_WIDTH)
+    assert float(expected.load_position) == pytest.approx(float(tilted.load_position), abs=1e-2 * HALF_WIDTH)
 
 
-def test_a_flat_height_map_changes_nothing_but_the_approach():
+def test_flat_height_map_changes_approach_only():
     case = case_with()
     grid = choose_grid(case)
     flat = xr.DataArray(np.full(grid.shape, 1e-6), coords={"x": grid.x, "y": grid.y}, dims=("x", "y"))
@@ -168,7 +168,7 @@ def test_a_flat_height_map_changes_nothing_but_the_approach():
         ({"load_position": np.inf}, "load_position"),
     ],
 )
-def test_bad_cases(arguments, parameter: str):
+def test_invalid_cases_raise_error(arguments, parameter: str):
     with pytest.raises(InvalidInputError, match=parameter):
         case_with(**arguments)
 
@@ -184,7 +184,7 @@ def test_bad_cases(arguments, parameter: str):
         ({"load": 1.0, "load_position": 2 * LENGTH}, "load_position"),
     ],
 )
-def test_bad_prescriptions(arguments, parameter: str):
+def test_invalid_prescriptions_raise_error(arguments, parameter: str):
     case = case_with()
     grid = choose_grid(case, cells_x=2, cells_y=4)
     gap = xr.DataArray(case.gap(grid), coords={"x": grid.x, "y": grid.y}, dims=("x", "y"))
@@ -201,7 +201,7 @@ def test_roughness_must_cover_the_cells():
         solve(case, grid, roughness=rough)
 
 
-def test_approach_and_tilt_say_what_they_are_relative_to():
+def test_approach_and_tilt_state_reference():
     result = solve(case_with(load_position=11 * HALF_WIDTH), stresses=False)
     for name in ("approach", "tilt"):
         assert f"{LENGTH:g} m" in result[name].attrs["reference"]
@@ -209,7 +209,7 @@ def test_approach_and_tilt_say_what_they_are_relative_to():
     assert solve(case_with(tilt=1e-4), stresses=False).tilt.attrs["centre"] == "the roller's mid-length"
 
 
-def test_a_load_near_the_end_of_a_short_contact_acts_where_it_was_prescribed():
+def test_load_near_end_acts_at_prescribed_position():
     """All the pressure of the first guess lies on one side of the load, so no factor on it could balance it."""
     body = FiniteLengthSpace(length=2e-3, material=STEEL)
     crowned = Roller(radius=5e-3, length=10e-3, profile=profiles.FullCrown(0.2))
@@ -237,46 +237,46 @@ def balanced_tilt(scale: float) -> float:
     return float(result.tilt) + line_slope(body, result.pressure, length)
 
 
-def test_a_balanced_load_does_not_depend_on_the_unit_of_length() -> None:
+def test_balanced_load_scales_with_unit_of_length() -> None:
     tilt = balanced_tilt(1.0)
     # Four times finer quadratures of the ends give 1.341671e-3.
     assert tilt == pytest.approx(1.341671e-3, rel=2e-5)
     assert [balanced_tilt(scale) for scale in (1e-4, 1e-6)] == pytest.approx([tilt, tilt], rel=1e-9)
 
 
-def test_a_tolerance_beyond_rounding_is_not_converged(on_cells, half_space: HalfSpace):
+def test_tolerance_below_rounding_does_not_converge(on_cells, half_space: HalfSpace):
     gap = on_cells(lambda x, y: 0.5 * (x**2 + y**2), (-1.5, 1.5), (-1.5, 1.5), (24, 24))
     with pytest.warns(ConvergenceWarning, match="penetration_error"):
         result = solve_contact(half_space, gap, load=4 / 3, settings=ContactSettings(tolerance=1e-40))
     assert not bool(result.converged)
 
 
-def test_several_approaches_are_a_dimension(on_cells) -> None:
+def test_several_approaches_form_dimension(on_cells) -> None:
     gap = on_cells(lambda x, y: 0.5 * (x**2 + y**2), (-1.6, 1.6), (-1.6, 1.6), (32, 32))
     body = HalfSpace(material=Material(0.75, 0.5))
     steps = [0.25, 0.5, 1.0]
-    found = solve_contact(body, gap, approach=steps)
-    assert found["pressure"].dims == ("approach", "x", "y")
-    assert found["approach"].values.tolist() == steps
-    assert found["approach"].attrs["units"] == "m"
+    computed = solve_contact(body, gap, approach=steps)
+    assert computed["pressure"].dims == ("approach", "x", "y")
+    assert computed["approach"].values.tolist() == steps
+    assert computed["approach"].attrs["units"] == "m"
     xr.testing.assert_allclose(
-        found.sel(approach=0.5).drop_vars("approach"), solve_contact(body, gap, approach=0.5).drop_vars("approach")
+        computed.sel(approach=0.5).drop_vars("approach"), solve_contact(body, gap, approach=0.5).drop_vars("approach")
     )
     # Hertz: W = 4/3 E* R**(1/2) d**(3/2), with E* = R = 1
-    np.testing.assert_allclose(found["normal_load"], 4 / 3 * np.array(steps) ** 1.5, rtol=0.02)
+    np.testing.assert_allclose(computed["normal_load"], 4 / 3 * np.array(steps) ** 1.5, rtol=0.02)
     for wrong in ([], [0.1, np.nan], [[0.1]], "deep"):
         with pytest.raises(InvalidInputError, match="approach"):
             solve_contact(body, gap, approach=wrong)
     with pytest.raises(InvalidInputError, match="after"):
-        solve_contact(body, gap, approach=steps, settings=ContactSettings(after=found))
+        solve_contact(body, gap, approach=steps, settings=ContactSettings(after=computed))
 
 
-def test_levers_are_over_the_largest() -> None:
-    for place in (0.0, 5.0):
-        grid = Grid.between(place + np.array([0.0, 1.0, 2.0, 4.0]), (0.0, 1.0), 2)
-        asked = Prescribed(3.0, place + 1.0)
-        assert asked.largest_arm(grid) == pytest.approx(2.0)
-        found = asked.resultants(grid)
-        assert found.lever is not None
-        assert found.lever[:, 0] == pytest.approx([-0.25, 0.25, 1.0])
-        assert found.total == pytest.approx(3.0 / grid.cell_area)
+def test_levers_are_relative_to_largest() -> None:
+    for position in (0.0, 5.0):
+        grid = Grid.between(position + np.array([0.0, 1.0, 2.0, 4.0]), (0.0, 1.0), 2)
+        request = PrescribedLoad(3.0, position + 1.0)
+        assert request.max_arm(grid) == pytest.approx(2.0)
+        computed = request.resultants(grid)
+        assert computed.lever is not None
+        assert computed.lever[:, 0] == pytest.approx([-0.25, 0.25, 1.0])
+        assert computed.total == pytest.approx(3.0 / grid.cell_area)

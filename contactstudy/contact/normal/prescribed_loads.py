@@ -21,50 +21,50 @@ from contactstudy.kernels.load import Load
 from contactstudy.overlapping.quadrature import cell_moments, panel_nodes
 
 
-class Prescribed(NamedTuple):
+class PrescribedLoad(NamedTuple):
     """Either the load, at a given position or with a given inclination, or the approach."""
 
     load: float | None = None  # normal load, N
     load_position: float | None = None  # position x of the load, metres; None: the shape keeps its inclination
-    approach: float | None = None  # how far the shape is pressed down from first touch, metres
+    approach: float | None = None  # displacement of the shape from first touch, metres
 
-    def checked(self, gap: FloatArray, grid: Grid) -> Prescribed:
+    def check(self, gap: FloatArray, grid: Grid) -> PrescribedLoad:
         """Return floats, or raise if the values contradict each other or the initial gap (x, y)."""
         load, position, approach = self
         if (load is None) == (approach is None):
             raise InvalidInputError("load, approach", (load, approach), "exactly one of the two, the other None")
         if approach is not None:
-            lowered = checks.finite("approach", approach, "metres")
+            lowering = checks.finite("approach", approach, "metres")
             if position is not None:
                 allowed = "None where the approach is prescribed"
                 raise InvalidInputError("load_position", position, allowed, "prescribe the load instead")
-            if lowered <= gap.min():
-                raise InvalidInputError("approach", lowered, f"more than the least gap, {gap.min():g} m")
-            return Prescribed(approach=lowered)
-        total = checks.positive("load", load, "N")
+            if lowering <= gap.min():
+                raise InvalidInputError("approach", lowering, f"more than the least gap, {gap.min():g} m")
+            return PrescribedLoad(approach=lowering)
+        load_n = checks.positive("load", load, "N")
         if position is None:
-            return Prescribed(total)
-        at = checks.finite("load_position", position, "metres")
+            return PrescribedLoad(load_n)
+        position_m = checks.finite("load_position", position, "metres")
         columns = grid.x[np.isfinite(gap).any(axis=1)]
-        if not columns[0] < at < columns[-1]:
+        if not columns[0] < position_m < columns[-1]:
             allowed = f"under the shape, between {columns[0]:g} and {columns[-1]:g} m, for it to balance there"
-            raise InvalidInputError("load_position", at, allowed)
-        return Prescribed(total, at)
+            raise InvalidInputError("load_position", position_m, allowed)
+        return PrescribedLoad(load_n, position_m)
 
     @property
-    def lowered(self) -> float:
-        """How far the shape is lowered before the iteration, metres."""
+    def lowering(self) -> float:
+        """Displacement of the shape before the iteration, metres."""
         return 0.0 if self.approach is None else self.approach
 
     def resultants(self, grid: Grid) -> Resultants:
-        """Return what the pressure on the cells has to sum up to."""
+        """Return the prescribed resultants of the pressure on the cells."""
         if self.load is None:
             return Resultants(None)
-        lever = None if self.load_position is None else (grid.x[:, None] - self.load_position) / self.largest_arm(grid)
+        lever = None if self.load_position is None else (grid.x[:, None] - self.load_position) / self.max_arm(grid)
         return Resultants(self.load / grid.cell_area, lever)
 
-    def largest_arm(self, grid: Grid) -> float:
-        """Return the largest distance of a cell from where the load acts, metres."""
+    def max_arm(self, grid: Grid) -> float:
+        """Return the largest distance of a cell from the load, metres."""
         assert self.load_position is not None
         return float(np.abs(grid.x - self.load_position).max())
 
@@ -106,9 +106,9 @@ def distant_columns(grid: Grid, depth: float) -> tuple[Grid, FloatArray]:
         return grid, np.eye(grid.cells_x)
     edges = low + 0.5 * (high - low) * (1 - np.cos(np.pi * np.arange(count + 1) / count))
     edges[-1] = high
-    panel = np.array(grid.x_range)
-    nodes, _ = panel_nodes(panel, count)
-    columns, cells = (cell_moments(panel, nodes, between) for between in (edges, grid.x_edges))
+    x_range = np.array(grid.x_range)
+    nodes, _ = panel_nodes(x_range, count)
+    columns, cells = (cell_moments(x_range, nodes, edges_x) for edges_x in (edges, grid.x_edges))
     return Grid.between(edges, grid.y_range, grid.cells_y), np.asarray(np.linalg.solve(columns, cells))
 
 
@@ -125,8 +125,8 @@ def line_motion(body: Body, grid: Grid, loads: Mapping[Load, FloatArray], positi
     x, weights, _ = next(iter(lines.values()))
     arm = x - np.average(x, weights=weights)
     tilt = float((weights * arm) @ displacement / ((weights * arm) @ arm))
-    below = np.clip([position], *np.clip(body.extent, *grid.x_range))
-    return RigidMotion(float((lagrange_weights(x, below) @ displacement)[0]) - tilt * position, tilt)
+    position_on_line = np.clip([position], *np.clip(body.extent, *grid.x_range))
+    return RigidMotion(float((lagrange_weights(x, position_on_line) @ displacement)[0]) - tilt * position, tilt)
 
 
 class LineMotions(NamedTuple):
@@ -136,12 +136,12 @@ class LineMotions(NamedTuple):
     total: RigidMotion
 
 
-class Referred(NamedTuple):
+class ReferencedContact(NamedTuple):
     """A contact and the motions of its reference lines."""
 
     iterate: ContactIterate
     motions: LineMotions
 
 
-SolveReferred = Callable[[RigidMotion, FloatArray | None, float], ContactIterate]
+SolveAtMotion = Callable[[RigidMotion, FloatArray | None, float], ContactIterate]
 """Contact on a gap less a motion of the lines, from a first guess of the pressure, to a tolerance."""

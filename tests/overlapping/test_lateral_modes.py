@@ -14,7 +14,7 @@ from scipy import integrate
 from contactstudy import Grid
 from contactstudy.checks import FloatArray
 from contactstudy.kernels.load import Load
-from contactstudy.overlapping.lateral import (
+from contactstudy.overlapping.lateral_modes import (
     BENDING_POLES,
     POLES,
     LateralPanel,
@@ -29,7 +29,7 @@ GRID = Grid(x_range=(0.0, 4.0), y_range=(-1.0, 1.0), cells_x=12, cells_y=40)
 Y = np.array([-1.5, -0.2, 0.0, 0.7])
 
 
-def integrated(panel: LateralPanel, parts: dict[int, np.ndarray], y: np.ndarray = Y) -> np.ndarray:
+def integrate_kernel(panel: LateralPanel, parts: dict[int, np.ndarray], y: np.ndarray = Y) -> np.ndarray:
     """Integrals over the panel of ``exp(-0.3 k)`` times each load: array (load, part of y, parity, cell, y)."""
     total = np.zeros((2, 2, len(parts), GRID.cells_x, y.size))
     columns = lateral_columns(panel, parts, GRID, y)
@@ -51,32 +51,32 @@ def test_columns_equal_the_load_at_every_wavenumber(seed: int, rank: int, split:
     parts = {1: pressure + mirrored, -1: pressure - mirrored} if split else {0: pressure}
     # With 20 nodes the amplitudes are interpolated to rounding.
     for panel in lateral_panels(0.05, 2.5, 60.0, replace(Resolution(), lateral_nodes=20)):
-        direct = replace(panel, nodes=panel.fine, interpolation=None)
-        np.testing.assert_allclose(integrated(panel, parts), integrated(direct, parts), atol=1e-9 * rank)
+        direct = replace(panel, nodes=panel.fine_nodes, interpolation=None)
+        np.testing.assert_allclose(integrate_kernel(panel, parts), integrate_kernel(direct, parts), atol=1e-9 * rank)
 
 
-def test_few_positions_have_two_columns_each_and_the_same_integrals():
+def test_few_positions_use_two_columns_each():
     pressure = np.random.default_rng(2).random(GRID.shape)
     parts = {1: pressure + pressure[::-1], -1: pressure - pressure[::-1]}
     for panel in lateral_panels(0.05, 2.5, 60.0, Resolution()):
         few = lateral_columns(panel, parts, GRID, Y[:1])
         assert few is not None
         assert few.parities.size <= 4
-        for number in range(Y.size):
-            position = integrated(panel, parts, Y[number : number + 1])
-            np.testing.assert_allclose(position[..., 0], integrated(panel, parts)[..., number], atol=1e-12)
+        for index in range(Y.size):
+            position = integrate_kernel(panel, parts, Y[index : index + 1])
+            np.testing.assert_allclose(position[..., 0], integrate_kernel(panel, parts)[..., index], atol=1e-12)
 
 
 def test_product_of_x_and_y_has_one_column_per_node():
     pressure = np.outer(np.arange(1.0, 13.0), (1 - GRID.y**2) * (2 + GRID.y))
     panels = lateral_panels(0.05, 2.5, 60.0, Resolution())
     loads = [lateral_columns(panel, {0: pressure}, GRID, Y) for panel in panels]
-    columns = [each.nodes.size * each.parities.size for each in loads if each is not None]
-    assert sum(columns) < 0.4 * sum(2 * panel.fine.size for panel in panels)
+    columns = [load.nodes.size * load.parities.size for load in loads if load is not None]
+    assert sum(columns) < 0.4 * sum(2 * panel.fine_nodes.size for panel in panels)
     assert columns[-1] == Resolution().lateral_nodes
 
 
-def test_a_load_that_is_even_in_y_has_no_odd_columns():
+def test_even_load_has_no_odd_columns():
     pressure = np.ones(GRID.shape)
     loads = lateral_columns(lateral_panels(0.05, 2.5, 60.0, Resolution())[1], {0: pressure}, GRID, Y)
     assert loads is not None
@@ -99,7 +99,7 @@ def test_moments_of_the_poles(moments: Callable[..., FloatArray], y: float):
     np.testing.assert_allclose(far - near, expected, atol=1e-12)
 
 
-def test_poles_are_relative_to_the_reference():
+def test_pole_integrals_vanish_at_reference():
     """All wavenumbers of the cosines' poles sum up to nothing at the reference, the first one without curvature."""
     step, reference = 1e-3, 10.0
     y = reference + step * np.arange(-1.0, 2.0)
@@ -112,7 +112,7 @@ def test_poles_are_relative_to_the_reference():
 
 
 @pytest.mark.parametrize("y", [0.02, 0.3, -2.0])
-def test_moments_of_a_sine_are_those_of_a_cosine_integrated_along_y(y: float):
+def test_sine_moments_integrate_cosine_moments(y: float):
     """``sin(k y) / k**3`` grows along y as ``cos(k y) / k**2``, motions included, and so on."""
     step, reference = 1e-4, 3.0
     there, back = (sine_moments(0.7, np.array([y + side * step]), reference)[:, 0] for side in (1, -1))
@@ -121,15 +121,15 @@ def test_moments_of_a_sine_are_those_of_a_cosine_integrated_along_y(y: float):
 
 
 @pytest.mark.parametrize("poles", [POLES, BENDING_POLES])
-def test_an_answer_with_poles_is_integrated_whatever_the_first_panel(poles: int):
+def test_pole_integral_does_not_depend_on_first_panel(poles: int):
     y, totals = np.array([0.0, 0.4, 2.0]), []
     for first in (0.02, 0.1, 0.6):
         total = np.zeros((2, y.size))
         for panel in lateral_panels(first, 3.0, 60.0, Resolution(), 30.0, poles):
-            answer = np.exp(-panel.nodes) / panel.nodes**poles
+            response = np.exp(-panel.nodes) / panel.nodes**poles
             if panel.interpolation is not None:
-                answer = panel.interpolation @ answer
-            total += [answer @ waves for waves in panel.waves(y)]
+                response = panel.interpolation @ response
+            total += [response @ waves for waves in panel.waves(y)]
         totals.append(total[0] - total[0, :1] if poles == BENDING_POLES else total[0])
     np.testing.assert_allclose(totals[0], totals[1], atol=2e-4 if poles == POLES else 1e-5)
     if poles == BENDING_POLES:

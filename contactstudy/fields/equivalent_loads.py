@@ -14,8 +14,8 @@ from contactstudy.arrays.variables import describe
 from contactstudy.bodies.models import Body
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
+from contactstudy.fields.body_operators import REFERENCE_LENGTHS
 from contactstudy.fields.loads import end_problem, prescribed_loads
-from contactstudy.fields.part import REFERENCE_LENGTHS
 from contactstudy.fields.positions import Positions
 from contactstudy.kernels.load import Load
 from contactstudy.overlapping.operators import OverlappingOperators
@@ -74,15 +74,15 @@ def equivalent_loads(
         if operators is None:
             coords = {"x": label_x, "y": label_y}
             return describe(xr.Dataset({"P_h1": (("x", "y"), top)}, coords=coords))
-        added, on_faces = operators.equivalent(load)
-        top += factor * added.matvec(cells.ravel()).reshape(top.shape)
-        parts = [factor * operator.matvec(cells.ravel()).reshape(grid.cells_y, -1) for operator in on_faces]
-        faces = [face + part for face, part in zip(faces, parts, strict=True)] if faces else parts
-    reference = _reference(body)
+        to_top_load, face_operators = operators.equivalent(load)
+        top += factor * to_top_load.matvec(cells.ravel()).reshape(top.shape)
+        face_loads = [factor * operator.matvec(cells.ravel()).reshape(grid.cells_y, -1) for operator in face_operators]
+        faces = [face + part for face, part in zip(faces, face_loads, strict=True)] if faces else face_loads
+    distance = _load_reference(body)
     attributes: dict[str, str | float] = {}
-    if reference is not None:
+    if distance is not None:
         attributes = {
-            "reference_distance": reference,
+            "reference_distance": distance,
             "reference": "the part of an eccentric load that makes no stress is zero at |y| = reference_distance (m)",
         }
     fields = {"P_h1": (("x", "y"), top, attributes)}
@@ -90,11 +90,11 @@ def equivalent_loads(
     return describe(xr.Dataset(fields, coords={"x": label_x, "y": label_y, "z": depths}))
 
 
-def _reference(body: Body) -> float | None:
+def _load_reference(body: Body) -> float | None:
     """Distance along y at which equivalent loads without stress are zero, metres; None without two exact ends."""
     freed = next((part.freed for part in body.terms if part.freed), None)
-    relative = freed is not None and np.isfinite(freed.length) and not freed.mirrored_once
-    return REFERENCE_LENGTHS * freed.length if freed is not None and relative else None
+    is_relative = freed is not None and np.isfinite(freed.length) and not freed.mirrored_once
+    return REFERENCE_LENGTHS * freed.length if freed is not None and is_relative else None
 
 
 def overlapping_operators(
@@ -110,4 +110,4 @@ def overlapping_operators(
     cells = np.zeros(grid.shape) if cells is None else cells
     problem = end_problem(freed, body.material.poisson, cells, None, grid, loads=(load,))
     problem = replace(problem, resolution=problem.resolution.for_loads((load,)))
-    return OverlappingOperators.of(problem, Points(grid.x, grid.y, depths), reference=_reference(body))
+    return OverlappingOperators.of(problem, Points(grid.x, grid.y, depths), reference=_load_reference(body))

@@ -26,7 +26,7 @@ NEGLIGIBLE = 1e-11  # neglected part of a load: rounding of narrow columns. Fiel
 POLES, BENDING_POLES = 2, 3
 """Order of an amplitude's pole at wavenumber 0, eq. (30); 3 under a force along x, which bends the body, eq. (30a)."""
 
-ALONE, TERMS = {POLES: 0.1, BENDING_POLES: 1.0}, {POLES: 4, BENDING_POLES: 6}
+POLE_PANEL_FACTOR, POLE_TERMS = {POLES: 0.1, BENDING_POLES: 1.0}, {POLES: 4, BENDING_POLES: 6}
 """Wavenumber along y, over the smallest length of the problem, below which an amplitude is its poles and this number of
 powers from the constant on. Accuracy. The higher the pole (a double one if a sliding load off-centre turns the body),
 the more it amplifies the quadrature errors of a much lower wavenumber."""
@@ -42,10 +42,10 @@ class LateralPanel:
     """Part of the integral over the wavenumber along y."""
 
     nodes: FloatArray  # wavenumbers of the equation sets, 1/m
-    fine: FloatArray
+    fine_nodes: FloatArray
     """Quadrature nodes that follow the phase, and their weights; `nodes` themselves where these suffice."""
     weights: FloatArray
-    interpolation: FloatArray | None = None  # (fine, node): from `nodes` to `fine`; None where they are the same
+    interpolation: FloatArray | None = None  # (fine, node): from `nodes` to `fine_nodes`; None where they are the same
     reference: float | None = None
     """If given, the nodes represent an amplitude ``b / k**2 + c / k + d`` (with more powers and a higher pole, with
     more nodes) from 0 to the panel's end. The integral is a closed form, for the poles relative to ``|y| =
@@ -64,13 +64,13 @@ class LateralPanel:
                 integrals = moments(first, y, self.reference, terms)[BENDING_POLES - self.poles :]
                 waves.append(np.asarray(np.linalg.solve(powers.T, integrals / scale[:, None]) / np.pi))
             return waves[0], waves[1]
-        phase, weights = np.outer(self.fine, y), self.weights[:, None] / np.pi
+        phase, weights = np.outer(self.fine_nodes, y), self.weights[:, None] / np.pi
         return np.cos(phase) * weights, np.sin(phase) * weights
 
     def load_waves(self, grid: Grid) -> tuple[FloatArray, FloatArray]:
         """Integrals of ``cos(k y)`` and ``sin(k y)`` over the cells along y: arrays (cell, fine)."""
-        width = grid.dy * np.sinc(self.fine * grid.dy / (2 * np.pi))
-        phase = np.outer(grid.y, self.fine)
+        width = grid.dy * np.sinc(self.fine_nodes * grid.dy / (2 * np.pi))
+        phase = np.outer(grid.y, self.fine_nodes)
         return np.cos(phase) * width, np.sin(phase) * width
 
     def filters(self, grid: Grid, y: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -96,7 +96,7 @@ class LateralColumns:
     odd: FloatArray
 
     @classmethod
-    def unit(cls, panel: LateralPanel, along_x: FloatArray, parities: IntArray) -> LateralColumns:
+    def of_unit_loads(cls, panel: LateralPanel, along_x: FloatArray, parities: IntArray) -> LateralColumns:
         """Columns `along_x` (cell, column) at the nodes of a panel, for operators that filter along y themselves."""
         empty = np.zeros((panel.nodes.size, parities.size, 0))
         return cls(nodes=panel.nodes, along_x=along_x[:, None, :], parities=parities, even=empty, odd=empty)
@@ -127,54 +127,56 @@ class LateralColumns:
 
 def lateral_panels(
     first: float,
-    reach: float,
+    max_distance: float,
     last: float,
     resolution: Resolution,
     reference: float | None = None,
     poles: int = POLES,
 ) -> list[LateralPanel]:
-    """Panels from 0 to `last`, growing from `first`, for phases over the distance `reach`."""
+    """Panels from 0 to `last`, growing from `first`, for phases over the distance `max_distance`."""
     # With a `reference`, amplitudes have a pole at 0 up to the order `poles`, taken relative to ``|y| = reference``.
     order = resolution.lateral_nodes
     count = max(1, int(np.ceil(np.log(last / first) / np.log(resolution.lateral_ratio))))
     edges = first * (last / first) ** (np.arange(count + 1) / count)
     nodes, weights = panel_nodes(np.array([0.0, first]), order)
-    panels = [LateralPanel(nodes=nodes, fine=nodes, weights=weights)]
+    panels = [LateralPanel(nodes=nodes, fine_nodes=nodes, weights=weights)]
     for low, high in pairwise(edges):
         # Amplitudes are smooth over the logarithm of the wavenumber.
-        places, weights = panel_nodes(np.log([low, high]), order)
-        nodes = np.exp(places)
-        if high * np.log(high / low) * reach <= PHASE_PER_NODE * order:
-            panels.append(LateralPanel(nodes=nodes, fine=nodes, weights=weights * nodes))
+        log_nodes, weights = panel_nodes(np.log([low, high]), order)
+        nodes = np.exp(log_nodes)
+        if high * np.log(high / low) * max_distance <= PHASE_PER_NODE * order:
+            panels.append(LateralPanel(nodes=nodes, fine_nodes=nodes, weights=weights * nodes))
             continue
-        pieces = int(np.ceil((high - low) * reach / (PHASE_PER_NODE * resolution.lateral_order)))
-        fine, weights = panel_nodes(np.linspace(low, high, pieces + 1), resolution.lateral_order)
+        panel_count = int(np.ceil((high - low) * max_distance / (PHASE_PER_NODE * resolution.lateral_order)))
+        fine, weights = panel_nodes(np.linspace(low, high, panel_count + 1), resolution.lateral_order)
         panels.append(
-            LateralPanel(nodes=nodes, fine=fine, weights=weights, interpolation=lagrange_weights(places, np.log(fine)))
+            LateralPanel(
+                nodes=nodes, fine_nodes=fine, weights=weights, interpolation=lagrange_weights(log_nodes, np.log(fine))
+            )
         )
     if reference is not None:
-        count = poles + TERMS[poles]
+        count = poles + POLE_TERMS[poles]
         samples = first * np.arange(1.0, count + 1) / count
         panels[0] = LateralPanel(
-            nodes=samples, fine=samples, weights=np.ones_like(samples), reference=reference, poles=poles
+            nodes=samples, fine_nodes=samples, weights=np.ones_like(samples), reference=reference, poles=poles
         )
     return panels
 
 
 def lateral_columns(
-    panel: LateralPanel, parts: Mapping[int, FloatArray], grid: Grid, y: FloatArray
+    panel: LateralPanel, parity_loads: Mapping[int, FloatArray], grid: Grid, y: FloatArray
 ) -> LateralColumns | None:
-    """Columns of the `parts` (by parity) of a cell-wise uniform load within one panel; None if there are none."""
+    """Columns of the `parity_loads` of a cell-wise uniform load within one panel; None if there are none."""
     waves = panel.load_waves(grid)
     cosine, sine = panel.waves(y)
     along_x, parities, even, odd = [], [], [], []
-    spectra_of = {parity: [cells @ wave for wave in waves] for parity, cells in parts.items()}
-    least = NEGLIGIBLE * max(
-        (np.abs(spectrum_).max() for pair in spectra_of.values() for spectrum_ in pair), default=0.0
+    spectra_of = {parity: [cells @ wave for wave in waves] for parity, cells in parity_loads.items()}
+    min_amplitude = NEGLIGIBLE * max(
+        (np.abs(amplitude).max() for pair in spectra_of.values() for amplitude in pair), default=0.0
     )
     for parity, spectra in spectra_of.items():
         for spectrum, even_wave, odd_wave in zip(spectra, (cosine, sine), (-sine, cosine), strict=True):
-            if np.abs(spectrum).max() > least:
+            if np.abs(spectrum).max() > min_amplitude:
                 along_x.append(spectrum)
                 parities.append(parity)
                 even.append(even_wave)
@@ -182,7 +184,7 @@ def lateral_columns(
     if not along_x:
         return None
     columns = LateralColumns(
-        nodes=panel.fine,
+        nodes=panel.fine_nodes,
         along_x=np.stack(along_x, axis=-1),
         parities=np.array(parities),
         even=np.stack(even, axis=1),
@@ -190,7 +192,7 @@ def lateral_columns(
     )
     if panel.interpolation is not None:
         columns = _interpolate_columns(columns, panel.nodes, panel.interpolation)
-    return columns.sum_at_positions() if 2 * y.size * len(parts) < columns.parities.size else columns
+    return columns.sum_at_positions() if 2 * y.size * len(parity_loads) < columns.parities.size else columns
 
 
 def _interpolate_columns(columns: LateralColumns, nodes: FloatArray, interpolation: FloatArray) -> LateralColumns:
@@ -227,13 +229,13 @@ def cosine_moments(first: float, y: FloatArray, reference: float, terms: int = 1
     argument = first * distance
     sine_integral, cosine_integral = sici(argument)
     logarithm = cosine_integral - np.log(distance / reference)
-    bent = 0.75 * (reference**2 - distance**2) - 0.5 * distance**2 * logarithm  # eq. (30c)
+    cubic_pole = 0.75 * (reference**2 - distance**2) - 0.5 * distance**2 * logarithm  # eq. (30c)
     return np.array(
         [
-            bent - 0.5 * (np.cos(argument) / first - distance * np.sin(argument)) / first,
+            cubic_pole - 0.5 * (np.cos(argument) / first - distance * np.sin(argument)) / first,
             (-np.cos(argument)) / first - distance * sine_integral + 0.5 * np.pi * reference,
             logarithm,
-            *_powers(np.cos, first, y, terms),
+            *_power_moments(np.cos, first, y, terms),
         ]
     )
 
@@ -249,13 +251,13 @@ def sine_moments(first: float, y: FloatArray, reference: float, terms: int = 1) 
             0.5 * y * (second + 0.5 * np.pi * reference) - 0.5 * np.sin(argument) / first**2,
             y * (1 - np.sinc(argument / np.pi) + pole),
             sici(argument)[0],
-            *_powers(np.sin, first, y, terms),
+            *_power_moments(np.sin, first, y, terms),
         ]
     )
 
 
-def _powers(wave: Callable[[FloatArray], FloatArray], first: float, y: FloatArray, terms: int) -> FloatArray:
+def _power_moments(wave: Callable[[FloatArray], FloatArray], first: float, y: FloatArray, terms: int) -> FloatArray:
     """Integrals of ``wave(k y)`` times ``1, k, k**2, ...`` over k from 0 to `first`: array (terms, y)."""
-    pieces = max(1, int(np.ceil(first * np.abs(y).max(initial=0.0) / MOMENT_PHASE)))
-    nodes, weights = panel_nodes(np.linspace(0.0, first, pieces + 1), MOMENT_ORDER)
+    panel_count = max(1, int(np.ceil(first * np.abs(y).max(initial=0.0) / MOMENT_PHASE)))
+    nodes, weights = panel_nodes(np.linspace(0.0, first, panel_count + 1), MOMENT_ORDER)
     return np.asarray((nodes[:, None] ** np.arange(terms) * weights[:, None]).T @ wave(np.outer(nodes, y)))

@@ -67,7 +67,7 @@ class AxialModes:
         """Factor ``T``: load on the top per normal stress removed from the ends."""
         return slab_factors(kappa, self.length, self.parity)[0]
 
-    def applied(self, kappa: ComplexArray) -> ComplexArray:
+    def load_on_face(self, kappa: ComplexArray) -> ComplexArray:
         """Load on a face per normal stress freed there."""
         return np.ones_like(kappa)
 
@@ -131,12 +131,12 @@ def axial_modes(length: float, lateral: float, shortest: float, resolution: Reso
     # Between two modes of either parity, half a spacing from the nearest: the ray's integrand has its poles there.
     start = (resolution.modes - 0.5) * spacing  # eq. (32)
     ray, weights = ray_nodes(0.5 * spacing, last, resolution)
-    numbers = np.arange(resolution.modes)
+    indices = np.arange(resolution.modes)
     return [
         AxialModes(
             length=length,
             parity=parity,
-            discrete=spacing * numbers[numbers % 2 == remainder],
+            discrete=spacing * indices[indices % 2 == remainder],
             ray=start + ray,
             weights=weights,
         )
@@ -179,16 +179,18 @@ class SingleMirrorModes(AxialModes):
         length, k = self.length, self.ray[:, None]
         kappa = np.sqrt(depth**2 + lateral**2)
         # V's load on the top: K(x) = exp(-kappa x) (a - b kappa x).
-        b = (depth / kappa) ** 2
-        a = b + 2 * poisson * (lateral / kappa) ** 2
+        slope = (depth / kappa) ** 2
+        constant = slope + 2 * poisson * (lateral / kappa) ** 2
         across, decay = np.exp(1j * k * length), np.exp(-kappa * length)
-        far_value = a - b * kappa * length
+        far_value = constant - slope * kappa * length
         # int_0^inf K(L + x) exp(i k x) dx: the tail that is not there, on either side
         decreasing = kappa - 1j * k
-        tail = decay * (far_value - b * kappa / decreasing) / decreasing
+        tail = decay * (far_value - slope * kappa / decreasing) / decreasing
         # int_0^L K(x) exp(i k (L - x)) dx: V1's load in the image beyond end II, V2's in that beyond end I
         increasing = kappa + 1j * k
-        image = (across * (a - b * kappa / increasing) - decay * (far_value - b * kappa / increasing)) / increasing
+        image = (
+            across * (constant - slope * kappa / increasing) - decay * (far_value - slope * kappa / increasing)
+        ) / increasing
         truncation = self.parity * (image - tail) - across * tail
         return np.asarray(self.weights[:, None] / np.pi * (4 * core.T + kappa * truncation))
 
@@ -200,7 +202,7 @@ class SingleMirrorModes(AxialModes):
             return np.asarray(1 / (1 + (1 + scaled) * decay))
         return np.asarray(1 / (-np.expm1(-scaled) - scaled * decay))
 
-    def applied(self, kappa: ComplexArray) -> ComplexArray:
+    def load_on_face(self, kappa: ComplexArray) -> ComplexArray:
         """Load on a face per normal stress removed: the opposite half-space removes a part."""
         return self.face_factor(kappa)
 

@@ -8,20 +8,20 @@ import numpy as np
 import pytest
 
 from contactstudy.kernels.load import Load
-from contactstudy.overlapping.axial import AxialModes, axial_modes
+from contactstudy.overlapping.axial_modes import AxialModes, axial_modes
 from contactstudy.overlapping.quadrature import Resolution
 
 X = np.array([0.02, 0.6, 1.5, 2.7])
 
 
-def represented(modes: AxialModes, waves: np.ndarray, height: float) -> np.ndarray:
+def represent_load(modes: AxialModes, waves: np.ndarray, height: float) -> np.ndarray:
     """Sum of the waves times ``exp(-k height)``, with the weights of a load's spectrum."""
     return np.asarray(((modes.load_weights * np.exp(-modes.wavenumbers * height))[:, None] * waves).sum(axis=0).real)
 
 
 @pytest.mark.parametrize("length", [3.0, 5.0])
 @pytest.mark.parametrize("height", [0.15, 1.0])
-def test_ray_and_first_modes_are_the_sum_over_all_modes(length: float, height: float) -> None:
+def test_ray_and_discrete_modes_equal_full_sum(length: float, height: float) -> None:
     for modes, parity in zip(axial_modes(length, 0.5, 0.05, Resolution()), (1, -1), strict=True):
         numbers = np.arange(0 if parity > 0 else 1, 4000, 2)
         k = np.pi * numbers / length
@@ -29,33 +29,33 @@ def test_ray_and_first_modes_are_the_sum_over_all_modes(length: float, height: f
         assert modes.parity == parity
         for waves, wave in ((modes.cosine, np.cos), (modes.sine, np.sin)):
             expected = weights @ wave(np.outer(k, X))
-            assert represented(modes, waves(X), height) == pytest.approx(expected, abs=4e-6)
+            assert represent_load(modes, waves(X), height) == pytest.approx(expected, abs=4e-6)
 
 
 @pytest.mark.parametrize("height", [0.15, 1.0])
-def test_a_ray_is_the_integral_over_all_wavenumbers_of_one_end(height: float) -> None:
+def test_ray_equals_integral_of_single_end(height: float) -> None:
     (modes,) = axial_modes(np.inf, 0.05, 0.05, Resolution())
     exact = 2 / np.pi / (height**2 + X**2)
-    assert represented(modes, modes.cosine(X), height) == pytest.approx(height * exact, abs=1e-5)
-    assert represented(modes, modes.sine(X), height) == pytest.approx(X * exact, abs=1e-5)
+    assert represent_load(modes, modes.cosine(X), height) == pytest.approx(height * exact, abs=1e-5)
+    assert represent_load(modes, modes.sine(X), height) == pytest.approx(X * exact, abs=1e-5)
 
 
 @pytest.mark.parametrize("length", [3.0, np.inf])
 @pytest.mark.parametrize("load", [Load.NORMAL, Load.ALONG_X])
-def test_integrals_over_cells_are_those_of_the_waves(load: Load, length: float) -> None:
+def test_cell_integrals_match_waves(load: Load, length: float) -> None:
     edges = np.array([0.0, 0.4, 1.7, 3.0])
     for modes in axial_modes(length, 0.5, 0.05, Resolution()):
-        found = modes.cell_integrals(load, edges)
+        computed = modes.cell_integrals(load, edges)
         few = np.abs(modes.wavenumbers) < 20
         weights_of = np.abs(modes.load_weights)[few]  # as few digits are left at wavenumbers next to 0 as weight
         for cell, (low, high) in enumerate(pairwise(edges)):
             nodes, weights = np.polynomial.legendre.leggauss(60)
             at = 0.5 * (high + low) + 0.5 * (high - low) * nodes
             expected = 0.5 * (high - low) * modes.wave(load, at) @ weights
-            np.testing.assert_allclose(weights_of * found[few, cell], weights_of * expected[few], atol=1e-9)
+            np.testing.assert_allclose(weights_of * computed[few, cell], weights_of * expected[few], atol=1e-9)
 
 
-def test_wavenumbers_end_where_nothing_nearer_matters() -> None:
+def test_shortest_distance_bounds_wavenumbers() -> None:
     for lateral, shortest in ((0.5, 0.05), (0.5, 5.0), (60.0, 5.0)):
         last = max(Resolution().reach / shortest, 4 * lateral)
         for length in (0.4, np.inf):

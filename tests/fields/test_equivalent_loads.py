@@ -21,12 +21,10 @@ from contactstudy.arrays.points import Points
 from contactstudy.kernels.field import half_space_field, stress_influence
 from contactstudy.kernels.load import Load
 from contactstudy.overlapping import problem
-from contactstudy.overlapping.lateral import POLES
+from contactstudy.overlapping.lateral_modes import POLES
 
 
-def test_end_loads_are_what_the_mirrored_top_load_leaves_on_the_ends(
-    short_body: FiniteLengthSpace, strip_pressure
-) -> None:
+def test_face_loads_reverse_end_stress_of_top_load(short_body: FiniteLengthSpace, strip_pressure) -> None:
     friction = 0.3
     pressure = strip_pressure(8.0, (96, 64))
     depths = np.array([0.2, 0.5, 1.0, 3.0])
@@ -75,7 +73,7 @@ def test_equivalent_loads_of_solved_pressure(kind: str, inside: float) -> None:
         assert exceeds is freed
 
 
-def test_eccentric_loads_do_not_depend_on_where_the_poles_begin(
+def test_eccentric_loads_do_not_depend_on_pole_panel(
     short_body: FiniteLengthSpace, strip_pressure, monkeypatch
 ) -> None:
     pressure = strip_pressure(8.0, (16, 16)) * (1 + 0.5 * (strip_pressure(8.0, (16, 16)).x - 4.0))
@@ -83,8 +81,8 @@ def test_eccentric_loads_do_not_depend_on_where_the_poles_begin(
     def loads():
         return equivalent_loads(short_body, pressure, 0.3, z=[0.2, 1.0])
 
-    usual = loads()
-    assert usual["P_h1"].attrs["reference_distance"] == 80.0
-    monkeypatch.setitem(problem.ALONE, POLES, 0.1 * problem.ALONE[POLES])
+    baseline = loads()
+    assert baseline["P_h1"].attrs["reference_distance"] == 80.0
+    monkeypatch.setitem(problem.POLE_PANEL_FACTOR, POLES, 0.1 * problem.POLE_PANEL_FACTOR[POLES])
     for name in ("P_h1", "P_v1", "P_v2"):
-        assert float(np.abs(loads()[name] - usual[name]).max()) < 1e-4 * float(np.abs(usual[name]).max())
+        assert float(np.abs(loads()[name] - baseline[name]).max()) < 1e-4 * float(np.abs(baseline[name]).max())

@@ -29,7 +29,7 @@ REFERENCE_LENGTHS = 10.0
 """A finite-length body's displacement is relative to its top at ``|y|`` = this many lengths. A definition."""
 
 
-class PartOperator:
+class UniformOperator:
     """Displacements of the top of one part of a body."""
 
     def __init__(
@@ -38,64 +38,66 @@ class PartOperator:
         self.extent, self.grid = extent, grid
         self._spectra, self._ends = spectra, ends
         mirrored, padded = _padding(extent, grid)
-        # A body with the second mirror alone is reversed.
+        # A body with only the second mirror is reversed.
         self._flipped = mirrored and bool(np.isinf(extent[0]))
 
-        def transforms(directions: Sequence[Load]) -> dict[Load, GridTransform]:
+        def make_transforms(directions: Sequence[Load]) -> dict[Load, GridTransform]:
             return {
                 direction: GridTransform(*grid.shape, padded, direction.sign_x if mirrored else 0)
                 for direction in dict.fromkeys(directions)
             }
 
-        self._loaded = transforms([response.load for response in spectra])
-        self._displaced = transforms([response.displacement for response in spectra])
+        self._loaded = make_transforms([response.load for response in spectra])
+        self._displaced = make_transforms([response.displacement for response in spectra])
 
     @classmethod
     def of(
         cls, material: Material, extent: Extent, grid: Grid, responses: Sequence[Response], ends: EndKernel | None
-    ) -> PartOperator:
+    ) -> UniformOperator:
         """Operator of a part of a body made of `material`, for pairs of displacement and load."""
         spectra = {response: _spectrum(response, material, extent, grid) for response in responses}
-        return cls(extent, grid, spectra, None if ends is None else EndCorrection.on(grid, ends))
+        return cls(extent, grid, spectra, None if ends is None else EndCorrection.on_grid(grid, ends))
 
-    def coarsened(self, material: Material) -> PartOperator:
+    def coarsen(self, material: Material) -> UniformOperator:
         """Return the operator on cells of twice the size."""
         grid = self.grid.coarsened()
         spectra = {response: _spectrum(response, material, self.extent, grid) for response in self._spectra}
-        return PartOperator(self.extent, grid, spectra, self._ends.coarsened() if self._ends is not None else None)
+        return UniformOperator(self.extent, grid, spectra, self._ends.coarsen() if self._ends is not None else None)
 
     def __call__(self, loads: Mapping[Load, FloatArray], directions: Sequence[Load]) -> dict[Load, FloatArray]:
         """Displacements (m) of the cell centres in some `directions` under `loads` (Pa): arrays (x, y)."""
-        spectra, gathered = {}, {}
+        spectra, projected = {}, {}
         for load, cells in loads.items():
             transform = self._loaded[load]
             lateral = transform.transform_y(load.sign_x * cells[::-1] if self._flipped else cells)
             if self._ends is not None:
-                gathered[load] = self._ends.gathered(load, lateral)
+                projected[load] = self._ends.project_loads(load, lateral)
             spectra[load] = transform.transform_x()
         displacements = {}
         for direction in directions:
             transform = self._displaced[direction]
             self._fill(transform.spectrum, direction, spectra)
             cells_x = self.grid.cells_x
-            ends = self._ends.displaced(direction, gathered, cells_x) if self._ends is not None else None
-            displaced = transform.invert(ends)  # eq. (5)
-            displacements[direction] = direction.sign_x * displaced[::-1] if self._flipped else displaced
+            end_displacement = (
+                self._ends.compute_displacement(direction, projected, cells_x) if self._ends is not None else None
+            )
+            displacement = transform.invert(end_displacement)  # eq. (5)
+            displacements[direction] = direction.sign_x * displacement[::-1] if self._flipped else displacement
         return displacements
 
     def _fill(self, total: ComplexArray, direction: Load, loads: Mapping[Load, ComplexArray]) -> None:
         """Fill a buffer with the spectrum of the displacement that the mirrored half-space has under `loads`."""
         # A sine transform begins with wavenumber 1, a cosine transform with wavenumber 0.
         mirrored = bool(self._displaced[direction].mirror)
-        for number, (load, spectrum) in enumerate(loads.items()):
+        for index, (load, spectrum) in enumerate(loads.items()):
             response = Response(direction, load)
             kernel = self._spectra[response]
             target, source = total, spectrum
             if mirrored and response.sign_x < 0:
                 target, source = (total[:-1], spectrum[1:]) if direction.sign_x < 0 else (total[1:], spectrum[:-1])
-                if not number:
+                if not index:
                     total[-1 if direction.sign_x < 0 else 0] = 0.0
-            if not number:
+            if not index:
                 np.multiply(kernel, source, out=target)
             elif response.sign_y > 0 and (mirrored or response.sign_x > 0):
                 target += kernel * source
@@ -103,7 +105,7 @@ class PartOperator:
             # Kernels lack a factor i for each odd direction, except along x between mirrors.
             powers = int(response.sign_y < 0) + int(response.sign_x < 0 and not mirrored)
             factor = (1, 1j, -1)[powers]
-            if number:
+            if index:
                 target += (factor * kernel) * source
             elif powers:
                 target *= factor
@@ -112,8 +114,8 @@ class PartOperator:
         """Approximate pressure for a normal displacement `gap`: the inverse spectrum of the mirrored half-space."""
         transform = self._loaded[Load.NORMAL]
         transform.transform_y(gap)
-        full = transform.transform_x()
-        full *= self._inverse
+        spectrum = transform.transform_x()
+        spectrum *= self._inverse
         return transform.invert()
 
     @cached_property
@@ -126,15 +128,15 @@ class PartOperator:
 
     @property
     def nbytes(self) -> int:
-        """Memory held, bytes, with the inverse that preconditioning adds."""
+        """Memory, bytes, with the inverse that preconditioning adds."""
         inverse = max(spectrum.nbytes for spectrum in self._spectra.values())
         return nbytes_of([self._spectra, self._ends, self._loaded, self._displaced]) + inverse
 
 
 def _padding(extent: Extent, grid: Grid) -> tuple[bool, int]:
     """Whether mirror images continue the cells along x, else zeros; and the number of cells with the continuation."""
-    ended = [bool(np.isfinite(end)) for end in extent]
-    return any(ended), grid.cells_x if all(ended) else 2 * grid.cells_x
+    has_end = [bool(np.isfinite(end)) for end in extent]
+    return any(has_end), grid.cells_x if all(has_end) else 2 * grid.cells_x
 
 
 def end_kernel_of(
@@ -176,20 +178,20 @@ def _spectrum(response: Response, material: Material, extent: Extent, grid: Grid
     along_y = even_spectrum(kernel) if response.sign_y > 0 else odd_spectrum(kernel)
     factor = kernel_factor(material)
     if response.sign_x < 0:
-        inner = along_y[1:-1]
-        if inner.size:  # the sine transform needs two columns
-            inner = factor * fft.dst(inner, type=1, axis=0)
+        odd_part = along_y[1:-1]
+        if odd_part.size:  # the sine transform needs two columns
+            odd_part = factor * fft.dst(odd_part, type=1, axis=0)
         if mirrored:
-            return np.asarray(inner if response.displacement.sign_x < 0 else -inner)
-        zero = np.zeros((1, inner.shape[1]))
-        return np.concatenate([zero, -inner, zero, inner[::-1]])
+            return np.asarray(odd_part if response.displacement.sign_x < 0 else -odd_part)
+        zero = np.zeros((1, odd_part.shape[1]))
+        return np.concatenate([zero, -odd_part, zero, odd_part[::-1]])
     spectrum = factor * fft.dct(along_y, type=1, axis=0)
     if mirrored:
         return np.asarray(spectrum[:-1] if response.displacement.sign_x > 0 else spectrum[1:])
     return np.concatenate([spectrum, spectrum[-2:0:-1]])
 
 
-LEAST_EIGENVALUE = 1e-3  # least eigenvalue of an indefinite preconditioner over their mean magnitude. Speed.
+MIN_EIGENVALUE = 1e-3  # least eigenvalue of an indefinite preconditioner over their mean magnitude. Speed.
 
 
 class ColumnsOperator:
@@ -214,39 +216,41 @@ class ColumnsOperator:
                 ends.add_to(kernel, response, edges)
         return cls(extent, grid, kernels)
 
-    def coarsened(self, material: Material) -> ColumnsOperator:
+    def coarsen(self, material: Material) -> ColumnsOperator:
         """Return the operator on pairs of cells, for an initial guess."""
         grid = self.grid.coarsened()
         fine = self.grid.widths
-        joined = np.zeros((grid.cells_x, fine.size))
-        joined[np.minimum(np.arange(fine.size) // 2, grid.cells_x - 1), np.arange(fine.size)] = fine
-        joined /= grid.widths[:, None]
-        lower = {response: joined @ kernel[: grid.cells_y + 1] @ joined.T for response, kernel in self._kernels.items()}
-        return ColumnsOperator(self.extent, grid, lower)
+        averaging = np.zeros((grid.cells_x, fine.size))
+        averaging[np.minimum(np.arange(fine.size) // 2, grid.cells_x - 1), np.arange(fine.size)] = fine
+        averaging /= grid.widths[:, None]
+        coarse_kernels = {
+            response: averaging @ kernel[: grid.cells_y + 1] @ averaging.T for response, kernel in self._kernels.items()
+        }
+        return ColumnsOperator(self.extent, grid, coarse_kernels)
 
     def __call__(self, loads: Mapping[Load, FloatArray], directions: Sequence[Load]) -> dict[Load, FloatArray]:
         """Displacements (m) of the cells in some `directions` under `loads` (Pa): arrays (x, y)."""
-        spectra = {load: self._along_y(self._widths * cells) for load, cells in loads.items()}
+        spectra = {load: self._transform_y(self._widths * cells) for load, cells in loads.items()}
         displacements = {}
         for direction in directions:
-            parts = (self._product(Response(direction, load), spectrum) for load, spectrum in spectra.items())
-            displacements[direction] = self._back(sum(parts, np.zeros(1, np.complex128)))
+            products = (self._product(Response(direction, load), spectrum) for load, spectrum in spectra.items())
+            displacements[direction] = self._invert_y(sum(products, np.zeros(1, np.complex128)))
         return displacements
 
     def precondition(self, gap: FloatArray) -> FloatArray:
         """Approximate pressure for a normal displacement `gap`."""
-        return self._back(_times(self._inverse, self._along_y(gap))) / self._widths
+        return self._invert_y(_multiply_matrices(self._inverse, self._transform_y(gap))) / self._widths
 
-    def _along_y(self, values: FloatArray) -> ComplexArray:
+    def _transform_y(self, values: FloatArray) -> ComplexArray:
         """Transform along y: array (wavenumber, cell)."""
         return np.ascontiguousarray(fft.rfft(values, n=2 * self.grid.cells_y, axis=1).T)
 
     def _product(self, response: Response, spectrum: ComplexArray) -> ComplexArray:
         """Multiply along x, for each wavenumber along y."""
-        product = _times(self._kernels[response], spectrum)
+        product = _multiply_matrices(self._kernels[response], spectrum)
         return product if response.sign_y > 0 else 1j * product
 
-    def _back(self, spectrum: ComplexArray) -> FloatArray:
+    def _invert_y(self, spectrum: ComplexArray) -> FloatArray:
         """Values on the cells from their transform along y (wavenumber, cell)."""
         cells_y = self.grid.cells_y
         return np.asarray(fft.irfft(spectrum.T, n=2 * cells_y, axis=1)[:, :cells_y])
@@ -258,16 +262,16 @@ class ColumnsOperator:
         inverse = np.empty_like(kernel)
         with one_blas_thread():
             for matrix, target in zip(kernel, inverse, strict=True):
-                target[:] = _inverted(matrix)
+                target[:] = _invert_matrix(matrix)
         return inverse
 
     @property
     def nbytes(self) -> int:
-        """Memory held, bytes, with the inverse that preconditioning adds."""
+        """Memory, bytes, with the inverse that preconditioning adds."""
         return nbytes_of(self._kernels) + max(kernel.nbytes for kernel in self._kernels.values())
 
 
-def _times(matrices: FloatArray, spectrum: ComplexArray) -> ComplexArray:
+def _multiply_matrices(matrices: FloatArray, spectrum: ComplexArray) -> ComplexArray:
     """Real matrices (wavenumber, cell, cell) times a spectrum (wavenumber, cell)."""
     product = np.empty_like(spectrum)
     product.real = (matrices @ spectrum.real[..., None])[..., 0]
@@ -275,7 +279,7 @@ def _times(matrices: FloatArray, spectrum: ComplexArray) -> ComplexArray:
     return product
 
 
-def _inverted(matrix: FloatArray) -> FloatArray:
+def _invert_matrix(matrix: FloatArray) -> FloatArray:
     """Inverse of a symmetric matrix with positive eigenvalues; the displacement reference may change one sign."""
     factor, failed = linalg.lapack.dpotrf(matrix)
     if not failed:
@@ -284,5 +288,5 @@ def _inverted(matrix: FloatArray) -> FloatArray:
         inverse.flat[:: inverse.shape[0] + 1] *= 0.5
         return np.asarray(inverse)
     values, vectors = np.linalg.eigh(0.5 * (matrix + matrix.T))
-    values = np.maximum(np.abs(values), LEAST_EIGENVALUE * np.abs(values).max() / values.size)
+    values = np.maximum(np.abs(values), MIN_EIGENVALUE * np.abs(values).max() / values.size)
     return np.asarray((vectors / values) @ vectors.T)

@@ -1,4 +1,4 @@
-"""Two elastic bodies pressed on each other: how far they move apart, each on cells along x that suit it."""
+"""Two elastic bodies in contact: their relative displacement, each body on its own cells along x."""
 
 from __future__ import annotations
 
@@ -19,15 +19,15 @@ from contactstudy.kernels.load import Load
 
 
 @dataclass(frozen=True, eq=False)
-class Shares:
-    """How much of each cell of one body each cell of the other takes; `to` carries loads over, `back` displacements."""
+class CellTransfer:
+    """Fractions of the cells of one body in the cells of the second: from loads on the first, displacements back."""
 
-    to: FloatArray
-    back: FloatArray
+    to_second: FloatArray
+    to_first: FloatArray
 
     @classmethod
-    def of(cls, counterbody: Counterbody, grid: Grid) -> Shares | None:
-        """Shares of the counterbody's cells in those of `grid`; None if they are the same cells."""
+    def of(cls, counterbody: Counterbody, grid: Grid) -> CellTransfer | None:
+        """Transfer between the cells of `grid` and of the counterbody; None for equal cells."""
         overlap, widths = counterbody.overlap(grid), grid.widths
         square = overlap.shape[0] == overlap.shape[1]
         if square and np.allclose(overlap, np.diag(widths), atol=1e-9 * widths.min()):
@@ -35,8 +35,8 @@ class Shares:
         return cls(overlap / counterbody.grid_on_body(grid).widths[:, None], overlap.T / widths[:, None])
 
 
-def _opposed(direction: Load, values: FloatArray) -> FloatArray:
-    """Reverse a load or a displacement along the surface, as the second body has it."""
+def _reverse_tangential(direction: Load, values: FloatArray) -> FloatArray:
+    """Reverse a tangential load or displacement: the second body has the opposite one."""
     return values if direction is Load.NORMAL else -values
 
 
@@ -46,8 +46,8 @@ class PairOperator:
     # Loads go to the second body's cells and its displacements back by the same overlaps: the sum is symmetric. A
     # traction acts on the second body in the opposite direction.
 
-    def __init__(self, body: SurfaceOperator, counterbody: SurfaceOperator, shares: Shares | None) -> None:
-        self.body, self.counterbody, self._shares = body, counterbody, shares
+    def __init__(self, body: SurfaceOperator, counterbody: SurfaceOperator, transfer: CellTransfer | None) -> None:
+        self.body, self.counterbody, self._transfer = body, counterbody, transfer
         first, second = (operator.body.material.plane_strain_modulus for operator in (body, counterbody))
         self._softer = 1 + first / second
 
@@ -62,45 +62,50 @@ class PairOperator:
     ) -> PairOperator:
         """Operator of two bodies for `loads` and displacements of given directions, on the cells of the first."""
         first = surface_operator(body, grid, loads, directions=directions)
-        shares = Shares.of(counterbody, grid)
-        # Cells from labels may miss the counterbody's own by rounding; like bodies share one operator all the same.
-        alike = replace(counterbody.body, reference_depth=body.reference_depth) == body
-        if shares is None and alike and counterbody.start == 0:
+        transfer = CellTransfer.of(counterbody, grid)
+        # Equal bodies share one operator although the cells may differ by rounding.
+        same_body = replace(counterbody.body, reference_depth=body.reference_depth) == body
+        if transfer is None and same_body and counterbody.start == 0:
             return cls(first, first, None)
-        own = counterbody.grid_on_body(grid)
-        return cls(first, surface_operator(counterbody.body, own, loads, directions=directions), shares)
+        second_grid = counterbody.grid_on_body(grid)
+        return cls(first, surface_operator(counterbody.body, second_grid, loads, directions=directions), transfer)
 
     def __call__(self, loads: Mapping[Load, FloatArray]) -> FloatArray:
         """Displacement (m) of the cells towards each other under `loads` on the first body (Pa)."""
-        return self.displaced(loads, (Load.NORMAL,))[Load.NORMAL]
+        return self.compute_displacements(loads, (Load.NORMAL,))[Load.NORMAL]
 
-    def displaced(self, loads: Mapping[Load, FloatArray], directions: Sequence[Load]) -> dict[Load, FloatArray]:
+    def compute_displacements(
+        self, loads: Mapping[Load, FloatArray], directions: Sequence[Load]
+    ) -> dict[Load, FloatArray]:
         """Relative displacements (m) in some `directions` under `loads` on the first body (Pa)."""
-        if self.counterbody is self.body and self._shares is None:
-            return self._twice(loads, directions)
-        shares = self._shares
+        if self.counterbody is self.body and self._transfer is None:
+            return self._displacements_of_equal_bodies(loads, directions)
+        transfer = self._transfer
         reaction = {
-            load: _opposed(load, cells if shares is None else shares.to @ cells) for load, cells in loads.items()
+            load: _reverse_tangential(load, cells if transfer is None else transfer.to_second @ cells)
+            for load, cells in loads.items()
         }
-        relative = self.body.displaced(loads, directions)
-        for direction, other in self.counterbody.displaced(reaction, directions).items():
-            moved = other if shares is None else shares.back @ other
-            relative[direction] = relative[direction] + _opposed(direction, moved)
+        relative = self.body.compute_displacements(loads, directions)
+        for direction, values in self.counterbody.compute_displacements(reaction, directions).items():
+            second = values if transfer is None else transfer.to_first @ values
+            relative[direction] = relative[direction] + _reverse_tangential(direction, second)
         return relative
 
-    def _twice(self, loads: Mapping[Load, FloatArray], directions: Sequence[Load]) -> dict[Load, FloatArray]:
+    def _displacements_of_equal_bodies(
+        self, loads: Mapping[Load, FloatArray], directions: Sequence[Load]
+    ) -> dict[Load, FloatArray]:
         """Relative displacements of equal bodies: tangential ones of a pressure, normal ones of tractions cancel."""
         relative = {direction: np.zeros(self.body.grid.shape) for direction in directions}
-        for normal in (True, False):
-            own = {load: cells for load, cells in loads.items() if (load is Load.NORMAL) == normal}
-            asked = [direction for direction in directions if (direction is Load.NORMAL) == normal]
-            if own and asked:
-                for direction, each in self.body.displaced(own, asked).items():
-                    relative[direction] = 2 * each
+        for is_normal in (True, False):
+            acting = {load: cells for load, cells in loads.items() if (load is Load.NORMAL) == is_normal}
+            observed = [direction for direction in directions if (direction is Load.NORMAL) == is_normal]
+            if acting and observed:
+                for direction, displacement in self.body.compute_displacements(acting, observed).items():
+                    relative[direction] = 2 * displacement
         return relative
 
     def precondition(self, gap: FloatArray) -> FloatArray:
-        """Roughly the pressure that closes the gap."""
+        """Approximate pressure that closes the gap."""
         return self.body.precondition(gap) / self._softer
 
     @cached_property
@@ -108,8 +113,10 @@ class PairOperator:
         """Approximate operator on cells of twice the size; without pairs of cells the softened first body."""
         if self.counterbody.grid.cells_x % 2:
             return ScaledOperator(self.body.coarse, self._softer)
-        shares = self._shares and Shares(2 * cell_means(self._shares.to), 2 * cell_means(self._shares.back))
-        return PairOperator(self.body.coarse, self.counterbody.coarse, shares)
+        transfer = self._transfer and CellTransfer(
+            2 * cell_means(self._transfer.to_second), 2 * cell_means(self._transfer.to_first)
+        )
+        return PairOperator(self.body.coarse, self.counterbody.coarse, transfer)
 
 
 @dataclass(frozen=True, eq=False)
@@ -124,7 +131,7 @@ class ScaledOperator:
         return self.factor * self.operator(loads)
 
     def precondition(self, gap: FloatArray) -> FloatArray:
-        """Roughly the pressure that sinks the cells by `gap`."""
+        """Approximate pressure for a normal displacement `gap`."""
         return self.operator.precondition(gap) / self.factor
 
     @property
@@ -145,7 +152,7 @@ class PrescribedSurface:
         return np.asarray(self.operator.matvec(loads[Load.NORMAL].ravel()).reshape(self.body.grid.shape))
 
     def precondition(self, gap: FloatArray) -> FloatArray:
-        """Pressure that roughly closes the gap."""
+        """Approximate pressure that closes the gap."""
         return self.body.precondition(gap)
 
     @property
