@@ -43,7 +43,7 @@ from contactstudy import (
 from contactstudy.arrays.variables import STRESSES
 from contactstudy.bodies.models import BodyWithFreeEnds
 from contactstudy.contact.normal.contact import CONVERGED_TOLERANCES
-from contactstudy.kernels.fine_cells import REACH
+from contactstudy.kernels.fine_cells import MAX_REFINED_DEPTH
 
 
 def finite_values(solution: SolvedCase) -> bool:
@@ -267,7 +267,7 @@ def equilibrium(solution: SolvedCase) -> bool:
     depth = rng.uniform(1.0, 2.0) * size
     step = 0.02 * min(size, high - low)
     # Here the load's cells change from fine to coarse, and on few cells the stresses by up to 1e-3 of the peak.
-    for change in (REACH * grid.dy, REACH * float(grid.widths.max())):
+    for change in (MAX_REFINED_DEPTH * grid.dy, MAX_REFINED_DEPTH * float(grid.widths.max())):
         if abs(depth - change) < 2 * step:
             depth = change + 2 * step
     position = [low + rng.uniform(0.1, 0.9) * (high - low), rng.uniform(-1.0, 1.0) * a, depth]
