@@ -1,5 +1,6 @@
 """Worst pressure over the amplitude of Lundberg's profile, with errors; grey: equivalent designs."""
 
+import xarray as xr
 from matplotlib import pyplot
 
 import contactstudy as cs
@@ -12,7 +13,7 @@ case = cs.Case(
 )
 
 
-def over_p0(result):
+def over_p0(result: xr.Dataset) -> tuple[xr.DataArray, xr.DataArray]:
     """Largest pressure over p0, and its error."""
     p0 = result.hertz_max_pressure
     return result.peak_pressure / p0, result.peak_pressure_error / p0

@@ -9,7 +9,7 @@ steel = cs.Material(young=210e9, poisson=0.3)
 crown = cs.profiles.Lundberg(amplitude=1.5e-6)
 
 
-def contact(relative_radius, width):
+def contact(relative_radius: float, width: float) -> cs.Case:
     """Return the roller on one raceway, as two elastic bodies of steel."""
     roller = cs.Roller(radius=relative_radius, length=10e-3, profile=crown, material=steel)
     return cs.Case(body=cs.FiniteLengthSpace(length=width, material=steel), roller=roller, load=3000.0, tilt=0.5e-3)

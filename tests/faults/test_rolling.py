@@ -10,12 +10,12 @@ from benchmarks.faults import rolling
 
 
 def test_rolling_study_has_requested_size() -> None:
-    assert [rolling.rolling_study(cases).size for cases in (500, 12)] == [500, 12]
+    assert [rolling.rolling_study(cases).size for cases in (500, 6)] == [500, 6]
 
 
 @pytest.mark.system
 def test_killed_rolling_run_equals_undisturbed_run(tmp_path: Path) -> None:
-    study = rolling.rolling_study(12)
+    study = rolling.rolling_study(6)
     undisturbed = rolling.run(study, tmp_path / "undisturbed", 0)
     assert bool(undisturbed["converged"].all())
     assert not rolling.different(undisturbed, rolling.run(study, tmp_path / "killed", 2, 2))
