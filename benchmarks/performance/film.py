@@ -11,16 +11,19 @@ import xarray as xr
 
 from benchmarks.performance.problems import STEEL
 from benchmarks.performance.timing import Report, Row, show
-from contactstudy import Case, FiniteLengthSpace, HalfSpace, Lubricant, Roller, Sliding
+from contactstudy import Case, FiniteLengthSpace, HalfSpace, Lubricant, Roller, Sliding, cache
 from contactstudy.checks import FloatArray
 from contactstudy.film import solve_film
-from contactstudy.profiles import Shape
+from contactstudy.profiles import Lundberg, Shape
 
 RADIUS, LENGTH, HALF_WIDTH = 5e-3, 10e-3, 65e-6
 MOES_LOAD, MOES_LUBRICANT = 20.0, 10.0
 SPEED = 1.0
 NEXT_SPEED = (0.8, 1.25)
 """Next speeds over the first."""
+
+SPEEDS = (8.0, 2.0, 1.0, 0.3)
+"""Speeds of a crowned roller, m/s: the table of docs/explanation/film.md."""
 
 ACCURACY = 0.02
 
@@ -51,6 +54,20 @@ def roller_case(speed: float, *, free_ends: bool) -> Case:
         max_pressure=pressure,
         motion=Sliding(body_speed=speed, roller_speed=speed),
         lubricant=oil,
+    )
+
+
+def crowned_case(speed: float) -> Case:
+    """A rigid roller with Lundberg's crown for 1 GPa on a flush steel body, in an oil of VG 220 at 70 C."""
+    crown = Lundberg.for_pressure(1e9, radius=RADIUS, modulus=STEEL.plane_strain_modulus)
+    return Case(
+        body=FiniteLengthSpace(length=LENGTH, material=STEEL),
+        roller=Roller(radius=RADIUS, length=LENGTH, profile=crown),
+        max_pressure=1e9,
+        motion=Sliding(body_speed=speed, roller_speed=speed),
+        lubricant=Lubricant.from_kinematic(
+            70.0, viscosities={40: 220.0, 100: 19.0}, density=870.0, pressure_viscosity=20e-9
+        ),
     )
 
 
@@ -87,4 +104,18 @@ def films(_: int, report: Report) -> Iterator[Row]:
             f"{next_seconds / seconds:.2f}",
             "0.25",
             next_seconds <= 0.25 * seconds,
+        )
+    for speed in SPEEDS:
+        cache.clear()
+        seconds, film = timed_film(crowned_case(speed))
+        central, least = (
+            f"{1e9 * float(film[name]):.1f} +- {1e9 * float(film[f'{name}_error']):.1f} nm"
+            for name in ("central_film", "least_film")
+        )
+        yield Row(
+            f"film of a crowned roller, 10 mm, VG 220 at 70 C, {speed:g} m/s",
+            show(seconds),
+            notes=f"M = {float(film['moes_load']):.1f}, L = {float(film['moes_lubricant']):.0f}, "
+            f"central film {central}, least film {least}, "
+            f"{int(film['newton_steps'])} Newton and {int(film['linear_steps'])} GMRES steps",
         )

@@ -25,7 +25,7 @@ design = cs.design.best_profile(
     bounds={"amplitude": (0.5e-6, 10e-6)},
     measure=over_p0,
     max_pressures=[1.2e9, 1.8e9],
-    tilts=[0.2e-3],
+    tilts=[0.5e-3],
     accuracy=0.02,
     evaluations=14,
 )

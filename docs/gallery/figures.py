@@ -21,7 +21,7 @@ from typing import NamedTuple
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
 RECORD = HERE / "figures.json"
-BLOCKS = re.compile(r"^```(?:python|toml)\n(.*?)^```", re.DOTALL | re.MULTILINE)
+BLOCKS = re.compile(r"^```(python|toml)\n(.*?)^```", re.DOTALL | re.MULTILINE)
 
 
 class Program(NamedTuple):
@@ -80,10 +80,14 @@ def sources_of(name: str) -> list[Path]:
     return [page if page.exists() else HERE / f"{name}.py"]
 
 
+def blocks_of(page: Path, language: str) -> str:
+    """Blocks of a page in a language, one after the other."""
+    return "\n".join(text for name, text in BLOCKS.findall(page.read_text()) if name == language)
+
+
 def code_of(source: Path) -> str:
-    """Code of a module, or of a page's blocks."""
-    text = source.read_text()
-    return "\n".join(BLOCKS.findall(text)) if source.suffix == ".md" else text
+    """Python code of a module, or of a page's blocks."""
+    return blocks_of(source, "python") if source.suffix == ".md" else source.read_text()
 
 
 def names() -> list[str]:
@@ -99,12 +103,8 @@ def studies_of(code: str) -> list[Path]:
 
 
 def statements(source: Path) -> str:
-    """Syntax tree of a module or page without comments and docstrings; settings of a study as they stand."""
-    code = code_of(source)
-    try:
-        tree = ast.parse(code)
-    except SyntaxError:
-        return code
+    """Syntax tree of a module or page without comments and docstrings."""
+    tree = ast.parse(code_of(source))
     for node in ast.walk(tree):
         if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef):
             node.body = [entry for entry in node.body if not is_text(entry)]
@@ -125,7 +125,8 @@ def digests() -> dict[str, str]:
         code = "\n".join(map(code_of, sources))
         called = set(re.findall(r"\bplot_\w+|\bstudy_figures", code))
         used = [module for module in modules if called & set(re.findall(r"^def (\w+)", code_of(module), re.MULTILINE))]
-        text = "".join([*(statements(source) for source in sources + used), *map(Path.read_text, studies_of(code))])
+        settings = [blocks_of(source, "toml") for source in sources if source.suffix == ".md"]
+        text = "".join([*map(statements, sources + used), *settings, *map(Path.read_text, studies_of(code))])
         hashes[name] = hashlib.sha256(text.encode()).hexdigest()[:16]
     return hashes
 
