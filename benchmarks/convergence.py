@@ -130,9 +130,9 @@ def point_contact() -> Table:
 def stress_grid() -> Table:
     """Stresses under a smooth load over the grid."""
     case = LOAD_CASES["full_sliding"]
-    below = load_reference(STRESS_FILE, "full_sliding").sel(z=slice(0.0999, None))
-    points = {axis: below[axis].values.astype(float) for axis in "xyz"}
-    expected = np.array([below[name].transpose("x", "y", "z").values for name in STRESSES])
+    reference_stress = load_reference(STRESS_FILE, "full_sliding").sel(z=slice(0.0999, None))
+    points = {axis: reference_stress[axis].values.astype(float) for axis in "xyz"}
+    expected = np.array([reference_stress[name].transpose("x", "y", "z").values for name in STRESSES])
     body = FiniteLengthSpace(length=case.length, material=unit_material(case.poisson))
     cells = (8, 16, 32, 64)
     errors = []
@@ -178,8 +178,8 @@ def contact_grid() -> Table:
         source="96 cells per a",
         values=counts,
         errors={
-            f"load on the last {mark:g}a / (p0 a^2)": tuple(column)
-            for mark, column in zip(marks, errors.T, strict=True)
+            f"load on the last {end_mark:g}a / (p0 a^2)": tuple(column)
+            for end_mark, column in zip(marks, errors.T, strict=True)
         },
         tolerance=5e-3,
         used=16,

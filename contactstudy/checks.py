@@ -62,7 +62,7 @@ ComplexArray = npt.NDArray[np.complex128]
 IntArray = npt.NDArray[np.int64]
 BoolArray = npt.NDArray[np.bool_]
 TEMPORARY_SUFFIX = ".part"  # Suffix of an unfinished file
-REAL = "biufO"  # Kinds of arrays whose values can be real numbers: not complex ones, dates or texts
+REAL_KINDS = "biufO"  # Kinds of arrays whose values can be real numbers: not complex ones, dates or texts
 
 
 def store(checked: object, **values: object) -> None:
@@ -119,10 +119,10 @@ def _check_range(name: str, value: object, unit: str, minimum: float, allowed: s
     allowed += f" ({unit})" if unit else ""
     number = scalar(name, value, unit)
     if not isinstance(number, bool) and isinstance(number, Real):
-        real = _float(number)
-        if minimum <= real <= MAX_MAGNITUDE:
-            return real
-        if np.isfinite(real) and (real > 0 or minimum < 0):
+        real_number = _float(number)
+        if minimum <= real_number <= MAX_MAGNITUDE:
+            return real_number
+        if np.isfinite(real_number) and (real_number > 0 or minimum < 0):
             sizes = f"{1 / MAX_MAGNITUDE:g} to {MAX_MAGNITUDE:g}"
             raise InvalidInputError(name, value, f"{allowed}, of a size from {sizes}", "units are SI")
     raise InvalidInputError(name, value, allowed)
@@ -182,7 +182,7 @@ def writing(path: Path, name: Callable[[Path], str] | None = None) -> Iterator[P
 def coordinates(name: str, values: object, unit: str = "m") -> FloatArray:
     """Return `values` as a one-dimensional float array, or raise if it is empty, not numbers, or not finite."""
     try:
-        if np.asarray(values).dtype.kind not in REAL:
+        if np.asarray(values).dtype.kind not in REAL_KINDS:
             raise TypeError
         array = np.atleast_1d(np.asarray(values, dtype=np.float64))
     except (TypeError, ValueError, OverflowError):

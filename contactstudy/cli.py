@@ -57,7 +57,7 @@ def main(arguments: Sequence[str] | None = None, *, solver: Solver | None = None
             signal.signal(signal.SIGINT, signal.SIG_IGN)  # the process ends: more of them would break off the ending
         message = str(interrupt) or "interrupted; finished cases are kept, the same command goes on"
         print(f"contactstudy: {message}", file=sys.stderr)
-        return 128 + (interrupt.number if isinstance(interrupt, Terminated) else signal.SIGINT)
+        return 128 + (interrupt.signal_number if isinstance(interrupt, Terminated) else signal.SIGINT)
     except BrokenPipeError:
         # Python flushes the output once more at its end, and would complain.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
@@ -87,8 +87,8 @@ def _study(options: argparse.Namespace) -> Study:
 
 def _parallel(options: argparse.Namespace) -> dict[str, Any]:
     """Arguments of `run_study` that choose the workers."""
-    values = {"workers": options.workers, "scheduler": options.scheduler, "wait": options.wait}
-    return {name: value for name, value in values.items() if value is not None}
+    chosen_options = {"workers": options.workers, "scheduler": options.scheduler, "wait": options.wait}
+    return {name: value for name, value in chosen_options.items() if value is not None}
 
 
 def _run(options: argparse.Namespace, solver: Solver | None) -> int:
@@ -281,17 +281,17 @@ def command_parser() -> argparse.ArgumentParser:
     parser.add_argument("--verbose", action="store_true", help="log to the error output")
     commands = parser.add_subparsers(dest="command", metavar="COMMAND")
 
-    def command(action: Action, source: str, text: str) -> argparse.ArgumentParser:
-        child = commands.add_parser(action.__name__.strip("_"), help=text, description=text)
+    def command(action: Action, path_kind: str, description: str) -> argparse.ArgumentParser:
+        child = commands.add_parser(action.__name__.strip("_"), help=description, description=description)
         child.set_defaults(action=action)
         meanings = {
             "study": "study file (TOML)",
             "folder": "results of a study",
             "file_or_folder": "netCDF file of a case, or a study's folder",
         }
-        if source:
-            child.add_argument("path", metavar=source.upper(), type=Path, help=meanings[source])
-        if source == "study":
+        if path_kind:
+            child.add_argument("path", metavar=path_kind.upper(), type=Path, help=meanings[path_kind])
+        if path_kind == "study":
             child.add_argument("--out", metavar="FOLDER", type=Path, help="results; default results/<study name>")
         return child
 

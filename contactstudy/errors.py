@@ -92,7 +92,7 @@ class WindowError(ContactStudyError):
 class Terminated(KeyboardInterrupt):
     """SIGTERM or SIGHUP ended a run; the cleanup equals that of Ctrl-C."""
 
-    number = 15
+    signal_number = 15
 
 
 class ConvergenceWarning(UserWarning):

@@ -91,18 +91,18 @@ def self_affine(
     minimum = 2 * max(grid.dx, grid.dy)
     if shortest < minimum * (1 - 1e-12):
         raise InvalidInputError("shortest", shortest, f"at least two cells, {minimum:g} m", "or take a finer grid")
-    maximum = max(grid.dx * grid.cells_x, grid.dy * grid.cells_y)
-    if not shortest <= longest <= maximum * (1 + 1e-12):
-        raise InvalidInputError("longest", longest, f"between shortest and the grid's larger side, {maximum:g} m")
+    larger_side = max(grid.dx * grid.cells_x, grid.dy * grid.cells_y)
+    if not shortest <= longest <= larger_side * (1 + 1e-12):
+        raise InvalidInputError("longest", longest, f"between shortest and the grid's larger side, {larger_side:g} m")
     x, y = np.fft.fftfreq(grid.cells_x, grid.dx), np.fft.rfftfreq(grid.cells_y, grid.dy)
     frequency = np.hypot(x[:, None], y[None, :])
-    rough = (frequency >= (1 - 1e-9) / longest) & (frequency <= (1 + 1e-9) / shortest)
-    if not rough.any():
+    is_rough = (frequency >= (1 - 1e-9) / longest) & (frequency <= (1 + 1e-9) / shortest)
+    if not is_rough.any():
         raise InvalidInputError(
             "longest, shortest", (longest, shortest), "wavelengths with at least one wave of the grid between them"
         )
     amplitude = np.zeros(frequency.shape)
-    amplitude[rough] = frequency[rough] ** -(1 + hurst)
+    amplitude[is_rough] = frequency[is_rough] ** -(1 + hurst)
     noise = np.random.default_rng(seed).standard_normal(grid.shape)
     heights = np.fft.irfft2(amplitude * np.fft.rfft2(noise), s=grid.shape)
     heights *= rms_height / np.sqrt(np.mean(heights**2))
@@ -171,10 +171,10 @@ def read_height_map(
     if y is None:
         raise InvalidInputError("path", str(path), "a file with heights over x and y", "it holds one line")
     if corner is not None:
-        first = checks.coordinates("corner", corner, "metres")
-        if first.size != 2:
+        first_point = checks.coordinates("corner", corner, "metres")
+        if first_point.size != 2:
             raise InvalidInputError("corner", corner, "two positions, x and y (metres)")
-        x, y = x - x[0] + first[0], y - y[0] + first[1]
+        x, y = x - x[0] + first_point[0], y - y[0] + first_point[1]
     check_positions("x", x)
     check_positions("y", y)
     check_values("height", heights, ("x", x), ("y", y))
@@ -198,7 +198,8 @@ def heights_on(grid: Grid, heights: xr.DataArray) -> FloatArray:
     Raises
     ------
     InvalidInputError
-        If it is not such a map, holds values that are not numbers, or does not cover the grid.
+        If `heights` is not a DataArray (x, y) on a uniform grid, contains a value that is not finite, or does not cover
+        the grid.
 
     Warns
     -----

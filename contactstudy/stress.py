@@ -44,8 +44,8 @@ def von_mises_of(
     xx: FloatArray, yy: FloatArray, zz: FloatArray, xy: FloatArray, xz: FloatArray, yz: FloatArray
 ) -> FloatArray:
     """Equivalent stress of arrays of components, Pa."""
-    squared: FloatArray = 0.5 * ((xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2) + 3 * (xy**2 + xz**2 + yz**2)
-    root: FloatArray = squared**0.5
+    squared_stress: FloatArray = 0.5 * ((xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2) + 3 * (xy**2 + xz**2 + yz**2)
+    root: FloatArray = squared_stress**0.5
     return root
 
 
@@ -82,15 +82,15 @@ def principal_stresses(stress: xr.Dataset) -> xr.Dataset:
     if not np.isfinite(tensor).all():
         raise InvalidInputError("stress", "values that are not finite", "finite stresses")
     values, vectors = np.linalg.eigh(tensor.reshape(*tensor.shape[:-1], 3, 3))
-    first = components[0]
-    dims = tuple(first.dims)
+    first_component = components[0]
+    dims = tuple(first_component.dims)
     # eigh sorts upwards and keeps the vectors in columns.
     result = xr.Dataset(
         {
             "principal_stress": ((*dims, PRINCIPAL), values[..., ::-1]),
             "principal_direction": ((*dims, PRINCIPAL, "axis"), np.swapaxes(vectors[..., ::-1], -1, -2)),
         },
-        coords={**first.coords, PRINCIPAL: [1, 2, 3], "axis": list(AXES)},
+        coords={**first_component.coords, PRINCIPAL: [1, 2, 3], "axis": list(AXES)},
     )
     return describe(result)
 
@@ -115,8 +115,8 @@ def tresca(stress: xr.Dataset) -> xr.DataArray:
     2.0
     """
     principal = principal_stresses(stress)["principal_stress"]
-    difference = principal.sel({PRINCIPAL: 1}, drop=True) - principal.sel({PRINCIPAL: 3}, drop=True)
-    return name_array("tresca", difference)
+    shear_diameter = principal.sel({PRINCIPAL: 1}, drop=True) - principal.sel({PRINCIPAL: 3}, drop=True)
+    return name_array("tresca", shear_diameter)
 
 
 def maximum_shear(stress: xr.Dataset) -> xr.DataArray:
@@ -159,9 +159,9 @@ def hydrostatic(stress: xr.Dataset) -> xr.DataArray:
     >>> float(hydrostatic(xr.Dataset({"sigma_xx": -3.0, "sigma_yy": -2.0, "sigma_zz": -1.0})))
     -2.0
     """
-    normal = STRESSES[:3]
-    require(stress, *normal, argument="stress")
-    xx, yy, zz = (stress[name] for name in normal)
+    normal_names = STRESSES[:3]
+    require(stress, *normal_names, argument="stress")
+    xx, yy, zz = (stress[name] for name in normal_names)
     return name_array("hydrostatic", (xx + yy + zz) / 3)
 
 
@@ -197,17 +197,17 @@ def orthogonal_shear_range(stress: xr.Dataset) -> xr.Dataset:
     """
     require(stress, "tau_yz", argument="stress")
     shear = stress["tau_yz"]
-    rolling = [str(dim) for dim in shear.dims if dim in ("y", "y_field")]
-    if len(rolling) != 1 or rolling[0] not in shear.coords:
+    rolling_dims = [str(dim) for dim in shear.dims if dim in ("y", "y_field")]
+    if len(rolling_dims) != 1 or rolling_dims[0] not in shear.coords:
         raise InvalidInputError("stress.dims", shear.dims, "with the rolling direction y or y_field, and its positions")
-    along = rolling[0]
-    if not shear.sizes[along] or not np.isfinite(shear.values).all():
+    rolling_dim = rolling_dims[0]
+    if not shear.sizes[rolling_dim] or not np.isfinite(shear.values).all():
         raise InvalidInputError("stress.tau_yz", "empty or not finite", "finite stresses")
-    difference = shear.max(along) - shear.min(along)
+    shear_range = shear.max(rolling_dim) - shear.min(rolling_dim)
     values = {
-        "orthogonal_shear_range": difference,
-        "orthogonal_shear_amplitude": 0.5 * difference,
-        "y_of_largest_shear": shear.idxmax(along),
-        "y_of_smallest_shear": shear.idxmin(along),
+        "orthogonal_shear_range": shear_range,
+        "orthogonal_shear_amplitude": 0.5 * shear_range,
+        "y_of_largest_shear": shear.idxmax(rolling_dim),
+        "y_of_smallest_shear": shear.idxmin(rolling_dim),
     }
     return xr.Dataset({name: name_array(name, value) for name, value in values.items()})

@@ -63,10 +63,10 @@ def hertz_circle_surface(
 
 def sliding_circle_surface(x: ArrayLike, y: ArrayLike, radius: float, max_traction: float, poisson: float) -> Stress:
     """In-plane stresses on the surface inside the circle, from the traction `q` alone (Johnson section 7.1)."""
-    scale = -np.pi * max_traction / (8 * radius)
+    traction_scale = -np.pi * max_traction / (8 * radius)
     xs, ys = np.broadcast_arrays(np.asarray(x, dtype=float), np.asarray(y, dtype=float))
     return {
-        "sigma_yy": scale * (4 + poisson) * ys,
-        "sigma_xx": scale * 3 * poisson * ys,
-        "tau_xy": scale * (2 - poisson) * xs,
+        "sigma_yy": traction_scale * (4 + poisson) * ys,
+        "sigma_xx": traction_scale * 3 * poisson * ys,
+        "tau_xy": traction_scale * (2 - poisson) * xs,
     }

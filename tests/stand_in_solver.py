@@ -24,7 +24,7 @@ from contactstudy.stress import von_mises
 from contactstudy.study import worker
 from contactstudy.study.settings import RunSettings
 
-FAILS, DIES, IS_WRONG, IS_LARGE = 0.66, 0.77, 0.88, 0.99
+FAILS, DIES, WRONG_FRICTION, IS_LARGE = 0.66, 0.77, 0.88, 0.99
 """Friction at which the case fails, kills its process, meets an error of the program, or asks for too much memory."""
 
 
@@ -45,7 +45,7 @@ def solve_fake(
         raise WindowError("this friction fails in tests")
     if case.friction == DIES:
         os.kill(os.getpid(), signal.SIGKILL)
-    if case.friction == IS_WRONG:
+    if case.friction == WRONG_FRICTION:
         raise ZeroDivisionError("a bug")
     if case.friction == IS_LARGE:
         raise MemoryError("Unable to allocate 7 EiB")

@@ -80,5 +80,7 @@ def test_accessor_is_registered_in_any_import_order(first: str) -> None:
 def test_accessor_is_registered_by_xarray_backend(case_result: xr.Dataset, tmp_path) -> None:
     case_result.to_netcdf(tmp_path / "case.nc")
     code = "import sys, xarray; print(xarray.open_dataset(sys.argv[1]).contact.summary())"
-    run = subprocess.run([sys.executable, "-c", code, tmp_path / "case.nc"], check=True, capture_output=True, text=True)
-    assert "Hertz pressure p0" in run.stdout
+    finished_process = subprocess.run(
+        [sys.executable, "-c", code, tmp_path / "case.nc"], check=True, capture_output=True, text=True
+    )
+    assert "Hertz pressure p0" in finished_process.stdout

@@ -65,11 +65,11 @@ def test_keyword_arguments_belong_to_key() -> None:
     assert cache.info().kinds["products"].computed == 2
 
 
-def test_kinds_do_not_meet() -> None:
-    first, _ = recording_function("first")
-    second, calls = recording_function("second")
-    first("same")
-    second("same")
+def test_kinds_have_separate_keys() -> None:
+    first_value, _ = recording_function("first")
+    second_value, calls = recording_function("second")
+    first_value("same")
+    second_value("same")
     assert calls == ["same"]
     kinds = cache.info().kinds
     assert (kinds["first"].values, kinds["second"].values) == (1, 1)

@@ -9,7 +9,7 @@ import xarray as xr
 
 from contactstudy.cli import main
 from tests.small_study import BASE, as_toml, small_study
-from tests.stand_in_solver import FAILS, IS_WRONG, solve_fake
+from tests.stand_in_solver import FAILS, WRONG_FRICTION, solve_fake
 from tests.study.conftest import ROOT
 
 
@@ -151,7 +151,7 @@ def test_wrong_number_of_workers(study_file, capsys):
 
 
 def test_program_error_is_raised(study_file):
-    study_file.write_text(as_toml(small_study(sweep={"e_over_a": [0], "friction": [IS_WRONG]})))
+    study_file.write_text(as_toml(small_study(sweep={"e_over_a": [0], "friction": [WRONG_FRICTION]})))
     with pytest.raises(ZeroDivisionError):
         run(study_file)
 
@@ -170,9 +170,11 @@ def test_help_avoids_heavy_imports():
         "except SystemExit: pass\n"
         "assert not {'numpy', 'xarray', 'dask', 'matplotlib', 'scipy'} & set(sys.modules)\n"
     )
-    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stderr
-    assert "plan" in done.stdout
+    finished_process = subprocess.run(
+        [sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=False
+    )
+    assert finished_process.returncode == 0, finished_process.stderr
+    assert "plan" in finished_process.stdout
 
 
 @pytest.mark.system

@@ -63,5 +63,5 @@ def test_versions_from_the_command(capsys: pytest.CaptureFixture[str]) -> None:
 @pytest.mark.system
 def test_default_logging_is_silent() -> None:
     code = "import logging, contactstudy as cs; logging.getLogger('contactstudy.x').error('lost')"
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout == done.stderr == ""
+    finished_process = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert finished_process.stdout == finished_process.stderr == ""

@@ -24,7 +24,7 @@ def test_skipped_test_fails_in_ci(tmp_path: Path, content: str, ci: str, fails: 
     path = os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")])
     environment = {key: value for key, value in os.environ.items() if not key.startswith("PYTEST_")}
     environment |= {"CI": ci, "PYTHONPATH": path}
-    done = subprocess.run(
+    finished_process = subprocess.run(
         command,
         cwd=tmp_path,
         env=environment,
@@ -32,5 +32,7 @@ def test_skipped_test_fails_in_ci(tmp_path: Path, content: str, ci: str, fails: 
         text=True,
         check=False,
     )
-    assert ("a skip is a failure" in done.stdout) == fails, done.stdout + done.stderr
-    assert (done.returncode in (1, 2)) == fails, done.stdout
+    assert ("a skip is a failure" in finished_process.stdout) == fails, (
+        finished_process.stdout + finished_process.stderr
+    )
+    assert (finished_process.returncode in (1, 2)) == fails, finished_process.stdout

@@ -18,8 +18,8 @@ def test_import_avoids_heavy_modules() -> None:
     code = (
         "import contactstudy, sys; print(sorted({'numpy', 'xarray', 'scipy', 'matplotlib', 'dask'} & set(sys.modules)))"
     )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout.strip() == "[]"
+    finished_process = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert finished_process.stdout.strip() == "[]"
 
 
 def test_every_public_name_can_be_imported() -> None:
@@ -43,5 +43,5 @@ def test_version_matches_installation() -> None:
 
 def test_python_suggests_public_names_not_yet_imported() -> None:
     code = "import contactstudy; contactstudy.solv"
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
-    assert "Did you mean: 'solve'" in done.stderr
+    finished_process = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert "Did you mean: 'solve'" in finished_process.stderr

@@ -15,7 +15,7 @@ from contactstudy import Grid, InvalidInputError
 from contactstudy.roughness import read_height_map, self_affine
 
 GRID = Grid(x_range=(0.0, 1e-3), y_range=(-0.2e-3, 0.2e-3), cells_x=250, cells_y=100)
-VALUES = {"rms_height": 0.2e-6, "hurst": 0.8, "longest": 0.4e-3, "shortest": 20e-6, "seed": 1}
+SURFACE_PARAMETERS = {"rms_height": 0.2e-6, "hurst": 0.8, "longest": 0.4e-3, "shortest": 20e-6, "seed": 1}
 
 
 def spectrum(height: xr.DataArray, grid: Grid) -> tuple[np.ndarray, np.ndarray]:
@@ -26,7 +26,7 @@ def spectrum(height: xr.DataArray, grid: Grid) -> tuple[np.ndarray, np.ndarray]:
 
 @given(rms=st.floats(1e-9, 1e-5), hurst=st.floats(0.0, 1.0), seed=st.integers(0, 10**6))
 def test_self_affine_height_has_requested_spectrum(rms: float, hurst: float, seed: int) -> None:
-    height = self_affine(GRID, **VALUES | {"rms_height": rms, "hurst": hurst, "seed": seed})
+    height = self_affine(GRID, **SURFACE_PARAMETERS | {"rms_height": rms, "hurst": hurst, "seed": seed})
     assert float(np.sqrt((height**2).mean())) == pytest.approx(rms, rel=1e-12)
     assert abs(float(height.mean())) < 1e-10 * rms
     frequency, power = spectrum(height, GRID)
@@ -53,17 +53,17 @@ def test_surface_is_isotropic_and_gaussian() -> None:
 
 
 def test_seed_determines_surface() -> None:
-    first_surface, second_surface = (self_affine(GRID, **VALUES) for _ in range(2))
+    first_surface, second_surface = (self_affine(GRID, **SURFACE_PARAMETERS) for _ in range(2))
     np.testing.assert_array_equal(first_surface, second_surface)
-    assert np.abs(first_surface - self_affine(GRID, **VALUES | {"seed": 2})).max() > 1e-7
+    assert np.abs(first_surface - self_affine(GRID, **SURFACE_PARAMETERS | {"seed": 2})).max() > 1e-7
 
 
 def test_a_smooth_surface_is_allowed() -> None:
-    assert not self_affine(GRID, **VALUES | {"rms_height": 0.0}).any()
+    assert not self_affine(GRID, **SURFACE_PARAMETERS | {"rms_height": 0.0}).any()
 
 
 def test_attributes_follow_cf_and_survive_a_file(tmp_path: Path) -> None:
-    height = self_affine(GRID, **VALUES)
+    height = self_affine(GRID, **SURFACE_PARAMETERS)
     assert height.attrs["units"] == "m"
     assert "seed=1" in height.attrs["source"]
     assert {height[axis].attrs["units"] for axis in "xy"} == {"m"}
@@ -124,12 +124,12 @@ def test_slope_is_removed_on_request(tmp_path: Path) -> None:
 )
 def test_bad_values_are_named(changes, message: str) -> None:
     with pytest.raises(InvalidInputError, match=message):
-        self_affine(GRID, **VALUES | changes)
+        self_affine(GRID, **SURFACE_PARAMETERS | changes)
 
 
 def test_missing_grid_raises(tmp_path: Path) -> None:
     with pytest.raises(InvalidInputError, match="grid = 'fine'"):
-        self_affine("fine", **VALUES)
+        self_affine("fine", **SURFACE_PARAMETERS)
     with pytest.raises(InvalidInputError, match="grid = None"):
         read_height_map(csv_map(tmp_path / "map.csv"), None)
 
@@ -176,8 +176,8 @@ def test_height_map_is_placed_turned_and_detrended(tmp_path: Path) -> None:
     np.testing.assert_allclose(height_map, 1e-7 * expected, atol=3e-9)
     without_slope = read_height_map(tmp_path / "map.x3p", GRID, corner=corner, remove_slope=True)
     assert float(without_slope.max() - without_slope.min()) > 10 * float(height_map.max() - height_map.min())
-    back = read_height_map(tmp_path / "map.x3p", GRID, corner=corner, turn=180, mirror=True, remove_form=True)
-    np.testing.assert_allclose(back.values[::-1], height_map.values, atol=3e-9)
+    restored_map = read_height_map(tmp_path / "map.x3p", GRID, corner=corner, turn=180, mirror=True, remove_form=True)
+    np.testing.assert_allclose(restored_map.values[::-1], height_map.values, atol=3e-9)
 
 
 def test_bad_maps_of_instruments_are_named(tmp_path: Path) -> None:

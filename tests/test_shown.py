@@ -67,5 +67,7 @@ def test_study_repr_contains_swept_parameters() -> None:
 
 def test_equal_cases_share_preparation() -> None:
     """Texts are rounded; identities are not."""
-    close = [build_setup(BASE | {"e_over_a": 1.0, "young": young}).case.body for young in (210e9, 210.000001e9, 210e9)]
-    assert close[0] == close[2] != close[1]
+    close_case = [
+        build_setup(BASE | {"e_over_a": 1.0, "young": young}).case.body for young in (210e9, 210.000001e9, 210e9)
+    ]
+    assert close_case[0] == close_case[2] != close_case[1]

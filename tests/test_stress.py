@@ -82,10 +82,12 @@ def test_states_done_by_hand(stress: xr.Dataset, expected: tuple[float, float, f
 
 def test_principal_directions_match_mohrs_circle() -> None:
     result = principal_stresses(uniform(sigma_xx=5.0, sigma_yy=-1.0, tau_xy=4.0))
-    first = result["principal_direction"].sel(principal=1)
+    first_direction = result["principal_direction"].sel(principal=1)
     angle = 0.5 * np.arctan2(2 * 4.0, 6.0)
-    along = abs(float(first.sel(axis="x") * np.cos(angle) + first.sel(axis="y") * np.sin(angle)))
-    assert along == pytest.approx(1, abs=1e-12)
+    alignment = abs(
+        float(first_direction.sel(axis="x") * np.cos(angle) + first_direction.sel(axis="y") * np.sin(angle))
+    )
+    assert alignment == pytest.approx(1, abs=1e-12)
     assert abs(float(result["principal_direction"].sel(principal=2, axis="z"))) == pytest.approx(1, abs=1e-12)
 
 

@@ -74,7 +74,7 @@ def main() -> int:
         killer.start()
         seconds_of(study, root / "killed", client)
         killer.join()
-        killed, local = (open_study(root / part).drop_vars("seconds").load() for part in ("killed", "local-0"))
+        killed, local = (open_study(root / parts).drop_vars("seconds").load() for parts in ("killed", "local-0"))
         print(f"one worker killed: results {'equal' if killed.identical(local) else 'DIFFER'}, bit for bit")
         assert not Folder(root / "killed").holders
     return int(not killed.identical(local) or ratio > 1.1)

@@ -28,11 +28,11 @@ def two_systems(undisturbed: xr.Dataset, count: int) -> Row:
     """A second run on this system during the first run on another; the first run ends, or is killed."""
     fault = "a run in another system (host or container, of another name or the same) that shares the folder"
     names = ["another-host", socket.gethostname()]
-    possible = (
+    is_possible = (
         shutil.which("unshare")
         and not subprocess.run([*_system(names[0]), "true"], capture_output=True, check=False).returncode
     )
-    if not possible:
+    if not is_possible:
         return Row(fault, 0, 0, "not tried: no right to make a system with a name of its own")
     passed = sum(_survives(undisturbed, names[index % 2], killed=index % 4 > 1) for index in range(count))
     description = (
@@ -45,20 +45,20 @@ def two_systems(undisturbed: xr.Dataset, count: int) -> Row:
 def _survives(undisturbed: xr.Dataset, name: str, *, killed: bool) -> bool:
     """Whether each case was solved exactly once."""
     with studies.study_folder() as folder:
-        out, study = folder / "out", folder / "study.toml"
-        first = start_run(study, out, "--workers", "0", tickets=2, within=_system(name))
+        outputs, study = folder / "out", folder / "study.toml"
+        first = start_run(study, outputs, "--workers", "0", tickets=2, within=_system(name))
         studies.wait(first, lambda: len(studies.count_finished(folder)) == 2)
-        right = _is_refused(folder, name)
+        is_right = _is_refused(folder, name)
         if killed:
             os.killpg(first.pid, signal.SIGKILL)
             first.communicate()
-            right = right and len(studies.count_finished(folder)) == 2
-            right = right and studies.resume(folder) == {"ok": CASES}
+            is_right = is_right and len(studies.count_finished(folder)) == 2
+            is_right = is_right and studies.resume(folder) == {"ok": CASES}
         else:
-            give_tickets(tickets_of(out), CASES)
+            give_tickets(tickets_of(outputs), CASES)
             first.communicate(timeout=SECONDS)
-            right = right and first.returncode == 0 and not studies.list_leftovers(folder)
-        return right and studies.read_values(folder).identical(undisturbed)
+            is_right = is_right and first.returncode == 0 and not studies.list_leftovers(folder)
+        return is_right and studies.read_values(folder).identical(undisturbed)
 
 
 def _is_refused(folder: Path, name: str) -> bool:

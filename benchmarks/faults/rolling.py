@@ -83,13 +83,13 @@ def run(study: Study, folder: Path, workers: int, kill_at: int | None = None) ->
     return open_study(folder / "out").drop_vars("seconds").load()
 
 
-def different(first: xr.Dataset, second: xr.Dataset) -> list[str]:
+def different(values: xr.Dataset, other_values: xr.Dataset) -> list[str]:
     """Variables in which two studies differ in any bit."""
-    names = {*first.variables, *second.variables}
+    names = {*values.variables, *other_values.variables}
     return sorted(
         str(name)
         for name in names
-        if name not in first or name not in second or not first[name].identical(second[name])
+        if name not in values or name not in other_values or not values[name].identical(other_values[name])
     )
 
 
@@ -104,9 +104,12 @@ def main() -> int:
         print(f"{study.size} cases, {int(undisturbed['converged'].sum())} converged", flush=True)
         for workers in (0, 2, 3):
             result = run(study, Path(name) / f"workers-{workers}", workers, study.size // 2)
-            unlike = different(undisturbed, result)
-            differences += unlike
-            print(f"killed in the middle and resumed, workers = {workers}: {unlike or 'all bits equal'}", flush=True)
+            differing_names = different(undisturbed, result)
+            differences += differing_names
+            print(
+                f"killed in the middle and resumed, workers = {workers}: {differing_names or 'all bits equal'}",
+                flush=True,
+            )
     return int(bool(differences))
 
 

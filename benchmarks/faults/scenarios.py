@@ -93,11 +93,11 @@ def full_disks(undisturbed: xr.Dataset, count: int) -> Row:
                 _, errors = process.communicate(timeout=SECONDS)
                 is_reported = process.returncode == 2 and "Traceback" not in errors
                 cases += len(studies.count_finished(folder))
-                right = is_reported and not studies.list_leftovers(folder) and not studies.unreadable(folder)
+                is_right = is_reported and not studies.list_leftovers(folder) and not studies.unreadable(folder)
                 if can_mount:
                     subprocess.run(["mount", "-o", "remount,size=50m", str(disk)], check=True)
-                right = right and studies.resume(folder) == {"ok": CASES}
-                passed += right and studies.read_values(folder).identical(undisturbed)
+                is_right = is_right and studies.resume(folder) == {"ok": CASES}
+                passed += is_right and studies.read_values(folder).identical(undisturbed)
             finally:
                 if can_mount:
                     subprocess.run(["umount", "-l", str(disk)], check=True)
@@ -124,10 +124,10 @@ def dead_schedulers(undisturbed: xr.Dataset, count: int) -> Row:
                 time.sleep(rng.uniform(0.0, 1.0))
                 address.processes[0].kill()
                 _, errors = process.communicate(timeout=SECONDS)
-            right = process.returncode == 2 and "scheduler has gone away" in errors and "Traceback" not in errors
-            right = right and not Folder(out).holders and not studies.unreadable(folder)
-            right = right and studies.resume(folder) == {"ok": CASES}
-            passed += right and studies.read_values(folder).identical(undisturbed)
+            is_right = process.returncode == 2 and "scheduler has gone away" in errors and "Traceback" not in errors
+            is_right = is_right and not Folder(out).holders and not studies.unreadable(folder)
+            is_right = is_right and studies.resume(folder) == {"ok": CASES}
+            passed += is_right and studies.read_values(folder).identical(undisturbed)
     return Row("scheduler of a cluster killed", count, passed, "code 2, message, no lock held; resumed bit for bit")
 
 
@@ -135,17 +135,21 @@ def damaged_files(undisturbed: xr.Dataset, count: int) -> Row:
     """Batches are torn, changed, exchanged, or foreign."""
     passed = 0
     with studies.study_folder() as folder:
-        aside = folder / "out" / "set-aside"
+        aside_folder = folder / "out" / "set-aside"
         for index in range(count):
             shutil.rmtree(folder / "out", ignore_errors=True)
             with mock.patch.object(Folder, "compact", return_value=None):
                 studies.resume(folder)  # every group is a batch, for none is joined
             path, second_path = rng.sample(studies.batches(folder), 2)
-            lost = len(read_batch(path))
+            lost_cases = len(read_batch(path))
             DAMAGES[index % len(DAMAGES)](path, second_path)
             report = run_study(STUDY, folder / "out", workers=0, solver=solve_fake)
-            right = report.counts == {"ok": CASES} and report.solved == lost and not studies.unreadable(folder)
-            passed += right and len(list(aside.iterdir())) == 1 and studies.read_values(folder).identical(undisturbed)
+            is_right = report.counts == {"ok": CASES} and report.solved == lost_cases and not studies.unreadable(folder)
+            passed += (
+                is_right
+                and len(list(aside_folder.iterdir())) == 1
+                and studies.read_values(folder).identical(undisturbed)
+            )
     return Row(
         "a batch torn, with changed bytes, empty, a text, a folder, exchanged with another or a dangling link",
         count,
@@ -223,15 +227,17 @@ def two_runs(undisturbed: xr.Dataset, count: int) -> Row:
     passed = 0
     with studies.study_folder() as folder:
         out = folder / "out"
-        first = start_run(folder / "study.toml", out, "--workers", "0", tickets=2)
-        studies.wait(first, lambda: len(studies.count_finished(folder)) == 2)
+        first_run = start_run(folder / "study.toml", out, "--workers", "0", tickets=2)
+        studies.wait(first_run, lambda: len(studies.count_finished(folder)) == 2)
         seconds = [start_run(folder / "study.toml", out, "--workers", "0", tickets=0) for _ in range(count)]
-        for second in seconds:
-            _, errors = second.communicate(timeout=SECONDS)
-            passed += second.returncode == 2 and f"process {first.pid} on " in errors and "Traceback" not in errors
+        for second_run in seconds:
+            _, errors = second_run.communicate(timeout=SECONDS)
+            passed += (
+                second_run.returncode == 2 and f"process {first_run.pid} on " in errors and "Traceback" not in errors
+            )
         give_tickets(tickets_of(out), CASES)
-        first.communicate(timeout=SECONDS)
-        is_complete = first.returncode == 0 and studies.read_values(folder).identical(undisturbed)
+        first_run.communicate(timeout=SECONDS)
+        is_complete = first_run.returncode == 0 and studies.read_values(folder).identical(undisturbed)
     return Row(
         "a second run while the first goes on",
         count,
@@ -249,9 +255,9 @@ def at_once(undisturbed: xr.Dataset, count: int) -> Row:
             error_texts = [run.communicate(timeout=SECONDS)[1] for run in runs]
             codes = [run.returncode for run in runs]
             # Both may run to the end, one after the other.
-            right = codes in ([0, 2], [2, 0], [0, 0]) and not any("Traceback" in errors for errors in error_texts)
+            is_right = codes in ([0, 2], [2, 0], [0, 0]) and not any("Traceback" in errors for errors in error_texts)
             passed += (
-                right and not studies.list_leftovers(folder) and studies.read_values(folder).identical(undisturbed)
+                is_right and not studies.list_leftovers(folder) and studies.read_values(folder).identical(undisturbed)
             )
     return Row(
         "two runs begun at once", count, passed, "one solves, the other is refused or finds all done; bit for bit"
@@ -263,10 +269,10 @@ def clock_steps(undisturbed: xr.Dataset, count: int) -> Row:
     passed = 0
     for _ in range(count):
         with studies.study_folder() as folder, _jumping_clock():
-            right = studies.resume(folder) == {"ok": CASES} and not studies.list_leftovers(folder)
+            is_right = studies.resume(folder) == {"ok": CASES} and not studies.list_leftovers(folder)
             studies.batches(folder)[0].unlink()
-            right = right and studies.resume(folder) == {"ok": CASES}
-            passed += right and studies.read_values(folder).identical(undisturbed)
+            is_right = is_right and studies.resume(folder) == {"ok": CASES}
+            passed += is_right and studies.read_values(folder).identical(undisturbed)
     return Row(
         "time of day jumps by up to ten years at every reading",
         count,

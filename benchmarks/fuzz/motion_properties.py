@@ -22,8 +22,8 @@ def law_of_friction(solution: SolvedCase) -> bool:
     q, slip = (np.stack([result[f"{name}_{axis}"].values for axis in "xy"]) for name in ("traction", "slip"))
     in_contact, sticks = result["pressure"].values > 0, result["stick"].values.astype(bool)
     bound, max_bound = friction * result["pressure"].values, friction * solution.peak
-    excess = float((np.hypot(*q) - bound).max()) / max_bound
-    require(excess <= 1e-9, f"a traction {excess:.3g} above its bound")
+    bound_excess = float((np.hypot(*q) - bound).max()) / max_bound
+    require(bound_excess <= 1e-9, f"a traction {bound_excess:.3g} above its bound")
     require(not q[:, ~in_contact].any(), "traction without pressure")
     scale = max(float(np.hypot(*slip)[in_contact].max()), np.finfo(float).tiny)
     if isinstance(solution.random_case.case.motion, Rolling) and solution.random_case.case.motion.model == "fastsim":
@@ -34,10 +34,10 @@ def law_of_friction(solution: SolvedCase) -> bool:
         "a cell sticks and slips",
     )
     slides = in_contact & ~sticks
-    against = (q * slip).sum(axis=0)[slides] / max_bound
-    require(float(-against.min(initial=0.0)) <= SLIPS * max(scale, moves), "slip against its traction")
-    loose = np.abs(np.hypot(*q) - bound)[slides].max(initial=0.0) / max_bound
-    require(float(loose) <= 1e-6, f"a cell slips at {loose:.3g} below its bound")
+    opposed_slip = (q * slip).sum(axis=0)[slides] / max_bound
+    require(float(-opposed_slip.min(initial=0.0)) <= SLIPS * max(scale, moves), "slip against its traction")
+    loose_cells = np.abs(np.hypot(*q) - bound)[slides].max(initial=0.0) / max_bound
+    require(float(loose_cells) <= 1e-6, f"a cell slips at {loose_cells:.3g} below its bound")
     return True
 
 
@@ -65,12 +65,12 @@ def forces_of_tractions(solution: SolvedCase) -> bool:
         "moment_z": (float((area * (q_y * arm - q_x * grid.y)).sum()), full_sliding * case.roller.length),
     }
     for name, (value, scale) in residuals.items():
-        off = abs(float(result[name]) - value) / scale
-        require(off <= 1e-6, f"{name} is {off:.3g} off the tractions' own")
+        difference = abs(float(result[name]) - value) / scale
+        require(difference <= 1e-6, f"{name} is {difference:.3g} off the tractions' own")
         prescribed = getattr(case.motion, name, None)
         if prescribed is not None:
-            off = abs(float(result[name]) - prescribed) / scale
-            require(off <= 1e-3, f"{name} is {off:.3g} off what was prescribed")
+            difference = abs(float(result[name]) - prescribed) / scale
+            require(difference <= 1e-3, f"{name} is {difference:.3g} off what was prescribed")
     return True
 
 
@@ -118,15 +118,15 @@ def turned_round(solution: SolvedCase) -> bool:
     extent = np.isfinite(solution.random_case.case.body.extent)
     if extent[0] != extent[1]:
         return False
-    mirrored = _solve_again(solution.cells.from_other_end())
-    if mirrored is None:
+    mirrored_solution = _solve_again(solution.cells.from_other_end())
+    if mirrored_solution is None:
         return False
     for axis, sign in (("x", -1), ("y", 1)):
         traction = solution.result[f"traction_{axis}"].values
         _require_equal(
             "turned round",
             traction,
-            sign * mirrored[f"traction_{axis}"].values[::-1],
+            sign * mirrored_solution[f"traction_{axis}"].values[::-1],
             solution.random_case.case.friction * solution.peak,
         )
     return True
@@ -135,11 +135,14 @@ def turned_round(solution: SolvedCase) -> bool:
 def other_units(solution: SolvedCase) -> bool:
     """Lengths and moduli in other units."""
     length, modulus = (2.0 ** solution.rng.randint(-12, 12) for _ in range(2))
-    other = _solve_again(solution.cells.scale(length, modulus))
-    if other is None:
+    other_solution = _solve_again(solution.cells.scale(length, modulus))
+    if other_solution is None:
         return False
     for axis in "xy":
-        traction, scaled = solution.result[f"traction_{axis}"].values, other[f"traction_{axis}"].values / modulus
+        traction, scaled = (
+            solution.result[f"traction_{axis}"].values,
+            other_solution[f"traction_{axis}"].values / modulus,
+        )
         _require_equal(
             f"lengths x {length:g}, moduli x {modulus:g}",
             traction,
@@ -171,7 +174,7 @@ def _solve_again(random_case: RandomCase) -> xr.Dataset | None:
     return result if bool(result["converged"]) else None
 
 
-ALWAYS: tuple[Callable[[SolvedCase], bool], ...] = (
+CONSTANT_CHECKS: tuple[Callable[[SolvedCase], bool], ...] = (
     law_of_friction,
     forces_of_tractions,
     certificate_of_friction,
@@ -180,5 +183,5 @@ ALWAYS: tuple[Callable[[SolvedCase], bool], ...] = (
 )
 """Cheap properties."""
 
-IN_TURN: tuple[Callable[[SolvedCase], bool], ...] = (turned_round, other_units)
+RANDOM_CHECKS: tuple[Callable[[SolvedCase], bool], ...] = (turned_round, other_units)
 """Properties that need a second solution."""

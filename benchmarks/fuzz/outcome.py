@@ -70,9 +70,9 @@ def _check_properties(random_case: RandomCase, rng: Random, checked: list[str]) 
     if not bool(result["converged"]):
         return "not converged", ""
     solution = SolvedCase(random_case, result, rng)
-    always, in_turn = properties.ALWAYS, properties.IN_TURN
+    always, in_turn = properties.CONSTANT_CHECKS, properties.RANDOM_CHECKS
     if solution.moves:
-        always, in_turn = always + motion_properties.ALWAYS, motion_properties.IN_TURN
+        always, in_turn = always + motion_properties.CONSTANT_CHECKS, motion_properties.RANDOM_CHECKS
     for holds in always:
         checked.append(holds.__name__)
         if not holds(solution):

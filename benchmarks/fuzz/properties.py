@@ -73,8 +73,8 @@ def balance(solution: SolvedCase) -> bool:
     """The pressure carries the load, where the load acts."""
     case, grid = solution.random_case.case, solution.grid
     forces = solution.result["pressure"].values.sum(axis=1) * grid.widths * grid.dy
-    off = abs(float(forces.sum()) / case.normal_load - 1)
-    require(off <= 1e-5, f"the pressure carries {off:.3g} more or less than the load")
+    difference = abs(float(forces.sum()) / case.normal_load - 1)
+    require(difference <= 1e-5, f"the pressure carries {difference:.3g} more or less than the load")
     if case.load_position is not None:
         arm = abs(float((forces * (grid.x - case.load_position)).sum())) / forces.sum() / case.contact_length
         require(arm <= 1e-4, f"the load acts {arm:.3g} of the length beside its position")
@@ -98,8 +98,8 @@ def complementarity(solution: SolvedCase) -> bool:
     opening = result["initial_gap"].values + displacement - float(result["approach"]) - tilt * arm
     in_contact = result["pressure"].values > 0
     variation = float(np.ptp(displacement))
-    worst = max(float(np.abs(opening[in_contact]).max()), float(-opening.min())) / variation
-    require(worst <= 2e-5, f"gap or overlap of {worst:.3g} of the displacement under pressure")
+    largest_variation = max(float(np.abs(opening[in_contact]).max()), float(-opening.min())) / variation
+    require(largest_variation <= 2e-5, f"gap or overlap of {largest_variation:.3g} of the displacement under pressure")
     return True
 
 
@@ -224,16 +224,17 @@ def reciprocity(solution: SolvedCase) -> bool:
     body, grid = solution.random_case.case.body, solution.grid
     if isinstance(body, BodyWithFreeEnds) and body.model != "exact":
         return False
-    first = solution.result["pressure"]
+    first_load = solution.result["pressure"]
     noise = np.random.default_rng(solution.rng.randrange(2**32)).random(grid.shape)
-    second = first.copy(data=solution.peak * noise)
-    displacements = [surface_displacement(body, load).values for load in (first, second)]
+    second_load = first_load.copy(data=solution.peak * noise)
+    displacements = [surface_displacement(body, load).values for load in (first_load, second_load)]
     works = [
-        float((grid.weights * p.values * u).sum()) for p, u in ((first, displacements[1]), (second, displacements[0]))
+        float((grid.weights * p.values * u).sum())
+        for p, u in ((first_load, displacements[1]), (second_load, displacements[0]))
     ]
-    size = float((grid.weights * second.values * np.abs(displacements[0])).sum()) + abs(works[0])
-    off = abs(works[0] - works[1]) / size
-    require(off <= RECIPROCITY, f"works differ by {off:.3g}")
+    size = float((grid.weights * second_load.values * np.abs(displacements[0])).sum()) + abs(works[0])
+    difference = abs(works[0] - works[1]) / size
+    require(difference <= RECIPROCITY, f"works differ by {difference:.3g}")
     return True
 
 
@@ -356,14 +357,14 @@ def free_ends(solution: SolvedCase) -> bool:
     On few columns in a thin body a larger traction has to be stated.
     """
     case, grid, rng = solution.random_case.case, solution.grid, solution.rng
-    ends = [end for end in case.body.extent if np.isfinite(end)]
+    ends = [end_x for end_x in case.body.extent if np.isfinite(end_x)]
     if not ends or not isinstance(case.body, BodyWithFreeEnds) or case.body.model != "exact":
         return False
     size = max(grid.dy, float(grid.widths[[0, -1]].max()))
     depths = [magnitude(rng, 0.25, 4.0) * size for _ in range(2)]
-    across = [rng.uniform(*grid.y_range) for _ in range(3)]
+    y = [rng.uniform(*grid.y_range) for _ in range(3)]
     pressure = solution.result["pressure"]
-    field = stress_field(case.body, pressure, friction=case.friction, x=ends, y=across, z=depths, inside_cells=pressure)
+    field = stress_field(case.body, pressure, friction=case.friction, x=ends, y=y, z=depths, inside_cells=pressure)
     end_traction = (
         max(float(np.abs(field[name].values).max()) for name in ("sigma_xx", "tau_xy", "tau_xz")) / solution.peak
     )
@@ -385,15 +386,15 @@ def stated_errors(solution: SolvedCase) -> bool:
     if solution.random_case.grid is not None or solution.random_case.accuracy < 0.02:
         return False
     position = {"x": [float(solution.result.x.mean())], "y": [0.0], "z": [solution.random_case.case.hertz_half_width]}
-    rough, finer = (
+    rough_result, finer_result = (
         run(replace(solution.random_case, accuracy=factor * solution.random_case.accuracy), **position)
         for factor in (1.0, 0.25)
     )
     for name in ("peak_pressure", "end_pressure_first", "end_pressure_last", "peak_von_mises"):
-        error, stress = float(rough[f"{name}_error"]), float(finer[f"{name}_error"])
+        error, stress = float(rough_result[f"{name}_error"]), float(finer_result[f"{name}_error"])
         if not np.isfinite(error + stress):
             continue
-        difference = abs(float(rough[name]) - float(finer[name]))
+        difference = abs(float(rough_result[name]) - float(finer_result[name]))
         tolerance = error + stress
         require(
             difference <= tolerance,
@@ -476,7 +477,7 @@ def two_threads(solution: SolvedCase) -> bool:
     return True
 
 
-ALWAYS: tuple[Callable[[SolvedCase], bool], ...] = (
+CONSTANT_CHECKS: tuple[Callable[[SolvedCase], bool], ...] = (
     finite_values,
     certificate,
     balance,
@@ -487,7 +488,7 @@ ALWAYS: tuple[Callable[[SolvedCase], bool], ...] = (
 )
 """Properties that need no other solution, and the stated errors."""
 
-IN_TURN: tuple[Callable[[SolvedCase], bool], ...] = (
+RANDOM_CHECKS: tuple[Callable[[SolvedCase], bool], ...] = (
     reversed_friction,
     turned_round,
     other_units,

@@ -42,19 +42,19 @@ class RandomCase:
         """Return the case mirrored about mid-length, for symmetric bodies."""
         case, grid = self.case, self.grid
         low, high = case.body.extent
-        total = low + high if np.isfinite(high) else 2 * case.roller_start + case.roller.length
+        length = low + high if np.isfinite(high) else 2 * case.roller_start + case.roller.length
         position = case.load_position
         mirrored_case = replace(
             case,
             roller=replace(case.roller, profile=mirror_profile(case.roller.profile)),
-            end_distance=total - case.roller_start - case.roller.length,
+            end_distance=length - case.roller_start - case.roller.length,
             tilt=-case.tilt,
-            load_position=None if position is None else total - position,
+            load_position=None if position is None else length - position,
             motion=turned_motion(case.motion),
         )
         if grid is None:
             return replace(self, case=mirrored_case)
-        edges = (total - grid.x_edges)[::-1]
+        edges = (length - grid.x_edges)[::-1]
         if np.isfinite(high):
             edges[0], edges[-1] = 0.0, high
         return replace(self, case=mirrored_case, grid=regrid(grid, edges, grid.y_range))

@@ -58,20 +58,22 @@ def stresses(repeats: int, _: Report) -> Iterator[Row]:
     axial = 2 * grid.x[:, None] / length - 1
     ellipse = 1e9 * np.sqrt(np.maximum(1 - axial**2 - (grid.y / HALF_WIDTH) ** 2, 0.0))
 
-    def field(body: Body, friction: float, load: np.ndarray, cold: bool) -> xr.Dataset:
+    def field(body: Body, friction: float, load: np.ndarray, first_call: bool) -> xr.Dataset:
         pressure = xr.DataArray(load * nudge(), coords={"x": grid.x, "y": grid.y}, dims=("x", "y"))
         # Kernels are kept by depth: other depths have none.
-        return stress_field(body, pressure, friction=friction, z=z * nudge() if cold else z, inside_cells=pressure)
+        return stress_field(
+            body, pressure, friction=friction, z=z * nudge() if first_call else z, inside_cells=pressure
+        )
 
-    def time_stresses(friction: float, load: np.ndarray, cold: bool) -> dict[str, float]:
+    def time_stresses(friction: float, load: np.ndarray, first_call: bool) -> dict[str, float]:
         works: dict[str, Callable[[], object]] = {
-            name: partial(field, body, friction, load, cold) for name, body in bodies.items()
+            name: partial(field, body, friction, load, first_call) for name, body in bodies.items()
         }
         return medians(works, repeats)
 
     sliding = time_stresses(0.3, line, False)
-    cold = time_stresses(0.0, line, True)
-    for name, seconds, bar in (("", cold, 0.26), ("..., same cells", time_stresses(0.0, line, False), 0.11)):
+    first_call = time_stresses(0.0, line, True)
+    for name, seconds, bar in (("", first_call, 0.26), ("..., same cells", time_stresses(0.0, line, False), 0.11)):
         yield Row(
             f"six stresses 128 x 128 x 32, uniform along x, half-space{name}",
             show(seconds["half-space"]),

@@ -93,16 +93,16 @@ def point_contact(repeats: int, report: Report) -> Iterator[Row]:
     for cells in (128, 256, 512):
         problem = sphere(cells)
         seconds, note = compare(problem, PEERS, repeats if cells < 512 else min(repeats, 3), report)
-        ours = seconds.pop(OURS)
+        our_seconds = seconds.pop(OURS)
         iterations = float(contact_of(problem)["iterations"])
-        fastest = seconds.get("aspher")
+        fastest_peer = seconds.get("aspher")
         yield Row(
             f"half-space point contact {cells}²",
-            show(ours),
+            show(our_seconds),
             named(seconds),
-            ", ".join(f"{ours / duration:.2f}" for duration in seconds.values()),
+            ", ".join(f"{our_seconds / duration:.2f}" for duration in seconds.values()),
             "no slower than aspher",
-            None if fastest is None else ours <= fastest,
+            None if fastest_peer is None else our_seconds <= fastest_peer,
             f"{note}; {iterations:.0f} operator applications at the default 1e-6",
         )
 
@@ -112,14 +112,14 @@ def half_space_roller(repeats: int, report: Report) -> Iterator[Row]:
     problem = roller(ROLLER_CELLS, ROLLER_WINDOW, free_ends=False)
     seconds, note = compare(problem, PEERS[1:], repeats, report)
     report.add_remark("aspher has square cells only: no roller on 512 x 64")
-    ours = seconds.pop(OURS)
+    our_seconds = seconds.pop(OURS)
     yield Row(
         "half-space roller 512 x 64",
-        show(ours),
+        show(our_seconds),
         named(seconds),
-        ", ".join(f"{ours / duration:.2f}" for duration in seconds.values()),
+        ", ".join(f"{our_seconds / duration:.2f}" for duration in seconds.values()),
         "0.15 s",
-        ours <= 0.15,
+        our_seconds <= 0.15,
         note,
     )
 

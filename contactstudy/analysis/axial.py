@@ -28,27 +28,27 @@ def contact_borders(pressure: Array, centres: Array, gap: Array | None = None) -
     rows = np.nan_to_num(np.asarray(pressure, np.float64)).reshape(-1, cells)
     opening = np.full_like(rows, np.nan) if gap is None else np.asarray(gap).reshape(-1, cells)
     positions = np.broadcast_to(centres, pressure.shape).reshape(-1, cells)
-    begin, count = np.nanmin(positions, axis=1, initial=np.inf), np.isfinite(positions).sum(axis=1)
-    step = (np.nanmax(positions, axis=1, initial=-np.inf) - begin) / np.maximum(count - 1, 1)
-    first = cells - 1 - _last_edges(rows[:, ::-1], opening[:, ::-1])
-    last = _last_edges(rows, opening)
-    return (begin + step * first).reshape(shape), (begin + step * last).reshape(shape)
+    first_centre, row_cells = np.nanmin(positions, axis=1, initial=np.inf), np.isfinite(positions).sum(axis=1)
+    step = (np.nanmax(positions, axis=1, initial=-np.inf) - first_centre) / np.maximum(row_cells - 1, 1)
+    first_edges = cells - 1 - _last_edges(rows[:, ::-1], opening[:, ::-1])
+    last_edges = _last_edges(rows, opening)
+    return (first_centre + step * first_edges).reshape(shape), (first_centre + step * last_edges).reshape(shape)
 
 
 def _last_edges(pressure: FloatArray, gap: FloatArray) -> FloatArray:
     """Last edge of each row, in cells from the centre of the first; NaN without contact."""
     edges = np.full(pressure.shape[0], np.nan)
     rows = np.flatnonzero(pressure.any(axis=1))
-    last = pressure.shape[1] - 1 - (pressure[rows, ::-1] > 0).argmax(axis=1)
-    begin_inside, begin_outside = last - SKIPPED_CELLS, last + 1 + SKIPPED_CELLS
-    squared = _samples(pressure[rows], begin_inside, -1) ** 2
-    opening = _samples(gap[rows], begin_outside, 1) ** (2 / 3)
-    face = last + 0.5
-    estimates = np.stack([begin_inside + _distance_to_zero(squared), begin_outside - _distance_to_zero(opening)])
+    last_loaded = pressure.shape[1] - 1 - (pressure[rows, ::-1] > 0).argmax(axis=1)
+    begin_inside, begin_outside = last_loaded - SKIPPED_CELLS, last_loaded + 1 + SKIPPED_CELLS
+    p_squared = _samples(pressure[rows], begin_inside, -1) ** 2
+    gap_root = _samples(gap[rows], begin_outside, 1) ** (2 / 3)
+    face = last_loaded + 0.5
+    estimates = np.stack([begin_inside + _distance_to_zero(p_squared), begin_outside - _distance_to_zero(gap_root)])
     # A contact of fewer than 7 cells has the estimate from the gap alone.
-    valid = np.abs(estimates - face) <= 1
-    total = np.where(valid, estimates, 0.0).sum(axis=0)
-    edges[rows] = np.where(valid.any(axis=0), total / np.maximum(valid.sum(axis=0), 1), face)
+    is_valid = np.abs(estimates - face) <= 1
+    total = np.where(is_valid, estimates, 0.0).sum(axis=0)
+    edges[rows] = np.where(is_valid.any(axis=0), total / np.maximum(is_valid.sum(axis=0), 1), face)
     return edges
 
 
@@ -57,8 +57,8 @@ def _samples(values: FloatArray, begin: IntArray, direction: int) -> FloatArray:
     cells = begin[:, None] + direction * np.arange(FITTED_CELLS)
     in_range = (cells >= 0) & (cells < values.shape[1])
     samples = np.take_along_axis(values, np.where(in_range, cells, 0), axis=1)
-    valid = (in_range & (samples > 0) & np.isfinite(samples)).all(axis=1)
-    return np.where(valid[:, None], samples, np.nan)
+    is_valid = (in_range & (samples > 0) & np.isfinite(samples)).all(axis=1)
+    return np.where(is_valid[:, None], samples, np.nan)
 
 
 def _distance_to_zero(values: FloatArray) -> FloatArray:
@@ -108,27 +108,27 @@ def contact_edges(dataset: xr.Dataset) -> xr.Dataset:
     require(contact, "pressure", "gap")
     pressure, grid = labelled_cells("dataset.pressure", contact["pressure"])
     gap, _ = labelled_cells("dataset.gap", contact["gap"], infinite=True)
-    low, high = contact_borders(pressure, grid.y, gap)
-    touches, faces = bool(pressure.any()), grid.x_edges
-    first = last = np.nan
-    if touches and grid.uniform:
+    y_left, y_right = contact_borders(pressure, grid.y, gap)
+    has_contact, cell_edges = bool(pressure.any()), grid.x_edges
+    x_first = x_last = np.nan
+    if has_contact and grid.uniform:
         starts, stops = contact_borders(pressure.T, grid.x, gap.T)
         # A smooth end is not beyond the face of the shape or the body.
         under_roller = np.flatnonzero(np.isfinite(gap).any(axis=1))
-        first = float(max(np.nanmin(starts), faces[under_roller[0]]))
-        last = float(min(np.nanmax(stops), faces[under_roller[-1] + 1]))
-    elif touches:
-        loaded = np.flatnonzero(pressure.any(axis=1))
-        first, last = float(faces[loaded[0]]), float(faces[loaded[-1] + 1])
+        x_first = float(max(np.nanmin(starts), cell_edges[under_roller[0]]))
+        x_last = float(min(np.nanmax(stops), cell_edges[under_roller[-1] + 1]))
+    elif has_contact:
+        loaded_columns = np.flatnonzero(pressure.any(axis=1))
+        x_first, x_last = float(cell_edges[loaded_columns[0]]), float(cell_edges[loaded_columns[-1] + 1])
     result = xr.Dataset(
         {
-            "y_left": ("x", low),
-            "y_right": ("x", high),
-            "half_width": ("x", 0.5 * (high - low)),
-            "x_first": first,
-            "x_last": last,
-            "contact_length": last - first if touches else 0.0,
-            "contact_area": _area(grid, gap, high - low, (first, last)) if touches else 0.0,
+            "y_left": ("x", y_left),
+            "y_right": ("x", y_right),
+            "half_width": ("x", 0.5 * (y_right - y_left)),
+            "x_first": x_first,
+            "x_last": x_last,
+            "contact_length": x_last - x_first if has_contact else 0.0,
+            "contact_area": _area(grid, gap, y_right - y_left, (x_first, x_last)) if has_contact else 0.0,
         },
         coords={"x": contact["x"].values},
     )

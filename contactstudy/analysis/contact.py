@@ -176,20 +176,20 @@ def edge_pressure(dataset: xr.Dataset) -> xr.Dataset:
 
     def first_and_last(values: Array) -> tuple[Array, Array]:
         """First and last positive number along the last axis; NaN without one."""
-        loaded = values > 0
-        indices = loaded.argmax(axis=-1), values.shape[-1] - 1 - loaded[..., ::-1].argmax(axis=-1)
-        first, last = (np.take_along_axis(values, index[..., None], axis=-1)[..., 0] for index in indices)
-        without_contact = ~loaded.any(axis=-1)
-        return np.where(without_contact, np.nan, first), np.where(without_contact, np.nan, last)
+        is_loaded = values > 0
+        indices = is_loaded.argmax(axis=-1), values.shape[-1] - 1 - is_loaded[..., ::-1].argmax(axis=-1)
+        first_values, last_values = (np.take_along_axis(values, index[..., None], axis=-1)[..., 0] for index in indices)
+        without_contact = ~is_loaded.any(axis=-1)
+        return np.where(without_contact, np.nan, first_values), np.where(without_contact, np.nan, last_values)
 
     values = reduce_dims(first_and_last, [(axial, [dimension_along(axial, "x")])], 2)
     edges = {}
-    for end, value, cut in zip(("first", "last"), values, cut_ends(dataset), strict=True):
-        edge = value.where(cut == 0)
+    for end, value, is_cut in zip(("first", "last"), values, cut_ends(dataset), strict=True):
+        edge_value = value.where(is_cut == 0)
         # The mean of a cell at a singular end depends on the cell only.
-        singular = np.isinf(dataset.get(f"end_pressure_{end}", xr.DataArray(0.0)))
+        is_singular = np.isinf(dataset.get(f"end_pressure_{end}", xr.DataArray(0.0)))
         edges[f"edge_pressure_{end}"] = name_array(
-            f"edge_pressure_{end}", edge.where(~singular | edge.isnull(), np.inf)
+            f"edge_pressure_{end}", edge_value.where(~is_singular | edge_value.isnull(), np.inf)
         )
         edges[f"edge_pressure_{end}"].attrs["comment"] = "mean of the outermost loaded cell"
     return without_error(xr.Dataset(edges), *edges)
@@ -250,19 +250,19 @@ def _find_cuts(
     cells = np.broadcast_to(np.isfinite(x), pressure.shape[:-1])
     x, dx = (np.broadcast_to(values, cells.shape) for values in (x, dx))
     resultant = np.nansum(pressure * dx[..., :, None] * dy[..., None, :], axis=(-2, -1))
-    gaps = np.abs(np.diff(x, axis=-1) - 0.5 * (dx[..., 1:] + dx[..., :-1])) > END_TOLERANCE * dx[..., 1:]
+    is_gap = np.abs(np.diff(x, axis=-1) - 0.5 * (dx[..., 1:] + dx[..., :-1])) > END_TOLERANCE * dx[..., 1:]
     in_contact = pressure > 0
     # A cut along y, or cells left out, also reduce the resultant.
-    cut = (resultant < (1 - MISSING_LOAD) * load) & ~in_contact[..., [0, -1]].any(axis=(-2, -1)) & ~gaps.any(axis=-1)
+    cut = (resultant < (1 - MISSING_LOAD) * load) & ~in_contact[..., [0, -1]].any(axis=(-2, -1)) & ~is_gap.any(axis=-1)
 
-    def outermost(values: Array, *, first: bool) -> Array:
+    def select_end(values: Array, *, first: bool) -> Array:
         last = cells.sum(axis=-1, keepdims=True) - 1
         index = np.zeros_like(last) if first else np.maximum(last, 0)
         return np.asarray(np.take_along_axis(values, index, axis=-1)[..., 0])
 
-    loaded, slack = in_contact.any(axis=-1), END_TOLERANCE * dx
-    starts_inside, stops_inside = x - 0.5 * dx > start + slack, x + 0.5 * dx < stop - slack
-    first, last = outermost(loaded & starts_inside, first=True), outermost(loaded & stops_inside, first=False)
+    is_loaded, tolerance = in_contact.any(axis=-1), END_TOLERANCE * dx
+    starts_inside, stops_inside = x - 0.5 * dx > start + tolerance, x + 0.5 * dx < stop - tolerance
+    first, last = select_end(is_loaded & starts_inside, first=True), select_end(is_loaded & stops_inside, first=False)
     return (cut & first).astype(np.float64), (cut & last).astype(np.float64)
 
 
@@ -328,21 +328,21 @@ def _values(dataset: xr.Dataset, variable: str, reach: xr.DataArray | float) -> 
     profile = profile.compute()
     if (profile < 0).any():
         raise InvalidInputError("variable", variable, "a measure that is not negative", "take a stress measure")
-    x, points = dimension_along(profile, "x"), positions(profile, "x")
-    loaded = positions(axial, "x").where(axial > 0)
-    outermost = loaded.min(dimension_along(axial, "x")), loaded.max(dimension_along(axial, "x"))
+    x, sample_x = dimension_along(profile, "x"), positions(profile, "x")
+    loaded_x = positions(axial, "x").where(axial > 0)
+    loaded_range = loaded_x.min(dimension_along(axial, "x")), loaded_x.max(dimension_along(axial, "x"))
     # A cut end has no border.
-    borders = [border.where(cut == 0).compute() for border, cut in zip(outermost, cut_ends(dataset), strict=True)]
+    borders = [border.where(cut == 0).compute() for border, cut in zip(loaded_range, cut_ends(dataset), strict=True)]
     values = {}
     for side, border in zip(("first", "last"), borders, strict=True):
         # Distance of a point beyond the reach of an end, over the reach, that is rounding
-        value = profile.where(abs(points - border) <= reach * (1 + 1e-9)).max(x)
+        value = profile.where(abs(sample_x - border) <= reach * (1 + 1e-9)).max(x)
         # Beside a singular end pressure and stress are unbounded.
-        singular = np.isinf(dataset.get(f"end_pressure_{side}", xr.DataArray(0.0)))
-        values[side] = value.where(~singular | value.isnull(), np.inf)
-    distance = abs(points - 0.5 * (borders[0] + borders[1]))
+        is_singular = np.isinf(dataset.get(f"end_pressure_{side}", xr.DataArray(0.0)))
+        values[side] = value.where(~is_singular | value.isnull(), np.inf)
+    distance = abs(sample_x - 0.5 * (borders[0] + borders[1]))
     nearest = distance.fillna(np.inf).argmin(x)
     width = cell_size(profile, "x")
     # Positions beyond the points have no value.
-    within = distance.min(x) <= (width.isel({x: nearest}) if x in width.dims else width)
-    return values | {"middle": profile.isel({x: nearest}).where(within), "peak": profile.max(x)}
+    is_within = distance.min(x) <= (width.isel({x: nearest}) if x in width.dims else width)
+    return values | {"middle": profile.isel({x: nearest}).where(is_within), "peak": profile.max(x)}

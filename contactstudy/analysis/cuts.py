@@ -86,20 +86,20 @@ def along_line(
     """
     count = checks.count("points", points, minimum=2)
     fields = fields_on_same_points(single_case(dataset), variables, along=("x", "y"))
-    first, last = (checks.coordinates(name, values) for name, values in (("start", start), ("end", end)))
-    if first.size not in (2, 3) or last.size != first.size:
+    start_point, end_point = (checks.coordinates(name, values) for name, values in (("start", start), ("end", end)))
+    if start_point.size not in (2, 3) or end_point.size != start_point.size:
         raise InvalidInputError("start, end", (start, end), "both (x, y, z), or both (x, y), in metres")
     field = next(iter(fields.values()))
     axes = axis_dimensions(field)
-    if "z" in axes and first.size == 2:
+    if "z" in axes and start_point.size == 2:
         raise InvalidInputError("start, end", (start, end), "(x, y, z) for fields below the surface")
-    length = float(np.linalg.norm(last - first))
+    length = float(np.linalg.norm(end_point - start_point))
     if length == 0:
         raise InvalidInputError("end", end, "different from start")
     fraction = np.linspace(0.0, 1.0, count)
     targets = {}
-    for axis, low, high in zip(AXES, first, last, strict=False):
-        values = low + fraction * (high - low)
+    for axis, start_coordinate, end_coordinate in zip(AXES, start_point, end_point, strict=False):
+        values = start_coordinate + fraction * (end_coordinate - start_coordinate)
         if axis in axes:
             values = _clip_rounding(axis, values, positions(field, axis).values)
         targets[axis] = xr.DataArray(values, dims="distance", attrs=labels(axis, coordinate=True))
@@ -172,7 +172,7 @@ def _clip_rounding(name: str, values: FloatArray, points: FloatArray) -> FloatAr
 
 def _interpolate(array: xr.DataArray, targets: dict[str, xr.DataArray]) -> xr.DataArray:
     """Linear interpolation along the axes of `targets`, which may share a new dimension and replace its coordinates."""
-    lines, axes, attributes = {}, axis_dimensions(array), array.attrs
+    line_targets, axes, attributes = {}, axis_dimensions(array), array.attrs
     for axis, target in targets.items():
         if axis not in axes:
             continue
@@ -182,13 +182,13 @@ def _interpolate(array: xr.DataArray, targets: dict[str, xr.DataArray]) -> xr.Da
             continue
         array = array.assign_coords({dim: positions(array, axis)}).sortby(dim)
         if target.ndim:
-            lines[dim] = target
+            line_targets[dim] = target
         else:
             position = float(target)
             values = array[dim].values
-            right = int(np.clip(np.searchsorted(values, position), 1, values.size - 1))
-            weight = float((position - values[right - 1]) / (values[right] - values[right - 1]))
-            first, second = (array.isel({dim: index}, drop=True) for index in (right - 1, right))
+            upper_index = int(np.clip(np.searchsorted(values, position), 1, values.size - 1))
+            weight = float((position - values[upper_index - 1]) / (values[upper_index] - values[upper_index - 1]))
+            lower, upper = (array.isel({dim: index}, drop=True) for index in (upper_index - 1, upper_index))
             # At a plane itself the neighbouring plane, which may be infinite, has zero weight.
-            array = first if weight == 0 else second if weight == 1 else (1 - weight) * first + weight * second
-    return (array.interp(lines) if lines else array).assign_attrs(attributes).reset_coords(drop=True)
+            array = lower if weight == 0 else upper if weight == 1 else (1 - weight) * lower + weight * upper
+    return (array.interp(line_targets) if line_targets else array).assign_attrs(attributes).reset_coords(drop=True)

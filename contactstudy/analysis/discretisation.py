@@ -77,10 +77,10 @@ def discretisation_error(fine: xr.Dataset, coarse: xr.Dataset) -> xr.Dataset:
     axial = fine["pressure"].transpose("x", "y").values.max(axis=1)
     first, last = _shape_columns(fine)
     end_in_contact = (first > 0 and axial[first] > 0, last < axial.size - 1 and axial[last] > 0)
-    singular = {name for name, sharp in zip(ENDS, end_in_contact, strict=True) if sharp}
-    singular |= {"peak_pressure"} if singular else set()
-    turn = _largest_turn(fine)
-    unresolved = {name for name in PRESSURES if values[name] > 0} if turn > RESOLVED_TURN else set()
+    singular_names = {name for name, is_pressed in zip(ENDS, end_in_contact, strict=True) if is_pressed}
+    singular_names |= {"peak_pressure"} if singular_names else set()
+    largest_turn = _largest_turn(fine)
+    unresolved = {name for name in PRESSURES if values[name] > 0} if largest_turn > RESOLVED_TURN else set()
 
     def correction(name: str) -> float:
         """Distance from the fine value to the limit of Richardson's extrapolation."""
@@ -89,7 +89,7 @@ def discretisation_error(fine: xr.Dataset, coarse: xr.Dataset) -> xr.Dataset:
 
     def estimate(name: str) -> float:
         value, coarse_value = values[name], coarse_values[name]
-        if name in singular | unresolved:
+        if name in singular_names | unresolved:
             return np.inf
         if value == 0 and coarse_value == 0:
             return 0.0
@@ -107,12 +107,12 @@ def discretisation_error(fine: xr.Dataset, coarse: xr.Dataset) -> xr.Dataset:
     result = xr.Dataset()
     for name, value in values.items():
         result[name], result[f"{name}_error"] = value, errors[name]
-        if name in singular:
+        if name in singular_names:
             result[f"{name}_error"].attrs["comment"] = SHARP_EDGE_ADVICE
         elif np.isinf(errors[name]):
             columns, rows = cells
             reason = "the cells are too coarse for the shape's turn" if name in unresolved else "no limit in sight"
-            advice = _advice(fine, 2.0 * max(1.0, turn / RESOLVED_TURN) if name in unresolved else 2.0)
+            advice = _advice(fine, 2.0 * max(1.0, largest_turn / RESOLVED_TURN) if name in unresolved else 2.0)
             result[f"{name}_error"].attrs["comment"] = f"{reason} on {columns} x {rows} cells: {advice}"
     result.attrs["cells"] = [f"{columns} x {rows}" for columns, rows in (cells, coarse_cells)]
     return describe(result, "contact quantities with their discretisation error")
@@ -128,11 +128,11 @@ def _shape_columns(contact: xr.Dataset) -> tuple[int, int]:
 
 def _largest_turn(contact: xr.Dataset) -> float:
     """Largest turn of the shape between columns, as its pressure over the peak; 0 without pressure."""
-    first, last = _shape_columns(contact)
+    first_column, last_column = _shape_columns(contact)
     shape = contact["initial_gap"] if "initial_gap" in contact else contact["gap"] - contact["displacement_z"]
-    heights = shape.transpose("x", "y").values[first : last + 1]
-    pressure = contact["pressure"].transpose("x", "y").values[first : last + 1]
-    x, y, axial = contact["x"].values[first : last + 1], contact["y"].values, pressure.max(axis=1)
+    heights = shape.transpose("x", "y").values[first_column : last_column + 1]
+    pressure = contact["pressure"].transpose("x", "y").values[first_column : last_column + 1]
+    x, y, axial = contact["x"].values[first_column : last_column + 1], contact["y"].values, pressure.max(axis=1)
     in_contact = np.flatnonzero(axial)
     if x.size < 3 or not in_contact.size:
         return 0.0
@@ -143,10 +143,10 @@ def _largest_turn(contact: xr.Dataset) -> float:
     if not (curvature > 0 and axial[mid_column] > 0):
         return 0.0
     # Of the middle column, p = E* a / (2 R), w = pi p a / 2. A turn causes a pressure of modulus times angle.
-    modulus = np.pi * axial[mid_column] ** 2 / (curvature * pressure[mid_column].sum() * (y[1] - y[0]))
+    pressure_per_angle = np.pi * axial[mid_column] ** 2 / (curvature * pressure[mid_column].sum() * (y[1] - y[0]))
     # Far from the contact the displacement of an elastic roller varies little between columns.
     turns = np.pad(np.abs(np.diff(np.diff(heights[:, farthest_row]) / np.diff(x))), 1, mode="edge")
-    return float((modulus * turns * axial).max() / axial.max() ** 2)
+    return float((pressure_per_angle * turns * axial).max() / axial.max() ** 2)
 
 
 def _advice(contact: xr.Dataset, factor: float) -> str:
@@ -166,14 +166,14 @@ def _quantities(name: str, contact: xr.Dataset) -> dict[str, float]:
     """Peak, end pressures and half-width of one contact."""
     edges = contact_edges(contact)
     pressure, grid = labelled_cells(f"{name}.pressure", contact["pressure"])
-    first, last = _shape_columns(contact)
-    axial = np.array([_peak(pressure[column : column + 1]) for column in range(first, last + 1)])
-    mid_length = 0.5 * (grid.x[first] + grid.x[last])
-    ends = _end_pressure(axial[:FITTED_COLUMNS]), _end_pressure(axial[: -FITTED_COLUMNS - 1 : -1])
+    first_column, last_column = _shape_columns(contact)
+    axial = np.array([_peak(pressure[column : column + 1]) for column in range(first_column, last_column + 1)])
+    mid_length = 0.5 * (grid.x[first_column] + grid.x[last_column])
+    end_pressures = _end_pressure(axial[:FITTED_COLUMNS]), _end_pressure(axial[: -FITTED_COLUMNS - 1 : -1])
     return {
-        "peak_pressure": max(_peak(pressure), *ends),
-        "end_pressure_first": ends[0],
-        "end_pressure_last": ends[1],
+        "peak_pressure": max(_peak(pressure), *end_pressures),
+        "end_pressure_first": end_pressures[0],
+        "end_pressure_last": end_pressures[1],
         "half_width_middle": float(np.interp(mid_length, grid.x, edges["half_width"].values)),
     }
 
@@ -183,8 +183,8 @@ def _end_pressure(columns: FloatArray) -> float:
     if columns[0] == 0:
         return 0.0
     loaded = columns[: int((columns > 0).cumprod().sum())]
-    fit = np.polynomial.Polynomial.fit(np.arange(0.5, loaded.size), loaded, loaded.size - 1)
-    return max(0.0, float(fit(0.0)))
+    polynomial = np.polynomial.Polynomial.fit(np.arange(0.5, loaded.size), loaded, loaded.size - 1)
+    return max(0.0, float(polynomial(0.0)))
 
 
 def _peak(pressure: FloatArray) -> float:

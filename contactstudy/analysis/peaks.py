@@ -15,7 +15,7 @@ import xarray as xr
 
 from contactstudy import checks
 from contactstudy.analysis.axes import axis_dimensions, positions, reduce_dims, single_case
-from contactstudy.arrays.grid import ON_TOP
+from contactstudy.arrays.grid import TOP_ERROR
 from contactstudy.arrays.peaks import interpolate_about, variation_lengths
 from contactstudy.arrays.variables import (
     STRESSES,
@@ -164,13 +164,13 @@ def largest_sample(dataset: xr.Dataset, variable: str = "von_mises", *, along: s
 
 def _maximum(values: Array, *coordinates: Array) -> tuple[Array, ...]:
     """Largest number over the last axes, one for each of `coordinates`, and its position; NaN without a number."""
-    lead, shape = values.shape[: values.ndim - len(coordinates)], values.shape[values.ndim - len(coordinates) :]
-    flat = values.reshape(*lead, -1)
+    lead_shape, shape = values.shape[: values.ndim - len(coordinates)], values.shape[values.ndim - len(coordinates) :]
+    flat = values.reshape(*lead_shape, -1)
     index = np.where(np.isnan(flat), -np.inf, flat).argmax(axis=-1)
     maximum = np.take_along_axis(flat, index[..., None], axis=-1)[..., 0]
     result = [maximum]
     for coordinate, axis_index in zip(coordinates, np.unravel_index(index, shape), strict=True):
-        broadcast = np.broadcast_to(coordinate, (*lead, coordinate.shape[-1]))
+        broadcast = np.broadcast_to(coordinate, (*lead_shape, coordinate.shape[-1]))
         position = np.take_along_axis(broadcast, np.asarray(axis_index)[..., None], axis=-1)[..., 0]
         result.append(np.where(np.isnan(maximum), np.nan, position))
     return tuple(result)
@@ -233,7 +233,7 @@ def peak(dataset: xr.Dataset, variable: str = "von_mises") -> xr.Dataset:
     result = interpolated_peak(case, components, samples, lambda stresses: measure(stresses, variable))
     if "pressure" in case and result.position.get("z") == 0:
         # At the border of the contact a measure may have a kink next to much larger values.
-        excess = result.value - float(samples.max()) + ON_TOP * (float(abs(samples).max()) - abs(result.value))
+        excess = result.value - float(samples.max()) + TOP_ERROR * (float(abs(samples).max()) - abs(result.value))
         result = result._replace(error=result.error + max(excess, 0.0))
     return label_peak(variable, result, variable_of(variable, samples.attrs))
 
@@ -250,18 +250,18 @@ def interpolated_peak(case: xr.Dataset, components: list[str], samples: xr.DataA
     def find_maximum(neighbours: int, stride: int = 1) -> tuple[float, list[float]]:
         """Largest value between every sample or each second, and its position."""
         indices = [np.arange(axis.size)[i % stride :: stride] for axis, i in zip(axes.values(), index, strict=True)]
-        nodes = [axis[chosen] for axis, chosen in zip(axes.values(), indices, strict=True)]
-        near = case[components].isel(dict(zip(dims.values(), indices, strict=True))).transpose(*dims.values(), ...)
+        nodes = [axis[axis_indices] for axis, axis_indices in zip(axes.values(), indices, strict=True)]
+        nearby = case[components].isel(dict(zip(dims.values(), indices, strict=True))).transpose(*dims.values(), ...)
         interpolated_fields: dict[Hashable, Any] = {}
         coordinates: dict[Hashable, xr.DataArray] = {}
-        for name, component in near.items():
+        for name, component in nearby.items():
             centre = [i // stride for i in index]
             points, stresses = interpolate_about(nodes, centre, component.values[None], neighbours)
             interpolated_fields[name] = (component.dims, stresses[0])
             coordinates |= {dim: component[dim] for dim in component.dims[len(dims) :] if dim in component.coords}
         values = evaluate(xr.Dataset(interpolated_fields, coordinates)).transpose(*dims.values()).values
-        best = np.unravel_index(int(np.nanargmax(values)), values.shape)
-        return float(values[best]), [float(axis[i]) for axis, i in zip(points, best, strict=True)]
+        largest_index = np.unravel_index(int(np.nanargmax(values)), values.shape)
+        return float(values[largest_index]), [float(axis[i]) for axis, i in zip(points, largest_index, strict=True)]
 
     value, position = find_maximum(NEIGHBOURS)
     error = abs(value - find_maximum(1)[0])
@@ -275,24 +275,24 @@ def interpolated_peak(case: xr.Dataset, components: list[str], samples: xr.DataA
             error = max(error, 0.5 * abs(value - find_maximum(NEIGHBOURS, stride=2)[0]))
         if "peak_pressure_error" in case:
             error += abs(value) * float(case["peak_pressure_error"] / case["peak_pressure"])
-    where = dict(zip(dims, position, strict=True))
-    if "pressure" in case and where.get("z") == 0:
-        error += ON_TOP * abs(value)
-    return Peak(value, error, where, comment)
+    peak_position = dict(zip(dims, position, strict=True))
+    if "pressure" in case and peak_position.get("z") == 0:
+        error += TOP_ERROR * abs(value)
+    return Peak(value, error, peak_position, comment)
 
 
 def label_peak(variable: str, peak: Peak, base: Variable) -> xr.Dataset:
     """Return a peak as a Dataset, see :func:`peak`."""
     values = {f"peak_{variable}": peak.value, f"peak_{variable}_error": peak.error}
     values |= {f"peak_{variable}_{axis}": position for axis, position in peak.position.items()}
-    of_peak = variable_of(f"peak_{variable}", {"units": base.units, "long_name": f"largest {base.long_name}"})
-    labelled = {
-        name: name_array(name, xr.DataArray(value), of_peak if name.endswith("_error") else base)
+    peak_variable = variable_of(f"peak_{variable}", {"units": base.units, "long_name": f"largest {base.long_name}"})
+    peak_arrays = {
+        name: name_array(name, xr.DataArray(value), peak_variable if name.endswith("_error") else base)
         for name, value in values.items()
     }
     if peak.comment:
-        labelled[f"peak_{variable}_error"].attrs["comment"] = peak.comment
-    return xr.Dataset(labelled)
+        peak_arrays[f"peak_{variable}_error"].attrs["comment"] = peak.comment
+    return xr.Dataset(peak_arrays)
 
 
 def label_largest_stress(
@@ -307,8 +307,8 @@ def label_largest_stress(
         stress = Peak(value, error + value * relative, coordinates)
     else:
         stress = Peak(value, np.nan, coordinates, "the error on the given cells is not estimated")
-    labelled = label_peak("von_mises", stress, variable_of("von_mises", result["von_mises"].attrs))
-    return without_error(labelled, *(f"peak_von_mises_{axis}" for axis in "xyz"))
+    labelled_peak = label_peak("von_mises", stress, variable_of("von_mises", result["von_mises"].attrs))
+    return without_error(labelled_peak, *(f"peak_von_mises_{axis}" for axis in "xyz"))
 
 
 def _explain_unbounded(case: xr.Dataset, axes: dict[str, FloatArray], index: tuple[int, ...]) -> str:
@@ -337,11 +337,11 @@ def _explain_unresolved(case: xr.Dataset, axes: dict[str, FloatArray], sample: d
         return ""
     column = int(np.where(in_range, axial, -1.0).argmax())
     width = min(variation_lengths(pressure, x, dy, column))
-    locations = [(column, {"x": float(x[column])})]
+    checked_columns = [(column, {"x": float(x[column])})]
     # On the flank of the peak the stresses vary as below the peak.
     if "x" in sample and abs(sample["x"] - x[column]) > 2 * width:
-        locations.append((int(np.abs(x - sample["x"]).argmin()), sample))
-    for column, location in locations:
+        checked_columns.append((int(np.abs(x - sample["x"]).argmin()), sample))
+    for column, location in checked_columns:
         length_x, length_y = variation_lengths(pressure, x, dy, column)
         # Near a free end the stresses vary along x even under a uniform pressure.
         from_end = min((abs(float(x[column]) - end) for end in _extent(case)), default=np.inf)

@@ -25,12 +25,12 @@ INPUTS_ATTRIBUTE, RUN_ATTRIBUTE, STUDY_ATTRIBUTE = "contactstudy_inputs", "conta
 # Differences of equal numbers, relative and in SI: a solved load has the tolerance of the iteration
 RELATIVE_TOLERANCE, ABSOLUTE_TOLERANCE = 1e-6, 1e-15
 # Values of a case that follow from the solution unless the case prescribes them
-DEPENDENT = ("approach", "load_position", "load", "tilt")
+DEPENDENT_INPUTS = ("approach", "load_position", "load", "tilt")
 # Values of a case without influence on its dry contact
 FILM_ONLY = ("motion.body_speed", "motion.roller_speed", "motion.speed", "lubricant")
 CASE_PARTS = ("roller.profile", "friction", "motion")  # Parts of a case that a message contains as a unit
 # Types of entries in the attributes of inputs and run
-KINDS: dict[str, type | tuple[type, ...]] = {
+ATTRIBUTE_TYPES: dict[str, type | tuple[type, ...]] = {
     "time": str,
     "seconds": Real,
     "stages": dict,
@@ -70,9 +70,9 @@ def attribute(dataset: xr.Dataset, name: str) -> dict[str, Any]:
 
 def _without_malformed(table: dict[str, Any]) -> dict[str, Any]:
     """Table, and the tables in it, without malformed entries: of a foreign type, no date, no numbers of seconds."""
-    valid = {}
+    valid_entries = {}
     for name, value in table.items():
-        if name in KINDS and not isinstance(value, KINDS[name]):
+        if name in ATTRIBUTE_TYPES and not isinstance(value, ATTRIBUTE_TYPES[name]):
             continue
         if name == "time":
             try:
@@ -80,8 +80,8 @@ def _without_malformed(table: dict[str, Any]) -> dict[str, Any]:
             except ValueError:
                 continue
         if name != "stages" or all(isinstance(seconds, Real) for seconds in value.values()):
-            valid[name] = _without_malformed(value) if name in ("settings", "case", "roller") else value
-    return valid
+            valid_entries[name] = _without_malformed(value) if name in ("settings", "case", "roller") else value
+    return valid_entries
 
 
 def solved_case(dataset: xr.Dataset) -> Case:
@@ -144,7 +144,7 @@ def check_solved_for(
         for name in {**actual, **expected}
         if (not only or name.startswith(only))
         and not _equal(actual.get(name), expected.get(name))
-        and not (name in DEPENDENT and None in (actual.get(name), expected.get(name)))
+        and not (name in DEPENDENT_INPUTS and None in (actual.get(name), expected.get(name)))
         and not name.startswith(FILM_ONLY)
     ]
     if names:

@@ -54,14 +54,14 @@ class Columns(NamedTuple):
 
     def with_ends(self, values: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Middles and both ends, with values extrapolated linearly to the ends, not below 0."""
-        x, ends = self.midpoints, (self.edges[0, 0], self.edges[-1, 1])
+        x, end_x = self.midpoints, (self.edges[0, 0], self.edges[-1, 1])
         if x.size == 1:
-            return np.array([ends[0], x[0], ends[1]]), np.repeat(values, 3)
-        first, last = (
+            return np.array([end_x[0], x[0], end_x[1]]), np.repeat(values, 3)
+        first_value, last_value = (
             max(values[i] + (values[i] - values[j]) * (end - x[i]) / (x[i] - x[j]), 0.0)
-            for end, i, j in ((ends[0], 0, 1), (ends[1], -1, -2))
+            for end, i, j in ((end_x[0], 0, 1), (end_x[1], -1, -2))
         )
-        return np.concatenate([ends[:1], x, ends[1:]]), np.concatenate([[first], values, [last]])
+        return np.concatenate([end_x[:1], x, end_x[1:]]), np.concatenate([[first_value], values, [last_value]])
 
 
 def step_errors(values: FloatArray) -> FloatArray:
@@ -69,9 +69,9 @@ def step_errors(values: FloatArray) -> FloatArray:
     steps = np.abs(np.diff(values))
     neighbours = larger_step(OPEN_STEP * steps)
     # A contact may end anywhere up to the middle of the next column.
-    ends = (np.minimum(values[1:], values[:-1]) <= 0) & (steps > 0)
+    is_contact_end = (np.minimum(values[1:], values[:-1]) <= 0) & (steps > 0)
     at_end = np.maximum(steps, np.maximum(neighbours[1:], neighbours[:-1]))
-    return np.where(ends, at_end, OPEN_STEP * steps)
+    return np.where(is_contact_end, at_end, OPEN_STEP * steps)
 
 
 def larger_step(steps: FloatArray) -> FloatArray:
@@ -82,31 +82,31 @@ def larger_step(steps: FloatArray) -> FloatArray:
 def maximum_between(pressure: Columns, borders: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return the largest pressure of each part between two borders, and its error from the columns, Pa."""
     x, squares = pressure.with_ends(pressure.values**2)
-    heights = np.sqrt(squares)
-    steps = step_errors(heights)
+    pressures = np.sqrt(squares)
+    steps = step_errors(pressures)
     # A border has the error of its step, a middle the larger error of both steps.
     points = np.concatenate([borders, x])
-    values = np.concatenate([np.sqrt(np.interp(borders, x, squares)), heights])
+    values = np.concatenate([np.sqrt(np.interp(borders, x, squares)), pressures])
     step = np.clip(np.searchsorted(x, borders, side="right") - 1, 0, steps.size - 1)
-    bounds = values + np.concatenate([steps[step], larger_step(steps)])
+    upper_bounds = values + np.concatenate([steps[step], larger_step(steps)])
     maxima, error = np.empty(borders.size - 1), np.empty(borders.size - 1)
     for index, (low, high) in enumerate(pairwise(borders)):
         in_slice = (points >= low) & (points <= high)
         maxima[index] = values[in_slice].max()
-        error[index] = bounds[in_slice].max() - maxima[index]
+        error[index] = upper_bounds[in_slice].max() - maxima[index]
     return maxima, error
 
 
 def power_means(columns: Columns, borders: FloatArray, power: float) -> tuple[FloatArray, FloatArray]:
     """Power mean ``mean(v**power)**(1/power)`` of each part, and its error; `v` is linear between middles."""
-    x, heights = columns.with_ends(columns.values)
-    steps = step_errors(heights)
-    cuts = np.unique(np.concatenate([borders, x[(x > borders[0]) & (x < borders[-1])]]))
-    midpoints, halves = 0.5 * (cuts[1:] + cuts[:-1]), 0.5 * np.diff(cuts)
+    x, column_values = columns.with_ends(columns.values)
+    steps = step_errors(column_values)
+    step_borders = np.unique(np.concatenate([borders, x[(x > borders[0]) & (x < borders[-1])]]))
+    midpoints, halves = 0.5 * (step_borders[1:] + step_borders[:-1]), 0.5 * np.diff(step_borders)
     step = np.clip(np.searchsorted(x, midpoints) - 1, 0, steps.size - 1)
     slice_index = np.searchsorted(borders, midpoints) - 1
     nodes, weights = np.polynomial.legendre.leggauss(6)  # exact for a 12th power
-    values = np.interp(midpoints[:, None] + halves[:, None] * nodes, x, heights)
+    values = np.interp(midpoints[:, None] + halves[:, None] * nodes, x, column_values)
 
     def mean(samples: FloatArray) -> FloatArray:
         scale = max(float(samples.max()), np.finfo(float).tiny)
@@ -123,11 +123,11 @@ def border_load_errors(line_load: Columns, borders: FloatArray) -> FloatArray:
     load_errors = larger_step(np.abs(np.diff(line_load.values))) * np.minimum(high - low, np.diff(borders).min())
     errors = np.zeros(borders.size)
     for index, border in enumerate(borders[1:-1], start=1):
-        first = int(np.searchsorted(high, border, side="left"))
-        last = min(int(np.searchsorted(low, border, side="right")), low.size - 1)
+        first_column = int(np.searchsorted(high, border, side="left"))
+        last_column = min(int(np.searchsorted(low, border, side="right")), low.size - 1)
         # Fraction of the line load's step to the next column that may lie beyond a border. Accuracy: of 629 tables 0.1
         # left 5 uncovered; at 0.25 the worst error is half of the stated one
-        errors[index] = 0.25 * load_errors[max(first - 1, 0) : last + 1].max()
+        errors[index] = 0.25 * load_errors[max(first_column - 1, 0) : last_column + 1].max()
     return np.asarray(errors[:-1] + errors[1:])
 
 
@@ -198,19 +198,19 @@ def slices(dataset: xr.Dataset, count: int = 30) -> xr.Dataset:
     pressure, line_load = Columns(edges, centres, maxima), Columns(edges, centres, cells["line_load"].values)
     # A cell that a border cuts gives each slice its part of the load.
     weights = xr.DataArray(pressure.overlaps(borders), dims=("slice", x))
-    equal = {"comment": "an equal part of the cells under the roller"}
+    position_comment = {"comment": "an equal part of the cells under the roller"}
     result = xr.Dataset(
         {
-            "position": ("slice", 0.5 * (borders[1:] + borders[:-1]), equal),
-            "width": ("slice", np.full(slice_count, borders[1] - borders[0]), equal),
+            "position": ("slice", 0.5 * (borders[1:] + borders[:-1]), position_comment),
+            "width": ("slice", np.full(slice_count, borders[1] - borders[0]), position_comment),
             "normal_load": name_array("normal_load", (weights * cells["line_load"]).sum(x)),
         },
         coords={"slice": np.arange(1, slice_count + 1)},
     )
     load = result["normal_load"].values
     result = result.assign(_with_errors(case, borders, pressure, line_load, load).data_vars)
-    means = [name for name in ("half_width", "unloaded_gap") if name in cells]
-    for name in means:
+    averaged_names = [name for name in ("half_width", "unloaded_gap") if name in cells]
+    for name in averaged_names:
         mean = (weights * cells[name]).sum(x) / weights.sum(x)
         result[name] = mean.assign_attrs(comment="mean over the cells of the slice")
     if all(name in case and "z" in axis_dimensions(case[name]) for name in STRESSES):
@@ -226,7 +226,7 @@ def slices(dataset: xr.Dataset, count: int = 30) -> xr.Dataset:
             for variable in (f"peak_{name}", f"peak_{name}_z"):
                 value = sections[variable].isel({along: index}).where(has_samples).reset_coords(drop=True)
                 result[variable] = value.assign_attrs(sections[variable].attrs)
-    return describe(without_error(result, *means))
+    return describe(without_error(result, *averaged_names))
 
 
 def _with_errors(
@@ -236,12 +236,12 @@ def _with_errors(
     maxima, column_error = maximum_between(pressure, borders)
     relative = pressure_errors(case)
     mid_length, rounding = 0.5 * (borders[0] + borders[-1]), ROUNDING * (borders[-1] - borders[0])
-    halves = (borders[:-1] < mid_length - rounding, borders[1:] > mid_length + rounding)
+    half_masks = (borders[:-1] < mid_length - rounding, borders[1:] > mid_length + rounding)
     peaks = [float(case.get(f"peak_pressure_{side}", np.nan)) for side in SIDES]
     pressure_error = np.max(
         [
             np.where(in_half, factor * (maxima if np.isinf(peak) else peak), 0.0)
-            for in_half, factor, peak in zip(halves, relative, peaks, strict=True)
+            for in_half, factor, peak in zip(half_masks, relative, peaks, strict=True)
         ],
         axis=0,
     )

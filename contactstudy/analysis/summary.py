@@ -36,16 +36,16 @@ def pressure_numbers(dataset: xr.Dataset) -> dict[str, float]:
         for axis, centres in (("x", x), ("y", y))
     ]
     numbers = contact_numbers(pressure, has_contact, x, y, *widths)
-    at_x, at_y = np.unravel_index(int(np.nanargmax(pressure)), pressure.shape)
-    outermost = [float(pressure[column].max()) for column in columns[[0, -1]]] if columns.size else [np.nan, np.nan]
+    x_index, y_index = np.unravel_index(int(np.nanargmax(pressure)), pressure.shape)
+    end_pressures = [float(pressure[column].max()) for column in columns[[0, -1]]] if columns.size else [np.nan, np.nan]
     first, last = (
         float(dataset.get(f"end_pressure_{end}", value)) / scale
-        for end, value in zip(("first", "last"), outermost, strict=True)
+        for end, value in zip(("first", "last"), end_pressures, strict=True)
     )
     return {
-        "peak_pressure": float(pressure[at_x, at_y]),
-        "peak_pressure_x": float(x[at_x]),
-        "peak_pressure_y": float(y[at_y]),
+        "peak_pressure": float(pressure[x_index, y_index]),
+        "peak_pressure_x": float(x[x_index]),
+        "peak_pressure_y": float(y[y_index]),
         "end_pressure_over_p0_first": first,
         "end_pressure_over_p0_last": last,
         "end_pressure_over_p0": 0.5 * (first + last),
@@ -60,8 +60,8 @@ def stress_summary(dataset: xr.Dataset) -> xr.Dataset:
         return xr.Dataset()
     if np.isnan(dataset["von_mises"].values).all():
         raise InvalidInputError("von_mises", "nan everywhere", "a field with at least one number")
-    complete = all(name in dataset for name in STRESSES)
-    result = peak(dataset) if complete else largest_sample(dataset, "von_mises")
+    has_all_stresses = all(name in dataset for name in STRESSES)
+    result = peak(dataset) if has_all_stresses else largest_sample(dataset, "von_mises")
     return result.reset_coords(drop=True)
 
 

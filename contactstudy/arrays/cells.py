@@ -7,7 +7,7 @@ import xarray as xr
 
 from contactstudy import checks
 from contactstudy.arrays.grid import SPACING_TOLERANCE, Grid, uniform_range
-from contactstudy.checks import MAX_MAGNITUDE, REAL, FloatArray
+from contactstudy.checks import MAX_MAGNITUDE, REAL_KINDS, FloatArray
 from contactstudy.errors import InvalidInputError
 
 
@@ -29,21 +29,21 @@ def labelled_cells(
     y_range, cells_y = uniform_range("y", array["y"].values)
     grid = _grid(array, extent, y_range, cells_y)
     try:
-        if array.dtype.kind not in REAL:
+        if array.dtype.kind not in REAL_KINDS:
             raise TypeError
         values = np.ascontiguousarray(array.transpose("x", "y").values, dtype=np.float64)
     except (TypeError, ValueError):
         raise InvalidInputError(f"{name}.dtype", array.dtype, "real numbers") from None
-    bad = ~(np.abs(values) <= MAX_MAGNITUDE)
+    is_invalid = ~(np.abs(values) <= MAX_MAGNITUDE)
     if infinite:
-        bad &= values != np.inf
-    if bad.any():
-        i, j = np.argwhere(bad)[0]
+        is_invalid &= values != np.inf
+    if is_invalid.any():
+        i, j = np.argwhere(is_invalid)[0]
         raise InvalidInputError(
             name,
             f"{values[i, j]} at x = {grid.x[i]:g}, y = {grid.y[j]:g}",
             f"finite everywhere, of a size up to {MAX_MAGNITUDE:g}",
-            f"{bad.sum()} values are not",
+            f"{is_invalid.sum()} values are not",
         )
     return values, grid
 
@@ -61,14 +61,14 @@ def _grid(array: xr.DataArray, extent: tuple[float, float], y_range: tuple[float
     if "x_width" in array.coords:
         widths = checks.coordinates("x_width", array["x_width"].values)
         centres = checks.coordinates("x", array["x"].values)
-        low, high = centres - 0.5 * widths, centres + 0.5 * widths
-        gaps = np.abs(high[:-1] - low[1:])
-        wrong = np.flatnonzero(gaps > SPACING_TOLERANCE * (high - low)[:-1])
-        if wrong.size:
-            index = int(wrong[0])
-            borders = f"one cell ends at {high[index]:g} m, the next begins at {low[index + 1]:g} m"
+        lower_edges, upper_edges = centres - 0.5 * widths, centres + 0.5 * widths
+        gap_widths = np.abs(upper_edges[:-1] - lower_edges[1:])
+        gap_indices = np.flatnonzero(gap_widths > SPACING_TOLERANCE * (upper_edges - lower_edges)[:-1])
+        if gap_indices.size:
+            index = int(gap_indices[0])
+            borders = f"one cell ends at {upper_edges[index]:g} m, the next begins at {lower_edges[index + 1]:g} m"
             raise InvalidInputError("x_width", borders, "such that cells meet")
-        edges = np.concatenate([low[:1], 0.5 * (high[:-1] + low[1:]), high[-1:]])
+        edges = np.concatenate([lower_edges[:1], 0.5 * (upper_edges[:-1] + lower_edges[1:]), upper_edges[-1:]])
         return Grid.between(edges, y_range, cells_y)
     try:
         x_range, cells_x = uniform_range("x", array["x"].values)

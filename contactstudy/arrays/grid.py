@@ -16,9 +16,9 @@ SPACING_TOLERANCE = 1e-4
 MAX_WIDTH_RATIO = 4.0
 """Largest ratio of the widths of neighbouring cells: error estimates are invalid beyond. Accuracy."""
 
-GROWTH = 3.0  # ratio of neighbouring cells outside the contact. Speed.
+WIDTH_RATIO = 3.0  # ratio of neighbouring cells outside the contact. Speed.
 MIN_WIDTH = 1e-12  # least width of a cell over the grid's length: the rounding of the edges. Accuracy.
-ON_TOP = 0.02  # relative error of stresses on the top under a pressure of cells, from the page on limits. Accuracy.
+TOP_ERROR = 0.02  # relative error of stresses on the top under a pressure of cells, from the page on limits. Accuracy.
 MAX_CELLS = 10**8  # largest number of cells; more suggest a wrong unit
 
 
@@ -101,23 +101,23 @@ class Grid:
         if edges.size < 2:
             raise InvalidInputError("x_edges", edges, "at least two edges (metres)")
         widths = np.diff(edges)
-        wrong = np.flatnonzero(widths <= MIN_WIDTH * (edges[-1] - edges[0]))
-        if wrong.size:
-            index = int(wrong[0])
+        narrow_cells = np.flatnonzero(widths <= MIN_WIDTH * (edges[-1] - edges[0]))
+        if narrow_cells.size:
+            index = int(narrow_cells[0])
             raise InvalidInputError("x_edges", f"{edges[index]:g}, {edges[index + 1]:g} m", "increasing")
-        span = (float(edges[0]), float(edges[-1]))
+        x_range = (float(edges[0]), float(edges[-1]))
         uniform = bool(np.abs(widths - widths.mean()).max() <= 1e-12 * widths.mean())
-        inner = () if uniform else tuple(edges[1:-1].tolist())
-        return cls(x_range=span, y_range=y_range, cells_x=widths.size, cells_y=cells_y, _inner=inner)
+        inner_edges = () if uniform else tuple(edges[1:-1].tolist())
+        return cls(x_range=x_range, y_range=y_range, cells_x=widths.size, cells_y=cells_y, _inner=inner_edges)
 
     def check_growth(self, cells: BoolArray) -> None:
         """Raise if neighbours among some cells along x differ by more than an estimated error allows."""
         edges, widths = self.x_edges, self.widths
         ratio = np.maximum(widths[1:] / widths[:-1], widths[:-1] / widths[1:])
         # An edge may be rounded.
-        steep = np.flatnonzero((ratio > MAX_WIDTH_RATIO * (1 + SPACING_TOLERANCE)) & cells[1:] & cells[:-1])
-        if steep.size:
-            index = int(steep[0]) + 1
+        steep_indices = np.flatnonzero((ratio > MAX_WIDTH_RATIO * (1 + SPACING_TOLERANCE)) & cells[1:] & cells[:-1])
+        if steep_indices.size:
+            index = int(steep_indices[0]) + 1
             raise InvalidInputError(
                 "x_edges",
                 f"cells of {widths[index - 1]:g} and {widths[index]:g} m beside x = {edges[index]:g} m",
@@ -200,19 +200,19 @@ class Grid:
         if self.uniform:
             return replace(self, cells_x=self.cells_x // 2, cells_y=self.cells_y // 2)
         # Pairs of cells may exceed the steepest grading: they serve an initial guess.
-        inner = self._inner[1::2]
-        return replace(self, cells_x=len(inner) + 1, cells_y=self.cells_y // 2, _inner=inner)
+        inner_edges = self._inner[1::2]
+        return replace(self, cells_x=len(inner_edges) + 1, cells_y=self.cells_y // 2, _inner=inner_edges)
 
 
-def growing_edges(distance: float, width: float, growth: float = GROWTH) -> FloatArray:
+def growing_edges(distance: float, width: float, growth: float = WIDTH_RATIO) -> FloatArray:
     """Edges of few cells that grow from about `width` at 0 up to `distance`; one cell if infinite."""
     if np.isinf(distance):
         return np.array([width])
     if distance <= 1e-9 * width:
         return np.zeros(0)
-    count = max(1, int(np.ceil(np.log1p(distance * (growth - 1) / width) / np.log(growth) - 1e-9)))
-    sizes = growth ** np.arange(count)
-    return np.asarray(np.cumsum(sizes) * (distance / sizes.sum()))
+    cell_count = max(1, int(np.ceil(np.log1p(distance * (growth - 1) / width) / np.log(growth) - 1e-9)))
+    relative_widths = growth ** np.arange(cell_count)
+    return np.asarray(np.cumsum(relative_widths) * (distance / relative_widths.sum()))
 
 
 def uniform_range(name: str, values: object) -> tuple[tuple[float, float], int]:

@@ -9,7 +9,7 @@ import numpy as np
 from contactstudy.checks import FloatArray
 
 FLANK = 0.8  # fraction of a peak at which its width is read; a half-ellipse is 1 / 0.6 times as wide at its base
-SAMPLES_BETWEEN = 17  # points between the two neighbours of a sample at which the interpolating polynomial is evaluated
+SAMPLE_COUNT = 17  # points between the two neighbours of a sample at which the interpolating polynomial is evaluated
 
 
 def section_maxima(pressure: FloatArray) -> FloatArray:
@@ -49,7 +49,7 @@ def interpolate_about(
         start = min(max(centre - neighbours, 0), axis.size - count)
         nodes = axis[start : start + count]
         low, high = axis[max(centre - 1, 0)], axis[min(centre + 1, axis.size - 1)]
-        samples = np.unique(np.append(np.linspace(low, high, SAMPLES_BETWEEN), axis[centre])) if count > 1 else nodes
+        samples = np.unique(np.append(np.linspace(low, high, SAMPLE_COUNT), axis[centre])) if count > 1 else nodes
         values = values[(slice(None),) * axis_count + (slice(start, start + count),)]
         points.append(samples)
         matrices.append(lagrange_weights(nodes, samples))
@@ -70,12 +70,12 @@ def variation_lengths(
     # Along x: the half-width of the half-ellipse that falls, or with `rising` rises, as fast; infinite for a nearly
     # uniform pressure, the distance to the contact for a column without pressure.
     axial = pressure.max(axis=1)
-    different = axial < FLANK * axial[column]
+    is_different = axial < FLANK * axial[column]
     if rising:
-        different |= FLANK * axial > axial[column]
+        is_different |= FLANK * axial > axial[column]
     loaded = column if axial[column] > 0 else int(axial.argmax())
     length_y = 0.5 * dy * np.count_nonzero(pressure[loaded] > 0)
-    length_x = np.abs(x[different] - x[column]).min() if different.any() else np.inf
+    length_x = np.abs(x[is_different] - x[column]).min() if is_different.any() else np.inf
     if axial[column] > 0:
         length_x /= np.sqrt(1 - FLANK**2)
     return float(length_x), float(length_y)

@@ -82,14 +82,14 @@ class Cases:
         """Values of a swept parameter as distinct texts."""
         values = self.scalars[dim].values
         units = str(self.scalars[dim].attrs.get("units", "1"))
-        grouped = [
+        case_columns = [
             str(name)
             for name, entry in self.scalars.coords.items()
             if entry.dims == (dim,) and name != dim and "comment" not in entry.attrs
         ]
-        if dim == "case" and grouped:
-            columns = {name: self.scalars[name].values for name in grouped}
-            texts = [", ".join(f"{name}={columns[name][i]}" for name in grouped) for i in range(values.size)]
+        if dim == "case" and case_columns:
+            columns = {name: self.scalars[name].values for name in case_columns}
+            texts = [", ".join(f"{name}={columns[name][i]}" for name in case_columns) for i in range(values.size)]
         else:
             texts = [_value_text(value, units) for value in values]
         return texts if len(set(texts)) == len(texts) else [f"{i}: {text}" for i, text in enumerate(texts, start=1)]
@@ -163,11 +163,11 @@ def _cases_of_study(study: xr.Dataset) -> Cases:
         if str(entry["status"].item()) not in ("ok", "stale"):
             raise InvalidInputError("case", index, "a solved case")
 
-        def part(arrays: tuple[str, ...]) -> xr.Dataset:
+        def select_fields(arrays: tuple[str, ...]) -> xr.Dataset:
             names = [name for name in study.data_vars if name in arrays or name in scalars]
             return single_case(entry[[name for name in names if entry[name].dtype.kind not in "UO"]]).compute()
 
-        return CaseFields(part(FIELDS), lambda: part(STRESSES))
+        return CaseFields(select_fields(FIELDS), lambda: select_fields(STRESSES))
 
     return Cases(scalars.load(), load, study_title(attribute(study, STUDY_ATTRIBUTE), "study"))
 

@@ -67,19 +67,19 @@ class AxialFigure:
 
     def show(self, lines: list[Line | None], limits: Span, labels: tuple[str, str]) -> None:
         """Draw the pressure of the cases between two positions."""
-        top = 0.0
+        max_pressure = 0.0
         for line in lines:
             if line is not None:
                 visible_pressure = line.pressure[(line.x >= limits[0]) & (line.x <= limits[1])]
-                top = max(top, float(np.nanmax(visible_pressure, initial=0.0)))
-        top = 1.06 * top if top > 0 else 1.0
+                max_pressure = max(max_pressure, float(np.nanmax(visible_pressure, initial=0.0)))
+        max_pressure = 1.06 * max_pressure if max_pressure > 0 else 1.0
         for line, source, marks in zip(lines, self._lines, self._marks, strict=True):
             source.data = {"x": [], "p": []} if line is None else {"x": line.x, "p": line.pressure}
-            ends = [] if line is None else [end for end in line.singular if limits[0] <= end <= limits[1]]
-            marks.data = {"x": ends, "p": [0.96 * top] * len(ends)}
+            visible_ends = [] if line is None else [end for end in line.singular if limits[0] <= end <= limits[1]]
+            marks.data = {"x": visible_ends, "p": [0.96 * max_pressure] * len(visible_ends)}
         self._legend.visible = lines[1] is not None
         self.figure.x_range.update(start=limits[0], end=limits[1])
-        self.figure.y_range.update(start=0.0, end=top)
+        self.figure.y_range.update(start=0.0, end=max_pressure)
         self.figure.xaxis.axis_label, self.figure.yaxis.axis_label = labels
 
 
@@ -110,13 +110,13 @@ class ImageFigure:
             self._source.data = {"image": [], "x": [], "y": [], "w": [], "h": []}
             self._largest.data = {"x": [], "y": []}
             return
-        (left, right), (low, high) = image.horizontal, image.vertical
-        self._source.data = {"image": [image.values], "x": [left], "y": [low], "w": [right - left], "h": [high - low]}
+        (start, stop), (low, high) = image.horizontal, image.vertical
+        self._source.data = {"image": [image.values], "x": [start], "y": [low], "w": [stop - start], "h": [high - low]}
         self._largest.data = {"x": [image.largest[1]], "y": [image.largest[2]]}
         self._mapper.update(high=max(limit, 1e-12))
-        self.figure.x_range.update(start=left, end=right)
-        deep = self._downwards and image.names[1].startswith("depth")
-        self.figure.y_range.update(start=vertical[deep], end=vertical[not deep])
+        self.figure.x_range.update(start=start, end=stop)
+        is_depth_axis = self._downwards and image.names[1].startswith("depth")
+        self.figure.y_range.update(start=vertical[is_depth_axis], end=vertical[not is_depth_axis])
         self.figure.xaxis.axis_label, self.figure.yaxis.axis_label = image.names
 
 
@@ -145,26 +145,26 @@ class StudyFigure:
         values: FloatArray,
         errors: FloatArray | None,
         *,
-        marked: list[tuple[int, float, str]],
+        marked_cases: list[tuple[int, float, str]],
         labels: tuple[str, str],
         ticks: dict[float, str] | None = None,
     ) -> None:
         """Draw values with bars of errors over a swept parameter; an unbounded value as a triangle at the top.
 
-        The mark of a value with the error NaN is open; without `errors` the values are exact. `marked` are cases of the
-        page: number along the parameter, value, and colour. `ticks` are texts.
+        The mark of a value with the error NaN is open; without `errors` the values are exact. `marked_cases` are
+        cases of the page: number along the parameter, value, and colour. `ticks` are texts.
         """
-        finite = np.isfinite(values)
+        is_finite = np.isfinite(values)
         bars = np.zeros(values.size) if errors is None else np.nan_to_num(errors)
-        finite_values = [*values[finite], *(value for _, value, _ in marked if np.isfinite(value))]
-        extremes = [*finite_values, *(values + bars)[finite], *(values - bars)[finite & (bars > 0)]]
-        low, high = min([0.0, *extremes]), max([*extremes, 1e-12]) if finite_values else 1.0
+        finite_values = [*values[is_finite], *(value for _, value, _ in marked_cases if np.isfinite(value))]
+        bar_values = [*finite_values, *(values + bars)[is_finite], *(values - bars)[is_finite & (bars > 0)]]
+        low, high = min([0.0, *bar_values]), max([*bar_values, 1e-12]) if finite_values else 1.0
         high += 0.06 * (high - low)
-        without_error = finite & (np.isnan(errors) if errors is not None else False)
-        with_bar = finite & (bars > 0)
+        without_error = is_finite & (np.isnan(errors) if errors is not None else False)
+        with_bar = is_finite & (bars > 0)
         self._line.data = {
             "x": x,
-            "v": np.where(finite, values, np.nan),
+            "v": np.where(is_finite, values, np.nan),
             "fill": np.where(without_error, "white", NEUTRAL_COLOR),
             "low": np.where(with_bar, values - bars, np.nan),
             "high": np.where(with_bar, values + bars, np.nan),
@@ -172,13 +172,13 @@ class StudyFigure:
         legend = ["bars: estimated errors"] * bool(with_bar.any())
         legend += ["open marks: error not estimated"] * bool(without_error.any())
         self.figure.title.text = "; ".join(legend)
-        top = 0.96 * high
-        self._unbounded.data = {"x": x[np.isinf(values)], "v": np.full(int(np.isinf(values).sum()), top)}
+        mark_height = 0.96 * high
+        self._unbounded.data = {"x": x[np.isinf(values)], "v": np.full(int(np.isinf(values).sum()), mark_height)}
         for source, unbounded in ((self._marked, False), (self._marked_unbounded, True)):
-            cases = [case for case in marked if np.isposinf(case[1]) == unbounded]
+            cases = [case for case in marked_cases if np.isposinf(case[1]) == unbounded]
             source.data = {
                 "x": [x[index] for index, _, _ in cases],
-                "v": [top if unbounded else value for _, value, _ in cases],
+                "v": [mark_height if unbounded else value for _, value, _ in cases],
                 "color": [color for _, _, color in cases],
             }
         self.figure.y_range.update(start=low, end=high)

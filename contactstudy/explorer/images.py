@@ -105,8 +105,8 @@ def _values(array: xr.DataArray, axes: str) -> FloatArray:
 
 def _limit(values: FloatArray, near_singular_end: BoolArray) -> float:
     """Largest value away from singular ends, or of all values."""
-    regular = values[~near_singular_end] if near_singular_end.any() and not near_singular_end.all() else values
-    return float(np.nanmax(regular, initial=0.0))
+    regular_values = values[~near_singular_end] if near_singular_end.any() and not near_singular_end.all() else values
+    return float(np.nanmax(regular_values, initial=0.0))
 
 
 class Scale(NamedTuple):
@@ -183,11 +183,11 @@ def plane_image(
         return None
     points, normal = case.points, kind[0]
     horizontal, vertical = (axis for axis in "xyz" if axis != normal)
-    on_axis = points["y"][0] <= 0 <= points["y"][-1]
-    if min(points[horizontal].size, points[vertical].size) < 2 or (normal == "y" and not on_axis):
+    contains_axis = points["y"][0] <= 0 <= points["y"][-1]
+    if min(points[horizontal].size, points[vertical].size) < 2 or (normal == "y" and not contains_axis):
         return None
-    first, last = limits if normal == "x" else (float(points[normal][0]), float(points[normal][-1]))
-    position = 0.0 if normal == "y" else first + fraction * (last - first)
+    plane_start, plane_stop = limits if normal == "x" else (float(points[normal][0]), float(points[normal][-1]))
+    position = 0.0 if normal == "y" else plane_start + fraction * (plane_stop - plane_start)
     axis = "xyz".index(normal)
     values = np.asarray(interpolate_along(axis, case.stress(name), points[normal], np.array([position])).take(0, axis))
     spans = [(float(points[axis][0]), float(points[axis][-1])) for axis in (horizontal, vertical)]
@@ -210,12 +210,12 @@ def _image(
     """Image in the units of the page."""
     pixels = to_pixels(values, axes, spans, PIXELS) / scale.stress
     labels = {"x": "distance from the free end, x", "y": "position along rolling, y", "z": "depth, z"}
-    first, second = (f"{labels[name]}{scale.length_name}" for name in names)
+    horizontal_label, vertical_label = (f"{labels[name]}{scale.length_name}" for name in names)
     (left, right), (low, high) = ((start / scale.length, stop / scale.length) for start, stop in spans)
     clipped_pixels = np.minimum(pixels, limit / scale.stress).astype(np.float32)
     # The largest value of the field up to the limit, which may lie between the pixels.
-    within = [(points >= start) & (points <= stop) for points, (start, stop) in zip(axes, spans, strict=True)]
-    visible = np.where(within[0][:, None] & within[1] & (values <= limit), values, -np.inf)
+    in_span = [(points >= start) & (points <= stop) for points, (start, stop) in zip(axes, spans, strict=True)]
+    visible = np.where(in_span[0][:, None] & in_span[1] & (values <= limit), values, -np.inf)
     row, column = np.unravel_index(int(visible.argmax()), visible.shape)
     maximum = np.array([visible[row, column], axes[0][row], axes[1][column]])
     maximum /= (scale.stress, scale.length, scale.length)
@@ -225,7 +225,7 @@ def _image(
         horizontal=(left, right),
         vertical=(low, high),
         limit=limit / scale.stress,
-        names=(first, second),
+        names=(horizontal_label, vertical_label),
         largest=tuple(largest),
     )
 

@@ -70,9 +70,9 @@ class Page:
             label="position of the plane, from first to last", start=0.0, end=1.0, step=0.01, value=0.5, visible=False
         )
         groups = numbers_by_subject(cases.scalars)
-        first = next((name for names in groups.values() for name in names.values()), None)
+        first_name = next((name for names in groups.values() for name in names.values()), None)
         self.number = pn.widgets.Select(
-            label="number of all cases", groups=groups, value=first, visible=bool(cases.dims)
+            label="number of all cases", groups=groups, value=first_name, visible=bool(cases.dims)
         )
         dims = {_label(cases.scalars[dim]): dim for dim in cases.dims}
         self.parameter = pn.widgets.Select(label="over", options=dims, visible=len(dims) > 1)
@@ -102,8 +102,8 @@ class Page:
             entry = self.cases.scalars[dim]
             options = {text: index for index, text in enumerate(self.cases.choices(dim))}
             names = entry.dtype.kind in "UOb" or len(options) > MAX_SLIDER_OPTIONS
-            kind = pn.widgets.Select if names else pn.widgets.DiscreteSlider
-            widgets[dim] = kind(label=f"{prefix}{_label(entry)}", options=options, value=start[dim])
+            widget_class = pn.widgets.Select if names else pn.widgets.DiscreteSlider
+            widgets[dim] = widget_class(label=f"{prefix}{_label(entry)}", options=options, value=start[dim])
             widgets[dim].param.watch(self._on_widget_change, "value")
         return widgets
 
@@ -186,23 +186,23 @@ class Page:
 
     def _show_fields(self, cases: list[CaseFields | None]) -> None:
         """Pressure on the top and stress in the plane, with common colours."""
-        tops: list[Image | None] = [None, None]
-        planes: list[Image | None] = [None, None]
+        top_images: list[Image | None] = [None, None]
+        plane_images: list[Image | None] = [None, None]
         unit = ""
         for side, case in enumerate(cases):
             if case is not None and case.has_pressure:
                 scale, limits = choose_scale(case, relative=self.units.value), region_limits(case, self.region.value)
                 unit, kind, fraction = scale.stress_name, self.plane.value, self.fraction.value
-                tops[side] = top_image(case, scale, limits)
-                planes[side] = plane_image(case, scale, limits, kind, fraction, name=self.measure.value)
+                top_images[side] = top_image(case, scale, limits)
+                plane_images[side] = plane_image(case, scale, limits, kind, fraction, name=self.measure.value)
         measure = next(text for text, name in MEASURES.items() if name == self.measure.value)
-        rows = (tops, self.surface_figures, "pressure"), (planes, self.plane_figures, measure)
+        rows = (top_images, self.surface_figures, "pressure"), (plane_images, self.plane_figures, measure)
         for images, figures, quantity in rows:
-            present = [image for image in images if image is not None]
-            limit = max((image.limit for image in present), default=1.0)
+            shown_images = [image for image in images if image is not None]
+            limit = max((image.limit for image in shown_images), default=1.0)
             vertical = (
-                min((image.vertical[0] for image in present), default=0.0),
-                max((image.vertical[1] for image in present), default=1.0),
+                min((image.vertical[0] for image in shown_images), default=0.0),
+                max((image.vertical[1] for image in shown_images), default=1.0),
             )
             for side, (case, image, figure) in enumerate(zip(cases, images, figures, strict=False)):
                 name = f"{NAMES[side]}: " if self.compare.value else ""
@@ -217,10 +217,10 @@ class Page:
 
     def _hide_empty(self, cases: list[CaseFields | None], sides: list[int]) -> str:
         """Hide figures without data, and return the reasons."""
-        tops = [figure.has_image for figure in self.surface_figures]
+        has_top_image = [figure.has_image for figure in self.surface_figures]
         planes = [figure.has_image for figure in self.plane_figures]
-        self._set_visible(0, any(tops))
-        for pane, images in ((1, tops), (3, planes)):
+        self._set_visible(0, any(has_top_image))
+        for pane, images in ((1, has_top_image), (3, planes)):
             for side in (0, 1):
                 self._set_visible(pane + side, side in sides and images[side])
         remarks = []
@@ -228,7 +228,7 @@ class Page:
             case = cases[side]
             if case is None:
                 text = status_sentence(*self.cases.status(self.index(side)))
-            elif not tops[side]:
+            elif not has_top_image[side]:
                 text = "The study stores no surfaces of this case, only its numbers."
             elif not planes[side]:
                 reason = "have too few points in this plane" if case.has_stress else "are not stored"
@@ -259,15 +259,15 @@ class Page:
         numbers = scalars[name].transpose(*dims).values
         specification = variable_of(name, scalars[name].attrs)
         factor, unit = unit_for(float(np.abs(numbers[np.isfinite(numbers)]).max(initial=0.0)), specification.units)
-        line = tuple(slice(None) if dim == parameter else i for dim, i in zip(dims, self.index(0), strict=True))
-        values = np.asarray(numbers[line], dtype=np.float64) / factor
+        line_index = tuple(slice(None) if dim == parameter else i for dim, i in zip(dims, self.index(0), strict=True))
+        values = np.asarray(numbers[line_index], dtype=np.float64) / factor
         x, label, ticks = self._parameter_axis(parameter)
         axis = dims.index(parameter)
         marked = [(self.index(side)[axis], float(numbers[self.index(side)]) / factor, COLORS[side]) for side in sides]
         number_label = f"{specification.long_name} ({unit})" if unit else specification.long_name
         self._set_visible(5, not np.isnan(values).all())
-        errors = self._errors(name, line, values, factor)
-        self.study.show(x, values, errors, marked=marked, labels=(label, number_label), ticks=ticks)
+        errors = self._errors(name, line_index, values, factor)
+        self.study.show(x, values, errors, marked_cases=marked, labels=(label, number_label), ticks=ticks)
 
     def _parameter_axis(self, parameter: str) -> tuple[FloatArray, str, dict[float, str] | None]:
         """Positions, label and ticks of a swept parameter."""
@@ -279,11 +279,11 @@ class Page:
         label = f"{_label(entry)} ({unit})" if unit else _label(entry)
         return np.asarray(entry.values, dtype=np.float64) / factor, label, None
 
-    def _errors(self, name: str, line: tuple[Any, ...], values: FloatArray, factor: float) -> FloatArray | None:
+    def _errors(self, name: str, line_index: tuple[Any, ...], values: FloatArray, factor: float) -> FloatArray | None:
         """Errors of a number along a line of cases, NaN if not estimated; None for exact numbers."""
         scalars = self.cases.scalars
         if f"{name}_error" in scalars:
-            errors = scalars[f"{name}_error"].transpose(*scalars["status"].dims).values[line] / factor
+            errors = scalars[f"{name}_error"].transpose(*scalars["status"].dims).values[line_index] / factor
             return np.where(np.isfinite(errors) & np.isfinite(values), errors, np.nan)
         return np.full(values.size, np.nan) if name.startswith(ESTIMATED_PREFIXES) else None
 

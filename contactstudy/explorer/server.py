@@ -154,7 +154,7 @@ class StudyLoader:
 
             return open_cases(self._folder)
 
-        loop, interval = IOLoop.current(), sys.getswitchinterval()
+        loop, switch_interval = IOLoop.current(), sys.getswitchinterval()
         sys.setswitchinterval(SWITCH_INTERVAL)
         try:
             self._cases.set_result(await loop.run_in_executor(None, open_folder))
@@ -162,7 +162,7 @@ class StudyLoader:
             self.error = error
             loop.stop()
         finally:
-            sys.setswitchinterval(interval)
+            sys.setswitchinterval(switch_interval)
 
     def page(self) -> Any:
         """Page of a new visitor: empty until the browser has its scripts and the study is read."""
@@ -170,13 +170,13 @@ class StudyLoader:
 
         column = pn.Column(sizing_mode="stretch_width")
 
-        async def fill() -> None:
+        async def fill_column() -> None:
             """Put the study into the page."""
             from contactstudy.explorer.page import Page
 
             column.objects = [Page(await wrap_future(self._cases)).view()]
 
-        pn.state.onload(fill)
+        pn.state.onload(fill_column)
         return column
 
 
@@ -257,11 +257,11 @@ def study_title(study: Mapping[str, Any], name: str) -> str:
 
 def _choose_port(port: int | None) -> int:
     """Return the port if it is free, or the first free one without it, or raise."""
-    for candidate in range(PORT, PORT + PORT_COUNT) if port is None else (checks.count("port", port),):
+    for candidate_port in range(PORT, PORT + PORT_COUNT) if port is None else (checks.count("port", port),):
         with socket.socket(socket.AF_INET, socket.SOCK_STREAM) as probe, contextlib.suppress(OSError, OverflowError):
             probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)  # a recently closed port is free
-            probe.bind((HOST, candidate))
-            return candidate
+            probe.bind((HOST, candidate_port))
+            return candidate_port
     if port is None:
         raise InvalidInputError("port", None, f"given: all from {PORT} to {PORT + PORT_COUNT - 1} are taken")
     raise InvalidInputError("port", port, "a free port, at most 65535", "leave it out to take the next free one")

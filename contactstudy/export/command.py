@@ -53,22 +53,22 @@ def export(
     dataset = open_study(path) if path.is_dir() else load_result(path, "path")
     for name, value in selection_of(select).items():
         dataset = dataset.isel({name: index_of(dataset, name, value, "select")})
-    swept = [str(dim) for dim in dataset["status"].dims if dataset.sizes[dim] > 1] if "status" in dataset else []
+    names = [str(dim) for dim in dataset["status"].dims if dataset.sizes[dim] > 1] if "status" in dataset else []
     if line is not None and kind != "csv":
         raise InvalidInputError("line", line, f"left out for {kind.upper()}", "write the line as CSV")
-    if swept and kind != "mat":
-        example = f"--select {swept[0]}={dataset[swept[0]].values[0]}"
-        raise InvalidInputError("select", list(select), f"with a value of {', '.join(swept)} too", f"such as {example}")
-    default = path / f"export{SUFFIXES[kind]}" if path.is_dir() else path.with_suffix(SUFFIXES[kind])
-    target = default if out is None else out
+    if names and kind != "mat":
+        example = f"--select {names[0]}={dataset[names[0]].values[0]}"
+        raise InvalidInputError("select", list(select), f"with a value of {', '.join(names)} too", f"such as {example}")
+    default_path = path / f"export{SUFFIXES[kind]}" if path.is_dir() else path.with_suffix(SUFFIXES[kind])
+    target = default_path if out is None else out
     if kind == "vtk":
         return to_vtk(dataset, target, variables)
     if kind == "mat":
-        if swept and variables is None:
+        if names and variables is None:
             dataset = dataset.drop_dims([dim for dim in dataset.dims if dim not in dataset["status"].dims])
         return to_mat(dataset, target, variables)
-    ends = None if line is None else parse_line(line)
-    return _write_csv(to_table(dataset, variables, line=ends, points=points), target)
+    line_ends = None if line is None else parse_line(line)
+    return _write_csv(to_table(dataset, variables, line=line_ends, points=points), target)
 
 
 def _write_csv(table: pd.DataFrame, path: Path) -> Path | None:

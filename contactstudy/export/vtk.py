@@ -81,9 +81,9 @@ def to_vtk(dataset: xr.Dataset, path: str | Path, variables: str | Sequence[str]
         }
         _write(target, "RectilinearGrid", {"WholeExtent": extent}, {"Extent": extent}, sections)
     elif set(axis_dimensions(next(iter(fields.values()))).values()) == {"x", "y"}:
-        first = next(iter(fields.values()))
+        field = next(iter(fields.values()))
         # Only the cells of the field matter: a gap is infinite beyond the roller.
-        _, grid = labelled_cells("variables", xr.zeros_like(first, dtype=np.float64))
+        _, grid = labelled_cells("variables", xr.zeros_like(field, dtype=np.float64))
         edges = [grid.x_edges, np.linspace(*grid.y_range, grid.cells_y + 1), np.zeros(1)]
         _write_mesh(target, edges, in_cells={name: array.transpose("x", "y").values for name, array in fields.items()})
     else:
@@ -94,14 +94,14 @@ def to_vtk(dataset: xr.Dataset, path: str | Path, variables: str | Sequence[str]
 
 def _on_points(fields: dict[str, xr.DataArray]) -> tuple[list[FloatArray], dict[str, FloatArray]]:
     """Increasing positions along x, y and z, and the values at these points (x, y, z, ...)."""
-    first = next(iter(fields.values()))
-    along = axis_dimensions(first)
+    first_field = next(iter(fields.values()))
+    dims = axis_dimensions(first_field)
     # The format requires increasing positions; an axis without positions is a plane at 0.
-    points = {axis: positions(first, axis).values if axis in along else np.zeros(1) for axis in AXES}
+    points = {axis: positions(first_field, axis).values if axis in dims else np.zeros(1) for axis in AXES}
     order = {axis: np.argsort(values, kind="stable") for axis, values in points.items()}
     data = {}
     for name, array in fields.items():
-        values = array.transpose(*along.values()).values.astype(np.float64)
+        values = array.transpose(*dims.values()).values.astype(np.float64)
         field_values = values.reshape([points[axis].size for axis in AXES])
         data[name] = field_values[np.ix_(*order.values())]
     if all(name in data for name in STRESSES):
@@ -160,11 +160,11 @@ def _cells(counts: list[int]) -> tuple[int, IntArray]:
             "variables", f"{counts} points", "on at least two points along two of x, y and z", "take .vtr or CSV"
         )
     point_indices = np.arange(int(np.prod(counts)), dtype="<i8").reshape(counts)
-    cycles = CORNERS if len(extended_axes) == 2 else [(*corner, layer) for layer in (0, 1) for corner in CORNERS]
+    cell_corners = CORNERS if len(extended_axes) == 2 else [(*corner, layer) for layer in (0, 1) for corner in CORNERS]
     corners = []
-    for corner in cycles:
+    for corner in cell_corners:
         corner_slices = [slice(None)] * len(counts)
-        for axis, end in zip(extended_axes, corner, strict=True):
-            corner_slices[axis] = slice(1, None) if end else slice(None, -1)
+        for axis, is_upper in zip(extended_axes, corner, strict=True):
+            corner_slices[axis] = slice(1, None) if is_upper else slice(None, -1)
         corners.append(point_indices[tuple(corner_slices)].ravel())
     return (QUADRILATERAL if len(extended_axes) == 2 else HEXAHEDRON), np.stack(corners, axis=1)

@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy import ndimage
 
-from contactstudy.arrays.grid import ON_TOP, Grid
+from contactstudy.arrays.grid import TOP_ERROR, Grid
 from contactstudy.arrays.peaks import interpolate_about, peak_width
 from contactstudy.arrays.points import Points
 from contactstudy.bodies.models import Body, Extent
@@ -289,7 +289,7 @@ def _top_maximum(sample: _SampleMaximum, search: Search, stress: Callable[[Point
         search.inside_rim_at(centres),
         sample.indices,
     )
-    error = ON_TOP * sample.largest.value
+    error = TOP_ERROR * sample.largest.value
     for line, inner, index in (
         (values[:, row], mask[:, row], column),
         (values[column], mask[column], row),
@@ -324,7 +324,7 @@ def _refine_maximum(top: _SampleMaximum, search: Search, stress: Callable[[Point
     else:
         return _evaluate_at_maximum(top, max(change, top.largest.error), stress)
     if top.largest.position[2] <= search.shallowest * (1 + 1e-9):
-        return top.largest._replace(error=max(top.largest.error, ON_TOP * top.largest.value))
+        return top.largest._replace(error=max(top.largest.error, TOP_ERROR * top.largest.value))
     return top.largest
 
 

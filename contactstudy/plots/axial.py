@@ -130,16 +130,16 @@ def plot_comparison(
     midpoints = {name: _contact_midpoint(case) for name, case in cases.items()}
     if centred is None:
         half_widths = [float(case["hertz_half_width"]) for case in cases.values() if "hertz_half_width" in case]
-        spread = max(midpoints.values()) - min(midpoints.values())
-        centred = bool(half_widths) and spread > min(half_widths)
+        midpoint_range = max(midpoints.values()) - min(midpoints.values())
+        centred = bool(half_widths) and midpoint_range > min(half_widths)
     for (name, case), style in zip(cases.items(), line_styles(len(cases)), strict=True):
         unit = units(case, si=si)
         shift = -midpoints[name] / unit.length if centred else 0.0
         draw_section_maxima(ax, case, variable, unit, shift, label=fold_text(name, LEGEND_WIDTH), **style)
     ax.set_ylim(bottom=min(0.0, ax.get_ylim()[0]))
     ax.legend(frameon=False, fontsize="small")
-    along = unit.axis("x") if not centred else f"position from mid-length, $x{unit.over_length}$"
-    label_axes(ax, along, unit.stress_label(variable))
+    x_label = unit.axis("x") if not centred else f"position from mid-length, $x{unit.over_length}$"
+    label_axes(ax, x_label, unit.stress_label(variable))
     return ax
 
 
@@ -148,8 +148,8 @@ def _contact_midpoint(case: xr.Dataset) -> float:
     if "pressure" not in case:
         return 0.0
     axial = axial_pressure(case)
-    loaded = positions(axial, "x").where(axial > 0)
-    return 0.5 * float(loaded.min() + loaded.max())
+    loaded_x = positions(axial, "x").where(axial > 0)
+    return 0.5 * float(loaded_x.min() + loaded_x.max())
 
 
 def plot_depth(
@@ -197,10 +197,10 @@ def plot_depth(
     case = single_case(dataset)
     unit = units(case, si=si)
     field = measure(case, names[0])
-    depth, along = positions(field, "z").values, positions(field, "x").values
-    x = 0.5 * float(along.min() + along.max()) if x is None else x
-    ends = ((x, y, float(depth.min())), (x, y, float(depth.max())))
-    line = along_line(case, *ends, points=10 * np.size(depth) + 1, variables=names)
+    depth, x_positions = positions(field, "z").values, positions(field, "x").values
+    x = 0.5 * float(x_positions.min() + x_positions.max()) if x is None else x
+    line_ends = ((x, y, float(depth.min())), (x, y, float(depth.max())))
+    line = along_line(case, *line_ends, points=10 * np.size(depth) + 1, variables=names)
     ax = new_axes(ax, (4.8, 4.8))
     for name, style in zip(names, line_styles(len(names)), strict=True):
         label = fold_text(unit.stress_label(name), LEGEND_WIDTH)
@@ -245,12 +245,12 @@ def plot_wear(worn: xr.Dataset, ax: Axes | None = None, *, variable: str = "wear
     require(worn, variable, "line_load", argument="worn")
     factor, label = WEAR_LABELS[variable]
     ax = new_axes(ax)
-    loaded = (worn["line_load"] > 0).any("distance").values
+    is_loaded = (worn["line_load"] > 0).any("distance").values
     distances = worn["distance"].values
     depths = worn[variable].transpose("distance", "x").values
     for index, style in enumerate(line_styles(distances.size)):
         distance = np.format_float_positional(distances[index], precision=4, fractional=False, trim="-")
-        values = np.where(loaded, factor * depths[index], np.nan)
+        values = np.where(is_loaded, factor * depths[index], np.nan)
         ax.plot(1e3 * worn["x"].values, values, label=f"{distance} m", **style)
     if variable == "wear_depth" and not ax.yaxis_inverted():
         ax.invert_yaxis()

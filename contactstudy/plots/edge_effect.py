@@ -95,8 +95,8 @@ def plot_edge_effect(
         raise InvalidInputError("dataset", dict(dataset.sizes), allowed)
     half_spaces = entries_of("half-space") if has_bodies and "half-space" in bodies and finite != "half-space" else []
     # On a half-space the distance shifts the coordinate only: one case suffices.
-    first = [(e, case) for e, case in half_spaces if e == entries[0][0]] or half_spaces
-    comparison = with_surfaces(first[:1])
+    same_distance = [(e, case) for e, case in half_spaces if e == entries[0][0]] or half_spaces
+    comparison = with_surfaces(same_distance[:1])
     stress_entries = [(e, case) for e, case in entries if "von_mises" in case]
     height = 0.5 + 1.1 * len(stress_entries)
     figure = pyplot.figure(figsize=(5.4, 4.0 + height), layout="constrained")
@@ -105,8 +105,8 @@ def plot_edge_effect(
     _draw_pressures(ax, entries, comparison)
     distance = _level_distance([*entries, *comparison]) if distance is None else distance
     ax.set_xlim(0.0, distance)
-    heading = "Pressure and stress near a free end" if stress_entries else "Pressure near a free end"
-    title = f"{heading}: {'; '.join(remarks)}" if remarks else heading
+    base_title = "Pressure and stress near a free end" if stress_entries else "Pressure near a free end"
+    title = f"{base_title}: {'; '.join(remarks)}" if remarks else base_title
     figure.suptitle(fold_text(title, TITLE_WIDTH), fontsize="medium")
     if stress_entries:
         _draw_planes(subfigures[1], stress_entries, distance, depth)
@@ -116,8 +116,8 @@ def plot_edge_effect(
 def _select_other_dims(dataset: xr.Dataset, selection: Mapping[str, Any]) -> tuple[xr.Dataset, list[str]]:
     """One case per e/a and body, and the text of the values of the other parameters."""
     sizes = {str(dim): dataset.sizes[dim] for dim in dataset["status"].dims if dim not in EDGE_AXES}
-    places = {dim: index_of(dataset, dim, selection[dim]) if dim in selection else 0 for dim in sizes}
-    dataset = dataset.isel(places)
+    indices = {dim: index_of(dataset, dim, selection[dim]) if dim in selection else 0 for dim in sizes}
+    dataset = dataset.isel(indices)
     scalars = {str(name): entry for name, entry in dataset["status"].coords.items() if entry.ndim == 0}
     names = [name for name in dict.fromkeys([*sizes, *scalars]) if name in scalars and name not in (*EDGE_AXES, "case")]
     remarks = [
@@ -134,9 +134,9 @@ def _draw_pressures(ax: Axes, entries: list[Entry], comparison: list[Entry]) -> 
     line_style: dict[str, Any] = {"color": "black", "linestyle": ":", "linewidth": 1.2, "zorder": 1}
     for end_distance, case in comparison:
         plot_axial_pressure(case, ax, label=f"half-space, $e/a$ = {end_distance:g}", **line_style)
-    curves = [np.asarray(line.get_ydata(), dtype=np.float64) for line in ax.lines]
-    highest = max(float(np.nanmax(curve, initial=1.2)) for curve in curves)
-    ax.set_ylim(0.0, 1.05 * highest)
+    pressures = [np.asarray(line.get_ydata(), dtype=np.float64) for line in ax.lines]
+    max_pressure = max(float(np.nanmax(pressure, initial=1.2)) for pressure in pressures)
+    ax.set_ylim(0.0, 1.05 * max_pressure)
     ax.axhline(1.0, color="0.7", linewidth=0.8, zorder=0)
     # The legend lies below the axis: within the axes it would cover the lines.
     ax.legend(loc="upper center", bbox_to_anchor=(0.5, -0.15), frameon=False, fontsize="small", ncols=3)
@@ -151,8 +151,8 @@ def _level_distance(entries: list[Entry]) -> float:
         x, values = axial[dimension_along(axial, "x")].values / unit.length, axial.values
         mid_length = 0.5 * (x[0] + x[-1])
         in_half = x <= mid_length
-        level = np.abs(values[in_half] / values[in_half][-1] - 1) < PLATEAU if in_half.any() else np.array([True])
-        varying_x = x[in_half][~level]
+        is_level = np.abs(values[in_half] / values[in_half][-1] - 1) < PLATEAU if in_half.any() else np.array([True])
+        varying_x = x[in_half][~is_level]
         limits.append(min(1.25 * float(varying_x[-1]) + 1.0 if varying_x.size else 1.0, float(mid_length)))
     return max(limits)
 

@@ -25,9 +25,9 @@ def singular_ends(case: xr.Dataset) -> list[float]:
     """Positions of the roller's ends with a singular pressure, metres."""
     pressure = case["pressure"]
     x = dimension_along(pressure, "x")
-    faces = case["initial_gap"] if "initial_gap" in case else xr.zeros_like(pressure)
-    finite = faces.where(np.isfinite(faces)).notnull()
-    under_roller = np.flatnonzero(finite.any([dim for dim in faces.dims if dim != x]).values)
+    initial_gap = case["initial_gap"] if "initial_gap" in case else xr.zeros_like(pressure)
+    is_finite = initial_gap.where(np.isfinite(initial_gap)).notnull()
+    under_roller = np.flatnonzero(is_finite.any([dim for dim in initial_gap.dims if dim != x]).values)
     if not under_roller.size:
         return []
     centres = positions(pressure, "x").values
@@ -56,8 +56,8 @@ def cap_field(case: xr.Dataset, field: xr.DataArray) -> tuple[xr.DataArray, floa
     if not ends:
         return field, np.inf
     x = dimension_along(field, "x")
-    distant = ~near_singular(case, ends, positions(field, "x").values)
-    bound = float(field.isel({x: np.flatnonzero(distant)}).max()) if distant.any() else np.nan
+    is_regular = ~near_singular(case, ends, positions(field, "x").values)
+    bound = float(field.isel({x: np.flatnonzero(is_regular)}).max()) if is_regular.any() else np.nan
     if not np.isfinite(bound):
         return field, np.inf
     return field.clip(max=bound).assign_attrs(field.attrs), bound

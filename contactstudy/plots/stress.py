@@ -22,21 +22,25 @@ LEVELS = 12  # Approximate number of contours
 NEAR_PLANE = 0.15  # Distance from a plane, over the Hertz half-width, within which the plane marks the largest value
 
 
-def _draw_contours(ax: Axes, across: FloatArray, down: FloatArray, values: FloatArray, levels: Any) -> QuadContourSet:
+def _draw_contours(
+    ax: Axes, horizontal: FloatArray, vertical: FloatArray, values: FloatArray, levels: Any
+) -> QuadContourSet:
     """Draw filled contours, and every second level as a line."""
-    contours = ax.contourf(across, down, values, levels=levels, cmap=COLORS)
+    contours = ax.contourf(horizontal, vertical, values, levels=levels, cmap=COLORS)
     ax.contour(contours, levels=np.asarray(contours.levels)[::2], colors="white", linewidths=0.5)
     return contours
 
 
 def _plane_arrays(
-    plane: xr.DataArray, across: str, down: str, unit: Units
+    plane: xr.DataArray, horizontal: str, vertical: str, unit: Units
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Positions and values (down, across) of a plane in the units of the figure."""
-    dims = [dimension_along(plane, axis) for axis in (across, down)]
+    dims = [dimension_along(plane, axis) for axis in (horizontal, vertical)]
     if min(plane.sizes[dim] for dim in dims) < 2:
         raise InvalidInputError(
-            str(plane.name), dict(plane.sizes), f"given at two or more positions along {across} and along {down}"
+            str(plane.name),
+            dict(plane.sizes),
+            f"given at two or more positions along {horizontal} and along {vertical}",
         )
     plane = plane.sortby(dims)
     first, second = (plane[dim].values / unit.length for dim in dims)
@@ -98,19 +102,19 @@ def plot_stress_plane(
     field, bound = cap_field(case, measure(case, variable))
     plane = in_plane(case.assign({variable: field}), variables=variable, **plane_position)[variable]
     ((normal, position),) = plane_position.items()
-    across, down = (axis for axis in "xyz" if axis != normal)
-    first, second, values = _plane_arrays(plane, across, down, unit)
+    horizontal, vertical = (axis for axis in "xyz" if axis != normal)
+    horizontal_positions, depths, values = _plane_arrays(plane, horizontal, vertical, unit)
     ax = new_axes(ax, (6.4, 3.2))
-    contours = _draw_contours(ax, first, second, values, LEVELS if levels is None else levels)
-    if down == "z":
-        ax.set_ylim(second.max(), second.min())
+    contours = _draw_contours(ax, horizontal_positions, depths, values, LEVELS if levels is None else levels)
+    if vertical == "z":
+        ax.set_ylim(depths.max(), depths.min())
     ax.set_title(f"plane {unit.position(normal, position)}", fontsize="medium")
     mark_largest(ax, case, variable, {normal: position}, unit)
     if colorbar:
         is_clipped = bound < np.inf and np.asarray(contours.levels).max() >= bound / unit.stress
         label = unit.stress_label(variable) + (" (unbounded at the singular end)" if is_clipped else "")
         fold_labels(ax.figure.colorbar(contours, ax=ax, label=label).ax)
-    label_axes(ax, unit.axis(across), unit.axis(down))
+    label_axes(ax, unit.axis(horizontal), unit.axis(vertical))
     return ax
 
 
@@ -123,11 +127,11 @@ def mark_largest(ax: Axes, case: xr.Dataset, variable: str, plane: dict[str, flo
     location = {axis: float(case[f"{name}_{axis}"]) for axis in "xyz"}
     if abs(location[normal] - position) > NEAR_PLANE * float(case.get("hertz_half_width", 0.0)) + 1e-9:
         return
-    across, down = (location[axis] / unit.length for axis in "xyz" if axis != normal)
-    ax.plot(across, down, "+", color="#e8513a", markersize=9, markeredgewidth=1.6)
+    horizontal, vertical = (location[axis] / unit.length for axis in "xyz" if axis != normal)
+    ax.plot(horizontal, vertical, "+", color="#e8513a", markersize=9, markeredgewidth=1.6)
     ax.annotate(
         f"{float(case[name]) / unit.stress:.3g}",
-        (across, down),
+        (horizontal, vertical),
         (6, -6),
         textcoords="offset points",
         color="white",
@@ -184,40 +188,40 @@ def plot_end_face(
     if side not in (1, -1):
         raise InvalidInputError("side", side, "1 for y > 0 or -1 for y < 0")
     x_field = positions(measure(case, variable), "x").values
-    span = float(x_field.max() - x_field.min())
-    face = float(x_field.max()) if end == "last" else 0.0
-    if abs(float(x_field.min()) - face) > 1e-9 * span and end == "first":
+    length = float(x_field.max() - x_field.min())
+    face_x = float(x_field.max()) if end == "last" else 0.0
+    if abs(float(x_field.min()) - face_x) > 1e-9 * length and end == "first":
         raise InvalidInputError(
             "x",
             float(x_field.min()),
             "0, the end face, for the first position of stresses",
             "include the face: solve(case, x=...) with 0 among the positions",
         )
-    in_section = in_plane(case, variables=variable, y=0.0)[variable]
-    on_face = in_plane(case, variables=variable, x=face)[variable]
-    y_dim = dimension_along(on_face, "y")
-    outer = side * on_face[y_dim] > 0
+    section = in_plane(case, variables=variable, y=0.0)[variable]
+    face_stress = in_plane(case, variables=variable, x=face_x)[variable]
+    y_dim = dimension_along(face_stress, "y")
+    is_outer = side * face_stress[y_dim] > 0
     # The fold belongs to both halves: its values are those of the plane y = 0.
-    fold = in_section.sel({dimension_along(in_section, "x"): face}).reset_coords(drop=True).expand_dims({y_dim: [0.0]})
-    half_face = xr.concat([fold, on_face[{y_dim: outer.values}]], y_dim).rename(variable)
-    x, z, right = _plane_arrays(in_section, "x", "z", unit)
-    y, _, face_values = _plane_arrays(half_face, "y", "z", unit)
-    x = np.abs(x - face / unit.length)
+    fold = section.sel({dimension_along(section, "x"): face_x}).reset_coords(drop=True).expand_dims({y_dim: [0.0]})
+    half_stress = xr.concat([fold, face_stress[{y_dim: is_outer.values}]], y_dim).rename(variable)
+    x, z, section_values = _plane_arrays(section, "x", "z", unit)
+    y, _, face_values = _plane_arrays(half_stress, "y", "z", unit)
+    x = np.abs(x - face_x / unit.length)
     limit = 2 * np.abs(y).max() if distance is None else checks.positive("distance", distance)
     near_face = x <= limit * (1 + 1e-9)
     if levels is None or np.ndim(levels) == 0:
         from matplotlib.ticker import MaxNLocator
 
-        values = np.concatenate([right[:, near_face].ravel(), face_values.ravel()])
+        values = np.concatenate([section_values[:, near_face].ravel(), face_values.ravel()])
         levels = MaxNLocator(LEVELS if levels is None else levels).tick_values(values.min(), values.max())
     ax = new_axes(ax, (7.2, 3.4))
-    contours = _draw_contours(ax, x[near_face], z, right[:, near_face], levels)
+    contours = _draw_contours(ax, x[near_face], z, section_values[:, near_face], levels)
     _draw_contours(ax, -np.abs(y), z, face_values, levels)
     ax.axvline(0.0, color="black", linewidth=1.0)
     ax.set_ylim(z.max(), z.min())
     ax.xaxis.set_major_formatter(lambda value, _: f"{abs(value):g}")  # distances from the fold to both sides
-    sign, over = "" if side > 0 else "-", unit.over_length
+    sign, unit_suffix = "" if side > 0 else "-", unit.over_length
     bar = ax.figure.colorbar(contours, ax=ax, label=unit.stress_label(variable))
-    along = f"on the end face, ${sign}y{over}$   |   in the plane $y = 0$, $x{over}$ from the face"
-    label_axes(ax, along, unit.axis("z"), bar.ax)
+    x_label = f"on the end face, ${sign}y{unit_suffix}$   |   in the plane $y = 0$, $x{unit_suffix}$ from the face"
+    label_axes(ax, x_label, unit.axis("z"), bar.ax)
     return ax

@@ -112,11 +112,11 @@ def plot_study_lines(
         handles = [Line2D([], [], color="0.3", **style) for style in marks.values()]
         figure.legend(handles, list(marks), loc="outside lower right", frameon=False, fontsize="small", ncols=2)
     if fixed_parameters:
-        parts = [
+        values_text = [
             describe_value(dim, value, str(dataset[dim].attrs.get("units", "1")), dataset.sizes[dim])
             for dim, value in fixed_parameters.items()
         ]
-        figure.suptitle(fold_text("; ".join(parts), 40 * columns), fontsize="medium")
+        figure.suptitle(fold_text("; ".join(values_text), 40 * columns), fontsize="medium")
     return figure
 
 
@@ -128,9 +128,9 @@ def _draw_panel(
     axes_of_study = (x,) if hue is None else (x, hue)
     values, label = scale_values(select_one(dataset[name], axes_of_study, fixed_parameters), name)
     errors, without_estimate = _errors(dataset, name, axes_of_study, fixed_parameters)
-    numeric = np.issubdtype(values[x].dtype, np.number)
-    across, x_label = scale_values(values[x], x) if numeric else (values[x], x.replace("_", " "))
-    positions = across.values if numeric else np.arange(across.size)
+    is_numeric = np.issubdtype(values[x].dtype, np.number)
+    x_values, x_label = scale_values(values[x], x) if is_numeric else (values[x], x.replace("_", " "))
+    positions = x_values.values if is_numeric else np.arange(x_values.size)
     count = 1 if hue is None else values.sizes[hue]
     labels = [None] if hue is None else _value_labels(values[hue], hue)
     for index, style in enumerate(line_styles(count)):
@@ -139,33 +139,33 @@ def _draw_panel(
             for array in (values, errors, without_estimate)
         )
         marker, unbounded = MARKERS[index % len(MARKERS)], np.isinf(line)
-        finite = np.where(unbounded, np.nan, line)
+        finite_line = np.where(unbounded, np.nan, line)
         text = labels[index]
         (curve,) = ax.plot(
-            positions, finite, **style, marker=marker, markersize=4, label=text and fold_text(text, LEGEND_COLUMN)
+            positions, finite_line, **style, marker=marker, markersize=4, label=text and fold_text(text, LEGEND_COLUMN)
         )
         if np.isnan(line).all():
             curve.set_label("_unsolved")  # omitted in the legend
         if np.isfinite(bars).any():
-            ax.errorbar(positions, finite, bars, fmt="none", ecolor=style["color"], elinewidth=1.0, capsize=3.0)
-        if np.isfinite(finite[open_cases]).any():
+            ax.errorbar(positions, finite_line, bars, fmt="none", ecolor=style["color"], elinewidth=1.0, capsize=3.0)
+        if np.isfinite(finite_line[open_cases]).any():
             marks[OPEN_LABEL] = {"marker": "o", **OPEN_MARK}
-            if (np.isfinite(finite) & ~open_cases).any():
-                open_values = np.where(open_cases, finite, np.nan)
+            if (np.isfinite(finite_line) & ~open_cases).any():
+                open_values = np.where(open_cases, finite_line, np.nan)
                 ax.plot(positions, open_values, color=style["color"], marker=marker, **OPEN_MARK)
             else:
                 curve.set(markersize=OPEN_MARK["markersize"], markerfacecolor=OPEN_MARK["markerfacecolor"])
         if unbounded.any():
             marks[SINGULAR_LABEL] = SINGULAR_MARK
         mark_at_top(ax, list(positions[unbounded]), style["color"])
-    if not numeric:
-        ticks = [fold_text(escape_dollars(value), TICK_WIDTH) for value in across.values]
+    if not is_numeric:
+        ticks = [fold_text(escape_dollars(value), TICK_WIDTH) for value in x_values.values]
         ax.set_xticks(positions, ticks, rotation=20)
     ax.set_xlabel(x_label)
     ax.set_ylabel(label)
     fold_labels(ax)
-    tops = values + errors.fillna(0.0)
-    ax.set_ylim(0.0, 1.08 * max(np.nan_to_num(float(tops.where(np.isfinite(tops)).max())), 1e-300))
+    bar_tops = values + errors.fillna(0.0)
+    ax.set_ylim(0.0, 1.08 * max(np.nan_to_num(float(bar_tops.where(np.isfinite(bar_tops)).max())), 1e-300))
     ax.grid(color="0.9", linewidth=0.6)
     return marks
 

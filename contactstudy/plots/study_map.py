@@ -88,9 +88,9 @@ def plot_study_map(
         raise InvalidInputError("dataset", name, "with a number for at least one of these cases")
     ax = new_axes(ax, (6.4, 4.4))
     ax.set_facecolor("0.85")
-    across, up = np.arange(values.sizes[x]), np.arange(values.sizes[y])
+    x_ticks, y_ticks = np.arange(values.sizes[x]), np.arange(values.sizes[y])
     finite_values = np.ma.masked_invalid(array_values)
-    mesh = ax.pcolormesh(across, up, finite_values, cmap=COLORS, shading="nearest")
+    mesh = ax.pcolormesh(x_ticks, y_ticks, finite_values, cmap=COLORS, shading="nearest")
     for row, column in np.argwhere(~np.isfinite(array_values)):
         ax.fill_between(
             [column - 0.5, column + 0.5], row - 0.5, row + 0.5, facecolor="none", edgecolor="0.6", hatch="//"
@@ -99,11 +99,11 @@ def plot_study_map(
         from matplotlib.patheffects import AbstractPathEffect, withStroke
 
         # White with a dark rim is legible on every colour.
-        rim: list[AbstractPathEffect] = [withStroke(linewidth=2.5, foreground="0.2")]
-        lines = ax.contour(across, up, finite_values, levels=levels, colors="white", linewidths=1.2)
-        lines.set_path_effects(rim)
-        for number in ax.clabel(lines, fmt="%g", fontsize="small"):
-            number.set_path_effects(rim)
+        outline: list[AbstractPathEffect] = [withStroke(linewidth=2.5, foreground="0.2")]
+        level_lines = ax.contour(x_ticks, y_ticks, finite_values, levels=levels, colors="white", linewidths=1.2)
+        level_lines.set_path_effects(outline)
+        for level_text in ax.clabel(level_lines, fmt="%g", fontsize="small"):
+            level_text.set_path_effects(outline)
     for row, column in np.argwhere(np.isinf(array_values)):
         ax.text(column, row, "\N{INFINITY}", ha="center", va="center", color="black", fontsize="medium")
     if levels is None and array_values.size <= MAX_CELL_LABELS:
@@ -113,7 +113,7 @@ def plot_study_map(
             color = "white" if value < mid_value else "black"
             ax.text(column, row, f"{value:.3g}", ha="center", va="center", color=color, fontsize="small")
     _draw_missing_legend(ax, dataset, values, selection or {})
-    for parameter, ticks, axis in ((x, across, ax.xaxis), (y, up, ax.yaxis)):
+    for parameter, ticks, axis in ((x, x_ticks, ax.xaxis), (y, y_ticks, ax.yaxis)):
         numeric = np.issubdtype(values[parameter].dtype, np.number)
         steps, text = scale_values(values[parameter], parameter) if numeric else (values[parameter], parameter)
         axis.set_ticks(
@@ -136,8 +136,8 @@ def _unstack_cases(array: xr.DataArray, x: str, y: str) -> xr.DataArray:
     stacked = array.drop_vars([name for name in array.coords if name not in (x, y)]).set_index({dim: (x, y)})
     index = stacked.indexes[dim]
     if index.has_duplicates:
-        first, second = index[index.duplicated()][0]
-        hint = f"several have {x} = {first}, {y} = {second}"
+        x_value, y_value = index[index.duplicated()][0]
+        hint = f"several have {x} = {x_value}, {y} = {y_value}"
         raise InvalidInputError("x, y", (x, y), "parameters that distinguish the cases", hint)
     unstacked = stacked.unstack(dim)
     for name in (x, y):
@@ -147,19 +147,19 @@ def _unstack_cases(array: xr.DataArray, x: str, y: str) -> xr.DataArray:
 
 def _draw_missing_legend(ax: Axes, dataset: xr.Dataset, values: xr.DataArray, selection: Mapping[str, Any]) -> None:
     """Legend below a map: number and states of hatched cells."""
-    missing = values.isnull()
-    count = int(missing.sum())
+    is_missing = values.isnull()
+    count = int(is_missing.sum())
     if not count:
         return
     from matplotlib.patches import Patch
 
-    text = f"no value: {count} of {missing.size} cases"
+    text = f"no value: {count} of {is_missing.size} cases"
     y, x = map(str, values.dims)
     if "status" in dataset:
         status = _unstack_cases(dataset["status"], x, y)
         if {x, y} <= set(status.dims):
-            values_beside = {name: value for name, value in selection.items() if name in status.dims}
-            states = select_one(status, (x, y), values_beside).transpose(y, x).values[missing.values]
+            other_values = {name: value for name, value in selection.items() if name in status.dims}
+            states = select_one(status, (x, y), other_values).transpose(y, x).values[is_missing.values]
             counts = Counter(str(state) for state in states if str(state) in STATES)
             text += f" ({', '.join(f'{number} {state}' for state, number in counts.items())})" if counts else ""
     patch = Patch(facecolor="0.85", edgecolor="0.6", hatch="//", label=text)

@@ -68,8 +68,8 @@ def _surface(dataset: xr.Dataset, names: tuple[str, ...], *, si: bool, load: str
     unit = units(case, si=si)
     x, y = (dimension_along(case[load], axis) for axis in "xy")
     pressure = case[load]
-    across, along = (pressure[dim].values / unit.length for dim in (x, y))
-    return Surface(case, unit, across, along, pressure.transpose(y, x).values)
+    x_over_unit, y_over_unit = (pressure[dim].values / unit.length for dim in (x, y))
+    return Surface(case, unit, x_over_unit, y_over_unit, pressure.transpose(y, x).values)
 
 
 def _draw_mesh(ax: Axes, surface: Surface, values: Any, **style: Any) -> QuadMesh:
@@ -87,23 +87,23 @@ def _draw_border(ax: Axes, surface: Surface, values: FloatArray, threshold: floa
 
 def _outer_edges(centres: FloatArray) -> FloatArray:
     """Centres of cells, with the outer edges of the first and the last cell."""
-    first, last = centres[1] - centres[0], centres[-1] - centres[-2]
-    return np.concatenate([[centres[0] - 0.5 * first], centres, [centres[-1] + 0.5 * last]])
+    first_width, last_width = centres[1] - centres[0], centres[-1] - centres[-2]
+    return np.concatenate([[centres[0] - 0.5 * first_width], centres, [centres[-1] + 0.5 * last_width]])
 
 
 def _extend(values: FloatArray, in_contact: BoolArray) -> FloatArray:
     """Values over (y, x), continued along y from the contact to the adjacent cells; 0 in columns without contact."""
     rows = np.arange(len(values))[:, None]
-    first, last = in_contact.argmax(axis=0), len(values) - 1 - in_contact[::-1].argmax(axis=0)
-    extended = np.take_along_axis(values, np.clip(rows, first, last), axis=0)
+    first_row, last_row = in_contact.argmax(axis=0), len(values) - 1 - in_contact[::-1].argmax(axis=0)
+    extended = np.take_along_axis(values, np.clip(rows, first_row, last_row), axis=0)
     return np.where(in_contact.any(axis=0), extended, 0.0)
 
 
 def _draw_contact_border(ax: Axes, surface: Surface, *artists: Any) -> None:
     """Draw the border of the contact, and clip artists to this border."""
-    squared = surface.pressure**2
-    threshold = BORDER_LEVEL * float(squared[:, surface.away_from_singular_ends].max())
-    border = _draw_border(ax, surface, squared, threshold, **CONTACT_BORDER)
+    squared_pressure = surface.pressure**2
+    threshold = BORDER_LEVEL * float(squared_pressure[:, surface.away_from_singular_ends].max())
+    border = _draw_border(ax, surface, squared_pressure, threshold, **CONTACT_BORDER)
     for artist in artists:
         if border is not None and artist is not None:
             artist.set_clip_path(border.get_paths()[0], ax.transData)
@@ -112,11 +112,11 @@ def _draw_contact_border(ax: Axes, surface: Surface, *artists: Any) -> None:
 def _crop(ax: Axes, surface: Surface) -> None:
     """Limit the axes to the contact with a margin."""
     for centres, axis, limit in ((surface.x, 0, ax.set_xlim), (surface.y, 1, ax.set_ylim)):
-        loaded = np.flatnonzero(surface.in_contact.any(axis=axis))
-        if loaded.size > 1:
-            low, high = centres[loaded[0]], centres[loaded[-1]]
-            around = MARGIN * (high - low)
-            limit(low - around, high + around)
+        loaded_indices = np.flatnonzero(surface.in_contact.any(axis=axis))
+        if loaded_indices.size > 1:
+            low, high = centres[loaded_indices[0]], centres[loaded_indices[-1]]
+            margin = MARGIN * (high - low)
+            limit(low - margin, high + margin)
 
 
 def _label(ax: Axes, surface: Surface, mesh: QuadMesh, label: str, extend: str = "neither") -> None:
@@ -155,8 +155,8 @@ def plot_pressure_map(dataset: xr.Dataset, ax: Axes | None = None, *, si: bool =
     """
     surface = _surface(dataset, ("pressure",), si=si)
     ax = new_axes(ax)
-    stress, regular = surface.unit.stress, surface.away_from_singular_ends
-    max_value = None if regular.all() else float(surface.pressure[:, regular].max()) / stress
+    stress, is_regular = surface.unit.stress, surface.away_from_singular_ends
+    max_value = None if is_regular.all() else float(surface.pressure[:, is_regular].max()) / stress
     mesh = _draw_mesh(ax, surface, surface.pressure / stress, cmap=COLORS, vmin=0.0, vmax=max_value)
     _draw_contact_border(ax, surface, mesh)
     _crop(ax, surface)
@@ -228,8 +228,8 @@ def _arrow_cells(surface: Surface, arrows: int) -> tuple[IntArray, IntArray]:
     """Rows and columns of evenly spread cells of the contact, `arrows` along x, half as many along y."""
     indices = []
     for axis, (values, count) in enumerate(((surface.x, arrows), (surface.y, (arrows + 1) // 2))):
-        span = values[surface.in_contact.any(axis=axis)]
-        targets = span[0] + (np.arange(count) + 0.5) * float(np.ptp(span)) / count
+        contact_positions = values[surface.in_contact.any(axis=axis)]
+        targets = contact_positions[0] + (np.arange(count) + 0.5) * float(np.ptp(contact_positions)) / count
         indices.append(np.unique(np.abs(values[:, None] - targets).argmin(axis=0)))
     columns, rows = (index.ravel() for index in np.meshgrid(*indices, indexing="ij"))
     in_contact = surface.in_contact[rows, columns]

@@ -131,9 +131,9 @@ def _load(case: xr.Dataset) -> Criterion:
         return _unknown(question, "load_error")
     offset = _size(case, "load_position_error")
     position = f", its position to {_digit(offset)} of the length" if offset > 0 else ""
-    holds = error <= LOAD_TOLERANCE and not offset > VIOLATION_TOLERANCE
+    is_balanced = error <= LOAD_TOLERANCE and not offset > VIOLATION_TOLERANCE
     return Criterion(
-        question, YES if holds else NO, f"the resultant equals the load to {_digit(error)} of it{position}"
+        question, YES if is_balanced else NO, f"the resultant equals the load to {_digit(error)} of it{position}"
     )
 
 
@@ -143,20 +143,20 @@ def _contact_conditions(case: xr.Dataset) -> Criterion:
     overlap, pressure = _size(case, "penetration_error"), _size(case, "open_pressure_error")
     if np.isnan(overlap):
         return _unknown(question, "penetration_error")
-    holds = max(overlap, np.nan_to_num(pressure)) <= VIOLATION_TOLERANCE
+    is_fulfilled = max(overlap, np.nan_to_num(pressure)) <= VIOLATION_TOLERANCE
     reason = (
         f"gap or overlap under pressure is {_digit(overlap)} of the displacement, pressure over a gap "
         f"{_digit(pressure)} of the peak"
     )
-    return Criterion(question, YES if holds else CAUTION, reason)
+    return Criterion(question, YES if is_fulfilled else CAUTION, reason)
 
 
 def _friction(case: xr.Dataset) -> Criterion:
     """Whether stick and slip obey Coulomb's law."""
     errors = {name: _size(case, name) for name in ("bound_error", "slip_error", "force_error") if name in case}
     reason = ", ".join(f"{name.replace('_', ' ')} {_digit(value)}" for name, value in errors.items())
-    holds = all(not value > RESIDUAL_TOLERANCE for value in errors.values())
-    return Criterion("Do stick and slip follow Coulomb's law?", YES if holds else CAUTION, reason)
+    is_fulfilled = all(not value > RESIDUAL_TOLERANCE for value in errors.values())
+    return Criterion("Do stick and slip follow Coulomb's law?", YES if is_fulfilled else CAUTION, reason)
 
 
 def _free_ends(case: xr.Dataset) -> Criterion:

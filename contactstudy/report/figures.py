@@ -137,9 +137,9 @@ def _draw_axial_pressure(figure: Figure, result: xr.Dataset) -> str:
         ax.set_ylim(bottom=0.0)
     caption = "Largest pressure across the contact, along the roller's axis. Dashed: Hertz line contact."
     if has_end_panel:
-        along = axial_pressure(result).values
-        loaded = x[along > 0]
-        at_end_1 = along[x <= loaded[0] + panel].max() >= along[x >= loaded[-1] - panel].max()
+        line_pressure = axial_pressure(result).values
+        loaded = x[line_pressure > 0]
+        at_end_1 = line_pressure[x <= loaded[0] + panel].max() >= line_pressure[x >= loaded[-1] - panel].max()
         limits = (
             (loaded[0] - 0.1 * panel, loaded[0] + panel) if at_end_1 else (loaded[-1] - panel, loaded[-1] + 0.1 * panel)
         )
@@ -260,12 +260,12 @@ def side_geometry(case: Case) -> SideView:
         max(high if math.isfinite(high) else ends[1] + margin, ends[1]),
     )
     height = min(roller.radius, 0.42 * (limits[1] - limits[0]))
-    along = np.linspace(-0.5, 0.5, 241) * roller.length
-    drop = check_drop(roller.profile, along, roller.length)
-    inner = (np.abs(along) <= 0.45 * roller.length) & np.isfinite(drop)
-    magnification, max_depth = _magnification(float(drop[inner].max(initial=0.0)), height), 0.45 * height
+    x_roller = np.linspace(-0.5, 0.5, 241) * roller.length
+    drop = check_drop(roller.profile, x_roller, roller.length)
+    is_inner = (np.abs(x_roller) <= 0.45 * roller.length) & np.isfinite(drop)
+    magnification, max_depth = _magnification(float(drop[is_inner].max(initial=0.0)), height), 0.45 * height
     generatrix = np.minimum(np.where(np.isfinite(drop), drop * magnification, max_depth), max_depth)
-    x = along + ends[0] + 0.5 * roller.length
+    x = x_roller + ends[0] + 0.5 * roller.length
     clipped = bool((drop * magnification > max_depth).any())
     return SideView(
         x, generatrix, ends, (low, high), limits, height=height, magnification=magnification, clipped=clipped
@@ -293,13 +293,13 @@ def side_view(case: Case) -> Picture:
     _draw_dimension(ax, view.roller, view.height + 0.25 * depth, f"L = {format_quantity(case.roller.length, 'm')}")
     if all(map(math.isfinite, view.body)):
         _draw_dimension(ax, view.body, -1.9 * depth, f"body {format_quantity(view.body[1] - view.body[0], 'm')}")
-    for name, edge, face, sign in zip(("I", "II"), view.body, view.roller, (1, -1), strict=True):
-        if math.isfinite(edge):
-            distance = sign * (face - edge)
+    for name, end_x, face_x, sign in zip(("I", "II"), view.body, view.roller, (1, -1), strict=True):
+        if math.isfinite(end_x):
+            distance = sign * (face_x - end_x)
             # The difference of two positions may be a rounding error.
             text = f"end {name}: e = {format_quantity(0.0 if abs(distance) < 1e-12 else distance, 'm')}"
-            ax.plot([edge, face], [-1.15 * depth] * 2, "|-", color=LINE, linewidth=0.8)
-            x, alignment = (min(edge, face), "left") if sign > 0 else (max(edge, face), "right")
+            ax.plot([end_x, face_x], [-1.15 * depth] * 2, "|-", color=LINE, linewidth=0.8)
+            x, alignment = (min(end_x, face_x), "left") if sign > 0 else (max(end_x, face_x), "right")
             ax.text(x, -1.3 * depth, text, ha=alignment, va="top")
     ax.set_aspect("equal")
     ax.set_axis_off()
@@ -312,8 +312,8 @@ def _draw_body(ax: Axes, view: SideView, depth: float) -> None:
     ax.fill_between(ends, -depth, 0.0, color=BODY, linewidth=0)
     ax.plot(ends, [0.0, 0.0], color=LINE, linewidth=1.5)
     ax.plot(ends, [-depth, -depth], color=LINE, linewidth=0.8, linestyle="--")
-    for x, edge in zip(ends, view.body, strict=True):
-        style = {"linewidth": 1.5} if math.isfinite(edge) else {"linewidth": 0.8, "linestyle": "--"}
+    for x, end_x in zip(ends, view.body, strict=True):
+        style = {"linewidth": 1.5} if math.isfinite(end_x) else {"linewidth": 0.8, "linestyle": "--"}
         ax.plot([x, x], [-depth, 0.0], color=LINE, **style)
 
 
@@ -322,10 +322,10 @@ def _draw_roller(ax: Axes, view: SideView, radius: float) -> None:
     x, z = view.x[[0, *range(view.x.size), -1]], np.pad(view.generatrix, 1, constant_values=view.height)
     ax.fill(x, z, color=ROLLER, linewidth=0)
     ax.plot(x, z, color=LINE, linewidth=1.2)
-    cut = view.height < radius
-    ax.plot(view.x[[0, -1]], [view.height] * 2, color=LINE, linewidth=0.8, linestyle="--" if cut else "-.")
+    is_cut = view.height < radius
+    ax.plot(view.x[[0, -1]], [view.height] * 2, color=LINE, linewidth=0.8, linestyle="--" if is_cut else "-.")
     mid_length = float(view.x.mean())
-    arrow = ARROW | {"arrowstyle": "->" if cut else "<->"}
+    arrow = ARROW | {"arrowstyle": "->" if is_cut else "<->"}
     ax.annotate("", (mid_length, 0.0), (mid_length, view.height), arrowprops=arrow)
     ax.text(mid_length, 0.5 * view.height, f"  R = {format_quantity(radius, 'm')}", va="center", color=LINE)
 
@@ -347,8 +347,8 @@ def _side_caption(case: Case, view: SideView) -> str:
     caption = f"Side view, to scale in both directions: lower half of the roller on the body; {crown}."
     if view.height < roller.radius:
         caption += " The roller is cut below its axis."
-    along = view.x - 0.5 * sum(view.roller)
-    radii = local_radius(roller.profile, along, roller.length, roller.radius)
+    x_roller = view.x - 0.5 * sum(view.roller)
+    radii = local_radius(roller.profile, x_roller, roller.length, roller.radius)
     if np.ptp(radii) > 1e-12:
         caption += (
             f" The radius across the roller changes from {format_quantity(float(radii[0]), 'm')} to "

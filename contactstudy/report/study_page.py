@@ -68,7 +68,7 @@ class Row(NamedTuple):
     """A case in the table: swept values, numbers with errors, status, assessment."""
 
     anchor: str
-    values: list[str]
+    swept_values: list[str]
     numbers: list[str]
     status: str
     note: str
@@ -98,7 +98,10 @@ def study_context(path: Path, selection: Mapping[str, Any] | None = None) -> dic
         "counts": Counter(entry.status for entry in entries),
         "base": [(_meaning(name), format_value(name, value)) for name, value in study.base.items()],
         "swept": [
-            (_meaning(name), format_list(list(dict.fromkeys(row.values[column] for row in rows if row.values[column]))))
+            (
+                _meaning(name),
+                format_list(list(dict.fromkeys(row.swept_values[column] for row in rows if row.swept_values[column]))),
+            )
             for column, name in enumerate(swept)
         ],
         "headings": [_heading(name) for name in swept],
@@ -157,14 +160,14 @@ def _swept_values(plan: Plan, case: PlannedCase, swept: list[str]) -> list[str]:
     return texts
 
 
-def _row(anchor: str, entry: Entry, values: list[str], names: list[str]) -> Row:
+def _row(anchor: str, entry: Entry, swept_values: list[str], names: list[str]) -> Row:
     """Row of a case."""
     assessment = assess(_record(entry)) if entry.numbers else None
     answer, reason = (assessment.overall, assessment.verdict) if assessment else ("", "")
     numbers = [_number(entry.numbers, name) for name in names]
     return Row(
         anchor,
-        values,
+        swept_values,
         numbers,
         entry.status,
         note=reason if answer == NO else entry.reason,

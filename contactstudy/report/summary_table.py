@@ -243,12 +243,12 @@ def _nearest_end(case: xr.Dataset, x: float) -> str:
 def _mark_rounding(case: xr.Dataset, row: Quantity) -> Quantity:
     """Row of a force or moment, with the text 0 if it is below the tolerance of the iteration."""
     force = max((abs(float(case[name])) for name in ("force_x", "force_y") if name in case), default=0.0)
-    arms = {"force_x": 1.0, "force_y": 1.0, "moment_z": float(case.get("hertz_half_width", 0.0))}
+    lever_arms = {"force_x": 1.0, "force_y": 1.0, "moment_z": float(case.get("hertz_half_width", 0.0))}
     # The transverse force of a contact symmetric about y = 0 is up to 3e-8 of the largest force.
-    limit = TOLERANCE * force * arms.get(row.name, 0.0)
+    rounding_limit = TOLERANCE * force * lever_arms.get(row.name, 0.0)
     # A value larger than its error differs from zero, however small; an error above the limit is worth showing.
-    zero = np.isnan(row.error) or abs(row.value) <= row.error < limit
-    if abs(row.value) < limit and zero and not _is_prescribed(case, row.name):
+    is_zero = np.isnan(row.error) or abs(row.value) <= row.error < rounding_limit
+    if abs(row.value) < rounding_limit and is_zero and not _is_prescribed(case, row.name):
         remark = f"rounding: below {TOLERANCE:g} of the largest force{' times a' if row.name == 'moment_z' else ''}"
         return row._replace(text=f"0 {row.units}", remark=remark)
     return row

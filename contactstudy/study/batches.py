@@ -32,7 +32,7 @@ from contactstudy.study.files import is_regular, netcdf_access
 
 STATUSES = ("ok", "failed", "skipped")  # States of a case in a batch, by their code
 
-TEXTS = {
+TEXT_COLUMNS = {
     "parameters": "parameters of the case as JSON, without those in contactstudy_shared",
     "message": "reason of a case that is not ok",
     "warnings": "warnings of the case as JSON",
@@ -42,7 +42,7 @@ TEXTS = {
 
 SUFFIX = ".nc"
 IDENTITY_LENGTH = 64
-CHUNK = 2**15  # Values of a ragged array that are compressed together. Speed of reading one case, against size
+CHUNK_SIZE = 2**15  # Values of a ragged array that are compressed together. Speed of reading one case, against size
 CASE_ATTRIBUTE = "contactstudy_case"  # Attribute of a case: its parameters as JSON
 SHARED_ATTR, TABLES_ATTR, COORDINATES_ATTR = "contactstudy_shared", "contactstudy_tables", "contactstudy_coordinates"
 """Attributes: parameters of all cases, tables that parameters refer to by number, names of coordinates."""
@@ -62,7 +62,7 @@ class Batch:
     ids: npt.NDArray[np.bytes_]  # identities, 64 hexadecimal digits
     status: npt.NDArray[np.int8]  # indices in STATUSES
     runs: IntArray  # number of the run of each case: of two results of a case, the later run is used
-    texts: dict[str, list[str]]  # columns of TEXTS
+    texts: dict[str, list[str]]  # columns of TEXT_COLUMNS
     numbers: dict[str, FloatArray] = field(default_factory=dict)  # columns (case), NaN without the number
     sizes: dict[str, IntArray] = field(default_factory=dict)  # sizes of the arrays' dimensions (case), 0 without arrays
     arrays: dict[str, Ragged] = field(default_factory=dict)  # arrays and their positions
@@ -155,7 +155,7 @@ def join_batches(batches: Sequence[Batch]) -> Batch:
         ids=np.concatenate([batch.ids for batch in batches]),
         status=np.concatenate([batch.status for batch in batches]),
         runs=np.concatenate([batch.runs for batch in batches]),
-        texts={name: [text for batch in batches for text in batch.texts[name]] for name in TEXTS},
+        texts={name: [text for batch in batches for text in batch.texts[name]] for name in TEXT_COLUMNS},
         numbers={
             name: np.concatenate([batch.numbers.get(name, np.full(len(batch), np.nan)) for batch in batches])
             for name in names
@@ -172,12 +172,12 @@ def join_batches(batches: Sequence[Batch]) -> Batch:
     )
 
 
-def common_attributes(name: str, first: Mapping[str, Any], second: Mapping[str, Any]) -> dict[str, Any]:
+def common_attributes(name: str, attributes: Mapping[str, Any], other_attributes: Mapping[str, Any]) -> dict[str, Any]:
     """Return the common attributes of a variable of two cases; an intensity without a common unit has an exponent."""
-    if first == second:
-        return dict(first)
-    common = {key: value for key, value in first.items() if second.get(key) == value}
-    if "units" in first and "units" in second and "units" not in common:
+    if attributes == other_attributes:
+        return dict(attributes)
+    common = {key: value for key, value in attributes.items() if other_attributes.get(key) == value}
+    if "units" in attributes and "units" in other_attributes and "units" not in common:
         exponent = name.replace("intensity", "exponent").removesuffix("_error")
         common["comment"] = f"its unit is Pa m^m with m = {exponent} of the case"
     return common
@@ -248,7 +248,7 @@ def _write_variables(path: Path, batch: Batch) -> None:
         create("status", "i1", ("case",), status_attrs)[:] = batch.status
         create("run", "i4", ("case",), {"long_name": "number of the run", "units": "1"})[:] = batch.runs
         shared, tables, parameters = _factor_out_shared([json.loads(text) for text in batch.texts["parameters"]])
-        for name, meaning in TEXTS.items():
+        for name, meaning in TEXT_COLUMNS.items():
             _write_text(file, name, parameters if name == "parameters" else batch.texts[name], meaning)
         for name, values in batch.numbers.items():
             create(name, "f8", ("case",), _file_attributes(name, batch.attributes))[:] = values
@@ -261,7 +261,7 @@ def _write_variables(path: Path, batch: Batch) -> None:
                 file.createDimension(sample, values.size)
             if values.size:
                 attributes = {**_file_attributes(name, batch.attributes), "array_dimensions": " ".join(dims)}
-                chunks = (min(CHUNK, values.size),)
+                chunks = (min(CHUNK_SIZE, values.size),)
                 create(name, values.dtype, (sample,), attributes, chunksizes=chunks)[:] = values
         file.setncatts(
             {
@@ -348,10 +348,10 @@ def read_batch(path: Path, *, arrays: Iterable[str] | None = (), texts: Iterable
         ids = _read_text(file["case_id"])
         if ids.dtype.itemsize != IDENTITY_LENGTH:
             raise StoreError(f"cannot read {path}: it is not a batch of cases")
-        selected, text_names = (None, set(TEXTS)) if arrays is None else (set(arrays), set(texts))
+        selected, text_names = (None, set(TEXT_COLUMNS)) if arrays is None else (set(arrays), set(texts))
         numbers, sizes, ragged, attributes = {}, {}, {}, {}
         for name, variable in file.variables.items():
-            if name in TEXTS or name in ("case_id", "status", "run"):
+            if name in TEXT_COLUMNS or name in ("case_id", "status", "run"):
                 continue
             attrs = {key: variable.getncattr(key) for key in variable.ncattrs()}
             if "sample_dimension" in attrs:
@@ -364,7 +364,8 @@ def read_batch(path: Path, *, arrays: Iterable[str] | None = (), texts: Iterable
             else:
                 attributes[name], numbers[name] = attrs, variable[:]
         columns = {
-            name: [text.decode() for text in _read_text(file[name])] if name in text_names else [] for name in TEXTS
+            name: [text.decode() for text in _read_text(file[name])] if name in text_names else []
+            for name in TEXT_COLUMNS
         }
         if "parameters" in text_names:
             shared, tables = json.loads(file.getncattr(SHARED_ATTR)), json.loads(file.getncattr(TABLES_ATTR))
@@ -403,7 +404,7 @@ def read_slices(path: Path, bounds: Mapping[str, Sequence[tuple[int, int]]]) -> 
 
 def read_case(path: Path, row: int, names: Iterable[str] | None = None) -> xr.Dataset:
     """Read one case of a batch on its cells, with all arrays or the named ones and their positions."""
-    batch = read_batch(path, texts=TEXTS)
+    batch = read_batch(path, texts=TEXT_COLUMNS)
     selected = set(batch.arrays) if names is None else set(names)
     dims = {dim for name in selected & set(batch.arrays) for dim in batch.arrays[name].dims}
     selected |= {name for name in batch.coordinates if set(batch.arrays[name].dims) <= dims}

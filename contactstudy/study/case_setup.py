@@ -90,12 +90,12 @@ class Dimensions:
             return compute_dimensions(np.nan)._check_lengths()
         load, dimensions = checks.positive("load", values["load"], "N"), compute_dimensions(0.0)._check_lengths()
         for _ in range(500):
-            length, previous = min(dimensions.body_length, dimensions.roller_length), dimensions.half_width
+            length, previous_half_width = min(dimensions.body_length, dimensions.roller_length), dimensions.half_width
             if length <= 0:
                 break
             pressure = hertz.line_max_pressure(load / length, radius, modulus)
             dimensions = compute_dimensions(hertz.line_half_width(pressure, radius, modulus))
-            if abs(dimensions.half_width - previous) <= 1e-14 * dimensions.half_width:
+            if abs(dimensions.half_width - previous_half_width) <= 1e-14 * dimensions.half_width:
                 return dimensions._check_lengths()
         raise InvalidInputError("load", load, "small enough for a roller of positive length at this e_over_a")
 

@@ -18,15 +18,15 @@ from contactstudy.arrays.grid import SPACING_TOLERANCE
 from contactstudy.checks import FloatArray
 
 MIN_WIDTH = 0.5  # Width of a common cell over the narrowest cell of all cases at this position. Accuracy
-AVERAGED = frozenset({"pressure", "traction_x", "traction_y"})  # Variables that are averaged over a common cell
-FLAGS = frozenset({"stick"})  # Variables that are true or false
+AVERAGED_VARIABLES = frozenset({"pressure", "traction_x", "traction_y"})  # averaged over a common cell
+FLAG_VARIABLES = frozenset({"stick"})  # Variables that are true or false
 
 
 def resampling_comment(name: str) -> str:
     """Comment on the values of a variable on common cells."""
-    if name in AVERAGED:
+    if name in AVERAGED_VARIABLES:
         return "averaged over cells common to all cases: loads remain, peaks may be a little lower"
-    if name in FLAGS:
+    if name in FLAG_VARIABLES:
         return "value of the case's cell at the centre of the common cell; false beyond the case's cells"
     return "interpolated linearly from the case's cells"
 
@@ -67,12 +67,12 @@ def split_cells(edges: FloatArray, points: FloatArray) -> FloatArray:
 
 def _add_face_cells(edges: FloatArray, points: FloatArray) -> FloatArray:
     """Edges with a thin cell, 4e-6 of the first or last one, at each face that contains a point."""
-    faces = []
-    for end, inward in ((0, 1), (-1, -2)):
-        width = edges[inward] - edges[end]
-        if (np.abs(points - edges[end]) < SPACING_TOLERANCE * abs(width)).any():
-            faces.append(edges[end] + 4e-6 * width)
-    return np.union1d(edges, faces)
+    face_edges = []
+    for end_index, inner_index in ((0, 1), (-1, -2)):
+        width = edges[inner_index] - edges[end_index]
+        if (np.abs(points - edges[end_index]) < SPACING_TOLERANCE * abs(width)).any():
+            face_edges.append(edges[end_index] + 4e-6 * width)
+    return np.union1d(edges, face_edges)
 
 
 def centre_cells_on(edges: FloatArray, points: FloatArray) -> FloatArray:
@@ -108,8 +108,8 @@ class Resampling:
     def is_outside(self) -> npt.NDArray[np.bool_]:
         """Positions of the axis beyond the case's cells or points."""
         low, high = self.source.min(), self.source.max()
-        slack = SPACING_TOLERANCE * (high - low) if self.has_points else 0.0
-        return np.asarray((self.axis < low - slack) | (self.axis > high + slack))
+        tolerance = SPACING_TOLERANCE * (high - low) if self.has_points else 0.0
+        return np.asarray((self.axis < low - tolerance) | (self.axis > high + tolerance))
 
     def average(self, values: FloatArray) -> FloatArray:
         """Average values (cell, ...) within the common borders, by limited slopes: integrals remain."""
@@ -117,12 +117,12 @@ class Resampling:
 
         low = np.maximum(self.borders[:-1, None], self.source[None, :-1])
         high = np.minimum(self.borders[1:, None], self.source[None, 1:])
-        overlap = np.maximum(high - low, 0.0) / np.diff(self.borders)[:, None]
+        overlap_fraction = np.maximum(high - low, 0.0) / np.diff(self.borders)[:, None]
         midpoints = cell_centres(self.source)
-        lever_arms = np.where(overlap > 0, 0.5 * (low + high) - midpoints, 0.0)
+        lever_arms = np.where(overlap_fraction > 0, 0.5 * (low + high) - midpoints, 0.0)
         slopes = _limited_slopes(midpoints, values)
-        result = sparse.csr_array(overlap) @ values + sparse.csr_array(overlap * lever_arms) @ slopes
-        result[~overlap.any(axis=1)] = self.fill
+        result = sparse.csr_array(overlap_fraction) @ values + sparse.csr_array(overlap_fraction * lever_arms) @ slopes
+        result[~overlap_fraction.any(axis=1)] = self.fill
         return np.asarray(result)
 
     def select_containing(self, values: FloatArray) -> FloatArray:
@@ -155,18 +155,18 @@ class Resampling:
         return result
 
 
-def resample(name: str, values: npt.NDArray[Any], maps: Iterable[Resampling | None]) -> npt.NDArray[Any]:
+def resample(name: str, values: npt.NDArray[Any], resamplings: Iterable[Resampling | None]) -> npt.NDArray[Any]:
     """Values of a variable on the common cells; an axis without a map remains."""
     result = np.asarray(values, dtype=np.float64)
     # Along x last: beyond the body values are NaN, outside the window the pressure is 0.
-    for axis, resampling in reversed(list(enumerate(maps))):
+    for axis, resampling in reversed(list(enumerate(resamplings))):
         if resampling is None:
             continue
         axis_first = np.moveaxis(result, axis, 0)
-        if name in AVERAGED:
-            flat = resampling.average(axis_first.reshape(axis_first.shape[0], -1))
-            axis_first = flat.reshape(-1, *axis_first.shape[1:])
-        elif name in FLAGS:
+        if name in AVERAGED_VARIABLES:
+            averages = resampling.average(axis_first.reshape(axis_first.shape[0], -1))
+            axis_first = averages.reshape(-1, *axis_first.shape[1:])
+        elif name in FLAG_VARIABLES:
             axis_first = resampling.select_containing(axis_first)
         else:
             axis_first = resampling.interpolate(axis_first)

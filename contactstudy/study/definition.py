@@ -106,8 +106,8 @@ class Study:
         """Parameters, the swept ones first, in the units of engineers."""
         columns = [(name, "swept", values) for name, values in self.sweep.items()]
         columns += [(name, "together", values) for group in self.zip for name, values in group.items()]
-        for name, word, values in columns:
-            yield f"{name} ({word})", format_list([format_value(name, value) for value in values])
+        for name, axis_kind, values in columns:
+            yield f"{name} ({axis_kind})", format_list([format_value(name, value) for value in values])
         if self.cases:
             yield "cases", f"{len(self.cases)} explicit ones"
         for name, value in self.base.items():
@@ -313,11 +313,11 @@ class Study:
                 along_axis, explicit, step = labels[name]
                 matching[: product.products] &= np.array([value in allowed for value in along_axis])[step]
                 matching[product.products :] &= np.array([value in allowed for value in explicit], dtype=bool)
-                present = [*(along_axis if product.products else ()), *explicit]
+                used_labels = [*(along_axis if product.products else ()), *explicit]
                 unknown += [
                     f"exclude.{name} = {value!r}: no case has this value, so it excludes nothing"
                     for value in allowed
-                    if value not in present
+                    if value not in used_labels
                 ]
             excluded |= matching
         return replace(product, chosen=np.flatnonzero(~excluded), unknown=tuple(dict.fromkeys(unknown)))
@@ -393,13 +393,13 @@ def content_of_selection(study: Study, table: xr.Dataset, base: Mapping[str, Any
     if study.cases or not plan.axes:
         return content | {"cases": cases if study.cases else []}
     steps = [np.unique(column) for column in np.unravel_index(plan.chosen[selected], plan.shape)]
-    product = np.ravel_multi_index(np.ix_(*steps), plan.shape).ravel()
-    if np.isin(product, plan.chosen).sum() != len(selected):
+    selected_product = np.ravel_multi_index(np.ix_(*steps), plan.shape).ravel()
+    if np.isin(selected_product, plan.chosen).sum() != len(selected):
         return content | {"cases": cases}
-    remaining = iter(steps)
-    sweep = {name: [values[step] for step in next(remaining)] for name, values in study.sweep.items()}
+    step_iterator = iter(steps)
+    sweep = {name: [values[step] for step in next(step_iterator)] for name, values in study.sweep.items()}
     groups = []
     for group in study.zip:
-        group_steps = next(remaining)
+        group_steps = next(step_iterator)
         groups.append({name: [values[step] for step in group_steps] for name, values in group.items()})
     return content | {"sweep": sweep, "zip": groups, "exclude": list(study.exclude)}

@@ -308,19 +308,19 @@ class Workers:
 
     def usable(self, busy: bool) -> set[str]:
         """Addresses of the usable workers now; raises if all have another version, or none came for too long."""
-        present = set(self._client.nthreads())
-        if new_workers := present - set(self._faults):
+        connected_workers = set(self._client.nthreads())
+        if new_workers := connected_workers - set(self._faults):
             versions: Any = self._client.get_versions(packages=["contactstudy"])
             for worker in new_workers & set(versions["workers"]):
-                version, expected = versions["workers"][worker]["packages"].get("contactstudy"), package_version()
+                version, own_version = versions["workers"][worker]["packages"].get("contactstudy"), package_version()
                 self._faults[worker] = ""
-                if version != expected:
-                    self.exclude(worker, f"it has version {version} of contactstudy, not {expected}")
-        usable = {worker for worker in present if self._faults.get(worker) == ""}
+                if version != own_version:
+                    self.exclude(worker, f"it has version {version} of contactstudy, not {own_version}")
+        usable = {worker for worker in connected_workers if self._faults.get(worker) == ""}
         if usable or busy:
             self._last_present, self._announced = time.monotonic(), False
         else:
-            self._wait_for_worker(present)
+            self._wait_for_worker(connected_workers)
         return usable
 
     def exclude(self, worker: str, reason: str) -> None:
@@ -348,7 +348,7 @@ def _distribute(client: Client, workers: Workers, tasks: Tasks, solver: Solver |
     """Keep every worker busy with one task until the queue is empty."""
     from distributed import KilledWorker
 
-    finished: queue.SimpleQueue[Future[list[Outcome]]] = queue.SimpleQueue()
+    finished_futures: queue.SimpleQueue[Future[list[Outcome]]] = queue.SimpleQueue()
     running: dict[Future[list[Outcome]], tuple[str, Task, float]] = {}
     try:
         while tasks or running:
@@ -367,12 +367,12 @@ def _distribute(client: Client, workers: Workers, tasks: Tasks, solver: Solver |
                         retries=0,
                     )
                     running[future] = (worker, task, time.monotonic())
-                    future.add_done_callback(finished.put)
+                    future.add_done_callback(finished_futures.put)
             if lost := next((future for future, (worker, _, _) in running.items() if worker not in usable), None):
                 future = lost
             else:
                 try:
-                    future = finished.get(timeout=RUN.poll_seconds)
+                    future = finished_futures.get(timeout=RUN.poll_seconds)
                 except queue.Empty:
                     continue
             if future not in running:

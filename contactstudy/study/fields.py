@@ -82,7 +82,7 @@ class StudyAxis(NamedTuple):
 
 
 class Fields:
-    """Arrays of a study's cases, lazily, and their coordinates; `common` axes, or the cells and points of each case."""
+    """Lazy arrays of a study's cases: on common axes if `common`, else on the cells and points of each case."""
 
     def __init__(self, states: States, *, common: bool) -> None:
         self._states, self._common = states, common
@@ -98,10 +98,10 @@ class Fields:
     @cached_property
     def _positions(self) -> dict[str, Positions]:
         """Positions along every dimension."""
-        count = len(self._states.plan)
+        case_count = len(self._states.plan)
         batch_of, row_of = self._states.locations
-        scales = self._states.numbers("hertz_half_width")
-        result = {dim: Positions(position_index=np.full(count, -1, dtype=np.int64)) for dim in self._dims}
+        half_widths = self._states.numbers("hertz_half_width")
+        result = {dim: Positions(position_index=np.full(case_count, -1, dtype=np.int64)) for dim in self._dims}
         indices: dict[str, dict[Any, int]] = {dim: {} for dim in self._dims}
         coordinates = [name for dim in self._dims for name in (dim, f"{dim}_width")]
         for batch_number, path in enumerate(self._states.results.paths):
@@ -120,12 +120,12 @@ class Fields:
                     if not row.size:
                         continue
                     positions = result[dim]
-                    key = (row.tobytes(), row_widths.tobytes(), scales[index])
+                    key = (row.tobytes(), row_widths.tobytes(), half_widths[index])
                     if key not in indices[dim]:
                         indices[dim][key] = len(positions.values)
                         positions.values.append(np.asarray(row, dtype=np.float64))
                         positions.widths.append(np.asarray(row_widths, dtype=np.float64))
-                        positions.scales.append(float(scales[index]))
+                        positions.scales.append(float(half_widths[index]))
                     positions.position_index[index] = indices[dim][key]
         return {dim: positions for dim, positions in result.items() if positions.values}
 

@@ -116,8 +116,8 @@ class Results:
         locations: dict[bytes, Location] = {}
         for batch_index, batch in enumerate(self.batches):
             for row, identity in enumerate(batch.ids.tolist()):
-                previous = locations.get(identity)
-                if previous is None or self.batches[previous.batch].runs[previous.row] < batch.runs[row]:
+                stored = locations.get(identity)
+                if stored is None or self.batches[stored.batch].runs[stored.row] < batch.runs[row]:
                     locations[identity] = Location(batch_index, row)
         return locations
 
@@ -445,6 +445,6 @@ def _split_by_size(batches: list[Batch]) -> Iterator[list[Batch]]:
 def select_latest(batch: Batch) -> Batch:
     """Return a batch with the latest row of each case."""
     order = np.lexsort((-batch.runs, batch.ids))
-    _, first = np.unique(batch.ids[order], return_index=True)
-    rows = np.sort(order[first])
+    _, first_positions = np.unique(batch.ids[order], return_index=True)
+    rows = np.sort(order[first_positions])
     return batch if len(rows) == len(batch) else batch.take(rows)

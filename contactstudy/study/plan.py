@@ -34,7 +34,7 @@ from contactstudy.study.settings import RUN
 
 LEVELS = ("summary", "surface", "fields")  # Arrays that a study retains: none; arrays on (x, y); also the stresses
 MAX_LISTED = 12  # Values of a swept parameter that are all shown
-MAX_CUBE_CELLS = 4  # Cells per case that a cube may have; sparser explicit cases are listed along one dimension `case`
+MAX_CUBE_CELLS = 4  # Entries of the parameter cube per explicit case; cases of a sparser cube are listed along `case`
 BYTES_PER_CASE, BYTES_PER_CELL, BYTES_PER_POINT = 700, 4 * 8, 7 * 4
 """Size of the numbers of a case, and of its arrays before compression."""
 
@@ -288,11 +288,11 @@ class Plan(Sequence[PlannedCase]):
     def unique(self) -> list[int]:
         """Indices of the cases to solve; of duplicates the first."""
         skipped = set(self.skipped)
-        first: dict[bytes, int] = {}
+        first_indices: dict[bytes, int] = {}
         for index, identity in enumerate(self.ids.tolist()):
             if index not in skipped:
-                first.setdefault(identity, index)
-        return list(first.values())
+                first_indices.setdefault(identity, index)
+        return list(first_indices.values())
 
     @property
     def doubts(self) -> tuple[str, ...]:
@@ -339,8 +339,8 @@ def format_value(name: str, value: Any) -> str:
     """Value of a study's parameter in the units of engineers."""
     value = format_profile(value, in_units=True) if name == "profile" and isinstance(value, dict) else value
     if isinstance(value, (list, tuple)):
-        ends = f"{value[0]:g}" if len(value) == 1 else f"{value[0]:g} to {value[-1]:g}"
-        return f"{len(value)} value{'s' if len(value) > 1 else ''}, {ends}"
+        range_text = f"{value[0]:g}" if len(value) == 1 else f"{value[0]:g} to {value[-1]:g}"
+        return f"{len(value)} value{'s' if len(value) > 1 else ''}, {range_text}"
     if isinstance(value, bool):
         return "yes" if value else "no"
     if not isinstance(value, (int, float)):

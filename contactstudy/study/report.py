@@ -40,7 +40,7 @@ def run_lines(report: RunReport) -> Iterator[str]:
         yield f"  details in {format_path(report.folder / 'run.log')}"
         yield f"  again with: contactstudy rerun {format_path(report.folder)}"
     yield from _reasons(report.states, "skipped")
-    for case in report.not_converged[:MAX_REASONS]:
+    for case in report.unconverged_cases[:MAX_REASONS]:
         yield f"  not converged, do not rely on it: {case.name}"
     for remark in report.remarks:
         yield f"  {remark}"

@@ -69,7 +69,7 @@ class RunReport:
         return self.states.counts
 
     @property
-    def not_converged(self) -> list[PlannedCase]:
+    def unconverged_cases(self) -> list[PlannedCase]:
         """Cases whose contact iteration did not reach its tolerance."""
         return [self.plan[index] for index in np.flatnonzero(self.states.numbers("converged") == 0.0).tolist()]
 
@@ -102,7 +102,7 @@ def _interruptible(notify: Callable[[str], None]) -> Iterator[None]:
         if signal_number == signal.SIGINT:
             raise KeyboardInterrupt
         interrupt = Terminated(f"ended by {signal.Signals(signal_number).name}")
-        interrupt.number = signal_number
+        interrupt.signal_number = signal_number
         raise interrupt
 
     for signal_number in handled_signals:
@@ -276,8 +276,8 @@ def _groups_to_solve(states: States, again: tuple[str, ...], share: Share, sampl
         # A piece contains consecutive groups with one operator, so many at most that every share has several turns.
         max_groups, pieces = max(1, len(groups) // (RUN.turns * share.count)), list[int]()
         for _, operator_groups in groupby(operator for operator, _ in order):
-            first = pieces[-1] + 1 if pieces else 0
-            pieces += [first + position // max_groups for position, _ in enumerate(operator_groups)]
+            first_piece = pieces[-1] + 1 if pieces else 0
+            pieces += [first_piece + position // max_groups for position, _ in enumerate(operator_groups)]
         groups = [group for group, piece in zip(groups, pieces, strict=True) if piece % share.count == share.number - 1]
     unsolved_groups = []
     for group in groups:

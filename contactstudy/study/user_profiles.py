@@ -117,15 +117,15 @@ def _json_value(name: str, value: object) -> Any:
     if isinstance(value, Mapping) and all(isinstance(key, str) for key in value):
         return {key: _json_value(f"{name}.{key}", entry) for key, entry in value.items()}
     if isinstance(value, Profile):
-        nested = {key: _json_value(f"{name}.{key}", entry) for key, entry in _attributes(value)}
-        return {"class": type(value).__qualname__, **nested}
+        attributes = {key: _json_value(f"{name}.{key}", entry) for key, entry in _attributes(value)}
+        return {"class": type(value).__qualname__, **attributes}
     allowed = f"a number, a text, a list or a profile, which identify the profile, not {type(value).__name__}"
     raise InvalidInputError(name, value, allowed, REMEDY)
 
 
 def _behaviour(profile: Profile) -> list[Any]:
     """Return drops and radii for every valid length, in 9 digits, because processors differ in rounding."""
-    behaviour: list[Any] = []
+    drops_and_radii: list[Any] = []
     last_error: Exception | None = None
     for length in LENGTHS:
         x = -0.5 * length * np.cos(np.linspace(0.0, np.pi, 1001))
@@ -133,14 +133,14 @@ def _behaviour(profile: Profile) -> list[Any]:
             drops, radii = check_drop(profile, x, length), local_radius(profile, x, length, length)
         except (ContactStudyError, ArithmeticError, ValueError) as error:
             last_error = error
-            behaviour.append(None)
+            drops_and_radii.append(None)
             continue
-        behaviour.append([f"{value:.9g}" for value in [*(drops + 0.0), *radii]])
-    if not any(behaviour):
+        drops_and_radii.append([f"{value:.9g}" for value in [*(drops + 0.0), *radii]])
+    if not any(drops_and_radii):
         lengths = ", ".join(f"{length:g}" for length in LENGTHS)
         allowed = f"an object whose drop(x, length) is valid for a roller of {lengths} m, at least one of them"
         raise InvalidInputError("profile", profile, allowed, str(last_error))
-    return behaviour
+    return drops_and_radii
 
 
 def _digest(content: object) -> str:
@@ -156,11 +156,11 @@ def _copy_by_pickle(profile: Profile, name: str, content: str) -> Profile:
 
     requirement = "an object that can be pickled for workers ({})"
     try:
-        copy: Profile = pickle.loads(cloudpickle.dumps(profile))
-        content_of_copy = _digest([name, _values(copy), _behaviour(copy)])
+        profile_copy: Profile = pickle.loads(cloudpickle.dumps(profile))
+        content_of_copy = _digest([name, _values(profile_copy), _behaviour(profile_copy)])
     except Exception as error:  # a user's class may raise anything
         reason = f"{type(error).__name__}: {error}"
         raise InvalidInputError("profile", name, requirement.format(reason), REMEDY) from error
     if content_of_copy != content:
         raise InvalidInputError("profile", name, requirement.format("its copy is another profile"), REMEDY)
-    return copy
+    return profile_copy

@@ -113,12 +113,12 @@ def solve_task(task: Task, solver: Solver | None = None) -> list[Outcome]:
         host = socket.gethostname()
         raise StoreError(f"a worker on {host} reads {lock[:200]!r} at {path}, not this run's lock; share the folder")
     receive_profiles(task.profiles)
-    pending: list[Batch] = []
+    unsaved_batches: list[Batch] = []
     outcomes: list[Outcome] = []
 
     def flush() -> None:
-        groups = group_by_structure(pending)
-        pending.clear()
+        groups = group_by_structure(unsaved_batches)
+        unsaved_batches.clear()
         for batches in groups:
             batch = join_batches(batches)
             write_batch(Path(task.folder), f"{task.prefix}{uuid.uuid4().hex[:12]}", batch)
@@ -132,8 +132,8 @@ def solve_task(task: Task, solver: Solver | None = None) -> list[Outcome]:
         with single_threaded():
             for _, jobs in groupby(task.jobs, key=lambda job: job.group):
                 for batch in _solve_group(task, list(jobs), solver):
-                    pending.append(batch)
-                    is_full = bool(batch.arrays) and sum(entry.nbytes for entry in pending) > RUN.buffer_bytes
+                    unsaved_batches.append(batch)
+                    is_full = bool(batch.arrays) and sum(entry.nbytes for entry in unsaved_batches) > RUN.buffer_bytes
                     if is_full or time.monotonic() - last_save > RUN.save_seconds:
                         flush()
                         last_save = time.monotonic()

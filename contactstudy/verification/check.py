@@ -81,9 +81,9 @@ class Reference(NamedTuple):
     ) -> Check:
         """Compare two arrays where they differ most, or by the median."""
         values, references = (np.ravel(a).astype(float) for a in np.broadcast_arrays(computed, expected))
-        distance = np.abs(values - references)
+        differences = np.abs(values - references)
         # argmax returns a NaN as well, which no tolerance admits.
-        is_median = median and not np.isnan(distance).any()
-        worst = np.argsort(distance)[distance.size // 2] if is_median else distance.argmax()
-        described = f"{quantity}, {'median' if median else 'largest'} difference"
-        return self.compare(described, values[worst], references[worst], tolerance, curve=curve)
+        is_median = median and not np.isnan(differences).any()
+        chosen_index = np.argsort(differences)[differences.size // 2] if is_median else differences.argmax()
+        description = f"{quantity}, {'median' if median else 'largest'} difference"
+        return self.compare(description, values[chosen_index], references[chosen_index], tolerance, curve=curve)

@@ -70,16 +70,16 @@ def hertz_ellipse(load: float, long_radius: float, short_radius: float, modulus:
         a, peak, approach = hertz_point(load, long_radius, modulus)
         return EllipticContact(a, a, peak, approach)
 
-    def ratio(squared: float) -> float:
-        k, e = special.ellipk(squared), special.ellipe(squared)
-        return float((e / (1 - squared) - k) / (k - e))
+    def radius_ratio(e_squared: float) -> float:
+        k, e = special.ellipk(e_squared), special.ellipe(e_squared)
+        return float((e / (1 - e_squared) - k) / (k - e))
 
-    squared = optimize.brentq(lambda m: ratio(m) - long_radius / short_radius, 1e-9, 1 - 1e-12, xtol=1e-15)
-    k, e = special.ellipk(squared), special.ellipe(squared)
+    e_squared = optimize.brentq(lambda m: radius_ratio(m) - long_radius / short_radius, 1e-9, 1 - 1e-12, xtol=1e-15)
+    k, e = special.ellipk(e_squared), special.ellipe(e_squared)
     # Curvature along the long axis: 1 / (2 R') = p0 b / (E* e**2 a**2) (K - E).
-    shape = np.sqrt(1 - squared)
-    long_axis = float(np.cbrt(3 * load * long_radius * (k - e) / (np.pi * modulus * squared)))
-    short_axis = float(shape * long_axis)
+    axis_ratio = np.sqrt(1 - e_squared)
+    long_axis = float(np.cbrt(3 * load * long_radius * (k - e) / (np.pi * modulus * e_squared)))
+    short_axis = float(axis_ratio * long_axis)
     peak = 1.5 * load / (np.pi * long_axis * short_axis)
     return EllipticContact(long_axis, short_axis, float(peak), float(peak * short_axis * k / modulus))
 
@@ -100,8 +100,8 @@ def mindlin_shift(fraction: float, load: float, friction: float, radius: float, 
 def von_mises(stress: Mapping[str, FloatArray]) -> FloatArray:
     """Equivalent stress of von Mises."""
     xx, yy, zz, xy, xz, yz = (np.asarray(stress[name]) for name in COMPONENTS)
-    normal = (xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2
-    return np.asarray(np.sqrt(0.5 * normal + 3 * (xy**2 + xz**2 + yz**2)))
+    normal_squares = (xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2
+    return np.asarray(np.sqrt(0.5 * normal_squares + 3 * (xy**2 + xz**2 + yz**2)))
 
 
 def potential_stresses(
@@ -131,10 +131,10 @@ def potential_stresses(
         -z * v_yz,
     ]
 
-    def third(f2: NDArray[np.inexact], f3: NDArray[np.inexact]) -> tuple[NDArray[np.inexact], ...]:
+    def third_derivatives(f2: NDArray[np.inexact], f3: NDArray[np.inexact]) -> tuple[NDArray[np.inexact], ...]:
         return 4 * y * f2 + 8 * x**2 * y * f3, 12 * y * f2 + 8 * y**3 * f3, 4 * x * f2 + 8 * x * y**2 * f3
 
-    (l_xxy, l_yyy, l_xyy), (w_xxy, w_yyy, w_xyy) = third(l2, l3), third(w2, w3)
+    (l_xxy, l_yyy, l_xyy), (w_xxy, w_yyy, w_xyy) = third_derivatives(l2, l3), third_derivatives(w2, w3)
     tangential = [
         2 * nu * w_xxy - z * l_xxy + 4 * nu * y * v1,
         2 * nu * w_yyy - z * l_yyy + 4 * (1 + nu) * y * v1,
@@ -162,13 +162,13 @@ def rectangle_displacement(x: ArrayLike, y: ArrayLike, half_x: float, half_y: fl
     over ``pi E*``; `modulus` is ``E*``. Not on the lines through an edge.
     """
     xs, ys = np.broadcast_arrays(np.asarray(x, dtype=float), np.asarray(y, dtype=float))
-    total = np.zeros(xs.shape)
+    displacement = np.zeros(xs.shape)
     for side_x in (-1, 1):
         for side_y in (-1, 1):
             u, v = side_x * xs + half_x, side_y * ys + half_y
             # ln(v + r) by asinh, which does not cancel for negative v; the rest, ln |u|, cancels with its opposite.
-            total += u * np.arcsinh(v / np.abs(u)) + v * np.arcsinh(u / np.abs(v))
-    return np.asarray(total / (np.pi * modulus))
+            displacement += u * np.arcsinh(v / np.abs(u)) + v * np.arcsinh(u / np.abs(v))
+    return np.asarray(displacement / (np.pi * modulus))
 
 
 def below_rectangle_corner(z: ArrayLike, side_x: float, side_y: float) -> FloatArray:
@@ -298,12 +298,12 @@ def rectangle_in_half_plane(
         slope += image.sum(axis=1)
         curvature += image_curvature.sum(axis=1)
         second += (-of_phi[0] - image - point * image_curvature).sum(axis=1)
-    total = 4 * slope.real
+    normal_sum = 4 * slope.real
     difference = 2 * (np.conj(point[:, 0]) * curvature + second)
-    xx, zz, xz = 0.5 * (total - difference.real), 0.5 * (total + difference.real), 0.5 * difference.imag
-    inside = (xs > x_range[0]) & (xs < x_range[1]) & (zs > z_range[0]) & (zs < z_range[1])
+    xx, zz, xz = 0.5 * (normal_sum - difference.real), 0.5 * (normal_sum + difference.real), 0.5 * difference.imag
+    is_inside = (xs > x_range[0]) & (xs < x_range[1]) & (zs > z_range[0]) & (zs < z_range[1])
     stress = np.stack([xx, poisson * (xx + zz), zz, xz]).reshape(4, *xs.shape)
-    return np.asarray(stress - misfit.reshape(4, *(1,) * xs.ndim) * inside)
+    return np.asarray(stress - misfit.reshape(4, *(1,) * xs.ndim) * is_inside)
 
 
 def moving_band(y: FloatArray, drift: float) -> FloatArray:

@@ -116,17 +116,17 @@ def line_checks() -> Iterator[Check]:
     cell = 2 * half_window / cells_y
     # Edges and middles of cells and points between them, without the last cell in contact and its border.
     edges = -1.25 + cell * np.arange(1, cells_y)
-    on_top = np.unique(np.round(np.concatenate([edges, edges + 0.5 * cell, edges + 0.37 * cell]), 9))
-    distance = np.abs(on_top) - 1
-    on_top = on_top[(distance < -cell + 1e-9) | (distance > 0.1 * cell)]
-    anywhere = np.linspace(-2, 2, 33)
-    deeper = np.array([0.1, 0.2, 0.35, 0.5, 0.7, 1.0, 1.5, 2.5, 4.0])
+    surface_y = np.unique(np.round(np.concatenate([edges, edges + 0.5 * cell, edges + 0.37 * cell]), 9))
+    distance = np.abs(surface_y) - 1
+    surface_y = surface_y[(distance < -cell + 1e-9) | (distance > 0.1 * cell)]
+    subsurface_y = np.linspace(-2, 2, 33)
+    depths = np.array([0.1, 0.2, 0.35, 0.5, 0.7, 1.0, 1.5, 2.5, 4.0])
     source = "McEwen (1949); Smith and Liu (1953)"
     for friction in (0.0, 0.3):
         for label, y, z, tolerance in (
-            ("z = 0, beside the contact's last cell", on_top, np.zeros(1), 5e-3),
-            ("z = 0.02a and 0.05a", on_top, np.array([0.02, 0.05]), 2e-3),
-            ("z >= 0.1a", anywhere, deeper, 1e-3),
+            ("z = 0, beside the contact's last cell", surface_y, np.zeros(1), 5e-3),
+            ("z = 0.02a and 0.05a", surface_y, np.array([0.02, 0.05]), 2e-3),
+            ("z >= 0.1a", subsurface_y, depths, 1e-3),
         ):
             stress = stress_field(
                 body, pressure, friction=friction, x=[0.5 * length], y=y, z=z, inside_cells=pressure
@@ -160,9 +160,9 @@ def rectangle_checks() -> Iterator[Check]:
     ).compare_fields("six stresses / p", components(stress), components(exact), 1e-8)
     displacement = surface_displacement(body, pressure)
     centres = displacement["x"].values[:, None], displacement["y"].values
-    exact_sunk = closed_forms.rectangle_displacement(*centres, half_x, half_y, 1.0)
+    exact_displacement = closed_forms.rectangle_displacement(*centres, half_x, half_y, 1.0)
     case, source = "uniform pressure on a rectangle 2 x 1", "Love (1929); Johnson 3.25"
-    yield Reference(case, source).compare_fields("E* u_z / (p a)", displacement, exact_sunk, 1e-9)
+    yield Reference(case, source).compare_fields("E* u_z / (p a)", displacement, exact_displacement, 1e-9)
 
 
 def point_checks() -> Iterator[Check]:
@@ -278,11 +278,11 @@ def equilibrium_checks() -> Iterator[Check]:
     x = 0.5 * length * (node + 1)
     parameter = np.linspace(-5.0, 5.0, 101)
     y, dy = np.sinh(parameter), np.cosh(parameter) * (parameter[1] - parameter[0])
-    cut = stress_field(body, pressure, friction=friction, x=x, y=y, z=[1.0], inside_cells=pressure).isel(z=0)
+    cut_stress = stress_field(body, pressure, friction=friction, x=x, y=y, z=[1.0], inside_cells=pressure).isel(z=0)
     load = length * 16 / 15
     fraction_within = 1 - 4 / (np.pi * np.abs(y).max())
     for component, expected in (("sigma_zz", -load), ("tau_yz", -friction * load * fraction_within)):
-        resultant = float(np.einsum("xy,x,y->", cut[component].values, 0.5 * length * weight, dy))
+        resultant = float(np.einsum("xy,x,y->", cut_stress[component].values, 0.5 * length * weight, dy))
         yield Reference(f"{case}, cut at z = a", "equilibrium").compare(
             f"resultant of {component} / (p0 a^2)", resultant, expected, 2e-3
         )
@@ -313,10 +313,10 @@ def reciprocity_checks() -> Iterator[Check]:
     """Betti: two loads do equal work on the displacement of each other."""
     for length in (8.0, 2.5):
         body, span, cells = _finite(length), (0, length), (48, 32)
-        first = on_cells(lambda x, y: np.exp(-((x - 1) ** 2) - y**2), span, (-2, 2), cells)
-        second = on_cells(lambda x, y: np.exp(-((x - 2) ** 2) - 2 * y**2), span, (-2, 2), cells)
-        work = (first * surface_displacement(body, second)).sum()
-        second_work = (second * surface_displacement(body, first)).sum()
+        first_load = on_cells(lambda x, y: np.exp(-((x - 1) ** 2) - y**2), span, (-2, 2), cells)
+        second_load = on_cells(lambda x, y: np.exp(-((x - 2) ** 2) - 2 * y**2), span, (-2, 2), cells)
+        work = (first_load * surface_displacement(body, second_load)).sum()
+        second_work = (second_load * surface_displacement(body, first_load)).sum()
         case, quantity = f"two loads on a body of length {length:g}a", "work of one on the other's displacement"
         yield Reference(case, "Betti").compare(quantity, work, second_work, 1e-9, relative=True)
 

@@ -61,17 +61,17 @@ def line_checks(*, full: bool) -> Iterator[Check]:
     expected, source = 1.45 * 20.0**-1.5, "Biboulet and Houpert (2010)"
     case = "line contact, M = 20, L = 10"
     yield Reference(case, source).compare("rolling moment t / (p0 a^2)", line.rolling, expected, 0.04, relative=True)
-    slow = 0.1 * line_contact.solve_line(0.1, 0.01, finest=0.4).central
+    rigid_film = 0.1 * line_contact.solve_line(0.1, 0.01, finest=0.4).central
     case = "line contact, M = 0.1, L = 0.01"
-    yield Reference(case, "Martin (1916)").compare("M H of rigid surfaces", slow, 2.448, 5e-3, relative=True)
+    yield Reference(case, "Martin (1916)").compare("M H of rigid surfaces", rigid_film, 2.448, 5e-3, relative=True)
 
 
 def dry_limit_checks() -> Iterator[Check]:
     """Compare a heavy load with the pressure of Hertz, and the film's exponent."""
     films = {load: line_contact.solve_line(load, 10.0) for load in (200.0, 2000.0)}
     heavy_film = films[2000.0]
-    inner = np.abs(heavy_film.y) < 0.9
-    y, pressure = heavy_film.y[inner], heavy_film.pressure[inner]
+    is_inner = np.abs(heavy_film.y) < 0.9
+    y, pressure = heavy_film.y[is_inner], heavy_film.pressure[is_inner]
     hertz = np.sqrt(1 - y**2)
     curve = Curve(("y / a", "p / p0"), y, pressure, hertz)
     case = "line contact, M = 2000, L = 10"
@@ -88,16 +88,16 @@ def crowned_case(body: Body, length: float) -> Case:
     roller = Roller(radius=RADIUS, length=length, profile=profile)
     pressure = HALF_WIDTH * STEEL.plane_strain_modulus / (2 * RADIUS)
     offset = 0.5 * (body.length - length) if isinstance(body, FiniteLengthSpace) else None
-    dry = Case(body=body, roller=roller, max_pressure=pressure, end_distance=offset)
-    modulus = 2 * dry.modulus
-    root = dry.normal_load / (dry.contact_length * modulus * RADIUS * stored_case.load_number)
+    dry_case = Case(body=body, roller=roller, max_pressure=pressure, end_distance=offset)
+    modulus = 2 * dry_case.modulus
+    half_width_ratio = dry_case.normal_load / (dry_case.contact_length * modulus * RADIUS * stored_case.load_number)
     oil = Lubricant(
-        viscosity=0.5 * root**2 * modulus * RADIUS,
-        pressure_viscosity=stored_case.lubricant_number / (modulus * root**0.5),
+        viscosity=0.5 * half_width_ratio**2 * modulus * RADIUS,
+        pressure_viscosity=stored_case.lubricant_number / (modulus * half_width_ratio**0.5),
         viscosity_law="barus",
         density_law="constant",
     )
-    return replace(dry, lubricant=oil, motion=Sliding(body_speed=1.0, roller_speed=1.0))
+    return replace(dry_case, lubricant=oil, motion=Sliding(body_speed=1.0, roller_speed=1.0))
 
 
 def coarse_film(name: str) -> FilmCase:
@@ -144,17 +144,17 @@ def crowned_film(body: Body, length: float) -> xr.Dataset:
 def roller_checks(*, full: bool) -> Iterator[Check]:
     """Certificate of a film between free ends; at the full level, free ends far away."""
     length = 16 * HALF_WIDTH
-    flush = crowned_film(FiniteLengthSpace(length=length, material=STEEL), length)
+    flush_film = crowned_film(FiniteLengthSpace(length=length, material=STEEL), length)
     case = "crowned roller, 16 a, flush, M = 10, L = 5"
-    yield Reference(case, "mass balance").compare("net outflow of a cell / (um h)", flush["mass_error"], 0.0, 1e-6)
-    area = flush["x_width"] * float(flush["y"][1] - flush["y"][0])
-    load, quantity = (flush["pressure"] * area).sum(), "sum of the pressure over the cells, N"
-    yield Reference(case, "equilibrium").compare(quantity, load, flush["normal_load"], 1e-8, relative=True)
+    yield Reference(case, "mass balance").compare("net outflow of a cell / (um h)", flush_film["mass_error"], 0.0, 1e-6)
+    area = flush_film["x_width"] * float(flush_film["y"][1] - flush_film["y"][0])
+    load, quantity = (flush_film["pressure"] * area).sum(), "sum of the pressure over the cells, N"
+    yield Reference(case, "equilibrium").compare(quantity, load, flush_film["normal_load"], 1e-8, relative=True)
     if full:
-        without_ends = crowned_film(FiniteLengthSpace(length=10 * length, material=STEEL), length)
-        half_space = crowned_film(HalfSpace(material=STEEL), length)
+        long_film = crowned_film(FiniteLengthSpace(length=10 * length, material=STEEL), length)
+        half_space_film = crowned_film(HalfSpace(material=STEEL), length)
         case = "crowned roller, 16 a, 72 a from both free ends"
         for name in ("central_film", "least_film"):
             yield Reference(case, "half-space").compare(
-                f"{name}, m", without_ends[name], half_space[name], 5e-3, relative=True
+                f"{name}, m", long_film[name], half_space_film[name], 5e-3, relative=True
             )

@@ -86,12 +86,12 @@ def extra_deflection_checks() -> Iterator[Check]:
         grid = Grid(x_range=(0.0, 4.8), y_range=(-0.45, 0.45), cells_x=48, cells_y=9)
         load = point_pressure(grid, 40, 4)
         material = unit_material(poisson)
-        quarter, half_space = (
+        quarter_displacement, half_space = (
             float(surface_displacement(body, load)[40, 4])
             for body in (QuarterSpace(material=material), HalfSpace(material=material))
         )
         case = f"point load at 40 cells from the edge, nu = {poisson:g}"
-        kappa = (quarter - half_space) * 2 * np.pi * grid.x[40]
+        kappa = (quarter_displacement - half_space) * 2 * np.pi * grid.x[40]
         quantity = "kappa, the edge's deflection over (1 - nu^2) P / (2 pi E d)"
         yield Reference(case, COMPUTED).compare(quantity, kappa, expected, 5e-4)
 
@@ -105,12 +105,12 @@ def resultant_checks() -> Iterator[Check]:
         spectrum = modes.load_weights * modes.cosine(np.array([distance]))[:, 0]
         solution = system.solve(system.source(Load.NORMAL, spectrum))
         on_top = system.spectrum_on_top(solution) / modes.weights
-        low = np.abs(modes.ray) < 3e-3  # against 1 / distance; the lateral wavenumber is smaller still
-        top = 1 + 0.5 * np.pi * float(np.interp(1e-3, np.abs(modes.ray[low]), on_top.real[low]))
-        end = -0.5 * np.pi * float(np.interp(1e-3, system.depth, solution / system.scale))
+        low_rays = np.abs(modes.ray) < 3e-3  # against 1 / distance; the lateral wavenumber is smaller still
+        top_resultant = 1 + 0.5 * np.pi * float(np.interp(1e-3, np.abs(modes.ray[low_rays]), on_top.real[low_rays]))
+        end_resultant = -0.5 * np.pi * float(np.interp(1e-3, system.depth, solution / system.scale))
         case = f"equivalent loads of a unit load, nu = {poisson:g}"
-        yield Reference(case, EXACT_LIMIT).compare("resultant on the top", top, TOP_RESULTANT, 5e-3)
-        yield Reference(case, EXACT_LIMIT).compare("resultant on the end", end, END_RESULTANT, 5e-3)
+        yield Reference(case, EXACT_LIMIT).compare("resultant on the top", top_resultant, TOP_RESULTANT, 5e-3)
+        yield Reference(case, EXACT_LIMIT).compare("resultant on the end", end_resultant, END_RESULTANT, 5e-3)
 
 
 def corner_checks() -> Iterator[Check]:
@@ -162,8 +162,8 @@ def johnson_checks() -> Iterator[Check]:
         source = f"Johnson (1985) 4.2, 3.4: {max_error:.3f} p0 at {depth:g}a"
         yield Reference(case, source).compare("largest shear on the axis / p0", shear.max(), max_error, 1e-3)
         yield Reference(case, source).compare("its depth / a", z[shear.argmax()], depth, 0.015)
-    around = np.linspace(1.0, 1.3, 31)
-    radial = stress_field(body, circle, x=around, y=[0.0], z=[0.0], inside_cells=circle)["sigma_xx"].max()
+    x_outside = np.linspace(1.0, 1.3, 31)
+    radial = stress_field(body, circle, x=x_outside, y=[0.0], z=[0.0], inside_cells=circle)["sigma_xx"].max()
     tension = (1 - 2 * POISSON) / 3
     source = "Johnson (1985) 3.43: (1 - 2 nu) p0 / 3 at the edge"
     yield Reference("circular Hertz pressure", source).compare("largest radial tension / p0", radial, tension, 5e-3)
@@ -288,12 +288,12 @@ def contact_checks(name: str) -> Iterator[Check]:
     label += f", crown {case.crown:g}" if case.crown else ""
     curve = Curve(("x / a", "p / p0 at y = 0"), x, computed, expected)
     # At a sharp end inside the face neither solution resolves the pressure: wider tolerance within a / 2.
-    singular = case.distance > 0 and not case.crown
-    away = slice(1, -1)
+    is_singular = case.distance > 0 and not case.crown
+    inner = slice(1, -1)
     quantity = "pressure / p0 at y = 0, away from the last cell"
-    tolerance = 0.05 if singular else 0.01
-    yield Reference(label, source).compare_fields(quantity, computed[away], expected[away], tolerance, curve=curve)
-    if singular:
+    tolerance = 0.05 if is_singular else 0.01
+    yield Reference(label, source).compare_fields(quantity, computed[inner], expected[inner], tolerance, curve=curve)
+    if is_singular:
         far_columns = slice(CONTACT_CELLS // 2, -CONTACT_CELLS // 2)
         quantity = "pressure / p0 at y = 0, 0.5a and more from the roller's end"
         yield Reference(label, source).compare_fields(quantity, computed[far_columns], expected[far_columns], 0.01)

@@ -86,23 +86,23 @@ def residual_checks() -> Iterator[Check]:
     expected = rectangle_in_half_plane(
         at_x[:, None], at_z, (-0.3, 0.3), (0.5, 1.1), eigenstrain, young=STIFF.young, poisson=STIFF.poisson
     )
-    size = np.abs(expected).max()
-    for name, right in zip(("sigma_xx", "sigma_yy", "sigma_zz", "tau_xz"), expected, strict=True):
+    max_stress_exact = np.abs(expected).max()
+    for name, exact in zip(("sigma_xx", "sigma_yy", "sigma_zz", "tau_xz"), expected, strict=True):
         case = "eigenstrain in a rectangle of a half-space"
         yield Reference(case, source).compare_fields(
-            f"{name} over the largest stress", stress[name] / size, right / size, 1e-4
+            f"{name} over the largest stress", stress[name] / max_stress_exact, exact / max_stress_exact, 1e-4
         )
     finite_body = FiniteLengthSpace(length=1.0, material=STIFF)
-    deep = np.array([0.0, 0.2, 0.5, 1.0, 2.0, 4.0, 6.0])
-    x, z = np.array([0.125, 0.375, 0.625, 0.875]), 0.5 * (deep[1:] + deep[:-1])
+    depth_edges = np.array([0.0, 0.2, 0.5, 1.0, 2.0, 4.0, 6.0])
+    x, z = np.array([0.125, 0.375, 0.625, 0.875]), 0.5 * (depth_edges[1:] + depth_edges[:-1])
     uniform = (("x", "z"), np.ones((4, 6)))
-    heat = xr.Dataset({"plastic_strain_xx": uniform, "plastic_strain_zz": uniform}, {"x": x, "z": z})
-    stress = eigenstrain_stress(finite_body, heat, x=[0.05, 0.4], z=[0.02, 0.3], z_edges=deep)
+    thermal_strain = xr.Dataset({"plastic_strain_xx": uniform, "plastic_strain_zz": uniform}, {"x": x, "z": z})
+    stress = eigenstrain_stress(finite_body, thermal_strain, x=[0.05, 0.4], z=[0.02, 0.3], z_edges=depth_edges)
     max_stress = max(float(abs(stress[name]).max()) for name in STRESSES) / STIFF.young
     case = "eigenstrains xx and zz all over a body between ends"
     yield Reference(case, "it fits together").compare("largest stress / E", max_stress, 0.0, 1e-5)
     plastic_strain = xr.Dataset({"plastic_strain_yy": uniform}, {"x": x, "z": z})
-    stress = eigenstrain_stress(finite_body, plastic_strain, x=[0.05, 0.4], z=[0.02, 0.3], z_edges=deep)
+    stress = eigenstrain_stress(finite_body, plastic_strain, x=[0.05, 0.4], z=[0.02, 0.3], z_edges=depth_edges)
     axial = float(stress["sigma_yy"].mean()) / STIFF.young
     yield Reference("eigenstrain yy all over it", "Hooke's law").compare("sigma_yy / E", axial, -1.0, 1e-5)
 
@@ -112,13 +112,13 @@ def pass_checks() -> Iterator[Check]:
     contact = from_top(0.0).drop_vars("hertz_max_pressure").isel(z=slice(8, None, 2))
     body = HalfSpace(material=STIFF)
     case, source = "passes of a line contact without friction", "Melan; Johnson's p0 = 4 k"
-    below = ElasticPlastic(yield_stress=np.sqrt(3.0) / 4 * 1.03)
-    flow = residual_stress(contact, body, below, passes=5)["plastic_flow"].values
+    settling = ElasticPlastic(yield_stress=np.sqrt(3.0) / 4 * 1.03)
+    flow = residual_stress(contact, body, settling, passes=5)["plastic_flow"].values
     yield Reference(case, source).compare(
         "flow of the last pass over the first's, 3 % below", flow[-1] / flow[0], 0.0, 1e-3
     )
-    above = ElasticPlastic(yield_stress=np.sqrt(3.0) / 4 * 0.97, kinematic_hardening=5.0)
-    flow = residual_stress(contact, body, above, passes=5)["plastic_flow"].values
+    flowing = ElasticPlastic(yield_stress=np.sqrt(3.0) / 4 * 0.97, kinematic_hardening=5.0)
+    flow = residual_stress(contact, body, flowing, passes=5)["plastic_flow"].values
     yield Reference(case, source).compare(
         "flow of the fifth pass over the fourth's, 3 % above", flow[-1] / flow[-2], 1.0, 0.05
     )
@@ -132,10 +132,10 @@ def finite_element_checks(name: str) -> Iterator[Check]:
     hardening = STIFF.young * case.kinematic_hardening
     plastic = ElasticPlastic(yield_stress=np.sqrt(3.0) * case.shear_yield_stress, kinematic_hardening=hardening)
     body = HalfSpace(material=Material(STIFF.young, case.poisson))
-    passed = residual_stress(contact, body, plastic, case.passes).isel(x=0)
+    passes = residual_stress(contact, body, plastic, case.passes).isel(x=0)
     # The passes end where the residual stress is steady.
-    passed = passed.reindex(pass_number=np.arange(1, case.passes + 1), method="ffill")
-    last_pass = passed.isel(pass_number=-1)
+    passes = passes.reindex(pass_number=np.arange(1, case.passes + 1), method="ffill")
+    last_pass = passes.isel(pass_number=-1)
     size = max(float(np.abs(residual[component]).max()) for component in ("sigma_xx", "sigma_yy"))
     label = f"{name}: p0 = {1 / case.shear_yield_stress:.3g} k, f = {case.friction:g}, {case.passes} passes"
     origin = "finite elements (scikit-fem), own error"
@@ -145,9 +145,9 @@ def finite_element_checks(name: str) -> Iterator[Check]:
         quantity = f"residual {component} over the largest"
         curve = Curve(("z / a", quantity), z, computed, expected) if component == "sigma_yy" else None
         yield Reference(label, source).compare_fields(quantity, computed, expected, tolerances[0], curve=curve)
-    strain, computed = residual["plastic_strain_yz_young"], STIFF.young * passed["plastic_strain_yz"].values
-    drag, expected = (fields.sum(axis=-1) for fields in (computed, strain.values))
+    strain, computed = residual["plastic_strain_yz_young"], STIFF.young * passes["plastic_strain_yz"].values
+    sums, expected = (fields.sum(axis=-1) for fields in (computed, strain.values))
     source = f"{origin} {strain.attrs['error_estimate'] / float(np.abs(strain).max()):.0e} of the largest shear"
     quantity = "plastic shear yz summed over depth, after every pass, over the largest"
     max_expected = np.abs(expected).max()
-    yield Reference(label, source).compare_fields(quantity, drag / max_expected, expected / max_expected, tolerances[1])
+    yield Reference(label, source).compare_fields(quantity, sums / max_expected, expected / max_expected, tolerances[1])

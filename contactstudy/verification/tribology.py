@@ -80,10 +80,12 @@ def carter_checks() -> Iterator[Check]:
         peak = friction * 2 * float(result["pressure"].sum()) * step / np.pi
         computed, expected = result["traction_y"].values[in_contact] / peak, closed_forms.carter_traction(y, stick)
         # The traction has a vertical slope where slip begins, between two cells.
-        smooth = np.abs(y - (1 - 2 * stick)) > 2 * step
+        is_smooth = np.abs(y - (1 - 2 * stick)) > 2 * step
         curve = Curve(("y / a", "q / (f p0)"), y, computed, expected)
         quantity = "traction / (f p0), two cells from where slip begins"
-        yield Reference(case, source).compare_fields(quantity, computed[smooth], expected[smooth], 0.01, curve=curve)
+        yield Reference(case, source).compare_fields(
+            quantity, computed[is_smooth], expected[is_smooth], 0.01, curve=curve
+        )
 
 
 def slope_checks(*, full: bool) -> Iterator[Check]:
@@ -100,7 +102,7 @@ def slope_checks(*, full: bool) -> Iterator[Check]:
         gap = on_cells(lambda x, y: 0.5 * y**2 + 0 * x, (0, length), (-1.3, 1.3), (cells, LINE_CELLS))
         body = FiniteLengthSpace(length=length, material=steel)
         load = 0.25 * np.pi * 0.5 * steel.plane_strain_modulus * length
-        first, second = (
+        single_creepage, double_creepage = (
             solve_contact(
                 body,
                 gap,
@@ -112,8 +114,8 @@ def slope_checks(*, full: bool) -> Iterator[Check]:
             for index in (1, 2)
         )
         step = float(gap["y"][1] - gap["y"][0])
-        forces = [step * float(result["traction_y"].sum()) for result in (first, second)]
-        half_width = np.sqrt(4 * step * float(first["pressure"].sum()) / (np.pi * modulus))
+        forces = [step * float(result["traction_y"].sum()) for result in (single_creepage, double_creepage)]
+        half_width = np.sqrt(4 * step * float(single_creepage["pressure"].sum()) / (np.pi * modulus))
         slope = (4 * forces[0] - forces[1]) / (2 * creepage)
         expected, source = 0.5 * np.pi * modulus * half_width, "Carter (1926); Johnson (1985) 8.46"
         quantity = "initial slope of the force per length"
@@ -169,17 +171,17 @@ def ellipse_gap(along_x: float, along_y: float, load: float, of: Material, cells
     modulus = 0.5 * of.plane_strain_modulus
     peak = 1.5 * load / (np.pi * along_x * along_y)
     long_axis, short_axis = max(along_x, along_y), min(along_x, along_y)
-    squared = 1 - (short_axis / long_axis) ** 2
-    if squared == 0:
-        gentle = steep = np.pi * peak / (4 * modulus * long_axis)
+    e_squared = 1 - (short_axis / long_axis) ** 2
+    if e_squared == 0:
+        long_factor = short_factor = np.pi * peak / (4 * modulus * long_axis)
     else:
-        first, second = special.ellipk(squared), special.ellipe(squared)
-        scale = peak * short_axis / (modulus * squared * long_axis**2)
-        gentle, steep = scale * (first - second), scale * ((long_axis / short_axis) ** 2 * second - first)
-    of_x, of_y = (gentle, steep) if along_x >= along_y else (steep, gentle)
+        k, e = special.ellipk(e_squared), special.ellipe(e_squared)
+        scale = peak * short_axis / (modulus * e_squared * long_axis**2)
+        long_factor, short_factor = scale * (k - e), scale * ((long_axis / short_axis) ** 2 * e - k)
+    factor_x, factor_y = (long_factor, short_factor) if along_x >= along_y else (short_factor, long_factor)
     x_range = along_x * cells[0] / (cells[0] - 2)
     y_range = along_y * cells[1] / (cells[1] - 6)  # rolling needs cells ahead
-    return on_cells(lambda x, y: of_x * x**2 + of_y * y**2, (-x_range, x_range), (-y_range, y_range), cells)
+    return on_cells(lambda x, y: factor_x * x**2 + factor_y * y**2, (-x_range, x_range), (-y_range, y_range), cells)
 
 
 def rolling_ellipse(
@@ -214,12 +216,12 @@ def kalker_checks(*, full: bool) -> Iterator[Check]:
         for ratio, *columns in TABLE
         for poisson, coefficients in zip(POISSONS, zip(*columns, strict=True), strict=True)
     }
-    further = [pair for pair in published if full and pair[0] in WHOLE_RANGE and pair not in KALKER]
+    further_pairs = [pair for pair in published if full and pair[0] in WHOLE_RANGE and pair not in KALKER]
     names = ("c11", "c22")
     motions = Rolling(longitudinal_creepage=CREEPAGE), Rolling(lateral_creepage=CREEPAGE), Rolling(spin=-CREEPAGE)
-    for ratio, poisson in (*KALKER, *further):
+    for ratio, poisson in (*KALKER, *further_pairs):
         table = published[ratio, poisson]
-        within, counts = 0.015, KALKER_CELLS if ratio < 10 else LONG_CELLS
+        tolerance, counts = 0.015, KALKER_CELLS if ratio < 10 else LONG_CELLS
         across, steel = 1.0 / ratio, material(1.0, poisson)
         coefficients = []
         for count in counts:
@@ -238,9 +240,9 @@ def kalker_checks(*, full: bool) -> Iterator[Check]:
         case = f"vanishing creepage, a/b = {ratio:g}, Poisson's ratio {poisson:g}"
         source = "Kalker (1990), table E.3"
         for name, computed, expected in zip(names, extrapolated, table[:2], strict=True):
-            yield Reference(case, source).compare(f"{name}, extrapolated", computed, expected, within, relative=True)
+            yield Reference(case, source).compare(f"{name}, extrapolated", computed, expected, tolerance, relative=True)
         # Under spin the traction is largest at the leading edge, where the error falls faster.
-        yield Reference(case, source).compare("c23", coefficients[1][2], table[2], within, relative=True)
+        yield Reference(case, source).compare("c23", coefficients[1][2], table[2], tolerance, relative=True)
 
 
 # Force over full sliding's, by the longitudinal creepage
@@ -257,13 +259,13 @@ def contact_program_checks() -> Iterator[Check]:
         force = float(result["force_y"]) / (friction * load)
         source = "CONTACT, 48 x 44 cells, which are 1.4 % off"
         yield Reference(case, source).compare("force over full sliding's", force, expected, 0.016, relative=True)
-    soft, source = material(23e9, 0.31), "Bentall and Johnson (1967) by CONTACT"
+    soft_material, source = material(23e9, 0.31), "Bentall and Johnson (1967) by CONTACT"
     # The creepage grows with the half-width over the pair's radius, 0.1 mm over 25 mm in the reference and 1 here.
     scale = 0.1 / 25
     for position, expected in ((0.0, 4.294e-4), (-0.75, 2.108e-4)):
-        modulus = 1 / (1 / soft.plane_strain_modulus + 1 / steel.plane_strain_modulus)
+        modulus = 1 / (1 / soft_material.plane_strain_modulus + 1 / steel.plane_strain_modulus)
         force = position * 0.05 * 0.25 * np.pi * modulus
-        result = line_contact(soft, steel, Rolling(force_y=force), 0.05, coupled=True)
+        result = line_contact(soft_material, steel, Rolling(force_y=force), 0.05, coupled=True)
         case = f"unlike cylinders rolling, f = 0.05, force {position:g} of full sliding's"
         computed = scale * float(result["longitudinal_creepage"])
         yield Reference(case, source).compare("creepage", computed, expected, 0.015, relative=True)
@@ -310,10 +312,10 @@ def fast_checks() -> Iterator[Check]:
     relative_difference = difference.max() / hot.max_temperature_rise
     yield Reference(name, "shared heat").compare(quantity, relative_difference, 0.0, 1e-6)
     motion = Sliding(body_speed=-400.0, roller_speed=-100.0)
-    unlike = flash_temperature(replace(case, motion=motion), result, body=STEEL_HEAT, roller=STEEL_HEAT)
+    unlike_bodies = flash_temperature(replace(case, motion=motion), result, body=STEEL_HEAT, roller=STEEL_HEAT)
     name = "fast line contact, the body four times as fast"
     source = "shares go with the root of the speed; Blok (1937)"
-    yield Reference(name, source).compare("part of the heat in the body", unlike.body_heat_share, 2 / 3, 5e-3)
+    yield Reference(name, source).compare("part of the heat in the body", unlike_bodies.body_heat_share, 2 / 3, 5e-3)
 
 
 def band_checks() -> Iterator[Check]:

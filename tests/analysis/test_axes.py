@@ -35,19 +35,19 @@ def test_cell_size_of_padded_cells() -> None:
 
 def test_single_case_of_a_study(study_dataset: xr.Dataset) -> None:
     selected = study_dataset.sel(e_over_a=1, friction=0.1, body="finite-length")
-    single = analysis.single_case(selected)
-    assert single["pressure"].dims == ("x", "y")
-    assert single["von_mises"].dims == ("x_field", "y_field", "z")
-    assert np.isfinite(single["pressure"]).all()
-    assert np.array_equal(single["x"], selected["x"].values[np.isfinite(selected["x"])])
-    assert analysis.single_case(single).identical(single)
+    case = analysis.single_case(selected)
+    assert case["pressure"].dims == ("x", "y")
+    assert case["von_mises"].dims == ("x_field", "y_field", "z")
+    assert np.isfinite(case["pressure"]).all()
+    assert np.array_equal(case["x"], selected["x"].values[np.isfinite(selected["x"])])
+    assert analysis.single_case(case).identical(case)
 
 
 def test_failed_case(study_dataset: xr.Dataset) -> None:
-    single = analysis.single_case(study_dataset.sel(e_over_a=1, friction=FAILS, body="finite-length"))
-    assert "pressure" not in single
+    failed_case = analysis.single_case(study_dataset.sel(e_over_a=1, friction=FAILS, body="finite-length"))
+    assert "pressure" not in failed_case
     with pytest.raises(InvalidInputError, match=r"'a failed case': must be a solved case; .*this friction fails"):
-        single.contact.slices()
+        failed_case.contact.slices()
 
 
 def test_several_cases_raise(study_dataset: xr.Dataset) -> None:

@@ -19,11 +19,11 @@ def contact(values: list[list[float]]) -> xr.Dataset:
     return xr.Dataset({"pressure": (("x", "y"), array)}, coords=cells)
 
 
-VALUES = [[0, 0, 0], [0, 1, 0], [2, 3, 2], [0, 4, 1], [0, 0, 0]]
+PRESSURE_VALUES = [[0, 0, 0], [0, 1, 0], [2, 3, 2], [0, 4, 1], [0, 0, 0]]
 
 
 def test_axial_profiles_equal_manual_reduction() -> None:
-    profiles = analysis.axial_profiles(contact(VALUES))
+    profiles = analysis.axial_profiles(contact(PRESSURE_VALUES))
     assert profiles["axial_pressure"].values.tolist() == [0, 1, 3, 4, 0]
     assert profiles["line_load"].values.tolist() == [0, 1, 7, 5, 0]
     assert profiles["half_width"].values.tolist() == [0, 0.5, 1.5, 1, 0]
@@ -35,7 +35,7 @@ def test_axial_profiles_equal_manual_reduction() -> None:
     [(0, 5, 13), (-np.inf, np.inf, 13), (1, 2, 1), (1.5, 2.5, 4), (2.25, 2.75, 3.5), (4, 9, 0)],
 )
 def test_load_between(start: float, stop: float, expected: float) -> None:
-    load = analysis.load_between(contact(VALUES), start, stop)
+    load = analysis.load_between(contact(PRESSURE_VALUES), start, stop)
     assert float(load) == pytest.approx(expected)
     assert load.attrs["units"] == "N"
 
@@ -51,21 +51,21 @@ def test_load_between(start: float, stop: float, expected: float) -> None:
 )
 def test_interval_outside_the_cells(start, stop, message: str) -> None:
     with pytest.raises(InvalidInputError, match=message):
-        analysis.load_between(contact(VALUES), start, stop)
+        analysis.load_between(contact(PRESSURE_VALUES), start, stop)
 
 
 def test_contact_results_of_normalized_data() -> None:
-    normalized = analysis.normalized(contact(VALUES).assign(hertz_half_width=2.0, hertz_max_pressure=4.0))
+    normalized = analysis.normalized(contact(PRESSURE_VALUES).assign(hertz_half_width=2.0, hertz_max_pressure=4.0))
     with pytest.raises(InvalidInputError, match=r"in SI.*analysis.normalized"):
         analysis.line_load(normalized)
     with pytest.raises(InvalidInputError, match="two positions along y or more"):
-        analysis.line_load(contact(VALUES).isel(y=[1]))
+        analysis.line_load(contact(PRESSURE_VALUES).isel(y=[1]))
     with pytest.raises(InvalidInputError, match=r"variable = 5: must be a name"):
-        analysis.largest_sample(contact(VALUES), 5)  # type: ignore[arg-type]
+        analysis.largest_sample(contact(PRESSURE_VALUES), 5)  # type: ignore[arg-type]
 
 
 def test_scalars_by_hand() -> None:
-    result = analysis.contact_results(contact(VALUES))
+    result = analysis.contact_results(contact(PRESSURE_VALUES))
     expected = {
         "peak_pressure": 4,
         "peak_pressure_x": 3.5,
@@ -85,7 +85,7 @@ def test_scalars_by_hand() -> None:
 
 @given(about=st.floats(-10, 10))
 def test_moment_about_another_point(about: float) -> None:
-    result = analysis.contact_results(contact(VALUES), about)
+    result = analysis.contact_results(contact(PRESSURE_VALUES), about)
     assert float(result["moment"]) == pytest.approx(4 - 13 * (about - 2.5), abs=1e-9)
 
 
@@ -101,10 +101,10 @@ def test_contact_length_loss(strip_result) -> None:
 def test_border_of_a_hertz_pressure(half_width: float, centre: float) -> None:
     positions = (np.arange(80) - 39.5) / 16
     pressure = np.sqrt(np.maximum(1 - ((positions - centre) / half_width) ** 2, 0))
-    first, last = contact_borders(pressure, positions)
+    first_border, last_border = contact_borders(pressure, positions)
     # The value of the outermost cell is not used: the border may lie anywhere in this cell.
-    assert float(last) == pytest.approx(centre + half_width, abs=1e-6)
-    assert float(first) == pytest.approx(centre - half_width, abs=1e-6)
+    assert float(last_border) == pytest.approx(centre + half_width, abs=1e-6)
+    assert float(first_border) == pytest.approx(centre - half_width, abs=1e-6)
 
 
 def test_line_contact_has_hertz_load_and_half_width(strip_result) -> None:
@@ -130,30 +130,32 @@ def test_real_contact(case_result: xr.Dataset) -> None:
 
 
 def test_study_results_equal_case_results(study_dataset: xr.Dataset) -> None:
-    together = analysis.contact_results(study_dataset)
-    assert together["contact_area"].dims == ("e_over_a", "friction", "body")
+    study_results = analysis.contact_results(study_dataset)
+    assert study_results["contact_area"].dims == ("e_over_a", "friction", "body")
     for e in (0.0, 1.0, 2.0):
-        chosen = {"e_over_a": e, "friction": 0.1, "body": "finite-length"}
-        case_result = analysis.contact_results(analysis.single_case(study_dataset.sel(chosen)))
+        selected_case = {"e_over_a": e, "friction": 0.1, "body": "finite-length"}
+        case_result = analysis.contact_results(analysis.single_case(study_dataset.sel(selected_case)))
         for name, value in case_result.items():
-            assert float(together[name].sel(chosen)) == pytest.approx(float(value), rel=1e-12, abs=1e-15), name
-        profile = analysis.half_width(study_dataset.sel(chosen))["half_width"].dropna("x_over_a")
-        single = analysis.half_width(analysis.single_case(study_dataset.sel(chosen)))["half_width"]
-        assert np.array_equal(profile.values, single.values)
-    assert together.sel(friction=FAILS).to_array().isnull().all()
+            assert float(study_results[name].sel(selected_case)) == pytest.approx(float(value), rel=1e-12, abs=1e-15), (
+                name
+            )
+        profile = analysis.half_width(study_dataset.sel(selected_case))["half_width"].dropna("x_over_a")
+        case_value = analysis.half_width(analysis.single_case(study_dataset.sel(selected_case)))["half_width"]
+        assert np.array_equal(profile.values, case_value.values)
+    assert study_results.sel(friction=FAILS).to_array().isnull().all()
 
 
 def test_load_between_in_a_study(study_dataset: xr.Dataset) -> None:
     start = study_dataset["e_over_a"] * study_dataset["hertz_half_width"]
     stop = start + 2 * study_dataset["hertz_half_width"]
-    together = analysis.load_between(study_dataset, start, stop)
-    assert together.dims == ("e_over_a", "friction", "body")
+    study_loads = analysis.load_between(study_dataset, start, stop)
+    assert study_loads.dims == ("e_over_a", "friction", "body")
     for e in (0.0, 2.0):
-        chosen = {"e_over_a": e, "friction": 0.1, "body": "finite-length"}
-        single = analysis.single_case(study_dataset.sel(chosen))
-        load = analysis.load_between(single, float(start.sel(chosen)), float(stop.sel(chosen)))
-        assert float(together.sel(chosen)) == pytest.approx(float(load), rel=1e-12)
-    assert together.sel(friction=FAILS).isnull().all()
+        selected_case = {"e_over_a": e, "friction": 0.1, "body": "finite-length"}
+        case_load = analysis.single_case(study_dataset.sel(selected_case))
+        load = analysis.load_between(case_load, float(start.sel(selected_case)), float(stop.sel(selected_case)))
+        assert float(study_loads.sel(selected_case)) == pytest.approx(float(load), rel=1e-12)
+    assert study_loads.sel(friction=FAILS).isnull().all()
 
 
 def test_lazy_surfaces(study_dataset: xr.Dataset) -> None:
@@ -191,7 +193,7 @@ def test_missing_variables(function) -> None:
 
 def test_moment_about_nan() -> None:
     with pytest.raises(InvalidInputError, match="about"):
-        analysis.contact_results(contact(VALUES), np.nan)
+        analysis.contact_results(contact(PRESSURE_VALUES), np.nan)
 
 
 @pytest.mark.parametrize(
@@ -205,16 +207,18 @@ def test_moment_about_nan() -> None:
 )
 def test_cut_ends(y_slice: slice, first: float, last: float) -> None:
     # Unloaded rows on either side of y, as in every sufficient window.
-    full_contact = contact(VALUES).pad(y=1, constant_values=0).assign_coords(y=np.arange(-2.0, 3.0), normal_load=13.0)
+    full_contact = (
+        contact(PRESSURE_VALUES).pad(y=1, constant_values=0).assign_coords(y=np.arange(-2.0, 3.0), normal_load=13.0)
+    )
     full_contact = full_contact.reset_coords("normal_load").assign(hertz_half_width=1.0)
     selected = full_contact.isel(x=y_slice).assign_coords(x_width=1.0)
     end_pressures = analysis.edge_pressure(selected)
-    assert [float(end_pressures[f"edge_pressure_{end}"]) for end in ("first", "last")] == pytest.approx(
+    assert [float(end_pressures[f"edge_pressure_{end_name}"]) for end_name in ("first", "last")] == pytest.approx(
         [first, last], nan_ok=True
     )
     factors = analysis.edge_factors(selected)
-    for end in ("first", "last"):
-        assert np.isnan(float(factors[f"end_over_middle_{end}"])) == (np.isnan(first) or np.isnan(last))
+    for end_name in ("first", "last"):
+        assert np.isnan(float(factors[f"end_over_middle_{end_name}"])) == (np.isnan(first) or np.isnan(last))
     half_result = analysis.edge_pressure(full_contact.sel(y=slice(0, None)))
     assert [float(pressure) for pressure in half_result.values()] == [1.0, 4.0]
 

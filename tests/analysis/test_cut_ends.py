@@ -23,7 +23,7 @@ def flush(request: pytest.FixtureRequest) -> xr.Dataset:
     return solve(Case(body=body, roller=ROLLER, max_pressure=1.5e9, **position), accuracy=0.1, stresses=False)
 
 
-def ends(selected: xr.Dataset) -> list[float]:
+def end_values(selected: xr.Dataset) -> list[float]:
     return [float(value) for value in analysis.edge_pressure(selected).values()]
 
 
@@ -31,31 +31,31 @@ def ends(selected: xr.Dataset) -> list[float]:
 def test_ends_of_halves(flush: xr.Dataset, with_attributes: bool) -> None:
     contact = flush if with_attributes else flush.drop_attrs(deep=False)
     mid_column = flush.sizes["x"] // 2
-    first, last = ends(contact)
+    first, last = end_values(contact)
     assert first > 0
     assert last > 0
-    assert ends(contact.isel(x=slice(None, mid_column))) == pytest.approx([first, np.nan], nan_ok=True)
+    assert end_values(contact.isel(x=slice(None, mid_column))) == pytest.approx([first, np.nan], nan_ok=True)
     # Without the case the end of a body with loaded columns only is unknown.
     reaches = bool((flush["pressure"].isel(x=-1) > 0).any())
     expected = last if with_attributes or not reaches else np.nan
-    assert ends(contact.isel(x=slice(mid_column, None))) == pytest.approx([np.nan, expected], nan_ok=True)
-    assert np.isnan(ends(contact.isel(x=slice(mid_column - 5, mid_column + 5)))).all()
+    assert end_values(contact.isel(x=slice(mid_column, None))) == pytest.approx([np.nan, expected], nan_ok=True)
+    assert np.isnan(end_values(contact.isel(x=slice(mid_column - 5, mid_column + 5)))).all()
 
 
 def test_missing_cells(flush: xr.Dataset) -> None:
     sparse_result = flush.isel(x=slice(None, None, 2))
-    assert not np.isnan(ends(sparse_result)).any()
+    assert not np.isnan(end_values(sparse_result)).any()
 
 
 def test_pressures_in_megapascals(flush: xr.Dataset) -> None:
     metric = flush.assign(pressure=(1e-6 * flush["pressure"]).assign_attrs(units="MPa"))
-    assert ends(metric) == pytest.approx(ends(flush))
+    assert end_values(metric) == pytest.approx(end_values(flush))
     converted = analysis.contact_results(metric)
     for name, value in analysis.contact_results(flush).items():
         assert float(converted[name]) == pytest.approx(float(value)), name
 
 
-def test_peaks_of_a_contact_and_a_part(flush: xr.Dataset) -> None:
+def test_part_of_a_contact_has_the_peaks_of_its_cells(flush: xr.Dataset) -> None:
     """The refined peak, with its error; infinite at a singular end, like its edge pressure and factor."""
     results = analysis.contact_results(flush)
     assert float(results["peak_pressure"]) == float(flush["peak_pressure"])

@@ -164,20 +164,21 @@ def test_peak_at_a_free_end(poisson):
 
 
 def test_advice_for_coarse_cells():
-    steep = case_of(8 * HALF_WIDTH, profiles.Cylinder(fillet_radius=0.05e-3))
-    grid = choose_grid(steep, cells_x=4, cells_y=8)
-    result = with_errors(steep, grid)
+    steep_profile = case_of(8 * HALF_WIDTH, profiles.Cylinder(fillet_radius=0.05e-3))
+    grid = choose_grid(steep_profile, cells_x=4, cells_y=8)
+    result = with_errors(steep_profile, grid)
     comment = result.peak_pressure_error.attrs["comment"]
     assert np.isinf(float(result.peak_pressure_error))
     assert f"turn on {grid.shape[0]} x {grid.shape[1]} cells: leave the grid out" in comment
-    counts = re.search(r"choose_grid\(case, cells_x=([\d.]+), cells_y=([\d.]+)\)", comment)
-    finer = choose_grid(steep, cells_x=float(counts[1]), cells_y=float(counts[2]))
-    assert finer.shape[0] >= 4 * grid.shape[0]
-    assert finer.shape[1] == pytest.approx(2 * grid.shape[1], rel=0.1)
-    foreign = [
-        dataset.drop_vars("hertz_half_width") for dataset in (solve_on_cells(steep, 32), solve_on_cells(steep, 16))
+    cell_counts = re.search(r"choose_grid\(case, cells_x=([\d.]+), cells_y=([\d.]+)\)", comment)
+    finer_result = choose_grid(steep_profile, cells_x=float(cell_counts[1]), cells_y=float(cell_counts[2]))
+    assert finer_result.shape[0] >= 4 * grid.shape[0]
+    assert finer_result.shape[1] == pytest.approx(2 * grid.shape[1], rel=0.1)
+    foreign_result = [
+        dataset.drop_vars("hertz_half_width")
+        for dataset in (solve_on_cells(steep_profile, 32), solve_on_cells(steep_profile, 16))
     ]
-    assert re.search(r"or take [\d.]+ times as many", discretisation_error(*foreign).peak_pressure_error.comment)
+    assert re.search(r"or take [\d.]+ times as many", discretisation_error(*foreign_result).peak_pressure_error.comment)
 
 
 @pytest.mark.parametrize("wider", [1.5, 1.0005])

@@ -57,17 +57,17 @@ def test_edges_against_counted_cells():
 
 def test_edges_mirror_with_the_contact():
     contact = ellipsoid(1.8, 48, slimness=0.8)
-    shifted = contact.assign_coords(x=contact.x + 0.3, y=contact.y + 0.2)
-    mirrored = shifted.assign_coords(x=-shifted.x, y=-shifted.y).sortby(["x", "y"])
-    edges, mirrored_edges = contact_edges(shifted), contact_edges(mirrored)
+    shifted_contact = contact.assign_coords(x=contact.x + 0.3, y=contact.y + 0.2)
+    mirrored_contact = shifted_contact.assign_coords(x=-shifted_contact.x, y=-shifted_contact.y).sortby(["x", "y"])
+    edges, mirrored_edges = contact_edges(shifted_contact), contact_edges(mirrored_contact)
     np.testing.assert_allclose(mirrored_edges.y_left.values[::-1], -edges.y_right.values, atol=1e-12)
     assert float(mirrored_edges.x_first) == pytest.approx(-float(edges.x_last), abs=1e-12)
 
 
 def test_area_and_length_of_an_ellipse():
     edges = contact_edges(ellipsoid(1.9, 96, slimness=0.7))
-    across, along = 2 * float(edges.half_width.max()), float(edges.contact_length)
-    assert float(edges.contact_area) == pytest.approx(np.pi / 4 * across * along, rel=2e-3)
+    half_y, half_x = 2 * float(edges.half_width.max()), float(edges.contact_length)
+    assert float(edges.contact_area) == pytest.approx(np.pi / 4 * half_y * half_x, rel=2e-3)
 
 
 def test_contact_to_the_ends_of_the_body(on_cells):

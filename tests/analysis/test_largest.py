@@ -21,8 +21,8 @@ def shear(values: xr.DataArray) -> xr.Dataset:
 
 def hill(x: np.ndarray, z: np.ndarray) -> xr.Dataset:
     """A hill of height 3 at x = 0.3, z = 0.7."""
-    along, down = xr.DataArray(x, dims="x", coords={"x": x}), xr.DataArray(z, dims="z", coords={"z": z})
-    values = 3 * np.exp(-((along - 0.3) ** 2) - (down - 0.7) ** 2)
+    x_term, z_term = xr.DataArray(x, dims="x", coords={"x": x}), xr.DataArray(z, dims="z", coords={"z": z})
+    values = 3 * np.exp(-((x_term - 0.3) ** 2) - (z_term - 0.7) ** 2)
     return shear(values.expand_dims(y=[0.0]).transpose("x", "y", "z"))
 
 
@@ -125,11 +125,13 @@ def test_order_of_points() -> None:
     z = np.linspace(0.0, 2.0, 9)
     full_depths, edge = (hill(np.linspace(-1.0, 2.0, 11), depths) for depths in (z, z[:4]))
     for stresses in (full_depths, edge):
-        there = analysis.peak(stresses, "maximum_shear")
+        unsorted_peak = analysis.peak(stresses, "maximum_shear")
         rolled_peak = analysis.peak(stresses.isel(z=np.roll(np.arange(stresses.sizes["z"]), 2)), "maximum_shear")
-        assert float(rolled_peak.peak_maximum_shear) == pytest.approx(float(there.peak_maximum_shear), rel=1e-12)
+        assert float(rolled_peak.peak_maximum_shear) == pytest.approx(
+            float(unsorted_peak.peak_maximum_shear), rel=1e-12
+        )
         assert float(rolled_peak.peak_maximum_shear_error) == pytest.approx(
-            float(there.peak_maximum_shear_error), rel=1e-9
+            float(unsorted_peak.peak_maximum_shear_error), rel=1e-9
         )
 
 

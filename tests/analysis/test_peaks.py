@@ -27,9 +27,9 @@ def test_line_contact(strip_result, variable: str, value: float, depth: float) -
     assert result[f"peak_{variable}"].dims == ("x_field",)
     assert result[f"peak_{variable}"].values / peak_pressure == pytest.approx(value, abs=1e-3)
     assert result[f"peak_{variable}_z"].values / scale == pytest.approx(depth, abs=0.03)
-    overall = analysis.largest_sample(strip_result(scale, peak_pressure), variable)
-    assert float(overall[f"peak_{variable}"]) == float(result[f"peak_{variable}"].max())
-    assert overall[f"peak_{variable}_x"].attrs["units"] == "m"
+    overall_peak = analysis.largest_sample(strip_result(scale, peak_pressure), variable)
+    assert float(overall_peak[f"peak_{variable}"]) == float(result[f"peak_{variable}"].max())
+    assert overall_peak[f"peak_{variable}_x"].attrs["units"] == "m"
 
 
 def test_friction_shifts_the_largest_von_mises(strip_result) -> None:
@@ -41,20 +41,20 @@ def test_friction_shifts_the_largest_von_mises(strip_result) -> None:
 
 def test_study_results_equal_case_results(study_dataset: xr.Dataset) -> None:
     for variable in ("von_mises", "pressure", "tresca", "hydrostatic"):
-        together = analysis.largest_sample(study_dataset, variable)
+        study_peaks = analysis.largest_sample(study_dataset, variable)
         for e in (0.0, 1.0, 2.0):
-            chosen = {"e_over_a": e, "friction": 0.1, "body": "finite-length"}
-            case_sample = analysis.largest_sample(analysis.single_case(study_dataset.sel(chosen)), variable)
+            selected_case = {"e_over_a": e, "friction": 0.1, "body": "finite-length"}
+            case_sample = analysis.largest_sample(analysis.single_case(study_dataset.sel(selected_case)), variable)
             for name, value in case_sample.items():
-                assert float(together[name].sel(chosen)) == pytest.approx(float(value), rel=1e-6), name
-        assert together.sel(friction=FAILS).to_array().isnull().all()
+                assert float(study_peaks[name].sel(selected_case)) == pytest.approx(float(value), rel=1e-6), name
+        assert study_peaks.sel(friction=FAILS).to_array().isnull().all()
 
 
 def test_sections_of_a_study(study_dataset: xr.Dataset) -> None:
-    together = analysis.largest_sample(study_dataset, along="x")
-    chosen = {"e_over_a": 1.0, "friction": 0.1, "body": "finite-length"}
-    case_sample = analysis.largest_sample(analysis.single_case(study_dataset.sel(chosen)), along="x")
-    sections = together["peak_von_mises"].sel(chosen).dropna("x_over_a")
+    study_peaks = analysis.largest_sample(study_dataset, along="x")
+    selected_case = {"e_over_a": 1.0, "friction": 0.1, "body": "finite-length"}
+    case_sample = analysis.largest_sample(analysis.single_case(study_dataset.sel(selected_case)), along="x")
+    sections = study_peaks["peak_von_mises"].sel(selected_case).dropna("x_over_a")
     assert np.array_equal(sections, case_sample["peak_von_mises"])
 
 

@@ -85,8 +85,8 @@ def test_prescribed_results(change) -> None:
 
 
 def test_joined_results(result: xr.Dataset) -> None:
-    joined = xr.concat([result, result], xr.Variable("friction", [0.05, 0.1]))
-    selected = joined.sel(friction=0.1)
+    joined_dataset = xr.concat([result, result], xr.Variable("friction", [0.05, 0.1]))
+    selected = joined_dataset.sel(friction=0.1)
     check_solved_for(selected, replace(CASE, friction=0.1))
     with pytest.raises(InvalidInputError, match=r"friction = 0.1.*friction = 0.05; .*drop its attribute"):
         check_solved_for(selected, CASE)

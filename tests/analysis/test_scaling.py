@@ -10,7 +10,9 @@ from contactstudy import InvalidInputError, analysis
 
 
 def test_scaled_results(strip_result) -> None:
-    small_result, large_result = (analysis.normalized(strip_result(*scale)) for scale in ((1e-4, 1e9), (3e-4, 3e9)))
+    small_result, large_result = (
+        analysis.normalized(strip_result(*length_scale)) for length_scale in ((1e-4, 1e9), (3e-4, 3e9))
+    )
     for name in ("pressure", "von_mises", "tau_yz"):
         assert np.allclose(small_result[name], large_result[name], atol=1e-12)
         assert small_result[name].attrs["units"] == "1"
@@ -30,15 +32,15 @@ def test_scalars_scale_by_units(strip_result) -> None:
 
 
 def test_scales_of_a_study(study_dataset: xr.Dataset) -> None:
-    scaled = analysis.normalized(study_dataset)
-    chosen = {"e_over_a": 1.0, "friction": 0.1, "body": "finite-length"}
-    expected = study_dataset["pressure"].sel(chosen) / 1.5e9
-    assert np.allclose(scaled["pressure"].sel(chosen), expected, equal_nan=True)
-    assert scaled["pressure"].dims == study_dataset["pressure"].dims
+    scaled_study = analysis.normalized(study_dataset)
+    selected_case = {"e_over_a": 1.0, "friction": 0.1, "body": "finite-length"}
+    expected = study_dataset["pressure"].sel(selected_case) / 1.5e9
+    assert np.allclose(scaled_study["pressure"].sel(selected_case), expected, equal_nan=True)
+    assert scaled_study["pressure"].dims == study_dataset["pressure"].dims
     # Positions of each case are divided by the case's a.
-    case_positions = scaled["x"].sel(chosen)
+    case_positions = scaled_study["x"].sel(selected_case)
     assert np.allclose(case_positions, study_dataset["x_over_a"].where(case_positions.notnull()), equal_nan=True)
-    assert np.allclose(scaled["y_field"].sel(chosen), study_dataset["y_field_over_a"])
+    assert np.allclose(scaled_study["y_field"].sel(selected_case), study_dataset["y_field_over_a"])
 
 
 def test_missing_scales() -> None:
@@ -47,23 +49,23 @@ def test_missing_scales() -> None:
 
 
 def test_selection_over_a(case_result: xr.Dataset) -> None:
-    over = analysis.positions_over_a(case_result)
+    case_over_a = analysis.positions_over_a(case_result)
     half_width = float(case_result["hertz_half_width"])
     expected = case_result["pressure"].sel(x=2 * half_width, y=0.5 * half_width, method="nearest")
-    assert float(over["pressure"].sel(x_over_a=2, y_over_a=0.5, method="nearest")) == float(expected)
-    assert over["von_mises"].dims == ("x_field_over_a", "y_field_over_a", "z_over_a")
-    assert over["von_mises"].sel(z_over_a=slice(0.2, 0.8)).sizes["z_over_a"] == 3
-    coordinates = {name: over[name].item() for name in ("e_over_a", "friction", "gamma", "profile")}
+    assert float(case_over_a["pressure"].sel(x_over_a=2, y_over_a=0.5, method="nearest")) == float(expected)
+    assert case_over_a["von_mises"].dims == ("x_field_over_a", "y_field_over_a", "z_over_a")
+    assert case_over_a["von_mises"].sel(z_over_a=slice(0.2, 0.8)).sizes["z_over_a"] == 3
+    coordinates = {name: case_over_a[name].item() for name in ("e_over_a", "friction", "gamma", "profile")}
     assert coordinates.pop("profile").startswith("Cylinder(fillet_radius=")
     assert coordinates == pytest.approx({"e_over_a": 1.0, "friction": 0.1, "gamma": 0.104}, rel=2e-3)
 
 
 def test_single_case_is_the_inverse(case_result: xr.Dataset) -> None:
-    back = analysis.single_case(analysis.positions_over_a(case_result))
+    restored_case = analysis.single_case(analysis.positions_over_a(case_result))
     for name in ("pressure", "von_mises"):
-        assert back[name].dims == case_result[name].dims
-        assert np.array_equal(back[name], case_result[name])
-    assert np.array_equal(back["x"], case_result["x"])
+        assert restored_case[name].dims == case_result[name].dims
+        assert np.array_equal(restored_case[name], case_result[name])
+    assert np.array_equal(restored_case["x"], case_result["x"])
 
 
 def test_joined_results_over_a(strip_result) -> None:
@@ -77,10 +79,10 @@ def test_joined_results_over_a(strip_result) -> None:
 
 def test_positions_over_a_of_a_study(study_dataset: xr.Dataset) -> None:
     # All cases share y in metres, and have one half-width.
-    over = analysis.positions_over_a(study_dataset)
-    assert over["pressure"].dims[-2:] == ("x_over_a", "y_over_a")
-    assert np.array_equal(over["pressure"], study_dataset["pressure"], equal_nan=True)
-    assert np.array_equal(over["von_mises"].x_over_a, study_dataset["x_over_a"])
+    study_over_a = analysis.positions_over_a(study_dataset)
+    assert study_over_a["pressure"].dims[-2:] == ("x_over_a", "y_over_a")
+    assert np.array_equal(study_over_a["pressure"], study_dataset["pressure"], equal_nan=True)
+    assert np.array_equal(study_over_a["von_mises"].x_over_a, study_dataset["x_over_a"])
 
 
 def test_differing_positions_over_a(strip_result) -> None:
@@ -98,9 +100,9 @@ def test_dimension_without_positions(strip_result) -> None:
 
 def test_names_of_positions_over_a(strip_result) -> None:
     result = strip_result(1e-4, 1e9)
-    scaled, over = analysis.normalized(result), analysis.positions_over_a(result)
+    scaled, result_over_a = analysis.normalized(result), analysis.positions_over_a(result)
     for name in ("x", "y", "z", "x_field"):
-        assert scaled[name].attrs == over[f"{name}_over_a"].attrs, name
+        assert scaled[name].attrs == result_over_a[f"{name}_over_a"].attrs, name
     assert scaled["z"].attrs["long_name"] == "z over a"
     assert scaled["z"].attrs["comment"] == "depth, below the loaded surface"
 
@@ -112,6 +114,6 @@ def test_positions_in_millimetres(strip_result) -> None:
 
 
 def test_positions_over_a_are_idempotent(strip_result) -> None:
-    scaled = analysis.normalized(strip_result(1e-4, 1e9))
+    result_over_a = analysis.normalized(strip_result(1e-4, 1e9))
     with pytest.raises(InvalidInputError, match="already"):
-        analysis.positions_over_a(scaled)
+        analysis.positions_over_a(result_over_a)

@@ -71,9 +71,9 @@ def test_bad_input(strip_result, study_dataset: xr.Dataset) -> None:
 
 
 def test_slices_keep_order_at_single_depth(case_result: xr.Dataset) -> None:
-    there = analysis.slices(case_result, 4)
+    table = analysis.slices(case_result, 4)
     reversed_slices = analysis.slices(case_result.isel(x=slice(None, None, -1)), 4)
-    assert reversed_slices["normal_load"].values == pytest.approx(there["normal_load"].values)
+    assert reversed_slices["normal_load"].values == pytest.approx(table["normal_load"].values)
     assert "peak_maximum_shear" not in analysis.slices(case_result.isel(z=1), 4)
 
 
@@ -87,7 +87,7 @@ def make_case(profile: profiles.Profile, length: float, body: float | None, **gi
     return Case(body=on, roller=Roller(radius=5e-3, length=length, profile=profile), max_pressure=1.5e9, **given)
 
 
-KINDS = {
+CASES = {
     "crowned": make_case(profiles.FullCrown(crown_radius=0.06), 1.6e-3, 2e-3),
     "crowned, tilted": make_case(profiles.FullCrown(crown_radius=0.1), 1e-3, 1.4e-3, tilt=1e-3),
     "straight, flush with free ends": make_case(profiles.Cylinder(), 1e-3, 1e-3),
@@ -104,19 +104,21 @@ QUICK = ("crowned", "sharp end inside the face")
 
 
 @pytest.mark.parametrize(
-    "kind", [pytest.param(kind, marks=() if kind in QUICK else pytest.mark.slow) for kind in KINDS]
+    "kind", [pytest.param(kind, marks=() if kind in QUICK else pytest.mark.slow) for kind in CASES]
 )
 def test_errors_against_finer_columns(kind: str) -> None:
-    coarse_result = solve(KINDS[kind], stresses=False, accuracy=0.01)
-    fine_result = solve(KINDS[kind], split_columns(coarse_result, 4), stresses=False)
+    coarse_result = solve(CASES[kind], stresses=False, accuracy=0.01)
+    fine_result = solve(CASES[kind], split_columns(coarse_result, 4), stresses=False)
     for count in (3, 12, 30):
-        table, finer = analysis.slices(coarse_result, count), analysis.slices(fine_result, count)
+        table, finer_table = analysis.slices(coarse_result, count), analysis.slices(fine_result, count)
         for name in ("axial_pressure", "normal_load"):
-            is_finite = np.isfinite(finer[name])
-            differences = abs(table[name] - finer[name]).where(is_finite, 0.0)
+            is_finite = np.isfinite(finer_table[name])
+            differences = abs(table[name] - finer_table[name]).where(is_finite, 0.0)
             assert (differences <= table[f"{name}_error"]).all(), (count, name)
-            typical = float((table[f"{name}_error"] / finer[name].where(is_finite).max()).where(is_finite).median())
-            assert typical < 0.1, (count, name)
+            typical_errors = float(
+                (table[f"{name}_error"] / finer_table[name].where(is_finite).max()).where(is_finite).median()
+            )
+            assert typical_errors < 0.1, (count, name)
 
 
 def test_mirrored_slices() -> None:
@@ -137,15 +139,15 @@ def test_mirrored_slices() -> None:
 
 
 def test_narrow_columns_and_singular_ends() -> None:
-    rounded_result = solve(KINDS["rounded edges"], stresses=False, accuracy=0.03)
+    rounded_result = solve(CASES["rounded edges"], stresses=False, accuracy=0.03)
     maximum = analysis.slices(rounded_result, 10)["axial_pressure"]
     for side, index in (("first", 0), ("last", -1)):
         peak, error = (float(rounded_result[f"peak_pressure_{side}{kind}"]) for kind in ("", "_error"))
         assert float(maximum[index]) == pytest.approx(peak, abs=error)
-    sharp = analysis.slices(solve(KINDS["sharp end inside the face"], stresses=False, accuracy=0.1), 10)
+    sharp_table = analysis.slices(solve(CASES["sharp end inside the face"], stresses=False, accuracy=0.1), 10)
     for name in ("axial_pressure", "axial_pressure_error"):
-        assert np.isinf(sharp[name]).values.tolist() == [False] * 9 + [True]
-    assert np.isfinite(sharp["normal_load_error"]).all()
+        assert np.isinf(sharp_table[name]).values.tolist() == [False] * 9 + [True]
+    assert np.isfinite(sharp_table["normal_load_error"]).all()
 
 
 def test_errors_of_a_case_of_a_study(tmp_path) -> None:
@@ -166,7 +168,7 @@ def test_errors_of_a_case_of_a_study(tmp_path) -> None:
 
 
 def test_error_kinds(case_result: xr.Dataset) -> None:
-    refined = solve(KINDS["straight, flush with free ends"], stresses=False, accuracy=0.05)
+    refined = solve(CASES["straight, flush with free ends"], stresses=False, accuracy=0.05)
     results = {
         "given cells": case_result,
         "cut": refined.sel(x=slice(0.5e-3, None)),

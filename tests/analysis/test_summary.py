@@ -14,22 +14,22 @@ def contact(values, scale=2.0):
     return xr.Dataset({"pressure": (("x", "y"), values), "hertz_max_pressure": scale}, coords=cells)
 
 
-VALUES = [[0, 0, 0], [0, 1, 0], [2, 3, 2], [0, 4, 1], [0, 0, 0]]
+PRESSURE_VALUES = [[0, 0, 0], [0, 1, 0], [2, 3, 2], [0, 4, 1], [0, 0, 0]]
 
 
 def test_summary_contains_peak_position():
-    result = pressure_numbers(contact(VALUES))
+    result = pressure_numbers(contact(PRESSURE_VALUES))
     assert [result[name] for name in ("peak_pressure", "peak_pressure_x", "peak_pressure_y")] == [4, 3.5, 0]
 
 
 def test_ends_are_the_first_and_last_loaded_cells():
-    result = pressure_numbers(contact(VALUES))
+    result = pressure_numbers(contact(PRESSURE_VALUES))
     assert (result["end_pressure_over_p0_first"], result["end_pressure_over_p0_last"]) == (0.5, 2.0)
     assert result["end_pressure_over_p0"] == 1.25
 
 
 def test_extent_in_whole_cells():
-    result = pressure_numbers(contact(VALUES))
+    result = pressure_numbers(contact(PRESSURE_VALUES))
     assert (result["contact_length"], result["contact_width"]) == (3, 3)
 
 
@@ -42,8 +42,8 @@ def test_no_contact_at_all():
 @given(st.floats(0.1, 1e9))
 def test_ratios_do_not_depend_on_the_unit(scale):
     numbers, scaled_numbers = (
-        pressure_numbers(contact(VALUES)),
-        pressure_numbers(contact(np.multiply(VALUES, scale), 2 * scale)),
+        pressure_numbers(contact(PRESSURE_VALUES)),
+        pressure_numbers(contact(np.multiply(PRESSURE_VALUES, scale), 2 * scale)),
     )
     assert scaled_numbers["end_pressure_over_p0"] == pytest.approx(numbers["end_pressure_over_p0"])
 
@@ -69,11 +69,11 @@ def test_nan_field_has_no_peak():
 
 
 def test_without_stresses():
-    assert not stress_summary(contact(VALUES))
-    assert "peak_von_mises" not in case_numbers(contact(VALUES))
+    assert not stress_summary(contact(PRESSURE_VALUES))
+    assert "peak_von_mises" not in case_numbers(contact(PRESSURE_VALUES))
 
 
 def test_case_numbers_contain_result_scalars():
-    result = case_numbers(contact(VALUES).assign(iterations=7))
+    result = case_numbers(contact(PRESSURE_VALUES).assign(iterations=7))
     assert result["iterations"].value == 7
     assert result["end_pressure_over_p0"].attributes["units"] == "1"

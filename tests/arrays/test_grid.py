@@ -36,11 +36,11 @@ def test_cells_tile_range(ratios: list[float]) -> None:
 @given(ratios=RATIOS)
 def test_grids_of_equal_edges_are_equal(ratios: list[float]) -> None:
     edges = edges_of(ratios)
-    first, second = (Grid.from_edges(edges, Y_RANGE, 4) for _ in range(2))
-    assert first == second
-    assert hash(first) == hash(second)
+    grid, equal_grid = (Grid.from_edges(edges, Y_RANGE, 4) for _ in range(2))
+    assert grid == equal_grid
+    assert hash(grid) == hash(equal_grid)
     shifted_edges = [*edges[:-1], edges[-1] * 1.01]
-    assert Grid.from_edges(shifted_edges, Y_RANGE, 4) != first
+    assert Grid.from_edges(shifted_edges, Y_RANGE, 4) != grid
 
 
 @given(ratios=RATIOS)

@@ -76,11 +76,11 @@ def test_friction_and_roughness_are_converted_or_refused(half_space: HalfSpace) 
     friction = xr.DataArray([10.0, 20.0], {"x": ("x", [0.0, 2.0], {"units": "mm"})}, "x", attrs={"units": "%"})
     assert check_friction(friction) == AxialFriction((0.0, 2e-3), (0.1, 0.2))
     cells = Grid(x_range=(0.0, 4e-3), y_range=(0.0, 2e-3), cells_x=4, cells_y=2)
-    map_ = xr.DataArray(np.arange(8.0).reshape(4, 2), {"x": 1e3 * cells.x, "y": 1e3 * cells.y}, ("x", "y"))
+    heights = xr.DataArray(np.arange(8.0).reshape(4, 2), {"x": 1e3 * cells.x, "y": 1e3 * cells.y}, ("x", "y"))
     for axis in "xy":
-        map_[axis].attrs["units"] = "mm"
-    np.testing.assert_allclose(heights_on(cells, map_.assign_attrs(units="um")), 1e-6 * map_.values)
-    for wrong in (map_.assign_attrs(units="GPa"), map_.assign_coords(x=map_.x.assign_attrs(units="1"))):
+        heights[axis].attrs["units"] = "mm"
+    np.testing.assert_allclose(heights_on(cells, heights.assign_attrs(units="um")), 1e-6 * heights.values)
+    for wrong in (heights.assign_attrs(units="GPa"), heights.assign_coords(x=heights.x.assign_attrs(units="1"))):
         with pytest.raises(InvalidInputError, match=r"roughness.*attrs\['units'\]"):
             heights_on(cells, wrong)
     with pytest.raises(InvalidInputError, match=r"friction.attrs\['units'\] = 'N'"):
@@ -101,10 +101,10 @@ def test_yield_stress_over_depth() -> None:
     material = ElasticPlastic(yield_stress=over)
     for material_variant in (material, replace(material, isotropic_hardening=1e9)):
         np.testing.assert_allclose(material_variant.yield_stress_at(np.array([0.5e-3])), 500e6)
-    hard = xr.DataArray([750.0], {"z": [0.0]}, "z", attrs={"units": "HV"})
-    assert ElasticPlastic.from_hardness(hard).yield_stress_at(np.zeros(1))[0] == pytest.approx(750 * 9.80665e6 / 3)
+    hardness = xr.DataArray([750.0], {"z": [0.0]}, "z", attrs={"units": "HV"})
+    assert ElasticPlastic.from_hardness(hardness).yield_stress_at(np.zeros(1))[0] == pytest.approx(750 * 9.80665e6 / 3)
     with pytest.raises(InvalidInputError, match="HV, or left out"):
-        ElasticPlastic.from_hardness(hard.assign_attrs(units="HRC"))
+        ElasticPlastic.from_hardness(hardness.assign_attrs(units="HRC"))
 
 
 def test_converted_variable_has_si_units() -> None:

@@ -53,7 +53,7 @@ from tests.stand_in_solver import solve_fake
 
 Returned = dict[str, xr.Dataset]
 
-KEEPS_WHAT_IT_GETS = {"normalized", "single_case", "measure", "positions", "along_line", "in_plane"}
+UNCHANGED_NAME_FUNCTIONS = {"normalized", "single_case", "measure", "positions", "along_line", "in_plane"}
 """Functions whose result has the variables of their argument, perhaps in other units."""
 
 
@@ -112,7 +112,7 @@ def one_case(folder: Path) -> xr.Dataset:
 def returned_datasets(strip_result: Callable[..., xr.Dataset], study_dataset: xr.Dataset, tmp_path_factory) -> Returned:
     """Results of every public function, by its name."""
     steel = cs.Material(210e9, 0.3)
-    metal = heat.ThermalProperties(conductivity=46.0, density=7850.0, specific_heat=470.0)
+    elastic_plastic = heat.ThermalProperties(conductivity=46.0, density=7850.0, specific_heat=470.0)
     length, half_width = 0.4e-3, 65e-6
     body = cs.FiniteLengthSpace(length=length, material=steel)
     roller = cs.Roller(radius=5e-3, length=length, material=steel)
@@ -124,8 +124,8 @@ def returned_datasets(strip_result: Callable[..., xr.Dataset], study_dataset: xr
     contact = cs.solve_contact(body, case_result["initial_gap"], load=case.normal_load)
     coarse_result = cs.solve(case, grid.coarsened(), stresses=False)
     # Sharp rigid ends inside the face: the pressure is singular at both.
-    wider = cs.FiniteLengthSpace(length=2 * length, material=steel)
-    sharp = cs.Case(body=wider, roller=cs.Roller(radius=5e-3, length=length), max_pressure=1.5e9)
+    wider_result = cs.FiniteLengthSpace(length=2 * length, material=steel)
+    sharp_result = cs.Case(body=wider_result, roller=cs.Roller(radius=5e-3, length=length), max_pressure=1.5e9)
     chamfer = cs.profiles.Chamfer(width=0.1e-3, angle=0.01)
     chamfered_case = cs.Case(
         body=body, roller=cs.Roller(radius=5e-3, length=length, profile=chamfer), max_pressure=1.5e9
@@ -134,14 +134,14 @@ def returned_datasets(strip_result: Callable[..., xr.Dataset], study_dataset: xr
     limits = fatigue.FatigueLimits(bending=500e6, torsion=300e6)
     criterion = fatigue.dang_van(strip, limits)
     risk = fatigue.lundberg_palmgren(strip)
-    rough = cs.roughness.self_affine(grid, rms_height=1e-7, hurst=0.8, longest=2e-4, shortest=1e-4, seed=1)
+    rough_result = cs.roughness.self_affine(grid, rms_height=1e-7, hurst=0.8, longest=2e-4, shortest=1e-4, seed=1)
     file = tmp_path_factory.mktemp("rough") / "map.nc"
-    rough.to_netcdf(file)
+    rough_result.to_netcdf(file)
     check = Reference("case", "closed form").compare("peak pressure", 1.0, 1.0, 0.1)
     verification = suite.Verification("full", {"one": [check]})
     law = bearing.ContactLaw(label_law(ContactSolver(case, 0.1, 1e-4), NODES, np.full((2, *NODES.load.shape), 0.01)))
-    smooth = cs.Roller(radius=5e-3, length=length, profile=cs.profiles.Lundberg(1e-7), material=steel)
-    crowned_case = cs.Case(body=body, roller=smooth, max_pressure=1.5e9)
+    smooth_result = cs.Roller(radius=5e-3, length=length, profile=cs.profiles.Lundberg(1e-7), material=steel)
+    crowned_case = cs.Case(body=body, roller=smooth_result, max_pressure=1.5e9)
     oiled_case = replace(
         crowned_case,
         motion=cs.Sliding(body_speed=2.0, roller_speed=2.0),
@@ -155,7 +155,9 @@ def returned_datasets(strip_result: Callable[..., xr.Dataset], study_dataset: xr
     )
     values: dict[str, xr.Dataset | xr.DataArray] = {
         "solve": case_result,
-        "solve on refined columns": cs.solve(sharp, x=[2e-4, 4e-4], y=[-1e-5, 0.0, 1e-5], z=depths, accuracy=0.1),
+        "solve on refined columns": cs.solve(
+            sharp_result, x=[2e-4, 4e-4], y=[-1e-5, 0.0, 1e-5], z=depths, accuracy=0.1
+        ),
         "solve, chamfered": cs.solve(chamfered_case, stresses=False, accuracy=0.1),
         "solve_contact": contact,
         "solve_contact, rolling": _contact_with_motion(case, contact, cs.Rolling(longitudinal_creepage=1e-3)),
@@ -185,8 +187,8 @@ def returned_datasets(strip_result: Callable[..., xr.Dataset], study_dataset: xr
         "flash_temperature": heat.flash_temperature(
             replace(case, motion=cs.Sliding(body_speed=-1.0, roller_speed=1.0)),
             case_result,
-            body=metal,
-            roller=metal,
+            body=elastic_plastic,
+            roller=elastic_plastic,
             z=depths,
         ),
         "case_numbers": xr.Dataset(
@@ -195,7 +197,7 @@ def returned_datasets(strip_result: Callable[..., xr.Dataset], study_dataset: xr
                 for name, entry_number in case_numbers(case_result).items()
             }
         ),
-        "self_affine": rough,
+        "self_affine": rough_result,
         "read_height_map": cs.roughness.read_height_map(file, grid),
         "slice_model": bearing.slice_model(case),
         "atlas": cs.atlas(100.0, 1.0, 0.2),
@@ -241,45 +243,45 @@ def test_every_public_function_is_looked_at(returned_datasets: Returned) -> None
     assert FUNCTIONS.keys() <= returned_datasets.keys()
 
 
-OF_THE_MOTION = ("slip_x", "slip_y", "friction_work")
+MOTION_VARIABLES = ("slip_x", "slip_y", "friction_work")
 """Slip per rolled distance or of a shift, by the unit."""
 
 
 def test_table_contains_all_variables(returned_datasets: Returned) -> None:
-    strangers, unlike = [], []
+    unknown_names, differing_names = [], []
     for function, dataset in returned_datasets.items():
         for name, array in dataset.data_vars.items():
             entry_of_table = specification(str(name)) or specification(str(name), coordinate=True)
             if entry_of_table is None:
-                strangers.append((function, name))
+                unknown_names.append((function, name))
             elif (
-                name not in OF_THE_MOTION
+                name not in MOTION_VARIABLES
                 and not str(name).startswith(("risk", "end_intensity"))  # units depend on an exponent
-                and function not in KEEPS_WHAT_IT_GETS
+                and function not in UNCHANGED_NAME_FUNCTIONS
             ):
                 expected = {"units": entry_of_table.units} if entry_of_table.units else {}
                 if {key: array.attrs[key] for key in ("units",) if key in array.attrs} != expected:
-                    unlike.append((function, name, array.attrs))
+                    differing_names.append((function, name, array.attrs))
                 if not array.attrs.get("long_name"):
-                    unlike.append((function, name, array.attrs))
-    assert strangers == []
-    assert unlike == []
+                    differing_names.append((function, name, array.attrs))
+    assert unknown_names == []
+    assert differing_names == []
 
 
 def test_tables_contain_all_coordinates(returned_datasets: Returned) -> None:
     known_names = {*PARAMETERS}
-    strangers = [
+    unknown_names = [
         (function, name)
         for function, dataset in returned_datasets.items()
         for name in dataset.coords
         if name not in known_names and specification(str(name), coordinate=True) is None
     ]
-    assert strangers == []
+    assert unknown_names == []
 
 
 def test_dimensions_match_table(returned_datasets: Returned) -> None:
     """Except variables of a study, of slices and of a contact law; a cut field has fewer."""
-    unlike = []
+    differing_names = []
     for function, dataset in returned_datasets.items():
         for name, array in dataset.data_vars.items():
             if name not in VARIABLES:
@@ -287,10 +289,10 @@ def test_dimensions_match_table(returned_datasets: Returned) -> None:
             dims = {re.sub(r"^([xyz])(_field)?(_index|_over_a)?$", r"\1", str(dim)) for dim in array.dims}
             own_dims = {"distance"} if function in ("along_line", "wear_in") else set()
             of_a_law = {"approach", "normal_load", "moment"}
-            further = {*PARAMETERS, "case", "slice", "pass_number", *of_a_law, *own_dims}
-            if not dims - further <= {*VARIABLES[str(name)].dims}:
-                unlike.append((function, name, array.dims))
-    assert unlike == []
+            further_dims = {*PARAMETERS, "case", "slice", "pass_number", *of_a_law, *own_dims}
+            if not dims - further_dims <= {*VARIABLES[str(name)].dims}:
+                differing_names.append((function, name, array.dims))
+    assert differing_names == []
 
 
 def test_results_cover_variable_table(returned_datasets: Returned) -> None:
@@ -339,9 +341,9 @@ def test_derived_quantity_labels() -> None:
     entry = specification("utilisation", criterion)
     assert entry is not None
     assert entry.long_name == "Dang Van's equivalent shear stress, over its limit"
-    left_open = specification("peak_utilisation")
-    assert left_open is not None
-    assert left_open.long_name == "largest value, over its limit"
+    template_entry = specification("peak_utilisation")
+    assert template_entry is not None
+    assert template_entry.long_name == "largest value, over its limit"
     over_a = specification("x_field_over_a", coordinate=True)
     assert over_a is not None
     assert (over_a.dims, over_a.symbol) == (("x_field",), "x/a")

@@ -40,8 +40,8 @@ def test_pages_show_pictures_with_links_to_their_scripts() -> None:
 def test_figures_are_as_new_as_their_code() -> None:
     gallery = ROOT / "docs" / "gallery"
     digests = runpy.run_path(str(gallery / "figures.py"))["digests"]()
-    stored = json.loads((gallery / "figures.json").read_text())
-    old = sorted(name for name, value in digests.items() if stored.get(name) != value)
+    stored_digests = json.loads((gallery / "figures.json").read_text())
+    old = sorted(name for name, value in digests.items() if stored_digests.get(name) != value)
     assert not old, f"python docs/gallery/figures.py {' '.join(old)}"
     assert digests.keys() == {path.stem for path in gallery.glob("*.png")}
 
@@ -54,8 +54,8 @@ def test_every_marked_table_is_known() -> None:
 
 
 def test_equations_are_numbered_once_and_in_order() -> None:
-    found = []
+    numbers = []
     for page in ("theory", "numerics", "contact", "columns"):
         text = (ROOT / "docs" / "explanation" / f"{page}.md").read_text()
-        found += [int(number) for number in re.findall(r"\\tag\{(\d+)\}", text)]
-    assert found == list(range(1, len(found) + 1))
+        numbers += [int(number) for number in re.findall(r"\\tag\{(\d+)\}", text)]
+    assert numbers == list(range(1, len(numbers) + 1))

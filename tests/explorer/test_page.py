@@ -54,9 +54,9 @@ any_source = pytest.mark.parametrize("page", SOURCES, indirect=True)
 
 def largest_drawn(page: Page) -> tuple[float, float]:
     """Largest pressure drawn along the axis, and on the top."""
-    along = page.axial._lines[0].data["p"]
+    axial_data = page.axial._lines[0].data["p"]
     (picture,) = page.surface_figures[0]._source.data["image"]
-    return float(np.nanmax(along)), float(picture.max())
+    return float(np.nanmax(axial_data)), float(picture.max())
 
 
 def test_choices_of_swept_parameters(page: Page) -> None:
@@ -96,15 +96,15 @@ def test_common_axes_of_two_cases(page: Page) -> None:
     page.compare.value = True
     page.choices[1]["max_pressure"].value = 2
     for figures in (page.surface_figures, page.plane_figures):
-        spans = [(axes_figure.figure.y_range.start, axes_figure.figure.y_range.end) for axes_figure in figures]
+        axis_spans = [(axes_figure.figure.y_range.start, axes_figure.figure.y_range.end) for axes_figure in figures]
         image_corners = [
             (axes_figure._source.data["y"][0], axes_figure._source.data["h"][0]) for axes_figure in figures
         ]
-        assert spans[0] == spans[1]
+        assert axis_spans[0] == axis_spans[1]
         assert image_corners[0] != image_corners[1]
         for y, height in image_corners:
-            assert min(spans[0]) <= y
-            assert y + height <= max(spans[0])
+            assert min(axis_spans[0]) <= y
+            assert y + height <= max(axis_spans[0])
 
 
 def test_number_of_cases(page: Page, case_result: xr.Dataset) -> None:
@@ -112,8 +112,8 @@ def test_number_of_cases(page: Page, case_result: xr.Dataset) -> None:
     assert ">1 case<" in Page(open_cases(case_result)).view()[0].object
     status = page.cases.scalars["status"].astype(object)
     status[0, 0, 0] = "excluded"
-    less = Page(Cases(page.cases.scalars.assign(status=status.astype(str)), page.cases.load, page.cases.title))
-    assert ">11 cases<" in less.view()[0].object
+    reduced_page = Page(Cases(page.cases.scalars.assign(status=status.astype(str)), page.cases.load, page.cases.title))
+    assert ">11 cases<" in reduced_page.view()[0].object
 
 
 @any_source
@@ -145,14 +145,14 @@ def test_study_without_surfaces(tmp_path: Path) -> None:
 
 def test_case_without_stresses(page: Page) -> None:
     without_stresses = CaseFields(page.cases.load(page.index(0)).dataset.drop_vars("von_mises"))
-    less = Page(Cases(page.cases.scalars, lambda index: without_stresses, page.cases.title))
-    assert "The stresses are not stored." in less.table.object
-    assert [pane.visible for pane in less.panes] == [True, True, False, False, False, True]
-    assert not less.plane.visible
-    assert not less.plane_figures[0].figure.visible
+    reduced_page = Page(Cases(page.cases.scalars, lambda index: without_stresses, page.cases.title))
+    assert "The stresses are not stored." in reduced_page.table.object
+    assert [pane.visible for pane in reduced_page.panes] == [True, True, False, False, False, True]
+    assert not reduced_page.plane.visible
+    assert not reduced_page.plane_figures[0].figure.visible
     assert page.plane.visible
-    less.view()
-    assert [pane.visible for pane in less.panes] == [True, True, False, False, False, True]
+    reduced_page.view()
+    assert [pane.visible for pane in reduced_page.panes] == [True, True, False, False, False, True]
 
 
 def test_numbers_by_subject(page: Page) -> None:
@@ -317,11 +317,11 @@ def test_taken_port() -> None:
 def test_unbounded_values_are_triangles() -> None:
     figure = StudyFigure()
     values, x = np.array([2.0, np.inf]), np.array([0.0, 1.0])
-    marked = [(0, 2.0, "blue"), (1, np.inf, "red")]
-    figure.show(x, values, None, marked=marked, labels=("x", "v"))
+    marked_cases = [(0, 2.0, "blue"), (1, np.inf, "red")]
+    figure.show(x, values, None, marked_cases=marked_cases, labels=("x", "v"))
     assert (figure._marked.data["x"], figure._marked.data["color"]) == ([0.0], ["blue"])
     assert (figure._marked_unbounded.data["x"], figure._marked_unbounded.data["color"]) == ([1.0], ["red"])
-    figure.show(x, np.array([np.inf, np.inf]), None, marked=marked[1:], labels=("x", "v"))
+    figure.show(x, np.array([np.inf, np.inf]), None, marked_cases=marked_cases[1:], labels=("x", "v"))
     assert figure.figure.y_range.end > 1.0
 
 

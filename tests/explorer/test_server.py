@@ -21,7 +21,7 @@ from contactstudy.explorer import serve
 from contactstudy.study import StudyFileError
 from tests.explorer.conftest import free_port
 
-WITHOUT = """
+SCRIPT_WITHOUT_PANEL = """
 import sys
 import contactstudy.cli, contactstudy.explorer
 slow = {"numpy", "pandas", "xarray", "panel"} & set(sys.modules)
@@ -47,7 +47,7 @@ def test_page_without_dask(folder: Path) -> None:
 
 
 def test_light_imports() -> None:
-    subprocess.run([sys.executable, "-c", WITHOUT], check=True)
+    subprocess.run([sys.executable, "-c", SCRIPT_WITHOUT_PANEL], check=True)
 
 
 def test_folder_without_a_study(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -92,7 +92,7 @@ def request(port: int, path: str, **headers: str) -> http.client.HTTPResponse:
         return response
 
 
-SOCKET = {
+WEBSOCKET_HEADERS = {
     "Upgrade": "websocket",
     "Connection": "Upgrade",
     "Sec-WebSocket-Version": "13",
@@ -124,10 +124,10 @@ def test_origin_of_a_websocket(server_port: tuple[int, str]) -> None:
     port, token = server_port
     cookie = {"Cookie": f"contactstudy-{port}={token}"}
     for host, origin in (("localhost:9999", "http://rebound.example"), ("rebound.example", "http://rebound.example")):
-        assert request(port, "/ws", Host=host, Origin=origin, **cookie, **SOCKET).status == 403
+        assert request(port, "/ws", Host=host, Origin=origin, **cookie, **WEBSOCKET_HEADERS).status == 403
     forwarded_headers = {"Host": "localhost:9999", **cookie}
     page = request(port, "/", **forwarded_headers).body.decode()  # type: ignore[attr-defined]
     session = page.partition('"token":"')[2].partition('"')[0]
     protocol = {"Origin": "http://localhost:9999", "Sec-WebSocket-Protocol": f"bokeh, {session}"}
-    assert request(port, "/ws", **forwarded_headers, **protocol, **SOCKET).status == 101
-    assert request(port, "/ws", Host="localhost:9999", **protocol, **SOCKET).status == 403
+    assert request(port, "/ws", **forwarded_headers, **protocol, **WEBSOCKET_HEADERS).status == 101
+    assert request(port, "/ws", Host="localhost:9999", **protocol, **WEBSOCKET_HEADERS).status == 403

@@ -16,8 +16,8 @@ def test_rolling_study_has_requested_size() -> None:
 @pytest.mark.system
 def test_killed_rolling_run_equals_undisturbed_run(tmp_path: Path) -> None:
     study = rolling.rolling_study(6)
-    undisturbed = rolling.run(study, tmp_path / "undisturbed", 0)
-    assert bool(undisturbed["converged"].all())
-    assert not rolling.different(undisturbed, rolling.run(study, tmp_path / "killed", 2, 2))
-    changed = undisturbed.assign(force_y=undisturbed["force_y"] + 1e-12)
-    assert rolling.different(undisturbed, changed) == ["force_y"]
+    undisturbed_study = rolling.run(study, tmp_path / "undisturbed", 0)
+    assert bool(undisturbed_study["converged"].all())
+    assert not rolling.different(undisturbed_study, rolling.run(study, tmp_path / "killed", 2, 2))
+    changed_names = undisturbed_study.assign(force_y=undisturbed_study["force_y"] + 1e-12)
+    assert rolling.different(undisturbed_study, changed_names) == ["force_y"]

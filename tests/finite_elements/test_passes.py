@@ -48,8 +48,10 @@ def test_radial_return_tangent() -> None:
     for component in range(4):
         change = np.zeros((4, 1))
         change[component] = 1e-9
-        there, back = (strip.return_stress(total + sign * change, plastic, elastic)[0] for sign in (1, -1))
-        slope = (there - back) / 2e-9 / (2 if component == 3 else 1)
+        stress_forward, stress_backward = (
+            strip.return_stress(total + step_sign * change, plastic, elastic)[0] for step_sign in (1, -1)
+        )
+        slope = (stress_forward - stress_backward) / 2e-9 / (2 if component == 3 else 1)
         assert slope == pytest.approx(tangent[:, component], abs=1e-4 * YOUNG)
     assert np.isfinite(stress).all()
 

@@ -13,7 +13,7 @@ from contactstudy.contact.rolling import tractions
 from contactstudy.contact.solve import solve_contact
 from contactstudy.verification.problems import on_cells
 
-LENGTH, COLUMNS, STRIPS, WINDOW, POISSON, FRICTION, PART = 8.0, 8, 26, 1.3, 0.3, 0.3, 0.64
+LENGTH, COLUMNS, STRIPS, WINDOW, POISSON, FRICTION, LOAD_FRACTION = 8.0, 8, 26, 1.3, 0.3, 0.3, 0.64
 LOAD = 0.25 * np.pi * 0.5 * LENGTH  # half-width 1 of a pair with the modulus 1/2
 
 
@@ -24,13 +24,15 @@ def test_rolling_between_free_ends(monkeypatch: pytest.MonkeyPatch) -> None:
     Both codes take the slip between neighbours, with the same error of first order.
     """
     mesh = Resolution(order=4, growth=2.0, smallest=0.05, panels=(*PANELS, 200))
-    expected = roll(flexibility(LENGTH, COLUMNS, POISSON, mesh), STRIPS, WINDOW, LOAD, FRICTION, PART, 2 * STRIPS)
+    expected = roll(
+        flexibility(LENGTH, COLUMNS, POISSON, mesh), STRIPS, WINDOW, LOAD, FRICTION, LOAD_FRACTION, 2 * STRIPS
+    )
     assert expected.change < 1e-3
     monkeypatch.setattr(tractions, "_inside_length", lambda pressure: 0.5 - tractions.EDGE_OFFSET)
     monkeypatch.setattr(tractions, "SLIDING_OFFSET", 0.5)
     gap = on_cells(lambda x, y: 0.5 * y**2 + 0 * x, (0, LENGTH), (-WINDOW, WINDOW), (COLUMNS, STRIPS))
     body = FiniteLengthSpace(length=LENGTH, material=Material(1 - POISSON**2, POISSON))
-    motion = Rolling(force_y=PART * FRICTION * LOAD)
+    motion = Rolling(force_y=LOAD_FRACTION * FRICTION * LOAD)
     result = solve_contact(body, gap, load=LOAD, friction=FRICTION, counterbody=Counterbody(body), motion=motion)
     # At this creepage a change of 1 % changes the force by 0.75 %.
     assert float(result["longitudinal_creepage"]) == pytest.approx(expected.creepage, rel=1e-3)

@@ -15,11 +15,11 @@ def test_file_with_two_cases(tmp_path: Path) -> None:
         create_file(path, "film", title="films")
         append_case(path, "thin", solution)
     append_case(path, "thick", 2 * solution)
-    attributes, thin = xr.load_dataset(path).attrs, xr.load_dataset(path, group="thin")
+    attributes, thin_case = xr.load_dataset(path).attrs, xr.load_dataset(path, group="thin")
     assert attributes["title"] == "films"
     assert attributes["regenerate"].endswith("generate film")
-    assert thin["film"].dtype == np.float32
-    assert thin.attrs == {"length": 8.0}
-    assert thin["film"].attrs == {"units": "a"}
-    np.testing.assert_array_equal(thin["x"], solution["x"])
+    assert thin_case["film"].dtype == np.float32
+    assert thin_case.attrs == {"length": 8.0}
+    assert thin_case["film"].attrs == {"units": "a"}
+    np.testing.assert_array_equal(thin_case["x"], solution["x"])
     np.testing.assert_allclose(xr.load_dataset(path, group="thick")["film"], [0.2, 0.4])

@@ -20,7 +20,7 @@ LENGTH, POISSON, FINEST = 4.0, 0.3, 0.02
 P, X, Y = Load.NORMAL, Load.ALONG_X, Load.ALONG_Y
 AXIAL = np.pi / LENGTH * np.arange(400.0)
 NAMES = {P: "z", X: "x", Y: "y"}
-AT = np.array([0.02, 0.05, 0.4, 1.3, 2.0, 3.1, 3.9])
+X_POSITIONS = np.array([0.02, 0.05, 0.4, 1.3, 2.0, 3.1, 3.9])
 
 
 def wave(direction: Load, x: FloatArray) -> FloatArray:
@@ -55,9 +55,9 @@ def own_displacement(bump: Bump, lateral: float, response: Response) -> FloatArr
     forces = weights * bump(nodes)
     weight = np.where(AXIAL == 0, 1.0, 2.0) / LENGTH
     spectrum = weight * (wave(response.load, nodes) @ forces)
-    total = wave(response.displacement, AT).T @ (mirrored_half_space(lateral, response) * spectrum)
+    total = wave(response.displacement, X_POSITIONS).T @ (mirrored_half_space(lateral, response) * spectrum)
     for modes in axial_modes(LENGTH, lateral, FINEST, resolution):
-        waves = PositionWaves.of(modes, np.concatenate([nodes, AT]), (response,))
+        waves = PositionWaves.of(modes, np.concatenate([nodes, X_POSITIONS]), (response,))
         kernel = sampled_kernel(waves, lateral, request, 0.5 * FINEST)[0]
         total += 2 * kernel[nodes.size :, : nodes.size] @ forces
     return np.asarray(total)
@@ -77,7 +77,7 @@ def test_displacements_of_the_top(bump: Bump, lateral: float) -> None:
     amplitudes = body.solve(lateral, [(bump, NAMES[load]) for load in NAMES])
     for index, load in enumerate(NAMES):
         result = {
-            component: body.surface(amplitudes, AT.tolist(), "xyz".index(NAMES[component]))[index]
+            component: body.surface(amplitudes, X_POSITIONS.tolist(), "xyz".index(NAMES[component]))[index]
             for component in NAMES
         }
         maximum = max(float(np.abs(component).max()) for component in result.values())

@@ -64,5 +64,5 @@ def test_foreign_errors_are_violations(monkeypatch) -> None:
     monkeypatch.undo()
     # The package's own error for a variant of a case that it has solved is one as well.
     for error in (ZeroDivisionError(), InvalidInputError("a", 1, "b"), ViolationError()):
-        monkeypatch.setattr(properties, "ALWAYS", (fails(error),))
+        monkeypatch.setattr(properties, "CONSTANT_CHECKS", (fails(error),))
         assert outcome_of(Random(3)).kind == "violation"

@@ -35,7 +35,11 @@ def test_cases_on_refined_cells(rng: Random) -> None:
 
 
 def test_seed_determines_case() -> None:
-    first, second = (outcome_of(Random(3)) for _ in range(2))
-    assert (first.kind, first.message, first.checked) == (second.kind, second.message, second.checked)
-    assert first.kind == "converged"
-    assert len(first.checked) >= 5
+    first_case, second_case = (outcome_of(Random(3)) for _ in range(2))
+    assert (first_case.kind, first_case.message, first_case.checked) == (
+        second_case.kind,
+        second_case.message,
+        second_case.checked,
+    )
+    assert first_case.kind == "converged"
+    assert len(first_case.checked) >= 5

@@ -43,13 +43,13 @@ def test_map_colours_exclude_singular_end(sharp):
     assert mesh.get_clim()[1] < 0.5 * float(sharp["pressure"].max() / sharp["hertz_max_pressure"])
 
 
-def study(values):
+def create_study(values):
     peaks = xr.DataArray(values, dims=("e_over_a", "friction"), coords={"e_over_a": [0.0, 1.0], "friction": [0.0, 0.1]})
     return xr.Dataset({"peak_pressure": peaks.assign_attrs(units="Pa")})
 
 
 def test_study_line_marks_singular_cases(assert_nothing_clipped):
-    figure = plots.plot_study_lines(study([[1e9, 1.1e9], [np.inf, 1.2e9]]), x="e_over_a", hue="friction")
+    figure = plots.plot_study_lines(create_study([[1e9, 1.1e9], [np.inf, 1.2e9]]), x="e_over_a", hue="friction")
     first, marks, _ = figure.axes[0].lines
     assert np.isnan(first.get_ydata()[1])
     assert list(marks.get_xdata()) == [1.0]
@@ -59,18 +59,18 @@ def test_study_line_marks_singular_cases(assert_nothing_clipped):
 
 
 def test_regular_cases_have_no_mark():
-    figure = plots.plot_study_lines(study([[1e9, 1.1e9], [1.3e9, 1.2e9]]), x="e_over_a", hue="friction")
+    figure = plots.plot_study_lines(create_study([[1e9, 1.1e9], [1.3e9, 1.2e9]]), x="e_over_a", hue="friction")
     assert len(figure.axes[0].lines) == 2
     assert not any("singular" in text.get_text() for legend in figure.legends for text in legend.get_texts())
 
 
 def test_study_map_labels_unbounded_values():
-    ax = plots.plot_study_map(study([[1e9, 1.1e9], [np.inf, 1.2e9]]), "peak_pressure")
+    ax = plots.plot_study_map(create_study([[1e9, 1.1e9], [np.inf, 1.2e9]]), "peak_pressure")
     assert [text.get_text() for text in ax.texts].count("\N{INFINITY}") == 1
 
 
 def test_maximum_at_border_has_open_marker(lines_of):
-    dataset = study([[1e9, 1.1e9], [1.3e9, 1.2e9]]).rename(peak_pressure="peak_von_mises")
+    dataset = create_study([[1e9, 1.1e9], [1.3e9, 1.2e9]]).rename(peak_pressure="peak_von_mises")
     dataset["peak_von_mises_error"] = dataset["peak_von_mises"] * [[0.01, np.inf], [0.01, 0.01]]
     figure = plots.plot_study_lines(dataset, ["peak_von_mises"], x="e_over_a", hue="friction")
     _, line, marks = lines_of(figure.axes[0])

@@ -65,11 +65,11 @@ def test_legend_contains_unit(study_dataset):
 
 def test_zipped_parameters_share_label(study_dataset):
     selection = study_dataset.sel(friction=0.1).isel(e_over_a=[0])
-    together = selection.rename(body="body_and_model").assign_coords(
+    zipped_study = selection.rename(body="body_and_model").assign_coords(
         body=("body_and_model", ["finite-length", "half-space"]), model=("body_and_model", ["mirror", "exact"])
     )
-    together["body_and_model"] = [0, 1]
-    legend, *_ = plots.plot_study_lines(together, x="e_over_a", hue="body_and_model").legends
+    zipped_study["body_and_model"] = [0, 1]
+    legend, *_ = plots.plot_study_lines(zipped_study, x="e_over_a", hue="body_and_model").legends
     assert legend.get_title().get_text() == "body and model"
     assert [text.get_text() for text in legend.get_texts()] == ["finite-length, mirror", "half-space, exact"]
 
@@ -82,8 +82,8 @@ def test_finite_errors_are_drawn_as_bars() -> None:
     (bars,) = figure.axes[0].collections
     ends = [segment[:, 1].tolist() for segment in bars.get_segments() if len(segment) and np.isfinite(segment).all()]
     assert ends == [pytest.approx([0.9, 1.1]), pytest.approx([2.8, 3.2])]
-    without = plots.plot_study_lines(xr.Dataset({"peak_pressure": peaks}), x="e_over_a")
-    assert not without.axes[0].collections
+    study_without_errors = plots.plot_study_lines(xr.Dataset({"peak_pressure": peaks}), x="e_over_a")
+    assert not study_without_errors.axes[0].collections
 
 
 def test_values_without_errors_have_open_markers(lines_of) -> None:
@@ -125,9 +125,9 @@ def creepage_study() -> xr.Dataset:
 
 def test_curve_is_over_full_sliding(assert_nothing_clipped) -> None:
     ax = plots.plot_traction_curve(creepage_study(), "e_over_a")
-    first, second, full_sliding = ax.lines
-    assert first.get_ydata() == pytest.approx([0.0, 0.5, 0.9])
-    assert second.get_ydata() == pytest.approx([0.0, 0.6])
+    first_line, second_line, full_sliding = ax.lines
+    assert first_line.get_ydata() == pytest.approx([0.0, 0.5, 0.9])
+    assert second_line.get_ydata() == pytest.approx([0.0, 0.6])
     assert list(full_sliding.get_ydata()) == [1.0, 1.0]
     assert [text.get_text() for text in ax.get_legend().get_texts()] == ["0", "2"]
     assert_nothing_clipped(ax.figure)

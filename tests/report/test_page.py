@@ -281,8 +281,8 @@ def test_page_suffix_is_checked(tmp_path: Path) -> None:
 def test_selection_of_figures(page: Page, folder: Path, tmp_path: Path, capsys) -> None:
     assert "Of coefficient of friction and roller profile the figure has the value in its title" in page.text
     assert "contactstudy report FOLDER --select friction=0.66" in page.text
-    chosen = ["--select", "profile=<b>rounded</b>", "--select", "friction=0"]
-    assert main(["report", str(folder), "--out", str(tmp_path / "one.html"), *chosen]) == 0
+    selected_titles = ["--select", "profile=<b>rounded</b>", "--select", "friction=0"]
+    assert main(["report", str(folder), "--out", str(tmp_path / "one.html"), *selected_titles]) == 0
     selected_page = read_page(tmp_path / "one.html")
     assert "the figure has the value" not in selected_page.text
     assert {f"case-{index}" for index in range(1, 13)} <= selected_page.anchors
@@ -300,11 +300,13 @@ def test_selection_of_a_case(case_result: xr.Dataset) -> None:
 def test_only_drawn_cases_are_loaded(folder: Path, monkeypatch) -> None:
     from contactstudy.study import folder as module
 
-    loaded, load = [], module.read_case
-    monkeypatch.setattr(module, "read_case", lambda path, row, names: loaded.append(row) or load(path, row, names))
+    loaded_cases, load = [], module.read_case
+    monkeypatch.setattr(
+        module, "read_case", lambda path, row, names: loaded_cases.append(row) or load(path, row, names)
+    )
     figures_of_folder(folder)
     pyplot.close("all")
-    assert len(set(loaded)) == 2  # of four that are solved: two over e/a
+    assert len(set(loaded_cases)) == 2  # of four that are solved: two over e/a
 
 
 @pytest.mark.usefixtures("without_encoding")
@@ -312,9 +314,11 @@ def test_rolling_case(case_result: xr.Dataset) -> None:
     in_contact = (case_result["pressure"] > 0).drop_attrs()
     sticking = in_contact & (in_contact["y"] > 0)
     tractions = {"traction_x": 0.0, "traction_y": 4e7, "slip_x": 0.0, "slip_y": 2e-3}
-    still = case_result[["pressure"]]
-    rolling_result = still.assign({name: value * in_contact for name, value in tractions.items()} | {"stick": sticking})
-    still_page, page = Page(report.html(still)), Page(report.html(rolling_result.assign(sticking_part=0.5)))
+    standing_result = case_result[["pressure"]]
+    rolling_result = standing_result.assign(
+        {name: value * in_contact for name, value in tractions.items()} | {"stick": sticking}
+    )
+    still_page, page = Page(report.html(standing_result)), Page(report.html(rolling_result.assign(sticking_part=0.5)))
     assert len(page.fetched) == len(still_page.fetched) + 2
     for text in ("part of the contact that sticks", "stick within the red line", "leading edge is at the top"):
         assert text in page.text

@@ -110,18 +110,18 @@ def test_answers(case_result: xr.Dataset) -> None:
         answers = assess(case_result.assign(changes)).criteria
         return next(entry.answer for entry in answers if entry.question.startswith(criterion))
 
-    sound = {"peak_pressure": 1e9, "peak_pressure_error": 1e6}
+    sound_case = {"peak_pressure": 1e9, "peak_pressure_error": 1e6}
     cases: dict[str, tuple[dict[str, object], dict[str, object]]] = {
         "Did the iteration": ({}, {"converged": False}),
         "Does the pressure": ({}, {"load_error": 1e-2}),
         "Do gap": ({}, {"penetration_error": 0.1}),
         "Are the free ends": ({}, {"end_traction_residual": 0.1}),
-        "Are the cells": (sound, sound | {"peak_pressure_error": 1e9}),
+        "Are the cells": (sound_case, sound_case | {"peak_pressure_error": 1e9}),
         "Is the largest stress": ({"peak_von_mises_error": 1e7}, {"peak_von_mises_error": np.inf}),
     }
-    for criterion, (good, bad) in cases.items():
-        assert rate(criterion, **good) == "yes", criterion
-        assert rate(criterion, **bad) in ("with care", "no"), criterion
+    for criterion, (good_case, bad_case) in cases.items():
+        assert rate(criterion, **good_case) == "yes", criterion
+        assert rate(criterion, **bad_case) in ("with care", "no"), criterion
     assert assess(case_result.assign(converged=False)).overall == "no"
     without_peak = case_result.drop_vars(
         [name for name in case_result.data_vars if str(name).startswith("peak_von_mises")]
@@ -135,12 +135,12 @@ def test_unfiltered_profile() -> None:
     """The pressure converges on noise as on a crown."""
     x = np.linspace(-0.5e-3, 0.5e-3, 201)
     points = x.tolist(), (0.5 * x**2).tolist()
-    for cutoff, overall in ((None, "with care"), (5e-5, "yes")):
+    for cutoff, overall_assessment in ((None, "with care"), (5e-5, "yes")):
         profile = profiles.Cylinder(fillet_radius=1e-4) + profiles.Measured(*points, cutoff=cutoff)
         roller = Roller(radius=5e-3, length=1e-3, profile=profile)
         result = solve(Case(body=HalfSpace(material=STEEL), roller=roller, load=50.0), stresses=False)
         assessment = assess(result)
-        assert assessment.overall == overall, assessment
+        assert assessment.overall == overall_assessment, assessment
         assert any("cut" in entry.reason for entry in assessment.criteria)
 
 

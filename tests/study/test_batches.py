@@ -11,6 +11,6 @@ def test_offsets_of_arrays_of_different_shapes():
 
 
 def test_attributes_of_intensities_with_different_exponents():
-    first, second = {"units": "Pa m0.5", "long_name": "K"}, {"units": "Pa m0.226"}
-    assert "end_exponent" in common_attributes("end_intensity", first, second)["comment"]
-    assert common_attributes("end_intensity", first, first) == first
+    attributes, other_attributes = {"units": "Pa m0.5", "long_name": "K"}, {"units": "Pa m0.226"}
+    assert "end_exponent" in common_attributes("end_intensity", attributes, other_attributes)["comment"]
+    assert common_attributes("end_intensity", attributes, attributes) == attributes

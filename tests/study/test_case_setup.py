@@ -25,11 +25,11 @@ def test_gamma_fixes_the_body():
 
 
 def test_half_space_keeps_roller_and_coordinates():
-    finite = build_setup(BASE | {"e_over_a": 2})
-    half_space = build_setup(BASE | {"e_over_a": 2, "body": "half-space"})
-    assert isinstance(half_space.case.body, HalfSpace)
-    assert half_space.case.contact_range == finite.case.contact_range
-    assert half_space.case.roller == finite.case.roller
+    finite_case = build_setup(BASE | {"e_over_a": 2})
+    half_space_case = build_setup(BASE | {"e_over_a": 2, "body": "half-space"})
+    assert isinstance(half_space_case.case.body, HalfSpace)
+    assert half_space_case.case.contact_range == finite_case.case.contact_range
+    assert half_space_case.case.roller == finite_case.case.roller
 
 
 @pytest.mark.parametrize("e_over_a", [-1.0, 0.0, 3.0])

@@ -133,10 +133,10 @@ def test_results_do_not_depend_on_workers(tmp_path):
         assert run_study(study, tmp_path / str(workers), workers=workers).counts == {"ok": 4}
     with cluster(tmp_path) as address:
         run_study(study, tmp_path / "cluster", scheduler=address)
-    first = load_dataset(tmp_path / "0")
-    assert float(first["von_mises"].max()) > 1e8
+    first_dataset = load_dataset(tmp_path / "0")
+    assert float(first_dataset["von_mises"].max()) > 1e8
     for name in ("2", "cluster"):
-        assert load_dataset(tmp_path / name).identical(first), name
+        assert load_dataset(tmp_path / name).identical(first_dataset), name
 
 
 @pytest.mark.system

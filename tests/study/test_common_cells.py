@@ -34,28 +34,28 @@ def edges(draw):
 
 @given(st.lists(edges(), min_size=1, max_size=5))
 def test_common_columns_resolve_all_cases(cases):
-    common = common_columns(cases)
-    assert common[0] == 0.0
-    assert common[-1] == max(case_edges[-1] for case_edges in cases)
+    common_edges = common_columns(cases)
+    assert common_edges[0] == 0.0
+    assert common_edges[-1] == max(case_edges[-1] for case_edges in cases)
     min_width = min(float(np.diff(case_edges).min()) for case_edges in cases)
-    assert np.diff(common).min() >= MIN_WIDTH * min_width * (1 - 1e-12)
+    assert np.diff(common_edges).min() >= MIN_WIDTH * min_width * (1 - 1e-12)
 
 
 @given(st.lists(edges(), min_size=1, max_size=4), st.integers(0, 2**32 - 1))
 def test_averaging_keeps_load(cases, seed):
-    common = common_columns(cases)
+    common_edges = common_columns(cases)
     for case_edges in cases:
         values = np.random.default_rng(seed).uniform(0.0, 1.0, case_edges.size - 1)
-        averages = resample("pressure", values, [cells_map(case_edges, common, 0.0)])
-        assert averages @ np.diff(common) == pytest.approx(values @ np.diff(case_edges), rel=1e-9)
+        averages = resample("pressure", values, [cells_map(case_edges, common_edges, 0.0)])
+        assert averages @ np.diff(common_edges) == pytest.approx(values @ np.diff(case_edges), rel=1e-9)
 
 
 @given(edges(), st.floats(-3.0, 3.0), st.floats(-3.0, 3.0))
 def test_interpolation_keeps_straight_lines(case_edges, slope, offset):
     centres = 0.5 * (case_edges[1:] + case_edges[:-1])
-    common = np.linspace(case_edges[0], case_edges[-1], 30)
-    interpolated = resample("gap", offset + slope * centres, [cells_map(case_edges, common, np.nan)])
-    positions = 0.5 * (common[1:] + common[:-1])
+    common_points = np.linspace(case_edges[0], case_edges[-1], 30)
+    interpolated = resample("gap", offset + slope * centres, [cells_map(case_edges, common_points, np.nan)])
+    positions = 0.5 * (common_points[1:] + common_points[:-1])
     np.testing.assert_allclose(interpolated, offset + slope * np.clip(positions, centres[0], centres[-1]), atol=1e-12)
 
 
@@ -138,5 +138,5 @@ def test_cells_between_stress_points():
 
 
 def test_common_edges_of_two_cases():
-    first, second = np.array([0.0, 1.0, 2.0, 4.0]), np.array([0.0, 0.9, 4.0, 5.0])
-    assert common_columns([first, second]).tolist() == [0.0, 0.9, 2.0, 4.0, 5.0]
+    first_edges, second_edges = np.array([0.0, 1.0, 2.0, 4.0]), np.array([0.0, 0.9, 4.0, 5.0])
+    assert common_columns([first_edges, second_edges]).tolist() == [0.0, 0.9, 2.0, 4.0, 5.0]

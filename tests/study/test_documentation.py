@@ -17,11 +17,11 @@ def blocks(text, language):
 
 
 def test_documented_example_is_study():
-    first, single, _ = (tomllib.loads(block) for block in blocks(TEXT, "toml"))
-    assert {*first, *single} == set(KEYS)
-    plan = Study.from_mapping(first).plan()
+    first_block, single_block, _ = (tomllib.loads(block) for block in blocks(TEXT, "toml"))
+    assert {*first_block, *single_block} == set(KEYS)
+    plan = Study.from_mapping(first_block).plan()
     assert (plan.cube.dims, len(plan), plan.skipped) == (("friction", "profile", "max_pressure"), 6, [])
-    assert len(Study.from_mapping(first | single).plan().unique) == 7
+    assert len(Study.from_mapping(first_block | single_block).plan().unique) == 7
 
 
 def test_every_level_is_explained():

@@ -18,27 +18,27 @@ def ids(task):
 
 
 @pytest.fixture
-def many():
+def many_cases():
     return small_study(sweep={"e_over_a": [0.0, 1.0, 2.0, 3.0], "friction": [0.0, 0.1]})
 
 
-def test_groups_contain_the_frictions_of_a_contact(many):
-    assert many.plan().groups.tolist() == [0, 0, 1, 1, 2, 2, 3, 3]
-    coupled_study = small_study(base=dict(many.base) | {"coupled": True}, sweep=dict(many.sweep))
+def test_groups_contain_the_frictions_of_a_contact(many_cases):
+    assert many_cases.plan().groups.tolist() == [0, 0, 1, 1, 2, 2, 3, 3]
+    coupled_study = small_study(base=dict(many_cases.base) | {"coupled": True}, sweep=dict(many_cases.sweep))
     assert coupled_study.plan().groups.tolist() == list(range(8))
 
 
-def test_task_size_follows_measured_time(many):
-    tasks = tasks_of(many, [[0, 1], [2, 3], [4, 5], [6, 7]])
-    first = tasks.next_task(1)
-    assert len(first.jobs) == 2
+def test_task_size_follows_measured_time(many_cases):
+    tasks = tasks_of(many_cases, [[0, 1], [2, 3], [4, 5], [6, 7]])
+    first_task = tasks.next_task(1)
+    assert len(first_task.jobs) == 2
     tasks.record(2, 0.1)
     assert len(tasks.next_task(1).jobs) == 2  # of six cases: half, and groups are whole
     assert tasks.remaining == 4
 
 
-def test_case_fails_at_second_worker_death(many):
-    tasks = tasks_of(many, [[0, 1]])
+def test_case_fails_at_second_worker_death(many_cases):
+    tasks = tasks_of(many_cases, [[0, 1]])
     task = tasks.next_task(1)
     assert tasks.return_task(task, died=True) == []
     single_tasks = [tasks.next_task(1) for _ in range(2)]
@@ -47,8 +47,8 @@ def test_case_fails_at_second_worker_death(many):
     assert not tasks
 
 
-def test_execution_in_process_yields_outcomes(many, tmp_path):
-    tasks = tasks_of(many, [[0, 1], [2, 3]], tmp_path)
+def test_execution_in_process_yields_outcomes(many_cases, tmp_path):
+    tasks = tasks_of(many_cases, [[0, 1], [2, 3]], tmp_path)
     outcomes = [
         outcome
         for _, task_outcomes in execute(tasks, Engine(workers=0, solver=solve_fake))

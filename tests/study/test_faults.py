@@ -34,9 +34,9 @@ def test_numbers_beyond_arithmetic(tmp_path, content, number):
 
 
 def test_nesting_beyond_sense(tmp_path):
-    deep = "{kind='sum',terms=[" * 400 + "'cylinder'" + "]}" * 400
+    nested_table = "{kind='sum',terms=[" * 400 + "'cylinder'" + "]}" * 400
     path = tmp_path / "s.toml"
-    path.write_text(f"[base]\nprofile = {deep}")
+    path.write_text(f"[base]\nprofile = {nested_table}")
     with pytest.raises(ContactStudyError, match="nested"):
         Study.from_toml(path)
     profile = "cylinder"

@@ -66,23 +66,23 @@ def test_bad_values(changes: dict[str, Any], named: str) -> None:
 
 
 def test_dry_case_refuses_film_parameters() -> None:
-    dry = {name: value for name, value in BASE.items() if "viscosity" not in name}
-    assert build_setup(dry).case.motion == Sliding()
-    assert build_setup(dry).case.lubricant is None
-    assert "stresses" in build_setup(dry).options
-    assert case_id(dry) != case_id(BASE)
+    dry_parameters = {name: value for name, value in BASE.items() if "viscosity" not in name}
+    assert build_setup(dry_parameters).case.motion == Sliding()
+    assert build_setup(dry_parameters).case.lubricant is None
+    assert "stresses" in build_setup(dry_parameters).options
+    assert case_id(dry_parameters) != case_id(BASE)
     with pytest.raises(InvalidInputError, match="entrainment_speed"):
-        build_setup(dry | {"entrainment_speed": 1.0})
+        build_setup(dry_parameters | {"entrainment_speed": 1.0})
 
 
 def test_films_of_a_study(films: xr.Dataset) -> None:
-    slow = build_setup(BASE | {"entrainment_speed": 1.0})
-    cold = solve_film(slow.case, **slow.options)
-    warm = films.sel(body="finite-length", entrainment_speed=1.0)
-    assert float(warm.least_film) == pytest.approx(float(cold.least_film), rel=1e-6)
-    assert float(warm.newton_steps) < float(cold.newton_steps)
-    fast = films.end_film_ratio.sel(entrainment_speed=2.0)
-    assert fast.sel(body="half-space") < fast.sel(body="finite-length")
+    slow_film = build_setup(BASE | {"entrainment_speed": 1.0})
+    cold_film = solve_film(slow_film.case, **slow_film.options)
+    warm_film = films.sel(body="finite-length", entrainment_speed=1.0)
+    assert float(warm_film.least_film) == pytest.approx(float(cold_film.least_film), rel=1e-6)
+    assert float(warm_film.newton_steps) < float(cold_film.newton_steps)
+    fast_film = films.end_film_ratio.sel(entrainment_speed=2.0)
+    assert fast_film.sel(body="half-space") < fast_film.sel(body="finite-length")
     assert {"central_film_error", "least_film_error", "end_film_ratio_error"} <= set(films)
 
 

@@ -164,11 +164,11 @@ def test_cleaning_removes_only_unfinished_files(study, tmp_path):
     run(study, tmp_path)
     unfinished_path = tmp_path / "batches" / f"ab.0123456789ab{TEMPORARY_SUFFIX}"
     unfinished_path.write_text("half")
-    foreign = tmp_path / f"download{TEMPORARY_SUFFIX}"
-    foreign.write_text("mine")
+    foreign_path = tmp_path / f"download{TEMPORARY_SUFFIX}"
+    foreign_path.write_text("mine")
     run(study, tmp_path)
     assert not unfinished_path.exists()
-    assert foreign.exists()
+    assert foreign_path.exists()
 
 
 def test_loaded_case_equals_solver_result(study, tmp_path):

@@ -21,10 +21,10 @@ LARGE = {"e_over_a": [0.0, 0.5, 1.0, 1.5, 2.0], "friction": [0.0, 0.05, 0.1, 0.2
 
 
 def wait_for(process, condition):
-    end = time.monotonic() + SECONDS
+    deadline = time.monotonic() + SECONDS
     while not condition():
         assert process.poll() is None, process.communicate()
-        assert time.monotonic() < end, "waited too long"
+        assert time.monotonic() < deadline, "waited too long"
         time.sleep(0.02)
 
 
@@ -82,15 +82,15 @@ def test_repeated_interrupts_end_run_quietly(large, tmp_path, begun):
 @pytest.mark.system
 def test_concurrent_run_is_refused(large, tmp_path):
     folder = tmp_path / "out"
-    first = start_run(large, folder, "--workers", "1", tickets=1)
-    wait_for(first, lambda: count_finished(folder) == 1)
-    second = start_run(large, folder, "--workers", "0", tickets=0)
-    _, errors = second.communicate(timeout=SECONDS)
-    assert second.returncode == 2
-    assert f"process {first.pid} on " in errors
+    first_process = start_run(large, folder, "--workers", "1", tickets=1)
+    wait_for(first_process, lambda: count_finished(folder) == 1)
+    second_process = start_run(large, folder, "--workers", "0", tickets=0)
+    _, errors = second_process.communicate(timeout=SECONDS)
+    assert second_process.returncode == 2
+    assert f"process {first_process.pid} on " in errors
     give_tickets(tickets_of(folder), 19)
-    output, errors = first.communicate(timeout=SECONDS)
-    assert first.returncode == 0, errors
+    output, errors = first_process.communicate(timeout=SECONDS)
+    assert first_process.returncode == 0, errors
     assert "20 ok" in output
 
 
@@ -110,20 +110,22 @@ def test_killed_run_is_taken_over(large, tmp_path):
 
 @pytest.mark.slow
 def test_run_killed_at_random_moments_loses_nothing(large, tmp_path):
-    folder, chance = tmp_path / "out", random.Random(1)
+    folder, rng = tmp_path / "out", random.Random(1)
     for _ in range(3):
         if count_finished(folder) > 16:  # results to lose are needed until the last kill
             shutil.rmtree(folder / "batches")
-        process = start_run(large, folder, "--workers", "2", tickets=chance.randint(1, 4))
+        process = start_run(large, folder, "--workers", "2", tickets=rng.randint(1, 4))
         wait_for(process, lambda: not list(tickets_of(folder).iterdir()))
-        time.sleep(0.1 * chance.random())  # the last cases are being solved, written or taken in
+        time.sleep(0.1 * rng.random())  # the last cases are being solved, written or taken in
         kill_group(process)
         assert intact(folder)
     process = start_run(large, folder, "--workers", "2", tickets=20)
     output, errors = process.communicate(timeout=SECONDS)
     assert process.returncode == 0, output + errors
     run_study(small_study("large", sweep=LARGE), tmp_path / "calm", workers=0, solver=solve_fake)
-    killed_study, undisturbed = (open_study(path).drop_vars("seconds").load() for path in (folder, tmp_path / "calm"))
-    assert killed_study.identical(undisturbed)
+    killed_study, undisturbed_study = (
+        open_study(path).drop_vars("seconds").load() for path in (folder, tmp_path / "calm")
+    )
+    assert killed_study.identical(undisturbed_study)
     assert not list(folder.glob("**/*.part-*"))
     assert not (folder / "set-aside").exists()

@@ -92,10 +92,10 @@ def test_identity_of_profiles_never_changes() -> None:
 
 @pytest.mark.parametrize("kind", ["lundberg", "johns-gohar", "fujiwara-kawase"])
 def test_design_pressure(kind: str) -> None:
-    more = {"edge_drop": 1e-6} if kind == "fujiwara-kawase" else {}
+    higher_pressure = {"edge_drop": 1e-6} if kind == "fujiwara-kawase" else {}
     modulus = BASE["young"] / (1 - BASE["poisson"] ** 2)
-    profile = PROFILES[kind].profile_class.for_pressure(2e9, radius=BASE["radius"], modulus=modulus, **more)  # type: ignore[attr-defined]
-    assert built({"kind": kind, "design_pressure": 2e9, **more}) == profile
+    profile = PROFILES[kind].profile_class.for_pressure(2e9, radius=BASE["radius"], modulus=modulus, **higher_pressure)  # type: ignore[attr-defined]
+    assert built({"kind": kind, "design_pressure": 2e9, **higher_pressure}) == profile
 
 
 def test_design_load() -> None:
@@ -115,13 +115,13 @@ def test_identity_depends_on_file_content_only(tmp_path: Path) -> None:
     def identity(path: Path, **options) -> str:
         return case_id(BASE | {"profile": {"kind": "measured", "file": str(path), **options}})
 
-    first = identity(trace(tmp_path / "one"))
-    assert identity(trace(tmp_path / "two", name="moved.csv")) == first
-    assert identity(trace(tmp_path / "one", height=1.001)) != first
-    assert identity(trace(tmp_path / "one")) == first
-    assert identity(tmp_path / "one" / "trace.csv", remove_offset=True) == first
-    assert identity(tmp_path / "one" / "trace.csv", largest_spike=1e-3) != first
-    assert identity(tmp_path / "one" / "trace.csv", cutoff=1e-4) != first
+    first_identity = identity(trace(tmp_path / "one"))
+    assert identity(trace(tmp_path / "two", name="moved.csv")) == first_identity
+    assert identity(trace(tmp_path / "one", height=1.001)) != first_identity
+    assert identity(trace(tmp_path / "one")) == first_identity
+    assert identity(tmp_path / "one" / "trace.csv", remove_offset=True) == first_identity
+    assert identity(tmp_path / "one" / "trace.csv", largest_spike=1e-3) != first_identity
+    assert identity(tmp_path / "one" / "trace.csv", cutoff=1e-4) != first_identity
     filtered_profile = built(
         {"kind": "measured", "file": str(tmp_path / "one" / "trace.csv"), "cutoff": 1e-4, "turn": 180}
     )

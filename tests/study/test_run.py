@@ -16,7 +16,7 @@ from contactstudy.study.batches import batch_paths
 from contactstudy.study.folder import Folder
 from contactstudy.study.settings import RunSettings
 from tests.small_study import small_study
-from tests.stand_in_solver import DIES, FAILS, IS_LARGE, IS_WRONG, solve_fake
+from tests.stand_in_solver import DIES, FAILS, IS_LARGE, WRONG_FRICTION, solve_fake
 from tests.study.conftest import ROOT, count_finished, intact
 
 NOBODY = 65534
@@ -91,7 +91,7 @@ def test_interrupt_message_contains_finished_cases(study, tmp_path, signal_numbe
 
 @pytest.mark.parametrize("workers", [0, pytest.param(1, marks=pytest.mark.system)])
 def test_program_error_stops_run(tmp_path, workers):
-    study = small_study(sweep={"e_over_a": [0, 1], "friction": [0.1, IS_WRONG]})
+    study = small_study(sweep={"e_over_a": [0, 1], "friction": [0.1, WRONG_FRICTION]})
     with pytest.raises(ZeroDivisionError) as caught:
         run(study, tmp_path, workers=workers)
     assert "friction=0.88" in caught.value.__notes__[0]
@@ -122,10 +122,10 @@ def test_damaged_batch_loses_only_contained_cases(study, two_batches, content):
     path = batch_paths(two_batches / "batches")[0]
     path.write_bytes(content)
     dataset = open_study(two_batches)
-    lost = dataset["status"] == "missing"
-    assert int(lost.sum()) == 2
-    assert path.name in str(dataset["message"].values[lost.values][0])
-    assert float(dataset["peak_pressure"].where(~lost).min()) > 0
+    lost_cases = dataset["status"] == "missing"
+    assert int(lost_cases.sum()) == 2
+    assert path.name in str(dataset["message"].values[lost_cases.values][0])
+    assert float(dataset["peak_pressure"].where(~lost_cases).min()) > 0
     report = run(study, two_batches)
     assert (report.solved, report.counts) == (2, {"ok": 4})
     assert (two_batches / "set-aside" / path.name).read_bytes() == content
@@ -145,16 +145,16 @@ def test_changed_byte_is_detected(study, tmp_path):
 
 def test_foreign_files_are_set_aside(study, two_batches):
     batches = two_batches / "batches"
-    first, second = batch_paths(batches)
-    shutil.copy(first, second)  # another batch under this name
+    first_path, second_path = batch_paths(batches)
+    shutil.copy(first_path, second_path)  # another batch under this name
     (batches / "notes.nc").write_text("mine")
     (batches / "pipe.nc").symlink_to(two_batches / "nowhere")
     os.mkfifo(batches / "fifo.nc")
     (batches / "report.html").write_text("a report of the study")
     assert run(study, two_batches).solved == 2
     assert (batches / "report.html").exists()
-    aside = {path.name for path in (two_batches / "set-aside").iterdir()}
-    assert aside == {second.name, "notes.nc", "pipe.nc", "fifo.nc"}
+    aside_folder = {path.name for path in (two_batches / "set-aside").iterdir()}
+    assert aside_folder == {second_path.name, "notes.nc", "pipe.nc", "fifo.nc"}
 
 
 def test_higher_level_solves_cases_again(tmp_path):
@@ -220,16 +220,16 @@ def open_place():
 def test_folder_without_permission_raises(study, open_place, closed_folder):
     folder = open_place / "out"
     run(study, folder)
-    with_more = small_study(sweep={"e_over_a": [0, 1], "friction": [0, 0.1, 0.2]})
+    larger_study = small_study(sweep={"e_over_a": [0, 1], "friction": [0, 0.1, 0.2]})
     for path in (folder, *folder.glob("**/*")):
         path.chmod(0o777)
     (folder / closed_folder).chmod(0o555)
     with ordinary_user(), pytest.raises(StoreError, match=r"cannot write .*[Pp]ermission"):
-        run(with_more, folder)
+        run(larger_study, folder)
     (folder / closed_folder).chmod(0o777)
     assert not Folder(folder).holders
     assert intact(folder)
-    report = run(with_more, folder)
+    report = run(larger_study, folder)
     assert (report.counts, report.solved) == ({"ok": 6}, 2)
 
 
@@ -255,15 +255,15 @@ def small_disk(tmp_path):
 @pytest.mark.system
 @pytest.mark.parametrize("workers", [0, 1])
 def test_full_disk_raises(small_disk, study, workers):
-    filler = small_disk / "other.bin"
-    filler.write_bytes(bytes(1_060_000))
+    filler_path = small_disk / "other.bin"
+    filler_path.write_bytes(bytes(1_060_000))
     with pytest.raises(StoreError, match=r"disk is full|No space"):
         run(study, small_disk / "out", workers=workers)
     assert not list(small_disk.glob("**/*.part-*"))
     assert not Folder(small_disk / "out").holders
     assert intact(small_disk / "out")
     done = count_finished(small_disk / "out")
-    filler.unlink()
+    filler_path.unlink()
     report = run(study, small_disk / "out")
     assert (report.counts, report.solved) == ({"ok": 4}, 4 - done)
 

@@ -53,8 +53,10 @@ def test_study_over_end_models(tmp_path):
     assert dataset["status"].sel(body="half-space").values.tolist() == ["ok", "skipped", "skipped"]
     assert "no free end" in dataset["message"].sel(body="half-space", model="mirror").item()
     residual = dataset["end_traction_residual"].sel(body="finite-length")
-    exact, once, mirror = (float(residual.sel(model=m)) for m in ("exact", "single-mirror", "mirror"))
-    assert exact < 3e-4 < once < mirror  # from a depth of 0.02 a on
+    exact_residual, single_residual, mirror_residual = (
+        float(residual.sel(model=m)) for m in ("exact", "single-mirror", "mirror")
+    )
+    assert exact_residual < 3e-4 < single_residual < mirror_residual  # from a depth of 0.02 a on
     ends = dataset["end_pressure_over_p0"].sel(body="finite-length").values
     assert len({round(value, 4) for value in ends.tolist()}) == 3
 
@@ -68,9 +70,9 @@ def test_number_types_have_same_identity(tmp_path):
 
 def test_common_operator_is_computed_once(tmp_path, monkeypatch):
     computed_bodies = []
-    build = surface.SurfaceOperator.of
+    create_operator = surface.SurfaceOperator.of
     monkeypatch.setattr(
-        surface.SurfaceOperator, "of", lambda *request: computed_bodies.append(request) or build(*request)
+        surface.SurfaceOperator, "of", lambda *request: computed_bodies.append(request) or create_operator(*request)
     )
     # Friction outside: in the study's order the operators would alternate.
     sweep = {"friction": [0.0, 0.1, 0.2], "e_over_a": [0.0, 1.0]}

@@ -47,8 +47,8 @@ DEFAULTS = {
 @pytest.mark.parametrize("name", STORED)
 def test_identities_of_stored_studies_never_change(name):
     cases = Study.from_toml(ROOT / "studies" / f"{name}.toml").plan()
-    together = hashlib.sha256("\n".join(case.id for case in cases).encode()).hexdigest()
-    assert (len(cases), together[:16]) == STORED[name]
+    all_ids = hashlib.sha256("\n".join(case.id for case in cases).encode()).hexdigest()
+    assert (len(cases), all_ids[:16]) == STORED[name]
 
 
 def test_defaults_match_stored_cases():

@@ -135,7 +135,7 @@ def test_profile_with_different_copy_raises() -> None:
 
 
 def test_arrays_and_profiles_within_count() -> None:
-    many = np.linspace(0, 1, 200)
-    assert identity(Wedge(1e-4, points=many)) != identity(Wedge(1e-4, points=many**2))
+    points = np.linspace(0, 1, 200)
+    assert identity(Wedge(1e-4, points=points)) != identity(Wedge(1e-4, points=points**2))
     assert identity(Wedge(1e-4, base=Cosine(1e-6))) != identity(Wedge(1e-4, base=Cosine(2e-6)))
-    assert "200 values" in user_profiles.register(Wedge(1e-4, points=many))["values"]["points"]
+    assert "200 values" in user_profiles.register(Wedge(1e-4, points=points))["values"]["points"]

@@ -14,7 +14,7 @@ from contactstudy.verification import Verification, suite
 LIST = Path(__file__).with_name("checks.csv")
 
 
-class Listed(NamedTuple):
+class ListedCheck(NamedTuple):
     """One check: the first level that has it, its group, and its name."""
 
     level: str
@@ -32,10 +32,10 @@ def names(verification: Verification) -> list[tuple[str, str, str]]:
     return [(group, check.case, check.quantity) for group, checks in verification.groups.items() for check in checks]
 
 
-def read() -> list[Listed]:
+def read() -> list[ListedCheck]:
     """All listed checks."""
     with LIST.open(newline="") as file:
-        return [Listed(**row) for row in csv.DictReader(file)]
+        return [ListedCheck(**row) for row in csv.DictReader(file)]
 
 
 def write() -> None:
@@ -43,7 +43,7 @@ def write() -> None:
     quick_names, full_names = (names(suite.run(level)) for level in suite.LEVELS)
     with LIST.open("w", newline="") as file:
         writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(Listed._fields)
+        writer.writerow(ListedCheck._fields)
         writer.writerows(("quick" if key in quick_names else "full", *key) for key in full_names)
 
 

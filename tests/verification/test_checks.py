@@ -60,13 +60,13 @@ def parameters(*, slow: bool) -> list[object]:
 
 
 @pytest.mark.parametrize("entry", parameters(slow=False))
-def test_check(entry: listed.Listed) -> None:
+def test_check(entry: listed.ListedCheck) -> None:
     assert_check_passed(quick(entry.group)[entry.case, entry.quantity])
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("entry", parameters(slow=True))
-def test_full_level_check_passes(entry: listed.Listed) -> None:
+def test_full_level_check_passes(entry: listed.ListedCheck) -> None:
     (check,) = [
         c for c in full_verification().groups[entry.group] if (c.case, c.quantity) == (entry.case, entry.quantity)
     ]

@@ -106,9 +106,9 @@ def test_circle_on_the_axis_and_far_away() -> None:
     assert shear.max() == pytest.approx(0.310, abs=5e-4)
     assert depths[shear.argmax()] == pytest.approx(0.48, abs=0.01)
     x, y, depth = np.array([30.0, -5.0]), np.array([10.0, 40.0]), np.array([20.0, 7.0])
-    total = 2 / 3 * np.pi
+    stress_sum = 2 / 3 * np.pi
     distant_stress = ref.hertz_circle(x, y, depth, 1.0, 1.0, NU, 0.5)
-    point = ref.point_load(x, y, depth, NU, total, 0.5 * total)
+    point = ref.point_load(x, y, depth, NU, stress_sum, 0.5 * stress_sum)
     for name in ref.COMPONENTS:
         assert distant_stress[name] == pytest.approx(point[name], abs=2e-3 * np.abs(point["sigma_zz"]).max()), name
 
@@ -164,9 +164,9 @@ def test_strip_von_mises(friction: float, maximum: float | None, y_at: float, z_
     mises = ref.von_mises(ref.hertz_strip(y, z, 1.0, 1.0, NU, friction))
     assert mises[:, 0].max() == pytest.approx(surface, abs=1e-3)
     if maximum is not None:
-        below = mises[:, 40:]
-        i, j = np.unravel_index(below.argmax(), below.shape)
-        assert below.max() == pytest.approx(maximum, abs=1e-4)
+        subsurface = mises[:, 40:]
+        i, j = np.unravel_index(subsurface.argmax(), subsurface.shape)
+        assert subsurface.max() == pytest.approx(maximum, abs=1e-4)
         assert (abs(y[i, 0]), z[0, 40 + j]) == pytest.approx((y_at, z_at), abs=0.012)
 
 

@@ -32,9 +32,9 @@ def test_stored_contacts(name: str) -> None:
     assert float(pressure.min()) >= 0
     assert float(contact["line_load"].integrate("x")) == pytest.approx(case.load, rel=1e-6)
     assert np.abs(pressure.values - pressure.values[::-1]).max() < 1e-6
-    inner = contact.sel(x=slice(case.start + 0.5, case.stop - 0.5), y=0)
-    assert float(inner["pressure_error"].max()) < 6e-3
-    assert float(inner["pressure_error"].median()) < 3e-3
+    inner_pressure = contact.sel(x=slice(case.start + 0.5, case.stop - 0.5), y=0)
+    assert float(inner_pressure["pressure_error"].max()) < 6e-3
+    assert float(inner_pressure["pressure_error"].median()) < 3e-3
 
 
 @pytest.mark.parametrize("name", FILM_CASES)
@@ -95,8 +95,8 @@ def test_stored_friction_is_a_superposition() -> None:
     mirrored = sliding.assign_coords(y=-sliding.y).sortby("y")
     for component in ref.COMPONENTS:
         sign = -1 if component in ("tau_xy", "tau_yz") else 1
-        even = 0.5 * (sliding[component] + sign * mirrored[component]).sel(y=frictionless.y)
-        assert np.abs(even - frictionless[component]).max() < 1e-5, component
+        is_even = 0.5 * (sliding[component] + sign * mirrored[component]).sel(y=frictionless.y)
+        assert np.abs(is_even - frictionless[component]).max() < 1e-5, component
     assert np.abs(sliding.tau_xy).max() > 0.05
 
 
