@@ -16,7 +16,7 @@ def problem(**changes):
     unit_law = Law(np.ones(8), np.zeros(8))
     values = {
         "cells": CELLS,
-        "fluid": Fluid(density=lambda _: unit_law, reduced_pressure=lambda p: Law(p, np.ones_like(p)), speed=1.0),
+        "fluid": Fluid(density=lambda _: unit_law, reduced_pressure=lambda p: Law(p, np.ones_like(p)), flow_number=1.0),
         "gap": np.ones(CELLS.shape),
         "displace": lambda pressure: 0.1 * pressure,
         "column_stiffness": 0.1 * np.eye(8)[None],

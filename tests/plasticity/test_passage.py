@@ -32,7 +32,7 @@ def solve_passes(history: np.ndarray, shear_yield_stress: float, hardening: tupl
         layers=LAYERS,
         lateral=IndependentLayers(),
         lateral_positions=history.shape[0] + 2,
-        box=(index, index),
+        cell_indices=(index, index),
         yield_stress=np.full(1, np.sqrt(3) * shear_yield_stress),
         shear_modulus=YOUNG / (2 * (1 + POISSON)),
         isotropic=hardening[0],
