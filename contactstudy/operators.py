@@ -182,7 +182,7 @@ def surface_displacement(body: Body, grid: Grid, load: str = "pressure", compone
     """
     checks.instance("body", body, Body, "a HalfSpace, a QuarterSpace or a FiniteLengthSpace")
     checks.instance("grid", grid, Grid, "a Grid")
-    if any(part.freed is not None and part.freed.mirrored_once for part in body.terms):
+    if any(part.free_ends is not None and part.free_ends.mirrored_once for part in body.terms):
         raise InvalidInputError("body.model", "single-mirror", "a model with reciprocity", "its ends keep some shear")
     direction = COMPONENTS[checks.known_name("component", component, COMPONENTS)]
     loaded = LOADS[checks.known_name("load", load, LOADS)]

@@ -24,9 +24,9 @@ GROUPS = ("length_over_a", "e_over_a", "crown", "tilt_ratio", "poisson")
 # Interpolated quantities
 QUANTITIES = ("peak_pressure_ratio", "peak_von_mises_ratio", "approach_ratio", "end_load_ratio")
 # Quantities whose logarithm is interpolated: their errors are relative
-LOGARITHMIC = ("peak_pressure_ratio", "peak_von_mises_ratio", "approach_ratio")
-NEIGHBOURS = 6  # Nearest points; a branch is defined where one of these belongs to it
-RESIDUALS = 12  # Nearest points whose mean residual is the local error
+LOGARITHMIC_QUANTITIES = ("peak_pressure_ratio", "peak_von_mises_ratio", "approach_ratio")
+NEIGHBOUR_COUNT = 6  # Nearest points; a branch is defined where one of these belongs to it
+RESIDUAL_COUNT = 12  # Nearest points whose mean residual is the local error
 LOAD_STEP = 0.05  # Change of the half-width, over it, for the slope of the approach
 LOAD_RISE = 2 * np.log((1 + LOAD_STEP) / (1 - LOAD_STEP))  # Change of the load's logarithm over two steps
 
@@ -112,7 +112,7 @@ class Branch(NamedTuple):
 
     def interpolate(self, coordinates: FloatArray, scaled: FloatArray) -> FloatArray:
         """Interpolate at coordinates (point, group), also scaled; minus infinity away from the members."""
-        _, nearest = self.tree.query(coordinates, NEIGHBOURS)
+        _, nearest = self.tree.query(coordinates, NEIGHBOUR_COUNT)
         values = self.interpolation(scaled)
         return np.where(self.members[nearest].any(axis=1), values, -np.inf)
 
@@ -143,7 +143,7 @@ class AtlasTable:
     def interpolated_samples(self, name: str) -> FloatArray:
         """Interpolated values at the solved points: the quantity or its logarithm."""
         values = self.dataset[name].values
-        return np.asarray(np.log(values) if name in LOGARITHMIC else values)
+        return np.asarray(np.log(values) if name in LOGARITHMIC_QUANTITIES else values)
 
     def branches(self, name: str) -> list[npt.NDArray[np.bool_]]:
         """Points of each smooth branch of a quantity; two local maxima give two branches of a maximum."""
@@ -181,35 +181,35 @@ class AtlasTable:
         residuals, local_residuals = np.abs(self.dataset[f"{name}_residual"].values), np.zeros(len(coordinates))
         points, scaled = self.scale(name, self.points), self.scale(name, coordinates)
         for branch_index, members in enumerate(self.branches(name)):
-            selected = branch == branch_index
-            if selected.any():
-                _, nearest = cKDTree(points[members]).query(scaled[selected], first + RESIDUALS)
-                local_residuals[selected] = residuals[members][nearest[:, first:]].mean(axis=1)
+            in_branch = branch == branch_index
+            if in_branch.any():
+                _, nearest = cKDTree(points[members]).query(scaled[in_branch], first + RESIDUAL_COUNT)
+                local_residuals[in_branch] = residuals[members][nearest[:, first:]].mean(axis=1)
         return local_residuals
 
     def evaluate(self, points: FloatArray) -> dict[str, FloatArray]:
         """Quantities and their errors at points (point, group)."""
-        coordinates, values = self.coordinates(points), {}
+        coordinates, ratios = self.coordinates(points), {}
         for name in QUANTITIES:
             interpolated, branch = self.interpolate(name, coordinates)
             attributes = self.dataset[name].attrs
             local_residual = self.local_residual(name, coordinates, branch)
             error = np.hypot(attributes["coverage_factor"] * local_residual, attributes["solver_error"])
-            logarithmic = name in LOGARITHMIC
-            values[name] = np.exp(interpolated) if logarithmic else np.maximum(interpolated, 0.0)
-            values[f"{name}_error"] = error * values[name] if logarithmic else error
+            is_logarithmic = name in LOGARITHMIC_QUANTITIES
+            ratios[name] = np.exp(interpolated) if is_logarithmic else np.maximum(interpolated, 0.0)
+            ratios[f"{name}_error"] = error * ratios[name] if is_logarithmic else error
         # Slope of the approach over the load, both logarithmic, at constant lengths in metres: with the half-width s a
         # the groups are L/(s a), e/(s a), A R/(s a)**2, ...; the load grows with s**2.
-        lower, higher = (
+        lower_approach, higher_approach = (
             self.interpolate("approach_ratio", self.coordinates(points / np.array([s, s, s**2, s**2, 1])))[0]
             for s in (1 - LOAD_STEP, 1 + LOAD_STEP)
         )
-        slope = 1 + (higher - lower) / LOAD_RISE
-        values["stiffness_ratio"] = np.pi / (4 * values["approach_ratio"] * slope)
+        slope = 1 + (higher_approach - lower_approach) / LOAD_RISE
+        ratios["stiffness_ratio"] = np.pi / (4 * ratios["approach_ratio"] * slope)
         # Independent errors of the approach at both ends of the step.
-        relative_error = values["approach_ratio_error"] / values["approach_ratio"]
-        values["stiffness_ratio_error"] = values["stiffness_ratio"] * np.sqrt(2) * relative_error / (LOAD_RISE * slope)
-        return values
+        relative_error = ratios["approach_ratio_error"] / ratios["approach_ratio"]
+        ratios["stiffness_ratio_error"] = ratios["stiffness_ratio"] * np.sqrt(2) * relative_error / (LOAD_RISE * slope)
+        return ratios
 
 
 def _even_variation(points: FloatArray) -> FloatArray:

@@ -18,7 +18,7 @@ from contactstudy.checks import FloatArray
 
 # Degree of the splines whose difference estimates the error, factor on the estimate, and steps of the comparison
 # between nodes. Accuracy: the estimate covers the error of springs of power 3/2 on 5 to 9 nodes
-ERROR_DEGREE, SAFETY, BETWEEN = 3, 3.0, 4
+ERROR_DEGREE, FACTOR, STEPS = 3, 3.0, 4
 
 
 class Nodes(NamedTuple):
@@ -31,7 +31,7 @@ class Nodes(NamedTuple):
     moment: FloatArray  # N m
 
 
-class Motion(NamedTuple):
+class ContactResponse(NamedTuple):
     """Load, moment and stiffness matrix at an approach and a tilt; arrays of one shape."""
 
     load: FloatArray  # N
@@ -42,15 +42,15 @@ class Motion(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class Axis:
+class SplineBasis:
     """B-splines along one axis."""
 
     knots: FloatArray  # the ends repeated
     degree: int
 
     @classmethod
-    def interpolating(cls, nodes: FloatArray, degree: int) -> Axis:
-        """Return an axis with one spline more than nodes, and knots by de Boor's means."""
+    def interpolating(cls, nodes: FloatArray, degree: int) -> SplineBasis:
+        """Return a basis with one spline more than nodes, and knots by de Boor's means."""
         degree = min(degree, nodes.size - 1)
         inner = [nodes[first : first + degree - 1].mean() for first in range(1, nodes.size - degree + 1)]
         first, last = (np.repeat(end, degree + 1) for end in nodes[[0, -1]])
@@ -66,8 +66,8 @@ class Axis:
 class EnergySpline:
     """Strain energy: the exponential of a spline without tilt, plus a product of splines for the tilt."""
 
-    approach_axis: Axis  # in the logarithm of the approach
-    tilt_axis: Axis  # in the tilt over the largest
+    approach_splines: SplineBasis  # in the logarithm of the approach
+    tilt_splines: SplineBasis  # in the tilt over the largest
     tilt_scale: float  # rad
     untilted: FloatArray  # coefficients of the logarithm of the energy without tilt
     added: FloatArray  # coefficients of the energy added by a tilt, per pair, J
@@ -77,55 +77,55 @@ class EnergySpline:
         """Fit energy, load and moment at once."""
         u, scale = np.log(nodes.approaches), float(np.abs(nodes.tilts).max())
         t = nodes.tilts / scale
-        first, second = Axis.interpolating(u, degree), Axis.interpolating(t, degree)
+        u_splines, t_splines = SplineBasis.interpolating(u, degree), SplineBasis.interpolating(t, degree)
         # dU / d ln delta = delta Q, and dU / d(theta / scale) = scale M.
         load, moment = nodes.approaches[:, None] * nodes.load, scale * nodes.moment
         untilted_column = int(np.abs(t).argmin())
         energy, untilted_load = nodes.energy[:, untilted_column], load[:, untilted_column]
-        level = _solve_least_squares([(first(u), np.log(energy)), (first(u, 1), untilted_load / energy)])
-        untilted = np.exp(first(u) @ level)
+        weights = _solve_least_squares([(u_splines(u), np.log(energy)), (u_splines(u, 1), untilted_load / energy)])
+        untilted_energy = np.exp(u_splines(u) @ weights)
         # Equal weights of the loads, and of the moments at each approach.
         max_moment = np.abs(moment).max(axis=1, keepdims=True) + np.zeros_like(moment)
         # The energies have a low weight: load and moment nearly determine the energy.
         equations = (
-            ((0, 0), nodes.energy - untilted[:, None], nodes.energy / 0.1),
-            ((1, 0), load - (untilted * (first(u, 1) @ level))[:, None], load),
+            ((0, 0), nodes.energy - untilted_energy[:, None], nodes.energy / 0.1),
+            ((1, 0), load - (untilted_energy * (u_splines(u, 1) @ weights))[:, None], load),
             ((0, 1), moment, np.where(max_moment > 0, max_moment, scale * load)),
         )
-        rows = [
-            (np.kron(first(u, i), second(t, j)) / weight.reshape(-1, 1), (right_hand_side / weight).ravel())
+        blocks = [
+            (np.kron(u_splines(u, i), t_splines(t, j)) / weight.reshape(-1, 1), (right_hand_side / weight).ravel())
             for (i, j), right_hand_side, weight in equations
         ]
-        added = _solve_least_squares(rows).reshape(first(u).shape[1], -1)
-        return cls(approach_axis=first, tilt_axis=second, tilt_scale=scale, untilted=level, added=added)
+        added = _solve_least_squares(blocks).reshape(u_splines(u).shape[1], -1)
+        return cls(approach_splines=u_splines, tilt_splines=t_splines, tilt_scale=scale, untilted=weights, added=added)
 
-    def __call__(self, approach: FloatArray, tilt: FloatArray) -> Motion:
+    def __call__(self, approach: FloatArray, tilt: FloatArray) -> ContactResponse:
         """Load, moment and stiffness at pairs of approach and tilt, of one shape."""
         shape = np.shape(approach)
         delta, theta = np.ravel(approach), np.ravel(tilt)
         u, t, scale = np.log(delta), theta / self.tilt_scale, self.tilt_scale
-        first = [self.approach_axis(u, order) for order in range(3)]
-        second = [self.tilt_axis(t, order) for order in range(3)]
+        b_u = [self.approach_splines(u, order) for order in range(3)]
+        b_t = [self.tilt_splines(t, order) for order in range(3)]
 
         def tilt_derivative(i: int, j: int) -> FloatArray:
-            return np.asarray(np.einsum("pi,ij,pj->p", first[i], self.added, second[j]))
+            return np.asarray(np.einsum("pi,ij,pj->p", b_u[i], self.added, b_t[j]))
 
-        energy, slope, curvature = np.exp(first[0] @ self.untilted), first[1] @ self.untilted, first[2] @ self.untilted
+        energy, slope, curvature = np.exp(b_u[0] @ self.untilted), b_u[1] @ self.untilted, b_u[2] @ self.untilted
         by_u = energy * slope + tilt_derivative(1, 0)
         by_uu = energy * (curvature + slope**2) + tilt_derivative(2, 0)
-        values = (
+        responses = (
             by_u / delta,
             tilt_derivative(0, 1) / scale,
             (by_uu - by_u) / delta**2,
             tilt_derivative(1, 1) / (delta * scale),
             tilt_derivative(0, 2) / scale**2,
         )
-        return Motion(*(value.reshape(shape) for value in values))
+        return ContactResponse(*(response.reshape(shape) for response in responses))
 
 
-def _solve_least_squares(rows: list[tuple[FloatArray, FloatArray]]) -> FloatArray:
+def _solve_least_squares(equation_blocks: list[tuple[FloatArray, FloatArray]]) -> FloatArray:
     """Solve several blocks of equations by least squares, scaled by columns."""
-    matrix, right_hand_side = (np.concatenate(blocks) for blocks in zip(*rows, strict=True))
+    matrix, right_hand_side = (np.concatenate(blocks) for blocks in zip(*equation_blocks, strict=True))
     norms = np.linalg.norm(matrix, axis=0)
     return np.asarray(np.linalg.lstsq(matrix / norms, right_hand_side, rcond=None)[0] / norms)
 
@@ -137,29 +137,29 @@ def estimate_fit_errors(nodes: Nodes, length: float) -> FloatArray:
     pairs = np.meshgrid(nodes.approaches, nodes.tilts, indexing="ij")
     residual = _differences(spline(*pairs), nodes.load, nodes.moment, length)
     pairs = np.meshgrid(np.exp(_subdivide(np.log(nodes.approaches))), _subdivide(nodes.tilts), indexing="ij")
-    lower = lower_degree_spline(*pairs)
-    degree = _differences(spline(*pairs), lower.load, lower.moment, length)
+    lower_response = lower_degree_spline(*pairs)
+    degree_error = _differences(spline(*pairs), lower_response.load, lower_response.moment, length)
     # Largest difference between each node and its neighbours.
-    nearby = maximum_filter(degree, (1, 2 * BETWEEN + 1, 2 * BETWEEN + 1), mode="nearest")[:, ::BETWEEN, ::BETWEEN]
+    nearby = maximum_filter(degree_error, (1, 2 * STEPS + 1, 2 * STEPS + 1), mode="nearest")[:, ::STEPS, ::STEPS]
     indices, residuals = np.arange(nodes.approaches.size), []
     for index in indices[1:-1]:
-        fewer, removed = (
+        nodes_left, gap = (
             Nodes(nodes.approaches[rows], nodes.tilts, nodes.energy[rows], nodes.load[rows], nodes.moment[rows])
             for rows in (indices != index, indices == index)
         )
-        motion = EnergySpline.fit(fewer)(*np.meshgrid(removed.approaches, removed.tilts, indexing="ij"))
-        residuals.append(_differences(motion, removed.load, removed.moment, length))
+        response = EnergySpline.fit(nodes_left)(*np.meshgrid(gap.approaches, gap.tilts, indexing="ij"))
+        residuals.append(_differences(response, gap.load, gap.moment, length))
     return np.asarray(
-        np.maximum(residual, SAFETY * (nearby + np.concatenate([residuals[0], *residuals, residuals[-1]], axis=1)))
+        np.maximum(residual, FACTOR * (nearby + np.concatenate([residuals[0], *residuals, residuals[-1]], axis=1)))
     )
 
 
 def _subdivide(nodes: FloatArray) -> FloatArray:
     """Return the nodes and points between the nodes."""
     count = nodes.size
-    return np.asarray(np.interp(np.arange(BETWEEN * (count - 1) + 1) / BETWEEN, np.arange(count), nodes))
+    return np.asarray(np.interp(np.arange(STEPS * (count - 1) + 1) / STEPS, np.arange(count), nodes))
 
 
-def _differences(motion: Motion, load: FloatArray, moment: FloatArray, length: float) -> FloatArray:
+def _differences(response: ContactResponse, load: FloatArray, moment: FloatArray, length: float) -> FloatArray:
     """Differences of load over load, and of moment over load and length."""
-    return np.array([np.abs(motion.load / load - 1), np.abs(motion.moment - moment) / (load * length)])
+    return np.array([np.abs(response.load / load - 1), np.abs(response.moment - moment) / (load * length)])

@@ -19,10 +19,10 @@ from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 from contactstudy.profiles.base import check_drop, local_radius
 
-SPRING = 35948e6  # The standard's spring constant 35948 N / mm**2, in N / m**2
+SPRING_CONSTANT = 35948e6  # The standard's spring constant 35948 N / mm**2, in N / m**2
 # Contact modulus (Pa) of the standard's constant: steel on steel, 207 GPa and 0.3
 STEEL_MODULUS = 0.5 * 207e9 / (1 - 0.3**2)
-EXPONENT = 10 / 9
+POWER = 10 / 9
 
 MODEL_COMMENT = "of independent slices"  # Comment of every variable of the model
 
@@ -94,36 +94,34 @@ def slice_model(case: Case, *, slices: int = 30, tilt: float | None = None, edge
     x = start + length * (np.arange(slices) + 0.5) / slices
     x_from_middle = x - case.roller_middle
     height = check_drop(roller.profile, x_from_middle, roller.length) - np.tan(tilt) * x_from_middle
-    stiffness = SPRING * length ** (8 / 9) / slices * (case.modulus / STEEL_MODULUS)
+    stiffness = SPRING_CONSTANT * length ** (8 / 9) / slices * (case.modulus / STEEL_MODULUS)
     load = case.normal_load
-    min_height, bound = (
-        float(height.min()),
-        0.5 * (load / stiffness) ** (1 / EXPONENT),
-    )  # one slice carries the whole load
+    # `bound`: approach beyond the smallest height at which a single slice carries the whole load
+    min_height, max_depth = float(height.min()), 0.5 * (load / stiffness) ** (1 / POWER)
     approach = float(
         brentq(
-            lambda approach: stiffness * float(np.sum((2 * np.maximum(approach - height, 0.0)) ** EXPONENT)) / load - 1,
+            lambda approach: stiffness * float(np.sum((2 * np.maximum(approach - height, 0.0)) ** POWER)) / load - 1,
             min_height,
-            min_height + 1.001 * bound,
-            xtol=1e-15 * bound,
+            min_height + 1.001 * max_depth,
+            xtol=1e-15 * max_depth,
             rtol=1e-14,
             maxiter=200,
         )
     )
     deflection = np.maximum(approach - height, 0.0)
-    load_per_length = stiffness * (2 * deflection) ** EXPONENT * slices / length
-    from_ends = np.abs(2 * np.arange(1, slices + 1) - slices - 1) / (2 * slices - 2)
+    load_per_length = stiffness * (2 * deflection) ** POWER * slices / length
+    from_middle = np.abs(2 * np.arange(1, slices + 1) - slices - 1) / (2 * slices - 2)
     with np.errstate(divide="ignore"):
-        factor = 1 - 0.01 / np.log(1.985 * from_ends)  # 1 in the middle
+        edge_factor = 1 - 0.01 / np.log(1.985 * from_middle)  # 1 in the middle
     radius = local_radius(roller.profile, x_from_middle, roller.length, roller.radius)
-    line_load = load_per_length * factor if edge_riser else load_per_length
+    line_load = load_per_length * edge_factor if edge_riser else load_per_length
     pressure = np.sqrt(line_load * case.modulus / (np.pi * radius))
     fields = {
         "load_per_length": load_per_length,
         "pressure": pressure,
         "half_width": 2 * pressure * radius / case.modulus,
         "deflection": deflection,
-        "edge_factor": factor,
+        "edge_factor": edge_factor,
     }
     result = xr.Dataset(
         {name: ("x", values) for name, values in fields.items()}
@@ -237,10 +235,10 @@ def _hertz_loads(result: xr.Dataset, case: Case, edges: FloatArray) -> tuple[Flo
     position, max_pressure = result[x].values, section_maxima(pressure.values)
     half_widths = 0.5 * cell_widths(pressure, "x").values
     mid_length = case.roller_middle
-    mask = np.abs(position - mid_length) <= 0.5 * case.roller.length
+    under_roller = np.abs(position - mid_length) <= 0.5 * case.roller.length
     radius = np.full(position.size, case.roller.radius)
-    radius[mask] = local_radius(
-        case.roller.profile, position[mask] - mid_length, case.roller.length, case.roller.radius
+    radius[under_roller] = local_radius(
+        case.roller.profile, position[under_roller] - mid_length, case.roller.length, case.roller.radius
     )
     line_loads = hertz.line_load(1.0, 1.0, case.modulus) * max_pressure**2 * radius
     columns = Columns(np.stack([position - half_widths, position + half_widths], axis=-1), position, line_loads)
@@ -255,15 +253,15 @@ def _hertz_loads(result: xr.Dataset, case: Case, edges: FloatArray) -> tuple[Flo
 
 def _pressure_errors(result: xr.Dataset, load: FloatArray, line_loads: FloatArray, weights: FloatArray) -> FloatArray:
     """Errors of loads per length from the stated errors of the largest pressures of both halves."""
-    half = load.size // 2
+    half_count = load.size // 2
     errors = []
-    for parts, side, relative_error in zip(
-        (slice(load.size - half), slice(half, None)), SIDES, pressure_errors(result), strict=True
+    for lamina_range, side, relative_error in zip(
+        (slice(load.size - half_count), slice(half_count, None)), SIDES, pressure_errors(result), strict=True
     ):
         is_infinite = np.isinf(float(result.get(f"peak_pressure_{side}", 0.0)))
-        max_load = load[parts] if is_infinite else line_loads[weights[parts].any(axis=0)].max()
+        max_load = load[lamina_range] if is_infinite else line_loads[weights[lamina_range].any(axis=0)].max()
         error = np.zeros(load.size)
         # The load is proportional to the square of the pressure.
-        error[parts] = 2 * relative_error * np.sqrt(load[parts] * max_load)
+        error[lamina_range] = 2 * relative_error * np.sqrt(load[lamina_range] * max_load)
         errors.append(error)
     return np.maximum(*errors)

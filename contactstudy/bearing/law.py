@@ -12,7 +12,7 @@ import xarray as xr
 from contactstudy import checks
 from contactstudy.arrays.engineering import html_table
 from contactstudy.arrays.variables import describe, name_array, require, without_error
-from contactstudy.bearing.energy_spline import EnergySpline, Motion, Nodes
+from contactstudy.bearing.energy_spline import ContactResponse, EnergySpline, Nodes
 from contactstudy.checks import FloatArray, factor_to
 from contactstudy.errors import InvalidInputError
 
@@ -48,16 +48,16 @@ def _label_argument(name: str, value: Values) -> xr.DataArray:
         return value.drop_vars(name, errors="ignore") if name not in value.dims else value
     if np.ndim(value) == 0:
         return xr.DataArray(checks.finite(name, value, UNITS[name]))
-    checked = checks.coordinates(name, value, UNITS[name])
-    return xr.DataArray(checked, dims=name, coords={name: checked})
+    numbers = checks.coordinates(name, value, UNITS[name])
+    return xr.DataArray(numbers, dims=name, coords={name: numbers})
 
 
 def map_pairs(
-    first: xr.DataArray, second: xr.DataArray, function: Callable[[float, float], tuple[float, float]]
+    first_argument: xr.DataArray, second_argument: xr.DataArray, function: Callable[[float, float], tuple[float, float]]
 ) -> tuple[xr.DataArray, xr.DataArray]:
     """Map a function of two values over the pairs of arguments."""
-    values = np.vectorize(function, otypes="dd")(first.values, second.values)
-    return first.copy(data=values[0]), second.copy(data=values[1])
+    results = np.vectorize(function, otypes="dd")(first_argument.values, second_argument.values)
+    return first_argument.copy(data=results[0]), second_argument.copy(data=results[1])
 
 
 def add_position_errors(motion: xr.Dataset) -> xr.Dataset:
@@ -73,7 +73,7 @@ def add_position_errors(motion: xr.Dataset) -> xr.Dataset:
     return motion.assign({name: name_array(name, error.drop_attrs()) for name, error in errors.items()})
 
 
-def label_motion(approach: xr.DataArray, tilt: xr.DataArray, motion: Motion, errors: FloatArray) -> xr.Dataset:
+def label_motion(approach: xr.DataArray, tilt: xr.DataArray, motion: ContactResponse, errors: FloatArray) -> xr.Dataset:
     """Label loads and stiffness at pairs of approach and tilt; `errors` of load and moment are over the load."""
     values = {
         "approach": approach.values,
@@ -96,7 +96,7 @@ MIN_NODES = 5  # Minimum number of approaches and of tilts
 ROUNDING = 1e-9  # Rounding of an argument over the range of the table
 RESIDUAL_TOLERANCE = 1e-7  # Maximum residual of load and moment, over load and load times length
 # Required variables of a table
-NEEDED = ("normal_load", "moment", "strain_energy", "relative_load_error", "relative_moment_error", "contact_length")
+KEYS = ("normal_load", "moment", "strain_energy", "relative_load_error", "relative_moment_error", "contact_length")
 
 
 @dataclass(frozen=True, eq=False)
@@ -146,7 +146,7 @@ class ContactLaw:
     table: xr.Dataset
 
     def __post_init__(self) -> None:
-        require(self.table, *NEEDED, argument="table")
+        require(self.table, *KEYS, argument="table")
         for name in ("approach", "tilt"):
             if self.table.sizes.get(name, 0) < MIN_NODES:
                 raise InvalidInputError("table", dict(self.table.sizes), f"one with {MIN_NODES} or more along {name}")
@@ -226,12 +226,12 @@ class ContactLaw:
         InvalidInputError
             If approach and tilt are outside the table.
         """
-        load, turn = broadcast_arguments(normal_load=normal_load, moment=moment)
-        delta, theta = map_pairs(load, turn, self.solve_position)
+        loads, moments = broadcast_arguments(normal_load=normal_load, moment=moment)
+        delta, theta = map_pairs(loads, moments, self.solve_position)
         pairs = delta.values, theta.values
         return add_position_errors(label_motion(delta, theta, self.motion(*pairs), self.errors(*pairs)))
 
-    def motion(self, approach: FloatArray, tilt: FloatArray) -> Motion:
+    def motion(self, approach: FloatArray, tilt: FloatArray) -> ContactResponse:
         """Load, moment and stiffness as arrays, at pairs inside the table; the law extrapolates outside."""
         return self._spline(np.asarray(approach, dtype=np.float64), np.asarray(tilt, dtype=np.float64))
 
@@ -243,7 +243,7 @@ class ContactLaw:
         (low, high), (min_tilt, max_tilt) = self._range("approach"), self._range("tilt")
         length, nodes = float(self.table["contact_length"]), self._nodes
         distance = np.hypot(nodes.load / load - 1, (nodes.moment - moment) / (load * length))
-        line, column = np.unravel_index(int(distance.argmin()), distance.shape)
+        row, column = np.unravel_index(int(distance.argmin()), distance.shape)
         scale = np.array([high, max_tilt - min_tilt])
 
         def residual(scaled: FloatArray) -> FloatArray:
@@ -256,7 +256,7 @@ class ContactLaw:
             return np.asarray(np.array([[motion.normal, motion.coupling], moment_row]) / load * scale)
 
         bounds = (np.array([low, min_tilt]) / scale, np.array([high, max_tilt]) / scale)
-        start = np.array([nodes.approaches[line], nodes.tilts[column]]) / scale
+        start = np.array([nodes.approaches[row], nodes.tilts[column]]) / scale
         start = np.clip(start, bounds[0] + ROUNDING, bounds[1] - ROUNDING)
         solution = least_squares(residual, start, jacobian, bounds=bounds, xtol=1e-14, ftol=1e-14, gtol=1e-14)
         if np.abs(solution.fun).max() > RESIDUAL_TOLERANCE:
@@ -289,13 +289,13 @@ class ContactLaw:
 
     def errors(self, approach: FloatArray, tilt: FloatArray) -> FloatArray:
         """Errors of load and moment over the load, at pairs inside the table: the largest of the four nearest nodes."""
-        sides = []
+        node_pairs = []
         for name, values in (("approach", approach), ("tilt", tilt)):
             nodes = self.table[name].values
             upper = np.clip(np.searchsorted(nodes, values), 1, nodes.size - 1)
-            sides.append((upper - 1, upper))
+            node_pairs.append((upper - 1, upper))
         errors = [self._node_values(name) for name in ("relative_load_error", "relative_moment_error")]
-        load, moment = (np.max([error[i, j] for i in sides[0] for j in sides[1]], axis=0) for error in errors)
+        load, moment = (np.max([error[i, j] for i in node_pairs[0] for j in node_pairs[1]], axis=0) for error in errors)
         return np.array([load, float(self.table["contact_length"]) * moment])
 
 
@@ -361,10 +361,10 @@ class Raceways:
         InvalidInputError
             If either contact is outside its table.
         """
-        load, turn = broadcast_arguments(normal_load=normal_load, moment=moment)
+        loads, moments = broadcast_arguments(normal_load=normal_load, moment=moment)
         motion = self._label_series(
-            map_pairs(load, turn, self.inner.solve_position),
-            map_pairs(load, turn, self.outer.solve_position),
+            map_pairs(loads, moments, self.inner.solve_position),
+            map_pairs(loads, moments, self.outer.solve_position),
         )
         return add_position_errors(motion)
 
@@ -379,8 +379,10 @@ class Raceways:
             np.stack([motion.normal, motion.coupling, motion.coupling, motion.tilting], axis=-1) for motion in contacts
         )
         stiffness = np.linalg.inv(sum(np.linalg.inv(matrix.reshape(*matrix.shape[:-1], 2, 2)) for matrix in matrices))
-        first = contacts[0]
-        motion = Motion(first.load, first.moment, stiffness[..., 0, 0], stiffness[..., 0, 1], stiffness[..., 1, 1])
+        inner_response = contacts[0]
+        motion = ContactResponse(
+            inner_response.load, inner_response.moment, stiffness[..., 0, 0], stiffness[..., 0, 1], stiffness[..., 1, 1]
+        )
         # The larger error bounds the error of either contact.
         errors = np.maximum(*(law.errors(delta.values, theta.values) for law, delta, theta in pairs))
         labelled = label_motion(inner[0] + outer[0], inner[1] + outer[1], motion, errors)
@@ -395,19 +397,19 @@ class Raceways:
 
         tables = self.inner.table, self.outer.table
         totals = {"approach": approach, "tilt": tilt}
-        low, high = [], []
+        minima, maxima = [], []
         for name, total in totals.items():
-            (first, last), (other_first, other_last) = ((float(t[name][0]), float(t[name][-1])) for t in tables)
-            low.append(max(first, total - other_last))
-            high.append(min(last, total - other_first))
-            if not low[-1] < high[-1]:
-                ends = f"from {first + other_first:g} to {last + other_last:g}"
-                raise InvalidInputError(name, total, f"in the tables of both contacts together, {ends}")
-        bounds, size = np.array([low, high]), np.array([approach, max(np.ptp(tables[0]["tilt"].values), 1e-12)])
+            (first, last), (outer_first, outer_last) = ((float(t[name][0]), float(t[name][-1])) for t in tables)
+            minima.append(max(first, total - outer_last))
+            maxima.append(min(last, total - outer_first))
+            if not minima[-1] < maxima[-1]:
+                limits = f"from {first + outer_first:g} to {last + outer_last:g}"
+                raise InvalidInputError(name, total, f"in the tables of both contacts together, {limits}")
+        bounds, scales = np.array([minima, maxima]), np.array([approach, max(np.ptp(tables[0]["tilt"].values), 1e-12)])
         length = float(tables[0]["contact_length"])
 
-        def motions(scaled: FloatArray) -> tuple[Motion, Motion]:
-            delta, theta = scaled * size
+        def motions(scaled: FloatArray) -> tuple[ContactResponse, ContactResponse]:
+            delta, theta = scaled * scales
             return self.inner.motion(delta, theta), self.outer.motion(approach - delta, tilt - theta)
 
         def residual(scaled: FloatArray) -> FloatArray:
@@ -415,8 +417,8 @@ class Raceways:
             scale = float(np.sqrt(inner.load * outer.load))
             return np.array([inner.load - outer.load, (inner.moment - outer.moment) / length]) / scale
 
-        start = np.clip(0.5 * np.array([approach, tilt]), bounds[0] + ROUNDING * size, bounds[1] - ROUNDING * size)
-        solution = least_squares(residual, start / size, bounds=bounds / size, xtol=1e-14, ftol=1e-14, gtol=1e-14)
+        start = np.clip(0.5 * np.array([approach, tilt]), bounds[0] + ROUNDING * scales, bounds[1] - ROUNDING * scales)
+        solution = least_squares(residual, start / scales, bounds=bounds / scales, xtol=1e-14, ftol=1e-14, gtol=1e-14)
         if np.abs(solution.fun).max() > RESIDUAL_TOLERANCE:
             raise InvalidInputError(
                 "approach, tilt",
@@ -424,5 +426,5 @@ class Raceways:
                 "such that either contact is in its table",
                 "make the tables for more approaches or tilts",
             )
-        delta, theta = solution.x * size
+        delta, theta = solution.x * scales
         return float(delta), float(theta)

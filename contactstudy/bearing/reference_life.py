@@ -78,9 +78,9 @@ def roller_ratings(dynamic_rating: float, rollers: int, gamma: float, *, rows: i
         raise InvalidInputError("gamma", diameter_ratio, "below 1, roller diameter over pitch diameter")
     warn_of_values(dynamic_rating=rating)
     ratio = 1.038 * ((1 - diameter_ratio) / (1 + diameter_ratio)) ** (143 / 108)
-    base = rating / (RATING_REDUCTION * count * rows ** (7 / 9))
-    inner = base / 0.378 * (1 + ratio**LIFE_POWER) ** (1 / LIFE_POWER)
-    outer = base / 0.364 * (1 + ratio**-LIFE_POWER) ** (1 / LIFE_POWER)
+    mean_rating = rating / (RATING_REDUCTION * count * rows ** (7 / 9))
+    inner = mean_rating / 0.378 * (1 + ratio**LIFE_POWER) ** (1 / LIFE_POWER)
+    outer = mean_rating / 0.364 * (1 + ratio**-LIFE_POWER) ** (1 / LIFE_POWER)
     return inner, outer
 
 
@@ -147,8 +147,8 @@ def reference_life(
     cases = {name: _check_cases(name, argument) for name, argument in zip(RACEWAYS, (inner, outer), strict=True)}
     if len(cases["inner"]) != len(cases["outer"]):
         raise InvalidInputError("outer", len(cases["outer"]), f"as many rollers as inside, {len(cases['inner'])}")
-    loaded = len(cases["inner"])
-    roller_count = loaded if rollers is None else checks.count("rollers", rollers, minimum=loaded)
+    loaded_count = len(cases["inner"])
+    roller_count = loaded_count if rollers is None else checks.count("rollers", rollers, minimum=loaded_count)
     if isinstance(inner, Case):
         roller_count = 1  # equal rollers: the mean does not depend on their number
     checks.known_name("turning", turning, RACEWAYS)
@@ -157,32 +157,32 @@ def reference_life(
         raise InvalidInputError("ratings", checked_ratings.tolist(), "two positive numbers, Q_ci and Q_ce (N)")
     # Arrays (model, raceway, roller, lamina).
     rollers_loads = [[_solve_roller_loads(case, laminae, accuracy) for case in cases[name]] for name in RACEWAYS]
-    loads, errors, common, risers, riser_errors = np.array(rollers_loads).transpose(2, 3, 0, 1, 4)
-    count = loads.shape[-1]
+    loads, errors, common_errors, risers, riser_errors = np.array(rollers_loads).transpose(2, 3, 0, 1, 4)
+    lamina_count = loads.shape[-1]
     powers = np.array([TURNING_POWER if name == turning else LIFE_POWER for name in RACEWAYS])[:, None]
-    rating = checked_ratings[:, None] * count ** (-7 / 9)
+    rating = checked_ratings[:, None] * lamina_count ** (-7 / 9)
 
     def equivalent_loads(roller_loads: FloatArray) -> FloatArray:
         """Equivalent loads (model, raceway, lamina) of the rollers."""
         power = powers[:, None]
         return np.asarray(((roller_loads**power).sum(axis=2) / roller_count) ** (1 / powers))
 
-    mean, upper_mean = equivalent_loads(loads), equivalent_loads(loads + errors)
-    risks = [((equivalent_loads(force) / rating) ** LIFE_POWER).sum(axis=-1) for force in (loads, loads + common)]
+    mean_loads, upper_loads = equivalent_loads(loads), equivalent_loads(loads + errors)
+    risks = [((equivalent_loads(q) / rating) ** LIFE_POWER).sum(axis=-1) for q in (loads, loads + common_errors)]
     (raceway_lives, lower_raceway_lives), (lives, lower_lives) = (
         [MILLION * risk ** (-8 / 9) for risk in pair] for pair in (risks, [risk.sum(axis=-1) for risk in risks])
     )
-    is_infinite = np.isinf(mean)
+    is_infinite = np.isinf(mean_loads)
     result = xr.Dataset(
         {
             "reference_life": ("model", lives),
             "reference_life_error": ("model", lives - lower_lives),
             "raceway_life": (("model", "raceway"), raceway_lives),
             "raceway_life_error": (("model", "raceway"), raceway_lives - lower_raceway_lives),
-            "lamina_equivalent_load": (("model", "raceway", "slice"), mean),
+            "lamina_equivalent_load": (("model", "raceway", "slice"), mean_loads),
             "lamina_equivalent_load_error": (
                 ("model", "raceway", "slice"),
-                np.where(is_infinite, np.inf, upper_mean - np.where(is_infinite, 0.0, mean)),
+                np.where(is_infinite, np.inf, upper_loads - np.where(is_infinite, 0.0, mean_loads)),
             ),
             "stress_riser": (("model", "raceway", "roller", "slice"), risers),
             "stress_riser_error": (("model", "raceway", "roller", "slice"), riser_errors),
@@ -190,11 +190,11 @@ def reference_life(
         coords={
             "model": list(MODELS),
             "raceway": list(RACEWAYS),
-            "roller": np.arange(1, loaded + 1),
-            "slice": np.arange(1, count + 1),
+            "roller": np.arange(1, loaded_count + 1),
+            "slice": np.arange(1, lamina_count + 1),
         },
     )
-    result.attrs = {"turning": turning, "laminae": count}
+    result.attrs = {"turning": turning, "laminae": lamina_count}
     for name in ("reference_life", "raceway_life", "lamina_equivalent_load", "stress_riser"):
         result[f"{name}_error"].attrs["comment"] = ERROR_COMMENT
     return describe(result, "basic reference rating life from laminae")
@@ -215,7 +215,7 @@ def _solve_roller_loads(case: Case, laminae: int, accuracy: float) -> FloatArray
     exact_result = solve(case, stresses=False, accuracy=accuracy)
     # The models have equal moments; their tilts differ by the compliance of the bodies.
     position = float(exact_result["load_position"]) if case.tilt else case.load_position
-    endless = replace(
+    infinite = replace(
         case,
         body=HalfSpace(material=case.body.material),
         roller=replace(case.roller, ends="none"),
@@ -223,26 +223,26 @@ def _solve_roller_loads(case: Case, laminae: int, accuracy: float) -> FloatArray
         tilt=0.0,
         load_position=position,
     )
-    half_space = solve(endless, stresses=False, accuracy=accuracy)
-    solved, common = zip(
-        *(lamina_loads(result, model, laminae) for model, result in ((endless, half_space), (case, exact_result))),
+    half_space = solve(infinite, stresses=False, accuracy=accuracy)
+    tables, common_errors = zip(
+        *(lamina_loads(result, model, laminae) for model, result in ((infinite, half_space), (case, exact_result))),
         strict=True,
     )
-    width, sliced = solved[1]["width"].values, solved[1]["load_per_length"].values
-    factor, missing = solved[1]["edge_factor"].values, [np.full_like(sliced, np.nan)] * 2
+    width, slices = tables[1]["width"].values, tables[1]["load_per_length"].values
+    riser, no_errors = tables[1]["edge_factor"].values, [np.full_like(slices, np.nan)] * 2
     return np.array(
         [
             width
             * np.array(
                 [
-                    sliced,
-                    sliced * factor,
-                    *(factors["hertz_load_per_length"].values for factors in solved),
+                    slices,
+                    slices * riser,
+                    *(factors["hertz_load_per_length"].values for factors in tables),
                 ]
             ),
-            width * np.array([*missing, *(factors["hertz_load_per_length_error"].values for factors in solved)]),
-            width * np.array([*missing, *common]),
-            [np.ones_like(sliced), factor, *(factors["stress_riser"].values for factors in solved)],
-            [*missing, *(factors["stress_riser_error"].values for factors in solved)],
+            width * np.array([*no_errors, *(factors["hertz_load_per_length_error"].values for factors in tables)]),
+            width * np.array([*no_errors, *common_errors]),
+            [np.ones_like(slices), riser, *(factors["stress_riser"].values for factors in tables)],
+            [*no_errors, *(factors["stress_riser_error"].values for factors in tables)],
         ]
     )

@@ -25,7 +25,7 @@ from contactstudy.errors import InvalidInputError, WindowError
 
 LOGGER = logging.getLogger(__name__)
 
-MIRRORED = 1e-9  # Maximum difference of mirror images over the length, or over the drop
+TOLERANCE = 1e-9  # Maximum difference of mirror images over the length, or over the drop
 
 
 class Node(NamedTuple):
@@ -80,9 +80,9 @@ def _name_unsolvable_contact(load: float, tilt: float) -> Iterator[None]:
 
 def solve_nodes(solver: ContactSolver, approaches: FloatArray, tilts: FloatArray) -> Nodes:
     """Solve the contacts at every pair; negative tilts by reflection if roller and body are symmetric."""
-    reflected = _is_symmetric(solver) and bool(np.allclose(tilts, -tilts[::-1], rtol=0, atol=MIRRORED * tilts[-1]))
-    columns = [index for index, tilt in enumerate(tilts) if not reflected or tilt >= -MIRRORED * tilts[-1]]
-    values = np.full((3, approaches.size, tilts.size), np.nan)
+    reflected = _is_symmetric(solver) and bool(np.allclose(tilts, -tilts[::-1], rtol=0, atol=TOLERANCE * tilts[-1]))
+    columns = [index for index, tilt in enumerate(tilts) if not reflected or tilt >= -TOLERANCE * tilts[-1]]
+    nodes = np.full((3, approaches.size, tilts.size), np.nan)
     start_column = min(columns, key=lambda index: abs(tilts[index]))
     LOGGER.info(
         "%d contacts at %d approaches and %d tilts", len(columns) * approaches.size, approaches.size, len(columns)
@@ -90,34 +90,30 @@ def solve_nodes(solver: ContactSolver, approaches: FloatArray, tilts: FloatArray
     # Each tilt begins with the loads of the one before it, from the least on.
     for index in sorted(columns, key=lambda index: abs(index - start_column)):
         neighbour = index + int(np.sign(start_column - index))
-        for line in range(approaches.size - 1, -1, -1):
-            guess = values[0, line, neighbour]
+        for row in range(approaches.size - 1, -1, -1):
+            guess = nodes[0, row, neighbour]
             if index == start_column:  # from the next larger approach, or the load of the case
                 guess = solver.case.normal_load
-                if line + 1 < approaches.size:
-                    guess = values[0, line + 1, start_column] * (approaches[line] / approaches[line + 1]) ** LOAD_POWER
-            values[:, line, index] = solver.solve_at_approach(
-                float(approaches[line]), float(tilts[index]), float(guess)
-            )
-            LOGGER.info(
-                "approach %.3g m, tilt %.3g rad: %.4g N", approaches[line], tilts[index], values[0, line, index]
-            )
+                if row + 1 < approaches.size:
+                    guess = nodes[0, row + 1, start_column] * (approaches[row] / approaches[row + 1]) ** LOAD_POWER
+            nodes[:, row, index] = solver.solve_at_approach(float(approaches[row]), float(tilts[index]), float(guess))
+            LOGGER.info("approach %.3g m, tilt %.3g rad: %.4g N", approaches[row], tilts[index], nodes[0, row, index])
     if reflected:
         for index in set(range(tilts.size)) - set(columns):
-            values[:, :, index] = values[:, :, tilts.size - 1 - index] * np.array([1, -1, 1])[:, None]
-    return Nodes(approaches, tilts, values[2], values[0], values[1])
+            nodes[:, :, index] = nodes[:, :, tilts.size - 1 - index] * np.array([1, -1, 1])[:, None]
+    return Nodes(approaches, tilts, nodes[2], nodes[0], nodes[1])
 
 
 def _is_symmetric(solver: ContactSolver) -> bool:
     """Whether roller and body are symmetric about mid-length."""
     case, (low, high) = solver.case, solver.case.body.extent
     length = case.roller.length
-    centred = np.isinf(low) or abs(low + high - 2 * case.roller_middle) <= MIRRORED * length
+    is_centred = np.isinf(low) or abs(low + high - 2 * case.roller_middle) <= TOLERANCE * length
     offsets = 0.5 * length * np.linspace(0.01, 0.99, 50)
     second_half, first_half = (
         case.roller.clearance(side * offsets, np.array([0.0, 1e-2 * length])) for side in (1, -1)
     )
-    return bool(centred) and bool(np.allclose(second_half, first_half, rtol=MIRRORED, atol=0.0))
+    return bool(is_centred) and bool(np.allclose(second_half, first_half, rtol=TOLERANCE, atol=0.0))
 
 
 def estimate_discretisation_errors(solver: ContactSolver, nodes: Nodes) -> FloatArray:
@@ -126,9 +122,9 @@ def estimate_discretisation_errors(solver: ContactSolver, nodes: Nodes) -> Float
     fine_solver = replace(solver, accuracy=solver.accuracy / 4.0)
     length = solver.case.contact_length
     errors = np.zeros(2)
-    sizes = np.abs(nodes.tilts)
+    tilt_sizes = np.abs(nodes.tilts)
     # The last of equal tilts: the first may be its reflection.
-    for index in {int(sizes.argmin()), sizes.size - 1 - int(sizes[::-1].argmax())}:
+    for index in {int(tilt_sizes.argmin()), tilt_sizes.size - 1 - int(tilt_sizes[::-1].argmax())}:
         load, moment = nodes.load[-1, index], nodes.moment[-1, index]
         fine_node = fine_solver.solve_at_approach(float(nodes.approaches[-1]), float(nodes.tilts[index]), float(load))
         errors = np.maximum(errors, [abs(fine_node.load / load - 1), abs(fine_node.moment - moment) / (load * length)])
@@ -199,23 +195,23 @@ def contact_law(
         raise InvalidInputError("tilts", tilts, f"small angles, at most {MAX_TILT} radians")
     solver = ContactSolver(case, checks.positive("accuracy", accuracy), checks.positive("tolerance", tolerance))
     if approaches is None:
-        first, last = (solver.solve_at_load(factor * case.normal_load, 0.0).approach for factor in LOAD_RANGE)
-        checked_approaches = np.geomspace(first, last, APPROACH_COUNT)
+        low, high = (solver.solve_at_load(factor * case.normal_load, 0.0).approach for factor in LOAD_RANGE)
+        checked_approaches = np.geomspace(low, high, APPROACH_COUNT)
     else:
         checked_approaches = _check_increasing("approaches", numbers_in_si("approaches", approaches, "m"), "metres")
         checks.positive("approaches", float(checked_approaches[0]), "metres")
     nodes = solve_nodes(solver, checked_approaches, checked_tilts)
     length = case.contact_length
-    fit, discretisation = estimate_fit_errors(nodes, length), estimate_discretisation_errors(solver, nodes)
-    return ContactLaw(label_law(solver, nodes, fit + discretisation[:, None, None]))
+    fit_errors, cell_errors = estimate_fit_errors(nodes, length), estimate_discretisation_errors(solver, nodes)
+    return ContactLaw(label_law(solver, nodes, fit_errors + cell_errors[:, None, None]))
 
 
 def _check_increasing(name: str, values: object, unit: str) -> FloatArray:
     """Return increasing numbers; raise for too few."""
-    checked = checks.coordinates(name, values, unit)
-    if checked.size < MIN_NODES or (np.diff(checked) <= 0).any():
-        raise InvalidInputError(name, checked.tolist(), f"{MIN_NODES} or more increasing numbers ({unit})")
-    return checked
+    numbers = checks.coordinates(name, values, unit)
+    if numbers.size < MIN_NODES or (np.diff(numbers) <= 0).any():
+        raise InvalidInputError(name, numbers.tolist(), f"{MIN_NODES} or more increasing numbers ({unit})")
+    return numbers
 
 
 def label_law(solver: ContactSolver, nodes: Nodes, errors: FloatArray) -> xr.Dataset:

@@ -62,9 +62,9 @@ class Counterbody:
         return Grid.between(body_edges, grid.y_range, grid.cells_y)
 
     def overlap(self, grid: Grid) -> FloatArray:
-        """Return the overlap of the counterbody's cells and the cells of `grid`, metres: array (own cell, cell).
+        """Return the overlap of the counterbody's cells and the cells of `grid`, metres: array (its cell, cell).
 
-        A uniform cell with its centre on the counterbody overlaps entirely; the last own cell includes the length
+        A uniform cell with its centre on the counterbody overlaps entirely; its last cell includes the length
         beyond the counterbody's end, which preserves the load.
         """
         body_edges, edges = self.start + self.grid_on_body(grid).x_edges, grid.x_edges

@@ -206,18 +206,18 @@ class Lubricant:
         """
         oil = OILS[checks.known_name("name", name, OILS)]
         theta = checks.finite("temperature", temperature, "degrees Celsius")
-        first, last = OIL_TEMPERATURES[0], OIL_TEMPERATURES[-1]
-        if not first <= theta <= last:
-            raise InvalidInputError("temperature", theta, f"from {first:g} to {last:g} degrees Celsius", SOURCE)
+        lowest, highest = OIL_TEMPERATURES[0], OIL_TEMPERATURES[-1]
+        if not lowest <= theta <= highest:
+            raise InvalidInputError("temperature", theta, f"from {lowest:g} to {highest:g} degrees Celsius", SOURCE)
         temperatures, logs = np.array(OIL_TEMPERATURES), np.log(oil.viscosities)
         # ln eta = A + B / (theta - C), through three points.
         ratio = (logs[0] - logs[1]) / (logs[1] - logs[2])
         ratio *= (temperatures[2] - temperatures[1]) / (temperatures[1] - temperatures[0])
         c = (ratio * temperatures[0] - temperatures[2]) / (ratio - 1)
         b = (logs[0] - logs[1]) / (1 / (temperatures[0] - c) - 1 / (temperatures[1] - c))
-        log = logs[0] + b * (1 / (theta - c) - 1 / (temperatures[0] - c))
+        log_viscosity = logs[0] + b * (1 / (theta - c) - 1 / (temperatures[0] - c))
         return cls(
-            viscosity=float(np.exp(log)),
+            viscosity=float(np.exp(log_viscosity)),
             pressure_viscosity=1e-9 * float(np.interp(theta, temperatures, oil.pressure_viscosities)),
             temperature_viscosity=float(b / (theta - c) ** 2),
         )
@@ -232,18 +232,18 @@ def walther(viscosities: dict[float, float], temperature: float) -> tuple[float,
     # ASTM D341, ``log10 log10(nu + 0.7) = A - B log10 T``, nu in mm2/s and T in kelvin, through two points: eq. (409).
     if not isinstance(viscosities, dict) or len(viscosities) != 2:
         raise InvalidInputError("viscosities", viscosities, "two kinematic viscosities (mm2/s) by temperature (C)")
-    (first, thick), (last, thin) = sorted(
+    (lower_temperature, thick), (upper_temperature, thin) = sorted(
         (checks.finite("viscosities", key), checks.positive("viscosities", value)) for key, value in viscosities.items()
     )
-    if not (thick > thin >= 2 and first > -KELVIN):
+    if not (thick > thin >= 2 and lower_temperature > -KELVIN):
         raise InvalidInputError(
             "viscosities", viscosities, "falling with the temperature, at least 2 mm2/s", "the range of ASTM D341"
         )
-    double_logarithms = [np.log10(np.log10(viscosity_at + 0.7)) for viscosity_at in (thick, thin)]
-    logs = [np.log10(viscosity_at + KELVIN) for viscosity_at in (first, last)]
-    b = (double_logarithms[0] - double_logarithms[1]) / (logs[1] - logs[0])
+    double_logarithms = [np.log10(np.log10(viscosity + 0.7)) for viscosity in (thick, thin)]
+    log_temperatures = [np.log10(celsius + KELVIN) for celsius in (lower_temperature, upper_temperature)]
+    b = (double_logarithms[0] - double_logarithms[1]) / (log_temperatures[1] - log_temperatures[0])
     kelvin = temperature + KELVIN
-    power = 10 ** (double_logarithms[0] + b * logs[0] - b * np.log10(kelvin))
+    power = 10 ** (double_logarithms[0] + b * log_temperatures[0] - b * np.log10(kelvin))
     viscosity = 10**power - 0.7
     return float(viscosity), float((viscosity + 0.7) / viscosity * power * np.log(10) * b / kelvin)
 

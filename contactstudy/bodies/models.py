@@ -32,7 +32,7 @@ class BodyTerm(NamedTuple):
 
     weight: float
     extent: Extent  # positions of the mirrors; infinite for none
-    freed: FreeEnds | None = None
+    free_ends: FreeEnds | None = None
 
 
 # Maximum ratio of a cell's sides, and of the window's width to the body's length: larger ratios suggest a wrong unit

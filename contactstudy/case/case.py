@@ -16,8 +16,8 @@ from contactstudy.bodies.lubricant import Lubricant
 from contactstudy.bodies.material import contact_modulus
 from contactstudy.bodies.models import Body
 from contactstudy.case.motion import (
-    KINDS,
-    MOTIONS,
+    MOTION_CLASSES,
+    MOTIONS_TEXT,
     AxialFriction,
     Friction,
     Motion,
@@ -62,8 +62,8 @@ class Case:
         Displacement of the roller towards the body at mid-length, metres, from the contact of the undeformed top with a
         profile drop of 0; see `reference` of `approach` in results.
     friction : float or DataArray (x)
-        Coefficient ``f``, a number or values at positions along x with lines between: in full sliding the shear
-        traction on the body is ``q = f p`` along +y; in any other motion ``f p`` is the bound on it.
+        Coefficient ``f``, a number or values at positions along x interpolated linearly: in full sliding the shear
+        traction on the body is ``q = f p`` along +y; in any other motion ``f p`` bounds the shear traction.
     end_distance : float, optional
         Distance ``e`` from the body's end I to the roller's nearer end, metres; negative if the roller
         overhangs. Default: the roller is centred on a finite-length space, and begins at ``x = 0`` otherwise.
@@ -118,10 +118,10 @@ class Case:
         )
         checks.instance("body", self.body, Body, allowed)
         checks.instance("roller", self.roller, Roller, "a Roller")
-        checks.instance("motion", self.motion, KINDS, MOTIONS)
+        checks.instance("motion", self.motion, MOTION_CLASSES, MOTIONS_TEXT)
         checks.instance("lubricant", self.lubricant, (Lubricant, type(None)), "a Lubricant(...), or None")
-        kinds = "profiles.Cylinder(fillet_radius) or profiles.Chamfer(...), or None for a sharp edge"
-        checks.instance("body_edge", self.body_edge, (Cylinder, Chamfer, type(None)), kinds)
+        edge_kinds = "profiles.Cylinder(fillet_radius) or profiles.Chamfer(...), or None for a sharp edge"
+        checks.instance("body_edge", self.body_edge, (Cylinder, Chamfer, type(None)), edge_kinds)
         checks.instance("coupled", self.coupled, (bool, np.bool_), "True or False")
         friction = check_friction(self.friction)
         check_coupled(friction, self.motion, coupled=self.coupled)
@@ -131,11 +131,11 @@ class Case:
 
     def __repr__(self) -> str:
         if self.approach is not None:
-            sizes = {"approach": (self.approach, "m")}
+            load_sizes = {"approach": (self.approach, "m")}
         else:
             p0, a = self.hertz_max_pressure, self.hertz_half_width
-            sizes = {"W": (self.normal_load, "N"), "p0": (p0, "Pa"), "a": (a, "m")}
-        amounts = ", ".join(f"{name} = {format_quantity(*size)}" for name, size in sizes.items())
+            load_sizes = {"W": (self.normal_load, "N"), "p0": (p0, "Pa"), "a": (a, "m")}
+        load_text = ", ".join(f"{name} = {format_quantity(*size)}" for name, size in load_sizes.items())
         motion = "full sliding along +y" if isinstance(self.motion, Sliding) else repr(self.motion)
         if isinstance(self.friction, AxialFriction):
             friction = f"friction from {min(self.friction.values):g} to {max(self.friction.values):g}"
@@ -146,7 +146,7 @@ class Case:
             details.append(f"tilt {format_quantity(self.tilt, 'rad')}")
         if self.load_position is not None:
             details.append(f"load at x = {format_quantity(self.load_position, 'm')}")
-        heading = f"Case: {amounts}, e = {format_quantity(self.roller_start, 'm')}"
+        heading = f"Case: {load_text}, e = {format_quantity(self.roller_start, 'm')}"
         return "\n  ".join([heading, repr(self.roller), repr(self.body), "; ".join(details)])
 
     def _check_position(self) -> None:

@@ -15,13 +15,13 @@ from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError, WindowError
 
 ACCURACY, TOLERANCE = 0.01, 1e-6  # Default error of the contact over the peak, and default tolerance of its iteration
-ACCURACIES = (1e-3, 0.1)  # Range of the accuracy
+ACCURACY_RANGE = (1e-3, 0.1)  # Range of the accuracy
 
 
 def check_accuracy(value: object) -> float:
     """Return an accuracy that the refinement can reach, or raise."""
     accuracy = checks.positive("accuracy", value)
-    minimum, maximum = ACCURACIES
+    minimum, maximum = ACCURACY_RANGE
     if not minimum <= accuracy <= maximum:
         raise InvalidInputError("accuracy", accuracy, f"from {minimum:g} to {maximum:g} of the peak pressure")
     return accuracy

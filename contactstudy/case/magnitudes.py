@@ -78,13 +78,13 @@ class UsualRange(NamedTuple):
     units: tuple[str, ...] = ()
 
 
-LENGTH = UsualRange(1e-5, 3.0, "m", ("mm", "µm"))  # From a pin of a watch to the roll of a mill
-STRENGTH = UsualRange(1e5, 1e10, "Pa", ("GPa", "MPa"))  # From soft lead to hard metal
+LENGTH_RANGE = UsualRange(1e-5, 3.0, "m", ("mm", "µm"))  # From a pin of a watch to the roll of a mill
+STRENGTH_RANGE = UsualRange(1e5, 1e10, "Pa", ("GPa", "MPa"))  # From soft lead to hard metal
 
-RANGES = {
+USUAL_RANGES = {
     "young": UsualRange(1e6, 1.5e12, "Pa", ("GPa", "MPa")),  # soft rubber to diamond
-    "radius": LENGTH._replace(maximum=1.5),
-    "length": LENGTH,
+    "radius": LENGTH_RANGE._replace(maximum=1.5),
+    "length": LENGTH_RANGE,
     "friction": UsualRange(0.0, 1.5, "1", ("%",)),  # clean metals reach about 1
     "tilt": UsualRange(0.0, 0.01, "rad", ("deg", "mrad")),  # bearings take a few mrad
     # Over the roller's radius: 1e-5 is 1 MPa on steel; 0.1 exceeds the yield stress of metals.
@@ -93,9 +93,9 @@ RANGES = {
     "approach": UsualRange(0.0, 0.1, "m", ("mm", "µm")),
     "drop": UsualRange(0.0, 0.15, "m", ("mm", "µm")),  # crowns are micrometres, balls are cut short
     "end drop": UsualRange(0.0, 0.5, "m", ("mm", "µm")),  # with corners
-    "bending": STRENGTH,
-    "torsion": STRENGTH,
-    "yield_stress": STRENGTH,
+    "bending": STRENGTH_RANGE,
+    "torsion": STRENGTH_RANGE,
+    "yield_stress": STRENGTH_RANGE,
     "dynamic_rating": UsualRange(500.0, 1e8, "N", ("kN",)),  # from needles to the bearings of a mill
     "roughness": UsualRange(0.0, 2e-4, "m", ("mm", "µm")),  # from peak to valley
     "viscosity": UsualRange(1e-4, 1e3, "Pa s", ("mPa s",)),  # from petrol to grease
@@ -162,7 +162,7 @@ def _warn(messages: Iterable[str], stacklevel: int) -> None:
 
 def _describe(quantity_name: str, name: str, value: float, radius: float | None = None) -> str:
     """Message on a value outside its usual range (for depths over the roller's radius); empty inside."""
-    usual = RANGES[quantity_name]
+    usual = USUAL_RANGES[quantity_name]
     minimum, maximum = (usual.minimum, usual.maximum) if radius is None else (-np.inf, usual.maximum * radius)
     if minimum <= value <= maximum:
         return ""
@@ -224,7 +224,7 @@ def _describe_flat_crown(case: Case) -> str:
 
 def _describe_unusual_design(case: Case) -> str:
     """Message on the design load of a logarithmic crown."""
-    usual_range, radius = RANGES["half_width"], case.roller.radius
+    usual_range, radius = USUAL_RANGES["half_width"], case.roller.radius
     for profile in _find_components(case.roller.profile, Logarithmic):
         amplitude = profile.amplitude
         # A = R (p0 / E*)**2, so the half-width of the design load is 2 (A R)**0.5.
@@ -243,7 +243,7 @@ def _describe_unusual_load(case: Case) -> str:
     """Message on load or pressure by the Hertz half-width, or on the approach."""
     if case.approach is not None:
         return _describe("approach", "approach", case.approach - case.first_touch, case.roller.radius)
-    usual_range, half_width = RANGES["half_width"], case.hertz_half_width / case.roller.radius
+    usual_range, half_width = USUAL_RANGES["half_width"], case.hertz_half_width / case.roller.radius
     if usual_range.minimum <= half_width <= usual_range.maximum:
         return ""
     rating = "low" if half_width < usual_range.minimum else "high"

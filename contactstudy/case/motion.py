@@ -218,7 +218,7 @@ class Rolling(StickSlip):
 
 
 Motion = Sliding | Shift | Rolling  # Any motion
-KINDS, MOTIONS = (Sliding, Shift, Rolling), "a Sliding(), a Shift(...) or a Rolling(...)"
+MOTION_CLASSES, MOTIONS_TEXT = (Sliding, Shift, Rolling), "a Sliding(), a Shift(...) or a Rolling(...)"
 """Classes of motions, and their text in messages."""
 
 

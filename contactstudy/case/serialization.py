@@ -103,7 +103,7 @@ def from_dict(values: Mapping[str, Any], part_class: type[CasePart]) -> CasePart
 
 
 def _from_json(values: Any) -> Any:
-    """CasePart of a case from JSON values."""
+    """Case, or a part of a case, from JSON values."""
     if isinstance(values, Mapping):
         arguments = {str(key): _from_json(value) for key, value in values.items() if key != "kind"}
         return KINDS[values["kind"]](**arguments)

@@ -25,12 +25,12 @@ LOGGER = logging.getLogger(__name__)
 
 # A variable of the result, or a function of the result that returns a number, or a number and its error
 Measure = str | Callable[[xr.Dataset], object]
-RESOLUTION = 1e-9  # Fraction of a parameter's range below which two designs are equal
+MIN_DIFFERENCE = 1e-9  # Fraction of a parameter's range below which two designs are equal
 SCAN_COUNT, SPREAD_COUNT = 7, 8  # Designs of the first scan: of one parameter, and factor on powers of two
 # Fractions of the range: accuracy of the optimum, and size of the first simplex. Speed and accuracy
-OPTIMUM_TOLERANCE, SIMPLEX = 0.01, 0.15
-END_ACCURACY = 0.02  # Accuracy of the end of a flat range, as a fraction of the parameter's range
-MAX_ERRORS = 20.0  # Bound, in errors, on the difference from the optimum in the search for an end
+OPTIMUM_TOLERANCE, SIMPLEX_SIZE = 0.01, 0.15
+FLAT_RANGE_TOLERANCE = 0.02  # Accuracy of the end of a flat range, as a fraction of the parameter's range
+MAX_EXCESS_RATIO = 20.0  # Bound, in errors, on the difference from the optimum in the search for an end
 # Advice for a scan without a finite measure
 REMEDY = (
     "a pressure or stress is infinite at a sharp end of the contact: widen the bounds until the ends drop enough, take "
@@ -102,7 +102,7 @@ class Evaluations:
     def find_earlier(self, fractions: FloatArray) -> Design | None:
         """Return an earlier design at the fractions of the ranges, or None."""
         return next(
-            (design for design in self.designs if np.abs(design.fractions - fractions).max() <= RESOLUTION),
+            (design for design in self.designs if np.abs(design.fractions - fractions).max() <= MIN_DIFFERENCE),
             None,
         )
 
@@ -125,7 +125,7 @@ class Evaluations:
 
     def _solve_design(self, fractions: FloatArray) -> Design:
         """Solve every case of a design."""
-        pairs = np.full((len(self.cases), 2), np.inf)
+        measures = np.full((len(self.cases), 2), np.inf)
         try:
             parameters = self.parameters(fractions)
             try:
@@ -138,13 +138,13 @@ class Evaluations:
                 if self.designs:  # the first design emits the warnings of magnitudes
                     warnings.simplefilter("ignore", MagnitudeWarning)
                 for index, case in enumerate(cases):
-                    pairs[index] = self._measure_case(case)
+                    measures[index] = self._measure_case(case)
         except (InvalidInputError, WindowError) as error:
             if isinstance(error, InvalidInputError) and error.parameter in ("measure", "bounds"):
                 raise
             # The bounds may contain invalid profiles, or profiles without contact.
             self.last_error = error
-        return Design(fractions, pairs[:, 0], pairs[:, 1])
+        return Design(fractions, measures[:, 0], measures[:, 1])
 
     def _measure_case(self, case: Case) -> tuple[float, float]:
         """Measure of one case and its error."""
@@ -189,63 +189,63 @@ def min_designs(parameters: int) -> int:
 
 def search_optimum(evaluations: Evaluations) -> Design:
     """Return the best design; the search reserves evaluations for the ends of the flat range."""
-    count = len(evaluations.ranges)
-    if count == 1:
+    parameters = len(evaluations.ranges)
+    if parameters == 1:
         scan = np.linspace(0.0, 1.0, SCAN_COUNT)[:, None]
     else:
         from scipy.stats.qmc import Sobol
 
-        scan = Sobol(count, scramble=False).random(min_designs(count) - 1)
-    first = min((evaluations(fractions) for fractions in scan), key=lambda design: design.value)
-    if not np.isfinite(first.value):
+        scan = Sobol(parameters, scramble=False).random(min_designs(parameters) - 1)
+    start_design = min((evaluations(fractions) for fractions in scan), key=lambda design: design.value)
+    if not np.isfinite(start_design.value):
         if evaluations.last_error is not None:
             raise evaluations.last_error
         bounds = {name: (limits.low, limits.high) for name, limits in evaluations.ranges.items()}
         raise InvalidInputError("bounds", bounds, "such that the measure is finite somewhere within them", REMEDY)
     # The search replaces an infinite measure by 1e3 times the least measure.
-    ceiling = 1e3 * max(abs(first.value), np.finfo(np.float64).tiny)
+    maximum = 1e3 * max(abs(start_design.value), np.finfo(np.float64).tiny)
 
     def finite_measure(fractions: FloatArray) -> float:
-        return min(evaluations(np.atleast_1d(fractions)).value, ceiling)
+        return min(evaluations(np.atleast_1d(fractions)).value, maximum)
 
     # Evaluations per parameter that are reserved for the ends of the flat range
-    limit = max(evaluations.remaining - 4 * count, 1)
-    if count > 1:  # Nelder and Mead's simplex tolerates errors and kinks.
-        simplex = np.tile(first.fractions, (count + 1, 1))
+    budget = max(evaluations.remaining - 4 * parameters, 1)
+    if parameters > 1:  # Nelder and Mead's simplex tolerates errors and kinks.
+        simplex = np.tile(start_design.fractions, (parameters + 1, 1))
         # The simplex points away from the nearer bound, within the range.
-        simplex[1:] += np.diag(np.where(first.fractions > 0.5, -SIMPLEX, SIMPLEX))
+        simplex[1:] += np.diag(np.where(start_design.fractions > 0.5, -SIMPLEX_SIZE, SIMPLEX_SIZE))
         options = {
             "initial_simplex": simplex,
             "xatol": OPTIMUM_TOLERANCE,
-            "fatol": first.error,
-            "maxfev": limit,
+            "fatol": start_design.error,
+            "maxfev": budget,
         }
         optimize.minimize(
             finite_measure,
-            first.fractions,
+            start_design.fractions,
             method="Nelder-Mead",
-            bounds=[(0.0, 1.0)] * count,
+            bounds=[(0.0, 1.0)] * parameters,
             options=options,
         )
-    elif limit > 1:  # Brent's method, between the neighbours of the best design; it takes two designs or more.
-        start, step = float(first.fractions[0]), 1 / (SCAN_COUNT - 1)
+    elif budget > 1:  # Brent's method, between the neighbours of the best design; it takes two designs or more.
+        start, step = float(start_design.fractions[0]), 1 / (SCAN_COUNT - 1)
         bracket = (max(start - step, 0.0), min(start + step, 1.0))
-        options = {"xatol": OPTIMUM_TOLERANCE, "maxiter": limit}
+        options = {"xatol": OPTIMUM_TOLERANCE, "maxiter": budget}
         optimize.minimize_scalar(finite_measure, bounds=bracket, method="bounded", options=options)
     return evaluations.best
 
 
 def find_flat_range(evaluations: Evaluations, best: Design, parameter: int) -> tuple[float, float]:
     """Return the fractions between which a parameter alone changes the measure by less than the errors."""
-    sides = 2 * (len(evaluations.ranges) - parameter)
-    low = _find_flat_end(evaluations, best, parameter, 0.0, limit=evaluations.remaining // sides)
-    return low, _find_flat_end(evaluations, best, parameter, 1.0, limit=evaluations.remaining // (sides - 1))
+    side_count = 2 * (len(evaluations.ranges) - parameter)
+    low = _find_flat_end(evaluations, best, parameter, 0.0, limit=evaluations.remaining // side_count)
+    return low, _find_flat_end(evaluations, best, parameter, 1.0, limit=evaluations.remaining // (side_count - 1))
 
 
 def _find_flat_end(evaluations: Evaluations, best: Design, parameter: int, bound: float, *, limit: int) -> float:
     """End of the flat range towards one bound, with at most `limit` further designs."""
-    centre = float(best.fractions[parameter])
-    if abs(centre - bound) <= RESOLUTION:
+    origin = float(best.fractions[parameter])
+    if abs(origin - bound) <= MIN_DIFFERENCE:
         return bound
 
     def fractions_with(fraction: float) -> FloatArray:
@@ -257,15 +257,15 @@ def _find_flat_end(evaluations: Evaluations, best: Design, parameter: int, bound
         """Difference of a design from the best beyond the errors of both."""
         design = evaluations(fractions_with(fraction))
         if not np.isfinite(design.value):
-            return MAX_ERRORS * best.error
-        return float(min(design.value - best.value - design.error - best.error, MAX_ERRORS * best.error))
+            return MAX_EXCESS_RATIO * best.error
+        return float(min(design.value - best.value - design.error - best.error, MAX_EXCESS_RATIO * best.error))
 
     # Earlier designs on this line, outwards from the best; the first worse design ends the flat range.
-    flat_end, worse_end = centre, None
+    flat_end, worse_end = origin, None
     for fraction in sorted(
-        _fractions_on_line(evaluations, best, parameter), key=lambda fraction: abs(fraction - centre)
+        _fractions_on_line(evaluations, best, parameter), key=lambda fraction: abs(fraction - origin)
     ):
-        if (fraction - centre) * (bound - centre) <= 0:
+        if (fraction - origin) * (bound - origin) <= 0:
             continue
         if excess(fraction) > 0:
             worse_end = fraction
@@ -279,30 +279,30 @@ def _find_flat_end(evaluations: Evaluations, best: Design, parameter: int, bound
         if excess(bound) <= 0:
             return bound
         worse_end = bound
-    if abs(worse_end - flat_end) <= END_ACCURACY or limit < 1:
+    if abs(worse_end - flat_end) <= FLAT_RANGE_TOLERANCE or limit < 1:
         return flat_end
-    end, state = optimize.brentq(
-        excess, flat_end, worse_end, xtol=END_ACCURACY, rtol=1e-3, maxiter=limit, full_output=True, disp=False
+    flat_limit, state = optimize.brentq(
+        excess, flat_end, worse_end, xtol=FLAT_RANGE_TOLERANCE, rtol=1e-3, maxiter=limit, full_output=True, disp=False
     )
     if state.converged:
-        return float(end)
+        return float(flat_limit)
     low, high = sorted((flat_end, worse_end))
     inner = [fraction for fraction in _fractions_on_line(evaluations, best, parameter) if low <= fraction <= high]
-    return max((fraction for fraction in inner if excess(fraction) <= 0), key=lambda fraction: abs(fraction - centre))
+    return max((fraction for fraction in inner if excess(fraction) <= 0), key=lambda fraction: abs(fraction - origin))
 
 
 def _fractions_on_line(evaluations: Evaluations, best: Design, parameter: int) -> list[float]:
     """Fractions of the designs that differ from the best in this parameter alone."""
     others = np.delete(np.array([design.fractions for design in evaluations.designs]), parameter, axis=1)
-    aligned = (np.abs(others - np.delete(best.fractions, parameter)) <= RESOLUTION).all(axis=1)
+    on_line = (np.abs(others - np.delete(best.fractions, parameter)) <= MIN_DIFFERENCE).all(axis=1)
     return [
         float(design.fractions[parameter])
-        for design, is_aligned in zip(evaluations.designs, aligned, strict=True)
-        if is_aligned
+        for design, is_on_line in zip(evaluations.designs, on_line, strict=True)
+        if is_on_line
     ]
 
 
-AT_BOUND = 0.01  # Fraction of a range between an optimum at a bound and the bound
+BOUND_TOLERANCE = 0.01  # Fraction of a range between an optimum at a bound and the bound
 # Default settings: the default measure needs no stresses
 NO_STRESSES: Mapping[str, object] = MappingProxyType({"stresses": False})
 
@@ -444,7 +444,7 @@ def _label_designs(designs: Evaluations, ends: list[tuple[float, float]]) -> xr.
     ]
     # An entirely flat range does not bound the optimum.
     at_bound = [
-        min(fraction, 1 - fraction) < AT_BOUND and not (low < AT_BOUND and high > 1 - AT_BOUND)
+        min(fraction, 1 - fraction) < BOUND_TOLERANCE and not (low < BOUND_TOLERANCE and high > 1 - BOUND_TOLERANCE)
         for (low, high), fraction in zip(ends, best.fractions, strict=True)
     ]
     parameters = [list(designs.parameters(design.fractions).values()) for design in evaluated_designs]

@@ -107,21 +107,21 @@ class FatigueLimits:
 def _compute_deviators(history: Array) -> tuple[Array, Array]:
     """Deviators (point, instant, 5) in axes that preserve the tensor's norm, and hydrostatic stresses."""
     xx, yy, zz, xy, xz, yz = np.moveaxis(history, -1, 0)
-    mean = (xx + yy + zz) / 3
-    root = np.sqrt(2.0)
+    hydrostatic = (xx + yy + zz) / 3
+    sqrt2 = np.sqrt(2.0)
     # Ilyushin's axes: the sum of the squares is s:s.
-    vector = [np.sqrt(1.5) * (xx - mean), (yy - zz) / root, root * xy, root * xz, root * yz]
-    return np.stack(vector, axis=-1), mean
+    vector = [np.sqrt(1.5) * (xx - hydrostatic), (yy - zz) / sqrt2, sqrt2 * xy, sqrt2 * xz, sqrt2 * yz]
+    return np.stack(vector, axis=-1), hydrostatic
 
 
 def _max_shear(deviator: Array) -> Array:
     """Half of Tresca's stress of deviators in Ilyushin's axes."""
-    first, difference, xy, xz, yz = np.moveaxis(deviator, -1, 0)
-    root = np.sqrt(2.0)
-    xx = first / np.sqrt(1.5)
-    yy, zz = 0.5 * (-xx + root * difference), 0.5 * (-xx - root * difference)
-    rows = [np.stack(row, axis=-1) for row in ((xx, xy / root, xz / root), (xy / root, yy, yz / root))]
-    rows.append(np.stack((xz / root, yz / root, zz), axis=-1))
+    scaled_xx, difference, xy, xz, yz = np.moveaxis(deviator, -1, 0)
+    sqrt2 = np.sqrt(2.0)
+    xx = scaled_xx / np.sqrt(1.5)
+    yy, zz = 0.5 * (-xx + sqrt2 * difference), 0.5 * (-xx - sqrt2 * difference)
+    rows = [np.stack(row, axis=-1) for row in ((xx, xy / sqrt2, xz / sqrt2), (xy / sqrt2, yy, yz / sqrt2))]
+    rows.append(np.stack((xz / sqrt2, yz / sqrt2, zz), axis=-1))
     principal = np.linalg.eigvalsh(np.stack(rows, axis=-2))
     return np.asarray(0.5 * (principal[..., 2] - principal[..., 0]))
 
@@ -173,23 +173,23 @@ def dang_van(stress: xr.Dataset, limits: FatigueLimits) -> xr.Dataset:
     tensor, rolling = stack_history(stress)
 
     def criterion(history: Array) -> tuple[Array, ...]:
-        deviator, mean = _compute_deviators(history)
+        deviator, hydrostatic = _compute_deviators(history)
         centre, _ = enclosing_balls(deviator)
         shear = _max_shear(deviator - centre[:, None])
-        total = shear + limits.dang_van_slope * mean
-        instant_index = total.argmax(axis=1)[:, None]
-        terms_at_maximum = [np.take_along_axis(values, instant_index, axis=1)[:, 0] for values in (total, shear, mean)]
-        return (*terms_at_maximum, instant_index[:, 0].astype(np.float64))
+        damage = shear + limits.dang_van_slope * hydrostatic
+        instant_index = damage.argmax(axis=1)[:, None]
+        terms = [np.take_along_axis(values, instant_index, axis=1)[:, 0] for values in (damage, shear, hydrostatic)]
+        return (*terms, instant_index[:, 0].astype(np.float64))
 
-    total, shear, mean, instant = map_histories(criterion, stress, 4)
+    damage, shear, hydrostatic, instant = map_histories(criterion, stress, 4)
     instant = instant.compute()
     loaded = instant < tensor.sizes[rolling]
     index = instant.where(loaded, 0).astype(np.int64).reset_coords(drop=True)
     values = {
-        "dang_van": total,
-        "utilisation": total / limits.torsion,
+        "dang_van": damage,
+        "utilisation": damage / limits.torsion,
         "dang_van_shear": shear,
-        "dang_van_hydrostatic": mean,
+        "dang_van_hydrostatic": hydrostatic,
         "dang_van_y": positions(tensor, "y").isel({rolling: index}).where(loaded),
     }
     return _to_dataset("dang_van", values)
@@ -234,24 +234,24 @@ def crossland(stress: xr.Dataset, limits: FatigueLimits) -> xr.Dataset:
     slope = limits.crossland_slope
 
     def criterion(history: Array) -> tuple[Array, ...]:
-        deviator, mean = _compute_deviators(history)
+        deviator, hydrostatic = _compute_deviators(history)
         _, radius = enclosing_balls(deviator)
-        return radius / np.sqrt(2.0), mean.max(axis=1)
+        return radius / np.sqrt(2.0), hydrostatic.max(axis=1)
 
-    shear, mean = map_histories(criterion, stress, 2)
-    total = shear + slope * mean
+    shear, hydrostatic = map_histories(criterion, stress, 2)
+    damage = shear + slope * hydrostatic
     values = {
-        "crossland": total,
-        "utilisation": total / limits.torsion,
+        "crossland": damage,
+        "utilisation": damage / limits.torsion,
         "crossland_shear": shear,
-        "crossland_hydrostatic": mean,
+        "crossland_hydrostatic": hydrostatic,
     }
     return _to_dataset("crossland", values)
 
 
 # Planes of the first search, evenly over a hemisphere (10 degrees apart), and shear directions per plane
 NORMALS, DIRECTIONS = 200, 8
-STARTS = 4  # Number of refined frames
+FRAMES = 4  # Number of refined frames
 # Largest and smallest rotation of plane and direction in the refinement
 MAX_ROTATION, MIN_ROTATION = np.radians(8.0), np.radians(1e-3)
 
@@ -264,12 +264,12 @@ def _create_frames() -> Array:
     azimuth = np.pi * (1 + np.sqrt(5)) * index
     radius = np.sqrt(1 - height**2)
     normal = np.stack([radius * np.cos(azimuth), radius * np.sin(azimuth), height], axis=-1)
-    first = np.cross(normal, np.where(np.abs(normal[:, :1]) < 0.7, [[1.0, 0, 0]], [[0, 1.0, 0]]))
-    first /= np.linalg.norm(first, axis=-1, keepdims=True)
-    second = np.cross(normal, first)
+    first_axis = np.cross(normal, np.where(np.abs(normal[:, :1]) < 0.7, [[1.0, 0, 0]], [[0, 1.0, 0]]))
+    first_axis /= np.linalg.norm(first_axis, axis=-1, keepdims=True)
+    second_axis = np.cross(normal, first_axis)
     angle = np.pi * np.arange(DIRECTIONS) / DIRECTIONS
     direction = (
-        first[:, None] * np.cos(angle)[None, :, None] + second[:, None] * np.sin(angle)[None, :, None]
+        first_axis[:, None] * np.cos(angle)[None, :, None] + second_axis[:, None] * np.sin(angle)[None, :, None]
     ).reshape(-1, 3)
     return np.stack([np.repeat(normal, DIRECTIONS, axis=0), direction], axis=1)
 
@@ -278,8 +278,8 @@ def _resolution_vectors(frames: Array) -> tuple[Array, Array]:
     """Vectors (..., 6) of shear ``n.sigma.m`` and normal stress ``n.sigma.n`` over the six components."""
     normal, direction = frames[..., 0, :], frames[..., 1, :]
 
-    def create_resolver(first: Array, second: Array) -> Array:
-        (ax, ay, az), (bx, by, bz) = np.moveaxis(first, -1, 0), np.moveaxis(second, -1, 0)
+    def create_resolver(normal_a: Array, normal_b: Array) -> Array:
+        (ax, ay, az), (bx, by, bz) = np.moveaxis(normal_a, -1, 0), np.moveaxis(normal_b, -1, 0)
         shear_terms = (ax * by + ay * bx, ax * bz + az * bx, ay * bz + az * by)
         return np.stack([ax * bx, ay * by, az * bz, *shear_terms], axis=-1)
 
@@ -311,16 +311,16 @@ def _worst_planes(history: Array, slope: float) -> tuple[Array, ...]:
     """Sum, shear amplitude, largest normal stress and components of the normal, on the worst plane of each history."""
     search_frames = _create_frames()
     shear_vectors, normal_vectors = _resolution_vectors(search_frames)
-    best = np.empty((len(history), STARTS, 2, 3))
+    best_frames = np.empty((len(history), FRAMES, 2, 3))
     block = max(1, 2**24 // (history.shape[1] * len(search_frames)))  # Bound on the memory of the first search
     for start in range(0, len(history), block):
         block_history = history[start : start + block]
         shear = block_history @ shear_vectors.T
         max_normal = np.repeat((block_history @ normal_vectors[::DIRECTIONS].T).max(axis=1), DIRECTIONS, axis=1)
         damage = 0.5 * (shear.max(axis=1) - shear.min(axis=1)) + slope * max_normal
-        best[start : start + block] = search_frames[np.argpartition(damage, -STARTS, axis=1)[:, -STARTS:]]
-    frames = best.reshape(-1, 2, 3)
-    point = np.repeat(np.arange(len(history)), STARTS)
+        best_frames[start : start + block] = search_frames[np.argpartition(damage, -FRAMES, axis=1)[:, -FRAMES:]]
+    frames = best_frames.reshape(-1, 2, 3)
+    point = np.repeat(np.arange(len(history)), FRAMES)
     angle = np.full(len(frames), MAX_ROTATION)
     active = np.arange(len(frames))
     # The search ignores gains below rounding; otherwise equivalent planes prevent its end.
@@ -328,11 +328,11 @@ def _worst_planes(history: Array, slope: float) -> tuple[Array, ...]:
     while active.size:
         candidates = _rotate_frames(frames[active], angle[active])
         damage, _, _ = _compute_damage(history[point[active]], candidates, slope)
-        better = np.where(damage.max(axis=1) > damage[:, 0] + min_gain[point[active]], damage.argmax(axis=1), 0)
-        frames[active] = candidates[np.arange(active.size), better]
-        angle[active[better == 0]] *= 0.5
+        choice = np.where(damage.max(axis=1) > damage[:, 0] + min_gain[point[active]], damage.argmax(axis=1), 0)
+        frames[active] = candidates[np.arange(active.size), choice]
+        angle[active[choice == 0]] *= 0.5
         active = active[angle[active] > MIN_ROTATION]
-    refined_frames = frames.reshape(-1, STARTS, 2, 3)
+    refined_frames = frames.reshape(-1, FRAMES, 2, 3)
     damage_terms = _compute_damage(history, refined_frames, slope)
     worst = damage_terms[0].argmax(axis=1)[:, None]
     normal = np.take_along_axis(refined_frames[:, :, 0], worst[..., None], axis=1)[:, 0]
@@ -378,14 +378,14 @@ def findley(stress: xr.Dataset, limits: FatigueLimits) -> xr.Dataset:
     1.0
     """
     checks.instance("limits", limits, FatigueLimits, "a FatigueLimits")
-    total, shear, normal, *plane = map_histories(
+    damage, shear, normal, *normals = map_histories(
         lambda history: _worst_planes(history, limits.findley_slope), stress, 6
     )
     values = {
-        "findley": total,
-        "utilisation": total / limits.findley_limit,
+        "findley": damage,
+        "utilisation": damage / limits.findley_limit,
         "findley_shear": shear,
         "findley_normal": normal,
-        "findley_plane": xr.concat(plane, "axis", coords="minimal", compat="override").transpose(..., "axis"),
+        "findley_plane": xr.concat(normals, "axis", coords="minimal", compat="override").transpose(..., "axis"),
     }
     return describe(_to_dataset("findley", values).assign_coords(axis=list(AXES)))

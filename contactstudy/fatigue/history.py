@@ -29,8 +29,8 @@ def stack_history(stress: xr.Dataset) -> tuple[xr.DataArray, str]:
     stress = require_in_si(stress, *STRESSES, argument="stress")
     rolling = rolling_dimension(stress["tau_yz"])
     tensor = xr.concat([stress[name] for name in STRESSES], dim=COMPONENT, coords="minimal", compat="override")
-    lead = [dim for dim in tensor.dims if dim not in (rolling, COMPONENT)]
-    return tensor.transpose(*lead, rolling, COMPONENT), rolling
+    other_dims = [dim for dim in tensor.dims if dim not in (rolling, COMPONENT)]
+    return tensor.transpose(*other_dims, rolling, COMPONENT), rolling
 
 
 def rolling_dimension(stress: xr.DataArray) -> str:
@@ -54,13 +54,13 @@ def map_histories(
 
     def apply(values: Array) -> tuple[Array, ...]:
         points = values.reshape(-1, *values.shape[-2:]).astype(np.float64)
-        padding = np.isnan(points).any(axis=-1)
-        loaded = ~padding.all(axis=-1)
+        is_padding = np.isnan(points).any(axis=-1)
+        is_loaded = ~is_padding.all(axis=-1)
         # Positions that pad a shorter window are unloaded.
-        points[padding] = 0.0
-        results = np.full((outputs, loaded.size), np.nan)
-        if loaded.any():
-            results[:, loaded] = function(np.concatenate([points, np.zeros_like(points[:, :1])], axis=1)[loaded])
+        points[is_padding] = 0.0
+        results = np.full((outputs, is_loaded.size), np.nan)
+        if is_loaded.any():
+            results[:, is_loaded] = function(np.concatenate([points, np.zeros_like(points[:, :1])], axis=1)[is_loaded])
         return tuple(results.reshape(outputs, *values.shape[:-2]))
 
     return reduce_dims(apply, [(tensor, [rolling, COMPONENT])], outputs)
@@ -135,9 +135,9 @@ def enclosing_balls(points: Array, heights: Array | None = None) -> tuple[Array,
     )
     centres = paths[:, 0].copy()
     radii = np.sqrt(squares[:, 0])
-    slots = points.shape[-1] + 1
-    support = np.zeros((open_paths.size, slots), dtype=np.int64)
-    occupied = np.zeros((open_paths.size, slots), dtype=bool)
+    max_support = points.shape[-1] + 1
+    support = np.zeros((open_paths.size, max_support), dtype=np.int64)
+    occupied = np.zeros((open_paths.size, max_support), dtype=bool)
     occupied[:, 0] = True
     for _ in range(MAX_STEPS):
         distance = np.sqrt(((paths - centres[:, None]) ** 2).sum(axis=-1) + squares)
@@ -157,51 +157,51 @@ def enclosing_balls(points: Array, heights: Array | None = None) -> tuple[Array,
 
 
 def _add_point(
-    path: Array, squares: Array, support: Array, used: Array, farthest: Array
+    path: Array, squares: Array, support: Array, occupied: Array, farthest: Array
 ) -> tuple[Array, Array, Array, Array]:
     """Smallest balls around their support and the farthest point; `squares`: squared heights."""
     rows = np.arange(len(path))
-    slots = support.shape[1]
-    subset_size = int(used.sum(axis=1).max())
+    max_support = support.shape[1]
+    subset_size = int(occupied.sum(axis=1).max())
     new_point, new_height = path[rows, farthest], squares[rows, farthest]
     offsets = path[rows[:, None], support[:, :subset_size]] - new_point[:, None]
     gram = np.einsum("pia,pja->pij", offsets, offsets)
     rises = squares[rows[:, None], support[:, :subset_size]] - new_height[:, None]
     square = np.einsum("pii->pi", gram) + rises
-    present = used[:, :subset_size]
-    min_radius = np.full(len(path), np.inf)
-    centre, best_subset = np.zeros_like(new_point), np.zeros_like(present)
+    is_present = occupied[:, :subset_size]
+    min_squared_radius = np.full(len(path), np.inf)
+    centre, best_subset = np.zeros_like(new_point), np.zeros_like(is_present)
     for subset in product((False, True), repeat=subset_size):
         mask = np.array(subset)
-        if mask.sum() >= slots:  # more points than support a ball
+        if mask.sum() >= max_support:  # more points than support a ball
             continue
         # The circumcentre has equal distances from the new point and from the subset.
-        count = int(mask.sum())
+        size = int(mask.sum())
         matrix = gram[:, mask][:, :, mask]
-        regular = matrix + REGULARISATION * np.eye(count) * (1 + np.trace(matrix, axis1=1, axis2=2))[:, None, None]
-        factors = np.linalg.solve(regular, 0.5 * square[:, mask][..., None])[..., 0] if count else square[:, mask]
+        regular = matrix + REGULARISATION * np.eye(size) * (1 + np.trace(matrix, axis1=1, axis2=2))[:, None, None]
+        factors = np.linalg.solve(regular, 0.5 * square[:, mask][..., None])[..., 0] if size else square[:, mask]
         offset = np.einsum("pi,pia->pa", factors, offsets[:, mask])
-        square_radius = (offset**2).sum(axis=1) + new_height
+        squared_radius = (offset**2).sum(axis=1) + new_height
         distances = ((offsets - offset[:, None]) ** 2).sum(axis=-1) + rises + new_height[:, None]
-        farthest_distance = np.where(present, distances, 0.0).max(axis=1)
-        valid = (
-            (farthest_distance <= square_radius * (1 + ROUNDING))
-            & ~(mask & ~present).any(axis=1)
-            & (square_radius < min_radius)
+        farthest_distance = np.where(is_present, distances, 0.0).max(axis=1)
+        is_valid = (
+            (farthest_distance <= squared_radius * (1 + ROUNDING))
+            & ~(mask & ~is_present).any(axis=1)
+            & (squared_radius < min_squared_radius)
         )
-        min_radius = np.where(valid, square_radius, min_radius)
-        centre[valid] = (new_point + offset)[valid]
-        best_subset[valid] = mask
-    if not np.isfinite(min_radius).all():
+        min_squared_radius = np.where(is_valid, squared_radius, min_squared_radius)
+        centre[is_valid] = (new_point + offset)[is_valid]
+        best_subset[is_valid] = mask
+    if not np.isfinite(min_squared_radius).all():
         raise ArithmeticError("no ball around the support and a new point")
     # The points that support the new ball move to the front.
-    supporting = np.zeros((len(path), slots + 1), dtype=bool)
-    supporting[:, :subset_size], supporting[:, slots] = best_subset, True
-    order = np.argsort(~supporting, axis=1, kind="stable")[:, :slots]
+    is_support = np.zeros((len(path), max_support + 1), dtype=bool)
+    is_support[:, :subset_size], is_support[:, max_support] = best_subset, True
+    order = np.argsort(~is_support, axis=1, kind="stable")[:, :max_support]
     candidates = np.concatenate([support, farthest[:, None]], axis=1)
     return (
         centre,
-        np.sqrt(min_radius),
+        np.sqrt(min_squared_radius),
         np.take_along_axis(candidates, order, axis=1),
-        np.take_along_axis(supporting, order, axis=1),
+        np.take_along_axis(is_support, order, axis=1),
     )

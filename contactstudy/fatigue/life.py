@@ -124,7 +124,7 @@ def relative_life(risk: xr.Dataset, reference: xr.Dataset, exponents: LifeExpone
 
 
 MAX_TRUNCATED_RISK = 0.01  # Maximum fraction of the risk from sections with a truncated history or depth
-Data = TypeVar("Data", xr.Dataset, xr.DataArray)  # Data of a risk
+StressData = TypeVar("StressData", xr.Dataset, xr.DataArray)  # StressData of a risk
 ERROR_ALONG_X_AND_Z = (
     "of the positions along x and z alone, without the error of the positions along y and of the pressure"
 )
@@ -142,14 +142,14 @@ def _depth_positions(stress: xr.DataArray) -> tuple[str, xr.DataArray]:
 def _find_maximum(stress: Array, depth: Array) -> tuple[Array, Array]:
     """Largest stress over the depth and its position, by a parabola through the three nearest points."""
     depth = np.broadcast_to(depth, stress.shape)
-    filled = np.where(np.isnan(stress), -np.inf, stress)
-    index = filled.argmax(axis=-1)
+    finite_stress = np.where(np.isnan(stress), -np.inf, stress)
+    index = finite_stress.argmax(axis=-1)
 
     def take(values: Array, step: int) -> Array:
         column = np.clip(index + step, 0, values.shape[-1] - 1)[..., None]
         return np.asarray(np.take_along_axis(values, column, axis=-1)[..., 0])
 
-    (z1, z2, z3), (s1, s2, s3) = ([take(values, step) for step in (-1, 0, 1)] for values in (depth, filled))
+    (z1, z2, z3), (s1, s2, s3) = ([take(values, step) for step in (-1, 0, 1)] for values in (depth, finite_stress))
     with np.errstate(divide="ignore", invalid="ignore"):
         slope_before, slope_after = (s2 - s1) / (z2 - z1), (s3 - s2) / (z3 - z2)
         curvature = (slope_after - slope_before) / (z3 - z1)
@@ -175,9 +175,9 @@ def _integrate_risk(
     density: xr.DataArray,
     exponents: LifeExponents,
     theory: Mapping[str, str | float],
-    cut: dict[str, xr.DataArray],
+    truncated: dict[str, xr.DataArray],
 ) -> xr.Dataset:
-    """Risk along x, and integrated over x; `cut`: sections with a truncated stress, by the reason."""
+    """Risk along x, and integrated over x; `truncated`: sections with a truncated stress, by the reason."""
     x = dimension_along(density, "x")
     if density.sizes[x] < 2:
         raise InvalidInputError("stress", dict(density.sizes), "given at two or more positions along x")
@@ -185,7 +185,7 @@ def _integrate_risk(
     if (positions(density, "x").diff(x) <= 0).any():
         raise InvalidInputError("x", positions(density, "x").values, "increasing positions")
     risk = _sum_over_x(density)
-    for name, mask in cut.items():
+    for name, mask in truncated.items():
         fraction = _sum_over_x(density.where(mask, 0.0)) / risk.where(risk > 0)
         if (fraction > MAX_TRUNCATED_RISK).any():
             raise InvalidInputError(
@@ -211,7 +211,7 @@ def _sum_over_x(density: xr.DataArray) -> xr.DataArray:
 
 
 def _estimate_error(
-    data: Data, field: xr.DataArray, risk: xr.DataArray, compute_risk: Callable[[Data], xr.DataArray]
+    data: StressData, field: xr.DataArray, risk: xr.DataArray, compute_risk: Callable[[StressData], xr.DataArray]
 ) -> xr.DataArray:
     """Sum over the axes of the change with every second position; infinite with too few positions."""
     error = np.zeros(risk.shape)
@@ -332,16 +332,16 @@ def _cut_fraction(excess: Array, depth: Array, exponents: LifeExponents) -> Arra
     def take(values: Array, index: IntArray) -> Array:
         return np.asarray(np.take_along_axis(values, index, axis=-1)[..., 0])
 
-    ends = [(take(excess, index), take(depth, index)) for index in (np.zeros_like(last), last - 1, last)]
-    (head, top), (before, high), (tail, low) = ends
+    border_values = [(take(excess, index), take(depth, index)) for index in (np.zeros_like(last), last - 1, last)]
+    (first_excess, first_depth), (previous_excess, previous_depth), (last_excess, last_depth) = border_values
     with np.errstate(divide="ignore", invalid="ignore"):
-        below_last = np.where(
-            tail > 0,
-            tail * (low - high) / np.log(np.maximum(before / tail, 1.0)),
+        integral_below = np.where(
+            last_excess > 0,
+            last_excess * (last_depth - previous_depth) / np.log(np.maximum(previous_excess / last_excess, 1.0)),
             0.0,
         )
-        # The mean depth changes by an equal fraction.
-        fraction = (1 + exponents.depth) * (head * top + below_last) / _integrate(excess, depth)
+        # The mean depth changes by the same fraction as the integral and enters with the exponent `depth`.
+        fraction = (1 + exponents.depth) * (first_excess * first_depth + integral_below) / _integrate(excess, depth)
     return np.where(np.isnan(fraction), 0.0, fraction)
 
 

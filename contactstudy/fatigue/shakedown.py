@@ -197,17 +197,17 @@ def shakedown_limit(stress: xr.Dataset, *, axial: bool = False) -> xr.Dataset:
     return result
 
 
-def _study_limits(study: xr.Dataset, swept: dict[Hashable, int], *, axial: bool) -> xr.Dataset:
+def _study_limits(study: xr.Dataset, swept_sizes: dict[Hashable, int], *, axial: bool) -> xr.Dataset:
     """Limits of every case of a study; NaN without stresses."""
     limits: dict[str, Array] = {}
-    for index in np.ndindex(*swept.values()):
-        case = study.isel(dict(zip(swept, index, strict=True))).compute()
+    for index in np.ndindex(*swept_sizes.values()):
+        case = study.isel(dict(zip(swept_sizes, index, strict=True))).compute()
         if np.isnan(case["tau_yz"].values).all():
             continue
         for name, value in shakedown_limit(case, axial=axial).items():
-            limits.setdefault(str(name), np.full(tuple(swept.values()), np.nan))[index] = float(value)
-    coordinates = {name: study[name] for name in swept if name in study.coords}
-    result = xr.Dataset({name: (tuple(swept), values) for name, values in limits.items()}, coordinates)
+            limits.setdefault(str(name), np.full(tuple(swept_sizes.values()), np.nan))[index] = float(value)
+    coordinates = {name: study[name] for name in swept_sizes if name in study.coords}
+    result = xr.Dataset({name: (tuple(swept_sizes), values) for name, values in limits.items()}, coordinates)
     return describe(result)
 
 
@@ -245,7 +245,7 @@ POINTS_PER_ELEMENT = 4
 MIN_POINTS = 5  # Along x and z, for a stress function with free coefficients
 MAX_GAP = 1e-4  # Relative duality gap of convergence
 MAX_PROGRAMS = 20  # Bound on the programs; about six suffice
-ROOT = np.sqrt(3.0)
+SQRT3 = np.sqrt(3.0)
 
 
 def shakedown_in_plane(stress: xr.Dataset, body: Body) -> xr.Dataset:
@@ -306,10 +306,10 @@ def shakedown_in_plane(stress: xr.Dataset, body: Body) -> xr.Dataset:
     history = values.reshape(-1, *values.shape[2:])
     history = np.concatenate([history, np.zeros_like(history[:, :1])], axis=1)
     scale = float(np.abs(history).max()) or 1.0
-    function = _stress_matrices(body.extent, x, z)
-    program = _Program(history / scale, function)
-    airy, attained, bound = program.solve()
-    gap = max(attained - bound, 0.0) / max(attained, 1e-300)
+    stress_matrices = _stress_matrices(body.extent, x, z)
+    program = _Program(history / scale, stress_matrices)
+    airy, max_stress, bound = program.solve()
+    gap = max(max_stress - bound, 0.0) / max(max_stress, 1e-300)
     if gap > MAX_GAP:
         warnings.warn(
             f"the shakedown program has a gap of {gap:.2g} after {MAX_PROGRAMS} programs: the bound holds, and a "
@@ -317,21 +317,21 @@ def shakedown_in_plane(stress: xr.Dataset, body: Body) -> xr.Dataset:
             ConvergenceWarning,
             stacklevel=2,
         )
-    in_plane = [scale * (matrix @ airy) for matrix in function]
+    in_plane = [scale * (matrix @ airy) for matrix in stress_matrices]
     centre, radius, _ = program.compute_balls(airy)
     xx, zz, xz = in_plane
     results = {
         "first_yield_stress": _min_yield_stress(history).max(axis=1),
-        "shakedown_stress": scale * radius / ROOT,
+        "shakedown_stress": scale * radius / SQRT3,
         "residual_sigma_xx": xx,
         # The free stress along u is rho_yy - (rho_xx + rho_zz) / 2.
         "residual_sigma_yy": -scale * centre + 0.5 * (xx + zz),
         "residual_sigma_zz": zz,
         "residual_tau_xz": xz,
     }
-    layout = tensor.isel({rolling: 0, tensor.dims[-1]: 0}, drop=True).transpose(*dims)
+    template = tensor.isel({rolling: 0, tensor.dims[-1]: 0}, drop=True).transpose(*dims)
     result = xr.Dataset(
-        {name: label_points(name, layout.copy(data=flat.reshape(layout.shape))) for name, flat in results.items()}
+        {name: label_points(name, template.copy(data=field.reshape(template.shape))) for name, field in results.items()}
     )
     result["peak_shakedown_stress"] = label_points("peak_shakedown_stress", result["shakedown_stress"].max())
     result["program_gap"] = name_array("program_gap", xr.DataArray(gap))
@@ -349,9 +349,9 @@ def _stress_matrices(extent: tuple[float, float], x: FloatArray, z: FloatArray) 
         length / max(splines.edges.size - 1, 1) for length, splines in zip(lengths, (splines_x, splines_z), strict=True)
     ]
     values_x, values_z = StressFunction(splines_x, splines_z).values(x, z)
-    unit = scales[0] * scales[1]
+    scale = scales[0] * scales[1]
     return [
-        sparse.csr_array(sign * unit * sparse.kron(sparse.csr_array(values_x[i]), values_z[j]))
+        sparse.csr_array(sign * scale * sparse.kron(sparse.csr_array(values_x[i]), values_z[j]))
         for i, j, sign in ((0, 2, 1), (2, 0, 1), (1, 1, -1))
     ]
 
@@ -372,10 +372,10 @@ class _Program:
 
     def __post_init__(self) -> None:
         xx, zz, xz = self.function
-        self._v, self._xz = sparse.csr_array(0.5 * ROOT * (xx - zz)), sparse.csr_array(ROOT * xz)
+        self._v, self._xz = sparse.csr_array(0.5 * SQRT3 * (xx - zz)), sparse.csr_array(SQRT3 * xz)
         self.u, self.v, _ = to_ball_axes(self.history)
-        self.xz = ROOT * self.history[..., 4]
-        self.rest = np.sqrt(3 * (self.history[..., 3] ** 2 + self.history[..., 5] ** 2))
+        self.xz = SQRT3 * self.history[..., 4]
+        self.fixed_shear = np.sqrt(3 * (self.history[..., 3] ** 2 + self.history[..., 5] ** 2))
 
     def compute_balls(self, airy: FloatArray) -> tuple[Array, Array, Array]:
         """Free stress along u and least von Mises stress at every point, with the residual stress in the plane.
@@ -383,53 +383,55 @@ class _Program:
         The third is the von Mises stress at every instant.
         """
         v, xz = self.v + (self._v @ airy)[:, None], self.xz + (self._xz @ airy)[:, None]
-        squared = v**2 + xz**2 + self.rest**2
+        squared = v**2 + xz**2 + self.fixed_shear**2
         centre, radius = enclosing_balls(self.u[..., None], np.sqrt(squared))
         return centre[:, 0], radius, np.sqrt((self.u - centre) ** 2 + squared)
 
     def solve(self) -> tuple[FloatArray, float, float]:
         """Coefficients, the largest von Mises stress with them, and the program's lower bound of it."""
-        best, min_radius, bound = np.zeros(self._v.shape[1]), np.inf, 0.0
-        airy = best
+        best_airy, min_radius, bound = np.zeros(self._v.shape[1]), np.inf, 0.0
+        airy = best_airy
         # The unloaded state at every point bounds all coefficients.
-        active = np.zeros(self.history.shape[:2], dtype=bool)
-        active[:, -1] = True
+        is_active = np.zeros(self.history.shape[:2], dtype=bool)
+        is_active[:, -1] = True
         for program_index in range(MAX_PROGRAMS + 1):
             _, radius, stress = self.compute_balls(airy)
             if radius.max() < min_radius:
-                best, min_radius = airy, float(radius.max())
+                best_airy, min_radius = airy, float(radius.max())
             if program_index == MAX_PROGRAMS or min_radius - bound <= MAX_GAP * min_radius:
                 break
             # Add the instants that support the smallest ball at points above the program's bound.
-            critical = radius > max(bound, 0.5 * radius.max())
-            active |= (stress >= radius[:, None] * (1 - 0.3 * MAX_GAP)) & critical[:, None]
-            airy, bound = self._minimise(active)
-        return best, min_radius, bound
+            is_critical = radius > max(bound, 0.5 * radius.max())
+            is_active |= (stress >= radius[:, None] * (1 - 0.3 * MAX_GAP)) & is_critical[:, None]
+            airy, bound = self._minimise(is_active)
+        return best_airy, min_radius, bound
 
-    def _minimise(self, active: Array) -> tuple[FloatArray, float]:
+    def _minimise(self, is_active: Array) -> tuple[FloatArray, float]:
         """Coefficients and least largest stress over the active instants."""
         try:
             import clarabel
         except ImportError as error:
             raise ImportError("cone programs need the package clarabel: install contactstudy[shakedown]") from error
-        point, instant = np.nonzero(active)
-        points, index = np.unique(point, return_inverse=True)
-        count, free_count, coefficients = point.size, points.size, self._v.shape[1]
-        rows = np.arange(count)
+        point, instant = np.nonzero(is_active)
+        points, point_index = np.unique(point, return_inverse=True)
+        cone_count, point_count, coefficient_count = point.size, points.size, self._v.shape[1]
+        rows = np.arange(cone_count)
 
-        # Variables: t, the free stress of each point, the coefficients. Rows: t, u, v, xz, rest of every instant.
+        # Variables: t, the free stress of each point, the coefficients. Rows: t, u, v, xz, fixed shear per instant.
         def place(row: int, columns: IntArray, width: int) -> sparse.csr_array:
-            return sparse.csr_array((np.full(count, -1.0), (5 * rows + row, columns)), shape=(5 * count, width))
+            return sparse.csr_array(
+                (np.full(cone_count, -1.0), (5 * rows + row, columns)), shape=(5 * cone_count, width)
+            )
 
-        rows_vxz = [place(row, rows, count) for row in (2, 3)]
+        rows_vxz = [place(row, rows, cone_count) for row in (2, 3)]
         airy_matrix = rows_vxz[0] @ self._v[point] + rows_vxz[1] @ self._xz[point]
-        matrix = sparse.hstack([place(0, 0 * rows, 1), place(1, index, free_count), airy_matrix], format="csc")
+        matrix = sparse.hstack([place(0, 0 * rows, 1), place(1, point_index, point_count), airy_matrix], format="csc")
         constants = [
             0 * self.u[point, instant],
-            *(values[point, instant] for values in (self.u, self.v, self.xz, self.rest)),
+            *(values[point, instant] for values in (self.u, self.v, self.xz, self.fixed_shear)),
         ]
         right_hand_side = np.stack(constants, axis=1).ravel()
-        cost = np.zeros(1 + free_count + coefficients)
+        cost = np.zeros(1 + point_count + coefficient_count)
         cost[0] = 1.0
         settings = clarabel.DefaultSettings()
         settings.verbose = False
@@ -438,8 +440,8 @@ class _Program:
             cost,
             matrix,
             right_hand_side,
-            [clarabel.SecondOrderConeT(5)] * count,
+            [clarabel.SecondOrderConeT(5)] * cone_count,
             settings=settings,
         )
         solution = solver.solve()
-        return np.asarray(solution.x)[1 + free_count :], float(solution.obj_val_dual)
+        return np.asarray(solution.x)[1 + point_count :], float(solution.obj_val_dual)

@@ -143,9 +143,9 @@ def end_kernel_of(
     part: BodyTerm, material: Material, grid: Grid, responses: tuple[Response, ...], resolution: Resolution
 ) -> EndKernel | None:
     """Kernel of the ends of a part, None without; raises for tangential displacements of the single-mirror model."""
-    if part.freed is None:
+    if part.free_ends is None:
         return None
-    if part.freed.mirrored_once and any(response.displacement is not Load.NORMAL for response in responses):
+    if part.free_ends.mirrored_once and any(response.displacement is not Load.NORMAL for response in responses):
         raise InvalidInputError(
             "body.model",
             "single-mirror",
@@ -153,7 +153,7 @@ def end_kernel_of(
             "residual shear on its ends breaks reciprocity",
         )
     reference = reference_distance(part.extent)
-    return end_kernel(EndRequest.of(part.freed, material, grid, responses, reference, resolution=resolution))
+    return end_kernel(EndRequest.of(part.free_ends, material, grid, responses, reference, resolution=resolution))
 
 
 def reference_distance(extent: Extent) -> float:

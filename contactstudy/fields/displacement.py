@@ -88,8 +88,8 @@ def displacement_under(
         for body_part in body.terms:
             length, reference = body_part.extent[1] - body_part.extent[0], reference_distance(body_part.extent)
             end_terms: dict[Load, FloatArray] = {}
-            if body_part.freed and cells.any():
-                problem = end_problem(body_part.freed, material.poisson, cells, shape, grid, loads=directions)
+            if body_part.free_ends and cells.any():
+                problem = end_problem(body_part.free_ends, material.poisson, cells, shape, grid, loads=directions)
                 (end_terms,) = end_fields(problem, DISPLACEMENT, [points], reference)
             for load, total in fields.items():
                 influence = displacement_influence(load, material.poisson, length, reference)
@@ -119,8 +119,8 @@ def normal_influence(body: Body, grid: Grid, load: Load, x: FloatArray, z: float
             points = Points(x[section], -grid.y, np.array([z]))
             field = half_space_influence(influence, grid, points, extent=part.extent)[normal, ..., 0]
             total[section] += part.weight * kernel_factor(material) * field
-        if part.freed:
-            problem = unit_problem(part.freed, material.poisson, grid, load)
+        if part.free_ends:
+            problem = unit_problem(part.free_ends, material.poisson, grid, load)
             line = Points(x, np.zeros(1), np.array([z]))
             for amplitudes, filters in unit_fields(problem, DISPLACEMENT, line, reference):
                 field = np.einsum("xniz,njy->xij", amplitudes[normal], filters[normal], optimize=True)

@@ -92,7 +92,7 @@ def equivalent_loads(
 
 def _load_reference(body: Body) -> float | None:
     """Distance along y at which equivalent loads without stress are zero, metres; None without two exact ends."""
-    freed = next((part.freed for part in body.terms if part.freed), None)
+    freed = next((part.free_ends for part in body.terms if part.free_ends), None)
     is_relative = freed is not None and np.isfinite(freed.length) and not freed.mirrored_once
     return REFERENCE_LENGTHS * freed.length if freed is not None and is_relative else None
 
@@ -104,7 +104,7 @@ def overlapping_operators(
     body.check_span(grid)
     if (depths < 0).any():
         raise InvalidInputError("z", float(depths.min()), "not negative (metres below the top)")
-    freed = next((part.freed for part in body.terms if part.freed), None)
+    freed = next((part.free_ends for part in body.terms if part.free_ends), None)
     if freed is None:
         return None
     cells = np.zeros(grid.shape) if cells is None else cells

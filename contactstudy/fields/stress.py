@@ -109,7 +109,7 @@ def _label_stresses(body: Body, grid: Grid, stresses: FloatArray, positions: Fie
 
 def _free_edges(body: Body, grid: Grid, stresses: FloatArray, points: Points) -> None:
     """Set the traction on the edges between top and free ends to zero, where both auxiliary bodies have a logarithm."""
-    if all(part.freed for part in body.terms):
+    if all(part.free_ends for part in body.terms):
         on_end, on_top = np.isin(points.x, body.extent), points.z < CORNER_OFFSET * grid.dy
         for component in (0, 3, 4):
             stresses[component][np.ix_(on_end, np.ones(points.y.size, bool), on_top)] = 0.0
@@ -145,8 +145,8 @@ def _unit_stress(
     fields: dict[Load, list[FloatArray]] = {}
     for part in body.terms:
         end_terms: list[dict[Load, FloatArray]] = [{} for _ in axes]
-        if part.freed and cells.values.any():
-            problem = end_problem(part.freed, poisson, cells.values, shape_cells, grid, loads=loads)
+        if part.free_ends and cells.values.any():
+            problem = end_problem(part.free_ends, poisson, cells.values, shape_cells, grid, loads=loads)
             end_terms = end_fields(problem, STRESS, axes, reference_distance(part.extent))
         for load in loads:
             terms = []
@@ -246,8 +246,8 @@ class StressOperator(LinearOperator):  # type: ignore[misc]
                 self._half_space[cell] += half_space_field(
                     unit, stress_influence(load, poisson), grid, distance_points, extent=part.extent
                 )
-            if part.freed:
-                problem = unit_problem(part.freed, poisson, grid, load)
+            if part.free_ends:
+                problem = unit_problem(part.free_ends, poisson, grid, load)
                 for amplitudes, filters in unit_fields(problem, STRESS, points, reference_distance(part.extent)):
                     amplitudes[[2, 4, 5]] *= (points.z != 0) * part.weight
                     amplitudes[[0, 1, 3]] *= part.weight

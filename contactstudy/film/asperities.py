@@ -12,7 +12,7 @@ from contactstudy import checks
 from contactstudy.checks import FloatArray
 from contactstudy.film.reynolds import Law
 
-NODES = 64
+NODE_COUNT = 64
 """Gauss points of the integral over the asperities. Accuracy."""
 
 MAX_HEIGHT = 6.0
@@ -66,8 +66,8 @@ class Asperities:
     def _law(self, distance: FloatArray, modulus: float) -> Law:
         if self.pressure is not None:
             step = 1e-4 * self.rms
-            values = [np.asarray(self.pressure(distance + side * step), dtype=np.float64) for side in (-1, 0, 1)]
-            return Law(values[1], (values[2] - values[0]) / (2 * step))
+            pressures = [np.asarray(self.pressure(distance + side * step), dtype=np.float64) for side in (-1, 0, 1)]
+            return Law(pressures[1], (pressures[2] - pressures[0]) / (2 * step))
         factor = 16 * np.sqrt(2) * np.pi / 15 * self.density**2 * np.sqrt(self.sharpness) * modulus  # eq. (412)
         ratio = distance / self.rms
         return Law(factor * _integrate_overlap(ratio, 2.5), -2.5 * factor * _integrate_overlap(ratio, 1.5) / self.rms)
@@ -90,16 +90,16 @@ class Asperities:
             contact_fraction = 0.5 * (1 + erf(ratio / np.sqrt(2)))
             # Far below zero the two terms cancel.
             gauss = np.exp(-0.5 * np.minimum(ratio**2, 1e3)) / np.sqrt(2 * np.pi)
-            mean = scale * np.maximum(ratio * contact_fraction + gauss, gauss / (2 + ratio**2))  # eq. (413)
-            return Law(mean, np.maximum(contact_fraction, 1e-300))
+            film = scale * np.maximum(ratio * contact_fraction + gauss, gauss / (2 + ratio**2))  # eq. (413)
+            return Law(film, np.maximum(contact_fraction, 1e-300))
 
         return law
 
 
-def _integrate_overlap(ratio: FloatArray, power: float) -> FloatArray:
-    """Integral of ``(s - ratio)**power`` over the normal distribution above `ratio`."""
-    nodes, weights = np.polynomial.legendre.leggauss(NODES)
-    lower_limit = np.minimum(ratio, MAX_HEIGHT)
+def _integrate_overlap(height_ratio: FloatArray, power: float) -> FloatArray:
+    """Integral of ``(s - ratio)**power`` over the normal distribution above `height_ratio`."""
+    nodes, weights = np.polynomial.legendre.leggauss(NODE_COUNT)
+    lower_limit = np.minimum(height_ratio, MAX_HEIGHT)
     half_range = 0.5 * (MAX_HEIGHT - np.maximum(lower_limit, -MAX_HEIGHT))
     heights = MAX_HEIGHT - half_range[..., None] * (1 - nodes)
     depth = np.maximum(heights - lower_limit[..., None], 0.0)

@@ -11,7 +11,7 @@ from scipy.fft import next_fast_len
 
 from contactstudy.checks import FloatArray, IntArray
 
-Size = Callable[[float], float]
+CellWidth = Callable[[float], float]
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,19 +27,19 @@ class MergedCells:
     edges: IntArray
 
     @classmethod
-    def of(cls, count: int, size: Callable[[float, float], float]) -> MergedCells:
-        """Merge `count` uniform cells in powers of two, at most ``size(first, last)`` cells between two edges."""
+    def of(cls, cell_count: int, max_count: Callable[[float, float], float]) -> MergedCells:
+        """Merge `cell_count` uniform cells in powers of two, at most ``size(first, last)`` cells between two edges."""
         edges = [0]
-        while edges[-1] < count:
-            first, width = edges[-1], 1
+        while edges[-1] < cell_count:
+            first_cell, width = edges[-1], 1
             previous = edges[-1] - edges[-2] if len(edges) > 1 else 1 << 30
             while (
-                first % (2 * width) == 0
-                and first + 2 * width <= count
-                and 2 * width <= min(2 * previous, size(first, first + 2 * width))
+                first_cell % (2 * width) == 0
+                and first_cell + 2 * width <= cell_count
+                and 2 * width <= min(2 * previous, max_count(first_cell, first_cell + 2 * width))
             ):
                 width *= 2
-            edges.append(first + width)
+            edges.append(first_cell + width)
         return cls(np.array(edges))
 
     @cached_property
@@ -50,37 +50,37 @@ class MergedCells:
     @cached_property
     def centre_cells(self) -> tuple[IntArray, IntArray]:
         """Uniform cells on either side of each centre; equal for an odd number of uniform cells."""
-        total = self.edges[1:] + self.edges[:-1]
-        return (total - 1) // 2, total // 2
+        edge_sums = self.edges[1:] + self.edges[:-1]
+        return (edge_sums - 1) // 2, edge_sums // 2
 
-    def to_uniform_cells(self, values: FloatArray) -> FloatArray:
+    def to_uniform_cells(self, field: FloatArray) -> FloatArray:
         """Values (x, merged cell) on the uniform cells."""
-        return np.repeat(values, self.counts, axis=-1)
+        return np.repeat(field, self.counts, axis=-1)
 
-    def to_centres(self, values: FloatArray) -> FloatArray:
+    def to_centres(self, field: FloatArray) -> FloatArray:
         """Values at the centres of merged cells from values (x, uniform cell)."""
-        first, second = self.centre_cells
-        return np.asarray(0.5 * (values[..., first] + values[..., second]))
+        lower_cells, upper_cells = self.centre_cells
+        return np.asarray(0.5 * (field[..., lower_cells] + field[..., upper_cells]))
 
-    def average(self, values: FloatArray) -> FloatArray:
+    def average(self, field: FloatArray) -> FloatArray:
         """Means over the cells of values on uniform cells (x, uniform cell)."""
-        return np.asarray(np.add.reduceat(values, self.edges[:-1], axis=-1) / self.counts)
+        return np.asarray(np.add.reduceat(field, self.edges[:-1], axis=-1) / self.counts)
 
     def compute_stiffness(self, response: FloatArray) -> FloatArray:
         """Matrices (x, cell, cell) from the response (x, offset) to a load on one uniform cell."""
-        count = response.shape[-1]
+        cell_count = response.shape[-1]
         two_sided_response = np.concatenate([response[:, :0:-1], response], axis=-1)
         sums = np.concatenate([np.zeros((len(response), 1)), np.cumsum(two_sided_response, axis=-1)], axis=-1)
-        total = np.zeros((len(response), self.counts.size, self.counts.size))
+        stiffness = np.zeros((len(response), self.counts.size, self.counts.size))
         for centre_cell in self.centre_cells:
             # The offsets of the uniform cells of a merged cell are consecutive.
-            from_first = centre_cell[:, None] - self.edges[None, :] + count
-            total += 0.5 * (sums[:, from_first[:, :-1]] - sums[:, from_first[:, 1:]])
-        return total
+            offsets = centre_cell[:, None] - self.edges[None, :] + cell_count
+            stiffness += 0.5 * (sums[:, offsets[:, :-1]] - sums[:, offsets[:, 1:]])
+        return stiffness
 
 
-def graded_edges(start: float, stop: float, size: Size) -> FloatArray:
-    """Edges from `start` to `stop` of cells about as wide as `size` at their midpoint.
+def graded_edges(start: float, stop: float, cell_width: CellWidth) -> FloatArray:
+    """Edges from `start` to `stop` of cells about as wide as `cell_width` at their midpoint.
 
     Examples
     --------
@@ -90,16 +90,16 @@ def graded_edges(start: float, stop: float, size: Size) -> FloatArray:
     # Cells of equal measure in the density 1 / size.
     points = [start]
     while points[-1] < stop:
-        points.append(points[-1] + 0.1 * size(points[-1]))
+        points.append(points[-1] + 0.1 * cell_width(points[-1]))
     positions = np.minimum(np.array(points), stop)
     midpoints = 0.5 * (positions[1:] + positions[:-1])
-    measure = np.concatenate([[0.0], np.cumsum(np.diff(positions) / [size(width) for width in midpoints])])
-    count = max(2, int(np.ceil(measure[-1] - 1e-9)))
-    edges = np.interp(np.linspace(0.0, measure[-1], count + 1), measure, positions)
+    measure = np.concatenate([[0.0], np.cumsum(np.diff(positions) / [cell_width(x) for x in midpoints])])
+    cell_count = max(2, int(np.ceil(measure[-1] - 1e-9)))
+    edges = np.interp(np.linspace(0.0, measure[-1], cell_count + 1), measure, positions)
     edges[0], edges[-1] = start, stop
     return np.asarray(edges)
 
 
-def uniform_count(length: float, width: float) -> int:
+def count_uniform_cells(length: float, width: float) -> int:
     """Return the number of uniform cells, at most `width` wide: a multiple of 16 of a fast transform length."""
     return 16 * int(next_fast_len(int(np.ceil(length / width / 16)), real=True))

@@ -20,12 +20,12 @@ def moes_line(load: FloatArray | float, lubricant: FloatArray | float) -> FloatA
     >>> round(float(moes_line(20.0, 10.0)), 3)
     5.101
     """
-    rigid, soft = 3.0 / np.asarray(load), 2.621 * np.asarray(load) ** -0.2
-    viscous = 1.287 * np.asarray(lubricant) ** (2 / 3)
-    elastic = 1.311 * np.asarray(load) ** -0.125 * np.asarray(lubricant) ** 0.75
-    s = (7 + 8 * np.exp(-2 * soft / rigid)) / 5
-    thin = (viscous**-3.5 + elastic**-3.5) ** (-2 * s / 7)
-    return np.asarray(((rigid ** (7 / 3) + soft ** (7 / 3)) ** (3 * s / 7) + thin) ** (1 / s))
+    h_ri, h_ei = 3.0 / np.asarray(load), 2.621 * np.asarray(load) ** -0.2
+    h_rp = 1.287 * np.asarray(lubricant) ** (2 / 3)
+    h_ep = 1.311 * np.asarray(load) ** -0.125 * np.asarray(lubricant) ** 0.75
+    s = (7 + 8 * np.exp(-2 * h_ei / h_ri)) / 5
+    piezoviscous = (h_rp**-3.5 + h_ep**-3.5) ** (-2 * s / 7)
+    return np.asarray(((h_ri ** (7 / 3) + h_ei ** (7 / 3)) ** (3 * s / 7) + piezoviscous) ** (1 / s))
 
 
 def nijenbanning(load: float, lubricant: float, ratio: float = 1.0) -> float:
@@ -43,15 +43,15 @@ def nijenbanning(load: float, lubricant: float, ratio: float = 1.0) -> float:
     >>> round(nijenbanning(20.0, 10.0), 2)
     4.71
     """
-    rigid = 145 * (1 + 0.796 * ratio ** (14 / 15)) ** (-15 / 7) * load**-2 / ratio
-    soft = 3.18 * (1 + 0.006 * np.log(ratio) + 0.63 * ratio ** (4 / 7)) ** (-14 / 25) * ratio ** (-1 / 15)
-    soft *= load ** (-2 / 15)
-    viscous = 1.29 * (1 + 0.691 * ratio) ** (-2 / 3) * lubricant ** (2 / 3)
-    elastic = 1.48 * (1 + 0.006 * np.log(ratio) + 0.63 * ratio ** (4 / 7)) ** (-7 / 20) * ratio ** (-1 / 24)
-    elastic *= load ** (-1 / 12) * lubricant**0.75
-    s = 1.5 * (1 + np.exp(-1.2 * soft / rigid))
-    first = (rigid**1.5 + (soft**-4 + (1.8 / ratio) ** -4) ** (-3 / 8)) ** (2 * s / 3)
-    return float((first + (viscous**-8 + elastic**-8) ** (-s / 8)) ** (1 / s))
+    h_ri = 145 * (1 + 0.796 * ratio ** (14 / 15)) ** (-15 / 7) * load**-2 / ratio
+    h_ei = 3.18 * (1 + 0.006 * np.log(ratio) + 0.63 * ratio ** (4 / 7)) ** (-14 / 25) * ratio ** (-1 / 15)
+    h_ei *= load ** (-2 / 15)
+    h_rp = 1.29 * (1 + 0.691 * ratio) ** (-2 / 3) * lubricant ** (2 / 3)
+    h_ep = 1.48 * (1 + 0.006 * np.log(ratio) + 0.63 * ratio ** (4 / 7)) ** (-7 / 20) * ratio ** (-1 / 24)
+    h_ep *= load ** (-1 / 12) * lubricant**0.75
+    s = 1.5 * (1 + np.exp(-1.2 * h_ei / h_ri))
+    isoviscous = (h_ri**1.5 + (h_ei**-4 + (1.8 / ratio) ** -4) ** (-3 / 8)) ** (2 * s / 3)
+    return float((isoviscous + (h_rp**-8 + h_ep**-8) ** (-s / 8)) ** (1 / s))
 
 
 def dowson_higginson(speed: float, material: float, load: float) -> float:
@@ -82,5 +82,5 @@ def thermal_reduction(pressure_ratio: float, loading: float, slide_roll_ratio: f
     >>> thermal_reduction(5e-3, 0.0, 0.1), round(thermal_reduction(5e-3, 1.0, 0.1), 3)
     (1.0, 0.728)
     """
-    heated = 1 + 0.213 * (1 + 2.23 * abs(slide_roll_ratio) ** 0.83) * loading**0.64
-    return float((1 - 13.2 * pressure_ratio * loading**0.42) / heated)
+    inlet_heating = 1 + 0.213 * (1 + 2.23 * abs(slide_roll_ratio) ** 0.83) * loading**0.64
+    return float((1 - 13.2 * pressure_ratio * loading**0.42) / inlet_heating)

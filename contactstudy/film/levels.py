@@ -20,7 +20,7 @@ from contactstudy.checks import FloatArray
 from contactstudy.contact.normal.contact import Contact, Settings, contact_of, contact_operator
 from contactstudy.contact.refinement.refined_contact import contact_shape, refine_contact
 from contactstudy.film.asperities import Asperities
-from contactstudy.film.cells import MergedCells, graded_edges, uniform_count
+from contactstudy.film.cells import MergedCells, count_uniform_cells, graded_edges
 from contactstudy.film.formulas import moes_line
 from contactstudy.film.newton import FilmSettings, solve_from_dry, solve_newton
 from contactstudy.film.problem import FilmProblem, FilmSolution, FilmState, initial_state
@@ -125,12 +125,12 @@ class FilmCase:
         return self.case.hertz_half_width
 
     @property
-    def height(self) -> float:
+    def height_scale(self) -> float:
         """Scale of heights ``a**2 / R``, metres."""
         return self.half_width**2 / self.case.roller.radius
 
     @property
-    def pressure(self) -> float:
+    def pressure_scale(self) -> float:
         """Scale of pressures p0, Pa."""
         return self.case.hertz_max_pressure
 
@@ -178,11 +178,11 @@ class FilmCase:
         grid = self.dry_contact.shape.grid
         line_loads = self.dry_contact.pressure.sum(axis=1) * grid.dy
         # A sharp end's peak is narrower than the film's inlet at that end.
-        total = np.concatenate([[0.0], np.cumsum(line_loads * grid.widths)])
+        cumulative_load = np.concatenate([[0.0], np.cumsum(line_loads * grid.widths)])
         span = min(2 * self.half_width, float(np.ptp(grid.x_edges)))
         centres = np.linspace(grid.x_edges[0] + 0.5 * span, grid.x_edges[-1] - 0.5 * span, 401)
-        cumulative_loads = np.interp(np.add.outer(np.array([0.5, -0.5]) * span, centres), grid.x_edges, total)
-        return float((cumulative_loads[0] - cumulative_loads[1]).max() / span)
+        loads_at_ends = np.interp(np.add.outer(np.array([0.5, -0.5]) * span, centres), grid.x_edges, cumulative_load)
+        return float((loads_at_ends[0] - loads_at_ends[1]).max() / span)
 
     @cached_property
     def central_film(self) -> float:
@@ -199,21 +199,21 @@ class FilmCase:
     @cached_property
     def inlet_length(self) -> float:
         """Length over which the film forms, over the half-width, in steps: similar speeds have the same cells."""
-        width = hertz.line_half_width(
+        line_half_width = hertz.line_half_width(
             hertz.line_max_pressure(self.largest_line_load, self.case.roller.radius, self.case.modulus),
             self.case.roller.radius,
             self.case.modulus,
         )
-        ratio_of_lengths = (self.central_film * self.case.roller.radius / width**2) ** (2 / 3)  # eq. (403)
+        inlet_ratio = (self.central_film * self.case.roller.radius / line_half_width**2) ** (2 / 3)  # eq. (403)
         ratio = self.resolution.ratio
-        return float(ratio ** np.round(np.log(ratio_of_lengths * width / self.half_width) / np.log(ratio)))
+        return float(ratio ** np.round(np.log(inlet_ratio * line_half_width / self.half_width) / np.log(ratio)))
 
     @cached_property
     def fluid(self) -> Fluid:
         """Laws of the lubricant in the scales of the film."""
         radius, a = self.case.roller.radius, self.half_width
-        flow_number = 12 * self.speed * self.lubricant.viscosity * radius**2 / (a**3 * self.pressure)  # eq. (404)
-        return Fluid.of(self.lubricant, self.pressure, flow_number)
+        flow_number = 12 * self.speed * self.lubricant.viscosity * radius**2 / (a**3 * self.pressure_scale)  # eq. (404)
+        return Fluid.of(self.lubricant, self.pressure_scale, flow_number)
 
 
 class Level(NamedTuple):
@@ -254,33 +254,33 @@ def create_cells(
     resolution = film.resolution
     scale, column_scale = resolution.ratio**-level.cells, resolution.ratio ** (-2 * level.columns)
     start, stop = (end / film.half_width for end in film.case.contact_range)
-    narrow = min(resolution.columns, resolution.columns_inlet * film.inlet_length, 0.1 * (stop - start)) * column_scale
+    min_dx = min(resolution.columns, resolution.columns_inlet * film.inlet_length, 0.1 * (stop - start)) * column_scale
     growth = resolution.columns_growth * column_scale**0.35
 
     def column_width(x: float) -> float:
         nearest = min(abs(x - closure) for closure in closures)
         max_width = min(resolution.widest_column, 0.2 * (stop - start))
-        return float(min(narrow + growth * max(nearest - 2 * narrow, 0.0), max_width))
+        return float(min(min_dx + growth * max(nearest - 2 * min_dx, 0.0), max_width))
 
     x_edges = graded_edges(start, stop, column_width)
     delta, half_width = film.inlet_length, film.contact_half_width
-    low = -half_width - resolution.inlet * delta
+    y_start = -half_width - resolution.inlet * delta
     if film.inlet is not None:
-        low = max(low, -film.inlet / film.half_width)
-    high = half_width + resolution.outlet * delta
-    min_size = min(resolution.finest * delta, resolution.finest_share) * scale
-    count = min(uniform_count(high - low, min_size), resolution.most_cells)
-    step = (high - low) / count
+        y_start = max(y_start, -film.inlet / film.half_width)
+    y_stop = half_width + resolution.outlet * delta
+    min_cell = min(resolution.finest * delta, resolution.finest_share) * scale
+    cell_count = min(count_uniform_cells(y_stop - y_start, min_cell), resolution.most_cells)
+    step = (y_stop - y_start) / cell_count
 
     def max_cell_count(begin: float, end: float) -> float:
-        y = low + 0.5 * (begin + end) * step
+        y = y_start + 0.5 * (begin + end) * step
         distance = max(0.0, min(abs(y + 1), abs(y - 1), abs(y - half_width), abs(y + half_width)) - delta)
-        inner = min(resolution.inner, resolution.inner_inlet * delta) * scale
-        max_width = inner if abs(y) < half_width else 0.25 + 0.1 * (abs(y) - half_width)
-        return float(max(min(min_size + resolution.growth * scale**0.5 * distance, max_width) / step * 1.0001, 1.0))
+        inner_width = min(resolution.inner, resolution.inner_inlet * delta) * scale
+        max_width = inner_width if abs(y) < half_width else 0.25 + 0.1 * (abs(y) - half_width)
+        return float(max(min(min_cell + resolution.growth * scale**0.5 * distance, max_width) / step * 1.0001, 1.0))
 
-    merged = MergedCells.of(count, max_cell_count)
-    return FilmCells(x_edges=x_edges, y_edges=np.asarray(low + step * merged.edges)), merged, (low, high)
+    merged = MergedCells.of(cell_count, max_cell_count)
+    return FilmCells(x_edges=x_edges, y_edges=np.asarray(y_start + step * merged.edges)), merged, (y_start, y_stop)
 
 
 def film_on_level(
@@ -317,24 +317,24 @@ def _solve_on_cells(
     settings: FilmSettings,
     start: FilmOnCells | xr.Dataset | None,
 ) -> FilmOnCells:
-    a, scale = film.half_width, film.pressure
+    a, p0 = film.half_width, film.pressure_scale
     case = replace(film.case, motion=Sliding(), friction=0.0, coupled=False, lubricant=None)
     grid = graded_grid(case, a * cells.x_edges, (a * window[0], a * window[1]), int(merged.edges[-1]))
-    first = int(np.abs(grid.x_edges - a * cells.x_edges[0]).argmin())
-    columns = slice(first, first + cells.shape[0])
+    first_column = int(np.abs(grid.x_edges - a * cells.x_edges[0]).argmin())
+    columns = slice(first_column, first_column + cells.shape[0])
     shape = contact_shape(case, grid)
     operator = contact_operator(shape)
 
     def displace(load: FloatArray) -> FloatArray:
-        spread = np.zeros(grid.shape)
-        spread[columns] = scale * load
-        loads: Mapping[Load, FloatArray] = {Load.NORMAL: spread}
-        return operator(loads)[columns] / film.height
+        body_load = np.zeros(grid.shape)
+        body_load[columns] = p0 * load
+        loads: Mapping[Load, FloatArray] = {Load.NORMAL: body_load}
+        return operator(loads)[columns] / film.height_scale
 
     # The reference lines of the roller's motion move as in the dry contact.
     gap = shape.gap.values - film.dry_contact.motions.total.height(grid.x)
-    unit = np.zeros((cells.shape[0], grid.cells_y))
-    unit[:, 0] = 1.0
+    unit_load = np.zeros((cells.shape[0], grid.cells_y))
+    unit_load[:, 0] = 1.0
     lever = None
     if case.load_position is not None:
         lever = cells.x - case.load_position / a
@@ -343,36 +343,36 @@ def _solve_on_cells(
     problem = FilmProblem(
         cells=cells,
         fluid=film.fluid,
-        gap=merged.to_centres(gap[columns]) / film.height,
+        gap=merged.to_centres(gap[columns]) / film.height_scale,
         displace=lambda pressure: merged.to_centres(displace(merged.to_uniform_cells(pressure))),
-        column_stiffness=merged.compute_stiffness(displace(unit)),
-        load=case.normal_load / (scale * a**2),
+        column_stiffness=merged.compute_stiffness(displace(unit_load)),
+        load=case.normal_load / (p0 * a**2),
         lever=lever,
-        central_film=film.central_film / film.height,
-        asperities=None if asperities is None else asperities.scaled_law(film.height, scale, case.modulus),
-        mean_height=None if asperities is None else asperities.mean_height(film.height),
+        central_film=film.central_film / film.height_scale,
+        asperities=None if asperities is None else asperities.scaled_law(film.height_scale, p0, case.modulus),
+        mean_height=None if asperities is None else asperities.mean_height(film.height_scale),
     )
     if start is not None:
         state = (
             _transfer_state(start, problem) if isinstance(start, FilmOnCells) else _convert_result(film, start, problem)
         )
         return FilmOnCells(problem, solve_newton(problem, state, settings, steady=True), grid, columns, merged)
-    dry = contact_of(shape, Settings(film.resolution.dry_tolerance, 500))
-    solution = solve_from_dry(problem, _dry_state(film, problem, dry, columns, merged), settings)
+    dry_contact = contact_of(shape, Settings(film.resolution.dry_tolerance, 500))
+    solution = solve_from_dry(problem, _dry_state(film, problem, dry_contact, columns, merged), settings)
     return FilmOnCells(problem, solution, grid, columns, merged)
 
 
 def _dry_state(film: FilmCase, problem: FilmProblem, dry: Contact, columns: slice, merged: MergedCells) -> FilmState:
     """Dry contact with the central film of the formula between the surfaces."""
-    pressure = merged.average(dry.pressure[columns]) / film.pressure
-    distance = merged.to_centres(dry.gap[columns]) / film.height + problem.central_film
+    pressure = merged.average(dry.pressure[columns]) / film.pressure_scale
+    distance = merged.to_centres(dry.gap[columns]) / film.height_scale + problem.central_film
     motion = np.zeros(len(problem.motions))
-    motion[0] = problem.central_film - dry.approach / film.height
+    motion[0] = problem.central_film - dry.approach / film.height_scale
     if problem.lever is not None:
         cells = problem.cells
         assert film.case.load_position is not None
         max_lever = np.abs(cells.x - film.case.load_position / film.half_width).max()
-        motion[1] = -dry.tilt * max_lever * film.half_width / film.height
+        motion[1] = -dry.tilt * max_lever * film.half_width / film.height_scale
     return initial_state(problem, pressure, motion, distance)
 
 
@@ -388,24 +388,24 @@ def _transfer_state(start: FilmOnCells, problem: FilmProblem) -> FilmState:
 
 def _convert_result(film: FilmCase, result: xr.Dataset, problem: FilmProblem) -> FilmState:
     """Film of another speed or lubricant, changed by the ratio of the formula's central films."""
-    direction = -1 if result["entrainment_speed"] < 0 else 1
+    sign = -1 if result["entrainment_speed"] < 0 else 1
     fields = result[["pressure", "film_thickness"]].transpose("x", "y").dropna("x")
     x, y = (fields[axis].values / film.half_width for axis in "xy")
     pressure, distance = (
-        _interpolate_film(fields[name].values[:, ::direction] / scale, x, (direction * y)[::direction], problem.cells)
-        for name, scale in (("pressure", film.pressure), ("film_thickness", film.height))
+        _interpolate_film(fields[name].values[:, ::sign] / scale, x, (sign * y)[::sign], problem.cells)
+        for name, scale in (("pressure", film.pressure_scale), ("film_thickness", film.height_scale))
     )
     former_load_number, load_number = float(result["moes_load"]), film.moes_load(film.largest_line_load)
-    former = moes_line(former_load_number, float(result["moes_lubricant"])) / former_load_number
-    ratio = float(moes_line(load_number, film.moes_lubricant) / load_number / former)
-    central = float(result["central_film"]) / film.height
-    distance = np.where(distance < central, ratio * distance, distance + (ratio - 1) * central)
+    former_film = moes_line(former_load_number, float(result["moes_lubricant"])) / former_load_number
+    film_ratio = float(moes_line(load_number, film.moes_lubricant) / load_number / former_film)
+    central_film = float(result["central_film"]) / film.height_scale
+    distance = np.where(distance < central_film, film_ratio * distance, distance + (film_ratio - 1) * central_film)
     loaded = pressure.ravel() > 0
-    rigid = (distance - problem.gap - problem.displace(pressure)).ravel()
-    motion = np.asarray(np.linalg.lstsq(problem.motions[:, loaded].T, rigid[loaded])[0], dtype=np.float64)
+    rigid_heights = (distance - problem.gap - problem.displace(pressure)).ravel()
+    motion = np.asarray(np.linalg.lstsq(problem.motions[:, loaded].T, rigid_heights[loaded])[0], dtype=np.float64)
     return initial_state(problem, pressure, motion, distance)
 
 
-def _interpolate_film(values: FloatArray, x: FloatArray, y: FloatArray, cells: FilmCells) -> FloatArray:
-    rows = np.stack([np.interp(cells.y, y, row) for row in values])
+def _interpolate_film(field: FloatArray, x: FloatArray, y: FloatArray, cells: FilmCells) -> FloatArray:
+    rows = np.stack([np.interp(cells.y, y, row) for row in field])
     return np.stack([np.interp(cells.x, x, column) for column in rows.T], axis=1)

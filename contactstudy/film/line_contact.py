@@ -27,31 +27,31 @@ class LineFilm(NamedTuple):
 
     Attributes
     ----------
-    central, least : float
+    central_film, least_film : float
         Films ``H = h / R (2 U)**-1/2``.
     y, pressure, film : array
         Position over a, pressure over p0, film h R / a**2.
     moment : float
         Moment of the pressure about the middle, per length, over ``p0 a**2``: ``-w delta``.
-    rolling : float
+    rolling_moment : float
         Moment ``t`` about the roller's axis of the shear by the pressure's gradient, per length, over ``p0 a**2``:
         ``w delta = 2 t``.
     solution : FilmSolution
         The solution.
     """
 
-    central: float
-    least: float
+    central_film: float
+    least_film: float
     y: FloatArray
     pressure: FloatArray
     film: FloatArray
     moment: float
-    rolling: float
+    rolling_moment: float
     solution: FilmSolution
 
 
 def line_stiffness(edges: FloatArray, centres: FloatArray) -> FloatArray:
-    """Displacement R / a**2 at the centres under pressures over p0 between edges over a, up to a constant."""
+    """Matrix of ``u R / a**2`` at `centres` per ``p / p0`` between `edges`, positions over ``a``, up to a constant."""
     distance = centres[:, None] - edges[None, :]
     primitive = distance * (np.log(np.abs(distance)) - 1)
     return np.asarray(np.diff(primitive, axis=1) / np.pi)
@@ -89,13 +89,13 @@ def solve_line(
         start = solve_line(
             load, lubricant, finest=2 * finest, inlet=inlet, oil=oil, max_pressure=max_pressure, settings=settings
         )
-    reduced = lubricant * np.sqrt(load / (2 * np.pi))  # alpha p0
-    scale = reduced / oil.pressure_viscosity if max_pressure is None else max_pressure
+    alpha_p0 = lubricant * np.sqrt(load / (2 * np.pi))  # alpha p0
+    p0 = alpha_p0 / oil.pressure_viscosity if max_pressure is None else max_pressure
     if max_pressure is not None:
-        oil = oil.replaced(pressure_viscosity=reduced / max_pressure)
+        oil = oil.replaced(pressure_viscosity=alpha_p0 / max_pressure)
 
-    film = float(moes_line(load, lubricant)) * np.pi / (8 * load)
-    delta = film ** (2 / 3)
+    central_film = float(moes_line(load, lubricant)) * np.pi / (8 * load)
+    delta = central_film ** (2 / 3)
     inlet_edge = -inlet if inlet is not None else -1 - 40 * delta
     min_width = min(finest * delta, finest * 0.25)
 
@@ -108,37 +108,37 @@ def solve_line(
     y, stiffness = cells.y, line_stiffness(edges, cells.y)
     problem = FilmProblem(
         cells=cells,
-        fluid=Fluid.of(oil, scale, 3 * np.pi**2 / (8 * load**2)),
+        fluid=Fluid.of(oil, p0, 3 * np.pi**2 / (8 * load**2)),
         gap=0.5 * y[None] ** 2,
         displace=lambda pressure: pressure @ stiffness.T,
         column_stiffness=stiffness[None],
         load=0.5 * np.pi,
         lever=None,
-        central_film=film,
+        central_film=central_film,
     )
     if start is not None:
         pressure, film_start = (np.interp(y, start.y, values)[None] for values in (start.pressure, start.film))
         state = initial_state(problem, pressure, start.solution.state.motion, film_start)
         solution = solve_newton(problem, state, settings, steady=True)
     else:
-        hertz = np.sqrt(np.maximum(1 - y**2, 0.0))[None]
-        deformed_gap = problem.gap + problem.displace(hertz)
-        motion = np.array([film - deformed_gap[0, np.abs(y).argmin()]])
-        state = initial_state(problem, hertz, motion, np.maximum(deformed_gap + motion[0], film))
+        hertz_pressure = np.sqrt(np.maximum(1 - y**2, 0.0))[None]
+        deformed_gap = problem.gap + problem.displace(hertz_pressure)
+        motion = np.array([central_film - deformed_gap[0, np.abs(y).argmin()]])
+        state = initial_state(problem, hertz_pressure, motion, np.maximum(deformed_gap + motion[0], central_film))
         solution = solve_from_dry(problem, state, settings)
     height = solution.film[0]
-    cell = int(height.argmin())
-    neighbours = slice(cell - 1, cell + 2)
-    curvature, slope, _ = np.polyfit(y[neighbours] - y[cell], height[neighbours], 2)
+    thinnest_cell = int(height.argmin())
+    neighbours = slice(thinnest_cell - 1, thinnest_cell + 2)
+    curvature, slope, _ = np.polyfit(y[neighbours] - y[thinnest_cell], height[neighbours], 2)
     film_scale = 8 * load / np.pi
     pressure = solution.fluid_pressure[0]
     return LineFilm(
-        central=film_scale * float(np.interp(0.0, y, height)),
-        least=film_scale * float(height[cell] - slope**2 / (4 * curvature)),
+        central_film=film_scale * float(np.interp(0.0, y, height)),
+        least_film=film_scale * float(height[thinnest_cell] - slope**2 / (4 * curvature)),
         y=y,
         pressure=pressure,
         film=height,
         moment=float((pressure * y * cells.lengths).sum()),
-        rolling=0.5 * float((0.5 * (height[1:] + height[:-1]) * np.diff(pressure)).sum()),  # eq. (415)
+        rolling_moment=0.5 * float((0.5 * (height[1:] + height[:-1]) * np.diff(pressure)).sum()),  # eq. (415)
         solution=solution,
     )

@@ -117,16 +117,16 @@ def solve_newton(problem: FilmProblem, start: FilmState, settings: FilmSettings,
         except StepFailedError:
             LOGGER.info("the start is too far: pseudo-time steps")
     state = start
-    pending = list(settings.steps)
-    while pending:
-        step = pending[0]
+    pending_steps = list(settings.steps)
+    while pending_steps:
+        step = pending_steps[0]
         try:
             state = iteration.converge(state, step, iteration.compute_mass(state)).state
-            pending.pop(0)
+            pending_steps.pop(0)
         except StepFailedError:
             if step < settings.steps[0] / 30:
                 raise
-            pending.insert(0, step / 3)
+            pending_steps.insert(0, step / 3)
     return iteration.converge(state, np.inf, None)
 
 
@@ -140,9 +140,9 @@ def solve_from_dry(problem: FilmProblem, dry: FilmState, settings: FilmSettings)
     """
     factors = [1.0]
     while True:
-        faster = replace(problem, fluid=replace(problem.fluid, speed=problem.fluid.speed * factors[-1]))
+        trial = replace(problem, fluid=replace(problem.fluid, flow_number=problem.fluid.flow_number * factors[-1]))
         try:
-            solution = solve_newton(faster, dry, settings, steady=False)
+            solution = solve_newton(trial, dry, settings, steady=False)
             break
         except StepFailedError as error:
             if len(factors) > settings.speed_steps or error.closed_cell is not None:
@@ -150,8 +150,8 @@ def solve_from_dry(problem: FilmProblem, dry: FilmState, settings: FilmSettings)
             factors.append(settings.speed_ratio * factors[-1])
     LOGGER.info("speeds over the prescribed one: %s", factors[::-1])
     for factor in factors[-2::-1]:
-        slower = replace(problem, fluid=replace(problem.fluid, speed=problem.fluid.speed * factor))
-        solution = solve_newton(slower, solution.state, settings, steady=True)
+        trial = replace(problem, fluid=replace(problem.fluid, flow_number=problem.fluid.flow_number * factor))
+        solution = solve_newton(trial, solution.state, settings, steady=True)
     return solution
 
 
@@ -190,17 +190,17 @@ class _Iteration:
         if problem.asperities is not None:
             by_distance = by_distance - by_pressure @ sparse.diags_array(asperities.slope.ravel())
         elastic = _elastic_diagonal(problem.column_stiffness, by_distance)
-        scale = np.abs(by_pressure.diagonal() + elastic)
-        cavitated = fluid_pressure.ravel() - outflow / scale <= 0
+        diagonal = np.abs(by_pressure.diagonal() + elastic)
+        cavitated = fluid_pressure.ravel() - outflow / diagonal <= 0
         # The residual is over the film of the cell: a norm of pressures would neglect the far inlet.
         full_cells = sparse.diags_array(np.where(cavitated, 0.0, 1 / film.value.ravel()))
         by_pressure = full_cells @ by_pressure + sparse.diags_array(cavitated.astype(np.float64))
         by_distance = full_cells @ by_distance - sparse.diags_array(cavitated * asperities.slope.ravel())
-        sums = problem.resultants @ state.pressure.ravel() - problem.prescribed
+        resultant_errors = problem.resultants @ state.pressure.ravel() - problem.prescribed
         residual = np.where(cavitated, fluid_pressure.ravel(), outflow / film.value.ravel())
         return _LinearisedEquations(
             flow=flow._replace(outflow=outflow),
-            residual=np.concatenate([residual, sums / problem.load]),
+            residual=np.concatenate([residual, resultant_errors / problem.load]),
             by_pressure=sparse.csr_array(by_pressure),
             by_distance=sparse.csr_array(by_distance),
             cavitated=cavitated,
@@ -253,7 +253,7 @@ class _Iteration:
             fluid_pressure=np.maximum(linearised.fluid_pressure, 0.0),
             asperity_pressure=linearised.asperity_pressure,
             film=linearised.film,
-            flow=linearised.flow.through,
+            flow=linearised.flow.face_flow,
             outflow=outflow.reshape(shape),
             cavitated=linearised.cavitated.reshape(shape),
             residual=residual,
@@ -269,9 +269,9 @@ class _Iteration:
     def apply_step(self, state: FilmState, change: FloatArray) -> tuple[FilmState, float, float]:
         """Return the next state, the fraction of the step applied, and the largest change of the pressure."""
         problem, settings = self.problem, self.settings
-        cells = problem.gap.size
-        pressure = change[:cells].reshape(problem.gap.shape)
-        motion = change[cells:]
+        cell_count = problem.gap.size
+        pressure = change[:cell_count].reshape(problem.gap.shape)
+        motion = change[cell_count:]
         distance = problem.displace(pressure) + (motion @ problem.motions).reshape(problem.gap.shape) - state.mismatch
         max_change = float(np.abs(pressure).max())
         step_fraction = min(1.0, settings.max_pressure_change / max(max_change, 1e-300))
@@ -296,30 +296,30 @@ class _Iteration:
         from scipy.sparse.linalg import LinearOperator, gmres
 
         problem = self.problem
-        cells = problem.gap.size
+        cell_count = problem.gap.size
         motions, resultants = problem.motions, problem.resultants / problem.load
         by_motion = linearised.by_distance @ motions.T
-        columns = _Columns.of(linearised, problem)
-        inverse_motions = np.stack([columns.solve(column) for column in by_motion.T], axis=1)
+        elimination = _ColumnElimination.of(linearised, problem)
+        inverse_motions = np.stack([elimination.solve(column) for column in by_motion.T], axis=1)
         schur = np.linalg.inv(resultants @ inverse_motions)
 
         def apply(unknowns: FloatArray) -> FloatArray:
-            pressure, motion = unknowns[:cells], unknowns[cells:]
+            pressure, motion = unknowns[:cell_count], unknowns[cell_count:]
             displacement = problem.displace(pressure.reshape(problem.gap.shape)).ravel()
-            rows = linearised.by_pressure @ pressure + linearised.by_distance @ displacement + by_motion @ motion
-            return np.concatenate([rows, resultants @ pressure])
+            outflows = linearised.by_pressure @ pressure + linearised.by_distance @ displacement + by_motion @ motion
+            return np.concatenate([outflows, resultants @ pressure])
 
         def precondition(residual: FloatArray) -> FloatArray:
-            pressure = columns.solve(residual[:cells])
-            motion = schur @ (resultants @ pressure - residual[cells:])
+            pressure = elimination.solve(residual[:cell_count])
+            motion = schur @ (resultants @ pressure - residual[cell_count:])
             return np.concatenate([pressure - inverse_motions @ motion, motion])
 
         def count_step(_: object) -> None:
             self.linear_steps += 1
 
         residual = linearised.residual.copy()
-        residual[:cells] -= linearised.by_distance @ mismatch
-        size = cells + len(motions)
+        residual[:cell_count] -= linearised.by_distance @ mismatch
+        size = cell_count + len(motions)
         operator = LinearOperator((size, size), matvec=lambda unknowns: apply(precondition(unknowns)), dtype=np.float64)
         solution, _ = gmres(
             operator,
@@ -349,15 +349,15 @@ def _elastic_diagonal(stiffness: FloatArray, by_distance: sparse.csr_array) -> F
 
 
 @dataclass(frozen=True, eq=False)
-class _Columns:
+class _ColumnElimination:
     """Elimination of the columns one after the other; all columns have equal pressure changes."""
 
     inverses: FloatArray  # (x, y, y): inverses of the columns' equations without the columns before
-    before: FloatArray  # (x, y): coefficients of the pressures in the column before and in the one after
-    after: FloatArray
+    lower: FloatArray  # (x, y): coefficients of the pressures in the column before and in the one after
+    upper: FloatArray
 
     @classmethod
-    def of(cls, linearised: _LinearisedEquations, problem: FilmProblem) -> _Columns:
+    def of(cls, linearised: _LinearisedEquations, problem: FilmProblem) -> _ColumnElimination:
         """Eliminate column after column."""
         columns, cells = problem.cells.shape
         before, after = np.zeros((2, columns, cells))
@@ -375,10 +375,10 @@ class _Columns:
 
     def solve(self, residual: FloatArray) -> FloatArray:
         """Pressures that remove a residual: array (cell)."""
-        pressures = residual.reshape(self.before.shape).copy()
+        pressures = residual.reshape(self.lower.shape).copy()
         for column in range(1, len(pressures)):
-            pressures[column] -= self.before[column] * (self.inverses[column - 1] @ pressures[column - 1])
+            pressures[column] -= self.lower[column] * (self.inverses[column - 1] @ pressures[column - 1])
         pressures[-1] = self.inverses[-1] @ pressures[-1]
         for column in range(len(pressures) - 2, -1, -1):
-            pressures[column] = self.inverses[column] @ (pressures[column] - self.after[column] * pressures[column + 1])
+            pressures[column] = self.inverses[column] @ (pressures[column] - self.upper[column] * pressures[column + 1])
         return pressures.ravel()

@@ -20,7 +20,7 @@ from contactstudy.checks import FloatArray
 FLUIDITY_NODES, FLUIDITY_RATIO = 1600, 1.005
 """Nodes of the fluidity over the pressure, and ratio of their steps. Accuracy."""
 
-FACE_FILM = (0.2, 2.0)
+FACE_RANGE = (0.2, 2.0)
 """Least and largest film on a face over that of the cell upstream: parabolas overshoot. Accuracy."""
 
 
@@ -41,32 +41,32 @@ class Fluid:
         Density over the ambient one, of the pressure.
     reduced_pressure : callable
         Integral of the fluidity (density over viscosity, both over their ambient values) up to the pressure.
-    speed : float
+    flow_number : float
         ``12 eta0 um R**2 / (a**3 p0)``.
     """
 
     density: Callable[[FloatArray], Law]
     reduced_pressure: Callable[[FloatArray], Law]
-    speed: float
+    flow_number: float
 
     @classmethod
-    def of(cls, oil: Lubricant, scale: float, speed: float) -> Fluid:
-        """Laws of a lubricant for pressures over `scale`, Pa."""
+    def of(cls, oil: Lubricant, p0: float, flow_number: float) -> Fluid:
+        """Laws of a lubricant for pressures over `p0`, Pa."""
 
         def density(pressure: FloatArray) -> Law:
-            return Law(oil.density_ratio(scale * pressure), scale * oil.density_ratio_slope(scale * pressure))
+            return Law(oil.density_ratio(p0 * pressure), p0 * oil.density_ratio_slope(p0 * pressure))
 
         steps = np.asarray(FLUIDITY_RATIO ** np.arange(FLUIDITY_NODES) - 1, dtype=np.float64)
-        nodes = steps / (1 + scale * oil.pressure_viscosity)
-        viscosity = oil.viscosity_at(scale * nodes) / oil.viscosity
-        fluidity = PchipInterpolator(nodes, oil.density_ratio(scale * nodes) / viscosity)
+        nodes = steps / (1 + p0 * oil.pressure_viscosity)
+        viscosity = oil.viscosity_at(p0 * nodes) / oil.viscosity
+        fluidity = PchipInterpolator(nodes, oil.density_ratio(p0 * nodes) / viscosity)
         integral = fluidity.antiderivative()
 
         def reduced_pressure(pressure: FloatArray) -> Law:
-            viscous = np.clip(pressure, 0.0, nodes[-1])
-            return Law(np.minimum(pressure, 0.0) + integral(viscous), fluidity(viscous))
+            viscous_pressure = np.clip(pressure, 0.0, nodes[-1])
+            return Law(np.minimum(pressure, 0.0) + integral(viscous_pressure), fluidity(viscous_pressure))
 
-        return cls(density=density, reduced_pressure=reduced_pressure, speed=speed)
+        return cls(density=density, reduced_pressure=reduced_pressure, flow_number=flow_number)
 
 
 class Flow(NamedTuple):
@@ -78,14 +78,14 @@ class Flow(NamedTuple):
         Net outflow.
     by_pressure, by_film : sparse array (cell, cell)
         Derivatives at a fixed film and at a fixed pressure.
-    through : array (x, y + 1)
+    face_flow : array (x, y + 1)
         Flow along y through the faces, per width.
     """
 
     outflow: FloatArray
     by_pressure: sparse.csr_array
     by_film: sparse.csr_array
-    through: FloatArray
+    face_flow: FloatArray
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -135,14 +135,14 @@ class FilmCells:
         return np.multiply.outer(self.widths, self.lengths)
 
     @cached_property
-    def along_y(self) -> Faces:
+    def faces_y(self) -> Faces:
         """Faces between neighbours along y."""
         rows = sparse.eye_array(self.shape[0])
         matrices = (*_neighbours(self.y.size), _gradient(self.y_edges, self.y, closed=False))
         return Faces(*(sparse.csr_array(sparse.kron(rows, matrix)) for matrix in matrices))
 
     @cached_property
-    def along_x(self) -> Faces:
+    def faces_x(self) -> Faces:
         """Faces between neighbours along x."""
         columns = sparse.eye_array(self.shape[1])
         matrices = (*_neighbours(self.x.size), _gradient(self.x_edges, self.x, closed=not self.open_ends))
@@ -162,15 +162,15 @@ class FilmCells:
 
     def upwind(self, height: FloatArray) -> sparse.csr_array:
         """Parabolas, bounded where the film varies much from cell to cell, to remain positive: (face, cell)."""
-        before = self.along_y.before
-        parabola, lower, upper = (
+        upstream = self.faces_y.upstream
+        face_film, min_film, max_film = (
             self.parabolas @ height,
-            *(bound * (before @ height) for bound in FACE_FILM),
+            *(bound * (upstream @ height) for bound in FACE_RANGE),
         )
-        below_bound, above_bound = parabola < lower, parabola > upper
-        bounds = np.where(below_bound, FACE_FILM[0], np.where(above_bound, FACE_FILM[1], 0.0))
+        below_bound, above_bound = face_film < min_film, face_film > max_film
+        bounds = np.where(below_bound, FACE_RANGE[0], np.where(above_bound, FACE_RANGE[1], 0.0))
         unbounded = sparse.diags_array(np.where(below_bound | above_bound, 0.0, 1.0))
-        return sparse.csr_array(unbounded @ self.parabolas + sparse.diags_array(bounds) @ before)
+        return sparse.csr_array(unbounded @ self.parabolas + sparse.diags_array(bounds) @ upstream)
 
     @cached_property
     def outflow_y(self) -> sparse.csr_array:
@@ -198,25 +198,25 @@ class FilmCells:
         height, pressure = film.value.ravel(), pressure.ravel()
         density, reduced = fluid.density(pressure), fluid.reduced_pressure(pressure)
         upwind = self.upwind(height)
-        pressure_flow = self.along_y.conduct(fluid.speed, reduced, height)
+        pressure_flow = self.faces_y.conduct_flow(fluid.flow_number, reduced, height)
         face_flow = upwind @ (density.value * height) - pressure_flow.flow
         by_pressure = upwind @ sparse.diags_array(density.slope * height) - pressure_flow.by_pressure
         by_film = upwind @ sparse.diags_array(density.value) - pressure_flow.by_film
         outflow = self.outflow_y @ face_flow
         by_pressure, by_film = self.outflow_y @ by_pressure, self.outflow_y @ by_film
         if self.shape[0] > 1 or self.open_ends:
-            cross_flow = self.along_x.conduct(fluid.speed, reduced, height)
-            outflow = outflow - self.outflow_x @ cross_flow.flow
-            by_pressure = by_pressure - self.outflow_x @ cross_flow.by_pressure
-            by_film = by_film - self.outflow_x @ cross_flow.by_film
+            axial_flow = self.faces_x.conduct_flow(fluid.flow_number, reduced, height)
+            outflow = outflow - self.outflow_x @ axial_flow.flow
+            by_pressure = by_pressure - self.outflow_x @ axial_flow.by_pressure
+            by_film = by_film - self.outflow_x @ axial_flow.by_film
         by_film = by_film @ sparse.diags_array(film.slope.ravel())
         return Flow(
             outflow, sparse.csr_array(by_pressure), sparse.csr_array(by_film), face_flow.reshape(self.shape[0], -1)
         )
 
 
-class ConductedFlow(NamedTuple):
-    """Flow through faces against the gradient of the pressure, with reversed sign, and its derivatives."""
+class PressureFlow(NamedTuple):
+    """Flow through faces by the gradient of the pressure, with reversed sign, and its derivatives."""
 
     flow: FloatArray
     by_pressure: sparse.csr_array
@@ -229,30 +229,30 @@ class Faces:
 
     Attributes
     ----------
-    before, after : sparse array (face, cell)
+    upstream, downstream : sparse array (face, cell)
         Selection of the cells upstream and downstream; equal at the outermost faces.
     gradient : sparse array (face, cell)
         Gradient; beyond the outermost faces the pressure is ambient.
     """
 
-    before: sparse.csr_array
-    after: sparse.csr_array
+    upstream: sparse.csr_array
+    downstream: sparse.csr_array
     gradient: sparse.csr_array
 
-    def conduct(self, speed: float, reduced: Law, height: FloatArray) -> ConductedFlow:
+    def conduct_flow(self, flow_number: float, reduced: Law, height: FloatArray) -> PressureFlow:
         """Return the flow by the gradient of the reduced pressure, eq. (402); it rises with any step of the pressure.
 
         The flow is constant between two centres, and the film linear: the thinner film determines the flow.
         """
-        before, after = self.before @ height, self.after @ height
-        cube = 2 * (before * after) ** 2 / (before + after) / speed
+        upstream, downstream = self.upstream @ height, self.downstream @ height
+        factor = 2 * (upstream * downstream) ** 2 / (upstream + downstream) / flow_number
         slopes = self.gradient @ reduced.value
-        by_pressure = sparse.diags_array(cube) @ self.gradient @ sparse.diags_array(reduced.slope)
+        by_pressure = sparse.diags_array(factor) @ self.gradient @ sparse.diags_array(reduced.slope)
         by_before, by_after = (
-            sparse.diags_array(cube * slopes * (2 / film - 1 / (before + after))) @ cells
-            for film, cells in ((before, self.before), (after, self.after))
+            sparse.diags_array(factor * slopes * (2 / film - 1 / (upstream + downstream))) @ cells
+            for film, cells in ((upstream, self.upstream), (downstream, self.downstream))
         )
-        return ConductedFlow(cube * slopes, sparse.csr_array(by_pressure), sparse.csr_array(by_before + by_after))
+        return PressureFlow(factor * slopes, sparse.csr_array(by_pressure), sparse.csr_array(by_before + by_after))
 
 
 def _outflow(cells: int) -> sparse.sparray:

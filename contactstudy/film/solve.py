@@ -35,18 +35,18 @@ from contactstudy.film.newton import SETTINGS, FilmSettings, StepFailedError
 ACCURACIES = (2e-3, 0.2)
 """Accuracies that the levels reach."""
 
-SAFETY = {"cells": 1.5, "columns": 1.0}
+ERROR_FACTORS = {"cells": 1.5, "columns": 1.0}
 """Stated error over the latest change by a refinement. Accuracy."""
 
-DECREASE = {"cells": 0.5, "columns": 0.25}
+CHANGE_RATIOS = {"cells": 0.5, "columns": 0.25}
 """Change by a refinement over the change before, of second order in the size of the cells. Accuracy."""
 
-ROUNDING = 1e-3
+MIN_RELATIVE_ERROR = 1e-3
 """Least stated error over the value. Accuracy."""
 
 VISCOSITY_EXPONENT = 1.3  # viscosity ratio ``kappa = Lambda**1.3`` from the film ratio (ISO 281:2007). Physics.
 
-BARUS_LIMIT = 25.0
+MAX_LOG_VISCOSITY = 25.0
 """Logarithm of the viscosity ratio above which an oil is solid: the law holds to less. Physics."""
 
 
@@ -187,12 +187,12 @@ class Films(NamedTuple):
     least_y: float
 
     @property
-    def values(self) -> FloatArray:
-        """Films in the order of `NAMES`."""
-        return np.array([getattr(self, name) for name in NAMES])
+    def as_array(self) -> FloatArray:
+        """Films in the order of `FILM_NAMES`."""
+        return np.array([getattr(self, name) for name in FILM_NAMES])
 
 
-NAMES = {
+FILM_NAMES = {
     "central": "central_film",
     "middle": "least_film_middle",
     "first": "least_film_first",
@@ -226,10 +226,10 @@ def _refine(film: FilmCase, accuracy: float, settings: FilmSettings, start: xr.D
             return _refine(film, accuracy, settings)
         raise _create_film_error(film, error, level, closures) from None
     films = [compute_films(film, solutions[0])]
-    changes = {name: [np.full(len(NAMES), np.inf)] * 2 for name in Level._fields}
+    changes = {name: [np.full(len(FILM_NAMES), np.inf)] * 2 for name in Level._fields}
     while True:
         direction_errors = {name: _estimate_errors(name, change) for name, change in changes.items()}
-        errors = np.sum([*direction_errors.values()], axis=0) + ROUNDING * films[-1].values
+        errors = np.sum([*direction_errors.values()], axis=0) + MIN_RELATIVE_ERROR * films[-1].as_array
         directions = [name for name in Level._fields if getattr(level, name) < film.resolution.levels - 1]
         if errors.max() <= accuracy * films[-1].central or not directions:
             break
@@ -244,7 +244,7 @@ def _refine(film: FilmCase, accuracy: float, settings: FilmSettings, start: xr.D
                 raise _create_film_error(film, error, level, closures) from None
             break
         films.append(compute_films(film, solutions[-1]))
-        changes[direction].append(np.abs(films[-1].values - films[-2].values))
+        changes[direction].append(np.abs(films[-1].as_array - films[-2].as_array))
     try:
         solutions.append(continue_solution(solutions[-1], settings))
     except StepFailedError as error:
@@ -252,17 +252,17 @@ def _refine(film: FilmCase, accuracy: float, settings: FilmSettings, start: xr.D
     return _RefinedFilm(
         level_film=solutions[-1],
         films=compute_films(film, solutions[-1]),
-        errors=dict(zip(NAMES, errors.tolist(), strict=True)),
+        errors=dict(zip(FILM_NAMES, errors.tolist(), strict=True)),
         error=float(errors.max()) / films[-1].central,
         levels=len(films),
-        newton_steps=sum(solved.solution.newton_steps for solved in solutions),
-        linear_steps=sum(solved.solution.linear_steps for solved in solutions),
+        newton_steps=sum(level_film.solution.newton_steps for level_film in solutions),
+        linear_steps=sum(level_film.solution.linear_steps for level_film in solutions),
     )
 
 
 def _estimate_errors(direction: str, changes: list[FloatArray]) -> FloatArray:
     """Error of each film from its latest two changes by refinement in one direction; one may vanish by chance."""
-    return np.asarray(SAFETY[direction] * np.maximum(changes[-1], DECREASE[direction] * changes[-2]))
+    return np.asarray(ERROR_FACTORS[direction] * np.maximum(changes[-1], CHANGE_RATIOS[direction] * changes[-2]))
 
 
 def _columns_of_minima(films: Films, level_film: FilmOnCells) -> tuple[float, float]:
@@ -290,31 +290,31 @@ def compute_films(film: FilmCase, level_film: FilmOnCells) -> Films:
     low, high = film.contact_ends
     mid_length = 0.5 * (low + high)
     within_contact = np.abs(cells.y) < 1.5 * film.contact_half_width
-    rows = [_find_minimum(cells.y, cells.y_edges, row, within_contact) for row in height]
-    row_minima = np.array([minimum.value for minimum in rows])
-    positions = np.array([minimum.position for minimum in rows])
-    centre = np.array([np.interp(0.0, cells.y, row) for row in height])
+    column_minima = [_find_minimum(cells.y, cells.y_edges, row, within_contact) for row in height]
+    least_films = np.array([minimum.value for minimum in column_minima])
+    positions = np.array([minimum.position for minimum in column_minima])
+    centre_films = np.array([np.interp(0.0, cells.y, row) for row in height])
     first_side = cells.x < mid_length
-    sides = [_find_minimum(cells.x, cells.x_edges, row_minima, on_side) for on_side in (first_side, ~first_side)]
-    lowest = min(sides)
+    side_minima = [_find_minimum(cells.x, cells.x_edges, least_films, on_side) for on_side in (first_side, ~first_side)]
+    least_minimum = min(side_minima)
     return Films(
-        central=_interpolate(cells.x, centre, mid_length),
-        middle=_interpolate(cells.x, row_minima, mid_length),
-        first=sides[0].value,
-        last=sides[1].value,
-        least=lowest.value,
-        first_x=sides[0].position,
-        last_x=sides[1].position,
-        least_x=lowest.position,
-        least_y=float(np.interp(lowest.position, cells.x, positions)),
+        central=_interpolate(cells.x, centre_films, mid_length),
+        middle=_interpolate(cells.x, least_films, mid_length),
+        first=side_minima[0].value,
+        last=side_minima[1].value,
+        least=least_minimum.value,
+        first_x=side_minima[0].position,
+        last_x=side_minima[1].position,
+        least_x=least_minimum.position,
+        least_y=float(np.interp(least_minimum.position, cells.x, positions)),
     )
 
 
-def _interpolate(x: FloatArray, values: FloatArray, position: float) -> float:
+def _interpolate(x: FloatArray, films: FloatArray, position: float) -> float:
     """Value at a position by the parabola through the three nearest columns."""
     start = min(max(int(np.abs(x - position).argmin()) - 1, 0), x.size - 3)
     neighbours = slice(start, start + 3)
-    return float(lagrange_weights(x[neighbours], np.array([position]))[0] @ values[neighbours])
+    return float(lagrange_weights(x[neighbours], np.array([position]))[0] @ films[neighbours])
 
 
 class _Minimum(NamedTuple):
@@ -324,11 +324,11 @@ class _Minimum(NamedTuple):
     position: float
 
 
-def _find_minimum(centres: FloatArray, edges: FloatArray, values: FloatArray, mask: BoolArray) -> _Minimum:
+def _find_minimum(centres: FloatArray, edges: FloatArray, films: FloatArray, mask: BoolArray) -> _Minimum:
     """Minimum of positive values within the lowest cell of a mask, by a cubic spline of logarithms of nearby cells."""
-    cell = int(np.where(mask, values, np.inf).argmin())
+    cell = int(np.where(mask, films, np.inf).argmin())
     neighbours = slice(max(cell - 3, 0), cell + 4)
-    spline = CubicSpline(centres[neighbours], np.log(values[neighbours]))
+    spline = CubicSpline(centres[neighbours], np.log(films[neighbours]))
     extrema = spline.derivative().roots(extrapolate=True)
     positions = np.clip(np.append(extrema[np.isfinite(extrema)], edges[[cell, cell + 1]]), edges[cell], edges[cell + 1])
     logarithms = spline(positions)
@@ -349,21 +349,23 @@ def _label_film(film: FilmCase, refined: _RefinedFilm) -> xr.Dataset:
         expanded[solved.columns] = values
         return expanded[:, ::-1] if mirrored else expanded
 
-    pressure = expand(film.pressure * _spread_pressure(solved, solution.fluid_pressure), 0.0)
+    pressure = expand(film.pressure_scale * _spread_pressure(solved, solution.fluid_pressure), 0.0)
     fields = {"pressure": pressure}
     if film.asperities is not None:
-        fields["asperity_pressure"] = expand(film.pressure * _spread_pressure(solved, solution.asperity_pressure), 0.0)
+        fields["asperity_pressure"] = expand(
+            film.pressure_scale * _spread_pressure(solved, solution.asperity_pressure), 0.0
+        )
         fields["pressure"] = pressure + fields["asperity_pressure"]
     cells = solved.problem.cells
     uniform_y = np.clip(grid.y / film.half_width, cells.y[0], cells.y[-1])
     height = PchipInterpolator(cells.y, solution.film, axis=1)(uniform_y)
-    fields["film_thickness"] = expand(film.height * height, np.nan)
+    fields["film_thickness"] = expand(film.height_scale * height, np.nan)
     y = -grid.y[::-1] if mirrored else grid.y
     films = refined.films
     scalars: dict[str, float | int | bool] = {}
-    for attribute, name in NAMES.items():
-        scalars[name] = film.height * getattr(films, attribute)
-        scalars[f"{name}_error"] = film.height * refined.errors[attribute]
+    for attribute, name in FILM_NAMES.items():
+        scalars[name] = film.height_scale * getattr(films, attribute)
+        scalars[f"{name}_error"] = film.height_scale * refined.errors[attribute]
     scalars["end_film_ratio"] = films.least / films.middle
     scalars["end_film_ratio_error"] = (refined.errors["least"] + refined.errors["middle"]) / films.middle
     scalars |= {
@@ -384,12 +386,12 @@ def _label_film(film: FilmCase, refined: _RefinedFilm) -> xr.Dataset:
         "linear_steps": refined.linear_steps,
         "film_levels": refined.levels,
         "hertz_half_width": film.half_width,
-        "hertz_max_pressure": film.pressure,
+        "hertz_max_pressure": film.pressure_scale,
     }
     profiles = {"slice_film": (("x",), film.slice_film(grid.x))}
     if film.asperities is not None:
         min_ratio = np.full(grid.cells_x, np.nan)
-        min_ratio[solved.columns] = film.height * solution.film.min(axis=1) / film.asperities.rms
+        min_ratio[solved.columns] = film.height_scale * solution.film.min(axis=1) / film.asperities.rms
         profiles["film_ratio"] = (("x",), min_ratio)
         scalars["asperity_load_share"] = float((solution.asperity_pressure * cells.areas).sum() / solved.problem.load)
         scalars["roughness_rms"] = film.asperities.rms
@@ -415,15 +417,15 @@ def _spread_pressure(level_film: FilmOnCells, values: FloatArray) -> FloatArray:
 
 def _warn_of_viscosity(film: FilmCase, level_film: FilmOnCells) -> None:
     """Warn if the lubricant is solid at the largest pressure."""
-    pressure = film.pressure * level_film.solution.fluid_pressure
-    ratio = film.lubricant.log_viscosity(pressure)
-    if ratio.max() <= BARUS_LIMIT:
+    pressure = film.pressure_scale * level_film.solution.fluid_pressure
+    logs = film.lubricant.log_viscosity(pressure)
+    if logs.max() <= MAX_LOG_VISCOSITY:
         return
-    row, cell = np.unravel_index(int(ratio.argmax()), ratio.shape)
+    row, cell = np.unravel_index(int(logs.argmax()), logs.shape)
     x, y = film.half_width * level_film.problem.cells.x[row], film.half_width * level_film.problem.cells.y[cell]
     warnings.warn(
         f"viscosity_law = {film.lubricant.viscosity_law!r} at {pressure[row, cell]:.3g} Pa (x = {x:.3g} m, "
-        f"y = {abs(y):.3g} m from the middle) is exp({ratio.max():.0f}) times the ambient viscosity: the law does not "
+        f"y = {abs(y):.3g} m from the middle) is exp({logs.max():.0f}) times the ambient viscosity: the law does not "
         "hold at this pressure, which affects the traction; the film forms at lower pressures",
         MagnitudeWarning,
         stacklevel=3,

@@ -66,7 +66,7 @@ def film_traction(
         raise InvalidInputError("case.lubricant", None, "a Lubricant(...) for the traction of a film")
     if "film_thickness" not in result:
         raise InvalidInputError("result", f"{len(result)} variables", "a result of solve_film, with film_thickness")
-    ratios = checks.coordinates("slide_roll_ratios", slide_roll_ratios)
+    slide_rolls = checks.coordinates("slide_roll_ratios", slide_roll_ratios)
     friction = checks.not_negative("boundary_friction", boundary_friction)
     pressure, grid = labelled_cells("result.pressure", result["pressure"], extent=case.body.extent)
     height = np.nan_to_num(result["film_thickness"].transpose("x", "y").values, nan=np.inf)
@@ -77,28 +77,28 @@ def film_traction(
     area = grid.weights * grid.cell_area
     speed, load = abs(float(result["entrainment_speed"])), float(result["normal_load"])
     traction_forces = []
-    for ratio in ratios:
+    for ratio in slide_rolls:
         shear = np.where(fluid_pressure > 0, shear_stress(lubricant, fluid_pressure, abs(ratio) * speed / height), 0.0)
-        boundary = friction * asperities if ratio else 0.0
-        traction_forces.append(np.sign(ratio) * float((area * (shear + boundary)).sum()))
-    traction = np.array(traction_forces)
+        boundary_shear = friction * asperities if ratio else 0.0
+        traction_forces.append(np.sign(ratio) * float((area * (shear + boundary_shear)).sum()))
+    traction_force = np.array(traction_forces)
     film = np.where(np.isfinite(height), height, 0.0)
-    forces = 0.5 * (film[:, 1:] + film[:, :-1]) * np.diff(fluid_pressure, axis=1)  # eq. (415)
-    rolling = 0.5 * abs(float((grid.widths[:, None] * forces).sum()))
-    values: dict[str, object] = {
-        "traction_coefficient": (("slide_roll_ratio",), traction / load),
-        "power_loss": (("slide_roll_ratio",), np.abs(traction * ratios) * speed + 2 * rolling * speed),
-        "rolling_force": rolling,
-        "rolling_moment": rolling * case.roller.radius,
+    slope_forces = 0.5 * (film[:, 1:] + film[:, :-1]) * np.diff(fluid_pressure, axis=1)  # eq. (415)
+    rolling_force = 0.5 * abs(float((grid.widths[:, None] * slope_forces).sum()))
+    variables: dict[str, object] = {
+        "traction_coefficient": (("slide_roll_ratio",), traction_force / load),
+        "power_loss": (("slide_roll_ratio",), np.abs(traction_force * slide_rolls) * speed + 2 * rolling_force * speed),
+        "rolling_force": rolling_force,
+        "rolling_moment": rolling_force * case.roller.radius,
     }
     if lubricant.temperature_viscosity is not None and lubricant.conductivity is not None:
         loading = lubricant.viscosity * lubricant.temperature_viscosity * speed**2 / lubricant.conductivity
         pressure_ratio = case.hertz_max_pressure / (2 * case.modulus)
-        values["thermal_reduction"] = (
+        variables["thermal_reduction"] = (
             ("slide_roll_ratio",),
-            [thermal_reduction(pressure_ratio, loading, float(ratio)) for ratio in ratios],
+            [thermal_reduction(pressure_ratio, loading, float(ratio)) for ratio in slide_rolls],
         )
-    curve = xr.Dataset(values, coords={"slide_roll_ratio": ratios})
+    curve = xr.Dataset(variables, coords={"slide_roll_ratio": slide_rolls})
     return describe(curve, "traction of a lubricated contact")
 
 

@@ -72,25 +72,25 @@ Response = Callable[[FloatArray], FloatArray]  # Temperature rise from heat
 
 
 def partition_heat(
-    first: Response, second: Response, heat: FloatArray, in_contact: BoolArray
+    first_response: Response, second_response: Response, heat: FloatArray, in_contact: BoolArray
 ) -> tuple[FloatArray, float]:
     """Heat into the first of two surfaces of equal contact temperature, and their difference over the rise."""
     if not heat.any():  # surfaces of the same speed
         return np.zeros(heat.shape), 0.0
 
-    def expand(values: FloatArray) -> FloatArray:
-        values_on_grid = np.zeros(heat.shape)
-        values_on_grid[in_contact] = values
-        return values_on_grid
+    def expand(cell_heat: FloatArray) -> FloatArray:
+        grid_heat = np.zeros(heat.shape)
+        grid_heat[in_contact] = cell_heat
+        return grid_heat
 
-    first_rise, second_rise = first(heat)[in_contact], second(heat)[in_contact]
+    first_rise, second_rise = first_response(heat)[in_contact], second_response(heat)[in_contact]
     fraction = second_rise.max() / (first_rise.max() + second_rise.max())  # Blok's: equal largest temperatures
     guess = fraction * heat[in_contact]
     count = guess.size
 
-    def apply(values: FloatArray) -> FloatArray:
-        values_on_grid = expand(np.asarray(values).ravel())
-        return np.asarray((first(values_on_grid) + second(values_on_grid))[in_contact])
+    def apply(cell_heat: FloatArray) -> FloatArray:
+        grid_heat = expand(np.asarray(cell_heat).ravel())
+        return np.asarray((first_response(grid_heat) + second_response(grid_heat))[in_contact])
 
     operator = LinearOperator((count, count), matvec=apply, dtype=np.float64)  # eq. (602)
     # Residual of the temperatures over the right-hand side at which the iteration stops
@@ -182,29 +182,29 @@ def flash_temperature(
         )
     if roller is not None:
         checks.instance("roller", roller, ThermalProperties, "a ThermalProperties(...)")
-    fraction = None if partition is None else checks.not_negative("partition", partition)
-    if fraction is not None and fraction > 1:
-        raise InvalidInputError("partition", fraction, "from 0 to 1: the fraction of the heat into the body")
+    share = None if partition is None else checks.not_negative("partition", partition)
+    if share is not None and share > 1:
+        raise InvalidInputError("partition", share, "from 0 to 1: the fraction of the heat into the body")
     if limit is not None:
         limit = checks.positive("limit", limit, "K")
     depths = None if z is None else checks.coordinates("z", z)
     if depths is not None and (depths < 0).any():
         raise InvalidInputError("z", float(depths.min()), "not below zero (metres)")
     heat = frictional_heat(case, solution, grid)
-    rises, into_body, mismatch = _solve_temperatures(case, grid, heat, pressure, body, roller=roller, fraction=fraction)
+    rises, into_body, mismatch = _solve_temperatures(case, grid, heat, pressure, body, roller=roller, fraction=share)
     into_roller = heat.density - into_body
     area = grid.weights * grid.cell_area
-    heated = heat.density != 0
+    is_heated = heat.density != 0
     fields = rises | {
         "frictional_heat": heat.density,
         "heat_into_body": into_body,
-        "heat_partition": np.where(heated, into_body / np.where(heated, heat.density, 1.0), np.nan),
+        "heat_partition": np.where(is_heated, into_body / np.where(is_heated, heat.density, 1.0), np.nan),
     }
     values = {name: (("x", "y"), field) for name, field in fields.items()}
     scalars = _find_maximum(grid, rises)
     (wide_grid, density), (_, mean_pressure) = (_coarsen(grid, values) for values in (heat.density, pressure))
     wide_rises, _, _ = _solve_temperatures(
-        case, wide_grid, heat._replace(density=density), mean_pressure, body, roller=roller, fraction=fraction
+        case, wide_grid, heat._replace(density=density), mean_pressure, body, roller=roller, fraction=share
     )
     change = abs(_find_maximum(wide_grid, wide_rises)["max_temperature_rise"] - scalars["max_temperature_rise"])
     peak, error = (float(solution.get(name, np.nan)) for name in ("peak_pressure", "peak_pressure_error"))
@@ -264,14 +264,14 @@ def _solve_temperatures(
     return rises, into_body, mismatch
 
 
-def _coarsen(grid: Grid, values: FloatArray) -> tuple[Grid, FloatArray]:
+def _coarsen(grid: Grid, field: FloatArray) -> tuple[Grid, FloatArray]:
     """Half as many cells along y, and means over them."""
     wide_grid = Grid.between(grid.x_edges, grid.y_range, max(grid.cells_y // 2, 1))
-    cumulative = np.pad(np.cumsum(values, axis=1), ((0, 0), (1, 0)))
+    cumulative = np.pad(np.cumsum(field, axis=1), ((0, 0), (1, 0)))
     # The edge of a wide cell may cut a cell.
     edges = np.linspace(0, grid.cells_y, wide_grid.cells_y + 1)
-    sums = make_interp_spline(np.arange(grid.cells_y + 1), cumulative, k=1, axis=1)(edges)
-    return wide_grid, np.diff(sums, axis=1) * wide_grid.cells_y / grid.cells_y
+    cell_sums = make_interp_spline(np.arange(grid.cells_y + 1), cumulative, k=1, axis=1)(edges)
+    return wide_grid, np.diff(cell_sums, axis=1) * wide_grid.cells_y / grid.cells_y
 
 
 def _under_roller(case: Case, grid: Grid, pressure: FloatArray) -> tuple[slice, tuple[float, float]]:

@@ -71,21 +71,21 @@ class ThermalProperties:
         return self.conductivity / self.heat_capacity
 
 
-TAIL = 6.5  # Lengths of spreading beyond which the heat of a cell vanishes: erfc(6.5) = 4e-20
+MAX_SPREADS = 6.5  # Lengths of spreading beyond which the heat of a cell vanishes: erfc(6.5) = 4e-20
 
 
-def spread_nodes(smallest: float, step: float, window: float, drift: float) -> tuple[FloatArray, FloatArray]:
+def spread_nodes(min_width: float, step: float, window: float, drift: float) -> tuple[FloatArray, FloatArray]:
     """Nodes and weights over the length of spreading s, in which heat moves by ``drift s**2 / 2``, drift in 1/m."""
     speed = abs(drift)
     # The integral ends when the heat of all cells has drifted beyond the window, and for a source at rest at 1e8
     # windows, with a remainder of 1e-8.
     max_spread = 1e8 * window
     if speed:
-        max_spread = min((TAIL + np.sqrt(TAIL**2 + 2 * speed * window)) / speed, max_spread)
+        max_spread = min((MAX_SPREADS + np.sqrt(MAX_SPREADS**2 + 2 * speed * window)) / speed, max_spread)
     # Length of spreading below which the midpoint of the smallest cell keeps its heat
-    min_spread = 0.125 * smallest
-    count = max(1, int(np.ceil(np.log(max_spread / min_spread) / np.log(2.0))))  # Ratio of neighbouring panels
-    edges = [np.zeros(1), np.geomspace(min_spread, max_spread, count + 1)]
+    min_spread = 0.125 * min_width
+    panel_count = max(1, int(np.ceil(np.log(max_spread / min_spread) / np.log(2.0))))  # Ratio of neighbouring panels
+    edges = [np.zeros(1), np.geomspace(min_spread, max_spread, panel_count + 1)]
     if speed:
         # Lengths at which the edge of a cell passes the midpoint of another cell and is still sharp.
         crossings = np.sqrt(2 * step * (np.arange(int(np.ceil(window / step)) + 1) + 0.5) / speed)
@@ -122,7 +122,7 @@ def _primitive(spread: FloatArray, distance: FloatArray, length: float) -> Float
     if not np.isfinite(length):
         return np.asarray(0.5 * erf(distance / s))
     periods = np.round(distance / (2 * length))
-    reduced = distance - 2 * length * periods
+    reduced_distance = distance - 2 * length * periods
     primitive = np.empty((spread.size, *distance.shape))
     # Length of spreading over the distance between two ends above which the cosine series replaces the images
     is_wide = spread >= 0.6 * length
@@ -131,16 +131,16 @@ def _primitive(spread: FloatArray, distance: FloatArray, length: float) -> Float
         # The first neglected term is ``exp(-(9 pi 0.6 / 2)**2)``.
         wavenumbers = np.arange(1, 9) * np.pi / length
         decay = np.exp(-0.25 * np.outer(spread[is_wide], wavenumbers) ** 2) / (wavenumbers * length)
-        waves = np.sin(wavenumbers.reshape(-1, *[1] * distance.ndim) * reduced)
-        primitive[is_wide] = reduced / (2 * length) + np.tensordot(decay, waves, axes=1)
+        waves = np.sin(wavenumbers.reshape(-1, *[1] * distance.ndim) * reduced_distance)
+        primitive[is_wide] = reduced_distance / (2 * length) + np.tensordot(decay, waves, axes=1)
     if not is_wide.all():
         short_spreads = spread[~is_wide]
-        images = max(0, int(np.ceil((TAIL * short_spreads.max() / length - 1) / 2)))
-        values = 0.5 * erf(reduced / s[~is_wide])
-        for image in range(1, images + 1):
+        image_count = max(0, int(np.ceil((MAX_SPREADS * short_spreads.max() / length - 1) / 2)))
+        image_sums = 0.5 * erf(reduced_distance / s[~is_wide])
+        for image in range(1, image_count + 1):
             for shift in (-2 * length * image, 2 * length * image):
-                values += 0.5 * erf((reduced + shift) / s[~is_wide])
-        primitive[~is_wide] = values
+                image_sums += 0.5 * erf((reduced_distance + shift) / s[~is_wide])
+        primitive[~is_wide] = image_sums
     return primitive + periods
 
 
@@ -165,7 +165,7 @@ class SourceOperator:
 
     def __init__(self, body: MovingBody, grid: Grid, columns: slice, depth: float = 0.0) -> None:
         self._columns, self._shape = columns, grid.shape
-        self._length = next_fast_len(2 * grid.cells_y - 1, real=True)
+        self._size_y = next_fast_len(2 * grid.cells_y - 1, real=True)
         edges = grid.x_edges[columns.start : columns.stop + 1]
         x = grid.x[columns]
         length = body.ends[1] - body.ends[0]
@@ -181,19 +181,19 @@ class SourceOperator:
         spread, weights = spread_nodes(min(float(np.diff(edges).min()), grid.dy), grid.dy, window, body.drift)
         # eq. (601)
         weights = weights * np.exp(-((depth / spread) ** 2)) / (body.properties.conductivity * np.sqrt(np.pi))
-        lags = np.arange(self._length)
-        lags[lags >= grid.cells_y] -= self._length
+        lags = np.arange(self._size_y)
+        lags[lags >= grid.cells_y] -= self._size_y
         lateral = rfft(weights[:, None] * lateral_factors(spread, grid.dy * lags, grid.dy, body.drift), axis=-1)
-        self._mirrored: ComplexArray | None = None
+        self._mirror_spectrum: ComplexArray | None = None
         if not grid.uniform:
             pairs = x.size * edges.size
             self._spectrum = _sum_products(spread, lateral, pairs, lambda s: axial_factors(s, x, edges, body.ends))
             return
-        self._height = next_fast_len(2 * x.size - 1, real=True)
-        offsets = np.arange(self._height)
-        offsets[offsets >= x.size] -= self._height
+        self._size_x = next_fast_len(2 * x.size - 1, real=True)
+        offsets = np.arange(self._size_x)
+        offsets[offsets >= x.size] -= self._size_x
 
-        def kernel(distance: float) -> ComplexArray:
+        def compute_spectrum(distance: float) -> ComplexArray:
             """Fractions at distances along x from the midpoint of a cell and of its images in both ends."""
             lower, upper = (distance + grid.dx * offsets + side * grid.dx for side in (-0.5, 0.5))
 
@@ -202,27 +202,27 @@ class SourceOperator:
 
             return np.asarray(fft(_sum_products(spread, lateral, lower.size, factors), axis=0))
 
-        self._spectrum = kernel(0.0)
+        self._spectrum = compute_spectrum(0.0)
         mirror = body.ends[0]
         if np.isfinite(mirror):
             # In reversed order cell j is at x[-1] - dx j, and its image at 2 mirror - x[-1] + dx j.
-            self._mirrored = kernel(x[0] + x[-1] - 2 * mirror)
+            self._mirror_spectrum = compute_spectrum(x[0] + x[-1] - 2 * mirror)
 
     def __call__(self, heat: FloatArray) -> FloatArray:
         """Temperature rise under `heat` on all cells of the grid; zero on columns beyond the body."""
         body_heat = heat[self._columns]
-        result = np.zeros(self._shape)
+        rise = np.zeros(self._shape)
         if self._spectrum.ndim == 3:
-            lines = rfft(body_heat, self._length, axis=-1)
-            spread = irfft(np.einsum("xck,ck->xk", self._spectrum, lines), self._length, axis=-1)
-            result[self._columns] = spread[:, : self._shape[1]]
-            return result
-        size = (self._height, self._length)
-        total = self._spectrum * rfft2(body_heat, size)
-        if self._mirrored is not None:
-            total += self._mirrored * rfft2(body_heat[::-1], size)
-        result[self._columns] = irfft2(total, size)[: body_heat.shape[0], : self._shape[1]]
-        return result
+            line_spectra = rfft(body_heat, self._size_y, axis=-1)
+            column_rises = irfft(np.einsum("xck,ck->xk", self._spectrum, line_spectra), self._size_y, axis=-1)
+            rise[self._columns] = column_rises[:, : self._shape[1]]
+            return rise
+        size = (self._size_x, self._size_y)
+        rise_spectrum = self._spectrum * rfft2(body_heat, size)
+        if self._mirror_spectrum is not None:
+            rise_spectrum += self._mirror_spectrum * rfft2(body_heat[::-1], size)
+        rise[self._columns] = irfft2(rise_spectrum, size)[: body_heat.shape[0], : self._shape[1]]
+        return rise
 
 
 def _sum_products(
@@ -231,9 +231,9 @@ def _sum_products(
     """Sum, over the lengths of spreading, of axial factors (`size` numbers) times spectra of lateral factors."""
     # Real products cost half as much as complex ones.
     real_factors = np.ascontiguousarray(lateral).view(np.float64)
-    total: FloatArray = np.zeros(())
+    sums: FloatArray = np.zeros(())
     step = max(1, 2**22 // size)  # Lengths of spreading in memory at a time
     for start in range(0, spread.size, step):
         chunk = slice(start, start + step)
-        total = total + np.tensordot(factors(spread[chunk]), real_factors[chunk], axes=(0, 0))
-    return np.ascontiguousarray(total).view(np.complex128)
+        sums = sums + np.tensordot(factors(spread[chunk]), real_factors[chunk], axes=(0, 0))
+    return np.ascontiguousarray(sums).view(np.complex128)

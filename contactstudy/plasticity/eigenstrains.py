@@ -121,9 +121,9 @@ def eigenstrain_stress(
 def edges_between(positions: FloatArray, low: float, high: float) -> FloatArray:
     """Edges half-way between positions; outer cells end at `low` and `high` if these are as near as the next one."""
     midpoints = 0.5 * (positions[1:] + positions[:-1])
-    first = low if positions[0] - low <= positions[1] - positions[0] else 2 * positions[0] - midpoints[0]
-    last = high if high - positions[-1] <= positions[-1] - positions[-2] else 2 * positions[-1] - midpoints[-1]
-    return np.concatenate([[first], midpoints, [last]])
+    first_edge = low if positions[0] - low <= positions[1] - positions[0] else 2 * positions[0] - midpoints[0]
+    last_edge = high if high - positions[-1] <= positions[-1] - positions[-2] else 2 * positions[-1] - midpoints[-1]
+    return np.concatenate([[first_edge], midpoints, [last_edge]])
 
 
 def create_cross_section(body: Body, x: FloatArray, z: FloatArray) -> EigenstrainBody:
@@ -138,6 +138,6 @@ def create_cross_section(body: Body, x: FloatArray, z: FloatArray) -> Eigenstrai
     x_edges, z_edges = edges_between(x, low, high), edges_between(z, 0.0, np.inf)
     for name, face, edge in (("x", low, x_edges[0]), ("x", high, x_edges[-1]), ("z", 0.0, z_edges[0])):
         if np.isfinite(face) and edge != face:
-            where = "the top" if name == "z" else f"the free end at {face:g} m"
-            raise InvalidInputError(name, f"{edge:g} m, where the outer cell ends", f"positions that reach to {where}")
+            place = "the top" if name == "z" else f"the free end at {face:g} m"
+            raise InvalidInputError(name, f"{edge:g} m, where the outer cell ends", f"positions that reach to {place}")
     return EigenstrainBody(material=body.material, extent=body.extent, x_edges=x_edges, z_edges=z_edges)

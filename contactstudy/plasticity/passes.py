@@ -64,7 +64,7 @@ class Passage:
     layers: LayerInfluence  # without an end
     lateral: PeriodicLayers  # of strains periodic along y
     lateral_positions: int  # in the period
-    box: tuple[IntArray, IntArray]  # column and layer (cell) in `along`
+    cell_indices: tuple[IntArray, IntArray]  # column and layer (cell) in `lateral`
     yield_stress: FloatArray  # (cell), in tension, Pa
     shear_modulus: float  # Pa
     isotropic: float  # Pa
@@ -90,13 +90,13 @@ class Passage:
     def _residual_stress(self, plastic_strain: FloatArray) -> FloatArray:
         """Residual stress (6, position, cell) of this pass's plastic strain, columns in plane strain."""
         final_strain = plastic_strain[:, -1]
-        column, layer = self.box
+        column, layer = self.cell_indices
         periodic_strain = np.zeros((6, self.lateral_positions, column.max() + 1, layer.max() + 1))
         count = plastic_strain.shape[1]
         periodic_strain[:, :count, column, layer] = plastic_strain
-        ramp_count = self.lateral_positions - count
-        ramp = np.clip(2 - 2 * (np.arange(ramp_count) + 0.5) / ramp_count, 0.0, 1.0)
-        periodic_strain[:, count:, column, layer] = (ramp**2 * (3 - 2 * ramp))[:, None] * final_strain[:, None]
+        decay_count = self.lateral_positions - count
+        decay = np.clip(2 - 2 * (np.arange(decay_count) + 0.5) / decay_count, 0.0, 1.0)
+        periodic_strain[:, count:, column, layer] = (decay**2 * (3 - 2 * decay))[:, None] * final_strain[:, None]
         stress = self.lateral.stresses(periodic_strain)[:, :count, column, layer]
         # The correction to the whole body grows with the fraction of the final strain that the pass has caused.
         norm = float(COMPONENT_COUNTS @ (final_strain**2).sum(axis=1))
@@ -145,7 +145,7 @@ class _AndersonMixing:
         return np.asarray(iterate + change - np.tensordot(weights, steps + differences, axes=1))
 
 
-NEAR_YIELD = 0.9  # Minimum von Mises stress over yield stress of the cells of a pass
+NEAR_YIELD_RATIO = 0.9  # Minimum von Mises stress over yield stress of the cells of a pass
 MAX_STRAIN = 0.05  # Largest plastic strain of small-strain theory, with the contact stresses of a flat body
 
 
@@ -200,7 +200,7 @@ class _CrossSection:
             layers=self.layers,
             lateral=periodic,
             lateral_positions=period,
-            box=indices,
+            cell_indices=indices,
             yield_stress=self.yield_stress[cells],
             shear_modulus=self.body.material.shear_modulus,
             isotropic=self.material.isotropic_hardening,
@@ -293,25 +293,25 @@ def residual_stress(
     passes, substeps = checks.count("passes", passes), checks.count("substeps", substeps)
     tolerance = checks.positive("tolerance", tolerance)
     section, dims = _create_section(stress, body, material)
-    cells = section.yielding_cells(np.zeros((6, 1)), NEAR_YIELD)
-    count = section.yield_stress.size
-    state = State(np.zeros((6, count)), np.zeros(count), True)
+    cells = section.yielding_cells(np.zeros((6, 1)), NEAR_YIELD_RATIO)
+    cell_count = section.yield_stress.size
+    state = State(np.zeros((6, cell_count)), np.zeros(cell_count), True)
     states: list[xr.Dataset] = []
     passage = section.create_passage(cells, substeps, tolerance) if cells.size else None
     for pass_number in range(1, passes + 1):
         while True:
             next_state = state
             if passage is not None:
-                yielded = passage.solve(State(state.strain[:, cells], state.accumulated[cells], state.converged))
-                next_state = State(state.strain.copy(), state.accumulated.copy(), yielded.converged)
-                next_state.strain[:, cells], next_state.accumulated[cells] = yielded.strain, yielded.accumulated
+                pass_state = passage.solve(State(state.strain[:, cells], state.accumulated[cells], state.converged))
+                next_state = State(state.strain.copy(), state.accumulated.copy(), pass_state.converged)
+                next_state.strain[:, cells], next_state.accumulated[cells] = pass_state.strain, pass_state.accumulated
             residual, displacement_z, displacement_y = section.residual_state(next_state.strain)
             new_cells = np.setdiff1d(section.yielding_cells(residual.reshape(6, -1), 1 + tolerance), cells)
             if not new_cells.size:
                 break
             # Residual stress makes further cells yield: repeat the pass with these cells.
             cells = np.union1d(
-                np.union1d(cells, new_cells), section.yielding_cells(residual.reshape(6, -1), NEAR_YIELD)
+                np.union1d(cells, new_cells), section.yielding_cells(residual.reshape(6, -1), NEAR_YIELD_RATIO)
             )
             passage = section.create_passage(cells, substeps, tolerance)
         plastic_flow = float((next_state.accumulated - state.accumulated).max())
@@ -352,17 +352,17 @@ def residual_stress(
 def _create_section(stress: xr.Dataset, body: Body, material: ElasticPlastic) -> tuple[_CrossSection, tuple[str, str]]:
     """Check a case and return its cross-section, and its dimensions along x and z."""
     case = single_case(require_in_si(stress, *STRESSES, argument="stress"))
-    first = case[STRESSES[0]]
+    component = case[STRESSES[0]]
     dims = {axis: dimension_along(case["tau_yz"], axis) for axis in ("y", "x", "z")}
-    x, y, z = (np.asarray(positions(first, axis).values, dtype=np.float64) for axis in ("x", "y", "z"))
+    x, y, z = (np.asarray(positions(component, axis).values, dtype=np.float64) for axis in ("x", "y", "z"))
     # The contact moves along +y: its leading edge, at the largest y, passes a point first.
     descending = np.argsort(y)[::-1]
-    values = np.stack([case[name].transpose(*dims.values()).values[descending] for name in STRESSES])
+    stresses = np.stack([case[name].transpose(*dims.values()).values[descending] for name in STRESSES])
     if y.size < 2:
         raise InvalidInputError("stress", f"{y.size} position along y", "the whole passage along y")
-    if not np.isfinite(values).all():
+    if not np.isfinite(stresses).all():
         raise InvalidInputError("stress", "values that are not finite", "finite stresses")
-    elastic = values.reshape(*values.shape[:2], -1)
+    elastic = stresses.reshape(*stresses.shape[:2], -1)
     section = _CrossSection(body=body, material=material, x=x, y=y[descending], z=z, elastic=elastic)
     # A line contact has one column along x, without ends.
     check_solved_for(stress, body, "stress", only=("body.material",) if section.is_line_contact else ())

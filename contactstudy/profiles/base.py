@@ -42,12 +42,12 @@ class SlopeJumps(NamedTuple):
     @classmethod
     def merge(cls, *corners: SlopeJumps) -> SlopeJumps:
         """Merge corners of summands: add jumps at equal positions and omit jumps of rounding."""
-        positions = np.concatenate([is_corner.positions for is_corner in corners])
-        jumps = np.concatenate([is_corner.jumps for is_corner in corners])
+        positions = np.concatenate([corner.positions for corner in corners])
+        jumps = np.concatenate([corner.jumps for corner in corners])
         unique, indices = np.unique(positions, return_inverse=True)
-        sums = np.bincount(indices, weights=jumps, minlength=unique.size)
-        is_corner = np.abs(sums) > MIN_JUMP
-        return cls(unique[is_corner], np.asarray(sums[is_corner], dtype=np.float64))
+        total_jumps = np.bincount(indices, weights=jumps, minlength=unique.size)
+        is_corner = np.abs(total_jumps) > MIN_JUMP
+        return cls(unique[is_corner], np.asarray(total_jumps[is_corner], dtype=np.float64))
 
 
 class Shape:

@@ -67,9 +67,9 @@ def read_lines(path: Path) -> Iterator[tuple[int, str]]:
     check_regular_file(path)
     try:
         with open(path, encoding=_detect_encoding(path), errors="surrogateescape") as file:
-            for number, line in enumerate(file, start=1):
+            for line_number, line in enumerate(file, start=1):
                 if (content := line.strip()) and not content.startswith("#"):
-                    yield number, line.replace(FOREIGN_MICRO, MICRO)
+                    yield line_number, line.replace(FOREIGN_MICRO, MICRO)
     except (OSError, UnicodeError) as error:
         reason = error.strerror or str(error) if isinstance(error, OSError) else "it is no text"
         raise InvalidInputError("path", str(path), "a text file that can be read", reason.lower()) from error
@@ -121,21 +121,21 @@ def _detect_encoding(path: Path) -> str:
     return "utf-8-sig"
 
 
-NUMBER = re.compile(r"\s*[+-]?(?:(?:\d+(?:\.\d*)?|\.\d+)(?:e[+-]?\d+)?|nan|inf)\s*", re.ASCII | re.IGNORECASE)
+NUMERAL = re.compile(r"\s*[+-]?(?:(?:\d+(?:\.\d*)?|\.\d+)(?:e[+-]?\d+)?|nan|inf)\s*", re.ASCII | re.IGNORECASE)
 
 # A number with a possible comma between thousands
-THOUSANDS = re.compile(r"\s*[+-]?[1-9]\d{0,2},\d{3}\s*", re.ASCII)
-MAX_QUOTE = 24
+THOUSANDS_PATTERN = re.compile(r"\s*[+-]?[1-9]\d{0,2},\d{3}\s*", re.ASCII)
+QUOTE_LENGTH = 24
 
 
 def truncate(text: str) -> str:
     """Return the beginning of a text, too short to disclose a foreign file."""
     text = text.strip()
-    return text if len(text) <= MAX_QUOTE else f"{text[: MAX_QUOTE - 3]}..."
+    return text if len(text) <= QUOTE_LENGTH else f"{text[: QUOTE_LENGTH - 3]}..."
 
 
 class NumberParser:
-    """NumberParser of one file with one decimal mark.
+    """Parser of the numbers of one file, with one decimal mark.
 
     A comma is the decimal mark unless it separates columns, a number has a point, or all may separate thousands.
     """
@@ -149,15 +149,15 @@ class NumberParser:
     def parse(self, line: int, name: str, field: str) -> float:
         """Return a field of a column as a number; NaN for an empty field."""
         # Python's float also accepts underscores and the digits of all scripts.
-        if NUMBER.fullmatch(field):
+        if NUMERAL.fullmatch(field):
             if self._point_number is None and "." in field:
                 self._point_number = f"line {line}, {name}", field
             return float(field)
         if not field.strip():
             return np.nan
-        if self._comma_allowed and "." not in field and NUMBER.fullmatch(with_point := field.replace(",", ".", 1)):
+        if self._comma_allowed and "." not in field and NUMERAL.fullmatch(with_point := field.replace(",", ".", 1)):
             self._comma_number = f"line {line}, {name}", field
-            self._is_decimal_comma = self._is_decimal_comma or not THOUSANDS.fullmatch(field)
+            self._is_decimal_comma = self._is_decimal_comma or not THOUSANDS_PATTERN.fullmatch(field)
             return float(with_point)
         allowed = "a number with a decimal point" + (" or comma" if self._comma_allowed else "")
         raise InvalidInputError(f"line {line}, {name}", truncate(field), allowed)
@@ -177,7 +177,7 @@ class NumberParser:
 
 MAX_STEP_RATIO = 3.0  # Width of a gap over the neighbouring steps
 # Messages quote only names of columns: the file may be foreign.
-NAME = re.compile(r"[A-Za-z]\w{0,15}", re.ASCII)
+NAME_PATTERN = re.compile(r"[A-Za-z]\w{0,15}", re.ASCII)
 MAX_NAMES = 8
 
 
@@ -221,12 +221,14 @@ def read_columns(path: str | Path, positions: tuple[str, ...], values: tuple[str
     names = _select_columns([name for name, _ in header], positions, values, path)
     indices = [next(index for index, (title, _) in enumerate(header) if title == name) for name in names]
     columns, parser = [array("d") for _ in names], NumberParser(separator)
-    for number, line in lines:
-        row = _split_fields(number, line, separator)
+    for line_number, line in lines:
+        row = _split_fields(line_number, line, separator)
         if len(row) != len(header):
-            raise InvalidInputError(f"line {number}", f"{len(row)} fields", f"{len(header)} fields, as the header has")
+            raise InvalidInputError(
+                f"line {line_number}", f"{len(row)} fields", f"{len(header)} fields, as the header has"
+            )
         for name, index, column in zip(names, indices, columns, strict=True):
-            column.append(parser.parse(number, name, row[index]))
+            column.append(parser.parse(line_number, name, row[index]))
     parser.check()
     return {
         name: unit_in_metres(name, header[index][1]) * np.array(column)
@@ -234,14 +236,14 @@ def read_columns(path: str | Path, positions: tuple[str, ...], values: tuple[str
     }
 
 
-def _split_fields(number: int, line: str, separator: str) -> list[str]:
+def _split_fields(line_number: int, line: str, separator: str) -> list[str]:
     """Split one line; a quotation mark cannot extend the field to the next line."""
     if '"' not in line:
         return line.split(separator)
     try:
         return next(csv.reader((line.rstrip("\r\n"),), delimiter=separator, skipinitialspace=True, strict=True))
     except csv.Error as error:
-        raise InvalidInputError(f"line {number}", truncate(line), "fields of numbers", str(error)) from None
+        raise InvalidInputError(f"line {line_number}", truncate(line), "fields of numbers", str(error)) from None
 
 
 def _split_unit(entry: str) -> tuple[str, str]:
@@ -256,7 +258,7 @@ def _select_columns(titles: list[str], positions: tuple[str, ...], values: tuple
     value_names = [name for name in values if name in titles]
     if any(titles.count(name) != 1 for name in positions) or len(value_names) != 1 or titles.count(value_names[0]) != 1:
         required = f"{', '.join(positions)} and one of {', '.join(values)}"
-        quoted_titles = [name if NAME.fullmatch(name) else "..." for name in titles[:MAX_NAMES]]
+        quoted_titles = [name if NAME_PATTERN.fullmatch(name) else "..." for name in titles[:MAX_NAMES]]
         header = _example_header(positions, values)
         hint = f"the first line of {path} without comments contains the names of the columns, such as: {header}"
         raise InvalidInputError("columns", quoted_titles, f"{required}, each with its unit", hint)
@@ -274,9 +276,9 @@ def check_positions(name: str, positions: FloatArray, min_count: int = 2) -> Non
     if positions.size < min_count:
         raise InvalidInputError(name, f"{positions.size} positions", f"at least {min_count} positions")
     steps = np.diff(positions)
-    decreasing = np.flatnonzero(steps <= 0)
-    if decreasing.size:
-        index = int(decreasing[0]) + 1
+    decreases = np.flatnonzero(steps <= 0)
+    if decreases.size:
+        index = int(decreases[0]) + 1
         hint = "it is a duplicate" if steps[index - 1] == 0 else f"{positions[index - 1]:g} m is before it"
         raise InvalidInputError(name, f"{positions[index]:g} m at entry {index + 1}", "increasing", hint)
     padded_steps = np.concatenate([[0.0], steps, [0.0]])

@@ -21,7 +21,7 @@ from contactstudy.profiles.base import (
     local_radius,
 )
 
-STEP = 1e-6  # Step of the differences for a slope, over the length
+SLOPE_STEP = 1e-6  # Step of the differences for a slope, over the length
 
 
 @dataclass(frozen=True, repr=False)
@@ -69,23 +69,23 @@ class Halves(Shape):
 
     def slope_jumps(self, length: float) -> SlopeJumps:
         """Corners of both halves, and the corner at mid-length."""
-        lower, upper = as_shape(self.left).slope_jumps(length), as_shape(self.right).slope_jumps(length)
+        left_corners, right_corners = as_shape(self.left).slope_jumps(length), as_shape(self.right).slope_jumps(length)
         # Slopes at mid-length from three drops on either side.
-        steps = STEP * length * np.array([0.0, 1.0, 2.0])
+        steps = SLOPE_STEP * length * np.array([0.0, 1.0, 2.0])
         jump = 0.0
         for half, side in ((self.right, 1), (self.left, -1)):
             first_drop, next_drop, last_drop = check_drop(half, side * steps, length)
             jump += float(-3 * first_drop + 4 * next_drop - last_drop) / (2 * steps[1])
         return SlopeJumps.merge(
-            SlopeJumps(*(values[lower.positions < 0] for values in lower)),
+            SlopeJumps(*(values[left_corners.positions < 0] for values in left_corners)),
             SlopeJumps(np.zeros(1), np.array([jump])),
-            SlopeJumps(*(values[upper.positions > 0] for values in upper)),
+            SlopeJumps(*(values[right_corners.positions > 0] for values in right_corners)),
         )
 
     def nodes(self, length: float) -> FloatArray:
         """Nodes (m) of both halves, and mid-length."""
-        lower, upper = as_shape(self.left).nodes(length), as_shape(self.right).nodes(length)
-        return np.concatenate([lower[lower < 0], [0.0], upper[upper > 0]])
+        left_nodes, right_nodes = as_shape(self.left).nodes(length), as_shape(self.right).nodes(length)
+        return np.concatenate([left_nodes[left_nodes < 0], [0.0], right_nodes[right_nodes > 0]])
 
     def second_interpolation(self) -> Halves | None:
         """Profile with the second interpolation of a measured half."""
@@ -94,8 +94,8 @@ class Halves(Shape):
 
     def local_radius(self, x: FloatArray, length: float, radius: float | FloatArray) -> FloatArray:
         """Radius across the roller (m) of each half."""
-        lower, upper = (local_radius(half, x, length, radius) for half in (self.left, self.right))
-        return np.asarray(np.where(np.asarray(x) < 0, lower, upper))
+        left_radius, right_radius = (local_radius(half, x, length, radius) for half in (self.left, self.right))
+        return np.asarray(np.where(np.asarray(x) < 0, left_radius, right_radius))
 
 
 MAX_SLOPE = 1.0  # Maximum slope of the profile at a corner's start: logarithmic profiles end with an infinite slope
@@ -183,19 +183,19 @@ class EffectiveLength(Shape):
     def _create_corner(self, side: int) -> Corner:
         """Return the corner at the end of smaller (-1) or larger (1) x."""
         length = self.effective_length
-        half, step = 0.5 * length, STEP * length
+        half_length, step = 0.5 * length, SLOPE_STEP * length
 
         def drops(*distances: float) -> FloatArray:
             return check_drop(self.profile, side * np.array(distances), length)
 
-        end, inside = drops(half, half - step)
-        if np.isfinite(end):
-            slope = float(np.clip((end - inside) / step, 0.0, MAX_SLOPE))
-            return Corner(half, float(end), slope / float(np.hypot(1, slope)), 1 / float(np.hypot(1, slope)))
-        low, high = 0.0, half
+        drop, inner = drops(half_length, half_length - step)
+        if np.isfinite(drop):
+            slope = float(np.clip((drop - inner) / step, 0.0, MAX_SLOPE))
+            return Corner(half_length, float(drop), slope / float(np.hypot(1, slope)), 1 / float(np.hypot(1, slope)))
+        low, high = 0.0, half_length
         for _ in range(60):  # Bisections for the position of the steepest slope
             midpoint = 0.5 * (low + high)
-            width = STEP * (half - midpoint)
+            width = SLOPE_STEP * (half_length - midpoint)
             inner_drop, outer_drop = drops(midpoint - width, midpoint)
             low, high = (midpoint, high) if outer_drop - inner_drop < MAX_SLOPE * width else (low, midpoint)
         return Corner(low, float(drops(low)[0]), np.sqrt(0.5), np.sqrt(0.5))

@@ -18,7 +18,7 @@ EDGE_FACTOR = 0.5 / math.sqrt(math.e)  # Johns and Gohar's 0.3033, ``1 / (2 sqrt
 
 
 def logarithmic_drop(amplitude: float, t: FloatArray, factor: float = 1.0) -> FloatArray:
-    """Drop ``A ln(1 / (1 - share t**2))`` (m); at ``share = 1`` infinite from ``|t| = 1`` on; 0 without amplitude."""
+    """Drop ``A ln(1 / (1 - factor t**2))`` (m); at ``factor = 1`` infinite from ``|t| = 1`` on; 0 without amplitude."""
     if amplitude == 0:
         return np.zeros(np.shape(t))
     with np.errstate(divide="ignore"):

@@ -27,7 +27,7 @@ from contactstudy.profiles.column_files import (
 from contactstudy.profiles.instruments import Heights, is_instrument_file, read_heights, rotate_heights
 
 ALPHA = np.sqrt(np.log(2) / np.pi)  # Constant of transmission one half at the cut-off (ISO 16610-21)
-REACH = 2.2  # Half the width of the weight over ``ALPHA`` times the cut-off: less than 3e-7 of the peak beyond
+WEIGHT_REACH = 2.2  # Half the width of the weight over ``ALPHA`` times the cut-off: less than 3e-7 of the peak beyond
 CHUNK_POINTS = 256  # Number of points in one block
 
 
@@ -37,9 +37,9 @@ def filter_gaussian(x: FloatArray, values: FloatArray, cutoff: float) -> FloatAr
     width = ALPHA * cutoff
     step = (x[-1] - x[0]) / (x.size - 1)
     # Fourier transforms filter points with deviations of up to 1e-3 steps from even spacing.
-    even = np.abs(x - np.linspace(x[0], x[-1], x.size)).max() <= 1e-3 * step
+    is_even = np.abs(x - np.linspace(x[0], x[-1], x.size)).max() <= 1e-3 * step
     zeroth, first, second, mean, moment = (
-        _sum_even_points(step / width, values) if even else _sum_uneven_points(x / width, values)
+        _sum_even_points(step / width, values) if is_even else _sum_uneven_points(x / width, values)
     )
     return np.asarray((second * mean - first * moment) / (zeroth * second - first**2))
 
@@ -48,14 +48,14 @@ def _sum_even_points(step: float, values: FloatArray) -> tuple[FloatArray, ...]:
     """Return the sums of the weight times 1, ``s``, ``s**2``, the values and ``s`` times the values at even points."""
     from scipy.signal import oaconvolve
 
-    half = min(int(REACH / step), values.size - 1)
-    s = step * np.arange(half, -half - 1, -1)  # a convolution reverses the order
+    reach = min(int(WEIGHT_REACH / step), values.size - 1)
+    s = step * np.arange(reach, -reach - 1, -1)  # a convolution reverses the order
     weight = step * np.exp(-np.pi * s**2)
-    shares = np.ones(values.size)
-    shares[[0, -1]] = 0.5  # the end points have half a step
-    pairs = [(weight * s**power, shares) for power in range(3)]
-    pairs += [(weight * s**power, shares * values) for power in range(2)]
-    return tuple(oaconvolve(samples, kernel, mode="full")[half : half + values.size] for kernel, samples in pairs)
+    point_weights = np.ones(values.size)
+    point_weights[[0, -1]] = 0.5  # the end points have half a step
+    pairs = [(weight * s**power, point_weights) for power in range(3)]
+    pairs += [(weight * s**power, point_weights * values) for power in range(2)]
+    return tuple(oaconvolve(samples, kernel, mode="full")[reach : reach + values.size] for kernel, samples in pairs)
 
 
 def _sum_uneven_points(x: FloatArray, values: FloatArray) -> tuple[FloatArray, ...]:
@@ -65,10 +65,10 @@ def _sum_uneven_points(x: FloatArray, values: FloatArray) -> tuple[FloatArray, .
     moments = np.empty((5, x.size))
     for begin in range(0, x.size, CHUNK_POINTS):
         centres = x[begin : begin + CHUNK_POINTS]
-        low, high = np.searchsorted(x, (centres[0] - REACH, centres[-1] + REACH))
+        low, high = np.searchsorted(x, (centres[0] - WEIGHT_REACH, centres[-1] + WEIGHT_REACH))
         nearby = slice(low, high)
         s = x[nearby] - centres[:, None]
-        weight = np.where(np.abs(s) <= REACH, point_weights[nearby] * np.exp(-np.pi * s**2), 0.0)
+        weight = np.where(np.abs(s) <= WEIGHT_REACH, point_weights[nearby] * np.exp(-np.pi * s**2), 0.0)
         sums = [np.sum(weight * s**power, axis=1) for power in range(3)]
         moments[:, begin : begin + CHUNK_POINTS] = [*sums, weight @ values[nearby], (weight * s) @ values[nearby]]
     return tuple(moments)
@@ -79,19 +79,19 @@ def extract_ridge(x: FloatArray, y: FloatArray, heights: FloatArray) -> FloatArr
 
     Least squares fit ``h = p(x) + a y + b x y + c y**2``; the line is ``y = -(a + b x) / (2 c)``.
     """
-    measured = np.isfinite(heights)
-    counts = measured.sum(axis=1)
+    is_measured = np.isfinite(heights)
+    counts = is_measured.sum(axis=1)
     complete = 2 * counts > y.size
     scale, length = max(float(np.abs(y).max()), 1e-300), max(float(np.abs(x).max()), 1e-300)
     lateral, axial = np.broadcast_to(y / scale, heights.shape), (x / length)[:, None]
 
     def subtract_means(values: FloatArray) -> FloatArray:
         """Subtract the mean of each section."""
-        means = np.sum(values, axis=1, where=measured) / np.maximum(counts, 1)
-        return np.asarray((values - means[:, None])[measured])
+        means = np.sum(values, axis=1, where=is_measured) / np.maximum(counts, 1)
+        return np.asarray((values - means[:, None])[is_measured])
 
     terms = np.stack([subtract_means(term) for term in (lateral, axial * lateral, lateral**2)], axis=1)
-    filled = np.where(measured, heights, 0.0)
+    filled = np.where(is_measured, heights, 0.0)
     a, b, c = np.linalg.lstsq(terms, subtract_means(filled), rcond=None)[0]
     slope = a + b * x / length
     ridge_y = -0.5 * scale * slope / c if c < 0 else np.full(x.size, np.nan)
@@ -104,7 +104,7 @@ def extract_ridge(x: FloatArray, y: FloatArray, heights: FloatArray) -> FloatArr
             "turn=90 takes the other axis for the roller's; for a roller without curvature across give one line as CSV",
         )
     fitted = slope[:, None] * lateral + c * lateral**2
-    means = np.sum(filled - fitted, axis=1, where=measured) / np.maximum(counts, 1)
+    means = np.sum(filled - fitted, axis=1, where=is_measured) / np.maximum(counts, 1)
     return np.where(complete, means - slope**2 / (4 * c), np.nan)
 
 
@@ -300,11 +300,11 @@ class Measured(Shape):
         magnitude = np.abs(bends)
         padded = np.pad(magnitude, CORNER_STEPS, mode="edge")
         neighbours = np.maximum(padded[: x.size], padded[2 * CORNER_STEPS :])
-        largest = sliding_window_view(np.pad(magnitude, 1), 3).max(axis=-1)
-        typical = np.maximum(neighbours, np.median(magnitude))
-        corner = (magnitude == largest) & (magnitude > CORNER_RATIO * typical) & (magnitude > MIN_JUMP)
+        local_maxima = sliding_window_view(np.pad(magnitude, 1), 3).max(axis=-1)
+        typical_bends = np.maximum(neighbours, np.median(magnitude))
+        is_corner = (magnitude == local_maxima) & (magnitude > CORNER_RATIO * typical_bends) & (magnitude > MIN_JUMP)
         sums = np.convolve(bends, np.ones(3), mode="same")
-        return SlopeJumps(x[corner], sums[corner])
+        return SlopeJumps(x[is_corner], sums[is_corner])
 
     def second_interpolation(self) -> Measured:
         """Profile through the same points with harmonic-mean slopes."""
@@ -348,9 +348,9 @@ def _limit_slopes(x: FloatArray, drops: FloatArray) -> FloatArray:
     bends = np.diff(secants) / (steps[1:] + steps[:-1])
     bends = np.concatenate([bends[:1], bends, bends[-1:]])
     slopes = np.append(secants - bends[:-1] * steps, secants[-1] + bends[-1] * steps[-1])
-    shared = _minmod(bends[:-1], bends[1:])
-    left, right = secants + shared * steps, secants - shared * steps
-    quadratic = np.concatenate([right[:1], _minmod(left[:-1], right[1:]), left[-1:]])
+    shared_bends = _minmod(bends[:-1], bends[1:])
+    left_slopes, right_slopes = secants + shared_bends * steps, secants - shared_bends * steps
+    quadratic = np.concatenate([right_slopes[:1], _minmod(left_slopes[:-1], right_slopes[1:]), left_slopes[-1:]])
     monotone = np.concatenate([secants[:1], _minmod(secants[:-1], secants[1:]), secants[-1:]])
     limits = np.copysign(np.maximum(3 * np.abs(monotone), 1.5 * np.abs(quadratic)), quadratic)
     return _minmod(slopes, np.where(quadratic == 0, 0.0, limits))
@@ -385,17 +385,17 @@ def _read_netcdf(path: Path) -> dict[str, FloatArray]:
     }
 
 
-def check_outliers(x: FloatArray, drops: FloatArray, largest: float | None = None) -> None:
-    """Raise if a drop differs from its neighbours by more than `largest`, metres; default as in :class:`Measured`."""
+def check_outliers(x: FloatArray, drops: FloatArray, max_spike: float | None = None) -> None:
+    """Raise if a drop differs from its neighbours by more than `max_spike`, metres; default as in :class:`Measured`."""
     spikes = np.abs(drops - _running_median(drops, 2, "odd"))
-    if largest is None:
+    if max_spike is None:
         low, high = np.quantile(drops, [0.05, 0.95])
         bends = np.pad(0.5 * np.abs(np.diff(drops, 2)), 1, mode="reflect")
         # The median of eleven bends of noise may be small by chance, unlike the median of all bends.
-        typical = np.maximum(_running_median(bends, 5, "even"), np.median(bends))
-        limits = np.maximum(SPIKE_RATIO * typical, SPIKE_FRACTION * (high - low))
+        typical_bends = np.maximum(_running_median(bends, 5, "even"), np.median(bends))
+        limits = np.maximum(SPIKE_RATIO * typical_bends, SPIKE_FRACTION * (high - low))
     else:
-        limits = np.full(drops.shape, largest)
+        limits = np.full(drops.shape, max_spike)
     # The medians next to an outlier contain it: only the largest of neighbouring spikes is an outlier.
     local_max = sliding_window_view(np.pad(spikes, 2), 5).max(axis=-1)
     outliers = np.flatnonzero((spikes > limits) & (spikes == local_max))

@@ -189,27 +189,27 @@ class Chamfer(Shape):
         return self.width if self.width is not None else float(self.depth) / self.slope  # type: ignore[arg-type]
 
     @property
-    def blend(self) -> float:
+    def inner_blend(self) -> float:
         """Axial length of the arc on the inner side of the corner, metres."""
         return self.blend_radius * float(np.tan(0.5 * np.arctan(self.slope)))
 
     def drop(self, x: FloatArray, length: float) -> FloatArray:
         """Material removed (m) at distances `x` (m) from mid-length."""
-        half_length, width, blend = 0.5 * length, self.axial_width, self.blend
+        half_length, width, inner_blend = 0.5 * length, self.axial_width, self.inner_blend
         if width > half_length:
             raise InvalidInputError("width", width, f"at most half the roller's length, {half_length:g} m")
-        outer = self.blend_radius * np.sin(np.arctan(self.slope)) - blend
-        if outer > width or width + blend > half_length:
-            max_radius = min(width / outer, (half_length - width) / blend) * self.blend_radius
+        outer_blend = self.blend_radius * np.sin(np.arctan(self.slope)) - inner_blend
+        if outer_blend > width or width + inner_blend > half_length:
+            max_radius = min(width / outer_blend, (half_length - width) / inner_blend) * self.blend_radius
             raise InvalidInputError("blend_radius", self.blend_radius, f"at most {max_radius:.3g} m on this chamfer")
         distance = np.abs(x) - (half_length - width)
-        straight = self.slope * np.maximum(distance, 0.0)
-        if blend == 0:
-            return np.asarray(straight)
-        # The arc from -blend to outer; below the chord of its tangents.
-        chord = np.clip(distance + blend, 0.0, blend + outer)
-        arc = chord**2 / (self.blend_radius + np.sqrt(self.blend_radius**2 - chord**2))
-        return np.asarray(np.where(distance < outer, arc, straight))
+        chamfer_drop = self.slope * np.maximum(distance, 0.0)
+        if inner_blend == 0:
+            return np.asarray(chamfer_drop)
+        # The arc from -inner_blend to outer_blend; below the chord of its tangents.
+        chord = np.clip(distance + inner_blend, 0.0, inner_blend + outer_blend)
+        arc_drop = chord**2 / (self.blend_radius + np.sqrt(self.blend_radius**2 - chord**2))
+        return np.asarray(np.where(distance < outer_blend, arc_drop, chamfer_drop))
 
     def slope_jumps(self, length: float) -> SlopeJumps:
         """Both corners; none with a blend radius."""
@@ -221,5 +221,5 @@ class Chamfer(Shape):
     def nodes(self, length: float) -> FloatArray:
         """Distances from mid-length (m) of both corners, and of the ends of their arcs."""
         corner = 0.5 * length - self.axial_width
-        outer = self.blend_radius * np.sin(np.arctan(self.slope)) - self.blend
-        return np.unique(np.outer([-1.0, 1.0], [corner - self.blend, corner, corner + outer]))
+        outer_blend = self.blend_radius * np.sin(np.arctan(self.slope)) - self.inner_blend
+        return np.unique(np.outer([-1.0, 1.0], [corner - self.inner_blend, corner, corner + outer_blend]))

@@ -49,19 +49,23 @@ def line_checks(*, full: bool) -> Iterator[Check]:
         inlet = 4.0 if load < 100 else None
         line = line_contact.solve_line(load, lubricant, finest=0.1, inlet=inlet)
         case, source = f"line contact, M = {load:g}, L = {lubricant:g}", "extrapolated table"
-        yield Reference(case, source).compare("central film H", line.central, central, 5e-3, relative=True)
-        yield Reference(case, source).compare("least film H", line.least, min_film, 5e-3, relative=True)
+        yield Reference(case, source).compare("central film H", line.central_film, central, 5e-3, relative=True)
+        yield Reference(case, source).compare("least film H", line.least_film, min_film, 5e-3, relative=True)
         moment = abs(line.moment) / 2
-        yield Reference(case, "equilibrium").compare("w delta / 2 against t", moment, line.rolling, 2e-2, relative=True)
+        yield Reference(case, "equilibrium").compare(
+            "w delta / 2 against t", moment, line.rolling_moment, 2e-2, relative=True
+        )
     for load in (50.0, 500.0) if full else (50.0,):
         line, case = line_contact.solve_line(load, 10.0), f"line contact, M = {load:g}, L = 10"
         formula = float(moes_line(load, 10.0))
-        yield Reference(case, "Moes (1992)").compare("central film H", line.central, formula, 0.04, relative=True)
+        yield Reference(case, "Moes (1992)").compare("central film H", line.central_film, formula, 0.04, relative=True)
     line = line_contact.solve_line(20.0, 10.0, inlet=4.0)
     expected, source = 1.45 * 20.0**-1.5, "Biboulet and Houpert (2010)"
     case = "line contact, M = 20, L = 10"
-    yield Reference(case, source).compare("rolling moment t / (p0 a^2)", line.rolling, expected, 0.04, relative=True)
-    rigid_film = 0.1 * line_contact.solve_line(0.1, 0.01, finest=0.4).central
+    yield Reference(case, source).compare(
+        "rolling moment t / (p0 a^2)", line.rolling_moment, expected, 0.04, relative=True
+    )
+    rigid_film = 0.1 * line_contact.solve_line(0.1, 0.01, finest=0.4).central_film
     case = "line contact, M = 0.1, L = 0.01"
     yield Reference(case, "Martin (1916)").compare("M H of rigid surfaces", rigid_film, 2.448, 5e-3, relative=True)
 
@@ -76,7 +80,7 @@ def dry_limit_checks() -> Iterator[Check]:
     curve = Curve(("y / a", "p / p0"), y, pressure, hertz)
     case = "line contact, M = 2000, L = 10"
     yield Reference(case, "Hertz").compare_fields("pressure / p0, abs(y) < 0.9 a", pressure, hertz, 0.01, curve=curve)
-    exponent = np.log10(heavy_film.central / films[200.0].central)
+    exponent = np.log10(heavy_film.central_film / films[200.0].central_film)
     case = "line contacts, M = 200 and 2000, L = 10"
     yield Reference(case, "Moes (1992)").compare("exponent of M in the central film", float(exponent), -0.125, 0.01)
 

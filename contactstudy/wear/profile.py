@@ -22,8 +22,8 @@ from contactstudy.profiles.base import Sum
 from contactstudy.profiles.measured_profile import Measured
 
 ROUNDING = 1e-9  # Rounding of a relative distance
-SAME_ROLLER = ("body", "roller", "end_distance")  # Attributes that wear; load, friction, motion may differ
-NODES, WEIGHTS = np.polynomial.legendre.leggauss(GAP_NODES)  # Gauss points of the mean depth of a column
+WORN_ATTRIBUTES = ("body", "roller", "end_distance")  # Attributes that wear; load, friction, motion may differ
+GAUSS_POINTS, GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(GAP_NODES)  # Gauss points of the mean depth of a column
 
 
 def worn_profile(case: Case, worn: xr.Dataset, distance: float | None = None) -> Sum:
@@ -64,7 +64,7 @@ def worn_profile(case: Case, worn: xr.Dataset, distance: float | None = None) ->
     """
     checks.instance("case", case, Case, "a Case")
     require(worn, "wear_depth", "pressure", argument="worn")
-    check_solved_for(worn, case, "worn", only=SAME_ROLLER)
+    check_solved_for(worn, case, "worn", only=WORN_ATTRIBUTES)
     if "distance" not in worn.dims:
         worn = worn.expand_dims("distance")
     distances = worn["distance"].values
@@ -102,11 +102,11 @@ class _Columns:
         widths = np.full(centres.size, (x[-1] - x[0]) / (x.size - 1)) if uniform else worn["x_width"].values[mask]
         edges = np.append(centres - 0.5 * widths, centres[-1] + 0.5 * widths[-1])
         clipped = np.clip(edges, start, stop)
-        points = 0.5 * (clipped[1:] + clipped[:-1])[:, None] + 0.5 * np.diff(clipped)[:, None] * NODES
+        points = 0.5 * (clipped[1:] + clipped[:-1])[:, None] + 0.5 * np.diff(clipped)[:, None] * GAUSS_POINTS
         # The gap of a uniform cell is that of its midpoint, unless the end cuts the cell.
         rounding = ROUNDING * (stop - start)
-        uncut = uniform & (edges[:-1] >= start - rounding) & (edges[1:] <= stop + rounding)
-        return cls(clipped, np.where(uncut[:, None], centres[:, None], points))
+        is_uncut = uniform & (edges[:-1] >= start - rounding) & (edges[1:] <= stop + rounding)
+        return cls(clipped, np.where(is_uncut[:, None], centres[:, None], points))
 
     @property
     def midpoints(self) -> FloatArray:
@@ -115,7 +115,7 @@ class _Columns:
 
     def mean_depths(self, profile: Callable[[FloatArray], FloatArray]) -> FloatArray:
         """Mean depths of a profile over the columns."""
-        return np.asarray(0.5 * profile(self.points.ravel()).reshape(self.points.shape) @ WEIGHTS)
+        return np.asarray(0.5 * profile(self.points.ravel()).reshape(self.points.shape) @ GAUSS_WEIGHTS)
 
 
 @dataclass(frozen=True, eq=False)
@@ -144,11 +144,11 @@ class _SharpEnds:
 
     def depth(self, x: FloatArray) -> FloatArray:
         """Return the depth at distances from mid-length."""
-        total = np.zeros_like(x)
+        depth = np.zeros_like(x)
         for end, slope in zip(self.positions, self.slopes, strict=True):
             distance = np.maximum(np.abs(x - end) / self.length, np.finfo(np.float64).tiny)
-            total += slope * self.length * distance * np.log(distance)
-        return total
+            depth += slope * self.length * distance * np.log(distance)
+        return depth
 
 
 def _fit_profile(case: Case, columns: _Columns, ends: _SharpEnds, depth: FloatArray) -> Measured:
@@ -164,21 +164,21 @@ def _fit_profile(case: Case, columns: _Columns, ends: _SharpEnds, depth: FloatAr
     first, last = start + fractions * (midpoints[0] - start), stop - fractions * (stop - midpoints[-1])
     positions = np.concatenate([[start], np.sort(np.concatenate([first, last, edges[1:-1], midpoints])), [stop]])
     for border in borders:
-        added = np.linspace(border.x[0], border.x[-1], 8 * border.x.size)  # points in each column
-        distinct = np.abs(positions - added[:, None]).min(axis=1) > ROUNDING * case.roller.length
-        positions = np.sort(np.append(positions, added[distinct]))
+        border_points = np.linspace(border.x[0], border.x[-1], 8 * border.x.size)  # points in each column
+        is_distinct = np.abs(positions - border_points[:, None]).min(axis=1) > ROUNDING * case.roller.length
+        positions = np.sort(np.append(positions, border_points[is_distinct]))
     points = np.maximum(spline(positions) + ends.depth(positions), 0.0)
-    corrected = np.ones(depth.size, dtype=bool)
+    is_corrected = np.ones(depth.size, dtype=bool)
     for border in borders:
         in_border = (positions >= border.x[0]) & (positions <= border.x[-1])
         unworn = case.roller.profile.drop(positions[in_border], case.roller.length)
         points[in_border] = np.maximum(border(positions[in_border]) - unworn, 0.0)
-        corrected &= (midpoints < border.x[0]) | (midpoints > border.x[-1])
+        is_corrected &= (midpoints < border.x[0]) | (midpoints > border.x[-1])
     nearest = np.searchsorted(positions, midpoints)
     profile = _create_measured(half_length, positions, points)
     for _ in range(8):  # Rounds that move the points until the interpolation has the depth of every column
         mean_depths = columns.mean_depths(lambda x: profile.drop(x, case.roller.length))  # noqa: B023, called at once
-        points[nearest] = np.maximum(points[nearest] + np.where(corrected, depth - mean_depths, 0.0), 0.0)
+        points[nearest] = np.maximum(points[nearest] + np.where(is_corrected, depth - mean_depths, 0.0), 0.0)
         profile = _create_measured(half_length, positions, points)
     return profile
 
@@ -190,10 +190,10 @@ def _interpolate_borders(case: Case, columns: _Columns, depth: FloatArray) -> li
     if not worn_columns.size:
         return borders
     shape = depth + columns.mean_depths(lambda x: case.roller.profile.drop(x, case.roller.length))
-    for outermost, step in ((worn_columns[0] - 1, 1), (worn_columns[-1] + 1, -1)):
-        if 0 <= outermost < depth.size:
+    for first_unworn, step in ((worn_columns[0] - 1, 1), (worn_columns[-1] + 1, -1)):
+        if 0 <= first_unworn < depth.size:
             # Columns next to the border, in which the worn shape is interpolated instead of the depth
-            indices = np.sort(outermost + step * np.arange(5))
+            indices = np.sort(first_unworn + step * np.arange(5))
             indices = indices[(indices >= 0) & (indices < depth.size)]
             if np.isfinite(shape[indices]).all() and indices.size > 2:
                 borders.append(PchipInterpolator(columns.midpoints[indices], shape[indices]))
@@ -203,8 +203,8 @@ def _interpolate_borders(case: Case, columns: _Columns, depth: FloatArray) -> li
 def _create_measured(half_length: float, positions: FloatArray, depth: FloatArray) -> Measured:
     """Worn depth between the ends of the contact as a profile of the roller's length."""
     # The roller does not wear beyond the body; a measured profile may have steps of this growth.
-    before = growing_edges(positions[0] + half_length, positions[1] - positions[0], 2.0)[::-1]
-    after = growing_edges(half_length - positions[-1], positions[-1] - positions[-2], 2.0)
-    x = np.concatenate([positions[0] - before, positions, positions[-1] + after])
-    drops = np.concatenate([np.zeros(before.size), depth, np.zeros(after.size)])
+    edges_before = growing_edges(positions[0] + half_length, positions[1] - positions[0], 2.0)[::-1]
+    edges_after = growing_edges(half_length - positions[-1], positions[-1] - positions[-2], 2.0)
+    x = np.concatenate([positions[0] - edges_before, positions, positions[-1] + edges_after])
+    drops = np.concatenate([np.zeros(edges_before.size), depth, np.zeros(edges_after.size)])
     return Measured((half_length + x).tolist(), drops.tolist(), largest_spike=half_length)

@@ -34,7 +34,7 @@ from contactstudy.errors import ConvergenceWarning, InvalidInputError
 from contactstudy.kernels.load import Load
 from contactstudy.profiles.base import check_drop
 from contactstudy.threads import one_blas_thread
-from contactstudy.wear.profile import SAME_ROLLER
+from contactstudy.wear.profile import WORN_ATTRIBUTES
 
 
 @dataclass(frozen=True, eq=False)
@@ -124,19 +124,19 @@ class WornContact:
 
 # Length of either implicit stage over the length of the step: the scheme damps the stiffest wear fully (R. Alexander,
 # SIAM Journal on Numerical Analysis 14 (1977) 1006, theorem 5)
-STAGE = 1 - np.sqrt(0.5)
-SAFETY, MAX_GROWTH, MIN_GROWTH = 0.85, 4.0, 0.2  # Factor on the next step, and its bounds
+STAGE_FRACTION = 1 - np.sqrt(0.5)
+STEP_SAFETY, MAX_GROWTH, MIN_GROWTH = 0.85, 4.0, 0.2  # Factor on the next step, and its bounds
 
 
 class State(NamedTuple):
-    """State of the wear integration: depth, pressure, slip, worn volume."""
+    """State of the wear integration: depth, pressure, slip, worn area."""
 
     distance: float  # m
     depth: FloatArray  # (x), m
     pressure: FloatArray  # (x, y), Pa
     slip: FloatArray  # (x), load per length to wear
     error: float = 0.0  # of the depth, summed over the steps, m
-    worn: float = 0.0  # law's volume over the circumference, trapezoids, m2
+    worn_area: float = 0.0  # law's volume over the circumference, trapezoids, m2
     converged: bool = True
 
 
@@ -169,16 +169,18 @@ class WearIntegrator:
             # Two half steps of a scheme of second order have a quarter of the error of one step.
             error = float(np.abs(half_steps.depth - full_step.depth).max()) / 3
             allowed_error = self.tolerance * float(half_steps.depth.max())
-            growth = SAFETY * (allowed_error / error) ** (1 / 3) if error > 0 else MAX_GROWTH
+            growth = STEP_SAFETY * (allowed_error / error) ** (1 / 3) if error > 0 else MAX_GROWTH
             factor = min(max(growth, MIN_GROWTH), MAX_GROWTH)
             all_converged = half_steps.converged and full_step.converged
             if (error > allowed_error or not all_converged) and length > min_length:
                 step = (factor if all_converged else MIN_GROWTH) * length
                 continue
             distance = stop if length == remaining else state.distance + length
-            worn = state.worn + 0.5 * length * (self._worn_area_rate(state) + self._worn_area_rate(half_steps))
+            area = state.worn_area + 0.5 * length * (self._worn_area_rate(state) + self._worn_area_rate(half_steps))
             converged = state.converged and half_steps.converged
-            state = half_steps._replace(distance=distance, error=state.error + error, worn=worn, converged=converged)
+            state = half_steps._replace(
+                distance=distance, error=state.error + error, worn_area=area, converged=converged
+            )
             step = max(step, factor * length)
             yield state, step
 
@@ -193,23 +195,23 @@ class WearIntegrator:
         last_slip = self.contact.compute_slip(predicted.depth, self.law)
         if np.array_equal(last_slip, state.slip):
             return predicted
-        first_slip = state.slip + STAGE * (last_slip - state.slip)
+        first_slip = state.slip + STAGE_FRACTION * (last_slip - state.slip)
         return self._solve_stages(state, length, first_slip, last_slip)
 
     def _solve_stages(self, state: State, length: float, first_slip: FloatArray, last_slip: FloatArray) -> State:
         """Solve two implicit stages and return the second."""
         first_increment, second_increment = self.rate * length * first_slip, self.rate * length * last_slip
-        first_stage = self.contact.solve(state.depth, STAGE * first_increment, state.pressure)
-        intermediate_depth = state.depth + (1 - STAGE) * first_increment * first_stage.line_load
-        second_stage = self.contact.solve(intermediate_depth, STAGE * second_increment, first_stage.pressure)
-        depth = intermediate_depth + STAGE * second_increment * second_stage.line_load
+        first_stage = self.contact.solve(state.depth, STAGE_FRACTION * first_increment, state.pressure)
+        intermediate_depth = state.depth + (1 - STAGE_FRACTION) * first_increment * first_stage.line_load
+        second_stage = self.contact.solve(intermediate_depth, STAGE_FRACTION * second_increment, first_stage.pressure)
+        depth = intermediate_depth + STAGE_FRACTION * second_increment * second_stage.line_load
         converged = state.converged and first_stage.converged and second_stage.converged
         return State(state.distance + length, depth, second_stage.pressure, last_slip, converged=converged)
 
 
-LAWS = ("slip", "work")  # Laws: wear proportional to pressure times slip, or to frictional work
+WEAR_LAWS = ("slip", "work")  # Laws: wear proportional to pressure times slip, or to frictional work
 MAX_DEPTH = 0.01  # Bound on the mean worn depth over the roller's radius: the wear leaves the radius unchanged
-TOLERANCES = (1e-5, 0.1)  # Range of the tolerance; the contact is solved more accurately
+TOLERANCE_RANGE = (1e-5, 0.1)  # Range of the tolerance; the contact is solved more accurately
 
 
 def wear_in(
@@ -287,7 +289,7 @@ def wear_in(
     start_time = time.perf_counter()
     checks.instance("case", case, Case, "a Case")
     warn_of_magnitudes(case)
-    checks.known_name("law", law, LAWS)
+    checks.known_name("law", law, WEAR_LAWS)
     if isinstance(case.motion, Shift):
         raise InvalidInputError("case.motion", case.motion, "Sliding() or Rolling(...): a shift has no distance")
     if case.coupled and not isinstance(case.motion, Sliding):
@@ -296,8 +298,8 @@ def wear_in(
     length = 2 * np.pi * case.roller.radius if circumference is None else circumference
     length = checks.positive("circumference", length, "metres")
     tolerance = checks.positive("tolerance", tolerance)
-    if not TOLERANCES[0] <= tolerance <= TOLERANCES[1]:
-        raise InvalidInputError("tolerance", tolerance, f"from {TOLERANCES[0]:g} to {TOLERANCES[1]:g}")
+    if not TOLERANCE_RANGE[0] <= tolerance <= TOLERANCE_RANGE[1]:
+        raise InvalidInputError("tolerance", tolerance, f"from {TOLERANCE_RANGE[0]:g} to {TOLERANCE_RANGE[1]:g}")
     max_steps = checks.count("max_steps", max_steps)
     distance_before, depth, cells, step, error = (
         (0.0, None, _choose_cells(case, grid), None, 0.0) if after is None else _read_last_state(after, case, grid)
@@ -352,15 +354,15 @@ def _choose_cells(case: Case, grid: Grid | None) -> Grid:
     refined_grid = refine_contact(case, 0.01, 1e-6).contact.shape.grid
     low, high = refined_grid.y_range
     # The load moves along the axis as the ends wear: the window is 1.4 times that of the unworn contact.
-    count = 2 * int(np.ceil(0.5 * 1.4 * refined_grid.cells_y))
-    width_factor = count / refined_grid.cells_y
-    return Grid.between(refined_grid.x_edges, (width_factor * low, width_factor * high), count)
+    cells_y = 2 * int(np.ceil(0.5 * 1.4 * refined_grid.cells_y))
+    width_factor = cells_y / refined_grid.cells_y
+    return Grid.between(refined_grid.x_edges, (width_factor * low, width_factor * high), cells_y)
 
 
 def _read_last_state(after: xr.Dataset, case: Case, grid: Grid | None) -> tuple[float, FloatArray, Grid, float, float]:
     """Distance, depth, cells, next step and error of the depth of the last state of a result."""
     require(after, "wear_depth", "wear_error", "pressure", "next_step", argument="after")
-    check_solved_for(after, case, "after", only=SAME_ROLLER)
+    check_solved_for(after, case, "after", only=WORN_ATTRIBUTES)
     if grid is not None:
         raise InvalidInputError("grid", grid, "None with after, which has cells")
     last_state = after.isel(distance=-1) if "distance" in after.dims else after
@@ -374,13 +376,13 @@ def _integrate_to_stops(
     integrator: WearIntegrator, state: State, stops: FloatArray, step: float, max_steps: int
 ) -> Iterator[tuple[State, float]]:
     """Integrate to one distance after the other, in at most `max_steps` steps."""
-    steps = 0
+    step_count = 0
     for stop in stops[stops > state.distance]:
         for next_state, next_step in integrator.integrate(state, float(stop), step):
-            steps += 1
+            step_count += 1
             state, step = next_state, next_step
             yield state, step
-            if steps >= max_steps and state.distance < stops[-1]:
+            if step_count >= max_steps and state.distance < stops[-1]:
                 warnings.warn(
                     f"the wear stopped after max_steps = {max_steps} at {state.distance:g} m of {stops[-1]:g} m; go on "
                     "with after=, or raise max_steps or tolerance",
@@ -411,9 +413,9 @@ def _label(
     drop = np.full(grid.cells_x, np.nan)
     drop[under_roller] = check_drop(case.roller.profile, x[under_roller], case.roller.length)
     volumes = length * depths @ grid.widths
-    expected = length * np.array([state.worn for state in states])
-    gain, expected = volumes - volumes[0], expected - expected[0]
-    positive = expected > 0
+    law_volumes = length * np.array([state.worn_area for state in states])
+    volume_gain, law_volumes = volumes - volumes[0], law_volumes - law_volumes[0]
+    has_wear = law_volumes > 0
     scale = np.maximum(depths.max(axis=1), np.finfo(np.float64).tiny)
     coords = {"distance": distances, "x": grid.x, "y": grid.y} | cell_coordinates(grid)
     result = xr.Dataset(
@@ -425,7 +427,7 @@ def _label(
             "worn_volume": ("distance", volumes),
             "wear_error": ("distance", np.array([state.error for state in states]) / scale),
             "next_step": ("distance", np.array(steps)),
-            "volume_error": float(np.abs(gain[positive] / expected[positive] - 1).max(initial=0.0)),
+            "volume_error": float(np.abs(volume_gain[has_wear] / law_volumes[has_wear] - 1).max(initial=0.0)),
             "converged": states[-1].converged,
             "hertz_half_width": case.hertz_half_width,
             "hertz_max_pressure": case.hertz_max_pressure,

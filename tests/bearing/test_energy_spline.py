@@ -27,13 +27,13 @@ NODES = springs(np.geomspace(1e-6, 5e-6, 7), np.linspace(-5e-4, 5e-4, 7))
 @pytest.mark.parametrize(("delta", "theta"), [(1.3e-6, 1e-4), (4.1e-6, -4.3e-4), (2e-6, 0.0)])
 def test_motion_of_two_springs(delta: float, theta: float) -> None:
     motion = EnergySpline.fit(NODES)(np.array(delta), np.array(theta))
-    right, left = (1.5 * STIFFNESS * np.sqrt(delta + side * ARM * theta) for side in (1, -1))
+    k_right, k_left = (1.5 * STIFFNESS * np.sqrt(delta + side * ARM * theta) for side in (1, -1))
     exact = springs(np.array([delta]), np.array([theta]))
     assert float(motion.load) == pytest.approx(float(exact.load[0, 0]), rel=2e-4)
     assert float(motion.moment) == pytest.approx(float(exact.moment[0, 0]), abs=2e-4 * ARM * float(exact.load[0, 0]))
-    assert float(motion.normal) == pytest.approx(right + left, rel=5e-3)
-    assert float(motion.coupling) == pytest.approx(ARM * (right - left), abs=5e-3 * ARM * (right + left))
-    assert float(motion.tilting) == pytest.approx(ARM**2 * (right + left), rel=1e-2)
+    assert float(motion.normal) == pytest.approx(k_right + k_left, rel=5e-3)
+    assert float(motion.coupling) == pytest.approx(ARM * (k_right - k_left), abs=5e-3 * ARM * (k_right + k_left))
+    assert float(motion.tilting) == pytest.approx(ARM**2 * (k_right + k_left), rel=1e-2)
 
 
 def test_stiffness_equals_the_derivative() -> None:

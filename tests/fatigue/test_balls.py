@@ -59,8 +59,8 @@ def test_ball_of_any_points_is_minimal(points: Array) -> None:
 
 
 def test_balls_of_many_random_paths_are_minimal() -> None:
-    random = np.random.default_rng(1)
-    points = np.cumsum(random.normal(size=(60, 90, 5)), axis=1) * 10.0 ** random.integers(-3, 9, (60, 1, 1))
+    rng = np.random.default_rng(1)
+    points = np.cumsum(rng.normal(size=(60, 90, 5)), axis=1) * 10.0 ** rng.integers(-3, 9, (60, 1, 1))
     centre, radius = enclosing_balls(points)
     for path, ball_centre, size in zip(points, centre, radius, strict=True):
         assert is_minimal(path, ball_centre, size)

@@ -125,11 +125,11 @@ def test_line_contact(strip_result) -> None:
 
 
 def test_criteria_scale_with_load(strip_result) -> None:
-    unit, random_damage = (result.isel(x_field=[0], z=[5, 9]) for result in (strip_result(), strip_result(3e-4, 2e9)))
+    unit, scaled = (result.isel(x_field=[0], z=[5, 9]) for result in (strip_result(), strip_result(3e-4, 2e9)))
     for criterion in CRITERIA:
         name = criterion.__name__
         small = criterion(unit, LIMITS)[name]
-        large = criterion(random_damage, LIMITS)[name]
+        large = criterion(scaled, LIMITS)[name]
         assert np.allclose(large / 2e9, small, rtol=1e-6, atol=1e-9)
 
 

@@ -79,11 +79,11 @@ def test_error_includes_the_pressure(strip_result) -> None:
     result = fatigue.lundberg_palmgren(with_error)
     increase = float(result["risk_error"] - result_without_error["risk_error"]) / float(result_without_error["risk"])
     assert increase == pytest.approx(0.01 * 31 / 3)
-    first_error, other_exponents = (float(risk["risk_error"] / risk["risk"]) for risk in (result, result_without_error))
+    first_error, reference_error = (float(risk["risk_error"] / risk["risk"]) for risk in (result, result_without_error))
     life = fatigue.relative_life(result, result_without_error)
     # The longest life that both errors allow.
     assert float(life["relative_life_error"]) == pytest.approx(
-        ((1 + other_exponents) / (1 - first_error)) ** (8 / 9) - 1
+        ((1 + reference_error) / (1 - first_error)) ** (8 / 9) - 1
     )
     unbounded = strip_result().assign(peak_pressure=np.inf, peak_pressure_error=np.inf)
     assert float(fatigue.lundberg_palmgren(unbounded)["risk_error"]) == np.inf
@@ -206,7 +206,7 @@ def test_bad_input_is_rejected(strip_result) -> None:
 
 
 def test_heavy_friction_is_rejected() -> None:
-    """Heavy friction: the largest orthogonal_shear shear is on the surface itself, and no depth divides."""
+    """Heavy friction: the largest orthogonal shear is on the surface itself, and no depth divides."""
     passage = xr.DataArray([0.0, -1.0, 0.0], dims="y", coords={"y": [-1.0, 0.0, 1.0]})
     depth = xr.DataArray([1.0, 0.5, 0.1], dims="z", coords={"z": [0.0, 0.5, 1.0]})
     shear = (passage * depth).expand_dims(x=[0.0, 1.0])

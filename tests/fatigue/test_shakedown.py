@@ -42,12 +42,12 @@ From f = 0.3 first yield is on the surface, at 0.4 all three limits."""
 
 @pytest.mark.parametrize("friction", LIMITS)
 def test_line_contact_limits_equal_published_values(line_contact, friction: float) -> None:
-    first, rolling, history_with_rest = LIMITS[friction]
+    first, rolling, both_stresses = LIMITS[friction]
     result = line_contact(friction)
     computed, axial = fatigue.shakedown_limit(result), fatigue.shakedown_limit(result, axial=True)
     assert float(computed["first_yield_limit"]) == pytest.approx(first, rel=1e-3)
     assert float(computed["shakedown_limit"]) == pytest.approx(rolling, rel=1e-3)
-    assert float(axial["shakedown_limit"]) == pytest.approx(history_with_rest, rel=1e-3)
+    assert float(axial["shakedown_limit"]) == pytest.approx(both_stresses, rel=1e-3)
     expected_comment = "on the top" if friction == 0.4 else "below the top"
     assert computed["peak_shakedown_stress"].attrs["comment"] == expected_comment
 
@@ -106,8 +106,8 @@ def test_shakedown_stress_is_minimal(history: np.ndarray) -> None:
     names = dict(zip(STRESSES, np.moveaxis(history[0], -1, 0), strict=True))
     data = xr.Dataset({name: ("y", values) for name, values in names.items()}, {"y": np.arange(7.0)})
     result = fatigue.shakedown(data)
-    history_with_rest = np.append(history[0], np.zeros((1, 6)), axis=0)
-    u, v, remainder = to_ball_axes(history_with_rest)
+    unloaded_history = np.append(history[0], np.zeros((1, 6)), axis=0)
+    u, v, remainder = to_ball_axes(unloaded_history)
 
     def largest(rho: float, along_x: float = 0.0) -> float:
         squares = (u + rho - 0.5 * along_x) ** 2 + (v + 0.5 * np.sqrt(3) * along_x) ** 2
@@ -140,8 +140,8 @@ def test_dimensions_of_a_study(case_result: xr.Dataset) -> None:
     result = fatigue.shakedown(case_result)
     assert result["shakedown_stress"].dims == ("x_field", "z")
     assert (result["shakedown_stress"] <= result["first_yield_stress"] * (1 + 1e-9)).all()
-    history_with_rest = xr.concat([case_result[list(STRESSES)].reset_coords(drop=True)] * 2, "case").chunk(case=1)
-    study = fatigue.shakedown(history_with_rest)["shakedown_stress"]
+    two_cases = xr.concat([case_result[list(STRESSES)].reset_coords(drop=True)] * 2, "case").chunk(case=1)
+    study = fatigue.shakedown(two_cases)["shakedown_stress"]
     assert study.dims == ("case", "x_field", "z")
     assert study.chunks is not None
     assert np.allclose(study.isel(case=1), result["shakedown_stress"])

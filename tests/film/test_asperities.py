@@ -14,9 +14,9 @@ ROUGH = Asperities(rms=1e-7)
 
 def problem(**changes):
     unit_law = Law(np.ones(8), np.zeros(8))
-    values = {
+    attributes = {
         "cells": CELLS,
-        "fluid": Fluid(density=lambda _: unit_law, reduced_pressure=lambda p: Law(p, np.ones_like(p)), speed=1.0),
+        "fluid": Fluid(density=lambda _: unit_law, reduced_pressure=lambda p: Law(p, np.ones_like(p)), flow_number=1.0),
         "gap": np.ones(CELLS.shape),
         "displace": lambda pressure: 0.1 * pressure,
         "column_stiffness": 0.1 * np.eye(8)[None],
@@ -25,15 +25,15 @@ def problem(**changes):
         "central_film": 1.0,
         "mean_height": ROUGH.mean_height(1e-6),
     }
-    return FilmProblem(**(values | changes))
+    return FilmProblem(**(attributes | changes))
 
 
 @pytest.mark.parametrize("start", [-4.0, -1.0, 0.0, 3.0])
-@pytest.mark.parametrize("growth", [0.4, 1.0, 1e3, 1e6])
-def test_distance_inverts_the_film_height(start, growth):
+@pytest.mark.parametrize("height_ratio", [0.4, 1.0, 1e3, 1e6])
+def test_distance_inverts_the_film_height(start, height_ratio):
     rough = problem()
     distance = np.full(CELLS.shape, 0.1 * start)
-    height = growth * rough.compute_film(distance).value
+    height = height_ratio * rough.compute_film(distance).value
     assert rough.compute_film(rough.solve_distance(height, distance)).value == pytest.approx(height, rel=1e-6)
 
 

@@ -25,20 +25,20 @@ def test_faces_of_a_steep_film_are_positive_and_bounded(seed):
 
 
 def test_flow_between_films_equals_linear_film_flow():
-    faces = FilmCells(x_edges=np.array([0.0, 1.0]), y_edges=np.array([0.0, 1.0, 3.0]), open_ends=False).along_y
+    faces = FilmCells(x_edges=np.array([0.0, 1.0]), y_edges=np.array([0.0, 1.0, 3.0]), open_ends=False).faces_y
     height, reduced = np.array([0.1, 2.0]), Law(np.array([1.0, 0.0]), np.ones(2))
     nodes, weights = np.polynomial.legendre.leggauss(100)
     linear = height.mean() + 0.5 * nodes * np.diff(height)
     resistance = 1.5 * 0.5 * float(weights @ linear**-3)
-    assert -faces.conduct(4.0, reduced, height).flow[1] == pytest.approx(1 / (4.0 * resistance), rel=1e-8)
+    assert -faces.conduct_flow(4.0, reduced, height).flow[1] == pytest.approx(1 / (4.0 * resistance), rel=1e-8)
 
 
 def test_flow_derivatives_agree_with_differences():
-    faces = FilmCells(x_edges=np.array([0.0, 1.0]), y_edges=np.linspace(0.0, 1.0, 6), open_ends=False).along_y
+    faces = FilmCells(x_edges=np.array([0.0, 1.0]), y_edges=np.linspace(0.0, 1.0, 6), open_ends=False).faces_y
     height, pressure, step = np.array([0.1, 2.0, 1.0, 0.3, 0.7]), np.array([0.1, 0.4, 0.2, 0.5, 0.3]), 1e-6
 
     def flow(height, pressure):
-        return faces.conduct(2.0, Law(pressure**2, 2 * pressure), height)
+        return faces.conduct_flow(2.0, Law(pressure**2, 2 * pressure), height)
 
     derivatives = flow(height, pressure)
     for cell in range(5):
@@ -61,14 +61,14 @@ def test_flow_rises_with_the_pressure_step(law):
     coefficient = 2e-8
     oil = Lubricant(viscosity=0.02, pressure_viscosity=coefficient, viscosity_law=law, density_law="constant")
     fluid = Fluid.of(oil, 1e9, 1.0)
-    faces = FilmCells(x_edges=np.array([0.0, 1.0]), y_edges=np.array([0.0, 1.0, 2.0]), open_ends=False).along_y
+    faces = FilmCells(x_edges=np.array([0.0, 1.0]), y_edges=np.array([0.0, 1.0, 2.0]), open_ends=False).faces_y
     height = np.ones(2)
 
     def flow(pressure):
         reduced = fluid.reduced_pressure(np.array([pressure, 0.0]))
-        conducted = faces.conduct(fluid.speed, reduced, height)
-        assert conducted.by_pressure.toarray()[1, 0] <= 0
-        return -float(conducted.flow[1])
+        pressure_flow = faces.conduct_flow(fluid.flow_number, reduced, height)
+        assert pressure_flow.by_pressure.toarray()[1, 0] <= 0
+        return -float(pressure_flow.flow[1])
 
     flows = [flow(pressure) for pressure in (0.1, 0.5, 1.0, 2.0, 5.0)]
     assert np.all(np.diff(flows) >= 0)

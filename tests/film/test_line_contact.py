@@ -21,8 +21,8 @@ ROELANDS = [(20, 5, 2.9088, 2.5116), (50, 10, 3.871, 3.400)]
 @pytest.mark.parametrize(("load", "lubricant", "central", "least"), BARUS)
 def test_table_of_barus_oil(load, lubricant, central, least):
     film = solve_line(load, lubricant, finest=0.1, inlet=4.0 if load < 100 else None)
-    assert film.central == pytest.approx(central, rel=5e-3)
-    assert film.least == pytest.approx(least, rel=5e-3)
+    assert film.central_film == pytest.approx(central, rel=5e-3)
+    assert film.least_film == pytest.approx(least, rel=5e-3)
     assert film.solution.residual < 1e-6
     assert film.solution.load_error < 1e-8
 
@@ -31,21 +31,21 @@ def test_table_of_barus_oil(load, lubricant, central, least):
 def test_table_of_compressible_roelands_oil(load, lubricant, central, least):
     oil = Lubricant(viscosity=0.01, pressure_viscosity=1e-8, roelands_exponent=0.68)
     film = solve_line(load, lubricant, finest=0.1, inlet=4.0, oil=oil, max_pressure=1e9)
-    assert film.central == pytest.approx(central, rel=5e-3)
-    assert film.least == pytest.approx(least, rel=5e-3)
+    assert film.central_film == pytest.approx(central, rel=5e-3)
+    assert film.least_film == pytest.approx(least, rel=5e-3)
 
 
 @pytest.mark.slow
 def test_rigid_isoviscous_limit_agrees_with_martin():
-    assert 0.1 * solve_line(0.1, 0.01, finest=0.4).central == pytest.approx(2.448, rel=5e-3)
+    assert 0.1 * solve_line(0.1, 0.01, finest=0.4).central_film == pytest.approx(2.448, rel=5e-3)
 
 
 @pytest.mark.parametrize(("load", "lubricant"), [(20, 10), (200, 10)])
 def test_rolling_moment_follows_the_load(load, lubricant):
     film = solve_line(load, lubricant, inlet=4.0)
-    assert film.rolling == pytest.approx(1.45 * load**-1.5, rel=0.04)
+    assert film.rolling_moment == pytest.approx(1.45 * load**-1.5, rel=0.04)
     # w delta = 2 t: the moment of the pressure is twice that of its force on the slopes.
-    assert abs(film.moment) == pytest.approx(2 * film.rolling, rel=0.01)
+    assert abs(film.moment) == pytest.approx(2 * film.rolling_moment, rel=0.01)
 
 
 def test_film_formulas_return_published_values():

@@ -37,7 +37,7 @@ def test_presets_agree_with_their_table(name):
 
 
 @pytest.mark.parametrize(
-    ("values", "named"),
+    ("parameters", "named"),
     [
         ({"viscosity": 0.0}, "viscosity"),
         ({"pressure_viscosity": -1e-8}, "pressure_viscosity"),
@@ -46,9 +46,9 @@ def test_presets_agree_with_their_table(name):
         ({"density": -1.0}, "density"),
     ],
 )
-def test_bad_lubricant_is_rejected(values, named):
+def test_bad_lubricant_is_rejected(parameters, named):
     with pytest.raises(InvalidInputError, match=named):
-        Lubricant(**({"viscosity": 0.02, "pressure_viscosity": 2e-8} | values))
+        Lubricant(**({"viscosity": 0.02, "pressure_viscosity": 2e-8} | parameters))
 
 
 def test_bad_temperature_is_rejected():

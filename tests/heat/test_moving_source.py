@@ -63,10 +63,10 @@ def test_wake_does_not_return_through_the_window(unit):
 @pytest.mark.parametrize("graded", [False, True])
 def test_insulated_end_equals_a_symmetric_source(unit, speed, graded):
     edges = np.array([0, 0.2, 0.5, 1.0, 1.7]) if graded else np.linspace(0, 1.7, 5)
-    half = Grid.from_edges(edges, (-1, 1), 20)
+    half_grid = Grid.from_edges(edges, (-1, 1), 20)
     mirrored_grid = Grid.from_edges(np.concatenate([-edges[:0:-1], edges]), (-1, 1), 20)
-    heat = np.array([3.0, 2.0, 1.5, 1.0])[:, None] * (np.abs(half.y) < 0.5)
-    at_end = rise_of(unit, half, heat, speed=speed, ends=(0.0, np.inf))
+    heat = np.array([3.0, 2.0, 1.5, 1.0])[:, None] * (np.abs(half_grid.y) < 0.5)
+    at_end = rise_of(unit, half_grid, heat, speed=speed, ends=(0.0, np.inf))
     mirrored = rise_of(unit, mirrored_grid, np.concatenate([heat[::-1], heat]), speed=speed, ends=EVERYWHERE)
     assert at_end == pytest.approx(mirrored[4:], rel=1e-10)
 

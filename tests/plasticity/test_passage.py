@@ -32,7 +32,7 @@ def solve_passes(history: np.ndarray, shear_yield_stress: float, hardening: tupl
         layers=LAYERS,
         lateral=IndependentLayers(),
         lateral_positions=history.shape[0] + 2,
-        box=(index, index),
+        cell_indices=(index, index),
         yield_stress=np.full(1, np.sqrt(3) * shear_yield_stress),
         shear_modulus=YOUNG / (2 * (1 + POISSON)),
         isotropic=hardening[0],
@@ -57,18 +57,18 @@ def integrate_rates(
         xx, yy = modulus * (plastic[0] + POISSON * plastic[1]), modulus * (plastic[1] + POISSON * plastic[0])
         return -np.array([xx, yy, 0, YOUNG / (1 + POISSON) * plastic[3], 0, 0])
 
-    counts = np.array([1, 1, 1, 2, 2, 2.0])
+    component_counts = np.array([1, 1, 1, 2, 2, 2.0])
     for _ in range(passes):
         for stress_before, stress_after in pairwise(history):
             for substep in range(substeps):
                 stress = stress_before + (substep + 1) / substeps * (stress_after - stress_before) + residual_of(strain)
-                dev = stress - np.array([1, 1, 1, 0, 0, 0]) * stress[:3].mean() - 2 / 3 * kinematic * strain
-                size = np.sqrt((counts * dev**2).sum())
+                deviator = stress - np.array([1, 1, 1, 0, 0, 0]) * stress[:3].mean() - 2 / 3 * kinematic * strain
+                size = np.sqrt((component_counts * deviator**2).sum())
                 if size > radius + np.sqrt(2 / 3) * isotropic * accumulated:
                     # The stress returns along the normal; the body responds to the flow by `residual_of`.
-                    normal = dev / size
-                    response = -(counts * normal * residual_of(normal)).sum() + 2 / 3 * (kinematic + isotropic)
-                    step = (size - radius - np.sqrt(2 / 3) * isotropic * accumulated) / response
+                    normal = deviator / size
+                    slope = -(component_counts * normal * residual_of(normal)).sum() + 2 / 3 * (kinematic + isotropic)
+                    step = (size - radius - np.sqrt(2 / 3) * isotropic * accumulated) / slope
                     strain, accumulated = strain + step * normal, accumulated + np.sqrt(2 / 3) * step
     return residual_of(strain)[:2]
 

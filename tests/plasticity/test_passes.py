@@ -24,20 +24,20 @@ def test_flow_below_and_above_the_limit(line_contact, steel_half_space) -> None:
     """With friction the flow of each pass is a fraction of the flow of the previous pass."""
     contact = line_contact(0.2)
     limit = float(fatigue.shakedown(contact, axial=True)["shakedown_stress"].max())
-    below, above = (
+    below_limit, above_limit = (
         residual_stress(contact, steel_half_space, perfectly_plastic(factor * limit), passes=6)
         for factor in (1.02, 0.97)
     )
-    flow = below["plastic_flow"].values
+    flow = below_limit["plastic_flow"].values
     assert flow[0] > 0
     assert flow[-1] < 0.3 * flow[0]
     assert (np.diff(flow) < 0).all()
-    assert below["converged"].all()
-    flow = above["plastic_flow"].values
+    assert below_limit["converged"].all()
+    flow = above_limit["plastic_flow"].values
     assert flow.size == 6
     assert flow[5] > 0.9 * flow[4]
     assert flow[5] > 0.2 * flow[0]
-    assert above["converged"].all()
+    assert above_limit["converged"].all()
 
 
 @pytest.mark.slow
@@ -146,8 +146,8 @@ def test_friction_displaces_the_surface_forwards(line_contact, steel_half_space)
 def test_yield_stress_over_depth(line_contact, steel_half_space) -> None:
     """The flow is limited to the soft depths."""
     contact = line_contact()
-    case = xr.DataArray([1.0, 1.0, 0.4, 0.4], {"z": [0.0, 0.9, 0.95, 2.0]}, "z")
-    result = residual_stress(contact, steel_half_space, ElasticPlastic(yield_stress=case), passes=2)
+    yield_stress = xr.DataArray([1.0, 1.0, 0.4, 0.4], {"z": [0.0, 0.9, 0.95, 2.0]}, "z")
+    result = residual_stress(contact, steel_half_space, ElasticPlastic(yield_stress=yield_stress), passes=2)
     strain = result["equivalent_plastic_strain"].isel(pass_number=-1, x=0)
     assert float(strain.sel(z=slice(0, 0.9)).max()) == 0
     assert float(strain.sel(z=slice(0.95, None)).max()) > 0
@@ -200,9 +200,9 @@ def test_bad_input_is_rejected(line_contact, steel_half_space, change, message) 
 
 def test_positions_short_of_the_ends_are_rejected(line_contact, steel_between_ends) -> None:
     contact = line_contact(0.0, length=8.0)
-    for factor in (contact.isel(x=slice(0, 6)), contact.isel(z=slice(4, None)), contact.isel(x=slice(3, None))):
+    for short_contact in (contact.isel(x=slice(0, 6)), contact.isel(z=slice(4, None)), contact.isel(x=slice(3, None))):
         with pytest.raises(InvalidInputError, match="reach to"):
-            residual_stress(factor, steel_between_ends, perfectly_plastic(0.2))
+            residual_stress(short_contact, steel_between_ends, perfectly_plastic(0.2))
 
 
 def test_residual_stress_far_from_the_ends(line_contact, steel_between_ends) -> None:
@@ -216,9 +216,9 @@ def test_residual_stress_far_from_the_ends(line_contact, steel_between_ends) -> 
         for body in (steel_between_ends, *bodies_without_end)
     )
     middle = reference_stress.isel(x=2).values
-    for reversed_result in other_bodies:
-        assert np.abs(reversed_result.isel(x=2).values - middle).max() < 0.15 * np.abs(middle).max()
-        assert float(np.abs(reversed_result).max()) > 0.02
+    for body_stress in other_bodies:
+        assert np.abs(body_stress.isel(x=2).values - middle).max() < 0.15 * np.abs(middle).max()
+        assert float(np.abs(body_stress).max()) > 0.02
 
 
 def test_stresses_of_another_body_are_rejected(line_contact, steel_between_ends) -> None:

@@ -110,11 +110,11 @@ def test_ellipsoid_pressure_equals_hertz_elliptic_contact(solve_profile, steel: 
     result = solve_profile(Ellipsoid(crown), length, load=load, cells=3, window=5.0)
     exact = hertz_ellipse(load, crown, RADIUS, steel.plane_strain_modulus)
     assert float(result["pressure"].max()) == pytest.approx(exact.max_pressure, rel=5e-3)
-    for axis, half in (("x", exact.long), ("y", exact.short)):
+    for axis, semi_axis in (("x", exact.long), ("y", exact.short)):
         positions = result[axis].values
-        dubbed_crown = "y" if axis == "x" else "x"
-        loaded_positions = positions[(result["pressure"] > 0).any(dubbed_crown).values]
-        assert np.ptp(loaded_positions) / 2 == pytest.approx(half, abs=positions[1] - positions[0])
+        other_axis = "y" if axis == "x" else "x"
+        loaded_positions = positions[(result["pressure"] > 0).any(other_axis).values]
+        assert np.ptp(loaded_positions) / 2 == pytest.approx(semi_axis, abs=positions[1] - positions[0])
 
 
 @pytest.mark.parametrize(

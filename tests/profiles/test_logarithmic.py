@@ -60,8 +60,8 @@ def test_lundberg_pressure_is_flat_at_the_design_load(solve_profile, steel: Mate
 def test_lundberg_pressure_decreases_outwards_below_the_design_load(solve_profile, steel: Material) -> None:
     profile = Lundberg.for_pressure(2 * PRESSURE, radius=RADIUS, modulus=steel.plane_strain_modulus)
     position, peak, _ = axial_results(solve_profile(profile, 4e-3))
-    right = position > 0
-    assert (np.diff(peak[right]) <= 0).all()
+    second_half = position > 0
+    assert (np.diff(peak[second_half]) <= 0).all()
     assert np.interp(0.9, position, peak) < 0.8
     assert peak[-40] == 0.0
 
@@ -99,15 +99,15 @@ def test_johns_gohar_and_fujiwara_contain_lundberg(amplitude: float) -> None:
 
 def test_fujiwara_and_kawase_formula(positions: np.ndarray) -> None:
     """With the crowned length a' of one side, and y from the roller's end, as in the paper."""
-    load, k1, k2, end_drop = 1.3e-7, 2.0, 0.6, 4e-6
-    profile = FujiwaraKawase(load, end_drop, k1, k2)
-    lundberg = k2 * HALF
+    amplitude, k1, k2, end_drop = 1.3e-7, 2.0, 0.6, 4e-6
+    profile = FujiwaraKawase(amplitude, end_drop, k1, k2)
+    crown_length = k2 * HALF
     from_end = HALF - np.abs(positions)
-    scaled_distance = np.where(from_end < lundberg, 1 - from_end / lundberg, 0.0)
-    expected = k1 * load * np.log(1 / (1 - (1 - np.exp(-end_drop / (k1 * load))) * scaled_distance**2))
+    scaled_distance = np.where(from_end < crown_length, 1 - from_end / crown_length, 0.0)
+    expected = k1 * amplitude * np.log(1 / (1 - (1 - np.exp(-end_drop / (k1 * amplitude))) * scaled_distance**2))
     np.testing.assert_allclose(profile.drop(positions, LENGTH), expected, rtol=1e-7, atol=1e-20)
     assert profile.drop(positions, LENGTH)[[0, -1]] == pytest.approx(end_drop)
-    assert (profile.drop(positions, LENGTH)[from_end > lundberg] == 0).all()
+    assert (profile.drop(positions, LENGTH)[from_end > crown_length] == 0).all()
 
 
 def test_design_pressure_of_fujiwara_and_kawase(steel: Material) -> None:
@@ -183,8 +183,8 @@ def test_iso_branches_differ_by_their_amplitudes(position: float) -> None:
     length = 2.5 * DIAMETER
     x = np.array([position * length / 2])
     profile = IsoCylindrical(DIAMETER)
-    below, above = profile.drop(x, length), profile.drop(x, length * (1 + 1e-13))
-    np.testing.assert_allclose(above, below * 0.0005 / 0.00035, rtol=1e-8, atol=1e-16)
+    drop_at_limit, drop_above_limit = profile.drop(x, length), profile.drop(x, length * (1 + 1e-13))
+    np.testing.assert_allclose(drop_above_limit, drop_at_limit * 0.0005 / 0.00035, rtol=1e-8, atol=1e-16)
 
 
 def test_short_iso_profile_is_lundbergs_for_3000_megapascals() -> None:

@@ -23,9 +23,9 @@ def test_ridge_follows_the_highest_line(shift: float, turn: float) -> None:
 
 
 def test_ridge_with_missing_points_and_noise() -> None:
-    random = np.random.default_rng(0)
-    noisy = roller(0.25e-3, 0.01) + 0.1e-6 * random.standard_normal((X.size, Y.size))
-    noisy[random.random(noisy.shape) < 0.2] = np.nan
+    rng = np.random.default_rng(0)
+    noisy = roller(0.25e-3, 0.01) + 0.1e-6 * rng.standard_normal((X.size, Y.size))
+    noisy[rng.random(noisy.shape) < 0.2] = np.nan
     noisy[7, 10:] = np.nan
     line = extract_ridge(X, Y, noisy)
     assert np.flatnonzero(np.isnan(line)).tolist() == [7]

@@ -99,15 +99,15 @@ def test_uniform_pressure_between_mirrors():
 def test_continuation(sharp, worn):
     case, grid = sharp
     with pytest.warns(ConvergenceWarning, match="max_steps = 4"):
-        first = wear_in(case, K, distance=1e5, grid=grid, max_steps=4)
-    assert first.sizes["distance"] == 5
-    second = wear_in(case, K, distance=1e5, after=first)
-    assert float(second.distance[0]) == float(first.distance[-1])
-    assert second.wear_depth.values[-1] == pytest.approx(worn.wear_depth.values[-1], rel=1e-4)
-    assert float(second.volume_error) < 1e-12
+        first_result = wear_in(case, K, distance=1e5, grid=grid, max_steps=4)
+    assert first_result.sizes["distance"] == 5
+    second_result = wear_in(case, K, distance=1e5, after=first_result)
+    assert float(second_result.distance[0]) == float(first_result.distance[-1])
+    assert second_result.wear_depth.values[-1] == pytest.approx(worn.wear_depth.values[-1], rel=1e-4)
+    assert float(second_result.volume_error) < 1e-12
     # The continuation keeps the previous error.
-    assert float(second.wear_error[0]) == pytest.approx(float(first.wear_error[-1]))
-    assert float(second.wear_error[-1]) == pytest.approx(float(worn.wear_error[-1]), rel=0.02)
+    assert float(second_result.wear_error[0]) == pytest.approx(float(first_result.wear_error[-1]))
+    assert float(second_result.wear_error[-1]) == pytest.approx(float(worn.wear_error[-1]), rel=0.02)
 
 
 @pytest.mark.slow
