@@ -66,10 +66,10 @@ def test_keyword_arguments_belong_to_key() -> None:
 
 
 def test_kinds_have_separate_keys() -> None:
-    first_value, _ = recording_function("first")
-    second_value, calls = recording_function("second")
-    first_value("same")
-    second_value("same")
+    first_function, _ = recording_function("first")
+    second_function, calls = recording_function("second")
+    first_function("same")
+    second_function("same")
     assert calls == ["same"]
     kinds = cache.info().kinds
     assert (kinds["first"].values, kinds["second"].values) == (1, 1)
@@ -104,19 +104,19 @@ def test_invalid_cache_limit_raises(bound: object) -> None:
 
 
 def test_threads_share_cached_value() -> None:
-    barrier, values = Barrier(4), []
+    barrier, shared_arrays = Barrier(4), []
 
     @cached("shared")
     def make(size: int) -> np.ndarray:
         barrier.wait()  # all four have missed
         return np.zeros(size)
 
-    threads = [Thread(target=lambda: values.append(make(8))) for _ in range(4)]
+    threads = [Thread(target=lambda: shared_arrays.append(make(8))) for _ in range(4)]
     for thread in threads:
         thread.start()
     for thread in threads:
         thread.join()
-    assert all(value is values[0] for value in values)
+    assert all(array is shared_arrays[0] for array in shared_arrays)
     assert cache.info().nbytes == 64
 
 
@@ -141,7 +141,7 @@ def test_arrays_of_values_are_read_only() -> None:
     def factors(size: int) -> Factors:
         return Factors(np.ones(size), {"upper": [np.ones(size)]})
 
-    value = factors(3)
-    assert not value.lower.flags.writeable
-    assert not value.by_name["upper"][0].flags.writeable
-    assert cache.info().nbytes == cache.nbytes_of(value) == 48
+    factors_value = factors(3)
+    assert not factors_value.lower.flags.writeable
+    assert not factors_value.by_name["upper"][0].flags.writeable
+    assert cache.info().nbytes == cache.nbytes_of(factors_value) == 48

@@ -93,9 +93,9 @@ def test_load_operators_match_equivalent_loads(load: str) -> None:
 
 
 def test_invalid_operator_raises_error() -> None:
-    single_case = FiniteLengthSpace(length=2.0, material=STEEL, model="single-mirror")
+    single_mirror = FiniteLengthSpace(length=2.0, material=STEEL, model="single-mirror")
     with pytest.raises(InvalidInputError, match="single-mirror"):
-        surface_displacement(single_case, GRIDS[0])
+        surface_displacement(single_mirror, GRIDS[0])
     with pytest.raises(InvalidInputError, match="body"):
         Overlapping(body=BODIES[0], grid=GRIDS[0])
     with pytest.raises(InvalidInputError, match="end II"):

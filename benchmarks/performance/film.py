@@ -80,8 +80,8 @@ def timed_film(case: Case, start: xr.Dataset | None = None) -> tuple[float, xr.D
 
 def films(_: int, report: Report) -> Iterator[Row]:
     """Films from the dry contact, once each: operators that an earlier film has kept serve the next."""
-    seconds, film = timed_film(roller_case(SPEED, free=True))
-    on_half_space, half_space = timed_film(roller_case(SPEED, free=False))
+    seconds, film = timed_film(roller_case(SPEED, free_ends=True))
+    on_half_space, half_space = timed_film(roller_case(SPEED, free_ends=False))
     min_film, error = 1e9 * float(film["least_film"]), 1e9 * float(film["least_film_error"])
     least_half_space = 1e9 * float(half_space["least_film"])
     if error > ACCURACY * 1e9 * float(film["central_film"]):
@@ -96,7 +96,7 @@ def films(_: int, report: Report) -> Iterator[Row]:
         f"least film {min_film:.1f} +- {error:.1f} nm at the end, half-space {least_half_space:.1f} nm",
     )
     for factor in NEXT_SPEED:
-        next_seconds, _film = timed_film(roller_case(factor * SPEED, free=True), start=film)
+        next_seconds, _film = timed_film(roller_case(factor * SPEED, free_ends=True), start=film)
         yield Row(
             f"film at {factor:g} of the speed",
             show(next_seconds),

@@ -31,25 +31,25 @@ resultant decays like exp(-4.2 z / L) there."""
 XX, YY, ZZ, XY, XZ, YZ = range(6)  # components in the order of every array of stresses
 
 
-def grow_edges(start: float, stop: float, first: float) -> FloatArray:
-    """Edges from `start` (left out) to `stop`, the first element of about width `first` and growing."""
+def grow_edges(start: float, stop: float, first_width: float) -> FloatArray:
+    """Edges from `start` (left out) to `stop`, the first element of about width `first_width` and growing."""
     distance = abs(stop - start)
     if distance <= 0:
         return np.zeros(0)
-    count = max(1, int(np.ceil(np.log1p(distance * (GROWTH - 1) / first) / np.log(GROWTH))))
+    count = max(1, int(np.ceil(np.log1p(distance * (GROWTH - 1) / first_width) / np.log(GROWTH))))
     # Widths are shrunk a little, such that the last one ends on the end.
     edges = start + (stop - start) * np.cumsum(GROWTH ** np.arange(count)) / (GROWTH ** np.arange(count)).sum()
     edges[-1] = stop
     return np.asarray(edges)
 
 
-def grade_to_face(start: float, face: float, first: float) -> FloatArray:
+def grade_to_face(start: float, face: float, first_width: float) -> FloatArray:
     """Edges from `start` (left out) to a free face, fine at both."""
     midpoint = 0.5 * (start + face)
     if start == face:
         return np.zeros(0)
-    near = grow_edges(start, midpoint, first)
-    return np.concatenate([near, start + face - np.append(start, near[:-1])[::-1]])
+    near_edges = grow_edges(start, midpoint, first_width)
+    return np.concatenate([near_edges, start + face - np.append(start, near_edges[:-1])[::-1]])
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -68,52 +68,58 @@ class EigenstrainBody:
         """Edges of the elements along x and z, metres."""
         length = self.extent[1] - self.extent[0]
         x, z = (_split_cells(edges, self.splits, MAX_ELEMENT_SIZE * length) for edges in (self.x_edges, self.z_edges))
-        far = FAR_DISTANCE * max(np.ptp(x), z[-1])
-        sides = []
+        far_distance = FAR_DISTANCE * max(np.ptp(x), z[-1])
+        side_edges = []
         for end, edge, width, sign in zip(self.extent, x[[0, -1]], np.diff(x)[[0, -1]], (-1, 1), strict=True):
             is_free = np.isfinite(end)
-            sides.append(grade_to_face(edge, end, width) if is_free else grow_edges(edge, edge + sign * far, width))
-        above = grade_to_face(z[0], 0.0, z[1] - z[0])[::-1]
-        bottom = z[-1] + (min(DEEP_LENGTHS * length, far) if np.isfinite(length) else far)
-        below = grow_edges(z[-1], bottom, z[-1] - z[-2])
-        return np.concatenate([sides[0][::-1], x, sides[1]]), np.concatenate([above, z, below])
+            side_edges.append(
+                grade_to_face(edge, end, width) if is_free else grow_edges(edge, edge + sign * far_distance, width)
+            )
+        edges_above = grade_to_face(z[0], 0.0, z[1] - z[0])[::-1]
+        bottom = z[-1] + (min(DEEP_LENGTHS * length, far_distance) if np.isfinite(length) else far_distance)
+        edges_below = grow_edges(z[-1], bottom, z[-1] - z[-2])
+        return np.concatenate([side_edges[0][::-1], x, side_edges[1]]), np.concatenate([edges_above, z, edges_below])
 
     @cached_property
-    def in_plane(self) -> StressFunction:
-        """Airy's function."""
+    def airy_function(self) -> StressFunction:
+        """Stress function of the stresses xx, zz and xz."""
         x, z = (Splines(edges, self.degree, continuity=1, vanishing_orders=2) for edges in self.elements)
         return StressFunction(x, z)
 
     @cached_property
-    def across(self) -> StressFunction:
-        """Function of the stresses xy and yz."""
+    def antiplane_function(self) -> StressFunction:
+        """Antiplane stress function, of the stresses xy and yz."""
         x, z = (Splines(edges, self.degree - 1, continuity=0, vanishing_orders=1) for edges in self.elements)
         return StressFunction(x, z)
 
     @cached_property
     def airy_integrals(self) -> Factors:
-        """Integrals of Airy's functions and their derivatives over the cells."""
-        return self.in_plane.integrals(self.x_edges, self.z_edges)
+        """Integrals of the Airy function and of its derivatives over the cells."""
+        return self.airy_function.integrals(self.x_edges, self.z_edges)
 
     @cached_property
-    def across_integrals(self) -> Factors:
-        """Integrals of the functions across the plane and their slopes over the cells."""
-        return self.across.integrals(self.x_edges, self.z_edges)
+    def antiplane_integrals(self) -> Factors:
+        """Integrals of the antiplane stress function and of its slopes over the cells."""
+        return self.antiplane_function.integrals(self.x_edges, self.z_edges)
 
     def solve(self, eigenstrain: FloatArray) -> EigenstrainSolution:
         """Solve for the stress functions of eigenstrains (6, cell x, cell z): xx, yy, zz, xy, xz, yz (tensor's)."""
         nu, young = self.material.poisson, self.material.young
         e = eigenstrain
         x, z = self.airy_integrals
-        right = x[0] @ (e[XX] + nu * e[YY]) @ z[2].T + x[2] @ (e[ZZ] + nu * e[YY]) @ z[0].T  # eq. (503)
-        right -= 2 * x[1] @ e[XZ] @ z[1].T
-        airy = self.in_plane.solve(-young / (1 - nu**2) * right.reshape(-1, 1)).reshape(right.shape)
-        shear: FloatArray = np.zeros((self.across.x.count, self.across.z.count))
+        right_hand_side = x[0] @ (e[XX] + nu * e[YY]) @ z[2].T + x[2] @ (e[ZZ] + nu * e[YY]) @ z[0].T  # eq. (503)
+        right_hand_side -= 2 * x[1] @ e[XZ] @ z[1].T
+        airy = self.airy_function.solve(-young / (1 - nu**2) * right_hand_side.reshape(-1, 1)).reshape(
+            right_hand_side.shape
+        )
+        antiplane: FloatArray = np.zeros((self.antiplane_function.x.count, self.antiplane_function.z.count))
         if e[[XY, YZ]].any():
-            x, z = self.across_integrals
-            right = 2 * (x[0] @ e[XY] @ z[1].T - x[1] @ e[YZ] @ z[0].T)
-            shear = self.across.solve(-self.material.shear_modulus * right.reshape(-1, 1)).reshape(right.shape)
-        return EigenstrainSolution(self, e, airy, shear)
+            x, z = self.antiplane_integrals
+            right_hand_side = 2 * (x[0] @ e[XY] @ z[1].T - x[1] @ e[YZ] @ z[0].T)
+            antiplane = self.antiplane_function.solve(
+                -self.material.shear_modulus * right_hand_side.reshape(-1, 1)
+            ).reshape(right_hand_side.shape)
+        return EigenstrainSolution(self, e, airy, antiplane)
 
 
 @dataclass(frozen=True, eq=False)
@@ -123,24 +129,24 @@ class EigenstrainSolution:
     body: EigenstrainBody  # body and cells
     eigenstrain: FloatArray  # (6, cell x, cell z): the eigenstrains
     airy: FloatArray  # (function x, function z): coefficients of the stress functions
-    shear: FloatArray
+    antiplane: FloatArray
 
     def stresses(self, x: FloatArray, z: FloatArray) -> FloatArray:
         """Residual stresses at the tensor product of positions: array (6, x, z), xx, yy, zz, xy, xz, yz in Pa."""
-        functions = self.body.in_plane.values(x, z), self.body.across.values(x, z)
+        functions = self.body.airy_function.values(x, z), self.body.antiplane_function.values(x, z)
         return self._assemble_stresses(*functions, self.eigenstrain_at(x, z))
 
     def cell_averages(self) -> FloatArray:
         """Residual stresses averaged over the cells: array (6, cell x, cell z), Pa."""
         body = self.body
         widths, heights = np.diff(body.x_edges)[:, None], np.diff(body.z_edges)[:, None]
-        airy, across = (
+        airy, antiplane = (
             ([matrix.T / widths for matrix in along_x], [matrix.T / heights for matrix in along_z])
-            for along_x, along_z in (body.airy_integrals, body.across_integrals)
+            for along_x, along_z in (body.airy_integrals, body.antiplane_integrals)
         )
-        return self._assemble_stresses(airy, across, self.eigenstrain)
+        return self._assemble_stresses(airy, antiplane, self.eigenstrain)
 
-    def _assemble_stresses(self, airy: Factors, across: Factors, eigenstrain: FloatArray) -> FloatArray:
+    def _assemble_stresses(self, airy: Factors, antiplane: Factors, eigenstrain: FloatArray) -> FloatArray:
         """Stresses from the functions' derivatives along x and z."""
         (x, z), material = airy, self.body.material
         stress = np.zeros((6, x[0].shape[0], z[0].shape[0]))
@@ -149,9 +155,9 @@ class EigenstrainSolution:
         stress[XZ] = -x[1] @ self.airy @ z[1].T
         # No strain along y: s_yy = nu (s_xx + s_zz) - E e_yy.
         stress[YY] = material.poisson * (stress[XX] + stress[ZZ]) - material.young * eigenstrain[YY]
-        x, z = across
-        stress[XY] = x[0] @ self.shear @ z[1].T
-        stress[YZ] = -x[1] @ self.shear @ z[0].T
+        x, z = antiplane
+        stress[XY] = x[0] @ self.antiplane @ z[1].T
+        stress[YZ] = -x[1] @ self.antiplane @ z[0].T
         return stress
 
     def eigenstrain_at(self, x: FloatArray, z: FloatArray) -> FloatArray:
@@ -173,16 +179,16 @@ class EigenstrainSolution:
         nu, young = material.poisson, material.young
         z_elements = body.elements[1]
         depth_range = z_elements[[0, -1]]
-        airy_z = [body.in_plane.z.integrals(depth_range, d)[:, 0] for d in range(3)]
-        airy_x = [body.in_plane.x.values(x, d) for d in range(3)]
+        airy_z = [body.airy_function.z.integrals(depth_range, d)[:, 0] for d in range(3)]
+        airy_x = [body.airy_function.x.values(x, d) for d in range(3)]
         s_xx, s_zz = airy_x[0] @ self.airy @ airy_z[2], airy_x[2] @ self.airy @ airy_z[0]
         heights = np.diff(body.z_edges)
         centres = 0.5 * (body.z_edges[1:] + body.z_edges[:-1])
         e = self.eigenstrain_at(x, centres) @ heights
         # e_zz = (1 + nu) / E ((1 - nu) s_zz - nu s_xx) + eigenstrain zz + nu eigenstrain yy
         strain_zz = (1 + nu) / young * ((1 - nu) * s_zz - nu * s_xx) + e[ZZ] + nu * e[YY]
-        across_z = body.across.z.integrals(depth_range, 0)[:, 0]
-        s_yz = -body.across.x.values(x, 1) @ self.shear @ across_z
+        antiplane_z = body.antiplane_function.z.integrals(depth_range, 0)[:, 0]
+        s_yz = -body.antiplane_function.x.values(x, 1) @ self.antiplane @ antiplane_z
         return -strain_zz, -(s_yz / material.shear_modulus + 2 * e[YZ])
 
 
@@ -205,47 +211,49 @@ class Influence:
 
     poisson: float
     young: float
-    in_plane: FloatArray  # (3 cells, 3 cells): stresses xx, zz, xz per eigenstrains xx + nu yy, zz + nu yy, xz
-    across: FloatArray  # (2 cells, 2 cells): stresses xy, yz per eigenstrains xy, yz
+    airy_matrix: FloatArray  # (3 cells, 3 cells): stresses xx, zz, xz per eigenstrains xx + nu yy, zz + nu yy, xz
+    antiplane_matrix: FloatArray  # (2 cells, 2 cells): stresses xy, yz per eigenstrains xy, yz
 
     @classmethod
     def of(cls, body: EigenstrainBody, along_x: IntArray, along_z: IntArray) -> Influence:
         """Influence of the cells with these indices along x and along z on each other."""
         areas = np.diff(body.x_edges)[along_x] * np.diff(body.z_edges)[along_z]
 
-        def columns(integrals: Factors, i: int, j: int) -> sparse.csc_array:
+        def integrals_of(integrals: Factors, i: int, j: int) -> sparse.csc_array:
             """Integrals of the functions' derivatives over each of the cells: array (function, cell)."""
             x, z = (sparse.csc_array(m) for m in (integrals[0][i][:, along_x], integrals[1][j][:, along_z]))
             return sparse.csc_array(
                 sparse.hstack([sparse.kron(x[:, [n]], z[:, [n]], format="csc") for n in range(along_x.size)])
             )
 
-        def matrix(function: StressFunction, blocks: list[sparse.csc_array], counts: FloatArray) -> FloatArray:
+        def influence_matrix(
+            function: StressFunction, blocks: list[sparse.csc_array], factors: FloatArray
+        ) -> FloatArray:
             """Averages of the stresses per eigenstrains times `counts`, over minus the modulus."""
             stacked = sparse.csc_array(sparse.hstack(blocks))
             averages = sparse.csr_array(stacked.T)
             influence = np.empty((stacked.shape[1],) * 2)
             for start in range(0, influence.shape[1], COLUMNS_PER_SOLUTION):
-                right = stacked[:, start : start + COLUMNS_PER_SOLUTION].toarray()
-                influence[:, start : start + COLUMNS_PER_SOLUTION] = averages @ function.solve(right)
-            return influence / np.tile(areas, len(blocks))[:, None] * np.repeat(counts, areas.size)
+                right_hand_sides = stacked[:, start : start + COLUMNS_PER_SOLUTION].toarray()
+                influence[:, start : start + COLUMNS_PER_SOLUTION] = averages @ function.solve(right_hand_sides)
+            return influence / np.tile(areas, len(blocks))[:, None] * np.repeat(factors, areas.size)
 
         integrals = body.airy_integrals
-        airy = [columns(integrals, 0, 2), columns(integrals, 2, 0), -columns(integrals, 1, 1)]
-        in_plane = matrix(body.in_plane, airy, np.array([1.0, 1.0, 2.0]))
-        integrals = body.across_integrals
-        shear = [columns(integrals, 0, 1), -columns(integrals, 1, 0)]
-        across = matrix(body.across, shear, np.array([2.0, 2.0]))
+        airy = [integrals_of(integrals, 0, 2), integrals_of(integrals, 2, 0), -integrals_of(integrals, 1, 1)]
+        airy_matrix = influence_matrix(body.airy_function, airy, np.array([1.0, 1.0, 2.0]))
+        integrals = body.antiplane_integrals
+        antiplane = [integrals_of(integrals, 0, 1), -integrals_of(integrals, 1, 0)]
+        antiplane_matrix = influence_matrix(body.antiplane_function, antiplane, np.array([2.0, 2.0]))
         material = body.material
         modulus = material.plane_strain_modulus
-        return cls(material.poisson, material.young, -modulus * in_plane, -material.shear_modulus * across)
+        return cls(material.poisson, material.young, -modulus * airy_matrix, -material.shear_modulus * antiplane_matrix)
 
     def stresses(self, eigenstrain: FloatArray) -> FloatArray:
         """Residual stresses (6, cell) from eigenstrains (6, cell): xx, yy, zz, xy, xz, yz."""
         e, nu = eigenstrain, self.poisson
         stress = np.empty_like(e)
         strain = np.concatenate([e[XX] + nu * e[YY], e[ZZ] + nu * e[YY], e[XZ]])
-        stress[[XX, ZZ, XZ]] = (self.in_plane @ strain).reshape(3, -1)
-        stress[[XY, YZ]] = (self.across @ np.concatenate([e[XY], e[YZ]])).reshape(2, -1)
+        stress[[XX, ZZ, XZ]] = (self.airy_matrix @ strain).reshape(3, -1)
+        stress[[XY, YZ]] = (self.antiplane_matrix @ np.concatenate([e[XY], e[YZ]])).reshape(2, -1)
         stress[YY] = nu * (stress[XX] + stress[ZZ]) - self.young * e[YY]
         return stress

@@ -65,42 +65,44 @@ class PeriodicLayers:
         """Stresses (or their part over i) in the layers per eigenstrain, over minus the modulus, for every wave."""
         splines = Splines(self._elements, degree, continuity=order - 1, vanishing_orders=order)
         products = [splines.products(derivative).toarray() for derivative in range(order + 1)]
-        parts = [splines.integrals(self.z_edges, derivative) for derivative in range(order + 1)]
+        overlaps = [splines.integrals(self.z_edges, derivative) for derivative in range(order + 1)]
         heights = np.tile(np.diff(self.z_edges), order + 1)
         matrices = np.zeros((self._waves.size, heights.size, heights.size))
         # Without a change along y only strains in the layers' own plane are held.
-        uniform = np.arange(self.z_edges.size - 1)
-        matrices[0, uniform, uniform] = 1.0 if order == 2 else 2.0
-        for number, k in enumerate(self._waves[1:], 1):
+        layer_indices = np.arange(self.z_edges.size - 1)
+        matrices[0, layer_indices, layer_indices] = 1.0 if order == 2 else 2.0
+        for wave_index, k in enumerate(self._waves[1:], 1):
             if order == 2:  # yy, zz, yz
                 energy = products[2] + 2 * k**2 * products[1] + k**4 * products[0]  # eq. (504)
-                integrals = np.concatenate([parts[2], -(k**2) * parts[0], -k * parts[1]], axis=1)
-                counts = np.repeat([1.0, 1.0, 2.0], heights.size // 3)
+                integrals = np.concatenate([overlaps[2], -(k**2) * overlaps[0], -k * overlaps[1]], axis=1)
+                multiplicities = np.repeat([1.0, 1.0, 2.0], heights.size // 3)
             else:  # xy, xz
                 energy = products[1] + k**2 * products[0]
-                integrals = np.concatenate([parts[1], k * parts[0]], axis=1)
-                counts = np.full(heights.size, 2.0)
+                integrals = np.concatenate([overlaps[1], k * overlaps[0]], axis=1)
+                multiplicities = np.full(heights.size, 2.0)
             scale = 1 / np.sqrt(np.diag(energy))[:, None]
-            solved = scale * np.linalg.solve(scale * energy * scale.T, scale * integrals)
-            matrices[number] = integrals.T @ solved * counts / heights[:, None]
+            coefficients = scale * np.linalg.solve(scale * energy * scale.T, scale * integrals)
+            matrices[wave_index] = integrals.T @ coefficients * multiplicities / heights[:, None]
         return matrices
 
     @cached_property
-    def _in_plane(self) -> FloatArray:
+    def _airy_matrices(self) -> FloatArray:
         return -self.material.plane_strain_modulus * self._matrices(DEGREE, 2)
 
     @cached_property
-    def _across(self) -> FloatArray:
+    def _antiplane_matrices(self) -> FloatArray:
         return -self.material.shear_modulus * self._matrices(DEGREE - 1, 1)
 
     def stresses(self, eigenstrain: FloatArray) -> FloatArray:
         """Residual stresses (6, position, column, layer) from eigenstrains of this shape; columns are independent."""
         e, nu = eigenstrain, self.material.poisson
         stress = np.zeros_like(e)
-        stress[[YY, ZZ, YZ]] = self._apply(self._in_plane, np.stack([e[YY] + nu * e[XX], e[ZZ] + nu * e[XX], e[YZ]]))
+        stress[[YY, ZZ, YZ]] = self._apply(
+            self._airy_matrices, np.stack([e[YY] + nu * e[XX], e[ZZ] + nu * e[XX], e[YZ]])
+        )
         stress[XX] = nu * (stress[YY] + stress[ZZ]) - self.material.young * e[XX]
         if e[[XY, XZ]].any():
-            stress[[XY, XZ]] = self._apply(self._across, e[[XY, XZ]])
+            stress[[XY, XZ]] = self._apply(self._antiplane_matrices, e[[XY, XZ]])
         return stress
 
     def _apply(self, matrices: FloatArray, strains: FloatArray) -> FloatArray:

@@ -44,35 +44,37 @@ class Splines:
 
     @cached_property
     def _knots(self) -> FloatArray:
-        first, inner, last = self.edges[0], self.edges[1:-1], self.edges[-1]
-        outer = np.ones(self.degree + 1)
-        return np.concatenate([first * outer, np.repeat(inner, self.degree - self.continuity), last * outer])
+        first_edge, inner_edges, last_edge = self.edges[0], self.edges[1:-1], self.edges[-1]
+        repeats = np.ones(self.degree + 1)
+        return np.concatenate(
+            [first_edge * repeats, np.repeat(inner_edges, self.degree - self.continuity), last_edge * repeats]
+        )
 
     def values(self, points: FloatArray, derivative: int = 0) -> FloatArray:
         """Functions, or a derivative of them, at points: array (point, function). Between elements the right one's."""
-        count = self._knots.size - self.degree - 1
-        values = BSpline(self._knots, np.eye(count), self.degree)(points, nu=derivative)
-        return np.asarray(values[:, self.vanishing_orders : count - self.vanishing_orders])
+        spline_count = self._knots.size - self.degree - 1
+        function_values = BSpline(self._knots, np.eye(spline_count), self.degree)(points, nu=derivative)
+        return np.asarray(function_values[:, self.vanishing_orders : spline_count - self.vanishing_orders])
 
     @cached_property
     def _gauss(self) -> tuple[FloatArray, FloatArray]:
         """Points and weights that integrate products of two functions exactly: arrays (element, point)."""
         node, weight = np.polynomial.legendre.leggauss(self.degree + 1)
-        half = 0.5 * np.diff(self.edges)[:, None]
-        return self.edges[:-1, None] + half * (1 + node), half * weight
+        half_widths = 0.5 * np.diff(self.edges)[:, None]
+        return self.edges[:-1, None] + half_widths * (1 + node), half_widths * weight
 
     def products(self, derivative: int) -> sparse.csr_array:
         """Integrals of products of two functions' derivatives: array (function, function)."""
         points, weights = self._gauss
-        values = sparse.csr_array(self.values(points.ravel(), derivative))
-        return sparse.csr_array(values.T @ sparse.diags_array(weights.ravel()) @ values)
+        derivatives = sparse.csr_array(self.values(points.ravel(), derivative))
+        return sparse.csr_array(derivatives.T @ sparse.diags_array(weights.ravel()) @ derivatives)
 
     def integrals(self, cell_edges: FloatArray, derivative: int) -> FloatArray:
         """Integrals of functions or their derivatives over cells with edges of elements: array (function, cell)."""
         points, weights = self._gauss
-        by_point = self.values(points.ravel(), derivative) * weights.reshape(-1, 1)
-        by_element = by_point.reshape(*points.shape, -1).sum(axis=1)
-        sums = np.concatenate([np.zeros((1, self.count)), np.cumsum(by_element, axis=0)])
+        weighted_values = self.values(points.ravel(), derivative) * weights.reshape(-1, 1)
+        element_integrals = weighted_values.reshape(*points.shape, -1).sum(axis=1)
+        sums = np.concatenate([np.zeros((1, self.count)), np.cumsum(element_integrals, axis=0)])
         elements = np.abs(self.edges[:, None] - cell_edges).argmin(axis=0)
         return np.asarray(np.diff(sums[elements], axis=0).T)
 
@@ -87,15 +89,15 @@ class StressFunction:
     @cached_property
     def _factorisation(self) -> tuple[sparse.linalg.SuperLU, FloatArray]:
         """Factors of the energy, and the scale of each function that makes its own energy 1."""
-        products = {(i, j): sparse.kron(self.x.products(i), self.z.products(j)) for i, j in self._derivatives}
-        matrix = sum(weight * products[pair] for pair, weight in self._derivatives.items())
-        scale = 1 / np.sqrt(matrix.diagonal())
-        scaled = sparse.csc_array(sparse.diags_array(scale) @ matrix @ sparse.diags_array(scale))
+        products = {(i, j): sparse.kron(self.x.products(i), self.z.products(j)) for i, j in self._energy_weights}
+        energy = sum(weight * products[orders] for orders, weight in self._energy_weights.items())
+        scale = 1 / np.sqrt(energy.diagonal())
+        scaled = sparse.csc_array(sparse.diags_array(scale) @ energy @ sparse.diags_array(scale))
         factor = splu(scaled, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
         return factor, scale
 
     @property
-    def _derivatives(self) -> dict[tuple[int, int], float]:
+    def _energy_weights(self) -> dict[tuple[int, int], float]:
         """Weight of the square of each derivative (along x, along z) in the energy."""
         if self.x.vanishing_orders == 2:
             return {(2, 0): 1.0, (0, 2): 1.0, (1, 1): 2.0}
@@ -113,7 +115,7 @@ class StressFunction:
             self.z.integrals(z_edges, order) for order in orders
         ]
 
-    def solve(self, right: FloatArray) -> FloatArray:
+    def solve(self, right_hand_sides: FloatArray) -> FloatArray:
         """Coefficients of least energy for right-hand sides: array (function, column)."""
         factor, scale = self._factorisation
-        return np.asarray(scale[:, None] * factor.solve(scale[:, None] * right))
+        return np.asarray(scale[:, None] * factor.solve(scale[:, None] * right_hand_sides))

@@ -33,86 +33,97 @@ class UniformOperator:
     """Displacements of the top of one part of a body."""
 
     def __init__(
-        self, extent: Extent, grid: Grid, spectra: Mapping[Response, FloatArray], ends: EndCorrection | None
+        self, extent: Extent, grid: Grid, spectra: Mapping[Response, FloatArray], end_correction: EndCorrection | None
     ) -> None:
         self.extent, self.grid = extent, grid
-        self._spectra, self._ends = spectra, ends
-        mirrored, padded = _padding(extent, grid)
+        self._spectra, self._correction = spectra, end_correction
+        mirrored, padded_cells = _padding(extent, grid)
         # A body with only the second mirror is reversed.
-        self._flipped = mirrored and bool(np.isinf(extent[0]))
+        self._is_reversed = mirrored and bool(np.isinf(extent[0]))
 
         def make_transforms(directions: Sequence[Load]) -> dict[Load, GridTransform]:
             return {
-                direction: GridTransform(*grid.shape, padded, direction.sign_x if mirrored else 0)
+                direction: GridTransform(*grid.shape, padded_cells, direction.sign_x if mirrored else 0)
                 for direction in dict.fromkeys(directions)
             }
 
-        self._loaded = make_transforms([response.load for response in spectra])
-        self._displaced = make_transforms([response.displacement for response in spectra])
+        self._load_transforms = make_transforms([response.load for response in spectra])
+        self._field_transforms = make_transforms([response.displacement for response in spectra])
 
     @classmethod
     def of(
-        cls, material: Material, extent: Extent, grid: Grid, responses: Sequence[Response], ends: EndKernel | None
+        cls,
+        material: Material,
+        extent: Extent,
+        grid: Grid,
+        responses: Sequence[Response],
+        ends_kernel: EndKernel | None,
     ) -> UniformOperator:
         """Operator of a part of a body made of `material`, for pairs of displacement and load."""
         spectra = {response: _spectrum(response, material, extent, grid) for response in responses}
-        return cls(extent, grid, spectra, None if ends is None else EndCorrection.on_grid(grid, ends))
+        return cls(extent, grid, spectra, None if ends_kernel is None else EndCorrection.on_grid(grid, ends_kernel))
 
     def coarsen(self, material: Material) -> UniformOperator:
         """Return the operator on cells of twice the size."""
         grid = self.grid.coarsened()
         spectra = {response: _spectrum(response, material, self.extent, grid) for response in self._spectra}
-        return UniformOperator(self.extent, grid, spectra, self._ends.coarsen() if self._ends is not None else None)
+        return UniformOperator(
+            self.extent, grid, spectra, self._correction.coarsen() if self._correction is not None else None
+        )
 
     def __call__(self, loads: Mapping[Load, FloatArray], directions: Sequence[Load]) -> dict[Load, FloatArray]:
         """Displacements (m) of the cell centres in some `directions` under `loads` (Pa): arrays (x, y)."""
         spectra, projected = {}, {}
         for load, cells in loads.items():
-            transform = self._loaded[load]
-            lateral = transform.transform_y(load.sign_x * cells[::-1] if self._flipped else cells)
-            if self._ends is not None:
-                projected[load] = self._ends.project_loads(load, lateral)
+            transform = self._load_transforms[load]
+            lateral = transform.transform_y(load.sign_x * cells[::-1] if self._is_reversed else cells)
+            if self._correction is not None:
+                projected[load] = self._correction.project_loads(load, lateral)
             spectra[load] = transform.transform_x()
         displacements = {}
         for direction in directions:
-            transform = self._displaced[direction]
+            transform = self._field_transforms[direction]
             self._fill(transform.spectrum, direction, spectra)
             cells_x = self.grid.cells_x
             end_displacement = (
-                self._ends.compute_displacement(direction, projected, cells_x) if self._ends is not None else None
+                self._correction.compute_displacement(direction, projected, cells_x)
+                if self._correction is not None
+                else None
             )
             displacement = transform.invert(end_displacement)  # eq. (5)
-            displacements[direction] = direction.sign_x * displacement[::-1] if self._flipped else displacement
+            displacements[direction] = direction.sign_x * displacement[::-1] if self._is_reversed else displacement
         return displacements
 
     def _fill(self, total: ComplexArray, direction: Load, loads: Mapping[Load, ComplexArray]) -> None:
         """Fill a buffer with the spectrum of the displacement that the mirrored half-space has under `loads`."""
         # A sine transform begins with wavenumber 1, a cosine transform with wavenumber 0.
-        mirrored = bool(self._displaced[direction].mirror)
+        mirrored = bool(self._field_transforms[direction].mirror)
         for index, (load, spectrum) in enumerate(loads.items()):
             response = Response(direction, load)
             kernel = self._spectra[response]
-            target, source = total, spectrum
+            direct_part, load_spectrum = total, spectrum
             if mirrored and response.sign_x < 0:
-                target, source = (total[:-1], spectrum[1:]) if direction.sign_x < 0 else (total[1:], spectrum[:-1])
+                direct_part, load_spectrum = (
+                    (total[:-1], spectrum[1:]) if direction.sign_x < 0 else (total[1:], spectrum[:-1])
+                )
                 if not index:
                     total[-1 if direction.sign_x < 0 else 0] = 0.0
             if not index:
-                np.multiply(kernel, source, out=target)
+                np.multiply(kernel, load_spectrum, out=direct_part)
             elif response.sign_y > 0 and (mirrored or response.sign_x > 0):
-                target += kernel * source
+                direct_part += kernel * load_spectrum
                 continue
             # Kernels lack a factor i for each odd direction, except along x between mirrors.
             powers = int(response.sign_y < 0) + int(response.sign_x < 0 and not mirrored)
             factor = (1, 1j, -1)[powers]
             if index:
-                target += (factor * kernel) * source
+                direct_part += (factor * kernel) * load_spectrum
             elif powers:
-                target *= factor
+                direct_part *= factor
 
     def precondition(self, gap: FloatArray) -> FloatArray:
         """Approximate pressure for a normal displacement `gap`: the inverse spectrum of the mirrored half-space."""
-        transform = self._loaded[Load.NORMAL]
+        transform = self._load_transforms[Load.NORMAL]
         transform.transform_y(gap)
         spectrum = transform.transform_x()
         spectrum *= self._inverse
@@ -130,7 +141,7 @@ class UniformOperator:
     def nbytes(self) -> int:
         """Memory, bytes, with the inverse that preconditioning adds."""
         inverse = max(spectrum.nbytes for spectrum in self._spectra.values())
-        return nbytes_of([self._spectra, self._ends, self._loaded, self._displaced]) + inverse
+        return nbytes_of([self._spectra, self._correction, self._load_transforms, self._field_transforms]) + inverse
 
 
 def _padding(extent: Extent, grid: Grid) -> tuple[bool, int]:
@@ -140,20 +151,20 @@ def _padding(extent: Extent, grid: Grid) -> tuple[bool, int]:
 
 
 def end_kernel_of(
-    part: BodyTerm, material: Material, grid: Grid, responses: tuple[Response, ...], resolution: Resolution
+    term: BodyTerm, material: Material, grid: Grid, responses: tuple[Response, ...], resolution: Resolution
 ) -> EndKernel | None:
     """Kernel of the ends of a part, None without; raises for tangential displacements of the single-mirror model."""
-    if part.free_ends is None:
+    if term.free_ends is None:
         return None
-    if part.free_ends.mirrored_once and any(response.displacement is not Load.NORMAL for response in responses):
+    if term.free_ends.mirrored_once and any(response.displacement is not Load.NORMAL for response in responses):
         raise InvalidInputError(
             "body.model",
             "single-mirror",
             '"exact", "mirror" or "mirror-factor" for tangential displacements',
             "residual shear on its ends breaks reciprocity",
         )
-    reference = reference_distance(part.extent)
-    return end_kernel(EndRequest.of(part.free_ends, material, grid, responses, reference, resolution=resolution))
+    reference = reference_distance(term.extent)
+    return end_kernel(EndRequest.of(term.free_ends, material, grid, responses, reference, resolution=resolution))
 
 
 def reference_distance(extent: Extent) -> float:
@@ -168,8 +179,8 @@ def kernel_factor(material: Material) -> float:
 
 def _spectrum(response: Response, material: Material, extent: Extent, grid: Grid) -> FloatArray:
     """Spectrum (x, y), without factors i, of the kernel of the mirrored half-space."""
-    mirrored, padded = _padding(extent, grid)
-    x: FloatArray = grid.dx * np.arange(padded + 1.0 if mirrored else grid.cells_x + 1.0)
+    mirrored, padded_cells = _padding(extent, grid)
+    x: FloatArray = grid.dx * np.arange(padded_cells + 1.0 if mirrored else grid.cells_x + 1.0)
     y: FloatArray = grid.dy * np.arange(grid.cells_y + 1.0)
     length = extent[1] - extent[0]
     cell = (grid.dx, grid.dy)
@@ -183,8 +194,8 @@ def _spectrum(response: Response, material: Material, extent: Extent, grid: Grid
             odd_part = factor * fft.dst(odd_part, type=1, axis=0)
         if mirrored:
             return np.asarray(odd_part if response.displacement.sign_x < 0 else -odd_part)
-        zero = np.zeros((1, odd_part.shape[1]))
-        return np.concatenate([zero, -odd_part, zero, odd_part[::-1]])
+        zero_row = np.zeros((1, odd_part.shape[1]))
+        return np.concatenate([zero_row, -odd_part, zero_row, odd_part[::-1]])
     spectrum = factor * fft.dct(along_y, type=1, axis=0)
     if mirrored:
         return np.asarray(spectrum[:-1] if response.displacement.sign_x > 0 else spectrum[1:])
@@ -203,7 +214,12 @@ class ColumnsOperator:
 
     @classmethod
     def of(
-        cls, material: Material, extent: Extent, grid: Grid, responses: Sequence[Response], ends: EndKernel | None
+        cls,
+        material: Material,
+        extent: Extent,
+        grid: Grid,
+        responses: Sequence[Response],
+        ends_kernel: EndKernel | None,
     ) -> ColumnsOperator:
         """Operator of a part of a body made of `material`, for pairs of displacement and load."""
         edges, reference = grid.x_edges, reference_distance(extent)
@@ -211,17 +227,19 @@ class ColumnsOperator:
         kernels = {
             response: kernel_factor(material) * columns.kernel(response, material.poisson) for response in responses
         }
-        if ends is not None:
+        if ends_kernel is not None:
             for response, kernel in kernels.items():
-                ends.add_to(kernel, response, edges)
+                ends_kernel.add_to(kernel, response, edges)
         return cls(extent, grid, kernels)
 
     def coarsen(self, material: Material) -> ColumnsOperator:
         """Return the operator on pairs of cells, for an initial guess."""
         grid = self.grid.coarsened()
-        fine = self.grid.widths
-        averaging = np.zeros((grid.cells_x, fine.size))
-        averaging[np.minimum(np.arange(fine.size) // 2, grid.cells_x - 1), np.arange(fine.size)] = fine
+        fine_widths = self.grid.widths
+        averaging = np.zeros((grid.cells_x, fine_widths.size))
+        averaging[np.minimum(np.arange(fine_widths.size) // 2, grid.cells_x - 1), np.arange(fine_widths.size)] = (
+            fine_widths
+        )
         averaging /= grid.widths[:, None]
         coarse_kernels = {
             response: averaging @ kernel[: grid.cells_y + 1] @ averaging.T for response, kernel in self._kernels.items()
@@ -233,7 +251,7 @@ class ColumnsOperator:
         spectra = {load: self._transform_y(self._widths * cells) for load, cells in loads.items()}
         displacements = {}
         for direction in directions:
-            products = (self._product(Response(direction, load), spectrum) for load, spectrum in spectra.items())
+            products = (self._multiply(Response(direction, load), spectrum) for load, spectrum in spectra.items())
             displacements[direction] = self._invert_y(sum(products, np.zeros(1, np.complex128)))
         return displacements
 
@@ -241,11 +259,11 @@ class ColumnsOperator:
         """Approximate pressure for a normal displacement `gap`."""
         return self._invert_y(_multiply_matrices(self._inverse, self._transform_y(gap))) / self._widths
 
-    def _transform_y(self, values: FloatArray) -> ComplexArray:
+    def _transform_y(self, cells: FloatArray) -> ComplexArray:
         """Transform along y: array (wavenumber, cell)."""
-        return np.ascontiguousarray(fft.rfft(values, n=2 * self.grid.cells_y, axis=1).T)
+        return np.ascontiguousarray(fft.rfft(cells, n=2 * self.grid.cells_y, axis=1).T)
 
-    def _product(self, response: Response, spectrum: ComplexArray) -> ComplexArray:
+    def _multiply(self, response: Response, spectrum: ComplexArray) -> ComplexArray:
         """Multiply along x, for each wavenumber along y."""
         product = _multiply_matrices(self._kernels[response], spectrum)
         return product if response.sign_y > 0 else 1j * product
@@ -261,8 +279,8 @@ class ColumnsOperator:
         kernel = self._kernels[NORMAL_RESPONSE]
         inverse = np.empty_like(kernel)
         with one_blas_thread():
-            for matrix, target in zip(kernel, inverse, strict=True):
-                target[:] = _invert_matrix(matrix)
+            for matrix, matrix_inverse in zip(kernel, inverse, strict=True):
+                matrix_inverse[:] = _invert_matrix(matrix)
         return inverse
 
     @property
@@ -281,12 +299,12 @@ def _multiply_matrices(matrices: FloatArray, spectrum: ComplexArray) -> ComplexA
 
 def _invert_matrix(matrix: FloatArray) -> FloatArray:
     """Inverse of a symmetric matrix with positive eigenvalues; the displacement reference may change one sign."""
-    factor, failed = linalg.lapack.dpotrf(matrix)
-    if not failed:
-        upper, _ = linalg.lapack.dpotri(factor)  # zeros below
+    cholesky_factor, status = linalg.lapack.dpotrf(matrix)
+    if not status:
+        upper, _ = linalg.lapack.dpotri(cholesky_factor)  # zeros below
         inverse = upper + upper.T
         inverse.flat[:: inverse.shape[0] + 1] *= 0.5
         return np.asarray(inverse)
-    values, vectors = np.linalg.eigh(0.5 * (matrix + matrix.T))
-    values = np.maximum(np.abs(values), MIN_EIGENVALUE * np.abs(values).max() / values.size)
-    return np.asarray((vectors / values) @ vectors.T)
+    eigenvalues, eigenvectors = np.linalg.eigh(0.5 * (matrix + matrix.T))
+    eigenvalues = np.maximum(np.abs(eigenvalues), MIN_EIGENVALUE * np.abs(eigenvalues).max() / eigenvalues.size)
+    return np.asarray((eigenvectors / eigenvalues) @ eigenvectors.T)

@@ -69,7 +69,7 @@ def displacement_field(
     displacement = displacement_under(body, prescribed.loads, prescribed.grid, positions.points, prescribed.shape)
     fields = positions.dataset({name: displacement[i] for i, name in enumerate(COMPONENTS)})
     # Far from a row of images without end the displacement grows like a logarithm, without an absolute value.
-    reference = REFERENCE_LENGTHS * min(part.extent[1] - part.extent[0] for part in body.terms)
+    reference = REFERENCE_LENGTHS * min(term.extent[1] - term.extent[0] for term in body.terms)
     if np.isfinite(reference):
         for name in COMPONENTS:
             fields[name].attrs["reference_distance"] = reference
@@ -85,44 +85,44 @@ def displacement_under(
 
     def unit_fields(directions: tuple[Load, ...], cells: FloatArray) -> dict[Load, list[FloatArray]]:
         fields = {load: np.zeros((3, *(axis.size for axis in points))) for load in directions}
-        for body_part in body.terms:
-            length, reference = body_part.extent[1] - body_part.extent[0], reference_distance(body_part.extent)
-            end_terms: dict[Load, FloatArray] = {}
-            if body_part.free_ends and cells.any():
-                problem = end_problem(body_part.free_ends, material.poisson, cells, shape, grid, loads=directions)
-                (end_terms,) = end_fields(problem, DISPLACEMENT, [points], reference)
+        for term in body.terms:
+            length, reference = term.extent[1] - term.extent[0], reference_distance(term.extent)
+            end_parts: dict[Load, FloatArray] = {}
+            if term.free_ends and cells.any():
+                problem = end_problem(term.free_ends, material.poisson, cells, shape, grid, loads=directions)
+                (end_parts,) = end_fields(problem, DISPLACEMENT, [points], reference)
             for load, total in fields.items():
                 influence = displacement_influence(load, material.poisson, length, reference)
-                field = half_space_field(cells, influence, grid, points, extent=body_part.extent, shape=shape)
+                field = half_space_field(cells, influence, grid, points, extent=term.extent, shape=shape)
                 field = kernel_factor(material) * field
-                if load in end_terms:
-                    field += end_terms[load] / (2 * material.shear_modulus)
-                total += body_part.weight * field
+                if load in end_parts:
+                    field += end_parts[load] / (2 * material.shear_modulus)
+                total += term.weight * field
         return {load: [field] for load, field in fields.items()}
 
     (displacement,) = superpose(loads, unit_fields)
     return displacement
 
 
-POINTS = 32  # positions along x per evaluation. Speed: memory.
+POSITIONS_PER_BATCH = 32  # positions along x per evaluation. Speed: memory.
 
 
 def normal_influence(body: Body, grid: Grid, load: Load, x: FloatArray, z: float) -> FloatArray:
     """Return the normal displacement at y = 0 and a depth under a unit load on each cell: array (x, cell_x, cell_y)."""
     material, normal = body.material, COMPONENTS.index("u_z")
     total = np.zeros((x.size, *grid.shape))
-    for part in body.terms:
-        length, reference = part.extent[1] - part.extent[0], reference_distance(part.extent)
+    for term in body.terms:
+        length, reference = term.extent[1] - term.extent[0], reference_distance(term.extent)
         influence = displacement_influence(load, material.poisson, length, reference)
-        for start in range(0, x.size, POINTS):
-            section = slice(start, start + POINTS)
-            points = Points(x[section], -grid.y, np.array([z]))
-            field = half_space_influence(influence, grid, points, extent=part.extent)[normal, ..., 0]
-            total[section] += part.weight * kernel_factor(material) * field
-        if part.free_ends:
-            problem = unit_problem(part.free_ends, material.poisson, grid, load)
-            line = Points(x, np.zeros(1), np.array([z]))
-            for amplitudes, filters in unit_fields(problem, DISPLACEMENT, line, reference):
+        for start in range(0, x.size, POSITIONS_PER_BATCH):
+            batch = slice(start, start + POSITIONS_PER_BATCH)
+            points = Points(x[batch], -grid.y, np.array([z]))
+            field = half_space_influence(influence, grid, points, extent=term.extent)[normal, ..., 0]
+            total[batch] += term.weight * kernel_factor(material) * field
+        if term.free_ends:
+            problem = unit_problem(term.free_ends, material.poisson, grid, load)
+            line_points = Points(x, np.zeros(1), np.array([z]))
+            for amplitudes, filters in unit_fields(problem, DISPLACEMENT, line_points, reference):
                 field = np.einsum("xniz,njy->xij", amplitudes[normal], filters[normal], optimize=True)
-                total += part.weight / (2 * material.shear_modulus) * field
+                total += term.weight / (2 * material.shear_modulus) * field
     return total

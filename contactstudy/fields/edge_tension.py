@@ -24,9 +24,9 @@ from contactstudy.errors import InvalidInputError
 from contactstudy.fields.positions import Positions
 from contactstudy.fields.stress import stress_field
 
-TERMS = 4  # terms of the Chebyshev series. Accuracy: the last one is part of the error.
+SERIES_TERMS = 4  # terms of the Chebyshev series. Accuracy: the last one is part of the error.
 
-DISTANCES = np.array([0.35, 0.5, 0.7, 1.0])
+FIT_DISTANCES = np.array([0.35, 0.5, 0.7, 1.0])
 """Distances from the edge, over the half-width, at which the field of the cells is accurate to 1e-3. Accuracy."""
 
 MIN_CELLS = 8  # least number of loaded cells across a section, for edges accurate to a few hundredths of a cell
@@ -38,12 +38,12 @@ class _Section(NamedTuple):
     edge: float
     half_width: float
     coefficients: FloatArray
-    cell: float
+    cell_width: float
 
     def plane_tension(self, distance: FloatArray | float) -> FloatArray:
         """Tension of the series at distances from the edge over the half-width, Pa."""
         g = (1 + np.asarray(distance)) - np.sqrt((1 + np.asarray(distance)) ** 2 - 1)
-        n = np.arange(TERMS)
+        n = np.arange(SERIES_TERMS)
         return np.asarray(2 * ((-1.0) ** n * self.coefficients * g[..., None] ** (n + 1)).sum(axis=-1))
 
 
@@ -87,14 +87,14 @@ def edge_tension(result: xr.Dataset, x: Positions | None = None) -> xr.Dataset:
     traction = case["traction_y"].transpose("x", "y").values
     if not traction.any():
         raise InvalidInputError("result", "a contact without friction", "one in full sliding")
-    centres, maxima = case["x"].values, case["pressure"].transpose("x", "y").values.max(axis=1)
+    centres, column_maxima = case["x"].values, case["pressure"].transpose("x", "y").values.max(axis=1)
     if x is None:
-        middle = centres.size // 2
+        middle_column = centres.size // 2
         columns = np.unique(
             [
-                int(maxima[:middle].argmax()),
-                middle,
-                middle + int(maxima[middle:].argmax()),
+                int(column_maxima[:middle_column].argmax()),
+                middle_column,
+                middle_column + int(column_maxima[middle_column:].argmax()),
             ]
         )
     else:
@@ -110,7 +110,7 @@ def edge_tension(result: xr.Dataset, x: Positions | None = None) -> xr.Dataset:
             sections[column] = _section(
                 sign * case["y"].values, sign * traction[column], sorted(sign * np.array(limits))
             )
-    y = {column: sign * (section.edge - section.half_width * DISTANCES) for column, section in sections.items()}
+    y = {column: sign * (section.edge - section.half_width * FIT_DISTANCES) for column, section in sections.items()}
     if sections:
         # One field for all sections: the end correction takes most of the time.
         stresses = stress_field(
@@ -122,49 +122,53 @@ def edge_tension(result: xr.Dataset, x: Positions | None = None) -> xr.Dataset:
             traction_y=case["traction_y"],
         )
         tension_field = stresses["sigma_yy"].squeeze("z")
-    rows = []
+    tensions = []
     for column in columns.tolist():
         if column not in sections:
-            rows.append((np.nan, np.nan, np.nan))
+            tensions.append((np.nan, np.nan, np.nan))
             continue
         section = sections[column]
         stress = tension_field.sel(x=centres[column], y=y[column]).values
-        smooth = stress - section.plane_tension(DISTANCES)
-        intercept = float(np.polyfit(DISTANCES, smooth, 1)[1])
+        smooth_stress = stress - section.plane_tension(FIT_DISTANCES)
+        intercept = float(np.polyfit(FIT_DISTANCES, smooth_stress, 1)[1])
         tension = float(section.plane_tension(0.0)) + intercept
         error = (
-            abs(intercept - smooth[0])
+            abs(intercept - smooth_stress[0])
             + 2 * abs(section.coefficients[-1])
-            + abs(tension) * (relative_error + EDGE_UNCERTAINTY * section.cell / section.half_width)
+            + abs(tension) * (relative_error + EDGE_UNCERTAINTY * section.cell_width / section.half_width)
         )
-        rows.append((tension, float(error), sign * section.edge))
+        tensions.append((tension, float(error), sign * section.edge))
     names = ("edge_tension", "edge_tension_error", "trailing_edge")
-    values = {name: ("x", np.array(column)) for name, column in zip(names, zip(*rows, strict=True), strict=True)}
-    return describe(xr.Dataset(values, coords={"x": centres[columns]}))
+    variables = {name: ("x", np.array(column)) for name, column in zip(names, zip(*tensions, strict=True), strict=True)}
+    return describe(xr.Dataset(variables, coords={"x": centres[columns]}))
 
 
 def edge_tension_summary(dataset: xr.Dataset) -> xr.Dataset:
     """Largest edge tension of a solved case with its error and position; empty where :func:`edge_tension` has none."""
-    sliding = {"pressure", "gap", "traction_y"} <= set(dataset.data_vars) and "stick" not in dataset
-    if not sliding or not dataset["traction_y"].values.any() or any(cut_ends(dataset)):
+    slides_fully = {"pressure", "gap", "traction_y"} <= set(dataset.data_vars) and "stick" not in dataset
+    if not slides_fully or not dataset["traction_y"].values.any() or any(cut_ends(dataset)):
         return xr.Dataset()
     if "case" not in attribute(dataset, INPUTS_ATTRIBUTE) or np.isinf(float(dataset.get("peak_pressure", 0))):
         return xr.Dataset()
     tension = edge_tension(dataset)
     if bool(tension["edge_tension"].isnull().all()):
         return xr.Dataset()
-    largest = tension.isel(x=int(np.nanargmax(tension["edge_tension"].values)))
+    largest_tension = tension.isel(x=int(np.nanargmax(tension["edge_tension"].values)))
     names = {"edge_tension": "", "edge_tension_error": "_error", "x": "_x", "trailing_edge": "_y"}
-    values = {f"peak_edge_tension{suffix}": float(largest[name]) for name, suffix in names.items()}
-    return without_error(describe(xr.Dataset(values)), "peak_edge_tension_x", "peak_edge_tension_y")
+    variables = {f"peak_edge_tension{suffix}": float(largest_tension[name]) for name, suffix in names.items()}
+    return without_error(describe(xr.Dataset(variables)), "peak_edge_tension_x", "peak_edge_tension_y")
 
 
 def _section(y: FloatArray, traction: FloatArray, limits: list[float]) -> _Section:
     """Chebyshev series of the traction of a section along +y, by least squares of the means of its cells."""
-    start, end = limits
-    half_width, centre, cell = 0.5 * (end - start), 0.5 * (start + end), abs(float(y[1] - y[0]))
-    points = (y[:, None] + cell * ((np.arange(40) + 0.5) / 40 - 0.5) - centre) / half_width
+    trailing_edge, leading_edge = limits
+    half_width, centre, cell_width = (
+        0.5 * (leading_edge - trailing_edge),
+        0.5 * (trailing_edge + leading_edge),
+        abs(float(y[1] - y[0])),
+    )
+    points = (y[:, None] + cell_width * ((np.arange(40) + 0.5) / 40 - 0.5) - centre) / half_width
     angles = np.arccos(np.clip(points, -1.0, 1.0))
     # sqrt(1 - t**2) U_n(t) = sin((n + 1) arccos t)
-    means = np.stack([np.sin((n + 1) * angles).mean(axis=1) for n in range(TERMS)], axis=1)
-    return _Section(start, half_width, np.linalg.lstsq(means, traction, rcond=None)[0], cell)
+    cell_means = np.stack([np.sin((n + 1) * angles).mean(axis=1) for n in range(SERIES_TERMS)], axis=1)
+    return _Section(trailing_edge, half_width, np.linalg.lstsq(cell_means, traction, rcond=None)[0], cell_width)

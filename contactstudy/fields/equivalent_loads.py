@@ -67,17 +67,21 @@ def equivalent_loads(
     prescribed = prescribed_loads(body, pressure, friction, traction_x, traction_y)
     grid, loads, (label_x, label_y), _ = prescribed
     depths = checks.coordinates("z", z)
-    top = np.array(loads[Load.NORMAL].values)
-    faces: list[FloatArray] = []
+    top_load = np.array(loads[Load.NORMAL].values)
+    face_totals: list[FloatArray] = []
     for load, (cells, factor) in loads.items():
         operators = overlapping_operators(body, grid, depths, load, cells)
         if operators is None:
             coords = {"x": label_x, "y": label_y}
-            return describe(xr.Dataset({"P_h1": (("x", "y"), top)}, coords=coords))
+            return describe(xr.Dataset({"P_h1": (("x", "y"), top_load)}, coords=coords))
         to_top_load, face_operators = operators.equivalent(load)
-        top += factor * to_top_load.matvec(cells.ravel()).reshape(top.shape)
+        top_load += factor * to_top_load.matvec(cells.ravel()).reshape(top_load.shape)
         face_loads = [factor * operator.matvec(cells.ravel()).reshape(grid.cells_y, -1) for operator in face_operators]
-        faces = [face + part for face, part in zip(faces, face_loads, strict=True)] if faces else face_loads
+        face_totals = (
+            [face_total + face_load for face_total, face_load in zip(face_totals, face_loads, strict=True)]
+            if face_totals
+            else face_loads
+        )
     distance = _load_reference(body)
     attributes: dict[str, str | float] = {}
     if distance is not None:
@@ -85,14 +89,14 @@ def equivalent_loads(
             "reference_distance": distance,
             "reference": "the part of an eccentric load that makes no stress is zero at |y| = reference_distance (m)",
         }
-    fields = {"P_h1": (("x", "y"), top, attributes)}
-    fields |= {f"P_v{end}": (("y", "z"), face, attributes) for end, face in enumerate(faces, start=1)}
+    fields = {"P_h1": (("x", "y"), top_load, attributes)}
+    fields |= {f"P_v{end}": (("y", "z"), face_total, attributes) for end, face_total in enumerate(face_totals, start=1)}
     return describe(xr.Dataset(fields, coords={"x": label_x, "y": label_y, "z": depths}))
 
 
 def _load_reference(body: Body) -> float | None:
     """Distance along y at which equivalent loads without stress are zero, metres; None without two exact ends."""
-    freed = next((part.free_ends for part in body.terms if part.free_ends), None)
+    freed = next((term.free_ends for term in body.terms if term.free_ends), None)
     is_relative = freed is not None and np.isfinite(freed.length) and not freed.mirrored_once
     return REFERENCE_LENGTHS * freed.length if freed is not None and is_relative else None
 
@@ -104,7 +108,7 @@ def overlapping_operators(
     body.check_span(grid)
     if (depths < 0).any():
         raise InvalidInputError("z", float(depths.min()), "not negative (metres below the top)")
-    freed = next((part.free_ends for part in body.terms if part.free_ends), None)
+    freed = next((term.free_ends for term in body.terms if term.free_ends), None)
     if freed is None:
         return None
     cells = np.zeros(grid.shape) if cells is None else cells

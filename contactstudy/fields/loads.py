@@ -57,8 +57,8 @@ def superpose(
     fields: dict[Load, Sequence[FloatArray]] = {}
     for distribution, directions in groups.items():
         fields |= unit_fields(tuple(directions), distribution.values)
-    first, *other_loads = loads
-    totals = [np.multiply(loads[first].factor, field, order="K") for field in fields[first]]
+    first_load, *other_loads = loads
+    totals = [np.multiply(loads[first_load].factor, field, order="K") for field in fields[first_load]]
     for load in other_loads:
         for total, field in zip(totals, fields[load], strict=True):
             total += loads[load].factor * field
@@ -114,15 +114,12 @@ def prescribed_loads(
     """Check loads on a body, DataArrays (x, y) in Pa that all lie on the cells of the pressure."""
     checks.instance("body", body, Body, "a HalfSpace, a QuarterSpace or a FiniteLengthSpace")
     pressure = in_si("pressure", pressure, "Pa")
-    values, grid = labelled_cells("pressure", pressure, extent=body.extent)
+    pressure_cells, grid = labelled_cells("pressure", pressure, extent=body.extent)
     friction = checks.finite("friction", friction)
     if friction and traction_y is not None:
         raise InvalidInputError("friction", friction, "0 with traction_y, which is the whole traction along y")
-    loads = dict(sliding(values, friction))
-    for name, load, traction in (
-        ("traction_x", Load.ALONG_X, traction_x),
-        ("traction_y", Load.ALONG_Y, traction_y),
-    ):
+    loads = dict(sliding(pressure_cells, friction))
+    for name, load, traction in (("traction_x", Load.ALONG_X, traction_x), ("traction_y", Load.ALONG_Y, traction_y)):
         if traction is not None:
             loads[load] = TopLoad(_values_on_cells(name, traction, grid, body))
     shape = None
@@ -139,13 +136,13 @@ def prescribed_loads(
 
 def _values_on_cells(name: str, traction: xr.DataArray, grid: Grid, body: Body) -> FloatArray:
     """Values of a load that lies on the cells of the pressure."""
-    values, cells = labelled_cells(name, in_si(name, traction, "Pa"), extent=body.extent)
+    load_cells, load_grid = labelled_cells(name, in_si(name, traction, "Pa"), extent=body.extent)
     tolerance = SPACING_TOLERANCE * min(float(grid.widths.min()), grid.dy)
     if (
-        cells.shape != grid.shape
-        or max(np.abs(cells.x_edges - grid.x_edges).max(), np.abs(cells.y - grid.y).max()) > tolerance
+        load_grid.shape != grid.shape
+        or max(np.abs(load_grid.x_edges - grid.x_edges).max(), np.abs(load_grid.y - grid.y).max()) > tolerance
     ):
         raise InvalidInputError(
-            f"{name}.coords", f"{cells.shape} cells from x = {cells.x[0]:g} m", "those of the pressure"
+            f"{name}.coords", f"{load_grid.shape} cells from x = {load_grid.x[0]:g} m", "those of the pressure"
         )
-    return values
+    return load_cells

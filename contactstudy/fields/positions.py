@@ -19,7 +19,7 @@ from contactstudy.checks import BoolArray, FloatArray
 from contactstudy.errors import InvalidInputError
 
 MAX_DISTANCE = 1e4  # largest distance of a position over the size of load and body: the work grows with it along y
-GROWTH = 0.5  # growth of the default spacing of stresses with the distance from a feature
+SPACING_GROWTH = 0.5  # growth of the default spacing of stresses with the distance from a feature
 MAX_SPACING = 0.2  # default spacing at a free end and below the top, over the Hertz half-width
 MAX_DEFAULT_DEPTH = 5.0  # largest default depth, over the Hertz half-width
 
@@ -37,7 +37,7 @@ class FieldPositions(NamedTuple):
     def dataset(self, fields: Mapping[str, FloatArray]) -> xr.Dataset:
         """Label fields (x, y, z)."""
         return xr.Dataset(
-            {name: (("x", "y", "z"), values) for name, values in fields.items()},
+            {name: (("x", "y", "z"), components) for name, components in fields.items()},
             coords={"x": self.label_x, "y": self.label_y, "z": self.points.z},
         )
 
@@ -48,18 +48,22 @@ def field_positions(
     """Positions of a field in a body."""
     body.check_span(grid)
     axes = {"x": grid.x if x is None else x, "y": grid.y if y is None else y, "z": z}
-    points = Points(*(checks.coordinates(axis, numbers_in_si(axis, values, "m")) for axis, values in axes.items()))
+    points = Points(
+        *(checks.coordinates(axis, numbers_in_si(axis, coordinates, "m")) for axis, coordinates in axes.items())
+    )
     points = points._replace(x=_snap_into_body(body, points.x, grid))
     if (points.z < 0).any():
         raise InvalidInputError("z", float(points.z.min()), "not negative (metres below the top)")
     low, high = body.extent
-    size = max(grid.x_range[1] - grid.x_range[0], grid.y_range[1] - grid.y_range[0])
-    size = max(size, high - low) if np.isfinite([low, high]).all() else size
-    for name, values in zip("xyz", points, strict=True):
-        farthest = float(values[np.abs(values).argmax()])
-        if abs(farthest) > MAX_DISTANCE * size:
+    extent_size = max(grid.x_range[1] - grid.x_range[0], grid.y_range[1] - grid.y_range[0])
+    extent_size = max(extent_size, high - low) if np.isfinite([low, high]).all() else extent_size
+    for name, coordinates in zip("xyz", points, strict=True):
+        farthest = float(coordinates[np.abs(coordinates).argmax()])
+        if abs(farthest) > MAX_DISTANCE * extent_size:
             raise InvalidInputError(
-                name, farthest, f"within {MAX_DISTANCE:g} times the size of load and body, {MAX_DISTANCE * size:g} m"
+                name,
+                farthest,
+                f"within {MAX_DISTANCE:g} times the size of load and body, {MAX_DISTANCE * extent_size:g} m",
             )
     label_x, label_y = labels or (grid.x, grid.y)
     return FieldPositions(points, label_x if x is None else points.x, label_y if y is None else points.y)
@@ -75,34 +79,34 @@ def _snap_into_body(body: Body, x: FloatArray, grid: Grid) -> FloatArray:
     return np.where(x < low + rounding, low, np.where(x > high - rounding, high, x))
 
 
-def default_columns(grid: Grid, extent: Extent, loaded: BoolArray, half_width: float) -> FloatArray:
+def default_columns(grid: Grid, extent: Extent, is_loaded: BoolArray, half_width: float) -> FloatArray:
     """Positions along x from one end of the body, or of the grid, to the other."""
     # The spacing equals two widths of a pressed column at its centre, and a fifth of the half-width at the ends.
     ends = [end if np.isfinite(end) else edge for end, edge in zip(extent, grid.x_range, strict=True)]
-    spacings = np.append(2 * grid.widths[loaded], np.full(2, MAX_SPACING * half_width))
-    return _grade_positions(ends, np.append(grid.x[loaded], ends), spacings)
+    spacings = np.append(2 * grid.widths[is_loaded], np.full(2, MAX_SPACING * half_width))
+    return _grade_positions(ends, np.append(grid.x[is_loaded], ends), spacings)
 
 
 def default_depths(half_width: float, depth: float) -> FloatArray:
     """Depths from 0 to five half-widths, narrow from the top to the depth of the largest stress."""
     # The depth is rounded to a power of the square root of 2, so that similar cases share their positions.
-    shallow = 2.0 ** (0.5 * round(2 * np.log2(max(depth / half_width, 0.01)))) if np.isfinite(depth) else 0.5
-    narrow, fixed = min(0.2 * shallow, MAX_SPACING), {0.0, min(shallow, 1.0), MAX_DEFAULT_DEPTH}
+    peak_depth = 2.0 ** (0.5 * round(2 * np.log2(max(depth / half_width, 0.01)))) if np.isfinite(depth) else 0.5
+    peak_spacing, fixed_depths = min(0.2 * peak_depth, MAX_SPACING), {0.0, min(peak_depth, 1.0), MAX_DEFAULT_DEPTH}
     depths = _grade_positions(
-        sorted(fixed),
-        np.array([0.0, shallow, 0.5, 1.0]),
-        np.array([narrow, narrow, MAX_SPACING, MAX_SPACING]),
+        sorted(fixed_depths),
+        np.array([0.0, peak_depth, 0.5, 1.0]),
+        np.array([peak_spacing, peak_spacing, MAX_SPACING, MAX_SPACING]),
     )
     return half_width * depths
 
 
-def _grade_positions(fixed: Sequence[float], centres: FloatArray, spacings: FloatArray) -> FloatArray:
+def _grade_positions(fixed_positions: Sequence[float], centres: FloatArray, spacings: FloatArray) -> FloatArray:
     """Positions between increasing fixed ones; the spacing grows with the distance from each centre."""
     sections = []
-    for start, stop in itertools.pairwise(fixed):
-        steps = [0.0]
-        while steps[-1] < stop - start:
-            distance = np.abs(start + steps[-1] - centres)
-            steps.append(steps[-1] + float((spacings + GROWTH * distance).min()))
-        sections.append(start + np.array(steps[:-1]) * ((stop - start) / steps[-1]))
-    return np.append(np.concatenate(sections), fixed[-1])
+    for start, stop in itertools.pairwise(fixed_positions):
+        distances = [0.0]
+        while distances[-1] < stop - start:
+            centre_distances = np.abs(start + distances[-1] - centres)
+            distances.append(distances[-1] + float((spacings + SPACING_GROWTH * centre_distances).min()))
+        sections.append(start + np.array(distances[:-1]) * ((stop - start) / distances[-1]))
+    return np.append(np.concatenate(sections), fixed_positions[-1])

@@ -101,18 +101,18 @@ def stress_dataset(
 
 def _label_stresses(body: Body, grid: Grid, stresses: FloatArray, positions: FieldPositions) -> xr.Dataset:
     """Label stresses (6, x, y, z)."""
-    _free_edges(body, grid, stresses, positions.points)
+    _clear_edge_traction(body, grid, stresses, positions.points)
     fields = positions.dataset({name: stresses[i] for i, name in enumerate(STRESSES)})
     fields["von_mises"] = von_mises(fields)
     return describe(fields, "stresses under a prescribed pressure")
 
 
-def _free_edges(body: Body, grid: Grid, stresses: FloatArray, points: Points) -> None:
+def _clear_edge_traction(body: Body, grid: Grid, stresses: FloatArray, points: Points) -> None:
     """Set the traction on the edges between top and free ends to zero, where both auxiliary bodies have a logarithm."""
     if all(part.free_ends for part in body.terms):
-        on_end, on_top = np.isin(points.x, body.extent), points.z < CORNER_OFFSET * grid.dy
+        is_on_end, is_on_top = np.isin(points.x, body.extent), points.z < CORNER_OFFSET * grid.dy
         for component in (0, 3, 4):
-            stresses[component][np.ix_(on_end, np.ones(points.y.size, bool), on_top)] = 0.0
+            stresses[component][np.ix_(is_on_end, np.ones(points.y.size, bool), is_on_top)] = 0.0
 
 
 def stresses_at(
@@ -143,22 +143,24 @@ def _unit_stress(
     poisson, shape_cells = body.material.poisson, None if shape is None else shape.values
     axes = [Points(*(axis.values for axis in key)) for key in point_sets]
     fields: dict[Load, list[FloatArray]] = {}
-    for part in body.terms:
-        end_terms: list[dict[Load, FloatArray]] = [{} for _ in axes]
-        if part.free_ends and cells.values.any():
-            problem = end_problem(part.free_ends, poisson, cells.values, shape_cells, grid, loads=loads)
-            end_terms = end_fields(problem, STRESS, axes, reference_distance(part.extent))
+    for term in body.terms:
+        end_parts: list[dict[Load, FloatArray]] = [{} for _ in axes]
+        if term.free_ends and cells.values.any():
+            problem = end_problem(term.free_ends, poisson, cells.values, shape_cells, grid, loads=loads)
+            end_parts = end_fields(problem, STRESS, axes, reference_distance(term.extent))
         for load in loads:
-            terms = []
-            for key, points, by_load in zip(point_sets, axes, end_terms, strict=True):
-                field = _mirrored_stress(load, poisson, part.extent, grid, cells, points=key, shape=shape)
-                if load in by_load:
+            term_fields = []
+            for key, points, end_part in zip(point_sets, axes, end_parts, strict=True):
+                field = _mirrored_stress(load, poisson, term.extent, grid, cells, points=key, shape=shape)
+                if load in end_part:
                     # The two auxiliary bodies leave no traction on the top, by construction.
                     for component in (2, 4, 5):  # eq. (1)
-                        by_load[load][component][..., points.z == 0] = 0.0
-                    field = np.add(by_load[load], field, out=by_load[load])
-                terms.append(field if part.weight == 1 else part.weight * field)
-            fields[load] = [a + b for a, b in zip(fields[load], terms, strict=True)] if load in fields else terms
+                        end_part[load][component][..., points.z == 0] = 0.0
+                    field = np.add(end_part[load], field, out=end_part[load])
+                term_fields.append(field if term.weight == 1 else term.weight * field)
+            fields[load] = (
+                [a + b for a, b in zip(fields[load], term_fields, strict=True)] if load in fields else term_fields
+            )
     return fields
 
 
@@ -174,9 +176,9 @@ def _mirrored_stress(
 ) -> FloatArray:
     """Stresses (6, x, y, z) in the half-space; all frictions share the stresses under a pressure."""
     axes = Points(*(axis.values for axis in points))
-    values = None if shape is None else shape.values
+    shape_cells = None if shape is None else shape.values
     influence = stress_influence(load, poisson)
-    return half_space_field(cells.values, influence, grid, axes, extent=extent, shape=values)
+    return half_space_field(cells.values, influence, grid, axes, extent=extent, shape=shape_cells)
 
 
 def contact_stresses(
@@ -184,24 +186,24 @@ def contact_stresses(
     loads: Loads,
     grid: Grid,
     positions: Callable[[StressMaximum], FieldPositions],
-    on_ends: tuple[FloatArray, FloatArray],
+    end_yz: tuple[FloatArray, FloatArray],
 ) -> tuple[xr.Dataset, float, StressMaximum]:
     """Stresses at positions that may depend on the largest stress, residual on the ends, and the largest stress."""
     end_positions, search = _end_positions(body), place_search(body, loads, grid)
     pressure = loads[Load.NORMAL].values
 
-    def stress(points: Points) -> FloatArray:
+    def stress_at(points: Points) -> FloatArray:
         return stresses_at(body, loads, grid, [points], pressure)[0]
 
-    point_sets = [*search.samples, *([Points(end_positions, *on_ends)] if end_positions.size else [])]
+    point_sets = [*search.samples, *([Points(end_positions, *end_yz)] if end_positions.size else [])]
     stresses = stresses_at(body, loads, grid, point_sets, pressure)
     residual = _traction_residual(loads, stresses[-1]) if end_positions.size else 0.0
-    largest = find_stress_maximum(search, stresses[: len(search.samples)], stress)
-    chosen = positions(largest)
-    points = chosen.points
-    field = stress(points)
-    largest = include_points(largest, points, field, search, stress)
-    return _label_stresses(body, grid, field, chosen), residual, largest
+    maximum = find_stress_maximum(search, stresses[: len(search.samples)], stress_at)
+    field_positions = positions(maximum)
+    points = field_positions.points
+    field = stress_at(points)
+    maximum = include_points(maximum, points, field, search, stress_at)
+    return _label_stresses(body, grid, field, field_positions), residual, maximum
 
 
 def end_traction_residual(body: Body, loads: Loads, grid: Grid, y: FloatArray, z: FloatArray) -> float:
@@ -233,34 +235,34 @@ class StressOperator(LinearOperator):  # type: ignore[misc]
     def __init__(self, body: Body, grid: Grid, points: Points, load: Load) -> None:
         self._grid, self._shape = grid, (6, *(axis.size for axis in points))
         distances = points.y[:, None] - grid.y[None, :] + grid.y[0]
-        unique, indices = np.unique(np.round(distances / grid.dy, 9), return_inverse=True)
-        self._distance = indices.reshape(distances.shape)
-        self._half_space = np.zeros((grid.cells_x, 6, points.x.size, unique.size, points.z.size))
+        unique_distances, distance_indices = np.unique(np.round(distances / grid.dy, 9), return_inverse=True)
+        self._distance_indices = distance_indices.reshape(distances.shape)
+        self._half_space = np.zeros((grid.cells_x, 6, points.x.size, unique_distances.size, points.z.size))
         self._end_fields: list[UnitFields] = []
         poisson = body.material.poisson
-        for part in body.terms:
+        for term in body.terms:
             for cell in range(grid.cells_x):
-                unit = np.zeros(grid.shape)
-                unit[cell, 0] = part.weight
-                distance_points = points._replace(y=unique * grid.dy)
+                unit_load = np.zeros(grid.shape)
+                unit_load[cell, 0] = term.weight
+                distance_points = points._replace(y=unique_distances * grid.dy)
                 self._half_space[cell] += half_space_field(
-                    unit, stress_influence(load, poisson), grid, distance_points, extent=part.extent
+                    unit_load, stress_influence(load, poisson), grid, distance_points, extent=term.extent
                 )
-            if part.free_ends:
-                problem = unit_problem(part.free_ends, poisson, grid, load)
-                for amplitudes, filters in unit_fields(problem, STRESS, points, reference_distance(part.extent)):
-                    amplitudes[[2, 4, 5]] *= (points.z != 0) * part.weight
-                    amplitudes[[0, 1, 3]] *= part.weight
+            if term.free_ends:
+                problem = unit_problem(term.free_ends, poisson, grid, load)
+                for amplitudes, filters in unit_fields(problem, STRESS, points, reference_distance(term.extent)):
+                    amplitudes[[2, 4, 5]] *= (points.z != 0) * term.weight
+                    amplitudes[[0, 1, 3]] *= term.weight
                     self._end_fields.append(UnitFields(amplitudes, filters))
         self._mask = np.ones(self._shape)
-        _free_edges(body, grid, self._mask, points)
+        _clear_edge_traction(body, grid, self._mask, points)
         super().__init__(np.float64, (int(np.prod(self._shape)), grid.cells_x * grid.cells_y))
 
     def _matvec(self, vector: FloatArray) -> FloatArray:
         cells = vector.reshape(self._grid.shape)
         stresses = np.zeros(self._shape)
-        for index, distance in enumerate(self._distance):
-            stresses[:, :, index] = np.tensordot(cells, self._half_space[:, :, :, distance], ([0, 1], [0, 3]))
+        for index, distance_indices in enumerate(self._distance_indices):
+            stresses[:, :, index] = np.tensordot(cells, self._half_space[:, :, :, distance_indices], ([0, 1], [0, 3]))
         for amplitudes, filters in self._end_fields:
             filtered = np.einsum("ij,cnjy->cniy", cells, filters, optimize=True)
             stresses += np.einsum("cxniz,cniy->cxyz", amplitudes, filtered, optimize=True)
@@ -269,8 +271,8 @@ class StressOperator(LinearOperator):  # type: ignore[misc]
     def _rmatvec(self, vector: FloatArray) -> FloatArray:
         stresses = self._mask * vector.reshape(self._shape)
         cells = np.zeros(self._grid.shape)
-        for index, distance in enumerate(self._distance):
-            kernel = self._half_space[:, :, :, distance]
+        for index, distance_indices in enumerate(self._distance_indices):
+            kernel = self._half_space[:, :, :, distance_indices]
             cells += np.tensordot(kernel, stresses[:, :, index], ([1, 2, 4], [0, 1, 2]))
         for amplitudes, filters in self._end_fields:
             filtered = np.einsum("cxniz,cxyz->cniy", amplitudes, stresses, optimize=True)

@@ -25,7 +25,7 @@ from contactstudy.stress import von_mises_of
 
 AXIAL_OFFSETS = np.array([-0.8, -0.4, 0.0, 0.4, 0.8])  # points along x around a peak, over its width
 
-DEPTHS = np.array([0.1, 0.2, 0.32, 0.48, 0.66, 0.9, 1.3])
+PEAK_DEPTHS = np.array([0.1, 0.2, 0.32, 0.48, 0.66, 0.9, 1.3])
 """Depths below a peak, over its width: the largest stress under a line contact is at 0.70, under a sphere at 0.48."""
 
 END_DISTANCES = np.array([0.0, 0.2, 0.45, 0.7, 1.0, 1.4, 2.0, 3.2, 6.0, 12.0, 20.0])
@@ -58,19 +58,19 @@ class Border(NamedTuple):
         traction = np.stack([loads[load].values if load in loads else zero for load in (Load.ALONG_X, Load.ALONG_Y)])
         rise = np.zeros_like(pressure)
         ratio = traction / np.where(pressure > 0, pressure, 1.0)
-        size = np.hypot(*ratio)
-        bound = size.max(axis=1, keepdims=True)
-        deficit = 1 - size / np.where(bound > 0, bound, 1.0)
+        ratio_size = np.hypot(*ratio)
+        bound = ratio_size.max(axis=1, keepdims=True)
+        deficit = 1 - ratio_size / np.where(bound > 0, bound, 1.0)
         is_sticking = (pressure > 0) & (deficit > SLIP_TOLERANCE) & (bound > 0)
         for step in (1, -1):
             is_slipping = np.roll((pressure > 0) & ~is_sticking, step, axis=1)
-            column, first = np.nonzero(is_sticking & is_slipping & np.roll(is_sticking, -step, axis=1))
-            second, slipping = first + step, first - step
-            squares = deficit[column, first] ** 2, deficit[column, second] ** 2
+            column, first_row = np.nonzero(is_sticking & is_slipping & np.roll(is_sticking, -step, axis=1))
+            second_row, slipping_row = first_row + step, first_row - step
+            squares = deficit[column, first_row] ** 2, deficit[column, second_row] ** 2
             distance = np.clip(squares[0] / np.maximum(squares[1] - squares[0], 1e-300), 0.0, 1.0)
-            at_border = (1 - distance) * pressure[column, first] + distance * pressure[column, slipping]
-            traction[:, column, second] = at_border * ratio[:, column, slipping]
-            rise[column, second] = at_border - pressure[column, second]
+            border_pressure = (1 - distance) * pressure[column, first_row] + distance * pressure[column, slipping_row]
+            traction[:, column, second_row] = border_pressure * ratio[:, column, slipping_row]
+            rise[column, second_row] = border_pressure - pressure[column, second_row]
         return cls(traction, rise, poisson)
 
 
@@ -104,20 +104,22 @@ class Search(NamedTuple):
     def top_stresses(self, points: Points, stresses: FloatArray) -> FloatArray:
         """Stresses (6, x, y, 1) at centres of cells on the top, at the border in the representing cells."""
         columns, rows = np.ix_(*self.cells(points))
-        corrected, rise = stresses.copy(), self.border.rise[columns, rows, None]
-        corrected[:3] -= np.array([2 * self.border.poisson, 1.0, 1.0])[:, None, None, None] * rise
-        corrected[4:] = np.where(rise != 0, -self.border.traction[:, columns, rows, None], corrected[4:])
-        return corrected
+        corrected_stresses, rise = stresses.copy(), self.border.rise[columns, rows, None]
+        corrected_stresses[:3] -= np.array([2 * self.border.poisson, 1.0, 1.0])[:, None, None, None] * rise
+        corrected_stresses[4:] = np.where(
+            rise != 0, -self.border.traction[:, columns, rows, None], corrected_stresses[4:]
+        )
+        return corrected_stresses
 
 
 def place_search(body: Body, loads: Loads, grid: Grid) -> Search:
     """Points of the search; they do not depend on the friction."""
     extent, border = body.extent, Border.of_loads(loads, body.material.poisson)
     pressure = loads[Load.NORMAL].values
-    maxima = pressure.max(axis=1)
+    column_maxima = pressure.max(axis=1)
     # The body ends at the outermost columns.
     inside_rim = np.asarray(ndimage.binary_erosion(pressure > 0, iterations=RIM_CELLS, border_value=1))
-    if not maxima.any():
+    if not column_maxima.any():
         return Search(grid, extent, inside_rim, border, [])
     samples: list[Points] = []
     symmetric = bool(  # about the middle of the window, up to errors of the solver
@@ -128,19 +130,21 @@ def place_search(body: Body, loads: Loads, grid: Grid) -> Search:
             for kind, load in loads.items()
         )
     )
-    for peak in _peaks(maxima, symmetric=symmetric):
+    for peak in _peaks(column_maxima, symmetric=symmetric):
         width = peak_width(pressure, grid.x, grid.dy, peak)
         if not any(abs(grid.x[peak] - points.x).min() < 0.2 * width for points in samples):
             x = np.clip(grid.x[peak] + width * AXIAL_OFFSETS, *extent)
-            samples.append(_nearest_cells(grid, inside_rim, x, pressure[peak], width * DEPTHS, spacing=0.1 * width))
-    section = pressure[int(maxima.argmax())]
+            samples.append(
+                _nearest_cells(grid, inside_rim, x, pressure[peak], width * PEAK_DEPTHS, spacing=0.1 * width)
+            )
+    section = pressure[int(column_maxima.argmax())]
     half_width = 0.5 * grid.dy * np.count_nonzero(section)
     columns = np.flatnonzero(pressure.any(axis=1))
-    first, last = grid.x_edges[columns[0]], grid.x_edges[columns[-1] + 1]
-    distances = np.append(half_width * END_DISTANCES, 0.5 * (last - first))
-    distances = distances[distances <= 0.5 * (last - first)]
+    first_edge, last_edge = grid.x_edges[columns[0]], grid.x_edges[columns[-1] + 1]
+    distances = np.append(half_width * END_DISTANCES, 0.5 * (last_edge - first_edge))
+    distances = distances[distances <= 0.5 * (last_edge - first_edge)]
     # One point of the second half: the middle is inside the range.
-    x = np.concatenate([first + distances, last - (distances[-2:-1] if symmetric else distances)])
+    x = np.concatenate([first_edge + distances, last_edge - (distances[-2:-1] if symmetric else distances)])
     depths = half_width * AXIS_DEPTHS
     samples.append(_nearest_cells(grid, inside_rim, x, section, depths, spacing=0.1 * half_width))
     return Search(grid, extent, inside_rim, border, samples)
@@ -171,9 +175,18 @@ def select_separated(positions: FloatArray, spacing: float) -> IntArray:
 
 def _peaks(maxima: FloatArray, *, symmetric: bool) -> Iterator[int]:
     """Columns of the largest pressure of either half; of the first half of a symmetric contact."""
-    half = (maxima.size + 1) // 2
-    first, last = int(maxima[:half].argmax()), half + int(maxima[half:].argmax()) if maxima.size > 1 else 0
-    for peak in (first,) if symmetric else (first, last) if maxima[first] >= maxima[last] else (last, first):
+    middle = (maxima.size + 1) // 2
+    first_peak, last_peak = (
+        int(maxima[:middle].argmax()),
+        middle + int(maxima[middle:].argmax()) if maxima.size > 1 else 0,
+    )
+    for peak in (
+        (first_peak,)
+        if symmetric
+        else (first_peak, last_peak)
+        if maxima[first_peak] >= maxima[last_peak]
+        else (last_peak, first_peak)
+    ):
         if maxima[peak] >= MIN_SECOND_PEAK * maxima.max():
             yield peak
 
@@ -181,7 +194,7 @@ def _peaks(maxima: FloatArray, *, symmetric: bool) -> Iterator[int]:
 RISE_ERROR = 0.25
 """Error over the rise of the polynomials above the largest sample: two degrees may agree by chance. Accuracy."""
 
-TOLERANCE = 3e-3  # relative error of the interpolation that ends the refinement. Accuracy.
+REFINEMENT_TOLERANCE = 3e-3  # relative error of the interpolation that ends the refinement. Accuracy.
 
 LOCAL_OFFSETS = np.array([-0.5, -0.25, 0.0, 0.25, 0.5])
 """Points about a position below the top, over its depth, the distance from the load. Accuracy."""
@@ -201,57 +214,61 @@ class StressMaximum(NamedTuple):
 class _SampleMaximum(NamedTuple):
     """The largest value among points and between them, and the indices of the largest point."""
 
-    largest: StressMaximum
+    maximum: StressMaximum
     points: Points
     indices: tuple[int, ...]
 
 
 def find_stress_maximum(
-    search: Search,
-    stresses: Sequence[FloatArray],
-    stress: Callable[[Points], FloatArray],
+    search: Search, stresses: Sequence[FloatArray], stress_at: Callable[[Points], FloatArray]
 ) -> StressMaximum:
     """Largest von Mises stress; 0 at NaN without pressure."""
     if not search.samples:
         return StressMaximum(0.0, 0.0, (np.nan, np.nan, np.nan))
     samples = list(zip(search.samples, stresses, strict=True))
     *peaks, axis = [(points._replace(z=points.z[1:]), field[..., 1:]) for points, field in samples]
-    largest = _select_largest(_refine_maximum(_maximum_between_samples(*peak), search, stress) for peak in peaks)
+    maximum = _select_largest(_refine_maximum(_maximum_between_samples(*peak), search, stress_at) for peak in peaks)
     axis_sample = _maximum_of_samples(*axis)
-    if axis_sample.largest.value > largest.value:
-        largest = _select_largest([largest, _refine_maximum(axis_sample, search, stress)])
+    if axis_sample.maximum.value > maximum.value:
+        maximum = _select_largest([maximum, _refine_maximum(axis_sample, search, stress_at)])
     for points, field in samples:
         top = search.top_stresses(points, field[..., :1])
         sample = _maximum_of_samples(points._replace(z=points.z[:1]), top, search.inside_rim_at(points))
-        if sample.largest.value * TOP_MARGIN > largest.value:
-            largest = _select_largest([largest, _top_maximum(sample, search, stress)])
-    return largest
+        if sample.maximum.value * TOP_MARGIN > maximum.value:
+            maximum = _select_largest([maximum, _top_maximum(sample, search, stress_at)])
+    return maximum
 
 
 def include_points(
-    largest: StressMaximum, points: Points, stresses: FloatArray, search: Search, stress: Callable[[Points], FloatArray]
+    maximum: StressMaximum,
+    points: Points,
+    stresses: FloatArray,
+    search: Search,
+    stress_at: Callable[[Points], FloatArray],
 ) -> StressMaximum:
     """Largest von Mises stress, and of the neighbourhood of points with a larger stress."""
     if not search.samples:
-        return largest
+        return maximum
     is_deep = points.z >= search.shallowest
     depth_groups = [is_deep] if is_deep.any() else []
     depth_groups += [points.z == depth for depth in points.z[~is_deep]]
-    for depths in depth_groups:
-        group = points._replace(z=points.z[depths])
-        inside_rim = None if depths is is_deep else search.inside_rim_at(group)
-        sample = _maximum_of_samples(group, stresses[..., depths], inside_rim)
-        value, position = sample.largest.value, sample.largest.position
-        if largest.value < value <= largest.value + largest.error:
-            largest = largest._replace(value=value, position=position)
-        elif value > largest.value and depths is is_deep:
+    for in_group in depth_groups:
+        group = points._replace(z=points.z[in_group])
+        inside_rim = None if in_group is is_deep else search.inside_rim_at(group)
+        sample = _maximum_of_samples(group, stresses[..., in_group], inside_rim)
+        value, position = sample.maximum.value, sample.maximum.position
+        if maximum.value < value <= maximum.value + maximum.error:
+            maximum = maximum._replace(value=value, position=position)
+        elif value > maximum.value and in_group is is_deep:
             neighbourhood = _neighbourhood(position, search)
-            largest = _refine_maximum(_maximum_between_samples(neighbourhood, stress(neighbourhood)), search, stress)
-            if largest.value < value:
-                largest = StressMaximum(value, largest.error + value - largest.value, position)
-        elif value > largest.value:
-            largest = _select_largest([largest, _top_maximum(sample, search, stress)])
-    return largest
+            maximum = _refine_maximum(
+                _maximum_between_samples(neighbourhood, stress_at(neighbourhood)), search, stress_at
+            )
+            if maximum.value < value:
+                maximum = StressMaximum(value, maximum.error + value - maximum.value, position)
+        elif value > maximum.value:
+            maximum = _select_largest([maximum, _top_maximum(sample, search, stress_at)])
+    return maximum
 
 
 def _neighbourhood(position: tuple[float, float, float], search: Search) -> Points:
@@ -269,71 +286,76 @@ def _select_largest(candidates: Iterable[StressMaximum]) -> StressMaximum:
     return max(candidates, key=lambda candidate: candidate.value)
 
 
-def _top_maximum(sample: _SampleMaximum, search: Search, stress: Callable[[Points], FloatArray]) -> StressMaximum:
+def _top_maximum(sample: _SampleMaximum, search: Search, stress_at: Callable[[Points], FloatArray]) -> StressMaximum:
     """Largest value at the centres of cells: the search follows larger neighbours from the largest sample on."""
     grid = search.grid
     for _ in range(MAX_REFINEMENTS):
-        previous_value = sample.largest.value
+        previous_value = sample.maximum.value
         columns, rows = (
             _neighbour_cells(cells, index, count)
             for cells, index, count in zip(search.cells(sample.points), sample.indices, grid.shape, strict=False)
         )
         centres = Points(grid.x[columns], grid.y[rows], sample.points.z)
-        stresses = search.top_stresses(centres, stress(centres))
+        stresses = search.top_stresses(centres, stress_at(centres))
         sample = _maximum_of_samples(centres, stresses, search.inside_rim[np.ix_(columns, rows)])
-        if sample.largest.value <= previous_value * (1 + TOLERANCE):
+        if sample.maximum.value <= previous_value * (1 + REFINEMENT_TOLERANCE):
             break
     # The stress may grow towards the rim.
-    values, mask, (column, row, _) = (
+    values, inside_rim, (column, row, _) = (
         von_mises_of(*stresses)[..., 0],
         search.inside_rim_at(centres),
         sample.indices,
     )
-    error = TOP_ERROR * sample.largest.value
-    for line, inner, index in (
-        (values[:, row], mask[:, row], column),
-        (values[column], mask[column], row),
+    error = TOP_ERROR * sample.maximum.value
+    for line, is_inside, index in (
+        (values[:, row], inside_rim[:, row], column),
+        (values[column], inside_rim[column], row),
     ):
-        near = slice(max(index - 1, 0), index + 2)
-        if not inner[near].all():
-            error = max(error, (RIM_CELLS + 1) * float(np.ptp(line[near][inner[near]])))
-    return sample.largest._replace(error=error)
+        neighbours = slice(max(index - 1, 0), index + 2)
+        if not is_inside[neighbours].all():
+            error = max(error, (RIM_CELLS + 1) * float(np.ptp(line[neighbours][is_inside[neighbours]])))
+    return sample.maximum._replace(error=error)
 
 
 def _neighbour_cells(cells: IntArray, index: int, count: int) -> IntArray:
     """Return indices of cells between the neighbours of a cell in a list, with the adjacent cells."""
-    cell, listed = int(cells[index]), np.unique(cells)
-    number = int(np.searchsorted(listed, cell))
-    before, after = listed[max(number - 1, 0)], listed[min(number + 1, listed.size - 1)]
-    between = np.linspace(before, after, 5).round().astype(np.int64)
-    return np.unique(np.clip([*between, cell - 1, cell, cell + 1], 0, count - 1))
+    cell, distinct_cells = int(cells[index]), np.unique(cells)
+    position = int(np.searchsorted(distinct_cells, cell))
+    previous_cell, next_cell = (
+        distinct_cells[max(position - 1, 0)],
+        distinct_cells[min(position + 1, distinct_cells.size - 1)],
+    )
+    spaced_cells = np.linspace(previous_cell, next_cell, 5).round().astype(np.int64)
+    return np.unique(np.clip([*spaced_cells, cell - 1, cell, cell + 1], 0, count - 1))
 
 
-def _refine_maximum(top: _SampleMaximum, search: Search, stress: Callable[[Points], FloatArray]) -> StressMaximum:
+def _refine_maximum(sample: _SampleMaximum, search: Search, stress_at: Callable[[Points], FloatArray]) -> StressMaximum:
     """Refine points about the largest value until polynomials of two degrees agree."""
     change = 0.0
     for _ in range(MAX_REFINEMENTS):
-        points, inside = _closer_points(top, search)
-        if inside and top.largest.error <= TOLERANCE * top.largest.value:
+        points, is_inside = _closer_points(sample, search)
+        if is_inside and sample.maximum.error <= REFINEMENT_TOLERANCE * sample.maximum.value:
             break
-        next_top = _maximum_between_samples(points, stress(points))
-        change = abs(next_top.largest.value - top.largest.value)
-        if next_top.largest.value < top.largest.value and not inside:
-            return _evaluate_at_maximum(top, change, stress)
-        top = next_top
+        next_sample = _maximum_between_samples(points, stress_at(points))
+        change = abs(next_sample.maximum.value - sample.maximum.value)
+        if next_sample.maximum.value < sample.maximum.value and not is_inside:
+            return _evaluate_at_maximum(sample, change, stress_at)
+        sample = next_sample
     else:
-        return _evaluate_at_maximum(top, max(change, top.largest.error), stress)
-    if top.largest.position[2] <= search.shallowest * (1 + 1e-9):
-        return top.largest._replace(error=max(top.largest.error, TOP_ERROR * top.largest.value))
-    return top.largest
+        return _evaluate_at_maximum(sample, max(change, sample.maximum.error), stress_at)
+    if sample.maximum.position[2] <= search.shallowest * (1 + 1e-9):
+        return sample.maximum._replace(error=max(sample.maximum.error, TOP_ERROR * sample.maximum.value))
+    return sample.maximum
 
 
-def _evaluate_at_maximum(top: _SampleMaximum, error: float, stress: Callable[[Points], FloatArray]) -> StressMaximum:
+def _evaluate_at_maximum(
+    sample: _SampleMaximum, error: float, stress_at: Callable[[Points], FloatArray]
+) -> StressMaximum:
     """Largest stress itself about a value of polynomials that may overshoot: they end at an edge, or do not agree."""
-    sampled = [axis[number] for axis, number in zip(top.points, top.indices, strict=True)]
-    corners = Points(*(np.unique(pair) for pair in zip(top.largest.position, sampled, strict=True)))
-    largest = _maximum_of_samples(corners, stress(corners)).largest
-    return largest._replace(error=max(error, abs(top.largest.value - largest.value)))
+    sample_position = [axis[index] for axis, index in zip(sample.points, sample.indices, strict=True)]
+    corners = Points(*(np.unique(pair) for pair in zip(sample.maximum.position, sample_position, strict=True)))
+    maximum = _maximum_of_samples(corners, stress_at(corners)).maximum
+    return maximum._replace(error=max(error, abs(sample.maximum.value - maximum.value)))
 
 
 def _maximum_of_samples(points: Points, stresses: FloatArray, selection: BoolArray | None = None) -> _SampleMaximum:
@@ -342,43 +364,45 @@ def _maximum_of_samples(points: Points, stresses: FloatArray, selection: BoolArr
     if selection is not None:
         values = np.where(selection[..., None], values, 0.0)
     index = np.unravel_index(int(values.argmax()), values.shape)
-    x, y, z = (float(axis[int(number)]) for axis, number in zip(points, index, strict=True))
+    x, y, z = (float(axis[int(axis_index)]) for axis, axis_index in zip(points, index, strict=True))
     return _SampleMaximum(
-        StressMaximum(float(values[index]), np.inf, (x, y, z)), points, tuple(int(number) for number in index)
+        StressMaximum(float(values[index]), np.inf, (x, y, z)), points, tuple(int(axis_index) for axis_index in index)
     )
 
 
 def _maximum_between_samples(points: Points, stresses: FloatArray) -> _SampleMaximum:
     """Largest value between points, of polynomials through the components."""
     sample = _maximum_of_samples(points, stresses)
-    (value, position), (rough, _) = (
+    (value, position), (coarse_value, _) = (
         _interpolate(points, stresses, sample.indices, neighbours) for neighbours in (2, 1)
     )
-    error = max(abs(value - rough), RISE_ERROR * (value - sample.largest.value))
-    return sample._replace(largest=StressMaximum(value, error, position))
+    error = max(abs(value - coarse_value), RISE_ERROR * (value - sample.maximum.value))
+    return sample._replace(maximum=StressMaximum(value, error, position))
 
 
 def _interpolate(
     points: Points, stresses: FloatArray, index: tuple[int, ...], neighbours: int
 ) -> tuple[float, tuple[float, float, float]]:
     """Largest value, and its position, of polynomials through `neighbours` points on either side of a point."""
-    axes, values = interpolate_about(points, index, stresses, neighbours)
-    von_mises = von_mises_of(*values)
-    best = np.unravel_index(int(von_mises.argmax()), von_mises.shape)
-    x, y, z = (float(axis[number]) for axis, number in zip(axes, best, strict=True))
-    return float(von_mises[best]), (x, y, z)
+    axes, components = interpolate_about(points, index, stresses, neighbours)
+    von_mises = von_mises_of(*components)
+    maximum_index = np.unravel_index(int(von_mises.argmax()), von_mises.shape)
+    x, y, z = (float(axis[number]) for axis, number in zip(axes, maximum_index, strict=True))
+    return float(von_mises[maximum_index]), (x, y, z)
 
 
-def _closer_points(top: _SampleMaximum, search: Search) -> tuple[Points, bool]:
+def _closer_points(sample: _SampleMaximum, search: Search) -> tuple[Points, bool]:
     """Closer points around the largest one; beyond an edge of the range, shifted points at equal spacing."""
-    axes, inside = [], True
+    axes, is_inside = [], True
     limits = (search.extent, (-np.inf, np.inf), (search.shallowest, np.inf))
-    for axis, index, (low, high) in zip(top.points, top.indices, limits, strict=True):
+    for axis, index, (low, high) in zip(sample.points, sample.indices, limits, strict=True):
         centre = axis[index]
-        before, after = axis[max(index - 1, 0)], axis[min(index + 1, axis.size - 1)]
-        outermost = axis.size > 1 and bool((index == 0 and centre > low) or (index == axis.size - 1 and centre < high))
-        inside = inside and not outermost
-        reach = 2 * (after - before) if outermost else 0.0
-        start, stop = max(min(before, centre - reach), low), min(max(after, centre + reach), high)
+        previous_position, next_position = axis[max(index - 1, 0)], axis[min(index + 1, axis.size - 1)]
+        is_outermost = axis.size > 1 and bool(
+            (index == 0 and centre > low) or (index == axis.size - 1 and centre < high)
+        )
+        is_inside = is_inside and not is_outermost
+        reach = 2 * (next_position - previous_position) if is_outermost else 0.0
+        start, stop = max(min(previous_position, centre - reach), low), min(max(next_position, centre + reach), high)
         axes.append(np.linspace(start, stop, 5) if axis.size > 1 else axis)
-    return Points(*axes), inside
+    return Points(*axes), is_inside

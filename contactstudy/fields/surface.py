@@ -30,8 +30,8 @@ RESOLUTION = Resolution()  # quadrature settings of the free ends' part
 class SurfaceOperator:
     """Displacements of the top from pressure and traction, for one body and one grid."""
 
-    def __init__(self, body: Body, parts: Sequence[tuple[float, UniformOperator | ColumnsOperator]]) -> None:
-        self.body, self._parts = body, parts
+    def __init__(self, body: Body, operators: Sequence[tuple[float, UniformOperator | ColumnsOperator]]) -> None:
+        self.body, self._operators = body, operators
 
     @classmethod
     def of(
@@ -47,14 +47,14 @@ class SurfaceOperator:
         body.check_span(grid)
         operator_class = ColumnsOperator if grid.observes_means else UniformOperator
         responses = tuple(Response(direction, load) for direction in directions for load in loads)
-        weighted_operators = []
+        operators = []
         with one_blas_thread():
-            for part in body.terms:
-                ends = end_kernel_of(part, body.material, grid, responses, resolution)
-                weighted_operators.append(
-                    (part.weight, operator_class.of(body.material, part.extent, grid, responses, ends))
+            for term in body.terms:
+                ends_kernel = end_kernel_of(term, body.material, grid, responses, resolution)
+                operators.append(
+                    (term.weight, operator_class.of(body.material, term.extent, grid, responses, ends_kernel))
                 )
-        return cls(body, weighted_operators)
+        return cls(body, operators)
 
     def __call__(self, loads: Mapping[Load, FloatArray]) -> FloatArray:
         """Displacement (m) of the cells along z under `loads` (Pa): array (x, y)."""
@@ -64,29 +64,29 @@ class SurfaceOperator:
         self, loads: Mapping[Load, FloatArray], directions: Sequence[Load]
     ) -> dict[Load, FloatArray]:
         """Displacements (m) of the cells in some `directions` under `loads` (Pa): arrays (x, y)."""
-        weight, first = self._parts[0]
-        displacements = first(loads, directions)
+        weight, first_operator = self._operators[0]
+        displacements = first_operator(loads, directions)
         if weight != 1:
-            displacements = {direction: weight * values for direction, values in displacements.items()}
-        for weight, part in self._parts[1:]:
-            for direction, values in part(loads, directions).items():
-                displacements[direction] += weight * values
+            displacements = {direction: weight * displacement for direction, displacement in displacements.items()}
+        for weight, operator in self._operators[1:]:
+            for direction, displacement in operator(loads, directions).items():
+                displacements[direction] += weight * displacement
         return displacements
 
     def precondition(self, gap: FloatArray) -> FloatArray:
         """Approximate pressure for a normal displacement `gap`."""
-        return self._parts[0][1].precondition(gap)
+        return self._operators[0][1].precondition(gap)
 
     @cached_property
     def coarse(self) -> SurfaceOperator:
         """Approximate operator on cells of twice the size, for an initial guess."""
-        weighted_operators = [(weight, part.coarsen(self.body.material)) for weight, part in self._parts]
-        return SurfaceOperator(self.body, weighted_operators)
+        operators = [(weight, operator.coarsen(self.body.material)) for weight, operator in self._operators]
+        return SurfaceOperator(self.body, operators)
 
     @property
     def grid(self) -> Grid:
         """Cells."""
-        return self._parts[0][1].grid
+        return self._operators[0][1].grid
 
     @property
     def reference(self) -> float:

@@ -71,8 +71,8 @@ class LateralAxis:
     def uniform_layers(self, z: FloatArray, depth_indices: IntArray) -> list[Layer]:
         """Layers at some of the depths, of uniform loads on the grid's cells."""
         return [
-            Layer.of(column, z[depth_indices], depth_indices, step=self.grid.dy, edges=None, fine_per_cell=self.count)
-            for column in self.aligned_groups
+            Layer.of(aligned, z[depth_indices], depth_indices, step=self.grid.dy, edges=None, fine_per_cell=self.count)
+            for aligned in self.aligned_groups
             if depth_indices.size
         ]
 
@@ -88,26 +88,28 @@ class LateralAxis:
             cells = _odd_count(step / dy)
             fine_per_cell = _odd_count(step / cells * PARTS_Y / dy)
             count = cells * fine_per_cell if fine else cells
-            low = float(self.y.min())
-            indices = np.round((self.y - low) / step).astype(np.int64) * count
-            column = AlignedPoints(low - self.first_edge, np.arange(self.y.size), indices)
-            centred, edges = midpoint_cells(column, self.first_edge, span, step / count)
+            lowest_y = float(self.y.min())
+            indices = np.round((self.y - lowest_y) / step).astype(np.int64) * count
+            aligned = AlignedPoints(lowest_y - self.first_edge, np.arange(self.y.size), indices)
+            centred, edges = midpoint_cells(aligned, self.first_edge, span, step / count)
             if fine:
                 return [Layer.of(centred, depths, depth_indices, step=step / count, edges=edges, fine_per_cell=1)]
-            split = np.linspace(edges[0], edges[-1], fine_per_cell * (edges.size - 1) + 1)
+            fine_edges = np.linspace(edges[0], edges[-1], fine_per_cell * (edges.size - 1) + 1)
             return [
-                Layer.of(centred, depths, depth_indices, step=step / count, edges=split, fine_per_cell=fine_per_cell)
+                Layer.of(
+                    centred, depths, depth_indices, step=step / count, edges=fine_edges, fine_per_cell=fine_per_cell
+                )
             ]
         if not fine:
             edges = self.first_edge + dy / PARTS_Y * np.arange(PARTS_Y * self.count + 1.0)
             return [
-                Layer.of(column, depths, depth_indices, step=dy, edges=edges, fine_per_cell=PARTS_Y)
-                for column in self.aligned_groups
+                Layer.of(aligned, depths, depth_indices, step=dy, edges=edges, fine_per_cell=PARTS_Y)
+                for aligned in self.aligned_groups
             ]
         layers = []
-        for column in self.aligned_groups:
-            column = AlignedPoints(column.offset, column.points, PARTS_Y * column.cells)
-            centred, edges = midpoint_cells(column, self.first_edge, span, dy / PARTS_Y)
+        for aligned in self.aligned_groups:
+            aligned = AlignedPoints(aligned.offset, aligned.points, PARTS_Y * aligned.cells)
+            centred, edges = midpoint_cells(aligned, self.first_edge, span, dy / PARTS_Y)
             layers.append(Layer.of(centred, depths, depth_indices, step=dy / PARTS_Y, edges=edges, fine_per_cell=1))
         return layers
 
@@ -140,26 +142,26 @@ def split_columns(
     keys: tuple[ArrayKey, ArrayKey, ArrayKey],
 ) -> SplitColumns:
     """Columns around points (x, y, z) under loads on cells, of a `shape` inside them, with mirrors at an extent."""
-    x, y, z = (axis.values for axis in keys)
+    x, y, z = (key.values for key in keys)
     radius = FAR_DISTANCE * (grid.y_range[1] - grid.y_range[0])
     depths, interpolation_z = interpolation_points(z, radius, FAR_ERROR)
     depth_indices = np.arange(depths.size)
     if shape is None:
         loaded_rows = np.flatnonzero(cells.values.any(axis=0))
-        first, load = int(loaded_rows[0]), cells.values[:, loaded_rows[0] : loaded_rows[-1] + 1]
-        lateral = LateralAxis(grid, y, first, load.shape[1])
+        first_row, load = int(loaded_rows[0]), cells.values[:, loaded_rows[0] : loaded_rows[-1] + 1]
+        lateral = LateralAxis(grid, y, first_row, load.shape[1])
         layers, far_layers = lateral.uniform_layers(z, np.arange(z.size)), lateral.uniform_layers(depths, depth_indices)
         edges, loads = mirror_edges(grid.x_edges, extent), add_images(load, image, extent)
         jumps = [_uniform_jumps(position, layers, far_layers, edges, loads, radius=radius) for position in x.tolist()]
-        return SplitColumns(layers, far_layers, interpolation_z, jumps, first, load=load)
-    fine = FineCells(load=cells.values, shape=shape.values, grid=grid, extent=extent, image=image)
-    lateral = LateralAxis(grid, y, fine.first, fine.count)
-    fine_depths = fine.fine_depths(z)
+        return SplitColumns(layers, far_layers, interpolation_z, jumps, first_row, load=load)
+    fine_cells = FineCells(load=cells.values, shape=shape.values, grid=grid, extent=extent, image=image)
+    lateral = LateralAxis(grid, y, fine_cells.first, fine_cells.count)
+    fine_depths = fine_cells.fine_depths(z)
     layers = lateral.shaped_layers(z, np.flatnonzero(~fine_depths), fine=False)
     layers += lateral.shaped_layers(z, np.flatnonzero(fine_depths), fine=True)
     far_layers = lateral.shaped_layers(depths, depth_indices, fine=False)
-    jumps = list(_shaped_jumps(x, layers, far_layers, fine, MAX_UNSPLIT_WIDTH * float(z.min()), radius=radius))
-    return SplitColumns(layers, far_layers, interpolation_z, jumps, fine.first, load=fine.cells)
+    jumps = list(_shaped_jumps(x, layers, far_layers, fine_cells, MAX_UNSPLIT_WIDTH * float(z.min()), radius=radius))
+    return SplitColumns(layers, far_layers, interpolation_z, jumps, fine_cells.first, load=fine_cells.cells)
 
 
 def _uniform_jumps(
@@ -167,9 +169,9 @@ def _uniform_jumps(
 ) -> tuple[list[Jumps], list[list[Jumps]]]:
     """Jumps of columns with uniform loads (column, y) within a `radius` of a position, and of far columns."""
     column = int(np.clip(np.searchsorted(edges, x, side="right") - 1, 0, edges.size - 2))
-    low, high = _SplitRange(edges[column : column + 1], column, column).range_within(edges, x, radius)
-    near = [Jumps.of(edges[low : high + 1], loads[low:high], layer) for layer in layers]
-    return near, _far_jumps(edges, [loads] * len(far_layers), far_layers, x, low=low, high=high)
+    first_near, stop_near = _SplitRange(edges[column : column + 1], column, column).range_within(edges, x, radius)
+    near_jumps = [Jumps.of(edges[first_near : stop_near + 1], loads[first_near:stop_near], layer) for layer in layers]
+    return near_jumps, _far_jumps(edges, [loads] * len(far_layers), far_layers, x, low=first_near, high=stop_near)
 
 
 def _far_jumps(
@@ -198,19 +200,19 @@ def _shaped_jumps(
     )
     for start in range(0, x.size, POSITIONS_PER_BATCH):
         positions = x[start : start + POSITIONS_PER_BATCH].tolist()
-        surroundings = [_split_around(position, fine, max_width) for position in positions]
-        shape_means = _means_of_inserted(surroundings, shape)
-        load = fine.shape_along_y(shape_means if fine is shape else _means_of_inserted(surroundings, fine), shape_means)
-        inserted = [layer.loads(load) for layer in layers]
+        split_ranges = [_split_around(position, fine, max_width) for position in positions]
+        shape_means = _means_of_inserted(split_ranges, shape)
+        load = fine.shape_along_y(shape_means if fine is shape else _means_of_inserted(split_ranges, fine), shape_means)
+        inserted_loads = [layer.loads(load) for layer in layers]
         stop = 0
-        for position, columns in zip(positions, surroundings, strict=True):
-            first, stop = stop, stop + columns.inserted.size - 1
-            low, high = columns.range_within(edges, position, radius)
-            near = [
-                columns.jumps(edges[low : high + 1], low, column_loads[low:high], fine_loads[first:stop], layer)
-                for column_loads, fine_loads, layer in zip(layer_loads, inserted, layers, strict=True)
+        for position, split_range in zip(positions, split_ranges, strict=True):
+            first, stop = stop, stop + split_range.inserted.size - 1
+            low, high = split_range.range_within(edges, position, radius)
+            near_jumps = [
+                split_range.jumps(edges[low : high + 1], low, column_loads[low:high], fine_loads[first:stop], layer)
+                for column_loads, fine_loads, layer in zip(layer_loads, inserted_loads, layers, strict=True)
             ]
-            yield near, _far_jumps(edges, far_loads, far_layers, position, low=low, high=high)
+            yield near_jumps, _far_jumps(edges, far_loads, far_layers, position, low=low, high=high)
 
 
 class _SplitRange(NamedTuple):
@@ -223,17 +225,17 @@ class _SplitRange(NamedTuple):
     def range_within(self, edges: FloatArray, x: float, radius: float) -> tuple[int, int]:
         """First column within `radius` of `x`, nearest to `x` or replaced, and the column behind the last."""
         distances = np.maximum(edges[:-1] - x, x - edges[1:])
-        near = np.flatnonzero(distances <= max(radius, float(distances.min())))
-        return min(int(near[0]), self.start), max(int(near[-1]) + 1, self.stop)
+        columns = np.flatnonzero(distances <= max(radius, float(distances.min())))
+        return min(int(columns[0]), self.start), max(int(columns[-1]) + 1, self.stop)
 
     def moment_loads(self, fine: FineCells) -> FloatArray:
         """Return loads on the inserted columns with the moments of the other columns: array (column, y)."""
         if self.start == self.stop:
             return np.zeros((0, fine.count))
-        replaced = slice(self.start + 1, self.stop - 1)
-        retained = np.ones(fine.edges.size - 1, bool)
-        retained[replaced] = fine.is_unsplit[replaced]
-        total = MomentLoads(*(np.where(retained, loads, 0.0) for loads in fine.x_moments)).total.T
+        replaced_columns = slice(self.start + 1, self.stop - 1)
+        has_moments = np.ones(fine.edges.size - 1, bool)
+        has_moments[replaced_columns] = fine.is_unsplit[replaced_columns]
+        total = MomentLoads(*(np.where(has_moments, loads, 0.0) for loads in fine.x_moments)).total.T
         midpoints = 0.5 * (self.inserted[1:] + self.inserted[:-1])
         return total[np.searchsorted(fine.edges, midpoints) - 1]
 
@@ -249,37 +251,41 @@ class _SplitRange(NamedTuple):
         )
 
 
-def _means_of_inserted(surroundings: list[_SplitRange], cells: FineCells) -> FloatArray:
+def _means_of_inserted(split_ranges: list[_SplitRange], cells: FineCells) -> FloatArray:
     """Means over the inserted columns of all surroundings, with the moments of their neighbours: (column, y)."""
-    moments = np.concatenate([columns.moment_loads(cells) for columns in surroundings])
-    return np.asarray(cells.column_means([columns.inserted for columns in surroundings]) + moments)
+    moments = np.concatenate([split_range.moment_loads(cells) for split_range in split_ranges])
+    return np.asarray(cells.column_means([split_range.inserted for split_range in split_ranges]) + moments)
 
 
 def _split_around(x: float, fine: FineCells, max_width: float) -> _SplitRange:
     """Split columns around a point in the middle of a column; none if all are narrow."""
     edges, count = fine.edges, fine.edges.size - 1
     column = int(np.clip(np.searchsorted(edges, x, side="right") - 1, 0, count - 1))
-    on_end = min(abs(x - end) for end in fine.extent) < EDGE_ROUNDING * (edges[column + 1] - edges[column])
+    is_on_end = min(abs(x - end) for end in fine.extent) < EDGE_ROUNDING * (edges[column + 1] - edges[column])
     start, stop = resolved_columns(edges, x, max_width)
     if start == stop:
         return _SplitRange(edges[start : start + 1], start, start)
     low, high = edges[start], edges[stop]
-    inserted = fine.x_edges[(fine.x_edges >= low) & (fine.x_edges <= high)]
-    if not on_end and low < x < high:
+    new_edges = fine.x_edges[(fine.x_edges >= low) & (fine.x_edges <= high)]
+    if not is_on_end and low < x < high:
         # On an edge the narrower column determines the width: the mirrored load has the same columns.
-        columns = np.searchsorted(inserted, [x - EDGE_ROUNDING * (high - low), x + EDGE_ROUNDING * (high - low)]) - 1
+        columns = np.searchsorted(new_edges, [x - EDGE_ROUNDING * (high - low), x + EDGE_ROUNDING * (high - low)]) - 1
         # Beyond the outermost edge by rounding, the outermost column counts.
-        width = float(np.diff(inserted)[np.clip(columns, 0, inserted.size - 2)].min())
+        width = float(np.diff(new_edges)[np.clip(columns, 0, new_edges.size - 2)].min())
         # A column across a step of the load would move its force.
         step_distance = float(np.abs(fine.step_edges - x).min(initial=np.inf)) / 2
         step = min(CENTRED_WIDTH * width, max(step_distance, MIN_CENTRED_WIDTH * width))
-        central = x + step * np.array([-1.5, -0.5, 0.5, 1.5])
-        if low < central[0] and central[-1] < high:
-            retained = np.abs(inserted - x) > 1.9 * step
-            retained[[0, -1]] = True
-            inserted = np.sort(np.concatenate([inserted[retained], central]))
-    first, last = max(start - 1, 0), min(stop + 1, count)
-    return _SplitRange(np.concatenate([edges[first:start], inserted, edges[stop + 1 : last + 1]]), first, last)
+        central_edges = x + step * np.array([-1.5, -0.5, 0.5, 1.5])
+        if low < central_edges[0] and central_edges[-1] < high:
+            is_retained = np.abs(new_edges - x) > 1.9 * step
+            is_retained[[0, -1]] = True
+            new_edges = np.sort(np.concatenate([new_edges[is_retained], central_edges]))
+    first_column, stop_column = max(start - 1, 0), min(stop + 1, count)
+    return _SplitRange(
+        np.concatenate([edges[first_column:start], new_edges, edges[stop + 1 : stop_column + 1]]),
+        first_column,
+        stop_column,
+    )
 
 
 def common_step(y: FloatArray) -> float | None:
@@ -304,14 +310,14 @@ def columns_field(
     """Field in the half-space under a load and all its mirror images, as `half_space_field`."""
     x, y, z = points
     axes = (ArrayKey(x), ArrayKey(y), ArrayKey(z))
-    key = None if shape is None else ArrayKey(shape)
-    columns = split_columns(ArrayKey(load), key, grid, extent, influence.load.sign_x, keys=axes)
+    shape_key = None if shape is None else ArrayKey(shape)
+    columns = split_columns(ArrayKey(load), shape_key, grid, extent, influence.load.sign_x, keys=axes)
     field = np.zeros((influence.components, x.size, z.size, y.size)).swapaxes(2, 3)
     far_field = np.zeros((influence.components, x.size, y.size, columns.far_layers[0].depth_indices.size))
-    for i, (position, (near, sides)) in enumerate(zip(x.tolist(), columns.jumps, strict=True)):
-        _add_fields(field[:, i], influence, columns.layers, near, position)
-        for side in sides:
-            _add_fields(far_field[:, i], influence, columns.far_layers, side, position)
+    for i, (position, (near_jumps, far_jumps)) in enumerate(zip(x.tolist(), columns.jumps, strict=True)):
+        _add_fields(field[:, i], influence, columns.layers, near_jumps, position)
+        for side_jumps in far_jumps:
+            _add_fields(far_field[:, i], influence, columns.far_layers, side_jumps, position)
     field += far_field if columns.interpolation_z is None else far_field @ columns.interpolation_z.T
     if np.isfinite(extent).all():
         field += far_images(columns.load, influence, grid, columns.first, points, extent=extent)
@@ -321,5 +327,5 @@ def columns_field(
 def _add_fields(field: FloatArray, influence: Influence, layers: list[Layer], jumps: list[Jumps], x: float) -> None:
     """Add the fields of the jumps in each layer to a field (component, y, depth) at one position."""
     for layer, layer_jumps in zip(layers, jumps, strict=True):
-        values = layer_jumps.field(influence, layer.corners, x, layer.offset_indices)
-        field[:, layer.points[:, None], layer.depth_indices] += values.swapaxes(1, 2)
+        layer_field = layer_jumps.field(influence, layer.corners, x, layer.offset_indices)
+        field[:, layer.points[:, None], layer.depth_indices] += layer_field.swapaxes(1, 2)

@@ -35,9 +35,9 @@ def spectrum_matrices(cells: int) -> tuple[FloatArray, FloatArray]:
     """Matrices (offset, wavenumber) of `even_spectrum` and of `odd_spectrum`, at offsets 0 .. `cells`."""
     indices = np.arange(cells + 1)
     phase = np.pi * np.outer(indices, indices) / cells
-    ends = np.full(cells + 1, 2.0)
-    ends[[0, -1]] = 1.0
-    return ends[:, None] * np.cos(phase), np.where(ends == 1.0, 0.0, -2.0)[:, None] * np.sin(phase)
+    factors = np.full(cells + 1, 2.0)
+    factors[[0, -1]] = 1.0
+    return factors[:, None] * np.cos(phase), np.where(factors == 1.0, 0.0, -2.0)[:, None] * np.sin(phase)
 
 
 class _Buffers:
@@ -83,10 +83,10 @@ class GridTransform:
             self._thread.buffers = buffers
         return buffers
 
-    def transform_y(self, values: FloatArray) -> ComplexArray:
-        """Transform along y of cell `values`: a view (cell, wavenumber) of the buffer."""
+    def transform_y(self, cells: FloatArray) -> ComplexArray:
+        """Transform along y of cell `cells`: a view (cell, wavenumber) of the buffer."""
         buffers = self._buffers
-        buffers.real[: self.cells_x, : self.cells_y] = values
+        buffers.real[: self.cells_x, : self.cells_y] = cells
         buffers.real[: self.cells_x, self.cells_y :] = 0.0
         buffers.lateral[self.cells_x :] = 0.0
         buffers.forward_y.execute()
@@ -118,7 +118,9 @@ class GridTransform:
         return np.asarray(buffers.real[: self.cells_x, : self.cells_y] * self._scale)
 
 
-NEGLIGIBLE = 1e-13  # odd wavenumbers of a load that is symmetric about mid-length, over the largest amplitude. Speed.
+NEGLIGIBLE_AMPLITUDE = (
+    1e-13  # odd wavenumbers of a load that is symmetric about mid-length, over the largest amplitude. Speed.
+)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -133,52 +135,52 @@ class CentredConvolution:
     shape: tuple[int, int]  # largest offsets of the kernel, in cells: half the periods of the transforms
     depth: float  # depth of the points
 
-    def fill_layer(self, layer: FloatArray, transformed: ComplexArray, rows: IntArray, columns: IntArray) -> None:
+    def fill_layer(self, layer: FloatArray, load_transform: ComplexArray, rows: IntArray, columns: IntArray) -> None:
         """Fill a `layer` (component, row, column) from the load's transform, without odd wavenumbers if symmetric."""
         spectrum = _kernel_spectrum(self)
-        odd_x = np.array(self.influence.sign_along_x) < 0
-        beyond, near_rows = np.zeros(rows.size, bool), rows
-        if self.is_symmetric(transformed):
-            beyond, near_rows = rows >= transformed.shape[0], np.minimum(rows, self.shape[0] - 1 - rows)
-        distinct, row_indices = np.unique(near_rows, return_inverse=True)
-        for odd, components in ((False, np.flatnonzero(~odd_x)), (True, np.flatnonzero(odd_x))):
+        is_odd_x = np.array(self.influence.sign_along_x) < 0
+        is_mirrored, source_rows = np.zeros(rows.size, bool), rows
+        if self.is_symmetric(load_transform):
+            is_mirrored, source_rows = rows >= load_transform.shape[0], np.minimum(rows, self.shape[0] - 1 - rows)
+        distinct_rows, row_indices = np.unique(source_rows, return_inverse=True)
+        for is_odd, components in ((False, np.flatnonzero(~is_odd_x)), (True, np.flatnonzero(is_odd_x))):
             if components.size:
-                along_y = self._invert_along_x(spectrum[components], transformed, distinct, odd=odd)
+                along_y = self._invert_along_x(spectrum[components], load_transform, distinct_rows, odd=is_odd)
                 along_y[np.array(self.influence.sign_along_y)[components] < 0] *= 1j
-                values = fft.irfft(along_y, 2 * self.shape[1], axis=2)[..., _as_slice(columns)]
-                layer[components] = values[:, _as_slice(row_indices)]
-                if odd and beyond.any():
-                    layer[np.ix_(components, beyond)] *= -1
+                row_fields = fft.irfft(along_y, 2 * self.shape[1], axis=2)[..., _as_slice(columns)]
+                layer[components] = row_fields[:, _as_slice(row_indices)]
+                if is_odd and is_mirrored.any():
+                    layer[np.ix_(components, is_mirrored)] *= -1
 
-    def is_symmetric(self, transformed: ComplexArray) -> bool:
+    def is_symmetric(self, load_transform: ComplexArray) -> bool:
         """Whether this is the transform of a load that is symmetric about mid-length."""
-        return self.mirrored and transformed.shape[0] < self.shape[0]
+        return self.mirrored and load_transform.shape[0] < self.shape[0]
 
     def _invert_along_x(
-        self, spectrum: FloatArray, transformed: ComplexArray, rows: IntArray, *, odd: bool
+        self, spectrum: FloatArray, load_transform: ComplexArray, rows: IntArray, *, odd: bool
     ) -> ComplexArray:
         """Transform along y (component, row, wavenumber) of components even or odd along x."""
         half = self.shape[0]
         if not self.mirrored:
-            product = np.empty((spectrum.shape[0], *transformed.shape), np.complex128)
-            np.multiply(spectrum, transformed[: half + 1], out=product[:, : half + 1])
-            np.multiply(spectrum[:, half - 1 : 0 : -1], transformed[half + 1 :], out=product[:, half + 1 :])
+            product = np.empty((spectrum.shape[0], *load_transform.shape), np.complex128)
+            np.multiply(spectrum, load_transform[: half + 1], out=product[:, : half + 1])
+            np.multiply(spectrum[:, half - 1 : 0 : -1], load_transform[half + 1 :], out=product[:, half + 1 :])
             if odd:
                 product[:, : half + 1] *= 1j
                 product[:, half + 1 :] *= -1j
             return np.asarray(fft.ifft(product, axis=1, overwrite_x=True)[:, rows])
-        step = 2 if self.is_symmetric(transformed) else 1
+        step = 2 if self.is_symmetric(load_transform) else 1
         if odd:
-            product = np.zeros((spectrum.shape[0], *transformed.shape), np.complex128)
-            np.multiply(-spectrum[:, step:half:step], transformed[1:], out=product[:, :-1])
+            product = np.zeros((spectrum.shape[0], *load_transform.shape), np.complex128)
+            np.multiply(-spectrum[:, step:half:step], load_transform[1:], out=product[:, :-1])
             return np.asarray(fft.idst(product, type=2, axis=1, overwrite_x=True)[:, rows])
-        return np.asarray(fft.idct(spectrum[:, :half:step] * transformed, type=2, axis=1, overwrite_x=True)[:, rows])
+        return np.asarray(fft.idct(spectrum[:, :half:step] * load_transform, type=2, axis=1, overwrite_x=True)[:, rows])
 
 
 def _as_slice(indices: IntArray) -> slice | IntArray:
     """Index of ascending numbers, as a slice if they are consecutive."""
-    consecutive = bool((np.diff(indices) == 1).all())
-    return slice(indices[0], indices[-1] + 1) if consecutive and indices[0] >= 0 else indices
+    is_consecutive = bool((np.diff(indices) == 1).all())
+    return slice(indices[0], indices[-1] + 1) if is_consecutive and indices[0] >= 0 else indices
 
 
 @cached("half-space kernels")
@@ -190,10 +192,13 @@ def _kernel_spectrum(request: CentredConvolution) -> FloatArray:
     spectrum = influence.kernel(x, y, request.dx, request.dy, length=request.length, depth=request.depth)
     for axis, signs in ((1, influence.sign_along_x), (2, influence.sign_along_y)):
         axis_last = spectrum.swapaxes(axis, 2)
-        even = np.array(signs) > 0
-        transformed = np.empty_like(axis_last)
-        transformed[even], transformed[~even] = even_spectrum(axis_last[even]), odd_spectrum(axis_last[~even])
-        spectrum = transformed.swapaxes(axis, 2)
+        is_even = np.array(signs) > 0
+        axis_spectrum = np.empty_like(axis_last)
+        axis_spectrum[is_even], axis_spectrum[~is_even] = (
+            even_spectrum(axis_last[is_even]),
+            odd_spectrum(axis_last[~is_even]),
+        )
+        spectrum = axis_spectrum.swapaxes(axis, 2)
     return np.ascontiguousarray(spectrum)
 
 
@@ -221,16 +226,16 @@ def centred_field(
     # At half a period an odd kernel is undefined: both signs coincide.
     shape = (half, fft.next_fast_len(reach_y + 1, real=True))
     along_y = fft.rfft(load, 2 * shape[1], axis=1)
-    transformed = fft.dct(along_y, type=2, n=half, axis=0) if mirrored else fft.fft(along_y, 2 * half, axis=0)
+    load_transform = fft.dct(along_y, type=2, n=half, axis=0) if mirrored else fft.fft(along_y, 2 * half, axis=0)
     if mirrored and np.isfinite(length) and half % 2 == 0:
-        odd_amplitude, max_amplitude = np.abs(transformed[1::2]).max(), np.abs(transformed).max()
-        if odd_amplitude <= NEGLIGIBLE * max_amplitude:
+        odd_amplitude, max_amplitude = np.abs(load_transform[1::2]).max(), np.abs(load_transform).max()
+        if odd_amplitude <= NEGLIGIBLE_AMPLITUDE * max_amplitude:
             # Equals the transform of the first half of the load, mirrored at mid-length.
-            transformed = 0.5 * transformed[::2]
+            load_transform = 0.5 * load_transform[::2]
     field = np.empty((influence.components, rows.size, z.size, columns.size))
     for depth_index, depth in enumerate(z.tolist()):
         convolution = CentredConvolution(
             influence=influence, dx=cell[0], dy=cell[1], length=length, mirrored=mirrored, shape=shape, depth=depth
         )
-        convolution.fill_layer(field[:, :, depth_index], transformed, rows, columns)
+        convolution.fill_layer(field[:, :, depth_index], load_transform, rows, columns)
     return field.swapaxes(2, 3)

@@ -24,20 +24,22 @@ class AlignedPoints:
     cells: IntArray  # cell of each (also outside the grid)
 
 
-def aligned_points(values: FloatArray, first_centre: float, step: float) -> list[AlignedPoints]:
+def aligned_points(positions: FloatArray, first_centre: float, step: float) -> list[AlignedPoints]:
     """Group the points of one axis by their offset from the cell centres."""
-    position = (values - first_centre) / step
-    cells = np.floor(position + 0.5 - OFFSET_TOLERANCE).astype(np.int64)
-    offset = np.round((position - cells) / OFFSET_TOLERANCE).astype(np.int64)
+    cell_position = (positions - first_centre) / step
+    cells = np.floor(cell_position + 0.5 - OFFSET_TOLERANCE).astype(np.int64)
+    offset = np.round((cell_position - cells) / OFFSET_TOLERANCE).astype(np.int64)
     return [
-        AlignedPoints(float(value) * OFFSET_TOLERANCE * step, members, cells[members])
-        for value in np.unique(offset)
-        for members in [np.flatnonzero(offset == value)]
+        AlignedPoints(float(rounded_offset) * OFFSET_TOLERANCE * step, indices, cells[indices])
+        for rounded_offset in np.unique(offset)
+        for indices in [np.flatnonzero(offset == rounded_offset)]
     ]
 
 
-FEW_POINTS = 8  # largest number of points along y with direct sums over the corners instead of a convolution. Speed.
-BLOCK = 16_384  # corners and depths per evaluation. Speed: the values fit into the processor's cache.
+MAX_DIRECT_POINTS = (
+    8  # largest number of points along y with direct sums over the corners instead of a convolution. Speed.
+)
+BLOCK_SIZE = 16_384  # corners and depths per evaluation. Speed: the values fit into the processor's cache.
 MERGED_WIDTH = 0.04  # width of merged columns over their distance. Accuracy: 1e-5 of the pressure.
 
 
@@ -55,9 +57,9 @@ class Layer:
     @classmethod
     def of(
         cls,
-        column: AlignedPoints,
+        aligned: AlignedPoints,
         z: FloatArray,
-        numbers: IntArray,
+        depth_indices: IntArray,
         *,
         step: float,
         edges: FloatArray | None,
@@ -66,17 +68,17 @@ class Layer:
         """Layer of points with equal offsets from the corners of cells of size `step`."""
         # The cells of the points are counted from the first of the `edges`, or of the grid cells if they are None.
         count = fine_per_cell if edges is None else (edges.size - 1) // fine_per_cell
-        cells = column.cells
+        cells = aligned.cells
         if edges is None:
             fine_per_cell = 1
         elif fine_per_cell > 1:
             count, cells = count + 2 * NEIGHBOURS, cells + NEIGHBOURS
         lowest = int(cells.min()) - count
-        offsets: FloatArray = column.offset + step * np.arange(lowest, int(cells.max()) + 1.0)
+        offsets: FloatArray = aligned.offset + step * np.arange(lowest, int(cells.max()) + 1.0)
         return cls(
-            points=column.points,
+            points=aligned.points,
             offset_indices=cells - int(cells.min()),
-            depth_indices=numbers,
+            depth_indices=depth_indices,
             corners=EvenOffsets(offsets, z),
             edges=edges,
             fine_per_cell=fine_per_cell,
@@ -85,17 +87,19 @@ class Layer:
     def loads(self, load: ShapedLoad) -> FloatArray:
         """Return loads of columns (column, y) on the cells of the layer."""
         assert self.edges is not None
-        fine = load.equivalent_means(self.edges)
-        return fine if self.fine_per_cell == 1 else np.ascontiguousarray(coarsen(fine.T, self.fine_per_cell).T)
+        fine_loads = load.equivalent_means(self.edges)
+        return (
+            fine_loads if self.fine_per_cell == 1 else np.ascontiguousarray(coarsen(fine_loads.T, self.fine_per_cell).T)
+        )
 
 
-def midpoint_cells(column: AlignedPoints, start: float, span: float, step: float) -> tuple[AlignedPoints, FloatArray]:
+def midpoint_cells(aligned: AlignedPoints, start: float, span: float, step: float) -> tuple[AlignedPoints, FloatArray]:
     """Points ``start + offset + step * cells`` in the middle of cells, and the edges of these cells over a `span`."""
-    before = int(np.floor(-column.offset / step - 0.5))
-    begin = column.offset + step * (before + 0.5)
-    total = int(np.ceil((span - begin) / step - 1e-9))
-    edges = np.asarray(start + begin + step * np.arange(total + 1.0))
-    return AlignedPoints(0.5 * step, column.points, column.cells - before - 1), edges
+    cells_before = int(np.floor(-aligned.offset / step - 0.5))
+    first_edge = aligned.offset + step * (cells_before + 0.5)
+    cell_count = int(np.ceil((span - first_edge) / step - 1e-9))
+    edges = np.asarray(start + first_edge + step * np.arange(cell_count + 1.0))
+    return AlignedPoints(0.5 * step, aligned.points, aligned.cells - cells_before - 1), edges
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -116,20 +120,24 @@ class Jumps:
         """Jumps of `loads` (column, cell) for the points of a layer."""
         min_width = float(np.diff(edges).min())
         jumps = np.diff(np.diff(np.pad(loads, 1), axis=0), axis=1)
-        loaded = jumps.any(axis=1)
-        backwards, corners = jumps[loaded, ::-1], layer.corners
+        is_loaded = jumps.any(axis=1)
+        reversed_jumps, corners = jumps[is_loaded, ::-1], layer.corners
         size = fft.next_fast_len(jumps.shape[1] + int(layer.offset_indices.max()), real=True)
-        folded = None
-        if layer.offset_indices.size <= FEW_POINTS and corners.index is not None:
-            folded = np.stack([corners.fold_jumps(backwards, start) for start in layer.offset_indices.tolist()], axis=1)
-            folded = folded.reshape(-1, 2 * layer.offset_indices.size)
-        return cls(edges=edges[loaded], values=backwards, folded_values=folded, size=size, min_width=min_width)
+        folded_jumps = None
+        if layer.offset_indices.size <= MAX_DIRECT_POINTS and corners.index is not None:
+            folded_jumps = np.stack(
+                [corners.fold_jumps(reversed_jumps, start) for start in layer.offset_indices.tolist()], axis=1
+            )
+            folded_jumps = folded_jumps.reshape(-1, 2 * layer.offset_indices.size)
+        return cls(
+            edges=edges[is_loaded], values=reversed_jumps, folded_values=folded_jumps, size=size, min_width=min_width
+        )
 
     def field(self, influence: Influence, corners: EvenOffsets, x: float, starts: IntArray) -> FloatArray:
         """Field (component, depth, point) at `x` of the corners from the offset indices `starts` on."""
         distances = snap_offsets(x - self.edges, self.min_width)
-        step = max(1, BLOCK // max(1, distances.size * corners.along_y.size))
-        spectrum = None if starts.size <= FEW_POINTS else fft.rfft(self.values, self.size, axis=1).conj()
+        step = max(1, BLOCK_SIZE // max(1, distances.size * corners.along_y.size))
+        spectrum = None if starts.size <= MAX_DIRECT_POINTS else fft.rfft(self.values, self.size, axis=1).conj()
         fields = [
             self._field_at_depths(
                 influence, corners, corners.z[start : start + step], distances, starts, spectrum=spectrum
@@ -148,18 +156,18 @@ class Jumps:
         spectrum: ComplexArray | None,
     ) -> FloatArray:
         """Field at some of the depths, for many points along y from the `spectrum` of the jumps."""
-        values = influence.corner(distances[:, None], corners.along_y, z[:, None, None], influence.poisson)
+        corner_values = influence.corner(distances[:, None], corners.along_y, z[:, None, None], influence.poisson)
         # A primitive is even where its kernel is odd, and odd where it is even.
-        odd = np.array(influence.sign_along_y) > 0
+        is_odd = np.array(influence.sign_along_y) > 0
         if self.folded_values is not None:
-            sums = values.reshape(*values.shape[:2], -1) @ self.folded_values
-            return np.where(odd[:, None, None], sums[..., 1::2], sums[..., ::2])
-        values, count = corners.unfold(values, odd, self.size), self.values.shape[1]
+            sums = corner_values.reshape(*corner_values.shape[:2], -1) @ self.folded_values
+            return np.where(is_odd[:, None, None], sums[..., 1::2], sums[..., ::2])
+        corner_values, count = corners.unfold(corner_values, is_odd, self.size), self.values.shape[1]
         if spectrum is None:
-            windows = (values[..., start : start + count] for start in starts.tolist())
+            windows = (corner_values[..., start : start + count] for start in starts.tolist())
             return np.stack([np.einsum("czef,ef->cz", window, self.values) for window in windows], axis=2)
-        summed = np.einsum("czek,ek->czk", fft.rfft(values, axis=3), spectrum)
-        return np.asarray(fft.irfft(summed, self.size, axis=2)[..., starts])
+        field_spectrum = np.einsum("czek,ek->czk", fft.rfft(corner_values, axis=3), spectrum)
+        return np.asarray(fft.irfft(field_spectrum, self.size, axis=2)[..., starts])
 
 
 class EvenOffsets:
@@ -181,21 +189,23 @@ class EvenOffsets:
                 self._signs = np.where(half_steps < 0, -1.0, 1.0)
         self._folding_matrices: dict[tuple[int, int], FloatArray] = {}
 
-    def unfold(self, values: FloatArray, odd: BoolArray, size: int) -> FloatArray:
+    def unfold(self, values: FloatArray, is_odd: BoolArray, size: int) -> FloatArray:
         """Values (component, depth, edge, offset) from the evaluated offsets, padded with zeros to `size` offsets."""
-        unfolded = np.zeros((*values.shape[:-1], size))
+        unfolded_values = np.zeros((*values.shape[:-1], size))
         if self.index is None:
-            unfolded[..., : values.shape[-1]] = values
-            return unfolded
-        negative, count = int((self._signs < 0).sum()), self.index.size
+            unfolded_values[..., : values.shape[-1]] = values
+            return unfolded_values
+        negative_count, offset_count = int((self._signs < 0).sum()), self.index.size
         # Copies of contiguous ranges are several times faster than an index array.
-        if negative:
-            mirrored = values[..., self.index[negative - 1] : self.index[0] + 1][..., ::-1]
-            sign = np.where(odd, -1.0, 1.0)[:, None, None, None]
-            np.multiply(mirrored, sign, out=unfolded[..., :negative])
-        if negative < count:
-            unfolded[..., negative:count] = values[..., self.index[negative] : self.index[-1] + 1]
-        return unfolded
+        if negative_count:
+            mirrored_values = values[..., self.index[negative_count - 1] : self.index[0] + 1][..., ::-1]
+            sign = np.where(is_odd, -1.0, 1.0)[:, None, None, None]
+            np.multiply(mirrored_values, sign, out=unfolded_values[..., :negative_count])
+        if negative_count < offset_count:
+            unfolded_values[..., negative_count:offset_count] = values[
+                ..., self.index[negative_count] : self.index[-1] + 1
+            ]
+        return unfolded_values
 
     def fold_jumps(self, jumps: FloatArray, start: int) -> FloatArray:
         """Jumps (edge, corner) from offset `start` on summed over both sides of 0: (edge and distance, parity)."""
@@ -219,12 +229,12 @@ def merge_columns(edges: FloatArray, loads: FloatArray, x: float) -> tuple[Float
     if starts.size == loads.shape[0]:
         return edges, loads
     stops = np.append(starts[1:], loads.shape[0])
-    first, size = edges[starts], (edges[stops] - edges[starts])[:, None]
-    centres = first + 0.5 * size[:, 0]
+    first_edges, group_widths = edges[starts], (edges[stops] - edges[starts])[:, None]
+    centres = first_edges + 0.5 * group_widths[:, 0]
     group = np.repeat(np.arange(starts.size), stops - starts)
-    force = np.add.reduceat(loads * widths[:, None], starts, axis=0) / size
-    moment = np.add.reduceat(loads * (widths * (midpoints - centres[group]))[:, None], starts, axis=0) / size**2
+    force = np.add.reduceat(loads * widths[:, None], starts, axis=0) / group_widths
+    moment = np.add.reduceat(loads * (widths * (midpoints - centres[group]))[:, None], starts, axis=0) / group_widths**2
     is_halved = np.stack([np.ones(starts.size, bool), stops - starts > 1], axis=1)
     difference = np.where(is_halved[:, 1:], 4 * moment, 0.0)
     merged_loads = np.stack([force - difference, force + difference], axis=1)[is_halved]
-    return np.append(np.stack([first, centres], axis=1)[is_halved], edges[-1]), merged_loads
+    return np.append(np.stack([first_edges, centres], axis=1)[is_halved], edges[-1]), merged_loads

@@ -47,74 +47,70 @@ def half_space_field(
     if not load.any():
         return field
     rows = aligned_points(x, float(grid.x[0]), grid.dx)
-    aligned = np.zeros(x.size, bool)
+    is_aligned = np.zeros(x.size, bool)
     if grid.uniform and (shape is None or CELLS_PER_POSITION * x.size > grid.cells_x):
         if shape is not None:
             rows = [row for row in rows if row.offset == 0]
         if len(rows) <= ALIGNED_GROUPS:
             for row in rows:
-                aligned[row.points] = True
-    if not aligned.all():
+                is_aligned[row.points] = True
+    if not is_aligned.all():
         with one_blas_thread():
-            points = Points(x[~aligned], y, z)
-            field[:, ~aligned] = columns_field(load, shape, influence, grid, points, extent=extent)
-    if not aligned.any():
+            points = Points(x[~is_aligned], y, z)
+            field[:, ~is_aligned] = columns_field(load, shape, influence, grid, points, extent=extent)
+    if not is_aligned.any():
         return field
     if shape is None:
-        field[:, aligned] = _uniform_field(load, influence, grid, Points(x[aligned], y, z), extent)
+        field[:, is_aligned] = _uniform_field(load, influence, grid, Points(x[is_aligned], y, z), extent)
         return field
-    fine = FineCells(load=load, shape=shape, grid=grid, extent=extent, image=influence.load.sign_x)
+    fine_cells = FineCells(load=load, shape=shape, grid=grid, extent=extent, image=influence.load.sign_x)
     components = np.arange(influence.components)
-    near, near_x = fine.fine_depths(z), fine.fine_depths_x(z)
+    is_near, is_near_x = fine_cells.fine_depths(z), fine_cells.fine_depths_x(z)
     for fine_x in (True, False):
-        deep = ~near & (near_x == fine_x)
-        if deep.any():
-            cells, coarse = fine.coarse_load(fine_x=fine_x)
-            field[np.ix_(components, aligned, np.arange(y.size), deep)] = _uniform_field(
-                cells, influence, coarse, Points(x[aligned], y, z[deep]), extent
+        is_deep = ~is_near & (is_near_x == fine_x)
+        if is_deep.any():
+            cells, coarse_grid = fine_cells.coarse_load(fine_x=fine_x)
+            field[np.ix_(components, is_aligned, np.arange(y.size), is_deep)] = _uniform_field(
+                cells, influence, coarse_grid, Points(x[is_aligned], y, z[is_deep]), extent
             )
-        shallow = near & (near_x == fine_x)
-        for column in aligned_points(y, float(grid.y[0]), grid.dy) if shallow.any() else ():
-            cells, refined = fine.fine_load(column.offset)
+        is_shallow = is_near & (is_near_x == fine_x)
+        for column in aligned_points(y, float(grid.y[0]), grid.dy) if is_shallow.any() else ():
+            cells, refined_grid = fine_cells.fine_load(column.offset)
             if not fine_x:
-                cells, refined = fine.coarsen_x(cells, refined)
-            field[np.ix_(components, aligned, column.points, shallow)] = _uniform_field(
-                cells, influence, refined, Points(x[aligned], y[column.points], z[shallow]), extent
+                cells, refined_grid = fine_cells.coarsen_x(cells, refined_grid)
+            field[np.ix_(components, is_aligned, column.points, is_shallow)] = _uniform_field(
+                cells, influence, refined_grid, Points(x[is_aligned], y[column.points], z[is_shallow]), extent
             )
     return field
 
 
 def _uniform_field(
-    load: FloatArray,
-    influence: Influence,
-    grid: Grid,
-    points: Points,
-    extent: tuple[float, float],
+    load: FloatArray, influence: Influence, grid: Grid, points: Points, extent: tuple[float, float]
 ) -> FloatArray:
     """Field at points with equal offsets from uniform cells, by fast convolution."""
     x, y, z = points
-    mirrored_at_first, mirrored_at_second = bool(np.isfinite(extent[0])), bool(np.isfinite(extent[1]))
-    loaded = np.flatnonzero(load.any(axis=0))
-    first, last = int(loaded[0]), int(loaded[-1]) + 1
-    load = load[:, first:last]
-    columns = aligned_points(y, float(grid.y[first]), grid.dy)
+    mirrors_at_first, mirrors_at_second = bool(np.isfinite(extent[0])), bool(np.isfinite(extent[1]))
+    loaded_rows = np.flatnonzero(load.any(axis=0))
+    first_row, stop_row = int(loaded_rows[0]), int(loaded_rows[-1]) + 1
+    load = load[:, first_row:stop_row]
+    columns = aligned_points(y, float(grid.y[first_row]), grid.dy)
     rows = aligned_points(x, float(grid.x[0]), grid.dx)
     on_centres = len(rows) == len(columns) == 1 and rows[0].offset == columns[0].offset == 0
     image = influence.load.sign_x
-    if on_centres and (mirrored_at_first or not mirrored_at_second) and (image > 0 or not mirrored_at_first):
+    if on_centres and (mirrors_at_first or not mirrors_at_second) and (image > 0 or not mirrors_at_first):
         cell = (grid.dx, grid.dy)
         return centred_field(load, influence, cell, rows[0].cells, columns[0].cells, z=z, extent=extent)
-    start = grid.x[0]
-    if mirrored_at_first:  # the mirrored load precedes the load
+    first_centre = grid.x[0]
+    if mirrors_at_first:  # the mirrored load precedes the load
         load = np.concatenate([image * load[::-1], load])
-        start -= grid.cells_x * grid.dx
-    elif mirrored_at_second:
+        first_centre -= grid.cells_x * grid.dx
+    elif mirrors_at_second:
         load = np.concatenate([load, image * load[::-1]])
-    length = extent[1] if mirrored_at_first and mirrored_at_second else np.inf
+    length = extent[1] if mirrors_at_first and mirrors_at_second else np.inf
     cells = _LoadedCells(load=load, influence=influence, dx=grid.dx, dy=grid.dy, length=length)
     field = np.empty((influence.components, x.size, z.size, y.size)).swapaxes(2, 3)
     for column in columns:
-        for row in aligned_points(x, float(start), grid.dx):
+        for row in aligned_points(x, float(first_centre), grid.dx):
             field[:, row.points[:, None], column.points] = _aligned_field(cells, row.cells, row.offset, column, z)
     return field
 
@@ -123,26 +119,26 @@ def half_space_influence(
     influence: Influence, grid: Grid, points: Points, *, extent: tuple[float, float]
 ) -> FloatArray:
     """Field (component, x, cell, y, z) of a unit load on each cell along x, with all images, at distances y from it."""
-    image, columns, half = influence.load.sign_x, grid.cells_x, 0.5 * grid.dy
+    image, columns, half_width = influence.load.sign_x, grid.cells_x, 0.5 * grid.dy
     distances = snap_offsets(points.x[:, None] - mirror_edges(grid.x_edges, extent), float(grid.widths.min()))[
         ..., None
     ]
     far_images = FarImages(extent[1] - extent[0], image, CHEBYSHEV_X)
-    first = columns if np.isfinite(extent[0]) else 0
+    first_cell = columns if np.isfinite(extent[0]) else 0
     layers = []
     for depth in points.z.tolist():
         corner = influence.corner_at(depth)
-        rows = corner(distances, points.y + half) - corner(distances, points.y - half)
-        cells = rows[:, :, :-1] - rows[:, :, 1:]
-        field = cells[:, :, first : first + columns].copy()
+        edge_rows = corner(distances, points.y + half_width) - corner(distances, points.y - half_width)
+        cells = edge_rows[:, :, :-1] - edge_rows[:, :, 1:]
+        field = cells[:, :, first_cell : first_cell + columns].copy()
         for start in range(0, cells.shape[2], columns):
-            if start != first:
+            if start != first_cell:
                 field += image * cells[:, :, start : start + columns][:, :, ::-1]
         if np.isfinite(extent).all():
             kernel = far_images.influence(corner, points.y, grid.dy, np.array(influence.image_level))
-            loaded = far_images.means(grid.x_edges - extent[0]) * grid.widths
+            mean_weights = far_images.means(grid.x_edges - extent[0]) * grid.widths
             field += np.einsum(
-                "xp,cpqy,qi->cxiy", far_images.interpolation(points.x - extent[0]), kernel, loaded, optimize=True
+                "xp,cpqy,qi->cxiy", far_images.interpolation(points.x - extent[0]), kernel, mean_weights, optimize=True
             )
         layers.append(field)
     return np.stack(layers, axis=-1)
@@ -168,20 +164,20 @@ def _aligned_field(
     y = cells.dy * np.arange(first_y, int(column.cells.max()) + 1) + column.offset
     if np.isfinite(cells.length):
         # One period holds the load and its mirror image; offsets are wrapped into -length .. length.
-        first, size = -(count // 2), count
-        shape = (size, fft.next_fast_len(y.size, real=True))
+        first_x, offset_count = -(count // 2), count
+        shape = (offset_count, fft.next_fast_len(y.size, real=True))
     else:
-        first = int(rows.min()) - count + 1
-        size = int(rows.max()) - first + 1
-        shape = (fft.next_fast_len(size, real=True), fft.next_fast_len(y.size, real=True))
-    x = cells.dx * np.arange(first, first + size) + offset
+        first_x = int(rows.min()) - count + 1
+        offset_count = int(rows.max()) - first_x + 1
+        shape = (fft.next_fast_len(offset_count, real=True), fft.next_fast_len(y.size, real=True))
+    x = cells.dx * np.arange(first_x, first_x + offset_count) + offset
     spectrum = fft.rfft2(cells.load, shape)
-    row_indices, column_indices = (rows - first) % shape[0], column.cells - first_y
+    row_indices, column_indices = (rows - first_x) % shape[0], column.cells - first_y
 
     def evaluate_layer(depth: float) -> FloatArray:
         kernel = _kernel_by_symmetry(cells, depth, x, y)
-        values = fft.irfft2(fft.rfft2(kernel, shape, axes=(1, 2)) * spectrum, shape, axes=(1, 2))
-        return np.asarray(values[:, row_indices[:, None], column_indices[None, :]])
+        layer = fft.irfft2(fft.rfft2(kernel, shape, axes=(1, 2)) * spectrum, shape, axes=(1, 2))
+        return np.asarray(layer[:, row_indices[:, None], column_indices[None, :]])
 
     return np.stack([evaluate_layer(depth) for depth in z.tolist()], axis=-1)
 
@@ -192,10 +188,10 @@ def _kernel_by_symmetry(cells: _LoadedCells, depth: float, x: FloatArray, y: Flo
     def evaluate(offsets: FloatArray) -> FloatArray:
         return cells.influence.kernel(offsets, y, cells.dx, cells.dy, length=cells.length, depth=depth)
 
-    steps = x / cells.dx
-    count_before = round(-float(steps[0]))
+    step_numbers = x / cells.dx
+    count_before = round(-float(step_numbers[0]))
     count_after = x.size - 1 - count_before
-    if abs(steps[0] + count_before) > OFFSET_TOLERANCE or min(count_before, count_after) < 1:
+    if abs(step_numbers[0] + count_before) > OFFSET_TOLERANCE or min(count_before, count_after) < 1:
         return evaluate(x)
     kernel_ahead = evaluate(cells.dx * np.arange(max(count_before, count_after) + 1.0))
     kernel_behind = kernel_ahead[:, count_before:0:-1] * np.array(cells.influence.sign_along_x)[:, None, None]

@@ -43,9 +43,9 @@ class FineCells:
     count: int = field(init=False)
 
     def __post_init__(self) -> None:
-        loaded = np.flatnonzero((self.load != 0).any(axis=0) | (self.shape != 0).any(axis=0))
-        object.__setattr__(self, "first", int(loaded[0]) - SPARE_CELLS)
-        object.__setattr__(self, "count", int(loaded[-1]) + 1 + SPARE_CELLS - self.first)
+        loaded_rows = np.flatnonzero((self.load != 0).any(axis=0) | (self.shape != 0).any(axis=0))
+        object.__setattr__(self, "first", int(loaded_rows[0]) - SPARE_CELLS)
+        object.__setattr__(self, "count", int(loaded_rows[-1]) + 1 + SPARE_CELLS - self.first)
 
     @cached_property
     def y_edges(self) -> FloatArray:
@@ -55,8 +55,8 @@ class FineCells:
     def _crop(self, cells: FloatArray) -> FloatArray:
         """Cells between `y_edges`: array (cell_x, y)."""
         stop = self.first + self.count
-        inside = cells[:, max(self.first, 0) : stop]
-        return np.pad(inside, ((0, 0), (max(-self.first, 0), max(stop - self.grid.cells_y, 0))))
+        inner_cells = cells[:, max(self.first, 0) : stop]
+        return np.pad(inner_cells, ((0, 0), (max(-self.first, 0), max(stop - self.grid.cells_y, 0))))
 
     @cached_property
     def cells(self) -> FloatArray:
@@ -87,10 +87,10 @@ class FineCells:
         """Columns that are split along x."""
         shape = self.shape_cells
         edges = _split_edges(self.grid.x_edges, np.ones(self.grid.cells_x, bool))
-        fine = shape._along_x.means(edges).reshape(-1, self.grid.cells_x, PARTS_X)
-        deviation = np.abs(fine - shape.cells.T[..., None]).max(axis=(0, 2))
-        uneven = deviation > FLATNESS_TOLERANCE * np.abs(self.shape).max()
-        return np.full(uneven.shape, uneven.any()) if self.grid.uniform else uneven
+        fine_means = shape._along_x.means(edges).reshape(-1, self.grid.cells_x, PARTS_X)
+        deviation = np.abs(fine_means - shape.cells.T[..., None]).max(axis=(0, 2))
+        is_uneven = deviation > FLATNESS_TOLERANCE * np.abs(self.shape).max()
+        return np.full(is_uneven.shape, is_uneven.any()) if self.grid.uniform else is_uneven
 
     @cached_property
     def x_edges(self) -> FloatArray:
@@ -140,17 +140,17 @@ class FineCells:
         """Means over the columns between the edges of each array: array (column, y); edges may lie among images."""
         low, high = self.extent
         x = np.concatenate(edges)
-        before, behind = x < low, x > high
-        inside = np.where(before, 2 * low - x, np.where(behind, 2 * high - x, x))
-        integral = self._along_x.integral(inside)
-        if before.any():
-            integral[:, before] *= -self.image
-        if behind.any():
+        is_before, is_behind = x < low, x > high
+        inner_x = np.where(is_before, 2 * low - x, np.where(is_behind, 2 * high - x, x))
+        integral = self._along_x.integral(inner_x)
+        if is_before.any():
+            integral[:, is_before] *= -self.image
+        if is_behind.any():
             total = self._along_x.integral(self.grid.x_edges[-1:])
-            integral[:, behind] = total + self.image * (total - integral[:, behind])
-        between = np.ones(x.size - 1, bool)
-        between[np.cumsum([array.size for array in edges[:-1]], dtype=int) - 1] = False
-        return np.asarray(np.diff(integral, axis=1)[:, between].T / np.diff(x)[between, None])
+            integral[:, is_behind] = total + self.image * (total - integral[:, is_behind])
+        is_column = np.ones(x.size - 1, bool)
+        is_column[np.cumsum([array_edges.size for array_edges in edges[:-1]], dtype=int) - 1] = False
+        return np.asarray(np.diff(integral, axis=1)[:, is_column].T / np.diff(x)[is_column, None])
 
     def shape_along_y(self, columns: FloatArray, shape: FloatArray) -> ShapedLoad:
         """Load along y of columns (column, y) with a shape (column, y)."""
@@ -158,10 +158,10 @@ class FineCells:
 
     def coarse_load(self, *, fine_x: bool) -> tuple[FloatArray, Grid]:
         """Load on uniform cells with the moments of the fine cells: whole along y, fine or whole along x."""
-        fine, grid = self.fine_load(0.0)
+        fine_loads, grid = self.fine_load(0.0)
         margin = NEIGHBOURS * self.grid.dy
         y_range = (float(self.y_edges[0]) - margin, float(self.y_edges[-1]) + margin)
-        loads = coarsen(fine.T, PARTS_Y).T
+        loads = coarsen(fine_loads.T, PARTS_Y).T
         cells = Grid.between(grid.x_edges, y_range, loads.shape[1])
         return (loads, cells) if fine_x else self.coarsen_x(loads, cells)
 
@@ -171,16 +171,16 @@ class FineCells:
             return loads, grid
         margin, has_end = NEIGHBOURS * PARTS_X, np.isfinite(self.extent)
         padded = loads
-        for end, pad in zip(has_end, ((margin, 0), (0, margin)), strict=True):
-            extended = np.pad(loads, (pad, (0, 0)), mode="symmetric" if end else "constant")
-            beyond = self.image * (extended[: pad[0]] if pad[0] else extended[extended.shape[0] - pad[1] :])
-            padded = np.concatenate([beyond, padded] if pad[0] else [padded, beyond])
+        for has_image, pad in zip(has_end, ((margin, 0), (0, margin)), strict=True):
+            extended = np.pad(loads, (pad, (0, 0)), mode="symmetric" if has_image else "constant")
+            loads_beyond = self.image * (extended[: pad[0]] if pad[0] else extended[extended.shape[0] - pad[1] :])
+            padded = np.concatenate([loads_beyond, padded] if pad[0] else [padded, loads_beyond])
         # The moments extend beyond the cells, or into the image at an end.
         loads = coarsen(padded, PARTS_X)[NEIGHBOURS:-NEIGHBOURS]
-        step, (before, behind) = self.grid.dx, (0 if end else NEIGHBOURS for end in has_end)
-        loads = loads[NEIGHBOURS - before : loads.shape[0] - NEIGHBOURS + behind]
-        first, last = self.grid.x_range
-        x_edges = np.linspace(first - before * step, last + behind * step, loads.shape[0] + 1)
+        step, (cells_before, cells_behind) = self.grid.dx, (0 if has_image else NEIGHBOURS for has_image in has_end)
+        loads = loads[NEIGHBOURS - cells_before : loads.shape[0] - NEIGHBOURS + cells_behind]
+        first_edge, last_edge = self.grid.x_range
+        x_edges = np.linspace(first_edge - cells_before * step, last_edge + cells_behind * step, loads.shape[0] + 1)
         return loads, Grid.between(x_edges, grid.y_range, loads.shape[1])
 
     def end_load(self) -> tuple[FloatArray, Grid]:
@@ -191,19 +191,19 @@ class FineCells:
                 is_split[slice(*resolved_columns(self.grid.x_edges, end))] = True
         is_split &= self.is_split
         edges = _split_edges(self.grid.x_edges, is_split)
-        unsplit = add_images(~is_split, 1, self.extent)
+        is_unsplit = add_images(~is_split, 1, self.extent)
 
         def column_means(cells: FineCells) -> FloatArray:
             # The neighbours of unsplit columns carry their moments.
-            moments = MomentLoads(*(np.where(unsplit, loads, 0.0) for loads in cells.x_moments)).total.T
+            moments = MomentLoads(*(np.where(is_unsplit, loads, 0.0) for loads in cells.x_moments)).total.T
             return cells.column_means([edges]) + np.repeat(
                 self._without_images(moments), np.where(is_split, PARTS_X, 1), axis=0
             )
 
-        loaded, _ = self._refine_along_y(edges, column_means(self), column_means(self.shape_cells), 0.0)
+        fine_loads, _ = self._refine_along_y(edges, column_means(self), column_means(self.shape_cells), 0.0)
         # The positions on the faces follow from the grid, not from the loaded cells: the field is additive.
-        beyond = self.grid.cells_y + SPARE_CELLS - (self.first + self.count)
-        cells = np.pad(loaded, ((0, 0), (PARTS_Y * (self.first + SPARE_CELLS), PARTS_Y * beyond)))
+        rows_beyond = self.grid.cells_y + SPARE_CELLS - (self.first + self.count)
+        cells = np.pad(fine_loads, ((0, 0), (PARTS_Y * (self.first + SPARE_CELLS), PARTS_Y * rows_beyond)))
         low, high = self.grid.y_range
         margin = SPARE_CELLS * self.grid.dy
         return cells, Grid.between(edges, (low - margin, high + margin), cells.shape[1])
@@ -228,12 +228,12 @@ class FineCells:
 
     def _without_images(self, columns: FloatArray) -> FloatArray:
         """Columns without images."""
-        images = self.grid.cells_x if np.isfinite(self.extent[0]) else 0
-        return columns[images : images + self.grid.cells_x]
+        image_count = self.grid.cells_x if np.isfinite(self.extent[0]) else 0
+        return columns[image_count : image_count + self.grid.cells_x]
 
 
-def coarsen(fine: FloatArray, fine_per_cell: int) -> FloatArray:
-    """Return loads with the moments of `fine` loads (fine cell, ...): (cell, ...), `NEIGHBOURS` more at either side."""
+def coarsen(fine_loads: FloatArray, fine_per_cell: int) -> FloatArray:
+    """Return loads with the moments of `fine_loads` (fine cell, ...): (cell, ...), `NEIGHBOURS` more at either side."""
     cells = np.arange(-NEIGHBOURS, NEIGHBOURS + 1.0)
     midpoints = (np.arange(fine_per_cell) - 0.5 * (fine_per_cell - 1)) / fine_per_cell
     orders = np.arange(cells.size)[:, None]
@@ -244,29 +244,29 @@ def coarsen(fine: FloatArray, fine_per_cell: int) -> FloatArray:
         )
 
     weights = np.linalg.solve(moments(cells, 1.0), moments(midpoints, 1 / fine_per_cell)) / fine_per_cell  # eq. (32c)
-    by_cell = fine.reshape(fine.shape[0] // fine_per_cell, fine_per_cell, *fine.shape[1:])
-    loads = np.zeros((by_cell.shape[0] + 2 * NEIGHBOURS, *fine.shape[1:]))
-    for index, row in enumerate(weights):
-        loads[index : index + by_cell.shape[0]] += np.tensordot(by_cell, row, axes=(1, 0))
+    by_cell = fine_loads.reshape(fine_loads.shape[0] // fine_per_cell, fine_per_cell, *fine_loads.shape[1:])
+    loads = np.zeros((by_cell.shape[0] + 2 * NEIGHBOURS, *fine_loads.shape[1:]))
+    for index, cell_weights in enumerate(weights):
+        loads[index : index + by_cell.shape[0]] += np.tensordot(by_cell, cell_weights, axes=(1, 0))
     return loads
 
 
 def mirror_edges(edges: FloatArray, extent: tuple[float, float]) -> FloatArray:
     """Edges of columns and their nearest images; each end of the body is an edge."""
-    low, high = extent
+    first_mirror, last_mirror = extent
     all_edges = [edges]
-    if np.isfinite(low):
-        all_edges.insert(0, (2 * low - edges[::-1])[:-1])
-    if np.isfinite(high):
-        all_edges.append((2 * high - edges[::-1])[1:])
+    if np.isfinite(first_mirror):
+        all_edges.insert(0, (2 * first_mirror - edges[::-1])[:-1])
+    if np.isfinite(last_mirror):
+        all_edges.append((2 * last_mirror - edges[::-1])[1:])
     return np.concatenate(all_edges)
 
 
 def add_images(columns: Array, image: int, extent: tuple[float, float]) -> Array:
     """Columns (column, y) between their nearest images."""
-    low, high = (bool(np.isfinite(end)) for end in extent)
+    has_first_mirror, has_last_mirror = (bool(np.isfinite(end)) for end in extent)
     images = [columns[::-1] if image > 0 else -columns[::-1]]
-    return np.concatenate([*images[:low], columns, *images[:high]])
+    return np.concatenate([*images[:has_first_mirror], columns, *images[:has_last_mirror]])
 
 
 def resolved_columns(edges: FloatArray, x: float, min_width: float = 0.0) -> tuple[int, int]:
@@ -274,18 +274,18 @@ def resolved_columns(edges: FloatArray, x: float, min_width: float = 0.0) -> tup
     # Columns up to the width `min_width` at either end are left out.
     widths = np.diff(edges)
     distance = np.abs(0.5 * (edges[1:] + edges[:-1]) - x)
-    wide = widths > MIN_RESOLVED_WIDTH * distance
+    is_wide = widths > MIN_RESOLVED_WIDTH * distance
     nearest = int(distance.argmin())
-    before, behind = np.flatnonzero(~wide[:nearest]), np.flatnonzero(~wide[nearest:])
-    lowest = int(before[-1]) + 1 if before.size else 0
-    highest = nearest + int(behind[0]) if behind.size else widths.size
+    narrow_before, narrow_behind = np.flatnonzero(~is_wide[:nearest]), np.flatnonzero(~is_wide[nearest:])
+    lowest = int(narrow_before[-1]) + 1 if narrow_before.size else 0
+    highest = nearest + int(narrow_behind[0]) if narrow_behind.size else widths.size
     resolved = np.flatnonzero(widths[lowest:highest] > min_width)
     return (lowest + int(resolved[0]), lowest + int(resolved[-1]) + 1) if resolved.size else (nearest, nearest)
 
 
 def _split_edges(edges: FloatArray, split_columns: BoolArray) -> FloatArray:
     """Edges of columns, some of them split."""
-    inner = edges[:-1, None] + np.diff(edges)[:, None] * np.arange(PARTS_X) / PARTS_X
-    selected = np.ones(inner.shape, bool)
-    selected[:, 1:] = split_columns[:, None]
-    return np.append(inner[selected], edges[-1])
+    part_edges = edges[:-1, None] + np.diff(edges)[:, None] * np.arange(PARTS_X) / PARTS_X
+    is_edge = np.ones(part_edges.shape, bool)
+    is_edge[:, 1:] = split_columns[:, None]
+    return np.append(part_edges[is_edge], edges[-1])

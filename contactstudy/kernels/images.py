@@ -71,15 +71,15 @@ def image_kernel(
         add_spread_load(nearest + period * index - 0.5 * dx, nearest + period * index + 0.5 * dx, 1.0)
     add_spread_load(spread_from, spread_to, dx / period)
     step = 0.1 * length
-    for side in (-step, step):
-        slope = period / 24 * np.sign(side) / (2 * step)  # eq. (32e)
-        add_spread_load(spread_from + side - 0.5 * dx, spread_from + side + 0.5 * dx, slope)
+    for side_shift in (-step, step):
+        slope = period / 24 * np.sign(side_shift) / (2 * step)  # eq. (32e)
+        add_spread_load(spread_from + side_shift - 0.5 * dx, spread_from + side_shift + 0.5 * dx, slope)
 
     nodes_x, interpolation_x = _chebyshev_points(x, length + dx, CHEBYSHEV_X)
     nodes_y, interpolation_y = interpolation_points(y, length)
     positions = np.add.outer(shifts, nodes_x)[..., None]
-    values = corner(positions, nodes_y + 0.5 * dy) - corner(positions, nodes_y - 0.5 * dy)
-    images = np.tensordot(weights, values, axes=(0, -3))
+    shifted_rows = corner(positions, nodes_y + 0.5 * dy) - corner(positions, nodes_y - 0.5 * dy)
+    images = np.tensordot(weights, shifted_rows, axes=(0, -3))
     images = interpolation_x @ images
     return np.asarray(images if interpolation_y is None else images @ interpolation_y.T)
 
@@ -106,53 +106,53 @@ class FarImages:
 
     def means(self, edges: FloatArray) -> FloatArray:
         """Matrix (point, cell) of means over the cells between `edges`, distances from the first end."""
-        scaled = 2 * edges / self.length - 1
-        primitives = np.array([chebyshev.chebval(scaled, chebyshev.chebint(row)) for row in np.eye(self.count)])
-        return np.asarray(self._coefficients.T @ (np.diff(primitives, axis=1) / np.diff(scaled)))
+        scaled_edges = 2 * edges / self.length - 1
+        primitives = np.array([chebyshev.chebval(scaled_edges, chebyshev.chebint(row)) for row in np.eye(self.count)])
+        return np.asarray(self._coefficients.T @ (np.diff(primitives, axis=1) / np.diff(scaled_edges)))
 
     def influence(self, corner: CornerFunction, y: FloatArray, dy: float, level: FloatArray) -> FloatArray:
         """Influence (..., point, point, y) of a unit force per length of y, over `dy`; a row of images adds `level`."""
         points, width = 0.5 * self.length * (self._nodes + 1), IMAGE_CELL * self.length
-        rows = (
+        image_rows = (
             (np.subtract.outer(points, points), 2 * self.length, 1),
             (np.add.outer(points, points) - self.length, 3 * self.length, self.image),
         )
         total = np.zeros(())
-        for distances, nearest, sign in rows:
+        for distances, nearest, sign in image_rows:
             kernel = image_kernel(corner, distances.ravel(), y, width, dy, length=self.length, nearest=nearest) / width
             kernel = kernel + dy * level[..., None, None]
             total = total + sign * kernel.reshape(*kernel.shape[:-2], *distances.shape, y.size)
         return total
 
 
-def polynomial_count(half: float, distance: float, error: float = INTERPOLATION_ERROR) -> int:
+def polynomial_count(half_range: float, distance: float, error: float = INTERPOLATION_ERROR) -> int:
     """Points of a polynomial on a span ``2 half`` for the field of loads at a `distance` from all of it."""
     # Each point divides the error by ``exp(asinh(distance / half))``.
-    return int(np.ceil(-np.log(error) / np.arcsinh(distance / half))) + 1
+    return int(np.ceil(-np.log(error) / np.arcsinh(distance / half_range))) + 1
 
 
 def interpolation_points(
-    values: FloatArray, distance: float, error: float = INTERPOLATION_ERROR
+    positions: FloatArray, distance: float, error: float = INTERPOLATION_ERROR
 ) -> tuple[FloatArray, FloatArray | None]:
-    """Points for the interpolation of a field of distant loads, and its matrix (value, point), None at `values`."""
-    low, high = float(values.min()), float(values.max())
-    half = 0.5 * (high - low)
-    if not half:
-        return values[:1], np.ones((values.size, 1)) if values.size > 1 else None
-    count = polynomial_count(half, distance, error)
-    if count >= values.size:
-        return values, None
-    points, matrix = _chebyshev_points(values - 0.5 * (low + high), half, count)
-    return points + 0.5 * (low + high), matrix
+    """Points for the interpolation of a field of distant loads, and its matrix (value, point), None at `positions`."""
+    lowest, highest = float(positions.min()), float(positions.max())
+    half_range = 0.5 * (highest - lowest)
+    if not half_range:
+        return positions[:1], np.ones((positions.size, 1)) if positions.size > 1 else None
+    count = polynomial_count(half_range, distance, error)
+    if count >= positions.size:
+        return positions, None
+    points, matrix = _chebyshev_points(positions - 0.5 * (lowest + highest), half_range, count)
+    return points + 0.5 * (lowest + highest), matrix
 
 
-def _chebyshev_points(values: FloatArray, span: float, count: int) -> tuple[FloatArray, FloatArray]:
+def _chebyshev_points(positions: FloatArray, half_range: float, count: int) -> tuple[FloatArray, FloatArray]:
     """Chebyshev points of ``-span..span``, and the interpolation matrix to `interpolation`."""
     points = chebyshev.chebpts1(count)
     matrix = np.linalg.solve(
-        chebyshev.chebvander(points, count - 1).T, chebyshev.chebvander(values / span, count - 1).T
+        chebyshev.chebvander(points, count - 1).T, chebyshev.chebvander(positions / half_range, count - 1).T
     )
-    return span * points, np.asarray(matrix.T, dtype=np.float64)
+    return half_range * points, np.asarray(matrix.T, dtype=np.float64)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -200,28 +200,23 @@ LOAD_POINTS = 10
 
 
 def far_images(
-    load: FloatArray,
-    influence: Influence,
-    grid: Grid,
-    first: int,
-    points: Points,
-    extent: tuple[float, float],
+    load: FloatArray, influence: Influence, grid: Grid, first_row: int, points: Points, extent: tuple[float, float]
 ) -> FloatArray:
-    """Field of all images of a load except the nearest; `first` is its first column along y in the grid."""
-    low, length = extent[0], extent[1] - extent[0]
+    """Field of all images of a load except the nearest; `first_row` is its first column along y in the grid."""
+    first_end, length = extent[0], extent[1] - extent[0]
     images = FarImages(length, influence.load.sign_x, LOAD_POINTS)
-    point_loads = (images.means(grid.x_edges - low) * grid.widths) @ load
-    count_before = max(-first, 0)
-    count_behind = max(first + load.shape[1] - grid.cells_y, 0)
-    centres = grid.y_range[0] + grid.dy * (np.arange(-count_before, grid.cells_y + count_behind) + 0.5)
+    point_loads = (images.means(grid.x_edges - first_end) * grid.widths) @ load
+    rows_before = max(-first_row, 0)
+    rows_behind = max(first_row + load.shape[1] - grid.cells_y, 0)
+    centres = grid.y_range[0] + grid.dy * (np.arange(-rows_before, grid.cells_y + rows_behind) + 0.5)
     (nodes_load, load_interpolation), (nodes_y, interpolation_y), (depths, interpolation_z) = (
         interpolation_points(axis, length) for axis in (centres, points.y, points.z)
     )
-    loaded = slice(count_before + first, count_before + first + load.shape[1])
+    loaded_rows = slice(rows_before + first_row, rows_before + first_row + load.shape[1])
     if load_interpolation is not None:
-        point_loads = point_loads @ load_interpolation[loaded]
+        point_loads = point_loads @ load_interpolation[loaded_rows]
     else:
-        point_loads = np.pad(point_loads, ((0, 0), (loaded.start, centres.size - loaded.stop)))
+        point_loads = np.pad(point_loads, ((0, 0), (loaded_rows.start, centres.size - loaded_rows.stop)))
     digits = int(np.ceil(-np.log10(ROUNDING * grid.dy)))
     offsets, offset_indices = np.unique(np.subtract.outer(nodes_y, nodes_load).round(digits), return_inverse=True)
     offset_indices = offset_indices.reshape(nodes_y.size, nodes_load.size)
@@ -231,7 +226,7 @@ def far_images(
         kernel = images.influence(corner, offsets, grid.dy, np.array(influence.image_level))
         for row in range(nodes_y.size):
             field[:, :, row, depth] = np.tensordot(kernel[..., offset_indices[row]], point_loads, axes=2)
-    interpolation_x = images.interpolation(points.x - low)
+    interpolation_x = images.interpolation(points.x - first_end)
     field = np.tensordot(field, interpolation_x, axes=(1, 1))
     if interpolation_z is not None:
         field = np.tensordot(field, interpolation_z, axes=(2, 1))

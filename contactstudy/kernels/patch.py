@@ -42,8 +42,8 @@ def _angle(opposite: FloatArray, adjacent: FloatArray) -> FloatArray:
 def _stack_components(*components: FloatArray) -> FloatArray:
     """Components over ``2 pi`` as one array (component, ...)."""
     stacked = np.empty((len(components), *components[0].shape))
-    for target, values in zip(stacked, components, strict=True):
-        np.multiply(values, 1 / (2 * np.pi), out=target)
+    for scaled_component, component in zip(stacked, components, strict=True):
+        np.multiply(component, 1 / (2 * np.pi), out=scaled_component)
     return stacked
 
 
@@ -58,12 +58,12 @@ def normal_corner(x: FloatArray, y: FloatArray, z: FloatArray | float, poisson: 
     along_x = 1.0 / np.maximum(r * (xx + z * z), TINY)
     along_y = 1.0 / np.maximum(r * (yy + z * z), TINY)
     v_xx, v_yy = -xy * along_x, -xy * along_y
-    free = 1 - 2 * poisson
+    compressibility = 1 - 2 * poisson
     return _stack_components(
-        2 * poisson * v_z - free * chi_xx - z * v_xx,
-        2 * poisson * v_z - free * chi_yy - z * v_yy,
+        2 * poisson * v_z - compressibility * chi_xx - z * v_xx,
+        2 * poisson * v_z - compressibility * chi_yy - z * v_yy,
         v_z + z * (v_xx + v_yy),
-        -free * np.log(np.maximum(r + z, TINY)) - z / np.maximum(r, TINY),
+        -compressibility * np.log(np.maximum(r + z, TINY)) - z / np.maximum(r, TINY),
         z * z * y * along_x,
         z * z * x * along_y,
     )
@@ -110,11 +110,11 @@ class _Potentials:
 def normal_displacement_inside(x: FloatArray, y: FloatArray, z: FloatArray | float, poisson: float) -> FloatArray:
     """Corner functions of ``4 pi G (u_x, u_y, u_z)`` under unit pressure: array (3, ...)."""
     potentials = _Potentials(x, y, z)
-    free = 1 - 2 * poisson
+    compressibility = 1 - 2 * poisson
     return np.stack(
         [
-            -free * potentials.chi_x - z * potentials.asinh_y,
-            -free * potentials.chi_y - z * potentials.asinh_x,
+            -compressibility * potentials.chi_x - z * potentials.asinh_y,
+            -compressibility * potentials.chi_y - z * potentials.asinh_x,
             2 * (1 - poisson) * potentials.v - z * potentials.v_z,
         ]
     )

@@ -50,15 +50,17 @@ class SmoothLoad:
         """Smooth functions through the loads `cells` (row, cell); `extends_beyond`: half a cell further."""
         loads, widths = np.abs(cells), np.diff(edges)
         sign = np.sign(cells)
-        rows = loads.shape[0]
+        row_count = loads.shape[0]
         # The load is zero on faces where the sign changes.
-        squared = loads**2
-        face_squares = (squared[:, :-1] * widths[1:] + squared[:, 1:] * widths[:-1]) / (widths[1:] + widths[:-1])
-        smaller = np.minimum(loads[:, :-1], loads[:, 1:])
+        squares = loads**2
+        face_squares = (squares[:, :-1] * widths[1:] + squares[:, 1:] * widths[:-1]) / (widths[1:] + widths[:-1])
+        smaller_loads = np.minimum(loads[:, :-1], loads[:, 1:])
         equal_signs = sign[:, :-1] == sign[:, 1:]
-        faces = np.zeros((rows, widths.size + 1))
-        faces[:, 1:-1] = np.where(equal_signs, np.minimum(np.sqrt(face_squares), MAX_FACE_RATIO * smaller), 0.0)
-        first, last = faces[:, :-1].copy(), faces[:, 1:].copy()
+        face_values = np.zeros((row_count, widths.size + 1))
+        face_values[:, 1:-1] = np.where(
+            equal_signs, np.minimum(np.sqrt(face_squares), MAX_FACE_RATIO * smaller_loads), 0.0
+        )
+        first, last = face_values[:, :-1].copy(), face_values[:, 1:].copy()
         middle, knot = np.zeros(loads.shape), np.full(loads.shape, 0.5)
         fixed, coupled_to_next = np.zeros(loads.shape, bool), np.zeros(loads.shape, bool)
         forwards = _DirectedRows(
@@ -71,8 +73,8 @@ class SmoothLoad:
         for cell_row, cell in backwards.shape_ends(extends_beyond=extends_beyond):
             coupled_to_next[cell_row, widths.size - 2 - cell] = True
         np.subtract(1.0, knot, out=knot)
-        free = ~fixed & (loads > 0)
-        middle[free] = _solve_knot_value(loads[free], first[free], last[free])
+        is_free = ~fixed & (loads > 0)
+        middle[is_free] = _solve_knot_value(loads[is_free], first[is_free], last[is_free])
         return cls(
             edges=edges, sign=sign, first=first, middle=middle, last=last, knot=knot, coupled_to_next=coupled_to_next
         )
@@ -89,32 +91,36 @@ class SmoothLoad:
         # Where the shape is 0, the load equals the ratio. Each cell keeps its force; coupled cells keep their sum.
         widths, (rows, count) = np.diff(self.edges), cells.shape
         force, moment, _ = self.moments_up_to(np.arange(count), self.edges[1:])
-        empty = force == 0
-        force, moment = np.where(empty, widths, force), np.where(empty, 0.5 * widths**2, moment)
+        is_empty = force == 0
+        force, moment = np.where(is_empty, widths, force), np.where(is_empty, 0.5 * widths**2, moment)
         sign, first, middle, last = (
-            np.where(empty, 1.0, values) for values in (self.sign, self.first, self.middle, self.last)
+            np.where(is_empty, 1.0, values) for values in (self.sign, self.first, self.middle, self.last)
         )
         shape = replace(self, sign=sign, first=first, middle=middle, last=last)
-        total, centroid = cells * widths, self.edges[:-1] + moment / force
+        cell_force, centroid = cells * widths, self.edges[:-1] + moment / force
         # Coupled cells form a group with one ratio; other groups contain one cell.
-        before = np.pad(self.coupled_to_next[:, :-1], ((0, 0), (1, 0)))
-        start = np.maximum.accumulate(np.where(before, 0, np.arange(count)), axis=1)
-        stop = np.minimum.accumulate(np.where(self.coupled_to_next, count, np.arange(count))[:, ::-1], axis=1)[:, ::-1]
+        is_coupled_back = np.pad(self.coupled_to_next[:, :-1], ((0, 0), (1, 0)))
+        group_start = np.maximum.accumulate(np.where(is_coupled_back, 0, np.arange(count)), axis=1)
+        group_stop = np.minimum.accumulate(np.where(self.coupled_to_next, count, np.arange(count))[:, ::-1], axis=1)[
+            :, ::-1
+        ]
         if self.coupled_to_next.any():
             moment = force * centroid
-            total, force, moment = (_group_sums(values, start) for values in (total, force, moment))
+            cell_force, force, moment = (_group_sums(values, group_start) for values in (cell_force, force, moment))
             centroid = moment / force
-        ratio = total / force
-        mean = np.abs(force / (self.edges[1:][stop] - self.edges[:-1][start]))
+        ratio = cell_force / force
+        mean = np.abs(force / (self.edges[1:][group_stop] - self.edges[:-1][group_start]))
         distances, ratio_changes = [], []
         row = np.arange(rows)[:, None]
         for neighbour, exists in (
-            (np.maximum(start - 1, 0), start > 0),
-            (np.minimum(stop + 1, count - 1), stop < count - 1),
+            (np.maximum(group_start - 1, 0), group_start > 0),
+            (np.minimum(group_stop + 1, count - 1), group_stop < count - 1),
         ):
             # A neighbour with a small mean determines its ratio badly.
-            valid = exists & ~empty & ~empty[row, neighbour] & (mean[row, neighbour] > MIN_NEIGHBOUR_RATIO * mean)
-            distances.append(np.where(valid, centroid[row, neighbour] - centroid, 0.0))
+            is_valid = (
+                exists & ~is_empty & ~is_empty[row, neighbour] & (mean[row, neighbour] > MIN_NEIGHBOUR_RATIO * mean)
+            )
+            distances.append(np.where(is_valid, centroid[row, neighbour] - centroid, 0.0))
             ratio_changes.append(ratio[row, neighbour] - ratio)
         # The slope of the parabola through the ratios of both neighbours; with one neighbour the ratio is constant.
         (distance_back, distance_ahead), (first_change, last_change) = distances, ratio_changes
@@ -133,14 +139,14 @@ class SmoothLoad:
         first, middle, last, knot, sign = (
             values[:, cell] for values in (self.first, self.middle, self.last, self.knot, self.sign)
         )
-        before = _moments_of_root(first, middle, np.minimum(fraction, knot), knot)
-        force, moment, second = _moments_of_root(middle, last, np.maximum(fraction - knot, 0.0), 1 - knot)
-        second += knot * (2 * moment + knot * force)
+        first_part = _moments_of_root(first, middle, np.minimum(fraction, knot), knot)
+        force, moment, second_moment = _moments_of_root(middle, last, np.maximum(fraction - knot, 0.0), 1 - knot)
+        second_moment += knot * (2 * moment + knot * force)
         moment += knot * force
         return (
-            sign * width * (before[0] + force),
-            sign * width**2 * (before[1] + moment),
-            sign * width**3 * (before[2] + second),
+            sign * width * (first_part[0] + force),
+            sign * width**2 * (first_part[1] + moment),
+            sign * width**3 * (first_part[2] + second_moment),
         )
 
 
@@ -165,9 +171,9 @@ class ShapedLoad:
 
     def _moments_up_to(self, cell: IntArray, x: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Force and first moment between the start of each `cell` and `x`, about the start: arrays (row, x)."""
-        force, moment, second = self.shape.moments_up_to(cell, x)
+        force, moment, second_moment = self.shape.moments_up_to(cell, x)
         ratio, slope = self.ratio[:, cell], self.slope[:, cell]
-        return ratio * force + slope * moment, ratio * moment + slope * second
+        return ratio * force + slope * moment, ratio * moment + slope * second_moment
 
     @property
     def cell_means(self) -> FloatArray:
@@ -183,8 +189,8 @@ class ShapedLoad:
     def integral(self, x: FloatArray) -> FloatArray:
         """Integral of the load up to the positions: array (row, x)."""
         cell = np.clip(np.searchsorted(self.edges, x, side="right") - 1, 0, self.edges.size - 2)
-        before = np.pad(np.cumsum(self._cell_moments[0], axis=1), ((0, 0), (1, 0)))
-        return np.asarray(before[:, cell] + self._moments_up_to(cell, x)[0])
+        force_before = np.pad(np.cumsum(self._cell_moments[0], axis=1), ((0, 0), (1, 0)))
+        return np.asarray(force_before[:, cell] + self._moments_up_to(cell, x)[0])
 
     def means(self, edges: FloatArray) -> FloatArray:
         """Means between other edges, metres: array (row, cell)."""
@@ -200,15 +206,15 @@ class ShapedLoad:
         sums_to_points, sums_to_start = self._moments_up_to(cell, points[1:]), self._moments_up_to(cell[:1], points[:1])
         cell_starts = np.append(True, np.diff(cell) > 0)
         cell_of_point = np.clip(np.searchsorted(edges, midpoints, side="right") - 1, 0, edges.size - 2)
-        first = np.flatnonzero(np.append(True, np.diff(cell_of_point) > 0))
+        first_points = np.flatnonzero(np.append(True, np.diff(cell_of_point) > 0))
         force, moment = (
-            sums - np.where(cell_starts, 0.0, np.concatenate([initial, sums[:, :-1]], axis=1))
-            for sums, initial in zip(sums_to_points, sums_to_start, strict=True)
+            sums - np.where(cell_starts, 0.0, np.concatenate([start_sums, sums[:, :-1]], axis=1))
+            for sums, start_sums in zip(sums_to_points, sums_to_start, strict=True)
         )
         force[:, 0] -= sums_to_start[0][:, 0]
         moment[:, 0] -= sums_to_start[1][:, 0]
         moment -= (0.5 * (edges[1:] + edges[:-1])[cell_of_point] - self.edges[cell]) * force
-        force, moment = (np.add.reduceat(values, first, axis=1) for values in (force, moment))
+        force, moment = (np.add.reduceat(values, first_points, axis=1) for values in (force, moment))
         return force / np.diff(edges) + moment_loads(edges, moment).total
 
 
@@ -228,10 +234,10 @@ class MomentLoads(NamedTuple):
     @property
     def total(self) -> FloatArray:
         """Sum of the loads on every cell."""
-        total = self.centre.copy()
-        total[:, :-1] += self.before[:, 1:]
-        total[:, 1:] += self.behind[:, :-1]
-        return total
+        sums = self.centre.copy()
+        sums[:, :-1] += self.before[:, 1:]
+        sums[:, 1:] += self.behind[:, :-1]
+        return sums
 
 
 def moment_loads(edges: FloatArray, moments: FloatArray) -> MomentLoads:
@@ -241,15 +247,17 @@ def moment_loads(edges: FloatArray, moments: FloatArray) -> MomentLoads:
         return MomentLoads(*(np.zeros(moments.shape) for _ in range(3)))
     spacings = 0.5 * (widths[1:] + widths[:-1])
     # The first and the last cell have one neighbour.
-    ahead, back = np.append(spacings, np.inf), np.append(np.inf, spacings)
+    spacing_ahead, spacing_back = np.append(spacings, np.inf), np.append(np.inf, spacings)
     weight = np.ones(widths.size)
-    weight[1:-1] = back[1:-1] / (ahead[1:-1] + back[1:-1])
-    behind = moments * weight / ahead  # eq. (32d)
+    weight[1:-1] = spacing_back[1:-1] / (spacing_ahead[1:-1] + spacing_back[1:-1])
+    load_behind = moments * weight / spacing_ahead  # eq. (32d)
     weight = np.ones(widths.size)
-    weight[1:-1] = ahead[1:-1] / (ahead[1:-1] + back[1:-1])
-    before = -moments * weight / back
+    weight[1:-1] = spacing_ahead[1:-1] / (spacing_ahead[1:-1] + spacing_back[1:-1])
+    load_before = -moments * weight / spacing_back
     return MomentLoads(
-        before / np.append(1.0, widths[:-1]), -(before + behind) / widths, behind / np.append(widths[1:], 1.0)
+        load_before / np.append(1.0, widths[:-1]),
+        -(load_before + load_behind) / widths,
+        load_behind / np.append(widths[1:], 1.0),
     )
 
 
@@ -274,10 +282,10 @@ class _DirectedRows:
     def shape_ends(self, *, extends_beyond: bool) -> list[tuple[IntArray, IntArray]]:
         """Shape the last loaded cells; return rows and cells that exchange force with the next cell."""
         loads, sign = self.loads, self.sign
-        loaded = loads > 0
-        ends = loaded.copy()
-        ends[:, :-1] &= ~loaded[:, 1:]
-        row, cell = np.nonzero(ends)
+        is_loaded = loads > 0
+        is_end = is_loaded.copy()
+        is_end[:, :-1] &= ~is_loaded[:, 1:]
+        row, cell = np.nonzero(is_end)
         end_load = loads[row, cell]
         self.last[row, cell] = end_load
 
@@ -289,48 +297,53 @@ class _DirectedRows:
 
         load_1, load_2, load_3 = previous_loads(1), previous_loads(2), previous_loads(3)
         face, width = self._face(cell, load_1, load_2, 1), self.widths[cell]
-        falling = np.flatnonzero(
+        falling_ends = np.flatnonzero(
             (load_2 > MIN_EQUAL_RATIO * load_1) & (load_1 > end_load / MIN_EQUAL_RATIO) & (face > 0)
         )
-        row, cell = row[falling], cell[falling]
+        row, cell = row[falling_ends], cell[falling_ends]
         end_load, load_1, load_2, load_3, face, width = (
-            values[falling] for values in (end_load, load_1, load_2, load_3, face, width)
+            values[falling_ends] for values in (end_load, load_1, load_2, load_3, face, width)
         )
         self.first[row, cell] = face
         self.last[row, cell - 1] = face
         # The square falls linearly from the face to zero; the force determines the distance over the width.
         length_ratio = 1.5 * end_load / face  # eq. (32b)
-        inside = length_ratio <= 1
-        index = row[inside], cell[inside]
-        self.knot[index], self.middle[index], self.last[index], self.fixed[index] = length_ratio[inside], 0.0, 0.0, True
+        is_inside = length_ratio <= 1
+        index = row[is_inside], cell[is_inside]
+        self.knot[index], self.middle[index], self.last[index], self.fixed[index] = (
+            length_ratio[is_inside],
+            0.0,
+            0.0,
+            True,
+        )
         # The load extends neither into the last cell of the row nor to a cell beside another contact.
-        last = self.widths.size - 1
-        beyond = extends_beyond & (length_ratio > 1) & (length_ratio < 1.5) & (cell < last)
-        beyond &= loads[row, np.minimum(cell + 2, last)] == 0
-        full = ~inside & ~beyond
-        index = row[full], cell[full]
-        self.last[index] = np.minimum(_opposite_face(end_load[full], face[full]), end_load[full])
-        self._extend_beyond(row[beyond], cell[beyond], face[beyond], length_ratio[beyond])
-        extended = row[beyond], cell[beyond]
+        last_cell = self.widths.size - 1
+        is_beyond = extends_beyond & (length_ratio > 1) & (length_ratio < 1.5) & (cell < last_cell)
+        is_beyond &= loads[row, np.minimum(cell + 2, last_cell)] == 0
+        is_full = ~is_inside & ~is_beyond
+        index = row[is_full], cell[is_full]
+        self.last[index] = np.minimum(_opposite_face(end_load[is_full], face[is_full]), end_load[is_full])
+        self._extend_beyond(row[is_beyond], cell[is_beyond], face[is_beyond], length_ratio[is_beyond])
+        extended_cells = row[is_beyond], cell[is_beyond]
         # A narrow loaded part of the last cell: the last two cells share their force.
         face = self._face(cell, load_2, load_3, 2)
         previous_width = self.widths[np.maximum(cell - 1, 0)]
         length = 1.5 * (load_1 * previous_width + end_load * width) / np.where(face > 0, face, np.inf)
-        narrow = np.flatnonzero(
+        narrow_ends = np.flatnonzero(
             (length_ratio < MIN_LOADED_FRACTION)
             & (load_3 > MIN_EQUAL_RATIO * load_2)
             & (face > 0)
             & (length > previous_width)
             & (length < previous_width + width)
         )
-        row, cell = row[narrow], cell[narrow]
-        face, previous_width, width, length = (values[narrow] for values in (face, previous_width, width, length))
+        row, cell = row[narrow_ends], cell[narrow_ends]
+        face, previous_width, width, length = (values[narrow_ends] for values in (face, previous_width, width, length))
         self.last[row, cell - 2] = self.first[row, cell - 1] = face
         self.middle[row, cell - 1] = face * np.sqrt(1 - 0.5 * previous_width / length)
         self.last[row, cell - 1] = self.first[row, cell] = face * np.sqrt(1 - previous_width / length)
         self.knot[row, cell - 1], self.fixed[row, cell - 1] = 0.5, True
         self.knot[row, cell] = (length - previous_width) / width
-        return [extended, (row, cell - 1)]
+        return [extended_cells, (row, cell - 1)]
 
     def _extend_beyond(self, row: IntArray, cell: IntArray, face: FloatArray, length_ratio: FloatArray) -> None:
         """Shape the last loaded cell and the next, in which the square falls to zero."""
@@ -341,11 +354,11 @@ class _DirectedRows:
         self.knot[row, cell + 1] = (length_ratio - 1) * width_ratio
         self.sign[row, cell + 1] = self.sign[row, cell]
 
-    def _face(self, cell: IntArray, near: FloatArray, far: FloatArray, steps: int) -> FloatArray:
+    def _face(self, cell: IntArray, near_load: FloatArray, far_load: FloatArray, steps: int) -> FloatArray:
         """Value on the last face of the cells `steps` before, extrapolated linearly in the square."""
         near_width = self.widths[np.maximum(cell - steps, 0)]
         far_width = self.widths[np.maximum(cell - steps - 1, 0)]
-        squared = near**2 - (far**2 - near**2) * near_width / (near_width + far_width)  # eq. (32b)
+        squared = near_load**2 - (far_load**2 - near_load**2) * near_width / (near_width + far_width)  # eq. (32b)
         return np.sqrt(np.maximum(squared, 0.0))
 
 
@@ -356,17 +369,20 @@ def _mean_of_root(a: FloatArray, b: FloatArray) -> FloatArray:
 
 
 def _moments_of_root(
-    a: FloatArray, b: FloatArray, length: FloatArray, total: FloatArray
+    a: FloatArray, b: FloatArray, length: FloatArray, piece_length: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Force, first and second moment about the start of the first part of a piece with a linear square."""
     # Of length `length`; the piece has the length `total` and the values `a` and `b` at its ends.
-    end_square = a * a + (b * b - a * a) * (length / np.where(total > 0, total, 1.0))
+    end_square = a * a + (b * b - a * a) * (length / np.where(piece_length > 0, piece_length, 1.0))
     b = np.sqrt(np.maximum(end_square, 0.0))
     value_sum = np.where(a + b > 0, a + b, 1.0)
     cubes = ((3 * b + 6 * a) * b + 4 * a * a) * b + 2 * a * a * a
     powers = (((15 * b + 45 * a) * b + 48 * a * a) * b + 24 * a * a * a) * b + 8 * a * a * a * a
-    first, second = 2 / 15 * cubes / (value_sum * value_sum), 2 / 105 * powers / (value_sum * value_sum * value_sum)
-    return length * _mean_of_root(a, b), length**2 * np.asarray(first), length**3 * np.asarray(second)
+    first_moment, second_moment = (
+        2 / 15 * cubes / (value_sum * value_sum),
+        2 / 105 * powers / (value_sum * value_sum * value_sum),
+    )
+    return length * _mean_of_root(a, b), length**2 * np.asarray(first_moment), length**3 * np.asarray(second_moment)
 
 
 def _solve_knot_value(mean: FloatArray, first: FloatArray, last: FloatArray) -> FloatArray:
@@ -381,5 +397,5 @@ def _solve_knot_value(mean: FloatArray, first: FloatArray, last: FloatArray) -> 
 
 def _opposite_face(mean: FloatArray, face: FloatArray) -> FloatArray:
     """Value at one end of a function with a linear square, from the mean and the opposite end."""
-    half = 0.5 * (1.5 * mean - face)
-    return np.asarray(half + np.sqrt(np.maximum(half**2 + face * (1.5 * mean - face), 0.0)))
+    half_sum = 0.5 * (1.5 * mean - face)
+    return np.asarray(half_sum + np.sqrt(np.maximum(half_sum**2 + face * (1.5 * mean - face), 0.0)))

@@ -143,10 +143,10 @@ def corner_function(strips: Strips) -> CornerFunction:
         distance_x, distance_y = np.maximum(np.abs(x), TINY), np.maximum(np.abs(y), TINY)
         total = np.zeros(np.broadcast_shapes(x.shape, y.shape))
         for factor, strip in strips:
-            values = factor * strip.primitive(distance_x, distance_y)
+            primitive = factor * strip.primitive(distance_x, distance_y)
             # P is odd in X where k is even, and k is odd in Y where its density is even.
-            values = values * np.sign(x) if strip.sign_x > 0 else values
-            total += values * np.sign(y) if strip.sign_y > 0 else values
+            primitive = primitive * np.sign(x) if strip.sign_x > 0 else primitive
+            total += primitive * np.sign(y) if strip.sign_y > 0 else primitive
         return total
 
     return corner
@@ -189,7 +189,7 @@ FAR_COLUMNS = 24.0
 F loses more digits than the expansion neglects."""
 
 IMAGE_POINTS = 16  # Chebyshev points along x of the interpolated far images, for both columns. Accuracy.
-BLOCK = 16_384  # distances along x and y per evaluation. Speed: the values fit into the processor's cache.
+BLOCK_SIZE = 16_384  # distances along x and y per evaluation. Speed: the values fit into the processor's cache.
 
 
 @dataclass(frozen=True)
@@ -211,8 +211,8 @@ class LateralCells:
         difference = np.eye(self.cells + 1) - np.eye(self.cells + 1, k=-1)
         # Where the kernel is even, F is odd in Y: the difference over the first cell is twice its value.
         difference[0, 0] = 2.0 if self.even else 0.0
-        even, odd = spectrum_matrices(self.cells)
-        return np.asarray(difference.T @ (even if self.even else odd))
+        even_matrix, odd_matrix = spectrum_matrices(self.cells)
+        return np.asarray(difference.T @ (even_matrix if self.even else odd_matrix))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -232,27 +232,29 @@ class ColumnsRequest:
 
     def influence(self, strips: Strips, image: int) -> FloatArray:
         """Influence of strips with factors, and of their images of sign `image`: array (wavenumber, cell, cell)."""
-        edges, (low, high) = self.edges, self.extent
+        edges, (first_mirror, last_mirror) = self.edges, self.extent
         lateral = LateralCells(self.dy, self.cells_y, strips[0][1].sign_y > 0)
         # Columns that have been split share the influences between the others, to the last bit.
         key = (strips, image, lateral, self.extent)
-        pairs = _PairSums.of(edges, lateral, recall("column pairs", key))
+        pair_sums = _PairSums.of(edges, lateral, recall("column pairs", key))
         for factor, strip in strips:
-            pairs.add_strip(factor, strip, np.subtract.outer(edges, edges))
-            if np.isfinite(low):
-                pairs.add_strip(image * factor, strip, np.add.outer(edges - low, edges - low), image=True)
-            if np.isfinite(high):
-                from_high = np.add.outer(high - edges, high - edges)
-                pairs.add_strip(image * strip.sign_x * factor, strip, from_high, image=True)
-        retain("column pairs", key, pairs, replace=True)
-        kernel = pairs.transform()
-        if np.isfinite(low) and np.isfinite(high):
-            images = FarImages(high - low, image, IMAGE_POINTS)
-            reference_level = row_level(strips, image, high - low, self.reference)
+            pair_sums.add_strip(factor, strip, np.subtract.outer(edges, edges))
+            if np.isfinite(first_mirror):
+                pair_sums.add_strip(
+                    image * factor, strip, np.add.outer(edges - first_mirror, edges - first_mirror), image=True
+                )
+            if np.isfinite(last_mirror):
+                mirror_distances = np.add.outer(last_mirror - edges, last_mirror - edges)
+                pair_sums.add_strip(image * strip.sign_x * factor, strip, mirror_distances, image=True)
+        retain("column pairs", key, pair_sums, replace=True)
+        kernel = pair_sums.transform()
+        if np.isfinite(first_mirror) and np.isfinite(last_mirror):
+            images = FarImages(last_mirror - first_mirror, image, IMAGE_POINTS)
+            reference_level = row_level(strips, image, last_mirror - first_mirror, self.reference)
             offsets = self.dy * np.arange(self.cells_y + 1.0)
-            far = images.influence(corner_function(strips), offsets, self.dy, np.array(reference_level))
-            spectrum = even_spectrum(far) if lateral.even else odd_spectrum(far)
-            means = images.means(edges - low)
+            far_kernel = images.influence(corner_function(strips), offsets, self.dy, np.array(reference_level))
+            spectrum = even_spectrum(far_kernel) if lateral.even else odd_spectrum(far_kernel)
+            means = images.means(edges - first_mirror)
             kernel += means.T @ np.ascontiguousarray(spectrum.transpose(2, 0, 1)) @ means
         return kernel
 
@@ -271,59 +273,65 @@ class _PairSums:
         """Zero influence between columns with these edges; those between columns of `stored` are complete."""
         count = edges.size - 1
         total = np.zeros((count, count, lateral.edges.size))
-        missing = np.ones((count, count), bool)
+        is_missing = np.ones((count, count), bool)
         if stored is not None:
             index = np.minimum(np.searchsorted(stored.edges[:-1], edges[:-1]), stored.edges.size - 2)
-            common = np.flatnonzero((stored.edges[index] == edges[:-1]) & (stored.edges[index + 1] == edges[1:]))
-            total[np.ix_(common, common)] = stored.total[np.ix_(index[common], index[common])]
-            missing[np.ix_(common, common)] = False
-        return cls(edges, lateral, total, np.tril(missing))
+            common_columns = np.flatnonzero(
+                (stored.edges[index] == edges[:-1]) & (stored.edges[index + 1] == edges[1:])
+            )
+            total[np.ix_(common_columns, common_columns)] = stored.total[
+                np.ix_(index[common_columns], index[common_columns])
+            ]
+            is_missing[np.ix_(common_columns, common_columns)] = False
+        return cls(edges, lateral, total, np.tril(is_missing))
 
     def add_strip(self, factor: float, strip: Strip, distances: FloatArray, *, image: bool = False) -> None:
         """Add `factor` times the influence of columns with edges at signed `distances`; at their sums for an image."""
         widths, total, y = np.diff(self.edges), self.total, self.lateral.edges
         separation = 0.25 * (distances[1:, 1:] + distances[1:, :-1] + distances[:-1, 1:] + distances[:-1, :-1])
-        far = separation > FAR_COLUMNS * np.maximum.outer(widths, widths)
+        is_far = separation > FAR_COLUMNS * np.maximum.outer(widths, widths)
         # Edges of columns near each other.
-        near = np.zeros(distances.shape, bool)
+        is_near = np.zeros(distances.shape, bool)
         for corner in product((slice(None, -1), slice(1, None)), repeat=2):
-            near[corner] |= self.is_missing & ~far
+            is_near[corner] |= self.is_missing & ~is_far
         exchange_sign = 1 if image else strip.sign_x
-        table = np.empty((*distances.shape, y.size))
-        for rows, columns in _blocks(near | near.T, y.size):
-            values = strip.double_primitive(distances[rows, columns, None], y)
-            table[columns, rows] = exchange_sign * values
-            table[rows, columns] = values
-        for rows, columns in _blocks(self.is_missing & ~far, y.size):
-            values = table[rows + 1, columns] + table[rows, columns + 1]
-            values -= table[rows + 1, columns + 1]
-            values -= table[rows, columns]
+        primitives = np.empty((*distances.shape, y.size))
+        for rows, columns in _blocks(is_near | is_near.T, y.size):
+            influences = strip.double_primitive(distances[rows, columns, None], y)
+            primitives[columns, rows] = exchange_sign * influences
+            primitives[rows, columns] = influences
+        for rows, columns in _blocks(self.is_missing & ~is_far, y.size):
+            influences = primitives[rows + 1, columns] + primitives[rows, columns + 1]
+            influences -= primitives[rows + 1, columns + 1]
+            influences -= primitives[rows, columns]
             # The edges of an image run backwards; eq. (37).
-            values *= ((-factor if image else factor) / (widths[rows] * widths[columns]))[:, None]
-            _add_to_pairs(total, rows, columns, values, exchange_sign)
-        for rows, columns in _blocks(self.is_missing & far, y.size):
-            x, squares = separation[rows, columns, None], (widths[rows] ** 2 + widths[columns] ** 2)[:, None]
+            influences *= ((-factor if image else factor) / (widths[rows] * widths[columns]))[:, None]
+            _add_to_pairs(total, rows, columns, influences, exchange_sign)
+        for rows, columns in _blocks(self.is_missing & is_far, y.size):
+            x, width_squares = separation[rows, columns, None], (widths[rows] ** 2 + widths[columns] ** 2)[:, None]
             # Expansion of eq. (35) about the centres, to fourth order.
-            values = factor * (strip.kernel(x, y) + squares / 24 * strip.curvature(x, y))
-            _add_to_pairs(total, rows, columns, values, exchange_sign)
+            influences = factor * (strip.kernel(x, y) + width_squares / 24 * strip.curvature(x, y))
+            _add_to_pairs(total, rows, columns, influences, exchange_sign)
 
     def transform(self) -> FloatArray:
         """Return the sum over the wavenumber along y: array (wavenumber, cell, cell)."""
         cells = self.edges.size - 1
-        flat = self.total.reshape(cells**2, -1)
-        return np.asarray((self.lateral.matrix.T @ flat.T).reshape(-1, cells, cells))
+        pair_rows = self.total.reshape(cells**2, -1)
+        return np.asarray((self.lateral.matrix.T @ pair_rows.T).reshape(-1, cells, cells))
 
 
-def _add_to_pairs(total: FloatArray, rows: IntArray, columns: IntArray, values: FloatArray, exchange_sign: int) -> None:
+def _add_to_pairs(
+    total: FloatArray, rows: IntArray, columns: IntArray, influences: FloatArray, exchange_sign: int
+) -> None:
     """Add the influences (pair, offset) of pairs of columns, and `exchange_sign` times them of the exchanged pairs."""
-    total[rows, columns] += values
+    total[rows, columns] += influences
     off_diagonal = rows > columns  # the image of a column may be far from the column
-    total[columns[off_diagonal], rows[off_diagonal]] += exchange_sign * values[off_diagonal]
+    total[columns[off_diagonal], rows[off_diagonal]] += exchange_sign * influences[off_diagonal]
 
 
-def _blocks(selected: BoolArray, offsets: int) -> Iterator[tuple[IntArray, IntArray]]:
+def _blocks(is_selected: BoolArray, offset_count: int) -> Iterator[tuple[IntArray, IntArray]]:
     """Yield blocks of marked pairs below the diagonal and on it."""
-    rows, columns = np.nonzero(np.tril(selected))
-    step = max(1, BLOCK // offsets)
+    rows, columns = np.nonzero(np.tril(is_selected))
+    step = max(1, BLOCK_SIZE // offset_count)
     for start in range(0, rows.size, step):
         yield rows[start : start + step], columns[start : start + step]

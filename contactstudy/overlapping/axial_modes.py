@@ -38,8 +38,8 @@ class AxialModes:
 
     @cached_property
     def _identity(self) -> tuple[Hashable, ...]:
-        arrays = (self.discrete, self.ray.view(np.float64), self.weights.view(np.float64))
-        return type(self), self.length, self.parity, self.reach, *(ArrayKey(array) for array in arrays)
+        wavenumber_arrays = (self.discrete, self.ray.view(np.float64), self.weights.view(np.float64))
+        return type(self), self.length, self.parity, self.reach, *(ArrayKey(array) for array in wavenumber_arrays)
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, AxialModes) and self._identity == other._identity
@@ -55,8 +55,8 @@ class AxialModes:
     @property
     def load_weights(self) -> ComplexArray:
         """Factor from ``int P(x) cosine(x) dx`` to the weighted spectrum of P."""
-        single = np.where(self.discrete == 0, 1.0, 2.0) / self.length  # eq. (7)
-        return np.concatenate([single, self.weights * (1 if self.parity else 2) / np.pi])
+        discrete_weights = np.where(self.discrete == 0, 1.0, 2.0) / self.length  # eq. (7)
+        return np.concatenate([discrete_weights, self.weights * (1 if self.parity else 2) / np.pi])
 
     def load_on_top(self, core: ComplexArray, depth: FloatArray, lateral: float, poisson: float) -> ComplexArray:
         """Weighted spectrum of the load of V on the top per scaled face load: array (wavenumber, depth)."""
@@ -83,12 +83,12 @@ class AxialModes:
         return self.cosine(np.zeros(1))[:, 0]
 
     def _waves_of_ends(self, x: FloatArray, sign: int) -> ComplexArray:
-        near = np.exp(1j * np.outer(self.ray, x))
+        first_end = np.exp(1j * np.outer(self.ray, x))
         if not self.parity:
-            return np.asarray(np.where(x > self.reach, 0.0, near))
-        far = np.exp(1j * np.outer(self.ray, self.length - x))
-        closing = 1 - self.parity * np.exp(1j * self.ray * self.length)  # eq. (31)
-        return np.asarray((near + sign * self.parity * far) / closing[:, None])
+            return np.asarray(np.where(x > self.reach, 0.0, first_end))
+        second_end = np.exp(1j * np.outer(self.ray, self.length - x))
+        image_sum = 1 - self.parity * np.exp(1j * self.ray * self.length)  # eq. (31)
+        return np.asarray((first_end + sign * self.parity * second_end) / image_sum[:, None])
 
     def cosine(self, x: FloatArray) -> ComplexArray:
         """Return waves ``cos(k x)``, on the ray the sum of both ends, at positions `x`: array (wavenumber, x)."""
@@ -122,22 +122,22 @@ SEPARATE_ENDS = 20.0  # decay lengths beyond which the two ends do not affect ea
 def axial_modes(length: float, lateral: float, shortest: float, resolution: Resolution) -> list[AxialModes]:
     """Axial modes for wavenumbers along y from `lateral` on: even and odd; of parity 0 for a single or far end."""
     # `shortest` is the least distance that matters; it bounds the ray.
-    last = max(resolution.reach / shortest, 4 * lateral)
+    last_wavenumber = max(resolution.reach / shortest, 4 * lateral)
     if lateral * length > SEPARATE_ENDS:
         reach = DECAY_LENGTHS / lateral
-        ray, weights = ray_nodes(0.5 / reach, last, resolution)
+        ray, weights = ray_nodes(0.5 / reach, last_wavenumber, resolution)
         return [AxialModes(length=np.inf, parity=0, discrete=np.zeros(0), ray=ray, weights=weights, reach=reach)]
     spacing = np.pi / length
     # Between two modes of either parity, half a spacing from the nearest: the ray's integrand has its poles there.
-    start = (resolution.modes - 0.5) * spacing  # eq. (32)
-    ray, weights = ray_nodes(0.5 * spacing, last, resolution)
+    ray_start = (resolution.modes - 0.5) * spacing  # eq. (32)
+    ray, weights = ray_nodes(0.5 * spacing, last_wavenumber, resolution)
     indices = np.arange(resolution.modes)
     return [
         AxialModes(
             length=length,
             parity=parity,
             discrete=spacing * indices[indices % 2 == remainder],
-            ray=start + ray,
+            ray=ray_start + ray,
             weights=weights,
         )
         for parity, remainder in ((1, 0), (-1, 1))
@@ -148,15 +148,15 @@ def slab_factors(kappa: ComplexArray | FloatArray, length: float, parity: int) -
     """Factors ``T`` and ``tau`` of a slab; 1 and 0 for a half-space."""
     if not parity:
         return np.ones(kappa.shape, np.complex128), np.zeros(kappa.shape, np.complex128)
-    doubled = np.asarray(kappa * length, dtype=np.complex128)
-    decay = np.exp(-doubled)
-    denominator = 1 - decay**2 + parity * 2 * doubled * decay
+    scaled_length = np.asarray(kappa * length, dtype=np.complex128)
+    decay = np.exp(-scaled_length)
+    denominator = 1 - decay**2 + parity * 2 * scaled_length * decay
     if parity < 0:  # bending: sinh(2t) - 2t would cancel
-        square = doubled**2
+        square = scaled_length**2
         series = 1 + square / 20 * (1 + square / 42 * (1 + square / 72 * (1 + square / 110)))
-        denominator = np.where(np.abs(doubled) < 0.5, decay * doubled**3 / 3 * series, denominator)
+        denominator = np.where(np.abs(scaled_length) < 0.5, decay * scaled_length**3 / 3 * series, denominator)
     factor = (1 - parity * decay) ** 2 / denominator  # eq. (24)
-    return factor, parity * doubled * decay / (1 - parity * decay)
+    return factor, parity * scaled_length * decay / (1 - parity * decay)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -170,9 +170,9 @@ class SingleMirrorModes(AxialModes):
         return np.asarray(self.weights / np.pi * (1 + second_image))
 
     def _waves_of_ends(self, x: FloatArray, sign: int) -> ComplexArray:
-        near = np.exp(1j * np.outer(self.ray, x))
-        far = np.exp(1j * np.outer(self.ray, self.length - x))
-        return np.asarray(near + sign * self.parity * far)
+        first_end = np.exp(1j * np.outer(self.ray, x))
+        second_end = np.exp(1j * np.outer(self.ray, self.length - x))
+        return np.asarray(first_end + sign * self.parity * second_end)
 
     def load_on_top(self, core: ComplexArray, depth: FloatArray, lateral: float, poisson: float) -> ComplexArray:
         """Weighted spectrum of the load of V1 and V2 on 0 .. L and of its two images: array (wavenumber, depth)."""
@@ -181,17 +181,18 @@ class SingleMirrorModes(AxialModes):
         # V's load on the top: K(x) = exp(-kappa x) (a - b kappa x).
         slope = (depth / kappa) ** 2
         constant = slope + 2 * poisson * (lateral / kappa) ** 2
-        across, decay = np.exp(1j * k * length), np.exp(-kappa * length)
-        far_value = constant - slope * kappa * length
+        end_wave, decay = np.exp(1j * k * length), np.exp(-kappa * length)
+        end_value = constant - slope * kappa * length
         # int_0^inf K(L + x) exp(i k x) dx: the tail that is not there, on either side
-        decreasing = kappa - 1j * k
-        tail = decay * (far_value - slope * kappa / decreasing) / decreasing
+        decay_rate = kappa - 1j * k
+        tail = decay * (end_value - slope * kappa / decay_rate) / decay_rate
         # int_0^L K(x) exp(i k (L - x)) dx: V1's load in the image beyond end II, V2's in that beyond end I
-        increasing = kappa + 1j * k
+        conjugate_rate = kappa + 1j * k
         image = (
-            across * (constant - slope * kappa / increasing) - decay * (far_value - slope * kappa / increasing)
-        ) / increasing
-        truncation = self.parity * (image - tail) - across * tail
+            end_wave * (constant - slope * kappa / conjugate_rate)
+            - decay * (end_value - slope * kappa / conjugate_rate)
+        ) / conjugate_rate
+        truncation = self.parity * (image - tail) - end_wave * tail
         return np.asarray(self.weights[:, None] / np.pi * (4 * core.T + kappa * truncation))
 
     def face_factor(self, kappa: ComplexArray | FloatArray) -> ComplexArray:
@@ -217,8 +218,8 @@ def modes_between_ends(
     """Axial modes as `axial_modes` makes them, or with loads mirrored once; far ends are quarter spaces in both."""
     if not mirrored_once or lateral * length > SEPARATE_ENDS:
         return axial_modes(length, lateral, shortest, resolution)
-    last = max(resolution.reach / shortest, 4 * lateral)
-    ray, weights = ray_nodes(lateral / 36, last, resolution)
+    last_wavenumber = max(resolution.reach / shortest, 4 * lateral)
+    ray, weights = ray_nodes(lateral / 36, last_wavenumber, resolution)
     return [
         SingleMirrorModes(length=length, parity=parity, discrete=np.zeros(0), ray=ray, weights=weights)
         for parity in (1, -1)

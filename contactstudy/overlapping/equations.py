@@ -51,18 +51,18 @@ def load_on_end(
     inverse = 1.0 / (k2 + depth2)
     along_y = load is Load.ALONG_Y
     constant = 2 * poisson * lateral**2 if along_y else 2 * (k2 + poisson * lateral**2)  # eqs. (18) and (29a)
-    bracket = constant - axial2 * (k2 - depth2) * inverse
-    bracket *= inverse
-    bracket *= -(2 / np.pi) * (lateral if along_y else axial) / k2
-    return np.asarray(bracket)
+    end_load = constant - axial2 * (k2 - depth2) * inverse
+    end_load *= inverse
+    end_load *= -(2 / np.pi) * (lateral if along_y else axial) / k2
+    return np.asarray(end_load)
 
 
-def real_product(first: ComplexArray, second: ComplexArray) -> FloatArray:
-    """Real part of ``left @ right`` over the last axis of `left` and the first of `right`, as one real product."""
+def real_product(left_factor: ComplexArray, right_factor: ComplexArray) -> FloatArray:
+    """Real part of the product over the last axis of the left and the first of the right factor, as a real product."""
     # Real and imaginary parts alternate in memory: the product with the conjugate is the real part.
-    flat_first = np.ascontiguousarray(first).reshape(-1, first.shape[-1]).view(np.float64)
-    flat_second = np.ascontiguousarray(second.reshape(second.shape[0], -1).T.conj()).view(np.float64)
-    return np.asarray((flat_first @ flat_second.T).reshape(*first.shape[:-1], *second.shape[1:]))
+    flat_left = np.ascontiguousarray(left_factor).reshape(-1, left_factor.shape[-1]).view(np.float64)
+    flat_right = np.ascontiguousarray(right_factor.reshape(right_factor.shape[0], -1).T.conj()).view(np.float64)
+    return np.asarray((flat_left @ flat_right.T).reshape(*left_factor.shape[:-1], *right_factor.shape[1:]))
 
 
 class Factorisation:
@@ -75,16 +75,16 @@ class Factorisation:
             rows[row], rows[pivot] = rows[pivot], rows[row]
         self._rows: IntArray = np.array(rows)
 
-    def solve(self, right: FloatArray) -> FloatArray:
+    def solve(self, right_hand_sides: FloatArray) -> FloatArray:
         """Solution (row, column) of the equations with right sides (row, column)."""
-        lower = linalg.blas.dtrsm(1.0, self._factors, right[self._rows], lower=1, diag=1)
-        return np.asarray(linalg.blas.dtrsm(1.0, self._factors, lower))
+        forward_solution = linalg.blas.dtrsm(1.0, self._factors, right_hand_sides[self._rows], lower=1, diag=1)
+        return np.asarray(linalg.blas.dtrsm(1.0, self._factors, forward_solution))
 
-    def solve_transposed(self, right: FloatArray) -> FloatArray:
+    def solve_transposed(self, right_hand_sides: FloatArray) -> FloatArray:
         """Solution (row, column) of the equations of the transposed matrix."""
-        upper = linalg.blas.dtrsm(1.0, self._factors, right, trans_a=1)
-        solution = np.empty(right.shape)
-        solution[self._rows] = linalg.blas.dtrsm(1.0, self._factors, upper, lower=1, diag=1, trans_a=1)
+        forward_solution = linalg.blas.dtrsm(1.0, self._factors, right_hand_sides, trans_a=1)
+        solution = np.empty(right_hand_sides.shape)
+        solution[self._rows] = linalg.blas.dtrsm(1.0, self._factors, forward_solution, lower=1, diag=1, trans_a=1)
         return solution
 
 
@@ -115,16 +115,16 @@ class EquationSet:
         cls, modes: AxialModes, lateral: float, poisson: float, shortest: float, resolution: Resolution
     ) -> EquationSet:
         """Assemble and factorise; `shortest` is the smallest distance from a loaded corner that matters."""
-        last = max(resolution.reach / shortest, 4 * lateral)
-        depth, weights = scale_nodes(0.5 * lateral, last, resolution.step)
+        last_wavenumber = max(resolution.reach / shortest, 4 * lateral)
+        depth, weights = scale_nodes(0.5 * lateral, last_wavenumber, resolution.step)
         kappa = np.sqrt(depth**2 + lateral**2)
         scale = np.real(modes.face_factor(kappa)) * weights / kappa
         axial = modes.wavenumbers
         core = coupling_core(axial, depth, lateral, poisson)
         k = np.sqrt(axial**2 + lateral**2)
         top = modes.load_on_top(core, depth, lateral, poisson)
-        end = core * (4 / np.pi / k * modes.on_end)
-        matrix = np.diag(1 / scale) - real_product(end, top)  # eq. (27)
+        end_load = core * (4 / np.pi / k * modes.on_end)
+        matrix = np.diag(1 / scale) - real_product(end_load, top)  # eq. (27)
         return cls(
             modes=modes,
             lateral=lateral,
@@ -163,16 +163,16 @@ class EquationSet:
         equivalent = self.spectrum_on_top(self.solve(np.hstack([self.source(load, spectrum) for load in loads])))
         depth, weights = self.ray_nodes(shortest, resolution)
         columns = spectrum.shape[1]
-        total = self.modes.on_end[:, None] * equivalent
+        top_spectrum = self.modes.on_end[:, None] * equivalent
         slices = {load: slice(i * columns, (i + 1) * columns) for i, load in enumerate(loads)}
         if Load.NORMAL in slices:
-            total[:, slices[Load.NORMAL]] += spectrum
-        upper, lower = self.ray_to_faces(Load.NORMAL, depth)
-        face_load = upper @ total + lower @ total.conj()  # eq. (26)
+            top_spectrum[:, slices[Load.NORMAL]] += spectrum
+        mode_matrix, conjugate_matrix = self.ray_to_faces(Load.NORMAL, depth)
+        face_load = mode_matrix @ top_spectrum + conjugate_matrix @ top_spectrum.conj()  # eq. (26)
         for load, section in slices.items():
             if load is not Load.NORMAL:
-                upper, lower = self.ray_to_faces(load, depth)
-                face_load[:, section] += upper @ spectrum + lower @ spectrum.conj()
+                mode_matrix, conjugate_matrix = self.ray_to_faces(load, depth)
+                face_load[:, section] += mode_matrix @ spectrum + conjugate_matrix @ spectrum.conj()
         return AuxiliaryLoads(equivalent, depth, weights[:, None] * face_load)
 
     def ray_nodes(self, shortest: float, resolution: Resolution) -> tuple[ComplexArray, ComplexArray]:
@@ -183,5 +183,7 @@ class EquationSet:
         """Face loads at complex `depth` wavenumbers from modes and from their conjugate: arrays (depth, wavenumber)."""
         # Half the sum over both half-planes: at complex depth the second is not the first's conjugate.
         axial = self.modes.wavenumbers
-        upper, lower = (0.5 * load_on_end(load, k, depth, self.lateral, self.poisson) for k in (axial, axial.conj()))
-        return upper, lower
+        mode_matrix, conjugate_matrix = (
+            0.5 * load_on_end(load, k, depth, self.lateral, self.poisson) for k in (axial, axial.conj())
+        )
+        return mode_matrix, conjugate_matrix

@@ -63,22 +63,28 @@ class _FoldedPositions:
     def of(cls, problem: EndProblem, points: Points) -> _FoldedPositions:
         """Fold positions: many positions along x are interpolated from fewer, graded towards the ends."""
         length, offset = problem.length, problem.corner_offset
-        graded = graded_interpolation(points.x, length, POSITIONS_PER_PANEL)
-        positions, interpolation = (points.x, None) if graded is None else graded
+        grading = graded_interpolation(points.x, length, POSITIONS_PER_PANEL)
+        positions, interpolation = (points.x, None) if grading is None else grading
         if np.isinf(length):
-            x, where = positions, np.arange(positions.size)
+            x, distance_indices = positions, np.arange(positions.size)
         else:
-            half, where = np.unique(
+            distances, distance_indices = np.unique(
                 np.round(problem.from_end(positions) / length, POSITION_DIGITS), return_inverse=True
             )
-            x = length * half
-        on_corner = np.flatnonzero(x < offset), np.flatnonzero(points.z < offset)
-        has_corner = bool(on_corner[0].size and on_corner[1].size)
+            x = length * distances
+        corner_indices = np.flatnonzero(x < offset), np.flatnonzero(points.z < offset)
+        has_corner = bool(corner_indices[0].size and corner_indices[1].size)
         z = np.append(points.z, offset) if has_corner else points.z
-        corner = on_corner if has_corner else None
-        beyond = positions > 0.5 * length
+        corner = corner_indices if has_corner else None
+        in_far_half = positions > 0.5 * length
         return cls(
-            x=x, y=points.y, z=z, distance_indices=where, in_far_half=beyond, interpolation=interpolation, corner=corner
+            x=x,
+            y=points.y,
+            z=z,
+            distance_indices=distance_indices,
+            in_far_half=in_far_half,
+            interpolation=interpolation,
+            corner=corner,
         )
 
     @property
@@ -98,15 +104,17 @@ class _FoldedPositions:
             fields = {parity: field[:, :, :, :-1] for parity, field in fields.items()}
         total: FloatArray | None = None
         for parity, field in fields.items():
-            signs = np.array([-parity if component in odd_along_x else parity for component in range(field.shape[1])])
+            far_signs = np.array(
+                [-parity if component in odd_along_x else parity for component in range(field.shape[1])]
+            )
             # With one end no position lies beyond mid-length.
-            values = field[:, :, self.distance_indices]
-            values *= np.where(self.in_far_half & (parity != 0), signs[:, None], 1)[..., None, None]
-            total = values if total is None else np.add(total, values, out=total)
+            position_field = field[:, :, self.distance_indices]
+            position_field *= np.where(self.in_far_half & (parity != 0), far_signs[:, None], 1)[..., None, None]
+            total = position_field if total is None else np.add(total, position_field, out=total)
         assert total is not None
         if self.interpolation is not None:
-            flat = self.interpolation @ total.reshape(*total.shape[:3], -1)
-            total = flat.reshape(*flat.shape[:3], *total.shape[3:])
+            interpolated_field = self.interpolation @ total.reshape(*total.shape[:3], -1)
+            total = interpolated_field.reshape(*interpolated_field.shape[:3], *total.shape[3:])
         return np.asarray(total.swapaxes(3, 4))
 
 
@@ -136,33 +144,31 @@ def _sum_over_wavenumbers(
 ) -> list[dict[int, FloatArray]]:
     """Field (load, component, x, z, y) by parity: the integral over the wavenumber along y."""
     counts = (len(problem.loads), harmonics.count)
-    result = [
+    parity_fields = [
         {parity: np.zeros((*counts, points.x.size, points.z.size, points.y.size)) for parity in parity_loads}
         for points in point_sets
     ]
-    ends = np.cumsum([points.y.size for points in point_sets])
+    y_stops = np.cumsum([points.y.size for points in point_sets])
     y = np.concatenate([points.y for points in point_sets])
     for _, columns, indices, amplitudes in _panel_amplitudes(
-        problem,
-        harmonics,
-        point_sets,
-        reference,
-        lambda panel: lateral_columns(panel, parity_loads, problem.grid, y),
+        problem, harmonics, point_sets, reference, lambda panel: lateral_columns(panel, parity_loads, problem.grid, y)
     ):
         for parity in parity_loads:
             for i, load in enumerate(problem.loads):
-                even, odd = columns.synthesis(load, parity)
-                for total, (rows, depths), stop, near_points in zip(result, indices, ends, amplitudes, strict=True):
+                even_waves, odd_waves = columns.synthesis(load, parity)
+                for total, (rows, depths), stop, set_amplitudes in zip(
+                    parity_fields, indices, y_stops, amplitudes, strict=True
+                ):
                     if not rows.size:
                         continue
-                    columns_of_parity = near_points[i][..., columns.parities == parity]
+                    columns_of_parity = set_amplitudes[i][..., columns.parities == parity]
                     section = slice(stop - total[parity].shape[-1], stop)
                     shape, block = (rows.size, depths.size, -1), _block_index(rows, depths)
                     for component in range(harmonics.count):
-                        wave = even if component in harmonics.even_in_y else odd
-                        flat = columns_of_parity[component].reshape(rows.size * depths.size, -1)
-                        total[parity][i, component][block] += (flat @ wave[:, section]).reshape(shape)
-    return result
+                        wave = even_waves if component in harmonics.even_in_y else odd_waves
+                        amplitude_rows = columns_of_parity[component].reshape(rows.size * depths.size, -1)
+                        total[parity][i, component][block] += (amplitude_rows @ wave[:, section]).reshape(shape)
+    return parity_fields
 
 
 class _PanelAmplitudes(NamedTuple):
@@ -195,8 +201,8 @@ def _panel_amplitudes(
             continue
         is_near = [columns.nodes[0] * distance < DECAY_LENGTHS for distance in distances]
         indices = [
-            (np.flatnonzero(near_points.any(axis=1)), np.flatnonzero(near_points.any(axis=0)))
-            for near_points in is_near
+            (np.flatnonzero(is_near_set.any(axis=1)), np.flatnonzero(is_near_set.any(axis=0)))
+            for is_near_set in is_near
         ]
         if not any(rows.size for rows, _ in indices):
             break
@@ -224,21 +230,23 @@ def unit_fields(problem: EndProblem, harmonics: Harmonics, points: Points, refer
         np.repeat(list(parity_loads), problem.grid.cells_x),
         np.concatenate(list(parity_loads.values()), axis=1),
     )
-    for panel, _, ((rows, depths),), (near_points,) in _panel_amplitudes(
+    for panel, _, ((rows, depths),), (amplitudes,) in _panel_amplitudes(
         problem, harmonics, [folded], reference, lambda panel: LateralColumns.of_unit_loads(panel, unit_loads, parities)
     ):
         shape = (1, harmonics.count, folded.x.size, folded.z.size, panel.nodes.size, problem.grid.cells_x)
         fields = {}
         for parity in parity_loads:
             field = np.zeros(shape)
-            field[(slice(None), slice(None), *_block_index(rows, depths))] = near_points[..., parities == parity]
+            field[(slice(None), slice(None), *_block_index(rows, depths))] = amplitudes[..., parities == parity]
             fields[parity] = field.reshape(*shape[:4], -1)
         field_at_nodes = folded.unfold(fields, harmonics.odd_along_x)[0]
-        even, odd = panel.filters(problem.grid, points.y)
-        even, odd = (even, odd) if load.sign_y > 0 else (odd, -even)
-        filters = np.stack([even if component in harmonics.even_in_y else odd for component in range(harmonics.count)])
-        count, size = harmonics.count, points.x.size
-        yield UnitFields(field_at_nodes.reshape(count, size, panel.nodes.size, -1, points.z.size), filters)
+        even_filters, odd_filters = panel.filters(problem.grid, points.y)
+        even_filters, odd_filters = (even_filters, odd_filters) if load.sign_y > 0 else (odd_filters, -even_filters)
+        filters = np.stack(
+            [even_filters if component in harmonics.even_in_y else odd_filters for component in range(harmonics.count)]
+        )
+        component_count, x_count = harmonics.count, points.x.size
+        yield UnitFields(field_at_nodes.reshape(component_count, x_count, panel.nodes.size, -1, points.z.size), filters)
 
 
 def _block_index(rows: IntArray, columns: IntArray) -> tuple[slice | IntArray, slice | IntArray]:
@@ -256,21 +264,22 @@ def _amplitudes(
     shortest: float,
 ) -> list[FloatArray]:
     """Amplitudes of columns at the positions (x, z): arrays (load, component, x, z, wavenumber, column)."""
-    count = len(problem.loads)
+    load_count = len(problem.loads)
     amplitudes = [
-        np.zeros((count, harmonics.count, x.size, z.size, columns.nodes.size, columns.parities.size)) for x, z in points
+        np.zeros((load_count, harmonics.count, x.size, z.size, columns.nodes.size, columns.parities.size))
+        for x, z in points
     ]
     starts = np.cumsum([0, *(x.size for x, _ in points)])
     stops = np.cumsum([z.size for _, z in points])
     depths = np.concatenate([z for _, z in points])
     for view in make_views(problem, columns, np.concatenate([x for x, _ in points]), shortest):
         view_rows = [np.flatnonzero((view.rows >= low) & (view.rows < high)) for low, high in pairwise(starts)]
-        joint = view.x.size * depths.size <= JOINT_POINTS
+        is_joint = view.x.size * depths.size <= JOINT_POINTS
         for node, lateral in enumerate(columns.nodes.tolist()):
             system = problem.equation_set(view.modes, lateral, shortest)
             spectrum = view.spectra[:, node if view.spectra.shape[1] > 1 else 0]
             loads = system.auxiliary_loads(spectrum, problem.loads, shortest=shortest, resolution=problem.resolution)
-            fields = _evaluate_fields(harmonics, system, loads, view, slice(None), z=depths) if joint else None
+            fields = _evaluate_fields(harmonics, system, loads, view, slice(None), z=depths) if is_joint else None
             for amplitude, (_, z), start, stop, view_indices in zip(
                 amplitudes, points, starts, stops, view_rows, strict=False
             ):
@@ -280,9 +289,9 @@ def _amplitudes(
                     field = _evaluate_fields(harmonics, system, loads, view, view_indices, z=z)
                 else:
                     field = fields[:, view_indices, stop - z.size : stop]
-                by_load = field.reshape(*field.shape[:3], count, -1)
+                by_load = field.reshape(*field.shape[:3], load_count, -1)
                 rows, depth_indices = (view.rows[view_indices] - start)[:, None, None], np.arange(z.size)[:, None]
-                for i in range(count):
+                for i in range(load_count):
                     amplitude[i][:, rows, depth_indices, node, view.columns] = by_load[:, :, :, i]
     return amplitudes
 

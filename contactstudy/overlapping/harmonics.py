@@ -18,22 +18,22 @@ def _stress_of_equivalent_load(
     k = np.sqrt(axial**2 + lateral**2)
     c2, s2 = (axial / k) ** 2, (lateral / k) ** 2  # eq. (9)
     decay = np.exp(-np.outer(k, z))
-    ramp = decay * z
+    z_times_decay = decay * z
     zero = np.zeros_like(k)
     # eqs. (11), (12) and (13)
-    even = [  # xx, yy, zz, yz, each as (constant, factor of z)
+    cosine_terms = [  # xx, yy, zz, yz, each as (constant, factor of z)
         (-(c2 + 2 * nu * s2), c2 * k),
         (-(s2 + 2 * nu * c2), s2 * k),
         (zero - 1, -k),
         (zero, zero + lateral),
     ]
-    odd = [(-(1 - 2 * nu) * axial * lateral / k**2, axial * lateral / k), (zero, -axial)]  # xy, xz
-    result = np.empty((6, cosine.shape[1], z.size, equivalent.shape[1]))
-    for functions, terms, components in ((cosine, even, [0, 1, 2, 5]), (sine, odd, [3, 4])):
-        along_z = np.stack([a[:, None] * decay + b[:, None] * ramp for a, b in terms], axis=1)
-        along_x = equivalent.T[:, None, :] * functions.T
-        result[components] = real_product(along_x, along_z).transpose(2, 1, 3, 0)
-    return result
+    sine_terms = [(-(1 - 2 * nu) * axial * lateral / k**2, axial * lateral / k), (zero, -axial)]  # xy, xz
+    stresses = np.empty((6, cosine.shape[1], z.size, equivalent.shape[1]))
+    for waves, terms, components in ((cosine, cosine_terms, [0, 1, 2, 5]), (sine, sine_terms, [3, 4])):
+        along_z = np.stack([a[:, None] * decay + b[:, None] * z_times_decay for a, b in terms], axis=1)
+        along_x = equivalent.T[:, None, :] * waves.T
+        stresses[components] = real_product(along_x, along_z).transpose(2, 1, 3, 0)
+    return stresses
 
 
 def _stress_of_face_load(
@@ -44,30 +44,30 @@ def _stress_of_face_load(
     # distance from the end and ``Phi = 1 - 2 nu - tau - X`` each adds its amplitude and ``exp(-X)`` times the terms
     # below.
     nu, lateral, modes = system.poisson, system.lateral, system.modes
-    kappa, tau, right = _face_waves(system, depth, face_load, z)
+    kappa, tau, face_waves = _face_waves(system, depth, face_load, z)
     # Sums over both ends of exp(-X), and of (tau + X) exp(-X) for even and odd components.
-    decay, ramp = _decay_from_end(x, kappa, tau)
-    even_ramp = odd_ramp = ramp
+    decay, x_times_decay = _decay_from_end(x, kappa, tau)
+    even_growth = odd_growth = x_times_decay
     if modes.parity:
-        far_decay, ramp = _decay_from_end(modes.length - x, kappa, tau)
+        far_decay, x_times_decay = _decay_from_end(modes.length - x, kappa, tau)
         decay += modes.parity * far_decay
-        even_ramp = even_ramp + modes.parity * ramp
-        odd_ramp = odd_ramp - modes.parity * ramp
-    potential = (1 - 2 * nu) * decay - even_ramp
+        even_growth = even_growth + modes.parity * x_times_decay
+        odd_growth = odd_growth - modes.parity * x_times_decay
+    potential = (1 - 2 * nu) * decay - even_growth
     lateral_part = 2 * nu * decay
     # eqs. (11) and (12) with the waves of eq. (25)
     cosine_z: ComplexArray = np.empty((4, x.size, depth.size), np.complex128)  # xx, yy, zz, xy
     sine_z: ComplexArray = np.empty((2, x.size, depth.size), np.complex128)  # yz, xz
-    np.add(decay, even_ramp, out=cosine_z[0])
+    np.add(decay, even_growth, out=cosine_z[0])
     np.add((lateral / kappa) ** 2 * potential, lateral_part, out=cosine_z[1])
     np.add((depth / kappa) ** 2 * potential, lateral_part, out=cosine_z[2])
-    np.multiply(-lateral / kappa, odd_ramp, out=cosine_z[3])
+    np.multiply(-lateral / kappa, odd_growth, out=cosine_z[3])
     np.multiply(lateral * depth / kappa**2, potential, out=sine_z[0])
-    np.multiply(depth / kappa, odd_ramp, out=sine_z[1])
-    result = np.empty((6, x.size, z.size, face_load.shape[1]))
-    result[[0, 1, 2, 3]] = real_product(cosine_z, right)
-    result[[5, 4]] = real_product(-1j * sine_z, right)
-    return result
+    np.multiply(depth / kappa, odd_growth, out=sine_z[1])
+    stresses = np.empty((6, x.size, z.size, face_load.shape[1]))
+    stresses[[0, 1, 2, 3]] = real_product(cosine_z, face_waves)
+    stresses[[5, 4]] = real_product(-1j * sine_z, face_waves)
+    return stresses
 
 
 def _face_waves(
@@ -82,11 +82,11 @@ def _face_waves(
 
 def _decay_from_end(distance: FloatArray, kappa: ComplexArray, tau: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
     """Return ``exp(-X)`` and ``(tau + X) exp(-X)`` at distances from an end: arrays (distance, depth)."""
-    scaled = np.outer(distance, kappa)
-    decay = np.exp(-scaled)
-    scaled += tau
-    scaled *= decay
-    return decay, scaled
+    scaled_distance = np.outer(distance, kappa)
+    decay = np.exp(-scaled_distance)
+    scaled_distance += tau
+    scaled_distance *= decay
+    return decay, scaled_distance
 
 
 STRESS = Harmonics(  # components xx, yy, zz, xy, xz, yz
@@ -107,18 +107,18 @@ def _displacement_of_equivalent_load(
     axial = system.modes.wavenumbers
     k = np.sqrt(axial**2 + lateral**2)
     decay = np.exp(-np.outer(k, z))
-    free = 1 - 2 * nu
-    result = np.empty((3, cosine.shape[1], z.size, equivalent.shape[1]))
+    compressibility = 1 - 2 * nu
+    displacements = np.empty((3, cosine.shape[1], z.size, equivalent.shape[1]))
     # eqs. (10) and (13)
     terms = (  # component, function of x, constant, factor of k z
-        (0, sine, -free * axial / k**2, axial / k**2),
-        (1, cosine, free * lateral / k**2, -lateral / k**2),
+        (0, sine, -compressibility * axial / k**2, axial / k**2),
+        (1, cosine, compressibility * lateral / k**2, -lateral / k**2),
         (2, cosine, 2 * (1 - nu) / k, 1 / k),
     )
     for component, function, constant, slope in terms:
         along_z = decay * (constant[:, None] + slope[:, None] * np.outer(k, z))
-        result[component] = real_product(function.T, along_z[..., None] * equivalent[:, None, :])
-    return result
+        displacements[component] = real_product(function.T, along_z[..., None] * equivalent[:, None, :])
+    return displacements
 
 
 def _displacement_of_face_load(
@@ -127,19 +127,19 @@ def _displacement_of_face_load(
     """``2 G u`` of V under the face loads on its two ends: array (3, x, z, column)."""
     # With the potential ``psi = -exp(-X) / kappa`` of either end: ``2 G u = -grad(Phi) + 4 (1 - nu) psi e_x``.
     nu, lateral, modes = system.poisson, system.lateral, system.modes
-    kappa, tau, right = _face_waves(system, depth, face_load, z)
+    kappa, tau, face_waves = _face_waves(system, depth, face_load, z)
     along_x: ComplexArray = np.zeros((3, x.size, depth.size), np.complex128)
     ends = [(x, 1, 1)]
     if modes.parity:
         ends.append((modes.length - x, modes.parity, -modes.parity))
-    for distance, even, odd in ends:
-        scaled = np.outer(distance, kappa)
-        decay = np.exp(-scaled)
-        potential = (1 - 2 * nu - tau - scaled) * decay  # eq. (10)
-        along_x[0] -= odd * (tau + scaled + 2 * (1 - nu)) * decay / kappa
-        along_x[1] -= even * lateral / kappa**2 * potential
-        along_x[2] += even * depth / kappa**2 * potential
-    return np.concatenate([real_product(along_x[:2], right), real_product(-1j * along_x[2:], right)])
+    for distance, even_sign, odd_sign in ends:
+        scaled_distance = np.outer(distance, kappa)
+        decay = np.exp(-scaled_distance)
+        potential = (1 - 2 * nu - tau - scaled_distance) * decay  # eq. (10)
+        along_x[0] -= odd_sign * (tau + scaled_distance + 2 * (1 - nu)) * decay / kappa
+        along_x[1] -= even_sign * lateral / kappa**2 * potential
+        along_x[2] += even_sign * depth / kappa**2 * potential
+    return np.concatenate([real_product(along_x[:2], face_waves), real_product(-1j * along_x[2:], face_waves)])
 
 
 DISPLACEMENT = Harmonics(  # components along x, y, z, times ``2 G``

@@ -21,7 +21,9 @@ from contactstudy.checks import FloatArray, IntArray
 from contactstudy.kernels.load import Load
 from contactstudy.overlapping.quadrature import Resolution, panel_nodes
 
-NEGLIGIBLE = 1e-11  # neglected part of a load: rounding of narrow columns. Fields of loads add up to this accuracy.
+NEGLIGIBLE_LOAD = (
+    1e-11  # neglected part of a load: rounding of narrow columns. Fields of loads add up to this accuracy.
+)
 
 POLES, BENDING_POLES = 2, 3
 """Order of an amplitude's pole at wavenumber 0, eq. (30); 3 under a force along x, which bends the body, eq. (30a)."""
@@ -55,13 +57,13 @@ class LateralPanel:
     def waves(self, y: FloatArray) -> tuple[FloatArray, FloatArray]:
         """``cos(k y)`` and ``sin(k y)`` times the weights of the integral: arrays (fine, y)."""
         if self.reference is not None:
-            first, terms = float(self.nodes[-1]), self.nodes.size - self.poles
+            panel_end, terms = float(self.nodes[-1]), self.nodes.size - self.poles
             # Over the panel's end, for the powers to be alike.
-            powers = (self.nodes[:, None] / first) ** np.arange(-self.poles, terms)
-            scale = first ** np.arange(-self.poles, terms)
+            powers = (self.nodes[:, None] / panel_end) ** np.arange(-self.poles, terms)
+            scale = panel_end ** np.arange(-self.poles, terms)
             waves = []
             for moments in (cosine_moments, sine_moments):
-                integrals = moments(first, y, self.reference, terms)[BENDING_POLES - self.poles :]
+                integrals = moments(panel_end, y, self.reference, terms)[BENDING_POLES - self.poles :]
                 waves.append(np.asarray(np.linalg.solve(powers.T, integrals / scale[:, None]) / np.pi))
             return waves[0], waves[1]
         phase, weights = np.outer(self.fine_nodes, y), self.weights[:, None] / np.pi
@@ -77,9 +79,9 @@ class LateralPanel:
         """From a load on cells to the part of each node at positions `y`, for even and odd loads: (node, cell, y)."""
         (load_cosine, load_sine), (cosine, sine) = self.load_waves(grid), self.waves(y)
         interpolation = np.eye(self.nodes.size) if self.interpolation is None else self.interpolation
-        even = [(load_cosine * column) @ cosine + (load_sine * column) @ sine for column in interpolation.T]
-        odd = [(load_sine * column) @ cosine - (load_cosine * column) @ sine for column in interpolation.T]
-        return np.array(even), np.array(odd)
+        even_filters = [(load_cosine * column) @ cosine + (load_sine * column) @ sine for column in interpolation.T]
+        odd_filters = [(load_sine * column) @ cosine - (load_cosine * column) @ sine for column in interpolation.T]
+        return np.array(even_filters), np.array(odd_filters)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -104,8 +106,8 @@ class LateralColumns:
     def synthesis(self, load: Load, parity: int) -> tuple[FloatArray, FloatArray]:
         """`even` and `odd` of one parity for a load in one direction: arrays (node column, y)."""
         # Kernels of a load that a reflection along y reverses carry a factor i, which turns a cosine into a sine.
-        selected = self.parities == parity
-        even, odd = (waves[:, selected].reshape(-1, waves.shape[2]) for waves in (self.even, self.odd))
+        is_parity = self.parities == parity
+        even, odd = (waves[:, is_parity].reshape(-1, waves.shape[2]) for waves in (self.even, self.odd))
         return (even, odd) if load.sign_y > 0 else (odd, -even)
 
     def sum_at_positions(self) -> LateralColumns:
@@ -113,12 +115,12 @@ class LateralColumns:
         along_nodes, waves = self.along_x.swapaxes(0, 1), np.concatenate([self.even, self.odd], axis=2)
         along_x, parities, positions = [], [], []
         for parity in np.unique(self.parities):
-            selected = self.parities == parity
-            sums = along_nodes[..., selected] @ waves[:, selected]
-            loaded = sums.any(axis=(0, 1))
-            along_x.append(sums[..., loaded].swapaxes(0, 1))
-            parities.append(np.full(loaded.sum(), parity))
-            positions.append(np.eye(loaded.size)[loaded])
+            is_parity = self.parities == parity
+            sums = along_nodes[..., is_parity] @ waves[:, is_parity]
+            is_loaded = sums.any(axis=(0, 1))
+            along_x.append(sums[..., is_loaded].swapaxes(0, 1))
+            parities.append(np.full(is_loaded.sum(), parity))
+            positions.append(np.eye(is_loaded.size)[is_loaded])
         even, odd = np.split(np.tile(np.concatenate(positions), (self.nodes.size, 1, 1)), 2, axis=2)
         return replace(
             self, along_x=np.concatenate(along_x, axis=2), parities=np.concatenate(parities), even=even, odd=odd
@@ -148,10 +150,13 @@ def lateral_panels(
             panels.append(LateralPanel(nodes=nodes, fine_nodes=nodes, weights=weights * nodes))
             continue
         panel_count = int(np.ceil((high - low) * max_distance / (PHASE_PER_NODE * resolution.lateral_order)))
-        fine, weights = panel_nodes(np.linspace(low, high, panel_count + 1), resolution.lateral_order)
+        fine_nodes, weights = panel_nodes(np.linspace(low, high, panel_count + 1), resolution.lateral_order)
         panels.append(
             LateralPanel(
-                nodes=nodes, fine_nodes=fine, weights=weights, interpolation=lagrange_weights(log_nodes, np.log(fine))
+                nodes=nodes,
+                fine_nodes=fine_nodes,
+                weights=weights,
+                interpolation=lagrange_weights(log_nodes, np.log(fine_nodes)),
             )
         )
     if reference is not None:
@@ -169,26 +174,26 @@ def lateral_columns(
     """Columns of the `parity_loads` of a cell-wise uniform load within one panel; None if there are none."""
     waves = panel.load_waves(grid)
     cosine, sine = panel.waves(y)
-    along_x, parities, even, odd = [], [], [], []
+    along_x, parities, even_waves, odd_waves = [], [], [], []
     spectra_of = {parity: [cells @ wave for wave in waves] for parity, cells in parity_loads.items()}
-    min_amplitude = NEGLIGIBLE * max(
-        (np.abs(amplitude).max() for pair in spectra_of.values() for amplitude in pair), default=0.0
+    min_amplitude = NEGLIGIBLE_LOAD * max(
+        (np.abs(amplitude).max() for amplitudes in spectra_of.values() for amplitude in amplitudes), default=0.0
     )
     for parity, spectra in spectra_of.items():
         for spectrum, even_wave, odd_wave in zip(spectra, (cosine, sine), (-sine, cosine), strict=True):
             if np.abs(spectrum).max() > min_amplitude:
                 along_x.append(spectrum)
                 parities.append(parity)
-                even.append(even_wave)
-                odd.append(odd_wave)
+                even_waves.append(even_wave)
+                odd_waves.append(odd_wave)
     if not along_x:
         return None
     columns = LateralColumns(
         nodes=panel.fine_nodes,
         along_x=np.stack(along_x, axis=-1),
         parities=np.array(parities),
-        even=np.stack(even, axis=1),
-        odd=np.stack(odd, axis=1),
+        even=np.stack(even_waves, axis=1),
+        odd=np.stack(odd_waves, axis=1),
     )
     if panel.interpolation is not None:
         columns = _interpolate_columns(columns, panel.nodes, panel.interpolation)
@@ -200,18 +205,18 @@ def _interpolate_columns(columns: LateralColumns, nodes: FloatArray, interpolati
     cells, fine, _ = columns.along_x.shape
     along_x, parities, factors = [], [], []
     for parity in np.unique(columns.parities):
-        selected = columns.parities == parity
-        along_cells, values, right = np.linalg.svd(
-            columns.along_x[..., selected].reshape(cells, -1), full_matrices=False
+        is_parity = columns.parities == parity
+        along_cells, singular, right = np.linalg.svd(
+            columns.along_x[..., is_parity].reshape(cells, -1), full_matrices=False
         )
-        rank = int((values > NEGLIGIBLE * values[0]).sum())
-        along_nodes = (values[:rank, None] * right[:rank]).reshape(rank, fine, -1)
+        rank = int((singular > NEGLIGIBLE_LOAD * singular[0]).sum())
+        along_nodes = (singular[:rank, None] * right[:rank]).reshape(rank, fine, -1)
         along_x.append(along_cells[:, :rank])
         parities.append(np.full(rank, parity))
-        factors.append((selected, interpolation.T[:, None, :, None] * along_nodes))
+        factors.append((is_parity, interpolation.T[:, None, :, None] * along_nodes))
     column_parities = np.concatenate(parities)
     even, odd = (
-        np.concatenate([np.tensordot(factor, waves[:, selected], axes=2) for selected, factor in factors], axis=1)
+        np.concatenate([np.tensordot(factor, waves[:, is_parity], axes=2) for is_parity, factor in factors], axis=1)
         for waves in (columns.even, columns.odd)
     )
     return LateralColumns(
@@ -219,45 +224,45 @@ def _interpolate_columns(columns: LateralColumns, nodes: FloatArray, interpolati
     )
 
 
-def cosine_moments(first: float, y: FloatArray, reference: float, terms: int = 1) -> FloatArray:
-    """Integrals of ``cos(k y)`` times ``k**-3, k**-2, k**-1, 1, ...`` over k from 0 to `first`: (3 + terms, y)."""
+def cosine_moments(panel_end: float, y: FloatArray, reference: float, terms: int = 1) -> FloatArray:
+    """Integrals of ``cos(k y)`` times ``k**-3, k**-2, k**-1, 1, ...`` over k from 0 to `panel_end`: (3 + terms, y)."""
     # The poles' integrals are relative to ``|y| = reference = r``: with those from `first` on they sum up to the rigid
     # motions k**-3: y**2 / 2 ln(|y| / r) + 3 / 4 (r**2 - y**2),   k**-2: pi / 2 (r - |y|),   k**-1: ln(r / |y|).
     from scipy.special import sici
 
-    distance = np.maximum(np.abs(y), 1e-30 / first)
-    argument = first * distance
+    distance = np.maximum(np.abs(y), 1e-30 / panel_end)
+    argument = panel_end * distance
     sine_integral, cosine_integral = sici(argument)
     logarithm = cosine_integral - np.log(distance / reference)
     cubic_pole = 0.75 * (reference**2 - distance**2) - 0.5 * distance**2 * logarithm  # eq. (30c)
     return np.array(
         [
-            cubic_pole - 0.5 * (np.cos(argument) / first - distance * np.sin(argument)) / first,
-            (-np.cos(argument)) / first - distance * sine_integral + 0.5 * np.pi * reference,
+            cubic_pole - 0.5 * (np.cos(argument) / panel_end - distance * np.sin(argument)) / panel_end,
+            (-np.cos(argument)) / panel_end - distance * sine_integral + 0.5 * np.pi * reference,
             logarithm,
-            *_power_moments(np.cos, first, y, terms),
+            *_power_moments(np.cos, panel_end, y, terms),
         ]
     )
 
 
-def sine_moments(first: float, y: FloatArray, reference: float, terms: int = 1) -> FloatArray:
+def sine_moments(panel_end: float, y: FloatArray, reference: float, terms: int = 1) -> FloatArray:
     """Integrals of ``sin(k y)`` times the same powers, consistent with `cosine_moments` integrated along y."""
     from scipy.special import sici
 
-    argument = first * y
-    _, second, pole = cosine_moments(first, y, reference, 0)
+    argument = panel_end * y
+    _, double_pole, simple_pole = cosine_moments(panel_end, y, reference, 0)
     return np.array(
         [
-            0.5 * y * (second + 0.5 * np.pi * reference) - 0.5 * np.sin(argument) / first**2,
-            y * (1 - np.sinc(argument / np.pi) + pole),
+            0.5 * y * (double_pole + 0.5 * np.pi * reference) - 0.5 * np.sin(argument) / panel_end**2,
+            y * (1 - np.sinc(argument / np.pi) + simple_pole),
             sici(argument)[0],
-            *_power_moments(np.sin, first, y, terms),
+            *_power_moments(np.sin, panel_end, y, terms),
         ]
     )
 
 
-def _power_moments(wave: Callable[[FloatArray], FloatArray], first: float, y: FloatArray, terms: int) -> FloatArray:
-    """Integrals of ``wave(k y)`` times ``1, k, k**2, ...`` over k from 0 to `first`: array (terms, y)."""
-    panel_count = max(1, int(np.ceil(first * np.abs(y).max(initial=0.0) / MOMENT_PHASE)))
-    nodes, weights = panel_nodes(np.linspace(0.0, first, panel_count + 1), MOMENT_ORDER)
+def _power_moments(wave: Callable[[FloatArray], FloatArray], panel_end: float, y: FloatArray, terms: int) -> FloatArray:
+    """Integrals of ``wave(k y)`` times ``1, k, k**2, ...`` over k from 0 to `panel_end`: array (terms, y)."""
+    panel_count = max(1, int(np.ceil(panel_end * np.abs(y).max(initial=0.0) / MOMENT_PHASE)))
+    nodes, weights = panel_nodes(np.linspace(0.0, panel_end, panel_count + 1), MOMENT_ORDER)
     return np.asarray((nodes[:, None] ** np.arange(terms) * weights[:, None]).T @ wave(np.outer(nodes, y)))

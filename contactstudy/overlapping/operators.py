@@ -103,13 +103,13 @@ class SumOperator(LinearOperator):  # type: ignore[misc]
     def _matvec(self, vector: FloatArray) -> FloatArray:
         blocks = _split_by_band(vector, [matrix.shape[1] for matrix in self.matrices], self.count)
         total = np.zeros((self.matrices[0].shape[0], self._values_y))
-        for matrix, lateral, block in zip(self.matrices, self.filters, blocks, strict=True):
-            total += matrix @ block if lateral is None else (matrix @ block) @ lateral
+        for matrix, filter_y, block in zip(self.matrices, self.filters, blocks, strict=True):
+            total += matrix @ block if filter_y is None else (matrix @ block) @ filter_y
         return np.asarray((total.T if self._y_first else total).ravel())
 
     def _rmatvec(self, vector: FloatArray) -> FloatArray:
         total = vector.reshape(self._values_y, -1).T if self._y_first else vector.reshape(-1, self._values_y)
-        filtered = (total if lateral is None else total @ lateral.T for lateral in self.filters)
+        filtered = (total if filter_y is None else total @ filter_y.T for filter_y in self.filters)
         return np.concatenate(
             [(matrix.T @ block).ravel() for matrix, block in zip(self.matrices, filtered, strict=True)]
         )
@@ -153,11 +153,11 @@ class OverlappingOperators:
         with one_blas_thread():
             for panel in problem.panels(y, shortest, reference):
                 columns = LateralColumns.of_unit_loads(panel, unit_loads, parities)
-                even, odd = panel.filters(problem.grid, y)
+                even_filters, odd_filters = panel.filters(problem.grid, y)
                 for view in make_views(problem, columns, x, shortest):
                     for node, lateral in enumerate(panel.nodes.tolist()):
                         system = problem.equation_set(view.modes, lateral, shortest)
-                        bands.append(Band(system, view, {1: even[node], -1: odd[node]}))
+                        bands.append(Band(system, view, {1: even_filters[node], -1: odd_filters[node]}))
         return cls(problem, Points(x, y, z), bands)
 
     @cached_property
@@ -216,19 +216,19 @@ class OverlappingOperators:
         """Matrix from the modes of a band to the equivalent load on one face at the depths."""
         modes, system = band.view.modes, band.system
         depth, weights = system.ray_nodes(self._shortest, self.problem.resolution)
-        first, second = system.ray_to_faces(load, depth)
+        mode_matrix, conjugate_matrix = system.ray_to_faces(load, depth)
         waves = np.exp(1j * np.outer(self.positions.z, depth))  # eq. (8)
         waves = waves * weights * modes.load_on_face(np.sqrt(depth**2 + system.lateral**2))
         # The second end's load follows from the first's by parity; separate ends have a view each.
         sign = modes.parity**end if modes.parity else int(band.view.flipped == bool(end))
-        return -sign * real_part_matrix(waves @ first + np.conj(waves @ second))
+        return -sign * real_part_matrix(waves @ mode_matrix + np.conj(waves @ conjugate_matrix))
 
     def equivalent(self, load: Load) -> EquivalentOperators:
         """Return the operators from a load on the cells to the equivalent loads, without iteration."""
         modes = self.modes(load)
         faces = self.solution @ self.to_faces(load) @ modes  # eqs. (3) and (4)
-        on_faces = [
+        face_operators = [
             self.face_values(Load.NORMAL, end) @ self.to_top @ faces + self.face_values(load, end) @ modes
             for end in range(1 if np.isinf(self.problem.length) else 2)
         ]
-        return EquivalentOperators(self.top_values @ faces, on_faces)
+        return EquivalentOperators(self.top_values @ faces, face_operators)

@@ -17,7 +17,7 @@ from contactstudy.overlapping.axial_modes import AxialModes, modes_between_ends
 from contactstudy.overlapping.equations import EquationSet
 from contactstudy.overlapping.lateral_modes import (
     BENDING_POLES,
-    NEGLIGIBLE,
+    NEGLIGIBLE_LOAD,
     POLE_PANEL_FACTOR,
     POLES,
     LateralColumns,
@@ -57,8 +57,8 @@ class EndProblem:
     finest: float | None = None  # size of the cells of the given load, metres, if `grid` is finer
 
     def __post_init__(self) -> None:
-        loaded = np.flatnonzero(self.cells.any(axis=0))
-        width = self.grid.dy * (loaded[-1] - loaded[0] + 1) if loaded.size else 0.0
+        loaded_rows = np.flatnonzero(self.cells.any(axis=0))
+        width = self.grid.dy * (loaded_rows[-1] - loaded_rows[0] + 1) if loaded_rows.size else 0.0
         if self.length < MIN_LENGTH * width:
             raise InvalidInputError(
                 "body.length",
@@ -74,10 +74,10 @@ class EndProblem:
         edges = self.grid.x_edges
         if self.grid.uniform or np.isinf(self.length):
             return edges
-        symmetric = np.union1d(edges, self.length - edges)
-        symmetric = symmetric[np.append(True, np.diff(symmetric) > EDGE_ROUNDING * self.length)]
-        symmetric[0], symmetric[-1] = 0.0, self.length
-        return np.asarray(0.5 * (symmetric + self.length - symmetric[::-1]))
+        symmetric_edges = np.union1d(edges, self.length - edges)
+        symmetric_edges = symmetric_edges[np.append(True, np.diff(symmetric_edges) > EDGE_ROUNDING * self.length)]
+        symmetric_edges[0], symmetric_edges[-1] = 0.0, self.length
+        return np.asarray(0.5 * (symmetric_edges + self.length - symmetric_edges[::-1]))
 
     @cached_property
     def cell_of_column(self) -> IntArray:
@@ -112,8 +112,8 @@ class EndProblem:
         """Smallest relevant distance from a corner, for positions at least `nearest` from the corner, metres."""
         # The field of a load near a corner depends on its steps there, at distant positions as well; every edge is
         # included, so that the field is additive.
-        inner = self.column_edges[1:-1]
-        return max(min(nearest, float(self.from_end(inner).min(initial=nearest))), self.corner_offset)
+        inner_edges = self.column_edges[1:-1]
+        return max(min(nearest, float(self.from_end(inner_edges).min(initial=nearest))), self.corner_offset)
 
     def from_end(self, x: FloatArray) -> FloatArray:
         """Distance of positions from the nearest end."""
@@ -125,10 +125,10 @@ class EndProblem:
         max_distance = max(map(abs, grid.y_range)) + np.abs(y).max()
         poles = BENDING_POLES if self.sign_x < 0 else POLES
         first_panel_factor = FIRST_PANEL_FACTOR if reference is None else POLE_PANEL_FACTOR[poles]
-        first = first_panel_factor / min(self.length, 4 * max(grid.x_range[1], max_distance))
+        first_wavenumber = first_panel_factor / min(self.length, 4 * max(grid.x_range[1], max_distance))
         # Along y the load is uniform in cells: half a cell is the finest scale.
-        last = self.resolution.lateral_reach / max(shortest, 0.5 * self.finest_size)
-        return lateral_panels(first, max_distance, last, self.resolution, reference, poles=poles)
+        last_wavenumber = self.resolution.lateral_reach / max(shortest, 0.5 * self.finest_size)
+        return lateral_panels(first_wavenumber, max_distance, last_wavenumber, self.resolution, reference, poles=poles)
 
     def equation_set(self, modes: AxialModes, lateral: float, shortest: float) -> EquationSet:
         """Equation set of some axial modes at the wavenumber `lateral`, cached."""
@@ -142,9 +142,11 @@ def finest_cell(grid: Grid) -> float:
 
 def split_by_parity(cells: FloatArray, sign_x: int) -> dict[int, FloatArray]:
     """Parts of a load (x, y) even (1) and odd (-1) about mid-length, but negligible ones; `sign_x` -1 swaps them."""
-    loads = {parity: 0.5 * (cells + sign_x * parity * cells[::-1]) for parity in (1, -1)}
-    min_amplitude = NEGLIGIBLE * np.abs(cells).max()
-    return {parity: values for parity, values in loads.items() if np.abs(values).max() > min_amplitude}
+    parity_loads = {parity: 0.5 * (cells + sign_x * parity * cells[::-1]) for parity in (1, -1)}
+    min_amplitude = NEGLIGIBLE_LOAD * np.abs(cells).max()
+    return {
+        parity: parity_load for parity, parity_load in parity_loads.items() if np.abs(parity_load).max() > min_amplitude
+    }
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -168,7 +170,7 @@ def make_views(problem: EndProblem, load: LateralColumns, x: FloatArray, shortes
     """Return views of a load and of positions `x`, one per set of axial modes."""
     # Ends too far apart to interact are two quarter spaces; a load split by parity has positions in the first half.
     length, edges = problem.length, problem.column_edges
-    split = bool(load.parities.all())
+    is_split = bool(load.parities.all())
     views = []
     for modes in modes_between_ends(
         length, float(load.nodes[0]), shortest, problem.resolution, mirrored_once=problem.mirrored_once
@@ -177,15 +179,15 @@ def make_views(problem: EndProblem, load: LateralColumns, x: FloatArray, shortes
         if not columns.size:
             continue
         integrals = modes.load_weights[:, None] * modes.cell_integrals(problem.loads[0], edges)
-        for flipped in (False, True) if np.isfinite(length) and not modes.parity and not split else (False,):
-            oriented = problem.sign_x * integrals[:, ::-1] if flipped else integrals
+        for flipped in (False, True) if np.isfinite(length) and not modes.parity and not is_split else (False,):
+            end_integrals = problem.sign_x * integrals[:, ::-1] if flipped else integrals
             distance = length - x if flipped else x
             rows = np.flatnonzero(distance <= modes.reach)
             distance = distance[rows]
             views.append(
                 View(
                     modes=modes,
-                    spectra=np.tensordot(oriented, load.along_x[..., columns], axes=1),
+                    spectra=np.tensordot(end_integrals, load.along_x[..., columns], axes=1),
                     columns=columns,
                     rows=rows,
                     x=distance,

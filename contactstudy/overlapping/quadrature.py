@@ -31,9 +31,9 @@ def _gauss_nodes(order: int) -> tuple[FloatArray, FloatArray]:
 def panel_nodes(edges: FloatArray, order: int) -> tuple[FloatArray, FloatArray]:
     """Nodes and weights of composite Gauss-Legendre quadrature on the panels between `edges`."""
     nodes, weights = _gauss_nodes(order)
-    half = 0.5 * np.diff(edges)[:, None]
-    midpoint = 0.5 * (edges[1:] + edges[:-1])[:, None]
-    return (midpoint + half * nodes).ravel(), (half * weights).ravel()
+    half_widths = 0.5 * np.diff(edges)[:, None]
+    midpoints = 0.5 * (edges[1:] + edges[:-1])[:, None]
+    return (midpoints + half_widths * nodes).ravel(), (half_widths * weights).ravel()
 
 
 AXIAL_STEP, AXIAL_REACH = 0.16, 1000.0
@@ -145,41 +145,41 @@ def cell_moments(edges: FloatArray, positions: FloatArray, cell_edges: FloatArra
     panel = np.clip(np.searchsorted(edges, midpoints) - 1, 0, edges.size - 2)
     cell = np.searchsorted(cell_edges, midpoints) - 1
     for index in range(edges.size - 1):
-        inside = (panel == index) & (cell >= 0) & (cell < moments.shape[1])
+        is_inside = (panel == index) & (cell >= 0) & (cell < moments.shape[1])
         nodes = slice(index * order, (index + 1) * order)
-        contributions = weights[inside, None] * lagrange_weights(positions[nodes], points[inside])
-        np.add.at(moments[nodes].T, cell[inside], contributions)
+        point_moments = weights[is_inside, None] * lagrange_weights(positions[nodes], points[is_inside])
+        np.add.at(moments[nodes].T, cell[is_inside], point_moments)
     return moments
 
 
 def graded_interpolation(x: FloatArray, length: float, order: int) -> tuple[FloatArray, FloatArray] | None:
     """Few positions graded towards the ends, and the matrix that interpolates from them to many positions `x`."""
-    half = 0.5 * length if np.isfinite(length) else float(x.max())
-    near_first = x <= half
-    from_end = np.where(near_first, x, length - x)
-    inside = from_end > 0
-    if not inside.any():
+    half_length = 0.5 * length if np.isfinite(length) else float(x.max())
+    is_near_first = x <= half_length
+    from_end = np.where(is_near_first, x, length - x)
+    is_off_end = from_end > 0
+    if not is_off_end.any():
         return None
-    finest = float(from_end[inside].min())
-    if not half > finest:
+    finest = float(from_end[is_off_end].min())
+    if not half_length > finest:
         return None
-    panels = max(1, int(np.ceil(np.log2(half / finest))))
-    edges = finest * (half / finest) ** (np.arange(panels + 1) / panels)
+    panels = max(1, int(np.ceil(np.log2(half_length / finest))))
+    edges = finest * (half_length / finest) ** (np.arange(panels + 1) / panels)
     positions = panel_nodes(edges, order)[0]
     count = positions.size
-    sides = 2 if np.isfinite(length) else 1
-    on_end = np.flatnonzero(~inside)
-    if sides * count + on_end.size >= x.size:
+    end_count = 2 if np.isfinite(length) else 1
+    on_end = np.flatnonzero(~is_off_end)
+    if end_count * count + on_end.size >= x.size:
         return None
-    matrix = np.zeros((x.size, sides * count + on_end.size))
+    matrix = np.zeros((x.size, end_count * count + on_end.size))
     panel = np.clip(np.searchsorted(edges, from_end) - 1, 0, panels - 1)
     for index in range(panels):
         nodes = slice(index * order, (index + 1) * order)
-        for side, on_side in enumerate((near_first, ~near_first)[:sides]):
-            points = np.flatnonzero(inside & on_side & (panel == index))
+        for side, is_on_side in enumerate((is_near_first, ~is_near_first)[:end_count]):
+            points = np.flatnonzero(is_off_end & is_on_side & (panel == index))
             matrix[points, side * count + nodes.start : side * count + nodes.stop] = lagrange_weights(
                 positions[nodes], from_end[points]
             )
-    matrix[on_end, sides * count + np.arange(on_end.size)] = 1.0
-    sides_positions = [positions, length - positions] if sides == 2 else [positions]
-    return np.concatenate([*sides_positions, x[on_end]]), matrix
+    matrix[on_end, end_count * count + np.arange(on_end.size)] = 1.0
+    side_positions = [positions, length - positions] if end_count == 2 else [positions]
+    return np.concatenate([*side_positions, x[on_end]]), matrix

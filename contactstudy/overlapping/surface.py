@@ -72,7 +72,7 @@ class EndRequest(NamedTuple):
             end_width = min(grid.widths[0], grid.widths[-1]) if np.isfinite(freed.length) else grid.widths[0]
             finest = grid.dy / CELLS_PER_FINEST if end_width <= 2 * grid.dy else grid.dy
         resolution = resolution.for_loads(chain.from_iterable(responses))
-        finer = replace(
+        operator_resolution = replace(
             resolution,
             angle=RAY_FACTOR * resolution.angle,
             step=RAY_FACTOR * resolution.step,
@@ -87,7 +87,7 @@ class EndRequest(NamedTuple):
             finest=finest,
             responses=responses,
             reference=reference,
-            resolution=finer,
+            resolution=operator_resolution,
         )
 
     @property
@@ -108,24 +108,26 @@ class EndKernel:
     def add_to(self, kernel: FloatArray, response: Response, cell_edges: FloatArray) -> None:
         """Add the displacement averaged over cells from forces on cells to an array (wavenumber, cell, cell)."""
         widths = np.diff(cell_edges)
-        sides = self.moments(cell_edges)
+        side_moments = self.moments(cell_edges)
         for parity, samples in zip(self.request.parities, self.samples[response], strict=True):
-            observed, loaded = (sum_of_ends(sides, parity * direction.sign_x) / widths for direction in response)
+            observed_means, loaded_means = (
+                sum_of_ends(side_moments, parity * direction.sign_x) / widths for direction in response
+            )
             for total, sampled in zip(kernel, samples, strict=True):
-                total += observed.T @ sampled @ loaded
+                total += observed_means.T @ sampled @ loaded_means
 
     def moments(self, cell_edges: FloatArray) -> list[FloatArray]:
         """Integrals over the cells of the polynomials on the positions, from each end: arrays (position, cell)."""
-        sides = [cell_moments(self.edges, self.positions, cell_edges)]
+        side_moments = [cell_moments(self.edges, self.positions, cell_edges)]
         length = self.request.freed.length
         if np.isfinite(length):
-            sides.append(cell_moments(self.edges, self.positions, length - cell_edges[::-1])[:, ::-1])
-        return sides
+            side_moments.append(cell_moments(self.edges, self.positions, length - cell_edges[::-1])[:, ::-1])
+        return side_moments
 
 
-def sum_of_ends(sides: list[FloatArray], sign: int) -> FloatArray:
+def sum_of_ends(side_moments: list[FloatArray], sign: int) -> FloatArray:
     """Sum over both ends for a load with an image of `sign` times the load; the value of a single end."""
-    return np.asarray(sides[0] + sign * sides[1]) if len(sides) > 1 else sides[0]
+    return np.asarray(side_moments[0] + sign * side_moments[1]) if len(side_moments) > 1 else side_moments[0]
 
 
 @dataclass(frozen=True, eq=False)
@@ -139,9 +141,11 @@ class PositionWaves:
     @classmethod
     def of(cls, modes: AxialModes, positions: FloatArray, responses: Sequence[Response]) -> PositionWaves:
         """Waves for all directions of some responses."""
-        within, weights = positions[positions <= modes.reach], modes.load_weights[:, None]
-        by_load = {load: weights * modes.wave(load, within) for load in dict.fromkeys(chain.from_iterable(responses))}
-        return cls(modes, within, by_load)
+        near_positions, weights = positions[positions <= modes.reach], modes.load_weights[:, None]
+        by_load = {
+            load: weights * modes.wave(load, near_positions) for load in dict.fromkeys(chain.from_iterable(responses))
+        }
+        return cls(modes, near_positions, by_load)
 
 
 def sampled_kernel(waves: PositionWaves, wavenumber: float, request: EndRequest, shortest: float) -> list[FloatArray]:
@@ -153,8 +157,10 @@ def sampled_kernel(waves: PositionWaves, wavenumber: float, request: EndRequest,
     if isinstance(modes, SingleMirrorModes):  # no reciprocity: its ends carry shear
         k = np.sqrt(modes.wavenumbers**2 + wavenumber**2)  # eq. (28)
         compliance = modes.cosine(waves.positions) * ((1 - material.poisson) / material.shear_modulus / k)[:, None]
-        top = {load: system.spectrum_on_top(system.solve(system.source(load, waves.by_load[load]))) for load in loads}
-        return [np.real(compliance.T @ top[response.load]) for response in responses]
+        top_loads = {
+            load: system.spectrum_on_top(system.solve(system.source(load, waves.by_load[load]))) for load in loads
+        }
+        return [np.real(compliance.T @ top_loads[response.load]) for response in responses]
     sources = {load: system.source(load, spectrum) for load, spectrum in waves.by_load.items()}
     face_loads = {load: system.solve(sources[load]) for load in loads}
     kernels = []
@@ -162,8 +168,8 @@ def sampled_kernel(waves: PositionWaves, wavenumber: float, request: EndRequest,
         kernel = sources[displacement].T @ face_loads[load]  # eqs. (29) and (29b), sources of eq. (28a)
         if displacement in face_loads:
             # Reciprocity up to rounding, which two ends amplify.
-            reverse = kernel if displacement is load else sources[load].T @ face_loads[displacement]
-            kernel = 0.5 * (kernel + reverse.T)
+            reverse_kernel = kernel if displacement is load else sources[load].T @ face_loads[displacement]
+            kernel = 0.5 * (kernel + reverse_kernel.T)
         # Without the factor i of an odd kernel: the conjugate of ``i s`` includes the sign.
         sign = -1 if displacement.sign_y < 0 < load.sign_y else 1
         kernels.append(factor * sign * kernel)
@@ -174,14 +180,14 @@ def sampled_kernel(waves: PositionWaves, wavenumber: float, request: EndRequest,
 def end_kernel(request: EndRequest) -> EndKernel:
     """Kernel of the ends of a body."""
     length, mirrored_once = request.freed
-    relative = np.isfinite(length) and not mirrored_once
+    is_relative = np.isfinite(length) and not mirrored_once
     window = 2 * request.dy * request.cells_y
     shortest = 0.5 * request.finest
     # A load on a single cell at the edge is accurate to 1e-4 at the edge; smooth loads need half of the range.
-    last = 2 * max(2.0 * np.pi / request.dy, 6.0 / request.finest)
-    reference = request.reference if relative else None
-    half = 0.5 * length if np.isfinite(length) else request.span
-    edges, positions = graded_positions(half, shortest, POSITIONS_PER_PANEL)
+    last_wavenumber = 2 * max(2.0 * np.pi / request.dy, 6.0 / request.finest)
+    reference = request.reference if is_relative else None
+    half_length = 0.5 * length if np.isfinite(length) else request.span
+    edges, positions = graded_positions(half_length, shortest, POSITIONS_PER_PANEL)
     offsets: FloatArray = request.dy * np.arange(request.cells_y + 1.0)
     even_matrix, odd_matrix = spectrum_matrices(request.cells_y)
     # From samples at the offsets to the padded grid's transform; an odd kernel is -sin(k y).
@@ -189,26 +195,35 @@ def end_kernel(request: EndRequest) -> EndKernel:
     samples_by_response: dict[Response, list[FloatArray]] = {}
     shared_samples: dict[float, FloatArray] = {}  # samples at wavenumbers that kernels with either pole share
     for poles in sorted({_poles(response) for response in request.responses}):
-        first = POLE_PANEL_FACTOR[poles] / min(length, 4 * max(request.span, window))
-        panels = lateral_panels(first, 0.5 * window, last, request.resolution, reference, poles=poles)
+        first_wavenumber = POLE_PANEL_FACTOR[poles] / min(length, 4 * max(request.span, window))
+        panels = lateral_panels(
+            first_wavenumber, 0.5 * window, last_wavenumber, request.resolution, reference, poles=poles
+        )
         responses = [response for response in request.responses if _poles(response) == poles]
         indices = [request.responses.index(response) for response in responses]
         size, parities = positions.size, len(request.parities)
         totals = np.zeros((len(responses), parities, request.cells_y + 1, size**2))
         for panel in panels:
-            even, odd = (
+            even_transform, odd_transform = (
                 transform @ (waves.T * (request.dy * np.sinc(panel.fine_nodes * request.dy / (2 * np.pi))))
                 for transform, waves in zip(transforms, panel.waves(offsets), strict=True)
             )
             if panel.interpolation is not None:
-                even, odd = even @ panel.interpolation, odd @ panel.interpolation
+                even_transform, odd_transform = (
+                    even_transform @ panel.interpolation,
+                    odd_transform @ panel.interpolation,
+                )
             samples = np.zeros((len(responses), parities, panel.nodes.size, size, size))
             for node, sampled in enumerate(_sample_panel(request, panel, positions, shortest, shared_samples)):
                 count = sampled.shape[-1]
                 samples[:, :, node, :count, :count] = sampled[:, indices].swapaxes(0, 1)
             for response, total, response_samples in zip(responses, totals, samples, strict=True):
                 for sums, parity_samples in zip(total, response_samples, strict=True):
-                    add_product(sums, even if response.sign_y > 0 else odd, parity_samples.reshape(-1, size**2))
+                    add_product(
+                        sums,
+                        even_transform if response.sign_y > 0 else odd_transform,
+                        parity_samples.reshape(-1, size**2),
+                    )
         shape = (request.cells_y + 1, size, size)
         for response, total in zip(responses, totals, strict=True):
             samples_by_response[response] = [sums.reshape(shape) for sums in total]
@@ -229,8 +244,8 @@ def _sample_panel(
 ) -> Iterator[FloatArray]:
     """Kernel at a panel's wavenumbers, or from `shared_samples`: arrays (parity, response, position, position)."""
     length, mirrored_once = request.freed
-    first = float(panel.nodes[0])
-    modes = modes_between_ends(length, first, shortest, request.resolution, mirrored_once=mirrored_once)
+    first_wavenumber = float(panel.nodes[0])
+    modes = modes_between_ends(length, first_wavenumber, shortest, request.resolution, mirrored_once=mirrored_once)
     waves = [PositionWaves.of(mode, positions, request.responses) for mode in modes]
     is_shared = len({_poles(response) for response in request.responses}) > 1
     for wavenumber in panel.nodes.tolist():
@@ -245,10 +260,10 @@ def _sample_panel(
         yield kernel
 
 
-def add_product(total: FloatArray, first: FloatArray, second: FloatArray) -> None:
-    """Add ``left @ right`` to `total`, a contiguous array, in its place."""
+def add_product(total: FloatArray, left_factor: FloatArray, right_factor: FloatArray) -> None:
+    """Add ``left_factor @ right_factor`` to `total`, a contiguous array, in its place."""
     # The transposes are in Fortran's order: BLAS copies nothing.
-    linalg.blas.dgemm(1.0, second.T, np.ascontiguousarray(first).T, 1.0, total.T, overwrite_c=True)
+    linalg.blas.dgemm(1.0, right_factor.T, np.ascontiguousarray(left_factor).T, 1.0, total.T, overwrite_c=True)
 
 
 @dataclass(frozen=True, eq=False)
@@ -279,17 +294,17 @@ class EndCorrection:
         """Displacement in one direction, transformed along y (cell, wavenumber), from all `project_loads` loads."""
         terms: list[FloatArray] = []
         for index, moments in enumerate(self.moments[direction]):
-            total = np.zeros_like(next(iter(loads.values()))[index])
+            projection_sum = np.zeros_like(next(iter(loads.values()))[index])
             for load, projected in loads.items():
                 response = Response(direction, load)
-                kernel, (real, imaginary) = self.kernels[response][index], projected[index]
+                kernel, (real_part, imaginary_part) = self.kernels[response][index], projected[index]
                 if response.sign_y > 0:
-                    total[0] += _multiply_columns(kernel, real)
-                    total[1] += _multiply_columns(kernel, imaginary)
+                    projection_sum[0] += _multiply_columns(kernel, real_part)
+                    projection_sum[1] += _multiply_columns(kernel, imaginary_part)
                 else:  # times i
-                    total[0] -= _multiply_columns(kernel, imaginary)
-                    total[1] += _multiply_columns(kernel, real)
-            terms.append(moments.T @ np.ascontiguousarray(total.transpose(2, 1, 0)).reshape(len(moments), -1))
+                    projection_sum[0] -= _multiply_columns(kernel, imaginary_part)
+                    projection_sum[1] += _multiply_columns(kernel, real_part)
+            terms.append(moments.T @ np.ascontiguousarray(projection_sum.transpose(2, 1, 0)).reshape(len(moments), -1))
         return np.asarray(self._unfold(terms, cells, direction.sign_x).view(np.complex128) / self.cell)
 
     def _fold(self, values: FloatArray, sign_x: int) -> list[FloatArray]:
@@ -297,47 +312,49 @@ class EndCorrection:
         if len(self.parities) == 1:
             return [values]
         cells = values.shape[0]
-        half = (cells + 1) // 2
-        near, far = values[:half], values[::-1][:half]
-        even, odd = near + far, near - far
+        half_count = (cells + 1) // 2
+        near_cells, far_cells = values[:half_count], values[::-1][:half_count]
+        even_part, odd_part = near_cells + far_cells, near_cells - far_cells
         if cells % 2:  # the middle cell is its own image
-            even[-1] *= 0.5
-        return [even, odd] if sign_x > 0 else [odd, even]
+            even_part[-1] *= 0.5
+        return [even_part, odd_part] if sign_x > 0 else [odd_part, even_part]
 
     def _unfold(self, parity_values: list[FloatArray], cells: int, sign_x: int) -> FloatArray:
         """Undo `_fold`, up to its factor."""
         if len(parity_values) == 1:
             return parity_values[0]
-        even, odd = parity_values if sign_x > 0 else parity_values[::-1]
-        values = np.empty((cells, even.shape[1]))
-        np.add(even, odd, out=values[: even.shape[0]])
-        np.subtract(even[: cells // 2], odd[: cells // 2], out=values[::-1][: cells // 2])
+        even_part, odd_part = parity_values if sign_x > 0 else parity_values[::-1]
+        values = np.empty((cells, even_part.shape[1]))
+        np.add(even_part, odd_part, out=values[: even_part.shape[0]])
+        np.subtract(even_part[: cells // 2], odd_part[: cells // 2], out=values[::-1][: cells // 2])
         return values
 
     def coarsen(self) -> EndCorrection:
         """Return the correction on cells of twice the size, for a first guess: the lower half of the wavenumbers."""
-        coarse: dict[Load, list[FloatArray]] = {}
+        coarse_moments_of: dict[Load, list[FloatArray]] = {}
         for direction, moments in self.moments.items():
             coarse_moments = []
             for parity, fine in zip(self.parities, moments, strict=True):
                 if parity and fine.shape[1] % 2:  # the middle cell of the coarse grid lies on both sides
                     fine = np.hstack([fine, parity * direction.sign_x * fine[:, -1:]])
                 coarse_moments.append(fine[:, ::2] + fine[:, 1::2])
-            coarse[direction] = coarse_moments
-        lower = {
+            coarse_moments_of[direction] = coarse_moments
+        coarse_kernels = {
             response: [kernel[: (len(kernel) - 1) // 2 + 1] for kernel in kernels]
             for response, kernels in self.kernels.items()
         }
-        return EndCorrection(self.parities, coarse, lower, 2 * self.cell)
+        return EndCorrection(self.parities, coarse_moments_of, coarse_kernels, 2 * self.cell)
 
     @classmethod
     def on_grid(cls, grid: Grid, ends: EndKernel) -> EndCorrection:
         """Correction on uniform cells that begin at ``x = 0``."""
-        near = (grid.cells_x + 1) // 2
-        parities, sides = ends.request.parities, ends.moments(grid.x_edges)
+        near_count = (grid.cells_x + 1) // 2
+        parities, side_moments = ends.request.parities, ends.moments(grid.x_edges)
         moments = {
             direction: [
-                np.ascontiguousarray(sum_of_ends(sides, parity * direction.sign_x)[:, : near if parity else None])
+                np.ascontiguousarray(
+                    sum_of_ends(side_moments, parity * direction.sign_x)[:, : near_count if parity else None]
+                )
                 for parity in parities
             ]
             for direction in dict.fromkeys(chain.from_iterable(ends.samples))

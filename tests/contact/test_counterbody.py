@@ -40,8 +40,8 @@ def contact_shape(body, counter: Counterbody, cells: int, length: float, radius_
     """Gap of an ellipsoid over the first `length` of a body, where the counterbody faces it."""
     grid = Grid(x_range=(0.0, length), y_range=(-3 * HALF_WIDTH, 3 * HALF_WIDTH), cells_x=cells, cells_y=48)
     x = grid.x[:, None]
-    middle = counter.start + 0.5 * counter.body.length
-    gap = (x - middle) ** 2 / (2 * radius_x) + grid.y**2 / 10e-3
+    mid_x = counter.start + 0.5 * counter.body.length
+    gap = (x - mid_x) ** 2 / (2 * radius_x) + grid.y**2 / 10e-3
     facing = (x > counter.start) & (x < counter.start + counter.body.length)
     return xr.DataArray(np.where(facing, gap, np.inf), coords={"x": grid.x, "y": grid.y}, dims=("x", "y"))
 
@@ -58,8 +58,8 @@ def test_two_half_spaces_equal_combined_modulus():
         max_pressure=1e9,
     )
     assert elastic.modulus == pytest.approx(rigid.modulus)
-    first, second = (solve(case, stresses=False).pressure.values for case in (rigid, elastic))
-    assert np.abs(first - second).max() < 1e-9 * first.max()
+    rigid_pressure, elastic_pressure = (solve(case, stresses=False).pressure.values for case in (rigid, elastic))
+    assert np.abs(rigid_pressure - elastic_pressure).max() < 1e-9 * rigid_pressure.max()
 
 
 def test_equal_half_spaces_do_not_couple_friction():
@@ -74,7 +74,7 @@ def test_equal_half_spaces_do_not_couple_friction():
 
 
 @pytest.mark.parametrize(
-    ("first", "second"),
+    ("body_material", "roller_material"),
     [
         (Material(1.0, 0.0), None),
         (Material(1.0, 0.1), Material(3.0, 0.4)),
@@ -82,26 +82,31 @@ def test_equal_half_spaces_do_not_couple_friction():
         (STEEL, ALUMINIUM),
     ],
 )
-def test_friction_moves_contact_of_different_materials(first: Material, second: Material | None):
+def test_friction_moves_contact_of_different_materials(body_material: Material, roller_material: Material | None):
     """Bodies with mirrored ends only are in plane strain; the wrong sign would put the centre on the other side."""
-    friction, radius, load = 0.5, 1.0, 2e-4 * first.plane_strain_modulus
-    exact = sliding_line(load, radius, friction, first, second)
-    width = exact.half_width + abs(exact.centre)
+    friction, radius, load = 0.5, 1.0, 2e-4 * body_material.plane_strain_modulus
+    exact_line = sliding_line(load, radius, friction, body_material, roller_material)
+    width = exact_line.half_width + abs(exact_line.centre)
     gap = on_cells(lambda x, y: y**2 / (2 * radius) + 0 * x, (0.0, 1.0), (-1.5 * width, 1.5 * width), (4, 256))
 
     def bar(material: Material) -> FiniteLengthSpace:
         return FiniteLengthSpace(length=1.0, material=material, model="mirror")
 
-    counter = None if second is None else Counterbody(bar(second))
+    counter = None if roller_material is None else Counterbody(bar(roller_material))
     computed = solve_contact(
-        bar(first), gap, load=load, friction=friction, counterbody=counter, settings=ContactSettings(coupled=True)
+        bar(body_material),
+        gap,
+        load=load,
+        friction=friction,
+        counterbody=counter,
+        settings=ContactSettings(coupled=True),
     ).pressure.isel(x=1)
-    assert abs(exact.centre) > 0.03 * exact.half_width
-    expected = exact.pressure(computed.y.values)
+    assert abs(exact_line.centre) > 0.03 * exact_line.half_width
+    expected = exact_line.pressure(computed.y.values)
     assert np.abs(computed.values - expected).max() < 0.04 * expected.max()  # in the cell at the steep edge
     assert np.median(np.abs(computed.values - expected)[expected > 0]) < 5e-4 * expected.max()
     centroid, expected_centroid = (np.average(computed.y, weights=weights) for weights in (computed.values, expected))
-    assert centroid == pytest.approx(expected_centroid, abs=1e-3 * exact.half_width)
+    assert centroid == pytest.approx(expected_centroid, abs=1e-3 * exact_line.half_width)
 
 
 def flexibility(body: FiniteLengthSpace, grid: Grid) -> np.ndarray:
@@ -117,19 +122,19 @@ def flexibility(body: FiniteLengthSpace, grid: Grid) -> np.ndarray:
 @pytest.mark.parametrize("start", [-2, 1])
 def test_two_finite_bodies_match_quadratic_programming(start: int):
     """Flexibilities of both bodies added up by hand, and the least energy found by Lawson and Hanson's active sets."""
-    per_unit, across, load = 2, (-1.5, 1.5), 1.5
+    per_unit, y_range, load = 2, (-1.5, 1.5), 1.5
     body = FiniteLengthSpace(length=8.0, material=Material(1.0, 0.3))
     counter = FiniteLengthSpace(length=6.0, material=Material(2.0, 0.25))
-    grid, own = (
-        Grid(x_range=(0.0, variant.length), y_range=across, cells_x=round(per_unit * variant.length), cells_y=9)
+    grid, counter_grid = (
+        Grid(x_range=(0.0, variant.length), y_range=y_range, cells_x=round(per_unit * variant.length), cells_y=9)
         for variant in (body, counter)
     )
-    both = flexibility(body, grid)
+    compliance = flexibility(body, grid)
     shift = per_unit * start
-    first, last = max(0, shift), min(grid.cells_x, shift + own.cells_x)
+    first, last = max(0, shift), min(grid.cells_x, shift + counter_grid.cells_x)
     own_range = slice(first - shift, last - shift)
-    both[first:last, :, first:last] += flexibility(counter, own)[own_range, :, own_range]
-    gap = on_cells(lambda x, y: (x - start - 3) ** 2 / 40 + y**2 / 2, (0.0, 8.0), across, grid.shape)
+    compliance[first:last, :, first:last] += flexibility(counter, counter_grid)[own_range, :, own_range]
+    gap = on_cells(lambda x, y: (x - start - 3) ** 2 / 40 + y**2 / 2, (0.0, 8.0), y_range, grid.shape)
     gap = gap.where((gap.x > start) & (gap.x < start + 6), np.inf)
     computed = solve_contact(
         body, gap, load=load, counterbody=Counterbody(counter, start), settings=ContactSettings(tolerance=1e-8)
@@ -137,32 +142,37 @@ def test_two_finite_bodies_match_quadratic_programming(start: int):
 
     # The lines to which the prescribed tilt refers turn under the load.
     carried = Counterbody(counter, start).transfer_load(grid, computed.pressure.values)
-    tops = (computed.pressure, xr.DataArray(carried, coords={"x": own.x, "y": own.y}, dims=("x", "y")))
+    tops = (
+        computed.pressure,
+        xr.DataArray(carried, coords={"x": counter_grid.x, "y": counter_grid.y}, dims=("x", "y")),
+    )
     slopes = [line_slope(variant, top, variant.length) for variant, top in zip((body, counter), tops, strict=True)]
     gap = gap - sum(slopes) * gap.x
 
     possible = np.isfinite(gap.values).ravel()
-    matrix = both.reshape(possible.size, -1)[np.ix_(possible, possible)]
+    matrix = compliance.reshape(possible.size, -1)[np.ix_(possible, possible)]
     # The load as a stiff penalty, far above the flexibility's entries.
     penalty, area = 1e6, grid.cell_area
     factor = np.linalg.cholesky(matrix + penalty * area)
-    right = penalty * load - gap.values.ravel()[possible]
-    pressure, _ = optimize.nnls(factor.T, np.linalg.solve(factor, right), maxiter=10_000)
+    right_hand_side = penalty * load - gap.values.ravel()[possible]
+    pressure, _ = optimize.nnls(factor.T, np.linalg.solve(factor, right_hand_side), maxiter=10_000)
     expected = np.zeros(possible.size)
     expected[possible] = pressure * load / (pressure.sum() * area)
     np.testing.assert_allclose(computed.pressure.values.ravel(), expected, atol=1e-5 * expected.max())
 
 
 def test_exchanged_bodies_have_equal_pressure():
-    first = FiniteLengthSpace(length=8 * HALF_WIDTH, material=STEEL)
-    second = FiniteLengthSpace(length=6 * HALF_WIDTH, material=ALUMINIUM)
-    below, above = Counterbody(second, HALF_WIDTH), Counterbody(first, -HALF_WIDTH)
-    gap = contact_shape(first, below, 32, first.length)
+    long_body = FiniteLengthSpace(length=8 * HALF_WIDTH, material=STEEL)
+    short_body = FiniteLengthSpace(length=6 * HALF_WIDTH, material=ALUMINIUM)
+    short_counterbody, long_counterbody = Counterbody(short_body, HALF_WIDTH), Counterbody(long_body, -HALF_WIDTH)
+    gap = contact_shape(long_body, short_counterbody, 32, long_body.length)
     exchanged = gap.isel(x=slice(4, 28)).assign_coords(x=gap.x[4:28] - HALF_WIDTH)
     settings = ContactSettings(coupled=True, tolerance=1e-8)
-    item = solve_contact(first, gap, load=100.0, friction=0.4, counterbody=below, settings=settings)
-    variant = solve_contact(second, exchanged, load=100.0, friction=-0.4, counterbody=above, settings=settings)
-    pressure = item.pressure.values[4:28]
+    contact = solve_contact(long_body, gap, load=100.0, friction=0.4, counterbody=short_counterbody, settings=settings)
+    variant = solve_contact(
+        short_body, exchanged, load=100.0, friction=-0.4, counterbody=long_counterbody, settings=settings
+    )
+    pressure = contact.pressure.values[4:28]
     assert np.abs(pressure - variant.pressure.values).max() < 2e-6 * pressure.max()
 
 
@@ -218,12 +228,12 @@ def test_ends_between_cell_edges_change_little():
     roller = Roller(radius=5e-3, length=10 * HALF_WIDTH, material=STEEL, profile=FILLET)
     case = Case(body=body, roller=roller, max_pressure=1.5e9)
 
-    def middle(cells: int) -> float:
+    def middle_pressure(cells: int) -> float:
         grid = Grid(x_range=(0.0, body.length), y_range=choose_grid(case).y_range, cells_x=cells, cells_y=32)
         return float(solve(case, grid, stresses=False).pressure.sel(x=0.5 * body.length, method="nearest").max())
 
-    aligned = middle(112)  # 16 cells from the body's end to the roller's
-    errors = [abs(middle(cells) / aligned - 1) for cells in (58, 115)]
+    aligned = middle_pressure(112)  # 16 cells from the body's end to the roller's
+    errors = [abs(middle_pressure(cells) / aligned - 1) for cells in (58, 115)]
     assert errors[1] < 0.6 * errors[0]
     assert errors[1] < 0.005
 
@@ -248,9 +258,9 @@ def test_roller_stresses_have_opposite_traction():
     case = Case(body=body, roller=roller, max_pressure=1e9, friction=0.3)
     points = {"x": [0.0, 2 * HALF_WIDTH], "y": [0.4 * HALF_WIDTH], "z": [0.5 * HALF_WIDTH]}
     result = solve(case, choose_grid(case, cells_x=3, cells_y=8), **points)
-    inside = roller_stress(case, result.pressure, **points)
+    stresses = roller_stress(case, result.pressure, **points)
     mirrored = roller_stress(case, result.pressure, **(points | {"y": [-0.4 * HALF_WIDTH]}))
-    assert np.abs(inside.tau_yz.values - result.tau_yz.values).max() > 1e7
+    assert np.abs(stresses.tau_yz.values - result.tau_yz.values).max() > 1e7
     np.testing.assert_allclose(mirrored.von_mises.values, result.von_mises.values, rtol=1e-5)
 
 

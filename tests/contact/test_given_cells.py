@@ -19,8 +19,8 @@ def test_graded_cells_match_uniform_cells(body: HalfSpace | FiniteLengthSpace) -
     graded = Grid.from_edges(uniform.x_edges[retained], uniform.y_range, 32)
     contacts = []
     for grid in (graded, uniform):
-        inside = (grid.x > 0) & (grid.x < SHORT) if finite_body else (grid.x > 0.5 * A) & (grid.x < SHORT - 0.5 * A)
-        heights = np.where(inside[:, None], grid.y**2 / (2 * RADIUS), np.inf)
+        is_inside = (grid.x > 0) & (grid.x < SHORT) if finite_body else (grid.x > 0.5 * A) & (grid.x < SHORT - 0.5 * A)
+        heights = np.where(is_inside[:, None], grid.y**2 / (2 * RADIUS), np.inf)
         gap = xr.DataArray(heights, coords={"x": grid.x, "y": grid.y, "x_width": ("x", grid.widths)}, dims=("x", "y"))
         contacts.append(solve_contact(body, gap, load=CASES["flush"].normal_load))
     there, here = contacts

@@ -38,9 +38,9 @@ def test_sphere_on_even_cells_matches_hertz(half_space: HalfSpace) -> None:
     area = float((contact["pressure"] > 0).sum()) * (3 / cells) ** 2
     assert np.sqrt(area / np.pi) == pytest.approx(radius, rel=2e-2)
     x, y = contact["x"].values[:, None], contact["y"].values
-    exact = peak * np.sqrt(np.maximum(1 - x**2 - y**2, 0))
-    inside = x**2 + y**2 < 0.9**2
-    assert np.abs(contact["pressure"].values - exact)[inside].max() < 1e-2 * peak
+    hertz_pressure = peak * np.sqrt(np.maximum(1 - x**2 - y**2, 0))
+    is_inside = x**2 + y**2 < 0.9**2
+    assert np.abs(contact["pressure"].values - hertz_pressure)[is_inside].max() < 1e-2 * peak
 
 
 def test_load_is_exact_and_the_certificate_holds(short_body: FiniteLengthSpace, cylinder_gap) -> None:
@@ -83,9 +83,9 @@ def test_end_pressure_stays_below_mid_length_pressure(length: float, poisson: fl
     x = length * (np.arange(16) + 0.5) / 16
     gap = xr.DataArray(np.broadcast_to(y**2, (16, 32)), coords={"x": x, "y": y}, dims=("x", "y"))
     contact = solve_contact(body, gap, load=length * LINE_LOAD * factor**2)
-    along = contact["pressure"].max("y")
+    line_maxima = contact["pressure"].max("y")
     assert bool(contact["converged"])
-    assert float(along[0]) <= float(along[8]) * (1 + 1e-6)
+    assert float(line_maxima[0]) <= float(line_maxima[8]) * (1 + 1e-6)
     assert abs(float(contact["load_error"])) < 1e-10
 
 

@@ -17,8 +17,8 @@ POLYMER = Material(3e9, 0.35)
 SQUARE = Grid(x_range=(-0.16e-3, 0.16e-3), y_range=(-0.16e-3, 0.16e-3), cells_x=64, cells_y=64)
 
 
-def label(grid: Grid, values: np.ndarray) -> xr.DataArray:
-    return xr.DataArray(values, {"x": grid.x, "y": grid.y}, ("x", "y"))
+def label(grid: Grid, cells: np.ndarray) -> xr.DataArray:
+    return xr.DataArray(cells, {"x": grid.x, "y": grid.y}, ("x", "y"))
 
 
 SPHERE = label(SQUARE, (SQUARE.x[:, None] ** 2 + SQUARE.y**2) / (2 * RADIUS))
@@ -42,13 +42,15 @@ def layer(material: Material, thickness: float, grid: Grid) -> LinearOperator:
 
 def test_surface_operator_sums_two_bodies() -> None:
     length, grid = 1e-3, Grid(x_range=(0.0, 1e-3), y_range=(-0.1e-3, 0.1e-3), cells_x=32, cells_y=32)
-    first, second = (FiniteLengthSpace(length=length, material=Material(*e)) for e in ((210e9, 0.3), (310e9, 0.26)))
+    first_body, second_body = (
+        FiniteLengthSpace(length=length, material=Material(*e)) for e in ((210e9, 0.3), (310e9, 0.26))
+    )
     waves = 0.2e-6 * np.cos(3 * np.pi * grid.x / length) + 0.1e-6 * np.cos(5 * np.pi * grid.x / length + 0.4)
     gap = label(grid, (waves.max() - waves)[:, None] + grid.y**2 / (2 * RADIUS))
-    surface = surface_displacement(first, grid) + surface_displacement(second, grid)
+    surface = surface_displacement(first_body, grid) + surface_displacement(second_body, grid)
     settings = ContactSettings(load_position=0.5 * length)
-    contact = solve_contact(first, gap, load=60.0, surface=surface, settings=settings)
-    pair = solve_contact(first, gap, load=60.0, settings=settings, counterbody=Counterbody(second))
+    contact = solve_contact(first_body, gap, load=60.0, surface=surface, settings=settings)
+    pair = solve_contact(first_body, gap, load=60.0, settings=settings, counterbody=Counterbody(second_body))
     assert bool(contact.converged)
     assert np.abs(contact.pressure - pair.pressure).max() < 1e-5 * pair.pressure.max()
 

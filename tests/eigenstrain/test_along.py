@@ -10,7 +10,7 @@ from contactstudy.eigenstrain.body import XX, XY, XZ, YY, YZ, ZZ
 from contactstudy.eigenstrain.layers import LayerInfluence, PeriodicLayers
 from contactstudy.verification.closed_forms import rectangle_in_half_plane
 
-SOFT = Material(2.0, 0.3)
+TEST_MATERIAL = Material(2.0, 0.3)
 EDGES = np.linspace(0.4, 1.2, 17)
 
 
@@ -19,26 +19,37 @@ def test_rectangle_in_half_plane_matches_closed_form() -> None:
     positions, step = 1024, 0.05
     y = step * (np.arange(positions) - positions // 2)
     z = 0.5 * (EDGES[1:] + EDGES[:-1])
-    inside = ((np.abs(y) < 0.325)[:, None] & (np.abs(z - 0.8) < 0.2)).astype(float)
+    is_inside = ((np.abs(y) < 0.325)[:, None] & (np.abs(z - 0.8) < 0.2)).astype(float)
     strain = np.zeros((6, positions, 1, 16))
-    own = {YY: 1.0, XX: 0.5, ZZ: -0.3, YZ: 0.4}
-    for component, value in own.items():
-        strain[component, :, 0] = value * inside
-    computed = PeriodicLayers(SOFT, EDGES, positions, step).stresses(strain)[:, :, 0]
-    at = np.searchsorted(y, [-1.0 - 1e-9, -0.6 - 1e-9, 0.2 - 1e-9, 0.7 - 1e-9])
+    strain_components = {YY: 1.0, XX: 0.5, ZZ: -0.3, YZ: 0.4}
+    for component, value in strain_components.items():
+        strain[component, :, 0] = value * is_inside
+    computed = PeriodicLayers(TEST_MATERIAL, EDGES, positions, step).stresses(strain)[:, :, 0]
+    position_indices = np.searchsorted(y, [-1.0 - 1e-9, -0.6 - 1e-9, 0.2 - 1e-9, 0.7 - 1e-9])
     # There the axis along which the rectangle does not end is y, here it is x.
     expected = rectangle_in_half_plane(
-        y[at][:, None], z, (-0.325, 0.325), (0.6, 1.0), tuple(own.values()), SOFT.young, SOFT.poisson
+        y[position_indices][:, None],
+        z,
+        (-0.325, 0.325),
+        (0.6, 1.0),
+        tuple(strain_components.values()),
+        TEST_MATERIAL.young,
+        TEST_MATERIAL.poisson,
     )
-    size = np.abs(expected).max()
-    for component, right in zip((YY, XX, ZZ, YZ), expected, strict=True):
-        assert np.abs(computed[component][at] - right)[:, [0, 1, 6, 7, 8, 14]].max() < 0.02 * size
+    stress_scale = np.abs(expected).max()
+    for component, expected_stress in zip((YY, XX, ZZ, YZ), expected, strict=True):
+        assert (
+            np.abs(computed[component][position_indices] - expected_stress)[:, [0, 1, 6, 7, 8, 14]].max()
+            < 0.02 * stress_scale
+        )
 
 
 def test_uniform_strain_has_stress_of_layers() -> None:
     strain = np.zeros((6, 8, 2, 16)) + np.random.default_rng(3).normal(size=(6, 1, 2, 16))
-    computed = PeriodicLayers(SOFT, EDGES, 8, 0.1).stresses(strain)
-    expected = LayerInfluence(SOFT.poisson, SOFT.young).stresses(strain.reshape(6, -1)).reshape(strain.shape)
+    computed = PeriodicLayers(TEST_MATERIAL, EDGES, 8, 0.1).stresses(strain)
+    expected = (
+        LayerInfluence(TEST_MATERIAL.poisson, TEST_MATERIAL.young).stresses(strain.reshape(6, -1)).reshape(strain.shape)
+    )
     assert np.allclose(computed, expected, atol=1e-12)
 
 
@@ -46,10 +57,10 @@ def test_short_waves_have_no_stress_along_z() -> None:
     """Between planes close together no traction on them is left, and strains in them are held."""
     strain = np.zeros((6, 64, 1, 16))
     strain[:, :, 0] = np.cos(np.pi / 4 * np.arange(64))[:, None]
-    computed = PeriodicLayers(SOFT, 40 * EDGES, 64, 0.01).stresses(strain)[:, 0, 0, 8]
-    modulus = SOFT.plane_strain_modulus
-    held = -modulus * (1 + SOFT.poisson)
-    expected = {XX: held, YY: 0.0, ZZ: held, XY: 0.0, XZ: -2 * SOFT.shear_modulus, YZ: 0.0}
+    computed = PeriodicLayers(TEST_MATERIAL, 40 * EDGES, 64, 0.01).stresses(strain)[:, 0, 0, 8]
+    modulus = TEST_MATERIAL.plane_strain_modulus
+    held = -modulus * (1 + TEST_MATERIAL.poisson)
+    expected = {XX: held, YY: 0.0, ZZ: held, XY: 0.0, XZ: -2 * TEST_MATERIAL.shear_modulus, YZ: 0.0}
     assert computed == pytest.approx([expected[component] for component in range(6)], abs=2e-3)
 
 
@@ -58,8 +69,8 @@ def test_reversed_path_mirrors_stresses() -> None:
     strain = np.random.default_rng(4).normal(size=(6, 16, 1, 16))
     mirrored = strain[:, ::-1].copy()
     mirrored[[XY, YZ]] *= -1
-    there, back = (PeriodicLayers(SOFT, EDGES, 16, 0.2).stresses(variant) for variant in (strain, mirrored))
+    there, back = (PeriodicLayers(TEST_MATERIAL, EDGES, 16, 0.2).stresses(variant) for variant in (strain, mirrored))
     back[[XY, YZ]] *= -1
     assert np.allclose(there, back[:, ::-1], atol=1e-9)
-    falling = PeriodicLayers(SOFT, EDGES, 16, -0.2).stresses(strain[:, ::-1])
+    falling = PeriodicLayers(TEST_MATERIAL, EDGES, 16, -0.2).stresses(strain[:, ::-1])
     assert np.allclose(there, falling[:, ::-1], atol=1e-9)

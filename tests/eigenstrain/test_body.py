@@ -12,9 +12,9 @@ from contactstudy.bodies.material import Material
 from contactstudy.eigenstrain.body import DEEP_LENGTHS, EigenstrainBody, grade_to_face, grow_edges
 from contactstudy.verification.closed_forms import rectangle_in_half_plane
 
-WHOLE = (-np.inf, np.inf)
-ROUGH = Material(2.0, 0.3)
-EVERY = np.array([1.0, 0.5, -0.3, 0.2, 0.4, -0.6])
+NO_ENDS = (-np.inf, np.inf)
+TEST_MATERIAL = Material(2.0, 0.3)
+COMPONENTS = np.array([1.0, 0.5, -0.3, 0.2, 0.4, -0.6])
 """All six components of an eigenstrain."""
 
 
@@ -22,23 +22,25 @@ EVERY = np.array([1.0, 0.5, -0.3, 0.2, 0.4, -0.6])
 def in_rectangle() -> Callable[..., tuple[EigenstrainBody, np.ndarray]]:
     """Make a body with a rectangle of eigenstrain, in cells, and three cells around it where there is room."""
 
-    def build(extent, x_range, z_range, cells=8, **settings):
+    def build_body(extent, x_range, z_range, cells=8, **settings):
         edges = []
         for (low, high), (minimum, maximum) in zip((x_range, z_range), (extent, (0.0, np.inf)), strict=True):
             width = (high - low) / cells
-            own = low + width * np.arange(-3, cells + 4)
-            edges.append(own[(own > minimum - 1e-9) & (own < maximum + 1e-9)])
+            axis_edges = low + width * np.arange(-3, cells + 4)
+            edges.append(axis_edges[(axis_edges > minimum - 1e-9) & (axis_edges < maximum + 1e-9)])
             edges[-1] = np.where(np.abs(edges[-1] - minimum) < 1e-9, minimum, edges[-1])
             edges[-1] = np.where(np.abs(edges[-1] - maximum) < 1e-9, maximum, edges[-1])
         strain = np.zeros((6, edges[0].size - 1, edges[1].size - 1))
         here = [
-            (own[:-1] >= low - 1e-9) & (own[1:] <= high + 1e-9)
-            for own, (low, high) in zip(edges, (x_range, z_range), strict=True)
+            (axis_edges[:-1] >= low - 1e-9) & (axis_edges[1:] <= high + 1e-9)
+            for axis_edges, (low, high) in zip(edges, (x_range, z_range), strict=True)
         ]
-        strain[:, here[0][:, None] & here[1]] = EVERY[:, None]
-        return EigenstrainBody(material=ROUGH, extent=extent, x_edges=edges[0], z_edges=edges[1], **settings), strain
+        strain[:, here[0][:, None] & here[1]] = COMPONENTS[:, None]
+        return EigenstrainBody(
+            material=TEST_MATERIAL, extent=extent, x_edges=edges[0], z_edges=edges[1], **settings
+        ), strain
 
-    return build
+    return build_body
 
 
 def test_closed_form_leaves_the_top_free() -> None:
@@ -49,16 +51,13 @@ def test_closed_form_leaves_the_top_free() -> None:
     assert np.abs(computed[0]).max() > 0.1
 
 
-@pytest.mark.parametrize(
-    ("x_range", "z_range"),
-    [((0.0, 0.6), (0.0, 0.5)), ((1.2, 2.0), (0.1, 0.4))],
-)
+@pytest.mark.parametrize(("x_range", "z_range"), [((0.0, 0.6), (0.0, 0.5)), ((1.2, 2.0), (0.1, 0.4))])
 def test_stress_between_free_ends_matches_finite_elements(in_rectangle, x_range, z_range) -> None:
     """At the end and on the top; at the other end."""
     body, strain = in_rectangle((0.0, 2.0), x_range, z_range, splits=2, degree=5)
     x, z = np.array([0.05, 0.2, 0.45, 0.75, 1.1, 1.5, 1.9]), np.array([0.05, 0.15, 0.3, 0.6, 0.9, 2.0])
     computed = body.solve(strain).stresses(x, z)
-    expected = residual_stress(2.0, (x_range, z_range), EVERY, 0.3, x, z) * ROUGH.shear_modulus
+    expected = residual_stress(2.0, (x_range, z_range), COMPONENTS, 0.3, x, z) * TEST_MATERIAL.shear_modulus
     assert np.abs(computed - expected).max() < 1e-3 * np.abs(expected).max()
 
 
@@ -72,30 +71,30 @@ def test_quarter_space_equals_long_body(in_rectangle) -> None:
 
 def test_second_end_mirrors_first_end(in_rectangle) -> None:
     """Components with one index x change sign."""
-    first, strain = in_rectangle((0.0, 2.0), (0.2, 0.8), (0.1, 0.6))
-    second, mirrored = in_rectangle((0.0, 2.0), (1.2, 1.8), (0.1, 0.6))
+    first_body, strain = in_rectangle((0.0, 2.0), (0.2, 0.8), (0.1, 0.6))
+    second_body, mirrored_strain = in_rectangle((0.0, 2.0), (1.2, 1.8), (0.1, 0.6))
     signs = np.array([1, 1, 1, -1, -1, 1.0])[:, None, None]
     x, z = np.array([0.1, 0.51, 1.3]), np.array([0.21, 0.7])
-    observed = signs * second.solve(signs * mirrored).stresses(2 - x, z)
-    expected = first.solve(strain).stresses(x, z)
+    observed = signs * second_body.solve(signs * mirrored_strain).stresses(2 - x, z)
+    expected = first_body.solve(strain).stresses(x, z)
     assert np.abs(observed - expected).max() < 1e-7 * np.abs(expected).max()
 
 
 def test_residual_stress_is_in_equilibrium_with_free_faces(in_rectangle) -> None:
     body, strain = in_rectangle((0.0, 2.0), (0.0, 0.6), (0.0, 0.5))
     solution = body.solve(strain)
-    inside = np.sqrt(2) * np.linspace(0.011, 1.4, 23), np.sqrt(2) * np.linspace(0.013, 1.0, 17)
+    inner_points = np.sqrt(2) * np.linspace(0.011, 1.4, 23), np.sqrt(2) * np.linspace(0.013, 1.0, 17)
     step = 1e-6
-    largest = np.abs(solution.stresses(*inside)).max()
-    (right, left), (below, above) = (
-        [solution.stresses(*(p + s * step * (axis == i) for i, p in enumerate(inside))) for s in (1, -1)]
+    largest = np.abs(solution.stresses(*inner_points)).max()
+    (right_stress, left_stress), (lower_stress, upper_stress) = (
+        [solution.stresses(*(p + s * step * (axis == i) for i, p in enumerate(inner_points))) for s in (1, -1)]
         for axis in (0, 1)
     )
-    along_x, along_z = (right - left) / (2 * step), (below - above) / (2 * step)
-    for item, variant in ((0, 4), (4, 2), (3, 5)):  # xx,x + xz,z; xz,x + zz,z; xy,x + yz,z
-        assert np.abs(along_x[item] + along_z[variant]).max() < 1e-6 * np.abs(along_x).max()
-    ends = solution.stresses(np.array([0.0, 2.0]), inside[1])
-    top = solution.stresses(inside[0], np.array([0.0]))
+    along_x, along_z = (right_stress - left_stress) / (2 * step), (lower_stress - upper_stress) / (2 * step)
+    for x_component, z_component in ((0, 4), (4, 2), (3, 5)):  # xx,x + xz,z; xz,x + zz,z; xy,x + yz,z
+        assert np.abs(along_x[x_component] + along_z[z_component]).max() < 1e-6 * np.abs(along_x).max()
+    ends = solution.stresses(np.array([0.0, 2.0]), inner_points[1])
+    top = solution.stresses(inner_points[0], np.array([0.0]))
     assert np.abs(ends[[0, 3, 4]]).max() < 1e-9 * largest
     assert np.abs(top[[2, 4, 5]]).max() < 1e-9 * largest
 
@@ -103,7 +102,7 @@ def test_residual_stress_is_in_equilibrium_with_free_faces(in_rectangle) -> None
 def test_compatible_strain_has_no_stress() -> None:
     """Heat all over a body between ends; where the heat ends, deep below, is too far to be felt."""
     body = EigenstrainBody(
-        material=ROUGH,
+        material=TEST_MATERIAL,
         extent=(0.0, 1.0),
         x_edges=np.linspace(0, 1, 5),
         z_edges=np.array([0.0, 0.5, 1.0, 2.0, 4.0, 6.0]),
@@ -111,12 +110,12 @@ def test_compatible_strain_has_no_stress() -> None:
     strain = np.zeros((6, 4, 5))
     strain[[0, 2]] = 1.0
     computed = body.solve(strain).stresses(np.linspace(0, 1, 9), np.array([0.0, 0.3, 1.0]))
-    assert np.abs(computed).max() < 1e-5 * ROUGH.young
+    assert np.abs(computed).max() < 1e-5 * TEST_MATERIAL.young
 
 
 def test_strain_along_y_causes_stress_along_y_only() -> None:
     body = EigenstrainBody(
-        material=ROUGH,
+        material=TEST_MATERIAL,
         extent=(0.0, 1.0),
         x_edges=np.linspace(0, 1, 5),
         z_edges=np.array([0.0, 0.5, 1.0, 2.0, 4.0, 6.0]),
@@ -124,26 +123,28 @@ def test_strain_along_y_causes_stress_along_y_only() -> None:
     strain = np.zeros((6, 4, 5))
     strain[1] = 1.0
     computed = body.solve(strain).stresses(np.linspace(0, 1, 9), np.array([0.0, 0.3, 1.0]))
-    assert computed[1] == pytest.approx(-ROUGH.young, rel=1e-5)
-    assert np.abs(computed[[0, 2, 3, 4, 5]]).max() < 1e-5 * ROUGH.young
+    assert computed[1] == pytest.approx(-TEST_MATERIAL.young, rel=1e-5)
+    assert np.abs(computed[[0, 2, 3, 4, 5]]).max() < 1e-5 * TEST_MATERIAL.young
 
 
 def test_layer_on_half_space_matches_closed_form() -> None:
     """Forty times as long as deep; in the middle it is nearly as if it had no end."""
     body = EigenstrainBody(
-        material=ROUGH,
-        extent=WHOLE,
+        material=TEST_MATERIAL,
+        extent=NO_ENDS,
         x_edges=np.concatenate([[-11], np.linspace(-10, 10, 41), [11]]),
         z_edges=np.array([0, 0.5, 1]),
     )
     strain = np.zeros((6, 42, 2))
-    strain[:, 1:-1, 0] = EVERY[:, None]
+    strain[:, 1:-1, 0] = COMPONENTS[:, None]
     x, z = np.array([-3.1, 0.0]), np.array([0.2, 0.7])
     computed = body.solve(strain).stresses(x, z)
-    own = tuple(EVERY[[0, 1, 2, 4]])
-    expected = rectangle_in_half_plane(x[:, None], z, (-10.0, 10.0), (0.0, 0.5), own, ROUGH.young, ROUGH.poisson)
+    layer_strain = tuple(COMPONENTS[[0, 1, 2, 4]])
+    expected = rectangle_in_half_plane(
+        x[:, None], z, (-10.0, 10.0), (0.0, 0.5), layer_strain, TEST_MATERIAL.young, TEST_MATERIAL.poisson
+    )
     assert np.abs(computed[[0, 1, 2, 4]] - expected).max() < 1e-4 * np.abs(expected).max()
-    endless = -ROUGH.plane_strain_modulus * (EVERY[0] + ROUGH.poisson * EVERY[1])
+    endless = -TEST_MATERIAL.plane_strain_modulus * (COMPONENTS[0] + TEST_MATERIAL.poisson * COMPONENTS[1])
     assert computed[0, 1, 0] == pytest.approx(endless, rel=0.08)
 
 
@@ -155,31 +156,35 @@ def test_full_length_layer_keeps_ends_straight(in_rectangle) -> None:
     z = (edges[:-1, None] + 0.5 * np.diff(edges)[:, None] * (1 + nodes)).ravel()
     dz = (0.5 * np.diff(edges)[:, None] * weights).ravel()
     computed = body.solve(strain).stresses(np.array([0.3, 1.0]), z)
-    resultant, size = computed[0] @ dz, np.abs(computed[0]) @ dz
-    assert np.abs(resultant).max() < 1e-9 * size.max()
+    resultant, force_scale = computed[0] @ dz, np.abs(computed[0]) @ dz
+    assert np.abs(resultant).max() < 1e-9 * force_scale.max()
 
 
 def test_surface_displacement_is_reciprocal_to_eigenstrain() -> None:
     """Reciprocity: a small eigenstrain sinks the top by its work on the stress of a line force there (Flamant)."""
     body = EigenstrainBody(
-        material=ROUGH, extent=WHOLE, x_edges=np.linspace(-0.1, 0.1, 3), z_edges=np.linspace(0.9, 1.1, 3), degree=5
+        material=TEST_MATERIAL,
+        extent=NO_ENDS,
+        x_edges=np.linspace(-0.1, 0.1, 3),
+        z_edges=np.linspace(0.9, 1.1, 3),
+        degree=5,
     )
     strain = np.zeros((6, 2, 2))
-    strain[:] = EVERY[:, None, None]
+    strain[:] = COMPONENTS[:, None, None]
     x = np.array([-1.0, 0.0, 0.6])
     displacement, axial_displacement = body.solve(strain).top_displacement(x)
     # Flamant's stress under a unit force into the body at x: -2 / pi x'^i z^(3-i) / r^4, averaged over the square.
     node, weight = np.polynomial.legendre.leggauss(6)
     px, pz, w = 0.1 * node[:, None], 1 + 0.1 * node, 0.01 * weight[:, None] * weight
-    for at, computed, along in zip(x, displacement, axial_displacement, strict=True):
-        separate, squared = px - at, (px - at) ** 2 + pz**2
-        xx, zz, xz = (-2 / np.pi * separate**i * pz ** (3 - i) / squared**2 for i in (2, 0, 1))
-        size = 0.04 * np.abs(EVERY).max() * 2 / np.pi
-        work = EVERY[0] * xx + EVERY[2] * zz + 2 * EVERY[4] * xz + EVERY[1] * 0.3 * (xx + zz)
-        assert computed == pytest.approx(float((work * w).sum()), abs=2e-3 * size)
+    for position, computed, axial in zip(x, displacement, axial_displacement, strict=True):
+        distance_x, squared = px - position, (px - position) ** 2 + pz**2
+        xx, zz, xz = (-2 / np.pi * distance_x**i * pz ** (3 - i) / squared**2 for i in (2, 0, 1))
+        scale = 0.04 * np.abs(COMPONENTS).max() * 2 / np.pi
+        work = COMPONENTS[0] * xx + COMPONENTS[2] * zz + 2 * COMPONENTS[4] * xz + COMPONENTS[1] * 0.3 * (xx + zz)
+        assert computed == pytest.approx(float((work * w).sum()), abs=2e-3 * scale)
         # A unit force along y: antiplane, t_xy = -x' / (pi r^2), t_yz = -z / (pi r^2).
-        across = -2 * (EVERY[3] * separate + EVERY[5] * pz) / (np.pi * squared)
-        assert along == pytest.approx(float((across * w).sum()), abs=2e-3 * size)
+        antiplane_kernel = -2 * (COMPONENTS[3] * distance_x + COMPONENTS[5] * pz) / (np.pi * squared)
+        assert axial == pytest.approx(float((antiplane_kernel * w).sum()), abs=2e-3 * scale)
 
 
 def test_cell_averages_match_stresses(in_rectangle) -> None:
@@ -195,13 +200,13 @@ def test_cell_averages_match_stresses(in_rectangle) -> None:
 def test_work_is_symmetric_and_positive(in_rectangle) -> None:
     """Eigenstrains times the stress that others leave: a symmetric form, and negative of each on itself."""
     body, strain = in_rectangle((0.0, 2.0), (0.0, 0.6), (0.0, 0.5), cells=3)
-    random = np.random.default_rng(0)
+    rng = np.random.default_rng(0)
     areas = np.diff(body.x_edges)[:, None] * np.diff(body.z_edges)
     doubled = np.array([1, 1, 1, 2, 2, 2.0])[:, None, None]
-    item, variant = random.normal(size=(2, *strain.shape))
+    first_strain, second_strain = rng.normal(size=(2, *strain.shape))
     work = [
         float((doubled * areas * e * body.solve(f).cell_averages()).sum())
-        for e, f in ((item, variant), (variant, item), (item, item))
+        for e, f in ((first_strain, second_strain), (second_strain, first_strain), (first_strain, first_strain))
     ]
     assert work[0] == pytest.approx(work[1], rel=1e-8)
     assert work[2] < 0
@@ -209,7 +214,7 @@ def test_work_is_symmetric_and_positive(in_rectangle) -> None:
 
 def test_elements_extend_to_ends_and_depth() -> None:
     body = EigenstrainBody(
-        material=ROUGH, extent=(0.0, 3.0), x_edges=np.array([1.0, 1.5, 2.0]), z_edges=np.array([0.2, 0.4])
+        material=TEST_MATERIAL, extent=(0.0, 3.0), x_edges=np.array([1.0, 1.5, 2.0]), z_edges=np.array([0.2, 0.4])
     )
     x, z = body.elements
     assert x[0] == 0.0

@@ -8,12 +8,12 @@ from contactstudy.bodies.material import Material
 from contactstudy.eigenstrain.body import EigenstrainBody, Influence
 from contactstudy.eigenstrain.layers import LayerInfluence
 
-ROUGH = Material(2.0, 0.3)
+TEST_MATERIAL = Material(2.0, 0.3)
 
 
 def test_influence_of_selected_cells_matches_body() -> None:
     body = EigenstrainBody(
-        material=ROUGH, extent=(0.0, 2.0), x_edges=np.linspace(0, 2, 6), z_edges=np.linspace(0, 1, 5)
+        material=TEST_MATERIAL, extent=(0.0, 2.0), x_edges=np.linspace(0, 2, 6), z_edges=np.linspace(0, 1, 5)
     )
     along_x, along_z = np.array([0, 1, 4, 4]), np.array([0, 2, 1, 3])
     few = np.random.default_rng(5).normal(size=(6, 4))
@@ -26,10 +26,13 @@ def test_influence_of_selected_cells_matches_body() -> None:
 
 def test_layer_influence_equals_long_row_of_cells() -> None:
     body = EigenstrainBody(
-        material=ROUGH, extent=(-np.inf, np.inf), x_edges=np.linspace(-60, 60, 25), z_edges=np.array([0.0, 0.25, 0.5])
+        material=TEST_MATERIAL,
+        extent=(-np.inf, np.inf),
+        x_edges=np.linspace(-60, 60, 25),
+        z_edges=np.array([0.0, 0.25, 0.5]),
     )
     strain = np.zeros((6, 24, 2))
     strain[:, :, 1] = np.array([1.0, 0.5, -0.3, 0.2, 0.4, -0.6])[:, None]
     row = body.solve(strain).cell_averages()[:, 12, 1]
-    layer = LayerInfluence(ROUGH.poisson, ROUGH.young).stresses(strain[:, 0, 1:])[:, 0]
+    layer = LayerInfluence(TEST_MATERIAL.poisson, TEST_MATERIAL.young).stresses(strain[:, 0, 1:])[:, 0]
     assert np.allclose(row, layer, atol=0.02)  # the row ends

@@ -27,10 +27,10 @@ from contactstudy.fields.stress import end_traction_residual
 STEEL = Material(210e9, 0.3)
 LENGTH, FRICTION = 1e-3, 0.3
 Y_RANGE = (-1.6e-4, 1.6e-4)
-KEPT = [0, 1, 2, 3, 5, 7, 10, 14, 18, 22, 26, 29, 31, 33, 35, 36, 37, 38, 39, 40]
+EDGE_INDICES = [0, 1, 2, 3, 5, 7, 10, 14, 18, 22, 26, 29, 31, 33, 35, 36, 37, 38, 39, 40]
 """Edges that are kept of forty uniform cells."""
 UNIFORM = Grid(x_range=(0.0, LENGTH), y_range=Y_RANGE, cells_x=40, cells_y=32)
-GRADED = Grid.from_edges(UNIFORM.x_edges[KEPT], Y_RANGE, 32)
+GRADED = Grid.from_edges(UNIFORM.x_edges[EDGE_INDICES], Y_RANGE, 32)
 X, Y, Z = [0.0, 1e-5, 3.3e-4, LENGTH], [0.0, 5e-5], [2e-5, 1e-4]
 
 BODIES: dict[str, Body] = {
@@ -43,16 +43,16 @@ BODIES: dict[str, Body] = {
 }
 
 
-def label(values: FloatArray, grid: Grid) -> xr.DataArray:
-    return xr.DataArray(values, coords={"x": grid.x, "y": grid.y, "x_width": ("x", grid.widths)}, dims=("x", "y"))
+def label(cells: FloatArray, grid: Grid) -> xr.DataArray:
+    return xr.DataArray(cells, coords={"x": grid.x, "y": grid.y, "x_width": ("x", grid.widths)}, dims=("x", "y"))
 
 
 @pytest.fixture(scope="module")
 def loads() -> tuple[xr.DataArray, xr.DataArray]:
     """The same pressure on graded and on uniform cells."""
-    values = 1e9 * np.random.default_rng(0).random(GRADED.shape)
-    values[:, :8] = 0
-    return label(values, GRADED), label(np.repeat(values, np.diff(KEPT), axis=0), UNIFORM)
+    cell_loads = 1e9 * np.random.default_rng(0).random(GRADED.shape)
+    cell_loads[:, :8] = 0
+    return label(cell_loads, GRADED), label(np.repeat(cell_loads, np.diff(EDGE_INDICES), axis=0), UNIFORM)
 
 
 @pytest.fixture(scope="module")
@@ -60,9 +60,9 @@ def smooth_loads() -> tuple[xr.DataArray, xr.DataArray]:
     """A contact's pressure that falls along x and ends along y, on graded and on uniform cells."""
 
     def pressure(grid: Grid) -> xr.DataArray:
-        across = np.sqrt(np.maximum(1 - (grid.y / 1.2e-4) ** 2, 0.0))
+        lateral_profile = np.sqrt(np.maximum(1 - (grid.y / 1.2e-4) ** 2, 0.0))
         # Means over the columns of a linear function are its values in their middles.
-        return label(1e9 * (1 - 0.4 * grid.x[:, None] / LENGTH) * across, grid)
+        return label(1e9 * (1 - 0.4 * grid.x[:, None] / LENGTH) * lateral_profile, grid)
 
     return pressure(GRADED), pressure(UNIFORM)
 
@@ -83,12 +83,12 @@ def test_stresses_are_continuous_at_column_edge(body: str, smooth_loads) -> None
     edges = GRADED.x_edges[1:-1]
     load, at = smooth_loads[0], {"y": [0.0], "z": [1e-7, 1e-6, 1e-5, 1e-4]}
     positions = [np.nextafter(edges, -1.0), edges, np.nextafter(edges, 1.0), edges * (1 - 1e-12)]
-    before, on, beyond, near = (
+    stress_before, stress_on_edge, stress_beyond, stress_near = (
         stress_field(BODIES[body], load, friction=FRICTION, x=x, **at, inside_cells=load) for x in positions
     )
-    for variant in (before, beyond, near):
-        for name in on.data_vars:
-            assert np.abs(variant[name].values - on[name].values).max() < 1e-3 * 1e9
+    for variant in (stress_before, stress_beyond, stress_near):
+        for name in stress_on_edge.data_vars:
+            assert np.abs(variant[name].values - stress_on_edge[name].values).max() < 1e-3 * 1e9
 
 
 @pytest.mark.parametrize("body", BODIES)
@@ -115,7 +115,7 @@ def test_smooth_loads_match_uniform_cells(body: str, smooth_loads) -> None:
 @pytest.mark.parametrize("body", BODIES)
 def test_mean_surface_displacement_matches_uniform_cells(body: str, loads) -> None:
     graded, uniform = (surface_displacement(BODIES[body], load, FRICTION) for load in loads)
-    owner = np.repeat(np.arange(GRADED.cells_x), np.diff(KEPT))
+    owner = np.repeat(np.arange(GRADED.cells_x), np.diff(EDGE_INDICES))
     means = np.array([uniform.values[owner == i].mean(axis=0) for i in range(GRADED.cells_x)])
     # Steps from cell to cell: the mean over a column is not yet that of the displacements at few centres.
     assert np.abs(graded.values - means).max() < 0.02 * np.ptp(means)
@@ -174,8 +174,8 @@ def test_rotated_body_has_rotated_stresses(load: xr.DataArray, body: str) -> Non
 @settings(max_examples=8)
 @given(load=graded_pressure(), factor=st.floats(0.1, 10.0))
 def test_stresses_scale_with_the_load(load: xr.DataArray, factor: float) -> None:
-    one, variant = (
-        stress_field(BODIES["half"], item, friction=FRICTION, x=X, y=Y, z=Z, inside_cells=item)
-        for item in (load, factor * load)
+    stress, scaled_stress = (
+        stress_field(BODIES["half"], applied_load, friction=FRICTION, x=X, y=Y, z=Z, inside_cells=applied_load)
+        for applied_load in (load, factor * load)
     )
-    assert np.allclose(variant["von_mises"], factor * one["von_mises"], rtol=1e-9)
+    assert np.allclose(scaled_stress["von_mises"], factor * stress["von_mises"], rtol=1e-9)

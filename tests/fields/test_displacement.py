@@ -39,13 +39,13 @@ def eccentric_load(on_cells) -> xr.DataArray:
 
 def strain_of(body, pressure, friction: float, point: tuple[float, float, float], step: float = 1e-3):
     """Strain tensor at a point, by central differences of the displacements."""
-    axes = {axis: at + step * np.array([-1.0, 0.0, 1.0]) for axis, at in zip("xyz", point, strict=True)}
+    axes = {axis: coordinate + step * np.array([-1.0, 0.0, 1.0]) for axis, coordinate in zip("xyz", point, strict=True)}
     field = displacement_field(body, pressure, friction=friction, **axes)
     gradient = np.empty((3, 3))
     for i, name in enumerate(("u_x", "u_y", "u_z")):
         for j, axis in enumerate("xyz"):
-            along = field[name].isel({variant: 1 for variant in "xyz" if variant != axis}).values
-            gradient[i, j] = (along[2] - along[0]) / (2 * step)
+            axis_values = field[name].isel({variant: 1 for variant in "xyz" if variant != axis}).values
+            gradient[i, j] = (axis_values[2] - axis_values[0]) / (2 * step)
     return 0.5 * (gradient + gradient.T)
 
 
@@ -68,9 +68,9 @@ def test_strains_obey_hookes_law_with_the_stresses(name: str, eccentric_load: xr
 def test_displacement_field_equals_surface_displacement_on_top(name: str, eccentric_load: xr.DataArray) -> None:
     friction = 0.4
     displacement = surface_displacement(BODIES[name], eccentric_load, friction)
-    inside = displacement_field(BODIES[name], eccentric_load, friction=friction)["u_z"].sel(z=0.0, drop=True)
+    field_on_top = displacement_field(BODIES[name], eccentric_load, friction=friction)["u_z"].sel(z=0.0, drop=True)
     tolerance = {"half-space": 1e-12, "mirror": 1e-7}.get(name, 1e-3)
-    assert float(np.abs(inside - displacement).max()) < tolerance * float(displacement.max() - displacement.min())
+    assert float(np.abs(field_on_top - displacement).max()) < tolerance * float(displacement.max() - displacement.min())
     smooth = displacement_field(BODIES[name], eccentric_load, friction=friction, inside_cells=eccentric_load)[
         "u_z"
     ].sel(z=0.0, drop=True)
@@ -81,9 +81,9 @@ def test_symmetric_load_displaces_symmetrically(on_cells) -> None:
     pressure = on_cells(lambda x, y: np.maximum(1 - (x - 2) ** 2 - y**2, 0.0), (0.0, 4.0), (-1.5, 1.5), (32, 24))
     field = displacement_field(BODIES["finite length"], pressure, z=[0.0, 0.7])
     for name, sign_x, sign_y in (("u_x", -1, 1), ("u_y", 1, -1), ("u_z", 1, 1)):
-        values = field[name].values
-        np.testing.assert_allclose(values[::-1], sign_x * values, atol=1e-6)
-        np.testing.assert_allclose(values[:, ::-1], sign_y * values, atol=1e-6)
+        displacement = field[name].values
+        np.testing.assert_allclose(displacement[::-1], sign_x * displacement, atol=1e-6)
+        np.testing.assert_allclose(displacement[:, ::-1], sign_y * displacement, atol=1e-6)
 
 
 def test_displacement_vanishes_at_reference_distance(eccentric_load: xr.DataArray) -> None:
@@ -122,13 +122,13 @@ def test_displacement_does_not_depend_on_further_positions() -> None:
     cells[1] = 1.0
     loads = {Load.NORMAL: TopLoad(cells)}
 
-    def sunk(x: list[float], z: list[float]) -> float:
+    def displacement_at(x: list[float], z: list[float]) -> float:
         points = Points(np.array(x), np.zeros(1), np.array(z))
         return float(displacement_under(body, loads, grid, points)[2, -1, 0, -1])
 
-    single = sunk([0.6], [1.0])
-    assert sunk([0.001, 0.6], [0.001, 1.0]) == pytest.approx(single, rel=1e-6)
-    assert sunk([0.1, 0.6], [1.0]) == pytest.approx(single, rel=1e-6)
+    single_displacement = displacement_at([0.6], [1.0])
+    assert displacement_at([0.001, 0.6], [0.001, 1.0]) == pytest.approx(single_displacement, rel=1e-6)
+    assert displacement_at([0.1, 0.6], [1.0]) == pytest.approx(single_displacement, rel=1e-6)
 
 
 def test_influence_on_a_plane_sums_to_the_displacement() -> None:

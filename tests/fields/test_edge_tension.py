@@ -40,10 +40,10 @@ def solve_sliding(material: Material, friction: float) -> xr.Dataset:
 def test_edge_tension_of_sliding_cylinder(material: Material, friction: float) -> None:
     """The stress per friction is 2 p0 of the section; the normal load adds a stress of its own."""
     results = [solve_sliding(material, value) for value in (friction, 1e-6)]
-    middle = 0.5 * float(results[0]["x"][0] + results[0]["x"][-1])
-    tension, normal = (edge_tension(result, [middle]) for result in results)
-    width = float(half_width(results[0])["half_width"].sel(x=middle, method="nearest"))
-    pressure = 2 * float(line_load(results[0]).sel(x=middle, method="nearest")) / (np.pi * width)
+    mid_x = 0.5 * float(results[0]["x"][0] + results[0]["x"][-1])
+    tension, normal = (edge_tension(result, [mid_x]) for result in results)
+    width = float(half_width(results[0])["half_width"].sel(x=mid_x, method="nearest"))
+    pressure = 2 * float(line_load(results[0]).sel(x=mid_x, method="nearest")) / (np.pi * width)
     added = float(tension["edge_tension"][0] - normal["edge_tension"][0])
     assert added == pytest.approx(2 * friction * pressure, rel=5e-3)
     assert abs(added - 2 * friction * pressure) < float(tension["edge_tension_error"][0])
@@ -52,10 +52,10 @@ def test_edge_tension_of_sliding_cylinder(material: Material, friction: float) -
 
 
 def test_edge_tension_of_mirrored_case() -> None:
-    first, second = (edge_tension(solve_sliding(STEEL, friction)) for friction in (0.2, -0.2))
-    np.testing.assert_allclose(first["edge_tension"], second["edge_tension"], rtol=1e-6)
-    np.testing.assert_allclose(first["trailing_edge"], -second["trailing_edge"], rtol=1e-6)
-    assert first["edge_tension"].attrs["error_kind"] == "estimated"
+    forward_tension, backward_tension = (edge_tension(solve_sliding(STEEL, friction)) for friction in (0.2, -0.2))
+    np.testing.assert_allclose(forward_tension["edge_tension"], backward_tension["edge_tension"], rtol=1e-6)
+    np.testing.assert_allclose(forward_tension["trailing_edge"], -backward_tension["trailing_edge"], rtol=1e-6)
+    assert forward_tension["edge_tension"].attrs["error_kind"] == "estimated"
 
 
 def test_contact_without_sliding_has_no_edge_tension() -> None:
@@ -76,7 +76,7 @@ def test_study_contains_largest_tension(tmp_path) -> None:
     setup = build_setup(BASE | {"e_over_a": 1.0, "friction": 0.1})
     tension = edge_tension(solve(setup.case, setup.grid, **setup.options))
     assert np.isnan(cases["peak_edge_tension"].sel(friction=0.0))
-    for name, number in (("edge_tension", "peak_edge_tension"), ("edge_tension_error", "peak_edge_tension_error")):
+    for name, study_name in (("edge_tension", "peak_edge_tension"), ("edge_tension_error", "peak_edge_tension_error")):
         largest = tension[name][int(tension["edge_tension"].values.argmax())]
-        np.testing.assert_allclose(cases[number].sel(friction=0.1), largest, rtol=1e-12)
+        np.testing.assert_allclose(cases[study_name].sel(friction=0.1), largest, rtol=1e-12)
     assert cases["peak_edge_tension"].attrs["units"] == "Pa"

@@ -37,10 +37,10 @@ def test_face_loads_reverse_end_stress_of_top_load(short_body: FiniteLengthSpace
             cells, stress_influence(load, 0.3), grid, Points(np.array([0.0, 8.0]), y, depths), extent=(0.0, 8.0)
         )[0]
 
-    left = on_ends(Load.NORMAL, loads["P_h1"].values) + friction * on_ends(Load.ALONG_Y, pressure.values)
+    end_stress = on_ends(Load.NORMAL, loads["P_h1"].values) + friction * on_ends(Load.ALONG_Y, pressure.values)
     # The top load is known on cells here, and within the window only.
-    assert np.abs(left[0] - loads["P_v1"].sel(y=y)).max() < 2e-2
-    assert np.abs(left[1] - loads["P_v2"].sel(y=y)).max() < 2e-2
+    assert np.abs(end_stress[0] - loads["P_v1"].sel(y=y)).max() < 2e-2
+    assert np.abs(end_stress[1] - loads["P_v2"].sel(y=y)).max() < 2e-2
     assert float(np.abs(loads["P_v1"]).max()) > 0.5
 
 
@@ -55,14 +55,13 @@ def test_quarter_space_has_one_face_load_and_half_space_none(half_space: HalfSpa
 
 
 @pytest.mark.parametrize(
-    ("kind", "inside"),
-    [("exact", 0.0), ("mirror", 0.0), ("single-mirror", 0.1e-3), ("quarter", 0.0), ("half", 0.0)],
+    ("kind", "distance"), [("exact", 0.0), ("mirror", 0.0), ("single-mirror", 0.1e-3), ("quarter", 0.0), ("half", 0.0)]
 )
-def test_equivalent_loads_of_solved_pressure(kind: str, inside: float) -> None:
+def test_equivalent_loads_of_solved_pressure(kind: str, distance: float) -> None:
     steel = Material(206e9, 0.3)
     bodies = {"quarter": QuarterSpace(material=steel), "half": HalfSpace(material=steel)}
     body = bodies.get(kind) or FiniteLengthSpace(length=1e-3, material=steel, model=kind)
-    roller = Roller(radius=6e-3, length=1e-3 - 2 * inside, profile=profiles.Lundberg(amplitude=0.2e-6))
+    roller = Roller(radius=6e-3, length=1e-3 - 2 * distance, profile=profiles.Lundberg(amplitude=0.2e-6))
     result = solve(Case(body=body, roller=roller, max_pressure=1.2e9), stresses=False, accuracy=0.1)
     freed = kind not in ("mirror", "half")
     for depths in ([0.0], [1e-5, 1e-4]):

@@ -14,13 +14,15 @@ BODY = FiniteLengthSpace(length=10.0, material=Material(1.0, 0.3))
 
 def test_symmetric_contact_searches_one_peak() -> None:
     grid = Grid(x_range=(0.0, 10.0), y_range=(-1.0, 1.0), cells_x=100, cells_y=20)
-    ends = np.exp(-(np.minimum(grid.x - 1, 9 - grid.x) ** 2))[:, None] * np.ones(20)
-    ends[:, [0, -1]] = 0.0
-    uneven = np.where(grid.x[:, None] > 5, 0.9, 1.0) * ends
-    low = np.where(grid.x[:, None] > 5, 0.3, 1.0) * ends
-    counts = [len(place_search(BODY, sliding(variant, 0.0), grid).samples) for variant in (ends, uneven, low)]
-    assert counts == [2, 3, 2]
-    for points in place_search(BODY, sliding(uneven, 0.0), grid).samples:
+    end_peaks = np.exp(-(np.minimum(grid.x - 1, 9 - grid.x) ** 2))[:, None] * np.ones(20)
+    end_peaks[:, [0, -1]] = 0.0
+    unequal_peaks = np.where(grid.x[:, None] > 5, 0.9, 1.0) * end_peaks
+    low_peak = np.where(grid.x[:, None] > 5, 0.3, 1.0) * end_peaks
+    sample_counts = [
+        len(place_search(BODY, sliding(variant, 0.0), grid).samples) for variant in (end_peaks, unequal_peaks, low_peak)
+    ]
+    assert sample_counts == [2, 3, 2]
+    for points in place_search(BODY, sliding(unequal_peaks, 0.0), grid).samples:
         assert points.x.min() >= 0.0
         assert points.x.max() <= 10.0
 
@@ -51,7 +53,7 @@ def test_axial_traction_is_symmetric_if_reversed() -> None:
     pressure = np.ones((100, 20))
     pressure[:, [0, -1]] = 0.0
     normal = TopLoad(pressure)
-    for traction, alike in ((pressure, False), (pressure * np.sign(grid.x - 5.0)[:, None], True)):
+    for traction, is_symmetric in ((pressure, False), (pressure * np.sign(grid.x - 5.0)[:, None], True)):
         loads = {Load.NORMAL: normal, Load.ALONG_X: TopLoad(traction)}
-        far = max(points.x.max() for points in place_search(BODY, loads, grid).samples)
-        assert (far < 9.5) == alike
+        last_x = max(points.x.max() for points in place_search(BODY, loads, grid).samples)
+        assert (last_x < 9.5) == is_symmetric

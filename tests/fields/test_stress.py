@@ -24,12 +24,12 @@ def circle(on_cells) -> xr.DataArray:
 
 def test_surface_of_a_sliding_circle(circle: xr.DataArray, half_space: HalfSpace) -> None:
     stress = stress_field(half_space, circle, friction=0.3, z=[0.0]).isel(z=0).sel(x=0.0, method="nearest")
-    inside = np.abs(stress["y"].values) < 0.95
-    x = np.full(int(inside.sum()), float(stress["x"]))
-    traction = sliding_circle_surface(x, stress["y"].values[inside], 1.0, 0.3, 0.3)
-    radial, hoop = hertz_circle_surface(np.hypot(x, stress["y"].values[inside]), 1.0, 1.0, 0.3)
-    assert np.abs(stress["sigma_yy"].values[inside] - radial - traction["sigma_yy"]).max() < 2e-2
-    assert np.abs(stress["sigma_xx"].values[inside] - hoop - traction["sigma_xx"]).max() < 2e-2
+    is_inside = np.abs(stress["y"].values) < 0.95
+    x = np.full(int(is_inside.sum()), float(stress["x"]))
+    traction = sliding_circle_surface(x, stress["y"].values[is_inside], 1.0, 0.3, 0.3)
+    radial, hoop = hertz_circle_surface(np.hypot(x, stress["y"].values[is_inside]), 1.0, 1.0, 0.3)
+    assert np.abs(stress["sigma_yy"].values[is_inside] - radial - traction["sigma_yy"]).max() < 2e-2
+    assert np.abs(stress["sigma_xx"].values[is_inside] - hoop - traction["sigma_xx"]).max() < 2e-2
 
 
 @pytest.mark.parametrize("friction", [0.0, 0.3])
@@ -42,12 +42,12 @@ def test_stress_is_in_equilibrium_inside(short_body: FiniteLengthSpace, strip_pr
         (s,) = stresses_at(short_body, sliding(pressure.values, friction), grid, [Points(*axes)], pressure.values)
         xx, yy, zz, xy, xz, yz = s
 
-        def slope(values: np.ndarray, axis: int) -> float:
+        def slope(component: np.ndarray, axis: int) -> float:
             take = [1, 1, 1]
             take[axis] = 2
-            upper = values[tuple(take)]
+            upper = component[tuple(take)]
             take[axis] = 0
-            return float(upper - values[tuple(take)]) / (2 * step)
+            return float(upper - component[tuple(take)]) / (2 * step)
 
         for terms in ((xx, xy, xz), (xy, yy, yz), (xz, yz, zz)):
             assert abs(sum(slope(term, axis) for axis, term in enumerate(terms))) < 5e-3
@@ -57,11 +57,11 @@ def test_stresses_follow_symmetries_of_load(short_body: FiniteLengthSpace, strip
     x, y = [0.0, 0.7, 4.0, 7.3, 8.0], [-0.6, 0.0, 0.6]
     stress = stress_field(short_body, strip_pressure(8.0, (48, 32)), x=x, y=y, z=[0.2, 1.0])
     for name in ("sigma_xx", "sigma_yy", "sigma_zz", "tau_yz", "tau_xy", "tau_xz"):
-        values = stress[name].values
+        component = stress[name].values
         along_x = -1 if name in ("tau_xy", "tau_xz") else 1
         along_y = -1 if name in ("tau_xy", "tau_yz") else 1
-        assert np.abs(values - along_x * values[::-1]).max() < 1e-7, name
-        assert np.abs(values - along_y * values[:, ::-1]).max() < 1e-7, name
+        assert np.abs(component - along_x * component[::-1]).max() < 1e-7, name
+        assert np.abs(component - along_y * component[:, ::-1]).max() < 1e-7, name
 
 
 def test_loaded_corner_matches_theory(short_body: FiniteLengthSpace, strip_pressure) -> None:
@@ -81,10 +81,10 @@ def test_friction_is_linear(short_body: FiniteLengthSpace, strip_pressure) -> No
 
 def test_stresses_do_not_depend_on_order_of_points(short_body: FiniteLengthSpace, strip_pressure) -> None:
     pressure = strip_pressure(8.0, (32, 32))
-    sorted_points = stress_field(short_body, pressure, x=[0.5, 3.0], y=[0.0], z=[0.5, 1.0])
-    shuffled = stress_field(short_body, pressure, x=[3.0, 0.5], y=[0.0], z=[1.0, 0.5])
+    sorted_stresses = stress_field(short_body, pressure, x=[0.5, 3.0], y=[0.0], z=[0.5, 1.0])
+    shuffled_stresses = stress_field(short_body, pressure, x=[3.0, 0.5], y=[0.0], z=[1.0, 0.5])
     for name in STRESSES:
-        assert np.allclose(sorted_points[name].values[::-1, :, ::-1], shuffled[name].values, atol=1e-9)
+        assert np.allclose(sorted_stresses[name].values[::-1, :, ::-1], shuffled_stresses[name].values, atol=1e-9)
 
 
 @pytest.mark.parametrize(
@@ -119,24 +119,26 @@ def test_points_near_end_snap_to_end(short_body: FiniteLengthSpace, strip_pressu
     np.testing.assert_array_equal(adjacent["sigma_zz"], on_end["sigma_zz"])
 
 
-@pytest.mark.parametrize(("axis", "far"), [("y", 1e6), ("y", -1e45), ("z", 1e45)])
-def test_too_distant_points_raise_error(short_body: FiniteLengthSpace, strip_pressure, axis: str, far: float) -> None:
-    points = {"x": [4.0], "y": [0.0], "z": [0.5]} | {axis: [far]}
+@pytest.mark.parametrize(("axis", "coordinate"), [("y", 1e6), ("y", -1e45), ("z", 1e45)])
+def test_too_distant_points_raise_error(
+    short_body: FiniteLengthSpace, strip_pressure, axis: str, coordinate: float
+) -> None:
+    points = {"x": [4.0], "y": [0.0], "z": [0.5]} | {axis: [coordinate]}
     with pytest.raises(InvalidInputError, match=f"^{axis} = .* within 10000 times the size"):
         stress_field(short_body, strip_pressure(8.0, (16, 16)), **points)
 
 
-@pytest.mark.parametrize("inside", ["uniform", "pressure"])
-def test_loads_on_different_cells_are_additive_between_free_ends(inside: str) -> None:
+@pytest.mark.parametrize("inside_cells", ["uniform", "pressure"])
+def test_loads_on_different_cells_are_additive_between_free_ends(inside_cells: str) -> None:
     """The positions on the faces follow from the grid, not from the loaded cells."""
     body = FiniteLengthSpace(length=10.0, material=Material(1.0, 0.3))
     grid = Grid(x_range=(0.0, 10.0), y_range=(-2.0, 2.0), cells_x=40, cells_y=16)
     squared = 1 - ((grid.x[:, None] - 5) / 3) ** 2 - grid.y**2
     pressure = xr.DataArray(np.sqrt(np.maximum(squared, 0.0)), {"x": grid.x, "y": grid.y}, ("x", "y"))
     noise = pressure.copy(data=np.random.default_rng(0).random(grid.shape))
-    cells = {"inside_cells": pressure if inside == "pressure" else inside}
-    first, second, both = (
+    cells = {"inside_cells": pressure if inside_cells == "pressure" else inside_cells}
+    pressure_stress, noise_stress, sum_stress = (
         stress_field(body, load, friction=0.2, x=[9.0, 2.5], y=[0.5], z=[0.0, 0.9], **cells)[list(STRESSES)].to_array()
         for load in (pressure, noise, pressure + noise)
     )
-    np.testing.assert_allclose(first + second, both, rtol=0, atol=1e-10)
+    np.testing.assert_allclose(pressure_stress + noise_stress, sum_stress, rtol=0, atol=1e-10)

@@ -19,7 +19,7 @@ from tests.closed_forms import hertz_circle_surface, sliding_circle_surface
 STEEL = Material(210e9, 0.3)
 RADIUS, PRESSURE = 5e-3, 2e9
 A = 4 * PRESSURE * RADIUS / (2 * STEEL.plane_strain_modulus)
-NOWHERE = np.zeros(0)
+NO_POSITIONS = np.zeros(0)
 
 
 def circle() -> tuple[Grid, FloatArray]:
@@ -32,7 +32,9 @@ def maximum_under(grid: Grid, pressure: FloatArray, friction: float) -> StressMa
     """Largest stress of a half-space, with stresses at one point far from it."""
     body = HalfSpace(material=Material(1.0, 0.3))
     positions = field_positions(body, grid, [1.2], [1.2], [2.0])
-    return contact_stresses(body, sliding(pressure, friction), grid, lambda _: positions, (NOWHERE, NOWHERE))[-1]
+    return contact_stresses(body, sliding(pressure, friction), grid, lambda _: positions, (NO_POSITIONS, NO_POSITIONS))[
+        -1
+    ]
 
 
 def test_stress_maximum_below_circle_matches_closed_form() -> None:
@@ -40,10 +42,10 @@ def test_stress_maximum_below_circle_matches_closed_form() -> None:
     computed = maximum_under(grid, pressure, 0.0)
     z = np.linspace(0.3, 0.7, 4001)
     radial, axial = ref.hertz_circle_axis(z, 1.0, 1.0, 0.3)
-    known = np.abs(axial - radial)
-    assert computed.value == pytest.approx(known.max(), rel=2e-3)
-    assert abs(computed.value - known.max()) <= computed.error + 2e-3 * computed.value
-    assert computed.position[2] == pytest.approx(z[known.argmax()], abs=0.03)
+    exact_von_mises = np.abs(axial - radial)
+    assert computed.value == pytest.approx(exact_von_mises.max(), rel=2e-3)
+    assert abs(computed.value - exact_von_mises.max()) <= computed.error + 2e-3 * computed.value
+    assert computed.position[2] == pytest.approx(z[exact_von_mises.argmax()], abs=0.03)
     assert computed.position[:2] == pytest.approx((0.0, 0.0), abs=0.1)
 
 
@@ -52,12 +54,19 @@ def test_high_friction_moves_stress_maximum_to_top() -> None:
     computed = maximum_under(grid, pressure, 0.5)
     y = np.linspace(-0.95, 0.95, 381)
     radial, hoop = hertz_circle_surface(np.abs(y), 1.0, 1.0, 0.3)
-    pressed, zero = np.sqrt(1 - y**2), np.zeros_like(y)
+    hertz_pressure, zero = np.sqrt(1 - y**2), np.zeros_like(y)
     traction = sliding_circle_surface(zero, y, 1.0, 0.5, 0.3)
-    components = (hoop + traction["sigma_xx"], radial + traction["sigma_yy"], -pressed, zero, zero, 0.5 * pressed)
-    known = von_mises_of(*components)
+    components = (
+        hoop + traction["sigma_xx"],
+        radial + traction["sigma_yy"],
+        -hertz_pressure,
+        zero,
+        zero,
+        0.5 * hertz_pressure,
+    )
+    exact_von_mises = von_mises_of(*components)
     assert computed.position[2] == 0.0
-    assert abs(computed.value - known.max()) <= computed.error == 0.02 * computed.value
+    assert abs(computed.value - exact_von_mises.max()) <= computed.error == 0.02 * computed.value
     assert abs(computed.position[1]) < 1
 
 
@@ -67,13 +76,15 @@ def test_stress_maximum_does_not_depend_on_point_order() -> None:
     body = HalfSpace(material=Material(1.0, 0.3))
     x = np.array([0.4, -0.4, np.nextafter(0.4, 1.0), 0.1, 0.1 + 1e-12])
     positions = field_positions(body, grid, x, [0.2, -0.2, 0.2 + 1e-15], [0.5, 0.3, 0.5 + 1e-15])
-    computed = contact_stresses(body, sliding(pressure, 0.0), grid, lambda _: positions, (NOWHERE, NOWHERE))[-1]
+    computed = contact_stresses(body, sliding(pressure, 0.0), grid, lambda _: positions, (NO_POSITIONS, NO_POSITIONS))[
+        -1
+    ]
     assert computed.value == pytest.approx(maximum_under(grid, pressure, 0.0).value, rel=1e-3)
     for end in (5.0, 1.0):
         # Positions from both ends of the contact meet at its middle, but for rounding.
         strip = np.where((grid.x > -end) & (grid.x < end), 1.0, 0.0)[:, None] * np.sqrt(np.maximum(1 - grid.y**2, 0))
-        uneven = strip * (1 + 0.01 * grid.x[:, None])
-        assert maximum_under(grid, uneven, 0.0).value < 0.8
+        rising_pressure = strip * (1 + 0.01 * grid.x[:, None])
+        assert maximum_under(grid, rising_pressure, 0.0).value < 0.8
 
 
 def test_stress_maximum_without_pressure_is_zero() -> None:
@@ -83,7 +94,7 @@ def test_stress_maximum_without_pressure_is_zero() -> None:
     assert np.isnan(computed.position).all()
 
 
-def sharp(friction: float = 0.0, distance: float = 0.5, tilt: float = 0.0) -> Case:
+def sharp_roller(friction: float = 0.0, distance: float = 0.5, tilt: float = 0.0) -> Case:
     """An edge radius that is 0.4 half-widths: the largest stress lies 0.03 half-widths deep."""
     body = FiniteLengthSpace(length=20 * A, material=STEEL)
     roller = Roller(radius=RADIUS, length=(20 - 2 * distance) * A, profile=profiles.Cylinder(fillet_radius=0.05e-3))
@@ -96,31 +107,37 @@ def maximum_position(result: xr.Dataset) -> list[float]:
 
 def test_stress_maximum_does_not_depend_on_positions() -> None:
     friction = 0.1
-    case = sharp(friction)
-    far = solve(case, accuracy=0.02, x=[0.0, 5 * A], y=[0.0], z=[0.5 * A])
-    near = solve(case, accuracy=0.02, x=A * np.linspace(0, 8, 9), y=[0.0], z=A * np.linspace(0, 3, 4))
-    value = float(far.peak_von_mises)
-    assert float(near.peak_von_mises) == pytest.approx(value, rel=2e-3)
-    x, y, z = maximum_position(far)
+    case = sharp_roller(friction)
+    distant_result = solve(case, accuracy=0.02, x=[0.0, 5 * A], y=[0.0], z=[0.5 * A])
+    near_result = solve(case, accuracy=0.02, x=A * np.linspace(0, 8, 9), y=[0.0], z=A * np.linspace(0, 3, 4))
+    peak_von_mises = float(distant_result.peak_von_mises)
+    assert float(near_result.peak_von_mises) == pytest.approx(peak_von_mises, rel=2e-3)
+    x, y, z = maximum_position(distant_result)
     step = 0.01 * A
     offsets = 2 * step * np.arange(-2.0, 3.0)
     depths = z + 0.4 * step * np.arange(-4.0, 5.0)
     adjacent = stress_field(
-        case.body, far.pressure, friction=friction, x=x + offsets, y=y + offsets, z=depths, inside_cells=far.pressure
+        case.body,
+        distant_result.pressure,
+        friction=friction,
+        x=x + offsets,
+        y=y + offsets,
+        z=depths,
+        inside_cells=distant_result.pressure,
     )
-    assert float(adjacent.von_mises.max()) == pytest.approx(value, rel=3e-3)
-    assert value / float(far.von_mises.max()) > 1.4
+    assert float(adjacent.von_mises.max()) == pytest.approx(peak_von_mises, rel=3e-3)
+    assert peak_von_mises / float(distant_result.von_mises.max()) > 1.4
 
 
 def test_stress_maximum_error_covers_finer_cells() -> None:
-    coarse, fine = (solve(sharp(0.4), accuracy=value, x=[0.0], y=[0.0], z=[A]) for value in (0.02, 0.004))
+    coarse, fine = (solve(sharp_roller(0.4), accuracy=accuracy, x=[0.0], y=[0.0], z=[A]) for accuracy in (0.02, 0.004))
     error = abs(float(coarse.peak_von_mises - fine.peak_von_mises))
     assert error <= float(coarse.peak_von_mises_error) < 0.04 * float(fine.peak_von_mises)
 
 
 @pytest.mark.slow
 def test_opposite_tilt_mirrors_stress_maximum() -> None:
-    there, back = (solve(sharp(tilt=tilt), accuracy=0.02, x=[0.0], y=[0.0], z=[A]) for tilt in (1e-3, -1e-3))
+    there, back = (solve(sharp_roller(tilt=tilt), accuracy=0.02, x=[0.0], y=[0.0], z=[A]) for tilt in (1e-3, -1e-3))
     assert float(there.peak_von_mises) == pytest.approx(float(back.peak_von_mises), rel=1e-3)
     assert maximum_position(there)[0] == pytest.approx(20 * A - maximum_position(back)[0], abs=0.02 * A)
     assert abs(maximum_position(there)[0] - 10 * A) > 5 * A
@@ -137,10 +154,10 @@ def test_stress_maximum_near_free_end_exceeds_pressure_peak() -> None:
     case = Case(body=FiniteLengthSpace(length=length, material=STEEL), roller=roller, max_pressure=pressure)
     computed = solve(case, accuracy=0.05, x=[0.5 * length], y=[0.0], z=[half_width])
     x, z = half_width * np.linspace(0.2, 2, 37), half_width * np.linspace(0.1, 1, 19)
-    near = stress_field(case.body, computed.pressure, x=x, y=[0.0], z=z, inside_cells=computed.pressure)
+    end_stresses = stress_field(case.body, computed.pressure, x=x, y=[0.0], z=z, inside_cells=computed.pressure)
     line = computed.pressure.max("y")
     assert float(line.sel(x=half_width, method="nearest")) < 0.97 * float(line.max())
-    assert float(computed.peak_von_mises) == pytest.approx(float(near.von_mises.max()), rel=3e-3)
+    assert float(computed.peak_von_mises) == pytest.approx(float(end_stresses.von_mises.max()), rel=3e-3)
     assert min(maximum_position(computed)[0], length - maximum_position(computed)[0]) < 2 * half_width
 
 
@@ -157,19 +174,12 @@ def test_given_cells_and_singular_ends_omit_error() -> None:
     assert np.isnan(maximum_position(refined)).all()
 
 
-FREE_ENDS = {
-    "sharp": (1.2e-3, 1.8e9, 0.3, None),
-    "crowned": (1e-3, 1.5e9, 0.3, profiles.FullCrown(1.0)),
-}
+FREE_ENDS = {"sharp": (1.2e-3, 1.8e9, 0.3, None), "crowned": (1e-3, 1.5e9, 0.3, profiles.FullCrown(1.0))}
 """Length, pressure, friction and profile of rollers that are flush with the body."""
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    ("length", "pressure", "friction", "profile"),
-    FREE_ENDS.values(),
-    ids=FREE_ENDS,
-)
+@pytest.mark.parametrize(("length", "pressure", "friction", "profile"), FREE_ENDS.values(), ids=FREE_ENDS)
 def test_stress_maximum_at_free_end_is_on_top(
     length: float, pressure: float, friction: float, profile: profiles.Profile | None
 ) -> None:
@@ -178,16 +188,18 @@ def test_stress_maximum_at_free_end_is_on_top(
     body = FiniteLengthSpace(length=length, material=material)
     case = Case(body=body, roller=roller, max_pressure=pressure, friction=friction)
     a = case.hertz_half_width
-    far = solve(case, accuracy=0.03, x=[0.5 * length], y=[0.0], z=[a])
-    columns = (far.x.values > 0.05 * a) & (far.x.values < a)
-    x, z = far.x.values[columns], a * np.array([0.0, 0.02, 0.05, 0.1, 0.2, 0.4])
-    dense = stress_field(body, far.pressure, friction=friction, x=x, y=far.y.values, z=z, inside_cells=far.pressure)
-    inside = far.pressure.sel(x=dense.x, y=dense.y) > 0.3 * float(far.pressure.max())
-    largest = float(dense.von_mises.where(inside).max())
-    assert float(far.peak_von_mises) == pytest.approx(largest, rel=5e-3)
-    assert maximum_position(far)[2] == 0.0
-    assert min(maximum_position(far)[0], length - maximum_position(far)[0]) < a
-    assert float(far.peak_von_mises_error) < 0.04 * float(far.peak_von_mises)
+    result = solve(case, accuracy=0.03, x=[0.5 * length], y=[0.0], z=[a])
+    columns = (result.x.values > 0.05 * a) & (result.x.values < a)
+    x, z = result.x.values[columns], a * np.array([0.0, 0.02, 0.05, 0.1, 0.2, 0.4])
+    dense = stress_field(
+        body, result.pressure, friction=friction, x=x, y=result.y.values, z=z, inside_cells=result.pressure
+    )
+    is_inside = result.pressure.sel(x=dense.x, y=dense.y) > 0.3 * float(result.pressure.max())
+    largest = float(dense.von_mises.where(is_inside).max())
+    assert float(result.peak_von_mises) == pytest.approx(largest, rel=5e-3)
+    assert maximum_position(result)[2] == 0.0
+    assert min(maximum_position(result)[0], length - maximum_position(result)[0]) < a
+    assert float(result.peak_von_mises_error) < 0.04 * float(result.peak_von_mises)
 
 
 @pytest.mark.slow
@@ -221,8 +233,8 @@ def test_friction_moves_stress_maximum_on_top() -> None:
         for friction in (0.3, 0.5)
     ]
     assert [maximum_position(variant)[2] for variant in computed] == [0.0, 0.0]
-    first, second = (float(variant.peak_von_mises) for variant in computed)
-    assert second / first == pytest.approx(5 / 3, rel=0.05)
+    low_friction_peak, high_friction_peak = (float(variant.peak_von_mises) for variant in computed)
+    assert high_friction_peak / low_friction_peak == pytest.approx(5 / 3, rel=0.05)
 
 
 @pytest.mark.slow

@@ -31,22 +31,24 @@ def test_hertz_pressure_has_parabolic_displacement(on_cells, half_space: HalfSpa
 def test_operator_is_reciprocal_or_antisymmetric_in_y(short_body: FiniteLengthSpace, tangential: bool) -> None:
     grid = Grid(x_range=(0.0, 8.0), y_range=(-2.0, 2.0), cells_x=24, cells_y=16)
     operator = SurfaceOperator.of(short_body, grid, (Load.NORMAL, Load.ALONG_Y))
-    first, second = np.random.default_rng(1).random((2, 24, 16))
+    first_load, second_load = np.random.default_rng(1).random((2, 24, 16))
     if tangential:
-        there = operator({Load.ALONG_Y: first})
-        mirrored = operator({Load.ALONG_Y: first[:, ::-1]})
+        there = operator({Load.ALONG_Y: first_load})
+        mirrored = operator({Load.ALONG_Y: first_load[:, ::-1]})
         assert np.abs(there + mirrored[:, ::-1]).max() < 1e-12
     else:
-        works = [(a * operator({Load.NORMAL: b})).sum() for a, b in ((first, second), (second, first))]
+        works = [
+            (a * operator({Load.NORMAL: b})).sum() for a, b in ((first_load, second_load), (second_load, first_load))
+        ]
         assert works[0] == pytest.approx(works[1], rel=1e-12)
 
 
 def test_long_body_has_displacement_of_half_space(on_cells, unit_material: Material) -> None:
     pressure = on_cells(lambda x, y: np.maximum(1 - (x - 30) ** 2 - y**2, 0.0), (0.0, 60.0), (-1.5, 1.5), (480, 24))
     finite = surface_displacement(FiniteLengthSpace(length=60.0, material=unit_material), pressure, 0.2)
-    half = surface_displacement(HalfSpace(material=unit_material), pressure, 0.2)
-    difference = (finite - half).sel(x=slice(28, 32))
-    assert float(difference.max() - difference.min()) < 2e-3 * float(half.max())
+    half_space_displacement = surface_displacement(HalfSpace(material=unit_material), pressure, 0.2)
+    difference = (finite - half_space_displacement).sel(x=slice(28, 32))
+    assert float(difference.max() - difference.min()) < 2e-3 * float(half_space_displacement.max())
 
 
 def test_incompressible_edge_is_half_as_stiff(unit_material: Material) -> None:
@@ -59,10 +61,10 @@ def test_incompressible_edge_is_half_as_stiff(unit_material: Material) -> None:
     pressure = xr.DataArray(load, coords={"x": x, "y": y}, dims=("x", "y"))
     material = Material(0.75, 0.5)
     edge = surface_displacement(FiniteLengthSpace(length=length, material=material), pressure)[0]
-    half = surface_displacement(HalfSpace(material=material), pressure)[0]
+    half_space_row = surface_displacement(HalfSpace(material=material), pressure)[0]
     # Differences along the edge: the second end only adds what hardly varies.
-    near, far = 65, 90
-    ratio = float(edge[near] - edge[far]) / float(half[near] - half[far])
+    near_cell, far_cell = 65, 90
+    ratio = float(edge[near_cell] - edge[far_cell]) / float(half_space_row[near_cell] - half_space_row[far_cell])
     assert ratio == pytest.approx(3.362954, rel=2e-2)
 
 
@@ -89,14 +91,14 @@ def test_invalid_input_raises_error(short_body: FiniteLengthSpace, strip_pressur
 
 @pytest.mark.parametrize("cells", [(64, 48), (50, 48)], ids=["even halves", "odd halves"])
 def test_coarse_operator_approximates_operator_on_coarse_cells(short_body, unit_material, cells):
-    random = np.random.default_rng(3)
+    rng = np.random.default_rng(3)
     for body in (short_body, QuarterSpace(material=unit_material), HalfSpace(material=unit_material)):
         grids = (
             Grid(x_range=(0.0, 8.0), y_range=(-3.0, 3.0), cells_x=cells[0], cells_y=cells[1]),
             Grid(x_range=(0.0, 8.0), y_range=(-3.0, 3.0), cells_x=cells[0] // 2, cells_y=cells[1] // 2),
         )
         operator, built = (surface_operator(body, grid) for grid in grids)
-        pressure = random.random((cells[0] // 2, cells[1] // 2))
+        pressure = rng.random((cells[0] // 2, cells[1] // 2))
         expected = built({Load.NORMAL: pressure})
         assert np.abs(operator.coarse({Load.NORMAL: pressure}) - expected).max() < 5e-3 * np.ptp(expected)
 
@@ -111,8 +113,8 @@ def test_displacement_vanishes_at_reference(unit_material: Material, model: str)
         load[:, cells // 2 - 3 : cells // 2 + 3] = 1.0
         pressure = xr.DataArray(load, coords={"x": grid.x, "y": grid.y}, dims=("x", "y"))
         displacement.append(surface_displacement(body, pressure))
-    far = displacement[0].interp(y=displacement[0].attrs["reference_distance"])
-    assert float(np.abs(far).max()) < 1e-3 * float(displacement[0].max())
+    reference_displacement = displacement[0].interp(y=displacement[0].attrs["reference_distance"])
+    assert float(np.abs(reference_displacement).max()) < 1e-3 * float(displacement[0].max())
     np.testing.assert_allclose(
         displacement[0].sel(y=slice(-2.5, 2.5)), displacement[1], atol=1e-5 * float(displacement[0].max())
     )

@@ -45,31 +45,31 @@ def traction(cells: int = 24, along_x: float = 0.3) -> xr.DataArray:
     """A load that reaches both ends and is even in nothing."""
     grid = Grid(x_range=(0.0, LENGTH), y_range=(-2.0, 2.0), cells_x=cells, cells_y=cells)
     x, y = np.meshgrid(grid.x, grid.y, indexing="ij")
-    values = np.maximum(1 - y**2, 0) * (1 + along_x * x) * (1 + 0.2 * y)
-    return xr.DataArray(values, coords={"x": grid.x, "y": grid.y}, dims=("x", "y"))
+    cell_loads = np.maximum(1 - y**2, 0) * (1 + along_x * x) * (1 + 0.2 * y)
+    return xr.DataArray(cell_loads, coords={"x": grid.x, "y": grid.y}, dims=("x", "y"))
 
 
-def acting_loads(load: Load, values: xr.DataArray) -> dict[str, xr.DataArray]:
+def acting_loads(load: Load, cell_loads: xr.DataArray) -> dict[str, xr.DataArray]:
     """Arguments of a load in one direction alone."""
     names = {Load.NORMAL: "pressure", Load.ALONG_X: "traction_x", Load.ALONG_Y: "traction_y"}
-    return {"pressure": 0 * values} | {names[load]: values}
+    return {"pressure": 0 * cell_loads} | {names[load]: cell_loads}
 
 
 @pytest.mark.parametrize(("name", "cells"), [*((name, "graded") for name in BODIES), ("finite length", "uniform")])
 def test_operator_is_symmetric_and_positive(name: str, cells: str) -> None:
     body, grid = BODIES[name], GRIDS[cells]
     operator = surface_operator(body, grid, ALL, directions=ALL)
-    random = np.random.default_rng(0)
-    first, second = ({load: random.standard_normal(grid.shape) for load in ALL} for _ in range(2))
+    rng = np.random.default_rng(0)
+    first_loads, second_loads = ({load: rng.standard_normal(grid.shape) for load in ALL} for _ in range(2))
 
-    def works(loads: dict[Load, FloatArray], on: dict[Load, FloatArray]) -> FloatArray:
-        displaced = operator.compute_displacements(on, ALL)
+    def works(loads: dict[Load, FloatArray], displacing_loads: dict[Load, FloatArray]) -> FloatArray:
+        displaced = operator.compute_displacements(displacing_loads, ALL)
         return np.array([(grid.weights * loads[load] * displaced[load]).sum() for load in ALL])
 
-    item, variant = works(first, second), works(second, first)
-    assert abs(item.sum() - variant.sum()) < 1e-12 * np.abs(item).sum()
+    work, reciprocal_work = works(first_loads, second_loads), works(second_loads, first_loads)
+    assert abs(work.sum() - reciprocal_work.sum()) < 1e-12 * np.abs(work).sum()
     for _ in range(5):
-        load = {direction: random.standard_normal(grid.shape) for direction in ALL}
+        load = {direction: rng.standard_normal(grid.shape) for direction in ALL}
         assert works(load, load).sum() > 0
 
 
@@ -81,13 +81,13 @@ def test_surface_displacement_equals_field_on_top(name: str, load: Load) -> None
     """Reciprocity on the ends, against the harmonics of both auxiliary bodies at the depth 0."""
     body, loads = BODIES[name], acting_loads(load, traction())
     top = surface_displacement(body, **loads, components="xyz")
-    inside = displacement_field(body, **loads)
+    body_field = displacement_field(body, **loads)
     largest = max(float(np.ptp(top[name].values)) for name in top)
     # Columns at a loaded end are averaged: their displacement has a logarithm's slope there under a traction along x.
     inner = slice(0.3, LENGTH - 0.3) if load is Load.ALONG_X else slice(None)
     for axis in "xyz":
-        separate = (top[f"displacement_{axis}"] - inside[f"u_{axis}"].isel(z=0)).sel(x=inner)
-        assert float(np.abs(separate).max()) < 2e-3 * largest, axis
+        difference = (top[f"displacement_{axis}"] - body_field[f"u_{axis}"].isel(z=0)).sel(x=inner)
+        assert float(np.abs(difference).max()) < 2e-3 * largest, axis
 
 
 @pytest.mark.parametrize("body", [BODIES["quarter space"], BODIES["finite length"]], ids=["quarter", "finite"])
@@ -108,14 +108,16 @@ def test_stresses_under_a_traction_along_x_follow_from_the_displacements() -> No
     offsets, weights = np.arange(-3, 4) * step, np.array([-1, 9, -45, 0, 45, -9, 1]) / (60 * step)
     gradient = np.empty((3, 3))
     for column, axis in enumerate("xyz"):
-        points = {name: [value] for name, value in at.items()} | {axis: at[axis] + offsets}
+        points = {name: [coordinate] for name, coordinate in at.items()} | {axis: at[axis] + offsets}
         shifted = displacement_field(body, **loads, **points)
         gradient[:, column] = [float(weights @ shifted[name].values.ravel()) for name in ("u_x", "u_y", "u_z")]
     strain = 0.5 * (gradient + gradient.T)
     nu = MATERIAL.poisson
     lame = MATERIAL.young * nu / ((1 + nu) * (1 - 2 * nu))
     expected = lame * np.trace(strain) * np.eye(3) + 2 * MATERIAL.shear_modulus * strain
-    computed = stress_field(body, **loads, **{name: [value] for name, value in at.items()}).isel(x=0, y=0, z=0)
+    computed = stress_field(body, **loads, **{name: [coordinate] for name, coordinate in at.items()}).isel(
+        x=0, y=0, z=0
+    )
     pairs = {"sigma_xx": (0, 0), "sigma_yy": (1, 1), "sigma_zz": (2, 2), "tau_xy": (0, 1), "tau_xz": (0, 2)}
     for name, position in pairs.items():
         assert float(computed[name]) == pytest.approx(expected[position], abs=2e-3), name
@@ -142,10 +144,10 @@ def test_reference_changes_displacement_by_pure_bending() -> None:
         load = xr.DataArray(np.zeros(grid.shape), coords={"x": grid.x, "y": grid.y}, dims=("x", "y"))
         load[:, cells // 2 - 3 : cells // 2 + 3] = 1.0
         shifted.append(surface_displacement(body, **acting_loads(Load.ALONG_X, load), components="xyz"))
-    narrow, wide = shifted[0], shifted[1].sel(y=shifted[0].y, method="nearest")
-    for name in narrow:
-        assert np.abs(narrow[name].values - wide[name].values).max() < 2e-4 * float(
-            np.ptp(narrow["displacement_x"].values)
+    narrow_window, wide_window = shifted[0], shifted[1].sel(y=shifted[0].y, method="nearest")
+    for name in narrow_window:
+        assert np.abs(narrow_window[name].values - wide_window[name].values).max() < 2e-4 * float(
+            np.ptp(narrow_window["displacement_x"].values)
         )
 
 
@@ -153,14 +155,16 @@ def test_long_body_has_axial_displacement_of_half_space() -> None:
     grid = Grid(x_range=(0.0, 60.0), y_range=(-1.5, 1.5), cells_x=240, cells_y=12)
     x, y = np.meshgrid(grid.x, grid.y, indexing="ij")
     # Without a resultant, which would bend a body of any length.
-    values = np.where(np.abs(x - 30) < 1.5, np.sin(np.pi * (x - 30) / 1.5), 0.0) * (1 - y**2 / 2.25)
-    load = xr.DataArray(values, coords={"x": grid.x, "y": grid.y}, dims=("x", "y"))
-    finite, half = (
+    cell_loads = np.where(np.abs(x - 30) < 1.5, np.sin(np.pi * (x - 30) / 1.5), 0.0) * (1 - y**2 / 2.25)
+    load = xr.DataArray(cell_loads, coords={"x": grid.x, "y": grid.y}, dims=("x", "y"))
+    finite_field, half_space_field = (
         surface_displacement(body, **acting_loads(Load.ALONG_X, load), components="xyz").sel(x=slice(28, 32))
         for body in (FiniteLengthSpace(length=60.0, material=MATERIAL), HalfSpace(material=MATERIAL))
     )
-    for name in half:
-        assert float(np.abs(finite[name] - half[name]).max()) < 2e-3 * float(np.abs(half["displacement_x"]).max()), name
+    for name in half_space_field:
+        assert float(np.abs(finite_field[name] - half_space_field[name]).max()) < 2e-3 * float(
+            np.abs(half_space_field["displacement_x"]).max()
+        ), name
 
 
 def test_mirrored_traction_mirrors_equivalent_loads() -> None:
@@ -168,7 +172,8 @@ def test_mirrored_traction_mirrors_equivalent_loads() -> None:
     reflected = xr.DataArray(-load.values[::-1], coords=load.coords, dims=load.dims)
     body = BODIES["finite length"]
     computed, variant = (
-        equivalent_loads(body, **acting_loads(Load.ALONG_X, item), z=[0.3, 1.0]) for item in (load, reflected)
+        equivalent_loads(body, **acting_loads(Load.ALONG_X, applied_load), z=[0.3, 1.0])
+        for applied_load in (load, reflected)
     )
     largest = float(np.abs(computed.P_v1).max())
     assert float(np.abs(computed.P_v1 - variant.P_v2).max()) < 1e-6 * largest
@@ -195,14 +200,14 @@ def test_stresses_of_tractions_and_pressure_add_up() -> None:
     sliding = surface_displacement(body, load, 0.2)
     messages = surface_displacement(body, load, traction_y=0.2 * load)
     assert np.allclose(sliding, messages, rtol=1e-12)
-    both = surface_displacement(body, load, traction_x=0.1 * load, components="xz")
-    separate = surface_displacement(body, load, components="xz") + 0.1 * surface_displacement(
+    joint_displacement = surface_displacement(body, load, traction_x=0.1 * load, components="xz")
+    sum_of_displacements = surface_displacement(body, load, components="xz") + 0.1 * surface_displacement(
         body, 0 * load, traction_x=load, components="xz"
     )
     for name in ("displacement_x", "displacement_z"):
-        assert np.allclose(both[name], separate[name], atol=1e-12)
-    assert set(both) == {"displacement_x", "displacement_z"}
-    assert both["displacement_x"].attrs["units"] == "m"
+        assert np.allclose(joint_displacement[name], sum_of_displacements[name], atol=1e-12)
+    assert set(joint_displacement) == {"displacement_x", "displacement_z"}
+    assert joint_displacement["displacement_x"].attrs["units"] == "m"
 
 
 def test_invalid_input_raises_error() -> None:
@@ -216,6 +221,6 @@ def test_invalid_input_raises_error() -> None:
         surface_displacement(body, load, components="xw")
     with pytest.raises(InvalidInputError, match="components = \\[\\]"):
         surface_displacement(body, load, components=[])
-    single = FiniteLengthSpace(length=LENGTH, material=MATERIAL, model="single-mirror")
+    single_mirror = FiniteLengthSpace(length=LENGTH, material=MATERIAL, model="single-mirror")
     with pytest.raises(InvalidInputError, match=r"body.model = 'single-mirror'"):
-        surface_displacement(single, load, components="x")
+        surface_displacement(single_mirror, load, components="x")

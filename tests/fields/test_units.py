@@ -35,9 +35,9 @@ def fields(kind: str, cells: str, length: float, modulus: float) -> list[np.ndar
     coordinates = {"x": length * x, "y": length * y, "x_width": ("x", length * np.diff(EDGES[cells]))}
     load = xr.DataArray(pressure, coordinates, ("x", "y"))
     scaled_body = body(kind, length, modulus)
-    at = {"friction": 0.2, "x": length * np.array([0.0, 0.5, 2.9]), "y": length * np.array([-0.3, 0.4])}
-    stress = stress_field(scaled_body, load, **at, z=[0.02 * length, 0.7 * length], traction_x=0.1 * load)
-    shifted = displacement_field(scaled_body, load, **at, z=[0.0, 0.7 * length])
+    arguments = {"friction": 0.2, "x": length * np.array([0.0, 0.5, 2.9]), "y": length * np.array([-0.3, 0.4])}
+    stress = stress_field(scaled_body, load, **arguments, z=[0.02 * length, 0.7 * length], traction_x=0.1 * load)
+    shifted = displacement_field(scaled_body, load, **arguments, z=[0.0, 0.7 * length])
     top = surface_displacement(scaled_body, load, 0.2)
     computed = [stress[name].values / modulus for name in stress.data_vars]
     computed += [shifted[name].values / length for name in shifted.data_vars]
@@ -52,6 +52,8 @@ def fields(kind: str, cells: str, length: float, modulus: float) -> list[np.ndar
 def test_fields_scale_with_units(kind: str, cells: str) -> None:
     expected, computed = fields(kind, cells, 1e-3, 2e11), fields(kind, cells, 2.0**-12 * 1e-3, 2.0**-24 * 2e11)
     assert len(expected) > 8
-    for item, variant in zip(expected, computed, strict=True):
-        scale = np.abs(item[np.isfinite(item)]).max()  # displacements of mirrored rows are differences of large numbers
-        np.testing.assert_allclose(variant, item, rtol=0, atol=1e-7 * scale)
+    for unit_field, scaled_field in zip(expected, computed, strict=True):
+        scale = np.abs(
+            unit_field[np.isfinite(unit_field)]
+        ).max()  # displacements of mirrored rows are differences of large numbers
+        np.testing.assert_allclose(scaled_field, unit_field, rtol=0, atol=1e-7 * scale)

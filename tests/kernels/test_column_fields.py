@@ -26,12 +26,7 @@ from contactstudy.kernels.images import Influence
 from contactstudy.kernels.load import Load
 
 LENGTH, POISSON = 2.0, 0.3
-EXTENTS = {
-    "none": (-np.inf, np.inf),
-    "first": (0.0, np.inf),
-    "last": (-np.inf, LENGTH),
-    "both": (0.0, LENGTH),
-}
+EXTENTS = {"none": (-np.inf, np.inf), "first": (0.0, np.inf), "last": (-np.inf, LENGTH), "both": (0.0, LENGTH)}
 X, Z = np.array([0.0, 0.3, 1.0, LENGTH]), np.array([0.05, 0.5])
 
 
@@ -118,8 +113,8 @@ def test_wide_columns_represent_smooth_load(extent: str) -> None:
     """In thirds of columns 0.4 wide; as steps it would be 9 % off."""
     scale = 1e-3
     graded = Grid.from_edges(scale * np.linspace(0.0, LENGTH, 21)[GRADED], (-scale, scale), 16)
-    across = np.sqrt(np.maximum(1 - (graded.y / (0.6 * scale)) ** 2, 0))
-    cells = np.exp(-((graded.x[:, None] / scale - 1.3) ** 2) / 0.2) * across
+    lateral_profile = np.sqrt(np.maximum(1 - (graded.y / (0.6 * scale)) ** 2, 0))
+    cells = np.exp(-((graded.x[:, None] / scale - 1.3) ** 2) / 0.2) * lateral_profile
     ends = (scale * EXTENTS[extent][0], scale * EXTENTS[extent][1])
     fine = FineCells(load=cells, shape=cells, grid=graded, extent=ends)
     y_range = (float(fine.y_edges[0]), float(fine.y_edges[-1]))
@@ -160,11 +155,13 @@ def test_joint_depths_equal_separate_depths(load: Load) -> None:
     cells = np.exp(-graded.x[:, None] / 20) * np.sqrt(np.maximum(1 - (graded.y / 0.8) ** 2, 0))
     influence, y, z = stresses_of(load), np.array([-0.2, 0.3]), np.linspace(0.0, 6.0, 25)
     x, extent = np.array([0.0, 0.7, 9.0, 40.0, 60.0]), (0.0, 60.0)
-    together = columns_field(cells, cells, influence, graded, Points(x, y, z), extent=extent)
-    for number in (0, 1, 8, 24):
-        single = columns_field(cells, cells, influence, graded, Points(x, y, z[number : number + 1]), extent=extent)
+    joint_field = columns_field(cells, cells, influence, graded, Points(x, y, z), extent=extent)
+    for depth_index in (0, 1, 8, 24):
+        depth_field = columns_field(
+            cells, cells, influence, graded, Points(x, y, z[depth_index : depth_index + 1]), extent=extent
+        )
         # Nearer to the top than the others see it, columns are split into more.
-        assert np.abs(together[..., number] - single[..., 0]).max() < 2e-4 * np.abs(together).max()
+        assert np.abs(joint_field[..., depth_index] - depth_field[..., 0]).max() < 2e-4 * np.abs(joint_field).max()
 
 
 @pytest.mark.parametrize("load", Load)
@@ -200,9 +197,9 @@ def graded_loads(draw: st.DrawFn) -> tuple[Grid, FloatArray]:
 
 
 @settings(max_examples=10)
-@given(loaded=graded_loads(), load=st.sampled_from(list(Load)), extent=st.sampled_from(["none", "both"]))
-def test_mirrored_load_has_mirrored_field(loaded: tuple[Grid, FloatArray], load: Load, extent: str) -> None:
-    grid, cells = loaded
+@given(grid_and_load=graded_loads(), load=st.sampled_from(list(Load)), extent=st.sampled_from(["none", "both"]))
+def test_mirrored_load_has_mirrored_field(grid_and_load: tuple[Grid, FloatArray], load: Load, extent: str) -> None:
+    grid, cells = grid_and_load
     backwards = Grid.from_edges(LENGTH - grid.x_edges[::-1], (-1.0, 1.0), 6)
     influence, y = stresses_of(load), np.array([-0.4, 0.1])
     there = columns_field(cells, None, influence, grid, Points(X, y, Z), extent=EXTENTS[extent])
@@ -214,15 +211,20 @@ def test_mirrored_load_has_mirrored_field(loaded: tuple[Grid, FloatArray], load:
 
 
 @settings(max_examples=2)
-@given(loaded=graded_loads())
-def test_normal_stress_integrates_to_load(loaded: tuple[Grid, FloatArray]) -> None:
-    grid, cells = loaded
+@given(grid_and_load=graded_loads())
+def test_normal_stress_integrates_to_load(grid_and_load: tuple[Grid, FloatArray]) -> None:
+    grid, cells = grid_and_load
     depth, reach, points = 0.6, 40.0, 41
     # Points that crowd where the load is: y = sinh(s).
     s = np.linspace(-1.0, 1.0, points) * np.arcsinh(reach / depth)
-    wide, steps = depth * np.sinh(s), depth * np.cosh(s) * (s[1] - s[0])
+    distances, steps = depth * np.sinh(s), depth * np.cosh(s) * (s[1] - s[0])
     field = columns_field(
-        cells, None, stresses_of(Load.NORMAL), grid, Points(1.0 + wide, wide, np.array([depth])), extent=EXTENTS["none"]
+        cells,
+        None,
+        stresses_of(Load.NORMAL),
+        grid,
+        Points(1.0 + distances, distances, np.array([depth])),
+        extent=EXTENTS["none"],
     )[2, :, :, 0]
     carried = -float(steps @ field @ steps)
     total = float((cells * grid.widths[:, None]).sum() * grid.dy)
@@ -248,8 +250,8 @@ def make_fine_cells(
     return FineCells(load=load, shape=load, grid=grid, extent=extent, image=image)
 
 
-def split_around(x: float, own: FineCells, narrow: float = 0.0) -> _SplitRange:
-    return _split_around(x, own, narrow)
+def split_around(x: float, fine_cells: FineCells, narrow: float = 0.0) -> _SplitRange:
+    return _split_around(x, fine_cells, narrow)
 
 
 @pytest.mark.parametrize("x", PLACES)
@@ -277,15 +279,15 @@ def test_results_scale_with_unit_and_position(x: float, narrow: float, *, steps:
 @pytest.mark.parametrize("image", [1, -1])
 def test_inserted_columns_preserve_force(x: float, image: int) -> None:
     cells = make_fine_cells(image=image)
-    item = split_around(x, cells)
+    split_range = split_around(x, cells)
     forces = add_images(cells.far_load, image, cells.extent) * np.diff(cells.edges)[:, None]
-    inserted = cells.column_means([item.inserted]) + item.moment_loads(cells)
-    inside = (inserted * np.diff(item.inserted)[:, None]).sum(axis=0)
-    outside = forces.sum(axis=0) - forces[item.start : item.stop].sum(axis=0)
-    assert inside + outside == pytest.approx(forces.sum(axis=0), abs=1e-9)
-    assert item.inserted[0] == cells.edges[item.start]
-    assert item.inserted[-1] == cells.edges[item.stop]
-    assert (np.diff(item.inserted) > 0).all()
+    inserted = cells.column_means([split_range.inserted]) + split_range.moment_loads(cells)
+    inserted_force = (inserted * np.diff(split_range.inserted)[:, None]).sum(axis=0)
+    outside = forces.sum(axis=0) - forces[split_range.start : split_range.stop].sum(axis=0)
+    assert inserted_force + outside == pytest.approx(forces.sum(axis=0), abs=1e-9)
+    assert split_range.inserted[0] == cells.edges[split_range.start]
+    assert split_range.inserted[-1] == cells.edges[split_range.stop]
+    assert (np.diff(split_range.inserted) > 0).all()
 
 
 @pytest.mark.parametrize("x", [0.02, 0.07, 0.3, 0.4, 0.75, 1.5, 1.7, 2.2, 2.95])
@@ -293,18 +295,20 @@ def test_narrow_columns_surround_point(x: float) -> None:
     """A quarter as wide as what it lies in; on an edge as the narrower of both."""
     cells = make_fine_cells()
     edges = split_around(x, cells).inserted
-    at = int(np.searchsorted(edges, x)) - 1
-    assert 0.5 * (edges[at] + edges[at + 1]) == pytest.approx(x)
+    column = int(np.searchsorted(edges, x)) - 1
+    assert 0.5 * (edges[column] + edges[column + 1]) == pytest.approx(x)
     widths = np.diff(edges)
-    assert widths[at - 1] == pytest.approx(widths[at])
-    assert widths[at + 1] == pytest.approx(widths[at])
+    assert widths[column - 1] == pytest.approx(widths[column])
+    assert widths[column + 1] == pytest.approx(widths[column])
     split = cells.x_edges
     adjacent = np.flatnonzero((split[:-1] <= x + 1e-12) & (split[1:] >= x - 1e-12))
-    assert widths[at] == pytest.approx(0.25 * np.diff(split)[adjacent].min())
+    assert widths[column] == pytest.approx(0.25 * np.diff(split)[adjacent].min())
     low, high = resolved_columns(cells.edges, x)
     assert np.isin(edges[[0, -1]], cells.edges[[max(low - 1, 0), min(high + 1, cells.edges.size - 1)]]).all()
-    left = split[(split > cells.edges[low]) & (split < cells.edges[high]) & (np.abs(split - x) > 2.1 * widths[at])]
-    assert np.isin(left, edges).all()
+    distant_edges = split[
+        (split > cells.edges[low]) & (split < cells.edges[high]) & (np.abs(split - x) > 2.1 * widths[column])
+    ]
+    assert np.isin(distant_edges, edges).all()
 
 
 def test_inserted_columns_stop_at_load_step() -> None:
@@ -313,9 +317,9 @@ def test_inserted_columns_stop_at_load_step() -> None:
     for distance in (0.001, 0.004, 0.01):
         for x in (step - distance, step + distance):
             edges = split_around(float(x), cells).inserted
-            at = int(np.searchsorted(edges, x)) - 1
-            assert 0.5 * (edges[at] + edges[at + 1]) == pytest.approx(x)
-            assert not edges[at - 1] < step - 1e-12 < step + 1e-12 < edges[at + 2]
+            column = int(np.searchsorted(edges, x)) - 1
+            assert 0.5 * (edges[column] + edges[column + 1]) == pytest.approx(x)
+            assert not edges[column - 1] < step - 1e-12 < step + 1e-12 < edges[column + 2]
     edges = split_around(float(step), cells).inserted  # on the step itself as little as may be
     assert np.diff(edges).min() == pytest.approx(1e-3 * 0.1, rel=0.5)
 
@@ -326,10 +330,10 @@ def test_rounding_before_edge_equals_edge(narrow: float) -> None:
     edges = np.concatenate([[0.0, 1.0], np.linspace(2.0, 2.1, 11)])
     grid = Grid.between(edges, (-1.0, 1.0), 4)
     cells = FineCells(load=PRESSURE * np.ones(grid.shape), shape=PRESSURE * np.ones(grid.shape), grid=grid)
-    on = split_around(2.0, cells, narrow).inserted
+    edges_at_edge = split_around(2.0, cells, narrow).inserted
     for towards in (-np.inf, np.inf):
         adjacent = split_around(float(np.nextafter(2.0, towards)), cells, narrow).inserted
-        assert np.diff(adjacent).min() == pytest.approx(np.diff(on).min(), rel=0.6)
+        assert np.diff(adjacent).min() == pytest.approx(np.diff(edges_at_edge).min(), rel=0.6)
 
 
 def test_point_on_end_adds_no_column() -> None:
@@ -338,8 +342,8 @@ def test_point_on_end_adds_no_column() -> None:
         for end in (position, position + 3.0):
             assert np.abs(split_around(end, make_fine_cells(position)).inserted - end).min() < 1e-12
         adjacent = split_around(position + 1e-3, make_fine_cells(position)).inserted
-        at = int(np.searchsorted(adjacent, position + 1e-3)) - 1
-        assert 0.5 * (adjacent[at] + adjacent[at + 1]) == pytest.approx(position + 1e-3)
+        column = int(np.searchsorted(adjacent, position + 1e-3)) - 1
+        assert 0.5 * (adjacent[column] + adjacent[column + 1]) == pytest.approx(position + 1e-3)
 
 
 def test_range_contains_near_and_replaced_columns() -> None:
@@ -367,35 +371,39 @@ def test_layer_cells_centre_points(offset: float, span: float) -> None:
     column, edges = midpoint_cells(AlignedPoints(offset, np.arange(4), positions), start, span, step)
     layer = Layer.of(column, np.array([0.5]), np.array([0]), step=step, edges=edges, fine_per_cell=1)
     assert layer.edges is not None
-    at = (start + offset + step * positions - layer.edges[0]) / step
-    assert at == pytest.approx(np.floor(at) + 0.5)
+    cell_positions = (start + offset + step * positions - layer.edges[0]) / step
+    assert cell_positions == pytest.approx(np.floor(cell_positions) + 0.5)
     # All that is loaded, and no more than a cell beyond it.
     assert start - step - 1e-9 < layer.edges[0] <= start + 1e-9
     assert start + span - 1e-9 <= layer.edges[-1] < start + span + step - 1e-9
     assert layer.edges[1:] - layer.edges[:-1] == pytest.approx(step)
     # Distances from every point to every corner are among the offsets.
     count = layer.edges.size
-    for position, first in zip(positions, layer.offset_indices, strict=True):
+    for position, offset_index in zip(positions, layer.offset_indices, strict=True):
         distances = np.sort(start + offset + step * position - layer.edges)
-        offsets = layer.corners.along_y[layer.corners.index[first : first + count]]
+        offsets = layer.corners.along_y[layer.corners.index[offset_index : offset_index + count]]
         assert np.sort(offsets) == pytest.approx(np.sort(np.abs(distances)))
 
 
 def make_layers(y: FloatArray, parts: int | None) -> list[Layer]:
     grid = Grid(x_range=(0.0, 1.0), y_range=(-0.75, 1.25), cells_x=4, cells_y=8)
-    along_y, numbers = LateralAxis(grid, y, 1, 6), np.array([1])
+    along_y, depth_indices = LateralAxis(grid, y, 1, 6), np.array([1])
     z = np.array([0.1, 0.2])
-    return along_y.uniform_layers(z, numbers) if parts is None else along_y.shaped_layers(z, numbers, fine=bool(parts))
+    return (
+        along_y.uniform_layers(z, depth_indices)
+        if parts is None
+        else along_y.shaped_layers(z, depth_indices, fine=bool(parts))
+    )
 
 
 def test_positions_with_common_step_share_cells() -> None:
-    together = make_layers(np.array([-0.1, 0.0, 0.3]), 5)
-    assert len(together) == 1
-    (layer,) = together
+    layers = make_layers(np.array([-0.1, 0.0, 0.3]), 5)
+    assert len(layers) == 1
+    (layer,) = layers
     assert layer.edges is not None
     for y in (-0.1, 0.0, 0.3):
-        at = (y - layer.edges[0]) / np.diff(layer.edges)[0]
-        assert at == pytest.approx(np.floor(at) + 0.5)
+        cell_position = (y - layer.edges[0]) / np.diff(layer.edges)[0]
+        assert cell_position == pytest.approx(np.floor(cell_position) + 0.5)
     # No wider than a fifth of a cell, and an odd part of the step of 0.1.
     assert np.diff(layer.edges)[0] == pytest.approx(0.1 / 3)
     assert len(make_layers(np.array([-0.1, 0.0, 0.1 * np.pi]), 5)) == 3
@@ -411,8 +419,8 @@ def test_merge_preserves_force_and_moment() -> None:
     edges, loads = np.linspace(0.0, 10.0, 401), np.random.default_rng(0).random((400, 2))
     for position in (0.0, 100.0):
         for x in (-1.0, 10.5, 20.0):
-            computed, together = merge_columns(edges + position, loads, x + position)
-            assert (together * np.diff(computed)[:, None]).sum(axis=0) == pytest.approx(loads.sum(axis=0) * 0.025)
+            computed, merged_loads = merge_columns(edges + position, loads, x + position)
+            assert (merged_loads * np.diff(computed)[:, None]).sum(axis=0) == pytest.approx(loads.sum(axis=0) * 0.025)
             widths, distance = np.diff(computed), np.abs(0.5 * (computed[1:] + computed[:-1]) - position - x)
             assert (widths <= 0.0301 * distance + 0.0251).all()
             assert widths.size < 0.8 * 400
@@ -436,9 +444,12 @@ def test_offsets_about_zero_are_evaluated_on_one_side(start: float, halved: bool
 def test_inserted_columns_stay_in_replaced_range(x: float) -> None:
     """Beside the first and the last edge of a load without images there is no room for narrow ones."""
     cells = make_fine_cells(ends=0)
-    item = split_around(x, cells)
-    assert (item.inserted[0], item.inserted[-1]) == (cells.edges[item.start], cells.edges[item.stop])
-    assert (np.diff(item.inserted) > 0).all()
+    split_range = split_around(x, cells)
+    assert (split_range.inserted[0], split_range.inserted[-1]) == (
+        cells.edges[split_range.start],
+        cells.edges[split_range.stop],
+    )
+    assert (np.diff(split_range.inserted) > 0).all()
 
 
 @pytest.mark.parametrize("uniform", [True, False])
@@ -452,9 +463,9 @@ def test_columns_do_not_depend_on_the_unit(*, uniform: bool) -> None:
     baseline, variant = computed
     assert baseline.far_layers[0].depth_indices.size == variant.far_layers[0].depth_indices.size
     assert len(baseline.layers) == len(variant.layers)
-    for (near, sides), (same, alike) in zip(baseline.jumps, variant.jumps, strict=True):
-        for item, two in zip(near, same, strict=True):
-            assert two.edges / UNIT == pytest.approx(item.edges, abs=1e-9)
+    for (near_jumps, sides), (scaled_jumps, scaled_sides) in zip(baseline.jumps, variant.jumps, strict=True):
+        for item, scaled in zip(near_jumps, scaled_jumps, strict=True):
+            assert scaled.edges / UNIT == pytest.approx(item.edges, abs=1e-9)
         assert [[jumps.edges.size for jumps in side] for side in sides] == [
-            [jumps.edges.size for jumps in side] for side in alike
+            [jumps.edges.size for jumps in side] for side in scaled_sides
         ]

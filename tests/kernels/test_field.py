@@ -10,12 +10,7 @@ from contactstudy.arrays.points import Points
 from contactstudy.checks import FloatArray
 from contactstudy.kernels import field
 from contactstudy.kernels.convolution import centred_field
-from contactstudy.kernels.field import (
-    displacement_influence,
-    half_space_field,
-    half_space_influence,
-    stress_influence,
-)
+from contactstudy.kernels.field import displacement_influence, half_space_field, half_space_influence, stress_influence
 from contactstudy.kernels.fine_cells import MAX_REFINED_DEPTH
 from contactstudy.kernels.load import Load
 
@@ -27,18 +22,20 @@ def test_unaligned_positions_equal_single_positions() -> None:
     grid = Grid(x_range=(0.0, 8.0), y_range=(-2.0, 2.0), cells_x=80, cells_y=16)
     load = (1 - (grid.y / 2.0) ** 2) * np.ones(grid.shape)
     x, z = np.sort(np.random.default_rng(0).uniform(0.0, 8.0, 25)), np.array([0.05, 0.5])
-    together, *single = (
+    joint_field, *single_fields = (
         half_space_field(load, INFLUENCE, grid, Points(variant, grid.y[::4], z), extent=(0.0, 8.0))
         for variant in (x, *x[:, None])
     )
     # Far columns are taken together.
-    np.testing.assert_allclose(together, np.concatenate(single, axis=1), rtol=0, atol=1e-5 * np.abs(together).max())
+    np.testing.assert_allclose(
+        joint_field, np.concatenate(single_fields, axis=1), rtol=0, atol=1e-5 * np.abs(joint_field).max()
+    )
 
 
 def pressure(grid: Grid) -> FloatArray:
     """Pressure that falls to zero inside its last cells along x and y."""
-    along = ((grid.x[:, None] - 2.0) / 1.7) ** 8
-    return np.asarray(np.sqrt(np.maximum(1 - (grid.y / 0.93) ** 2 - along, 0.0)))
+    axial_profile = ((grid.x[:, None] - 2.0) / 1.7) ** 8
+    return np.asarray(np.sqrt(np.maximum(1 - (grid.y / 0.93) ** 2 - axial_profile, 0.0)))
 
 
 @pytest.mark.parametrize(
@@ -53,16 +50,16 @@ def test_field_is_linear_in_the_load(kind: str, *, ended: bool, shaped: bool, al
     edges = EDGES[kind] * 4.0 / EDGES[kind][-1]
     grid = Grid.between(edges, (-1.2, 1.2), 24)
     shape = pressure(grid) if shaped else None
-    random = np.random.default_rng(2)
-    first, second = pressure(grid) * random.random(grid.shape), random.random(grid.shape) * (np.abs(grid.y) < 0.5)
+    rng = np.random.default_rng(2)
+    first_load, second_load = pressure(grid) * rng.random(grid.shape), rng.random(grid.shape) * (np.abs(grid.y) < 0.5)
     x, y = (grid.x[::6], grid.y[::4]) if aligned else (np.array([0.01, 1.3, 3.77]), np.array([-0.9, 0.033]))
     z = np.array([0.0, 0.05, 0.3, 1.5])
-    item, variant, both = (
+    first_field, second_field, sum_field = (
         half_space_field(load, INFLUENCE, grid, Points(x, y, z), extent=extent, shape=shape)
-        for load in (first, second, first + 2 * second)
+        for load in (first_load, second_load, first_load + 2 * second_load)
     )
     # The images' sums amplify rounding.
-    assert np.abs(item + 2 * variant - both).max() < (1e-10 if np.isfinite(extent).all() else 1e-12)
+    assert np.abs(first_field + 2 * second_field - sum_field).max() < (1e-10 if np.isfinite(extent).all() else 1e-12)
 
 
 @pytest.mark.parametrize("kind", EDGES)
@@ -74,10 +71,10 @@ def test_field_is_continuous_at_refinement_depth(kind: str, *, aligned: bool) ->
     x, y = (grid.x[::6], grid.y[::4]) if aligned else (np.array([0.01, 1.3, 3.77]), np.array([-0.9, 0.033]))
     for size in (grid.dy, grid.dx):
         z = MAX_REFINED_DEPTH * size * np.array([1 - 1e-9, 1 + 1e-9])
-        above, below = np.moveaxis(
+        upper_field, lower_field = np.moveaxis(
             half_space_field(load, INFLUENCE, grid, Points(x, y, z), extent=(0.0, 4.0), shape=load), 3, 0
         )
-        assert np.abs(above - below).max() < 1e-5
+        assert np.abs(upper_field - lower_field).max() < 1e-5
 
 
 GRID = Grid(x_range=(0.0, 2.0), y_range=(-1.0, 1.0), cells_x=20, cells_y=16)
@@ -138,24 +135,24 @@ def test_symmetric_load_has_equal_field(
     np.testing.assert_allclose(by_symmetry, complete, atol=tolerance * np.abs(complete).max())
 
 
-@pytest.mark.parametrize("each", [Load.NORMAL, Load.ALONG_Y])
+@pytest.mark.parametrize("load", [Load.NORMAL, Load.ALONG_Y])
 @pytest.mark.parametrize("cells_x", [20, 21])
 @pytest.mark.parametrize("rows", [slice(None), [1, 4, 12], [17]])
 @pytest.mark.parametrize("other_half", [1.0, 1 + 1e-6, -1.0])
 def test_symmetric_load_equals_sum_of_halves(
-    each: Load, cells_x: int, rows: slice | list[int], other_half: float
+    load: Load, cells_x: int, rows: slice | list[int], other_half: float
 ) -> None:
     """Of the halves alone no wavenumber is zero."""
     grid = Grid(x_range=(0.0, 2.0), y_range=(-1.0, 1.0), cells_x=cells_x, cells_y=16)
-    half = np.random.default_rng(0).random(grid.shape)
-    half[(cells_x + 1) // 2 :] = 0.0
+    half_load = np.random.default_rng(0).random(grid.shape)
+    half_load[(cells_x + 1) // 2 :] = 0.0
     x = np.atleast_1d(grid.x[rows])
-    influence = stress_influence(each, 0.3)
-    parts = (half, other_half * half[::-1], half + other_half * half[::-1])
-    item, variant, both = (
-        half_space_field(cells, influence, grid, Points(x, grid.y, Z), extent=(0.0, 2.0)) for cells in parts
+    influence = stress_influence(load, 0.3)
+    loads = (half_load, other_half * half_load[::-1], half_load + other_half * half_load[::-1])
+    first_field, second_field, sum_field = (
+        half_space_field(cells, influence, grid, Points(x, grid.y, Z), extent=(0.0, 2.0)) for cells in loads
     )
-    np.testing.assert_allclose(both, item + variant, atol=1e-13 * np.abs(item).max())
+    np.testing.assert_allclose(sum_field, first_field + second_field, atol=1e-13 * np.abs(first_field).max())
 
 
 @pytest.mark.parametrize("unit", [1e-20, 1e20])
@@ -167,11 +164,11 @@ def test_asymmetric_load_stays_asymmetric_in_any_unit(load: np.ndarray, unit: fl
 
 def test_cached_kernels_depend_on_material_and_quantity(load: np.ndarray):
     y, extent = GRID.y, (0.0, 2.0)
-    first = stresses(load, GRID.x, y, extent)
+    first_stresses = stresses(load, GRID.x, y, extent)
     softer = half_space_field(load, stress_influence(Load.NORMAL, 0.1), GRID, Points(GRID.x, y, Z), extent=extent)
-    assert np.abs(softer - first[0]).max() > 1e-2
+    assert np.abs(softer - first_stresses[0]).max() > 1e-2
     displacements(load, GRID.x, y, extent)
-    np.testing.assert_array_equal(stresses(load, GRID.x, y, extent), first)
+    np.testing.assert_array_equal(stresses(load, GRID.x, y, extent), first_stresses)
 
 
 @pytest.mark.parametrize("extent", [(-np.inf, np.inf), (0.0, np.inf), (0.0, 2.0)])
@@ -186,9 +183,9 @@ def test_convolution_includes_all_cell_pairs(extent: tuple[float, float], loaded
     load[loaded] = 1.0
     x, y = (GRID.x, GRID.y) if whole else (np.atleast_1d(GRID.x[loaded[0]]), np.atleast_1d(GRID.y[loaded[1]]))
     # With a position that lies otherwise beside each, nothing is taken by symmetry.
-    adjacent = [(values[:, None] + 0.013 * np.arange(2)).ravel() for values in (x, y)]
-    separate = stresses(load, *adjacent, extent)[:, :, ::2, ::2]
-    np.testing.assert_allclose(stresses(load, x, y, extent), separate, atol=1e-8)
+    adjacent = [(positions[:, None] + 0.013 * np.arange(2)).ravel() for positions in (x, y)]
+    unaligned_field = stresses(load, *adjacent, extent)[:, :, ::2, ::2]
+    np.testing.assert_allclose(stresses(load, x, y, extent), unaligned_field, atol=1e-8)
 
 
 @pytest.mark.parametrize("load", list(Load))
@@ -197,10 +194,7 @@ def test_influences_sum_to_field(extent: tuple[float, float], load: Load) -> Non
     grid = Grid.from_edges([0.0, 0.1, 0.25, 0.5, 1.0, 1.6, 2.2, 2.7, 3.0], (-1.0, 1.0), 10)
     cells = np.random.default_rng(1).random(grid.shape)
     points = Points(np.array([0.4, 1.3, 2.9]), np.array([0.05]), np.array([0.7, 2.0]))
-    for influence in (
-        displacement_influence(load, 0.3, extent[1] - extent[0], 30.0),
-        stress_influence(load, 0.3),
-    ):
+    for influence in (displacement_influence(load, 0.3, extent[1] - extent[0], 30.0), stress_influence(load, 0.3)):
         field = half_space_field(cells, influence, grid, points, extent=extent)[:, :, 0]
         by_cell = half_space_influence(influence, grid, points._replace(y=points.y - grid.y), extent=extent)
         summed = np.einsum("cxiyz,iy->cxz", by_cell, cells)

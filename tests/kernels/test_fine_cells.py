@@ -58,10 +58,7 @@ def test_results_scale_with_unit_and_position(ends: int, image: int, edges: Floa
         assert variant.is_split.tolist() == baseline.is_split.tolist()
         for name in ("x_edges", "edges", "step_edges"):
             assert getattr(variant, name) / unit - position == pytest.approx(getattr(baseline, name), abs=1e-9), name
-        for computed, expected in (
-            (variant.far_load, baseline.far_load),
-            (variant.cells, baseline.cells),
-        ):
+        for computed, expected in ((variant.far_load, baseline.far_load), (variant.cells, baseline.cells)):
             assert computed / pressure == pytest.approx(expected, abs=1e-9)
         z = np.array([0.0, 0.1, 0.5, 1.19, 1.21, 2.5, 2.6, 4.0])
         assert variant.fine_depths(unit * z).tolist() == baseline.fine_depths(z).tolist()
@@ -73,10 +70,10 @@ def test_results_scale_with_unit_and_position(ends: int, image: int, edges: Floa
             ]
             for cells, size in ((variant, unit), (baseline, 1.0))
         ]
-        for (computed, grid), (expected, own) in zip(*refined, strict=True):
+        for (computed, grid), (expected, baseline_grid) in zip(*refined, strict=True):
             assert computed / pressure == pytest.approx(expected, abs=1e-9)
-            assert grid.x_edges / unit - position == pytest.approx(own.x_edges, abs=1e-9)
-            assert np.array(grid.y_range) / unit == pytest.approx(own.y_range)
+            assert grid.x_edges / unit - position == pytest.approx(baseline_grid.x_edges, abs=1e-9)
+            assert np.array(grid.y_range) / unit == pytest.approx(baseline_grid.y_range)
 
 
 @pytest.mark.parametrize("edges", [EDGES, UNIFORM], ids=["graded", "uniform"])
@@ -90,27 +87,31 @@ def test_refinement_ends_at_maximum_depth(edges: FloatArray) -> None:
         False,
     ]
     load = np.where(np.abs(cells.grid.y) < 0.7, 1.0, 0.0) * np.ones(cells.grid.shape)
-    even = FineCells(load=load, shape=load, grid=cells.grid)
-    assert not even.is_split.any()
-    assert not even.fine_depths_x(np.zeros(1)).any()
+    flat_cells = FineCells(load=load, shape=load, grid=cells.grid)
+    assert not flat_cells.is_split.any()
+    assert not flat_cells.fine_depths_x(np.zeros(1)).any()
     assert cells.fine_depths_x(cells.grid.dx * MAX_REFINED_DEPTH * np.array([0.99, 1.01])).tolist() == [True, False]
-    assert even.fine_depths(cells.grid.dy * MAX_REFINED_DEPTH * np.array([0.99, 1.01])).tolist() == [True, False]
+    assert flat_cells.fine_depths(cells.grid.dy * MAX_REFINED_DEPTH * np.array([0.99, 1.01])).tolist() == [True, False]
 
 
 @pytest.mark.parametrize("image", [1, -1])
 def test_images_contain_mirrored_load(image: int) -> None:
     """Means over columns between any edges."""
     cells = make_fine_cells(image=image)
-    inside = np.array([0.1, 0.3, 0.35, 0.8])
-    expected = cells.column_means([inside])
-    assert cells.column_means([-inside[::-1]])[::-1] == pytest.approx(image * expected)
-    beyond = np.array([3.0, 3.1, 3.5, 3.75])
-    assert cells.column_means([7.6 - beyond[::-1]])[::-1] == pytest.approx(image * cells.column_means([beyond]))
+    inner_edges = np.array([0.1, 0.3, 0.35, 0.8])
+    expected = cells.column_means([inner_edges])
+    assert cells.column_means([-inner_edges[::-1]])[::-1] == pytest.approx(image * expected)
+    outer_edges = np.array([3.0, 3.1, 3.5, 3.75])
+    assert cells.column_means([7.6 - outer_edges[::-1]])[::-1] == pytest.approx(
+        image * cells.column_means([outer_edges])
+    )
     # Over an end: half of it is the image.
     assert cells.column_means([np.array([-0.2, 0.0, 0.2])]) == pytest.approx(
         np.stack([image * cells.cells[0], cells.cells[0]])
     )
-    assert cells.column_means([inside, beyond]) == pytest.approx(np.vstack([expected, cells.column_means([beyond])]))
+    assert cells.column_means([inner_edges, outer_edges]) == pytest.approx(
+        np.vstack([expected, cells.column_means([outer_edges])])
+    )
 
 
 @pytest.mark.parametrize("ends", [0, 1, 2])
@@ -120,9 +121,9 @@ def test_far_load_keeps_force_and_moment(ends: int) -> None:
     smooth = SmoothLoad.of(cells.cells.T, cells.grid.x_edges).shape_loads(cells.cells.T)
     forces = add_images(cells.far_load, 1, cells.extent) * np.diff(cells.edges)[:, None]
     middles = 0.5 * (cells.edges[1:] + cells.edges[:-1])
-    count = 1 + (ends > 0) + (ends > 1)
+    image_count = 1 + (ends > 0) + (ends > 1)
     complete = (cells.cells * cells.grid.widths[:, None]).sum(axis=0)
-    assert forces.sum(axis=0) == pytest.approx(count * complete)
+    assert forces.sum(axis=0) == pytest.approx(image_count * complete)
     if not ends:
         about_middles = smooth.moments + cells.grid.x * smooth.cell_means * cells.grid.widths
         assert (forces * middles[:, None]).sum(axis=0) == pytest.approx(about_middles.sum(axis=1))
@@ -152,10 +153,10 @@ def test_fine_cells_centre_points_and_keep_force(offset: float) -> None:
 
 @pytest.mark.parametrize("narrow", [0.0, 0.3, 1.0])
 def test_resolved_columns_are_wide_over_distance(narrow: float) -> None:
-    random = np.random.default_rng(0)
+    rng = np.random.default_rng(0)
     for _ in range(200):
-        edges = 5.0 + np.cumsum(np.cumprod(random.uniform(0.4, 2.5, 12)))
-        x = float(random.uniform(edges[0], edges[-1]))
+        edges = 5.0 + np.cumsum(np.cumprod(rng.uniform(0.4, 2.5, 12)))
+        x = float(rng.uniform(edges[0], edges[-1]))
         widths, distance = np.diff(edges), np.abs(0.5 * (edges[1:] + edges[:-1]) - x)
         low, high = resolved_columns(edges, x, narrow)
         first = last = int(distance.argmin())
@@ -184,10 +185,13 @@ def test_coarse_cells_keep_six_moments(parts: int) -> None:
 def test_distribution_is_linear_in_the_load(ends: int, image: int) -> None:
     """For one shape, also outside it; the shape as a load is its smooth form, bit for bit."""
     fine_cells = make_fine_cells(edges=UNIFORM, ends=ends, image=image)
-    random = np.random.default_rng(1)
-    first, second = random.random(fine_cells.grid.shape), random.random(fine_cells.grid.shape) * (fine_cells.load > 0)
+    rng = np.random.default_rng(1)
+    first_load, second_load = (
+        rng.random(fine_cells.grid.shape),
+        rng.random(fine_cells.grid.shape) * (fine_cells.load > 0),
+    )
 
-    def evaluated(load: FloatArray) -> list[FloatArray]:
+    def evaluate_loads(load: FloatArray) -> list[FloatArray]:
         cells = FineCells(
             load=load, shape=fine_cells.shape, grid=fine_cells.grid, extent=fine_cells.extent, image=image
         )
@@ -196,19 +200,26 @@ def test_distribution_is_linear_in_the_load(ends: int, image: int) -> None:
         return [cells.fine_load(0.03)[0], complete, cells.end_load()[0], columns]
 
     # The cells along y span load and shape.
-    second[:, [0, -1]] = first[:, [0, -1]] = 1.0
-    for item, variant, both in zip(evaluated(first), evaluated(second), evaluated(first + 2 * second), strict=True):
-        assert both == pytest.approx(item + 2 * variant, abs=1e-12)
-    for item, half in zip(evaluated(fine_cells.load), evaluated(0.5 * fine_cells.load), strict=True):
-        assert np.array_equal(item, 2 * half)
+    second_load[:, [0, -1]] = first_load[:, [0, -1]] = 1.0
+    for first_values, second_values, sum_values in zip(
+        evaluate_loads(first_load),
+        evaluate_loads(second_load),
+        evaluate_loads(first_load + 2 * second_load),
+        strict=True,
+    ):
+        assert sum_values == pytest.approx(first_values + 2 * second_values, abs=1e-12)
+    for first_values, half_values in zip(
+        evaluate_loads(fine_cells.load), evaluate_loads(0.5 * fine_cells.load), strict=True
+    ):
+        assert np.array_equal(first_values, 2 * half_values)
 
 
 @pytest.mark.parametrize("unit", [1e-9, 1.0, 1e9])
 def test_uneven_columns_are_split(unit: float) -> None:
     """By more than 0.3 % of the largest load, whatever its unit."""
     grid = Grid.between(EDGES, (-1.2, 1.2), 12)
-    along = 1 + 1e-4 * grid.x - 0.5 * np.maximum(grid.x - 2.5, 0.0)
-    load = unit * along[:, None] * np.sqrt(1 - (grid.y / 1.3) ** 2)
+    axial_profile = 1 + 1e-4 * grid.x - 0.5 * np.maximum(grid.x - 2.5, 0.0)
+    load = unit * axial_profile[:, None] * np.sqrt(1 - (grid.y / 1.3) ** 2)
     split = FineCells(load=load, shape=load, grid=grid).is_split
     assert not split[:4].any()
     assert split[-3:].all()

@@ -24,32 +24,36 @@ def test_image_sum_converges(length: float, unit: float) -> None:
     x = dx * np.arange(-int(length / 0.25), int(length / 0.25) + 1.0)
     y = dy * np.arange(-12, 13.0)
     corner = corner_at(0.3 * unit)
-    numbers = np.concatenate([-np.arange(1500, 0, -1), np.arange(1, 1501)])
-    exact = np.zeros((x.size, y.size))
-    for number in numbers:
-        exact += cell_kernel(corner, x - 2 * length * unit * number, y, dx, dy)
+    image_numbers = np.concatenate([-np.arange(1500, 0, -1), np.arange(1, 1501)])
+    image_sum = np.zeros((x.size, y.size))
+    for image_number in image_numbers:
+        image_sum += cell_kernel(corner, x - 2 * length * unit * image_number, y, dx, dy)
     cell_influence = cell_kernel(corner, x, y, dx, dy)
     computed = mirrored_kernel(corner, x, y, dx, dy, length * unit)
     # Those beyond 1500 periods: a line of the rest, evenly spread, on either side.
-    rest = 0.3 * 0.25 * 0.2 / (2 * length) / (3001 * length) ** 2
-    assert computed == pytest.approx(cell_influence + exact + rest, abs=5e-6 * np.abs(cell_influence).max())
-    beyond = image_kernel(corner, x, y, dx, dy, length * unit, nearest=4 * length * unit)
-    near = sum(cell_kernel(corner, x - shift * length * unit, y, dx, dy) for shift in (-2, 2))
-    assert computed - cell_influence == pytest.approx(beyond + near, abs=4e-6 * np.abs(cell_influence).max())
+    truncation_error = 0.3 * 0.25 * 0.2 / (2 * length) / (3001 * length) ** 2
+    assert computed == pytest.approx(
+        cell_influence + image_sum + truncation_error, abs=5e-6 * np.abs(cell_influence).max()
+    )
+    far_images = image_kernel(corner, x, y, dx, dy, length * unit, nearest=4 * length * unit)
+    near_images = sum(cell_kernel(corner, x - shift * length * unit, y, dx, dy) for shift in (-2, 2))
+    assert computed - cell_influence == pytest.approx(far_images + near_images, abs=4e-6 * np.abs(cell_influence).max())
 
 
 @pytest.mark.parametrize("unit", [1e-6, 1.0, 1e6])
 @pytest.mark.parametrize("middle", [0.0, 7.0, -7.0])
 def test_chebyshev_interpolation_of_distant_loads(unit: float, middle: float) -> None:
-    at = unit * (middle + np.linspace(-2.0, 2.0, 200))
-    points, matrix = interpolation_points(at, 2.0 * unit, 1e-6)
+    positions = unit * (middle + np.linspace(-2.0, 2.0, 200))
+    points, matrix = interpolation_points(positions, 2.0 * unit, 1e-6)
     assert matrix is not None
     assert points.size < 20
-    assert points.min() >= at.min()
-    assert points.max() <= at.max()
+    assert points.min() >= positions.min()
+    assert points.max() <= positions.max()
     for load in (middle - 4.0, middle + 4.0):
-        assert matrix @ (1 / np.abs(points / unit - load)) == pytest.approx(1 / np.abs(at / unit - load), abs=1e-6)
-    few, same = interpolation_points(at[:4], 2.0 * unit, 1e-12)
-    assert same is None
+        assert matrix @ (1 / np.abs(points / unit - load)) == pytest.approx(
+            1 / np.abs(positions / unit - load), abs=1e-6
+        )
+    few, no_matrix = interpolation_points(positions[:4], 2.0 * unit, 1e-12)
+    assert no_matrix is None
     assert few is not None
-    assert np.array_equal(few, at[:4])
+    assert np.array_equal(few, positions[:4])

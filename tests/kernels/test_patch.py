@@ -33,9 +33,9 @@ def rectangle(kind: str, x: float, y: float, z: float, size: tuple[float, float]
 def test_distant_rectangle_equals_point_load(kind: str) -> None:
     """Boussinesq and Cerruti."""
     point = (6.0, -8.0, 5.0)
-    exact = ref.point_load(*point, poisson=0.3, **{k: float(k == kind) for k in CORNERS})
+    point_stress = ref.point_load(*point, poisson=0.3, **{k: float(k == kind) for k in CORNERS})
     computed = rectangle(kind, *point, size=(0.1, 0.1)) / 0.01
-    assert computed == pytest.approx([float(exact[c]) for c in ref.COMPONENTS], rel=1e-3, abs=1e-8)
+    assert computed == pytest.approx([float(point_stress[c]) for c in ref.COMPONENTS], rel=1e-3, abs=1e-8)
 
 
 @given(st.sampled_from(sorted(CORNERS)), st.floats(-3, 3), st.floats(-3, 3), st.floats(0.2, 3))
@@ -56,10 +56,12 @@ def test_stress_is_in_equilibrium(kind: str, x: float, y: float, z: float) -> No
 
 @pytest.mark.parametrize(("kind", "component"), [("normal", 2), ("tangential", 5)])
 def test_surface_traction_equals_load(kind: str, component: int) -> None:
-    inside, outside = rectangle(kind, 0.2, -0.3, 0.0), rectangle(kind, 0.9, 0.2, 0.0)
-    for number in (2, 4, 5):
-        assert inside[number] == pytest.approx(-1.0 if number == component else 0.0, abs=1e-12)
-        assert outside[number] == pytest.approx(0.0, abs=1e-12)
+    inside_stress, outside_stress = rectangle(kind, 0.2, -0.3, 0.0), rectangle(kind, 0.9, 0.2, 0.0)
+    for traction_component in (2, 4, 5):
+        assert inside_stress[traction_component] == pytest.approx(
+            -1.0 if traction_component == component else 0.0, abs=1e-12
+        )
+        assert outside_stress[traction_component] == pytest.approx(0.0, abs=1e-12)
 
 
 def test_corners_and_edges_have_finite_stress() -> None:
@@ -83,23 +85,23 @@ def test_kernel_includes_all_images(
     corner = partial(CORNERS[kind], z=depth, poisson=0.3)
     x, y = dx * np.arange(0, cells_x + 1), dy * np.arange(cells_y)
     computed = images.mirrored_kernel(corner, x, y, dx, dy, length)
-    near, far = (
-        sum(images.cell_kernel(corner, x + 2 * length * number, y, dx, dy) for number in numbers)
-        for numbers in (range(-400, 401), [*range(-800, -400), *range(401, 801)])
+    near_images, far_images = (
+        sum(images.cell_kernel(corner, x + 2 * length * image_number, y, dx, dy) for image_number in image_numbers)
+        for image_numbers in (range(-400, 401), [*range(-800, -400), *range(401, 801)])
     )
-    limit = near + 2 * far
+    limit = near_images + 2 * far_images
     # Far below the length of the body there is next to nothing left of one cell's load.
     assert np.abs(computed - limit).max() < allowed / length
 
 
 @pytest.mark.parametrize("span", [0.3, 1.0, 4.0])
 def test_chebyshev_interpolation_of_far_images(span: float) -> None:
-    length, values = 1.0, np.linspace(2.0, 2.0 + span, 200)
-    points, matrix = images.interpolation_points(values, length)
+    length, positions = 1.0, np.linspace(2.0, 2.0 + span, 200)
+    points, matrix = images.interpolation_points(positions, length)
     assert matrix is not None
     assert points.size < 120
     for away in (1.0 - length, 2.0 + span + length):
-        expected = 1 / (values - away)
+        expected = 1 / (positions - away)
         assert (
             np.abs(matrix @ (1 / (points - away)) - expected).max()
             < 2 * images.INTERPOLATION_ERROR * np.abs(expected).max()
@@ -117,7 +119,7 @@ NU = 0.3
 
 
 def on_rectangle(corner, x, y, z, size=(1e-3, 1e-3)):
-    edges_x, edges_y = (at + 0.5 * length * np.array([-1, 1]) for at, length in zip((x, y), size, strict=True))
+    edges_x, edges_y = (centre + 0.5 * length * np.array([-1, 1]) for centre, length in zip((x, y), size, strict=True))
     corners = corner(edges_x[:, None], edges_y[None, :], z, NU)
     return np.diff(np.diff(corners, axis=1), axis=2)[:, 0, 0] / (size[0] * size[1])
 
@@ -134,11 +136,11 @@ def test_small_rectangle_equals_point_load_displacements(point):
         rtol=1e-4,
         atol=1e-6,
     )
-    along = 1 / r + y * y / r**3 + free * (1 / (r + z) - y * y / (r * (r + z) ** 2))
-    across = x * y * (1 / r**3 - free / (r * (r + z) ** 2))
+    axial_kernel = 1 / r + y * y / r**3 + free * (1 / (r + z) - y * y / (r * (r + z) ** 2))
+    lateral_kernel = x * y * (1 / r**3 - free / (r * (r + z) ** 2))
     np.testing.assert_allclose(
         on_rectangle(tangential_displacement_inside, *point),
-        [across, along, y * (z / r**3 + free / (r * (r + z)))],
+        [lateral_kernel, axial_kernel, y * (z / r**3 + free / (r * (r + z)))],
         rtol=1e-4,
         atol=1e-6,
     )
@@ -148,11 +150,11 @@ def test_small_rectangle_equals_point_load_displacements(point):
 def test_displacements_inside_match_surface_kernel(load: Load):
     x, y = np.meshgrid([-0.7, 0.0, 0.2, 1.1], [-0.3, 0.0, 0.4, 0.9], indexing="ij")
 
-    def mixed_difference(values):
-        return np.diff(np.diff(values, axis=0), axis=1)
+    def mixed_difference(corner_values):
+        return np.diff(np.diff(corner_values, axis=0), axis=1)
 
-    inside = DISPLACEMENT_CORNERS[load](x, y, 0.0, NU)
-    for direction, expected in zip((Load.ALONG_X, Load.ALONG_Y, Load.NORMAL), inside, strict=True):
+    inside_corners = DISPLACEMENT_CORNERS[load](x, y, 0.0, NU)
+    for direction, expected in zip((Load.ALONG_X, Load.ALONG_Y, Load.NORMAL), inside_corners, strict=True):
         computed = mixed_difference(corner_function(strips_of(Response(direction, load), NU))(x, y))
         np.testing.assert_allclose(computed, mixed_difference(expected), rtol=1e-12, atol=1e-15)
 
@@ -195,5 +197,5 @@ def test_results_scale_with_unit_and_position(load: Load, name: str, *, smooth: 
 def test_unit_traction_on_the_top() -> None:
     edge = np.array([-1.0, 1.0])
     for corner, component in ((patch.STRESS_CORNERS[Load.ALONG_Y], 5), (patch.STRESS_CORNERS[Load.ALONG_X], 4)):
-        values = corner(edge[:, None], edge[None, :], 0.0, 0.3)
-        assert np.diff(np.diff(values, axis=1), axis=2)[component, 0, 0] == pytest.approx(-1.0)
+        corner_values = corner(edge[:, None], edge[None, :], 0.0, 0.3)
+        assert np.diff(np.diff(corner_values, axis=1), axis=2)[component, 0, 0] == pytest.approx(-1.0)

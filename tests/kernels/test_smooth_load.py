@@ -18,8 +18,8 @@ def smooth_form(cells: FloatArray, edges: FloatArray, *, extends_beyond: bool = 
 
 def semicircle_integral(y: FloatArray) -> FloatArray:
     """Integral of ``sqrt(1 - y**2)``."""
-    inside = np.clip(y, -1.0, 1.0)
-    return np.asarray(0.5 * (inside * np.sqrt(1 - inside**2) + np.arcsin(inside)))
+    clipped_y = np.clip(y, -1.0, 1.0)
+    return np.asarray(0.5 * (clipped_y * np.sqrt(1 - clipped_y**2) + np.arcsin(clipped_y)))
 
 
 @pytest.mark.parametrize("cells", [33, 40, 61])
@@ -38,11 +38,11 @@ def test_hertz_pressure_from_cell_means(cells: int, half: float) -> None:
 @st.composite
 def rows(draw: st.DrawFn) -> tuple[FloatArray, FloatArray]:
     """Loads of any sign with gaps between them, on cells of any widths."""
-    count = draw(st.integers(1, 12))
-    edges = np.append(0.0, np.cumsum(draw(st.lists(st.floats(0.5, 2.0), min_size=count, max_size=count))))
-    random = np.random.default_rng(draw(st.integers(0, 1000)))
+    cell_count = draw(st.integers(1, 12))
+    edges = np.append(0.0, np.cumsum(draw(st.lists(st.floats(0.5, 2.0), min_size=cell_count, max_size=cell_count))))
+    rng = np.random.default_rng(draw(st.integers(0, 1000)))
     signs = draw(st.sampled_from([(1.0,), (1.0, 0.0), (1.0, 0.0, -1.0)]))
-    return random.random((3, count)) * random.choice(signs, (3, count)), edges
+    return rng.random((3, cell_count)) * rng.choice(signs, (3, cell_count)), edges
 
 
 @settings(max_examples=60)
@@ -110,10 +110,10 @@ def test_rounding_keeps_shape_of_load_end() -> None:
 def test_shape_is_linear_in_load(row: tuple[FloatArray, FloatArray], extends_beyond: bool) -> None:
     loads, edges = row
     fine = np.linspace(edges[0], edges[-1], 60)
-    item = smooth_form(loads, edges, extends_beyond=extends_beyond).means(fine)
+    means = smooth_form(loads, edges, extends_beyond=extends_beyond).means(fine)
     for factor in (2.0**-30, 2.0**30):
         variant = smooth_form(factor * loads, edges, extends_beyond=extends_beyond).means(fine)
-        assert np.allclose(item, variant / factor, atol=1e-9)
+        assert np.allclose(means, variant / factor, atol=1e-9)
 
 
 @settings(max_examples=30)
@@ -121,11 +121,13 @@ def test_shape_is_linear_in_load(row: tuple[FloatArray, FloatArray], extends_bey
 def test_moments_match_narrow_cells(row: tuple[FloatArray, FloatArray], extends_beyond: bool) -> None:
     loads, edges = row[0], row[1] + 0.7
     smooth = smooth_form(loads, edges, extends_beyond=extends_beyond)
-    parts = 400
-    fine = np.append((edges[:-1, None] + np.diff(edges)[:, None] * np.arange(parts) / parts).ravel(), edges[-1])
+    part_count = 400
+    fine = np.append(
+        (edges[:-1, None] + np.diff(edges)[:, None] * np.arange(part_count) / part_count).ravel(), edges[-1]
+    )
     forces, middles = smooth.means(fine) * np.diff(fine), 0.5 * (fine[1:] + fine[:-1])
-    about = np.repeat(0.5 * (edges[1:] + edges[:-1]), parts)
-    expected = (forces * (middles - about)).reshape(loads.shape[0], -1, parts).sum(axis=2)
+    about = np.repeat(0.5 * (edges[1:] + edges[:-1]), part_count)
+    expected = (forces * (middles - about)).reshape(loads.shape[0], -1, part_count).sum(axis=2)
     assert np.allclose(smooth.moments, expected, atol=1e-4)
     total = np.cumsum(forces * (middles - edges[0]), axis=1)
     if edges.size < 3:
@@ -177,14 +179,14 @@ def test_root_extends_beyond_last_cell(factor: float) -> None:
         assert retained.integral(edges[6:7])[0] == pytest.approx(factor * forces.sum())
 
 
-@pytest.mark.parametrize("moved", [0.1, 0.4])
+@pytest.mark.parametrize("moved_fraction", [0.1, 0.4])
 @pytest.mark.parametrize("factor", [0.01, 5.0])
-def test_narrow_last_cell_shares_force(moved: float, factor: float) -> None:
+def test_narrow_last_cell_shares_force(moved_fraction: float, factor: float) -> None:
     """Contacts solved on cells put too little into the last cell, and too much into the one before."""
     edges = np.append(0.0, np.cumsum(WIDTHS))
     border = edges[5] + 0.25
     forces = root(edges, border)
-    forces[4:6] += moved * forces[5] * np.array([1, -1])
+    forces[4:6] += moved_fraction * forces[5] * np.array([1, -1])
     fine = np.linspace(edges[4], edges[6], 33)
     smooth = smooth_form(factor * forces[None] / WIDTHS, edges)
     assert np.abs(smooth.means(fine)[0] / factor - root(fine, border) / np.diff(fine)).max() < 0.05
@@ -205,13 +207,13 @@ def test_truncated_load_stays_in_last_cell() -> None:
     assert smooth.means(np.arange(6.0))[0, 3:].tolist() == [0.0, 0.0]
 
 
-@pytest.mark.parametrize("part", [0.05, 0.2, 0.45, 0.8])
-def test_load_ends_in_last_cell_of_row(part: float) -> None:
+@pytest.mark.parametrize("loaded_fraction", [0.05, 0.2, 0.45, 0.8])
+def test_load_ends_in_last_cell_of_row(loaded_fraction: float) -> None:
     """With little force in it, which it shares with the cell before: as if there were more cells."""
     edges = np.arange(10.0)
-    end = 8.0 + part
-    exact = (end**1.5 - np.maximum(end - edges, 0.0) ** 1.5) / 1.5
-    cells = np.diff(exact)[None, :]
+    end = 8.0 + loaded_fraction
+    root_integrals = (end**1.5 - np.maximum(end - edges, 0.0) ** 1.5) / 1.5
+    cells = np.diff(root_integrals)[None, :]
     for load in (cells, -cells[:, ::-1]):
         smooth_load = smooth_form(load, edges)
         longer = smooth_form(np.pad(load, ((0, 0), (1, 1))), np.arange(-1.0, 11.0))
@@ -221,5 +223,5 @@ def test_load_ends_in_last_cell_of_row(part: float) -> None:
 
 
 def test_opposite_face_from_mean() -> None:
-    first, last = np.random.default_rng(0).uniform(0.0, 2.0, (2, 50))
-    assert _opposite_face(_mean_of_root(first, last), first) == pytest.approx(last, abs=1e-12)
+    first_value, last = np.random.default_rng(0).uniform(0.0, 2.0, (2, 50))
+    assert _opposite_face(_mean_of_root(first_value, last), first_value) == pytest.approx(last, abs=1e-12)

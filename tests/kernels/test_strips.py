@@ -65,14 +65,14 @@ def strip_kernel(strip: Strip, x: float, low: float, high: float) -> float:
 
 
 def mean_influence(
-    strip: Strip, seen: tuple[float, float], loaded: tuple[float, float], low: float, high: float
+    strip: Strip, observed: tuple[float, float], loaded: tuple[float, float], low: float, high: float
 ) -> float:
     """Mean over one column of what a unit force per length of y on another does, by quadrature over the distance."""
-    (a, b), (c, d) = seen, loaded
+    (a, b), (c, d) = observed, loaded
 
     def weighted(t: float) -> float:
-        together = max(0.0, min(b, d + t) - max(a, c + t))
-        return together * strip_kernel(strip, t if abs(t) > 1e-300 else 1e-300, low, high)
+        overlap = max(0.0, min(b, d + t) - max(a, c + t))
+        return overlap * strip_kernel(strip, t if abs(t) > 1e-300 else 1e-300, low, high)
 
     corners = sorted({a - d, a - c, b - d, b - c, *((0.0,) if a - d < 0 < b - c else ())})
     pieces = [
@@ -104,14 +104,16 @@ def test_shifted_body_has_equal_influence(strip: Strip, image: int, extent: tupl
 
 
 @strips
-@pytest.mark.parametrize(("seen", "loaded"), [(0, 0), (0, 1), (3, 1), (7, 2), (6, 7)])
+@pytest.mark.parametrize(("observed", "loaded"), [(0, 0), (0, 1), (3, 1), (7, 2), (6, 7)])
 @pytest.mark.parametrize("offset", [0, 1, 4])
-def test_influence_between_columns_is_the_double_integral(strip: Strip, seen: int, loaded: int, offset: int) -> None:
+def test_influence_between_columns_is_the_double_integral(
+    strip: Strip, observed: int, loaded: int, offset: int
+) -> None:
     dy, cells_y = 0.2, 6
     kernel = along_y(influence(strip, EDGES, dy, cells_y, WHOLE), strip)
-    pairs = (EDGES[seen], EDGES[seen + 1]), (EDGES[loaded], EDGES[loaded + 1])
-    exact = mean_influence(strip, *pairs, (offset - 0.5) * dy, (offset + 0.5) * dy)
-    assert kernel[offset, seen, loaded] == pytest.approx(exact, rel=2e-9, abs=1e-12)
+    pairs = (EDGES[observed], EDGES[observed + 1]), (EDGES[loaded], EDGES[loaded + 1])
+    double_integral = mean_influence(strip, *pairs, (offset - 0.5) * dy, (offset + 0.5) * dy)
+    assert kernel[offset, observed, loaded] == pytest.approx(double_integral, rel=2e-9, abs=1e-12)
 
 
 @pytest.mark.parametrize("image", [1, -1])
@@ -123,20 +125,22 @@ def test_image_equals_mirrored_column(strip: Strip, image: int) -> None:
     for observed, loaded, offset in ((0, 0, 0), (2, 5, 1), (7, 7, 3)):
         behind = (2 * end - EDGES[loaded + 1], 2 * end - EDGES[loaded])
         pair = (EDGES[observed], EDGES[observed + 1])
-        exact = image * mean_influence(strip, pair, behind, (offset - 0.5) * dy, (offset + 0.5) * dy)
-        assert mirrored[offset, observed, loaded] == pytest.approx(exact, rel=2e-9, abs=1e-12)
+        mirrored_influence = image * mean_influence(strip, pair, behind, (offset - 0.5) * dy, (offset + 0.5) * dy)
+        assert mirrored[offset, observed, loaded] == pytest.approx(mirrored_influence, rel=2e-9, abs=1e-12)
 
 
 @strips
 def test_strip_derivatives_and_primitives_match_kernel(strip: Strip) -> None:
     step = 1e-4
     x, y = np.meshgrid(np.linspace(0.3, 4.0, 7), np.array([0.05, 0.4, 2.0]))
-    before, here, after = (strip.kernel(x + move, y) for move in (-step, 0.0, step))
-    assert np.allclose((after - 2 * here + before) / step**2, strip.curvature(x, y), rtol=1e-5, atol=2e-7)
+    kernel_before, kernel_here, kernel_after = (strip.kernel(x + move, y) for move in (-step, 0.0, step))
+    assert np.allclose(
+        (kernel_after - 2 * kernel_here + kernel_before) / step**2, strip.curvature(x, y), rtol=1e-5, atol=2e-7
+    )
     rise = (strip.primitive(x + step, y) - strip.primitive(x - step, y)) / (2 * step)
     # What does not depend on y is left out.
-    separate = rise - here
-    assert np.allclose(separate, separate[:1], atol=1e-7)
+    rise_error = rise - kernel_here
+    assert np.allclose(rise_error, rise_error[:1], atol=1e-7)
 
 
 @st.composite
@@ -165,9 +169,9 @@ def test_influence_is_reciprocal_to_the_last_bit(edges: FloatArray, strip: Strip
 
 
 @settings(max_examples=30)
-@given(edges=increasing_edges(), strip=SAMPLED, two=st.booleans())
-def test_reversed_columns_have_reversed_influence(edges: FloatArray, strip: Strip, two: bool) -> None:
-    extent = TWO_ENDS if two else WHOLE
+@given(edges=increasing_edges(), strip=SAMPLED, has_two_ends=st.booleans())
+def test_reversed_columns_have_reversed_influence(edges: FloatArray, strip: Strip, has_two_ends: bool) -> None:
+    extent = TWO_ENDS if has_two_ends else WHOLE
     kernel = influence(strip, edges, 0.1, 6, extent, 30.0)
     backwards = influence(strip, 3.0 - edges[::-1], 0.1, 6, extent, 30.0)
     assert np.abs(kernel - strip.sign_x * backwards[:, ::-1, ::-1]).max() < 1e-7 * np.abs(kernel).max()
@@ -181,12 +185,16 @@ def test_influence_is_positive_definite(edges: FloatArray) -> None:
 
 
 @settings(max_examples=30)
-@given(edges=increasing_edges(), strip=SAMPLED, two=st.booleans(), at=st.integers(0, 20))
-def test_split_columns_sum_to_original_column(edges: FloatArray, strip: Strip, two: bool, at: int) -> None:
+@given(edges=increasing_edges(), strip=SAMPLED, has_two_ends=st.booleans(), split_column=st.integers(0, 20))
+def test_split_columns_sum_to_original_column(
+    edges: FloatArray, strip: Strip, has_two_ends: bool, split_column: int
+) -> None:
     """Galerkin's averages are consistent: forces on the halves in the whole's proportion, displacements averaged."""
-    at %= edges.size - 1
-    extent = TWO_ENDS if two else WHOLE
-    finer = np.insert(edges, at + 1, edges[at] + 0.3 * (edges[at + 1] - edges[at]))
+    split_column %= edges.size - 1
+    extent = TWO_ENDS if has_two_ends else WHOLE
+    finer = np.insert(
+        edges, split_column + 1, edges[split_column] + 0.3 * (edges[split_column + 1] - edges[split_column])
+    )
     widths, owner = np.diff(finer), np.searchsorted(edges, 0.5 * (finer[1:] + finer[:-1])) - 1
     fractions = np.zeros((edges.size - 1, widths.size))
     fractions[owner, np.arange(widths.size)] = widths / np.diff(edges)[owner]
@@ -202,10 +210,10 @@ def test_far_expansion_matches_integral(strip: Strip) -> None:
     kernel = along_y(influence(strip, edges, dy, cells_y, WHOLE), strip)
     assert edges[4] - edges[3] > FAR_COLUMNS * (edges[5] - edges[4])
     for offset in (0, 2):
-        exact = mean_influence(strip, (0.0, 1e-3), (1.0, 1.03), (offset - 0.5) * dy, (offset + 0.5) * dy)
+        integral = mean_influence(strip, (0.0, 1e-3), (1.0, 1.03), (offset - 0.5) * dy, (offset + 0.5) * dy)
         scale = max(np.abs(kernel[:, 4, 4]).max(), np.abs(kernel[:, 0, 4]).max())
-        assert abs(kernel[offset, 0, 4] - exact) < 1e-7 * scale
-        assert kernel[offset, 0, 4] == pytest.approx(exact, rel=1e-6, abs=1e-15)
+        assert abs(kernel[offset, 0, 4] - integral) < 1e-7 * scale
+        assert kernel[offset, 0, 4] == pytest.approx(integral, rel=1e-6, abs=1e-15)
         assert kernel[offset, 4, 0] == strip.sign_x * kernel[offset, 0, 4]
 
 
@@ -217,11 +225,11 @@ def test_very_narrow_columns_keep_their_digits() -> None:
     last, y = edges.size - 2, (-0.05, 0.05)
     for observed, loaded in ((0, 0), (5, 0), (0, last), (last, last)):
         pair = (edges[observed], edges[observed + 1]), (edges[loaded], edges[loaded + 1])
-        separate = 0.5 * (sum(pair[0]) - sum(pair[1]))
+        distance = 0.5 * (sum(pair[0]) - sum(pair[1]))
         # Far from each other both are points.
-        far = abs(separate) > 1
-        exact = strip_kernel(INVERSE, abs(separate), *y) if far else mean_influence(INVERSE, *pair, *y)
-        assert kernel[0, observed, loaded] == pytest.approx(exact, rel=1e-6)
+        is_far = abs(distance) > 1
+        exact_influence = strip_kernel(INVERSE, abs(distance), *y) if is_far else mean_influence(INVERSE, *pair, *y)
+        assert kernel[0, observed, loaded] == pytest.approx(exact_influence, rel=1e-6)
 
 
 STEEL = Material(210e9, 0.3)
@@ -251,16 +259,19 @@ def test_operator_averages_displacement_of_finer_cells(body: Body) -> None:
     loads, directions = (LOADS[::2], LOADS[:1]) if sinks_only else (LOADS, LOADS)
     responses = tuple(Response(direction, load) for direction in directions for load in loads)
     fine_operator = SurfaceOperator.of(body, fine, loads, directions)
-    material, parts = body.material, []
-    for part in body.terms:
-        ends = end_kernel_of(part, material, coarse, responses, Resolution())
-        parts.append((part.weight, ColumnsOperator.of(material, part.extent, coarse, responses, ends)))
-    columns = SurfaceOperator(body, parts)
+    material, operators = body.material, []
+    for term in body.terms:
+        ends = end_kernel_of(term, material, coarse, responses, Resolution())
+        operators.append((term.weight, ColumnsOperator.of(material, term.extent, coarse, responses, ends)))
+    columns = SurfaceOperator(body, operators)
     for load in loads:
         displaced = fine_operator.compute_displacements({load: np.repeat(pressure, finer, axis=0)}, directions)
-        means = {value: values.reshape(cells_x, finer, cells_y).mean(axis=1) for value, values in displaced.items()}
+        means = {
+            direction_of_mean: displacement.reshape(cells_x, finer, cells_y).mean(axis=1)
+            for direction_of_mean, displacement in displaced.items()
+        }
         computed = columns.compute_displacements({load: pressure}, directions)
-        largest = max(float(np.ptp(value)) for value in means.values())
+        largest = max(float(np.ptp(direction_of_mean)) for direction_of_mean in means.values())
         for direction, mean in means.items():
             assert np.abs(computed[direction] - mean).max() < 1.5e-3 * largest, (load, direction)
 
@@ -272,15 +283,15 @@ def test_operator_converges_to_uniform_cells() -> None:
     pressure = np.random.default_rng(1).random(coarse.shape)
     operator = ColumnsOperator.of(STEEL, body.extent, coarse, (NORMAL_RESPONSE,), None)
     columns = operator({Load.NORMAL: pressure}, (Load.NORMAL,))[Load.NORMAL]
-    separate = []
+    differences = []
     for finer in (4, 8, 16):
         fine = Grid(x_range=(0.0, LENGTH), y_range=(-1.2e-4, 1.2e-4), cells_x=cells_x * finer, cells_y=cells_y)
         fine_operator = SurfaceOperator.of(body, fine)({Load.NORMAL: np.repeat(pressure, finer, axis=0)})
-        separate.append(
+        differences.append(
             np.abs(fine_operator.reshape(cells_x, finer, cells_y).mean(axis=1) - columns).max() / np.ptp(columns)
         )
-    assert separate[1] < 0.35 * separate[0]
-    assert separate[2] < 0.35 * separate[1]
+    assert differences[1] < 0.35 * differences[0]
+    assert differences[2] < 0.35 * differences[1]
 
 
 P, X, Y = Load.NORMAL, Load.ALONG_X, Load.ALONG_Y
@@ -323,7 +334,7 @@ def test_influences_do_not_depend_on_cached_columns(response: Response) -> None:
         return request.kernel(response, 0.3)
 
     cache.clear()
-    single = kernel(fine)
+    uncached_kernel = kernel(fine)
     cache.clear()
     kernel(coarse)
-    np.testing.assert_array_equal(kernel(fine), single)
+    np.testing.assert_array_equal(kernel(fine), uncached_kernel)

@@ -23,9 +23,9 @@ def represent_load(modes: AxialModes, waves: np.ndarray, height: float) -> np.nd
 @pytest.mark.parametrize("height", [0.15, 1.0])
 def test_ray_and_discrete_modes_equal_full_sum(length: float, height: float) -> None:
     for modes, parity in zip(axial_modes(length, 0.5, 0.05, Resolution()), (1, -1), strict=True):
-        numbers = np.arange(0 if parity > 0 else 1, 4000, 2)
-        k = np.pi * numbers / length
-        weights = np.where(numbers == 0, 1.0, 2.0) / length * np.exp(-k * height)
+        mode_numbers = np.arange(0 if parity > 0 else 1, 4000, 2)
+        k = np.pi * mode_numbers / length
+        weights = np.where(mode_numbers == 0, 1.0, 2.0) / length * np.exp(-k * height)
         assert modes.parity == parity
         for waves, wave in ((modes.cosine, np.cos), (modes.sine, np.sin)):
             expected = weights @ wave(np.outer(k, X))
@@ -35,9 +35,9 @@ def test_ray_and_discrete_modes_equal_full_sum(length: float, height: float) -> 
 @pytest.mark.parametrize("height", [0.15, 1.0])
 def test_ray_equals_integral_of_single_end(height: float) -> None:
     (modes,) = axial_modes(np.inf, 0.05, 0.05, Resolution())
-    exact = 2 / np.pi / (height**2 + X**2)
-    assert represent_load(modes, modes.cosine(X), height) == pytest.approx(height * exact, abs=1e-5)
-    assert represent_load(modes, modes.sine(X), height) == pytest.approx(X * exact, abs=1e-5)
+    load_on_x = 2 / np.pi / (height**2 + X**2)
+    assert represent_load(modes, modes.cosine(X), height) == pytest.approx(height * load_on_x, abs=1e-5)
+    assert represent_load(modes, modes.sine(X), height) == pytest.approx(X * load_on_x, abs=1e-5)
 
 
 @pytest.mark.parametrize("length", [3.0, np.inf])
@@ -50,8 +50,8 @@ def test_cell_integrals_match_waves(load: Load, length: float) -> None:
         weights_of = np.abs(modes.load_weights)[few]  # as few digits are left at wavenumbers next to 0 as weight
         for cell, (low, high) in enumerate(pairwise(edges)):
             nodes, weights = np.polynomial.legendre.leggauss(60)
-            at = 0.5 * (high + low) + 0.5 * (high - low) * nodes
-            expected = 0.5 * (high - low) * modes.wave(load, at) @ weights
+            positions = 0.5 * (high + low) + 0.5 * (high - low) * nodes
+            expected = 0.5 * (high - low) * modes.wave(load, positions) @ weights
             np.testing.assert_allclose(weights_of * computed[few, cell], weights_of * expected[few], atol=1e-9)
 
 

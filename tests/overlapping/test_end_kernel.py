@@ -54,13 +54,13 @@ def test_mirrored_columns_have_the_mirrored_kernel(response: Response) -> None:
 @pytest.mark.parametrize("ends", [1, 2])
 def test_loads_and_displacements_are_reciprocal(ends: int) -> None:
     """Work of one load on what another displaces; the factor i that kernels lack is conjugated."""
-    for first in Load:
-        for second in Load:
+    for direction in Load:
+        for load in Load:
             there, back = (
-                kernel(EDGES, Response(first, second), ends=ends),
-                kernel(EDGES, Response(second, first), ends=ends),
+                kernel(EDGES, Response(direction, load), ends=ends),
+                kernel(EDGES, Response(load, direction), ends=ends),
             )
-            sign = -1 if (first.sign_y < 0) != (second.sign_y < 0) else 1
+            sign = -1 if (direction.sign_y < 0) != (load.sign_y < 0) else 1
             assert back.transpose(0, 2, 1) == pytest.approx(sign * there, abs=2e-4 * np.abs(there).max())
 
 
@@ -72,17 +72,17 @@ def test_correction_on_cells_equals_kernel_between_columns(direction: Load, cell
     grid = Grid.between(edges, (-1.0, 1.0), 6)
     ends = end_kernel(request(edges))
     correction = EndCorrection.on_grid(grid, ends)
-    random = np.random.default_rng(0)
-    transforms = {load: random.standard_normal((cells, 7)) + 1j * random.standard_normal((cells, 7)) for load in Load}
-    gathered = {load: correction.project_loads(load, item) for load, item in transforms.items()}
+    rng = np.random.default_rng(0)
+    transforms = {load: rng.standard_normal((cells, 7)) + 1j * rng.standard_normal((cells, 7)) for load in Load}
+    gathered = {load: correction.project_loads(load, transform) for load, transform in transforms.items()}
     computed = correction.compute_displacement(direction, gathered, cells)
     expected = np.zeros((cells, 7), np.complex128)
-    for load, item in transforms.items():
+    for load, transform in transforms.items():
         response = Response(direction, load)
         factor = 1.0 if response.sign_y > 0 else 1j
         between = np.zeros((7, cells, cells))
         ends.add_to(between, response, edges)
-        expected += factor * np.einsum("kij,jk->ik", between, item) * grid.dx
+        expected += factor * np.einsum("kij,jk->ik", between, transform) * grid.dx
     assert computed == pytest.approx(expected, abs=1e-9 * np.abs(expected).max())
 
 
@@ -90,16 +90,20 @@ def test_end_cells_determine_kernel_resolution() -> None:
     """Uniform cells by their width; graded ones by a cell along y, or an eighth of it if cells at an end are narrow."""
     dy = 2.0 / 6
     assert request(np.linspace(0.0, 2.4, 9)).finest == pytest.approx(0.3)
-    narrow = np.array([0.0, 0.1, 0.5, 1.5, 2.6, 3.7])
-    wide = np.array([0.0, 0.7, 1.4, 1.6, 2.3, 3.0])
-    assert request(narrow).finest == request(narrow[-1] - narrow[::-1]).finest == pytest.approx(dy / 8)
-    assert request(wide).finest == pytest.approx(dy)
-    assert request(narrow, ends=1).finest == pytest.approx(dy / 8)
-    assert request(narrow[-1] - narrow[::-1], ends=1).finest == pytest.approx(dy)
+    narrow_end_edges = np.array([0.0, 0.1, 0.5, 1.5, 2.6, 3.7])
+    wide_end_edges = np.array([0.0, 0.7, 1.4, 1.6, 2.3, 3.0])
+    assert (
+        request(narrow_end_edges).finest
+        == request(narrow_end_edges[-1] - narrow_end_edges[::-1]).finest
+        == pytest.approx(dy / 8)
+    )
+    assert request(wide_end_edges).finest == pytest.approx(dy)
+    assert request(narrow_end_edges, ends=1).finest == pytest.approx(dy / 8)
+    assert request(narrow_end_edges[-1] - narrow_end_edges[::-1], ends=1).finest == pytest.approx(dy)
     assert request(EDGES).resolution.lateral_nodes == Resolution().lateral_nodes + 2
     for unit in (LENGTH, 2.0**10):
-        assert request(narrow, unit=unit).finest / unit == pytest.approx(dy / 8)
-        assert request(wide, unit=unit).finest / unit == pytest.approx(dy)
+        assert request(narrow_end_edges, unit=unit).finest / unit == pytest.approx(dy / 8)
+        assert request(wide_end_edges, unit=unit).finest / unit == pytest.approx(dy)
 
 
 def test_lateral_cells_bound_lateral_wavenumbers() -> None:

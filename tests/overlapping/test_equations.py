@@ -53,13 +53,13 @@ def test_resolution_settings_are_converged() -> None:
     points = (np.array([0.0, 0.1, 1.0, 4.0]), np.array([0.0, 0.5]), np.array([0.05, 0.5, 3.0]))
 
     def stress(resolution: Resolution) -> np.ndarray:
-        both = (Load.NORMAL, Load.ALONG_Y)
+        loads = (Load.NORMAL, Load.ALONG_Y)
         fields = end_fields(
-            EndProblem(length=8.0, poisson=0.3, cells=pressure, loads=both, grid=grid, resolution=resolution),
+            EndProblem(length=8.0, poisson=0.3, cells=pressure, loads=loads, grid=grid, resolution=resolution),
             STRESS,
             [Points(*points)],
         )[0]
-        return np.stack([fields[load] for load in both])
+        return np.stack([fields[load] for load in loads])
 
     baseline = stress(Resolution())
     finer = {
@@ -72,8 +72,8 @@ def test_resolution_settings_are_converged() -> None:
         "lateral_order": 24,
         "lateral_reach": 16.0,
     }
-    for name, value in finer.items():
-        assert np.abs(stress(replace(Resolution(), **{name: value})) - baseline).max() < 2e-5, name
+    for name, setting in finer.items():
+        assert np.abs(stress(replace(Resolution(), **{name: setting})) - baseline).max() < 2e-5, name
 
 
 ON_THE_END = {
@@ -103,13 +103,13 @@ def test_face_loads_reverse_cosine_transform_of_stress(load: Load) -> None:
 @pytest.mark.parametrize("length", [3.0, np.inf])
 def test_wavenumbers_scale_with_unit(length: float) -> None:
     for shortest, lateral in ((0.02, 0.7), (200.0, 40.0)):
-        one = axial_modes(length, lateral, shortest, Resolution())
+        baseline = axial_modes(length, lateral, shortest, Resolution())
         variant = axial_modes(1e-3 * length, 1e3 * lateral, 1e-3 * shortest, Resolution())
-        for modes, scaled in zip(one, variant, strict=True):
-            assert scaled.wavenumbers == pytest.approx(1e3 * modes.wavenumbers)
+        for modes, scaled_modes in zip(baseline, variant, strict=True):
+            assert scaled_modes.wavenumbers == pytest.approx(1e3 * modes.wavenumbers)
             system, there = (
-                EquationSet.build(item, rate * lateral, 0.3, shortest / rate, Resolution())
-                for item, rate in ((modes, 1.0), (scaled, 1e3))
+                EquationSet.build(unit_modes, rate * lateral, 0.3, shortest / rate, Resolution())
+                for unit_modes, rate in ((modes, 1.0), (scaled_modes, 1e3))
             )
             assert there.depth == pytest.approx(1e3 * system.depth)
             assert abs(modes.ray[-1]) > 0.5 * max(Resolution().reach / shortest, 4 * lateral)

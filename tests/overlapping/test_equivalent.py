@@ -42,12 +42,12 @@ def test_symmetric_load_has_equal_end_loads(*, mirrored_once: bool) -> None:
     offset = problem.corner_offset
     x = np.array([0.0, 0.5 * offset, offset, 0.3, 1.2, 2.1, 2.4 - offset, 2.4 - 0.5 * offset, 2.4])
     y, z = np.array([0.0, 0.6]), np.array([0.0, 0.5 * offset, offset, 0.4])
-    added, (first, second) = equivalent_loads_of(problem, x, y, z)
+    added, (first_face, second_face) = equivalent_loads_of(problem, x, y, z)
     assert added == pytest.approx(added[::-1], abs=1e-6)
-    assert first == pytest.approx(second, abs=1e-6)
+    assert first_face == pytest.approx(second_face, abs=1e-6)
     # Nearer to a corner than a part of a cell it is that at this distance.
     assert added[:3] == pytest.approx(np.stack([added[2]] * 3))
-    assert first[:, :3] == pytest.approx(np.stack([first[:, 2]] * 3, axis=1))
+    assert first_face[:, :3] == pytest.approx(np.stack([first_face[:, 2]] * 3, axis=1))
     assert np.abs(added[3] - added[2]).max() > 0.05 * np.abs(added).max()
 
 
@@ -80,18 +80,18 @@ def test_single_mirror_face_load_frees_end() -> None:
         resolution=Resolution(),
         mirrored_once=True,
     )
-    added, (first, second) = equivalent_loads_of(problem, top.x, top.y, face.x)
+    added, (first_face, second_face) = equivalent_loads_of(problem, top.x, top.y, face.x)
     y, z = top.y[16:24:3], face.x[2:20:4]
-    copies, three = (
+    copies, mirrored_grid = (
         np.concatenate([cells + added] * 3),
         Grid(x_range=(-2.4, 4.8), y_range=(-4.0, 4.0), cells_x=36, cells_y=32),
     )
-    left = half_space_field(
-        copies, stress_influence(Load.NORMAL, 0.3), three, Points(np.zeros(1), y, z), extent=(-np.inf, np.inf)
+    end_stress = half_space_field(
+        copies, stress_influence(Load.NORMAL, 0.3), mirrored_grid, Points(np.zeros(1), y, z), extent=(-np.inf, np.inf)
     )[0, 0]
     behind = np.array([length])
     opposite = half_space_field(
-        second.T, stress_influence(Load.NORMAL, 0.3), face, Points(z, y, behind), extent=(0.0, np.inf)
+        second_face.T, stress_influence(Load.NORMAL, 0.3), face, Points(z, y, behind), extent=(0.0, np.inf)
     )[2, :, :, 0]
-    assert first[16:24:3, 2:20:4] == pytest.approx(left + opposite.T, abs=1e-2)
+    assert first_face[16:24:3, 2:20:4] == pytest.approx(end_stress + opposite.T, abs=1e-2)
     assert np.abs(opposite).max() > 0.05

@@ -40,9 +40,9 @@ def test_field_does_not_depend_on_further_positions(
         resolution=Resolution(),
     )
     positions = PLACES if np.isfinite(length) else PLACES[:1] + PLACES[2:]
-    single = [end_fields(problem, STRESS, [position])[0] for position in positions]
+    single_fields = [end_fields(problem, STRESS, [position])[0] for position in positions]
     monkeypatch.setattr(field, "JOINT_POINTS", points)
-    for computed, expected in zip(end_fields(problem, STRESS, positions), single, strict=True):
+    for computed, expected in zip(end_fields(problem, STRESS, positions), single_fields, strict=True):
         for load in problem.loads:
             # Panels along y are those for the points that are farthest and nearest of all.
             assert np.abs(computed[load] - expected[load]).max() < 2e-5, load
@@ -68,25 +68,25 @@ def evaluate_field(places: list[Points]) -> tuple[int, int]:
 
 def test_joint_evaluation_of_few_points() -> None:
     """A line along the top and one into the depth: together they are as many points as their rectangle has."""
-    for count, together in ((5, True), (60, False)):
-        across, x, z = np.zeros(1), np.linspace(0.1, 1.0, count), np.linspace(0.1, 1.0, count)
-        lines = [Points(x, across, z[:1]), Points(x[:1], across, z)]
-        single = [evaluate_field([line]) for line in lines]
+    for point_count, is_joint in ((5, True), (60, False)):
+        y, x, z = np.zeros(1), np.linspace(0.1, 1.0, point_count), np.linspace(0.1, 1.0, point_count)
+        lines = [Points(x, y, z[:1]), Points(x[:1], y, z)]
+        line_counts = [evaluate_field([line]) for line in lines]
         times, points = evaluate_field(lines)
-        if together:
-            assert times == max(single)[0]
+        if is_joint:
+            assert times == max(line_counts)[0]
         else:
-            assert points < 1.5 * sum(own for _, own in single)
+            assert points < 1.5 * sum(line_points for _, line_points in line_counts)
 
 
 @pytest.mark.parametrize(("length", "loads"), [(8.0, (Load.NORMAL, Load.ALONG_Y)), (np.inf, (Load.ALONG_X,))])
 def test_fields_of_loads_add_up(length: float, loads: tuple[Load, ...]) -> None:
     """The quadratures depend on body, grid and positions, not on the load."""
     grid = Grid(x_range=(0.0, 8.0), y_range=(-1.5, 1.5), cells_x=16, cells_y=16)
-    tilted = np.sqrt(np.clip(1 - grid.y**2, 0, None)) * np.linspace(0.5, 1.5, 16)[:, None]
-    rough = np.random.default_rng(1).random(grid.shape) * (np.abs(grid.y) < 1)
-    spot = np.zeros(grid.shape)
-    spot[2:5, 7:9] = 1.0
+    tilted_load = np.sqrt(np.clip(1 - grid.y**2, 0, None)) * np.linspace(0.5, 1.5, 16)[:, None]
+    random_load = np.random.default_rng(1).random(grid.shape) * (np.abs(grid.y) < 1)
+    single_cell_load = np.zeros(grid.shape)
+    single_cell_load[2:5, 7:9] = 1.0
     position = Points(np.array([0.0, 0.05, 3.0]), np.array([-1.0, 0.1]), np.array([0.0, 0.02, 0.3]))
 
     def fields(cells: FloatArray) -> list[FloatArray]:
@@ -95,6 +95,6 @@ def test_fields_of_loads_add_up(length: float, loads: tuple[Load, ...]) -> None:
         (displacement,) = end_fields(problem, DISPLACEMENT, [position], 10 * length)
         return [field[load] for field in (stress, displacement) for load in loads]
 
-    parts = [fields(cells) for cells in (tilted, rough, spot)]
-    for *terms, total in zip(*parts, fields(tilted + rough + spot), strict=True):
+    load_fields = [fields(cells) for cells in (tilted_load, random_load, single_cell_load)]
+    for *terms, total in zip(*load_fields, fields(tilted_load + random_load + single_cell_load), strict=True):
         assert np.abs(sum(terms) - total).max() < 1e-10 * np.abs(total).max()

@@ -15,8 +15,8 @@ from contactstudy.overlapping.quadrature import Resolution
 
 LATERAL, POISSON, LENGTH = 0.7, 0.3, 2.3
 RAY = np.exp(0.4j) * np.array([0.3, 1.1, 2.6])
-RANDOM = np.random.default_rng(0)
-WEIGHTS = RANDOM.standard_normal((8, 2)) + 1j * RANDOM.standard_normal((8, 2))
+RNG = np.random.default_rng(0)
+WEIGHTS = RNG.standard_normal((8, 2)) + 1j * RNG.standard_normal((8, 2))
 MODES = {
     "one end": AxialModes(length=np.inf, parity=0, discrete=np.zeros(0), ray=RAY, weights=np.ones(3, np.complex128)),
     "even": AxialModes(
@@ -49,17 +49,14 @@ def system_of(modes: AxialModes) -> EquationSet:
     return EquationSet.build(modes, LATERAL, POISSON, 0.5, Resolution())
 
 
-def below(modes: AxialModes, field: Callable[..., FloatArray]) -> Field:
+def field_of_h(modes: AxialModes, field: Callable[..., FloatArray]) -> Field:
     """Field of H under an equivalent load of two columns."""
     system, load = system_of(modes), WEIGHTS[: modes.wavenumbers.size]
     return lambda x, z: field(system, load, modes.cosine(x), modes.sine(x), z)
 
 
 def evaluate_beside_end(
-    modes: AxialModes,
-    field: Callable[..., FloatArray],
-    depth: ComplexArray = RAY[:2],
-    load: ComplexArray = WEIGHTS[:2],
+    modes: AxialModes, field: Callable[..., FloatArray], depth: ComplexArray = RAY[:2], load: ComplexArray = WEIGHTS[:2]
 ) -> Field:
     """Field of V under face loads of two columns."""
     system = system_of(modes)
@@ -74,7 +71,7 @@ def along(field: Field, axis: int) -> FloatArray:
 
 FIELDS = (harmonics._stress_of_face_load, harmonics._displacement_of_face_load)
 BODIES = {
-    "below": (below, harmonics._displacement_of_equivalent_load, harmonics._stress_of_equivalent_load),
+    "below": (field_of_h, harmonics._displacement_of_equivalent_load, harmonics._stress_of_equivalent_load),
     "beside": (evaluate_beside_end, harmonics._displacement_of_face_load, harmonics._stress_of_face_load),
 }
 
@@ -83,16 +80,16 @@ BODIES = {
 @pytest.mark.parametrize("body", BODIES)
 def test_stresses_follow_hookes_law_in_equilibrium(body: str, name: str) -> None:
     """What is even in y goes like ``cos(k y)``, what is odd like ``-sin(k y)``; displacements are times ``2 G``."""
-    of, displaced, stressed = BODIES[body]
-    shifted, loaded = of(MODES[name], displaced), of(MODES[name], stressed)
-    (ux, uy, uz), over_x, over_z = shifted(X, Z), along(shifted, 0), along(shifted, 1)
-    direct = np.array([over_x[0], -LATERAL * uy, over_z[2]])
-    normal = direct + POISSON / (1 - 2 * POISSON) * direct.sum(axis=0)
+    create_field, displacement_harmonic, stress_harmonic = BODIES[body]
+    displacement, stress = create_field(MODES[name], displacement_harmonic), create_field(MODES[name], stress_harmonic)
+    (ux, uy, uz), over_x, over_z = displacement(X, Z), along(displacement, 0), along(displacement, 1)
+    direct_strains = np.array([over_x[0], -LATERAL * uy, over_z[2]])
+    normal = direct_strains + POISSON / (1 - 2 * POISSON) * direct_strains.sum(axis=0)
     shear = 0.5 * np.array([LATERAL * ux + over_x[1], over_z[0] + over_x[2], over_z[1] + LATERAL * uz])
-    computed = loaded(X, Z)
+    computed = stress(X, Z)
     yy, xy, yz = computed[[1, 3, 5]]
     assert computed == pytest.approx(np.concatenate([normal, shear]), abs=1e-6 * np.abs(computed).max())
-    sx, sz = along(loaded, 0), along(loaded, 1)
+    sx, sz = along(stress, 0), along(stress, 1)
     balance = (sx[0] - LATERAL * xy + sz[4], sx[3] + LATERAL * yy + sz[5], sx[4] - LATERAL * yz + sz[2])
     assert np.abs(balance).max() < 1e-5 * np.abs(sx).max()
 
@@ -100,7 +97,7 @@ def test_stresses_follow_hookes_law_in_equilibrium(body: str, name: str) -> None
 @pytest.mark.parametrize("name", MODES)
 def test_top_of_h_carries_equivalent_load(name: str) -> None:
     modes = MODES[name]
-    computed = below(modes, harmonics._stress_of_equivalent_load)(X, np.zeros(1))[:, :, 0]
+    computed = field_of_h(modes, harmonics._stress_of_equivalent_load)(X, np.zeros(1))[:, :, 0]
     load = np.real(modes.cosine(X).T @ WEIGHTS[: modes.wavenumbers.size])
     assert computed[2] == pytest.approx(-load)
     assert np.abs(computed[4:]).max() < 1e-12 * np.abs(computed).max()
@@ -116,8 +113,10 @@ def test_faces_and_top_of_v_have_no_shear(name: str) -> None:
     if isinstance(modes, SingleMirrorModes):
         # Each half-space's own load; the opposite one's normal stress reaches the face, its shear stays there.
         applied = np.exp(1j * np.outer(Z, RAY[:2])) @ (modes.load_on_face(kappa)[:, None] * WEIGHTS[:2])
-        single = SingleMirrorModes(length=1e3, parity=1, discrete=np.zeros(0), ray=RAY, weights=modes.weights)
-        assert evaluate_beside_end(single, harmonics._stress_of_face_load)(faces[:1], Z)[0, 0] == pytest.approx(freed)
+        single_mirror = SingleMirrorModes(length=1e3, parity=1, discrete=np.zeros(0), ray=RAY, weights=modes.weights)
+        assert evaluate_beside_end(single_mirror, harmonics._stress_of_face_load)(faces[:1], Z)[0, 0] == pytest.approx(
+            freed
+        )
         assert np.abs(np.real(applied) - freed).max() > 1e-3 * np.abs(freed).max()
     else:
         assert np.abs(computed[3:5]).max() < 1e-12 * np.abs(computed).max()
@@ -126,9 +125,12 @@ def test_faces_and_top_of_v_have_no_shear(name: str) -> None:
         assert computed[0, 1] == pytest.approx(modes.parity * freed)
     # Cosines along z: neither shear nor a normal displacement is left on the top.
     real, top = (RAY[:2].real + 0j, WEIGHTS[:2].real + 0j), np.zeros(1)
-    stressed, shifted = (item(modes, of, *real) for item, of in zip([evaluate_beside_end] * 2, FIELDS, strict=True))
-    assert np.abs(stressed(X, top)[4:]).max() < 1e-12 * np.abs(stressed(X, Z)).max()
-    assert np.abs(shifted(X, top)[2]).max() < 1e-12 * np.abs(shifted(X, Z)).max()
+    stress, displacement = (
+        create_field(modes, harmonic, *real)
+        for create_field, harmonic in zip([evaluate_beside_end] * 2, FIELDS, strict=True)
+    )
+    assert np.abs(stress(X, top)[4:]).max() < 1e-12 * np.abs(stress(X, Z)).max()
+    assert np.abs(displacement(X, top)[2]).max() < 1e-12 * np.abs(displacement(X, Z)).max()
 
 
 def weigh(modes: AxialModes, load: Callable[[FloatArray], FloatArray]) -> ComplexArray:
@@ -149,10 +151,12 @@ def test_normal_stress_of_v_on_top(name: str) -> None:
     core = coupling_core(modes.wavenumbers, depth, LATERAL, POISSON)
     computed = modes.load_on_top(core, depth, LATERAL, POISSON)
     for index in range(2):
-        one, own = np.ones((1, 1), np.complex128), depth[index : index + 1] + 0j
+        unit_load, wavenumber = np.ones((1, 1), np.complex128), depth[index : index + 1] + 0j
 
-        def load(x: FloatArray, own: ComplexArray = own, one: ComplexArray = one) -> FloatArray:
-            return np.asarray(harmonics._stress_of_face_load(system, own, one, x, np.zeros(1))[2, :, 0, 0])
+        def load(
+            x: FloatArray, wavenumber: ComplexArray = wavenumber, unit_load: ComplexArray = unit_load
+        ) -> FloatArray:
+            return np.asarray(harmonics._stress_of_face_load(system, wavenumber, unit_load, x, np.zeros(1))[2, :, 0, 0])
 
         expected = weigh(modes, load) * kappa[index] / factor[index]
         assert computed[: modes.discrete.size, index] == pytest.approx(expected[: modes.discrete.size])

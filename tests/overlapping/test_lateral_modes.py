@@ -29,17 +29,17 @@ GRID = Grid(x_range=(0.0, 4.0), y_range=(-1.0, 1.0), cells_x=12, cells_y=40)
 Y = np.array([-1.5, -0.2, 0.0, 0.7])
 
 
-def integrate_kernel(panel: LateralPanel, parts: dict[int, np.ndarray], y: np.ndarray = Y) -> np.ndarray:
+def integrate_kernel(panel: LateralPanel, parity_loads: dict[int, np.ndarray], y: np.ndarray = Y) -> np.ndarray:
     """Integrals over the panel of ``exp(-0.3 k)`` times each load: array (load, part of y, parity, cell, y)."""
-    total = np.zeros((2, 2, len(parts), GRID.cells_x, y.size))
-    columns = lateral_columns(panel, parts, GRID, y)
+    total = np.zeros((2, 2, len(parity_loads), GRID.cells_x, y.size))
+    columns = lateral_columns(panel, parity_loads, GRID, y)
     assert columns is not None
-    for index, parity in enumerate(parts):
+    for index, parity in enumerate(parity_loads):
         amplitudes = columns.along_x[..., columns.parities == parity] * np.exp(-0.3 * columns.nodes)[:, None]
-        flat = amplitudes.reshape(GRID.cells_x, -1)
-        for number, load in enumerate((Load.NORMAL, Load.ALONG_Y)):
+        amplitude_columns = amplitudes.reshape(GRID.cells_x, -1)
+        for load_index, load in enumerate((Load.NORMAL, Load.ALONG_Y)):
             for kind, synthesis in enumerate(columns.synthesis(load, parity)):
-                total[number, kind, index] += flat @ synthesis
+                total[load_index, kind, index] += amplitude_columns @ synthesis
     return total
 
 
@@ -48,23 +48,25 @@ def test_columns_equal_the_load_at_every_wavenumber(seed: int, rank: int, split:
     rng = np.random.default_rng(seed)
     pressure = rng.random((GRID.cells_x, rank)) @ rng.random((rank, GRID.cells_y))
     mirrored = pressure[::-1]
-    parts = {1: pressure + mirrored, -1: pressure - mirrored} if split else {0: pressure}
+    parity_loads = {1: pressure + mirrored, -1: pressure - mirrored} if split else {0: pressure}
     # With 20 nodes the amplitudes are interpolated to rounding.
     for panel in lateral_panels(0.05, 2.5, 60.0, replace(Resolution(), lateral_nodes=20)):
-        direct = replace(panel, nodes=panel.fine_nodes, interpolation=None)
-        np.testing.assert_allclose(integrate_kernel(panel, parts), integrate_kernel(direct, parts), atol=1e-9 * rank)
+        fine_panel = replace(panel, nodes=panel.fine_nodes, interpolation=None)
+        np.testing.assert_allclose(
+            integrate_kernel(panel, parity_loads), integrate_kernel(fine_panel, parity_loads), atol=1e-9 * rank
+        )
 
 
 def test_few_positions_use_two_columns_each():
     pressure = np.random.default_rng(2).random(GRID.shape)
-    parts = {1: pressure + pressure[::-1], -1: pressure - pressure[::-1]}
+    parity_loads = {1: pressure + pressure[::-1], -1: pressure - pressure[::-1]}
     for panel in lateral_panels(0.05, 2.5, 60.0, Resolution()):
-        few = lateral_columns(panel, parts, GRID, Y[:1])
+        few = lateral_columns(panel, parity_loads, GRID, Y[:1])
         assert few is not None
         assert few.parities.size <= 4
         for index in range(Y.size):
-            position = integrate_kernel(panel, parts, Y[index : index + 1])
-            np.testing.assert_allclose(position[..., 0], integrate_kernel(panel, parts)[..., index], atol=1e-12)
+            position = integrate_kernel(panel, parity_loads, Y[index : index + 1])
+            np.testing.assert_allclose(position[..., 0], integrate_kernel(panel, parity_loads)[..., index], atol=1e-12)
 
 
 def test_product_of_x_and_y_has_one_column_per_node():
@@ -92,11 +94,14 @@ def test_no_load_has_no_columns():
 @pytest.mark.parametrize("moments", [cosine_moments, sine_moments])
 def test_moments_of_the_poles(moments: Callable[..., FloatArray], y: float):
     """Between two ends of the range they differ by the integral."""
-    reference, at = 10.0, np.array([y])
+    reference, positions = 10.0, np.array([y])
     wave = np.cos if moments is cosine_moments else np.sin
-    near, far = moments(0.7, at, reference, 3)[:, 0], moments(2.5, at, reference, 3)[:, 0]
+    short_moments, long_moments = (
+        moments(0.7, positions, reference, 3)[:, 0],
+        moments(2.5, positions, reference, 3)[:, 0],
+    )
     expected = [integrate.quad(lambda k, n=n: wave(k * y) * k**n, 0.7, 2.5)[0] for n in range(-3, 3)]
-    np.testing.assert_allclose(far - near, expected, atol=1e-12)
+    np.testing.assert_allclose(long_moments - short_moments, expected, atol=1e-12)
 
 
 def test_pole_integrals_vanish_at_reference():
@@ -106,9 +111,9 @@ def test_pole_integrals_vanish_at_reference():
     total = cosine_moments(400.0, y, reference, 0)
     np.testing.assert_allclose(total[:, 1], 0.0, atol=5e-4)
     assert abs(total[0] @ [1, -2, 1]) / step**2 < 1e-2
-    along = sine_moments(400.0, y, reference, 0)
+    sine_integrals = sine_moments(400.0, y, reference, 0)
     # The sine's poles are the derivatives of the cosine's of the next order, reversed.
-    np.testing.assert_allclose(along[1, 1], -(total[0, 2] - total[0, 0]) / (2 * step), rtol=1e-4)
+    np.testing.assert_allclose(sine_integrals[1, 1], -(total[0, 2] - total[0, 0]) / (2 * step), rtol=1e-4)
 
 
 @pytest.mark.parametrize("y", [0.02, 0.3, -2.0])
@@ -123,9 +128,9 @@ def test_sine_moments_integrate_cosine_moments(y: float):
 @pytest.mark.parametrize("poles", [POLES, BENDING_POLES])
 def test_pole_integral_does_not_depend_on_first_panel(poles: int):
     y, totals = np.array([0.0, 0.4, 2.0]), []
-    for first in (0.02, 0.1, 0.6):
+    for panel_end in (0.02, 0.1, 0.6):
         total = np.zeros((2, y.size))
-        for panel in lateral_panels(first, 3.0, 60.0, Resolution(), 30.0, poles):
+        for panel in lateral_panels(panel_end, 3.0, 60.0, Resolution(), 30.0, poles):
             response = np.exp(-panel.nodes) / panel.nodes**poles
             if panel.interpolation is not None:
                 response = panel.interpolation @ response

@@ -35,10 +35,15 @@ def overlapping(grid: Grid, length: float, load: Load, *, mirrored_once: bool = 
 
 def check_transpose(operator: LinearOperator) -> None:
     generator = np.random.default_rng(0)
-    right, left = generator.standard_normal(operator.shape[1]), generator.standard_normal(operator.shape[0])
-    forward, backward = operator @ right, operator.T @ left
-    scale = max(np.linalg.norm(forward) * np.linalg.norm(left), np.linalg.norm(backward) * np.linalg.norm(right))
-    assert left @ forward == pytest.approx(right @ backward, abs=1e-12 * scale)
+    column_vector, row_vector = (
+        generator.standard_normal(operator.shape[1]),
+        generator.standard_normal(operator.shape[0]),
+    )
+    forward, backward = operator @ column_vector, operator.T @ row_vector
+    scale = max(
+        np.linalg.norm(forward) * np.linalg.norm(row_vector), np.linalg.norm(backward) * np.linalg.norm(column_vector)
+    )
+    assert row_vector @ forward == pytest.approx(column_vector @ backward, abs=1e-12 * scale)
 
 
 @pytest.mark.parametrize(
@@ -79,9 +84,9 @@ def test_iteration_from_both_ends_equals_the_direct_solution(load: Load) -> None
     faces, to_faces = source, operators.to_faces(Load.NORMAL)
     for _ in range(40):
         faces = source + to_faces @ (operators.to_top @ faces)
-    direct = operators.equivalent(load).top_load @ cells
-    assert operators.top_values @ faces == pytest.approx(direct, abs=1e-10)
-    assert np.abs(direct).max() > 0.1
+    direct_load = operators.equivalent(load).top_load @ cells
+    assert operators.top_values @ faces == pytest.approx(direct_load, abs=1e-10)
+    assert np.abs(direct_load).max() > 0.1
 
 
 def test_long_waves_stall_the_iteration_and_gmres_converges() -> None:
@@ -89,12 +94,12 @@ def test_long_waves_stall_the_iteration_and_gmres_converges() -> None:
     cells = (np.linspace(1.5, 0.5, UNIFORM.cells_x)[:, None] * np.ones(UNIFORM.cells_y)).ravel()
     to_faces, to_top = operators.to_faces(Load.NORMAL), operators.to_top
     source = to_faces @ (operators.modes(Load.NORMAL) @ cells)
-    direct = operators.equivalent(Load.NORMAL).top_load @ cells
+    direct_load = operators.equivalent(Load.NORMAL).top_load @ cells
     faces = source
     for _ in range(50):
         faces = source + to_faces @ (to_top @ faces)
-    assert np.abs(operators.top_values @ faces - direct).max() > 1e-2
+    assert np.abs(operators.top_values @ faces - direct_load).max() > 1e-2
     system = LinearOperator((source.size, source.size), lambda stress: stress - to_faces @ (to_top @ stress))
     faces, failed = gmres(system, source, rtol=1e-13, restart=100)
     assert not failed
-    assert operators.top_values @ faces == pytest.approx(direct, abs=1e-10)
+    assert operators.top_values @ faces == pytest.approx(direct_load, abs=1e-10)

@@ -32,18 +32,18 @@ def test_few_positions_are_not_interpolated() -> None:
 @pytest.mark.parametrize("unit", [2.0**-17, 1.0, 2.0**17])
 def test_cell_moments_are_exact_for_polynomials(unit: float) -> None:
     """Of the degree that the positions of a panel hold; parts of cells outside the panels count nothing."""
-    random = np.random.default_rng(0)
+    rng = np.random.default_rng(0)
     edges, positions = graded_positions(4.0 * unit, 0.1 * unit, 6)
     assert edges[0] == 0.0
     assert edges[-1] == pytest.approx(4.0 * unit)
     assert edges[1] == pytest.approx(0.0625 * unit)
     assert edges[2:] / edges[1:-1] == pytest.approx(2.0)
     for _ in range(5):
-        cells = np.sort(random.uniform(-0.5, 4.5, 12))
+        cells = np.sort(rng.uniform(-0.5, 4.5, 12))
         moments = cell_moments(edges, positions, unit * cells) / unit
-        inside = np.clip(cells, 0.0, 4.0)
+        clipped_edges = np.clip(cells, 0.0, 4.0)
         for power in range(6):
-            expected = np.diff(inside ** (power + 1)) / (power + 1)
+            expected = np.diff(clipped_edges ** (power + 1)) / (power + 1)
             assert (positions / unit) ** power @ moments == pytest.approx(expected, abs=1e-9 * 4.0**power)
 
 

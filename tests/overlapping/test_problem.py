@@ -40,26 +40,26 @@ def end_problem(
 def test_wavenumbers_along_y_depend_on_window_and_positions(load: Load, reference: float | None, length: float) -> None:
     """From a part of the smallest length of body, window and positions, up to half a cell."""
     y, poles = np.array([-0.4, 1.5]), BENDING_POLES if load is Load.ALONG_X else POLES
-    single = FIRST_PANEL_FACTOR if reference is None else POLE_PANEL_FACTOR[poles]
+    panel_factor = FIRST_PANEL_FACTOR if reference is None else POLE_PANEL_FACTOR[poles]
     for shortest, finest in ((1e-3, 0.125), (0.2, 0.2)):
         # The window ends at 1.0, the positions at 1.5.
-        first = single / min(length, 4 * max(2.4, 1.0 + 1.5))
+        first_wavenumber = panel_factor / min(length, 4 * max(2.4, 1.0 + 1.5))
         last = Resolution().lateral_reach / finest
-        expected = lateral_panels(first, 1.0 + 1.5, last, Resolution(), reference, poles)
+        expected = lateral_panels(first_wavenumber, 1.0 + 1.5, last, Resolution(), reference, poles)
         for unit in (1.0, UNIT):
             computed = end_problem(unit=unit, load=load, length=length).panels(
                 unit * y, unit * shortest, None if reference is None else unit * reference
             )
             assert len(computed) == len(expected)
-            for item, variant in zip(computed, expected, strict=True):
-                assert unit * item.nodes == pytest.approx(variant.nodes)
-                assert unit * item.fine_nodes == pytest.approx(variant.fine_nodes)
-                assert item.poles == variant.poles
+            for panel, variant in zip(computed, expected, strict=True):
+                assert unit * panel.nodes == pytest.approx(variant.nodes)
+                assert unit * panel.fine_nodes == pytest.approx(variant.fine_nodes)
+                assert panel.poles == variant.poles
 
 
 def test_distant_points_determine_first_wavenumber() -> None:
-    far = end_problem(length=1e4).panels(np.array([0.0, 20.0]), 0.2)
-    assert far[0].nodes.max() < FIRST_PANEL_FACTOR / (4 * 21.0) < far[1].nodes.max()
+    distant_panels = end_problem(length=1e4).panels(np.array([0.0, 20.0]), 0.2)
+    assert distant_panels[0].nodes.max() < FIRST_PANEL_FACTOR / (4 * 21.0) < distant_panels[1].nodes.max()
 
 
 def test_columns_between_ends_are_symmetric() -> None:
@@ -73,8 +73,8 @@ def test_columns_between_ends_are_symmetric() -> None:
         middles = 0.5 * (edges[1:] + edges[:-1]) / unit
         assert np.array_equal(cells, problem.cells[np.searchsorted(EDGES, middles) - 1])
     # Edges whose images differ by rounding only are one.
-    approximate = np.array([0.0, 0.7, 1.2 + 1e-14, 1.7 + 3e-14, 2.0, 2.2, 2.4])
-    problem = end_problem(edges=approximate)
+    rounded_edges = np.array([0.0, 0.7, 1.2 + 1e-14, 1.7 + 3e-14, 2.0, 2.2, 2.4])
+    problem = end_problem(edges=rounded_edges)
     edges = problem.column_edges
     assert edges == pytest.approx(np.array([0, 0.2, 0.4, 0.7, 1.2, 1.7, 2.0, 2.2, 2.4]))
     assert problem.cell_of_column.size == edges.size - 1
@@ -86,15 +86,15 @@ def test_columns_between_ends_are_symmetric() -> None:
 def test_parity_components_sum_to_load(sign_x: int, unit: float) -> None:
     """Under a load that its image reverses the even part is odd; what is negligible is left out."""
     cells = unit * np.random.default_rng(0).random((6, 4))
-    parts = split_by_parity(cells, sign_x)
-    assert set(parts) == {1, -1}
-    assert sum(parts.values()) == pytest.approx(cells)
-    for parity, part in parts.items():
-        assert part[::-1] == pytest.approx(sign_x * parity * part)
-    even = cells + cells[::-1]
-    assert set(split_by_parity(even, sign_x)) == {sign_x}
-    assert set(split_by_parity(even * (1 + 1e-15 * np.arange(6.0))[:, None], sign_x)) == {sign_x}
-    assert set(split_by_parity(even * (1 + 1e-11 * np.arange(6.0))[:, None], sign_x)) == {1, -1}
+    parity_loads = split_by_parity(cells, sign_x)
+    assert set(parity_loads) == {1, -1}
+    assert sum(parity_loads.values()) == pytest.approx(cells)
+    for parity, parity_load in parity_loads.items():
+        assert parity_load[::-1] == pytest.approx(sign_x * parity * parity_load)
+    even_load = cells + cells[::-1]
+    assert set(split_by_parity(even_load, sign_x)) == {sign_x}
+    assert set(split_by_parity(even_load * (1 + 1e-15 * np.arange(6.0))[:, None], sign_x)) == {sign_x}
+    assert set(split_by_parity(even_load * (1 + 1e-11 * np.arange(6.0))[:, None], sign_x)) == {1, -1}
 
 
 def test_too_thin_body_raises_error() -> None:

@@ -58,12 +58,12 @@ def test_single_mirror_ends_keep_shear(eccentric_load: xr.DataArray, unit_materi
 def test_top_traction_equals_load(eccentric_load: xr.DataArray) -> None:
     """Before anything is imposed: H under the added load and V under the face loads cancel on the top."""
     grid = Grid.from_centres(eccentric_load.x.values, eccentric_load.y.values)
-    both = (Load.NORMAL, Load.ALONG_Y)
+    loads = (Load.NORMAL, Load.ALONG_Y)
     problem = EndProblem(
         length=4.0,
         poisson=0.3,
         cells=eccentric_load.values,
-        loads=both,
+        loads=loads,
         grid=grid,
         resolution=Resolution(),
         mirrored_once=True,
@@ -71,7 +71,7 @@ def test_top_traction_equals_load(eccentric_load: xr.DataArray) -> None:
     fields = end_fields(problem, STRESS, [Points(np.array([0.05, 0.5, 1.7, 3.5]), np.array([0.0, 0.9]), np.zeros(1))])[
         0
     ]
-    added = np.stack([fields[load] for load in both])
+    added = np.stack([fields[load] for load in loads])
     assert np.abs(added[:, [2, 4, 5]]).max() < 3e-6
     assert np.abs(added[:, 0]).max() > 0.03
 
@@ -83,29 +83,29 @@ def test_equivalent_load_displaces_half_space_equally(on_cells, unit_material: M
     hold to some tenths of a percent of the displacement (half of the difference goes when they are halved along x).
     """
     body, half_space = single_mirror(4.0, unit_material), HalfSpace(material=unit_material)
-    window, middle = (-24.0, 24.0), slice(110, 130)
+    window, middle_rows = (-24.0, 24.0), slice(110, 130)
     pressure = on_cells(lambda x, y: np.maximum(1 - (x - 2.2) ** 2 - y**2, 0), (0.0, 4.0), window, (32, 240))
     load = equivalent_loads(body, pressure, z=[1.0])["P_h1"].values
-    three = on_cells(lambda x, y: 0 * x * y, (-4.0, 8.0), window, (96, 240))
-    by_hand = surface_displacement(half_space, three + np.concatenate([load[::-1], load, load[::-1]]))
-    displacement = surface_displacement(body, pressure.isel(y=middle)).values
-    difference = displacement - by_hand.values[32:64, middle]
+    mirrored_cells = on_cells(lambda x, y: 0 * x * y, (-4.0, 8.0), window, (96, 240))
+    by_hand = surface_displacement(half_space, mirrored_cells + np.concatenate([load[::-1], load, load[::-1]]))
+    displacement = surface_displacement(body, pressure.isel(y=middle_rows)).values
+    difference = displacement - by_hand.values[32:64, middle_rows]
     assert np.abs(difference).max() < 1e-2
     cell_pressure = pressure.values
     images = surface_displacement(
-        half_space, three + np.concatenate([cell_pressure[::-1], cell_pressure, cell_pressure[::-1]])
+        half_space, mirrored_cells + np.concatenate([cell_pressure[::-1], cell_pressure, cell_pressure[::-1]])
     )
-    assert np.abs(displacement - images.values[32:64, middle]).max() > 0.1
+    assert np.abs(displacement - images.values[32:64, middle_rows]).max() > 0.1
 
 
 def test_displacement_is_continuous_at_top(eccentric_load: xr.DataArray, unit_material: Material) -> None:
     body = single_mirror(4.0, unit_material)
     on_top = surface_displacement(body, eccentric_load, FRICTION)
-    inside = displacement_field(body, eccentric_load, friction=FRICTION, y=eccentric_load.y.values[[24, 30]])
-    difference = np.abs(on_top.values[:, [24, 30]] - inside.u_z.values[..., 0]).max()
+    body_field = displacement_field(body, eccentric_load, friction=FRICTION, y=eccentric_load.y.values[[24, 30]])
+    difference = np.abs(on_top.values[:, [24, 30]] - body_field.u_z.values[..., 0]).max()
     assert difference < 5e-4 * float(on_top.max())
     assert "reference_distance" not in on_top.attrs
-    assert "reference_distance" not in inside.u_z.attrs
+    assert "reference_distance" not in body_field.u_z.attrs
 
 
 def test_residual_shear_decreases_with_length(strip_pressure, unit_material: Material) -> None:
@@ -120,19 +120,16 @@ def test_residual_shear_decreases_with_length(strip_pressure, unit_material: Mat
     16      2.7e-3         5e-6
     ======  =============  =======
     """
-    left = {}
+    residual_shear = {}
     for length in (2.5, 4.0, 8.0):
         pressure = strip_pressure(length, (int(8 * length), 32))
         grid = Grid.from_centres(pressure.x.values, pressure.y.values)
         depths = np.append(DEPTHS, [length, 2 * length])
-        left[length] = [
+        residual_shear[length] = [
             end_traction_residual(body, sliding(pressure.values, FRICTION), grid, ACROSS, depths)
-            for body in (
-                single_mirror(length, unit_material),
-                FiniteLengthSpace(length=length, material=unit_material),
-            )
+            for body in (single_mirror(length, unit_material), FiniteLengthSpace(length=length, material=unit_material))
         ]
-    residuals = np.array(list(left.values()))
+    residuals = np.array(list(residual_shear.values()))
     assert (residuals[:, 1] < 1e-4).all()
     assert (residuals[:, 0] > 10 * residuals[:, 1]).all()
     assert (np.diff(residuals[:, 0]) < 0).all()
@@ -142,9 +139,11 @@ def test_long_body_equals_exact_model(on_cells, unit_material: Material) -> None
     pressure = on_cells(lambda x, y: np.maximum(1 - (x - 1) ** 2 - y**2, 0), (0.0, 60.0), (-1.5, 1.5), (240, 16))
     points = {"x": [0.0, 0.4, 1.0, 2.0, 50.0], "y": [0.0, 0.6], "z": [0.05, 0.5, 2.0]}
     stress = stress_field(single_mirror(60.0, unit_material), pressure, friction=FRICTION, **points)
-    exact = stress_field(FiniteLengthSpace(length=60.0, material=unit_material), pressure, friction=FRICTION, **points)
+    exact_stress = stress_field(
+        FiniteLengthSpace(length=60.0, material=unit_material), pressure, friction=FRICTION, **points
+    )
     for name in STRESSES:
-        assert np.abs(stress[name] - exact[name]).max() < 3e-4, name
+        assert np.abs(stress[name] - exact_stress[name]).max() < 3e-4, name
 
 
 def test_contact_converges_to_exact_model_with_length(cylinder_gap, unit_material: Material) -> None:
@@ -153,10 +152,7 @@ def test_contact_converges_to_exact_model_with_length(cylinder_gap, unit_materia
         gap = cylinder_gap(length, (int(8 * length), 32))
         pressures = [
             solve_contact(body, gap, load=length * LINE_LOAD)["pressure"].max("y").values
-            for body in (
-                FiniteLengthSpace(length=length, material=unit_material),
-                single_mirror(length, unit_material),
-            )
+            for body in (FiniteLengthSpace(length=length, material=unit_material), single_mirror(length, unit_material))
         ]
         assert pressures[1].max() > 1.0
         assert np.abs(pressures[1] - pressures[1][::-1]).max() < 1e-4

@@ -41,18 +41,18 @@ def largest_under_carter(friction: float, stick: float) -> float:
     return float(np.sqrt(squares.max()))
 
 
-@pytest.mark.parametrize(("friction", "part"), [(0.3, 0.25), (0.5, 0.8), (1.0, 0.5)])
-def test_stress_maximum_at_stick_slip_border(friction: float, part: float) -> None:
+@pytest.mark.parametrize(("friction", "force_fraction"), [(0.3, 0.25), (0.5, 0.8), (1.0, 0.5)])
+def test_stress_maximum_at_stick_slip_border(friction: float, force_fraction: float) -> None:
     profile = cs.profiles.Lundberg.for_pressure(
         PRESSURE, radius=RADIUS, modulus=STEEL.plane_strain_modulus / 2, delta=2
     )
     roller = cs.Roller(radius=RADIUS, length=LENGTH, profile=profile, material=STEEL, ends="none")
     case = cs.Case(body=cs.HalfSpace(material=STEEL), roller=roller, max_pressure=PRESSURE, friction=friction)
-    creepage = friction * case.hertz_half_width / RADIUS * (1 - part)
+    creepage = friction * case.hertz_half_width / RADIUS * (1 - force_fraction)
     result = cs.solve(replace(case, motion=cs.Rolling(longitudinal_creepage=creepage)), y=[0.0], z=[0.0])
-    middle = result.isel(x=int(abs(result.x.values - LENGTH / 2).argmin()))
+    middle_column = result.isel(x=int(abs(result.x.values - LENGTH / 2).argmin()))
     largest, step = float(result.peak_pressure), float(result.y[1] - result.y[0])
-    half_width = 2 * step * float(middle.pressure.sum()) / (np.pi * largest)
+    half_width = 2 * step * float(middle_column.pressure.sum()) / (np.pi * largest)
     stick = 1 - creepage * RADIUS / (friction * half_width)
     expected = largest * largest_under_carter(friction, stick)
     assert abs(float(result.peak_von_mises) - expected) < float(result.peak_von_mises_error)

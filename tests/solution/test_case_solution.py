@@ -64,10 +64,10 @@ def test_result_contains_documented_variables_with_units(result) -> None:
     )
     assert set(promised) == set(result.data_vars)
     for name in promised:
-        known = specification(name)
-        assert known is not None
-        assert tuple(dim.removesuffix("_field") for dim in result[name].dims) == known.dims, name
-        assert result[name].attrs["units"] == known.units, name
+        variable_specification = specification(name)
+        assert variable_specification is not None
+        assert tuple(dim.removesuffix("_field") for dim in result[name].dims) == variable_specification.dims, name
+        assert result[name].attrs["units"] == variable_specification.units, name
     for axis in "xyz":
         assert result[axis].attrs["units"] == "m"
     assert result.attrs["Conventions"].startswith("CF")
@@ -129,8 +129,8 @@ def test_short_contact_has_sufficient_window(body) -> None:
         solve(case, choose_grid(case), stresses=False)
     computed = solve(case, stresses=False)
     assert bool(computed.converged)
-    wide = solve(case, choose_grid(case, window=6.0, margin=12.0), stresses=False)
-    assert float(computed.pressure.max()) == pytest.approx(float(wide.pressure.max()), rel=5e-3)
+    wide_result = solve(case, choose_grid(case, window=6.0, margin=12.0), stresses=False)
+    assert float(computed.pressure.max()) == pytest.approx(float(wide_result.pressure.max()), rel=5e-3)
 
 
 def test_rough_surface_determines_window() -> None:
@@ -164,10 +164,10 @@ def test_rolling_case_stresses_include_tractions() -> None:
         assert float(np.abs(top[stress] + result[load]).isel(inner).max()) < 2e-2 * peak, stress
     assert float(result.end_traction_residual) < 2e-4
     tractions = {name: result[name] for name in ("traction_x", "traction_y")}
-    inside = roller_stress(case, result.pressure, z=[5e-5], **tractions)
+    roller_stresses = roller_stress(case, result.pressure, z=[5e-5], **tractions)
     reversed_case = replace(case, motion=Rolling(longitudinal_creepage=-1e-3, spin=-1.0))
     variant = solve(reversed_case, grid, z=[5e-5])
-    assert np.allclose(inside.von_mises.values, variant.von_mises.values, rtol=1e-4, atol=1e-4 * peak)
+    assert np.allclose(roller_stresses.von_mises.values, variant.von_mises.values, rtol=1e-4, atol=1e-4 * peak)
     with pytest.raises(InvalidInputError, match="traction_x, traction_y"):
         roller_stress(case, result.pressure, z=[5e-5])
 

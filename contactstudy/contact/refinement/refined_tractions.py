@@ -19,7 +19,7 @@ from contactstudy.case.case import Case
 from contactstudy.case.motion import RESULTANTS, Rolling, Shift
 from contactstudy.checks import FloatArray
 from contactstudy.contact.refinement.refined_contact import CELLS_Y, RefinedContact, contact_shape, replace_contact
-from contactstudy.contact.rolling.frictional_contact import AMPLITUDES, FrictionalContact, frictional_contact
+from contactstudy.contact.rolling.frictional_contact import AMPLITUDE_NAMES, FrictionalContact, frictional_contact
 from contactstudy.contact.rolling.tractions import FrictionRequest
 
 COLUMN_ERROR_FACTOR = 0.5
@@ -113,11 +113,11 @@ def _scales(case: Case, contact: FrictionalContact) -> dict[str, float]:
     arms = np.hypot((grid.x - case.roller_middle)[:, None], grid.y)
     slip = float(np.max(case.friction_on(grid.x))) * case.hertz_half_width / case.roller.radius
     force, moment = float(loads.sum()), float((loads * arms).sum())
-    rolling = isinstance(case.motion, Rolling)
+    is_rolling = isinstance(case.motion, Rolling)
     sliding = {"x": slip, "y": slip, "spin": slip * force / moment if moment else 0.0}
-    if not rolling:
+    if not is_rolling:
         sliding = {name: size * case.hertz_half_width for name, size in sliding.items()}
-    names = AMPLITUDES[rolling]
+    names = AMPLITUDE_NAMES["rolling" if is_rolling else "shift"]
     rigid = {name: max(abs(amplitude), sliding[name]) for name, amplitude in contact.tractions.rigid.items()}
     largest = max(abs(rigid["x"]), abs(rigid["y"]), rigid.get("spin", 0.0) * moment / force if force else 0.0)
     return {"force_x": force, "force_y": force, "moment_z": moment, "friction_work": force * largest} | {
@@ -129,5 +129,5 @@ def _prescribed_names(case: Case) -> set[str]:
     """Names in results of the values that a case's motion prescribes."""
     motion = case.motion
     assert isinstance(motion, Shift | Rolling)
-    names = AMPLITUDES[isinstance(motion, Rolling)]
+    names = AMPLITUDE_NAMES["rolling" if isinstance(motion, Rolling) else "shift"]
     return {RESULTANTS[mode] if mode in motion.modes else names[mode] for mode in names}

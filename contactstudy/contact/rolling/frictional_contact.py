@@ -28,9 +28,9 @@ MAX_ROUNDS = 30  # rounds of pressure and tractions after which a coupled contac
 
 MIN_ACCURACY = 1e-5  # least change of the pressure that ends coupled rounds. Accuracy.
 
-AMPLITUDES = {  # names in results of the rigid motions, in rolling and in a shift
-    True: Rolling.AMPLITUDES,
-    False: {"x": "shift_x", "y": "shift_y"},
+AMPLITUDE_NAMES = {  # names in results of the rigid motions, in rolling and in a shift
+    "rolling": Rolling.AMPLITUDES,
+    "shift": {"x": "shift_x", "y": "shift_y"},
 }
 
 
@@ -80,8 +80,8 @@ class FrictionalContact:
             "slip_y": tractions.slip[1],
             "stick": tractions.sticks,
         }
-        rolling = "spin" in tractions.rigid
-        names, unit = AMPLITUDES[rolling], "1" if rolling else "m"
+        is_rolling = "spin" in tractions.rigid
+        names, unit = AMPLITUDE_NAMES["rolling" if is_rolling else "shift"], "1" if is_rolling else "m"
         scalars: dict[str, object] = {names[name]: amplitude for name, amplitude in tractions.rigid.items()}
         scalars |= tractions.resultants
         for name in ("bound_error", "slip_error", "force_error"):
@@ -93,7 +93,7 @@ class FrictionalContact:
         result = xr.Dataset({name: (("x", "y"), values) for name, values in fields.items()} | scalars)
         for name in ("slip_x", "slip_y"):
             result[name].attrs["units"] = unit
-        result["friction_work"].attrs["units"] = "J/m" if rolling else "J"
+        result["friction_work"].attrs["units"] = "J/m" if is_rolling else "J"
         return result
 
 

@@ -16,12 +16,12 @@ PRESSURE = 1e9 * np.array([[0.0, 0.5, 2.0]])
 
 
 def certificate(
-    opening: list[float], *, pressure: np.ndarray = PRESSURE, carried_load: float = 5.0, **other
+    opening: list[float], *, pressure: np.ndarray = PRESSURE, carried_load: float = 5.0, **overrides
 ) -> Certificate:
     """Of a gap over the variation of the displacement."""
-    values = {"load": 5.0, "position_error": 0.0} | other
+    arguments = {"load": 5.0, "position_error": 0.0} | overrides
     gap = VARIATION * np.array([opening])
-    return certify(pressure, gap, DISPLACEMENT, carried_load=carried_load, tolerance=TOLERANCE, **values)
+    return certify(pressure, gap, DISPLACEMENT, carried_load=carried_load, tolerance=TOLERANCE, **arguments)
 
 
 def test_exact_contact_has_no_violations() -> None:

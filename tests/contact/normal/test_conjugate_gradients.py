@@ -70,13 +70,7 @@ def test_prescribed_approach_matches_nonnegative_least_squares(rng: np.random.Ge
 def test_prescribed_load_satisfies_contact_conditions(rng: np.random.Generator, sharp: bool, resultants: Resultants):
     gap = rough_gap(rng, sharp)
     computed = solve_complementarity(
-        operator,
-        BODY_OPERATOR.precondition,
-        gap,
-        resultants,
-        bad_guess(rng, gap),
-        tolerance=1e-8,
-        max_iterations=500,
+        operator, BODY_OPERATOR.precondition, gap, resultants, bad_guess(rng, gap), tolerance=1e-8, max_iterations=500
     )
     assert computed.converged
     assert computed.pressure.min() >= 0
@@ -97,9 +91,9 @@ def check_conditions(resultants: Resultants, pressure: np.ndarray) -> None:
         assert abs(float((pressure * resultants.lever).sum())) < 1e-9 * resultants.total
 
 
-@given(rng=random, at=st.floats(0.1, 2.9), unit=st.sampled_from([1e-12, 1.0, 1e9]))
-def test_restored_pressure_is_positive_with_resultants(rng: np.random.Generator, at: float, unit: float):
-    arm = GRID.x[:, None] - at
+@given(rng=random, lever_zero=st.floats(0.1, 2.9), unit=st.sampled_from([1e-12, 1.0, 1e9]))
+def test_restored_pressure_is_positive_with_resultants(rng: np.random.Generator, lever_zero: float, unit: float):
+    arm = GRID.x[:, None] - lever_zero
     resultants = Resultants(50.0 * unit, arm / np.abs(arm).max())
     pressure = unit * np.where(rng.random(GRID.shape) < 0.3, rng.random(GRID.shape) ** 4, 0.0)
     sides = arm[pressure.any(axis=1)]
@@ -110,10 +104,10 @@ def test_restored_pressure_is_positive_with_resultants(rng: np.random.Generator,
     assert ((computed > 0) == (pressure > 0)).all()
     # What has the resultants stays, and a small moment is taken away by a factor that is linear in the arm.
     assert resultants.restore(computed) == pytest.approx(computed, rel=1e-6)
-    approximate = 1e3 * computed * (1 + 0.1 * resultants.lever)
-    repeated = resultants.restore(approximate)
+    perturbed_pressure = 1e3 * computed * (1 + 0.1 * resultants.lever)
+    repeated = resultants.restore(perturbed_pressure)
     check_conditions(resultants, repeated)
-    factor = (repeated / np.where(computed > 0, approximate, 1.0)).max(axis=1)
+    factor = (repeated / np.where(computed > 0, perturbed_pressure, 1.0)).max(axis=1)
     loaded = factor > 0
     line = np.polynomial.polynomial.polyfit(arm[loaded, 0], factor[loaded], 1)
     assert np.polynomial.polynomial.polyval(arm[loaded, 0], line) == pytest.approx(factor[loaded], rel=1e-6)
@@ -126,8 +120,8 @@ def test_single_column_keeps_moment() -> None:
     assert computed.sum() == pytest.approx(50.0)
     assert computed[3] == pytest.approx(50.0 / GRID.cells_y)
     # Where nothing is rounded, the two equations for a factor that is linear in the arm are exactly the same.
-    exact = Resultants(4.0, np.array([[-1.0], [0.5], [1.0]])).restore(np.array([[0.0], [2.0], [0.0]]))
-    assert exact.ravel().tolist() == [0.0, 4.0, 0.0]
+    restored_pressure = Resultants(4.0, np.array([[-1.0], [0.5], [1.0]])).restore(np.array([[0.0], [2.0], [0.0]]))
+    assert restored_pressure.ravel().tolist() == [0.0, 4.0, 0.0]
 
 
 def test_one_sided_pressure_is_balanced_without_overflow() -> None:
@@ -160,22 +154,22 @@ def test_one_sided_guess_adds_pressure_everywhere(rng: np.random.Generator):
     computed = state(gap, TILTING, start).pressure
     assert ((computed > 0) == np.isfinite(gap)).all()
     check_conditions(TILTING, computed)
-    both = np.where(np.isfinite(gap), rng.random(GRID.shape), 0.0)
+    two_sided_pressure = np.where(np.isfinite(gap), rng.random(GRID.shape), 0.0)
     assert state(gap, Resultants(50.0), start).pressure == pytest.approx(start * 50.0 / start.sum())
-    check_conditions(TILTING, state(gap, TILTING, both).pressure)
+    check_conditions(TILTING, state(gap, TILTING, two_sided_pressure).pressure)
 
 
-@given(rng=random, sharp=st.booleans(), far=st.booleans())
-def test_guess_is_scaled_to_approach(rng: np.random.Generator, sharp: bool, far: bool):
+@given(rng=random, sharp=st.booleans(), has_far_guess=st.booleans())
+def test_guess_is_scaled_to_approach(rng: np.random.Generator, sharp: bool, has_far_guess: bool):
     """Of all its multiples the one with the least energy; one that lies where nothing overlaps is replaced."""
     gap = rough_gap(rng, sharp) - 0.5
-    start = np.where((gap > 0.5) & np.isfinite(gap) if far else gap < 0, 1.0 + rng.random(GRID.shape), 0.0)
+    start = np.where((gap > 0.5) & np.isfinite(gap) if has_far_guess else gap < 0, 1.0 + rng.random(GRID.shape), 0.0)
     iteration = state(gap, Resultants(None), start)
     height = np.where(np.isfinite(gap), gap, 0.0) + operator(iteration.pressure)
     assert iteration.displacement == pytest.approx(operator(iteration.pressure))
     assert float((iteration.pressure * height).sum()) == pytest.approx(0.0, abs=1e-9 * float(iteration.pressure.sum()))
     assert ((iteration.pressure > 0) == (gap < 0)).all()
-    if not far:
+    if not has_far_guess:
         assert iteration.pressure / start.clip(1e-9) == pytest.approx(
             np.where(
                 gap < 0, iteration.pressure.max() / start[iteration.pressure == iteration.pressure.max()].max(), 0.0
@@ -192,15 +186,15 @@ def energy(gap: np.ndarray, pressure: np.ndarray) -> float:
 def test_area_change_reduces_energy_and_keeps_resultants(rng: np.random.Generator, sharp: bool, resultants: Resultants):
     gap = rough_gap(rng, sharp) - (0.5 if resultants.total is None else 0.0)
     iteration = state(gap, resultants, bad_guess(rng, gap) + np.where(gap < 0, 1e-3, 0.0))
-    before = energy(gap, iteration.pressure)
+    previous_energy = energy(gap, iteration.pressure)
     for index in range(8):
         opening = iteration.compute_opening()
-        step, along, _ = iteration.search_step(np.where(iteration.contact, opening, 0.0))
+        step, response, _ = iteration.search_step(np.where(iteration.contact, opening, 0.0))
         if index % 2:
-            iteration._step_to_border(step, along)
+            iteration._step_to_border(step, response)
         else:
             closed = ~iteration.contact & (opening < 0)
-            iteration.change_area(iteration.pressure - step * iteration.direction, closed, opening, step, along)
+            iteration.change_area(iteration.pressure - step * iteration.direction, closed, opening, step, response)
         iteration.contact, iteration.area_changed = iteration.pressure > 0, True
         assert iteration.pressure.min() >= 0
         assert iteration.displacement == pytest.approx(operator(iteration.pressure), rel=1e-9)
@@ -208,26 +202,26 @@ def test_area_change_reduces_energy_and_keeps_resultants(rng: np.random.Generato
             check_conditions(resultants, iteration.pressure)
         if index % 2 or closed.any():
             after = energy(gap, iteration.pressure)
-            assert after <= before + 1e-9 * abs(before)
-        before = energy(gap, iteration.pressure)
+            assert after <= previous_energy + 1e-9 * abs(previous_energy)
+        previous_energy = energy(gap, iteration.pressure)
 
 
 @given(slope=st.floats(-2.0, 2.0), curvature=st.floats(0.01, 5.0))
 def test_descent_fraction_minimises_energy(slope: float, curvature: float):
     """The energy over the part taken is a parabola: all of it if that is below the start, else its least value."""
     change, opening = np.array([2.0, 0.0]), np.array([-0.5 * slope, np.inf])
-    part = _descent_fraction(change, np.array([0.5 * curvature, 1.0]), opening)
+    fraction = _descent_fraction(change, np.array([0.5 * curvature, 1.0]), opening)
 
-    def at(taken: float) -> float:
-        return -slope * taken + 0.5 * curvature * taken**2
+    def energy_at(trial_fraction: float) -> float:
+        return -slope * trial_fraction + 0.5 * curvature * trial_fraction**2
 
     if slope <= 0:
-        assert part == 0.0
-    elif at(1.0) < 0:
-        assert part == 1.0
+        assert fraction == 0.0
+    elif energy_at(1.0) < 0:
+        assert fraction == 1.0
     else:
-        assert part == pytest.approx(min(slope / curvature, 1.0))
-        assert at(part) <= min(at(0.99 * part), at(1.01 * part))
+        assert fraction == pytest.approx(min(slope / curvature, 1.0))
+        assert energy_at(fraction) <= min(energy_at(0.99 * fraction), energy_at(1.01 * fraction))
 
 
 @settings(max_examples=10)
@@ -250,9 +244,11 @@ def test_iteration_ends_at_small_violation_and_change(rng: np.random.Generator):
         assert off <= 2e-6
 
 
-@pytest.mark.parametrize(("slope", "part"), [(0.45, 0.45), (0.49, 0.49), (0.51, 1.0), (0.54, 1.0), (2.0, 1.0)])
-def test_descending_change_is_complete(slope: float, part: float) -> None:
-    assert _descent_fraction(np.ones(1), np.ones(1), np.array([-slope])) == pytest.approx(part)
+@pytest.mark.parametrize(
+    ("slope", "curvature_ratio"), [(0.45, 0.45), (0.49, 0.49), (0.51, 1.0), (0.54, 1.0), (2.0, 1.0)]
+)
+def test_descending_change_is_complete(slope: float, curvature_ratio: float) -> None:
+    assert _descent_fraction(np.ones(1), np.ones(1), np.array([-slope])) == pytest.approx(curvature_ratio)
 
 
 @pytest.mark.parametrize("unit", [1e-12, 1.0, 1e12])
@@ -261,9 +257,9 @@ def test_entering_cells_scale_with_overlap(unit: float) -> None:
     start = np.where(np.hypot(GRID.x[:, None] - 1.5, GRID.y) < 0.3, 1.0, 0.0)
     iteration = state(unit * gap, Resultants(None), unit * start)
     opening = iteration.compute_opening()
-    step, along, _ = iteration.search_step(np.where(iteration.contact, opening, 0.0))
+    step, response, _ = iteration.search_step(np.where(iteration.contact, opening, 0.0))
     closed = ~iteration.contact & (opening < 0)
-    iteration.change_area(iteration.pressure - step * iteration.direction, closed, opening, step, along)
+    iteration.change_area(iteration.pressure - step * iteration.direction, closed, opening, step, response)
     assert iteration.pressure[closed].sum() > 0.05 * iteration.pressure.sum()
     baseline = state(gap, Resultants(None), start)
     assert iteration._balance_sides(unit * start) == pytest.approx(unit * baseline._balance_sides(start))
@@ -273,8 +269,8 @@ def test_entering_cells_scale_with_overlap(unit: float) -> None:
     if unit == 1.0:
         return
     opening = baseline.compute_opening()
-    step, along, _ = baseline.search_step(np.where(baseline.contact, opening, 0.0))
-    baseline.change_area(baseline.pressure - step * baseline.direction, closed, opening, step, along)
+    step, response, _ = baseline.search_step(np.where(baseline.contact, opening, 0.0))
+    baseline.change_area(baseline.pressure - step * baseline.direction, closed, opening, step, response)
     assert iteration.pressure / unit == pytest.approx(baseline.pressure, rel=1e-6)
 
 

@@ -17,11 +17,11 @@ LENGTH, PRESSURE = 2.0**-17, 2.0**37
 """Units of length and pressure, powers of two: numbers in them differ by nothing else."""
 
 COARSE, FINE = np.linspace(-1.5, 1.5, 21), np.linspace(-1.5, 1.5, 65)
-GRADED = np.concatenate([np.linspace(-1.5, 0.3, 11), np.linspace(0.4, 1.5, 12)])
-ENDED = np.linspace(0.0, 3.0, 21)
+GRADED_EDGES = np.concatenate([np.linspace(-1.5, 0.3, 11), np.linspace(0.4, 1.5, 12)])
+FREE_END_EDGES = np.linspace(0.0, 3.0, 21)
 
 
-class Asked(NamedTuple):
+class ContactSpec(NamedTuple):
     """A ball, or a roller across a body with two ends, off the middle; lengths about 1, pressures about 1."""
 
     edges: Any = COARSE
@@ -44,30 +44,30 @@ class Asked(NamedTuple):
         if self.ended:
             body = FiniteLengthSpace(material=material, length=3.0 * length)
         load = None if self.load is None else self.load * pressure * length**2
-        position, approach = (None if each is None else each * length for each in (self.position, self.approach))
+        position, approach = (None if ratio is None else ratio * length for ratio in (self.position, self.approach))
         prescribed = PrescribedLoad(load, position, approach)
         counterbody = Counterbody(HalfSpace(material=Material(0.5 * pressure, 0.2))) if self.pair else None
         return Shape(body, grid, ArrayKey(length * gap), prescribed, counterbody, self.coupled)
 
 
-ASKED = {
-    "load": Asked(),
-    "graded": Asked(GRADED, pair=True),
-    "approach": Asked(load=None, approach=0.04),
-    "nested": Asked(FINE, pair=True, cells_y=64),
-    "nested approach": Asked(FINE, load=None, approach=0.04, cells_y=64),
-    "coupled": Asked(coupled=0.4),
-    "coupled approach": Asked(GRADED, load=None, approach=0.04, coupled=0.4),
-    "ends": Asked(ENDED, ended=True),
-    "position": Asked(ENDED, position=1.75, ended=True),
-    "nested position": Asked(np.linspace(0.0, 3.0, 65), position=1.7, ended=True, cells_y=64),
-    "coupled position": Asked(ENDED, position=1.7, ended=True, coupled=0.3),
+CONTACT_SPECS = {
+    "load": ContactSpec(),
+    "graded": ContactSpec(GRADED_EDGES, pair=True),
+    "approach": ContactSpec(load=None, approach=0.04),
+    "nested": ContactSpec(FINE, pair=True, cells_y=64),
+    "nested approach": ContactSpec(FINE, load=None, approach=0.04, cells_y=64),
+    "coupled": ContactSpec(coupled=0.4),
+    "coupled approach": ContactSpec(GRADED_EDGES, load=None, approach=0.04, coupled=0.4),
+    "ends": ContactSpec(FREE_END_EDGES, ended=True),
+    "position": ContactSpec(FREE_END_EDGES, position=1.75, ended=True),
+    "nested position": ContactSpec(np.linspace(0.0, 3.0, 65), position=1.7, ended=True, cells_y=64),
+    "coupled position": ContactSpec(FREE_END_EDGES, position=1.7, ended=True, coupled=0.3),
 }
 
 
-@pytest.mark.parametrize("asked", ASKED.values(), ids=ASKED)
-def test_results_scale_with_units(asked: Asked) -> None:
-    baseline, variant = contact_of(asked.shape(), Settings()), contact_of(asked.shape(LENGTH, PRESSURE), Settings())
+@pytest.mark.parametrize("spec", CONTACT_SPECS.values(), ids=CONTACT_SPECS)
+def test_results_scale_with_units(spec: ContactSpec) -> None:
+    baseline, variant = contact_of(spec.shape(), Settings()), contact_of(spec.shape(LENGTH, PRESSURE), Settings())
     assert baseline.converged
     assert (baseline.converged, baseline.iterations) == (variant.converged, variant.iterations)
     units = {"pressure": PRESSURE, "gap": LENGTH, "displacement": LENGTH, "approach": LENGTH, "tilt": 1.0}
@@ -80,14 +80,14 @@ def test_results_scale_with_units(asked: Asked) -> None:
         assert getattr(variant.certificate, name) == pytest.approx(value, rel=0.1, abs=1e-10), name
 
 
-@pytest.mark.parametrize("ended", [False, True])
-def test_symmetric_contacts_have_symmetric_pressures(ended: bool) -> None:
-    edges = ENDED if ended else COARSE
+@pytest.mark.parametrize("has_free_ends", [False, True])
+def test_symmetric_contacts_have_symmetric_pressures(has_free_ends: bool) -> None:
+    edges = FREE_END_EDGES if has_free_ends else COARSE
     grid = Grid.between(edges, (-1.5, 1.5), 20)
-    middle = 0.5 * (edges[0] + edges[-1])
-    gap = 0.05 * ((grid.x[:, None] - middle) ** 2 + grid.y**2)
+    mid_x = 0.5 * (edges[0] + edges[-1])
+    gap = 0.05 * ((grid.x[:, None] - mid_x) ** 2 + grid.y**2)
     material = Material(0.91, 0.3)
-    body: Body = FiniteLengthSpace(material=material, length=3.0) if ended else HalfSpace(material=material)
+    body: Body = FiniteLengthSpace(material=material, length=3.0) if has_free_ends else HalfSpace(material=material)
     shape = Shape(body, grid, ArrayKey(gap), PrescribedLoad(0.05))
     pressure = contact_of(shape, Settings()).pressure
     assert (pressure == pressure[::-1]).all()
@@ -96,7 +96,7 @@ def test_symmetric_contacts_have_symmetric_pressures(ended: bool) -> None:
     off_middle = (
         (shape._replace(coupled_friction=0.3), [0]),
         (shape._replace(gap=ArrayKey(gap + 1e-6 * grid.x[:, None])), [1]),
-        (shape._replace(prescribed=PrescribedLoad(0.05, middle + 1e-6)), [1]),
+        (shape._replace(prescribed=PrescribedLoad(0.05, mid_x + 1e-6)), [1]),
         (shape._replace(body=QuarterSpace(material=material)), [1]),
         (shape._replace(counterbody=Counterbody(FiniteLengthSpace(length=1.0, material=material), 0.1)), [1]),
     )
@@ -104,16 +104,16 @@ def test_symmetric_contacts_have_symmetric_pressures(ended: bool) -> None:
         assert variant.reflections() == axes
 
 
-def rigid_approach(found: Contact) -> Any:
+def rigid_approach(contact: Contact) -> Any:
     """How far the surfaces have come towards each other, from what is stated of the shape."""
-    at = found.shape.prescribed.load_position
-    turned = 0.0 if at is None else found.tilt * (found.shape.grid.x[:, None] - at)
-    return found.approach + turned
+    load_position = contact.shape.prescribed.load_position
+    turned = 0.0 if load_position is None else contact.tilt * (contact.shape.grid.x[:, None] - load_position)
+    return contact.approach + turned
 
 
 @pytest.mark.parametrize("name", ["load", "approach", "ends", "position"])
 def test_gap_follows_from_displacement_and_shape(name: str) -> None:
-    computed = contact_of(ASKED[name].shape(), Settings())
+    computed = contact_of(CONTACT_SPECS[name].shape(), Settings())
     facing = np.isfinite(computed.gap)
     expected = computed.shape.gap.values + computed.displacement - rigid_approach(computed)
     assert computed.gap[facing] == pytest.approx(expected[facing], abs=1e-9)
@@ -122,7 +122,7 @@ def test_gap_follows_from_displacement_and_shape(name: str) -> None:
         assert computed.load_position == pytest.approx(1.75, abs=1e-5)
 
 
-MOST = {
+MAX_APPLICATIONS = {
     "load": 14,
     "graded": 13,
     "approach": 13,
@@ -138,13 +138,13 @@ MOST = {
 """A tenth more than it takes."""
 
 
-@pytest.mark.parametrize("name", MOST)
+@pytest.mark.parametrize("name", MAX_APPLICATIONS)
 def test_operator_applications_are_few(name: str) -> None:
-    assert contact_of(ASKED[name].shape(), Settings()).iterations <= MOST[name]
+    assert contact_of(CONTACT_SPECS[name].shape(), Settings()).iterations <= MAX_APPLICATIONS[name]
 
 
 def test_warning_refers_to_caller() -> None:
-    computed = contact_of(ASKED["load"].shape(), Settings(1e-6, 3))
+    computed = contact_of(CONTACT_SPECS["load"].shape(), Settings(1e-6, 3))
     with pytest.warns(ConvergenceWarning, match="after 3 operator applications|max_iterations .now 3") as message:
         computed.warn_unless_converged()
     assert message[0].filename == __file__
@@ -156,7 +156,7 @@ def test_position_error_is_relative_to_contact_length() -> None:
         grid = Grid.between(position + np.array([0.0, 1.0, 2.0, 3.0, 5.0, 6.0]), (0.0, 1.0), 2)
         pressure = np.zeros(grid.shape)
         pressure[1], pressure[3] = 2.0, 1.0  # centres 1.5 and 4, widths 1 and 2: half of the load on each
-        for at in (2.0, 3.5):
-            off = _position_error(PrescribedLoad(1.0, position + at), grid, pressure)
-            assert off == pytest.approx(abs(2.75 - at) / 4.0)
+        for load_position in (2.0, 3.5):
+            off = _position_error(PrescribedLoad(1.0, position + load_position), grid, pressure)
+            assert off == pytest.approx(abs(2.75 - load_position) / 4.0)
     assert _position_error(PrescribedLoad(1.0), grid, pressure) == 0.0

@@ -53,15 +53,19 @@ def test_resulting_tilt_reproduces_position():
 
 def test_opposite_tilts_mirror_the_pressure():
     results = [solve(case_with(tilt=tilt), stresses=False, accuracy=0.05) for tilt in (2e-4, -2e-4)]
-    first, second = (result.pressure.values for result in results)
-    np.testing.assert_allclose(first, second[::-1], atol=1e-5 * first.max())
+    tilted_pressure, mirrored_pressure = (result.pressure.values for result in results)
+    np.testing.assert_allclose(tilted_pressure, mirrored_pressure[::-1], atol=1e-5 * tilted_pressure.max())
     assert float(results[0].load_position) > 0.5 * LENGTH + 0.1 * HALF_WIDTH
 
 
 def test_load_at_mid_length_has_no_tilt():
-    free, held = (solve(case_with(load_position=at), stresses=False) for at in (0.5 * LENGTH, None))
-    assert abs(float(free.tilt)) < 1e-9
-    np.testing.assert_allclose(free.pressure, held.pressure, atol=1e-5 * float(held.pressure.max()))
+    free_result, held_result = (
+        solve(case_with(load_position=load_position), stresses=False) for load_position in (0.5 * LENGTH, None)
+    )
+    assert abs(float(free_result.tilt)) < 1e-9
+    np.testing.assert_allclose(
+        free_result.pressure, held_result.pressure, atol=1e-5 * float(held_result.pressure.max())
+    )
 
 
 @pytest.mark.parametrize("body", [BODY, HalfSpace(material=STEEL)], ids=["finite", "half-space"])
@@ -98,8 +102,8 @@ def test_wavy_surface_matches_westergaard(closure: float):
     amplitude = 1.5e9 / closure * wavelength / (np.pi * modulus)
     phase = np.pi * (grid.x / wavelength - 0.5)
     heights = amplitude * np.cos(2 * phase)[:, None] + 0 * grid.y
-    rough = xr.DataArray(heights, coords={"x": grid.x, "y": grid.y}, dims=("x", "y"))
-    result = solve(case, grid, roughness=rough, stresses=False)
+    roughness = xr.DataArray(heights, coords={"x": grid.x, "y": grid.y}, dims=("x", "y"))
+    result = solve(case, grid, roughness=roughness, stresses=False)
     assert bool(result.converged)
     wave = result.pressure.sel(y=0.0, method="nearest")
     mean = float(wave.mean())
@@ -110,8 +114,8 @@ def test_wavy_surface_matches_westergaard(closure: float):
     else:
         edge = phase[wave.values > 0].max() + 0.5 * np.pi / grid.cells_x
         assert np.sin(edge) ** 2 == pytest.approx(ratio, abs=0.025)
-        inside = np.maximum(ratio - np.sin(phase) ** 2, 0.0)
-        expected = 2 * mean * np.cos(phase) / ratio * np.sqrt(inside)
+        squared_profile = np.maximum(ratio - np.sin(phase) ** 2, 0.0)
+        expected = 2 * mean * np.cos(phase) / ratio * np.sqrt(squared_profile)
     assert np.abs(wave - expected).max() < 0.05 * mean / min(ratio, 1.0)
     assert np.abs(wave - expected).mean() < 0.01 * mean
 
@@ -119,10 +123,10 @@ def test_wavy_surface_matches_westergaard(closure: float):
 def test_self_affine_surfaces_converge():
     case = case_with()
     grid = choose_grid(case, window=4.0, cells_y=8)
-    rough = self_affine(
+    roughness = self_affine(
         grid, rms_height=0.1e-6, hurst=0.8, longest=2 * HALF_WIDTH, shortest=4 * max(grid.dx, grid.dy), seed=1
     )
-    result = solve(case, grid, roughness=rough, stresses=False)
+    result = solve(case, grid, roughness=roughness, stresses=False)
     smooth = solve(case, grid, stresses=False)
     assert bool(result.converged)
     assert int(result.iterations) < 150
@@ -139,23 +143,27 @@ def test_roughness_on_other_cells_is_interpolated():
         x_range=(-0.1 * LENGTH, 1.1 * LENGTH), y_range=(-5 * HALF_WIDTH, 5 * HALF_WIDTH), cells_x=150, cells_y=90
     )
 
-    def sloping(on: Grid) -> xr.DataArray:  # bilinear, so that interpolation is exact
-        heights = 1e-3 * (on.x[:, None] - 0.5 * LENGTH) + 2e-3 * on.y
-        return xr.DataArray(heights, coords={"x": on.x, "y": on.y}, dims=("x", "y"))
+    def sloping_heights(grid: Grid) -> xr.DataArray:  # bilinear, so that interpolation is exact
+        heights = 1e-3 * (grid.x[:, None] - 0.5 * LENGTH) + 2e-3 * grid.y
+        return xr.DataArray(heights, coords={"x": grid.x, "y": grid.y}, dims=("x", "y"))
 
-    expected, variant = (solve(case, grid, roughness=sloping(on), stresses=False) for on in (grid, wider))
+    expected, variant = (solve(case, grid, roughness=sloping_heights(grid), stresses=False) for grid in (grid, wider))
     np.testing.assert_allclose(variant.initial_gap, expected.initial_gap, atol=1e-18)
-    tilted = solve(case_with(tilt=1e-3), grid, stresses=False)
-    assert float(expected.load_position) == pytest.approx(float(tilted.load_position), abs=1e-2 * HALF_WIDTH)
+    tilted_result = solve(case_with(tilt=1e-3), grid, stresses=False)
+    assert float(expected.load_position) == pytest.approx(float(tilted_result.load_position), abs=1e-2 * HALF_WIDTH)
 
 
 def test_flat_height_map_changes_approach_only():
     case = case_with()
     grid = choose_grid(case)
-    flat = xr.DataArray(np.full(grid.shape, 1e-6), coords={"x": grid.x, "y": grid.y}, dims=("x", "y"))
-    smooth, rough = (solve(case, grid, roughness=heights, stresses=False) for heights in (None, flat))
-    np.testing.assert_allclose(rough.pressure, smooth.pressure, atol=1e-6 * float(smooth.pressure.max()))
-    assert float(rough.approach) == pytest.approx(float(smooth.approach) - 1e-6, rel=1e-6)
+    flat_heights = xr.DataArray(np.full(grid.shape, 1e-6), coords={"x": grid.x, "y": grid.y}, dims=("x", "y"))
+    smooth_result, rough_result = (
+        solve(case, grid, roughness=heights, stresses=False) for heights in (None, flat_heights)
+    )
+    np.testing.assert_allclose(
+        rough_result.pressure, smooth_result.pressure, atol=1e-6 * float(smooth_result.pressure.max())
+    )
+    assert float(rough_result.approach) == pytest.approx(float(smooth_result.approach) - 1e-6, rel=1e-6)
 
 
 @pytest.mark.parametrize(
@@ -196,9 +204,9 @@ def test_invalid_prescriptions_raise_error(arguments, parameter: str):
 def test_roughness_must_cover_the_cells():
     case = case_with()
     grid = choose_grid(case, cells_x=2, cells_y=4)
-    rough = xr.DataArray(np.zeros((4, 4)), coords={"x": np.arange(4.0), "y": np.arange(4.0)}, dims=("x", "y"))
+    roughness = xr.DataArray(np.zeros((4, 4)), coords={"x": np.arange(4.0), "y": np.arange(4.0)}, dims=("x", "y"))
     with pytest.raises(InvalidInputError, match="roughness"):
-        solve(case, grid, roughness=rough)
+        solve(case, grid, roughness=roughness)
 
 
 def test_approach_and_tilt_state_reference():
@@ -264,9 +272,9 @@ def test_several_approaches_form_dimension(on_cells) -> None:
     )
     # Hertz: W = 4/3 E* R**(1/2) d**(3/2), with E* = R = 1
     np.testing.assert_allclose(computed["normal_load"], 4 / 3 * np.array(steps) ** 1.5, rtol=0.02)
-    for wrong in ([], [0.1, np.nan], [[0.1]], "deep"):
+    for invalid_approach in ([], [0.1, np.nan], [[0.1]], "deep"):
         with pytest.raises(InvalidInputError, match="approach"):
-            solve_contact(body, gap, approach=wrong)
+            solve_contact(body, gap, approach=invalid_approach)
     with pytest.raises(InvalidInputError, match="after"):
         solve_contact(body, gap, approach=steps, settings=ContactSettings(after=computed))
 

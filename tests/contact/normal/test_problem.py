@@ -56,7 +56,7 @@ def ball(grid: Grid, load: float | None = 0.05, *, friction: float = 0.0, deep: 
 
 
 GRID = Grid(x_range=(-1.5, 1.5), y_range=(-1.5, 1.5), cells_x=24, cells_y=20)
-UNLIKE = Grid.between(np.cumsum([-1.5, 0.1, 0.3, 0.4, 0.2, 0.1, 0.3, 0.6, 1.0]), (-1.5, 1.5), 20)
+UNEQUAL_COLUMNS = Grid.between(np.cumsum([-1.5, 0.1, 0.3, 0.4, 0.2, 0.1, 0.3, 0.6, 1.0]), (-1.5, 1.5), 20)
 GRADED = Grid.between(np.concatenate([np.linspace(-1.5, 0.3, 11), np.linspace(0.4, 1.5, 12)]), (-1.5, 1.5), 20)
 
 
@@ -77,25 +77,27 @@ def test_coupled_rounds_end_without_bending_change() -> None:
     bent = operator({Load.ALONG_Y: request.friction * computed.pressure})
     repeated = solve_normal(operator, replace(request, gap=request.gap + bent, tolerance=1e-10))
     assert computed.pressure == pytest.approx(repeated.pressure, abs=3e-6 * repeated.pressure.max())
-    single = solve_normal(operator, request)
-    assert np.abs(single.pressure - repeated.pressure).max() > 1e-2 * repeated.pressure.max()
+    uncoupled_iterate = solve_normal(operator, request)
+    assert np.abs(uncoupled_iterate.pressure - repeated.pressure).max() > 1e-2 * repeated.pressure.max()
 
 
 @pytest.mark.parametrize("positions", [np.linspace(-1.0, 8.0, 46), np.array([0.0, 1.0, 3.0, 7.0])])
 def test_column_interpolation_is_linear(positions: FloatArray) -> None:
     centres = np.array([0.0, 1.0, 3.0, 7.0])
-    values = np.random.default_rng(0).standard_normal((4, 3))
-    expected = np.stack([np.interp(positions, centres, value) for value in values.T], axis=1)
-    assert interpolate_columns(values, centres, positions) == pytest.approx(expected, abs=1e-12)
-    assert interpolate_columns(values[:1], centres[:1], positions) == pytest.approx(
-        np.repeat(values[:1], positions.size, 0)
+    cell_values = np.random.default_rng(0).standard_normal((4, 3))
+    expected = np.stack([np.interp(positions, centres, row_values) for row_values in cell_values.T], axis=1)
+    assert interpolate_columns(cell_values, centres, positions) == pytest.approx(expected, abs=1e-12)
+    assert interpolate_columns(cell_values[:1], centres[:1], positions) == pytest.approx(
+        np.repeat(cell_values[:1], positions.size, 0)
     )
 
 
 def test_halved_cells_are_linear_between_centres() -> None:
-    values = np.random.default_rng(0).standard_normal((5, 3))
+    cell_values = np.random.default_rng(0).standard_normal((5, 3))
     fine = (np.arange(10) + 0.5) / 2 - 0.5
-    assert halve_cells(values, 0) == pytest.approx(interpolate_columns(values, np.arange(5.0), fine), abs=1e-12)
+    assert halve_cells(cell_values, 0) == pytest.approx(
+        interpolate_columns(cell_values, np.arange(5.0), fine), abs=1e-12
+    )
 
 
 def tilted_gap(grid: Grid, position: float) -> tuple[FloatArray, float]:
@@ -104,21 +106,21 @@ def tilted_gap(grid: Grid, position: float) -> tuple[FloatArray, float]:
     return arm / np.abs(arm).max(), float(np.abs(arm).max())
 
 
-@pytest.mark.parametrize("grid", [GRID, GRADED, UNLIKE], ids=["uniform", "graded", "unlike neighbours"])
+@pytest.mark.parametrize("grid", [GRID, GRADED, UNEQUAL_COLUMNS], ids=["uniform", "graded", "unlike neighbours"])
 def test_merged_cells_keep_areas_heights_and_levers(grid: Grid) -> None:
     lever, _ = tilted_gap(grid, 0.2)
     plane = 0.3 + 0.1 * grid.x[:, None] + 0.0 * grid.y
     coarse = ContactProblem(
         grid=grid, gap=plane, resultants=Resultants(2.0, lever), friction=0.0, tolerance=1e-6, max_iterations=500
     ).coarsen()
-    joined = coarse.grid
-    assert joined.shape == (grid.cells_x // 2, grid.cells_y // 2)
+    coarse_grid = coarse.grid
+    assert coarse_grid.shape == (grid.cells_x // 2, grid.cells_y // 2)
     middles = 0.5 * (grid.x_edges[2::2] + grid.x_edges[:-2:2])
-    assert coarse.gap == pytest.approx(np.broadcast_to(0.3 + 0.1 * middles[:, None], joined.shape))
+    assert coarse.gap == pytest.approx(np.broadcast_to(0.3 + 0.1 * middles[:, None], coarse_grid.shape))
     assert coarse.resultants.lever is not None
     assert coarse.resultants.lever[:, 0] == pytest.approx((middles - 0.2) / np.abs(grid.x - 0.2).max(), abs=1e-12)
     # The same force: cells are four times as large.
-    assert coarse.resultants.total == pytest.approx(2.0 * grid.cell_area / joined.cell_area)
+    assert coarse.resultants.total == pytest.approx(2.0 * grid.cell_area / coarse_grid.cell_area)
 
 
 def test_merged_cells_ignore_infinite_gaps() -> None:
@@ -129,20 +131,20 @@ def test_merged_cells_ignore_infinite_gaps() -> None:
     ).coarsen()
     assert np.isinf(coarse.gap[0]).all()
     assert coarse.gap[1] == pytest.approx(GRADED.x[3])
-    middle = 0.5 * (GRADED.x_edges[4] + GRADED.x_edges[6])
-    assert coarse.gap[2] == pytest.approx(middle)
+    mid_x = 0.5 * (GRADED.x_edges[4] + GRADED.x_edges[6])
+    assert coarse.gap[2] == pytest.approx(mid_x)
 
 
 @pytest.mark.parametrize("grid", [GRID, GRADED], ids=["uniform", "graded"])
 def test_free_tilt_removes_mean_slope(grid: Grid) -> None:
     lever, arm = tilted_gap(grid, 0.2)
-    flat = np.where(grid.x[:, None] > 1.2, np.inf, 0.05 * grid.y**2 + 0.0 * grid.x[:, None])
-    tilted = flat + 0.3 * (grid.x[:, None] - 0.2)
+    level_gap = np.where(grid.x[:, None] > 1.2, np.inf, 0.05 * grid.y**2 + 0.0 * grid.x[:, None])
+    sloping_gap = level_gap + 0.3 * (grid.x[:, None] - 0.2)
     request = ContactProblem(
-        grid=grid, gap=tilted, resultants=Resultants(1.0, lever), friction=0.0, tolerance=1e-6, max_iterations=500
+        grid=grid, gap=sloping_gap, resultants=Resultants(1.0, lever), friction=0.0, tolerance=1e-6, max_iterations=500
     )
-    facing = np.isfinite(flat)
-    assert _remove_mean_slope(request)[facing] == pytest.approx(flat[facing], abs=1e-12)
+    facing = np.isfinite(level_gap)
+    assert _remove_mean_slope(request)[facing] == pytest.approx(level_gap[facing], abs=1e-12)
     assert _remove_mean_slope(replace(request, resultants=Resultants(1.0))) is request.gap
     assert request.rigid_height((0.5, 0.3 * arm)) == pytest.approx(0.5 + 0.3 * (grid.x[:, None] - 0.2))
 
@@ -151,16 +153,16 @@ def test_initial_guess_follows_gap_below_level() -> None:
     """On few cells: pressed where the gap is below the level under which four tenths of the cells are."""
     request = ball(GRID)
     guess = _initial_guess(Counting(GRID), request)
-    pressed = guess > 0
-    assert pressed.mean() == pytest.approx(0.4, abs=0.02)
-    assert request.gap[pressed].max() < request.gap[~pressed].min()
-    assert np.ptp(request.gap[pressed] + guess[pressed] ** 2) < 1e-12
+    is_pressed = guess > 0
+    assert is_pressed.mean() == pytest.approx(0.4, abs=0.02)
+    assert request.gap[is_pressed].max() < request.gap[~is_pressed].min()
+    assert np.ptp(request.gap[is_pressed] + guess[is_pressed] ** 2) < 1e-12
     # The level lies a little higher, so that a flat shape is pressed everywhere.
-    flat = replace(request, gap=np.where(GRID.x[:, None] < 0, 0.0, 1.0) + 0 * request.gap)
-    assert (_initial_guess(Counting(GRID), flat) > 0).tolist() == (flat.gap == 0).tolist()
+    stepped_problem = replace(request, gap=np.where(GRID.x[:, None] < 0, 0.0, 1.0) + 0 * request.gap)
+    assert (_initial_guess(Counting(GRID), stepped_problem) > 0).tolist() == (stepped_problem.gap == 0).tolist()
     # A prescribed approach says itself where cells overlap.
-    deep = ball(GRID, None, deep=0.02)
-    assert ((_initial_guess(Counting(GRID), deep) > 0) == (deep.gap < 0)).all()
+    approach_problem = ball(GRID, None, deep=0.02)
+    assert ((_initial_guess(Counting(GRID), approach_problem) > 0) == (approach_problem.gap < 0)).all()
 
 
 def test_squared_pressure_continues_outside_hertz_contact() -> None:
@@ -174,12 +176,12 @@ def test_squared_pressure_continues_outside_hertz_contact() -> None:
     a = (0.75 * 0.05 * radius / modulus) ** (1 / 3)
     peak = 1.5 * 0.05 / (np.pi * a**2)
     position = np.hypot(grid.x[:, None] - 0.1, grid.y) / a
-    exact = peak**2 * (1 - position**2)
-    inside, adjacent = position < 0.9, (position > 1.03) & (position < 1.15)
-    assert squared[inside] == pytest.approx(exact[inside], abs=0.02 * peak**2)
+    hertz_square = peak**2 * (1 - position**2)
+    is_inside, is_adjacent = position < 0.9, (position > 1.03) & (position < 1.15)
+    assert squared[is_inside] == pytest.approx(hertz_square[is_inside], abs=0.02 * peak**2)
     assert (squared[position > 1.1] < 0).all()
-    assert squared[adjacent] / exact[adjacent] == pytest.approx(np.ones(adjacent.sum()), abs=0.5)
-    assert np.median(squared[adjacent] / exact[adjacent]) == pytest.approx(0.65, abs=0.1)
+    assert squared[is_adjacent] / hertz_square[is_adjacent] == pytest.approx(np.ones(is_adjacent.sum()), abs=0.5)
+    assert np.median(squared[is_adjacent] / hertz_square[is_adjacent]) == pytest.approx(0.65, abs=0.1)
 
 
 @pytest.mark.parametrize("approach", [False, True])

@@ -41,9 +41,11 @@ def test_approach_at_mid_length_of_a_long_roller() -> None:
 
 def test_approach_grows_with_the_logarithm_of_the_depth_beyond_three_lengths() -> None:
     length = 4e-3
-    near, far = (solve(long_case(length, depth), stresses=False, accuracy=0.05) for depth in (3 * length, 6 * length))
-    slope = float(far.approach - near.approach) / np.log(2)
-    assert slope == pytest.approx(2 * float(near.normal_load) / length / (np.pi * YOUNG), rel=0.01)
+    shallow_result, deep_result = (
+        solve(long_case(length, depth), stresses=False, accuracy=0.05) for depth in (3 * length, 6 * length)
+    )
+    slope = float(deep_result.approach - shallow_result.approach) / np.log(2)
+    assert slope == pytest.approx(2 * float(shallow_result.normal_load) / length / (np.pi * YOUNG), rel=0.01)
 
 
 CROWN = profiles.FullCrown(2.0)
@@ -58,13 +60,15 @@ def crowned_roller(**arguments: float) -> Case:
 def test_prescribed_tilt_equals_prescribed_position() -> None:
     case = crowned_roller(load=1500.0, tilt=5e-4)
     grid = choose_grid(case, cells_x=4, cells_y=8)
-    tilted = solve(case, grid, stresses=False)
-    balanced = solve(crowned_roller(load=1500.0, load_position=float(tilted.load_position)), grid, stresses=False)
+    balanced_result = solve(case, grid, stresses=False)
+    balanced = solve(
+        crowned_roller(load=1500.0, load_position=float(balanced_result.load_position)), grid, stresses=False
+    )
     assert float(balanced.tilt) == pytest.approx(5e-4, rel=2e-3)
-    assert float(balanced.pressure.max()) == pytest.approx(float(tilted.pressure.max()), rel=2e-3)
-    pressed = solve(crowned_roller(approach=float(tilted.approach), tilt=5e-4), grid, stresses=False)
+    assert float(balanced.pressure.max()) == pytest.approx(float(balanced_result.pressure.max()), rel=2e-3)
+    tilted_result = solve(crowned_roller(approach=float(balanced_result.approach), tilt=5e-4), grid, stresses=False)
     # The approach of a tilted roller is that at mid-length; `tilted` states it there, too.
-    assert float(pressed.normal_load) == pytest.approx(1500.0, rel=3e-3)
+    assert float(tilted_result.normal_load) == pytest.approx(1500.0, rel=3e-3)
 
 
 def test_gap_is_initial_gap_and_displacement_less_the_approach() -> None:
@@ -78,18 +82,18 @@ def test_reference_line_of_body_is_at_rest() -> None:
     case = crowned_roller(load=1500.0, tilt=5e-4)
     result = solve(case, stresses=False, accuracy=0.05)
     x = np.linspace(0.1e-3, 5.9e-3, 16)
-    middle = float(result.load_position)
-    field = displacement_field(case.body, result.pressure, x=np.append(x, middle), y=[0.0], z=[0.0, 9e-3]).u_z[:, 0]
+    load_x = float(result.load_position)
+    field = displacement_field(case.body, result.pressure, x=np.append(x, load_x), y=[0.0], z=[0.0, 9e-3]).u_z[:, 0]
     slope = np.polynomial.polynomial.polyfit(x, field[:-1, 1], 1)[1]
     expected = float(field[-1, 0] - field[-1, 1])
-    top = result.displacement_z.sel(y=0.0, method="nearest").interp(x=middle)
+    top = result.displacement_z.sel(y=0.0, method="nearest").interp(x=load_x)
     assert float(top) == pytest.approx(expected, rel=0.01)
     assert abs(slope) > 1e-6
 
 
 def test_half_space_depths_and_invalid_depths() -> None:
     roller = Roller(radius=RADIUS, length=4e-3, profile=CROWN)
-    far, near = (
+    infinite_result, finite_result = (
         solve(
             Case(body=HalfSpace(material=STEEL, reference_depth=depth), roller=roller, load=500.0),
             stresses=False,
@@ -97,7 +101,7 @@ def test_half_space_depths_and_invalid_depths() -> None:
         )
         for depth in (None, 10e-3)
     )
-    assert float(near.approach) < float(far.approach)
+    assert float(finite_result.approach) < float(infinite_result.approach)
     with pytest.raises(InvalidInputError, match="reference_depth = -1"):
         HalfSpace(material=STEEL, reference_depth=-1.0)
     with pytest.raises(InvalidInputError, match=r"reference_depth = 0\.006"):

@@ -35,28 +35,28 @@ def test_coarse_operator_matches_fine_operator(cells: int) -> None:
 
 
 def test_equal_half_spaces_double_compliance() -> None:
-    half = HalfSpace(material=STEEL)
-    item = surface_operator(half, GRID)
-    unlike = PairOperator.of(half, Counterbody(HalfSpace(material=SOFT)), GRID, (Load.NORMAL,))
+    half_space = HalfSpace(material=STEEL)
+    body_operator = surface_operator(half_space, GRID)
+    unlike = PairOperator.of(half_space, Counterbody(HalfSpace(material=SOFT)), GRID, (Load.NORMAL,))
     factor = 1 + STEEL.plane_strain_modulus / SOFT.plane_strain_modulus
-    scaled, load = ScaledOperator(item, factor), random_load()
-    assert unlike(load) == pytest.approx(factor * item(load))
-    assert scaled(load) == pytest.approx(unlike(load))
+    scaled_operator, load = ScaledOperator(body_operator, factor), random_load()
+    assert unlike(load) == pytest.approx(factor * body_operator(load))
+    assert scaled_operator(load) == pytest.approx(unlike(load))
     gap = random_load()[Load.NORMAL]
-    assert unlike.precondition(gap) == pytest.approx(item.precondition(gap) / factor)
-    assert scaled.precondition(gap) == pytest.approx(unlike.precondition(gap))
+    assert unlike.precondition(gap) == pytest.approx(body_operator.precondition(gap) / factor)
+    assert scaled_operator.precondition(gap) == pytest.approx(unlike.precondition(gap))
     coarse = {Load.NORMAL: load[Load.NORMAL][::2, ::2]}
-    assert scaled.coarse(coarse) == pytest.approx(factor * item.coarse(coarse))
+    assert scaled_operator.coarse(coarse) == pytest.approx(factor * body_operator.coarse(coarse))
 
 
 @pytest.mark.parametrize("unit", [1.0, 1e-3, 1e6])
 def test_transfer_ignores_rounding_of_cells(unit: float) -> None:
     grid = Grid(x_range=(0.0, 1.6 * unit), y_range=(-unit, unit), cells_x=16, cells_y=4)
-    for start, alike in ((0.4, True), (0.4 + 1e-13, True), (0.4 + 1e-7, False), (0.45, False)):
+    for start, has_equal_cells in ((0.4, True), (0.4 + 1e-13, True), (0.4 + 1e-7, False), (0.45, False)):
         counterbody = Counterbody(FiniteLengthSpace(material=SOFT, length=0.8 * unit), start * unit)
         complete = Counterbody(FiniteLengthSpace(material=SOFT, length=1.6 * unit), (start - 0.4) * unit)
         assert CellTransfer.of(counterbody, grid) is not None  # fewer cells
-        assert (CellTransfer.of(complete, grid) is None) == alike
+        assert (CellTransfer.of(complete, grid) is None) == has_equal_cells
 
 
 def test_coarse_transfer_matches_fine_transfer() -> None:

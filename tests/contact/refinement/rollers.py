@@ -1,4 +1,4 @@
-"""Short rollers whose contacts are settled, and their peaks on finer cells."""
+"""Short rollers whose contacts are refined, and their peaks on finer cells."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def finite(length: float = LENGTH) -> FiniteLengthSpace:
     return FiniteLengthSpace(length=length, material=STEEL)
 
 
-def settled(case: Case, accuracy: float = 0.01) -> RefinedContact:
+def refined_at(case: Case, accuracy: float = 0.01) -> RefinedContact:
     return refine_contact(case, accuracy, 1e-6)
 
 
@@ -33,14 +33,14 @@ def top_of(pressure: FloatArray) -> float:
     """Largest pressure, between the cells along y too: the squared pressure is a parabola across the contact."""
     squared = pressure**2
     column = squared[squared.max(axis=1).argmax()]
-    at = int(column.argmax())
-    coefficients = np.polynomial.polynomial.polyfit([-1.0, 0.0, 1.0], column[at - 1 : at + 2], 2)
+    peak_row = int(column.argmax())
+    coefficients = np.polynomial.polynomial.polyfit([-1.0, 0.0, 1.0], column[peak_row - 1 : peak_row + 2], 2)
     return float(np.sqrt(coefficients[0] - coefficients[1] ** 2 / (4 * coefficients[2])))
 
 
-def finer_peak(case: Case, found: RefinedContact, factor: int) -> float:
+def finer_peak(case: Case, refined: RefinedContact, factor: int) -> float:
     """Peak on `factor` times finer cells, along both axes."""
-    edges, grid = found.refined.edges, found.contact.shape.grid
+    edges, grid = refined.refined.edges, refined.contact.shape.grid
     fine = np.interp(np.arange((edges.size - 1) * factor + 1) / factor, np.arange(edges.size), edges)
     solver = _ColumnSolver(case, grid.y_range[1], grid.cells_y * factor)
     return top_of(contact_of(solver.shape(fine), Settings(1e-6)).pressure)
@@ -51,10 +51,7 @@ CASES: dict[str, Case] = {
     "inside": Case(body=finite(9 * A), roller=filleted(0.2e-3, SHORT), max_pressure=PRESSURE),
     "half-space": Case(body=HALF, roller=filleted(0.2e-3, SHORT), max_pressure=PRESSURE),
     "quarter": Case(
-        body=QuarterSpace(material=STEEL),
-        roller=filleted(0.2e-3, SHORT),
-        max_pressure=PRESSURE,
-        end_distance=0.5 * A,
+        body=QuarterSpace(material=STEEL), roller=filleted(0.2e-3, SHORT), max_pressure=PRESSURE, end_distance=0.5 * A
     ),
     "mirror": Case(
         body=FiniteLengthSpace(length=SHORT, material=STEEL, model="mirror"),

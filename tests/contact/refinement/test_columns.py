@@ -45,9 +45,9 @@ def axial_shape(height: Callable[[FloatArray], FloatArray], unit: float = 1.0, s
 
 def chord_deviation(height: Callable[[FloatArray], FloatArray], low: FloatArray, high: FloatArray) -> FloatArray:
     """Distance of the shape from its chord between some positions."""
-    part = np.linspace(1e-6, 1 - 1e-6, 201)
-    heights = height(low[:, None] + (high - low)[:, None] * part)
-    chord = heights[:, :1] + (heights[:, -1:] - heights[:, :1]) * part
+    fraction = np.linspace(1e-6, 1 - 1e-6, 201)
+    heights = height(low[:, None] + (high - low)[:, None] * fraction)
+    chord = heights[:, :1] + (heights[:, -1:] - heights[:, :1]) * fraction
     return np.asarray(np.abs(heights - chord).max(axis=1))
 
 
@@ -58,9 +58,9 @@ def test_overlooked_columns_leave_low_shape(name: str) -> None:
     widths, bent = np.diff(edges), chord_deviation(height, edges[:-1], edges[1:])
     fine = np.linspace(1e-6, LENGTH - 1e-6, 20001)
     positions = edges[:-1, None] + widths[:, None] * np.linspace(1e-6, 1 - 1e-6, 201)
-    above = height(positions).min(axis=1) - height(fine).min()
+    height_excess = height(positions).min(axis=1) - height(fine).min()
     depth = 0.05
-    followed = (widths > MIN_CHORD_WIDTH) & (above < 2.9 * depth)
+    followed = (widths > MIN_CHORD_WIDTH) & (height_excess < 2.9 * depth)
     assert bent[followed].max(initial=0.0) <= 1.03 * CHORD_TOLERANCE * depth
     # A column is split only where it leaves its chord, or beside one that is narrow.
     assert np.isin(baseline, edges).all()
@@ -68,9 +68,9 @@ def test_overlooked_columns_leave_low_shape(name: str) -> None:
         split_columns = ~np.isin(edges, baseline)
         assert not split_columns.any() or (name == "chamfer" and (np.abs(edges[split_columns] - 13.0) < 3.0).all())
     if name == "deep wave":  # crests are never pressed
-        crests = above > 6 * depth
+        crests = height_excess > 6 * depth
         assert crests.any()
-        assert np.median(widths[crests]) > 1.9 * np.median(widths[above < 0.5 * depth])
+        assert np.median(widths[crests]) > 1.9 * np.median(widths[height_excess < 0.5 * depth])
 
 
 @pytest.mark.parametrize("name", SHAPES)
@@ -92,10 +92,10 @@ def test_first_columns_double_from_ends(half_width: float) -> None:
     assert 0.5 * narrowest < widths[0] <= narrowest * (1 + 1e-9)
     assert widths.max() <= LENGTH / MIN_COLUMNS * (1 + 1e-9)
     assert widths.size < 2 * MIN_COLUMNS + 2 * np.log2(LENGTH / narrowest)
-    half = widths[: widths.size // 2]
-    ratios = half[1:] / half[:-1]
+    half_widths = widths[: widths.size // 2]
+    ratios = half_widths[1:] / half_widths[:-1]
     assert (ratios <= 2 * (1 + 1e-9)).all()
-    growing = half[1:] < 0.7 * widths.max()
+    growing = half_widths[1:] < 0.7 * widths.max()
     assert ratios[growing] == pytest.approx(2.0)
     assert widths == pytest.approx(widths[::-1])
 

@@ -39,13 +39,15 @@ def test_corner_pressure_follows_logarithm(chamfered_roller) -> None:
     """Columns up to 0.05 of d0 on both sides, against the mean of the law."""
     distance = float(chamfered_roller.corner_distance)
     low, high = (chamfered_roller.x_bounds.values - float(chamfered_roller.corner_x)).T
-    for near, far in ((low, high), (-high, -low)):
-        inside = (near > 0) & (far < 0.05 * distance)
-        assert inside.sum() > 3
-        near, far = near[inside], far[inside]
-        mean_log = (far * np.log(far) - near * np.log(near)) / (far - near) - 1
+    for low_distance, high_distance in ((low, high), (-high, -low)):
+        in_range = (low_distance > 0) & (high_distance < 0.05 * distance)
+        assert in_range.sum() > 3
+        low_distance, high_distance = low_distance[in_range], high_distance[in_range]
+        mean_log = (high_distance * np.log(high_distance) - low_distance * np.log(low_distance)) / (
+            high_distance - low_distance
+        ) - 1
         law = float(chamfered_roller.corner_intensity) * (np.log(distance) - mean_log)
-        np.testing.assert_allclose(chamfered_roller.pressure.max("y").values[inside], law, rtol=0.05)
+        np.testing.assert_allclose(chamfered_roller.pressure.max("y").values[in_range], law, rtol=0.05)
 
 
 @pytest.mark.parametrize("radius", [50e-6])

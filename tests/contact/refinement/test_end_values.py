@@ -16,64 +16,68 @@ ACROSS = np.sqrt(np.array([0.0, 0.19, 0.91, 0.91, 0.19, 0.0]))
 def means(powers: list[float], edges: FloatArray) -> FloatArray:
     """Means over columns of a polynomial in the distance from the middle."""
     complete = np.polynomial.polynomial.polyint(powers)
-    middle = 0.5 * (edges[0] + edges[-1])
-    return np.asarray(np.diff(np.polynomial.polynomial.polyval(edges - middle, complete)) / np.diff(edges))
+    mid_x = 0.5 * (edges[0] + edges[-1])
+    return np.asarray(np.diff(np.polynomial.polynomial.polyval(edges - mid_x, complete)) / np.diff(edges))
 
 
-def spread_load(along: FloatArray) -> FloatArray:
-    return np.asarray(along[:, None] * ACROSS)
+def spread_load(line_load: FloatArray) -> FloatArray:
+    return np.asarray(line_load[:, None] * ACROSS)
 
 
 @pytest.mark.parametrize("tilt", [2.0, -2.0])
 def test_pressure_rising_to_end_peaks_at_end(tilt: float) -> None:
     """Exact for a parabola, between the cells along y as well."""
-    half = 0.5 * (EDGES[-1] - EDGES[0])
+    half_length = 0.5 * (EDGES[-1] - EDGES[0])
     powers = [1.0, tilt, 1.5]
     peaks, ends, along_y = extrapolate_end_pressures(EDGES, spread_load(means(powers, EDGES)), (None, None))
-    exact = tuple(float(np.polynomial.polynomial.polyval(at, powers)) for at in (-half, half))
-    assert ends == pytest.approx(exact, rel=1e-9)
+    exact_pressures = tuple(
+        float(np.polynomial.polynomial.polyval(position, powers)) for position in (-half_length, half_length)
+    )
+    assert ends == pytest.approx(exact_pressures, rel=1e-9)
     risen = 1 if tilt > 0 else 0
-    assert peaks[risen] == pytest.approx(exact[risen], rel=1e-9)
+    assert peaks[risen] == pytest.approx(exact_pressures[risen], rel=1e-9)
     # The other half is largest in the middle, between two columns, or on its own last one where that is more.
-    centres, values = 0.5 * (EDGES[1:] + EDGES[:-1]) - EDGES[0], means(powers, EDGES)
-    expected = values[(centres < half) if risen else (centres > half)].max()
-    assert peaks[1 - risen] == pytest.approx(max(expected, np.interp(half, centres, values)))
+    centres, column_loads = 0.5 * (EDGES[1:] + EDGES[:-1]) - EDGES[0], means(powers, EDGES)
+    expected = column_loads[(centres < half_length) if risen else (centres > half_length)].max()
+    assert peaks[1 - risen] == pytest.approx(max(expected, np.interp(half_length, centres, column_loads)))
     assert 1 + along_y == pytest.approx(1 / ACROSS.max())
 
 
 def test_halves_have_separate_peaks() -> None:
-    values = np.ones(EDGES.size - 1)
-    values[7] = 3.0  # the second column beyond the middle
-    peaks, ends, _ = extrapolate_end_pressures(EDGES, spread_load(values), (None, None))
+    column_loads = np.ones(EDGES.size - 1)
+    column_loads[7] = 3.0  # the second column beyond the middle
+    peaks, ends, _ = extrapolate_end_pressures(EDGES, spread_load(column_loads), (None, None))
     assert (0.5 * (EDGES[6] + EDGES[7]) - EDGES[0]) / (EDGES[-1] - EDGES[0]) > 0.5
     assert peaks == pytest.approx((1.0, 3.0))
     assert ends == pytest.approx((1.0, 1.0))
 
 
 def test_ends_without_pressure_and_singular_ends() -> None:
-    values = np.append(np.zeros(3), np.ones(EDGES.size - 4))
-    peaks, ends, _ = extrapolate_end_pressures(EDGES, spread_load(values), (None, EndLaw(kind="power", exponent=0.5)))
+    column_loads = np.append(np.zeros(3), np.ones(EDGES.size - 4))
+    peaks, ends, _ = extrapolate_end_pressures(
+        EDGES, spread_load(column_loads), (None, EndLaw(kind="power", exponent=0.5))
+    )
     assert ends == (0.0, np.inf)
     assert peaks == (pytest.approx(1.0), np.inf)
-    falling = values.copy()
+    falling = column_loads.copy()
     falling[:3] = 0.01, 0.5, 1.0  # the parabola through these means is negative at the end
     assert extrapolate_end_pressures(EDGES, spread_load(falling), (None, None))[1][0] == 0.0
 
 
 @pytest.mark.parametrize("width", [1e-2, 2e-2, 0.1, 1.0])
 def test_end_loads_integrate_one_half_width(width: float) -> None:
-    values = np.random.default_rng(0).uniform(1.0, 2.0, EDGES.size - 1)
+    column_loads = np.random.default_rng(0).uniform(1.0, 2.0, EDGES.size - 1)
     fine = np.linspace(EDGES[0], EDGES[-1], 200001)
     centres, step = 0.5 * (fine[1:] + fine[:-1]), fine[1] - fine[0]
-    own = values[np.searchsorted(EDGES, centres) - 1] * ACROSS.sum() * step
-    expected = own[centres < EDGES[0] + width].sum(), own[centres > EDGES[-1] - width].sum()
-    assert end_loads(EDGES, spread_load(values), width) == pytest.approx(expected, rel=1e-3)
+    step_loads = column_loads[np.searchsorted(EDGES, centres) - 1] * ACROSS.sum() * step
+    expected = step_loads[centres < EDGES[0] + width].sum(), step_loads[centres > EDGES[-1] - width].sum()
+    assert end_loads(EDGES, spread_load(column_loads), width) == pytest.approx(expected, rel=1e-3)
 
 
 def test_values_mirror_with_side() -> None:
-    values = np.arange(EDGES.size - 1.0)
-    first, last = (count_from_end(side, EDGES, values) for side in (0, 1))
+    column_values = np.arange(EDGES.size - 1.0)
+    first, last = (count_from_end(side, EDGES, column_values) for side in (0, 1))
     assert first[0][0] == last[0][0] == 0.0
     assert first[0][-1] == pytest.approx(last[0][-1])
     assert np.diff(last[0]) == pytest.approx(np.diff(EDGES)[::-1])
-    assert last[1].tolist() == values[::-1].tolist()
+    assert last[1].tolist() == column_values[::-1].tolist()

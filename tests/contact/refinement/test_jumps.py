@@ -22,14 +22,14 @@ def test_low_crest_jumps_relative_to_own_pressure() -> None:
 @pytest.mark.parametrize("lesser", [0.5, 0.02])
 def test_jumps_are_relative_to_half_peak(lesser: float) -> None:
     """Of a power of the pressure, to either neighbour and in any row; a half that is hardly pressed does not count."""
-    random = np.random.default_rng(0)
+    rng = np.random.default_rng(0)
     edges = np.array([3.0, 4.0, 4.5, 5.5, 6.0, 7.0, 8.0, 9.0, 10.0])
-    left = np.array([0, 1, 2, 3])  # the middle, 6.5, lies in the fifth column, whose centre it is
-    pressure = random.uniform(0.5, 1.0, (8, 5))
-    pressure[left] *= lesser
+    left_columns = np.array([0, 1, 2, 3])  # the middle, 6.5, lies in the fifth column, whose centre it is
+    pressure = rng.uniform(0.5, 1.0, (8, 5))
+    pressure[left_columns] *= lesser
     computed = _jumps(edges, pressure, 2.0)
     for i in range(8):
-        cell_pressure = pressure[left] if i in left else pressure[4:]
+        cell_pressure = pressure[left_columns] if i in left_columns else pressure[4:]
         top = max(cell_pressure.max(), MIN_HALF_PRESSURE * pressure.max())
         steps = [np.abs(pressure[i] ** 2 - pressure[j] ** 2).max() for j in (i - 1, i + 1) if 0 <= j < 8]
         assert computed[i] == pytest.approx(max(steps) / top**2)

@@ -16,8 +16,8 @@ HALVINGS = 0.1 * 0.5 ** np.arange(7)
 
 def column_means(edges: FloatArray, exponent: float, intensity: float, bend: float) -> FloatArray:
     """Means over columns of ``K d**-m (1 + c d)``."""
-    first, second = 1 - exponent, 2 - exponent
-    primitive = edges**first / first + bend * edges**second / second
+    first_power, second_power = 1 - exponent, 2 - exponent
+    primitive = edges**first_power / first_power + bend * edges**second_power / second_power
     return np.asarray(intensity * np.diff(primitive) / np.diff(edges))
 
 
@@ -75,18 +75,18 @@ def slope_of_a_wedge(angle: float, s: float) -> float:
 
     def shapes(t: float) -> FloatArray:
         """F, F' and F'' of the four parts."""
-        above, below = s + 1, s - 1
-        parts = [
-            (np.cos(above * t), -above * np.sin(above * t), -(above**2) * np.cos(above * t)),
-            (np.sin(above * t), above * np.cos(above * t), -(above**2) * np.sin(above * t)),
-            (np.cos(below * t), -below * np.sin(below * t), -(below**2) * np.cos(below * t)),
-            (np.sin(below * t), below * np.cos(below * t), -(below**2) * np.sin(below * t)),
+        upper, lower = s + 1, s - 1
+        wedge_equations = [
+            (np.cos(upper * t), -upper * np.sin(upper * t), -(upper**2) * np.cos(upper * t)),
+            (np.sin(upper * t), upper * np.cos(upper * t), -(upper**2) * np.sin(upper * t)),
+            (np.cos(lower * t), -lower * np.sin(lower * t), -(lower**2) * np.cos(lower * t)),
+            (np.sin(lower * t), lower * np.cos(lower * t), -(lower**2) * np.sin(lower * t)),
         ]
-        return np.array(parts).T
+        return np.array(wedge_equations).T
 
-    loaded, free = shapes(0.0), shapes(angle)
+    loaded_face, free_face = shapes(0.0), shapes(angle)
     # Stresses over r**(s - 1): across s (s + 1) F, shear -s F'.
-    conditions = np.array([s * (s + 1) * loaded[0], loaded[1], free[0], free[1]])
+    conditions = np.array([s * (s + 1) * loaded_face[0], loaded_face[1], free_face[0], free_face[1]])
     _, b, _, d = np.linalg.solve(conditions, [-1.0, 0.0, 0.0, 0.0])
     # Displacement across r**s: of the parts with s + 1 by 2 G u = -dF / r, of those with s - 1 also by their Laplacian.
     return float(s * (-(s + 1) * b - (s - 1) * d - 4 * d))
@@ -95,8 +95,8 @@ def slope_of_a_wedge(angle: float, s: float) -> float:
 @pytest.mark.parametrize("s", [0.55, 0.7, 0.7736, 0.9])
 def test_elastic_exponent_satisfies_wedge_equation(s: float) -> None:
     quarter = np.sin(np.pi * s) / (2 * (np.sin(0.5 * np.pi * s) ** 2 - s**2))
-    half = 1 / np.tan(np.pi * s)
-    assert slope_of_a_wedge(0.5 * np.pi, s) / slope_of_a_wedge(np.pi, s) == pytest.approx(quarter / half)
+    half_space_slope = 1 / np.tan(np.pi * s)
+    assert slope_of_a_wedge(0.5 * np.pi, s) / slope_of_a_wedge(np.pi, s) == pytest.approx(quarter / half_space_slope)
 
 
 @given(ratio=st.floats(1e-3, 1e3))
@@ -108,16 +108,16 @@ def test_elastic_exponent_lies_between_rigid_limits(ratio: float) -> None:
 
 
 def samples(pressure: FloatArray) -> list[Sample]:
-    return [Sample(float(width), float(value)) for width, value in zip(HALVINGS, pressure, strict=True)]
+    return [Sample(float(width), float(peak)) for width, peak in zip(HALVINGS, pressure, strict=True)]
 
 
 @given(exponent=st.floats(0.15, 0.5))
 def test_power_growth_has_power_law(exponent: float) -> None:
-    known, unknown = (law_of(samples(HALVINGS**-exponent), theory) for theory in (RIGID, np.nan))
-    assert known == EndLaw(kind="power", exponent=RIGID)
-    assert unknown is not None
-    assert unknown.kind == "power"
-    assert np.isnan(unknown.exponent)
+    theory_law, fitted_law = (law_of(samples(HALVINGS**-exponent), theory) for theory in (RIGID, np.nan))
+    assert theory_law == EndLaw(kind="power", exponent=RIGID)
+    assert fitted_law is not None
+    assert fitted_law.kind == "power"
+    assert np.isnan(fitted_law.exponent)
 
 
 @given(share=st.floats(0.02, 0.2))
@@ -176,20 +176,20 @@ def test_fit_uses_columns_from_3_to_64_widths(unit: float) -> None:
     """And between 6 and 128 of them for the error; what is nearer or farther may be anything."""
     pressure = column_means(unit * EDGES, 0.5, 2.0, 0.01 / unit)[:, None]
 
-    def found(first: float) -> EndLaw:
+    def fitted_law(first_distance: float) -> EndLaw:
         variant = pressure.copy()
-        variant[int(np.flatnonzero(first == EDGES)[0])] *= 1.5
+        variant[int(np.flatnonzero(first_distance == EDGES)[0])] *= 1.5
         return EndLaw(kind="power", exponent=0.5).with_intensity(unit * EDGES, variant, np.inf)
 
     baseline = EndLaw(kind="power", exponent=0.5).with_intensity(unit * EDGES, pressure, np.inf)
     assert baseline.intensity == pytest.approx(2.0)
-    for first in (2.0, 128.0):
-        assert found(first) == baseline
-    for first in (3.0, 38.0):
-        assert found(first).intensity != pytest.approx(2.0, rel=1e-3)
-    for first in (64.0, 90.0):
-        assert found(first).intensity == pytest.approx(2.0)
-        assert found(first).intensity_error > 2 * baseline.intensity_error
+    for first_distance in (2.0, 128.0):
+        assert fitted_law(first_distance) == baseline
+    for first_distance in (3.0, 38.0):
+        assert fitted_law(first_distance).intensity != pytest.approx(2.0, rel=1e-3)
+    for first_distance in (64.0, 90.0):
+        assert fitted_law(first_distance).intensity == pytest.approx(2.0)
+        assert fitted_law(first_distance).intensity_error > 2 * baseline.intensity_error
 
 
 @pytest.mark.parametrize("width", [1e-5, 1.0, 1e3])
@@ -197,12 +197,12 @@ def test_end_near_free_end_has_larger_error(width: float) -> None:
     """Beyond half of the room between them the law does not hold; the fit reaches to 64 widths."""
     edges = width * EDGES
     pressure = column_means(edges, 0.5, 2.0, 0.0)[:, None]
-    wide, narrow = (
+    wide_face_law, narrow_face_law = (
         EndLaw(kind="power", exponent=0.5).with_intensity(edges, pressure, room * width).intensity_error
         for room in (129.0, 127.0)
     )
-    assert wide == pytest.approx(3e-3 * 2.0)
-    assert narrow - wide == pytest.approx(0.08 * 2.0)
+    assert wide_face_law == pytest.approx(3e-3 * 2.0)
+    assert narrow_face_law - wide_face_law == pytest.approx(0.08 * 2.0)
     nearly_flush = EndLaw(kind="power", exponent=0.5).with_intensity(edges, pressure, 2.9 * width)
     assert nearly_flush.intensity_error == np.inf
 

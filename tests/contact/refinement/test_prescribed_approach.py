@@ -64,13 +64,13 @@ def test_ball_carries_hertz_load() -> None:
 
 @pytest.mark.slow
 def test_approach_between_free_ends_reproduces_load() -> None:
-    pressed = solve(SHORT, stresses=False, accuracy=0.1)
-    loaded = replace(SHORT, approach=None, load=float(pressed.normal_load))
-    variant = solve(loaded, stresses=False, accuracy=0.1)
-    assert float(pressed.approach) == SHORT.approach
+    approach_result = solve(SHORT, stresses=False, accuracy=0.1)
+    loaded_case = replace(SHORT, approach=None, load=float(approach_result.normal_load))
+    variant = solve(loaded_case, stresses=False, accuracy=0.1)
+    assert float(approach_result.approach) == SHORT.approach
     assert float(variant.approach) == pytest.approx(SHORT.approach, rel=1e-3)
-    assert float(pressed.peak_pressure) == pytest.approx(float(variant.peak_pressure), rel=0.01)
-    assert float(pressed.hertz_half_width) == pytest.approx(loaded.hertz_half_width)
+    assert float(approach_result.peak_pressure) == pytest.approx(float(variant.peak_pressure), rel=0.01)
+    assert float(approach_result.hertz_half_width) == pytest.approx(loaded_case.hertz_half_width)
     assert "normal_load_error" not in variant
 
 
@@ -86,10 +86,10 @@ def test_tractions_at_prescribed_approach() -> None:
 def test_approach_on_given_cells_and_rough_surfaces() -> None:
     cells = Grid(x_range=(0.2e-3, 0.6e-3), y_range=(-0.2e-3, 0.2e-3), cells_x=64, cells_y=64)
     assert float(solve(BALL, cells, stresses=False).normal_load) == pytest.approx(HERTZ, rel=0.02)
-    flat = xr.DataArray(np.zeros((2, 2)), dims=("x", "y"), coords={"x": [-1e-2, 1e-2], "y": [-1e-2, 1e-2]})
-    straight = replace(SHORT, body=HalfSpace(material=STEEL), tilt=0.0, coupled=False)
-    smooth = solve(straight, stresses=False, accuracy=0.1)
-    assert float(solve(straight, roughness=flat, stresses=False).normal_load) == pytest.approx(
+    flat_heights = xr.DataArray(np.zeros((2, 2)), dims=("x", "y"), coords={"x": [-1e-2, 1e-2], "y": [-1e-2, 1e-2]})
+    untilted_case = replace(SHORT, body=HalfSpace(material=STEEL), tilt=0.0, coupled=False)
+    smooth = solve(untilted_case, stresses=False, accuracy=0.1)
+    assert float(solve(untilted_case, roughness=flat_heights, stresses=False).normal_load) == pytest.approx(
         float(smooth.normal_load), rel=0.02
     )
 
@@ -121,29 +121,29 @@ CYLINDER = Case(
 
 def test_slice_load_sums_hertz_line_contacts() -> None:
     """Of a slice at depth d: ``pi E* b**2 / 4 R`` with b a part of ``sqrt(2 R d)``, so the load is as all depths."""
-    part = np.pi / 2 * SLICE_WIDTH**2 * STEEL.plane_strain_modulus
-    assert _slice_load(CYLINDER) == pytest.approx(part * 3e-6 * 2e-3)
+    load_factor = np.pi / 2 * SLICE_WIDTH**2 * STEEL.plane_strain_modulus
+    assert _slice_load(CYLINDER) == pytest.approx(load_factor * 3e-6 * 2e-3)
     start, stop = BALL.contact_range
     x = np.linspace(start, stop, 20001)
     depth = np.maximum(APPROACH - (RADIUS - np.sqrt(RADIUS**2 - (x - 0.5 * (start + stop)) ** 2)), 0.0)
-    assert _slice_load(BALL) == pytest.approx(part * depth.mean() * (stop - start), rel=0.01)
+    assert _slice_load(BALL) == pytest.approx(load_factor * depth.mean() * (stop - start), rel=0.01)
     # Of a contact between two slices: the least load that a case may have, or a little more.
-    tilted = replace(BALL, body=FiniteLengthSpace(length=2e-3, material=STEEL), end_distance=0.6e-3, tilt=4e-4)
-    minimum = _slice_load(replace(tilted, approach=tilted.first_touch + 1e-11))
+    tilted_case = replace(BALL, body=FiniteLengthSpace(length=2e-3, material=STEEL), end_distance=0.6e-3, tilt=4e-4)
+    minimum = _slice_load(replace(tilted_case, approach=tilted_case.first_touch + 1e-11))
     assert replace(BALL, approach=None, load=minimum).hertz_half_width == pytest.approx(2 * MIN_HALF_WIDTH * RADIUS)
 
 
-@pytest.mark.parametrize(("case", "most"), [(BALL, 4), (replace(SHORT, friction=0.0, coupled=False), 5)])
-def test_load_search_needs_few_loads(case: Case, most: int, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize(("case", "max_loads"), [(BALL, 4), (replace(SHORT, friction=0.0, coupled=False), 5)])
+def test_load_search_needs_few_loads(case: Case, max_loads: int, monkeypatch: pytest.MonkeyPatch) -> None:
     attempts: list[float] = []
 
-    def noted(loaded: AnyCase, accuracy: float, tolerance: float) -> RefinedContact:
-        attempts.append(loaded.normal_load)
-        return refine_contact(loaded, accuracy, tolerance)
+    def record_load(loaded_case: AnyCase, accuracy: float, tolerance: float) -> RefinedContact:
+        attempts.append(loaded_case.normal_load)
+        return refine_contact(loaded_case, accuracy, tolerance)
 
-    monkeypatch.setattr(refined_contact, "refine_contact", noted)
+    monkeypatch.setattr(refined_contact, "refine_contact", record_load)
     contact_at_approach(case, 0.1, 1e-4)
-    assert len(attempts) <= most
+    assert len(attempts) <= max_loads
 
 
 def test_load_search_fits_power_of_depth(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -151,13 +151,13 @@ def test_load_search_fits_power_of_depth(monkeypatch: pytest.MonkeyPatch) -> Non
     contact_at_load = refine_contact(replace(BALL, approach=None, load=HERTZ), 0.1, 1e-4)
     attempts: list[float] = []
 
-    def made_up(loaded: AnyCase, accuracy: float, tolerance: float) -> RefinedContact:
-        attempts.append(loaded.normal_load)
+    def power_law_contact(loaded_case: AnyCase, accuracy: float, tolerance: float) -> RefinedContact:
+        attempts.append(loaded_case.normal_load)
         touch = float(contact_at_load.contact.shape.gap.values.min())
-        depth = (APPROACH - touch) * (loaded.normal_load / HERTZ) ** (2 / 3)
+        depth = (APPROACH - touch) * (loaded_case.normal_load / HERTZ) ** (2 / 3)
         return replace(contact_at_load, contact=replace(contact_at_load.contact, approach=touch + depth))
 
-    monkeypatch.setattr(refined_contact, "refine_contact", made_up)
+    monkeypatch.setattr(refined_contact, "refine_contact", power_law_contact)
     search_load(BALL, APPROACH, 0.2 * HERTZ, 0.1, 1e-4)
     factors = np.array(attempts) / HERTZ
     assert factors[:2] == pytest.approx([0.2, 0.2 * LOAD_EXCESS * (0.2 ** (-2 / 3)) ** 1.2])

@@ -41,7 +41,7 @@ from tests.contact.refinement.rollers import (
     filleted,
     finer_peak,
     finite,
-    settled,
+    refined_at,
     top_of,
 )
 
@@ -52,7 +52,7 @@ KNOWN_FILLETS = {0.5e-3: 2.8565, 0.2e-3: 3.6418, 0.1e-3: 4.4744, 0.05e-3: 5.556}
 def test_fillet_peak_error_covers_finer_cells() -> None:
     fillet = 0.2e-3
     case = Case(body=HALF, roller=filleted(fillet), max_pressure=PRESSURE)
-    computed = settled(case)
+    computed = refined_at(case)
     peak, error = computed.refined.peak, computed.refined.peak_error
     finer = finer_peak(case, computed, 2)
     assert computed.refined.accurate
@@ -65,7 +65,7 @@ def test_fillet_peak_error_covers_finer_cells() -> None:
 @pytest.mark.parametrize("fillet", KNOWN_FILLETS)
 def test_fillet_peak_error_covers_four_times_finer_cells(fillet: float) -> None:
     case = Case(body=HALF, roller=filleted(fillet), max_pressure=PRESSURE)
-    computed = settled(case)
+    computed = refined_at(case)
     finer = finer_peak(case, computed, 4)
     assert finer / PRESSURE == pytest.approx(KNOWN_FILLETS[fillet], rel=1e-3)
     assert abs(computed.refined.peak - finer) <= computed.refined.peak_error <= 0.01 * computed.refined.peak
@@ -74,11 +74,9 @@ def test_fillet_peak_error_covers_four_times_finer_cells(fillet: float) -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("body", [finite(), QuarterSpace(material=STEEL)], ids=["finite", "quarter"])
-def test_peak_error_between_free_ends_covers_finer_cells(
-    body: FiniteLengthSpace | QuarterSpace,
-) -> None:
+def test_peak_error_between_free_ends_covers_finer_cells(body: FiniteLengthSpace | QuarterSpace) -> None:
     case = Case(body=body, roller=filleted(0.2e-3), max_pressure=PRESSURE)
-    computed = settled(case)
+    computed = refined_at(case)
     assert abs(computed.refined.peak - finer_peak(case, computed, 2)) <= computed.refined.peak_error
 
 
@@ -101,8 +99,8 @@ def test_refined_contact_matches_uniform_cells(name: str) -> None:
     if case.load_position is not None:
         assert float((forces * computed.x).sum() / forces.sum()) == pytest.approx(case.load_position, rel=1e-9)
     # The load per length, over the same parts of the roller.
-    parts = np.linspace(*case.contact_range, 9)
-    loads = [load_up_to(variant, parts) for variant in (computed, uniform)]
+    section_edges = np.linspace(*case.contact_range, 9)
+    loads = [load_up_to(variant, section_edges) for variant in (computed, uniform)]
     assert np.abs(loads[0] - loads[1]).max() < 2e-3 * case.normal_load
 
 
@@ -120,7 +118,7 @@ def load_up_to(result: xr.Dataset, x: FloatArray) -> FloatArray:
 @pytest.mark.parametrize("name", ["flush", "half-space"])
 def test_mirrored_case_has_the_mirrored_contact(name: str) -> None:
     tilts = [
-        settled(Case(body=CASES[name].body, roller=CASES[name].roller, max_pressure=PRESSURE, tilt=tilt), 0.02)
+        refined_at(Case(body=CASES[name].body, roller=CASES[name].roller, max_pressure=PRESSURE, tilt=tilt), 0.02)
         for tilt in (8e-4, -8e-4)
     ]
     there, back = (variant.refined for variant in tilts)
@@ -129,14 +127,16 @@ def test_mirrored_case_has_the_mirrored_contact(name: str) -> None:
 
 
 def test_measured_fillet_has_peak_of_fillet() -> None:
-    made = filleted(0.2e-3).profile
-    near = np.concatenate([np.linspace(0, 0.2e-3, 401), np.linspace(0.21e-3, 1e-3, 80)])
-    x = np.unique(np.concatenate([-LENGTH / 2 + near, np.linspace(-4e-3, 4e-3, 161), LENGTH / 2 - near]))
-    table = profiles.Measured(x.tolist(), made.drop(x, LENGTH).tolist(), largest_spike=1e-3)
+    formula_profile = filleted(0.2e-3).profile
+    point_distances = np.concatenate([np.linspace(0, 0.2e-3, 401), np.linspace(0.21e-3, 1e-3, 80)])
+    x = np.unique(
+        np.concatenate([-LENGTH / 2 + point_distances, np.linspace(-4e-3, 4e-3, 161), LENGTH / 2 - point_distances])
+    )
+    table = profiles.Measured(x.tolist(), formula_profile.drop(x, LENGTH).tolist(), largest_spike=1e-3)
     peaks = []
-    for profile in (made, table):
+    for profile in (formula_profile, table):
         roller = Roller(radius=RADIUS, length=LENGTH, profile=profile)
-        computed = settled(Case(body=HALF, roller=roller, max_pressure=PRESSURE)).refined
+        computed = refined_at(Case(body=HALF, roller=roller, max_pressure=PRESSURE)).refined
         assert computed.accurate
         peaks.append(computed.peak)
     assert peaks[1] == pytest.approx(peaks[0], rel=0.01)
@@ -182,36 +182,36 @@ class _Crown:
 
 def test_cache_compares_cases_by_value() -> None:
     case = Case(body=HALF, roller=filleted(0.2e-3, SHORT), max_pressure=PRESSURE)
-    first = refine_contact(case, 0.05, 1e-6)
-    assert refine_contact(replace(case, friction=0.2), 0.05, 1e-6) is first
-    assert refine_contact(case, 0.04, 1e-6) is not first
-    assert refine_contact(replace(case, friction=0.2, coupled=True), 0.05, 1e-6) is not first
+    first_contact = refine_contact(case, 0.05, 1e-6)
+    assert refine_contact(replace(case, friction=0.2), 0.05, 1e-6) is first_contact
+    assert refine_contact(case, 0.04, 1e-6) is not first_contact
+    assert refine_contact(replace(case, friction=0.2, coupled=True), 0.05, 1e-6) is not first_contact
     expected = _Crown(5e-3)
     changed = Case(body=HALF, roller=Roller(radius=5e-3, length=SHORT, profile=expected), max_pressure=PRESSURE)
-    before = refine_contact(changed, 0.05, 1e-6).refined.peak
+    previous_peak = refine_contact(changed, 0.05, 1e-6).refined.peak
     expected.radius = 2.5e-3
-    assert refine_contact(changed, 0.05, 1e-6).refined.peak > 1.05 * before
+    assert refine_contact(changed, 0.05, 1e-6).refined.peak > 1.05 * previous_peak
 
 
 def test_modified_result_does_not_change_next_result() -> None:
-    first = solve(CASES["half-space"], stresses=False, accuracy=0.05)
-    retained = first["pressure"].values.copy()
+    first_result = solve(CASES["half-space"], stresses=False, accuracy=0.05)
+    retained = first_result["pressure"].values.copy()
     for name in ("pressure", "gap", "displacement_z", "initial_gap"):
-        first[name].values[:] = 0.0
+        first_result[name].values[:] = 0.0
     np.testing.assert_array_equal(solve(CASES["half-space"], stresses=False, accuracy=0.05)["pressure"], retained)
 
 
-@pytest.mark.parametrize("part", [0.2, 0.5, 0.75, 0.95])
+@pytest.mark.parametrize("fraction", [0.2, 0.5, 0.75, 0.95])
 @pytest.mark.parametrize("accuracy", [0.2, 0.05, 0.01, 0.002])
-def test_cell_number_is_least_sufficient_one(accuracy: float, part: float) -> None:
+def test_cell_number_is_least_sufficient_one(accuracy: float, fraction: float) -> None:
     """What lies between cells is 0.7 over the square of their number across the contact."""
-    cells = _cell_number_y(part, accuracy)
+    cells = _cell_number_y(fraction, accuracy)
 
-    def left(cells: int) -> float:
-        return 0.7 / (cells * part) ** 2
+    def remaining_error(cells: int) -> float:
+        return 0.7 / (cells * fraction) ** 2
 
-    assert left(cells) <= 0.25 * accuracy or cells == 256
-    assert left(cells // 2) > 0.25 * accuracy or cells == 32
+    assert remaining_error(cells) <= 0.25 * accuracy or cells == 256
+    assert remaining_error(cells // 2) > 0.25 * accuracy or cells == 32
 
 
 @pytest.mark.parametrize("distance", [-0.2e-3, 0.0, 1e-15, 1e-9, 0.3e-3])
@@ -254,7 +254,7 @@ FITTED = {
 @pytest.mark.parametrize("name", FITTED)
 def test_window_fits_contact(name: str) -> None:
     """A tenth wider at least, and by no more than one step of the windows that cases share, and a rough cell."""
-    contact = settled(FITTED[name], 0.05).contact
+    contact = refined_at(FITTED[name], 0.05).contact
     grid = contact.shape.grid
     reach = np.abs(grid.y[contact.pressure.any(axis=0)]).max() + 0.5 * grid.dy
     assert 1.05 < grid.y_range[1] / reach < 1.1 * 2 ** (1 / 6) * 1.15
@@ -287,12 +287,12 @@ def test_wavy_profile_crests_are_resolved() -> None:
     refined = solve(case, stresses=False, accuracy=0.03)
     uniform = solve(case, choose_grid(case, cells_x=4, cells_y=12, window=3.0), stresses=False)
     for crest in range(5):
-        at = abs(abs(refined.x - length / 2) - crest * wave) < 0.35 * wave
+        is_crest = abs(abs(refined.x - length / 2) - crest * wave) < 0.35 * wave
         others = abs(abs(uniform.x - length / 2) - crest * wave) < 0.35 * wave
         loads = [
-            float((item.pressure.sum("y") * widths).where(where).sum() * (item.y[1] - item.y[0]))
-            for item, widths, where in (
-                (refined, refined.x_width, at),
+            float((result.pressure.sum("y") * widths).where(where).sum() * (result.y[1] - result.y[0]))
+            for result, widths, where in (
+                (refined, refined.x_width, is_crest),
                 (uniform, float(uniform.x[1] - uniform.x[0]), others),
             )
         ]

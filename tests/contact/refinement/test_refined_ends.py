@@ -19,13 +19,13 @@ from tests.contact.refinement.rollers import (
     filleted,
     finer_peak,
     finite,
-    settled,
+    refined_at,
 )
 
 
 def test_sharp_rigid_end_has_square_root_law() -> None:
     case = Case(body=HALF, roller=Roller(radius=RADIUS, length=LENGTH), max_pressure=PRESSURE)
-    values = refined_values(settled(case))
+    values = refined_values(refined_at(case))
     assert np.isinf(values.peak_pressure)
     assert np.isinf(values.peak_pressure_error)
     for side in ("first", "last"):
@@ -38,17 +38,19 @@ def test_sharp_rigid_end_has_square_root_law() -> None:
 
 def test_edge_peak_matches_small_fillet() -> None:
     fillet = 0.01e-3
-    sharp = settled(Case(body=HALF, roller=Roller(radius=RADIUS, length=LENGTH), max_pressure=PRESSURE))
+    sharp = refined_at(Case(body=HALF, roller=Roller(radius=RADIUS, length=LENGTH), max_pressure=PRESSURE))
     law = sharp.refined.laws[0]
     assert law is not None
-    solved = settled(Case(body=HALF, roller=filleted(fillet), max_pressure=PRESSURE))
+    solved = refined_at(Case(body=HALF, roller=filleted(fillet), max_pressure=PRESSURE))
     assert solved.refined.accurate
     assert edge_peak(law.intensity, STEEL.plane_strain_modulus, fillet) == pytest.approx(solved.refined.peak, rel=0.01)
 
 
 def test_flush_end_of_a_free_body_has_a_finite_pressure() -> None:
     """0.497 p0 from an extrapolation of columns down to 0.003 a."""
-    computed = settled(Case(body=finite(), roller=Roller(radius=RADIUS, length=LENGTH), max_pressure=PRESSURE)).refined
+    computed = refined_at(
+        Case(body=finite(), roller=Roller(radius=RADIUS, length=LENGTH), max_pressure=PRESSURE)
+    ).refined
     assert computed.laws == (None, None)
     for end, error in zip(computed.values["end_pressure"], computed.errors["end_pressure"], strict=True):
         assert end / PRESSURE == pytest.approx(0.497, abs=0.005)
@@ -59,9 +61,9 @@ def test_flush_end_of_a_free_body_has_a_finite_pressure() -> None:
 def test_tilted_end_without_correction_has_logarithm() -> None:
     body = FiniteLengthSpace(length=LENGTH, material=STEEL, model="mirror")
     case = Case(body=body, roller=Roller(radius=RADIUS, length=LENGTH), max_pressure=PRESSURE, tilt=5e-4)
-    laws = settled(case).refined.laws
+    laws = refined_at(case).refined.laws
     assert "logarithm" in [law.kind for law in laws if law is not None]
-    freed = settled(
+    freed = refined_at(
         Case(body=finite(), roller=Roller(radius=RADIUS, length=LENGTH), max_pressure=PRESSURE, tilt=5e-4)
     ).refined
     assert freed.laws == (None, None)
@@ -70,7 +72,7 @@ def test_tilted_end_without_correction_has_logarithm() -> None:
 
 def test_singular_end_with_unloaded_half() -> None:
     roller = Roller(radius=RADIUS, length=0.3e-3, profile=profiles.FullCrown(0.5))
-    computed = settled(Case(body=HALF, roller=roller, max_pressure=PRESSURE, tilt=0.02), 0.1).refined
+    computed = refined_at(Case(body=HALF, roller=roller, max_pressure=PRESSURE, tilt=0.02), 0.1).refined
     assert computed.accurate
     assert computed.values["peak_pressure"] == (0.0, np.inf)
     assert computed.values["end_load"][0] == 0.0
@@ -81,7 +83,7 @@ def test_sharp_elastic_end_has_smaller_exponent() -> None:
     half_width = 2 * A
     roller = Roller(radius=RADIUS, length=30 * half_width, material=STEEL)
     case = Case(body=finite(60 * half_width), roller=roller, max_pressure=PRESSURE)
-    laws = settled(case).refined.laws
+    laws = refined_at(case).refined.laws
     for law in laws:
         assert law is not None
         assert law.kind == "power"
@@ -91,7 +93,7 @@ def test_sharp_elastic_end_has_smaller_exponent() -> None:
 def test_crowned_roller_peaks_at_mid_length() -> None:
     crown = profiles.Lundberg.for_pressure(PRESSURE, radius=RADIUS, modulus=STEEL.plane_strain_modulus)
     case = Case(body=finite(), roller=Roller(radius=RADIUS, length=LENGTH, profile=crown), max_pressure=PRESSURE)
-    computed = settled(case)
+    computed = refined_at(case)
     assert computed.refined.values["end_pressure"] == (0.0, 0.0)
     assert computed.refined.errors["end_pressure"] == [0.0, 0.0]
     assert abs(computed.refined.peak - finer_peak(case, computed, 2)) <= computed.refined.peak_error
@@ -111,9 +113,9 @@ def test_end_near_free_end_matches_flush_end(material: Material | None, distance
         for variant in (distance, 0.0)
     )
     computed = solve(case, accuracy=0.05, y=[0.0], z=[0.3 * A], x=[0.0, A])
-    same = solve(flush, accuracy=0.05, stresses=False)
+    flush_result = solve(flush, accuracy=0.05, stresses=False)
     assert bool(computed.converged)
-    assert float(computed.peak_pressure) == pytest.approx(float(same.peak_pressure), rel=0.01)
+    assert float(computed.peak_pressure) == pytest.approx(float(flush_result.peak_pressure), rel=0.01)
     repeated = stress_field(
         case.body, computed.pressure, x=[0.0, A], y=[0.0], z=[0.3 * A], inside_cells=computed.pressure
     )
@@ -127,7 +129,7 @@ def test_sharp_end_near_free_end_has_infinite_error(distance: float) -> None:
     case = Case(
         body=finite(LENGTH + 2 * distance * A), roller=Roller(radius=RADIUS, length=LENGTH), max_pressure=PRESSURE
     )
-    computed = refined_values(settled(case))
+    computed = refined_values(refined_at(case))
     assert np.isinf(computed["end_pressure_first_error"])
     if distance > 1e-3:
         intensity = computed["end_intensity_first"] / (PRESSURE * np.sqrt(A))
@@ -140,7 +142,7 @@ def test_fading_end_has_infinite_error() -> None:
     rubber = Material(6e8, 0.0)
     roller = Roller(radius=RADIUS, length=0.13e-3, material=rubber)
     body = QuarterSpace(material=rubber, model="mirror-factor")
-    computed = refined_values(settled(Case(body=body, roller=roller, max_pressure=2e6), 0.02))
+    computed = refined_values(refined_at(Case(body=body, roller=roller, max_pressure=2e6), 0.02))
     assert np.isinf(computed["end_pressure_first_error"])
     assert 0 < float(computed["peak_pressure_first_error"]) < 0.02 * float(computed["peak_pressure_first"])
 
@@ -148,7 +150,7 @@ def test_fading_end_has_infinite_error() -> None:
 def test_single_loaded_sharp_end_has_law() -> None:
     body = finite(3e-3)
     case = Case(body=body, roller=Roller(radius=RADIUS, length=2e-3), load=100.0, end_distance=0.5e-3, tilt=2e-3)
-    free, law = settled(case, 0.05).refined.laws
+    free, law = refined_at(case, 0.05).refined.laws
     assert free is None
     assert law is not None
     assert law.exponent == 0.5

@@ -7,18 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from contactstudy import (
-    Case,
-    FiniteLengthSpace,
-    Grid,
-    HalfSpace,
-    Material,
-    Roller,
-    Rolling,
-    Shift,
-    choose_grid,
-    solve,
-)
+from contactstudy import Case, FiniteLengthSpace, Grid, HalfSpace, Material, Roller, Rolling, Shift, choose_grid, solve
 from contactstudy.cache import ArrayKey
 from contactstudy.contact.normal.contact import Certificate, Contact, Settings, Shape
 from contactstudy.contact.normal.prescribed_loads import PrescribedLoad
@@ -32,34 +21,33 @@ from contactstudy.profiles import Ellipsoid
 
 STEEL = Material(210e9, 0.3)
 BODY = FiniteLengthSpace(length=0.5e-3, material=STEEL)
-LIKE = Case(body=BODY, roller=Roller(radius=5e-3, length=0.5e-3, material=STEEL), max_pressure=1.5e9, friction=0.1)
-INSIDE = Case(
-    body=HalfSpace(material=STEEL),
-    roller=Roller(radius=5e-3, length=0.5e-3),
-    max_pressure=1.5e9,
-    friction=0.1,
+STEEL_CASE = Case(
+    body=BODY, roller=Roller(radius=5e-3, length=0.5e-3, material=STEEL), max_pressure=1.5e9, friction=0.1
+)
+SHORT_CASE = Case(
+    body=HalfSpace(material=STEEL), roller=Roller(radius=5e-3, length=0.5e-3), max_pressure=1.5e9, friction=0.1
 )
 """A rigid roller that ends inside the face: the pressure is singular there."""
 
-WHOLE = 0.1 * LIKE.normal_load
+SLIDING_FORCE = 0.1 * STEEL_CASE.normal_load
 
 
 @pytest.mark.parametrize(
     "motion",
     [
         Rolling(longitudinal_creepage=5e-4, lateral_creepage=-3e-4, spin=1.0),
-        Rolling(force_y=0.6 * WHOLE, force_x=0.2 * WHOLE),
+        Rolling(force_y=0.6 * SLIDING_FORCE, force_x=0.2 * SLIDING_FORCE),
         Shift(y=3e-7),
-        Shift(force_x=0.5 * WHOLE),
+        Shift(force_x=0.5 * SLIDING_FORCE),
     ],
     ids=["creepages and spin", "forces", "shift", "shifting force"],
 )
 def test_stated_errors_cover_fine_uniform_cells(motion: Rolling | Shift) -> None:
-    case = replace(LIKE, motion=motion)
+    case = replace(STEEL_CASE, motion=motion)
     computed = solve(case, stresses=False)
     assert bool(computed.converged)
     fine = solve(case, choose_grid(case, cells_x=8, cells_y=40, window=1.5), stresses=False)
-    scales = {"force_x": WHOLE, "force_y": WHOLE, "moment_z": WHOLE * 0.1e-3}
+    scales = {"force_x": SLIDING_FORCE, "force_y": SLIDING_FORCE, "moment_z": SLIDING_FORCE * 0.1e-3}
     for name, scale in scales.items():
         error = float(computed.get(f"{name}_error", 0.0))
         assert error <= 0.01 * scale
@@ -80,26 +68,26 @@ def test_stated_errors_cover_fine_uniform_cells(motion: Rolling | Shift) -> None
 
 
 def test_motion_keeps_columns() -> None:
-    rolling = replace(INSIDE, motion=Rolling(longitudinal_creepage=2e-2))
-    still, shifted = (solve(case, stresses=False, accuracy=0.1) for case in (INSIDE, rolling))
+    rolling = replace(SHORT_CASE, motion=Rolling(longitudinal_creepage=2e-2))
+    still, shifted = (solve(case, stresses=False, accuracy=0.1) for case in (SHORT_CASE, rolling))
     assert np.array_equal(still["x"], shifted["x"])
     assert float(shifted["end_intensity_first"]) == pytest.approx(float(still["end_intensity_first"]), rel=0.01)
-    assert 0 < float(shifted["force_y"]) < 0.1 * INSIDE.normal_load
+    assert 0 < float(shifted["force_y"]) < 0.1 * SHORT_CASE.normal_load
     bound = 0.1 * shifted["pressure"]
     assert float((np.hypot(shifted["traction_x"], shifted["traction_y"]) - bound).max()) < 1e-6 * float(bound.max())
 
 
 def test_creepages_share_one_contact() -> None:
-    first = refine_contact(replace(LIKE, motion=Rolling(longitudinal_creepage=1e-3)), 0.05, 1e-6)
-    assert refine_contact(replace(LIKE, motion=Rolling(force_y=1.0)), 0.05, 1e-6) is first
-    assert refine_contact(LIKE, 0.05, 1e-6) is not first  # its window is narrower
+    first_contact = refine_contact(replace(STEEL_CASE, motion=Rolling(longitudinal_creepage=1e-3)), 0.05, 1e-6)
+    assert refine_contact(replace(STEEL_CASE, motion=Rolling(force_y=1.0)), 0.05, 1e-6) is first_contact
+    assert refine_contact(STEEL_CASE, 0.05, 1e-6) is not first_contact  # its window is narrower
 
 
 @pytest.mark.slow
 def test_coupled_tractions_change_stated_values() -> None:
     """A rigid roller on compressible material: what drives it lifts the surface."""
     body = HalfSpace(material=Material(210e9, 0.0))
-    case = replace(INSIDE, body=body, coupled=True, friction=0.5, motion=Rolling(longitudinal_creepage=0.05))
+    case = replace(SHORT_CASE, body=body, coupled=True, friction=0.5, motion=Rolling(longitudinal_creepage=0.05))
     computed = solve(case, stresses=False, accuracy=0.1)
     free = solve(replace(case, coupled=False), stresses=False, accuracy=0.1)
     assert bool(computed.converged)
@@ -108,19 +96,19 @@ def test_coupled_tractions_change_stated_values() -> None:
 
 
 def test_given_columns_are_used() -> None:
-    edges = LIKE.body.extent[1] * np.concatenate([np.linspace(0, 0.2, 9)[:-1], np.linspace(0.2, 1, 13)])
-    half = LIKE.hertz_half_width
-    case = replace(LIKE, motion=Rolling(longitudinal_creepage=1e-3))
-    computed = solve(case, Grid.from_edges(edges, (-1.5 * half, 1.5 * half), 40), stresses=False)
+    edges = STEEL_CASE.body.extent[1] * np.concatenate([np.linspace(0, 0.2, 9)[:-1], np.linspace(0.2, 1, 13)])
+    half_width = STEEL_CASE.hertz_half_width
+    case = replace(STEEL_CASE, motion=Rolling(longitudinal_creepage=1e-3))
+    computed = solve(case, Grid.from_edges(edges, (-1.5 * half_width, 1.5 * half_width), 40), stresses=False)
     assert computed.sizes["x"] == edges.size - 1
     assert float(computed["force_y"]) == pytest.approx(float(solve(case, stresses=False)["force_y"]), rel=3e-3)
 
 
-def make_contact(case: Case, pressed: float, **rigid: float) -> FrictionalContact:
+def make_contact(case: Case, peak_pressure: float, **rigid: float) -> FrictionalContact:
     """A contact of a case under one and the same pressure on two cells, with some rigid motions."""
     grid = Grid.between(np.array([0.0, 1e-4, 2e-4, 5e-4]), (-2e-4, 2e-4), 4)
     pressure = np.zeros(grid.shape)
-    pressure[0, 3] = pressure[2, 1] = pressed
+    pressure[0, 3] = pressure[2, 1] = peak_pressure
     shape = Shape(case.body, grid, ArrayKey(np.zeros(grid.shape)), PrescribedLoad(1.0))
     empty = np.zeros(grid.shape)
     certificate = Certificate(0.0, 0.0, 0.0, 0.0)
@@ -147,27 +135,27 @@ def make_contact(case: Case, pressed: float, **rigid: float) -> FrictionalContac
 
 def test_changes_are_relative_to_full_sliding() -> None:
     """Forces and moment of full sliding; creepages of ``f a / R``, shifts of ``f a**2 / R``, or more if they are."""
-    pressed = 1e9
-    slip = 0.1 * LIKE.hertz_half_width / 5e-3
-    force = 0.1 * pressed * (1e-4 * 1e-4 + 3e-4 * 1e-4)
+    peak_pressure = 1e9
+    slip = 0.1 * STEEL_CASE.hertz_half_width / 5e-3
+    force = 0.1 * peak_pressure * (1e-4 * 1e-4 + 3e-4 * 1e-4)
     # About the roller's middle, 0.25 mm: the cells' centres are 0.2 and 0.1 mm from it along x.
-    moment = 0.1 * pressed * (1e-8 * np.hypot(2e-4, 1.5e-4) + 3e-8 * np.hypot(1e-4, 0.5e-4))
-    case = replace(LIKE, motion=Rolling(longitudinal_creepage=0.0))
-    computed = make_contact(case, pressed, x=0.0, y=1e-9, spin=0.0)
+    moment = 0.1 * peak_pressure * (1e-8 * np.hypot(2e-4, 1.5e-4) + 3e-8 * np.hypot(1e-4, 0.5e-4))
+    case = replace(STEEL_CASE, motion=Rolling(longitudinal_creepage=0.0))
+    computed = make_contact(case, peak_pressure, x=0.0, y=1e-9, spin=0.0)
     baseline = {"lateral_creepage": slip, "longitudinal_creepage": slip, "spin": slip * force / moment}
     assert _scales(case, computed) == pytest.approx(
         baseline | {"force_x": force, "force_y": force, "moment_z": moment, "friction_work": force * slip}
     )
-    fast = make_contact(case, pressed, x=-3 * slip, y=2 * slip, spin=9 * slip * force / moment)
+    fast = make_contact(case, peak_pressure, x=-3 * slip, y=2 * slip, spin=9 * slip * force / moment)
     scales = _scales(case, fast)
     assert scales["lateral_creepage"] == pytest.approx(3 * slip)
     assert scales["friction_work"] == pytest.approx(force * 9 * slip)
-    case = replace(LIKE, motion=Shift(y=1e-9))
-    shifted = make_contact(case, pressed, x=0.0, y=1e-12)
-    assert _scales(case, shifted)["shift_x"] == pytest.approx(slip * LIKE.hertz_half_width)
-    assert _scales(case, shifted)["friction_work"] == pytest.approx(force * slip * LIKE.hertz_half_width)
-    frictionless = make_contact(replace(LIKE, friction=0.0), pressed, x=0.0, y=0.0, spin=0.0)
-    assert _scales(replace(LIKE, friction=0.0, motion=Rolling()), frictionless)["friction_work"] == 0.0
+    case = replace(STEEL_CASE, motion=Shift(y=1e-9))
+    shifted = make_contact(case, peak_pressure, x=0.0, y=1e-12)
+    assert _scales(case, shifted)["shift_x"] == pytest.approx(slip * STEEL_CASE.hertz_half_width)
+    assert _scales(case, shifted)["friction_work"] == pytest.approx(force * slip * STEEL_CASE.hertz_half_width)
+    frictionless = make_contact(replace(STEEL_CASE, friction=0.0), peak_pressure, x=0.0, y=0.0, spin=0.0)
+    assert _scales(replace(STEEL_CASE, friction=0.0, motion=Rolling()), frictionless)["friction_work"] == 0.0
 
 
 @pytest.mark.parametrize(
@@ -179,22 +167,24 @@ def test_cells_double_until_changes_meet_accuracy(
     """Of full sliding's force; what is prescribed may change, and the error that is stated is the last change
     and what the columns leave.
     """
-    case = replace(LIKE, motion=Rolling(longitudinal_creepage=1e-3))
+    case = replace(STEEL_CASE, motion=Rolling(longitudinal_creepage=1e-3))
     contact = make_contact(case, 1e9, x=0.0, y=1e-3, spin=0.0)
     full, forces, rows = 0.1 * 1e9 * 4e-8, np.cumsum([3.0, *changes]), []
 
-    def on(case: Case, settled: RefinedContact, cells: int, before: FrictionalContact | None) -> FrictionalContact:
+    def contact_on_cells(
+        case: Case, refined: RefinedContact, cells: int, coarse_contact: FrictionalContact | None
+    ) -> FrictionalContact:
         rows.append(cells)
-        assert (before is None) == (len(rows) == 1)
+        assert (coarse_contact is None) == (len(rows) == 1)
         resultants = contact.tractions.resultants | {"force_x": -full * forces[len(rows) - 1]}
         rigid = contact.tractions.rigid | {"y": float(len(rows))}
         return replace(contact, tractions=replace(contact.tractions, rigid=rigid, resultants=resultants))
 
-    settled = refine_contact(replace(LIKE, friction=0.0), 0.05, 1e-6)
+    settled = refine_contact(replace(STEEL_CASE, friction=0.0), 0.05, 1e-6)
     cells = settled.contact.shape.grid.cells_y
     maximum = 1 + int(np.log2(CELLS_Y[-1] / cells)) + 1
-    monkeypatch.setattr(module, "_contact_on_rows", on)
-    monkeypatch.setattr(module, "replace_contact", lambda settled, contact, case: settled)
+    monkeypatch.setattr(module, "_contact_on_rows", contact_on_cells)
+    monkeypatch.setattr(module, "replace_contact", lambda refined, contact, case: settled)
     computed = refine_tractions(case, settled, accuracy)
     assert rows == [cells // 2 * 2**index for index in range(min(tried, maximum))]
     assert computed.accurate == (tried < 9)
@@ -208,12 +198,12 @@ def test_fastsim_uses_cells_of_normal_contact(monkeypatch: pytest.MonkeyPatch) -
     rows: list[int] = []
     original = module.frictional_contact
 
-    def noted(shape: Shape, settings: Settings, request: FrictionRequest) -> FrictionalContact:
+    def record_cells(shape: Shape, settings: Settings, request: FrictionRequest) -> FrictionalContact:
         rows.append(shape.grid.cells_y)
         return original(shape, settings, request)
 
-    monkeypatch.setattr(module, "frictional_contact", noted)
-    case = replace(LIKE, motion=Rolling(longitudinal_creepage=1e-3, model="fastsim"))
+    monkeypatch.setattr(module, "frictional_contact", record_cells)
+    case = replace(STEEL_CASE, motion=Rolling(longitudinal_creepage=1e-3, model="fastsim"))
     settled = refine_contact(case, 0.05, 1e-6)
     result = refine_tractions(case, settled, 1e-6)
     cells = settled.contact.shape.grid.cells_y
@@ -235,11 +225,11 @@ def test_window_of_a_wheel_on_a_rail() -> None:
 def test_newton_steps_on_the_first_cells_are_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
     bounds, solve_frictional = [], module.frictional_contact
 
-    def recorded(shape: Shape, settings: Settings, request: FrictionRequest) -> FrictionalContact:
+    def record_bound(shape: Shape, settings: Settings, request: FrictionRequest) -> FrictionalContact:
         bounds.append(request.max_steps)
         return solve_frictional(shape, settings, request)
 
-    monkeypatch.setattr(module, "frictional_contact", recorded)
-    case = replace(LIKE, motion=Shift(y=1e-8))
+    monkeypatch.setattr(module, "frictional_contact", record_bound)
+    case = replace(STEEL_CASE, motion=Shift(y=1e-8))
     refine_tractions(case, refine_contact(case, 0.05, 1e-6), 0.05)
     assert bounds[:2] == [module.MAX_COARSE_STEPS, None]

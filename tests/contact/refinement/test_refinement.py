@@ -32,7 +32,7 @@ Y = (np.arange(16) - 7.5) / 8
 def shape(
     length: float = LENGTH, *, face_beyond: tuple[float, float] = (0.0, 0.0), elastic: bool = False
 ) -> AxialShape:
-    known = [np.nan if elastic or variant == 0 else RIGID for variant in face_beyond]
+    exponents = [np.nan if elastic or variant == 0 else RIGID for variant in face_beyond]
     return AxialShape(
         start=0.0,
         stop=length,
@@ -40,7 +40,7 @@ def shape(
         depth=0.05,
         height=lambda x: np.zeros_like(x),
         face_beyond=face_beyond,
-        exponents=(known[0], known[1]),
+        exponents=(exponents[0], exponents[1]),
     )
 
 
@@ -49,7 +49,7 @@ def column_pressure(pressure: FloatArray) -> ColumnPressure:
     return ColumnPressure(np.asarray(pressure), lambda: np.where(pressure.any(axis=1), 0.0, np.inf))
 
 
-def make_column_solver(along: Callable[[FloatArray], FloatArray]) -> Callable[..., ColumnPressure]:
+def make_column_solver(line_pressure: Callable[[FloatArray], FloatArray]) -> Callable[..., ColumnPressure]:
     """Solver that returns means over columns of a made-up pressure along the axis, elliptic across."""
     nodes, weights = np.polynomial.legendre.leggauss(20)
 
@@ -57,7 +57,7 @@ def make_column_solver(along: Callable[[FloatArray], FloatArray]) -> Callable[..
         if start is not None:
             assert start.shape == (edges.size - 1, Y.size)
         within = 0.5 * (edges[1:] + edges[:-1])[:, None] + 0.5 * np.diff(edges)[:, None] * nodes
-        means = 0.5 * along(within) @ weights
+        means = 0.5 * line_pressure(within) @ weights
         return column_pressure(means[:, None] * np.sqrt(np.maximum(1 - Y**2, 0)))
 
     return solve
@@ -122,29 +122,31 @@ BUMPS: dict[str, Callable[[FloatArray], FloatArray]] = {
 @pytest.mark.parametrize("accuracy", [0.05, 0.01, 0.003])
 @pytest.mark.parametrize("name", BUMPS)
 def test_errors_cover_peak_and_ends(name: str, accuracy: float) -> None:
-    along = BUMPS[name]
-    computed = refine_columns(make_column_solver(along), shape(), accuracy)
-    peak = float(along(np.linspace(0.0, LENGTH, 200001)).max())
+    line_pressure = BUMPS[name]
+    computed = refine_columns(make_column_solver(line_pressure), shape(), accuracy)
+    peak = float(line_pressure(np.linspace(0.0, LENGTH, 200001)).max())
     assert computed.accurate
     assert computed.laws == (None, None)
     assert abs(computed.peak - peak) <= computed.peak_error <= accuracy * peak * (1 + 1e-9)
-    ends = along(np.array([0.0, LENGTH]))
-    for end, error, exact in zip(computed.values["end_pressure"], computed.errors["end_pressure"], ends, strict=True):
-        assert abs(end - exact) <= error + 1e-12
+    ends = line_pressure(np.array([0.0, LENGTH]))
+    for end, error, exact_pressure in zip(
+        computed.values["end_pressure"], computed.errors["end_pressure"], ends, strict=True
+    ):
+        assert abs(end - exact_pressure) <= error + 1e-12
 
 
 def test_tighter_accuracy_takes_more_columns() -> None:
     sizes = [
-        refine_columns(make_column_solver(BUMPS["narrow"]), shape(), value).edges.size
-        for value in (0.02, 0.003, 0.0015)
+        refine_columns(make_column_solver(BUMPS["narrow"]), shape(), accuracy).edges.size
+        for accuracy in (0.02, 0.003, 0.0015)
     ]
     assert sizes[0] < sizes[1] < sizes[2]
 
 
-@given(at=st.floats(0.5, 19.5), height=st.floats(0.5, 3.0), width=st.floats(0.2, 2.0))
-def test_mirrored_pressure_is_refined_to_mirrored_columns(at: float, height: float, width: float) -> None:
+@given(bump_position=st.floats(0.5, 19.5), height=st.floats(0.5, 3.0), width=st.floats(0.2, 2.0))
+def test_mirrored_pressure_is_refined_to_mirrored_columns(bump_position: float, height: float, width: float) -> None:
     def bump(x: FloatArray) -> FloatArray:
-        return np.asarray(1 + height * np.exp(-(((x - at) / width) ** 2)))
+        return np.asarray(1 + height * np.exp(-(((x - bump_position) / width) ** 2)))
 
     there = refine_columns(make_column_solver(bump), shape(), 0.02)
     back = refine_columns(make_column_solver(lambda x: bump(LENGTH - x)), shape(), 0.02)
@@ -157,12 +159,12 @@ def test_mirrored_pressure_is_refined_to_mirrored_columns(at: float, height: flo
 def test_singular_end_has_intensity_and_regular_end_pressure(exponent: float) -> None:
     bend = 0.02
 
-    def exact(edges: FloatArray, start: FloatArray | None, tolerance: float) -> ColumnPressure:
-        first, second = (edges**power / power for power in (1 - exponent, 2 - exponent))
-        means = 0.7 * np.diff(first + bend * second) / np.diff(edges)
+    def solve_exactly(edges: FloatArray, start: FloatArray | None, tolerance: float) -> ColumnPressure:
+        first_primitive, second_primitive = (edges**power / power for power in (1 - exponent, 2 - exponent))
+        means = 0.7 * np.diff(first_primitive + bend * second_primitive) / np.diff(edges)
         return column_pressure(means[:, None] * np.sqrt(np.maximum(1 - Y**2, 0)))
 
-    computed = refine_columns(exact, shape(face_beyond=(np.inf, 0.0), elastic=exponent != RIGID), 0.01)
+    computed = refine_columns(solve_exactly, shape(face_beyond=(np.inf, 0.0), elastic=exponent != RIGID), 0.01)
     law, variant = computed.laws
     assert law is not None
     assert variant is None
@@ -180,12 +182,12 @@ def test_singular_end_has_intensity_and_regular_end_pressure(exponent: float) ->
 
 
 def test_unresolved_pressure_ends_at_maximum_columns() -> None:
-    def restless(edges: FloatArray, start: FloatArray | None, tolerance: float) -> ColumnPressure:
+    def solve_alternating(edges: FloatArray, start: FloatArray | None, tolerance: float) -> ColumnPressure:
         noise = np.random.default_rng(edges.size).random((edges.size - 1, 1))
         noise[[0, 1, -2, -1]] = 0.0
         return column_pressure((1 + noise) * np.sqrt(np.maximum(1 - Y**2, 0)))
 
-    computed = refine_columns(restless, shape(), 0.001)
+    computed = refine_columns(solve_alternating, shape(), 0.001)
     assert not computed.accurate
     assert computed.edges.size <= 2 * MAX_COLUMNS
     assert computed.peak_error > 0.001 * computed.peak
@@ -196,7 +198,7 @@ def power_law(x: FloatArray) -> FloatArray:
     return np.asarray(0.7 / np.sqrt(x))
 
 
-FOLLOWED = BUMPS | {
+SCALED_PRESSURES = BUMPS | {
     "singular": power_law,
     "a logarithm": lambda x: 1 - 0.3 * np.log(x / LENGTH),
     "one half only": lambda x: np.sqrt(np.maximum(1 - ((x - 4.0) / 3.0) ** 2, 0)),
@@ -208,12 +210,12 @@ FOLLOWED = BUMPS | {
 @pytest.mark.parametrize(
     ("unit", "place", "side"), [(2.0**-17, 0.0, 0), (1.0, -8.0, 0), (1.0, 64.0, 1), (2.0**-17, 0.0, 1)]
 )
-@pytest.mark.parametrize("name", FOLLOWED)
+@pytest.mark.parametrize("name", SCALED_PRESSURES)
 def test_refinement_scales_with_units_position_and_side(name: str, unit: float, place: float, side: int) -> None:
     """Found from either end, elsewhere and in other units, of length and of pressure, the columns are the same."""
-    pressure, along = 2.0**37 if unit < 1 else 1.0, make_column_solver(FOLLOWED[name])
+    pressure, unit_solver = 2.0**37 if unit < 1 else 1.0, make_column_solver(SCALED_PRESSURES[name])
 
-    def own(x: FloatArray) -> FloatArray:
+    def unit_position(x: FloatArray) -> FloatArray:
         """Distances from the first end, in the plain unit."""
         return x / unit - place if side == 0 else LENGTH - (x / unit - place)
 
@@ -222,11 +224,11 @@ def test_refinement_scales_with_units_position_and_side(name: str, unit: float, 
 
     def solve(edges: FloatArray, start: FloatArray | None, tolerance: float) -> ColumnPressure:
         back = slice(None, None, 1 - 2 * side)
-        return column_pressure(pressure * along(own(edges)[back], None, tolerance).pressure[back])
+        return column_pressure(pressure * unit_solver(unit_position(edges)[back], None, tolerance).pressure[back])
 
-    face_beyond, known = (3.0, 0.0), (RIGID, np.nan)
+    face_beyond, exponents = (3.0, 0.0), (RIGID, np.nan)
     baseline = refine_columns(
-        along,
+        unit_solver,
         AxialShape(
             start=0.0,
             stop=LENGTH,
@@ -234,7 +236,7 @@ def test_refinement_scales_with_units_position_and_side(name: str, unit: float, 
             depth=0.05,
             height=height,
             face_beyond=face_beyond,
-            exponents=known,
+            exponents=exponents,
         ),
         0.02,
     )
@@ -243,13 +245,13 @@ def test_refinement_scales_with_units_position_and_side(name: str, unit: float, 
         stop=unit * (place + LENGTH),
         half_width=unit * HALF_WIDTH,
         depth=unit * 0.05,
-        height=lambda x: unit * height(own(x)),
+        height=lambda x: unit * height(unit_position(x)),
         face_beyond=(unit * face_beyond[side], unit * face_beyond[1 - side]),
-        exponents=known[:: 1 - 2 * side],
+        exponents=exponents[:: 1 - 2 * side],
     )
     variant = refine_columns(solve, shifted, 0.02)
     assert (variant.accurate, variant.first_edges.size) == (baseline.accurate, baseline.first_edges.size)
-    assert np.sort(own(variant.edges)) == pytest.approx(baseline.edges, abs=1e-9)
+    assert np.sort(unit_position(variant.edges)) == pytest.approx(baseline.edges, abs=1e-9)
     for key, factor in {"peak_pressure": pressure, "end_pressure": pressure, "end_load": pressure * unit}.items():
         for values, expected in ((variant.values, baseline.values), (variant.errors, baseline.errors)):
             assert np.array(values[key])[:: 1 - 2 * side] / factor == pytest.approx(expected[key], rel=1e-6), key
@@ -265,7 +267,7 @@ def test_refinement_scales_with_units_position_and_side(name: str, unit: float, 
 def outermost_widths(name: str, face_beyond: tuple[float, float] = (0.0, 0.0)) -> tuple[float, float]:
     """Widths of the first and the last column of a refined pressure, over the half-width."""
     widths = (
-        np.diff(refine_columns(make_column_solver(FOLLOWED[name]), shape(face_beyond=face_beyond), 0.02).edges)
+        np.diff(refine_columns(make_column_solver(SCALED_PRESSURES[name]), shape(face_beyond=face_beyond), 0.02).edges)
         / HALF_WIDTH
     )
     return float(widths[0]), float(widths[-1])
@@ -285,13 +287,13 @@ def test_sharper_ends_have_narrower_columns() -> None:
 
 
 def test_columns_near_contact_ends_are_narrow() -> None:
-    computed = refine_columns(make_column_solver(FOLLOWED["contact's end"]), shape(), 0.05)
+    computed = refine_columns(make_column_solver(SCALED_PRESSURES["contact's end"]), shape(), 0.05)
     edges, widths = computed.edges, np.diff(computed.edges)
-    touched = np.flatnonzero(computed.pressure.any(axis=1))
-    for end in (edges[touched[0]], edges[touched[-1] + 1]):
-        near = (edges[:-1] < end + 0.99 * HALF_WIDTH) & (edges[1:] > end - 0.99 * HALF_WIDTH)
-        assert near.sum() > 4
-        assert widths[near].max() <= EDGE_COLUMN_WIDTH * HALF_WIDTH
+    loaded_columns = np.flatnonzero(computed.pressure.any(axis=1))
+    for end in (edges[loaded_columns[0]], edges[loaded_columns[-1] + 1]):
+        is_near_end = (edges[:-1] < end + 0.99 * HALF_WIDTH) & (edges[1:] > end - 0.99 * HALF_WIDTH)
+        assert is_near_end.sum() > 4
+        assert widths[is_near_end].max() <= EDGE_COLUMN_WIDTH * HALF_WIDTH
     assert widths.max() > 2 * EDGE_COLUMN_WIDTH * HALF_WIDTH
 
 
@@ -300,10 +302,10 @@ def test_columns_near_contact_ends_are_narrow() -> None:
 def test_end_step_marks_end_columns(side: int, unit: float) -> None:
     """Half the difference of two like columns counts four times; its square, 0.03 of the largest one, does not."""
     edges = np.concatenate([0.01 * np.arange(11), np.linspace(0.2, LENGTH, 100)])
-    along = np.where(np.arange(edges.size - 1) == 0, 0.1, 0.2)
-    along[40:] = 1.0
+    line_pressure = np.where(np.arange(edges.size - 1) == 0, 0.1, 0.2)
+    line_pressure[40:] = 1.0
     if side:
-        edges, along = LENGTH - edges[::-1], along[::-1]
+        edges, line_pressure = LENGTH - edges[::-1], line_pressure[::-1]
     request = AxialShape(
         start=0.0,
         stop=unit * LENGTH,
@@ -313,7 +315,7 @@ def test_end_step_marks_end_columns(side: int, unit: float) -> None:
         face_beyond=(0.0, 0.0),
     )
     state = Refinement(
-        solve=lambda *_: column_pressure(along[:, None] * np.sqrt(1 - Y**2)), shape=request, edges=unit * edges
+        solve=lambda *_: column_pressure(line_pressure[:, None] * np.sqrt(1 - Y**2)), shape=request, edges=unit * edges
     )
     for theta, marked in ((0.19, True), (0.21, False)):
         assert state._select_columns_to_split(theta)[-side] == marked
@@ -332,14 +334,14 @@ def test_load_and_peak_errors_have_equal_floor(length: float) -> None:
     computed = refine_columns(make_column_solver(BUMPS["even"]), shape(length), 0.02)
     baseline = float(computed.pressure[0].sum()) * min(HALF_WIDTH, length)
     assert computed.values["end_load"] == pytest.approx((baseline, baseline))
-    parts = np.array(computed.errors["peak_pressure"]) / computed.values["peak_pressure"]
-    assert np.array(computed.errors["end_load"]) / baseline == pytest.approx(parts)
+    relative_errors = np.array(computed.errors["peak_pressure"]) / computed.values["peak_pressure"]
+    assert np.array(computed.errors["end_load"]) / baseline == pytest.approx(relative_errors)
 
 
 @pytest.mark.parametrize("name", ["lesser peak", "singular"])
 def test_replaced_pressure_scales_errors(name: str) -> None:
     request = shape(face_beyond=(3.0, 0.0))
-    computed = refine_columns(make_column_solver(FOLLOWED[name]), request, 0.02)
+    computed = refine_columns(make_column_solver(SCALED_PRESSURES[name]), request, 0.02)
     variant = replace_pressure(computed, 1.25 * computed.pressure, request)
     for values, expected in ((variant.values, computed.values), (variant.errors, computed.errors)):
         for key in ("peak_pressure", "end_pressure"):
@@ -355,7 +357,7 @@ def test_replaced_pressure_scales_errors(name: str) -> None:
 def test_newly_loaded_end_has_error_of_its_pressure() -> None:
     # Random case 4008736: coupled friction presses an end that the pressure alone does not reach.
     request = shape()
-    computed = refine_columns(make_column_solver(FOLLOWED["contact's end"]), request, 0.02)
+    computed = refine_columns(make_column_solver(SCALED_PRESSURES["contact's end"]), request, 0.02)
     assert (computed.values["end_pressure"], computed.errors["end_pressure"]) == ((0.0, 0.0), [0.0, 0.0])
     column_pressure = computed.pressure.copy()
     column_pressure[:20] += 0.02 * computed.pressure.max()
@@ -367,7 +369,7 @@ def test_newly_loaded_end_has_error_of_its_pressure() -> None:
 
 @pytest.mark.parametrize("errors", [(0.1, np.inf), (np.inf, 0.1)])
 def test_equal_peaks_take_larger_error(errors: tuple[float, float]) -> None:
-    computed = refine_columns(make_column_solver(FOLLOWED["even"]), shape(), 0.02)
+    computed = refine_columns(make_column_solver(SCALED_PRESSURES["even"]), shape(), 0.02)
 
     def peak_error(peaks: tuple[float, ...]) -> float:
         return replace(computed, values={"peak_pressure": peaks}, errors={"peak_pressure": errors}).peak_error
@@ -378,7 +380,7 @@ def test_equal_peaks_take_larger_error(errors: tuple[float, float]) -> None:
 
 def test_end_samples_follow_splitting(caplog: pytest.LogCaptureFixture) -> None:
     state = Refinement(
-        solve=make_column_solver(FOLLOWED["rises to one end"]), shape=shape(), edges=first_edges(shape())
+        solve=make_column_solver(SCALED_PRESSURES["rises to one end"]), shape=shape(), edges=first_edges(shape())
     )
     with caplog.at_level("INFO"):
         for theta in (0.5, 0.3, 0.2):
@@ -396,12 +398,12 @@ def test_end_samples_follow_splitting(caplog: pytest.LogCaptureFixture) -> None:
 def test_unloaded_sharp_end_has_no_law(side: int) -> None:
     """The other end is pressed and settles; the pressure begins one column behind the sharp end."""
 
-    def along(x: FloatArray) -> FloatArray:
+    def line_pressure(x: FloatArray) -> FloatArray:
         position = x if side == 0 else LENGTH - x
         return np.asarray(np.where(position > 0.06, 1.0, 0.0) * (1 - 0.2 * position / LENGTH))
 
     face_beyond = (2.0, 0.0) if side == 0 else (0.0, 2.0)
-    computed = refine_columns(make_column_solver(along), shape(face_beyond=face_beyond), 0.05)
+    computed = refine_columns(make_column_solver(line_pressure), shape(face_beyond=face_beyond), 0.05)
     assert computed.laws == (None, None)
     assert computed.values["end_pressure"][side] == 0.0
     assert np.isfinite(computed.errors["end_pressure"]).all()
@@ -429,10 +431,10 @@ def test_loaded_sharp_end_makes_contact_singular(side: int, law: EndLaw | None) 
     pressure = np.zeros((4, 3))
     pressure[-side] = 1.0
 
-    def singular(asked: AxialShape) -> bool:
-        rough = Refinement(solve=lambda *_: column_pressure(pressure), shape=asked, edges=np.arange(5.0))
-        rough.laws = [law, None] if side else [None, law]
-        return rough.singular
+    def singular(axial_shape: AxialShape) -> bool:
+        refinement = Refinement(solve=lambda *_: column_pressure(pressure), shape=axial_shape, edges=np.arange(5.0))
+        refinement.laws = [law, None] if side else [None, law]
+        return refinement.singular
 
     sharp, blunt = ((2.0, 0.0), (0.0, 2.0))[:: 1 - 2 * side]
     assert singular(shape(face_beyond=sharp))
@@ -441,10 +443,10 @@ def test_loaded_sharp_end_makes_contact_singular(side: int, law: EndLaw | None) 
 
 
 def test_rough_contact_uses_second_threshold() -> None:
-    solve, request = make_column_solver(FOLLOWED["lesser peak"]), shape()
-    rough, fine = rough_columns(solve, request), refine_columns(solve, request, 0.02)
-    assert np.isin(rough.edges, fine.edges).all()
-    repeated = refine_columns(solve, request, 0.02, rough.edges)
+    solve, request = make_column_solver(SCALED_PRESSURES["lesser peak"]), shape()
+    rough_columns_result, fine = rough_columns(solve, request), refine_columns(solve, request, 0.02)
+    assert np.isin(rough_columns_result.edges, fine.edges).all()
+    repeated = refine_columns(solve, request, 0.02, rough_columns_result.edges)
     assert repeated.edges == pytest.approx(fine.edges)
-    assert repeated.first_edges == pytest.approx(rough.edges)
-    assert rough.laws == [None, None]
+    assert repeated.first_edges == pytest.approx(rough_columns_result.edges)
+    assert rough_columns_result.laws == [None, None]

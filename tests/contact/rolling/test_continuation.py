@@ -23,26 +23,26 @@ def test_failed_newton_raises_forces_stepwise(monkeypatch: pytest.MonkeyPatch) -
     request = problem(np.zeros((2, 30)), bound, forces=0.9 * bound.sum() * np.array([0.6, 0.8]), skew=0.5)
     complete: list[float] = []
 
-    def fails_far_away(each: CoulombProblem, start: Guess | None = None) -> CoulombSolution:
-        computed = solve_coulomb(each, start)
-        if not len(each.modes):
+    def solve_small_steps(trial_problem: CoulombProblem, start: Guess | None = None) -> CoulombSolution:
+        computed = solve_coulomb(trial_problem, start)
+        if not len(trial_problem.modes):
             return computed
-        complete.append(float(np.hypot(*each.resultants) / np.hypot(*request.resultants)))
+        complete.append(float(np.hypot(*trial_problem.resultants) / np.hypot(*request.resultants)))
         return replace(
             computed, converged=computed.converged and (start is not None) and complete[-1] - reached[-1] < 0.3
         )
 
     reached = [0.0]
-    monkeypatch.setattr(coulomb, "solve_coulomb", fails_far_away)
-    near = replace(request, max_steps=500)
+    monkeypatch.setattr(coulomb, "solve_coulomb", solve_small_steps)
+    longer_request = replace(request, max_steps=500)
     original = coulomb.Guess
 
-    def noted(traction: np.ndarray, amplitudes: np.ndarray) -> Guess:
+    def record_guess(traction: np.ndarray, amplitudes: np.ndarray) -> Guess:
         reached.append(complete[-1] if len(complete) > 1 else 0.0)
         return original(traction, amplitudes)
 
-    monkeypatch.setattr(coulomb, "Guess", noted)
-    computed = solve_with_continuation(near)
+    monkeypatch.setattr(coulomb, "Guess", record_guess)
+    computed = solve_with_continuation(longer_request)
     assert computed.converged
     assert complete[0] == complete[-1] == pytest.approx(1.0)
     assert len(complete) >= 5
@@ -59,31 +59,37 @@ def test_unreachable_forces_do_not_converge() -> None:
 def test_continuation_steps_are_linear_and_counted(monkeypatch: pytest.MonkeyPatch) -> None:
     """From the resultants without unknown slips to the prescribed ones: longer steps after success, else shorter."""
     bound = np.random.default_rng(5).uniform(0.2, 1.0, 12)
-    random = np.random.default_rng(6)
+    rng = np.random.default_rng(6)
     requested = 0.5 * bound.sum() * np.array([0.6, 0.8])
-    request = replace(problem(random.standard_normal((2, 12)), bound, forces=requested), max_steps=500)
-    parts: list[float] = []
-    counts: list[int] = []
+    request = replace(problem(rng.standard_normal((2, 12)), bound, forces=requested), max_steps=500)
+    fractions: list[float] = []
+    step_counts: list[int] = []
     fails = [True, True, False, False, True, True, True, False, False]
-    first = np.zeros(2)
+    first_resultants = np.zeros(2)
 
-    def told(each: CoulombProblem, start: Guess | None = None) -> CoulombSolution:
-        nonlocal first
-        steps = int(random.integers(1, 5))
-        counts.append(steps)
-        computed = solve_coulomb(each, start)
-        if not len(each.modes):
-            first = computed.traction.sum(axis=1)
+    def record_and_solve(trial_problem: CoulombProblem, start: Guess | None = None) -> CoulombSolution:
+        nonlocal first_resultants
+        steps = int(rng.integers(1, 5))
+        step_counts.append(steps)
+        computed = solve_coulomb(trial_problem, start)
+        if not len(trial_problem.modes):
+            first_resultants = computed.traction.sum(axis=1)
             return replace(computed, steps=steps)
-        if len(counts) > 1:
-            along = (each.resultants - first) @ (requested - first) / ((requested - first) @ (requested - first))
-            assert each.resultants == pytest.approx(first + along * (requested - first))
-            parts.append(float(along))
+        if len(step_counts) > 1:
+            fraction = (
+                (trial_problem.resultants - first_resultants)
+                @ (requested - first_resultants)
+                / ((requested - first_resultants) @ (requested - first_resultants))
+            )
+            assert trial_problem.resultants == pytest.approx(
+                first_resultants + fraction * (requested - first_resultants)
+            )
+            fractions.append(float(fraction))
         failed = fails.pop(0) if fails else False
         return replace(computed, steps=steps, converged=not failed)
 
-    monkeypatch.setattr(coulomb, "solve_coulomb", told)
+    monkeypatch.setattr(coulomb, "solve_coulomb", record_and_solve)
     computed = solve_with_continuation(request)
     assert computed.converged
-    assert parts == pytest.approx([0.5, 0.25, 0.75, 1.0, 1.0, 1.0, 0.875, 1.0])
-    assert computed.steps == sum(counts)
+    assert fractions == pytest.approx([0.5, 0.25, 0.75, 1.0, 1.0, 1.0, 0.875, 1.0])
+    assert computed.steps == sum(step_counts)

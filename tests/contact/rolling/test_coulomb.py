@@ -25,11 +25,11 @@ def problem(
     rigid: FloatArray, bound: FloatArray, *, forces: FloatArray | None = None, skew: float = 0.0, seed: int = 0
 ) -> CoulombProblem:
     """Cells with a random positive compliance; `skew` makes it as unsymmetric as that of rolling."""
-    random = np.random.default_rng(seed)
-    size = 2 * bound.size
-    root = random.standard_normal((size, size)) / np.sqrt(size)
-    twist = random.standard_normal((size, size)) / np.sqrt(size)
-    matrix = root @ root.T + 0.3 * np.eye(size) + skew * (twist - twist.T)
+    rng = np.random.default_rng(seed)
+    unknown_count = 2 * bound.size
+    root = rng.standard_normal((unknown_count, unknown_count)) / np.sqrt(unknown_count)
+    twist = rng.standard_normal((unknown_count, unknown_count)) / np.sqrt(unknown_count)
+    matrix = root @ root.T + 0.3 * np.eye(unknown_count) + skew * (twist - twist.T)
     inverse = np.linalg.inv(matrix)
     modes = np.zeros((0, 2, bound.size))
     if forces is not None:
@@ -48,35 +48,37 @@ def problem(
     )
 
 
-def check_law(asked: CoulombProblem, found: CoulombSolution) -> None:
+def check_law(request: CoulombProblem, solution: CoulombSolution) -> None:
     """Every condition, looked at cell by cell."""
-    slip = asked.slip(found.traction, found.amplitudes)
-    size = np.hypot(*found.traction)
-    assert (size <= asked.bound * (1 + 1e-9)).all()
-    sticking = size < asked.bound * (1 - 1e-9)
-    scale = np.hypot(*asked.rigid).max() + np.abs(found.amplitudes).sum()
+    slip = request.slip(solution.traction, solution.amplitudes)
+    traction_size = np.hypot(*solution.traction)
+    assert (traction_size <= request.bound * (1 + 1e-9)).all()
+    sticking = traction_size < request.bound * (1 - 1e-9)
+    scale = np.hypot(*request.rigid).max() + np.abs(solution.amplitudes).sum()
     assert np.hypot(*slip[:, sticking]).max(initial=0.0) <= 1e-6 * scale
-    along = (slip * found.traction).sum(axis=0)[~sticking]
-    assert (along >= -1e-6 * scale * asked.bound[~sticking]).all()
-    assert np.allclose(along, (np.hypot(*slip) * size)[~sticking], atol=1e-6 * scale * asked.bound.max())
+    slip_along_traction = (slip * solution.traction).sum(axis=0)[~sticking]
+    assert (slip_along_traction >= -1e-6 * scale * request.bound[~sticking]).all()
+    assert np.allclose(
+        slip_along_traction, (np.hypot(*slip) * traction_size)[~sticking], atol=1e-6 * scale * request.bound.max()
+    )
 
 
 @pytest.mark.parametrize("skew", [0.0, 1.0])
-@pytest.mark.parametrize("size", [0.01, 0.3, 1.0, 30.0])
+@pytest.mark.parametrize("slip_scale", [0.01, 0.3, 1.0, 30.0])
 @pytest.mark.parametrize("seed", range(3))
-def test_the_law_holds_from_stick_to_full_sliding(size: float, skew: float, seed: int) -> None:
-    random = np.random.default_rng(seed)
-    bound = random.uniform(0.2, 1.0, 24)
-    request = problem(size * random.standard_normal((2, 24)), bound, skew=skew, seed=seed)
+def test_the_law_holds_from_stick_to_full_sliding(slip_scale: float, skew: float, seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    bound = rng.uniform(0.2, 1.0, 24)
+    request = problem(slip_scale * rng.standard_normal((2, 24)), bound, skew=skew, seed=seed)
     computed = solve_coulomb(request)
     assert computed.converged
     check_law(request, computed)
 
 
-@pytest.mark.parametrize("part", [0.0, 0.4, 0.95])
-def test_rigid_slip_satisfies_prescribed_forces(part: float) -> None:
+@pytest.mark.parametrize("force_fraction", [0.0, 0.4, 0.95])
+def test_rigid_slip_satisfies_prescribed_forces(force_fraction: float) -> None:
     bound = np.random.default_rng(5).uniform(0.2, 1.0, 30)
-    force = part * bound.sum() * np.array([0.6, 0.8])
+    force = force_fraction * bound.sum() * np.array([0.6, 0.8])
     request = problem(np.zeros((2, 30)), bound, forces=force, skew=0.5)
     computed = solve_coulomb(request)
     assert computed.converged
@@ -85,9 +87,9 @@ def test_rigid_slip_satisfies_prescribed_forces(part: float) -> None:
 
 
 def test_guess_changes_steps_only() -> None:
-    random = np.random.default_rng(7)
-    bound = random.uniform(0.2, 1.0, 40)
-    request = problem(random.standard_normal((2, 40)), bound, skew=0.5)
+    rng = np.random.default_rng(7)
+    bound = rng.uniform(0.2, 1.0, 40)
+    request = problem(rng.standard_normal((2, 40)), bound, skew=0.5)
     baseline = solve_coulomb(request)
     guessed = solve_coulomb(request, Guess(baseline.traction, baseline.amplitudes))
     assert guessed.steps < baseline.steps
@@ -95,16 +97,16 @@ def test_guess_changes_steps_only() -> None:
 
 
 def test_unconverged_solution_is_reported() -> None:
-    random = np.random.default_rng(0)
-    request = problem(random.standard_normal((2, 24)), random.uniform(0.2, 1.0, 24))
+    rng = np.random.default_rng(0)
+    request = problem(rng.standard_normal((2, 24)), rng.uniform(0.2, 1.0, 24))
     assert not solve_coulomb(CoulombProblem(**{**vars(request), "max_steps": 1})).converged
 
 
 def test_law_violation_measures_violations() -> None:
     traction, bound = np.array([[1.0, 0.5], [0.0, 0.0]]), np.array([1.0, 1.0])
     sticks = np.array([False, True])
-    right = law_violation(traction, np.array([[2.0, 0.0], [0.0, 0.0]]), bound, sticks, 1.0)
-    assert right == (0.0, 0.0)
+    no_violation = law_violation(traction, np.array([[2.0, 0.0], [0.0, 0.0]]), bound, sticks, 1.0)
+    assert no_violation == (0.0, 0.0)
     assert law_violation(1.1 * traction, np.zeros((2, 2)), bound, sticks, 1.0)[0] == pytest.approx(0.1)
     for slip in ([[-2.0, 0.0], [0.0, 0.0]], [[0.0, 0.0], [2.0, 0.0]], [[0.0, 2.0], [0.0, 0.0]]):
         assert law_violation(traction, np.array(slip), bound, sticks, 1.0)[1] == pytest.approx(2.0)
@@ -113,13 +115,13 @@ def test_law_violation_measures_violations() -> None:
 @pytest.mark.parametrize("length", [1.0, 1e-9])
 def test_all_cells_slip_under_prescribed_force(length: float) -> None:
     """Along one axis the rigid slip is prescribed and large; force and moment are not, and no cell is left to stick."""
-    random = np.random.default_rng(3)
-    bound = random.uniform(0.2, 1.0, 12)
+    rng = np.random.default_rng(3)
+    bound = rng.uniform(0.2, 1.0, 12)
     rigid = np.stack([np.zeros(12), np.full(12, 30.0)])
     request = problem(rigid, bound, skew=0.5)
     modes = np.zeros((2, 2, 12))
     modes[0, 0] = 1.0
-    modes[1] = length * random.standard_normal((2, 12))
+    modes[1] = length * rng.standard_normal((2, 12))
     requested = np.array([0.1 * bound.sum(), 0.05 * length * bound.sum()])
     request = replace(request, modes=modes, resultant_weights=modes, resultants=requested)
     computed = solve_coulomb(request)
@@ -158,59 +160,59 @@ def test_half_of_cells_slip_in_any_order() -> None:
 def test_first_fraction_of_cells() -> None:
     cells = np.array([False, True, True, False, True, True, True])
     assert _select_first(cells, 1.0) is cells
-    for fraction, count in ((0.9, 4), (0.5, 2), (0.2, 1), (0.01, 1)):
-        assert np.flatnonzero(_select_first(cells, fraction)).tolist() == [1, 2, 4, 5, 6][:count]
+    for fraction, cell_count in ((0.9, 4), (0.5, 2), (0.2, 1), (0.01, 1)):
+        assert np.flatnonzero(_select_first(cells, fraction)).tolist() == [1, 2, 4, 5, 6][:cell_count]
 
 
 def test_guess_keeps_slip_on_bound_and_sticking_tractions() -> None:
     """A cell just below its bound counts as slipping; one on which nothing acts sticks. One step is all it takes."""
-    random = np.random.default_rng(7)
-    bound = random.uniform(0.2, 1.0, 40)
-    request = replace(problem(random.standard_normal((2, 40)), bound, skew=0.5), max_steps=1)
+    rng = np.random.default_rng(7)
+    bound = rng.uniform(0.2, 1.0, 40)
+    request = replace(problem(rng.standard_normal((2, 40)), bound, skew=0.5), max_steps=1)
     baseline = solve_coulomb(replace(request, max_steps=40))
-    approximate = np.where(baseline.sticks, 1.0, 1 - 1e-7) * baseline.traction
-    for guess in (baseline.traction, approximate):
+    perturbed_traction = np.where(baseline.sticks, 1.0, 1 - 1e-7) * baseline.traction
+    for guess in (baseline.traction, perturbed_traction):
         computed = solve_coulomb(request, Guess(guess, baseline.amplitudes))
         assert computed.converged
         assert computed.traction == pytest.approx(baseline.traction, abs=1e-6)
         assert np.array_equal(computed.sticks, baseline.sticks)
 
 
-@pytest.mark.parametrize(("forces", "most"), [(False, (83, 468)), (True, (94, 520))])
-def test_steps_and_applications_are_few(*, forces: bool, most: tuple[int, int]) -> None:
+@pytest.mark.parametrize(("forces", "limits"), [(False, (83, 468)), (True, (94, 520))])
+def test_steps_and_applications_are_few(*, forces: bool, limits: tuple[int, int]) -> None:
     """Of many small problems, from partial slip to almost full sliding; cells that go round in circles among them."""
     steps, applications = 0, []
     for seed in range(12):
-        random = np.random.default_rng(seed)
-        bound = random.uniform(0.2, 1.0, 24)
-        requested = random.uniform(-0.5, 0.5, 2) * bound.sum() if forces else None
-        rigid = random.uniform(0.1, 2.0) * random.standard_normal((2, 24))
-        asked = problem(rigid, bound, forces=requested, skew=0.2 * (seed % 6), seed=seed)
+        rng = np.random.default_rng(seed)
+        bound = rng.uniform(0.2, 1.0, 24)
+        requested = rng.uniform(-0.5, 0.5, 2) * bound.sum() if forces else None
+        rigid = rng.uniform(0.1, 2.0) * rng.standard_normal((2, 24))
+        request = problem(rigid, bound, forces=requested, skew=0.2 * (seed % 6), seed=seed)
 
-        def apply_compliance(traction: FloatArray, asked: CoulombProblem = asked) -> FloatArray:
+        def apply_compliance(traction: FloatArray, request: CoulombProblem = request) -> FloatArray:
             applications.append(1)
-            return asked.apply_compliance(traction)
+            return request.apply_compliance(traction)
 
-        computed = solve_coulomb(replace(asked, apply_compliance=apply_compliance))
+        computed = solve_coulomb(replace(request, apply_compliance=apply_compliance))
         assert computed.converged
         steps += computed.steps
-    assert steps <= most[0]
-    assert len(applications) <= most[1]
+    assert steps <= limits[0]
+    assert len(applications) <= limits[1]
 
 
 def test_cycling_cells_change_singly(monkeypatch: pytest.MonkeyPatch) -> None:
     """A compliance that is another one at every look: three cells soon stick and slip as they did before."""
-    random = np.random.default_rng(0)
-    request = problem(random.standard_normal((2, 3)), np.ones(3))
+    rng = np.random.default_rng(0)
+    request = problem(rng.standard_normal((2, 3)), np.ones(3))
     fractions: list[float] = []
 
-    def noted(cells: BoolArray, share: float) -> BoolArray:
+    def record_selection(cells: BoolArray, share: float) -> BoolArray:
         fractions.append(share)
         return _select_first(cells, share)
 
-    monkeypatch.setattr(coulomb, "_select_first", noted)
+    monkeypatch.setattr(coulomb, "_select_first", record_selection)
     random_problem = replace(
-        request, apply_compliance=lambda traction: random.standard_normal(traction.shape), max_steps=80
+        request, apply_compliance=lambda traction: rng.standard_normal(traction.shape), max_steps=80
     )
     assert not solve_coulomb(random_problem).converged
     steps = np.array(fractions[::2])
@@ -223,11 +225,9 @@ def test_cycling_cells_change_singly(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.parametrize("seed", range(8))
 def test_prescribed_forces_meet_tolerance_of_full_sliding(seed: int) -> None:
     """However small the unit of the forces is, or large."""
-    random = np.random.default_rng(seed)
-    bound = random.uniform(0.2, 1.0, 24)
-    complete = problem(
-        random.standard_normal((2, 24)), bound, forces=0.5 * bound.sum() * np.array([0.6, 0.7]), seed=seed
-    )
+    rng = np.random.default_rng(seed)
+    bound = rng.uniform(0.2, 1.0, 24)
+    complete = problem(rng.standard_normal((2, 24)), bound, forces=0.5 * bound.sum() * np.array([0.6, 0.7]), seed=seed)
     for unit in (1e-6, 1.0, 1e6):
         request = replace(
             complete,

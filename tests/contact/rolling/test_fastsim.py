@@ -16,12 +16,12 @@ STEEL = material(82e9, 0.28)
     "motion", [Rolling(longitudinal_creepage=1e-6, model="fastsim"), Rolling(lateral_creepage=1e-6, model="fastsim")]
 )
 def test_small_creepages_match_kalker_forces(motion: Rolling) -> None:
-    along, across = 6e-3, 4e-3
-    computed = rolling_ellipse(across, along, 80e3, STEEL, 0.3, motion, (44, 50))
-    c11, c22, _ = creep_coefficients(along / across, 0.28)
+    half_width_y, half_width_x = 6e-3, 4e-3
+    computed = rolling_ellipse(half_width_x, half_width_y, 80e3, STEEL, 0.3, motion, (44, 50))
+    c11, c22, _ = creep_coefficients(half_width_y / half_width_x, 0.28)
     lateral = bool(motion.lateral_creepage)
     force = float(computed["force_x" if lateral else "force_y"])
-    assert force == pytest.approx(82e9 * along * across * (c22 if lateral else c11) * 1e-6, rel=0.02)
+    assert force == pytest.approx(82e9 * half_width_y * half_width_x * (c22 if lateral else c11) * 1e-6, rel=0.02)
 
 
 def test_fastsim_matches_published_spin_case() -> None:
@@ -30,10 +30,10 @@ def test_fastsim_matches_published_spin_case() -> None:
     computed = rolling_ellipse(4e-3, 8e-3, 82e3, STEEL, 0.3, motion, (44, 50))
     assert float(computed["force_x"]) / (0.3 * 82e3) == pytest.approx(0.602, abs=0.012)
     bound = 0.3 * computed["pressure"]
-    size = np.hypot(computed["traction_x"], computed["traction_y"])
-    assert float((size - bound).max()) < 1e-9 * float(bound.max())
+    traction_size = np.hypot(computed["traction_x"], computed["traction_y"])
+    assert float((traction_size - bound).max()) < 1e-9 * float(bound.max())
     slips = (computed["pressure"] > 0) & ~computed["stick"].astype(bool)
-    assert float(np.abs(size - bound).where(slips, 0.0).max()) < 1e-9 * float(bound.max())
+    assert float(np.abs(traction_size - bound).where(slips, 0.0).max()) < 1e-9 * float(bound.max())
 
 
 def test_creep_coefficients_between_and_beyond_table() -> None:

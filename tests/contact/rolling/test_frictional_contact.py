@@ -35,32 +35,38 @@ PAIR = Counterbody(HALF)
 
 def ball(cells: int = 26, reach: float = 1.3, off: float = 0.0) -> xr.DataArray:
     """A ball that closes on a circle of radius 1 or so."""
-    at = reach * ((np.arange(cells) + 0.5) / cells * 2 - 1)
-    return xr.DataArray(0.05 * ((at[:, None] - off) ** 2 + at**2), coords={"x": at, "y": at}, dims=("x", "y"))
+    positions = reach * ((np.arange(cells) + 0.5) / cells * 2 - 1)
+    return xr.DataArray(
+        0.05 * ((positions[:, None] - off) ** 2 + positions**2),
+        coords={"x": positions, "y": positions},
+        dims=("x", "y"),
+    )
 
 
 def solve_rolling(motion: Rolling | Shift, **named: object) -> xr.Dataset:
     """A ball on a half-space of its material."""
     arguments = {"counterbody": PAIR, "gap": ball(), "load": LOAD, "friction": FRICTION, "body": HALF} | named
-    values = {name: arguments.pop(name) for name in ("coupled", "after", "max_iterations") if name in arguments}
-    settings = ContactSettings(**values)  # type: ignore[arg-type]
+    settings_values = {
+        name: arguments.pop(name) for name in ("coupled", "after", "max_iterations") if name in arguments
+    }
+    settings = ContactSettings(**settings_values)  # type: ignore[arg-type]
     return solve_contact(**arguments, motion=motion, settings=settings)  # type: ignore[arg-type]
 
 
 def check_law(result: xr.Dataset) -> None:
     """Coulomb's law, cell by cell, from what is returned alone."""
     assert result.converged
-    size, slip = np.hypot(result.traction_x, result.traction_y), np.hypot(result.slip_x, result.slip_y)
+    traction_size, slip = np.hypot(result.traction_x, result.traction_y), np.hypot(result.slip_x, result.slip_y)
     bound = FRICTION * result.pressure
     largest = float(bound.max())
-    assert float((size - bound).max()) < 1e-6 * largest
+    assert float((traction_size - bound).max()) < 1e-6 * largest
     stick = result.stick.astype(bool)
     assert float(slip.where(stick, 0.0).max()) == 0.0
     slips = (~stick) & (result.pressure > 0)
-    assert float(np.abs(size - bound).where(slips, 0.0).max()) < 1e-6 * largest
+    assert float(np.abs(traction_size - bound).where(slips, 0.0).max()) < 1e-6 * largest
     assert float(slip.where(slips, 1.0).min()) > 0.0
-    along = result.traction_x * result.slip_x + result.traction_y * result.slip_y
-    assert float(np.abs(along - size * slip).where(slips, 0.0).max()) <= 1e-5 * largest * float(slip.max())
+    slip_work = result.traction_x * result.slip_x + result.traction_y * result.slip_y
+    assert float(np.abs(slip_work - traction_size * slip).where(slips, 0.0).max()) <= 1e-5 * largest * float(slip.max())
     for name in ("bound_error", "slip_error", "force_error"):
         assert float(result[name]) < 1e-6
 
@@ -97,18 +103,20 @@ def test_slip_follows_from_displacements() -> None:
 
 def test_prescribed_force_reproduces_creepage() -> None:
     creepages = {"longitudinal_creepage": 0.006, "lateral_creepage": -0.004, "spin": 0.008}
-    first = solve_rolling(Rolling(**creepages))
-    forces = {name: float(first[name]) for name in ("force_x", "force_y", "moment_z")}
-    second = solve_rolling(Rolling(**forces))
+    creepage_result = solve_rolling(Rolling(**creepages))
+    forces = {name: float(creepage_result[name]) for name in ("force_x", "force_y", "moment_z")}
+    force_result = solve_rolling(Rolling(**forces))
     for name, value in creepages.items():
-        assert float(second[name]) == pytest.approx(value, rel=1e-4)
+        assert float(force_result[name]) == pytest.approx(value, rel=1e-4)
 
 
 def test_reversed_creepage_reverses_the_tractions() -> None:
-    first = solve_rolling(Rolling(longitudinal_creepage=0.006, lateral_creepage=0.004, spin=0.01))
-    second = solve_rolling(Rolling(longitudinal_creepage=-0.006, lateral_creepage=-0.004, spin=-0.01))
+    forward_result = solve_rolling(Rolling(longitudinal_creepage=0.006, lateral_creepage=0.004, spin=0.01))
+    reversed_result = solve_rolling(Rolling(longitudinal_creepage=-0.006, lateral_creepage=-0.004, spin=-0.01))
     for axis in "xy":
-        assert np.abs(first[f"traction_{axis}"] + second[f"traction_{axis}"]).max() < 1e-6 * float(first.pressure.max())
+        assert np.abs(forward_result[f"traction_{axis}"] + reversed_result[f"traction_{axis}"]).max() < 1e-6 * float(
+            forward_result.pressure.max()
+        )
 
 
 def test_large_creepage_is_full_sliding() -> None:
@@ -122,9 +130,9 @@ def test_large_creepage_is_full_sliding() -> None:
 def test_sticking_cells_are_at_leading_edge() -> None:
     """Rolling along +y, material enters at the leading edge without traction and sticks first."""
     result = solve_rolling(Rolling(longitudinal_creepage=0.01))
-    middle = result.isel(x=13)
-    sticks = result.y.values[middle.stick.values.astype(bool)]
-    slips = result.y.values[(middle.pressure.values > 0) & ~middle.stick.values.astype(bool)]
+    middle_column = result.isel(x=13)
+    sticks = result.y.values[middle_column.stick.values.astype(bool)]
+    slips = result.y.values[(middle_column.pressure.values > 0) & ~middle_column.stick.values.astype(bool)]
     assert sticks.min() > slips.max()
     assert float(result.force_y) > 0
 
@@ -189,12 +197,12 @@ def test_rolling_between_free_ends_is_symmetric_about_the_middle() -> None:
 def test_equal_flush_bodies_do_not_slip_under_pressure() -> None:
     grid = Grid(x_range=(0.0, 3.0), y_range=(-1.4, 1.4), cells_x=15, cells_y=28)
     gap = xr.DataArray(0.5 * grid.y**2 + 0 * grid.x[:, None], coords={"x": grid.x, "y": grid.y}, dims=("x", "y"))
-    longer, same = FiniteLengthSpace(length=3.0, material=STEEL), FiniteLengthSpace(length=3.0, material=STEEL)
-    still = solve_contact(longer, gap, load=1.0, friction=0.1, counterbody=Counterbody(same), motion=Rolling())
+    longer, equal_length = FiniteLengthSpace(length=3.0, material=STEEL), FiniteLengthSpace(length=3.0, material=STEEL)
+    still = solve_contact(longer, gap, load=1.0, friction=0.1, counterbody=Counterbody(equal_length), motion=Rolling())
     assert float(np.hypot(still.traction_x, still.traction_y).max()) < 1e-8 * float(still.pressure.max())
-    inside = Counterbody(FiniteLengthSpace(length=2.0, material=STEEL), start=0.4)
+    short_counterbody = Counterbody(FiniteLengthSpace(length=2.0, material=STEEL), start=0.4)
     shorter = gap.where((gap.x > 0.4) & (gap.x < 2.4), np.inf)
-    shifted = solve_contact(longer, shorter, load=0.7, friction=0.1, counterbody=inside, motion=Rolling())
+    shifted = solve_contact(longer, shorter, load=0.7, friction=0.1, counterbody=short_counterbody, motion=Rolling())
     assert float(np.abs(shifted.traction_x).max()) > 0.03 * float(shifted.pressure.max())
     assert float(shifted.friction_work) > 0
 
@@ -225,23 +233,23 @@ def test_history_of_shifts_continues_tractions() -> None:
     steps = [solve_rolling(Shift(force_y=largest))]
     for force in (0.0, -largest, 0.0, largest):
         steps.append(solve_rolling(Shift(force_y=force), after=steps[-1]))
-    loaded, unloaded, reversed_, _, repeated = steps
+    loaded_step, unloaded_step, reversed_step, _, repeated_step = steps
     for step in steps:
         assert step.converged
-    bound = FRICTION * float(loaded.pressure.max())
-    assert np.abs(loaded.traction_y + reversed_.traction_y).max() < 1e-3 * bound
-    assert np.abs(loaded.traction_y - repeated.traction_y).max() < 1e-3 * bound
+    bound = FRICTION * float(loaded_step.pressure.max())
+    assert np.abs(loaded_step.traction_y + reversed_step.traction_y).max() < 1e-3 * bound
+    assert np.abs(loaded_step.traction_y - repeated_step.traction_y).max() < 1e-3 * bound
     # Without force tractions remain: slip back at the edge, the old direction inside.
-    assert float(unloaded.traction_y.min()) < -0.02 * bound < 0.02 * bound < float(unloaded.traction_y.max())
+    assert float(unloaded_step.traction_y.min()) < -0.02 * bound < 0.02 * bound < float(unloaded_step.traction_y.max())
     # Each half of a cycle has the shift of twice the friction and half the force, doubled.
-    shift = float(loaded.shift_y)
-    back = float(unloaded.shift_y) + float(reversed_.shift_y)
+    shift = float(loaded_step.shift_y)
+    back = float(unloaded_step.shift_y) + float(reversed_step.shift_y)
     assert back == pytest.approx(-2 * shift, rel=1e-3)
     stepped = solve_rolling(Shift(force_y=0.3 * FRICTION * LOAD))
     stepped = solve_rolling(Shift(force_y=largest), after=stepped)
-    assert np.abs(stepped.traction_y - loaded.traction_y).max() < 2e-3 * bound
-    unmoved = solve_rolling(Shift(), after=loaded)
-    assert np.abs(unmoved.traction_y - loaded.traction_y).max() < 1e-3 * bound
+    assert np.abs(stepped.traction_y - loaded_step.traction_y).max() < 2e-3 * bound
+    unmoved = solve_rolling(Shift(), after=loaded_step)
+    assert np.abs(unmoved.traction_y - loaded_step.traction_y).max() < 1e-3 * bound
 
 
 def test_invalid_input_raises_error() -> None:
@@ -285,8 +293,13 @@ def test_rolling_on_graded_cells_matches_uniform_cells(name: str) -> None:
     for axis in "xy":
         assert float((graded[f"traction_{axis}"] * areas).sum()) == pytest.approx(float(graded[f"force_{axis}"]))
     scale = FRICTION * LOAD
-    for name, size in {"force_x": scale, "force_y": scale, "moment_z": scale, "friction_work": 0.02 * scale}.items():
-        assert float(graded[name]) == pytest.approx(float(uniform[name]), abs=0.01 * size)
+    for name, scale_size in {
+        "force_x": scale,
+        "force_y": scale,
+        "moment_z": scale,
+        "friction_work": 0.02 * scale,
+    }.items():
+        assert float(graded[name]) == pytest.approx(float(uniform[name]), abs=0.01 * scale_size)
 
 
 def test_fastsim_on_graded_cells_matches_uniform_cells() -> None:
@@ -326,9 +339,9 @@ def test_reference_x_is_middle_of_finite_gap() -> None:
 
 def test_sticking_part_is_relative_to_loaded_area() -> None:
     result = solve_rolling(MOTIONS["all"])
-    pressed = result.pressure > 0
+    is_pressed = result.pressure > 0
     assert 0.05 < float(result.sticking_part) < 0.95
-    assert float(result.sticking_part) == pytest.approx(float(result.stick.sum() / pressed.sum()))
+    assert float(result.sticking_part) == pytest.approx(float(result.stick.sum() / is_pressed.sum()))
 
 
 @pytest.mark.parametrize(("poisson", "spin"), [(0.3, 10.0), pytest.param(0.0, 5.0, marks=pytest.mark.slow)])

@@ -12,10 +12,10 @@ from contactstudy.contact.rolling.tractions import DEPENDENT_OFFSET, EDGE_OFFSET
 from contactstudy.verification.tribology import material, rolling_ellipse
 
 
-def strip(part: float, cells: int = 20) -> np.ndarray:
+def strip(leading_length: float, cells: int = 20) -> np.ndarray:
     """One row whose squared pressure, a parabola, ends at the given part of its last cell but four."""
     position = np.arange(cells) + 0.5
-    edge = cells - 5 + part
+    edge = cells - 5 + leading_length
     pressure = np.sqrt(np.maximum((edge - position) * (position + 2), 0.0))
     pressure[cells - 5] = max(pressure[cells - 5], 0.1)
     pressure[cells - 4] = 0.0
@@ -23,27 +23,27 @@ def strip(part: float, cells: int = 20) -> np.ndarray:
     return pressure[None, :]
 
 
-@pytest.mark.parametrize("part", [0.75, 0.9, 1.3])
-def test_leading_cell_inside_contact_is_unknown(part: float) -> None:
-    pressure = 3 * strip(part)
+@pytest.mark.parametrize("leading_length", [0.75, 0.9, 1.3])
+def test_leading_cell_inside_contact_is_unknown(leading_length: float) -> None:
+    pressure = 3 * strip(leading_length)
     cells = RollingCells.of(pressure, pressure)
     assert cells.source_cell.size == 0
     assert cells.unknown.shape[1] == (pressure > 0).sum()
-    assert cells.offset == pytest.approx(EDGE_OFFSET + part)
+    assert cells.offset == pytest.approx(EDGE_OFFSET + leading_length)
 
 
-@pytest.mark.parametrize("part", [0.3, 0.5])
-def test_narrow_leading_cell_is_dependent(part: float) -> None:
-    pressure = strip(part)
+@pytest.mark.parametrize("leading_length", [0.3, 0.5])
+def test_narrow_leading_cell_is_dependent(leading_length: float) -> None:
+    pressure = strip(leading_length)
     cells = RollingCells.of(pressure, 0.3 * pressure)
     last = int(np.flatnonzero(pressure[0])[-1])
     assert cells.dependent.tolist() == [[0], [last]]
     assert cells.unknown[1, cells.source_cell].tolist() == [last - 1]
     assert cells.offset == pytest.approx(DEPENDENT_OFFSET)
-    own = np.ones((2, cells.unknown.shape[1]))
-    on_grid = cells.on_grid(own)
+    unit_traction = np.ones((2, cells.unknown.shape[1]))
+    on_grid = cells.on_grid(unit_traction)
     assert on_grid[0, 0, last] == pytest.approx(pressure[0, last] / pressure[0, last - 1])
-    assert cells.on_grid(3 * own) == pytest.approx(3 * on_grid)
+    assert cells.on_grid(3 * unit_traction) == pytest.approx(3 * on_grid)
     weights = np.random.default_rng(0).random((3, *pressure.shape))
     expected = (weights * on_grid[0]).sum(axis=(1, 2))
     assert cells.gather(weights).sum(axis=1) == pytest.approx(expected)
@@ -65,8 +65,8 @@ def test_rising_pressure_leaves_the_offset_constant() -> None:
 
 
 def test_two_contacts_in_row_have_two_edges() -> None:
-    item = strip(0.3)
-    pressure = np.hstack([item, item])
+    strip_pressure = strip(0.3)
+    pressure = np.hstack([strip_pressure, strip_pressure])
     assert RollingCells.of(pressure, pressure).source_cell.size == 2
 
 
@@ -80,13 +80,11 @@ def test_derivative_is_exact_for_parabolas() -> None:
     cells = RollingCells.of(pressure, pressure)
     y = dy * np.arange(pressure.shape[1])
     displaced = (2 + 3 * y - 0.7 * y**2)[None, :]
-    at = y[cells.unknown[1]] + cells.offset * dy
-    assert cells.derivative(displaced, dy) == pytest.approx(3 - 1.4 * at)
+    slip_positions = y[cells.unknown[1]] + cells.offset * dy
+    assert cells.derivative(displaced, dy) == pytest.approx(3 - 1.4 * slip_positions)
 
 
-def test_half_cell_offset_matches_published_creepage(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_half_cell_offset_matches_published_creepage(monkeypatch: pytest.MonkeyPatch) -> None:
     """The program CONTACT on the same 1276 cells, with plain differences: force, moment and cells that stick.
 
     Its spin acts a third of a cell further ahead, which is a lateral creepage of that much spin. One shift gives all
@@ -106,24 +104,24 @@ def test_half_cell_offset_matches_published_creepage(
 
 def test_close_columns_share_slip_offset() -> None:
     """Columns far narrower than the cells are long, and one as wide as they are long beside them."""
-    pressure = np.vstack([strip(part) for part in (0.75, 1.3, 0.9)])
+    pressure = np.vstack([strip(leading_length) for leading_length in (0.75, 1.3, 0.9)])
     x, widths, dy = np.array([0.0, 0.02, 2.0]), np.array([0.01, 0.03, 1.0]), 1.0
-    together = averaging_weights(x, widths, dy)
-    assert together is not None
-    cells = RollingCells.of(pressure, pressure, together)
-    first, second, third = (cells.offset[cells.unknown[0] == row][0] for row in range(3))
-    assert abs(first - second) < 0.01  # their own are 0.55 apart
-    assert first == pytest.approx(EDGE_OFFSET + (0.01 * 0.75 + 0.98 * 0.03 * 1.3) / (0.01 + 0.98 * 0.03))
-    assert third == pytest.approx(EDGE_OFFSET + 0.9)
+    weights = averaging_weights(x, widths, dy)
+    assert weights is not None
+    cells = RollingCells.of(pressure, pressure, weights)
+    first_offset, second_offset, third_offset = (cells.offset[cells.unknown[0] == row][0] for row in range(3))
+    assert abs(first_offset - second_offset) < 0.01  # their own are 0.55 apart
+    assert first_offset == pytest.approx(EDGE_OFFSET + (0.01 * 0.75 + 0.98 * 0.03 * 1.3) / (0.01 + 0.98 * 0.03))
+    assert third_offset == pytest.approx(EDGE_OFFSET + 0.9)
     assert averaging_weights(np.arange(4.0), np.ones(4), 0.5) is None
 
 
 def test_single_cell_ahead_is_separate_contact() -> None:
     pressure = strip(0.9)
     last = int(np.flatnonzero(pressure[0])[-1])
-    single = pressure.copy()
-    single[0, last + 2] = 0.1
-    computed = RollingCells.of(single, single)
+    separate_pressure = pressure.copy()
+    separate_pressure[0, last + 2] = 0.1
+    computed = RollingCells.of(separate_pressure, separate_pressure)
     assert computed.source_cell.size == 0
     assert computed.offset[:-1] == pytest.approx(EDGE_OFFSET + 0.9)
     assert computed.offset[-1] == pytest.approx(EDGE_OFFSET + 1.0)

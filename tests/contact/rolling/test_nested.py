@@ -48,8 +48,8 @@ def test_sticking_guess_is_linear_in_bound(grid: Grid) -> None:
     coarse = solve_under(bound, bound * plane(COARSE), np.ones(COARSE.shape, bool))
     guess = guess_from_coarse(coarse, all_cells(fine_bound), ("y", "spin"))
     computed = guess.traction.reshape(2, *grid.shape) / fine_bound
-    inside = slice(2, -2) if grid is FINE else slice(None)
-    assert computed[:, inside, 1:-1] == pytest.approx(plane(grid)[:, inside, 1:-1], rel=1e-12)
+    inner_cells = slice(2, -2) if grid is FINE else slice(None)
+    assert computed[:, inner_cells, 1:-1] == pytest.approx(plane(grid)[:, inner_cells, 1:-1], rel=1e-12)
     assert guess.amplitudes.tolist() == [-0.25, 3.0]
 
 
@@ -62,30 +62,30 @@ def test_slipping_guess_keeps_bound() -> None:
     fine_bound = np.full(FINE.shape, 5.0)
     coarse = solve_under(bound, traction, sticks)
     computed = guess_from_coarse(coarse, all_cells(fine_bound), ()).traction.reshape(2, *FINE.shape)
-    part = np.hypot(*computed) / fine_bound
+    bound_ratio = np.hypot(*computed) / fine_bound
     slips, frictionless = FINE.x > 3, FINE.y < 0.9
-    assert part[slips][:, ~frictionless] == pytest.approx(1.0)
-    assert (part[slips][:, frictionless] == 0).all()
-    assert part[~slips][:, ~frictionless].max() == pytest.approx(MAX_STICKING_RATIO)
-    assert part[2:4, 4:] == pytest.approx(0.9 + 0.05 * np.array([1.25, 1.75])[:, None] * np.ones(4))
-    assert (part[~slips][:, :1] == 0).all()
-    loaded = part > 0
-    assert (computed[1] / computed[0].clip(1e-9))[loaded] == pytest.approx(4 / 3)
+    assert bound_ratio[slips][:, ~frictionless] == pytest.approx(1.0)
+    assert (bound_ratio[slips][:, frictionless] == 0).all()
+    assert bound_ratio[~slips][:, ~frictionless].max() == pytest.approx(MAX_STICKING_RATIO)
+    assert bound_ratio[2:4, 4:] == pytest.approx(0.9 + 0.05 * np.array([1.25, 1.75])[:, None] * np.ones(4))
+    assert (bound_ratio[~slips][:, :1] == 0).all()
+    is_loaded = bound_ratio > 0
+    assert (computed[1] / computed[0].clip(1e-9))[is_loaded] == pytest.approx(4 / 3)
 
 
 def test_guess_keeps_slip_direction_under_similar_bound() -> None:
-    random = np.random.default_rng(0)
-    last = random.standard_normal((2, *FINE.shape))
+    rng = np.random.default_rng(0)
+    last = rng.standard_normal((2, *FINE.shape))
     last[:, 0] = 0.0
     sticks = FINE.x[:, None] < 3 + 0 * FINE.y
-    bound = np.hypot(*last) * random.uniform(0.9, 1.1, FINE.shape) + np.where(FINE.x[:, None] < 0.5, 1.0, 0.0)
+    bound = np.hypot(*last) * rng.uniform(0.9, 1.1, FINE.shape) + np.where(FINE.x[:, None] < 0.5, 1.0, 0.0)
     guess = guess_from_last(solve_under(bound, last, sticks), all_cells(bound), ("x",))
     computed = guess.traction.reshape(2, *FINE.shape)
     assert guess.amplitudes.tolist() == [0.5]
-    size, before = np.hypot(*computed), np.hypot(*last)
+    size, previous_size = np.hypot(*computed), np.hypot(*last)
     assert computed[0] * last[1] == pytest.approx(computed[1] * last[0])
     assert size[~sticks] == pytest.approx(bound[~sticks])
-    assert size[sticks] == pytest.approx(np.minimum(before, MAX_STICKING_RATIO * bound)[sticks])
+    assert size[sticks] == pytest.approx(np.minimum(previous_size, MAX_STICKING_RATIO * bound)[sticks])
     assert (computed[:, 0] == 0).all()
     assert ((computed * last).sum(axis=0)[1:] > 0).all()
 

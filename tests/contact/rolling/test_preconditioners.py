@@ -27,15 +27,15 @@ def compute_displacements(edges: FloatArray, row: int) -> FloatArray:
     for material in MATERIALS:
         operator = surface_operator(HalfSpace(material=material), grid, TANGENTIAL, TANGENTIAL)
         for index, load in enumerate(TANGENTIAL):
-            item = operator.compute_displacements({load: unit}, TANGENTIAL)
-            computed[:, index] += np.stack([item[direction] for direction in TANGENTIAL])
+            displacements = operator.compute_displacements({load: unit}, TANGENTIAL)
+            computed[:, index] += np.stack([displacements[direction] for direction in TANGENTIAL])
     return computed
 
 
 def offsets(period: int) -> IntArray:
     """From each cell of a period to each, from less than minus half a period to plus half of it."""
-    numbers = np.arange(period)
-    return (np.subtract.outer(numbers, numbers) + period // 2 - 1) % period - (period // 2 - 1)
+    cell_indices = np.arange(period)
+    return (np.subtract.outer(cell_indices, cell_indices) + period // 2 - 1) % period - (period // 2 - 1)
 
 
 def matrix_on(*, uniform: bool) -> FloatArray:

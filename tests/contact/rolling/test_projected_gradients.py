@@ -14,22 +14,22 @@ from tests.contact.rolling.test_coulomb import check_law, problem
 CELLS = 24
 
 
-@pytest.mark.parametrize("size", [0.01, 0.3, 1.0, 30.0])
-def test_descent_and_newton_agree(size: float) -> None:
-    random = np.random.default_rng(3)
-    bound, ones = random.uniform(0.2, 1.0, CELLS), np.ones(CELLS)
-    request = replace(problem(size * random.standard_normal((2, CELLS)), bound), relative_areas=ones)
+@pytest.mark.parametrize("slip_scale", [0.01, 0.3, 1.0, 30.0])
+def test_descent_and_newton_agree(slip_scale: float) -> None:
+    rng = np.random.default_rng(3)
+    bound, ones = rng.uniform(0.2, 1.0, CELLS), np.ones(CELLS)
+    request = replace(problem(slip_scale * rng.standard_normal((2, CELLS)), bound), relative_areas=ones)
     computed, slip = descend_energy(request.apply_compliance, request.rigid, np.zeros((2, CELLS)), bound, ones)
     assert np.abs(computed - solve_coulomb(request).traction).max() < 1e-5
-    assert np.abs(slip - request.slip(computed, np.zeros(0))).max() < 1e-9 * max(size, 1.0)
+    assert np.abs(slip - request.slip(computed, np.zeros(0))).max() < 1e-9 * max(slip_scale, 1.0)
 
 
-@pytest.mark.parametrize("part", [0.05, 0.5, 0.9])
-def test_rigid_slips_make_the_prescribed_forces(part: float) -> None:
-    random = np.random.default_rng(4)
-    bound, ones = random.uniform(0.2, 1.0, CELLS), np.ones(CELLS)
-    forces = part * bound.sum() * np.array([0.6, -0.8])
-    request = replace(problem(0.1 * random.standard_normal((2, CELLS)), bound, forces=forces), relative_areas=ones)
+@pytest.mark.parametrize("force_fraction", [0.05, 0.5, 0.9])
+def test_rigid_slips_make_the_prescribed_forces(force_fraction: float) -> None:
+    rng = np.random.default_rng(4)
+    bound, ones = rng.uniform(0.2, 1.0, CELLS), np.ones(CELLS)
+    forces = force_fraction * bound.sum() * np.array([0.6, -0.8])
+    request = replace(problem(0.1 * rng.standard_normal((2, CELLS)), bound, forces=forces), relative_areas=ones)
     expected = solve_coulomb(request)
     computed, amplitudes = balance_tractions(request, Guess(np.zeros((2, CELLS)), np.zeros(2)), 1.0)
     assert (request.resultant_weights * computed).sum(axis=(1, 2)) == pytest.approx(forces, abs=1e-4 * bound.sum())
@@ -42,15 +42,15 @@ def test_newton_restarts_from_descent(monkeypatch: pytest.MonkeyPatch, prescribe
     monkeypatch.setattr(coulomb, "DESCENT_INTERVAL", 3)
     descents = []
 
-    def counted(*arguments: object) -> object:
+    def count_descents(*arguments: object) -> object:
         descents.append(arguments)
         return balance_tractions(*arguments)
 
-    monkeypatch.setattr(coulomb, "balance_tractions", counted)
-    random = np.random.default_rng(5)
-    bound = random.uniform(0.2, 1.0, CELLS)
+    monkeypatch.setattr(coulomb, "balance_tractions", count_descents)
+    rng = np.random.default_rng(5)
+    bound = rng.uniform(0.2, 1.0, CELLS)
     forces = 0.5 * bound.sum() * np.array([0.6, -0.8]) if prescribed else None
-    request = problem(random.standard_normal((2, CELLS)), bound, forces=forces)
+    request = problem(rng.standard_normal((2, CELLS)), bound, forces=forces)
     request = replace(request, relative_areas=np.ones(CELLS), symmetric=True)
     computed = solve_coulomb(request)
     assert computed.converged
@@ -60,15 +60,15 @@ def test_newton_restarts_from_descent(monkeypatch: pytest.MonkeyPatch, prescribe
 
 def graded_problem(seed: int, *, unit: float = 1.0, pressure: float = 1.0, forces: bool = False) -> CoulombProblem:
     """Cells of different sizes in some units, on which the compliance times the areas is symmetric."""
-    random = np.random.default_rng(seed)
-    bound, fractions = pressure * random.uniform(0.2, 1.0, CELLS), random.uniform(0.2, 2.0, CELLS)
+    rng = np.random.default_rng(seed)
+    bound, fractions = pressure * rng.uniform(0.2, 1.0, CELLS), rng.uniform(0.2, 2.0, CELLS)
     requested = 0.6 * float((fractions * bound).sum()) * np.array([0.6, -0.8]) if forces else None
-    request = problem(0.3 * unit * random.standard_normal((2, CELLS)), bound, forces=requested, seed=seed)
-    both = np.tile(fractions, 2)
+    request = problem(0.3 * unit * rng.standard_normal((2, CELLS)), bound, forces=requested, seed=seed)
+    component_fractions = np.tile(fractions, 2)
     inner = np.stack(
         [request.apply_compliance(column.reshape(2, CELLS)).ravel() for column in np.eye(2 * CELLS)], axis=1
     )
-    matrix = unit / pressure * inner * both
+    matrix = unit / pressure * inner * component_fractions
     inverse = np.linalg.inv(matrix)
     return replace(
         request,
@@ -87,14 +87,16 @@ def test_descent_on_graded_cells_in_any_unit(unit: float, pressure: float, *, fo
     request = graded_problem(8, unit=unit, pressure=pressure, forces=forces)
     applied: list[int] = []
 
-    def counted(traction: np.ndarray) -> np.ndarray:
+    def count_applications(traction: np.ndarray) -> np.ndarray:
         applied.append(1)
         return request.apply_compliance(traction)
 
     expected = solve_coulomb(replace(request, max_steps=14))
     assert expected.converged
     computed, amplitudes = balance_tractions(
-        replace(request, apply_compliance=counted), Guess(np.zeros((2, CELLS)), np.zeros(2 if forces else 0)), unit
+        replace(request, apply_compliance=count_applications),
+        Guess(np.zeros((2, CELLS)), np.zeros(2 if forces else 0)),
+        unit,
     )
     assert np.abs(computed - expected.traction).max() < 1e-3 * pressure
     assert amplitudes == pytest.approx(expected.amplitudes, abs=1e-3 * unit)

@@ -21,25 +21,25 @@ def bound() -> FloatArray:
 
 
 @pytest.mark.parametrize(
-    "wanted", [[0.3, -0.1], [0.3, -0.1, 0.02], [0.0, 0.0, -1.0], [0.2, 0.0, 0.05], [1e3, 1e3, 30.0]]
+    "resultants", [[0.3, -0.1], [0.3, -0.1, 0.02], [0.0, 0.0, -1.0], [0.2, 0.0, 0.05], [1e3, 1e3, 30.0]]
 )
-def test_largest_multiple_is_minimum_over_directions(wanted: list[float]) -> None:
+def test_largest_multiple_is_minimum_over_directions(resultants: list[float]) -> None:
     """Tractions along the slip of a rigid motion make the largest resultant along it: all motions, tried one by one."""
-    resultant_weights, target = SURFACES.weights[: len(wanted)], np.array(wanted)
-    random = np.random.default_rng(0)
+    resultant_weights, target = SURFACES.weights[: len(resultants)], np.array(resultants)
+    rng = np.random.default_rng(0)
     computed = _largest_multiple(target, bound(), resultant_weights)
     sizes = np.array([(bound() * np.hypot(*work)).sum() for work in resultant_weights])
-    along, spread = target / sizes / np.hypot.reduce(target / sizes), 1.0
+    best_direction, spread = target / sizes / np.hypot.reduce(target / sizes), 1.0
     minimum = np.inf
     for _ in range(60):  # about the best so far, ever closer
-        attempts = along + spread * random.standard_normal((200, target.size))
-        attempts[0] = along
+        attempts = best_direction + spread * rng.standard_normal((200, target.size))
+        attempts[0] = best_direction
         attempts = attempts[(attempts * target / sizes).sum(axis=1) > 0] / sizes
         slips = np.tensordot(attempts, resultant_weights, axes=1)
         multiples = (bound() * np.hypot(slips[:, 0], slips[:, 1])).sum(axis=(1, 2)) / (attempts @ target)
         if multiples.min() < minimum:
-            minimum, along = float(multiples.min()), attempts[multiples.argmin()] * sizes
-            along = along / np.hypot.reduce(along)
+            minimum, best_direction = float(multiples.min()), attempts[multiples.argmin()] * sizes
+            best_direction = best_direction / np.hypot.reduce(best_direction)
         spread *= 0.85
     assert computed == pytest.approx(minimum, rel=1e-4)
     for factor in (3.0, 1e-200):
@@ -53,9 +53,9 @@ def test_single_force_is_limited_by_bound_sum() -> None:
     check_forces(Rolling(force_y=0.9999 * maximum), bound(), SURFACES.weights)
     check_forces(Rolling(force_y=5e-324), bound(), SURFACES.weights)
     check_forces(Rolling(force_y=maximum * (1 - 5e-9)), bound(), SURFACES.weights)
-    for part in (1 - 1e-10, 1.0001):
+    for force_fraction in (1 - 1e-10, 1.0001):
         with pytest.raises(InvalidInputError, match="force_y"):
-            check_forces(Rolling(force_y=part * maximum), bound(), SURFACES.weights)
+            check_forces(Rolling(force_y=force_fraction * maximum), bound(), SURFACES.weights)
     turning = float((bound() * SURFACES.areas * np.hypot(GRID.x[:, None] - 5.45, GRID.y)).sum())
     check_forces(Rolling(moment_z=0.999 * turning), bound(), SURFACES.weights)
     with pytest.raises(InvalidInputError, match="moment_z"):

@@ -57,12 +57,12 @@ def solve_friction(
 ) -> FrictionalContact:
     """A ball on a body of its material, a little off the origin."""
     length, pressure = (LENGTH, PRESSURE) if other_units else (1.0, 1.0)
-    count = 48 if edges == "nested" else 26
-    grid = Grid.between(length * EDGES[edges], (-1.3 * length, 1.3 * length), count)
+    cell_count = 48 if edges == "nested" else 26
+    grid = Grid.between(length * EDGES[edges], (-1.3 * length, 1.3 * length), cell_count)
     gap = 0.05 * ((grid.x[:, None] - 0.02 * length) ** 2 + grid.y**2) / length
     body = HalfSpace(material=Material(0.91 * pressure, 0.3))
-    prescribed = PrescribedLoad(LOAD * pressure * length**2)
-    shape = Shape(body, grid, ArrayKey(gap), prescribed, Counterbody(body))
+    prescribed_load = PrescribedLoad(LOAD * pressure * length**2)
+    shape = Shape(body, grid, ArrayKey(gap), prescribed_load, Counterbody(body))
     motion = scale_units(motion) if other_units else motion
     request = FrictionRequest(
         motion=motion, friction=FRICTION, reference_x=0.1 * length, **({"coupled": False} | named)
@@ -75,17 +75,17 @@ def count_tangential(monkeypatch: pytest.MonkeyPatch) -> list[int]:
     calls: list[int] = []
     original = SurfaceOperator.compute_displacements
 
-    def counted(self: SurfaceOperator, loads: Any, directions: Any) -> Any:
+    def count_application(self: SurfaceOperator, loads: Any, directions: Any) -> Any:
         calls.extend([1] * (Load.ALONG_X in loads))
         return original(self, loads, directions)
 
-    monkeypatch.setattr(SurfaceOperator, "compute_displacements", counted)
+    monkeypatch.setattr(SurfaceOperator, "compute_displacements", count_application)
     return calls
 
 
-@pytest.mark.parametrize(("edges", "most"), [("graded", (566, 82)), ("nested", (858, 100))])
+@pytest.mark.parametrize(("edges", "limits"), [("graded", (566, 82)), ("nested", (858, 100))])
 def test_applications_of_the_operator_are_few(
-    edges: str, most: tuple[int, int], monkeypatch: pytest.MonkeyPatch
+    edges: str, limits: tuple[int, int], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     sums, calls = {Rolling: 0, Shift: 0}, count_tangential(monkeypatch)
     for motion in MOTIONS.values():
@@ -93,8 +93,8 @@ def test_applications_of_the_operator_are_few(
         assert computed.converged
         sums[type(motion)] += len(calls)
         calls.clear()
-    assert sums[Rolling] < most[0]
-    assert sums[Shift] < most[1]
+    assert sums[Rolling] < limits[0]
+    assert sums[Shift] < limits[1]
 
 
 def value_of(tractions: Tractions, name: str) -> FloatArray | float:
@@ -133,15 +133,15 @@ def test_results_scale_with_units(edges: str, name: str) -> None:
 def test_position_along_axis_does_not_change_tractions(motion: Rolling | Shift) -> None:
     """Spin and moment are about the middle, wherever that is."""
 
-    def found(place: float) -> FrictionalContact:
-        grid = Grid.between(place + EDGES["uniform"], (-1.3, 1.3), 26)
-        gap = 0.05 * ((grid.x[:, None] - place - 0.02) ** 2 + grid.y**2)
+    def contact_at(start: float) -> FrictionalContact:
+        grid = Grid.between(start + EDGES["uniform"], (-1.3, 1.3), 26)
+        gap = 0.05 * ((grid.x[:, None] - start - 0.02) ** 2 + grid.y**2)
         body = HalfSpace(material=Material(0.91, 0.3))
         shape = Shape(body, grid, ArrayKey(gap), PrescribedLoad(LOAD), Counterbody(body))
-        request = FrictionRequest(motion=motion, friction=FRICTION, reference_x=place + 0.1, coupled=False)
+        request = FrictionRequest(motion=motion, friction=FRICTION, reference_x=start + 0.1, coupled=False)
         return frictional_contact(shape, Settings(), request)
 
-    baseline, variant = found(0.0).tractions, found(8.0).tractions
+    baseline, variant = contact_at(0.0).tractions, contact_at(8.0).tractions
     assert variant.traction == pytest.approx(baseline.traction, abs=1e-6 * baseline.traction.max())
     for name in ("force_x", "force_y", "moment_z", "work"):
         assert value_of(variant, name) == pytest.approx(value_of(baseline, name), rel=1e-5), name
@@ -154,9 +154,9 @@ def test_work_is_traction_times_slip(motion: Rolling) -> None:
     gap = 0.05 * (grid.x[:, None] ** 2 + grid.y**2)
     body = HalfSpace(material=Material(0.91, 0.1))
     for model in ("exact", "fastsim"):
-        asked = replace(motion, model=model)
+        model_motion = replace(motion, model=model)
         shape = Shape(body, grid, ArrayKey(gap), PrescribedLoad(LOAD))
-        request = FrictionRequest(motion=asked, friction=FRICTION, reference_x=0.0, coupled=False)
+        request = FrictionRequest(motion=model_motion, friction=FRICTION, reference_x=0.0, coupled=False)
         computed = frictional_contact(shape, Settings(), request).tractions
         lost = float((computed.traction * computed.slip).sum() * grid.cell_area)
         assert computed.work == pytest.approx(lost, rel=1e-9 if model == "fastsim" else 0.03)
@@ -172,51 +172,55 @@ def test_work_is_traction_times_slip(motion: Rolling) -> None:
 def test_steps_are_counted(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     steps: list[int] = []
 
-    def noted(problem: CoulombProblem, start: Guess | None = None) -> CoulombSolution:
+    def record_steps(problem: CoulombProblem, start: Guess | None = None) -> CoulombSolution:
         solution = solve_with_continuation(problem, start)
         steps.append(solution.steps)
         return solution
 
-    monkeypatch.setattr(module, "solve_with_continuation", noted)
+    monkeypatch.setattr(module, "solve_with_continuation", record_steps)
     assert solve_friction(MOTIONS[name], "uniform").tractions.steps == sum(steps)
 
 
 def test_warnings_name_the_iteration() -> None:
     computed = solve_friction(MOTIONS["all"], "uniform")
-    unsettled = replace(computed, tractions=replace(computed.tractions, converged=False))
-    unpressed = replace(computed, contact=replace(computed.contact, converged=False))
-    for item, reason in ((unsettled, "stick and slip did not converge"), (unpressed, "the contact iteration stopped")):
+    unconverged_tractions = replace(computed, tractions=replace(computed.tractions, converged=False))
+    unconverged_pressure = replace(computed, contact=replace(computed.contact, converged=False))
+    for contact, reason in (
+        (unconverged_tractions, "stick and slip did not converge"),
+        (unconverged_pressure, "the contact iteration stopped"),
+    ):
         with pytest.warns(ConvergenceWarning, match=reason):
-            item.warn_unless_converged()
+            contact.warn_unless_converged()
 
 
 def test_violations_are_relative_to_rigid_slip(monkeypatch: pytest.MonkeyPatch) -> None:
     """Of prescribed and unknown motions together, about a middle that is not that of the contact."""
     scales: list[float] = []
 
-    def noted(traction: Any, slip: Any, bound: Any, sticks: Any, scale: float) -> tuple[float, float]:
+    def record_scale(traction: Any, slip: Any, bound: Any, sticks: Any, scale: float) -> tuple[float, float]:
         scales.append(scale)
         return law_violation(traction, slip, bound, sticks, scale)
 
-    monkeypatch.setattr(module, "law_violation", noted)
+    monkeypatch.setattr(module, "law_violation", record_scale)
     computed = solve_friction(MOTIONS["moment"], "uniform")
     rigid, grid = computed.tractions.rigid, computed.contact.shape.grid
     along_x = rigid["x"] - rigid["spin"] * grid.y
     along_y = rigid["y"] + rigid["spin"] * (grid.x[:, None] - 0.1)
-    pressed = computed.contact.pressure > 0
-    expected = np.hypot(along_x, along_y)[pressed].max()
+    is_pressed = computed.contact.pressure > 0
+    expected = np.hypot(along_x, along_y)[is_pressed].max()
     mirrored = np.hypot(rigid["x"] + rigid["spin"] * grid.y, rigid["y"] - rigid["spin"] * (grid.x[:, None] - 0.1))
     assert scales[-1] == pytest.approx(expected, rel=0.03)
-    assert mirrored[pressed].max() != pytest.approx(expected, rel=0.04)
+    assert mirrored[is_pressed].max() != pytest.approx(expected, rel=0.04)
 
 
 def test_fastsim_spin_sign_matches_exact_theory() -> None:
     motion = Rolling(spin=0.003)
-    exact, strips = (
-        solve_friction(item, "uniform").tractions.traction for item in (motion, replace(motion, model="fastsim"))
+    exact_tractions, strip_tractions = (
+        solve_friction(model_motion, "uniform").tractions.traction
+        for model_motion in (motion, replace(motion, model="fastsim"))
     )
-    for one, variant in zip(exact, strips, strict=True):
-        assert float((one * variant).sum()) > 0.7 * float(np.sqrt((one**2).sum() * (variant**2).sum()))
+    for component, variant in zip(exact_tractions, strip_tractions, strict=True):
+        assert float((component * variant).sum()) > 0.7 * float(np.sqrt((component**2).sum() * (variant**2).sum()))
 
 
 def test_coupled_contact_scales_with_unit() -> None:
@@ -229,9 +233,9 @@ def test_coupled_contact_scales_with_unit() -> None:
         shape = Shape(body, grid, ArrayKey(gap), PrescribedLoad(LOAD * pressure * length**2))
         motion = Rolling(longitudinal_creepage=0.01)
         request = FrictionRequest(motion=motion, friction=FRICTION, reference_x=0.0, coupled=True)
-        item = frictional_contact(shape, Settings(), request)
-        assert item.converged
-        computed.append(item.contact.pressure / pressure)
+        contact = frictional_contact(shape, Settings(), request)
+        assert contact.converged
+        computed.append(contact.contact.pressure / pressure)
     assert computed[1] == pytest.approx(computed[0], abs=1e-9)
     assert computed[2] == pytest.approx(computed[0], abs=1e-9)
 
@@ -239,11 +243,11 @@ def test_coupled_contact_scales_with_unit() -> None:
 def test_slipping_leading_cell_has_slip() -> None:
     """Under spin some of a column sticks, but not its leading cell, which is tied to the one behind."""
     computed = solve_friction(Rolling(lateral_creepage=0.03, spin=0.1), "uniform")
-    pressed, sticks = computed.contact.pressure > 0, computed.tractions.sticks
-    leading = pressed & ~np.pad(pressed, ((0, 0), (0, 1)))[:, 1:]
+    is_pressed, sticks = computed.contact.pressure > 0, computed.tractions.sticks
+    leading = is_pressed & ~np.pad(is_pressed, ((0, 0), (0, 1)))[:, 1:]
     assert (leading & ~sticks & sticks.any(axis=1)[:, None]).any()
     slip = np.hypot(*computed.tractions.slip)
-    assert (slip[pressed & ~sticks] > 0).all()
+    assert (slip[is_pressed & ~sticks] > 0).all()
     assert (slip[leading & ~sticks] > 1e-3).all()
 
 
