@@ -36,7 +36,7 @@ def seconds_of(study: Study, folder: Path, client: Client | None) -> float:
     """Time of a run on the client, or on two local workers."""
     start_time = time.monotonic()
     options = {"workers": 2} if client is None else {"scheduler": client}
-    report = run_study(study, folder, solver=solve_fake, progress=False, **options)  # type: ignore[arg-type]
+    report = run_study(study, folder, solver=solve_fake, progress=False, **options)
     assert report.counts == {"ok": study.size}, report.counts
     return time.monotonic() - start_time
 

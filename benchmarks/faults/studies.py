@@ -72,7 +72,7 @@ class Forked:
         null = os.open(os.devnull, os.O_RDWR)
         os.dup2(null, 1)
         os.dup2(null, 2)
-        worker.RUN = RunSettings(save_seconds=0.0)
+        worker.RUN = RunSettings(save_seconds=0.0)  # type: ignore[attr-defined] # an import of the module
         command = ["run", str(folder / "study.toml"), "--out", str(folder / "out"), "--no-figure", "--workers", "0"]
         os._exit(main(command, solver=solve_fake))
 

@@ -89,11 +89,11 @@ def flexibility(length: float, columns: int, poisson: float, resolution: Resolut
             flexibilities["cross"].append(mean * odd @ top[2, :, 0].T)
             ks.append(float(k))
     return ColumnFlexibility(
-        edges,
-        *(np.array(component_load) for component_load in flexibilities.values()),
-        np.array(ks),
-        poisson,
-        resolution,
+        edges=edges,
+        **{name: np.array(flexibility) for name, flexibility in flexibilities.items()},
+        k=np.array(ks),
+        poisson=poisson,
+        resolution=resolution,
     )
 
 

@@ -87,7 +87,7 @@ def run(random_case: RandomCase, **positions: list[float]) -> xr.Dataset:
             accuracy=None if random_case.grid is not None else random_case.accuracy,
             stresses=bool(positions),
             tolerance=TOLERANCE,
-            **positions,  # type: ignore[arg-type]
+            **positions,
         )
     kinds = {warning.category for warning in caught}
     unexpected = [

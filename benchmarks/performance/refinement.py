@@ -29,7 +29,7 @@ def solve_roller(*, uniform: bool) -> xr.Dataset:
     """Contact and stresses at 41 x 1 x 25 points."""
     case = roller_case()
     half_width = case.hertz_half_width
-    x, z = np.linspace(0.0, 0.5 * case.body.length, 41), np.linspace(0.0, 3.0, 25) * half_width
+    x, z = np.linspace(0.0, 0.5 * case.roller.length, 41), np.linspace(0.0, 3.0, 25) * half_width
     grid = choose_grid(case, cells_x=CELLS, cells_y=CELLS) if uniform else None
     return solve(case, grid, x=x, y=[0.0], z=z)
 
