@@ -226,15 +226,15 @@ def normalized(dataset: xr.Dataset) -> xr.Dataset:
     """
     require(dataset, *SCALES)
     # Variables instead of arrays: no alignment, and the positions change as well.
-    half_width, pressure = (dataset[name].variable for name in SCALES)
+    half_width, max_pressure = (dataset[name].variable for name in SCALES)
 
     def scaled(array: xr.DataArray, specification: Variable) -> xr.Variable:
-        powers = POWERS[specification.units]
-        result = array.variable / (half_width ** powers[0] * pressure ** powers[1])
+        length_power, pressure_power = POWERS[specification.units]
+        result = array.variable / (half_width**length_power * max_pressure**pressure_power)
         # Dimensions of the study precede, as in the result.
         result = result.transpose(*(dim for dim in result.dims if dim not in array.dims), *array.dims)
-        a, p0 = powers
-        scale = " ".join(["p0"] * p0 + ([f"a**{a}"] if a > 1 else ["a"] * a))  # such as p0 a**2
+        length_scale = [f"a**{length_power}"] if length_power > 1 else ["a"] * length_power
+        scale = " ".join(["p0"] * pressure_power + length_scale)  # such as p0 a**2
         long_name = f"{specification.long_name}, over {scale}"
         result.attrs = {**array.attrs, "units": "1", "long_name": long_name}
         return result

@@ -38,7 +38,7 @@ INCLINED_POINTS = 41  # Points along the axis that determine the mean inclinatio
 MIN_HALF_WIDTH, MAX_HALF_WIDTH = 1e-7, 0.5
 MIN_DEPTH = 1e-12  # Minimum depth beyond first touch over the roller's radius: rounding
 TOUCH_POINTS = 2001  # Points along the axis in the search of first touch
-MIN_LENGTH, MAX_LENGTH = 1e-4, 1e7  # Range of the lengths of contact and body over the Hertz half-width
+MIN_LENGTH_RATIO, MAX_LENGTH_RATIO = 1e-4, 1e7  # Range of the lengths of contact and body over the Hertz half-width
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -221,11 +221,12 @@ class Case:
         low, high = self.body.extent
         lengths = {"roller.length": self.contact_length, "body.length": high - low}
         for parameter, length in lengths.items():
-            if np.isfinite(length) and not MIN_LENGTH <= length / self.hertz_half_width <= MAX_LENGTH:
+            if np.isfinite(length) and not MIN_LENGTH_RATIO <= length / self.hertz_half_width <= MAX_LENGTH_RATIO:
                 raise InvalidInputError(
                     parameter,
                     length,
-                    f"between {MIN_LENGTH:g} and {MAX_LENGTH:g} Hertz half-widths, {self.hertz_half_width:.3g} m",
+                    f"between {MIN_LENGTH_RATIO:g} and {MAX_LENGTH_RATIO:g} Hertz half-widths, "
+                    f"{self.hertz_half_width:.3g} m",
                     "lengths are in metres, pressures and moduli in Pa, loads in N",
                 )
 

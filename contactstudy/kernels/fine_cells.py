@@ -79,7 +79,7 @@ class FineCells:
         return SmoothLoad.of(self._crop(self.shape).T, self.grid.x_edges)
 
     @cached_property
-    def _along_x(self) -> ShapedLoad:
+    def _load_along_x(self) -> ShapedLoad:
         return self._smooth.shape_loads(self.cells.T)
 
     @cached_property
@@ -87,7 +87,7 @@ class FineCells:
         """Columns that are split along x."""
         shape = self.shape_cells
         edges = _split_edges(self.grid.x_edges, np.ones(self.grid.cells_x, bool))
-        fine_means = shape._along_x.means(edges).reshape(-1, self.grid.cells_x, PARTS_X)
+        fine_means = shape._load_along_x.means(edges).reshape(-1, self.grid.cells_x, PARTS_X)
         deviation = np.abs(fine_means - shape.cells.T[..., None]).max(axis=(0, 2))
         is_uneven = deviation > FLATNESS_TOLERANCE * np.abs(self.shape).max()
         return np.full(is_uneven.shape, is_uneven.any()) if self.grid.uniform else is_uneven
@@ -120,13 +120,13 @@ class FineCells:
     @cached_property
     def x_moments(self) -> MomentLoads:
         """Loads with the moments along x of the cells and their nearest images: arrays (y, cell)."""
-        return moment_loads(self.edges, add_images(self._along_x.moments.T, -self.image, self.extent).T)
+        return moment_loads(self.edges, add_images(self._load_along_x.moments.T, -self.image, self.extent).T)
 
     @cached_property
     def far_load(self) -> FloatArray:
         """Load on the cells with forces and first moments of the smooth load: array (cell_x, y)."""
         # Coupled cells of the smooth load have other means than the cells.
-        return np.asarray(self._along_x.cell_means.T + self._without_images(self.x_moments.total.T))
+        return np.asarray(self._load_along_x.cell_means.T + self._without_images(self.x_moments.total.T))
 
     def fine_depths(self, z: FloatArray) -> BoolArray:
         """Whether cells along y are refined at depths `z`."""
@@ -142,11 +142,11 @@ class FineCells:
         x = np.concatenate(edges)
         is_before, is_behind = x < low, x > high
         inner_x = np.where(is_before, 2 * low - x, np.where(is_behind, 2 * high - x, x))
-        integral = self._along_x.integral(inner_x)
+        integral = self._load_along_x.integral(inner_x)
         if is_before.any():
             integral[:, is_before] *= -self.image
         if is_behind.any():
-            total = self._along_x.integral(self.grid.x_edges[-1:])
+            total = self._load_along_x.integral(self.grid.x_edges[-1:])
             integral[:, is_behind] = total + self.image * (total - integral[:, is_behind])
         is_column = np.ones(x.size - 1, bool)
         is_column[np.cumsum([array_edges.size for array_edges in edges[:-1]], dtype=int) - 1] = False

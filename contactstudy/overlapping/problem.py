@@ -35,7 +35,7 @@ EDGE_ROUNDING = 1e-12  # rounding of an edge and its image over the length. Accu
 FIRST_PANEL_FACTOR = 0.1
 """End of the first panel along ``k_y``, over the smallest length of the problem, of a field without poles. Accuracy."""
 
-MIN_LENGTH = 0.004
+MIN_LENGTH_RATIO = 0.004
 """Least length of a body over the width of the load. Accuracy: at this length the ends keep 6e-4 of the pressure, at a
 third of the length a tenth."""
 
@@ -59,12 +59,12 @@ class EndProblem:
     def __post_init__(self) -> None:
         loaded_rows = np.flatnonzero(self.cells.any(axis=0))
         width = self.grid.dy * (loaded_rows[-1] - loaded_rows[0] + 1) if loaded_rows.size else 0.0
-        if self.length < MIN_LENGTH * width:
+        if self.length < MIN_LENGTH_RATIO * width:
             raise InvalidInputError(
                 "body.length",
                 self.length,
-                f"at least {MIN_LENGTH:g} of the width of the contact, {width:.3g} m: the traction left on the ends of "
-                "a thinner body exceeds 1e-3 of the pressure",
+                f"at least {MIN_LENGTH_RATIO:g} of the width of the contact, {width:.3g} m: the traction left on the "
+                "ends of a thinner body exceeds 1e-3 of the pressure",
                 "such a disc is in plane stress",
             )
 

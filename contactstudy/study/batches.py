@@ -6,8 +6,8 @@ arrays of all cases one after the other, and ``x_size(case)`` and ``y_size(case)
 cannot be set up, has a status and a message and no numbers. All cases of a batch have equal versions and one level.
 
 A batch is never changed. Its name ends with the number of its cases and the CRC-32 of its bytes, so that damage is
-detected without decoding; every
-column and chunk has a checksum of the format as well, which any reader of netCDF-4 verifies.
+detected without decoding; every column and chunk has a checksum of the format as well, which any reader of netCDF-4
+verifies.
 """
 
 from __future__ import annotations

@@ -25,13 +25,13 @@ def format_duration(seconds: float) -> str:
 
 
 class Progress:
-    """Bar, if `shown`, and log of one run; new lines are appended."""
+    """Bar, if `visible`, and log of one run; new lines are appended."""
 
     def __init__(self, path: Path, *, visible: bool = True) -> None:
         self._bar_shown = visible and sys.stderr.isatty() and not os.environ.get("CI")
         self._messages_shown = visible
         self._bar: Any = None
-        self._count = self._total = self._logged = 0
+        self._count = self._total = self._shown_count = 0
         self._began = time.monotonic()
         self.remarks: list[str] = []
         flags = os.O_WRONLY | os.O_APPEND | os.O_CREAT | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0)
@@ -100,5 +100,5 @@ class Progress:
         self.log(f"{self._count}/{self._total} cases, {forecast}")
         if self._bar is not None:
             self._bar.set_postfix_str(forecast, refresh=False)
-            self._bar.update(self._count - self._logged)
-        self._logged = self._count
+            self._bar.update(self._count - self._shown_count)
+        self._shown_count = self._count

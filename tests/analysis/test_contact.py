@@ -152,8 +152,8 @@ def test_load_between_in_a_study(study_dataset: xr.Dataset) -> None:
     assert study_loads.dims == ("e_over_a", "friction", "body")
     for e in (0.0, 2.0):
         selected_case = {"e_over_a": e, "friction": 0.1, "body": "finite-length"}
-        case_load = analysis.single_case(study_dataset.sel(selected_case))
-        load = analysis.load_between(case_load, float(start.sel(selected_case)), float(stop.sel(selected_case)))
+        selected_result = analysis.single_case(study_dataset.sel(selected_case))
+        load = analysis.load_between(selected_result, float(start.sel(selected_case)), float(stop.sel(selected_case)))
         assert float(study_loads.sel(selected_case)) == pytest.approx(float(load), rel=1e-12)
     assert study_loads.sel(friction=FAILS).isnull().all()
 

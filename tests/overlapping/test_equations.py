@@ -77,9 +77,9 @@ def test_resolution_settings_are_converged() -> None:
 
 
 ON_THE_END = {
-    Load.NORMAL: lambda x, y, k, z, nu: -((x / k) ** 2 * (1 - k * z) + 2 * nu * (y / k) ** 2),
-    Load.ALONG_X: lambda x, y, k, z, nu: x / k * (2 + 2 * nu * (y / k) ** 2 - (x / k) ** 2 * k * z),
-    Load.ALONG_Y: lambda x, y, k, z, nu: y / k * (2 * nu * (y / k) ** 2 - (x / k) ** 2 * k * z),
+    Load.NORMAL: lambda k_x, k_y, k, z, nu: -((k_x / k) ** 2 * (1 - k * z) + 2 * nu * (k_y / k) ** 2),
+    Load.ALONG_X: lambda k_x, k_y, k, z, nu: k_x / k * (2 + 2 * nu * (k_y / k) ** 2 - (k_x / k) ** 2 * k * z),
+    Load.ALONG_Y: lambda k_x, k_y, k, z, nu: k_y / k * (2 * nu * (k_y / k) ** 2 - (k_x / k) ** 2 * k * z),
 }
 """Stress sigma_xx, over ``exp(-k z)``, below a harmonic load on a half-space (Boussinesq's potentials)."""
 

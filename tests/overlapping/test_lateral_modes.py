@@ -38,8 +38,8 @@ def integrate_kernel(panel: LateralPanel, parity_loads: dict[int, np.ndarray], y
         amplitudes = columns.along_x[..., columns.parities == parity] * np.exp(-0.3 * columns.nodes)[:, None]
         amplitude_columns = amplitudes.reshape(GRID.cells_x, -1)
         for load_index, load in enumerate((Load.NORMAL, Load.ALONG_Y)):
-            for kind, synthesis in enumerate(columns.synthesis(load, parity)):
-                total[load_index, kind, index] += amplitude_columns @ synthesis
+            for symmetry_index, synthesis in enumerate(columns.synthesis(load, parity)):
+                total[load_index, symmetry_index, index] += amplitude_columns @ synthesis
     return total
 
 

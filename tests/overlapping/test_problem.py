@@ -11,7 +11,7 @@ from contactstudy import Grid, InvalidInputError
 from contactstudy.checks import FloatArray
 from contactstudy.kernels.load import Load
 from contactstudy.overlapping.lateral_modes import BENDING_POLES, POLE_PANEL_FACTOR, POLES, lateral_panels
-from contactstudy.overlapping.problem import FIRST_PANEL_FACTOR, MIN_LENGTH, EndProblem, split_by_parity
+from contactstudy.overlapping.problem import FIRST_PANEL_FACTOR, MIN_LENGTH_RATIO, EndProblem, split_by_parity
 from contactstudy.overlapping.quadrature import Resolution
 
 EDGES = np.array([0.0, 0.2, 0.5, 1.0, 1.7, 2.1, 2.4])
@@ -102,7 +102,7 @@ def test_too_thin_body_raises_error() -> None:
     problem = end_problem()
     for shift in (0, 1, -2):
         cells = np.roll(problem.cells, shift, axis=1)
-        replace(problem, cells=cells, length=1.001 * MIN_LENGTH * 1.25)
+        replace(problem, cells=cells, length=1.001 * MIN_LENGTH_RATIO * 1.25)
         with pytest.raises(InvalidInputError, match=r"width of the contact, 1\.25 m"):
-            replace(problem, cells=cells, length=0.999 * MIN_LENGTH * 1.25)
+            replace(problem, cells=cells, length=0.999 * MIN_LENGTH_RATIO * 1.25)
     replace(problem, cells=np.zeros(problem.cells.shape), length=1e-9)

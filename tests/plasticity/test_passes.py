@@ -236,6 +236,6 @@ def test_positions_within_rounding_of_the_end(line_contact, steel_between_ends) 
     material = ElasticPlastic(yield_stress=0.98 * ROOT * limit, kinematic_hardening=20.0)
     reference = residual_stress(contact, steel_between_ends, material, passes=1)
     assert float(reference["plastic_flow"][0]) > 0
-    for shifted_contact in (in_millimetres, rounded):
-        result = residual_stress(shifted_contact, steel_between_ends, material, passes=1)
+    for equivalent_contact in (in_millimetres, rounded):
+        result = residual_stress(equivalent_contact, steel_between_ends, material, passes=1)
         np.testing.assert_allclose(result["plastic_flow"], reference["plastic_flow"], rtol=1e-6)

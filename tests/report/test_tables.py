@@ -57,15 +57,15 @@ def test_rounding(case_result: xr.Dataset) -> None:
     assert view["force_x"].remark == "rounding: below 1e-06 of the largest force"
     assert list(view.to_dataframe().loc["force_x", ["value", "error"]]) == [-5.7e-9, 7e-9]
     # Also where none was asked for.
-    case = '{"case": {"motion": {"kind": "Rolling", "force_x": %s}}}'
-    assert summary(motion_result.assign_attrs(contactstudy_inputs=case % "0.0"))["force_x"].text == "0 N"
+    inputs_template = '{"case": {"motion": {"kind": "Rolling", "force_x": %s}}}'
+    assert summary(motion_result.assign_attrs(contactstudy_inputs=inputs_template % "0.0"))["force_x"].text == "0 N"
     # Error below the value, above rounding, value above rounding, without another force, and prescribed.
     for exact_result in (
         motion_result.assign(force_x_error=1e-10),
         motion_result.assign(force_x_error=1e-3),
         motion_result.assign(force_x=3e-6, force_x_error=4e-6),
         motion_result.assign(force_y=0.0),
-        motion_result.assign_attrs(contactstudy_inputs=case % "-5.7e-9"),
+        motion_result.assign_attrs(contactstudy_inputs=inputs_template % "-5.7e-9"),
     ):
         row = summary(exact_result)["force_x"]
         assert "rounding" not in row.remark

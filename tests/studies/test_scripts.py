@@ -181,13 +181,13 @@ def near_an_edge():
 def test_quarter_space_is_softer_at_edge(near_an_edge):
     module, _, result = near_an_edge
     ball = result.sel(indenter="sphere")
-    at_depth = ball.sel(condition="depth")
+    at_equal_approach = ball.sel(condition="depth")
     # Solved on cells of a quarter of the size.
     for name, value in (("load", 0.3985), ("contact_area", 0.471), ("peak_pressure", 0.843), ("von_mises", 0.6796)):
-        assert abs(float(at_depth[name].sel(e_over_a=0.0)) - value) <= float(
-            at_depth[f"{name}_error"].sel(e_over_a=0.0)
+        assert abs(float(at_equal_approach[name].sel(e_over_a=0.0)) - value) <= float(
+            at_equal_approach[f"{name}_error"].sel(e_over_a=0.0)
         )
-    assert float(at_depth["load"].sel(e_over_a=8.0)) == pytest.approx(module.far_from_edge(0.3, 8.0), abs=2e-3)
+    assert float(at_equal_approach["load"].sel(e_over_a=8.0)) == pytest.approx(module.far_from_edge(0.3, 8.0), abs=2e-3)
     over = result["von_mises"].sel(e_over_a=0.0) / result["von_mises"].sel(e_over_a=np.inf)
     assert float(over.sel(indenter="sphere", condition="load")) == pytest.approx(1.49, abs=0.01)
     assert float(over.sel(indenter="cylinder", condition="load")) < 0.95

@@ -55,8 +55,7 @@ def test_memory_error_fails_single_case(tmp_path):
 
 
 def run_quietly(case, grid, **settings):
-    settings_of_failed_case = case.friction
-    assert settings_of_failed_case == FAILS
+    assert case.friction == FAILS
     object.__setattr__(case, "friction", 0.0)
     return solve_fake(case, grid, **settings)
 

@@ -94,9 +94,10 @@ def slope_of_a_wedge(angle: float, s: float) -> float:
 
 @pytest.mark.parametrize("s", [0.55, 0.7, 0.7736, 0.9])
 def test_elastic_exponent_satisfies_wedge_equation(s: float) -> None:
-    quarter = np.sin(np.pi * s) / (2 * (np.sin(0.5 * np.pi * s) ** 2 - s**2))
+    quarter_space_slope = np.sin(np.pi * s) / (2 * (np.sin(0.5 * np.pi * s) ** 2 - s**2))
     half_space_slope = 1 / np.tan(np.pi * s)
-    assert slope_of_a_wedge(0.5 * np.pi, s) / slope_of_a_wedge(np.pi, s) == pytest.approx(quarter / half_space_slope)
+    slope_ratio = slope_of_a_wedge(0.5 * np.pi, s) / slope_of_a_wedge(np.pi, s)
+    assert slope_ratio == pytest.approx(quarter_space_slope / half_space_slope)
 
 
 @given(ratio=st.floats(1e-3, 1e3))
