@@ -22,8 +22,8 @@ from contactstudy.case.magnitudes import check_balanced, check_on_its_length, de
 from contactstudy.case.motion import Sliding
 from contactstudy.contact.normal.contact import Contact, Settings, contact_of
 from contactstudy.contact.refinement.refined_contact import (
-    ROUGH_ACCURACY,
-    ROUGH_TOLERANCE,
+    COARSE_ACCURACY,
+    COARSE_TOLERANCE,
     ApproachContact,
     approach_load_error,
     contact_at_approach,
@@ -115,7 +115,9 @@ def contact_on_cells(case: Case, grid: Grid | None, roughness: xr.DataArray | No
     cells: Cells = "chosen" if grid is None else "given"
     if grid is None:
         # At an approach the smooth roller determines the cells; the rough one carries another load.
-        loaded_case = case if case.approach is None else contact_at_approach(case, ROUGH_ACCURACY, ROUGH_TOLERANCE).case
+        loaded_case = (
+            case if case.approach is None else contact_at_approach(case, COARSE_ACCURACY, COARSE_TOLERANCE).case
+        )
         grid = choose_grid(loaded_case)
     clearance, tractions = case.gap(grid), None
     if not np.isfinite(clearance).any():

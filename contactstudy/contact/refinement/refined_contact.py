@@ -23,12 +23,12 @@ from contactstudy.contact.normal.problem import ContactProblem, solve_normal
 from contactstudy.contact.refinement.columns import AxialShape
 from contactstudy.contact.refinement.laws import RIGID, CornerLaw, EndLaw, corner_law, elastic_exponent
 from contactstudy.contact.refinement.refinement import (
-    POLISHED,
+    VALUE_TOLERANCE,
     ColumnPressure,
     RefinedColumns,
+    coarse_columns,
     refine_columns,
     replace_pressure,
-    rough_columns,
 )
 from contactstudy.kernels.load import Load
 from contactstudy.profiles.base import as_shape
@@ -43,7 +43,7 @@ which also solve the contact on half of the cells and depend on two cells ahead.
 WINDOW_STEP = 2 ** (1 / 6)  # ratio of consecutive windows: similar cases share the kernels of the ends. Speed.
 SMALL_SLOPE = 0.1  # slope of a corner up to which strains are small
 
-CELLS_Y, ROUGH_CELLS_Y = (32, 64, 128, 256), 16
+CELLS_Y, COARSE_CELLS_Y = (32, 64, 128, 256), 16
 """Numbers of cells along y: the first sufficient one, and the number of the first contact. Accuracy."""
 
 MAX_CORNER_JUMP = 0.2
@@ -96,7 +96,7 @@ _cached_contact = cached("refined contacts")(_refine_contact)
 
 
 def _refine_in_window(case: Case, half_window: float, accuracy: float, tolerance: float) -> RefinedContact:
-    """Contact in a window that a rough contact determines."""
+    """Contact in a window that a coarse contact determines."""
     shape = _axial_shape(case)
     with one_blas_thread():
         # The half-width depends only weakly on the end correction, which is the expensive part.
@@ -104,10 +104,10 @@ def _refine_in_window(case: Case, half_window: float, accuracy: float, tolerance
         mirrored = (
             replace(body, model="mirror") if isinstance(body, BodyWithFreeEnds) and body.model == "exact" else body
         )
-        rough_solver = _ColumnSolver(replace(case, body=mirrored), half_window, ROUGH_CELLS_Y)
-        rough = rough_columns(rough_solver, shape)
-        rows = np.flatnonzero(rough.pressure.any(axis=0))
-        cells = rough_solver.grid(rough.edges)
+        coarse_solver = _ColumnSolver(replace(case, body=mirrored), half_window, COARSE_CELLS_Y)
+        coarse = coarse_columns(coarse_solver, shape)
+        rows = np.flatnonzero(coarse.pressure.any(axis=0))
+        cells = coarse_solver.grid(coarse.edges)
         extent = float(np.abs(cells.y[rows]).max()) + 0.5 * cells.dy
         # Coupled friction moves the contact along y.
         factor = WINDOW_FACTOR_COUPLED if case.coupled else WINDOW_FACTOR
@@ -115,11 +115,11 @@ def _refine_in_window(case: Case, half_window: float, accuracy: float, tolerance
             factor = WINDOW_FACTOR_ROLLING
         minimum = factor * extent / case.hertz_half_width
         window = float(case.hertz_half_width * WINDOW_STEP ** np.ceil(np.log(minimum) / np.log(WINDOW_STEP)))
-        peak_cells = rough.pressure[int(rough.pressure.max(axis=1).argmax())] > 0
+        peak_cells = coarse.pressure[int(coarse.pressure.max(axis=1).argmax())] > 0
         cells_y = _cell_number_y(float(peak_cells.sum()) * cells.dy / (2 * window), accuracy)
         solver = _ColumnSolver(case, window, cells_y)
         # The splittings of the outermost columns determine the law of an end: begin with few columns.
-        refined = refine_columns(solver, shape, accuracy, None if rough.singular else rough.edges)
+        refined = refine_columns(solver, shape, accuracy, None if coarse.singular else coarse.edges)
         refined = _add_data_error(solver, refined, shape)
     full = solver.shape(refined.edges)
     guess = ArrayKey(_pad_to_grid(refined.pressure, full.grid, refined.edges))
@@ -150,7 +150,7 @@ def _add_data_error(solver: _ColumnSolver, refined: RefinedColumns, shape: Axial
     if other_profile is None:
         return refined
     solver = replace(solver, case=replace(case, roller=replace(case.roller, profile=other_profile)))
-    recomputed = replace_pressure(refined, solver(refined.edges, refined.pressure, POLISHED).pressure, shape)
+    recomputed = replace_pressure(refined, solver(refined.edges, refined.pressure, VALUE_TOLERANCE).pressure, shape)
     errors = {
         name: [
             error + DATA_ERROR * (abs(value - new_value) if np.isfinite(value) else 0.0)
@@ -338,7 +338,7 @@ and the largest number of corrections of the load. Speed."""
 
 LOAD_EXCESS = 1.02  # factor on a corrected load: the window of a shallower contact is too narrow. Speed.
 
-ROUGH_ACCURACY, ROUGH_TOLERANCE = 0.1, 1e-4  # accuracy and tolerance of contacts that determine a load. Speed.
+COARSE_ACCURACY, COARSE_TOLERANCE = 0.1, 1e-4  # accuracy and tolerance of contacts that determine a load. Speed.
 WINDOW_FACTOR_COARSE = 1.5  # factor on the window for half as many cells along y. Speed.
 
 SLICES, SLICE_WIDTH = 200, 0.3  # slices of a first load; their half-width over that of the undeformed overlap. Speed.
@@ -354,8 +354,8 @@ class ApproachContact(NamedTuple):
 def contact_at_approach(case: Case, accuracy: float, tolerance: float) -> ApproachContact:
     """Contact of a case that prescribes its approach, on columns that are refined to an accuracy."""
     assert case.approach is not None
-    rough = search_load(_with_mirrored_ends(case), case.approach, _slice_load(case), ROUGH_ACCURACY, ROUGH_TOLERANCE)
-    return search_load(case, case.approach, rough.case.normal_load, accuracy, tolerance)
+    coarse = search_load(_with_mirrored_ends(case), case.approach, _slice_load(case), COARSE_ACCURACY, COARSE_TOLERANCE)
+    return search_load(case, case.approach, coarse.case.normal_load, accuracy, tolerance)
 
 
 def search_load(case: Case, approach: float, load: float, accuracy: float, tolerance: float) -> ApproachContact:
@@ -388,7 +388,7 @@ def approach_load_error(contact: ApproachContact) -> float:
 
     def solve(edges: FloatArray, cells_y: int, prescribed: PrescribedLoad | None) -> Contact:
         shape = contact_shape(case, graded_grid(case, edges, window, cells_y), prescribed)
-        return contact_of(shape._replace(coupled_friction=0.0), Settings(ROUGH_TOLERANCE))
+        return contact_of(shape._replace(coupled_friction=0.0), Settings(COARSE_TOLERANCE))
 
     fine = solve(refined.edges, rows, None)
     deep = PrescribedLoad(approach=fine.approach)

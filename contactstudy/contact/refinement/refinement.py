@@ -80,7 +80,10 @@ MIN_END_COLUMN, MIN_COLUMN = 2e-3, 2e-4
 """Widths over the half-width down to which a sharp end is followed, and a column is split at all. Accuracy."""
 
 CORNER_GROWTH = 0.25  # width of the columns next to a convex corner, over the distance to it. Accuracy.
-ROUGH, POLISHED = 1e-2, 1e-5  # tolerances of the contact at the levels and where values are read. Speed and accuracy.
+LEVEL_TOLERANCE, VALUE_TOLERANCE = (
+    1e-2,
+    1e-5,
+)  # tolerances of the contact at the levels and where values are read. Speed and accuracy.
 
 
 class ColumnPressure(NamedTuple):
@@ -125,7 +128,7 @@ class RefinedColumns:
         return max(error for peak, error in pairs if peak == self.peak)
 
 
-def rough_columns(solve: Solve, shape: AxialShape) -> Refinement:
+def coarse_columns(solve: Solve, shape: AxialShape) -> Refinement:
     """First columns, with a peak to some percent."""
     refinement = Refinement(solve=solve, shape=shape, edges=first_edges(shape))
     for theta in (FIRST_THETA, SECOND_THETA):
@@ -134,7 +137,7 @@ def rough_columns(solve: Solve, shape: AxialShape) -> Refinement:
 
 
 def refine_columns(solve: Solve, shape: AxialShape, accuracy: float, start: FloatArray | None = None) -> RefinedColumns:
-    """Refine columns from the edges `start` of a rough contact, until peak and end pressures converge to `accuracy`."""
+    """Refine columns from the edges `start` of a coarse contact until peak and end pressures reach `accuracy`."""
     refinement = Refinement(solve=solve, shape=shape, edges=first_edges(shape) if start is None else start)
     theta = FIRST_THETA if start is None else SECOND_THETA
     while True:
@@ -162,7 +165,7 @@ class Refinement:
     samples: tuple[list[Sample], list[Sample]] = field(default_factory=lambda: ([], []))
 
     def __post_init__(self) -> None:
-        self.pressure = self.solve(self.edges, None, ROUGH).pressure
+        self.pressure = self.solve(self.edges, None, LEVEL_TOLERANCE).pressure
         self._record_samples()
 
     @property
@@ -175,7 +178,7 @@ class Refinement:
         while True:
             while self.edges.size <= MAX_COLUMNS and (is_marked := self._select_columns_to_split(theta)).any():
                 self._split(is_marked)
-            self.pressure, opening = self.solve(self.edges, self.pressure, POLISHED)
+            self.pressure, opening = self.solve(self.edges, self.pressure, VALUE_TOLERANCE)
             is_marked = find_overlooked(self.shape, self.edges, np.asarray(self.pressure.any(axis=1)), opening())
             if not is_marked.any() or self.edges.size > MAX_COLUMNS:
                 break
@@ -188,7 +191,7 @@ class Refinement:
         finer = split_columns(self.edges, is_marked)
         guess = np.sqrt(interpolate_columns(self.pressure**2, centres_of(self.edges), centres_of(finer)))
         self.edges = finer
-        self.pressure = self.solve(finer, guess, ROUGH).pressure
+        self.pressure = self.solve(finer, guess, LEVEL_TOLERANCE).pressure
         LOGGER.info("refined to %d columns", finer.size - 1)
         self._record_samples()
 

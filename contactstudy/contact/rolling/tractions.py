@@ -166,7 +166,7 @@ def _inside_length(pressure: FloatArray) -> float:
 
 
 NESTED_CELLS = 600  # least number of cells of a contact that is first solved on coarser cells. Speed.
-ROUGH_TOLERANCE = 1e-3  # tolerance on coarser cells, and of the solution that determines the sliding columns. Speed.
+COARSE_TOLERANCE = 1e-3  # tolerance on coarser cells, and of the solution that determines the sliding columns. Speed.
 MAX_STICKING_RATIO = 0.999  # largest part of its bound of a sticking cell in a guess. Speed.
 
 
@@ -219,7 +219,7 @@ def solve_tractions(
         if coarse is None and cells.unknown.shape[1] >= NESTED_CELLS:
             coarse = _solve_coarse(request, settings, surfaces, pressure, bound)
         guess = None if coarse is None else guess_from_coarse(coarse, cells, motion.modes)
-        previous = solve(cells, max(settings.tolerance, ROUGH_TOLERANCE) if rolling else settings.tolerance, guess)
+        previous = solve(cells, max(settings.tolerance, COARSE_TOLERANCE) if rolling else settings.tolerance, guess)
         if not rolling:
             return previous
         if not previous.converged:
@@ -292,7 +292,7 @@ def _solve_coarse(
         start=None if start is None else {load: cell_means(values) for load, values in start.items()},
     )
     surfaces = surfaces._replace(operator=operator, grid=grid.coarsened())
-    settings = settings._replace(tolerance=ROUGH_TOLERANCE)
+    settings = settings._replace(tolerance=COARSE_TOLERANCE)
     # The friction times the pressure equals the mean of the bound up to rounding.
     return replace(solve_tractions(coarse, settings, surfaces, coarse_pressure, None), bound=coarse_bound)
 

@@ -20,9 +20,9 @@ from contactstudy.contact.refinement.refinement import (
     ColumnPressure,
     Refinement,
     _change_error,
+    coarse_columns,
     refine_columns,
     replace_pressure,
-    rough_columns,
 )
 
 HALF_WIDTH, LENGTH = 1.0, 20.0
@@ -444,9 +444,9 @@ def test_loaded_sharp_end_makes_contact_singular(side: int, law: EndLaw | None) 
 
 def test_rough_contact_uses_second_threshold() -> None:
     solve, request = make_column_solver(SCALED_PRESSURES["lesser peak"]), shape()
-    rough_columns_result, fine = rough_columns(solve, request), refine_columns(solve, request, 0.02)
-    assert np.isin(rough_columns_result.edges, fine.edges).all()
-    repeated = refine_columns(solve, request, 0.02, rough_columns_result.edges)
+    coarse, fine = coarse_columns(solve, request), refine_columns(solve, request, 0.02)
+    assert np.isin(coarse.edges, fine.edges).all()
+    repeated = refine_columns(solve, request, 0.02, coarse.edges)
     assert repeated.edges == pytest.approx(fine.edges)
-    assert repeated.first_edges == pytest.approx(rough_columns_result.edges)
-    assert rough_columns_result.laws == [None, None]
+    assert repeated.first_edges == pytest.approx(coarse.edges)
+    assert coarse.laws == [None, None]
