@@ -80,10 +80,8 @@ MIN_END_COLUMN, MIN_COLUMN = 2e-3, 2e-4
 """Widths over the half-width down to which a sharp end is followed, and a column is split at all. Accuracy."""
 
 CORNER_GROWTH = 0.25  # width of the columns next to a convex corner, over the distance to it. Accuracy.
-LEVEL_TOLERANCE, VALUE_TOLERANCE = (
-    1e-2,
-    1e-5,
-)  # tolerances of the contact at the levels and where values are read. Speed and accuracy.
+LEVEL_TOLERANCE = 1e-2  # tolerance of the contact between two splittings. Speed.
+VALUE_TOLERANCE = 1e-5  # tolerance of the contact of which values are taken. Accuracy.
 
 
 class ColumnPressure(NamedTuple):
