@@ -143,12 +143,14 @@ def test_roughness_on_other_cells_is_interpolated():
         x_range=(-0.1 * LENGTH, 1.1 * LENGTH), y_range=(-5 * HALF_WIDTH, 5 * HALF_WIDTH), cells_x=150, cells_y=90
     )
 
-    def sloping_heights(grid: Grid) -> xr.DataArray:  # bilinear, so that interpolation is exact
-        heights = 1e-3 * (grid.x[:, None] - 0.5 * LENGTH) + 2e-3 * grid.y
-        return xr.DataArray(heights, coords={"x": grid.x, "y": grid.y}, dims=("x", "y"))
+    def sloping_heights(cells: Grid) -> xr.DataArray:  # bilinear, so that interpolation is exact
+        heights = 1e-3 * (cells.x[:, None] - 0.5 * LENGTH) + 2e-3 * cells.y
+        return xr.DataArray(heights, coords={"x": cells.x, "y": cells.y}, dims=("x", "y"))
 
-    expected, variant = (solve(case, grid, roughness=sloping_heights(grid), stresses=False) for grid in (grid, wider))
-    np.testing.assert_allclose(variant.initial_gap, expected.initial_gap, atol=1e-18)
+    expected, interpolated = (
+        solve(case, grid, roughness=sloping_heights(cells), stresses=False) for cells in (grid, wider)
+    )
+    np.testing.assert_allclose(interpolated.initial_gap, expected.initial_gap, atol=1e-18)
     tilted_result = solve(case_with(tilt=1e-3), grid, stresses=False)
     assert float(expected.load_position) == pytest.approx(float(tilted_result.load_position), abs=1e-2 * HALF_WIDTH)
 
