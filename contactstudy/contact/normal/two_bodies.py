@@ -20,7 +20,7 @@ from contactstudy.kernels.load import Load
 
 @dataclass(frozen=True, eq=False)
 class CellTransfer:
-    """Fractions of the cells of one body in the cells of the second: from loads on the first, displacements back."""
+    """Matrices of overlaps: `to_second` moves loads to the second body's cells, `to_first` moves displacements back."""
 
     to_second: FloatArray
     to_first: FloatArray
@@ -36,14 +36,14 @@ class CellTransfer:
 
 
 def _reverse_tangential(direction: Load, values: FloatArray) -> FloatArray:
-    """Reverse a tangential load or displacement: the second body has the opposite one."""
+    """Reverse a tangential load or displacement, which has the opposite sign on the second body."""
     return values if direction is Load.NORMAL else -values
 
 
 class PairOperator:
-    """Displacement of two bodies relative to each other, on the first one's grid: normal ones add, others subtract."""
+    """Relative displacement of two bodies on the first body's grid: normal parts add, tangential parts subtract."""
 
-    # Loads go to the second body's cells and its displacements back by the same overlaps: the sum is symmetric. A
+    # The same overlaps move loads to the second body's cells and displacements back: the sum is symmetric. A
     # traction acts on the second body in the opposite direction.
 
     def __init__(self, body: SurfaceOperator, counterbody: SurfaceOperator, transfer: CellTransfer | None) -> None:
@@ -142,7 +142,7 @@ class ScaledOperator:
 
 @dataclass(frozen=True, eq=False)
 class PrescribedSurface:
-    """A user's operator of the surface; preconditioner and coarse cells are those of a body."""
+    """A user's operator of the surface, with the preconditioner and the coarse cells of a body."""
 
     operator: LinearOperator
     body: SurfaceOperator
