@@ -1,4 +1,4 @@
-"""One contact to solve: its first guess from coarser cells, and its solution with or without coupled friction."""
+"""Problem of one contact, first guess from coarser cells, and solution with or without coupled friction."""
 
 from __future__ import annotations
 

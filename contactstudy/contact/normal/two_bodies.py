@@ -94,7 +94,7 @@ class PairOperator:
     def _displacements_of_equal_bodies(
         self, loads: Mapping[Load, FloatArray], directions: Sequence[Load]
     ) -> dict[Load, FloatArray]:
-        """Relative displacements of equal bodies: tangential ones of a pressure, normal ones of tractions cancel."""
+        """Relative displacements of equal bodies: none tangentially under a pressure, none normally under tractions."""
         relative = {direction: np.zeros(self.body.grid.shape) for direction in directions}
         for is_normal in (True, False):
             acting = {load: cells for load, cells in loads.items() if (load is Load.NORMAL) == is_normal}
@@ -110,7 +110,7 @@ class PairOperator:
 
     @cached_property
     def coarse(self) -> PairOperator | ScaledOperator:
-        """Approximate operator on cells of twice the size; without pairs of cells the softened first body."""
+        """Approximate operator on cells of twice the size; if cells cannot be paired, a multiple of the first one."""
         if self.counterbody.grid.cells_x % 2:
             return ScaledOperator(self.body.coarse, self._softer)
         transfer = self._transfer and CellTransfer(

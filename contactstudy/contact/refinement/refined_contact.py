@@ -380,7 +380,7 @@ def search_load(case: Case, approach: float, load: float, accuracy: float, toler
 
 
 def approach_load_error(contact: ApproachContact) -> float:
-    """Error of the load of an approach, N: its changes on coarser columns and half the cells along y, without ends."""
+    """Error of the load at a prescribed approach, N: changes on coarser columns and fewer cells, with mirrored ends."""
     refined, grid = contact.refined.refined, contact.refined.contact.shape.grid
     case = _with_mirrored_ends(contact.case)
     window = WINDOW_FACTOR_COARSE * grid.y_range[0], WINDOW_FACTOR_COARSE * grid.y_range[1]

@@ -81,7 +81,7 @@ def refine_tractions(case: Case, normal: RefinedContact, accuracy: float) -> Ref
 def _contact_on_rows(
     case: Case, normal: RefinedContact, rows: int, coarse_contact: FrictionalContact | None
 ) -> FrictionalContact:
-    """Contact on the columns with a number of cells along y, from a contact on half as many."""
+    """Contact on the refined columns with `rows` cells along y, with `coarse_contact`, on half as many, as a guess."""
     assert isinstance(case.motion, Shift | Rolling)
     contact = normal.contact
     grid = contact.shape.grid

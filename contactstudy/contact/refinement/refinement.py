@@ -40,7 +40,7 @@ def pressure_jumps(edges: FloatArray, pressure: FloatArray) -> FloatArray:
 
 
 def _crest_jumps(pressure: FloatArray) -> FloatArray:
-    """Per column with a pressure above both neighbours: the larger step of its square, over this square."""
+    """Per column with a pressure above both neighbours, the larger step of the squared pressure, over the square."""
     # A narrow crest beside a contact's end may be lower than the peak of its half, the scale of the other jumps.
     maxima = pressure.max(axis=1)
     inner, lower = maxima[1:-1], np.minimum(maxima[:-2], maxima[2:])

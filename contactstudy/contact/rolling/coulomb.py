@@ -73,7 +73,7 @@ class CoulombSolution:
 
 
 class Guess(NamedTuple):
-    """Start of the iteration: tractions (2, cell), slipping on their bound, and amplitudes (mode) of rigid slips."""
+    """Start of the iteration: tractions (2, cell), the bound where cells slip, and amplitudes (mode) of rigid slips."""
 
     traction: FloatArray
     amplitudes: FloatArray
