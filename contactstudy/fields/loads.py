@@ -28,11 +28,11 @@ class TopLoad(NamedTuple):
 
     cells: FloatArray  # (x, y): load per area on each cell, Pa
     factor: float = 1.0
-    """Factor on it. Loads that differ by a factor share the fields that are computed for their distribution."""
+    """Factor on `cells`. Loads that differ by a factor share the fields that are computed for `cells`."""
 
     @property
     def values(self) -> FloatArray:
-        """The load itself, Pa."""
+        """Load per area on each cell, with the factor, Pa."""
         return self.factor * self.cells
 
 

@@ -85,7 +85,7 @@ class SurfaceOperator:
 
     @property
     def grid(self) -> Grid:
-        """Cells."""
+        """Grid of the cells."""
         return self._operators[0][1].grid
 
     @property
