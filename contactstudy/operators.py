@@ -2,7 +2,7 @@
 
 Every operator is a `scipy.sparse.linalg.LinearOperator` of real vectors with its transpose, `operator.T`. Arrays enter
 and leave raveled: a load on the cells of a grid as ``cells.ravel()`` of an array (x, y). ``operator @ numpy.eye(n)`` is
-the dense matrix. docs/explanation/overlapping.md uses them.
+the dense matrix. docs/explanation/overlapping.md uses these operators.
 """
 
 from __future__ import annotations

@@ -50,7 +50,7 @@ def sliding(pressure: FloatArray, friction: float | FloatArray) -> Loads:
 def superpose(
     loads: Loads, unit_fields: Callable[[tuple[Load, ...], FloatArray], Mapping[Load, Sequence[FloatArray]]]
 ) -> list[FloatArray]:
-    """Sum the fields of all loads, from one call of `unit_fields` for all loads with the same distribution."""
+    """Sum the fields of all loads; one call of `unit_fields` serves all loads with the same distribution."""
     groups: dict[ArrayKey, list[Load]] = {}
     for load, (cells, _) in loads.items():
         groups.setdefault(ArrayKey(cells), []).append(load)

@@ -47,7 +47,7 @@ class Border(NamedTuple):
     # The second sticking cell from the border represents the border: the values of the first cell are too smooth.
 
     traction: FloatArray  # (2, x, y): tractions of the cells, at the border in the representing cells, Pa
-    rise: FloatArray  # (x, y): pressure at the border less that of the cell that represents it, Pa; otherwise 0
+    rise: FloatArray  # (x, y): pressure at the border less the pressure of its representing cell, Pa; otherwise 0
     poisson: float  # Poisson's ratio of the body
 
     @classmethod
@@ -212,7 +212,7 @@ class StressMaximum(NamedTuple):
 
 
 class _SampleMaximum(NamedTuple):
-    """The largest value among points and between them, and the indices of the largest point."""
+    """The largest value among points and between points, and the indices of the largest point."""
 
     maximum: StressMaximum
     points: Points
@@ -246,7 +246,7 @@ def include_points(
     search: Search,
     stress_at: Callable[[Points], FloatArray],
 ) -> StressMaximum:
-    """Return the largest von Mises stress, also around those of the `points` whose stress exceeds `maximum`."""
+    """Return the largest von Mises stress, also around any of the `points` whose stress exceeds `maximum`."""
     if not search.samples:
         return maximum
     is_deep = points.z >= search.shallowest

@@ -323,7 +323,7 @@ class _PairSums:
 def _add_to_pairs(
     total: FloatArray, rows: IntArray, columns: IntArray, influences: FloatArray, exchange_sign: int
 ) -> None:
-    """Add the influences (pair, offset) of pairs of columns, and `exchange_sign` times them of the exchanged pairs."""
+    """Add the influences (pair, offset) of pairs of columns, and for exchanged pairs `exchange_sign` times these."""
     total[rows, columns] += influences
     off_diagonal = rows > columns  # the image of a column may be far from the column
     total[columns[off_diagonal], rows[off_diagonal]] += exchange_sign * influences[off_diagonal]

@@ -68,7 +68,7 @@ class AxialModes:
         return slab_factors(kappa, self.length, self.parity)[0]
 
     def load_on_face(self, kappa: ComplexArray) -> ComplexArray:
-        """Load on a face per normal stress freed there."""
+        """Load on a face per normal stress freed on this face."""
         return np.ones_like(kappa)
 
     def face_amplitude(self, kappa: ComplexArray) -> tuple[ComplexArray, ComplexArray]:

@@ -70,7 +70,7 @@ class EndProblem:
 
     @cached_property
     def column_edges(self) -> FloatArray:
-        """Edges of the columns, metres: those of the cells and, between two ends, their mirror images."""
+        """Edges of the columns, metres: edges of the cells and, between two ends, mirror images of these edges."""
         edges = self.grid.x_edges
         if self.grid.uniform or np.isinf(self.length):
             return edges

@@ -5,7 +5,7 @@ The normal displacement of the top of V is zero: the body has the displacement o
 docs/explanation/theory.md: a symmetric operator, smooth except at the ends. It is sampled at positions graded towards
 the ends and transformed along y to the wavenumbers of the zero-padded grid, once per body and window. Far along y a
 finite-length body is a plate in plane stress, eqs. (30) and (30a): displacements are stated relative to the top far
-away, at ``|y| = reference``; the curvature under a force along x is zero there as well.
+away, at ``|y| = reference``; the curvature under a force along x is zero at this distance, too.
 """
 
 from __future__ import annotations
@@ -275,7 +275,7 @@ class EndCorrection:
     """(position, cell): by direction and per parity, from cells to graded positions. With two parities the cells
     beyond the middle are folded onto the first half."""
     kernels: Mapping[Response, list[FloatArray]]
-    """(wavenumber, position, position): per parity, displacement at the graded positions from a load there, without
+    """(wavenumber, position, position): per parity, displacement at graded positions from a load at each, without
     the factor i of kernels odd along y."""
     cell: float  # cell size along x
 

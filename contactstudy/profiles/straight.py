@@ -75,7 +75,7 @@ class Tapered(Shape):
 
     Notes
     -----
-    `length` and `x` are measured along the generatrix. The Hertz scales of results are those of a cylinder with the
+    `length` and `x` are measured along the generatrix. The Hertz scales of results belong to a cylinder with the
     roller's `radius`, without ``1 / cos(beta)``: up to 1.0025 in bearings.
 
     References

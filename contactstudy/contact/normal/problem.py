@@ -144,7 +144,7 @@ def halve_cells(values: FloatArray, axis: int) -> FloatArray:
 
 
 def interpolate_columns(values: FloatArray, centres: FloatArray, x: FloatArray) -> FloatArray:
-    """Values (x, y) at other positions along x, linear between the centres and constant beyond them."""
+    """Values (x, y) at other positions along x, linear between the centres and constant beyond the outermost ones."""
     if centres.size == 1:
         return np.repeat(values, x.size, axis=0)
     right = np.clip(np.searchsorted(centres, x), 1, centres.size - 1)

@@ -34,7 +34,7 @@ from contactstudy.kernels.load import Load
 from contactstudy.profiles.base import as_shape
 from contactstudy.threads import one_blas_thread
 
-WINDOWS = (2.0, 3.0, 5.0, 8.0, 12.0)  # Half-widths of the window over that of the Hertz contact, tried in turn. Speed.
+WINDOWS = (2.0, 3.0, 5.0, 8.0, 12.0)  # Half-widths of the window over the Hertz half-width, tried in turn. Speed.
 
 WINDOW_FACTOR, WINDOW_FACTOR_COUPLED, WINDOW_FACTOR_ROLLING = 1.1, 1.4, 1.5
 """Least window over the extent of the contact along y: in full sliding, with coupled friction, with stick and slip,

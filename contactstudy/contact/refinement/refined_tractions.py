@@ -28,7 +28,7 @@ and creepages themselves. Accuracy: without this error one in ten of the stated 
 
 MAX_COARSE_STEPS = 60
 """Bound on the Newton steps on half of the cells along y, whose tractions are a guess. Speed: in a few shifts the
-active sets cycle there, and converge on finer cells."""
+active sets cycle on these cells, and converge on finer cells."""
 
 
 class RefinedTractions(NamedTuple):
@@ -54,7 +54,7 @@ def refine_tractions(case: Case, normal: RefinedContact, accuracy: float) -> Ref
     """Tractions of a case on the columns of its normal contact."""
     rows = normal.contact.shape.grid.cells_y
     previous = _contact_on_rows(case, normal, rows // 2, None)
-    # FASTSIM's error is that of its model: its strips do not become accurate on finer cells.
+    # FASTSIM's error is due to its model: its strips do not become accurate on finer cells.
     max_rows = rows if isinstance(case.motion, Rolling) and case.motion.model == "fastsim" else CELLS_Y[-1]
     while True:
         contact = _contact_on_rows(case, normal, rows, previous)
