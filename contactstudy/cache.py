@@ -129,7 +129,7 @@ def limit(nbytes: int) -> None:
 
 
 def recall(kind: str, key: Hashable) -> Any | None:
-    """Return the cached value of a key, or None, and count it."""
+    """Return the cached value of a key, or None, and count the reuse or the miss."""
     with _lock:
         entry = _store.get((kind, key))
         _counts.setdefault(kind, [0, 0])[0 if entry else 1] += 1
@@ -139,7 +139,7 @@ def recall(kind: str, key: Hashable) -> Any | None:
 def retain(kind: str, key: Hashable, value: Value, *, replace: bool = False) -> Value:
     """Cache a value, and return the one that all threads share: the first of its key, or this one to `replace` it.
 
-    Its arrays become read-only.
+    The arrays of the value become read-only.
     """
     _protect(value)
     nbytes = nbytes_of(value)

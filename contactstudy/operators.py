@@ -2,7 +2,7 @@
 
 Every operator is a `scipy.sparse.linalg.LinearOperator` of real vectors with its transpose, `operator.T`. Arrays enter
 and leave raveled: a load on the cells of a grid as ``cells.ravel()`` of an array (x, y). ``operator @ numpy.eye(n)`` is
-the dense matrix. docs/explanation/overlapping.md uses them.
+the dense matrix. docs/explanation/overlapping.md uses these operators.
 """
 
 from __future__ import annotations
@@ -43,8 +43,8 @@ class Overlapping:
     grid : Grid
         Cells of the load; on a body with ends they begin at ``x = 0`` and span it. Uniform, or columns of any width.
     z : sequence of float
-        Depths of the equivalent loads on the faces, metres, not negative. The least one and the distance of the first
-        cell's centre from the end determine the largest wavenumbers.
+        Depths of the equivalent loads on the faces, metres, not negative. The least depth and the distance of the
+        first cell's centre from the end determine the largest wavenumbers.
     load : {"pressure", "traction_y", "traction_x"}
         Direction of the load. Pressure and traction along y share their modes and faces; a traction along x, which
         mirror images reverse, has others.
@@ -161,7 +161,7 @@ def surface_displacement(body: Body, grid: Grid, load: str = "pressure", compone
     Returns
     -------
     LinearOperator
-        Square, of the number of cells; matrix-free on uniform cells, one matrix along x per wavenumber on columns. The
+        Square, one row per cell; matrix-free on uniform cells, one matrix along x per wavenumber on columns. The
         transpose follows from reciprocity.
 
     Raises

@@ -21,7 +21,7 @@ Extent = tuple[float, float]
 
 
 class FreeEnds(NamedTuple):
-    """Ends without the normal stress of the mirrored loads."""
+    """Free ends, from which the normal stress of the mirrored loads is removed."""
 
     length: float  # m; infinite for one end
     mirrored_once: bool = False  # one pair of images instead of all

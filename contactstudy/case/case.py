@@ -295,7 +295,7 @@ class Case:
 
     @property
     def coupled_friction(self) -> float:
-        """Coefficient of full sliding's friction with normal displacement; 0 without coupling."""
+        """Coefficient of friction in coupled full sliding; 0 in any other contact."""
         is_coupled = self.coupled and isinstance(self.motion, Sliding)
         return float(self.friction) if is_coupled and isinstance(self.friction, float) else 0.0
 
@@ -326,7 +326,7 @@ class Case:
 
     @property
     def modulus(self) -> float:
-        """Contact modulus ``E*``, Pa: ``1 / E* = (1 - nu1**2) / E1 + (1 - nu2**2) / E2``, the roller's 0 if rigid."""
+        """Contact modulus ``E*``, Pa: ``1 / E* = (1 - nu1**2) / E1 + (1 - nu2**2) / E2``; E2 infinite if rigid."""
         return contact_modulus(self.body.material, self.roller.material)
 
     @property

@@ -26,7 +26,7 @@ MIN_ARM_RATIO = 0.25
 
 
 def describe_inclination(case: Case) -> str:
-    """Return the argument of a case's inclination, for messages."""
+    """Describe the argument that determines a case's inclination, for messages."""
     if case.load_position is not None:
         return f"load_position = {case.load_position:g} m"
     return f"tilt = {case.tilt:g} rad"

@@ -54,8 +54,8 @@ class ContactSettings:
         Physics: position x of the load, metres; the shape tilts until the pressure balances the load. Default: the
         shape keeps its inclination.
     after : Dataset, optional
-        Physics: result of the preceding step on the same cells; a `Shift` continues from its pressure and tractions
-        instead of from rest.
+        Physics: result of the preceding step on the same cells; a `Shift` starts from the pressure and tractions of
+        this result instead of from rest.
     tolerance : float
         Tolerance: bound on the violation of the gap conditions, over the variation of the displacement, and on the last
         change of the pressure, over its sum.
@@ -114,7 +114,7 @@ def solve_contact(
         Normal load, N; either `load` or `approach`.
     friction : float or DataArray (x)
         Coefficient ``f``, a number or values at positions along x with lines between: in full sliding the shear
-        traction on the body is ``f`` times the pressure along +y; in any other motion that is the bound on it.
+        traction on the body is ``f`` times the pressure along +y; in any other motion this product bounds the traction.
     approach : float or sequence of float, optional
         Displacement of the shape from first touch, metres, relative to the reference of `displacement_z`. With
         several, the result has a dimension `approach`.
@@ -157,7 +157,7 @@ def solve_contact(
     -----
     The displacement of a body between two free ends grows with the logarithm of the distance. `approach`, `tilt` and
     `displacement_z` refer to a material line of each body along x, below the load at the depth
-    ``body.reference_depth``: the approach to its point below the load, the tilt to its least-squares slope.
+    ``body.reference_depth``: the approach to the line's point below the load, the tilt to its least-squares slope.
 
     Examples
     --------
@@ -197,7 +197,7 @@ def solve_contact(
     initial_gap, grid = labelled_cells("gap", gap, extent=body.extent, infinite=True)
     if not np.isfinite(initial_gap).any():
         raise InvalidInputError("gap", "infinite everywhere", "finite where the shape can touch the body")
-    # Columns without finite gap may be as narrow as the face beyond the shape.
+    # Only columns with a finite gap are checked: columns beyond the shape may be as narrow as the face there.
     grid.check_growth(np.asarray(np.isfinite(initial_gap).any(axis=1)))
     checks.instance("settings", settings, ContactSettings, "a ContactSettings")
     coupled, previous_step = bool(settings.coupled), settings.after
@@ -220,7 +220,7 @@ def solve_contact(
         gap=ArrayKey(initial_gap),
         prescribed=PrescribedLoad(load, settings.load_position, approach).check(initial_gap, grid),
         counterbody=counterbody,
-        # Friction that does not bend the surface does not change the pressure: one contact serves all of a sweep.
+        # Without coupling the pressure does not depend on the friction: all cases of a sweep share one contact.
         coupled_friction=cell_friction
         if coupled and isinstance(motion, Sliding) and isinstance(cell_friction, float)
         else 0.0,

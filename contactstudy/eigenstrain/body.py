@@ -16,13 +16,13 @@ from contactstudy.bodies.material import Material
 from contactstudy.checks import FloatArray, IntArray
 from contactstudy.eigenstrain.stress_function import Factors, Splines, StressFunction
 
-DEGREE = 4  # of the polynomials of Airy's function. Accuracy.
+DEGREE = 4  # degree of the polynomials of Airy's function. Accuracy.
 MAX_ELEMENT_SIZE = 0.2  # largest element near the cells, over the distance of two ends. Accuracy.
 GROWTH = 1.5  # ratio of neighbouring elements beyond the cells. Accuracy.
 
 FAR_DISTANCE = 1000.0
 """Without an end: distance of the last element, over the extent of the cells. Accuracy: the error of the stress falls
-with its square, of the top's displacement with its first power."""
+with the square of this distance, of the top's displacement with the distance."""
 
 DEEP_LENGTHS = 8.0
 """Between two ends: depth below the cells at which the elements end, over the length. Accuracy: stress without
@@ -32,19 +32,19 @@ XX, YY, ZZ, XY, XZ, YZ = range(6)  # components in the order of every array of s
 
 
 def grow_edges(start: float, stop: float, first_width: float) -> FloatArray:
-    """Edges from `start` (left out) to `stop`, the first element of about width `first_width` and growing."""
+    """Edges from `start` (left out) to `stop`; the widths of the elements grow from about `first_width`."""
     distance = abs(stop - start)
     if distance <= 0:
         return np.zeros(0)
     count = max(1, int(np.ceil(np.log1p(distance * (GROWTH - 1) / first_width) / np.log(GROWTH))))
-    # Widths are shrunk a little, such that the last one ends on the end.
+    # The widths are shrunk a little, such that the last element ends at `stop`.
     edges = start + (stop - start) * np.cumsum(GROWTH ** np.arange(count)) / (GROWTH ** np.arange(count)).sum()
     edges[-1] = stop
     return np.asarray(edges)
 
 
 def grade_to_face(start: float, face: float, first_width: float) -> FloatArray:
-    """Edges from `start` (left out) to a free face, fine at both."""
+    """Edges from `start` (left out) to a free face, with fine elements at `start` and at the face."""
     midpoint = 0.5 * (start + face)
     if start == face:
         return np.zeros(0)
@@ -61,7 +61,7 @@ class EigenstrainBody:
     x_edges: FloatArray  # edges of the cells, metres
     z_edges: FloatArray
     splits: int = 1  # elements per cell along either axis
-    degree: int = DEGREE  # of the polynomials of Airy's function
+    degree: int = DEGREE  # degree of the polynomials of Airy's function
 
     @cached_property
     def elements(self) -> tuple[FloatArray, FloatArray]:
@@ -103,7 +103,7 @@ class EigenstrainBody:
         return self.antiplane_function.integrals(self.x_edges, self.z_edges)
 
     def solve(self, eigenstrain: FloatArray) -> EigenstrainSolution:
-        """Solve for the stress functions of eigenstrains (6, cell x, cell z): xx, yy, zz, xy, xz, yz (tensor's)."""
+        """Solve for the stress functions of eigenstrains (6, cell x, cell z): tensor components xx, ..., yz."""
         nu, young = self.material.poisson, self.material.young
         e = eigenstrain
         x, z = self.airy_integrals
@@ -173,7 +173,7 @@ class EigenstrainSolution:
         return np.where(inside[0][:, None] & inside[1], strain, 0.0)
 
     def top_displacement(self, x: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Displacements z (into the body) and y of the top at positions x, metres, relative to the depth."""
+        """Displacements z (into the body) and y of the top at positions x, metres, relative to the lowest elements."""
         # The displacements are integrals of the strains zz and yz, eigenstrains included, over the depth.
         body, material = self.body, self.body.material
         nu, young = material.poisson, material.young
@@ -229,7 +229,7 @@ class Influence:
         def influence_matrix(
             function: StressFunction, blocks: list[sparse.csc_array], factors: FloatArray
         ) -> FloatArray:
-            """Averages of the stresses per eigenstrains times `counts`, over minus the modulus."""
+            """Cell averages of the stresses per eigenstrain times `factors`, over minus the modulus."""
             stacked = sparse.csc_array(sparse.hstack(blocks))
             averages = sparse.csr_array(stacked.T)
             influence = np.empty((stacked.shape[1],) * 2)

@@ -1,13 +1,13 @@
 """Residual stress of eigenstrains in layers of a half-space that change along y, and not along x.
 
-One wave along y makes of the plane problem in (y, z) one over depth, and of Airy's function
-``f(z) exp(i k y)`` with ``s_yy = f''``, ``s_zz = -k**2 f``, ``s_yz = -i k f'``; with no total strain along x the
+For one wave along y the plane problem in (y, z) becomes a problem over depth, with Airy's function
+``f(z) exp(i k y)`` and ``s_yy = f''``, ``s_zz = -k**2 f``, ``s_yz = -i k f'``; with no total strain along x the
 complementary energy (`stress_function`) is least where
 
     (1 - nu**2) / E  int f'' h'' + 2 k**2 f' h' + k**4 f h
         =  -int (e_yy + nu e_xx) h'' - k**2 (e_zz + nu e_xx) h + 2 i k e_yz h'
 
-for all h. Likewise for ``t_xy = g'``, ``t_xz = -i k g`` across the plane. With e_yz, e_xz over i all is real.
+for all h. Likewise for ``t_xy = g'``, ``t_xz = -i k g`` across the plane. With e_yz and e_xz over i all terms are real.
 """
 
 from __future__ import annotations
@@ -47,11 +47,11 @@ class PeriodicLayers:
     material: Material
     z_edges: FloatArray  # edges of the layers, metres
     positions: int  # number of positions along y
-    step: float  # distance from one place to the next, metres; negative where y falls
+    step: float  # distance from one position to the next, metres; negative where y falls
 
     @cached_property
     def _waves(self) -> FloatArray:
-        """Wavenumbers along the way from 0 on, 1/m."""
+        """Wavenumbers along the path, from 0 on, 1/m."""
         return np.asarray(2 * np.pi * np.fft.rfftfreq(self.positions, abs(self.step)))
 
     @cached_property
@@ -68,7 +68,7 @@ class PeriodicLayers:
         overlaps = [splines.integrals(self.z_edges, derivative) for derivative in range(order + 1)]
         heights = np.tile(np.diff(self.z_edges), order + 1)
         matrices = np.zeros((self._waves.size, heights.size, heights.size))
-        # Without a change along y only strains in the layers' own plane are held.
+        # Without a change along y only strains in the plane of the layers are suppressed.
         layer_indices = np.arange(self.z_edges.size - 1)
         matrices[0, layer_indices, layer_indices] = 1.0 if order == 2 else 2.0
         for wave_index, k in enumerate(self._waves[1:], 1):

@@ -33,8 +33,8 @@ class Splines:
     """Basis of piecewise polynomials."""
 
     edges: FloatArray  # edges of the elements, metres, increasing
-    degree: int  # of the polynomials
-    continuity: int  # derivatives that are continuous between elements
+    degree: int  # degree of the polynomials
+    continuity: int  # number of derivatives that are continuous between elements
     vanishing_orders: int  # how many of value, slope, ... vanish on both sides.
 
     @property
@@ -51,7 +51,7 @@ class Splines:
         )
 
     def values(self, points: FloatArray, derivative: int = 0) -> FloatArray:
-        """Functions, or a derivative of them, at points: array (point, function). Between elements the right one's."""
+        """Functions, or a derivative of them, at points: array (point, function); on an edge of the right element."""
         spline_count = self._knots.size - self.degree - 1
         function_values = BSpline(self._knots, np.eye(spline_count), self.degree)(points, nu=derivative)
         return np.asarray(function_values[:, self.vanishing_orders : spline_count - self.vanishing_orders])
@@ -83,12 +83,12 @@ class Splines:
 class StressFunction:
     """Products of splines along x and z, and their energy."""
 
-    x: Splines  # with their slopes, they vanish on the faces for Airy's function; without, for that across the plane
+    x: Splines  # splines that vanish on the faces, for Airy's function with their slopes
     z: Splines
 
     @cached_property
     def _factorisation(self) -> tuple[sparse.linalg.SuperLU, FloatArray]:
-        """Factors of the energy, and the scale of each function that makes its own energy 1."""
+        """Factors of the energy's matrix, and the scale of each function with which the function's energy is 1."""
         products = {(i, j): sparse.kron(self.x.products(i), self.z.products(j)) for i, j in self._energy_weights}
         energy = sum(weight * products[orders] for orders, weight in self._energy_weights.items())
         scale = 1 / np.sqrt(energy.diagonal())

@@ -1,7 +1,7 @@
 """Displacements of the top of one part of a body: a half-space with mirrored loads, and the end correction.
 
 On uniform cells the operator is a convolution, observed at the centres; on columns it is a dense matrix along x per
-wavenumber along y, observed as means over their widths.
+wavenumber along y, observed as means over the widths of the columns.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from contactstudy.overlapping.surface import EndCorrection, EndKernel, EndReques
 from contactstudy.threads import one_blas_thread
 
 REFERENCE_LENGTHS = 10.0
-"""A finite-length body's displacement is relative to its top at ``|y|`` = this many lengths. A definition."""
+"""Distance along y, in lengths of a finite-length body, at which its top has no displacement. A definition."""
 
 
 class UniformOperator:
@@ -131,7 +131,7 @@ class UniformOperator:
 
     @cached_property
     def _inverse(self) -> FloatArray:
-        # The constant depends on the reference only; the next entry replaces it.
+        # The constant's entry depends on the reference only; the next entry replaces it.
         spectrum = self._spectra[NORMAL_RESPONSE].copy()
         spectrum[0, 0] = 0.0
         spectrum[0, 0] = spectrum[:2, :2].max()
@@ -145,7 +145,7 @@ class UniformOperator:
 
 
 def _padding(extent: Extent, grid: Grid) -> tuple[bool, int]:
-    """Whether mirror images continue the cells along x, else zeros; and the number of cells with the continuation."""
+    """Whether mirror images, not zeros, continue the cells along x, and the number of cells with the continuation."""
     has_end = [bool(np.isfinite(end)) for end in extent]
     return any(has_end), grid.cells_x if all(has_end) else 2 * grid.cells_x
 
@@ -153,7 +153,7 @@ def _padding(extent: Extent, grid: Grid) -> tuple[bool, int]:
 def end_kernel_of(
     term: BodyTerm, material: Material, grid: Grid, responses: tuple[Response, ...], resolution: Resolution
 ) -> EndKernel | None:
-    """Kernel of the ends of a part, None without; raises for tangential displacements of the single-mirror model."""
+    """Kernel of a part's free ends, None without free ends; raise for tangential displacements of "single-mirror"."""
     if term.free_ends is None:
         return None
     if term.free_ends.mirrored_once and any(response.displacement is not Load.NORMAL for response in responses):
@@ -202,7 +202,7 @@ def _spectrum(response: Response, material: Material, extent: Extent, grid: Grid
     return np.concatenate([spectrum, spectrum[-2:0:-1]])
 
 
-MIN_EIGENVALUE = 1e-3  # least eigenvalue of an indefinite preconditioner over their mean magnitude. Speed.
+MIN_EIGENVALUE = 1e-3  # least eigenvalue of an indefinite preconditioner over the mean magnitude. Speed.
 
 
 class ColumnsOperator:
@@ -264,7 +264,7 @@ class ColumnsOperator:
         return np.ascontiguousarray(fft.rfft(cells, n=2 * self.grid.cells_y, axis=1).T)
 
     def _multiply(self, response: Response, spectrum: ComplexArray) -> ComplexArray:
-        """Multiply along x, for each wavenumber along y."""
+        """Multiply a spectrum by the kernel's matrix along x, for each wavenumber along y."""
         product = _multiply_matrices(self._kernels[response], spectrum)
         return product if response.sign_y > 0 else 1j * product
 
@@ -298,7 +298,7 @@ def _multiply_matrices(matrices: FloatArray, spectrum: ComplexArray) -> ComplexA
 
 
 def _invert_matrix(matrix: FloatArray) -> FloatArray:
-    """Inverse of a symmetric matrix with positive eigenvalues; the displacement reference may change one sign."""
+    """Inverse of a symmetric matrix with positive eigenvalues; the displacement's reference may make one negative."""
     cholesky_factor, status = linalg.lapack.dpotrf(matrix)
     if not status:
         upper, _ = linalg.lapack.dpotri(cholesky_factor)  # zeros below

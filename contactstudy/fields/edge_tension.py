@@ -1,7 +1,7 @@
 """Tension at the trailing edge of a sliding contact, where the stress along y has a cusp.
 
 Outside the contact the tension falls like a square root of the distance from the edge (K. L. Johnson, Contact
-Mechanics, 1985, section 7.1), so positions near the edge do not reach it. The traction of a cross-section is a
+Mechanics, 1985, section 7.1), so stresses near the edge miss the cusp. The traction of a cross-section is a
 Chebyshev series ``sqrt(1 - t**2) sum c_n U_n(t)`` between its edges. In plane strain its tension is
 ``2 sum (-1)**n c_n g**(n + 1)`` with ``g = 1 + d - sqrt((1 + d)**2 - 1)`` at the distance d from the edge over the
 half-width. The difference from the stress in the body is smooth, and extrapolated linearly from outside the contact.

@@ -104,7 +104,7 @@ def _load_reference(body: Body) -> float | None:
 def overlapping_operators(
     body: Body, grid: Grid, depths: FloatArray, load: Load, cells: FloatArray | None = None
 ) -> OverlappingOperators | None:
-    """Operators of the overlapping for a load in one direction, None without a free end; `cells` bound its width."""
+    """Operators of the overlapping for a load in one direction, None without a free end; `cells` bound the width."""
     body.check_span(grid)
     if (depths < 0).any():
         raise InvalidInputError("z", float(depths.min()), "not negative (metres below the top)")

@@ -28,11 +28,11 @@ class TopLoad(NamedTuple):
 
     cells: FloatArray  # (x, y): load per area on each cell, Pa
     factor: float = 1.0
-    """Factor on it. Loads that differ by a factor share the fields that are computed for their distribution."""
+    """Factor on `cells`. Loads that differ by a factor share the fields that are computed for `cells`."""
 
     @property
     def values(self) -> FloatArray:
-        """The load itself, Pa."""
+        """Load per area on each cell, with the factor, Pa."""
         return self.factor * self.cells
 
 
@@ -50,7 +50,7 @@ def sliding(pressure: FloatArray, friction: float | FloatArray) -> Loads:
 def superpose(
     loads: Loads, unit_fields: Callable[[tuple[Load, ...], FloatArray], Mapping[Load, Sequence[FloatArray]]]
 ) -> list[FloatArray]:
-    """Sum the fields of all loads, from one call of `unit_fields` for all loads with the same distribution."""
+    """Sum the fields of all loads; one call of `unit_fields` serves all loads with the same distribution."""
     groups: dict[ArrayKey, list[Load]] = {}
     for load, (cells, _) in loads.items():
         groups.setdefault(ArrayKey(cells), []).append(load)

@@ -70,7 +70,7 @@ def field_positions(
 
 
 def _snap_into_body(body: Body, x: FloatArray, grid: Grid) -> FloatArray:
-    """Positions, moved to an end within rounding; raise for any outside."""
+    """Move positions within rounding of an end onto the end; raise for positions outside the body."""
     low, high = body.extent
     rounding = 1e-9 * grid.dx
     outside = (x < low - rounding) | (x > high + rounding)
@@ -101,7 +101,7 @@ def default_depths(half_width: float, depth: float) -> FloatArray:
 
 
 def _grade_positions(fixed_positions: Sequence[float], centres: FloatArray, spacings: FloatArray) -> FloatArray:
-    """Positions between increasing fixed ones; the spacing grows with the distance from each centre."""
+    """Positions between increasing fixed positions; the spacing grows with the distance from each centre."""
     sections = []
     for start, stop in itertools.pairwise(fixed_positions):
         distances = [0.0]

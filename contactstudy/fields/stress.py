@@ -50,7 +50,7 @@ def stress_field(
     friction : float
         Coefficient ``f``; the traction on the body is ``f`` times the pressure along +y.
     x, y : sequence of float, optional
-        Positions in metres, inside the body and in any order; default: the pressure's own.
+        Positions in metres, inside the body and in any order; default: the pressure's positions.
     z : sequence of float
         Depths in metres, not negative.
     traction_x, traction_y : DataArray (x, y), optional
@@ -188,7 +188,7 @@ def contact_stresses(
     positions: Callable[[StressMaximum], FieldPositions],
     end_yz: tuple[FloatArray, FloatArray],
 ) -> tuple[xr.Dataset, float, StressMaximum]:
-    """Stresses at positions that may depend on the largest stress, residual on the ends, and the largest stress."""
+    """Return stresses at positions that may depend on the largest stress, the ends' residual, and that stress."""
     end_positions, search = _end_positions(body), place_search(body, loads, grid)
     pressure = loads[Load.NORMAL].values
 

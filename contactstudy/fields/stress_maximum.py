@@ -35,7 +35,7 @@ LATERAL_OFFSETS = np.array([-0.8, -0.4, 0.0, 0.4, 0.8])  # points along y, over 
 AXIS_DEPTHS = np.array([0.1, 0.2, 0.35, 0.5, 0.7, 1.0])  # depths below the axis, over the half-width
 
 MIN_SECOND_PEAK = 0.6
-"""Least peak of a half of the contact that is searched, over the largest: at a free end a lower peak may cause more."""
+"""Least peak of a searched half of the contact, over the largest: a lower peak may stress a free end more."""
 
 SLIP_TOLERANCE = 1e-6  # tolerance of the traction of a slipping cell, over its bound
 RIM_CELLS = 2  # cells at the rim of the contact without accurate stresses on the top. Accuracy.
@@ -44,15 +44,15 @@ RIM_CELLS = 2  # cells at the rim of the contact without accurate stresses on th
 class Border(NamedTuple):
     """Border between stick and slip on the top, where the stress has a cusp between the centres of cells."""
 
-    # The second sticking cell from the border represents it: the values of the first one are too smooth.
+    # The second sticking cell from the border represents the border: the values of the first cell are too smooth.
 
     traction: FloatArray  # (2, x, y): tractions of the cells, at the border in the representing cells, Pa
-    rise: FloatArray  # (x, y): pressure at the border less that of the cell that represents it, Pa; otherwise 0
+    rise: FloatArray  # (x, y): pressure at the border less the pressure of its representing cell, Pa; otherwise 0
     poisson: float  # Poisson's ratio of the body
 
     @classmethod
     def of_loads(cls, loads: Loads, poisson: float) -> Border:
-        """Border of the sticking cells under loads: inside it the traction is below its bound like a square root."""
+        """Border of the sticking cells under loads; the bound less the traction grows inside like a square root."""
         pressure = loads[Load.NORMAL].values
         zero = np.zeros_like(pressure)
         traction = np.stack([loads[load].values if load in loads else zero for load in (Load.ALONG_X, Load.ALONG_Y)])
@@ -143,7 +143,7 @@ def place_search(body: Body, loads: Loads, grid: Grid) -> Search:
     first_edge, last_edge = grid.x_edges[columns[0]], grid.x_edges[columns[-1] + 1]
     distances = np.append(half_width * END_DISTANCES, 0.5 * (last_edge - first_edge))
     distances = distances[distances <= 0.5 * (last_edge - first_edge)]
-    # One point of the second half: the middle is inside the range.
+    # One point of the second half is included: the middle is inside the range.
     x = np.concatenate([first_edge + distances, last_edge - (distances[-2:-1] if symmetric else distances)])
     depths = half_width * AXIS_DEPTHS
     samples.append(_nearest_cells(grid, inside_rim, x, section, depths, spacing=0.1 * half_width))
@@ -153,7 +153,7 @@ def place_search(body: Body, loads: Loads, grid: Grid) -> Search:
 def _nearest_cells(
     grid: Grid, inside_rim: BoolArray, x: FloatArray, section: FloatArray, depths: FloatArray, spacing: float
 ) -> Points:
-    """Centres of the cells nearest to positions, more than `spacing` apart, across a pressed section, and below."""
+    """Points at cells nearest to `x`, more than `spacing` apart, across a pressed section, at the top and `depths`."""
     y = (section * grid.y).sum() / section.sum() + 0.5 * grid.dy * np.count_nonzero(section) * LATERAL_OFFSETS
     columns = np.unique(np.abs(grid.x - x[:, None]).argmin(axis=1))
     # The outermost rows off the rim are included: with friction the stress on the top may grow towards the rim.
@@ -174,7 +174,7 @@ def select_separated(positions: FloatArray, spacing: float) -> IntArray:
 
 
 def _peaks(maxima: FloatArray, *, symmetric: bool) -> Iterator[int]:
-    """Columns of the largest pressure of either half; of the first half of a symmetric contact."""
+    """Yield the column of the largest pressure in each half; in the first half alone of a symmetric contact."""
     middle = (maxima.size + 1) // 2
     first_peak, last_peak = (
         int(maxima[:middle].argmax()),
@@ -197,22 +197,22 @@ RISE_ERROR = 0.25
 REFINEMENT_TOLERANCE = 3e-3  # relative error of the interpolation that ends the refinement. Accuracy.
 
 LOCAL_OFFSETS = np.array([-0.5, -0.25, 0.0, 0.25, 0.5])
-"""Points about a position below the top, over its depth, the distance from the load. Accuracy."""
+"""Offsets of points about a position below the top, over the position's depth. Accuracy."""
 
-TOP_MARGIN = 1.25  # factor on the largest sampled cell on the top that starts a search beside it. Accuracy.
+TOP_MARGIN = 1.25  # factor on the largest sample on the top for the decision to search beside it. Accuracy.
 MAX_REFINEMENTS = 6  # largest number of refinements. Speed.
 
 
 class StressMaximum(NamedTuple):
     """Largest value of the von Mises stress."""
 
-    value: float  # the value, Pa, and the difference of polynomials of two degrees; on the top the error of the cells
+    value: float  # value, Pa, and error: the difference of polynomials of two degrees, or the top cells' error
     error: float
     position: tuple[float, float, float]  # x, y and z, metres
 
 
 class _SampleMaximum(NamedTuple):
-    """The largest value among points and between them, and the indices of the largest point."""
+    """The largest value among points and between points, and the indices of the largest point."""
 
     maximum: StressMaximum
     points: Points
@@ -222,7 +222,7 @@ class _SampleMaximum(NamedTuple):
 def find_stress_maximum(
     search: Search, stresses: Sequence[FloatArray], stress_at: Callable[[Points], FloatArray]
 ) -> StressMaximum:
-    """Largest von Mises stress; 0 at NaN without pressure."""
+    """Return the largest von Mises stress; without pressure the value is 0 and the position NaN."""
     if not search.samples:
         return StressMaximum(0.0, 0.0, (np.nan, np.nan, np.nan))
     samples = list(zip(search.samples, stresses, strict=True))
@@ -246,7 +246,7 @@ def include_points(
     search: Search,
     stress_at: Callable[[Points], FloatArray],
 ) -> StressMaximum:
-    """Largest von Mises stress, and of the neighbourhood of points with a larger stress."""
+    """Return the largest von Mises stress, also around any of the `points` whose stress exceeds `maximum`."""
     if not search.samples:
         return maximum
     is_deep = points.z >= search.shallowest
@@ -318,7 +318,7 @@ def _top_maximum(sample: _SampleMaximum, search: Search, stress_at: Callable[[Po
 
 
 def _neighbour_cells(cells: IntArray, index: int, count: int) -> IntArray:
-    """Return indices of cells between the neighbours of a cell in a list, with the adjacent cells."""
+    """Return indices of cells from the previous to the next entry of a sampled cell, with the adjacent cells."""
     cell, distinct_cells = int(cells[index]), np.unique(cells)
     position = int(np.searchsorted(distinct_cells, cell))
     previous_cell, next_cell = (
@@ -351,7 +351,7 @@ def _refine_maximum(sample: _SampleMaximum, search: Search, stress_at: Callable[
 def _evaluate_at_maximum(
     sample: _SampleMaximum, error: float, stress_at: Callable[[Points], FloatArray]
 ) -> StressMaximum:
-    """Largest stress itself about a value of polynomials that may overshoot: they end at an edge, or do not agree."""
+    """Evaluate the stress at a maximum of polynomials that may overshoot, at an edge or without agreement."""
     sample_position = [axis[index] for axis, index in zip(sample.points, sample.indices, strict=True)]
     corners = Points(*(np.unique(pair) for pair in zip(sample.maximum.position, sample_position, strict=True)))
     maximum = _maximum_of_samples(corners, stress_at(corners)).maximum
@@ -371,7 +371,7 @@ def _maximum_of_samples(points: Points, stresses: FloatArray, selection: BoolArr
 
 
 def _maximum_between_samples(points: Points, stresses: FloatArray) -> _SampleMaximum:
-    """Largest value between points, of polynomials through the components."""
+    """Largest value between points, from polynomials through the stress components."""
     sample = _maximum_of_samples(points, stresses)
     (value, position), (coarse_value, _) = (
         _interpolate(points, stresses, sample.indices, neighbours) for neighbours in (2, 1)
@@ -392,7 +392,7 @@ def _interpolate(
 
 
 def _closer_points(sample: _SampleMaximum, search: Search) -> tuple[Points, bool]:
-    """Closer points around the largest one; beyond an edge of the range, shifted points at equal spacing."""
+    """Return closer points around the largest one, shifted if it is outermost, and whether it is not outermost."""
     axes, is_inside = [], True
     limits = (search.extent, (-np.inf, np.inf), (search.shallowest, np.inf))
     for axis, index, (low, high) in zip(sample.points, sample.indices, limits, strict=True):

@@ -85,7 +85,7 @@ class SurfaceOperator:
 
     @property
     def grid(self) -> Grid:
-        """Cells."""
+        """Grid of the cells."""
         return self._operators[0][1].grid
 
     @property
@@ -155,7 +155,7 @@ def surface_displacement(
         `displacement_z`, positive into the body, in metres; of several components a Dataset of `displacement_x`,
         `displacement_y` and `displacement_z`. The displacement of a finite-length space is relative
         to the top far away, at the distance along y stated in the attribute ``reference_distance``. A net force along
-        x bends it, by an amount that depends on the distance: its curvature along y is zero there as well.
+        x bends it, by an amount that depends on the distance: its curvature along y is zero far away, too.
 
     Raises
     ------

@@ -2,8 +2,8 @@
 
 The influence of a cell is the mixed difference of a corner function over its corners. Summed over cells it becomes a
 sum over corners, each weighted with the mixed jump of the load there. Around a point the columns are split. Columns far
-away are merged, and their field is interpolated from few depths. Neither depends on the field or on the direction of
-the load: all stresses under a pressure and its friction share the columns.
+away are merged, and their field is interpolated from few depths. The columns do not depend on the field or on the
+direction of the load: all stresses under a pressure and its friction share the columns.
 """
 
 from __future__ import annotations
@@ -43,15 +43,15 @@ the depth. Accuracy."""
 CENTRED_WIDTH = 0.25  # width of the fine column about a point, over the original fine column. Accuracy.
 
 MIN_CENTRED_WIDTH = 1e-3
-"""Least width of this column beside a step of the load, over the original one. Accuracy: on the top a step has infinite
-stresses."""
+"""Least width of the fine column about a point beside a step of the load, over the original fine column. Accuracy: on
+the top a step has infinite stresses."""
 
 EDGE_ROUNDING = 1e-9  # rounding of positions on an end or an edge, over a column. Accuracy.
 
 
 @dataclass(frozen=True, eq=False)
 class LateralAxis:
-    """Positions along y, and the cells along y: `count` from the `first` of the grid on."""
+    """Positions along y, and `count` cells along y, beginning with the cell `first` of the grid."""
 
     grid: Grid
     y: FloatArray
@@ -115,7 +115,7 @@ class LateralAxis:
 
 
 def _odd_count(ratio: float) -> int:
-    """Least odd number of parts not larger than 1 of a length `ratio`."""
+    """Least odd number of equal parts of a length `ratio` with no part larger than 1."""
     return 2 * max(0, int(np.ceil(0.5 * (ratio - 1) - OFFSET_TOLERANCE))) + 1
 
 
@@ -128,7 +128,7 @@ class SplitColumns(NamedTuple):
     jumps: list[tuple[list[Jumps], list[list[Jumps]]]]
     """For each position along x the jumps of near columns in the `shaped_layers`, and for either side the jumps of far
     columns in the layers `far_layers`."""
-    first: int  # (cell_x, cell_y): first column along y of the load, and the load
+    first: int  # first loaded row of the grid, and the load (cell_x, y) on the rows from there on
     load: FloatArray
 
 
@@ -141,7 +141,7 @@ def split_columns(
     image: int,
     keys: tuple[ArrayKey, ArrayKey, ArrayKey],
 ) -> SplitColumns:
-    """Columns around points (x, y, z) under loads on cells, of a `shape` inside them, with mirrors at an extent."""
+    """Split columns around points (x, y, z); `shape` distributes the loads inside cells, mirrors lie at `extent`."""
     x, y, z = (key.values for key in keys)
     radius = FAR_DISTANCE * (grid.y_range[1] - grid.y_range[0])
     depths, interpolation_z = interpolation_points(z, radius, FAR_ERROR)
@@ -252,13 +252,13 @@ class _SplitRange(NamedTuple):
 
 
 def _means_of_inserted(split_ranges: list[_SplitRange], cells: FineCells) -> FloatArray:
-    """Means over the inserted columns of all surroundings, with the moments of their neighbours: (column, y)."""
+    """Mean loads on the inserted columns around all points, with the moments of neighbouring columns: (column, y)."""
     moments = np.concatenate([split_range.moment_loads(cells) for split_range in split_ranges])
     return np.asarray(cells.column_means([split_range.inserted for split_range in split_ranges]) + moments)
 
 
 def _split_around(x: float, fine: FineCells, max_width: float) -> _SplitRange:
-    """Split columns around a point in the middle of a column; none if all are narrow."""
+    """Split columns around a point, which lies in the middle of a new column; split none if all are narrow."""
     edges, count = fine.edges, fine.edges.size - 1
     column = int(np.clip(np.searchsorted(edges, x, side="right") - 1, 0, count - 1))
     is_on_end = min(abs(x - end) for end in fine.extent) < EDGE_ROUNDING * (edges[column + 1] - edges[column])
@@ -270,7 +270,7 @@ def _split_around(x: float, fine: FineCells, max_width: float) -> _SplitRange:
     if not is_on_end and low < x < high:
         # On an edge the narrower column determines the width: the mirrored load has the same columns.
         columns = np.searchsorted(new_edges, [x - EDGE_ROUNDING * (high - low), x + EDGE_ROUNDING * (high - low)]) - 1
-        # Beyond the outermost edge by rounding, the outermost column counts.
+        # A point beyond the outermost edge by rounding belongs to the outermost column.
         width = float(np.diff(new_edges)[np.clip(columns, 0, new_edges.size - 2)].min())
         # A column across a step of the load would move its force.
         step_distance = float(np.abs(fine.step_edges - x).min(initial=np.inf)) / 2
@@ -289,7 +289,7 @@ def _split_around(x: float, fine: FineCells, max_width: float) -> _SplitRange:
 
 
 def common_step(y: FloatArray) -> float | None:
-    """Largest common divisor of the distances between positions; None if the shortest distance has many parts."""
+    """Largest common divisor of the distances between positions; None if the shortest distance has many such parts."""
     distances = np.diff(np.unique(y))
     for divisor in range(1, MAX_DIVISOR + 1):
         step = float(distances.min(initial=np.inf)) / divisor

@@ -1,8 +1,8 @@
 """Discrete convolution on the grid of cells by fast Fourier transform (DC-FFT), planned once and reused.
 
 The kernel is zero-padded along y, so the loads outside the window are zero and not periodic (S. Liu, Q. Wang, G. Liu,
-Wear 243 (2000) 101). Along x it is zero-padded as well, or, for a body with ends, mirrored: a load extended evenly
-about its ends is diagonal in the cosine transform, one extended oddly in the sine transform, without any padding.
+Wear 243 (2000) 101). Along x it is zero-padded as well, or, for a body with ends, mirrored: the convolution of a
+load extended evenly about its ends is diagonal in the cosine transform, extended oddly in the sine transform.
 """
 
 from __future__ import annotations
@@ -84,7 +84,7 @@ class GridTransform:
         return buffers
 
     def transform_y(self, cells: FloatArray) -> ComplexArray:
-        """Transform along y of cell `cells`: a view (cell, wavenumber) of the buffer."""
+        """Transform cell values along y, and return a view (cell, wavenumber) of the buffer."""
         buffers = self._buffers
         buffers.real[: self.cells_x, : self.cells_y] = cells
         buffers.real[: self.cells_x, self.cells_y :] = 0.0
@@ -130,7 +130,7 @@ class CentredConvolution:
     influence: Influence  # influence of a unit load
     dx: float  # cell size
     dy: float
-    length: float  # distance between the ends that mirror the load; infinite if there are not two
+    length: float  # distance between the ends that mirror the load; infinite with fewer than two ends
     mirrored: bool  # whether the load is mirrored in end I
     shape: tuple[int, int]  # largest offsets of the kernel, in cells: half the periods of the transforms
     depth: float  # depth of the points
@@ -153,7 +153,7 @@ class CentredConvolution:
                     layer[np.ix_(components, is_mirrored)] *= -1
 
     def is_symmetric(self, load_transform: ComplexArray) -> bool:
-        """Whether this is the transform of a load that is symmetric about mid-length."""
+        """Whether a transform belongs to a load that is symmetric about mid-length."""
         return self.mirrored and load_transform.shape[0] < self.shape[0]
 
     def _invert_along_x(
@@ -213,7 +213,7 @@ def centred_field(
     extent: tuple[float, float],
 ) -> FloatArray:
     """Field (component, row, column, z) at cell centres; rows and columns count from the first cell of the load."""
-    # The load begins at end I unless that is infinitely far away, as end II then is, too.
+    # The load begins at end I, or both ends are infinitely far away.
     mirrored, length = bool(np.isfinite(extent[0])), extent[1]
     cells_x, cells_y = load.shape
     reach_y = max(int(columns.max()), cells_y - 1 - int(columns.min()))
@@ -230,7 +230,7 @@ def centred_field(
     if mirrored and np.isfinite(length) and half % 2 == 0:
         odd_amplitude, max_amplitude = np.abs(load_transform[1::2]).max(), np.abs(load_transform).max()
         if odd_amplitude <= NEGLIGIBLE_AMPLITUDE * max_amplitude:
-            # Equals the transform of the first half of the load, mirrored at mid-length.
+            # Half of the even wavenumbers equals the transform of the load's first half, mirrored at mid-length.
             load_transform = 0.5 * load_transform[::2]
     field = np.empty((influence.components, rows.size, z.size, columns.size))
     for depth_index, depth in enumerate(z.tolist()):

@@ -66,7 +66,7 @@ class Layer:
         fine_per_cell: int,
     ) -> Layer:
         """Layer of points with equal offsets from the corners of cells of size `step`."""
-        # The cells of the points are counted from the first of the `edges`, or of the grid cells if they are None.
+        # The cells of the points are counted from the first of the `edges`, or of the grid's cells without `edges`.
         count = fine_per_cell if edges is None else (edges.size - 1) // fine_per_cell
         cells = aligned.cells
         if edges is None:
@@ -208,7 +208,7 @@ class EvenOffsets:
         return unfolded_values
 
     def fold_jumps(self, jumps: FloatArray, start: int) -> FloatArray:
-        """Jumps (edge, corner) from offset `start` on summed over both sides of 0: (edge and distance, parity)."""
+        """Sum jumps (edge, corner) from offset `start` on over both sides of 0: array (edge and distance, parity)."""
         assert self.index is not None
         count = jumps.shape[1]
         if (start, count) not in self._folding_matrices:
@@ -221,7 +221,7 @@ class EvenOffsets:
 
 
 def merge_columns(edges: FloatArray, loads: FloatArray, x: float) -> tuple[FloatArray, FloatArray]:
-    """Merge columns (column, y) that are narrow against their distance from `x` into two of equal force and moment."""
+    """Merge columns (column, y) that are narrow over their distance from `x` into pairs of equal force and moment."""
     midpoints, widths = 0.5 * (edges[1:] + edges[:-1]), np.diff(edges)
     distances = np.abs(midpoints - x)
     rings = np.log(distances / distances.min()) // np.log1p(MERGED_WIDTH)

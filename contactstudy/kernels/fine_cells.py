@@ -1,4 +1,4 @@
-"""Finer cells under a load: its means near the top, its moments on whole cells below.
+"""Finer cells under a load: they carry its means near the top; whole cells carry its moments farther below.
 
 Below a few cell sizes loads of equal moments cause equal fields. Nearer to the top the distribution inside the cells
 matters, and on the top a step of traction makes the stresses infinite. Near the top the load has the shape of a given
@@ -18,7 +18,7 @@ from contactstudy.checks import Array, BoolArray, FloatArray
 from contactstudy.kernels.smooth_load import MomentLoads, ShapedLoad, SmoothLoad, moment_loads
 
 MAX_REFINED_DEPTH = 5.0
-"""Largest depth of refined cells, over the cell size along y and along x. Accuracy: below it whole cells with the
+"""Largest depth of refined cells, over the cell size along y and along x. Accuracy: deeper down whole cells with the
 moments of the fine cells are exact to 5e-6 of the pressure."""
 
 PARTS_X = 3  # fine cells per cell along x. Accuracy.
@@ -125,7 +125,7 @@ class FineCells:
     @cached_property
     def far_load(self) -> FloatArray:
         """Load on the cells with forces and first moments of the smooth load: array (cell_x, y)."""
-        # Coupled cells of the smooth load have other means than the cells.
+        # In coupled cells the means of the smooth load differ from the load on the cells.
         return np.asarray(self._load_along_x.cell_means.T + self._without_images(self.x_moments.total.T))
 
     def fine_depths(self, z: FloatArray) -> BoolArray:
@@ -175,7 +175,7 @@ class FineCells:
             extended = np.pad(loads, (pad, (0, 0)), mode="symmetric" if has_image else "constant")
             loads_beyond = self.image * (extended[: pad[0]] if pad[0] else extended[extended.shape[0] - pad[1] :])
             padded = np.concatenate([loads_beyond, padded] if pad[0] else [padded, loads_beyond])
-        # The moments extend beyond the cells, or into the image at an end.
+        # The loads that carry the moments also lie on cells beyond the load, or in the image at an end.
         loads = coarsen(padded, PARTS_X)[NEIGHBOURS:-NEIGHBOURS]
         step, (cells_before, cells_behind) = self.grid.dx, (0 if has_image else NEIGHBOURS for has_image in has_end)
         loads = loads[NEIGHBOURS - cells_before : loads.shape[0] - NEIGHBOURS + cells_behind]
@@ -194,7 +194,7 @@ class FineCells:
         is_unsplit = add_images(~is_split, 1, self.extent)
 
         def column_means(cells: FineCells) -> FloatArray:
-            # The neighbours of unsplit columns carry their moments.
+            # The neighbours of an unsplit column carry the column's moment.
             moments = MomentLoads(*(np.where(is_unsplit, loads, 0.0) for loads in cells.x_moments)).total.T
             return cells.column_means([edges]) + np.repeat(
                 self._without_images(moments), np.where(is_split, PARTS_X, 1), axis=0
@@ -233,7 +233,7 @@ class FineCells:
 
 
 def coarsen(fine_loads: FloatArray, fine_per_cell: int) -> FloatArray:
-    """Return loads with the moments of `fine_loads` (fine cell, ...): (cell, ...), `NEIGHBOURS` more at either side."""
+    """Return loads (cell, ...) with the moments of `fine_loads` (fine cell, ...), `NEIGHBOURS` cells more per side."""
     cells = np.arange(-NEIGHBOURS, NEIGHBOURS + 1.0)
     midpoints = (np.arange(fine_per_cell) - 0.5 * (fine_per_cell - 1)) / fine_per_cell
     orders = np.arange(cells.size)[:, None]
@@ -270,7 +270,7 @@ def add_images(columns: Array, image: int, extent: tuple[float, float]) -> Array
 
 
 def resolved_columns(edges: FloatArray, x: float, min_width: float = 0.0) -> tuple[int, int]:
-    """First column around `x` wider than a part of its distance, and the column behind the last; equal without any."""
+    """First column around `x` that is wide over its distance, and the column behind the last; equal if none is wide."""
     # Columns up to the width `min_width` at either end are left out.
     widths = np.diff(edges)
     distance = np.abs(0.5 * (edges[1:] + edges[:-1]) - x)
@@ -284,7 +284,7 @@ def resolved_columns(edges: FloatArray, x: float, min_width: float = 0.0) -> tup
 
 
 def _split_edges(edges: FloatArray, split_columns: BoolArray) -> FloatArray:
-    """Edges of columns, some of them split."""
+    """Edges of columns after the marked columns are split."""
     part_edges = edges[:-1, None] + np.diff(edges)[:, None] * np.arange(PARTS_X) / PARTS_X
     is_edge = np.ones(part_edges.shape, bool)
     is_edge[:, 1:] = split_columns[:, None]

@@ -23,7 +23,7 @@ from contactstudy.kernels.patch import Corner
 CornerFunction = Callable[[FloatArray, FloatArray], FloatArray]
 
 NEAR_IMAGES = 5  # images on either side before the uniformly spread load. Accuracy.
-FAR_LIMIT = 1e6  # end of the spread load over the length. Accuracy; displacements refer to it.
+FAR_LIMIT = 1e6  # end of the spread load over the length. Accuracy; displacements refer to this distance.
 ROUNDING = 1e-9  # rounding of an offset over a cell. Accuracy.
 CHEBYSHEV_X = 16  # points along x of the interpolated influence of images. Accuracy.
 IMAGE_CELL = 1e-3  # width of the cells that represent points, over the length. Accuracy.
@@ -38,7 +38,7 @@ def cell_kernel(corner: CornerFunction, x: FloatArray, y: FloatArray, dx: float,
 
 
 def snap_offsets(offsets: FloatArray, size: float) -> FloatArray:
-    """Offsets from edges without rounding about 0, where a step of traction has a logarithm, cut off at 0."""
+    """Set offsets within rounding of 0 to 0, where the logarithm of a step of traction is cut off."""
     return np.where(np.abs(offsets) < ROUNDING * size, 0.0, offsets)
 
 
@@ -126,15 +126,15 @@ class FarImages:
 
 
 def polynomial_count(half_range: float, distance: float, error: float = INTERPOLATION_ERROR) -> int:
-    """Points of a polynomial on a span ``2 half`` for the field of loads at a `distance` from all of it."""
-    # Each point divides the error by ``exp(asinh(distance / half))``.
+    """Return how many points a polynomial on a range ``2 half_range`` needs for loads at least `distance` away."""
+    # Each point divides the error by ``exp(asinh(distance / half_range))``.
     return int(np.ceil(-np.log(error) / np.arcsinh(distance / half_range))) + 1
 
 
 def interpolation_points(
     positions: FloatArray, distance: float, error: float = INTERPOLATION_ERROR
 ) -> tuple[FloatArray, FloatArray | None]:
-    """Points for the interpolation of a field of distant loads, and its matrix (value, point), None at `positions`."""
+    """Points that interpolate a field of distant loads, and the matrix (value, point); None if points are positions."""
     lowest, highest = float(positions.min()), float(positions.max())
     half_range = 0.5 * (highest - lowest)
     if not half_range:
@@ -147,7 +147,7 @@ def interpolation_points(
 
 
 def _chebyshev_points(positions: FloatArray, half_range: float, count: int) -> tuple[FloatArray, FloatArray]:
-    """Chebyshev points of ``-span..span``, and the interpolation matrix to `interpolation`."""
+    """Chebyshev points from ``-half_range`` to ``half_range``, and the interpolation matrix to `positions`."""
     points = chebyshev.chebpts1(count)
     matrix = np.linalg.solve(
         chebyshev.chebvander(points, count - 1).T, chebyshev.chebvander(positions / half_range, count - 1).T
@@ -202,7 +202,7 @@ LOAD_POINTS = 10
 def far_images(
     load: FloatArray, influence: Influence, grid: Grid, first_row: int, points: Points, extent: tuple[float, float]
 ) -> FloatArray:
-    """Field of all images of a load except the nearest; `first_row` is its first column along y in the grid."""
+    """Field of all images of a load except the nearest; `first_row` is the load's first row in the grid."""
     first_end, length = extent[0], extent[1] - extent[0]
     images = FarImages(length, influence.load.sign_x, LOAD_POINTS)
     point_loads = (images.means(grid.x_edges - first_end) * grid.widths) @ load

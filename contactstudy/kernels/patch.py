@@ -133,7 +133,7 @@ def tangential_displacement_inside(x: FloatArray, y: FloatArray, z: FloatArray |
 
 
 def _corners(normal: Corner, tangential: Corner, exchanged_order: list[int]) -> dict[Load, Corner]:
-    """Corner functions by the direction of the load; those along +x are those along +y with x and y exchanged."""
+    """Corner functions by the direction of the load; along +x they are the functions of +y with x and y exchanged."""
 
     def axial(x: FloatArray, y: FloatArray, z: FloatArray | float, poisson: float) -> FloatArray:
         return tangential(y, x, z, poisson)[exchanged_order]

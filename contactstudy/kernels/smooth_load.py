@@ -47,7 +47,7 @@ class SmoothLoad:
 
     @classmethod
     def of(cls, cells: FloatArray, edges: FloatArray, *, extends_beyond: bool = False) -> SmoothLoad:
-        """Smooth functions through the loads `cells` (row, cell); `extends_beyond`: half a cell further."""
+        """Smooth functions through the loads `cells` (row, cell); with `extends_beyond` up to half a cell beyond."""
         loads, widths = np.abs(cells), np.diff(edges)
         sign = np.sign(cells)
         row_count = loads.shape[0]
@@ -116,7 +116,7 @@ class SmoothLoad:
             (np.maximum(group_start - 1, 0), group_start > 0),
             (np.minimum(group_stop + 1, count - 1), group_stop < count - 1),
         ):
-            # A neighbour with a small mean determines its ratio badly.
+            # The ratio in a neighbour with a small mean is inaccurate.
             is_valid = (
                 exists & ~is_empty & ~is_empty[row, neighbour] & (mean[row, neighbour] > MIN_NEIGHBOUR_RATIO * mean)
             )
@@ -165,7 +165,7 @@ class ShapedLoad:
 
     @cached_property
     def _cell_moments(self) -> tuple[FloatArray, FloatArray]:
-        """Force and first moment about its start of each cell: arrays (row, cell)."""
+        """Force of each cell, and first moment about the cell's start: arrays (row, cell)."""
         cell = np.arange(self.edges.size - 1)
         return self._moments_up_to(cell, self.edges[1:])
 
@@ -219,13 +219,13 @@ class ShapedLoad:
 
 
 def _group_sums(values: FloatArray, start: IntArray) -> FloatArray:
-    """Sum over the group of each cell (row, cell), whose first cell is `start`."""
+    """Sum over each cell's group of cells, whose first cell is `start`: array (row, cell)."""
     group = start + np.arange(values.shape[0])[:, None] * values.shape[1]
     return np.asarray(np.bincount(group.ravel(), values.ravel(), values.size)[group])
 
 
 class MomentLoads(NamedTuple):
-    """Loads per area on three cells with the first moment of the middle one: arrays (row, cell), by the middle cell."""
+    """Loads per area on a cell and both neighbours that carry the cell's first moment: arrays (row, cell)."""
 
     before: FloatArray  # (row, cell): loads on the previous cell, on the cell, and on the next cell
     centre: FloatArray
@@ -263,7 +263,7 @@ def moment_loads(edges: FloatArray, moments: FloatArray) -> MomentLoads:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class _DirectedRows:
-    """Rows of cells in one direction; their loads end at the last loaded cells."""
+    """Rows of cells in one direction, with loads that end at the last loaded cells."""
 
     loads: FloatArray
     sign: FloatArray
@@ -290,7 +290,7 @@ class _DirectedRows:
         self.last[row, cell] = end_load
 
         def previous_loads(steps: int) -> FloatArray:
-            """Return loads of the cells some steps before; 0 for another sign."""
+            """Return loads of the cells some steps before; 0 where the sign differs."""
             index = np.maximum(cell - steps, 0)
             values = np.where(sign[row, index] == sign[row, cell], loads[row, index], 0.0)
             return np.where(cell >= steps, values, 0.0)
@@ -325,7 +325,7 @@ class _DirectedRows:
         self.last[index] = np.minimum(_opposite_face(end_load[is_full], face[is_full]), end_load[is_full])
         self._extend_beyond(row[is_beyond], cell[is_beyond], face[is_beyond], length_ratio[is_beyond])
         extended_cells = row[is_beyond], cell[is_beyond]
-        # A narrow loaded part of the last cell: the last two cells share their force.
+        # If the loaded part of the last cell is narrow, the last two cells share their force.
         face = self._face(cell, load_2, load_3, 2)
         previous_width = self.widths[np.maximum(cell - 1, 0)]
         length = 1.5 * (load_1 * previous_width + end_load * width) / np.where(face > 0, face, np.inf)
@@ -371,8 +371,8 @@ def _mean_of_root(a: FloatArray, b: FloatArray) -> FloatArray:
 def _moments_of_root(
     a: FloatArray, b: FloatArray, length: FloatArray, piece_length: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Force, first and second moment about the start of the first part of a piece with a linear square."""
-    # Of length `length`; the piece has the length `total` and the values `a` and `b` at its ends.
+    """Force, first and second moment, about its start, of the first part of a piece with a linear square."""
+    # The part has the length `length`, the piece `piece_length`, and values `a` and `b` at its ends.
     end_square = a * a + (b * b - a * a) * (length / np.where(piece_length > 0, piece_length, 1.0))
     b = np.sqrt(np.maximum(end_square, 0.0))
     value_sum = np.where(a + b > 0, a + b, 1.0)

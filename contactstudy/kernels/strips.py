@@ -47,7 +47,7 @@ class Strip:
     sign_x: int  # 1 or -1 if the kernel of a point load is even or odd in X and in Y
     sign_y: int
     row_integral: float | None = None
-    """For a kernel with a divergent row of images: the integral over X is ``2 ln(2 X / Y) + row``."""
+    """For a kernel with a divergent row of images: the integral over X is ``2 ln(2 X / Y) + row_integral``."""
 
 
 def _squared(x: FloatArray, y: FloatArray) -> FloatArray:
@@ -194,7 +194,7 @@ BLOCK_SIZE = 16_384  # distances along x and y per evaluation. Speed: the values
 
 @dataclass(frozen=True)
 class LateralCells:
-    """Cells along y: values at their edges to the transform on twice as many cells."""
+    """Cells along y, with the matrix from values at their edges to the transform on twice as many cells."""
 
     dy: float  # cell size along y, metres
     cells: int
@@ -234,7 +234,7 @@ class ColumnsRequest:
         """Influence of strips with factors, and of their images of sign `image`: array (wavenumber, cell, cell)."""
         edges, (first_mirror, last_mirror) = self.edges, self.extent
         lateral = LateralCells(self.dy, self.cells_y, strips[0][1].sign_y > 0)
-        # Columns that have been split share the influences between the others, to the last bit.
+        # After a split the influences between the other columns are reused, equal to the last bit.
         key = (strips, image, lateral, self.extent)
         pair_sums = _PairSums.of(edges, lateral, recall("column pairs", key))
         for factor, strip in strips:
@@ -270,7 +270,7 @@ class _PairSums:
 
     @classmethod
     def of(cls, edges: FloatArray, lateral: LateralCells, stored: _PairSums | None) -> _PairSums:
-        """Zero influence between columns with these edges; those between columns of `stored` are complete."""
+        """Zero influence between columns with these edges, except the stored influence between columns of `stored`."""
         count = edges.size - 1
         total = np.zeros((count, count, lateral.edges.size))
         is_missing = np.ones((count, count), bool)
@@ -286,11 +286,11 @@ class _PairSums:
         return cls(edges, lateral, total, np.tril(is_missing))
 
     def add_strip(self, factor: float, strip: Strip, distances: FloatArray, *, image: bool = False) -> None:
-        """Add `factor` times the influence of columns with edges at signed `distances`; at their sums for an image."""
+        """Add `factor` times the influence of columns with edges at signed `distances`; an image lies at their sums."""
         widths, total, y = np.diff(self.edges), self.total, self.lateral.edges
         separation = 0.25 * (distances[1:, 1:] + distances[1:, :-1] + distances[:-1, 1:] + distances[:-1, :-1])
         is_far = separation > FAR_COLUMNS * np.maximum.outer(widths, widths)
-        # Edges of columns near each other.
+        # Marks edges of columns near each other.
         is_near = np.zeros(distances.shape, bool)
         for corner in product((slice(None, -1), slice(1, None)), repeat=2):
             is_near[corner] |= self.is_missing & ~is_far
@@ -323,7 +323,7 @@ class _PairSums:
 def _add_to_pairs(
     total: FloatArray, rows: IntArray, columns: IntArray, influences: FloatArray, exchange_sign: int
 ) -> None:
-    """Add the influences (pair, offset) of pairs of columns, and `exchange_sign` times them of the exchanged pairs."""
+    """Add the influences (pair, offset) of pairs of columns, and for exchanged pairs `exchange_sign` times these."""
     total[rows, columns] += influences
     off_diagonal = rows > columns  # the image of a column may be far from the column
     total[columns[off_diagonal], rows[off_diagonal]] += exchange_sign * influences[off_diagonal]

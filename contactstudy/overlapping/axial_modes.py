@@ -26,12 +26,12 @@ from contactstudy.overlapping.quadrature import Resolution, ray_nodes
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class AxialModes:
-    """Axial wavenumbers of one parity; compared by value, because equation sets are kept for them."""
+    """Axial wavenumbers of one parity; compared by value, as keys of cached equation sets."""
 
     length: float  # distance between the ends, metres; infinite for a quarter space
     parity: int  # +1 or -1 for loads even or odd about mid-length, 0 for one end only
     discrete: FloatArray  # wavenumbers ``k_n`` that are summed one by one, 1/m
-    ray: ComplexArray  # nodes and weights of the rest, 1/m
+    ray: ComplexArray  # nodes and weights on the ray, for all further wavenumbers, 1/m
     weights: ComplexArray
     reach: float = np.inf
     """Distance from the end beyond which waves of these wavenumbers are negligible, metres; infinite with two ends."""
@@ -68,7 +68,7 @@ class AxialModes:
         return slab_factors(kappa, self.length, self.parity)[0]
 
     def load_on_face(self, kappa: ComplexArray) -> ComplexArray:
-        """Load on a face per normal stress freed there."""
+        """Load on a face per normal stress freed on this face."""
         return np.ones_like(kappa)
 
     def face_amplitude(self, kappa: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
@@ -79,7 +79,7 @@ class AxialModes:
 
     @property
     def on_end(self) -> ComplexArray:
-        """``cosine(0)``: from weighted spectrum to the value on end I."""
+        """``cosine(0)``: factor from a weighted spectrum to the value on end I."""
         return self.cosine(np.zeros(1))[:, 0]
 
     def _waves_of_ends(self, x: FloatArray, sign: int) -> ComplexArray:
@@ -99,7 +99,7 @@ class AxialModes:
         return np.concatenate([np.sin(np.outer(self.discrete, x)), -1j * self._waves_of_ends(x, -1)])
 
     def wave(self, load: Load, x: FloatArray) -> ComplexArray:
-        """Waves that a load in one direction is a sum of: `cosine`, or `sine` for one that its image reverses."""
+        """Waves that sum up to a load in one direction: `cosine`, or `sine` if a mirror image reverses the load."""
         return self.cosine(x) if load.sign_x > 0 else self.sine(x)
 
     def cell_integrals(self, load: Load, edges: FloatArray) -> ComplexArray:
@@ -120,15 +120,15 @@ SEPARATE_ENDS = 20.0  # decay lengths beyond which the two ends do not affect ea
 
 
 def axial_modes(length: float, lateral: float, shortest: float, resolution: Resolution) -> list[AxialModes]:
-    """Axial modes for wavenumbers along y from `lateral` on: even and odd; of parity 0 for a single or far end."""
-    # `shortest` is the least distance that matters; it bounds the ray.
+    """Even and odd axial modes for wavenumbers along y from `lateral` on; modes of parity 0 for a single or far end."""
+    # `shortest` is the least distance that matters, and bounds the ray.
     last_wavenumber = max(resolution.reach / shortest, 4 * lateral)
     if lateral * length > SEPARATE_ENDS:
         reach = DECAY_LENGTHS / lateral
         ray, weights = ray_nodes(0.5 / reach, last_wavenumber, resolution)
         return [AxialModes(length=np.inf, parity=0, discrete=np.zeros(0), ray=ray, weights=weights, reach=reach)]
     spacing = np.pi / length
-    # Between two modes of either parity, half a spacing from the nearest: the ray's integrand has its poles there.
+    # The ray starts half a spacing from the nearest mode of either parity: the modes are poles of the integrand.
     ray_start = (resolution.modes - 0.5) * spacing  # eq. (32)
     ray, weights = ray_nodes(0.5 * spacing, last_wavenumber, resolution)
     indices = np.arange(resolution.modes)
@@ -175,7 +175,7 @@ class SingleMirrorModes(AxialModes):
         return np.asarray(first_end + sign * self.parity * second_end)
 
     def load_on_top(self, core: ComplexArray, depth: FloatArray, lateral: float, poisson: float) -> ComplexArray:
-        """Weighted spectrum of the load of V1 and V2 on 0 .. L and of its two images: array (wavenumber, depth)."""
+        """Weighted spectrum of the load of V1 and V2 on 0 .. L, with its two images: array (wavenumber, depth)."""
         length, k = self.length, self.ray[:, None]
         kappa = np.sqrt(depth**2 + lateral**2)
         # V's load on the top: K(x) = exp(-kappa x) (a - b kappa x).
@@ -183,10 +183,10 @@ class SingleMirrorModes(AxialModes):
         constant = slope + 2 * poisson * (lateral / kappa) ** 2
         end_wave, decay = np.exp(1j * k * length), np.exp(-kappa * length)
         end_value = constant - slope * kappa * length
-        # int_0^inf K(L + x) exp(i k x) dx: the tail that is not there, on either side
+        # int_0^inf K(L + x) exp(i k x) dx: the missing tail of the load beyond either end
         decay_rate = kappa - 1j * k
         tail = decay * (end_value - slope * kappa / decay_rate) / decay_rate
-        # int_0^L K(x) exp(i k (L - x)) dx: V1's load in the image beyond end II, V2's in that beyond end I
+        # int_0^L K(x) exp(i k (L - x)) dx: V1's load in the image beyond end II, V2's load in the image beyond end I
         conjugate_rate = kappa + 1j * k
         image = (
             end_wave * (constant - slope * kappa / conjugate_rate)
@@ -215,7 +215,7 @@ class SingleMirrorModes(AxialModes):
 def modes_between_ends(
     length: float, lateral: float, shortest: float, resolution: Resolution, *, mirrored_once: bool
 ) -> list[AxialModes]:
-    """Axial modes as `axial_modes` makes them, or with loads mirrored once; far ends are quarter spaces in both."""
+    """Axial modes of loads with all images or mirrored once; ends far apart are quarter spaces in both schemes."""
     if not mirrored_once or lateral * length > SEPARATE_ENDS:
         return axial_modes(length, lateral, shortest, resolution)
     last_wavenumber = max(resolution.reach / shortest, 4 * lateral)

@@ -58,7 +58,7 @@ def load_on_end(
 
 
 def real_product(left_factor: ComplexArray, right_factor: ComplexArray) -> FloatArray:
-    """Real part of the product over the last axis of the left and the first of the right factor, as a real product."""
+    """Real part of the product over the left factor's last and the right factor's first axis, by real arithmetic."""
     # Real and imaginary parts alternate in memory: the product with the conjugate is the real part.
     flat_left = np.ascontiguousarray(left_factor).reshape(-1, left_factor.shape[-1]).view(np.float64)
     flat_right = np.ascontiguousarray(right_factor.reshape(right_factor.shape[0], -1).T.conj()).view(np.float64)
@@ -108,7 +108,7 @@ class EquationSet:
     core: ComplexArray  # (depth, wavenumber): coupling core ``M`` between depth nodes and axial wavenumbers
     top: ComplexArray
     """(wavenumber, depth): weighted spectrum, before `AxialModes.cosine`, of the top load from a scaled face load."""
-    factorisation: Factorisation  # of the set's matrix ``1 / scale - N``
+    factorisation: Factorisation  # LU factors of the set's matrix ``1 / scale - N``
 
     @classmethod
     def build(
@@ -153,7 +153,7 @@ class EquationSet:
         return real_product(self.load_to_faces(load), spectrum)
 
     def spectrum_on_top(self, scaled_face_load: FloatArray) -> ComplexArray:
-        """Weighted spectrum, before `cosine`, of the top load from the faces."""
+        """Weighted spectrum, before `cosine`, of the load on the top from scaled face loads."""
         return np.asarray(self.top @ scaled_face_load)  # eq. (26a)
 
     def auxiliary_loads(
@@ -181,7 +181,7 @@ class EquationSet:
 
     def ray_to_faces(self, load: Load, depth: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
         """Face loads at complex `depth` wavenumbers from modes and from their conjugate: arrays (depth, wavenumber)."""
-        # Half the sum over both half-planes: at complex depth the second is not the first's conjugate.
+        # The sum over both half-planes is halved: at complex depth the second matrix is not the first's conjugate.
         axial = self.modes.wavenumbers
         mode_matrix, conjugate_matrix = (
             0.5 * load_on_end(load, k, depth, self.lateral, self.poisson) for k in (axial, axial.conj())

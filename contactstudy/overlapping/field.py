@@ -1,8 +1,8 @@
-"""A field of the free ends, added to that of the mirrored half-space, from the equivalent loads.
+"""A field of the free ends, from the equivalent loads, to be added to the field of the mirrored half-space.
 
 For each wavenumber along y the equivalent load ``R`` (in H) and the face loads ``S`` (in V) are evaluated on their
 rays, where every factor decays with the distance from the loaded corner; the field is a sum of separable terms
-``f(k, x) g(k, z)``: matrix products. A high wavenumber includes only positions within reach of a corner.
+``f(k, x) g(k, z)``: matrix products. At a high wavenumber only positions within reach of a corner are evaluated.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from contactstudy.overlapping.problem import EndProblem, View, make_views, split
 from contactstudy.overlapping.quadrature import POSITIONS_PER_PANEL, graded_interpolation
 from contactstudy.threads import one_blas_thread
 
-POSITION_DIGITS = 12  # digits of positions over the length that are equal by symmetry. Accuracy.
+POSITION_DIGITS = 12  # digits to which positions over the length are compared for symmetry. Accuracy.
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -36,7 +36,7 @@ class Harmonics:
     amplitudes (component, x, z, column)."""
     of_face_load: Callable[[EquationSet, ComplexArray, ComplexArray, FloatArray, FloatArray], FloatArray]
     """From equation set, depth wavenumbers, weighted face loads (depth, column), distances from the end and depths
-    to the same."""
+    to amplitudes of the same shape."""
     count: int  # number of components
     even_in_y: list[int]  # components that under a pressure even in y are even; the others are odd
     odd_along_x: list[int]  # components that change sign from one end to the other
@@ -48,7 +48,7 @@ JOINT_POINTS = 2000  # largest number of positions times depths for a joint eval
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class _FoldedPositions:
-    """Positions of the sum over wavenumbers: few, by their distance from the nearest end, off the loaded corner."""
+    """Positions at which waves are summed: few distances from the nearest end, none on the loaded corner."""
 
     x: FloatArray  # positions of the sum; the last depth is a little below the corner if the corner is a position
     y: FloatArray
@@ -122,7 +122,7 @@ def end_fields(
     problem: EndProblem, harmonics: Harmonics, point_sets: Sequence[Points], reference: float = np.inf
 ) -> list[dict[Load, FloatArray]]:
     """Field of the free ends, without the half-space with all mirrored loads: arrays (component, x, y, z)."""
-    # A field that grows with distance is relative to ``|y| = reference`` if that is finite.
+    # A field that grows with distance is relative to ``|y| = reference`` if `reference` is finite.
     fields: list[dict[Load, FloatArray]] = [{} for _ in point_sets]
     with one_blas_thread():
         for subproblem in problem.split_by_mirror_sign():
@@ -187,7 +187,7 @@ def _panel_amplitudes(
     reference: float,
     make_columns: Callable[[LateralPanel], LateralColumns | None],
 ) -> Iterator[_PanelAmplitudes]:
-    """Amplitudes of the columns of each panel."""
+    """Yield the amplitudes of the columns, panel by panel."""
     distances = [points.distance for points in point_sets]
     nearest = min(float(distance.min()) for distance in distances)
     shortest = problem.smallest_scale(nearest)
@@ -250,7 +250,7 @@ def unit_fields(problem: EndProblem, harmonics: Harmonics, points: Points, refer
 
 
 def _block_index(rows: IntArray, columns: IntArray) -> tuple[slice | IntArray, slice | IntArray]:
-    """Index of rows and columns in ascending order, as slices if the range is complete: faster."""
+    """Index of rows and columns in ascending order; complete ranges become slices, which are faster."""
     if all(indices[-1] - indices[0] + 1 == indices.size for indices in (rows, columns)):
         return slice(rows[0], rows[-1] + 1), slice(columns[0], columns[-1] + 1)
     return rows[:, None], columns

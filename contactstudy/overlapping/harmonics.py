@@ -12,7 +12,7 @@ from contactstudy.overlapping.field import Harmonics
 def _stress_of_equivalent_load(
     system: EquationSet, equivalent: ComplexArray, cosine: ComplexArray, sine: ComplexArray, z: FloatArray
 ) -> FloatArray:
-    """Stresses of H under the equivalent load: array (6, x, z, column). Half-space harmonics, pressure column."""
+    """Stresses of H under the equivalent load, by the harmonics of a pressure: array (6, x, z, column)."""
     nu, lateral = system.poisson, system.lateral
     axial = system.modes.wavenumbers
     k = np.sqrt(axial**2 + lateral**2)
@@ -102,7 +102,7 @@ STRESS = Harmonics(  # components xx, yy, zz, xy, xz, yz
 def _displacement_of_equivalent_load(
     system: EquationSet, equivalent: ComplexArray, cosine: ComplexArray, sine: ComplexArray, z: FloatArray
 ) -> FloatArray:
-    """``2 G u`` of H under the equivalent load: array (3, x, z, column). Half-space harmonics, pressure column."""
+    """``2 G u`` of H under the equivalent load, by the harmonics of a pressure: array (3, x, z, column)."""
     nu, lateral = system.poisson, system.lateral
     axial = system.modes.wavenumbers
     k = np.sqrt(axial**2 + lateral**2)

@@ -29,7 +29,7 @@ POLES, BENDING_POLES = 2, 3
 """Order of an amplitude's pole at wavenumber 0, eq. (30); 3 under a force along x, which bends the body, eq. (30a)."""
 
 POLE_PANEL_FACTOR, POLE_TERMS = {POLES: 0.1, BENDING_POLES: 1.0}, {POLES: 4, BENDING_POLES: 6}
-"""Wavenumber along y, over the smallest length of the problem, below which an amplitude is its poles and this number of
+"""Wavenumber along y, over the smallest length of the problem, below which an amplitude is a sum of poles and as many
 powers from the constant on. Accuracy. The higher the pole (a double one if a sliding load off-centre turns the body),
 the more it amplifies the quadrature errors of a much lower wavenumber."""
 
@@ -58,7 +58,7 @@ class LateralPanel:
         """``cos(k y)`` and ``sin(k y)`` times the weights of the integral: arrays (fine, y)."""
         if self.reference is not None:
             panel_end, terms = float(self.nodes[-1]), self.nodes.size - self.poles
-            # Over the panel's end, for the powers to be alike.
+            # Wavenumbers are divided by the panel's end, so that their powers are of similar size.
             powers = (self.nodes[:, None] / panel_end) ** np.arange(-self.poles, terms)
             scale = panel_end ** np.arange(-self.poles, terms)
             waves = []
@@ -76,7 +76,7 @@ class LateralPanel:
         return np.cos(phase) * width, np.sin(phase) * width
 
     def filters(self, grid: Grid, y: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """From a load on cells to the part of each node at positions `y`, for even and odd loads: (node, cell, y)."""
+        """Matrices (node, cell, y) from a load on cells to each node's part at positions `y`, for even, odd loads."""
         (load_cosine, load_sine), (cosine, sine) = self.load_waves(grid), self.waves(y)
         interpolation = np.eye(self.nodes.size) if self.interpolation is None else self.interpolation
         even_filters = [(load_cosine * column) @ cosine + (load_sine * column) @ sine for column in interpolation.T]
@@ -111,7 +111,7 @@ class LateralColumns:
         return (even, odd) if load.sign_y > 0 else (odd, -even)
 
     def sum_at_positions(self) -> LateralColumns:
-        """Columns whose amplitudes are the parts of the sum at one position each: fewer for few positions along y."""
+        """Columns whose amplitudes are parts of the sum at one position along y: fewer columns for few positions."""
         along_nodes, waves = self.along_x.swapaxes(0, 1), np.concatenate([self.even, self.odd], axis=2)
         along_x, parities, positions = [], [], []
         for parity in np.unique(self.parities):
@@ -171,7 +171,7 @@ def lateral_panels(
 def lateral_columns(
     panel: LateralPanel, parity_loads: Mapping[int, FloatArray], grid: Grid, y: FloatArray
 ) -> LateralColumns | None:
-    """Columns of the `parity_loads` of a cell-wise uniform load within one panel; None if there are none."""
+    """Columns of the `parity_loads` of a cell-wise uniform load within one panel; None if the panel needs no column."""
     waves = panel.load_waves(grid)
     cosine, sine = panel.waves(y)
     along_x, parities, even_waves, odd_waves = [], [], [], []
@@ -201,7 +201,7 @@ def lateral_columns(
 
 
 def _interpolate_columns(columns: LateralColumns, nodes: FloatArray, interpolation: FloatArray) -> LateralColumns:
-    """Few functions of x at few nodes that represent the load."""
+    """Represent the load by few functions of x at few nodes."""
     cells, fine, _ = columns.along_x.shape
     along_x, parities, factors = [], [], []
     for parity in np.unique(columns.parities):
@@ -226,8 +226,8 @@ def _interpolate_columns(columns: LateralColumns, nodes: FloatArray, interpolati
 
 def cosine_moments(panel_end: float, y: FloatArray, reference: float, terms: int = 1) -> FloatArray:
     """Integrals of ``cos(k y)`` times ``k**-3, k**-2, k**-1, 1, ...`` over k from 0 to `panel_end`: (3 + terms, y)."""
-    # The poles' integrals are relative to ``|y| = reference = r``: with those from `first` on they sum up to the rigid
-    # motions k**-3: y**2 / 2 ln(|y| / r) + 3 / 4 (r**2 - y**2),   k**-2: pi / 2 (r - |y|),   k**-1: ln(r / |y|).
+    # Integrals of poles are relative to ``|y| = reference = r``: with the integrals beyond `panel_end` they are rigid
+    # motions, k**-3: y**2 / 2 ln(|y| / r) + 3 / 4 (r**2 - y**2),   k**-2: pi / 2 (r - |y|),   k**-1: ln(r / |y|).
     from scipy.special import sici
 
     distance = np.maximum(np.abs(y), 1e-30 / panel_end)

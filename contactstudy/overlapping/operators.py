@@ -37,12 +37,12 @@ class Band:
 
 
 def stack_real_and_imaginary(columns: Any) -> FloatArray:
-    """Real matrix to modes of a complex matrix whose rows are wavenumbers: real parts before imaginary parts."""
+    """Real matrix to modes, from a complex matrix with wavenumbers as rows: real parts before imaginary parts."""
     return np.concatenate([np.real(columns), np.imag(columns)])
 
 
 def real_part_matrix(rows: Any) -> FloatArray:
-    """Real matrix from modes for the real part of a product with a complex matrix whose columns are wavenumbers."""
+    """Real matrix from modes to the real part of their product with `rows`, whose columns are wavenumbers."""
     return np.concatenate([np.real(rows), -np.imag(rows)], axis=1)
 
 
@@ -63,7 +63,7 @@ class BandOperator(LinearOperator):  # type: ignore[misc]
 
 
 def solution_matrix(system: EquationSet) -> LinearOperator:
-    """Matrix of the solution of an equation set for the faces, from the stress of the load alone on the ends."""
+    """Operator that solves an equation set: from the stress of the load alone on the ends to the faces."""
     scale = system.scale[:, None]
 
     def solve(source: FloatArray) -> FloatArray:
@@ -132,8 +132,8 @@ class EquivalentOperators(NamedTuple):
 class OverlappingOperators:
     """Operators of the overlapping for loads that mirror images all keep or all reverse."""
 
-    # Loads at a corner, where they grow like a logarithm, are evaluated at a part of a cell from it. Loads that only
-    # tilt H and V against each other are relative to a reference.
+    # Equivalent loads grow like a logarithm towards a corner, and are evaluated at a part of a cell from the corner.
+    # Loads that only tilt H and V against each other are relative to a reference.
 
     problem: EndProblem  # body, directions of the loads, grid and quadratures; the load of the problem does not matter
     positions: Points  # positions of the equivalent loads: `x` and `y` on the top, `y` and depths `z` on the ends
@@ -180,7 +180,7 @@ class OverlappingOperators:
         ).T
 
     def to_faces(self, load: Load) -> LinearOperator:
-        """Return the operator from modes of a load on H to the normal stress that it leaves on the ends, reversed."""
+        """Return the operator from modes of a load on H to the reversed normal stress of the load on the ends."""
         return self._band_operator(lambda band: real_part_matrix(band.system.load_to_faces(load)))
 
     @cached_property

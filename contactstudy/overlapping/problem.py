@@ -1,4 +1,4 @@
-"""A load on the top of a body with free ends in axial modes."""
+"""A load on the top of a body with free ends, expressed in axial modes."""
 
 from __future__ import annotations
 
@@ -27,17 +27,17 @@ from contactstudy.overlapping.lateral_modes import (
 from contactstudy.overlapping.quadrature import Resolution
 
 CORNER_OFFSET = 1e-2
-"""Part of a cell below a loaded corner where points on the corner itself are evaluated. Accuracy. H and V each have a
-logarithm there; their sum is finite."""
+"""Depth below a loaded corner, over a cell, at which points on the corner are evaluated. Accuracy. H and V each have a
+logarithm at the corner; their sum is finite."""
 
-EDGE_ROUNDING = 1e-12  # rounding of an edge and its image over the length. Accuracy.
+EDGE_ROUNDING = 1e-12  # rounding between an edge and an image, over the length. Accuracy.
 
 FIRST_PANEL_FACTOR = 0.1
 """End of the first panel along ``k_y``, over the smallest length of the problem, of a field without poles. Accuracy."""
 
 MIN_LENGTH_RATIO = 0.004
-"""Least length of a body over the width of the load. Accuracy: at this length the ends keep 6e-4 of the pressure, at a
-third of the length a tenth."""
+"""Least length of a body over the width of the load. Accuracy: at this length the ends keep a stress of 6e-4 of the
+pressure, at a third of this length a tenth."""
 
 
 _equation_set = cached("equation sets")(EquationSet.build)
@@ -70,7 +70,7 @@ class EndProblem:
 
     @cached_property
     def column_edges(self) -> FloatArray:
-        """Edges of the columns, metres: those of the cells and, between two ends, their mirror images."""
+        """Edges of the columns, metres: edges of the cells and, between two ends, mirror images of these edges."""
         edges = self.grid.x_edges
         if self.grid.uniform or np.isinf(self.length):
             return edges
@@ -81,7 +81,7 @@ class EndProblem:
 
     @cached_property
     def cell_of_column(self) -> IntArray:
-        """Cell that contains each column."""
+        """Index of the cell that contains each column."""
         edges = self.column_edges
         cells = np.searchsorted(self.grid.x_edges, 0.5 * (edges[1:] + edges[:-1])) - 1
         return np.asarray(np.clip(cells, 0, self.grid.cells_x - 1))
@@ -110,8 +110,8 @@ class EndProblem:
 
     def smallest_scale(self, nearest: float) -> float:
         """Smallest relevant distance from a corner, for positions at least `nearest` from the corner, metres."""
-        # The field of a load near a corner depends on its steps there, at distant positions as well; every edge is
-        # included, so that the field is additive.
+        # A field depends on the steps of the load near a corner, at distant positions as well; every edge is
+        # included, so that fields of loads add up.
         inner_edges = self.column_edges[1:-1]
         return max(min(nearest, float(self.from_end(inner_edges).min(initial=nearest))), self.corner_offset)
 
@@ -141,7 +141,7 @@ def finest_cell(grid: Grid) -> float:
 
 
 def split_by_parity(cells: FloatArray, sign_x: int) -> dict[int, FloatArray]:
-    """Parts of a load (x, y) even (1) and odd (-1) about mid-length, but negligible ones; `sign_x` -1 swaps them."""
+    """Even (1) and odd (-1) parts of a load (x, y) about mid-length, if not negligible; `sign_x` -1 swaps the parts."""
     parity_loads = {parity: 0.5 * (cells + sign_x * parity * cells[::-1]) for parity in (1, -1)}
     min_amplitude = NEGLIGIBLE_LOAD * np.abs(cells).max()
     return {

@@ -2,7 +2,7 @@
 
 Integrands along axial and depth wavenumbers are smooth over their logarithm ``u``: the nearest poles lie at the angle
 `Resolution.angle` from the path. The trapezoidal rule of step h over u has the error ``exp(-2 pi angle / h)``, with
-half the nodes of Gauss's on growing panels (L. N. Trefethen and J. A. C. Weideman, SIAM Review 56 (2014) 385).
+half the nodes of Gauss's rule on growing panels (L. N. Trefethen and J. A. C. Weideman, SIAM Review 56 (2014) 385).
 Displacements of the free ends vary on the scale of the distance from the end: panels double away from the end.
 """
 
@@ -37,8 +37,8 @@ def panel_nodes(edges: FloatArray, order: int) -> tuple[FloatArray, FloatArray]:
 
 
 AXIAL_STEP, AXIAL_REACH = 0.16, 1000.0
-"""Largest step and least reach under loads along x. Accuracy: where they bend the body, H and V grow and cancel; on a
-corner their normal stress on the end is singular."""
+"""Largest step and least reach under loads along x. Accuracy: where such loads bend the body, H and V grow and cancel;
+on a corner the normal stress of these loads on the end is singular."""
 
 START_FACTOR, MIN_LOGARITHM = 0.3, -2.8
 """Wavenumber about which the nodes begin to thin out towards 0, over the smallest scale, and the least ``u``.
@@ -61,7 +61,7 @@ class Resolution:
     reach : float
         Largest axial and depth wavenumber, times the smallest distance from a loaded corner.
     ray_reach : float
-        The same on the ray of depth wavenumbers, where the loads are evaluated.
+        As `reach`, on the ray of depth wavenumbers, where the loads are evaluated.
     modes : int
         Axial modes that are summed one by one.
     lateral_nodes : int
@@ -102,7 +102,7 @@ class Resolution:
             raise InvalidInputError("angle", self.angle, "between 0 and pi/4, where k_x^2 + k_y^2 + k_z^2 vanishes")
 
     def for_loads(self, loads: Iterable[Load]) -> Resolution:
-        """Return settings that resolve loads in these directions as well as these do a pressure."""
+        """Return settings that resolve loads in some directions as well as the present settings resolve a pressure."""
         if Load.ALONG_X not in loads:
             return self
         return replace(self, step=min(self.step, AXIAL_STEP), reach=max(self.reach, AXIAL_REACH))
@@ -110,7 +110,7 @@ class Resolution:
 
 def scale_nodes(first: float, last: float, step: float) -> tuple[FloatArray, FloatArray]:
     """Nodes and weights from 0 to about `last`, for integrands smooth over the logarithm from `first` on."""
-    # The trapezoidal rule over ``u`` with ``k = start exp(u - exp(-u))``, where k falls to 0 doubly exponentially.
+    # The trapezoidal rule runs over ``u`` with ``k = start exp(u - exp(-u))``: k falls to 0 doubly exponentially.
     start = START_FACTOR * first
     lowest, highest = int(np.floor(MIN_LOGARITHM / step)), int(np.ceil(np.log(last / start) / step))
     u = step * np.arange(lowest, highest + 1.0)

@@ -5,7 +5,7 @@ The normal displacement of the top of V is zero: the body has the displacement o
 docs/explanation/theory.md: a symmetric operator, smooth except at the ends. It is sampled at positions graded towards
 the ends and transformed along y to the wavenumbers of the zero-padded grid, once per body and window. Far along y a
 finite-length body is a plate in plane stress, eqs. (30) and (30a): displacements are stated relative to the top far
-away, at ``|y| = reference``; the curvature under a force along x is zero there as well.
+away, at ``|y| = reference``; the curvature under a force along x is zero at this distance, too.
 """
 
 from __future__ import annotations
@@ -31,10 +31,10 @@ from contactstudy.overlapping.lateral_modes import BENDING_POLES, POLE_PANEL_FAC
 from contactstudy.overlapping.quadrature import POSITIONS_PER_PANEL, Resolution, cell_moments, graded_positions
 
 EXTRA_NODES = 2
-"""Wavenumbers along y per panel beyond those for a field: an operator is built once for every load. Accuracy."""
+"""Additional wavenumbers along y per panel, against a field: an operator is built once for all loads. Accuracy."""
 
 RAY_FACTOR = (
-    1.25  # angle of the axial ray, and step along it, over those for a field: no ray of depths limits it. Speed.
+    1.25  # angle of the axial ray and step along the ray, over the values for a field: no depth ray limits them. Speed.
 )
 
 CELLS_PER_FINEST = (
@@ -45,7 +45,7 @@ CELLS_PER_FINEST = (
 class EndRequest(NamedTuple):
     """Request of a kernel of the ends."""
 
-    freed: FreeEnds  # ends, at 0 and at its length (infinite: one end)
+    freed: FreeEnds  # free ends, at ``x = 0`` and at the length (infinite: one end)
     material: Material
     dy: float  # cell size along y, metres, and number of cells
     cells_y: int
@@ -101,7 +101,7 @@ class EndKernel:
     """The ends' part of the displacement between graded positions."""
 
     request: EndRequest
-    edges: FloatArray  # panels along x, from end I to mid-length (or over the span), and Gauss positions in them
+    edges: FloatArray  # edges of panels along x, from end I to mid-length (or over the span), and their Gauss positions
     positions: FloatArray
     samples: Mapping[Response, list[FloatArray]]  # (wavenumber, position, position) per parity, as in `EndCorrection`
 
@@ -126,16 +126,16 @@ class EndKernel:
 
 
 def sum_of_ends(side_moments: list[FloatArray], sign: int) -> FloatArray:
-    """Sum over both ends for a load with an image of `sign` times the load; the value of a single end."""
+    """Sum over both ends for a load whose image is `sign` times the load; with a single end, its value."""
     return np.asarray(side_moments[0] + sign * side_moments[1]) if len(side_moments) > 1 else side_moments[0]
 
 
 @dataclass(frozen=True, eq=False)
 class PositionWaves:
-    """Positions in axial modes: shared by all wavenumbers along y of these modes."""
+    """Waves of axial modes at positions, shared by all wavenumbers along y with these modes."""
 
     modes: AxialModes
-    positions: FloatArray  # positions within their reach, metres
+    positions: FloatArray  # positions within reach of the modes, metres
     by_load: Mapping[Load, ComplexArray]  # (mode, position): weighted spectra of unit loads at the positions
 
     @classmethod
@@ -154,7 +154,7 @@ def sampled_kernel(waves: PositionWaves, wavenumber: float, request: EndRequest,
     factor = (1 - material.poisson) / material.shear_modulus * (np.pi if modes.parity else np.pi / 2)
     system = EquationSet.build(modes, wavenumber, material.poisson, shortest, request.resolution)
     loads = dict.fromkeys(response.load for response in responses)
-    if isinstance(modes, SingleMirrorModes):  # no reciprocity: its ends carry shear
+    if isinstance(modes, SingleMirrorModes):  # no reciprocity: the ends of this scheme carry shear
         k = np.sqrt(modes.wavenumbers**2 + wavenumber**2)  # eq. (28)
         compliance = modes.cosine(waves.positions) * ((1 - material.poisson) / material.shear_modulus / k)[:, None]
         top_loads = {
@@ -167,10 +167,10 @@ def sampled_kernel(waves: PositionWaves, wavenumber: float, request: EndRequest,
     for displacement, load in responses:
         kernel = sources[displacement].T @ face_loads[load]  # eqs. (29) and (29b), sources of eq. (28a)
         if displacement in face_loads:
-            # Reciprocity up to rounding, which two ends amplify.
+            # Two ends amplify rounding: the mean of both kernels restores reciprocity.
             reverse_kernel = kernel if displacement is load else sources[load].T @ face_loads[displacement]
             kernel = 0.5 * (kernel + reverse_kernel.T)
-        # Without the factor i of an odd kernel: the conjugate of ``i s`` includes the sign.
+        # The kernel lacks the factor i of odd kernels; the sign is due to the conjugate of ``i s``.
         sign = -1 if displacement.sign_y < 0 < load.sign_y else 1
         kernels.append(factor * sign * kernel)
     return kernels
@@ -190,7 +190,7 @@ def end_kernel(request: EndRequest) -> EndKernel:
     edges, positions = graded_positions(half_length, shortest, POSITIONS_PER_PANEL)
     offsets: FloatArray = request.dy * np.arange(request.cells_y + 1.0)
     even_matrix, odd_matrix = spectrum_matrices(request.cells_y)
-    # From samples at the offsets to the padded grid's transform; an odd kernel is -sin(k y).
+    # Matrices from samples at the offsets to the padded grid's transform; an odd kernel is -sin(k y).
     transforms = np.ascontiguousarray(even_matrix.T), np.ascontiguousarray(-odd_matrix.T)
     samples_by_response: dict[Response, list[FloatArray]] = {}
     shared_samples: dict[float, FloatArray] = {}  # samples at wavenumbers that kernels with either pole share
@@ -252,7 +252,7 @@ def _sample_panel(
         kernel = shared_samples.get(wavenumber)
         if kernel is None:
             kernel = np.array([sampled_kernel(mode_waves, wavenumber, request, shortest) for mode_waves in waves])
-            # Ends without interaction: either parity has half of a quarter space.
+            # Ends do not interact: each parity has half of a quarter space's kernel.
             if len(request.parities) > len(modes):
                 kernel = 0.5 * np.repeat(kernel, 2, axis=0)
             if is_shared:
@@ -275,7 +275,7 @@ class EndCorrection:
     """(position, cell): by direction and per parity, from cells to graded positions. With two parities the cells
     beyond the middle are folded onto the first half."""
     kernels: Mapping[Response, list[FloatArray]]
-    """(wavenumber, position, position): per parity, displacement at the graded positions from a load there, without
+    """(wavenumber, position, position): per parity, displacement at graded positions from a load at each, without
     the factor i of kernels odd along y."""
     cell: float  # cell size along x
 
@@ -363,5 +363,5 @@ class EndCorrection:
 
 
 def _multiply_columns(kernel: FloatArray, values: FloatArray) -> FloatArray:
-    """Product of a matrix for each wavenumber (wavenumber, position, position) with its column."""
+    """Product of each wavenumber's matrix (wavenumber, position, position) with the wavenumber's column."""
     return np.asarray(np.matmul(kernel, values[..., None])[..., 0])

@@ -81,7 +81,7 @@ class Shape:
         return f"{type(self).__name__}({', '.join(f'{name}={text}' for name, text in self._arguments())})"
 
     def _arguments(self) -> Iterator[tuple[str, str]]:
-        """Values other than the defaults, in engineering units."""
+        """Names and values of arguments other than the defaults, in engineering units."""
         entries: tuple[Field[object], ...] = fields(self) if is_dataclass(self) else ()
         for entry in entries:
             value = getattr(self, entry.name)

@@ -1,7 +1,7 @@
 """Heights in the files of measuring instruments: x3p, and the formats of profilometers.
 
-Two libraries of the extra ``measured`` read them: x3pio x3p (ISO 25178-72), profiles included; SurfaceTopography the
-formats of instruments. This module converts lengths to metres and turns the axes.
+Two libraries of the extra ``measured`` read these files: x3pio reads x3p (ISO 25178-72), profiles included;
+SurfaceTopography reads the formats of instruments. This module converts lengths to metres and turns the axes.
 """
 
 from __future__ import annotations

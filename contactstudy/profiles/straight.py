@@ -75,7 +75,7 @@ class Tapered(Shape):
 
     Notes
     -----
-    `length` and `x` are measured along the generatrix. The Hertz scales of results are those of a cylinder with the
+    `length` and `x` are measured along the generatrix. The Hertz scales of results belong to a cylinder with the
     roller's `radius`, without ``1 / cos(beta)``: up to 1.0025 in bearings.
 
     References
@@ -206,7 +206,7 @@ class Chamfer(Shape):
         chamfer_drop = self.slope * np.maximum(distance, 0.0)
         if inner_blend == 0:
             return np.asarray(chamfer_drop)
-        # The arc from -inner_blend to outer_blend; below the chord of its tangents.
+        # On the arc, from -inner_blend to outer_blend, the drop is that of a circle from the arc's start.
         chord = np.clip(distance + inner_blend, 0.0, inner_blend + outer_blend)
         arc_drop = chord**2 / (self.blend_radius + np.sqrt(self.blend_radius**2 - chord**2))
         return np.asarray(np.where(distance < outer_blend, arc_drop, chamfer_drop))

@@ -53,8 +53,8 @@ class CaseContact:
     case: Case  # the case; a prescribed approach is replaced by the load
     cells: Cells  # origin of the cells
     contact: Contact  # the contact
-    tractions: FrictionalContact | None = None  # stick and slip; none in full sliding
-    values: xr.Dataset = field(default_factory=xr.Dataset)  # of refined columns with errors; empty on other cells
+    tractions: FrictionalContact | None = None  # tractions with stick and slip; None in full sliding
+    values: xr.Dataset = field(default_factory=xr.Dataset)  # values and errors of refined columns; empty on other cells
 
     @property
     def grid(self) -> Grid:
@@ -114,7 +114,7 @@ def contact_on_cells(case: Case, grid: Grid | None, roughness: xr.DataArray | No
     """Contact on given cells, or on uniform ones chosen for the case."""
     cells: Cells = "chosen" if grid is None else "given"
     if grid is None:
-        # At an approach the smooth roller determines the cells; the rough one carries another load.
+        # At an approach the load of the smooth roller determines the cells; a rough roller carries another load.
         loaded_case = (
             case if case.approach is None else contact_at_approach(case, COARSE_ACCURACY, COARSE_TOLERANCE).case
         )
@@ -164,7 +164,7 @@ def _check_contact(case: Case, contact: Contact) -> Contact:
 
 RESIDUAL_DEPTHS = (0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0)  # depths of `end_traction_residual`, over the Hertz half-width
 
-RESIDUAL_POSITIONS = (-1.1, -0.9, -0.5, 0.0, 0.5, 0.9, 1.1)  # along y, over the Hertz half-width
+RESIDUAL_POSITIONS = (-1.1, -0.9, -0.5, 0.0, 0.5, 0.9, 1.1)  # the residual's positions along y, over the half-width
 
 RESIDUAL_COVERS = (  # comment of `end_traction_residual`
     f"the largest at depths from {RESIDUAL_DEPTHS[0]} a to {RESIDUAL_DEPTHS[-1]} a and |y| up to "

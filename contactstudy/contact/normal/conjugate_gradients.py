@@ -1,8 +1,8 @@
 """Unilateral contact by preconditioned conjugate gradients, under prescribed resultants or a prescribed approach.
 
-The scheme of I. A. Polonsky and L. M. Keer, Wear 231 (1999) 206, with two changes that save most of its iterations:
+The scheme follows I. A. Polonsky and L. M. Keer, Wear 231 (1999) 206; two changes save most of the iterations:
 the descent direction is preconditioned by the inverse of the operator's spectrum, restricted to the contact (J. Zhao,
-E. A. H. Vollebregt, C. W. Oosterlee, Math. Comput. Sci. 9 (2015) 375, do the same for Hertz' problem), and the gap is
+E. A. H. Vollebregt, C. W. Oosterlee, Math. Comput. Sci. 9 (2015) 375, do so for Hertz' problem), and the gap is
 updated along the search direction while the contact area does not change. A safeguard limits each change of the contact
 area to the fraction that minimises the energy: many cells that enter at once may overshoot.
 """
@@ -18,17 +18,17 @@ from contactstudy.checks import BoolArray, FloatArray
 
 Operator = Callable[[FloatArray], FloatArray]
 
-ENTRY_OVERLAP = 0.1  # part of the tolerated violation from which on an overlapping cell enters the contact. Speed.
-MIN_ENTRY_PRESSURE = 1e-12  # least pressure, over the largest, of a cell that enters the contact: not 0. Speed.
+ENTRY_OVERLAP = 0.1  # overlap from which on a cell enters the contact, over the tolerated violation. Speed.
+MIN_ENTRY_PRESSURE = 1e-12  # least pressure of a cell that enters the contact, over the largest pressure. Speed.
 
-MIN_LINEAR_FACTOR = 0.1  # least of a linear factor that restores the moment, over its mean: its sign stays. Speed.
-ADDED_PRESSURE = 0.1  # pressure, over the largest, added everywhere if none lies on one side of the load. Speed.
-MAX_EXPONENT = 1e4  # largest slope of the exponential factor that restores the moment instead. Speed.
+MIN_LINEAR_FACTOR = 0.1  # least value of the linear factor in `restore`, over its constant: positive. Speed.
+ADDED_PRESSURE = 0.1  # pressure, over the largest, added to all cells if one side of the load has none. Speed.
+MAX_EXPONENT = 1e4  # largest slope of the exponential factor in `restore`. Speed.
 
 
 @dataclass(frozen=True, eq=False)
 class Resultants:
-    """Prescribed resultants of the pressure; the rigid motions are conjugate to them."""
+    """Prescribed resultants of the pressure, each conjugate to a rigid motion of the shape."""
 
     total: float | None  # sum over the cells, Pa, conjugate to the approach; None if the gap contains the approach
     lever: FloatArray | None = None
@@ -43,7 +43,7 @@ class Resultants:
         return [np.ones((1, 1))] if self.lever is None else [np.ones((1, 1)), self.lever]
 
     def restore(self, pressure: FloatArray) -> FloatArray:
-        """Return the pressure times a factor that gives it the resultants: linear in the arm, or exponential."""
+        """Scale the pressure to the prescribed resultants, by a factor that is linear or exponential in the arm."""
         if self.total is None:
             return pressure
         if self.lever is None:
@@ -61,7 +61,7 @@ class Resultants:
         return np.asarray(pressure * factor)
 
     def _exponential_factor(self, line: FloatArray, arm: FloatArray) -> FloatArray:
-        """Factor ``C exp(s arm)``, always positive; without pressure on both sides it restores the sum only."""
+        """Positive factor ``C exp(s arm)`` for both resultants; without pressure on both sides, for the sum alone."""
         assert self.total is not None
         loaded = line > 0
         line, lever = line[loaded], arm[loaded]
@@ -93,7 +93,7 @@ class ContactIterate:
 
     pressure: FloatArray  # (x, y): pressure, Pa, with the prescribed resultants
     motion: tuple[float, ...]  # the free rigid motions: approach, metres, and tilt about the point of application
-    applications: int  # applications of the operator
+    applications: int  # number of applications of the operator
     converged: bool  # whether the tolerance was reached
 
 
@@ -107,7 +107,7 @@ def solve_complementarity(
     tolerance: float,
     max_iterations: int,
 ) -> ContactIterate:
-    """Pressure ``p >= 0``, gap ``g = gap + operator(p) - motion >= 0``, ``p g = 0``, and prescribed resultants."""
+    """Solve for a pressure ``p >= 0`` with ``g = gap + operator(p) - motion >= 0``, ``p g = 0`` and the resultants."""
     state = _IterationState(operator, preconditioner, gap, resultants, start)
     converged = False
     for _ in range(max_iterations):
@@ -135,7 +135,7 @@ def solve_complementarity(
 
 
 class _IterationState:
-    """State of the iteration."""
+    """State of the iteration in `solve_complementarity`."""
 
     def __init__(
         self, operator: Operator, preconditioner: Operator, gap: FloatArray, resultants: Resultants, start: FloatArray
@@ -162,7 +162,7 @@ class _IterationState:
         return self._operator(pressure)
 
     def _scale_guess(self) -> None:
-        """Scale the guess: the work of the prescribed approach equals the work of the displacement."""
+        """Scale the guess so that the work of the prescribed approach equals the work of the displacement."""
         gap = self._gap
         work = -float((self.pressure * np.where(self._possible, gap, 0.0)).sum())
         if work <= 0:  # the guess lies outside the shape's overlap
@@ -172,7 +172,7 @@ class _IterationState:
         self.pressure, self.displacement = factor * self.pressure, factor * self.displacement
 
     def _balance_sides(self, pressure: FloatArray) -> FloatArray:
-        """Add a little pressure everywhere if all of it lies on one side of where the load acts."""
+        """Add a little pressure to every cell if all pressure lies on one side of the load's position."""
         lever = self._resultants.lever
         if lever is None:
             return pressure
@@ -182,7 +182,7 @@ class _IterationState:
         return pressure + np.where(self._possible, ADDED_PRESSURE * pressure.max(), 0.0)
 
     def compute_opening(self) -> FloatArray:
-        """Gap after the rigid motion that removes the resultants of the descent: the prescribed resultants stay."""
+        """Compute the gap after the rigid motion for which the descent keeps the prescribed resultants."""
         motions = self._motions
         if self.area_changed:
             self._weights = [
@@ -201,7 +201,7 @@ class _IterationState:
         return np.asarray(height - sum(terms, np.zeros((1, 1))))
 
     def search_step(self, residual: FloatArray) -> tuple[float, FloatArray, float]:
-        """Turn the direction; return the step, the displacement under the direction and the curvature."""
+        """Update the search direction; return the step, the displacement under the direction and the curvature."""
         descent = np.where(self.contact, self._preconditioner(residual), 0.0)
         if self.area_changed or self._slope == 0.0:
             direction = descent
@@ -222,13 +222,13 @@ class _IterationState:
         """Remove cells with negative pressure from the contact, and add cells that overlap."""
         trial[trial < 0] = 0.0
         if entering.any():
-            # As in Polonsky and Keer: overlapping points enter with the step along the gap itself.
+            # As in Polonsky and Keer, the pressure of an entering cell is a step along its overlap.
             scaled = self._preconditioner(np.where(entering, opening, 0.0))
             trial[entering] = np.maximum(-scaled[entering], MIN_ENTRY_PRESSURE * trial.max())
         trial = self._resultants.restore(self._balance_sides(trial))
         displacement = self._apply(trial)
         fraction = 1.0
-        # Cells leave the contact finitely often; cells that enter may overshoot.
+        # Only entering cells may overshoot; cells leave the contact finitely often.
         if entering.any():
             fraction = _descent_fraction(trial - self.pressure, displacement - self.displacement, opening)
         if fraction > 0:
@@ -242,7 +242,7 @@ class _IterationState:
         self.area_changed = True
 
     def _step_to_border(self, step: float, response: FloatArray) -> None:
-        """Follow the direction until the first cell leaves the contact: a descent that keeps the resultants."""
+        """Step along the search direction until the first cell leaves the contact; the resultants do not change."""
         change = -step * self.direction
         falling = self.contact & (change < 0)
         steps_to_zero = self.pressure[falling] / -change[falling]
@@ -253,7 +253,7 @@ class _IterationState:
 
 
 def _descent_fraction(change: FloatArray, displacement_change: FloatArray, opening: FloatArray) -> float:
-    """Fraction of a change of the pressure: 1, unless the energy increases; then the minimum of the parabola."""
+    """Fraction of a pressure change to apply: 1, or the minimum of the energy if the whole change raises the energy."""
     slope = -float((change * np.where(np.isfinite(opening), opening, 0.0)).sum())
     curvature = float((change * displacement_change).sum())
     if slope <= 0:

@@ -1,4 +1,4 @@
-"""A contact in arrays without labels: bodies, cells, gap and load; pressure and certificate."""
+"""Solve a contact in arrays without labels: from bodies, cells, gap and load to pressure and certificate."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ from contactstudy.kernels.load import Load
 from contactstudy.threads import one_blas_thread
 
 CONVERGED_TOLERANCES = 10.0  # largest violation of a converged contact over the tolerance: the last step is unchecked
-OPEN_TOLERANCES = 10.0  # least gap of `open_pressure_error`, over the tolerance and the displacement's variation
+OPEN_TOLERANCES = 10.0  # least gap that counts as open, over the tolerance times the displacement's variation
 MAX_ROUNDS = 20  # rounds after which a prescribed tilt or approach is not reached. Speed.
 INNER_TOLERANCE = 1e-3  # tolerance of the contact over the error of the motion of the reference lines. Speed.
 SYMMETRY_ROUNDING = 1e-10  # rounding of a symmetric gap over the largest, of symmetric edges over the window. Accuracy.
@@ -48,7 +48,7 @@ class Certificate:
     load_position_error: float  # distance of the resultant from `load_position`, over the length of the contact
 
     def holds(self, tolerance: float) -> bool:
-        """Whether every violation is within some tolerances of the iteration."""
+        """Whether every violation is within a multiple of the iteration's tolerance."""
         bound = CONVERGED_TOLERANCES * tolerance
         violations = (self.load_error, self.penetration_error, self.load_position_error, self.open_pressure_error)
         return all(abs(violation) <= bound for violation in violations)
@@ -64,7 +64,7 @@ def certify(
     position_error: float,
     tolerance: float,
 ) -> Certificate:
-    """Measure the violations."""
+    """Return the violations of the contact's conditions."""
     in_contact = pressure > 0
     variation = float(np.ptp(displacement))
     violation = max(float(np.abs(opening[in_contact]).max()), float(-opening.min()))  # eq. (34)
@@ -86,7 +86,7 @@ class Shape(NamedTuple):
     prescribed: PrescribedLoad  # load or approach
     counterbody: Counterbody | None = None  # second elastic body; None: the shape is rigid
     coupled_friction: float = 0.0  # friction that displaces the surfaces normally
-    surface: LinearOperator | None = None  # displacement of the surfaces under a pressure, in place of the body's
+    surface: LinearOperator | None = None  # from pressure to displacement of the surfaces; replaces the body's operator
 
     @property
     def directions(self) -> tuple[Load, ...]:
@@ -119,8 +119,8 @@ class Shape(NamedTuple):
         self, solve: SolveAtMotion, tolerance: float, start: FloatArray | None = None
     ) -> ReferencedContact:
         """Solve a contact whose approach or tilt is prescribed relative to the reference lines of the bodies."""
-        # The operator is symmetric only relative to the body far away: the motion of the lines enters the gap, by a
-        # fixed-point iteration with Aitken's relaxation.
+        # The operator is symmetric only relative to the body far away: a fixed-point iteration with Aitken's
+        # relaxation adds the motion of the reference lines to the gap.
         bodies = [self.body] if self.counterbody is None else [self.body, self.counterbody.body]
         finite = any(np.isfinite(body.depth) for body in bodies)
         fixed = (
@@ -151,7 +151,7 @@ class Shape(NamedTuple):
         return ReferencedContact(replace(iterate, applications=applications, converged=False), motions)
 
     def line_motions(self, loads: Mapping[Load, FloatArray], pressure: FloatArray) -> LineMotions:
-        """Motions of the reference lines under loads on the body, level below the resultant of a pressure."""
+        """Motions of the reference lines under loads on the body; `level` is taken below the pressure's resultant."""
         grid, counterbody = self.grid, self.counterbody
         forces = (grid.weights * pressure).sum(axis=1)
         position = float(forces @ grid.x / max(forces.sum(), np.finfo(float).tiny))
@@ -228,8 +228,8 @@ def contact_of(shape: Shape, settings: Settings, start: ArrayKey | None = None) 
     grid, clearance = shape.grid, shape.gap.values
     with one_blas_thread():
         iterate, motions = _iterate(shape, settings, start)
-        # The solution of a symmetric problem equals its image; so does the mean of an iterate and its image, and the
-        # fields of symmetric loads need half of the wavenumbers.
+        # The solution of a symmetric problem is symmetric: the mean of the iterate and its mirror image replaces the
+        # iterate. Fields of symmetric loads need half of the wavenumbers.
         pressure = iterate.pressure.copy()
         for axis in shape.reflections():
             pressure = 0.5 * (pressure + np.flip(pressure, axis))
@@ -274,7 +274,7 @@ def contact_of(shape: Shape, settings: Settings, start: ArrayKey | None = None) 
 
 
 def _position_error(prescribed: PrescribedLoad, grid: Grid, pressure: FloatArray) -> float:
-    """Distance of the resultant from its prescribed position, over the length of the contact."""
+    """Distance of the pressure's resultant from the prescribed position, over the length of the contact."""
     if prescribed.load_position is None:
         return 0.0
     line = (grid.weights * pressure).sum(axis=1)
@@ -286,7 +286,7 @@ def _position_error(prescribed: PrescribedLoad, grid: Grid, pressure: FloatArray
 
 @cached("contacts")
 def _iterate(shape: Shape, settings: Settings, first: ArrayKey | None) -> ReferencedContact:
-    """Pressure of a contact, and the motion of the reference lines."""
+    """Solve for the pressure of a contact and the motions of the reference lines."""
     grid, operator = shape.grid, contact_operator(shape)
 
     def solve(motion: RigidMotion, start: FloatArray | None, tolerance: float) -> ContactIterate:

@@ -29,7 +29,7 @@ class PrescribedLoad(NamedTuple):
     approach: float | None = None  # displacement of the shape from first touch, metres
 
     def check(self, gap: FloatArray, grid: Grid) -> PrescribedLoad:
-        """Return floats, or raise if the values contradict each other or the initial gap (x, y)."""
+        """Return the values as floats, or raise if they contradict each other or the initial gap (x, y)."""
         load, position, approach = self
         if (load is None) == (approach is None):
             raise InvalidInputError("load, approach", (load, approach), "exactly one of the two, the other None")
@@ -53,7 +53,7 @@ class PrescribedLoad(NamedTuple):
 
     @property
     def lowering(self) -> float:
-        """Displacement of the shape before the iteration, metres."""
+        """Prescribed displacement of the shape, metres; 0 under a prescribed load."""
         return 0.0 if self.approach is None else self.approach
 
     def resultants(self, grid: Grid) -> Resultants:
@@ -83,14 +83,14 @@ class RigidMotion(NamedTuple):
 class ReferenceLine(NamedTuple):
     """Normal displacement of a body's reference line under loads on columns."""
 
-    x: FloatArray  # (point): positions on the line, and weights of a quadrature along it, metres
+    x: FloatArray  # (point): positions on the line and weights of a quadrature along the line, metres
     weights: FloatArray
     influence: FloatArray  # (point, column, cell_y): displacement under a unit load, metres per Pa
 
 
 @cached("reference lines")
 def reference_line(body: Body, columns: Grid, load: Load) -> ReferenceLine:
-    """Line of a body, as smooth along x as the displacement of loads at its depth."""
+    """Return the reference line of a body, with the points that the smooth displacement at its depth needs."""
     low, high = np.clip(body.extent, *columns.x_range)
     x, weights = panel_nodes(np.array([low, high]), polynomial_count(0.5 * (high - low), body.depth))
     return ReferenceLine(x, weights, normal_influence(body, columns, load, x, body.depth))
@@ -98,8 +98,8 @@ def reference_line(body: Body, columns: Grid, load: Load) -> ReferenceLine:
 
 @cached("distant columns")
 def distant_columns(grid: Grid, depth: float) -> tuple[Grid, FloatArray]:
-    """Columns for the field of loads at a depth, and the matrix (column, cell) that moves loads onto them."""
-    # The field is a polynomial of x: the loads on both have the same moments.
+    """Few columns that replace the cells for fields at a depth, and the matrix (column, cell) of equivalent loads."""
+    # At the depth the field is a polynomial of x: equivalent loads on columns have the moments of the loads on cells.
     low, high = grid.x_range
     count = polynomial_count(0.5 * (high - low), depth)
     if count >= grid.cells_x:
@@ -130,7 +130,7 @@ def line_motion(body: Body, grid: Grid, loads: Mapping[Load, FloatArray], positi
 
 
 class LineMotions(NamedTuple):
-    """Motions of the reference lines: of the first body, and the sum over both bodies, each into its body."""
+    """Motions of the reference lines, each into its body: `body` of the first body, `total` the sum over both."""
 
     body: RigidMotion
     total: RigidMotion
@@ -144,4 +144,5 @@ class ReferencedContact(NamedTuple):
 
 
 SolveAtMotion = Callable[[RigidMotion, FloatArray | None, float], ContactIterate]
-"""Contact on a gap less a motion of the lines, from a first guess of the pressure, to a tolerance."""
+"""Function from a motion of the lines, a first guess of the pressure and a tolerance to the contact on the gap less
+the motion."""

@@ -1,4 +1,4 @@
-"""One contact to solve: its first guess from coarser cells, and its solution with or without coupled friction."""
+"""Problem of one contact, first guess from coarser cells, and solution with or without coupled friction."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from contactstudy.checks import FloatArray
 from contactstudy.contact.normal.conjugate_gradients import ContactIterate, Resultants, solve_complementarity
 from contactstudy.kernels.load import Load
 
-MAX_COUPLED_ROUNDS = 60  # rounds of a coupled contact after which the contact is not converged. Speed.
-ROUND_ACCURACY = 0.03  # part of a round's change to which the next one is solved. Speed.
+MAX_COUPLED_ROUNDS = 60  # largest number of rounds of a coupled contact. Speed.
+ROUND_ACCURACY = 0.03  # tolerance of a round over the change in the preceding round. Speed.
 COARSE_TOLERANCE = 1e-2  # tolerance of the first coupled round. Speed.
 NESTED_CELLS = 4096  # cells from which on the contact is first solved on coarser ones. Speed.
 COARSE_TOLERANCE = 1e-3  # tolerance of a solution that serves as a guess. Speed.
 
-GUESSED_CONTACT, GUESSED_DEPTH = 0.4, 1e-3  # cells below a first guess, and depth over the gap's range. Speed.
+GUESSED_CONTACT, GUESSED_DEPTH = 0.4, 1e-3  # part of the cells in a first guess, and depth over the gap's range. Speed.
 OPENING_POWER = 2 / 3  # power of the opening that is linear in the distance from a contact's edge. Speed.
 
 
@@ -75,7 +75,7 @@ class ContactProblem:
 
 
 def _initial_guess(operator: ContactOperator, problem: ContactProblem) -> FloatArray:
-    """Pressure at the start: the solution on coarser cells, or, on few cells, a pressure that follows the gap."""
+    """First guess of the pressure: the solution on coarser cells, or, on few cells, a pressure that follows the gap."""
     gap = problem.gap
     possible = np.isfinite(gap)
     if gap.size >= NESTED_CELLS and not any(cells % 2 for cells in problem.grid.shape):
@@ -107,8 +107,8 @@ def _remove_mean_slope(problem: ContactProblem) -> FloatArray:
 
 def _continue_square(operator: ContactOperator, problem: ContactProblem, iterate: ContactIterate) -> FloatArray:
     """Squared pressure, continued smoothly below zero outside the contact."""
-    # Near an edge the squared pressure and the opening to the power 2/3 are linear in the distance from it (Johnson,
-    # Contact Mechanics, section 5.1): interpolated to finer cells the zero puts the edge within a cell.
+    # Near an edge the squared pressure and the opening to the power 2/3 are linear in the distance from the edge
+    # (Johnson, Contact Mechanics, section 5.1): their zero on finer cells locates the edge within a cell.
     from scipy.ndimage import binary_dilation
 
     squared = iterate.pressure**2
@@ -144,7 +144,7 @@ def halve_cells(values: FloatArray, axis: int) -> FloatArray:
 
 
 def interpolate_columns(values: FloatArray, centres: FloatArray, x: FloatArray) -> FloatArray:
-    """Values (x, y) at other positions along x, linear between the centres and constant beyond them."""
+    """Values (x, y) at other positions along x, linear between the centres and constant beyond the outermost ones."""
     if centres.size == 1:
         return np.repeat(values, x.size, axis=0)
     right = np.clip(np.searchsorted(centres, x), 1, centres.size - 1)
@@ -153,8 +153,8 @@ def interpolate_columns(values: FloatArray, centres: FloatArray, x: FloatArray) 
 
 
 def solve_normal(operator: ContactOperator, problem: ContactProblem, start: FloatArray | None = None) -> ContactIterate:
-    """Contact without the displacement from friction."""
-    # The unknowns are forces on the cells, pressure times weight: conjugate to displacements in the plain product.
+    """Solve a contact without the displacement from friction."""
+    # The unknowns are pressures times the weights of the cells: their scalar product with displacements is a work.
     weights = problem.grid.weights
     guess = _initial_guess(operator, problem) if start is None else start
     iterate = solve_complementarity(
@@ -170,7 +170,7 @@ def solve_normal(operator: ContactOperator, problem: ContactProblem, start: Floa
 
 
 def solve_coupled(operator: ContactOperator, problem: ContactProblem) -> ContactIterate:
-    """Contact with the displacement from friction: the traction of one round shapes the gap of the next."""
+    """Solve a contact with the displacement from friction: the traction of one round changes the gap of the next."""
     # The rounds contract like ``f (1 - 2 nu) / (2 (1 - nu))``; each is solved only as far as the last change requires.
     tolerance = max(problem.tolerance, COARSE_TOLERANCE)
     iterate = solve_normal(operator, replace(problem, tolerance=tolerance))

@@ -20,7 +20,7 @@ from contactstudy.kernels.load import Load
 
 @dataclass(frozen=True, eq=False)
 class CellTransfer:
-    """Fractions of the cells of one body in the cells of the second: from loads on the first, displacements back."""
+    """Matrices of overlaps: `to_second` moves loads to the second body's cells, `to_first` moves displacements back."""
 
     to_second: FloatArray
     to_first: FloatArray
@@ -36,14 +36,14 @@ class CellTransfer:
 
 
 def _reverse_tangential(direction: Load, values: FloatArray) -> FloatArray:
-    """Reverse a tangential load or displacement: the second body has the opposite one."""
+    """Reverse a tangential load or displacement, which has the opposite sign on the second body."""
     return values if direction is Load.NORMAL else -values
 
 
 class PairOperator:
-    """Displacement of two bodies relative to each other, on the first one's grid: normal ones add, others subtract."""
+    """Relative displacement of two bodies on the first body's grid: normal parts add, tangential parts subtract."""
 
-    # Loads go to the second body's cells and its displacements back by the same overlaps: the sum is symmetric. A
+    # The same overlaps move loads to the second body's cells and displacements back: the sum is symmetric. A
     # traction acts on the second body in the opposite direction.
 
     def __init__(self, body: SurfaceOperator, counterbody: SurfaceOperator, transfer: CellTransfer | None) -> None:
@@ -94,7 +94,7 @@ class PairOperator:
     def _displacements_of_equal_bodies(
         self, loads: Mapping[Load, FloatArray], directions: Sequence[Load]
     ) -> dict[Load, FloatArray]:
-        """Relative displacements of equal bodies: tangential ones of a pressure, normal ones of tractions cancel."""
+        """Relative displacements of equal bodies: none tangentially under a pressure, none normally under tractions."""
         relative = {direction: np.zeros(self.body.grid.shape) for direction in directions}
         for is_normal in (True, False):
             acting = {load: cells for load, cells in loads.items() if (load is Load.NORMAL) == is_normal}
@@ -110,7 +110,7 @@ class PairOperator:
 
     @cached_property
     def coarse(self) -> PairOperator | ScaledOperator:
-        """Approximate operator on cells of twice the size; without pairs of cells the softened first body."""
+        """Approximate operator on cells of twice the size; if cells cannot be paired, a multiple of the first one."""
         if self.counterbody.grid.cells_x % 2:
             return ScaledOperator(self.body.coarse, self._softer)
         transfer = self._transfer and CellTransfer(
@@ -142,7 +142,7 @@ class ScaledOperator:
 
 @dataclass(frozen=True, eq=False)
 class PrescribedSurface:
-    """A user's operator of the surface; preconditioner and coarse cells are those of a body."""
+    """A user's operator of the surface, with the preconditioner and the coarse cells of a body."""
 
     operator: LinearOperator
     body: SurfaceOperator

@@ -40,7 +40,7 @@ class AxialShape:
     exponents: tuple[float, float] = (np.nan, np.nan)  # ``m`` of ``K d**-m`` at sharp ends; NaN without a law
     has_fading_end: bool = False
     """Whether the pressure falls towards a common end by a small power, which no columns resolve."""
-    corners: tuple[float, ...] = ()  # positions of convex corners, metres: edges of columns
+    corners: tuple[float, ...] = ()  # positions of convex corners, metres; columns have edges there
     nodes: FloatArray = field(default_factory=lambda: np.zeros(0))  # positions between which the shape is smooth, m
 
     @cached_property
@@ -49,12 +49,12 @@ class AxialShape:
         return self.height(self.nodes)
 
     def is_singular(self, side: int) -> bool:
-        """Whether a loaded end is singular."""
+        """Whether the pressure at an end is singular if the end is loaded."""
         return self.exponents[side] > 0
 
 
 def first_edges(shape: AxialShape) -> FloatArray:
-    """Columns that double from either end, halved where the shape bends."""
+    """Edges of the first columns: widths double from either end, and are halved where the shape bends."""
     length = shape.stop - shape.start
     width = min(FIRST_COLUMN * shape.half_width, length / (4 * MIN_COLUMNS))
     widths = [width]
@@ -68,7 +68,7 @@ def first_edges(shape: AxialShape) -> FloatArray:
     while True:
         heights = _heights(shape, edges)
         lowest = _min_heights(shape, edges, heights)
-        # Only where the shape is low enough for certain contact.
+        # Columns are split only where the shape is low enough for certain contact.
         is_marked = _leaves_chord(shape, edges, heights) & (lowest - lowest.min() < 3 * shape.depth)
         is_marked &= np.diff(edges) > MIN_CHORD_WIDTH * shape.half_width
         if not is_marked.any() or edges.size > MAX_COLUMNS:
@@ -78,14 +78,14 @@ def first_edges(shape: AxialShape) -> FloatArray:
 
 def _heights(shape: AxialShape, edges: FloatArray) -> FloatArray:
     """Heights of the shape at points along each column: array (column, point)."""
-    # Just inside: the shape may step at its ends.
+    # The outer points lie just inside the column: the shape may step at its ends.
     inside = np.clip(SAMPLE_POSITIONS, 1e-9, 1 - 1e-9)
     positions = edges[:-1, None] + np.diff(edges)[:, None] * inside
     return shape.height(positions.ravel()).reshape(positions.shape)
 
 
 def _leaves_chord(shape: AxialShape, edges: FloatArray, heights: FloatArray) -> BoolArray:
-    """Columns inside which the shape leaves its chord."""
+    """Mark columns inside which the shape leaves its chord."""
     rise = heights[:, -1] - heights[:, 0]
     deviations = np.abs(heights - heights[:, :1] - rise[:, None] * SAMPLE_POSITIONS).max(axis=1)
     if shape.nodes.size:
@@ -105,7 +105,7 @@ def _min_heights(shape: AxialShape, edges: FloatArray, heights: FloatArray) -> F
 
 
 def _with_edges(edges: FloatArray, corners: tuple[float, ...]) -> FloatArray:
-    """Edges with the corners among them; an edge closer to a corner than a quarter of its column moves there."""
+    """Add edges at the corners; an edge closer to a corner than a quarter of its column moves onto the corner."""
     for corner in corners:
         nearest = int(np.abs(edges - corner).argmin())
         is_inner = 0 < nearest < edges.size - 1
@@ -117,7 +117,7 @@ def _with_edges(edges: FloatArray, corners: tuple[float, ...]) -> FloatArray:
 
 
 def find_overlooked(shape: AxialShape, edges: FloatArray, loaded: BoolArray, opening: FloatArray) -> BoolArray:
-    """Columns inside which a solved contact misses details of the shape: a loaded shape off its chord, or a crest."""
+    """Mark columns in which a solved contact misses details of the shape: a bend under pressure, or an open crest."""
     # An open column is overlooked if the shape lies below the displaced surface, except next to a contact that ends
     # in the column.
     heights = _heights(shape, edges)

@@ -35,11 +35,11 @@ MAX_FIT_RATIO, NARROW_FACE_ERROR = 0.5, 0.08
 """Largest reach of the fit over the room beyond an end, and the additional error over K beyond this reach. Accuracy:
 measured as 5 % at 2.5 times the room, 0.8 % at 0.6."""
 
-STEP_ERROR = 3e-3  # error over the intensity from the pressure's steps. Accuracy: the residual of every fit.
+STEP_ERROR = 3e-3  # relative error of the intensity due to steps of the pressure. Accuracy: the residual of every fit.
 
 ELASTIC_ERROR_FACTOR = 1.5
 """Error of the intensity of an elastic end over its change when both limits of the fit double. Accuracy: unlike a rigid
-end its next power is not a whole number."""
+end the next power of the distance is not a whole number."""
 
 EDGE_FACTOR = 1.0734  # factor of the peak at an edge of small radius, computed for a half-space
 
@@ -56,15 +56,15 @@ class EndLaw:
     """Law of the pressure at a singular end."""
 
     kind: str  # "power" or "logarithm"
-    exponent: float  # ``m`` of ``p = K d**-m``: of theory or fitted, before the fit NaN; 0 for a logarithm
+    exponent: float  # ``m`` of ``p = K d**-m`` from theory or a fit; NaN before the fit, 0 for a logarithm
     intensity: float = np.nan  # ``K`` and its estimated error, Pa m**m; NaN for a logarithm
     intensity_error: float = np.nan
     fitted: bool = False  # whether the exponent is fitted
 
     def with_intensity(self, edges: FloatArray, pressure: FloatArray, face_beyond: float) -> EndLaw:
         """Law with the intensity fitted to the pressure (column, y) at distances much smaller than `face_beyond`."""
-        # A lifted end has the intensity 0, a contact too narrow for a fit that of the outermost column, with infinite
-        # errors.
+        # The intensity of a lifted end is 0; on too few columns for a fit it follows from the outermost column. Both
+        # have infinite errors.
         if self.kind != "power":
             return self
         # Friction moves the contact along y, by different distances at the ends.
@@ -128,7 +128,7 @@ def law_of(samples: list[Sample], exponent: float) -> EndLaw | None:
 
 
 def _fit(edges: FloatArray, row: FloatArray, width: float, exponent: float) -> tuple[float, float]:
-    """Least-squares K of the columns' means of ``K d**-m (1 + c d)``, relative to each, and the residual."""
+    """Fit ``K d**-m (1 + c d)`` to the columns' means by relative least squares; return K and the residual."""
     low, high = edges[:-1], edges[1:]
     in_range = (low >= 0.999 * FIT_START * width) & (high <= 1.001 * FIT_STOP * width) & (row > 0)
     low, high, values = low[in_range], high[in_range], row[in_range]
@@ -175,7 +175,7 @@ def edge_peak(intensity: float, modulus: float, edge_radius: float) -> float:
     return float(EDGE_FACTOR * (k**2 * modulus / radius) ** (1 / 3))  # eq. (42)
 
 
-CORNER_FIT_START, CORNER_FIT_STOP = 2.0, 32.0  # distances over the column at a corner where d0 is fitted. Accuracy.
+CORNER_FIT_START, CORNER_FIT_STOP = 2.0, 32.0  # range of the fit of d0, over the corner's column. Accuracy.
 MAX_BLEND_WIDTH = 0.1  # width b of a blend over d0 up to which its peak follows from the law. Accuracy: 1 % at 0.1.
 
 
@@ -188,7 +188,7 @@ class CornerLaw:
     intensity: float  # ``E* s / (2 pi)``, Pa
     distance: float = np.nan  # ``d0`` and its estimated error, metres; NaN where the contact ends at the corner
     distance_error: float = np.nan
-    end: EndLaw | None = None  # law where the contact ends at the corner: too steep a chamfer has no contact
+    end: EndLaw | None = None  # law if the contact ends at the corner, because the chamfer is too steep for contact
 
 
 def corner_law(
@@ -220,7 +220,7 @@ def corner_law(
 
 
 def _log_distance(edges: FloatArray, row: FloatArray, width: float, intensity: float) -> float:
-    """Logarithm of d0 on one side: the value at distance 0 of the line fitted to those of the columns."""
+    """Logarithm of d0 on one side: the value at distance 0 of a line fitted to the values of the columns."""
     low, high = edges[:-1], edges[1:]
     in_range = (low >= 0.999 * CORNER_FIT_START * width) & (high <= 1.001 * CORNER_FIT_STOP * width) & (row > 0)
     low, high, row = low[in_range], high[in_range], row[in_range]
@@ -275,7 +275,7 @@ Laws = tuple[EndLaw | None, EndLaw | None]
 def extrapolate_end_pressures(
     edges: FloatArray, pressure: FloatArray, laws: Sequence[EndLaw | None]
 ) -> tuple[Pair, Pair, float]:
-    """Peak of either half, pressure at either end, and relative increase of the peak by the parabola along y."""
+    """Return each half's peak, each end's pressure, and the relative increase of the peak by a parabola along y."""
     line = section_maxima(pressure)
     lateral_excess = float(line.max() / pressure.max()) - 1
     half = 0.5 * (edges[-1] - edges[0])
@@ -303,7 +303,7 @@ def end_loads(edges: FloatArray, pressure: FloatArray, half_width: float) -> Pai
 
 
 def count_from_end(side: int, edges: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Distances of the edges from an end of the shape, and the values counted from there."""
+    """Distances of the edges from an end of the shape, and the values in the order from this end."""
     return (edges - edges[0], values) if side == 0 else (edges[-1] - edges[::-1], values[::-1])
 
 

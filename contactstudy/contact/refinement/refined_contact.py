@@ -34,17 +34,17 @@ from contactstudy.kernels.load import Load
 from contactstudy.profiles.base import as_shape
 from contactstudy.threads import one_blas_thread
 
-WINDOWS = (2.0, 3.0, 5.0, 8.0, 12.0)  # Half-widths of the window over that of the Hertz contact, tried in turn. Speed.
+WINDOWS = (2.0, 3.0, 5.0, 8.0, 12.0)  # Half-widths of the window over the Hertz half-width, tried in turn. Speed.
 
 WINDOW_FACTOR, WINDOW_FACTOR_COUPLED, WINDOW_FACTOR_ROLLING = 1.1, 1.4, 1.5
 """Least window over the extent of the contact along y: in full sliding, with coupled friction, with stick and slip,
-which also solve the contact on half of the cells and depend on two cells ahead. Speed."""
+whose tractions are also solved on half of the cells and depend on two cells ahead. Speed."""
 
 WINDOW_STEP = 2 ** (1 / 6)  # ratio of consecutive windows: similar cases share the kernels of the ends. Speed.
 SMALL_SLOPE = 0.1  # slope of a corner up to which strains are small
 
 CELLS_Y, COARSE_CELLS_Y = (32, 64, 128, 256), 16
-"""Numbers of cells along y: the first sufficient one, and the number of the first contact. Accuracy."""
+"""Numbers of cells along y, of which the first sufficient one is used; and the first contact's number. Accuracy."""
 
 MAX_CORNER_JUMP = 0.2
 """Jump of the slope of measured points times E*, over the peak, above which the peak is unbounded. Accuracy: the
@@ -53,8 +53,8 @@ pressure at the corner grows by 3 % with each halving of its width."""
 DATA_ERROR = 1.5  # error over the difference of two interpolations of measured points. Accuracy.
 
 PEAK_ERROR_FACTOR, ACCURACY_FRACTION_Y = 0.7, 0.25
-"""Part of the peak between its cells along y times the square of their number across the contact, and the share of the
-accuracy for this part. Accuracy."""
+"""Relative increase of the peak between cells along y, times the squared number of cells across the contact; and the
+share of the accuracy for this increase. Accuracy."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,14 +69,14 @@ class RefinedContact:
 def refine_contact(case: Case, accuracy: float, tolerance: float) -> RefinedContact:
     """Contact of a case, on columns that are refined to an accuracy of peak and end pressures."""
     if not isinstance(case.motion, Sliding):
-        # No creepage or shift changes the columns.
+        # The columns do not depend on creepages or shifts.
         case = replace(case, friction=0.0, motion=Rolling())
     refine = _cached_contact if _is_immutable(case) else _refine_contact
     return refine(case if case.coupled else replace(case, friction=0.0), accuracy, tolerance)
 
 
 def _is_immutable(value: object) -> bool:
-    """Whether a part of a case is compared by constant values: profiles of users may be mutable."""
+    """Whether no value of a part of a case can change: users' profiles may be mutable."""
     if is_dataclass(value):
         frozen = bool(getattr(type(value), "__dataclass_params__").frozen)  # noqa: B009 - mypy does not know it
         return frozen and all(_is_immutable(getattr(value, field.name)) for field in fields(value))
@@ -144,7 +144,7 @@ def _strongest_corner(case: Case, refined: RefinedColumns) -> CornerLaw | None:
 
 
 def _add_data_error(solver: _ColumnSolver, refined: RefinedColumns, shape: AxialShape) -> RefinedColumns:
-    """Add the error of measured points, the change under their second interpolation; infinite at unresolved corners."""
+    """Add the error due to measured points: the change under a second interpolation, infinite at unresolved corners."""
     case = solver.case
     other_profile = as_shape(case.roller.profile).second_interpolation()
     if other_profile is None:
@@ -168,13 +168,13 @@ def _add_data_error(solver: _ColumnSolver, refined: RefinedColumns, shape: Axial
 
 
 def _cell_number_y(fraction: float, accuracy: float) -> int:
-    """Least number of cells along y that resolve a peak; the contact covers a `fraction` of the window there."""
+    """Least number of cells along y that resolve a peak, where the contact covers a `fraction` of the window."""
     needed = np.sqrt(PEAK_ERROR_FACTOR / (ACCURACY_FRACTION_Y * accuracy)) / fraction
     return next((cells for cells in CELLS_Y if cells >= needed), CELLS_Y[-1])
 
 
 def refined_values(refined_contact: RefinedContact) -> xr.Dataset:
-    """Labelled values with their errors; at a singular end the law instead of the pressure."""
+    """Label the values and their errors; a singular end has the values of its law instead of a pressure."""
     refined, corner = refined_contact.refined, refined_contact.corner
     values = {"peak_pressure": refined.peak, "peak_pressure_error": refined.peak_error}
     dy = refined_contact.contact.shape.grid.dy
@@ -206,7 +206,7 @@ def refined_values(refined_contact: RefinedContact) -> xr.Dataset:
 
 
 def _law_values(law: EndLaw | None, end: str = "") -> dict[str, float]:
-    """Exponent and intensity of a law by their names in results, for an `end` or the sharper one."""
+    """Exponent and intensity of a law by name in results; `end` is the suffix of the names, "" for the sharper end."""
     if law is None:
         return {}
     intensity = f"end_intensity{end}"
@@ -216,7 +216,7 @@ def _law_values(law: EndLaw | None, end: str = "") -> dict[str, float]:
 def contact_shape(
     case: Case, grid: Grid, prescribed: PrescribedLoad | None = None, gap: FloatArray | None = None
 ) -> Shape:
-    """Contact of a case to solve on cells; default: the load or approach, and the gap, of the case."""
+    """Contact of a case to solve on cells; `prescribed` and `gap` default to the values of the case."""
     gap = case.gap(grid) if gap is None else gap
     if prescribed is None and case.approach is not None:
         prescribed = PrescribedLoad(approach=case.approach)
@@ -245,11 +245,11 @@ class _ColumnSolver:
         return graded_grid(self.case, edges, (-self.half_window, self.half_window), self.cells_y)
 
     def shape(self, edges: FloatArray) -> Shape:
-        """Contact to solve."""
+        """Contact to solve on the columns between `edges`."""
         return contact_shape(self.case, self.grid(edges))
 
     def __call__(self, edges: FloatArray, start: FloatArray | None, tolerance: float) -> ColumnPressure:
-        """Contact without coupled friction, which changes the pressure by a few percent and no columns."""
+        """Solve without coupled friction, which changes the pressure by a few percent but not the columns."""
         shape = self.shape(edges)._replace(coupled_friction=0.0)
         grid = shape.grid
         gap = shape.gap.values
@@ -295,7 +295,7 @@ def _end_exponent(case: Case, distance: float, rounding: float) -> float:
     roller_has_ends = isinstance(roller, BodyWithFreeEnds)
     if distance > rounding:
         return elastic_exponent(of_roller if roller_has_ends else 0.0, of_body)
-    # The body's own edge is pressed where the roller overhangs, or is a half-space.
+    # The body's own edge is pressed if the roller overhangs, or is a half-space.
     is_loaded = of_roller > 0 and (distance < -rounding or not roller_has_ends)
     return elastic_exponent(of_body, of_roller) if is_loaded and getattr(body, "model", "") == "exact" else np.nan
 
@@ -309,6 +309,7 @@ def _axial_shape(case: Case) -> AxialShape:
     distances = case.roller_start - low, high - (case.roller_start + case.roller.length)
     beyond = [distance if distance > rounding else 0.0 for distance in distances]
     corners = case.slope_jumps
+    # The factor on images in the body differs from the factor on images in the roller.
     has_fading_end = (
         isinstance(body, BodyWithFreeEnds) and body.model == "mirror-factor" and case.roller.body is not None
     )
@@ -321,7 +322,6 @@ def _axial_shape(case: Case) -> AxialShape:
         height=case.gap_on_axis,
         face_beyond=(beyond[0], beyond[1]),
         exponents=(_end_exponent(case, distances[0], rounding), _end_exponent(case, distances[1], rounding)),
-        # The factor of the body's image is not that of the roller's.
         corners=tuple(corners.positions[corners.jumps > 0].tolist()) if is_resolved else (),
         nodes=case.nodes,
         has_fading_end=has_fading_end,
@@ -329,11 +329,11 @@ def _axial_shape(case: Case) -> AxialShape:
 
 
 LOAD_POWER, LOAD_POWER_RANGE = 1.2, (1.0, 2.0)
-"""Exponent of the load as a power of the depth from first touch: the first one, and its bounds. A line contact has
+"""Exponent of the load as a power of the depth from first touch: first guess, and bounds. A line contact has
 10/9, a point contact 3/2. Speed."""
 
 MAX_EXCESS_DEPTH, MAX_MISSING_DEPTH, MAX_CORRECTIONS = 0.05, 0.005, 12
-"""Parts of the depth by which a contact may be deeper or shallower than the approach with the same columns and window,
+"""Parts of the prescribed depth by which a contact may be too deep or too shallow for its columns and window to serve,
 and the largest number of corrections of the load. Speed."""
 
 LOAD_EXCESS = 1.02  # factor on a corrected load: the window of a shallower contact is too narrow. Speed.
@@ -341,13 +341,13 @@ LOAD_EXCESS = 1.02  # factor on a corrected load: the window of a shallower cont
 COARSE_ACCURACY, COARSE_TOLERANCE = 0.1, 1e-4  # accuracy and tolerance of contacts that determine a load. Speed.
 WINDOW_FACTOR_COARSE = 1.5  # factor on the window for half as many cells along y. Speed.
 
-SLICES, SLICE_WIDTH = 200, 0.3  # slices of a first load; their half-width over that of the undeformed overlap. Speed.
+SLICES, SLICE_WIDTH = 200, 0.3  # slices for a first load; a slice's half-width over the undeformed overlap's. Speed.
 
 
 class ApproachContact(NamedTuple):
     """A contact at an approach."""
 
-    case: Case  # the case under the load of the approach
+    case: Case  # the case with the load that causes the approach
     refined: RefinedContact  # the contact
 
 
@@ -380,7 +380,7 @@ def search_load(case: Case, approach: float, load: float, accuracy: float, toler
 
 
 def approach_load_error(contact: ApproachContact) -> float:
-    """Error of the load of an approach, N: its changes on coarser columns and half the cells along y, without ends."""
+    """Error of the load at a prescribed approach, N: changes on coarser columns and fewer cells, with mirrored ends."""
     refined, grid = contact.refined.refined, contact.refined.contact.shape.grid
     case = _with_mirrored_ends(contact.case)
     window = WINDOW_FACTOR_COARSE * grid.y_range[0], WINDOW_FACTOR_COARSE * grid.y_range[1]

@@ -24,11 +24,11 @@ from contactstudy.contact.rolling.tractions import FrictionRequest
 
 COLUMN_ERROR_FACTOR = 0.5
 """Error of the columns, over the least error of the pressure; relative to full sliding's force and moment, and to work
-and creepages themselves. Accuracy: without it one in ten of these errors was too small."""
+and creepages themselves. Accuracy: without this error one in ten of the stated errors was too small."""
 
 MAX_COARSE_STEPS = 60
 """Bound on the Newton steps on half of the cells along y, whose tractions are a guess. Speed: in a few shifts the
-active sets cycle there, and converge on finer cells."""
+active sets cycle on these cells, and converge on finer cells."""
 
 
 class RefinedTractions(NamedTuple):
@@ -40,7 +40,7 @@ class RefinedTractions(NamedTuple):
     accurate: bool  # whether the last changes were within the accuracy
 
     def error_dataset(self) -> xr.Dataset:
-        """Labelled errors."""
+        """Label the errors."""
         result = xr.Dataset({f"{name}_error": error for name, error in self.errors.items()})
         units = self.contact.dataset()["friction_work"].attrs["units"]
         result["friction_work_error"].attrs["units"] = units
@@ -54,7 +54,7 @@ def refine_tractions(case: Case, normal: RefinedContact, accuracy: float) -> Ref
     """Tractions of a case on the columns of its normal contact."""
     rows = normal.contact.shape.grid.cells_y
     previous = _contact_on_rows(case, normal, rows // 2, None)
-    # FASTSIM's error is that of its model: its strips do not become accurate on finer cells.
+    # FASTSIM's error is due to its model: its strips do not become accurate on finer cells.
     max_rows = rows if isinstance(case.motion, Rolling) and case.motion.model == "fastsim" else CELLS_Y[-1]
     while True:
         contact = _contact_on_rows(case, normal, rows, previous)
@@ -64,7 +64,7 @@ def refine_tractions(case: Case, normal: RefinedContact, accuracy: float) -> Ref
         if accurate or rows >= max_rows:
             break
         rows, previous = 2 * rows, contact
-    # Forces and moments may be small differences of large ones; work and rigid motions are not.
+    # A force or a moment may be a small difference of large parts; work and rigid motions are not.
     sizes = [
         size if name in RESULTANTS.values() else min(size, abs(float(value)))
         for (name, size), value in zip(scales.items(), _values(contact), strict=True)
@@ -81,7 +81,7 @@ def refine_tractions(case: Case, normal: RefinedContact, accuracy: float) -> Ref
 def _contact_on_rows(
     case: Case, normal: RefinedContact, rows: int, coarse_contact: FrictionalContact | None
 ) -> FrictionalContact:
-    """Contact on the columns with a number of cells along y, from a contact on half as many."""
+    """Contact on the refined columns with `rows` cells along y, with `coarse_contact`, on half as many, as a guess."""
     assert isinstance(case.motion, Shift | Rolling)
     contact = normal.contact
     grid = contact.shape.grid
@@ -99,15 +99,15 @@ def _contact_on_rows(
 
 
 def _values(contact: FrictionalContact) -> FloatArray:
-    """Values to refine, in the order of `_scales`."""
+    """Values whose changes end the refinement, in the order of `_scales`."""
     tractions = contact.tractions
     return np.array([*tractions.resultants.values(), tractions.work, *tractions.rigid.values()])
 
 
 def _scales(case: Case, contact: FrictionalContact) -> dict[str, float]:
-    """Scales of the accuracy of each value, by its name in results."""
-    # Forces and moment: full sliding's. Creepages ``f a / R`` (Johnson, Contact Mechanics (1985), 8.45) and shifts ``f
-    # a**2 / R``, or their size if it is larger.
+    """Scale of the accuracy of each value, by name in results."""
+    # Forces and moment have the scale of full sliding. Creepages have ``f a / R`` (Johnson, Contact Mechanics (1985),
+    # 8.45) and shifts ``f a**2 / R``, or their own size if larger.
     pressure, grid = contact.contact.pressure, contact.contact.shape.grid
     loads = case.friction_on(grid.x) * pressure * grid.weights * grid.cell_area
     arms = np.hypot((grid.x - case.roller_middle)[:, None], grid.y)

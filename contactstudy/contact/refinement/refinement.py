@@ -30,18 +30,18 @@ from contactstudy.contact.refinement.laws import (
 )
 
 JUMP_POWERS = (2.0, 16.0)  # powers of the pressure whose jumps are marked. Accuracy.
-MIN_HALF_PRESSURE = 0.1  # least pressure of a half, over the largest, as a scale of its jumps. Accuracy.
+MIN_HALF_PRESSURE = 0.1  # least scale of the jumps in a half, over the largest pressure. Accuracy.
 
 
 def pressure_jumps(edges: FloatArray, pressure: FloatArray) -> FloatArray:
-    """Per column: largest step of the pressure's powers to a neighbour, over the peak of its half or its own crest."""
+    """For each column, the largest step of powers of the pressure to a neighbour, over the half's peak or own crest."""
     jumps = [_jumps(edges, pressure, power) for power in JUMP_POWERS]
     return np.asarray(np.max([*jumps, _crest_jumps(pressure)], axis=0))
 
 
 def _crest_jumps(pressure: FloatArray) -> FloatArray:
-    """Per column with a pressure above both neighbours: the larger step of its square, over this square."""
-    # A narrow crest beside a contact's end may be lower than the peak of its half, by which jumps are measured.
+    """Per column with a pressure above both neighbours, the larger step of the squared pressure, over the square."""
+    # A narrow crest beside a contact's end may be lower than the peak of its half, the scale of the other jumps.
     maxima = pressure.max(axis=1)
     inner, lower = maxima[1:-1], np.minimum(maxima[:-2], maxima[2:])
     is_crest = (inner > maxima[:-2]) & (inner > maxima[2:]) & (inner > MIN_HALF_PRESSURE * maxima.max())
@@ -51,7 +51,7 @@ def _crest_jumps(pressure: FloatArray) -> FloatArray:
 
 
 def _jumps(edges: FloatArray, pressure: FloatArray, power: float) -> FloatArray:
-    """Per column: largest step of a power of the pressure to a neighbour, over its largest in the same half."""
+    """For each column, the largest step of a power of the pressure to a neighbour, over the half's largest power."""
     first_half = centres_of(edges) < 0.5 * (edges[0] + edges[-1])
     reference = np.where(first_half, pressure[first_half].max(), pressure[~first_half].max())
     reference = np.maximum(reference, MIN_HALF_PRESSURE * pressure.max())
@@ -62,14 +62,14 @@ def _jumps(edges: FloatArray, pressure: FloatArray, power: float) -> FloatArray:
 LOGGER = logging.getLogger(__name__)
 
 FIRST_THETA, THETA_RATIO, MAX_THETA = 0.5, 0.7, 0.26
-"""Threshold of the jumps at first, its reduction, and the largest at which the refinement may end. Accuracy."""
+"""First threshold of the jumps, factor of its reduction, and largest threshold of a final result. Accuracy."""
 
-SECOND_THETA = THETA_RATIO * FIRST_THETA  # threshold to which columns are refined roughly. Speed.
+SECOND_THETA = THETA_RATIO * FIRST_THETA  # threshold of the jumps in a rough contact. Speed.
 
 THETA_PER_ERROR = 50.0
-"""Threshold over the least error that is stated with it. Accuracy: at 100 it covered 96 to 99 % of the ends."""
+"""Threshold over the least stated error. Accuracy: at a ratio of 100 the error covered 96 to 99 % of the ends."""
 
-END_STEP_WEIGHT = 4.0  # weight of the step between a loaded end and the line through its two columns. Accuracy.
+END_STEP_WEIGHT = 4.0  # weight of the step from the outermost column to a loaded end, extrapolated linearly. Accuracy.
 
 EDGE_COLUMN_WIDTH = 0.25
 """Width over the half-width of the columns within one half-width of the contact's ends along x. Accuracy."""
@@ -77,7 +77,7 @@ EDGE_COLUMN_WIDTH = 0.25
 END_COLUMN_WIDTH = 0.012  # width over the half-width of the outermost column at a pressed end of the body. Accuracy.
 
 MIN_END_COLUMN, MIN_COLUMN = 2e-3, 2e-4
-"""Widths over the half-width down to which a sharp end is followed, and a column is split at all. Accuracy."""
+"""Least widths over the half-width, of the outermost column at a sharp end and of any column. Accuracy."""
 
 CORNER_GROWTH = 0.25  # width of the columns next to a convex corner, over the distance to it. Accuracy.
 LEVEL_TOLERANCE = 1e-2  # tolerance of the contact between two splittings. Speed.
@@ -89,16 +89,16 @@ class ColumnPressure(NamedTuple):
 
     pressure: FloatArray  # (column, y): pressure, Pa
     opening: Callable[[], FloatArray]
-    """Least gap of each column under load, metres: array (column). It takes one more application of the operator."""
+    """Least gap of each column under load, metres: array (column). Each call applies the operator once."""
 
 
 Solve = Callable[[FloatArray, FloatArray | None, float], ColumnPressure]
-"""From edges, a first guess of the pressure (or none) and a tolerance to the contact."""
+"""Function from edges, a first guess of the pressure (or None) and a tolerance to the contact on the columns."""
 
 
 ValuePairs = Mapping[str, Sequence[float]]
 """Values of the first and the last half or end, by their names in results: the largest pressure of a half, the pressure
-at an end and the load on its last half-width, the load over the width of a cell along y."""
+at an end, and the load on the last half-width at an end, over the width of a cell along y."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -107,9 +107,9 @@ class RefinedColumns:
 
     edges: FloatArray  # edges of the columns, metres
     pressure: FloatArray  # (column, y): pressure, Pa
-    values: ValuePairs  # pressures infinite at a singular end, 0 where it is not pressed
-    errors: ValuePairs  # their estimated errors
-    laws: Laws  # law of a singular end
+    values: ValuePairs  # values by name; a pressure is infinite at a singular end, 0 at an end without contact
+    errors: ValuePairs  # estimated errors of the values
+    laws: Laws  # law of each singular end
     accurate: bool  # whether every error that is stated is within the accuracy
     first_edges: FloatArray  # edges of the columns of the first threshold, metres
     least_error: float  # least error that is stated on these columns, over the value
@@ -127,7 +127,7 @@ class RefinedColumns:
 
 
 def coarse_columns(solve: Solve, shape: AxialShape) -> Refinement:
-    """First columns, with a peak to some percent."""
+    """Refine the first columns until the peak is accurate to some percent."""
     refinement = Refinement(solve=solve, shape=shape, edges=first_edges(shape))
     for theta in (FIRST_THETA, SECOND_THETA):
         refinement.refine(theta)
@@ -168,7 +168,7 @@ class Refinement:
 
     @property
     def singular(self) -> bool:
-        """Whether an end has a law, or will have one: a sharp one that is pressed."""
+        """Whether an end has a law, or will have a law because it is sharp and pressed."""
         return any(self.laws) or any(self.shape.is_singular(side) and self.pressure[-side].any() for side in (0, 1))
 
     def refine(self, theta: float) -> None:
@@ -194,7 +194,7 @@ class Refinement:
         self._record_samples()
 
     def _record_samples(self) -> None:
-        """Record the outermost columns after each splitting, and determine their law."""
+        """Record the pressures of the outermost columns after a splitting, and determine the laws of the ends."""
         for side, samples in enumerate(self.samples):
             edges, pressure = count_from_end(side, self.edges, self.pressure)
             width = float(edges[1])
@@ -204,7 +204,7 @@ class Refinement:
                     self.laws[side] = law_of(samples, self.shape.exponents[side])
 
     def _select_columns_to_split(self, theta: float) -> BoolArray:
-        """Columns to split."""
+        """Mark the columns to split at the threshold `theta`."""
         edges, pressure, a = self.edges, self.pressure, self.shape.half_width
         widths, largest = np.diff(edges), pressure.max()
         jumps = pressure_jumps(edges, pressure)
@@ -240,17 +240,17 @@ class Refinement:
         return pressure
 
     def record_values(self) -> None:
-        """Record the values of either half and end."""
+        """Record the values of both halves and ends."""
         values, self.lateral_excess = evaluate_pairs(self.edges, self.pressure, self.shape, self.laws)
         self.history.append(values)
 
     def result(self, theta: float, accuracy: float) -> RefinedColumns:
-        """Values with their errors."""
+        """Columns of the refinement, with values and errors."""
         values = self.history[-1]
         finite_peaks = [value for value in values["peak_pressure"] if 0 < value < np.inf]  # a half may have no contact
         scale = max(finite_peaks, default=float(self.pressure.max()))
         floor = scale * (theta / THETA_PER_ERROR + self.lateral_excess)
-        # Over a half-width under the mean load per length.
+        # The scale of `end_load` is the mean load per length times a half-width.
         length = float(self.edges[-1] - self.edges[0])
         end_load = float(self.pressure.sum(axis=1) @ np.diff(self.edges)) * min(1.0, self.shape.half_width / length)
         floors = {"peak_pressure": floor, "end_pressure": floor, "end_load": end_load * floor / scale}
@@ -283,8 +283,8 @@ class Refinement:
 
 
 def replace_pressure(refined: RefinedColumns, pressure: FloatArray, shape: AxialShape) -> RefinedColumns:
-    """Return the values of another pressure on the same columns, which the coupled friction has changed a little."""
-    # The errors grow with the peak. The pressure of an end that only friction presses is its error.
+    """Return the same columns with another pressure, which coupled friction has changed a little, and its values."""
+    # The errors grow with the peak. At an end that only friction presses, the pressure itself is the error.
     values, _ = evaluate_pairs(refined.edges, pressure, shape, refined.laws)
     largest = max(values["peak_pressure"])
     factor = largest / refined.peak if np.isfinite(largest) else float(pressure.max() / refined.pressure.max())

@@ -24,11 +24,11 @@ from contactstudy.checks import BoolArray, FloatArray
 
 Operator = Callable[[FloatArray], FloatArray]
 
-GUESS_TOLERANCE = 1e-6  # part of the bound by which the traction of a slipping cell of a guess may miss it. Speed.
+GUESS_TOLERANCE = 1e-6  # distance from the bound, over the bound, within which a cell of a guess slips. Speed.
 DESCENT_INTERVAL = 15  # Newton steps without convergence after which a descent of the energy gives a new start. Speed.
 
 MAX_DIRECT_STEPS = 40  # Newton steps without convergence after which resultants are raised by steps. Speed.
-MIN_CONTINUATION_STEP = 1e-3  # least of these steps over the whole way. Speed.
+MIN_CONTINUATION_STEP = 1e-3  # least step of the resultants over the prescribed resultants. Speed.
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -42,7 +42,7 @@ class CoulombProblem:
     modes: FloatArray  # (mode, 2, cell): rigid slips of unknown amplitude
     resultant_weights: FloatArray  # (mode, 2, cell): weights of the tractions in the resultant of each mode
     resultants: FloatArray  # (mode): prescribed resultants
-    relative_areas: FloatArray  # (cell): areas over their mean: the linear systems are symmetric, their residual a mean
+    relative_areas: FloatArray  # (cell): areas over their mean, weights that make the linear systems symmetric
     tolerance: float = 1e-6  # violation, over the largest bound and rigid slip, at which the iteration stops
     max_steps: int = 40  # bound on the Newton steps
     symmetric: bool = False  # whether B is symmetric, so that the tractions minimise an energy
@@ -73,7 +73,7 @@ class CoulombSolution:
 
 
 class Guess(NamedTuple):
-    """Start of the iteration: tractions (2, cell), slipping on their bound, and amplitudes (mode) of rigid slips."""
+    """Start of the iteration: tractions (2, cell), the bound where cells slip, and amplitudes (mode) of rigid slips."""
 
     traction: FloatArray
     amplitudes: FloatArray
@@ -83,7 +83,7 @@ def law_violation(
     traction: FloatArray, slip: FloatArray, bound: FloatArray, sticks: BoolArray, scale: float
 ) -> tuple[float, float]:
     """Violations of law (43): of the bound, over the largest bound, and of the slip, over `scale`."""
-    # A sticking cell violates the law by its slip, a slipping cell by the components across and against the traction.
+    # A sticking cell violates the law by its slip, a slipping cell by the slip across and against its traction.
     size = np.hypot(*traction)
     max_bound = float(bound.max(initial=0.0))
     excess = float(np.maximum(size - bound, 0.0).max(initial=0.0)) / max_bound if max_bound else 0.0  # eq. (43)
@@ -96,8 +96,8 @@ def law_violation(
 
 def solve_with_continuation(problem: CoulombProblem, start: Guess | None = None) -> CoulombSolution:
     """Solve Coulomb's law; where Newton's method does not converge, raise prescribed resultants step by step."""
-    # Near full sliding few cells stick. Resultants between two admissible ones are admissible: a solution exists on the
-    # line.
+    # Near full sliding few cells stick. Resultants between two admissible resultants are admissible: every step has a
+    # solution.
     if not len(problem.modes) or problem.max_steps <= MAX_DIRECT_STEPS:
         return solve_coulomb(problem, start)
     solution = solve_coulomb(replace(problem, max_steps=MAX_DIRECT_STEPS), start)
@@ -176,7 +176,7 @@ def solve_coulomb(problem: CoulombProblem, start: Guess | None = None) -> Coulom
 
 
 def _select_first(cells: BoolArray, fraction: float) -> BoolArray:
-    """First cells of a set, a share of their number and at least one."""
+    """Select the first cells of a set: a fraction of their number, at least one."""
     if fraction == 1:
         return cells
     indices = np.flatnonzero(cells)
@@ -186,7 +186,7 @@ def _select_first(cells: BoolArray, fraction: float) -> BoolArray:
 
 
 def _select_largest_excess(exceeds: BoolArray, excess: FloatArray, sticks: BoolArray) -> BoolArray:
-    """At most half of the sticking cells, those farthest above their bound; of a single cell, that cell."""
+    """Select at most half of the sticking cells, rounded up: the cells with tractions farthest above the bound."""
     # If all cells slipped at once, the rigid slip of a prescribed resultant would be nearly undetermined.
     max_cells = (int(sticks.sum()) + 1) // 2
     if exceeds.sum() <= max_cells:
@@ -211,7 +211,7 @@ class _NewtonSystem:
         size = np.hypot(*traction)
         direction = np.where(sticks, 0.0, traction / np.where(size > 0, size, 1.0))
         across = np.stack([-direction[1], direction[0]])
-        # Unknowns: both components where cells stick, else the component across.
+        # Unknowns are both components of a sticking cell's traction, and a slipping cell's component across the slip.
         self._first = np.where(sticks, np.array([[1.0], [0.0]]), across)
         self._second = np.where(sticks, np.array([[0.0], [1.0]]), 0.0)[:, sticks]
         parallel = np.maximum((slip * direction).sum(axis=0), 0.0)
@@ -240,7 +240,7 @@ class _NewtonSystem:
         problem = self._problem
         turning = np.concatenate([self._turning, np.zeros(int(self._sticks.sum()))])
         count, shape = turning.size, (len(problem.modes), turning.size)
-        # Spin (1/m) and moment (N m) in the units of slip, for one residual of all unknowns.
+        # Spin (1/m) and moment (N m) are scaled to the units of slip, so that one residual contains all unknowns.
         sizes = np.hypot(problem.modes[:, 0], problem.modes[:, 1]).max(axis=1, initial=np.finfo(float).tiny)
         modes = np.array([self._components(mode) for mode in problem.modes]).reshape(shape) / sizes[:, None]
         weights = np.array(
@@ -271,7 +271,7 @@ class _NewtonSystem:
 
         resultant_errors = (problem.resultants - (problem.resultant_weights * traction).sum(axis=(1, 2))) / unit
         residual = np.concatenate([self._components(slip), resultant_errors])
-        # Preconditioned from the right: the residual is that of the system. 60 directions, 5 restarts. Speed.
+        # With the preconditioner on the right the residual is the system's. 60 directions, 5 restarts. Speed.
         shape = (residual.size, residual.size)
         operator = LinearOperator(shape, lambda vector: multiply(precondition(vector)), dtype=float)
         change = precondition(gmres(operator, residual, rtol=accuracy, atol=0.0, restart=60, maxiter=5)[0])
@@ -292,9 +292,9 @@ def _diagonal(problem: CoulombProblem) -> FloatArray:
 
 def balance_tractions(problem: CoulombProblem, start: Guess, scale: float) -> tuple[FloatArray, FloatArray]:
     """Tractions under a shift as the minimum of ``q B q / 2 - w q`` for ``|q| <= g``, and the unknown rigid slips."""
-    # A descent along the slip of this convex energy, projected onto the bound, cannot cycle. Steps: Barzilai and
+    # A descent of this convex energy along the slip, projected onto the bound, cannot cycle. Steps: Barzilai and
     # Borwein, IMA J. Numer. Anal. 8 (1988) 141; Birgin, Martinez and Raydan, SIAM J. Optim. 10 (2000) 1196. The rigid
-    # slips of prescribed resultants maximise the least energy less their work.
+    # slips of prescribed resultants maximise the least energy less the work of the resultants.
     from scipy.optimize import minimize
 
     traction, amplitudes = start
@@ -321,7 +321,7 @@ def balance_tractions(problem: CoulombProblem, start: Guess, scale: float) -> tu
         )
         return energy / unit, ((weights * tractions).sum(axis=(1, 2)) - problem.resultants) * scale / unit
 
-    # The gradient is the missing resultants over full sliding. Speed.
+    # The gradient is the error of the resultants over full sliding's resultants. Speed.
     optimum = minimize(dual_energy, amplitudes / scale, jac=True, method="BFGS", options={"gtol": 1e-5})
     amplitudes = np.asarray(scale * optimum.x)
     return minimize_energy(amplitudes)[0], amplitudes
@@ -341,7 +341,7 @@ def descend_energy(
     areas: FloatArray,
     max_steps: int = 500,
 ) -> tuple[FloatArray, FloatArray]:
-    """Descend from tractions (2, cell) within their bound and their slip; return both at the minimum."""
+    """Minimise the energy from tractions (2, cell) within their bound and their slip; return tractions and slip."""
 
     def product(first: FloatArray, second: FloatArray) -> float:
         return float((areas * first * second).sum())
@@ -355,7 +355,7 @@ def descend_energy(
             break
         slip_change = apply_compliance(change)
         curvature = product(change, slip_change)
-        # The energy is least on the way to the projected point, or at it.
+        # The energy is least between the current and the projected point, or at the projected point.
         fraction = min(1.0, product(slip, change) / curvature) if curvature > 0 else 1.0
         traction, slip = traction + fraction * change, slip - fraction * slip_change
         if curvature > 0:

@@ -16,7 +16,7 @@ from contactstudy.contact.rolling.surfaces import Surfaces, Tractions
 
 POISSONS = (0.0, 0.25, 0.5)
 
-TABLE = (  # Half-width along rolling over that across, and c11, c22, c23 for the three Poisson's ratios
+TABLE = (  # Half-width along rolling over the half-width across, and c11, c22, c23 for the three Poisson's ratios
     (0.1, (2.51, 3.31, 4.85), (2.51, 2.52, 2.53), (0.334, 0.473, 0.731)),
     (0.2, (2.59, 3.37, 4.81), (2.59, 2.63, 2.66), (0.483, 0.603, 0.809)),
     (0.3, (2.68, 3.44, 4.80), (2.68, 2.75, 2.81), (0.607, 0.715, 0.889)),
@@ -36,7 +36,7 @@ TABLE = (  # Half-width along rolling over that across, and c11, c22, c23 for th
 
 
 def creep_coefficients(ratio: float, poisson: float) -> FloatArray:
-    """Kalker's c11, c22 and c23 of an ellipse, at the border of the table above its range, asymptotes below."""
+    """Kalker's c11, c22 and c23 of an ellipse: above the table's range the last values, below it the asymptotes."""
     from scipy.interpolate import PchipInterpolator
 
     if ratio < TABLE[0][0]:
@@ -84,7 +84,7 @@ def solve_strips(motion: Rolling, surfaces: Surfaces, bound: FloatArray) -> Trac
 
 
 def strip_tractions(bound: FloatArray, growth: FloatArray, dy: float) -> tuple[FloatArray, FloatArray]:
-    """Tractions, and the loss of their growth to slip, (2, x, y): material enters strips at the leading edge."""
+    """Tractions and the part of their growth lost to slip, both (2, x, y); material enters at the leading edge."""
     traction, lost = np.zeros_like(growth), np.zeros_like(growth)
     previous, previous_growth = np.zeros(growth.shape[:2]), np.zeros(growth.shape[:2])
     behind_edge = np.zeros(bound.shape[0], bool)

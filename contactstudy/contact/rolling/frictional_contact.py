@@ -1,4 +1,4 @@
-"""A contact with stick and slip: the pressure, then the tractions, in turn where the tractions change the pressure."""
+"""Solve a contact with stick and slip: pressure, then tractions, in rounds if the tractions change the pressure."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from contactstudy.threads import one_blas_thread
 
 DIRECTIONS = (Load.NORMAL, *TANGENTIAL)
 
-MAX_ROUNDS = 30  # rounds of pressure and tractions after which a coupled contact is not converged. Speed.
+MAX_ROUNDS = 30  # largest number of rounds of pressure and tractions in a coupled contact. Speed.
 
 MIN_ACCURACY = 1e-5  # least change of the pressure that ends coupled rounds. Accuracy.
 
@@ -129,7 +129,7 @@ def frictional_contact(shape: Shape, settings: Settings, request: FrictionReques
             bending = operator.compute_displacements(loads, (Load.NORMAL,))
             previous_pressure = contact.pressure
             contact = contact_of(shape._replace(gap=ArrayKey(shape.gap.values + bending[Load.NORMAL])), settings)
-            # The first coupled pressure determines sliding columns and leading edges; otherwise the rounds alternate.
+            # The first coupled pressure fixes sliding columns and leading edges: new ones per round would alternate.
             tractions = solve_under(contact.pressure, tractions if round_index else None)
             change = float(np.abs(contact.pressure - previous_pressure).sum() / contact.pressure.sum())
             if change <= tolerance:

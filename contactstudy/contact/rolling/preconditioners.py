@@ -1,6 +1,7 @@
 """Preconditioners: the half-space's tangential compliance, inverted wavenumber by wavenumber.
 
-On uniform cells along both axes; on graded cells along y alone, with a matrix along x for each wavenumber.
+On uniform cells the transform runs along both axes; on graded cells along y alone, with one matrix along x for each
+wavenumber.
 """
 
 from __future__ import annotations
@@ -35,7 +36,7 @@ class TangentialInverse:
     def _compliance(
         self, materials: list[Material], direction: Load, load: Load, cell: tuple[float, float]
     ) -> ComplexArray:
-        """Spectrum of the displacement in one direction under a load in another."""
+        """Spectrum of the displacement in `direction` under loads in the direction `load`."""
         response = Response(direction, load)
         x, y = (step * np.arange(count // 2 + 1.0) for count, step in zip(self._shape, cell, strict=True))
         kernel = np.zeros((x.size, y.size))
@@ -67,7 +68,7 @@ class TangentialInverse:
 class ColumnsInverse:
     """Inverse of the tangential compliance, or of its reversed derivative along y, on cells of any width."""
 
-    # In the transform along y, with components along y times i, it is a real matrix for each wavenumber.
+    # After a transform along y, with components along y times i, the compliance is a real matrix per wavenumber.
 
     def __init__(self, materials: list[Material], cells: IntArray, grid: Grid, *, rolling: bool) -> None:
         (first, start), (last, stop) = cells.min(axis=1), cells.max(axis=1)
@@ -110,18 +111,18 @@ def tangential_inverse(
 
 
 def _derivative(cells: int, dy: float) -> ComplexArray:
-    """Spectrum of the reversed derivative along y on so many cells, as from `RollingCells.derivative`."""
-    # Taken at b = 1/2, later than in the solver, which damps short waves; the constant has 1.5 times the derivative of
-    # the first wavenumber. Speed.
+    """Spectrum of the reversed derivative along y, by the differences of `RollingCells.derivative`."""
+    # The derivative at b = 1/2, later than in the solver, damps short waves; an added constant, 1.5 times the
+    # derivative of the first wavenumber, makes the derivative of a constant invertible. Speed.
     phase = 2 * np.pi * np.arange(cells // 2 + 1) / cells
     derivative = -(np.exp(1j * phase) - 1.0) / dy
     return np.asarray(derivative + 1.5 * phase[1] / dy)
 
 
 def _leading_root(cells: IntArray, *, rolling: bool) -> FloatArray:
-    """Root with which tractions begin behind the leading edge of each row: array (cell)."""
-    # The derivative along y is a Hilbert transform; its inverse on an interval is that on the line between this factor
-    # and its reciprocal.
+    """Square root with which tractions rise behind the leading edge of each row: array (cell)."""
+    # The derivative along y of the compliance is a Hilbert transform; its inverse on an interval is the inverse on the
+    # whole line, between this factor and its reciprocal.
     if not rolling:
         return np.ones(cells.shape[1])
     row, column = cells

@@ -21,12 +21,12 @@ TANGENTIAL = (Load.ALONG_X, Load.ALONG_Y)  # directions of tractions and slip, i
 
 
 class Surfaces(NamedTuple):
-    """Bodies and cells."""
+    """Operator, cells and materials of the surfaces in contact."""
 
-    operator: PairOperator | SurfaceOperator  # displacements relative to each other
+    operator: PairOperator | SurfaceOperator  # relative displacements of the surfaces
     grid: Grid
-    materials: list[Material]  # of the elastic bodies
-    reference_x: float  # position x reference of spin and moment, metres
+    materials: list[Material]  # materials of the elastic bodies
+    reference_x: float  # position x to which spin and moment refer, metres
 
     @property
     def areas(self) -> FloatArray:
@@ -56,7 +56,7 @@ class LeadingEdges(NamedTuple):
     """Sliding columns and pressure that determine the positions of the slip in the cells of a rolling contact."""
 
     slides_fully: BoolArray  # (x): columns without sticking cells
-    pressure: FloatArray  # (x, y): pressure whose extrapolation is the leading edge, Pa
+    pressure: FloatArray  # (x, y): pressure whose extrapolation to zero is the leading edge, Pa
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -75,7 +75,7 @@ class Tractions:
     force_error: float = 0.0  # certificate: error of prescribed resultants, over the largest
     steps: int = 0  # Newton steps
     converged: bool = True  # whether the tolerance was reached
-    leading: LeadingEdges | None = None  # origin of the positions of the slip in rolling
+    leading: LeadingEdges | None = None  # determines the positions of the slip in rolling
 
     @classmethod
     def of(
@@ -108,7 +108,7 @@ def check_forces(motion: Shift | Rolling, bound: FloatArray, weights: FloatArray
         return
     names = [RESULTANTS[mode] for mode in modes]
     largest = _largest_multiple(resultants, bound, weights[[list(RESULTANTS).index(mode) for mode in modes]])
-    # At all of full sliding's force the rigid slip is undetermined.
+    # At the force of full sliding the rigid slip is undetermined.
     if largest * (1 - 1e-9) > 1:
         return
     limits = ", ".join(
@@ -126,7 +126,7 @@ def check_forces(motion: Shift | Rolling, bound: FloatArray, weights: FloatArray
 def _largest_multiple(resultants: FloatArray, bound: FloatArray, weights: FloatArray) -> float:
     """Largest multiple of the resultants that tractions within their bound (x, y) make."""
     # Tractions along a slip ``d . works`` make the largest resultant along d: the multiple is the least over the
-    # directions d of a convex function, so a descent approaches it from above.
+    # directions d of a convex function, so a descent approaches the multiple from above.
     from scipy.optimize import minimize
 
     loaded = bound > 0

@@ -65,7 +65,7 @@ class RollingCells:
     offset: FloatArray  # (unknown): position of the slip in each cell, in cells ahead of the centre
     dependent: IntArray  # (2, dependent): row and column of the dependent leading cells
     source_cell: IntArray  # (dependent): index of the unknown cell behind each
-    ratio: FloatArray  # (dependent): their traction over the traction of the cell behind
+    ratio: FloatArray  # (dependent): traction of each over the traction of the cell behind
 
     @classmethod
     def of(
@@ -143,7 +143,7 @@ class RollingCells:
 
 
 def averaging_weights(x: FloatArray, widths: FloatArray, dy: float) -> FloatArray | None:
-    """Shares of columns in the offset of the slip of each (column, column); None if all columns are far apart."""
+    """Weights (column, column) of all columns in each column's offset of the slip; None if columns are far apart."""
     # At different offsets the slips of neighbours nearer than a cell's length would differ by more than their
     # tractions.
     near = np.maximum(1 - np.abs(x[:, None] - x) / dy, 0.0)
@@ -151,9 +151,9 @@ def averaging_weights(x: FloatArray, widths: FloatArray, dy: float) -> FloatArra
 
 
 def _inside_length(pressure: FloatArray) -> float:
-    """Cells between the inner border of the last cell and the contact's edge."""
-    # A parabola through the squared pressure of the third to fifth last cell: the edge affects the last two. The
-    # contact may reach into the next cell, which then has no pressure.
+    """Distance, in cells, from the inner border of the last cell to the contact's edge."""
+    # A parabola through the squared pressures of the third to fifth last cells locates the edge, which affects the
+    # last two. The contact may reach into the next cell, which then has no pressure.
     third, second, first = pressure[-5:-2] ** 2  # at 2, 1 and 0 cells behind the third last
     bend, slope = 0.5 * (third - 2 * second + first), 0.5 * (third - 4 * second + 3 * first)
     # first + slope s + bend s**2 = 0, s ahead of the third last centre
@@ -167,7 +167,7 @@ def _inside_length(pressure: FloatArray) -> float:
 
 NESTED_CELLS = 600  # least number of cells of a contact that is first solved on coarser cells. Speed.
 COARSE_TOLERANCE = 1e-3  # tolerance on coarser cells, and of the solution that determines the sliding columns. Speed.
-MAX_STICKING_RATIO = 0.999  # largest part of its bound of a sticking cell in a guess. Speed.
+MAX_STICKING_RATIO = 0.999  # largest traction of a sticking cell in a guess, over its bound. Speed.
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -176,12 +176,12 @@ class FrictionRequest:
 
     motion: Shift | Rolling  # motion of the shape against the body
     friction: float | FloatArray  # broadcasts to (x, y): coefficient of friction, not negative
-    reference_x: float  # position x reference of spin and moment, metres
+    reference_x: float  # position x to which spin and moment refer, metres
     coupled: bool  # whether the tractions also displace the surfaces normally and so change the pressure
     start: Mapping[Load, FloatArray] | None = None  # (x, y): pressure and tractions at the start of a shift; default: 0
     coarse: Tractions | None = None
-    """Guess on half as many cells along y, and along x half as many or the same; default: computed first on many
-    uniform cells."""
+    """Guess on half as many cells along y, and along x half as many or the same; default: on many uniform cells the
+    guess is computed first."""
     max_steps: int | None = None  # bound on the Newton steps; default: the bound on the iterations
 
 
@@ -225,7 +225,7 @@ def solve_tractions(
         if not previous.converged:
             return _with_mean_slip(previous, surfaces, displacements)
         steps = previous.steps
-    # Marked columns and edges from each pressure of a coupled contact would alternate.
+    # Sliding columns and edges that each pressure of a coupled contact determined anew would alternate.
     leading = previous.leading or LeadingEdges(np.asarray(~previous.sticks.any(axis=1)), pressure)
     cells = RollingCells.of(pressure, bound, weights, leading)
     tractions = solve(cells, settings.tolerance, guess_from_last(previous, cells, motion.modes))
@@ -277,7 +277,7 @@ def _coulomb_problem(
 def _solve_coarse(
     request: FrictionRequest, settings: Settings, surfaces: Surfaces, pressure: FloatArray, bound: FloatArray
 ) -> Tractions | None:
-    """Solve on cells of twice the size; None on graded cells, or where these do not exist."""
+    """Solve on cells of twice the size; None on graded cells, or if the cells cannot be paired."""
     grid = surfaces.grid
     if grid.cells_x % 2 or grid.cells_y % 2 or not grid.uniform:
         return None
@@ -304,7 +304,7 @@ def _complete_tractions(
     cells: RollingCells,
     surfaces: Surfaces,
 ) -> Tractions:
-    """Resultants and certificate of a solution, recomputed from its tractions."""
+    """Tractions of a solution, with resultants and certificate recomputed from the tractions."""
     grid = surfaces.grid
     cell_slip = problem.slip(solution.traction, solution.amplitudes)
     scale = problem.slip_scale(solution.amplitudes)
@@ -367,11 +367,11 @@ def _shift_cells(bound: FloatArray) -> RollingCells:
 
 
 def guess_from_coarse(coarse: Tractions, cells: RollingCells, modes: tuple[str, ...]) -> Guess:
-    """Guess for finer cells."""
+    """Guess on finer cells from coarse tractions."""
     row, column = cells.unknown
     factor = cells.bound.shape[0] // coarse.bound.shape[0]
     fraction = coarse.traction / np.where(coarse.bound > 0, coarse.bound, 1.0)
-    # Slipping cells have all of their bound; inside the stick zone the part is interpolated.
+    # Slipping cells carry their bound; inside the stick zone the traction over the bound is interpolated.
     parents = row // factor, column // 2
     fine_fraction = halve_cells(fraction, 2)
     if factor == 2:
