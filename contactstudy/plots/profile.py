@@ -88,7 +88,7 @@ def plot_profiles(
     Raises
     ------
     InvalidInputError
-        If `profiles` is empty, or :func:`plot_profile` raises it.
+        If `profiles` is empty, or :func:`plot_profile` rejects an argument.
 
     Examples
     --------
