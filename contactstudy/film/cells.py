@@ -67,7 +67,7 @@ class MergedCells:
         return np.asarray(np.add.reduceat(field, self.edges[:-1], axis=-1) / self.counts)
 
     def compute_stiffness(self, response: FloatArray) -> FloatArray:
-        """Displacement per pressure on merged cells (x, cell, cell), from the response (x, offset) to a uniform cell."""
+        """Displacement per pressure on merged cells (x, cell, cell), from a uniform cell's `response` (x, offset)."""
         cell_count = response.shape[-1]
         two_sided_response = np.concatenate([response[:, :0:-1], response], axis=-1)
         sums = np.concatenate([np.zeros((len(response), 1)), np.cumsum(two_sided_response, axis=-1)], axis=-1)
