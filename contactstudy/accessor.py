@@ -19,7 +19,7 @@ from contactstudy import analysis
 
 @xr.register_dataset_accessor("contact")
 class ContactAccessor:
-    """Functions of :mod:`contactstudy.analysis` with a Dataset as first argument, and these, as methods.
+    """Methods: the functions of :mod:`contactstudy.analysis` with a Dataset as first argument, and those below.
 
     Examples
     --------
