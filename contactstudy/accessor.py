@@ -19,7 +19,7 @@ from contactstudy import analysis
 
 @xr.register_dataset_accessor("contact")
 class ContactAccessor:
-    """Methods: the functions of :mod:`contactstudy.analysis` with a Dataset as first argument, and those below.
+    """Functions of :mod:`contactstudy.analysis` with a Dataset as first argument, and a few others, as methods.
 
     Examples
     --------

@@ -129,7 +129,7 @@ def check_solved_for(
     except (InvalidInputError, KeyError, TypeError):
         return
     if isinstance(case_or_body, Case):
-        # Compare scalars of the result too: they follow a selection from joined results, the attributes do not.
+        # Scalars of the result prevail: unlike the attributes, they follow a selection from joined results.
         variables = {"load": "normal_load", "tilt": "tilt", "friction": "friction"}
         scalars = {
             name: float(result[variable])

@@ -146,7 +146,7 @@ class AtlasTable:
         return np.asarray(np.log(values) if name in LOGARITHMIC_QUANTITIES else values)
 
     def branches(self, name: str) -> list[npt.NDArray[np.bool_]]:
-        """Masks of the points of each smooth branch; a maximum has two branches if either of two places may have it."""
+        """Masks of the points of each smooth branch; a maximum with two possible places has a branch for each place."""
         if f"{name}_at_end" not in self.dataset:
             return [np.ones(len(self.points), dtype=bool)]
         at_end = self.dataset[f"{name}_at_end"].values.astype(bool)

@@ -160,7 +160,7 @@ def shakedown_limit(stress: xr.Dataset, *, axial: bool = False) -> xr.Dataset:
         return _study_limits(stress, swept_sizes, axial=axial)
     case = single_case(stress)
     rolling = dimension_along(case["tau_yz"], "y")
-    # One of the two subsets of every second instant lacks the critical instant.
+    # Each subset has every second instant: one of the two subsets lacks the critical instant.
     has_error = case.sizes[rolling] >= MIN_POSITIONS_FOR_ERROR
     samples = [case, *(case.isel({rolling: slice(start, None, 2)}) for start in (0, 1) if has_error)]
     fields = [shakedown(sample, axial=axial).compute() for sample in samples]
@@ -239,8 +239,8 @@ def _is_border_critical(case: xr.Dataset, fields: xr.Dataset, variable: str) -> 
 
 
 DEGREE, CONTINUITY = 5, 3  # Degree and continuity of the stress function's polynomials: smooth stresses
-# Points per element along either axis. Accuracy: an element has two functions along each axis; with two points the
-# body would yield between them
+# Points per element along either axis. Accuracy: an element has two functions along each axis; with only two points the
+# body would yield between the points
 POINTS_PER_ELEMENT = 4
 MIN_POINTS = 5  # Minimum number of points along x and z: with fewer, the stress function has no free coefficients
 MAX_GAP = 1e-4  # Relative duality gap of convergence

@@ -64,7 +64,7 @@ class FilmProblem:
 
     @cached_property
     def resultants(self) -> FloatArray:
-        """Weights of the pressure in load and moment, the sums that free a rigid motion: array (motion, cell)."""
+        """Factors by which a sum over the pressure gives load and moment: array (motion, cell)."""
         return np.asarray(self.motions * self.cells.areas.ravel())
 
     def compute_film(self, distance: FloatArray) -> Law:

@@ -42,7 +42,7 @@ TEXT_COLUMNS = {
 
 SUFFIX = ".nc"
 IDENTITY_LENGTH = 64
-CHUNK_SIZE = 2**15  # Values compressed together in a ragged array. More values: smaller files, slower single cases
+CHUNK_SIZE = 2**15  # Values compressed together in a ragged array. Speed: more make files smaller, single cases slower
 CASE_ATTRIBUTE = "contactstudy_case"  # Attribute of a case: its parameters as JSON
 SHARED_ATTR, TABLES_ATTR, COORDINATES_ATTR = "contactstudy_shared", "contactstudy_tables", "contactstudy_coordinates"
 """Attributes: parameters of all cases, tables that parameters refer to by number, names of coordinates."""

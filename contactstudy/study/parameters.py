@@ -399,7 +399,7 @@ def check_parameters(values: Mapping[str, Any], where: str = "parameter") -> dic
 
 
 def add_default_accuracy(values: Mapping[str, Any]) -> dict[str, Any]:
-    """Return checked `values` with the default accuracy, unless the cells are uniform; identities contain it."""
+    """Return checked `values` with the default accuracy, unless the cells are uniform; identities depend on it."""
     has_cells = any(name in values for name in ("accuracy", *UNIFORM_CELLS))
     return dict(values) if has_cells else {**values, "accuracy": ACCURACY}
 

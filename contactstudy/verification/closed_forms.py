@@ -259,11 +259,11 @@ def rectangle_in_half_plane(
 ) -> FloatArray:
     """Stresses xx, yy, zz, xz of plane strain outside or inside a rectangle with eigenstrains xx, yy, zz, xz.
 
-    The eigenstrain acts like forces on the sides, and relaxes the stress inside (J. D. Eshelby, Proc. R. Soc. A 241
-    (1957) 376). For a force in a half-plane with a free face see N. I. Muskhelishvili, Some Basic Problems of the
-    Mathematical Theory of Elasticity, chapter 19: with the potentials phi, psi of the force in the whole plane, the
-    first potential of the force's images is ``-w phibar'(w) - psibar(w)``, and the second potential is ``-phibar(w)``
-    minus w times the derivative of the first.
+    The eigenstrain acts like forces on the sides; inside, its elastic stress is subtracted (J. D. Eshelby, Proc. R.
+    Soc. A 241 (1957) 376). For a force in a half-plane with a free face see N. I. Muskhelishvili, Some Basic Problems
+    of the Mathematical Theory of Elasticity, chapter 19: with the potentials phi, psi of the force in the whole plane,
+    the first potential of the force's images is ``-w phibar'(w) - psibar(w)``, and the second potential is
+    ``-phibar(w)`` minus w times the derivative of the first.
     """
     xs, zs = (np.asarray(c, dtype=float) for c in np.broadcast_arrays(x, z))
     e_xx, e_yy, e_zz, e_xz = eigenstrain
@@ -323,7 +323,7 @@ def _primitive(u: FloatArray) -> FloatArray:
 
 
 def fast_line() -> tuple[float, float]:
-    """Largest rise under a fast line over ``q0 sqrt(kappa a / (pi V)) / lambda``, and its distance behind mid over a.
+    """Largest rise of a fast line over ``q0 sqrt(kappa a / (pi V)) / lambda``, and distance behind the middle over a.
 
     Heat flows into the depth only (Blok 1937, Jaeger 1942).
     """

@@ -97,7 +97,7 @@ def extra_deflection_checks() -> Iterator[Check]:
 
 
 def resultant_checks() -> Iterator[Check]:
-    """Resultants of the equivalent loads, from their transforms at wavenumbers that are neither small nor large."""
+    """Resultants of the equivalent loads, from transforms between the lateral wavenumber and 1 / distance."""
     lateral, distance, settings = 1e-7, 1.0, Resolution()
     for poisson in (0.0, 0.3, 0.5):
         (modes,) = axial_modes(np.inf, lateral, 1e-4, settings)
