@@ -180,7 +180,7 @@ def writing(path: Path, name: Callable[[Path], str] | None = None) -> Iterator[P
 
 
 def coordinates(name: str, values: object, unit: str = "m") -> FloatArray:
-    """Return `values` as a one-dimensional float array, or raise if it is empty, not numbers, or not finite."""
+    """Return `values` as a one-dimensional float array; raise if they are empty, not numbers, or not finite."""
     try:
         if np.asarray(values).dtype.kind not in REAL_KINDS:
             raise TypeError

@@ -130,8 +130,8 @@ def read_height_map(
         x3p or a format of SurfaceTopography, with the extra `measured`. Coordinates are the grid's.
     grid : Grid
         Cells; their centres must lie within the measured area. Between measured points heights are interpolated
-        linearly along both axes. Cells wider than the steps of the measurement leave fine waves out or fold them
-        into long ones: filter the map before.
+        linearly along both axes. Cells wider than the steps of the measurement leave fine waves out or fold fine waves
+        into long waves: filter the map before.
     remove_slope : bool
         Whether the plane that fits the measured heights best is taken off.
     remove_form : bool

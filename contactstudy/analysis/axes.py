@@ -209,7 +209,7 @@ def normalized(dataset: xr.Dataset) -> xr.Dataset:
     Dataset
         The same variables; each variable with a unit in `POWERS` is divided by its scale, has the unit ``1``, and names
         the scale. `hertz_half_width` and `hertz_max_pressure` stay in SI; so do swept parameters, and positions in
-        metres that cases of different a share: use the coordinates ``x_over_a`` and similar for these.
+        metres that cases of different a share: use the coordinates ``x_over_a`` and similar instead.
 
     Raises
     ------

@@ -1,6 +1,6 @@
 """Edges of a contact to a few hundredths of a cell: half-width, length and area.
 
-The squared pressure inside a smooth edge and the gap to the power 2/3 outside are linear in the distance from it
+The squared pressure inside a smooth edge and the gap to the power 2/3 outside are linear in the distance from the edge
 (K. L. Johnson, Contact Mechanics, 1985, section 5.1): the edge is the mean of the zeros of quadratics fitted to both.
 """
 

@@ -1,4 +1,4 @@
-"""Stress measures and their largest values: of the samples, and between them with an estimated error.
+"""Stress measures and their largest values: at the samples, or between samples with an estimated error.
 
 Polynomials through the samples about the largest one interpolate the six components, from which the measure follows.
 The error estimate is the difference from polynomials of lower degree.
@@ -123,7 +123,7 @@ def largest_sample(dataset: xr.Dataset, variable: str = "von_mises", *, along: s
     variable : str
         A variable or a measure, see :func:`measure`: `pressure`, `von_mises`, `principal_stress_1` ...
     along : {"x", "y", "z"}, optional
-        Axis of the result: the largest value in each section perpendicular to it. Default: one value.
+        Axis of the result: the largest value in each section perpendicular to this axis. Default: one value.
 
     Returns
     -------

@@ -95,7 +95,7 @@ def solved_case(dataset: xr.Dataset) -> Case:
     Returns
     -------
     Case
-        Equal to the solved one. A profile from outside the package is piecewise linear.
+        Equal to the solved case. A profile from outside the package is piecewise linear.
 
     Raises
     ------

@@ -27,7 +27,7 @@ QUANTITIES = ("peak_pressure_ratio", "peak_von_mises_ratio", "approach_ratio", "
 LOGARITHMIC_QUANTITIES = ("peak_pressure_ratio", "peak_von_mises_ratio", "approach_ratio")
 NEIGHBOUR_COUNT = 6  # Nearest points; a branch is defined where one of these points belongs to the branch
 RESIDUAL_COUNT = 12  # Nearest points whose mean residual is the local error
-LOAD_STEP = 0.05  # Change of the half-width, over it, for the slope of the approach
+LOAD_STEP = 0.05  # Relative change of the half-width for the slope of the approach
 LOAD_RISE = 2 * np.log((1 + LOAD_STEP) / (1 - LOAD_STEP))  # Change of the load's logarithm over two steps
 
 

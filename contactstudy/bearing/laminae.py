@@ -63,8 +63,8 @@ def slice_model(case: Case, *, slices: int = 30, tilt: float | None = None, edge
 
     Notes
     -----
-    The standard's deflection belongs to a roller between two raceways; one contact has half of it. The standard applies
-    the riser to the loads of the life only. Formulas and range are second-hand, from public programs.
+    The standard's deflection belongs to a roller between two raceways; one contact has half the deflection. The
+    standard applies the riser to the loads of the life only. Formulas and range are second-hand, from public programs.
 
     References
     ----------
@@ -145,7 +145,7 @@ COLUMN_COMMENT = "from the stated errors of the pressure and the distance of its
 
 
 def lamina_factors(result: xr.Dataset, *, laminae: int = 30) -> xr.Dataset:
-    """Factors on the loads of the lamina model: loads whose Hertz pressures equal those of a solved contact.
+    """Factors on the loads of the lamina model, whose Hertz pressures then equal the pressures of a solved contact.
 
     Parameters
     ----------

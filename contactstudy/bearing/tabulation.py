@@ -150,7 +150,7 @@ def contact_law(
     case : Case
         Roller and body; its load defines the default approaches; without a tilt.
     tilts : sequence of float
-        Five or more, increasing, radians. For symmetric tilts, roller and body the code solves half of them.
+        Five or more, increasing, radians. For symmetric tilts, roller and body the code solves half of the tilts.
     approaches : sequence of float, optional
         Five or more, increasing, positive, metres, at the roller's mid-length. Default: eight
         from the approach under 0.03 of the case's load to the approach under 1.5 times the load, in equal ratios.

@@ -227,7 +227,7 @@ def search_optimum(evaluations: Evaluations) -> Design:
             bounds=[(0.0, 1.0)] * parameters,
             options=options,
         )
-    elif budget > 1:  # Brent's method, between the neighbours of the best design; it takes two designs or more.
+    elif budget > 1:  # Brent's method, between the neighbours of the best design; the method takes two or more designs.
         start, step = float(start_design.fractions[0]), 1 / (SCAN_COUNT - 1)
         bracket = (max(start - step, 0.0), min(start + step, 1.0))
         options = {"xatol": OPTIMUM_TOLERANCE, "maxiter": budget}

@@ -83,7 +83,7 @@ def relative_life(risk: xr.Dataset, reference: xr.Dataset, exponents: LifeExpone
     -------
     DataArray
         ``(reference risk / risk)**(1/e)``; infinite without any risk, NaN if neither has a risk. Its coordinate
-        `relative_life_error` follows from the errors of both risks; a `comment` marks a result without them.
+        `relative_life_error` follows from the errors of both risks; a `comment` marks a result without these errors.
 
     Raises
     ------

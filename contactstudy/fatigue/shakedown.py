@@ -60,8 +60,8 @@ def shakedown(stress: xr.Dataset, *, axial: bool = False) -> xr.Dataset:
     stress : Dataset
         The six components with the rolling direction y over the whole passage, of one case or of a study.
     axial : bool
-        Whether to include a residual stress along the axis. It may not change along x and vanishes on free ends:
-        only in a line contact is it free at every depth.
+        Whether to include a residual stress along the axis. This stress may not change along x and vanishes on free
+        ends: only in a line contact is the stress free at every depth.
 
     Returns
     -------

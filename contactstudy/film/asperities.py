@@ -1,4 +1,4 @@
-"""Rough surfaces in a film: pressure of the asperities and mean height between them."""
+"""Rough surfaces in a film: pressure of the asperities and mean height of the film."""
 
 from __future__ import annotations
 

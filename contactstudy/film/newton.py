@@ -38,7 +38,7 @@ class FilmSettings:
     max_closing : float
         Largest relative decrease of the film of a cell in one step. Speed.
     max_pressure_change : float
-        Change of the pressure in one step, over p0. Speed.
+        Largest change of the pressure in one step, over p0. Speed.
     closed_film_ratio, nearly_closed_ratio : float
         Film over the central film below which an iteration ends, and below which a failure is a closed film.
     speed_ratio, speed_steps : float, int
@@ -186,7 +186,7 @@ class _Iteration:
             outflow = outflow + lengths * (density.value * film.value.ravel() - mass)
             by_pressure = by_pressure + sparse.diags_array(lengths * density.slope * film.value.ravel())
             by_distance = by_distance + sparse.diags_array(lengths * density.value * film.slope.ravel())
-        # The fluid carries the pressure less that of the asperities.
+        # The fluid pressure is the total pressure minus the pressure of the asperities.
         if problem.asperities is not None:
             by_distance = by_distance - by_pressure @ sparse.diags_array(asperities.slope.ravel())
         elastic = _elastic_diagonal(problem.column_stiffness, by_distance)
@@ -353,7 +353,7 @@ class _ColumnElimination:
     """Elimination of the columns one after the other, as if the pressure changed equally in all columns."""
 
     inverses: FloatArray  # (x, y, y): inverses of the columns' equations after elimination of earlier columns
-    lower: FloatArray  # (x, y): coefficients of the pressures in the column before and in the one after
+    lower: FloatArray  # (x, y): coefficients of the pressures in the column before; `upper`: in the column after
     upper: FloatArray
 
     @classmethod

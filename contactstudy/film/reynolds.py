@@ -38,7 +38,7 @@ class Fluid:
     Attributes
     ----------
     density : callable
-        Density over the ambient one, of the pressure.
+        Density over the ambient density, as a function of the pressure.
     reduced_pressure : callable
         Integral of the fluidity (density over viscosity, both over their ambient values) up to the pressure.
     flow_number : float
@@ -150,7 +150,7 @@ class FilmCells:
 
     @cached_property
     def parabolas(self) -> sparse.csr_array:
-        """Values on the faces along y, by parabolas through two cells upstream and one downstream: (face, cell)."""
+        """Matrix (face, cell): values on the faces along y, by parabolas through two cells upstream, one downstream."""
         cells = self.y.size
         matrix = np.zeros((cells + 1, cells))
         for face, position in enumerate(self.y_edges):

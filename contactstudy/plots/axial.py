@@ -51,7 +51,7 @@ def plot_axial_pressure(
     Returns
     -------
     Axes
-        An open triangle at the top marks a singular end; the line ends 0.05 half-widths before it.
+        An open triangle at the top marks a singular end; the line ends 0.05 half-widths before the end.
 
     Raises
     ------

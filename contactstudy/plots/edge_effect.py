@@ -55,7 +55,7 @@ def plot_edge_effect(
     selection : mapping, optional
         Values of other swept parameters; default: the first.
     load : callable
-        Takes the part of a study with one case, returns the case with its surfaces; default: those of the Dataset.
+        Takes the part of a study with one case, returns the case with its surfaces; default: reads the Dataset.
 
     Returns
     -------

@@ -58,7 +58,7 @@ def plot_study_lines(
     dataset : Dataset
         From :func:`contactstudy.open_study`.
     variables : sequence of str
-        Scalars of each case; missing ones are omitted.
+        Scalars of each case; missing scalars are omitted.
     x : str
         Swept parameter along the horizontal axis; names are spaced evenly.
     hue : str, optional

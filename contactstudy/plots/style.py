@@ -159,7 +159,7 @@ def fold_labels(*axes: Axes) -> None:
 
 
 def label_axes(ax: Axes, x: str, y: str, *others: Axes) -> None:
-    """Label axes, and fold these labels and those of further axes, such as a colour bar."""
+    """Label axes, and fold the labels of these and of `others`, such as a colour bar."""
     ax.set_xlabel(x)
     ax.set_ylabel(y)
     fold_labels(ax, *others)

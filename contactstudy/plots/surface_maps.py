@@ -138,7 +138,7 @@ def plot_pressure_map(dataset: xr.Dataset, ax: Axes | None = None, *, si: bool =
     Returns
     -------
     Axes
-        Cropped to the contact. Near a singular end the colours stop at the pressure 0.05 a from it.
+        Cropped to the contact. Near a singular end the colours stop at the pressure 0.05 a from the end.
 
     Raises
     ------

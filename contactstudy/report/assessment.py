@@ -88,7 +88,7 @@ def assess(dataset: xr.Dataset) -> Assessment:
 
 
 def assess_case(case: xr.Dataset, table: Summary) -> Assessment:
-    """Return the assessment of a case with its summary."""
+    """Return the assessment of a case, given the case's summary."""
     return Assessment(tuple(_criteria(case, table)))
 
 

@@ -55,7 +55,7 @@ class Quantity(NamedTuple):
     name: str
     meaning: str
     value: float  # SI
-    error: float  # NaN if it is not estimated
+    error: float  # SI; NaN without an estimate
     units: str
     text: str  # value and error in engineers' units
     remark: str = ""  # why a value has no error or is unbounded; for a position, the nearest end

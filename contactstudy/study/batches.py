@@ -1,4 +1,4 @@
-"""Batches: netCDF files of many finished cases, the one format of a study's results.
+"""Batches: netCDF files of many finished cases, the only format of a study's results.
 
 A batch has the dimension `case`. Numbers are columns, such as ``peak_pressure(case)``. Arrays of the cases have
 different shapes, so they are contiguous ragged arrays of the CF conventions: ``pressure(x_y_values)`` contains the

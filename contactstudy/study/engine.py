@@ -1,6 +1,6 @@
 """Engine of a run: this process, local worker processes, or a dask cluster, and the distribution of tasks over them.
 
-Every worker has one task. The death of a worker costs its task only: the cases of the task are solved again one by
+Every worker has one task. The death of a worker costs this task only: the cases of the task are solved again one by
 one, and a case during which a second worker dies fails.
 """
 

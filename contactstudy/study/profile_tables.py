@@ -136,7 +136,7 @@ def _check_nested_table(value: object, depth: int) -> Table:
 
 
 def _read_points(table: Table) -> Table:
-    """Table of a measured profile with the points of its file: identity depends on them, not on the file's path."""
+    """Table of a measured profile with the points of its file: the points, not the path, determine the identity."""
     if "file" not in table:
         for key in FILE_OPTIONS:
             if key in table:

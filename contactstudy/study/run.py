@@ -273,7 +273,7 @@ def _groups_to_solve(states: States, again: tuple[str, ...], share: Share, sampl
     order = sorted(members, key=sort_key)
     groups = [members[key] for key in order]
     if share.count > 1:
-        # A piece contains consecutive groups with one operator, so many at most that every share has several turns.
+        # A piece contains consecutive groups with one operator, few enough that every share receives several pieces.
         max_groups, pieces = max(1, len(groups) // (RUN.turns * share.count)), list[int]()
         for _, operator_groups in groupby(operator for operator, _ in order):
             first_piece = pieces[-1] + 1 if pieces else 0

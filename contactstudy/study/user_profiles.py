@@ -27,7 +27,7 @@ KEYS = ("class", "values", "content")
 LENGTHS = (1e-4, 1e-3, 1e-2, 1e-1)
 """Lengths of a roller, metres, for which drops enter the digest; a profile may be invalid for some."""
 
-MAX_LISTED_SIZE = 100  # Largest array that a file lists; a larger one is represented by its digest
+MAX_LISTED_SIZE = 100  # Largest array that a file lists; a digest represents a larger array
 REMEDY = "give its values as numbers, texts or lists, or the shape as profiles.Measured(x, drop)"
 
 _registry: dict[str, Profile] = {}

@@ -61,7 +61,7 @@ class Task:
 
 
 class Outcome(NamedTuple):
-    """State of one case after its solution: a status of a batch, seconds, and the reason of a failure."""
+    """Outcome of one case: a status from `STATUSES`, seconds, and the reason of a failure."""
 
     id: str
     status: str
