@@ -121,7 +121,7 @@ MAX_STEPS = 500  # Bound on the steps of a ball: a safeguard
 def enclosing_balls(points: Array, heights: Array | None = None) -> tuple[Array, Array]:
     """Centre (path, axis) and radius (path) of the smallest ball around each path of points (path, instant, axis).
 
-    With `heights` (path, instant) the centre lies in a plane: `points` are projections, `heights` distances to the plane.
+    With `heights` (path, instant) the centre lies in a plane: `points` are projections, `heights` distances from it.
     """
     origin = points.mean(axis=1)
     local = points - origin[:, None]
