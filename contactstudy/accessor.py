@@ -19,7 +19,7 @@ from contactstudy import analysis
 
 @xr.register_dataset_accessor("contact")
 class ContactAccessor:
-    """Functions of :mod:`contactstudy.analysis` with a Dataset as first argument, and these, as methods.
+    """Functions of :mod:`contactstudy.analysis` with a Dataset as first argument, and a few others, as methods.
 
     Examples
     --------

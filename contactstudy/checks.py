@@ -62,7 +62,7 @@ ComplexArray = npt.NDArray[np.complex128]
 IntArray = npt.NDArray[np.int64]
 BoolArray = npt.NDArray[np.bool_]
 TEMPORARY_SUFFIX = ".part"  # Suffix of an unfinished file
-REAL_KINDS = "biufO"  # Kinds of arrays whose values can be real numbers: not complex ones, dates or texts
+REAL_KINDS = "biufO"  # Kinds of arrays whose values can be real numbers: not complex numbers, dates or texts
 
 
 def store(checked: object, **values: object) -> None:
@@ -72,26 +72,26 @@ def store(checked: object, **values: object) -> None:
 
 
 MAX_MAGNITUDE = 1e50
-"""Largest number that is taken, and one over the smallest positive one: far beyond every quantity in SI units, and
-small enough for products of a few to be numbers as well."""
+"""Largest accepted number; its inverse is the smallest accepted positive number. It exceeds every quantity in SI units,
+but products of a few such numbers remain finite."""
 
 
 def _float(value: Real) -> float:
-    """Return a real number as a float; one beyond the range of floats is infinite."""
+    """Return a real number as a float; a number beyond the range of floats becomes infinite."""
     try:
         return float(value)
     except OverflowError:
         return np.inf
 
 
-SI_UNITS = {"": "1", "metres": "m", "radians": "rad"}  # Units by their words in messages
+SI_UNITS = {"": "1", "metres": "m", "radians": "rad"}  # SI units by the words for them in messages
 
 
 def scalar(name: str, value: Any, unit: str = "") -> Any:
-    """Return the number in an array without dimensions, in SI by its attribute ``units``; all else unchanged."""
+    """Return the number in an array without dimensions, converted to SI by its `units`; other values unchanged."""
     if isinstance(value, np.generic) or getattr(value, "ndim", None) != 0 or not hasattr(value, "item"):
         return value
-    # Through numpy: a lazy array lacks item().
+    # Convert through numpy, because a lazy array lacks item().
     number, unit_attribute = np.asarray(value).item(), getattr(value, "attrs", {}).get("units")
     symbol = SI_UNITS.get(unit, unit.partition(",")[0])  # "m/s, of rolling" is in m/s
     if unit_attribute is None or unit_attribute == symbol or isinstance(number, bool) or not isinstance(number, Real):
@@ -143,7 +143,7 @@ def instance(name: str, value: object, kind: type | tuple[type, ...], allowed: s
 
 
 def known_name(name: str, value: str, names: Iterable[str]) -> str:
-    """Return `value` if it is one of `names`, or raise with the nearest names; up to twenty are listed all."""
+    """Return `value` if it is one of `names`; else raise with the nearest names, or with all names up to twenty."""
     instance(name, value, str, "a name")
     names = sorted(names)
     if value in names:
@@ -180,7 +180,7 @@ def writing(path: Path, name: Callable[[Path], str] | None = None) -> Iterator[P
 
 
 def coordinates(name: str, values: object, unit: str = "m") -> FloatArray:
-    """Return `values` as a one-dimensional float array, or raise if it is empty, not numbers, or not finite."""
+    """Return `values` as a one-dimensional float array; raise if they are empty, not numbers, or not finite."""
     try:
         if np.asarray(values).dtype.kind not in REAL_KINDS:
             raise TypeError

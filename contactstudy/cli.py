@@ -54,12 +54,12 @@ def main(arguments: Sequence[str] | None = None, *, solver: Solver | None = None
         return USAGE
     except KeyboardInterrupt as interrupt:
         if arguments is None and threading.current_thread() is threading.main_thread():
-            signal.signal(signal.SIGINT, signal.SIG_IGN)  # the process ends: more of them would break off the ending
+            signal.signal(signal.SIGINT, signal.SIG_IGN)  # further signals would interrupt the cleanup
         message = str(interrupt) or "interrupted; finished cases are kept, the same command goes on"
         print(f"contactstudy: {message}", file=sys.stderr)
         return 128 + (interrupt.signal_number if isinstance(interrupt, Terminated) else signal.SIGINT)
     except BrokenPipeError:
-        # Python flushes the output once more at its end, and would complain.
+        # Otherwise Python would flush the closed output at exit, and fail.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 128 + signal.SIGPIPE
     return code
@@ -71,7 +71,7 @@ def _print(lines: Iterable[str]) -> None:
 
 
 def _study(options: argparse.Namespace) -> Study:
-    """Read a study; a very large one needs a confirmation."""
+    """Read a study; a very large study needs a confirmation."""
     from contactstudy.study import Study
 
     study = Study.from_toml(options.path)
@@ -118,7 +118,7 @@ def _rerun(options: argparse.Namespace, solver: Solver | None) -> int:
 
 
 def _finish(report: RunReport, *, figure: bool) -> int:
-    """Write summary and figures, then print the result of a run: files are complete even if the output is closed."""
+    """Write summary and figures, then print the result of a run, so that files are complete if the output is closed."""
     from contactstudy.study.report import format_path, run_lines, stale_lines
 
     lines: list[str] = []
@@ -180,7 +180,7 @@ def _plan(options: argparse.Namespace, solver: Solver | None) -> int:
     shape = " x ".join(f"{dim} {size}" for dim, size in zip(plan.cube.dims, plan.cube.shape, strict=True))
     print(f"{len(plan)} cases ({shape})")
     _print([*state_lines(states, everything=options.all), *forecast_lines(states)])
-    return ALL_OK if plan.unique else USAGE  # as `run`, which refuses it
+    return ALL_OK if plan.unique else USAGE  # `run` also refuses a study without cases to solve
 
 
 def _status(options: argparse.Namespace, solver: Solver | None) -> int:
@@ -265,7 +265,7 @@ def _verify(options: argparse.Namespace, solver: Solver | None) -> int:
     return ALL_OK if verification.passed else SOME_FAILED
 
 
-Action = Callable[[argparse.Namespace, "Solver | None"], int]  # Takes the arguments of a command; the exit code
+Action = Callable[[argparse.Namespace, "Solver | None"], int]  # Runs a command from its options; returns the exit code
 
 
 def command_parser() -> argparse.ArgumentParser:

@@ -14,7 +14,7 @@ class ContactStudyError(Exception):
 
 
 class FilmError(ContactStudyError):
-    """No film separates the surfaces, or the iteration for it does not converge."""
+    """No film separates the surfaces, or the film's iteration does not converge."""
 
 
 class InvalidInputError(ContactStudyError, ValueError):
@@ -52,7 +52,7 @@ class InvalidInputError(ContactStudyError, ValueError):
 
 
 def _format_value(value: Any) -> str:
-    """Return a value on one short line: of an array its kind and shape; a lazy array is not computed."""
+    """Return the text of a value on one short line; for an array, type and shape, without computing a lazy array."""
     try:
         shape, dtype = getattr(value, "shape", None), getattr(value, "dtype", None)
         if isinstance(value, type):  # a class has the attributes of its instances
@@ -68,7 +68,7 @@ def _format_value(value: Any) -> str:
         else:
             unit = getattr(value, "attrs", {}).get("units")
             text = repr(value.item()) + (f" {unit}" if isinstance(unit, str) else "")
-    except (ValueError, RecursionError):  # a whole number of thousands of digits, tables within tables
+    except (ValueError, RecursionError):  # a whole number of thousands of digits, or deeply nested tables
         text = f"a {type(value).__name__} that is too large to show"
     return text if len(text) <= 120 else text[:117] + "..."
 
@@ -90,7 +90,7 @@ class WindowError(ContactStudyError):
 
 
 class Terminated(KeyboardInterrupt):
-    """SIGTERM or SIGHUP ended a run; the cleanup equals that of Ctrl-C."""
+    """SIGTERM or SIGHUP ended a run; the cleanup is the same as after Ctrl-C."""
 
     signal_number = 15
 

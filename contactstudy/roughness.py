@@ -26,7 +26,7 @@ from contactstudy.profiles.column_files import (
 )
 from contactstudy.profiles.instruments import Heights, is_instrument_file, read_heights, rotate_heights
 
-COORDINATE_TOLERANCE = 1e-3  # Difference of equal cells, over a cell. Accuracy
+COORDINATE_TOLERANCE = 1e-3  # Largest difference of positions that count as equal, over a cell. Accuracy
 
 
 def _height_map(grid: Grid, heights: FloatArray, source: str) -> xr.DataArray:
@@ -130,8 +130,8 @@ def read_height_map(
         x3p or a format of SurfaceTopography, with the extra `measured`. Coordinates are the grid's.
     grid : Grid
         Cells; their centres must lie within the measured area. Between measured points heights are interpolated
-        linearly along both axes. Cells wider than the steps of the measurement leave fine waves out or fold them
-        into long ones: filter the map before.
+        linearly along both axes. Cells wider than the steps of the measurement leave fine waves out or fold fine waves
+        into long waves: filter the map before.
     remove_slope : bool
         Whether the plane that fits the measured heights best is taken off.
     remove_form : bool
@@ -140,8 +140,8 @@ def read_height_map(
     turn : {0, 90, 180, 270}
         Degrees by which the part is turned about the axis of the heights, from x to y.
     mirror : bool
-        Whether the y axis points the other way, after the turn: z points into the body, so an instrument's y of its
-        surface runs against this one; the roller's does not.
+        Whether to reverse the y axis after the turn: z points into the body, so the instrument's y of the body's
+        surface is opposite to the grid's y; the instrument's y of the roller's surface is not.
     corner : tuple of float, optional
         Position of the first point along x and y, metres, after turning. Default: the file's
         position, mostly (0, 0) for an instrument.
@@ -157,7 +157,7 @@ def read_height_map(
         If the file cannot be read, has other columns or units, gaps, missing, repeated or infinite values (with
         their places), or does not cover the grid.
     ContactStudyError
-        If the file needs the extra `measured`, and that is not installed.
+        If the file needs the extra `measured`, which is not installed.
     """
     path = Path(path)
     checks.instance("grid", grid, Grid, "a Grid")
@@ -204,7 +204,7 @@ def heights_on(grid: Grid, heights: xr.DataArray) -> FloatArray:
     Warns
     -----
     MagnitudeWarning
-        If the heights from peak to valley are of a size that is mostly a mistake in the unit.
+        If the heights from peak to valley have a size that suggests a wrong unit.
 
     Examples
     --------
@@ -246,7 +246,7 @@ def _interpolate(x: FloatArray, y: FloatArray, heights: FloatArray, grid: Grid) 
 
 def _form(x: FloatArray, y: FloatArray, heights: FloatArray, order: int) -> FloatArray:
     """Polynomial of the least squares, with all terms up to an order."""
-    # Over -1 to 1 the normal equations of so few terms lose two digits at most, and need no array per term.
+    # Normal equations need no array per term, and with few terms over -1 to 1 lose at most two digits.
     along_x, along_y = (
         np.polynomial.legendre.legvander(np.interp(axis, axis[[0, -1]], [-1.0, 1.0]), order) for axis in (x, y)
     )
@@ -261,7 +261,7 @@ def _form(x: FloatArray, y: FloatArray, heights: FloatArray, order: int) -> Floa
 
 
 def _read_csv(path: Path) -> Heights:
-    """Positions along x and y and heights ``(x, y)`` from a table of points, NaN without a point."""
+    """Positions along x and y and heights ``(x, y)`` from a table of points; NaN where the table lacks a point."""
     columns = read_columns(path, ("x", "y"), ("height",))
     for name in ("x", "y"):
         checks.coordinates(name, columns[name])

@@ -180,7 +180,7 @@ def orthogonal_shear_range(stress: xr.Dataset) -> xr.Dataset:
     -------
     Dataset
         Without the rolling dimension: `orthogonal_shear_range` (Pa), the largest minus the smallest `tau_yz` along
-        y; `orthogonal_shear_amplitude` (Pa), half of it, the amplitude of Lundberg and Palmgren's theory; and the
+        y; `orthogonal_shear_amplitude` (Pa), half the range, the amplitude of Lundberg and Palmgren's theory; and the
         positions (metres) `y_of_largest_shear` and `y_of_smallest_shear`.
 
     Raises

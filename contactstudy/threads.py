@@ -15,6 +15,6 @@ def _controller() -> ThreadpoolController:
 
 
 def one_blas_thread() -> AbstractContextManager[object]:
-    """Keep BLAS on one thread: the products here are many and small, and waiting for a second thread costs more."""
+    """Keep BLAS on one thread: for many small products, waiting for a second thread costs more than it saves."""
     limit: AbstractContextManager[object] = _controller().limit(limits=1, user_api="blas")
     return limit

@@ -22,7 +22,7 @@ def version_of(package: str) -> str:
 
 @cache
 def versions() -> dict[str, str]:
-    """Versions of this package, of Python, and of the packages that a number depends on."""
+    """Versions of this package, of Python, and of the packages on which results depend."""
     base = {"contactstudy": version_of("contactstudy"), "python": platform.python_version()}
     return base | {package: version_of(package) for package in PACKAGES}
 

@@ -29,7 +29,7 @@ from contactstudy.profiles.base import describe_profile
 
 
 def dimension_along(array: xr.DataArray, axis: str) -> str:
-    """Return the dimension of an array along an axis: the name of the axis, or one with this prefix, as ``x_field``.
+    """Return the dimension of an array along an axis: named after the axis, or with this prefix, as ``x_field``.
 
     Parameters
     ----------
@@ -55,7 +55,7 @@ def dimension_along(array: xr.DataArray, axis: str) -> str:
 
 
 def axis_dimensions(array: xr.DataArray) -> dict[str, str]:
-    """Return the axes along which an array extends, with its dimensions."""
+    """Return the dimensions of an array by the axis along which they extend."""
     axes = [axis for axis in AXES if any(dim == axis or str(dim).startswith(f"{axis}_") for dim in array.dims)]
     return {axis: dimension_along(array, axis) for axis in axes}
 
@@ -73,7 +73,7 @@ def positions(array: xr.DataArray, axis: str) -> xr.DataArray:
     Returns
     -------
     DataArray
-        Along the dimension of the axis, and those of the study if its cases differ.
+        Along the dimension of the axis, and along the study's dimensions if its cases have different positions.
 
     Raises
     ------
@@ -158,7 +158,7 @@ def single_case(dataset: xr.Dataset) -> xr.Dataset:
         if name not in case.coords or case[name].dims != (dim,):
             raise InvalidInputError("dataset", dict(case.sizes), "a single case", f"with the positions {name}")
         finite = np.flatnonzero(np.isfinite(case[name].values))
-        # A case without stresses lacks finite positions.
+        # A case without stresses has no finite positions of stresses.
         case = case.isel({dim: finite}).swap_dims({dim: name}) if finite.size else case.drop_dims(dim)
     if "x_field" in case.coords and case["x_field"].dims == ("x",):
         # Stresses that share an axis with the pressure move to their own positions.
@@ -178,7 +178,7 @@ def single_case(dataset: xr.Dataset) -> xr.Dataset:
 def reduce_dims(
     function: Callable[..., tuple[Array, ...]], arguments: Sequence[tuple[xr.DataArray, Sequence[str]]], outputs: int
 ) -> tuple[xr.DataArray, ...]:
-    """Apply a function that reduces the last axes of its arrays to two or more arrays of floats; dask stays lazy."""
+    """Apply a function that reduces the last axes of arrays; return its two or more outputs; dask stays lazy."""
     results: tuple[xr.DataArray, ...] = xr.apply_ufunc(
         function,
         *(array for array, _ in arguments),
@@ -209,7 +209,7 @@ def normalized(dataset: xr.Dataset) -> xr.Dataset:
     Dataset
         The same variables; each variable with a unit in `POWERS` is divided by its scale, has the unit ``1``, and names
         the scale. `hertz_half_width` and `hertz_max_pressure` stay in SI; so do swept parameters, and positions in
-        metres that cases of different a share: use the coordinates ``x_over_a`` and similar for these.
+        metres that cases of different a share: use the coordinates ``x_over_a`` and similar instead.
 
     Raises
     ------
@@ -225,13 +225,13 @@ def normalized(dataset: xr.Dataset) -> xr.Dataset:
     (2.0, 2.0, '1')
     """
     require(dataset, *SCALES)
-    # Variables instead of arrays: no alignment, and the positions change as well.
+    # Divide variables, not arrays: arrays would be aligned by their positions, which change as well.
     half_width, max_pressure = (dataset[name].variable for name in SCALES)
 
     def scaled(array: xr.DataArray, specification: Variable) -> xr.Variable:
         length_power, pressure_power = POWERS[specification.units]
         result = array.variable / (half_width**length_power * max_pressure**pressure_power)
-        # Dimensions of the study precede, as in the result.
+        # Dimensions of the study come first, as in the result.
         result = result.transpose(*(dim for dim in result.dims if dim not in array.dims), *array.dims)
         length_scale = [f"a**{length_power}"] if length_power > 1 else ["a"] * length_power
         scale = " ".join(["p0"] * pressure_power + length_scale)  # such as p0 a**2

@@ -1,6 +1,6 @@
 """Edges of a contact to a few hundredths of a cell: half-width, length and area.
 
-The squared pressure inside a smooth edge and the gap to the power 2/3 outside are linear in the distance from it
+The squared pressure inside a smooth edge and the gap to the power 2/3 outside are linear in the distance from the edge
 (K. L. Johnson, Contact Mechanics, 1985, section 5.1): the edge is the mean of the zeros of quadratics fitted to both.
 """
 
@@ -17,7 +17,7 @@ from contactstudy.arrays.variables import describe, name_array, require, require
 from contactstudy.checks import Array, FloatArray, IntArray
 from contactstudy.errors import InvalidInputError
 
-SKIPPED_CELLS, FITTED_CELLS = 2, 5  # Cells next to an edge, with the error of the cut cell; following cells in the fit
+SKIPPED_CELLS, FITTED_CELLS = 2, 5  # Cells next to an edge that the fit omits, as inaccurate; next cells, in the fit
 # Largest error of an edge in cells, measured on Hertz contacts at all positions of the edge in a cell
 EDGE_UNCERTAINTY = 0.04
 
@@ -36,7 +36,7 @@ def contact_borders(pressure: Array, centres: Array, gap: Array | None = None) -
 
 
 def _last_edges(pressure: FloatArray, gap: FloatArray) -> FloatArray:
-    """Last edge of each row, in cells from the centre of the first; NaN without contact."""
+    """Last edge of each row, in cells from the centre of the first cell; NaN without contact."""
     edges = np.full(pressure.shape[0], np.nan)
     rows = np.flatnonzero(pressure.any(axis=1))
     last_loaded = pressure.shape[1] - 1 - (pressure[rows, ::-1] > 0).argmax(axis=1)
@@ -45,7 +45,7 @@ def _last_edges(pressure: FloatArray, gap: FloatArray) -> FloatArray:
     gap_root = _samples(gap[rows], begin_outside, 1) ** (2 / 3)
     face = last_loaded + 0.5
     estimates = np.stack([begin_inside + _distance_to_zero(p_squared), begin_outside - _distance_to_zero(gap_root)])
-    # A contact of fewer than 7 cells has the estimate from the gap alone.
+    # For a contact of fewer than 7 cells the gap alone determines the edge.
     is_valid = np.abs(estimates - face) <= 1
     total = np.where(is_valid, estimates, 0.0).sum(axis=0)
     edges[rows] = np.where(is_valid.any(axis=0), total / np.maximum(is_valid.sum(axis=0), 1), face)
@@ -113,7 +113,7 @@ def contact_edges(dataset: xr.Dataset) -> xr.Dataset:
     x_first = x_last = np.nan
     if has_contact and grid.uniform:
         starts, stops = contact_borders(pressure.T, grid.x, gap.T)
-        # A smooth end is not beyond the face of the shape or the body.
+        # A smooth end lies within the face of the shape or the body.
         under_roller = np.flatnonzero(np.isfinite(gap).any(axis=1))
         x_first = float(max(np.nanmin(starts), cell_edges[under_roller[0]]))
         x_last = float(min(np.nanmax(stops), cell_edges[under_roller[-1] + 1]))
@@ -136,7 +136,7 @@ def contact_edges(dataset: xr.Dataset) -> xr.Dataset:
 
 
 def _area(grid: Grid, gap: FloatArray, width: FloatArray, ends: tuple[float, float]) -> float:
-    """Integral of the width over x: a spline of its square, which is smooth at the ends."""
+    """Integral of the width over x, by a spline of the squared width, which is smooth at the ends."""
     first, last = ends
     columns = np.flatnonzero(np.isfinite(width))
     if np.any(np.diff(columns) > 1):
@@ -145,10 +145,10 @@ def _area(grid: Grid, gap: FloatArray, width: FloatArray, ends: tuple[float, flo
         int(0 <= neighbour < grid.cells_x and np.isfinite(gap[neighbour]).any())
         for neighbour in (columns[0] - 1, columns[-1] + 1)
     ]
-    # Columns near an end that are too narrow for the fits would spoil the spline, which has the zero of a smooth end.
+    # Omit columns near an end whose contact is too narrow for the fits; the zero at a smooth end replaces them.
     wide = columns[width[columns] > 2 * (SKIPPED_CELLS + FITTED_CELLS) * grid.dy]
     columns = columns[(columns >= wide[0]) & (columns <= wide[-1])] if wide.size > 3 else columns
-    # The border within an outermost column may lie short of its centre.
+    # The border within an outermost column may not reach the column's centre.
     columns = columns[(grid.x[columns] > first) & (grid.x[columns] < last)]
     if columns.size < 2:
         return float(np.nansum(width * grid.widths))
@@ -276,7 +276,7 @@ def half_width(dataset: xr.Dataset) -> xr.Dataset:
     Returns
     -------
     Dataset
-        Along x: `half_width` (m; 0 without contact) and `contact_middle` (m, its y; NaN without contact).
+        Along x: `half_width` (m; 0 without contact) and `contact_middle` (m, y of the middle; NaN without contact).
 
     Raises
     ------
@@ -311,7 +311,7 @@ def unloaded_gap(dataset: xr.Dataset) -> xr.DataArray:
     Returns
     -------
     DataArray
-        The smallest across y, m; NaN beyond the roller's ends.
+        Smallest gap across y, m; NaN beyond the roller's ends.
 
     Raises
     ------

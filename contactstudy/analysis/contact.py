@@ -1,4 +1,4 @@
-"""Scalars of a contact on its cells: area, length, edge pressures, resultant and its position; cut ends."""
+"""Scalars of a contact on its cells: area, length, edge pressures, resultant, position of the load; cut ends."""
 
 from __future__ import annotations
 
@@ -25,8 +25,8 @@ from contactstudy.arrays.variables import name_array, require_in_si, variable_of
 from contactstudy.checks import Array
 from contactstudy.errors import InvalidInputError
 
-MISSING_LOAD = 0.01  # Relative load below which a Dataset is a part of a contact
-END_TOLERANCE = 1e-6  # Distance of a border of the cells from the end of the contact, over a cell, that is rounding
+MISSING_LOAD = 0.01  # Fraction of the load that a part of a contact lacks at least
+END_TOLERANCE = 1e-6  # Largest distance, over a cell, of a border of the cells that is at an end of the contact
 
 
 class ContactNumbers(NamedTuple):
@@ -35,7 +35,7 @@ class ContactNumbers(NamedTuple):
     contact_area: Array  # m2
     contact_length: Array  # m
     contact_width: Array
-    contact_length_loss: Array  # m, facing length without contact
+    contact_length_loss: Array  # m, part of the facing length without contact
     resultant: Array  # N
     load_position: Array  # m, along x
     mid_position: Array  # m
@@ -44,7 +44,7 @@ class ContactNumbers(NamedTuple):
 def contact_numbers(pressure: Array, under_roller: Array, x: Array, y: Array, dx: Array, dy: Array) -> ContactNumbers:
     """Return the scalars of pressures (..., x, y), with `under_roller`, `x`, `dx` (..., x), and `y`, `dy` (..., y)."""
     has_pressure = np.asarray(~np.isnan(pressure).all(axis=(-2, -1)))
-    # A failed case lacks positions.
+    # A failed case has no finite positions.
     x, y, dx, dy = (np.where(has_pressure[..., None], values, 0.0) for values in (x, y, dx, dy))
     loaded = np.asarray(pressure > 0)
 
@@ -158,7 +158,7 @@ def edge_pressure(dataset: xr.Dataset) -> xr.Dataset:
     -------
     Dataset
         `edge_pressure_first` and `edge_pressure_last`, Pa: means of a cell, which depend on the cells. Infinite where
-        `end_pressure_first` or `end_pressure_last` of a result is; NaN without contact, and at a cut end.
+        `end_pressure_first` or `end_pressure_last` is infinite; NaN without contact, and at a cut end.
 
     Raises
     ------
@@ -175,7 +175,7 @@ def edge_pressure(dataset: xr.Dataset) -> xr.Dataset:
     axial = sort_positions(axial_pressure(dataset), "x")
 
     def first_and_last(values: Array) -> tuple[Array, Array]:
-        """First and last positive number along the last axis; NaN without one."""
+        """First and last positive number along the last axis; NaN without a positive number."""
         is_loaded = values > 0
         indices = is_loaded.argmax(axis=-1), values.shape[-1] - 1 - is_loaded[..., ::-1].argmax(axis=-1)
         first_values, last_values = (np.take_along_axis(values, index[..., None], axis=-1)[..., 0] for index in indices)
@@ -186,7 +186,7 @@ def edge_pressure(dataset: xr.Dataset) -> xr.Dataset:
     edges = {}
     for end, value, is_cut in zip(("first", "last"), values, cut_ends(dataset), strict=True):
         edge_value = value.where(is_cut == 0)
-        # The mean of a cell at a singular end depends on the cell only.
+        # At a singular end the mean of a cell tells only the size of the cell.
         is_singular = np.isinf(dataset.get(f"end_pressure_{end}", xr.DataArray(0.0)))
         edges[f"edge_pressure_{end}"] = name_array(
             f"edge_pressure_{end}", edge_value.where(~is_singular | edge_value.isnull(), np.inf)
@@ -196,7 +196,7 @@ def edge_pressure(dataset: xr.Dataset) -> xr.Dataset:
 
 
 def cut_ends(dataset: xr.Dataset) -> tuple[xr.DataArray, xr.DataArray]:
-    """Return whether the contact continues beyond the first and the last x, as in a part of a result: 1, otherwise 0.
+    """Return 1 where the contact continues beyond the first or the last x, as in a part of a result, otherwise 0.
 
     The pressure of a part carries less than the load, and reaches a border of the cells inside the contact's range,
     which follows from the inputs of `solve`, else begins at x = 0.
@@ -252,7 +252,7 @@ def _find_cuts(
     resultant = np.nansum(pressure * dx[..., :, None] * dy[..., None, :], axis=(-2, -1))
     is_gap = np.abs(np.diff(x, axis=-1) - 0.5 * (dx[..., 1:] + dx[..., :-1])) > END_TOLERANCE * dx[..., 1:]
     in_contact = pressure > 0
-    # A cut along y, or cells left out, also reduce the resultant.
+    # The load alone is not enough: a cut along y, or omitted cells, also reduce the resultant.
     cut = (resultant < (1 - MISSING_LOAD) * load) & ~in_contact[..., [0, -1]].any(axis=(-2, -1)) & ~is_gap.any(axis=-1)
 
     def select_end(values: Array, *, first: bool) -> Array:
@@ -331,11 +331,11 @@ def _values(dataset: xr.Dataset, variable: str, reach: xr.DataArray | float) -> 
     x, sample_x = dimension_along(profile, "x"), positions(profile, "x")
     loaded_x = positions(axial, "x").where(axial > 0)
     loaded_range = loaded_x.min(dimension_along(axial, "x")), loaded_x.max(dimension_along(axial, "x"))
-    # A cut end has no border.
+    # At a cut end the border of the contact is unknown.
     borders = [border.where(cut == 0).compute() for border, cut in zip(loaded_range, cut_ends(dataset), strict=True)]
     values = {}
     for side, border in zip(("first", "last"), borders, strict=True):
-        # Distance of a point beyond the reach of an end, over the reach, that is rounding
+        # The factor allows for rounding of a point's distance.
         value = profile.where(abs(sample_x - border) <= reach * (1 + 1e-9)).max(x)
         # Beside a singular end pressure and stress are unbounded.
         is_singular = np.isinf(dataset.get(f"end_pressure_{side}", xr.DataArray(0.0)))
@@ -343,6 +343,6 @@ def _values(dataset: xr.Dataset, variable: str, reach: xr.DataArray | float) -> 
     distance = abs(sample_x - 0.5 * (borders[0] + borders[1]))
     nearest = distance.fillna(np.inf).argmin(x)
     width = cell_size(profile, "x")
-    # Positions beyond the points have no value.
+    # A mid-length beyond the points has no value.
     is_within = distance.min(x) <= (width.isel({x: nearest}) if x in width.dims else width)
     return values | {"middle": profile.isel({x: nearest}).where(is_within), "peak": profile.max(x)}

@@ -18,7 +18,7 @@ from contactstudy.errors import InvalidInputError
 def fields_on_same_points(
     dataset: xr.Dataset, variables: str | Sequence[str] | None, *, along: Sequence[str] = ()
 ) -> dict[str, xr.DataArray]:
-    """Return fields on the same points, by name; default: those along the axes `along`, in the body or on its top."""
+    """Return fields on the same points, by name; default: fields along the axes `along`, in the body or on its top."""
     if variables is not None:
         names = [variables] if isinstance(variables, str) else list(variables)
         fields = {name: measure(dataset, name) for name in names}
@@ -36,7 +36,7 @@ def fields_on_same_points(
 
 
 def points_hint(arrays: dict[str, xr.DataArray]) -> str:
-    """Return the variables grouped by their points, as a hint."""
+    """Return the text of a hint: the variables, grouped by their points."""
     groups: dict[tuple[str, ...], list[str]] = {}
     for name, array in arrays.items():
         groups.setdefault(tuple(map(str, array.dims)), []).append(name)
@@ -116,7 +116,7 @@ def in_plane(
     z: float | None = None,
     variables: str | Sequence[str] | None = None,
 ) -> xr.Dataset:
-    """Return fields in a plane ``x``, ``y`` or ``z`` = const, linearly interpolated between the two nearest ones.
+    """Return fields in a plane ``x``, ``y`` or ``z`` = const, by linear interpolation between the nearest points.
 
     Parameters
     ----------
@@ -161,7 +161,7 @@ def in_plane(
 def _clip_rounding(name: str, values: FloatArray, points: FloatArray) -> FloatArray:
     """Values clipped to the range of `points` within rounding; raise for values outside."""
     low, high = float(points.min()), float(points.max())
-    # Distance beyond the points of a result, over their range, that is rounding
+    # Distance beyond the points of a result, over the range of the points, that counts as rounding
     rounding = 1e-9 * max(high - low, abs(high), abs(low))
     is_outside = (values < low - rounding) | (values > high + rounding)
     if is_outside.any():
@@ -171,7 +171,7 @@ def _clip_rounding(name: str, values: FloatArray, points: FloatArray) -> FloatAr
 
 
 def _interpolate(array: xr.DataArray, targets: dict[str, xr.DataArray]) -> xr.DataArray:
-    """Linear interpolation along the axes of `targets`, which may share a new dimension and replace its coordinates."""
+    """Interpolate linearly along the axes of `targets`, which may share a new dimension; they become coordinates."""
     line_targets, axes, attributes = {}, axis_dimensions(array), array.attrs
     for axis, target in targets.items():
         if axis not in axes:
@@ -189,6 +189,6 @@ def _interpolate(array: xr.DataArray, targets: dict[str, xr.DataArray]) -> xr.Da
             upper_index = int(np.clip(np.searchsorted(values, position), 1, values.size - 1))
             weight = float((position - values[upper_index - 1]) / (values[upper_index] - values[upper_index - 1]))
             lower, upper = (array.isel({dim: index}, drop=True) for index in (upper_index - 1, upper_index))
-            # At a plane itself the neighbouring plane, which may be infinite, has zero weight.
+            # At a plane of points the neighbouring plane has zero weight, but its values may be infinite.
             array = lower if weight == 0 else upper if weight == 1 else (1 - weight) * lower + weight * upper
     return (array.interp(line_targets) if line_targets else array).assign_attrs(attributes).reset_coords(drop=True)

@@ -11,11 +11,11 @@ from contactstudy.arrays.variables import describe
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 
-# Assumed orders of convergence, of extrapolated end pressures the second. Accuracy: below the measured ones, 1.5 to 2
-# for smooth pressures and 0.86 at a flush end, so the estimate is conservative
+# Assumed orders of convergence: of all values, and of extrapolated end pressures. Accuracy: measured orders are higher,
+# 1.5 to 2 for smooth pressures and 0.86 at a flush end, so the estimate is conservative
 ASSUMED_ORDER, END_ORDER = 1.0, 0.8
 FITTED_COLUMNS = 3  # Columns of cells in the extrapolation to the end of the shape
-RESOLVED_TURN = 0.9  # Largest turn of the shape between columns (`_largest_turn`) that resolves a peak
+RESOLVED_TURN = 0.9  # Largest turn of the shape between columns (`_largest_turn`) at which the columns resolve a peak
 ENDS = "end_pressure_first", "end_pressure_last"
 PRESSURES = "peak_pressure", *ENDS
 
@@ -73,7 +73,7 @@ def discretisation_error(fine: xr.Dataset, coarse: xr.Dataset) -> xr.Dataset:
             "coarse", f"{coarse_cells} cells", f"fewer in each direction than the fine grid's {cells}"
         )
     displacement = EDGE_UNCERTAINTY * float(fine["y"][1] - fine["y"][0]) / values["half_width_middle"]
-    # At a pressed end of the shape inside the body's top the pressure has no limit, and then the peak has none.
+    # At a pressed end of the shape inside the body's top the pressure has no limit, so the peak has no limit either.
     axial = fine["pressure"].transpose("x", "y").values.max(axis=1)
     first, last = _shape_columns(fine)
     end_in_contact = (first > 0 and axial[first] > 0, last < axial.size - 1 and axial[last] > 0)
@@ -93,7 +93,7 @@ def discretisation_error(fine: xr.Dataset, coarse: xr.Dataset) -> xr.Dataset:
             return np.inf
         if value == 0 and coarse_value == 0:
             return 0.0
-        # Relative change between two grids without an estimate of the limit
+        # If the grids differ by more than this fraction, they do not allow an estimate of the limit.
         if not (np.isfinite(value) and np.isfinite(coarse_value)) or abs(value - coarse_value) > 0.2 * abs(value):
             return np.inf
         return max(correction(name), displacement * abs(value) if np.isfinite(displacement) else 0.0)
@@ -101,7 +101,7 @@ def discretisation_error(fine: xr.Dataset, coarse: xr.Dataset) -> xr.Dataset:
     errors = {name: estimate(name) for name in values}
     peak = values["peak_pressure"]
     for name in ENDS:
-        # An end below the peak without a limit counts with its correction.
+        # The peak's error covers an end pressure without a limit, if below the peak, by that end's correction.
         error = errors[name] if np.isfinite(errors[name]) or values[name] >= peak else correction(name)
         errors["peak_pressure"] = max(errors["peak_pressure"], values[name] + error - peak)
     result = xr.Dataset()
@@ -127,7 +127,7 @@ def _shape_columns(contact: xr.Dataset) -> tuple[int, int]:
 
 
 def _largest_turn(contact: xr.Dataset) -> float:
-    """Largest turn of the shape between columns, as its pressure over the peak; 0 without pressure."""
+    """Largest turn of the shape between columns, as the pressure that it causes over the peak; 0 without pressure."""
     first_column, last_column = _shape_columns(contact)
     shape = contact["initial_gap"] if "initial_gap" in contact else contact["gap"] - contact["displacement_z"]
     heights = shape.transpose("x", "y").values[first_column : last_column + 1]
@@ -142,7 +142,7 @@ def _largest_turn(contact: xr.Dataset) -> float:
     curvature = 2 * (heights[mid_column, farthest_row] - heights[mid_column, top]) / (y[farthest_row] - y[top]) ** 2
     if not (curvature > 0 and axial[mid_column] > 0):
         return 0.0
-    # Of the middle column, p = E* a / (2 R), w = pi p a / 2. A turn causes a pressure of modulus times angle.
+    # In the middle column, p = E* a / (2 R) and w = pi p a / 2. A turn causes a pressure of modulus times angle.
     pressure_per_angle = np.pi * axial[mid_column] ** 2 / (curvature * pressure[mid_column].sum() * (y[1] - y[0]))
     # Far from the contact the displacement of an elastic roller varies little between columns.
     turns = np.pad(np.abs(np.diff(np.diff(heights[:, farthest_row]) / np.diff(x))), 1, mode="edge")
@@ -179,7 +179,7 @@ def _quantities(name: str, contact: xr.Dataset) -> dict[str, float]:
 
 
 def _end_pressure(columns: FloatArray) -> float:
-    """Pressure half a cell before the first of neighbouring columns, by a parabola; 0 if that column is open."""
+    """Pressure half a cell before the first column, extrapolated by a parabola; 0 if the first column is open."""
     if columns[0] == 0:
         return 0.0
     loaded = columns[: int((columns > 0).cumprod().sum())]

@@ -1,4 +1,4 @@
-"""Stress measures and their largest values: of the samples, and between them with an estimated error.
+"""Stress measures and their largest values: at the samples, or between samples with an estimated error.
 
 Polynomials through the samples about the largest one interpolate the six components, from which the measure follows.
 The error estimate is the difference from polynomials of lower degree.
@@ -38,8 +38,8 @@ from contactstudy.stress import (
 )
 
 NEIGHBOURS = 2  # Samples on either side of the largest one in the polynomial
-# Largest distance of samples over the length of variation of the pressure above. Accuracy: polynomials miss up to 2 %
-# more than they state at 0.5, 8 % at 1, 14 % at 1.5
+# Largest distance of samples over the length on which the pressure above varies. Accuracy: the error exceeds the stated
+# error by up to 2 % of the value at a ratio of 0.5, 8 % at 1, 14 % at 1.5
 MAX_SPACING_RATIO = 0.5
 SINGULAR = "the pressure is singular at an end, and so is the stress"
 
@@ -123,7 +123,7 @@ def largest_sample(dataset: xr.Dataset, variable: str = "von_mises", *, along: s
     variable : str
         A variable or a measure, see :func:`measure`: `pressure`, `von_mises`, `principal_stress_1` ...
     along : {"x", "y", "z"}, optional
-        Axis of the result: the largest value in each section perpendicular to it. Default: one value.
+        Axis of the result: the largest value in each section perpendicular to this axis. Default: one value.
 
     Returns
     -------
@@ -163,7 +163,7 @@ def largest_sample(dataset: xr.Dataset, variable: str = "von_mises", *, along: s
 
 
 def _maximum(values: Array, *coordinates: Array) -> tuple[Array, ...]:
-    """Largest number over the last axes, one for each of `coordinates`, and its position; NaN without a number."""
+    """Largest number over the last axes, which `coordinates` belong to, and its position; NaN without a number."""
     lead_shape, shape = values.shape[: values.ndim - len(coordinates)], values.shape[values.ndim - len(coordinates) :]
     flat = values.reshape(*lead_shape, -1)
     index = np.where(np.isnan(flat), -np.inf, flat).argmax(axis=-1)
@@ -232,14 +232,14 @@ def peak(dataset: xr.Dataset, variable: str = "von_mises") -> xr.Dataset:
     samples = measure(case, variable)
     result = interpolated_peak(case, components, samples, lambda stresses: measure(stresses, variable))
     if "pressure" in case and result.position.get("z") == 0:
-        # At the border of the contact a measure may have a kink next to much larger values.
+        # At the border of the contact a measure may have a kink, and nearby values may be much larger.
         excess = result.value - float(samples.max()) + TOP_ERROR * (float(abs(samples).max()) - abs(result.value))
         result = result._replace(error=result.error + max(excess, 0.0))
     return label_peak(variable, result, variable_of(variable, samples.attrs))
 
 
 def interpolated_peak(case: xr.Dataset, components: list[str], samples: xr.DataArray, evaluate: Measure) -> Peak:
-    """Return the largest value of a measure between its samples; dimensions that these lack are not interpolated."""
+    """Return the largest value of a measure between its samples; only dimensions of the samples are interpolated."""
     dims = axis_dimensions(samples)
     if np.isnan(samples.values).all():
         raise InvalidInputError(str(samples.name), "nan everywhere", "a field with at least one number")
@@ -248,7 +248,7 @@ def interpolated_peak(case: xr.Dataset, components: list[str], samples: xr.DataA
     axes = {axis: np.asarray(positions(field, axis).values, dtype=np.float64) for axis in dims}
 
     def find_maximum(neighbours: int, stride: int = 1) -> tuple[float, list[float]]:
-        """Largest value between every sample or each second, and its position."""
+        """Largest value, interpolated between samples or between every `stride`-th sample, and its position."""
         indices = [np.arange(axis.size)[i % stride :: stride] for axis, i in zip(axes.values(), index, strict=True)]
         nodes = [axis[axis_indices] for axis, axis_indices in zip(axes.values(), indices, strict=True)]
         nearby = case[components].isel(dict(zip(dims.values(), indices, strict=True))).transpose(*dims.values(), ...)
@@ -270,8 +270,8 @@ def interpolated_peak(case: xr.Dataset, components: list[str], samples: xr.DataA
         error = np.inf
     else:
         if "pressure" not in case:
-            # The samples alone determine whether they are close enough.
-            # Fraction of the change from samples twice as far apart that is error if the pressure is not known
+            # Only the samples themselves show whether they are close enough: the error is at least half of the change
+            # from samples twice as far apart.
             error = max(error, 0.5 * abs(value - find_maximum(NEIGHBOURS, stride=2)[0]))
         if "peak_pressure_error" in case:
             error += abs(value) * float(case["peak_pressure_error"] / case["peak_pressure"])
@@ -312,7 +312,7 @@ def label_largest_stress(
 
 
 def _explain_unbounded(case: xr.Dataset, axes: dict[str, FloatArray], index: tuple[int, ...]) -> str:
-    """Reason why the largest sample does not bound the largest value, or empty."""
+    """Reason why the largest value may exceed the samples without limit; empty if none."""
     if "peak_pressure" in case and np.isinf(float(case["peak_pressure"])):
         return SINGULAR
     extent = _extent(case)
@@ -326,7 +326,7 @@ def _explain_unbounded(case: xr.Dataset, axes: dict[str, FloatArray], index: tup
 
 
 def _explain_unresolved(case: xr.Dataset, axes: dict[str, FloatArray], sample: dict[str, float]) -> str:
-    """Location with too coarse samples for the pressure above, at its peak and at the largest sample, or empty."""
+    """Text on where samples are too coarse for the pressure above: at its peak or at the largest sample; or empty."""
     if not {"pressure", "x", "y"} <= {str(name) for name in case.variables} or case["y"].size < 2:
         return ""
     pressure, x = case["pressure"].transpose("x", "y").values, case["x"].values
@@ -338,7 +338,7 @@ def _explain_unresolved(case: xr.Dataset, axes: dict[str, FloatArray], sample: d
     column = int(np.where(in_range, axial, -1.0).argmax())
     width = min(variation_lengths(pressure, x, dy, column))
     checked_columns = [(column, {"x": float(x[column])})]
-    # On the flank of the peak the stresses vary as below the peak.
+    # On the flank of the peak the stresses vary as below the peak: check the largest sample only if it is farther away.
     if "x" in sample and abs(sample["x"] - x[column]) > 2 * width:
         checked_columns.append((int(np.abs(x - sample["x"]).argmin()), sample))
     for column, location in checked_columns:
@@ -357,7 +357,7 @@ def _explain_unresolved(case: xr.Dataset, axes: dict[str, FloatArray], sample: d
 
 
 def _distance(points: FloatArray, position: float) -> float:
-    """Larger distance to the neighbours of the point nearest to a position; 0 of a single point."""
+    """Larger of the distances from the point nearest to a position to its neighbours; 0 for a single point."""
     if points.size < 2:
         return 0.0
     nearest = int(np.abs(points - position).argmin())

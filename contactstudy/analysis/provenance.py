@@ -22,7 +22,7 @@ from contactstudy.versions import versions
 
 # Attributes: case and settings; versions, date and times, also in files of a study; definition of a study
 INPUTS_ATTRIBUTE, RUN_ATTRIBUTE, STUDY_ATTRIBUTE = "contactstudy_inputs", "contactstudy_run", "contactstudy_study"
-# Differences of equal numbers, relative and in SI: a solved load has the tolerance of the iteration
+# Largest differences of equal numbers, relative and in SI: a solved load is accurate to the iteration's tolerance
 RELATIVE_TOLERANCE, ABSOLUTE_TOLERANCE = 1e-6, 1e-15
 # Values of a case that follow from the solution unless the case prescribes them
 DEPENDENT_INPUTS = ("approach", "load_position", "load", "tilt")
@@ -69,7 +69,7 @@ def attribute(dataset: xr.Dataset, name: str) -> dict[str, Any]:
 
 
 def _without_malformed(table: dict[str, Any]) -> dict[str, Any]:
-    """Table, and the tables in it, without malformed entries: of a foreign type, no date, no numbers of seconds."""
+    """Table, with its nested tables, without malformed entries: foreign types, invalid dates, invalid seconds."""
     valid_entries = {}
     for name, value in table.items():
         if name in ATTRIBUTE_TYPES and not isinstance(value, ATTRIBUTE_TYPES[name]):
@@ -95,7 +95,7 @@ def solved_case(dataset: xr.Dataset) -> Case:
     Returns
     -------
     Case
-        Equal to the solved one. A profile from outside the package is piecewise linear.
+        Equal to the solved case. A profile from outside the package is piecewise linear.
 
     Raises
     ------
@@ -123,13 +123,13 @@ def solved_case(dataset: xr.Dataset) -> Case:
 def check_solved_for(
     result: xr.Dataset, case_or_body: Case | Body, argument: str = "result", *, only: tuple[str, ...] = ()
 ) -> None:
-    """Raise if the case of a result differs from a case, or its body from a body; `only` names the compared parts."""
+    """Raise if the case (or body) of a result differs from the given case (or body); `only` names compared parts."""
     try:
         stored_case = from_dict(attribute(result, INPUTS_ATTRIBUTE)["case"], Case)
     except (InvalidInputError, KeyError, TypeError):
         return
     if isinstance(case_or_body, Case):
-        # Scalars of a result follow a selection from joined results.
+        # Scalars of the result prevail: unlike the attributes, they follow a selection from joined results.
         variables = {"load": "normal_load", "tilt": "tilt", "friction": "friction"}
         scalars = {
             name: float(result[variable])
@@ -158,7 +158,7 @@ def check_solved_for(
 
 
 def _comparable(case: Case) -> dict[str, Any]:
-    """Values of a case by name, equal for equal contacts however they are prescribed."""
+    """Values of a case by name; cases with equal contacts have equal values, however the contacts are prescribed."""
     values = dict(_leaves(to_dict(case))) | {"end_distance": case.roller_start}
     for name in ("load", "max_pressure"):
         values.pop(name, None)
@@ -183,7 +183,7 @@ def _leaves(entry: Any, name: str = "") -> Iterator[tuple[str, Any]]:
 
 
 def _texts(values: Mapping[str, Any], case_or_body: Case | Body, names: list[str]) -> str:
-    """First three of the named values as text, or the part that contains them."""
+    """Text of the first three named values, or of the part of the case that contains a value."""
     texts: dict[str, str] = {}
     for name in names:
         unit = next((prefix for prefix in CASE_PARTS if name.startswith(prefix)), name)

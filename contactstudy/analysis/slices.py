@@ -33,10 +33,10 @@ from contactstudy.errors import InvalidInputError
 
 SIDES = ("first", "last")  # Halves of the contact, nearer to end I and to end II
 SHEARS = ("von_mises", "maximum_shear", "orthogonal_shear_amplitude")  # Stress measures of a slice
-# Fraction of the pressure's step to the next column that is error of a part's largest pressure. Accuracy: of 801 tables
-# of crowned, straight, tilted, rounded and sharp rollers, 0.3 left 1 uncovered, 0.4 none
+# Error of a part's largest pressure, over the pressure's step to the next column. Accuracy: of 801 tables of crowned,
+# straight, tilted, rounded and sharp rollers, 0.3 left 1 uncovered, 0.4 none
 OPEN_STEP = 0.5
-ROUNDING = 1e-9  # Distance of a stress point beyond a slice, over the length of the roller, that is rounding
+ROUNDING = 1e-9  # Largest distance beyond a slice, over the length of the roller, of a stress point in the slice
 
 
 class Columns(NamedTuple):
@@ -65,7 +65,7 @@ class Columns(NamedTuple):
 
 
 def step_errors(values: FloatArray) -> FloatArray:
-    """Error in each step between values: half the step; at the end of a contact the full step plus the error before."""
+    """Error between each two values: half their step; at the end of a contact, the step plus the error before."""
     steps = np.abs(np.diff(values))
     neighbours = larger_step(OPEN_STEP * steps)
     # A contact may end anywhere up to the middle of the next column.
@@ -84,7 +84,7 @@ def maximum_between(pressure: Columns, borders: FloatArray) -> tuple[FloatArray,
     x, squares = pressure.with_ends(pressure.values**2)
     pressures = np.sqrt(squares)
     steps = step_errors(pressures)
-    # A border has the error of its step, a middle the larger error of both steps.
+    # A border has the error of the step it lies in; a column's middle has the larger error of both steps.
     points = np.concatenate([borders, x])
     values = np.concatenate([np.sqrt(np.interp(borders, x, squares)), pressures])
     step = np.clip(np.searchsorted(x, borders, side="right") - 1, 0, steps.size - 1)
@@ -126,7 +126,7 @@ def border_load_errors(line_load: Columns, borders: FloatArray) -> FloatArray:
         first_column = int(np.searchsorted(high, border, side="left"))
         last_column = min(int(np.searchsorted(low, border, side="right")), low.size - 1)
         # Fraction of the line load's step to the next column that may lie beyond a border. Accuracy: of 629 tables 0.1
-        # left 5 uncovered; at 0.25 the worst error is half of the stated one
+        # left 5 uncovered; at 0.25 the worst error is half of the stated error
         errors[index] = 0.25 * load_errors[max(first_column - 1, 0) : last_column + 1].max()
     return np.asarray(errors[:-1] + errors[1:])
 
@@ -196,7 +196,7 @@ def slices(dataset: xr.Dataset, count: int = 30) -> xr.Dataset:
     edges = np.stack([centres - half_widths, centres + half_widths], axis=-1)
     maxima = section_maxima(case["pressure"].transpose(x, ...).values[under_roller.values])
     pressure, line_load = Columns(edges, centres, maxima), Columns(edges, centres, cells["line_load"].values)
-    # A cell that a border cuts gives each slice its part of the load.
+    # A cell that a border cuts divides its load between both slices.
     weights = xr.DataArray(pressure.overlaps(borders), dims=("slice", x))
     position_comment = {"comment": "an equal part of the cells under the roller"}
     result = xr.Dataset(

@@ -1,4 +1,4 @@
-"""Numbers of one solved case, which a parametric study compares: computed on arrays, labelled once."""
+"""Numbers of one solved case, which a parametric study compares."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ COMMENTS = {
 
 
 def pressure_numbers(dataset: xr.Dataset) -> dict[str, float]:
-    """Numbers of the pressure; end pressures of the Dataset, else of the outermost loaded columns."""
+    """Numbers of the pressure; end pressures from the Dataset, or else from the outermost loaded columns."""
     require(dataset, "pressure", "hertz_max_pressure")
     array = dataset["pressure"].transpose("x", "y")
     pressure, x, y, scale = array.values, array["x"].values, array["y"].values, float(dataset["hertz_max_pressure"])

@@ -18,7 +18,7 @@ def labelled_cells(
     extent: tuple[float, float] = (-np.inf, np.inf),
     infinite: bool = False,
 ) -> tuple[FloatArray, Grid]:
-    """Values (x, y) and grid of a DataArray on cell centres; `x_width`, or the body's end, determines the edges."""
+    """Values (x, y) and grid of a DataArray on cell centres; `x_width`, or else the body's end, gives the edges."""
     # A DataArray without the dimension `bounds` cannot contain `x_bounds`.
     checks.instance(name, array, xr.DataArray, "an xarray.DataArray with dimensions (x, y)")
     if set(array.dims) != {"x", "y"}:

@@ -16,15 +16,15 @@ UNITS: dict[str, tuple[tuple[float, float, str], ...]] = {
     "rad": ((0.0, 1e-3, "mrad"),),
     "s": ((0.0, 1.0, "s"),),
 }
-"""Engineering units by SI unit: least size, size in SI, and name."""
+"""Engineering units by SI unit: least size of a value in this unit, size of the unit in SI, and name."""
 
-ROUNDING = 1e-6  # rounding of a size at a step of units
-NEGLIGIBLE = 1e-6  # fraction of a value below which an error is rounding
+ROUNDING = 1e-6  # relative rounding of a size that is compared with the least size of a unit
+NEGLIGIBLE = 1e-6  # fraction of a value below which an error counts as rounding
 DIGITS, ERROR_DIGITS = 4, 2  # digits of a number whose error is not known, and of an error
 
 
 def unit_for(size: float, units: str) -> tuple[float, str]:
-    """Return how much a unit that suits a size is in SI, and its name."""
+    """Return the size in SI, and the name, of the unit that suits a size."""
     if units in ("", "1"):
         return 1.0, ""
     steps = UNITS.get(units, ((0.0, 1.0, units),))
@@ -33,7 +33,7 @@ def unit_for(size: float, units: str) -> tuple[float, str]:
 
 
 def format_value(value: float, digits: int = DIGITS) -> str:
-    """Return a number with these digits, without an exponent if the text remains short."""
+    """Return a number with `digits` digits, without an exponent if the text remains short."""
     if not math.isfinite(value):
         return "not known" if math.isnan(value) else f"{'-' if value < 0 else ''}\N{INFINITY}"
     return f"{value:.{digits}g}" if not 1e3 <= abs(value) < 1e6 else f"{value:.{max(digits, 4)}g}"
@@ -48,7 +48,7 @@ def format_quantity(value: float, units: str, digits: int = DIGITS) -> str:
 
 
 def format_with_error(value: float, error: float | None, units: str) -> str:
-    """Write a number and its error in one unit, as many digits as the error lets count."""
+    """Write a number and its error in one unit, with the digits that are significant given the error."""
     if error is None or not math.isfinite(value) or not NEGLIGIBLE * abs(value) < error < math.inf:
         return format_quantity(value, units)
     factor, unit = unit_for(max(abs(value), error), units)
@@ -61,7 +61,7 @@ def format_with_error(value: float, error: float | None, units: str) -> str:
 
 
 TEXT, NUMBER = "text-align:left", "text-align:right;white-space:nowrap"
-"""Styles of a column of words, and of one of numbers with their units."""
+"""Styles of a column of words, and of a column of numbers with units."""
 
 
 def html_table(subjects: Iterable[tuple[str, Iterable[Sequence[str]]]], styles: Sequence[str] = (TEXT, TEXT)) -> str:

@@ -14,7 +14,7 @@ SPACING_TOLERANCE = 1e-4
 """Largest deviation of the spacing of uniform cells over a cell, above single precision. Accuracy."""
 
 MAX_WIDTH_RATIO = 4.0
-"""Largest ratio of the widths of neighbouring cells: error estimates are invalid beyond. Accuracy."""
+"""Largest ratio of the widths of neighbouring cells; error estimates are invalid above this ratio. Accuracy."""
 
 WIDTH_RATIO = 3.0  # ratio of neighbouring cells outside the contact. Speed.
 MIN_WIDTH = 1e-12  # least width of a cell over the grid's length: the rounding of the edges. Accuracy.
@@ -111,7 +111,7 @@ class Grid:
         return cls(x_range=x_range, y_range=y_range, cells_x=widths.size, cells_y=cells_y, _inner=inner_edges)
 
     def check_growth(self, cells: BoolArray) -> None:
-        """Raise if neighbours among some cells along x differ by more than an estimated error allows."""
+        """Raise if the widths of neighbours among the given columns differ by more than error estimates allow."""
         edges, widths = self.x_edges, self.widths
         ratio = np.maximum(widths[1:] / widths[:-1], widths[:-1] / widths[1:])
         # An edge may be rounded.
@@ -139,9 +139,9 @@ class Grid:
 
     @property
     def observes_means(self) -> bool:
-        """Whether gap and displacement are means over the width of each cell; else they are values at its centre."""
-        # Gap, operator and preconditioner need one observer. On cells of different widths means make the operator
-        # symmetric; on uniform cells centres give smaller errors (peak of a sphere 1.5 times, rolling forces 4 times).
+        """Whether gap and displacement are means over the width of each cell, not values at the cell's centre."""
+        # Gap, operator and preconditioner must all use means, or all use centres. Means make the operator symmetric on
+        # cells of different widths; on uniform cells centres give smaller errors (sphere's peak 1.5, rolling 4 times).
         return not self.uniform
 
     @property
@@ -178,7 +178,7 @@ class Grid:
 
     @property
     def weights(self) -> FloatArray:
-        """Widths over their mean: array (x, 1); weighted sums over cells times `cell_area` are integrals."""
+        """Widths over the mean width, array (x, 1): weighted sums over cells, times `cell_area`, are integrals."""
         return (self.widths / self.dx)[:, None]
 
     @property
@@ -196,16 +196,16 @@ class Grid:
         return np.asarray(mid_y + self.dy * (np.arange(self.cells_y) - 0.5 * (self.cells_y - 1)))
 
     def coarsened(self) -> Grid:
-        """Return the grid of cells of twice the size; a little more where a number of cells is odd."""
+        """Return the grid of cells of twice the size; of slightly larger cells where their number is odd."""
         if self.uniform:
             return replace(self, cells_x=self.cells_x // 2, cells_y=self.cells_y // 2)
-        # Pairs of cells may exceed the steepest grading: they serve an initial guess.
+        # The growth of paired cells may exceed the limit, since they serve only a first guess.
         inner_edges = self._inner[1::2]
         return replace(self, cells_x=len(inner_edges) + 1, cells_y=self.cells_y // 2, _inner=inner_edges)
 
 
 def growing_edges(distance: float, width: float, growth: float = WIDTH_RATIO) -> FloatArray:
-    """Edges of few cells that grow from about `width` at 0 up to `distance`; one cell if infinite."""
+    """Edges after 0 of few cells up to `distance`, with growing widths from about `width`; one cell if infinite."""
     if np.isinf(distance):
         return np.array([width])
     if distance <= 1e-9 * width:
@@ -216,7 +216,7 @@ def growing_edges(distance: float, width: float, growth: float = WIDTH_RATIO) ->
 
 
 def uniform_range(name: str, values: object) -> tuple[tuple[float, float], int]:
-    """First and last edge, metres, and number of uniform cells with centres at `values`; raise where they are not."""
+    """First and last edge, metres, and number of the uniform cells centred at `values`; raise if not uniform."""
     centres = checks.coordinates(name, values)
     if centres.size < 2:
         raise InvalidInputError(name, centres, "at least two cell centres")

@@ -8,12 +8,12 @@ import numpy as np
 
 from contactstudy.checks import FloatArray
 
-FLANK = 0.8  # fraction of a peak at which its width is read; a half-ellipse is 1 / 0.6 times as wide at its base
+FLANK = 0.8  # fraction of a peak at which the width is measured; at the base a half-ellipse is 1 / 0.6 times as wide
 SAMPLE_COUNT = 17  # points between the two neighbours of a sample at which the interpolating polynomial is evaluated
 
 
 def section_maxima(pressure: FloatArray) -> FloatArray:
-    """Largest pressure of each cross-section (x, y), between its cells along y."""
+    """Largest pressure of each cross-section, interpolated between the cells along y of `pressure` (x, y)."""
     # The squared pressure is nearly a parabola across the contact, through the largest cell and its neighbours.
     squared = pressure**2
     centre = np.clip(squared.argmax(axis=1), 1, squared.shape[1] - 2)
@@ -22,7 +22,7 @@ def section_maxima(pressure: FloatArray) -> FloatArray:
     with np.errstate(divide="ignore", invalid="ignore"):
         rise = np.where(second_difference < 0, -((upper - lower) ** 2) / (8 * second_difference), 0.0)
     maxima = squared.max(axis=1)
-    # One or two cells do not determine a parabola.
+    # Three cells determine a parabola; one or two cells do not.
     return np.sqrt(np.where(maxima > 0, np.maximum(central + np.minimum(rise, 0.25 * central), maxima), 0.0))
 
 
@@ -38,13 +38,13 @@ def lagrange_weights(nodes: FloatArray, points: FloatArray) -> FloatArray:
 def interpolate_about(
     axes: Sequence[FloatArray], index: Sequence[int], values: FloatArray, neighbours: int
 ) -> tuple[list[FloatArray], FloatArray]:
-    """Points from the left to the right neighbour of a sample along each axis, and components (component, *axes, ...).
+    """Points between both neighbours of a sample along each axis, and values there (component, *axes, ...).
 
     One polynomial along each axis interpolates the sample and `neighbours` samples on either side.
     """
     points, matrices = [], []
     for axis_count, (axis, centre) in enumerate(zip(axes, index, strict=True), start=1):
-        # At an edge all samples lie on one side.
+        # At an edge the polynomial takes all its samples from one side.
         count = min(2 * neighbours + 1, axis.size)
         start = min(max(centre - neighbours, 0), axis.size - count)
         nodes = axis[start : start + count]
@@ -59,7 +59,7 @@ def interpolate_about(
 
 
 def peak_width(pressure: FloatArray, x: FloatArray, dy: float, column: int) -> float:
-    """Half-width of a pressure peak, metres: the smaller of its steeper axial flank and the width along y."""
+    """Half-width of a pressure peak, metres: along x by the steeper flank, or along y, whichever is smaller."""
     return min(variation_lengths(pressure, x, dy, column, rising=False))
 
 
@@ -67,8 +67,8 @@ def variation_lengths(
     pressure: FloatArray, x: FloatArray, dy: float, column: int, *, rising: bool = True
 ) -> tuple[float, float]:
     """Lengths along x and y over which a pressure varies about one column, metres."""
-    # Along x: the half-width of the half-ellipse that falls, or with `rising` rises, as fast; infinite for a nearly
-    # uniform pressure, the distance to the contact for a column without pressure.
+    # The length along x is the half-width of a half-ellipse that falls (or with `rising` rises) as fast as the
+    # pressure; infinite for a nearly uniform pressure; for a column without pressure, the distance to the contact.
     axial = pressure.max(axis=1)
     is_different = axial < FLANK * axial[column]
     if rising:

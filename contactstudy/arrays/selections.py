@@ -1,4 +1,4 @@
-"""Places of values along the dimensions of a study, named by a number or by a text."""
+"""Indices of values along the dimensions of a study, from the values as numbers or texts."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from contactstudy.errors import InvalidInputError
 
 
 def index_of(dataset: xr.Dataset | xr.DataArray, name: str, value: object, argument: str = "selection") -> int:
-    """Return the number of a value of a swept parameter."""
+    """Return the index of a value of a swept parameter along its dimension."""
     if name not in dataset.indexes:
         swept = dataset["status"].dims if isinstance(dataset, xr.Dataset) and "status" in dataset else ()
         raise InvalidInputError(argument, name, f"a swept parameter: {', '.join(map(str, swept)) or 'none'}")
@@ -23,7 +23,7 @@ def index_of(dataset: xr.Dataset | xr.DataArray, name: str, value: object, argum
 
 
 def _equals(value: object, label: object) -> bool:
-    """Whether a value, or the text of one, is a label."""
+    """Whether a value, or the text of a value, equals a label."""
     if isinstance(label, str):
         return str(value) == label
     try:

@@ -22,7 +22,7 @@ DERIVED = "follows from the other parameters"  # comment of a coordinate that a 
 ERROR_KIND = "error_kind"  # attribute of a number: kind of its error, one of the two values below
 
 ESTIMATED, NOT_ESTIMATED = "estimated", "not estimated"
-"""The variable ``<name>_error`` contains the error, or no error is stated."""
+"""Kinds of error: the variable ``<name>_error`` contains the error; no error is stated."""
 
 _AFFIXES = sorted((tuple(pattern.split("{name}")) for pattern in RULES), key=lambda pair: -len("".join(pair)))
 """Prefix and suffix of each rule, the longest first: `peak_gap_x` is the position of a peak, not a peak."""
@@ -42,7 +42,7 @@ def specification(name: str, base: Variable | None = None, *, coordinate: bool =
 
 
 def _fill_templates(row: Variable, base: Variable) -> Variable:
-    """Row of a table with its braces filled."""
+    """Row of the table whose names in braces are replaced by the texts of `base`."""
     fields = {"name": "", "variable": base.long_name, "units": base.units, "symbol": base.symbol or base.long_name}
     dims = base.dims if row.dims == ("{name}",) else row.dims
     symbol = row.symbol
@@ -54,7 +54,7 @@ def _fill_templates(row: Variable, base: Variable) -> Variable:
 
 
 def variable_of(name: str, attributes: Mapping[Any, Any], *, coordinate: bool = False) -> Variable:
-    """Specification of a variable with labels, completed by the table."""
+    """Specification of a variable from its attributes, completed by the table."""
     entry = specification(name, coordinate=coordinate) or Variable((), "", "", name)
     return entry._replace(
         units=str(attributes.get("units", entry.units)), long_name=str(attributes.get("long_name", entry.long_name))

@@ -16,8 +16,8 @@ class Variable(NamedTuple):
     symbol: str  # LaTeX, without dollar signs
     long_name: str
     """Meaning. ``{variable}`` is replaced by the meaning of the variable that a quantity was derived from, and
-    ``{symbol}`` for its symbol, or its meaning if it has none. Those of coordinates are short: they stand on
-    axes, where xarray breaks them after 30 characters, which is cut off."""
+    ``{symbol}`` by that variable's symbol, or meaning without a symbol. Meanings of coordinates are short: in figures
+    xarray breaks the label of an axis after 30 characters, and the second line is cut off."""
     comment: str = ""  # addition to the short meaning
 
     @property
@@ -287,7 +287,7 @@ BEARING = {  # variables of :mod:`contactstudy.bearing`
     "raceway_life": Variable(("model", "raceway"), "1", "", "revolutions that 9 of 10 raceways survive"),
 }
 
-DESIGN = {  # variables of :mod:`contactstudy.design`. Units: the measure's.
+DESIGN = {  # variables of :mod:`contactstudy.design`; the unit is the unit of the measure
     "optimum": Variable(PARAMETER_DIMS, "", "", "best value of the parameter"),
     "at_bound": Variable(PARAMETER_DIMS, "", "", "whether the best value is a bound"),
     "flat_from": Variable(PARAMETER_DIMS, "", "", "least value of the parameter that is as good within the errors"),

@@ -25,9 +25,9 @@ GROUPS = ("length_over_a", "e_over_a", "crown", "tilt_ratio", "poisson")
 QUANTITIES = ("peak_pressure_ratio", "peak_von_mises_ratio", "approach_ratio", "end_load_ratio")
 # Quantities whose logarithm is interpolated: their errors are relative
 LOGARITHMIC_QUANTITIES = ("peak_pressure_ratio", "peak_von_mises_ratio", "approach_ratio")
-NEIGHBOUR_COUNT = 6  # Nearest points; a branch is defined where one of these belongs to it
+NEIGHBOUR_COUNT = 6  # Nearest points; a branch is defined where one of these points belongs to the branch
 RESIDUAL_COUNT = 12  # Nearest points whose mean residual is the local error
-LOAD_STEP = 0.05  # Change of the half-width, over it, for the slope of the approach
+LOAD_STEP = 0.05  # Relative change of the half-width for the slope of the approach
 LOAD_RISE = 2 * np.log((1 + LOAD_STEP) / (1 - LOAD_STEP))  # Change of the load's logarithm over two steps
 
 
@@ -104,14 +104,14 @@ def _check_group(name: str, value: npt.ArrayLike | xr.DataArray, valid_range: tu
 
 
 class Branch(NamedTuple):
-    """Interpolation of a smooth branch: all points of the table in a tree, and the members of the branch."""
+    """Interpolation of a smooth branch: a tree of all points of the table, and which points belong to the branch."""
 
     interpolation: RBFInterpolator
     tree: cKDTree
     members: npt.NDArray[np.bool_]
 
     def interpolate(self, coordinates: FloatArray, scaled: FloatArray) -> FloatArray:
-        """Interpolate at coordinates (point, group), also scaled; minus infinity away from the members."""
+        """Values at coordinates (point, group), also given `scaled`; minus infinity away from the branch's points."""
         _, nearest = self.tree.query(coordinates, NEIGHBOUR_COUNT)
         values = self.interpolation(scaled)
         return np.where(self.members[nearest].any(axis=1), values, -np.inf)
@@ -119,7 +119,7 @@ class Branch(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class AtlasTable:
-    """Solved points and their interpolation; residuals: differences from the interpolation between the other points."""
+    """Solved points and their interpolation; a residual is the difference from interpolation between other points."""
 
     dataset: xr.Dataset  # (point): groups; quantities with scales, solver_error, coverage_factor; residuals; *_at_end
     _interpolators: dict[str, list[Branch]] = field(default_factory=dict)
@@ -141,12 +141,12 @@ class AtlasTable:
         return self.coordinates(np.stack([self.dataset[name].values for name in GROUPS], axis=1))
 
     def interpolated_samples(self, name: str) -> FloatArray:
-        """Interpolated values at the solved points: the quantity or its logarithm."""
+        """Values at the solved points that are interpolated: a quantity or the quantity's logarithm."""
         values = self.dataset[name].values
         return np.asarray(np.log(values) if name in LOGARITHMIC_QUANTITIES else values)
 
     def branches(self, name: str) -> list[npt.NDArray[np.bool_]]:
-        """Points of each smooth branch of a quantity; two local maxima give two branches of a maximum."""
+        """Masks of the points of each smooth branch; a maximum with two possible places has a branch for each place."""
         if f"{name}_at_end" not in self.dataset:
             return [np.ones(len(self.points), dtype=bool)]
         at_end = self.dataset[f"{name}_at_end"].values.astype(bool)
@@ -198,15 +198,15 @@ class AtlasTable:
             is_logarithmic = name in LOGARITHMIC_QUANTITIES
             ratios[name] = np.exp(interpolated) if is_logarithmic else np.maximum(interpolated, 0.0)
             ratios[f"{name}_error"] = error * ratios[name] if is_logarithmic else error
-        # Slope of the approach over the load, both logarithmic, at constant lengths in metres: with the half-width s a
-        # the groups are L/(s a), e/(s a), A R/(s a)**2, ...; the load grows with s**2.
+        # Slope of the approach over the load, in logarithms of both, at constant lengths in metres: with the half-width
+        # s a the groups are L/(s a), e/(s a), A R/(s a)**2, ..., and the load grows with s**2.
         lower_approach, higher_approach = (
             self.interpolate("approach_ratio", self.coordinates(points / np.array([s, s, s**2, s**2, 1])))[0]
             for s in (1 - LOAD_STEP, 1 + LOAD_STEP)
         )
         slope = 1 + (higher_approach - lower_approach) / LOAD_RISE
         ratios["stiffness_ratio"] = np.pi / (4 * ratios["approach_ratio"] * slope)
-        # Independent errors of the approach at both ends of the step.
+        # The errors of the approach at both ends of the step are independent.
         relative_error = ratios["approach_ratio_error"] / ratios["approach_ratio"]
         ratios["stiffness_ratio_error"] = ratios["stiffness_ratio"] * np.sqrt(2) * relative_error / (LOAD_RISE * slope)
         return ratios

@@ -16,8 +16,8 @@ from scipy.ndimage import maximum_filter
 
 from contactstudy.checks import FloatArray
 
-# Degree of the splines whose difference estimates the error, factor on the estimate, and steps of the comparison
-# between nodes. Accuracy: the estimate covers the error of springs of power 3/2 on 5 to 9 nodes
+# Degree of the other splines, whose difference estimates the error; factor on the estimate; steps between nodes at
+# which splines are compared. Accuracy: the estimate covers the error of springs of power 3/2 on 5 to 9 nodes
 ERROR_DEGREE, FACTOR, STEPS = 3, 3.0, 4
 
 
@@ -45,12 +45,12 @@ class ContactResponse(NamedTuple):
 class SplineBasis:
     """B-splines along one axis."""
 
-    knots: FloatArray  # the ends repeated
+    knots: FloatArray  # with repeated ends
     degree: int
 
     @classmethod
     def interpolating(cls, nodes: FloatArray, degree: int) -> SplineBasis:
-        """Return a basis with one spline more than nodes, and knots by de Boor's means."""
+        """Return a basis of one more spline than nodes, with knots at de Boor's means of the nodes."""
         degree = min(degree, nodes.size - 1)
         inner = [nodes[first : first + degree - 1].mean() for first in range(1, nodes.size - degree + 1)]
         first, last = (np.repeat(end, degree + 1) for end in nodes[[0, -1]])
@@ -64,10 +64,10 @@ class SplineBasis:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class EnergySpline:
-    """Strain energy: the exponential of a spline without tilt, plus a product of splines for the tilt."""
+    """Strain energy: without tilt the exponential of a spline; a tensor product of splines adds the tilt's energy."""
 
     approach_splines: SplineBasis  # in the logarithm of the approach
-    tilt_splines: SplineBasis  # in the tilt over the largest
+    tilt_splines: SplineBasis  # in the tilt over the largest tilt
     tilt_scale: float  # rad
     untilted: FloatArray  # coefficients of the logarithm of the energy without tilt
     added: FloatArray  # coefficients of the energy added by a tilt, per pair, J
@@ -84,7 +84,7 @@ class EnergySpline:
         energy, untilted_load = nodes.energy[:, untilted_column], load[:, untilted_column]
         weights = _solve_least_squares([(u_splines(u), np.log(energy)), (u_splines(u, 1), untilted_load / energy)])
         untilted_energy = np.exp(u_splines(u) @ weights)
-        # Equal weights of the loads, and of the moments at each approach.
+        # All loads have equal weights, and so have the moments at each approach.
         max_moment = np.abs(moment).max(axis=1, keepdims=True) + np.zeros_like(moment)
         # The energies have a low weight: load and moment nearly determine the energy.
         equations = (
@@ -131,8 +131,8 @@ def _solve_least_squares(equation_blocks: list[tuple[FloatArray, FloatArray]]) -
 
 
 def estimate_fit_errors(nodes: Nodes, length: float) -> FloatArray:
-    """Errors (2, approach, tilt) of load over load, moment over load and length, up to the neighbouring nodes."""
-    # Residuals, and differences from splines of another degree and on fewer nodes.
+    """Errors (2, approach, tilt) up to the nearest nodes: load error over load, moment error over load times length."""
+    # Estimates: residuals, and differences from splines of another degree and on fewer nodes.
     spline, lower_degree_spline = EnergySpline.fit(nodes), EnergySpline.fit(nodes, ERROR_DEGREE)
     pairs = np.meshgrid(nodes.approaches, nodes.tilts, indexing="ij")
     residual = _differences(spline(*pairs), nodes.load, nodes.moment, length)
@@ -155,11 +155,11 @@ def estimate_fit_errors(nodes: Nodes, length: float) -> FloatArray:
 
 
 def _subdivide(nodes: FloatArray) -> FloatArray:
-    """Return the nodes and points between the nodes."""
+    """Return the nodes with further points between the nodes."""
     count = nodes.size
     return np.asarray(np.interp(np.arange(STEPS * (count - 1) + 1) / STEPS, np.arange(count), nodes))
 
 
 def _differences(response: ContactResponse, load: FloatArray, moment: FloatArray, length: float) -> FloatArray:
-    """Differences of load over load, and of moment over load and length."""
+    """Errors of a response: load difference over load, and moment difference over load times length."""
     return np.array([np.abs(response.load / load - 1), np.abs(response.moment - moment) / (load * length)])

@@ -63,8 +63,8 @@ def slice_model(case: Case, *, slices: int = 30, tilt: float | None = None, edge
 
     Notes
     -----
-    The standard's deflection belongs to a roller between two raceways; one contact has half of it. The standard applies
-    the riser to the loads of the life only. Formulas and range are second-hand, from public programs.
+    The standard's deflection belongs to a roller between two raceways; one contact has half the deflection. The
+    standard applies the riser to the loads of the life only. Formulas and range are second-hand, from public programs.
 
     References
     ----------
@@ -138,14 +138,14 @@ def slice_model(case: Case, *, slices: int = 30, tilt: float | None = None, edge
     return describe(result, "slice model of ISO/TS 16281")
 
 
-# Power of a lamina's load in its risk of fatigue: the life exponent 4 of a line contact times the slope 9/8 of
-# Weibull's distribution
+# Power with which a lamina's risk of fatigue grows with load: the life exponent 4 of a line contact times the slope
+# 9/8 of Weibull's distribution
 LIFE_POWER = 9 / 2
 COLUMN_COMMENT = "from the stated errors of the pressure and the distance of its columns"
 
 
 def lamina_factors(result: xr.Dataset, *, laminae: int = 30) -> xr.Dataset:
-    """Factors on the loads of the lamina model: loads whose Hertz pressures equal those of a solved contact.
+    """Factors on the loads of the lamina model, whose Hertz pressures then equal the pressures of a solved contact.
 
     Parameters
     ----------
@@ -194,7 +194,7 @@ def lamina_factors(result: xr.Dataset, *, laminae: int = 30) -> xr.Dataset:
 
 
 def lamina_loads(solution: xr.Dataset, case: Case, laminae: int) -> tuple[xr.Dataset, FloatArray]:
-    """Factors of :func:`lamina_factors`; and the error of the loads, N/m, from the stated errors of the pressure alone.
+    """Factors as in :func:`lamina_factors`, and the error of the loads, N/m, from the pressure's stated errors alone.
 
     This error bounds a life, where errors of columns cancel.
     """
@@ -229,7 +229,7 @@ def lamina_loads(solution: xr.Dataset, case: Case, laminae: int) -> tuple[xr.Dat
 
 
 def _hertz_loads(result: xr.Dataset, case: Case, edges: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Load per length of every lamina with the solved pressure in line contact, its error, and the common part."""
+    """Hertz load per length of each lamina's solved pressure, its error, and the error without that of columns."""
     pressure = result["pressure"].transpose(dimension_along(result["pressure"], "x"), ...)
     x = dimension_along(pressure, "x")
     position, max_pressure = result[x].values, section_maxima(pressure.values)
@@ -252,7 +252,7 @@ def _hertz_loads(result: xr.Dataset, case: Case, edges: FloatArray) -> tuple[Flo
 
 
 def _pressure_errors(result: xr.Dataset, load: FloatArray, line_loads: FloatArray, weights: FloatArray) -> FloatArray:
-    """Errors of loads per length from the stated errors of the largest pressures of both halves."""
+    """Errors of loads per length that follow from the stated errors of the largest pressure in either half."""
     half_count = load.size // 2
     errors = []
     for lamina_range, side, relative_error in zip(

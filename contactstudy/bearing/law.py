@@ -1,4 +1,4 @@
-"""Contact laws: load and moment over approach and tilt with stiffness and the inverse, and two laws in series."""
+"""Contact laws: load, moment and stiffness at an approach and a tilt, the inverse law, and two laws in series."""
 
 from __future__ import annotations
 
@@ -158,7 +158,7 @@ class ContactLaw:
         return html_table([("Contact law", self._rows())])
 
     def _rows(self) -> Iterator[tuple[str, str]]:
-        """Ranges of the table, and its errors."""
+        """Ranges and errors of the table, as rows of text."""
         low, high = (1e6 * end for end in self._range("approach"))
         min_tilt, max_tilt = (1e3 * end for end in self._range("tilt"))
         loads = self.table["normal_load"]
@@ -383,7 +383,7 @@ class Raceways:
         motion = ContactResponse(
             inner_response.load, inner_response.moment, stiffness[..., 0, 0], stiffness[..., 0, 1], stiffness[..., 1, 1]
         )
-        # The larger error bounds the error of either contact.
+        # The larger of the two errors bounds the error of either contact.
         errors = np.maximum(*(law.errors(delta.values, theta.values) for law, delta, theta in pairs))
         labelled = label_motion(inner[0] + outer[0], inner[1] + outer[1], motion, errors)
         for name, motions in (("inner", inner), ("outer", outer)):

@@ -28,7 +28,7 @@ TURNING_POWER = 4.0  # Power of the mean for the turning raceway; for the other 
 RATING_REDUCTION = 0.83
 MILLION = 1e6
 
-# Comment of the errors: the models of slices neglect the ends, and their error is not estimated
+# Comment of the errors: the models of slices neglect the ends, and the error of these models is not estimated
 ERROR_COMMENT = "from the stated errors of the pressures; NaN for the models of slices"
 
 
@@ -209,7 +209,7 @@ def _check_cases(name: str, argument: object) -> list[Case]:
 
 
 def _solve_roller_loads(case: Case, laminae: int, accuracy: float) -> FloatArray:
-    """Solve for loads of every lamina, N, errors, common part, factors, errors: array (quantity, model, lamina)."""
+    """Solve for loads of laminae, N, their errors and common errors, factors and errors: (quantity, model, lamina)."""
     # Uncoupled friction does not change the pressure.
     case = case if case.coupled else replace(case, friction=0.0, motion=Sliding())
     exact_result = solve(case, stresses=False, accuracy=accuracy)

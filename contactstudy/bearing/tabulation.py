@@ -29,7 +29,7 @@ TOLERANCE = 1e-9  # Maximum difference of mirror images over the length, or over
 
 
 class Node(NamedTuple):
-    """One contact: N, N m and J."""
+    """Load (N), moment (N m) and strain energy (J) of one contact."""
 
     load: float
     moment: float
@@ -66,7 +66,7 @@ class ContactSolver:
 
 @contextmanager
 def _name_unsolvable_contact(load: float, tilt: float) -> Iterator[None]:
-    """Name the contact of the law without a solution."""
+    """Raise the error of a contact without a solution as an error that names the load and the tilt."""
     try:
         yield
     except (InvalidInputError, WindowError) as error:
@@ -79,7 +79,7 @@ def _name_unsolvable_contact(load: float, tilt: float) -> Iterator[None]:
 
 
 def solve_nodes(solver: ContactSolver, approaches: FloatArray, tilts: FloatArray) -> Nodes:
-    """Solve the contacts at every pair; negative tilts by reflection if roller and body are symmetric."""
+    """Solve the contacts at every pair; reflect the solutions to negative tilts if roller and body are symmetric."""
     reflected = _is_symmetric(solver) and bool(np.allclose(tilts, -tilts[::-1], rtol=0, atol=TOLERANCE * tilts[-1]))
     columns = [index for index, tilt in enumerate(tilts) if not reflected or tilt >= -TOLERANCE * tilts[-1]]
     nodes = np.full((3, approaches.size, tilts.size), np.nan)
@@ -87,12 +87,12 @@ def solve_nodes(solver: ContactSolver, approaches: FloatArray, tilts: FloatArray
     LOGGER.info(
         "%d contacts at %d approaches and %d tilts", len(columns) * approaches.size, approaches.size, len(columns)
     )
-    # Each tilt begins with the loads of the one before it, from the least on.
+    # From the least tilt on, the first guesses at each tilt are the loads at the tilt before.
     for index in sorted(columns, key=lambda index: abs(index - start_column)):
         neighbour = index + int(np.sign(start_column - index))
         for row in range(approaches.size - 1, -1, -1):
             guess = nodes[0, row, neighbour]
-            if index == start_column:  # from the next larger approach, or the load of the case
+            if index == start_column:  # first guess: the load at the next larger approach, or the load of the case
                 guess = solver.case.normal_load
                 if row + 1 < approaches.size:
                     guess = nodes[0, row + 1, start_column] * (approaches[row] / approaches[row + 1]) ** LOAD_POWER
@@ -117,13 +117,13 @@ def _is_symmetric(solver: ContactSolver) -> bool:
 
 
 def estimate_discretisation_errors(solver: ContactSolver, nodes: Nodes) -> FloatArray:
-    """Differences (load, moment) of finer contacts, at the largest approach without tilt and with the largest tilt."""
-    # The discretisation error is the difference to contacts of a quarter of the error.
+    """Errors (load, moment): differences from finer contacts at the largest approach, without and with largest tilt."""
+    # The discretisation error is the difference from contacts solved to a quarter of the accuracy.
     fine_solver = replace(solver, accuracy=solver.accuracy / 4.0)
     length = solver.case.contact_length
     errors = np.zeros(2)
     tilt_sizes = np.abs(nodes.tilts)
-    # The last of equal tilts: the first may be its reflection.
+    # Of two opposite tilts the last is solved; the first may be a reflection.
     for index in {int(tilt_sizes.argmin()), tilt_sizes.size - 1 - int(tilt_sizes[::-1].argmax())}:
         load, moment = nodes.load[-1, index], nodes.moment[-1, index]
         fine_node = fine_solver.solve_at_approach(float(nodes.approaches[-1]), float(nodes.tilts[index]), float(load))
@@ -150,7 +150,7 @@ def contact_law(
     case : Case
         Roller and body; its load defines the default approaches; without a tilt.
     tilts : sequence of float
-        Five or more, increasing, radians. For symmetric tilts, roller and body the code solves half of them.
+        Five or more, increasing, radians. For symmetric tilts, roller and body the code solves half of the tilts.
     approaches : sequence of float, optional
         Five or more, increasing, positive, metres, at the roller's mid-length. Default: eight
         from the approach under 0.03 of the case's load to the approach under 1.5 times the load, in equal ratios.

@@ -26,7 +26,7 @@ LOGGER = logging.getLogger(__name__)
 # A variable of the result, or a function of the result that returns a number, or a number and its error
 Measure = str | Callable[[xr.Dataset], object]
 MIN_DIFFERENCE = 1e-9  # Fraction of a parameter's range below which two designs are equal
-SCAN_COUNT, SPREAD_COUNT = 7, 8  # Designs of the first scan: of one parameter, and factor on powers of two
+SCAN_COUNT, SPREAD_COUNT = 7, 8  # Designs of the first scan with one parameter; with more, factor on powers of two
 # Fractions of the range: accuracy of the optimum, and size of the first simplex. Speed and accuracy
 OPTIMUM_TOLERANCE, SIMPLEX_SIZE = 0.01, 0.15
 FLAT_RANGE_TOLERANCE = 0.02  # Accuracy of the end of a flat range, as a fraction of the parameter's range
@@ -58,7 +58,7 @@ class Design:
 
     fractions: FloatArray  # (parameter), fractions of the ranges
     values: FloatArray  # (case), measure; infinite if invalid
-    errors: FloatArray  # (case)
+    errors: FloatArray  # (case), errors of the measure
 
     @property
     def value(self) -> float:
@@ -91,7 +91,7 @@ class Evaluations:
 
     @property
     def remaining(self) -> int:
-        """Number of further designs."""
+        """Number of designs that may still be evaluated."""
         return self.max_designs - len(self.designs)
 
     @property
@@ -135,7 +135,7 @@ class Evaluations:
                 raise InvalidInputError("bounds", list(parameters), allowed, str(error)) from None
             cases = [replace(case, roller=replace(case.roller, profile=profile)) for case in self.cases]
             with warnings.catch_warnings():
-                if self.designs:  # the first design emits the warnings of magnitudes
+                if self.designs:  # only the first design emits warnings of magnitudes
                     warnings.simplefilter("ignore", MagnitudeWarning)
                 for index, case in enumerate(cases):
                     measures[index] = self._measure_case(case)
@@ -227,7 +227,7 @@ def search_optimum(evaluations: Evaluations) -> Design:
             bounds=[(0.0, 1.0)] * parameters,
             options=options,
         )
-    elif budget > 1:  # Brent's method, between the neighbours of the best design; it takes two designs or more.
+    elif budget > 1:  # Brent's method, between the neighbours of the best design; the method takes two or more designs.
         start, step = float(start_design.fractions[0]), 1 / (SCAN_COUNT - 1)
         bracket = (max(start - step, 0.0), min(start + step, 1.0))
         options = {"xatol": OPTIMUM_TOLERANCE, "maxiter": budget}

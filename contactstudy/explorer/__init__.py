@@ -1,6 +1,6 @@
-"""Interactive page of a study: choices of swept parameters, figures and numbers of a case, and of a second one.
+"""Interactive page of a study: choices of swept parameters, figures and numbers of one case or of two cases.
 
-It needs the extra ``explore``: ``pip install "contactstudy[explore]"``.
+The page needs the extra ``explore``: ``pip install "contactstudy[explore]"``.
 """
 
 from contactstudy.explorer.server import explore, serve

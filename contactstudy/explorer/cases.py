@@ -22,7 +22,7 @@ from contactstudy.study import collect
 from contactstudy.study.folder import Folder
 
 CaseIndex = tuple[int, ...]  # Index of a case along the study's dimensions
-FIELDS = ("pressure", "gap", "initial_gap", "von_mises")  # Fields of each case in memory
+FIELDS = ("pressure", "gap", "initial_gap", "von_mises")  # Fields that a loaded case keeps in memory
 
 STATUS = {
     "failed": "This case failed.",
@@ -32,7 +32,7 @@ STATUS = {
 }
 """Sentence for each status without figures."""
 
-MAX_CACHED_CASES = 64  # Cases in memory. Speed
+MAX_CACHED_CASES = 64  # Largest number of loaded cases in memory. Speed
 
 SUBJECTS: dict[str, tuple[str, ...]] = {
     "pressure": ("peak_pressure", "peak_pressure_first", "peak_pressure_last", "peak_pressure_x", "peak_pressure_y"),
@@ -60,7 +60,7 @@ SUBJECTS: dict[str, tuple[str, ...]] = {
 }
 """Subjects with their numbers in order; a name with a final underscore is a prefix."""
 
-REMAINING_SUBJECT = "further numbers"  # Subject of all numbers without one, before the cells
+REMAINING_SUBJECT = "further numbers"  # Subject of all numbers that `SUBJECTS` lacks; precedes the subject of the cells
 SUBJECT_ORDER = [*list(SUBJECTS)[:-2], REMAINING_SUBJECT, *list(SUBJECTS)[-2:]]
 
 
@@ -95,7 +95,7 @@ class Cases:
         return texts if len(set(texts)) == len(texts) else [f"{i}: {text}" for i, text in enumerate(texts, start=1)]
 
     def index(self, chosen: dict[str, int]) -> CaseIndex:
-        """Index of the case with these values of the swept parameters, by number."""
+        """Index of the case with the chosen values of the swept parameters, given by their numbers."""
         return tuple(chosen.get(str(dim), 0) for dim in self.scalars["status"].dims)
 
     def first_solved(self) -> dict[str, int]:
@@ -111,7 +111,7 @@ class Cases:
 
 
 def status_sentence(status: str, reason: str) -> str:
-    """Return why a case has no figures."""
+    """Return a sentence that says why a case has no figures."""
     return f"{STATUS.get(status, f'This case is {status}.')} {reason}".rstrip()
 
 

@@ -21,7 +21,7 @@ from contactstudy.checks import FloatArray
 from contactstudy.explorer.images import Image, Line, Span
 
 FIRST_COLOR, SECOND_COLOR, NEUTRAL_COLOR = "#1f4e79", "#c05a00", "#8894a0"
-"""Colours of the first case, of the second, and of all others."""
+"""Colours of the first case, of the second case, and of all other cases."""
 
 PALETTE = "Viridis256"
 MARK_COLOR = "#e8513a"  # legible on every colour of the palette
@@ -84,7 +84,7 @@ class AxialFigure:
 
 
 class ImageFigure:
-    """Field as an image with a colour bar and a cross at its largest value; a depth increases downwards."""
+    """Field as an image with a colour bar and a cross at the field's largest value; depths increase downwards."""
 
     def __init__(self, *, downwards: bool = False) -> None:
         self.figure = _new_figure(x_range=Range1d(0, 1), y_range=Range1d(0, 1))
@@ -121,7 +121,7 @@ class ImageFigure:
 
 
 class StudyFigure:
-    """Number of all cases over one swept parameter, with the cases of the page."""
+    """One number for all cases over one swept parameter, with marks at the page's cases."""
 
     def __init__(self) -> None:
         self.figure = _new_figure()
@@ -151,8 +151,8 @@ class StudyFigure:
     ) -> None:
         """Draw values with bars of errors over a swept parameter; an unbounded value as a triangle at the top.
 
-        The mark of a value with the error NaN is open; without `errors` the values are exact. `marked_cases` are
-        cases of the page: number along the parameter, value, and colour. `ticks` are texts.
+        The mark of a value with the error NaN is open; without `errors` the values are exact. `marked_cases` are the
+        page's cases: number along the parameter, value, and colour. `ticks` are texts by position.
         """
         is_finite = np.isfinite(values)
         bars = np.zeros(values.size) if errors is None else np.nan_to_num(errors)
@@ -182,7 +182,7 @@ class StudyFigure:
                 "color": [color for _, _, color in cases],
             }
         self.figure.y_range.update(start=low, end=high)
-        if (ticks or {}) != self._ticks:  # a new ticker is slow
+        if (ticks or {}) != self._ticks:  # to create a new ticker is slow
             axis, self._ticks = self.figure.xaxis[0], ticks or {}
             axis.ticker = list(self._ticks) if ticks else self._ticker
             axis.major_label_overrides = self._ticks

@@ -71,7 +71,7 @@ class CaseFields:
         return singular_ends(self.dataset)
 
     def near_singular(self, x: FloatArray) -> BoolArray:
-        """Positions too near to a singular end to be drawn."""
+        """Mask of the positions that are too near to a singular end to be drawn."""
         return near_singular(self.dataset, self.singular_ends, x)
 
     @cached_property
@@ -99,7 +99,7 @@ class CaseFields:
 
 
 def _values(array: xr.DataArray, axes: str) -> FloatArray:
-    """Values of a field with its axes in this order."""
+    """Values of a field with its dimensions in the order of `axes`."""
     return np.asarray(array.transpose(*(dimension_along(array, axis) for axis in axes)).values)
 
 
@@ -127,9 +127,9 @@ class Line(NamedTuple):
 
 
 class Image(NamedTuple):
-    """Image (vertical, horizontal) of a field in a plane, limits and labels of both axes, and the largest colour.
+    """Image (vertical, horizontal) of a field in a plane, limits and labels of both axes, and the limit of the colours.
 
-    `largest` is the largest value of the field within the limits, not of the pixels, and its place.
+    `largest` is the position and size of the field's largest value within the limits, which pixels may miss.
     """
 
     values: Array
@@ -245,5 +245,5 @@ def interpolate_along(axis: int, values: FloatArray, points: FloatArray, positio
     steps = np.diff(points, append=np.inf)[lower]
     weights = np.clip((positions - points[lower]) / steps, 0.0, 1.0).reshape(-1, *(1,) * (values.ndim - axis - 1))
     first, last = values.take(lower, axis), values.take(np.minimum(lower + 1, points.size - 1), axis)
-    # A point itself has its value without the NaN of a neighbour.
+    # A position at a point has the point's value, even if a neighbour is NaN.
     return np.where(weights == 0, first, np.where(weights == 1, last, (1 - weights) * first + weights * last))

@@ -1,4 +1,4 @@
-"""Page of a study: widgets on the left; numbers and figures of a case, and of a second one, on the right."""
+"""Page of a study: widgets on the left; numbers and figures of one case or of two cases on the right."""
 
 from __future__ import annotations
 
@@ -207,7 +207,7 @@ class Page:
             for side, (case, image, figure) in enumerate(zip(cases, images, figures, strict=False)):
                 name = f"{NAMES[side]}: " if self.compare.value else ""
                 singular = case is not None and case.has_pressure and case.singular_ends
-                # Two lines: the title of a narrow window is not wider than the window.
+                # The title has two lines, so that it fits into a narrow window.
                 title = f"{name}{quantity}{unit}"
                 if image is not None:
                     clipped_note = "clipped at the end" if singular else ""
@@ -242,14 +242,14 @@ class Page:
         return "".join(remarks)
 
     def _set_visible(self, index: int, visible: bool) -> None:
-        """Show or hide a figure: its pane and its model must agree."""
+        """Show or hide a figure; the figure's pane and model must agree."""
         pane = self.panes[index]
         if pane.object is not None:
             pane.object.visible = visible
         pane.visible = visible
 
     def _show_study(self, sides: list[int]) -> None:
-        """Draw a number of all cases over a swept parameter, the other parameters as in the first case."""
+        """Draw one number of all cases over a swept parameter, with the first case's values of other parameters."""
         if not self.cases.dims or not self.number.value:
             self._set_visible(5, False)
             return
@@ -288,7 +288,7 @@ class Page:
         return np.full(values.size, np.nan) if name.startswith(ESTIMATED_PREFIXES) else None
 
     def view(self) -> Any:
-        """Layout: columns on a wide screen, rows on a narrow one."""
+        """Layout of the page: columns on a wide screen, rows on a narrow screen."""
         count = int((self.cases.scalars["status"] != "excluded").sum())
         head = pn.pane.HTML(
             f"<h2 style='margin:0;font-size:20px'>{html.escape(self.cases.title)}</h2>"

@@ -1,4 +1,4 @@
-"""Page in a notebook, and on a server of this machine alone, which reads the study while the browser loads scripts."""
+"""Page in a notebook, or on a server for this machine only, which reads the study while the browser loads scripts."""
 
 from __future__ import annotations
 
@@ -88,8 +88,8 @@ def _check_installed() -> None:
 class AccessControl:
     """Access to the server: the host names of requests, and a token in the first address, then in a cookie.
 
-    The host check defends against a page of another site, with a name that resolves to this machine; the token against
-    other users of this machine.
+    The check of the host defends against pages of other sites, whose names may resolve to this machine. The token
+    defends against other users of this machine.
     """
 
     def __init__(self, port: int, hosts: Sequence[str] = ()) -> None:
@@ -99,7 +99,7 @@ class AccessControl:
         self._hosts = LOCAL_HOSTS | {host.lower() for host in hosts}
 
     def allows_host(self, request: Any) -> bool:
-        """Whether the host of a request is allowed, and its origin, if any, is that host."""
+        """Whether the host of a request is allowed, and the request's origin, if any, is the same host."""
         origin = request.headers.get("Origin")
         try:
             return urlsplit(f"//{request.host}").hostname in self._hosts and (
@@ -188,11 +188,11 @@ def serve(folder: str | Path, *, port: int | None = None, hosts: Sequence[str] =
     folder : str or Path
         The study's folder.
     port : int, optional
-        Port of the page; default: the first free one from 5006 on.
+        Port of the page; default: the first free port from 5006 on.
     hosts : sequence of str
         Host names, in addition to localhost, 127.0.0.1 and [::1], that a browser may use, such as the name of a proxy.
     show : bool
-        Whether to open it in the browser.
+        Whether to open the page in the browser.
 
     Raises
     ------
@@ -211,7 +211,7 @@ def serve(folder: str | Path, *, port: int | None = None, hosts: Sequence[str] =
 
         open_cases(path)  # raises the reason
     port = _choose_port(port)
-    # Before the thread that reads the study: the server's packages look in `sys.modules` for a complete pandas.
+    # Import before the thread reads the study: the server's packages look in `sys.modules` for a complete pandas.
     import pandas  # noqa: F401
     import panel as pn
     from tornado.ioloop import IOLoop
@@ -242,7 +242,7 @@ def serve(folder: str | Path, *, port: int | None = None, hosts: Sequence[str] =
 
 
 def _title(path: Path) -> str:
-    """Name of the study for the browser's tab; of its folder if the study is unreadable."""
+    """Name of the study for the browser's tab; the name of the folder if the study is unreadable."""
     try:
         return study_title(json.loads((path / "study.json").read_text(encoding="utf-8")), path.resolve().name)
     except (OSError, ValueError, TypeError, AttributeError):
@@ -256,7 +256,7 @@ def study_title(study: Mapping[str, Any], name: str) -> str:
 
 
 def _choose_port(port: int | None) -> int:
-    """Return the port if it is free, or the first free one without it, or raise."""
+    """Return the port if it is free; without a port, the first free port; raise if no port is free."""
     for candidate_port in range(PORT, PORT + PORT_COUNT) if port is None else (checks.count("port", port),):
         with socket.socket(socket.AF_INET, socket.SOCK_STREAM) as probe, contextlib.suppress(OSError, OverflowError):
             probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)  # a recently closed port is free

@@ -1,4 +1,4 @@
-"""Command ``contactstudy export``: from a file or a study's folder to CSV, VTK or MATLAB."""
+"""Command ``contactstudy export``: converts a file or a study's folder to CSV, VTK or MATLAB."""
 
 from __future__ import annotations
 

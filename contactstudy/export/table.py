@@ -21,7 +21,7 @@ Line = tuple[Sequence[float], Sequence[float]]
 
 
 def headings(dataset: xr.Dataset, names: Sequence[str]) -> dict[str, str]:
-    """Return headings of columns: names with units, and the mark of numbers without an error."""
+    """Return headings of columns: names with units, and a mark on numbers whose error is not estimated."""
     texts = {}
     for name in names:
         if name in dataset.variables:
@@ -57,7 +57,7 @@ def to_table(
         Variables or measures, see :func:`contactstudy.analysis.measure`, on the same points; default: all, or along a
         line all stresses.
     line : pair of sequences, optional
-        Its ends, (x, y, z) or (x, y), metres.
+        Ends of the line, (x, y, z) or (x, y), metres.
     points : int
         Number of points of the line.
 

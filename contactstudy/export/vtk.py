@@ -42,7 +42,7 @@ def to_vtk(dataset: xr.Dataset, path: str | Path, variables: str | Sequence[str]
     Returns
     -------
     Path
-        The file. Its axes are those of the package: z is the depth, so the body lies on the side of larger z.
+        The file. Its axes are the package's axes: z is the depth, so the body lies on the side of larger z.
         Variables are point data; surfaces in an unstructured mesh, such as the pressure, are data of the contact's
         cells. All six stress components are written
         together as the tensor `stress` (xx, xy, xz, yx, yy, ...).
@@ -73,7 +73,7 @@ def to_vtk(dataset: xr.Dataset, path: str | Path, variables: str | Sequence[str]
     if target.suffix == ".vtr":
         axes, data = _on_points(fields)
         extent = " ".join(f"0 {axis.size - 1}" for axis in axes)
-        # The points of the format have x fastest.
+        # In the format, x varies fastest from point to point.
         points = {name: np.moveaxis(values, (0, 1, 2), (2, 1, 0)) for name, values in data.items()}
         sections = {
             "PointData": {name: values.reshape(-1, *values.shape[3:]) for name, values in points.items()},
@@ -82,7 +82,7 @@ def to_vtk(dataset: xr.Dataset, path: str | Path, variables: str | Sequence[str]
         _write(target, "RectilinearGrid", {"WholeExtent": extent}, {"Extent": extent}, sections)
     elif set(axis_dimensions(next(iter(fields.values()))).values()) == {"x", "y"}:
         field = next(iter(fields.values()))
-        # Only the cells of the field matter: a gap is infinite beyond the roller.
+        # Only cells with finite values belong to the mesh: a gap is infinite beyond the roller.
         _, grid = labelled_cells("variables", xr.zeros_like(field, dtype=np.float64))
         edges = [grid.x_edges, np.linspace(*grid.y_range, grid.cells_y + 1), np.zeros(1)]
         _write_mesh(target, edges, in_cells={name: array.transpose("x", "y").values for name, array in fields.items()})
@@ -137,7 +137,7 @@ def _write_mesh(
 def _write(
     path: Path, kind: str, grid: dict[str, str], piece: dict[str, str], sections: Mapping[str, Mapping[str, Array]]
 ) -> None:
-    """Write the arrays of a grid in XML: of each, in base64, the number of bytes and the bytes."""
+    """Write the arrays of a grid in XML, each in base64 as its number of bytes and its bytes."""
     root = ET.Element("VTKFile", type=kind, version="1.0", byte_order="LittleEndian", header_type="UInt64")
     parent = ET.SubElement(ET.SubElement(root, kind, grid), "Piece", piece)
     for section, arrays in sections.items():
@@ -153,7 +153,7 @@ def _write(
 
 
 def _cells(counts: list[int]) -> tuple[int, IntArray]:
-    """Kind of the cells between so many points along each axis, and the numbers of their corners."""
+    """VTK's kind of the cells between points, from the numbers of points along the axes, and each cell's corners."""
     extended_axes = [axis for axis, count in enumerate(counts) if count > 1]
     if len(extended_axes) < 2:
         raise InvalidInputError(

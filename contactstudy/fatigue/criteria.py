@@ -94,7 +94,7 @@ class FatigueLimits:
 
     @property
     def findley_slope(self) -> float:
-        """``k`` with bending and torsion at the limit: ``k / sqrt(1 + k**2) = 2 tau_w/sigma_w - 1``."""
+        """``k`` by which bending and torsion are at the limit: ``k / sqrt(1 + k**2) = 2 tau_w/sigma_w - 1``."""
         ratio = 2 * self.ratio - 1
         return float(ratio / np.sqrt(1 - ratio**2))
 
@@ -127,7 +127,7 @@ def _max_shear(deviator: Array) -> Array:
 
 
 def _to_dataset(criterion: str, values: dict[str, xr.DataArray]) -> xr.Dataset:
-    """Results of a criterion with their names and units."""
+    """Label the results of a criterion with names and units."""
     return xr.Dataset({name: label_points(name, array, VARIABLES[criterion]) for name, array in values.items()})
 
 
@@ -249,7 +249,7 @@ def crossland(stress: xr.Dataset, limits: FatigueLimits) -> xr.Dataset:
     return _to_dataset("crossland", values)
 
 
-# Planes of the first search, evenly over a hemisphere (10 degrees apart), and shear directions per plane
+# Number of planes of the first search, about 10 degrees apart on a hemisphere, and of shear directions per plane
 NORMALS, DIRECTIONS = 200, 8
 FRAMES = 4  # Number of refined frames
 # Largest and smallest rotation of plane and direction in the refinement
@@ -275,7 +275,7 @@ def _create_frames() -> Array:
 
 
 def _resolution_vectors(frames: Array) -> tuple[Array, Array]:
-    """Vectors (..., 6) of shear ``n.sigma.m`` and normal stress ``n.sigma.n`` over the six components."""
+    """Vectors (..., 6) whose products with the six components are ``n.sigma.m`` (shear) and ``n.sigma.n``."""
     normal, direction = frames[..., 0, :], frames[..., 1, :]
 
     def create_resolver(normal_a: Array, normal_b: Array) -> Array:
@@ -283,12 +283,12 @@ def _resolution_vectors(frames: Array) -> tuple[Array, Array]:
         shear_terms = (ax * by + ay * bx, ax * bz + az * bx, ay * bz + az * by)
         return np.stack([ax * bx, ay * by, az * bz, *shear_terms], axis=-1)
 
-    # The resolver contains the factor 2 of the shear components in n.sigma.n.
+    # The vector contains the factor 2 of the shear components in n.sigma.n.
     return create_resolver(normal, direction), create_resolver(normal, normal)
 
 
 def _compute_damage(history: Array, frames: Array, slope: float) -> tuple[Array, Array, Array]:
-    """Sum, shear amplitude and largest normal stress on one frame per point and candidate (point, candidate)."""
+    """Findley's sum, shear amplitude and largest normal stress on every frame: arrays (point, candidate)."""
     shear_vectors, normal_vectors = _resolution_vectors(frames)
     shear = np.einsum("ptc,pkc->pkt", history, shear_vectors)
     max_normal = np.einsum("ptc,pkc->pkt", history, normal_vectors).max(axis=-1)
@@ -297,7 +297,7 @@ def _compute_damage(history: Array, frames: Array, slope: float) -> tuple[Array,
 
 
 def _rotate_frames(frames: Array, angle: Array) -> Array:
-    """Frames (frame, candidate, 2, 3): unchanged, and rotated by `angle` about 14 axes."""
+    """Candidates of each frame, (frame, candidate, 2, 3): the frame itself, and rotated by `angle` about 14 axes."""
     from scipy.spatial.transform import Rotation
 
     corners = np.array(list(product((-1.0, 1.0), repeat=3))) / np.sqrt(3)

@@ -19,13 +19,13 @@ from contactstudy.arrays.variables import ERROR_KIND, NOT_ESTIMATED, STRESSES, V
 from contactstudy.checks import Array
 from contactstudy.errors import InvalidInputError
 
-OF_POINTS = "of the stresses at the given points"  # Comment of values of histories
-MIN_POSITIONS = 3  # Along y, for a history
+OF_POINTS = "of the stresses at the given points"  # Attribute `comment` of values computed from histories
+MIN_POSITIONS = 3  # Minimum number of positions along y in a history
 COMPONENT = "stress_component"  # Dimension of the six components of a history
 
 
 def stack_history(stress: xr.Dataset) -> tuple[xr.DataArray, str]:
-    """Six stress components, dimensions rolling direction and component last, and the name of the rolling direction."""
+    """Six stress components, with rolling direction and component as last dimensions, and the former's name."""
     stress = require_in_si(stress, *STRESSES, argument="stress")
     rolling = rolling_dimension(stress["tau_yz"])
     tensor = xr.concat([stress[name] for name in STRESSES], dim=COMPONENT, coords="minimal", compat="override")
@@ -34,7 +34,7 @@ def stack_history(stress: xr.Dataset) -> tuple[xr.DataArray, str]:
 
 
 def rolling_dimension(stress: xr.DataArray) -> str:
-    """Dimension along y of a stress over a whole passage, at least three positions."""
+    """Name of the dimension along y of a stress, which must have at least three positions."""
     rolling = dimension_along(stress, "y")
     if stress.sizes[rolling] < MIN_POSITIONS:
         raise InvalidInputError(
@@ -67,12 +67,12 @@ def map_histories(
 
 
 def label_points(name: str, array: xr.DataArray, base: Variable | None = None) -> xr.DataArray:
-    """Values of histories with name, unit and the attribute of a value without an error estimate."""
+    """Label values computed from histories: name, unit, and the attribute that marks a missing error estimate."""
     return name_array(name, array, base).assign_attrs({"comment": OF_POINTS, ERROR_KIND: NOT_ESTIMATED})
 
 
 def window_remainder(stress: xr.Dataset) -> xr.DataArray:
-    """Stress at the window's borders in y over the largest of the passage: the truncation of a history.
+    """Stress at the window's borders in y over the largest stress of the passage: the truncation of a history.
 
     The remainder has an influence only if an extreme lies beyond the window. Extremes of the orthogonal shear lie at
     ``y = 0.87 a`` near the surface, and move out to ``y = z / sqrt(3)`` at depths of several half-widths.
@@ -86,7 +86,7 @@ def window_remainder(stress: xr.Dataset) -> xr.DataArray:
     -------
     DataArray
         Largest magnitude of the stress tensor (root of the sum of its squared components) at the first and the last
-        position along y, over the largest along y; 0 for a history that begins and ends unloaded, at most 1.
+        position along y, over the largest magnitude along y; 0 for a history that begins and ends unloaded, at most 1.
 
     Raises
     ------
@@ -121,7 +121,7 @@ MAX_STEPS = 500  # Bound on the steps of a ball: a safeguard
 def enclosing_balls(points: Array, heights: Array | None = None) -> tuple[Array, Array]:
     """Centre (path, axis) and radius (path) of the smallest ball around each path of points (path, instant, axis).
 
-    With `heights` (path, instant) the centre is bound to a plane: points are projections on it, heights distances.
+    With `heights` (path, instant) the centre lies in a plane: `points` are projections, `heights` distances from it.
     """
     origin = points.mean(axis=1)
     local = points - origin[:, None]
@@ -159,7 +159,7 @@ def enclosing_balls(points: Array, heights: Array | None = None) -> tuple[Array,
 def _add_point(
     path: Array, squares: Array, support: Array, occupied: Array, farthest: Array
 ) -> tuple[Array, Array, Array, Array]:
-    """Smallest balls around their support and the farthest point; `squares`: squared heights."""
+    """Smallest balls around their support and the farthest point, and the new support; `squares`: squared heights."""
     rows = np.arange(len(path))
     max_support = support.shape[1]
     subset_size = int(occupied.sum(axis=1).max())

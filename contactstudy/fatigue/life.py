@@ -1,4 +1,4 @@
-"""Risk of fatigue over the stressed volume, and relative life: two lives with the same probability to survive.
+"""Risk of fatigue over the stressed volume, and relative life: ratio of two lives of the same survival probability.
 
 ``ln(1/S) = const N**e risk`` for the probability S to survive N passages; the constant belongs to material and
 lubrication. G. Lundberg, A. Palmgren, Dynamic capacity of rolling bearings, Acta Polytechnica, Mechanical Engineering
@@ -83,7 +83,7 @@ def relative_life(risk: xr.Dataset, reference: xr.Dataset, exponents: LifeExpone
     -------
     DataArray
         ``(reference risk / risk)**(1/e)``; infinite without any risk, NaN if neither has a risk. Its coordinate
-        `relative_life_error` follows from the errors of both risks; a `comment` marks a result without them.
+        `relative_life_error` follows from the errors of both risks; a `comment` marks a result without these errors.
 
     Raises
     ------
@@ -124,7 +124,7 @@ def relative_life(risk: xr.Dataset, reference: xr.Dataset, exponents: LifeExpone
 
 
 MAX_TRUNCATED_RISK = 0.01  # Maximum fraction of the risk from sections with a truncated history or depth
-StressData = TypeVar("StressData", xr.Dataset, xr.DataArray)  # StressData of a risk
+StressData = TypeVar("StressData", xr.Dataset, xr.DataArray)  # Stresses from which a risk is computed
 ERROR_ALONG_X_AND_Z = (
     "of the positions along x and z alone, without the error of the positions along y and of the pressure"
 )
@@ -140,7 +140,7 @@ def _depth_positions(stress: xr.DataArray) -> tuple[str, xr.DataArray]:
 
 
 def _find_maximum(stress: Array, depth: Array) -> tuple[Array, Array]:
-    """Largest stress over the depth and its position, by a parabola through the three nearest points."""
+    """Largest stress over the depth and the depth of this maximum, by a parabola through the three nearest points."""
     depth = np.broadcast_to(depth, stress.shape)
     finite_stress = np.where(np.isnan(stress), -np.inf, stress)
     index = finite_stress.argmax(axis=-1)
@@ -177,7 +177,7 @@ def _integrate_risk(
     theory: Mapping[str, str | float],
     truncated: dict[str, xr.DataArray],
 ) -> xr.Dataset:
-    """Risk along x, and integrated over x; `truncated`: sections with a truncated stress, by the reason."""
+    """Risk along x, and its integral over x; `truncated` maps a reason to the sections whose stress is truncated."""
     x = dimension_along(density, "x")
     if density.sizes[x] < 2:
         raise InvalidInputError("stress", dict(density.sizes), "given at two or more positions along x")
@@ -213,13 +213,13 @@ def _sum_over_x(density: xr.DataArray) -> xr.DataArray:
 def _estimate_error(
     data: StressData, field: xr.DataArray, risk: xr.DataArray, compute_risk: Callable[[StressData], xr.DataArray]
 ) -> xr.DataArray:
-    """Sum over the axes of the change with every second position; infinite with too few positions."""
+    """Error of a risk: sum over the axes of the change with every second position; infinite with too few positions."""
     error = np.zeros(risk.shape)
     for axis, dim in axis_dimensions(field).items():
         subsets = [np.arange(start, field.sizes[dim], 2) for start in (0, 1)]
         if axis == "x":  # the integral over x includes the last position
             subsets = [np.unique(np.append(subsets[0], field.sizes[dim] - 1))]
-        # An error estimate needs three of every second position.
+        # Every second position must leave at least three positions.
         if any(indices.size < 3 for indices in subsets):
             return xr.full_like(risk, np.inf)
         error += np.max(
@@ -326,7 +326,7 @@ def _shear_risk(peak: xr.DataArray, depth: xr.DataArray, exponents: LifeExponent
 
 
 def _cut_fraction(excess: Array, depth: Array, exponents: LifeExponents) -> Array:
-    """Fraction of a section's risk above the first depth (uniform) and below the last depth (exponential decay)."""
+    """Fraction of a section's risk above the first depth, if uniform there, and below the last, if exponential."""
     last = np.maximum(np.isfinite(depth).sum(axis=-1, keepdims=True) - 1, 1)
 
     def take(values: Array, index: IntArray) -> Array:
@@ -401,7 +401,7 @@ def ioannides_harris(
     is_truncated = stress.where(outer).max(dim) >= stress.max(dim)
 
     def compute_risks(stress: Array, depth: Array) -> tuple[Array, ...]:
-        """Integral of the excess over the depth, over the weighted mean depth; mean depth; truncated fraction."""
+        """Return density of the risk, weighted mean depth of the excess, and truncated fraction of the risk."""
         excess = np.clip(stress - threshold, 0.0, None) ** exponents.stress
         volume, moment = _integrate(excess, depth), _integrate(excess * depth, depth)
         with np.errstate(divide="ignore", invalid="ignore"):

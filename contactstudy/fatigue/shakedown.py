@@ -40,7 +40,7 @@ EQUAL_TOLERANCE = 1e-6  # Largest difference of equal stresses over the largest 
 
 
 def to_ball_axes(history: Array) -> tuple[Array, Array, Array]:
-    """Coordinates u and v of stresses (..., 6), and the squared remainder; the squares sum up to von Mises' square."""
+    """u, v and squared remainder of stresses (..., 6): ``u**2 + v**2 + remainder`` is the squared von Mises stress."""
     xx, yy, zz, xy, xz, yz = np.moveaxis(history, -1, 0)
     # eq. (501)
     return yy - 0.5 * (xx + zz), 0.5 * np.sqrt(3.0) * (xx - zz), 3 * (xy**2 + xz**2 + yz**2)
@@ -53,15 +53,15 @@ def _min_yield_stress(history: Array) -> Array:
 
 
 def shakedown(stress: xr.Dataset, *, axial: bool = False) -> xr.Dataset:
-    """Least yield stress with which every material point shakes down (Melan), and its residual stress.
+    """Least yield stress with which every material point shakes down (Melan), and the point's residual stress.
 
     Parameters
     ----------
     stress : Dataset
         The six components with the rolling direction y over the whole passage, of one case or of a study.
     axial : bool
-        Whether to include a residual stress along the axis. It may not change along x and vanishes on free ends:
-        only in a line contact is it free at every depth.
+        Whether to include a residual stress along the axis. This stress may not change along x and vanishes on free
+        ends: only in a line contact is the stress free at every depth.
 
     Returns
     -------
@@ -99,7 +99,7 @@ def shakedown(stress: xr.Dataset, *, axial: bool = False) -> xr.Dataset:
             )
 
     def compute_yield_stresses(history: Array) -> tuple[Array, ...]:
-        """Yield stresses in shear for no yield and for shakedown, and the residual stresses yy and xx."""
+        """Least yield stresses in shear without yield and with shakedown, and the residual stresses yy and xx."""
         u, v, remainder = to_ball_axes(history)
         if axial:
             centre, radius = enclosing_balls(np.stack([u, v], axis=-1), np.sqrt(remainder))
@@ -160,7 +160,7 @@ def shakedown_limit(stress: xr.Dataset, *, axial: bool = False) -> xr.Dataset:
         return _study_limits(stress, swept_sizes, axial=axial)
     case = single_case(stress)
     rolling = dimension_along(case["tau_yz"], "y")
-    # One of the two halves of the instants lacks the critical instant.
+    # Each subset has every second instant: one of the two subsets lacks the critical instant.
     has_error = case.sizes[rolling] >= MIN_POSITIONS_FOR_ERROR
     samples = [case, *(case.isel({rolling: slice(start, None, 2)}) for start in (0, 1) if has_error)]
     fields = [shakedown(sample, axial=axial).compute() for sample in samples]
@@ -233,16 +233,16 @@ def _is_border_critical(case: xr.Dataset, fields: xr.Dataset, variable: str) -> 
         residual[0] = float(fields["residual_sigma_xx"].isel(position)) if "residual_sigma_xx" in fields else 0.0
     yield_stresses = _min_yield_stress(point + residual)
     max_stress = float(fields[variable].isel(position))
-    # The unloaded state is known: an unloaded border bounds the history.
+    # A history that ends unloaded is complete.
     unloaded = np.abs(point[[0, -1]]).max(axis=-1) <= EQUAL_TOLERANCE * max_stress
     return bool(((yield_stresses[[0, -1]] >= max_stress * (1 - EQUAL_TOLERANCE)) & ~unloaded).any())
 
 
 DEGREE, CONTINUITY = 5, 3  # Degree and continuity of the stress function's polynomials: smooth stresses
-# Points per element along either axis. Accuracy: an element has two functions along each axis; with two points the
-# body would yield between them
+# Points per element along either axis. Accuracy: an element has two functions along each axis; with only two points the
+# body would yield between the points
 POINTS_PER_ELEMENT = 4
-MIN_POINTS = 5  # Along x and z, for a stress function with free coefficients
+MIN_POINTS = 5  # Minimum number of points along x and z: with fewer, the stress function has no free coefficients
 MAX_GAP = 1e-4  # Relative duality gap of convergence
 MAX_PROGRAMS = 20  # Bound on the programs; about six suffice
 SQRT3 = np.sqrt(3.0)
@@ -365,7 +365,7 @@ def _element_edges(points: FloatArray, low: float, high: float) -> FloatArray:
 
 @dataclass(eq=False)
 class _Program:
-    """Cone program: histories over their largest stress, and the stresses per coefficient."""
+    """Cone program: histories in units of their largest stress, and residual stresses per coefficient."""
 
     history: Array
     function: list[sparse.csr_array]
@@ -378,9 +378,9 @@ class _Program:
         self.fixed_shear = np.sqrt(3 * (self.history[..., 3] ** 2 + self.history[..., 5] ** 2))
 
     def compute_balls(self, airy: FloatArray) -> tuple[Array, Array, Array]:
-        """Free stress along u and least von Mises stress at every point, with the residual stress in the plane.
+        """Free stress along u, least von Mises stress at every point, and von Mises stress at every instant.
 
-        The third is the von Mises stress at every instant.
+        The stresses include the residual stress in the plane, of the coefficients `airy`.
         """
         v, xz = self.v + (self._v @ airy)[:, None], self.xz + (self._xz @ airy)[:, None]
         squared = v**2 + xz**2 + self.fixed_shear**2
@@ -388,7 +388,7 @@ class _Program:
         return centre[:, 0], radius, np.sqrt((self.u - centre) ** 2 + squared)
 
     def solve(self) -> tuple[FloatArray, float, float]:
-        """Coefficients, the largest von Mises stress with them, and the program's lower bound of it."""
+        """Coefficients, the largest von Mises stress with these coefficients, and the lower bound of this stress."""
         best_airy, min_radius, bound = np.zeros(self._v.shape[1]), np.inf, 0.0
         airy = best_airy
         # The unloaded state at every point bounds all coefficients.
@@ -407,7 +407,7 @@ class _Program:
         return best_airy, min_radius, bound
 
     def _minimise(self, is_active: Array) -> tuple[FloatArray, float]:
-        """Coefficients and least largest stress over the active instants."""
+        """Coefficients that minimise the largest stress of the active instants, and a lower bound of this stress."""
         try:
             import clarabel
         except ImportError as error:

@@ -1,4 +1,4 @@
-"""Rough surfaces in a film: pressure of the asperities and mean height between them."""
+"""Rough surfaces in a film: pressure of the asperities and mean height of the film."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ class Asperities:
     sharpness : float
         ``sigma / beta``: `rms` over the asperities' radius; 1e-4 to 1e-2.
     pressure : callable, optional
-        Other law: pressure, Pa, at distances of the mean planes, metres (array to array), decreasing with distance.
+        Replaces this law: pressure, Pa, at distances of the mean planes, metres (array to array); falls with distance.
 
     Raises
     ------
@@ -73,7 +73,7 @@ class Asperities:
         return Law(factor * _integrate_overlap(ratio, 2.5), -2.5 * factor * _integrate_overlap(ratio, 1.5) / self.rms)
 
     def scaled_law(self, height: float, pressure: float, modulus: float) -> Callable[[FloatArray], Law]:
-        """Return the law for heights over `height`, m, and pressures over `pressure`, Pa."""
+        """Return the asperities' law with heights in units of `height`, m, and pressures in units of `pressure`, Pa."""
 
         def law(distance: FloatArray) -> Law:
             dimensional_law = self._law(distance * height, modulus)
@@ -82,13 +82,13 @@ class Asperities:
         return law
 
     def mean_height(self, height: float) -> Callable[[FloatArray], Law]:
-        """Return the mean height of the film between rough surfaces, over `height`, m: Patir and Cheng (1979)."""
+        """Return the law of the mean film between rough surfaces, in units of `height`, m: Patir and Cheng (1979)."""
         scale = self.rms / height
 
         def law(distance: FloatArray) -> Law:
             ratio = distance / scale
             contact_fraction = 0.5 * (1 + erf(ratio / np.sqrt(2)))
-            # Far below zero the two terms cancel.
+            # At ratios far below zero the two terms cancel.
             gauss = np.exp(-0.5 * np.minimum(ratio**2, 1e3)) / np.sqrt(2 * np.pi)
             film = scale * np.maximum(ratio * contact_fraction + gauss, gauss / (2 + ratio**2))  # eq. (413)
             return Law(film, np.maximum(contact_fraction, 1e-300))
@@ -97,7 +97,7 @@ class Asperities:
 
 
 def _integrate_overlap(height_ratio: FloatArray, power: float) -> FloatArray:
-    """Integral of ``(s - ratio)**power`` over the normal distribution above `height_ratio`."""
+    """Integral of ``(s - height_ratio)**power`` over the normal distribution of s, from `height_ratio` up."""
     nodes, weights = np.polynomial.legendre.leggauss(NODE_COUNT)
     lower_limit = np.minimum(height_ratio, MAX_HEIGHT)
     half_range = 0.5 * (MAX_HEIGHT - np.maximum(lower_limit, -MAX_HEIGHT))

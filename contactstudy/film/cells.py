@@ -28,7 +28,7 @@ class MergedCells:
 
     @classmethod
     def of(cls, cell_count: int, max_count: Callable[[float, float], float]) -> MergedCells:
-        """Merge `cell_count` uniform cells in powers of two, at most ``size(first, last)`` cells between two edges."""
+        """Merge `cell_count` uniform cells in powers of two, at most ``max_count(first, last)`` into one."""
         edges = [0]
         while edges[-1] < cell_count:
             first_cell, width = edges[-1], 1
@@ -49,12 +49,12 @@ class MergedCells:
 
     @cached_property
     def centre_cells(self) -> tuple[IntArray, IntArray]:
-        """Uniform cells on either side of each centre; equal for an odd number of uniform cells."""
+        """Uniform cells on either side of each merged cell's centre; the same cell if their number is odd."""
         edge_sums = self.edges[1:] + self.edges[:-1]
         return (edge_sums - 1) // 2, edge_sums // 2
 
     def to_uniform_cells(self, field: FloatArray) -> FloatArray:
-        """Values (x, merged cell) on the uniform cells."""
+        """Values on the uniform cells from values (x, merged cell)."""
         return np.repeat(field, self.counts, axis=-1)
 
     def to_centres(self, field: FloatArray) -> FloatArray:
@@ -63,11 +63,11 @@ class MergedCells:
         return np.asarray(0.5 * (field[..., lower_cells] + field[..., upper_cells]))
 
     def average(self, field: FloatArray) -> FloatArray:
-        """Means over the cells of values on uniform cells (x, uniform cell)."""
+        """Means over the merged cells of values (x, uniform cell)."""
         return np.asarray(np.add.reduceat(field, self.edges[:-1], axis=-1) / self.counts)
 
     def compute_stiffness(self, response: FloatArray) -> FloatArray:
-        """Matrices (x, cell, cell) from the response (x, offset) to a load on one uniform cell."""
+        """Displacement per pressure on merged cells (x, cell, cell), from a uniform cell's `response` (x, offset)."""
         cell_count = response.shape[-1]
         two_sided_response = np.concatenate([response[:, :0:-1], response], axis=-1)
         sums = np.concatenate([np.zeros((len(response), 1)), np.cumsum(two_sided_response, axis=-1)], axis=-1)
@@ -87,7 +87,7 @@ def graded_edges(start: float, stop: float, cell_width: CellWidth) -> FloatArray
     >>> graded_edges(0.0, 1.0, lambda x: 0.25).tolist()
     [0.0, 0.25, 0.5, 0.75, 1.0]
     """
-    # Cells of equal measure in the density 1 / size.
+    # The integral of 1 / cell_width is equal over all cells.
     points = [start]
     while points[-1] < stop:
         points.append(points[-1] + 0.1 * cell_width(points[-1]))
@@ -101,5 +101,5 @@ def graded_edges(start: float, stop: float, cell_width: CellWidth) -> FloatArray
 
 
 def count_uniform_cells(length: float, width: float) -> int:
-    """Return the number of uniform cells, at most `width` wide: a multiple of 16 of a fast transform length."""
+    """Return the number of uniform cells at most `width` wide: 16 times a length of fast transforms."""
     return 16 * int(next_fast_len(int(np.ceil(length / width / 16)), real=True))

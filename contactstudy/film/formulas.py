@@ -66,7 +66,7 @@ def dowson_higginson(speed: float, material: float, load: float) -> float:
 
 
 def thermal_reduction(pressure_ratio: float, loading: float, slide_roll_ratio: float) -> float:
-    """Film with the heat of shear in the inlet over the isothermal one (Gupta, Cheng, Zhu 1992), eq. (414).
+    """Film with the heat of shear in the inlet over the isothermal film (Gupta, Cheng, Zhu 1992), eq. (414).
 
     Parameters
     ----------

@@ -54,15 +54,15 @@ class FilmResolution:
     widest_column : float
         Widest columns over the half-width. Accuracy.
     inlet, outlet : float
-        Distance of the window's ends from the contact's edges over the inlet length. Accuracy.
+        Distances of the window's ends from the contact's edges, over the inlet length. Accuracy.
     ratio : float
-        Ratio of the cells of two successive levels along y; its square for the narrowest columns.
+        Ratio of the widths of cells along y on two successive levels; narrowest columns have the square of this ratio.
     levels : int
         Maximum number of levels of each direction, at least 3.
     most_cells : int
         Maximum number of uniform cells along y. Speed.
     dry_accuracy, dry_tolerance : float
-        Accuracy of the dry contact that defines the window, and tolerance of the dry contact as a start. Speed.
+        Accuracy of the dry contact that defines the window, and tolerance of the dry contact that is the start. Speed.
     """
 
     finest: float = 0.55
@@ -148,7 +148,7 @@ class FilmCase:
 
     @cached_property
     def contact_half_width(self) -> float:
-        """Largest half-width of the dry contact over that of Hertz."""
+        """Largest half-width of the dry contact over the Hertz half-width."""
         grid = self.dry_contact.shape.grid
         loaded = self.dry_contact.pressure.any(axis=0)
         return float(np.abs(grid.y[loaded]).max() + 0.5 * grid.dy) / self.half_width
@@ -174,10 +174,10 @@ class FilmCase:
 
     @cached_property
     def largest_line_load(self) -> float:
-        """Largest load per length of the dry contact, N/m, over columns of a half-width and more."""
+        """Largest load per length of the dry contact, N/m, as a mean over two half-widths along x."""
         grid = self.dry_contact.shape.grid
         line_loads = self.dry_contact.pressure.sum(axis=1) * grid.dy
-        # A sharp end's peak is narrower than the film's inlet at that end.
+        # The mean smooths the peak at a sharp end, which is narrower than the film's inlet there.
         cumulative_load = np.concatenate([[0.0], np.cumsum(line_loads * grid.widths)])
         span = min(2 * self.half_width, float(np.ptp(grid.x_edges)))
         centres = np.linspace(grid.x_edges[0] + 0.5 * span, grid.x_edges[-1] - 0.5 * span, 401)
@@ -186,11 +186,11 @@ class FilmCase:
 
     @cached_property
     def central_film(self) -> float:
-        """Central film by Moes' formula where the load per length is largest, metres: a scale."""
+        """Central film by Moes' formula under the largest load per length, metres: the scale of the film."""
         return self.moes_film(self.largest_line_load)
 
     def slice_film(self, x: FloatArray) -> FloatArray:
-        """Central film of a line contact with the dry load per length at each position, metres; NaN without load."""
+        """Central film by Moes' formula under the dry contact's load per length at each x, metres; NaN without load."""
         grid = self.dry_contact.shape.grid
         column = np.clip(np.searchsorted(grid.x_edges, x) - 1, 0, grid.cells_x - 1)
         line_loads = self.dry_contact.pressure[column].sum(axis=1) * grid.dy
@@ -198,7 +198,7 @@ class FilmCase:
 
     @cached_property
     def inlet_length(self) -> float:
-        """Length over which the film forms, over the half-width, in steps: similar speeds have the same cells."""
+        """Length over which the film forms, over the half-width; rounded, so that similar speeds have equal cells."""
         line_half_width = hertz.line_half_width(
             hertz.line_max_pressure(self.largest_line_load, self.case.roller.radius, self.case.modulus),
             self.case.roller.radius,
@@ -250,7 +250,7 @@ class FilmOnCells(NamedTuple):
 def create_cells(
     film: FilmCase, level: Level, closures: tuple[float, ...]
 ) -> tuple[FilmCells, MergedCells, tuple[float, float]]:
-    """Return the cells of a level, with narrow columns at the `closures` along x, and their window along y."""
+    """Return the cells of a level, with narrow columns at the `closures` along x, and the window along y."""
     resolution = film.resolution
     scale, column_scale = resolution.ratio**-level.cells, resolution.ratio ** (-2 * level.columns)
     start, stop = (end / film.half_width for end in film.case.contact_range)
@@ -331,7 +331,7 @@ def _solve_on_cells(
         loads: Mapping[Load, FloatArray] = {Load.NORMAL: body_load}
         return operator(loads)[columns] / film.height_scale
 
-    # The reference lines of the roller's motion move as in the dry contact.
+    # The roller's motion has the same reference lines as in the dry contact.
     gap = shape.gap.values - film.dry_contact.motions.total.height(grid.x)
     unit_load = np.zeros((cells.shape[0], grid.cells_y))
     unit_load[:, 0] = 1.0
@@ -363,7 +363,7 @@ def _solve_on_cells(
 
 
 def _dry_state(film: FilmCase, problem: FilmProblem, dry: Contact, columns: slice, merged: MergedCells) -> FilmState:
-    """Dry contact with the central film of the formula between the surfaces."""
+    """First guess: pressure and gap of the dry contact, with the formula's central film added to the gap."""
     pressure = merged.average(dry.pressure[columns]) / film.pressure_scale
     distance = merged.to_centres(dry.gap[columns]) / film.height_scale + problem.central_film
     motion = np.zeros(len(problem.motions))
@@ -377,7 +377,7 @@ def _dry_state(film: FilmCase, problem: FilmProblem, dry: Contact, columns: slic
 
 
 def _transfer_state(start: FilmOnCells, problem: FilmProblem) -> FilmState:
-    """Film on other cells, by lines between the centres."""
+    """First guess: film of other cells, interpolated linearly between the cells' centres."""
     start_cells, cells = start.problem.cells, problem.cells
     state = start.solution.state
     pressure, distance = (
@@ -387,7 +387,7 @@ def _transfer_state(start: FilmOnCells, problem: FilmProblem) -> FilmState:
 
 
 def _convert_result(film: FilmCase, result: xr.Dataset, problem: FilmProblem) -> FilmState:
-    """Film of another speed or lubricant, changed by the ratio of the formula's central films."""
+    """First guess: film of another speed or lubricant, scaled by the ratio of the formula's central films."""
     sign = -1 if result["entrainment_speed"] < 0 else 1
     fields = result[["pressure", "film_thickness"]].transpose("x", "y").dropna("x")
     x, y = (fields[axis].values / film.half_width for axis in "xy")

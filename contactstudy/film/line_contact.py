@@ -1,4 +1,4 @@
-"""Film of a line contact in Moes' numbers: the special case of formulas and tables."""
+"""Film of a line contact in Moes' numbers: the special case for which formulas and tables exist."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ BARUS = Lubricant(viscosity=0.01, pressure_viscosity=1e-8, viscosity_law="barus"
 
 
 COARSEST_FROM_DRY = 0.35
-"""Narrowest cells, over the length on which the film forms, that are solved from the dry contact. Speed."""
+"""Narrowest cells whose first guess is the dry contact, over the length on which the film forms. Speed."""
 
 
 class LineFilm(NamedTuple):
@@ -51,7 +51,7 @@ class LineFilm(NamedTuple):
 
 
 def line_stiffness(edges: FloatArray, centres: FloatArray) -> FloatArray:
-    """Matrix of ``u R / a**2`` at `centres` per ``p / p0`` between `edges`, positions over ``a``, up to a constant."""
+    """Matrix: ``u R / a**2`` at `centres` per ``p / p0`` between `edges`, in units of ``a``, up to a constant."""
     distance = centres[:, None] - edges[None, :]
     primitive = distance * (np.log(np.abs(distance)) - 1)
     return np.asarray(np.diff(primitive, axis=1) / np.pi)

@@ -1,4 +1,4 @@
-"""Semi-smooth Newton method on arrays for pressure, rigid motion and cavitation of the film."""
+"""Semi-smooth Newton method for pressure, rigid motion and cavitation of the film, on arrays."""
 
 from __future__ import annotations
 
@@ -24,13 +24,13 @@ class FilmSettings:
     Attributes
     ----------
     tolerance : float
-        Tolerance: net outflow of a cell over the flow ``um h_c``, and load over the prescribed one. Accuracy.
+        Tolerance of a cell's net outflow over the flow ``um h_c``, and of the load's relative error. Accuracy.
     level_tolerance : float
-        Tolerance on the coarser levels, which serve as start and for the error. Speed.
+        Tolerance on the coarser levels, which give first guesses and error estimates. Speed.
     steps : tuple of float
         Pseudo-time steps, in a / um, before the steady state. Speed.
     newton_steps : int
-        Bound on the Newton steps of one pseudo-time step, and, three times as many, of the steady state. Speed.
+        Bound on the Newton steps of one pseudo-time step; the steady state may take three times as many. Speed.
     linear_tolerance : float
         Tolerance of the linear systems. Speed.
     linear_steps : int
@@ -38,7 +38,7 @@ class FilmSettings:
     max_closing : float
         Largest relative decrease of the film of a cell in one step. Speed.
     max_pressure_change : float
-        Change of the pressure in one step, over p0. Speed.
+        Largest change of the pressure in one step, over p0. Speed.
     closed_film_ratio, nearly_closed_ratio : float
         Film over the central film below which an iteration ends, and below which a failure is a closed film.
     speed_ratio, speed_steps : float, int
@@ -72,14 +72,14 @@ class StepFailedError(ContactStudyError):
 
 
 class _LinearisedEquations(NamedTuple):
-    """Equations about a state.
+    """Equations linearised about a state.
 
     Attributes
     ----------
     flow : Flow
         Flow and its derivatives.
     residual : array (cell + motion)
-        Residual of cells, over their film, and of load and moment.
+        Residuals of the cells, over the cells' film, and residuals of load and moment.
     by_pressure, by_distance : sparse array (cell, cell)
         Derivatives of the cells' residuals at a fixed distance of the surfaces and at a fixed pressure.
     cavitated : array of bool (cell)
@@ -171,7 +171,7 @@ class _Iteration:
         return np.asarray(density * linearised.film.ravel())
 
     def linearise(self, state: FilmState, step: float, mass: FloatArray | None) -> _LinearisedEquations:
-        """Residual and derivatives at a state."""
+        """Return residual and derivatives at a state."""
         problem = self.problem
         cells, distance = problem.cells, state.distance
         ones = np.ones(cells.shape)
@@ -186,13 +186,13 @@ class _Iteration:
             outflow = outflow + lengths * (density.value * film.value.ravel() - mass)
             by_pressure = by_pressure + sparse.diags_array(lengths * density.slope * film.value.ravel())
             by_distance = by_distance + sparse.diags_array(lengths * density.value * film.slope.ravel())
-        # The fluid carries the pressure less that of the asperities.
+        # The fluid pressure is the total pressure minus the pressure of the asperities.
         if problem.asperities is not None:
             by_distance = by_distance - by_pressure @ sparse.diags_array(asperities.slope.ravel())
         elastic = _elastic_diagonal(problem.column_stiffness, by_distance)
         diagonal = np.abs(by_pressure.diagonal() + elastic)
         cavitated = fluid_pressure.ravel() - outflow / diagonal <= 0
-        # The residual is over the film of the cell: a norm of pressures would neglect the far inlet.
+        # The residual is divided by the film of the cell: a norm of pressures would neglect the far inlet.
         full_cells = sparse.diags_array(np.where(cavitated, 0.0, 1 / film.value.ravel()))
         by_pressure = full_cells @ by_pressure + sparse.diags_array(cavitated.astype(np.float64))
         by_distance = full_cells @ by_distance - sparse.diags_array(cavitated * asperities.slope.ravel())
@@ -292,7 +292,7 @@ class _Iteration:
         return next_state, step_fraction, max_change
 
     def solve_linear(self, linearised: _LinearisedEquations, mismatch: FloatArray) -> FloatArray:
-        """Change of pressure and rigid motion, by GMRES with eliminated columns as preconditioner, eq. (405)."""
+        """Change of pressure and rigid motion, by GMRES with elimination of columns as preconditioner, eq. (405)."""
         from scipy.sparse.linalg import LinearOperator, gmres
 
         problem = self.problem
@@ -341,7 +341,7 @@ def _select_column_entries(matrix: sparse.csr_array, cells: int) -> sparse.coo_a
 
 
 def _elastic_diagonal(stiffness: FloatArray, by_distance: sparse.csr_array) -> FloatArray:
-    """Diagonal of the derivative by the distance times the columns' stiffness: array (cell)."""
+    """Diagonal (cell) of the product of the derivative by the distance and the columns' stiffness."""
     columns, cells = stiffness.shape[:2]
     entries = _select_column_entries(by_distance, cells)
     products = entries.data * stiffness[entries.row // cells, entries.col % cells, entries.row % cells]
@@ -350,15 +350,15 @@ def _elastic_diagonal(stiffness: FloatArray, by_distance: sparse.csr_array) -> F
 
 @dataclass(frozen=True, eq=False)
 class _ColumnElimination:
-    """Elimination of the columns one after the other; all columns have equal pressure changes."""
+    """Elimination of the columns one after the other, as if the pressure changed equally in all columns."""
 
-    inverses: FloatArray  # (x, y, y): inverses of the columns' equations without the columns before
-    lower: FloatArray  # (x, y): coefficients of the pressures in the column before and in the one after
+    inverses: FloatArray  # (x, y, y): inverses of the columns' equations after elimination of earlier columns
+    lower: FloatArray  # (x, y): coefficients of the pressures in the column before; `upper`: in the column after
     upper: FloatArray
 
     @classmethod
     def of(cls, linearised: _LinearisedEquations, problem: FilmProblem) -> _ColumnElimination:
-        """Eliminate column after column."""
+        """Return the elimination of the linearised equations."""
         columns, cells = problem.cells.shape
         before, after = np.zeros((2, columns, cells))
         before[1:] = linearised.by_pressure.diagonal(-cells).reshape(-1, cells)

@@ -13,7 +13,7 @@ from contactstudy.checks import BoolArray, FloatArray
 from contactstudy.film.reynolds import FilmCells, Fluid, Law
 
 INVERSE_STEPS = 8
-"""Steps to the distance of rough surfaces at a film height; the next Newton step removes the remainder. Speed."""
+"""Steps that find the distance of rough surfaces from the film; the next Newton step removes the remainder. Speed."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -37,7 +37,7 @@ class FilmProblem:
     lever : array (x) or None
         Distances from the load's position, over the largest distance, if the roller is free to tilt.
     central_film : float
-        Central film as estimated before the solution: the scale of tolerances.
+        Estimate of the central film before the solution: the scale of tolerances.
     asperities : callable or None
         Mean pressure of the asperities at a distance of the surfaces.
     mean_height : callable or None
@@ -57,14 +57,14 @@ class FilmProblem:
 
     @cached_property
     def motions(self) -> FloatArray:
-        """Heights of the rigid motions: array (motion, cell)."""
+        """Changes of the distance of the surfaces by unit rigid motions: array (motion, cell)."""
         ones = np.ones(self.cells.shape)
         motions = [ones] if self.lever is None else [ones, self.lever[:, None] * ones]
         return np.stack([motion.ravel() for motion in motions])
 
     @cached_property
     def resultants(self) -> FloatArray:
-        """Sums that the rigid motions prescribe: array (motion, cell)."""
+        """Factors by which a sum over the pressure gives load and moment: array (motion, cell)."""
         return np.asarray(self.motions * self.cells.areas.ravel())
 
     def compute_film(self, distance: FloatArray) -> Law:
@@ -72,7 +72,7 @@ class FilmProblem:
         return Law(distance, np.ones_like(distance)) if self.mean_height is None else self.mean_height(distance)
 
     def solve_distance(self, height: FloatArray, start: FloatArray) -> FloatArray:
-        """Distance of the surfaces at a mean height of the film: Newton's method for its logarithm, from a `start`."""
+        """Distance of the surfaces at a mean film, by Newton's method for the film's logarithm from a `start`."""
         if self.mean_height is None:
             return height
         # The mean height exceeds the distance of the surfaces by at most the height at distance zero.
@@ -85,7 +85,7 @@ class FilmProblem:
 
     @property
     def prescribed(self) -> FloatArray:
-        """Prescribed values of `resultants`: load, and moment about its position."""
+        """Prescribed sums of `resultants`: the load, and its zero moment about the load's position."""
         return np.array([self.load, 0.0][: len(self.motions)])
 
 

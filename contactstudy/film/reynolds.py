@@ -18,10 +18,10 @@ from contactstudy.bodies.lubricant import Lubricant
 from contactstudy.checks import FloatArray
 
 FLUIDITY_NODES, FLUIDITY_RATIO = 1600, 1.005
-"""Nodes of the fluidity over the pressure, and ratio of their steps. Accuracy."""
+"""Number of nodes along the pressure in the fluidity's table, and ratio of successive steps. Accuracy."""
 
 FACE_RANGE = (0.2, 2.0)
-"""Least and largest film on a face over that of the cell upstream: parabolas overshoot. Accuracy."""
+"""Least and largest film on a face over the film of the cell upstream; bounded, since parabolas overshoot. Accuracy."""
 
 
 class Law(NamedTuple):
@@ -38,7 +38,7 @@ class Fluid:
     Attributes
     ----------
     density : callable
-        Density over the ambient one, of the pressure.
+        Density over the ambient density, as a function of the pressure.
     reduced_pressure : callable
         Integral of the fluidity (density over viscosity, both over their ambient values) up to the pressure.
     flow_number : float
@@ -150,7 +150,7 @@ class FilmCells:
 
     @cached_property
     def parabolas(self) -> sparse.csr_array:
-        """Values on the faces along y, by parabolas through two cells upstream and one downstream: (face, cell)."""
+        """Matrix (face, cell): values on the faces along y, by parabolas through two cells upstream, one downstream."""
         cells = self.y.size
         matrix = np.zeros((cells + 1, cells))
         for face, position in enumerate(self.y_edges):
@@ -161,7 +161,7 @@ class FilmCells:
         return sparse.csr_array(sparse.kron(sparse.eye_array(self.shape[0]), matrix))
 
     def upwind(self, height: FloatArray) -> sparse.csr_array:
-        """Parabolas, bounded where the film varies much from cell to cell, to remain positive: (face, cell)."""
+        """Film on the faces by parabolas, bounded to stay positive where the film varies much: (face, cell)."""
         upstream = self.faces_y.upstream
         face_film, min_film, max_film = (
             self.parabolas @ height,
@@ -174,12 +174,12 @@ class FilmCells:
 
     @cached_property
     def outflow_y(self) -> sparse.csr_array:
-        """Net outflow of the cells from the flow through the faces along y."""
+        """Matrix (cell, face): net outflow of the cells per flow through the faces along y."""
         return sparse.csr_array(sparse.kron(sparse.eye_array(self.shape[0]), _outflow(self.shape[1])))
 
     @cached_property
     def outflow_x(self) -> sparse.csr_array:
-        """Net outflow of the cells, per width, from the flow through the faces along x."""
+        """Matrix (cell, face): net outflow of the cells, per width, per flow through the faces along x."""
         per_width = sparse.diags_array(1 / self.widths) @ _outflow(self.shape[0])
         return sparse.csr_array(sparse.kron(per_width, sparse.diags_array(self.lengths)))
 
@@ -240,7 +240,7 @@ class Faces:
     gradient: sparse.csr_array
 
     def conduct_flow(self, flow_number: float, reduced: Law, height: FloatArray) -> PressureFlow:
-        """Return the flow by the gradient of the reduced pressure, eq. (402); it rises with any step of the pressure.
+        """Return the flow by the gradient of the reduced pressure, eq. (402); the flow rises with any pressure step.
 
         The flow is constant between two centres, and the film linear: the thinner film determines the flow.
         """
@@ -256,7 +256,7 @@ class Faces:
 
 
 def _outflow(cells: int) -> sparse.sparray:
-    """Differences of neighbouring faces: array (cell, face)."""
+    """Matrix of the differences of neighbouring faces: array (cell, face)."""
     return sparse.diags_array([-np.ones(cells), np.ones(cells)], offsets=[0, 1], shape=(cells, cells + 1))
 
 

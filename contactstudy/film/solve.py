@@ -33,13 +33,13 @@ from contactstudy.film.levels import (
 from contactstudy.film.newton import SETTINGS, FilmSettings, StepFailedError
 
 ACCURACIES = (2e-3, 0.2)
-"""Accuracies that the levels reach."""
+"""Range of the accuracies that the levels reach."""
 
 ERROR_FACTORS = {"cells": 1.5, "columns": 1.0}
 """Stated error over the latest change by a refinement. Accuracy."""
 
 CHANGE_RATIOS = {"cells": 0.5, "columns": 0.25}
-"""Change by a refinement over the change before, of second order in the size of the cells. Accuracy."""
+"""Change by a refinement over the change by the refinement before, for errors of second order. Accuracy."""
 
 MIN_RELATIVE_ERROR = 1e-3
 """Least stated error over the value. Accuracy."""
@@ -68,7 +68,7 @@ def solve_film(
         With a `lubricant` and a motion that has speeds. Friction does not displace the surfaces.
     accuracy : float
         Largest error of the central and of the least films, over the central film, from 0.002
-        to 0.2; the refinement of the cells ends below it. The result contains the error reached.
+        to 0.2; refinement ends once the error is below this value. The result contains the error reached.
     asperities : Asperities, optional
         Roughness, whose asperities carry a part of the load. Default: the surfaces are smooth.
     inlet : float, optional
@@ -203,7 +203,7 @@ FILM_NAMES = {
 
 
 class _RefinedFilm(NamedTuple):
-    """Film on the finest level, its values and their errors, and the largest over the central film."""
+    """Film on the finest level, its values, their errors, and the largest error over the central film."""
 
     level_film: FilmOnCells
     films: Films
@@ -215,7 +215,7 @@ class _RefinedFilm(NamedTuple):
 
 
 def _refine(film: FilmCase, accuracy: float, settings: FilmSettings, start: xr.Dataset | None = None) -> _RefinedFilm:
-    """Film on cells that are refined in the direction of the larger error, down to the accuracy."""
+    """Refine the cells in the direction of the larger error until the film reaches the accuracy."""
     coarse_settings = replace(settings, tolerance=max(settings.tolerance, settings.level_tolerance))
     level = Level()
     closures: tuple[float, ...] = film.contact_ends
@@ -261,12 +261,12 @@ def _refine(film: FilmCase, accuracy: float, settings: FilmSettings, start: xr.D
 
 
 def _estimate_errors(direction: str, changes: list[FloatArray]) -> FloatArray:
-    """Error of each film from its latest two changes by refinement in one direction; one may vanish by chance."""
+    """Error of each film from the latest two changes by refinement in one direction: one may vanish by chance."""
     return np.asarray(ERROR_FACTORS[direction] * np.maximum(changes[-1], CHANGE_RATIOS[direction] * changes[-2]))
 
 
 def _columns_of_minima(films: Films, level_film: FilmOnCells) -> tuple[float, float]:
-    """Columns of the least films of both sides, over the half-width: equal for films of near speeds."""
+    """Centres of the columns with the least films of both sides, over the half-width: equal for similar speeds."""
     x = level_film.problem.cells.x
     first, last = (float(x[np.abs(x - position).argmin()]) for position in (films.first_x, films.last_x))
     return first, last
@@ -285,7 +285,7 @@ def _create_film_error(film: FilmCase, error: StepFailedError, level: Level, clo
 
 
 def compute_films(film: FilmCase, level_film: FilmOnCells) -> Films:
-    """Return central and least films of a solution, between the cells and up to the end faces by parabolas."""
+    """Return central and least films of a solution, by parabolas between the cells and up to the end faces."""
     cells, height = level_film.problem.cells, level_film.solution.film
     low, high = film.contact_ends
     mid_length = 0.5 * (low + high)
@@ -325,7 +325,7 @@ class _Minimum(NamedTuple):
 
 
 def _find_minimum(centres: FloatArray, edges: FloatArray, films: FloatArray, mask: BoolArray) -> _Minimum:
-    """Minimum of positive values within the lowest cell of a mask, by a cubic spline of logarithms of nearby cells."""
+    """Minimum within the lowest cell of a mask, by a cubic spline of the logarithms of positive `films` nearby."""
     cell = int(np.where(mask, films, np.inf).argmin())
     neighbours = slice(max(cell - 3, 0), cell + 4)
     spline = CubicSpline(centres[neighbours], np.log(films[neighbours]))
@@ -408,7 +408,7 @@ def _label_film(film: FilmCase, refined: _RefinedFilm) -> xr.Dataset:
 
 
 def _spread_pressure(level_film: FilmOnCells, values: FloatArray) -> FloatArray:
-    """Pressure on the uniform cells along y; merged cells keep their loads."""
+    """Pressure on the uniform cells along y, with the same load on every merged cell."""
     edges = level_film.merged.edges
     load = np.concatenate([np.zeros((len(values), 1)), np.cumsum(values * level_film.merged.counts, axis=1)], axis=1)
     spread_pressure = np.diff(PchipInterpolator(edges, load, axis=1)(np.arange(edges[-1] + 1)), axis=1)

@@ -44,7 +44,7 @@ def frictional_heat(case: Case, solution: xr.Dataset, grid: Grid) -> FrictionalH
         creepage = solution.get("longitudinal_creepage", motion.longitudinal_creepage)
         speeds = motion.speeds_at(0.0 if creepage is None else float(creepage))
         q_x, s_x, q_y, s_y = fields
-        # Traction times slip per distance, times distance per time.
+        # Power per area is traction times slip per distance, times distance per time.
         density = -speeds.entrainment * np.maximum(q_x * s_x + q_y * s_y, 0.0)
         return FrictionalHeat(density, float((area * density).sum()), speeds.body, speeds.roller)
     assert isinstance(motion, Sliding)
@@ -74,7 +74,7 @@ Response = Callable[[FloatArray], FloatArray]  # Temperature rise from heat
 def partition_heat(
     first_response: Response, second_response: Response, heat: FloatArray, in_contact: BoolArray
 ) -> tuple[FloatArray, float]:
-    """Heat into the first of two surfaces of equal contact temperature, and their difference over the rise."""
+    """Heat into the first of two surfaces of equal contact temperature, and the difference of their relative rises."""
     if not heat.any():  # surfaces of the same speed
         return np.zeros(heat.shape), 0.0
 
@@ -118,7 +118,7 @@ def flash_temperature(
     result : Dataset
         Result of `solve`.
     body, roller : ThermalProperties
-        The roller's may be omitted with a given `partition`.
+        Thermal properties of the bodies; `roller` may be omitted with a given `partition`.
     partition : float, optional
         Uniform fraction of the heat into the body, from 0 to 1. Default: equal temperatures of both surfaces in the
         contact determine the fraction at each point.
@@ -265,7 +265,7 @@ def _solve_temperatures(
 
 
 def _coarsen(grid: Grid, field: FloatArray) -> tuple[Grid, FloatArray]:
-    """Half as many cells along y, and means over them."""
+    """Return a grid with half as many cells along y, and the means of the field over its cells."""
     wide_grid = Grid.between(grid.x_edges, grid.y_range, max(grid.cells_y // 2, 1))
     cumulative = np.pad(np.cumsum(field, axis=1), ((0, 0), (1, 0)))
     # The edge of a wide cell may cut a cell.
@@ -275,12 +275,12 @@ def _coarsen(grid: Grid, field: FloatArray) -> tuple[Grid, FloatArray]:
 
 
 def _under_roller(case: Case, grid: Grid, pressure: FloatArray) -> tuple[slice, tuple[float, float]]:
-    """Columns under the roller or loaded, and the roller's insulated ends, moved to edges of columns."""
+    """Columns that are loaded or under the roller, and positions of the roller's insulated ends at edges of columns."""
     if case.roller.ends == "none":
         return slice(0, grid.cells_x), (-np.inf, np.inf)
     roller_start, roller_end = case.roller_start, case.roller_start + case.roller.length
     edges = grid.x_edges
-    # Rounding may exclude loaded columns whose centre is at the end of the roller.
+    # Rounding may place the centre of a loaded column beyond the end of the roller.
     under_roller = np.flatnonzero(((grid.x > roller_start) & (grid.x < roller_end)) | (pressure > 0).any(axis=1))
     first, stop = int(under_roller[0]), int(under_roller[-1]) + 1
     start = edges[first] if first > 0 else min(roller_start, edges[0])
@@ -289,7 +289,7 @@ def _under_roller(case: Case, grid: Grid, pressure: FloatArray) -> tuple[slice, 
 
 
 def _find_maximum(grid: Grid, rises: dict[str, FloatArray]) -> dict[str, float]:
-    """Largest rise of the surfaces and its position, by a parabola between the cells along y."""
+    """Largest rise of both surfaces and its position, by a parabola through three cells along y."""
     hotter_rise = max(rises.values(), key=lambda rise: float(rise.max()))
     i, j = np.unravel_index(int(hotter_rise.argmax()), hotter_rise.shape)
     maximum, y = float(hotter_rise[i, j]), float(grid.y[j])

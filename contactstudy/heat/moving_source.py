@@ -1,7 +1,7 @@
 """Temperature of a moving surface under heat in its cells: the diffusion of heat between insulated ends.
 
-The steady temperature is the integral of eq. (601) over the length of spreading s, with one factor along each axis of
-uniform heat in a cell (docs/explanation/heat_and_wear.md). Insulated ends act on X alone: they mirror the cell.
+The steady temperature is the integral of eq. (601) over the length of spreading s. For uniform heat in a cell the
+integrand has one factor along each axis (docs/explanation/heat_and_wear.md); insulated ends mirror the cell along x.
 """
 
 from __future__ import annotations
@@ -77,8 +77,8 @@ MAX_SPREADS = 6.5  # Lengths of spreading beyond which the heat of a cell vanish
 def spread_nodes(min_width: float, step: float, window: float, drift: float) -> tuple[FloatArray, FloatArray]:
     """Nodes and weights over the length of spreading s, in which heat moves by ``drift s**2 / 2``, drift in 1/m."""
     speed = abs(drift)
-    # The integral ends when the heat of all cells has drifted beyond the window, and for a source at rest at 1e8
-    # windows, with a remainder of 1e-8.
+    # The integral ends when the heat of all cells has drifted beyond the window; for a source at rest, at 1e8
+    # windows, where the remainder is 1e-8.
     max_spread = 1e8 * window
     if speed:
         max_spread = min((MAX_SPREADS + np.sqrt(MAX_SPREADS**2 + 2 * speed * window)) / speed, max_spread)
@@ -87,7 +87,7 @@ def spread_nodes(min_width: float, step: float, window: float, drift: float) -> 
     panel_count = max(1, int(np.ceil(np.log(max_spread / min_spread) / np.log(2.0))))  # Ratio of neighbouring panels
     edges = [np.zeros(1), np.geomspace(min_spread, max_spread, panel_count + 1)]
     if speed:
-        # Lengths at which the edge of a cell passes the midpoint of another cell and is still sharp.
+        # Lengths of spreading at which the edge of a drifting cell passes the midpoint of another cell.
         crossings = np.sqrt(2 * step * (np.arange(int(np.ceil(window / step)) + 1) + 0.5) / speed)
         edges.append(crossings[crossings < max_spread])
     panel_edges = np.unique(np.concatenate(edges))
@@ -100,14 +100,14 @@ def spread_nodes(min_width: float, step: float, window: float, drift: float) -> 
 
 
 def lateral_factors(spread: FloatArray, distance: FloatArray, step: float, drift: float) -> FloatArray:
-    """Fraction of a cell's heat density at distances along y from its midpoint: array (spread, distance)."""
+    """Fraction of a cell's heat density that remains at distances along y from its midpoint: (spread, distance)."""
     s = spread[:, None]
     drifted = distance[None, :] - 0.5 * drift * s**2
     return np.asarray(0.5 * (erf((drifted + 0.5 * step) / s) - erf((drifted - 0.5 * step) / s)))
 
 
 def axial_factors(spread: FloatArray, x: FloatArray, edges: FloatArray, ends: tuple[float, float]) -> FloatArray:
-    """Fractions at positions `x` of the heat of cells between `edges`: array (spread, x, cell)."""
+    """Fraction at positions `x` of the heat density of cells between `edges`: array (spread, x, cell)."""
     length = ends[1] - ends[0]
     primitives = _primitive(spread, x[:, None] - edges[None, :], length)
     if np.isfinite(ends[0]):
@@ -116,7 +116,7 @@ def axial_factors(spread: FloatArray, x: FloatArray, edges: FloatArray, ends: tu
 
 
 def _primitive(spread: FloatArray, distance: FloatArray, length: float) -> FloatArray:
-    """Primitive along x of the heat kernel and, for a finite length, of its images at every second length."""
+    """Primitive along x of the heat kernel; for a finite length also of the kernel's images at every second length."""
     distance = np.asarray(distance)
     s = spread.reshape(-1, *[1] * distance.ndim)
     if not np.isfinite(length):
@@ -126,7 +126,7 @@ def _primitive(spread: FloatArray, distance: FloatArray, length: float) -> Float
     primitive = np.empty((spread.size, *distance.shape))
     # Length of spreading over the distance between two ends above which the cosine series replaces the images
     is_wide = spread >= 0.6 * length
-    # exp(-(m pi / L)**2 kappa t) with 4 kappa t = s**2
+    # The cosines decay like exp(-(m pi / L)**2 kappa t) with 4 kappa t = s**2
     if is_wide.any():
         # The first neglected term is ``exp(-(9 pi 0.6 / 2)**2)``.
         wavenumbers = np.arange(1, 9) * np.pi / length
@@ -149,7 +149,7 @@ class MovingBody(NamedTuple):
 
     properties: ThermalProperties
     speed: float  # of its surface along +y relative to the contact, m/s
-    ends: tuple[float, float]  # insulated, m; without an end, or without the second, infinite
+    ends: tuple[float, float]  # positions of the insulated ends, m; infinite where the body has no end
 
     @property
     def drift(self) -> float:
@@ -205,7 +205,7 @@ class SourceOperator:
         self._spectrum = compute_spectrum(0.0)
         mirror = body.ends[0]
         if np.isfinite(mirror):
-            # In reversed order cell j is at x[-1] - dx j, and its image at 2 mirror - x[-1] + dx j.
+            # In reversed order cell j lies at x[-1] - dx j, and the cell's image at 2 mirror - x[-1] + dx j.
             self._mirror_spectrum = compute_spectrum(x[0] + x[-1] - 2 * mirror)
 
     def __call__(self, heat: FloatArray) -> FloatArray:
@@ -229,7 +229,7 @@ def _sum_products(
     spread: FloatArray, lateral: ComplexArray, size: int, factors: Callable[[FloatArray], FloatArray]
 ) -> ComplexArray:
     """Sum, over the lengths of spreading, of axial factors (`size` numbers) times spectra of lateral factors."""
-    # Real products cost half as much as complex ones.
+    # Products of real numbers cost half as much as products of complex numbers.
     real_factors = np.ascontiguousarray(lateral).view(np.float64)
     sums: FloatArray = np.zeros(())
     step = max(1, 2**22 // size)  # Lengths of spreading in memory at a time

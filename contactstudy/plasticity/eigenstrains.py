@@ -42,8 +42,8 @@ def eigenstrain_stress(
     x, z : sequence of float, optional
         Positions of the stresses, metres; default: the positions of the eigenstrain.
     x_edges, z_edges : sequence of float, optional
-        Edges of the cells, metres; default: half-way between the positions, and on the top or a free end if that is as
-        near to the outer position as the next one.
+        Edges of the cells, metres; default: half-way between the positions, and on the top or a free end that is as
+        near to the outer position as the next position.
 
     Returns
     -------
@@ -119,7 +119,7 @@ def eigenstrain_stress(
 
 
 def edges_between(positions: FloatArray, low: float, high: float) -> FloatArray:
-    """Edges half-way between positions; outer cells end at `low` and `high` if these are as near as the next one."""
+    """Edges half-way between positions; an outer cell ends at `low` or `high` if as near as the next position."""
     midpoints = 0.5 * (positions[1:] + positions[:-1])
     first_edge = low if positions[0] - low <= positions[1] - positions[0] else 2 * positions[0] - midpoints[0]
     last_edge = high if high - positions[-1] <= positions[-1] - positions[-2] else 2 * positions[-1] - midpoints[-1]

@@ -1,4 +1,4 @@
-"""Passes of a contact over an elastic-plastic body, until the residual state is stationary.
+"""Passes of a contact over an elastic-plastic body, repeated until the residual state is stationary.
 
 docs/explanation/passes.md; radial return: J. C. Simo, T. J. R. Hughes, Computational Inelasticity (1998), chapter 3.
 Each column along x acts separately while the strain changes along y, in plane strain as in a line contact.
@@ -44,11 +44,11 @@ def tensor_norm(tensor: FloatArray) -> FloatArray:
 
 
 MAX_REPETITIONS = 300  # Bound on the repetitions of a pass
-MIXING_HISTORY = 6  # Number of mixed iterates
+MIXING_HISTORY = 6  # Number of earlier iterates in Anderson's mixing
 
 
 class State(NamedTuple):
-    """State of some cells after passes."""
+    """State of a selection of cells after passes."""
 
     strain: FloatArray  # (6, cell), plastic
     accumulated: FloatArray  # (cell), equivalent plastic strain
@@ -60,15 +60,15 @@ class Passage:
     """A pass over some cells of the cross-section."""
 
     elastic: FloatArray  # (6, position, cell), stress of the contact, Pa
-    residual: Influence | LayerInfluence  # of the body, strains uniform along y
-    layers: LayerInfluence  # without an end
-    lateral: PeriodicLayers  # of strains periodic along y
-    lateral_positions: int  # in the period
+    residual: Influence | LayerInfluence  # residual stress in the body by strains uniform along y
+    layers: LayerInfluence  # the same in a body without ends
+    lateral: PeriodicLayers  # residual stress in a body without ends by strains periodic along y
+    lateral_positions: int  # number of positions along y in the period
     cell_indices: tuple[IntArray, IntArray]  # column and layer (cell) in `lateral`
     yield_stress: FloatArray  # (cell), in tension, Pa
     shear_modulus: float  # Pa
-    isotropic: float  # Pa
-    kinematic: float  # Pa
+    isotropic: float  # hardening modulus, Pa
+    kinematic: float  # hardening modulus, Pa
     tolerance: float  # change of the deviator over the yield stress
 
     def solve(self, start: State) -> State:
@@ -88,7 +88,7 @@ class Passage:
         return State(start.strain + next_strain[:, -1], accumulated, start.converged and converged)
 
     def _residual_stress(self, plastic_strain: FloatArray) -> FloatArray:
-        """Residual stress (6, position, cell) of this pass's plastic strain, columns in plane strain."""
+        """Residual stress (6, position, cell) by this pass's plastic strain, with every column in plane strain."""
         final_strain = plastic_strain[:, -1]
         column, layer = self.cell_indices
         periodic_strain = np.zeros((6, self.lateral_positions, column.max() + 1, layer.max() + 1))
@@ -98,7 +98,7 @@ class Passage:
         decay = np.clip(2 - 2 * (np.arange(decay_count) + 0.5) / decay_count, 0.0, 1.0)
         periodic_strain[:, count:, column, layer] = (decay**2 * (3 - 2 * decay))[:, None] * final_strain[:, None]
         stress = self.lateral.stresses(periodic_strain)[:, :count, column, layer]
-        # The correction to the whole body grows with the fraction of the final strain that the pass has caused.
+        # The correction for the body's ends grows with the fraction of the final strain reached at each position.
         norm = float(COMPONENT_COUNTS @ (final_strain**2).sum(axis=1))
         if norm:
             fraction = np.einsum("i,ipc,ic->p", COMPONENT_COUNTS, plastic_strain, final_strain) / norm
@@ -107,7 +107,7 @@ class Passage:
         return np.asarray(stress)
 
     def _return_mapping(self, trial: FloatArray, initial: State) -> tuple[FloatArray, FloatArray]:
-        """Plastic strain of this pass, and accumulated strain; `trial`: the deviator without plastic strain."""
+        """Plastic strain of this pass, and accumulated strain; `trial` is the deviator before plastic flow."""
         kinematic = 2 / 3 * self.kinematic
         modulus = 2 * self.shear_modulus + kinematic
         stiffness = modulus + 2 / 3 * self.isotropic
@@ -146,12 +146,12 @@ class _AndersonMixing:
 
 
 NEAR_YIELD_RATIO = 0.9  # Minimum von Mises stress over yield stress of the cells of a pass
-MAX_STRAIN = 0.05  # Largest plastic strain of small-strain theory, with the contact stresses of a flat body
+MAX_STRAIN = 0.05  # Largest plastic strain for which small-strain theory and the contact stresses hold
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class _CrossSection:
-    """The cross-section: elastic stresses (6, position, cell) at falling y, residual stress of plastic strain."""
+    """Cross-section of the body: elastic stresses (6, position, cell) at falling y, and influence of plastic strain."""
 
     body: Body
     material: ElasticPlastic
@@ -177,11 +177,11 @@ class _CrossSection:
 
     @property
     def layers(self) -> LayerInfluence:
-        """Residual stress of infinite layers."""
+        """Residual stress by strains in infinite layers of a body without ends."""
         return LayerInfluence(self.body.material.poisson, self.body.material.young)
 
     def create_passage(self, cells: IntArray, substeps: int, tolerance: float) -> Passage:
-        """Create the pass over some of the cells."""
+        """Create the pass over a selection of the cells."""
         steps = substeps * max(1, round(float(np.ptp(self.y) / np.abs(np.diff(self.y)).min())))
         y = np.linspace(self.y[0], self.y[-1], steps + 1)
         # The stress is linear between positions and vanishes behind the last position.
@@ -190,7 +190,7 @@ class _CrossSection:
         columns, layers = np.unravel_index(cells, (self.x.size, self.z.size))
         top_layer, bottom_layer = layers.min(), layers.max()
         edges = edges_between(self.z, 0.0, np.inf)[top_layer : bottom_layer + 2]
-        # Period over the length of the positions along y. Accuracy: the influence along y vanishes beyond.
+        # Period over the length of the positions along y. Accuracy: strains one period away have no influence.
         period = int(next_fast_len(int(3.0 * y.size), real=True))
         periodic = PeriodicLayers(self.body.material, edges, period, float(y[1] - y[0]))
         indices = np.unique(columns, return_inverse=True)[1], layers - top_layer
@@ -337,7 +337,7 @@ def residual_stress(
             coords={dims[0]: section.x, dims[1]: section.z},
         )
         states.append(pass_result.expand_dims(pass_number=[pass_number]))
-        # The state is stationary below a stress by the flow of twice the tolerance.
+        # The state is stationary once the flow of a pass changes the stress by less than twice the tolerance.
         if 3 * body.material.shear_modulus * plastic_flow <= 2.0 * tolerance * section.yield_stress.min():
             break
     if not state.converged:

@@ -42,7 +42,7 @@ def plot_axial_pressure(
     ax : Axes, optional
         Axes to draw in; default: a new figure.
     shift : float
-        Added to the positions, in the unit of the figure.
+        Length added to the positions, in the unit of the figure.
     si : bool
         Whether to draw mm and MPa instead of lengths over a and pressures over p0.
     **style
@@ -51,7 +51,7 @@ def plot_axial_pressure(
     Returns
     -------
     Axes
-        An open triangle at the top marks a singular end; the line ends 0.05 half-widths before it.
+        An open triangle at the top marks a singular end; the line ends 0.05 half-widths before the end.
 
     Raises
     ------
@@ -77,7 +77,7 @@ def plot_axial_pressure(
 def draw_section_maxima(
     ax: Axes, case: xr.Dataset, variable: str, unit: Units, shift: float = 0.0, **style: Any
 ) -> None:
-    """Draw the largest value in each cross-section, without the neighbourhood of singular ends, which are marked."""
+    """Draw the largest value in each cross-section; omit the neighbourhood of singular ends, and mark these ends."""
     if variable == "pressure":
         profile = axial_pressure(case)
     else:
@@ -102,7 +102,7 @@ def plot_comparison(
     Parameters
     ----------
     results : mapping
-        Name in the legend to a single case, drawn over its a and p0.
+        Single cases by their names in the legend, each drawn over its own a and p0.
     variable : str
         `pressure`, or a stress or measure, see :func:`contactstudy.analysis.measure`.
     ax, si

@@ -23,11 +23,11 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 Entry = tuple[float, xr.Dataset]  # e/a and the case
-LoadCase = Callable[[xr.Dataset], xr.Dataset]  # from the part of a study with one case to the case
+LoadCase = Callable[[xr.Dataset], xr.Dataset]  # Takes the part of a study with one case; returns the case
 
 EDGE_AXES = ("e_over_a", "body")  # Parameters with several values in the figure
-TITLE_WIDTH = 60  # letters of a line
-PLATEAU = 0.1  # Relative deviation from the pressure at mid-length up to which a curve is treated as level
+TITLE_WIDTH = 60  # letters in a line of the title
+PLATEAU = 0.1  # Largest relative deviation from the pressure at mid-length of a level curve
 
 
 def plot_edge_effect(
@@ -55,7 +55,7 @@ def plot_edge_effect(
     selection : mapping, optional
         Values of other swept parameters; default: the first.
     load : callable
-        Takes the part of a study with one case, returns the case with its surfaces; default: those of the Dataset.
+        Takes the part of a study with one case, returns the case with its surfaces; default: reads the Dataset.
 
     Returns
     -------
@@ -94,7 +94,7 @@ def plot_edge_effect(
     if not entries:
         raise InvalidInputError("dataset", dict(dataset.sizes), allowed)
     half_spaces = entries_of("half-space") if has_bodies and "half-space" in bodies and finite != "half-space" else []
-    # On a half-space the distance shifts the coordinate only: one case suffices.
+    # On a half-space e/a only shifts the coordinate: one case suffices.
     same_distance = [(e, case) for e, case in half_spaces if e == entries[0][0]] or half_spaces
     comparison = with_surfaces(same_distance[:1])
     stress_entries = [(e, case) for e, case in entries if "von_mises" in case]

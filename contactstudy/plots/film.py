@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 HALF_RANGE = 1.4
-"""Part of the plane along y in a figure, over the Hertz half-width."""
+"""Half of the range along y in a figure, over the Hertz half-width."""
 
 
 def plot_film_map(dataset: xr.Dataset, ax: Axes | None = None, *, fringes: int = 12, si: bool = False) -> Axes:
@@ -30,7 +30,7 @@ def plot_film_map(dataset: xr.Dataset, ax: Axes | None = None, *, fringes: int =
     ax, si
         As for :func:`contactstudy.plots.plot_axial_pressure`.
     fringes : int
-        Contours up to 1.5 times the central film.
+        Number of contours up to 1.5 times the central film.
 
     Returns
     -------
@@ -86,7 +86,7 @@ def plot_film_line(
     Returns
     -------
     Axes
-        Of the film; the pressure has axes on the right.
+        Axes of the film; the pressure has axes on the right.
 
     Raises
     ------

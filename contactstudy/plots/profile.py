@@ -33,7 +33,7 @@ def plot_profile(
     ax : Axes, optional
         Axes to draw in; default: a new figure.
     deepest : float, optional
-        Largest drop on the axis, metres; default: the largest of the profile. Limit it for crowns of micrometres with
+        Largest drop on the axis, metres; default: the profile's largest drop. Limit it for crowns of micrometres with
         fillets of tenths of a millimetre.
     **style
         Style of the line, as in matplotlib.
@@ -88,7 +88,7 @@ def plot_profiles(
     Raises
     ------
     InvalidInputError
-        If `profiles` is empty, or :func:`plot_profile` raises it.
+        If `profiles` is empty, or :func:`plot_profile` rejects an argument.
 
     Examples
     --------

@@ -16,7 +16,7 @@ from contactstudy.plots.style import SYMBOLS, escape_dollars
 
 
 def select_values(dataset: xr.Dataset, selection: Mapping[str, Any]) -> xr.Dataset:
-    """Part of a study with these values of its swept parameters; every dimension remains."""
+    """Part of a study with the selected values of its swept parameters; every dimension remains."""
     return dataset.isel({name: [index_of(dataset, name, value)] for name, value in selection.items()})
 
 
@@ -47,7 +47,7 @@ def most_solved(array: xr.DataArray, axes: tuple[str, ...], selection: Mapping[s
 
 
 def scale_of(array: xr.DataArray) -> tuple[float, str]:
-    """Size in SI and name of the unit of a figure's axis; an empty name for a pure number."""
+    """Size in SI, and name, of the unit that suits a figure's axis; an empty name for a pure number."""
     max_magnitude = float(abs(array).where(np.isfinite(array)).max())
     return unit_for(max_magnitude, str(array.attrs.get("units", "1")))
 
@@ -62,7 +62,7 @@ def scale_values(array: xr.DataArray, name: str) -> tuple[xr.DataArray, str]:
 
 
 def describe_value(name: str, value: Any, units: str, count: int = 1) -> str:
-    """Text of one value of a parameter, with the number of values of the study."""
+    """Text of one value of a parameter, with the number of values in the study if several."""
     is_number = isinstance(value, int | float | np.number) and not isinstance(value, bool)
     text = format_quantity(float(value), units or "1") if is_number else escape_dollars(value)
     symbol = "$p_0$" if name == "max_pressure" else name.replace("_over_a", "/a").replace("_", " ")

@@ -18,7 +18,7 @@ OMITTED_DISTANCE = 0.05
 
 SINGULAR_MARK: dict[str, Any] = {"marker": "^", "markersize": 7, "markerfacecolor": "none", "linestyle": "none"}
 SINGULAR_LABEL = "singular: unbounded"
-MARK_HEIGHT = 0.965  # over the height of the axes
+MARK_HEIGHT = 0.965  # Height of a mark over the height of the axes
 
 
 def singular_ends(case: xr.Dataset) -> list[float]:
@@ -51,7 +51,7 @@ def near_singular(case: xr.Dataset, ends: list[float], x: FloatArray) -> BoolArr
 
 
 def cap_field(case: xr.Dataset, field: xr.DataArray) -> tuple[xr.DataArray, float]:
-    """Field clipped to its largest value away from singular ends, and that bound; infinite without such ends."""
+    """Field clipped to its largest value away from singular ends, and this bound; infinite without singular ends."""
     ends = singular_ends(case) if "pressure" in case else []
     if not ends:
         return field, np.inf

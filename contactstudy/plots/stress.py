@@ -75,12 +75,12 @@ def plot_stress_plane(
     levels : int or sequence of float, optional
         Contour levels, or their approximate number.
     colorbar : bool
-        Whether to add one.
+        Whether to add a colour bar.
 
     Returns
     -------
     Axes
-        With the depth downwards. A cross marks the largest value in the body, if it lies in the plane.
+        Depth points downwards. A cross marks the largest value in the body, if it lies in the plane.
 
     Raises
     ------
@@ -201,7 +201,7 @@ def plot_end_face(
     face_stress = in_plane(case, variables=variable, x=face_x)[variable]
     y_dim = dimension_along(face_stress, "y")
     is_outer = side * face_stress[y_dim] > 0
-    # The fold belongs to both halves: its values are those of the plane y = 0.
+    # The fold belongs to both halves, and takes its values from the plane y = 0.
     fold = section.sel({dimension_along(section, "x"): face_x}).reset_coords(drop=True).expand_dims({y_dim: [0.0]})
     half_stress = xr.concat([fold, face_stress[{y_dim: is_outer.values}]], y_dim).rename(variable)
     x, z, section_values = _plane_arrays(section, "x", "z", unit)

@@ -30,14 +30,14 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 QUANTITIES = ("peak_pressure", "peak_von_mises", "peak_von_mises_z")  # Default quantities
-END_LOADS = ("end_load_first", "end_load_last")  # Quantities instead of the peak where every case is singular
+END_LOADS = ("end_load_first", "end_load_last")  # Replace the peak pressure if it is singular in every case
 OPEN_MARK: dict[str, Any] = {"markersize": 6, "markerfacecolor": "white", "linestyle": "none"}
 OPEN_LABEL = "error not estimated"
 
 ESTIMATED_PREFIXES = ("peak_", "end_pressure_", "end_load_", "end_intensity", "contact_")
 """Prefixes of results whose error is estimated or missing; prescribed scalars, such as a load, have other names."""
 
-LINE_HEIGHT = 0.17  # inches
+LINE_HEIGHT = 0.17  # Height of a line of text, inches
 TICK_WIDTH, LEGEND_COLUMN = 18, 22  # letters of a name at the axis and in the legend next to the axes
 FORCES = {"longitudinal_creepage": ("force_y", "F_y"), "lateral_creepage": ("force_x", "F_x")}
 """Force conjugate to a creepage, and its symbol."""
@@ -58,7 +58,7 @@ def plot_study_lines(
     dataset : Dataset
         From :func:`contactstudy.open_study`.
     variables : sequence of str
-        Scalars of each case; missing ones are omitted.
+        Scalars of each case; missing scalars are omitted.
     x : str
         Swept parameter along the horizontal axis; names are spaced evenly.
     hue : str, optional
@@ -123,7 +123,7 @@ def plot_study_lines(
 def _draw_panel(
     ax: Axes, dataset: xr.Dataset, name: str, x: str, hue: str | None, fixed_parameters: Mapping[str, Any]
 ) -> dict[str, dict[str, Any]]:
-    """Draw one quantity; return the marks to explain, by label."""
+    """Draw one quantity; return the styles of the marks that a legend must explain, by label."""
     marks: dict[str, dict[str, Any]] = {}
     axes_of_study = (x,) if hue is None else (x, hue)
     values, label = scale_values(select_one(dataset[name], axes_of_study, fixed_parameters), name)
@@ -187,7 +187,7 @@ def _draw_legend(figure: Figure, ax: Axes, values: xr.DataArray, hue: str) -> No
 
 
 def _extra_lines(ax: Axes) -> int:
-    """Return the number of text lines below an axis, without one line of numbers and one of the label."""
+    """Return the number of text lines below an axis in excess of two: one of ticks and one of the label."""
     names = max((tick.get_text().count("\n") for tick in ax.get_xticklabels()), default=0)
     return names + ax.get_xlabel().count("\n")
 
@@ -195,7 +195,7 @@ def _extra_lines(ax: Axes) -> int:
 def _errors(
     dataset: xr.Dataset, name: str, axes: tuple[str, ...], fixed_parameters: Mapping[str, Any]
 ) -> tuple[xr.DataArray, xr.DataArray]:
-    """Finite errors in the unit of the panel, and the finite values without an estimated error."""
+    """Finite errors in the unit of the panel, and the finite values whose error is not estimated."""
     values = select_one(dataset[name], axes, fixed_parameters)
     if f"{name}_error" in dataset:
         errors = select_one(dataset[f"{name}_error"], axes, fixed_parameters)
@@ -207,7 +207,7 @@ def _errors(
 
 
 def _value_labels(values: xr.DataArray, name: str) -> list[str]:
-    """Values of a parameter in the unit of its label; values of zipped parameters together."""
+    """Texts of a parameter's values in the label's unit; values of zipped parameters share a text."""
     if parameters := _parameters_along(values, name):
         return [
             ", ".join(escape_dollars(values[parameter].values[i]) for parameter in parameters)
@@ -333,7 +333,7 @@ def study_figures(dataset: xr.Dataset, *, selection: Mapping[str, Any] | None = 
 
 
 def figures_with_selections(dataset: xr.Dataset, load: LoadCase) -> dict[str, tuple[Figure, list[str]]]:
-    """Figures of :func:`study_figures`, with the parameters of which a figure shows one value among several."""
+    """Figures of :func:`study_figures`, each with the parameters of which it shows one value among several."""
     sizes = {str(dim): dataset.sizes[dim] for dim in dataset["status"].dims if dataset.sizes[dim] > 1}
     swept = sorted(sizes, key=lambda dim: -sizes[dim])
     figures = {}

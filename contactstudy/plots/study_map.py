@@ -98,7 +98,7 @@ def plot_study_map(
     if levels is not None:
         from matplotlib.patheffects import AbstractPathEffect, withStroke
 
-        # White with a dark rim is legible on every colour.
+        # White text with a dark rim is legible on every colour.
         outline: list[AbstractPathEffect] = [withStroke(linewidth=2.5, foreground="0.2")]
         level_lines = ax.contour(x_ticks, y_ticks, finite_values, levels=levels, colors="white", linewidths=1.2)
         level_lines.set_path_effects(outline)
@@ -126,7 +126,7 @@ def plot_study_map(
 
 
 def _unstack_cases(array: xr.DataArray, x: str, y: str) -> xr.DataArray:
-    """Cases along one dimension, unstacked over two parameters; NaN without a case."""
+    """Array over two parameters, from cases along one dimension; NaN for a pair of values without a case."""
     varying_names = [
         str(dim) for dim in array.dims if all(name in array.coords and array[name].dims == (dim,) for name in (x, y))
     ]

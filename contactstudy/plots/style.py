@@ -41,11 +41,11 @@ SYMBOLS = {
 }
 """Labels of swept parameters with a symbol in the theory; the table of variables contains the symbols of results."""
 
-LETTER_WIDTH = 0.073  # inches, of a label
-MIN_LINE_LENGTH = 14  # letters
-LEGEND_WIDTH = 40  # letters of a name in a legend within the axes
+LETTER_WIDTH = 0.073  # Width of a letter in a label, inches
+MIN_LINE_LENGTH = 14  # Least length of a folded line, letters
+LEGEND_WIDTH = 40  # Letters in a line of a legend within the axes
 WORD = re.compile(r"(?:\\.|\$(?:[^$\\]|\\.)*\$|\S)+")  # formulas in one piece
-BREAKS = (";:", ",", "")  # last letters of the phrases that stay together, longest phrases first, then words
+BREAKS = (";:", ",", "")  # Letters after which a text is folded, first choice first; finally after any word
 MARKUP = re.compile(r"\\[A-Za-z]+|[\\{}$_^]")
 
 
@@ -122,7 +122,7 @@ def fold_text(text: str, width: int) -> str:
 
 
 def _fold_words(words: list[str], width: int, breaks: Sequence[str]) -> list[str]:
-    """Lines of words, broken after the letters of the first entry of `breaks`; longer phrases after the next's."""
+    """Lines of words, broken after letters in `breaks[0]`; too long phrases are broken after letters in `breaks[1]`."""
     lines, phrase = [""], []
     for count, word in enumerate(words, start=1):
         phrase.append(word)
@@ -159,7 +159,7 @@ def fold_labels(*axes: Axes) -> None:
 
 
 def label_axes(ax: Axes, x: str, y: str, *others: Axes) -> None:
-    """Label axes, and fold these labels and those of further axes, such as a colour bar."""
+    """Label axes, and fold the labels of these and of `others`, such as a colour bar."""
     ax.set_xlabel(x)
     ax.set_ylabel(y)
     fold_labels(ax, *others)

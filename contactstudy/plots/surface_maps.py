@@ -24,10 +24,10 @@ STICK_COLOR, SLIP_COLOR = "0.55", "0.88"
 CONTACT_BORDER: dict[str, Any] = {"colors": "0.35", "linewidths": 0.9}
 STICK_BORDER: dict[str, Any] = {"colors": "#e8513a", "linewidths": 1.8}  # legible on every colour of the map
 BORDER_LEVEL = 0.01
-"""Squared pressure at the border over its largest value away from singular ends: linear in the distance to it."""
+"""Squared pressure at the drawn border, over its largest value; near the border it is linear in the distance."""
 
 MARGIN = 0.1  # Margin around the contact over its width
-ARROW_LENGTH = 1.5  # of the longest arrow over the spacing along x
+ARROW_LENGTH = 1.5  # Length of the longest arrow over the arrows' spacing along x
 VECTORS = ("traction", "slip")
 SURFACES = {"body": "temperature_rise", "roller": "roller_temperature_rise"}
 
@@ -92,7 +92,7 @@ def _outer_edges(centres: FloatArray) -> FloatArray:
 
 
 def _extend(values: FloatArray, in_contact: BoolArray) -> FloatArray:
-    """Values over (y, x), continued along y from the contact to the adjacent cells; 0 in columns without contact."""
+    """Values over (y, x), which continue the contact's outermost values along y; 0 in columns without contact."""
     rows = np.arange(len(values))[:, None]
     first_row, last_row = in_contact.argmax(axis=0), len(values) - 1 - in_contact[::-1].argmax(axis=0)
     extended = np.take_along_axis(values, np.clip(rows, first_row, last_row), axis=0)
@@ -138,7 +138,7 @@ def plot_pressure_map(dataset: xr.Dataset, ax: Axes | None = None, *, si: bool =
     Returns
     -------
     Axes
-        Cropped to the contact. Near a singular end the colours stop at the pressure 0.05 a from it.
+        Cropped to the contact. Near a singular end the colours stop at the pressure 0.05 a from the end.
 
     Raises
     ------
@@ -174,7 +174,7 @@ def plot_stick_and_slip(dataset: xr.Dataset, ax: Axes | None = None, *, si: bool
     ax, si
         As for :func:`plot_axial_pressure`.
     arrows : int
-        Arrows along x; half as many along y.
+        Number of arrows along x; half as many along y.
 
     Returns
     -------

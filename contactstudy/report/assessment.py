@@ -16,7 +16,7 @@ from contactstudy.arrays.engineering import format_quantity
 from contactstudy.case.serialization import tables_within
 from contactstudy.report.summary_table import NOT_ESTIMATED, Quantity, Summary, summary
 
-YES, CAUTION, NO, UNKNOWN = "yes", "with care", "no", "not known"  # Answers; "not known" without the number
+YES, CAUTION, NO, UNKNOWN = "yes", "with care", "no", "not known"  # Answers; "not known" if a number is missing
 LOAD_TOLERANCE, RESIDUAL_TOLERANCE, VIOLATION_TOLERANCE = 1e-6, 1e-3, 1e-4
 """Largest relative error of the load, residual of free ends and of Coulomb's law, and violation of the contact
 conditions: each is below the digits that a summary prints."""
@@ -34,19 +34,19 @@ class Criterion(NamedTuple):
 
 @dataclass(frozen=True)
 class Assessment:
-    """Criteria of a trustworthy result; prints as text."""
+    """Criteria that a trustworthy result meets; prints as text."""
 
     criteria: tuple[Criterion, ...]
 
     @property
     def overall(self) -> str:
-        """Worst answer, without "not known"."""
+        """Worst answer of all criteria, apart from "not known"."""
         answers = {criterion.answer for criterion in self.criteria}
         return next((answer for answer in (NO, CAUTION, YES) if answer in answers), UNKNOWN)
 
     @property
     def verdict(self) -> str:
-        """One sentence."""
+        """The overall answer in one sentence."""
         reason = next((criterion.reason for criterion in self.criteria if criterion.answer == self.overall), "")
         return {
             YES: "all criteria hold",
@@ -88,12 +88,12 @@ def assess(dataset: xr.Dataset) -> Assessment:
 
 
 def assess_case(case: xr.Dataset, table: Summary) -> Assessment:
-    """Return the assessment of a case with its summary."""
+    """Return the assessment of a case, given the case's summary."""
     return Assessment(tuple(_criteria(case, table)))
 
 
 def _criteria(case: xr.Dataset, table: Summary) -> Iterator[Criterion]:
-    """Every criterion; of a case without a result the reason alone."""
+    """Yield every criterion; for a case without a result, only the reason."""
     if "status" in case and (status := str(case["status"].item())) != "ok":
         message = str(case["message"].item()) if "message" in case else ""
         yield Criterion("Is there a result?", NO, f"the case is {status}" + (f": {message}" if message else ""))
@@ -208,7 +208,7 @@ def _singular_edge(case: xr.Dataset) -> str:
 
 
 def _measured_profile(profile: Mapping[str, Any]) -> Criterion:
-    """Whether a measured profile is filtered: cells resolve noise like a shape."""
+    """Whether a measured profile is filtered: the cells would resolve its noise like a shape."""
     question, cutoff = "Is the measured profile filtered?", profile.get("cutoff")
     if cutoff is None:
         reason = (
@@ -243,5 +243,5 @@ def _size(case: xr.Dataset, name: str) -> float:
 
 
 def _digit(value: float) -> str:
-    """Small number with one digit, such as '2e-07'."""
+    """Text of a number with one digit, such as '2e-07'."""
     return f"{value:.0e}" if value else "0"

@@ -39,7 +39,7 @@ if TYPE_CHECKING:
 
 WIDTH, HEIGHT = 6.4, 3.3  # Size of a figure, inches
 END_PANEL, LONG_CONTACT = 6.0, 15.0
-"""Length of the panel at the most loaded end, and of a contact with such a panel, over the Hertz half-width."""
+"""Length of the panel at the most loaded end, and least length of a contact with such a panel, in half-widths."""
 
 DOTS_PER_INCH = 110  # Dots per inch of images within a figure
 PIXELS_PER_INCH = 96  # Pixels of a page per inch
@@ -81,7 +81,7 @@ def encode_figure(figure: Figure) -> str:
     from matplotlib.backends.backend_svg import FigureCanvasSVG
 
     target = io.BytesIO()
-    # `savefig` would draw the figure twice.
+    # Write the canvas directly: `savefig` would draw the figure twice.
     figure.set_dpi(DOTS_PER_INCH)
     canvas: Any = FigureCanvasSVG(figure)
     with matplotlib.rc_context({"svg.hashsalt": "contactstudy"}):
@@ -98,7 +98,7 @@ def _new_figure(height: float = HEIGHT) -> Figure:
 
 def case_pictures(result: xr.Dataset, case: Case | None) -> list[Picture]:
     """Return every figure that a result of one case and its inputs allow."""
-    # Functions that draw into a figure and return its caption.
+    # Each function draws into a figure and returns the figure's caption.
     draw: list[Callable[[Figure, xr.Dataset], str]] = []
     if "pressure" in result and bool((result["pressure"] > 0).any()):
         top = "Pressure on the top of the body. The two axes have different scales."
@@ -200,7 +200,7 @@ def _draw_profile(roller: Roller, figure: Figure, result: xr.Dataset) -> str:
 
 
 def _cap_remark(result: xr.Dataset) -> str:
-    """Note on the limit of the colours near a singular end."""
+    """Sentence for a caption: the colours are limited near a singular end; empty without a singular end."""
     _, limit = cap_field(result, result["von_mises"])
     return f" Beside a singular end the stress exceeds the largest colour, {format_quantity(limit, 'Pa')}." * (
         limit < np.inf
@@ -242,8 +242,8 @@ class SideView(NamedTuple):
 
     x: FloatArray
     generatrix: FloatArray  # heights of the roller's lower line above the body
-    roller: tuple[float, float]  # ends
-    body: tuple[float, float]  # ends; infinite without
+    roller: tuple[float, float]  # ends along x
+    body: tuple[float, float]  # ends along x; infinite where the body has no end
     limits: tuple[float, float]
     height: float  # of the roller in the drawing
     magnification: float  # factor on the drop
@@ -273,7 +273,7 @@ def side_geometry(case: Case) -> SideView:
 
 
 def _magnification(crown: float, height: float) -> float:
-    """Factor on a crown, 1, 2 or 5 times a power of ten, up to 0.16 of the height; 1 for a visible crown."""
+    """Factor, 1, 2 or 5 times a power of ten, that magnifies a crown to at most 0.16 of the height; 1 if visible."""
     if crown <= 0 or crown >= 0.02 * height:
         return 1.0
     limit = 0.16 * height / crown
@@ -282,7 +282,7 @@ def _magnification(crown: float, height: float) -> float:
 
 
 def side_view(case: Case) -> Picture:
-    """Draw roller and body from the side, to scale but for the magnified drop of the profile."""
+    """Draw roller and body from the side, to scale except for the magnified drop of the profile."""
     view = side_geometry(case)
     width = view.limits[1] - view.limits[0]
     depth = 0.13 * width

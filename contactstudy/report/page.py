@@ -29,7 +29,7 @@ CELLS = {
     "chosen": "uniform cells, chosen by the package",
     "given": "given by the user",
 }
-"""Cells of a result by the setting of `solve`."""
+"""Description of the cells by the setting of `solve`."""
 
 
 def html(

@@ -62,8 +62,8 @@ def citations(dataset: xr.Dataset) -> Citations:
     Returns
     -------
     Citations
-        This package first. For a study, and for a case selected from it, the sources of all its cases; without the
-        inputs, those that the variables imply.
+        This package first. For a study, and for a case selected from it, the sources of all cases of the study; without
+        the inputs, the sources that the variables imply.
 
     Examples
     --------

@@ -77,7 +77,7 @@ class Row(NamedTuple):
 
 
 def study_context(path: Path, selection: Mapping[str, Any] | None = None) -> dict[str, Any]:
-    """Return the context of a study's page; a selection of swept values holds for its figures alone."""
+    """Return the template's context for a study's page; the selection of swept values applies only to the figures."""
     folder = Folder(path)
     study = folder.read_study()
     plan = study.plan()
@@ -119,11 +119,11 @@ def study_context(path: Path, selection: Mapping[str, Any] | None = None) -> dic
 def figures_of_folder(
     path: Path, selection: Mapping[str, Any] | None = None
 ) -> dict[str, tuple[Figure, dict[str, str]]]:
-    """Draw the figures of the study in a folder, each with its parameters of one value and another value of these."""
+    """Draw a study's figures; with each, the parameters shown at one value only, and another value of each."""
     results = Folder(path).results()
     selected = select_values(collect(path), selection or {})
 
-    # Only files of cases with drawn surfaces are opened.
+    # Surfaces are lazy: only the files of drawn cases are opened.
     def load(case: xr.Dataset) -> xr.Dataset:
         return single_case(results.case(str(case["case_id"].item()), FIELDS))
 
@@ -143,7 +143,7 @@ def _meaning(name: str) -> str:
 
 
 def _heading(name: str) -> str:
-    """Heading of a parameter; a group of parameters has the study's name."""
+    """Heading of a parameter; zipped parameters have the name that the study gives them."""
     return PARAMETERS[name].attrs["long_name"] if name in PARAMETERS else name.replace("_", " ")
 
 
@@ -197,7 +197,7 @@ def _number(scalars: Mapping[str, float], name: str) -> str:
 
 
 def _has_number(scalars: Mapping[str, float], name: str) -> bool:
-    """Whether a case fills a column; a singular end has its intensity instead of a pressure."""
+    """Whether a case has a number in a column; a singular end has an intensity instead of a pressure."""
     if name not in scalars or _is_open_end(scalars, name):
         return False
     has_intensity = name.startswith("end_pressure") and f"end_intensity_{name.rpartition('_')[2]}" in scalars
@@ -221,7 +221,7 @@ def _record(entry: Entry) -> xr.Dataset:
 
 
 def _group_rows(rows: Iterable[Row], key: Callable[[Row], tuple[str, str]]) -> list[tuple[str, str, list[Row]]]:
-    """Keys of two texts and the rows of each, in the order of their first row."""
+    """Group rows by a key of two texts; return each key with its rows, in the order of first rows."""
     groups: dict[tuple[str, str], list[Row]] = {}
     for row in rows:
         groups.setdefault(key(row), []).append(row)
@@ -229,8 +229,8 @@ def _group_rows(rows: Iterable[Row], key: Callable[[Row], tuple[str, str]]) -> l
 
 
 def _count_answers(rows: list[Row]) -> list[tuple[str, str, list[Row]]]:
-    """Answers and reasons with their cases, the worst first."""
-    # The percentage differs from case to case.
+    """Answers and reasons with the rows of the cases they apply to, worst answers first."""
+    # The percentage in a reason differs from case to case: omit it, to group equal reasons.
     groups = _group_rows((row for row in rows if row.answer), lambda row: (row.answer, PERCENTAGE.sub("", row.reason)))
     groups.sort(key=lambda group: RATINGS_WORST_FIRST.index(group[0]))
     answers = []
@@ -244,7 +244,7 @@ def _count_answers(rows: list[Row]) -> list[tuple[str, str, list[Row]]]:
 
 
 def _verdict(rows: list[Row]) -> tuple[str, str]:
-    """Worst answer of all cases, and the number of cases of each answer; an unsolved case needs care."""
+    """Worst answer of all cases, and the number of cases with each answer; an unsolved case counts as "with care"."""
     count = Counter(row.answer for row in rows if row.answer)
     worst = next((answer for answer in RATINGS_WORST_FIRST if answer in count), UNKNOWN)
     if worst in (YES, UNKNOWN) and any(row.status != "ok" for row in rows):

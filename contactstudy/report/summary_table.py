@@ -25,7 +25,7 @@ OPEN_END = "no contact at this end"
 ENDS = {"first": "end I", "last": "end II"}  # Ends of the roller: suffixes of variables, and names in the table
 
 FILMS = ("central_film", "least_film", "end_film_ratio", "least_film_ratio")
-"""Films with a row if they are present."""
+"""Variables of a film that have a row if present."""
 
 SCALARS = {
     "approach": "approach of roller and body",
@@ -41,12 +41,12 @@ SCALARS = {
     "shift_y": "shift along rolling",
     "friction_work": "frictional work",
 }
-"""Scalars with a row if they are present and not zero."""
+"""Scalars that have a row if present and not zero, with the row's text."""
 
 SOLVED = ("approach", "load_position", "force_x", "force_y", "moment_z", "shift_x", "shift_y", "friction_work")
-"""Scalars of these that follow from the solution unless the case prescribes them."""
+"""Scalars among `SCALARS` that follow from the solution unless the case prescribes them."""
 
-BALANCED = "load_position"  # its variable ``_error`` is the residual of a prescribed value, in other units
+BALANCED = "load_position"  # Scalar whose ``_error`` is the residual of a prescribed value, in other units
 
 
 class Quantity(NamedTuple):
@@ -55,10 +55,10 @@ class Quantity(NamedTuple):
     name: str
     meaning: str
     value: float  # SI
-    error: float  # NaN if it is not estimated
+    error: float  # SI; NaN without an estimate
     units: str
     text: str  # value and error in engineers' units
-    remark: str = ""  # why a value has no error or no limit; the end nearest to a position
+    remark: str = ""  # why a value has no error or is unbounded; for a position, the nearest end
 
 
 @dataclass(frozen=True)
@@ -229,7 +229,7 @@ def _edge_tension(case: xr.Dataset) -> Iterator[Quantity]:
 
 
 def _nearest_end(case: xr.Dataset, x: float) -> str:
-    """Distance of a position from the nearest end of the contact; empty if the cells are not known."""
+    """Text: distance of a position from the nearest end of the contact; empty if the cells are not known."""
     if "pressure" not in case or not {"x", "y"} <= set(case["pressure"].dims) or not (case["pressure"] > 0).any():
         return ""
     loaded = case["x"].values[(case["pressure"] > 0).any("y").values]
@@ -241,12 +241,12 @@ def _nearest_end(case: xr.Dataset, x: float) -> str:
 
 
 def _mark_rounding(case: xr.Dataset, row: Quantity) -> Quantity:
-    """Row of a force or moment, with the text 0 if it is below the tolerance of the iteration."""
+    """Row of a force or moment, with the text 0 if the value is below the tolerance of the iteration."""
     force = max((abs(float(case[name])) for name in ("force_x", "force_y") if name in case), default=0.0)
     lever_arms = {"force_x": 1.0, "force_y": 1.0, "moment_z": float(case.get("hertz_half_width", 0.0))}
     # The transverse force of a contact symmetric about y = 0 is up to 3e-8 of the largest force.
     rounding_limit = TOLERANCE * force * lever_arms.get(row.name, 0.0)
-    # A value larger than its error differs from zero, however small; an error above the limit is worth showing.
+    # Show a value that exceeds its error, since it differs from zero, and a value whose error exceeds the limit.
     is_zero = np.isnan(row.error) or abs(row.value) <= row.error < rounding_limit
     if abs(row.value) < rounding_limit and is_zero and not _is_prescribed(case, row.name):
         remark = f"rounding: below {TOLERANCE:g} of the largest force{' times a' if row.name == 'moment_z' else ''}"
@@ -275,7 +275,7 @@ def _slip(case: xr.Dataset) -> Iterator[Quantity]:
 
 
 def _is_prescribed(case: xr.Dataset, name: str) -> Any:
-    """Prescribed value of a number that otherwise follows from the solution, or None."""
+    """Value that the case prescribes for a number in `SOLVED`; None if the number follows from the solution."""
     inputs = attribute(case, INPUTS_ATTRIBUTE).get("case", {})
     motion = inputs.get("motion", {})
     return inputs.get(name, motion.get(name, motion.get(name.removeprefix("shift_"))))

@@ -1,4 +1,4 @@
-"""Batches: netCDF files of many finished cases, the one format of a study's results.
+"""Batches: netCDF files of many finished cases, the only format of a study's results.
 
 A batch has the dimension `case`. Numbers are columns, such as ``peak_pressure(case)``. Arrays of the cases have
 different shapes, so they are contiguous ragged arrays of the CF conventions: ``pressure(x_y_values)`` contains the
@@ -42,7 +42,7 @@ TEXT_COLUMNS = {
 
 SUFFIX = ".nc"
 IDENTITY_LENGTH = 64
-CHUNK_SIZE = 2**15  # Values of a ragged array that are compressed together. Speed of reading one case, against size
+CHUNK_SIZE = 2**15  # Values compressed together in a ragged array. Speed: more make files smaller, single cases slower
 CASE_ATTRIBUTE = "contactstudy_case"  # Attribute of a case: its parameters as JSON
 SHARED_ATTR, TABLES_ATTR, COORDINATES_ATTR = "contactstudy_shared", "contactstudy_tables", "contactstudy_coordinates"
 """Attributes: parameters of all cases, tables that parameters refer to by number, names of coordinates."""
@@ -81,12 +81,12 @@ class Batch:
 
     @property
     def structure(self) -> tuple[tuple[str, tuple[str, ...], str], ...]:
-        """Names, dimensions and types of the arrays: batches with equal ones can be joined."""
+        """Names, dimensions and types of the arrays; batches of equal structure can be joined."""
         return tuple(sorted((name, array.dims, array.values.dtype.str) for name, array in self.arrays.items()))
 
     @cached_property
     def _offsets(self) -> dict[tuple[str, ...], IntArray]:
-        """Start of each case's values, and the end of the last, by the dimensions of the array."""
+        """For each array's dimensions: start of each case's values, and the end of the last case's values."""
         return {
             dims: case_offsets(self.sizes, dims, len(self)) for dims in {array.dims for array in self.arrays.values()}
         }
@@ -110,7 +110,7 @@ class Batch:
         )
 
     def case(self, row: int) -> xr.Dataset:
-        """Return one case on its cells, with its numbers, parameters and circumstances."""
+        """Return one case on its cells, with its numbers, parameters, and the context of its run."""
         variables: dict[str, Any] = {}
         for name, (dims, values) in self.arrays.items():
             starts = self._offsets[dims]
@@ -127,14 +127,14 @@ class Batch:
         return describe(dataset, f"case of the study {self.run_context.get('study', '')}").assign_attrs(attributes)
 
     def run(self, row: int) -> dict[str, Any]:
-        """Return circumstances, warnings and time of a case."""
+        """Return versions, level, warnings and solution time of a case."""
         warnings = json.loads(self.texts["warnings"][row] or "[]")
         run = {**self.run_context, "time": self.texts["time"][row], "warnings": warnings}
         return run | ({"seconds": float(self.numbers["seconds"][row])} if "seconds" in self.numbers else {})
 
 
 def case_offsets(sizes: Mapping[str, IntArray], dims: Sequence[str], cases: int) -> IntArray:
-    """Start of each case's values in a ragged array along `dims`, and the end of the last."""
+    """Start of each case's values in a ragged array along `dims`, and the end of the last case's values."""
     counts = np.ones(cases, dtype=np.int64)
     for dim in dims:
         counts *= sizes[dim]
@@ -142,7 +142,7 @@ def case_offsets(sizes: Mapping[str, IntArray], dims: Sequence[str], cases: int)
 
 
 def join_batches(batches: Sequence[Batch]) -> Batch:
-    """Join batches of equal circumstances whose arrays have an equal structure, or none."""
+    """Join batches of equal `run_context` whose arrays have an equal structure, or that have no arrays."""
     first = max(batches, key=lambda batch: len(batch.arrays))
 
     names = list(dict.fromkeys(name for batch in batches for name in batch.numbers))
@@ -173,7 +173,7 @@ def join_batches(batches: Sequence[Batch]) -> Batch:
 
 
 def common_attributes(name: str, attributes: Mapping[str, Any], other_attributes: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the common attributes of a variable of two cases; an intensity without a common unit has an exponent."""
+    """Return the attributes that a variable has in both cases; a comment replaces different units of an intensity."""
     if attributes == other_attributes:
         return dict(attributes)
     common = {key: value for key, value in attributes.items() if other_attributes.get(key) == value}
@@ -200,7 +200,7 @@ def checksum(path: Path) -> int:
 
 
 def find_damage(path: Path) -> str:
-    """Reason why a file is not an intact batch, or empty."""
+    """Reason why a file is not an intact batch; an empty text for an intact batch."""
     if not is_regular(path):
         return "it is not a regular file"
     try:
@@ -278,12 +278,12 @@ def _write_variables(path: Path, batch: Batch) -> None:
 
 
 def _sample_dimension(dims: Iterable[str]) -> str:
-    """Dimension of a ragged array."""
+    """Name of the dimension of a ragged array."""
     return f"{'_'.join(dims)}_values"
 
 
 def _file_attributes(name: str, attributes: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
-    """Attributes of a variable as netCDF contains them: texts and numbers, others as JSON."""
+    """Attributes of a variable for netCDF: texts and numbers as they are, other values as JSON."""
     complete = {"long_name": name.replace("_", " "), **labels(name), **attributes.get(name, {})}
     types = (str, int, float, np.number)
     return {
@@ -337,7 +337,7 @@ def _restore_parameters(shared: dict[str, Any], tables: list[Any], remaining: st
 
 
 def read_batch(path: Path, *, arrays: Iterable[str] | None = (), texts: Iterable[str] = ()) -> Batch:
-    """Read a batch: its columns, and the named arrays and texts; None reads all of both."""
+    """Read a batch: its columns, the named arrays and the named texts; None reads all arrays or all texts."""
     import netCDF4
 
     if not is_regular(path):
@@ -403,7 +403,7 @@ def read_slices(path: Path, bounds: Mapping[str, Sequence[tuple[int, int]]]) -> 
 
 
 def read_case(path: Path, row: int, names: Iterable[str] | None = None) -> xr.Dataset:
-    """Read one case of a batch on its cells, with all arrays or the named ones and their positions."""
+    """Read one case of a batch on its cells, with all arrays, or the named arrays and their positions."""
     batch = read_batch(path, texts=TEXT_COLUMNS)
     selected = set(batch.arrays) if names is None else set(names)
     dims = {dim for name in selected & set(batch.arrays) for dim in batch.arrays[name].dims}

@@ -47,12 +47,12 @@ MOTION_PARAMETERS = {
     "shift": ("shift_x", "shift_y", "force_x", "force_y"),
     "rolling": ("longitudinal_creepage", "lateral_creepage", "spin", "force_x", "force_y", "moment_z"),
 }
-"""Parameters of each motion: arguments of its class, in a shift with the prefix `shift_`."""
+"""Parameters of each motion: arguments of the motion's class, with the prefix `shift_` for a shift."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Dimensions:
-    """Lengths of a case, metres, which depend on one another, and the contact modulus, Pa."""
+    """Interdependent lengths of a case, metres, and the contact modulus, Pa."""
 
     radius: float
     body_length: float
@@ -63,7 +63,7 @@ class Dimensions:
 
     @classmethod
     def of(cls, values: Mapping[str, Any], modulus: float) -> Dimensions:
-        """Dimensions of a case; under a load ``a`` and length depend on each other; with an approach ``a`` is NaN."""
+        """Dimensions of a case; under a load, ``a`` and length depend on each other; at an approach, ``a`` is NaN."""
         radius = checks.positive("radius", values["radius"], "metres")
 
         def compute_dimensions(half_width: float) -> Dimensions:
@@ -113,11 +113,11 @@ class Setup:
     """A case ready to solve."""
 
     case: Case
-    grid: Grid | None  # uniform cells, with the narrowest of several windows; None: columns that the solver refines
+    grid: Grid | None  # uniform cells, on the narrowest of the windows to try; None: columns that the solver refines
     options: dict[str, Any]  # all other arguments of the solver
     e_over_a: float  # NaN where the half-width follows from the solution
     gamma: float  # length of the body over the roller's radius
-    # cells per half-width, where the window may grow with the contact; empty where `grid` is the only one
+    # cells per half-width, where the window may grow with the contact; empty where `grid` is the only grid
     cells: dict[str, float]
 
     @property
@@ -127,12 +127,12 @@ class Setup:
 
     @property
     def shape(self) -> tuple[int, int]:
-        """Number of cells along x and y; typical numbers for refined columns."""
+        """Number of cells along x and y; typical numbers if the solver refines columns."""
         return (120, 32) if self.grid is None else self.grid.shape
 
     @property
     def points(self) -> int:
-        """Number of points with stresses; with a typical number of depths that the solver chooses."""
+        """Number of points with stresses; assumes a typical number of depths where the solver chooses the depths."""
         if not self.options.get("stresses"):
             return 0
         x, y, z = (
@@ -158,7 +158,7 @@ def _check_choices(values: Mapping[str, Any]) -> None:
 
 
 def _check_approach(parameters: Mapping[str, Any]) -> None:
-    """Raise if a case at an approach has a parameter over the half-width, which follows from the solution."""
+    """Raise if a case at an approach has a parameter in half-widths: this half-width follows from the solution."""
     if "approach" not in parameters:
         return
     remedies = dict.fromkeys(UNIFORM_CELLS, "leave it out: columns are refined, to `accuracy`") | dict.fromkeys(
@@ -216,7 +216,7 @@ def build_motion(values: Mapping[str, Any]) -> Motion:
 
 
 def _lubricant(values: Mapping[str, Any]) -> Lubricant | None:
-    """Lubricant of a case; None for a dry one."""
+    """Lubricant of a case; None for a dry case."""
     sources = [name for name in LUBRICANT_PAIRS if name in values]
     if len(sources) > 1:
         raise InvalidInputError(", ".join(sources), tuple(values[name] for name in sources), "one of the two")
@@ -238,7 +238,7 @@ def _lubricant(values: Mapping[str, Any]) -> Lubricant | None:
 def _stress_points(
     values: Mapping[str, Any], half_width: float, extent: tuple[float, float]
 ) -> dict[str, FloatArray | None]:
-    """Stress points in metres; None where the solver chooses."""
+    """Stress points in metres; None along an axis where the solver chooses the points."""
     x, y, z = (
         half_width * checks.coordinates(name, values[name]) if name in values else None for name in SCALED_POSITIONS
     )

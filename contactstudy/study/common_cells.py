@@ -23,7 +23,7 @@ FLAG_VARIABLES = frozenset({"stick"})  # Variables that are true or false
 
 
 def resampling_comment(name: str) -> str:
-    """Comment on the values of a variable on common cells."""
+    """Comment that says how a variable's values on common cells were computed."""
     if name in AVERAGED_VARIABLES:
         return "averaged over cells common to all cases: loads remain, peaks may be a little lower"
     if name in FLAG_VARIABLES:
@@ -44,7 +44,7 @@ def common_columns(edges: Sequence[FloatArray]) -> FloatArray:
     for edge, width in zip(union[1:], narrowest, strict=True):
         if edge - common_edges[-1] >= MIN_WIDTH * width:
             common_edges.append(edge)
-    # The last edge replaces a nearby one before it.
+    # The last edge replaces an edge shortly before.
     if common_edges[-1] != union[-1]:
         common_edges[-1 if len(common_edges) > 1 else 1 :] = [union[-1]]
     return np.array(common_edges)
@@ -58,7 +58,7 @@ def common_rows(edges: Sequence[FloatArray]) -> FloatArray:
 
 
 def split_cells(edges: FloatArray, points: FloatArray) -> FloatArray:
-    """Edges with a further one between each two points within one cell."""
+    """Edges with an additional edge between any two points that lie in one cell."""
     midpoints = 0.5 * (points[1:] + points[:-1])
     cells = np.searchsorted(edges, points, side="right")
     cells[points >= edges[-1]] = edges.size - 1
@@ -66,7 +66,7 @@ def split_cells(edges: FloatArray, points: FloatArray) -> FloatArray:
 
 
 def _add_face_cells(edges: FloatArray, points: FloatArray) -> FloatArray:
-    """Edges with a thin cell, 4e-6 of the first or last one, at each face that contains a point."""
+    """Edges with a thin additional cell at each face that contains a point: 4e-6 of the first or last cell."""
     face_edges = []
     for end_index, inner_index in ((0, 1), (-1, -2)):
         width = edges[inner_index] - edges[end_index]
@@ -76,7 +76,7 @@ def _add_face_cells(edges: FloatArray, points: FloatArray) -> FloatArray:
 
 
 def centre_cells_on(edges: FloatArray, points: FloatArray) -> FloatArray:
-    """Edges such that every point is the centre of a cell."""
+    """Edges moved and added so that every point is the centre of a cell."""
     edges = _add_face_cells(edges, points)
     for index, point in enumerate(points):
         cell = int(np.clip(np.searchsorted(edges, point) - 1, 0, edges.size - 2))
@@ -101,7 +101,7 @@ class Resampling:
     source: FloatArray  # edges of the case's cells, or its points, over the half-width
     axis: FloatArray
     borders: FloatArray  # borders around each position of the axis
-    fill: float = np.nan  # average beyond the case's cells: 0 outside the contact, NaN where the body ends
+    fill: float = np.nan  # average beyond the case's cells: 0 outside the contact, NaN beyond the body
     has_points: bool = False
 
     @property
@@ -112,7 +112,7 @@ class Resampling:
         return np.asarray((self.axis < low - tolerance) | (self.axis > high + tolerance))
 
     def average(self, values: FloatArray) -> FloatArray:
-        """Average values (cell, ...) within the common borders, by limited slopes: integrals remain."""
+        """Average values (cell, ...) within the common borders, by limited slopes, which preserve integrals."""
         from scipy import sparse  # slow to import, and not needed to open a study
 
         low = np.maximum(self.borders[:-1, None], self.source[None, :-1])
@@ -146,7 +146,7 @@ class Resampling:
             fraction = fraction.reshape(-1, *(1,) * (values.ndim - 1))
             with np.errstate(invalid="ignore"):
                 result = (1 - fraction) * values[cells] + fraction * values[cells + 1]
-            # Interpolation next to an infinite gap is impossible.
+            # Next to an infinite gap linear interpolation has no value.
             nearest = np.clip(np.searchsorted(positions, self.axis), 0, positions.size - 1)
             if not self.has_points:
                 nearest = np.clip(np.searchsorted(self.source, self.axis) - 1, 0, positions.size - 1)
@@ -156,9 +156,9 @@ class Resampling:
 
 
 def resample(name: str, values: npt.NDArray[Any], resamplings: Iterable[Resampling | None]) -> npt.NDArray[Any]:
-    """Values of a variable on the common cells; an axis without a map remains."""
+    """Values of a variable on the common cells; an axis whose resampling is None is unchanged."""
     result = np.asarray(values, dtype=np.float64)
-    # Along x last: beyond the body values are NaN, outside the window the pressure is 0.
+    # x comes last: values beyond the body are NaN, although the pressure outside the window is 0.
     for axis, resampling in reversed(list(enumerate(resamplings))):
         if resampling is None:
             continue

@@ -18,7 +18,7 @@ from contactstudy.study.parameters import PARAMETERS
 from contactstudy.study.plan import label
 
 CELL_CHOICES = ("common", "original")
-"""Axes of surfaces and stresses: common to all cases, or the cells and points of each case."""
+"""Choices for the axes of surfaces and stresses: common to all cases, or the cells and points of each case."""
 
 
 def open_study(folder: str | Path, *, cells: str = "common", chunks: Any = None) -> xr.Dataset:
@@ -111,7 +111,7 @@ def load_case(folder: str | Path, case_id: str) -> xr.Dataset:
 
 
 def study_dataset(folder: str | Path, *, cells: str | None) -> xr.Dataset:
-    """Dataset of a study whose surfaces and fields are lazy; without them if `cells` is None."""
+    """Dataset of a study with lazy surfaces and fields; without surfaces and fields if `cells` is None."""
     if cells is not None:
         checks.known_name("cells", cells, CELL_CHOICES)
     results = Folder(folder)

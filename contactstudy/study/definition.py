@@ -32,7 +32,7 @@ MAX_CASES = 1_000_000  # Combinations of one study, at most: half a gigabyte of 
 
 
 def _tables(name: str, value: object) -> list[Mapping[str, Any]]:
-    """Return a table, or a list of tables, as a list of tables."""
+    """Return a list of tables from a table or a list of tables."""
     entries = [value] if isinstance(value, Mapping) else list(value) if isinstance(value, (list, tuple)) else None
     if entries is None or not all(isinstance(entry, Mapping) for entry in entries):
         raise InvalidInputError(name, value, "a table of parameters, or a list of such tables")
@@ -103,7 +103,7 @@ class Study:
         return f"Study {self.name}: {self.size} cases before exclusions, keeping {self.level}"
 
     def _rows(self) -> Iterator[tuple[str, str]]:
-        """Parameters, the swept ones first, in the units of engineers."""
+        """Rows of text: parameters in the units of engineers, swept parameters first."""
         columns = [(name, "swept", values) for name, values in self.sweep.items()]
         columns += [(name, "together", values) for group in self.zip for name, values in group.items()]
         for name, axis_kind, values in columns:
@@ -116,7 +116,7 @@ class Study:
             yield "exclude", f"{len(self.exclude)} rules"
 
     def __post_init__(self) -> None:
-        """Check names and types, and bring every value into one form."""
+        """Check names and types, and normalise every value."""
         if not isinstance(self.name, str) or not re.fullmatch(r"[A-Za-z0-9][\w.-]*", self.name):
             raise InvalidInputError("name", self.name, "a word of letters, digits and _ - .")
         checks.known_name("level", self.level, LEVELS)
@@ -296,8 +296,8 @@ class Study:
         product = Plan(name=self.name, level=self.level, base=self.base, axes=tuple(axes), explicit=cases)
         axis_of = {name: axis_index for axis_index, axis in enumerate(axes) for name in axis[0]}
         steps = np.unravel_index(np.arange(product.products), product.shape) if axes and self.exclude else ()
-        # Labels of the parameters in the rules: along their axis, in every explicit case, and which of the former each
-        # combination has.
+        # For each parameter in the rules: its labels along its axis, its labels in the explicit cases, and the index of
+        # the former labels in each combination.
         labels: dict[str, tuple[list[Any], list[Any], IntArray]] = {}
         for name in {name for rule in self.exclude for name in rule}:
             shared = self.base.get(name, PARAMETERS[name].default)
@@ -328,7 +328,7 @@ def content_of_table(table: xr.Dataset, base: Mapping[str, Any]) -> dict[str, An
     columns: dict[str, xr.Variable] = {}
     for name, array in ((str(key), variable) for key, variable in table.variables.items()):
         if name not in PARAMETERS:
-            # The dimension of a parameter may be numbered.
+            # The dimension of a parameter may have a number instead of values.
             is_parameter_dim = any(name in other.dims for key, other in table.variables.items() if key in PARAMETERS)
             if name not in table.indexes or not is_parameter_dim:
                 checks.known_name("variable of the table", name, PARAMETERS)
@@ -374,7 +374,7 @@ def _rows(table: xr.Dataset, columns: Mapping[str, xr.Variable]) -> Iterable[dic
 
 
 def content_of_selection(study: Study, table: xr.Dataset, base: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the keys of a study of the cases in a selection of its Dataset; a product where the selection is one."""
+    """Return the keys of a study of the cases in a selection of its Dataset; as a product if the selection allows."""
     plan = study.plan()
     identities = np.char.encode(table["case_id"].values.ravel().astype(np.str_))
     selected = np.flatnonzero(np.isin(plan.ids, identities)).tolist()

@@ -1,6 +1,6 @@
 """Engine of a run: this process, local worker processes, or a dask cluster, and the distribution of tasks over them.
 
-Every worker has one task. The death of a worker costs its task only: the cases of the task are solved again one by
+Every worker has one task. The death of a worker costs this task only: the cases of the task are solved again one by
 one, and a case during which a second worker dies fails.
 """
 
@@ -41,9 +41,9 @@ WORKER_ENVIRONMENT = {
     "MALLOC_MMAP_THRESHOLD_": str(32 * 2**20),
     "MALLOC_TRIM_THRESHOLD_": str(512 * 2**20),
 }
-"""Environment of a worker: one thread, and the process keeps freed memory of arrays (half the time of a case)."""
+"""Environment of a worker: one thread; keeping the freed memory of arrays halves the time of a case."""
 
-# Dask's logs of messages, tasks and records grow with the number of cases.
+# Without limits dask's logs of messages, tasks and records grow with the number of cases.
 SHORT_LOGS = {"distributed.admin.log-length": 20, "distributed.admin.low-level-log-length": 20}
 
 SCHEDULER_LOST = "the dask scheduler has gone away or was restarted; finished cases remain, run again to continue"
@@ -84,7 +84,7 @@ class Engine:
 
     @contextlib.contextmanager
     def client(self, cases: int, notify: Callable[[str], None]) -> Iterator[Client]:
-        """Client of the scheduler, or of local processes for some `cases`, which end with the block."""
+        """Client of the scheduler, or of local processes, which end with the block; few `cases` need few processes."""
         if self.scheduler is None:
             cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
             with _local_client(min(cores if self.workers is None else self.workers, cases)) as local_client:
@@ -176,13 +176,13 @@ def _local_cluster(workers: int, loop: IOLoop) -> LocalCluster:
             processes=True,
             threads_per_worker=1,
             dashboard_address=None,
-            # The default is one fixed port, on which two studies collide.
+            # Dask's default is one fixed port, on which two studies collide.
             scheduler_kwargs={"dashboard_address": "127.0.0.1:0"},
             memory_limit=0,
             silence_logs=logging.CRITICAL,
         )
     except BaseException as error:
-        # At the end of the process dask would close the half-started cluster, and fail.
+        # Otherwise dask would close the half-started cluster at the end of the process, and fail.
         for cluster in set(getattr(SpecCluster, "_instances", ())) - older_clusters:
             cluster.shutdown_on_close = False
         if isinstance(error, RuntimeError | OSError):
@@ -209,12 +209,12 @@ def _silent_libraries() -> Iterator[None]:
 
 @contextlib.contextmanager
 def _loop_without_interrupts() -> Iterator[IOLoop]:
-    """Event loop in a thread that blocks SIGINT, as do its processes: a terminal sends Ctrl-C to the whole group."""
+    """Event loop in a thread that blocks SIGINT, also for its processes: Ctrl-C reaches the whole process group."""
     from multiprocessing import resource_tracker
 
     from distributed.utils import LoopRunner
 
-    resource_tracker.ensure_running()  # the first process would start it, and unblock the signal
+    resource_tracker.ensure_running()  # otherwise the first process starts the tracker, which unblocks the signal
     runner = LoopRunner()
     if not hasattr(signal, "pthread_sigmask"):  # Windows
         runner.start()
@@ -250,7 +250,7 @@ class Tasks:
             task = self._returned.popleft()
         else:
             plan, jobs = self._plan, list[Job]()
-            # All workers end at about the same time.
+            # Tasks of this size let all workers end at about the same time.
             cases = RUN.task_seconds * self._cases / max(self._seconds, 1e-9)
             limit = int(min(cases, self.remaining / (2 * max(workers, 1)))) if self._cases else 1
             while self._groups and (not jobs or len(jobs) + len(self._groups[0]) <= limit):
@@ -267,7 +267,7 @@ class Tasks:
         self._seconds, self._cases = self._seconds + seconds, self._cases + cases
 
     def return_task(self, task: Task, *, died: bool) -> list[Job]:
-        """Return a task to the queue, after the death of its worker case by case; returns the jobs that died twice."""
+        """Return a task to the queue, as single cases if its worker died; returns jobs with which two workers died."""
         failed = [job for job in task.jobs if died and job.id in self._suspect_cases]
         jobs = [job for job in task.jobs if job not in failed]
         if died:
@@ -298,16 +298,16 @@ def execute(tasks: Tasks, engine: Engine, notify: Callable[[str], None] = print)
 
 
 class Workers:
-    """Workers of a scheduler that have this version of the package; `wait` is the longest wait for one, seconds."""
+    """Workers of a scheduler that have this version of the package; `wait`: longest wait for a worker, seconds."""
 
     def __init__(self, client: Client, wait: float, notify: Callable[[str], None]) -> None:
         self._client, self._wait, self._notify = client, wait, notify
-        self._faults: dict[str, str] = {}  # of every checked worker; empty for a usable one
+        self._faults: dict[str, str] = {}  # fault of every checked worker; empty for a usable worker
         self._last_present = time.monotonic()
         self._announced = False
 
     def usable(self, busy: bool) -> set[str]:
-        """Addresses of the usable workers now; raises if all have another version, or none came for too long."""
+        """Addresses of the usable workers now; raises if all are excluded, or no worker came for too long."""
         connected_workers = set(self._client.nthreads())
         if new_workers := connected_workers - set(self._faults):
             versions: Any = self._client.get_versions(packages=["contactstudy"])
@@ -329,7 +329,7 @@ class Workers:
         self._notify(f"worker {worker} is left out: {reason}")
 
     def _wait_for_worker(self, present: set[str]) -> None:
-        """Inform the user about the lack of workers; raise after the wait, which is short if all are excluded."""
+        """Inform the user about the lack of workers; raise after the wait, a short wait if all workers are excluded."""
         waiting_time = time.monotonic() - self._last_present
         excluded = {worker for worker in present if self._faults.get(worker)}
         if present and excluded == present and waiting_time > min(self._wait, RUN.announce_seconds):

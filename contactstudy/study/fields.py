@@ -68,13 +68,13 @@ class Positions:
 
 
 def _all_equal(arrays: Sequence[FloatArray], first: FloatArray) -> bool:
-    """Whether all arrays equal one, except for rounding."""
+    """Whether all arrays equal the array `first`, except for rounding."""
     scale = float(np.abs(first).max(initial=0.0))
     return all(row.size == first.size and np.allclose(row, first, rtol=1e-9, atol=1e-12 * scale) for row in arrays)
 
 
 class StudyAxis(NamedTuple):
-    """Dimension of a study for one of the cases' arrays, and the maps of different positions onto a common axis."""
+    """Dimension of a study that replaces a dimension of the cases, and the maps of positions onto a common axis."""
 
     name: str
     size: int
@@ -143,7 +143,7 @@ class Fields:
             array = CaseArray(self._states, name, {dim: axes[dim] for dim in dims}, self._positions, dtype)
             variable_dims = (*cube.dims, *(axes[dim].name for dim in dims))
             variable = xr.Variable(variable_dims, indexing.LazilyIndexedArray(array), attributes)
-            # Chunks of about 16 MiB: whole arrays of some cases along the last swept dimensions.
+            # A chunk of about 16 MiB contains whole arrays of several cases along the last swept dimensions.
             size = array.dtype.itemsize * int(np.prod(array.shape[len(cube.dims) :], dtype=np.int64))
             chunks = dict(zip(variable_dims, array.shape, strict=True))
             for dim in reversed(cube.dims):
@@ -154,7 +154,7 @@ class Fields:
         return dataset.assign_coords(coordinates).assign(variables)
 
     def _axes(self) -> tuple[dict[str, StudyAxis], dict[str, Any]]:
-        """Axis of every dimension, and their coordinates."""
+        """Axis of every dimension of the cases, and the coordinates of these axes."""
         axes: dict[str, StudyAxis] = {}
         coordinates: dict[str, Any] = {}
         positions = self._positions
@@ -190,7 +190,7 @@ class Fields:
         return {dim: StudyAxis(name, size)}, coordinates
 
     def _common_axis(self, dims: list[str]) -> tuple[dict[str, StudyAxis], dict[str, Any]]:
-        """Axis over the half-width that all cases share along dimensions of one direction, with borders around each."""
+        """Axis, over the half-width, that all cases share along dimensions of one direction, and its coordinates."""
         first_dim, name = dims[0], f"{dims[0]}_over_a"
         sources = {dim: self._positions[dim].sources(has_points=dim not in CELL_DIMS) for dim in dims}
         rows = sources[first_dim]
@@ -221,7 +221,7 @@ class Fields:
     def _common_coordinates(
         self, maps: dict[str, list[Resampling]], axis: FloatArray, borders: FloatArray
     ) -> dict[str, Any]:
-        """Coordinates of a common axis: over the half-width and, NaN beyond the case's cells and points, in metres."""
+        """Coordinates of a common axis: over the half-width, and in metres (NaN beyond the case's cells and points)."""
         first_dim = next(iter(maps))
         over_a = f"{first_dim}_over_a"
         coordinates: dict[str, Any] = {over_a: (over_a, axis)}
@@ -249,7 +249,7 @@ class Fields:
 
 
 class CaseArray(BackendArray):
-    """One variable over all cases of a study, read from the batches where it is indexed."""
+    """One variable over all cases of a study; indexing reads the values from the batches."""
 
     def __init__(
         self,
@@ -267,7 +267,7 @@ class CaseArray(BackendArray):
 
     @cached_property
     def _cases(self) -> IntArray:
-        """Number in the plan of each cell of the cube; -1 for an excluded one."""
+        """Number in the plan of each case of the cube; -1 for an excluded case."""
         return self._states.plan.spread(np.arange(len(self._states.plan)), -1)
 
     def __getitem__(self, key: Any) -> Any:

@@ -19,7 +19,7 @@ from contactstudy.errors import InvalidInputError, StoreError
 NETCDF_LOCK = RLock()  # One netCDF operation at a time in this process
 UNFINISHED = re.compile(r".+\.[0-9a-f]{12}\.part")  # Names of unfinished files
 ALMOST_FULL = 2**20
-"""Bytes of free disk below which a failed write is attributed to a full disk: the netCDF library gives no reason."""
+"""Free bytes on the disk below which a failed write is attributed to a full disk, as netCDF gives no reason."""
 
 
 @contextlib.contextmanager
@@ -43,14 +43,14 @@ def write_dataset(path: Path, dataset: xr.Dataset) -> None:
     """Write any Dataset, such as the numbers of a study, atomically."""
     now = datetime.now(UTC).isoformat(timespec="seconds")
     described = dataset.assign_attrs(history=f"{now} written by contactstudy")
-    # CF: coordinates lack a fill value.
+    # The CF conventions forbid a fill value of coordinates.
     encoding = {name: {"_FillValue": None} for name in dataset.coords if name in dataset.dims}
     with writing(path) as temporary_path, netcdf_access(path, "write"):
         described.to_netcdf(temporary_path, engine="netcdf4", encoding=encoding)
 
 
 def load_result(path: Path, argument: str) -> xr.Dataset:
-    """Load the result in a netCDF file; an error names the argument with the path."""
+    """Load the result in a netCDF file; an error message contains the name of the `argument` that gave the path."""
     try:
         with xr.open_dataset(path, engine="netcdf4") as dataset:
             return dataset.load()

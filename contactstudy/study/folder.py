@@ -55,7 +55,7 @@ from contactstudy.study.settings import RUN
 from contactstudy.study.user_profiles import are_registered
 from contactstudy.study.worker import group_by_structure
 
-SCHEMA = 2  # Number of the meaning of study.json
+SCHEMA = 2  # Version of the format of study.json
 STATES = (*STATUSES, "stale", "missing", "excluded")  # States of a case of a study
 
 
@@ -68,12 +68,12 @@ class Share:
 
     @property
     def name(self) -> str:
-        """Start of the names of its log and lock."""
+        """Start of the names of the share's log and lock."""
         return "run" if self.count == 1 else f"run-{self.number}-of-{self.count}"
 
     @property
     def prefix(self) -> str:
-        """Start of the names of its batches."""
+        """Start of the names of the share's batches."""
         return "" if self.count == 1 else f"{self.number}-of-{self.count}-"
 
 
@@ -95,7 +95,7 @@ class Location(NamedTuple):
 
 
 class Results:
-    """Results in a folder, as of now: columns of all intact batches, in memory."""
+    """Results that a folder contains now: columns of all intact batches, in memory."""
 
     def __init__(self, paths: list[Path]) -> None:
         self.paths: list[Path] = []
@@ -112,7 +112,7 @@ class Results:
 
     @cached_property
     def locations(self) -> dict[bytes, Location]:
-        """Location of each case by its identity: the result of the latest run."""
+        """Location of each case's latest result, by the case's identity."""
         locations: dict[bytes, Location] = {}
         for batch_index, batch in enumerate(self.batches):
             for row, identity in enumerate(batch.ids.tolist()):
@@ -135,7 +135,7 @@ class Results:
         return self._batches_with_texts[batch_index]
 
     def case(self, identity: str, names: Iterable[str] | None = None) -> xr.Dataset:
-        """Return one solved case on its cells, with all arrays or the named ones."""
+        """Return one solved case on its cells, with all arrays or only the named arrays."""
         location = self.locations.get(identity.encode())
         if location is None or self.batches[location.batch].status[location.row] != 0:
             raise InvalidInputError("case_id", identity, "that of a solved case of the study")
@@ -196,7 +196,7 @@ class States:
         return {state: int(count) for state, count in zip(STATES, counts, strict=True) if count}
 
     def indices(self, *statuses: str) -> list[int]:
-        """Cases of some states, by their number in the plan."""
+        """Numbers in the plan of the cases with one of the `statuses`."""
         return np.flatnonzero(np.isin(self.status, [STATES.index(status) for status in statuses])).tolist()
 
     @cached_property
@@ -209,7 +209,7 @@ class States:
         return batch, row
 
     def numbers(self, name: str) -> npt.NDArray[np.float64]:
-        """Values of a number of every case, in the order of the plan; NaN for an absent value."""
+        """Values of the number `name` for every case, in the order of the plan; NaN for an absent value."""
         values = np.full(len(self.plan), np.nan)
         batch, row = self.locations
         for batch_index, source_batch in enumerate(self.results.batches):
@@ -300,7 +300,7 @@ class Folder:
         """
         with contextlib.ExitStack() as locks:
             if share.count == 1:
-                # `holders` of another process holds the lock for a moment.
+                # Another process that calls `holders` holds the lock for a moment.
                 locks.enter_context(self._hold("run", 0.5))
                 for path in self.path.glob("run-*.lock"):
                     with self._hold(path.stem, 0.0):
@@ -377,15 +377,15 @@ class Folder:
         return target
 
     def results(self) -> Results:
-        """Results as of now."""
+        """Results that the folder contains now."""
         return Results(batch_paths(self.batches))
 
     def states(self, plan: Plan) -> States:
-        """State of every case of a plan; reads only."""
+        """State of every case of a plan; changes no file."""
         return States(plan, self.results())
 
     def verified_results(self, share: Share) -> tuple[Results, list[str]]:
-        """Results after every byte was verified, and messages on files that were damaged and are set aside."""
+        """Verify every byte; return the intact results, and messages on damaged files, which are set aside."""
         paths = batch_paths(self.batches)
         damaged = {
             path: reason for path in paths if path.name.startswith(share.prefix) and (reason := find_damage(path))
@@ -399,7 +399,7 @@ class Folder:
         ]
 
     def compact(self, share: Share, *, at_end: bool = False) -> None:
-        """Join small batches into larger ones, without results that later runs replaced; at the end all small ones."""
+        """Join small batches, without results that later runs replaced; `at_end` joins all small batches."""
         size_limit, min_count = (RUN.small_bytes, 2) if at_end else (RUN.batch_bytes, RUN.fan_in)
         tiers: dict[int, list[Path]] = {}
         for path in batch_paths(self.batches):
@@ -412,7 +412,7 @@ class Folder:
                 self._join(paths, share)
 
     def _join(self, paths: list[Path], share: Share) -> None:
-        """Join batches as far as their circumstances, structure and sizes allow."""
+        """Join batches of equal `run_context` and structure, as far as the batches' sizes allow."""
         groups: dict[str, list[tuple[Path, Batch]]] = {}
         for path in paths:
             with contextlib.suppress(StoreError):
@@ -430,7 +430,7 @@ class Folder:
 
 
 def _split_by_size(batches: list[Batch]) -> Iterator[list[Batch]]:
-    """Consecutive batches that together are not too large."""
+    """Yield lists of consecutive batches that are not too large in total."""
     portion: list[Batch] = []
     for batch in sorted(batches, key=len):
         has_many_cases = sum(map(len, [*portion, batch])) > RUN.batch_cases

@@ -28,7 +28,7 @@ from contactstudy.errors import InvalidInputError
 from contactstudy.study.profile_tables import check_number, profile_table
 
 MAX_POINTS = 100_000  # Largest number of points of a table {start, stop, count}
-SCHEMA = 1  # Number of the meaning of the parameters; raised only if a parameter changes its meaning
+SCHEMA = 1  # Version of the parameters' meanings; raised only if a parameter changes its meaning
 MOTIONS = ("sliding", "shift", "rolling")  # Motions by name, the default first
 Check = Callable[[str, object], Any]
 
@@ -40,7 +40,7 @@ def check_flag(name: str, value: object) -> bool:
 
 
 def one_of(allowed_words: Iterable[str]) -> Check:
-    """Return the check of a word of a list."""
+    """Return a check that a value is one of the allowed words."""
     names = tuple(allowed_words)
 
     def check_word(name: str, value: object) -> str:
@@ -78,14 +78,14 @@ class Parameter:
     """Specification of one parameter."""
 
     name: str
-    check: Check = check_number  # normalises the value of a name for identities, or raises
+    check: Check = check_number  # from name and value to the normalised value for identities, or raises
     units: str = ""  # empty for a word
     meaning: str  # comment of the coordinate, and the documentation
-    consumer: Callable[..., Any] | None = None  # has a keyword of this name, with the default
+    consumer: Callable[..., Any] | None = None  # function with a keyword of this name, whose default is the default
     fallback: Any = None  # default without a consumer; None: required or optional
     absent: str = ""  # meaning of a missing parameter without a default, for the documentation
     note: str = ""  # addition to the meaning, for the documentation
-    label: str = ""  # long name of the coordinate, short enough for an axis; default: that of a result, or the name
+    label: str = ""  # long name of the coordinate, short enough for an axis; default: a result's long name, or `name`
 
     @property
     def attrs(self) -> dict[str, str]:
@@ -112,7 +112,7 @@ UNIFORM_CELLS = ("cells_x", "cells_y", "window", "margin")
 
 BODIES = ("finite-length", "quarter-space", "half-space")
 
-# Ends of the roller by the name of its body; None for a rigid one.
+# Ends of the roller by the name of its body; None for a rigid roller.
 ROLLER_BODIES: dict[str, str | None] = {"rigid": None, "finite-length": "free", "half-space": "none"}
 
 _PARAMETERS = (
@@ -388,7 +388,7 @@ def keywords_of(function: Callable[..., Any], values: Mapping[str, Any]) -> dict
 
 
 def check_parameters(values: Mapping[str, Any], where: str = "parameter") -> dict[str, Any]:
-    """Return `values` with known names and checked types, in the table's order; a None is left out."""
+    """Return `values` with known names and checked types, in the table's order, without values that are None."""
     for name in values:
         checks.known_name(where, str(name), PARAMETERS)
     return {
@@ -399,7 +399,7 @@ def check_parameters(values: Mapping[str, Any], where: str = "parameter") -> dic
 
 
 def add_default_accuracy(values: Mapping[str, Any]) -> dict[str, Any]:
-    """Return checked `values` with the default accuracy, a part of the identity, unless the cells are uniform."""
+    """Return checked `values` with the default accuracy, unless the cells are uniform; identities depend on it."""
     has_cells = any(name in values for name in ("accuracy", *UNIFORM_CELLS))
     return dict(values) if has_cells else {**values, "accuracy": ACCURACY}
 

@@ -33,7 +33,7 @@ from contactstudy.study.profile_tables import format_profile
 from contactstudy.study.settings import RUN
 
 LEVELS = ("summary", "surface", "fields")  # Arrays that a study retains: none; arrays on (x, y); also the stresses
-MAX_LISTED = 12  # Values of a swept parameter that are all shown
+MAX_LISTED = 12  # Largest number of values of a swept parameter that are all shown
 MAX_CUBE_CELLS = 4  # Entries of the parameter cube per explicit case; cases of a sparser cube are listed along `case`
 BYTES_PER_CASE, BYTES_PER_CELL, BYTES_PER_POINT = 700, 4 * 8, 7 * 4
 """Size of the numbers of a case, and of its arrays before compression."""
@@ -57,7 +57,7 @@ class Cube:
 
 
 def cube_of_axes(axes: Sequence[Axis]) -> Cube:
-    """Cube of a product: one dimension per axis; a zipped one is named after its first parameter of distinct values."""
+    """Cube of a product, one dimension per axis; zipped parameters are named after the first with distinct values."""
     if not axes:
         return Cube(("case",), (1,), {"case": ("case", [0])})
     dims, shape, labels = [], [], {}
@@ -75,7 +75,7 @@ def cube_of_axes(axes: Sequence[Axis]) -> Cube:
 
 
 def cube_of_cases(cases: Sequence[Mapping[str, Any]]) -> tuple[Cube, list[tuple[int, ...]]]:
-    """Cube of explicit cases over the parameters that differ, or along `case` if sparse; and each case's position."""
+    """Cube of explicit cases over the parameters that differ, or along `case` if sparse, and each case's position."""
     names = list(dict.fromkeys(name for case in cases for name in case))
     rows = [{name: label(name, case.get(name)) if name in case else None for name in names} for case in cases]
     columns = {name: list(dict.fromkeys(row[name] for row in rows)) for name in names}
@@ -172,7 +172,7 @@ class Plan(Sequence[PlannedCase]):
         return {**self.base, **self.varying(index)}
 
     def parameters(self, index: int) -> dict[str, Any]:
-        """Parameters of a case without defaults, with the accuracy of a case that gives no cells."""
+        """Parameters of a case without defaults, but with the accuracy if the case gives no cells."""
         return without_defaults(add_default_accuracy(self.values(index)))
 
     def describe(self, index: int) -> str:
@@ -206,7 +206,7 @@ class Plan(Sequence[PlannedCase]):
         return table.reshape((*self.cube.shape, *values.shape[1:]))
 
     def _fragments(self) -> Iterator[tuple[str, ...]]:
-        """Parts of each case's canonical JSON, sorted by name; empty for defaults."""
+        """Parts of each case's canonical JSON, sorted by name; the part of a default is empty."""
         product = self.chosen[self.chosen < self.products]
         names = {name for axis in self.axes for name in axis[0]}
         columns: dict[str, Iterable[str]] = {}
@@ -230,7 +230,7 @@ class Plan(Sequence[PlannedCase]):
 
     @cached_property
     def groups(self) -> IntArray:
-        """Group of each case, numbered as they appear: equal up to friction in full sliding, and a film's speed."""
+        """Group of each case: cases of a group differ only in friction in full sliding, or in the speed of a film."""
         motions, local = ('"motion":', '"coupled":'), ('"friction":', '"entrainment_speed":')
         keys = (
             _hash_without(fragments, () if any(text.startswith(motions) for text in fragments) else local)
@@ -260,7 +260,7 @@ class Plan(Sequence[PlannedCase]):
                 continue
             magnitude_warnings.update(list_unusual_magnitudes(setup.case))
             cells, points = cells + math.prod(setup.shape), points + setup.points
-        # A group's cases differ in friction: its other values are checked here.
+        # The cases of a group differ in friction: check all values of friction, not only the first of each group.
         entries = [*(entry for axis in self.axes for entry in axis), *self.explicit]
         for friction in {entry["friction"] for entry in entries if "friction" in entry}:
             if message := describe_unusual_friction(friction):
@@ -275,7 +275,7 @@ class Plan(Sequence[PlannedCase]):
         return build_setup(add_default_accuracy(self.values(index)))
 
     def reason(self, index: int) -> str:
-        """Reason why the plan skips a case, or empty."""
+        """Reason why the plan skips a case; empty for a case to solve."""
         return self.review.reasons.get(int(self.groups[index]), "") if self.review.reasons else ""
 
     @cached_property
@@ -286,7 +286,7 @@ class Plan(Sequence[PlannedCase]):
 
     @cached_property
     def unique(self) -> list[int]:
-        """Indices of the cases to solve; of duplicates the first."""
+        """Indices of the cases to solve; of equal cases only the first."""
         skipped = set(self.skipped)
         first_indices: dict[bytes, int] = {}
         for index, identity in enumerate(self.ids.tolist()):
@@ -301,7 +301,7 @@ class Plan(Sequence[PlannedCase]):
 
     @property
     def size(self) -> float:
-        """Bytes of all batches before compression: an estimate."""
+        """Estimated bytes of all batches before compression."""
         size = float(BYTES_PER_CASE)
         if self.level != "summary":
             size += BYTES_PER_CELL * self.review.cells
@@ -322,7 +322,7 @@ def _number_keys(keys: Iterable[int], count: int) -> IntArray:
 
 
 def label(name: str, value: Any) -> Any:
-    """Value of a parameter in a coordinate."""
+    """Value that represents a parameter's value in a coordinate."""
     if name == "profile" and value is not None:
         return format_profile(value)
     if isinstance(value, list):
@@ -331,7 +331,7 @@ def label(name: str, value: Any) -> Any:
 
 
 def format_list(texts: Sequence[str]) -> str:
-    """Values of a swept parameter; of more than twelve the first and the last."""
+    """Text of the values of a swept parameter; of more than twelve values the first and the last."""
     return ", ".join(texts) if len(texts) <= MAX_LISTED else f"{len(texts)} values, {texts[0]} to {texts[-1]}"
 
 

@@ -39,7 +39,7 @@ MIN_MAGNITUDE = 1 / checks.MAX_MAGNITUDE
 
 
 def round_digits(value: float) -> float:
-    """Return `value` to twelve significant digits, with one zero instead of two."""
+    """Return `value` rounded to twelve significant digits; minus zero becomes zero."""
     return float(f"{value:.{DIGITS}g}") + 0.0
 
 
@@ -131,12 +131,12 @@ def _check_value(key: str, value: object, depth: int) -> Any:
 
 
 def _check_nested_table(value: object, depth: int) -> Table:
-    """Table of a profile within another one, without its name."""
+    """Table of a profile within another profile, without the inner profile's name."""
     return {key: entry for key, entry in profile_table(value, depth + 1).items() if key != "name"}
 
 
 def _read_points(table: Table) -> Table:
-    """Table of a measured profile with the points of its file: identity depends on them, not on the file's path."""
+    """Table of a measured profile with the points of its file: the points, not the path, determine the identity."""
     if "file" not in table:
         for key in FILE_OPTIONS:
             if key in table:
@@ -177,7 +177,7 @@ KIND_OF = {kind.profile_class: name for name, kind in PROFILES.items()}  # Name 
 
 
 def profile_table(value: object, depth: int = 0) -> Table:
-    """Table of a profile without defaults: of a kind, a table with ``kind`` and the class' fields, or an object."""
+    """Table of a profile without defaults; `value` is a kind, a table with ``kind`` and fields, or a profile object."""
     if depth > MAX_NESTING:
         raise InvalidInputError("profile", f"more than {MAX_NESTING} profiles within one another", "nested less deeply")
     if is_dataclass(value) and type(value) in KIND_OF:
@@ -214,7 +214,7 @@ def build_profile(table: Mapping[str, Any], sizes: Dimensions) -> Profile:
 
 
 def resolve_files(content: Any, folder: Path) -> Any:
-    """Tables whose files of measured profiles are relative to `folder` instead of the working directory."""
+    """Return `content` with paths of measured profiles that are relative to `folder`, not the working directory."""
     if isinstance(content, Mapping):
         resolved = {key: resolve_files(entry, folder) for key, entry in content.items()}
         if resolved.get("kind") == "measured" and isinstance(resolved.get("file"), str):
@@ -231,7 +231,7 @@ def check_without_files(content: Any) -> None:
 
 
 def format_profile(table: Mapping[str, Any], *, in_units: bool = False) -> str:
-    """Name of a profile, or its kind and values: in SI, a label of a dimension, or in the units of engineers."""
+    """Name of a profile, or its kind and values in SI (for a dimension's label) or in the units of engineers."""
     if "name" in table:
         return str(table["name"])
     kind, units = str(table["kind"]), UNITS | {"design_pressure": "Pa", "design_load": "N"}

@@ -25,7 +25,7 @@ def format_duration(seconds: float) -> str:
 
 
 class Progress:
-    """Bar, if `visible`, and log of one run; new lines are appended."""
+    """Bar, if `visible`, and log of one run; the log file grows from run to run."""
 
     def __init__(self, path: Path, *, visible: bool = True) -> None:
         self._bar_shown = visible and sys.stderr.isatty() and not os.environ.get("CI")
@@ -54,7 +54,7 @@ class Progress:
         """Write a line to the log file and to the logger of the package."""
         LOGGER.info(message)
         now = datetime.now(UTC).isoformat(timespec="seconds")
-        # A log that cannot grow must not stop the run; a full disk shows when a batch is written.
+        # A failed log must not stop the run; writing a batch reports a full disk.
         with contextlib.suppress(OSError):
             self._file.write(f"{now} {message}\n")
 

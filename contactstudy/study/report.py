@@ -1,4 +1,4 @@
-"""Lines of the command line on a study: from plans, states and reports."""
+"""Lines of text that the command line prints on a study, from plans, states and reports."""
 
 from __future__ import annotations
 
@@ -68,7 +68,7 @@ def _reasons(states: States, *statuses: str) -> Iterator[str]:
 
 
 def _group_reasons(cases: Iterable[tuple[str, str, str]]) -> Iterator[str]:
-    """Lines on cases, each its status, reason and name: of equal reasons the first case and the number of others."""
+    """Lines on cases (status, reason, name): for each reason the first case and the number of other cases."""
     groups: dict[tuple[str, str], list[str]] = {}
     for status, reason, name in cases:
         groups.setdefault((status, reason), []).append(name)

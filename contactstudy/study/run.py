@@ -225,7 +225,7 @@ def run_study(
             message = f"interrupted: {finished} of {len(plan.unique)} cases are kept in {results_folder.path}"
             message += "; run again to go on"
             log.log(message)
-            # The message counts, not the line at which the solver was.
+            # The message says enough: the line at which the solver was is of no interest.
             interrupt.args = (message,)
             raise interrupt.with_traceback(None) from None
         except BaseException as error:
@@ -273,7 +273,7 @@ def _groups_to_solve(states: States, again: tuple[str, ...], share: Share, sampl
     order = sorted(members, key=sort_key)
     groups = [members[key] for key in order]
     if share.count > 1:
-        # A piece contains consecutive groups with one operator, so many at most that every share has several turns.
+        # A piece contains consecutive groups with one operator, few enough that every share receives several pieces.
         max_groups, pieces = max(1, len(groups) // (RUN.turns * share.count)), list[int]()
         for _, operator_groups in groupby(operator for operator, _ in order):
             first_piece = pieces[-1] + 1 if pieces else 0
@@ -282,7 +282,7 @@ def _groups_to_solve(states: States, again: tuple[str, ...], share: Share, sampl
     unsolved_groups = []
     for group in groups:
         if "entrainment_speed" in plan.values(group[0]):
-            # Films start from one another along falling speeds: all of them or none.
+            # The films of a group start from one another along falling speeds: solve all cases of a group or none.
             films = sorted(group, key=lambda index: -plan.values(index)["entrainment_speed"])
             unsolved_groups.append([] if unsolved.isdisjoint(group) else films)
         else:

@@ -10,9 +10,9 @@ class RunSettings:
     """Times and sizes of a run; results depend on none of them."""
 
     task_seconds: float = 10.0  # longer tasks need fewer messages, shorter tasks balance better
-    save_seconds: float = 15.0  # a worker writes its finished cases: a killed worker loses no more
-    compact_seconds: float = 20.0  # a run joins small batches
-    poll_seconds: float = 0.5  # a run checks for new and lost workers
+    save_seconds: float = 15.0  # time between batches of a worker: a killed worker loses no more
+    compact_seconds: float = 20.0  # time after which a run joins small batches again
+    poll_seconds: float = 0.5  # time between two checks for new and lost workers
     start_seconds: float = 60.0  # longest wait for a scheduler's answer, or the start of a worker
     # time without a usable worker after which the user is informed, or, if all are excluded, the run ends
     announce_seconds: float = 10.0
@@ -22,10 +22,10 @@ class RunSettings:
     batch_bytes: int = 2**27  # batches of this size, or of batch_cases, are not joined further
     batch_cases: int = 2**13
     small_bytes: int = 2**24  # smaller batches are joined at the end of a run
-    # batches of similar size that are joined: the number of files grows with the logarithm of the cases
+    # number of batches of similar size that a run joins: the number of files grows like the logarithm of the cases
     fan_in: int = 8
     turns: int = 8  # least turns of each share, so that all have cheap and expensive cases
-    checked_groups: int = 4000  # groups that a plan sets up; of more groups a sample, evenly spaced
+    checked_groups: int = 4000  # largest number of groups that a plan sets up; of more groups an even sample
 
 
 RUN = RunSettings()  # Settings of every run

@@ -22,16 +22,16 @@ from contactstudy.profiles.base import check_drop, describe_profile, local_radiu
 
 KIND = "user"  # Kind of a profile of a user's class
 KEYS = ("class", "values", "content")
-"""Keys of its table: name of the class, values of the object, and the digest that is its identity."""
+"""Keys of such a profile's table: name of the class, values of the object, and the digest that is the identity."""
 
 LENGTHS = (1e-4, 1e-3, 1e-2, 1e-1)
 """Lengths of a roller, metres, for which drops enter the digest; a profile may be invalid for some."""
 
-MAX_LISTED_SIZE = 100  # Largest array that a file lists; a larger one is represented by its digest
+MAX_LISTED_SIZE = 100  # Largest array that a file lists; a digest represents a larger array
 REMEDY = "give its values as numbers, texts or lists, or the shape as profiles.Measured(x, drop)"
 
 _registry: dict[str, Profile] = {}
-"""Copies of the profiles of this process, by content; later changes of the user's objects do not reach them."""
+"""Copies of this process' user profiles, by content; later changes of the user's objects do not change the copies."""
 
 
 def register(profile: Profile) -> dict[str, Any]:
@@ -56,12 +56,12 @@ def read_table(table: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def registered_profile(table: Mapping[str, Any]) -> Profile:
-    """Profile of a table; a straight line, for plans only, if this process lacks it."""
+    """Profile of a table; if this process lacks the profile, a straight line, which serves plans only."""
     return _registry.get(table["content"]) or Sampled(str(table["class"]), (-0.5, 0.5), (0.0, 0.0))
 
 
 def user_profiles(parameters: Any) -> dict[str, Profile]:
-    """Users' profiles within parameters of cases, by content, for a worker; raises if this process lacks one."""
+    """Users' profiles within parameters of cases, by content, for a worker; raises if this process lacks a profile."""
     profiles = {}
     for table in tables_within(parameters):
         if table["kind"] != KIND:

@@ -61,7 +61,7 @@ class Task:
 
 
 class Outcome(NamedTuple):
-    """State of one case after its solution: a status of a batch, seconds, and the reason of a failure."""
+    """Outcome of one case: a status from `STATUSES`, seconds, and the reason of a failure."""
 
     id: str
     status: str
@@ -76,7 +76,7 @@ def run_context() -> dict[str, Any]:
     source = Path(__file__)
     git = ["git", "-C", str(source.parent)]
     with contextlib.suppress(OSError, subprocess.SubprocessError):
-        # Only a checkout that tracks this file is the package's repository.
+        # The commit is the package's only if the checkout tracks this file.
         subprocess.run([*git, "ls-files", "--error-unmatch", source.name], capture_output=True, check=True, timeout=10)
         describe_command = [*git, "describe", "--always", "--dirty", "--abbrev=40"]
         commit = subprocess.run(describe_command, capture_output=True, check=True, timeout=10, text=True)
@@ -160,7 +160,7 @@ def group_by_structure(batches: Iterable[Batch]) -> list[list[Batch]]:
 
 
 def _solve_group(task: Task, jobs: list[Job], solver: Solver | None) -> Iterator[Batch]:
-    """Solve the cases of a group; numbers of a contact without stresses do not depend on uncoupled friction."""
+    """Solve the cases of a group; without stresses one solution serves all values of uncoupled friction."""
     shares_contact = solver is None and len(jobs) > 1 and task.level == "summary"
     shared_batch: Batch | None = None
     film: xr.Dataset | None = None

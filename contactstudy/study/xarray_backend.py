@@ -31,7 +31,7 @@ class StudyBackend(BackendEntrypoint):
     def open_dataset(  # type: ignore[override]  # xarray's engines name their arguments, too
         self, filename_or_obj: Any, *, drop_variables: str | list[str] | None = None, cells: str = "common"
     ) -> xr.Dataset:
-        """Open a study; `cells` is that of :func:`contactstudy.open_study`."""
+        """Open a study; for `cells` see :func:`contactstudy.open_study`."""
         from contactstudy.study.dataset import study_dataset
 
         opened = study_dataset(filename_or_obj, cells=cells)

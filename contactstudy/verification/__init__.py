@@ -1,6 +1,6 @@
 """Verification that anyone can repeat: the solver against closed forms, finite elements, published numbers and itself.
 
-``contactstudy verify`` runs it on the command line, `verify` from Python::
+``contactstudy verify`` runs the checks on the command line, `verify` in Python::
 
     checks = verify("quick")
     assert checks["passed"].all()

@@ -13,7 +13,7 @@ from contactstudy.checks import FloatArray
 
 @dataclass(frozen=True, eq=False)
 class Curve:
-    """A profile behind a check, for a figure."""
+    """Computed and expected curve of a check, for a figure."""
 
     labels: tuple[str, str]  # position and quantity
     positions: FloatArray
@@ -26,11 +26,11 @@ class Check:
     """One quantity compared with its reference."""
 
     case: str  # solved problem
-    quantity: str  # with its unit
-    source: str  # of the reference
-    computed: float  # of a field at its worst point
+    quantity: str  # compared quantity with its unit
+    source: str  # source of the reference
+    computed: float  # computed value; of a field, the value at the worst point
     expected: float
-    difference: float  # of both, over `expected` if the quantity is relative; of a field the largest or the median
+    difference: float  # between both, over `expected` if relative; for a field the largest or the median
     tolerance: float  # largest difference that passes
     curve: Curve | None = None  # for a figure
 
@@ -82,7 +82,7 @@ class Reference(NamedTuple):
         """Compare two arrays where they differ most, or by the median."""
         values, references = (np.ravel(a).astype(float) for a in np.broadcast_arrays(computed, expected))
         differences = np.abs(values - references)
-        # argmax returns a NaN as well, which no tolerance admits.
+        # argmax also finds a NaN, which exceeds every tolerance.
         is_median = median and not np.isnan(differences).any()
         chosen_index = np.argsort(differences)[differences.size // 2] if is_median else differences.argmax()
         description = f"{quantity}, {'median' if median else 'largest'} difference"

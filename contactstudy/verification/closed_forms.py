@@ -92,7 +92,7 @@ def carter_traction(y: FloatArray, stick: float) -> FloatArray:
 
 
 def mindlin_shift(fraction: float, load: float, friction: float, radius: float, shear: float, poisson: float) -> float:
-    """Shift of two like spheres under a part of full sliding's force (Mindlin; Johnson 7.42)."""
+    """Shift of two like spheres under a `fraction` of the force of full sliding (Mindlin; Johnson 7.42)."""
     gross_slip_shift = 3 * friction * load / (16 * radius) * 2 * (2 - poisson) / shear
     return float(gross_slip_shift * (1 - (1 - fraction) ** (2 / 3)))
 
@@ -110,7 +110,7 @@ def potential_stresses(
     """Stresses of a unit normal and a unit tangential (along y) load, from the potentials of Johnson, section 3.2.
 
     With `rho^2 = x^2 + y^2 + zeta^2` the potentials are `V = 1/rho`, `L = ln(rho + zeta)` and `W = zeta L - rho`; for a
-    real source `zeta = z`. Derivatives across the axis follow from those by `s = x^2 + y^2`: `f_xy = 4 x y f''`.
+    real source `zeta = z`. Derivatives along x and y follow from derivatives by `s = x^2 + y^2`: `f_xy = 4 x y f''`.
     """
     rho = np.sqrt(x**2 + y**2 + zeta**2)
     d = rho + zeta
@@ -158,15 +158,15 @@ def point_load(
 def rectangle_displacement(x: ArrayLike, y: ArrayLike, half_x: float, half_y: float, modulus: float) -> FloatArray:
     """Return the surface's displacement under a unit pressure on ``|x| < half_x``, ``|y| < half_y`` (Johnson 3.25).
 
-    Each of the four corners gives ``u ln(v + r) + v ln(u + r)`` with its distances `u`, `v` and ``r = hypot(u, v)``,
-    over ``pi E*``; `modulus` is ``E*``. Not on the lines through an edge.
+    Each of the four corners gives ``u ln(v + r) + v ln(u + r)``, with the corner's distances `u`, `v` and
+    ``r = hypot(u, v)``, over ``pi E*``; `modulus` is ``E*``. The formula fails on the lines through an edge.
     """
     xs, ys = np.broadcast_arrays(np.asarray(x, dtype=float), np.asarray(y, dtype=float))
     displacement = np.zeros(xs.shape)
     for side_x in (-1, 1):
         for side_y in (-1, 1):
             u, v = side_x * xs + half_x, side_y * ys + half_y
-            # ln(v + r) by asinh, which does not cancel for negative v; the rest, ln |u|, cancels with its opposite.
+            # asinh(v / |u|) replaces ln(v + r), without cancellation for v < 0; the sum of the terms ln |u| is zero.
             displacement += u * np.arcsinh(v / np.abs(u)) + v * np.arcsinh(u / np.abs(v))
     return np.asarray(displacement / (np.pi * modulus))
 
@@ -183,7 +183,7 @@ def rectangle(
     x: ArrayLike, y: ArrayLike, z: ArrayLike, half_x: float, half_y: float, poisson: float, friction: float
 ) -> Stress:
     """Stresses below a unit pressure and `friction` times it along +y: Gauss quadrature of point loads."""
-    # Accurate from depths of about a sixth of the half-widths on.
+    # The quadrature is accurate at depths above about a sixth of the half-widths.
     node, weight = np.polynomial.legendre.leggauss(64)
     xs, ys, zs = (np.asarray(c, dtype=float)[..., None, None] for c in np.broadcast_arrays(x, y, z))
     loads = half_x * half_y * np.multiply.outer(weight, weight)
@@ -230,7 +230,7 @@ def hertz_strip(
 ) -> Stress:
     """Plane-strain stresses under `p0 sqrt(1 - y^2/a^2)` and `q = f p` along `+y` (McEwen 1949; Smith and Liu 1953).
 
-    Written with the function `w = sqrt(a^2 - (y + i z)^2) = m - i n`, which holds McEwen's `m` and `n`.
+    The formulas use the function `w = sqrt(a^2 - (y + i z)^2) = m - i n` with McEwen's `m` and `n`.
     """
     a, p0 = half_width, max_pressure
     ys, zs = (np.asarray(c, dtype=float) for c in np.broadcast_arrays(y, z))
@@ -259,11 +259,11 @@ def rectangle_in_half_plane(
 ) -> FloatArray:
     """Stresses xx, yy, zz, xz of plane strain outside or inside a rectangle with eigenstrains xx, yy, zz, xz.
 
-    The eigenstrain acts like forces on the sides and causes stress inside (J. D. Eshelby, Proc. R. Soc. A 241
-    (1957) 376). A force in a half-plane with a free face: N. I. Muskhelishvili, Some Basic Problems of the
-    Mathematical Theory of Elasticity, chapter 19; with the potentials phi, psi of the force in the whole plane the
-    potentials of its images are ``-w phibar'(w) - psibar(w)``, and ``-phibar(w)`` less w times the derivative of the
-    first.
+    The eigenstrain acts like forces on the sides; inside, its elastic stress is subtracted (J. D. Eshelby, Proc. R.
+    Soc. A 241 (1957) 376). For a force in a half-plane with a free face see N. I. Muskhelishvili, Some Basic Problems
+    of the Mathematical Theory of Elasticity, chapter 19: with the potentials phi, psi of the force in the whole plane,
+    the first potential of the force's images is ``-w phibar'(w) - psibar(w)``, and the second potential is
+    ``-phibar(w)`` minus w times the derivative of the first.
     """
     xs, zs = (np.asarray(c, dtype=float) for c in np.broadcast_arrays(x, z))
     e_xx, e_yy, e_zz, e_xz = eigenstrain
@@ -287,7 +287,7 @@ def rectangle_in_half_plane(
         slope += (-force / to_source).sum(axis=1)
         curvature += (force / to_source**2).sum(axis=1)
         second += (kappa * conjugate / to_source - force * mirror / to_source**2).sum(axis=1)
-        # Their images; bar of a function conjugates its constants.
+        # Potentials of the images; the bar conjugates the constants of a function.
         of_phi = -conjugate / to_mirror, conjugate / to_mirror**2, -2 * conjugate / to_mirror**3
         of_psi = (
             kappa * force / to_mirror - conjugate * source / to_mirror**2,
@@ -307,7 +307,7 @@ def rectangle_in_half_plane(
 
 
 def moving_band(y: FloatArray, drift: float) -> FloatArray:
-    """Rise of the surface under a uniform band ``|y| < 1`` past which it moves along +y, times ``lambda / q``.
+    """Rise of a surface that moves along +y under a band of uniform heat ``|y| < 1``, times ``lambda / q``.
 
     Jaeger (1942): the integral of ``exp(v (y - y')) K0(v |y - y'|) / pi`` over the band, ``v = V a / (2 kappa)``.
     """
@@ -323,13 +323,13 @@ def _primitive(u: FloatArray) -> FloatArray:
 
 
 def fast_line() -> tuple[float, float]:
-    """Largest rise of a fast line over ``q0 sqrt(kappa a / (pi V)) / lambda``, and its distance behind the middle / a.
+    """Largest rise of a fast line over ``q0 sqrt(kappa a / (pi V)) / lambda``, and distance behind the middle over a.
 
     Heat flows into the depth only (Blok 1937, Jaeger 1942).
     """
 
     def rise(behind: float) -> float:
-        # s = behind - t**2 takes the root away
+        # The substitution s = behind - t**2 removes the singular root
         integral = integrate.quad(lambda t: 2 * np.sqrt(max(1 - (behind - t**2) ** 2, 0.0)), 0.0, np.sqrt(1 + behind))
         return float(integral[0])
 

@@ -32,7 +32,7 @@ from contactstudy.verification.problems import (
     unit_material,
 )
 
-POISSON = 0.3  # Of every body here, unless a check states another
+POISSON = 0.3  # Poisson's ratio of every body here, unless a check states another value
 
 
 def _half_space() -> HalfSpace:
@@ -114,7 +114,7 @@ def line_checks() -> Iterator[Check]:
     body, length, cells_y, half_window = _half_space(), 2000.0, 160, 1.25
     pressure = strip_means((0, length), (-half_window, half_window), (80, cells_y))
     cell = 2 * half_window / cells_y
-    # Edges and middles of cells and points between them, without the last cell in contact and its border.
+    # Points at edges and middles of cells and in between, except in the last cell in contact and at its border.
     edges = -1.25 + cell * np.arange(1, cells_y)
     surface_y = np.unique(np.round(np.concatenate([edges, edges + 0.5 * cell, edges + 0.37 * cell]), 9))
     distance = np.abs(surface_y) - 1
@@ -219,7 +219,7 @@ def plate_contact_checks() -> Iterator[Check]:
 
 
 def body_checks() -> Iterator[Check]:
-    """Bodies with ends that are far away."""
+    """Check that a body with far ends agrees with the body without these ends."""
     points: dict[str, Any] = {"y": [0.0, 0.5], "z": [0.1, 0.3, 1.0]}
     bump = on_cells(lambda x, y: np.maximum(1 - (x - 20) ** 2 - y**2, 0), (0, 40), (-1.5, 1.5), (320, 24))
     finite, half_space = (
@@ -254,7 +254,7 @@ def free_end_checks() -> Iterator[Check]:
 
 
 def equilibrium_checks() -> Iterator[Check]:
-    """Divergence of the stress near an end, by central differences of sixth order, and a cut's resultants."""
+    """Divergence of the stress near an end, by central differences of sixth order, and resultants on a plane."""
     length, step = 4.0, 0.02
     pressure = on_cells(lambda x, y: quartic(y) + 0 * x, (0, length), (-1, 1), (64, 64))
     body, friction = _finite(length), 0.3
@@ -272,8 +272,8 @@ def equilibrium_checks() -> Iterator[Check]:
     yield Reference(f"{case}, 0.3a from the end", "equilibrium").compare_fields(
         "divergence of the stress over its largest slope", np.array(divergence) / size, 0.0, 2e-3
     )
-    # Resultants on the plane z = 1: the load itself. Gauss in x, graded in y; farther out there is Flamant's plate,
-    # whose shear under a traction Q falls like 2 Q z / (pi y**2).
+    # The resultants on the plane z = 1 equal the load. Quadrature: Gauss points in x, graded cells in y; farther out
+    # the stress is that of Flamant's plate, whose shear under a traction Q falls like 2 Q z / (pi y**2).
     node, weight = np.polynomial.legendre.leggauss(10)
     x = 0.5 * length * (node + 1)
     parameter = np.linspace(-5.0, 5.0, 101)
@@ -310,7 +310,7 @@ def contact_condition_checks() -> Iterator[Check]:
 
 
 def reciprocity_checks() -> Iterator[Check]:
-    """Betti: two loads do equal work on the displacement of each other."""
+    """Betti's theorem: each of two loads does the same work on the displacement of the other load."""
     for length in (8.0, 2.5):
         body, span, cells = _finite(length), (0, length), (48, 32)
         first_load = on_cells(lambda x, y: np.exp(-((x - 1) ** 2) - y**2), span, (-2, 2), cells)
@@ -322,7 +322,7 @@ def reciprocity_checks() -> Iterator[Check]:
 
 
 def alternation_checks() -> Iterator[Check]:
-    """Alternating between ends and top converges to the explicit solution."""
+    """Check that alternating between ends and top converges to the explicit solution."""
     settings = Resolution()
     modes = axial_modes(8.0, 2.0, 0.05, settings)[0]
     system = EquationSet.build(modes, 2.0, 0.3, 0.05, settings)

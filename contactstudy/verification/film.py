@@ -1,4 +1,4 @@
-"""Checks of the film: line contacts, the certificate, two bodies with the same limit, finite elements.
+"""Checks of the film: line contacts, the certificate, a body whose ends are far away, finite elements.
 
 * Moes, *Wear* 159 (1992) 57: the central film of a line contact in the numbers M and L.
 * Biboulet and Houpert, *Proc. IMechE J* 224 (2010) 777: rolling moment ``t / (p0 a**2) = 1.45 M**-1.5``; the moment of
@@ -28,8 +28,8 @@ from contactstudy.verification.check import Check, Curve, Reference
 from contactstudy.verification.free_ends import FINITE_ELEMENTS
 from contactstudy.verification.problems import FILM_CASES, FILM_FILE, load_reference
 
-# Moes' numbers M, L: central and least film H of Barus oil of constant density, extrapolated, of an inlet
-# four half-widths long below M = 100; two programs agree to 0.2 %
+# Moes' numbers M, L: extrapolated central and least film H of Barus oil of constant density, below M = 100 with an
+# inlet of four half-widths; two programs agree to 0.2 %
 TABLE = {
     (2.0, 5.0): (4.451, 3.470),
     (20.0, 10.0): (5.270, 3.968),
@@ -71,7 +71,7 @@ def line_checks(*, full: bool) -> Iterator[Check]:
 
 
 def dry_limit_checks() -> Iterator[Check]:
-    """Compare a heavy load with the pressure of Hertz, and the film's exponent."""
+    """Compare the pressure under a heavy load with the Hertz pressure, and the film's growth with the exponent."""
     films = {load: line_contact.solve_line(load, 10.0) for load in (200.0, 2000.0)}
     heavy_film = films[2000.0]
     is_inner = np.abs(heavy_film.y) < 0.9
@@ -105,7 +105,7 @@ def crowned_case(body: Body, length: float) -> Case:
 
 
 def coarse_film(name: str) -> FilmCase:
-    """Film to compare on the cells of the coarsest level with the stored one."""
+    """Film on the cells of the coarsest level, for comparison with the stored film."""
     length = FILM_CASES[name].length * HALF_WIDTH
     case = crowned_case(FiniteLengthSpace(length=length, material=STEEL), length)
     assert case.lubricant is not None
@@ -121,14 +121,14 @@ def coarse_film(name: str) -> FilmCase:
 
 
 def finite_element_checks(name: str) -> Iterator[Check]:
-    """Film between two free ends against the finite elements' on the same cells."""
+    """Compare a film between two free ends with the film of finite elements on the same cells."""
     stored, problem = load_reference(FILM_FILE, name), FILM_CASES[name]
     lubricated = coarse_film(name)
     solution = film_on_level(lubricated, Level(), lubricated.contact_ends, SETTINGS)
     cells = solution.problem.cells
     fields = {"film": solution.solution.film, "pressure": solution.solution.fluid_pressure}
     computed = xr.Dataset({key: (("x", "y"), field) for key, field in fields.items()}, {"x": cells.x, "y": cells.y})
-    # Both sets of cells differ by rounding alone.
+    # The cells of both solutions differ only by rounding.
     computed = computed.interp(x=stored["x"], y=stored["y"], kwargs={"fill_value": "extrapolate"})
     case = f"crowned roller, {problem.length:g} a, flush, M = {problem.load_number:g}, L = {problem.lubricant_number:g}"
     reference = Reference(case, FINITE_ELEMENTS.format(stored.attrs["film_error"], "of the film, on the same cells"))

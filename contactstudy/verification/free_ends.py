@@ -1,9 +1,9 @@
 """Checks of bodies with free ends: exact limits of a quarter space, published numbers, finite elements (scikit-fem).
 
 * Hetenyi, *J. Appl. Mech.* 37 (1970) 70, and Keer, Lee and Mura, *Int. J. Solids Struct.* 19 (1983) 497: overlapping.
-  Far from a load P at the edge the equivalent loads act in a point: ``H = P + (2 / pi) V`` on the top and
+  Far from a load P at the edge the equivalent loads act like point loads: ``H = P + (2 / pi) V`` on the top and
   ``V = (2 / pi) H`` on the end, so ``H = P / (1 - 4 / pi**2)``. The displacement along the edge is ``2 H / P`` times
-  the half-space's.
+  the displacement of the half-space.
 * Johnson, *Contact Mechanics* (1985): largest shear stresses below point and line contacts.
 * Michell, *Proc. London Math. Soc.* 32 (1900) 35; Timoshenko and Goodier, *Theory of Elasticity*: wedge.
 * Guilbault, *J. Tribology* 133 (2011) 031402: see docs/explanation/verification.md.
@@ -45,10 +45,10 @@ from contactstudy.verification.problems import (
     unit_material,
 )
 
-ALONG_NORMAL = {0.0: 2.0, 0.3: 2.4727}  # The same along the inward normal, by Poisson's ratio
+ALONG_NORMAL = {0.0: 2.0, 0.3: 2.4727}  # Displacement ratio along the inward normal, by Poisson's ratio
 # ``kappa``: at the distance d the edge adds ``kappa (1 - nu**2) P / (2 pi E d)`` to the deflection at a load
 EXTRA_DEFLECTION = {0.0: 1.3677, 0.3: 1.8452, 0.5: 2.7561}
-# Resultant of the equivalent load on the top for a unit load, its images not counted
+# Resultant of the equivalent load on the top for a unit load, without images
 TOP_RESULTANT = 1 / (1 - 4 / np.pi**2)
 END_RESULTANT = -2 / np.pi * TOP_RESULTANT  # Resultant on the end plane: tension
 EXACT_LIMIT = "exact limit of the quarter space"  # Source of closed forms
@@ -56,7 +56,7 @@ COMPUTED = "limit of the quarter space, computed apart from the solver"  # Sourc
 
 
 def _scaled_displacement(poisson: float, grid: Grid, cell: tuple[int, int], distance: FloatArray) -> FloatArray:
-    """Displacement under a unit load on a cell, over the half-space's at the same distance."""
+    """Displacement under a unit load on a cell, over the displacement of a half-space at the same distance."""
     body = QuarterSpace(material=unit_material(poisson))
     return np.asarray(surface_displacement(body, point_pressure(grid, *cell)).values * np.pi * distance)
 
@@ -64,7 +64,7 @@ def _scaled_displacement(poisson: float, grid: Grid, cell: tuple[int, int], dist
 def edge_load_checks() -> Iterator[Check]:
     """Displacement under a point load on the edge."""
     for poisson in (0.0, 0.3, 0.5):
-        # Cells of a fortieth of the distance; the error falls in proportion, so two distances give the limit.
+        # A cell has a fortieth of the distance, and the error is proportional to it: two distances give the limit.
         grid = Grid(x_range=(0.0, 0.16), y_range=(-4.1, 4.1), cells_x=8, cells_y=41)
         distance = np.abs(grid.y)[None, :]
         ratio = _scaled_displacement(poisson, grid, (0, 20), distance)[0, 20:]
@@ -97,7 +97,7 @@ def extra_deflection_checks() -> Iterator[Check]:
 
 
 def resultant_checks() -> Iterator[Check]:
-    """Resultants of the equivalent loads, from their transforms between the two ends of the scale."""
+    """Resultants of the equivalent loads, from transforms between the lateral wavenumber and 1 / distance."""
     lateral, distance, settings = 1e-7, 1.0, Resolution()
     for poisson in (0.0, 0.3, 0.5):
         (modes,) = axial_modes(np.inf, lateral, 1e-4, settings)
@@ -105,7 +105,7 @@ def resultant_checks() -> Iterator[Check]:
         spectrum = modes.load_weights * modes.cosine(np.array([distance]))[:, 0]
         solution = system.solve(system.source(Load.NORMAL, spectrum))
         on_top = system.spectrum_on_top(solution) / modes.weights
-        low_rays = np.abs(modes.ray) < 3e-3  # against 1 / distance; the lateral wavenumber is smaller still
+        low_rays = np.abs(modes.ray) < 3e-3  # small compared with 1 / distance; the lateral wavenumber is even smaller
         top_resultant = 1 + 0.5 * np.pi * float(np.interp(1e-3, np.abs(modes.ray[low_rays]), on_top.real[low_rays]))
         end_resultant = -0.5 * np.pi * float(np.interp(1e-3, system.depth, solution / system.scale))
         case = f"equivalent loads of a unit load, nu = {poisson:g}"
@@ -114,7 +114,7 @@ def resultant_checks() -> Iterator[Check]:
 
 
 def corner_checks() -> Iterator[Check]:
-    """Corner under a uniform pressure: ``sigma_z = -p, sigma_x = 0``, and plane strain along a long edge."""
+    """Stresses at the corner under a uniform pressure: ``sigma_z = -p, sigma_x = 0``, plane strain along the edge."""
     poisson, width = 0.3, 60.0
     body = QuarterSpace(material=unit_material(poisson))
     pressure = on_cells(lambda x, y: (x < 5) + 0 * y, (0, 6), (-width, width), (48, 12))
@@ -133,7 +133,7 @@ def antiplane_checks() -> Iterator[Check]:
     (modes,) = axial_modes(np.inf, 1e-9, 1e-2, Resolution())
     system = EquationSet.build(modes, 1e-9, 0.3, 1e-2, Resolution())
     spectrum = modes.load_weights * modes.cosine(np.array([1.0]))[:, 0]
-    near_surface = system.depth > 1e-3  # below one wavelength along y the residual traction does not vanish
+    near_surface = system.depth > 1e-3  # deeper than a wavelength along y the residual traction does not vanish
     under_traction, under_pressure = (
         system.source(load, spectrum)[near_surface] for load in (Load.ALONG_Y, Load.NORMAL)
     )
@@ -143,8 +143,8 @@ def antiplane_checks() -> Iterator[Check]:
     yield Reference(case, EXACT_LIMIT).compare_fields(quantity, computed, 0.0, 1e-4)
 
 
-POISSON = 0.3  # Of every body here, unless a check states another
-# Guilbault's errors of the largest edge displacement under a mirrored load, by Poisson's ratio
+POISSON = 0.3  # Poisson's ratio of every body below, unless a check states another value
+# Guilbault's errors of the largest edge displacement by the mirrored-load method, by Poisson's ratio
 MIRROR_ERRORS = {0.3: -0.2190, 0.15: -0.1130}
 
 
@@ -200,8 +200,8 @@ def wedge_checks() -> Iterator[Check]:
 
 
 def mirror_checks() -> Iterator[Check]:
-    """Compare errors of a mirrored load with published errors."""
-    half_width = 0.03  # of the load, over its length along the normal to the edge
+    """Compare errors of the mirrored-load method with published errors."""
+    half_width = 0.03  # half-width of the load over its length along the normal to the edge
     for poisson, expected in MIRROR_ERRORS.items():
         material = unit_material(poisson)
         load = on_cells(
@@ -220,16 +220,16 @@ def mirror_checks() -> Iterator[Check]:
         yield Reference(case, source).compare(quantity, mirror / exact - 1, expected, 0.01)
 
 
-FINITE_ELEMENTS = "finite elements (scikit-fem), own error {:.0e} {}"  # Source of the checks, with error and unit
+FINITE_ELEMENTS = "finite elements (scikit-fem), own error {:.0e} {}"  # Source of the references, with error and unit
 QUICK_STRESSES = ("full_sliding", "eccentric_sliding", "thin", "plate_sliding")  # Load cases of the quick level
-# Cells over the loaded width, and more of them for a load that changes along x right at a free end: cells along x are
-# twice as wide, and at 0.02a below the top their steps show
+# Cells over the loaded width, and more cells for a load that changes along x right at a free end: cells along x are
+# twice as wide, and the pressure's steps between cells affect the stress 0.02a below the top
 CELLS_Y, FINER = 128, {"wedge_sliding": 256}
 CONTACT_CELLS = 16  # Cells per half-width along x in contacts
 
 
 def pressure_of(case: LoadCase, cells_y: int = CELLS_Y) -> xr.DataArray:
-    """Load of a case, four cells along y for one along x but no fewer than 32 of these."""
+    """Load of a case on cells: along x a quarter of the number along y, but at least 32."""
     cells_x = max(32, round(0.25 * cells_y * case.length))
     return on_cells(lambda x, y: case.pressure(x[:, 0], y[0]), (0, case.length), (-1, 1), (cells_x, cells_y))
 
@@ -256,7 +256,7 @@ def displacement_checks(name: str) -> Iterator[Check]:
     """Displacement of the top under a symmetric load, relative to its middle."""
     case, expected = LOAD_CASES[name], load_reference(STRESS_FILE, name)["displacement_z_young"]
     young = unit_material(case.poisson).young
-    # Cell centres on the reference's points y, and x interpolated between them.
+    # The cell centres lie on the reference's points along y; along x the solution is interpolated between centres.
     body = FiniteLengthSpace(length=case.length, material=unit_material(case.poisson))
     grid = Grid(x_range=(0.0, case.length), y_range=(-1.3125, 1.3125), cells_x=round(32 * case.length), cells_y=105)
     displacement = surface_displacement(body, on_grid(case.pressure(grid.x, grid.y), grid), case.friction)
@@ -315,7 +315,7 @@ def _cell_means(nodes: FloatArray, values: FloatArray, edges: FloatArray) -> Flo
 
 
 def finite_element_checks(*, full: bool) -> Iterator[Check]:
-    """Every check against finite elements; some of the load cases only unless `full`."""
+    """Every check against finite elements; without `full` only with some of the load cases."""
     names = [name for name in LOAD_CASES if full or name in QUICK_STRESSES]
     for name in names:
         yield from stress_checks(name)

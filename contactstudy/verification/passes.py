@@ -17,7 +17,7 @@ from contactstudy.verification.check import Check, Curve, Reference
 from contactstudy.verification.closed_forms import hertz_strip, rectangle_in_half_plane, von_mises
 from contactstudy.verification.problems import PASSES_CASES, PASSES_FILE, load_reference
 
-STIFF = Material(1000.0, 0.3)  # A thousand times as stiff as the peak pressure of the contacts
+STIFF = Material(1000.0, 0.3)  # Young's modulus is a thousand times the peak pressure of the contacts
 # Allowed differences of residual stress, and of shear summed over depth. Above the limit errors add up
 TOLERANCES = {
     "settling": (0.06, 0.03),
@@ -36,13 +36,13 @@ def line_contact(friction: float, y: FloatArray, z: FloatArray, poisson: float =
 
 
 def from_top(friction: float) -> xr.Dataset:
-    """Line contact from the top down, with its peak pressure."""
+    """Stresses of the line contact from the top down, with the contact's peak pressure."""
     contact = line_contact(friction, np.linspace(-5.0, 5.0, 161), np.linspace(0.0, 1.75, 71))
     return contact.assign(hertz_max_pressure=1.0)
 
 
 def on_top(friction: float) -> tuple[float, float]:
-    """Least shear yield stress on the top of the line contact for no yield, and for shakedown with rho_yy."""
+    """Least shear yield stress, on the top under the line contact, without yield and for shakedown with rho_yy."""
     stress = hertz_strip(np.linspace(-1, 1, 20001), 0.0, 1.0, 1.0, 0.3, friction=friction)
 
     def find_maximum(rho: float) -> float:
@@ -133,7 +133,7 @@ def finite_element_checks(name: str) -> Iterator[Check]:
     plastic = ElasticPlastic(yield_stress=np.sqrt(3.0) * case.shear_yield_stress, kinematic_hardening=hardening)
     body = HalfSpace(material=Material(STIFF.young, case.poisson))
     passes = residual_stress(contact, body, plastic, case.passes).isel(x=0)
-    # The passes end where the residual stress is steady.
+    # The passes end once the residual stress is steady.
     passes = passes.reindex(pass_number=np.arange(1, case.passes + 1), method="ffill")
     last_pass = passes.isel(pass_number=-1)
     size = max(float(np.abs(residual[component]).max()) for component in ("sigma_xx", "sigma_yy"))

@@ -1,4 +1,4 @@
-"""Unit problems of the checks, and stored solutions of some by independent finite elements.
+"""Unit problems of the checks, and stored solutions of some problems by independent finite elements.
 
 Lengths are in units of ``a`` and pressures in units of ``p0``: half-width and peak of a prescribed load, or of the
 Hertz line contact of the same load per length, with ``E* = 1``, ``R = a / 2`` and the gap ``y**2``.
@@ -36,7 +36,7 @@ def unit_material(poisson: float = 0.3) -> Material:
 def on_cells(
     function: Callable[[FloatArray, FloatArray], FloatArray], x_range: Range, y_range: Range, cells: tuple[int, int]
 ) -> xr.DataArray:
-    """Values of a function of (x, y) at cell centres; the arguments are a column of x and a row of y."""
+    """Values of a function of (x, y) at cell centres; the function receives x as a column and y as a row."""
     grid = Grid(x_range=x_range, y_range=y_range, cells_x=cells[0], cells_y=cells[1])
     return on_grid(function(grid.x[:, None], grid.y[None, :]), grid)
 
@@ -52,7 +52,7 @@ def components(fields: Mapping[Any, ArrayLike]) -> FloatArray:
 
 
 def strip(x: FloatArray, y: FloatArray) -> FloatArray:
-    """Hertz line pressure of half-width and peak 1."""
+    """Hertz line pressure with the half-width 1 and the peak 1."""
     return np.asarray(np.sqrt(np.maximum(1 - y**2, 0.0)) + 0 * x)
 
 
@@ -89,7 +89,7 @@ class Linear:
 
 @dataclass(frozen=True)
 class Bump:
-    """A squared cosine, zero from `half_width` off its centre."""
+    """A squared cosine that is zero beyond `half_width` from its centre."""
 
     centre: float
     half_width: float
@@ -134,7 +134,7 @@ class ContactCase:
     """A rigid roller centred over a body with two free ends: the gap is ``y**2 + crown (x - length / 2)**2``."""
 
     length: float  # distance between the ends
-    distance: float  # e, from a free end to the roller's; negative beyond it
+    distance: float  # e, from a free end to the roller's end; negative if the roller overhangs
     crown: float = 0.0  # half of the curvature of the generatrix over a / (2 R)
     poisson: float = 0.3
 
@@ -168,9 +168,9 @@ class PassesCase:
     """Passes of Hertz' line contact of half-width and peak pressure 1 over an elastic-plastic half-plane."""
 
     shear_yield_stress: float  # k over the peak pressure
-    friction: float  # full sliding, along +y
+    friction: float  # coefficient of friction, in full sliding along +y
     passes: int
-    kinematic_hardening: float = 0.0  # Prager's, over Young's modulus
+    kinematic_hardening: float = 0.0  # Prager's modulus over Young's modulus
     poisson: float = 0.3
 
 
@@ -182,7 +182,7 @@ class LubricatedCase:
     """
 
     length: float
-    amplitude: float  # of the profile
+    amplitude: float  # amplitude of the profile
     load_number: float  # Moes' M of the mean load per length
     lubricant_number: float  # Moes' L
     poisson: float = 0.3
@@ -228,7 +228,7 @@ CONTACT_CASES: dict[str, ContactCase] = {
     "crowned": ContactCase(8.0, 0.5, crown=0.15),
     "overhanging": ContactCase(8.0, -2.0, crown=0.03),
 }
-# Passes whose residual stresses and plastic strains are stored: either side of the shakedown limits 4.0 k, 3.2 k
+# Passes whose residual stresses and plastic strains are stored, on either side of the shakedown limits 4.0 k, 3.2 k
 PASSES_CASES: dict[str, PassesCase] = {
     "settling": PassesCase(shear_yield_stress=1 / 3.6, friction=0.0, passes=2),
     "settling_sliding": PassesCase(shear_yield_stress=1 / 3.1, friction=0.2, passes=5),
@@ -257,6 +257,6 @@ def data_file(name: str) -> Path:
 
 
 def load_reference(file: str, name: str) -> xr.Dataset:
-    """Load the stored solution of a case: its attributes hold case and `error_estimate`, of all or each variable."""
+    """Load the stored solution of a case; attributes of the Dataset or its variables hold the `error_estimate`."""
     checks.known_name("name", name, CASES[file])
     return xr.load_dataset(data_file(file), group=name)

@@ -1,4 +1,4 @@
-"""The verification suite: groups of checks, levels, and its report on the screen, as netCDF and as a Markdown page."""
+"""The verification suite: groups of checks, levels, and reports on the screen, as netCDF and as a Markdown page."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 
 LEVELS = ("quick", "full")  # Levels of a run
-# Checks by the kind of their reference; the argument selects the full level
+# Functions that yield checks, by the kind of reference; the argument selects the full level
 GROUPS: dict[str, Callable[[bool], Iterator[Check]]] = {
     "half-space": lambda full: chain(
         exact_solutions.hertz_checks(),
@@ -89,7 +89,7 @@ class Verification:
     """Results of the suite."""
 
     level: str  # "quick" or "full"
-    groups: dict[str, list[Check]] = field(default_factory=dict)  # by the kind of the reference
+    groups: dict[str, list[Check]] = field(default_factory=dict)  # checks by the kind of their reference
     seconds: float = 0.0
 
     @property
@@ -116,7 +116,7 @@ class Verification:
 
 
 def run(level: str = "quick", report: Callable[[str, Check], None] | None = None) -> Verification:
-    """Run the suite as `verify`; `report` is called with the group and each check after its comparison."""
+    """Run the suite as `verify`; call `report` with the group and the check after every comparison."""
     arguments.known_name("level", level, LEVELS)
     start_time = time.perf_counter()
     groups: dict[str, list[Check]] = {name: [] for name in GROUPS}
@@ -136,7 +136,7 @@ def verify(level: str = "quick") -> xr.Dataset:
     Parameters
     ----------
     level : str
-        "quick" for a minute of one core, "full" for a few, with all load cases.
+        "quick" takes a minute of one core; "full" takes a few minutes, with all load cases.
 
     Returns
     -------
@@ -206,7 +206,7 @@ def row(cells: list[str]) -> str:
 
 
 def panels(count: int) -> tuple[Figure, list[Axes]]:
-    """Figure with panels in rows of three."""
+    """Figure and its `count` panels in rows of three."""
     from matplotlib.figure import Figure
 
     columns = min(count, 3)
@@ -233,7 +233,7 @@ def plot_profiles(checks: list[Check]) -> Figure:
 
 
 def make_folder(folder: Path) -> None:
-    """Make the folder of a report, or raise `InvalidInputError` if it cannot be one."""
+    """Make the folder of a report, or raise `InvalidInputError` if the path cannot be a folder."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:

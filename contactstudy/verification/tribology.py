@@ -1,12 +1,12 @@
 """Checks of stick and slip, flash temperature and wear: closed forms, Kalker's coefficients, published numbers.
 
-* Kalker, *Three-Dimensional Elastic Bodies in Rolling Contact* (1990), table E.3: creep coefficients. They belong to
-  vanishing creepage, where the traction at the trailing edge is singular; the error, of first order in the cell, is
-  extrapolated from two grids.
+* Kalker, *Three-Dimensional Elastic Bodies in Rolling Contact* (1990), table E.3: creep coefficients at vanishing
+  creepage, where the traction at the trailing edge is singular. The error is of first order in the cell: two grids are
+  extrapolated.
 * Bentall and Johnson, *Int. J. Mech. Sci.* 9 (1967) 389, recomputed by the program CONTACT: unlike rollers.
 * A traction curve by CONTACT, 48 x 44 cells, whose error explains the difference (docs/explanation/rolling.md).
 * Spence, *J. Elasticity* 5 (1975) 297: a sphere pressed with friction sticks within the same part of the contact at any
-  load, so the load is raised in steps; by the program CONTACT half of the radius at this friction.
+  load, so the load is raised in steps. By the program CONTACT the part is half of the radius at this friction.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ def material(shear: float, poisson: float) -> Material:
 def line_contact(
     first: Material, second: Material, motion: Rolling, friction: float, *, coupled: bool = False
 ) -> xr.Dataset:
-    """Contact of two cylinders of radius 2 on each other, half-width 1, in plane strain: ends that only mirror."""
+    """Contact of two cylinders of radius 2, with half-width 1, in plane strain, by ends that only mirror."""
     modulus = 1 / (1 / first.plane_strain_modulus + 1 / second.plane_strain_modulus)
     gap = on_cells(lambda x, y: 0.5 * y**2 + 0 * x, (0, 1), (-1.3, 1.3), (2, LINE_CELLS))
     bodies = [FiniteLengthSpace(length=1.0, material=material_of, model="mirror") for material_of in (first, second)]
@@ -89,9 +89,9 @@ def carter_checks() -> Iterator[Check]:
 
 
 def slope_checks(*, full: bool) -> Iterator[Check]:
-    """Compare the initial slope of the traction curve: plane stress of a thin disc, plane strain in a long body.
+    """Compare the initial slope of the traction curve, in plane stress (thin disc) and plane strain (long body).
 
-    Per length it is ``pi E' a / 2`` with E' of the pair in the plane, ``E / 2`` in plane stress (Johnson 8.46).
+    The slope per length is ``pi E' a / 2`` with the pair's modulus E', ``E / 2`` in plane stress (Johnson 8.46).
     """
     young, poisson, friction, creepage = 2.6, 0.3, 0.3, 0.015
     steel = material(1.0, poisson)
@@ -167,7 +167,7 @@ def shift_checks() -> Iterator[Check]:
 
 
 def ellipse_gap(along_x: float, along_y: float, load: float, of: Material, cells: tuple[int, int]) -> xr.DataArray:
-    """Gap that two like bodies close to an ellipse of given semi-axes under a load (Johnson 3.61, 4.26)."""
+    """Gap of two like bodies whose contact under a load is an ellipse of given semi-axes (Johnson 3.61, 4.26)."""
     modulus = 0.5 * of.plane_strain_modulus
     peak = 1.5 * load / (np.pi * along_x * along_y)
     long_axis, short_axis = max(along_x, along_y), min(along_x, along_y)
@@ -201,12 +201,12 @@ def rolling_ellipse(
     )
 
 
-# Half-width along rolling over that across and Poisson's ratio, and the former of further pairs at the full level
+# Ratio of the half-widths along and across rolling, and Poisson's ratio; further pairs at the full level
 KALKER = ((1.0, 0.25), (1.0, 0.5), (0.5, 0.0), (5.0, 0.25))
 WHOLE_RANGE = (0.1, 0.3, 1.0, 1 / 0.4, 10.0)
-# Cells each way of the two grids; of an ellipse of 10 to 1 those along rolling, which would be long otherwise
+# Numbers of cells along either axis of the two grids; along rolling for an ellipse of 10 to 1, to limit the time
 KALKER_CELLS, LONG_CELLS = (34, 62), (62, 118)
-CREEPAGE = 1e-6  # Creepage without slip but in a few cells
+CREEPAGE = 1e-6  # Creepage so small that only a few cells slip
 
 
 def kalker_checks(*, full: bool) -> Iterator[Check]:
@@ -232,7 +232,7 @@ def kalker_checks(*, full: bool) -> Iterator[Check]:
                 force = float(result["force_y" if motion.longitudinal_creepage else "force_x"])
                 forces.append(force / (CREEPAGE * across * (np.sqrt(across) if motion.spin else 1.0)))
             coefficients.append(forces)
-        # Of first order in the cells that a semi-axis has, without the three next to the contact.
+        # The error is of first order in the cell: count - 6 cells span the contact, since three lie beside either end.
         coarse_count, fine_count = (count - 6 for count in counts)
         extrapolated = (fine_count * np.array(coefficients[1][:2]) - coarse_count * np.array(coefficients[0][:2])) / (
             fine_count - coarse_count
@@ -245,7 +245,7 @@ def kalker_checks(*, full: bool) -> Iterator[Check]:
         yield Reference(case, source).compare("c23", coefficients[1][2], table[2], tolerance, relative=True)
 
 
-# Force over full sliding's, by the longitudinal creepage
+# Force over the force of full sliding, by the longitudinal creepage
 CONTACT_CURVE = {4e-4: 0.2588, 1.2e-3: 0.6482, 2.0e-3: 0.8816, 2.8e-3: 0.9832}
 
 
@@ -277,7 +277,7 @@ EVERYWHERE = -np.inf, np.inf
 
 
 def rise(grid: Grid, heat: FloatArray, speed: float, ends: tuple[float, float], depth: float = 0.0) -> FloatArray:
-    """Rise of a body of unit properties."""
+    """Temperature rise of a body with unit properties."""
     body = MovingBody(ThermalProperties(**UNIT_PROPERTIES), speed, ends)
     return SourceOperator(body, grid, slice(0, grid.cells_x), depth)(np.broadcast_to(heat, grid.shape))
 
@@ -294,7 +294,7 @@ def line_case() -> tuple[Case, xr.Dataset]:
 
 
 def fast_checks() -> Iterator[Check]:
-    """Two like bodies in a fast line contact, the heat shared by equal surface temperature."""
+    """Two like bodies in a fast line contact, which share the heat so that their surface temperatures are equal."""
     case, result = line_case()
     a, speed, sliding = case.hertz_half_width, 200.0, 1.0
     motion = Sliding(body_speed=-speed - 0.5 * sliding, roller_speed=-speed + 0.5 * sliding)
@@ -333,7 +333,7 @@ def band_checks() -> Iterator[Check]:
 
 
 def resting_checks() -> Iterator[Check]:
-    """Rest sources on a half-space."""
+    """Check resting sources of heat on a half-space."""
     grid = Grid(x_range=(-1.2, 1.2), y_range=(-1.2, 1.2), cells_x=61, cells_y=61)
     source = "Carslaw and Jaeger (1959), 10.5"
     cells = Grid(x_range=(-1.5, 1.5), y_range=(-1.5, 1.5), cells_x=45, cells_y=45)
@@ -371,7 +371,7 @@ def end_checks() -> Iterator[Check]:
 
 
 def heat_carried_away(speed: float) -> tuple[float, float]:
-    """Heat that flows and is carried through planes before and behind some sources, and the heat of these, W."""
+    """Heat through planes before and behind some sources, conducted and carried, and the sources' own heat, W."""
     grid = Grid(x_range=(0.0, 2.0), y_range=(-3, 3), cells_x=12, cells_y=60)
     heat = np.zeros(grid.shape)
     heat[2, 28:30], heat[7, 30] = 5.0, 1.0
@@ -388,7 +388,7 @@ def heat_carried_away(speed: float) -> tuple[float, float]:
 
 STEEL = Material(210e9, 0.3)
 COEFFICIENT = 1e-17
-EXPLICIT_STEPS = 80  # Explicit steps: their error is of first order
+EXPLICIT_STEPS = 80  # Number of explicit steps, whose error is of first order
 
 
 def sliding_wear_checks() -> Iterator[Check]:

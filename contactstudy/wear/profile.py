@@ -1,4 +1,4 @@
-"""Worn profile for other cases: sum of the unworn profile and the worn depth."""
+"""Profile of a worn roller, for use in other cases: the unworn profile plus the worn depth."""
 
 from __future__ import annotations
 
@@ -89,21 +89,21 @@ def worn_profile(case: Case, worn: xr.Dataset, distance: float | None = None) ->
 
 @dataclass(frozen=True, eq=False)
 class _Columns:
-    """Columns in the contact, from mid-length, and the points (column, node) of their mean depth."""
+    """Columns in the contact, and the points (column, node) that give a column's mean depth."""
 
     edges: FloatArray
     points: FloatArray
 
     @classmethod
     def of(cls, worn: xr.Dataset, x: FloatArray, mask: NDArray[np.bool_], start: float, stop: float) -> _Columns:
-        """Columns of a result, of different widths or uniform."""
+        """Return the columns of a result, with uniform or different widths."""
         centres = x[mask]
         uniform = "x_width" not in worn.coords
         widths = np.full(centres.size, (x[-1] - x[0]) / (x.size - 1)) if uniform else worn["x_width"].values[mask]
         edges = np.append(centres - 0.5 * widths, centres[-1] + 0.5 * widths[-1])
         clipped = np.clip(edges, start, stop)
         points = 0.5 * (clipped[1:] + clipped[:-1])[:, None] + 0.5 * np.diff(clipped)[:, None] * GAUSS_POINTS
-        # The gap of a uniform cell is that of its midpoint, unless the end cuts the cell.
+        # A uniform cell has the gap at its midpoint, unless the end cuts the cell.
         rounding = ROUNDING * (stop - start)
         is_uncut = uniform & (edges[:-1] >= start - rounding) & (edges[1:] <= stop + rounding)
         return cls(clipped, np.where(is_uncut[:, None], centres[:, None], points))
@@ -120,7 +120,7 @@ class _Columns:
 
 @dataclass(frozen=True, eq=False)
 class _SharpEnds:
-    """Depth by the pressure up to sharp ends, near which the body sinks in like ``s ln s``, s from the end.
+    """Depth that the pressure next to sharp ends needs: the body sinks in like ``s ln s`` at a distance s from an end.
 
     The slope is ``2 p / (pi E') ln s`` (Johnson, section 2.5); without this depth the pressure is unbounded.
     """
@@ -131,7 +131,7 @@ class _SharpEnds:
 
     @classmethod
     def of(cls, case: Case, columns: _Columns, depth: FloatArray, pressure: FloatArray) -> _SharpEnds:
-        """Return the ends, with slopes up to the worn slope for ends inside the body."""
+        """Return the ends; the slope is at most the worn slope, and zero at an end of the body."""
         start, stop = case.contact_range
         mid_length = case.roller_middle
         modulus = case.body.material.plane_strain_modulus
@@ -152,14 +152,14 @@ class _SharpEnds:
 
 
 def _fit_profile(case: Case, columns: _Columns, ends: _SharpEnds, depth: FloatArray) -> Measured:
-    """Smooth profile with the depth of every column: slope of a spline of the worn area without the ends."""
+    """Smooth profile with the mean depth of every column: the slope of a spline through the area worn off up to x."""
     half_length, (start, stop) = 0.5 * case.roller.length, ends.positions
     remainder = depth - columns.mean_depths(ends.depth)
     volume = np.concatenate([[0.0], np.cumsum(remainder * np.diff(columns.edges))])
     spline = make_interp_spline(columns.edges, volume, k=min(3, depth.size)).derivative()
     borders = _interpolate_borders(case, columns, depth)
     edges, midpoints = columns.edges, columns.midpoints
-    # Points between the outer column's midpoint and the end; each distance to the end is half the previous one
+    # Points between the outer column's midpoint and the end; each point is half as far from the end as the one before
     fractions = 0.5 ** np.arange(1, 11)
     first, last = start + fractions * (midpoints[0] - start), stop - fractions * (stop - midpoints[-1])
     positions = np.concatenate([[start], np.sort(np.concatenate([first, last, edges[1:-1], midpoints])), [stop]])
@@ -184,7 +184,7 @@ def _fit_profile(case: Case, columns: _Columns, ends: _SharpEnds, depth: FloatAr
 
 
 def _interpolate_borders(case: Case, columns: _Columns, depth: FloatArray) -> list[PchipInterpolator]:
-    """Worn shape next to the borders of the wear, up to the first unworn column: monotone, without a ridge."""
+    """Monotone interpolation of the worn shape, without a ridge, next to the first unworn columns."""
     borders: list[PchipInterpolator] = []
     worn_columns = np.flatnonzero(depth > 0)
     if not worn_columns.size:
@@ -202,7 +202,7 @@ def _interpolate_borders(case: Case, columns: _Columns, depth: FloatArray) -> li
 
 def _create_measured(half_length: float, positions: FloatArray, depth: FloatArray) -> Measured:
     """Worn depth between the ends of the contact as a profile of the roller's length."""
-    # The roller does not wear beyond the body; a measured profile may have steps of this growth.
+    # The roller does not wear beyond the body; the steps of a measured profile may grow by this factor.
     edges_before = growing_edges(positions[0] + half_length, positions[1] - positions[0], 2.0)[::-1]
     edges_after = growing_edges(half_length - positions[-1], positions[-1] - positions[-2], 2.0)
     x = np.concatenate([positions[0] - edges_before, positions, positions[-1] + edges_after])

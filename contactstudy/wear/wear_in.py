@@ -39,14 +39,14 @@ from contactstudy.wear.profile import WORN_ATTRIBUTES
 
 @dataclass(frozen=True, eq=False)
 class WearingOperator:
-    """Displacement under a pressure plus the wear of the profile within a step."""
+    """Operator that adds the wear within a step to the displacement under a pressure."""
 
     elastic: ContactOperator
     compliance: FloatArray  # (x, 1), worn depth per load per length, m2/N
     step: float  # cell size along y, m
 
     def __call__(self, loads: Mapping[Load, FloatArray]) -> FloatArray:
-        """Displacement (m) of the cell centres under `loads` (Pa): only the pressure wears."""
+        """Displacement and wear (m) at the cell centres under `loads` (Pa); only the pressure wears."""
         displacement = self.elastic(loads)
         if Load.NORMAL not in loads:
             return displacement
@@ -58,7 +58,7 @@ class WearingOperator:
 
     @property
     def coarse(self) -> ContactOperator:
-        """The bodies' operator on cells of twice the size: a first guess without wear."""
+        """Operator without wear on cells of twice the size, for a first guess."""
         return self.elastic.coarse
 
 
@@ -102,7 +102,7 @@ class WornContact:
         return PressureResult(solution.pressure, grid.dy * solution.pressure.sum(axis=1), solution.converged)
 
     def compute_slip(self, depth: FloatArray, law: str) -> FloatArray:
-        """Factor (x) from load per length to wear: slip per distance, or frictional work, weighted by the pressure."""
+        """Wear (x) per load per length, over `rate`: slip per distance, or frictional work, pressure-weighted."""
         case, grid = self.case, self.shape.grid
         friction = np.broadcast_to(case.friction_on(grid.x), (grid.cells_x, 1))[:, 0]
         if not isinstance(case.motion, Rolling):
@@ -122,7 +122,7 @@ class WornContact:
         return np.asarray(np.divide(wear_rate.sum(axis=1), load, out=np.zeros_like(load), where=load > 0))
 
 
-# Length of either implicit stage over the length of the step: the scheme damps the stiffest wear fully (R. Alexander,
+# Length of either implicit stage over the length of the step, which damps the stiffest wear fully (R. Alexander,
 # SIAM Journal on Numerical Analysis 14 (1977) 1006, theorem 5)
 STAGE_FRACTION = 1 - np.sqrt(0.5)
 STEP_SAFETY, MAX_GROWTH, MIN_GROWTH = 0.85, 4.0, 0.2  # Factor on the next step, and its bounds
@@ -134,9 +134,9 @@ class State(NamedTuple):
     distance: float  # m
     depth: FloatArray  # (x), m
     pressure: FloatArray  # (x, y), Pa
-    slip: FloatArray  # (x), load per length to wear
+    slip: FloatArray  # (x), factor from load per length to wear
     error: float = 0.0  # of the depth, summed over the steps, m
-    worn_area: float = 0.0  # law's volume over the circumference, trapezoids, m2
+    worn_area: float = 0.0  # volume by the law over the circumference, integrated by trapezoids, m2
     converged: bool = True
 
 
@@ -145,7 +145,7 @@ class WearIntegrator:
     """Integrates the wear over the sliding distance."""
 
     contact: WornContact
-    rate: float  # m2/N per metre, per slip
+    rate: float  # depth per load per length, distance and slip, m2/N per metre
     law: str  # slip or work
     tolerance: float  # error of the depth per step over the largest depth
 
@@ -157,7 +157,7 @@ class WearIntegrator:
 
     def integrate(self, state: State, stop: float, step: float) -> Iterator[tuple[State, float]]:
         """Integrate to a distance; yield the state after each step and the length of the next step."""
-        min_length = 1e-6 * min(step, stop - state.distance)  # The error rejects no shorter step; it is stated
+        min_length = 1e-6 * min(step, stop - state.distance)  # A shorter step is accepted with any error
         while state.distance < stop:
             remaining = stop - state.distance
             length = min(step, remaining)
@@ -185,7 +185,7 @@ class WearIntegrator:
             yield state, step
 
     def _worn_area_rate(self, state: State) -> float:
-        """Area worn off a section along the axis by the law, per distance."""
+        """Area (x, depth) that the law removes from the profile, per distance."""
         grid = self.contact.shape.grid
         return self.rate * grid.dy * float((grid.widths * state.slip) @ state.pressure.sum(axis=1))  # eq. (603)
 
@@ -353,7 +353,7 @@ def _choose_cells(case: Case, grid: Grid | None) -> Grid:
         return choose_grid(case)
     refined_grid = refine_contact(case, 0.01, 1e-6).contact.shape.grid
     low, high = refined_grid.y_range
-    # The load moves along the axis as the ends wear: the window is 1.4 times that of the unworn contact.
+    # The load moves along the axis as the ends wear: the window is 1.4 times the window of the unworn contact.
     cells_y = 2 * int(np.ceil(0.5 * 1.4 * refined_grid.cells_y))
     width_factor = cells_y / refined_grid.cells_y
     return Grid.between(refined_grid.x_edges, (width_factor * low, width_factor * high), cells_y)
