@@ -267,7 +267,7 @@ def modules() -> str:
 
 
 TABLES: dict[str, Callable[[], str]] = {
-    "materials": materials.documented,
+    "materials": materials.format_table,
     "study-keys": parameter_table,
     "profile-kinds": profile_kinds,
     "measures": measures,
