@@ -116,12 +116,10 @@ def symmetry_across(solution: SolvedCase) -> bool:
 def reversed_friction(solution: SolvedCase) -> bool:
     """Friction that acts the other way mirrors the pressure across y."""
     low, high = solution.grid.y_range
-    given_case = solution.cells
-    if not given_case.case.coupled or abs(low + high) > 1e-9 * high:
+    case = solution.cells.case
+    if not case.coupled or abs(low + high) > 1e-9 * high:
         return False
-    reversed_pressure = solve_again(
-        replace(given_case, case=replace(given_case.case, friction=-given_case.case.friction))
-    )
+    reversed_pressure = solve_again(replace(solution.cells, case=replace(case, friction=-case.friction)))
     if reversed_pressure is None:
         return False
     pressure = solution.result["pressure"].values
@@ -158,9 +156,8 @@ def same_load_by_pressure(solution: SolvedCase) -> bool:
     case = solution.random_case.case
     by_pressure = case.load is None
     value = {"load": case.normal_load} if by_pressure else {"max_pressure": case.hertz_max_pressure}
-    second_pressure = solve_again(
-        replace(solution.cells, case=replace(case, **({"load": None, "max_pressure": None} | value)))
-    )
+    same_case = replace(case, **({"load": None, "max_pressure": None} | value))
+    second_pressure = solve_again(replace(solution.cells, case=same_case))
     if second_pressure is None:
         return False
     close("load or pressure", solution.result["pressure"].values, second_pressure, solution.peak, SAME_PRESSURE)
@@ -175,10 +172,9 @@ def contact_of_gap(solution: SolvedCase) -> bool:
         second_result = contact(case, result["initial_gap"])
     if not bool(second_result["converged"]):
         return False
-    close("solve_contact", second_result["pressure"].values, result["pressure"].values, solution.peak, SAME_PRESSURE)
-    close(
-        "shear traction", result["traction_y"].values, case.friction * result["pressure"].values, solution.peak, 1e-12
-    )
+    pressure, traction = result["pressure"].values, result["traction_y"].values
+    close("solve_contact", second_result["pressure"].values, pressure, solution.peak, SAME_PRESSURE)
+    close("shear traction", traction, case.friction * pressure, solution.peak, 1e-12)
     return True
 
 
@@ -189,29 +185,18 @@ def superposition(solution: SolvedCase) -> bool:
     peak = solution.peak
     noise = np.random.default_rng(rng.randrange(2**32)).random(grid.shape)
     second_load = pressure.copy(data=peak * noise)
-    pressure_sum = pressure + 0.5 * second_load
+    loads = pressure, second_load, pressure + 0.5 * second_load
     friction = rng.uniform(-1.0, 1.0)
     points = inner_points(solution)
     options = {"inside_cells": rng.choice([pressure, "uniform"]), **points}
-    fields = [
-        stack_components(stress_field(case.body, load, friction=friction, **options))
-        for load in (pressure, second_load, pressure_sum)
-    ]
+    fields = [stack_components(stress_field(case.body, load, friction=friction, **options)) for load in loads]
     close("stresses of a sum", fields[0] + 0.5 * fields[1], fields[2], peak, 1e-9)
     frictionless, with_friction = (
         stack_components(stress_field(case.body, pressure, friction=f, **options)) for f in (0.0, 1.0)
     )
     close("stresses with friction", frictionless + friction * (with_friction - frictionless), fields[0], peak, 1e-9)
-    displacements = [
-        surface_displacement(case.body, load, friction).values for load in (pressure, second_load, pressure_sum)
-    ]
-    close(
-        "displacements of a sum",
-        displacements[0] + 0.5 * displacements[1],
-        displacements[2],
-        float(np.abs(displacements[2]).max()),
-        1e-9,
-    )
+    first, second, total = (surface_displacement(case.body, load, friction).values for load in loads)
+    close("displacements of a sum", first + 0.5 * second, total, float(np.abs(total).max()), 1e-9)
     return True
 
 

@@ -100,7 +100,7 @@ def long_rollers(repeats: int, report: Report) -> Iterator[Row]:
     contact, build, counts = {}, {}, {}
     for cells in LONG_CELLS:
         problem = roller((cells, 48), cells / 10, free_ends=True)
-        grid = Grid.from_centres(problem.as_arrays()["x"].values, problem.as_arrays()["y"].values)
+        grid = Grid.from_centres(problem.gap_array()["x"].values, problem.gap_array()["y"].values)
         make = partial(SurfaceOperator.of, problem.body, grid)
         build[cells] = medians({"build": make}, min(repeats, 3), warm_up=False)["build"]
         contact[cells] = medians({"contact": partial(contact_of, problem)}, repeats)["contact"]

@@ -163,7 +163,7 @@ def iterations(_: int, report: Report) -> Iterator[Row]:
         counts = []
         for name, problem in cases.items():
             contact = solve_contact(
-                problem.body, problem.as_arrays(), load=problem.load, settings=ContactSettings(tolerance=tolerance)
+                problem.body, problem.gap_array(), load=problem.load, settings=ContactSettings(tolerance=tolerance)
             )
             if not bool(contact["converged"]):
                 report.add_remark(f"not converged: {name} at {tolerance:g}")

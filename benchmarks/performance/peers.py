@@ -32,7 +32,7 @@ def contact_of(problem: Problem, tolerance: float = 1e-6, *, stretch: float = 1.
     """Contact by this package, which never repeats a load; with the same `stretch` the operator is kept."""
     return solve_contact(
         problem.body,
-        problem.as_arrays(stretch),
+        problem.gap_array(stretch),
         load=problem.nudged_load(),
         settings=ContactSettings(tolerance=tolerance, max_iterations=5000),
     )

@@ -53,7 +53,7 @@ class Problem:
         finite = np.isfinite(self.gap)
         return np.where(finite, self.gap, DISTANT_GAP * self.gap[finite].max())
 
-    def as_arrays(self, stretch: float = 1.0) -> xr.DataArray:
+    def gap_array(self, stretch: float = 1.0) -> xr.DataArray:
         """Gap with its coordinates; a stretch next to 1 makes a grid for which no operator is kept."""
         cells_x, cells_y = self.gap.shape
         x = (np.arange(cells_x) + 0.5) * self.size[0] / cells_x * stretch

@@ -52,16 +52,11 @@ class UniformOperator:
 
     @classmethod
     def of(
-        cls,
-        material: Material,
-        extent: Extent,
-        grid: Grid,
-        responses: Sequence[Response],
-        ends_kernel: EndKernel | None,
+        cls, material: Material, extent: Extent, grid: Grid, responses: Sequence[Response], ends: EndKernel | None
     ) -> UniformOperator:
         """Operator of a part of a body made of `material`, for pairs of displacement and load."""
         spectra = {response: _spectrum(response, material, extent, grid) for response in responses}
-        return cls(extent, grid, spectra, None if ends_kernel is None else EndCorrection.on_grid(grid, ends_kernel))
+        return cls(extent, grid, spectra, None if ends is None else EndCorrection.on_grid(grid, ends))
 
     def coarsen(self, material: Material) -> UniformOperator:
         """Return the operator on cells of twice the size."""
@@ -214,12 +209,7 @@ class ColumnsOperator:
 
     @classmethod
     def of(
-        cls,
-        material: Material,
-        extent: Extent,
-        grid: Grid,
-        responses: Sequence[Response],
-        ends_kernel: EndKernel | None,
+        cls, material: Material, extent: Extent, grid: Grid, responses: Sequence[Response], ends: EndKernel | None
     ) -> ColumnsOperator:
         """Operator of a part of a body made of `material`, for pairs of displacement and load."""
         edges, reference = grid.x_edges, reference_distance(extent)
@@ -227,9 +217,9 @@ class ColumnsOperator:
         kernels = {
             response: kernel_factor(material) * columns.kernel(response, material.poisson) for response in responses
         }
-        if ends_kernel is not None:
+        if ends is not None:
             for response, kernel in kernels.items():
-                ends_kernel.add_to(kernel, response, edges)
+                ends.add_to(kernel, response, edges)
         return cls(extent, grid, kernels)
 
     def coarsen(self, material: Material) -> ColumnsOperator:

@@ -96,9 +96,9 @@ def equivalent_loads(
 
 def _load_reference(body: Body) -> float | None:
     """Distance along y at which equivalent loads without stress are zero, metres; None without two exact ends."""
-    freed = next((term.free_ends for term in body.terms if term.free_ends), None)
-    is_relative = freed is not None and np.isfinite(freed.length) and not freed.mirrored_once
-    return REFERENCE_LENGTHS * freed.length if freed is not None and is_relative else None
+    free_ends = next((term.free_ends for term in body.terms if term.free_ends), None)
+    is_relative = free_ends is not None and np.isfinite(free_ends.length) and not free_ends.mirrored_once
+    return REFERENCE_LENGTHS * free_ends.length if free_ends is not None and is_relative else None
 
 
 def overlapping_operators(
@@ -108,10 +108,10 @@ def overlapping_operators(
     body.check_span(grid)
     if (depths < 0).any():
         raise InvalidInputError("z", float(depths.min()), "not negative (metres below the top)")
-    freed = next((term.free_ends for term in body.terms if term.free_ends), None)
-    if freed is None:
+    free_ends = next((term.free_ends for term in body.terms if term.free_ends), None)
+    if free_ends is None:
         return None
     cells = np.zeros(grid.shape) if cells is None else cells
-    problem = end_problem(freed, body.material.poisson, cells, None, grid, loads=(load,))
+    problem = end_problem(free_ends, body.material.poisson, cells, None, grid, loads=(load,))
     problem = replace(problem, resolution=problem.resolution.for_loads((load,)))
     return OverlappingOperators.of(problem, Points(grid.x, grid.y, depths), reference=_load_reference(body))

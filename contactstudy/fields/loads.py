@@ -66,27 +66,32 @@ def superpose(
 
 
 def end_problem(
-    freed: FreeEnds, poisson: float, cells: FloatArray, shape: FloatArray | None, grid: Grid, loads: tuple[Load, ...]
+    free_ends: FreeEnds,
+    poisson: float,
+    cells: FloatArray,
+    shape: FloatArray | None,
+    grid: Grid,
+    loads: tuple[Load, ...],
 ) -> EndProblem:
     """Problem of the free ends under a load on cells, on the fine cells of a `shape` inside the cells."""
     finest = finest_cell(grid)
     if shape is not None:
-        cells, grid = FineCells(load=cells, shape=shape, grid=grid, extent=(0.0, freed.length)).end_load()
+        cells, grid = FineCells(load=cells, shape=shape, grid=grid, extent=(0.0, free_ends.length)).end_load()
     return EndProblem(
-        length=freed.length,
+        length=free_ends.length,
         poisson=poisson,
         cells=cells,
         loads=loads,
         grid=grid,
         resolution=Resolution(),
-        mirrored_once=freed.mirrored_once,
+        mirrored_once=free_ends.mirrored_once,
         finest=finest,
     )
 
 
-def unit_problem(freed: FreeEnds, poisson: float, grid: Grid, load: Load) -> EndProblem:
+def unit_problem(free_ends: FreeEnds, poisson: float, grid: Grid, load: Load) -> EndProblem:
     """Problem of the ends for unit loads on the cells along x."""
-    (problem,) = end_problem(freed, poisson, np.zeros(grid.shape), None, grid, loads=(load,)).split_by_mirror_sign()
+    (problem,) = end_problem(free_ends, poisson, np.zeros(grid.shape), None, grid, loads=(load,)).split_by_mirror_sign()
     return problem
 
 

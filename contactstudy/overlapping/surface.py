@@ -45,7 +45,7 @@ CELLS_PER_FINEST = (
 class EndRequest(NamedTuple):
     """Request of a kernel of the ends."""
 
-    freed: FreeEnds  # free ends, at ``x = 0`` and at the length (infinite: one end)
+    free_ends: FreeEnds  # free ends, at ``x = 0`` and at the length (infinite: one end)
     material: Material
     dy: float  # cell size along y, metres, and number of cells
     cells_y: int
@@ -58,7 +58,7 @@ class EndRequest(NamedTuple):
     @classmethod
     def of(
         cls,
-        freed: FreeEnds,
+        free_ends: FreeEnds,
         material: Material,
         grid: Grid,
         responses: tuple[Response, ...],
@@ -69,7 +69,7 @@ class EndRequest(NamedTuple):
         finest = grid.dx
         if not grid.uniform:
             # Next to a loaded end the pressure follows the ends' part down to some hundredths of the contact's width.
-            end_width = min(grid.widths[0], grid.widths[-1]) if np.isfinite(freed.length) else grid.widths[0]
+            end_width = min(grid.widths[0], grid.widths[-1]) if np.isfinite(free_ends.length) else grid.widths[0]
             finest = grid.dy / CELLS_PER_FINEST if end_width <= 2 * grid.dy else grid.dy
         resolution = resolution.for_loads(chain.from_iterable(responses))
         operator_resolution = replace(
@@ -79,7 +79,7 @@ class EndRequest(NamedTuple):
             lateral_nodes=resolution.lateral_nodes + EXTRA_NODES,
         )
         return cls(
-            freed=freed,
+            free_ends=free_ends,
             material=material,
             dy=grid.dy,
             cells_y=grid.cells_y,
@@ -93,7 +93,7 @@ class EndRequest(NamedTuple):
     @property
     def parities(self) -> tuple[int, ...]:
         """Parities that the ends do not mix."""
-        return (1, -1) if np.isfinite(self.freed.length) else (0,)
+        return (1, -1) if np.isfinite(self.free_ends.length) else (0,)
 
 
 @dataclass(frozen=True, eq=False)
@@ -119,7 +119,7 @@ class EndKernel:
     def moments(self, cell_edges: FloatArray) -> list[FloatArray]:
         """Integrals over the cells of the polynomials on the positions, from each end: arrays (position, cell)."""
         side_moments = [cell_moments(self.edges, self.positions, cell_edges)]
-        length = self.request.freed.length
+        length = self.request.free_ends.length
         if np.isfinite(length):
             side_moments.append(cell_moments(self.edges, self.positions, length - cell_edges[::-1])[:, ::-1])
         return side_moments
@@ -179,7 +179,7 @@ def sampled_kernel(waves: PositionWaves, wavenumber: float, request: EndRequest,
 @cached("end kernels")
 def end_kernel(request: EndRequest) -> EndKernel:
     """Kernel of the ends of a body."""
-    length, mirrored_once = request.freed
+    length, mirrored_once = request.free_ends
     is_relative = np.isfinite(length) and not mirrored_once
     window = 2 * request.dy * request.cells_y
     shortest = 0.5 * request.finest
@@ -243,7 +243,7 @@ def _sample_panel(
     shared_samples: dict[float, FloatArray],
 ) -> Iterator[FloatArray]:
     """Kernel at a panel's wavenumbers, or from `shared_samples`: arrays (parity, response, position, position)."""
-    length, mirrored_once = request.freed
+    length, mirrored_once = request.free_ends
     first_wavenumber = float(panel.nodes[0])
     modes = modes_between_ends(length, first_wavenumber, shortest, request.resolution, mirrored_once=mirrored_once)
     waves = [PositionWaves.of(mode, positions, request.responses) for mode in modes]

@@ -181,8 +181,8 @@ def _target(node: ast.Assign) -> str:
 
 def _text(node: ast.stmt) -> str:
     """Text of a statement that is nothing but text."""
-    found = node.value if isinstance(node, ast.Expr) else None
-    return str(found.value) if isinstance(found, ast.Constant) else ""
+    constant = node.value if isinstance(node, ast.Expr) else None
+    return str(constant.value) if isinstance(constant, ast.Constant) else ""
 
 
 def naming_rules() -> str:
@@ -261,7 +261,7 @@ def modules() -> str:
     rows = []
     for folder in sorted((ROOT / "contactstudy").iterdir()):
         if folder.is_dir() and (folder / "__init__.py").exists():
-            names = [found.name for found in pkgutil.iter_modules([str(folder)])]
+            names = [module.name for module in pkgutil.iter_modules([str(folder)])]
             rows.append((code(folder.name + "/"), code(*names)))
     return table(("folder", "modules"), rows)
 

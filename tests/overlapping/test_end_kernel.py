@@ -23,8 +23,8 @@ def request(
     edges: FloatArray, *, unit: float = 1.0, ends: int = 2, responses: tuple[Response, ...] = RESPONSES
 ) -> EndRequest:
     grid = Grid.between(unit * edges, (-unit, unit), 6)
-    freed = FreeEnds(unit * float(edges[-1]) if ends == 2 else np.inf)
-    return EndRequest.of(freed, MATERIAL, grid, responses, 24.0 * unit, Resolution())
+    free_ends = FreeEnds(unit * float(edges[-1]) if ends == 2 else np.inf)
+    return EndRequest.of(free_ends, MATERIAL, grid, responses, 24.0 * unit, Resolution())
 
 
 def kernel(edges: FloatArray, response: Response, *, unit: float = 1.0, ends: int = 2) -> FloatArray:

@@ -41,8 +41,8 @@ def test_alternating_the_two_bodies_converges_to_the_explicit_solution(lateral: 
 @pytest.mark.parametrize("length", [8.0, 2.5])
 def test_correction_is_symmetric(length: float) -> None:
     grid = Grid(x_range=(0.0, length), y_range=(-2.0, 2.0), cells_x=24, cells_y=16)
-    freed = FreeEnds(length)
-    request = EndRequest.of(freed, Material(1.0, 0.3), grid, (NORMAL_RESPONSE,), 80.0, Resolution())
+    free_ends = FreeEnds(length)
+    request = EndRequest.of(free_ends, Material(1.0, 0.3), grid, (NORMAL_RESPONSE,), 80.0, Resolution())
     for kernel in end_kernel(request).samples[NORMAL_RESPONSE]:
         assert np.abs(kernel - kernel.transpose(0, 2, 1)).max() < 1e-12 * np.abs(kernel).max()
 
