@@ -219,9 +219,11 @@ def serve(folder: str | Path, *, port: int | None = None, hosts: Sequence[str] =
     loader, access = StudyLoader(path.resolve()), AccessControl(port, hosts)
     # Access checks host and origin of every request; Bokeh's own list of origins would need the forwarded ports.
     logging.getLogger("bokeh.server.util").setLevel(logging.ERROR)
+    event_loop = IOLoop(make_current=False)
     server = pn.io.server.get_server(
         {"/": loader.page},
         port=port,
+        loop=event_loop,
         address=HOST,
         websocket_origin="*",
         location=False,  # Panel's own cannot parse [::1]
@@ -229,13 +231,13 @@ def serve(folder: str | Path, *, port: int | None = None, hosts: Sequence[str] =
     )
     access.protect(server._tornado)
     print(f"{access.address} shows the study until Ctrl-C", flush=True)
-    IOLoop.current().add_callback(loader.read)
+    event_loop.add_callback(loader.read)
     if show:
         import webbrowser
 
-        IOLoop.current().add_callback(webbrowser.open, access.address)
+        event_loop.add_callback(webbrowser.open, access.address)
     server.start()
-    server.io_loop.start()
+    event_loop.start()
     if loader.error is not None:
         server.stop()
         raise loader.error

@@ -78,7 +78,8 @@ class Summary:
     def __repr__(self) -> str:
         width = max((len(row.meaning) for row in self.numbers), default=0)
         text = max((len(row.text) for row in self.numbers), default=0)
-        return "\n".join(f"{row.meaning:{width}}  {row.text:{text}}  {row.remark}".rstrip() for row in self.numbers)
+        rows = ((row.meaning.ljust(width), row.text.ljust(text), row.remark) for row in self.numbers)
+        return "\n".join("  ".join(row).rstrip() for row in rows)
 
     def _repr_html_(self) -> str:
         rows = ((row.meaning, row.text, row.remark) for row in self.numbers)

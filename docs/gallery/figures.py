@@ -108,7 +108,18 @@ def statements(source: Path) -> str:
     for node in ast.walk(tree):
         if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef):
             node.body = [entry for entry in node.body if not is_text(entry)]
-    return ast.dump(tree)
+    return repr(structure(tree))
+
+
+def structure(node: object) -> object:
+    """Types and filled fields of a syntax tree, which are the same in each version of Python."""
+    if isinstance(node, list):
+        return [structure(entry) for entry in node]
+    if isinstance(node, ast.AST):
+        return type(node).__name__, [
+            (name, structure(value)) for name, value in ast.iter_fields(node) if value not in (None, [])
+        ]
+    return node
 
 
 def is_text(node: ast.stmt) -> bool:
