@@ -1,8 +1,9 @@
-"""Rules of CONTRIBUTING.md for arguments: no long row of values without names."""
+"""Rules of CONTRIBUTING.md for arguments, no long row of values without names, and for constants."""
 
 from __future__ import annotations
 
 import ast
+from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -26,7 +27,7 @@ def violations(modules: dict[str, str]) -> list[str]:
     classes = {node.name: node for node in nodes if isinstance(node, ast.ClassDef)}
     variadic = {node.name for node in nodes if isinstance(node, ast.FunctionDef) and node.args.vararg} | {"chain"}
     return [
-        f"{name}:{node.lineno}: {rule}"
+        f"{name}:{getattr(node, 'lineno', 1)}: {rule}"
         for name, tree in trees.items()
         for node in tree
         for rule in broken_rules(node, classes, variadic)
@@ -34,7 +35,10 @@ def violations(modules: dict[str, str]) -> list[str]:
 
 
 def broken_rules(node: ast.AST, classes: dict[str, ast.ClassDef], variadic: set[str]) -> Iterator[str]:
-    """Rules that a class, a call or a function breaks."""
+    """Rules that a module, a class, a call or a function breaks."""
+    if isinstance(node, ast.Module | ast.ClassDef):
+        names = Counter(bound_names(node))
+        yield from (f"{name} is bound {count} times" for name, count in names.items() if count > 1)
     if isinstance(node, ast.ClassDef):
         decorators = [ast.unparse(decorator) for decorator in node.decorator_list]
         positional = any("dataclass" in text and "kw_only=True" not in text for text in decorators)
@@ -52,6 +56,22 @@ def broken_rules(node: ast.AST, classes: dict[str, ast.ClassDef], variadic: set[
                 yield f"{node.name} has more than {MOST_PARAMETERS} parameters and does not document them"
             if len(positional) > MOST_POSITIONAL:
                 yield f"{node.name} takes more than {MOST_POSITIONAL} of its many parameters by position"
+
+
+def bound_names(node: ast.Module | ast.ClassDef) -> list[str]:
+    """Names that the assignments of a module or class bind."""
+    targets = [
+        target
+        for statement in node.body
+        if isinstance(statement, ast.Assign | ast.AnnAssign)
+        for target in (statement.targets if isinstance(statement, ast.Assign) else [statement.target])
+    ]
+    return [
+        name.id
+        for target in targets
+        for name in ast.walk(target)
+        if isinstance(getattr(name, "ctx", None), ast.Store) and isinstance(name, ast.Name)
+    ]
 
 
 def fields(node: ast.ClassDef, classes: dict[str, ast.ClassDef]) -> set[str]:
@@ -88,6 +108,8 @@ NUMPYDOC = '\n    """Solve.\n\n    Parameters\n    ----------\n    a, b, c, d, e
         ("def solve(a, b, *, c, d, e, f, g, h): ...", 1),
         ("def solve(a, b, c, d, e, f, g): ...", 0),
         ("class A:\n    def solve(self, a, b, c, d, e, f, g): ...", 0),
+        ("TOLERANCE = 1e-2\nSTEPS, TOLERANCE = 3, 1e-3", 1),
+        ("class A:\n    size: int = 1\n    size = 2", 1),
         ("class A:\n    def solve(self, a, b, c, d, e, f, g, h): ...", 2),
     ],
 )

@@ -15,7 +15,7 @@ from contactstudy.kernels.load import Load
 
 MAX_COUPLED_ROUNDS = 60  # largest number of rounds of a coupled contact. Speed.
 ROUND_ACCURACY = 0.03  # tolerance of a round over the change in the preceding round. Speed.
-COARSE_TOLERANCE = 1e-2  # tolerance of the first coupled round. Speed.
+FIRST_ROUND_TOLERANCE = 1e-2  # tolerance of the first coupled round. Speed.
 NESTED_CELLS = 4096  # cells from which on the contact is first solved on coarser ones. Speed.
 COARSE_TOLERANCE = 1e-3  # tolerance of a solution that serves as a guess. Speed.
 
@@ -172,12 +172,12 @@ def solve_normal(operator: ContactOperator, problem: ContactProblem, start: Floa
 def solve_coupled(operator: ContactOperator, problem: ContactProblem) -> ContactIterate:
     """Solve a contact with the displacement from friction: the traction of one round changes the gap of the next."""
     # The rounds contract like ``f (1 - 2 nu) / (2 (1 - nu))``; each is solved only as far as the last change requires.
-    tolerance = max(problem.tolerance, COARSE_TOLERANCE)
+    tolerance = max(problem.tolerance, FIRST_ROUND_TOLERANCE)
     iterate = solve_normal(operator, replace(problem, tolerance=tolerance))
     scale = float(np.ptp(operator({Load.NORMAL: iterate.pressure})))
     applications = iterate.applications + 1
     bending: FloatArray = np.zeros_like(iterate.pressure)
-    change = COARSE_TOLERANCE
+    change = FIRST_ROUND_TOLERANCE
     for _ in range(MAX_COUPLED_ROUNDS):
         previous, previous_bending = iterate.pressure, bending
         bending = operator({Load.ALONG_Y: problem.friction * previous})
