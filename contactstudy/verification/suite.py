@@ -29,28 +29,30 @@ if TYPE_CHECKING:
 
 
 LEVELS = ("quick", "full")  # Levels of a run
-# Functions that yield checks, by the kind of reference; the argument selects the full level
-GROUPS: dict[str, Callable[[bool], Iterator[Check]]] = {
-    "half-space": lambda full: chain(
+# Iterators that compute checks, by the kind of reference; the argument selects the full level
+GROUPS: dict[str, Callable[[bool], tuple[Iterator[Check], ...]]] = {
+    "half-space": lambda full: (
         exact_solutions.hertz_checks(),
         exact_solutions.circle_checks(),
         exact_solutions.line_checks(),
         exact_solutions.rectangle_checks(),
         exact_solutions.point_checks(),
     ),
-    "limits": lambda full: chain(
-        exact_solutions.plane_checks(), exact_solutions.plate_contact_checks(), exact_solutions.body_checks()
+    "limits": lambda full: (
+        exact_solutions.plane_checks(),
+        exact_solutions.plate_contact_checks(),
+        exact_solutions.body_checks(),
     ),
-    "quarter space": lambda full: chain(
+    "quarter space": lambda full: (
         free_ends.edge_load_checks(),
         free_ends.extra_deflection_checks(),
         free_ends.resultant_checks(),
         free_ends.corner_checks(),
         free_ends.antiplane_checks(),
     ),
-    "finite elements": lambda full: free_ends.finite_element_checks(full=full),
-    "published": lambda full: chain(free_ends.johnson_checks(), free_ends.wedge_checks(), free_ends.mirror_checks()),
-    "friction": lambda full: chain(
+    "finite elements": lambda full: (free_ends.finite_element_checks(full=full),),
+    "published": lambda full: (free_ends.johnson_checks(), free_ends.wedge_checks(), free_ends.mirror_checks()),
+    "friction": lambda full: (
         tribology.carter_checks(),
         tribology.slope_checks(full=full),
         tribology.shift_checks(),
@@ -58,23 +60,26 @@ GROUPS: dict[str, Callable[[bool], Iterator[Check]]] = {
         tribology.kalker_checks(full=full),
         tribology.contact_program_checks(),
     ),
-    "heat": lambda full: chain(
-        tribology.fast_checks(), tribology.band_checks(), tribology.resting_checks(), tribology.end_checks()
+    "heat": lambda full: (
+        tribology.fast_checks(),
+        tribology.band_checks(),
+        tribology.resting_checks(),
+        tribology.end_checks(),
     ),
-    "wear": lambda full: chain(tribology.sliding_wear_checks(), tribology.rolling_wear_checks()),
-    "passes": lambda full: chain(
+    "wear": lambda full: (tribology.sliding_wear_checks(), tribology.rolling_wear_checks()),
+    "passes": lambda full: (
         passes.shakedown_checks(),
         passes.residual_checks(),
         passes.pass_checks(),
         *(passes.finite_element_checks(name) for name in (PASSES_CASES if full else passes.QUICK_CASES)),
     ),
-    "film": lambda full: chain(
+    "film": lambda full: (
         film.line_checks(full=full),
         film.dry_limit_checks(),
         film.roller_checks(full=full),
         *(film.finite_element_checks(name) for name in FILM_CASES),
     ),
-    "consistency": lambda full: chain(
+    "consistency": lambda full: (
         exact_solutions.free_end_checks(),
         exact_solutions.equilibrium_checks(),
         exact_solutions.contact_condition_checks(),
@@ -123,7 +128,7 @@ def run(level: str = "quick", report: Callable[[str, Check], None] | None = None
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", MagnitudeWarning)  # the problems have unit moduli and half-widths
         for name, make_checks in GROUPS.items():
-            for check in make_checks(level == "full"):
+            for check in chain.from_iterable(make_checks(level == "full")):
                 groups[name].append(check)
                 if report is not None:
                     report(name, check)

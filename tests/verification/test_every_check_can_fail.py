@@ -73,10 +73,10 @@ def softer(patch: Patch) -> None:
 def no_friction(patch: Patch) -> None:
     solve_real = stress.stress_field
 
-    def without(body, pressure, **named):
-        return solve_real(body, pressure, **(named | {"friction": 0.0}))
+    def solve_without_friction(body, pressure, **keywords):
+        return solve_real(body, pressure, **(keywords | {"friction": 0.0}))
 
-    everywhere(patch, "stress_field", without)
+    everywhere(patch, "stress_field", solve_without_friction)
 
 
 def first_round_only(patch: Patch) -> None:
@@ -91,26 +91,30 @@ def shear_that_needs_ends(patch: Patch) -> None:
 
 def distort_stress(patch: Patch) -> None:
     """Results that are wrong by some percent, differently in different places."""
-    real_stress, real_sunk, real_contact = stress.stress_field, surface.surface_displacement, contact.solve_contact
+    real_stress, real_displacement, real_contact = (
+        stress.stress_field,
+        surface.surface_displacement,
+        contact.solve_contact,
+    )
 
     def factor(data: xr.Dataset | xr.DataArray) -> xr.DataArray:
         return 1.03 + 0.02 * data["x"] + 0.02 * data["y"]
 
-    def wrong_stress(*arguments, **named):
-        found = real_stress(*arguments, **named)
-        wrong = factor(found) + 0.4 * found["z"]
-        return found.assign({name: found[name] * wrong for name in STRESSES})
+    def wrong_stress(*arguments, **keywords):
+        result = real_stress(*arguments, **keywords)
+        distortion = factor(result) + 0.4 * result["z"]
+        return result.assign({name: result[name] * distortion for name in STRESSES})
 
-    def wrong_sunk(*arguments, **named):
-        found = real_sunk(*arguments, **named)
-        return found * factor(found)
+    def wrong_displacement(*arguments, **keywords):
+        displacement = real_displacement(*arguments, **keywords)
+        return displacement * factor(displacement)
 
-    def wrong_contact(*arguments, **named):
-        found = real_contact(*arguments, **named)
-        return found.assign(pressure=found["pressure"] * factor(found), approach=1.01 * found["approach"])
+    def wrong_contact(*arguments, **keywords):
+        result = real_contact(*arguments, **keywords)
+        return result.assign(pressure=result["pressure"] * factor(result), approach=1.01 * result["approach"])
 
     everywhere(patch, "stress_field", wrong_stress)
-    everywhere(patch, "surface_displacement", wrong_sunk)
+    everywhere(patch, "surface_displacement", wrong_displacement)
     everywhere(patch, "solve_contact", wrong_contact)
 
 
@@ -118,8 +122,8 @@ def distort_between_ends(patch: Patch) -> None:
     """Distort the stress between two ends only."""
     solve_real = stress.stress_field
 
-    def wrong(body, *arguments, **named):
-        distorted_stress = solve_real(body, *arguments, **named)
+    def wrong(body, *arguments, **keywords):
+        distorted_stress = solve_real(body, *arguments, **keywords)
         return distorted_stress * 1.05 if isinstance(body, FiniteLengthSpace) else distorted_stress
 
     everywhere(patch, "stress_field", wrong)
@@ -132,8 +136,8 @@ def softer_bodies(patch: Patch) -> None:
 def twice_the_friction(patch: Patch) -> None:
     solve_real = contact.solve_contact
 
-    def wrong(body, gap, *, friction, **named):
-        return solve_real(body, gap, friction=2 * friction, **named)
+    def wrong(body, gap, *, friction, **keywords):
+        return solve_real(body, gap, friction=2 * friction, **keywords)
 
     patch.setattr(tribology, "solve_contact", wrong)
 
@@ -208,8 +212,8 @@ def softer_line(patch: Patch) -> None:
 def shifted_pressure(patch: Patch) -> None:
     real = line_contact.solve_line
 
-    def shifted_line_film(*numbers: float, **named: object) -> line_contact.LineFilm:
-        line = real(*numbers, **named)
+    def shifted_line_film(*numbers: float, **keywords: object) -> line_contact.LineFilm:
+        line = real(*numbers, **keywords)
         return line._replace(moment=1.05 * line.moment)
 
     patch.setattr(line_contact, "solve_line", shifted_line_film)
@@ -217,12 +221,12 @@ def shifted_pressure(patch: Patch) -> None:
 
 def wrong_exponent(patch: Patch) -> None:
     real = line_contact.solve_line
-    patch.setattr(line_contact, "solve_line", lambda load, *numbers, **named: real(load**0.8, *numbers, **named))
+    patch.setattr(line_contact, "solve_line", lambda load, *numbers, **keywords: real(load**0.8, *numbers, **keywords))
 
 
 def unfinished_iteration(patch: Patch) -> None:
-    real, loose = film.solve_film, FilmSettings(tolerance=1e-3)
-    patch.setattr(film, "solve_film", lambda case, **named: real(case, settings=loose, **named))
+    real, loose_settings = film.solve_film, FilmSettings(tolerance=1e-3)
+    patch.setattr(film, "solve_film", lambda case, **keywords: real(case, settings=loose_settings, **keywords))
 
 
 def heavier_film(patch: Patch) -> None:
@@ -252,19 +256,19 @@ def grid_without_effect(patch: Patch) -> None:
 def results_that_depend_on_the_grid(patch: Patch) -> None:
     real = contact.solve_contact
 
-    def wrong(body, gap, load, **named):
-        result = real(body, gap, load=load, **named)
+    def wrong(body, gap, load, **keywords):
+        result = real(body, gap, load=load, **keywords)
         factor = 1 + 0.05 * np.sin(gap.size)
         return result.assign(pressure=factor * result["pressure"], approach=factor * result["approach"])
 
     patch.setattr(convergence, "solve_contact", wrong)
 
 
-EVERY_WAY: dict[str, tuple[Callable[[Patch], None], ...]] = {
+FAULTS: dict[str, tuple[Callable[[Patch], None], ...]] = {
     "half-space": (wrong_poisson, softer, no_friction, distort_stress),
-    "limits": (ends_only_mirrored, wrong_poisson, distort_between_ends),
+    "limits": (distort_between_ends, ends_only_mirrored, wrong_poisson),
     "quarter space": (ends_only_mirrored, no_ends, first_round_only, shear_that_needs_ends),
-    "finite elements": (ends_only_mirrored, no_ends),
+    "finite elements": (no_ends, ends_only_mirrored),
     "published": (ends_only_mirrored, wrong_poisson, distort_stress),
     "friction": (softer_bodies, twice_the_friction),
     "heat": (conducting_ends, slower_surfaces, better_conductors, heat_in_halves),
@@ -276,8 +280,8 @@ EVERY_WAY: dict[str, tuple[Callable[[Patch], None], ...]] = {
         passed_over_a_body_without_ends,
         strained_more,
     ),
-    "film": (faster_flow, softer_line, shifted_pressure, wrong_exponent, unfinished_iteration, heavier_film, no_ends),
-    "consistency": (ends_only_mirrored, no_friction, first_round_only, distort_stress),
+    "film": (unfinished_iteration, heavier_film, faster_flow, softer_line, shifted_pressure, wrong_exponent),
+    "consistency": (distort_stress, ends_only_mirrored, no_friction, first_round_only),
 }
 
 
@@ -286,16 +290,20 @@ SLOW = ("limits", "quarter space", "consistency")
 
 @pytest.mark.parametrize(
     "group",
-    [pytest.param(group, marks=pytest.mark.slow if group in SLOW else pytest.mark.system) for group in EVERY_WAY],
+    [pytest.param(group, marks=pytest.mark.slow if group in SLOW else pytest.mark.system) for group in FAULTS],
 )
 def test_switched_off_physics_fails_checks(group: str) -> None:
-    caught_groups: dict[tuple[str, str], bool] = {}
-    for physics in EVERY_WAY[group]:
-        with switched_off(physics):
-            for key, fails in failed_checks(suite.GROUPS[group](False)).items():
-                caught_groups[key] = caught_groups.get(key, False) or fails
-    assert caught_groups
-    assert [key for key, fails in caught_groups.items() if not fails] == []
+    for part in range(len(suite.GROUPS[group](False))):
+        undetected: set[tuple[str, str]] | None = None
+        for fault in FAULTS[group]:
+            with switched_off(fault):
+                is_failed = failed_checks(suite.GROUPS[group](False)[part])
+            undetected = {
+                check for check, fails in is_failed.items() if not fails and check in (undetected or is_failed)
+            }
+            if not undetected:
+                break
+        assert undetected == set()
 
 
 @pytest.mark.slow
@@ -317,5 +325,5 @@ def test_refinement_without_effect() -> None:
         assert all(failed_checks(convergence.stress_grid().checks()).values())
 
 
-def test_every_group_has_a_way_to_fail() -> None:
-    assert set(EVERY_WAY) == set(suite.GROUPS)
+def test_every_group_has_faults() -> None:
+    assert set(FAULTS) == set(suite.GROUPS)

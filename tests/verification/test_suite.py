@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import re
 import warnings
 from collections.abc import Iterator
@@ -17,8 +18,8 @@ from contactstudy.verification import Verification, suite, verify
 from contactstudy.verification.check import Check, Curve, Reference
 
 
-def fake(full: bool) -> Iterator[Check]:
-    """A suite of two checks; one check fails."""
+def fake() -> Iterator[Check]:
+    """A group of two checks; one check fails."""
     x = np.linspace(0, 1, 5)
     yield Reference("good | case", "Hertz").compare(
         "pressure",
@@ -32,7 +33,7 @@ def fake(full: bool) -> Iterator[Check]:
 
 @pytest.fixture
 def small_suite(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(suite, "GROUPS", {"half-space": fake})
+    monkeypatch.setattr(suite, "GROUPS", {"half-space": lambda full: (fake(),)})
 
 
 @pytest.mark.usefixtures("small_suite")
@@ -56,7 +57,7 @@ def test_command_with_a_failed_check(tmp_path: Path, capsys: pytest.CaptureFixtu
 
 @pytest.mark.usefixtures("small_suite")
 def test_command_succeeds_when_all_checks_pass(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(suite, "GROUPS", {"half-space": lambda full: iter(list(fake(full))[:1])})
+    monkeypatch.setattr(suite, "GROUPS", {"half-space": lambda full: (itertools.islice(fake(), 1),)})
     assert main(["verify", "--out", str(tmp_path)]) == 0
 
 
