@@ -3,7 +3,7 @@
 For each wavenumber along y the finite elements give the mean displacement of columns under unit pressure on columns;
 the integral over the wavenumber is the displacement of cells, a mean along x at the centre along y, under unit
 pressure on cells. Reynolds' equation is that of the package (eqs. 401 and 402: finite volumes, parabolas upstream,
-reduced pressure, linear film between centres) in code of its own: derivatives are complex steps, cavitation is the
+reduced pressure, linear film between centres) in independent code: derivatives are complex steps, cavitation is the
 complementarity ``min(c P, outflow) = 0``, pseudo-time steps lead from a thick film to the steady one.
 
 Lengths are in a, heights in a**2 / R, pressures in p0.
@@ -12,11 +12,13 @@ Lengths are in a, heights in a**2 / R, pressures in p0.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import pairwise, product
 
 import numpy as np
 from numpy.polynomial import legendre
 from numpy.typing import NDArray
+from scipy import sparse
 from scipy.special import sici
 
 from benchmarks.finite_elements.harmonics import HarmonicBody, Line
@@ -90,15 +92,22 @@ class Reynolds:
             np.diff(through, axis=1) + np.diff(across, axis=0) * np.diff(self.y_edges) / np.diff(self.x_edges)[:, None]
         )
 
+    @cached_property
+    def _face_weights(self) -> list[tuple[slice, Array]]:
+        """Cells beside each face along y, and weights of the polynomial through their films."""
+        edges = self.y_edges
+        y = 0.5 * (edges[1:] + edges[:-1])
+        weights = []
+        for face, edge in enumerate(edges):
+            columns = slice(max(face - 2, 0), min(max(face + 1, 2), y.size))
+            ahead = y[columns] - edge
+            weights.append((columns, np.linalg.solve(np.vander(ahead, increasing=True).T, np.eye(ahead.size)[0])))
+        return weights
+
     def _couette(self, film: Array) -> Array:
         """Film on the faces along y."""
-        edges, cells = self.y_edges, film.shape[1]
-        y = 0.5 * (edges[1:] + edges[:-1])
         faces = []
-        for face, edge in enumerate(edges):
-            columns = slice(max(face - 2, 0), min(max(face + 1, 2), cells))
-            ahead = y[columns] - edge
-            weights = np.linalg.solve(np.vander(ahead, increasing=True).T, np.eye(ahead.size)[0])
+        for face, (columns, weights) in enumerate(self._face_weights):
             value, upstream = film[:, columns] @ weights, film[:, max(face - 1, 0)]
             value = np.where(value.real < FACE_FILM[0] * upstream.real, FACE_FILM[0] * upstream, value)
             faces.append(np.where(value.real > FACE_FILM[1] * upstream.real, FACE_FILM[1] * upstream, value))
@@ -149,7 +158,7 @@ def solve(
             outflow = (reynolds.outflow(pressure, film) + inverse * (film - previous_film)).ravel()
             by_pressure, by_film = reynolds.derivatives(pressure, film)
             by_film += np.diag(np.tile(inverse, x.size))
-            jacobian = by_pressure + by_film @ matrix
+            jacobian = by_pressure + sparse.csr_array(by_film) @ matrix
             scale = np.abs(jacobian.diagonal())
             broken = scale * pressure.ravel() < outflow
             rows = np.where(broken[:, None], np.eye(gap.size), jacobian / scale[:, None])
