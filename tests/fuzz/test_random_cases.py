@@ -10,7 +10,10 @@ from hypothesis import strategies as st
 
 from benchmarks.fuzz.outcome import outcome_of
 
-SLOW = [HealthCheck.too_slow, HealthCheck.data_too_large]
+# The same examples in CI whatever the profile.
+SHORT = settings(
+    settings.get_profile("short"), suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large]
+)
 
 
 def look_at(rng: Random, *, refined: bool) -> None:
@@ -21,14 +24,14 @@ def look_at(rng: Random, *, refined: bool) -> None:
 
 
 @pytest.mark.fuzz
-@settings(max_examples=20, deadline=None, suppress_health_check=SLOW)
+@settings(SHORT, max_examples=8)
 @given(st.randoms(use_true_random=False))
 def test_cases_on_given_cells(rng: Random) -> None:
     look_at(rng, refined=False)
 
 
 @pytest.mark.fuzz
-@settings(max_examples=6, deadline=None, suppress_health_check=SLOW)
+@settings(SHORT, max_examples=3)
 @given(st.randoms(use_true_random=False))
 def test_cases_on_refined_cells(rng: Random) -> None:
     look_at(rng, refined=True)

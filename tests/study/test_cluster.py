@@ -128,9 +128,9 @@ def test_killed_scheduler_ends_run(tmp_path, monkeypatch):
 @pytest.mark.system
 def test_results_do_not_depend_on_workers(tmp_path):
     """Bit for bit: in this process, with two workers, and on a cluster."""
-    study = small_study(sweep={"e_over_a": [0.0, 1.0], "friction": [0.1], "max_pressure": [1.0e9, 1.5e9]})
+    study = small_study(sweep={"e_over_a": [0.0, 1.0], "friction": [0.1]})
     for workers in (0, 2):
-        assert run_study(study, tmp_path / str(workers), workers=workers).counts == {"ok": 4}
+        assert run_study(study, tmp_path / str(workers), workers=workers).counts == {"ok": 2}
     with cluster(tmp_path) as address:
         run_study(study, tmp_path / "cluster", scheduler=address)
     first_dataset = load_dataset(tmp_path / "0")
