@@ -65,14 +65,14 @@ def equivalent_loads(
     """
     checks.instance("body", body, Body, "a QuarterSpace or a FiniteLengthSpace")
     prescribed = prescribed_loads(body, pressure, friction, traction_x, traction_y)
-    grid, loads, (label_x, label_y), _ = prescribed
+    grid, loads, (coordinates_x, coordinates_y), _ = prescribed
     depths = checks.coordinates("z", z)
     top_load = np.array(loads[Load.NORMAL].values)
     face_totals: list[FloatArray] = []
     for load, (cells, factor) in loads.items():
         operators = overlapping_operators(body, grid, depths, load, cells)
         if operators is None:
-            coords = {"x": label_x, "y": label_y}
+            coords = {"x": coordinates_x, "y": coordinates_y}
             return describe(xr.Dataset({"P_h1": (("x", "y"), top_load)}, coords=coords))
         to_top_load, face_operators = operators.equivalent(load)
         top_load += factor * to_top_load.matvec(cells.ravel()).reshape(top_load.shape)
@@ -91,7 +91,7 @@ def equivalent_loads(
         }
     fields = {"P_h1": (("x", "y"), top_load, attributes)}
     fields |= {f"P_v{end}": (("y", "z"), face_total, attributes) for end, face_total in enumerate(face_totals, start=1)}
-    return describe(xr.Dataset(fields, coords={"x": label_x, "y": label_y, "z": depths}))
+    return describe(xr.Dataset(fields, coords={"x": coordinates_x, "y": coordinates_y, "z": depths}))
 
 
 def _load_reference(body: Body) -> float | None:

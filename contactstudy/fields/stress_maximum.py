@@ -126,7 +126,9 @@ def place_search(body: Body, loads: Loads, grid: Grid) -> Search:
         np.isinf(extent[0]) == np.isinf(extent[1])
         and np.allclose(grid.widths, grid.widths[::-1])
         and all(
-            np.allclose(load.cells, kind.sign_x * load.cells[::-1], rtol=0, atol=1e-4 * np.abs(load.cells).max())
+            np.allclose(
+                load.cell_loads, kind.sign_x * load.cell_loads[::-1], rtol=0, atol=1e-4 * np.abs(load.cell_loads).max()
+            )
             for kind, load in loads.items()
         )
     )

@@ -92,14 +92,16 @@ def test_single_loaded_column_keeps_position(load: Load, extent: str, column: in
     graded = Grid.from_edges(np.linspace(0.0, LENGTH, 21)[GRADED], (-1.0, 1.0), 16)
     cells = np.zeros(graded.shape)
     cells[column] = np.sqrt(np.maximum(1 - (graded.y / 0.6) ** 2, 0))
-    fine = FineCells(load=cells, shape=cells, grid=graded, extent=EXTENTS[extent], image=load.sign_x)
+    fine = FineCells(load=cells, shape=cells, grid=graded, extent=EXTENTS[extent], image_sign=load.sign_x)
     uniform = Grid(
         x_range=(0.0, LENGTH),
         y_range=(float(fine.y_edges[0]), float(fine.y_edges[-1])),
         cells_x=20,
-        cells_y=9 * fine.cells.shape[1],
+        cells_y=9 * fine.cell_loads.shape[1],
     )
-    smooth = fine.shape_along_y(fine.cells, fine.cells).means(np.linspace(*uniform.y_range, uniform.cells_y + 1))
+    smooth = fine.shape_along_y(fine.cell_loads, fine.cell_loads).means(
+        np.linspace(*uniform.y_range, uniform.cells_y + 1)
+    )
     spread = np.repeat(smooth, np.diff(GRADED), axis=0)
     influence, x, y = stresses_of(load), np.linspace(0.05, 1.95, 21), np.array([0.0, 0.3])
     for z in (np.array([0.15]), np.array([0.4])):
@@ -118,7 +120,7 @@ def test_wide_columns_represent_smooth_load(extent: str) -> None:
     ends = (scale * EXTENTS[extent][0], scale * EXTENTS[extent][1])
     fine = FineCells(load=cells, shape=cells, grid=graded, extent=ends)
     y_range = (float(fine.y_edges[0]), float(fine.y_edges[-1]))
-    uniform = Grid(x_range=(0.0, scale * LENGTH), y_range=y_range, cells_x=100, cells_y=9 * fine.cells.shape[1])
+    uniform = Grid(x_range=(0.0, scale * LENGTH), y_range=y_range, cells_x=100, cells_y=9 * fine.cell_loads.shape[1])
     along_x = fine.column_means([uniform.x_edges])
     spread = fine.shape_along_y(along_x, along_x).means(np.linspace(*y_range, uniform.cells_y + 1))
     influence, x, y = stresses_of(Load.NORMAL), scale * np.linspace(0.1, 1.9, 13), np.array([0.0, 0.3 * scale])
@@ -129,7 +131,7 @@ def test_wide_columns_represent_smooth_load(extent: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("column", "extent", "image", "expected"),
+    ("column", "extent", "image_sign", "expected"),
     [
         (3, "none", 1, [0.3, 0.5]),
         (3, "last", 1, [0.3, 0.5, 3.5, 3.7]),
@@ -137,12 +139,12 @@ def test_wide_columns_represent_smooth_load(extent: str) -> None:
         (10, "both", -1, [-2.0, -1.9, 1.9, 2.0, 2.1]),
     ],
 )
-def test_step_edges_of_load(column: int, extent: str, image: int, expected: list[float]) -> None:
+def test_step_edges_of_load(column: int, extent: str, image_sign: int, expected: list[float]) -> None:
     graded = Grid.from_edges(np.linspace(0.0, LENGTH, 21)[GRADED], (-1.0, 1.0), 16)
     cells = np.zeros(graded.shape)
     cells[column] = np.sqrt(np.maximum(1 - (graded.y / 0.6) ** 2, 0))
     steps = FineCells(
-        load=1e-3 * cells, shape=1e-3 * cells, grid=graded, extent=EXTENTS[extent], image=image
+        load=1e-3 * cells, shape=1e-3 * cells, grid=graded, extent=EXTENTS[extent], image_sign=image_sign
     ).step_edges
     assert np.unique(steps.round(9)).tolist() == pytest.approx(expected)
 
@@ -237,7 +239,7 @@ PLACES = (0.0, 1e-12, 0.02, 0.05, 0.07, 0.3, 0.4, 0.75, 1.5, 1.7, 2.2, 2.95, 3.0
 
 
 def make_fine_cells(
-    place: float = 0.0, unit: float = 1.0, *, ends: int = 2, image: int = 1, steps: bool = False
+    place: float = 0.0, unit: float = 1.0, *, ends: int = 2, image_sign: int = 1, steps: bool = False
 ) -> FineCells:
     """A load that is pressed at both ends, and may end in steps between columns."""
     grid = Grid.between(unit * (EDGES + place), (-unit, unit), 8)
@@ -247,7 +249,7 @@ def make_fine_cells(
         cells = np.where((x > 0.6) & (x < 2.4), cells, 0.0)
     extent = (unit * place if ends else -np.inf, unit * (place + 3.0) if ends == 2 else np.inf)
     load = (PRESSURE if unit < 1 else 1.0) * cells
-    return FineCells(load=load, shape=load, grid=grid, extent=extent, image=image)
+    return FineCells(load=load, shape=load, grid=grid, extent=extent, image_sign=image_sign)
 
 
 def split_around(x: float, fine_cells: FineCells, narrow: float = 0.0) -> _SplitRange:
@@ -276,11 +278,11 @@ def test_results_scale_with_unit_and_position(x: float, narrow: float, *, steps:
 
 
 @pytest.mark.parametrize("x", PLACES)
-@pytest.mark.parametrize("image", [1, -1])
-def test_inserted_columns_preserve_force(x: float, image: int) -> None:
-    cells = make_fine_cells(image=image)
+@pytest.mark.parametrize("image_sign", [1, -1])
+def test_inserted_columns_preserve_force(x: float, image_sign: int) -> None:
+    cells = make_fine_cells(image_sign=image_sign)
     split_range = split_around(x, cells)
-    forces = add_images(cells.far_load, image, cells.extent) * np.diff(cells.edges)[:, None]
+    forces = add_images(cells.far_load, image_sign, cells.extent) * np.diff(cells.edges)[:, None]
     inserted = cells.column_means([split_range.inserted]) + split_range.moment_loads(cells)
     inserted_force = (inserted * np.diff(split_range.inserted)[:, None]).sum(axis=0)
     outside = forces.sum(axis=0) - forces[split_range.start : split_range.stop].sum(axis=0)

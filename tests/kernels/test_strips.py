@@ -43,11 +43,11 @@ def influence(
     cells_y: int,
     extent: tuple[float, float],
     reference: float = np.inf,
-    image: int = 1,
+    image_sign: int = 1,
 ) -> FloatArray:
     """Influence of a strip (wavenumber, cell, cell)."""
     return ColumnsRequest(edges=edges, dy=dy, cells_y=cells_y, extent=extent, reference=reference).influence(
-        ((1.0, strip),), image
+        ((1.0, strip),), image_sign
     )
 
 
@@ -94,12 +94,12 @@ EDGES = np.array([0.0, 0.02, 0.05, 0.12, 0.3, 0.62, 0.9, 1.4, 1.9])
 
 
 @strips
-@pytest.mark.parametrize("image", [1, -1])
+@pytest.mark.parametrize("image_sign", [1, -1])
 @pytest.mark.parametrize("extent", [WHOLE, ONE_END, (-np.inf, 3.0), TWO_ENDS], ids=str)
-def test_shifted_body_has_equal_influence(strip: Strip, image: int, extent: tuple[float, float]) -> None:
+def test_shifted_body_has_equal_influence(strip: Strip, image_sign: int, extent: tuple[float, float]) -> None:
     edges = np.array([0.0, 0.2, 0.7, 1.9, 2.5, 3.0])
-    here = influence(strip, edges, 0.3, 5, extent, 20.0, image)
-    there = influence(strip, edges + 8.0, 0.3, 5, (extent[0] + 8.0, extent[1] + 8.0), 20.0, image)
+    here = influence(strip, edges, 0.3, 5, extent, 20.0, image_sign)
+    there = influence(strip, edges + 8.0, 0.3, 5, (extent[0] + 8.0, extent[1] + 8.0), 20.0, image_sign)
     assert np.abs(there - here).max() < 1e-9 * np.abs(here).max()
 
 
@@ -116,16 +116,16 @@ def test_influence_between_columns_is_the_double_integral(
     assert kernel[offset, observed, loaded] == pytest.approx(double_integral, rel=2e-9, abs=1e-12)
 
 
-@pytest.mark.parametrize("image", [1, -1])
+@pytest.mark.parametrize("image_sign", [1, -1])
 @strips
-def test_image_equals_mirrored_column(strip: Strip, image: int) -> None:
+def test_image_equals_mirrored_column(strip: Strip, image_sign: int) -> None:
     dy, cells_y, end = 0.2, 6, -0.1
     baseline = along_y(influence(strip, EDGES, dy, cells_y, WHOLE), strip)
-    mirrored = along_y(influence(strip, EDGES, dy, cells_y, (end, np.inf), image=image), strip) - baseline
+    mirrored = along_y(influence(strip, EDGES, dy, cells_y, (end, np.inf), image_sign=image_sign), strip) - baseline
     for observed, loaded, offset in ((0, 0, 0), (2, 5, 1), (7, 7, 3)):
         behind = (2 * end - EDGES[loaded + 1], 2 * end - EDGES[loaded])
         pair = (EDGES[observed], EDGES[observed + 1])
-        mirrored_influence = image * mean_influence(strip, pair, behind, (offset - 0.5) * dy, (offset + 0.5) * dy)
+        mirrored_influence = image_sign * mean_influence(strip, pair, behind, (offset - 0.5) * dy, (offset + 0.5) * dy)
         assert mirrored[offset, observed, loaded] == pytest.approx(mirrored_influence, rel=2e-9, abs=1e-12)
 
 
@@ -160,9 +160,13 @@ SAMPLED = st.sampled_from(STRIPS)
 def test_influence_is_reciprocal_to_the_last_bit(edges: FloatArray, strip: Strip) -> None:
     """What an odd strip with images of one sign does is reciprocal to one with images of the other."""
     for extent in (WHOLE, ONE_END):
-        kernel, variant = (influence(strip, edges, 0.1, 6, extent, image=image) for image in (1, strip.sign_x))
+        kernel, variant = (
+            influence(strip, edges, 0.1, 6, extent, image_sign=image_sign) for image_sign in (1, strip.sign_x)
+        )
         assert np.array_equal(kernel, strip.sign_x * variant.transpose(0, 2, 1))
-    kernel, variant = (influence(strip, edges, 0.1, 6, TWO_ENDS, 30.0, image=image) for image in (1, strip.sign_x))
+    kernel, variant = (
+        influence(strip, edges, 0.1, 6, TWO_ENDS, 30.0, image_sign=image_sign) for image_sign in (1, strip.sign_x)
+    )
     # Far images of a traction are differences of large numbers; the contact's matrix is that of the pressure.
     allowed = 1e-12 if strip is INVERSE else 1e-7
     assert np.abs(kernel - strip.sign_x * variant.transpose(0, 2, 1)).max() < allowed * np.abs(kernel).max()

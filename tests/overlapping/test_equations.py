@@ -55,7 +55,7 @@ def test_resolution_settings_are_converged() -> None:
     def stress(resolution: Resolution) -> np.ndarray:
         loads = (Load.NORMAL, Load.ALONG_Y)
         fields = end_fields(
-            EndProblem(length=8.0, poisson=0.3, cells=pressure, loads=loads, grid=grid, resolution=resolution),
+            EndProblem(length=8.0, poisson=0.3, cell_loads=pressure, loads=loads, grid=grid, resolution=resolution),
             STRESS,
             [Points(*points)],
         )[0]

@@ -34,7 +34,7 @@ def test_field_does_not_depend_on_further_positions(
     problem = EndProblem(
         length=length,
         poisson=0.3,
-        cells=pressure,
+        cell_loads=pressure,
         loads=(Load.NORMAL, Load.ALONG_Y),
         grid=grid,
         resolution=Resolution(),
@@ -60,7 +60,12 @@ def evaluate_field(places: list[Points]) -> tuple[int, int]:
         return STRESS.of_face_load(system, depth, loads, x, z)
 
     problem = EndProblem(
-        length=8.0, poisson=0.3, cells=np.ones(grid.shape), loads=(Load.NORMAL,), grid=grid, resolution=Resolution()
+        length=8.0,
+        poisson=0.3,
+        cell_loads=np.ones(grid.shape),
+        loads=(Load.NORMAL,),
+        grid=grid,
+        resolution=Resolution(),
     )
     end_fields(problem, replace(STRESS, of_face_load=beside), places)
     return len(sizes), sum(sizes)
@@ -89,12 +94,14 @@ def test_fields_of_loads_add_up(length: float, loads: tuple[Load, ...]) -> None:
     single_cell_load[2:5, 7:9] = 1.0
     position = Points(np.array([0.0, 0.05, 3.0]), np.array([-1.0, 0.1]), np.array([0.0, 0.02, 0.3]))
 
-    def fields(cells: FloatArray) -> list[FloatArray]:
-        problem = EndProblem(length=length, poisson=0.3, cells=cells, loads=loads, grid=grid, resolution=Resolution())
+    def fields(cell_loads: FloatArray) -> list[FloatArray]:
+        problem = EndProblem(
+            length=length, poisson=0.3, cell_loads=cell_loads, loads=loads, grid=grid, resolution=Resolution()
+        )
         (stress,) = end_fields(problem, STRESS, [position], 80.0)
         (displacement,) = end_fields(problem, DISPLACEMENT, [position], 10 * length)
         return [field[load] for field in (stress, displacement) for load in loads]
 
-    load_fields = [fields(cells) for cells in (tilted_load, random_load, single_cell_load)]
+    load_fields = [fields(cell_loads) for cell_loads in (tilted_load, random_load, single_cell_load)]
     for *terms, total in zip(*load_fields, fields(tilted_load + random_load + single_cell_load), strict=True):
         assert np.abs(sum(terms) - total).max() < 1e-10 * np.abs(total).max()

@@ -62,7 +62,7 @@ def test_top_traction_equals_load(eccentric_load: xr.DataArray) -> None:
     problem = EndProblem(
         length=4.0,
         poisson=0.3,
-        cells=eccentric_load.values,
+        cell_loads=eccentric_load.values,
         loads=loads,
         grid=grid,
         resolution=Resolution(),

@@ -26,7 +26,7 @@ from contactstudy.contact.refinement.refinement import (
     VALUE_TOLERANCE,
     ColumnPressure,
     RefinedColumns,
-    coarse_columns,
+    refine_coarsely,
     refine_columns,
     replace_pressure,
 )
@@ -105,7 +105,7 @@ def _refine_in_window(case: Case, half_window: float, accuracy: float, tolerance
             replace(body, model="mirror") if isinstance(body, BodyWithFreeEnds) and body.model == "exact" else body
         )
         coarse_solver = _ColumnSolver(replace(case, body=mirrored), half_window, COARSE_CELLS_Y)
-        coarse = coarse_columns(coarse_solver, shape)
+        coarse = refine_coarsely(coarse_solver, shape)
         rows = np.flatnonzero(coarse.pressure.any(axis=0))
         cells = coarse_solver.grid(coarse.edges)
         extent = float(np.abs(cells.y[rows]).max()) + 0.5 * cells.dy

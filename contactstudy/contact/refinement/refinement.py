@@ -126,7 +126,7 @@ class RefinedColumns:
         return max(error for peak, error in pairs if peak == self.peak)
 
 
-def coarse_columns(solve: Solve, shape: AxialShape) -> Refinement:
+def refine_coarsely(solve: Solve, shape: AxialShape) -> Refinement:
     """Refine the first columns until the peak is accurate to some percent."""
     refinement = Refinement(solve=solve, shape=shape, edges=first_edges(shape))
     for theta in (FIRST_THETA, SECOND_THETA):

@@ -130,26 +130,26 @@ def _largest_multiple(resultants: FloatArray, bound: FloatArray, weights: FloatA
     from scipy.optimize import minimize
 
     loaded = bound > 0
-    bounds, weights = bound[loaded], weights[:, :, loaded]
-    sizes = np.array([float((bounds * np.hypot(*work)).sum()) for work in weights])
-    able = sizes > 0
-    if resultants[~able].any() or not able.any():
+    loaded_bound, weights = bound[loaded], weights[:, :, loaded]
+    sizes = np.array([float((loaded_bound * np.hypot(*work)).sum()) for work in weights])
+    has_resultant = sizes > 0
+    if resultants[~has_resultant].any() or not has_resultant.any():
         return 0.0
     weights, target = (
-        weights[able] / sizes[able, None, None],
-        resultants[able] / sizes[able],
+        weights[has_resultant] / sizes[has_resultant, None, None],
+        resultants[has_resultant] / sizes[has_resultant],
     )
     # The square of a very small target would vanish.
     scale = float(np.abs(target).max())
     target = target / scale
     direction = target / (target @ target)
-    across = np.linalg.svd(direction[None, :])[2][1:]
+    normal_directions = np.linalg.svd(direction[None, :])[2][1:]
 
-    def evaluate_resultant(turn: FloatArray) -> tuple[float, FloatArray]:
-        slip = np.tensordot(direction + turn @ across, weights, axes=1)
+    def evaluate_resultant(rotation: FloatArray) -> tuple[float, FloatArray]:
+        slip = np.tensordot(direction + rotation @ normal_directions, weights, axes=1)
         size = np.hypot(*slip)
-        gradient = (weights * (bounds * slip / np.where(size > 0, size, 1.0))).sum(axis=(1, 2))
-        return float((bounds * size).sum()), across @ gradient
+        gradient = (weights * (loaded_bound * slip / np.where(size > 0, size, 1.0))).sum(axis=(1, 2))
+        return float((loaded_bound * size).sum()), normal_directions @ gradient
 
     start = np.zeros(len(target) - 1)
     if not start.size:

@@ -20,7 +20,7 @@ from contactstudy.contact.refinement.refinement import (
     ColumnPressure,
     Refinement,
     _change_error,
-    coarse_columns,
+    refine_coarsely,
     refine_columns,
     replace_pressure,
 )
@@ -444,7 +444,7 @@ def test_loaded_sharp_end_makes_contact_singular(side: int, law: EndLaw | None) 
 
 def test_rough_contact_uses_second_threshold() -> None:
     solve, request = make_column_solver(SCALED_PRESSURES["lesser peak"]), shape()
-    coarse, fine = coarse_columns(solve, request), refine_columns(solve, request, 0.02)
+    coarse, fine = refine_coarsely(solve, request), refine_columns(solve, request, 0.02)
     assert np.isin(coarse.edges, fine.edges).all()
     repeated = refine_columns(solve, request, 0.02, coarse.edges)
     assert repeated.edges == pytest.approx(fine.edges)
