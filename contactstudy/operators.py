@@ -57,8 +57,8 @@ class Overlapping:
     Notes
     -----
     `equivalent_loads` and the stresses use the same objects. *Modes* are the weighted spectra of a load on H
-    on the ends, *faces* the normal stress that V removes there, at the depth wavenumbers of the solver; both for each
-    node of the wavenumber along y, each set of axial modes, and all y of the grid.
+    on the ends, *faces* the normal stress that V removes from each end, at the depth wavenumbers of the solver;
+    both for each node of the wavenumber along y, each set of axial modes, and all y of the grid.
 
     Examples
     --------

@@ -210,7 +210,7 @@ def test_many_cases_need_confirmation(study_file, capsys, monkeypatch):
         assert command(*arguments) == 2
         captured = capsys.readouterr()
         assert "small: 10 combinations" in captured.out
-        assert "fewer than 10; or say --yes" in captured.err
+        assert "fewer than 10; or give --yes" in captured.err
     assert command("plan", study_file, "--yes") == 0
     monkeypatch.setattr("sys.stdin.isatty", lambda: True, raising=False)
     for reply, code in (("", 2), ("n", 2), ("y", 0)):

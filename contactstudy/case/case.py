@@ -237,7 +237,7 @@ class Case:
             raise InvalidInputError(
                 "approach",
                 self.approach,
-                "one number (metres), because each approach has cells of its own",
+                "one number (metres), because each approach has separate cells",
                 "sweep a list in a Study, or tabulate loads by contactstudy.bearing.contact_law",
             )
         approach = checks.finite("approach", self.approach, "metres")

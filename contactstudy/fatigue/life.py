@@ -326,7 +326,7 @@ def _shear_risk(peak: xr.DataArray, depth: xr.DataArray, exponents: LifeExponent
 
 
 def _cut_fraction(excess: Array, depth: Array, exponents: LifeExponents) -> Array:
-    """Fraction of a section's risk above the first depth, if uniform there, and below the last, if exponential."""
+    """Fraction of a section's risk above the first depth (uniform excess) and below the last (exponential excess)."""
     last = np.maximum(np.isfinite(depth).sum(axis=-1, keepdims=True) - 1, 1)
 
     def take(values: Array, index: IntArray) -> Array:

@@ -81,7 +81,7 @@ def _snap_into_body(body: Body, x: FloatArray, grid: Grid) -> FloatArray:
 
 def default_columns(grid: Grid, extent: Extent, is_loaded: BoolArray, half_width: float) -> FloatArray:
     """Positions along x from one end of the body, or of the grid, to the other."""
-    # The spacing equals two widths of a pressed column at its centre, and a fifth of the half-width at the ends.
+    # The spacing equals two widths of a loaded column at its centre, and a fifth of the half-width at the ends.
     ends = [end if np.isfinite(end) else edge for end, edge in zip(extent, grid.x_range, strict=True)]
     spacings = np.append(2 * grid.widths[is_loaded], np.full(2, MAX_SPACING * half_width))
     return _grade_positions(ends, np.append(grid.x[is_loaded], ends), spacings)

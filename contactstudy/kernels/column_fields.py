@@ -1,8 +1,8 @@
 """A field of the half-space under columns of cells of any width: a sum over the corners of the loaded cells.
 
 The influence of a cell is the mixed difference of a corner function over its corners. Summed over cells it becomes a
-sum over corners, each weighted with the mixed jump of the load there. Around a point the columns are split. Columns far
-away are merged, and their field is interpolated from few depths. The columns do not depend on the field or on the
+sum over corners, each weighted with the corner's mixed jump of the load. Around a point the columns are split. Columns
+far away are merged, and their field is interpolated from few depths. The columns do not depend on the field or on the
 direction of the load: all stresses under a pressure and its friction share the columns.
 """
 
@@ -43,7 +43,7 @@ the depth. Accuracy."""
 CENTRED_WIDTH = 0.25  # width of the fine column about a point, over the original fine column. Accuracy.
 
 MIN_CENTRED_WIDTH = 1e-3
-"""Least width of the fine column about a point beside a step of the load, over the original fine column. Accuracy: on
+"""Least width of the fine column about a point next to a step of the load, over the original fine column. Accuracy: on
 the top a step has infinite stresses."""
 
 EDGE_ROUNDING = 1e-9  # rounding of positions on an end or an edge, over a column. Accuracy.
@@ -128,7 +128,7 @@ class SplitColumns(NamedTuple):
     jumps: list[tuple[list[Jumps], list[list[Jumps]]]]
     """For each position along x the jumps of near columns in the `shaped_layers`, and for either side the jumps of far
     columns in the layers `far_layers`."""
-    first: int  # first loaded row of the grid, and the load (cell_x, y) on the rows from there on
+    first: int  # first loaded row of the grid, and the load (cell_x, y) on the rows from this row on
     load: FloatArray
 
 

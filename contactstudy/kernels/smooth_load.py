@@ -316,7 +316,7 @@ class _DirectedRows:
             0.0,
             True,
         )
-        # The load extends neither into the last cell of the row nor to a cell beside another contact.
+        # The load extends neither into the last cell of the row nor to a neighbour of another contact.
         last_cell = self.widths.size - 1
         is_beyond = extends_beyond & (length_ratio > 1) & (length_ratio < 1.5) & (cell < last_cell)
         is_beyond &= loads[row, np.minimum(cell + 2, last_cell)] == 0

@@ -153,7 +153,7 @@ def corner_function(strips: Strips) -> CornerFunction:
 
 
 def row_level(strips: Strips, image_sign: int, length: float, reference: float) -> float:
-    """Return the ``4 pi G u`` per load that makes the displacement beside a row of images zero at the reference."""
+    """Return the ``4 pi G u`` per load that makes the displacement next to a row of images zero at the reference."""
     if image_sign < 0:
         return 0.0
     logarithm = np.log(2 * FAR_LIMIT * length / reference)
@@ -185,8 +185,8 @@ def surface_kernel(
 
 
 FAR_COLUMNS = 24.0
-"""Distance of two columns, over the wider one, for an expansion about their centres. Accuracy: there the difference of
-F loses more digits than the expansion neglects."""
+"""Distance of two columns, over the wider one, for an expansion about their centres. Accuracy: beyond it the difference
+of F loses more digits than the expansion neglects."""
 
 IMAGE_POINTS = 16  # Chebyshev points along x of the interpolated far images, for both columns. Accuracy.
 BLOCK_SIZE = 16_384  # distances along x and y per evaluation. Speed: the values fit into the processor's cache.

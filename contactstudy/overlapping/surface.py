@@ -37,9 +37,7 @@ RAY_FACTOR = (
     1.25  # angle of the axial ray and step along the ray, over the values for a field: no depth ray limits them. Speed.
 )
 
-CELLS_PER_FINEST = (
-    8  # cells along y over the finest resolved distance from an end, if cells along x are narrow there. Accuracy.
-)
+CELLS_PER_FINEST = 8  # cells along y over the finest resolved distance from an end with narrow cells along x. Accuracy.
 
 
 class EndRequest(NamedTuple):

@@ -46,7 +46,7 @@ def test_steep_cell_growth_raises_error_with_position() -> None:
     y = np.linspace(-1.5, 1.5, 17)
     heights = np.broadcast_to(0.5 * y**2, (7, 17))
     gap = xr.DataArray(heights, coords={"x": x, "y": y, "x_width": ("x", widths)}, dims=("x", "y"))
-    with pytest.raises(InvalidInputError, match="cells of 1 and 5 m beside x = 2 m"):
+    with pytest.raises(InvalidInputError, match="cells of 1 and 5 m next to x = 2 m"):
         solve_contact(HALF, gap, load=1.0)
 
 

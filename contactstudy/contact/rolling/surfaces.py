@@ -35,7 +35,10 @@ class Surfaces(NamedTuple):
 
     @property
     def weights(self) -> FloatArray:
-        """Weights of force along x, force along y and moment about z: array (3, 2, x, y)."""
+        """Weights of the tractions in the forces along x and y and the moment about z.
+
+        Array (3, 2, x, y): resultant, component of the traction along x or y, cell.
+        """
         grid = self.grid
         weights = np.zeros((3, 2, *grid.shape))
         weights[0, 0] = weights[1, 1] = 1.0
