@@ -1,4 +1,4 @@
-"""Chromium without a screen and without a network, for pages that people look at."""
+"""Chromium without a screen and without a network, for the explorer's pages."""
 
 from __future__ import annotations
 

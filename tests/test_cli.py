@@ -179,7 +179,7 @@ def test_help_avoids_heavy_imports():
 
 @pytest.mark.system
 def test_closed_output_pipe_is_no_error(study_file, tmp_path):
-    """The shell's `contactstudy ... | head -1`: silence, and everything written."""
+    """The shell's `contactstudy ... | head -1` raises no error, and the command writes everything."""
     for arguments in (["run", str(study_file), "--workers", "0", "--no-figure"], ["status", "results/small", "--all"]):
         read, write = os.pipe()
         os.close(read)

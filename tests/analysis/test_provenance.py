@@ -1,4 +1,4 @@
-"""Case of a result: stored, compared by values, independent of how the load is prescribed."""
+"""Case of a result: stored, compared by values, independent of the prescription of the load."""
 
 from __future__ import annotations
 

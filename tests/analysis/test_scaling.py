@@ -37,7 +37,7 @@ def test_scales_of_a_study(study_dataset: xr.Dataset) -> None:
     expected = study_dataset["pressure"].sel(selected_case) / 1.5e9
     assert np.allclose(scaled_study["pressure"].sel(selected_case), expected, equal_nan=True)
     assert scaled_study["pressure"].dims == study_dataset["pressure"].dims
-    # Positions of each case are divided by the case's a.
+    # The positions of each case are divided by the case's a.
     case_positions = scaled_study["x"].sel(selected_case)
     assert np.allclose(case_positions, study_dataset["x_over_a"].where(case_positions.notnull()), equal_nan=True)
     assert np.allclose(scaled_study["y_field"].sel(selected_case), study_dataset["y_field_over_a"])
@@ -78,7 +78,7 @@ def test_joined_results_over_a(strip_result) -> None:
 
 
 def test_positions_over_a_of_a_study(study_dataset: xr.Dataset) -> None:
-    # All cases share y in metres, and have one half-width.
+    # All cases share the positions y in metres and have one half-width.
     study_over_a = analysis.positions_over_a(study_dataset)
     assert study_over_a["pressure"].dims[-2:] == ("x_over_a", "y_over_a")
     assert np.array_equal(study_over_a["pressure"], study_dataset["pressure"], equal_nan=True)

@@ -121,7 +121,7 @@ def test_errors_against_finer_columns(profile: profiles.Profile, tilt: float) ->
 
 @pytest.mark.parametrize("crown_radius", [0.01, 0.04])
 def test_errors_against_hertz_ellipse(crown_radius: float) -> None:
-    """The load per length is that of p0 (1 - (x/b)**2)**0.5, and 0 beyond the contact, within a lamina."""
+    """The load per length equals p0 (1 - (x/b)**2)**0.5, and 0 beyond the contact, within a lamina."""
     roller = Roller(radius=5e-3, length=1e-3, profile=profiles.FullCrown(crown_radius))
     case = Case(body=HalfSpace(material=STEEL), roller=roller, max_pressure=0.6e9)
     result = solve(case, stresses=False)

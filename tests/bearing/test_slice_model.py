@@ -40,7 +40,7 @@ def test_slices_carry_the_load(load: float, tilt: float, slices: int, profile) -
 
 
 def test_standard_in_millimetres() -> None:
-    """Two raceways of steel, with twice the deflection and twice the profile."""
+    """Two raceways of steel have twice the deflection and twice the profile drop of one contact."""
     case = replace(CASE, roller=replace(ROLLER, profile=IsoCylindrical(10e-3)))
     result = slice_model(case, slices=40, tilt=1e-4)
     position = 1e3 * (result["x"].values - 5e-3)

@@ -1,4 +1,4 @@
-"""Contacts on graded cells that a user gives: against uniform ones, and what is refused."""
+"""Contacts on graded cells of a user: against uniform cells, and rejected cells."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from tests.contact.refinement.rollers import CASES, HALF, RADIUS, SHORT, SHORT_E
 
 @pytest.mark.parametrize("body", [HALF, finite(SHORT)], ids=["half", "finite"])
 def test_graded_cells_match_uniform_cells(body: HalfSpace | FiniteLengthSpace) -> None:
-    """The verb for labelled gaps: the load is exact, the pressure that of uniform cells."""
+    """`solve_contact` on graded cells has the exact load and the pressure of uniform cells."""
     finite_body = isinstance(body, FiniteLengthSpace)
     retained = np.concatenate([np.arange(16), np.arange(16, 48, 2), np.arange(48, 65)])
     uniform = Grid(x_range=(0.0, SHORT), y_range=(-2 * A, 2 * A), cells_x=64, cells_y=32)
@@ -35,7 +35,7 @@ def test_graded_cells_match_uniform_cells(body: HalfSpace | FiniteLengthSpace) -
 
 
 def gap_of(contact: xr.Dataset, grid: Grid) -> xr.DataArray:
-    """The gap that a contact was made from: what is left of it, and its rigid approach."""
+    """Initial gap of a contact, from the cells with a finite gap."""
     heights = np.where(np.isfinite(contact.gap.values), grid.y**2 / (2 * RADIUS), np.inf)
     return contact.gap.copy(data=heights)
 

@@ -1,4 +1,4 @@
-"""Stresses, displacements and equivalent loads of pressure on graded cells: those of the same load on uniform ones."""
+"""Stresses, displacements and equivalent loads of pressure on graded cells equal those of the load on uniform cells."""
 
 from __future__ import annotations
 
@@ -57,11 +57,11 @@ def loads() -> tuple[xr.DataArray, xr.DataArray]:
 
 @pytest.fixture(scope="module")
 def smooth_loads() -> tuple[xr.DataArray, xr.DataArray]:
-    """A contact's pressure that falls along x and ends along y, on graded and on uniform cells."""
+    """A pressure that decreases along x and ends along y, on graded and on uniform cells."""
 
     def pressure(grid: Grid) -> xr.DataArray:
         lateral_profile = np.sqrt(np.maximum(1 - (grid.y / 1.2e-4) ** 2, 0.0))
-        # Means over the columns of a linear function are its values in their middles.
+        # Means of a linear function over columns equal its values in their middles.
         return label(1e9 * (1 - 0.4 * grid.x[:, None] / LENGTH) * lateral_profile, grid)
 
     return pressure(GRADED), pressure(UNIFORM)
@@ -79,7 +79,7 @@ def test_stresses_match_uniform_cells(body: str, loads) -> None:
 
 @pytest.mark.parametrize("body", ["half", "finite"])
 def test_stresses_are_continuous_at_column_edge(body: str, smooth_loads) -> None:
-    """The smooth load has two representations that meet at some depths, and differ by up to 1e-3 of the peak there."""
+    """The smooth load has two representations, which differ by up to 1e-3 of the peak at their common depth."""
     edges = GRADED.x_edges[1:-1]
     load, at = smooth_loads[0], {"y": [0.0], "z": [1e-7, 1e-6, 1e-5, 1e-4]}
     positions = [np.nextafter(edges, -1.0), edges, np.nextafter(edges, 1.0), edges * (1 - 1e-12)]
@@ -117,7 +117,7 @@ def test_mean_surface_displacement_matches_uniform_cells(body: str, loads) -> No
     graded, uniform = (surface_displacement(BODIES[body], load, FRICTION) for load in loads)
     owner = np.repeat(np.arange(GRADED.cells_x), np.diff(EDGE_INDICES))
     means = np.array([uniform.values[owner == i].mean(axis=0) for i in range(GRADED.cells_x)])
-    # Steps from cell to cell: the mean over a column is not yet that of the displacements at few centres.
+    # The load has steps between cells: the mean over a column differs from the mean at few centres.
     assert np.abs(graded.values - means).max() < 0.02 * np.ptp(means)
 
 
@@ -151,7 +151,7 @@ def graded_pressure(draw: st.DrawFn) -> xr.DataArray:
 
 
 def mirror_load(load: xr.DataArray) -> xr.DataArray:
-    """The same load seen from the other end."""
+    """Reflect a load about mid-length."""
     backwards = load.isel(x=slice(None, None, -1))
     return backwards.assign_coords(x=LENGTH - backwards.x.values)
 

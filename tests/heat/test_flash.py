@@ -37,7 +37,7 @@ def test_fast_line_contact_agrees_with_blok(hot, line_case, steel):
     blok = 0.5 * heat * np.sqrt(steel.diffusivity * a / (np.pi * 199.5)) / steel.conductivity * 2.18829
     assert float(hot.max_temperature_rise) == pytest.approx(blok, rel=5e-3)
     assert float(hot.max_temperature_rise_y) / a == pytest.approx(-0.65, abs=0.02)
-    # the same along the whole length: the ends are insulated
+    # the temperature is uniform along the length: the ends are insulated
     assert np.ptp(hot.temperature_rise.values, axis=0).max() < 1e-6 * blok
 
 

@@ -88,7 +88,7 @@ def test_columns_match_finer_uniform_cells(load: Load, extent: str) -> None:
 @pytest.mark.parametrize("extent", EXTENTS)
 @pytest.mark.parametrize("column", [7, 10])
 def test_single_loaded_column_keeps_position(load: Load, extent: str, column: int) -> None:
-    # Columns are split so that each point lies in the middle of one, which moved the force beside a step of the load.
+    # The columns are split so that each point lies in the middle of a column, without a change of the load's position.
     graded = Grid.from_edges(np.linspace(0.0, LENGTH, 21)[GRADED], (-1.0, 1.0), 16)
     cells = np.zeros(graded.shape)
     cells[column] = np.sqrt(np.maximum(1 - (graded.y / 0.6) ** 2, 0))
@@ -112,7 +112,7 @@ def test_single_loaded_column_keeps_position(load: Load, extent: str, column: in
 
 @pytest.mark.parametrize("extent", EXTENTS)
 def test_wide_columns_represent_smooth_load(extent: str) -> None:
-    """In thirds of columns 0.4 wide; as steps it would be 9 % off."""
+    """The fine columns are thirds of columns 0.4 wide; steps of the load would cause an error of 9 %."""
     scale = 1e-3
     graded = Grid.from_edges(scale * np.linspace(0.0, LENGTH, 21)[GRADED], (-scale, scale), 16)
     lateral_profile = np.sqrt(np.maximum(1 - (graded.y / (0.6 * scale)) ** 2, 0))
@@ -151,7 +151,7 @@ def test_step_edges_of_load(column: int, extent: str, image_sign: int, expected:
 
 @pytest.mark.parametrize("load", Load)
 def test_joint_depths_equal_separate_depths(load: Load) -> None:
-    # What columns far away do is interpolated over the depth; at a single depth it is not.
+    # The field of distant columns is interpolated over the depth; a single depth has no interpolation.
     edges = np.concatenate([np.linspace(0.0, 2.0, 9), np.geomspace(2.5, 60.0, 24)])
     graded = Grid.from_edges(edges, (-1.0, 1.0), 16)
     cells = np.exp(-graded.x[:, None] / 20) * np.sqrt(np.maximum(1 - (graded.y / 0.8) ** 2, 0))
@@ -162,7 +162,7 @@ def test_joint_depths_equal_separate_depths(load: Load) -> None:
         depth_field = columns_field(
             cells, cells, influence, graded, Points(x, y, z[depth_index : depth_index + 1]), extent=extent
         )
-        # Nearer to the top than the others see it, columns are split into more.
+        # Columns near a point at a small depth have more parts than the columns of all depths.
         assert np.abs(joint_field[..., depth_index] - depth_field[..., 0]).max() < 2e-4 * np.abs(joint_field).max()
 
 
@@ -217,7 +217,7 @@ def test_mirrored_load_has_mirrored_field(grid_and_load: tuple[Grid, FloatArray]
 def test_normal_stress_integrates_to_load(grid_and_load: tuple[Grid, FloatArray]) -> None:
     grid, cells = grid_and_load
     depth, reach, points = 0.6, 40.0, 41
-    # Points that crowd where the load is: y = sinh(s).
+    # The points are dense near the load: y = sinh(s).
     s = np.linspace(-1.0, 1.0, points) * np.arcsinh(reach / depth)
     distances, steps = depth * np.sinh(s), depth * np.cosh(s) * (s[1] - s[0])
     field = columns_field(
@@ -241,7 +241,7 @@ PLACES = (0.0, 1e-12, 0.02, 0.05, 0.07, 0.3, 0.4, 0.75, 1.5, 1.7, 2.2, 2.95, 3.0
 def make_fine_cells(
     place: float = 0.0, unit: float = 1.0, *, ends: int = 2, image_sign: int = 1, steps: bool = False
 ) -> FineCells:
-    """A load that is pressed at both ends, and may end in steps between columns."""
+    """A load on both ends of a body, with optional steps between columns."""
     grid = Grid.between(unit * (EDGES + place), (-unit, unit), 8)
     x, y = grid.x[:, None] / unit - place, grid.y / unit
     cells = np.sqrt(np.maximum(1 - (y / 0.9) ** 2, 0.0)) * (1 + 0.4 * np.sin(2 * x))
@@ -266,7 +266,7 @@ def test_results_scale_with_unit_and_position(x: float, narrow: float, *, steps:
         for position, unit in ((0.0, UNIT), (8.0, 1.0), (-32.0, 1.0)):
             cells = make_fine_cells(position, unit, ends=ends, steps=steps)
             variant = split_around(unit * (x + position), cells, unit * narrow)
-            if x == 1e-12 and position:  # not to be told from 0 there
+            if x == 1e-12 and position:  # equal to 0 within rounding at this position
                 continue
             assert (variant.start, variant.stop) == (baseline.start, baseline.stop)
             assert variant.inserted / unit - position == pytest.approx(baseline.inserted, abs=1e-9)
@@ -294,7 +294,7 @@ def test_inserted_columns_preserve_force(x: float, image_sign: int) -> None:
 
 @pytest.mark.parametrize("x", [0.02, 0.07, 0.3, 0.4, 0.75, 1.5, 1.7, 2.2, 2.95])
 def test_narrow_columns_surround_point(x: float) -> None:
-    """A quarter as wide as what it lies in; on an edge as the narrower of both."""
+    """The columns are a quarter as wide as the column of the point, on an edge as the narrower neighbour."""
     cells = make_fine_cells()
     edges = split_around(x, cells).inserted
     column = int(np.searchsorted(edges, x)) - 1
@@ -322,13 +322,13 @@ def test_inserted_columns_stop_at_load_step() -> None:
             column = int(np.searchsorted(edges, x)) - 1
             assert 0.5 * (edges[column] + edges[column + 1]) == pytest.approx(x)
             assert not edges[column - 1] < step - 1e-12 < step + 1e-12 < edges[column + 2]
-    edges = split_around(float(step), cells).inserted  # on the step itself as little as may be
+    edges = split_around(float(step), cells).inserted  # on the step itself by the least width
     assert np.diff(edges).min() == pytest.approx(1e-3 * 0.1, rel=0.5)
 
 
 @pytest.mark.parametrize("narrow", [0.0, 0.02])
 def test_rounding_before_edge_equals_edge(narrow: float) -> None:
-    """Also before the outermost edge of those that are split, where narrow columns follow that are not."""
+    """Both sides of an edge have equal columns, also the outermost edge of the split columns before narrow ones."""
     edges = np.concatenate([[0.0, 1.0], np.linspace(2.0, 2.1, 11)])
     grid = Grid.between(edges, (-1.0, 1.0), 4)
     cells = FineCells(load=PRESSURE * np.ones(grid.shape), shape=PRESSURE * np.ones(grid.shape), grid=grid)
@@ -339,7 +339,7 @@ def test_rounding_before_edge_equals_edge(narrow: float) -> None:
 
 
 def test_point_on_end_adds_no_column() -> None:
-    """There the mirrored load goes on smoothly, or is reversed; of a body without an end the point is like another."""
+    """A point on an end has no column: the mirrored load continues smoothly or changes its sign."""
     for position in (0.0, 8.0):
         for end in (position, position + 3.0):
             assert np.abs(split_around(end, make_fine_cells(position)).inserted - end).min() < 1e-12
@@ -375,11 +375,11 @@ def test_layer_cells_centre_points(offset: float, span: float) -> None:
     assert layer.edges is not None
     cell_positions = (start + offset + step * positions - layer.edges[0]) / step
     assert cell_positions == pytest.approx(np.floor(cell_positions) + 0.5)
-    # All that is loaded, and no more than a cell beyond it.
+    # The layer contains all loaded cells, and at most a cell more.
     assert start - step - 1e-9 < layer.edges[0] <= start + 1e-9
     assert start + span - 1e-9 <= layer.edges[-1] < start + span + step - 1e-9
     assert layer.edges[1:] - layer.edges[:-1] == pytest.approx(step)
-    # Distances from every point to every corner are among the offsets.
+    # The offsets include the distances from every point to every corner.
     count = layer.edges.size
     for position, offset_index in zip(positions, layer.offset_indices, strict=True):
         distances = np.sort(start + offset + step * position - layer.edges)
@@ -406,7 +406,7 @@ def test_positions_with_common_step_share_cells() -> None:
     for y in (-0.1, 0.0, 0.3):
         cell_position = (y - layer.edges[0]) / np.diff(layer.edges)[0]
         assert cell_position == pytest.approx(np.floor(cell_position) + 0.5)
-    # No wider than a fifth of a cell, and an odd part of the step of 0.1.
+    # The cells are at most a fifth of a cell wide, an odd part of the step of 0.1.
     assert np.diff(layer.edges)[0] == pytest.approx(0.1 / 3)
     assert len(make_layers(np.array([-0.1, 0.0, 0.1 * np.pi]), 5)) == 3
     assert len(make_layers(np.array([-0.1, 0.0, 0.3]), None)) == 3
@@ -417,7 +417,7 @@ def test_positions_with_common_step_share_cells() -> None:
 
 
 def test_merge_preserves_force_and_moment() -> None:
-    """Within three percent of their distance from the point, with their force."""
+    """Merged columns keep their force and are at most three percent of their distance wide."""
     edges, loads = np.linspace(0.0, 10.0, 401), np.random.default_rng(0).random((400, 2))
     for position in (0.0, 100.0):
         for x in (-1.0, 10.5, 20.0):
@@ -444,7 +444,7 @@ def test_offsets_about_zero_are_evaluated_on_one_side(start: float, halved: bool
 
 @pytest.mark.parametrize("x", [0.002, 0.005, 0.01, 2.99, 2.995, 2.998])
 def test_inserted_columns_stay_in_replaced_range(x: float) -> None:
-    """Beside the first and the last edge of a load without images there is no room for narrow ones."""
+    """Outside the first and the last edge of a load without images no narrow columns exist."""
     cells = make_fine_cells(ends=0)
     split_range = split_around(x, cells)
     assert (split_range.inserted[0], split_range.inserted[-1]) == (

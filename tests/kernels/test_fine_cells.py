@@ -1,4 +1,4 @@
-"""Finer cells under a load: they carry its force wherever the body lies, with its images, in any unit."""
+"""Finer cells under a load: they carry its force at any position of the body, with its images, in any unit."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ LENGTH, PRESSURE = 2.0**-17, 2.0**37
 
 
 def load_on(x: FloatArray, y: FloatArray) -> FloatArray:
-    """A contact's pressure, inclined, which is pressed at the first end of the body and not at the other."""
+    """Inclined pressure of a contact that reaches the first end of the body and not the second end."""
     position = 1 - (y / 0.8) ** 2 - np.maximum((x[:, None] - 1.5) / 1.6, 0.0) ** 2
     return np.asarray(np.sqrt(np.maximum(position, 0.0)) * (1 + 0.3 * x[:, None]))
 
@@ -40,7 +40,7 @@ def make_fine_cells(
     image_sign: int = 1,
     ends: int = 2,
 ) -> FineCells:
-    """A load on a body with so many ends."""
+    """A load on a body with a number of ends."""
     grid = Grid.between(unit * (edges + place), (-1.2 * unit, 1.2 * unit), 12)
     cells = pressure * load_on(grid.x / unit - place, grid.y / unit)
     extent = (unit * place if ends else -np.inf, unit * (place + 3.8) if ends == 2 else np.inf)
@@ -104,7 +104,7 @@ def test_refinement_ends_at_maximum_depth(edges: FloatArray) -> None:
 
 @pytest.mark.parametrize("image_sign", [1, -1])
 def test_images_contain_mirrored_load(image_sign: int) -> None:
-    """Means over columns between any edges."""
+    """The means over columns between any edges include the images."""
     cells = make_fine_cells(image_sign=image_sign)
     inner_edges = np.array([0.1, 0.3, 0.35, 0.8])
     expected = cells.column_means([inner_edges])
@@ -113,7 +113,7 @@ def test_images_contain_mirrored_load(image_sign: int) -> None:
     assert cells.column_means([7.6 - outer_edges[::-1]])[::-1] == pytest.approx(
         image_sign * cells.column_means([outer_edges])
     )
-    # Over an end: half of it is the image.
+    # The column over an end contains the load and its image by half.
     assert cells.column_means([np.array([-0.2, 0.0, 0.2])]) == pytest.approx(
         np.stack([image_sign * cells.cell_loads[0], cells.cell_loads[0]])
     )
@@ -124,7 +124,7 @@ def test_images_contain_mirrored_load(image_sign: int) -> None:
 
 @pytest.mark.parametrize("ends", [0, 1, 2])
 def test_far_load_keeps_force_and_moment(ends: int) -> None:
-    """Of the smooth load, with that of its images; a cell at the border keeps its moment if there is none."""
+    """The far load has the moments of the smooth load with its images; without images border cells keep theirs."""
     cells = make_fine_cells(ends=ends)
     smooth = SmoothLoad.of(cells.cell_loads.T, cells.grid.x_edges).shape_loads(cells.cell_loads.T)
     forces = add_images(cells.far_load, 1, cells.extent) * np.diff(cells.edges)[:, None]
@@ -191,7 +191,7 @@ def test_coarse_cells_keep_six_moments(parts: int) -> None:
 
 @pytest.mark.parametrize(("ends", "image_sign"), [(0, 1), (1, -1), (2, 1)])
 def test_distribution_is_linear_in_the_load(ends: int, image_sign: int) -> None:
-    """For one shape, also outside it; the shape as a load is its smooth form, bit for bit."""
+    """Loads of one shape add up, also outside the shape; a load with its own shape is the smooth form, bit for bit."""
     fine_cells = make_fine_cells(edges=UNIFORM, ends=ends, image_sign=image_sign)
     rng = np.random.default_rng(1)
     first_load, second_load = (
@@ -207,7 +207,7 @@ def test_distribution_is_linear_in_the_load(ends: int, image_sign: int) -> None:
         complete = cells.coarse_load(fine_x=False)[0]
         return [cells.fine_load(0.03)[0], complete, cells.end_load()[0], columns]
 
-    # The cells along y span load and shape.
+    # The cells along y contain load and shape.
     second_load[:, [0, -1]] = first_load[:, [0, -1]] = 1.0
     for first_values, second_values, sum_values in zip(
         evaluate_loads(first_load),
@@ -224,7 +224,7 @@ def test_distribution_is_linear_in_the_load(ends: int, image_sign: int) -> None:
 
 @pytest.mark.parametrize("unit", [1e-9, 1.0, 1e9])
 def test_uneven_columns_are_split(unit: float) -> None:
-    """By more than 0.3 % of the largest load, whatever its unit."""
+    """Columns with a deviation above 0.3 % of the largest load are split, in any unit."""
     grid = Grid.between(EDGES, (-1.2, 1.2), 12)
     axial_profile = 1 + 1e-4 * grid.x - 0.5 * np.maximum(grid.x - 2.5, 0.0)
     load = unit * axial_profile[:, None] * np.sqrt(1 - (grid.y / 1.3) ** 2)
@@ -235,7 +235,7 @@ def test_uneven_columns_are_split(unit: float) -> None:
 
 @pytest.mark.parametrize("offset", [0.0, 0.03])
 def test_fine_cells_extend_to_load_border(offset: float) -> None:
-    """Also what lies in the last cells of the grid along y."""
+    """The fine cells include the last cells of the grid along y."""
     grid = Grid.between(UNIFORM, (-1.2, 1.2), 12)
     cells = load_on(grid.x, 0.6 * grid.y)
     assert cells[:, [0, -1]].any()

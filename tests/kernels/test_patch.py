@@ -31,7 +31,7 @@ def rectangle(kind: str, x: float, y: float, z: float, size: tuple[float, float]
 
 @pytest.mark.parametrize("kind", sorted(CORNERS))
 def test_distant_rectangle_equals_point_load(kind: str) -> None:
-    """Boussinesq and Cerruti."""
+    """The field equals Boussinesq's and Cerruti's."""
     point = (6.0, -8.0, 5.0)
     point_stress = ref.point_load(*point, poisson=0.3, **{k: float(k == kind) for k in CORNERS})
     computed = rectangle(kind, *point, size=(0.1, 0.1)) / 0.01
@@ -80,7 +80,7 @@ def test_corners_and_edges_have_finite_stress() -> None:
 def test_kernel_includes_all_images(
     kind: str, depth: float, length: float, dy: float, cells_y: int, cells_x: int, allowed: float
 ) -> None:
-    """Against a plain sum over many images, extrapolated to infinitely many; also seen from many lengths aside."""
+    """The kernel equals a sum over many images, extrapolated to infinitely many, also at a distance of many lengths."""
     dx = length / cells_x
     corner = partial(CORNERS[kind], z=depth, poisson=0.3)
     x, y = dx * np.arange(0, cells_x + 1), dy * np.arange(cells_y)
@@ -90,7 +90,7 @@ def test_kernel_includes_all_images(
         for image_numbers in (range(-400, 401), [*range(-800, -400), *range(401, 801)])
     )
     limit = near_images + 2 * far_images
-    # Far below the length of the body there is next to nothing left of one cell's load.
+    # Far below the length of the body the influence of one cell's load is almost zero.
     assert np.abs(computed - limit).max() < allowed / length
 
 

@@ -1,4 +1,4 @@
-"""Fields that the free ends add, at several places."""
+"""Fields of the free ends at several sets of positions."""
 
 from __future__ import annotations
 
@@ -44,12 +44,12 @@ def test_field_does_not_depend_on_further_positions(
     monkeypatch.setattr(field, "JOINT_POINTS", points)
     for computed, expected in zip(end_fields(problem, STRESS, positions), single_fields, strict=True):
         for load in problem.loads:
-            # Panels along y are those for the points that are farthest and nearest of all.
+            # The panels along y depend on the farthest and the nearest of all points.
             assert np.abs(computed[load] - expected[load]).max() < 2e-5, load
 
 
 def evaluate_field(places: list[Points]) -> tuple[int, int]:
-    """How often a field is evaluated, and at how many points in all."""
+    """Number of evaluations of a field, and total number of points."""
     grid = Grid(x_range=(0.0, 8.0), y_range=(-1.0, 1.0), cells_x=4, cells_y=4)
     sizes = []
 
@@ -72,7 +72,7 @@ def evaluate_field(places: list[Points]) -> tuple[int, int]:
 
 
 def test_joint_evaluation_of_few_points() -> None:
-    """A line along the top and one into the depth: together they are as many points as their rectangle has."""
+    """A line along the top and a line into the depth are evaluated jointly if their rectangle has few points."""
     for point_count, is_joint in ((5, True), (60, False)):
         y, x, z = np.zeros(1), np.linspace(0.1, 1.0, point_count), np.linspace(0.1, 1.0, point_count)
         lines = [Points(x, y, z[:1]), Points(x[:1], y, z)]

@@ -1,4 +1,4 @@
-"""A load as the free ends are asked to answer it: columns, parts, wavenumbers along y, in any unit."""
+"""A load as the problem of the free ends: columns, parts, wavenumbers along y, in any unit."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def end_problem(
 @pytest.mark.parametrize("reference", [None, 24.0])
 @pytest.mark.parametrize("length", [2.4, np.inf])
 def test_wavenumbers_along_y_depend_on_window_and_positions(load: Load, reference: float | None, length: float) -> None:
-    """From a part of the smallest length of body, window and positions, up to half a cell."""
+    """The range is from a part of the smallest length of body, window and positions to half a cell."""
     y, poles = np.array([-0.4, 1.5]), BENDING_POLES if load is Load.ALONG_X else POLES
     panel_factor = FIRST_PANEL_FACTOR if reference is None else POLE_PANEL_FACTOR[poles]
     for shortest, finest in ((1e-3, 0.125), (0.2, 0.2)):
@@ -74,7 +74,7 @@ def test_columns_between_ends_are_symmetric() -> None:
         assert edges / unit == pytest.approx(np.array([0, 0.2, 0.3, 0.5, 0.7, 1, 1.4, 1.7, 1.9, 2.1, 2.2, 2.4]))
         middles = 0.5 * (edges[1:] + edges[:-1]) / unit
         assert np.array_equal(cell_loads, problem.cell_loads[np.searchsorted(EDGES, middles) - 1])
-    # Edges whose images differ by rounding only are one.
+    # Edges equal to images within rounding are one edge.
     rounded_edges = np.array([0.0, 0.7, 1.2 + 1e-14, 1.7 + 3e-14, 2.0, 2.2, 2.4])
     problem = end_problem(edges=rounded_edges)
     edges = problem.column_edges
@@ -86,7 +86,7 @@ def test_columns_between_ends_are_symmetric() -> None:
 @pytest.mark.parametrize("sign_x", [1, -1])
 @pytest.mark.parametrize("unit", [1e-9, 1.0, 1e9])
 def test_parity_components_sum_to_load(sign_x: int, unit: float) -> None:
-    """Under a load that its image reverses the even part is odd; what is negligible is left out."""
+    """The even part is odd under a load that its image reverses; negligible parts are omitted."""
     cell_loads = unit * np.random.default_rng(0).random((6, 4))
     parity_loads = split_by_parity(cell_loads, sign_x)
     assert set(parity_loads) == {1, -1}
@@ -100,7 +100,7 @@ def test_parity_components_sum_to_load(sign_x: int, unit: float) -> None:
 
 
 def test_too_thin_body_raises_error() -> None:
-    """Five cells of 0.25 are loaded, wherever they lie."""
+    """The width of the five loaded cells of 0.25 is independent of their position."""
     problem = end_problem()
     for shift in (0, 1, -2):
         cell_loads = np.roll(problem.cell_loads, shift, axis=1)

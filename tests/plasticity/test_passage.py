@@ -1,4 +1,4 @@
-"""One pass: the rate equations of one layer by itself."""
+"""One pass: the rate equations of a single layer."""
 
 from __future__ import annotations
 

@@ -12,7 +12,7 @@ def test_map_of_a_study(study_dataset, assert_nothing_clipped):
     ax = plots.plot_study_map(study_dataset, "peak_von_mises", selection={"body": "finite-length"})
     assert [tick.get_text() for tick in ax.get_xticklabels()] == ["0", "1", "2"]
     assert [tick.get_text() for tick in ax.get_yticklabels()] == ["0.1", f"{FAILS:g}"]
-    # Three cases are labelled with their values in GPa, three that failed are hatched.
+    # Three cases have labels with their values in GPa, three failed cases are hatched.
     expected = study_dataset["peak_von_mises"].sel(friction=0.1, body="finite-length").values / 1e9
     assert [text.get_text() for text in ax.texts] == [f"{value:.3g}" for value in expected]
     assert sum(bool(collection.get_hatch()) for collection in ax.collections) == 3

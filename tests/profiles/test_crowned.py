@@ -35,7 +35,7 @@ def test_full_crown_of_large_radius_equals_the_parabola(positions: np.ndarray) -
 
 @given(straight=st.floats(0.0, 6e-3), crown=st.floats(0.05, 10.0), dub=st.floats(0.1e-3, 1.5e-3))
 def test_arcs_of_a_partial_crown_join_tangentially(straight: float, crown: float, dub: float) -> None:
-    """Curvature 0, 1/R1, 1/R2: its integral from mid-length is the slope, and that of the slope the drop."""
+    """The curvatures are 0, 1/R1, 1/R2: their integral from mid-length is the slope, the slope's integral the drop."""
     profile = PartialCrown(straight, crown, dub, dub_radius=0.02)
     x = np.linspace(0.0, HALF, 4001)
     midpoints = 0.5 * (x[1:] + x[:-1])

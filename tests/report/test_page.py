@@ -28,7 +28,7 @@ VOID = {"meta", "img", "br", "link", "input"}
 
 
 class Page(HTMLParser):
-    """Parser of a page: text, fetched addresses, anchors; fails on unmatched tags."""
+    """Parser of a page: text, fetched addresses, anchors; an unmatched tag raises an error."""
 
     def __init__(self, text: str) -> None:
         super().__init__()
@@ -79,7 +79,7 @@ def read_page(path: Path) -> Page:
 
 @pytest.fixture
 def without_encoding(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Figures are drawn, but not encoded."""
+    """Replace the encoding of drawn figures by an empty address."""
     for module in (figures, study_page):
         monkeypatch.setattr(module, "encode_figure", lambda figure: "data:image/svg+xml;base64,")
 
@@ -207,9 +207,9 @@ def test_numbers_and_figure_of_singular_ends(tmp_path: Path) -> None:
     for text in ("K at end I", "0.10262 ± 0.00057 GPa mm^0.5", "GPa mm^0.34", "load on the last a, end I"):
         assert text in page.text, text
     assert "4.020 ± 0.020 N" in page.text
-    assert "units" not in open_study(tmp_path)["end_intensity"].attrs  # exponents differ
+    assert "units" not in open_study(tmp_path)["end_intensity"].attrs  # the exponents differ between cases
     assert "at end I largest" not in page.text
-    assert "K at end II" not in page.text  # that end is not singular
+    assert "K at end II" not in page.text  # end II is not singular
     figure, _ = figures_of_folder(tmp_path)["study"]
     labels = [ax.get_ylabel() for ax in figure.axes]
     assert "load on the last" in labels[0]
@@ -306,7 +306,7 @@ def test_only_drawn_cases_are_loaded(folder: Path, monkeypatch) -> None:
     )
     figures_of_folder(folder)
     pyplot.close("all")
-    assert len(set(loaded_cases)) == 2  # of four that are solved: two over e/a
+    assert len(set(loaded_cases)) == 2  # two of four solved cases over e/a
 
 
 @pytest.mark.usefixtures("without_encoding")

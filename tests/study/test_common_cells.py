@@ -1,4 +1,4 @@
-"""The cells that the cases of a study share."""
+"""The common cells of a study's cases."""
 
 import numpy as np
 import pytest
@@ -103,7 +103,7 @@ def test_refined_columns_share_common_axis(tmp_path):
     for p0 in (1.0e9, 1.5e9):
         for e in (0.0, 2.0):
             on_common, on_own = (study_dataset.sel(max_pressure=p0, e_over_a=e) for study_dataset in (common, original))
-            # All of the load, and that on the last half-width, which no common cell straddles unevenly for a fine axis.
+            # The comparison is of the total load and the load on the last half-width, on a common axis of fine cells.
             total_load = load_between(on_common, -np.inf, np.inf)
             assert float(total_load) == pytest.approx(float(on_own["normal_load"]), rel=1e-6)
             a = float(on_own["hertz_half_width"])

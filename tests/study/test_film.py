@@ -1,4 +1,4 @@
-"""Studies of films: parameters, refused values, warm starts, the same numbers on any workers."""
+"""Studies of films: parameters, rejected values, warm starts, equal numbers on any workers."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ SPEEDS = [1.0, 2.0]
 
 @pytest.fixture(scope="module")
 def films(tmp_path_factory: pytest.TempPathFactory) -> xr.Dataset:
-    """Two speeds between free ends, and the higher one on a half-space."""
+    """Two speeds between free ends, and the higher speed on a half-space."""
     sweep = {"body": ["finite-length", "half-space"], "entrainment_speed": SPEEDS}
     study = Study(name="film", base=BASE, sweep=sweep, exclude=[{"body": "half-space", "entrainment_speed": 1.0}])
     folder = tmp_path_factory.mktemp("films")

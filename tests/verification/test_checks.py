@@ -1,4 +1,4 @@
-"""The physics: every check of `contactstudy verify` is a test under its own name."""
+"""The physics: every check of `contactstudy verify` is a test under the check's name."""
 
 from __future__ import annotations
 

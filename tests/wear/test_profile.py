@@ -1,4 +1,4 @@
-"""Worn profiles on other cells than those of the wear: the pressure remains, also at sharp ends."""
+"""Worn profiles on other cells than the cells of the wear: the pressure remains, also at sharp ends."""
 
 from __future__ import annotations
 
@@ -112,7 +112,7 @@ def test_unworn_profile(uniform) -> None:
 
 
 def test_slope_is_uniform_at_a_flush_end() -> None:
-    """A free end at the roller's end: the body ends there, and the slope does not increase towards the end."""
+    """The body ends at the roller's end, and the slope does not increase towards this free end."""
     case = worn_case(margin=0.0)
     half_window = 2.6 * case.hertz_half_width
     edges = np.linspace(0, LENGTH, 41)

@@ -1,4 +1,4 @@
-"""One contact to solve: what carries over between coarse and fine cells, and the count of applications."""
+"""One contact problem: transfer between coarse and fine cells, and number of operator applications."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ def test_applications_are_counted(grid: Grid, friction: float) -> None:
 
 
 def test_coupled_rounds_end_without_bending_change() -> None:
-    """The pressure under its own friction is that of the next round, to the tolerance and no more than needed."""
+    """The pressure under its own friction equals the pressure of the next round, within the tolerance."""
     request = ball(GRID, friction=0.4)
     operator = Counting(GRID)
     computed = solve_coupled(operator, request)
@@ -101,7 +101,7 @@ def test_halved_cells_are_linear_between_centres() -> None:
 
 
 def tilted_gap(grid: Grid, position: float) -> tuple[FloatArray, float]:
-    """Lever about a position, over the largest arm, and that arm."""
+    """Lever about a position, over the largest arm, and the largest arm."""
     arm = grid.x[:, None] - position
     return arm / np.abs(arm).max(), float(np.abs(arm).max())
 
@@ -119,7 +119,7 @@ def test_merged_cells_keep_areas_heights_and_levers(grid: Grid) -> None:
     assert coarse.gap == pytest.approx(np.broadcast_to(0.3 + 0.1 * middles[:, None], coarse_grid.shape))
     assert coarse.resultants.lever is not None
     assert coarse.resultants.lever[:, 0] == pytest.approx((middles - 0.2) / np.abs(grid.x - 0.2).max(), abs=1e-12)
-    # The same force: cells are four times as large.
+    # The force is equal: the coarse cells are four times as large.
     assert coarse.resultants.total == pytest.approx(2.0 * grid.cell_area / coarse_grid.cell_area)
 
 
@@ -150,23 +150,23 @@ def test_free_tilt_removes_mean_slope(grid: Grid) -> None:
 
 
 def test_initial_guess_follows_gap_below_level() -> None:
-    """On few cells: pressed where the gap is below the level under which four tenths of the cells are."""
+    """The guess on few cells is positive on the four tenths of the cells with the smallest gap."""
     request = ball(GRID)
     guess = _initial_guess(Counting(GRID), request)
     is_pressed = guess > 0
     assert is_pressed.mean() == pytest.approx(0.4, abs=0.02)
     assert request.gap[is_pressed].max() < request.gap[~is_pressed].min()
     assert np.ptp(request.gap[is_pressed] + guess[is_pressed] ** 2) < 1e-12
-    # The level lies a little higher, so that a flat shape is pressed everywhere.
+    # The level lies a little above the gap of a flat shape, so that a flat shape is loaded everywhere.
     stepped_problem = replace(request, gap=np.where(GRID.x[:, None] < 0, 0.0, 1.0) + 0 * request.gap)
     assert (_initial_guess(Counting(GRID), stepped_problem) > 0).tolist() == (stepped_problem.gap == 0).tolist()
-    # A prescribed approach says itself where cells overlap.
+    # A prescribed approach determines the cells that overlap.
     approach_problem = ball(GRID, None, deep=0.02)
     assert ((_initial_guess(Counting(GRID), approach_problem) > 0) == (approach_problem.gap < 0)).all()
 
 
 def test_squared_pressure_continues_outside_hertz_contact() -> None:
-    """Inside it is ``p0**2 (1 - r**2 / a**2)``; just outside it falls on with about the same slope."""
+    """The square is ``p0**2 (1 - r**2 / a**2)`` inside; just outside the contact it decreases with about this slope."""
     grid = Grid(x_range=(-1.5, 1.5), y_range=(-1.5, 1.5), cells_x=60, cells_y=60)
     request = ball(grid)
     operator = Counting(grid)
@@ -201,7 +201,7 @@ def test_initial_guess_from_coarse_cells_approximates_solution(*, graded: bool, 
 @pytest.mark.parametrize("friction", [0.4, 1.0, 1.5])
 @pytest.mark.parametrize("tolerance", [1e-2, 1e-3, 1e-4])
 def test_last_round_changes_surface_within_tolerance(tolerance: float, friction: float, unit: float) -> None:
-    """Of the displacement's variation, in any unit: strong friction settles slowly."""
+    """The last round changes the displacement by less than the tolerance times its variation, in any unit."""
     grid = Grid(x_range=(-1.5 * unit, 1.5 * unit), y_range=(-1.5 * unit, 1.5 * unit), cells_x=16, cells_y=16)
     body = HalfSpace(material=Material(0.91, 0.0))
     expected = surface_operator(body, grid, LOADS)

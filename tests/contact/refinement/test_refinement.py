@@ -1,4 +1,4 @@
-"""Columns that follow a pressure: which are split, what is read, when the refinement ends; made-up pressures."""
+"""Columns that adapt to made-up pressures: split columns, stated values, end of the refinement."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def shape(
 
 
 def column_pressure(pressure: FloatArray) -> ColumnPressure:
-    """Contact whose columns that are not pressed are far from it."""
+    """Contact whose unloaded columns are far from it."""
     return ColumnPressure(np.asarray(pressure), lambda: np.where(pressure.any(axis=1), 0.0, np.inf))
 
 
@@ -177,7 +177,7 @@ def test_singular_end_has_intensity_and_regular_end_pressure(exponent: float) ->
     assert computed.values["end_pressure"][1] == pytest.approx(
         0.7 * LENGTH**-exponent * (1 + bend * LENGTH), abs=computed.errors["end_pressure"][1]
     )
-    # K is that of the row of cells beside y = 0.
+    # The intensity K belongs to the row of cells next to y = 0.
     assert law.intensity == pytest.approx(0.7 * np.sqrt(1 - Y[7] ** 2), rel=0.01)
 
 
@@ -194,7 +194,7 @@ def test_unresolved_pressure_ends_at_maximum_columns() -> None:
 
 
 def power_law(x: FloatArray) -> FloatArray:
-    """A pressure that is singular at the first end."""
+    """Pressure that is singular at the first end."""
     return np.asarray(0.7 / np.sqrt(x))
 
 
@@ -212,11 +212,11 @@ SCALED_PRESSURES = BUMPS | {
 )
 @pytest.mark.parametrize("name", SCALED_PRESSURES)
 def test_refinement_scales_with_units_position_and_side(name: str, unit: float, place: float, side: int) -> None:
-    """Found from either end, elsewhere and in other units, of length and of pressure, the columns are the same."""
+    """The columns do not depend on the side, the position, or the units of length and pressure."""
     pressure, unit_solver = 2.0**37 if unit < 1 else 1.0, make_column_solver(SCALED_PRESSURES[name])
 
     def unit_position(x: FloatArray) -> FloatArray:
-        """Distances from the first end, in the plain unit."""
+        """Distances from the first end, in the original unit."""
         return x / unit - place if side == 0 else LENGTH - (x / unit - place)
 
     def height(x: FloatArray) -> FloatArray:
@@ -283,7 +283,7 @@ def test_sharper_ends_have_narrower_columns() -> None:
         sharp = face_beyond.index(2.0)
         assert 0.1 * MIN_END_COLUMN < widths[sharp] <= MIN_END_COLUMN
         assert 0.3 * END_COLUMN_WIDTH < widths[1 - sharp] <= END_COLUMN_WIDTH
-    assert min(outermost_widths("contact's end", (2.0, 2.0))) > END_COLUMN_WIDTH  # neither is pressed
+    assert min(outermost_widths("contact's end", (2.0, 2.0))) > END_COLUMN_WIDTH  # neither end is loaded
 
 
 def test_columns_near_contact_ends_are_narrow() -> None:
@@ -300,7 +300,7 @@ def test_columns_near_contact_ends_are_narrow() -> None:
 @pytest.mark.parametrize("unit", [2.0**-17, 1.0, 2.0**10])
 @pytest.mark.parametrize("side", [0, 1])
 def test_end_step_marks_end_columns(side: int, unit: float) -> None:
-    """Half the difference of two like columns counts four times; its square, 0.03 of the largest one, does not."""
+    """The end step is half of the difference 0.1 with weight 4; the jump of the squares is only 0.03 of the largest."""
     edges = np.concatenate([0.01 * np.arange(11), np.linspace(0.2, LENGTH, 100)])
     line_pressure = np.where(np.arange(edges.size - 1) == 0, 0.1, 0.2)
     line_pressure[40:] = 1.0
@@ -355,7 +355,7 @@ def test_replaced_pressure_scales_errors(name: str) -> None:
 
 
 def test_newly_loaded_end_has_error_of_its_pressure() -> None:
-    # Random case 4008736: coupled friction presses an end that the pressure alone does not reach.
+    # Random case 4008736: coupled friction loads an end that the pressure alone does not reach.
     request = shape()
     computed = refine_columns(make_column_solver(SCALED_PRESSURES["contact's end"]), request, 0.02)
     assert (computed.values["end_pressure"], computed.errors["end_pressure"]) == ((0.0, 0.0), [0.0, 0.0])
@@ -396,7 +396,7 @@ def test_end_samples_follow_splitting(caplog: pytest.LogCaptureFixture) -> None:
 
 @pytest.mark.parametrize("side", [0, 1])
 def test_unloaded_sharp_end_has_no_law(side: int) -> None:
-    """The other end is pressed and settles; the pressure begins one column behind the sharp end."""
+    """The other end is loaded and converges; the pressure begins one column behind the sharp end."""
 
     def line_pressure(x: FloatArray) -> FloatArray:
         position = x if side == 0 else LENGTH - x

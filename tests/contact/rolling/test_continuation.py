@@ -1,4 +1,4 @@
-"""Where Newton's method does not meet prescribed forces at once, they are raised step by step."""
+"""Continuation in steps of prescribed forces, where Newton's method does not converge at once."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def test_unreachable_forces_do_not_converge() -> None:
 
 
 def test_continuation_steps_are_linear_and_counted(monkeypatch: pytest.MonkeyPatch) -> None:
-    """From the resultants without unknown slips to the prescribed ones: longer steps after success, else shorter."""
+    """The resultants change linearly from those of zero unknown slip to the prescribed ones, in adaptive steps."""
     bound = np.random.default_rng(5).uniform(0.2, 1.0, 12)
     rng = np.random.default_rng(6)
     requested = 0.5 * bound.sum() * np.array([0.6, 0.8])
