@@ -77,7 +77,7 @@ def discretisation_error(fine: xr.Dataset, coarse: xr.Dataset) -> xr.Dataset:
     axial = fine["pressure"].transpose("x", "y").values.max(axis=1)
     first, last = _shape_columns(fine)
     end_in_contact = (first > 0 and axial[first] > 0, last < axial.size - 1 and axial[last] > 0)
-    singular_names = {name for name, is_pressed in zip(ENDS, end_in_contact, strict=True) if is_pressed}
+    singular_names = {name for name, is_loaded in zip(ENDS, end_in_contact, strict=True) if is_loaded}
     singular_names |= {"peak_pressure"} if singular_names else set()
     largest_turn = _largest_turn(fine)
     unresolved = {name for name in PRESSURES if values[name] > 0} if largest_turn > RESOLVED_TURN else set()

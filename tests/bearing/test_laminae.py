@@ -74,13 +74,13 @@ def test_risk_is_independent_of_laminae(uniform: xr.Dataset) -> None:
 def test_free_ends_lower_the_outermost_riser() -> None:
     roller = Roller(radius=5e-3, length=0.5e-3, profile=DESIGN)
     flush = FiniteLengthSpace(length=0.5e-3, material=STEEL)
-    ends = [
+    end_risers = [
         float(
             lamina_factors(solve(Case(body=body, roller=roller, load=70.0, tilt=2e-4), stresses=False)).stress_riser[-1]
         )
         for body in (HalfSpace(material=STEEL), flush)
     ]
-    assert ends[1] < 0.8 * ends[0]
+    assert end_risers[1] < 0.8 * end_risers[0]
 
 
 def test_sharp_end_and_uniform_cells() -> None:

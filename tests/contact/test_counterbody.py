@@ -42,8 +42,8 @@ def contact_shape(body, counter: Counterbody, cells: int, length: float, radius_
     x = grid.x[:, None]
     mid_x = counter.start + 0.5 * counter.body.length
     gap = (x - mid_x) ** 2 / (2 * radius_x) + grid.y**2 / 10e-3
-    facing = (x > counter.start) & (x < counter.start + counter.body.length)
-    return xr.DataArray(np.where(facing, gap, np.inf), coords={"x": grid.x, "y": grid.y}, dims=("x", "y"))
+    is_under_counterbody = (x > counter.start) & (x < counter.start + counter.body.length)
+    return xr.DataArray(np.where(is_under_counterbody, gap, np.inf), coords={"x": grid.x, "y": grid.y}, dims=("x", "y"))
 
 
 def test_two_half_spaces_equal_combined_modulus():
@@ -142,11 +142,14 @@ def test_two_finite_bodies_match_quadratic_programming(start: int):
 
     # The lines to which the prescribed tilt refers turn under the load.
     carried = Counterbody(counter, start).transfer_load(grid, computed.pressure.values)
-    tops = (
+    surface_pressures = (
         computed.pressure,
         xr.DataArray(carried, coords={"x": counter_grid.x, "y": counter_grid.y}, dims=("x", "y")),
     )
-    slopes = [line_slope(variant, top, variant.length) for variant, top in zip((body, counter), tops, strict=True)]
+    slopes = [
+        line_slope(variant, surface_pressure, variant.length)
+        for variant, surface_pressure in zip((body, counter), surface_pressures, strict=True)
+    ]
     gap = gap - sum(slopes) * gap.x
 
     possible = np.isfinite(gap.values).ravel()

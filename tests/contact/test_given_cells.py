@@ -23,15 +23,15 @@ def test_graded_cells_match_uniform_cells(body: HalfSpace | FiniteLengthSpace) -
         heights = np.where(is_inside[:, None], grid.y**2 / (2 * RADIUS), np.inf)
         gap = xr.DataArray(heights, coords={"x": grid.x, "y": grid.y, "x_width": ("x", grid.widths)}, dims=("x", "y"))
         contacts.append(solve_contact(body, gap, load=CASES["flush"].normal_load))
-    there, here = contacts
-    assert bool(there.converged)
+    graded_contact, uniform_contact = contacts
+    assert bool(graded_contact.converged)
     middles = [float(contact.pressure.sel(x=SHORT / 2, method="nearest").max()) for contact in contacts]
     assert middles[0] == pytest.approx(middles[1], rel=5e-3)
-    assert float(there.approach) == pytest.approx(float(here.approach), rel=5e-3)
-    total = float((there.pressure * graded.widths[:, None]).sum()) * graded.dy
+    assert float(graded_contact.approach) == pytest.approx(float(uniform_contact.approach), rel=5e-3)
+    total = float((graded_contact.pressure * graded.widths[:, None]).sum()) * graded.dy
     assert total == pytest.approx(CASES["flush"].normal_load, rel=1e-9)
-    back = solve_contact(body, gap_of(there, graded), approach=float(there.approach))
-    assert float(back["normal_load"]) == pytest.approx(CASES["flush"].normal_load, rel=1e-3)
+    repeated_contact = solve_contact(body, gap_of(graded_contact, graded), approach=float(graded_contact.approach))
+    assert float(repeated_contact["normal_load"]) == pytest.approx(CASES["flush"].normal_load, rel=1e-3)
 
 
 def gap_of(contact: xr.Dataset, grid: Grid) -> xr.DataArray:

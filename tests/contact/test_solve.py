@@ -198,14 +198,14 @@ def test_full_window_raises_error_without_warning(short_body, cylinder_gap, load
 
 
 @pytest.mark.parametrize(
-    ("window", "cells", "named"),
+    ("window", "cells", "message"),
     [(1e6, (16, 16), "y = 'a window of 2e\\+06 m'"), (1e4, (10**5, 4), "cells of .*sides in a ratio")],
 )
-def test_disproportionate_windows_raise_error(short_body, window, cells, named: str) -> None:
+def test_disproportionate_windows_raise_error(short_body, window, cells, message: str) -> None:
     y = window * (2 * (np.arange(cells[1]) + 0.5) / cells[1] - 1)
     x = 8.0 * (np.arange(cells[0]) + 0.5) / cells[0]
     gap = xr.DataArray(np.broadcast_to(y**2, cells), coords={"x": x, "y": y}, dims=("x", "y"))
-    with pytest.raises(InvalidInputError, match=named):
+    with pytest.raises(InvalidInputError, match=message):
         solve_contact(short_body, gap, load=1.0)
 
 

@@ -69,8 +69,10 @@ def test_reversed_path_mirrors_stresses() -> None:
     strain = np.random.default_rng(4).normal(size=(6, 16, 1, 16))
     mirrored = strain[:, ::-1].copy()
     mirrored[[XY, YZ]] *= -1
-    there, back = (PeriodicLayers(TEST_MATERIAL, EDGES, 16, 0.2).stresses(variant) for variant in (strain, mirrored))
-    back[[XY, YZ]] *= -1
-    assert np.allclose(there, back[:, ::-1], atol=1e-9)
+    original, mirrored_stresses = (
+        PeriodicLayers(TEST_MATERIAL, EDGES, 16, 0.2).stresses(variant) for variant in (strain, mirrored)
+    )
+    mirrored_stresses[[XY, YZ]] *= -1
+    assert np.allclose(original, mirrored_stresses[:, ::-1], atol=1e-9)
     falling = PeriodicLayers(TEST_MATERIAL, EDGES, 16, -0.2).stresses(strain[:, ::-1])
-    assert np.allclose(there, falling[:, ::-1], atol=1e-9)
+    assert np.allclose(original, falling[:, ::-1], atol=1e-9)

@@ -31,11 +31,11 @@ def in_rectangle() -> Callable[..., tuple[EigenstrainBody, np.ndarray]]:
             edges[-1] = np.where(np.abs(edges[-1] - minimum) < 1e-9, minimum, edges[-1])
             edges[-1] = np.where(np.abs(edges[-1] - maximum) < 1e-9, maximum, edges[-1])
         strain = np.zeros((6, edges[0].size - 1, edges[1].size - 1))
-        here = [
+        axes_inside = [
             (axis_edges[:-1] >= low - 1e-9) & (axis_edges[1:] <= high + 1e-9)
             for axis_edges, (low, high) in zip(edges, (x_range, z_range), strict=True)
         ]
-        strain[:, here[0][:, None] & here[1]] = COMPONENTS[:, None]
+        strain[:, axes_inside[0][:, None] & axes_inside[1]] = COMPONENTS[:, None]
         return EigenstrainBody(
             material=TEST_MATERIAL, extent=extent, x_edges=edges[0], z_edges=edges[1], **settings
         ), strain

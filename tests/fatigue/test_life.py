@@ -43,7 +43,7 @@ def test_point_contact_life_exponent_is_three(strip_result) -> None:
 
 
 def test_fatigue_limit_increases_relative_life(strip_result) -> None:
-    base = fatigue.ioannides_harris(orthogonal_shear(strip_result()), limit=0.2)
+    reference_risk = fatigue.ioannides_harris(orthogonal_shear(strip_result()), limit=0.2)
     lower = strip_result(0.9, 0.9)
     lives = []
     for limit in (0.0, 0.1, 0.2):
@@ -57,7 +57,7 @@ def test_fatigue_limit_increases_relative_life(strip_result) -> None:
     assert float(fatigue.relative_life(without_risk, loaded_risk)) == np.inf
     assert np.isnan(float(fatigue.relative_life(without_risk, without_risk)))
     with pytest.raises(InvalidInputError, match=r"fatigue_limit = 0.2.*fatigue_limit = 0.3"):
-        fatigue.relative_life(without_risk, base)
+        fatigue.relative_life(without_risk, reference_risk)
     with pytest.raises(InvalidInputError, match="theory = Ioannides and Harris"):
         fatigue.relative_life(fatigue.lundberg_palmgren(lower), fatigue.ioannides_harris(orthogonal_shear(lower)))
 
@@ -159,9 +159,9 @@ def test_integral_by_hand() -> None:
 
 
 def test_double_length_reduces_life_by_weibull_slope(strip_result) -> None:
-    base = strip_result()
-    double_length = base.assign_coords(x_field=2 * base["x_field"])
-    lives = fatigue.relative_life(fatigue.lundberg_palmgren(double_length), fatigue.lundberg_palmgren(base))
+    short_contact = strip_result()
+    long_contact = short_contact.assign_coords(x_field=2 * short_contact["x_field"])
+    lives = fatigue.relative_life(fatigue.lundberg_palmgren(long_contact), fatigue.lundberg_palmgren(short_contact))
     assert float(lives) == pytest.approx(2 ** (-8 / 9))
 
 

@@ -160,15 +160,15 @@ def mirror_load(load: xr.DataArray) -> xr.DataArray:
 @given(load=graded_pressure(), body=st.sampled_from(["half", "mirror", "finite"]))
 def test_rotated_body_has_rotated_stresses(load: xr.DataArray, body: str) -> None:
     x = np.array([0.0, 2e-4, 7e-4])
-    there = stress_field(BODIES[body], load, friction=FRICTION, x=x, y=Y, z=Z, inside_cells=load)
+    original = stress_field(BODIES[body], load, friction=FRICTION, x=x, y=Y, z=Z, inside_cells=load)
     reverse = mirror_load(load)
-    back = stress_field(
+    mirrored = stress_field(
         BODIES[body], reverse, friction=FRICTION, x=(LENGTH - x)[::-1], y=Y, z=Z, inside_cells=reverse
     ).isel(x=slice(None, None, -1))
     for name in ("sigma_xx", "sigma_yy", "sigma_zz", "tau_yz", "von_mises"):
-        assert np.abs(there[name].values - back[name].values).max() < 1e3
+        assert np.abs(original[name].values - mirrored[name].values).max() < 1e3
     for name in ("tau_xy", "tau_xz"):
-        assert np.abs(there[name].values + back[name].values).max() < 1e3
+        assert np.abs(original[name].values + mirrored[name].values).max() < 1e3
 
 
 @settings(max_examples=8)

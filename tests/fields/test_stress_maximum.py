@@ -137,10 +137,12 @@ def test_stress_maximum_error_covers_finer_cells() -> None:
 
 @pytest.mark.slow
 def test_opposite_tilt_mirrors_stress_maximum() -> None:
-    there, back = (solve(sharp_roller(tilt=tilt), accuracy=0.02, x=[0.0], y=[0.0], z=[A]) for tilt in (1e-3, -1e-3))
-    assert float(there.peak_von_mises) == pytest.approx(float(back.peak_von_mises), rel=1e-3)
-    assert maximum_position(there)[0] == pytest.approx(20 * A - maximum_position(back)[0], abs=0.02 * A)
-    assert abs(maximum_position(there)[0] - 10 * A) > 5 * A
+    original, mirrored = (
+        solve(sharp_roller(tilt=tilt), accuracy=0.02, x=[0.0], y=[0.0], z=[A]) for tilt in (1e-3, -1e-3)
+    )
+    assert float(original.peak_von_mises) == pytest.approx(float(mirrored.peak_von_mises), rel=1e-3)
+    assert maximum_position(original)[0] == pytest.approx(20 * A - maximum_position(mirrored)[0], abs=0.02 * A)
+    assert abs(maximum_position(original)[0] - 10 * A) > 5 * A
 
 
 def test_stress_maximum_near_free_end_exceeds_pressure_peak() -> None:
@@ -245,17 +247,17 @@ def test_overshooting_polynomials_keep_sampled_maximum() -> None:
     case = Case(body=body, roller=roller, max_pressure=1.5e9, tilt=0.8e-3, friction=0.1)
     computed = solve(case, accuracy=0.005, y=[0.0], z=[1e-5])
     x, y, z = (float(computed[f"peak_von_mises_{axis}"]) for axis in "xyz")
-    there = stress_field(
+    stress_at_maximum = stress_field(
         body, computed.pressure, friction=0.1, x=[x], y=[y], z=[z], inside_cells=computed.pressure
     ).von_mises.item()
-    assert float(computed["peak_von_mises"]) == pytest.approx(there, rel=5e-3)
+    assert float(computed["peak_von_mises"]) == pytest.approx(stress_at_maximum, rel=5e-3)
     fine = solve(case, accuracy=0.002, y=[0.0], z=[1e-5])
     assert abs(float(computed["peak_von_mises"] - fine["peak_von_mises"])) <= float(computed["peak_von_mises_error"])
 
 
 @pytest.mark.slow
 def test_disagreeing_polynomials_have_large_error() -> None:
-    """From the second half the search passes the roller's end: polynomials through its last points reached 0.80 p0."""
+    """The search passes the roller's end in the second half: polynomials through its last points reached 0.80 p0."""
     material = Material(210e9, 0.318)
     a = 2 * 1e9 * RADIUS / material.plane_strain_modulus
     length, distance = 42.835 * a, 3.451 * a

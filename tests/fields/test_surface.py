@@ -33,9 +33,9 @@ def test_operator_is_reciprocal_or_antisymmetric_in_y(short_body: FiniteLengthSp
     operator = SurfaceOperator.of(short_body, grid, (Load.NORMAL, Load.ALONG_Y))
     first_load, second_load = np.random.default_rng(1).random((2, 24, 16))
     if tangential:
-        there = operator({Load.ALONG_Y: first_load})
+        original = operator({Load.ALONG_Y: first_load})
         mirrored = operator({Load.ALONG_Y: first_load[:, ::-1]})
-        assert np.abs(there + mirrored[:, ::-1]).max() < 1e-12
+        assert np.abs(original + mirrored[:, ::-1]).max() < 1e-12
     else:
         works = [
             (a * operator({Load.NORMAL: b})).sum() for a, b in ((first_load, second_load), (second_load, first_load))

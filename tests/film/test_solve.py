@@ -170,7 +170,7 @@ def test_asperities_carry_part_of_the_load():
 
 
 @pytest.mark.parametrize(
-    ("changes", "named"),
+    ("changes", "message"),
     [
         ({"lubricant": None}, "lubricant"),
         ({"motion": cs.Sliding()}, "motion"),
@@ -178,9 +178,9 @@ def test_asperities_carry_part_of_the_load():
         ({"coupled": True, "friction": 0.1}, "coupled"),
     ],
 )
-def test_bad_case_is_rejected(changes, named):
+def test_bad_case_is_rejected(changes, message):
     case = replace(film_case(16 * HALF_WIDTH), **changes)
-    with pytest.raises(cs.InvalidInputError, match=named):
+    with pytest.raises(cs.InvalidInputError, match=message):
         solve_film(case)
 
 

@@ -204,12 +204,12 @@ def test_mirrored_load_has_mirrored_field(grid_and_load: tuple[Grid, FloatArray]
     grid, cells = grid_and_load
     backwards = Grid.from_edges(LENGTH - grid.x_edges[::-1], (-1.0, 1.0), 6)
     influence, y = stresses_of(load), np.array([-0.4, 0.1])
-    there = columns_field(cells, None, influence, grid, Points(X, y, Z), extent=EXTENTS[extent])
-    back = columns_field(
+    original = columns_field(cells, None, influence, grid, Points(X, y, Z), extent=EXTENTS[extent])
+    mirrored = columns_field(
         cells[::-1], None, influence, backwards, Points(LENGTH - X[::-1], y, Z), extent=EXTENTS[extent]
     )
     sign = np.array(influence.sign_along_x)[:, None, None, None]
-    assert np.abs(there - sign * back[:, ::-1]).max() < 1e-8 * np.abs(there).max()
+    assert np.abs(original - sign * mirrored[:, ::-1]).max() < 1e-8 * np.abs(original).max()
 
 
 @settings(max_examples=2)
@@ -235,19 +235,19 @@ def test_normal_stress_integrates_to_load(grid_and_load: tuple[Grid, FloatArray]
 
 EDGES = np.array([0.0, 0.1, 0.3, 0.6, 1.0, 1.5, 2.0, 2.4, 2.7, 2.9, 3.0])
 UNIT, PRESSURE = 2.0**-17, 2.0**37
-PLACES = (0.0, 1e-12, 0.02, 0.05, 0.07, 0.3, 0.4, 0.75, 1.5, 1.7, 2.2, 2.95, 3.0)
+OFFSETS = (0.0, 1e-12, 0.02, 0.05, 0.07, 0.3, 0.4, 0.75, 1.5, 1.7, 2.2, 2.95, 3.0)
 
 
 def make_fine_cells(
-    place: float = 0.0, unit: float = 1.0, *, ends: int = 2, image_sign: int = 1, steps: bool = False
+    offset: float = 0.0, unit: float = 1.0, *, ends: int = 2, image_sign: int = 1, steps: bool = False
 ) -> FineCells:
     """A load on both ends of a body, with optional steps between columns."""
-    grid = Grid.between(unit * (EDGES + place), (-unit, unit), 8)
-    x, y = grid.x[:, None] / unit - place, grid.y / unit
+    grid = Grid.between(unit * (EDGES + offset), (-unit, unit), 8)
+    x, y = grid.x[:, None] / unit - offset, grid.y / unit
     cells = np.sqrt(np.maximum(1 - (y / 0.9) ** 2, 0.0)) * (1 + 0.4 * np.sin(2 * x))
     if steps:
         cells = np.where((x > 0.6) & (x < 2.4), cells, 0.0)
-    extent = (unit * place if ends else -np.inf, unit * (place + 3.0) if ends == 2 else np.inf)
+    extent = (unit * offset if ends else -np.inf, unit * (offset + 3.0) if ends == 2 else np.inf)
     load = (PRESSURE if unit < 1 else 1.0) * cells
     return FineCells(load=load, shape=load, grid=grid, extent=extent, image_sign=image_sign)
 
@@ -256,7 +256,7 @@ def split_around(x: float, fine_cells: FineCells, narrow: float = 0.0) -> _Split
     return _split_around(x, fine_cells, narrow)
 
 
-@pytest.mark.parametrize("x", PLACES)
+@pytest.mark.parametrize("x", OFFSETS)
 @pytest.mark.parametrize("narrow", [0.0, 0.15, 5.0])
 @pytest.mark.parametrize("steps", [False, True])
 def test_results_scale_with_unit_and_position(x: float, narrow: float, *, steps: bool) -> None:
@@ -273,11 +273,11 @@ def test_results_scale_with_unit_and_position(x: float, narrow: float, *, steps:
             factor = PRESSURE if unit < 1 else 1.0
             assert variant.moment_loads(cells) / factor == pytest.approx(baseline.moment_loads(plain_cells), abs=1e-9)
             for reach in (0.0, 0.3137, 1.0731, 9.0):
-                there = variant.range_within(cells.edges, unit * (x + position), unit * reach)
-                assert there == baseline.range_within(plain_cells.edges, x, reach)
+                column_range = variant.range_within(cells.edges, unit * (x + position), unit * reach)
+                assert column_range == baseline.range_within(plain_cells.edges, x, reach)
 
 
-@pytest.mark.parametrize("x", PLACES)
+@pytest.mark.parametrize("x", OFFSETS)
 @pytest.mark.parametrize("image_sign", [1, -1])
 def test_inserted_columns_preserve_force(x: float, image_sign: int) -> None:
     cells = make_fine_cells(image_sign=image_sign)
@@ -302,13 +302,15 @@ def test_narrow_columns_surround_point(x: float) -> None:
     widths = np.diff(edges)
     assert widths[column - 1] == pytest.approx(widths[column])
     assert widths[column + 1] == pytest.approx(widths[column])
-    split = cells.x_edges
-    adjacent = np.flatnonzero((split[:-1] <= x + 1e-12) & (split[1:] >= x - 1e-12))
-    assert widths[column] == pytest.approx(0.25 * np.diff(split)[adjacent].min())
+    fine_edges = cells.x_edges
+    adjacent = np.flatnonzero((fine_edges[:-1] <= x + 1e-12) & (fine_edges[1:] >= x - 1e-12))
+    assert widths[column] == pytest.approx(0.25 * np.diff(fine_edges)[adjacent].min())
     low, high = resolved_columns(cells.edges, x)
     assert np.isin(edges[[0, -1]], cells.edges[[max(low - 1, 0), min(high + 1, cells.edges.size - 1)]]).all()
-    distant_edges = split[
-        (split > cells.edges[low]) & (split < cells.edges[high]) & (np.abs(split - x) > 2.1 * widths[column])
+    distant_edges = fine_edges[
+        (fine_edges > cells.edges[low])
+        & (fine_edges < cells.edges[high])
+        & (np.abs(fine_edges - x) > 2.1 * widths[column])
     ]
     assert np.isin(distant_edges, edges).all()
 

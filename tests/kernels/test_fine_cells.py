@@ -34,17 +34,17 @@ def load_on(x: FloatArray, y: FloatArray) -> FloatArray:
 def make_fine_cells(
     *,
     edges: FloatArray = EDGES,
-    place: float = 0.0,
+    offset: float = 0.0,
     unit: float = 1.0,
     pressure: float = 1.0,
     image_sign: int = 1,
     ends: int = 2,
 ) -> FineCells:
     """A load on a body with a number of ends."""
-    grid = Grid.between(unit * (edges + place), (-1.2 * unit, 1.2 * unit), 12)
-    cells = pressure * load_on(grid.x / unit - place, grid.y / unit)
-    extent = (unit * place if ends else -np.inf, unit * (place + 3.8) if ends == 2 else np.inf)
-    return FineCells(load=cells, shape=cells, grid=grid, extent=extent, image_sign=image_sign)
+    grid = Grid.between(unit * (edges + offset), (-1.2 * unit, 1.2 * unit), 12)
+    cell_loads = pressure * load_on(grid.x / unit - offset, grid.y / unit)
+    extent = (unit * offset if ends else -np.inf, unit * (offset + 3.8) if ends == 2 else np.inf)
+    return FineCells(load=cell_loads, shape=cell_loads, grid=grid, extent=extent, image_sign=image_sign)
 
 
 @pytest.mark.parametrize(
@@ -55,7 +55,7 @@ def test_results_scale_with_unit_and_position(ends: int, image_sign: int, edges:
     baseline = make_fine_cells(edges=edges, image_sign=image_sign, ends=ends)
     for position, unit, pressure in ((0.0, LENGTH, PRESSURE), (16.0, 1.0, 1.0), (-32.0, 1.0, 1.0)):
         variant = make_fine_cells(
-            edges=edges, image_sign=image_sign, ends=ends, place=position, unit=unit, pressure=pressure
+            edges=edges, image_sign=image_sign, ends=ends, offset=position, unit=unit, pressure=pressure
         )
         assert variant.is_split.tolist() == baseline.is_split.tolist()
         for name in ("x_edges", "edges", "step_edges"):

@@ -65,9 +65,9 @@ def test_smooth_load_keeps_force_without_overshoot(row: tuple[FloatArray, FloatA
 def test_reversed_load_has_the_reversed_shape(row: tuple[FloatArray, FloatArray]) -> None:
     loads, edges = row
     fine = np.linspace(edges[0], edges[-1], 60)
-    there = smooth_form(loads, edges, extends_beyond=True).means(fine)
-    back = smooth_form(loads[:, ::-1], edges[-1] - edges[::-1], extends_beyond=True).means(edges[-1] - fine[::-1])
-    assert np.allclose(there, back[:, ::-1], atol=1e-9)
+    original = smooth_form(loads, edges, extends_beyond=True).means(fine)
+    mirrored = smooth_form(loads[:, ::-1], edges[-1] - edges[::-1], extends_beyond=True).means(edges[-1] - fine[::-1])
+    assert np.allclose(original, mirrored[:, ::-1], atol=1e-9)
 
 
 def test_uniform_load_ends_in_step() -> None:

@@ -98,9 +98,9 @@ EDGES = np.array([0.0, 0.02, 0.05, 0.12, 0.3, 0.62, 0.9, 1.4, 1.9])
 @pytest.mark.parametrize("extent", [WHOLE, ONE_END, (-np.inf, 3.0), TWO_ENDS], ids=str)
 def test_shifted_body_has_equal_influence(strip: Strip, image_sign: int, extent: tuple[float, float]) -> None:
     edges = np.array([0.0, 0.2, 0.7, 1.9, 2.5, 3.0])
-    here = influence(strip, edges, 0.3, 5, extent, 20.0, image_sign)
-    there = influence(strip, edges + 8.0, 0.3, 5, (extent[0] + 8.0, extent[1] + 8.0), 20.0, image_sign)
-    assert np.abs(there - here).max() < 1e-9 * np.abs(here).max()
+    at_origin = influence(strip, edges, 0.3, 5, extent, 20.0, image_sign)
+    shifted = influence(strip, edges + 8.0, 0.3, 5, (extent[0] + 8.0, extent[1] + 8.0), 20.0, image_sign)
+    assert np.abs(shifted - at_origin).max() < 1e-9 * np.abs(at_origin).max()
 
 
 @strips

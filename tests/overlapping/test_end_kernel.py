@@ -34,7 +34,9 @@ def kernel(edges: FloatArray, response: Response, *, unit: float = 1.0, ends: in
     return total
 
 
-@pytest.mark.parametrize("response", RESPONSES, ids=lambda pair: f"{pair.displacement.name} by {pair.load.name}")
+@pytest.mark.parametrize(
+    "response", RESPONSES, ids=lambda response: f"{response.displacement.name} by {response.load.name}"
+)
 @pytest.mark.parametrize(("ends", "unit"), [(1, LENGTH), (2, LENGTH), (1, 2.0**7)])
 def test_unit_of_length_scales_kernel(ends: int, unit: float, response: Response) -> None:
     """Transformed along y, displacements over forces per length have no unit."""
@@ -42,7 +44,9 @@ def test_unit_of_length_scales_kernel(ends: int, unit: float, response: Response
     assert variant == pytest.approx(baseline, abs=1e-7 * np.abs(baseline).max())
 
 
-@pytest.mark.parametrize("response", RESPONSES, ids=lambda pair: f"{pair.displacement.name} by {pair.load.name}")
+@pytest.mark.parametrize(
+    "response", RESPONSES, ids=lambda response: f"{response.displacement.name} by {response.load.name}"
+)
 def test_mirrored_columns_have_the_mirrored_kernel(response: Response) -> None:
     """The kernel of the mirrored columns is mirrored; quantities that a reflection reverses change their sign."""
     sign = response.displacement.sign_x * response.load.sign_x
@@ -56,12 +60,12 @@ def test_loads_and_displacements_are_reciprocal(ends: int) -> None:
     """The work of one load on the displacement of another is symmetric; the omitted factor i is conjugated."""
     for direction in Load:
         for load in Load:
-            there, back = (
+            direct, reciprocal = (
                 kernel(EDGES, Response(direction, load), ends=ends),
                 kernel(EDGES, Response(load, direction), ends=ends),
             )
             sign = -1 if (direction.sign_y < 0) != (load.sign_y < 0) else 1
-            assert back.transpose(0, 2, 1) == pytest.approx(sign * there, abs=2e-4 * np.abs(there).max())
+            assert reciprocal.transpose(0, 2, 1) == pytest.approx(sign * direct, abs=2e-4 * np.abs(direct).max())
 
 
 @pytest.mark.parametrize("cells", [6, 7])

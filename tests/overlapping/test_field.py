@@ -18,7 +18,7 @@ from contactstudy.overlapping.harmonics import DISPLACEMENT, STRESS
 from contactstudy.overlapping.problem import EndProblem
 from contactstudy.overlapping.quadrature import Resolution
 
-PLACES = (
+POINT_SETS = (
     Points(np.array([0.0, 0.1, 1.0, 4.0]), np.array([0.0, 0.5]), np.array([0.05, 0.5, 3.0])),
     Points(np.array([0.0, 8.0]), np.array([-0.3, 0.1, 0.9]), np.array([0.1, 0.2])),
     Points(np.array([7.5]), np.array([0.2]), np.array([0.4])),
@@ -39,7 +39,7 @@ def test_field_does_not_depend_on_further_positions(
         grid=grid,
         resolution=Resolution(),
     )
-    positions = PLACES if np.isfinite(length) else PLACES[:1] + PLACES[2:]
+    positions = POINT_SETS if np.isfinite(length) else POINT_SETS[:1] + POINT_SETS[2:]
     single_fields = [end_fields(problem, STRESS, [position])[0] for position in positions]
     monkeypatch.setattr(field, "JOINT_POINTS", points)
     for computed, expected in zip(end_fields(problem, STRESS, positions), single_fields, strict=True):
@@ -48,7 +48,7 @@ def test_field_does_not_depend_on_further_positions(
             assert np.abs(computed[load] - expected[load]).max() < 2e-5, load
 
 
-def evaluate_field(places: list[Points]) -> tuple[int, int]:
+def evaluate_field(point_sets: list[Points]) -> tuple[int, int]:
     """Number of evaluations of a field, and total number of points."""
     grid = Grid(x_range=(0.0, 8.0), y_range=(-1.0, 1.0), cells_x=4, cells_y=4)
     sizes = []
@@ -67,7 +67,7 @@ def evaluate_field(places: list[Points]) -> tuple[int, int]:
         grid=grid,
         resolution=Resolution(),
     )
-    end_fields(problem, replace(STRESS, of_face_load=beside), places)
+    end_fields(problem, replace(STRESS, of_face_load=beside), point_sets)
     return len(sizes), sum(sizes)
 
 

@@ -65,8 +65,8 @@ def evaluate_beside_end(
 
 def along(field: Field, axis: int) -> FloatArray:
     """Derivative along x (0) or z (1) at the points."""
-    ahead, back = (field(X + step, Z) if axis == 0 else field(X, Z + step) for step in (STEP, -STEP))
-    return np.asarray((ahead - back) / (2 * STEP))
+    ahead, behind = (field(X + step, Z) if axis == 0 else field(X, Z + step) for step in (STEP, -STEP))
+    return np.asarray((ahead - behind) / (2 * STEP))
 
 
 FIELDS = (harmonics._stress_of_face_load, harmonics._displacement_of_face_load)

@@ -120,9 +120,13 @@ def test_pole_integrals_vanish_at_reference():
 def test_sine_moments_integrate_cosine_moments(y: float):
     """The derivative of ``sin(k y) / k**3`` along y is ``cos(k y) / k**2``, rigid motions included, and so on."""
     step, reference = 1e-4, 3.0
-    there, back = (sine_moments(0.7, np.array([y + side * step]), reference)[:, 0] for side in (1, -1))
+    moments_ahead, moments_behind = (
+        sine_moments(0.7, np.array([y + side * step]), reference)[:, 0] for side in (1, -1)
+    )
     cosine = cosine_moments(0.7, np.array([y]), reference)[:, 0]
-    np.testing.assert_allclose((there - back)[:3] / (2 * step), [cosine[1], cosine[2], cosine[3]], atol=1e-6)
+    np.testing.assert_allclose(
+        (moments_ahead - moments_behind)[:3] / (2 * step), [cosine[1], cosine[2], cosine[3]], atol=1e-6
+    )
 
 
 @pytest.mark.parametrize("poles", [POLES, BENDING_POLES])

@@ -60,9 +60,11 @@ def test_arrows_follow_local_tractions() -> None:
     (arrows,) = (artist for artist in ax.collections if hasattr(artist, "U"))
     a, p0 = float(result["hertz_half_width"]), float(result["hertz_max_pressure"])
     for (x, y), u, v in list(zip(arrows.get_offsets(), arrows.U, arrows.V, strict=True))[::5]:
-        here = result.sel(x=x * a, y=y * a, method="nearest")
-        assert [u, v] == pytest.approx([float(here["traction_x"]) / p0, float(here["traction_y"]) / p0])
-        assert float(here["pressure"]) > 0
+        contact_at_arrow = result.sel(x=x * a, y=y * a, method="nearest")
+        assert [u, v] == pytest.approx(
+            [float(contact_at_arrow["traction_x"]) / p0, float(contact_at_arrow["traction_y"]) / p0]
+        )
+        assert float(contact_at_arrow["pressure"]) > 0
     assert 40 < len(arrows.U) <= 72
 
 

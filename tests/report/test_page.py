@@ -140,27 +140,27 @@ def test_page_of_a_study(page: Page) -> None:
     assert len(page.fetched) == 2
 
 
-def settled_cases(*errors: float) -> list[study_page.Row]:
+def converged_rows(*errors: float) -> list[study_page.Row]:
     """Rows of solved cases with relative errors of the peak."""
     scalars = [{"peak_pressure": 2e9, "peak_pressure_error": error * 2e9, "converged": 1.0} for error in errors]
     return [study_page._row("case-1", Entry("ok", numbers=case_scalars), [], []) for case_scalars in scalars]
 
 
 def test_reason_of_several_cases() -> None:
-    ((rating, reason, cases), (best_group, _, _)) = study_page._count_answers(settled_cases(0.1, 0.06, 0.001))
+    ((rating, reason, cases), (best_group, _, _)) = study_page._count_answers(converged_rows(0.1, 0.06, 0.001))
     assert (rating, len(cases), best_group) == ("with care", 2, "yes")
     assert reason == "the error of the peak pressure is 10.0% in the worst case, 6.0% in the best"
 
 
 @pytest.mark.usefixtures("without_encoding")
 def test_open_ends_coarse_cells_and_malformed_runs(tmp_path: Path) -> None:
-    assert study_page._verdict(settled_cases(0.1, 0.001)) == ("with care", "1 real with care, 1 real")
-    assert study_page._verdict(settled_cases(0.001, 0.001)) == ("yes", "2 real")
+    assert study_page._verdict(converged_rows(0.1, 0.001)) == ("with care", "1 real with care, 1 real")
+    assert study_page._verdict(converged_rows(0.001, 0.001)) == ("yes", "2 real")
     runs = list(MALFORMED)
 
-    def solve_coarsely(*given, **more) -> xr.Dataset:
+    def solve_coarsely(*arguments, **keywords) -> xr.Dataset:
         values = {"end_pressure_first": 0.0, "end_pressure_last": 0.0, "peak_pressure": 2e9, "peak_pressure_error": 2e8}
-        return solve_fake(*given, **more).assign(values).assign_attrs(contactstudy_run=json.dumps(runs.pop()))
+        return solve_fake(*arguments, **keywords).assign(values).assign_attrs(contactstudy_run=json.dumps(runs.pop()))
 
     base = BASE | {"profile": {"kind": "cylinder", "fillet_radius": 1e-4}}
     run_study(small_study(base=base), tmp_path, workers=0, solver=solve_coarsely, progress=False)
@@ -193,14 +193,14 @@ def test_inputs_in_engineers_units(tmp_path: Path) -> None:
 
 @pytest.mark.usefixtures("without_encoding")
 def test_numbers_and_figure_of_singular_ends(tmp_path: Path) -> None:
-    def sharp(case: Case, *given, **more) -> xr.Dataset:
+    def sharp(case: Case, *arguments, **keywords) -> xr.Dataset:
         units = {"units": "Pa m^0.5" if case.friction == 0 else "Pa m^0.34"}
         intensity, error = (xr.DataArray(value, attrs=units) for value in (3.245e6, 1.8e4))
         law = {"end_intensity": intensity, "end_intensity_first": intensity, "end_intensity_first_error": error}
         exponents = dict.fromkeys(("end_exponent", "end_exponent_first"), 0.5 if case.friction == 0 else 0.34)
         loads = {"end_load_first": 4.02, "end_load_first_error": 0.02, "end_load_last": 3.0}
         peaks = dict.fromkeys(("peak_pressure", "peak_pressure_error", "end_pressure_first"), np.inf)
-        return solve_fake(case, *given, **more).assign(law | exponents | loads | peaks)
+        return solve_fake(case, *arguments, **keywords).assign(law | exponents | loads | peaks)
 
     run_study(small_study(), tmp_path, workers=0, solver=sharp, progress=False)
     page = Page(report.html(tmp_path))

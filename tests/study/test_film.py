@@ -48,7 +48,7 @@ def test_case_of_a_film() -> None:
 
 
 @pytest.mark.parametrize(
-    ("changes", "named"),
+    ("changes", "message"),
     [
         ({}, "entrainment_speed"),
         ({"entrainment_speed": 0.0}, "entrainment_speed"),
@@ -60,8 +60,8 @@ def test_case_of_a_film() -> None:
         ({"entrainment_speed": 1.0, "motion": "rolling"}, "entrainment_speed"),
     ],
 )
-def test_bad_values(changes: dict[str, Any], named: str) -> None:
-    with pytest.raises(InvalidInputError, match=named):
+def test_bad_values(changes: dict[str, Any], message: str) -> None:
+    with pytest.raises(InvalidInputError, match=message):
         build_setup(BASE | changes)
 
 

@@ -32,9 +32,9 @@ def test_stored_contacts(name: str) -> None:
     assert float(pressure.min()) >= 0
     assert float(contact["line_load"].integrate("x")) == pytest.approx(case.load, rel=1e-6)
     assert np.abs(pressure.values - pressure.values[::-1]).max() < 1e-6
-    inner_pressure = contact.sel(x=slice(case.start + 0.5, case.stop - 0.5), y=0)
-    assert float(inner_pressure["pressure_error"].max()) < 6e-3
-    assert float(inner_pressure["pressure_error"].median()) < 3e-3
+    inner_contact = contact.sel(x=slice(case.start + 0.5, case.stop - 0.5), y=0)
+    assert float(inner_contact["pressure_error"].max()) < 6e-3
+    assert float(inner_contact["pressure_error"].median()) < 3e-3
 
 
 @pytest.mark.parametrize("name", FILM_CASES)

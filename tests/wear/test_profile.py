@@ -22,7 +22,7 @@ def worn_case(profile=None, *, margin: float = MARGIN) -> Case:
     return Case(body=body, roller=roller, max_pressure=1.5e9)
 
 
-def equal_columns(count: int, cells_y: int = 48) -> Grid:
+def grid_of_equal_columns(count: int, cells_y: int = 48) -> Grid:
     """Columns of one width under the roller, and wider columns beyond its ends."""
     margin_edges = np.linspace(0.0, MARGIN, 6)
     edges = np.concatenate(
@@ -41,7 +41,7 @@ def refined() -> xr.Dataset:
 @pytest.fixture(scope="module")
 def coarse() -> xr.Dataset:
     """Wear as in `refined` on columns of 5 um."""
-    return wear_in(worn_case(), K, distance=[0.0, 2e4, 2e5], grid=equal_columns(80), tolerance=0.03)
+    return wear_in(worn_case(), K, distance=[0.0, 2e4, 2e5], grid=grid_of_equal_columns(80), tolerance=0.03)
 
 
 @pytest.mark.slow

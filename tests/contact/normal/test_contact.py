@@ -114,9 +114,9 @@ def rigid_approach(contact: Contact) -> Any:
 @pytest.mark.parametrize("name", ["load", "approach", "ends", "position"])
 def test_gap_follows_from_displacement_and_shape(name: str) -> None:
     computed = contact_of(CONTACT_SPECS[name].shape(), Settings())
-    facing = np.isfinite(computed.gap)
+    is_under_shape = np.isfinite(computed.gap)
     expected = computed.shape.gap.values + computed.displacement - rigid_approach(computed)
-    assert computed.gap[facing] == pytest.approx(expected[facing], abs=1e-9)
+    assert computed.gap[is_under_shape] == pytest.approx(expected[is_under_shape], abs=1e-9)
     assert (np.abs(computed.tilt) > 1e-4) == (name == "position")
     if name == "position":
         assert computed.load_position == pytest.approx(1.75, abs=1e-5)

@@ -55,13 +55,13 @@ def chord_deviation(height: Callable[[FloatArray], FloatArray], low: FloatArray,
 def test_overlooked_columns_leave_low_shape(name: str) -> None:
     height = SHAPES[name]
     edges, baseline = first_edges(axial_shape(height)), first_edges(axial_shape(np.zeros_like))
-    widths, bent = np.diff(edges), chord_deviation(height, edges[:-1], edges[1:])
+    widths, deviations = np.diff(edges), chord_deviation(height, edges[:-1], edges[1:])
     fine = np.linspace(1e-6, LENGTH - 1e-6, 20001)
     positions = edges[:-1, None] + widths[:, None] * np.linspace(1e-6, 1 - 1e-6, 201)
     height_excess = height(positions).min(axis=1) - height(fine).min()
     depth = 0.05
     followed = (widths > MIN_CHORD_WIDTH) & (height_excess < 2.9 * depth)
-    assert bent[followed].max(initial=0.0) <= 1.03 * CHORD_TOLERANCE * depth
+    assert deviations[followed].max(initial=0.0) <= 1.03 * CHORD_TOLERANCE * depth
     # A column is split only if it leaves its chord, or if a neighbour is narrow.
     assert np.isin(baseline, edges).all()
     if name in ("chamfer", "steps at the ends"):

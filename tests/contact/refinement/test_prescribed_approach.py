@@ -129,8 +129,8 @@ def test_slice_load_sums_hertz_line_contacts() -> None:
     assert _slice_load(BALL) == pytest.approx(load_factor * depth.mean() * (stop - start), rel=0.01)
     # A contact between two slices has the least load of a case.
     tilted_case = replace(BALL, body=FiniteLengthSpace(length=2e-3, material=STEEL), end_distance=0.6e-3, tilt=4e-4)
-    minimum = _slice_load(replace(tilted_case, approach=tilted_case.first_touch + 1e-11))
-    assert replace(BALL, approach=None, load=minimum).hertz_half_width == pytest.approx(2 * MIN_HALF_WIDTH * RADIUS)
+    min_load = _slice_load(replace(tilted_case, approach=tilted_case.first_touch + 1e-11))
+    assert replace(BALL, approach=None, load=min_load).hertz_half_width == pytest.approx(2 * MIN_HALF_WIDTH * RADIUS)
 
 
 @pytest.mark.parametrize(("case", "max_loads"), [(BALL, 4), (replace(SHORT, friction=0.0, coupled=False), 5)])

@@ -121,9 +121,9 @@ def test_mirrored_case_has_the_mirrored_contact(name: str) -> None:
         refined_at(Case(body=CASES[name].body, roller=CASES[name].roller, max_pressure=PRESSURE, tilt=tilt), 0.02)
         for tilt in (8e-4, -8e-4)
     ]
-    there, back = (variant.refined for variant in tilts)
-    assert there.peak == pytest.approx(back.peak, rel=1e-4)
-    assert np.allclose(there.pressure.max(axis=1), back.pressure[::-1].max(axis=1), atol=1e-4 * there.peak)
+    original, mirrored = (variant.refined for variant in tilts)
+    assert original.peak == pytest.approx(mirrored.peak, rel=1e-4)
+    assert np.allclose(original.pressure.max(axis=1), mirrored.pressure[::-1].max(axis=1), atol=1e-4 * original.peak)
 
 
 def test_measured_fillet_has_peak_of_fillet() -> None:

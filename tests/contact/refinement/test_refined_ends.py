@@ -37,13 +37,15 @@ def test_sharp_rigid_end_has_square_root_law() -> None:
 
 
 def test_edge_peak_matches_small_fillet() -> None:
-    fillet = 0.01e-3
+    fillet_radius = 0.01e-3
     sharp = refined_at(Case(body=HALF, roller=Roller(radius=RADIUS, length=LENGTH), max_pressure=PRESSURE))
     law = sharp.refined.laws[0]
     assert law is not None
-    solved = refined_at(Case(body=HALF, roller=filleted(fillet), max_pressure=PRESSURE))
+    solved = refined_at(Case(body=HALF, roller=filleted(fillet_radius), max_pressure=PRESSURE))
     assert solved.refined.accurate
-    assert edge_peak(law.intensity, STEEL.plane_strain_modulus, fillet) == pytest.approx(solved.refined.peak, rel=0.01)
+    assert edge_peak(law.intensity, STEEL.plane_strain_modulus, fillet_radius) == pytest.approx(
+        solved.refined.peak, rel=0.01
+    )
 
 
 def test_flush_end_of_a_free_body_has_a_finite_pressure() -> None:

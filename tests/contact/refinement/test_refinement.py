@@ -96,7 +96,7 @@ def test_first_columns_are_symmetric_and_narrow_at_ends(length: float) -> None:
 
 def test_first_columns_split_at_curvature() -> None:
     fillet, kink = 3.0, 17.0
-    bent = AxialShape(
+    bent_shape = AxialShape(
         start=0.0,
         stop=LENGTH,
         half_width=HALF_WIDTH,
@@ -104,7 +104,7 @@ def test_first_columns_split_at_curvature() -> None:
         height=lambda x: 0.5 * np.maximum(x - kink, 0) ** 2 / fillet,
         face_beyond=(0.0, 0.0),
     )
-    widths = np.diff(first_edges(bent))
+    widths = np.diff(first_edges(bent_shape))
     baseline = np.diff(first_edges(shape()))
     assert widths.size > baseline.size
     assert widths[-len(baseline) // 3 :].max() < baseline.max()
@@ -148,11 +148,11 @@ def test_mirrored_pressure_is_refined_to_mirrored_columns(bump_position: float, 
     def bump(x: FloatArray) -> FloatArray:
         return np.asarray(1 + height * np.exp(-(((x - bump_position) / width) ** 2)))
 
-    there = refine_columns(make_column_solver(bump), shape(), 0.02)
-    back = refine_columns(make_column_solver(lambda x: bump(LENGTH - x)), shape(), 0.02)
-    assert back.peak == pytest.approx(there.peak, rel=2e-3)
-    assert abs(back.edges.size - there.edges.size) <= 4
-    assert abs(there.peak - float(bump(np.linspace(0, LENGTH, 20001)).max())) <= there.peak_error
+    original = refine_columns(make_column_solver(bump), shape(), 0.02)
+    mirrored = refine_columns(make_column_solver(lambda x: bump(LENGTH - x)), shape(), 0.02)
+    assert mirrored.peak == pytest.approx(original.peak, rel=2e-3)
+    assert abs(mirrored.edges.size - original.edges.size) <= 4
+    assert abs(original.peak - float(bump(np.linspace(0, LENGTH, 20001)).max())) <= original.peak_error
 
 
 @pytest.mark.parametrize("exponent", [0.5, 0.25])
@@ -208,23 +208,23 @@ SCALED_PRESSURES = BUMPS | {
 
 
 @pytest.mark.parametrize(
-    ("unit", "place", "side"), [(2.0**-17, 0.0, 0), (1.0, -8.0, 0), (1.0, 64.0, 1), (2.0**-17, 0.0, 1)]
+    ("unit", "offset", "side"), [(2.0**-17, 0.0, 0), (1.0, -8.0, 0), (1.0, 64.0, 1), (2.0**-17, 0.0, 1)]
 )
 @pytest.mark.parametrize("name", SCALED_PRESSURES)
-def test_refinement_scales_with_units_position_and_side(name: str, unit: float, place: float, side: int) -> None:
+def test_refinement_scales_with_units_position_and_side(name: str, unit: float, offset: float, side: int) -> None:
     """The columns do not depend on the side, the position, or the units of length and pressure."""
     pressure, unit_solver = 2.0**37 if unit < 1 else 1.0, make_column_solver(SCALED_PRESSURES[name])
 
     def unit_position(x: FloatArray) -> FloatArray:
         """Distances from the first end, in the original unit."""
-        return x / unit - place if side == 0 else LENGTH - (x / unit - place)
+        return x / unit - offset if side == 0 else LENGTH - (x / unit - offset)
 
     def height(x: FloatArray) -> FloatArray:
         return np.asarray(0.02 * np.maximum(x - 17.0, 0) ** 2)
 
     def solve(edges: FloatArray, start: FloatArray | None, tolerance: float) -> ColumnPressure:
-        back = slice(None, None, 1 - 2 * side)
-        return column_pressure(pressure * unit_solver(unit_position(edges)[back], None, tolerance).pressure[back])
+        order = slice(None, None, 1 - 2 * side)
+        return column_pressure(pressure * unit_solver(unit_position(edges)[order], None, tolerance).pressure[order])
 
     face_beyond, exponents = (3.0, 0.0), (RIGID, np.nan)
     baseline = refine_columns(
@@ -240,22 +240,24 @@ def test_refinement_scales_with_units_position_and_side(name: str, unit: float, 
         ),
         0.02,
     )
-    shifted = AxialShape(
-        start=unit * place,
-        stop=unit * (place + LENGTH),
+    shifted_shape = AxialShape(
+        start=unit * offset,
+        stop=unit * (offset + LENGTH),
         half_width=unit * HALF_WIDTH,
         depth=unit * 0.05,
         height=lambda x: unit * height(unit_position(x)),
         face_beyond=(unit * face_beyond[side], unit * face_beyond[1 - side]),
         exponents=exponents[:: 1 - 2 * side],
     )
-    variant = refine_columns(solve, shifted, 0.02)
-    assert (variant.accurate, variant.first_edges.size) == (baseline.accurate, baseline.first_edges.size)
-    assert np.sort(unit_position(variant.edges)) == pytest.approx(baseline.edges, abs=1e-9)
+    shifted_result = refine_columns(solve, shifted_shape, 0.02)
+    assert (shifted_result.accurate, shifted_result.first_edges.size) == (baseline.accurate, baseline.first_edges.size)
+    assert np.sort(unit_position(shifted_result.edges)) == pytest.approx(baseline.edges, abs=1e-9)
     for key, factor in {"peak_pressure": pressure, "end_pressure": pressure, "end_load": pressure * unit}.items():
-        for values, expected in ((variant.values, baseline.values), (variant.errors, baseline.errors)):
+        for values, expected in ((shifted_result.values, baseline.values), (shifted_result.errors, baseline.errors)):
             assert np.array(values[key])[:: 1 - 2 * side] / factor == pytest.approx(expected[key], rel=1e-6), key
-    for computed, law in zip(variant.laws if side == 0 else variant.laws[::-1], baseline.laws, strict=True):
+    for computed, law in zip(
+        shifted_result.laws if side == 0 else shifted_result.laws[::-1], baseline.laws, strict=True
+    ):
         assert (computed is None) == (law is None)
         if computed and law:
             factor = pressure * unit**law.exponent

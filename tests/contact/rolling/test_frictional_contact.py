@@ -43,9 +43,9 @@ def ball(cells: int = 26, reach: float = 1.3, off: float = 0.0) -> xr.DataArray:
     )
 
 
-def solve_rolling(motion: Rolling | Shift, **named: object) -> xr.Dataset:
+def solve_rolling(motion: Rolling | Shift, **keywords: object) -> xr.Dataset:
     """A ball on a half-space of its material."""
-    arguments = {"counterbody": PAIR, "gap": ball(), "load": LOAD, "friction": FRICTION, "body": HALF} | named
+    arguments = {"counterbody": PAIR, "gap": ball(), "load": LOAD, "friction": FRICTION, "body": HALF} | keywords
     settings_values = {
         name: arguments.pop(name) for name in ("coupled", "after", "max_iterations") if name in arguments
     }
@@ -243,8 +243,8 @@ def test_history_of_shifts_continues_tractions() -> None:
     assert float(unloaded_step.traction_y.min()) < -0.02 * bound < 0.02 * bound < float(unloaded_step.traction_y.max())
     # Each half of a cycle has the shift of twice the friction and half the force, doubled.
     shift = float(loaded_step.shift_y)
-    back = float(unloaded_step.shift_y) + float(reversed_step.shift_y)
-    assert back == pytest.approx(-2 * shift, rel=1e-3)
+    reverse_shift = float(unloaded_step.shift_y) + float(reversed_step.shift_y)
+    assert reverse_shift == pytest.approx(-2 * shift, rel=1e-3)
     stepped = solve_rolling(Shift(force_y=0.3 * FRICTION * LOAD))
     stepped = solve_rolling(Shift(force_y=largest), after=stepped)
     assert np.abs(stepped.traction_y - loaded_step.traction_y).max() < 2e-3 * bound
@@ -339,9 +339,9 @@ def test_reference_x_is_middle_of_finite_gap() -> None:
 
 def test_sticking_part_is_relative_to_loaded_area() -> None:
     result = solve_rolling(MOTIONS["all"])
-    is_pressed = result.pressure > 0
+    is_loaded = result.pressure > 0
     assert 0.05 < float(result.sticking_part) < 0.95
-    assert float(result.sticking_part) == pytest.approx(float(result.stick.sum() / is_pressed.sum()))
+    assert float(result.sticking_part) == pytest.approx(float(result.stick.sum() / is_loaded.sum()))
 
 
 @pytest.mark.parametrize(("poisson", "spin"), [(0.3, 10.0), pytest.param(0.0, 5.0, marks=pytest.mark.slow)])

@@ -32,13 +32,13 @@ def test_largest_multiple_is_minimum_over_directions(resultants: list[float]) ->
     best_direction, spread = target / sizes / np.hypot.reduce(target / sizes), 1.0
     minimum = np.inf
     for _ in range(60):  # directions about the best one so far, in ever smaller distances
-        attempts = best_direction + spread * rng.standard_normal((200, target.size))
-        attempts[0] = best_direction
-        attempts = attempts[(attempts * target / sizes).sum(axis=1) > 0] / sizes
-        slips = np.tensordot(attempts, resultant_weights, axes=1)
-        multiples = (bound() * np.hypot(slips[:, 0], slips[:, 1])).sum(axis=(1, 2)) / (attempts @ target)
+        trial_directions = best_direction + spread * rng.standard_normal((200, target.size))
+        trial_directions[0] = best_direction
+        trial_directions = trial_directions[(trial_directions * target / sizes).sum(axis=1) > 0] / sizes
+        slips = np.tensordot(trial_directions, resultant_weights, axes=1)
+        multiples = (bound() * np.hypot(slips[:, 0], slips[:, 1])).sum(axis=(1, 2)) / (trial_directions @ target)
         if multiples.min() < minimum:
-            minimum, best_direction = float(multiples.min()), attempts[multiples.argmin()] * sizes
+            minimum, best_direction = float(multiples.min()), trial_directions[multiples.argmin()] * sizes
             best_direction = best_direction / np.hypot.reduce(best_direction)
         spread *= 0.85
     assert computed == pytest.approx(minimum, rel=1e-4)

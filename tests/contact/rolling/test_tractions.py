@@ -53,7 +53,7 @@ def scale_units(motion: Rolling | Shift) -> Rolling | Shift:
 
 
 def solve_friction(
-    motion: Rolling | Shift, edges: str, *, other_units: bool = False, **named: Any
+    motion: Rolling | Shift, edges: str, *, other_units: bool = False, **keywords: Any
 ) -> FrictionalContact:
     """Contact of a ball on a body of its material, a little off the origin."""
     length, pressure = (LENGTH, PRESSURE) if other_units else (1.0, 1.0)
@@ -65,7 +65,7 @@ def solve_friction(
     shape = Shape(body, grid, ArrayKey(gap), prescribed_load, Counterbody(body))
     motion = scale_units(motion) if other_units else motion
     request = FrictionRequest(
-        motion=motion, friction=FRICTION, reference_x=0.1 * length, **({"coupled": False} | named)
+        motion=motion, friction=FRICTION, reference_x=0.1 * length, **({"coupled": False} | keywords)
     )
     return frictional_contact(shape, Settings(), request)
 
@@ -206,11 +206,11 @@ def test_violations_are_relative_to_rigid_slip(monkeypatch: pytest.MonkeyPatch) 
     rigid, grid = computed.tractions.rigid, computed.contact.shape.grid
     along_x = rigid["x"] - rigid["spin"] * grid.y
     along_y = rigid["y"] + rigid["spin"] * (grid.x[:, None] - 0.1)
-    is_pressed = computed.contact.pressure > 0
-    expected = np.hypot(along_x, along_y)[is_pressed].max()
+    is_loaded = computed.contact.pressure > 0
+    expected = np.hypot(along_x, along_y)[is_loaded].max()
     mirrored = np.hypot(rigid["x"] + rigid["spin"] * grid.y, rigid["y"] - rigid["spin"] * (grid.x[:, None] - 0.1))
     assert scales[-1] == pytest.approx(expected, rel=0.03)
-    assert mirrored[is_pressed].max() != pytest.approx(expected, rel=0.04)
+    assert mirrored[is_loaded].max() != pytest.approx(expected, rel=0.04)
 
 
 def test_fastsim_spin_sign_matches_exact_theory() -> None:
@@ -243,11 +243,11 @@ def test_coupled_contact_scales_with_unit() -> None:
 def test_slipping_leading_cell_has_slip() -> None:
     """Under spin a part of a column sticks, but not its leading cell, which depends on the cell behind."""
     computed = solve_friction(Rolling(lateral_creepage=0.03, spin=0.1), "uniform")
-    is_pressed, sticks = computed.contact.pressure > 0, computed.tractions.sticks
-    leading = is_pressed & ~np.pad(is_pressed, ((0, 0), (0, 1)))[:, 1:]
+    is_loaded, sticks = computed.contact.pressure > 0, computed.tractions.sticks
+    leading = is_loaded & ~np.pad(is_loaded, ((0, 0), (0, 1)))[:, 1:]
     assert (leading & ~sticks & sticks.any(axis=1)[:, None]).any()
     slip = np.hypot(*computed.tractions.slip)
-    assert (slip[is_pressed & ~sticks] > 0).all()
+    assert (slip[is_loaded & ~sticks] > 0).all()
     assert (slip[leading & ~sticks] > 1e-3).all()
 
 
