@@ -15,7 +15,7 @@ QUIET = (
 )
 
 SECONDS = 200
-"""Longest wait for a page, on a machine however busy."""
+"""Longest wait for a page, also on a busy machine."""
 
 
 def chromium() -> str | None:

@@ -15,7 +15,7 @@ def _refuse(report: pytest.TestReport | pytest.CollectReport) -> None:
         return
     reason = report.longrepr[2] if isinstance(report.longrepr, tuple) else str(report.longrepr)
     report.outcome = "failed"
-    report.longrepr = f"{reason}\nWith the environment variable CI set, a skip is a failure: install what is missing."
+    report.longrepr = f"{reason}\nWith the environment variable CI set, a skip is a failure: install the missing parts."
 
 
 @pytest.hookimpl(wrapper=True)

@@ -25,7 +25,7 @@ from contactstudy.study import worker
 from contactstudy.study.settings import RunSettings
 
 FAILS, DIES, WRONG_FRICTION, IS_LARGE = 0.66, 0.77, 0.88, 0.99
-"""Friction at which the case fails, kills its process, meets an error of the program, or asks for too much memory."""
+"""Friction at which the case fails, kills its process, meets an error of the program, or requests too much memory."""
 
 
 def solve_fake(

@@ -321,7 +321,9 @@ def edited_study(undisturbed: xr.Dataset, count: int) -> Row:
                 and "Traceback" not in errors
                 and studies.read_values(folder).identical(undisturbed)
             )
-    return Row("the study's file torn while it runs", count, passed, "the run goes on with what it read, bit for bit")
+    return Row(
+        "the study's file torn while it runs", count, passed, "the run uses the file's first content, bit for bit"
+    )
 
 
 def _holds_the_lock(pid: int, out: Path) -> bool:

@@ -10,7 +10,7 @@ from contactstudy.bearing import ContactLaw
 from contactstudy.bearing.energy_spline import EnergySpline, Nodes, estimate_fit_errors
 
 STIFFNESS, ARM = 3e12, 1e-3
-"""Two springs of power 3/2 to either side of the middle, N / m**1.5 and m."""
+"""Two springs of power 3/2 on either side of mid-length, N / m**1.5 and m."""
 
 
 def springs(approaches: np.ndarray, tilts: np.ndarray) -> Nodes:

@@ -15,7 +15,7 @@ from contactstudy.bearing.laminae import slice_model
 from contactstudy.profiles import Cylinder, FullCrown, IsoCylindrical, Lundberg, Tapered
 
 STEEL_ON_STEEL = Material(young=207e9 / 2, poisson=0.3)
-"""A body whose contact modulus against a rigid roller is that of two bodies of steel."""
+"""A body whose contact modulus against a rigid roller equals the modulus of two bodies of steel."""
 BODY = HalfSpace(material=STEEL_ON_STEEL)
 ROLLER = Roller(radius=5e-3, length=10e-3)
 CASE = Case(body=BODY, roller=ROLLER, load=5000.0)

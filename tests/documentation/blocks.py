@@ -7,7 +7,7 @@ The blocks of a page run in their order and share their names. They find
 * after a TOML block that is a whole study: its file, its results in `results/NAME`, by the stand-in solver, and the
   `path` of one of its cases. Other TOML blocks are parsed.
 
-A text block that directly follows a Python block is what it prints: the same words, and the same numbers to a percent.
+A text block that directly follows a Python block is its output: the same words, and the same numbers to a percent.
 
 A block that cannot run here has the reason in the page, on the line before it::
 
@@ -42,7 +42,7 @@ from tests.solved_case import solved_case
 from tests.stand_in_solver import solve_fake
 
 WHOLE_STUDY = {"name", "base", "sweep"}
-"""Keys by which a TOML block is known to be a study rather than a part of one."""
+"""Keys that a TOML block of a whole study contains, unlike a part of a study."""
 
 
 class Fences:

@@ -9,9 +9,9 @@ import nbformat
 import pytest
 
 SLOW = {"designing_a_profile.ipynb", "rolling.ipynb", "verification.ipynb"}
-"""More than 20 s."""
+"""Notebooks that need more than 20 s."""
 LARGEST = 30_000
-"""Bytes; a notebook without output is smaller."""
+"""Largest size of a notebook, bytes; a notebook without output is smaller."""
 
 
 def _is_notebook(item: pytest.Item) -> bool:

@@ -49,7 +49,7 @@ def page(request: pytest.FixtureRequest, folder: Path) -> Page:
 
 
 any_source = pytest.mark.parametrize("page", SOURCES, indirect=True)
-"""For tests of the fields and the status of a case."""
+"""Parameter for tests of the fields and the status of a case."""
 
 
 def largest_drawn(page: Page) -> tuple[float, float]:

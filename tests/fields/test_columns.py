@@ -28,7 +28,7 @@ STEEL = Material(210e9, 0.3)
 LENGTH, FRICTION = 1e-3, 0.3
 Y_RANGE = (-1.6e-4, 1.6e-4)
 EDGE_INDICES = [0, 1, 2, 3, 5, 7, 10, 14, 18, 22, 26, 29, 31, 33, 35, 36, 37, 38, 39, 40]
-"""Edges that are kept of forty uniform cells."""
+"""Indices of the retained edges of forty uniform cells."""
 UNIFORM = Grid(x_range=(0.0, LENGTH), y_range=Y_RANGE, cells_x=40, cells_y=32)
 GRADED = Grid.from_edges(UNIFORM.x_edges[EDGE_INDICES], Y_RANGE, 32)
 X, Y, Z = [0.0, 1e-5, 3.3e-4, LENGTH], [0.0, 5e-5], [2e-5, 1e-4]

@@ -68,7 +68,7 @@ def test_shifted_body_has_equal_field(load: Load, extent: str) -> None:
 
 
 GRADED = np.array([0, 1, 2, 3, 5, 7, 10, 14, 17, 18, 19, 20])
-"""Edges that are kept of twenty uniform cells."""
+"""Indices of the retained edges of twenty uniform cells."""
 
 
 @pytest.mark.parametrize("load", Load)

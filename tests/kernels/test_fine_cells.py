@@ -22,7 +22,7 @@ from contactstudy.kernels.smooth_load import SmoothLoad
 EDGES = np.array([0.0, 0.2, 0.5, 0.9, 1.5, 2.3, 2.9, 3.3, 3.6, 3.8])
 UNIFORM = np.linspace(0.0, 3.8, 10)
 LENGTH, PRESSURE = 2.0**-17, 2.0**37
-"""Units of length and pressure, powers of two: numbers in them differ by nothing else."""
+"""Units of length and pressure: powers of two, which change no digits."""
 
 
 def load_on(x: FloatArray, y: FloatArray) -> FloatArray:

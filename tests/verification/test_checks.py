@@ -16,7 +16,7 @@ FULL = [
     for entry in LISTED
     if entry.group in {listed_check.group for listed_check in LISTED if listed_check.level == "full"}
 ]
-"""Checks of the groups that have more at the full level."""
+"""Checks of the groups with further checks at the full level."""
 LONG = ("film", "passes")
 """Groups whose quick level, a part of the full one, takes too long for the default tier."""
 TIGHTER = {

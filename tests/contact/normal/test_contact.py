@@ -14,7 +14,7 @@ from contactstudy.contact.normal.contact import Contact, Settings, Shape, _posit
 from contactstudy.contact.normal.prescribed_loads import PrescribedLoad
 
 LENGTH, PRESSURE = 2.0**-17, 2.0**37
-"""Units of length and pressure, powers of two: numbers in them differ by nothing else."""
+"""Units of length and pressure: powers of two, which change no digits."""
 
 COARSE, FINE = np.linspace(-1.5, 1.5, 21), np.linspace(-1.5, 1.5, 65)
 GRADED_EDGES = np.concatenate([np.linspace(-1.5, 0.3, 11), np.linspace(0.4, 1.5, 12)])
@@ -135,7 +135,7 @@ MAX_APPLICATIONS = {
     "nested position": 12,
     "coupled position": 48,
 }
-"""A tenth more than it takes."""
+"""Limits on the applications: the present number and a tenth."""
 
 
 @pytest.mark.parametrize("name", MAX_APPLICATIONS)

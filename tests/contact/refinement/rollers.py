@@ -13,7 +13,7 @@ STEEL = Material(210e9, 0.3)
 HALF = HalfSpace(material=STEEL)
 RADIUS, PRESSURE, LENGTH = 5e-3, 1.5e9, 10e-3
 A = 4 * PRESSURE * RADIUS / (2 * STEEL.plane_strain_modulus)
-"""Hertz half-width of a rigid roller; twice that of an elastic one."""
+"""Hertz half-width of a rigid roller; the half-width of an elastic roller is twice as large."""
 SHORT, SHORT_ELASTIC = 8 * A, 16 * A
 
 

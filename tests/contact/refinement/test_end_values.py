@@ -10,7 +10,7 @@ from contactstudy.contact.refinement.laws import EndLaw, count_from_end, end_loa
 
 EDGES = 3.0 + 1e-2 * np.cumsum([0.0, 1.0, 1.5, 2.5, 4.0, 6.0, 9.0, 4.0, 7.0, 5.0, 4.0, 3.0, 2.0, 1.0])
 ACROSS = np.sqrt(np.array([0.0, 0.19, 0.91, 0.91, 0.19, 0.0]))
-"""Beside its top, which is 1 by the parabola through its squares."""
+"""Pressure across the contact, whose top between the cells is 1 by the parabola through the squares."""
 
 
 def means(powers: list[float], edges: FloatArray) -> FloatArray:

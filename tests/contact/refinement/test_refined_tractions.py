@@ -27,7 +27,7 @@ STEEL_CASE = Case(
 SHORT_CASE = Case(
     body=HalfSpace(material=STEEL), roller=Roller(radius=5e-3, length=0.5e-3), max_pressure=1.5e9, friction=0.1
 )
-"""A rigid roller that ends inside the face: the pressure is singular there."""
+"""A rigid roller that ends inside the face with a singular pressure."""
 
 SLIDING_FORCE = 0.1 * STEEL_CASE.normal_load
 

@@ -35,10 +35,10 @@ EDGES = {
     "nested": np.linspace(-1.3, 1.3, 49),
 }
 LENGTH, PRESSURE = 2.0**-17, 2.0**37
-"""Units of length and pressure, powers of two: numbers in them differ by nothing else."""
+"""Units of length and pressure: powers of two, which change no digits."""
 
 POWERS = {"spin": (-1, 0), "force_x": (2, 1), "force_y": (2, 1), "moment_z": (3, 1)}
-"""Powers of both that what a motion prescribes has; creepages have none, shifts are lengths."""
+"""Powers of length and pressure in the prescribed values of a motion: creepages have none, shifts are lengths."""
 
 
 def scale_units(motion: Rolling | Shift) -> Rolling | Shift:
