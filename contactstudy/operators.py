@@ -193,13 +193,15 @@ def surface_displacement(body: Body, grid: Grid, load: str = "pressure", compone
 
     def apply(vector: FloatArray) -> FloatArray:
         with one_blas_thread():
-            cells = vector.reshape(grid.shape)
-            return np.array(forward.compute_displacements({loaded: cells}, (direction,))[direction]).ravel()
+            cell_loads = vector.reshape(grid.shape)
+            return np.array(forward.compute_displacements({loaded: cell_loads}, (direction,))[direction]).ravel()
 
     def apply_transposed(vector: FloatArray) -> FloatArray:
         with one_blas_thread():
-            cells = vector.reshape(grid.shape) / weights
-            return (weights * np.array(backward.compute_displacements({direction: cells}, (loaded,))[loaded])).ravel()
+            cell_loads = vector.reshape(grid.shape) / weights
+            return (
+                weights * np.array(backward.compute_displacements({direction: cell_loads}, (loaded,))[loaded])
+            ).ravel()
 
     return LinearOperator((grid.x.size * grid.y.size,) * 2, matvec=apply, rmatvec=apply_transposed, dtype=np.float64)
 

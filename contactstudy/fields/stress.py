@@ -259,22 +259,24 @@ class StressOperator(LinearOperator):  # type: ignore[misc]
         super().__init__(np.float64, (int(np.prod(self._shape)), grid.cells_x * grid.cells_y))
 
     def _matvec(self, vector: FloatArray) -> FloatArray:
-        cells = vector.reshape(self._grid.shape)
+        cell_loads = vector.reshape(self._grid.shape)
         stresses = np.zeros(self._shape)
         for index, distance_indices in enumerate(self._distance_indices):
-            stresses[:, :, index] = np.tensordot(cells, self._half_space[:, :, :, distance_indices], ([0, 1], [0, 3]))
+            stresses[:, :, index] = np.tensordot(
+                cell_loads, self._half_space[:, :, :, distance_indices], ([0, 1], [0, 3])
+            )
         for amplitudes, filters in self._end_fields:
-            filtered = np.einsum("ij,cnjy->cniy", cells, filters, optimize=True)
+            filtered = np.einsum("ij,cnjy->cniy", cell_loads, filters, optimize=True)
             stresses += np.einsum("cxniz,cniy->cxyz", amplitudes, filtered, optimize=True)
         return (self._mask * stresses).ravel()
 
     def _rmatvec(self, vector: FloatArray) -> FloatArray:
         stresses = self._mask * vector.reshape(self._shape)
-        cells = np.zeros(self._grid.shape)
+        cell_loads = np.zeros(self._grid.shape)
         for index, distance_indices in enumerate(self._distance_indices):
             kernel = self._half_space[:, :, :, distance_indices]
-            cells += np.tensordot(kernel, stresses[:, :, index], ([1, 2, 4], [0, 1, 2]))
+            cell_loads += np.tensordot(kernel, stresses[:, :, index], ([1, 2, 4], [0, 1, 2]))
         for amplitudes, filters in self._end_fields:
             filtered = np.einsum("cxniz,cxyz->cniy", amplitudes, stresses, optimize=True)
-            cells += np.einsum("cniy,cnjy->ij", filtered, filters, optimize=True)
-        return cells.ravel()
+            cell_loads += np.einsum("cniy,cnjy->ij", filtered, filters, optimize=True)
+        return cell_loads.ravel()

@@ -69,17 +69,17 @@ def half_space_field(
     for fine_x in (True, False):
         is_deep = ~is_near_y & (is_near_x == fine_x)
         if is_deep.any():
-            cells, coarse_grid = fine_cells.coarse_load(fine_x=fine_x)
+            cell_loads, coarse_grid = fine_cells.coarse_load(fine_x=fine_x)
             field[np.ix_(components, is_aligned, np.arange(y.size), is_deep)] = _uniform_field(
-                cells, influence, coarse_grid, Points(x[is_aligned], y, z[is_deep]), extent
+                cell_loads, influence, coarse_grid, Points(x[is_aligned], y, z[is_deep]), extent
             )
         is_shallow = is_near_y & (is_near_x == fine_x)
         for column in aligned_points(y, float(grid.y[0]), grid.dy) if is_shallow.any() else ():
-            cells, refined_grid = fine_cells.fine_load(column.offset)
+            cell_loads, refined_grid = fine_cells.fine_load(column.offset)
             if not fine_x:
-                cells, refined_grid = fine_cells.coarsen_x(cells, refined_grid)
+                cell_loads, refined_grid = fine_cells.coarsen_x(cell_loads, refined_grid)
             field[np.ix_(components, is_aligned, column.points, is_shallow)] = _uniform_field(
-                cells, influence, refined_grid, Points(x[is_aligned], y[column.points], z[is_shallow]), extent
+                cell_loads, influence, refined_grid, Points(x[is_aligned], y[column.points], z[is_shallow]), extent
             )
     return field
 

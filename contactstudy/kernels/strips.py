@@ -231,7 +231,7 @@ class ColumnsRequest:
         return self.influence(strips_of(response, poisson), response.load.sign_x)
 
     def influence(self, strips: Strips, image_sign: int) -> FloatArray:
-        """Influence of strips with factors, and of their images of sign `image`: array (wavenumber, cell, cell)."""
+        """Influence of strips with factors, and of their images of sign `image_sign`: (wavenumber, cell, cell)."""
         edges, (first_mirror, last_mirror) = self.edges, self.extent
         lateral = LateralCells(self.dy, self.cells_y, strips[0][1].sign_y > 0)
         # After a split the influences between the other columns are reused, equal to the last bit.
@@ -241,11 +241,11 @@ class ColumnsRequest:
             pair_sums.add_strip(factor, strip, np.subtract.outer(edges, edges))
             if np.isfinite(first_mirror):
                 pair_sums.add_strip(
-                    image_sign * factor, strip, np.add.outer(edges - first_mirror, edges - first_mirror), image=True
+                    image_sign * factor, strip, np.add.outer(edges - first_mirror, edges - first_mirror), is_image=True
                 )
             if np.isfinite(last_mirror):
                 mirror_distances = np.add.outer(last_mirror - edges, last_mirror - edges)
-                pair_sums.add_strip(image_sign * strip.sign_x * factor, strip, mirror_distances, image=True)
+                pair_sums.add_strip(image_sign * strip.sign_x * factor, strip, mirror_distances, is_image=True)
         retain("column pairs", key, pair_sums, replace=True)
         kernel = pair_sums.transform()
         if np.isfinite(first_mirror) and np.isfinite(last_mirror):
@@ -285,7 +285,7 @@ class _PairSums:
             is_missing[np.ix_(common_columns, common_columns)] = False
         return cls(edges, lateral, total, np.tril(is_missing))
 
-    def add_strip(self, factor: float, strip: Strip, distances: FloatArray, *, image: bool = False) -> None:
+    def add_strip(self, factor: float, strip: Strip, distances: FloatArray, *, is_image: bool = False) -> None:
         """Add `factor` times the influence of columns with edges at signed `distances`; an image lies at their sums."""
         widths, total, y = np.diff(self.edges), self.total, self.lateral.edges
         separation = 0.25 * (distances[1:, 1:] + distances[1:, :-1] + distances[:-1, 1:] + distances[:-1, :-1])
@@ -294,7 +294,7 @@ class _PairSums:
         is_near = np.zeros(distances.shape, bool)
         for corner in product((slice(None, -1), slice(1, None)), repeat=2):
             is_near[corner] |= self.is_missing & ~is_far
-        exchange_sign = 1 if image else strip.sign_x
+        exchange_sign = 1 if is_image else strip.sign_x
         primitives = np.empty((*distances.shape, y.size))
         for rows, columns in _blocks(is_near | is_near.T, y.size):
             influences = strip.double_primitive(distances[rows, columns, None], y)
@@ -305,7 +305,7 @@ class _PairSums:
             influences -= primitives[rows + 1, columns + 1]
             influences -= primitives[rows, columns]
             # The edges of an image run backwards; eq. (37).
-            influences *= ((-factor if image else factor) / (widths[rows] * widths[columns]))[:, None]
+            influences *= ((-factor if is_image else factor) / (widths[rows] * widths[columns]))[:, None]
             _add_to_pairs(total, rows, columns, influences, exchange_sign)
         for rows, columns in _blocks(self.is_missing & is_far, y.size):
             x, width_squares = separation[rows, columns, None], (widths[rows] ** 2 + widths[columns] ** 2)[:, None]

@@ -132,8 +132,8 @@ def _largest_multiple(resultants: FloatArray, bound: FloatArray, weights: FloatA
     # directions d of a convex function, so a descent approaches the multiple from above.
     from scipy.optimize import minimize
 
-    loaded = bound > 0
-    loaded_bound, weights = bound[loaded], weights[:, :, loaded]
+    is_loaded = bound > 0
+    loaded_bound, weights = bound[is_loaded], weights[:, :, is_loaded]
     sizes = np.array([float((loaded_bound * np.hypot(*work)).sum()) for work in weights])
     has_resultant = sizes > 0
     if resultants[~has_resultant].any() or not has_resultant.any():
