@@ -1,4 +1,4 @@
-"""How tests are run: plugins, hypothesis' profiles, and what the environment must not change."""
+"""Settings of the test runs: plugins, hypothesis' profiles, and limits on the environment."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from hypothesis import settings
 
 pytest_plugins = ("tests.no_silent_skip", "tests.documentation.blocks", "tests.documentation.notebooks")
 
-# Tests run side by side, one on each core: a second thread of BLAS would only wait for a core.
+# The tests run in parallel, one on each core: a second thread of BLAS would only wait for a core.
 for library in ("OMP", "OPENBLAS", "MKL", "PYFFTW"):
     os.environ.setdefault(f"{library}_NUM_THREADS", "1")
 # Figures are drawn to files, with and without a screen.
@@ -16,11 +16,11 @@ os.environ.setdefault("MPLBACKEND", "Agg")
 # Processes of a busy machine start and answer late: no test depends on its load.
 for name in ("COMM__TIMEOUTS__CONNECT", "COMM__TIMEOUTS__TCP", "DEPLOY__LOST_WORKER_TIMEOUT"):
     os.environ.setdefault(f"DASK_DISTRIBUTED__{name}", "300s")
-# dask silences numpy's warnings about empty slices with `warnings.catch_warnings`, which threads undo for one another.
+# dask silences numpy's warnings about empty slices with `warnings.catch_warnings`, which is not safe between threads.
 os.environ.setdefault("DASK_SCHEDULER", "synchronous")
 
-# Times depend on the machine, so no example has a deadline. What lands must not hang on chance: the examples of the
-# short profile are always the same in CI, the search of `thorough` (`--hypothesis-profile=thorough`) is never.
+# Times depend on the machine, so no example has a deadline. CI must not depend on chance: the examples of the
+# short profile are constant in CI, the examples of `thorough` (`--hypothesis-profile=thorough`) are random.
 settings.register_profile("short", max_examples=20, deadline=None, derandomize=bool(os.environ.get("CI")))
 settings.register_profile("thorough", max_examples=100, deadline=None)
 settings.load_profile("short")

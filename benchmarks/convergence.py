@@ -227,7 +227,12 @@ def _from_ends(resolution: Resolution) -> tuple[FloatArray, FloatArray]:
     body = FiniteLengthSpace(length=8.0, material=unit_material())
     stress = end_fields(
         EndProblem(
-            length=8.0, poisson=0.3, cells=pressure, loads=(Load.NORMAL, Load.ALONG_Y), grid=grid, resolution=resolution
+            length=8.0,
+            poisson=0.3,
+            cell_loads=pressure,
+            loads=(Load.NORMAL, Load.ALONG_Y),
+            grid=grid,
+            resolution=resolution,
         ),
         STRESS,
         [Points(*points)],

@@ -156,11 +156,11 @@ def cached(kind: str) -> Callable[[Callable[Arguments, Value]], Callable[Argumen
 
     def decorator(compute: Callable[Arguments, Value]) -> Callable[Arguments, Value]:
         @wraps(compute)
-        def look_up(*arguments: Arguments.args, **named: Arguments.kwargs) -> Value:
-            key = (arguments, tuple(named.items()))
+        def look_up(*arguments: Arguments.args, **keywords: Arguments.kwargs) -> Value:
+            key = (arguments, tuple(keywords.items()))
             value: Value | None = recall(kind, key)
             if value is None:
-                value = retain(kind, key, compute(*arguments, **named))
+                value = retain(kind, key, compute(*arguments, **keywords))
             return value
 
         return look_up

@@ -79,7 +79,7 @@ def _study(options: argparse.Namespace) -> Study:
         return study
     print(f"study {study.name}: {study.size} combinations", flush=True)
     if not sys.stdin.isatty():
-        raise InvalidInputError("study", f"{study.size} combinations", f"fewer than {MANY_CASES}", "or say --yes")
+        raise InvalidInputError("study", f"{study.size} combinations", f"fewer than {MANY_CASES}", "or give --yes")
     if input("Go on? [y/N] ").strip().lower() not in ("y", "yes"):
         raise ContactStudyError("nothing done")
     return study
@@ -311,7 +311,7 @@ def command_parser() -> argparse.ArgumentParser:
     plan.add_argument("--sample", metavar="N", type=int, help="solve N cases, evenly spaced, to estimate the time")
     plan.add_argument("--workers", metavar="N", type=int, help="local processes for the sample; default one per core")
     for child in (run, plan):
-        child.add_argument("--yes", action="store_true", help=f"do not ask about {MANY_CASES} cases and more")
+        child.add_argument("--yes", action="store_true", help=f"solve {MANY_CASES} cases and more without confirmation")
     status = command(_status, "folder", "State of every case: done, failed, stale or missing.")
     for child in (plan, status):
         child.add_argument("--all", action="store_true", help="list every case")
@@ -329,10 +329,10 @@ def command_parser() -> argparse.ArgumentParser:
     child.add_argument("--line", metavar="X,Y,Z:X,Y,Z", help="ends of a line in metres, for csv (--line=-1e-4,0,0:...)")
     child.add_argument("--points", metavar="N", type=int, default=101, help="points of the line; default 101")
     child.add_argument("--select", metavar="NAME=VALUE", action="append", help="swept parameter of a study; repeatable")
-    child.add_argument("--out", metavar="FILE", type=Path, help="default beside the results; - for the screen")
+    child.add_argument("--out", metavar="FILE", type=Path, help="default: next to the results; - for the screen")
     explore = command(_explore, "folder", "Serve a page to look through a study, on this machine.")
     explore.add_argument("--port", metavar="N", type=int, help="default: the first free one from 5006 on")
-    text = "host name that a browser may use beside localhost, such as that of a proxy; repeatable"
+    text = "host name that a browser may use besides localhost, such as that of a proxy; repeatable"
     explore.add_argument("--host", metavar="NAME", action="append", default=[], help=text)
     explore.add_argument("--no-browser", action="store_true", help="do not open the page in the browser")
     text = "Write one HTML page of a case or of a study, for a reader without Python."
@@ -340,7 +340,7 @@ def command_parser() -> argparse.ArgumentParser:
     child.add_argument("--title", metavar="TEXT", help="heading; default: the name of the file or of the study")
     text = "value of a swept parameter that a study's figures keep to; repeatable"
     child.add_argument("--select", metavar="NAME=VALUE", action="append", help=text)
-    child.add_argument("--out", metavar="FILE", type=Path, help="default beside the file, or report.html in the folder")
+    child.add_argument("--out", metavar="FILE", type=Path, help="default: next to the file; report.html in a folder")
     return parser
 
 

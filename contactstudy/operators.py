@@ -57,8 +57,8 @@ class Overlapping:
     Notes
     -----
     `equivalent_loads` and the stresses use the same objects. *Modes* are the weighted spectra of a load on H
-    on the ends, *faces* the normal stress that V removes there, at the depth wavenumbers of the solver; both for each
-    node of the wavenumber along y, each set of axial modes, and all y of the grid.
+    on the ends, *faces* the normal stress that V removes from each end, at the depth wavenumbers of the solver;
+    both for each node of the wavenumber along y, each set of axial modes, and all y of the grid.
 
     Examples
     --------
@@ -193,13 +193,15 @@ def surface_displacement(body: Body, grid: Grid, load: str = "pressure", compone
 
     def apply(vector: FloatArray) -> FloatArray:
         with one_blas_thread():
-            cells = vector.reshape(grid.shape)
-            return np.array(forward.compute_displacements({loaded: cells}, (direction,))[direction]).ravel()
+            cell_loads = vector.reshape(grid.shape)
+            return np.array(forward.compute_displacements({loaded: cell_loads}, (direction,))[direction]).ravel()
 
     def apply_transposed(vector: FloatArray) -> FloatArray:
         with one_blas_thread():
-            cells = vector.reshape(grid.shape) / weights
-            return (weights * np.array(backward.compute_displacements({direction: cells}, (loaded,))[loaded])).ravel()
+            cell_loads = vector.reshape(grid.shape) / weights
+            return (
+                weights * np.array(backward.compute_displacements({direction: cell_loads}, (loaded,))[loaded])
+            ).ravel()
 
     return LinearOperator((grid.x.size * grid.y.size,) * 2, matvec=apply, rmatvec=apply_transposed, dtype=np.float64)
 

@@ -168,7 +168,7 @@ def hydrostatic(stress: xr.Dataset) -> xr.DataArray:
 def orthogonal_shear_range(stress: xr.Dataset) -> xr.Dataset:
     """Range of the orthogonal shear stress `tau_yz` of a material point under the rolling contact.
 
-    The field along y at one (x, z) is the history of a material point there during one passage. The extremes are
+    The field along y at one (x, z) is the history of this material point during one passage. The extremes are
     values at the given positions: choose y close enough together.
 
     Parameters

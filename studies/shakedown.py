@@ -32,7 +32,7 @@ LINE_CONTACT = {
 """Limits of the line contact by the residual stress that they count on: name, and whether that along the axis helps."""
 
 LEVELS = np.linspace(1.0, 3.4, 25)
-"""Of the map."""
+"""Values of the map."""
 
 
 def line_contact(frictions: np.ndarray, poisson: float) -> xr.Dataset:

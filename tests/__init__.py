@@ -1,1 +1,1 @@
-"""The tests and the references they compare with."""
+"""The tests and their reference values."""

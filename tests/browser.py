@@ -1,4 +1,4 @@
-"""Chromium without a screen and without a network, for pages that people look at."""
+"""Chromium without a screen and without a network, for the explorer's pages."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ QUIET = (
 )
 
 SECONDS = 200
-"""Longest wait for a page, on a machine however busy."""
+"""Longest wait for a page, also on a busy machine."""
 
 
 def chromium() -> str | None:

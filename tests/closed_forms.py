@@ -1,4 +1,4 @@
-"""Closed forms that only tests use: surfaces of a Hertz circle, and sliding line contact of unlike materials."""
+"""Closed forms for tests only: surfaces of a Hertz circle, and sliding line contact of unlike materials."""
 
 from __future__ import annotations
 

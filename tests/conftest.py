@@ -1,4 +1,4 @@
-"""Bodies, rollers and pressures that many tests share. Lengths are in units of a Hertz half-width, E* is 1."""
+"""Bodies, rollers and pressures that many tests share; lengths are in units of a Hertz half-width, E* is 1."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from tests.stand_in_solver import FAILS, solve_fake
 
 @pytest.fixture(autouse=True)
 def _default_batches(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Solvers that hold cases write every case at once, and only in their test."""
+    """Let solvers that hold cases write every case at once, only within their test."""
     monkeypatch.setattr(worker, "RUN", RunSettings())
 
 
@@ -38,7 +38,7 @@ def half_space(unit_material: Material) -> HalfSpace:
 
 @pytest.fixture(scope="session")
 def short_body(unit_material: Material) -> FiniteLengthSpace:
-    """Eight half-widths long."""
+    """A body eight half-widths long with two free ends."""
     return FiniteLengthSpace(length=8.0, material=unit_material)
 
 
@@ -60,7 +60,7 @@ def strip_pressure(on_cells: Callable[..., xr.DataArray]) -> Callable[..., xr.Da
 
 @pytest.fixture(scope="session")
 def cylinder_gap(on_cells: Callable[..., xr.DataArray]) -> Callable[..., xr.DataArray]:
-    """Gap of a sharp-ended cylinder over a whole body, for which half-width and peak pressure 1 are Hertz' line."""
+    """Gap of a sharp-ended cylinder over a whole body; Hertz' half-width and peak pressure are 1."""
 
     def build(length: float, cells: tuple[int, int], window: float = 2.0) -> xr.DataArray:
         return on_cells(lambda x, y: y**2 + 0 * x, (0.0, length), (-window, window), cells)

@@ -68,7 +68,7 @@ ROWS = {  # label in the table: group, part of the case's name, part of the quan
         "0.5a and more",
         "p0",
     ),
-    "... nearer to its end, but for the last cell": ("finite elements", "inside", "away from the last cell", "p0"),
+    "... nearer to its end, except in the last cell": ("finite elements", "inside", "away from the last cell", "p0"),
     "traction left on loaded ends, z >= 0.02a": ("consistency", "both ends", "traction", "p0"),
     "reciprocity (Betti)": ("consistency", "two loads", "work", ""),
     "Hetenyi's alternation, 200 rounds, against the explicit solution": ("consistency", "alternations", "", ""),
@@ -92,7 +92,7 @@ def ends() -> Iterator[tuple[str, str]]:
     body = FiniteLengthSpace(length=8.0, material=unit_material())
     along = solve_contact(body, gap, load=8 * LINE_LOAD)["pressure"].max("y")
     yield (
-        "rigid cylinder on a body of its own length (8a): pressure at the end, in the middle",
+        "rigid cylinder on a body of equal length (8a): pressure at the end, in the middle",
         f"{float(along[0]):.3f} p0, {float(along[64]):.3f} p0",
     )
     for count in (64, 129):

@@ -1,4 +1,4 @@
-"""A study of four small cases, for every test that needs one."""
+"""A study of four small cases that many tests share."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A stand-in for the solver: Hertz' pressure with a made-up end effect, at once; and ways to go wrong on demand.
+"""A stand-in for the solver: Hertz' pressure with a made-up end effect, without delay; and failures on demand.
 
 Tests of the study layer use this solver: its result has the form of a result, not the physics.
 """
@@ -25,7 +25,7 @@ from contactstudy.study import worker
 from contactstudy.study.settings import RunSettings
 
 FAILS, DIES, WRONG_FRICTION, IS_LARGE = 0.66, 0.77, 0.88, 0.99
-"""Friction at which the case fails, kills its process, meets an error of the program, or asks for too much memory."""
+"""Friction at which the case fails, kills its process, meets an error of the program, or requests too much memory."""
 
 
 def solve_fake(
@@ -95,14 +95,14 @@ HELD = "CONTACTSTUDY_TEST_HELD"
 def solve_held(case: Case, grid: Grid | None, **settings) -> xr.Dataset:
     """Solve a case per ticket; further cases wait for new tickets."""
     folder = Path(os.environ[HELD])
-    worker.RUN = RunSettings(save_seconds=0.0)  # every case is written at once, so that tests count them
+    worker.RUN = RunSettings(save_seconds=0.0)  # every case is written at once, so that tests can count the cases
     while not _take_ticket(folder):
         time.sleep(0.02)
     return solve_fake(case, grid, **settings)
 
 
 def give_tickets(folder: Path, count: int) -> None:
-    """Let so many more cases be solved."""
+    """Let the solver solve a number of further cases."""
     folder.mkdir(exist_ok=True)
     for _ in range(count):
         (folder / uuid.uuid4().hex).touch()

@@ -108,7 +108,7 @@ def test_threads_share_cached_value() -> None:
 
     @cached("shared")
     def make(size: int) -> np.ndarray:
-        barrier.wait()  # all four have missed
+        barrier.wait()  # all four threads have missed
         return np.zeros(size)
 
     threads = [Thread(target=lambda: shared_arrays.append(make(8))) for _ in range(4)]

@@ -179,7 +179,7 @@ def test_help_avoids_heavy_imports():
 
 @pytest.mark.system
 def test_closed_output_pipe_is_no_error(study_file, tmp_path):
-    """The shell's `contactstudy ... | head -1`: silence, and everything written."""
+    """The shell's `contactstudy ... | head -1` raises no error, and the command writes everything."""
     for arguments in (["run", str(study_file), "--workers", "0", "--no-figure"], ["status", "results/small", "--all"]):
         read, write = os.pipe()
         os.close(read)
@@ -210,7 +210,7 @@ def test_many_cases_need_confirmation(study_file, capsys, monkeypatch):
         assert command(*arguments) == 2
         captured = capsys.readouterr()
         assert "small: 10 combinations" in captured.out
-        assert "fewer than 10; or say --yes" in captured.err
+        assert "fewer than 10; or give --yes" in captured.err
     assert command("plan", study_file, "--yes") == 0
     monkeypatch.setattr("sys.stdin.isatty", lambda: True, raising=False)
     for reply, code in (("", 2), ("n", 2), ("y", 0)):

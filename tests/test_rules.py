@@ -1,4 +1,4 @@
-"""Rules of CONTRIBUTING.md for arguments, no long row of values without names, and for constants."""
+"""Rules of CONTRIBUTING.md: no long sequence of positional values, no constant bound twice."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ import pytest
 
 import contactstudy
 
-MOST_FIELDS = 4  # of a dataclass with positional arguments
-MOST_ARGUMENTS = 5  # positional, in a call
-MOST_PARAMETERS = 7  # of a function
-MOST_POSITIONAL = 2  # of a function with more parameters
+MOST_FIELDS = 4  # fields of a dataclass with positional arguments
+MOST_ARGUMENTS = 5  # positional arguments of a call
+MOST_PARAMETERS = 7  # parameters of a function
+MOST_POSITIONAL = 2  # positional parameters of a function with more parameters
 
 ROOT = Path(contactstudy.__file__).parent
 MODULES = {str(path.relative_to(ROOT)): path.read_text() for path in sorted(ROOT.rglob("*.py"))}

@@ -1,4 +1,4 @@
-"""Invariants against states done by hand, against each other, and on Hertz' line contact."""
+"""Invariants against states computed by hand, against each other, and on Hertz' line contact."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def uniform(**components: float) -> xr.Dataset:
 
 @st.composite
 def tensors(draw: st.DrawFn) -> Array:
-    # Stresses whose square is still a number.
+    # The squares of these stresses are finite numbers.
     component = st.floats(-1e9, 1e9).map(lambda value: value if abs(value) > 1e-3 else 0.0)
     values = draw(st.lists(component, min_size=6, max_size=6))
     tensor = np.zeros((3, 3))
@@ -66,7 +66,7 @@ def rotations(draw: st.DrawFn) -> Array:
         (uniform(sigma_zz=-3.0), (3.0, 3.0, 1.5, -1.0, [0, 0, -3])),
         (uniform(tau_yz=2.0), (2 * np.sqrt(3), 4.0, 2.0, 0.0, [2, 0, -2])),
         (uniform(sigma_xx=-1.0, sigma_yy=-1.0, sigma_zz=-1.0), (0.0, 0.0, 0.0, -1.0, [-1, -1, -1])),
-        # Mohr's circle of (5, -1, 4): centre 2, radius 5.
+        # Mohr's circle of (5, -1, 4) has the centre 2 and the radius 5.
         (uniform(sigma_xx=5.0, sigma_yy=-1.0, tau_xy=4.0), (np.sqrt(79), 10.0, 5.0, 4 / 3, [7, 0, -3])),
     ],
     ids=["tension", "compression", "shear", "pressure", "mohr"],

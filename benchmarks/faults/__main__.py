@@ -35,7 +35,7 @@ def rows(kills: int) -> list[Row]:
 
 
 def main() -> int:
-    """Try everything, and write the page that is asked for."""
+    """Try everything, and write the page of the option."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.faults", description=__doc__)
     parser.add_argument("--page", type=Path, help="page whose table is written")
     parser.add_argument("--kills", type=int, default=100, help="kills in all; the other numbers go with it")

@@ -19,7 +19,7 @@ from tests.study.conftest import start_run, tickets_of
 
 
 def _system(name: str) -> list[str]:
-    """A command that runs another one where the host has a `name` and processes have numbers of their own."""
+    """Prefix of a command that runs in a system with the host's `name` and separate process numbers."""
     separate = ["unshare", "--uts", "--pid", "--fork", "--kill-child", "--mount-proc"]
     return [*separate, "sh", "-c", 'hostname "$0" && exec "$@"', name]
 
@@ -33,7 +33,7 @@ def two_systems(undisturbed: xr.Dataset, count: int) -> Row:
         and not subprocess.run([*_system(names[0]), "true"], capture_output=True, check=False).returncode
     )
     if not is_possible:
-        return Row(fault, 0, 0, "not tried: no right to make a system with a name of its own")
+        return Row(fault, 0, 0, "not tried: no right to make a system with another name")
     passed = sum(_survives(undisturbed, names[index % 2], killed=index % 4 > 1) for index in range(count))
     description = (
         "while it goes on: code 2, its host is named, and it ends bit for bit; after a kill its lock is free, and "
@@ -62,7 +62,7 @@ def _survives(undisturbed: xr.Dataset, name: str, *, killed: bool) -> bool:
 
 
 def _is_refused(folder: Path, name: str) -> bool:
-    """Whether a run on this system is refused and told who holds the lock."""
+    """Whether a run on this system is refused with a message that names the lock's holder."""
     second = studies.start(folder, "--workers", "0")
     _, errors = second.communicate(timeout=SECONDS)
     return second.returncode == 2 and f" on {name} since" in errors and "Traceback" not in errors

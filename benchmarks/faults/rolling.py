@@ -66,7 +66,7 @@ def done(folder: Path) -> int:
 
 
 def run(study: Study, folder: Path, workers: int, kill_at: int | None = None) -> xr.Dataset:
-    """Values of a study but for the times; killed once so many cases are done, and resumed."""
+    """Values of a study without the times; the run is killed after `kill_at` cases, and resumed."""
     folder.mkdir()
     (folder / "study.toml").write_text(as_toml(study))
     if kill_at is not None:

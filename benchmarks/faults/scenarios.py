@@ -158,36 +158,36 @@ def damaged_files(undisturbed: xr.Dataset, count: int) -> Row:
     )
 
 
-def _tear(path: Path, other: Path) -> None:
+def _tear(path: Path, other_batch_path: Path) -> None:
     data = path.read_bytes()
     path.write_bytes(data[: rng.randrange(len(data))])
 
 
-def _change_bytes(path: Path, other: Path) -> None:
+def _change_bytes(path: Path, other_batch_path: Path) -> None:
     data = bytearray(path.read_bytes())
     for _ in range(8):
         data[rng.randrange(len(data))] ^= 1 << rng.randrange(8)
     path.write_bytes(bytes(data))
 
 
-def _write_foreign_text(path: Path, other: Path) -> None:
+def _write_foreign_text(path: Path, other_batch_path: Path) -> None:
     path.write_text("not ours")
 
 
-def _write_empty(path: Path, other: Path) -> None:
+def _write_empty(path: Path, other_batch_path: Path) -> None:
     path.write_bytes(b"")
 
 
-def _exchange(path: Path, other: Path) -> None:
-    shutil.copy(other, path)
+def _exchange(path: Path, other_batch_path: Path) -> None:
+    shutil.copy(other_batch_path, path)
 
 
-def _link_to_nothing(path: Path, other: Path) -> None:
+def _link_to_nothing(path: Path, other_batch_path: Path) -> None:
     path.unlink()
     path.symlink_to(path.with_name("nowhere"))
 
 
-def _make_folder(path: Path, other: Path) -> None:
+def _make_folder(path: Path, other_batch_path: Path) -> None:
     path.unlink()
     path.mkdir()
 
@@ -321,7 +321,9 @@ def edited_study(undisturbed: xr.Dataset, count: int) -> Row:
                 and "Traceback" not in errors
                 and studies.read_values(folder).identical(undisturbed)
             )
-    return Row("the study's file torn while it runs", count, passed, "the run goes on with what it read, bit for bit")
+    return Row(
+        "the study's file torn while it runs", count, passed, "the run uses the file's first content, bit for bit"
+    )
 
 
 def _holds_the_lock(pid: int, out: Path) -> bool:

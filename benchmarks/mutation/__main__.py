@@ -55,7 +55,7 @@ def share_work(work: Callable[[Any], Notes], jobs: list[Any], file: Path, proces
             os._exit(1)
     exit_codes = [os.wait()[1] for _ in range(processes)]
     if any(exit_codes):
-        raise RuntimeError("a process ended early: begin again, what was tried is kept")
+        raise RuntimeError("a process ended early: begin again, the results so far are kept")
 
 
 class Trials:

@@ -20,7 +20,7 @@ REVERSED = {ast.Lt: ("<", ">"), ast.Gt: (">", "<"), ast.LtE: ("<=", ">="), ast.G
 """Comparisons and their changes."""
 
 FACTOR = 1.1
-"""By which a number with a decimal point grows inside a function."""
+"""Factor on a number with a decimal point inside a function."""
 
 
 @dataclass(frozen=True)

@@ -96,7 +96,7 @@ def _against_half_space(work: str, seconds: dict[str, float]) -> Row:
 
 
 def long_rollers(repeats: int, report: Report) -> Iterator[Row]:
-    """Contact on 1000 x 48 cells, L = 100a, and how the cost grows to there."""
+    """Contact on 1000 x 48 cells, L = 100a, and the growth of the cost up to this size."""
     contact, build, counts = {}, {}, {}
     for cells in LONG_CELLS:
         problem = roller((cells, 48), cells / 10, free_ends=True)

@@ -292,8 +292,8 @@ def positions_over_a(dataset: xr.Dataset) -> xr.Dataset:
         dataset = dataset.assign_coords(_case_coordinates(dataset))
     for dim in map(str, dataset.dims):
         name = position_name(dim)
-        over = f"{name}_over_a"
-        if name not in POSITIONS or dim == over:
+        scaled_name = f"{name}_over_a"
+        if name not in POSITIONS or dim == scaled_name:
             continue
         if dataset[dim].attrs.get("units") == "1":
             raise InvalidInputError(dim, "over a", "in metres", "results of analysis.normalized are over a already")
@@ -301,13 +301,13 @@ def positions_over_a(dataset: xr.Dataset) -> xr.Dataset:
             if dim not in dataset.coords:
                 raise missing_positions(dataset, name)
             values = dataset[dim].variable / half_width.variable
-        elif over in dataset.coords and dataset[over].dims == (dim,):
-            values = dataset[over].variable
+        elif scaled_name in dataset.coords and dataset[scaled_name].dims == (dim,):
+            values = dataset[scaled_name].variable
         else:
-            allowed = f"with the same {over} in all cases"
+            allowed = f"with the same {scaled_name} in all cases"
             raise InvalidInputError("dataset", f"{dim} of {half_width.size} cases", allowed, "select one case")
-        values.attrs = labels(over, coordinate=True)
-        dataset = dataset.assign_coords({over: values}).swap_dims({dim: over})
+        values.attrs = labels(scaled_name, coordinate=True)
+        dataset = dataset.assign_coords({scaled_name: values}).swap_dims({dim: scaled_name})
     return dataset
 
 

@@ -186,7 +186,7 @@ def edge_pressure(dataset: xr.Dataset) -> xr.Dataset:
     edges = {}
     for end, value, is_cut in zip(("first", "last"), values, cut_ends(dataset), strict=True):
         edge_value = value.where(is_cut == 0)
-        # At a singular end the mean of a cell tells only the size of the cell.
+        # At a singular end the mean of a cell depends on the size of the cell.
         is_singular = np.isinf(dataset.get(f"end_pressure_{end}", xr.DataArray(0.0)))
         edges[f"edge_pressure_{end}"] = name_array(
             f"edge_pressure_{end}", edge_value.where(~is_singular | edge_value.isnull(), np.inf)
@@ -337,7 +337,7 @@ def _values(dataset: xr.Dataset, variable: str, reach: xr.DataArray | float) -> 
     for side, border in zip(("first", "last"), borders, strict=True):
         # The factor allows for rounding of a point's distance.
         value = profile.where(abs(sample_x - border) <= reach * (1 + 1e-9)).max(x)
-        # Beside a singular end pressure and stress are unbounded.
+        # Near a singular end pressure and stress are unbounded.
         is_singular = np.isinf(dataset.get(f"end_pressure_{side}", xr.DataArray(0.0)))
         values[side] = value.where(~is_singular | value.isnull(), np.inf)
     distance = abs(sample_x - 0.5 * (borders[0] + borders[1]))

@@ -165,7 +165,7 @@ def _clip_rounding(name: str, values: FloatArray, points: FloatArray) -> FloatAr
     rounding = 1e-9 * max(high - low, abs(high), abs(low))
     is_outside = (values < low - rounding) | (values > high + rounding)
     if is_outside.any():
-        hint = "solve with positions there" if low < high else "the result contains this plane only"
+        hint = "solve with positions at this plane" if low < high else "the result contains this plane only"
         raise InvalidInputError(name, float(values[is_outside][0]), f"within the result, {low:g} to {high:g} m", hint)
     return np.clip(values, low, high)
 

@@ -20,8 +20,8 @@ ENDS = "end_pressure_first", "end_pressure_last"
 PRESSURES = "peak_pressure", *ENDS
 
 SHARP_EDGE_ADVICE = (
-    "no limit: the shape ends sharply inside the body's top, and the pressure there grows with every finer grid; "
-    "leave the grid out, for columns that are refined beside the end, and for its law"
+    "no limit: the shape ends sharply inside the body's top, and the end's pressure grows with every finer grid; "
+    "leave the grid out, for columns that are refined near the end, and for its law"
 )
 
 
@@ -30,8 +30,8 @@ def discretisation_error(fine: xr.Dataset, coarse: xr.Dataset) -> xr.Dataset:
 
     The estimate is the correction of Richardson's extrapolation with order 1, and with order 0.8 at the ends; at least
     the effect of an edge displaced by `EDGE_UNCERTAINTY` cells. It is infinite where the grids show no limit: at a
-    pressed sharp end inside the body's top and for the peak then; if the two grids differ by more than a fifth; for
-    peak and ends if the shape turns too much between pressed columns. An edge radius, or a top that continues, within
+    loaded sharp end inside the body's top and for the peak then; if the two grids differ by more than a fifth; for
+    peak and ends if the shape turns too much between loaded columns. An edge radius, or a top that continues, within
     half a cell of the end is not covered.
 
     Parameters
@@ -73,11 +73,11 @@ def discretisation_error(fine: xr.Dataset, coarse: xr.Dataset) -> xr.Dataset:
             "coarse", f"{coarse_cells} cells", f"fewer in each direction than the fine grid's {cells}"
         )
     displacement = EDGE_UNCERTAINTY * float(fine["y"][1] - fine["y"][0]) / values["half_width_middle"]
-    # At a pressed end of the shape inside the body's top the pressure has no limit, so the peak has no limit either.
+    # At a loaded end of the shape inside the body's top the pressure has no limit, so the peak has no limit either.
     axial = fine["pressure"].transpose("x", "y").values.max(axis=1)
     first, last = _shape_columns(fine)
     end_in_contact = (first > 0 and axial[first] > 0, last < axial.size - 1 and axial[last] > 0)
-    singular_names = {name for name, is_pressed in zip(ENDS, end_in_contact, strict=True) if is_pressed}
+    singular_names = {name for name, is_loaded in zip(ENDS, end_in_contact, strict=True) if is_loaded}
     singular_names |= {"peak_pressure"} if singular_names else set()
     largest_turn = _largest_turn(fine)
     unresolved = {name for name in PRESSURES if values[name] > 0} if largest_turn > RESOLVED_TURN else set()

@@ -158,7 +158,7 @@ def largest_sample(dataset: xr.Dataset, variable: str = "von_mises", *, along: s
     result = xr.Dataset(
         {name: name_array(name, value, base) for name, value in zip(names, values, strict=True)}
     ).compute()
-    result[names[0]].attrs["comment"] = "largest sample; unbounded beside a singular end"
+    result[names[0]].attrs["comment"] = "largest sample; unbounded near a singular end"
     return without_error(result, *names)
 
 

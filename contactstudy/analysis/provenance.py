@@ -152,7 +152,7 @@ def check_solved_for(
         raise InvalidInputError(
             argument,
             f"solved with {_texts(actual, stored_case, names)}",
-            f"a result of the {kind} beside it, {_texts(expected, case_or_body, names)}",
+            f"a result of the given {kind}, {_texts(expected, case_or_body, names)}",
             f"if the Dataset was joined or changed, drop its attribute {INPUTS_ATTRIBUTE}",
         )
 

@@ -214,13 +214,15 @@ def slices(dataset: xr.Dataset, count: int = 30) -> xr.Dataset:
         mean = (weights * cells[name]).sum(x) / weights.sum(x)
         result[name] = mean.assign_attrs(comment="mean over the cells of the slice")
     if all(name in case and "z" in axis_dimensions(case[name]) for name in STRESSES):
-        rounding = ROUNDING * (borders[-1] - borders[0])
+        position_tolerance = ROUNDING * (borders[-1] - borders[0])
         for name in SHEARS:
             sections = largest_sample(case, name, along="x")
             stress = sections[f"peak_{name}"]
             along = dimension_along(stress, "x")
             points = stress[along].values
-            in_slice = (points >= borders[:-1, None] - rounding) & (points <= borders[1:, None] + rounding)
+            in_slice = (points >= borders[:-1, None] - position_tolerance) & (
+                points <= borders[1:, None] + position_tolerance
+            )
             samples = stress.where(xr.DataArray(in_slice, dims=("slice", along)))
             index, has_samples = samples.fillna(-np.inf).argmax(along), samples.notnull().any(along)
             for variable in (f"peak_{name}", f"peak_{name}_z"):
@@ -235,8 +237,8 @@ def _with_errors(
     """Load and largest pressure of each slice with their errors, from the refined pressures and the columns."""
     maxima, column_error = maximum_between(pressure, borders)
     relative = pressure_errors(case)
-    mid_length, rounding = 0.5 * (borders[0] + borders[-1]), ROUNDING * (borders[-1] - borders[0])
-    half_masks = (borders[:-1] < mid_length - rounding, borders[1:] > mid_length + rounding)
+    mid_length, position_tolerance = 0.5 * (borders[0] + borders[-1]), ROUNDING * (borders[-1] - borders[0])
+    half_masks = (borders[:-1] < mid_length - position_tolerance, borders[1:] > mid_length + position_tolerance)
     peaks = [float(case.get(f"peak_pressure_{side}", np.nan)) for side in SIDES]
     pressure_error = np.max(
         [

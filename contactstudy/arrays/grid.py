@@ -120,7 +120,7 @@ class Grid:
             index = int(steep_indices[0]) + 1
             raise InvalidInputError(
                 "x_edges",
-                f"cells of {widths[index - 1]:g} and {widths[index]:g} m beside x = {edges[index]:g} m",
+                f"cells of {widths[index - 1]:g} and {widths[index]:g} m next to x = {edges[index]:g} m",
                 f"such that neighbouring cells differ by a factor of {MAX_WIDTH_RATIO:g} at most",
             )
 

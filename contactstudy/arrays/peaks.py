@@ -38,7 +38,7 @@ def lagrange_weights(nodes: FloatArray, points: FloatArray) -> FloatArray:
 def interpolate_about(
     axes: Sequence[FloatArray], index: Sequence[int], values: FloatArray, neighbours: int
 ) -> tuple[list[FloatArray], FloatArray]:
-    """Points between both neighbours of a sample along each axis, and values there (component, *axes, ...).
+    """Points between both neighbours of a sample along each axis, and the points' values (component, *axes, ...).
 
     One polynomial along each axis interpolates the sample and `neighbours` samples on either side.
     """

@@ -127,7 +127,7 @@ CONTACT = {  # the contact: of a case, of a shape with a body, and of a rough su
     "end_intensity": Variable(SCALAR, "", "K", "intensity of the pressure at the sharper singular end"),
     "end_intensity_first": Variable(SCALAR, "", r"K_\mathrm{I}", "intensity at a singular end nearer to end I"),
     "end_intensity_last": Variable(SCALAR, "", r"K_\mathrm{II}", "intensity at a singular end nearer to end II"),
-    "corner_x": Variable(SCALAR, "m", "x_c", "x of the pressed convex corner of the largest intensity"),
+    "corner_x": Variable(SCALAR, "m", "x_c", "x of the loaded convex corner of the largest intensity"),
     "corner_slope": Variable(SCALAR, "1", "s", "jump of the slope of the generatrix at the corner"),
     "corner_intensity": Variable(SCALAR, "Pa", r"E^* s / 2\pi", "intensity of the logarithmic pressure at the corner"),
     "corner_distance": Variable(SCALAR, "m", "d_0", "distance from the corner at which its logarithm is 0"),
@@ -308,7 +308,9 @@ WEAR = {  # variables of :func:`contactstudy.wear.wear_in`
     "worn_volume": Variable(("distance",), "m3", "V", "volume worn off the roller"),
     "wear_error": Variable(("distance",), "1", "", "estimated error of the worn depth, over the largest depth"),
     "next_step": Variable(("distance",), "m", "", "distance of the step that would follow"),
-    "volume_error": Variable(SCALAR, "1", "", "worn volume minus what the law gives for it, over the latter"),
+    "volume_error": Variable(
+        SCALAR, "1", "", "relative difference of the worn volume from the volume by Archard's law"
+    ),
 }
 
 PASSES = {  # variables of :mod:`contactstudy.plasticity`
@@ -333,12 +335,12 @@ STUDIES = {  # variables of a study's cases
 
 VERIFICATION = {  # variables of :func:`contactstudy.verification.verify`
     "group": Variable(CHECK_DIMS, "", "", "group of the check"),
-    "case": Variable(CHECK_DIMS, "", "", "what was solved"),
-    "quantity": Variable(CHECK_DIMS, "", "", "what is compared, with its unit"),
-    "source": Variable(CHECK_DIMS, "", "", "where the reference comes from"),
+    "case": Variable(CHECK_DIMS, "", "", "solved problem"),
+    "quantity": Variable(CHECK_DIMS, "", "", "compared quantity, with its unit"),
+    "source": Variable(CHECK_DIMS, "", "", "origin of the reference value"),
     "computed": Variable(CHECK_DIMS, "", "", "value of the package, in the unit of the quantity"),
     "expected": Variable(CHECK_DIMS, "", "", "value of the reference, in the unit of the quantity"),
-    "difference": Variable(CHECK_DIMS, "", "", "what is compared with the tolerance"),
+    "difference": Variable(CHECK_DIMS, "", "", "difference that the tolerance bounds"),
     "tolerance": Variable(CHECK_DIMS, "", "", "largest difference that passes"),
     "passed": Variable(CHECK_DIMS, "", "", "whether the difference is within the tolerance"),
 }

@@ -397,15 +397,18 @@ class Raceways:
 
         tables = self.inner.table, self.outer.table
         totals = {"approach": approach, "tilt": tilt}
-        minima, maxima = [], []
+        lower_bounds, upper_bounds = [], []
         for name, total in totals.items():
             (first, last), (outer_first, outer_last) = ((float(t[name][0]), float(t[name][-1])) for t in tables)
-            minima.append(max(first, total - outer_last))
-            maxima.append(min(last, total - outer_first))
-            if not minima[-1] < maxima[-1]:
+            lower_bounds.append(max(first, total - outer_last))
+            upper_bounds.append(min(last, total - outer_first))
+            if not lower_bounds[-1] < upper_bounds[-1]:
                 limits = f"from {first + outer_first:g} to {last + outer_last:g}"
                 raise InvalidInputError(name, total, f"in the tables of both contacts together, {limits}")
-        bounds, scales = np.array([minima, maxima]), np.array([approach, max(np.ptp(tables[0]["tilt"].values), 1e-12)])
+        bounds, scales = (
+            np.array([lower_bounds, upper_bounds]),
+            np.array([approach, max(np.ptp(tables[0]["tilt"].values), 1e-12)]),
+        )
         length = float(tables[0]["contact_length"])
 
         def motions(scaled: FloatArray) -> tuple[ContactResponse, ContactResponse]:

@@ -123,7 +123,7 @@ def estimate_discretisation_errors(solver: ContactSolver, nodes: Nodes) -> Float
     length = solver.case.contact_length
     errors = np.zeros(2)
     tilt_sizes = np.abs(nodes.tilts)
-    # Of two opposite tilts the last is solved; the first may be a reflection.
+    # The loop solves the last of two opposite tilts; the first may be a reflection.
     for index in {int(tilt_sizes.argmin()), tilt_sizes.size - 1 - int(tilt_sizes[::-1].argmax())}:
         load, moment = nodes.load[-1, index], nodes.moment[-1, index]
         fine_node = fine_solver.solve_at_approach(float(nodes.approaches[-1]), float(nodes.tilts[index]), float(load))

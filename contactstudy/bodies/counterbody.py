@@ -42,8 +42,8 @@ class Counterbody:
         if not isinstance(self.body, FiniteLengthSpace):
             return _shift_grid(grid, -self.start)
         if grid.uniform:
-            cells = max(4, round(self.body.length / grid.dx))
-            return Grid(x_range=(0.0, self.body.length), y_range=grid.y_range, cells_x=cells, cells_y=grid.cells_y)
+            cell_count = max(4, round(self.body.length / grid.dx))
+            return Grid(x_range=(0.0, self.body.length), y_range=grid.y_range, cells_x=cell_count, cells_y=grid.cells_y)
         edges, stop = grid.x_edges - self.start, self.body.length
         tolerance = ALIGNMENT_TOLERANCE * grid.widths.min()
         for end in (0.0, stop):

@@ -33,7 +33,7 @@ from contactstudy.profiles.base import SlopeJumps, as_shape
 from contactstudy.profiles.straight import Chamfer, Cylinder
 
 MAX_TILT = 0.1  # Largest tilt of the linear theory, radians
-INCLINED_POINTS = 41  # Points along the axis that determine the mean inclination of the roller
+INCLINATION_POINT_COUNT = 41  # Points along the axis that determine the mean inclination of the roller
 # Range of the Hertz half-width over the roller's radius; the minimum is 10 kPa on steel
 MIN_HALF_WIDTH, MAX_HALF_WIDTH = 1e-7, 0.5
 MIN_DEPTH = 1e-12  # Minimum depth beyond first touch over the roller's radius: rounding
@@ -185,7 +185,7 @@ class Case:
 
     def _check_inclination(self, start: float, stop: float) -> None:
         """Raise if a roller that is free to tilt needs more than a small angle to lie on the body."""
-        x = np.linspace(start, stop, INCLINED_POINTS)[1:-1]
+        x = np.linspace(start, stop, INCLINATION_POINT_COUNT)[1:-1]
         gap = self._clearance(x - self.roller_middle, np.zeros(1))[:, 0]
         slope = float(np.polynomial.polynomial.polyfit((x - start) / (stop - start), gap, 1)[1]) / (stop - start)
         if abs(slope) > MAX_TILT:
@@ -237,7 +237,7 @@ class Case:
             raise InvalidInputError(
                 "approach",
                 self.approach,
-                "one number (metres), because each approach has cells of its own",
+                "one number (metres), because each approach has separate cells",
                 "sweep a list in a Study, or tabulate loads by contactstudy.bearing.contact_law",
             )
         approach = checks.finite("approach", self.approach, "metres")

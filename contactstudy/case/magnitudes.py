@@ -89,7 +89,7 @@ USUAL_RANGES = {
     "tilt": UsualRange(0.0, 0.01, "rad", ("deg", "mrad")),  # bearings take a few mrad
     # Over the roller's radius: 1e-5 is 1 MPa on steel; 0.1 exceeds the yield stress of metals.
     "half_width": UsualRange(1e-5, 0.1, "1"),
-    # Over the roller's radius: an approach of a tenth is the limit of the theory, in rubber.
+    # Over the roller's radius: 0.1 is the limit of the theory; only rubber reaches it.
     "approach": UsualRange(0.0, 0.1, "m", ("mm", "µm")),
     "drop": UsualRange(0.0, 0.15, "m", ("mm", "µm")),  # crowns are micrometres, balls are cut short
     "end drop": UsualRange(0.0, 0.5, "m", ("mm", "µm")),  # with corners

@@ -107,8 +107,8 @@ def solve_contact(
     body : Body
         The elastic body.
     gap : DataArray (x, y)
-        Initial gap at the cell centres of a uniform grid, metres: 0 at first touch, infinite beside the
-        shape. On a finite-length space the cells span the body from end to end; elsewhere they must leave room
+        Initial gap at the cell centres of a uniform grid, metres: 0 at first touch, infinite outside
+        the shape. On a finite-length space the cells span the body from end to end; elsewhere they must leave room
         around the contact.
     load : float, optional
         Normal load, N; either `load` or `approach`.
@@ -197,7 +197,7 @@ def solve_contact(
     initial_gap, grid = labelled_cells("gap", gap, extent=body.extent, infinite=True)
     if not np.isfinite(initial_gap).any():
         raise InvalidInputError("gap", "infinite everywhere", "finite where the shape can touch the body")
-    # Only columns with a finite gap are checked: columns beyond the shape may be as narrow as the face there.
+    # Only columns with a finite gap are checked: columns beyond the shape may be as narrow as the face.
     grid.check_growth(np.asarray(np.isfinite(initial_gap).any(axis=1)))
     checks.instance("settings", settings, ContactSettings, "a ContactSettings")
     coupled, previous_step = bool(settings.coupled), settings.after

@@ -26,7 +26,7 @@ with the square of this distance, of the top's displacement with the distance.""
 
 DEEP_LENGTHS = 8.0
 """Between two ends: depth below the cells at which the elements end, over the length. Accuracy: stress without
-resultant decays like exp(-4.2 z / L) there."""
+resultant decays like exp(-4.2 z / L) between the ends."""
 
 XX, YY, ZZ, XY, XZ, YZ = range(6)  # components in the order of every array of stresses
 

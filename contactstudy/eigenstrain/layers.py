@@ -7,7 +7,8 @@ complementary energy (`stress_function`) is least where
     (1 - nu**2) / E  int f'' h'' + 2 k**2 f' h' + k**4 f h
         =  -int (e_yy + nu e_xx) h'' - k**2 (e_zz + nu e_xx) h + 2 i k e_yz h'
 
-for all h. Likewise for ``t_xy = g'``, ``t_xz = -i k g`` across the plane. With e_yz and e_xz over i all terms are real.
+for all h. The stresses ``t_xy = g'``, ``t_xz = -i k g`` across the plane follow from the same principle. With e_yz and
+e_xz over i all terms are real.
 """
 
 from __future__ import annotations

@@ -111,7 +111,7 @@ class Cases:
 
 
 def status_sentence(status: str, reason: str) -> str:
-    """Return a sentence that says why a case has no figures."""
+    """Return the reason why a case has no figures, as a sentence."""
     return f"{STATUS.get(status, f'This case is {status}.')} {reason}".rstrip()
 
 

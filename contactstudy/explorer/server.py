@@ -71,7 +71,7 @@ def explore(study: xr.Dataset | str | Path) -> Any:
     from contactstudy.explorer.cases import open_cases
     from contactstudy.explorer.page import Page
 
-    pn.extension(inline=True)  # without scripts from elsewhere
+    pn.extension(inline=True)  # the page contains its scripts and loads none from the network
     return Page(open_cases(study)).view()
 
 

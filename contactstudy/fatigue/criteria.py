@@ -170,7 +170,7 @@ def dang_van(stress: xr.Dataset, limits: FatigueLimits) -> xr.Dataset:
     (1.0, 1.0)
     """
     checks.instance("limits", limits, FatigueLimits, "a FatigueLimits")
-    tensor, rolling = stack_history(stress)
+    tensor, rolling_dim = stack_history(stress)
 
     def criterion(history: Array) -> tuple[Array, ...]:
         deviator, hydrostatic = _compute_deviators(history)
@@ -183,14 +183,14 @@ def dang_van(stress: xr.Dataset, limits: FatigueLimits) -> xr.Dataset:
 
     damage, shear, hydrostatic, instant = map_histories(criterion, stress, 4)
     instant = instant.compute()
-    loaded = instant < tensor.sizes[rolling]
+    loaded = instant < tensor.sizes[rolling_dim]
     index = instant.where(loaded, 0).astype(np.int64).reset_coords(drop=True)
     values = {
         "dang_van": damage,
         "utilisation": damage / limits.torsion,
         "dang_van_shear": shear,
         "dang_van_hydrostatic": hydrostatic,
-        "dang_van_y": positions(tensor, "y").isel({rolling: index}).where(loaded),
+        "dang_van_y": positions(tensor, "y").isel({rolling_dim: index}).where(loaded),
     }
     return _to_dataset("dang_van", values)
 

@@ -27,30 +27,30 @@ COMPONENT = "stress_component"  # Dimension of the six components of a history
 def stack_history(stress: xr.Dataset) -> tuple[xr.DataArray, str]:
     """Six stress components, with rolling direction and component as last dimensions, and the former's name."""
     stress = require_in_si(stress, *STRESSES, argument="stress")
-    rolling = rolling_dimension(stress["tau_yz"])
+    rolling_dim = rolling_dimension(stress["tau_yz"])
     tensor = xr.concat([stress[name] for name in STRESSES], dim=COMPONENT, coords="minimal", compat="override")
-    other_dims = [dim for dim in tensor.dims if dim not in (rolling, COMPONENT)]
-    return tensor.transpose(*other_dims, rolling, COMPONENT), rolling
+    other_dims = [dim for dim in tensor.dims if dim not in (rolling_dim, COMPONENT)]
+    return tensor.transpose(*other_dims, rolling_dim, COMPONENT), rolling_dim
 
 
 def rolling_dimension(stress: xr.DataArray) -> str:
     """Name of the dimension along y of a stress, which must have at least three positions."""
-    rolling = dimension_along(stress, "y")
-    if stress.sizes[rolling] < MIN_POSITIONS:
+    rolling_dim = dimension_along(stress, "y")
+    if stress.sizes[rolling_dim] < MIN_POSITIONS:
         raise InvalidInputError(
-            f"stress.sizes[{rolling!r}]",
-            stress.sizes[rolling],
+            f"stress.sizes[{rolling_dim!r}]",
+            stress.sizes[rolling_dim],
             f"at least {MIN_POSITIONS}: the positions along y are the history",
             "solve with y over the whole passage, for example from -3 to 3 half-widths",
         )
-    return rolling
+    return rolling_dim
 
 
 def map_histories(
     function: Callable[[Array], tuple[Array, ...]], stress: xr.Dataset, outputs: int
 ) -> tuple[xr.DataArray, ...]:
     """Map the histories (point, instant, 6) of a result, the last instant unloaded, to two or more arrays (point)."""
-    tensor, rolling = stack_history(stress)
+    tensor, rolling_dim = stack_history(stress)
 
     def apply(values: Array) -> tuple[Array, ...]:
         points = values.reshape(-1, *values.shape[-2:]).astype(np.float64)
@@ -63,7 +63,7 @@ def map_histories(
             results[:, is_loaded] = function(np.concatenate([points, np.zeros_like(points[:, :1])], axis=1)[is_loaded])
         return tuple(results.reshape(outputs, *values.shape[:-2]))
 
-    return reduce_dims(apply, [(tensor, [rolling, COMPONENT])], outputs)
+    return reduce_dims(apply, [(tensor, [rolling_dim, COMPONENT])], outputs)
 
 
 def label_points(name: str, array: xr.DataArray, base: Variable | None = None) -> xr.DataArray:
@@ -106,9 +106,9 @@ def window_remainder(stress: xr.Dataset) -> xr.DataArray:
         return np.maximum(magnitude[:, 0], magnitude[:, -1]), magnitude.max(axis=1)
 
     stress = require_in_si(stress, *STRESSES, argument="stress")
-    rolling = dimension_along(stress["tau_yz"], "y")
+    rolling_dim = dimension_along(stress["tau_yz"], "y")
     # Positions may be in any order.
-    sorted_stress = stress.sortby(rolling) if rolling in stress.indexes else stress
+    sorted_stress = stress.sortby(rolling_dim) if rolling_dim in stress.indexes else stress
     border_stress, max_stress = map_histories(magnitudes, sorted_stress, 2)
     return name_array("window_remainder", (border_stress / max_stress).where(max_stress != 0, 0.0))
 

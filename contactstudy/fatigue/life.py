@@ -272,7 +272,7 @@ def lundberg_palmgren(stress: xr.Dataset, exponents: LifeExponents = ROLLER_BEAR
     """
     checks.instance("exponents", exponents, LifeExponents, "a LifeExponents")
     stress = require_in_si(stress, "tau_yz", argument="stress")
-    rolling = rolling_dimension(stress["tau_yz"])
+    rolling_dim = rolling_dimension(stress["tau_yz"])
     shear = stress["tau_yz"].compute()  # once for all subsets of the positions
     stress = stress.assign(tau_yz=shear)
     amplitude, max_amplitude, depth = _shear_maximum(stress)
@@ -285,8 +285,8 @@ def lundberg_palmgren(stress: xr.Dataset, exponents: LifeExponents = ROLLER_BEAR
         )
     depths, dim = positions(amplitude, "z"), dimension_along(amplitude, "z")
     y = positions(shear, "y")
-    inner_shear = shear.where((y > y.min(rolling)) & (y < y.max(rolling)))
-    inner_amplitude = 0.5 * (inner_shear.max(rolling) - inner_shear.min(rolling))
+    inner_shear = shear.where((y > y.min(rolling_dim)) & (y < y.max(rolling_dim)))
+    inner_amplitude = 0.5 * (inner_shear.max(rolling_dim) - inner_shear.min(rolling_dim))
     truncated = {
         "orthogonal shear largest at the first or last depth": (depth <= depths.min(dim)) | (depth >= depths.max(dim)),
         "orthogonal shear largest at the first or last y": (
@@ -326,7 +326,7 @@ def _shear_risk(peak: xr.DataArray, depth: xr.DataArray, exponents: LifeExponent
 
 
 def _cut_fraction(excess: Array, depth: Array, exponents: LifeExponents) -> Array:
-    """Fraction of a section's risk above the first depth, if uniform there, and below the last, if exponential."""
+    """Fraction of a section's risk above the first depth (uniform excess) and below the last (exponential excess)."""
     last = np.maximum(np.isfinite(depth).sum(axis=-1, keepdims=True) - 1, 1)
 
     def take(values: Array, index: IntArray) -> Array:
@@ -403,9 +403,9 @@ def ioannides_harris(
     def compute_risks(stress: Array, depth: Array) -> tuple[Array, ...]:
         """Return density of the risk, weighted mean depth of the excess, and truncated fraction of the risk."""
         excess = np.clip(stress - threshold, 0.0, None) ** exponents.stress
-        volume, moment = _integrate(excess, depth), _integrate(excess * depth, depth)
+        volume, depth_moment = _integrate(excess, depth), _integrate(excess * depth, depth)
         with np.errstate(divide="ignore", invalid="ignore"):
-            mean = moment / volume
+            mean = depth_moment / volume
             density = np.where(volume > 0, volume / mean**exponents.depth, volume)
         return (
             density,

@@ -159,10 +159,10 @@ def shakedown_limit(stress: xr.Dataset, *, axial: bool = False) -> xr.Dataset:
     if any(size > 1 for size in swept_sizes.values()):
         return _study_limits(stress, swept_sizes, axial=axial)
     case = single_case(stress)
-    rolling = dimension_along(case["tau_yz"], "y")
+    rolling_dim = dimension_along(case["tau_yz"], "y")
     # Each subset has every second instant: one of the two subsets lacks the critical instant.
-    has_error = case.sizes[rolling] >= MIN_POSITIONS_FOR_ERROR
-    samples = [case, *(case.isel({rolling: slice(start, None, 2)}) for start in (0, 1) if has_error)]
+    has_error = case.sizes[rolling_dim] >= MIN_POSITIONS_FOR_ERROR
+    samples = [case, *(case.isel({rolling_dim: slice(start, None, 2)}) for start in (0, 1) if has_error)]
     fields = [shakedown(sample, axial=axial).compute() for sample in samples]
     result = xr.Dataset()
     for variable in ("shakedown_stress", "first_yield_stress"):
@@ -244,7 +244,7 @@ DEGREE, CONTINUITY = 5, 3  # Degree and continuity of the stress function's poly
 POINTS_PER_ELEMENT = 4
 MIN_POINTS = 5  # Minimum number of points along x and z: with fewer, the stress function has no free coefficients
 MAX_GAP = 1e-4  # Relative duality gap of convergence
-MAX_PROGRAMS = 20  # Bound on the programs; about six suffice
+MAX_CONE_PROGRAMS = 20  # Bound on the programs; about six suffice
 SQRT3 = np.sqrt(3.0)
 
 
@@ -294,7 +294,7 @@ def shakedown_in_plane(stress: xr.Dataset, body: Body) -> xr.Dataset:
     """
     checks.instance("body", body, Body, "a HalfSpace, a QuarterSpace or a FiniteLengthSpace")
     case = single_case(stress)
-    tensor, rolling = stack_history(case)
+    tensor, rolling_dim = stack_history(case)
     dims = [dimension_along(tensor, axis) for axis in ("x", "z")]
     x, z = (np.asarray(positions(tensor, axis).values, dtype=np.float64) for axis in ("x", "z"))
     for axis, points in (("x", x), ("z", z)):
@@ -302,7 +302,7 @@ def shakedown_in_plane(stress: xr.Dataset, body: Body) -> xr.Dataset:
             raise InvalidInputError(
                 f"stress.{axis}", points, f"at least {MIN_POINTS} positions, increasing", "solve with more positions"
             )
-    values = tensor.transpose(*dims, rolling, ...).values.astype(np.float64)
+    values = tensor.transpose(*dims, rolling_dim, ...).values.astype(np.float64)
     history = values.reshape(-1, *values.shape[2:])
     history = np.concatenate([history, np.zeros_like(history[:, :1])], axis=1)
     scale = float(np.abs(history).max()) or 1.0
@@ -312,7 +312,7 @@ def shakedown_in_plane(stress: xr.Dataset, body: Body) -> xr.Dataset:
     gap = max(max_stress - bound, 0.0) / max(max_stress, 1e-300)
     if gap > MAX_GAP:
         warnings.warn(
-            f"the shakedown program has a gap of {gap:.2g} after {MAX_PROGRAMS} programs: the bound holds, and a "
+            f"the shakedown program has a gap of {gap:.2g} after {MAX_CONE_PROGRAMS} programs: the bound holds, and a "
             "larger load may shake down; take fewer positions along x and z",
             ConvergenceWarning,
             stacklevel=2,
@@ -329,7 +329,7 @@ def shakedown_in_plane(stress: xr.Dataset, body: Body) -> xr.Dataset:
         "residual_sigma_zz": zz,
         "residual_tau_xz": xz,
     }
-    template = tensor.isel({rolling: 0, tensor.dims[-1]: 0}, drop=True).transpose(*dims)
+    template = tensor.isel({rolling_dim: 0, tensor.dims[-1]: 0}, drop=True).transpose(*dims)
     result = xr.Dataset(
         {name: label_points(name, template.copy(data=field.reshape(template.shape))) for name, field in results.items()}
     )
@@ -394,11 +394,11 @@ class _Program:
         # The unloaded state at every point bounds all coefficients.
         is_active = np.zeros(self.history.shape[:2], dtype=bool)
         is_active[:, -1] = True
-        for program_index in range(MAX_PROGRAMS + 1):
+        for program_index in range(MAX_CONE_PROGRAMS + 1):
             _, radius, stress = self.compute_balls(airy)
             if radius.max() < min_radius:
                 best_airy, min_radius = airy, float(radius.max())
-            if program_index == MAX_PROGRAMS or min_radius - bound <= MAX_GAP * min_radius:
+            if program_index == MAX_CONE_PROGRAMS or min_radius - bound <= MAX_GAP * min_radius:
                 break
             # Add the instants that support the smallest ball at points above the program's bound.
             is_critical = radius > max(bound, 0.5 * radius.max())
@@ -418,14 +418,17 @@ class _Program:
         rows = np.arange(cone_count)
 
         # Variables: t, the free stress of each point, the coefficients. Rows: t, u, v, xz, fixed shear per instant.
-        def place(row: int, columns: IntArray, width: int) -> sparse.csr_array:
+        def select_row_matrix(row: int, columns: IntArray, width: int) -> sparse.csr_array:
             return sparse.csr_array(
                 (np.full(cone_count, -1.0), (5 * rows + row, columns)), shape=(5 * cone_count, width)
             )
 
-        rows_vxz = [place(row, rows, cone_count) for row in (2, 3)]
+        rows_vxz = [select_row_matrix(row, rows, cone_count) for row in (2, 3)]
         airy_matrix = rows_vxz[0] @ self._v[point] + rows_vxz[1] @ self._xz[point]
-        matrix = sparse.hstack([place(0, 0 * rows, 1), place(1, point_index, point_count), airy_matrix], format="csc")
+        matrix = sparse.hstack(
+            [select_row_matrix(0, 0 * rows, 1), select_row_matrix(1, point_index, point_count), airy_matrix],
+            format="csc",
+        )
         constants = [
             0 * self.u[point, instant],
             *(values[point, instant] for values in (self.u, self.v, self.xz, self.fixed_shear)),

@@ -65,18 +65,20 @@ def equivalent_loads(
     """
     checks.instance("body", body, Body, "a QuarterSpace or a FiniteLengthSpace")
     prescribed = prescribed_loads(body, pressure, friction, traction_x, traction_y)
-    grid, loads, (label_x, label_y), _ = prescribed
+    grid, loads, (coordinates_x, coordinates_y), _ = prescribed
     depths = checks.coordinates("z", z)
     top_load = np.array(loads[Load.NORMAL].values)
     face_totals: list[FloatArray] = []
-    for load, (cells, factor) in loads.items():
-        operators = overlapping_operators(body, grid, depths, load, cells)
+    for load, (cell_loads, factor) in loads.items():
+        operators = overlapping_operators(body, grid, depths, load, cell_loads)
         if operators is None:
-            coords = {"x": label_x, "y": label_y}
+            coords = {"x": coordinates_x, "y": coordinates_y}
             return describe(xr.Dataset({"P_h1": (("x", "y"), top_load)}, coords=coords))
         to_top_load, face_operators = operators.equivalent(load)
-        top_load += factor * to_top_load.matvec(cells.ravel()).reshape(top_load.shape)
-        face_loads = [factor * operator.matvec(cells.ravel()).reshape(grid.cells_y, -1) for operator in face_operators]
+        top_load += factor * to_top_load.matvec(cell_loads.ravel()).reshape(top_load.shape)
+        face_loads = [
+            factor * operator.matvec(cell_loads.ravel()).reshape(grid.cells_y, -1) for operator in face_operators
+        ]
         face_totals = (
             [face_total + face_load for face_total, face_load in zip(face_totals, face_loads, strict=True)]
             if face_totals
@@ -91,7 +93,7 @@ def equivalent_loads(
         }
     fields = {"P_h1": (("x", "y"), top_load, attributes)}
     fields |= {f"P_v{end}": (("y", "z"), face_total, attributes) for end, face_total in enumerate(face_totals, start=1)}
-    return describe(xr.Dataset(fields, coords={"x": label_x, "y": label_y, "z": depths}))
+    return describe(xr.Dataset(fields, coords={"x": coordinates_x, "y": coordinates_y, "z": depths}))
 
 
 def _load_reference(body: Body) -> float | None:
@@ -102,16 +104,16 @@ def _load_reference(body: Body) -> float | None:
 
 
 def overlapping_operators(
-    body: Body, grid: Grid, depths: FloatArray, load: Load, cells: FloatArray | None = None
+    body: Body, grid: Grid, depths: FloatArray, load: Load, cell_loads: FloatArray | None = None
 ) -> OverlappingOperators | None:
-    """Operators of the overlapping for a load in one direction, None without a free end; `cells` bound the width."""
+    """Operators for a load in one direction, None without a free end; `cell_loads` determine the loaded width."""
     body.check_span(grid)
     if (depths < 0).any():
         raise InvalidInputError("z", float(depths.min()), "not negative (metres below the top)")
     free_ends = next((term.free_ends for term in body.terms if term.free_ends), None)
     if free_ends is None:
         return None
-    cells = np.zeros(grid.shape) if cells is None else cells
-    problem = end_problem(free_ends, body.material.poisson, cells, None, grid, loads=(load,))
+    cell_loads = np.zeros(grid.shape) if cell_loads is None else cell_loads
+    problem = end_problem(free_ends, body.material.poisson, cell_loads, None, grid, loads=(load,))
     problem = replace(problem, resolution=problem.resolution.for_loads((load,)))
     return OverlappingOperators.of(problem, Points(grid.x, grid.y, depths), reference=_load_reference(body))

@@ -26,14 +26,14 @@ from contactstudy.overlapping.quadrature import Resolution
 class TopLoad(NamedTuple):
     """A load in one direction: a factor times a distribution over the cells."""
 
-    cells: FloatArray  # (x, y): load per area on each cell, Pa
+    cell_loads: FloatArray  # (x, y): load per area on each cell, Pa
     factor: float = 1.0
-    """Factor on `cells`. Loads that differ by a factor share the fields that are computed for `cells`."""
+    """Factor on `cell_loads`. Loads that differ by a factor share the fields that are computed for `cell_loads`."""
 
     @property
     def values(self) -> FloatArray:
         """Load per area on each cell, with the factor, Pa."""
-        return self.factor * self.cells
+        return self.factor * self.cell_loads
 
 
 Loads = Mapping[Load, TopLoad]  # loads on the top by direction
@@ -52,8 +52,8 @@ def superpose(
 ) -> list[FloatArray]:
     """Sum the fields of all loads; one call of `unit_fields` serves all loads with the same distribution."""
     groups: dict[ArrayKey, list[Load]] = {}
-    for load, (cells, _) in loads.items():
-        groups.setdefault(ArrayKey(cells), []).append(load)
+    for load, (cell_loads, _) in loads.items():
+        groups.setdefault(ArrayKey(cell_loads), []).append(load)
     fields: dict[Load, Sequence[FloatArray]] = {}
     for distribution, directions in groups.items():
         fields |= unit_fields(tuple(directions), distribution.values)
@@ -68,7 +68,7 @@ def superpose(
 def end_problem(
     free_ends: FreeEnds,
     poisson: float,
-    cells: FloatArray,
+    cell_loads: FloatArray,
     shape: FloatArray | None,
     grid: Grid,
     loads: tuple[Load, ...],
@@ -76,11 +76,11 @@ def end_problem(
     """Problem of the free ends under a load on cells, on the fine cells of a `shape` inside the cells."""
     finest = finest_cell(grid)
     if shape is not None:
-        cells, grid = FineCells(load=cells, shape=shape, grid=grid, extent=(0.0, free_ends.length)).end_load()
+        cell_loads, grid = FineCells(load=cell_loads, shape=shape, grid=grid, extent=(0.0, free_ends.length)).end_load()
     return EndProblem(
         length=free_ends.length,
         poisson=poisson,
-        cells=cells,
+        cell_loads=cell_loads,
         loads=loads,
         grid=grid,
         resolution=Resolution(),

@@ -31,14 +31,14 @@ class FieldPositions(NamedTuple):
     """Checked positions, metres."""
 
     points: Points
-    label_x: FloatArray  # coordinates of the result; by default the unrounded coordinates of the pressure
-    label_y: FloatArray
+    coordinates_x: FloatArray  # coordinates of the result; by default the unrounded coordinates of the pressure
+    coordinates_y: FloatArray
 
     def dataset(self, fields: Mapping[str, FloatArray]) -> xr.Dataset:
         """Label fields (x, y, z)."""
         return xr.Dataset(
             {name: (("x", "y", "z"), components) for name, components in fields.items()},
-            coords={"x": self.label_x, "y": self.label_y, "z": self.points.z},
+            coords={"x": self.coordinates_x, "y": self.coordinates_y, "z": self.points.z},
         )
 
 
@@ -65,8 +65,8 @@ def field_positions(
                 farthest,
                 f"within {MAX_DISTANCE:g} times the size of load and body, {MAX_DISTANCE * extent_size:g} m",
             )
-    label_x, label_y = labels or (grid.x, grid.y)
-    return FieldPositions(points, label_x if x is None else points.x, label_y if y is None else points.y)
+    coordinates_x, coordinates_y = labels or (grid.x, grid.y)
+    return FieldPositions(points, coordinates_x if x is None else points.x, coordinates_y if y is None else points.y)
 
 
 def _snap_into_body(body: Body, x: FloatArray, grid: Grid) -> FloatArray:
@@ -81,7 +81,7 @@ def _snap_into_body(body: Body, x: FloatArray, grid: Grid) -> FloatArray:
 
 def default_columns(grid: Grid, extent: Extent, is_loaded: BoolArray, half_width: float) -> FloatArray:
     """Positions along x from one end of the body, or of the grid, to the other."""
-    # The spacing equals two widths of a pressed column at its centre, and a fifth of the half-width at the ends.
+    # The spacing equals two widths of a loaded column at its centre, and a fifth of the half-width at the ends.
     ends = [end if np.isfinite(end) else edge for end, edge in zip(extent, grid.x_range, strict=True)]
     spacings = np.append(2 * grid.widths[is_loaded], np.full(2, MAX_SPACING * half_width))
     return _grade_positions(ends, np.append(grid.x[is_loaded], ends), spacings)

@@ -124,8 +124,8 @@ def stresses_at(
     keys = tuple(tuple(ArrayKey(axis) for axis in points) for points in point_sets)
     shape_cells = None if shape is None else ArrayKey(shape)
 
-    def unit_fields(directions: tuple[Load, ...], cells: FloatArray) -> dict[Load, list[FloatArray]]:
-        return _unit_stress(body, grid, directions, ArrayKey(cells), keys, shape=shape_cells)
+    def unit_fields(directions: tuple[Load, ...], cell_loads: FloatArray) -> dict[Load, list[FloatArray]]:
+        return _unit_stress(body, grid, directions, ArrayKey(cell_loads), keys, shape=shape_cells)
 
     return superpose(loads, unit_fields)
 
@@ -135,23 +135,23 @@ def _unit_stress(
     body: Body,
     grid: Grid,
     loads: tuple[Load, ...],
-    cells: ArrayKey,
-    point_sets: tuple[tuple[ArrayKey, ...], ...],
+    cell_loads: ArrayKey,
+    point_set_keys: tuple[tuple[ArrayKey, ...], ...],
     shape: ArrayKey | None,
 ) -> dict[Load, list[FloatArray]]:
     """Stresses (6, x, y, z) at each set of points under a distribution in each direction."""
     poisson, shape_cells = body.material.poisson, None if shape is None else shape.values
-    axes = [Points(*(axis.values for axis in key)) for key in point_sets]
+    points_of_sets = [Points(*(axis.values for axis in key)) for key in point_set_keys]
     fields: dict[Load, list[FloatArray]] = {}
     for term in body.terms:
-        end_parts: list[dict[Load, FloatArray]] = [{} for _ in axes]
-        if term.free_ends and cells.values.any():
-            problem = end_problem(term.free_ends, poisson, cells.values, shape_cells, grid, loads=loads)
-            end_parts = end_fields(problem, STRESS, axes, reference_distance(term.extent))
+        end_parts: list[dict[Load, FloatArray]] = [{} for _ in points_of_sets]
+        if term.free_ends and cell_loads.values.any():
+            problem = end_problem(term.free_ends, poisson, cell_loads.values, shape_cells, grid, loads=loads)
+            end_parts = end_fields(problem, STRESS, points_of_sets, reference_distance(term.extent))
         for load in loads:
             term_fields = []
-            for key, points, end_part in zip(point_sets, axes, end_parts, strict=True):
-                field = _mirrored_stress(load, poisson, term.extent, grid, cells, points=key, shape=shape)
+            for key, points, end_part in zip(point_set_keys, points_of_sets, end_parts, strict=True):
+                field = _mirrored_stress(load, poisson, term.extent, grid, cell_loads, points=key, shape=shape)
                 if load in end_part:
                     # The two auxiliary bodies leave no traction on the top, by construction.
                     for component in (2, 4, 5):  # eq. (1)
@@ -170,15 +170,15 @@ def _mirrored_stress(
     poisson: float,
     extent: tuple[float, float],
     grid: Grid,
-    cells: ArrayKey,
+    cell_loads: ArrayKey,
     points: tuple[ArrayKey, ...],
     shape: ArrayKey | None,
 ) -> FloatArray:
     """Stresses (6, x, y, z) in the half-space; all frictions share the stresses under a pressure."""
-    axes = Points(*(axis.values for axis in points))
+    field_points = Points(*(axis.values for axis in points))
     shape_cells = None if shape is None else shape.values
     influence = stress_influence(load, poisson)
-    return half_space_field(cells.values, influence, grid, axes, extent=extent, shape=shape_cells)
+    return half_space_field(cell_loads.values, influence, grid, field_points, extent=extent, shape=shape_cells)
 
 
 def contact_stresses(
@@ -259,22 +259,24 @@ class StressOperator(LinearOperator):  # type: ignore[misc]
         super().__init__(np.float64, (int(np.prod(self._shape)), grid.cells_x * grid.cells_y))
 
     def _matvec(self, vector: FloatArray) -> FloatArray:
-        cells = vector.reshape(self._grid.shape)
+        cell_loads = vector.reshape(self._grid.shape)
         stresses = np.zeros(self._shape)
         for index, distance_indices in enumerate(self._distance_indices):
-            stresses[:, :, index] = np.tensordot(cells, self._half_space[:, :, :, distance_indices], ([0, 1], [0, 3]))
+            stresses[:, :, index] = np.tensordot(
+                cell_loads, self._half_space[:, :, :, distance_indices], ([0, 1], [0, 3])
+            )
         for amplitudes, filters in self._end_fields:
-            filtered = np.einsum("ij,cnjy->cniy", cells, filters, optimize=True)
+            filtered = np.einsum("ij,cnjy->cniy", cell_loads, filters, optimize=True)
             stresses += np.einsum("cxniz,cniy->cxyz", amplitudes, filtered, optimize=True)
         return (self._mask * stresses).ravel()
 
     def _rmatvec(self, vector: FloatArray) -> FloatArray:
         stresses = self._mask * vector.reshape(self._shape)
-        cells = np.zeros(self._grid.shape)
+        cell_loads = np.zeros(self._grid.shape)
         for index, distance_indices in enumerate(self._distance_indices):
             kernel = self._half_space[:, :, :, distance_indices]
-            cells += np.tensordot(kernel, stresses[:, :, index], ([1, 2, 4], [0, 1, 2]))
+            cell_loads += np.tensordot(kernel, stresses[:, :, index], ([1, 2, 4], [0, 1, 2]))
         for amplitudes, filters in self._end_fields:
             filtered = np.einsum("cxniz,cxyz->cniy", amplitudes, stresses, optimize=True)
-            cells += np.einsum("cniy,cnjy->ij", filtered, filters, optimize=True)
-        return cells.ravel()
+            cell_loads += np.einsum("cniy,cnjy->ij", filtered, filters, optimize=True)
+        return cell_loads.ravel()

@@ -126,7 +126,9 @@ def place_search(body: Body, loads: Loads, grid: Grid) -> Search:
         np.isinf(extent[0]) == np.isinf(extent[1])
         and np.allclose(grid.widths, grid.widths[::-1])
         and all(
-            np.allclose(load.cells, kind.sign_x * load.cells[::-1], rtol=0, atol=1e-4 * np.abs(load.cells).max())
+            np.allclose(
+                load.cell_loads, kind.sign_x * load.cell_loads[::-1], rtol=0, atol=1e-4 * np.abs(load.cell_loads).max()
+            )
             for kind, load in loads.items()
         )
     )
@@ -153,7 +155,7 @@ def place_search(body: Body, loads: Loads, grid: Grid) -> Search:
 def _nearest_cells(
     grid: Grid, inside_rim: BoolArray, x: FloatArray, section: FloatArray, depths: FloatArray, spacing: float
 ) -> Points:
-    """Points at cells nearest to `x`, more than `spacing` apart, across a pressed section, at the top and `depths`."""
+    """Points at cells nearest to `x`, more than `spacing` apart, across a loaded section, at the top and `depths`."""
     y = (section * grid.y).sum() / section.sum() + 0.5 * grid.dy * np.count_nonzero(section) * LATERAL_OFFSETS
     columns = np.unique(np.abs(grid.x - x[:, None]).argmin(axis=1))
     # The outermost rows off the rim are included: with friction the stress on the top may grow towards the rim.
@@ -199,7 +201,7 @@ REFINEMENT_TOLERANCE = 3e-3  # relative error of the interpolation that ends the
 LOCAL_OFFSETS = np.array([-0.5, -0.25, 0.0, 0.25, 0.5])
 """Offsets of points about a position below the top, over the position's depth. Accuracy."""
 
-TOP_MARGIN = 1.25  # factor on the largest sample on the top for the decision to search beside it. Accuracy.
+TOP_MARGIN = 1.25  # factor on the largest sample on the top for the decision to search around it. Accuracy.
 MAX_REFINEMENTS = 6  # largest number of refinements. Speed.
 
 

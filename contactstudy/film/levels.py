@@ -177,7 +177,7 @@ class FilmCase:
         """Largest load per length of the dry contact, N/m, as a mean over two half-widths along x."""
         grid = self.dry_contact.shape.grid
         line_loads = self.dry_contact.pressure.sum(axis=1) * grid.dy
-        # The mean smooths the peak at a sharp end, which is narrower than the film's inlet there.
+        # The mean smooths the peak at a sharp end, which is narrower than the film's inlet at this end.
         cumulative_load = np.concatenate([[0.0], np.cumsum(line_loads * grid.widths)])
         span = min(2 * self.half_width, float(np.ptp(grid.x_edges)))
         centres = np.linspace(grid.x_edges[0] + 0.5 * span, grid.x_edges[-1] - 0.5 * span, 401)

@@ -333,19 +333,19 @@ class _Iteration:
         return precondition(solution)
 
 
-def _select_column_entries(matrix: sparse.csr_array, cells: int) -> sparse.coo_array:
-    """Entries between cells of the same column of `cells` cells."""
+def _select_column_entries(matrix: sparse.csr_array, cell_count: int) -> sparse.coo_array:
+    """Entries between cells of the same column of `cell_count` cells."""
     entries = matrix.tocoo()
-    mask = entries.row // cells == entries.col // cells
+    mask = entries.row // cell_count == entries.col // cell_count
     return sparse.coo_array((entries.data[mask], (entries.row[mask], entries.col[mask])), entries.shape)
 
 
 def _elastic_diagonal(stiffness: FloatArray, by_distance: sparse.csr_array) -> FloatArray:
     """Diagonal (cell) of the product of the derivative by the distance and the columns' stiffness."""
-    columns, cells = stiffness.shape[:2]
-    entries = _select_column_entries(by_distance, cells)
-    products = entries.data * stiffness[entries.row // cells, entries.col % cells, entries.row % cells]
-    return np.asarray(np.bincount(entries.row, products, minlength=columns * cells), dtype=np.float64)
+    columns, cell_count = stiffness.shape[:2]
+    entries = _select_column_entries(by_distance, cell_count)
+    products = entries.data * stiffness[entries.row // cell_count, entries.col % cell_count, entries.row % cell_count]
+    return np.asarray(np.bincount(entries.row, products, minlength=columns * cell_count), dtype=np.float64)
 
 
 @dataclass(frozen=True, eq=False)
@@ -359,14 +359,18 @@ class _ColumnElimination:
     @classmethod
     def of(cls, linearised: _LinearisedEquations, problem: FilmProblem) -> _ColumnElimination:
         """Return the elimination of the linearised equations."""
-        columns, cells = problem.cells.shape
-        before, after = np.zeros((2, columns, cells))
-        before[1:] = linearised.by_pressure.diagonal(-cells).reshape(-1, cells)
-        after[:-1] = linearised.by_pressure.diagonal(cells).reshape(-1, cells)
-        by_distance = _select_column_entries(linearised.by_distance, cells).tocsr()
-        inverses = (by_distance @ problem.column_stiffness.reshape(-1, cells)).reshape(columns, cells, cells)
-        by_pressure = _select_column_entries(linearised.by_pressure, cells)
-        inverses[by_pressure.row // cells, by_pressure.row % cells, by_pressure.col % cells] += by_pressure.data
+        columns, cell_count = problem.cells.shape
+        before, after = np.zeros((2, columns, cell_count))
+        before[1:] = linearised.by_pressure.diagonal(-cell_count).reshape(-1, cell_count)
+        after[:-1] = linearised.by_pressure.diagonal(cell_count).reshape(-1, cell_count)
+        by_distance = _select_column_entries(linearised.by_distance, cell_count).tocsr()
+        inverses = (by_distance @ problem.column_stiffness.reshape(-1, cell_count)).reshape(
+            columns, cell_count, cell_count
+        )
+        by_pressure = _select_column_entries(linearised.by_pressure, cell_count)
+        inverses[by_pressure.row // cell_count, by_pressure.row % cell_count, by_pressure.col % cell_count] += (
+            by_pressure.data
+        )
         for column, matrix in enumerate(inverses):
             if column:
                 matrix -= before[column][:, None] * inverses[column - 1] * after[column - 1]

@@ -57,13 +57,13 @@ class Fluid:
             return Law(oil.density_ratio(p0 * pressure), p0 * oil.density_ratio_slope(p0 * pressure))
 
         steps = np.asarray(FLUIDITY_RATIO ** np.arange(FLUIDITY_NODES) - 1, dtype=np.float64)
-        nodes = steps / (1 + p0 * oil.pressure_viscosity)
-        viscosity = oil.viscosity_at(p0 * nodes) / oil.viscosity
-        fluidity = PchipInterpolator(nodes, oil.density_ratio(p0 * nodes) / viscosity)
+        node_pressures = steps / (1 + p0 * oil.pressure_viscosity)
+        viscosity = oil.viscosity_at(p0 * node_pressures) / oil.viscosity
+        fluidity = PchipInterpolator(node_pressures, oil.density_ratio(p0 * node_pressures) / viscosity)
         integral = fluidity.antiderivative()
 
         def reduced_pressure(pressure: FloatArray) -> Law:
-            viscous_pressure = np.clip(pressure, 0.0, nodes[-1])
+            viscous_pressure = np.clip(pressure, 0.0, node_pressures[-1])
             return Law(np.minimum(pressure, 0.0) + integral(viscous_pressure), fluidity(viscous_pressure))
 
         return cls(density=density, reduced_pressure=reduced_pressure, flow_number=flow_number)
@@ -151,10 +151,10 @@ class FilmCells:
     @cached_property
     def parabolas(self) -> sparse.csr_array:
         """Matrix (face, cell): values on the faces along y, by parabolas through two cells upstream, one downstream."""
-        cells = self.y.size
-        matrix = np.zeros((cells + 1, cells))
+        cell_count = self.y.size
+        matrix = np.zeros((cell_count + 1, cell_count))
         for face, position in enumerate(self.y_edges):
-            stencil = np.arange(max(face - 2, 0), min(face + 1, cells)) if face else np.arange(min(2, cells))
+            stencil = np.arange(max(face - 2, 0), min(face + 1, cell_count)) if face else np.arange(min(2, cell_count))
             for cell in stencil:
                 neighbours = self.y[stencil[stencil != cell]]
                 matrix[face, cell] = np.prod((position - neighbours) / (self.y[cell] - neighbours))
@@ -249,28 +249,30 @@ class Faces:
         slopes = self.gradient @ reduced.value
         by_pressure = sparse.diags_array(factor) @ self.gradient @ sparse.diags_array(reduced.slope)
         by_before, by_after = (
-            sparse.diags_array(factor * slopes * (2 / film - 1 / (upstream + downstream))) @ cells
-            for film, cells in ((upstream, self.upstream), (downstream, self.downstream))
+            sparse.diags_array(factor * slopes * (2 / film - 1 / (upstream + downstream))) @ selection
+            for film, selection in ((upstream, self.upstream), (downstream, self.downstream))
         )
         return PressureFlow(factor * slopes, sparse.csr_array(by_pressure), sparse.csr_array(by_before + by_after))
 
 
-def _outflow(cells: int) -> sparse.sparray:
+def _outflow(cell_count: int) -> sparse.sparray:
     """Matrix of the differences of neighbouring faces: array (cell, face)."""
-    return sparse.diags_array([-np.ones(cells), np.ones(cells)], offsets=[0, 1], shape=(cells, cells + 1))
+    return sparse.diags_array(
+        [-np.ones(cell_count), np.ones(cell_count)], offsets=[0, 1], shape=(cell_count, cell_count + 1)
+    )
 
 
-def _neighbours(cells: int) -> tuple[sparse.sparray, sparse.sparray]:
+def _neighbours(cell_count: int) -> tuple[sparse.sparray, sparse.sparray]:
     """Cells upstream and downstream of faces; at the outermost faces both are the outermost cell: (face, cell)."""
-    identity = sparse.eye_array(cells, format="csr")
+    identity = sparse.eye_array(cell_count, format="csr")
     return sparse.vstack([identity[:1], identity]), sparse.vstack([identity, identity[-1:]])
 
 
 def _gradient(edges: FloatArray, centres: FloatArray, *, closed: bool) -> sparse.sparray:
     """Gradients on the faces; at the outermost faces the value is zero, or, if `closed`, the gradient: (face, cell)."""
-    cells = centres.size
-    matrix = np.zeros((cells + 1, cells))
-    for face in range(1, cells):
+    cell_count = centres.size
+    matrix = np.zeros((cell_count + 1, cell_count))
+    for face in range(1, cell_count):
         slope = 1 / (centres[face] - centres[face - 1])
         matrix[face, face - 1 : face + 1] = -slope, slope
     if not closed:

@@ -1,8 +1,8 @@
 """A field of the half-space under columns of cells of any width: a sum over the corners of the loaded cells.
 
 The influence of a cell is the mixed difference of a corner function over its corners. Summed over cells it becomes a
-sum over corners, each weighted with the mixed jump of the load there. Around a point the columns are split. Columns far
-away are merged, and their field is interpolated from few depths. The columns do not depend on the field or on the
+sum over corners, each weighted with the corner's mixed jump of the load. Around a point the columns are split. Columns
+far away are merged, and their field is interpolated from few depths. The columns do not depend on the field or on the
 direction of the load: all stresses under a pressure and its friction share the columns.
 """
 
@@ -43,7 +43,7 @@ the depth. Accuracy."""
 CENTRED_WIDTH = 0.25  # width of the fine column about a point, over the original fine column. Accuracy.
 
 MIN_CENTRED_WIDTH = 1e-3
-"""Least width of the fine column about a point beside a step of the load, over the original fine column. Accuracy: on
+"""Least width of the fine column about a point next to a step of the load, over the original fine column. Accuracy: on
 the top a step has infinite stresses."""
 
 EDGE_ROUNDING = 1e-9  # rounding of positions on an end or an edge, over a column. Accuracy.
@@ -85,9 +85,9 @@ class LateralAxis:
         # The time is proportional to the total number of cells, in one layer or in separate layers.
         if step is not None and dy <= step * len(self.aligned_groups) * PARTS_Y:
             # One set of cells, with every point in the middle of a cell.
-            cells = _odd_count(step / dy)
-            fine_per_cell = _odd_count(step / cells * PARTS_Y / dy)
-            count = cells * fine_per_cell if fine else cells
+            cell_count = _odd_count(step / dy)
+            fine_per_cell = _odd_count(step / cell_count * PARTS_Y / dy)
+            count = cell_count * fine_per_cell if fine else cell_count
             lowest_y = float(self.y.min())
             indices = np.round((self.y - lowest_y) / step).astype(np.int64) * count
             aligned = AlignedPoints(lowest_y - self.first_edge, np.arange(self.y.size), indices)
@@ -128,17 +128,17 @@ class SplitColumns(NamedTuple):
     jumps: list[tuple[list[Jumps], list[list[Jumps]]]]
     """For each position along x the jumps of near columns in the `shaped_layers`, and for either side the jumps of far
     columns in the layers `far_layers`."""
-    first: int  # first loaded row of the grid, and the load (cell_x, y) on the rows from there on
+    first: int  # first loaded row of the grid, and the load (cell_x, y) on the rows from this row on
     load: FloatArray
 
 
 @cached("split columns")
 def split_columns(
-    cells: ArrayKey,
+    cell_loads: ArrayKey,
     shape: ArrayKey | None,
     grid: Grid,
     extent: tuple[float, float],
-    image: int,
+    image_sign: int,
     keys: tuple[ArrayKey, ArrayKey, ArrayKey],
 ) -> SplitColumns:
     """Split columns around points (x, y, z); `shape` distributes the loads inside cells, mirrors lie at `extent`."""
@@ -147,21 +147,21 @@ def split_columns(
     depths, interpolation_z = interpolation_points(z, radius, FAR_ERROR)
     depth_indices = np.arange(depths.size)
     if shape is None:
-        loaded_rows = np.flatnonzero(cells.values.any(axis=0))
-        first_row, load = int(loaded_rows[0]), cells.values[:, loaded_rows[0] : loaded_rows[-1] + 1]
+        loaded_rows = np.flatnonzero(cell_loads.values.any(axis=0))
+        first_row, load = int(loaded_rows[0]), cell_loads.values[:, loaded_rows[0] : loaded_rows[-1] + 1]
         lateral = LateralAxis(grid, y, first_row, load.shape[1])
         layers, far_layers = lateral.uniform_layers(z, np.arange(z.size)), lateral.uniform_layers(depths, depth_indices)
-        edges, loads = mirror_edges(grid.x_edges, extent), add_images(load, image, extent)
+        edges, loads = mirror_edges(grid.x_edges, extent), add_images(load, image_sign, extent)
         jumps = [_uniform_jumps(position, layers, far_layers, edges, loads, radius=radius) for position in x.tolist()]
         return SplitColumns(layers, far_layers, interpolation_z, jumps, first_row, load=load)
-    fine_cells = FineCells(load=cells.values, shape=shape.values, grid=grid, extent=extent, image=image)
+    fine_cells = FineCells(load=cell_loads.values, shape=shape.values, grid=grid, extent=extent, image_sign=image_sign)
     lateral = LateralAxis(grid, y, fine_cells.first, fine_cells.count)
-    fine_depths = fine_cells.fine_depths(z)
-    layers = lateral.shaped_layers(z, np.flatnonzero(~fine_depths), fine=False)
-    layers += lateral.shaped_layers(z, np.flatnonzero(fine_depths), fine=True)
+    is_refined = fine_cells.is_refined_along_y(z)
+    layers = lateral.shaped_layers(z, np.flatnonzero(~is_refined), fine=False)
+    layers += lateral.shaped_layers(z, np.flatnonzero(is_refined), fine=True)
     far_layers = lateral.shaped_layers(depths, depth_indices, fine=False)
     jumps = list(_shaped_jumps(x, layers, far_layers, fine_cells, MAX_UNSPLIT_WIDTH * float(z.min()), radius=radius))
-    return SplitColumns(layers, far_layers, interpolation_z, jumps, fine_cells.first, load=fine_cells.cells)
+    return SplitColumns(layers, far_layers, interpolation_z, jumps, fine_cells.first, load=fine_cells.cell_loads)
 
 
 def _uniform_jumps(
@@ -196,7 +196,8 @@ def _shaped_jumps(
     edges, shape = fine.edges, fine.shape_cells
     load = fine.shape_along_y(fine.far_load, shape.far_load)
     layer_loads, far_loads = (
-        [add_images(layer.loads(load), fine.image, fine.extent) for layer in group] for group in (layers, far_layers)
+        [add_images(layer.loads(load), fine.image_sign, fine.extent) for layer in group]
+        for group in (layers, far_layers)
     )
     for start in range(0, x.size, POSITIONS_PER_BATCH):
         positions = x[start : start + POSITIONS_PER_BATCH].tolist()
@@ -233,9 +234,9 @@ class _SplitRange(NamedTuple):
         if self.start == self.stop:
             return np.zeros((0, fine.count))
         replaced_columns = slice(self.start + 1, self.stop - 1)
-        has_moments = np.ones(fine.edges.size - 1, bool)
-        has_moments[replaced_columns] = fine.is_unsplit[replaced_columns]
-        total = MomentLoads(*(np.where(has_moments, loads, 0.0) for loads in fine.x_moments)).total.T
+        is_summed = np.ones(fine.edges.size - 1, bool)
+        is_summed[replaced_columns] = fine.is_unsplit[replaced_columns]
+        total = MomentLoads(*(np.where(is_summed, loads, 0.0) for loads in fine.x_moments)).total.T
         midpoints = 0.5 * (self.inserted[1:] + self.inserted[:-1])
         return total[np.searchsorted(fine.edges, midpoints) - 1]
 

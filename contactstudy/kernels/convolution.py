@@ -31,11 +31,11 @@ def odd_spectrum(kernel: FloatArray) -> FloatArray:
     return spectrum
 
 
-def spectrum_matrices(cells: int) -> tuple[FloatArray, FloatArray]:
-    """Matrices (offset, wavenumber) of `even_spectrum` and of `odd_spectrum`, at offsets 0 .. `cells`."""
-    indices = np.arange(cells + 1)
-    phase = np.pi * np.outer(indices, indices) / cells
-    factors = np.full(cells + 1, 2.0)
+def spectrum_matrices(cell_count: int) -> tuple[FloatArray, FloatArray]:
+    """Matrices (offset, wavenumber) of `even_spectrum` and of `odd_spectrum`, at offsets 0 .. `cell_count`."""
+    indices = np.arange(cell_count + 1)
+    phase = np.pi * np.outer(indices, indices) / cell_count
+    factors = np.full(cell_count + 1, 2.0)
     factors[[0, -1]] = 1.0
     return factors[:, None] * np.cos(phase), np.where(factors == 1.0, 0.0, -2.0)[:, None] * np.sin(phase)
 
@@ -83,10 +83,10 @@ class GridTransform:
             self._thread.buffers = buffers
         return buffers
 
-    def transform_y(self, cells: FloatArray) -> ComplexArray:
+    def transform_y(self, cell_loads: FloatArray) -> ComplexArray:
         """Transform cell values along y, and return a view (cell, wavenumber) of the buffer."""
         buffers = self._buffers
-        buffers.real[: self.cells_x, : self.cells_y] = cells
+        buffers.real[: self.cells_x, : self.cells_y] = cell_loads
         buffers.real[: self.cells_x, self.cells_y :] = 0.0
         buffers.lateral[self.cells_x :] = 0.0
         buffers.forward_y.execute()

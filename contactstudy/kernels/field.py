@@ -63,23 +63,23 @@ def half_space_field(
     if shape is None:
         field[:, is_aligned] = _uniform_field(load, influence, grid, Points(x[is_aligned], y, z), extent)
         return field
-    fine_cells = FineCells(load=load, shape=shape, grid=grid, extent=extent, image=influence.load.sign_x)
+    fine_cells = FineCells(load=load, shape=shape, grid=grid, extent=extent, image_sign=influence.load.sign_x)
     components = np.arange(influence.components)
-    is_near, is_near_x = fine_cells.fine_depths(z), fine_cells.fine_depths_x(z)
+    is_near_y, is_near_x = fine_cells.is_refined_along_y(z), fine_cells.is_refined_along_x(z)
     for fine_x in (True, False):
-        is_deep = ~is_near & (is_near_x == fine_x)
+        is_deep = ~is_near_y & (is_near_x == fine_x)
         if is_deep.any():
-            cells, coarse_grid = fine_cells.coarse_load(fine_x=fine_x)
+            cell_loads, coarse_grid = fine_cells.coarse_load(fine_x=fine_x)
             field[np.ix_(components, is_aligned, np.arange(y.size), is_deep)] = _uniform_field(
-                cells, influence, coarse_grid, Points(x[is_aligned], y, z[is_deep]), extent
+                cell_loads, influence, coarse_grid, Points(x[is_aligned], y, z[is_deep]), extent
             )
-        is_shallow = is_near & (is_near_x == fine_x)
+        is_shallow = is_near_y & (is_near_x == fine_x)
         for column in aligned_points(y, float(grid.y[0]), grid.dy) if is_shallow.any() else ():
-            cells, refined_grid = fine_cells.fine_load(column.offset)
+            cell_loads, refined_grid = fine_cells.fine_load(column.offset)
             if not fine_x:
-                cells, refined_grid = fine_cells.coarsen_x(cells, refined_grid)
+                cell_loads, refined_grid = fine_cells.coarsen_x(cell_loads, refined_grid)
             field[np.ix_(components, is_aligned, column.points, is_shallow)] = _uniform_field(
-                cells, influence, refined_grid, Points(x[is_aligned], y[column.points], z[is_shallow]), extent
+                cell_loads, influence, refined_grid, Points(x[is_aligned], y[column.points], z[is_shallow]), extent
             )
     return field
 
@@ -95,17 +95,17 @@ def _uniform_field(
     load = load[:, first_row:stop_row]
     columns = aligned_points(y, float(grid.y[first_row]), grid.dy)
     rows = aligned_points(x, float(grid.x[0]), grid.dx)
-    on_centres = len(rows) == len(columns) == 1 and rows[0].offset == columns[0].offset == 0
-    image = influence.load.sign_x
-    if on_centres and (mirrors_at_first or not mirrors_at_second) and (image > 0 or not mirrors_at_first):
+    is_on_centres = len(rows) == len(columns) == 1 and rows[0].offset == columns[0].offset == 0
+    image_sign = influence.load.sign_x
+    if is_on_centres and (mirrors_at_first or not mirrors_at_second) and (image_sign > 0 or not mirrors_at_first):
         cell = (grid.dx, grid.dy)
         return centred_field(load, influence, cell, rows[0].cells, columns[0].cells, z=z, extent=extent)
     first_centre = grid.x[0]
     if mirrors_at_first:  # the mirrored load precedes the load
-        load = np.concatenate([image * load[::-1], load])
+        load = np.concatenate([image_sign * load[::-1], load])
         first_centre -= grid.cells_x * grid.dx
     elif mirrors_at_second:
-        load = np.concatenate([load, image * load[::-1]])
+        load = np.concatenate([load, image_sign * load[::-1]])
     length = extent[1] if mirrors_at_first and mirrors_at_second else np.inf
     cells = _LoadedCells(load=load, influence=influence, dx=grid.dx, dy=grid.dy, length=length)
     field = np.empty((influence.components, x.size, z.size, y.size)).swapaxes(2, 3)
@@ -119,11 +119,11 @@ def half_space_influence(
     influence: Influence, grid: Grid, points: Points, *, extent: tuple[float, float]
 ) -> FloatArray:
     """Field (component, x, cell, y, z) of a unit load on each cell along x, with all images, at distances y from it."""
-    image, columns, half_width = influence.load.sign_x, grid.cells_x, 0.5 * grid.dy
+    image_sign, columns, half_width = influence.load.sign_x, grid.cells_x, 0.5 * grid.dy
     distances = snap_offsets(points.x[:, None] - mirror_edges(grid.x_edges, extent), float(grid.widths.min()))[
         ..., None
     ]
-    far_images = FarImages(extent[1] - extent[0], image, CHEBYSHEV_X)
+    far_images = FarImages(extent[1] - extent[0], image_sign, CHEBYSHEV_X)
     first_cell = columns if np.isfinite(extent[0]) else 0
     layers = []
     for depth in points.z.tolist():
@@ -133,7 +133,7 @@ def half_space_influence(
         field = cells[:, :, first_cell : first_cell + columns].copy()
         for start in range(0, cells.shape[2], columns):
             if start != first_cell:
-                field += image * cells[:, :, start : start + columns][:, :, ::-1]
+                field += image_sign * cells[:, :, start : start + columns][:, :, ::-1]
         if np.isfinite(extent).all():
             kernel = far_images.influence(corner, points.y, grid.dy, np.array(influence.image_level))
             mean_weights = far_images.means(grid.x_edges - extent[0]) * grid.widths

@@ -37,7 +37,7 @@ class FineCells:
     shape: FloatArray
     grid: Grid
     extent: tuple[float, float] = (-np.inf, np.inf)  # positions of the mirrors; infinite for none
-    image: int = 1  # sign of the load's mirror image
+    image_sign: int = 1  # sign of the load's mirror image
     first: int = field(init=False)
     """First cell along y in the grid, and number of cells: the cells of load and shape, and `SPARE_CELLS` beyond."""
     count: int = field(init=False)
@@ -52,14 +52,14 @@ class FineCells:
         """Edges of the cells along y, metres."""
         return np.asarray(self.grid.y_range[0] + self.grid.dy * np.arange(self.first, self.first + self.count + 1.0))
 
-    def _crop(self, cells: FloatArray) -> FloatArray:
+    def _crop(self, cell_loads: FloatArray) -> FloatArray:
         """Cells between `y_edges`: array (cell_x, y)."""
         stop = self.first + self.count
-        inner_cells = cells[:, max(self.first, 0) : stop]
+        inner_cells = cell_loads[:, max(self.first, 0) : stop]
         return np.pad(inner_cells, ((0, 0), (max(-self.first, 0), max(stop - self.grid.cells_y, 0))))
 
     @cached_property
-    def cells(self) -> FloatArray:
+    def cell_loads(self) -> FloatArray:
         """Load on the cells between `y_edges`: array (cell_x, y)."""
         return self._crop(self.load)
 
@@ -68,7 +68,9 @@ class FineCells:
         """The shape as a load."""
         if np.array_equal(self.load, self.shape):
             return self
-        cells = FineCells(load=self.shape, shape=self.shape, grid=self.grid, extent=self.extent, image=self.image)
+        cells = FineCells(
+            load=self.shape, shape=self.shape, grid=self.grid, extent=self.extent, image_sign=self.image_sign
+        )
         for name in ("first", "count"):
             object.__setattr__(cells, name, getattr(self, name))
         return cells
@@ -80,7 +82,7 @@ class FineCells:
 
     @cached_property
     def _load_along_x(self) -> ShapedLoad:
-        return self._smooth.shape_loads(self.cells.T)
+        return self._smooth.shape_loads(self.cell_loads.T)
 
     @cached_property
     def is_split(self) -> BoolArray:
@@ -88,7 +90,7 @@ class FineCells:
         shape = self.shape_cells
         edges = _split_edges(self.grid.x_edges, np.ones(self.grid.cells_x, bool))
         fine_means = shape._load_along_x.means(edges).reshape(-1, self.grid.cells_x, PARTS_X)
-        deviation = np.abs(fine_means - shape.cells.T[..., None]).max(axis=(0, 2))
+        deviation = np.abs(fine_means - shape.cell_loads.T[..., None]).max(axis=(0, 2))
         is_uneven = deviation > FLATNESS_TOLERANCE * np.abs(self.shape).max()
         return np.full(is_uneven.shape, is_uneven.any()) if self.grid.uniform else is_uneven
 
@@ -100,9 +102,9 @@ class FineCells:
     @cached_property
     def step_edges(self) -> FloatArray:
         """Edges of load and nearest images with a step of the shape along x, metres."""
-        shape, image = self._smooth, self.image
+        shape, image_sign = self._smooth, self.image_sign
         first, last = shape.sign * shape.first, shape.sign * shape.last
-        low, high = (image * np.isfinite(end) for end in self.extent)
+        low, high = (image_sign * np.isfinite(end) for end in self.extent)
         before, behind = np.column_stack([low * first[:, 0], last]), np.column_stack([first, high * last[:, -1]])
         edges = self.grid.x_edges[np.abs(behind - before).max(axis=0) > FLATNESS_TOLERANCE * np.abs(self.shape).max()]
         return np.concatenate([edges, *(2 * end - edges for end in self.extent if np.isfinite(end))])
@@ -120,7 +122,7 @@ class FineCells:
     @cached_property
     def x_moments(self) -> MomentLoads:
         """Loads with the moments along x of the cells and their nearest images: arrays (y, cell)."""
-        return moment_loads(self.edges, add_images(self._load_along_x.moments.T, -self.image, self.extent).T)
+        return moment_loads(self.edges, add_images(self._load_along_x.moments.T, -self.image_sign, self.extent).T)
 
     @cached_property
     def far_load(self) -> FloatArray:
@@ -128,11 +130,11 @@ class FineCells:
         # In coupled cells the means of the smooth load differ from the load on the cells.
         return np.asarray(self._load_along_x.cell_means.T + self._without_images(self.x_moments.total.T))
 
-    def fine_depths(self, z: FloatArray) -> BoolArray:
+    def is_refined_along_y(self, z: FloatArray) -> BoolArray:
         """Whether cells along y are refined at depths `z`."""
         return np.asarray(z < MAX_REFINED_DEPTH * self.grid.dy)
 
-    def fine_depths_x(self, z: FloatArray) -> BoolArray:
+    def is_refined_along_x(self, z: FloatArray) -> BoolArray:
         """Whether uniform cells along x are refined at depths `z`."""
         return np.asarray((z < MAX_REFINED_DEPTH * self.grid.dx) & self.is_split.any())
 
@@ -144,10 +146,10 @@ class FineCells:
         inner_x = np.where(is_before, 2 * low - x, np.where(is_behind, 2 * high - x, x))
         integral = self._load_along_x.integral(inner_x)
         if is_before.any():
-            integral[:, is_before] *= -self.image
+            integral[:, is_before] *= -self.image_sign
         if is_behind.any():
             total = self._load_along_x.integral(self.grid.x_edges[-1:])
-            integral[:, is_behind] = total + self.image * (total - integral[:, is_behind])
+            integral[:, is_behind] = total + self.image_sign * (total - integral[:, is_behind])
         is_column = np.ones(x.size - 1, bool)
         is_column[np.cumsum([array_edges.size for array_edges in edges[:-1]], dtype=int) - 1] = False
         return np.asarray(np.diff(integral, axis=1)[:, is_column].T / np.diff(x)[is_column, None])
@@ -173,7 +175,7 @@ class FineCells:
         padded = loads
         for has_image, pad in zip(has_end, ((margin, 0), (0, margin)), strict=True):
             extended = np.pad(loads, (pad, (0, 0)), mode="symmetric" if has_image else "constant")
-            loads_beyond = self.image * (extended[: pad[0]] if pad[0] else extended[extended.shape[0] - pad[1] :])
+            loads_beyond = self.image_sign * (extended[: pad[0]] if pad[0] else extended[extended.shape[0] - pad[1] :])
             padded = np.concatenate([loads_beyond, padded] if pad[0] else [padded, loads_beyond])
         # The loads that carry the moments also lie on cells beyond the load, or in the image at an end.
         loads = coarsen(padded, PARTS_X)[NEIGHBOURS:-NEIGHBOURS]
@@ -262,10 +264,10 @@ def mirror_edges(edges: FloatArray, extent: tuple[float, float]) -> FloatArray:
     return np.concatenate(all_edges)
 
 
-def add_images(columns: Array, image: int, extent: tuple[float, float]) -> Array:
+def add_images(columns: Array, image_sign: int, extent: tuple[float, float]) -> Array:
     """Columns (column, y) between their nearest images."""
     has_first_mirror, has_last_mirror = (bool(np.isfinite(end)) for end in extent)
-    images = [columns[::-1] if image > 0 else -columns[::-1]]
+    images = [columns[::-1] if image_sign > 0 else -columns[::-1]]
     return np.concatenate([*images[:has_first_mirror], columns, *images[:has_last_mirror]])
 
 

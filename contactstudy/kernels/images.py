@@ -89,7 +89,7 @@ class FarImages:
     """Images of a load except the nearest, of period ``2 length``, at few Chebyshev points along x."""
 
     length: float  # distance between the ends, metres
-    image: int  # sign of the load's mirror image
+    image_sign: int  # sign of the load's mirror image
     count: int  # number of points. Accuracy: each point reduces the error by a factor of 6.
 
     @cached_property
@@ -115,7 +115,7 @@ class FarImages:
         points, width = 0.5 * self.length * (self._nodes + 1), IMAGE_CELL * self.length
         image_rows = (
             (np.subtract.outer(points, points), 2 * self.length, 1),
-            (np.add.outer(points, points) - self.length, 3 * self.length, self.image),
+            (np.add.outer(points, points) - self.length, 3 * self.length, self.image_sign),
         )
         total = np.zeros(())
         for distances, nearest, sign in image_rows:

@@ -46,10 +46,10 @@ class SmoothLoad:
     coupled_to_next: BoolArray  # (row, cell): cells that exchange force with the next cell of their row
 
     @classmethod
-    def of(cls, cells: FloatArray, edges: FloatArray, *, extends_beyond: bool = False) -> SmoothLoad:
-        """Smooth functions through the loads `cells` (row, cell); with `extends_beyond` up to half a cell beyond."""
-        loads, widths = np.abs(cells), np.diff(edges)
-        sign = np.sign(cells)
+    def of(cls, cell_loads: FloatArray, edges: FloatArray, *, extends_beyond: bool = False) -> SmoothLoad:
+        """Smooth functions through `cell_loads` (row, cell); with `extends_beyond` up to half a cell beyond."""
+        loads, widths = np.abs(cell_loads), np.diff(edges)
+        sign = np.sign(cell_loads)
         row_count = loads.shape[0]
         # The load is zero on faces where the sign changes.
         squares = loads**2
@@ -86,10 +86,10 @@ class SmoothLoad:
             self.knot * _mean_of_root(self.first, self.middle) + (1 - self.knot) * _mean_of_root(self.middle, self.last)
         )
 
-    def shape_loads(self, cells: FloatArray) -> ShapedLoad:
-        """Return loads `cells` (row, cell) of this shape: the shape times a ratio that is linear in each cell."""
+    def shape_loads(self, cell_loads: FloatArray) -> ShapedLoad:
+        """Return `cell_loads` (row, cell) of this shape: the shape times a ratio that is linear in each cell."""
         # Where the shape is 0, the load equals the ratio. Each cell keeps its force; coupled cells keep their sum.
-        widths, (rows, count) = np.diff(self.edges), cells.shape
+        widths, (rows, count) = np.diff(self.edges), cell_loads.shape
         force, moment, _ = self.moments_up_to(np.arange(count), self.edges[1:])
         is_empty = force == 0
         force, moment = np.where(is_empty, widths, force), np.where(is_empty, 0.5 * widths**2, moment)
@@ -97,7 +97,7 @@ class SmoothLoad:
             np.where(is_empty, 1.0, values) for values in (self.sign, self.first, self.middle, self.last)
         )
         shape = replace(self, sign=sign, first=first, middle=middle, last=last)
-        cell_force, centroid = cells * widths, self.edges[:-1] + moment / force
+        cell_force, centroid = cell_loads * widths, self.edges[:-1] + moment / force
         # Coupled cells form a group with one ratio; other groups contain one cell.
         is_coupled_back = np.pad(self.coupled_to_next[:, :-1], ((0, 0), (1, 0)))
         group_start = np.maximum.accumulate(np.where(is_coupled_back, 0, np.arange(count)), axis=1)
@@ -316,7 +316,7 @@ class _DirectedRows:
             0.0,
             True,
         )
-        # The load extends neither into the last cell of the row nor to a cell beside another contact.
+        # The load extends neither into the last cell of the row nor to a neighbour of another contact.
         last_cell = self.widths.size - 1
         is_beyond = extends_beyond & (length_ratio > 1) & (length_ratio < 1.5) & (cell < last_cell)
         is_beyond &= loads[row, np.minimum(cell + 2, last_cell)] == 0

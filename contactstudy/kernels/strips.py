@@ -152,9 +152,9 @@ def corner_function(strips: Strips) -> CornerFunction:
     return corner
 
 
-def row_level(strips: Strips, image: int, length: float, reference: float) -> float:
-    """Return the ``4 pi G u`` per load that makes the displacement beside a row of images zero at the reference."""
-    if image < 0:
+def row_level(strips: Strips, image_sign: int, length: float, reference: float) -> float:
+    """Return the ``4 pi G u`` per load that makes the displacement next to a row of images zero at the reference."""
+    if image_sign < 0:
         return 0.0
     logarithm = np.log(2 * FAR_LIMIT * length / reference)
     return float(
@@ -185,8 +185,8 @@ def surface_kernel(
 
 
 FAR_COLUMNS = 24.0
-"""Distance of two columns, over the wider one, for an expansion about their centres. Accuracy: there the difference of
-F loses more digits than the expansion neglects."""
+"""Distance of two columns, over the wider one, for an expansion about their centres. Accuracy: beyond it the difference
+of F loses more digits than the expansion neglects."""
 
 IMAGE_POINTS = 16  # Chebyshev points along x of the interpolated far images, for both columns. Accuracy.
 BLOCK_SIZE = 16_384  # distances along x and y per evaluation. Speed: the values fit into the processor's cache.
@@ -197,21 +197,21 @@ class LateralCells:
     """Cells along y, with the matrix from values at their edges to the transform on twice as many cells."""
 
     dy: float  # cell size along y, metres
-    cells: int
+    cell_count: int
     even: bool  # whether the kernel is even in y; the transform of an odd kernel lacks its factor i
 
     @property
     def edges(self) -> FloatArray:
         """Offsets half a cell beyond 0, 1, 2, ... cells, metres."""
-        return np.asarray((np.arange(self.cells + 1) + 0.5) * self.dy)
+        return np.asarray((np.arange(self.cell_count + 1) + 0.5) * self.dy)
 
     @property
     def matrix(self) -> FloatArray:
         """Matrix (edge, wavenumber) that takes the difference over each cell and its transform."""
-        difference = np.eye(self.cells + 1) - np.eye(self.cells + 1, k=-1)
+        difference = np.eye(self.cell_count + 1) - np.eye(self.cell_count + 1, k=-1)
         # Where the kernel is even, F is odd in Y: the difference over the first cell is twice its value.
         difference[0, 0] = 2.0 if self.even else 0.0
-        even_matrix, odd_matrix = spectrum_matrices(self.cells)
+        even_matrix, odd_matrix = spectrum_matrices(self.cell_count)
         return np.asarray(difference.T @ (even_matrix if self.even else odd_matrix))
 
 
@@ -230,27 +230,27 @@ class ColumnsRequest:
         """Mean displacement, times ``4 pi G``, of columns per force on columns and images: (wavenumber, cell, cell)."""
         return self.influence(strips_of(response, poisson), response.load.sign_x)
 
-    def influence(self, strips: Strips, image: int) -> FloatArray:
-        """Influence of strips with factors, and of their images of sign `image`: array (wavenumber, cell, cell)."""
+    def influence(self, strips: Strips, image_sign: int) -> FloatArray:
+        """Influence of strips with factors, and of their images of sign `image_sign`: (wavenumber, cell, cell)."""
         edges, (first_mirror, last_mirror) = self.edges, self.extent
         lateral = LateralCells(self.dy, self.cells_y, strips[0][1].sign_y > 0)
         # After a split the influences between the other columns are reused, equal to the last bit.
-        key = (strips, image, lateral, self.extent)
+        key = (strips, image_sign, lateral, self.extent)
         pair_sums = _PairSums.of(edges, lateral, recall("column pairs", key))
         for factor, strip in strips:
             pair_sums.add_strip(factor, strip, np.subtract.outer(edges, edges))
             if np.isfinite(first_mirror):
                 pair_sums.add_strip(
-                    image * factor, strip, np.add.outer(edges - first_mirror, edges - first_mirror), image=True
+                    image_sign * factor, strip, np.add.outer(edges - first_mirror, edges - first_mirror), is_image=True
                 )
             if np.isfinite(last_mirror):
                 mirror_distances = np.add.outer(last_mirror - edges, last_mirror - edges)
-                pair_sums.add_strip(image * strip.sign_x * factor, strip, mirror_distances, image=True)
+                pair_sums.add_strip(image_sign * strip.sign_x * factor, strip, mirror_distances, is_image=True)
         retain("column pairs", key, pair_sums, replace=True)
         kernel = pair_sums.transform()
         if np.isfinite(first_mirror) and np.isfinite(last_mirror):
-            images = FarImages(last_mirror - first_mirror, image, IMAGE_POINTS)
-            reference_level = row_level(strips, image, last_mirror - first_mirror, self.reference)
+            images = FarImages(last_mirror - first_mirror, image_sign, IMAGE_POINTS)
+            reference_level = row_level(strips, image_sign, last_mirror - first_mirror, self.reference)
             offsets = self.dy * np.arange(self.cells_y + 1.0)
             far_kernel = images.influence(corner_function(strips), offsets, self.dy, np.array(reference_level))
             spectrum = even_spectrum(far_kernel) if lateral.even else odd_spectrum(far_kernel)
@@ -285,7 +285,7 @@ class _PairSums:
             is_missing[np.ix_(common_columns, common_columns)] = False
         return cls(edges, lateral, total, np.tril(is_missing))
 
-    def add_strip(self, factor: float, strip: Strip, distances: FloatArray, *, image: bool = False) -> None:
+    def add_strip(self, factor: float, strip: Strip, distances: FloatArray, *, is_image: bool = False) -> None:
         """Add `factor` times the influence of columns with edges at signed `distances`; an image lies at their sums."""
         widths, total, y = np.diff(self.edges), self.total, self.lateral.edges
         separation = 0.25 * (distances[1:, 1:] + distances[1:, :-1] + distances[:-1, 1:] + distances[:-1, :-1])
@@ -294,7 +294,7 @@ class _PairSums:
         is_near = np.zeros(distances.shape, bool)
         for corner in product((slice(None, -1), slice(1, None)), repeat=2):
             is_near[corner] |= self.is_missing & ~is_far
-        exchange_sign = 1 if image else strip.sign_x
+        exchange_sign = 1 if is_image else strip.sign_x
         primitives = np.empty((*distances.shape, y.size))
         for rows, columns in _blocks(is_near | is_near.T, y.size):
             influences = strip.double_primitive(distances[rows, columns, None], y)
@@ -305,7 +305,7 @@ class _PairSums:
             influences -= primitives[rows + 1, columns + 1]
             influences -= primitives[rows, columns]
             # The edges of an image run backwards; eq. (37).
-            influences *= ((-factor if image else factor) / (widths[rows] * widths[columns]))[:, None]
+            influences *= ((-factor if is_image else factor) / (widths[rows] * widths[columns]))[:, None]
             _add_to_pairs(total, rows, columns, influences, exchange_sign)
         for rows, columns in _blocks(self.is_missing & is_far, y.size):
             x, width_squares = separation[rows, columns, None], (widths[rows] ** 2 + widths[columns] ** 2)[:, None]
@@ -315,9 +315,9 @@ class _PairSums:
 
     def transform(self) -> FloatArray:
         """Return the sum over the wavenumber along y: array (wavenumber, cell, cell)."""
-        cells = self.edges.size - 1
-        pair_rows = self.total.reshape(cells**2, -1)
-        return np.asarray((self.lateral.matrix.T @ pair_rows.T).reshape(-1, cells, cells))
+        cell_count = self.edges.size - 1
+        pair_rows = self.total.reshape(cell_count**2, -1)
+        return np.asarray((self.lateral.matrix.T @ pair_rows.T).reshape(-1, cell_count, cell_count))
 
 
 def _add_to_pairs(

@@ -127,8 +127,10 @@ def end_fields(
     with one_blas_thread():
         for subproblem in problem.split_by_mirror_sign():
             folded_sets = [_FoldedPositions.of(subproblem, points) for points in point_sets]
-            cells = subproblem.cells[subproblem.cell_of_column]
-            parity_loads = {0: cells} if np.isinf(subproblem.length) else split_by_parity(cells, subproblem.sign_x)
+            cell_loads = subproblem.cell_loads[subproblem.cell_of_column]
+            parity_loads = (
+                {0: cell_loads} if np.isinf(subproblem.length) else split_by_parity(cell_loads, subproblem.sign_x)
+            )
             parity_fields = _sum_over_wavenumbers(subproblem, harmonics, folded_sets, reference, parity_loads)
             for by_load, points, sums in zip(fields, folded_sets, parity_fields, strict=True):
                 by_load |= dict(zip(subproblem.loads, points.unfold(sums, harmonics.odd_along_x), strict=True))

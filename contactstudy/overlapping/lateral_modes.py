@@ -62,8 +62,8 @@ class LateralPanel:
             powers = (self.nodes[:, None] / panel_end) ** np.arange(-self.poles, terms)
             scale = panel_end ** np.arange(-self.poles, terms)
             waves = []
-            for moments in (cosine_moments, sine_moments):
-                integrals = moments(panel_end, y, self.reference, terms)[BENDING_POLES - self.poles :]
+            for compute_moments in (cosine_moments, sine_moments):
+                integrals = compute_moments(panel_end, y, self.reference, terms)[BENDING_POLES - self.poles :]
                 waves.append(np.asarray(np.linalg.solve(powers.T, integrals / scale[:, None]) / np.pi))
             return waves[0], waves[1]
         phase, weights = np.outer(self.fine_nodes, y), self.weights[:, None] / np.pi
@@ -92,27 +92,31 @@ class LateralColumns:
     along_x: FloatArray  # (cell, node or 1, column): the functions of x
     parities: IntArray
     """(column): 1 or -1 for a part of the load even or odd about mid-length, 0 for a load that is not split."""
-    even: FloatArray
+    even_filters: FloatArray
     """(node, column, y): from the amplitudes to their sum at positions y, for components even or odd under a load
     even in y."""
-    odd: FloatArray
+    odd_filters: FloatArray
 
     @classmethod
     def of_unit_loads(cls, panel: LateralPanel, along_x: FloatArray, parities: IntArray) -> LateralColumns:
         """Columns `along_x` (cell, column) at the nodes of a panel, for operators that filter along y themselves."""
         empty = np.zeros((panel.nodes.size, parities.size, 0))
-        return cls(nodes=panel.nodes, along_x=along_x[:, None, :], parities=parities, even=empty, odd=empty)
+        return cls(
+            nodes=panel.nodes, along_x=along_x[:, None, :], parities=parities, even_filters=empty, odd_filters=empty
+        )
 
     def synthesis(self, load: Load, parity: int) -> tuple[FloatArray, FloatArray]:
-        """`even` and `odd` of one parity for a load in one direction: arrays (node column, y)."""
+        """`even_filters` and `odd_filters` of one parity for a load in one direction: arrays (node column, y)."""
         # Kernels of a load that a reflection along y reverses carry a factor i, which turns a cosine into a sine.
         is_parity = self.parities == parity
-        even, odd = (waves[:, is_parity].reshape(-1, waves.shape[2]) for waves in (self.even, self.odd))
-        return (even, odd) if load.sign_y > 0 else (odd, -even)
+        even_filters, odd_filters = (
+            waves[:, is_parity].reshape(-1, waves.shape[2]) for waves in (self.even_filters, self.odd_filters)
+        )
+        return (even_filters, odd_filters) if load.sign_y > 0 else (odd_filters, -even_filters)
 
     def sum_at_positions(self) -> LateralColumns:
         """Columns whose amplitudes are parts of the sum at one position along y: fewer columns for few positions."""
-        along_nodes, waves = self.along_x.swapaxes(0, 1), np.concatenate([self.even, self.odd], axis=2)
+        along_nodes, waves = self.along_x.swapaxes(0, 1), np.concatenate([self.even_filters, self.odd_filters], axis=2)
         along_x, parities, positions = [], [], []
         for parity in np.unique(self.parities):
             is_parity = self.parities == parity
@@ -121,9 +125,13 @@ class LateralColumns:
             along_x.append(sums[..., is_loaded].swapaxes(0, 1))
             parities.append(np.full(is_loaded.sum(), parity))
             positions.append(np.eye(is_loaded.size)[is_loaded])
-        even, odd = np.split(np.tile(np.concatenate(positions), (self.nodes.size, 1, 1)), 2, axis=2)
+        even_filters, odd_filters = np.split(np.tile(np.concatenate(positions), (self.nodes.size, 1, 1)), 2, axis=2)
         return replace(
-            self, along_x=np.concatenate(along_x, axis=2), parities=np.concatenate(parities), even=even, odd=odd
+            self,
+            along_x=np.concatenate(along_x, axis=2),
+            parities=np.concatenate(parities),
+            even_filters=even_filters,
+            odd_filters=odd_filters,
         )
 
 
@@ -192,8 +200,8 @@ def lateral_columns(
         nodes=panel.fine_nodes,
         along_x=np.stack(along_x, axis=-1),
         parities=np.array(parities),
-        even=np.stack(even_waves, axis=1),
-        odd=np.stack(odd_waves, axis=1),
+        even_filters=np.stack(even_waves, axis=1),
+        odd_filters=np.stack(odd_waves, axis=1),
     )
     if panel.interpolation is not None:
         columns = _interpolate_columns(columns, panel.nodes, panel.interpolation)
@@ -215,12 +223,16 @@ def _interpolate_columns(columns: LateralColumns, nodes: FloatArray, interpolati
         parities.append(np.full(rank, parity))
         factors.append((is_parity, interpolation.T[:, None, :, None] * along_nodes))
     column_parities = np.concatenate(parities)
-    even, odd = (
+    even_filters, odd_filters = (
         np.concatenate([np.tensordot(factor, waves[:, is_parity], axes=2) for is_parity, factor in factors], axis=1)
-        for waves in (columns.even, columns.odd)
+        for waves in (columns.even_filters, columns.odd_filters)
     )
     return LateralColumns(
-        nodes=nodes, along_x=np.concatenate(along_x, axis=1)[:, None, :], parities=column_parities, even=even, odd=odd
+        nodes=nodes,
+        along_x=np.concatenate(along_x, axis=1)[:, None, :],
+        parities=column_parities,
+        even_filters=even_filters,
+        odd_filters=odd_filters,
     )
 
 

@@ -49,7 +49,7 @@ class EndProblem:
 
     length: float  # distance between the ends, metres; infinite for one end
     poisson: float
-    cells: FloatArray  # (cell_x, cell_y): load per area on the cells of `grid`, Pa
+    cell_loads: FloatArray  # (cell_x, cell_y): load per area on the cells of `grid`, Pa
     loads: tuple[Load, ...]  # directions of the load, each a separate problem; mirror images keep all or reverse all
     grid: Grid  # cells, from ``x = 0``
     resolution: Resolution  # quadrature settings
@@ -57,7 +57,7 @@ class EndProblem:
     finest: float | None = None  # size of the cells of the given load, metres, if `grid` is finer
 
     def __post_init__(self) -> None:
-        loaded_rows = np.flatnonzero(self.cells.any(axis=0))
+        loaded_rows = np.flatnonzero(self.cell_loads.any(axis=0))
         width = self.grid.dy * (loaded_rows[-1] - loaded_rows[0] + 1) if loaded_rows.size else 0.0
         if self.length < MIN_LENGTH_RATIO * width:
             raise InvalidInputError(
@@ -140,10 +140,10 @@ def finest_cell(grid: Grid) -> float:
     return min(grid.dx, grid.dy) if grid.uniform else grid.dy
 
 
-def split_by_parity(cells: FloatArray, sign_x: int) -> dict[int, FloatArray]:
+def split_by_parity(cell_loads: FloatArray, sign_x: int) -> dict[int, FloatArray]:
     """Even (1) and odd (-1) parts of a load (x, y) about mid-length, if not negligible; `sign_x` -1 swaps the parts."""
-    parity_loads = {parity: 0.5 * (cells + sign_x * parity * cells[::-1]) for parity in (1, -1)}
-    min_amplitude = NEGLIGIBLE_LOAD * np.abs(cells).max()
+    parity_loads = {parity: 0.5 * (cell_loads + sign_x * parity * cell_loads[::-1]) for parity in (1, -1)}
+    min_amplitude = NEGLIGIBLE_LOAD * np.abs(cell_loads).max()
     return {
         parity: parity_load for parity, parity_load in parity_loads.items() if np.abs(parity_load).max() > min_amplitude
     }

@@ -37,9 +37,7 @@ RAY_FACTOR = (
     1.25  # angle of the axial ray and step along the ray, over the values for a field: no depth ray limits them. Speed.
 )
 
-CELLS_PER_FINEST = (
-    8  # cells along y over the finest resolved distance from an end, if cells along x are narrow there. Accuracy.
-)
+CELLS_PER_FINEST = 8  # cells along y over the finest resolved distance from an end with narrow cells along x. Accuracy.
 
 
 class EndRequest(NamedTuple):
@@ -290,7 +288,9 @@ class EndCorrection:
             for moments, parity_values in folded
         ]
 
-    def compute_displacement(self, direction: Load, loads: Mapping[Load, list[FloatArray]], cells: int) -> ComplexArray:
+    def compute_displacement(
+        self, direction: Load, loads: Mapping[Load, list[FloatArray]], cell_count: int
+    ) -> ComplexArray:
         """Displacement in one direction, transformed along y (cell, wavenumber), from all `project_loads` loads."""
         terms: list[FloatArray] = []
         for index, moments in enumerate(self.moments[direction]):
@@ -305,28 +305,28 @@ class EndCorrection:
                     projection_sum[0] -= _multiply_columns(kernel, imaginary_part)
                     projection_sum[1] += _multiply_columns(kernel, real_part)
             terms.append(moments.T @ np.ascontiguousarray(projection_sum.transpose(2, 1, 0)).reshape(len(moments), -1))
-        return np.asarray(self._unfold(terms, cells, direction.sign_x).view(np.complex128) / self.cell)
+        return np.asarray(self._unfold(terms, cell_count, direction.sign_x).view(np.complex128) / self.cell)
 
     def _fold(self, values: FloatArray, sign_x: int) -> list[FloatArray]:
         """Sum and difference of the cells on either side of the middle, by parity; with one end, the cells."""
         if len(self.parities) == 1:
             return [values]
-        cells = values.shape[0]
-        half_count = (cells + 1) // 2
+        cell_count = values.shape[0]
+        half_count = (cell_count + 1) // 2
         near_cells, far_cells = values[:half_count], values[::-1][:half_count]
         even_part, odd_part = near_cells + far_cells, near_cells - far_cells
-        if cells % 2:  # the middle cell is its own image
+        if cell_count % 2:  # the middle cell is its own image
             even_part[-1] *= 0.5
         return [even_part, odd_part] if sign_x > 0 else [odd_part, even_part]
 
-    def _unfold(self, parity_values: list[FloatArray], cells: int, sign_x: int) -> FloatArray:
+    def _unfold(self, parity_values: list[FloatArray], cell_count: int, sign_x: int) -> FloatArray:
         """Undo `_fold`, up to its factor."""
         if len(parity_values) == 1:
             return parity_values[0]
         even_part, odd_part = parity_values if sign_x > 0 else parity_values[::-1]
-        values = np.empty((cells, even_part.shape[1]))
+        values = np.empty((cell_count, even_part.shape[1]))
         np.add(even_part, odd_part, out=values[: even_part.shape[0]])
-        np.subtract(even_part[: cells // 2], odd_part[: cells // 2], out=values[::-1][: cells // 2])
+        np.subtract(even_part[: cell_count // 2], odd_part[: cell_count // 2], out=values[::-1][: cell_count // 2])
         return values
 
     def coarsen(self) -> EndCorrection:

@@ -45,7 +45,7 @@ LETTER_WIDTH = 0.073  # Width of a letter in a label, inches
 MIN_LINE_LENGTH = 14  # Least length of a folded line, letters
 LEGEND_WIDTH = 40  # Letters in a line of a legend within the axes
 WORD = re.compile(r"(?:\\.|\$(?:[^$\\]|\\.)*\$|\S)+")  # formulas in one piece
-BREAKS = (";:", ",", "")  # Letters after which a text is folded, first choice first; finally after any word
+FOLD_CHARACTERS = (";:", ",", "")  # Letters after which a text is folded, first choice first; finally after any word
 MARKUP = re.compile(r"\\[A-Za-z]+|[\\{}$_^]")
 
 
@@ -118,7 +118,7 @@ def line_styles(count: int) -> list[dict[str, Any]]:
 
 def fold_text(text: str, width: int) -> str:
     """Break a text into lines of at most `width` letters: after ; or :, else after commas, else between words."""
-    return "\n".join(_fold_words(WORD.findall(text), width, BREAKS))
+    return "\n".join(_fold_words(WORD.findall(text), width, FOLD_CHARACTERS))
 
 
 def _fold_words(words: list[str], width: int, breaks: Sequence[str]) -> list[str]:
@@ -150,10 +150,14 @@ def fold_labels(*axes: Axes) -> None:
     """Fold labels and titles of axes to the length of their side."""
     for ax in axes:
         dots = ax.get_window_extent()
-        across, up = (
+        width_in_letters, height_in_letters = (
             max(MIN_LINE_LENGTH, int(size / ax.figure.dpi / LETTER_WIDTH)) for size in (dots.width, dots.height)
         )
-        for text, width in ((ax.xaxis.label, across), (ax.yaxis.label, up), (ax.title, across)):
+        for text, width in (
+            (ax.xaxis.label, width_in_letters),
+            (ax.yaxis.label, height_in_letters),
+            (ax.title, width_in_letters),
+        ):
             if text.get_text():
                 text.set_text(fold_text(text.get_text(), width))
 

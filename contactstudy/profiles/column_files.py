@@ -76,7 +76,7 @@ def read_lines(path: Path) -> Iterator[tuple[int, str]]:
 
 
 def describe_foreign_file(path: Path) -> str:
-    """Return the kind of a file without measurements, with advice; empty if unknown."""
+    """Return the kind of a file without measurements, and advice; an empty text for an unknown kind."""
     head = _read_head(path)
     for signature, description in SIGNATURES:
         # Short signatures also occur in text: the code ignores them in text files.

@@ -115,7 +115,7 @@ class EffectiveLength(Shape):
     """A profile over the effective length of a drawing, without the roller's corners.
 
     Within the effective length the drop is that of `profile` on a roller of this length. The corners are circles over
-    the rest of the roller at either end: each begins with the profile's slope, and is perpendicular to the axis at the
+    the remaining length at either end: each begins with the profile's slope, and is perpendicular to the axis at the
     roller's end. A profile with an infinite drop at its end, such as Lundberg's, continues up to the slope 1.
 
     Parameters

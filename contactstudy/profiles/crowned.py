@@ -120,7 +120,7 @@ class PartialCrown(Shape):
         begin = end - self.dub_length
         if begin < -1e-9 * length:
             raise InvalidInputError(
-                "dub_length", self.dub_length, f"at most {end:g} m, the length beside the straight middle"
+                "dub_length", self.dub_length, f"at most {end:g} m, the length between the straight middle and the end"
             )
         begin = max(begin, 0.0)
         if begin > self.crown_radius:

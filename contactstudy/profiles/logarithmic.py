@@ -46,11 +46,11 @@ class Logarithmic(Shape):
             Further parameters of the profile.
         """
         profile_class: Any = cls
-        profile: Self = profile_class(**cls._design(max_pressure, radius, modulus), **parameters)
+        profile: Self = profile_class(**cls._parameters_for_pressure(max_pressure, radius, modulus), **parameters)
         return profile
 
     @classmethod
-    def _design(cls, max_pressure: float, radius: float, modulus: float) -> dict[str, float]:
+    def _parameters_for_pressure(cls, max_pressure: float, radius: float, modulus: float) -> dict[str, float]:
         """Parameters that follow from the design load."""
         pressure = checks.positive("max_pressure", max_pressure, "Pa")
         modulus = checks.positive("modulus", modulus, "Pa")
@@ -161,8 +161,8 @@ class JohnsGohar(Logarithmic):
         object.__setattr__(self, "half_width", checks.not_negative("half_width", self.half_width, "metres"))
 
     @classmethod
-    def _design(cls, max_pressure: float, radius: float, modulus: float) -> dict[str, float]:
-        return super()._design(max_pressure, radius, modulus) | {
+    def _parameters_for_pressure(cls, max_pressure: float, radius: float, modulus: float) -> dict[str, float]:
+        return super()._parameters_for_pressure(max_pressure, radius, modulus) | {
             "half_width": hertz.line_half_width(max_pressure, radius, modulus)
         }
 

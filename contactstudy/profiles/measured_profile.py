@@ -65,8 +65,8 @@ def _sum_uneven_points(x: FloatArray, values: FloatArray) -> tuple[FloatArray, .
     moments = np.empty((5, x.size))
     for begin in range(0, x.size, CHUNK_POINTS):
         centres = x[begin : begin + CHUNK_POINTS]
-        low, high = np.searchsorted(x, (centres[0] - WEIGHT_REACH, centres[-1] + WEIGHT_REACH))
-        nearby = slice(low, high)
+        start, stop = np.searchsorted(x, (centres[0] - WEIGHT_REACH, centres[-1] + WEIGHT_REACH))
+        nearby = slice(start, stop)
         s = x[nearby] - centres[:, None]
         weight = np.where(np.abs(s) <= WEIGHT_REACH, point_weights[nearby] * np.exp(-np.pi * s**2), 0.0)
         sums = [np.sum(weight * s**power, axis=1) for power in range(3)]
@@ -293,17 +293,19 @@ class Measured(Shape):
         A filtered profile has no corners: its slope changes over the cut-off.
         """
         x, drops = self._from_middle, self._filtered
-        bends = np.zeros(x.size)
-        bends[1:-1] = np.diff(np.diff(drops) / np.diff(x))
+        slope_changes = np.zeros(x.size)
+        slope_changes[1:-1] = np.diff(np.diff(drops) / np.diff(x))
         if self.cutoff is not None:
             return super().slope_jumps(length)
-        magnitude = np.abs(bends)
+        magnitude = np.abs(slope_changes)
         padded = np.pad(magnitude, CORNER_STEPS, mode="edge")
         neighbours = np.maximum(padded[: x.size], padded[2 * CORNER_STEPS :])
         local_maxima = sliding_window_view(np.pad(magnitude, 1), 3).max(axis=-1)
-        typical_bends = np.maximum(neighbours, np.median(magnitude))
-        is_corner = (magnitude == local_maxima) & (magnitude > CORNER_RATIO * typical_bends) & (magnitude > MIN_JUMP)
-        sums = np.convolve(bends, np.ones(3), mode="same")
+        typical_slope_changes = np.maximum(neighbours, np.median(magnitude))
+        is_corner = (
+            (magnitude == local_maxima) & (magnitude > CORNER_RATIO * typical_slope_changes) & (magnitude > MIN_JUMP)
+        )
+        sums = np.convolve(slope_changes, np.ones(3), mode="same")
         return SlopeJumps(x[is_corner], sums[is_corner])
 
     def second_interpolation(self) -> Measured:

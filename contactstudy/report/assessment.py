@@ -164,10 +164,10 @@ def _free_ends(case: xr.Dataset) -> Criterion:
     question, residual = "Are the free ends free?", _size(case, "end_traction_residual")
     body = attribute(case, INPUTS_ATTRIBUTE).get("case", {}).get("body", {})
     if body.get("kind") == "HalfSpace" or (residual == 0 and not body):
-        return Criterion(question, YES, "the body has no free end, or the traction there is zero")
+        return Criterion(question, YES, "the body has no free end, or the traction on the free end is zero")
     if np.isnan(residual):
         return _unknown(question, "end_traction_residual")
-    reason = f"the traction there is {_digit(residual)} of the peak pressure"
+    reason = f"the traction on the free end is {_digit(residual)} of the peak pressure"
     if body.get("model", "exact") != "exact":
         return Criterion(question, CAUTION, f"{reason}: the model {body['model']!r} serves comparisons only")
     return Criterion(question, YES if residual <= RESIDUAL_TOLERANCE else CAUTION, reason)

@@ -58,7 +58,7 @@ def case_table(case: Case) -> CaseTable:
     ]
     if roller.material is not None:
         roller_rows.append(
-            ("elastic as", "its own free ends" if roller.ends == "free" else "a half-space, without ends")
+            ("elastic model", "body with free ends" if roller.ends == "free" else "half-space without ends")
         )
     drops = roller.profile.drop(np.array([0.45, 0.5]) * roller.length, roller.length).tolist()
     roller_rows.append(

@@ -202,7 +202,7 @@ def _draw_profile(roller: Roller, figure: Figure, result: xr.Dataset) -> str:
 def _cap_remark(result: xr.Dataset) -> str:
     """Sentence for a caption: the colours are limited near a singular end; empty without a singular end."""
     _, limit = cap_field(result, result["von_mises"])
-    return f" Beside a singular end the stress exceeds the largest colour, {format_quantity(limit, 'Pa')}." * (
+    return f" Near a singular end the stress exceeds the largest colour, {format_quantity(limit, 'Pa')}." * (
         limit < np.inf
     )
 

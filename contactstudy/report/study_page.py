@@ -184,7 +184,7 @@ def _number(scalars: Mapping[str, float], name: str) -> str:
     if name.startswith("end_intensity"):
         text = intensity_text(value, error, scalars[name.replace("intensity", "exponent")])
     elif _is_open_end(scalars, name):
-        return "not pressed"
+        return "not loaded"
     elif np.isinf(value) or (name.startswith("peak_von_mises") and np.isinf(scalars.get("peak_pressure", 0.0))):
         return "singular"
     elif name.endswith(("_x", "_z")):

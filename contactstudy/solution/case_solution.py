@@ -181,8 +181,8 @@ def with_stresses(
     refined = contact.cells == "refined"
 
     def positions(largest: StressMaximum) -> FieldPositions:
-        pressed = np.asarray(contact.contact.pressure.any(axis=1))
-        columns = default_columns(grid, case.body.extent, pressed, scale) if x is None and refined else x
+        is_loaded = np.asarray(contact.contact.pressure.any(axis=1))
+        columns = default_columns(grid, case.body.extent, is_loaded, scale) if x is None and refined else x
         depths = default_depths(scale, largest.position[2]) if z is None else z
         return field_positions(case.body, grid, columns, y, depths)
 

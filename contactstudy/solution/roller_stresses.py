@@ -71,11 +71,11 @@ def roller_stress(
         )
     grid, body_loads, *_ = prescribed_loads(case.body, pressure, 0.0, traction_x, traction_y)
     if slides_fully and traction_y is None:
-        body_loads = {**body_loads, **sliding(body_loads[Load.NORMAL].cells, case.friction_on(grid.x))}
+        body_loads = {**body_loads, **sliding(body_loads[Load.NORMAL].cell_loads, case.friction_on(grid.x))}
     body, roller_grid = case.counterbody.body, case.counterbody.grid_on_body(grid)
     loads = {
         load: TopLoad(
-            case.counterbody.transfer_load(grid, top.cells), top.factor if load is Load.NORMAL else -top.factor
+            case.counterbody.transfer_load(grid, top.cell_loads), top.factor if load is Load.NORMAL else -top.factor
         )
         for load, top in body_loads.items()
     }

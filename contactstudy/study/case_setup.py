@@ -26,7 +26,7 @@ from contactstudy.study.parameters import (
     PARAMETERS,
     REQUIRED,
     ROLLER_BODIES,
-    UNIFORM_CELLS,
+    UNIFORM_CELL_PARAMETERS,
     check_parameters,
     keywords_of,
     with_defaults,
@@ -145,15 +145,17 @@ class Setup:
 def _check_choices(values: Mapping[str, Any]) -> None:
     """Raise unless a case has exactly one parameter of each group of :data:`REQUIRED`."""
     for names in REQUIRED:
-        stated = [name for name in names if name in values]
-        if not stated and len(names) == 1:
+        stated_names = [name for name in names if name in values]
+        if not stated_names and len(names) == 1:
             raise InvalidInputError(names[0], None, "given")
-        if len(stated) != 1:
+        if len(stated_names) != 1:
             *first, last = names
             count = "two" if len(names) == 2 else "three"
-            given = tuple(values[name] for name in stated) if stated else "none"
+            stated_values = tuple(values[name] for name in stated_names) if stated_names else "none"
             raise InvalidInputError(
-                ", ".join(stated or names), given, f"given as one of the {count}, {', '.join(first)} or {last}"
+                ", ".join(stated_names or names),
+                stated_values,
+                f"given as one of the {count}, {', '.join(first)} or {last}",
             )
 
 
@@ -161,9 +163,9 @@ def _check_approach(parameters: Mapping[str, Any]) -> None:
     """Raise if a case at an approach has a parameter in half-widths: this half-width follows from the solution."""
     if "approach" not in parameters:
         return
-    remedies = dict.fromkeys(UNIFORM_CELLS, "leave it out: columns are refined, to `accuracy`") | dict.fromkeys(
-        SCALED_POSITIONS, "leave it out: the solver chooses the points, after the half-width"
-    )
+    remedies = dict.fromkeys(
+        UNIFORM_CELL_PARAMETERS, "leave it out: columns are refined, to `accuracy`"
+    ) | dict.fromkeys(SCALED_POSITIONS, "leave it out: the solver chooses the points, after the half-width")
     remedies |= {"e_over_a": "give end_distance (metres)", "load_offset": "prescribe the load instead"}
     for name, remedy in remedies.items():
         if name in parameters:
@@ -221,7 +223,10 @@ def _lubricant(values: Mapping[str, Any]) -> Lubricant | None:
     if len(sources) > 1:
         raise InvalidInputError(", ".join(sources), tuple(values[name] for name in sources), "one of the two")
     required = (*sources, *(LUBRICANT_PAIRS[name] for name in sources), "entrainment_speed")
-    excluded = [*LUBRICANT_PAIRS.values(), *((*UNIFORM_CELLS, *SCALED_POSITIONS) if sources else FILM_PARAMETERS)]
+    excluded = [
+        *LUBRICANT_PAIRS.values(),
+        *((*UNIFORM_CELL_PARAMETERS, *SCALED_POSITIONS) if sources else FILM_PARAMETERS),
+    ]
     for name in excluded:
         if name not in required[:-1] and values.get(name) != PARAMETERS[name].default:
             raise InvalidInputError(name, values[name], f"left out {'for' if sources else 'without'} a film")
@@ -288,7 +293,7 @@ def build_setup(parameters: Mapping[str, Any]) -> Setup:
         solver_settings, values
     )
     options["tolerance"] = tolerance
-    stated_cells = {name: parameters[name] for name in ("accuracy", *UNIFORM_CELLS) if name in parameters}
+    stated_cells = {name: parameters[name] for name in ("accuracy", *UNIFORM_CELL_PARAMETERS) if name in parameters}
     if "accuracy" in stated_cells and len(stated_cells) > 1:
         allowed = "given as one of the two, accuracy or uniform cells"
         raise InvalidInputError(", ".join(stated_cells), tuple(stated_cells.values()), allowed)

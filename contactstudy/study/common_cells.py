@@ -23,7 +23,7 @@ FLAG_VARIABLES = frozenset({"stick"})  # Variables that are true or false
 
 
 def resampling_comment(name: str) -> str:
-    """Comment that says how a variable's values on common cells were computed."""
+    """Comment on the computation of a variable's values on common cells."""
     if name in AVERAGED_VARIABLES:
         return "averaged over cells common to all cases: loads remain, peaks may be a little lower"
     if name in FLAG_VARIABLES:

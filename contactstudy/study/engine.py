@@ -368,8 +368,10 @@ def _distribute(client: Client, workers: Workers, tasks: Tasks, solver: Solver |
                     )
                     running[future] = (worker, task, time.monotonic())
                     future.add_done_callback(finished_futures.put)
-            if lost := next((future for future, (worker, _, _) in running.items() if worker not in usable), None):
-                future = lost
+            if lost_future := next(
+                (future for future, (worker, _, _) in running.items() if worker not in usable), None
+            ):
+                future = lost_future
             else:
                 try:
                     future = finished_futures.get(timeout=RUN.poll_seconds)

@@ -423,8 +423,8 @@ class Folder:
             for batches in group_by_structure(batch for _, batch in paths_and_batches):
                 for portion in _split_by_size(batches):
                     if len(portion) > 1:
-                        joined = select_latest(join_batches(portion))
-                        write_batch(self.batches, f"{share.prefix}{os.urandom(6).hex()}", joined)
+                        joined_batch = select_latest(join_batches(portion))
+                        write_batch(self.batches, f"{share.prefix}{os.urandom(6).hex()}", joined_batch)
                         for batch in portion:
                             sources[id(batch)].unlink(missing_ok=True)
 

@@ -107,7 +107,7 @@ class Parameter:
         return None if value is None else self.check(self.name, value)
 
 
-UNIFORM_CELLS = ("cells_x", "cells_y", "window", "margin")
+UNIFORM_CELL_PARAMETERS = ("cells_x", "cells_y", "window", "margin")
 """Parameters of uniform cells; a case with any of these parameters has uniform cells."""
 
 BODIES = ("finite-length", "quarter-space", "half-space")
@@ -400,7 +400,7 @@ def check_parameters(values: Mapping[str, Any], where: str = "parameter") -> dic
 
 def add_default_accuracy(values: Mapping[str, Any]) -> dict[str, Any]:
     """Return checked `values` with the default accuracy, unless the cells are uniform; identities depend on it."""
-    has_cells = any(name in values for name in ("accuracy", *UNIFORM_CELLS))
+    has_cells = any(name in values for name in ("accuracy", *UNIFORM_CELL_PARAMETERS))
     return dict(values) if has_cells else {**values, "accuracy": ACCURACY}
 
 

@@ -76,10 +76,10 @@ class ProfileKind:
             stated_entries = _read_points(stated_entries)
         values = {key: _check_value(key, entry, depth) for key, entry in stated_entries.items()}
         if not {*POINTS, *NESTED, "terms"}.isdisjoint(self.defaults):
-            self._require(values)
+            self._check_required_fields(values)
         return {key: values[key] for key in keys if key in values and values[key] != self.defaults.get(key)}
 
-    def _require(self, table: Mapping[str, Any], design_fields: tuple[str, ...] = ()) -> None:
+    def _check_required_fields(self, table: Mapping[str, Any], design_fields: tuple[str, ...] = ()) -> None:
         """Raise unless a table has every required field except `design_fields`."""
         for name, default in self.defaults.items():
             if default is MISSING and name not in table and name not in design_fields:
@@ -99,7 +99,7 @@ class ProfileKind:
         if self.design_fields and len(design) + any(name in values for name in self.design_fields) != 1:
             choice = f"exactly one of {' with '.join(self.design_fields)}, {' and '.join(DESIGN)}"
             raise InvalidInputError("profile", dict(table), f"given with {choice}")
-        self._require(values, self.design_fields if design else ())
+        self._check_required_fields(values, self.design_fields if design else ())
         profile: Profile
         if not design:
             radii = {name: factor * sizes.radius for name, factor in self.radius_multiples.items()}

@@ -225,7 +225,7 @@ def run_study(
             message = f"interrupted: {finished} of {len(plan.unique)} cases are kept in {results_folder.path}"
             message += "; run again to go on"
             log.log(message)
-            # The message says enough: the line at which the solver was is of no interest.
+            # The message replaces the traceback: the interrupted line of the solver is of no interest.
             interrupt.args = (message,)
             raise interrupt.with_traceback(None) from None
         except BaseException as error:

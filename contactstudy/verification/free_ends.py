@@ -138,7 +138,7 @@ def antiplane_checks() -> Iterator[Check]:
         system.source(load, spectrum)[near_surface] for load in (Load.ALONG_Y, Load.NORMAL)
     )
     computed = under_traction / np.abs(under_pressure).max()
-    quantity = "load asked of the end, over that for an equal pressure"
+    quantity = "equivalent load on the end, over that for an equal pressure"
     case = "traction along y that does not vary along y"
     yield Reference(case, EXACT_LIMIT).compare_fields(quantity, computed, 0.0, 1e-4)
 

@@ -232,7 +232,7 @@ def kalker_checks(*, full: bool) -> Iterator[Check]:
                 force = float(result["force_y" if motion.longitudinal_creepage else "force_x"])
                 forces.append(force / (CREEPAGE * across * (np.sqrt(across) if motion.spin else 1.0)))
             coefficients.append(forces)
-        # The error is of first order in the cell: count - 6 cells span the contact, since three lie beside either end.
+        # The error is of first order in the cell: count - 6 cells span the contact, since three lie outside either end.
         coarse_count, fine_count = (count - 6 for count in counts)
         extrapolated = (fine_count * np.array(coefficients[1][:2]) - coarse_count * np.array(coefficients[0][:2])) / (
             fine_count - coarse_count

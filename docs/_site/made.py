@@ -127,7 +127,7 @@ def measures() -> str:
 
 
 def _specifications(entries: Mapping[str, vocabulary.Variable]) -> str:
-    """Every field that a specification has: dims as code, the rest as it stands."""
+    """Every field of a specification: dims as code, the other fields as text."""
     kind = vocabulary.Variable
     names = [entry.name for entry in fields(kind)] if is_dataclass(kind) else list(kind._fields)
     columns = [name for name in names if name not in ("dims", "comment")]

@@ -1,4 +1,4 @@
-"""Contact results: small tables by hand, Hertz' line contact, a study case by case, the real solver."""
+"""Contact results: small tables by hand, Hertz' line contact, the cases of a study, the real solver."""
 
 from __future__ import annotations
 
@@ -102,7 +102,7 @@ def test_border_of_a_hertz_pressure(half_width: float, centre: float) -> None:
     positions = (np.arange(80) - 39.5) / 16
     pressure = np.sqrt(np.maximum(1 - ((positions - centre) / half_width) ** 2, 0))
     first_border, last_border = contact_borders(pressure, positions)
-    # The value of the outermost cell is not used: the border may lie anywhere in this cell.
+    # The analysis excludes the value of the outermost cell: the border may lie anywhere in this cell.
     assert float(last_border) == pytest.approx(centre + half_width, abs=1e-6)
     assert float(first_border) == pytest.approx(centre - half_width, abs=1e-6)
 
@@ -122,7 +122,7 @@ def test_real_contact(case_result: xr.Dataset) -> None:
     assert abs(float(result["moment"])) < 1e-6 * float(case_result["normal_load"]) * 0.5e-3
     half_width = analysis.half_width(case_result)["half_width"].sel(x=0.26e-3, method="nearest")
     line_load = analysis.line_load(case_result).sel(x=0.26e-3, method="nearest")
-    # Hertz' half-width of the load that the section carries, to a fraction of a cell (a/12).
+    # The half-width is Hertz' half-width for the load of the section, to a fraction of a cell (a/12).
     hertz = float(case_result["hertz_half_width"]) * np.sqrt(
         float(line_load) / (np.pi / 2 * float(case_result["hertz_half_width"] * case_result["hertz_max_pressure"]))
     )
@@ -206,7 +206,7 @@ def test_moment_about_nan() -> None:
     ],
 )
 def test_cut_ends(y_slice: slice, first: float, last: float) -> None:
-    # Unloaded rows on either side of y, as in every sufficient window.
+    # A sufficient window has unloaded rows on either side along y.
     full_contact = (
         contact(PRESSURE_VALUES).pad(y=1, constant_values=0).assign_coords(y=np.arange(-2.0, 3.0), normal_load=13.0)
     )

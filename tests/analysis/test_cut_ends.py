@@ -35,7 +35,7 @@ def test_ends_of_halves(flush: xr.Dataset, with_attributes: bool) -> None:
     assert first > 0
     assert last > 0
     assert end_values(contact.isel(x=slice(None, mid_column))) == pytest.approx([first, np.nan], nan_ok=True)
-    # Without the case the end of a body with loaded columns only is unknown.
+    # The end of a body with loaded columns only is unknown if the result contains no case.
     reaches = bool((flush["pressure"].isel(x=-1) > 0).any())
     expected = last if with_attributes or not reaches else np.nan
     assert end_values(contact.isel(x=slice(mid_column, None))) == pytest.approx([np.nan, expected], nan_ok=True)
@@ -56,7 +56,7 @@ def test_pressures_in_megapascals(flush: xr.Dataset) -> None:
 
 
 def test_part_of_a_contact_has_the_peaks_of_its_cells(flush: xr.Dataset) -> None:
-    """The refined peak, with its error; infinite at a singular end, like its edge pressure and factor."""
+    """The refined peak has an error; at a singular end the peak, the edge pressure and the factor are infinite."""
     results = analysis.contact_results(flush)
     assert float(results["peak_pressure"]) == float(flush["peak_pressure"])
     np.testing.assert_array_equal(results["peak_pressure_error"], flush["peak_pressure_error"])

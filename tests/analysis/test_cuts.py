@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 
 from contactstudy import InvalidInputError, analysis
 
-unit = st.floats(0, 1)
-point = st.tuples(unit, unit, unit)
+fraction = st.floats(0, 1)
+point = st.tuples(fraction, fraction, fraction)
 
 
 def linear() -> xr.Dataset:

@@ -88,7 +88,7 @@ def test_coarser_reference_raises():
 
 @pytest.mark.parametrize(("pressure", "cells"), [(1e9, 2), (0.8e9, 6)])
 def test_peak_at_a_sharp_end(pressure, cells):
-    """Coarse cells have their peak in the middle, although the peak at the end is higher."""
+    """The largest cell pressure lies in the middle on coarse cells, although the peak at the end is higher."""
     body = FiniteLengthSpace(length=0.8e-3, material=STEEL)
     roller = Roller(radius=5e-3, length=0.5e-3, profile=profiles.FullCrown(0.1))
     case = Case(body=body, roller=roller, max_pressure=pressure)
@@ -183,7 +183,7 @@ def test_advice_for_coarse_cells():
 
 @pytest.mark.parametrize("wider", [1.5, 1.0005])
 def test_graded_columns_get_no_grid_advice(wider):
-    """The middles of columns of two widths in turn have equal distances; their widths may differ by nanometres."""
+    """The centres of columns of two alternating widths have equal distances; the widths may differ by nanometres."""
     case = case_of(8 * HALF_WIDTH, profiles.Cylinder(fillet_radius=0.05e-3))
     edges = np.cumsum([0.0, *np.tile([1.0, wider], 16)])
     window = 2 * case.hertz_half_width

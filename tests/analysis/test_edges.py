@@ -114,7 +114,7 @@ def test_wrong_type_raises():
 
 
 def test_contact_area_near_cell_centres():
-    """A small fillet, where the pressure piles up: the fitted border may lie within the outermost loaded column."""
+    """At a small fillet the pressure is concentrated: the fitted border may lie within the outermost loaded column."""
     material, modulus = Material(210e9, 0.3), 0.5 * Material(210e9, 0.3).plane_strain_modulus
     half_width = 2 * 1.5e9 * 5e-3 / modulus
     roller = Roller(
@@ -150,7 +150,7 @@ def test_area_with_a_narrow_middle():
 
 
 def test_length_on_uniform_cells() -> None:
-    """The pressure of a flat crown falls off towards flush ends, and would be 0 a little beyond them."""
+    """The pressure of a flat crown decreases towards flush ends; its extrapolation is 0 a little beyond the ends."""
     steel = Material(210e9, 0.3)
     roller = Roller(radius=5e-3, length=1e-3, profile=FullCrown(crown_radius=0.5))
     case = Case(body=FiniteLengthSpace(length=1e-3, material=steel), roller=roller, max_pressure=1e9)

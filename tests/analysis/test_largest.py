@@ -14,7 +14,7 @@ A = 2 * 1.5e9 * 5e-3 / STEEL.plane_strain_modulus
 
 
 def shear(values: xr.DataArray) -> xr.Dataset:
-    """Stresses of pure shear: the maximum shear is its size."""
+    """Stresses of pure shear: the maximum shear equals the absolute value of the shear."""
     zero = xr.zeros_like(values)
     return xr.Dataset(dict.fromkeys(STRESSES, zero) | {"tau_yz": values})
 
@@ -74,7 +74,7 @@ def test_peak_of_a_solved_case(case_result: xr.Dataset) -> None:
 
 @pytest.mark.parametrize(("x", "z", "axis"), [(0.02, 0.2, "z"), (0.15, 0.02, "x")])
 def test_unresolved_pressure_peak(x: float, z: float, axis: str) -> None:
-    """A ridge 0.2 wide along x, and points that would agree well with polynomials."""
+    """The pressure has a ridge 0.2 wide along x; the polynomials through the points do not resolve the ridge."""
     positions = np.arange(-1.0, 1.0, 0.02)
     ridge = np.sqrt(np.maximum(1 - (positions / 0.2) ** 2, 0.0))[:, None] * np.ones(20)
     pressure = xr.DataArray(ridge, coords={"x": positions, "y": 0.1 * np.arange(20)}, dims=("x", "y"))

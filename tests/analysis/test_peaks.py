@@ -12,7 +12,7 @@ from tests.stand_in_solver import FAILS
 
 @pytest.mark.parametrize(
     ("variable", "value", "depth"),
-    # Johnson, Contact Mechanics, section 4.2; von Mises for Poisson's ratio 0.3.
+    # The values are from Johnson, Contact Mechanics, section 4.2; von Mises stress for Poisson's ratio 0.3.
     [
         ("von_mises", 0.5575, 0.70),
         ("tresca", 0.600, 0.786),
@@ -34,7 +34,7 @@ def test_line_contact(strip_result, variable: str, value: float, depth: float) -
 
 def test_friction_shifts_the_largest_von_mises(strip_result) -> None:
     result = analysis.largest_sample(strip_result(friction=0.2))
-    # A traction along +y on the body; table of the line contact with f = 0.2.
+    # The traction acts along +y on the body; the table is of the line contact with f = 0.2.
     assert float(result["peak_von_mises"]) == pytest.approx(0.590, abs=2e-3)
     assert float(result["peak_von_mises_y"]) == pytest.approx(0.55, abs=0.05)
 

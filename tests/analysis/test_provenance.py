@@ -1,4 +1,4 @@
-"""Case of a result: stored, compared by values, independent of how the load is prescribed."""
+"""Case of a result: stored, compared by values, independent of the prescription of the load."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def test_equal_cases(result: xr.Dataset, case) -> None:
 @pytest.mark.parametrize(
     ("case", "message"),
     [
-        (replace(CASE, friction=0.1), r"solved with friction = 0.05.*of the case beside it, friction = 0.1"),
+        (replace(CASE, friction=0.1), r"solved with friction = 0.05.*of the given case, friction = 0.1"),
         (replace(CASE, max_pressure=1.4e9), r"load = 61.2.*load = 53."),
         (replace(CASE, end_distance=0.0), r"end_distance = 0.0001.*end_distance = 0"),
         (replace(CASE, roller=replace(CASE.roller, radius=6e-3)), r"roller.radius = 0.005.*roller.radius = 0.006"),
@@ -52,7 +52,7 @@ def test_equal_cases(result: xr.Dataset, case) -> None:
             replace(CASE, roller=replace(CASE.roller, profile=profiles.Lundberg(3e-7))),
             r"roller.profile = Lundberg\(amplitude=0.2 µm\).*roller.profile = Lundberg\(amplitude=0.3 µm\)",
         ),
-        (FiniteLengthSpace(length=0.5e-3, material=STEEL), r"body.length = 0.0006.*of the body beside it"),
+        (FiniteLengthSpace(length=0.5e-3, material=STEEL), r"body.length = 0.0006.*of the given body"),
         (HalfSpace(material=STEEL), r"body.kind = FiniteLengthSpace.*body.kind = HalfSpace"),
     ],
 )

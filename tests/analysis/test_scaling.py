@@ -37,7 +37,7 @@ def test_scales_of_a_study(study_dataset: xr.Dataset) -> None:
     expected = study_dataset["pressure"].sel(selected_case) / 1.5e9
     assert np.allclose(scaled_study["pressure"].sel(selected_case), expected, equal_nan=True)
     assert scaled_study["pressure"].dims == study_dataset["pressure"].dims
-    # Positions of each case are divided by the case's a.
+    # The positions of each case are divided by the case's a.
     case_positions = scaled_study["x"].sel(selected_case)
     assert np.allclose(case_positions, study_dataset["x_over_a"].where(case_positions.notnull()), equal_nan=True)
     assert np.allclose(scaled_study["y_field"].sel(selected_case), study_dataset["y_field_over_a"])
@@ -70,15 +70,17 @@ def test_single_case_is_the_inverse(case_result: xr.Dataset) -> None:
 
 def test_joined_results_over_a(strip_result) -> None:
     results = [analysis.positions_over_a(strip_result(*scale)) for scale in ((1e-4, 1e9), (3e-4, 3e9))]
-    named = [result.assign_coords(e_over_a=i) for i, result in enumerate(results)]
-    joined = xr.concat(named, "e_over_a", join="override", coords="different", compat="equals")
-    pressure = joined["pressure"].sel(x_over_a=2, y_over_a=0, method="nearest") / joined["hertz_max_pressure"]
+    labelled_results = [result.assign_coords(e_over_a=i) for i, result in enumerate(results)]
+    joined_results = xr.concat(labelled_results, "e_over_a", join="override", coords="different", compat="equals")
+    pressure = (
+        joined_results["pressure"].sel(x_over_a=2, y_over_a=0, method="nearest") / joined_results["hertz_max_pressure"]
+    )
     assert np.allclose(pressure, pressure[0])
-    assert joined["x"].sel(e_over_a=1, x_over_a=2, method="nearest") == pytest.approx(2.1e-4 * 3, rel=0.02)
+    assert joined_results["x"].sel(e_over_a=1, x_over_a=2, method="nearest") == pytest.approx(2.1e-4 * 3, rel=0.02)
 
 
 def test_positions_over_a_of_a_study(study_dataset: xr.Dataset) -> None:
-    # All cases share y in metres, and have one half-width.
+    # All cases share the positions y in metres and have one half-width.
     study_over_a = analysis.positions_over_a(study_dataset)
     assert study_over_a["pressure"].dims[-2:] == ("x_over_a", "y_over_a")
     assert np.array_equal(study_over_a["pressure"], study_dataset["pressure"], equal_nan=True)

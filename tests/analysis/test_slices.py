@@ -123,7 +123,7 @@ def test_errors_against_finer_columns(kind: str) -> None:
 
 
 def test_mirrored_slices() -> None:
-    """A border between an unloaded slice and the contact leaves the same open on both sides."""
+    """A border between an unloaded slice and the contact has the same uncertainty on both sides."""
     result = solve(make_case(profiles.FullCrown(crown_radius=0.1), 1e-3, 1.4e-3), stresses=False, accuracy=0.03)
     table = analysis.slices(result, 25)
     for name in ("axial_pressure", "axial_pressure_error", "normal_load", "normal_load_error"):

@@ -1,4 +1,4 @@
-"""Units on labelled input are converted or refused, never ignored."""
+"""Units on labelled input are converted or rejected, never ignored."""
 
 from __future__ import annotations
 

@@ -123,7 +123,7 @@ def returned_datasets(strip_result: Callable[..., xr.Dataset], study_dataset: xr
     pressure = case_result["pressure"]
     contact = cs.solve_contact(body, case_result["initial_gap"], load=case.normal_load)
     coarse_result = cs.solve(case, grid.coarsened(), stresses=False)
-    # Sharp rigid ends inside the face: the pressure is singular at both.
+    # Sharp rigid ends lie inside the face: the pressure is singular at both ends.
     wider_result = cs.FiniteLengthSpace(length=2 * length, material=steel)
     sharp_result = cs.Case(body=wider_result, roller=cs.Roller(radius=5e-3, length=length), max_pressure=1.5e9)
     chamfer = cs.profiles.Chamfer(width=0.1e-3, angle=0.01)
@@ -256,7 +256,7 @@ def test_table_contains_all_variables(returned_datasets: Returned) -> None:
                 unknown_names.append((function, name))
             elif (
                 name not in MOTION_VARIABLES
-                and not str(name).startswith(("risk", "end_intensity"))  # units depend on an exponent
+                and not str(name).startswith(("risk", "end_intensity"))  # their units depend on an exponent
                 and function not in UNCHANGED_NAME_FUNCTIONS
             ):
                 expected = {"units": entry_of_table.units} if entry_of_table.units else {}
@@ -280,7 +280,7 @@ def test_tables_contain_all_coordinates(returned_datasets: Returned) -> None:
 
 
 def test_dimensions_match_table(returned_datasets: Returned) -> None:
-    """Except variables of a study, of slices and of a contact law; a cut field has fewer."""
+    """Variables of studies, slices and contact laws have other dimensions than the table; a cut field has fewer."""
     differing_names = []
     for function, dataset in returned_datasets.items():
         for name, array in dataset.data_vars.items():
@@ -368,14 +368,14 @@ def test_names_made_by_rule(name: str, symbol: str, units: str) -> None:
 
 
 def test_axis_labels_are_short() -> None:
-    """Labels of xarray's own figures are broken after 30 characters, and the second line is cut off."""
+    """xarray breaks labels of figures after 30 characters and cuts off the second line."""
     for name, entry in (*COORDINATES.items(), *PARAMETERS.items()):
         attributes = entry.attrs
         assert len(f"{attributes['long_name']} [{attributes.get('units', '')}]") <= 30, name
 
 
 def test_numbers_without_error_are_marked(case_result: xr.Dataset) -> None:
-    """Every scalar in SI of a result or its summary has an error, is an input, or is marked as not estimated."""
+    """Every scalar in SI of a result or its summary has an error, is an input, or has the mark "not estimated"."""
     input_names = ("normal_load", "hertz_half_width", "hertz_max_pressure", "tilt", "end_traction_residual")
     for dataset in (case_result, analysis.contact_results(case_result), analysis.edge_factors(case_result)):
         for name, value in dataset.data_vars.items():

@@ -10,7 +10,7 @@ from contactstudy.bearing import ContactLaw
 from contactstudy.bearing.energy_spline import EnergySpline, Nodes, estimate_fit_errors
 
 STIFFNESS, ARM = 3e12, 1e-3
-"""Two springs of power 3/2 to either side of the middle, N / m**1.5 and m."""
+"""Two springs of power 3/2 on either side of mid-length, N / m**1.5 and m."""
 
 
 def springs(approaches: np.ndarray, tilts: np.ndarray) -> Nodes:
@@ -51,7 +51,7 @@ def test_stiffness_equals_the_derivative() -> None:
 @pytest.mark.parametrize(("approaches", "tilts"), [(5, 5), (6, 7), (8, 9)])
 @pytest.mark.parametrize("tilt_scale", [5e-4, 1e-3, 1.5e-3])
 def test_errors_cover_values_between_nodes(tilt_scale: float, approaches: int, tilts: int) -> None:
-    """At the largest tilts one spring leaves the surface: a kink in the stiffness."""
+    """At the largest tilts one spring leaves the surface: the stiffness has a kink."""
     nodes = springs(np.geomspace(1e-6, 5e-6, approaches), np.linspace(-tilt_scale, tilt_scale, tilts))
     errors, dims = estimate_fit_errors(nodes, 2 * ARM), ("approach", "tilt")
     arrays = {
@@ -68,5 +68,5 @@ def test_errors_cover_values_between_nodes(tilt_scale: float, approaches: int, t
     load, moment = np.abs(motion.normal_load - fine.load), np.abs(motion.moment - fine.moment)
     assert bool((load <= motion.normal_load_error).all())
     assert bool((moment <= motion.moment_error).all())
-    # The stated error is not much too large at the kink.
+    # The stated error exceeds the difference at the kink by a moderate factor only.
     assert float((load / motion.normal_load_error).max()) > 0.04

@@ -74,13 +74,13 @@ def test_risk_is_independent_of_laminae(uniform: xr.Dataset) -> None:
 def test_free_ends_lower_the_outermost_riser() -> None:
     roller = Roller(radius=5e-3, length=0.5e-3, profile=DESIGN)
     flush = FiniteLengthSpace(length=0.5e-3, material=STEEL)
-    ends = [
+    end_risers = [
         float(
             lamina_factors(solve(Case(body=body, roller=roller, load=70.0, tilt=2e-4), stresses=False)).stress_riser[-1]
         )
         for body in (HalfSpace(material=STEEL), flush)
     ]
-    assert ends[1] < 0.8 * ends[0]
+    assert end_risers[1] < 0.8 * end_risers[0]
 
 
 def test_sharp_end_and_uniform_cells() -> None:
@@ -121,7 +121,7 @@ def test_errors_against_finer_columns(profile: profiles.Profile, tilt: float) ->
 
 @pytest.mark.parametrize("crown_radius", [0.01, 0.04])
 def test_errors_against_hertz_ellipse(crown_radius: float) -> None:
-    """The load per length is that of p0 (1 - (x/b)**2)**0.5, and 0 beyond the contact, within a lamina."""
+    """The load per length equals p0 (1 - (x/b)**2)**0.5, and 0 beyond the contact, within a lamina."""
     roller = Roller(radius=5e-3, length=1e-3, profile=profiles.FullCrown(crown_radius))
     case = Case(body=HalfSpace(material=STEEL), roller=roller, max_pressure=0.6e9)
     result = solve(case, stresses=False)

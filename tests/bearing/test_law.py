@@ -27,7 +27,7 @@ def ball() -> ContactLaw:
 @pytest.mark.parametrize("tilt", [0.0, 3e-3, -9e-3])
 @pytest.mark.parametrize("approach", [0.7e-6, 3e-6])
 def test_hertz_ball_with_tilt(ball: ContactLaw, approach: float, tilt: float) -> None:
-    """A tilted ball of radius R touches at R theta, deeper by R theta**2 / 2."""
+    """A tilted ball of radius R touches at R theta; the depth of first touch grows by R theta**2 / 2."""
     depth = approach + 0.5 * RADIUS * tilt**2
     modulus = STEEL.plane_strain_modulus
     load, slope = 4 / 3 * modulus * np.sqrt(RADIUS) * depth**1.5, 2 * modulus * np.sqrt(RADIUS * depth)
@@ -54,7 +54,7 @@ def test_errors_against_direct_solutions(short_case: Case, short_law: ContactLaw
 
 
 def test_stiffness_against_finite_differences(short_case: Case, short_law: ContactLaw) -> None:
-    """The stiffness matrix of direct solutions is symmetric without an energy."""
+    """The stiffness matrix of direct solutions is symmetric although they contain no energy."""
     solver, delta, theta = ContactSolver(short_case, 0.05, 1e-7), 1.6e-6, 6e-4
     load = float(short_law.at(delta, theta).normal_load)
     step, tilt_step = 0.03 * delta, 6e-5

@@ -13,7 +13,7 @@ ARM = 1e-3
 
 
 def springs(stiffness: float, arm: float = ARM) -> ContactLaw:
-    """Two springs to either side of mid-length."""
+    """Two springs on either side of mid-length."""
     approach, tilt = np.geomspace(5e-7, 2e-5, 9), np.linspace(-5e-4, 5e-4, 9)
     delta, theta = np.meshgrid(approach, tilt, indexing="ij")
     dims = ("approach", "tilt")

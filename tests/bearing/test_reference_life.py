@@ -97,9 +97,9 @@ def test_outer_raceway_may_turn(roller_lives: xr.Dataset) -> None:
 
 
 def line_integrals() -> tuple[float, float, float]:
-    """Mean load, and means of turning and standing raceway, over the largest load; half of the rollers loaded."""
+    """Mean load, and means of turning and standing raceway, over the largest load; half of the rollers are loaded."""
     angles = np.linspace(-np.pi / 2, np.pi / 2, 20001)
-    # Line contact: the load grows with the approach to the power 10/9, 1.1 in the theory of 1952.
+    # In a line contact the load grows with the approach to the power 10/9; the theory of 1952 has 1.1.
     load_distribution = np.cos(angles) ** 1.1
     integrals = [
         np.trapezoid(values, angles) / (2 * np.pi)

@@ -15,7 +15,7 @@ from contactstudy.bearing.laminae import slice_model
 from contactstudy.profiles import Cylinder, FullCrown, IsoCylindrical, Lundberg, Tapered
 
 STEEL_ON_STEEL = Material(young=207e9 / 2, poisson=0.3)
-"""A body whose contact modulus against a rigid roller is that of two bodies of steel."""
+"""A body whose contact modulus against a rigid roller equals the modulus of two bodies of steel."""
 BODY = HalfSpace(material=STEEL_ON_STEEL)
 ROLLER = Roller(radius=5e-3, length=10e-3)
 CASE = Case(body=BODY, roller=ROLLER, load=5000.0)
@@ -40,7 +40,7 @@ def test_slices_carry_the_load(load: float, tilt: float, slices: int, profile) -
 
 
 def test_standard_in_millimetres() -> None:
-    """Two raceways of steel, with twice the deflection and twice the profile."""
+    """Two raceways of steel have twice the deflection and twice the profile drop of one contact."""
     case = replace(CASE, roller=replace(ROLLER, profile=IsoCylindrical(10e-3)))
     result = slice_model(case, slices=40, tilt=1e-4)
     position = 1e3 * (result["x"].values - 5e-3)

@@ -24,7 +24,7 @@ def test_energy_of_a_ball() -> None:
 
 
 class SpringSolver(ContactSolver):
-    """Two springs of 10 N/um, 0.1 mm to either side of the middle; records the solved motions."""
+    """Two springs of 10 N/um, 0.1 mm on either side of the middle; the solver records the solved motions."""
 
     search_load: list[tuple[float, float]]
 

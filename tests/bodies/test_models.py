@@ -42,7 +42,7 @@ def test_mirror_model_has_normal_stress_on_the_ends(strip_pressure, unit_materia
     assert float(np.abs(stress["tau_xz"]).max()) < 1e-8
     grid = Grid.from_centres(pressure.x.values, pressure.y.values)
     residual_stress = end_traction_residual(body, sliding(pressure.values, 0.0), grid, np.zeros(1), np.array([0.1]))
-    # Plane strain along the mirrored strip: Poisson's ratio times the sum of the lateral stresses.
+    # In plane strain along the mirrored strip the stress is Poisson's ratio times the sum of the lateral stresses.
     line_stresses = closed_forms.hertz_strip(0.0, 0.1, 1.0, 1.0, 0.3)
     assert residual_stress == pytest.approx(abs(float(line_stresses["sigma_xx"])), rel=0.02)
     assert float(stress["sigma_xx"].sel(x=0.0, y=0.0, z=0.1)) == pytest.approx(

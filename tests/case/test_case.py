@@ -69,7 +69,7 @@ def test_grid_follows_the_case() -> None:
 @given(st.floats(-1e3, 1e3), st.floats(1e-6, 1e3), st.integers(2, 200))
 def test_grid_from_its_centres(start: float, span: float, cells: int) -> None:
     grid = Grid(x_range=(start, start + span), y_range=(-span, span), cells_x=cells, cells_y=cells + 1)
-    assume(grid.dx > 1e-9 * abs(start))  # otherwise the differences of centres are rounding
+    assume(grid.dx > 1e-9 * abs(start))  # otherwise the differences of the centres are rounding errors
     copy = Grid.from_centres(grid.x, grid.y)
     assert copy.shape == grid.shape
     assert copy.dx == pytest.approx(grid.dx, rel=1e-3)

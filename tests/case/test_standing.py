@@ -51,7 +51,7 @@ def test_short_contact_at_a_tilted_end_is_rejected(columns: slice) -> None:
     pressure[10:90][columns] = 1.0
     with pytest.raises(InvalidInputError, match=r"tilt = 0\.001: .* reaches further"):
         check_on_its_length(tilted, grid, gap, pressure)
-    # Without tilt any contact is allowed; a longer contact may reach the end, and a short contact may lie inside.
+    # Without tilt any contact is allowed: a long contact may reach the end, a short contact may lie inside.
     check_on_its_length(untilted, grid, gap, pressure)
     check_on_its_length(tilted, grid, gap, np.where(np.isfinite(gap), 1.0, 0.0))
     check_on_its_length(tilted, grid, gap, np.roll(pressure, 40, axis=0))

@@ -1,4 +1,4 @@
-"""Two elastic bodies: limits, exchange, resultants, and how loads are carried between their grids."""
+"""Two elastic bodies: limits, exchange, resultants, and transfer of loads between their grids."""
 
 from __future__ import annotations
 
@@ -37,13 +37,13 @@ FILLET = profiles.Cylinder(fillet_radius=2 * HALF_WIDTH)
 
 
 def contact_shape(body, counter: Counterbody, cells: int, length: float, radius_x: float = 40e-3) -> xr.DataArray:
-    """Gap of an ellipsoid over the first `length` of a body, where the counterbody faces it."""
+    """Gap of an ellipsoid over the first `length` of a body, infinite outside the counterbody."""
     grid = Grid(x_range=(0.0, length), y_range=(-3 * HALF_WIDTH, 3 * HALF_WIDTH), cells_x=cells, cells_y=48)
     x = grid.x[:, None]
     mid_x = counter.start + 0.5 * counter.body.length
     gap = (x - mid_x) ** 2 / (2 * radius_x) + grid.y**2 / 10e-3
-    facing = (x > counter.start) & (x < counter.start + counter.body.length)
-    return xr.DataArray(np.where(facing, gap, np.inf), coords={"x": grid.x, "y": grid.y}, dims=("x", "y"))
+    is_under_counterbody = (x > counter.start) & (x < counter.start + counter.body.length)
+    return xr.DataArray(np.where(is_under_counterbody, gap, np.inf), coords={"x": grid.x, "y": grid.y}, dims=("x", "y"))
 
 
 def test_two_half_spaces_equal_combined_modulus():
@@ -83,7 +83,7 @@ def test_equal_half_spaces_do_not_couple_friction():
     ],
 )
 def test_friction_moves_contact_of_different_materials(body_material: Material, roller_material: Material | None):
-    """Bodies with mirrored ends only are in plane strain; the wrong sign would put the centre on the other side."""
+    """Bodies with mirrored ends are in plane strain; the wrong sign would put the centre on the other side."""
     friction, radius, load = 0.5, 1.0, 2e-4 * body_material.plane_strain_modulus
     exact_line = sliding_line(load, radius, friction, body_material, roller_material)
     width = exact_line.half_width + abs(exact_line.centre)
@@ -110,7 +110,7 @@ def test_friction_moves_contact_of_different_materials(body_material: Material, 
 
 
 def flexibility(body: FiniteLengthSpace, grid: Grid) -> np.ndarray:
-    """Displacement of every cell under unit pressure on every other: array (x, y, x, y)."""
+    """Displacement of every cell under unit pressure on every cell: array (x, y, x, y)."""
     unit = np.eye(grid.cells_x * grid.cells_y).reshape(-1, *grid.shape)
     columns = [
         surface_displacement(body, xr.DataArray(variant, coords={"x": grid.x, "y": grid.y}, dims=("x", "y"))).values
@@ -121,7 +121,7 @@ def flexibility(body: FiniteLengthSpace, grid: Grid) -> np.ndarray:
 
 @pytest.mark.parametrize("start", [-2, 1])
 def test_two_finite_bodies_match_quadratic_programming(start: int):
-    """Flexibilities of both bodies added up by hand, and the least energy found by Lawson and Hanson's active sets."""
+    """Lawson and Hanson's active sets minimise the energy with the sum of both bodies' flexibilities."""
     per_unit, y_range, load = 2, (-1.5, 1.5), 1.5
     body = FiniteLengthSpace(length=8.0, material=Material(1.0, 0.3))
     counter = FiniteLengthSpace(length=6.0, material=Material(2.0, 0.25))
@@ -142,16 +142,19 @@ def test_two_finite_bodies_match_quadratic_programming(start: int):
 
     # The lines to which the prescribed tilt refers turn under the load.
     carried = Counterbody(counter, start).transfer_load(grid, computed.pressure.values)
-    tops = (
+    surface_pressures = (
         computed.pressure,
         xr.DataArray(carried, coords={"x": counter_grid.x, "y": counter_grid.y}, dims=("x", "y")),
     )
-    slopes = [line_slope(variant, top, variant.length) for variant, top in zip((body, counter), tops, strict=True)]
+    slopes = [
+        line_slope(variant, surface_pressure, variant.length)
+        for variant, surface_pressure in zip((body, counter), surface_pressures, strict=True)
+    ]
     gap = gap - sum(slopes) * gap.x
 
     possible = np.isfinite(gap.values).ravel()
     matrix = compliance.reshape(possible.size, -1)[np.ix_(possible, possible)]
-    # The load as a stiff penalty, far above the flexibility's entries.
+    # A stiff penalty, far above the flexibility's entries, prescribes the load.
     penalty, area = 1e6, grid.cell_area
     factor = np.linalg.cholesky(matrix + penalty * area)
     right_hand_side = penalty * load - gap.values.ravel()[possible]
@@ -209,7 +212,7 @@ def test_stiff_roller_equals_rigid_roller(distance: float):
 
 
 def test_tilted_steel_roller_converges():
-    # The overlap of the first guess is deep here, and cells that enter the contact all at once overshoot.
+    # The first guess overlaps deeply, and the simultaneous contact of many cells overshoots.
     case = Case(
         body=FiniteLengthSpace(length=4.2e-3, material=STEEL),
         roller=Roller(radius=5e-3, length=4e-3, material=STEEL, profile=profiles.FullCrown(2.0)),
@@ -223,7 +226,7 @@ def test_tilted_steel_roller_converges():
 
 
 def test_ends_between_cell_edges_change_little():
-    """A roller whose ends cut cells: the error falls with their size, and is small away from the fillet's peak."""
+    """The error of roller ends inside cells decreases with the cell size and is small away from the fillet's peak."""
     body = FiniteLengthSpace(length=14 * HALF_WIDTH, material=STEEL)
     roller = Roller(radius=5e-3, length=10 * HALF_WIDTH, material=STEEL, profile=FILLET)
     case = Case(body=body, roller=roller, max_pressure=1.5e9)
@@ -232,7 +235,7 @@ def test_ends_between_cell_edges_change_little():
         grid = Grid(x_range=(0.0, body.length), y_range=choose_grid(case).y_range, cells_x=cells, cells_y=32)
         return float(solve(case, grid, stresses=False).pressure.sel(x=0.5 * body.length, method="nearest").max())
 
-    aligned = middle_pressure(112)  # 16 cells from the body's end to the roller's
+    aligned = middle_pressure(112)  # 16 cells lie between the body's end and the roller's end
     errors = [abs(middle_pressure(cells) / aligned - 1) for cells in (58, 115)]
     assert errors[1] < 0.6 * errors[0]
     assert errors[1] < 0.005

@@ -1,4 +1,4 @@
-"""Contacts on graded cells that a user gives: against uniform ones, and what is refused."""
+"""Contacts on graded cells of a user: against uniform cells, and rejected cells."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from tests.contact.refinement.rollers import CASES, HALF, RADIUS, SHORT, SHORT_E
 
 @pytest.mark.parametrize("body", [HALF, finite(SHORT)], ids=["half", "finite"])
 def test_graded_cells_match_uniform_cells(body: HalfSpace | FiniteLengthSpace) -> None:
-    """The verb for labelled gaps: the load is exact, the pressure that of uniform cells."""
+    """`solve_contact` on graded cells has the exact load and the pressure of uniform cells."""
     finite_body = isinstance(body, FiniteLengthSpace)
     retained = np.concatenate([np.arange(16), np.arange(16, 48, 2), np.arange(48, 65)])
     uniform = Grid(x_range=(0.0, SHORT), y_range=(-2 * A, 2 * A), cells_x=64, cells_y=32)
@@ -23,19 +23,19 @@ def test_graded_cells_match_uniform_cells(body: HalfSpace | FiniteLengthSpace) -
         heights = np.where(is_inside[:, None], grid.y**2 / (2 * RADIUS), np.inf)
         gap = xr.DataArray(heights, coords={"x": grid.x, "y": grid.y, "x_width": ("x", grid.widths)}, dims=("x", "y"))
         contacts.append(solve_contact(body, gap, load=CASES["flush"].normal_load))
-    there, here = contacts
-    assert bool(there.converged)
+    graded_contact, uniform_contact = contacts
+    assert bool(graded_contact.converged)
     middles = [float(contact.pressure.sel(x=SHORT / 2, method="nearest").max()) for contact in contacts]
     assert middles[0] == pytest.approx(middles[1], rel=5e-3)
-    assert float(there.approach) == pytest.approx(float(here.approach), rel=5e-3)
-    total = float((there.pressure * graded.widths[:, None]).sum()) * graded.dy
+    assert float(graded_contact.approach) == pytest.approx(float(uniform_contact.approach), rel=5e-3)
+    total = float((graded_contact.pressure * graded.widths[:, None]).sum()) * graded.dy
     assert total == pytest.approx(CASES["flush"].normal_load, rel=1e-9)
-    back = solve_contact(body, gap_of(there, graded), approach=float(there.approach))
-    assert float(back["normal_load"]) == pytest.approx(CASES["flush"].normal_load, rel=1e-3)
+    repeated_contact = solve_contact(body, gap_of(graded_contact, graded), approach=float(graded_contact.approach))
+    assert float(repeated_contact["normal_load"]) == pytest.approx(CASES["flush"].normal_load, rel=1e-3)
 
 
 def gap_of(contact: xr.Dataset, grid: Grid) -> xr.DataArray:
-    """The gap that a contact was made from: what is left of it, and its rigid approach."""
+    """Initial gap of a contact, from the cells with a finite gap."""
     heights = np.where(np.isfinite(contact.gap.values), grid.y**2 / (2 * RADIUS), np.inf)
     return contact.gap.copy(data=heights)
 
@@ -46,7 +46,7 @@ def test_steep_cell_growth_raises_error_with_position() -> None:
     y = np.linspace(-1.5, 1.5, 17)
     heights = np.broadcast_to(0.5 * y**2, (7, 17))
     gap = xr.DataArray(heights, coords={"x": x, "y": y, "x_width": ("x", widths)}, dims=("x", "y"))
-    with pytest.raises(InvalidInputError, match="cells of 1 and 5 m beside x = 2 m"):
+    with pytest.raises(InvalidInputError, match="cells of 1 and 5 m next to x = 2 m"):
         solve_contact(HALF, gap, load=1.0)
 
 

@@ -1,4 +1,4 @@
-"""Contact: what only a free end does, friction, bad input; `verification/test_checks` has closed forms."""
+"""Contact: effects of a free end, friction, bad input; `verification/test_checks` has closed forms."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def sphere_gap(cells: int, window: float = 1.5) -> xr.DataArray:
 
 
 def test_sphere_on_even_cells_matches_hertz(half_space: HalfSpace) -> None:
-    """No cell lies in the middle; the suite's checks have one there."""
+    """No cell centre lies in the middle, unlike in the suite's checks."""
     cells = 64
     radius, peak, _ = ref.hertz_point(load=4 / 3, radius=1.0, modulus=1.0)
     contact = solve_contact(half_space, sphere_gap(cells), load=4 / 3)
@@ -69,7 +69,7 @@ def test_free_end_reduces_end_pressure(short_body: FiniteLengthSpace, half_space
 
 
 def _island(gap: xr.DataArray) -> xr.DataArray:
-    """The same gap with room around it, in which the half-space has nothing to touch."""
+    """Surround a gap by cells with an infinite gap, which cannot touch the half-space."""
     step = float(gap.x[1] - gap.x[0])
     x = np.concatenate([gap.x[:2].values - 2 * step, gap.x.values, gap.x[-2:].values + 2 * step])
     return gap.reindex(x=x, fill_value=np.inf)
@@ -192,20 +192,20 @@ def test_invalid_gaps_raise_error(half_space: HalfSpace, short_body: FiniteLengt
 
 @pytest.mark.parametrize("load", [1.0, 1e45])
 def test_full_window_raises_error_without_warning(short_body, cylinder_gap, load: float) -> None:
-    """All cells of the coarse first guess touch and sink alike."""
+    """All cells of the coarse first guess are in contact and sink equally."""
     with pytest.raises(WindowError, match="y_min"):
         solve_contact(short_body, cylinder_gap(8.0, (16, 16)) * (0.0 if load == 1 else 1.0), load=load)
 
 
 @pytest.mark.parametrize(
-    ("window", "cells", "named"),
+    ("window", "cells", "message"),
     [(1e6, (16, 16), "y = 'a window of 2e\\+06 m'"), (1e4, (10**5, 4), "cells of .*sides in a ratio")],
 )
-def test_disproportionate_windows_raise_error(short_body, window, cells, named: str) -> None:
+def test_disproportionate_windows_raise_error(short_body, window, cells, message: str) -> None:
     y = window * (2 * (np.arange(cells[1]) + 0.5) / cells[1] - 1)
     x = 8.0 * (np.arange(cells[0]) + 0.5) / cells[0]
     gap = xr.DataArray(np.broadcast_to(y**2, cells), coords={"x": x, "y": y}, dims=("x", "y"))
-    with pytest.raises(InvalidInputError, match=named):
+    with pytest.raises(InvalidInputError, match=message):
         solve_contact(short_body, gap, load=1.0)
 
 

@@ -1,1 +1,1 @@
-"""README.md, the pages in docs and the notebooks in studies, run as tests of the system tier."""
+"""README.md, the pages in docs and the notebooks in studies as tests of the system tier."""

@@ -7,7 +7,7 @@ The blocks of a page run in their order and share their names. They find
 * after a TOML block that is a whole study: its file, its results in `results/NAME`, by the stand-in solver, and the
   `path` of one of its cases. Other TOML blocks are parsed.
 
-A text block that directly follows a Python block is what it prints: the same words, and the same numbers to a percent.
+A text block that directly follows a Python block is its output: the same words, and the same numbers to a percent.
 
 A block that cannot run here has the reason in the page, on the line before it::
 
@@ -42,11 +42,11 @@ from tests.solved_case import solved_case
 from tests.stand_in_solver import solve_fake
 
 WHOLE_STUDY = {"name", "base", "sweep"}
-"""Keys by which a TOML block is known to be a study rather than a part of one."""
+"""Keys that a TOML block of a whole study contains, unlike a part of a study."""
 
 
 class Fences:
-    """Parser of fenced blocks of one language, whatever else their first line says (`title="..."`, `{.python ...}`)."""
+    """Parser of fenced blocks of one language, with any further words in their first line."""
 
     def __init__(self, language: str, evaluator: Any) -> None:
         first_line = rf"[ \t]*\{{?[ \t]*\.?{language}\b[^\n]*$\n"
@@ -61,14 +61,14 @@ class Fences:
 
 
 class PrintingEvaluator(PythonEvaluator):
-    """Evaluator that keeps what a block prints."""
+    """Evaluator that keeps the output of a block."""
 
     def __call__(self, example: Example) -> None:
         with contextlib.redirect_stdout(io.StringIO()) as printed:
             try:
                 super().__call__(example)
             except Exception as error:
-                # Sybil cuts the traceback of every cause and raises IndexError for a short one.
+                # Sybil cuts the traceback of every cause and raises IndexError for a short traceback.
                 raise error from None
         example.namespace["_printed"] = printed.getvalue()
 
@@ -86,7 +86,7 @@ class Outputs:
 
 
 def compare_output(example: Example) -> None:
-    """Compare what is shown with what was printed: words as they are, numbers to a percent."""
+    """Compare the shown with the printed text: words exactly, numbers to a percent."""
     expected_words, printed = example.parsed.split(), example.namespace["_printed"].split()
     assert len(expected_words) == len(printed), example.namespace["_printed"]
     for first, second in zip(expected_words, printed, strict=True):
@@ -99,7 +99,7 @@ def compare_output(example: Example) -> None:
 
 
 class ReasonedSkips(SkipParser):
-    """Skips that say why: one without a reason would count as passed."""
+    """Skips with a reason: a skip without a reason would count as passed."""
 
     def __call__(self, document: Document) -> Iterable[Region]:
         for lexed in DirectiveInHTMLCommentLexer(self.directive)(document):
@@ -123,7 +123,7 @@ def run_toml(example: Example) -> None:
 
 @functools.cache
 def make_working_folder() -> Path:
-    """Folder whose content every page finds."""
+    """Folder with the files that every page uses."""
     folder = Path(tempfile.mkdtemp(prefix="contactstudy-page-"))
     (folder / "studies").mkdir()
     for study in (ROOT / "studies").glob("*.toml"):
@@ -135,7 +135,7 @@ def make_working_folder() -> Path:
 
 
 def begin_page(names: dict[str, Any]) -> None:
-    """Go to a copy of the furnished folder."""
+    """Change to a copy of the prepared folder."""
     folder = tempfile.mkdtemp(prefix="contactstudy-page-")
     shutil.copytree(make_working_folder(), folder, dirs_exist_ok=True)
     names |= {"result": solved_case(), "_before": os.getcwd(), "_folder": folder}
@@ -143,7 +143,7 @@ def begin_page(names: dict[str, Any]) -> None:
 
 
 def end_page(names: dict[str, Any]) -> None:
-    """Leave it and clean up."""
+    """Leave and remove the copy."""
     from matplotlib import pyplot
 
     pyplot.close("all")

@@ -1,4 +1,4 @@
-"""Notebooks as tests: each runs from end to end (nbmake), in an empty folder, and none is stored with its output."""
+"""Notebooks as tests: each runs from end to end (nbmake) in an empty folder; none contains stored output."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ import nbformat
 import pytest
 
 SLOW = {"designing_a_profile.ipynb", "rolling.ipynb", "verification.ipynb"}
-"""More than 20 s."""
+"""Notebooks that need more than 20 s."""
 LARGEST = 30_000
-"""Bytes; a notebook without output is smaller."""
+"""Largest size of a notebook, bytes; a notebook without output is smaller."""
 
 
 def _is_notebook(item: pytest.Item) -> bool:
@@ -23,13 +23,13 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Put notebooks into their tiers."""
     for item in filter(_is_notebook, items):
         item.add_marker(pytest.mark.slow if item.path.name in SLOW else pytest.mark.system)
-        # Those of Jupyter's own event loop; in the notebook errors stay errors.
+        # Warnings of Jupyter's event loop are ignored; in the notebook errors remain errors.
         item.add_marker(pytest.mark.filterwarnings("ignore"))
 
 
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_call(item: pytest.Item):
-    """Check what is stored, and run a copy in an empty folder."""
+    """Check the stored notebook, and run a copy in an empty folder."""
     if not _is_notebook(item):
         return (yield)
     stored_case = nbformat.read(item.path, as_version=4)

@@ -1,4 +1,4 @@
-"""Where the pages of the documentation are."""
+"""Paths of the documentation's pages."""
 
 from __future__ import annotations
 
@@ -8,6 +8,6 @@ ROOT = Path(__file__).resolve().parents[2]
 
 
 def page(name: str) -> Path:
-    """The page of this name, on whatever shelf it stands."""
+    """Page of this name, in any folder."""
     (result,) = (ROOT / "docs").rglob(f"{name}.md")
     return result

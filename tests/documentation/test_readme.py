@@ -1,4 +1,4 @@
-"""Files that the README names exist, and its test commands are the ones that decide."""
+"""Files named in the README exist, and its test commands are the commands of CI."""
 
 from __future__ import annotations
 

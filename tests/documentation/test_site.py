@@ -1,4 +1,4 @@
-"""The documentation: its code runs, its tables are those of the code, its pictures can be drawn again."""
+"""The documentation: its code runs, its tables equal the tables of the code, its figures are reproducible."""
 
 from __future__ import annotations
 

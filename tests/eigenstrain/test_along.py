@@ -15,7 +15,7 @@ EDGES = np.linspace(0.4, 1.2, 17)
 
 
 def test_rectangle_in_half_plane_matches_closed_form() -> None:
-    """Against forces in a half-plane; the way closes on itself far off."""
+    """The periodic stress agrees with forces in a half-plane; the period is far longer than the rectangle."""
     positions, step = 1024, 0.05
     y = step * (np.arange(positions) - positions // 2)
     z = 0.5 * (EDGES[1:] + EDGES[:-1])
@@ -26,7 +26,7 @@ def test_rectangle_in_half_plane_matches_closed_form() -> None:
         strain[component, :, 0] = value * is_inside
     computed = PeriodicLayers(TEST_MATERIAL, EDGES, positions, step).stresses(strain)[:, :, 0]
     position_indices = np.searchsorted(y, [-1.0 - 1e-9, -0.6 - 1e-9, 0.2 - 1e-9, 0.7 - 1e-9])
-    # There the axis along which the rectangle does not end is y, here it is x.
+    # The rectangle is infinite along y in the closed form, along x in the computation.
     expected = rectangle_in_half_plane(
         y[position_indices][:, None],
         z,
@@ -54,7 +54,7 @@ def test_uniform_strain_has_stress_of_layers() -> None:
 
 
 def test_short_waves_have_no_stress_along_z() -> None:
-    """Between planes close together no traction on them is left, and strains in them are held."""
+    """Between planes close together the traction on the planes vanishes, and the planes prevent strains in them."""
     strain = np.zeros((6, 64, 1, 16))
     strain[:, :, 0] = np.cos(np.pi / 4 * np.arange(64))[:, None]
     computed = PeriodicLayers(TEST_MATERIAL, 40 * EDGES, 64, 0.01).stresses(strain)[:, 0, 0, 8]
@@ -65,12 +65,14 @@ def test_short_waves_have_no_stress_along_z() -> None:
 
 
 def test_reversed_path_mirrors_stresses() -> None:
-    """Seen from the other side shears change their sign."""
+    """A reversal of the path changes the sign of the shears."""
     strain = np.random.default_rng(4).normal(size=(6, 16, 1, 16))
     mirrored = strain[:, ::-1].copy()
     mirrored[[XY, YZ]] *= -1
-    there, back = (PeriodicLayers(TEST_MATERIAL, EDGES, 16, 0.2).stresses(variant) for variant in (strain, mirrored))
-    back[[XY, YZ]] *= -1
-    assert np.allclose(there, back[:, ::-1], atol=1e-9)
+    original, mirrored_stresses = (
+        PeriodicLayers(TEST_MATERIAL, EDGES, 16, 0.2).stresses(variant) for variant in (strain, mirrored)
+    )
+    mirrored_stresses[[XY, YZ]] *= -1
+    assert np.allclose(original, mirrored_stresses[:, ::-1], atol=1e-9)
     falling = PeriodicLayers(TEST_MATERIAL, EDGES, 16, -0.2).stresses(strain[:, ::-1])
-    assert np.allclose(there, falling[:, ::-1], atol=1e-9)
+    assert np.allclose(original, falling[:, ::-1], atol=1e-9)

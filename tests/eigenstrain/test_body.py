@@ -20,7 +20,7 @@ COMPONENTS = np.array([1.0, 0.5, -0.3, 0.2, 0.4, -0.6])
 
 @pytest.fixture(scope="module")
 def in_rectangle() -> Callable[..., tuple[EigenstrainBody, np.ndarray]]:
-    """Make a body with a rectangle of eigenstrain, in cells, and three cells around it where there is room."""
+    """Make a body with a rectangle of eigenstrain, in cells, and up to three cells around it."""
 
     def build_body(extent, x_range, z_range, cells=8, **settings):
         edges = []
@@ -31,11 +31,11 @@ def in_rectangle() -> Callable[..., tuple[EigenstrainBody, np.ndarray]]:
             edges[-1] = np.where(np.abs(edges[-1] - minimum) < 1e-9, minimum, edges[-1])
             edges[-1] = np.where(np.abs(edges[-1] - maximum) < 1e-9, maximum, edges[-1])
         strain = np.zeros((6, edges[0].size - 1, edges[1].size - 1))
-        here = [
+        axes_inside = [
             (axis_edges[:-1] >= low - 1e-9) & (axis_edges[1:] <= high + 1e-9)
             for axis_edges, (low, high) in zip(edges, (x_range, z_range), strict=True)
         ]
-        strain[:, here[0][:, None] & here[1]] = COMPONENTS[:, None]
+        strain[:, axes_inside[0][:, None] & axes_inside[1]] = COMPONENTS[:, None]
         return EigenstrainBody(
             material=TEST_MATERIAL, extent=extent, x_edges=edges[0], z_edges=edges[1], **settings
         ), strain
@@ -53,7 +53,7 @@ def test_closed_form_leaves_the_top_free() -> None:
 
 @pytest.mark.parametrize(("x_range", "z_range"), [((0.0, 0.6), (0.0, 0.5)), ((1.2, 2.0), (0.1, 0.4))])
 def test_stress_between_free_ends_matches_finite_elements(in_rectangle, x_range, z_range) -> None:
-    """At the end and on the top; at the other end."""
+    """The stress agrees at the end and on the top, and at the other end."""
     body, strain = in_rectangle((0.0, 2.0), x_range, z_range, splits=2, degree=5)
     x, z = np.array([0.05, 0.2, 0.45, 0.75, 1.1, 1.5, 1.9]), np.array([0.05, 0.15, 0.3, 0.6, 0.9, 2.0])
     computed = body.solve(strain).stresses(x, z)
@@ -100,7 +100,7 @@ def test_residual_stress_is_in_equilibrium_with_free_faces(in_rectangle) -> None
 
 
 def test_compatible_strain_has_no_stress() -> None:
-    """Heat all over a body between ends; where the heat ends, deep below, is too far to be felt."""
+    """Uniform heat in a body between ends causes no stress; the heat's lower border is too deep for an influence."""
     body = EigenstrainBody(
         material=TEST_MATERIAL,
         extent=(0.0, 1.0),
@@ -128,7 +128,7 @@ def test_strain_along_y_causes_stress_along_y_only() -> None:
 
 
 def test_layer_on_half_space_matches_closed_form() -> None:
-    """Forty times as long as deep; in the middle it is nearly as if it had no end."""
+    """A layer forty times as long as deep has nearly the stress of an infinite layer in its middle."""
     body = EigenstrainBody(
         material=TEST_MATERIAL,
         extent=NO_ENDS,
@@ -149,7 +149,7 @@ def test_layer_on_half_space_matches_closed_form() -> None:
 
 
 def test_full_length_layer_keeps_ends_straight(in_rectangle) -> None:
-    """On every plane x = const the stress along x has no resultant: what is pressed above is pulled below."""
+    """On every plane x = const the stress along x has no resultant: compression above balances tension below."""
     body, strain = in_rectangle((0.0, 2.0), (0.0, 2.0), (0.0, 0.3))
     nodes, weights = np.polynomial.legendre.leggauss(60)
     edges = body.elements[1]
@@ -161,7 +161,7 @@ def test_full_length_layer_keeps_ends_straight(in_rectangle) -> None:
 
 
 def test_surface_displacement_is_reciprocal_to_eigenstrain() -> None:
-    """Reciprocity: a small eigenstrain sinks the top by its work on the stress of a line force there (Flamant)."""
+    """A small eigenstrain sinks the top by its work on the stress of a line force at this position (Flamant)."""
     body = EigenstrainBody(
         material=TEST_MATERIAL,
         extent=NO_ENDS,
@@ -198,7 +198,7 @@ def test_cell_averages_match_stresses(in_rectangle) -> None:
 
 
 def test_work_is_symmetric_and_positive(in_rectangle) -> None:
-    """Eigenstrains times the stress that others leave: a symmetric form, and negative of each on itself."""
+    """The work of eigenstrains on the stress of others is a symmetric form, and negative on their own stress."""
     body, strain = in_rectangle((0.0, 2.0), (0.0, 0.6), (0.0, 0.5), cells=3)
     rng = np.random.default_rng(0)
     areas = np.diff(body.x_edges)[:, None] * np.diff(body.z_edges)

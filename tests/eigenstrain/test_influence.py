@@ -1,4 +1,4 @@
-"""Influence matrices: what the whole body says, cell by cell."""
+"""Influence matrices: the body's stresses, cell by cell."""
 
 from __future__ import annotations
 
@@ -35,4 +35,4 @@ def test_layer_influence_equals_long_row_of_cells() -> None:
     strain[:, :, 1] = np.array([1.0, 0.5, -0.3, 0.2, 0.4, -0.6])[:, None]
     row = body.solve(strain).cell_averages()[:, 12, 1]
     layer = LayerInfluence(TEST_MATERIAL.poisson, TEST_MATERIAL.young).stresses(strain[:, 0, 1:])[:, 0]
-    assert np.allclose(row, layer, atol=0.02)  # the row ends
+    assert np.allclose(row, layer, atol=0.02)  # the row has ends

@@ -49,7 +49,7 @@ def page(request: pytest.FixtureRequest, folder: Path) -> Page:
 
 
 any_source = pytest.mark.parametrize("page", SOURCES, indirect=True)
-"""For tests of the fields and the status of a case."""
+"""Parameter for tests of the fields and the status of a case."""
 
 
 def largest_drawn(page: Page) -> tuple[float, float]:
@@ -123,7 +123,7 @@ def test_failed_case(page: Page) -> None:
     assert "This case failed. WindowError: this friction fails in tests" in page.table.object
     assert page.surface_figures[0]._source.data["image"] == []
     assert np.isnan(page.study._marked.data["v"]).all()
-    assert not any(pane.visible for pane in page.panes)  # no empty axes
+    assert not any(pane.visible for pane in page.panes)  # the page has no empty axes
     assert "No case at these values" in page.table.object
     page.compare.value = True
     assert page.panes[2].visible
@@ -182,7 +182,7 @@ def test_error_bars_and_open_marks(page: Page) -> None:
     assert data["fill"].tolist() == ["white", NEUTRAL_COLOR, NEUTRAL_COLOR]
     assert error_page.study.figure.title.text == "bars: estimated errors; open marks: error not estimated"
     assert error_page.study.figure.y_range.end > data["high"][-1]
-    error_page.number.value = "normal_load"  # prescribed: exact
+    error_page.number.value = "normal_load"  # a prescribed load is exact
     assert error_page.study._line.data["fill"].tolist() == [NEUTRAL_COLOR] * 3
     assert error_page.study.figure.title.text == ""
 
@@ -209,7 +209,7 @@ def test_planes_equal_analysis_cuts(folder: Path) -> None:
     depth = 0.3 * float(case.points["z"][0]) + 0.7 * float(case.points["z"][1])
     expected = in_plane(case.dataset[["von_mises"]], z=depth, variables="von_mises")["von_mises"]
     values = interpolate_along(2, case.stress(), case.points["z"], np.array([depth]))[..., 0]
-    # The folder's stresses and the analysis' interpolation are of single precision.
+    # The folder's stresses and the interpolation of the analysis are of single precision.
     assert values == pytest.approx(expected.transpose(*case.dataset["von_mises"].dims[:2]).values, rel=1e-6)
     assert plane_image(CaseFields(case.dataset.drop_vars("von_mises")), scale, limits, PLANES[0], 0.5) is None
 
@@ -273,7 +273,7 @@ def test_notebook_receives_updates(folder: Path, monkeypatch: pytest.MonkeyPatch
     pushed_panes = []
 
     class Spy(Comm):
-        _comm = property(lambda self: True, lambda self, value: None)  # it is open
+        _comm = property(lambda self: True, lambda self, value: None)  # the connection is open
 
         def send(self, data=None, metadata=None, buffers=()):
             pushed_panes.append(data)

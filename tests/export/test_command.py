@@ -51,7 +51,7 @@ def test_line_of_a_file(case, tmp_path, capsys) -> None:
 def test_case_of_a_study(folder, capsys) -> None:
     assert command(folder, "--select", "e_over_a=1", "--select", "friction=0.10", "--variable", "pressure") == 0
     table = pd.read_csv(folder / "export.csv")
-    assert float(table["pressure [Pa] (error not estimated)"].max()) > 1e9  # on common cells
+    assert float(table["pressure [Pa] (error not estimated)"].max()) > 1e9  # the pressure lies on common cells
     assert command(folder, "--format", "vtk", "--select", "e_over_a=1", "--select", "friction=0.1") == 0
     assert (folder / "export.vtr").exists()
 

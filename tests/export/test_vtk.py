@@ -69,7 +69,7 @@ def test_bad_input(case_result: xr.Dataset, study_dataset: xr.Dataset, tmp_path)
 
 
 def test_mesh_of_a_body(case_result: xr.Dataset, tmp_path) -> None:
-    """Reading by meshio, which lacks rectilinear grids."""
+    """Meshio, which lacks rectilinear grids, reads the mesh."""
     mesh = meshio.read(export.to_vtk(case_result, tmp_path / "case.vtu"))
     shape = case_result["von_mises"].shape
     assert [(block.type, len(block.data)) for block in mesh.cells] == [("hexahedron", np.prod(np.array(shape) - 1))]
@@ -80,7 +80,7 @@ def test_mesh_of_a_body(case_result: xr.Dataset, tmp_path) -> None:
     for name in (*STRESSES, "von_mises"):
         assert np.array_equal(mesh.point_data[name], case_result[name].sel(places)), name
     assert np.array_equal(mesh.point_data["stress"].reshape(-1, 3, 3)[:, 0, 2], mesh.point_data["tau_xz"])
-    # Every brick has a positive volume, and together they are the body that was looked at.
+    # Every brick has a positive volume, and the bricks fill the part of the body in the file.
     corners = mesh.points[mesh.cells[0].data]
     volumes = np.prod(corners[:, 6] - corners[:, 0], axis=1)
     assert volumes.min() > 0

@@ -31,6 +31,6 @@ def read(path: Path) -> tuple[tuple[np.ndarray, ...], dict[str, np.ndarray]]:
     data = {}
     for node in piece.find("PointData"):
         components = int(node.attrib.get("NumberOfComponents", 1))
-        # Points in the order x, y, z, x fastest; the components of a point together.
+        # Points lie in the order x, y, z with x fastest; the components of a point follow each other.
         data[node.attrib["Name"]] = array(node).reshape(*shape[::-1], components).transpose(2, 1, 0, 3)
     return coordinates, data

@@ -52,7 +52,7 @@ def test_point_and_line() -> None:
 
 @given(points=arrays(float, (12, 3), elements=st.integers(-4, 4).map(float)))
 def test_ball_of_any_points_is_minimal(points: Array) -> None:
-    """Integers: many points coincide, lie on lines, in planes or on spheres."""
+    """Many points with integer coordinates coincide, lie on lines, in planes or on spheres."""
     centre, radius = enclosing_balls(points[None])
     assert np.linalg.norm(points - centre[0], axis=1).max() <= radius[0] * (1 + 1e-9) + 1e-12
     assert radius[0] == 0 or is_minimal(points, centre[0], radius[0])

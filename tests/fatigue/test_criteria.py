@@ -46,7 +46,7 @@ def test_pulsating_shear(cycle) -> None:
 
 
 def test_mean_shear_increases_findley(cycle) -> None:
-    """On the plane at angle t to that of the shear: amplitude cos(2t)/2, largest normal stress sin(2t)."""
+    """On the plane at angle t to the shear plane the amplitude is cos(2t)/2, the largest normal stress sin(2t)."""
     pulse = cycle(tau_yz=np.sin(np.linspace(0, np.pi, 21)) ** 2)
     expected = np.sqrt(0.25 + LIMITS.findley_slope**2)
     assert float(fatigue.findley(pulse, LIMITS)["findley"]) == pytest.approx(expected, rel=1e-6)
@@ -61,7 +61,7 @@ def test_rotating_shear(cycle) -> None:
 
 
 def test_findley_plane_of_push_pull(cycle, wave) -> None:
-    """On the plane at angle t to the stress: shear sin(2t)/2, normal (1 + cos(2t))/2; worst where tan(2t) = 1/k."""
+    """The plane at angle t has the shear sin(2t)/2 and the normal stress (1 + cos(2t))/2, worst at tan(2t) = 1/k."""
     result = fatigue.findley(cycle(sigma_xx=wave), LIMITS)
     k = LIMITS.findley_slope
     angle = 0.5 * np.arctan2(1, k)
@@ -76,7 +76,7 @@ histories = arrays(float, (1, 9, 6), elements=st.floats(-1, 1).map(lambda value:
 @settings(max_examples=10)
 @given(history=histories)
 def test_findley_plane_is_the_worst(history: np.ndarray) -> None:
-    # For the smooth histories of a passage the search reaches the worst plane to 1e-9.
+    # For the smooth histories of a passage the search finds the worst plane to 1e-9.
     result = _worst_planes(history, 0.3)[0]
     rotations = np.linalg.qr(np.random.default_rng(2).normal(size=(4000, 3, 3)))[0]
     random_damage, _, _ = _compute_damage(history, rotations[None, :, :2], 0.3)
@@ -116,10 +116,10 @@ def test_line_contact(strip_result) -> None:
     """Without hydrostatic tension Crossland's sum is the amplitude of the root of J2."""
     result = fatigue.crossland(strip_result(window=12.0), LIMITS).isel(x_field=0)
     assert float(result["crossland_hydrostatic"].max()) < 1e-3
-    # The orthogonal shear alone, +-0.25 p0 at 0.5 a, has the amplitude 0.25 p0; between the points a little less.
+    # The orthogonal shear alone, +-0.25 p0 at 0.5 a, has the amplitude 0.25 p0; at the points it is a little less.
     shear = result["crossland_shear"].sel(z=0.5, method="nearest")
     assert 0.247 < float(shear) < 0.30
-    # The pressure lowers Dang Van's sum below the shear.
+    # The pressure reduces Dang Van's sum below the shear.
     dang_van = fatigue.dang_van(strip_result(window=12.0), LIMITS).isel(x_field=0)["dang_van"].max()
     assert 0 < float(dang_van) < float(result["crossland_shear"].max())
 

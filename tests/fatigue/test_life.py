@@ -43,7 +43,7 @@ def test_point_contact_life_exponent_is_three(strip_result) -> None:
 
 
 def test_fatigue_limit_increases_relative_life(strip_result) -> None:
-    base = fatigue.ioannides_harris(orthogonal_shear(strip_result()), limit=0.2)
+    reference_risk = fatigue.ioannides_harris(orthogonal_shear(strip_result()), limit=0.2)
     lower = strip_result(0.9, 0.9)
     lives = []
     for limit in (0.0, 0.1, 0.2):
@@ -57,7 +57,7 @@ def test_fatigue_limit_increases_relative_life(strip_result) -> None:
     assert float(fatigue.relative_life(without_risk, loaded_risk)) == np.inf
     assert np.isnan(float(fatigue.relative_life(without_risk, without_risk)))
     with pytest.raises(InvalidInputError, match=r"fatigue_limit = 0.2.*fatigue_limit = 0.3"):
-        fatigue.relative_life(without_risk, base)
+        fatigue.relative_life(without_risk, reference_risk)
     with pytest.raises(InvalidInputError, match="theory = Ioannides and Harris"):
         fatigue.relative_life(fatigue.lundberg_palmgren(lower), fatigue.ioannides_harris(orthogonal_shear(lower)))
 
@@ -81,7 +81,7 @@ def test_error_includes_the_pressure(strip_result) -> None:
     assert increase == pytest.approx(0.01 * 31 / 3)
     first_error, reference_error = (float(risk["risk_error"] / risk["risk"]) for risk in (result, result_without_error))
     life = fatigue.relative_life(result, result_without_error)
-    # The longest life that both errors allow.
+    # The limit is the longest life that both errors allow.
     assert float(life["relative_life_error"]) == pytest.approx(
         ((1 + reference_error) / (1 - first_error)) ** (8 / 9) - 1
     )
@@ -150,7 +150,7 @@ def test_stresses_in_megapascals(strip_result) -> None:
 
 
 def test_integral_by_hand() -> None:
-    """(1 - z) on 0..1 with c = 1: volume 1/2, mean depth 1/3; over a length of 2."""
+    """The integral of (1 - z) on 0..1 with c = 1 has volume 1/2 and mean depth 1/3, over a length of 2."""
     z = np.linspace(0, 1, 401)
     stress = xr.DataArray(np.tile(1 - z, (3, 1)), dims=("x", "z"), coords={"x": [0.0, 0.5, 2.0], "z": z})
     result = fatigue.ioannides_harris(stress, exponents=LifeExponents(stress=1, depth=2, weibull=1))
@@ -159,9 +159,9 @@ def test_integral_by_hand() -> None:
 
 
 def test_double_length_reduces_life_by_weibull_slope(strip_result) -> None:
-    base = strip_result()
-    double_length = base.assign_coords(x_field=2 * base["x_field"])
-    lives = fatigue.relative_life(fatigue.lundberg_palmgren(double_length), fatigue.lundberg_palmgren(base))
+    short_contact = strip_result()
+    long_contact = short_contact.assign_coords(x_field=2 * short_contact["x_field"])
+    lives = fatigue.relative_life(fatigue.lundberg_palmgren(long_contact), fatigue.lundberg_palmgren(short_contact))
     assert float(lives) == pytest.approx(2 ** (-8 / 9))
 
 
@@ -206,7 +206,7 @@ def test_bad_input_is_rejected(strip_result) -> None:
 
 
 def test_heavy_friction_is_rejected() -> None:
-    """Heavy friction: the largest orthogonal shear is on the surface itself, and no depth divides."""
+    """Under heavy friction the orthogonal shear is largest on the surface, so that no depth divides the risk."""
     passage = xr.DataArray([0.0, -1.0, 0.0], dims="y", coords={"y": [-1.0, 0.0, 1.0]})
     depth = xr.DataArray([1.0, 0.5, 0.1], dims="z", coords={"z": [0.0, 0.5, 1.0]})
     shear = (passage * depth).expand_dims(x=[0.0, 1.0])

@@ -1,4 +1,4 @@
-"""Constants of the criteria: every one of them is on the limit in bending and in torsion."""
+"""Constants of the criteria: each criterion equals its limit in bending and in torsion."""
 
 from __future__ import annotations
 

@@ -87,7 +87,7 @@ def test_error_of_shallow_depths(line_contact) -> None:
 
 @pytest.mark.parametrize("friction", [0.0, 0.2])
 def test_corner_pressure_bounds_the_limit(short_body, strip_pressure, friction: float) -> None:
-    """With rho_yy alone p / k is about 2 / sqrt(1 + 4 f^2), the upper bound."""
+    """With rho_yy alone the ratio p / k is about 2 / sqrt(1 + 4 f^2), the upper bound."""
     pressure = strip_pressure(8.0, (64, 64))
     stress = stress_field(short_body, pressure, friction=friction, x=[0.0], z=[0.0], inside_cells=pressure)
     result = fatigue.shakedown(stress)

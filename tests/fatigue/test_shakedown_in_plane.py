@@ -77,7 +77,7 @@ def sphere_passage(counts: tuple[int, int], max_depth: float) -> xr.Dataset:
 
 
 def test_sphere_reaches_the_published_limit() -> None:
-    """p0 / k = 4.68 without friction; the bound converges with more positions, without a gap."""
+    """The ratio p0 / k is 4.68 without friction; the bound converges with more positions, without a gap."""
     limits = []
     for counts, max_depth in (((19, 13), 2.4), ((31, 25), 3.0)):
         bound = fatigue.shakedown_in_plane(sphere_passage(counts, max_depth), HalfSpace(material=SOFT))
@@ -88,7 +88,7 @@ def test_sphere_reaches_the_published_limit() -> None:
 
 
 def test_program_without_convergence_warns(fading_line_contact, monkeypatch) -> None:
-    monkeypatch.setattr(import_module("contactstudy.fatigue.shakedown"), "MAX_PROGRAMS", 1)
+    monkeypatch.setattr(import_module("contactstudy.fatigue.shakedown"), "MAX_CONE_PROGRAMS", 1)
     with pytest.warns(ConvergenceWarning, match="gap of"):
         bound = fatigue.shakedown_in_plane(fading_line_contact(16.0, 0.2), HalfSpace(material=SOFT))
     assert float(bound["program_gap"]) > 1e-4

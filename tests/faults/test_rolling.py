@@ -1,4 +1,4 @@
-"""A rolling study that was killed and resumed; the command compares 500 cases."""
+"""A killed and resumed rolling study; the command compares 500 cases."""
 
 from __future__ import annotations
 

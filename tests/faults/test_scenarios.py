@@ -49,6 +49,6 @@ def test_faults_hold(undisturbed: xr.Dataset) -> None:
 
 @pytest.mark.system
 def test_lost_file_is_counted(undisturbed: xr.Dataset, monkeypatch) -> None:
-    monkeypatch.setattr(scenarios, "DAMAGES", (lambda path, other: path.unlink(),))
+    monkeypatch.setattr(scenarios, "DAMAGES", (lambda path, other_batch_path: path.unlink(),))
     monkeypatch.setattr(studies, "unreadable", lambda folder: 1)
     assert scenarios.damaged_files(undisturbed, 1).passed == 0

@@ -1,4 +1,4 @@
-"""Stresses, displacements and equivalent loads of pressure on graded cells: those of the same load on uniform ones."""
+"""Stresses, displacements and equivalent loads of pressure on graded cells equal those of the load on uniform cells."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ STEEL = Material(210e9, 0.3)
 LENGTH, FRICTION = 1e-3, 0.3
 Y_RANGE = (-1.6e-4, 1.6e-4)
 EDGE_INDICES = [0, 1, 2, 3, 5, 7, 10, 14, 18, 22, 26, 29, 31, 33, 35, 36, 37, 38, 39, 40]
-"""Edges that are kept of forty uniform cells."""
+"""Indices of the retained edges of forty uniform cells."""
 UNIFORM = Grid(x_range=(0.0, LENGTH), y_range=Y_RANGE, cells_x=40, cells_y=32)
 GRADED = Grid.from_edges(UNIFORM.x_edges[EDGE_INDICES], Y_RANGE, 32)
 X, Y, Z = [0.0, 1e-5, 3.3e-4, LENGTH], [0.0, 5e-5], [2e-5, 1e-4]
@@ -57,11 +57,11 @@ def loads() -> tuple[xr.DataArray, xr.DataArray]:
 
 @pytest.fixture(scope="module")
 def smooth_loads() -> tuple[xr.DataArray, xr.DataArray]:
-    """A contact's pressure that falls along x and ends along y, on graded and on uniform cells."""
+    """A pressure that decreases along x and ends along y, on graded and on uniform cells."""
 
     def pressure(grid: Grid) -> xr.DataArray:
         lateral_profile = np.sqrt(np.maximum(1 - (grid.y / 1.2e-4) ** 2, 0.0))
-        # Means over the columns of a linear function are its values in their middles.
+        # Means of a linear function over columns equal its values in their middles.
         return label(1e9 * (1 - 0.4 * grid.x[:, None] / LENGTH) * lateral_profile, grid)
 
     return pressure(GRADED), pressure(UNIFORM)
@@ -79,7 +79,7 @@ def test_stresses_match_uniform_cells(body: str, loads) -> None:
 
 @pytest.mark.parametrize("body", ["half", "finite"])
 def test_stresses_are_continuous_at_column_edge(body: str, smooth_loads) -> None:
-    """The smooth load has two representations that meet at some depths, and differ by up to 1e-3 of the peak there."""
+    """The smooth load has two representations, which differ by up to 1e-3 of the peak at their common depth."""
     edges = GRADED.x_edges[1:-1]
     load, at = smooth_loads[0], {"y": [0.0], "z": [1e-7, 1e-6, 1e-5, 1e-4]}
     positions = [np.nextafter(edges, -1.0), edges, np.nextafter(edges, 1.0), edges * (1 - 1e-12)]
@@ -117,7 +117,7 @@ def test_mean_surface_displacement_matches_uniform_cells(body: str, loads) -> No
     graded, uniform = (surface_displacement(BODIES[body], load, FRICTION) for load in loads)
     owner = np.repeat(np.arange(GRADED.cells_x), np.diff(EDGE_INDICES))
     means = np.array([uniform.values[owner == i].mean(axis=0) for i in range(GRADED.cells_x)])
-    # Steps from cell to cell: the mean over a column is not yet that of the displacements at few centres.
+    # The load has steps between cells: the mean over a column differs from the mean at few centres.
     assert np.abs(graded.values - means).max() < 0.02 * np.ptp(means)
 
 
@@ -151,7 +151,7 @@ def graded_pressure(draw: st.DrawFn) -> xr.DataArray:
 
 
 def mirror_load(load: xr.DataArray) -> xr.DataArray:
-    """The same load seen from the other end."""
+    """Reflect a load about mid-length."""
     backwards = load.isel(x=slice(None, None, -1))
     return backwards.assign_coords(x=LENGTH - backwards.x.values)
 
@@ -160,15 +160,15 @@ def mirror_load(load: xr.DataArray) -> xr.DataArray:
 @given(load=graded_pressure(), body=st.sampled_from(["half", "mirror", "finite"]))
 def test_rotated_body_has_rotated_stresses(load: xr.DataArray, body: str) -> None:
     x = np.array([0.0, 2e-4, 7e-4])
-    there = stress_field(BODIES[body], load, friction=FRICTION, x=x, y=Y, z=Z, inside_cells=load)
+    original = stress_field(BODIES[body], load, friction=FRICTION, x=x, y=Y, z=Z, inside_cells=load)
     reverse = mirror_load(load)
-    back = stress_field(
+    mirrored = stress_field(
         BODIES[body], reverse, friction=FRICTION, x=(LENGTH - x)[::-1], y=Y, z=Z, inside_cells=reverse
     ).isel(x=slice(None, None, -1))
     for name in ("sigma_xx", "sigma_yy", "sigma_zz", "tau_yz", "von_mises"):
-        assert np.abs(there[name].values - back[name].values).max() < 1e3
+        assert np.abs(original[name].values - mirrored[name].values).max() < 1e3
     for name in ("tau_xy", "tau_xz"):
-        assert np.abs(there[name].values + back[name].values).max() < 1e3
+        assert np.abs(original[name].values + mirrored[name].values).max() < 1e3
 
 
 @settings(max_examples=8)

@@ -1,4 +1,4 @@
-"""Displacements inside the body: Hooke's law with the stresses, the top's own displacement, references."""
+"""Displacements inside the body: Hooke's law with the stresses, displacement of the top, references."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ BODIES = {
 
 @pytest.fixture(scope="module")
 def eccentric_load(on_cells) -> xr.DataArray:
-    """Hertz pressure about x = 1.3 on cells that span 0 to 4."""
+    """Hertz pressure about x = 1.3 on cells from 0 to 4."""
     return on_cells(lambda x, y: np.sqrt(np.maximum(1 - (x - 1.3) ** 2 - y**2, 0.0)), (0.0, 4.0), (-1.5, 1.5), (64, 48))
 
 

@@ -38,7 +38,7 @@ def solve_sliding(material: Material, friction: float) -> xr.Dataset:
 
 @pytest.mark.parametrize(("friction", "material"), [(0.05, STEEL), (0.3, INCOMPRESSIBLE)])
 def test_edge_tension_of_sliding_cylinder(material: Material, friction: float) -> None:
-    """The stress per friction is 2 p0 of the section; the normal load adds a stress of its own."""
+    """The stress per friction is 2 p0 of the section; the normal load adds a stress without friction."""
     results = [solve_sliding(material, value) for value in (friction, 1e-6)]
     mid_x = 0.5 * float(results[0]["x"][0] + results[0]["x"][-1])
     tension, normal = (edge_tension(result, [mid_x]) for result in results)

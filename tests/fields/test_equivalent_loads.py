@@ -1,4 +1,4 @@
-"""Equivalent loads: what they must do, checked in real space without the equation set."""
+"""Equivalent loads: their conditions, checked in real space without the equation set."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def test_face_loads_reverse_end_stress_of_top_load(short_body: FiniteLengthSpace
         )[0]
 
     end_stress = on_ends(Load.NORMAL, loads["P_h1"].values) + friction * on_ends(Load.ALONG_Y, pressure.values)
-    # The top load is known on cells here, and within the window only.
+    # The top load is known on cells, within the window only.
     assert np.abs(end_stress[0] - loads["P_v1"].sel(y=y)).max() < 2e-2
     assert np.abs(end_stress[1] - loads["P_v2"].sel(y=y)).max() < 2e-2
     assert float(np.abs(loads["P_v1"]).max()) > 0.5

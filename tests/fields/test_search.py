@@ -1,4 +1,4 @@
-"""Where the largest stress is looked for."""
+"""Positions of the search for the largest stress."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def test_search_on_top_excludes_rim() -> None:
     pressure[:, [0, -1]] = 0.0
     pressure[70:] = 0.0
     search = place_search(BODY, sliding(pressure, 0.0), grid)
-    # The body ends with the cells: there is no rim at its end.
+    # The body ends with the cells: its end has no rim.
     assert search.inside_rim[: 70 - RIM_CELLS, 1 + RIM_CELLS : 19 - RIM_CELLS].all()
     assert search.inside_rim.sum() == (70 - RIM_CELLS) * (18 - 2 * RIM_CELLS)
     for points in search.samples:

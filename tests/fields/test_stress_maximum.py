@@ -1,4 +1,4 @@
-"""The largest stress in a body: against closed forms, closer points and finer cells, and from the other end."""
+"""The largest stress in a body: against closed forms, closer points, finer cells and the mirrored case."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ def test_high_friction_moves_stress_maximum_to_top() -> None:
 
 
 def test_stress_maximum_does_not_depend_on_point_order() -> None:
-    """Polynomials through two positions that differ by a rounding would be wild."""
+    """Polynomials through two positions that differ by rounding would have large errors."""
     grid, pressure = circle()
     body = HalfSpace(material=Material(1.0, 0.3))
     x = np.array([0.4, -0.4, np.nextafter(0.4, 1.0), 0.1, 0.1 + 1e-12])
@@ -81,7 +81,7 @@ def test_stress_maximum_does_not_depend_on_point_order() -> None:
     ]
     assert computed.value == pytest.approx(maximum_under(grid, pressure, 0.0).value, rel=1e-3)
     for end in (5.0, 1.0):
-        # Positions from both ends of the contact meet at its middle, but for rounding.
+        # Positions from both ends of the contact coincide at its middle, up to rounding.
         strip = np.where((grid.x > -end) & (grid.x < end), 1.0, 0.0)[:, None] * np.sqrt(np.maximum(1 - grid.y**2, 0))
         rising_pressure = strip * (1 + 0.01 * grid.x[:, None])
         assert maximum_under(grid, rising_pressure, 0.0).value < 0.8
@@ -95,7 +95,7 @@ def test_stress_maximum_without_pressure_is_zero() -> None:
 
 
 def sharp_roller(friction: float = 0.0, distance: float = 0.5, tilt: float = 0.0) -> Case:
-    """An edge radius that is 0.4 half-widths: the largest stress lies 0.03 half-widths deep."""
+    """A roller with an edge radius of 0.4 half-widths: the largest stress lies at a depth of 0.03 half-widths."""
     body = FiniteLengthSpace(length=20 * A, material=STEEL)
     roller = Roller(radius=RADIUS, length=(20 - 2 * distance) * A, profile=profiles.Cylinder(fillet_radius=0.05e-3))
     return Case(body=body, roller=roller, max_pressure=PRESSURE, friction=friction, tilt=tilt)
@@ -137,14 +137,16 @@ def test_stress_maximum_error_covers_finer_cells() -> None:
 
 @pytest.mark.slow
 def test_opposite_tilt_mirrors_stress_maximum() -> None:
-    there, back = (solve(sharp_roller(tilt=tilt), accuracy=0.02, x=[0.0], y=[0.0], z=[A]) for tilt in (1e-3, -1e-3))
-    assert float(there.peak_von_mises) == pytest.approx(float(back.peak_von_mises), rel=1e-3)
-    assert maximum_position(there)[0] == pytest.approx(20 * A - maximum_position(back)[0], abs=0.02 * A)
-    assert abs(maximum_position(there)[0] - 10 * A) > 5 * A
+    original, mirrored = (
+        solve(sharp_roller(tilt=tilt), accuracy=0.02, x=[0.0], y=[0.0], z=[A]) for tilt in (1e-3, -1e-3)
+    )
+    assert float(original.peak_von_mises) == pytest.approx(float(mirrored.peak_von_mises), rel=1e-3)
+    assert maximum_position(original)[0] == pytest.approx(20 * A - maximum_position(mirrored)[0], abs=0.02 * A)
+    assert abs(maximum_position(original)[0] - 10 * A) > 5 * A
 
 
 def test_stress_maximum_near_free_end_exceeds_pressure_peak() -> None:
-    """The pressure is highest at mid-length, 20 a away, and rises steeply near to the end of the body."""
+    """The pressure is highest at mid-length, 20 a away, and increases steeply near the end of the body."""
     pressure, half_width = 0.75 * PRESSURE, 1.5 * A
     profile = profiles.FujiwaraKawase.for_pressure(
         pressure, radius=RADIUS, modulus=0.5 * STEEL.plane_strain_modulus, edge_drop=10e-6, k2=0.5
@@ -217,7 +219,7 @@ def test_requested_points_do_not_increase_error() -> None:
 
 
 def test_friction_moves_stress_maximum_on_top() -> None:
-    """What the pressure alone makes of the stress matters little there: no cell with more may be missed."""
+    """The stress on the top depends mainly on the friction: the search must include the cell with the largest sum."""
     length = 1e-3
     crown = profiles.Lundberg.for_pressure(1.5e9, radius=RADIUS, modulus=STEEL.plane_strain_modulus, delta=0.6)
     body = FiniteLengthSpace(length=length + 8 * A, material=STEEL)
@@ -239,23 +241,23 @@ def test_friction_moves_stress_maximum_on_top() -> None:
 
 @pytest.mark.slow
 def test_overshooting_polynomials_keep_sampled_maximum() -> None:
-    """At this accuracy they said 1.094 GPa beside their last points, where the body has 1.067."""
+    """The polynomials overshoot to 1.094 GPa next to their last points; the stress in the body is 1.067 GPa."""
     profile = profiles.Lundberg.for_pressure(1.5e9, radius=5e-3, modulus=STEEL.plane_strain_modulus)
     body, roller = FiniteLengthSpace(length=2e-3, material=STEEL), Roller(radius=5e-3, length=2e-3, profile=profile)
     case = Case(body=body, roller=roller, max_pressure=1.5e9, tilt=0.8e-3, friction=0.1)
     computed = solve(case, accuracy=0.005, y=[0.0], z=[1e-5])
     x, y, z = (float(computed[f"peak_von_mises_{axis}"]) for axis in "xyz")
-    there = stress_field(
+    stress_at_maximum = stress_field(
         body, computed.pressure, friction=0.1, x=[x], y=[y], z=[z], inside_cells=computed.pressure
     ).von_mises.item()
-    assert float(computed["peak_von_mises"]) == pytest.approx(there, rel=5e-3)
+    assert float(computed["peak_von_mises"]) == pytest.approx(stress_at_maximum, rel=5e-3)
     fine = solve(case, accuracy=0.002, y=[0.0], z=[1e-5])
     assert abs(float(computed["peak_von_mises"] - fine["peak_von_mises"])) <= float(computed["peak_von_mises_error"])
 
 
 @pytest.mark.slow
 def test_disagreeing_polynomials_have_large_error() -> None:
-    """From the second half the search passes the roller's end: polynomials through its last points reached 0.80 p0."""
+    """The search passes the roller's end in the second half: polynomials through its last points reached 0.80 p0."""
     material = Material(210e9, 0.318)
     a = 2 * 1e9 * RADIUS / material.plane_strain_modulus
     length, distance = 42.835 * a, 3.451 * a

@@ -1,4 +1,4 @@
-"""Displacement of the top: closed forms, reciprocity, limits, and what an EHL code relies on."""
+"""Displacement of the top: closed forms, reciprocity, limits, and requirements of EHL codes."""
 
 from __future__ import annotations
 
@@ -33,9 +33,9 @@ def test_operator_is_reciprocal_or_antisymmetric_in_y(short_body: FiniteLengthSp
     operator = SurfaceOperator.of(short_body, grid, (Load.NORMAL, Load.ALONG_Y))
     first_load, second_load = np.random.default_rng(1).random((2, 24, 16))
     if tangential:
-        there = operator({Load.ALONG_Y: first_load})
+        original = operator({Load.ALONG_Y: first_load})
         mirrored = operator({Load.ALONG_Y: first_load[:, ::-1]})
-        assert np.abs(there + mirrored[:, ::-1]).max() < 1e-12
+        assert np.abs(original + mirrored[:, ::-1]).max() < 1e-12
     else:
         works = [
             (a * operator({Load.NORMAL: b})).sum() for a, b in ((first_load, second_load), (second_load, first_load))
@@ -62,7 +62,7 @@ def test_incompressible_edge_is_half_as_stiff(unit_material: Material) -> None:
     material = Material(0.75, 0.5)
     edge = surface_displacement(FiniteLengthSpace(length=length, material=material), pressure)[0]
     half_space_row = surface_displacement(HalfSpace(material=material), pressure)[0]
-    # Differences along the edge: the second end only adds what hardly varies.
+    # The differences lie along the edge: the influence of the second end on them is almost uniform.
     near_cell, far_cell = 65, 90
     ratio = float(edge[near_cell] - edge[far_cell]) / float(half_space_row[near_cell] - half_space_row[far_cell])
     assert ratio == pytest.approx(3.362954, rel=2e-2)

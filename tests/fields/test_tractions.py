@@ -1,4 +1,4 @@
-"""Tractions in both directions: the whole operator of the top, ends free of traction, what is asked for by name."""
+"""Tractions in both directions: the whole operator of the top, traction-free ends, arguments by name."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ ALL = (Load.NORMAL, X, Y)
 
 
 def traction(cells: int = 24, along_x: float = 0.3) -> xr.DataArray:
-    """A load that reaches both ends and is even in nothing."""
+    """A load that reaches both ends and has no symmetry."""
     grid = Grid(x_range=(0.0, LENGTH), y_range=(-2.0, 2.0), cells_x=cells, cells_y=cells)
     x, y = np.meshgrid(grid.x, grid.y, indexing="ij")
     cell_loads = np.maximum(1 - y**2, 0) * (1 + along_x * x) * (1 + 0.2 * y)
@@ -78,12 +78,12 @@ def test_operator_is_symmetric_and_positive(name: str, cells: str) -> None:
     [("half-space", Y), ("mirror", X), *((name, load) for name in ("quarter space", "finite length") for load in ALL)],
 )
 def test_surface_displacement_equals_field_on_top(name: str, load: Load) -> None:
-    """Reciprocity on the ends, against the harmonics of both auxiliary bodies at the depth 0."""
+    """The surface operator equals the harmonics of both auxiliary bodies at the depth 0."""
     body, loads = BODIES[name], acting_loads(load, traction())
     top = surface_displacement(body, **loads, components="xyz")
     body_field = displacement_field(body, **loads)
     largest = max(float(np.ptp(top[name].values)) for name in top)
-    # Columns at a loaded end are averaged: their displacement has a logarithm's slope there under a traction along x.
+    # Columns at a loaded end are averaged: under a traction along x their displacement has a logarithmic slope.
     inner = slice(0.3, LENGTH - 0.3) if load is Load.ALONG_X else slice(None)
     for axis in "xyz":
         difference = (top[f"displacement_{axis}"] - body_field[f"u_{axis}"].isel(z=0)).sel(x=inner)
@@ -102,7 +102,7 @@ def test_ends_are_free_of_traction(body: Body, load: Load) -> None:
 
 
 def test_stresses_under_a_traction_along_x_follow_from_the_displacements() -> None:
-    """Hooke's law, at a point between two ends that the force bends."""
+    """Hooke's law holds at a point between two ends that the force bends."""
     body, loads = BODIES["finite length"], acting_loads(Load.ALONG_X, traction())
     at, step = {"x": 0.4, "y": 0.3, "z": 0.6}, 0.02
     offsets, weights = np.arange(-3, 4) * step, np.array([-1, 9, -45, 0, 45, -9, 1]) / (60 * step)
@@ -136,7 +136,7 @@ def test_reflection_reverses_axial_traction() -> None:
 
 
 def test_reference_changes_displacement_by_pure_bending() -> None:
-    """Two windows state the same displacement: the reference belongs to the body."""
+    """Displacements in two windows are equal: their reference belongs to the body."""
     body = BODIES["finite length"]
     shifted = []
     for reach, cells in ((2.0, 20), (5.0, 50)):
@@ -154,7 +154,7 @@ def test_reference_changes_displacement_by_pure_bending() -> None:
 def test_long_body_has_axial_displacement_of_half_space() -> None:
     grid = Grid(x_range=(0.0, 60.0), y_range=(-1.5, 1.5), cells_x=240, cells_y=12)
     x, y = np.meshgrid(grid.x, grid.y, indexing="ij")
-    # Without a resultant, which would bend a body of any length.
+    # The load has no resultant, which would bend a body of any length.
     cell_loads = np.where(np.abs(x - 30) < 1.5, np.sin(np.pi * (x - 30) / 1.5), 0.0) * (1 - y**2 / 2.25)
     load = xr.DataArray(cell_loads, coords={"x": grid.x, "y": grid.y}, dims=("x", "y"))
     finite_field, half_space_field = (

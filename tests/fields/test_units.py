@@ -1,4 +1,4 @@
-"""Lengths and moduli in other units: the same fields, whatever bodies, cells and tractions."""
+"""Lengths and moduli in other units: equal fields for all bodies, cells and tractions."""
 
 from __future__ import annotations
 

@@ -17,7 +17,7 @@ BARUS = [
 ROELANDS = [(20, 5, 2.9088, 2.5116), (50, 10, 3.871, 3.400)]
 
 
-# The table's inlets end about four half-widths from the middle, which matters at low load.
+# The table's inlets end about four half-widths from the middle, with an influence at low load.
 @pytest.mark.parametrize(("load", "lubricant", "central", "least"), BARUS)
 def test_table_of_barus_oil(load, lubricant, central, least):
     film = solve_line(load, lubricant, finest=0.1, inlet=4.0 if load < 100 else None)
@@ -44,7 +44,7 @@ def test_rigid_isoviscous_limit_agrees_with_martin():
 def test_rolling_moment_follows_the_load(load, lubricant):
     film = solve_line(load, lubricant, inlet=4.0)
     assert film.rolling_moment == pytest.approx(1.45 * load**-1.5, rel=0.04)
-    # w delta = 2 t: the moment of the pressure is twice that of its force on the slopes.
+    # With w delta = 2 t the moment of the pressure is twice the moment of its force on the slopes.
     assert abs(film.moment) == pytest.approx(2 * film.rolling_moment, rel=0.01)
 
 

@@ -37,7 +37,7 @@ def test_presets_agree_with_their_table(name):
 
 
 @pytest.mark.parametrize(
-    ("parameters", "named"),
+    ("parameters", "message"),
     [
         ({"viscosity": 0.0}, "viscosity"),
         ({"pressure_viscosity": -1e-8}, "pressure_viscosity"),
@@ -46,8 +46,8 @@ def test_presets_agree_with_their_table(name):
         ({"density": -1.0}, "density"),
     ],
 )
-def test_bad_lubricant_is_rejected(parameters, named):
-    with pytest.raises(InvalidInputError, match=named):
+def test_bad_lubricant_is_rejected(parameters, message):
+    with pytest.raises(InvalidInputError, match=message):
         Lubricant(**({"viscosity": 0.02, "pressure_viscosity": 2e-8} | parameters))
 
 

@@ -1,4 +1,4 @@
-"""The film of cases: certificate, limits, ends, refused input."""
+"""The film of cases: certificate, limits, ends, rejected input."""
 
 import warnings
 from dataclasses import replace
@@ -119,7 +119,7 @@ def test_tilted_roller_has_minimum_film_at_its_end():
     )
     film = solve_film(case, accuracy=0.02)
     assert float(film.least_film_x) < 1.2 * float(film.hertz_half_width)
-    # Cells of a quarter of the width along y and half the width along x compute 93.97 nm.
+    # Cells of a quarter of the width along y and half the width along x result in 93.97 nm.
     assert float(film.least_film) == pytest.approx(93.97e-9, abs=float(film.least_film_error))
 
 
@@ -164,13 +164,13 @@ def test_asperities_carry_part_of_the_load():
     assert 0.0 < float(mixed.asperity_load_share) < 1.0
     assert float(mixed.film_thickness.min()) > 0.0
     assert bool((mixed.asperity_pressure <= mixed.pressure * (1 + 1e-9)).all())
-    # A surface as rough as the film is thick has a viscosity ratio of 1.
+    # A surface with a roughness equal to the film thickness has a viscosity ratio of 1.
     assert float(mixed.viscosity_ratio) == pytest.approx((float(mixed.least_film_middle) / 1e-7) ** 1.3)
     assert float(mixed.viscosity_ratio_error) > 0.0
 
 
 @pytest.mark.parametrize(
-    ("changes", "named"),
+    ("changes", "message"),
     [
         ({"lubricant": None}, "lubricant"),
         ({"motion": cs.Sliding()}, "motion"),
@@ -178,9 +178,9 @@ def test_asperities_carry_part_of_the_load():
         ({"coupled": True, "friction": 0.1}, "coupled"),
     ],
 )
-def test_bad_case_is_rejected(changes, named):
+def test_bad_case_is_rejected(changes, message):
     case = replace(film_case(16 * HALF_WIDTH), **changes)
-    with pytest.raises(cs.InvalidInputError, match=named):
+    with pytest.raises(cs.InvalidInputError, match=message):
         solve_film(case)
 
 

@@ -37,7 +37,7 @@ def test_fast_line_contact_agrees_with_blok(hot, line_case, steel):
     blok = 0.5 * heat * np.sqrt(steel.diffusivity * a / (np.pi * 199.5)) / steel.conductivity * 2.18829
     assert float(hot.max_temperature_rise) == pytest.approx(blok, rel=5e-3)
     assert float(hot.max_temperature_rise_y) / a == pytest.approx(-0.65, abs=0.02)
-    # the same along the whole length: the ends are insulated
+    # the temperature is uniform along the length: the ends are insulated
     assert np.ptp(hot.temperature_rise.values, axis=0).max() < 1e-6 * blok
 
 
@@ -98,9 +98,9 @@ def test_roller_ending_within_a_cell_heats_symmetrically(line_case, steel):
     grid = Grid(x_range=(0.0, 1.2e-3), y_range=(-2.4 * 65e-6, 2.4 * 65e-6), cells_x=150, cells_y=48)
     assert np.isclose(grid.x, 1e-4, rtol=1e-9).any()
     result = solve(case, grid, stresses=False)
-    heated = flash_temperature(at_speeds(case, -10.0, -9.0), result, body=steel, roller=steel)
-    column_maxima = heated.temperature_rise.max("y").values
-    assert abs(float(heated.heat_error)) < 1e-9
+    flash_result = flash_temperature(at_speeds(case, -10.0, -9.0), result, body=steel, roller=steel)
+    column_maxima = flash_result.temperature_rise.max("y").values
+    assert abs(float(flash_result.heat_error)) < 1e-9
     assert column_maxima == pytest.approx(column_maxima[::-1], rel=1e-3)
 
 
@@ -112,12 +112,12 @@ def test_roller_ends_on_a_quarter_space_are_insulated(steel):
         friction=0.05,
     )
     result = solve(case, choose_grid(case, cells_x=6, cells_y=12), stresses=False)
-    heated = flash_temperature(at_speeds(case, -1.0, -0.5), result, body=steel, roller=steel)
-    outside_roller = heated.x > 0.3e-3
-    assert float(heated.roller_temperature_rise.where(outside_roller).max()) == 0.0
-    assert float(heated.temperature_rise.where(outside_roller).max()) > 0.0
-    assert abs(float(heated.heat_error)) < 1e-9
-    assert float(heated.temperature_mismatch) < 1e-6
+    flash_result = flash_temperature(at_speeds(case, -1.0, -0.5), result, body=steel, roller=steel)
+    outside_roller = flash_result.x > 0.3e-3
+    assert float(flash_result.roller_temperature_rise.where(outside_roller).max()) == 0.0
+    assert float(flash_result.temperature_rise.where(outside_roller).max()) > 0.0
+    assert abs(float(flash_result.heat_error)) < 1e-9
+    assert float(flash_result.temperature_mismatch) < 1e-6
 
 
 @pytest.fixture(scope="module")
@@ -134,14 +134,14 @@ def rolling_result(line_case):
 
 def test_rolling_heats_the_slip_zone(rolling_result, steel):
     case, result = rolling_result
-    heated = flash_temperature(case, result, body=steel, roller=steel)
+    flash_result = flash_temperature(case, result, body=steel, roller=steel)
     sticking = result.stick.astype(bool) & (result.pressure > 0)
     assert bool(sticking.any())
-    assert float(heated.frictional_heat.where(sticking).max()) < 1e-6 * float(heated.frictional_heat.max())
-    assert float(heated.friction_power) == pytest.approx(20.0 * float(result.friction_work))
-    assert abs(float(heated.heat_error)) < 1e-6
+    assert float(flash_result.frictional_heat.where(sticking).max()) < 1e-6 * float(flash_result.frictional_heat.max())
+    assert float(flash_result.friction_power) == pytest.approx(20.0 * float(result.friction_work))
+    assert abs(float(flash_result.heat_error)) < 1e-6
     # the contact moves along +y over both surfaces: slip and wake are behind it
-    assert float(heated.max_temperature_rise_y) < 0
+    assert float(flash_result.max_temperature_rise_y) < 0
 
 
 def test_temperature_above_the_limit_warns(line_case, create_line_result, steel):
@@ -152,7 +152,7 @@ def test_temperature_above_the_limit_warns(line_case, create_line_result, steel)
 
 
 @pytest.mark.parametrize(
-    ("changes", "named"),
+    ("changes", "message"),
     [
         ({"roller": None}, "roller"),
         ({"body": None}, "body"),
@@ -165,10 +165,10 @@ def test_temperature_above_the_limit_warns(line_case, create_line_result, steel)
         ({"motion": Sliding(body_speed=0.0, roller_speed=1.0)}, "speed"),
     ],
 )
-def test_bad_input(line_case, create_line_result, steel, changes, named):
+def test_bad_input(line_case, create_line_result, steel, changes, message):
     arguments = {"body": steel, "roller": steel, "motion": FAST} | changes
     line_case = replace(line_case, motion=arguments.pop("motion"))
-    with pytest.raises(InvalidInputError, match=named):
+    with pytest.raises(InvalidInputError, match=message):
         flash_temperature(line_case, create_line_result(), **arguments)
 
 

@@ -88,7 +88,7 @@ def test_two_ends_equal_a_row_of_images(unit, graded):
 
 def test_uniform_and_graded_columns_agree(unit):
     grid = Grid(x_range=(0, 2), y_range=(-1, 1), cells_x=8, cells_y=20)
-    # widths equal but for rounding: another operator
+    # the widths differ by rounding only: the operator is another one
     graded = Grid.between(np.linspace(0, 2, 9) + 1e-9 * np.sin(np.arange(9)), (-1, 1), 20)
     assert grid.uniform
     assert not graded.uniform

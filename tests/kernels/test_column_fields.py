@@ -68,7 +68,7 @@ def test_shifted_body_has_equal_field(load: Load, extent: str) -> None:
 
 
 GRADED = np.array([0, 1, 2, 3, 5, 7, 10, 14, 17, 18, 19, 20])
-"""Edges that are kept of twenty uniform cells."""
+"""Indices of the retained edges of twenty uniform cells."""
 
 
 @pytest.mark.parametrize("load", Load)
@@ -88,18 +88,20 @@ def test_columns_match_finer_uniform_cells(load: Load, extent: str) -> None:
 @pytest.mark.parametrize("extent", EXTENTS)
 @pytest.mark.parametrize("column", [7, 10])
 def test_single_loaded_column_keeps_position(load: Load, extent: str, column: int) -> None:
-    # Columns are split so that each point lies in the middle of one, which moved the force beside a step of the load.
+    # The columns are split so that each point lies in the middle of a column, without a change of the load's position.
     graded = Grid.from_edges(np.linspace(0.0, LENGTH, 21)[GRADED], (-1.0, 1.0), 16)
     cells = np.zeros(graded.shape)
     cells[column] = np.sqrt(np.maximum(1 - (graded.y / 0.6) ** 2, 0))
-    fine = FineCells(load=cells, shape=cells, grid=graded, extent=EXTENTS[extent], image=load.sign_x)
+    fine = FineCells(load=cells, shape=cells, grid=graded, extent=EXTENTS[extent], image_sign=load.sign_x)
     uniform = Grid(
         x_range=(0.0, LENGTH),
         y_range=(float(fine.y_edges[0]), float(fine.y_edges[-1])),
         cells_x=20,
-        cells_y=9 * fine.cells.shape[1],
+        cells_y=9 * fine.cell_loads.shape[1],
     )
-    smooth = fine.shape_along_y(fine.cells, fine.cells).means(np.linspace(*uniform.y_range, uniform.cells_y + 1))
+    smooth = fine.shape_along_y(fine.cell_loads, fine.cell_loads).means(
+        np.linspace(*uniform.y_range, uniform.cells_y + 1)
+    )
     spread = np.repeat(smooth, np.diff(GRADED), axis=0)
     influence, x, y = stresses_of(load), np.linspace(0.05, 1.95, 21), np.array([0.0, 0.3])
     for z in (np.array([0.15]), np.array([0.4])):
@@ -110,7 +112,7 @@ def test_single_loaded_column_keeps_position(load: Load, extent: str, column: in
 
 @pytest.mark.parametrize("extent", EXTENTS)
 def test_wide_columns_represent_smooth_load(extent: str) -> None:
-    """In thirds of columns 0.4 wide; as steps it would be 9 % off."""
+    """The fine columns are thirds of columns 0.4 wide; steps of the load would cause an error of 9 %."""
     scale = 1e-3
     graded = Grid.from_edges(scale * np.linspace(0.0, LENGTH, 21)[GRADED], (-scale, scale), 16)
     lateral_profile = np.sqrt(np.maximum(1 - (graded.y / (0.6 * scale)) ** 2, 0))
@@ -118,7 +120,7 @@ def test_wide_columns_represent_smooth_load(extent: str) -> None:
     ends = (scale * EXTENTS[extent][0], scale * EXTENTS[extent][1])
     fine = FineCells(load=cells, shape=cells, grid=graded, extent=ends)
     y_range = (float(fine.y_edges[0]), float(fine.y_edges[-1]))
-    uniform = Grid(x_range=(0.0, scale * LENGTH), y_range=y_range, cells_x=100, cells_y=9 * fine.cells.shape[1])
+    uniform = Grid(x_range=(0.0, scale * LENGTH), y_range=y_range, cells_x=100, cells_y=9 * fine.cell_loads.shape[1])
     along_x = fine.column_means([uniform.x_edges])
     spread = fine.shape_along_y(along_x, along_x).means(np.linspace(*y_range, uniform.cells_y + 1))
     influence, x, y = stresses_of(Load.NORMAL), scale * np.linspace(0.1, 1.9, 13), np.array([0.0, 0.3 * scale])
@@ -129,7 +131,7 @@ def test_wide_columns_represent_smooth_load(extent: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("column", "extent", "image", "expected"),
+    ("column", "extent", "image_sign", "expected"),
     [
         (3, "none", 1, [0.3, 0.5]),
         (3, "last", 1, [0.3, 0.5, 3.5, 3.7]),
@@ -137,19 +139,19 @@ def test_wide_columns_represent_smooth_load(extent: str) -> None:
         (10, "both", -1, [-2.0, -1.9, 1.9, 2.0, 2.1]),
     ],
 )
-def test_step_edges_of_load(column: int, extent: str, image: int, expected: list[float]) -> None:
+def test_step_edges_of_load(column: int, extent: str, image_sign: int, expected: list[float]) -> None:
     graded = Grid.from_edges(np.linspace(0.0, LENGTH, 21)[GRADED], (-1.0, 1.0), 16)
     cells = np.zeros(graded.shape)
     cells[column] = np.sqrt(np.maximum(1 - (graded.y / 0.6) ** 2, 0))
     steps = FineCells(
-        load=1e-3 * cells, shape=1e-3 * cells, grid=graded, extent=EXTENTS[extent], image=image
+        load=1e-3 * cells, shape=1e-3 * cells, grid=graded, extent=EXTENTS[extent], image_sign=image_sign
     ).step_edges
     assert np.unique(steps.round(9)).tolist() == pytest.approx(expected)
 
 
 @pytest.mark.parametrize("load", Load)
 def test_joint_depths_equal_separate_depths(load: Load) -> None:
-    # What columns far away do is interpolated over the depth; at a single depth it is not.
+    # The field of distant columns is interpolated over the depth; a single depth has no interpolation.
     edges = np.concatenate([np.linspace(0.0, 2.0, 9), np.geomspace(2.5, 60.0, 24)])
     graded = Grid.from_edges(edges, (-1.0, 1.0), 16)
     cells = np.exp(-graded.x[:, None] / 20) * np.sqrt(np.maximum(1 - (graded.y / 0.8) ** 2, 0))
@@ -160,7 +162,7 @@ def test_joint_depths_equal_separate_depths(load: Load) -> None:
         depth_field = columns_field(
             cells, cells, influence, graded, Points(x, y, z[depth_index : depth_index + 1]), extent=extent
         )
-        # Nearer to the top than the others see it, columns are split into more.
+        # Columns near a point at a small depth have more parts than the columns of all depths.
         assert np.abs(joint_field[..., depth_index] - depth_field[..., 0]).max() < 2e-4 * np.abs(joint_field).max()
 
 
@@ -202,12 +204,12 @@ def test_mirrored_load_has_mirrored_field(grid_and_load: tuple[Grid, FloatArray]
     grid, cells = grid_and_load
     backwards = Grid.from_edges(LENGTH - grid.x_edges[::-1], (-1.0, 1.0), 6)
     influence, y = stresses_of(load), np.array([-0.4, 0.1])
-    there = columns_field(cells, None, influence, grid, Points(X, y, Z), extent=EXTENTS[extent])
-    back = columns_field(
+    original = columns_field(cells, None, influence, grid, Points(X, y, Z), extent=EXTENTS[extent])
+    mirrored = columns_field(
         cells[::-1], None, influence, backwards, Points(LENGTH - X[::-1], y, Z), extent=EXTENTS[extent]
     )
     sign = np.array(influence.sign_along_x)[:, None, None, None]
-    assert np.abs(there - sign * back[:, ::-1]).max() < 1e-8 * np.abs(there).max()
+    assert np.abs(original - sign * mirrored[:, ::-1]).max() < 1e-8 * np.abs(original).max()
 
 
 @settings(max_examples=2)
@@ -215,7 +217,7 @@ def test_mirrored_load_has_mirrored_field(grid_and_load: tuple[Grid, FloatArray]
 def test_normal_stress_integrates_to_load(grid_and_load: tuple[Grid, FloatArray]) -> None:
     grid, cells = grid_and_load
     depth, reach, points = 0.6, 40.0, 41
-    # Points that crowd where the load is: y = sinh(s).
+    # The points are dense near the load: y = sinh(s).
     s = np.linspace(-1.0, 1.0, points) * np.arcsinh(reach / depth)
     distances, steps = depth * np.sinh(s), depth * np.cosh(s) * (s[1] - s[0])
     field = columns_field(
@@ -233,28 +235,28 @@ def test_normal_stress_integrates_to_load(grid_and_load: tuple[Grid, FloatArray]
 
 EDGES = np.array([0.0, 0.1, 0.3, 0.6, 1.0, 1.5, 2.0, 2.4, 2.7, 2.9, 3.0])
 UNIT, PRESSURE = 2.0**-17, 2.0**37
-PLACES = (0.0, 1e-12, 0.02, 0.05, 0.07, 0.3, 0.4, 0.75, 1.5, 1.7, 2.2, 2.95, 3.0)
+OFFSETS = (0.0, 1e-12, 0.02, 0.05, 0.07, 0.3, 0.4, 0.75, 1.5, 1.7, 2.2, 2.95, 3.0)
 
 
 def make_fine_cells(
-    place: float = 0.0, unit: float = 1.0, *, ends: int = 2, image: int = 1, steps: bool = False
+    offset: float = 0.0, unit: float = 1.0, *, ends: int = 2, image_sign: int = 1, steps: bool = False
 ) -> FineCells:
-    """A load that is pressed at both ends, and may end in steps between columns."""
-    grid = Grid.between(unit * (EDGES + place), (-unit, unit), 8)
-    x, y = grid.x[:, None] / unit - place, grid.y / unit
+    """A load on both ends of a body, with optional steps between columns."""
+    grid = Grid.between(unit * (EDGES + offset), (-unit, unit), 8)
+    x, y = grid.x[:, None] / unit - offset, grid.y / unit
     cells = np.sqrt(np.maximum(1 - (y / 0.9) ** 2, 0.0)) * (1 + 0.4 * np.sin(2 * x))
     if steps:
         cells = np.where((x > 0.6) & (x < 2.4), cells, 0.0)
-    extent = (unit * place if ends else -np.inf, unit * (place + 3.0) if ends == 2 else np.inf)
+    extent = (unit * offset if ends else -np.inf, unit * (offset + 3.0) if ends == 2 else np.inf)
     load = (PRESSURE if unit < 1 else 1.0) * cells
-    return FineCells(load=load, shape=load, grid=grid, extent=extent, image=image)
+    return FineCells(load=load, shape=load, grid=grid, extent=extent, image_sign=image_sign)
 
 
 def split_around(x: float, fine_cells: FineCells, narrow: float = 0.0) -> _SplitRange:
     return _split_around(x, fine_cells, narrow)
 
 
-@pytest.mark.parametrize("x", PLACES)
+@pytest.mark.parametrize("x", OFFSETS)
 @pytest.mark.parametrize("narrow", [0.0, 0.15, 5.0])
 @pytest.mark.parametrize("steps", [False, True])
 def test_results_scale_with_unit_and_position(x: float, narrow: float, *, steps: bool) -> None:
@@ -264,23 +266,23 @@ def test_results_scale_with_unit_and_position(x: float, narrow: float, *, steps:
         for position, unit in ((0.0, UNIT), (8.0, 1.0), (-32.0, 1.0)):
             cells = make_fine_cells(position, unit, ends=ends, steps=steps)
             variant = split_around(unit * (x + position), cells, unit * narrow)
-            if x == 1e-12 and position:  # not to be told from 0 there
+            if x == 1e-12 and position:  # equal to 0 within rounding at this position
                 continue
             assert (variant.start, variant.stop) == (baseline.start, baseline.stop)
             assert variant.inserted / unit - position == pytest.approx(baseline.inserted, abs=1e-9)
             factor = PRESSURE if unit < 1 else 1.0
             assert variant.moment_loads(cells) / factor == pytest.approx(baseline.moment_loads(plain_cells), abs=1e-9)
             for reach in (0.0, 0.3137, 1.0731, 9.0):
-                there = variant.range_within(cells.edges, unit * (x + position), unit * reach)
-                assert there == baseline.range_within(plain_cells.edges, x, reach)
+                column_range = variant.range_within(cells.edges, unit * (x + position), unit * reach)
+                assert column_range == baseline.range_within(plain_cells.edges, x, reach)
 
 
-@pytest.mark.parametrize("x", PLACES)
-@pytest.mark.parametrize("image", [1, -1])
-def test_inserted_columns_preserve_force(x: float, image: int) -> None:
-    cells = make_fine_cells(image=image)
+@pytest.mark.parametrize("x", OFFSETS)
+@pytest.mark.parametrize("image_sign", [1, -1])
+def test_inserted_columns_preserve_force(x: float, image_sign: int) -> None:
+    cells = make_fine_cells(image_sign=image_sign)
     split_range = split_around(x, cells)
-    forces = add_images(cells.far_load, image, cells.extent) * np.diff(cells.edges)[:, None]
+    forces = add_images(cells.far_load, image_sign, cells.extent) * np.diff(cells.edges)[:, None]
     inserted = cells.column_means([split_range.inserted]) + split_range.moment_loads(cells)
     inserted_force = (inserted * np.diff(split_range.inserted)[:, None]).sum(axis=0)
     outside = forces.sum(axis=0) - forces[split_range.start : split_range.stop].sum(axis=0)
@@ -292,7 +294,7 @@ def test_inserted_columns_preserve_force(x: float, image: int) -> None:
 
 @pytest.mark.parametrize("x", [0.02, 0.07, 0.3, 0.4, 0.75, 1.5, 1.7, 2.2, 2.95])
 def test_narrow_columns_surround_point(x: float) -> None:
-    """A quarter as wide as what it lies in; on an edge as the narrower of both."""
+    """The columns are a quarter as wide as the column of the point, on an edge as the narrower neighbour."""
     cells = make_fine_cells()
     edges = split_around(x, cells).inserted
     column = int(np.searchsorted(edges, x)) - 1
@@ -300,13 +302,15 @@ def test_narrow_columns_surround_point(x: float) -> None:
     widths = np.diff(edges)
     assert widths[column - 1] == pytest.approx(widths[column])
     assert widths[column + 1] == pytest.approx(widths[column])
-    split = cells.x_edges
-    adjacent = np.flatnonzero((split[:-1] <= x + 1e-12) & (split[1:] >= x - 1e-12))
-    assert widths[column] == pytest.approx(0.25 * np.diff(split)[adjacent].min())
+    fine_edges = cells.x_edges
+    adjacent = np.flatnonzero((fine_edges[:-1] <= x + 1e-12) & (fine_edges[1:] >= x - 1e-12))
+    assert widths[column] == pytest.approx(0.25 * np.diff(fine_edges)[adjacent].min())
     low, high = resolved_columns(cells.edges, x)
     assert np.isin(edges[[0, -1]], cells.edges[[max(low - 1, 0), min(high + 1, cells.edges.size - 1)]]).all()
-    distant_edges = split[
-        (split > cells.edges[low]) & (split < cells.edges[high]) & (np.abs(split - x) > 2.1 * widths[column])
+    distant_edges = fine_edges[
+        (fine_edges > cells.edges[low])
+        & (fine_edges < cells.edges[high])
+        & (np.abs(fine_edges - x) > 2.1 * widths[column])
     ]
     assert np.isin(distant_edges, edges).all()
 
@@ -320,13 +324,13 @@ def test_inserted_columns_stop_at_load_step() -> None:
             column = int(np.searchsorted(edges, x)) - 1
             assert 0.5 * (edges[column] + edges[column + 1]) == pytest.approx(x)
             assert not edges[column - 1] < step - 1e-12 < step + 1e-12 < edges[column + 2]
-    edges = split_around(float(step), cells).inserted  # on the step itself as little as may be
+    edges = split_around(float(step), cells).inserted  # on the step itself by the least width
     assert np.diff(edges).min() == pytest.approx(1e-3 * 0.1, rel=0.5)
 
 
 @pytest.mark.parametrize("narrow", [0.0, 0.02])
 def test_rounding_before_edge_equals_edge(narrow: float) -> None:
-    """Also before the outermost edge of those that are split, where narrow columns follow that are not."""
+    """Both sides of an edge have equal columns, also the outermost edge of the split columns before narrow ones."""
     edges = np.concatenate([[0.0, 1.0], np.linspace(2.0, 2.1, 11)])
     grid = Grid.between(edges, (-1.0, 1.0), 4)
     cells = FineCells(load=PRESSURE * np.ones(grid.shape), shape=PRESSURE * np.ones(grid.shape), grid=grid)
@@ -337,7 +341,7 @@ def test_rounding_before_edge_equals_edge(narrow: float) -> None:
 
 
 def test_point_on_end_adds_no_column() -> None:
-    """There the mirrored load goes on smoothly, or is reversed; of a body without an end the point is like another."""
+    """A point on an end has no column: the mirrored load continues smoothly or changes its sign."""
     for position in (0.0, 8.0):
         for end in (position, position + 3.0):
             assert np.abs(split_around(end, make_fine_cells(position)).inserted - end).min() < 1e-12
@@ -373,11 +377,11 @@ def test_layer_cells_centre_points(offset: float, span: float) -> None:
     assert layer.edges is not None
     cell_positions = (start + offset + step * positions - layer.edges[0]) / step
     assert cell_positions == pytest.approx(np.floor(cell_positions) + 0.5)
-    # All that is loaded, and no more than a cell beyond it.
+    # The layer contains all loaded cells, and at most a cell more.
     assert start - step - 1e-9 < layer.edges[0] <= start + 1e-9
     assert start + span - 1e-9 <= layer.edges[-1] < start + span + step - 1e-9
     assert layer.edges[1:] - layer.edges[:-1] == pytest.approx(step)
-    # Distances from every point to every corner are among the offsets.
+    # The offsets include the distances from every point to every corner.
     count = layer.edges.size
     for position, offset_index in zip(positions, layer.offset_indices, strict=True):
         distances = np.sort(start + offset + step * position - layer.edges)
@@ -404,7 +408,7 @@ def test_positions_with_common_step_share_cells() -> None:
     for y in (-0.1, 0.0, 0.3):
         cell_position = (y - layer.edges[0]) / np.diff(layer.edges)[0]
         assert cell_position == pytest.approx(np.floor(cell_position) + 0.5)
-    # No wider than a fifth of a cell, and an odd part of the step of 0.1.
+    # The cells are at most a fifth of a cell wide, an odd part of the step of 0.1.
     assert np.diff(layer.edges)[0] == pytest.approx(0.1 / 3)
     assert len(make_layers(np.array([-0.1, 0.0, 0.1 * np.pi]), 5)) == 3
     assert len(make_layers(np.array([-0.1, 0.0, 0.3]), None)) == 3
@@ -415,7 +419,7 @@ def test_positions_with_common_step_share_cells() -> None:
 
 
 def test_merge_preserves_force_and_moment() -> None:
-    """Within three percent of their distance from the point, with their force."""
+    """Merged columns keep their force and are at most three percent of their distance wide."""
     edges, loads = np.linspace(0.0, 10.0, 401), np.random.default_rng(0).random((400, 2))
     for position in (0.0, 100.0):
         for x in (-1.0, 10.5, 20.0):
@@ -442,7 +446,7 @@ def test_offsets_about_zero_are_evaluated_on_one_side(start: float, halved: bool
 
 @pytest.mark.parametrize("x", [0.002, 0.005, 0.01, 2.99, 2.995, 2.998])
 def test_inserted_columns_stay_in_replaced_range(x: float) -> None:
-    """Beside the first and the last edge of a load without images there is no room for narrow ones."""
+    """Outside the first and the last edge of a load without images no narrow columns exist."""
     cells = make_fine_cells(ends=0)
     split_range = split_around(x, cells)
     assert (split_range.inserted[0], split_range.inserted[-1]) == (

@@ -26,14 +26,14 @@ def test_unaligned_positions_equal_single_positions() -> None:
         half_space_field(load, INFLUENCE, grid, Points(variant, grid.y[::4], z), extent=(0.0, 8.0))
         for variant in (x, *x[:, None])
     )
-    # Far columns are taken together.
+    # The far columns are merged.
     np.testing.assert_allclose(
         joint_field, np.concatenate(single_fields, axis=1), rtol=0, atol=1e-5 * np.abs(joint_field).max()
     )
 
 
 def pressure(grid: Grid) -> FloatArray:
-    """Pressure that falls to zero inside its last cells along x and y."""
+    """Pressure that decreases to zero inside its last cells along x and y."""
     axial_profile = ((grid.x[:, None] - 2.0) / 1.7) ** 8
     return np.asarray(np.sqrt(np.maximum(1 - (grid.y / 0.93) ** 2 - axial_profile, 0.0)))
 
@@ -58,7 +58,7 @@ def test_field_is_linear_in_the_load(kind: str, *, ended: bool, shaped: bool, al
         half_space_field(load, INFLUENCE, grid, Points(x, y, z), extent=extent, shape=shape)
         for load in (first_load, second_load, first_load + 2 * second_load)
     )
-    # The images' sums amplify rounding.
+    # The sums over images amplify rounding.
     assert np.abs(first_field + 2 * second_field - sum_field).max() < (1e-10 if np.isfinite(extent).all() else 1e-12)
 
 
@@ -90,7 +90,7 @@ def stresses(load: np.ndarray, x: np.ndarray, y: np.ndarray, extent: tuple[float
 
 
 def displacements(load: np.ndarray, x: np.ndarray, y: np.ndarray, extent: tuple[float, float]) -> np.ndarray:
-    """Displacements likewise."""
+    """Displacements under steps of a load in each direction."""
     length = extent[1] - extent[0]
     fields = []
     for direction in Load:
@@ -126,11 +126,11 @@ def test_symmetric_load_has_equal_field(
     real = centred_field
     monkeypatch.setattr(field, "centred_field", lambda *a, **k: calls.append(1) or real(*a, **k))
     by_symmetry = compute(load, x, y, extent)
-    # One more position along y that lies otherwise: all are convolved with the whole kernel.
+    # With a position at another offset along y the convolution uses the whole kernel for all positions.
     complete = compute(load, x, np.append(y, y[0] + 0.3 * GRID.dy), extent)[:, :, :, :-1]
-    # Mirrored tractions along x take the general way.
+    # Mirrored tractions along x use the general convolution.
     assert len(calls) == (3 if np.isinf(extent[0]) else 2)
-    # Images are interpolated over another span along y.
+    # The images are interpolated over another span along y.
     tolerance = 1e-13 if np.isinf(extent[1]) else 2e-8
     np.testing.assert_allclose(by_symmetry, complete, atol=tolerance * np.abs(complete).max())
 
@@ -142,7 +142,7 @@ def test_symmetric_load_has_equal_field(
 def test_symmetric_load_equals_sum_of_halves(
     load: Load, cells_x: int, rows: slice | list[int], other_half: float
 ) -> None:
-    """Of the halves alone no wavenumber is zero."""
+    """The spectrum of each half has no zero, unlike the spectrum of the symmetric load."""
     grid = Grid(x_range=(0.0, 2.0), y_range=(-1.0, 1.0), cells_x=cells_x, cells_y=16)
     half_load = np.random.default_rng(0).random(grid.shape)
     half_load[(cells_x + 1) // 2 :] = 0.0
@@ -157,7 +157,7 @@ def test_symmetric_load_equals_sum_of_halves(
 
 @pytest.mark.parametrize("unit", [1e-20, 1e20])
 def test_asymmetric_load_stays_asymmetric_in_any_unit(load: np.ndarray, unit: float) -> None:
-    """A field is that of the load in any unit."""
+    """The field is proportional to the load in any unit."""
     computed, baseline = (stresses(variant, GRID.x, GRID.y, (0.0, 2.0)) for variant in (unit * load, load))
     np.testing.assert_allclose(computed / unit, baseline, atol=1e-12 * np.abs(baseline).max())
 
@@ -175,14 +175,14 @@ def test_cached_kernels_depend_on_material_and_quantity(load: np.ndarray):
 @pytest.mark.parametrize("loaded", [(5, slice(None)), (slice(None), 5), (slice(None), slice(None)), (5, 5)])
 @pytest.mark.parametrize("whole", [False, True])
 def test_convolution_includes_all_cell_pairs(extent: tuple[float, float], loaded: tuple, whole: bool) -> None:
-    """At periods of a fast length the farthest cells were left out of components odd in y.
+    """The periods include the farthest cells for components that are odd in y.
 
-    Where a contact is one cell wide, and looked at there, a transform of no points was asked for.
+    A contact one cell wide has a transform of at least one point.
     """
     load = np.zeros(GRID.shape)
     load[loaded] = 1.0
     x, y = (GRID.x, GRID.y) if whole else (np.atleast_1d(GRID.x[loaded[0]]), np.atleast_1d(GRID.y[loaded[1]]))
-    # With a position that lies otherwise beside each, nothing is taken by symmetry.
+    # With another offset next to each position the field has no symmetry.
     adjacent = [(positions[:, None] + 0.013 * np.arange(2)).ravel() for positions in (x, y)]
     unaligned_field = stresses(load, *adjacent, extent)[:, :, ::2, ::2]
     np.testing.assert_allclose(stresses(load, x, y, extent), unaligned_field, atol=1e-8)

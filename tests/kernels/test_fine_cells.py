@@ -1,4 +1,4 @@
-"""Finer cells under a load: they carry its force wherever the body lies, with its images, in any unit."""
+"""Finer cells under a load: they carry its force at any position of the body, with its images, in any unit."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ from contactstudy.kernels.smooth_load import SmoothLoad
 EDGES = np.array([0.0, 0.2, 0.5, 0.9, 1.5, 2.3, 2.9, 3.3, 3.6, 3.8])
 UNIFORM = np.linspace(0.0, 3.8, 10)
 LENGTH, PRESSURE = 2.0**-17, 2.0**37
-"""Units of length and pressure, powers of two: numbers in them differ by nothing else."""
+"""Units of length and pressure: powers of two, which change no digits."""
 
 
 def load_on(x: FloatArray, y: FloatArray) -> FloatArray:
-    """A contact's pressure, inclined, which is pressed at the first end of the body and not at the other."""
+    """Inclined pressure of a contact that reaches the first end of the body and not the second end."""
     position = 1 - (y / 0.8) ** 2 - np.maximum((x[:, None] - 1.5) / 1.6, 0.0) ** 2
     return np.asarray(np.sqrt(np.maximum(position, 0.0)) * (1 + 0.3 * x[:, None]))
 
@@ -34,34 +34,36 @@ def load_on(x: FloatArray, y: FloatArray) -> FloatArray:
 def make_fine_cells(
     *,
     edges: FloatArray = EDGES,
-    place: float = 0.0,
+    offset: float = 0.0,
     unit: float = 1.0,
     pressure: float = 1.0,
-    image: int = 1,
+    image_sign: int = 1,
     ends: int = 2,
 ) -> FineCells:
-    """A load on a body with so many ends."""
-    grid = Grid.between(unit * (edges + place), (-1.2 * unit, 1.2 * unit), 12)
-    cells = pressure * load_on(grid.x / unit - place, grid.y / unit)
-    extent = (unit * place if ends else -np.inf, unit * (place + 3.8) if ends == 2 else np.inf)
-    return FineCells(load=cells, shape=cells, grid=grid, extent=extent, image=image)
+    """A load on a body with a number of ends."""
+    grid = Grid.between(unit * (edges + offset), (-1.2 * unit, 1.2 * unit), 12)
+    cell_loads = pressure * load_on(grid.x / unit - offset, grid.y / unit)
+    extent = (unit * offset if ends else -np.inf, unit * (offset + 3.8) if ends == 2 else np.inf)
+    return FineCells(load=cell_loads, shape=cell_loads, grid=grid, extent=extent, image_sign=image_sign)
 
 
 @pytest.mark.parametrize(
-    ("ends", "image", "edges"),
+    ("ends", "image_sign", "edges"),
     [(0, 1, UNIFORM), (1, -1, UNIFORM), (2, 1, UNIFORM), (0, -1, EDGES), (1, 1, EDGES), (2, -1, EDGES)],
 )
-def test_results_scale_with_unit_and_position(ends: int, image: int, edges: FloatArray) -> None:
-    baseline = make_fine_cells(edges=edges, image=image, ends=ends)
+def test_results_scale_with_unit_and_position(ends: int, image_sign: int, edges: FloatArray) -> None:
+    baseline = make_fine_cells(edges=edges, image_sign=image_sign, ends=ends)
     for position, unit, pressure in ((0.0, LENGTH, PRESSURE), (16.0, 1.0, 1.0), (-32.0, 1.0, 1.0)):
-        variant = make_fine_cells(edges=edges, image=image, ends=ends, place=position, unit=unit, pressure=pressure)
+        variant = make_fine_cells(
+            edges=edges, image_sign=image_sign, ends=ends, offset=position, unit=unit, pressure=pressure
+        )
         assert variant.is_split.tolist() == baseline.is_split.tolist()
         for name in ("x_edges", "edges", "step_edges"):
             assert getattr(variant, name) / unit - position == pytest.approx(getattr(baseline, name), abs=1e-9), name
-        for computed, expected in ((variant.far_load, baseline.far_load), (variant.cells, baseline.cells)):
+        for computed, expected in ((variant.far_load, baseline.far_load), (variant.cell_loads, baseline.cell_loads)):
             assert computed / pressure == pytest.approx(expected, abs=1e-9)
         z = np.array([0.0, 0.1, 0.5, 1.19, 1.21, 2.5, 2.6, 4.0])
-        assert variant.fine_depths(unit * z).tolist() == baseline.fine_depths(z).tolist()
+        assert variant.is_refined_along_y(unit * z).tolist() == baseline.is_refined_along_y(z).tolist()
         refined = [
             [
                 cells.end_load(),
@@ -80,7 +82,7 @@ def test_results_scale_with_unit_and_position(ends: int, image: int, edges: Floa
 def test_refinement_ends_at_maximum_depth(edges: FloatArray) -> None:
     cells = make_fine_cells(edges=edges)
     assert cells.is_split.any()
-    assert cells.fine_depths(cells.grid.dy * MAX_REFINED_DEPTH * np.array([0.0, 0.99, 1.01, 3.0])).tolist() == [
+    assert cells.is_refined_along_y(cells.grid.dy * MAX_REFINED_DEPTH * np.array([0.0, 0.99, 1.01, 3.0])).tolist() == [
         True,
         True,
         False,
@@ -89,25 +91,31 @@ def test_refinement_ends_at_maximum_depth(edges: FloatArray) -> None:
     load = np.where(np.abs(cells.grid.y) < 0.7, 1.0, 0.0) * np.ones(cells.grid.shape)
     flat_cells = FineCells(load=load, shape=load, grid=cells.grid)
     assert not flat_cells.is_split.any()
-    assert not flat_cells.fine_depths_x(np.zeros(1)).any()
-    assert cells.fine_depths_x(cells.grid.dx * MAX_REFINED_DEPTH * np.array([0.99, 1.01])).tolist() == [True, False]
-    assert flat_cells.fine_depths(cells.grid.dy * MAX_REFINED_DEPTH * np.array([0.99, 1.01])).tolist() == [True, False]
+    assert not flat_cells.is_refined_along_x(np.zeros(1)).any()
+    assert cells.is_refined_along_x(cells.grid.dx * MAX_REFINED_DEPTH * np.array([0.99, 1.01])).tolist() == [
+        True,
+        False,
+    ]
+    assert flat_cells.is_refined_along_y(cells.grid.dy * MAX_REFINED_DEPTH * np.array([0.99, 1.01])).tolist() == [
+        True,
+        False,
+    ]
 
 
-@pytest.mark.parametrize("image", [1, -1])
-def test_images_contain_mirrored_load(image: int) -> None:
-    """Means over columns between any edges."""
-    cells = make_fine_cells(image=image)
+@pytest.mark.parametrize("image_sign", [1, -1])
+def test_images_contain_mirrored_load(image_sign: int) -> None:
+    """The means over columns between any edges include the images."""
+    cells = make_fine_cells(image_sign=image_sign)
     inner_edges = np.array([0.1, 0.3, 0.35, 0.8])
     expected = cells.column_means([inner_edges])
-    assert cells.column_means([-inner_edges[::-1]])[::-1] == pytest.approx(image * expected)
+    assert cells.column_means([-inner_edges[::-1]])[::-1] == pytest.approx(image_sign * expected)
     outer_edges = np.array([3.0, 3.1, 3.5, 3.75])
     assert cells.column_means([7.6 - outer_edges[::-1]])[::-1] == pytest.approx(
-        image * cells.column_means([outer_edges])
+        image_sign * cells.column_means([outer_edges])
     )
-    # Over an end: half of it is the image.
+    # The column over an end contains the load and its image by half.
     assert cells.column_means([np.array([-0.2, 0.0, 0.2])]) == pytest.approx(
-        np.stack([image * cells.cells[0], cells.cells[0]])
+        np.stack([image_sign * cells.cell_loads[0], cells.cell_loads[0]])
     )
     assert cells.column_means([inner_edges, outer_edges]) == pytest.approx(
         np.vstack([expected, cells.column_means([outer_edges])])
@@ -116,13 +124,13 @@ def test_images_contain_mirrored_load(image: int) -> None:
 
 @pytest.mark.parametrize("ends", [0, 1, 2])
 def test_far_load_keeps_force_and_moment(ends: int) -> None:
-    """Of the smooth load, with that of its images; a cell at the border keeps its moment if there is none."""
+    """The far load has the moments of the smooth load with its images; without images border cells keep theirs."""
     cells = make_fine_cells(ends=ends)
-    smooth = SmoothLoad.of(cells.cells.T, cells.grid.x_edges).shape_loads(cells.cells.T)
+    smooth = SmoothLoad.of(cells.cell_loads.T, cells.grid.x_edges).shape_loads(cells.cell_loads.T)
     forces = add_images(cells.far_load, 1, cells.extent) * np.diff(cells.edges)[:, None]
     middles = 0.5 * (cells.edges[1:] + cells.edges[:-1])
     image_count = 1 + (ends > 0) + (ends > 1)
-    complete = (cells.cells * cells.grid.widths[:, None]).sum(axis=0)
+    complete = (cells.cell_loads * cells.grid.widths[:, None]).sum(axis=0)
     assert forces.sum(axis=0) == pytest.approx(image_count * complete)
     if not ends:
         about_middles = smooth.moments + cells.grid.x * smooth.cell_means * cells.grid.widths
@@ -143,7 +151,7 @@ def test_fine_cells_centre_points_and_keep_force(offset: float) -> None:
     assert grid.y_range[1] >= fine_cells.y_edges[-1] - 1e-12
     assert grid.cells_y - PARTS_Y * fine_cells.count == (abs(offset) in (0.03, 0.07, 0.1))
     force = cells.sum(axis=1) * step * grid.widths
-    expected = fine_cells.cells.sum(axis=1) * fine_cells.grid.dy * fine_cells.grid.widths
+    expected = fine_cells.cell_loads.sum(axis=1) * fine_cells.grid.dy * fine_cells.grid.widths
     assert force.sum() == pytest.approx(expected.sum())
     complete = force.reshape(fine_cells.grid.cells_x, -1).sum(axis=1)
     assert complete == pytest.approx(expected, rel=0.05, abs=0.02 * expected.max())
@@ -181,10 +189,10 @@ def test_coarse_cells_keep_six_moments(parts: int) -> None:
     assert moments(loads, np.arange(-3.0, 8.0)) == pytest.approx(expected, rel=1e-9)
 
 
-@pytest.mark.parametrize(("ends", "image"), [(0, 1), (1, -1), (2, 1)])
-def test_distribution_is_linear_in_the_load(ends: int, image: int) -> None:
-    """For one shape, also outside it; the shape as a load is its smooth form, bit for bit."""
-    fine_cells = make_fine_cells(edges=UNIFORM, ends=ends, image=image)
+@pytest.mark.parametrize(("ends", "image_sign"), [(0, 1), (1, -1), (2, 1)])
+def test_distribution_is_linear_in_the_load(ends: int, image_sign: int) -> None:
+    """Loads of one shape add up, also outside the shape; a load with its own shape is the smooth form, bit for bit."""
+    fine_cells = make_fine_cells(edges=UNIFORM, ends=ends, image_sign=image_sign)
     rng = np.random.default_rng(1)
     first_load, second_load = (
         rng.random(fine_cells.grid.shape),
@@ -193,13 +201,13 @@ def test_distribution_is_linear_in_the_load(ends: int, image: int) -> None:
 
     def evaluate_loads(load: FloatArray) -> list[FloatArray]:
         cells = FineCells(
-            load=load, shape=fine_cells.shape, grid=fine_cells.grid, extent=fine_cells.extent, image=image
+            load=load, shape=fine_cells.shape, grid=fine_cells.grid, extent=fine_cells.extent, image_sign=image_sign
         )
         columns = cells.column_means([np.linspace(0.1, 3.7, 30)])
         complete = cells.coarse_load(fine_x=False)[0]
         return [cells.fine_load(0.03)[0], complete, cells.end_load()[0], columns]
 
-    # The cells along y span load and shape.
+    # The cells along y contain load and shape.
     second_load[:, [0, -1]] = first_load[:, [0, -1]] = 1.0
     for first_values, second_values, sum_values in zip(
         evaluate_loads(first_load),
@@ -216,7 +224,7 @@ def test_distribution_is_linear_in_the_load(ends: int, image: int) -> None:
 
 @pytest.mark.parametrize("unit", [1e-9, 1.0, 1e9])
 def test_uneven_columns_are_split(unit: float) -> None:
-    """By more than 0.3 % of the largest load, whatever its unit."""
+    """Columns with a deviation above 0.3 % of the largest load are split, in any unit."""
     grid = Grid.between(EDGES, (-1.2, 1.2), 12)
     axial_profile = 1 + 1e-4 * grid.x - 0.5 * np.maximum(grid.x - 2.5, 0.0)
     load = unit * axial_profile[:, None] * np.sqrt(1 - (grid.y / 1.3) ** 2)
@@ -227,7 +235,7 @@ def test_uneven_columns_are_split(unit: float) -> None:
 
 @pytest.mark.parametrize("offset", [0.0, 0.03])
 def test_fine_cells_extend_to_load_border(offset: float) -> None:
-    """Also what lies in the last cells of the grid along y."""
+    """The fine cells include the last cells of the grid along y."""
     grid = Grid.between(UNIFORM, (-1.2, 1.2), 12)
     cells = load_on(grid.x, 0.6 * grid.y)
     assert cells[:, [0, -1]].any()

@@ -1,4 +1,4 @@
-"""Sums over all mirror images against the images one by one, in any unit."""
+"""Sums over all mirror images against separate images, in any unit."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from contactstudy.kernels.images import cell_kernel, image_kernel, interpolation
 
 
 def corner_at(depth: float):  # type: ignore[no-untyped-def]
-    """Corner function of ``h / R**3``: a load's share below it, which decays."""
+    """Corner function of ``h / R**3``, the decaying influence of a load on a point below."""
 
     def corner(x: FloatArray, y: FloatArray) -> FloatArray:
         return np.asarray(np.arctan2(x * y, depth * np.sqrt(x * x + y * y + depth * depth)))
@@ -30,7 +30,7 @@ def test_image_sum_converges(length: float, unit: float) -> None:
         image_sum += cell_kernel(corner, x - 2 * length * unit * image_number, y, dx, dy)
     cell_influence = cell_kernel(corner, x, y, dx, dy)
     computed = mirrored_kernel(corner, x, y, dx, dy, length * unit)
-    # Those beyond 1500 periods: a line of the rest, evenly spread, on either side.
+    # A uniform line load on either side replaces the images beyond 1500 periods.
     truncation_error = 0.3 * 0.25 * 0.2 / (2 * length) / (3001 * length) ** 2
     assert computed == pytest.approx(
         cell_influence + image_sum + truncation_error, abs=5e-6 * np.abs(cell_influence).max()

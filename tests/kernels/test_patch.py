@@ -31,7 +31,7 @@ def rectangle(kind: str, x: float, y: float, z: float, size: tuple[float, float]
 
 @pytest.mark.parametrize("kind", sorted(CORNERS))
 def test_distant_rectangle_equals_point_load(kind: str) -> None:
-    """Boussinesq and Cerruti."""
+    """The field equals Boussinesq's and Cerruti's."""
     point = (6.0, -8.0, 5.0)
     point_stress = ref.point_load(*point, poisson=0.3, **{k: float(k == kind) for k in CORNERS})
     computed = rectangle(kind, *point, size=(0.1, 0.1)) / 0.01
@@ -48,10 +48,10 @@ def test_stress_is_in_equilibrium(kind: str, x: float, y: float, z: float) -> No
         down[axis] -= step
         return (rectangle(kind, *up) - rectangle(kind, *down)) / (2 * step)
 
-    along_x, along_y, along_z = slope(0), slope(1), slope(2)
-    assert abs(along_x[0] + along_y[3] + along_z[4]) < 1e-3
-    assert abs(along_x[3] + along_y[1] + along_z[5]) < 1e-3
-    assert abs(along_x[4] + along_y[5] + along_z[2]) < 1e-3
+    x_derivative, y_derivative, z_derivative = slope(0), slope(1), slope(2)
+    assert abs(x_derivative[0] + y_derivative[3] + z_derivative[4]) < 1e-3
+    assert abs(x_derivative[3] + y_derivative[1] + z_derivative[5]) < 1e-3
+    assert abs(x_derivative[4] + y_derivative[5] + z_derivative[2]) < 1e-3
 
 
 @pytest.mark.parametrize(("kind", "component"), [("normal", 2), ("tangential", 5)])
@@ -80,7 +80,7 @@ def test_corners_and_edges_have_finite_stress() -> None:
 def test_kernel_includes_all_images(
     kind: str, depth: float, length: float, dy: float, cells_y: int, cells_x: int, allowed: float
 ) -> None:
-    """Against a plain sum over many images, extrapolated to infinitely many; also seen from many lengths aside."""
+    """The kernel equals a sum over many images, extrapolated to infinitely many, also at a distance of many lengths."""
     dx = length / cells_x
     corner = partial(CORNERS[kind], z=depth, poisson=0.3)
     x, y = dx * np.arange(0, cells_x + 1), dy * np.arange(cells_y)
@@ -90,7 +90,7 @@ def test_kernel_includes_all_images(
         for image_numbers in (range(-400, 401), [*range(-800, -400), *range(401, 801)])
     )
     limit = near_images + 2 * far_images
-    # Far below the length of the body there is next to nothing left of one cell's load.
+    # Far below the length of the body the influence of one cell's load is almost zero.
     assert np.abs(computed - limit).max() < allowed / length
 
 
@@ -172,12 +172,12 @@ EDGES = {"uniform": np.linspace(0.0, 3.0, 9), "graded": np.array([0.0, 0.2, 0.5,
 
 
 def compute_displacements(
-    load: Load, edges: FloatArray, *, place: float = 0.0, unit: float = 1.0, smooth: bool = True
+    load: Load, edges: FloatArray, *, offset: float = 0.0, unit: float = 1.0, smooth: bool = True
 ) -> FloatArray:
-    grid = Grid.between(unit * (edges + place), (-unit, unit), 8)
-    pressure = np.sqrt(np.maximum(1 - (grid.y / unit / 0.8) ** 2, 0.0)) * (1 + 0.3 * (grid.x[:, None] / unit - place))
-    extent = (unit * place, unit * (place + 3.0))
-    x, y, z = unit * (np.array([0.0, 0.7, 2.2]) + place), unit * np.array([-0.1, 0.4]), unit * np.array([0.05, 0.6])
+    grid = Grid.between(unit * (edges + offset), (-unit, unit), 8)
+    pressure = np.sqrt(np.maximum(1 - (grid.y / unit / 0.8) ** 2, 0.0)) * (1 + 0.3 * (grid.x[:, None] / unit - offset))
+    extent = (unit * offset, unit * (offset + 3.0))
+    x, y, z = unit * (np.array([0.0, 0.7, 2.2]) + offset), unit * np.array([-0.1, 0.4]), unit * np.array([0.05, 0.6])
     shape = pressure if smooth else None
     influence = displacement_influence(load, 0.3, extent[1] - extent[0], 30.0 * unit)
     return half_space_field(pressure, influence, grid, Points(x, y, z), extent=extent, shape=shape)
@@ -190,7 +190,7 @@ def test_results_scale_with_unit_and_position(load: Load, name: str, *, smooth: 
     baseline = compute_displacements(load, EDGES[name], smooth=smooth)
     # Uniform cells of a body with ends begin at 0.
     for position, unit in ((0.0, 2.0**-17), *(() if name == "uniform" else ((8.0, 1.0), (-32.0, 1.0)))):
-        variant = compute_displacements(load, EDGES[name], place=position, unit=unit, smooth=smooth)
+        variant = compute_displacements(load, EDGES[name], offset=position, unit=unit, smooth=smooth)
         assert variant / unit == pytest.approx(baseline, abs=1e-7 * np.abs(baseline).max())
 
 

@@ -12,7 +12,7 @@ from contactstudy.kernels.smooth_load import ShapedLoad, SmoothLoad, _mean_of_ro
 
 
 def smooth_form(cells: FloatArray, edges: FloatArray, *, extends_beyond: bool = False) -> ShapedLoad:
-    """Loads of their shape: the ratio is 1."""
+    """Load with its own shape: the ratio is 1."""
     return SmoothLoad.of(cells, edges, extends_beyond=extends_beyond).shape_loads(cells)
 
 
@@ -31,7 +31,7 @@ def test_hertz_pressure_from_cell_means(cells: int, half: float) -> None:
     computed = smooth_form(means[None], edges, extends_beyond=True).means(fine)[0]
     expected = np.diff(semicircle_integral(fine)) / np.diff(fine)
     assert np.abs(computed - expected)[np.abs(fine[1:]) < 0.9].max() < 5e-3
-    # Stepwise it would be off by a third.
+    # A load with steps would have an error of a third.
     assert np.abs(computed - expected).max() < 0.06
 
 
@@ -65,9 +65,9 @@ def test_smooth_load_keeps_force_without_overshoot(row: tuple[FloatArray, FloatA
 def test_reversed_load_has_the_reversed_shape(row: tuple[FloatArray, FloatArray]) -> None:
     loads, edges = row
     fine = np.linspace(edges[0], edges[-1], 60)
-    there = smooth_form(loads, edges, extends_beyond=True).means(fine)
-    back = smooth_form(loads[:, ::-1], edges[-1] - edges[::-1], extends_beyond=True).means(edges[-1] - fine[::-1])
-    assert np.allclose(there, back[:, ::-1], atol=1e-9)
+    original = smooth_form(loads, edges, extends_beyond=True).means(fine)
+    mirrored = smooth_form(loads[:, ::-1], edges[-1] - edges[::-1], extends_beyond=True).means(edges[-1] - fine[::-1])
+    assert np.allclose(original, mirrored[:, ::-1], atol=1e-9)
 
 
 def test_uniform_load_ends_in_step() -> None:
@@ -97,7 +97,7 @@ def test_moment_loads_have_no_resultant(row: tuple[FloatArray, FloatArray]) -> N
 
 
 def test_rounding_keeps_shape_of_load_end() -> None:
-    """Four cells of which the two in the middle are alike but for rounding, either way."""
+    """The middle two of four cells are equal up to rounding of either sign."""
     edges = np.linspace(-1.0, 1.0, 5)
     rows = np.array([[0.4, 1.0, 1.0, 0.4]]) * (1 + 1e-12 * np.array([[0, 1, -1, 0], [0, -1, 1, 0], [0, 0, 0, 0]]))
     fine = smooth_form(rows, edges).means(np.linspace(-1.0, 1.0, 21))
@@ -152,7 +152,7 @@ def test_constant_last_cell_ends_in_step() -> None:
 
 
 def root(edges: FloatArray, border: float) -> FloatArray:
-    """Forces between edges of a load whose square falls linearly to a border."""
+    """Forces between edges of a load whose square decreases linearly to a border."""
     return np.diff(-2 / 3 * np.maximum(border - edges, 0.0) ** 1.5)
 
 
@@ -161,7 +161,7 @@ WIDTHS = np.array([1.0, 0.8, 1.2, 1.0, 0.9, 1.1, 0.7, 1.5, 1.0])
 
 @pytest.mark.parametrize("factor", [1.0, 5.0])
 def test_root_extends_beyond_last_cell(factor: float) -> None:
-    """Contacts solved on cells press the last cell whose middle is in the contact, with what belongs to the next."""
+    """The discrete contact puts the force beyond the last centre inside the contact into the cell of this centre."""
     edges = np.append(0.0, np.cumsum(WIDTHS))
     forces = root(edges, edges[6] + 0.25)
     forces[5:7] = forces[5:7].sum(), 0.0
@@ -172,7 +172,7 @@ def test_root_extends_beyond_last_cell(factor: float) -> None:
     assert smooth.integral(edges[6:8])[0] / factor == pytest.approx([forces.sum() - 0.09, forces.sum()], abs=0.02)
     assert smooth.integral(edges[7:8])[0] == pytest.approx(factor * forces.sum())
     assert smooth.means(np.array([edges[6] + 0.4, edges[7]]))[0] == 0
-    # Not where it is not wanted, nor at the end of a row, nor beside another load.
+    # The load does not extend without the option, at the end of a row, or next to another load.
     adjacent = np.where(np.arange(9) == 7, 1.0, loads)
     for row, extends_beyond in ((loads, False), (adjacent, True), (loads[:6], True)):
         retained = smooth_form(factor * row[None], edges[: row.size + 1], extends_beyond=extends_beyond)
@@ -182,7 +182,7 @@ def test_root_extends_beyond_last_cell(factor: float) -> None:
 @pytest.mark.parametrize("moved_fraction", [0.1, 0.4])
 @pytest.mark.parametrize("factor", [0.01, 5.0])
 def test_narrow_last_cell_shares_force(moved_fraction: float, factor: float) -> None:
-    """Contacts solved on cells put too little into the last cell, and too much into the one before."""
+    """The discrete contact puts too little force into the last cell, and too much into the cell before."""
     edges = np.append(0.0, np.cumsum(WIDTHS))
     border = edges[5] + 0.25
     forces = root(edges, border)
@@ -209,7 +209,7 @@ def test_truncated_load_stays_in_last_cell() -> None:
 
 @pytest.mark.parametrize("loaded_fraction", [0.05, 0.2, 0.45, 0.8])
 def test_load_ends_in_last_cell_of_row(loaded_fraction: float) -> None:
-    """With little force in it, which it shares with the cell before: as if there were more cells."""
+    """The last cell with little force shares it with the cell before, as in a longer row."""
     edges = np.arange(10.0)
     end = 8.0 + loaded_fraction
     root_integrals = (end**1.5 - np.maximum(end - edges, 0.0) ** 1.5) / 1.5

@@ -43,16 +43,16 @@ def influence(
     cells_y: int,
     extent: tuple[float, float],
     reference: float = np.inf,
-    image: int = 1,
+    image_sign: int = 1,
 ) -> FloatArray:
     """Influence of a strip (wavenumber, cell, cell)."""
     return ColumnsRequest(edges=edges, dy=dy, cells_y=cells_y, extent=extent, reference=reference).influence(
-        ((1.0, strip),), image
+        ((1.0, strip),), image_sign
     )
 
 
 def strip_kernel(strip: Strip, x: float, low: float, high: float) -> float:
-    """Integral over y from low to high of what the strip is made of, from the definition."""
+    """Integral over y from low to high of the strip's density, from the definition."""
     r_low, r_high = float(np.hypot(x, low)), float(np.hypot(x, high))
     inverse = np.arcsinh(high / abs(x)) - np.arcsinh(low / abs(x))
     return {
@@ -67,7 +67,7 @@ def strip_kernel(strip: Strip, x: float, low: float, high: float) -> float:
 def mean_influence(
     strip: Strip, observed: tuple[float, float], loaded: tuple[float, float], low: float, high: float
 ) -> float:
-    """Mean over one column of what a unit force per length of y on another does, by quadrature over the distance."""
+    """Mean influence over one column of a unit force per length of y on another, by quadrature over the distance."""
     (a, b), (c, d) = observed, loaded
 
     def weighted(t: float) -> float:
@@ -83,7 +83,7 @@ def mean_influence(
 
 
 def along_y(kernel: FloatArray, strip: Strip) -> FloatArray:
-    """Influence (offset along y, cell, cell) from its transform, offsets from 0."""
+    """Influence (offset along y, cell, cell) from its transform, with offsets from 0."""
     if strip.sign_y > 0:
         return np.asarray(fft.idct(kernel, type=1, axis=0))
     inner = -fft.idst(kernel[1:-1], type=1, axis=0)
@@ -94,13 +94,13 @@ EDGES = np.array([0.0, 0.02, 0.05, 0.12, 0.3, 0.62, 0.9, 1.4, 1.9])
 
 
 @strips
-@pytest.mark.parametrize("image", [1, -1])
+@pytest.mark.parametrize("image_sign", [1, -1])
 @pytest.mark.parametrize("extent", [WHOLE, ONE_END, (-np.inf, 3.0), TWO_ENDS], ids=str)
-def test_shifted_body_has_equal_influence(strip: Strip, image: int, extent: tuple[float, float]) -> None:
+def test_shifted_body_has_equal_influence(strip: Strip, image_sign: int, extent: tuple[float, float]) -> None:
     edges = np.array([0.0, 0.2, 0.7, 1.9, 2.5, 3.0])
-    here = influence(strip, edges, 0.3, 5, extent, 20.0, image)
-    there = influence(strip, edges + 8.0, 0.3, 5, (extent[0] + 8.0, extent[1] + 8.0), 20.0, image)
-    assert np.abs(there - here).max() < 1e-9 * np.abs(here).max()
+    at_origin = influence(strip, edges, 0.3, 5, extent, 20.0, image_sign)
+    shifted = influence(strip, edges + 8.0, 0.3, 5, (extent[0] + 8.0, extent[1] + 8.0), 20.0, image_sign)
+    assert np.abs(shifted - at_origin).max() < 1e-9 * np.abs(at_origin).max()
 
 
 @strips
@@ -116,16 +116,16 @@ def test_influence_between_columns_is_the_double_integral(
     assert kernel[offset, observed, loaded] == pytest.approx(double_integral, rel=2e-9, abs=1e-12)
 
 
-@pytest.mark.parametrize("image", [1, -1])
+@pytest.mark.parametrize("image_sign", [1, -1])
 @strips
-def test_image_equals_mirrored_column(strip: Strip, image: int) -> None:
+def test_image_equals_mirrored_column(strip: Strip, image_sign: int) -> None:
     dy, cells_y, end = 0.2, 6, -0.1
     baseline = along_y(influence(strip, EDGES, dy, cells_y, WHOLE), strip)
-    mirrored = along_y(influence(strip, EDGES, dy, cells_y, (end, np.inf), image=image), strip) - baseline
+    mirrored = along_y(influence(strip, EDGES, dy, cells_y, (end, np.inf), image_sign=image_sign), strip) - baseline
     for observed, loaded, offset in ((0, 0, 0), (2, 5, 1), (7, 7, 3)):
         behind = (2 * end - EDGES[loaded + 1], 2 * end - EDGES[loaded])
         pair = (EDGES[observed], EDGES[observed + 1])
-        mirrored_influence = image * mean_influence(strip, pair, behind, (offset - 0.5) * dy, (offset + 0.5) * dy)
+        mirrored_influence = image_sign * mean_influence(strip, pair, behind, (offset - 0.5) * dy, (offset + 0.5) * dy)
         assert mirrored[offset, observed, loaded] == pytest.approx(mirrored_influence, rel=2e-9, abs=1e-12)
 
 
@@ -138,7 +138,7 @@ def test_strip_derivatives_and_primitives_match_kernel(strip: Strip) -> None:
         (kernel_after - 2 * kernel_here + kernel_before) / step**2, strip.curvature(x, y), rtol=1e-5, atol=2e-7
     )
     rise = (strip.primitive(x + step, y) - strip.primitive(x - step, y)) / (2 * step)
-    # What does not depend on y is left out.
+    # The primitive neglects a term independent of y.
     rise_error = rise - kernel_here
     assert np.allclose(rise_error, rise_error[:1], atol=1e-7)
 
@@ -158,12 +158,16 @@ SAMPLED = st.sampled_from(STRIPS)
 @settings(max_examples=30)
 @given(edges=increasing_edges(), strip=SAMPLED)
 def test_influence_is_reciprocal_to_the_last_bit(edges: FloatArray, strip: Strip) -> None:
-    """What an odd strip with images of one sign does is reciprocal to one with images of the other."""
+    """The influence of an odd strip with images of one sign is reciprocal to that with images of the other sign."""
     for extent in (WHOLE, ONE_END):
-        kernel, variant = (influence(strip, edges, 0.1, 6, extent, image=image) for image in (1, strip.sign_x))
+        kernel, variant = (
+            influence(strip, edges, 0.1, 6, extent, image_sign=image_sign) for image_sign in (1, strip.sign_x)
+        )
         assert np.array_equal(kernel, strip.sign_x * variant.transpose(0, 2, 1))
-    kernel, variant = (influence(strip, edges, 0.1, 6, TWO_ENDS, 30.0, image=image) for image in (1, strip.sign_x))
-    # Far images of a traction are differences of large numbers; the contact's matrix is that of the pressure.
+    kernel, variant = (
+        influence(strip, edges, 0.1, 6, TWO_ENDS, 30.0, image_sign=image_sign) for image_sign in (1, strip.sign_x)
+    )
+    # Far images of a traction are differences of large numbers; the matrix of the contact is the pressure's.
     allowed = 1e-12 if strip is INVERSE else 1e-7
     assert np.abs(kernel - strip.sign_x * variant.transpose(0, 2, 1)).max() < allowed * np.abs(kernel).max()
 
@@ -189,7 +193,7 @@ def test_influence_is_positive_definite(edges: FloatArray) -> None:
 def test_split_columns_sum_to_original_column(
     edges: FloatArray, strip: Strip, has_two_ends: bool, split_column: int
 ) -> None:
-    """Galerkin's averages are consistent: forces on the halves in the whole's proportion, displacements averaged."""
+    """Galerkin's averages are consistent: forces proportional to the halves, averaged displacements."""
     split_column %= edges.size - 1
     extent = TWO_ENDS if has_two_ends else WHOLE
     finer = np.insert(
@@ -218,7 +222,7 @@ def test_far_expansion_matches_integral(strip: Strip) -> None:
 
 
 def test_very_narrow_columns_keep_their_digits() -> None:
-    """A column of 1e-5 a between wide ones at 150 a from each other."""
+    """A column of 1e-5 a lies between wide columns, at 150 a from them."""
     edges = np.concatenate([1e-5 * 2.0 ** np.arange(24), [150.0, 150.0 + 1e-5]])
     edges = np.insert(edges, 0, 0.0)
     kernel = along_y(influence(INVERSE, edges, 0.1, 4, WHOLE), INVERSE)
@@ -226,7 +230,7 @@ def test_very_narrow_columns_keep_their_digits() -> None:
     for observed, loaded in ((0, 0), (5, 0), (0, last), (last, last)):
         pair = (edges[observed], edges[observed + 1]), (edges[loaded], edges[loaded + 1])
         distance = 0.5 * (sum(pair[0]) - sum(pair[1]))
-        # Far from each other both are points.
+        # At a large distance both columns are points.
         is_far = abs(distance) > 1
         exact_influence = strip_kernel(INVERSE, abs(distance), *y) if is_far else mean_influence(INVERSE, *pair, *y)
         assert kernel[0, observed, loaded] == pytest.approx(exact_influence, rel=1e-6)
@@ -277,7 +281,7 @@ def test_operator_averages_displacement_of_finer_cells(body: Body) -> None:
 
 
 def test_operator_converges_to_uniform_cells() -> None:
-    """What is left of the difference above is the finer cells' own: it falls with their square."""
+    """The finer cells cause the remaining difference, which decreases with the square of their size."""
     body, cells_x, cells_y = HalfSpace(material=STEEL), 16, 8
     coarse = Grid(x_range=(0.0, LENGTH), y_range=(-1.2e-4, 1.2e-4), cells_x=cells_x, cells_y=cells_y)
     pressure = np.random.default_rng(1).random(coarse.shape)
@@ -301,7 +305,7 @@ P, X, Y = Load.NORMAL, Load.ALONG_X, Load.ALONG_Y
 @pytest.mark.parametrize("poisson", [0.0, 0.3, 0.5])
 @pytest.mark.parametrize("response", [Response(P, P), Response(Y, Y)])
 def test_image_row_vanishes_at_reference(response: Response, poisson: float, unit: float) -> None:
-    """And about that, like a line load: ``2 (1 - nu) / L ln(r / y)`` per force."""
+    """The displacement is proportional to ``2 (1 - nu) / L ln(r / y)`` per force, like under a line load."""
     length, reference, cell = 0.8 * unit, 8.0 * unit, 0.1 * unit
     x, y = cell * np.arange(4.0), cell * np.array([40.0, 80.0, 160.0])
     computed = np.stack(

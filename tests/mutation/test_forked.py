@@ -1,4 +1,4 @@
-"""Changes that are tried in forks: noticed by the tests that reach them, and by these alone."""
+"""Changes in forked processes: only the tests that reach a change detect it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Mutants change one sign, factor or comparison where something is computed, and nowhere else."""
+"""Mutants change one sign, factor or comparison of a computation, and nothing else."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Axial wavenumbers: few of them and a ray stand for the whole sum, or for the whole integral."""
+"""Axial wavenumbers: a few of them and a ray replace the whole sum, or the whole integral."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def test_cell_integrals_match_waves(load: Load, length: float) -> None:
     for modes in axial_modes(length, 0.5, 0.05, Resolution()):
         computed = modes.cell_integrals(load, edges)
         few = np.abs(modes.wavenumbers) < 20
-        weights_of = np.abs(modes.load_weights)[few]  # as few digits are left at wavenumbers next to 0 as weight
+        weights_of = np.abs(modes.load_weights)[few]  # near 0 the integrals lose as many digits as the weights
         for cell, (low, high) in enumerate(pairwise(edges)):
             nodes, weights = np.polynomial.legendre.leggauss(60)
             positions = 0.5 * (high + low) + 0.5 * (high - low) * nodes

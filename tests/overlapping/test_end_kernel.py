@@ -1,4 +1,4 @@
-"""The ends' part of the displacements: seen from either end, in any unit, and resolved as the cells ask."""
+"""The ends' part of the displacements: symmetric about mid-length, independent of units, resolved for the cells."""
 
 from __future__ import annotations
 
@@ -34,17 +34,21 @@ def kernel(edges: FloatArray, response: Response, *, unit: float = 1.0, ends: in
     return total
 
 
-@pytest.mark.parametrize("response", RESPONSES, ids=lambda pair: f"{pair.displacement.name} by {pair.load.name}")
+@pytest.mark.parametrize(
+    "response", RESPONSES, ids=lambda response: f"{response.displacement.name} by {response.load.name}"
+)
 @pytest.mark.parametrize(("ends", "unit"), [(1, LENGTH), (2, LENGTH), (1, 2.0**7)])
 def test_unit_of_length_scales_kernel(ends: int, unit: float, response: Response) -> None:
-    """A force per area of the unit; transformed along y, displacements over forces per length are without unit."""
+    """Transformed along y, displacements over forces per length have no unit."""
     baseline, variant = kernel(EDGES, response, ends=ends), kernel(EDGES, response, unit=unit, ends=ends)
     assert variant == pytest.approx(baseline, abs=1e-7 * np.abs(baseline).max())
 
 
-@pytest.mark.parametrize("response", RESPONSES, ids=lambda pair: f"{pair.displacement.name} by {pair.load.name}")
+@pytest.mark.parametrize(
+    "response", RESPONSES, ids=lambda response: f"{response.displacement.name} by {response.load.name}"
+)
 def test_mirrored_columns_have_the_mirrored_kernel(response: Response) -> None:
-    """The other end sees the same: what a reflection turns round changes its sign."""
+    """The kernel of the mirrored columns is mirrored; quantities that a reflection reverses change their sign."""
     sign = response.displacement.sign_x * response.load.sign_x
     mirrored = EDGES[-1] - EDGES[::-1]
     computed, expected = kernel(mirrored, response), kernel(EDGES, response)
@@ -53,21 +57,21 @@ def test_mirrored_columns_have_the_mirrored_kernel(response: Response) -> None:
 
 @pytest.mark.parametrize("ends", [1, 2])
 def test_loads_and_displacements_are_reciprocal(ends: int) -> None:
-    """Work of one load on what another displaces; the factor i that kernels lack is conjugated."""
+    """The work of one load on the displacement of another is symmetric; the omitted factor i is conjugated."""
     for direction in Load:
         for load in Load:
-            there, back = (
+            direct, reciprocal = (
                 kernel(EDGES, Response(direction, load), ends=ends),
                 kernel(EDGES, Response(load, direction), ends=ends),
             )
             sign = -1 if (direction.sign_y < 0) != (load.sign_y < 0) else 1
-            assert back.transpose(0, 2, 1) == pytest.approx(sign * there, abs=2e-4 * np.abs(there).max())
+            assert reciprocal.transpose(0, 2, 1) == pytest.approx(sign * direct, abs=2e-4 * np.abs(direct).max())
 
 
 @pytest.mark.parametrize("cells", [6, 7])
 @pytest.mark.parametrize("direction", Load)
 def test_correction_on_cells_equals_kernel_between_columns(direction: Load, cells: int) -> None:
-    """Folded about the middle, transformed and back: an even and an odd number of cells."""
+    """The correction is folded about the middle and transformed, for an even and an odd number of cells."""
     edges = np.linspace(0.0, 2.4, cells + 1)
     grid = Grid.between(edges, (-1.0, 1.0), 6)
     ends = end_kernel(request(edges))
@@ -87,7 +91,7 @@ def test_correction_on_cells_equals_kernel_between_columns(direction: Load, cell
 
 
 def test_end_cells_determine_kernel_resolution() -> None:
-    """Uniform cells by their width; graded ones by a cell along y, or an eighth of it if cells at an end are narrow."""
+    """The resolution is the width of uniform cells, a cell along y, or an eighth of it at narrow cells of an end."""
     dy = 2.0 / 6
     assert request(np.linspace(0.0, 2.4, 9)).finest == pytest.approx(0.3)
     narrow_end_edges = np.array([0.0, 0.1, 0.5, 1.5, 2.6, 3.7])
@@ -107,7 +111,7 @@ def test_end_cells_determine_kernel_resolution() -> None:
 
 
 def test_lateral_cells_bound_lateral_wavenumbers() -> None:
-    """Also where cells along x are wide: with finer quadratures the kernel is the same."""
+    """Finer quadratures do not change the kernel, also for wide cells along x."""
     edges = np.linspace(0.0, 6.0, 5)
     baseline = request(edges, responses=(Response(Load.NORMAL, Load.NORMAL),))
     assert baseline.finest > 4 * baseline.dy

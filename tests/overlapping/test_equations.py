@@ -55,7 +55,7 @@ def test_resolution_settings_are_converged() -> None:
     def stress(resolution: Resolution) -> np.ndarray:
         loads = (Load.NORMAL, Load.ALONG_Y)
         fields = end_fields(
-            EndProblem(length=8.0, poisson=0.3, cells=pressure, loads=loads, grid=grid, resolution=resolution),
+            EndProblem(length=8.0, poisson=0.3, cell_loads=pressure, loads=loads, grid=grid, resolution=resolution),
             STRESS,
             [Points(*points)],
         )[0]
@@ -107,13 +107,13 @@ def test_wavenumbers_scale_with_unit(length: float) -> None:
         variant = axial_modes(1e-3 * length, 1e3 * lateral, 1e-3 * shortest, Resolution())
         for modes, scaled_modes in zip(baseline, variant, strict=True):
             assert scaled_modes.wavenumbers == pytest.approx(1e3 * modes.wavenumbers)
-            system, there = (
+            system, scaled_system = (
                 EquationSet.build(unit_modes, rate * lateral, 0.3, shortest / rate, Resolution())
                 for unit_modes, rate in ((modes, 1.0), (scaled_modes, 1e3))
             )
-            assert there.depth == pytest.approx(1e3 * system.depth)
+            assert scaled_system.depth == pytest.approx(1e3 * system.depth)
             assert abs(modes.ray[-1]) > 0.5 * max(Resolution().reach / shortest, 4 * lateral)
-            assert there.scale == pytest.approx(system.scale)
+            assert scaled_system.scale == pytest.approx(system.scale)
             assert system.depth[-1] > 0.5 * max(Resolution().reach / shortest, 4 * lateral)
             spectrum = np.ones((modes.wavenumbers.size, 1), np.complex128)
             given = {"loads": (Load.NORMAL,), "shortest": shortest, "resolution": Resolution()}

@@ -1,4 +1,4 @@
-"""Equivalent loads: alike at both ends under a load that is, and never on a corner itself."""
+"""Equivalent loads: equal at both ends under a symmetric load, and constant close to a corner."""
 
 from __future__ import annotations
 
@@ -21,19 +21,19 @@ def equivalent_loads_of(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Load added on the top (x, y) and loads on the faces (end, y, z) under the pressure of a problem."""
     operators = OverlappingOperators.of(problem, Points(x, y, z), reference=24.0).equivalent(Load.NORMAL)
-    cells = problem.cells.ravel()
-    return (operators.top_load @ cells).reshape(x.size, y.size), np.array(
-        [(face @ cells).reshape(y.size, z.size) for face in operators.faces]
+    cell_loads = problem.cell_loads.ravel()
+    return (operators.top_load @ cell_loads).reshape(x.size, y.size), np.array(
+        [(face @ cell_loads).reshape(y.size, z.size) for face in operators.faces]
     )
 
 
 @pytest.mark.parametrize("mirrored_once", [False, True])
 def test_symmetric_load_has_equal_end_loads(*, mirrored_once: bool) -> None:
-    cells = np.where(np.abs(GRID.y) < 0.5, 1.0, 0.0) * np.ones(GRID.shape)
+    cell_loads = np.where(np.abs(GRID.y) < 0.5, 1.0, 0.0) * np.ones(GRID.shape)
     problem = EndProblem(
         length=2.4,
         poisson=0.3,
-        cells=cells,
+        cell_loads=cell_loads,
         loads=(Load.NORMAL,),
         grid=GRID,
         resolution=Resolution(),
@@ -45,16 +45,18 @@ def test_symmetric_load_has_equal_end_loads(*, mirrored_once: bool) -> None:
     added, (first_face, second_face) = equivalent_loads_of(problem, x, y, z)
     assert added == pytest.approx(added[::-1], abs=1e-6)
     assert first_face == pytest.approx(second_face, abs=1e-6)
-    # Nearer to a corner than a part of a cell it is that at this distance.
+    # Closer to a corner than a part of a cell the load equals its value at this distance.
     assert added[:3] == pytest.approx(np.stack([added[2]] * 3))
     assert first_face[:, :3] == pytest.approx(np.stack([first_face[:, 2]] * 3, axis=1))
     assert np.abs(added[3] - added[2]).max() > 0.05 * np.abs(added).max()
 
 
 def test_equivalent_load_is_continuous_at_corners() -> None:
-    """The corner is not taken for that of the other end."""
-    cells = np.where(np.abs(GRID.y) < 0.5, 1.0, 0.0) * np.linspace(2.0, 0.5, GRID.cells_x)[:, None]
-    problem = EndProblem(length=2.4, poisson=0.3, cells=cells, loads=(Load.NORMAL,), grid=GRID, resolution=Resolution())
+    """Each corner has the value of its own end."""
+    cell_loads = np.where(np.abs(GRID.y) < 0.5, 1.0, 0.0) * np.linspace(2.0, 0.5, GRID.cells_x)[:, None]
+    problem = EndProblem(
+        length=2.4, poisson=0.3, cell_loads=cell_loads, loads=(Load.NORMAL,), grid=GRID, resolution=Resolution()
+    )
     offset = problem.corner_offset
     x = np.array([0.0, offset, 2.4 - offset, 2.4])
     added, _ = equivalent_loads_of(problem, x, np.array([0.0]), np.array([0.4]))
@@ -64,17 +66,17 @@ def test_equivalent_load_is_continuous_at_corners() -> None:
 
 
 def test_single_mirror_face_load_frees_end() -> None:
-    """Where loads are mirrored once: in real space, with the load and its two images side by side, which are alike."""
+    """The face load frees the end in real space, with the load and its two equal images side by side."""
     length, top, face = (
         2.4,
         Grid(x_range=(0.0, 2.4), y_range=(-4.0, 4.0), cells_x=12, cells_y=32),
         Grid(x_range=(0.0, 6.0), y_range=(-4.0, 4.0), cells_x=24, cells_y=32),
     )
-    cells = np.maximum(1 - top.y**2, 0.0) ** 2 * np.ones(top.shape)
+    cell_loads = np.maximum(1 - top.y**2, 0.0) ** 2 * np.ones(top.shape)
     problem = EndProblem(
         length=length,
         poisson=0.3,
-        cells=cells,
+        cell_loads=cell_loads,
         loads=(Load.NORMAL,),
         grid=top,
         resolution=Resolution(),
@@ -83,7 +85,7 @@ def test_single_mirror_face_load_frees_end() -> None:
     added, (first_face, second_face) = equivalent_loads_of(problem, top.x, top.y, face.x)
     y, z = top.y[16:24:3], face.x[2:20:4]
     copies, mirrored_grid = (
-        np.concatenate([cells + added] * 3),
+        np.concatenate([cell_loads + added] * 3),
         Grid(x_range=(-2.4, 4.8), y_range=(-4.0, 4.0), cells_x=36, cells_y=32),
     )
     end_stress = half_space_field(

@@ -1,4 +1,4 @@
-"""Fields that the free ends add, at several places."""
+"""Fields of the free ends at several sets of positions."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from contactstudy.overlapping.harmonics import DISPLACEMENT, STRESS
 from contactstudy.overlapping.problem import EndProblem
 from contactstudy.overlapping.quadrature import Resolution
 
-PLACES = (
+POINT_SETS = (
     Points(np.array([0.0, 0.1, 1.0, 4.0]), np.array([0.0, 0.5]), np.array([0.05, 0.5, 3.0])),
     Points(np.array([0.0, 8.0]), np.array([-0.3, 0.1, 0.9]), np.array([0.1, 0.2])),
     Points(np.array([7.5]), np.array([0.2]), np.array([0.4])),
@@ -34,22 +34,22 @@ def test_field_does_not_depend_on_further_positions(
     problem = EndProblem(
         length=length,
         poisson=0.3,
-        cells=pressure,
+        cell_loads=pressure,
         loads=(Load.NORMAL, Load.ALONG_Y),
         grid=grid,
         resolution=Resolution(),
     )
-    positions = PLACES if np.isfinite(length) else PLACES[:1] + PLACES[2:]
+    positions = POINT_SETS if np.isfinite(length) else POINT_SETS[:1] + POINT_SETS[2:]
     single_fields = [end_fields(problem, STRESS, [position])[0] for position in positions]
     monkeypatch.setattr(field, "JOINT_POINTS", points)
     for computed, expected in zip(end_fields(problem, STRESS, positions), single_fields, strict=True):
         for load in problem.loads:
-            # Panels along y are those for the points that are farthest and nearest of all.
+            # The panels along y depend on the farthest and the nearest of all points.
             assert np.abs(computed[load] - expected[load]).max() < 2e-5, load
 
 
-def evaluate_field(places: list[Points]) -> tuple[int, int]:
-    """How often a field is evaluated, and at how many points in all."""
+def evaluate_field(point_sets: list[Points]) -> tuple[int, int]:
+    """Number of evaluations of a field, and total number of points."""
     grid = Grid(x_range=(0.0, 8.0), y_range=(-1.0, 1.0), cells_x=4, cells_y=4)
     sizes = []
 
@@ -60,14 +60,19 @@ def evaluate_field(places: list[Points]) -> tuple[int, int]:
         return STRESS.of_face_load(system, depth, loads, x, z)
 
     problem = EndProblem(
-        length=8.0, poisson=0.3, cells=np.ones(grid.shape), loads=(Load.NORMAL,), grid=grid, resolution=Resolution()
+        length=8.0,
+        poisson=0.3,
+        cell_loads=np.ones(grid.shape),
+        loads=(Load.NORMAL,),
+        grid=grid,
+        resolution=Resolution(),
     )
-    end_fields(problem, replace(STRESS, of_face_load=beside), places)
+    end_fields(problem, replace(STRESS, of_face_load=beside), point_sets)
     return len(sizes), sum(sizes)
 
 
 def test_joint_evaluation_of_few_points() -> None:
-    """A line along the top and one into the depth: together they are as many points as their rectangle has."""
+    """A line along the top and a line into the depth are evaluated jointly if their rectangle has few points."""
     for point_count, is_joint in ((5, True), (60, False)):
         y, x, z = np.zeros(1), np.linspace(0.1, 1.0, point_count), np.linspace(0.1, 1.0, point_count)
         lines = [Points(x, y, z[:1]), Points(x[:1], y, z)]
@@ -89,12 +94,14 @@ def test_fields_of_loads_add_up(length: float, loads: tuple[Load, ...]) -> None:
     single_cell_load[2:5, 7:9] = 1.0
     position = Points(np.array([0.0, 0.05, 3.0]), np.array([-1.0, 0.1]), np.array([0.0, 0.02, 0.3]))
 
-    def fields(cells: FloatArray) -> list[FloatArray]:
-        problem = EndProblem(length=length, poisson=0.3, cells=cells, loads=loads, grid=grid, resolution=Resolution())
+    def fields(cell_loads: FloatArray) -> list[FloatArray]:
+        problem = EndProblem(
+            length=length, poisson=0.3, cell_loads=cell_loads, loads=loads, grid=grid, resolution=Resolution()
+        )
         (stress,) = end_fields(problem, STRESS, [position], 80.0)
         (displacement,) = end_fields(problem, DISPLACEMENT, [position], 10 * length)
         return [field[load] for field in (stress, displacement) for load in loads]
 
-    load_fields = [fields(cells) for cells in (tilted_load, random_load, single_cell_load)]
+    load_fields = [fields(cell_loads) for cell_loads in (tilted_load, random_load, single_cell_load)]
     for *terms, total in zip(*load_fields, fields(tilted_load + random_load + single_cell_load), strict=True):
         assert np.abs(sum(terms) - total).max() < 1e-10 * np.abs(total).max()

@@ -1,4 +1,4 @@
-"""Harmonics of the auxiliary bodies: what one wavenumber along y moves and loads meets elasticity's equations."""
+"""Harmonics of the auxiliary bodies: loads and displacements of one wavenumber along y satisfy elasticity."""
 
 from __future__ import annotations
 
@@ -65,8 +65,8 @@ def evaluate_beside_end(
 
 def along(field: Field, axis: int) -> FloatArray:
     """Derivative along x (0) or z (1) at the points."""
-    ahead, back = (field(X + step, Z) if axis == 0 else field(X, Z + step) for step in (STEP, -STEP))
-    return np.asarray((ahead - back) / (2 * STEP))
+    ahead, behind = (field(X + step, Z) if axis == 0 else field(X, Z + step) for step in (STEP, -STEP))
+    return np.asarray((ahead - behind) / (2 * STEP))
 
 
 FIELDS = (harmonics._stress_of_face_load, harmonics._displacement_of_face_load)
@@ -79,7 +79,7 @@ BODIES = {
 @pytest.mark.parametrize("name", MODES)
 @pytest.mark.parametrize("body", BODIES)
 def test_stresses_follow_hookes_law_in_equilibrium(body: str, name: str) -> None:
-    """What is even in y goes like ``cos(k y)``, what is odd like ``-sin(k y)``; displacements are times ``2 G``."""
+    """Even components are proportional to ``cos(k y)``, odd ones to ``-sin(k y)``; displacements are times ``2 G``."""
     create_field, displacement_harmonic, stress_harmonic = BODIES[body]
     displacement, stress = create_field(MODES[name], displacement_harmonic), create_field(MODES[name], stress_harmonic)
     (ux, uy, uz), over_x, over_z = displacement(X, Z), along(displacement, 0), along(displacement, 1)
@@ -111,7 +111,7 @@ def test_faces_and_top_of_v_have_no_shear(name: str) -> None:
     kappa = np.sqrt(RAY[:2] ** 2 + LATERAL**2)
     freed = np.real(np.exp(1j * np.outer(Z, RAY[:2])) @ WEIGHTS[:2])
     if isinstance(modes, SingleMirrorModes):
-        # Each half-space's own load; the opposite one's normal stress reaches the face, its shear stays there.
+        # Each half-space has a separate load; the opposite load's normal stress reaches the face, its shear remains.
         applied = np.exp(1j * np.outer(Z, RAY[:2])) @ (modes.load_on_face(kappa)[:, None] * WEIGHTS[:2])
         single_mirror = SingleMirrorModes(length=1e3, parity=1, discrete=np.zeros(0), ray=RAY, weights=modes.weights)
         assert evaluate_beside_end(single_mirror, harmonics._stress_of_face_load)(faces[:1], Z)[0, 0] == pytest.approx(
@@ -123,7 +123,7 @@ def test_faces_and_top_of_v_have_no_shear(name: str) -> None:
     assert computed[0, 0] == pytest.approx(freed)
     if modes.parity:
         assert computed[0, 1] == pytest.approx(modes.parity * freed)
-    # Cosines along z: neither shear nor a normal displacement is left on the top.
+    # For cosines along z the top has neither shear nor a normal displacement.
     real, top = (RAY[:2].real + 0j, WEIGHTS[:2].real + 0j), np.zeros(1)
     stress, displacement = (
         create_field(modes, harmonic, *real)
@@ -142,7 +142,7 @@ def weigh(modes: AxialModes, load: Callable[[FloatArray], FloatArray]) -> Comple
 
 @pytest.mark.parametrize("name", ["even", "odd"])
 def test_normal_stress_of_v_on_top(name: str) -> None:
-    """Per scaled face load, in the spectrum of the loads on H, mode by mode."""
+    """The stress per scaled face load is in the spectrum of the loads on H, mode by mode."""
     modes = MODES[name]
     depth = np.array([0.4, 1.7])
     kappa = np.sqrt(depth**2 + LATERAL**2)

@@ -1,4 +1,4 @@
-"""The direction along the rolling: panels, poles, and loads written in few columns."""
+"""Wavenumbers along the rolling direction: panels, poles, and loads as few columns."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def test_columns_equal_the_load_at_every_wavenumber(seed: int, rank: int, split:
     pressure = rng.random((GRID.cells_x, rank)) @ rng.random((rank, GRID.cells_y))
     mirrored = pressure[::-1]
     parity_loads = {1: pressure + mirrored, -1: pressure - mirrored} if split else {0: pressure}
-    # With 20 nodes the amplitudes are interpolated to rounding.
+    # The interpolation with 20 nodes is exact to rounding.
     for panel in lateral_panels(0.05, 2.5, 60.0, replace(Resolution(), lateral_nodes=20)):
         fine_panel = replace(panel, nodes=panel.fine_nodes, interpolation=None)
         np.testing.assert_allclose(
@@ -93,7 +93,7 @@ def test_no_load_has_no_columns():
 @pytest.mark.parametrize("y", [0.0, 0.3, -2.0])
 @pytest.mark.parametrize("moments", [cosine_moments, sine_moments])
 def test_moments_of_the_poles(moments: Callable[..., FloatArray], y: float):
-    """Between two ends of the range they differ by the integral."""
+    """The difference of the moments between two ends of the range is the integral."""
     reference, positions = 10.0, np.array([y])
     wave = np.cos if moments is cosine_moments else np.sin
     short_moments, long_moments = (
@@ -105,24 +105,28 @@ def test_moments_of_the_poles(moments: Callable[..., FloatArray], y: float):
 
 
 def test_pole_integrals_vanish_at_reference():
-    """All wavenumbers of the cosines' poles sum up to nothing at the reference, the first one without curvature."""
+    """The integrals of the cosines' poles over all wavenumbers vanish at the reference, the first without curvature."""
     step, reference = 1e-3, 10.0
     y = reference + step * np.arange(-1.0, 2.0)
     total = cosine_moments(400.0, y, reference, 0)
     np.testing.assert_allclose(total[:, 1], 0.0, atol=5e-4)
     assert abs(total[0] @ [1, -2, 1]) / step**2 < 1e-2
     sine_integrals = sine_moments(400.0, y, reference, 0)
-    # The sine's poles are the derivatives of the cosine's of the next order, reversed.
+    # The sine's poles are the derivatives of the cosine's poles of the next order, with reversed sign.
     np.testing.assert_allclose(sine_integrals[1, 1], -(total[0, 2] - total[0, 0]) / (2 * step), rtol=1e-4)
 
 
 @pytest.mark.parametrize("y", [0.02, 0.3, -2.0])
 def test_sine_moments_integrate_cosine_moments(y: float):
-    """``sin(k y) / k**3`` grows along y as ``cos(k y) / k**2``, motions included, and so on."""
+    """The derivative of ``sin(k y) / k**3`` along y is ``cos(k y) / k**2``, rigid motions included, and so on."""
     step, reference = 1e-4, 3.0
-    there, back = (sine_moments(0.7, np.array([y + side * step]), reference)[:, 0] for side in (1, -1))
+    moments_ahead, moments_behind = (
+        sine_moments(0.7, np.array([y + side * step]), reference)[:, 0] for side in (1, -1)
+    )
     cosine = cosine_moments(0.7, np.array([y]), reference)[:, 0]
-    np.testing.assert_allclose((there - back)[:3] / (2 * step), [cosine[1], cosine[2], cosine[3]], atol=1e-6)
+    np.testing.assert_allclose(
+        (moments_ahead - moments_behind)[:3] / (2 * step), [cosine[1], cosine[2], cosine[3]], atol=1e-6
+    )
 
 
 @pytest.mark.parametrize("poles", [POLES, BENDING_POLES])

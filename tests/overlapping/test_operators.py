@@ -23,7 +23,7 @@ def overlapping(grid: Grid, length: float, load: Load, *, mirrored_once: bool = 
     problem = EndProblem(
         length=length,
         poisson=0.3,
-        cells=np.zeros(grid.shape),
+        cell_loads=np.zeros(grid.shape),
         loads=(load,),
         grid=grid,
         resolution=resolution,
@@ -79,22 +79,22 @@ def test_problem_of_several_loads_sums_single_loads() -> None:
 def test_iteration_from_both_ends_equals_the_direct_solution(load: Load) -> None:
     """Rounds between H and V converge to the solution of the equation set in a quarter space."""
     operators = overlapping(UNIFORM, np.inf, load)
-    cells = np.random.default_rng(2).random(UNIFORM.cells_x * UNIFORM.cells_y)
-    source = operators.to_faces(load) @ (operators.modes(load) @ cells)
+    cell_loads = np.random.default_rng(2).random(UNIFORM.cells_x * UNIFORM.cells_y)
+    source = operators.to_faces(load) @ (operators.modes(load) @ cell_loads)
     faces, to_faces = source, operators.to_faces(Load.NORMAL)
     for _ in range(40):
         faces = source + to_faces @ (operators.to_top @ faces)
-    direct_load = operators.equivalent(load).top_load @ cells
+    direct_load = operators.equivalent(load).top_load @ cell_loads
     assert operators.top_values @ faces == pytest.approx(direct_load, abs=1e-10)
     assert np.abs(direct_load).max() > 0.1
 
 
 def test_long_waves_stall_the_iteration_and_gmres_converges() -> None:
     operators = overlapping(UNIFORM, 2.0, Load.NORMAL)
-    cells = (np.linspace(1.5, 0.5, UNIFORM.cells_x)[:, None] * np.ones(UNIFORM.cells_y)).ravel()
+    cell_loads = (np.linspace(1.5, 0.5, UNIFORM.cells_x)[:, None] * np.ones(UNIFORM.cells_y)).ravel()
     to_faces, to_top = operators.to_faces(Load.NORMAL), operators.to_top
-    source = to_faces @ (operators.modes(Load.NORMAL) @ cells)
-    direct_load = operators.equivalent(Load.NORMAL).top_load @ cells
+    source = to_faces @ (operators.modes(Load.NORMAL) @ cell_loads)
+    direct_load = operators.equivalent(Load.NORMAL).top_load @ cell_loads
     faces = source
     for _ in range(50):
         faces = source + to_faces @ (to_top @ faces)

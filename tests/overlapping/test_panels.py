@@ -1,4 +1,4 @@
-"""Graded positions along x: what is interpolated from them."""
+"""Graded positions along x and the interpolation from them."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from contactstudy.overlapping.quadrature import cell_moments, graded_interpolati
 
 @pytest.mark.parametrize("finite", [True, False])
 def test_interpolation_is_exact_for_polynomials(finite: bool) -> None:
-    """In the middle rounding decides whether a position lies in the last panel or behind it."""
+    """In the middle, rounding determines whether a position lies in the last panel or behind it."""
     rng = np.random.default_rng(0)
     for length in rng.uniform(1e-3, 1e3, 20):
         x = np.sort(np.concatenate([length * rng.random(200), [0.0, 0.5 * length, length]]))
@@ -31,7 +31,7 @@ def test_few_positions_are_not_interpolated() -> None:
 
 @pytest.mark.parametrize("unit", [2.0**-17, 1.0, 2.0**17])
 def test_cell_moments_are_exact_for_polynomials(unit: float) -> None:
-    """Of the degree that the positions of a panel hold; parts of cells outside the panels count nothing."""
+    """The moments are exact up to the degree of a panel; parts of cells outside the panels contribute nothing."""
     rng = np.random.default_rng(0)
     edges, positions = graded_positions(4.0 * unit, 0.1 * unit, 6)
     assert edges[0] == 0.0
@@ -64,7 +64,7 @@ def test_interpolation_is_symmetric_in_any_unit(length: float, unit: float) -> N
     if np.isfinite(length):
         assert np.isin(unit * x[[-1]], positions).all()
         assert positions.max() <= unit * 3.0
-    # Never more positions than there were.
+    # The interpolation never has more positions than the original.
     for count in range(2, 160):
         few = np.linspace(0.0, 3.0, count)
         variant = graded_interpolation(unit * few, unit * length, 8)

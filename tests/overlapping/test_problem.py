@@ -1,4 +1,4 @@
-"""A load as the free ends are asked to answer it: columns, parts, wavenumbers along y, in any unit."""
+"""A load as the problem of the free ends: columns, parts, wavenumbers along y, in any unit."""
 
 from __future__ import annotations
 
@@ -28,17 +28,19 @@ def end_problem(
 ) -> EndProblem:
     """A load on the cells from -0.5 to 0.75 along y, of 0.25 each."""
     grid = Grid.between(unit * edges, (-unit, unit), 8)
-    cells = (
+    cell_loads = (
         pressure * np.where((grid.y / unit > -0.5) & (grid.y / unit < 0.75), 1.0, 0.0) * (1 + np.arange(6.0))[:, None]
     )
-    return EndProblem(length=unit * length, poisson=0.3, cells=cells, loads=(load,), grid=grid, resolution=Resolution())
+    return EndProblem(
+        length=unit * length, poisson=0.3, cell_loads=cell_loads, loads=(load,), grid=grid, resolution=Resolution()
+    )
 
 
 @pytest.mark.parametrize("load", [Load.NORMAL, Load.ALONG_X])
 @pytest.mark.parametrize("reference", [None, 24.0])
 @pytest.mark.parametrize("length", [2.4, np.inf])
 def test_wavenumbers_along_y_depend_on_window_and_positions(load: Load, reference: float | None, length: float) -> None:
-    """From a part of the smallest length of body, window and positions, up to half a cell."""
+    """The range is from a part of the smallest length of body, window and positions to half a cell."""
     y, poles = np.array([-0.4, 1.5]), BENDING_POLES if load is Load.ALONG_X else POLES
     panel_factor = FIRST_PANEL_FACTOR if reference is None else POLE_PANEL_FACTOR[poles]
     for shortest, finest in ((1e-3, 0.125), (0.2, 0.2)):
@@ -65,14 +67,14 @@ def test_distant_points_determine_first_wavenumber() -> None:
 def test_columns_between_ends_are_symmetric() -> None:
     for unit in (1.0, UNIT, 2.0**-40):
         problem = end_problem(unit=unit)
-        edges, cells = problem.column_edges, problem.cells[problem.cell_of_column]
+        edges, cell_loads = problem.column_edges, problem.cell_loads[problem.cell_of_column]
         assert edges + edges[::-1] == pytest.approx(edges[-1])
         assert (edges[0], edges[-1]) == (0.0, problem.length)
         # 0.2, 0.5, 1.0, 1.7, 2.1 and their images 0.3, 0.7, 1.4, 1.9, 2.2
         assert edges / unit == pytest.approx(np.array([0, 0.2, 0.3, 0.5, 0.7, 1, 1.4, 1.7, 1.9, 2.1, 2.2, 2.4]))
         middles = 0.5 * (edges[1:] + edges[:-1]) / unit
-        assert np.array_equal(cells, problem.cells[np.searchsorted(EDGES, middles) - 1])
-    # Edges whose images differ by rounding only are one.
+        assert np.array_equal(cell_loads, problem.cell_loads[np.searchsorted(EDGES, middles) - 1])
+    # Edges equal to images within rounding are one edge.
     rounded_edges = np.array([0.0, 0.7, 1.2 + 1e-14, 1.7 + 3e-14, 2.0, 2.2, 2.4])
     problem = end_problem(edges=rounded_edges)
     edges = problem.column_edges
@@ -84,25 +86,25 @@ def test_columns_between_ends_are_symmetric() -> None:
 @pytest.mark.parametrize("sign_x", [1, -1])
 @pytest.mark.parametrize("unit", [1e-9, 1.0, 1e9])
 def test_parity_components_sum_to_load(sign_x: int, unit: float) -> None:
-    """Under a load that its image reverses the even part is odd; what is negligible is left out."""
-    cells = unit * np.random.default_rng(0).random((6, 4))
-    parity_loads = split_by_parity(cells, sign_x)
+    """The even part is odd under a load that its image reverses; negligible parts are omitted."""
+    cell_loads = unit * np.random.default_rng(0).random((6, 4))
+    parity_loads = split_by_parity(cell_loads, sign_x)
     assert set(parity_loads) == {1, -1}
-    assert sum(parity_loads.values()) == pytest.approx(cells)
+    assert sum(parity_loads.values()) == pytest.approx(cell_loads)
     for parity, parity_load in parity_loads.items():
         assert parity_load[::-1] == pytest.approx(sign_x * parity * parity_load)
-    even_load = cells + cells[::-1]
+    even_load = cell_loads + cell_loads[::-1]
     assert set(split_by_parity(even_load, sign_x)) == {sign_x}
     assert set(split_by_parity(even_load * (1 + 1e-15 * np.arange(6.0))[:, None], sign_x)) == {sign_x}
     assert set(split_by_parity(even_load * (1 + 1e-11 * np.arange(6.0))[:, None], sign_x)) == {1, -1}
 
 
 def test_too_thin_body_raises_error() -> None:
-    """Five cells of 0.25 are loaded, wherever they lie."""
+    """The width of the five loaded cells of 0.25 is independent of their position."""
     problem = end_problem()
     for shift in (0, 1, -2):
-        cells = np.roll(problem.cells, shift, axis=1)
-        replace(problem, cells=cells, length=1.001 * MIN_LENGTH_RATIO * 1.25)
+        cell_loads = np.roll(problem.cell_loads, shift, axis=1)
+        replace(problem, cell_loads=cell_loads, length=1.001 * MIN_LENGTH_RATIO * 1.25)
         with pytest.raises(InvalidInputError, match=r"width of the contact, 1\.25 m"):
-            replace(problem, cells=cells, length=0.999 * MIN_LENGTH_RATIO * 1.25)
-    replace(problem, cells=np.zeros(problem.cells.shape), length=1e-9)
+            replace(problem, cell_loads=cell_loads, length=0.999 * MIN_LENGTH_RATIO * 1.25)
+    replace(problem, cell_loads=np.zeros(problem.cell_loads.shape), length=1e-9)

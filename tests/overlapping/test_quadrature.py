@@ -1,4 +1,4 @@
-"""Settings of the quadratures that cannot resolve anything are refused."""
+"""Settings of the quadratures without resolution are rejected."""
 
 from __future__ import annotations
 

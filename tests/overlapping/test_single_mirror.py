@@ -1,4 +1,4 @@
-"""The scheme with one pair of images and two vertical half-spaces: what it frees, what it leaves, its exact limits."""
+"""The scheme with one pair of images and two vertical half-spaces: freed tractions, residuals, exact limits."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def single_mirror(length: float, material: Material) -> FiniteLengthSpace:
 
 @pytest.fixture(scope="module")
 def eccentric_load(strip_pressure) -> xr.DataArray:
-    """A strip, a third heavier at end II than at end I, on a body four half-widths long."""
+    """A strip load, a third larger at end II than at end I, on a body four half-widths long."""
     pressure = strip_pressure(4.0, (32, 48))
     return pressure * (1 + 0.3 * (pressure.x / 4.0 - 0.5))
 
@@ -56,13 +56,13 @@ def test_single_mirror_ends_keep_shear(eccentric_load: xr.DataArray, unit_materi
 
 
 def test_top_traction_equals_load(eccentric_load: xr.DataArray) -> None:
-    """Before anything is imposed: H under the added load and V under the face loads cancel on the top."""
+    """The tractions of H under the added load and of V under the face loads cancel on the top."""
     grid = Grid.from_centres(eccentric_load.x.values, eccentric_load.y.values)
     loads = (Load.NORMAL, Load.ALONG_Y)
     problem = EndProblem(
         length=4.0,
         poisson=0.3,
-        cells=eccentric_load.values,
+        cell_loads=eccentric_load.values,
         loads=loads,
         grid=grid,
         resolution=Resolution(),
@@ -77,10 +77,10 @@ def test_top_traction_equals_load(eccentric_load: xr.DataArray) -> None:
 
 
 def test_equivalent_load_displaces_half_space_equally(on_cells, unit_material: Material) -> None:
-    """Built by hand from the labelled equivalent load: three copies side by side on a half-space.
+    """The comparison is explicit: three copies of the labelled equivalent load side by side on a half-space.
 
-    The added load spreads like 1/y, so the window along y is wide; at the ends it grows like a logarithm, which cells
-    hold to some tenths of a percent of the displacement (half of the difference goes when they are halved along x).
+    The added load decreases like 1/y, so the window along y is wide; at the ends it grows like a logarithm, which cells
+    represent to some tenths of a percent of the displacement (cells halved along x halve the difference).
     """
     body, half_space = single_mirror(4.0, unit_material), HalfSpace(material=unit_material)
     window, middle_rows = (-24.0, 24.0), slice(110, 130)

@@ -19,7 +19,7 @@ def test_slab_factors_match_closed_forms(length: float) -> None:
     assert even_factor == pytest.approx(2 * np.sinh(t) ** 2 / (np.sinh(2 * t) + 2 * t))
     assert tau_even == pytest.approx(t * (1 / np.tanh(t) - 1))
     odd_factor, tau_odd = slab_factors(KAPPA, length, -1)
-    # sinh(2 t) - 2 t without what cancels
+    # sinh(2 t) - 2 t without cancellation
     difference = sum((2 * t) ** (2 * n + 1) / factorial(2 * n + 1) for n in range(1, 40))
     assert odd_factor == pytest.approx(2 * np.cosh(t) ** 2 / difference, rel=1e-11)
     assert tau_odd == pytest.approx(t * (np.tanh(t) - 1))

@@ -1,4 +1,4 @@
-"""One pass: the rate equations of one layer by itself."""
+"""One pass: the rate equations of a single layer."""
 
 from __future__ import annotations
 
@@ -74,16 +74,16 @@ def integrate_rates(
 
 
 @pytest.mark.parametrize(
-    ("friction", "ratio", "hardening"),
+    ("friction", "yield_ratio", "hardening"),
     [(0.0, 0.95, (0.0, 20.0)), (0.2, 0.97, (0.0, 10.0)), (0.2, 0.9, (30.0, 0.0))],
 )
 def test_layer_agrees_with_rate_equations(
-    line_contact, friction: float, ratio: float, hardening: tuple[float, float]
+    line_contact, friction: float, yield_ratio: float, hardening: tuple[float, float]
 ) -> None:
     contact = line_contact(friction)
     yield_stresses = fatigue.shakedown(contact)["shakedown_stress"].isel(x=0)
     depth_index = int(yield_stresses.values.argmax())
-    yield_stress = ratio * float(yield_stresses[depth_index])
+    yield_stress = yield_ratio * float(yield_stresses[depth_index])
     coarse = np.stack([contact[name].isel(x=0, z=depth_index).values[::-1] for name in STRESSES], axis=1)
     positions = np.linspace(0, len(coarse) - 1, 12 * (len(coarse) - 1) + 1)
     fine = np.stack([np.interp(positions, np.arange(len(coarse)), values) for values in coarse.T], axis=1)

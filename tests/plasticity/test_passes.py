@@ -42,7 +42,7 @@ def test_flow_below_and_above_the_limit(line_contact, steel_half_space) -> None:
 
 @pytest.mark.slow
 def test_elastic_body_bounds_the_flow(line_contact, steel_half_space) -> None:
-    """Alternating shear of +-0.25 p0 at half the half-width: hardening adds little to what holds the flow."""
+    """Under alternating shear of +-0.25 p0 at a depth of a/2 hardening contributes little to the bound of the flow."""
     contact = line_contact()
     limit = float(fatigue.shakedown(contact, axial=True)["shakedown_stress"].max())
     flows = [
@@ -62,7 +62,7 @@ def test_elastic_body_bounds_the_flow(line_contact, steel_half_space) -> None:
 
 @pytest.mark.slow
 def test_shakedown_between_free_ends(line_contact, steel_between_ends) -> None:
-    """Shear decides as in a half-space; below the limit residual stress along x has built up between the ends."""
+    """The shear determines the limit as in a half-space; below it a residual stress along x exists between the ends."""
     contact = line_contact(0.0, length=8.0)
     limit = float(fatigue.shakedown(contact.isel(x=[4]), axial=True)["shakedown_stress"].max())
     line_result = float(fatigue.shakedown(contact)["shakedown_stress"].max())

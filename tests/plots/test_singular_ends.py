@@ -1,4 +1,4 @@
-"""Singular ends have no largest pressure, and no figure shows one."""
+"""Singular ends have no largest pressure, and no figure contains one."""
 
 import numpy as np
 import pytest
@@ -80,7 +80,7 @@ def test_maximum_at_border_has_open_marker(lines_of):
 
 
 def test_stress_colours_exclude_singular_end():
-    """Positions that close in on the end have stresses without a limit: they would take all colours."""
+    """Positions close to the end have unbounded stresses, which would occupy all colours."""
     body = HalfSpace(material=Material(210e9, 0.3))
     case = Case(body=body, roller=Roller(radius=5e-3, length=1e-3), max_pressure=1.5e9, end_distance=0.2e-3)
     a = case.hertz_half_width

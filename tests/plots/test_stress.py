@@ -40,7 +40,7 @@ def test_end_face_contours_are_continuous(case_result, assert_nothing_clipped):
     assert len(contour_levels) == 2
     assert np.array_equal(*contour_levels)
     low, high = ax.get_xlim()
-    # Four half-widths are known along y: two on either side of the fold.
+    # The field contains four half-widths along y: two on either side of the fold.
     assert low == pytest.approx(-2.0)
     assert high == pytest.approx(4.0)
     assert [tick.get_text() for tick in ax.get_xticklabels()] == [

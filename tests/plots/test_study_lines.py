@@ -44,8 +44,8 @@ def test_lines_show_first_solved_cases(study_dataset):
     assert figure.get_suptitle() == "friction = 0.1, one of 2 values"
     assert np.isfinite(figure.axes[0].lines[0].get_ydata()).all()
     assert list(plots.study_figures(failed_first)) == ["edge_effect", "study"]
-    only_failed = plots.plot_study_lines(study_dataset.isel(friction=[1]), x="e_over_a", hue="body")
-    assert not np.isfinite(only_failed.axes[0].lines[0].get_ydata()).any()
+    figure_of_failed_cases = plots.plot_study_lines(study_dataset.isel(friction=[1]), x="e_over_a", hue="body")
+    assert not np.isfinite(figure_of_failed_cases.axes[0].lines[0].get_ydata()).any()
 
 
 def test_title_contains_fixed_parameters(study_dataset):

@@ -12,7 +12,7 @@ def test_map_of_a_study(study_dataset, assert_nothing_clipped):
     ax = plots.plot_study_map(study_dataset, "peak_von_mises", selection={"body": "finite-length"})
     assert [tick.get_text() for tick in ax.get_xticklabels()] == ["0", "1", "2"]
     assert [tick.get_text() for tick in ax.get_yticklabels()] == ["0.1", f"{FAILS:g}"]
-    # Three cases are labelled with their values in GPa, three that failed are hatched.
+    # Three cases have labels with their values in GPa, three failed cases are hatched.
     expected = study_dataset["peak_von_mises"].sel(friction=0.1, body="finite-length").values / 1e9
     assert [text.get_text() for text in ax.texts] == [f"{value:.3g}" for value in expected]
     assert sum(bool(collection.get_hatch()) for collection in ax.collections) == 3
@@ -63,19 +63,19 @@ def test_given_axes_are_used(study_dataset):
 
 
 def test_bad_input(study_dataset):
-    one_body = study_dataset.sel(body="finite-length")
+    one_body_study = study_dataset.sel(body="finite-length")
     for call, message in (
         (lambda: plots.plot_study_map(study_dataset, "end_pressure_over_p0"), "with a value of body"),
-        (lambda: plots.plot_study_map(one_body, "status"), "a number of each case"),
-        (lambda: plots.plot_study_map(one_body, "end_pressures"), "did you mean"),
-        (lambda: plots.plot_study_map(one_body, "end_pressure_over_p0", y="gamma"), "two swept parameters"),
-        (lambda: plots.plot_study_map(one_body, "end_pressure_over_p0", y="e_over_a"), "two swept parameters"),
+        (lambda: plots.plot_study_map(one_body_study, "status"), "a number of each case"),
+        (lambda: plots.plot_study_map(one_body_study, "end_pressures"), "did you mean"),
+        (lambda: plots.plot_study_map(one_body_study, "end_pressure_over_p0", y="gamma"), "two swept parameters"),
+        (lambda: plots.plot_study_map(one_body_study, "end_pressure_over_p0", y="e_over_a"), "two swept parameters"),
         (
             lambda: plots.plot_study_map(study_dataset, "end_pressure_over_p0", selection={"body": "moon"}),
             "one of finite-length",
         ),
-        (lambda: plots.plot_study_map(one_body, "end_pressure_over_p0", selection={"speed": 1}), "of nothing"),
-        (lambda: plots.plot_study_map(one_body.isel(friction=[1]), "end_pressure_over_p0"), "at least one"),
+        (lambda: plots.plot_study_map(one_body_study, "end_pressure_over_p0", selection={"speed": 1}), "of nothing"),
+        (lambda: plots.plot_study_map(one_body_study.isel(friction=[1]), "end_pressure_over_p0"), "at least one"),
     ):
         with pytest.raises(InvalidInputError, match=message):
             call()

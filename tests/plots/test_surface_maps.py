@@ -14,7 +14,7 @@ from contactstudy import Case, FiniteLengthSpace, InvalidInputError, Material, R
 
 @functools.cache
 def rolling_result() -> xr.Dataset:
-    """Equal bodies that end together, creeping along and across."""
+    """Equal bodies that end together, with creepages along and across."""
     steel = Material(210e9, 0.3)
     case = Case(
         body=FiniteLengthSpace(length=0.5e-3, material=steel),
@@ -33,7 +33,7 @@ def test_stick_and_slip_areas_match_case(assert_nothing_clipped) -> None:
     slips = np.asarray(mesh.get_array()).reshape(result["pressure"].transpose("y", "x").shape)
     in_contact = result["pressure"].transpose("y", "x").values > 0
     assert float(slips[in_contact].sum()) == int(in_contact.sum()) - int(result["stick"].sum())
-    assert mesh.get_clip_path() is not None  # the contact's border
+    assert mesh.get_clip_path() is not None  # the contact's border clips the mesh
     assert_nothing_clipped(ax.figure)
 
 
@@ -60,9 +60,11 @@ def test_arrows_follow_local_tractions() -> None:
     (arrows,) = (artist for artist in ax.collections if hasattr(artist, "U"))
     a, p0 = float(result["hertz_half_width"]), float(result["hertz_max_pressure"])
     for (x, y), u, v in list(zip(arrows.get_offsets(), arrows.U, arrows.V, strict=True))[::5]:
-        here = result.sel(x=x * a, y=y * a, method="nearest")
-        assert [u, v] == pytest.approx([float(here["traction_x"]) / p0, float(here["traction_y"]) / p0])
-        assert float(here["pressure"]) > 0
+        contact_at_arrow = result.sel(x=x * a, y=y * a, method="nearest")
+        assert [u, v] == pytest.approx(
+            [float(contact_at_arrow["traction_x"]) / p0, float(contact_at_arrow["traction_y"]) / p0]
+        )
+        assert float(contact_at_arrow["pressure"]) > 0
     assert 40 < len(arrows.U) <= 72
 
 

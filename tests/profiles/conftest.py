@@ -1,4 +1,4 @@
-"""A steel half-space, on which profiles are solve_profile, and positions along a roller."""
+"""A steel half-space, on which the tests solve profiles, and positions along a roller."""
 
 from __future__ import annotations
 

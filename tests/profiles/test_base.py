@@ -82,7 +82,7 @@ def test_user_profile_needs_only_a_drop() -> None:
 
 
 @pytest.mark.parametrize(
-    ("returned", "named"),
+    ("returned", "message"),
     [
         (lambda x: 0.0, "it returned float64 of shape ()"),
         (lambda x: np.zeros(7), "of shape (7,)"),
@@ -94,14 +94,14 @@ def test_user_profile_needs_only_a_drop() -> None:
         (lambda x: np.full(x.shape, np.inf), "finite but at the very ends"),
     ],
 )
-def test_invalid_drops_of_a_user_profile_are_rejected(returned, named: str) -> None:
+def test_invalid_drops_of_a_user_profile_are_rejected(returned, message: str) -> None:
     class UserProfile:
         def drop(self, x, length):
             return returned(x)
 
-    with pytest.raises(InvalidInputError, match=re.escape(named)):
+    with pytest.raises(InvalidInputError, match=re.escape(message)):
         Roller(radius=RADIUS, length=LENGTH, profile=UserProfile())
-    if "very ends" not in named:
+    if "very ends" not in message:
         for combined in (Sum((UserProfile(), Cylinder())), Halves(Cylinder(), UserProfile())):
             with pytest.raises(InvalidInputError, match="profile = "):
                 combined.drop(np.linspace(0.0, 0.4, 5) * LENGTH, LENGTH)

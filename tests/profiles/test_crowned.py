@@ -12,10 +12,10 @@ from contactstudy.profiles import Cylinder, Ellipsoid, FullCrown, PartialCrown, 
 from contactstudy.verification.closed_forms import hertz_ellipse
 from tests.profiles.conftest import LENGTH, RADIUS
 
-HALF = LENGTH / 2
+HALF_LENGTH = LENGTH / 2
 
 
-@given(st.floats(HALF, 10.0), st.floats(-HALF, HALF))
+@given(st.floats(HALF_LENGTH, 10.0), st.floats(-HALF_LENGTH, HALF_LENGTH))
 def test_full_crown_lies_on_its_circle(radius: float, x: float) -> None:
     drop = float(FullCrown(radius).drop(np.array([x]), LENGTH)[0])
     assert np.hypot(x, radius - drop) == pytest.approx(radius, rel=1e-12)
@@ -35,11 +35,11 @@ def test_full_crown_of_large_radius_equals_the_parabola(positions: np.ndarray) -
 
 @given(straight=st.floats(0.0, 6e-3), crown=st.floats(0.05, 10.0), dub=st.floats(0.1e-3, 1.5e-3))
 def test_arcs_of_a_partial_crown_join_tangentially(straight: float, crown: float, dub: float) -> None:
-    """Curvature 0, 1/R1, 1/R2: its integral from mid-length is the slope, and that of the slope the drop."""
+    """The curvatures are 0, 1/R1, 1/R2: their integral from mid-length is the slope, the slope's integral the drop."""
     profile = PartialCrown(straight, crown, dub, dub_radius=0.02)
-    x = np.linspace(0.0, HALF, 4001)
+    x = np.linspace(0.0, HALF_LENGTH, 4001)
     midpoints = 0.5 * (x[1:] + x[:-1])
-    curvature = np.where(midpoints < straight / 2, 0.0, np.where(midpoints < HALF - dub, 1 / crown, 1 / 0.02))
+    curvature = np.where(midpoints < straight / 2, 0.0, np.where(midpoints < HALF_LENGTH - dub, 1 / crown, 1 / 0.02))
     sine = np.concatenate([[0.0], np.cumsum(curvature) * (x[1] - x[0])])
     slope = sine / np.sqrt(1 - sine**2)
     drop = np.concatenate([[0.0], np.cumsum(0.5 * (slope[1:] + slope[:-1])) * (x[1] - x[0])])
@@ -63,7 +63,7 @@ def test_dub_off_of_equal_radius_has_no_influence(positions: np.ndarray) -> None
 def test_corner_radius_is_added(positions: np.ndarray) -> None:
     crown, corner = PartialCrown(6e-3, 1.0, 0.5e-3, 0.02), Cylinder(fillet_radius=0.2e-3)
     drop = (crown + corner).drop(positions, LENGTH)
-    inside = np.abs(positions) <= HALF - 0.2e-3
+    inside = np.abs(positions) <= HALF_LENGTH - 0.2e-3
     np.testing.assert_array_equal(drop[inside], crown.drop(positions, LENGTH)[inside])
     assert drop[-1] == pytest.approx(crown.drop(positions, LENGTH)[-1] + 0.2e-3)
 

@@ -1,4 +1,4 @@
-"""docs/reference/profiles.md: its table is complete, its figures can be drawn again."""
+"""docs/reference/profiles.md: its table is complete, its figures are reproducible."""
 
 from __future__ import annotations
 

@@ -14,7 +14,7 @@ X = np.linspace(0.0, 12e-3, 2401)
 def test_transmission_equals_the_standard(wavelength_ratio: float, uneven: bool) -> None:
     """The transmission is ``2**-(cutoff / wavelength)**2``, half at the cut-off."""
     x = X + (2e-6 * np.sin(40 * X / X[-1]) if uneven else 0.0)
-    inner = slice(180, -180)  # 0.9 mm
+    inner = slice(180, -180)  # the slice excludes 0.9 mm on either side
     for phase in (0.0, 1.0):
         wave = np.sin(2 * np.pi * x / (wavelength_ratio * CUTOFF) + phase)
         filtered = filter_gaussian(x, wave, CUTOFF)
@@ -34,12 +34,12 @@ def test_filtered_parabola_shifts_by_the_closed_form() -> None:
     inner = slice(180, -180)
     np.testing.assert_allclose(shift[inner], expected, rtol=1e-4)
     assert np.abs(shift).max() < 1.001 * expected
-    shift_of_mean = 0.5 * 6e-3 * CUTOFF * np.sqrt(np.log(2)) / np.pi**1.5  # half a weight hangs over the end
+    shift_of_mean = 0.5 * 6e-3 * CUTOFF * np.sqrt(np.log(2)) / np.pi**1.5  # half a weight extends beyond the end
     assert abs(shift[0]) < 0.03 * shift_of_mean
 
 
 def test_noise_decreases_by_the_closed_form() -> None:
-    """The variance of a weighted mean of independent values: ``step / (alpha cutoff sqrt(2))`` inside."""
+    """The variance of a weighted mean of independent values is ``step / (alpha cutoff sqrt(2))`` inside."""
     noise = np.random.default_rng(0).standard_normal((40, X.size))
     filtered = np.array([filter_gaussian(X, row, CUTOFF) for row in noise])[:, 300:-300]
     expected = np.sqrt((X[1] - X[0]) / (np.sqrt(np.log(2) / np.pi) * CUTOFF * np.sqrt(2)))
@@ -50,7 +50,7 @@ def test_noise_decreases_by_the_closed_form() -> None:
 def test_even_and_uneven_points_agree(cutoff: float) -> None:
     """The sums by Fourier transforms equal the sums at the points."""
     values = np.cos(2 * np.pi * X / 1e-3) + X / X[-1]
-    shift = X + 2e-3 * (X[1] - X[0]) * np.sin(1e4 * X)  # beyond what counts as even
+    shift = X + 2e-3 * (X[1] - X[0]) * np.sin(1e4 * X)  # the deviation exceeds the tolerance of even points
     np.testing.assert_allclose(filter_gaussian(X, values, cutoff), filter_gaussian(shift, values, cutoff), atol=2e-4)
 
 

@@ -38,7 +38,7 @@ def test_zero_amplitude_has_no_drop(positions: np.ndarray) -> None:
 
 
 def test_lundberg_pressure_is_flat_at_the_design_load(solve_profile, steel: Material) -> None:
-    """On a half-space, for a length of 62 half-widths: flat to 1.2 % over nine tenths of the length.
+    """On a half-space the pressure is flat to 1.2 % over nine tenths of a length of 62 half-widths.
 
     The pressure of a sharp cylinder varies by 11 %, that of a delta of 0.7 or 1.4 by more than twice 1.2 %.
     """
@@ -98,7 +98,7 @@ def test_johns_gohar_and_fujiwara_contain_lundberg(amplitude: float) -> None:
 
 
 def test_fujiwara_and_kawase_formula(positions: np.ndarray) -> None:
-    """With the crowned length a' of one side, and y from the roller's end, as in the paper."""
+    """The formula has the crowned length a' of one side, and y from the roller's end, as in the paper."""
     amplitude, k1, k2, end_drop = 1.3e-7, 2.0, 0.6, 4e-6
     profile = FujiwaraKawase(amplitude, end_drop, k1, k2)
     crown_length = k2 * HALF
@@ -188,7 +188,7 @@ def test_iso_branches_differ_by_their_amplitudes(position: float) -> None:
 
 
 def test_short_iso_profile_is_lundbergs_for_3000_megapascals() -> None:
-    """Two bodies of steel with the 207 GPa and 0.3 of the standard."""
+    """The formula contains two bodies of steel with the 207 GPa and 0.3 of the standard."""
     modulus = 207e9 / (2 * (1 - 0.3**2))
     design = Lundberg.for_pressure(3000e6, radius=DIAMETER / 2, modulus=modulus)
     x = np.array([3e-3, 4.5e-3])

@@ -39,7 +39,7 @@ def test_taper_of_zero_equals_the_cylinder_bitwise(fillet: float, x: list[float]
 
 @given(angle=st.floats(-0.4, 0.4), x=st.floats(-LENGTH / 2, LENGTH / 2))
 def test_taper_radius_equals_the_cone_curvature(angle: float, x: float) -> None:
-    """Height over the tangent plane along the generatrix, from the equation of the cone."""
+    """The height over the tangent plane along the generatrix follows from the equation of the cone."""
     from scipy.optimize import brentq
 
     roller_radius, y = 20e-3, 1e-5

@@ -28,7 +28,7 @@ VOID = {"meta", "img", "br", "link", "input"}
 
 
 class Page(HTMLParser):
-    """Parser of a page: text, fetched addresses, anchors; fails on unmatched tags."""
+    """Parser of a page: text, fetched addresses, anchors; an unmatched tag raises an error."""
 
     def __init__(self, text: str) -> None:
         super().__init__()
@@ -79,7 +79,7 @@ def read_page(path: Path) -> Page:
 
 @pytest.fixture
 def without_encoding(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Figures are drawn, but not encoded."""
+    """Replace the encoding of drawn figures by an empty address."""
     for module in (figures, study_page):
         monkeypatch.setattr(module, "encode_figure", lambda figure: "data:image/svg+xml;base64,")
 
@@ -140,27 +140,27 @@ def test_page_of_a_study(page: Page) -> None:
     assert len(page.fetched) == 2
 
 
-def settled_cases(*errors: float) -> list[study_page.Row]:
+def converged_rows(*errors: float) -> list[study_page.Row]:
     """Rows of solved cases with relative errors of the peak."""
     scalars = [{"peak_pressure": 2e9, "peak_pressure_error": error * 2e9, "converged": 1.0} for error in errors]
     return [study_page._row("case-1", Entry("ok", numbers=case_scalars), [], []) for case_scalars in scalars]
 
 
 def test_reason_of_several_cases() -> None:
-    ((rating, reason, cases), (best_group, _, _)) = study_page._count_answers(settled_cases(0.1, 0.06, 0.001))
+    ((rating, reason, cases), (best_group, _, _)) = study_page._count_answers(converged_rows(0.1, 0.06, 0.001))
     assert (rating, len(cases), best_group) == ("with care", 2, "yes")
     assert reason == "the error of the peak pressure is 10.0% in the worst case, 6.0% in the best"
 
 
 @pytest.mark.usefixtures("without_encoding")
 def test_open_ends_coarse_cells_and_malformed_runs(tmp_path: Path) -> None:
-    assert study_page._verdict(settled_cases(0.1, 0.001)) == ("with care", "1 real with care, 1 real")
-    assert study_page._verdict(settled_cases(0.001, 0.001)) == ("yes", "2 real")
+    assert study_page._verdict(converged_rows(0.1, 0.001)) == ("with care", "1 real with care, 1 real")
+    assert study_page._verdict(converged_rows(0.001, 0.001)) == ("yes", "2 real")
     runs = list(MALFORMED)
 
-    def solve_coarsely(*given, **more) -> xr.Dataset:
+    def solve_coarsely(*arguments, **keywords) -> xr.Dataset:
         values = {"end_pressure_first": 0.0, "end_pressure_last": 0.0, "peak_pressure": 2e9, "peak_pressure_error": 2e8}
-        return solve_fake(*given, **more).assign(values).assign_attrs(contactstudy_run=json.dumps(runs.pop()))
+        return solve_fake(*arguments, **keywords).assign(values).assign_attrs(contactstudy_run=json.dumps(runs.pop()))
 
     base = BASE | {"profile": {"kind": "cylinder", "fillet_radius": 1e-4}}
     run_study(small_study(base=base), tmp_path, workers=0, solver=solve_coarsely, progress=False)
@@ -193,23 +193,23 @@ def test_inputs_in_engineers_units(tmp_path: Path) -> None:
 
 @pytest.mark.usefixtures("without_encoding")
 def test_numbers_and_figure_of_singular_ends(tmp_path: Path) -> None:
-    def sharp(case: Case, *given, **more) -> xr.Dataset:
+    def sharp(case: Case, *arguments, **keywords) -> xr.Dataset:
         units = {"units": "Pa m^0.5" if case.friction == 0 else "Pa m^0.34"}
         intensity, error = (xr.DataArray(value, attrs=units) for value in (3.245e6, 1.8e4))
         law = {"end_intensity": intensity, "end_intensity_first": intensity, "end_intensity_first_error": error}
         exponents = dict.fromkeys(("end_exponent", "end_exponent_first"), 0.5 if case.friction == 0 else 0.34)
         loads = {"end_load_first": 4.02, "end_load_first_error": 0.02, "end_load_last": 3.0}
         peaks = dict.fromkeys(("peak_pressure", "peak_pressure_error", "end_pressure_first"), np.inf)
-        return solve_fake(case, *given, **more).assign(law | exponents | loads | peaks)
+        return solve_fake(case, *arguments, **keywords).assign(law | exponents | loads | peaks)
 
     run_study(small_study(), tmp_path, workers=0, solver=sharp, progress=False)
     page = Page(report.html(tmp_path))
     for text in ("K at end I", "0.10262 ± 0.00057 GPa mm^0.5", "GPa mm^0.34", "load on the last a, end I"):
         assert text in page.text, text
     assert "4.020 ± 0.020 N" in page.text
-    assert "units" not in open_study(tmp_path)["end_intensity"].attrs  # exponents differ
+    assert "units" not in open_study(tmp_path)["end_intensity"].attrs  # the exponents differ between cases
     assert "at end I largest" not in page.text
-    assert "K at end II" not in page.text  # that end is not singular
+    assert "K at end II" not in page.text  # end II is not singular
     figure, _ = figures_of_folder(tmp_path)["study"]
     labels = [ax.get_ylabel() for ax in figure.axes]
     assert "load on the last" in labels[0]
@@ -306,7 +306,7 @@ def test_only_drawn_cases_are_loaded(folder: Path, monkeypatch) -> None:
     )
     figures_of_folder(folder)
     pyplot.close("all")
-    assert len(set(loaded_cases)) == 2  # of four that are solved: two over e/a
+    assert len(set(loaded_cases)) == 2  # two of four solved cases over e/a
 
 
 @pytest.mark.usefixtures("without_encoding")

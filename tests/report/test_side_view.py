@@ -23,7 +23,7 @@ def case(body: Body | None = None, **roller: object) -> Case:
 
 @pytest.fixture
 def drawn_figures(monkeypatch: pytest.MonkeyPatch) -> list[Figure]:
-    """Figures that become pictures."""
+    """List of the figures that the page encodes."""
     figure_list: list[Figure] = []
     monkeypatch.setattr(figures, "encode_figure", lambda figure: figure_list.append(figure) or "data:")
     return figure_list

@@ -44,7 +44,7 @@ def test_errors_of_a_motion(case_result: xr.Dataset) -> None:
     view = summary(motion_result.assign(load_position=1e-3, load_position_error=1e-12))
     assert (view["force_y"].error, view["friction_work"].error) == (0.02, 2e-5)
     assert "±" in view["friction_work"].text
-    # Neither an estimate nor a certificate of this number.
+    # These numbers have neither an estimate nor a certificate.
     assert np.isnan(view["spin"].error)
     assert np.isnan(view["load_position"].error)
 
@@ -56,10 +56,10 @@ def test_rounding(case_result: xr.Dataset) -> None:
     assert (view["force_x"].text, view["moment_z"].text, view["force_y"].text) == ("0 N", "0 N m", "2 N")
     assert view["force_x"].remark == "rounding: below 1e-06 of the largest force"
     assert list(view.to_dataframe().loc["force_x", ["value", "error"]]) == [-5.7e-9, 7e-9]
-    # Also where none was asked for.
+    # The text is 0 also for a prescribed force of zero.
     inputs_template = '{"case": {"motion": {"kind": "Rolling", "force_x": %s}}}'
     assert summary(motion_result.assign_attrs(contactstudy_inputs=inputs_template % "0.0"))["force_x"].text == "0 N"
-    # Error below the value, above rounding, value above rounding, without another force, and prescribed.
+    # Errors below the value and above rounding, a value above rounding, no other force, and a prescribed force.
     for exact_result in (
         motion_result.assign(force_x_error=1e-10),
         motion_result.assign(force_x_error=1e-3),
@@ -104,7 +104,7 @@ def test_singular_values(singular: xr.Dataset) -> None:
 
 
 def test_answers(case_result: xr.Dataset) -> None:
-    """Every answer can be another one."""
+    """Each answer changes with its number."""
 
     def rate(criterion: str, **changes: object) -> str:
         answers = assess(case_result.assign(changes)).criteria

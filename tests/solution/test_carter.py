@@ -1,4 +1,4 @@
-"""Largest von Mises stress of like cylinders that roll, against the closed stresses of Carter's traction."""
+"""Largest von Mises stress of equal rolling cylinders, against the closed stresses of Carter's traction."""
 
 from __future__ import annotations
 

@@ -82,7 +82,7 @@ def test_certificate_is_within_tolerance(result) -> None:
 
 def test_normal_stress_on_top_equals_pressure(result) -> None:
     top = solve(CASE, x=result["x"].values, z=[0.0]).isel(z=0)
-    away = top["pressure"].values > 0.75e9  # nearer to the contact's border the pressure bends within a cell
+    away = top["pressure"].values > 0.75e9  # nearer to the contact's border the pressure curves within a cell
     for stress, load, bound in (("sigma_zz", "pressure", 1.5e-2), ("tau_yz", "traction_y", 1.5e-3)):
         assert np.abs(top[stress].values + top[load].values)[away].max() < bound * 1.5e9, stress
 
@@ -99,7 +99,7 @@ def test_result_survives_netcdf(result, tmp_path) -> None:
 def test_stresses_at_given_positions() -> None:
     result = solve(CASE, x=[0.0, 0.3e-3], y=[0.0], z=[50e-6])
     assert result["von_mises"].dims == ("x_field", "y_field", "z")
-    assert abs(result["sigma_xx"].values[0, 0, 0]) < 1e-5 * CASE.hertz_max_pressure  # what is left on the free end
+    assert abs(result["sigma_xx"].values[0, 0, 0]) < 1e-5 * CASE.hertz_max_pressure  # the residual on the free end
 
 
 def test_half_space_has_zero_end_traction() -> None:
@@ -147,7 +147,7 @@ def test_rough_surface_determines_window() -> None:
 
 @pytest.mark.slow
 def test_rolling_case_stresses_include_tractions() -> None:
-    """Of two equal bodies with free ends: opposite tractions make equal stresses but for a reflection along y."""
+    """Opposite tractions on two equal bodies with free ends cause equal stresses up to a reflection along y."""
     steel = Material(210e9, 0.3)
     body = FiniteLengthSpace(length=0.5e-3, material=steel)
     roller = Roller(radius=5e-3, length=0.5e-3, material=steel)

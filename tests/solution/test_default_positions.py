@@ -1,4 +1,4 @@
-"""Default positions of stresses: from the face on, and narrow at the largest stress."""
+"""Default positions of stresses: from the face on, and dense at the largest stress."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A dask cluster whose scheduler and workers are separate processes, started as docs/how-to/cluster.md says."""
+"""A dask cluster with separate processes of scheduler and workers, as in docs/how-to/cluster.md."""
 
 from __future__ import annotations
 

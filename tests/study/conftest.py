@@ -44,7 +44,7 @@ def start_run(study: Path, folder: Path, *more: str, tickets: int, within: Seque
 
 
 def count_finished(folder: Path) -> int:
-    """Number of cases in the batches of a folder that are written now."""
+    """Number of cases in the written batches of a folder."""
     results = Folder(folder).results()
     return len(results.locations)
 

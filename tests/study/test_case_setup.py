@@ -79,7 +79,7 @@ def test_stress_points_are_over_a():
 
 
 @pytest.mark.parametrize(
-    ("changes", "named"),
+    ("changes", "message"),
     [
         ({"e_over_a": None}, "e_over_a, end_distance"),
         ({"e_over_a": 1, "end_distance": 0.0}, "e_over_a, end_distance"),
@@ -96,8 +96,8 @@ def test_stress_points_are_over_a():
         ({"e_over_a": 1, "profile": {"kind": "lundberg"}}, "profile"),
     ],
 )
-def test_impossible_parameters_raise(changes, named):
-    with pytest.raises(InvalidInputError, match=named):
+def test_impossible_parameters_raise(changes, message):
+    with pytest.raises(InvalidInputError, match=message):
         build_setup(BASE | changes)
 
 

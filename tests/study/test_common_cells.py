@@ -1,4 +1,4 @@
-"""The cells that the cases of a study share."""
+"""The common cells of a study's cases."""
 
 import numpy as np
 import pytest
@@ -102,17 +102,19 @@ def test_refined_columns_share_common_axis(tmp_path):
     assert "averaged" in common["pressure"].attrs["comment"]
     for p0 in (1.0e9, 1.5e9):
         for e in (0.0, 2.0):
-            on_common, on_own = (study_dataset.sel(max_pressure=p0, e_over_a=e) for study_dataset in (common, original))
-            # All of the load, and that on the last half-width, which no common cell straddles unevenly for a fine axis.
-            total_load = load_between(on_common, -np.inf, np.inf)
-            assert float(total_load) == pytest.approx(float(on_own["normal_load"]), rel=1e-6)
-            a = float(on_own["hertz_half_width"])
-            last = load_between(on_own, e * a, (e + 1) * a)
-            assert float(last) == pytest.approx(float(on_own["end_load_first"]), rel=1e-6, abs=1e-9)
-            single = single_case(on_own)
+            common_case, original_case = (
+                study_dataset.sel(max_pressure=p0, e_over_a=e) for study_dataset in (common, original)
+            )
+            # Common cells preserve the total load and, with a fine axis, the load on the last half-width.
+            total_load = load_between(common_case, -np.inf, np.inf)
+            assert float(total_load) == pytest.approx(float(original_case["normal_load"]), rel=1e-6)
+            a = float(original_case["hertz_half_width"])
+            last = load_between(original_case, e * a, (e + 1) * a)
+            assert float(last) == pytest.approx(float(original_case["end_load_first"]), rel=1e-6, abs=1e-9)
+            single = single_case(original_case)
             assert single["pressure"].dims == ("x", "y")
             assert single["x_width"].dims == ("x",)
-            assert float(single["pressure"].max()) >= float(on_common["pressure"].max())
+            assert float(single["pressure"].max()) >= float(common_case["pressure"].max())
     # All parameters of a bearing engineer are present, swept or not.
     assert common["gamma"].dims == ("max_pressure", "e_over_a")
     np.testing.assert_allclose(

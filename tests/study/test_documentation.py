@@ -1,4 +1,4 @@
-"""docs/reference/study_file.md: its study is one, and its levels are complete; files that pages name exist."""
+"""docs/reference/study_file.md: its study file is valid, its levels are complete; files named on pages exist."""
 
 import re
 import tomllib

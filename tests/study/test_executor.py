@@ -33,7 +33,7 @@ def test_task_size_follows_measured_time(many_cases):
     first_task = tasks.next_task(1)
     assert len(first_task.jobs) == 2
     tasks.record(2, 0.1)
-    assert len(tasks.next_task(1).jobs) == 2  # of six cases: half, and groups are whole
+    assert len(tasks.next_task(1).jobs) == 2  # half of six cases, in whole groups
     assert tasks.remaining == 4
 
 

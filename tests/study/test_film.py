@@ -1,4 +1,4 @@
-"""Studies of films: parameters, refused values, warm starts, the same numbers on any workers."""
+"""Studies of films: parameters, rejected values, warm starts, equal numbers on any workers."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ SPEEDS = [1.0, 2.0]
 
 @pytest.fixture(scope="module")
 def films(tmp_path_factory: pytest.TempPathFactory) -> xr.Dataset:
-    """Two speeds between free ends, and the higher one on a half-space."""
+    """Two speeds between free ends, and the higher speed on a half-space."""
     sweep = {"body": ["finite-length", "half-space"], "entrainment_speed": SPEEDS}
     study = Study(name="film", base=BASE, sweep=sweep, exclude=[{"body": "half-space", "entrainment_speed": 1.0}])
     folder = tmp_path_factory.mktemp("films")
@@ -48,7 +48,7 @@ def test_case_of_a_film() -> None:
 
 
 @pytest.mark.parametrize(
-    ("changes", "named"),
+    ("changes", "message"),
     [
         ({}, "entrainment_speed"),
         ({"entrainment_speed": 0.0}, "entrainment_speed"),
@@ -60,8 +60,8 @@ def test_case_of_a_film() -> None:
         ({"entrainment_speed": 1.0, "motion": "rolling"}, "entrainment_speed"),
     ],
 )
-def test_bad_values(changes: dict[str, Any], named: str) -> None:
-    with pytest.raises(InvalidInputError, match=named):
+def test_bad_values(changes: dict[str, Any], message: str) -> None:
+    with pytest.raises(InvalidInputError, match=message):
         build_setup(BASE | changes)
 
 

@@ -56,7 +56,7 @@ def test_new_default_parameter_keeps_identities(monkeypatch):
 
 
 def test_identity_never_changes():
-    """Results on disk depend on this value: if it must change, raise SCHEMA instead of the value here."""
+    """Results on disk depend on this value: a change requires a new SCHEMA instead of another value."""
     assert case_id({"friction": 0.1, "e_over_a": 2})[:16] == "d6d0687246844912"
 
 

@@ -33,7 +33,7 @@ def files(tmp_path_factory):
 @pytest.mark.system
 def test_batch_is_readable_without_hdf5_library(files):
     """Pyfive reads the bytes in pure Python, independent of the library that wrote them."""
-    import pyfive  # of the `dev` extra: it needs newer companions than the package does
+    import pyfive  # the `dev` extra has it: it needs newer companions than the package
 
     for path in files:
         with pyfive.File(path) as file:

@@ -1,4 +1,4 @@
-"""Runs that are really killed."""
+"""Runs that a signal kills."""
 
 import contextlib
 import os
@@ -47,7 +47,7 @@ def test_interrupted_run_releases_lock_and_resumes(large, tmp_path, signal_numbe
     process = start_run(large, folder, "--workers", "2", tickets=3)
     wait_for(process, lambda: count_finished(folder) == 3)
     if signal_number == signal.SIGINT:
-        os.killpg(process.pid, signal_number)  # as a terminal does: to the workers as well
+        os.killpg(process.pid, signal_number)  # the signal reaches the workers as well, as from a terminal
     else:
         process.send_signal(signal_number)
     output, errors = process.communicate(timeout=SECONDS)
@@ -64,7 +64,7 @@ def test_interrupted_run_releases_lock_and_resumes(large, tmp_path, signal_numbe
 @pytest.mark.system
 @pytest.mark.parametrize("begun", [True, False])
 def test_repeated_interrupts_end_run_quietly(large, tmp_path, begun):
-    """Eight times Ctrl-C, which a terminal sends to the workers as well: while they solve, and while they start."""
+    """Ctrl-C from a terminal reaches the workers as well: eight times, while they solve and while they start."""
     folder = tmp_path / "out"
     process = start_run(large, folder, "--workers", "2", tickets=3 if begun else 0)
     wait_for(process, lambda: count_finished(folder) >= 1 if begun else (folder / "run.log").exists())
@@ -112,11 +112,11 @@ def test_killed_run_is_taken_over(large, tmp_path):
 def test_run_killed_at_random_moments_loses_nothing(large, tmp_path):
     folder, rng = tmp_path / "out", random.Random(1)
     for _ in range(3):
-        if count_finished(folder) > 16:  # results to lose are needed until the last kill
+        if count_finished(folder) > 16:  # the last kill needs results that it can lose
             shutil.rmtree(folder / "batches")
         process = start_run(large, folder, "--workers", "2", tickets=rng.randint(1, 4))
         wait_for(process, lambda: not list(tickets_of(folder).iterdir()))
-        time.sleep(0.1 * rng.random())  # the last cases are being solved, written or taken in
+        time.sleep(0.1 * rng.random())  # the workers solve or write the last cases, or the parent receives them
         kill_group(process)
         assert intact(folder)
     process = start_run(large, folder, "--workers", "2", tickets=20)

@@ -1,4 +1,4 @@
-"""Studies of motions: parameters, refused parameters, and results independent of the run."""
+"""Studies of motions: parameters, rejected parameters, and results independent of the run."""
 
 from __future__ import annotations
 
@@ -88,7 +88,7 @@ def test_identity_contains_motion_without_defaults() -> None:
 
 @pytest.fixture(scope="module")
 def rolling_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Results of the four cases, solved at once in this process."""
+    """Results of the four cases from this process, without a cluster."""
     folder = tmp_path_factory.mktemp("rolled")
     assert run_study(rolling_study(), folder, workers=0, progress=False).counts == {"ok": 4}
     return folder
@@ -103,13 +103,13 @@ def test_motion_results_equal_solver_results(rolling_folder: Path) -> None:
         stored_case = load_case(rolling_folder, case.id)
         for name in ("pressure", "traction_x", "traction_y", "slip_x", "slip_y", "stick"):
             np.testing.assert_array_equal(stored_case[name], separate_result[name])
-        here = dataset.isel(dict(zip(study.plan().cube.dims, case.position, strict=True)))
+        case_result = dataset.isel(dict(zip(study.plan().cube.dims, case.position, strict=True)))
         for name in ("force_y", "force_y_error", "friction_work", "sticking_part", "moment_z"):
-            assert float(here[name]) == pytest.approx(float(separate_result[name]), nan_ok=True)
-        dy = float((here["y_over_a"][1] - here["y_over_a"][0]) * here["hertz_half_width"])
-        total_force = dy * (here["traction_y"] * here["x_width"]).sum()
+            assert float(case_result[name]) == pytest.approx(float(separate_result[name]), nan_ok=True)
+        dy = float((case_result["y_over_a"][1] - case_result["y_over_a"][0]) * case_result["hertz_half_width"])
+        total_force = dy * (case_result["traction_y"] * case_result["x_width"]).sum()
         assert float(total_force) == pytest.approx(float(separate_result["force_y"]), rel=1e-6, abs=1e-9)
-    # The creepage is a dimension here, not a variable.
+    # The creepage is a dimension in the study, not a variable.
     assert dataset["force_y"].dims == ("longitudinal_creepage", "max_pressure")
     assert bool((dataset["force_y"].diff("longitudinal_creepage") > 0).all())
     assert bool((dataset["sticking_part"].diff("longitudinal_creepage") < 0).all())

@@ -16,7 +16,7 @@ class Terminal(io.StringIO):
 
 
 def watch(monkeypatch):
-    """Put a terminal in place of stderr (in the test itself: before it, pytest puts its own there)."""
+    """Put a terminal in place of stderr, within the test because pytest replaces stderr before it."""
     screen = Terminal()
     monkeypatch.setattr(sys, "stderr", screen)
     monkeypatch.delenv("CI", raising=False)

@@ -83,7 +83,7 @@ def test_interrupt_message_contains_finished_cases(study, tmp_path, signal_numbe
     assert (type(caught.value), str(caught.value)) == (kind, message)
     traceback_text = "".join(traceback.format_exception(caught.value))
     assert "interrupted(case" not in traceback_text
-    assert traceback_text.count("File ") == 3  # this test, its helper and the public function
+    assert traceback_text.count("File ") == 3  # the frames are this test, its helper and the public function
     assert message in (tmp_path / "run.log").read_text()
     assert run(study, tmp_path).solved == 2
 
@@ -100,7 +100,7 @@ def test_program_error_stops_run(tmp_path, workers):
 
 
 def partial_study(**changes):
-    """One half of the small study, whose cases lie in a batch alone."""
+    """One half of the small study, with its cases alone in a batch."""
     return small_study(sweep={"e_over_a": [changes["e_over_a"]], "friction": [0.0, 0.1]})
 
 
@@ -145,7 +145,7 @@ def test_changed_byte_is_detected(study, tmp_path):
 def test_foreign_files_are_set_aside(study, two_batches):
     batches = two_batches / "batches"
     first_path, second_path = batch_paths(batches)
-    shutil.copy(first_path, second_path)  # another batch under this name
+    shutil.copy(first_path, second_path)  # another batch has this name
     (batches / "notes.nc").write_text("mine")
     (batches / "pipe.nc").symlink_to(two_batches / "nowhere")
     os.mkfifo(batches / "fifo.nc")
@@ -189,7 +189,7 @@ def test_uncreatable_folder_raises(study, tmp_path):
 
 @contextlib.contextmanager
 def ordinary_user():
-    """Whoever runs the tests, without root's right to write anywhere."""
+    """User without root's right to write anywhere."""
     if os.geteuid() != 0:
         yield
         return
@@ -205,7 +205,7 @@ def ordinary_user():
 
 @pytest.fixture
 def open_place():
-    """A folder that every user may enter, as pytest's own is not."""
+    """A folder that every user may enter, unlike pytest's folder."""
     path = Path(tempfile.mkdtemp())
     path.chmod(0o777)
     yield path

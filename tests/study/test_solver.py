@@ -20,7 +20,7 @@ def test_quarter_space_with_distant_roller(tmp_path):
         step = float(case["x_over_a"].diff("x_over_a").max())
         assert float(loaded_positions.min()) == pytest.approx(e_over_a + step / 2, abs=step)
         assert float(case["end_traction_residual"]) < 1e-4
-    # A sharp roller carries less at a free end than inside, where its edge presses into the face.
+    # A sharp roller carries less at a free end than inside, where its edge is on the face.
     assert float(dataset["end_pressure_over_p0_first"].sel(e_over_a=0.0)) < 1.0
     assert float(dataset["end_pressure_over_p0_first"].sel(e_over_a=2.0)) > 1.0
 
@@ -56,7 +56,7 @@ def test_study_over_end_models(tmp_path):
     exact_residual, single_residual, mirror_residual = (
         float(residual.sel(model=m)) for m in ("exact", "single-mirror", "mirror")
     )
-    assert exact_residual < 3e-4 < single_residual < mirror_residual  # from a depth of 0.02 a on
+    assert exact_residual < 3e-4 < single_residual < mirror_residual  # the depths begin at 0.02 a
     ends = dataset["end_pressure_over_p0"].sel(body="finite-length").values
     assert len({round(value, 4) for value in ends.tolist()}) == 3
 
@@ -74,7 +74,7 @@ def test_common_operator_is_computed_once(tmp_path, monkeypatch):
     monkeypatch.setattr(
         surface.SurfaceOperator, "of", lambda *request: computed_bodies.append(request) or create_operator(*request)
     )
-    # Friction outside: in the study's order the operators would alternate.
+    # The friction is the outer parameter of the sweep: in this order the operators would alternate.
     sweep = {"friction": [0.0, 0.1, 0.2], "e_over_a": [0.0, 1.0]}
     study = small_study(base=BASE | {"stresses": False, "radius": 5.001e-3}, sweep=sweep, level="summary")
     assert run_study(study, tmp_path, workers=0).counts == {"ok": 6}

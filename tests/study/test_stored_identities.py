@@ -1,4 +1,4 @@
-"""Identities of the cases of studies/, and the defaults that they rest on: results on disk are found by them."""
+"""Identities of the cases of studies/, and their defaults: the identities locate results on disk."""
 
 import hashlib
 import inspect

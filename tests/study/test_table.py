@@ -1,4 +1,4 @@
-"""A table of parameters is a study, and so is a part of an opened one."""
+"""A table of parameters is a study, and so is a part of an opened study."""
 
 from __future__ import annotations
 

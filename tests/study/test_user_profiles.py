@@ -1,4 +1,4 @@
-"""User profiles in a study: identity by content, on workers, in files, and refused profiles."""
+"""User profiles in a study: identity by content, on workers, in files, and rejected profiles."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class Cosine(profiles.Shape):
 
 
 class Wedge:
-    """Neither a dataclass nor derived from anything."""
+    """Profile class that is neither a dataclass nor derived from a class."""
 
     def __init__(self, slope, **more):
         self.slope = slope

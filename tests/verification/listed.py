@@ -1,6 +1,6 @@
-"""The list of the suite's checks, by which tests know their names before any is made.
+"""The list of the suite's checks, from which the tests take the names of the checks before the run.
 
-After checks were added or renamed, ``python -m tests.verification.listed`` writes it anew.
+After checks were added or renamed, ``python -m tests.verification.listed`` writes the list anew.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ LIST = Path(__file__).with_name("checks.csv")
 
 
 class ListedCheck(NamedTuple):
-    """One check: the first level that has it, its group, and its name."""
+    """One check: the first level that contains it, its group, and its name."""
 
     level: str
     group: str

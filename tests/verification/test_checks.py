@@ -1,4 +1,4 @@
-"""The physics: every check of `contactstudy verify` is a test under its own name."""
+"""The physics: every check of `contactstudy verify` is a test under the check's name."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ FULL = [
     for entry in LISTED
     if entry.group in {listed_check.group for listed_check in LISTED if listed_check.level == "full"}
 ]
-"""Checks of the groups that have more at the full level."""
+"""Checks of the groups with further checks at the full level."""
 LONG = ("film", "passes")
 """Groups whose quick level, a part of the full one, takes too long for the default tier."""
 TIGHTER = {

@@ -1,4 +1,4 @@
-"""The closed forms of the verification, checked by themselves: equilibrium, boundary values, known numbers."""
+"""The closed forms of the verification: equilibrium, boundary values, known numbers."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def difference(field: Field, points: np.ndarray, step: float = 1e-2) -> np.ndarr
 
 @pytest.mark.parametrize("name", FIELDS)
 def test_equilibrium_and_compatibility(name: str) -> None:
-    """No body force, and a harmonic mean stress: together with Beltrami's cross terms this is elasticity."""
+    """The body force is zero and the mean stress harmonic; Beltrami's cross terms then imply elasticity."""
     field = FIELDS[name]
     points = np.random.default_rng(1).uniform(-2, 2, (3, 6))
     points[2] = 0.3 + np.abs(points[2])

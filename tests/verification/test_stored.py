@@ -24,7 +24,7 @@ from contactstudy.verification.problems import (
 
 @pytest.mark.parametrize("name", CONTACT_CASES)
 def test_stored_contacts(name: str) -> None:
-    """Load, sign, and symmetry; errors small where the pressure is smooth."""
+    """The stored contacts have their load, sign and symmetry, and small errors where the pressure is smooth."""
     case, contact = CONTACT_CASES[name], load_reference(CONTACT_FILE, name)
     attributes = [contact.attrs[key] for key in ("length", "distance", "crown", "poisson")]
     assert attributes == [case.length, case.distance, case.crown, case.poisson]
@@ -32,14 +32,14 @@ def test_stored_contacts(name: str) -> None:
     assert float(pressure.min()) >= 0
     assert float(contact["line_load"].integrate("x")) == pytest.approx(case.load, rel=1e-6)
     assert np.abs(pressure.values - pressure.values[::-1]).max() < 1e-6
-    inner_pressure = contact.sel(x=slice(case.start + 0.5, case.stop - 0.5), y=0)
-    assert float(inner_pressure["pressure_error"].max()) < 6e-3
-    assert float(inner_pressure["pressure_error"].median()) < 3e-3
+    inner_contact = contact.sel(x=slice(case.start + 0.5, case.stop - 0.5), y=0)
+    assert float(inner_contact["pressure_error"].max()) < 6e-3
+    assert float(inner_contact["pressure_error"].median()) < 3e-3
 
 
 @pytest.mark.parametrize("name", FILM_CASES)
 def test_stored_films(name: str) -> None:
-    """Sign and symmetry of the columns, 1e-3; errors far below the tolerances of the comparison."""
+    """The stored films have sign and symmetry to 1e-3, and errors far below the tolerances of the comparison."""
     case, film = FILM_CASES[name], load_reference(FILM_FILE, name)
     assert {key: film.attrs[key] for key in vars(case)} == vars(case)
     assert float(film["pressure"].min()) >= 0
@@ -50,7 +50,7 @@ def test_stored_films(name: str) -> None:
 
 @pytest.mark.parametrize("name", PASSES_CASES)
 def test_stored_passes(name: str) -> None:
-    """No change of volume, stresses of layers with strains xx and yy held, errors worth comparing with."""
+    """The stored passes have no change of volume, stresses of layers with strains xx and yy held, and small errors."""
     case, reference = PASSES_CASES[name], load_reference(PASSES_FILE, name)
     attributes = [reference.attrs[key] for key in ("shear_yield_stress", "friction", "kinematic_hardening", "poisson")]
     assert attributes == [case.shear_yield_stress, case.friction, case.kinematic_hardening, case.poisson]
@@ -68,7 +68,7 @@ def test_stored_passes(name: str) -> None:
 
 @pytest.mark.parametrize("name", LOAD_CASES)
 def test_stored_case(name: str) -> None:
-    """Free ends, symmetry, and an error estimate that is worth comparing with."""
+    """The stored case has free ends, symmetry, and a small error estimate."""
     case, stress = LOAD_CASES[name], load_reference(STRESS_FILE, name)
     error = stress.attrs["error_estimate"]
     assert error < 5e-4

@@ -1,4 +1,4 @@
-"""Worn profiles on other cells than those of the wear: the pressure remains, also at sharp ends."""
+"""Worn profiles on other cells than the cells of the wear: the pressure remains, also at sharp ends."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def worn_case(profile=None, *, margin: float = MARGIN) -> Case:
     return Case(body=body, roller=roller, max_pressure=1.5e9)
 
 
-def equal_columns(count: int, cells_y: int = 48) -> Grid:
+def grid_of_equal_columns(count: int, cells_y: int = 48) -> Grid:
     """Columns of one width under the roller, and wider columns beyond its ends."""
     margin_edges = np.linspace(0.0, MARGIN, 6)
     edges = np.concatenate(
@@ -41,7 +41,7 @@ def refined() -> xr.Dataset:
 @pytest.fixture(scope="module")
 def coarse() -> xr.Dataset:
     """Wear as in `refined` on columns of 5 um."""
-    return wear_in(worn_case(), K, distance=[0.0, 2e4, 2e5], grid=equal_columns(80), tolerance=0.03)
+    return wear_in(worn_case(), K, distance=[0.0, 2e4, 2e5], grid=grid_of_equal_columns(80), tolerance=0.03)
 
 
 @pytest.mark.slow
@@ -112,7 +112,7 @@ def test_unworn_profile(uniform) -> None:
 
 
 def test_slope_is_uniform_at_a_flush_end() -> None:
-    """A free end at the roller's end: the body ends there, and the slope does not increase towards the end."""
+    """The body ends at the roller's end, and the slope does not increase towards this free end."""
     case = worn_case(margin=0.0)
     half_window = 2.6 * case.hertz_half_width
     edges = np.linspace(0, LENGTH, 41)

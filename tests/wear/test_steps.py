@@ -1,4 +1,4 @@
-"""Steps that fail: they are cut, down to a shortest one."""
+"""Failing steps are shortened, down to a least length."""
 
 import numpy as np
 import pytest

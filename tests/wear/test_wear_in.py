@@ -237,7 +237,7 @@ def test_worn_profile_with_infinite_end_drop():
 
 
 @pytest.mark.parametrize(
-    ("changes", "named"),
+    ("changes", "message"),
     [
         ({"coefficient": -1e-17}, "coefficient"),
         ({"coefficient": float("nan")}, "coefficient"),
@@ -255,10 +255,10 @@ def test_worn_profile_with_infinite_end_drop():
         ({"grid": "fine"}, "grid"),
     ],
 )
-def test_bad_input(sharp, changes, named):
+def test_bad_input(sharp, changes, message):
     case, grid = sharp
     arguments = {"coefficient": K, "distance": 1e3, "grid": grid} | changes
-    with pytest.raises(InvalidInputError, match=named):
+    with pytest.raises(InvalidInputError, match=message):
         wear_in(case, arguments.pop("coefficient"), distance=arguments.pop("distance"), **arguments)
 
 

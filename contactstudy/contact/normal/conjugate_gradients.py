@@ -153,7 +153,7 @@ class _IterationState:
         self.motion: FloatArray = np.zeros(len(self._motions))
         self.direction: FloatArray = np.zeros_like(self.pressure)
         self._residual: FloatArray = np.zeros_like(self.pressure)
-        self._slope = 0.0
+        self._energy_slope = 0.0
         self._weights: list[FloatArray] = []
         self._gram: FloatArray = np.zeros((len(self._motions), len(self._motions)))
 
@@ -203,13 +203,13 @@ class _IterationState:
     def search_step(self, residual: FloatArray) -> tuple[float, FloatArray, float]:
         """Update the search direction; return the step, the displacement under the direction and the curvature."""
         descent = np.where(self.contact, self._preconditioner(residual), 0.0)
-        if self.area_changed or self._slope == 0.0:
+        if self.area_changed or self._energy_slope == 0.0:
             direction = descent
         else:
             # Polak and Ribiere's form tolerates a preconditioner that is slightly unsymmetric on the contact.
-            beta = float(((residual - self._residual) * descent).sum()) / self._slope
+            beta = float(((residual - self._residual) * descent).sum()) / self._energy_slope
             direction = descent + beta * self.direction
-        self._slope, self._residual = float((residual * descent).sum()), residual
+        self._energy_slope, self._residual = float((residual * descent).sum()), residual
         self.direction = np.where(self.contact, direction, 0.0)
         displacement = self._apply(self.direction)
         curvature = float((self.direction * displacement).sum())
@@ -243,19 +243,19 @@ class _IterationState:
 
     def _step_to_border(self, step: float, response: FloatArray) -> None:
         """Step along the search direction until the first cell leaves the contact; the resultants do not change."""
-        change = -step * self.direction
-        falling = self.contact & (change < 0)
-        steps_to_zero = self.pressure[falling] / -change[falling]
+        pressure_change = -step * self.direction
+        falling = self.contact & (pressure_change < 0)
+        steps_to_zero = self.pressure[falling] / -pressure_change[falling]
         fraction = min(1.0, float(steps_to_zero.min(initial=1.0)))
-        pressure = self.pressure + fraction * change
+        pressure = self.pressure + fraction * pressure_change
         pressure[falling] = np.where(steps_to_zero <= fraction, 0.0, np.maximum(pressure[falling], 0.0))
         self.pressure, self.displacement = pressure, self.displacement - fraction * step * response
 
 
-def _descent_fraction(change: FloatArray, displacement_change: FloatArray, opening: FloatArray) -> float:
+def _descent_fraction(pressure_change: FloatArray, displacement_change: FloatArray, opening: FloatArray) -> float:
     """Fraction of a pressure change to apply: 1, or the minimum of the energy if the whole change raises the energy."""
-    slope = -float((change * np.where(np.isfinite(opening), opening, 0.0)).sum())
-    curvature = float((change * displacement_change).sum())
+    slope = -float((pressure_change * np.where(np.isfinite(opening), opening, 0.0)).sum())
+    curvature = float((pressure_change * displacement_change).sum())
     if slope <= 0:
         return 0.0
     return slope / curvature if slope < 0.5 * curvature else 1.0

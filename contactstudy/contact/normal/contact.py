@@ -82,7 +82,7 @@ class Shape(NamedTuple):
 
     body: Body  # the elastic body
     grid: Grid
-    gap: ArrayKey  # (x, y): initial gap, metres; infinite beside the shape
+    gap: ArrayKey  # (x, y): initial gap, metres; infinite outside the shape
     prescribed: PrescribedLoad  # load or approach
     counterbody: Counterbody | None = None  # second elastic body; None: the shape is rigid
     coupled_friction: float = 0.0  # friction that displaces the surfaces normally
@@ -327,6 +327,6 @@ def check_window(body: Body, pressure: FloatArray) -> None:
     for name, values in edges.items():
         if values.any():
             raise WindowError(
-                f"the contact reaches the grid's edge {name} (pressure {values.max():.3g} Pa there): the window is too "
+                f"the contact reaches the grid's edge {name} (pressure {values.max():.3g} Pa): the window is too "
                 f"narrow for the load; widen it along {name[0]} or lower the load"
             )

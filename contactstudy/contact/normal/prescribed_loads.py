@@ -47,7 +47,7 @@ class PrescribedLoad(NamedTuple):
         position_m = checks.finite("load_position", position, "metres")
         columns = grid.x[np.isfinite(gap).any(axis=1)]
         if not columns[0] < position_m < columns[-1]:
-            allowed = f"under the shape, between {columns[0]:g} and {columns[-1]:g} m, for it to balance there"
+            allowed = f"under the shape, between {columns[0]:g} and {columns[-1]:g} m, where it can balance"
             raise InvalidInputError("load_position", position_m, allowed)
         return PrescribedLoad(load_n, position_m)
 

@@ -82,8 +82,8 @@ class PairOperator:
             return self._displacements_of_equal_bodies(loads, directions)
         transfer = self._transfer
         reaction = {
-            load: _reverse_tangential(load, cells if transfer is None else transfer.to_second @ cells)
-            for load, cells in loads.items()
+            load: _reverse_tangential(load, cell_loads if transfer is None else transfer.to_second @ cell_loads)
+            for load, cell_loads in loads.items()
         }
         relative = self.body.compute_displacements(loads, directions)
         for direction, values in self.counterbody.compute_displacements(reaction, directions).items():
@@ -97,7 +97,7 @@ class PairOperator:
         """Relative displacements of equal bodies: none tangentially under a pressure, none normally under tractions."""
         relative = {direction: np.zeros(self.body.grid.shape) for direction in directions}
         for is_normal in (True, False):
-            acting = {load: cells for load, cells in loads.items() if (load is Load.NORMAL) == is_normal}
+            acting = {load: cell_loads for load, cell_loads in loads.items() if (load is Load.NORMAL) == is_normal}
             observed = [direction for direction in directions if (direction is Load.NORMAL) == is_normal]
             if acting and observed:
                 for direction, displacement in self.body.compute_displacements(acting, observed).items():

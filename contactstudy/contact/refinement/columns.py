@@ -40,7 +40,7 @@ class AxialShape:
     exponents: tuple[float, float] = (np.nan, np.nan)  # ``m`` of ``K d**-m`` at sharp ends; NaN without a law
     has_fading_end: bool = False
     """Whether the pressure falls towards a common end by a small power, which no columns resolve."""
-    corners: tuple[float, ...] = ()  # positions of convex corners, metres; columns have edges there
+    corners: tuple[float, ...] = ()  # positions of convex corners and of column edges, metres
     nodes: FloatArray = field(default_factory=lambda: np.zeros(0))  # positions between which the shape is smooth, m
 
     @cached_property

@@ -79,7 +79,7 @@ class EndLaw:
             optimum = minimize_scalar(lambda m: _fit(edges, row, width, m)[1], bounds=bounds, method="bounded")
             exponent = float(optimum.x)
         fits = [_fit(edges, row, width * factor, exponent)[0] for factor in (1.0, 2.0)]
-        if not np.isfinite(fits).all():  # pressed on too few columns
+        if not np.isfinite(fits).all():  # loaded on too few columns
             outermost = float((1 - exponent) * row[0] * width**exponent)
             return replace(self, exponent=exponent, intensity=outermost, intensity_error=np.inf, fitted=fitted)
         error_factor = 1.0 if exponent == RIGID else ELASTIC_ERROR_FACTOR
@@ -293,7 +293,7 @@ def extrapolate_end_pressures(
 
 
 def end_loads(edges: FloatArray, pressure: FloatArray, half_width: float) -> Pair:
-    """Load on the last half-width at either end, over the width of a cell along y."""
+    """Load on the last half-width at either end, divided by the cell width along y."""
     sums = pressure.sum(axis=1)
     loads = []
     for side in (0, 1):

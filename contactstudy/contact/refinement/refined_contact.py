@@ -26,7 +26,7 @@ from contactstudy.contact.refinement.refinement import (
     VALUE_TOLERANCE,
     ColumnPressure,
     RefinedColumns,
-    coarse_columns,
+    refine_coarsely,
     refine_columns,
     replace_pressure,
 )
@@ -78,7 +78,7 @@ def refine_contact(case: Case, accuracy: float, tolerance: float) -> RefinedCont
 def _is_immutable(value: object) -> bool:
     """Whether no value of a part of a case can change: users' profiles may be mutable."""
     if is_dataclass(value):
-        frozen = bool(getattr(type(value), "__dataclass_params__").frozen)  # noqa: B009 - mypy does not know it
+        frozen = bool(getattr(type(value), "__dataclass_params__").frozen)  # noqa: B009 - unknown to mypy
         return frozen and all(_is_immutable(getattr(value, field.name)) for field in fields(value))
     if isinstance(value, tuple):
         return all(_is_immutable(item) for item in value)
@@ -105,7 +105,7 @@ def _refine_in_window(case: Case, half_window: float, accuracy: float, tolerance
             replace(body, model="mirror") if isinstance(body, BodyWithFreeEnds) and body.model == "exact" else body
         )
         coarse_solver = _ColumnSolver(replace(case, body=mirrored), half_window, COARSE_CELLS_Y)
-        coarse = coarse_columns(coarse_solver, shape)
+        coarse = refine_coarsely(coarse_solver, shape)
         rows = np.flatnonzero(coarse.pressure.any(axis=0))
         cells = coarse_solver.grid(coarse.edges)
         extent = float(np.abs(cells.y[rows]).max()) + 0.5 * cells.dy
@@ -130,7 +130,7 @@ def _refine_in_window(case: Case, half_window: float, accuracy: float, tolerance
 
 
 def _strongest_corner(case: Case, refined: RefinedColumns) -> CornerLaw | None:
-    """Law of the pressed convex corner with the largest intensity; None without one."""
+    """Law of the loaded convex corner with the largest intensity; None without one."""
     if as_shape(case.roller.profile).second_interpolation() is not None:
         return None
     slope_jumps = zip(*(values.tolist() for values in case.slope_jumps), strict=True)
@@ -295,7 +295,7 @@ def _end_exponent(case: Case, distance: float, rounding: float) -> float:
     roller_has_ends = isinstance(roller, BodyWithFreeEnds)
     if distance > rounding:
         return elastic_exponent(of_roller if roller_has_ends else 0.0, of_body)
-    # The body's own edge is pressed if the roller overhangs, or is a half-space.
+    # The body's edge is loaded if the roller overhangs, or is a half-space.
     is_loaded = of_roller > 0 and (distance < -rounding or not roller_has_ends)
     return elastic_exponent(of_body, of_roller) if is_loaded and getattr(body, "model", "") == "exact" else np.nan
 

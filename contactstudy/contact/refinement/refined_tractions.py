@@ -58,7 +58,7 @@ def refine_tractions(case: Case, normal: RefinedContact, accuracy: float) -> Ref
     max_rows = rows if isinstance(case.motion, Rolling) and case.motion.model == "fastsim" else CELLS_Y[-1]
     while True:
         contact = _contact_on_rows(case, normal, rows, previous)
-        changes, scales = _values(contact) - _values(previous), _scales(case, contact)
+        changes, scales = _convergence_values(contact) - _convergence_values(previous), _scales(case, contact)
         is_adjustable = [name not in _prescribed_names(case) for name in scales]
         accurate = bool((np.abs(changes) <= accuracy * np.array(list(scales.values())))[is_adjustable].all())
         if accurate or rows >= max_rows:
@@ -67,7 +67,7 @@ def refine_tractions(case: Case, normal: RefinedContact, accuracy: float) -> Ref
     # A force or a moment may be a small difference of large parts; work and rigid motions are not.
     sizes = [
         size if name in RESULTANTS.values() else min(size, abs(float(value)))
-        for (name, size), value in zip(scales.items(), _values(contact), strict=True)
+        for (name, size), value in zip(scales.items(), _convergence_values(contact), strict=True)
     ]
     column_error = COLUMN_ERROR_FACTOR * normal.refined.least_error
     errors = {
@@ -98,7 +98,7 @@ def _contact_on_rows(
     return frictional_contact(contact_shape(case, grid, contact.shape.prescribed), contact.settings, request)
 
 
-def _values(contact: FrictionalContact) -> FloatArray:
+def _convergence_values(contact: FrictionalContact) -> FloatArray:
     """Values whose changes end the refinement, in the order of `_scales`."""
     tractions = contact.tractions
     return np.array([*tractions.resultants.values(), tractions.work, *tractions.rigid.values()])

@@ -41,7 +41,7 @@ def pressure_jumps(edges: FloatArray, pressure: FloatArray) -> FloatArray:
 
 def _crest_jumps(pressure: FloatArray) -> FloatArray:
     """Per column with a pressure above both neighbours, the larger step of the squared pressure, over the square."""
-    # A narrow crest beside a contact's end may be lower than the peak of its half, the scale of the other jumps.
+    # A narrow crest near a contact's end may be lower than the peak of its half, the scale of the other jumps.
     maxima = pressure.max(axis=1)
     inner, lower = maxima[1:-1], np.minimum(maxima[:-2], maxima[2:])
     is_crest = (inner > maxima[:-2]) & (inner > maxima[2:]) & (inner > MIN_HALF_PRESSURE * maxima.max())
@@ -74,7 +74,7 @@ END_STEP_WEIGHT = 4.0  # weight of the step from the outermost column to a loade
 EDGE_COLUMN_WIDTH = 0.25
 """Width over the half-width of the columns within one half-width of the contact's ends along x. Accuracy."""
 
-END_COLUMN_WIDTH = 0.012  # width over the half-width of the outermost column at a pressed end of the body. Accuracy.
+END_COLUMN_WIDTH = 0.012  # width over the half-width of the outermost column at a loaded end of the body. Accuracy.
 
 MIN_END_COLUMN, MIN_COLUMN = 2e-3, 2e-4
 """Least widths over the half-width, of the outermost column at a sharp end and of any column. Accuracy."""
@@ -126,7 +126,7 @@ class RefinedColumns:
         return max(error for peak, error in pairs if peak == self.peak)
 
 
-def coarse_columns(solve: Solve, shape: AxialShape) -> Refinement:
+def refine_coarsely(solve: Solve, shape: AxialShape) -> Refinement:
     """Refine the first columns until the peak is accurate to some percent."""
     refinement = Refinement(solve=solve, shape=shape, edges=first_edges(shape))
     for theta in (FIRST_THETA, SECOND_THETA):
@@ -168,7 +168,7 @@ class Refinement:
 
     @property
     def singular(self) -> bool:
-        """Whether an end has a law, or will have a law because it is sharp and pressed."""
+        """Whether an end has a law, or will have a law because it is sharp and loaded."""
         return any(self.laws) or any(self.shape.is_singular(side) and self.pressure[-side].any() for side in (0, 1))
 
     def refine(self, theta: float) -> None:

@@ -1,4 +1,4 @@
-"""FASTSIM: Kalker's strips, the quick fix of vehicle dynamics, for comparison.
+"""FASTSIM: Kalker's strips, the simplified method of vehicle dynamics, for comparison.
 
 Each strip along the rolling direction is displaced by ``u = L q`` under the local traction alone. Three flexibilities
 L, of both creepages and of the spin, make the forces of vanishing creepages on an ellipse equal to the exact theory
@@ -85,20 +85,20 @@ def solve_strips(motion: Rolling, surfaces: Surfaces, bound: FloatArray) -> Trac
 
 def strip_tractions(bound: FloatArray, growth: FloatArray, dy: float) -> tuple[FloatArray, FloatArray]:
     """Tractions and the part of their growth lost to slip, both (2, x, y); material enters at the leading edge."""
-    traction, lost = np.zeros_like(growth), np.zeros_like(growth)
+    traction, lost_growth = np.zeros_like(growth), np.zeros_like(growth)
     previous, previous_growth = np.zeros(growth.shape[:2]), np.zeros(growth.shape[:2])
     behind_edge = np.zeros(bound.shape[0], bool)
     for column in range(bound.shape[1] - 1, -1, -1):
         inside, cell_growth = bound[:, column] > 0, growth[:, :, column]
         # The first centre lies half a cell behind the edge; between two centres the growth is the mean of both.
         growth_step = np.where(behind_edge, 0.5 * (cell_growth + previous_growth) * dy, 0.5 * cell_growth * dy)
-        stuck = previous + growth_step
-        size = np.hypot(*stuck)
+        sticking_traction = previous + growth_step
+        size = np.hypot(*sticking_traction)
         fraction = np.minimum(bound[:, column] / np.where(size > 0, size, 1.0), 1.0)
-        limited = np.where(inside, stuck * fraction, 0.0)
-        traction[:, :, column] = limited
-        lost[:, :, column] = np.where(
-            inside & (fraction < 1), (stuck - limited) / np.where(behind_edge, dy, 0.5 * dy), 0.0
+        limited_traction = np.where(inside, sticking_traction * fraction, 0.0)
+        traction[:, :, column] = limited_traction
+        lost_growth[:, :, column] = np.where(
+            inside & (fraction < 1), (sticking_traction - limited_traction) / np.where(behind_edge, dy, 0.5 * dy), 0.0
         )
-        previous, previous_growth, behind_edge = limited, cell_growth, inside
-    return traction, lost
+        previous, previous_growth, behind_edge = limited_traction, cell_growth, inside
+    return traction, lost_growth

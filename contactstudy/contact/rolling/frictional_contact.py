@@ -71,7 +71,7 @@ class FrictionalContact:
         )
 
     def dataset(self) -> xr.Dataset:
-        """Label tractions, slip, resultants and the certificate, on x and y without coordinates."""
+        """Label tractions, slip, resultants and the certificate; the dimensions x and y have no coordinates."""
         tractions, shape = self.tractions, self.contact.shape
         fields = {
             "traction_x": tractions.traction[0],

@@ -110,11 +110,11 @@ def tangential_inverse(
     return ColumnsInverse(materials, cells, grid, rolling=rolling)
 
 
-def _derivative(cells: int, dy: float) -> ComplexArray:
+def _derivative(cell_count: int, dy: float) -> ComplexArray:
     """Spectrum of the reversed derivative along y, by the differences of `RollingCells.derivative`."""
     # The derivative at b = 1/2, later than in the solver, damps short waves; an added constant, 1.5 times the
     # derivative of the first wavenumber, makes the derivative of a constant invertible. Speed.
-    phase = 2 * np.pi * np.arange(cells // 2 + 1) / cells
+    phase = 2 * np.pi * np.arange(cell_count // 2 + 1) / cell_count
     derivative = -(np.exp(1j * phase) - 1.0) / dy
     return np.asarray(derivative + 1.5 * phase[1] / dy)
 

@@ -35,7 +35,10 @@ class Surfaces(NamedTuple):
 
     @property
     def weights(self) -> FloatArray:
-        """Weights of force along x, force along y and moment about z: array (3, 2, x, y)."""
+        """Weights of the tractions in the forces along x and y and the moment about z.
+
+        Array (3, 2, x, y): resultant, component of the traction along x or y, cell.
+        """
         grid = self.grid
         weights = np.zeros((3, 2, *grid.shape))
         weights[0, 0] = weights[1, 1] = 1.0
@@ -129,27 +132,27 @@ def _largest_multiple(resultants: FloatArray, bound: FloatArray, weights: FloatA
     # directions d of a convex function, so a descent approaches the multiple from above.
     from scipy.optimize import minimize
 
-    loaded = bound > 0
-    bounds, weights = bound[loaded], weights[:, :, loaded]
-    sizes = np.array([float((bounds * np.hypot(*work)).sum()) for work in weights])
-    able = sizes > 0
-    if resultants[~able].any() or not able.any():
+    is_loaded = bound > 0
+    loaded_bound, weights = bound[is_loaded], weights[:, :, is_loaded]
+    sizes = np.array([float((loaded_bound * np.hypot(*work)).sum()) for work in weights])
+    has_resultant = sizes > 0
+    if resultants[~has_resultant].any() or not has_resultant.any():
         return 0.0
     weights, target = (
-        weights[able] / sizes[able, None, None],
-        resultants[able] / sizes[able],
+        weights[has_resultant] / sizes[has_resultant, None, None],
+        resultants[has_resultant] / sizes[has_resultant],
     )
     # The square of a very small target would vanish.
     scale = float(np.abs(target).max())
     target = target / scale
     direction = target / (target @ target)
-    across = np.linalg.svd(direction[None, :])[2][1:]
+    normal_directions = np.linalg.svd(direction[None, :])[2][1:]
 
-    def evaluate_resultant(turn: FloatArray) -> tuple[float, FloatArray]:
-        slip = np.tensordot(direction + turn @ across, weights, axes=1)
+    def evaluate_resultant(rotation: FloatArray) -> tuple[float, FloatArray]:
+        slip = np.tensordot(direction + rotation @ normal_directions, weights, axes=1)
         size = np.hypot(*slip)
-        gradient = (weights * (bounds * slip / np.where(size > 0, size, 1.0))).sum(axis=(1, 2))
-        return float((bounds * size).sum()), across @ gradient
+        gradient = (weights * (loaded_bound * slip / np.where(size > 0, size, 1.0))).sum(axis=(1, 2))
+        return float((loaded_bound * size).sum()), normal_directions @ gradient
 
     start = np.zeros(len(target) - 1)
     if not start.size:

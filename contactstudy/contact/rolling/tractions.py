@@ -5,7 +5,7 @@ On cells the derivative follows from a cell and the two cells ahead, whose mater
 
     du/dy (y + b dy) = [(b - 3/2) u_0 + (2 - 2 b) u_1 + (b - 1/2) u_2] / dy,
 
-of second order at any offset b, inside the cell (b from -1/2 to 1/2) or beside it. The plain difference of neighbours
+of second order at any offset b, inside the cell (b from -1/2 to 1/2) or outside it. The plain difference of neighbours
 is b = 1/2: half a cell late. The remaining error comes from the leading edge, where the traction begins as a root. It
 is linear in the part c of the leading cell inside the contact (more than 1 if the edge lies in the next cell), and
 vanishes if the foremost point lies 0.34 cells behind the edge, b = c - 0.84. A leading cell with a small part in the
@@ -53,7 +53,7 @@ EDGE_OFFSET = -0.84  # position b of the slip less c. Accuracy.
 DEPENDENT_OFFSET, SLIDING_OFFSET = 0.475, 0.0
 """Position b of the slip in columns with a dependent leading cell, and in sliding columns. Accuracy."""
 MIN_CELLS = 6  # least number of cells along y with which the pressure determines the edge. Accuracy.
-LEADING_LENGTH_RANGE = (0.25, 1.4)  # range of the part c: less is not pressed, more is another pressed cell. Accuracy.
+LEADING_LENGTH_RANGE = (0.25, 1.4)  # range of the part c: less is not loaded, more is another loaded cell. Accuracy.
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -337,7 +337,7 @@ def _with_mean_slip(tractions: Tractions, surfaces: Surfaces, displacements: Map
     """Tractions of rolling with the frictional work per distance, and the mean slip of each slipping cell."""
     # Means over cells are central differences: by reciprocity the sum then equals the work of the rigid slip. The slip
     # is scaled to that work (without slip the sum is an error of the differences); a cell inside which slip begins
-    # counts as sticking; beside a cell without pressure the slip is kept.
+    # counts as sticking; next to a cell without pressure the slip is kept.
     grid, traction = surfaces.grid, tractions.traction
     loads = dict(zip(TANGENTIAL, traction, strict=True))
     response = surfaces.operator.compute_displacements(loads, TANGENTIAL)

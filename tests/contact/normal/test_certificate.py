@@ -1,4 +1,4 @@
-"""Each violation of a contact's conditions is measured by itself, over what it is to be measured by."""
+"""The certificate states each violation of a contact's conditions separately, over the violation's scale."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import pytest
 from contactstudy.contact.normal.contact import CONVERGED_TOLERANCES, OPEN_TOLERANCES, Certificate, certify
 
 TOLERANCE = 1e-6
-DISPLACEMENT = 3e-5 * np.array([[1.0, 2.0, 3.0]])  # varies by 6e-5
+DISPLACEMENT = 3e-5 * np.array([[1.0, 2.0, 3.0]])  # the variation is 6e-5
 VARIATION = 6e-5
 PRESSURE = 1e9 * np.array([[0.0, 0.5, 2.0]])
 
@@ -18,7 +18,7 @@ PRESSURE = 1e9 * np.array([[0.0, 0.5, 2.0]])
 def certificate(
     opening: list[float], *, pressure: np.ndarray = PRESSURE, carried_load: float = 5.0, **overrides
 ) -> Certificate:
-    """Of a gap over the variation of the displacement."""
+    """Certificate of a contact with a gap `opening` over the variation of the displacement."""
     arguments = {"load": 5.0, "position_error": 0.0} | overrides
     gap = VARIATION * np.array([opening])
     return certify(pressure, gap, DISPLACEMENT, carried_load=carried_load, tolerance=TOLERANCE, **arguments)

@@ -1,4 +1,4 @@
-"""The contact iteration from bad first guesses, against non-negative least squares and its own conditions."""
+"""The contact iteration from bad first guesses, against non-negative least squares and the conditions of contact."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ random = st.integers(0, 10**6).map(np.random.default_rng)
 
 
 def rough_gap(rng: np.random.Generator, sharp: bool) -> np.ndarray:
-    """Return a crowned gap with waves of the size of a cell, or one with a sharp end of the shape."""
+    """Return a crowned gap with waves of the size of a cell, or a gap with a sharp end of the shape."""
     gap = (GRID.x[:, None] - 1.5) ** 2 / 4 + GRID.y**2 / 2
     if sharp:
         return np.where(GRID.x[:, None] < 2.4, gap - 0.5 * GRID.x[:, None], np.inf)
@@ -43,7 +43,7 @@ def rough_gap(rng: np.random.Generator, sharp: bool) -> np.ndarray:
 
 
 def bad_guess(rng: np.random.Generator, gap: np.ndarray) -> np.ndarray:
-    """Return pressures that have nothing to do with the contact, many of them zero."""
+    """Return pressures without relation to the contact; many of them are zero."""
     return np.where(np.isfinite(gap) & (rng.random(GRID.shape) < 0.3), rng.random(GRID.shape) ** 4, 0.0)
 
 
@@ -102,7 +102,7 @@ def test_restored_pressure_is_positive_with_resultants(rng: np.random.Generator,
     computed = resultants.restore(pressure)
     check_conditions(resultants, computed)
     assert ((computed > 0) == (pressure > 0)).all()
-    # What has the resultants stays, and a small moment is taken away by a factor that is linear in the arm.
+    # A pressure with the resultants is unchanged; a factor linear in the arm removes a small moment.
     assert resultants.restore(computed) == pytest.approx(computed, rel=1e-6)
     perturbed_pressure = 1e3 * computed * (1 + 0.1 * resultants.lever)
     repeated = resultants.restore(perturbed_pressure)
@@ -119,13 +119,13 @@ def test_single_column_keeps_moment() -> None:
     computed = Resultants(50.0, LEVER / np.abs(LEVER).max()).restore(pressure)
     assert computed.sum() == pytest.approx(50.0)
     assert computed[3] == pytest.approx(50.0 / GRID.cells_y)
-    # Where nothing is rounded, the two equations for a factor that is linear in the arm are exactly the same.
+    # Without rounding the two equations for a factor linear in the arm are exactly equal.
     restored_pressure = Resultants(4.0, np.array([[-1.0], [0.5], [1.0]])).restore(np.array([[0.0], [2.0], [0.0]]))
     assert restored_pressure.ravel().tolist() == [0.0, 4.0, 0.0]
 
 
 def test_one_sided_pressure_is_balanced_without_overflow() -> None:
-    """The few cells on the other side have to carry 1e9 times what they did."""
+    """The few cells on the other side have to carry 1e9 times their initial load."""
     arm = np.where(GRID.x[:, None] < 1.0, GRID.x[:, None] - 1.0, 1e-3 * (GRID.x[:, None] - 1.0))
     for side in (arm, -arm):
         resultants = Resultants(50.0, side / np.abs(side).max())
@@ -161,7 +161,7 @@ def test_one_sided_guess_adds_pressure_everywhere(rng: np.random.Generator):
 
 @given(rng=random, sharp=st.booleans(), has_far_guess=st.booleans())
 def test_guess_is_scaled_to_approach(rng: np.random.Generator, sharp: bool, has_far_guess: bool):
-    """Of all its multiples the one with the least energy; one that lies where nothing overlaps is replaced."""
+    """The scaled guess has the least energy of all its multiples; a guess outside the overlap is replaced."""
     gap = rough_gap(rng, sharp) - 0.5
     start = np.where((gap > 0.5) & np.isfinite(gap) if has_far_guess else gap < 0, 1.0 + rng.random(GRID.shape), 0.0)
     iteration = state(gap, Resultants(None), start)
@@ -208,7 +208,7 @@ def test_area_change_reduces_energy_and_keeps_resultants(rng: np.random.Generato
 
 @given(slope=st.floats(-2.0, 2.0), curvature=st.floats(0.01, 5.0))
 def test_descent_fraction_minimises_energy(slope: float, curvature: float):
-    """The energy over the part taken is a parabola: all of it if that is below the start, else its least value."""
+    """The energy is a parabola of the fraction: the fraction is 1 if the energy decreases, else its minimum."""
     change, opening = np.array([2.0, 0.0]), np.array([-0.5 * slope, np.inf])
     fraction = _descent_fraction(change, np.array([0.5 * curvature, 1.0]), opening)
 
@@ -275,7 +275,7 @@ def test_entering_cells_scale_with_overlap(unit: float) -> None:
 
 
 def test_directions_tolerate_unsymmetric_preconditioner() -> None:
-    """As many stiffnesses as cells, and no preconditioner: 73 iterations, but more than 500 if it adds up."""
+    """The iteration needs 73 steps for one stiffness per cell without preconditioner; another form needs over 500."""
     stiffness = 1.0 + np.arange(SIZE).reshape(GRID.shape)
     start = 2.0 + np.random.default_rng(0).random(GRID.shape)
     computed = solve_complementarity(

@@ -1,4 +1,4 @@
-"""Contacts in plain arrays: what is stated of them, how much work they take, and that no unit decides anything."""
+"""Contacts in plain arrays: stated values, number of operator applications, independence of units."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from contactstudy.contact.normal.contact import Contact, Settings, Shape, _posit
 from contactstudy.contact.normal.prescribed_loads import PrescribedLoad
 
 LENGTH, PRESSURE = 2.0**-17, 2.0**37
-"""Units of length and pressure, powers of two: numbers in them differ by nothing else."""
+"""Units of length and pressure: powers of two, which change no digits."""
 
 COARSE, FINE = np.linspace(-1.5, 1.5, 21), np.linspace(-1.5, 1.5, 65)
 GRADED_EDGES = np.concatenate([np.linspace(-1.5, 0.3, 11), np.linspace(0.4, 1.5, 12)])
@@ -22,7 +22,7 @@ FREE_END_EDGES = np.linspace(0.0, 3.0, 21)
 
 
 class ContactSpec(NamedTuple):
-    """A ball, or a roller across a body with two ends, off the middle; lengths about 1, pressures about 1."""
+    """A ball, or a roller across a body with two ends, off the middle; lengths and pressures are about 1."""
 
     edges: Any = COARSE
     load: float | None = 0.05
@@ -34,7 +34,7 @@ class ContactSpec(NamedTuple):
     cells_y: int = 20
 
     def shape(self, length: float = 1.0, pressure: float = 1.0) -> Shape:
-        """Return what is pressed on what, in some units."""
+        """Return the contact with lengths and pressures in given units."""
         grid = Grid.between(length * self.edges, (-1.5 * length, 1.5 * length), self.cells_y)
         x, y = grid.x[:, None] / length, grid.y / length
         gap = 0.02 * (x - 1.6) ** 2 + 0.1 * y**2 if self.ended else 0.05 * ((x - 0.1) ** 2 + y**2)
@@ -105,7 +105,7 @@ def test_symmetric_contacts_have_symmetric_pressures(has_free_ends: bool) -> Non
 
 
 def rigid_approach(contact: Contact) -> Any:
-    """How far the surfaces have come towards each other, from what is stated of the shape."""
+    """Approach of the surfaces by the rigid motion, from the approach and tilt that the contact states."""
     load_position = contact.shape.prescribed.load_position
     turned = 0.0 if load_position is None else contact.tilt * (contact.shape.grid.x[:, None] - load_position)
     return contact.approach + turned
@@ -114,9 +114,9 @@ def rigid_approach(contact: Contact) -> Any:
 @pytest.mark.parametrize("name", ["load", "approach", "ends", "position"])
 def test_gap_follows_from_displacement_and_shape(name: str) -> None:
     computed = contact_of(CONTACT_SPECS[name].shape(), Settings())
-    facing = np.isfinite(computed.gap)
+    is_under_shape = np.isfinite(computed.gap)
     expected = computed.shape.gap.values + computed.displacement - rigid_approach(computed)
-    assert computed.gap[facing] == pytest.approx(expected[facing], abs=1e-9)
+    assert computed.gap[is_under_shape] == pytest.approx(expected[is_under_shape], abs=1e-9)
     assert (np.abs(computed.tilt) > 1e-4) == (name == "position")
     if name == "position":
         assert computed.load_position == pytest.approx(1.75, abs=1e-5)
@@ -135,7 +135,7 @@ MAX_APPLICATIONS = {
     "nested position": 12,
     "coupled position": 48,
 }
-"""A tenth more than it takes."""
+"""Limits on the applications: the present number and a tenth."""
 
 
 @pytest.mark.parametrize("name", MAX_APPLICATIONS)
@@ -151,11 +151,11 @@ def test_warning_refers_to_caller() -> None:
 
 
 def test_position_error_is_relative_to_contact_length() -> None:
-    """Of two columns with the resultant halfway between: each weighted by its width, and in any place."""
+    """Two columns of different widths carry half of the load each; the error does not depend on their position."""
     for position in (0.0, 5.0):
         grid = Grid.between(position + np.array([0.0, 1.0, 2.0, 3.0, 5.0, 6.0]), (0.0, 1.0), 2)
         pressure = np.zeros(grid.shape)
-        pressure[1], pressure[3] = 2.0, 1.0  # centres 1.5 and 4, widths 1 and 2: half of the load on each
+        pressure[1], pressure[3] = 2.0, 1.0  # half of the load on each; centres 1.5 and 4, widths 1 and 2
         for load_position in (2.0, 3.5):
             off = _position_error(PrescribedLoad(1.0, position + load_position), grid, pressure)
             assert off == pytest.approx(abs(2.75 - load_position) / 4.0)

@@ -1,4 +1,4 @@
-"""What may be prescribed of a contact: load, its position, the tilt, the approach; and rough surfaces."""
+"""Prescribed values of a contact: load, its position, tilt, approach; and rough surfaces."""
 
 from __future__ import annotations
 
@@ -84,14 +84,14 @@ def test_prescribed_approach_equals_prescribed_load(body):
 def test_approach_of_hertz_point_contact():
     centres = np.linspace(-1.5, 1.5, 97)
     gap = xr.DataArray(0.5 * (centres[:, None] ** 2 + centres**2), coords={"x": centres, "y": centres}, dims=("x", "y"))
-    contact = solve_contact(HalfSpace(material=Material(0.75, 0.5)), gap, approach=1.0)  # contact radius 1, load 4/3
+    contact = solve_contact(HalfSpace(material=Material(0.75, 0.5)), gap, approach=1.0)  # radius 1, load 4/3
     assert float(contact["normal_load"]) == pytest.approx(4 / 3, rel=1e-3)
     assert float(contact.pressure.max()) == pytest.approx(2 / np.pi, rel=1e-3)
 
 
 @pytest.mark.parametrize("closure", [0.2, 0.8, 1.2])
 def test_wavy_surface_matches_westergaard(closure: float):
-    """Part of a wave that touches, and the pressure on it, under a given mean pressure (Johnson, section 13.2).
+    """The pressure on the touching part of a wave follows from the mean pressure (Johnson, section 13.2).
 
     The body with mirrored ends repeats without end, and a wave is so short that along y the mean pressure is uniform.
     """
@@ -143,7 +143,7 @@ def test_roughness_on_other_cells_is_interpolated():
         x_range=(-0.1 * LENGTH, 1.1 * LENGTH), y_range=(-5 * HALF_WIDTH, 5 * HALF_WIDTH), cells_x=150, cells_y=90
     )
 
-    def sloping_heights(cells: Grid) -> xr.DataArray:  # bilinear, so that interpolation is exact
+    def sloping_heights(cells: Grid) -> xr.DataArray:  # the plane is bilinear, so that interpolation is exact
         heights = 1e-3 * (cells.x[:, None] - 0.5 * LENGTH) + 2e-3 * cells.y
         return xr.DataArray(heights, coords={"x": cells.x, "y": cells.y}, dims=("x", "y"))
 
@@ -220,7 +220,7 @@ def test_approach_and_tilt_state_reference():
 
 
 def test_load_near_end_acts_at_prescribed_position():
-    """All the pressure of the first guess lies on one side of the load, so no factor on it could balance it."""
+    """The first guess has all its pressure on one side of the load: no factor on this pressure balances the load."""
     body = FiniteLengthSpace(length=2e-3, material=STEEL)
     crowned = Roller(radius=5e-3, length=10e-3, profile=profiles.FullCrown(0.2))
     arguments = {"body": body, "max_pressure": 1.5e9, "end_distance": -9.9e-3, "load_position": 5e-5}
@@ -234,7 +234,7 @@ def test_load_near_end_acts_at_prescribed_position():
 
 
 def balanced_tilt(scale: float) -> float:
-    """Tilt relative to the body far away that balances a load beside the middle, all lengths times `scale`."""
+    """Tilt relative to the body far away that balances a load off the middle, all lengths times `scale`."""
     length, cells = 0.2e-3 * scale, 16
     x = (np.arange(cells) + 0.5) * length / cells
     y = (np.arange(cells) + 0.5 - cells / 2) * 1e-5 * scale
@@ -249,7 +249,7 @@ def balanced_tilt(scale: float) -> float:
 
 def test_balanced_load_scales_with_unit_of_length() -> None:
     tilt = balanced_tilt(1.0)
-    # Four times finer quadratures of the ends give 1.341671e-3.
+    # Quadratures of the ends four times finer give 1.341671e-3.
     assert tilt == pytest.approx(1.341671e-3, rel=2e-5)
     assert [balanced_tilt(scale) for scale in (1e-4, 1e-6)] == pytest.approx([tilt, tilt], rel=1e-9)
 

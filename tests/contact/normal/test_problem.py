@@ -1,4 +1,4 @@
-"""One contact to solve: what carries over between coarse and fine cells, and the count of applications."""
+"""One contact problem: transfer between coarse and fine cells, and number of operator applications."""
 
 from __future__ import annotations
 
@@ -29,22 +29,22 @@ BODY = HalfSpace(material=Material(0.91, 0.3))
 LOADS = (Load.NORMAL, Load.ALONG_Y)
 
 
-class Counting:
+class CountingOperator:
     """An operator that counts its applications."""
 
     def __init__(self, grid: Grid) -> None:
-        self.own, self.number = surface_operator(BODY, grid, LOADS), 0
+        self.compute_displacement, self.application_count = surface_operator(BODY, grid, LOADS), 0
 
     def __call__(self, loads: Mapping[Load, FloatArray]) -> FloatArray:
-        self.number += 1
-        return self.own(loads)
+        self.application_count += 1
+        return self.compute_displacement(loads)
 
     def precondition(self, gap: FloatArray) -> FloatArray:
-        return self.own.precondition(gap)
+        return self.compute_displacement.precondition(gap)
 
     @property
     def coarse(self) -> ContactOperator:
-        return self.own.coarse
+        return self.compute_displacement.coarse
 
 
 def ball(grid: Grid, load: float | None = 0.05, *, friction: float = 0.0, deep: float = 0.0) -> ContactProblem:
@@ -63,19 +63,19 @@ GRADED = Grid.between(np.concatenate([np.linspace(-1.5, 0.3, 11), np.linspace(0.
 @pytest.mark.parametrize("friction", [0.0, 0.4])
 @pytest.mark.parametrize("grid", [GRID, GRADED], ids=["uniform", "graded"])
 def test_applications_are_counted(grid: Grid, friction: float) -> None:
-    operator = Counting(grid)
+    operator = CountingOperator(grid)
     computed = (solve_coupled if friction else solve_normal)(operator, ball(grid, friction=friction))
     assert computed.converged
-    assert computed.applications == operator.number
+    assert computed.applications == operator.application_count
 
 
 def test_coupled_rounds_end_without_bending_change() -> None:
-    """The pressure under its own friction is that of the next round, to the tolerance and no more than needed."""
+    """The pressure under its own friction equals the pressure of the next round, within the tolerance."""
     request = ball(GRID, friction=0.4)
-    operator = Counting(GRID)
+    operator = CountingOperator(GRID)
     computed = solve_coupled(operator, request)
-    bent = operator({Load.ALONG_Y: request.friction * computed.pressure})
-    repeated = solve_normal(operator, replace(request, gap=request.gap + bent, tolerance=1e-10))
+    friction_displacement = operator({Load.ALONG_Y: request.friction * computed.pressure})
+    repeated = solve_normal(operator, replace(request, gap=request.gap + friction_displacement, tolerance=1e-10))
     assert computed.pressure == pytest.approx(repeated.pressure, abs=3e-6 * repeated.pressure.max())
     uncoupled_iterate = solve_normal(operator, request)
     assert np.abs(uncoupled_iterate.pressure - repeated.pressure).max() > 1e-2 * repeated.pressure.max()
@@ -101,7 +101,7 @@ def test_halved_cells_are_linear_between_centres() -> None:
 
 
 def tilted_gap(grid: Grid, position: float) -> tuple[FloatArray, float]:
-    """Lever about a position, over the largest arm, and that arm."""
+    """Lever about a position, over the largest arm, and the largest arm."""
     arm = grid.x[:, None] - position
     return arm / np.abs(arm).max(), float(np.abs(arm).max())
 
@@ -119,7 +119,7 @@ def test_merged_cells_keep_areas_heights_and_levers(grid: Grid) -> None:
     assert coarse.gap == pytest.approx(np.broadcast_to(0.3 + 0.1 * middles[:, None], coarse_grid.shape))
     assert coarse.resultants.lever is not None
     assert coarse.resultants.lever[:, 0] == pytest.approx((middles - 0.2) / np.abs(grid.x - 0.2).max(), abs=1e-12)
-    # The same force: cells are four times as large.
+    # The force is equal: the coarse cells are four times as large.
     assert coarse.resultants.total == pytest.approx(2.0 * grid.cell_area / coarse_grid.cell_area)
 
 
@@ -143,33 +143,33 @@ def test_free_tilt_removes_mean_slope(grid: Grid) -> None:
     request = ContactProblem(
         grid=grid, gap=sloping_gap, resultants=Resultants(1.0, lever), friction=0.0, tolerance=1e-6, max_iterations=500
     )
-    facing = np.isfinite(level_gap)
-    assert _remove_mean_slope(request)[facing] == pytest.approx(level_gap[facing], abs=1e-12)
+    is_under_shape = np.isfinite(level_gap)
+    assert _remove_mean_slope(request)[is_under_shape] == pytest.approx(level_gap[is_under_shape], abs=1e-12)
     assert _remove_mean_slope(replace(request, resultants=Resultants(1.0))) is request.gap
     assert request.rigid_height((0.5, 0.3 * arm)) == pytest.approx(0.5 + 0.3 * (grid.x[:, None] - 0.2))
 
 
 def test_initial_guess_follows_gap_below_level() -> None:
-    """On few cells: pressed where the gap is below the level under which four tenths of the cells are."""
+    """The guess on few cells is positive on the four tenths of the cells with the smallest gap."""
     request = ball(GRID)
-    guess = _initial_guess(Counting(GRID), request)
-    is_pressed = guess > 0
-    assert is_pressed.mean() == pytest.approx(0.4, abs=0.02)
-    assert request.gap[is_pressed].max() < request.gap[~is_pressed].min()
-    assert np.ptp(request.gap[is_pressed] + guess[is_pressed] ** 2) < 1e-12
-    # The level lies a little higher, so that a flat shape is pressed everywhere.
+    guess = _initial_guess(CountingOperator(GRID), request)
+    is_loaded = guess > 0
+    assert is_loaded.mean() == pytest.approx(0.4, abs=0.02)
+    assert request.gap[is_loaded].max() < request.gap[~is_loaded].min()
+    assert np.ptp(request.gap[is_loaded] + guess[is_loaded] ** 2) < 1e-12
+    # The level lies a little above the gap of a flat shape, so that a flat shape is loaded everywhere.
     stepped_problem = replace(request, gap=np.where(GRID.x[:, None] < 0, 0.0, 1.0) + 0 * request.gap)
-    assert (_initial_guess(Counting(GRID), stepped_problem) > 0).tolist() == (stepped_problem.gap == 0).tolist()
-    # A prescribed approach says itself where cells overlap.
+    assert (_initial_guess(CountingOperator(GRID), stepped_problem) > 0).tolist() == (stepped_problem.gap == 0).tolist()
+    # A prescribed approach determines the cells that overlap.
     approach_problem = ball(GRID, None, deep=0.02)
-    assert ((_initial_guess(Counting(GRID), approach_problem) > 0) == (approach_problem.gap < 0)).all()
+    assert ((_initial_guess(CountingOperator(GRID), approach_problem) > 0) == (approach_problem.gap < 0)).all()
 
 
 def test_squared_pressure_continues_outside_hertz_contact() -> None:
-    """Inside it is ``p0**2 (1 - r**2 / a**2)``; just outside it falls on with about the same slope."""
+    """The square is ``p0**2 (1 - r**2 / a**2)`` inside; just outside the contact it decreases with about this slope."""
     grid = Grid(x_range=(-1.5, 1.5), y_range=(-1.5, 1.5), cells_x=60, cells_y=60)
     request = ball(grid)
-    operator = Counting(grid)
+    operator = CountingOperator(grid)
     computed = solve_normal(operator, request)
     squared = _continue_square(operator, request, computed)
     modulus, radius = BODY.material.plane_strain_modulus, 10.0
@@ -189,7 +189,7 @@ def test_squared_pressure_continues_outside_hertz_contact() -> None:
 def test_initial_guess_from_coarse_cells_approximates_solution(*, graded: bool, approach: bool) -> None:
     edges = np.linspace(-1.5, 1.5, 65) + (0.1 * np.linspace(-1, 1, 65) ** 2 if graded else 0.0)
     grid = Grid.between(edges, (-1.5, 1.5), 64)
-    operator = Counting(grid)
+    operator = CountingOperator(grid)
     request = ball(grid, None, deep=0.04) if approach else ball(grid)
     guess, computed = _initial_guess(operator, request), solve_normal(operator, request).pressure
     off = (grid.weights * np.abs(guess - computed)).sum() / (grid.weights * computed).sum()
@@ -201,21 +201,21 @@ def test_initial_guess_from_coarse_cells_approximates_solution(*, graded: bool, 
 @pytest.mark.parametrize("friction", [0.4, 1.0, 1.5])
 @pytest.mark.parametrize("tolerance", [1e-2, 1e-3, 1e-4])
 def test_last_round_changes_surface_within_tolerance(tolerance: float, friction: float, unit: float) -> None:
-    """Of the displacement's variation, in any unit: strong friction settles slowly."""
+    """The last round changes the displacement by less than the tolerance times its variation, in any unit."""
     grid = Grid(x_range=(-1.5 * unit, 1.5 * unit), y_range=(-1.5 * unit, 1.5 * unit), cells_x=16, cells_y=16)
     body = HalfSpace(material=Material(0.91, 0.0))
     expected = surface_operator(body, grid, LOADS)
-    bent: list[FloatArray] = []
+    friction_displacements: list[FloatArray] = []
 
-    class Noting(Counting):
+    class RecordingOperator(CountingOperator):
         def __call__(self, loads: Mapping[Load, FloatArray]) -> FloatArray:
             computed = expected(loads)
             if Load.ALONG_Y in loads:
-                bent.append(computed)
+                friction_displacements.append(computed)
             return computed
 
-    operator = Noting(grid)
-    operator.own = expected
+    operator = RecordingOperator(grid)
+    operator.compute_displacement = expected
     gap = 0.05 * (grid.x[:, None] ** 2 + grid.y**2) / unit
     request = ContactProblem(
         grid=grid,
@@ -227,5 +227,5 @@ def test_last_round_changes_surface_within_tolerance(tolerance: float, friction:
     )
     computed = solve_coupled(operator, request)
     assert computed.converged
-    shifted = float(np.ptp((bent[-1] - bent[-2])[computed.pressure > 0]))
+    shifted = float(np.ptp((friction_displacements[-1] - friction_displacements[-2])[computed.pressure > 0]))
     assert shifted <= 0.55 * tolerance * float(np.ptp(expected({Load.NORMAL: computed.pressure})))

@@ -67,7 +67,7 @@ def test_prescribed_tilt_equals_prescribed_position() -> None:
     assert float(balanced.tilt) == pytest.approx(5e-4, rel=2e-3)
     assert float(balanced.pressure.max()) == pytest.approx(float(balanced_result.pressure.max()), rel=2e-3)
     tilted_result = solve(crowned_roller(approach=float(balanced_result.approach), tilt=5e-4), grid, stresses=False)
-    # The approach of a tilted roller is that at mid-length; `tilted` states it there, too.
+    # The approach of a tilted roller is its approach at mid-length; the approach of `tilted` refers to mid-length, too.
     assert float(tilted_result.normal_load) == pytest.approx(1500.0, rel=3e-3)
 
 

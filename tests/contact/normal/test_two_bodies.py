@@ -1,4 +1,4 @@
-"""Two bodies as one operator, also where only one of them can be made coarser."""
+"""The operator of two bodies, also if one of them has an odd number of cells and cannot be coarsened."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def random_load(grid: Grid = GRID) -> dict[Load, np.ndarray]:
 
 @pytest.mark.parametrize("cells", [8, 9])
 def test_coarse_operator_matches_fine_operator(cells: int) -> None:
-    """Also if the second body has an odd number of cells: the first then stands for both."""
+    """The operator of the first body replaces both bodies if the second body has an odd number of cells."""
     counterbody = Counterbody(FiniteLengthSpace(material=SOFT, length=cells * 1e-4, model="mirror"), 4e-4)
     operator = PairOperator.of(BODY, counterbody, GRID, (Load.NORMAL,))
     assert isinstance(operator.coarse, ScaledOperator) == (cells % 2 == 1)
@@ -55,7 +55,7 @@ def test_transfer_ignores_rounding_of_cells(unit: float) -> None:
     for start, has_equal_cells in ((0.4, True), (0.4 + 1e-13, True), (0.4 + 1e-7, False), (0.45, False)):
         counterbody = Counterbody(FiniteLengthSpace(material=SOFT, length=0.8 * unit), start * unit)
         complete = Counterbody(FiniteLengthSpace(material=SOFT, length=1.6 * unit), (start - 0.4) * unit)
-        assert CellTransfer.of(counterbody, grid) is not None  # fewer cells
+        assert CellTransfer.of(counterbody, grid) is not None  # the counterbody has fewer cells
         assert (CellTransfer.of(complete, grid) is None) == has_equal_cells
 
 

@@ -1,4 +1,4 @@
-"""Short rollers whose contacts are refined, and their peaks on finer cells."""
+"""Short rollers with refined contacts, and their peaks on finer cells."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ STEEL = Material(210e9, 0.3)
 HALF = HalfSpace(material=STEEL)
 RADIUS, PRESSURE, LENGTH = 5e-3, 1.5e9, 10e-3
 A = 4 * PRESSURE * RADIUS / (2 * STEEL.plane_strain_modulus)
-"""Hertz half-width of a rigid roller; twice that of an elastic one."""
+"""Hertz half-width of a rigid roller; the half-width of an elastic roller is twice as large."""
 SHORT, SHORT_ELASTIC = 8 * A, 16 * A
 
 
@@ -30,7 +30,7 @@ def refined_at(case: Case, accuracy: float = 0.01) -> RefinedContact:
 
 
 def top_of(pressure: FloatArray) -> float:
-    """Largest pressure, between the cells along y too: the squared pressure is a parabola across the contact."""
+    """Largest pressure, also between the cells along y: the squared pressure is a parabola across the contact."""
     squared = pressure**2
     column = squared[squared.max(axis=1).argmax()]
     peak_row = int(column.argmax())
@@ -39,7 +39,7 @@ def top_of(pressure: FloatArray) -> float:
 
 
 def finer_peak(case: Case, refined: RefinedContact, factor: int) -> float:
-    """Peak on `factor` times finer cells, along both axes."""
+    """Peak on cells that are `factor` times finer along both axes."""
     edges, grid = refined.refined.edges, refined.contact.shape.grid
     fine = np.interp(np.arange((edges.size - 1) * factor + 1) / factor, np.arange(edges.size), edges)
     solver = _ColumnSolver(case, grid.y_range[1], grid.cells_y * factor)

@@ -1,4 +1,4 @@
-"""First columns: how wide they are, and that they follow a shape where it is low enough to be pressed."""
+"""First columns: their widths, and their adaption to a shape where it is low enough to be loaded."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ SHAPES: dict[str, Callable[[FloatArray], FloatArray]] = {
 
 
 def axial_shape(height: Callable[[FloatArray], FloatArray], unit: float = 1.0, start: float = 0.0) -> AxialShape:
-    """Half-width 1, depth 0.05; lengths in some unit, and from some place on."""
+    """Shape of half-width 1 and depth 0.05, with lengths in a unit and from a position on."""
     return AxialShape(
         start=start,
         stop=start + unit * LENGTH,
@@ -44,7 +44,7 @@ def axial_shape(height: Callable[[FloatArray], FloatArray], unit: float = 1.0, s
 
 
 def chord_deviation(height: Callable[[FloatArray], FloatArray], low: FloatArray, high: FloatArray) -> FloatArray:
-    """Distance of the shape from its chord between some positions."""
+    """Distance of the shape from its chord between two positions."""
     fraction = np.linspace(1e-6, 1 - 1e-6, 201)
     heights = height(low[:, None] + (high - low)[:, None] * fraction)
     chord = heights[:, :1] + (heights[:, -1:] - heights[:, :1]) * fraction
@@ -55,19 +55,19 @@ def chord_deviation(height: Callable[[FloatArray], FloatArray], low: FloatArray,
 def test_overlooked_columns_leave_low_shape(name: str) -> None:
     height = SHAPES[name]
     edges, baseline = first_edges(axial_shape(height)), first_edges(axial_shape(np.zeros_like))
-    widths, bent = np.diff(edges), chord_deviation(height, edges[:-1], edges[1:])
+    widths, deviations = np.diff(edges), chord_deviation(height, edges[:-1], edges[1:])
     fine = np.linspace(1e-6, LENGTH - 1e-6, 20001)
     positions = edges[:-1, None] + widths[:, None] * np.linspace(1e-6, 1 - 1e-6, 201)
     height_excess = height(positions).min(axis=1) - height(fine).min()
     depth = 0.05
     followed = (widths > MIN_CHORD_WIDTH) & (height_excess < 2.9 * depth)
-    assert bent[followed].max(initial=0.0) <= 1.03 * CHORD_TOLERANCE * depth
-    # A column is split only where it leaves its chord, or beside one that is narrow.
+    assert deviations[followed].max(initial=0.0) <= 1.03 * CHORD_TOLERANCE * depth
+    # A column is split only if it leaves its chord, or if a neighbour is narrow.
     assert np.isin(baseline, edges).all()
     if name in ("chamfer", "steps at the ends"):
         split_columns = ~np.isin(edges, baseline)
         assert not split_columns.any() or (name == "chamfer" and (np.abs(edges[split_columns] - 13.0) < 3.0).all())
-    if name == "deep wave":  # crests are never pressed
+    if name == "deep wave":  # the crests are never loaded
         crests = height_excess > 6 * depth
         assert crests.any()
         assert np.median(widths[crests]) > 1.9 * np.median(widths[height_excess < 0.5 * depth])
@@ -102,7 +102,7 @@ def test_first_columns_double_from_ends(half_width: float) -> None:
 
 @pytest.mark.parametrize("slope", [0.1, -0.1])
 def test_straight_incline_adds_no_columns(slope: float) -> None:
-    """It rises by more than the depth within a column, but never leaves its chord."""
+    """The incline rises by more than the depth within a column, but never leaves its chord."""
     baseline, inclined = first_edges(axial_shape(np.zeros_like)), first_edges(axial_shape(lambda x: slope * x))
     assert inclined == pytest.approx(baseline)
 

@@ -36,7 +36,7 @@ def test_peak_at_corner_is_infinite(chamfered_roller) -> None:
 
 
 def test_corner_pressure_follows_logarithm(chamfered_roller) -> None:
-    """Columns up to 0.05 of d0 on both sides, against the mean of the law."""
+    """The columns within 0.05 of d0 on both sides agree with the means of the law."""
     distance = float(chamfered_roller.corner_distance)
     low, high = (chamfered_roller.x_bounds.values - float(chamfered_roller.corner_x)).T
     for low_distance, high_distance in ((low, high), (-high, -low)):

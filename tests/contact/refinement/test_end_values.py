@@ -1,4 +1,4 @@
-"""What is read from pressures on columns: peaks of either half, ends and end loads, of pressures known exactly."""
+"""Values of known pressures on columns: peaks of both halves, end pressures and end loads."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from contactstudy.contact.refinement.laws import EndLaw, count_from_end, end_loa
 
 EDGES = 3.0 + 1e-2 * np.cumsum([0.0, 1.0, 1.5, 2.5, 4.0, 6.0, 9.0, 4.0, 7.0, 5.0, 4.0, 3.0, 2.0, 1.0])
 ACROSS = np.sqrt(np.array([0.0, 0.19, 0.91, 0.91, 0.19, 0.0]))
-"""Beside its top, which is 1 by the parabola through its squares."""
+"""Pressure across the contact, whose top between the cells is 1 by the parabola through the squares."""
 
 
 def means(powers: list[float], edges: FloatArray) -> FloatArray:
@@ -26,7 +26,7 @@ def spread_load(line_load: FloatArray) -> FloatArray:
 
 @pytest.mark.parametrize("tilt", [2.0, -2.0])
 def test_pressure_rising_to_end_peaks_at_end(tilt: float) -> None:
-    """Exact for a parabola, between the cells along y as well."""
+    """The value is exact for a parabola, between the cells along y as well."""
     half_length = 0.5 * (EDGES[-1] - EDGES[0])
     powers = [1.0, tilt, 1.5]
     peaks, ends, along_y = extrapolate_end_pressures(EDGES, spread_load(means(powers, EDGES)), (None, None))
@@ -36,7 +36,7 @@ def test_pressure_rising_to_end_peaks_at_end(tilt: float) -> None:
     assert ends == pytest.approx(exact_pressures, rel=1e-9)
     risen = 1 if tilt > 0 else 0
     assert peaks[risen] == pytest.approx(exact_pressures[risen], rel=1e-9)
-    # The other half is largest in the middle, between two columns, or on its own last one where that is more.
+    # The other half is largest in the middle, between two columns, or on its last column if that is larger.
     centres, column_loads = 0.5 * (EDGES[1:] + EDGES[:-1]) - EDGES[0], means(powers, EDGES)
     expected = column_loads[(centres < half_length) if risen else (centres > half_length)].max()
     assert peaks[1 - risen] == pytest.approx(max(expected, np.interp(half_length, centres, column_loads)))
@@ -45,7 +45,7 @@ def test_pressure_rising_to_end_peaks_at_end(tilt: float) -> None:
 
 def test_halves_have_separate_peaks() -> None:
     column_loads = np.ones(EDGES.size - 1)
-    column_loads[7] = 3.0  # the second column beyond the middle
+    column_loads[7] = 3.0  # this is the second column beyond the middle
     peaks, ends, _ = extrapolate_end_pressures(EDGES, spread_load(column_loads), (None, None))
     assert (0.5 * (EDGES[6] + EDGES[7]) - EDGES[0]) / (EDGES[-1] - EDGES[0]) > 0.5
     assert peaks == pytest.approx((1.0, 3.0))
@@ -60,7 +60,7 @@ def test_ends_without_pressure_and_singular_ends() -> None:
     assert ends == (0.0, np.inf)
     assert peaks == (pytest.approx(1.0), np.inf)
     falling = column_loads.copy()
-    falling[:3] = 0.01, 0.5, 1.0  # the parabola through these means is negative at the end
+    falling[:3] = 0.01, 0.5, 1.0  # The parabola through these means is negative at the end.
     assert extrapolate_end_pressures(EDGES, spread_load(falling), (None, None))[1][0] == 0.0
 
 

@@ -1,4 +1,4 @@
-"""Jumps of the pressure by which columns are split."""
+"""Jumps of the pressure that mark columns for splitting."""
 
 from __future__ import annotations
 
@@ -9,22 +9,22 @@ from contactstudy.contact.refinement.refinement import MIN_HALF_PRESSURE, _crest
 
 
 def test_low_crest_jumps_relative_to_own_pressure() -> None:
-    """Beside the contact's end, seen by one column: 1.4 of a peak of 3."""
+    """A crest of one column near the contact's end, 1.4 of a peak of 3, has the jump relative to its own pressure."""
     top = np.array([0.0, 0.0, 0.8, 1.4, 1.2, 2.0, 2.8, 3.0, 3.0, 2.8])
     steps = _crest_jumps(top[:, None])
     assert steps[3] == pytest.approx(1 - (0.8 / 1.4) ** 2)
     assert np.count_nonzero(steps) == 1
-    # One below a tenth of the peak is not worth a column, and noise on a plateau is no crest.
+    # A crest below a tenth of the peak has no jump, and noise on a plateau is no crest.
     assert not _crest_jumps(np.array([0.0, 0.1, 0.29, 0.2, 3.0, 3.0])[:, None]).any()
     assert _crest_jumps(np.array([3.0, 3.001, 3.0])[:, None]).max() < 1e-2
 
 
 @pytest.mark.parametrize("lesser", [0.5, 0.02])
 def test_jumps_are_relative_to_half_peak(lesser: float) -> None:
-    """Of a power of the pressure, to either neighbour and in any row; a half that is hardly pressed does not count."""
+    """The jump of the squared pressure is over the half's peak, at least a fraction of the largest pressure."""
     rng = np.random.default_rng(0)
     edges = np.array([3.0, 4.0, 4.5, 5.5, 6.0, 7.0, 8.0, 9.0, 10.0])
-    left_columns = np.array([0, 1, 2, 3])  # the middle, 6.5, lies in the fifth column, whose centre it is
+    left_columns = np.array([0, 1, 2, 3])  # The middle, 6.5, is the centre of the fifth column.
     pressure = rng.uniform(0.5, 1.0, (8, 5))
     pressure[left_columns] *= lesser
     computed = _jumps(edges, pressure, 2.0)

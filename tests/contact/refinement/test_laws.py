@@ -1,4 +1,4 @@
-"""The law of a singular end: which one it is, its intensity, and what an edge of small radius makes of it."""
+"""The law of a singular end: its kind, its intensity, and the pressure under an edge of small radius."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def test_rigid_end_intensity_matches_power_law(intensity: float, bend: float) ->
 
 
 def test_intensity_uses_row_of_end_peak() -> None:
-    # Random case 4007234: friction pressed both ends at different places along y, the other end more.
+    # Random case 4007234: friction loads both ends at different positions along y, the other end more.
     edges = graded_edges(1e-3)
     end = column_means(edges, 0.5, 2.0, 0.0)
     shifted = np.where(edges[1:] > 0.03, 10 * end.max(), 0.0)
@@ -47,7 +47,7 @@ def test_intensity_uses_row_of_end_peak() -> None:
 
 @pytest.mark.parametrize("exponent", [0.5, np.nan])
 def test_few_columns_have_infinite_intensity_error(exponent: float) -> None:
-    # Random case 4004708: friction left a contact of five columns.
+    # Random case 4004708: friction reduces the contact to five columns.
     edges = graded_edges(1e-3)
     pressure = column_means(edges, 0.5, 2.0, 0.0)[:, None].copy()
     pressure[5:] = 0.0
@@ -68,9 +68,9 @@ def test_exponent_of_an_elastic_end_is_fitted(exponent: float) -> None:
 
 
 def slope_of_a_wedge(angle: float, s: float) -> float:
-    """Slope of its loaded face under the pressure ``r**(s - 1)``, over this and a constant of the material.
+    """Slope of the loaded face of a wedge, over its pressure ``r**(s - 1)`` times a constant of the material.
 
-    Airy's function ``r**(s + 1) F(t)``; its constants go out of the ratio of two slopes.
+    Airy's function is ``r**(s + 1) F(t)``; its constants cancel in the ratio of two slopes.
     """
 
     def shapes(t: float) -> FloatArray:
@@ -88,7 +88,7 @@ def slope_of_a_wedge(angle: float, s: float) -> float:
     # Stresses over r**(s - 1): across s (s + 1) F, shear -s F'.
     conditions = np.array([s * (s + 1) * loaded_face[0], loaded_face[1], free_face[0], free_face[1]])
     _, b, _, d = np.linalg.solve(conditions, [-1.0, 0.0, 0.0, 0.0])
-    # Displacement across r**s: of the parts with s + 1 by 2 G u = -dF / r, of those with s - 1 also by their Laplacian.
+    # Displacement across r**s: the parts with s + 1 have 2 G u = -dF / r, the parts with s - 1 also their Laplacian.
     return float(s * (-(s + 1) * b - (s - 1) * d - 4 * d))
 
 
@@ -174,7 +174,7 @@ EDGES = np.array(
 
 @pytest.mark.parametrize("unit", [1.0, 1e-6, 1e3])
 def test_fit_uses_columns_from_3_to_64_widths(unit: float) -> None:
-    """And between 6 and 128 of them for the error; what is nearer or farther may be anything."""
+    """The fit uses columns from 3 to 64 widths, its error columns from 6 to 128; other columns have no influence."""
     pressure = column_means(unit * EDGES, 0.5, 2.0, 0.01 / unit)[:, None]
 
     def fitted_law(first_distance: float) -> EndLaw:
@@ -195,7 +195,7 @@ def test_fit_uses_columns_from_3_to_64_widths(unit: float) -> None:
 
 @pytest.mark.parametrize("width", [1e-5, 1.0, 1e3])
 def test_end_near_free_end_has_larger_error(width: float) -> None:
-    """Beyond half of the room between them the law does not hold; the fit reaches to 64 widths."""
+    """Beyond half of the face between the ends the law does not hold; the fit uses columns up to 64 widths."""
     edges = width * EDGES
     pressure = column_means(edges, 0.5, 2.0, 0.0)[:, None]
     wide_face_law, narrow_face_law = (

@@ -1,4 +1,4 @@
-"""Measured profiles in contact: ridges between columns, and the error that the points leave."""
+"""Measured profiles in contact: ridges between columns, and the error from the spacing of the points."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def peak(profile: Profile, length: float = 2e-3, accuracy: float = 0.01, **load:
 
 @pytest.mark.parametrize("step", [10e-6, 7e-6])
 def test_error_covers_edge_radius_of_few_points(step: float) -> None:
-    """The points begin the corner on a sample, or between two."""
+    """The corner begins on a sample of the profile, or between two samples."""
     formula = Cylinder(0.1e-3)
     x = np.linspace(-1e-3, 1e-3, round(2e-3 / step) + 1)
     exact_peak, _ = peak(formula, max_pressure=1.5e9)

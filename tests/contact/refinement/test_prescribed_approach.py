@@ -1,4 +1,4 @@
-"""A prescribed approach takes the load that Hertz states, and the load that gives this approach, with its error."""
+"""A prescribed approach has Hertz' load, and the load that causes this approach has an error."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ BALL = Case(
     roller=Roller(radius=RADIUS, length=0.8e-3, profile=profiles.FullCrown(crown_radius=RADIUS)),
     approach=APPROACH,
 )
-HERTZ = 4 / 3 * STEEL.plane_strain_modulus * np.sqrt(RADIUS) * APPROACH**1.5  # Johnson (1985), 4.23
+HERTZ = 4 / 3 * STEEL.plane_strain_modulus * np.sqrt(RADIUS) * APPROACH**1.5  # Johnson (1985), eq. 4.23
 SHORT = Case(
     body=FiniteLengthSpace(length=0.3e-3, material=STEEL),
     roller=Roller(radius=RADIUS, length=0.3e-3, profile=profiles.FullCrown(crown_radius=0.1)),
@@ -58,7 +58,7 @@ def test_ball_carries_hertz_load() -> None:
     assert abs(float(result.normal_load) - HERTZ) < float(result.normal_load_error) < 2e-3 * HERTZ
     assert float(result.approach) == APPROACH
     assert bool(result.converged)
-    peak = 2 * STEEL.plane_strain_modulus / np.pi * np.sqrt(APPROACH / RADIUS)  # Johnson (1985), 4.24
+    peak = 2 * STEEL.plane_strain_modulus / np.pi * np.sqrt(APPROACH / RADIUS)  # Johnson (1985), eq. 4.24
     assert abs(float(result.peak_pressure) - peak) < float(result.peak_pressure_error)
 
 
@@ -95,7 +95,7 @@ def test_approach_on_given_cells_and_rough_surfaces() -> None:
 
 
 def test_distant_initial_load_is_corrected() -> None:
-    """A steep crown carries a hundredth of what its slices as line contacts would."""
+    """A steep crown carries a hundredth of the load of its slices as line contacts."""
     steep = replace(BALL, roller=replace(BALL.roller, radius=0.5, profile=profiles.FullCrown(crown_radius=1e-3)))
     computed = contact_at_approach(steep, 0.1, 1e-4)
     assert computed.refined.contact.approach == APPROACH
@@ -120,17 +120,17 @@ CYLINDER = Case(
 
 
 def test_slice_load_sums_hertz_line_contacts() -> None:
-    """Of a slice at depth d: ``pi E* b**2 / 4 R`` with b a part of ``sqrt(2 R d)``, so the load is as all depths."""
+    """A slice at depth d carries ``pi E* b**2 / 4 R`` with b proportional to ``sqrt(2 R d)``: it is linear in d."""
     load_factor = np.pi / 2 * SLICE_WIDTH**2 * STEEL.plane_strain_modulus
     assert _slice_load(CYLINDER) == pytest.approx(load_factor * 3e-6 * 2e-3)
     start, stop = BALL.contact_range
     x = np.linspace(start, stop, 20001)
     depth = np.maximum(APPROACH - (RADIUS - np.sqrt(RADIUS**2 - (x - 0.5 * (start + stop)) ** 2)), 0.0)
     assert _slice_load(BALL) == pytest.approx(load_factor * depth.mean() * (stop - start), rel=0.01)
-    # Of a contact between two slices: the least load that a case may have, or a little more.
+    # A contact between two slices has the least load of a case.
     tilted_case = replace(BALL, body=FiniteLengthSpace(length=2e-3, material=STEEL), end_distance=0.6e-3, tilt=4e-4)
-    minimum = _slice_load(replace(tilted_case, approach=tilted_case.first_touch + 1e-11))
-    assert replace(BALL, approach=None, load=minimum).hertz_half_width == pytest.approx(2 * MIN_HALF_WIDTH * RADIUS)
+    min_load = _slice_load(replace(tilted_case, approach=tilted_case.first_touch + 1e-11))
+    assert replace(BALL, approach=None, load=min_load).hertz_half_width == pytest.approx(2 * MIN_HALF_WIDTH * RADIUS)
 
 
 @pytest.mark.parametrize(("case", "max_loads"), [(BALL, 4), (replace(SHORT, friction=0.0, coupled=False), 5)])
@@ -147,7 +147,7 @@ def test_load_search_needs_few_loads(case: Case, max_loads: int, monkeypatch: py
 
 
 def test_load_search_fits_power_of_depth(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Of a contact whose depth is made up: as a ball's."""
+    """The depth of the contact is a power of the load, as for a ball."""
     contact_at_load = refine_contact(replace(BALL, approach=None, load=HERTZ), 0.1, 1e-4)
     attempts: list[float] = []
 

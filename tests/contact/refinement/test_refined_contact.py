@@ -1,4 +1,4 @@
-"""Contacts on columns that follow them: against finer cells, uniform cells, known peaks; what is kept of them."""
+"""Contacts on refined columns: against finer cells, uniform cells and known peaks; cached results."""
 
 from __future__ import annotations
 
@@ -88,7 +88,7 @@ def test_refined_contact_matches_uniform_cells(name: str) -> None:
     peak, error = float(computed.peak_pressure), float(computed.peak_pressure_error)
     assert bool(computed.converged)
     assert error <= 0.01 * peak
-    # A fillet of 3 a is within half a percent on these uniform cells, an edge of the body within three.
+    # The peak of a fillet of 3 a is within half a percent on these uniform cells, of an edge of the body within three.
     allowed = 0.03 if case.roller.material is not None else 0.006
     assert peak == pytest.approx(top_of(uniform.pressure.values), rel=allowed)
     assert float(computed.approach) == pytest.approx(float(uniform.approach), rel=1e-3)
@@ -98,7 +98,7 @@ def test_refined_contact_matches_uniform_cells(name: str) -> None:
     assert float(forces.sum()) == pytest.approx(case.normal_load, rel=1e-9)
     if case.load_position is not None:
         assert float((forces * computed.x).sum() / forces.sum()) == pytest.approx(case.load_position, rel=1e-9)
-    # The load per length, over the same parts of the roller.
+    # The loads are those on equal parts of the roller.
     section_edges = np.linspace(*case.contact_range, 9)
     loads = [load_up_to(variant, section_edges) for variant in (computed, uniform)]
     assert np.abs(loads[0] - loads[1]).max() < 2e-3 * case.normal_load
@@ -121,9 +121,9 @@ def test_mirrored_case_has_the_mirrored_contact(name: str) -> None:
         refined_at(Case(body=CASES[name].body, roller=CASES[name].roller, max_pressure=PRESSURE, tilt=tilt), 0.02)
         for tilt in (8e-4, -8e-4)
     ]
-    there, back = (variant.refined for variant in tilts)
-    assert there.peak == pytest.approx(back.peak, rel=1e-4)
-    assert np.allclose(there.pressure.max(axis=1), back.pressure[::-1].max(axis=1), atol=1e-4 * there.peak)
+    original, mirrored = (variant.refined for variant in tilts)
+    assert original.peak == pytest.approx(mirrored.peak, rel=1e-4)
+    assert np.allclose(original.pressure.max(axis=1), mirrored.pressure[::-1].max(axis=1), atol=1e-4 * original.peak)
 
 
 def test_measured_fillet_has_peak_of_fillet() -> None:
@@ -150,7 +150,7 @@ def test_invalid_accuracy_raises_error(accuracy: object) -> None:
 
 @pytest.mark.slow
 def test_coupled_friction_changes_stated_values() -> None:
-    """The columns follow the uncoupled contact, but the values belong to the pressure that is returned."""
+    """The columns follow the uncoupled contact; the values belong to the returned, coupled pressure."""
     body = FiniteLengthSpace(length=8 * A, material=Material(210e9, 0.1))
     roller = Roller(radius=RADIUS, length=8 * A)
     case = Case(body=body, roller=roller, max_pressure=PRESSURE, friction=0.5, coupled=True)
@@ -171,7 +171,7 @@ def test_accuracy_determines_cells_across_peak(accuracy: float, least: int) -> N
 
 
 class _Crown:
-    """A profile of a user's own, which can be changed after it has been used."""
+    """A user's mutable profile, which the test changes after a solution."""
 
     def __init__(self, radius: float) -> None:
         self.radius = radius
@@ -204,7 +204,7 @@ def test_modified_result_does_not_change_next_result() -> None:
 @pytest.mark.parametrize("fraction", [0.2, 0.5, 0.75, 0.95])
 @pytest.mark.parametrize("accuracy", [0.2, 0.05, 0.01, 0.002])
 def test_cell_number_is_least_sufficient_one(accuracy: float, fraction: float) -> None:
-    """What lies between cells is 0.7 over the square of their number across the contact."""
+    """The error between cells is 0.7 over the square of the number of cells across the contact."""
     cells = _cell_number_y(fraction, accuracy)
 
     def remaining_error(cells: int) -> float:
@@ -216,7 +216,7 @@ def test_cell_number_is_least_sufficient_one(accuracy: float, fraction: float) -
 
 @pytest.mark.parametrize("distance", [-0.2e-3, 0.0, 1e-15, 1e-9, 0.3e-3])
 def test_face_length_beyond_roller_end(distance: float) -> None:
-    """By what is left to the end of the body; by nothing where both end together, or where the roller overhangs."""
+    """The face is the distance to the body's end; it is zero for ends in one plane and for an overhanging roller."""
     body = finite(1.5e-3)
     case = Case(body=body, roller=filleted(0.1e-3, 1e-3), max_pressure=PRESSURE, end_distance=distance)
     shape = _axial_shape(case)
@@ -253,7 +253,7 @@ FITTED = {
 
 @pytest.mark.parametrize("name", FITTED)
 def test_window_fits_contact(name: str) -> None:
-    """A tenth wider at least, and by no more than one step of the windows that cases share, and a rough cell."""
+    """The window exceeds the contact by at least a tenth, at most by a step of the windows and a coarse cell."""
     contact = refined_at(FITTED[name], 0.05).contact
     grid = contact.shape.grid
     reach = np.abs(grid.y[contact.pressure.any(axis=0)]).max() + 0.5 * grid.dy
@@ -280,7 +280,7 @@ class Wavy(profiles.Shape):
 
 
 def test_wavy_profile_crests_are_resolved() -> None:
-    """Some are pressed though they lie deeper than the first columns look: the approach is several a**2/2R."""
+    """Some crests below the depth of the first columns are loaded: the approach is several a**2/2R."""
     length, wave = 2e-3, 0.2e-3
     roller = Roller(radius=RADIUS, length=length, profile=Wavy(0.5, 0.6e-6, wave))
     case = Case(body=finite(length), roller=roller, max_pressure=0.7e9)

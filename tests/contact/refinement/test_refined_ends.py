@@ -1,4 +1,4 @@
-"""Ends of settled contacts: singular, finite, fading, close to the end of a body, or free of contact."""
+"""Ends of refined contacts: singular, finite, fading, close to the end of a body, or free of contact."""
 
 from __future__ import annotations
 
@@ -37,17 +37,19 @@ def test_sharp_rigid_end_has_square_root_law() -> None:
 
 
 def test_edge_peak_matches_small_fillet() -> None:
-    fillet = 0.01e-3
+    fillet_radius = 0.01e-3
     sharp = refined_at(Case(body=HALF, roller=Roller(radius=RADIUS, length=LENGTH), max_pressure=PRESSURE))
     law = sharp.refined.laws[0]
     assert law is not None
-    solved = refined_at(Case(body=HALF, roller=filleted(fillet), max_pressure=PRESSURE))
+    solved = refined_at(Case(body=HALF, roller=filleted(fillet_radius), max_pressure=PRESSURE))
     assert solved.refined.accurate
-    assert edge_peak(law.intensity, STEEL.plane_strain_modulus, fillet) == pytest.approx(solved.refined.peak, rel=0.01)
+    assert edge_peak(law.intensity, STEEL.plane_strain_modulus, fillet_radius) == pytest.approx(
+        solved.refined.peak, rel=0.01
+    )
 
 
 def test_flush_end_of_a_free_body_has_a_finite_pressure() -> None:
-    """0.497 p0 from an extrapolation of columns down to 0.003 a."""
+    """The end pressure is 0.497 p0, extrapolated from columns down to 0.003 a."""
     computed = refined_at(
         Case(body=finite(), roller=Roller(radius=RADIUS, length=LENGTH), max_pressure=PRESSURE)
     ).refined
@@ -79,7 +81,7 @@ def test_singular_end_with_unloaded_half() -> None:
 
 
 def test_sharp_elastic_end_has_smaller_exponent() -> None:
-    """A 90 degree edge on a half-space of the same material, without friction: about 0.226."""
+    """The exponent of a 90 degree edge on a half-space of the same material without friction is about 0.226."""
     half_width = 2 * A
     roller = Roller(radius=RADIUS, length=30 * half_width, material=STEEL)
     case = Case(body=finite(60 * half_width), roller=roller, max_pressure=PRESSURE)
@@ -102,7 +104,7 @@ def test_crowned_roller_peaks_at_mid_length() -> None:
 
 @pytest.mark.parametrize(("material", "distance"), [(None, 1e-3), (STEEL, -1e-2)])
 def test_end_near_free_end_matches_flush_end(material: Material | None, distance: float) -> None:
-    """The room that is left is much narrower than the columns; its cells are accepted by every verb."""
+    """The remaining face is much narrower than the columns; every public function accepts the result's cells."""
     case, flush = (
         Case(
             body=QuarterSpace(material=STEEL),
@@ -119,13 +121,13 @@ def test_end_near_free_end_matches_flush_end(material: Material | None, distance
     repeated = stress_field(
         case.body, computed.pressure, x=[0.0, A], y=[0.0], z=[0.3 * A], inside_cells=computed.pressure
     )
-    # The certificate shares the quadrature of the stresses in solve.
+    # The certificate uses the quadrature of the stresses in `solve`.
     assert np.allclose(repeated.von_mises.values, computed.von_mises.values, rtol=1e-5)
 
 
 @pytest.mark.parametrize("distance", [1e-4, 0.05])
 def test_sharp_end_near_free_end_has_infinite_error(distance: float) -> None:
-    """At 1e-4 a no column shows the law; at 0.05 a the fitted intensity says that it is no better than some percent."""
+    """At 1e-4 a no column resolves the law; at 0.05 a the error of the fitted intensity is some percent."""
     case = Case(
         body=finite(LENGTH + 2 * distance * A), roller=Roller(radius=RADIUS, length=LENGTH), max_pressure=PRESSURE
     )
@@ -138,7 +140,7 @@ def test_sharp_end_near_free_end_has_infinite_error(distance: float) -> None:
 
 
 def test_fading_end_has_infinite_error() -> None:
-    """The first column's pressure falls by 5 % with each halving, from 0.64 to 0.47 p0 and on."""
+    """The first column's pressure decreases by 5 % with each halving, from 0.64 to 0.47 p0 and further."""
     rubber = Material(6e8, 0.0)
     roller = Roller(radius=RADIUS, length=0.13e-3, material=rubber)
     body = QuarterSpace(material=rubber, model="mirror-factor")

@@ -1,4 +1,4 @@
-"""Stick and slip on the columns of a settled contact, without a grid: against fine uniform cells."""
+"""Stick and slip on the columns of a refined contact, without a grid: against fine uniform cells."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ STEEL_CASE = Case(
 SHORT_CASE = Case(
     body=HalfSpace(material=STEEL), roller=Roller(radius=5e-3, length=0.5e-3), max_pressure=1.5e9, friction=0.1
 )
-"""A rigid roller that ends inside the face: the pressure is singular there."""
+"""A rigid roller that ends inside the face with a singular pressure."""
 
 SLIDING_FORCE = 0.1 * STEEL_CASE.normal_load
 
@@ -59,7 +59,7 @@ def test_stated_errors_cover_fine_uniform_cells(motion: Rolling | Shift) -> None
             assert float(computed[name]) == pytest.approx(
                 float(fine[name]), abs=max(error, 2e-3 * baseline, 1e-3 * abs(float(computed[name])))
             )
-    # What is lost is a difference of what is put in and what is stored.
+    # The frictional work is a small difference of the supplied and the stored work.
     names = ("shift_x", "shift_y") if isinstance(motion, Shift) else ("lateral_creepage", "longitudinal_creepage")
     put_in = sum(
         abs(float(computed[force] * computed[name])) for force, name in zip(("force_x", "force_y"), names, strict=True)
@@ -80,12 +80,12 @@ def test_motion_keeps_columns() -> None:
 def test_creepages_share_one_contact() -> None:
     first_contact = refine_contact(replace(STEEL_CASE, motion=Rolling(longitudinal_creepage=1e-3)), 0.05, 1e-6)
     assert refine_contact(replace(STEEL_CASE, motion=Rolling(force_y=1.0)), 0.05, 1e-6) is first_contact
-    assert refine_contact(STEEL_CASE, 0.05, 1e-6) is not first_contact  # its window is narrower
+    assert refine_contact(STEEL_CASE, 0.05, 1e-6) is not first_contact  # the window of full sliding is narrower
 
 
 @pytest.mark.slow
 def test_coupled_tractions_change_stated_values() -> None:
-    """A rigid roller on compressible material: what drives it lifts the surface."""
+    """The traction of a rigid roller on compressible material lifts the surface."""
     body = HalfSpace(material=Material(210e9, 0.0))
     case = replace(SHORT_CASE, body=body, coupled=True, friction=0.5, motion=Rolling(longitudinal_creepage=0.05))
     computed = solve(case, stresses=False, accuracy=0.1)
@@ -105,7 +105,7 @@ def test_given_columns_are_used() -> None:
 
 
 def make_contact(case: Case, peak_pressure: float, **rigid: float) -> FrictionalContact:
-    """A contact of a case under one and the same pressure on two cells, with some rigid motions."""
+    """Contact of a case under a uniform pressure on two cells, with given rigid motions."""
     grid = Grid.between(np.array([0.0, 1e-4, 2e-4, 5e-4]), (-2e-4, 2e-4), 4)
     pressure = np.zeros(grid.shape)
     pressure[0, 3] = pressure[2, 1] = peak_pressure
@@ -134,11 +134,11 @@ def make_contact(case: Case, peak_pressure: float, **rigid: float) -> Frictional
 
 
 def test_changes_are_relative_to_full_sliding() -> None:
-    """Forces and moment of full sliding; creepages of ``f a / R``, shifts of ``f a**2 / R``, or more if they are."""
+    """The scales are forces and moment of full sliding, creepages ``f a / R``, shifts ``f a**2 / R`` or larger ones."""
     peak_pressure = 1e9
     slip = 0.1 * STEEL_CASE.hertz_half_width / 5e-3
     force = 0.1 * peak_pressure * (1e-4 * 1e-4 + 3e-4 * 1e-4)
-    # About the roller's middle, 0.25 mm: the cells' centres are 0.2 and 0.1 mm from it along x.
+    # The reference is the roller's middle, 0.25 mm: the cells' centres are 0.2 and 0.1 mm from it along x.
     moment = 0.1 * peak_pressure * (1e-8 * np.hypot(2e-4, 1.5e-4) + 3e-8 * np.hypot(1e-4, 0.5e-4))
     case = replace(STEEL_CASE, motion=Rolling(longitudinal_creepage=0.0))
     computed = make_contact(case, peak_pressure, x=0.0, y=1e-9, spin=0.0)
@@ -164,8 +164,8 @@ def test_changes_are_relative_to_full_sliding() -> None:
 def test_cells_double_until_changes_meet_accuracy(
     changes: list[float], accuracy: float, tried: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Of full sliding's force; what is prescribed may change, and the error that is stated is the last change
-    and what the columns leave.
+    """The changes are over full sliding's force; prescribed values may change; the stated error is the last change
+    plus the error of the columns.
     """
     case = replace(STEEL_CASE, motion=Rolling(longitudinal_creepage=1e-3))
     contact = make_contact(case, 1e9, x=0.0, y=1e-3, spin=0.0)
@@ -194,7 +194,7 @@ def test_cells_double_until_changes_meet_accuracy(
 
 
 def test_fastsim_uses_cells_of_normal_contact(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Finer cells do not reduce the error of its model."""
+    """FASTSIM keeps the cells of the normal contact: finer cells do not reduce the error of the model."""
     rows: list[int] = []
     original = module.frictional_contact
 
@@ -212,7 +212,7 @@ def test_fastsim_uses_cells_of_normal_contact(monkeypatch: pytest.MonkeyPatch) -
 
 
 def test_window_of_a_wheel_on_a_rail() -> None:
-    """The window holds the contact with the room that rolling needs, though it exceeds the one tried first."""
+    """The window contains the contact with the margin of rolling, although it exceeds the first window."""
     steel = Material(206e9, 0.28)
     wheel = Roller(radius=0.46, length=30e-3, profile=Ellipsoid(crown_radius=0.3), material=steel)
     motion = Rolling(longitudinal_creepage=1e-3)

@@ -1,4 +1,4 @@
-"""Columns that follow a pressure: which are split, what is read, when the refinement ends; made-up pressures."""
+"""Columns that adapt to made-up pressures: split columns, stated values, end of the refinement."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from contactstudy.contact.refinement.refinement import (
     ColumnPressure,
     Refinement,
     _change_error,
-    coarse_columns,
+    refine_coarsely,
     refine_columns,
     replace_pressure,
 )
@@ -45,7 +45,7 @@ def shape(
 
 
 def column_pressure(pressure: FloatArray) -> ColumnPressure:
-    """Contact whose columns that are not pressed are far from it."""
+    """Contact whose unloaded columns are far from it."""
     return ColumnPressure(np.asarray(pressure), lambda: np.where(pressure.any(axis=1), 0.0, np.inf))
 
 
@@ -96,7 +96,7 @@ def test_first_columns_are_symmetric_and_narrow_at_ends(length: float) -> None:
 
 def test_first_columns_split_at_curvature() -> None:
     fillet, kink = 3.0, 17.0
-    bent = AxialShape(
+    bent_shape = AxialShape(
         start=0.0,
         stop=LENGTH,
         half_width=HALF_WIDTH,
@@ -104,7 +104,7 @@ def test_first_columns_split_at_curvature() -> None:
         height=lambda x: 0.5 * np.maximum(x - kink, 0) ** 2 / fillet,
         face_beyond=(0.0, 0.0),
     )
-    widths = np.diff(first_edges(bent))
+    widths = np.diff(first_edges(bent_shape))
     baseline = np.diff(first_edges(shape()))
     assert widths.size > baseline.size
     assert widths[-len(baseline) // 3 :].max() < baseline.max()
@@ -148,11 +148,11 @@ def test_mirrored_pressure_is_refined_to_mirrored_columns(bump_position: float, 
     def bump(x: FloatArray) -> FloatArray:
         return np.asarray(1 + height * np.exp(-(((x - bump_position) / width) ** 2)))
 
-    there = refine_columns(make_column_solver(bump), shape(), 0.02)
-    back = refine_columns(make_column_solver(lambda x: bump(LENGTH - x)), shape(), 0.02)
-    assert back.peak == pytest.approx(there.peak, rel=2e-3)
-    assert abs(back.edges.size - there.edges.size) <= 4
-    assert abs(there.peak - float(bump(np.linspace(0, LENGTH, 20001)).max())) <= there.peak_error
+    original = refine_columns(make_column_solver(bump), shape(), 0.02)
+    mirrored = refine_columns(make_column_solver(lambda x: bump(LENGTH - x)), shape(), 0.02)
+    assert mirrored.peak == pytest.approx(original.peak, rel=2e-3)
+    assert abs(mirrored.edges.size - original.edges.size) <= 4
+    assert abs(original.peak - float(bump(np.linspace(0, LENGTH, 20001)).max())) <= original.peak_error
 
 
 @pytest.mark.parametrize("exponent", [0.5, 0.25])
@@ -177,7 +177,7 @@ def test_singular_end_has_intensity_and_regular_end_pressure(exponent: float) ->
     assert computed.values["end_pressure"][1] == pytest.approx(
         0.7 * LENGTH**-exponent * (1 + bend * LENGTH), abs=computed.errors["end_pressure"][1]
     )
-    # K is that of the row of cells beside y = 0.
+    # The intensity K belongs to the row of cells next to y = 0.
     assert law.intensity == pytest.approx(0.7 * np.sqrt(1 - Y[7] ** 2), rel=0.01)
 
 
@@ -194,7 +194,7 @@ def test_unresolved_pressure_ends_at_maximum_columns() -> None:
 
 
 def power_law(x: FloatArray) -> FloatArray:
-    """A pressure that is singular at the first end."""
+    """Pressure that is singular at the first end."""
     return np.asarray(0.7 / np.sqrt(x))
 
 
@@ -208,23 +208,23 @@ SCALED_PRESSURES = BUMPS | {
 
 
 @pytest.mark.parametrize(
-    ("unit", "place", "side"), [(2.0**-17, 0.0, 0), (1.0, -8.0, 0), (1.0, 64.0, 1), (2.0**-17, 0.0, 1)]
+    ("unit", "offset", "side"), [(2.0**-17, 0.0, 0), (1.0, -8.0, 0), (1.0, 64.0, 1), (2.0**-17, 0.0, 1)]
 )
 @pytest.mark.parametrize("name", SCALED_PRESSURES)
-def test_refinement_scales_with_units_position_and_side(name: str, unit: float, place: float, side: int) -> None:
-    """Found from either end, elsewhere and in other units, of length and of pressure, the columns are the same."""
+def test_refinement_scales_with_units_position_and_side(name: str, unit: float, offset: float, side: int) -> None:
+    """The columns do not depend on the side, the position, or the units of length and pressure."""
     pressure, unit_solver = 2.0**37 if unit < 1 else 1.0, make_column_solver(SCALED_PRESSURES[name])
 
     def unit_position(x: FloatArray) -> FloatArray:
-        """Distances from the first end, in the plain unit."""
-        return x / unit - place if side == 0 else LENGTH - (x / unit - place)
+        """Distances from the first end, in the original unit."""
+        return x / unit - offset if side == 0 else LENGTH - (x / unit - offset)
 
     def height(x: FloatArray) -> FloatArray:
         return np.asarray(0.02 * np.maximum(x - 17.0, 0) ** 2)
 
     def solve(edges: FloatArray, start: FloatArray | None, tolerance: float) -> ColumnPressure:
-        back = slice(None, None, 1 - 2 * side)
-        return column_pressure(pressure * unit_solver(unit_position(edges)[back], None, tolerance).pressure[back])
+        order = slice(None, None, 1 - 2 * side)
+        return column_pressure(pressure * unit_solver(unit_position(edges)[order], None, tolerance).pressure[order])
 
     face_beyond, exponents = (3.0, 0.0), (RIGID, np.nan)
     baseline = refine_columns(
@@ -240,22 +240,24 @@ def test_refinement_scales_with_units_position_and_side(name: str, unit: float, 
         ),
         0.02,
     )
-    shifted = AxialShape(
-        start=unit * place,
-        stop=unit * (place + LENGTH),
+    shifted_shape = AxialShape(
+        start=unit * offset,
+        stop=unit * (offset + LENGTH),
         half_width=unit * HALF_WIDTH,
         depth=unit * 0.05,
         height=lambda x: unit * height(unit_position(x)),
         face_beyond=(unit * face_beyond[side], unit * face_beyond[1 - side]),
         exponents=exponents[:: 1 - 2 * side],
     )
-    variant = refine_columns(solve, shifted, 0.02)
-    assert (variant.accurate, variant.first_edges.size) == (baseline.accurate, baseline.first_edges.size)
-    assert np.sort(unit_position(variant.edges)) == pytest.approx(baseline.edges, abs=1e-9)
+    shifted_result = refine_columns(solve, shifted_shape, 0.02)
+    assert (shifted_result.accurate, shifted_result.first_edges.size) == (baseline.accurate, baseline.first_edges.size)
+    assert np.sort(unit_position(shifted_result.edges)) == pytest.approx(baseline.edges, abs=1e-9)
     for key, factor in {"peak_pressure": pressure, "end_pressure": pressure, "end_load": pressure * unit}.items():
-        for values, expected in ((variant.values, baseline.values), (variant.errors, baseline.errors)):
+        for values, expected in ((shifted_result.values, baseline.values), (shifted_result.errors, baseline.errors)):
             assert np.array(values[key])[:: 1 - 2 * side] / factor == pytest.approx(expected[key], rel=1e-6), key
-    for computed, law in zip(variant.laws if side == 0 else variant.laws[::-1], baseline.laws, strict=True):
+    for computed, law in zip(
+        shifted_result.laws if side == 0 else shifted_result.laws[::-1], baseline.laws, strict=True
+    ):
         assert (computed is None) == (law is None)
         if computed and law:
             factor = pressure * unit**law.exponent
@@ -283,7 +285,7 @@ def test_sharper_ends_have_narrower_columns() -> None:
         sharp = face_beyond.index(2.0)
         assert 0.1 * MIN_END_COLUMN < widths[sharp] <= MIN_END_COLUMN
         assert 0.3 * END_COLUMN_WIDTH < widths[1 - sharp] <= END_COLUMN_WIDTH
-    assert min(outermost_widths("contact's end", (2.0, 2.0))) > END_COLUMN_WIDTH  # neither is pressed
+    assert min(outermost_widths("contact's end", (2.0, 2.0))) > END_COLUMN_WIDTH  # neither end is loaded
 
 
 def test_columns_near_contact_ends_are_narrow() -> None:
@@ -300,7 +302,7 @@ def test_columns_near_contact_ends_are_narrow() -> None:
 @pytest.mark.parametrize("unit", [2.0**-17, 1.0, 2.0**10])
 @pytest.mark.parametrize("side", [0, 1])
 def test_end_step_marks_end_columns(side: int, unit: float) -> None:
-    """Half the difference of two like columns counts four times; its square, 0.03 of the largest one, does not."""
+    """The end step is half of the difference 0.1 with weight 4; the jump of the squares is only 0.03 of the largest."""
     edges = np.concatenate([0.01 * np.arange(11), np.linspace(0.2, LENGTH, 100)])
     line_pressure = np.where(np.arange(edges.size - 1) == 0, 0.1, 0.2)
     line_pressure[40:] = 1.0
@@ -355,7 +357,7 @@ def test_replaced_pressure_scales_errors(name: str) -> None:
 
 
 def test_newly_loaded_end_has_error_of_its_pressure() -> None:
-    # Random case 4008736: coupled friction presses an end that the pressure alone does not reach.
+    # Random case 4008736: coupled friction loads an end that the pressure alone does not reach.
     request = shape()
     computed = refine_columns(make_column_solver(SCALED_PRESSURES["contact's end"]), request, 0.02)
     assert (computed.values["end_pressure"], computed.errors["end_pressure"]) == ((0.0, 0.0), [0.0, 0.0])
@@ -396,7 +398,7 @@ def test_end_samples_follow_splitting(caplog: pytest.LogCaptureFixture) -> None:
 
 @pytest.mark.parametrize("side", [0, 1])
 def test_unloaded_sharp_end_has_no_law(side: int) -> None:
-    """The other end is pressed and settles; the pressure begins one column behind the sharp end."""
+    """The other end is loaded and converges; the pressure begins one column behind the sharp end."""
 
     def line_pressure(x: FloatArray) -> FloatArray:
         position = x if side == 0 else LENGTH - x
@@ -444,7 +446,7 @@ def test_loaded_sharp_end_makes_contact_singular(side: int, law: EndLaw | None) 
 
 def test_rough_contact_uses_second_threshold() -> None:
     solve, request = make_column_solver(SCALED_PRESSURES["lesser peak"]), shape()
-    coarse, fine = coarse_columns(solve, request), refine_columns(solve, request, 0.02)
+    coarse, fine = refine_coarsely(solve, request), refine_columns(solve, request, 0.02)
     assert np.isin(coarse.edges, fine.edges).all()
     repeated = refine_columns(solve, request, 0.02, coarse.edges)
     assert repeated.edges == pytest.approx(fine.edges)

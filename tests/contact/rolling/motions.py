@@ -1,4 +1,4 @@
-"""A ball under a load that rolls or is shifted: every kind of motion that may be asked for."""
+"""Motions of a ball under a load that rolls or is shifted: every kind of prescription."""
 
 from __future__ import annotations
 

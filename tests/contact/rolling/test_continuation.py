@@ -1,4 +1,4 @@
-"""Where Newton's method does not meet prescribed forces at once, they are raised step by step."""
+"""Continuation in steps of prescribed forces, where Newton's method does not converge at once."""
 
 from __future__ import annotations
 
@@ -21,31 +21,32 @@ from tests.contact.rolling.test_coulomb import check_law, problem
 def test_failed_newton_raises_forces_stepwise(monkeypatch: pytest.MonkeyPatch) -> None:
     bound = np.random.default_rng(5).uniform(0.2, 1.0, 30)
     request = problem(np.zeros((2, 30)), bound, forces=0.9 * bound.sum() * np.array([0.6, 0.8]), skew=0.5)
-    complete: list[float] = []
+    force_fractions: list[float] = []
 
     def solve_small_steps(trial_problem: CoulombProblem, start: Guess | None = None) -> CoulombSolution:
         computed = solve_coulomb(trial_problem, start)
         if not len(trial_problem.modes):
             return computed
-        complete.append(float(np.hypot(*trial_problem.resultants) / np.hypot(*request.resultants)))
+        force_fractions.append(float(np.hypot(*trial_problem.resultants) / np.hypot(*request.resultants)))
         return replace(
-            computed, converged=computed.converged and (start is not None) and complete[-1] - reached[-1] < 0.3
+            computed,
+            converged=computed.converged and (start is not None) and force_fractions[-1] - reached_fractions[-1] < 0.3,
         )
 
-    reached = [0.0]
+    reached_fractions = [0.0]
     monkeypatch.setattr(coulomb, "solve_coulomb", solve_small_steps)
-    longer_request = replace(request, max_steps=500)
-    original = coulomb.Guess
+    request_of_many_steps = replace(request, max_steps=500)
+    original_guess = coulomb.Guess
 
     def record_guess(traction: np.ndarray, amplitudes: np.ndarray) -> Guess:
-        reached.append(complete[-1] if len(complete) > 1 else 0.0)
-        return original(traction, amplitudes)
+        reached_fractions.append(force_fractions[-1] if len(force_fractions) > 1 else 0.0)
+        return original_guess(traction, amplitudes)
 
     monkeypatch.setattr(coulomb, "Guess", record_guess)
-    computed = solve_with_continuation(longer_request)
+    computed = solve_with_continuation(request_of_many_steps)
     assert computed.converged
-    assert complete[0] == complete[-1] == pytest.approx(1.0)
-    assert len(complete) >= 5
+    assert force_fractions[0] == force_fractions[-1] == pytest.approx(1.0)
+    assert len(force_fractions) >= 5
     check_law(request, computed)
     assert computed.traction.sum(axis=1) == pytest.approx(request.resultants, abs=1e-6 * bound.sum())
 
@@ -57,7 +58,7 @@ def test_unreachable_forces_do_not_converge() -> None:
 
 
 def test_continuation_steps_are_linear_and_counted(monkeypatch: pytest.MonkeyPatch) -> None:
-    """From the resultants without unknown slips to the prescribed ones: longer steps after success, else shorter."""
+    """The resultants change linearly from those of zero unknown slip to the prescribed ones, in adaptive steps."""
     bound = np.random.default_rng(5).uniform(0.2, 1.0, 12)
     rng = np.random.default_rng(6)
     requested = 0.5 * bound.sum() * np.array([0.6, 0.8])

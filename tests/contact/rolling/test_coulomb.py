@@ -1,4 +1,4 @@
-"""Coulomb's law on few cells, where every condition can be looked at."""
+"""Coulomb's law on few cells, with a check of every condition in each cell."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from contactstudy.contact.rolling.coulomb import (
 def problem(
     rigid: FloatArray, bound: FloatArray, *, forces: FloatArray | None = None, skew: float = 0.0, seed: int = 0
 ) -> CoulombProblem:
-    """Cells with a random positive compliance; `skew` makes it as unsymmetric as that of rolling."""
+    """Problem of cells with a random positive compliance; `skew` makes it as unsymmetric as in rolling."""
     rng = np.random.default_rng(seed)
     unknown_count = 2 * bound.size
     root = rng.standard_normal((unknown_count, unknown_count)) / np.sqrt(unknown_count)
@@ -49,7 +49,7 @@ def problem(
 
 
 def check_law(request: CoulombProblem, solution: CoulombSolution) -> None:
-    """Every condition, looked at cell by cell."""
+    """Check every condition of the law in each cell."""
     slip = request.slip(solution.traction, solution.amplitudes)
     traction_size = np.hypot(*solution.traction)
     assert (traction_size <= request.bound * (1 + 1e-9)).all()
@@ -114,7 +114,7 @@ def test_law_violation_measures_violations() -> None:
 
 @pytest.mark.parametrize("length", [1.0, 1e-9])
 def test_all_cells_slip_under_prescribed_force(length: float) -> None:
-    """Along one axis the rigid slip is prescribed and large; force and moment are not, and no cell is left to stick."""
+    """The rigid slip along one axis is prescribed and large; the rigid motions of force and moment leave no stick."""
     rng = np.random.default_rng(3)
     bound = rng.uniform(0.2, 1.0, 12)
     rigid = np.stack([np.zeros(12), np.full(12, 30.0)])
@@ -149,7 +149,7 @@ def test_at_most_half_of_sticking_cells_slip(sticking: int) -> None:
 
 
 def test_half_of_cells_slip_in_any_order() -> None:
-    """Numbers in one order may be right by chance, so there are twenty."""
+    """Twenty orders of the numbers exclude a correct result by chance."""
     for seed in range(20):
         excess, sticks = np.random.default_rng(seed).uniform(0.5, 2.0, 2000), np.ones(2000, bool)
         computed = _select_largest_excess(excess > 1, excess, sticks)
@@ -165,7 +165,7 @@ def test_first_fraction_of_cells() -> None:
 
 
 def test_guess_keeps_slip_on_bound_and_sticking_tractions() -> None:
-    """A cell just below its bound counts as slipping; one on which nothing acts sticks. One step is all it takes."""
+    """A cell just below its bound counts as slipping, a cell without traction as sticking; one step suffices."""
     rng = np.random.default_rng(7)
     bound = rng.uniform(0.2, 1.0, 40)
     request = replace(problem(rng.standard_normal((2, 40)), bound, skew=0.5), max_steps=1)
@@ -180,7 +180,7 @@ def test_guess_keeps_slip_on_bound_and_sticking_tractions() -> None:
 
 @pytest.mark.parametrize(("forces", "limits"), [(False, (83, 468)), (True, (94, 520))])
 def test_steps_and_applications_are_few(*, forces: bool, limits: tuple[int, int]) -> None:
-    """Of many small problems, from partial slip to almost full sliding; cells that go round in circles among them."""
+    """Small problems from partial slip to almost full sliding, some with cycling cells, need few applications."""
     steps, applications = 0, []
     for seed in range(12):
         rng = np.random.default_rng(seed)
@@ -201,7 +201,7 @@ def test_steps_and_applications_are_few(*, forces: bool, limits: tuple[int, int]
 
 
 def test_cycling_cells_change_singly(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A compliance that is another one at every look: three cells soon stick and slip as they did before."""
+    """With a compliance that changes with each application three cells cycle: the share of changed cells decreases."""
     rng = np.random.default_rng(0)
     request = problem(rng.standard_normal((2, 3)), np.ones(3))
     fractions: list[float] = []
@@ -224,7 +224,7 @@ def test_cycling_cells_change_singly(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.mark.parametrize("seed", range(8))
 def test_prescribed_forces_meet_tolerance_of_full_sliding(seed: int) -> None:
-    """However small the unit of the forces is, or large."""
+    """The tolerance of the forces is relative to full sliding, in any unit of force."""
     rng = np.random.default_rng(seed)
     bound = rng.uniform(0.2, 1.0, 24)
     complete = problem(rng.standard_normal((2, 24)), bound, forces=0.5 * bound.sum() * np.array([0.6, 0.7]), seed=seed)

@@ -1,4 +1,4 @@
-"""FASTSIM: the linear theory on an ellipse, published numbers, and what it leaves out."""
+"""FASTSIM: the linear theory on an ellipse, published numbers, and neglected effects."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def test_small_creepages_match_kalker_forces(motion: Rolling) -> None:
 
 
 def test_fastsim_matches_published_spin_case() -> None:
-    """Published: 0.602 of full sliding with an elliptic bound (the program CONTACT's FASTSIM)."""
+    """The published force is 0.602 of full sliding with an elliptic bound (the program CONTACT's FASTSIM)."""
     motion = Rolling(lateral_creepage=-6.25e-4, spin=-0.625, model="fastsim")
     computed = rolling_ellipse(4e-3, 8e-3, 82e3, STEEL, 0.3, motion, (44, 50))
     assert float(computed["force_x"]) / (0.3 * 82e3) == pytest.approx(0.602, abs=0.012)
@@ -54,7 +54,7 @@ def test_narrow_contact_follows_kalker_spin_asymptote(poisson: float, table: flo
 
 
 def test_strip_traction_grows_to_bound() -> None:
-    """Material enters at the right; half a cell behind the edge, then a cell on and on."""
+    """Material enters at the right; the traction grows from half a cell behind the edge, then by a cell at a time."""
     bound = np.array([[0.0, 2.2, 2.2, 2.2, 2.2, 0.0], [0.0, 0.3, 0.3, 0.3, 0.3, 0.0]])
     growth = np.stack([np.full(bound.shape, 1.2), np.full(bound.shape, -1.6)])
     traction, lost = strip_tractions(bound, growth, 0.5)

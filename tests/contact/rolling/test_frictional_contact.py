@@ -1,4 +1,4 @@
-"""Stick and slip of whole contacts: motions, symmetry, coupling, free ends, and what is refused."""
+"""Stick and slip of whole contacts: motions, symmetry, coupling, free ends, and rejected input."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ PAIR = Counterbody(HALF)
 
 
 def ball(cells: int = 26, reach: float = 1.3, off: float = 0.0) -> xr.DataArray:
-    """A ball that closes on a circle of radius 1 or so."""
+    """Gap of a ball with a contact radius of about 1."""
     positions = reach * ((np.arange(cells) + 0.5) / cells * 2 - 1)
     return xr.DataArray(
         0.05 * ((positions[:, None] - off) ** 2 + positions**2),
@@ -43,9 +43,9 @@ def ball(cells: int = 26, reach: float = 1.3, off: float = 0.0) -> xr.DataArray:
     )
 
 
-def solve_rolling(motion: Rolling | Shift, **named: object) -> xr.Dataset:
+def solve_rolling(motion: Rolling | Shift, **keywords: object) -> xr.Dataset:
     """A ball on a half-space of its material."""
-    arguments = {"counterbody": PAIR, "gap": ball(), "load": LOAD, "friction": FRICTION, "body": HALF} | named
+    arguments = {"counterbody": PAIR, "gap": ball(), "load": LOAD, "friction": FRICTION, "body": HALF} | keywords
     settings_values = {
         name: arguments.pop(name) for name in ("coupled", "after", "max_iterations") if name in arguments
     }
@@ -54,7 +54,7 @@ def solve_rolling(motion: Rolling | Shift, **named: object) -> xr.Dataset:
 
 
 def check_law(result: xr.Dataset) -> None:
-    """Coulomb's law, cell by cell, from what is returned alone."""
+    """Check Coulomb's law in each cell, from the returned values alone."""
     assert result.converged
     traction_size, slip = np.hypot(result.traction_x, result.traction_y), np.hypot(result.slip_x, result.slip_y)
     bound = FRICTION * result.pressure
@@ -87,7 +87,7 @@ def test_coulomb_law_holds(motion: Rolling | Shift) -> None:
 
 
 def test_slip_follows_from_displacements() -> None:
-    """Of a shift: the rigid shift less what the surfaces give way, from the public operator."""
+    """The slip of a shift equals the rigid shift minus the surfaces' displacement, from the public operator."""
     result = solve_rolling(Shift(y=0.012, x=0.005))
     shifted = surface_displacement(
         HALF, 0 * result.pressure, traction_x=result.traction_x, traction_y=result.traction_y, components="xy"
@@ -96,7 +96,7 @@ def test_slip_follows_from_displacements() -> None:
     for axis, shift in (("x", 0.005), ("y", 0.012)):
         expected = shift - 2 * shifted[f"displacement_{axis}"]
         assert float(np.abs(result[f"slip_{axis}"] - expected).where(slips).max()) < 1e-9
-    # The same force, prescribed, needs the same shift.
+    # The same force, prescribed, causes the same shift.
     repeated = solve_rolling(Shift(force_y=float(result.force_y), force_x=float(result.force_x)))
     assert [float(repeated.shift_x), float(repeated.shift_y)] == pytest.approx([0.005, 0.012], rel=1e-5)
 
@@ -154,7 +154,7 @@ def test_material_mismatch_causes_slip(motion: Rolling | Shift) -> None:
 
 
 def test_free_rolling_of_different_bodies_has_creepage() -> None:
-    """Of a rigid ball on a compressible body, without any force."""
+    """A rigid ball rolls freely on a compressible body, without any force."""
     result = solve_rolling(Rolling(force_y=0.0, force_x=0.0), counterbody=None)
     check_law(result)
     assert abs(float(result.longitudinal_creepage)) > 1e-4
@@ -189,7 +189,7 @@ def test_rolling_between_free_ends_is_symmetric_about_the_middle() -> None:
     peak = float(result.pressure.max())
     assert np.abs(result.traction_y.values - result.traction_y.values[::-1]).max() < 1e-6 * peak
     assert np.abs(result.traction_x.values + result.traction_x.values[::-1]).max() < 1e-6 * peak
-    # Transverse traction near free ends, which no half-space has.
+    # Near free ends the tractions have a transverse component, unlike on a half-space.
     assert 0.05 < float(np.abs(result.traction_x).max()) / (FRICTION * peak) < 0.5
     assert abs(float(result.force_x)) < 1e-6 * float(result.force_y)
 
@@ -243,8 +243,8 @@ def test_history_of_shifts_continues_tractions() -> None:
     assert float(unloaded_step.traction_y.min()) < -0.02 * bound < 0.02 * bound < float(unloaded_step.traction_y.max())
     # Each half of a cycle has the shift of twice the friction and half the force, doubled.
     shift = float(loaded_step.shift_y)
-    back = float(unloaded_step.shift_y) + float(reversed_step.shift_y)
-    assert back == pytest.approx(-2 * shift, rel=1e-3)
+    reverse_shift = float(unloaded_step.shift_y) + float(reversed_step.shift_y)
+    assert reverse_shift == pytest.approx(-2 * shift, rel=1e-3)
     stepped = solve_rolling(Shift(force_y=0.3 * FRICTION * LOAD))
     stepped = solve_rolling(Shift(force_y=largest), after=stepped)
     assert np.abs(stepped.traction_y - loaded_step.traction_y).max() < 2e-3 * bound
@@ -324,7 +324,7 @@ def test_convergence_warning() -> None:
 
 
 def test_reference_x_is_middle_of_finite_gap() -> None:
-    """Cells on one side with nothing to touch, and another place along x, change no moment and no spin."""
+    """Further cells with an infinite gap, and another position along x, change no moment and no spin."""
     motion = Rolling(longitudinal_creepage=0.005, spin=0.02)
     baseline, gap = solve_rolling(motion, gap=ball(off=0.2)), ball(off=0.2)
     step = float(gap.x[1] - gap.x[0])
@@ -339,9 +339,9 @@ def test_reference_x_is_middle_of_finite_gap() -> None:
 
 def test_sticking_part_is_relative_to_loaded_area() -> None:
     result = solve_rolling(MOTIONS["all"])
-    is_pressed = result.pressure > 0
+    is_loaded = result.pressure > 0
     assert 0.05 < float(result.sticking_part) < 0.95
-    assert float(result.sticking_part) == pytest.approx(float(result.stick.sum() / is_pressed.sum()))
+    assert float(result.sticking_part) == pytest.approx(float(result.stick.sum() / is_loaded.sum()))
 
 
 @pytest.mark.parametrize(("poisson", "spin"), [(0.3, 10.0), pytest.param(0.0, 5.0, marks=pytest.mark.slow)])

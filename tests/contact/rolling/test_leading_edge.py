@@ -13,7 +13,7 @@ from contactstudy.verification.tribology import material, rolling_ellipse
 
 
 def strip(leading_length: float, cells: int = 20) -> np.ndarray:
-    """One row whose squared pressure, a parabola, ends at the given part of its last cell but four."""
+    """One row whose squared pressure, a parabola, ends at a given part of its last cell but four."""
     position = np.arange(cells) + 0.5
     edge = cells - 5 + leading_length
     pressure = np.sqrt(np.maximum((edge - position) * (position + 2), 0.0))
@@ -85,10 +85,10 @@ def test_derivative_is_exact_for_parabolas() -> None:
 
 
 def test_half_cell_offset_matches_published_creepage(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The program CONTACT on the same 1276 cells, with plain differences: force, moment and cells that stick.
+    """Force, moment and stick cells equal those of the program CONTACT on the same 1276 cells, with plain differences.
 
-    Its spin acts a third of a cell further ahead, which is a lateral creepage of that much spin. One shift gives all
-    three numbers; both ways converge to 0.625 of full sliding's force (docs/explanation/rolling.md).
+    CONTACT's spin acts a third of a cell further ahead, which equals a lateral creepage. One shift matches all
+    three numbers; both methods converge to 0.625 of full sliding's force (docs/explanation/rolling.md).
     """
     between_neighbours = 0.5 - EDGE_OFFSET
     monkeypatch.setattr(tractions, "_inside_length", lambda pressure: between_neighbours)
@@ -103,14 +103,14 @@ def test_half_cell_offset_matches_published_creepage(monkeypatch: pytest.MonkeyP
 
 
 def test_close_columns_share_slip_offset() -> None:
-    """Columns far narrower than the cells are long, and one as wide as they are long beside them."""
+    """Two columns are far narrower than the length of the cells; the width of the third equals this length."""
     pressure = np.vstack([strip(leading_length) for leading_length in (0.75, 1.3, 0.9)])
     x, widths, dy = np.array([0.0, 0.02, 2.0]), np.array([0.01, 0.03, 1.0]), 1.0
     weights = averaging_weights(x, widths, dy)
     assert weights is not None
     cells = RollingCells.of(pressure, pressure, weights)
     first_offset, second_offset, third_offset = (cells.offset[cells.unknown[0] == row][0] for row in range(3))
-    assert abs(first_offset - second_offset) < 0.01  # their own are 0.55 apart
+    assert abs(first_offset - second_offset) < 0.01  # their separate offsets differ by 0.55
     assert first_offset == pytest.approx(EDGE_OFFSET + (0.01 * 0.75 + 0.98 * 0.03 * 1.3) / (0.01 + 0.98 * 0.03))
     assert third_offset == pytest.approx(EDGE_OFFSET + 0.9)
     assert averaging_weights(np.arange(4.0), np.ones(4), 0.5) is None

@@ -1,4 +1,4 @@
-"""First guesses of stick and slip: from coarser cells, and from almost the same bound."""
+"""First guesses of stick and slip: from coarser cells, and from almost equal bounds."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def all_cells(bound: FloatArray) -> RollingCells:
 
 
 def plane(grid: Grid) -> FloatArray:
-    """Parts of the bound, in two components, that are linear on the grid."""
+    """Fractions of the bound, in two components, that are linear on the grid."""
     x, y = grid.x[:, None], grid.y
     return np.stack([0.02 * x + 0.03 * y + 0.05, 0.3 - 0.04 * x - 0.01 * y + 0 * y])
 
@@ -54,7 +54,7 @@ def test_sticking_guess_is_linear_in_bound(grid: Grid) -> None:
 
 
 def test_slipping_guess_keeps_bound() -> None:
-    """Towards cells that slip, those that stick come near the bound; what has none carries nothing."""
+    """Sticking cells approach the bound towards slipping cells; cells without a bound carry no traction."""
     sticks = np.broadcast_to(COARSE.x[:, None] < 3, COARSE.shape)
     bound = np.where(COARSE.y > 1, 2.0, 0.0) * np.ones(COARSE.shape)
     direction = np.array([0.6, 0.8])[:, None, None]

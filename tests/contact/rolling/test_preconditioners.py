@@ -1,4 +1,4 @@
-"""The rough inverse of the tangential compliance against dense matrices of unit loads that repeat as it does."""
+"""The approximate inverse of the tangential compliance against dense matrices of periodic unit loads."""
 
 from __future__ import annotations
 
@@ -33,13 +33,13 @@ def compute_displacements(edges: FloatArray, row: int) -> FloatArray:
 
 
 def offsets(period: int) -> IntArray:
-    """From each cell of a period to each, from less than minus half a period to plus half of it."""
+    """Offsets from each cell of a period to each other, from above minus half a period to plus half a period."""
     cell_indices = np.arange(period)
     return (np.subtract.outer(cell_indices, cell_indices) + period // 2 - 1) % period - (period // 2 - 1)
 
 
 def matrix_on(*, uniform: bool) -> FloatArray:
-    """Compliance (direction, row, column, load, row, column) on cells that repeat with twice the patch."""
+    """Compliance (direction, row, column, load, row, column) on cells with a period of twice the patch."""
     at_y = offsets(2 * COLUMNS)
     if uniform:
         table = compute_displacements(STEP * np.arange(2 * ROWS + 2.0), ROWS)
@@ -64,7 +64,7 @@ def test_preconditioner_inverts_periodic_compliance(*, uniform: bool, rolling: b
     matrix = matrix_on(uniform=uniform)
     shape, size = matrix.shape[:3], matrix[..., 0, 0, 0].size
     matrix = matrix.reshape(size, size)
-    if rolling:  # less what the cell ahead moves; a constant, which has no change, changes a little
+    if rolling:  # minus the displacement of the cell ahead; constants change a little
         period = 2 * COLUMNS
         change = (1 + 1.5 * 2 * np.pi / period) * np.eye(period) - np.roll(np.eye(period), 1, axis=1)
         matrix = np.kron(np.eye(size // period), change / DY) @ matrix

@@ -1,4 +1,4 @@
-"""Tractions by descent: the law without a guess of the cells that slip."""
+"""Tractions by descent: the law without a guess of the slipping cells."""
 
 from __future__ import annotations
 
@@ -105,7 +105,7 @@ def test_descent_on_graded_cells_in_any_unit(unit: float, pressure: float, *, fo
 
 @pytest.mark.parametrize("seed", range(3))
 def test_descent_steps_reduce_energy(seed: int) -> None:
-    """So it cannot go round in circles."""
+    """A decreasing energy excludes cycles."""
     request, energies = graded_problem(seed), []
     for steps in range(12):
         zero = np.zeros((2, CELLS))
@@ -121,7 +121,7 @@ def test_descent_steps_reduce_energy(seed: int) -> None:
 
 
 def test_descent_step_length_adapts() -> None:
-    """It begins with a slip that the stiffest cell gives way to, whose step is a tenth of the others'."""
+    """The first step suits the slip of the stiffest cell; the other cells need steps ten times as large."""
     stiffness, applied = np.geomspace(1.0, 10.0, CELLS), []
 
     def apply_compliance(traction: np.ndarray) -> np.ndarray:

@@ -1,4 +1,4 @@
-"""Forces and moments that full sliding can make, and rigid motions against their resultants."""
+"""Forces and moments that full sliding can cause, and rigid motions against their resultants."""
 
 from __future__ import annotations
 
@@ -24,21 +24,21 @@ def bound() -> FloatArray:
     "resultants", [[0.3, -0.1], [0.3, -0.1, 0.02], [0.0, 0.0, -1.0], [0.2, 0.0, 0.05], [1e3, 1e3, 30.0]]
 )
 def test_largest_multiple_is_minimum_over_directions(resultants: list[float]) -> None:
-    """Tractions along the slip of a rigid motion make the largest resultant along it: all motions, tried one by one."""
+    """Tractions along the slip of a rigid motion have the largest resultant along it; the test tries many motions."""
     resultant_weights, target = SURFACES.weights[: len(resultants)], np.array(resultants)
     rng = np.random.default_rng(0)
     computed = _largest_multiple(target, bound(), resultant_weights)
     sizes = np.array([(bound() * np.hypot(*work)).sum() for work in resultant_weights])
     best_direction, spread = target / sizes / np.hypot.reduce(target / sizes), 1.0
     minimum = np.inf
-    for _ in range(60):  # about the best so far, ever closer
-        attempts = best_direction + spread * rng.standard_normal((200, target.size))
-        attempts[0] = best_direction
-        attempts = attempts[(attempts * target / sizes).sum(axis=1) > 0] / sizes
-        slips = np.tensordot(attempts, resultant_weights, axes=1)
-        multiples = (bound() * np.hypot(slips[:, 0], slips[:, 1])).sum(axis=(1, 2)) / (attempts @ target)
+    for _ in range(60):  # directions about the best one so far, in ever smaller distances
+        trial_directions = best_direction + spread * rng.standard_normal((200, target.size))
+        trial_directions[0] = best_direction
+        trial_directions = trial_directions[(trial_directions * target / sizes).sum(axis=1) > 0] / sizes
+        slips = np.tensordot(trial_directions, resultant_weights, axes=1)
+        multiples = (bound() * np.hypot(slips[:, 0], slips[:, 1])).sum(axis=(1, 2)) / (trial_directions @ target)
         if multiples.min() < minimum:
-            minimum, best_direction = float(multiples.min()), attempts[multiples.argmin()] * sizes
+            minimum, best_direction = float(multiples.min()), trial_directions[multiples.argmin()] * sizes
             best_direction = best_direction / np.hypot.reduce(best_direction)
         spread *= 0.85
     assert computed == pytest.approx(minimum, rel=1e-4)
@@ -63,7 +63,7 @@ def test_single_force_is_limited_by_bound_sum() -> None:
 
 
 def test_resultants_are_the_work_on_rigid_motions() -> None:
-    """Motions about `middle`, anticlockwise seen from above."""
+    """The motions turn about `middle`, anticlockwise in a view from above."""
     for index, name in enumerate(("x", "y", "spin")):
         slip = SURFACES.rigid_slip(name, GRID.x[:, None], GRID.y)
         assert slip * SURFACES.areas == pytest.approx(SURFACES.weights[index], abs=1e-15)

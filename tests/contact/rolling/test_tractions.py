@@ -1,4 +1,4 @@
-"""Tractions under a given pressure: how much work they take, and that no unit decides anything."""
+"""Tractions under a given pressure: number of operator applications, independence of units."""
 
 from __future__ import annotations
 
@@ -35,10 +35,10 @@ EDGES = {
     "nested": np.linspace(-1.3, 1.3, 49),
 }
 LENGTH, PRESSURE = 2.0**-17, 2.0**37
-"""Units of length and pressure, powers of two: numbers in them differ by nothing else."""
+"""Units of length and pressure: powers of two, which change no digits."""
 
 POWERS = {"spin": (-1, 0), "force_x": (2, 1), "force_y": (2, 1), "moment_z": (3, 1)}
-"""Powers of both that what a motion prescribes has; creepages have none, shifts are lengths."""
+"""Powers of length and pressure in the prescribed values of a motion: creepages have none, shifts are lengths."""
 
 
 def scale_units(motion: Rolling | Shift) -> Rolling | Shift:
@@ -53,9 +53,9 @@ def scale_units(motion: Rolling | Shift) -> Rolling | Shift:
 
 
 def solve_friction(
-    motion: Rolling | Shift, edges: str, *, other_units: bool = False, **named: Any
+    motion: Rolling | Shift, edges: str, *, other_units: bool = False, **keywords: Any
 ) -> FrictionalContact:
-    """A ball on a body of its material, a little off the origin."""
+    """Contact of a ball on a body of its material, a little off the origin."""
     length, pressure = (LENGTH, PRESSURE) if other_units else (1.0, 1.0)
     cell_count = 48 if edges == "nested" else 26
     grid = Grid.between(length * EDGES[edges], (-1.3 * length, 1.3 * length), cell_count)
@@ -65,13 +65,13 @@ def solve_friction(
     shape = Shape(body, grid, ArrayKey(gap), prescribed_load, Counterbody(body))
     motion = scale_units(motion) if other_units else motion
     request = FrictionRequest(
-        motion=motion, friction=FRICTION, reference_x=0.1 * length, **({"coupled": False} | named)
+        motion=motion, friction=FRICTION, reference_x=0.1 * length, **({"coupled": False} | keywords)
     )
     return frictional_contact(shape, Settings(), request)
 
 
 def count_tangential(monkeypatch: pytest.MonkeyPatch) -> list[int]:
-    """List that grows with each application of the operator to tractions."""
+    """List with an entry per application of the operator to tractions."""
     calls: list[int] = []
     original = SurfaceOperator.compute_displacements
 
@@ -131,7 +131,7 @@ def test_results_scale_with_units(edges: str, name: str) -> None:
 
 @pytest.mark.parametrize("motion", [MOTIONS["all"], MOTIONS["shift"], replace(MOTIONS["all"], model="fastsim")])
 def test_position_along_axis_does_not_change_tractions(motion: Rolling | Shift) -> None:
-    """Spin and moment are about the middle, wherever that is."""
+    """Spin and moment refer to the middle at any position along the axis."""
 
     def contact_at(start: float) -> FrictionalContact:
         grid = Grid.between(start + EDGES["uniform"], (-1.3, 1.3), 26)
@@ -149,7 +149,7 @@ def test_position_along_axis_does_not_change_tractions(motion: Rolling | Shift) 
 
 @pytest.mark.parametrize("motion", [Rolling(longitudinal_creepage=0.03), Rolling(lateral_creepage=-0.03, spin=0.02)])
 def test_work_is_traction_times_slip(motion: Rolling) -> None:
-    """Of a rigid ball on a soft body, which the pressure moves along the surface as well."""
+    """The pressure of a rigid ball on a soft body displaces the surface tangentially and contributes to the work."""
     grid = Grid(x_range=(-1.3, 1.3), y_range=(-1.3, 1.3), cells_x=40, cells_y=40)
     gap = 0.05 * (grid.x[:, None] ** 2 + grid.y**2)
     body = HalfSpace(material=Material(0.91, 0.1))
@@ -164,7 +164,7 @@ def test_work_is_traction_times_slip(motion: Rolling) -> None:
             computed.rigid["x"] * computed.resultants["force_x"] + computed.rigid["y"] * computed.resultants["force_y"]
         )
         pushed += computed.rigid["spin"] * computed.resultants["moment_z"]
-        if model == "exact":  # the rest is done on what the pressure displaces
+        if model == "exact":  # the other work acts on the displacements by the pressure
             assert abs(computed.work - pushed) > 0.2 * pushed
 
 
@@ -194,7 +194,7 @@ def test_warnings_name_the_iteration() -> None:
 
 
 def test_violations_are_relative_to_rigid_slip(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Of prescribed and unknown motions together, about a middle that is not that of the contact."""
+    """The scale is the slip of prescribed and unknown motions together, about a middle outside the contact's centre."""
     scales: list[float] = []
 
     def record_scale(traction: Any, slip: Any, bound: Any, sticks: Any, scale: float) -> tuple[float, float]:
@@ -206,11 +206,11 @@ def test_violations_are_relative_to_rigid_slip(monkeypatch: pytest.MonkeyPatch) 
     rigid, grid = computed.tractions.rigid, computed.contact.shape.grid
     along_x = rigid["x"] - rigid["spin"] * grid.y
     along_y = rigid["y"] + rigid["spin"] * (grid.x[:, None] - 0.1)
-    is_pressed = computed.contact.pressure > 0
-    expected = np.hypot(along_x, along_y)[is_pressed].max()
+    is_loaded = computed.contact.pressure > 0
+    expected = np.hypot(along_x, along_y)[is_loaded].max()
     mirrored = np.hypot(rigid["x"] + rigid["spin"] * grid.y, rigid["y"] - rigid["spin"] * (grid.x[:, None] - 0.1))
     assert scales[-1] == pytest.approx(expected, rel=0.03)
-    assert mirrored[is_pressed].max() != pytest.approx(expected, rel=0.04)
+    assert mirrored[is_loaded].max() != pytest.approx(expected, rel=0.04)
 
 
 def test_fastsim_spin_sign_matches_exact_theory() -> None:
@@ -224,7 +224,7 @@ def test_fastsim_spin_sign_matches_exact_theory() -> None:
 
 
 def test_coupled_contact_scales_with_unit() -> None:
-    """A rigid ball on a compressible body: tractions and pressure are found in turns."""
+    """The tractions and the pressure of a rigid ball on a compressible body are solved alternately."""
     computed = []
     for length, pressure in ((1.0, 1.0), (LENGTH, PRESSURE), (2.0**17, 2.0**-37)):
         grid = Grid.between(length * EDGES["uniform"], (-1.3 * length, 1.3 * length), 26)
@@ -241,19 +241,19 @@ def test_coupled_contact_scales_with_unit() -> None:
 
 
 def test_slipping_leading_cell_has_slip() -> None:
-    """Under spin some of a column sticks, but not its leading cell, which is tied to the one behind."""
+    """Under spin a part of a column sticks, but not its leading cell, which depends on the cell behind."""
     computed = solve_friction(Rolling(lateral_creepage=0.03, spin=0.1), "uniform")
-    is_pressed, sticks = computed.contact.pressure > 0, computed.tractions.sticks
-    leading = is_pressed & ~np.pad(is_pressed, ((0, 0), (0, 1)))[:, 1:]
+    is_loaded, sticks = computed.contact.pressure > 0, computed.tractions.sticks
+    leading = is_loaded & ~np.pad(is_loaded, ((0, 0), (0, 1)))[:, 1:]
     assert (leading & ~sticks & sticks.any(axis=1)[:, None]).any()
     slip = np.hypot(*computed.tractions.slip)
-    assert (slip[is_pressed & ~sticks] > 0).all()
+    assert (slip[is_loaded & ~sticks] > 0).all()
     assert (slip[leading & ~sticks] > 1e-3).all()
 
 
 @pytest.mark.parametrize("columns", [1, 4])
 def test_contact_with_few_columns_and_many_rows(columns: int) -> None:
-    """Coarser cells exist down to a single column between free ends."""
+    """The coarser cells of a body between free ends have as few as one column."""
     body = FiniteLengthSpace(length=1.0, material=Material(0.91, 0.3))
     grid = Grid(x_range=(0.0, 1.0), y_range=(-2.0, 2.0), cells_x=columns, cells_y=256)
     gap = np.broadcast_to(0.05 * grid.y**2, grid.shape)
