@@ -110,14 +110,14 @@ def solve_film(
     Examples
     --------
     >>> from contactstudy import FiniteLengthSpace, Lubricant, Material, Roller, Sliding, profiles
-    >>> body = FiniteLengthSpace(length=1e-3, material=Material(210e9, 0.3))
-    >>> roller = Roller(radius=5e-3, length=1e-3, profile=profiles.Lundberg(amplitude=0.2e-6))
+    >>> body = FiniteLengthSpace(length=0.3e-3, material=Material(210e9, 0.3))
+    >>> roller = Roller(radius=5e-3, length=0.3e-3, profile=profiles.Lundberg(amplitude=0.4e-6))
     >>> oil = Lubricant.preset("heavy machine oil", 60.0)
-    >>> motion = Sliding(body_speed=2.0, roller_speed=2.0)
-    >>> case = Case(body=body, roller=roller, max_pressure=1e9, motion=motion, lubricant=oil)
+    >>> motion = Sliding(body_speed=1.0, roller_speed=1.0)
+    >>> case = Case(body=body, roller=roller, max_pressure=1.5e9, motion=motion, lubricant=oil)
     >>> result = solve_film(case, accuracy=0.1)
     >>> round(1e6 * float(result.central_film), 1)
-    0.3
+    0.2
     """
     film = _check_case(case, asperities, inlet, resolution)
     limit = checks.positive("accuracy", accuracy)

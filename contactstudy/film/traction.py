@@ -50,15 +50,15 @@ def film_traction(
 
     Examples
     --------
-    >>> from contactstudy import FiniteLengthSpace, Lubricant, Material, Roller, Sliding, profiles, solve_film
-    >>> body = FiniteLengthSpace(length=1e-3, material=Material(210e9, 0.3))
-    >>> roller = Roller(radius=5e-3, length=1e-3, profile=profiles.Lundberg(amplitude=0.2e-6))
+    >>> from contactstudy import HalfSpace, Lubricant, Material, Roller, Sliding, profiles, solve_film
+    >>> body = HalfSpace(material=Material(210e9, 0.3))
+    >>> roller = Roller(radius=5e-3, length=0.3e-3, profile=profiles.Lundberg(amplitude=0.4e-6))
     >>> oil = Lubricant.preset("heavy machine oil", 60.0).replaced(eyring_stress=5e6, limiting_shear=0.08)
-    >>> motion = Sliding(body_speed=2.0, roller_speed=2.0)
-    >>> case = Case(body=body, roller=roller, max_pressure=1e9, motion=motion, lubricant=oil)
+    >>> motion = Sliding(body_speed=1.0, roller_speed=1.0)
+    >>> case = Case(body=body, roller=roller, max_pressure=1.5e9, motion=motion, lubricant=oil)
     >>> curve = film_traction(case, solve_film(case, accuracy=0.1), [0.0, 0.01, 0.1])
     >>> [round(float(value), 3) for value in curve.traction_coefficient]
-    [0.0, 0.027, 0.038]
+    [0.0, 0.037, 0.044]
     """
     checks.instance("case", case, Case, "a Case")
     lubricant = case.lubricant
