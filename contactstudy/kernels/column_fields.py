@@ -9,16 +9,18 @@ direction of the load: all stresses under a pressure and its friction share the 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import chain
 from typing import NamedTuple
 
 import numpy as np
 
 from contactstudy.arrays.grid import Grid
+from contactstudy.arrays.peaks import lagrange_weights
 from contactstudy.arrays.points import Points
 from contactstudy.cache import ArrayKey, cached
-from contactstudy.checks import FloatArray, IntArray
+from contactstudy.checks import BoolArray, FloatArray, IntArray
 from contactstudy.kernels.corner_sums import (
     OFFSET_TOLERANCE,
     AlignedPoints,
@@ -35,6 +37,10 @@ from contactstudy.kernels.smooth_load import MomentLoads
 MAX_UNSPLIT_WIDTH = 0.15  # largest width of an unsplit column over the least depth. Accuracy.
 MAX_DIVISOR = 6  # largest number of common steps in the shortest distance between positions along y. Speed.
 POSITIONS_PER_BATCH = 16  # positions along x per evaluation of smooth loads. Speed.
+
+LATTICE_POINTS, LATTICE_STEP = 8, 0.125
+"""Number of positions along y of an interpolating polynomial, and their largest step over the depth. Accuracy: 1e-6 of
+the largest difference of the loads of adjacent cells."""
 
 FAR_DISTANCE, FAR_ERROR = 2.0, 1e-6
 """Distance along x of merged columns over the width of the window, and the relative error of their interpolation over
@@ -67,6 +73,12 @@ class LateralAxis:
     def aligned_groups(self) -> list[AlignedPoints]:
         """Groups of positions with equal offsets from the cells."""
         return aligned_points(self.y, self.first_edge, self.grid.dy)
+
+    @cached_property
+    def offset_count(self) -> float:
+        """Number of sets of cells of the grid's size that have every position at an equal offset from their cells."""
+        group_count, step = len(self.aligned_groups), common_step(self.y)
+        return group_count if step is None else min(group_count, _odd_count(step / self.grid.dy) * self.grid.dy / step)
 
     def uniform_layers(self, z: FloatArray, depth_indices: IntArray) -> list[Layer]:
         """Layers at some of the depths, of uniform loads on the grid's cells."""
@@ -114,6 +126,45 @@ class LateralAxis:
         return layers
 
 
+class Lattice(NamedTuple):
+    """Positions along y at which the field at some of the depths is evaluated, and interpolated from."""
+
+    y: FloatArray
+    matrix: FloatArray | None  # (position, y): interpolation; None if the positions are the given ones
+    depth_indices: IntArray
+
+    @classmethod
+    def of(cls, lateral: LateralAxis, step: float, depth_indices: IntArray) -> Lattice:
+        """Positions at whole steps from the centre of a cell."""
+        numbers = (lateral.y - lateral.grid.y[0]) / step
+        first_numbers = np.floor(numbers).astype(np.int64) - (LATTICE_POINTS // 2 - 1)
+        weights = lagrange_weights(np.arange(float(LATTICE_POINTS)), numbers - first_numbers)
+        lattice, indices = np.unique(first_numbers[:, None] + np.arange(LATTICE_POINTS), return_inverse=True)
+        matrix = np.zeros((lattice.size, lateral.y.size))
+        matrix[indices.reshape(weights.shape), np.arange(lateral.y.size)[:, None]] = weights
+        return cls(lateral.grid.y[0] + step * lattice, matrix, depth_indices)
+
+    def interpolate(self, field: FloatArray) -> FloatArray:
+        """Field (component, x, y, z) at the given positions."""
+        return field if self.matrix is None else np.asarray(self.matrix.T @ field)
+
+
+def _lattices(lateral: LateralAxis, z: FloatArray, is_refined: BoolArray) -> list[Lattice]:
+    """Return the lattices of all depths: with at most half as many offsets from the cells as the positions have."""
+    # The refined cells are centred about each position: their field is not interpolated.
+    steps_per_cell = np.divide(lateral.grid.dy, LATTICE_STEP * z, out=np.full(z.shape, np.inf), where=z > 0)
+    offset_counts = np.exp2(np.ceil(np.log2(np.maximum(steps_per_cell, 1.0))))
+    offset_counts[is_refined | (2 * offset_counts > lateral.offset_count)] = np.inf
+    lattices = []
+    for count in np.unique(offset_counts).tolist():
+        depth_indices = np.flatnonzero(offset_counts == count)
+        if np.isfinite(count):
+            lattices.append(Lattice.of(lateral, lateral.grid.dy / count, depth_indices))
+        else:
+            lattices.append(Lattice(lateral.y, None, depth_indices))
+    return lattices
+
+
 def _odd_count(ratio: float) -> int:
     """Least odd number of equal parts of a length `ratio` with no part larger than 1."""
     return 2 * max(0, int(np.ceil(0.5 * (ratio - 1) - OFFSET_TOLERANCE))) + 1
@@ -122,12 +173,14 @@ def _odd_count(ratio: float) -> int:
 class SplitColumns(NamedTuple):
     """Columns around each point, and merged columns far away."""
 
-    layers: list[Layer]  # points at their depths, and at the few depths of the interpolation of far columns
+    lattices: list[Lattice]  # positions along y of the near columns' field, and of the field of far columns
+    far_lattice: Lattice
+    layers: list[list[Layer]]  # of each lattice; `far_layers`: at the few depths of the interpolation of far columns
     far_layers: list[Layer]
     interpolation_z: FloatArray | None  # (z, depth): matrix of this interpolation; None if the depths are equal
     jumps: list[tuple[list[Jumps], list[list[Jumps]]]]
-    """For each position along x the jumps of near columns in the `shaped_layers`, and for either side the jumps of far
-    columns in the layers `far_layers`."""
+    """For each position along x the jumps of near columns in all `layers`, and for either side the jumps of far columns
+    in the layers `far_layers`."""
     first: int  # first loaded row of the grid, and the load (cell_x, y) on the rows from this row on
     load: FloatArray
 
@@ -145,23 +198,42 @@ def split_columns(
     x, y, z = (key.values for key in keys)
     radius = FAR_DISTANCE * (grid.y_range[1] - grid.y_range[0])
     depths, interpolation_z = interpolation_points(z, radius, FAR_ERROR)
-    depth_indices = np.arange(depths.size)
     if shape is None:
         loaded_rows = np.flatnonzero(cell_loads.values.any(axis=0))
-        first_row, load = int(loaded_rows[0]), cell_loads.values[:, loaded_rows[0] : loaded_rows[-1] + 1]
-        lateral = LateralAxis(grid, y, first_row, load.shape[1])
-        layers, far_layers = lateral.uniform_layers(z, np.arange(z.size)), lateral.uniform_layers(depths, depth_indices)
+        first, load = int(loaded_rows[0]), cell_loads.values[:, loaded_rows[0] : loaded_rows[-1] + 1]
+        fine_cells, is_refined = None, np.zeros(z.size, bool)
+    else:
+        fine_cells = FineCells(
+            load=cell_loads.values, shape=shape.values, grid=grid, extent=extent, image_sign=image_sign
+        )
+        first, load, is_refined = fine_cells.first, fine_cells.cell_loads, fine_cells.is_refined_along_y(z)
+    lateral = LateralAxis(grid, y, first, fine_cells.count if fine_cells else load.shape[1])
+    lattices, (far_lattice,) = (
+        _lattices(lateral, z, is_refined),
+        _lattices(lateral, np.array([radius]), np.array([False])),
+    )
+
+    def layers_of(lattice: Lattice, z: FloatArray, depth_indices: IntArray, *, fine: bool = False) -> list[Layer]:
+        axis = replace(lateral, y=lattice.y)
+        if fine_cells is None:
+            return axis.uniform_layers(z, depth_indices)
+        return axis.shaped_layers(z, depth_indices, fine=fine)
+
+    layers = [
+        layers_of(lattice, z, lattice.depth_indices[~is_refined[lattice.depth_indices]])
+        + layers_of(lattice, z, lattice.depth_indices[is_refined[lattice.depth_indices]], fine=True)
+        for lattice in lattices
+    ]
+    far_layers, near_layers = layers_of(far_lattice, depths, np.arange(depths.size)), list(chain.from_iterable(layers))
+    if fine_cells is None:
         edges, loads = mirror_edges(grid.x_edges, extent), add_images(load, image_sign, extent)
-        jumps = [_uniform_jumps(position, layers, far_layers, edges, loads, radius=radius) for position in x.tolist()]
-        return SplitColumns(layers, far_layers, interpolation_z, jumps, first_row, load=load)
-    fine_cells = FineCells(load=cell_loads.values, shape=shape.values, grid=grid, extent=extent, image_sign=image_sign)
-    lateral = LateralAxis(grid, y, fine_cells.first, fine_cells.count)
-    is_refined = fine_cells.is_refined_along_y(z)
-    layers = lateral.shaped_layers(z, np.flatnonzero(~is_refined), fine=False)
-    layers += lateral.shaped_layers(z, np.flatnonzero(is_refined), fine=True)
-    far_layers = lateral.shaped_layers(depths, depth_indices, fine=False)
-    jumps = list(_shaped_jumps(x, layers, far_layers, fine_cells, MAX_UNSPLIT_WIDTH * float(z.min()), radius=radius))
-    return SplitColumns(layers, far_layers, interpolation_z, jumps, fine_cells.first, load=fine_cells.cell_loads)
+        jumps = [
+            _uniform_jumps(position, near_layers, far_layers, edges, loads, radius=radius) for position in x.tolist()
+        ]
+    else:
+        max_width = MAX_UNSPLIT_WIDTH * float(z.min())
+        jumps = list(_shaped_jumps(x, near_layers, far_layers, fine_cells, max_width, radius=radius))
+    return SplitColumns(lattices, far_lattice, layers, far_layers, interpolation_z, jumps=jumps, first=first, load=load)
 
 
 def _uniform_jumps(
@@ -314,11 +386,19 @@ def columns_field(
     shape_key = None if shape is None else ArrayKey(shape)
     columns = split_columns(ArrayKey(load), shape_key, grid, extent, influence.load.sign_x, keys=axes)
     field = np.zeros((influence.components, x.size, z.size, y.size)).swapaxes(2, 3)
-    far_field = np.zeros((influence.components, x.size, y.size, columns.far_layers[0].depth_indices.size))
+    shape_of = (influence.components, x.size)
+    near_fields = [np.zeros((*shape_of, lattice.y.size, z.size)) for lattice in columns.lattices]
+    far_field = np.zeros((*shape_of, columns.far_lattice.y.size, columns.far_layers[0].depth_indices.size))
     for i, (position, (near_jumps, far_jumps)) in enumerate(zip(x.tolist(), columns.jumps, strict=True)):
-        _add_fields(field[:, i], influence, columns.layers, near_jumps, position)
+        start = 0
+        for near_field, layers in zip(near_fields, columns.layers, strict=True):
+            _add_fields(near_field[:, i], influence, layers, near_jumps[start : start + len(layers)], position)
+            start += len(layers)
         for side_jumps in far_jumps:
             _add_fields(far_field[:, i], influence, columns.far_layers, side_jumps, position)
+    for near_field, lattice in zip(near_fields, columns.lattices, strict=True):
+        field[..., lattice.depth_indices] = lattice.interpolate(near_field[..., lattice.depth_indices])
+    far_field = columns.far_lattice.interpolate(far_field)
     field += far_field if columns.interpolation_z is None else far_field @ columns.interpolation_z.T
     if np.isfinite(extent).all():
         field += far_images(columns.load, influence, grid, columns.first, points, extent=extent)

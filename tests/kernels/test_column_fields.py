@@ -81,7 +81,8 @@ def test_columns_match_finer_uniform_cells(load: Load, extent: str) -> None:
     influence, y = stresses_of(load), np.array([-0.4, 0.0, 0.1, 0.33, 0.9])
     expected = half_space_field(spread, influence, uniform, Points(X, y, Z), extent=EXTENTS[extent])
     computed = columns_field(cells, None, influence, graded, Points(X, y, Z), extent=EXTENTS[extent])
-    assert np.abs(computed - expected).max() < 2e-7 * np.abs(expected).max()
+    # The field of the columns is interpolated along y at the larger depth.
+    assert np.abs(computed - expected).max() < 1e-6 * np.abs(expected).max()
 
 
 @pytest.mark.parametrize("load", Load)

@@ -9,6 +9,7 @@ from contactstudy import Grid
 from contactstudy.arrays.points import Points
 from contactstudy.checks import FloatArray
 from contactstudy.kernels import field
+from contactstudy.kernels.column_fields import LateralAxis
 from contactstudy.kernels.convolution import centred_field
 from contactstudy.kernels.field import displacement_influence, half_space_field, half_space_influence, stress_influence
 from contactstudy.kernels.fine_cells import MAX_REFINED_DEPTH
@@ -30,6 +31,31 @@ def test_unaligned_positions_equal_single_positions() -> None:
     np.testing.assert_allclose(
         joint_field, np.concatenate(single_fields, axis=1), rtol=0, atol=1e-5 * np.abs(joint_field).max()
     )
+
+
+@pytest.mark.parametrize("load", Load)
+@pytest.mark.parametrize("shaped", [False, True])
+@pytest.mark.parametrize("kind", EDGES)
+def test_interpolated_lateral_positions_equal_single_positions(kind: str, load: Load, *, shaped: bool) -> None:
+    """Uniform loads have steps of the whole pressure at the edges of the cells."""
+    grid = Grid.between(EDGES[kind] * 4.0 / EDGES[kind][-1], (-1.2, 1.2), 24)
+    rng, influence = np.random.default_rng(3), stress_influence(load, 0.3)
+    cell_loads = pressure(grid) if shaped else rng.integers(0, 2, grid.shape).astype(np.float64)
+    x, y = np.array([0.0, 0.013, 1.7, 3.6]), np.append(np.sort(rng.uniform(-1.5, 1.5, 40)), 30.0)
+    z = grid.dy * np.array([0.0, 0.3, 1.0, 2.5, 7.9, 8.0, 30.0])
+    joint_field, *single_fields = (
+        half_space_field(
+            cell_loads,
+            influence,
+            grid,
+            Points(x, positions, z),
+            extent=(0.0, 4.0),
+            shape=cell_loads if shaped else None,
+        )
+        for positions in (y, *y[:, None])
+    )
+    assert LateralAxis(grid, y, 0, 24).offset_count == y.size
+    np.testing.assert_allclose(joint_field, np.concatenate(single_fields, axis=2), rtol=0, atol=1e-6)
 
 
 def pressure(grid: Grid) -> FloatArray:
