@@ -55,13 +55,13 @@ def test_quarter_space_has_one_face_load_and_half_space_none(half_space: HalfSpa
 
 
 @pytest.mark.parametrize(
-    ("kind", "distance"), [("exact", 0.0), ("mirror", 0.0), ("single-mirror", 0.1e-3), ("quarter", 0.0), ("half", 0.0)]
+    ("kind", "distance"), [("exact", 0.0), ("mirror", 0.0), ("single-mirror", 0.05e-3), ("quarter", 0.0), ("half", 0.0)]
 )
 def test_equivalent_loads_of_solved_pressure(kind: str, distance: float) -> None:
     steel = Material(206e9, 0.3)
     bodies = {"quarter": QuarterSpace(material=steel), "half": HalfSpace(material=steel)}
-    body = bodies.get(kind) or FiniteLengthSpace(length=1e-3, material=steel, model=kind)
-    roller = Roller(radius=6e-3, length=1e-3 - 2 * distance, profile=profiles.Lundberg(amplitude=0.2e-6))
+    body = bodies.get(kind) or FiniteLengthSpace(length=0.5e-3, material=steel, model=kind)
+    roller = Roller(radius=6e-3, length=0.5e-3 - 2 * distance, profile=profiles.Lundberg(amplitude=0.2e-6))
     result = solve(Case(body=body, roller=roller, max_pressure=1.2e9), stresses=False, accuracy=0.1)
     freed = kind not in ("mirror", "half")
     for depths in ([0.0], [1e-5, 1e-4]):

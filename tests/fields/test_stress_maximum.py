@@ -209,7 +209,7 @@ def test_requested_points_do_not_increase_error() -> None:
     length = 1.2e-3
     body = FiniteLengthSpace(length=length, material=Material(208e9, 0.3))
     case = Case(body=body, roller=Roller(radius=4e-3, length=length), max_pressure=1.8e9)
-    few = solve(case, accuracy=0.003)
+    few = solve(case, accuracy=0.003, x=[0.5 * length], y=[0.0], z=[15e-6])
     where = float(few.peak_von_mises_x)
     depths = [0.0, 1e-7, 3e-7, 1e-6, 2e-6, 15e-6]
     additional = solve(case, accuracy=0.003, x=[where, length - where], y=[0.0], z=depths)
@@ -251,7 +251,7 @@ def test_overshooting_polynomials_keep_sampled_maximum() -> None:
         body, computed.pressure, friction=0.1, x=[x], y=[y], z=[z], inside_cells=computed.pressure
     ).von_mises.item()
     assert float(computed["peak_von_mises"]) == pytest.approx(stress_at_maximum, rel=5e-3)
-    fine = solve(case, accuracy=0.002, y=[0.0], z=[1e-5])
+    fine = solve(case, accuracy=0.002, x=[1e-3], y=[0.0], z=[1e-5])
     assert abs(float(computed["peak_von_mises"] - fine["peak_von_mises"])) <= float(computed["peak_von_mises_error"])
 
 

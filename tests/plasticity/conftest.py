@@ -30,8 +30,8 @@ def line_contact() -> Callable[..., xr.Dataset]:
     """Make Hertz' line contact of half-width and peak pressure 1; weaker towards the ends of a given length."""
 
     def build(friction: float = 0.0, length: float | None = None, positions: int = 9) -> xr.Dataset:
-        y = np.linspace(-4, 4, 129)
-        z = np.linspace(0.025, 1.975, 40) if length is None else np.linspace(0.05, 1.95, 20)
+        y = np.linspace(-4, 4, 97)
+        z = np.linspace(0.05, 1.95, 20)
         stresses = hertz_strip(y[:, None], z, 1.0, 1.0, 0.3, friction)
         x = np.zeros(1) if length is None else (np.arange(positions) + 0.5) * length / positions
         distribution = np.ones(1) if length is None else 1 - 0.3 * np.abs(2 * x / length - 1) ** 2

@@ -32,7 +32,7 @@ CASE = Case(body=BODY, roller=Roller(radius=5e-3, length=0.4e-3), max_pressure=1
 
 @pytest.fixture(scope="module")
 def result():
-    return solve(CASE, accuracy=0.1)
+    return solve(CASE, accuracy=0.1, y=[0.0], z=[0.0, 50e-6])
 
 
 def test_result_contains_documented_variables_with_units(result) -> None:

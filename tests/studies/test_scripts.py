@@ -263,11 +263,7 @@ def test_rolling_script_draws_four_studies(tmp_path):
             del parameters["accuracy"]
             parameters |= {"cells_x": 3, "cells_y": 8, "window": 1.5}
         if name == "partial_slip":
-            parameters |= {
-                "field_x_over_a": [0.0, 1.0],
-                "field_y_over_a": [-0.8, 0.0, 0.8],
-                "field_z_over_a": [0.0, 0.4],
-            }
+            parameters |= {"field_x_over_a": [0.0, 1.0], "field_y_over_a": [0.0, 0.8], "field_z_over_a": [0.0, 0.4]}
         small_study = replace(
             study,
             base=parameters,

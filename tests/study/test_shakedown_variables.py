@@ -16,7 +16,8 @@ PASSAGE = {"field_y_over_a": np.linspace(-2.0, 2.0, 17).tolist()}
 
 @pytest.mark.slow
 def test_shakedown_limits_with_sufficient_positions(tmp_path):
-    run_study(small_study(base=BASE | PASSAGE, level="summary"), tmp_path, workers=0)
+    sweep = {"e_over_a": [1.0], "friction": [0.0, 0.1]}
+    run_study(small_study(base=BASE | PASSAGE, sweep=sweep, level="summary"), tmp_path, workers=0)
     study = open_study(tmp_path)
     assert study["shakedown_limit"].dims == ("e_over_a", "friction")
     assert study["shakedown_limit"].attrs["units"] == "1"

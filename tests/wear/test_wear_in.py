@@ -72,7 +72,7 @@ def test_step_sizes(worn):
 @pytest.mark.slow
 def test_wear_error_against_small_steps(sharp):
     case, grid = sharp
-    coarse, fine = (wear_in(case, K, distance=[5e3], grid=grid, tolerance=tolerance) for tolerance in (0.03, 3e-5))
+    coarse, fine = (wear_in(case, K, distance=[5e3], grid=grid, tolerance=tolerance) for tolerance in (0.03, 1e-4))
     difference = float(abs(coarse.wear_depth - fine.wear_depth).isel(distance=-1).max() / fine.wear_depth.max())
     assert difference < 2 * float(coarse.wear_error[-1])
     assert difference < 0.03
