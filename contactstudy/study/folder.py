@@ -1,13 +1,4 @@
-"""The folder of a study: its files, its locks, and the state of every case.
-
-::
-
-    FOLDER/study.json                 the study
-    FOLDER/batches/*.nc               finished cases, see :mod:`contactstudy.study.batches`
-    FOLDER/set-aside/                 damaged or foreign files
-    FOLDER/run.log, run.lock          log of all runs; lock of the current run
-    FOLDER/run-3-of-40.log, .lock     the same of a share
-"""
+"""The folder of a study: its files, its locks, and the state of every case (docs/reference/results_files.md)."""
 
 from __future__ import annotations
 

@@ -1,10 +1,8 @@
 """Unilateral contact by preconditioned conjugate gradients, under prescribed resultants or a prescribed approach.
 
-The scheme follows I. A. Polonsky and L. M. Keer, Wear 231 (1999) 206; two changes save most of the iterations:
-the descent direction is preconditioned by the inverse of the operator's spectrum, restricted to the contact (J. Zhao,
-E. A. H. Vollebregt, C. W. Oosterlee, Math. Comput. Sci. 9 (2015) 375, do so for Hertz' problem), and the gap is
-updated along the search direction while the contact area does not change. A safeguard limits each change of the contact
-area to the fraction that minimises the energy: many cells that enter at once may overshoot.
+The scheme follows I. A. Polonsky and L. M. Keer, Wear 231 (1999) 206, with a preconditioner (J. Zhao,
+E. A. H. Vollebregt, C. W. Oosterlee, Math. Comput. Sci. 9 (2015) 375), an update of the gap along the search direction
+while the contact area does not change, and a safeguard against cells that enter at once and overshoot.
 """
 
 from __future__ import annotations

@@ -1,15 +1,11 @@
 """Coulomb's law of friction on the cells of a contact, by a semi-smooth Newton method.
 
-With the tractions ``q`` (two components on each cell), the bound ``g = f p`` and the slip ``s = w - B q`` the law
-reads: ``|q| <= g`` everywhere; ``s = 0`` where ``|q| < g``; ``q = g s / |s|`` where ``s`` is not 0. ``w`` is the slip
-of rigid surfaces and ``B`` the compliance. For a set of slipping cells and their directions ``n`` the unknowns are
-``q`` where cells stick and, where they slip, the part ``a`` of ``q = g n + a n'`` across ``n``:
+The unknowns are the tractions ``q`` (two components on each cell) where cells stick and, where they slip along ``n``,
+the part ``a`` of ``q = g n + a n'`` across ``n``. With bound ``g``, rigid slip ``w`` and compliance ``B``:
 
-    stick:  w - B q = 0,        slip:  n' (w - B q) - (s n / g) a = 0,
+    stick:  w - B q = 0,        slip:  n' (w - B q) - (s n / g) a = 0.
 
-a linear system with the matrix ``T' B T + D`` and ``D >= 0``. Then sticking cells with tractions above the bound begin
-to slip, and slipping cells with slip against their traction begin to stick. Rigid slips with prescribed resultants are
-further unknowns.
+Rigid slips with prescribed resultants are further unknowns.
 """
 
 from __future__ import annotations

@@ -1,20 +1,10 @@
 """Tractions of a contact under Coulomb friction: after a shift, or in steady rolling.
 
-In steady rolling along +y the slip per distance is the rigid slip plus the derivative of the displacement along y.
-On cells the derivative follows from a cell and the two cells ahead, whose material arrives next:
+In rolling the derivative of the displacement along y is of second order at any offset b from a cell's centre:
 
     du/dy (y + b dy) = [(b - 3/2) u_0 + (2 - 2 b) u_1 + (b - 1/2) u_2] / dy,
 
-of second order at any offset b, inside the cell (b from -1/2 to 1/2) or outside it. The plain difference of neighbours
-is b = 1/2: half a cell late. The remaining error comes from the leading edge, where the traction begins as a root. It
-is linear in the part c of the leading cell inside the contact (more than 1 if the edge lies in the next cell), and
-vanishes if the foremost point lies 0.34 cells behind the edge, b = c - 0.84. A leading cell with a small part in the
-contact is not an unknown: it carries the same part of its bound as the cell behind, and b = 0.475. Both rules were
-fitted to Carter's solution. For any position of the edge in its cell, and creepages from small to almost full sliding,
-the error of the force is 1e-3 of full sliding at 14 cells per half-width, 5e-4 at 22.
-
-Where a column slips from end to end, the traction is the bound and does not begin as a root. Then b = 0: the direction
-of slip may turn within few cells, and another offset would cause an error of first order in the cell's length.
+from a cell and the two cells ahead. The offsets of docs/explanation/rolling.md are fitted to Carter's solution.
 """
 
 from __future__ import annotations
