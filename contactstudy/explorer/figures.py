@@ -20,15 +20,13 @@ from bokeh.plotting import figure
 from contactstudy.checks import FloatArray
 from contactstudy.explorer.images import Image, Line, Span
 
-FIRST_COLOR, SECOND_COLOR, NEUTRAL_COLOR = "#1f4e79", "#c05a00", "#8894a0"
-"""Colours of the first case, of the second case, and of all other cases."""
+FIRST_COLOR, SECOND_COLOR, NEUTRAL_COLOR = "#1f4e79", "#c05a00", "#8894a0"  # first case, second case, other cases
 
 PALETTE = "Viridis256"
 MARK_COLOR = "#e8513a"  # legible on every colour of the palette
 HEIGHT = 290
 TOOLS = "pan,wheel_zoom,box_zoom,reset,save"
-TRIANGLE = {"marker": "triangle", "size": 11, "fill_color": None, "line_width": 1.5}
-"""Marker of an unbounded value, at the top of the axes."""
+TRIANGLE = {"marker": "triangle", "size": 11, "fill_color": None, "line_width": 1.5}  # an unbounded value
 
 
 def _new_figure(**options: Any) -> Any:

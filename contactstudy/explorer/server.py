@@ -27,12 +27,10 @@ if TYPE_CHECKING:
     from contactstudy.explorer.cases import Cases
 
 HOST = "localhost"
-LOCAL_HOSTS = frozenset({"localhost", "127.0.0.1", "::1"})
-"""Host names of a request to this machine, with any port: users forward ports."""
+LOCAL_HOSTS = frozenset({"localhost", "127.0.0.1", "::1"})  # any port: users forward ports
 
 PORT, PORT_COUNT = 5006, 20  # First port, and number of ports that are tried
-SWITCH_INTERVAL = 2e-4
-"""Switch interval in seconds while a thread reads the study, so that the server answers; Python's default is 5 ms."""
+SWITCH_INTERVAL = 2e-4  # Seconds, while a thread reads the study and the server answers; Python's default is 5 ms
 
 
 def explore(study: xr.Dataset | str | Path) -> Any:

@@ -61,14 +61,9 @@ class ThermalProperties:
         warn_of_values(stacklevel=4, **{name: getattr(self, name) for name in units})
 
     @property
-    def heat_capacity(self) -> float:
-        """Heat capacity of a unit of volume, J/(m3 K)."""
-        return self.density * self.specific_heat
-
-    @property
     def diffusivity(self) -> float:
         """Thermal diffusivity ``kappa = lambda / (rho c)``, m2/s."""
-        return self.conductivity / self.heat_capacity
+        return self.conductivity / (self.density * self.specific_heat)
 
 
 MAX_SPREADS = 6.5  # Lengths of spreading beyond which the heat of a cell vanishes: erfc(6.5) = 4e-20

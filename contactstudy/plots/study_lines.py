@@ -34,8 +34,7 @@ END_LOADS = ("end_load_first", "end_load_last")  # Replace the peak pressure if 
 OPEN_MARK: dict[str, Any] = {"markersize": 6, "markerfacecolor": "white", "linestyle": "none"}
 OPEN_LABEL = "error not estimated"
 
-ESTIMATED_PREFIXES = ("peak_", "end_pressure_", "end_load_", "end_intensity", "contact_")
-"""Prefixes of results whose error is estimated or missing; prescribed scalars, such as a load, have other names."""
+ESTIMATED_PREFIXES = ("peak_", "end_pressure_", "end_load_", "end_intensity", "contact_")  # with errors
 
 LINE_HEIGHT = 0.17  # Height of a line of text, inches
 TICK_WIDTH, LEGEND_COLUMN = 18, 22  # letters of a name at the axis and in the legend next to the axes

@@ -206,10 +206,7 @@ def unit_in_metres(name: str, unit: object) -> float:
 
 
 def read_columns(path: str | Path, positions: tuple[str, ...], values: tuple[str, ...]) -> dict[str, FloatArray]:
-    """Columns of a CSV file by name, metres: `positions`, and exactly one of `values`; an empty field is NaN.
-
-    Format: docs/how-to/measured_profile.md.
-    """
+    """Columns of a CSV file by name, metres: `positions`, and exactly one of `values`; an empty field is NaN."""
     path = Path(path)
     lines = read_lines(path)
     header_line = next(lines, None)

@@ -18,7 +18,7 @@ from contactstudy.arrays.grid import Grid
 from contactstudy.arrays.variables import describe
 from contactstudy.case.case import Case
 from contactstudy.case.gridding import ACCURACY, TOLERANCE, check_accuracy, choose_grid
-from contactstudy.case.magnitudes import check_balanced, check_on_its_length, describe_inclination, warn_of_magnitudes
+from contactstudy.case.magnitudes import check_balanced, check_on_its_length, warn_of_magnitudes
 from contactstudy.case.motion import Sliding
 from contactstudy.contact.normal.contact import Contact, Settings, contact_of
 from contactstudy.contact.refinement.refined_contact import (
@@ -134,7 +134,9 @@ def contact_on_cells(case: Case, grid: Grid | None, roughness: xr.DataArray | No
         advice = f"{error}; choose_grid(case, window=..., margin=...) makes a wider one"
         if not case.tilt and case.load_position is None:
             raise WindowError(advice) from error
-        raise WindowError(f"{describe_inclination(case)}, and so deep at the roller's end that {advice}") from error
+        position = case.load_position
+        cause = f"tilt = {case.tilt:g} rad" if position is None else f"load_position = {position:g} m"
+        raise WindowError(f"{cause}, and so deep at the roller's end that {advice}") from error
     contact = _check_contact(case, contact)
     if not isinstance(case.motion, Sliding):
         request = FrictionRequest(

@@ -8,6 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
+from contactstudy.arrays.grid import centres_of
 from contactstudy.checks import BoolArray, FloatArray
 
 FIRST_COLUMN = 0.1  # width of the first columns at the ends, over the half-width. Accuracy: wider ones miss sharp ends.
@@ -144,8 +145,3 @@ def split_columns(edges: FloatArray, is_marked: BoolArray) -> FloatArray:
         if not is_too_wide.any():
             return edges
         edges = np.sort(np.concatenate([edges, centres_of(edges)[is_too_wide]]))
-
-
-def centres_of(edges: FloatArray) -> FloatArray:
-    """Centres of the columns between `edges`."""
-    return np.asarray(0.5 * (edges[1:] + edges[:-1]))

@@ -43,8 +43,7 @@ whose tractions are also solved on half of the cells and depend on two cells ahe
 WINDOW_STEP = 2 ** (1 / 6)  # ratio of consecutive windows: similar cases share the kernels of the ends. Speed.
 SMALL_SLOPE = 0.1  # slope of a corner up to which strains are small
 
-CELLS_Y, COARSE_CELLS_Y = (32, 64, 128, 256), 16
-"""Numbers of cells along y, of which the first sufficient one is used; and the first contact's number. Accuracy."""
+CELLS_Y, COARSE_CELLS_Y = (32, 64, 128, 256), 16  # along y, the first sufficient one; of the first contact. Accuracy
 
 MAX_CORNER_JUMP = 0.2
 """Jump of the slope of measured points times E*, over the peak, above which the peak is unbounded. Accuracy: the
