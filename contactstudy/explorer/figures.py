@@ -141,17 +141,13 @@ class StudyFigure:
         self,
         x: FloatArray,
         values: FloatArray,
-        errors: FloatArray | None,
+        errors: FloatArray | None,  # NaN: an open mark; None: exact values
         *,
-        marked_cases: list[tuple[int, float, str]],
+        marked_cases: list[tuple[int, float, str]],  # of the page: number along the parameter, value, colour
         labels: tuple[str, str],
-        ticks: dict[float, str] | None = None,
+        ticks: dict[float, str] | None = None,  # texts by position
     ) -> None:
-        """Draw values with bars of errors over a swept parameter; an unbounded value as a triangle at the top.
-
-        The mark of a value with the error NaN is open; without `errors` the values are exact. `marked_cases` are the
-        page's cases: number along the parameter, value, and colour. `ticks` are texts by position.
-        """
+        """Draw values with bars of errors over a swept parameter; an unbounded value as a triangle at the top."""
         is_finite = np.isfinite(values)
         bars = np.zeros(values.size) if errors is None else np.nan_to_num(errors)
         finite_values = [*values[is_finite], *(value for _, value, _ in marked_cases if np.isfinite(value))]

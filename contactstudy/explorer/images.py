@@ -115,17 +115,14 @@ class Line(NamedTuple):
 
 
 class Image(NamedTuple):
-    """Image (vertical, horizontal) of a field in a plane, limits and labels of both axes, and the limit of the colours.
-
-    `largest` is the position and size of the field's largest value within the limits, which pixels may miss.
-    """
+    """Image (vertical, horizontal) of a field in a plane, limits and labels of both axes, and limit of the colours."""
 
     values: Array
     horizontal: Span
     vertical: Span
     limit: float
     names: tuple[str, str]
-    largest: tuple[float, float, float]
+    largest: tuple[float, float, float]  # size and position of the largest value, which pixels may miss
     position: str = ""
 
 

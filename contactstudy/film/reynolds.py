@@ -193,10 +193,8 @@ class Faces:
     gradient: sparse.csr_array  # beyond the outermost faces the pressure is ambient
 
     def conduct_flow(self, flow_number: float, reduced: Law, height: FloatArray) -> PressureFlow:
-        """Return the flow by the gradient of the reduced pressure, eq. (402); the flow rises with any pressure step.
-
-        The flow is constant between two centres, and the film linear: the thinner film determines the flow.
-        """
+        """Return the flow by the gradient of the reduced pressure, eq. (402); the flow rises with any pressure step."""
+        # The flow is constant between two centres, and the film linear: the thinner film determines the flow.
         upstream, downstream = self.upstream @ height, self.downstream @ height
         factor = 2 * (upstream * downstream) ** 2 / (upstream + downstream) / flow_number
         slopes = self.gradient @ reduced.value

@@ -135,10 +135,7 @@ def truncate(text: str) -> str:
 
 
 class NumberParser:
-    """Parser of the numbers of one file, with one decimal mark.
-
-    A comma is the decimal mark unless it separates columns, a number has a point, or all may separate thousands.
-    """
+    """Parser of numbers with one decimal mark: a comma unless it separates columns or thousands, or one has a point."""
 
     def __init__(self, separator: str) -> None:
         self._comma_allowed = separator != ","

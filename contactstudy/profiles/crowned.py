@@ -43,8 +43,8 @@ class FullCrown(Shape):
     centre: float = 0.0
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "crown_radius", checks.positive("crown_radius", self.crown_radius, "metres"))
-        object.__setattr__(self, "centre", checks.finite("centre", self.centre, "metres"))
+        checks.store(self, crown_radius=checks.positive("crown_radius", self.crown_radius, "metres"))
+        checks.store(self, centre=checks.finite("centre", self.centre, "metres"))
 
     def drop(self, x: FloatArray, length: float) -> FloatArray:
         """Material removed (m) at distances `x` (m) from mid-length."""
@@ -98,15 +98,15 @@ class PartialCrown(Shape):
     dub_radius: float | None = None
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "straight_length", checks.not_negative("straight_length", self.straight_length, "m"))
-        object.__setattr__(self, "crown_radius", checks.positive("crown_radius", self.crown_radius, "metres"))
-        object.__setattr__(self, "dub_length", checks.not_negative("dub_length", self.dub_length, "metres"))
+        checks.store(self, straight_length=checks.not_negative("straight_length", self.straight_length, "m"))
+        checks.store(self, crown_radius=checks.positive("crown_radius", self.crown_radius, "metres"))
+        checks.store(self, dub_length=checks.not_negative("dub_length", self.dub_length, "metres"))
         if (self.dub_length > 0) != (self.dub_radius is not None):
             raise InvalidInputError(
                 "dub_length, dub_radius", (self.dub_length, self.dub_radius), "given both or neither"
             )
         if self.dub_radius is not None:
-            object.__setattr__(self, "dub_radius", checks.positive("dub_radius", self.dub_radius, "metres"))
+            checks.store(self, dub_radius=checks.positive("dub_radius", self.dub_radius, "metres"))
             if self.dub_radius > self.crown_radius:
                 raise InvalidInputError("dub_radius", self.dub_radius, f"at most crown_radius, {self.crown_radius:g} m")
 
@@ -172,7 +172,7 @@ class Ellipsoid(Shape):
     crown_radius: float
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "crown_radius", checks.positive("crown_radius", self.crown_radius, "metres"))
+        checks.store(self, crown_radius=checks.positive("crown_radius", self.crown_radius, "metres"))
 
     def drop(self, x: FloatArray, length: float) -> FloatArray:
         """Material removed (m) at distances `x` (m) from mid-length."""
@@ -202,7 +202,7 @@ class Sphere(Shape):
     radius: float
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "radius", checks.positive("radius", self.radius, "metres"))
+        checks.store(self, radius=checks.positive("radius", self.radius, "metres"))
 
     def drop(self, x: FloatArray, length: float) -> FloatArray:
         """Material removed (m) at distances `x` (m) from mid-length."""

@@ -75,10 +75,8 @@ def _sum_uneven_points(x: FloatArray, values: FloatArray) -> tuple[FloatArray, .
 
 
 def extract_ridge(x: FloatArray, y: FloatArray, heights: FloatArray) -> FloatArray:
-    """Heights (x) along the highest line of a roller from a map (x, y); NaN where half of a section is missing.
-
-    Least squares fit ``h = p(x) + a y + b x y + c y**2``; the line is ``y = -(a + b x) / (2 c)``.
-    """
+    """Heights (x) along the highest line of a roller from a map (x, y); NaN where half of a section is missing."""
+    # Least squares fit h = p(x) + a y + b x y + c y**2; the line is y = -(a + b x) / (2 c).
     is_measured = np.isfinite(heights)
     counts = is_measured.sum(axis=1)
     complete = 2 * counts > y.size
@@ -185,7 +183,7 @@ class Measured(Shape):
                 "remove_offset=True when reading",
             )
         if self.largest_spike is not None:
-            object.__setattr__(self, "largest_spike", checks.positive("largest_spike", self.largest_spike, "metres"))
+            checks.store(self, largest_spike=checks.positive("largest_spike", self.largest_spike, "metres"))
         if self.cutoff is not None:
             length = checks.positive("cutoff", self.cutoff, "metres")
             min_cutoff, max_cutoff = MIN_STEPS * float(np.diff(x).max()), float(x[-1] - x[0])
@@ -196,8 +194,7 @@ class Measured(Shape):
                 raise InvalidInputError("cutoff", length, allowed, "units are SI")
             checks.store(self, cutoff=length)
         check_outliers(x, drops, self.largest_spike)
-        object.__setattr__(self, "positions", tuple(x.tolist()))
-        object.__setattr__(self, "drops", tuple(drops.tolist()))
+        checks.store(self, positions=tuple(x.tolist()), drops=tuple(drops.tolist()))
 
     def __repr__(self) -> str:
         length, drop = (
