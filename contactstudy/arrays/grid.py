@@ -11,9 +11,7 @@ from contactstudy.checks import BoolArray, FloatArray
 from contactstudy.errors import InvalidInputError
 
 SPACING_TOLERANCE = 1e-4  # Deviation of uniform spacing over a cell, above single precision. Accuracy
-
 MAX_WIDTH_RATIO = 4.0  # Largest ratio of neighbouring widths with valid error estimates. Accuracy
-
 WIDTH_RATIO = 3.0  # ratio of neighbouring cells outside the contact. Speed.
 MIN_WIDTH = 1e-12  # least width of a cell over the grid's length: the rounding of the edges. Accuracy.
 TOP_ERROR = 0.02  # relative error of stresses on the top under a pressure of cells, from the page on limits. Accuracy.
@@ -47,8 +45,7 @@ class Grid:
     y_range: tuple[float, float]
     cells_x: int
     cells_y: int
-    _inner: tuple[float, ...] = field(default=(), repr=False)
-    """Edges between cells of different widths; empty for uniform cells."""
+    _inner: tuple[float, ...] = field(default=(), repr=False)  # edges between cells of different widths
 
     def __post_init__(self) -> None:
         for name in ("x_range", "y_range"):

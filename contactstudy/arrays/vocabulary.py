@@ -31,9 +31,7 @@ X, XY, XZ, YZ, XYZ, SCALAR = ("x",), ("x", "y"), ("x", "z"), ("y", "z"), ("x", "
 SLICE_DIMS, CHECK_DIMS = ("slice",), ("check",)
 EVALUATION_DIMS, PARAMETER_DIMS, SLIDE_ROLL_DIMS = ("evaluation",), ("parameter",), ("slide_roll_ratio",)
 AXES = ("x", "y", "z")  # along the roller's axis, along rolling, and into the body
-
 STRESSES = ("sigma_xx", "sigma_yy", "sigma_zz", "tau_xy", "tau_xz", "tau_yz")  # the order in every array
-
 COORDINATES = {  # coordinates of results; swept parameters stand in :data:`contactstudy.study.parameters.PARAMETERS`
     "x": Variable(X, "m", "x", "position along the axis", "from end I of the body"),
     "y": Variable(("y",), "m", "y", "position along rolling", "from under the roller's centre"),

@@ -72,7 +72,6 @@ class UsualRange(NamedTuple):
 
 LENGTH_RANGE = UsualRange(1e-5, 3.0, "m", ("mm", "µm"))  # From a pin of a watch to the roll of a mill
 STRENGTH_RANGE = UsualRange(1e5, 1e10, "Pa", ("GPa", "MPa"))  # From soft lead to hard metal
-
 USUAL_RANGES = {  # in engineering contacts, by quantity
     "young": UsualRange(1e6, 1.5e12, "Pa", ("GPa", "MPa")),  # soft rubber to diamond
     "radius": LENGTH_RANGE._replace(maximum=1.5),

@@ -23,7 +23,6 @@ from contactstudy.study.folder import Folder
 
 CaseIndex = tuple[int, ...]  # Index of a case along the study's dimensions
 FIELDS = ("pressure", "gap", "initial_gap", "von_mises")  # Fields that a loaded case keeps in memory
-
 STATUS = {  # Sentence for each status without figures
     "failed": "This case failed.",
     "skipped": "This case cannot be solved.",
@@ -32,7 +31,6 @@ STATUS = {  # Sentence for each status without figures
 }
 
 MAX_CACHED_CASES = 64  # Largest number of loaded cases in memory. Speed
-
 SUBJECTS: dict[str, tuple[str, ...]] = {  # numbers in order; a name with a final underscore is a prefix
     "pressure": ("peak_pressure", "peak_pressure_first", "peak_pressure_last", "peak_pressure_x", "peak_pressure_y"),
     "stresses": ("peak_von_mises", "peak_von_mises_z", "peak_von_mises_x", "peak_von_mises_y", "peak_"),

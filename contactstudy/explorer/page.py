@@ -35,7 +35,6 @@ from contactstudy.report.summary_table import NOT_ESTIMATED, OPEN_END, Summary, 
 
 NAMES, COLORS = ("case", "second case"), (FIRST_COLOR, SECOND_COLOR)  # Names and colours of the two cases
 MAX_SLIDER_OPTIONS = 60  # Number of values of a swept parameter up to which a slider replaces a list
-
 MEASURES = {  # Stress measures of the plane
     "von Mises stress": "von_mises",
     "largest principal stress": "principal_stress_1",

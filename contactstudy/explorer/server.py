@@ -28,7 +28,6 @@ if TYPE_CHECKING:
 
 HOST = "localhost"
 LOCAL_HOSTS = frozenset({"localhost", "127.0.0.1", "::1"})  # any port: users forward ports
-
 PORT, PORT_COUNT = 5006, 20  # First port, and number of ports that are tried
 SWITCH_INTERVAL = 2e-4  # Seconds, while a thread reads the study and the server answers; Python's default is 5 ms
 

@@ -27,13 +27,7 @@ from contactstudy.bodies.models import Body
 from contactstudy.checks import Array, FloatArray, IntArray
 from contactstudy.eigenstrain.stress_function import Splines, StressFunction
 from contactstudy.errors import ConvergenceWarning, InvalidInputError
-from contactstudy.fatigue.history import (
-    MIN_POSITIONS,
-    enclosing_balls,
-    label_points,
-    map_histories,
-    stack_history,
-)
+from contactstudy.fatigue.history import MIN_POSITIONS, enclosing_balls, label_points, map_histories, stack_history
 
 MIN_POSITIONS_FOR_ERROR = 2 * MIN_POSITIONS  # Minimum number of positions along y for an error estimate
 EQUAL_TOLERANCE = 1e-6  # Largest difference of equal stresses over the largest stress

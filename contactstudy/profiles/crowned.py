@@ -53,9 +53,7 @@ class FullCrown(Shape):
         reach = length / 2 + abs(self.centre)
         if self.crown_radius < reach:
             raise InvalidInputError(
-                "crown_radius",
-                self.crown_radius,
-                f"at least {reach:g} m, the distance to the roller's farther end",
+                "crown_radius", self.crown_radius, f"at least {reach:g} m, the distance to the roller's farther end"
             )
         return _arc_drop(np.minimum(np.abs(np.asarray(x) - self.centre), reach), self.crown_radius)
 
@@ -132,9 +130,7 @@ class PartialCrown(Shape):
         shift = self.dub_radius * sine
         if end - begin + shift > self.dub_radius:
             raise InvalidInputError(
-                "dub_radius",
-                self.dub_radius,
-                f"at least {(end - begin) / (1 - sine):g} m, to reach the roller's end",
+                "dub_radius", self.dub_radius, f"at least {(end - begin) / (1 - sine):g} m, to reach the roller's end"
             )
         crown_drop = _arc_drop(np.minimum(distance, begin), self.crown_radius)
         dub_drop = _arc_drop(np.maximum(distance - begin, 0.0) + shift, self.dub_radius) - _arc_drop(
@@ -212,9 +208,6 @@ class Sphere(Shape):
         """Radius of the roller (m), which must equal the sphere's."""
         if not np.allclose(radius, self.radius, rtol=1e-9, atol=0.0):
             raise InvalidInputError(
-                "radius",
-                self.radius,
-                f"the roller's radius, {np.max(radius):g} m",
-                "an Ellipsoid may have any radius",
+                "radius", self.radius, f"the roller's radius, {np.max(radius):g} m", "an Ellipsoid may have any radius"
             )
         return super().local_radius(x, length, radius)

@@ -17,13 +17,7 @@ from contactstudy.arrays.variables import numbers_in_si
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 from contactstudy.profiles.base import MIN_JUMP, Shape, SlopeJumps
-from contactstudy.profiles.column_files import (
-    check_positions,
-    check_values,
-    read_columns,
-    read_netcdf,
-    unit_in_metres,
-)
+from contactstudy.profiles.column_files import check_positions, check_values, read_columns, read_netcdf, unit_in_metres
 from contactstudy.profiles.instruments import Heights, is_instrument_file, read_heights, rotate_heights
 
 ALPHA = np.sqrt(np.log(2) / np.pi)  # Constant of transmission one half at the cut-off (ISO 16610-21)

@@ -39,7 +39,6 @@ if TYPE_CHECKING:
 
 WIDTH, HEIGHT = 6.4, 3.3  # Size of a figure, inches
 END_PANEL, LONG_CONTACT = 6.0, 15.0  # Length of the panel of an end, least length with a panel, in half-widths
-
 DOTS_PER_INCH = 110  # Dots per inch of images within a figure
 PIXELS_PER_INCH = 96  # Pixels of a page per inch
 MIN_SCALE, MAX_SCALE, SCREEN_WIDTH = 0.5, 1.4, 380  # Scales with legible labels, narrow screen in pixels

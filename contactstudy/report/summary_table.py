@@ -23,9 +23,7 @@ SINGULAR = "singular: unbounded towards a sharp end"
 CELL_MEAN = f"mean over the cell of largest pressure, {NOT_ESTIMATED}"
 OPEN_END = "no contact at this end"
 ENDS = {"first": "end I", "last": "end II"}  # Ends of the roller: suffixes of variables, and names in the table
-
 FILMS = ("central_film", "least_film", "end_film_ratio", "least_film_ratio")  # rows if present
-
 SCALARS = {  # Scalars that have a row if present and not zero, with the row's text
     "approach": "approach of roller and body",
     "tilt": "tilt",

@@ -27,7 +27,6 @@ from contactstudy.errors import StoreError
 from contactstudy.study.files import is_regular, netcdf_access
 
 STATUSES = ("ok", "failed", "skipped")  # States of a case in a batch, by their code
-
 TEXT_COLUMNS = {  # Text columns with their meanings
     "parameters": "parameters of the case as JSON, without those in contactstudy_shared",
     "message": "reason of a case that is not ok",

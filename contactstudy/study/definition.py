@@ -26,7 +26,6 @@ from contactstudy.study.plan import LEVELS, Axis, Plan, format_list, format_valu
 from contactstudy.study.profile_tables import resolve_files
 
 KEYS = ("name", "description", "level", "base", "sweep", "zip", "cases", "exclude")  # of a study file
-
 MAX_CASES = 1_000_000  # Combinations of one study, at most: half a gigabyte of identities and groups
 
 

@@ -31,7 +31,6 @@ if TYPE_CHECKING:
     from tornado.ioloop import IOLoop
 
 WAIT_SECONDS = 300.0  # Longest wait for a worker while a scheduler has none
-
 WORKER_ENVIRONMENT = {  # one thread; keeping the freed memory of arrays halves the time of a case
     "OMP_NUM_THREADS": "1",
     "MKL_NUM_THREADS": "1",

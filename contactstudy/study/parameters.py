@@ -368,7 +368,6 @@ _PARAMETERS = (
     ),
 )
 PARAMETERS: dict[str, Parameter] = {entry.name: entry for entry in _PARAMETERS}  # of a case, by name
-
 REQUIRED = (  # Groups of parameters; every case has exactly one parameter of each group
     ("young",),
     ("poisson",),

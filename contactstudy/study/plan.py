@@ -36,7 +36,6 @@ LEVELS = ("summary", "surface", "fields")  # Arrays that a study retains: none; 
 MAX_LISTED = 12  # Largest number of values of a swept parameter that are all shown
 MAX_CUBE_CELLS = 4  # Entries of the parameter cube per explicit case; cases of a sparser cube are listed along `case`
 BYTES_PER_CASE, BYTES_PER_CELL, BYTES_PER_POINT = 700, 4 * 8, 7 * 4  # sizes before compression
-
 LOCAL_PARAMETERS = frozenset(  # Parameters that do not change the operator of the surface. Speed
     {"friction", "tilt", "load_offset", "profile", "accuracy", "tolerance", "stresses", "entrainment_speed"}
 )

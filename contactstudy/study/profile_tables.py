@@ -28,7 +28,6 @@ Table = dict[str, Any]
 MAX_NESTING = 16  # Largest depth of profiles within profiles
 MAX_POINTS = 50_000  # Largest number of points of a measured profile
 DESIGN = ("design_pressure", "design_load")  # determine the amplitude: Pa, and N on the roller
-
 POINTS = ("positions", "drops")  # Fields that contain lists of lengths
 NESTED = ("left", "right", "profile")  # Fields that contain a profile
 FILE_FLAGS = ("remove_tilt", "remove_offset")

@@ -22,9 +22,7 @@ from contactstudy.profiles.base import check_drop, describe_profile, local_radiu
 
 KIND = "user"  # Kind of a profile of a user's class
 KEYS = ("class", "values", "content")  # class name, values, identity of the object
-
 LENGTHS = (1e-4, 1e-3, 1e-2, 1e-1)  # metres, of which drops enter the digest; a profile may be invalid for some
-
 MAX_LISTED_SIZE = 100  # Largest array that a file lists; a digest represents a larger array
 REMEDY = "give its values as numbers, texts or lists, or the shape as profiles.Measured(x, drop)"
 

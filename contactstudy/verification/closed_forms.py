@@ -192,13 +192,7 @@ def rectangle(
 
 
 def hertz_circle(
-    x: ArrayLike,
-    y: ArrayLike,
-    z: ArrayLike,
-    radius: float,
-    max_pressure: float,
-    poisson: float,
-    friction: float = 0.0,
+    x: ArrayLike, y: ArrayLike, z: ArrayLike, radius: float, max_pressure: float, poisson: float, friction: float = 0.0
 ) -> Stress:
     """Stresses under `p0 sqrt(1 - r^2/a^2)` and `q = f p` along `+y`: the problem of Hamilton (1983).
 

@@ -18,7 +18,6 @@ Operator = Callable[[FloatArray], FloatArray]
 
 ENTRY_OVERLAP = 0.1  # overlap from which on a cell enters the contact, over the tolerated violation. Speed.
 MIN_ENTRY_PRESSURE = 1e-12  # least pressure of a cell that enters the contact, over the largest pressure. Speed.
-
 MIN_LINEAR_FACTOR = 0.1  # least value of the linear factor in `restore`, over its constant: positive. Speed.
 ADDED_PRESSURE = 0.1  # pressure, over the largest, added to all cells if one side of the load has none. Speed.
 MAX_EXPONENT = 1e4  # largest slope of the exponential factor in `restore`. Speed.

@@ -12,13 +12,7 @@ import numpy as np
 from contactstudy.arrays.grid import centres_of
 from contactstudy.checks import BoolArray, FloatArray
 from contactstudy.contact.normal.problem import interpolate_columns
-from contactstudy.contact.refinement.columns import (
-    MAX_COLUMNS,
-    AxialShape,
-    find_overlooked,
-    first_edges,
-    split_columns,
-)
+from contactstudy.contact.refinement.columns import MAX_COLUMNS, AxialShape, find_overlooked, first_edges, split_columns
 from contactstudy.contact.refinement.laws import (
     EndLaw,
     Laws,
@@ -62,19 +56,12 @@ def _jumps(edges: FloatArray, pressure: FloatArray, power: float) -> FloatArray:
 LOGGER = logging.getLogger(__name__)
 
 FIRST_THETA, THETA_RATIO, MAX_THETA = 0.5, 0.7, 0.26  # First threshold, its factor, largest final one. Accuracy
-
 SECOND_THETA = THETA_RATIO * FIRST_THETA  # threshold of the jumps in a rough contact. Speed.
-
 THETA_PER_ERROR = 50.0  # over the least stated error; at 100 the error covered 96 to 99 % of the ends. Accuracy
-
 END_STEP_WEIGHT = 4.0  # weight of the step from the outermost column to a loaded end, extrapolated linearly. Accuracy.
-
 EDGE_COLUMN_WIDTH = 0.25  # Width over a of the columns within one half-width of the ends along x. Accuracy
-
 END_COLUMN_WIDTH = 0.012  # width over the half-width of the outermost column at a loaded end of the body. Accuracy.
-
 MIN_END_COLUMN, MIN_COLUMN = 2e-3, 2e-4  # Least widths over a, at a sharp end and anywhere. Accuracy
-
 CORNER_GROWTH = 0.25  # width of the columns next to a convex corner, over the distance to it. Accuracy.
 LEVEL_TOLERANCE = 1e-2  # tolerance of the contact between two splittings. Speed.
 VALUE_TOLERANCE = 1e-5  # tolerance of the contact of which values are taken. Accuracy.
@@ -84,8 +71,7 @@ class ColumnPressure(NamedTuple):
     """A contact on some columns."""
 
     pressure: FloatArray  # (column, y): pressure, Pa
-    opening: Callable[[], FloatArray]
-    """Least gap of each column under load, metres: array (column). Each call applies the operator once."""
+    opening: Callable[[], FloatArray]  # (column): least gap under load, metres; each call applies the operator
 
 
 Solve = Callable[[FloatArray, FloatArray | None, float], ColumnPressure]

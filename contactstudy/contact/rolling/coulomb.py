@@ -22,7 +22,6 @@ Operator = Callable[[FloatArray], FloatArray]
 
 GUESS_TOLERANCE = 1e-6  # distance from the bound, over the bound, within which a cell of a guess slips. Speed.
 DESCENT_INTERVAL = 15  # Newton steps without convergence after which a descent of the energy gives a new start. Speed.
-
 MAX_DIRECT_STEPS = 40  # Newton steps without convergence after which resultants are raised by steps. Speed.
 MIN_CONTINUATION_STEP = 1e-3  # least step of the resultants over the prescribed resultants. Speed.
 
@@ -195,12 +194,7 @@ class _NewtonSystem:
     """Linear system of one Newton step."""
 
     def __init__(
-        self,
-        problem: CoulombProblem,
-        traction: FloatArray,
-        slip: FloatArray,
-        sticks: BoolArray,
-        diagonal: FloatArray,
+        self, problem: CoulombProblem, traction: FloatArray, slip: FloatArray, sticks: BoolArray, diagonal: FloatArray
     ) -> None:
         self._problem, self._sticks, self._diagonal = problem, sticks, diagonal
         self._root = np.sqrt(problem.relative_areas)

@@ -28,17 +28,10 @@ from contactstudy.contact.rolling.coulomb import (
 )
 from contactstudy.contact.rolling.fastsim import solve_strips
 from contactstudy.contact.rolling.preconditioners import tangential_inverse
-from contactstudy.contact.rolling.surfaces import (
-    TANGENTIAL,
-    LeadingEdges,
-    Surfaces,
-    Tractions,
-    check_forces,
-)
+from contactstudy.contact.rolling.surfaces import TANGENTIAL, LeadingEdges, Surfaces, Tractions, check_forces
 from contactstudy.kernels.load import Load
 
 MIN_LEADING_LENGTH = 0.72  # part c of the leading cell in the contact below which its traction is no unknown. Accuracy.
-
 EDGE_OFFSET = -0.84  # position b of the slip less c. Accuracy.
 DEPENDENT_OFFSET, SLIDING_OFFSET = 0.475, 0.0
 """Position b of the slip in columns with a dependent leading cell, and in sliding columns. Accuracy."""
@@ -223,10 +216,7 @@ def solve_tractions(
 
 
 def _coulomb_problem(
-    motion: Shift | Rolling,
-    surfaces: Surfaces,
-    cells: RollingCells,
-    displaced: Mapping[Load, FloatArray],
+    motion: Shift | Rolling, surfaces: Surfaces, cells: RollingCells, displaced: Mapping[Load, FloatArray]
 ) -> CoulombProblem:
     """Coulomb's law on the cells, with the displacement under the pressure and the initial tractions."""
     grid, rolling = surfaces.grid, isinstance(motion, Rolling)
@@ -247,8 +237,7 @@ def _coulomb_problem(
     x, y = grid.x[rows], grid.y[columns] + cells.offset * grid.dy
     unit_slips = {name: surfaces.rigid_slip(name, x, y) for name in amplitudes}
     rigid = elastic_slip(displaced) + sum(
-        (amplitude * unit_slips[name] for name, amplitude in amplitudes.items() if name not in modes),
-        np.zeros((2, 1)),
+        (amplitude * unit_slips[name] for name, amplitude in amplitudes.items() if name not in modes), np.zeros((2, 1))
     )  # eq. (44)
     mode_weights = np.array([cells.gather(weights[list(amplitudes).index(name)]) for name in modes])
     return CoulombProblem(
@@ -288,11 +277,7 @@ def _solve_coarse(
 
 
 def _complete_tractions(
-    problem: CoulombProblem,
-    solution: CoulombSolution,
-    motion: Shift | Rolling,
-    cells: RollingCells,
-    surfaces: Surfaces,
+    problem: CoulombProblem, solution: CoulombSolution, motion: Shift | Rolling, cells: RollingCells, surfaces: Surfaces
 ) -> Tractions:
     """Tractions of a solution, with resultants and certificate recomputed from the tractions."""
     grid = surfaces.grid
