@@ -137,10 +137,7 @@ def recall(kind: str, key: Hashable) -> Any | None:
 
 
 def retain(kind: str, key: Hashable, value: Value, *, replace: bool = False) -> Value:
-    """Cache a value, and return the one that all threads share: the first of its key, or this one to `replace` it.
-
-    The arrays of the value become read-only.
-    """
+    """Cache a value with read-only arrays; return the shared one: the first of its key, or this one to `replace` it."""
     _protect(value)
     nbytes = nbytes_of(value)
     with _lock:

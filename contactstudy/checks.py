@@ -17,7 +17,7 @@ import numpy.typing as npt
 
 from contactstudy.errors import InvalidInputError, StoreError
 
-UNIT_SIZES: dict[str, dict[str, float]] = {
+UNIT_SIZES: dict[str, dict[str, float]] = {  # input units by their SI unit, and their sizes
     "m": {
         "m": 1.0,
         "mm": 1e-3,
@@ -44,7 +44,6 @@ UNIT_SIZES: dict[str, dict[str, float]] = {
     "rad/m": {"rad/m": 1.0, "1/m": 1.0, "rad/mm": 1e3, "1/mm": 1e3},
     "1": {"1": 1.0, "%": 0.01, "percent": 0.01},
 }
-"""Input units by their SI unit, and their sizes in this unit."""
 
 
 def factor_to(unit: str, name: str, input_unit: object) -> float:

@@ -17,13 +17,7 @@ from contactstudy.arrays.variables import in_si, labels, name_array
 from contactstudy.case.magnitudes import warn_of_values
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
-from contactstudy.profiles.column_files import (
-    check_positions,
-    check_values,
-    read_columns,
-    read_netcdf,
-    unit_in_metres,
-)
+from contactstudy.profiles.column_files import check_positions, check_values, read_columns, read_netcdf, unit_in_metres
 from contactstudy.profiles.instruments import Heights, is_instrument_file, read_heights, rotate_heights
 
 COORDINATE_TOLERANCE = 1e-3  # Largest difference of positions that count as equal, over a cell. Accuracy

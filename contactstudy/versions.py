@@ -7,8 +7,7 @@ from functools import cache
 from importlib.metadata import PackageNotFoundError, version
 
 PACKAGES = ("numpy", "scipy", "xarray", "netCDF4", "pyfftw")  # Packages on which results depend
-OPTIONAL_PACKAGES = ("dask", "matplotlib", "pandas", "panel", "clarabel")
-"""Optional packages; the extras `explore` and `shakedown` install the last two."""
+OPTIONAL_PACKAGES = ("dask", "matplotlib", "pandas", "panel", "clarabel")  # the last two are extras
 
 
 @cache

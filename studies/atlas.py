@@ -19,7 +19,7 @@ from scipy.spatial.distance import cdist
 from scipy.stats import qmc
 
 import contactstudy as cs
-from contactstudy.bearing.atlas import GROUPS, QUANTITIES, AtlasTable, to_groups
+from contactstudy.bearing.atlas import GROUPS, QUANTITIES, AtlasTable, even_variation
 
 YOUNG, RADIUS, PRESSURE = 210e9, 5e-3, 1e9
 """Scales, which the dimensionless results do not depend on."""
@@ -55,7 +55,9 @@ SOLVER_ERRORS = {
 def groups(count: int, seed: int) -> dict[str, np.ndarray]:
     """Return the groups of the first points of a Sobol sequence, even in the coordinates of the atlas."""
     unit = qmc.Sobol(len(GROUPS), seed=seed).random_base2(int(np.ceil(np.log2(count))))[:count]
-    return dict(zip(GROUPS, to_groups(unit, RANGES).T, strict=True))
+    low, high = even_variation(np.array([RANGES[name] for name in GROUPS]).T)
+    length, distance, crown, tilt, poisson = (low + unit * (high - low)).T
+    return dict(zip(GROUPS, (np.exp(length), distance**2, np.exp(crown), tilt, poisson), strict=True))
 
 
 def half_widths(points: dict[str, np.ndarray]) -> np.ndarray:

@@ -61,11 +61,10 @@ POINTWISE: dict[str, tuple[tuple[str, ...], Measure]] = {
     "hydrostatic": (STRESSES[:3], hydrostatic),
     **{f"principal_stress_{rank}": (STRESSES, partial(_principal, rank=rank)) for rank in (1, 2, 3)},
 }
-MEASURES: dict[str, tuple[tuple[str, ...], Measure]] = POINTWISE | {
+MEASURES: dict[str, tuple[tuple[str, ...], Measure]] = POINTWISE | {  # All measures: at a point, and of a rolling cycle
     name: (("tau_yz",), lambda stress, name=name: orthogonal_shear_range(stress)[name])
     for name in ("orthogonal_shear_range", "orthogonal_shear_amplitude")
 }
-"""All measures: at a point, and of a rolling cycle."""
 
 
 def measure(dataset: xr.Dataset, name: str) -> xr.DataArray:

@@ -12,11 +12,7 @@ from contactstudy.errors import InvalidInputError
 
 
 def labelled_cells(
-    name: str,
-    array: xr.DataArray,
-    *,
-    extent: tuple[float, float] = (-np.inf, np.inf),
-    infinite: bool = False,
+    name: str, array: xr.DataArray, *, extent: tuple[float, float] = (-np.inf, np.inf), infinite: bool = False
 ) -> tuple[FloatArray, Grid]:
     """Values (x, y) and grid of a DataArray on cell centres; `x_width`, or else the body's end, gives the edges."""
     # A DataArray without the dimension `bounds` cannot contain `x_bounds`.

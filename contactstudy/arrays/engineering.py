@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterable, Sequence
 from html import escape
 
-UNITS: dict[str, tuple[tuple[float, float, str], ...]] = {
+UNITS: dict[str, tuple[tuple[float, float, str], ...]] = {  # by SI unit: least value, size of the unit, name
     "Pa": ((1e8, 1e9, "GPa"), (0.0, 1e6, "MPa")),
     "m": ((1e-4, 1e-3, "mm"), (0.0, 1e-6, "\N{MICRO SIGN}m")),
     "N": ((1e3, 1e3, "kN"), (0.0, 1.0, "N")),
@@ -16,7 +16,6 @@ UNITS: dict[str, tuple[tuple[float, float, str], ...]] = {
     "rad": ((0.0, 1e-3, "mrad"),),
     "s": ((0.0, 1.0, "s"),),
 }
-"""Engineering units by SI unit: least size of a value in this unit, size of the unit in SI, and name."""
 
 ROUNDING = 1e-6  # relative rounding of a size that is compared with the least size of a unit
 NEGLIGIBLE = 1e-6  # fraction of a value below which an error counts as rounding

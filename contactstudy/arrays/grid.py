@@ -10,12 +10,8 @@ from contactstudy import checks
 from contactstudy.checks import BoolArray, FloatArray
 from contactstudy.errors import InvalidInputError
 
-SPACING_TOLERANCE = 1e-4
-"""Largest deviation of the spacing of uniform cells over a cell, above single precision. Accuracy."""
-
-MAX_WIDTH_RATIO = 4.0
-"""Largest ratio of the widths of neighbouring cells; error estimates are invalid above this ratio. Accuracy."""
-
+SPACING_TOLERANCE = 1e-4  # Deviation of uniform spacing over a cell, above single precision. Accuracy
+MAX_WIDTH_RATIO = 4.0  # Largest ratio of neighbouring widths with valid error estimates. Accuracy
 WIDTH_RATIO = 3.0  # ratio of neighbouring cells outside the contact. Speed.
 MIN_WIDTH = 1e-12  # least width of a cell over the grid's length: the rounding of the edges. Accuracy.
 TOP_ERROR = 0.02  # relative error of stresses on the top under a pressure of cells, from the page on limits. Accuracy.
@@ -49,8 +45,7 @@ class Grid:
     y_range: tuple[float, float]
     cells_x: int
     cells_y: int
-    _inner: tuple[float, ...] = field(default=(), repr=False)
-    """Edges between cells of different widths; empty for uniform cells."""
+    _inner: tuple[float, ...] = field(default=(), repr=False)  # edges between cells of different widths
 
     def __post_init__(self) -> None:
         for name in ("x_range", "y_range"):
@@ -186,8 +181,7 @@ class Grid:
         """Cell centres along x, metres."""
         if self.uniform:
             return np.asarray(self.x_range[0] + self.dx * (np.arange(self.cells_x) + 0.5))
-        edges = self.x_edges
-        return np.asarray(0.5 * (edges[1:] + edges[:-1]))
+        return centres_of(self.x_edges)
 
     @property
     def y(self) -> FloatArray:
@@ -228,3 +222,8 @@ def uniform_range(name: str, values: object) -> tuple[tuple[float, float], int]:
         index = int(error.argmax())
         raise InvalidInputError(name, f"{centres[index]:g}, {centres[index + 1]:g}", "uniformly spaced cell centres")
     return (float(centres[0] - step / 2), float(centres[-1] + step / 2)), centres.size
+
+
+def centres_of(edges: FloatArray) -> FloatArray:
+    """Centres of the cells between `edges`."""
+    return np.asarray(0.5 * (edges[1:] + edges[:-1]))

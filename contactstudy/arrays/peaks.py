@@ -38,10 +38,7 @@ def lagrange_weights(nodes: FloatArray, points: FloatArray) -> FloatArray:
 def interpolate_about(
     axes: Sequence[FloatArray], index: Sequence[int], values: FloatArray, neighbours: int
 ) -> tuple[list[FloatArray], FloatArray]:
-    """Points between both neighbours of a sample along each axis, and the points' values (component, *axes, ...).
-
-    One polynomial along each axis interpolates the sample and `neighbours` samples on either side.
-    """
+    """Points about a sample along each axis, and their values (component, *axes, ...), by `neighbours` on each side."""
     points, matrices = [], []
     for axis_count, (axis, centre) in enumerate(zip(axes, index, strict=True), start=1):
         # At an edge the polynomial takes all its samples from one side.
@@ -56,11 +53,6 @@ def interpolate_about(
     for axis_count, matrix in enumerate(matrices, start=1):
         values = np.moveaxis(np.tensordot(matrix, values, axes=(1, axis_count)), 0, axis_count)
     return points, values
-
-
-def peak_width(pressure: FloatArray, x: FloatArray, dy: float, column: int) -> float:
-    """Half-width of a pressure peak, metres: along x by the steeper flank, or along y, whichever is smaller."""
-    return min(variation_lengths(pressure, x, dy, column, rising=False))
 
 
 def variation_lengths(

@@ -20,9 +20,7 @@ from contactstudy.versions import version_of
 
 DERIVED = "follows from the other parameters"  # comment of a coordinate that a study does not sweep
 ERROR_KIND = "error_kind"  # attribute of a number: kind of its error, one of the two values below
-
-ESTIMATED, NOT_ESTIMATED = "estimated", "not estimated"
-"""Kinds of error: the variable ``<name>_error`` contains the error; no error is stated."""
+ESTIMATED, NOT_ESTIMATED = "estimated", "not estimated"  # whether ``<name>_error`` has the error
 
 _AFFIXES = sorted((tuple(pattern.split("{name}")) for pattern in RULES), key=lambda pair: -len("".join(pair)))
 """Prefix and suffix of each rule, the longest first: `peak_gap_x` is the position of a peak, not a peak."""

@@ -31,10 +31,7 @@ X, XY, XZ, YZ, XYZ, SCALAR = ("x",), ("x", "y"), ("x", "z"), ("y", "z"), ("x", "
 SLICE_DIMS, CHECK_DIMS = ("slice",), ("check",)
 EVALUATION_DIMS, PARAMETER_DIMS, SLIDE_ROLL_DIMS = ("evaluation",), ("parameter",), ("slide_roll_ratio",)
 AXES = ("x", "y", "z")  # along the roller's axis, along rolling, and into the body
-
-STRESSES = ("sigma_xx", "sigma_yy", "sigma_zz", "tau_xy", "tau_xz", "tau_yz")
-"""The six components, in the order of every array of stresses."""
-
+STRESSES = ("sigma_xx", "sigma_yy", "sigma_zz", "tau_xy", "tau_xz", "tau_yz")  # the order in every array
 COORDINATES = {  # coordinates of results; swept parameters stand in :data:`contactstudy.study.parameters.PARAMETERS`
     "x": Variable(X, "m", "x", "position along the axis", "from end I of the body"),
     "y": Variable(("y",), "m", "y", "position along rolling", "from under the roller's centre"),
@@ -208,7 +205,7 @@ ANALYSIS = {  # variables of :mod:`contactstudy.analysis`
     "width": Variable(SLICE_DIMS, "m", "", "width of the slice"),
 }
 
-FATIGUE = {  # variables of :mod:`contactstudy.fatigue`. The unit of a risk has the exponents of its life theory in it.
+FATIGUE = {  # variables of :mod:`contactstudy.fatigue`. The unit of a risk has the exponents of its life theory
     "window_remainder": Variable(XZ, "1", "", "stress at the borders of the window over the largest of the passage"),
     "dang_van": Variable(XZ, "Pa", r"\tau + \alpha \sigma_h", "Dang Van's equivalent shear stress"),
     "dang_van_shear": Variable(XZ, "Pa", r"\tau", "shear at the worst instant"),
@@ -393,23 +390,8 @@ ATLAS = {  # contacts of the atlas, in units of the Hertz line contact
     "end_load_ratio": Variable(SCALAR, "1", "", "load on the last half-width over the mean load per half-width"),
 }
 
-VARIABLES = (  # every variable of the package, without names made by a rule
-    CONTACT
-    | SLICE_MODEL
-    | FIELDS
-    | MEASURES
-    | ANALYSIS
-    | FATIGUE
-    | HEAT
-    | FILM
-    | ATLAS
-    | BEARING
-    | DESIGN
-    | WEAR
-    | PASSES
-    | STUDIES
-    | VERIFICATION
-)
+VARIABLES = CONTACT | SLICE_MODEL | FIELDS | MEASURES | ANALYSIS | FATIGUE | HEAT | FILM | ATLAS
+VARIABLES |= BEARING | DESIGN | WEAR | PASSES | STUDIES | VERIFICATION  # every one, without names made by a rule
 
 RULES = {  # names made from other variables or coordinates; their unit, symbol and meaning fill the braces
     "peak_{name}": Variable(SCALAR, "{units}", r"\max {symbol}", "largest {variable}"),

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cache, cached_property
 from importlib.resources import files
@@ -132,7 +131,7 @@ class AtlasTable:
     def coordinates(self, points: FloatArray) -> FloatArray:
         """Coordinates of points (point, group) from 0 to 1, over which the quantities vary evenly."""
         lows, highs = np.array([self.ranges[name] for name in GROUPS]).T
-        low, value, high = (_even_variation(np.atleast_2d(groups)) for groups in (lows, points, highs))
+        low, value, high = (even_variation(np.atleast_2d(groups)) for groups in (lows, points, highs))
         return np.asarray((value - low) / (high - low))
 
     @cached_property
@@ -212,17 +211,10 @@ class AtlasTable:
         return ratios
 
 
-def _even_variation(points: FloatArray) -> FloatArray:
+def even_variation(points: FloatArray) -> FloatArray:
     """Transform groups (point, group) to coordinates over which the quantities vary evenly."""
     length, distance, crown, tilt, poisson = points.T
     return np.stack([np.log(length), np.sqrt(distance), np.log(crown), tilt, poisson], axis=1)
-
-
-def to_groups(coordinates: FloatArray, ranges: Mapping[str, tuple[float, float]]) -> FloatArray:
-    """Return the groups of points with coordinates from 0 to 1: arrays (point, group)."""
-    low, high = _even_variation(np.array([ranges[name] for name in GROUPS]).T)
-    length, distance, crown, tilt, poisson = (low + coordinates * (high - low)).T
-    return np.stack([np.exp(length), distance**2, np.exp(crown), tilt, poisson], axis=1)
 
 
 @cache

@@ -194,10 +194,7 @@ def lamina_factors(result: xr.Dataset, *, laminae: int = 30) -> xr.Dataset:
 
 
 def lamina_loads(solution: xr.Dataset, case: Case, laminae: int) -> tuple[xr.Dataset, FloatArray]:
-    """Factors as in :func:`lamina_factors`, and the error of the loads, N/m, from the pressure's stated errors alone.
-
-    This error bounds a life, where errors of columns cancel.
-    """
+    """Factors as in :func:`lamina_factors`, and the error of the loads, N/m, from the stated errors of the pressure."""
     count = checks.count("laminae", laminae, minimum=2)
     slice_result = slice_model(replace(case, load_position=None, tilt=float(solution["tilt"])), slices=count)
     start, stop = case.contact_range

@@ -363,8 +363,7 @@ class Raceways:
         """
         loads, moments = broadcast_arguments(normal_load=normal_load, moment=moment)
         motion = self._label_series(
-            map_pairs(loads, moments, self.inner.solve_position),
-            map_pairs(loads, moments, self.outer.solve_position),
+            map_pairs(loads, moments, self.inner.solve_position), map_pairs(loads, moments, self.outer.solve_position)
         )
         return add_position_errors(motion)
 

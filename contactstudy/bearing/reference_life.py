@@ -233,13 +233,7 @@ def _solve_roller_loads(case: Case, laminae: int, accuracy: float) -> FloatArray
     return np.array(
         [
             width
-            * np.array(
-                [
-                    slices,
-                    slices * riser,
-                    *(factors["hertz_load_per_length"].values for factors in tables),
-                ]
-            ),
+            * np.array([slices, slices * riser, *(factors["hertz_load_per_length"].values for factors in tables)]),
             width * np.array([*no_errors, *(factors["hertz_load_per_length_error"].values for factors in tables)]),
             width * np.array([*no_errors, *common_errors]),
             [np.ones_like(slices), riser, *(factors["stress_riser"].values for factors in tables)],

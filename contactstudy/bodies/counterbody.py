@@ -40,7 +40,9 @@ class Counterbody:
         edges at the ends of both bodies, and a few further cells on overhanging ends.
         """
         if not isinstance(self.body, FiniteLengthSpace):
-            return _shift_grid(grid, -self.start)
+            if not grid.uniform:
+                return Grid.between(grid.x_edges - self.start, grid.y_range, grid.cells_y)
+            return replace(grid, x_range=(grid.x_range[0] - self.start, grid.x_range[1] - self.start))
         if grid.uniform:
             cell_count = max(4, round(self.body.length / grid.dx))
             return Grid(x_range=(0.0, self.body.length), y_range=grid.y_range, cells_x=cell_count, cells_y=grid.cells_y)
@@ -80,10 +82,3 @@ class Counterbody:
     def transfer_load(self, grid: Grid, load: FloatArray) -> FloatArray:
         """Transfer a load on the cells of `grid` to the counterbody's cells, with the same resultant."""
         return np.asarray(self.overlap(grid) @ load / self.grid_on_body(grid).widths[:, None])
-
-
-def _shift_grid(grid: Grid, shift: float) -> Grid:
-    """Return the cells after a shift along x."""
-    if grid.uniform:
-        return replace(grid, x_range=(grid.x_range[0] + shift, grid.x_range[1] + shift))
-    return Grid.between(grid.x_edges + shift, grid.y_range, grid.cells_y)

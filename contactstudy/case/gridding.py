@@ -95,10 +95,7 @@ def choose_grid(
     )
     min_counts = [
         max(4.0, float(np.ceil(span / half_width * checks.positive(name, cells) - 1e-9)))
-        for name, span, cells in (
-            ("cells_x", x_range[1] - x_range[0], cells_x),
-            ("cells_y", 2 * half_window, cells_y),
-        )
+        for name, span, cells in (("cells_x", x_range[1] - x_range[0], cells_x), ("cells_y", 2 * half_window, cells_y))
     ]
     if not min_counts[0] * min_counts[1] <= MAX_CELLS:
         raise InvalidInputError(

@@ -21,15 +21,7 @@ from contactstudy.profiles.crowned import FullCrown, PartialCrown
 from contactstudy.profiles.logarithmic import Logarithmic
 
 MIN_CONTACT_RATIO = 1.0  # Minimum contact length of a tilted roller at its end, over the half-width
-MIN_ARM_RATIO = 0.25
-"""Minimum distance of a balanced load from the roller's end, over the Hertz half-width."""
-
-
-def describe_inclination(case: Case) -> str:
-    """Describe the argument that determines a case's inclination, for messages."""
-    if case.load_position is not None:
-        return f"load_position = {case.load_position:g} m"
-    return f"tilt = {case.tilt:g} rad"
+MIN_ARM_RATIO = 0.25  # Minimum distance of a balanced load from the roller's end, over the Hertz half-width
 
 
 def check_balanced(case: Case) -> None:
@@ -80,8 +72,7 @@ class UsualRange(NamedTuple):
 
 LENGTH_RANGE = UsualRange(1e-5, 3.0, "m", ("mm", "µm"))  # From a pin of a watch to the roll of a mill
 STRENGTH_RANGE = UsualRange(1e5, 1e10, "Pa", ("GPa", "MPa"))  # From soft lead to hard metal
-
-USUAL_RANGES = {
+USUAL_RANGES = {  # in engineering contacts, by quantity
     "young": UsualRange(1e6, 1.5e12, "Pa", ("GPa", "MPa")),  # soft rubber to diamond
     "radius": LENGTH_RANGE._replace(maximum=1.5),
     "length": LENGTH_RANGE,
@@ -105,14 +96,10 @@ USUAL_RANGES = {
     "density": UsualRange(10.0, 3e4, "kg/m3", ("g/cm3",)),
     "specific_heat": UsualRange(50.0, 1e4, "J/(kg K)", ("J/(g K)",)),
 }
-"""Usual ranges in engineering contacts, by quantity."""
-
-DROP_POSITIONS = {"drop": 0.4, "end drop": 0.49}
-"""Distances from mid-length over the length at which the drop is checked."""
-
+DROP_POSITIONS = {"drop": 0.4, "end drop": 0.49}  # where the drop is checked: from mid-length, over the length
+# A crown is unusual if its drop over half the roller's length is below both this length (metres) and this fraction of
+# the roller's length. Usual crown radii range from 0.1 to some 100 m.
 MIN_CROWN_DROP, MIN_CROWN_FRACTION = 1e-7, 1e-5
-"""A crown is unusual if its drop over half the roller's length is below both this length (metres) and this fraction of
-the roller's length. Usual crown radii range from 0.1 to some 100 m."""
 
 Profiles = TypeVar("Profiles", bound=Shape)
 

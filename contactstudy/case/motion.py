@@ -71,8 +71,7 @@ class Sliding:
         return SurfaceSpeeds(self.body_speed, self.roller_speed)
 
 
-RESULTANTS = {"x": "force_x", "y": "force_y", "spin": "moment_z"}
-"""Forces and moment on the body, conjugate to the rigid motions."""
+RESULTANTS = {"x": "force_x", "y": "force_y", "spin": "moment_z"}  # conjugate to the rigid motions
 
 
 class StickSlip:

@@ -46,7 +46,7 @@ class Sampled(Shape):
         return np.where(np.isnan(interpolated), np.inf, interpolated)
 
 
-KINDS: dict[str, type[Any]] = {
+KINDS: dict[str, type[Any]] = {  # Classes of a case and its parts, by name
     kind.__name__: kind
     for kind in (
         *(Case, Roller, Lubricant, Material, HalfSpace, QuarterSpace, FiniteLengthSpace),
@@ -54,7 +54,6 @@ KINDS: dict[str, type[Any]] = {
         *(getattr(profiles, name) for name in profiles.__all__ if is_dataclass(getattr(profiles, name))),
     )
 }
-"""Classes of a case and its parts, by name."""
 
 
 def to_dict(part: Any) -> dict[str, Any]:

@@ -81,8 +81,8 @@ class ContactSettings:
 
     def __post_init__(self) -> None:
         checks.instance("coupled", self.coupled, (bool, np.bool_), "True or False")
-        object.__setattr__(self, "tolerance", checks.positive("tolerance", self.tolerance))
-        object.__setattr__(self, "max_iterations", checks.count("max_iterations", self.max_iterations))
+        checks.store(self, tolerance=checks.positive("tolerance", self.tolerance))
+        checks.store(self, max_iterations=checks.count("max_iterations", self.max_iterations))
 
 
 DEFAULTS = ContactSettings()  # the default settings

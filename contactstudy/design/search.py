@@ -102,8 +102,7 @@ class Evaluations:
     def find_earlier(self, fractions: FloatArray) -> Design | None:
         """Return an earlier design at the fractions of the ranges, or None."""
         return next(
-            (design for design in self.designs if np.abs(design.fractions - fractions).max() <= MIN_DIFFERENCE),
-            None,
+            (design for design in self.designs if np.abs(design.fractions - fractions).max() <= MIN_DIFFERENCE), None
         )
 
     def __call__(self, fractions: FloatArray) -> Design:

@@ -1,8 +1,6 @@
 """Residual stress of eigenstrains in layers of a half-space that change along y, and not along x.
 
-For one wave along y the plane problem in (y, z) becomes a problem over depth, with Airy's function
-``f(z) exp(i k y)`` and ``s_yy = f''``, ``s_zz = -k**2 f``, ``s_yz = -i k f'``; with no total strain along x the
-complementary energy (`stress_function`) is least where
+For one wave along y the complementary energy (`stress_function`) of Airy's function ``f(z) exp(i k y)`` is least where
 
     (1 - nu**2) / E  int f'' h'' + 2 k**2 f' h' + k**4 f h
         =  -int (e_yy + nu e_xx) h'' - k**2 (e_zz + nu e_xx) h + 2 i k e_yz h'

@@ -1,10 +1,8 @@
 """Stress functions of (x, z) from piecewise polynomials: equilibrium, free faces, least energy.
 
 In the plane Airy's function gives ``s_xx = f,zz``, ``s_zz = f,xx``, ``s_xz = -f,xz``; across the plane
-``t_xy = g,z``, ``t_yz = -g,x`` (S. P. Timoshenko, J. N. Goodier, Theory of Elasticity, 3rd ed. 1970, sections 17 and
-104). Faces are free where f and its slope, and g, vanish. With no strain along y the stress of the eigenstrain e makes
-the complementary energy least (the principle of minimum complementary energy with initial strains; K. Washizu,
-Variational Methods in Elasticity and Plasticity, 2nd ed. 1975, chapter 5):
+``t_xy = g,z``, ``t_yz = -g,x``. Faces are free where f and its slope, and g, vanish. The stress of the eigenstrain e
+makes the complementary energy least (K. Washizu, Variational Methods in Elasticity and Plasticity, 2nd ed. 1975):
 
     (1 - nu**2) / E  int lap f lap h  =  -int (e_xx + nu e_yy) h,zz + (e_zz + nu e_yy) h,xx - 2 e_xz h,xz
     (1 / G)  int grad g . grad h  =  -int 2 e_xy h,z - 2 e_yz h,x

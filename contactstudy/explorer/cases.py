@@ -23,18 +23,15 @@ from contactstudy.study.folder import Folder
 
 CaseIndex = tuple[int, ...]  # Index of a case along the study's dimensions
 FIELDS = ("pressure", "gap", "initial_gap", "von_mises")  # Fields that a loaded case keeps in memory
-
-STATUS = {
+STATUS = {  # Sentence for each status without figures
     "failed": "This case failed.",
     "skipped": "This case cannot be solved.",
     "excluded": "The study leaves this case out.",
     "missing": "This case is not solved yet.",
 }
-"""Sentence for each status without figures."""
 
 MAX_CACHED_CASES = 64  # Largest number of loaded cases in memory. Speed
-
-SUBJECTS: dict[str, tuple[str, ...]] = {
+SUBJECTS: dict[str, tuple[str, ...]] = {  # numbers in order; a name with a final underscore is a prefix
     "pressure": ("peak_pressure", "peak_pressure_first", "peak_pressure_last", "peak_pressure_x", "peak_pressure_y"),
     "stresses": ("peak_von_mises", "peak_von_mises_z", "peak_von_mises_x", "peak_von_mises_y", "peak_"),
     "film": (
@@ -58,7 +55,6 @@ SUBJECTS: dict[str, tuple[str, ...]] = {
     "cells and iteration": ("end_traction_residual", "converged", "iterations", "friction_steps"),
     "solution": ("seconds",),
 }
-"""Subjects with their numbers in order; a name with a final underscore is a prefix."""
 
 REMAINING_SUBJECT = "further numbers"  # Subject of all numbers that `SUBJECTS` lacks; precedes the subject of the cells
 SUBJECT_ORDER = [*list(SUBJECTS)[:-2], REMAINING_SUBJECT, *list(SUBJECTS)[-2:]]

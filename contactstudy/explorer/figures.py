@@ -20,15 +20,13 @@ from bokeh.plotting import figure
 from contactstudy.checks import FloatArray
 from contactstudy.explorer.images import Image, Line, Span
 
-FIRST_COLOR, SECOND_COLOR, NEUTRAL_COLOR = "#1f4e79", "#c05a00", "#8894a0"
-"""Colours of the first case, of the second case, and of all other cases."""
+FIRST_COLOR, SECOND_COLOR, NEUTRAL_COLOR = "#1f4e79", "#c05a00", "#8894a0"  # first case, second case, other cases
 
 PALETTE = "Viridis256"
 MARK_COLOR = "#e8513a"  # legible on every colour of the palette
 HEIGHT = 290
 TOOLS = "pan,wheel_zoom,box_zoom,reset,save"
-TRIANGLE = {"marker": "triangle", "size": 11, "fill_color": None, "line_width": 1.5}
-"""Marker of an unbounded value, at the top of the axes."""
+TRIANGLE = {"marker": "triangle", "size": 11, "fill_color": None, "line_width": 1.5}  # an unbounded value
 
 
 def _new_figure(**options: Any) -> Any:
@@ -143,17 +141,13 @@ class StudyFigure:
         self,
         x: FloatArray,
         values: FloatArray,
-        errors: FloatArray | None,
+        errors: FloatArray | None,  # NaN: an open mark; None: exact values
         *,
-        marked_cases: list[tuple[int, float, str]],
+        marked_cases: list[tuple[int, float, str]],  # of the page: number along the parameter, value, colour
         labels: tuple[str, str],
-        ticks: dict[float, str] | None = None,
+        ticks: dict[float, str] | None = None,  # texts by position
     ) -> None:
-        """Draw values with bars of errors over a swept parameter; an unbounded value as a triangle at the top.
-
-        The mark of a value with the error NaN is open; without `errors` the values are exact. `marked_cases` are the
-        page's cases: number along the parameter, value, and colour. `ticks` are texts by position.
-        """
+        """Draw values with bars of errors over a swept parameter; an unbounded value as a triangle at the top."""
         is_finite = np.isfinite(values)
         bars = np.zeros(values.size) if errors is None else np.nan_to_num(errors)
         finite_values = [*values[is_finite], *(value for _, value, _ in marked_cases if np.isfinite(value))]

@@ -18,8 +18,7 @@ PIXELS = (360, 150)  # Pixels of an image, horizontal and vertical
 END_REGION = 8.0  # Length of the region near an end, over the Hertz half-width
 REGIONS = ("whole length", "near end I", "near end II")
 
-PLANES = ("y = 0, along the roller", "x, across the roller", "z, at a depth")
-"""Planes of the stresses; the first letter is the axis across the plane."""
+PLANES = ("y = 0, along the roller", "x, across the roller", "z, at a depth")  # first the axis across the plane
 
 Span = tuple[float, float]
 
@@ -75,11 +74,6 @@ class CaseFields:
         return near_singular(self.dataset, self.singular_ends, x)
 
     @cached_property
-    def pressure_limit(self) -> float:
-        """Largest pressure that is drawn."""
-        return _limit(self.pressure, self.near_singular(self.cells[0]))
-
-    @cached_property
     def points(self) -> dict[str, FloatArray]:
         """Positions of the stresses along each axis."""
         return {axis: positions(self.dataset["von_mises"], axis).values for axis in "xyz"}
@@ -90,12 +84,6 @@ class CaseFields:
             source = self.dataset if name in self.dataset else self._load_stresses()
             self._stresses[name] = _values(measure(source, name), "xyz")
         return self._stresses[name]
-
-    def stress_limit(self, name: str = "von_mises") -> float:
-        """Largest value of a stress measure that is drawn."""
-        x = self.points["x"]
-        near_singular_end = self.near_singular(x) if self.has_pressure else np.zeros(x.size, dtype=bool)
-        return _limit(self.stress(name), near_singular_end)
 
 
 def _values(array: xr.DataArray, axes: str) -> FloatArray:
@@ -127,17 +115,14 @@ class Line(NamedTuple):
 
 
 class Image(NamedTuple):
-    """Image (vertical, horizontal) of a field in a plane, limits and labels of both axes, and the limit of the colours.
-
-    `largest` is the position and size of the field's largest value within the limits, which pixels may miss.
-    """
+    """Image (vertical, horizontal) of a field in a plane, limits and labels of both axes, and limit of the colours."""
 
     values: Array
     horizontal: Span
     vertical: Span
     limit: float
     names: tuple[str, str]
-    largest: tuple[float, float, float]
+    largest: tuple[float, float, float]  # size and position of the largest value, which pixels may miss
     position: str = ""
 
 
@@ -170,9 +155,9 @@ def axial_line(case: CaseFields, scale: Scale) -> Line:
 
 def top_image(case: CaseFields, scale: Scale, limits: Span) -> Image:
     """Return the pressure on the top of the body."""
-    _, y = case.cells
+    x, y = case.cells
     spans = (limits, (float(y[0]), float(y[-1])))
-    return _image(case.pressure, case.cells, spans, case.pressure_limit, scale, names="xy")
+    return _image(case.pressure, case.cells, spans, _limit(case.pressure, case.near_singular(x)), scale, names="xy")
 
 
 def plane_image(
@@ -194,7 +179,10 @@ def plane_image(
     if horizontal == "x":
         spans[0] = (max(spans[0][0], limits[0]), min(spans[0][1], limits[1]))
     axes = (points[horizontal], points[vertical])
-    image = _image(values, axes, (spans[0], spans[1]), case.stress_limit(name), scale, names=horizontal + vertical)
+    x = points["x"]
+    near_singular_end = case.near_singular(x) if case.has_pressure else np.zeros(x.size, dtype=bool)
+    limit = _limit(case.stress(name), near_singular_end)
+    image = _image(values, axes, (spans[0], spans[1]), limit, scale, names=horizontal + vertical)
     unit = scale.length_name.strip(" ()/")
     return image._replace(position=f"{normal} = {position / scale.length:.3g} {unit}")
 

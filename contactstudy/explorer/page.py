@@ -35,13 +35,11 @@ from contactstudy.report.summary_table import NOT_ESTIMATED, OPEN_END, Summary, 
 
 NAMES, COLORS = ("case", "second case"), (FIRST_COLOR, SECOND_COLOR)  # Names and colours of the two cases
 MAX_SLIDER_OPTIONS = 60  # Number of values of a swept parameter up to which a slider replaces a list
-
-MEASURES = {
+MEASURES = {  # Stress measures of the plane
     "von Mises stress": "von_mises",
     "largest principal stress": "principal_stress_1",
     "maximum shear stress": "maximum_shear",
 }
-"""Stress measures of the plane."""
 
 STYLE = """
 table { border-collapse: collapse; font-size: 14px; width: 100%; }

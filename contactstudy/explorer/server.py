@@ -27,12 +27,9 @@ if TYPE_CHECKING:
     from contactstudy.explorer.cases import Cases
 
 HOST = "localhost"
-LOCAL_HOSTS = frozenset({"localhost", "127.0.0.1", "::1"})
-"""Host names of a request to this machine, with any port: users forward ports."""
-
+LOCAL_HOSTS = frozenset({"localhost", "127.0.0.1", "::1"})  # any port: users forward ports
 PORT, PORT_COUNT = 5006, 20  # First port, and number of ports that are tried
-SWITCH_INTERVAL = 2e-4
-"""Switch interval in seconds while a thread reads the study, so that the server answers; Python's default is 5 ms."""
+SWITCH_INTERVAL = 2e-4  # Seconds, while a thread reads the study and the server answers; Python's default is 5 ms
 
 
 def explore(study: xr.Dataset | str | Path) -> Any:
@@ -86,11 +83,7 @@ def _check_installed() -> None:
 
 
 class AccessControl:
-    """Access to the server: the host names of requests, and a token in the first address, then in a cookie.
-
-    The check of the host defends against pages of other sites, whose names may resolve to this machine. The token
-    defends against other users of this machine.
-    """
+    """Access to the server: checks hosts, against pages of other sites, and a token, against users of this machine."""
 
     def __init__(self, port: int, hosts: Sequence[str] = ()) -> None:
         self.token = secrets.token_urlsafe(24)
@@ -181,28 +174,7 @@ class StudyLoader:
 
 
 def serve(folder: str | Path, *, port: int | None = None, hosts: Sequence[str] = (), show: bool = True) -> None:
-    """Serve the page of a study on this machine until Ctrl-C.
-
-    Parameters
-    ----------
-    folder : str or Path
-        The study's folder.
-    port : int, optional
-        Port of the page; default: the first free port from 5006 on.
-    hosts : sequence of str
-        Host names, in addition to localhost, 127.0.0.1 and [::1], that a browser may use, such as the name of a proxy.
-    show : bool
-        Whether to open the page in the browser.
-
-    Raises
-    ------
-    ContactStudyError
-        If the extra `explore` is not installed.
-    StudyFileError
-        If the folder holds no study.
-    InvalidInputError
-        If the port is taken.
-    """
+    """Serve the page of a study, for this machine and further `hosts` such as a proxy's, until Ctrl-C."""
     _check_installed()
     checks.instance("folder", folder, (str, Path), "the path of a study's folder")
     path = Path(folder)

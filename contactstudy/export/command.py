@@ -37,10 +37,7 @@ def export(
     select: Sequence[str] = (),
     out: Path | None = None,
 ) -> Path | None:
-    """Write summaries of a study, or a field or line of a case, as CSV; a field for VTK; a case or study for MATLAB.
-
-    Return the path; None if ``-`` prints the table.
-    """
+    """Write CSV (summaries of a study, field or line of a case), VTK or MATLAB; None if ``-`` prints the table."""
     from contactstudy.study import collect, open_study
     from contactstudy.study.files import load_result
 

@@ -41,11 +41,7 @@ def named_arrays(dataset: xr.Dataset, variables: str | Sequence[str] | None) -> 
 
 
 def to_table(
-    dataset: xr.Dataset,
-    variables: str | Sequence[str] | None = None,
-    *,
-    line: Line | None = None,
-    points: int = 101,
+    dataset: xr.Dataset, variables: str | Sequence[str] | None = None, *, line: Line | None = None, points: int = 101
 ) -> pd.DataFrame:
     """Return variables at their points, or interpolated along a line, as a table.
 

@@ -407,11 +407,7 @@ def ioannides_harris(
         with np.errstate(divide="ignore", invalid="ignore"):
             mean = depth_moment / volume
             density = np.where(volume > 0, volume / mean**exponents.depth, volume)
-        return (
-            density,
-            mean,
-            _cut_fraction(np.nan_to_num(excess), np.broadcast_to(depth, excess.shape), exponents),
-        )
+        return density, mean, _cut_fraction(np.nan_to_num(excess), np.broadcast_to(depth, excess.shape), exponents)
 
     def compute_sections(field: xr.DataArray) -> tuple[xr.DataArray, ...]:
         dimension, depth_positions = _depth_positions(field)

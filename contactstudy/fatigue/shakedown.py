@@ -27,13 +27,7 @@ from contactstudy.bodies.models import Body
 from contactstudy.checks import Array, FloatArray, IntArray
 from contactstudy.eigenstrain.stress_function import Splines, StressFunction
 from contactstudy.errors import ConvergenceWarning, InvalidInputError
-from contactstudy.fatigue.history import (
-    MIN_POSITIONS,
-    enclosing_balls,
-    label_points,
-    map_histories,
-    stack_history,
-)
+from contactstudy.fatigue.history import MIN_POSITIONS, enclosing_balls, label_points, map_histories, stack_history
 
 MIN_POSITIONS_FOR_ERROR = 2 * MIN_POSITIONS  # Minimum number of positions along y for an error estimate
 EQUAL_TOLERANCE = 1e-6  # Largest difference of equal stresses over the largest stress
@@ -378,10 +372,7 @@ class _Program:
         self.fixed_shear = np.sqrt(3 * (self.history[..., 3] ** 2 + self.history[..., 5] ** 2))
 
     def compute_balls(self, airy: FloatArray) -> tuple[Array, Array, Array]:
-        """Free stress along u, least von Mises stress at every point, and von Mises stress at every instant.
-
-        The stresses include the residual stress in the plane, of the coefficients `airy`.
-        """
+        """Free stress along u, least von Mises stress of every point, and von Mises stress of every instant."""
         v, xz = self.v + (self._v @ airy)[:, None], self.xz + (self._xz @ airy)[:, None]
         squared = v**2 + xz**2 + self.fixed_shear**2
         centre, radius = enclosing_balls(self.u[..., None], np.sqrt(squared))

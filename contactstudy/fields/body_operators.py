@@ -25,8 +25,7 @@ from contactstudy.overlapping.quadrature import Resolution
 from contactstudy.overlapping.surface import EndCorrection, EndKernel, EndRequest, end_kernel
 from contactstudy.threads import one_blas_thread
 
-REFERENCE_LENGTHS = 10.0
-"""Distance along y, in lengths of a finite-length body, at which its top has no displacement. A definition."""
+REFERENCE_LENGTHS = 10.0  # Distance along y, in lengths of the body, at which its top has no displacement
 
 
 class UniformOperator:

@@ -25,10 +25,7 @@ from contactstudy.fields.positions import Positions
 from contactstudy.fields.stress import stress_field
 
 SERIES_TERMS = 4  # terms of the Chebyshev series. Accuracy: the last one is part of the error.
-
-FIT_DISTANCES = np.array([0.35, 0.5, 0.7, 1.0])
-"""Distances from the edge, over the half-width, at which the field of the cells is accurate to 1e-3. Accuracy."""
-
+FIT_DISTANCES = np.array([0.35, 0.5, 0.7, 1.0])  # over a: cells are accurate to 1e-3. Accuracy
 MIN_CELLS = 8  # least number of loaded cells across a section, for edges accurate to a few hundredths of a cell
 
 

@@ -27,8 +27,7 @@ class TopLoad(NamedTuple):
     """A load in one direction: a factor times a distribution over the cells."""
 
     cell_loads: FloatArray  # (x, y): load per area on each cell, Pa
-    factor: float = 1.0
-    """Factor on `cell_loads`. Loads that differ by a factor share the fields that are computed for `cell_loads`."""
+    factor: float = 1.0  # on `cell_loads`; loads that differ by a factor share the fields of `cell_loads`
 
     @property
     def values(self) -> FloatArray:
@@ -104,8 +103,7 @@ class PrescribedLoads(NamedTuple):
     grid: Grid
     loads: Loads  # pressure and tractions on the cells
     labels: Labels  # coordinates of the cell centres
-    shape: FloatArray | None
-    """(x, y): pressure that determines the distribution of the loads inside the cells; None: uniform."""
+    shape: FloatArray | None  # (x, y): pressure that distributes the loads inside the cells; None: uniform
 
 
 def prescribed_loads(

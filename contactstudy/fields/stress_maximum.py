@@ -15,7 +15,7 @@ import numpy as np
 from scipy import ndimage
 
 from contactstudy.arrays.grid import TOP_ERROR, Grid
-from contactstudy.arrays.peaks import interpolate_about, peak_width
+from contactstudy.arrays.peaks import interpolate_about, variation_lengths
 from contactstudy.arrays.points import Points
 from contactstudy.bodies.models import Body, Extent
 from contactstudy.checks import BoolArray, FloatArray, IntArray
@@ -33,10 +33,7 @@ END_DISTANCES = np.array([0.0, 0.2, 0.45, 0.7, 1.0, 1.4, 2.0, 3.2, 6.0, 12.0, 20
 
 LATERAL_OFFSETS = np.array([-0.8, -0.4, 0.0, 0.4, 0.8])  # points along y, over the half-width of the section
 AXIS_DEPTHS = np.array([0.1, 0.2, 0.35, 0.5, 0.7, 1.0])  # depths below the axis, over the half-width
-
-MIN_SECOND_PEAK = 0.6
-"""Least peak of a searched half of the contact, over the largest: a lower peak may stress a free end more."""
-
+MIN_SECOND_PEAK = 0.6  # Least peak of a searched half over the largest: a lower one may stress a free end more
 SLIP_TOLERANCE = 1e-6  # tolerance of the traction of a slipping cell, over its bound
 RIM_CELLS = 2  # cells at the rim of the contact without accurate stresses on the top. Accuracy.
 
@@ -81,8 +78,7 @@ class Search(NamedTuple):
     extent: Extent  # ends of the body, metres
     inside_rim: BoolArray  # (x, y): cells inside the contact with accurate stresses on the top
     border: Border  # border between stick and slip
-    samples: list[Points]
-    """Centres of cells on the top and points below: about the peaks, then along the contact. Empty without pressure."""
+    samples: list[Points]  # centres of cells and points below, at peaks, then along the contact; may be empty
 
     @property
     def shallowest(self) -> float:
@@ -133,7 +129,7 @@ def place_search(body: Body, loads: Loads, grid: Grid) -> Search:
         )
     )
     for peak in _peaks(column_maxima, symmetric=symmetric):
-        width = peak_width(pressure, grid.x, grid.dy, peak)
+        width = min(variation_lengths(pressure, grid.x, grid.dy, peak, rising=False))
         if not any(abs(grid.x[peak] - points.x).min() < 0.2 * width for points in samples):
             x = np.clip(grid.x[peak] + width * AXIAL_OFFSETS, *extent)
             samples.append(
@@ -193,14 +189,9 @@ def _peaks(maxima: FloatArray, *, symmetric: bool) -> Iterator[int]:
             yield peak
 
 
-RISE_ERROR = 0.25
-"""Error over the rise of the polynomials above the largest sample: two degrees may agree by chance. Accuracy."""
-
+RISE_ERROR = 0.25  # Error over the polynomials' rise above the largest sample: two may agree by chance. Accuracy
 REFINEMENT_TOLERANCE = 3e-3  # relative error of the interpolation that ends the refinement. Accuracy.
-
-LOCAL_OFFSETS = np.array([-0.5, -0.25, 0.0, 0.25, 0.5])
-"""Offsets of points about a position below the top, over the position's depth. Accuracy."""
-
+LOCAL_OFFSETS = np.array([-0.5, -0.25, 0.0, 0.25, 0.5])  # about a position, over its depth. Accuracy
 TOP_MARGIN = 1.25  # factor on the largest sample on the top for the decision to search around it. Accuracy.
 MAX_REFINEMENTS = 6  # largest number of refinements. Speed.
 

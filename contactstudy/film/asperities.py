@@ -12,11 +12,8 @@ from contactstudy import checks
 from contactstudy.checks import FloatArray
 from contactstudy.film.reynolds import Law
 
-NODE_COUNT = 64
-"""Gauss points of the integral over the asperities. Accuracy."""
-
-MAX_HEIGHT = 6.0
-"""Highest asperity over the composite rms roughness; 1e-9 of the asperities are higher. Accuracy."""
+NODE_COUNT = 64  # Gauss points of the integral over the asperities. Accuracy
+MAX_HEIGHT = 6.0  # Highest asperity over the composite rms roughness; 1e-9 of the asperities are higher. Accuracy
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.fft import next_fast_len
 
 from contactstudy.checks import FloatArray, IntArray
 
@@ -16,15 +15,9 @@ CellWidth = Callable[[float], float]
 
 @dataclass(frozen=True, eq=False)
 class MergedCells:
-    """Cells along y that are merged from uniform cells; the surface operator acts on the uniform cells.
+    """Cells along y that are merged from uniform cells; the surface operator acts on the uniform cells."""
 
-    Attributes
-    ----------
-    edges : array of int
-        Indices of the uniform edges between merged cells.
-    """
-
-    edges: IntArray
+    edges: IntArray  # indices of the uniform edges between merged cells
 
     @classmethod
     def of(cls, cell_count: int, max_count: Callable[[float, float], float]) -> MergedCells:
@@ -98,8 +91,3 @@ def graded_edges(start: float, stop: float, cell_width: CellWidth) -> FloatArray
     edges = np.interp(np.linspace(0.0, measure[-1], cell_count + 1), measure, positions)
     edges[0], edges[-1] = start, stop
     return np.asarray(edges)
-
-
-def count_uniform_cells(length: float, width: float) -> int:
-    """Return the number of uniform cells at most `width` wide: 16 times a length of fast transforms."""
-    return 16 * int(next_fast_len(int(np.ceil(length / width / 16)), real=True))

@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
+from scipy.fft import next_fast_len
 
 from contactstudy.arrays.grid import Grid
 from contactstudy.bodies import hertz
@@ -20,7 +21,7 @@ from contactstudy.checks import FloatArray
 from contactstudy.contact.normal.contact import Contact, Settings, contact_of, contact_operator
 from contactstudy.contact.refinement.refined_contact import contact_shape, refine_contact
 from contactstudy.film.asperities import Asperities
-from contactstudy.film.cells import MergedCells, count_uniform_cells, graded_edges
+from contactstudy.film.cells import MergedCells, graded_edges
 from contactstudy.film.formulas import moes_line
 from contactstudy.film.newton import FilmSettings, solve_from_dry, solve_newton
 from contactstudy.film.problem import FilmProblem, FilmSolution, FilmState, initial_state
@@ -83,36 +84,19 @@ class FilmResolution:
     dry_tolerance: float = 1e-5
 
 
-RESOLUTION = FilmResolution()
-"""Default cells."""
+RESOLUTION = FilmResolution()  # Default cells
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class FilmCase:
-    """A case and the scales of its film.
-
-    Attributes
-    ----------
-    case : Case
-        The case.
-    lubricant : Lubricant
-        Its lubricant.
-    speeds : SurfaceSpeeds
-        Speeds of its surfaces.
-    asperities : Asperities or None
-        Roughness; None: smooth surfaces.
-    resolution : FilmResolution
-        Cells.
-    inlet : float or None
-        Distance of the inlet's meniscus from the middle of the contact, metres; None: a fully flooded inlet.
-    """
+    """A case and the scales of its film."""
 
     case: Case
     lubricant: Lubricant
     speeds: SurfaceSpeeds
-    asperities: Asperities | None
+    asperities: Asperities | None  # roughness; None: smooth surfaces
     resolution: FilmResolution
-    inlet: float | None
+    inlet: float | None  # distance of the inlet's meniscus from the middle of the contact, metres; None: fully flooded
 
     @property
     def speed(self) -> float:
@@ -224,27 +208,13 @@ class Level(NamedTuple):
 
 
 class FilmOnCells(NamedTuple):
-    """A solved film and its cells.
-
-    Attributes
-    ----------
-    problem : FilmProblem
-        Equations of the film.
-    solution : FilmSolution
-        The film.
-    grid : Grid
-        Uniform cells along y and columns over the whole body.
-    columns : slice
-        Columns of the grid under the roller.
-    merged : MergedCells
-        Cells along y.
-    """
+    """A solved film and its cells."""
 
     problem: FilmProblem
     solution: FilmSolution
-    grid: Grid
-    columns: slice
-    merged: MergedCells
+    grid: Grid  # uniform cells along y and columns over the whole body
+    columns: slice  # columns of the grid under the roller
+    merged: MergedCells  # cells along y
 
 
 def create_cells(
@@ -269,7 +239,9 @@ def create_cells(
         y_start = max(y_start, -film.inlet / film.half_width)
     y_stop = half_width + resolution.outlet * delta
     min_cell = min(resolution.finest * delta, resolution.finest_share) * scale
-    cell_count = min(count_uniform_cells(y_stop - y_start, min_cell), resolution.most_cells)
+    # 16 times a length of fast transforms, so that cells can merge in powers of two.
+    cell_count = 16 * int(next_fast_len(int(np.ceil((y_stop - y_start) / min_cell / 16)), real=True))
+    cell_count = min(cell_count, resolution.most_cells)
     step = (y_stop - y_start) / cell_count
 
     def max_cell_count(begin: float, end: float) -> float:
@@ -290,13 +262,7 @@ def film_on_level(
     settings: FilmSettings,
     start: FilmOnCells | xr.Dataset | None = None,
 ) -> FilmOnCells:
-    """Solve for the film on the cells of a level, from the dry contact or from another film.
-
-    Raises
-    ------
-    StepFailedError
-        If the iteration does not converge.
-    """
+    """Solve for the film on the cells of a level, from the dry contact or from another film."""
     cells, merged, window = create_cells(film, level, closures)
     with one_blas_thread():
         return _solve_on_cells(film, cells, merged, window, settings, start=start)

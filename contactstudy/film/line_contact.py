@@ -10,43 +10,24 @@ from contactstudy.bodies.lubricant import Lubricant
 from contactstudy.checks import FloatArray
 from contactstudy.film.cells import graded_edges
 from contactstudy.film.formulas import moes_line
-from contactstudy.film.newton import SETTINGS, FilmSettings, solve_from_dry, solve_newton
+from contactstudy.film.newton import SETTINGS, solve_from_dry, solve_newton
 from contactstudy.film.problem import FilmProblem, FilmSolution, initial_state
 from contactstudy.film.reynolds import FilmCells, Fluid
 
 BARUS = Lubricant(viscosity=0.01, pressure_viscosity=1e-8, viscosity_law="barus", density_law="constant")
-"""A lubricant of Barus' law and constant density."""
-
-
-COARSEST_FROM_DRY = 0.35
-"""Narrowest cells whose first guess is the dry contact, over the length on which the film forms. Speed."""
+COARSEST_FROM_DRY = 0.35  # Narrowest cells that start from the dry contact, as `finest` of `solve_line`. Speed
 
 
 class LineFilm(NamedTuple):
-    """Film of a line contact.
+    """Film of a line contact."""
 
-    Attributes
-    ----------
-    central_film, least_film : float
-        Films ``H = h / R (2 U)**-1/2``.
-    y, pressure, film : array
-        Position over a, pressure over p0, film h R / a**2.
-    moment : float
-        Moment of the pressure about the middle, per length, over ``p0 a**2``: ``-w delta``.
-    rolling_moment : float
-        Moment ``t`` about the roller's axis of the shear by the pressure's gradient, per length, over ``p0 a**2``:
-        ``w delta = 2 t``.
-    solution : FilmSolution
-        The solution.
-    """
-
-    central_film: float
+    central_film: float  # films ``H = h / R (2 U)**-1/2``
     least_film: float
-    y: FloatArray
-    pressure: FloatArray
-    film: FloatArray
-    moment: float
-    rolling_moment: float
+    y: FloatArray  # position over a
+    pressure: FloatArray  # over p0
+    film: FloatArray  # ``h R / a**2``
+    moment: float  # of the pressure about the middle, per length, over ``p0 a**2``: ``-w delta``
+    rolling_moment: float  # ``t`` about the roller's axis of the shear by the pressure's gradient: ``w delta = 2 t``
     solution: FilmSolution
 
 
@@ -61,34 +42,15 @@ def solve_line(
     load: float,
     lubricant: float,
     *,
-    finest: float = 0.2,
-    inlet: float | None = None,
-    oil: Lubricant = BARUS,
-    max_pressure: float | None = None,
-    settings: FilmSettings = SETTINGS,
-    start: LineFilm | None = None,
+    finest: float = 0.2,  # narrowest cells over the length on which the film forms
+    inlet: float | None = None,  # distance of the inlet from the middle over a; default: without influence
+    oil: Lubricant = BARUS,  # its viscosity has no influence, nor has the coefficient of Barus' law
+    max_pressure: float | None = None,  # p0, Pa, for laws other than Barus', whose coefficient then follows from L
 ) -> LineFilm:
-    """Solve for the film of a line contact.
-
-    Parameters
-    ----------
-    load, lubricant : float
-        Moes' numbers M and L.
-    finest : float
-        Narrowest cells over the length on which the film forms.
-    inlet : float, optional
-        Distance of the inlet from the middle over a; default: a distance without influence.
-    oil : Lubricant
-        Laws of viscosity and density; the viscosity has no influence, nor has the coefficient of Barus' law.
-    max_pressure : float, optional
-        p0, Pa, for laws other than Barus'; its pressure-viscosity coefficient then follows from L.
-    start : LineFilm, optional
-        Film on coarser cells. Default: the film of cells twice as wide; the dry contact for the coarsest cells.
-    """
-    if start is None and finest < COARSEST_FROM_DRY:
-        start = solve_line(
-            load, lubricant, finest=2 * finest, inlet=inlet, oil=oil, max_pressure=max_pressure, settings=settings
-        )
+    """Solve for the film of a line contact of Moes' numbers M and L from the film on cells twice as wide."""
+    start = None
+    if finest < COARSEST_FROM_DRY:
+        start = solve_line(load, lubricant, finest=2 * finest, inlet=inlet, oil=oil, max_pressure=max_pressure)
     alpha_p0 = lubricant * np.sqrt(load / (2 * np.pi))  # alpha p0
     p0 = alpha_p0 / oil.pressure_viscosity if max_pressure is None else max_pressure
     if max_pressure is not None:
@@ -119,13 +81,13 @@ def solve_line(
     if start is not None:
         pressure, film_start = (np.interp(y, start.y, values)[None] for values in (start.pressure, start.film))
         state = initial_state(problem, pressure, start.solution.state.motion, film_start)
-        solution = solve_newton(problem, state, settings, steady=True)
+        solution = solve_newton(problem, state, SETTINGS, steady=True)
     else:
         hertz_pressure = np.sqrt(np.maximum(1 - y**2, 0.0))[None]
         deformed_gap = problem.gap + problem.displace(hertz_pressure)
         motion = np.array([central_film - deformed_gap[0, np.abs(y).argmin()]])
         state = initial_state(problem, hertz_pressure, motion, np.maximum(deformed_gap + motion[0], central_film))
-        solution = solve_from_dry(problem, state, settings)
+        solution = solve_from_dry(problem, state, SETTINGS)
     height = solution.film[0]
     thinnest_cell = int(height.argmin())
     neighbours = slice(thinnest_cell - 1, thinnest_cell + 2)

@@ -19,48 +19,23 @@ LOGGER = logging.getLogger(__name__)
 
 @dataclass(frozen=True, kw_only=True)
 class FilmSettings:
-    """Settings of the iteration.
+    """Settings of the iteration."""
 
-    Attributes
-    ----------
-    tolerance : float
-        Tolerance of a cell's net outflow over the flow ``um h_c``, and of the load's relative error. Accuracy.
-    level_tolerance : float
-        Tolerance on the coarser levels, which give first guesses and error estimates. Speed.
-    steps : tuple of float
-        Pseudo-time steps, in a / um, before the steady state. Speed.
-    newton_steps : int
-        Bound on the Newton steps of one pseudo-time step; the steady state may take three times as many. Speed.
-    linear_tolerance : float
-        Tolerance of the linear systems. Speed.
-    linear_steps : int
-        Bound on the steps of one linear system. Speed.
-    max_closing : float
-        Largest relative decrease of the film of a cell in one step. Speed.
-    max_pressure_change : float
-        Largest change of the pressure in one step, over p0. Speed.
-    closed_film_ratio, nearly_closed_ratio : float
-        Film over the central film below which an iteration ends, and below which a failure is a closed film.
-    speed_ratio, speed_steps : float, int
-        Ratio and number of the higher speeds solved first if the iteration fails from the dry contact. Speed.
-    """
-
-    tolerance: float = 1e-8
-    level_tolerance: float = 1e-3
-    steps: tuple[float, ...] = (0.3, 0.9, 2.7, 8.1, 24.0, 73.0)
-    newton_steps: int = 12
-    linear_tolerance: float = 1e-2
-    linear_steps: int = 60
-    max_closing: float = 0.6
-    max_pressure_change: float = 0.3
-    closed_film_ratio: float = 1e-6
-    nearly_closed_ratio: float = 1e-3
-    speed_ratio: float = 4.0
-    speed_steps: int = 4
+    tolerance: float = 1e-8  # of a cell's net outflow over ``um h_c``, and of the load's relative error. Accuracy
+    level_tolerance: float = 1e-3  # on the coarser levels: first guesses and error estimates. Speed
+    steps: tuple[float, ...] = (0.3, 0.9, 2.7, 8.1, 24.0, 73.0)  # pseudo-time steps, in a / um. Speed
+    newton_steps: int = 12  # most steps of a pseudo-time step; of the steady state three times as many. Speed
+    linear_tolerance: float = 1e-2  # tolerance of the linear systems. Speed
+    linear_steps: int = 60  # most steps of one linear system. Speed
+    max_closing: float = 0.6  # largest relative decrease of the film of a cell in one step. Speed
+    max_pressure_change: float = 0.3  # largest change of the pressure in one step, over p0. Speed
+    closed_film_ratio: float = 1e-6  # film over the central film below which an iteration ends
+    nearly_closed_ratio: float = 1e-3  # film over the central film below which a failure is a closed film
+    speed_ratio: float = 4.0  # of the higher speeds solved first if the iteration fails from the dry contact. Speed
+    speed_steps: int = 4  # most higher speeds. Speed
 
 
-SETTINGS = FilmSettings()
-"""Default settings."""
+SETTINGS = FilmSettings()  # Default settings
 
 
 class StepFailedError(ContactStudyError):
@@ -72,44 +47,20 @@ class StepFailedError(ContactStudyError):
 
 
 class _LinearisedEquations(NamedTuple):
-    """Equations linearised about a state.
-
-    Attributes
-    ----------
-    flow : Flow
-        Flow and its derivatives.
-    residual : array (cell + motion)
-        Residuals of the cells, over the cells' film, and residuals of load and moment.
-    by_pressure, by_distance : sparse array (cell, cell)
-        Derivatives of the cells' residuals at a fixed distance of the surfaces and at a fixed pressure.
-    cavitated : array of bool (cell)
-        Cells with a broken film.
-    """
+    """Equations linearised about a state."""
 
     flow: Flow
-    residual: FloatArray
-    by_pressure: sparse.csr_array
-    by_distance: sparse.csr_array
-    cavitated: BoolArray
+    residual: FloatArray  # (cell + motion): residuals over the cells' film, and residuals of load and moment
+    by_pressure: sparse.csr_array  # (cell, cell): derivatives of the cells' residuals at a fixed distance
+    by_distance: sparse.csr_array  # (cell, cell): derivatives at a fixed pressure
+    cavitated: BoolArray  # (cell): cells with a broken film
     fluid_pressure: FloatArray
     asperity_pressure: FloatArray
     film: FloatArray
 
 
 def solve_newton(problem: FilmProblem, start: FilmState, settings: FilmSettings, *, steady: bool) -> FilmSolution:
-    """Solve for the film from a start.
-
-    Parameters
-    ----------
-    problem : FilmProblem
-        The film.
-    start : FilmState
-        First guess.
-    settings : FilmSettings
-        Settings of the iteration.
-    steady : bool
-        Whether the steady iteration begins at the start; pseudo-time steps follow only if it fails.
-    """
+    """Solve for the film from a start; if `steady`, by pseudo-time steps only if the steady iteration fails."""
     iteration = _Iteration(problem, settings)
     if steady:
         try:
@@ -131,13 +82,7 @@ def solve_newton(problem: FilmProblem, start: FilmState, settings: FilmSettings,
 
 
 def solve_from_dry(problem: FilmProblem, dry: FilmState, settings: FilmSettings) -> FilmSolution:
-    """Solve for the film from the dry contact, or, if the iteration fails, from films of higher speeds.
-
-    Raises
-    ------
-    StepFailedError
-        If no higher speed helps.
-    """
+    """Solve for the film from the dry contact, or, if the iteration fails, from films of higher speeds."""
     factors = [1.0]
     while True:
         trial = replace(problem, fluid=replace(problem.fluid, flow_number=problem.fluid.flow_number * factors[-1]))

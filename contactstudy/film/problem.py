@@ -12,48 +12,23 @@ import numpy as np
 from contactstudy.checks import BoolArray, FloatArray
 from contactstudy.film.reynolds import FilmCells, Fluid, Law
 
-INVERSE_STEPS = 8
-"""Steps that find the distance of rough surfaces from the film; the next Newton step removes the remainder. Speed."""
+INVERSE_STEPS = 8  # Steps from film to distance of rough surfaces; the next Newton step removes the remainder. Speed
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class FilmProblem:
-    """A film to solve, in the units of `FilmCells`.
-
-    Attributes
-    ----------
-    cells : FilmCells
-        Cells.
-    fluid : Fluid
-        Laws of the lubricant.
-    gap : array (x, y)
-        Gap before deformation.
-    displace : callable
-        Displacement of the surfaces apart, array (x, y), under a pressure.
-    column_stiffness : array (x, y, y)
-        Displacement of a column's cells under a pressure that is equal in all columns.
-    load : float
-        Prescribed sum of the pressure times the areas.
-    lever : array (x) or None
-        Distances from the load's position, over the largest distance, if the roller is free to tilt.
-    central_film : float
-        Estimate of the central film before the solution: the scale of tolerances.
-    asperities : callable or None
-        Mean pressure of the asperities at a distance of the surfaces.
-    mean_height : callable or None
-        Mean height of the film at a distance of rough surfaces.
-    """
+    """A film to solve, in the units of `FilmCells`."""
 
     cells: FilmCells
     fluid: Fluid
-    gap: FloatArray
-    displace: Callable[[FloatArray], FloatArray]
-    column_stiffness: FloatArray
-    load: float
-    lever: FloatArray | None
-    central_film: float
-    asperities: Callable[[FloatArray], Law] | None = None
-    mean_height: Callable[[FloatArray], Law] | None = None
+    gap: FloatArray  # (x, y): gap before deformation
+    displace: Callable[[FloatArray], FloatArray]  # displacement of the surfaces apart (x, y) under a pressure
+    column_stiffness: FloatArray  # (x, y, y): displacement of a column's cells under a pressure equal in all columns
+    load: float  # prescribed sum of the pressure times the areas
+    lever: FloatArray | None  # (x): distances from the load's position over the largest one, if free to tilt
+    central_film: float  # estimate of the central film: the scale of tolerances
+    asperities: Callable[[FloatArray], Law] | None = None  # pressure of the asperities at a distance of the surfaces
+    mean_height: Callable[[FloatArray], Law] | None = None  # film at a distance of rough surfaces
 
     @cached_property
     def motions(self) -> FloatArray:
@@ -90,24 +65,12 @@ class FilmProblem:
 
 
 class FilmState(NamedTuple):
-    """Unknowns of an iteration.
+    """Unknowns of an iteration."""
 
-    Attributes
-    ----------
-    pressure : array (x, y)
-        Pressure on the surfaces, fluid and asperities.
-    motion : array (motion)
-        Rigid motion: height and, if free, tilt.
-    distance : array (x, y)
-        Distance of the surfaces: an unknown, because a start may be interpolated from other cells.
-    mismatch : array (x, y)
-        Distance less the distance that pressure and motion cause.
-    """
-
-    pressure: FloatArray
-    motion: FloatArray
-    distance: FloatArray
-    mismatch: FloatArray
+    pressure: FloatArray  # (x, y): pressure on the surfaces, of fluid and asperities
+    motion: FloatArray  # (motion): rigid motion, height and, if free, tilt
+    distance: FloatArray  # (x, y): distance of the surfaces, unknown since a start may be interpolated from other cells
+    mismatch: FloatArray  # (x, y): distance less the distance that pressure and motion cause
 
 
 def initial_state(problem: FilmProblem, pressure: FloatArray, motion: FloatArray, distance: FloatArray) -> FilmState:
@@ -117,40 +80,19 @@ def initial_state(problem: FilmProblem, pressure: FloatArray, motion: FloatArray
 
 
 class FilmSolution(NamedTuple):
-    """Solution of a film problem.
-
-    Attributes
-    ----------
-    state : FilmState
-        Pressure and distance of the surfaces.
-    fluid_pressure, asperity_pressure, film : array (x, y)
-        Pressures of the fluid and of the asperities; mean height of the film.
-    flow : array (x, y + 1)
-        Flow along y through the faces.
-    outflow : array (x, y)
-        Net outflow of each cell per width.
-    cavitated : array of bool (x, y)
-        Cells with a broken film.
-    residual, load_error, complementarity_error, mismatch : float
-        Certificate: largest net outflow of a full cell over the central film, error of load and moment over the load,
-        and largest net inflow of a cavitated cell and mismatch of the distance, both over the central film.
-    newton_steps, linear_steps : int
-        Steps taken.
-    converged : bool
-        Whether the tolerance was reached.
-    """
+    """Solution of a film problem and its certificate."""
 
     state: FilmState
-    fluid_pressure: FloatArray
-    asperity_pressure: FloatArray
-    film: FloatArray
-    flow: FloatArray
-    outflow: FloatArray
-    cavitated: BoolArray
-    residual: float
-    load_error: float
-    complementarity_error: float
-    mismatch: float
+    fluid_pressure: FloatArray  # (x, y)
+    asperity_pressure: FloatArray  # (x, y)
+    film: FloatArray  # (x, y): mean height
+    flow: FloatArray  # (x, y + 1): flow along y through the faces
+    outflow: FloatArray  # (x, y): net outflow of each cell per width
+    cavitated: BoolArray  # (x, y): cells with a broken film
+    residual: float  # largest net outflow of a full cell over the central film
+    load_error: float  # error of load and moment over the load
+    complementarity_error: float  # largest net inflow of a cavitated cell over the central film
+    mismatch: float  # largest mismatch of the distance over the central film
     newton_steps: int
     linear_steps: int
-    converged: bool
+    converged: bool  # whether every error is within the tolerance

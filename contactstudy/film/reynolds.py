@@ -17,11 +17,8 @@ from scipy.interpolate import PchipInterpolator
 from contactstudy.bodies.lubricant import Lubricant
 from contactstudy.checks import FloatArray
 
-FLUIDITY_NODES, FLUIDITY_RATIO = 1600, 1.005
-"""Number of nodes along the pressure in the fluidity's table, and ratio of successive steps. Accuracy."""
-
-FACE_RANGE = (0.2, 2.0)
-"""Least and largest film on a face over the film of the cell upstream; bounded, since parabolas overshoot. Accuracy."""
+FLUIDITY_NODES, FLUIDITY_RATIO = 1600, 1.005  # Pressures of the fluidity's table, ratio of successive steps. Accuracy
+FACE_RANGE = (0.2, 2.0)  # Range of the film on a face over the film upstream, since parabolas overshoot. Accuracy
 
 
 class Law(NamedTuple):
@@ -33,21 +30,13 @@ class Law(NamedTuple):
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Fluid:
-    """Dimensionless laws of a lubricant.
+    """Dimensionless laws of a lubricant."""
 
-    Attributes
-    ----------
-    density : callable
-        Density over the ambient density, as a function of the pressure.
-    reduced_pressure : callable
-        Integral of the fluidity (density over viscosity, both over their ambient values) up to the pressure.
-    flow_number : float
-        ``12 eta0 um R**2 / (a**3 p0)``.
-    """
-
-    density: Callable[[FloatArray], Law]
-    reduced_pressure: Callable[[FloatArray], Law]
-    flow_number: float
+    density: Callable[[FloatArray], Law]  # over the ambient density, at a pressure
+    reduced_pressure: Callable[
+        [FloatArray], Law
+    ]  # integral of density over viscosity, both over ambient, up to a pressure
+    flow_number: float  # ``12 eta0 um R**2 / (a**3 p0)``
 
     @classmethod
     def of(cls, oil: Lubricant, p0: float, flow_number: float) -> Fluid:
@@ -70,39 +59,21 @@ class Fluid:
 
 
 class Flow(NamedTuple):
-    """Net outflow of each cell per width along x, and its derivatives.
+    """Net outflow of each cell per width along x, and its derivatives."""
 
-    Attributes
-    ----------
-    outflow : array (cell,)
-        Net outflow.
-    by_pressure, by_film : sparse array (cell, cell)
-        Derivatives at a fixed film and at a fixed pressure.
-    face_flow : array (x, y + 1)
-        Flow along y through the faces, per width.
-    """
-
-    outflow: FloatArray
-    by_pressure: sparse.csr_array
-    by_film: sparse.csr_array
-    face_flow: FloatArray
+    outflow: FloatArray  # (cell): net outflow
+    by_pressure: sparse.csr_array  # (cell, cell): derivatives at a fixed film
+    by_film: sparse.csr_array  # (cell, cell): derivatives at a fixed pressure
+    face_flow: FloatArray  # (x, y + 1): flow along y through the faces, per width
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class FilmCells:
-    """Cells of the film, their faces, and the differences between them.
+    """Cells of the film, their faces, and the differences between them."""
 
-    Attributes
-    ----------
-    x_edges, y_edges : array
-        Edges of the cells, in half-widths.
-    open_ends : bool
-        Whether both ends along x have ambient pressure; otherwise no lubricant flows through the ends.
-    """
-
-    x_edges: FloatArray
-    y_edges: FloatArray
-    open_ends: bool = True
+    x_edges: FloatArray  # in half-widths
+    y_edges: FloatArray  # in half-widths
+    open_ends: bool = True  # whether both ends along x have ambient pressure; otherwise no flow through the ends
 
     @cached_property
     def x(self) -> FloatArray:
@@ -184,17 +155,7 @@ class FilmCells:
         return sparse.csr_array(sparse.kron(per_width, sparse.diags_array(self.lengths)))
 
     def flow(self, fluid: Fluid, pressure: FloatArray, film: Law) -> Flow:
-        """Return the net outflow of each cell, eq. (401), and its derivatives.
-
-        Parameters
-        ----------
-        fluid : Fluid
-            Laws of the lubricant.
-        pressure : array (x, y)
-            Pressure of the fluid.
-        film : Law of array (x, y)
-            Mean height of the film, and its derivative by the distance of the surfaces.
-        """
+        """Net outflow of each cell, eq. (401), from fluid pressure and mean height (x, y) by the surfaces' distance."""
         height, pressure = film.value.ravel(), pressure.ravel()
         density, reduced = fluid.density(pressure), fluid.reduced_pressure(pressure)
         upwind = self.upwind(height)
@@ -225,25 +186,15 @@ class PressureFlow(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Faces:
-    """Faces along one axis: matrices (face, cell).
+    """Faces along one axis: matrices (face, cell)."""
 
-    Attributes
-    ----------
-    upstream, downstream : sparse array (face, cell)
-        Selection of the cells upstream and downstream; equal at the outermost faces.
-    gradient : sparse array (face, cell)
-        Gradient; beyond the outermost faces the pressure is ambient.
-    """
-
-    upstream: sparse.csr_array
-    downstream: sparse.csr_array
-    gradient: sparse.csr_array
+    upstream: sparse.csr_array  # selection of the cells upstream
+    downstream: sparse.csr_array  # and downstream: the same cell at the outermost faces
+    gradient: sparse.csr_array  # beyond the outermost faces the pressure is ambient
 
     def conduct_flow(self, flow_number: float, reduced: Law, height: FloatArray) -> PressureFlow:
-        """Return the flow by the gradient of the reduced pressure, eq. (402); the flow rises with any pressure step.
-
-        The flow is constant between two centres, and the film linear: the thinner film determines the flow.
-        """
+        """Return the flow by the gradient of the reduced pressure, eq. (402); the flow rises with any pressure step."""
+        # The flow is constant between two centres, and the film linear: the thinner film determines the flow.
         upstream, downstream = self.upstream @ height, self.downstream @ height
         factor = 2 * (upstream * downstream) ** 2 / (upstream + downstream) / flow_number
         slopes = self.gradient @ reduced.value

@@ -32,22 +32,12 @@ from contactstudy.film.levels import (
 )
 from contactstudy.film.newton import SETTINGS, FilmSettings, StepFailedError
 
-ACCURACIES = (2e-3, 0.2)
-"""Range of the accuracies that the levels reach."""
-
-ERROR_FACTORS = {"cells": 1.5, "columns": 1.0}
-"""Stated error over the latest change by a refinement. Accuracy."""
-
-CHANGE_RATIOS = {"cells": 0.5, "columns": 0.25}
-"""Change by a refinement over the change by the refinement before, for errors of second order. Accuracy."""
-
-MIN_RELATIVE_ERROR = 1e-3
-"""Least stated error over the value. Accuracy."""
-
-VISCOSITY_EXPONENT = 1.3  # viscosity ratio ``kappa = Lambda**1.3`` from the film ratio (ISO 281:2007). Physics.
-
-MAX_LOG_VISCOSITY = 25.0
-"""Logarithm of the viscosity ratio above which an oil is solid: the law holds to less. Physics."""
+ACCURACIES = (2e-3, 0.2)  # Range of the accuracies that the levels reach
+ERROR_FACTORS = {"cells": 1.5, "columns": 1.0}  # Stated error over the latest change by a refinement. Accuracy
+CHANGE_RATIOS = {"cells": 0.5, "columns": 0.25}  # Ratio of successive changes, for errors of second order. Accuracy
+MIN_RELATIVE_ERROR = 1e-3  # Least stated error over the value. Accuracy
+VISCOSITY_EXPONENT = 1.3  # Viscosity ratio ``kappa = Lambda**1.3`` from the film ratio (ISO 281:2007). Physics
+MAX_LOG_VISCOSITY = 25.0  # Logarithm of the viscosity ratio above which an oil is solid: the law holds to less. Physics
 
 
 def solve_film(
@@ -192,14 +182,13 @@ class Films(NamedTuple):
         return np.array([getattr(self, name) for name in FILM_NAMES])
 
 
-FILM_NAMES = {
+FILM_NAMES = {  # variables of the films
     "central": "central_film",
     "middle": "least_film_middle",
     "first": "least_film_first",
     "last": "least_film_last",
     "least": "least_film",
 }
-"""Variables of the films."""
 
 
 class _RefinedFilm(NamedTuple):
@@ -291,22 +280,21 @@ def compute_films(film: FilmCase, level_film: FilmOnCells) -> Films:
     mid_length = 0.5 * (low + high)
     within_contact = np.abs(cells.y) < 1.5 * film.contact_half_width
     column_minima = [_find_minimum(cells.y, cells.y_edges, row, within_contact) for row in height]
-    least_films = np.array([minimum.value for minimum in column_minima])
-    positions = np.array([minimum.position for minimum in column_minima])
+    least_films, positions = np.transpose(column_minima)
     centre_films = np.array([np.interp(0.0, cells.y, row) for row in height])
     first_side = cells.x < mid_length
     side_minima = [_find_minimum(cells.x, cells.x_edges, least_films, on_side) for on_side in (first_side, ~first_side)]
-    least_minimum = min(side_minima)
+    least, least_x = min(side_minima)
     return Films(
         central=_interpolate(cells.x, centre_films, mid_length),
         middle=_interpolate(cells.x, least_films, mid_length),
-        first=side_minima[0].value,
-        last=side_minima[1].value,
-        least=least_minimum.value,
-        first_x=side_minima[0].position,
-        last_x=side_minima[1].position,
-        least_x=least_minimum.position,
-        least_y=float(np.interp(least_minimum.position, cells.x, positions)),
+        first=side_minima[0][0],
+        last=side_minima[1][0],
+        least=least,
+        first_x=side_minima[0][1],
+        last_x=side_minima[1][1],
+        least_x=least_x,
+        least_y=float(np.interp(least_x, cells.x, positions)),
     )
 
 
@@ -317,15 +305,8 @@ def _interpolate(x: FloatArray, films: FloatArray, position: float) -> float:
     return float(lagrange_weights(x[neighbours], np.array([position]))[0] @ films[neighbours])
 
 
-class _Minimum(NamedTuple):
-    """Minimum and its position."""
-
-    value: float
-    position: float
-
-
-def _find_minimum(centres: FloatArray, edges: FloatArray, films: FloatArray, mask: BoolArray) -> _Minimum:
-    """Minimum within the lowest cell of a mask, by a cubic spline of the logarithms of positive `films` nearby."""
+def _find_minimum(centres: FloatArray, edges: FloatArray, films: FloatArray, mask: BoolArray) -> tuple[float, float]:
+    """Minimum and position in the lowest cell of a mask, by a cubic spline of the logarithms of positive `films`."""
     cell = int(np.where(mask, films, np.inf).argmin())
     neighbours = slice(max(cell - 3, 0), cell + 4)
     spline = CubicSpline(centres[neighbours], np.log(films[neighbours]))
@@ -333,7 +314,7 @@ def _find_minimum(centres: FloatArray, edges: FloatArray, films: FloatArray, mas
     positions = np.clip(np.append(extrema[np.isfinite(extrema)], edges[[cell, cell + 1]]), edges[cell], edges[cell + 1])
     logarithms = spline(positions)
     minimum = int(logarithms.argmin())
-    return _Minimum(float(np.exp(logarithms[minimum])), float(positions[minimum]))
+    return float(np.exp(logarithms[minimum])), float(positions[minimum])
 
 
 def _label_film(film: FilmCase, refined: _RefinedFilm) -> xr.Dataset:

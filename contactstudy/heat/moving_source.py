@@ -61,14 +61,9 @@ class ThermalProperties:
         warn_of_values(stacklevel=4, **{name: getattr(self, name) for name in units})
 
     @property
-    def heat_capacity(self) -> float:
-        """Heat capacity of a unit of volume, J/(m3 K)."""
-        return self.density * self.specific_heat
-
-    @property
     def diffusivity(self) -> float:
         """Thermal diffusivity ``kappa = lambda / (rho c)``, m2/s."""
-        return self.conductivity / self.heat_capacity
+        return self.conductivity / (self.density * self.specific_heat)
 
 
 MAX_SPREADS = 6.5  # Lengths of spreading beyond which the heat of a cell vanishes: erfc(6.5) = 4e-20
@@ -158,14 +153,11 @@ class MovingBody(NamedTuple):
 
 
 class SourceOperator:
-    """Temperature rise (K) at the cells' midpoints, at one depth, from heat (W/m2) uniform in each cell.
-
-    Zeros pad the window along y, so that the wake does not return. Columns of different widths are convolved in pairs.
-    """
+    """Temperature rise (K) at the cells' midpoints, at one depth, from heat (W/m2) uniform in each cell."""
 
     def __init__(self, body: MovingBody, grid: Grid, columns: slice, depth: float = 0.0) -> None:
         self._columns, self._shape = columns, grid.shape
-        self._size_y = next_fast_len(2 * grid.cells_y - 1, real=True)
+        self._size_y = next_fast_len(2 * grid.cells_y - 1, real=True)  # padded, so that the wake does not return
         edges = grid.x_edges[columns.start : columns.stop + 1]
         x = grid.x[columns]
         length = body.ends[1] - body.ends[0]

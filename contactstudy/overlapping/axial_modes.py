@@ -33,8 +33,7 @@ class AxialModes:
     discrete: FloatArray  # wavenumbers ``k_n`` that are summed one by one, 1/m
     ray: ComplexArray  # nodes and weights on the ray, for all further wavenumbers, 1/m
     weights: ComplexArray
-    reach: float = np.inf
-    """Distance from the end beyond which waves of these wavenumbers are negligible, metres; infinite with two ends."""
+    reach: float = np.inf  # from the end, metres, beyond which waves of these wavenumbers are negligible
 
     @cached_property
     def _identity(self) -> tuple[Hashable, ...]:

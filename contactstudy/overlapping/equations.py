@@ -106,8 +106,7 @@ class EquationSet:
     depth: FloatArray  # depth wavenumbers ``k_z``, 1/m
     scale: FloatArray  # ``T dk_z / kappa`` at the depth nodes
     core: ComplexArray  # (depth, wavenumber): coupling core ``M`` between depth nodes and axial wavenumbers
-    top: ComplexArray
-    """(wavenumber, depth): weighted spectrum, before `AxialModes.cosine`, of the top load from a scaled face load."""
+    top: ComplexArray  # (wavenumber, depth): weighted spectrum of the top load, before `cosine`, per scaled face load
     factorisation: Factorisation  # LU factors of the set's matrix ``1 / scale - N``
 
     @classmethod

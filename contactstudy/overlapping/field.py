@@ -56,8 +56,7 @@ class _FoldedPositions:
     distance_indices: IntArray  # index of each position in `x`, and whether the far end is nearer
     in_far_half: BoolArray
     interpolation: FloatArray | None  # from the positions of the sum to all positions; None where they are equal
-    corner: tuple[IntArray, IntArray] | None
-    """Indices of `x` and of the depths on the corner; None if the corner is not a position."""
+    corner: tuple[IntArray, IntArray] | None  # indices of `x` and of the depths on the corner, if it is a position
 
     @classmethod
     def of(cls, problem: EndProblem, points: Points) -> _FoldedPositions:

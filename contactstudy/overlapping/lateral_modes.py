@@ -44,8 +44,7 @@ class LateralPanel:
     """Part of the integral over the wavenumber along y."""
 
     nodes: FloatArray  # wavenumbers of the equation sets, 1/m
-    fine_nodes: FloatArray
-    """Quadrature nodes that follow the phase, and their weights; `nodes` themselves where these suffice."""
+    fine_nodes: FloatArray  # quadrature nodes that follow the phase, and their weights; may be `nodes`
     weights: FloatArray
     interpolation: FloatArray | None = None  # (fine, node): from `nodes` to `fine_nodes`; None where they are the same
     reference: float | None = None
@@ -90,8 +89,7 @@ class LateralColumns:
 
     nodes: FloatArray  # wavenumbers along y, 1/m
     along_x: FloatArray  # (cell, node or 1, column): the functions of x
-    parities: IntArray
-    """(column): 1 or -1 for a part of the load even or odd about mid-length, 0 for a load that is not split."""
+    parities: IntArray  # (column): 1 or -1 for an even or odd part of the load, 0 for an unsplit load
     even_filters: FloatArray
     """(node, column, y): from the amplitudes to their sum at positions y, for components even or odd under a load
     even in y."""

@@ -123,8 +123,7 @@ def _split_by_band(vector: FloatArray, rows: Sequence[int], count: int) -> list[
 class EquivalentOperators(NamedTuple):
     """Operators from a load on the cells to the equivalent loads, positive in compression."""
 
-    top_load: LinearOperator
-    """To the load of V on the top of H, (x, y): ``P_h1`` of a pressure is the pressure plus this load."""
+    top_load: LinearOperator  # to the load of V on the top of H, (x, y): ``P_h1`` less the pressure
     faces: list[LinearOperator]  # to ``P_v1`` and, with two ends, ``P_v2``: (y, z)
 
 

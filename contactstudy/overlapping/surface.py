@@ -1,11 +1,9 @@
 """Displacements of the top from the free ends, between positions graded towards the ends.
 
-The normal displacement of the top of V is zero: the body has the displacement of H under ``P_h = p + R``. The part of
-``p`` is the mirrored half-space; the part of ``R`` follows from the equation set by reciprocity, eqs. (28) to (29b) of
-docs/explanation/theory.md: a symmetric operator, smooth except at the ends. It is sampled at positions graded towards
-the ends and transformed along y to the wavenumbers of the zero-padded grid, once per body and window. Far along y a
-finite-length body is a plate in plane stress, eqs. (30) and (30a): displacements are stated relative to the top far
-away, at ``|y| = reference``; the curvature under a force along x is zero at this distance, too.
+The part of the pressure is the mirrored half-space; the part of the end correction follows from the equation set by
+reciprocity, eqs. (28) to (29b): a symmetric operator, smooth except at the ends. It is sampled at graded positions
+and transformed along y to the wavenumbers of the zero-padded grid, once per body and window. Displacements refer to
+the top far away, at ``|y| = reference``, where the curvature under a force along x is zero, too, eqs. (30) and (30a).
 """
 
 from __future__ import annotations

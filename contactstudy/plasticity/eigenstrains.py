@@ -12,8 +12,7 @@ from contactstudy.checks import FloatArray
 from contactstudy.eigenstrain.body import EigenstrainBody
 from contactstudy.errors import InvalidInputError
 
-STRAINS = tuple(f"plastic_strain_{pair}" for pair in ("xx", "yy", "zz", "xy", "xz", "yz"))
-"""Plastic strains, components of the tensor."""
+STRAINS = tuple(f"plastic_strain_{pair}" for pair in ("xx", "yy", "zz", "xy", "xz", "yz"))  # tensor components
 
 # Elements per cell along either axis, and degree of their polynomials. Accuracy: 1e-4 of the largest stress at a
 # cell's distance from corners of the eigenstrain, if the neighbouring cells are as small

@@ -16,8 +16,7 @@ from contactstudy.plots.style import COLORS, label_axes, line_styles, new_axes, 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-HALF_RANGE = 1.4
-"""Half of the range along y in a figure, over the Hertz half-width."""
+HALF_RANGE = 1.4  # Half of the range along y in a figure, over the Hertz half-width
 
 
 def plot_film_map(dataset: xr.Dataset, ax: Axes | None = None, *, fringes: int = 12, si: bool = False) -> Axes:

@@ -13,8 +13,7 @@ from contactstudy.checks import BoolArray, FloatArray
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-OMITTED_DISTANCE = 0.05
-"""Distance from a singular end, over the Hertz half-width, within which figures omit the pressure."""
+OMITTED_DISTANCE = 0.05  # From a singular end, over the Hertz half-width, within which figures omit the pressure
 
 SINGULAR_MARK: dict[str, Any] = {"marker": "^", "markersize": 7, "markerfacecolor": "none", "linestyle": "none"}
 SINGULAR_LABEL = "singular: unbounded"

@@ -14,14 +14,7 @@ from contactstudy.analysis import single_case
 from contactstudy.arrays.variables import DERIVED, require
 from contactstudy.errors import ContactStudyError, InvalidInputError
 from contactstudy.plots.edge_effect import EDGE_AXES, LoadCase, plot_edge_effect
-from contactstudy.plots.selection import (
-    describe_value,
-    most_solved,
-    scale_of,
-    scale_values,
-    select_one,
-    select_values,
-)
+from contactstudy.plots.selection import describe_value, most_solved, scale_of, scale_values, select_one, select_values
 from contactstudy.plots.singular_ends import SINGULAR_LABEL, SINGULAR_MARK, mark_at_top
 from contactstudy.plots.style import MARKERS, escape_dollars, fold_labels, fold_text, line_styles, new_axes
 
@@ -34,9 +27,7 @@ END_LOADS = ("end_load_first", "end_load_last")  # Replace the peak pressure if 
 OPEN_MARK: dict[str, Any] = {"markersize": 6, "markerfacecolor": "white", "linestyle": "none"}
 OPEN_LABEL = "error not estimated"
 
-ESTIMATED_PREFIXES = ("peak_", "end_pressure_", "end_load_", "end_intensity", "contact_")
-"""Prefixes of results whose error is estimated or missing; prescribed scalars, such as a load, have other names."""
-
+ESTIMATED_PREFIXES = ("peak_", "end_pressure_", "end_load_", "end_intensity", "contact_")  # with errors
 LINE_HEIGHT = 0.17  # Height of a line of text, inches
 TICK_WIDTH, LEGEND_COLUMN = 18, 22  # letters of a name at the axis and in the legend next to the axes
 FORCES = {"longitudinal_creepage": ("force_y", "F_y"), "lateral_creepage": ("force_x", "F_x")}

@@ -33,13 +33,12 @@ MARKERS = "osD^vPX*"
 AXIS_MEANINGS = {"x": "distance from the free end", "y": "position along rolling", "z": "depth"}
 """Labels of axes, shorter than in the table of variables."""
 
-SYMBOLS = {
+SYMBOLS = {  # labels of swept parameters; the table of variables contains the symbols of results
     "e_over_a": "distance of the roller's end from the free end, $e/a$",
     "friction": "friction, $f$",
     "gamma": r"length over radius, $\gamma$",
     "max_pressure": "Hertz pressure, $p_0$",
 }
-"""Labels of swept parameters with a symbol in the theory; the table of variables contains the symbols of results."""
 
 LETTER_WIDTH = 0.073  # Width of a letter in a label, inches
 MIN_LINE_LENGTH = 14  # Least length of a folded line, letters

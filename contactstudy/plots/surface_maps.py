@@ -23,9 +23,7 @@ HEAT_COLORS = "inferno"
 STICK_COLOR, SLIP_COLOR = "0.55", "0.88"
 CONTACT_BORDER: dict[str, Any] = {"colors": "0.35", "linewidths": 0.9}
 STICK_BORDER: dict[str, Any] = {"colors": "#e8513a", "linewidths": 1.8}  # legible on every colour of the map
-BORDER_LEVEL = 0.01
-"""Squared pressure at the drawn border, over its largest value; near the border it is linear in the distance."""
-
+BORDER_LEVEL = 0.01  # Squared pressure, linear in the distance, at the drawn border over the largest one
 MARGIN = 0.1  # Margin around the contact over its width
 ARROW_LENGTH = 1.5  # Length of the longest arrow over the arrows' spacing along x
 VECTORS = ("traction", "slip")

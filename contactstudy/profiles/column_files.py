@@ -135,10 +135,7 @@ def truncate(text: str) -> str:
 
 
 class NumberParser:
-    """Parser of the numbers of one file, with one decimal mark.
-
-    A comma is the decimal mark unless it separates columns, a number has a point, or all may separate thousands.
-    """
+    """Parser of numbers with one decimal mark: a comma unless it separates columns or thousands, or one has a point."""
 
     def __init__(self, separator: str) -> None:
         self._comma_allowed = separator != ","
@@ -206,10 +203,7 @@ def unit_in_metres(name: str, unit: object) -> float:
 
 
 def read_columns(path: str | Path, positions: tuple[str, ...], values: tuple[str, ...]) -> dict[str, FloatArray]:
-    """Columns of a CSV file by name, metres: `positions`, and exactly one of `values`; an empty field is NaN.
-
-    Format: docs/how-to/measured_profile.md.
-    """
+    """Columns of a CSV file by name, metres: `positions`, and exactly one of `values`; an empty field is NaN."""
     path = Path(path)
     lines = read_lines(path)
     header_line = next(lines, None)

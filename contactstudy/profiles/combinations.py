@@ -11,15 +11,7 @@ from contactstudy import checks
 from contactstudy.arrays.engineering import format_quantity
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
-from contactstudy.profiles.base import (
-    Profile,
-    Shape,
-    SlopeJumps,
-    as_shape,
-    check_drop,
-    describe_profile,
-    local_radius,
-)
+from contactstudy.profiles.base import Profile, Shape, SlopeJumps, as_shape, check_drop, describe_profile, local_radius
 
 SLOPE_STEP = 1e-6  # Step of the differences for a slope, over the length
 

@@ -43,8 +43,8 @@ class FullCrown(Shape):
     centre: float = 0.0
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "crown_radius", checks.positive("crown_radius", self.crown_radius, "metres"))
-        object.__setattr__(self, "centre", checks.finite("centre", self.centre, "metres"))
+        checks.store(self, crown_radius=checks.positive("crown_radius", self.crown_radius, "metres"))
+        checks.store(self, centre=checks.finite("centre", self.centre, "metres"))
 
     def drop(self, x: FloatArray, length: float) -> FloatArray:
         """Material removed (m) at distances `x` (m) from mid-length."""
@@ -53,9 +53,7 @@ class FullCrown(Shape):
         reach = length / 2 + abs(self.centre)
         if self.crown_radius < reach:
             raise InvalidInputError(
-                "crown_radius",
-                self.crown_radius,
-                f"at least {reach:g} m, the distance to the roller's farther end",
+                "crown_radius", self.crown_radius, f"at least {reach:g} m, the distance to the roller's farther end"
             )
         return _arc_drop(np.minimum(np.abs(np.asarray(x) - self.centre), reach), self.crown_radius)
 
@@ -98,15 +96,15 @@ class PartialCrown(Shape):
     dub_radius: float | None = None
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "straight_length", checks.not_negative("straight_length", self.straight_length, "m"))
-        object.__setattr__(self, "crown_radius", checks.positive("crown_radius", self.crown_radius, "metres"))
-        object.__setattr__(self, "dub_length", checks.not_negative("dub_length", self.dub_length, "metres"))
+        checks.store(self, straight_length=checks.not_negative("straight_length", self.straight_length, "m"))
+        checks.store(self, crown_radius=checks.positive("crown_radius", self.crown_radius, "metres"))
+        checks.store(self, dub_length=checks.not_negative("dub_length", self.dub_length, "metres"))
         if (self.dub_length > 0) != (self.dub_radius is not None):
             raise InvalidInputError(
                 "dub_length, dub_radius", (self.dub_length, self.dub_radius), "given both or neither"
             )
         if self.dub_radius is not None:
-            object.__setattr__(self, "dub_radius", checks.positive("dub_radius", self.dub_radius, "metres"))
+            checks.store(self, dub_radius=checks.positive("dub_radius", self.dub_radius, "metres"))
             if self.dub_radius > self.crown_radius:
                 raise InvalidInputError("dub_radius", self.dub_radius, f"at most crown_radius, {self.crown_radius:g} m")
 
@@ -132,9 +130,7 @@ class PartialCrown(Shape):
         shift = self.dub_radius * sine
         if end - begin + shift > self.dub_radius:
             raise InvalidInputError(
-                "dub_radius",
-                self.dub_radius,
-                f"at least {(end - begin) / (1 - sine):g} m, to reach the roller's end",
+                "dub_radius", self.dub_radius, f"at least {(end - begin) / (1 - sine):g} m, to reach the roller's end"
             )
         crown_drop = _arc_drop(np.minimum(distance, begin), self.crown_radius)
         dub_drop = _arc_drop(np.maximum(distance - begin, 0.0) + shift, self.dub_radius) - _arc_drop(
@@ -172,7 +168,7 @@ class Ellipsoid(Shape):
     crown_radius: float
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "crown_radius", checks.positive("crown_radius", self.crown_radius, "metres"))
+        checks.store(self, crown_radius=checks.positive("crown_radius", self.crown_radius, "metres"))
 
     def drop(self, x: FloatArray, length: float) -> FloatArray:
         """Material removed (m) at distances `x` (m) from mid-length."""
@@ -202,7 +198,7 @@ class Sphere(Shape):
     radius: float
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "radius", checks.positive("radius", self.radius, "metres"))
+        checks.store(self, radius=checks.positive("radius", self.radius, "metres"))
 
     def drop(self, x: FloatArray, length: float) -> FloatArray:
         """Material removed (m) at distances `x` (m) from mid-length."""
@@ -212,9 +208,6 @@ class Sphere(Shape):
         """Radius of the roller (m), which must equal the sphere's."""
         if not np.allclose(radius, self.radius, rtol=1e-9, atol=0.0):
             raise InvalidInputError(
-                "radius",
-                self.radius,
-                f"the roller's radius, {np.max(radius):g} m",
-                "an Ellipsoid may have any radius",
+                "radius", self.radius, f"the roller's radius, {np.max(radius):g} m", "an Ellipsoid may have any radius"
             )
         return super().local_radius(x, length, radius)

@@ -114,8 +114,8 @@ class Lundberg(Logarithmic):
     delta: float = 1.0
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "amplitude", checks.not_negative("amplitude", self.amplitude, "metres"))
-        object.__setattr__(self, "delta", checks.not_negative("delta", self.delta))
+        checks.store(self, amplitude=checks.not_negative("amplitude", self.amplitude, "metres"))
+        checks.store(self, delta=checks.not_negative("delta", self.delta))
 
     def drop(self, x: FloatArray, length: float) -> FloatArray:
         """Material removed (m) at distances `x` (m) from mid-length; infinite at the very ends."""
@@ -157,8 +157,8 @@ class JohnsGohar(Logarithmic):
     half_width: float
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "amplitude", checks.not_negative("amplitude", self.amplitude, "metres"))
-        object.__setattr__(self, "half_width", checks.not_negative("half_width", self.half_width, "metres"))
+        checks.store(self, amplitude=checks.not_negative("amplitude", self.amplitude, "metres"))
+        checks.store(self, half_width=checks.not_negative("half_width", self.half_width, "metres"))
 
     @classmethod
     def _parameters_for_pressure(cls, max_pressure: float, radius: float, modulus: float) -> dict[str, float]:
@@ -221,10 +221,9 @@ class FujiwaraKawase(Logarithmic):
     k2: float = 1.0
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "amplitude", checks.positive("amplitude", self.amplitude, "metres"))
-        object.__setattr__(self, "edge_drop", checks.not_negative("edge_drop", self.edge_drop, "metres"))
-        object.__setattr__(self, "k1", checks.positive("k1", self.k1))
-        object.__setattr__(self, "k2", checks.positive("k2", self.k2))
+        checks.store(self, amplitude=checks.positive("amplitude", self.amplitude, "metres"))
+        checks.store(self, edge_drop=checks.not_negative("edge_drop", self.edge_drop, "metres"))
+        checks.store(self, k1=checks.positive("k1", self.k1), k2=checks.positive("k2", self.k2))
         if self.k2 > 1:
             raise InvalidInputError("k2", self.k2, "at most 1, the whole half of the roller")
 
@@ -270,7 +269,7 @@ class IsoCylindrical(Shape):
     diameter: float
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "diameter", checks.positive("diameter", self.diameter, "metres"))
+        checks.store(self, diameter=checks.positive("diameter", self.diameter, "metres"))
 
     def drop(self, x: FloatArray, length: float) -> FloatArray:
         """Material removed (m) at distances `x` (m) from mid-length; infinite at the very ends."""
@@ -310,7 +309,7 @@ class IsoTapered(Shape):
     diameter: float
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "diameter", checks.positive("diameter", self.diameter, "metres"))
+        checks.store(self, diameter=checks.positive("diameter", self.diameter, "metres"))
 
     def drop(self, x: FloatArray, length: float) -> FloatArray:
         """Material removed (m) at distances `x` (m) from mid-length; infinite at the very ends."""

@@ -17,13 +17,7 @@ from contactstudy.arrays.variables import numbers_in_si
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 from contactstudy.profiles.base import MIN_JUMP, Shape, SlopeJumps
-from contactstudy.profiles.column_files import (
-    check_positions,
-    check_values,
-    read_columns,
-    read_netcdf,
-    unit_in_metres,
-)
+from contactstudy.profiles.column_files import check_positions, check_values, read_columns, read_netcdf, unit_in_metres
 from contactstudy.profiles.instruments import Heights, is_instrument_file, read_heights, rotate_heights
 
 ALPHA = np.sqrt(np.log(2) / np.pi)  # Constant of transmission one half at the cut-off (ISO 16610-21)
@@ -75,10 +69,8 @@ def _sum_uneven_points(x: FloatArray, values: FloatArray) -> tuple[FloatArray, .
 
 
 def extract_ridge(x: FloatArray, y: FloatArray, heights: FloatArray) -> FloatArray:
-    """Heights (x) along the highest line of a roller from a map (x, y); NaN where half of a section is missing.
-
-    Least squares fit ``h = p(x) + a y + b x y + c y**2``; the line is ``y = -(a + b x) / (2 c)``.
-    """
+    """Heights (x) along the highest line of a roller from a map (x, y); NaN where half of a section is missing."""
+    # Least squares fit h = p(x) + a y + b x y + c y**2; the line is y = -(a + b x) / (2 c).
     is_measured = np.isfinite(heights)
     counts = is_measured.sum(axis=1)
     complete = 2 * counts > y.size
@@ -185,7 +177,7 @@ class Measured(Shape):
                 "remove_offset=True when reading",
             )
         if self.largest_spike is not None:
-            object.__setattr__(self, "largest_spike", checks.positive("largest_spike", self.largest_spike, "metres"))
+            checks.store(self, largest_spike=checks.positive("largest_spike", self.largest_spike, "metres"))
         if self.cutoff is not None:
             length = checks.positive("cutoff", self.cutoff, "metres")
             min_cutoff, max_cutoff = MIN_STEPS * float(np.diff(x).max()), float(x[-1] - x[0])
@@ -196,8 +188,7 @@ class Measured(Shape):
                 raise InvalidInputError("cutoff", length, allowed, "units are SI")
             checks.store(self, cutoff=length)
         check_outliers(x, drops, self.largest_spike)
-        object.__setattr__(self, "positions", tuple(x.tolist()))
-        object.__setattr__(self, "drops", tuple(drops.tolist()))
+        checks.store(self, positions=tuple(x.tolist()), drops=tuple(drops.tolist()))
 
     def __repr__(self) -> str:
         length, drop = (

@@ -39,7 +39,7 @@ class Cylinder(Shape):
     fillet_radius: float = 0.0
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "fillet_radius", checks.not_negative("fillet_radius", self.fillet_radius, "metres"))
+        checks.store(self, fillet_radius=checks.not_negative("fillet_radius", self.fillet_radius, "metres"))
 
     def drop(self, x: FloatArray, length: float) -> FloatArray:
         """Material removed (m) at distances `x` (m) from mid-length."""
@@ -100,8 +100,8 @@ class Tapered(Shape):
             raise InvalidInputError(
                 "half_angle", angle, "between -pi/4 and pi/4 (radians)", "an angle in degrees needs numpy.radians"
             )
-        object.__setattr__(self, "half_angle", angle)
-        object.__setattr__(self, "fillet_radius", checks.not_negative("fillet_radius", self.fillet_radius, "metres"))
+        checks.store(self, half_angle=angle)
+        checks.store(self, fillet_radius=checks.not_negative("fillet_radius", self.fillet_radius, "metres"))
 
     def drop(self, x: FloatArray, length: float) -> FloatArray:
         """Material removed (m) at distances `x` (m) from mid-length: the fillets."""

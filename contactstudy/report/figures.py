@@ -38,17 +38,13 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 WIDTH, HEIGHT = 6.4, 3.3  # Size of a figure, inches
-END_PANEL, LONG_CONTACT = 6.0, 15.0
-"""Length of the panel at the most loaded end, and least length of a contact with such a panel, in half-widths."""
-
+END_PANEL, LONG_CONTACT = 6.0, 15.0  # Length of the panel of an end, least length with a panel, in half-widths
 DOTS_PER_INCH = 110  # Dots per inch of images within a figure
 PIXELS_PER_INCH = 96  # Pixels of a page per inch
-MIN_SCALE, MAX_SCALE, SCREEN_WIDTH = 0.5, 1.4, 380
-"""Smallest and largest scale of a figure with legible labels, and width of a narrow screen in pixels."""
+MIN_SCALE, MAX_SCALE, SCREEN_WIDTH = 0.5, 1.4, 380  # Scales with legible labels, narrow screen in pixels
 
 BLUE = "#1f4e79"
-BODY, ROLLER, LINE = "#d9dee3", "#b9c6d2", "#24313d"
-"""Colours of curves, and of body, roller and lines of the side view."""
+BODY, ROLLER, LINE = "#d9dee3", "#b9c6d2", "#24313d"  # Colours of the side view
 ARROW: dict[str, Any] = {"arrowstyle": "<->", "color": LINE, "shrinkA": 0.0, "shrinkB": 0.0}
 
 

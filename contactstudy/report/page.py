@@ -24,12 +24,11 @@ from contactstudy.report.summary_table import summary
 from contactstudy.study.files import load_result
 from contactstudy.versions import PACKAGES
 
-CELLS = {
+CELLS = {  # Description of the cells by the setting of `solve`
     "refined": "columns refined along the axis until the accuracy was reached",
     "chosen": "uniform cells, chosen by the package",
     "given": "given by the user",
 }
-"""Description of the cells by the setting of `solve`."""
 
 
 def html(

@@ -27,7 +27,7 @@ CONTACT = (
 ROLLING = ("stick and slip", "J. J. Kalker, Three-Dimensional Elastic Bodies in Rolling Contact, Kluwer (1990)")
 SUBSURFACE = ("stresses", "A. E. H. Love, Phil. Trans. R. Soc. Lond. A 228 (1929) 377, and K. L. Johnson")
 FILTER = ("filter of the measured profile", "ISO 16610-21, ends by the moment criterion of ISO 16610-28")
-PROFILES = {
+PROFILES = {  # Sources of profiles by their class
     "Lundberg": "G. Lundberg, Forschung auf dem Gebiet des Ingenieurwesens 10 (1939)",
     "JohnsGohar": "P. M. Johns, R. Gohar, Tribology International 14 (1981) 131",
     "FujiwaraKawase": "H. Fujiwara, T. Kawase, NTN Technical Review 75 (2007) 140",
@@ -35,7 +35,6 @@ PROFILES = {
     "IsoTapered": "ISO/TS 16281:2008",
     "Measured": "H. T. Huynh, SIAM J. Numer. Anal. 30 (1993) 57, its interpolation",
 }
-"""Sources of profiles by their class."""
 
 
 @dataclass(frozen=True)

@@ -29,7 +29,7 @@ from contactstudy.versions import PACKAGES
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-PEAK_NUMBERS = {
+PEAK_NUMBERS = {  # Columns of the table and their headings
     "peak_pressure": "largest pressure",
     "end_pressure_first": "at end I",
     "end_pressure_last": "at end II",
@@ -40,24 +40,21 @@ PEAK_NUMBERS = {
     "peak_von_mises_x": "at x",
     "peak_von_mises_z": "at z",
 }
-"""Columns of the table and their headings."""
 
-SINGULAR_NUMBERS = {
+SINGULAR_NUMBERS = {  # Columns that replace the pressure at a singular end
     "end_intensity_first": "K at end I",
     "end_intensity_last": "K at end II",
     "end_load_first": "load on the last a, end I",
     "end_load_last": "load on the last a, end II",
 }
-"""Columns that replace the pressure at a singular end."""
 
-CAPTIONS = {
+CAPTIONS = {  # Captions of figures by name
     "edge_effect": "Pressure along the axis, and von Mises stress in the plane y = 0, for several distances "
     "from the end.",
     "study": "Largest values of the cases over the swept parameters; where all are singular, the loads on the last "
     "half-width a at the ends. Bars: estimated errors; open marks: error not estimated. Open triangle at the top: "
     "singular, without a largest value.",
 }
-"""Captions of figures by name."""
 
 FIELDS = ("pressure", "initial_gap", "von_mises")  # Variables of a case in the figures of a study
 PERCENTAGE = re.compile(r" ([0-9.]+)%$")  # Size of an error at the end of a reason

@@ -23,11 +23,8 @@ SINGULAR = "singular: unbounded towards a sharp end"
 CELL_MEAN = f"mean over the cell of largest pressure, {NOT_ESTIMATED}"
 OPEN_END = "no contact at this end"
 ENDS = {"first": "end I", "last": "end II"}  # Ends of the roller: suffixes of variables, and names in the table
-
-FILMS = ("central_film", "least_film", "end_film_ratio", "least_film_ratio")
-"""Variables of a film that have a row if present."""
-
-SCALARS = {
+FILMS = ("central_film", "least_film", "end_film_ratio", "least_film_ratio")  # rows if present
+SCALARS = {  # Scalars that have a row if present and not zero, with the row's text
     "approach": "approach of roller and body",
     "tilt": "tilt",
     "load_position": "position x of the resultant",
@@ -41,7 +38,6 @@ SCALARS = {
     "shift_y": "shift along rolling",
     "friction_work": "frictional work",
 }
-"""Scalars that have a row if present and not zero, with the row's text."""
 
 SOLVED = ("approach", "load_position", "force_x", "force_y", "moment_z", "shift_x", "shift_y", "friction_work")
 """Scalars among `SCALARS` that follow from the solution unless the case prescribes them."""

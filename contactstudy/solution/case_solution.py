@@ -18,7 +18,7 @@ from contactstudy.arrays.grid import Grid
 from contactstudy.arrays.variables import describe
 from contactstudy.case.case import Case
 from contactstudy.case.gridding import ACCURACY, TOLERANCE, check_accuracy, choose_grid
-from contactstudy.case.magnitudes import check_balanced, check_on_its_length, describe_inclination, warn_of_magnitudes
+from contactstudy.case.magnitudes import check_balanced, check_on_its_length, warn_of_magnitudes
 from contactstudy.case.motion import Sliding
 from contactstudy.contact.normal.contact import Contact, Settings, contact_of
 from contactstudy.contact.refinement.refined_contact import (
@@ -134,14 +134,13 @@ def contact_on_cells(case: Case, grid: Grid | None, roughness: xr.DataArray | No
         advice = f"{error}; choose_grid(case, window=..., margin=...) makes a wider one"
         if not case.tilt and case.load_position is None:
             raise WindowError(advice) from error
-        raise WindowError(f"{describe_inclination(case)}, and so deep at the roller's end that {advice}") from error
+        position = case.load_position
+        cause = f"tilt = {case.tilt:g} rad" if position is None else f"load_position = {position:g} m"
+        raise WindowError(f"{cause}, and so deep at the roller's end that {advice}") from error
     contact = _check_contact(case, contact)
     if not isinstance(case.motion, Sliding):
         request = FrictionRequest(
-            motion=case.motion,
-            friction=case.friction_on(grid.x),
-            reference_x=case.roller_middle,
-            coupled=case.coupled,
+            motion=case.motion, friction=case.friction_on(grid.x), reference_x=case.roller_middle, coupled=case.coupled
         )
         tractions = frictional_contact(contact.shape, contact.settings, request)
         tractions.warn_unless_converged()
@@ -163,9 +162,7 @@ def _check_contact(case: Case, contact: Contact) -> Contact:
 
 
 RESIDUAL_DEPTHS = (0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0)  # depths of `end_traction_residual`, over the Hertz half-width
-
 RESIDUAL_POSITIONS = (-1.1, -0.9, -0.5, 0.0, 0.5, 0.9, 1.1)  # the residual's positions along y, over the half-width
-
 RESIDUAL_COVERS = (  # comment of `end_traction_residual`
     f"the largest at depths from {RESIDUAL_DEPTHS[0]} a to {RESIDUAL_DEPTHS[-1]} a and |y| up to "
     f"{RESIDUAL_POSITIONS[-1]} a; nearer to the top of a loaded end it is larger, about 1e-4 at 0.01 a, 1e-3 at 0.004 a"

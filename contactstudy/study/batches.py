@@ -1,13 +1,9 @@
 """Batches: netCDF files of many finished cases, the only format of a study's results.
 
-A batch has the dimension `case`. Numbers are columns, such as ``peak_pressure(case)``. Arrays of the cases have
-different shapes, so they are contiguous ragged arrays of the CF conventions: ``pressure(x_y_values)`` contains the
-arrays of all cases one after the other, and ``x_size(case)`` and ``y_size(case)`` their shapes. A case that failed, or
-cannot be set up, has a status and a message and no numbers. All cases of a batch have equal versions and one level.
-
-A batch is never changed. Its name ends with the number of its cases and the CRC-32 of its bytes, so that damage is
-detected without decoding; every column and chunk has a checksum of the format as well, which any reader of netCDF-4
-verifies.
+Numbers are columns, such as ``peak_pressure(case)``. Arrays are contiguous ragged arrays of the CF conventions:
+``pressure(x_y_values)`` contains the arrays of all cases one after the other, ``x_size(case)`` and ``y_size(case)``
+their shapes. All cases of a batch have equal versions and one level. A batch is never changed; the CRC-32 in its name
+detects damage without decoding.
 """
 
 from __future__ import annotations
@@ -31,14 +27,12 @@ from contactstudy.errors import StoreError
 from contactstudy.study.files import is_regular, netcdf_access
 
 STATUSES = ("ok", "failed", "skipped")  # States of a case in a batch, by their code
-
-TEXT_COLUMNS = {
+TEXT_COLUMNS = {  # Text columns with their meanings
     "parameters": "parameters of the case as JSON, without those in contactstudy_shared",
     "message": "reason of a case that is not ok",
     "warnings": "warnings of the case as JSON",
     "time": "end of the case's solution, UTC",
 }
-"""Text columns with their meanings."""
 
 SUFFIX = ".nc"
 IDENTITY_LENGTH = 64

@@ -33,21 +33,14 @@ from contactstudy.study.parameters import (
 )
 from contactstudy.study.profile_tables import build_profile
 
-SCALED_POSITIONS = ("field_x_over_a", "field_y_over_a", "field_z_over_a")
-"""Parameters that are positions over the half-width."""
-
-LUBRICANT_PAIRS = {"lubricant": "temperature", "viscosity": "pressure_viscosity"}
-"""Parameters that specify a lubricant in pairs."""
-
-FILM_PARAMETERS = ("entrainment_speed", "slide_roll_ratio", "roughness_rms")
-"""Further parameters of a film."""
-
-MOTION_PARAMETERS = {
+SCALED_POSITIONS = ("field_x_over_a", "field_y_over_a", "field_z_over_a")  # positions over the half-width
+LUBRICANT_PAIRS = {"lubricant": "temperature", "viscosity": "pressure_viscosity"}  # parameters given in pairs
+FILM_PARAMETERS = ("entrainment_speed", "slide_roll_ratio", "roughness_rms")  # Further parameters of a film
+MOTION_PARAMETERS = {  # arguments of each motion's class, with the prefix `shift_` for a shift
     "sliding": ("entrainment_speed", "slide_roll_ratio"),
     "shift": ("shift_x", "shift_y", "force_x", "force_y"),
     "rolling": ("longitudinal_creepage", "lateral_creepage", "spin", "force_x", "force_y", "moment_z"),
 }
-"""Parameters of each motion: arguments of the motion's class, with the prefix `shift_` for a shift."""
 
 
 @dataclass(frozen=True, kw_only=True)

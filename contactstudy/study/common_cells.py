@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from contactstudy.arrays.grid import SPACING_TOLERANCE
+from contactstudy.arrays.grid import SPACING_TOLERANCE, centres_of
 from contactstudy.checks import FloatArray
 
 MIN_WIDTH = 0.5  # Width of a common cell over the narrowest cell of all cases at this position. Accuracy
@@ -118,7 +118,7 @@ class Resampling:
         low = np.maximum(self.borders[:-1, None], self.source[None, :-1])
         high = np.minimum(self.borders[1:, None], self.source[None, 1:])
         overlap_fraction = np.maximum(high - low, 0.0) / np.diff(self.borders)[:, None]
-        midpoints = cell_centres(self.source)
+        midpoints = centres_of(self.source)
         lever_arms = np.where(overlap_fraction > 0, 0.5 * (low + high) - midpoints, 0.0)
         slopes = _limited_slopes(midpoints, values)
         result = sparse.csr_array(overlap_fraction) @ values + sparse.csr_array(overlap_fraction * lever_arms) @ slopes
@@ -134,7 +134,7 @@ class Resampling:
 
     def interpolate(self, values: FloatArray) -> FloatArray:
         """Interpolate values along the first axis linearly; NaN beyond the case's cells or points."""
-        positions = cell_centres(self.source)
+        positions = centres_of(self.source)
         if self.has_points:
             order = np.argsort(self.source)
             positions, values = self.source[order], values[order]
@@ -183,8 +183,3 @@ def _limited_slopes(centres: FloatArray, values: FloatArray) -> FloatArray:
         magnitude = np.minimum(np.abs(step_below), np.abs(step_above))
         slopes[1:-1] = np.where(step_below * step_above > 0, np.sign(step_below) * magnitude, 0.0)
     return slopes
-
-
-def cell_centres(edges: FloatArray) -> FloatArray:
-    """Centres of the cells between `edges`."""
-    return np.asarray(0.5 * (edges[1:] + edges[:-1]))

@@ -17,8 +17,7 @@ from contactstudy.study.folder import STATES, Folder, States
 from contactstudy.study.parameters import PARAMETERS
 from contactstudy.study.plan import label
 
-CELL_CHOICES = ("common", "original")
-"""Choices for the axes of surfaces and stresses: common to all cases, or the cells and points of each case."""
+CELL_CHOICES = ("common", "original")  # Axes of surfaces and stresses: common to all cases, or of each case
 
 
 def open_study(folder: str | Path, *, cells: str = "common", chunks: Any = None) -> xr.Dataset:

@@ -25,9 +25,7 @@ from contactstudy.study.parameters import PARAMETERS, REQUIRED, check_parameters
 from contactstudy.study.plan import LEVELS, Axis, Plan, format_list, format_value, label
 from contactstudy.study.profile_tables import resolve_files
 
-KEYS = ("name", "description", "level", "base", "sweep", "zip", "cases", "exclude")
-"""Keys of a study file; each is also an argument of :class:`Study`."""
-
+KEYS = ("name", "description", "level", "base", "sweep", "zip", "cases", "exclude")  # of a study file
 MAX_CASES = 1_000_000  # Combinations of one study, at most: half a gigabyte of identities and groups
 
 

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import contextlib
 import logging
-import multiprocessing
 import os
 import queue
 import signal
@@ -32,8 +31,7 @@ if TYPE_CHECKING:
     from tornado.ioloop import IOLoop
 
 WAIT_SECONDS = 300.0  # Longest wait for a worker while a scheduler has none
-
-WORKER_ENVIRONMENT = {
+WORKER_ENVIRONMENT = {  # one thread; keeping the freed memory of arrays halves the time of a case
     "OMP_NUM_THREADS": "1",
     "MKL_NUM_THREADS": "1",
     "OPENBLAS_NUM_THREADS": "1",
@@ -41,7 +39,6 @@ WORKER_ENVIRONMENT = {
     "MALLOC_MMAP_THRESHOLD_": str(32 * 2**20),
     "MALLOC_TRIM_THRESHOLD_": str(512 * 2**20),
 }
-"""Environment of a worker: one thread; keeping the freed memory of arrays halves the time of a case."""
 
 # Without limits dask's logs of messages, tasks and records grow with the number of cases.
 SHORT_LOGS = {"distributed.admin.log-length": 20, "distributed.admin.low-level-log-length": 20}
@@ -52,12 +49,6 @@ GUARD_REMEDY = (
     "A script that runs a study needs the guard `if __name__ == '__main__':` around the run, because worker processes "
     "import the script; every worker needs about 20 open files (ulimit -n); workers=0 solves in one process"
 )
-
-
-def refuse_in_worker() -> None:
-    """End a worker process that imports a script without a guard, and would run the script's study."""
-    if getattr(multiprocessing.current_process(), "_inheriting", False):
-        raise SystemExit(1)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -13,12 +13,12 @@ import xarray as xr
 from xarray.backends import BackendArray
 from xarray.core import indexing
 
+from contactstudy.arrays.grid import centres_of
 from contactstudy.arrays.variables import ERROR_KIND, NOT_ESTIMATED
 from contactstudy.checks import FloatArray, IntArray
 from contactstudy.study.batches import case_offsets, read_batch, read_slices
 from contactstudy.study.common_cells import (
     Resampling,
-    cell_centres,
     centre_cells_on,
     common_columns,
     common_rows,
@@ -197,7 +197,7 @@ class Fields:
         union = common_rows if first_dim == "y" else common_columns
         axis = borders = rows[0] if _all_equal(rows, rows[0]) else union(rows)
         if first_dim not in CELL_DIMS:
-            borders = np.concatenate([axis[:1], cell_centres(axis), axis[-1:]])
+            borders = np.concatenate([axis[:1], centres_of(axis), axis[-1:]])
         elif "x_field" in sources:
             points = common_columns([np.sort(row) for row in sources["x_field"]])
             plan = self._states.plan
@@ -206,7 +206,7 @@ class Fields:
             has_stated_points = any("field_x_over_a" in entry for entry in parameters)
             borders = centre_cells_on(borders, points) if has_stated_points else split_cells(borders, points)
         if first_dim in CELL_DIMS:
-            axis = cell_centres(borders)
+            axis = centres_of(borders)
         axes, maps = {}, {}
         for dim, source_rows in sources.items():
             has_points, fill = dim not in CELL_DIMS, 0.0 if dim == "y" else np.nan

@@ -18,8 +18,7 @@ from contactstudy.errors import InvalidInputError, StoreError
 
 NETCDF_LOCK = RLock()  # One netCDF operation at a time in this process
 UNFINISHED = re.compile(r".+\.[0-9a-f]{12}\.part")  # Names of unfinished files
-ALMOST_FULL = 2**20
-"""Free bytes on the disk below which a failed write is attributed to a full disk, as netCDF gives no reason."""
+ALMOST_FULL = 2**20  # Free bytes below which a failed write is attributed to a full disk: netCDF gives no reason
 
 
 @contextlib.contextmanager

@@ -1,13 +1,4 @@
-"""The folder of a study: its files, its locks, and the state of every case.
-
-::
-
-    FOLDER/study.json                 the study
-    FOLDER/batches/*.nc               finished cases, see :mod:`contactstudy.study.batches`
-    FOLDER/set-aside/                 damaged or foreign files
-    FOLDER/run.log, run.lock          log of all runs; lock of the current run
-    FOLDER/run-3-of-40.log, .lock     the same of a share
-"""
+"""The folder of a study: its files, its locks, and the state of every case (docs/reference/results_files.md)."""
 
 from __future__ import annotations
 
@@ -293,11 +284,7 @@ class Folder:
 
     @contextlib.contextmanager
     def locked(self, share: Share) -> Iterator[None]:
-        """Hold the lock of the folder, or of a share of its study, or raise :class:`LockedError`.
-
-        The operating system releases the lock of a process that ends. A run of the whole study and a run of a share
-        exclude each other; different shares do not.
-        """
+        """Hold a lock or raise :class:`LockedError`: runs of the whole study and of a share exclude each other."""
         with contextlib.ExitStack() as locks:
             if share.count == 1:
                 # Another process that calls `holders` holds the lock for a moment.

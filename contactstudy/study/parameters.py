@@ -107,8 +107,7 @@ class Parameter:
         return None if value is None else self.check(self.name, value)
 
 
-UNIFORM_CELL_PARAMETERS = ("cells_x", "cells_y", "window", "margin")
-"""Parameters of uniform cells; a case with any of these parameters has uniform cells."""
+UNIFORM_CELL_PARAMETERS = ("cells_x", "cells_y", "window", "margin")  # a case with one has uniform cells
 
 BODIES = ("finite-length", "quarter-space", "half-space")
 
@@ -368,10 +367,8 @@ _PARAMETERS = (
         absent="about 23 depths to 5 a",
     ),
 )
-PARAMETERS: dict[str, Parameter] = {entry.name: entry for entry in _PARAMETERS}
-"""Every parameter that a case of a study can have."""
-
-REQUIRED = (
+PARAMETERS: dict[str, Parameter] = {entry.name: entry for entry in _PARAMETERS}  # of a case, by name
+REQUIRED = (  # Groups of parameters; every case has exactly one parameter of each group
     ("young",),
     ("poisson",),
     ("radius",),
@@ -379,7 +376,6 @@ REQUIRED = (
     ("e_over_a", "end_distance"),
     ("max_pressure", "load", "approach"),
 )
-"""Groups of parameters; every case has exactly one parameter of each group."""
 
 
 def keywords_of(function: Callable[..., Any], values: Mapping[str, Any]) -> dict[str, Any]:

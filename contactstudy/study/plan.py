@@ -35,16 +35,12 @@ from contactstudy.study.settings import RUN
 LEVELS = ("summary", "surface", "fields")  # Arrays that a study retains: none; arrays on (x, y); also the stresses
 MAX_LISTED = 12  # Largest number of values of a swept parameter that are all shown
 MAX_CUBE_CELLS = 4  # Entries of the parameter cube per explicit case; cases of a sparser cube are listed along `case`
-BYTES_PER_CASE, BYTES_PER_CELL, BYTES_PER_POINT = 700, 4 * 8, 7 * 4
-"""Size of the numbers of a case, and of its arrays before compression."""
-
-LOCAL_PARAMETERS = frozenset(
+BYTES_PER_CASE, BYTES_PER_CELL, BYTES_PER_POINT = 700, 4 * 8, 7 * 4  # sizes before compression
+LOCAL_PARAMETERS = frozenset(  # Parameters that do not change the operator of the surface. Speed
     {"friction", "tilt", "load_offset", "profile", "accuracy", "tolerance", "stresses", "entrainment_speed"}
 )
-"""Parameters that do not change the operator of the surface. Speed."""
 
-Axis = tuple[dict[str, Any], ...]
-"""One factor of a product: the parameters of each step of a swept parameter, or of zipped parameters."""
+Axis = tuple[dict[str, Any], ...]  # a factor of the product of a study: the parameters of each step
 
 
 @dataclass(frozen=True)

@@ -27,9 +27,7 @@ if TYPE_CHECKING:
 Table = dict[str, Any]
 MAX_NESTING = 16  # Largest depth of profiles within profiles
 MAX_POINTS = 50_000  # Largest number of points of a measured profile
-DESIGN = ("design_pressure", "design_load")
-"""Keys that determine the amplitude of a profile: Pa, and N on the whole roller."""
-
+DESIGN = ("design_pressure", "design_load")  # determine the amplitude: Pa, and N on the roller
 POINTS = ("positions", "drops")  # Fields that contain lists of lengths
 NESTED = ("left", "right", "profile")  # Fields that contain a profile
 FILE_FLAGS = ("remove_tilt", "remove_offset")
@@ -153,7 +151,7 @@ def _read_points(table: Table) -> Table:
     return {name: value for name, value in values.items() if value is not None}
 
 
-PROFILES: dict[str, ProfileKind] = {
+PROFILES: dict[str, ProfileKind] = {  # Kinds of profile by their name in a study
     "cylinder": ProfileKind(profiles.Cylinder),
     "tapered": ProfileKind(profiles.Tapered),
     "lundberg": ProfileKind(profiles.Lundberg, design_fields=("amplitude",)),
@@ -171,7 +169,6 @@ PROFILES: dict[str, ProfileKind] = {
     "effective-length": ProfileKind(profiles.EffectiveLength),
     "sum": ProfileKind(profiles.Sum),
 }
-"""Kinds of profile by their name in a study."""
 
 KIND_OF = {kind.profile_class: name for name, kind in PROFILES.items()}  # Name of the kind of each class
 

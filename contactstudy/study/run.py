@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import multiprocessing
 import signal
 import threading
 import time
@@ -19,7 +20,7 @@ from contactstudy import checks
 from contactstudy.errors import InvalidInputError, StoreError, StudyFileError, Terminated
 from contactstudy.study.batches import write_batch
 from contactstudy.study.definition import Study
-from contactstudy.study.engine import WAIT_SECONDS, Engine, TaskResults, Tasks, execute, refuse_in_worker
+from contactstudy.study.engine import WAIT_SECONDS, Engine, TaskResults, Tasks, execute
 from contactstudy.study.folder import Folder, Share, States
 from contactstudy.study.plan import Plan, PlannedCase
 from contactstudy.study.progress import Progress
@@ -180,7 +181,9 @@ def run_study(
     >>> run_study(study, tempfile.mkdtemp(), workers=0, progress=False).counts
     {'ok': 2}
     """
-    refuse_in_worker()
+    # A worker process imports a script without a guard, and would run the script's study.
+    if getattr(multiprocessing.current_process(), "_inheriting", False):
+        raise SystemExit(1)
     checks.instance("study", study, Study, "a Study, as from Study.from_toml(path)")
     engine = Engine(workers=workers, scheduler=scheduler, wait=wait, solver=solver)
     run_share = _check_share(share)

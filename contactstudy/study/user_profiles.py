@@ -21,17 +21,12 @@ from contactstudy.profiles import Profile
 from contactstudy.profiles.base import check_drop, describe_profile, local_radius
 
 KIND = "user"  # Kind of a profile of a user's class
-KEYS = ("class", "values", "content")
-"""Keys of such a profile's table: name of the class, values of the object, and the digest that is the identity."""
-
-LENGTHS = (1e-4, 1e-3, 1e-2, 1e-1)
-"""Lengths of a roller, metres, for which drops enter the digest; a profile may be invalid for some."""
-
+KEYS = ("class", "values", "content")  # class name, values, identity of the object
+LENGTHS = (1e-4, 1e-3, 1e-2, 1e-1)  # metres, of which drops enter the digest; a profile may be invalid for some
 MAX_LISTED_SIZE = 100  # Largest array that a file lists; a digest represents a larger array
 REMEDY = "give its values as numbers, texts or lists, or the shape as profiles.Measured(x, drop)"
 
-_registry: dict[str, Profile] = {}
-"""Copies of this process' user profiles, by content; later changes of the user's objects do not change the copies."""
+_registry: dict[str, Profile] = {}  # copies by content; changes of the user's objects do not change them
 
 
 def register(profile: Profile) -> dict[str, Any]:

@@ -99,11 +99,7 @@ def single_threaded() -> Iterator[None]:
 
 
 def solve_task(task: Task, solver: Solver | None = None) -> list[Outcome]:
-    """Solve the cases of a task, write them in batches, and return their outcomes.
-
-    A case fails with an error of the package, a lack of memory or a singular system of equations. Any other error is a
-    defect of the program, and raised after the cases finished before are written.
-    """
+    """Solve the cases of a task, write them in batches, return their outcomes; defects of the program are raised."""
     path, text = task.lock
     try:
         lock = Path(path).read_text(encoding="utf-8") if path else ""

@@ -192,13 +192,7 @@ def rectangle(
 
 
 def hertz_circle(
-    x: ArrayLike,
-    y: ArrayLike,
-    z: ArrayLike,
-    radius: float,
-    max_pressure: float,
-    poisson: float,
-    friction: float = 0.0,
+    x: ArrayLike, y: ArrayLike, z: ArrayLike, radius: float, max_pressure: float, poisson: float, friction: float = 0.0
 ) -> Stress:
     """Stresses under `p0 sqrt(1 - r^2/a^2)` and `q = f p` along `+y`: the problem of Hamilton (1983).
 
@@ -259,11 +253,9 @@ def rectangle_in_half_plane(
 ) -> FloatArray:
     """Stresses xx, yy, zz, xz of plane strain outside or inside a rectangle with eigenstrains xx, yy, zz, xz.
 
-    The eigenstrain acts like forces on the sides; inside, its elastic stress is subtracted (J. D. Eshelby, Proc. R.
-    Soc. A 241 (1957) 376). For a force in a half-plane with a free face see N. I. Muskhelishvili, Some Basic Problems
-    of the Mathematical Theory of Elasticity, chapter 19: with the potentials phi, psi of the force in the whole plane,
-    the first potential of the force's images is ``-w phibar'(w) - psibar(w)``, and the second potential is
-    ``-phibar(w)`` minus w times the derivative of the first.
+    The eigenstrain acts like forces on the sides; inside, its elastic stress is subtracted (Eshelby). With potentials
+    phi, psi of a force in the whole plane its images have the first potential ``-w phibar'(w) - psibar(w)`` and the
+    second potential ``-phibar(w)`` minus w times the derivative of the first (Muskhelishvili).
     """
     xs, zs = (np.asarray(c, dtype=float) for c in np.broadcast_arrays(x, z))
     e_xx, e_yy, e_zz, e_xz = eigenstrain

@@ -176,10 +176,7 @@ class PassesCase:
 
 @dataclass(frozen=True, kw_only=True)
 class LubricatedCase:
-    """A roller with Lundberg's profile, flush with both free ends; Barus oil of constant density, entrained along +y.
-
-    Heights are in ``a**2 / R``.
-    """
+    """A roller with Lundberg's profile, flush with both free ends; Barus oil of constant density; heights in a²/R."""
 
     length: float
     amplitude: float  # amplitude of the profile

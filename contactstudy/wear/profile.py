@@ -120,10 +120,7 @@ class _Columns:
 
 @dataclass(frozen=True, eq=False)
 class _SharpEnds:
-    """Depth that the pressure next to sharp ends needs: the body sinks in like ``s ln s`` at a distance s from an end.
-
-    The slope is ``2 p / (pi E') ln s`` (Johnson, section 2.5); without this depth the pressure is unbounded.
-    """
+    """Depth of the slope ``2 p / (pi E') ln s`` at a distance s from sharp ends (Johnson, section 2.5)."""
 
     positions: tuple[float, float]
     slopes: tuple[float, float]

@@ -11,7 +11,6 @@ import ast
 import html
 import importlib
 import inspect
-import itertools
 import pkgutil
 import re
 import tomllib
@@ -167,22 +166,9 @@ def dataset_variables() -> str:
 
 def _subjects() -> Iterator[tuple[str, dict[str, vocabulary.Variable], str]]:
     """Name, variables and meaning of each dictionary that ``VARIABLES`` is made of."""
-    for node, after in itertools.pairwise(ast.parse(inspect.getsource(vocabulary)).body):
-        if isinstance(node, ast.Assign) and isinstance(node.value, ast.Dict):
-            name = _target(node)
-            if name not in ("COORDINATES", "RULES"):
-                yield name, getattr(vocabulary, name), first_sentence(_text(after))
-
-
-def _target(node: ast.Assign) -> str:
-    """Name that is assigned to; empty if there are several."""
-    return node.targets[0].id if isinstance(node.targets[0], ast.Name) else ""
-
-
-def _text(node: ast.stmt) -> str:
-    """Text of a statement that is nothing but text."""
-    constant = node.value if isinstance(node, ast.Expr) else None
-    return str(constant.value) if isinstance(constant, ast.Constant) else ""
+    for name, meaning in re.findall(r"^([A-Z_]+) = \{  # (.*)$", inspect.getsource(vocabulary), re.MULTILINE):
+        if name not in ("COORDINATES", "RULES"):
+            yield name, getattr(vocabulary, name), first_sentence(f"{meaning[0].upper()}{meaning[1:]}.")
 
 
 def naming_rules() -> str:

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from contactstudy.arrays.peaks import interpolate_about, lagrange_weights, peak_width, section_maxima
+from contactstudy.arrays.peaks import interpolate_about, lagrange_weights, section_maxima, variation_lengths
 
 
 @given(offset=st.floats(-0.5, 0.5), cells=st.integers(8, 40))
@@ -35,7 +35,7 @@ def test_polynomials_about_a_sample() -> None:
 def test_width_of_a_crest() -> None:
     x = np.linspace(-1.0, 1.0, 201)
     crest = np.sqrt(np.maximum(1 - (x / 0.5) ** 2, 0))[:, None] * np.ones(20)
-    assert peak_width(crest, x, 0.1, 100) == pytest.approx(0.5, abs=0.05)
+    assert min(variation_lengths(crest, x, 0.1, 100, rising=False)) == pytest.approx(0.5, abs=0.05)
 
 
 def test_interpolation_is_exact_for_polynomials() -> None:

@@ -7,11 +7,11 @@ from hypothesis import strategies as st
 
 from contactstudy import open_study
 from contactstudy.analysis import load_between, single_case
+from contactstudy.arrays.grid import centres_of
 from contactstudy.study import run_study
 from contactstudy.study.common_cells import (
     MIN_WIDTH,
     Resampling,
-    cell_centres,
     centre_cells_on,
     common_columns,
     common_rows,
@@ -22,7 +22,7 @@ from tests.small_study import small_study
 
 
 def cells_map(source, borders, fill):
-    return Resampling(source=source, axis=cell_centres(borders), borders=borders, fill=fill)
+    return Resampling(source=source, axis=centres_of(borders), borders=borders, fill=fill)
 
 
 @st.composite
@@ -125,13 +125,13 @@ def test_refined_columns_share_common_axis(tmp_path):
 
 
 @given(edges(), st.lists(st.floats(0.0, 3.0), min_size=1, max_size=6, unique=True))
-def test_stress_points_become_cell_centres(source, points):
+def test_stress_points_become_centres_of(source, points):
     points = np.unique(np.round(points, 3))
     cells = centre_cells_on(source, points)
     assert np.diff(cells).min() > 0
     assert cells[[0, -1]].tolist() == source[[0, -1]].tolist()
     for point in points[(points > source[0]) & (points < source[-1])]:
-        assert np.abs(cell_centres(cells) - point).min() < 1e-9
+        assert np.abs(centres_of(cells) - point).min() < 1e-9
 
 
 def test_cells_between_stress_points():

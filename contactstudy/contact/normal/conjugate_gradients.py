@@ -1,10 +1,8 @@
 """Unilateral contact by preconditioned conjugate gradients, under prescribed resultants or a prescribed approach.
 
-The scheme follows I. A. Polonsky and L. M. Keer, Wear 231 (1999) 206; two changes save most of the iterations:
-the descent direction is preconditioned by the inverse of the operator's spectrum, restricted to the contact (J. Zhao,
-E. A. H. Vollebregt, C. W. Oosterlee, Math. Comput. Sci. 9 (2015) 375, do so for Hertz' problem), and the gap is
-updated along the search direction while the contact area does not change. A safeguard limits each change of the contact
-area to the fraction that minimises the energy: many cells that enter at once may overshoot.
+The scheme follows I. A. Polonsky and L. M. Keer, Wear 231 (1999) 206, with a preconditioner (J. Zhao,
+E. A. H. Vollebregt, C. W. Oosterlee, Math. Comput. Sci. 9 (2015) 375), an update of the gap along the search direction
+while the contact area does not change, and a safeguard against cells that enter at once and overshoot.
 """
 
 from __future__ import annotations
@@ -20,7 +18,6 @@ Operator = Callable[[FloatArray], FloatArray]
 
 ENTRY_OVERLAP = 0.1  # overlap from which on a cell enters the contact, over the tolerated violation. Speed.
 MIN_ENTRY_PRESSURE = 1e-12  # least pressure of a cell that enters the contact, over the largest pressure. Speed.
-
 MIN_LINEAR_FACTOR = 0.1  # least value of the linear factor in `restore`, over its constant: positive. Speed.
 ADDED_PRESSURE = 0.1  # pressure, over the largest, added to all cells if one side of the load has none. Speed.
 MAX_EXPONENT = 1e4  # largest slope of the exponential factor in `restore`. Speed.

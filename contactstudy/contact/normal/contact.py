@@ -123,10 +123,7 @@ class Shape(NamedTuple):
         # relaxation adds the motion of the reference lines to the gap.
         bodies = [self.body] if self.counterbody is None else [self.body, self.counterbody.body]
         finite = any(np.isfinite(body.depth) for body in bodies)
-        fixed = (
-            finite and self.prescribed.approach is not None,
-            finite and self.prescribed.load_position is None,
-        )
+        fixed = (finite and self.prescribed.approach is not None, finite and self.prescribed.load_position is None)
         low, high = self.grid.x_range
         weights = np.array([1.0, high - low])
         trial, previous = np.zeros(2), np.zeros(2)

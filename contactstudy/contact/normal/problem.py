@@ -18,7 +18,6 @@ ROUND_ACCURACY = 0.03  # tolerance of a round over the change in the preceding r
 FIRST_ROUND_TOLERANCE = 1e-2  # tolerance of the first coupled round. Speed.
 NESTED_CELLS = 4096  # cells from which on the contact is first solved on coarser ones. Speed.
 COARSE_TOLERANCE = 1e-3  # tolerance of a solution that serves as a guess. Speed.
-
 GUESSED_CONTACT, GUESSED_DEPTH = 0.4, 1e-3  # part of the cells in a first guess, and depth over the gap's range. Speed.
 OPENING_POWER = 2 / 3  # power of the opening that is linear in the distance from a contact's edge. Speed.
 

@@ -8,6 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
+from contactstudy.arrays.grid import centres_of
 from contactstudy.checks import BoolArray, FloatArray
 
 FIRST_COLUMN = 0.1  # width of the first columns at the ends, over the half-width. Accuracy: wider ones miss sharp ends.
@@ -38,8 +39,7 @@ class AxialShape:
     height: Callable[[FloatArray], FloatArray]  # height along the axis over the plane that the shape touches, metres
     face_beyond: tuple[float, float]  # length of the body's face beyond either end, metres; 0 or less where it ends
     exponents: tuple[float, float] = (np.nan, np.nan)  # ``m`` of ``K d**-m`` at sharp ends; NaN without a law
-    has_fading_end: bool = False
-    """Whether the pressure falls towards a common end by a small power, which no columns resolve."""
+    has_fading_end: bool = False  # whether the pressure falls by a small power to a common end: not resolvable
     corners: tuple[float, ...] = ()  # positions of convex corners and of column edges, metres
     nodes: FloatArray = field(default_factory=lambda: np.zeros(0))  # positions between which the shape is smooth, m
 
@@ -144,8 +144,3 @@ def split_columns(edges: FloatArray, is_marked: BoolArray) -> FloatArray:
         if not is_too_wide.any():
             return edges
         edges = np.sort(np.concatenate([edges, centres_of(edges)[is_too_wide]]))
-
-
-def centres_of(edges: FloatArray) -> FloatArray:
-    """Centres of the columns between `edges`."""
-    return np.asarray(0.5 * (edges[1:] + edges[:-1]))

@@ -1,13 +1,8 @@
 """Laws of singular ends and convex corners, and the pressures and loads at the ends of a contact.
 
-A sharp rigid end inside the face of a body presses like a flat punch: ``p = K / sqrt(d)`` at the distance d. At a sharp
-elastic end the exponent is smaller and follows from the two materials; without a theory it is fitted. The pressure has
-an intensity K and no peak. An edge of small radius ``r0`` bounds it to ``p_max = 1.0734 (K**2 E* / r0)**(1/3)``, the
-limit for ``r0`` much smaller than the half-width.
-
-Where the slope of the gap jumps by s > 0, the pressure is ``p = E* s / (2 pi) ln(d0 / d)``. A blend radius rho replaces
-the jump by an arc of width ``b = rho s`` and bounds the pressure to ``E* s / (2 pi) [ln(2 d0 / b) + 1]`` for b much
-smaller than d0.
+At the distance d from a sharp end the pressure is ``K d**-m``, with ``m = 1/2`` at a rigid end; at an elastic end m
+follows from the two materials or is fitted. Where the slope of the gap jumps by s > 0, it is
+``E* s / (2 pi) ln(d0 / d)``. A small radius of the edge and a blend of the corner bound the pressure.
 """
 
 from __future__ import annotations
@@ -20,9 +15,9 @@ from typing import NamedTuple
 import numpy as np
 
 from contactstudy import checks
+from contactstudy.arrays.grid import centres_of
 from contactstudy.arrays.peaks import section_maxima
 from contactstudy.checks import FloatArray
-from contactstudy.contact.refinement.columns import centres_of
 from contactstudy.errors import InvalidInputError
 
 RIGID = 0.5  # exponent at a sharp rigid end

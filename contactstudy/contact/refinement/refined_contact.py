@@ -42,9 +42,7 @@ whose tractions are also solved on half of the cells and depend on two cells ahe
 
 WINDOW_STEP = 2 ** (1 / 6)  # ratio of consecutive windows: similar cases share the kernels of the ends. Speed.
 SMALL_SLOPE = 0.1  # slope of a corner up to which strains are small
-
-CELLS_Y, COARSE_CELLS_Y = (32, 64, 128, 256), 16
-"""Numbers of cells along y, of which the first sufficient one is used; and the first contact's number. Accuracy."""
+CELLS_Y, COARSE_CELLS_Y = (32, 64, 128, 256), 16  # along y, the first sufficient one; of the first contact. Accuracy
 
 MAX_CORNER_JUMP = 0.2
 """Jump of the slope of measured points times E*, over the peak, above which the peak is unbounded. Accuracy: the
@@ -337,10 +335,8 @@ MAX_EXCESS_DEPTH, MAX_MISSING_DEPTH, MAX_CORRECTIONS = 0.05, 0.005, 12
 and the largest number of corrections of the load. Speed."""
 
 LOAD_EXCESS = 1.02  # factor on a corrected load: the window of a shallower contact is too narrow. Speed.
-
 COARSE_ACCURACY, COARSE_TOLERANCE = 0.1, 1e-4  # accuracy and tolerance of contacts that determine a load. Speed.
 WINDOW_FACTOR_COARSE = 1.5  # factor on the window for half as many cells along y. Speed.
-
 SLICES, SLICE_WIDTH = 200, 0.3  # slices for a first load; a slice's half-width over the undeformed overlap's. Speed.
 
 

@@ -9,16 +9,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from contactstudy.arrays.grid import centres_of
 from contactstudy.checks import BoolArray, FloatArray
 from contactstudy.contact.normal.problem import interpolate_columns
-from contactstudy.contact.refinement.columns import (
-    MAX_COLUMNS,
-    AxialShape,
-    centres_of,
-    find_overlooked,
-    first_edges,
-    split_columns,
-)
+from contactstudy.contact.refinement.columns import MAX_COLUMNS, AxialShape, find_overlooked, first_edges, split_columns
 from contactstudy.contact.refinement.laws import (
     EndLaw,
     Laws,
@@ -61,24 +55,13 @@ def _jumps(edges: FloatArray, pressure: FloatArray, power: float) -> FloatArray:
 
 LOGGER = logging.getLogger(__name__)
 
-FIRST_THETA, THETA_RATIO, MAX_THETA = 0.5, 0.7, 0.26
-"""First threshold of the jumps, factor of its reduction, and largest threshold of a final result. Accuracy."""
-
+FIRST_THETA, THETA_RATIO, MAX_THETA = 0.5, 0.7, 0.26  # First threshold, its factor, largest final one. Accuracy
 SECOND_THETA = THETA_RATIO * FIRST_THETA  # threshold of the jumps in a rough contact. Speed.
-
-THETA_PER_ERROR = 50.0
-"""Threshold over the least stated error. Accuracy: at a ratio of 100 the error covered 96 to 99 % of the ends."""
-
+THETA_PER_ERROR = 50.0  # over the least stated error; at 100 the error covered 96 to 99 % of the ends. Accuracy
 END_STEP_WEIGHT = 4.0  # weight of the step from the outermost column to a loaded end, extrapolated linearly. Accuracy.
-
-EDGE_COLUMN_WIDTH = 0.25
-"""Width over the half-width of the columns within one half-width of the contact's ends along x. Accuracy."""
-
+EDGE_COLUMN_WIDTH = 0.25  # Width over a of the columns within one half-width of the ends along x. Accuracy
 END_COLUMN_WIDTH = 0.012  # width over the half-width of the outermost column at a loaded end of the body. Accuracy.
-
-MIN_END_COLUMN, MIN_COLUMN = 2e-3, 2e-4
-"""Least widths over the half-width, of the outermost column at a sharp end and of any column. Accuracy."""
-
+MIN_END_COLUMN, MIN_COLUMN = 2e-3, 2e-4  # Least widths over a, at a sharp end and anywhere. Accuracy
 CORNER_GROWTH = 0.25  # width of the columns next to a convex corner, over the distance to it. Accuracy.
 LEVEL_TOLERANCE = 1e-2  # tolerance of the contact between two splittings. Speed.
 VALUE_TOLERANCE = 1e-5  # tolerance of the contact of which values are taken. Accuracy.
@@ -88,8 +71,7 @@ class ColumnPressure(NamedTuple):
     """A contact on some columns."""
 
     pressure: FloatArray  # (column, y): pressure, Pa
-    opening: Callable[[], FloatArray]
-    """Least gap of each column under load, metres: array (column). Each call applies the operator once."""
+    opening: Callable[[], FloatArray]  # (column): least gap under load, metres; each call applies the operator
 
 
 Solve = Callable[[FloatArray, FloatArray | None, float], ColumnPressure]

@@ -1,15 +1,11 @@
 """Coulomb's law of friction on the cells of a contact, by a semi-smooth Newton method.
 
-With the tractions ``q`` (two components on each cell), the bound ``g = f p`` and the slip ``s = w - B q`` the law
-reads: ``|q| <= g`` everywhere; ``s = 0`` where ``|q| < g``; ``q = g s / |s|`` where ``s`` is not 0. ``w`` is the slip
-of rigid surfaces and ``B`` the compliance. For a set of slipping cells and their directions ``n`` the unknowns are
-``q`` where cells stick and, where they slip, the part ``a`` of ``q = g n + a n'`` across ``n``:
+The unknowns are the tractions ``q`` (two components on each cell) where cells stick and, where they slip along ``n``,
+the part ``a`` of ``q = g n + a n'`` across ``n``. With bound ``g``, rigid slip ``w`` and compliance ``B``:
 
-    stick:  w - B q = 0,        slip:  n' (w - B q) - (s n / g) a = 0,
+    stick:  w - B q = 0,        slip:  n' (w - B q) - (s n / g) a = 0.
 
-a linear system with the matrix ``T' B T + D`` and ``D >= 0``. Then sticking cells with tractions above the bound begin
-to slip, and slipping cells with slip against their traction begin to stick. Rigid slips with prescribed resultants are
-further unknowns.
+Rigid slips with prescribed resultants are further unknowns.
 """
 
 from __future__ import annotations
@@ -26,7 +22,6 @@ Operator = Callable[[FloatArray], FloatArray]
 
 GUESS_TOLERANCE = 1e-6  # distance from the bound, over the bound, within which a cell of a guess slips. Speed.
 DESCENT_INTERVAL = 15  # Newton steps without convergence after which a descent of the energy gives a new start. Speed.
-
 MAX_DIRECT_STEPS = 40  # Newton steps without convergence after which resultants are raised by steps. Speed.
 MIN_CONTINUATION_STEP = 1e-3  # least step of the resultants over the prescribed resultants. Speed.
 
@@ -199,12 +194,7 @@ class _NewtonSystem:
     """Linear system of one Newton step."""
 
     def __init__(
-        self,
-        problem: CoulombProblem,
-        traction: FloatArray,
-        slip: FloatArray,
-        sticks: BoolArray,
-        diagonal: FloatArray,
+        self, problem: CoulombProblem, traction: FloatArray, slip: FloatArray, sticks: BoolArray, diagonal: FloatArray
     ) -> None:
         self._problem, self._sticks, self._diagonal = problem, sticks, diagonal
         self._root = np.sqrt(problem.relative_areas)

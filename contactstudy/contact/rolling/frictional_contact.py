@@ -25,9 +25,7 @@ from contactstudy.threads import one_blas_thread
 DIRECTIONS = (Load.NORMAL, *TANGENTIAL)
 
 MAX_ROUNDS = 30  # largest number of rounds of pressure and tractions in a coupled contact. Speed.
-
 MIN_ACCURACY = 1e-5  # least change of the pressure that ends coupled rounds. Accuracy.
-
 AMPLITUDE_NAMES = {  # names in results of the rigid motions, in rolling and in a shift
     "rolling": Rolling.AMPLITUDES,
     "shift": {"x": "shift_x", "y": "shift_y"},

@@ -35,10 +35,7 @@ class Surfaces(NamedTuple):
 
     @property
     def weights(self) -> FloatArray:
-        """Weights of the tractions in the forces along x and y and the moment about z.
-
-        Array (3, 2, x, y): resultant, component of the traction along x or y, cell.
-        """
+        """Weights (resultant, component, x, y) of the tractions in the forces along x and y and the moment about z."""
         grid = self.grid
         weights = np.zeros((3, 2, *grid.shape))
         weights[0, 0] = weights[1, 1] = 1.0

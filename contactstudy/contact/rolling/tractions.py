@@ -1,20 +1,10 @@
 """Tractions of a contact under Coulomb friction: after a shift, or in steady rolling.
 
-In steady rolling along +y the slip per distance is the rigid slip plus the derivative of the displacement along y.
-On cells the derivative follows from a cell and the two cells ahead, whose material arrives next:
+In rolling the derivative of the displacement along y is of second order at any offset b from a cell's centre:
 
     du/dy (y + b dy) = [(b - 3/2) u_0 + (2 - 2 b) u_1 + (b - 1/2) u_2] / dy,
 
-of second order at any offset b, inside the cell (b from -1/2 to 1/2) or outside it. The plain difference of neighbours
-is b = 1/2: half a cell late. The remaining error comes from the leading edge, where the traction begins as a root. It
-is linear in the part c of the leading cell inside the contact (more than 1 if the edge lies in the next cell), and
-vanishes if the foremost point lies 0.34 cells behind the edge, b = c - 0.84. A leading cell with a small part in the
-contact is not an unknown: it carries the same part of its bound as the cell behind, and b = 0.475. Both rules were
-fitted to Carter's solution. For any position of the edge in its cell, and creepages from small to almost full sliding,
-the error of the force is 1e-3 of full sliding at 14 cells per half-width, 5e-4 at 22.
-
-Where a column slips from end to end, the traction is the bound and does not begin as a root. Then b = 0: the direction
-of slip may turn within few cells, and another offset would cause an error of first order in the cell's length.
+from a cell and the two cells ahead. The offsets of docs/explanation/rolling.md are fitted to Carter's solution.
 """
 
 from __future__ import annotations
@@ -38,17 +28,10 @@ from contactstudy.contact.rolling.coulomb import (
 )
 from contactstudy.contact.rolling.fastsim import solve_strips
 from contactstudy.contact.rolling.preconditioners import tangential_inverse
-from contactstudy.contact.rolling.surfaces import (
-    TANGENTIAL,
-    LeadingEdges,
-    Surfaces,
-    Tractions,
-    check_forces,
-)
+from contactstudy.contact.rolling.surfaces import TANGENTIAL, LeadingEdges, Surfaces, Tractions, check_forces
 from contactstudy.kernels.load import Load
 
 MIN_LEADING_LENGTH = 0.72  # part c of the leading cell in the contact below which its traction is no unknown. Accuracy.
-
 EDGE_OFFSET = -0.84  # position b of the slip less c. Accuracy.
 DEPENDENT_OFFSET, SLIDING_OFFSET = 0.475, 0.0
 """Position b of the slip in columns with a dependent leading cell, and in sliding columns. Accuracy."""
@@ -233,10 +216,7 @@ def solve_tractions(
 
 
 def _coulomb_problem(
-    motion: Shift | Rolling,
-    surfaces: Surfaces,
-    cells: RollingCells,
-    displaced: Mapping[Load, FloatArray],
+    motion: Shift | Rolling, surfaces: Surfaces, cells: RollingCells, displaced: Mapping[Load, FloatArray]
 ) -> CoulombProblem:
     """Coulomb's law on the cells, with the displacement under the pressure and the initial tractions."""
     grid, rolling = surfaces.grid, isinstance(motion, Rolling)
@@ -257,8 +237,7 @@ def _coulomb_problem(
     x, y = grid.x[rows], grid.y[columns] + cells.offset * grid.dy
     unit_slips = {name: surfaces.rigid_slip(name, x, y) for name in amplitudes}
     rigid = elastic_slip(displaced) + sum(
-        (amplitude * unit_slips[name] for name, amplitude in amplitudes.items() if name not in modes),
-        np.zeros((2, 1)),
+        (amplitude * unit_slips[name] for name, amplitude in amplitudes.items() if name not in modes), np.zeros((2, 1))
     )  # eq. (44)
     mode_weights = np.array([cells.gather(weights[list(amplitudes).index(name)]) for name in modes])
     return CoulombProblem(
@@ -298,11 +277,7 @@ def _solve_coarse(
 
 
 def _complete_tractions(
-    problem: CoulombProblem,
-    solution: CoulombSolution,
-    motion: Shift | Rolling,
-    cells: RollingCells,
-    surfaces: Surfaces,
+    problem: CoulombProblem, solution: CoulombSolution, motion: Shift | Rolling, cells: RollingCells, surfaces: Surfaces
 ) -> Tractions:
     """Tractions of a solution, with resultants and certificate recomputed from the tractions."""
     grid = surfaces.grid

@@ -7,6 +7,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
+from contactstudy.arrays.grid import centres_of
 from contactstudy.checks import FloatArray
 from contactstudy.contact.refinement.columns import (
     CHORD_TOLERANCE,
@@ -15,7 +16,6 @@ from contactstudy.contact.refinement.columns import (
     MIN_CHORD_WIDTH,
     MIN_COLUMNS,
     AxialShape,
-    centres_of,
     first_edges,
 )
 
