@@ -25,6 +25,32 @@ def moes_line(load: FloatArray | float, lubricant: FloatArray | float) -> FloatA
     return np.asarray(((h_ri ** (7 / 3) + h_ei ** (7 / 3)) ** (3 * s / 7) + piezoviscous) ** (1 / s))
 
 
+def nijenbanning(load: float, lubricant: float, ratio: float = 1.0) -> float:
+    """Central film of an elliptic contact by Nijenbanning, Venner and Moes (1994), eq. (411).
+
+    Parameters
+    ----------
+    load, lubricant : float
+        ``M = F / (E' Rx**2) (2 U)**-3/4`` and ``L``, with Rx the radius along rolling.
+    ratio : float
+        ``Rx / Ry``, at most 1.
+
+    Examples
+    --------
+    >>> round(nijenbanning(20.0, 10.0), 2)
+    4.71
+    """
+    h_ri = 145 * (1 + 0.796 * ratio ** (14 / 15)) ** (-15 / 7) * load**-2 / ratio
+    h_ei = 3.18 * (1 + 0.006 * np.log(ratio) + 0.63 * ratio ** (4 / 7)) ** (-14 / 25) * ratio ** (-1 / 15)
+    h_ei *= load ** (-2 / 15)
+    h_rp = 1.29 * (1 + 0.691 * ratio) ** (-2 / 3) * lubricant ** (2 / 3)
+    h_ep = 1.48 * (1 + 0.006 * np.log(ratio) + 0.63 * ratio ** (4 / 7)) ** (-7 / 20) * ratio ** (-1 / 24)
+    h_ep *= load ** (-1 / 12) * lubricant**0.75
+    s = 1.5 * (1 + np.exp(-1.2 * h_ei / h_ri))
+    isoviscous = (h_ri**1.5 + (h_ei**-4 + (1.8 / ratio) ** -4) ** (-3 / 8)) ** (2 * s / 3)
+    return float((isoviscous + (h_rp**-8 + h_ep**-8) ** (-s / 8)) ** (1 / s))
+
+
 def thermal_reduction(pressure_ratio: float, loading: float, slide_roll_ratio: float) -> float:
     """Film with the heat of shear in the inlet over the isothermal film (Gupta, Cheng, Zhu 1992), eq. (414).
 

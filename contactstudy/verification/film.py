@@ -3,6 +3,7 @@
 * Moes, *Wear* 159 (1992) 57: the central film of a line contact in the numbers M and L.
 * Biboulet and Houpert, *Proc. IMechE J* 224 (2010) 777: rolling moment ``t / (p0 a**2) = 1.45 M**-1.5``; the moment of
   the pressure about the middle is ``2 t``.
+* Nijenbanning, Venner and Moes, *Wear* 176 (1994) 217: the central film of an elliptic contact.
 * Martin, *Engineering* 102 (1916) 119: ``H = 2.448 / M`` of rigid surfaces and constant viscosity.
 """
 
@@ -20,10 +21,10 @@ from contactstudy.bodies.models import Body
 from contactstudy.case import Case, Roller
 from contactstudy.case.motion import Sliding
 from contactstudy.film import line_contact
-from contactstudy.film.formulas import moes_line
+from contactstudy.film.formulas import moes_line, nijenbanning
 from contactstudy.film.levels import RESOLUTION, FilmCase, Level, film_on_level
 from contactstudy.film.newton import SETTINGS
-from contactstudy.profiles import Lundberg
+from contactstudy.profiles import FullCrown, Lundberg
 from contactstudy.verification.check import Check, Curve, Reference
 from contactstudy.verification.free_ends import FINITE_ELEMENTS
 from contactstudy.verification.problems import FILM_CASES, FILM_FILE, load_reference
@@ -138,6 +139,36 @@ def finite_element_checks(name: str) -> Iterator[Check]:
     min_film, expected = (data["film"].min("y").values for data in (computed, stored))
     yield reference.compare_fields("least film of each column over the reference", min_film / expected, 1.0, 0.02)
     yield reference.compare_fields("pressure / p0", computed["pressure"], stored["pressure"], 0.01)
+
+
+def point_checks() -> Iterator[Check]:
+    """Compare the central films of a circular and of an elliptic contact on a half-space with the formula."""
+    radius, speed, viscosity, modulus = 10e-3, 1.0, 0.04, 2 * STEEL.plane_strain_modulus
+    root = float(np.sqrt(2 * viscosity * speed / (modulus * radius)))  # sqrt(2 U)
+    for load, lubricant, ratio in ((20.0, 5.0, 1.0), (100.0, 10.0, 0.3)):
+        force, crown = load * modulus * radius**2 * root**1.5, radius / ratio
+        # The roller exceeds the contact along its axis, 2 b, by the length over which the film forms.
+        half_length = float(np.cbrt(3 * force * np.sqrt(radius * crown) / modulus) * (crown / radius) ** 0.25)
+        solved_film = film.solve_film(
+            Case(
+                body=HalfSpace(material=STEEL),
+                roller=Roller(radius=radius, length=5 * half_length, profile=FullCrown(crown)),
+                load=force,
+                motion=Sliding(body_speed=speed, roller_speed=speed),
+                lubricant=Lubricant(
+                    viscosity=viscosity,
+                    pressure_viscosity=lubricant / (modulus * np.sqrt(root)),
+                    viscosity_law="barus",
+                    density_law="constant",
+                ),
+            ),
+            accuracy=0.2,
+        )
+        central, formula = solved_film["central_film"] / (radius * root), nijenbanning(load, lubricant, ratio)
+        case = f"crowned roller on a half-space, Rx / Ry = {ratio:g}, M = {load:g}, L = {lubricant:g}"
+        yield Reference(case, "Nijenbanning, Venner and Moes (1994)").compare(
+            "central film H", central, formula, 0.04, relative=True
+        )
 
 
 def crowned_film(body: Body, length: float) -> xr.Dataset:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from contactstudy import Lubricant
-from contactstudy.film.formulas import moes_line
+from contactstudy.film.formulas import moes_line, nijenbanning
 from contactstudy.film.line_contact import solve_line
 
 pytestmark = pytest.mark.filterwarnings("ignore::contactstudy.MagnitudeWarning")
@@ -48,8 +48,9 @@ def test_rolling_moment_follows_the_load(load, lubricant):
     assert abs(film.moment) == pytest.approx(2 * film.rolling_moment, rel=0.01)
 
 
-def test_moes_formula_returns_published_value():
+def test_film_formulas_return_published_values():
     assert float(moes_line(100.0, 10.0)) == pytest.approx(4.297, abs=1e-3)
+    assert nijenbanning(20.0, 10.0) == pytest.approx(4.71, abs=0.005)
 
 
 def test_pressure_of_a_heavy_load_is_hertzian():
