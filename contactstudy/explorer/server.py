@@ -174,7 +174,28 @@ class StudyLoader:
 
 
 def serve(folder: str | Path, *, port: int | None = None, hosts: Sequence[str] = (), show: bool = True) -> None:
-    """Serve the page of a study, for this machine and further `hosts` such as a proxy's, until Ctrl-C."""
+    """Serve the page of a study on this machine until Ctrl-C.
+
+    Parameters
+    ----------
+    folder : str or Path
+        The study's folder.
+    port : int, optional
+        Port of the page; default: the first free port from 5006 on.
+    hosts : sequence of str
+        Host names, in addition to localhost, 127.0.0.1 and [::1], that a browser may use, such as the name of a proxy.
+    show : bool
+        Whether to open the page in the browser.
+
+    Raises
+    ------
+    ContactStudyError
+        If the extra `explore` is not installed.
+    StudyFileError
+        If the folder holds no study.
+    InvalidInputError
+        If the port is taken.
+    """
     _check_installed()
     checks.instance("folder", folder, (str, Path), "the path of a study's folder")
     path = Path(folder)

@@ -141,18 +141,20 @@ def finite_element_checks(name: str) -> Iterator[Check]:
     yield reference.compare_fields("pressure / p0", computed["pressure"], stored["pressure"], 0.01)
 
 
-def point_checks() -> Iterator[Check]:
+def ellipse_checks() -> Iterator[Check]:
     """Compare the central films of a circular and of an elliptic contact on a half-space with the formula."""
     radius, speed, viscosity, modulus = 10e-3, 1.0, 0.04, 2 * STEEL.plane_strain_modulus
     root = float(np.sqrt(2 * viscosity * speed / (modulus * radius)))  # sqrt(2 U)
     for load, lubricant, ratio in ((20.0, 5.0, 1.0), (100.0, 10.0, 0.3)):
-        force, crown = load * modulus * radius**2 * root**1.5, radius / ratio
+        force, crown_radius = load * modulus * radius**2 * root**1.5, radius / ratio
         # The roller exceeds the contact along its axis, 2 b, by the length over which the film forms.
-        half_length = float(np.cbrt(3 * force * np.sqrt(radius * crown) / modulus) * (crown / radius) ** 0.25)
+        half_length = float(
+            np.cbrt(3 * force * np.sqrt(radius * crown_radius) / modulus) * (crown_radius / radius) ** 0.25
+        )
         solved_film = film.solve_film(
             Case(
                 body=HalfSpace(material=STEEL),
-                roller=Roller(radius=radius, length=5 * half_length, profile=FullCrown(crown)),
+                roller=Roller(radius=radius, length=5 * half_length, profile=FullCrown(crown_radius)),
                 load=force,
                 motion=Sliding(body_speed=speed, roller_speed=speed),
                 lubricant=Lubricant(

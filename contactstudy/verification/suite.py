@@ -78,7 +78,7 @@ GROUPS: dict[str, Callable[[bool], tuple[Iterator[Check], ...]]] = {
         film.dry_limit_checks(),
         film.roller_checks(full=full),
         *(film.finite_element_checks(name) for name in FILM_CASES),
-        *((film.point_checks(),) if full else ()),
+        *((film.ellipse_checks(),) if full else ()),
     ),
     "consistency": lambda full: (
         exact_solutions.free_end_checks(),

@@ -158,8 +158,11 @@ def coordinates() -> str:
 
 def dataset_variables() -> str:
     """Return the variables of every Dataset, one table for each subject, in the order and the words of the code."""
-    parts = []
-    for name, entries, meaning in _subjects():
+    parts, subjects = [], list(_subjects())
+    missing = vocabulary.VARIABLES.keys() - {name for _, entries, _ in subjects for name in entries}
+    if missing:
+        raise ValueError(f"variables of a subject without a meaning on its first line: {sorted(missing)}")
+    for name, entries, meaning in subjects:
         parts.append(f"### {name.replace('_', ' ').capitalize()}\n\n{meaning}\n\n{_specifications(entries)}")
     return "\n\n".join(parts)
 

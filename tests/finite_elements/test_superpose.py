@@ -11,7 +11,7 @@ from benchmarks.finite_elements import contact, superpose
 from contactstudy.verification import closed_forms as ref
 from contactstudy.verification import problems as fe
 
-COARSE = partial(superpose.Resolution, order=3, nodes=4, growth=2.0)
+COARSE = partial(superpose.Resolution, order=4, nodes=5, growth=2.0)
 BELOW_50, BELOW_25 = superpose.PANELS[:-1], superpose.PANELS[:-2]
 Y = (-1.25, -0.5, 0.0, 0.25, 1.0)
 UNIFORM = [(fe.Linear(), "z"), (fe.Linear(), "y")]
@@ -27,7 +27,7 @@ def test_meshes_contain_the_points_where_loads_begin() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("length", "poisson", "tolerance"), [(2.5, 0.0, 2e-3), (0.05, 0.3, 2e-3)])
+@pytest.mark.parametrize(("length", "poisson", "tolerance"), [(2.5, 0.0, 2e-4), (0.05, 0.3, 5e-4)])
 def test_plane_problems(length: float, poisson: float, tolerance: float) -> None:
     """Uniform from end to end: a body without lateral contraction is in plane strain, a thin plate in plane stress.
 
@@ -59,7 +59,7 @@ def test_long_body_equals_half_space() -> None:
     bump = fe.Bump(6.0, 1.0)
     x, z = (6.0, 6.5, 7.5), (0.5, 1.0, 2.0)
     shapes = [(bump, "z"), (bump, "y")]
-    harmonic = superpose.harmonics(12.0, 0.3, shapes, x, z, COARSE(panels=BELOW_25))
+    harmonic = superpose.harmonics(12.0, 0.3, shapes, x, z, COARSE(panels=BELOW_25, nodes=4))
     result = superpose.stresses(harmonic, 0, 1, 0.3, Y)
     node, weight = np.polynomial.legendre.leggauss(60)
     loads = np.outer(weight * bump(6 + node), weight * fe.quartic(node))
@@ -69,14 +69,14 @@ def test_long_body_equals_half_space() -> None:
     for name in ref.COMPONENTS:
         exact = np.einsum("xyzij,ij->xyz", point[name], loads)
         shear = name.startswith("tau")
-        assert result[name] - exact == pytest.approx(0, abs=3e-3 if shear else 7e-3), name
+        assert result[name] - exact == pytest.approx(0, abs=1e-3 if shear else 5e-3), name
 
 
 @pytest.mark.slow
 def test_contact_without_lateral_contraction() -> None:
     """Poisson's ratio 0: plane strain at any length, so Hertz' pressure all along."""
     case = fe.ContactCase(2.0, 0.0, poisson=0.0)
-    flexible = contact.flexibility(case, COARSE(panels=BELOW_50))
+    flexible = contact.flexibility(case, COARSE(order=3, panels=BELOW_50))
     result = contact.solve(case, flexible, 1 / 12, 1.25)
     half_width, peak = ref.hertz_line(case.load / case.length, 0.5, 1.0)
     exact = peak * np.sqrt(np.clip(1 - (result.y / half_width) ** 2, 0, None))
