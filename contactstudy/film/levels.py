@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 from scipy.fft import next_fast_len
+from scipy.interpolate import PchipInterpolator
 
 from contactstudy.arrays.grid import Grid
 from contactstudy.bodies import hertz
@@ -343,7 +344,7 @@ def _dry_state(film: FilmCase, problem: FilmProblem, dry: Contact, columns: slic
 
 
 def _transfer_state(start: FilmOnCells, problem: FilmProblem) -> FilmState:
-    """First guess: film of other cells, interpolated linearly between the cells' centres."""
+    """First guess: film of other cells, interpolated between the cells' centres."""
     start_cells, cells = start.problem.cells, problem.cells
     state = start.solution.state
     pressure, distance = (
@@ -373,5 +374,6 @@ def _convert_result(film: FilmCase, result: xr.Dataset, problem: FilmProblem) ->
 
 
 def _interpolate_film(field: FloatArray, x: FloatArray, y: FloatArray, cells: FilmCells) -> FloatArray:
-    rows = np.stack([np.interp(cells.y, y, row) for row in field])
-    return np.stack([np.interp(cells.x, x, column) for column in rows.T], axis=1)
+    """Values at the centres of cells by monotone cubic polynomials, constant outside the given positions."""
+    along_y = PchipInterpolator(y, field, axis=1)(np.clip(cells.y, y[0], y[-1]))
+    return np.asarray(PchipInterpolator(x, along_y, axis=0)(np.clip(cells.x, x[0], x[-1])))
