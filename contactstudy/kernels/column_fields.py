@@ -2,8 +2,9 @@
 
 The influence of a cell is the mixed difference of a corner function over its corners. Summed over cells it becomes a
 sum over corners, each weighted with the corner's mixed jump of the load. Around a point the columns are split. Columns
-far away are merged, and their field is interpolated from few depths. The columns do not depend on the field or on the
-direction of the load: all stresses under a pressure and its friction share the columns.
+farther away than the refined depth are merged, and the field of columns far away is interpolated from few depths. The
+columns do not depend on the field or on the direction of the load: all stresses under a pressure and its friction share
+the columns.
 """
 
 from __future__ import annotations
@@ -30,7 +31,14 @@ from contactstudy.kernels.corner_sums import (
     merge_columns,
     midpoint_cells,
 )
-from contactstudy.kernels.fine_cells import PARTS_Y, FineCells, add_images, mirror_edges, resolved_columns
+from contactstudy.kernels.fine_cells import (
+    MAX_REFINED_DEPTH,
+    PARTS_Y,
+    FineCells,
+    add_images,
+    mirror_edges,
+    resolved_columns,
+)
 from contactstudy.kernels.images import Influence, far_images, interpolation_points
 from contactstudy.kernels.smooth_load import MomentLoads
 
@@ -43,8 +51,8 @@ LATTICE_POINTS, LATTICE_STEP = 8, 0.125
 the largest difference of the loads of adjacent cells."""
 
 FAR_DISTANCE, FAR_ERROR = 2.0, 1e-6
-"""Distance along x of merged columns over the width of the window, and the relative error of their interpolation over
-the depth. Accuracy."""
+"""Distance along x of columns that are interpolated over the depth, over the width of the window, and the relative
+error of this interpolation. Accuracy."""
 
 CENTRED_WIDTH = 0.25  # width of the fine column about a point, over the original fine column. Accuracy.
 
@@ -170,17 +178,26 @@ def _odd_count(ratio: float) -> int:
     return 2 * max(0, int(np.ceil(0.5 * (ratio - 1) - OFFSET_TOLERANCE))) + 1
 
 
-class SplitColumns(NamedTuple):
-    """Columns around each point, and merged columns far away."""
+class Ring(NamedTuple):
+    """Merged columns beyond a distance along x, on cells of the grid's size along y."""
 
-    lattices: list[Lattice]  # positions along y of the near columns' field, and of the field of far columns
-    far_lattice: Lattice
-    layers: list[list[Layer]]  # of each lattice; `far_layers`: at the few depths of the interpolation of far columns
-    far_layers: list[Layer]
-    interpolation_z: FloatArray | None  # (z, depth): matrix of this interpolation; None if the depths are equal
-    jumps: list[tuple[list[Jumps], list[list[Jumps]]]]
-    """For each position along x the jumps of near columns in all `layers`, and for either side the jumps of far columns
-    in the layers `far_layers`."""
+    radius: float  # distance, metres
+    lattice: Lattice  # positions along y
+    layers: list[Layer]
+    interpolation_z: (
+        FloatArray | None
+    )  # (z, depth): interpolation from the depths of the layers; None if they are equal
+
+
+class SplitColumns(NamedTuple):
+    """Columns around each point, and rings of merged columns farther away."""
+
+    lattices: list[Lattice]  # positions along y of the near columns' field
+    layers: list[list[Layer]]  # of each lattice
+    rings: list[Ring]  # from the innermost one
+    jumps: list[tuple[list[Jumps], list[list[list[Jumps]]]]]
+    """For each position along x the jumps of near columns in all `layers`, and for each ring and either side the jumps
+    of its columns in its layers."""
     first: int  # first loaded row of the grid, and the load (cell_x, y) on the rows from this row on
     load: FloatArray
 
@@ -196,8 +213,6 @@ def split_columns(
 ) -> SplitColumns:
     """Split columns around points (x, y, z); `shape` distributes the loads inside cells, mirrors lie at `extent`."""
     x, y, z = (key.values for key in keys)
-    radius = FAR_DISTANCE * (grid.y_range[1] - grid.y_range[0])
-    depths, interpolation_z = interpolation_points(z, radius, FAR_ERROR)
     if shape is None:
         loaded_rows = np.flatnonzero(cell_loads.values.any(axis=0))
         first, load = int(loaded_rows[0]), cell_loads.values[:, loaded_rows[0] : loaded_rows[-1] + 1]
@@ -208,10 +223,7 @@ def split_columns(
         )
         first, load, is_refined = fine_cells.first, fine_cells.cell_loads, fine_cells.is_refined_along_y(z)
     lateral = LateralAxis(grid, y, first, fine_cells.count if fine_cells else load.shape[1])
-    lattices, (far_lattice,) = (
-        _lattices(lateral, z, is_refined),
-        _lattices(lateral, np.array([radius]), np.array([False])),
-    )
+    lattices = _lattices(lateral, z, is_refined)
 
     def layers_of(lattice: Lattice, z: FloatArray, depth_indices: IntArray, *, fine: bool = False) -> list[Layer]:
         axis = replace(lateral, y=lattice.y)
@@ -224,52 +236,64 @@ def split_columns(
         + layers_of(lattice, z, lattice.depth_indices[is_refined[lattice.depth_indices]], fine=True)
         for lattice in lattices
     ]
-    far_layers, near_layers = layers_of(far_lattice, depths, np.arange(depths.size)), list(chain.from_iterable(layers))
+
+    def ring_beyond(radius: float) -> Ring:
+        (lattice,) = _lattices(lateral, np.array([radius]), np.array([False]))
+        depths, interpolation_z = interpolation_points(z, radius, FAR_ERROR)
+        return Ring(radius, lattice, layers_of(lattice, depths, np.arange(depths.size)), interpolation_z)
+
+    far_radius = FAR_DISTANCE * (grid.y_range[1] - grid.y_range[0])
+    refined_radius = MAX_REFINED_DEPTH * grid.dy
+    radii = [refined_radius, far_radius] if is_refined.any() and refined_radius < far_radius else [far_radius]
+    rings = [ring_beyond(radius) for radius in radii]
+    near_layers = list(chain.from_iterable(layers))
     if fine_cells is None:
         edges, loads = mirror_edges(grid.x_edges, extent), add_images(load, image_sign, extent)
-        jumps = [
-            _uniform_jumps(position, near_layers, far_layers, edges, loads, radius=radius) for position in x.tolist()
-        ]
+        jumps = [_uniform_jumps(position, near_layers, rings, edges, loads) for position in x.tolist()]
     else:
-        max_width = MAX_UNSPLIT_WIDTH * float(z.min())
-        jumps = list(_shaped_jumps(x, near_layers, far_layers, fine_cells, max_width, radius=radius))
-    return SplitColumns(lattices, far_lattice, layers, far_layers, interpolation_z, jumps=jumps, first=first, load=load)
+        jumps = list(_shaped_jumps(x, near_layers, rings, fine_cells, MAX_UNSPLIT_WIDTH * float(z.min())))
+    return SplitColumns(lattices, layers, rings, jumps=jumps, first=first, load=load)
 
 
 def _uniform_jumps(
-    x: float, layers: list[Layer], far_layers: list[Layer], edges: FloatArray, loads: FloatArray, *, radius: float
-) -> tuple[list[Jumps], list[list[Jumps]]]:
-    """Jumps of columns with uniform loads (column, y) within a `radius` of a position, and of far columns."""
+    x: float, layers: list[Layer], rings: list[Ring], edges: FloatArray, loads: FloatArray
+) -> tuple[list[Jumps], list[list[list[Jumps]]]]:
+    """Jumps of columns with uniform loads (column, y) near a position, and of the rings."""
     column = int(np.clip(np.searchsorted(edges, x, side="right") - 1, 0, edges.size - 2))
-    first_near, stop_near = _SplitRange(edges[column : column + 1], column, column).range_within(edges, x, radius)
-    near_jumps = [Jumps.of(edges[first_near : stop_near + 1], loads[first_near:stop_near], layer) for layer in layers]
-    return near_jumps, _far_jumps(edges, [loads] * len(far_layers), far_layers, x, low=first_near, high=stop_near)
+    borders = _SplitRange(edges[column : column + 1], column, column).borders(edges, x, rings)
+    low, high = borders[0]
+    near_jumps = [Jumps.of(edges[low : high + 1], loads[low:high], layer) for layer in layers]
+    return near_jumps, _ring_jumps(edges, [[loads] * len(ring.layers) for ring in rings], rings, x, borders)
 
 
-def _far_jumps(
-    edges: FloatArray, loads: list[FloatArray], far_layers: list[Layer], x: float, low: int, high: int
-) -> list[list[Jumps]]:
-    """Jumps of the columns before `low` and from `high` on, merged where they are narrow."""
-    sides = [(edges[: low + 1], slice(0, low)), (edges[high:], slice(high, None))]
-    return [
-        [
-            Jumps.of(*merge_columns(far_edges, load[section], x), layer)
-            for load, layer in zip(loads, far_layers, strict=True)
-        ]
-        for far_edges, section in sides
-        if far_edges.size > 1
-    ]
+def _ring_jumps(
+    edges: FloatArray, loads: list[list[FloatArray]], rings: list[Ring], x: float, borders: list[tuple[int, int]]
+) -> list[list[list[Jumps]]]:
+    """Jumps of the columns of each ring, on either side between successive `borders`, merged where they are narrow."""
+    jumps = []
+    for ring, ring_loads, (low, high), (first, stop) in zip(rings, loads, borders[:-1], borders[1:], strict=True):
+        sections = [(start, end) for start, end in ((first, low), (high, stop)) if start < end]
+        jumps.append(
+            [
+                [
+                    Jumps.of(*merge_columns(edges[start : end + 1], load[start:end], x), layer)
+                    for load, layer in zip(ring_loads, ring.layers, strict=True)
+                ]
+                for start, end in sections
+            ]
+        )
+    return jumps
 
 
 def _shaped_jumps(
-    x: FloatArray, layers: list[Layer], far_layers: list[Layer], fine: FineCells, max_width: float, radius: float
-) -> Iterator[tuple[list[Jumps], list[list[Jumps]]]]:
-    """Jumps of the columns around each position, split unless they are narrow, and of far columns."""
+    x: FloatArray, layers: list[Layer], rings: list[Ring], fine: FineCells, max_width: float
+) -> Iterator[tuple[list[Jumps], list[list[list[Jumps]]]]]:
+    """Jumps of the columns around each position, split unless they are narrow, and of the rings."""
     edges, shape = fine.edges, fine.shape_cells
     load = fine.shape_along_y(fine.far_load, shape.far_load)
-    layer_loads, far_loads = (
+    layer_loads, *ring_loads = (
         [add_images(layer.loads(load), fine.image_sign, fine.extent) for layer in group]
-        for group in (layers, far_layers)
+        for group in (layers, *(ring.layers for ring in rings))
     )
     for start in range(0, x.size, POSITIONS_PER_BATCH):
         positions = x[start : start + POSITIONS_PER_BATCH].tolist()
@@ -280,12 +304,13 @@ def _shaped_jumps(
         stop = 0
         for position, split_range in zip(positions, split_ranges, strict=True):
             first, stop = stop, stop + split_range.inserted.size - 1
-            low, high = split_range.range_within(edges, position, radius)
+            borders = split_range.borders(edges, position, rings)
+            low, high = borders[0]
             near_jumps = [
                 split_range.jumps(edges[low : high + 1], low, column_loads[low:high], fine_loads[first:stop], layer)
                 for column_loads, fine_loads, layer in zip(layer_loads, inserted_loads, layers, strict=True)
             ]
-            yield near_jumps, _far_jumps(edges, far_loads, far_layers, position, low=low, high=high)
+            yield near_jumps, _ring_jumps(edges, ring_loads, rings, position, borders)
 
 
 class _SplitRange(NamedTuple):
@@ -295,11 +320,13 @@ class _SplitRange(NamedTuple):
     start: int  # first replaced column, and the column behind the last
     stop: int
 
-    def range_within(self, edges: FloatArray, x: float, radius: float) -> tuple[int, int]:
-        """First column within `radius` of `x`, nearest to `x` or replaced, and the column behind the last."""
-        distances = np.maximum(edges[:-1] - x, x - edges[1:])
-        columns = np.flatnonzero(distances <= max(radius, float(distances.min())))
-        return min(int(columns[0]), self.start), max(int(columns[-1]) + 1, self.stop)
+    def borders(self, edges: FloatArray, x: float, rings: list[Ring]) -> list[tuple[int, int]]:
+        """First column inside each ring, nearest to `x` or replaced, and the one behind the last; at last all columns."""
+        distances, borders = np.maximum(edges[:-1] - x, x - edges[1:]), []
+        for ring in rings:
+            columns = np.flatnonzero(distances <= max(ring.radius, float(distances.min())))
+            borders.append((min(int(columns[0]), self.start), max(int(columns[-1]) + 1, self.stop)))
+        return [*borders, (0, edges.size - 1)]
 
     def moment_loads(self, fine: FineCells) -> FloatArray:
         """Return loads on the inserted columns with the moments of the other columns: array (column, y)."""
@@ -388,18 +415,22 @@ def columns_field(
     field = np.zeros((influence.components, x.size, z.size, y.size)).swapaxes(2, 3)
     shape_of = (influence.components, x.size)
     near_fields = [np.zeros((*shape_of, lattice.y.size, z.size)) for lattice in columns.lattices]
-    far_field = np.zeros((*shape_of, columns.far_lattice.y.size, columns.far_layers[0].depth_indices.size))
-    for i, (position, (near_jumps, far_jumps)) in enumerate(zip(x.tolist(), columns.jumps, strict=True)):
+    ring_fields = [
+        np.zeros((*shape_of, ring.lattice.y.size, ring.layers[0].depth_indices.size)) for ring in columns.rings
+    ]
+    for i, (position, (near_jumps, ring_jumps)) in enumerate(zip(x.tolist(), columns.jumps, strict=True)):
         start = 0
         for near_field, layers in zip(near_fields, columns.layers, strict=True):
             _add_fields(near_field[:, i], influence, layers, near_jumps[start : start + len(layers)], position)
             start += len(layers)
-        for side_jumps in far_jumps:
-            _add_fields(far_field[:, i], influence, columns.far_layers, side_jumps, position)
+        for ring_field, ring, jumps_of_sides in zip(ring_fields, columns.rings, ring_jumps, strict=True):
+            for side_jumps in jumps_of_sides:
+                _add_fields(ring_field[:, i], influence, ring.layers, side_jumps, position)
     for near_field, lattice in zip(near_fields, columns.lattices, strict=True):
         field[..., lattice.depth_indices] = lattice.interpolate(near_field[..., lattice.depth_indices])
-    far_field = columns.far_lattice.interpolate(far_field)
-    field += far_field if columns.interpolation_z is None else far_field @ columns.interpolation_z.T
+    for ring_field, ring in zip(ring_fields, columns.rings, strict=True):
+        ring_field = ring.lattice.interpolate(ring_field)
+        field += ring_field if ring.interpolation_z is None else ring_field @ ring.interpolation_z.T
     if np.isfinite(extent).all():
         field += far_images(columns.load, influence, grid, columns.first, points, extent=extent)
     return field
