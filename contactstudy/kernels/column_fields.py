@@ -321,7 +321,7 @@ class _SplitRange(NamedTuple):
     stop: int
 
     def borders(self, edges: FloatArray, x: float, rings: list[Ring]) -> list[tuple[int, int]]:
-        """First column inside each ring, nearest to `x` or replaced, and the one behind the last; at last all columns."""
+        """Ranges of columns (first, stop) inside each ring, nearest to `x` or replaced; the last one is all columns."""
         distances, borders = np.maximum(edges[:-1] - x, x - edges[1:]), []
         for ring in rings:
             columns = np.flatnonzero(distances <= max(ring.radius, float(distances.min())))
