@@ -320,13 +320,15 @@ class _SplitRange(NamedTuple):
     start: int  # first replaced column, and the column behind the last
     stop: int
 
+    def range_within(self, edges: FloatArray, x: float, radius: float) -> tuple[int, int]:
+        """First column within `radius` of `x`, nearest to `x` or replaced, and the column behind the last."""
+        distances = np.maximum(edges[:-1] - x, x - edges[1:])
+        columns = np.flatnonzero(distances <= max(radius, float(distances.min())))
+        return min(int(columns[0]), self.start), max(int(columns[-1]) + 1, self.stop)
+
     def borders(self, edges: FloatArray, x: float, rings: list[Ring]) -> list[tuple[int, int]]:
-        """Ranges of columns (first, stop) inside each ring, nearest to `x` or replaced; the last one is all columns."""
-        distances, borders = np.maximum(edges[:-1] - x, x - edges[1:]), []
-        for ring in rings:
-            columns = np.flatnonzero(distances <= max(ring.radius, float(distances.min())))
-            borders.append((min(int(columns[0]), self.start), max(int(columns[-1]) + 1, self.stop)))
-        return [*borders, (0, edges.size - 1)]
+        """Ranges of columns (first, stop) inside each ring; the last range is all columns."""
+        return [*(self.range_within(edges, x, ring.radius) for ring in rings), (0, edges.size - 1)]
 
     def moment_loads(self, fine: FineCells) -> FloatArray:
         """Return loads on the inserted columns with the moments of the other columns: array (column, y)."""

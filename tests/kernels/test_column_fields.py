@@ -466,11 +466,12 @@ def test_columns_do_not_depend_on_the_unit(*, uniform: bool) -> None:
         axes, load = (ArrayKey(unit * x), ArrayKey(unit * y), ArrayKey(unit * z)), ArrayKey(cells.load)
         computed.append(split_columns(load, None if uniform else load, cells.grid, cells.extent, 1, axes))
     baseline, variant = computed
-    assert baseline.far_layers[0].depth_indices.size == variant.far_layers[0].depth_indices.size
+    for ring, scaled_ring in zip(baseline.rings, variant.rings, strict=True):
+        assert ring.layers[0].depth_indices.size == scaled_ring.layers[0].depth_indices.size
     assert len(baseline.layers) == len(variant.layers)
-    for (near_jumps, sides), (scaled_jumps, scaled_sides) in zip(baseline.jumps, variant.jumps, strict=True):
+    for (near_jumps, rings), (scaled_jumps, scaled_rings) in zip(baseline.jumps, variant.jumps, strict=True):
         for item, scaled in zip(near_jumps, scaled_jumps, strict=True):
             assert scaled.edges / UNIT == pytest.approx(item.edges, abs=1e-9)
-        assert [[jumps.edges.size for jumps in side] for side in sides] == [
-            [jumps.edges.size for jumps in side] for side in scaled_sides
+        assert [[[jumps.edges.size for jumps in side] for side in sides] for sides in rings] == [
+            [[jumps.edges.size for jumps in side] for side in sides] for sides in scaled_rings
         ]
