@@ -23,6 +23,10 @@ SPACING_GROWTH = 0.5  # growth of the default spacing of stresses with the dista
 MAX_SPACING = 0.2  # default spacing at a free end and below the top, over the Hertz half-width
 MAX_DEFAULT_DEPTH = 5.0  # largest default depth, over the Hertz half-width
 
+STRESS_DEPTH, STRESS_DEPTH_RANGE = 0.6, (0.01, 0.75)
+"""Depth of the largest stress below a peak of the pressure, over the peak's width (0.70 under a line contact, 0.48 below
+a sphere), and its range over the Hertz half-width."""
+
 Positions = Sequence[float] | npt.ArrayLike
 Labels = tuple[FloatArray, FloatArray]
 
@@ -87,10 +91,11 @@ def default_columns(grid: Grid, extent: Extent, is_loaded: BoolArray, half_width
     return _grade_positions(ends, np.append(grid.x[is_loaded], ends), spacings)
 
 
-def default_depths(half_width: float, depth: float) -> FloatArray:
-    """Depths from 0 to five half-widths, narrow from the top to the depth of the largest stress."""
+def default_depths(half_width: float, peak_width: float) -> FloatArray:
+    """Depths from 0 to five half-widths, narrow from the top to the depth of the largest stress below a peak."""
     # The depth is rounded to a power of the square root of 2, so that similar cases share their positions.
-    peak_depth = 2.0 ** (0.5 * round(2 * np.log2(max(depth / half_width, 0.01)))) if np.isfinite(depth) else 0.5
+    depth = np.clip(STRESS_DEPTH * peak_width / half_width, *STRESS_DEPTH_RANGE)
+    peak_depth = 2.0 ** (0.5 * round(2 * float(np.log2(depth))))
     peak_spacing, fixed_depths = min(0.2 * peak_depth, MAX_SPACING), {0.0, min(peak_depth, 1.0), MAX_DEFAULT_DEPTH}
     depths = _grade_positions(
         sorted(fixed_depths),

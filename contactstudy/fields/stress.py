@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 import xarray as xr
@@ -17,7 +17,7 @@ from contactstudy.checks import FloatArray
 from contactstudy.fields.body_operators import reference_distance
 from contactstudy.fields.loads import UNIFORM, Loads, end_problem, prescribed_loads, superpose, unit_problem
 from contactstudy.fields.positions import FieldPositions, Positions, field_positions
-from contactstudy.fields.stress_maximum import StressMaximum, find_stress_maximum, include_points, place_search
+from contactstudy.fields.stress_maximum import Search, StressMaximum, find_stress_maximum, include_points
 from contactstudy.kernels.field import half_space_field, stress_influence
 from contactstudy.kernels.load import Load
 from contactstudy.overlapping.field import UnitFields, end_fields, unit_fields
@@ -184,26 +184,23 @@ def _mirrored_stress(
 def contact_stresses(
     body: Body,
     loads: Loads,
-    grid: Grid,
-    positions: Callable[[StressMaximum], FieldPositions],
+    search: Search,
+    positions: FieldPositions,
     end_yz: tuple[FloatArray, FloatArray],
 ) -> tuple[xr.Dataset, float, StressMaximum]:
-    """Return stresses at positions that may depend on the largest stress, the ends' residual, and that stress."""
-    end_positions, search = _end_positions(body), place_search(body, loads, grid)
-    pressure = loads[Load.NORMAL].values
+    """Return stresses at positions, the residual on the ends, and the largest stress in the body."""
+    end_positions, pressure = _end_positions(body), loads[Load.NORMAL].values
 
     def stress_at(points: Points) -> FloatArray:
-        return stresses_at(body, loads, grid, [points], pressure)[0]
+        return stresses_at(body, loads, search.grid, [points], pressure)[0]
 
-    point_sets = [*search.samples, *([Points(end_positions, *end_yz)] if end_positions.size else [])]
-    stresses = stresses_at(body, loads, grid, point_sets, pressure)
-    residual = _traction_residual(loads, stresses[-1]) if end_positions.size else 0.0
+    # All sets share one solution for the equivalent loads.
+    on_ends = [Points(end_positions, *end_yz)] if end_positions.size else []
+    field, *stresses = stresses_at(body, loads, search.grid, [positions.points, *search.samples, *on_ends], pressure)
+    residual = _traction_residual(loads, stresses[-1]) if on_ends else 0.0
     maximum = find_stress_maximum(search, stresses[: len(search.samples)], stress_at)
-    field_positions = positions(maximum)
-    points = field_positions.points
-    field = stress_at(points)
-    maximum = include_points(maximum, points, field, search, stress_at)
-    return _label_stresses(body, grid, field, field_positions), residual, maximum
+    maximum = include_points(maximum, positions.points, field, search, stress_at)
+    return _label_stresses(body, search.grid, field, positions), residual, maximum
 
 
 def end_traction_residual(body: Body, loads: Loads, grid: Grid, y: FloatArray, z: FloatArray) -> float:

@@ -79,6 +79,7 @@ class Search(NamedTuple):
     inside_rim: BoolArray  # (x, y): cells inside the contact with accurate stresses on the top
     border: Border  # border between stick and slip
     samples: list[Points]  # centres of cells and points below, at peaks, then along the contact; may be empty
+    peak_width: float  # least width of the peaks of the pressure, metres; infinite without pressure
 
     @property
     def shallowest(self) -> float:
@@ -116,8 +117,9 @@ def place_search(body: Body, loads: Loads, grid: Grid) -> Search:
     # The body ends at the outermost columns.
     inside_rim = np.asarray(ndimage.binary_erosion(pressure > 0, iterations=RIM_CELLS, border_value=1))
     if not column_maxima.any():
-        return Search(grid, extent, inside_rim, border, [])
+        return Search(grid, extent, inside_rim, border, [], np.inf)
     samples: list[Points] = []
+    widths: list[float] = []
     symmetric = bool(  # about the middle of the window, up to errors of the solver
         np.isinf(extent[0]) == np.isinf(extent[1])
         and np.allclose(grid.widths, grid.widths[::-1])
@@ -130,6 +132,7 @@ def place_search(body: Body, loads: Loads, grid: Grid) -> Search:
     )
     for peak in _peaks(column_maxima, symmetric=symmetric):
         width = min(variation_lengths(pressure, grid.x, grid.dy, peak, rising=False))
+        widths.append(width)
         if not any(abs(grid.x[peak] - points.x).min() < 0.2 * width for points in samples):
             x = np.clip(grid.x[peak] + width * AXIAL_OFFSETS, *extent)
             samples.append(
@@ -145,7 +148,7 @@ def place_search(body: Body, loads: Loads, grid: Grid) -> Search:
     x = np.concatenate([first_edge + distances, last_edge - (distances[-2:-1] if symmetric else distances)])
     depths = half_width * AXIS_DEPTHS
     samples.append(_nearest_cells(grid, inside_rim, x, section, depths, spacing=0.1 * half_width))
-    return Search(grid, extent, inside_rim, border, samples)
+    return Search(grid, extent, inside_rim, border, samples, min(widths))
 
 
 def _nearest_cells(

@@ -37,9 +37,9 @@ from contactstudy.contact.rolling.tractions import FrictionRequest
 from contactstudy.contact.solve import contact_dataset
 from contactstudy.errors import InvalidInputError, WindowError
 from contactstudy.fields.loads import TopLoad, sliding
-from contactstudy.fields.positions import FieldPositions, Positions, default_columns, default_depths, field_positions
+from contactstudy.fields.positions import Positions, default_columns, default_depths, field_positions
 from contactstudy.fields.stress import contact_stresses
-from contactstudy.fields.stress_maximum import StressMaximum
+from contactstudy.fields.stress_maximum import place_search
 from contactstudy.kernels.load import Load
 from contactstudy.roughness import heights_on
 
@@ -177,14 +177,13 @@ def with_stresses(
     case, grid, loads, scale = contact.case, contact.grid, contact.loads, contact.case.hertz_half_width
     refined = contact.cells == "refined"
 
-    def positions(largest: StressMaximum) -> FieldPositions:
-        is_loaded = np.asarray(contact.contact.pressure.any(axis=1))
-        columns = default_columns(grid, case.body.extent, is_loaded, scale) if x is None and refined else x
-        depths = default_depths(scale, largest.position[2]) if z is None else z
-        return field_positions(case.body, grid, columns, y, depths)
-
+    search = place_search(case.body, loads, grid)
+    is_loaded = np.asarray(contact.contact.pressure.any(axis=1))
+    columns = default_columns(grid, case.body.extent, is_loaded, scale) if x is None and refined else x
+    depths = default_depths(scale, search.peak_width) if z is None else z
+    positions = field_positions(case.body, grid, columns, y, depths)
     on_ends = scale * np.array(RESIDUAL_POSITIONS), scale * np.array(RESIDUAL_DEPTHS)
-    field, residual, largest = contact_stresses(case.body, loads, grid, positions, on_ends)
+    field, residual, largest = contact_stresses(case.body, loads, search, positions, on_ends)
     if refined or x is not None or y is not None:
         field = field.rename({"x": "x_field", "y": "y_field"})
     result = result.assign_coords(field.coords).assign(field.data_vars)

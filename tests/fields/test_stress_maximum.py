@@ -11,7 +11,7 @@ from contactstudy.checks import FloatArray
 from contactstudy.fields.loads import sliding
 from contactstudy.fields.positions import field_positions
 from contactstudy.fields.stress import contact_stresses
-from contactstudy.fields.stress_maximum import StressMaximum
+from contactstudy.fields.stress_maximum import StressMaximum, place_search
 from contactstudy.stress import von_mises_of
 from contactstudy.verification import closed_forms as ref
 from tests.closed_forms import hertz_circle_surface, sliding_circle_surface
@@ -32,9 +32,9 @@ def maximum_under(grid: Grid, pressure: FloatArray, friction: float) -> StressMa
     """Largest stress of a half-space, with stresses at one point far from it."""
     body = HalfSpace(material=Material(1.0, 0.3))
     positions = field_positions(body, grid, [1.2], [1.2], [2.0])
-    return contact_stresses(body, sliding(pressure, friction), grid, lambda _: positions, (NO_POSITIONS, NO_POSITIONS))[
-        -1
-    ]
+    loads = sliding(pressure, friction)
+    search = place_search(body, loads, grid)
+    return contact_stresses(body, loads, search, positions, (NO_POSITIONS, NO_POSITIONS))[-1]
 
 
 def test_stress_maximum_below_circle_matches_closed_form() -> None:
@@ -76,9 +76,9 @@ def test_stress_maximum_does_not_depend_on_point_order() -> None:
     body = HalfSpace(material=Material(1.0, 0.3))
     x = np.array([0.4, -0.4, np.nextafter(0.4, 1.0), 0.1, 0.1 + 1e-12])
     positions = field_positions(body, grid, x, [0.2, -0.2, 0.2 + 1e-15], [0.5, 0.3, 0.5 + 1e-15])
-    computed = contact_stresses(body, sliding(pressure, 0.0), grid, lambda _: positions, (NO_POSITIONS, NO_POSITIONS))[
-        -1
-    ]
+    loads = sliding(pressure, 0.0)
+    search = place_search(body, loads, grid)
+    computed = contact_stresses(body, loads, search, positions, (NO_POSITIONS, NO_POSITIONS))[-1]
     assert computed.value == pytest.approx(maximum_under(grid, pressure, 0.0).value, rel=1e-3)
     for end in (5.0, 1.0):
         # Positions from both ends of the contact coincide at its middle, up to rounding.

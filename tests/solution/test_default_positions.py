@@ -54,8 +54,8 @@ def test_positions_on_a_half_space_cover_the_grid() -> None:
 
 
 def test_depths_of_similar_cases_are_equal() -> None:
-    assert np.array_equal(default_depths(1e-4, 2.8e-6), default_depths(1e-4, 3.0e-6))
-    depths = default_depths(1.0, np.nan)
+    assert np.array_equal(default_depths(1e-4, 4.6e-6), default_depths(1e-4, 5.0e-6))
+    depths = default_depths(1.0, np.inf)
     assert depths[0] == 0.0
     assert depths[-1] == 5.0
     assert (np.diff(depths) > 0).all()
