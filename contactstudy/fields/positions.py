@@ -24,8 +24,8 @@ MAX_SPACING = 0.2  # default spacing at a free end and below the top, over the H
 MAX_DEFAULT_DEPTH = 5.0  # largest default depth, over the Hertz half-width
 
 STRESS_DEPTH, STRESS_DEPTH_RANGE = 0.6, (0.01, 0.75)
-"""Depth of the largest stress below a peak of the pressure, over the peak's width (0.70 under a line contact, 0.48 below
-a sphere), and its range over the Hertz half-width."""
+"""Depth of the largest stress below a peak of the pressure, over the peak's width (under a line contact 0.70, under a
+sphere 0.48), and its range over the Hertz half-width."""
 
 Positions = Sequence[float] | npt.ArrayLike
 Labels = tuple[FloatArray, FloatArray]
