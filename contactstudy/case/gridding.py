@@ -27,10 +27,6 @@ def check_accuracy(value: object) -> float:
     return accuracy
 
 
-def solver_settings(*, tolerance: float = TOLERANCE, stresses: bool = True) -> None:
-    """Keywords of :func:`contactstudy.solve` for the cases of a study, with the defaults of the solver."""
-
-
 Result = TypeVar("Result")
 Window = TypeVar("Window")  # A width, a grid, or None for columns that the solver refines
 WINDOWS = (2.0, 3.0, 5.0, 8.0)
