@@ -335,7 +335,8 @@ def without_defaults(values: Mapping[str, Any]) -> dict[str, Any]:
 
 def with_defaults(values: Mapping[str, Any]) -> dict[str, Any]:
     """Return `values` completed by the defaults."""
-    return {name: entry.default for name, entry in PARAMETERS.items() if entry.default is not None} | dict(values)
+    defaults = {name: entry.default for name, entry in PARAMETERS.items() if name not in values}
+    return {name: default for name, default in defaults.items() if default is not None} | dict(values)
 
 
 def identity_fragment(name: str, value: Any) -> str:
