@@ -76,52 +76,54 @@ class Engine:
     @contextlib.contextmanager
     def client(self, cases: int, notify: Callable[[str], None]) -> Iterator[Client]:
         """Client of the scheduler, or of local processes, which end with the block; few `cases` need few processes."""
-        if self.scheduler is None:
-            cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-            with _local_client(min(cores if self.workers is None else self.workers, cases)) as local_client:
-                yield local_client
-            return
+        from dask.system import CPU_COUNT
         from distributed.comm.core import CommClosedError
 
+        if self.scheduler is None:
+            with _local_client(min(CPU_COUNT if self.workers is None else self.workers, cases)) as local_client:
+                yield local_client
+            return
         if isinstance(self.scheduler, str):
             notify(f"connecting to the dask scheduler at {self.scheduler}, for up to {RUN.start_seconds:g} s")
-        with _silent_libraries() if isinstance(self.scheduler, str) else contextlib.nullcontext():
-            client = _connect(self.scheduler) if isinstance(self.scheduler, str) else self.scheduler
-            try:
+            remote_client: contextlib.AbstractContextManager[Client] = _remote_client(self.scheduler)
+        else:
+            remote_client = contextlib.nullcontext(self.scheduler)
+        try:
+            with remote_client as client:
                 yield client
-            except (CommClosedError, TimeoutError) as error:
-                raise StudyFileError(SCHEDULER_LOST) from error
-            finally:
-                if client is not self.scheduler:
-                    with contextlib.suppress(Exception):
-                        client.close(timeout=RUN.close_seconds)
+        except (CommClosedError, TimeoutError) as error:
+            raise StudyFileError(SCHEDULER_LOST) from error
 
 
-def _connect(scheduler: str) -> Client:
+@contextlib.contextmanager
+def _remote_client(scheduler: str) -> Iterator[Client]:
     """Client of a scheduler, within a time limit: dask waits endlessly for a listener that does not answer."""
     import dask
     from distributed import Client
 
-    clients: list[Client] = []
-    errors: list[Exception] = []
+    answers: queue.SimpleQueue[Client | Exception] = queue.SimpleQueue()
 
     def connect() -> None:
         try:
             with dask.config.set(SHORT_LOGS):
-                clients.append(Client(scheduler, timeout=RUN.start_seconds))
+                answers.put(Client(scheduler, timeout=RUN.start_seconds))
         except Exception as error:
-            errors.append(error)
+            answers.put(error)
 
-    thread = threading.Thread(target=connect, daemon=True)
-    thread.start()
-    thread.join(RUN.start_seconds + RUN.close_seconds)
-    if clients:
-        return clients[0]
-    if not errors:
-        raise StudyFileError(f"no dask scheduler at {scheduler}: the listener did not answer")
-    (error,) = errors
-    reason = error if isinstance(error, (OSError, ValueError)) else type(error).__name__
-    raise StudyFileError(f"no dask scheduler answers at {scheduler}: {reason}") from error
+    with _silent_libraries():
+        threading.Thread(target=connect, daemon=True).start()
+        try:
+            client = answers.get(timeout=RUN.start_seconds + RUN.close_seconds)
+        except queue.Empty:
+            raise StudyFileError(f"no dask scheduler at {scheduler}: the listener did not answer") from None
+        if isinstance(client, Exception):
+            reason = client if isinstance(client, (OSError, ValueError)) else type(client).__name__
+            raise StudyFileError(f"no dask scheduler answers at {scheduler}: {reason}") from client
+        try:
+            yield client
+        finally:
+            with contextlib.suppress(Exception):
+                client.close(timeout=RUN.close_seconds)
 
 
 @contextlib.contextmanager
