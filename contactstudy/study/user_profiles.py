@@ -26,6 +26,8 @@ LENGTHS = (1e-4, 1e-3, 1e-2, 1e-1)  # metres, of which drops enter the digest; a
 MAX_LISTED_SIZE = 100  # Largest array that a file lists; a digest represents a larger array
 REMEDY = "give its values as numbers, texts or lists, or the shape as profiles.Measured(x, drop)"
 
+DIGITS = 12  # Significant digits of a number in a study, beyond rounding
+
 _registry: dict[str, Profile] = {}  # copies by content; changes of the user's objects do not change them
 
 
@@ -92,6 +94,11 @@ def _attributes(profile: Profile) -> Iterable[tuple[str, Any]]:
     return sorted((attributes | {name: getattr(profile, name) for name in slots if hasattr(profile, name)}).items())
 
 
+def round_digits(value: float) -> float:
+    """Return `value` rounded to twelve significant digits; minus zero becomes zero."""
+    return float(f"{value:.{DIGITS}g}") + 0.0
+
+
 def _values(profile: Profile) -> dict[str, Any]:
     """JSON values of a profile."""
     return {key: _json_value(f"profile.{key}", value) for key, value in _attributes(profile)}
@@ -106,7 +113,7 @@ def _json_value(name: str, value: object) -> Any:
     if value is None or isinstance(value, (bool, str, int)):
         return value
     if isinstance(value, float):
-        return float(f"{value:.12g}") + 0.0 if np.isfinite(value) else repr(value)
+        return round_digits(value) if np.isfinite(value) else repr(value)
     if isinstance(value, (list, tuple)):
         return [_json_value(name, entry) for entry in value]
     if isinstance(value, Mapping) and all(isinstance(key, str) for key in value):
