@@ -71,11 +71,11 @@ class Parameter(NamedTuple):
     name: str
     units: str  # empty for a word
     meaning: str  # comment of the coordinate, and the documentation
+    absent: str = ""  # meaning of a missing parameter without a default, for the documentation
     check: Callable[[str, object], Any] = check_number  # from name and value to the value for identities, or raises
     words: tuple[str, ...] = ()  # allowed words; the first is the default unless `absent` has another meaning
     consumer: Callable[..., Any] | None = None  # function with a keyword of this name, whose default is the default
     fallback: Any = None  # default without a consumer; None: required or optional
-    absent: str = ""  # meaning of a missing parameter without a default, for the documentation
     note: str = ""  # addition to the meaning, for the documentation
     label: str = ""  # long name of the coordinate, short enough for an axis; default: a result's long name, or `name`
 
@@ -122,36 +122,30 @@ _PARAMETERS = (
         note="`exact`; for comparison `mirror` and `mirror-factor`, quick fixes in use, and `single-mirror` (two ends "
         "only), the published scheme with one pair of images",
     ),
-    Parameter("young", "Pa", "Young's modulus of the body", absent="required", label="Young's modulus"),
-    Parameter("poisson", "1", "Poisson's ratio of the body", absent="required", label="Poisson's ratio"),
-    Parameter("radius", "m", "roller radius", absent="required"),
-    Parameter("roller_length", "m", "roller length; the body is longer by 2 e", absent="or `gamma`"),
+    Parameter("young", "Pa", "Young's modulus of the body", "required", label="Young's modulus"),
+    Parameter("poisson", "1", "Poisson's ratio of the body", "required", label="Poisson's ratio"),
+    Parameter("radius", "m", "roller radius", "required"),
+    Parameter("roller_length", "m", "roller length; the body is longer by 2 e", "or `gamma`"),
+    Parameter("gamma", "1", "body length over roller radius; the roller is shorter by 2 e", "or `roller_length`"),
     Parameter(
-        "gamma", "1", "body length over roller radius; the roller is shorter by 2 e", absent="or `roller_length`"
+        "e_over_a", "1", COORDINATES["e_over_a"].comment, "or `end_distance`", note="negative: the roller overhangs"
     ),
-    Parameter(
-        "e_over_a",
-        "1",
-        COORDINATES["e_over_a"].comment,
-        absent="or `end_distance`",
-        note="negative: the roller overhangs",
-    ),
-    Parameter("end_distance", "m", "distance e of roller end and free end", absent="or `e_over_a`"),
+    Parameter("end_distance", "m", "distance e of roller end and free end", "or `e_over_a`"),
     Parameter(
         "max_pressure",
         "Pa",
         "peak pressure p0 of the Hertz line contact",
+        "or `load`",
         consumer=Case,
-        absent="or `load`",
         label="Hertz pressure p0",
     ),
-    Parameter("load", "N", "normal load", consumer=Case, absent="or `max_pressure`", label="normal load"),
+    Parameter("load", "N", "normal load", "or `max_pressure`", consumer=Case, label="normal load"),
     Parameter(
         "approach",
         "m",
         "approach at mid-length, from first contact without tilt",
+        "or `load`",
         consumer=Case,
-        absent="or `load`",
         note="load and a result: give `end_distance`, and leave out uniform cells and stress points, which are over a",
     ),
     Parameter("friction", "1", "coefficient of friction", consumer=Case),
@@ -166,37 +160,29 @@ _PARAMETERS = (
         note="`rigid`; `finite-length`, with free ends; or `half-space`",
     ),
     Parameter(
-        "roller_young",
-        "Pa",
-        "Young's modulus of an elastic roller",
-        absent="the body's",
-        label="roller's Young's modulus",
+        "roller_young", "Pa", "Young's modulus of an elastic roller", "the body's", label="roller's Young's modulus"
     ),
     Parameter(
-        "roller_poisson",
-        "1",
-        "Poisson's ratio of an elastic roller",
-        absent="the body's",
-        label="roller's Poisson's ratio",
+        "roller_poisson", "1", "Poisson's ratio of an elastic roller", "the body's", label="roller's Poisson's ratio"
     ),
     Parameter(
         "reference_depth",
         "m",
         "depth of the material line below the load to which approach and tilt refer",
-        absent="one length between free ends, else far away",
+        "one length between free ends, else far away",
     ),
     Parameter(
         "roller_reference_depth",
         "m",
         "distance from the contact to the reference line of an elastic roller",
-        absent="the roller's length with free ends, else far away",
+        "the roller's length with free ends, else far away",
     ),
     Parameter("tilt", "rad", "misalignment of the roller; positive if larger x is pressed deeper", consumer=Case),
     Parameter(
         "load_offset",
         "m",
         "position of the load, from mid-length",
-        absent="the tilt is prescribed",
+        "the tilt is prescribed",
         note="the roller tilts until it balances",
     ),
     Parameter("coupled", "1", "whether friction displaces the surface normally", check=check_flag, consumer=Case),
@@ -211,22 +197,18 @@ _PARAMETERS = (
         "longitudinal_creepage",
         "1",
         "velocity of the roller's surface against the body along y over the rolling speed",
-        absent="0",
+        "0",
         note="rolling only; or `force_y`",
     ),
-    Parameter("lateral_creepage", "1", "the same along x", absent="0", note="rolling only; or `force_x`"),
+    Parameter("lateral_creepage", "1", "the same along x", "0", note="rolling only; or `force_x`"),
     Parameter(
-        "spin",
-        "rad/m",
-        "angular velocity about z over the rolling speed",
-        absent="0",
-        note="rolling only; or `moment_z`",
+        "spin", "rad/m", "angular velocity about z over the rolling speed", "0", note="rolling only; or `moment_z`"
     ),
-    Parameter("shift_x", "m", "rigid shift along x", absent="0", note="shift only; or `force_x`"),
-    Parameter("shift_y", "m", "rigid shift along y", absent="0", note="shift only; or `force_y`"),
-    Parameter("force_x", "N", "force on the body along x", absent="follows", note="shift or rolling; less than slides"),
-    Parameter("force_y", "N", "force on the body along y", absent="follows", note="shift or rolling"),
-    Parameter("moment_z", "N m", "moment on the body about the roller's middle", absent="follows", note="rolling only"),
+    Parameter("shift_x", "m", "rigid shift along x", "0", note="shift only; or `force_x`"),
+    Parameter("shift_y", "m", "rigid shift along y", "0", note="shift only; or `force_y`"),
+    Parameter("force_x", "N", "force on the body along x", "follows", note="shift or rolling; less than slides"),
+    Parameter("force_y", "N", "force on the body along y", "follows", note="shift or rolling"),
+    Parameter("moment_z", "N m", "moment on the body about the roller's middle", "follows", note="rolling only"),
     Parameter(
         "rolling_model",
         "",
@@ -234,26 +216,24 @@ _PARAMETERS = (
         words=ROLLING_MODELS,
         note="`exact`; for comparison `fastsim`, strips without an influence of neighbours and free ends",
     ),
-    Parameter("lubricant", "", "oil of a film between the surfaces", words=tuple(OILS), absent="or `viscosity`; dry"),
-    Parameter("temperature", "degC", "temperature of the oil in the inlet", absent="with `lubricant`"),
-    Parameter("viscosity", "Pa s", "viscosity at ambient pressure", check=check_positive, absent="or `lubricant`; dry"),
-    Parameter(
-        "pressure_viscosity", "Pa-1", "pressure-viscosity coefficient", check=check_positive, absent="with `viscosity`"
-    ),
+    Parameter("lubricant", "", "oil of a film between the surfaces", "or `viscosity`; dry", words=tuple(OILS)),
+    Parameter("temperature", "degC", "temperature of the oil in the inlet", "with `lubricant`"),
+    Parameter("viscosity", "Pa s", "viscosity at ambient pressure", "or `lubricant`; dry", check=check_positive),
+    Parameter("pressure_viscosity", "Pa-1", "pressure-viscosity coefficient", "with `viscosity`", check=check_positive),
     Parameter(
         "entrainment_speed",
         "m s-1",
         "mean speed of both surfaces along +y",
+        "required for a film",
         check=check_positive,
-        absent="required for a film",
     ),
-    Parameter("slide_roll_ratio", "1", "difference of the speeds over their mean", absent="0"),
-    Parameter("roughness_rms", "m", "composite rms roughness", check=check_positive, absent="smooth"),
+    Parameter("slide_roll_ratio", "1", "difference of the speeds over their mean", "0"),
+    Parameter("roughness_rms", "m", "composite rms roughness", "smooth", check=check_positive),
     Parameter(
         "accuracy",
         "1",
         "error over the peak to which peak, end pressures and end loads are settled",
-        absent=f"{ACCURACY:g}",
+        f"{ACCURACY:g}",
         note="columns are refined to it; a case with parameters of uniform cells has none",
     ),
     Parameter("cells_x", "1", "cells per half-width a along x", consumer=choose_grid, note="uniform cells"),
@@ -278,14 +258,12 @@ _PARAMETERS = (
         "field_x_over_a",
         "1",
         "stress points: x from the free end over a",
+        "from face to face",
         check=check_points,
-        absent="from face to face",
         note="a list, or `{start, stop, count}`",
     ),
-    Parameter("field_y_over_a", "1", "stress points: y over a", check=check_points, absent="cell centres"),
-    Parameter(
-        "field_z_over_a", "1", "stress points: depth over a", check=check_points, absent="about 23 depths to 5 a"
-    ),
+    Parameter("field_y_over_a", "1", "stress points: y over a", "cell centres", check=check_points),
+    Parameter("field_z_over_a", "1", "stress points: depth over a", "about 23 depths to 5 a", check=check_points),
 )
 PARAMETERS: dict[str, Parameter] = {entry.name: entry for entry in _PARAMETERS}  # of a case, by name
 REQUIRED = (  # Groups of parameters; every case has exactly one parameter of each group
