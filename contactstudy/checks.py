@@ -10,6 +10,7 @@ from contextlib import contextmanager
 from difflib import get_close_matches
 from numbers import Integral, Real
 from pathlib import Path
+from types import UnionType
 from typing import Any
 
 import numpy as np
@@ -135,7 +136,7 @@ def count(name: str, value: object, minimum: int = 1) -> int:
     return int(value)
 
 
-def instance(name: str, value: object, kind: type | tuple[type, ...], allowed: str) -> None:
+def instance(name: str, value: object, kind: type | UnionType | tuple[type, ...], allowed: str) -> None:
     """Raise if `value` is not an instance of `kind`; `allowed` describes the expected type."""
     if not isinstance(value, kind):
         raise InvalidInputError(name, value, f"{allowed}, not {type(value).__name__}")
