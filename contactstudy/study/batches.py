@@ -186,11 +186,7 @@ def write_batch(folder: Path, name: str, batch: Batch) -> None:
 
 def checksum(path: Path) -> int:
     """CRC-32 of a file."""
-    code = 0
-    with open(path, "rb") as file:
-        while block := file.read(2**22):
-            code = zlib.crc32(block, code)
-    return code
+    return zlib.crc32(path.read_bytes())
 
 
 def find_damage(path: Path) -> str:
@@ -247,10 +243,10 @@ def _write_variables(path: Path, batch: Batch) -> None:
         for name, values in batch.numbers.items():
             create(name, "f8", ("case",), _file_attributes(name, batch.attributes))[:] = values
         for dim, lengths in batch.sizes.items():
-            attributes = {"long_name": f"size along {dim}", "units": "1", "sample_dimension": _sample_dimension((dim,))}
+            attributes = {"long_name": f"size along {dim}", "units": "1", "sample_dimension": f"{dim}_values"}
             create(f"{dim}_size", "i4", ("case",), attributes)[:] = lengths
         for name, (dims, values) in batch.arrays.items():
-            sample = _sample_dimension(dims)
+            sample = f"{'_'.join(dims)}_values"
             if sample not in file.dimensions:
                 file.createDimension(sample, values.size)
             if values.size:
@@ -269,11 +265,6 @@ def _write_variables(path: Path, batch: Batch) -> None:
                 COORDINATES_ATTR: json.dumps(sorted(batch.coordinates)),
             }
         )
-
-
-def _sample_dimension(dims: Iterable[str]) -> str:
-    """Name of the dimension of a ragged array."""
-    return f"{'_'.join(dims)}_values"
 
 
 def _file_attributes(name: str, attributes: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:

@@ -17,8 +17,6 @@ from contactstudy.study.folder import STATES, Folder, States
 from contactstudy.study.parameters import PARAMETERS
 from contactstudy.study.plan import label
 
-CELL_CHOICES = ("common", "original")  # Axes of surfaces and stresses: common to all cases, or of each case
-
 
 def open_study(folder: str | Path, *, cells: str = "common", chunks: Any = None) -> xr.Dataset:
     """Open the results of a study as one Dataset whose dimensions are the swept parameters.
@@ -112,7 +110,7 @@ def load_case(folder: str | Path, case_id: str) -> xr.Dataset:
 def study_dataset(folder: str | Path, *, cells: str | None) -> xr.Dataset:
     """Dataset of a study with lazy surfaces and fields; without surfaces and fields if `cells` is None."""
     if cells is not None:
-        checks.known_name("cells", cells, CELL_CHOICES)
+        checks.known_name("cells", cells, ("common", "original"))
     results = Folder(folder)
     study = results.read_study()
     states = results.states(study.plan())

@@ -27,6 +27,7 @@ from contactstudy.errors import InvalidInputError, LockedError, StoreError, Stud
 from contactstudy.study.batches import (
     CASE_ATTRIBUTE,
     STATUSES,
+    TEXT_COLUMNS,
     Batch,
     batch_paths,
     common_attributes,
@@ -99,7 +100,6 @@ class Results:
             except StoreError as error:
                 if path.exists() or path.is_symlink():  # another run may have joined the batch meanwhile
                     self.damaged[path] = str(error)
-        self._batches_with_texts: dict[int, Batch] = {}
 
     @cached_property
     def locations(self) -> dict[bytes, Location]:
@@ -112,18 +112,10 @@ class Results:
                     locations[identity] = Location(batch_index, row)
         return locations
 
-    @property
-    def latest_run(self) -> int:
-        """Largest number of a run; 0 without results."""
-        return max((int(batch.runs.max()) for batch in self.batches if len(batch)), default=0)
-
-    def batch_with_texts(self, batch_index: int) -> Batch:
-        """Batch with its texts: parameters, warnings and times."""
-        if batch_index not in self._batches_with_texts:
-            self._batches_with_texts[batch_index] = read_batch(
-                self.paths[batch_index], texts=("parameters", "message", "warnings", "time")
-            )
-        return self._batches_with_texts[batch_index]
+    @cached_property
+    def batches_with_texts(self) -> list[Batch]:
+        """Batches with the texts of their cases: parameters, messages, warnings and times."""
+        return [read_batch(path, texts=TEXT_COLUMNS) for path in self.paths]
 
     def case(self, identity: str, names: Iterable[str] | None = None) -> xr.Dataset:
         """Return one solved case on its cells, with all arrays or only the named arrays."""
@@ -171,9 +163,7 @@ class States:
             if reason := plan.reason(index):
                 status, usable = "skipped", False
             else:
-                status, reason, usable = (
-                    results.state(identity, plan.level) if results.batches else ("missing", "", False)
-                )
+                status, reason, usable = results.state(identity, plan.level)
                 if status == "missing" and damage:
                     reason = damage
             self.status[index], self.usable[index] = STATES.index(status), usable
@@ -220,7 +210,7 @@ class States:
         batch_index, row = (int(values[index]) for values in self.locations)
         if batch_index < 0:
             return Entry(status, reason)
-        batch = self.results.batch_with_texts(batch_index)
+        batch = self.results.batches_with_texts[batch_index]
         numbers = {name: float(column[row]) for name, column in batch.numbers.items() if not np.isnan(column[row])}
         return Entry(status, reason, numbers, batch.run(row))
 
@@ -301,7 +291,7 @@ class Folder:
     def _hold(self, name: str, seconds: float) -> Iterator[None]:
         """Hold a lock; wait for some seconds."""
         path = self.path / f"{name}.lock"
-        if path.is_symlink() or (path.exists() and not is_regular(path)):
+        if os.path.lexists(path) and not is_regular(path):
             raise LockedError(f"{path} is not a regular file: delete it if no run uses {self.path}")
         lock = FileLock(path, timeout=seconds)
         try:

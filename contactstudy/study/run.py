@@ -215,7 +215,7 @@ def run_study(
                 prefix=run_share.prefix,
                 level=plan.level,
                 study=plan.name,
-                run=results.latest_run + 1,
+                run=1 + max((int(batch.runs.max()) for batch in results.batches), default=0),
             )
             del results
             solved = sum(map(len, groups))
@@ -252,7 +252,7 @@ def _check_share(share: tuple[int, int] | None) -> Share:
 
 
 def _groups_to_solve(states: States, again: tuple[str, ...], share: Share, sample: int | None) -> list[list[int]]:
-    """Cases to solve, group by group, ordered by their operator, expensive groups first."""
+    """Cases to solve, group by group, ordered by their operator."""
     for status in again:
         checks.known_name("again", status, RERUN_STATUSES)
     plan = states.plan
@@ -268,17 +268,11 @@ def _groups_to_solve(states: States, again: tuple[str, ...], share: Share, sampl
     for index in unique.tolist():
         members.setdefault((int(plan.operators[index]), int(plan.groups[index])), []).append(index)
 
-    def sort_key(key: tuple[int, int]) -> tuple[bool, tuple[int, int]]:
-        values = plan.values(members[key][0])
-        needs_no_ends = values.get("body") == "half-space" or values.get("model", "exact") != "exact"
-        return needs_no_ends, key
-
-    order = sorted(members, key=sort_key)
-    groups = [members[key] for key in order]
+    groups = [members[key] for key in sorted(members)]
     if share.count > 1:
         # A piece contains consecutive groups with one operator, few enough that every share receives several pieces.
         max_groups, pieces = max(1, len(groups) // (RUN.turns * share.count)), list[int]()
-        for _, operator_groups in groupby(operator for operator, _ in order):
+        for _, operator_groups in groupby(operator for operator, _ in sorted(members)):
             first_piece = pieces[-1] + 1 if pieces else 0
             pieces += [first_piece + position // max_groups for position, _ in enumerate(operator_groups)]
         groups = [group for group, piece in zip(groups, pieces, strict=True) if piece % share.count == share.number - 1]
