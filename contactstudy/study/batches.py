@@ -12,7 +12,6 @@ import json
 import zlib
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -78,18 +77,18 @@ class Batch:
         """Names, dimensions and types of the arrays; batches of equal structure can be joined."""
         return tuple(sorted((name, array.dims, array.values.dtype.str) for name, array in self.arrays.items()))
 
-    @cached_property
-    def _offsets(self) -> dict[tuple[str, ...], IntArray]:
-        """For each array's dimensions: start of each case's values, and the end of the last case's values."""
-        return {
-            dims: case_offsets(self.sizes, dims, len(self)) for dims in {array.dims for array in self.arrays.values()}
-        }
+    def offsets(self, dims: Iterable[str]) -> IntArray:
+        """Start of each case's values in a ragged array along `dims`, and the end of the last case's values."""
+        counts = np.ones(len(self), dtype=np.int64)
+        for dim in dims:
+            counts *= self.sizes[dim]
+        return np.concatenate([[0], np.cumsum(counts)])
 
     def take(self, rows: IntArray) -> Batch:
         """Return a batch with the cases of these rows."""
         selected_arrays = {}
         for name, (dims, values) in self.arrays.items():
-            starts = self._offsets[dims]
+            starts = self.offsets(dims)
             slices = [values[starts[row] : starts[row + 1]] for row in rows]
             selected_arrays[name] = Ragged(dims, np.concatenate(slices) if slices else values[:0])
         return replace(
@@ -107,7 +106,7 @@ class Batch:
         """Return one case on its cells, with its numbers, parameters, and the context of its run."""
         variables: dict[str, Any] = {}
         for name, (dims, values) in self.arrays.items():
-            starts = self._offsets[dims]
+            starts = self.offsets(dims)
             shape = [int(self.sizes[dim][row]) for dim in dims]
             case_values = values[starts[row] : starts[row + 1]].reshape(shape)
             variables[name] = (dims, case_values, self.attributes.get(name, {}))
@@ -127,18 +126,9 @@ class Batch:
         return run | ({"seconds": float(self.numbers["seconds"][row])} if "seconds" in self.numbers else {})
 
 
-def case_offsets(sizes: Mapping[str, IntArray], dims: Sequence[str], cases: int) -> IntArray:
-    """Start of each case's values in a ragged array along `dims`, and the end of the last case's values."""
-    counts = np.ones(cases, dtype=np.int64)
-    for dim in dims:
-        counts *= sizes[dim]
-    return np.concatenate([[0], np.cumsum(counts)])
-
-
 def join_batches(batches: Sequence[Batch]) -> Batch:
     """Join batches of equal `run_context` whose arrays have an equal structure, or that have no arrays."""
     first = max(batches, key=lambda batch: len(batch.arrays))
-
     names = list(dict.fromkeys(name for batch in batches for name in batch.numbers))
     attributes: dict[str, dict[str, Any]] = {}
     for batch in batches:
@@ -395,7 +385,7 @@ def read_case(path: Path, row: int, names: Iterable[str] | None = None) -> xr.Da
     selected |= {name for name in batch.coordinates if set(batch.arrays[name].dims) <= dims}
     bounds = {}
     for name in selected & set(batch.arrays):
-        starts = case_offsets(batch.sizes, batch.arrays[name].dims, len(batch))
+        starts = batch.offsets(batch.arrays[name].dims)
         bounds[name] = [(int(starts[row]), int(starts[row + 1]))]
     values = read_slices(path, bounds) if bounds else {}
     case_batch = replace(batch, arrays={}).take(np.array([row]))

@@ -16,7 +16,7 @@ from xarray.core import indexing
 from contactstudy.arrays.grid import centres_of
 from contactstudy.arrays.variables import ERROR_KIND, NOT_ESTIMATED
 from contactstudy.checks import FloatArray, IntArray
-from contactstudy.study.batches import case_offsets, read_batch, read_slices
+from contactstudy.study.batches import read_batch, read_slices
 from contactstudy.study.common_cells import (
     Resampling,
     centre_cells_on,
@@ -111,7 +111,7 @@ class Fields:
             for dim in self._dims:
                 if dim not in batch.sizes:
                     continue
-                starts = case_offsets(batch.sizes, (dim,), len(batch))
+                starts = batch.offsets((dim,))
                 values, widths = (batch.arrays.get(name) for name in (dim, f"{dim}_width"))
                 for index in np.flatnonzero(batch_of == batch_number).tolist():
                     span = slice(starts[row_of[index]], starts[row_of[index] + 1])
@@ -295,7 +295,7 @@ class CaseArray(BackendArray):
             batch = self._states.results.batches[batch_index] if batch_index >= 0 else None
             if batch is None or self._name not in batch.arrays:
                 continue
-            starts = case_offsets(batch.sizes, self._dims, len(batch))
+            starts = batch.offsets(self._dims)
             indices = [i for i, case in enumerate(cases.tolist()) if case >= 0 and batch_of[case] == batch_index]
             rows = [int(row_of[cases[index]]) for index in indices]
             bounds = [(int(starts[row]), int(starts[row + 1])) for row in rows]

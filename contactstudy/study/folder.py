@@ -44,7 +44,7 @@ from contactstudy.study.files import UNFINISHED, is_regular, write_text
 from contactstudy.study.plan import LEVELS, Plan
 from contactstudy.study.profile_tables import check_without_files
 from contactstudy.study.settings import RUN
-from contactstudy.study.user_profiles import are_registered
+from contactstudy.study.user_profiles import user_profiles
 from contactstudy.study.worker import group_by_structure
 
 SCHEMA = 2  # Version of the format of study.json
@@ -124,11 +124,11 @@ class Results:
             raise InvalidInputError("case_id", identity, "that of a solved case of the study")
         case = read_case(self.paths[location.batch], location.row, names)
         parameters = json.loads(case.attrs[CASE_ATTRIBUTE])
-        if are_registered(parameters):
-            with contextlib.suppress(InvalidInputError):  # parameters of another version
-                setup = build_setup(parameters)
-                settings = {name: setup.options[name] for name in ("tolerance", "accuracy") if name in setup.options}
-                case.attrs[INPUTS_ATTRIBUTE] = json.dumps({"case": to_dict(setup.case), "settings": settings})
+        with contextlib.suppress(InvalidInputError):  # parameters of another version, or an unknown user's profile
+            user_profiles(parameters)
+            setup = build_setup(parameters)
+            settings = {name: setup.options[name] for name in ("tolerance", "accuracy") if name in setup.options}
+            case.attrs[INPUTS_ATTRIBUTE] = json.dumps({"case": to_dict(setup.case), "settings": settings})
         return case
 
     def state(self, identity: bytes, level: str) -> tuple[str, str, bool]:

@@ -30,7 +30,7 @@ from contactstudy.study.batches import IDENTITY_LENGTH, STATUSES, Batch, add_arr
 from contactstudy.study.case_setup import Setup, build_setup
 from contactstudy.study.parameters import PARAMETERS
 from contactstudy.study.settings import RUN
-from contactstudy.study.user_profiles import receive_profiles
+from contactstudy.study.user_profiles import REGISTRY
 from contactstudy.versions import versions
 
 Solver = Callable[..., xr.Dataset]  # Callable with the arguments and the result of :func:`contactstudy.solve`
@@ -108,7 +108,7 @@ def solve_task(task: Task, solver: Solver | None = None) -> list[Outcome]:
     if lock != text:
         host = socket.gethostname()
         raise StoreError(f"a worker on {host} reads {lock[:200]!r} at {path}, not this run's lock; share the folder")
-    receive_profiles(task.profiles)
+    REGISTRY.update(task.profiles)
     unsaved_batches: list[Batch] = []
     outcomes: list[Outcome] = []
 
