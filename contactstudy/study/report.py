@@ -59,11 +59,9 @@ def stale_lines(report: RunReport) -> Iterator[str]:
 
 def _reasons(states: States, *statuses: str) -> Iterator[str]:
     """Lines on cases of some states, with their reasons."""
-    indices = states.indices(*statuses)
+    cases = [states.plan[index] for index in states.indices(*statuses) if index in states.reasons]
     yield from _group_reasons(
-        (STATES[states.status[index]], states.reasons[index], f"{states.plan[index].id[:16]} {states.plan[index].name}")
-        for index in indices
-        if index in states.reasons
+        (STATES[states.status[case.index]], states.reasons[case.index], f"{case.id[:16]} {case.name}") for case in cases
     )
 
 
@@ -79,23 +77,23 @@ def _group_reasons(cases: Iterable[tuple[str, str, str]]) -> Iterator[str]:
 
 
 def state_lines(states: States, *, everything: bool) -> Iterator[str]:
-    """Lines of counts, and of the cases that need attention, or of every case."""
+    """Lines of counts, of the cases that need attention, or of every case, and on the remaining cases."""
     for status, count in states.counts.items():
         yield f"  {count} {status}"
     if everything:
         for case in states.plan:
             reason = states.reasons.get(case.index, "")
-            yield f"  {STATES[states.status[case.index]]}: {case.id[:16]} {case.name}" + (
-                f": {reason}" if reason else ""
-            )
-        return
-    yield from _reasons(states, "skipped")
-    yield from _reasons(states, "failed", "stale", "missing")
-    if len(states.reasons) > 1:
-        yield "  every case: --all"
+            state = f"  {STATES[states.status[case.index]]}: {case.id[:16]} {case.name}"
+            yield f"{state}: {reason}" if reason else state
+    else:
+        yield from _reasons(states, "skipped")
+        yield from _reasons(states, "failed", "stale", "missing")
+        if len(states.reasons) > 1:
+            yield "  every case: --all"
+    yield from _forecast_lines(states)
 
 
-def forecast_lines(states: States) -> Iterator[str]:
+def _forecast_lines(states: States) -> Iterator[str]:
     """Lines on exclusions without effect, unusual magnitudes, and bytes and time of the remaining cases."""
     plan = states.plan
     yield from (f"  {message}" for message in plan.unknown[:MAX_REASONS])
