@@ -108,26 +108,24 @@ Profiles = TypeVar("Profiles", bound=Shape)
 def list_unusual_magnitudes(case: Case) -> tuple[str, ...]:
     """List the unusual magnitudes of a case, with the usual range and the unit of a value within this range."""
     roller, body = case.roller, case.body
-    messages = [
-        _describe("radius", "roller.radius", roller.radius),
-        _describe("length", "roller.length", roller.length),
+    values: list[tuple[str, str, float | None]] = [
+        ("radius", "roller.radius", roller.radius),
+        ("length", "roller.length", roller.length),
+        ("length", "body.length", body.length if isinstance(body, FiniteLengthSpace) else None),
+        ("young", "body.material.young", body.material.young),
+        ("young", "roller.material.young", roller.material.young if roller.material else None),
+        ("tilt", "tilt", abs(case.tilt)),
     ]
-    if isinstance(body, FiniteLengthSpace):
-        messages.append(_describe("length", "body.length", body.length))
+    names = ("viscosity", "pressure_viscosity", "eyring_stress", "density", "conductivity") if case.lubricant else ()
+    values += [(name, f"lubricant.{name}", getattr(case.lubricant, name)) for name in names]
+    messages = [_describe(quantity, name, value) for quantity, name, value in values if value is not None]
     messages += [
-        _describe("young", "body.material.young", body.material.young),
-        "" if roller.material is None else _describe("young", "roller.material.young", roller.material.young),
         describe_unusual_friction(case.friction),
-        _describe("tilt", "tilt", abs(case.tilt)),
         _describe_unusual_crown(case),
         _describe_flat_crown(case),
         _describe_unusual_design(case),
         _describe_unusual_load(case),
     ]
-    if case.lubricant is not None:
-        names = ("viscosity", "pressure_viscosity", "eyring_stress", "density", "conductivity")
-        values = ((name, getattr(case.lubricant, name)) for name in names)
-        messages += [_describe(name, f"lubricant.{name}", value) for name, value in values if value is not None]
     return tuple(filter(None, messages))
 
 

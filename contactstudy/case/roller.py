@@ -110,15 +110,15 @@ class Roller:
         >>> [round(1e3 * Roller.combined_radius(6e-3, raceway), 3) for raceway in (30e-3, -42e-3)]
         [5.0, 7.0]
         """
-        sizes = {"first": checks.finite("first", first, "metres"), "second": checks.finite("second", second, "metres")}
-        for name, radius in sizes.items():
+        curvature = 0.0
+        for name, value in (("first", first), ("second", second)):
+            radius = checks.finite(name, value, "metres")
             if radius == 0:
                 raise InvalidInputError(name, radius, "a radius (metres), negative if hollow")
-        curvature = sum(1 / radius for radius in sizes.values())
+            curvature += 1 / radius
         if not curvature > 0:
-            raise InvalidInputError(
-                "first, second", (first, second), "such that a hollow radius is the larger one", "no gap would remain"
-            )
+            allowed = "such that a hollow radius is the larger one"
+            raise InvalidInputError("first, second", (first, second), allowed, "no gap would remain")
         return 1 / curvature
 
     @property

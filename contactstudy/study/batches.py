@@ -394,32 +394,26 @@ def read_case(path: Path, row: int, names: Iterable[str] | None = None) -> xr.Da
 
 
 def add_arrays(batch: Batch, dataset: xr.Dataset, level: str) -> Batch:
-    """Add the arrays of a solved case that a level retains; stresses and other fields in single precision."""
-    depth_flags = {
-        str(name): any(str(dim).startswith("z") for dim in entry.dims) for name, entry in dataset.data_vars.items()
-    }
-    retained = [
-        name
-        for name, is_deep in depth_flags.items()
-        if dataset.variables[name].ndim and (level == "fields" or (level == "surface" and not is_deep))
-    ]
-    dims = {str(dim) for name in retained for dim in dataset.variables[name].dims}
+    """Add the arrays of a solved case that a level above the summary retains; fields in single precision."""
+    variables = dataset.variables
+    deep = {name for name, variable in variables.items() if any(str(dim).startswith("z") for dim in variable.dims)}
+    retained = [name for name in dataset.data_vars if variables[name].ndim and (level == "fields" or name not in deep)]
+    dims = {str(dim) for name in retained for dim in variables[name].dims}
     coordinates = [
         str(name) for name, entry in dataset.coords.items() if entry.ndim and {*map(str, entry.dims)} <= dims
     ]
     arrays = {}
     for name in (*retained, *coordinates):
-        variable = dataset.variables[name]
-        values = variable.values
+        values = variables[name].values
         if values.dtype == bool:
             values = values.astype(np.int8)
-        elif depth_flags.get(name) and variable.ndim >= 2:
+        elif name in deep and values.ndim >= 2:
             values = values.astype(np.float32)
-        arrays[name] = Ragged(tuple(map(str, variable.dims)), np.ascontiguousarray(values).ravel())
+        arrays[str(name)] = Ragged(tuple(map(str, variables[name].dims)), np.ascontiguousarray(values).ravel())
     return replace(
         batch,
         sizes={dim: np.array([dataset.sizes[dim]], dtype=np.int64) for dim in sorted(dims)},
         arrays=arrays,
-        attributes=batch.attributes | {name: dict(dataset.variables[name].attrs) for name in arrays},
+        attributes=batch.attributes | {name: dict(variables[name].attrs) for name in arrays},
         coordinates=frozenset(coordinates),
     )

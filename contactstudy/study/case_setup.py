@@ -143,13 +143,9 @@ def _check_choices(values: Mapping[str, Any]) -> None:
             raise InvalidInputError(names[0], None, "given")
         if len(stated_names) != 1:
             *first, last = names
-            count = "two" if len(names) == 2 else "three"
+            allowed = f"given as one of the {'two' if len(names) == 2 else 'three'}, {', '.join(first)} or {last}"
             stated_values = tuple(values[name] for name in stated_names) if stated_names else "none"
-            raise InvalidInputError(
-                ", ".join(stated_names or names),
-                stated_values,
-                f"given as one of the {count}, {', '.join(first)} or {last}",
-            )
+            raise InvalidInputError(", ".join(stated_names or names), stated_values, allowed)
 
 
 def _refuse(values: Mapping[str, Any], names: Iterable[str], allowed: str, hint: str = "") -> None:
@@ -240,11 +236,8 @@ def _stress_points(
         raise InvalidInputError("field_z_over_a", float(z.min() / half_width), "not below zero")
     low, high = extent
     if x is not None and not (low <= x.min() and x.max() <= high * (1 + 1e-12)):
-        raise InvalidInputError(
-            "field_x_over_a",
-            float((x.min() if x.min() < low else x.max()) / half_width),
-            f"inside the body, 0 to {high / half_width:g}",
-        )
+        outside = float((x.min() if x.min() < low else x.max()) / half_width)
+        raise InvalidInputError("field_x_over_a", outside, f"inside the body, 0 to {high / half_width:g}")
     return {"x": x, "y": y, "z": z}
 
 

@@ -282,10 +282,8 @@ class Study:
             If there are more than :data:`MAX_CASES`.
         """
         if self.size > MAX_CASES:
-            raise StudyFileError(
-                f"study {self.name!r} has {self.size} combinations, and {MAX_CASES} is the most that one study may "
-                "have: sweep fewer values, or make several studies"
-            )
+            limit = f"and {MAX_CASES} is the most that one study may have: sweep fewer values, or make several studies"
+            raise StudyFileError(f"study {self.name!r} has {self.size} combinations, {limit}")
         axes: list[Axis] = [tuple({name: value} for value in values) for name, values in self.sweep.items()]
         for group in self.zip:
             axes.append(tuple(dict(zip(group, row, strict=True)) for row in zip(*group.values(), strict=True)))

@@ -64,12 +64,9 @@ def user_profiles(parameters: Any) -> dict[str, Profile]:
         if table["kind"] != KIND:
             continue
         if table["content"] not in REGISTRY:
-            raise InvalidInputError(
-                "profile",
-                f"{table['class']} {table['content'][:8]}",
-                "made by the running script: its class is not in the study's files",
-                "run the study from the script that makes this profile; opening it needs none",
-            )
+            allowed = "made by the running script: its class is not in the study's files"
+            hint = "run the study from the script that makes this profile; opening it needs none"
+            raise InvalidInputError("profile", f"{table['class']} {table['content'][:8]}", allowed, hint)
         profiles[table["content"]] = REGISTRY[table["content"]]
     return profiles
 
