@@ -216,15 +216,10 @@ def _write_variables(path: Path, batch: Batch) -> None:
             variable.setncatts({key: value for key, value in attributes.items() if not isinstance(value, str) or value})
             return variable
 
-        _write_text(
-            file, "case_id", [text.decode() for text in batch.ids], "identity of the case, a hash of its parameters"
-        )
-        status_attrs = {
-            "long_name": "state of the case",
-            "units": "1",
-            "flag_values": np.arange(len(STATUSES), dtype=np.int8),
-            "flag_meanings": " ".join(STATUSES),
-        }
+        ids = [text.decode() for text in batch.ids]
+        _write_text(file, "case_id", ids, "identity of the case, a hash of its parameters")
+        flags = {"flag_values": np.arange(len(STATUSES), dtype=np.int8), "flag_meanings": " ".join(STATUSES)}
+        status_attrs = {"long_name": "state of the case", "units": "1", **flags}
         create("status", "i1", ("case",), status_attrs)[:] = batch.status
         create("run", "i4", ("case",), {"long_name": "number of the run", "units": "1"})[:] = batch.runs
         shared, tables, parameters = _factor_out_shared([json.loads(text) for text in batch.texts["parameters"]])
@@ -272,18 +267,11 @@ def _write_text(file: Any, name: str, texts: Sequence[str], meaning: str) -> Non
     encoded = [text.encode() for text in texts]
     length = max(1, *map(len, encoded))
     file.createDimension(f"{name}_length", length)
-    variable = file.createVariable(
-        name,
-        "S1",
-        ("case", f"{name}_length"),
-        zlib=True,
-        complevel=1,
-        fletcher32=True,
-        chunksizes=(len(encoded), length),
-    )
+    dims, sizes = ("case", f"{name}_length"), (len(encoded), length)
+    variable = file.createVariable(name, "S1", dims, zlib=True, complevel=1, fletcher32=True, chunksizes=sizes)
     variable.setncatts({"long_name": meaning, "_Encoding": "utf-8"})
     variable.set_auto_chartostring(False)
-    variable[:] = np.array(encoded, dtype=f"S{length}").view("S1").reshape(len(encoded), length)
+    variable[:] = np.array(encoded, dtype=f"S{length}").view("S1").reshape(sizes)
 
 
 def _factor_out_shared(parameters: list[dict[str, Any]]) -> tuple[dict[str, Any], list[Any], list[str]]:

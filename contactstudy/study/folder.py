@@ -176,6 +176,11 @@ class States:
         counts = np.bincount(self.status, minlength=len(STATES))
         return {state: int(count) for state, count in zip(STATES, counts, strict=True) if count}
 
+    @property
+    def summary(self) -> str:
+        """Number of cases of each status, for messages."""
+        return ", ".join(f"{count} {state}" for state, count in self.counts.items())
+
     def indices(self, *statuses: str) -> list[int]:
         """Numbers in the plan of the cases with one of the `statuses`."""
         return np.flatnonzero(np.isin(self.status, [STATES.index(status) for status in statuses])).tolist()
@@ -247,23 +252,23 @@ class Folder:
     def read_study(self) -> Study:
         """Return the definition of the study, or raise :class:`StudyFileError`."""
         path = self.path / "study.json"
+        if path.exists() and not is_regular(path):
+            raise StudyFileError(f"{path} is not a regular file")
         try:
-            if path.exists() and not is_regular(path):
-                raise StudyFileError(f"{path} is not a regular file")
             content = json.loads(path.read_text(encoding="utf-8"))
-        except OSError as error:
-            reason = "without study.json; give the folder that `contactstudy run` wrote, such as results/NAME"
+        except (OSError, ValueError, RecursionError) as error:
+            remedy = "give the folder that `contactstudy run` wrote, such as results/NAME"
             if not self.path.exists():
                 reason = "it does not exist"
             elif self.path.is_file():
-                reason = "it is a file; give the folder that `contactstudy run` wrote, such as results/NAME"
-            elif path.exists():
-                reason = f"study.json: {error.strerror}"
+                reason = f"it is a file; {remedy}"
+            elif not path.exists():
+                reason = f"without study.json; {remedy}"
+            elif isinstance(error, RecursionError):
+                reason = "study.json: nested too deeply for a study"
+            else:
+                reason = f"study.json: {getattr(error, 'strerror', None) or error}"
             raise StudyFileError(f"{self.path} is not the folder of a study: {reason}") from error
-        except ValueError as error:
-            raise StudyFileError(f"{self.path} is not the folder of a study: study.json: {error}") from error
-        except RecursionError:
-            raise StudyFileError(f"{path}: nested too deeply for a study") from None
         try:
             if isinstance(content, dict) and (schema := content.pop("schema", None)) != SCHEMA:
                 raise InvalidInputError("schema", schema, f"{SCHEMA}: another version of the package wrote the folder")

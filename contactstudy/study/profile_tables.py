@@ -236,9 +236,7 @@ def format_profile(table: Mapping[str, Any], *, in_units: bool = False) -> str:
         length_text = format_quantity(length, "m") if in_units else f"{length:g} m"
         return f"{format_profile(table['profile'], in_units=in_units)} over {length_text}"
     values = {key: table[key] for key in sorted(table) if key != "kind"}
-    if in_units:
-        items = (
-            f"{key.replace('_', ' ')} {format_quantity(value, units.get(key, 'm'))}" for key, value in values.items()
-        )
-        return ", ".join([kind, *items])
-    return " ".join([kind, *(f"{key}={value:g}" for key, value in values.items())])
+    if not in_units:
+        return " ".join([kind, *(f"{key}={value:g}" for key, value in values.items())])
+    texts = (f"{key.replace('_', ' ')} {format_quantity(value, units.get(key, 'm'))}" for key, value in values.items())
+    return ", ".join([kind, *texts])

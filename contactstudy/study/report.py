@@ -33,8 +33,7 @@ def format_bytes(size: float) -> str:
 
 def run_lines(report: RunReport) -> Iterator[str]:
     """Lines on the result of a run."""
-    counts = ", ".join(f"{count} {status}" for status, count in report.counts.items())
-    yield f"{len(report.plan)} cases: {counts}; {report.solved} solved now"
+    yield f"{len(report.plan)} cases: {report.states.summary}; {report.solved} solved now"
     yield from _group_reasons(("failed", reason, case.name) for case, reason in report.failures)
     if report.failures:
         yield f"  details in {format_path(report.folder / 'run.log')}"

@@ -9,7 +9,6 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from itertools import groupby
 from pathlib import Path
 from types import FrameType
 from typing import TYPE_CHECKING, Any
@@ -56,8 +55,8 @@ class RunReport:
     remarks: tuple[str, ...] = ()
 
     def __repr__(self) -> str:
-        counts = ", ".join(f"{count} {status}" for status, count in self.counts.items())
-        return f"RunReport({len(self.plan)} cases: {counts}; {self.solved} solved now; folder={str(self.folder)!r})"
+        cases = f"{len(self.plan)} cases: {self.states.summary}; {self.solved} solved now"
+        return f"RunReport({cases}; folder={str(self.folder)!r})"
 
     @property
     def plan(self) -> Plan:
@@ -235,7 +234,7 @@ def run_study(
             log.log(f"stopped: {type(error).__name__}: {error}")
             raise
         report = RunReport(results_folder.path, results_folder.states(plan), solved, tuple(log.remarks))
-        log.log(f"done: {', '.join(f'{count} {status}' for status, count in report.counts.items())}")
+        log.log(f"done: {report.states.summary}")
     return report
 
 
@@ -243,12 +242,11 @@ def _check_share(share: tuple[int, int] | None) -> Share:
     """Share of a run."""
     if share is None:
         return Share()
-    if not isinstance(share, tuple) or len(share) != 2 or not all(type(entry) is int for entry in share):
-        raise InvalidInputError("share", share, "two numbers, such as (3, 40) for the third of forty shares")
-    number, count = share
-    if not 1 <= number <= count:
-        raise InvalidInputError("share", share, "a number from 1 to the count of shares, and that count")
-    return Share(number, count)
+    numbers = share if isinstance(share, tuple) and all(type(entry) is int for entry in share) else ()
+    if len(numbers) != 2 or not 1 <= numbers[0] <= numbers[1]:
+        allowed = "two numbers, such as (3, 40) for the third of forty shares, the first from 1 to the second"
+        raise InvalidInputError("share", share, allowed)
+    return Share(*numbers)
 
 
 def _groups_to_solve(states: States, again: tuple[str, ...], share: Share, sample: int | None) -> list[list[int]]:
@@ -270,12 +268,9 @@ def _groups_to_solve(states: States, again: tuple[str, ...], share: Share, sampl
 
     groups = [members[key] for key in sorted(members)]
     if share.count > 1:
-        # A piece contains consecutive groups with one operator, few enough that every share receives several pieces.
-        max_groups, pieces = max(1, len(groups) // (RUN.turns * share.count)), list[int]()
-        for _, operator_groups in groupby(operator for operator, _ in sorted(members)):
-            first_piece = pieces[-1] + 1 if pieces else 0
-            pieces += [first_piece + position // max_groups for position, _ in enumerate(operator_groups)]
-        groups = [group for group, piece in zip(groups, pieces, strict=True) if piece % share.count == share.number - 1]
+        # A piece contains consecutive groups, few enough that every share receives several pieces.
+        size = max(1, len(groups) // (RUN.turns * share.count))
+        groups = [group for index, group in enumerate(groups) if index // size % share.count == share.number - 1]
     unsolved_groups = []
     for group in groups:
         if "entrainment_speed" in plan.values(group[0]):
