@@ -1,9 +1,7 @@
 """Batches: netCDF files of many finished cases, the only format of a study's results.
 
-Numbers are columns, such as ``peak_pressure(case)``. Arrays are contiguous ragged arrays of the CF conventions:
-``pressure(x_y_values)`` contains the arrays of all cases one after the other, ``x_size(case)`` and ``y_size(case)``
-their shapes. All cases of a batch have equal versions and one level. A batch is never changed; the CRC-32 in its name
-detects damage without decoding.
+Numbers are columns, arrays are contiguous ragged arrays of the CF conventions, see docs/reference/results_files.md. A
+batch is never changed; the CRC-32 in its name detects damage without decoding.
 """
 
 from __future__ import annotations

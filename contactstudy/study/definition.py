@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import math
 import re
 import tomllib
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -269,9 +268,16 @@ class Study:
     @property
     def size(self) -> int:
         """Number of combinations and explicit cases, before any is excluded."""
-        axes = [len(values) for values in self.sweep.values()]
-        axes += [len(next(iter(group.values()))) for group in self.zip]
-        return (math.prod(axes) if axes or not self.cases else 0) + len(self.cases)
+        return self._product.products + len(self.cases)
+
+    @property
+    def _product(self) -> Plan:
+        """Plan of all combinations and explicit cases, before any is excluded."""
+        axes: list[Axis] = [tuple({name: value} for value in values) for name, values in self.sweep.items()]
+        for group in self.zip:
+            axes.append(tuple(dict(zip(group, row, strict=True)) for row in zip(*group.values(), strict=True)))
+        explicit = tuple(self.cases)
+        return Plan(name=self.name, level=self.level, base=self.base, axes=tuple(axes), explicit=explicit)
 
     def plan(self) -> Plan:
         """Cases of the study, in order; solves nothing.
@@ -284,12 +290,8 @@ class Study:
         if self.size > MAX_CASES:
             limit = f"and {MAX_CASES} is the most that one study may have: sweep fewer values, or make several studies"
             raise StudyFileError(f"study {self.name!r} has {self.size} combinations, {limit}")
-        axes: list[Axis] = [tuple({name: value} for value in values) for name, values in self.sweep.items()]
-        for group in self.zip:
-            axes.append(tuple(dict(zip(group, row, strict=True)) for row in zip(*group.values(), strict=True)))
-        cases = tuple(self.cases)
-        product = Plan(name=self.name, level=self.level, base=self.base, axes=tuple(axes), explicit=cases)
-        excluded = np.zeros(product.products + len(cases), dtype=bool)
+        product = self._product
+        excluded = np.zeros(self.size, dtype=bool)
         unknown = []
         for rule in self.exclude:
             matching = np.ones(excluded.size, dtype=bool)

@@ -22,7 +22,7 @@ from contactstudy.arrays.engineering import format_quantity
 from contactstudy.case.magnitudes import describe_unusual_friction, list_unusual_magnitudes
 from contactstudy.checks import IntArray
 from contactstudy.errors import ContactStudyError
-from contactstudy.study.case_setup import Setup, build_setup
+from contactstudy.study.case_setup import build_setup
 from contactstudy.study.parameters import (
     PARAMETERS,
     add_default_accuracy,
@@ -100,6 +100,7 @@ class PlannedCase:
     parameters: dict[str, Any]  # checked, without defaults
     name: str  # swept parameters in words
     position: tuple[int, ...]  # in the study's Dataset
+    group: int  # number of the group, whose cases share a contact
     reason: str = ""  # why the plan skips the case, or empty
 
 
@@ -107,8 +108,7 @@ class Review(NamedTuple):
     """Result of setting up one case of each group, or of a sample of the groups."""
 
     reasons: dict[int, str]  # why a group cannot be solved
-    # warnings of values outside the usual range, with the number of groups
-    doubts: Counter[str]
+    doubts: Counter[str]  # warnings of values outside the usual range, with the number of groups
     checked: int  # groups that were set up
     groups: int
     cells: float  # mean per case
@@ -141,6 +141,7 @@ class Plan(Sequence[PlannedCase]):
             id=self.ids[case_index].decode(),
             parameters=self.parameters(case_index),
             name=self.describe(case_index),
+            group=int(self.groups[case_index]),
             position=tuple(map(int, np.unravel_index(self.cube.indices[case_index], self.cube.shape))),
             reason=self.reason(case_index),
         )
@@ -239,30 +240,23 @@ class Plan(Sequence[PlannedCase]):
         """Check of one case of each group, or of a sample of them."""
         _, first_cases = np.unique(self.groups, return_index=True)
         step = max(1, -(-len(first_cases) // RUN.checked_groups))
-        reasons, magnitude_warnings = {}, Counter[str]()
-        cells, points, checked = 0.0, 0.0, 0
-        for index in first_cases[::step].tolist():
-            checked += 1
+        sample = first_cases[::step].tolist()
+        reasons, magnitude_warnings, sizes = {}, Counter[str](), []
+        for index in sample:
             try:
-                setup = self.setup(index)
+                setup = build_setup(add_default_accuracy(self.values(index)))
             except ContactStudyError as error:
                 reasons[int(self.groups[index])] = str(error)
                 continue
             magnitude_warnings.update(list_unusual_magnitudes(setup.case))
-            cells, points = cells + math.prod(setup.shape), points + setup.points
+            sizes.append((math.prod(setup.shape), setup.points))
         # The cases of a group differ in friction: check all values of friction, not only the first of each group.
         entries = [*(entry for axis in self.axes for entry in axis), *self.explicit]
         for friction in {entry["friction"] for entry in entries if "friction" in entry}:
             if message := describe_unusual_friction(friction):
-                magnitude_warnings.setdefault(message, checked)
-        solvable = max(1, checked - len(reasons))
-        return Review(
-            reasons, magnitude_warnings, checked, len(first_cases), cells=cells / solvable, points=points / solvable
-        )
-
-    def setup(self, index: int) -> Setup:
-        """Set up a case, or raise the reason why it cannot be solved."""
-        return build_setup(add_default_accuracy(self.values(index)))
+                magnitude_warnings.setdefault(message, len(sample))
+        cells, points = np.mean(sizes, axis=0).tolist() if sizes else (0.0, 0.0)
+        return Review(reasons, magnitude_warnings, len(sample), len(first_cases), cells=cells, points=points)
 
     def reason(self, index: int) -> str:
         """Reason why the plan skips a case; empty for a case to solve."""

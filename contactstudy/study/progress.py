@@ -85,13 +85,13 @@ class Progress:
                 bar_format="{percentage:3.0f}%|{bar}| {n_fmt}/{total_fmt} cases [{elapsed}{postfix}]",
             )
 
-    def record(self, name: str, outcome: Outcome) -> None:
+    def record(self, outcome: Outcome) -> None:
         """Count one case; log a failure with its reason."""
         self._count += 1
         if outcome.status != "ok":
-            self.log(f"{outcome.status} {outcome.id[:16]} {name}: {outcome.message}")
+            self.log(f"{outcome.status} {outcome.case.id[:16]} {outcome.case.name}: {outcome.message}")
             if self._bar is not None:
-                self._bar.write(f"{outcome.status}: {name}: {outcome.message}", file=sys.stderr)
+                self._bar.write(f"{outcome.status}: {outcome.case.name}: {outcome.message}", file=sys.stderr)
 
     def show(self) -> None:
         """Log and show the number of finished cases and the time left at the present speed."""

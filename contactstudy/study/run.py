@@ -208,7 +208,7 @@ def run_study(
             groups = _groups_to_solve(States(plan, results), again, run_share, sample)
             lock = results_folder.path / f"{run_share.name}.lock"
             task = Task(
-                jobs=(),
+                cases=(),
                 folder=str(results_folder.batches),
                 lock=(str(lock), lock.read_text(encoding="utf-8")),
                 prefix=run_share.prefix,
@@ -289,13 +289,12 @@ def _collect_outcomes(
     last_compaction = time.monotonic()
     try:
         with contextlib.closing(results):
-            for jobs, outcomes in results:
-                job_of = {job.id: job for job in jobs}
+            for outcomes in results:
                 for outcome in outcomes:
-                    log.record(job_of[outcome.id].name, outcome)
+                    log.record(outcome)
                     if outcome.message.startswith("WorkerDied"):
-                        batch = batch_without_numbers(template, job_of[outcome.id], outcome.status, outcome.message)
-                        write_batch(Path(template.folder), f"{template.prefix}{outcome.id[:12]}", batch)
+                        batch = batch_without_numbers(template, outcome.case, outcome.status, outcome.message)
+                        write_batch(Path(template.folder), f"{template.prefix}{outcome.case.id[:12]}", batch)
                 log.show()
                 if time.monotonic() - last_compaction > RUN.compact_seconds:
                     _compact(results_folder, share, log)
