@@ -109,33 +109,28 @@ def _run(options: argparse.Namespace) -> int:
             raise InvalidInputError("share", options.share, allowed)
         share = (int(share_number), int(count))
     report = run_study(_study(options), options.out, share=share, **_parallel(options))
-    if share is None:
-        return _finish(report, figure=not options.no_figure)
-    from contactstudy.study.report import run_lines
-
-    _print(run_lines(report))
-    return ALL_OK if not report.failures else SOME_FAILED
+    return _finish(report, complete=share is None, figure=not options.no_figure)
 
 
 def _rerun(options: argparse.Namespace) -> int:
     from contactstudy.study import rerun_study
 
     report = rerun_study(options.path, **_parallel(options))
-    return _finish(report, figure=not options.no_figure)
+    return _finish(report, complete=True, figure=not options.no_figure)
 
 
-def _finish(report: RunReport, *, figure: bool) -> int:
-    """Write summary and figures, then print the result of a run, so that files are complete if the output is closed."""
-    from contactstudy.study.report import format_path, run_lines, stale_lines
+def _finish(report: RunReport, *, complete: bool, figure: bool) -> int:
+    """Write summary and figures of all shares, then print: the files are complete if the output is closed."""
+    from contactstudy.study.report import format_path, run_lines
 
     lines: list[str] = []
-    if report.files:
+    if complete and report.files:
         lines.append(f"wrote {format_path(_write_summary(report.folder))}")
         try:
             lines += [f"wrote {format_path(figure_path)}" for figure_path in (_draw(report.folder) if figure else [])]
         except ContactStudyError as error:
             lines.append(f"  no figure: {error}")
-    _print([*run_lines(report), *lines, *stale_lines(report)])
+    _print([*run_lines(report), *lines])
     return ALL_OK if not report.failures else SOME_FAILED
 
 

@@ -305,8 +305,7 @@ def read_batch(path: Path, *, arrays: Iterable[str] | None = (), texts: Iterable
         raise StoreError(f"cannot read {path}: it is not a regular file")
     with netcdf_access(path, "read"), netCDF4.Dataset(path) as file:
         file.set_auto_maskandscale(False)
-        file.set_auto_chartostring(False)
-        ids = _read_text(file["case_id"])
+        ids = np.char.encode(file["case_id"][:])
         if ids.dtype.itemsize != IDENTITY_LENGTH:
             raise StoreError(f"cannot read {path}: it is not a batch of cases")
         selected, text_names = (None, set(TEXT_COLUMNS)) if arrays is None else (set(arrays), set(texts))
@@ -324,10 +323,7 @@ def read_batch(path: Path, *, arrays: Iterable[str] | None = (), texts: Iterable
                 ragged[name] = Ragged(dims, variable[:] if read_values else np.empty(0, dtype=variable.dtype))
             else:
                 attributes[name], numbers[name] = attrs, variable[:]
-        columns = {
-            name: [text.decode() for text in _read_text(file[name])] if name in text_names else []
-            for name in TEXT_COLUMNS
-        }
+        columns = {name: file[name][:].tolist() if name in text_names else [] for name in TEXT_COLUMNS}
         if "parameters" in text_names:
             shared, tables = json.loads(file.getncattr(SHARED_ATTR)), json.loads(file.getncattr(TABLES_ATTR))
             columns["parameters"] = [_restore_parameters(shared, tables, text) for text in columns["parameters"]]
@@ -343,12 +339,6 @@ def read_batch(path: Path, *, arrays: Iterable[str] | None = (), texts: Iterable
             coordinates=frozenset(json.loads(file.getncattr(COORDINATES_ATTR))),
             run_context=json.loads(file.getncattr(RUN_ATTRIBUTE)),
         )
-
-
-def _read_text(variable: Any) -> npt.NDArray[np.bytes_]:
-    """Texts of a column as bytes."""
-    characters = np.ascontiguousarray(variable[:])
-    return np.asarray(characters.view(f"S{characters.shape[1]}").ravel())
 
 
 def read_slices(path: Path, bounds: Mapping[str, Sequence[tuple[int, int]]]) -> dict[str, list[npt.NDArray[Any]]]:

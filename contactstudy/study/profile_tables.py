@@ -15,12 +15,12 @@ from typing import TYPE_CHECKING, Any
 
 from contactstudy import checks, profiles
 from contactstudy.arrays.engineering import format_quantity
-from contactstudy.case.serialization import tables_within
+from contactstudy.case.serialization import Sampled, tables_within
 from contactstudy.errors import InvalidInputError
 from contactstudy.profiles import Profile
 from contactstudy.profiles.base import UNITS
 from contactstudy.study import user_profiles
-from contactstudy.study.user_profiles import round_digits
+from contactstudy.study.user_profiles import REGISTRY, round_digits
 
 if TYPE_CHECKING:
     from contactstudy.study.case_setup import Dimensions
@@ -196,7 +196,8 @@ def profile_table(value: object, depth: int = 0) -> Table:
 def build_profile(table: Mapping[str, Any], sizes: Dimensions) -> Profile:
     """Profile of a table from :func:`profile_table`."""
     if table["kind"] == user_profiles.KIND:
-        return user_profiles.registered_profile(table)
+        # A process without the object plans with a straight line.
+        return REGISTRY.get(table["content"]) or Sampled(str(table["class"]), (-0.5, 0.5), (0.0, 0.0))
     values = {key: value for key, value in table.items() if key not in ("kind", "name")}
     return PROFILES[table["kind"]].build(values, sizes)
 

@@ -47,10 +47,6 @@ def run_lines(report: RunReport) -> Iterator[str]:
         size = sum(path.stat().st_size for path in files)
         folder, plural = format_path(files[0].parent), "s" * (len(files) > 1)
         yield f"{len(files)} netCDF file{plural}, {format_bytes(size)}, in {folder}"
-
-
-def stale_lines(report: RunReport) -> Iterator[str]:
-    """Lines on cases of another version that the run did not solve again."""
     if stale_cases := report.states.indices("stale"):
         rerun_command = f"contactstudy rerun {format_path(report.folder)}"
         yield f"{len(stale_cases)} stale ({report.states.reasons[stale_cases[0]]}); again with: {rerun_command}"

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from contactstudy import checks
-from contactstudy.case.serialization import Sampled, tables_within
+from contactstudy.case.serialization import tables_within
 from contactstudy.errors import ContactStudyError, InvalidInputError
 from contactstudy.profiles import Profile
 from contactstudy.profiles.base import check_drop, describe_profile, local_radius
@@ -50,11 +50,6 @@ def read_table(table: Mapping[str, Any]) -> dict[str, Any]:
     for key, kind in (("class", str), ("content", str), ("values", Mapping)):
         checks.instance(f"profile.{key}", table.get(key), kind, "the content of a user's profile, written by a study")
     return {key: table[key] for key in KEYS}
-
-
-def registered_profile(table: Mapping[str, Any]) -> Profile:
-    """Profile of a table; if this process lacks the profile, a straight line, which serves plans only."""
-    return REGISTRY.get(table["content"]) or Sampled(str(table["class"]), (-0.5, 0.5), (0.0, 0.0))
 
 
 def user_profiles(parameters: Any) -> dict[str, Profile]:
