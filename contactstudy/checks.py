@@ -149,6 +149,15 @@ def known_name(name: str, value: str, names: Iterable[str]) -> str:
 
 
 @contextmanager
+def store_errors(action: str) -> Iterator[None]:
+    """Raise an error of the file system as a StoreError of the action that failed."""
+    try:
+        yield
+    except OSError as error:
+        raise StoreError(f"cannot {action}: {error.strerror or error}") from error
+
+
+@contextmanager
 def writing(path: Path, name: Callable[[Path], str] | None = None) -> Iterator[Path]:
     """Yield a temporary path; the complete file replaces `path`, or has the name ``name(temporary_path)``.
 
@@ -157,7 +166,7 @@ def writing(path: Path, name: Callable[[Path], str] | None = None) -> Iterator[P
     if path.is_dir():
         raise StoreError(f"cannot write {path}: it is a folder")
     temporary_path = path.with_name(f"{path.name}.{uuid.uuid4().hex[:12]}{TEMPORARY_SUFFIX}")
-    try:
+    with store_errors(f"write {path}"):
         if path.exists() and not path.is_file():
             yield path
             return
@@ -168,8 +177,6 @@ def writing(path: Path, name: Callable[[Path], str] | None = None) -> Iterator[P
             os.replace(temporary_path, path if name is None else path.with_name(name(temporary_path)))
         finally:
             temporary_path.unlink(missing_ok=True)
-    except OSError as error:
-        raise StoreError(f"cannot write {path}: {error.strerror or error}") from error
 
 
 def coordinates(name: str, values: object, unit: str = "m") -> FloatArray:

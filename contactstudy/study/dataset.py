@@ -126,14 +126,12 @@ def numbers_dataset(states: States) -> xr.Dataset:
     plan, cube = states.plan, states.plan.cube
     coordinates: dict[str, Any] = {}
     for name, (dim, values) in cube.labels.items():
-        if any(isinstance(value, str) for value in values):
-            column = np.asarray(["" if value is None else str(value) for value in values])
-        else:
-            column = np.asarray([np.nan if value is None else value for value in values])
+        missing = "" if any(isinstance(value, str) for value in values) else np.nan
+        column = np.asarray([missing if value is None else value for value in values])
         attributes = PARAMETERS[name].attrs if name in PARAMETERS else labels("case", coordinate=True)
         coordinates[name] = (dim, column, attributes)
     names = np.array(STATES, dtype=np.str_)
-    reasons = [states.reasons.get(index, "") for index in range(len(plan))] if states.reasons else [""] * len(plan)
+    reasons = [states.reasons.get(index, "") for index in range(len(plan))]
     variables: dict[str, Any] = {
         "status": (cube.dims, names[plan.spread(states.status, STATES.index("excluded"))]),
         "message": (cube.dims, plan.spread(np.array(reasons, dtype=np.str_), "")),

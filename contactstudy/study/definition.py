@@ -150,11 +150,9 @@ class Study:
             values = check_points(argument, values)
         if isinstance(values, np.ndarray):
             values = values.tolist()
-        if isinstance(values, (str, bytes, Mapping)) or not isinstance(values, Sequence):
-            allowed = "a list of values, or for numbers a table with start, stop and count"
+        if isinstance(values, (str, bytes, Mapping)) or not isinstance(values, Sequence) or not values:
+            allowed = "a list of at least one value, or for numbers a table with start, stop and count"
             raise InvalidInputError(argument, values, allowed)
-        if not values:
-            raise InvalidInputError(argument, values, "a list of at least one value")
         column = [PARAMETERS[name].normalize(value) for value in values]
         if where == "sweep":
             entries = [label(name, value) for value in column]

@@ -10,6 +10,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from functools import cached_property, partial, reduce
+from itertools import chain, count
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -235,10 +236,8 @@ class Folder:
         """Make the folder, or raise :class:`StoreError`."""
         if self.batches.is_symlink():
             raise StoreError(f"{self.batches} is a link, and a study writes into folders: delete it")
-        try:
+        with checks.store_errors(f"make {self.batches}"):
             self.batches.mkdir(parents=True, exist_ok=True)
-        except OSError as error:
-            raise StoreError(f"cannot make {self.batches}: {error.strerror or error}") from error
 
     def write_study(self, study: Study) -> None:
         """Write the definition of the study; a folder belongs to one study, which may grow."""
@@ -345,17 +344,13 @@ class Folder:
     def set_aside(self, path: Path) -> Path:
         """Move a damaged or foreign file to ``set-aside``; return its new path."""
         folder = self.path / "set-aside"
-        try:
-            if folder.is_symlink():
-                raise StoreError(f"{folder} is a link: delete it")
+        if folder.is_symlink():
+            raise StoreError(f"{folder} is a link: delete it")
+        with checks.store_errors(f"move {path}"):
             folder.mkdir(exist_ok=True)
-            target, suffix_number = folder / path.name, 1
-            while target.exists() or target.is_symlink():
-                suffix_number += 1
-                target = folder / f"{path.stem}-{suffix_number}{path.suffix}"
+            names = chain([path.name], (f"{path.stem}-{number}{path.suffix}" for number in count(2)))
+            target = next(folder / name for name in names if not os.path.lexists(folder / name))
             os.replace(path, target)
-        except OSError as error:
-            raise StoreError(f"cannot move {path}: {error.strerror or error}") from error
         return target
 
     def results(self) -> Results:
