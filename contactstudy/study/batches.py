@@ -100,23 +100,6 @@ class Batch:
             arrays=selected_arrays,
         )
 
-    def case(self, row: int) -> xr.Dataset:
-        """Return one case on its cells, with its numbers, parameters, and the context of its run."""
-        variables: dict[str, Any] = {}
-        for name, (dims, values) in self.arrays.items():
-            starts = self.offsets(dims)
-            shape = [int(self.sizes[dim][row]) for dim in dims]
-            case_values = values[starts[row] : starts[row + 1]].reshape(shape)
-            variables[name] = (dims, case_values, self.attributes.get(name, {}))
-        for name, column in self.numbers.items():
-            if not np.isnan(column[row]):
-                variables[name] = ((), float(column[row]), self.attributes.get(name, {}))
-        dataset = xr.Dataset(variables)
-        dataset = dataset.set_coords([name for name in self.coordinates if name in dataset])
-        run, parameters = json.dumps(self.run(row)), self.texts["parameters"][row]
-        attributes = {"case_id": self.ids[row].decode(), CASE_ATTRIBUTE: parameters, RUN_ATTRIBUTE: run}
-        return describe(dataset, f"case of the study {self.run_context.get('study', '')}").assign_attrs(attributes)
-
     def run(self, row: int) -> dict[str, Any]:
         """Return versions, level, warnings and solution time of a case."""
         warnings = json.loads(self.texts["warnings"][row] or "[]")
@@ -354,19 +337,26 @@ def read_slices(path: Path, bounds: Mapping[str, Sequence[tuple[int, int]]]) -> 
 
 
 def read_case(path: Path, row: int, names: Iterable[str] | None = None) -> xr.Dataset:
-    """Read one case of a batch on its cells, with all arrays, or the named arrays and their positions."""
+    """Read one case of a batch on its cells, with its numbers, parameters, the context of its run, and named arrays."""
     batch = read_batch(path, texts=TEXT_COLUMNS)
-    selected = set(batch.arrays) if names is None else set(names)
-    dims = {dim for name in selected & set(batch.arrays) for dim in batch.arrays[name].dims}
-    selected |= {name for name in batch.coordinates if set(batch.arrays[name].dims) <= dims}
-    bounds = {}
-    for name in selected & set(batch.arrays):
-        starts = batch.offsets(batch.arrays[name].dims)
-        bounds[name] = [(int(starts[row]), int(starts[row + 1]))]
-    values = read_slices(path, bounds) if bounds else {}
-    case_batch = replace(batch, arrays={}).take(np.array([row]))
-    arrays = {name: Ragged(batch.arrays[name].dims, case_values) for name, (case_values,) in values.items()}
-    return replace(case_batch, arrays=arrays).case(0)
+    selected = set(batch.arrays if names is None else names) & set(batch.arrays)
+    selected_dims = {dim for name in selected for dim in batch.arrays[name].dims}
+    coordinates = [name for name in batch.coordinates if set(batch.arrays[name].dims) <= selected_dims]
+    bounds, shapes = {}, {}
+    for name in {*selected, *coordinates}:
+        dims = batch.arrays[name].dims
+        start, stop = batch.offsets(dims)[row : row + 2].tolist()
+        bounds[name], shapes[name] = [(start, stop)], [int(batch.sizes[dim][row]) for dim in dims]
+    variables: dict[str, Any] = {}
+    for name, (values,) in read_slices(path, bounds).items():
+        variables[name] = (batch.arrays[name].dims, values.reshape(shapes[name]), batch.attributes.get(name, {}))
+    for name, column in batch.numbers.items():
+        if not np.isnan(column[row]):
+            variables[name] = ((), float(column[row]), batch.attributes.get(name, {}))
+    dataset = xr.Dataset(variables).set_coords(coordinates)
+    run, parameters = json.dumps(batch.run(row)), batch.texts["parameters"][row]
+    attributes = {"case_id": batch.ids[row].decode(), CASE_ATTRIBUTE: parameters, RUN_ATTRIBUTE: run}
+    return describe(dataset, f"case of the study {batch.run_context.get('study', '')}").assign_attrs(attributes)
 
 
 def add_arrays(batch: Batch, dataset: xr.Dataset, level: str) -> Batch:
