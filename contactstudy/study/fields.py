@@ -160,24 +160,19 @@ class Fields:
         first, *others = rows[dim].values()
         name = dim if all(np.array_equal(values, first) for values in others) else f"{dim}_index"
         size = max(values.size for values in rows[dim].values())
-        coordinates = {
-            coordinate: (name, next(iter(entries.values())))
-            if _all_equal(list(entries.values()))
-            else self._pad_rows(name, entries, size)
-            for coordinate, entries in rows.items()
-        }
+        coordinates: dict[str, Any] = {}
+        for coordinate, entries in rows.items():
+            values = list(entries.values())
+            coordinates[coordinate] = (name, values[0]) if _all_equal(values) else self._pad_rows(name, entries, size)
         return {dim: StudyAxis(name, size)}, coordinates
 
     def _common_axis(self, dims: list[str]) -> tuple[dict[str, StudyAxis], dict[str, Any]]:
         """Axis, over the half-width, that all cases share along dimensions of one direction, and its coordinates."""
         first_dim, name = dims[0], f"{dims[0]}_over_a"
-        sources = {
-            dim: {
-                index: row.edges_over_a if dim in CELL_DIMS else row.over_a
-                for index, row in self._positions[dim].items()
-            }
-            for dim in dims
-        }
+        sources: dict[str, dict[int, FloatArray]] = {}
+        for dim in dims:
+            positions = self._positions[dim].items()
+            sources[dim] = {index: row.edges_over_a if dim in CELL_DIMS else row.over_a for index, row in positions}
         rows = list(sources[first_dim].values())
         union = common_rows if first_dim == "y" else common_columns
         axis = borders = rows[0] if _all_equal(rows) else union(rows)
