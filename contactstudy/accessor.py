@@ -9,12 +9,23 @@ from __future__ import annotations
 import inspect
 from collections.abc import Callable
 from functools import wraps
+from importlib import import_module
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
 from contactstudy import analysis
+
+
+def _imported_method(module: str, name: str) -> Callable[..., Any]:
+    """Return a function of a Dataset, whose module is imported at the first call, as a method of the accessor."""
+
+    def method(self: ContactAccessor, *arguments: Any, **options: Any) -> Any:
+        return getattr(import_module(module), name)(self._dataset, *arguments, **options)
+
+    method.__name__, method.__doc__ = name, f"See :func:`{module}.{name}`."
+    return method
 
 
 @xr.register_dataset_accessor("contact")
@@ -49,29 +60,10 @@ class ContactAccessor:
         dims = ", ".join(f"{dim} ({status.sizes[dim]})" for dim in status.dims)
         return f"study of {status.size} cases over {dims}: {by_status}; select one for its numbers"
 
-    def summary(self) -> Any:
-        """See :func:`contactstudy.report.summary`."""
-        from contactstudy.report import summary
-
-        return summary(self._dataset)
-
-    def assess(self) -> Any:
-        """See :func:`contactstudy.report.assess`."""
-        from contactstudy.report import assess
-
-        return assess(self._dataset)
-
-    def citations(self) -> Any:
-        """See :func:`contactstudy.report.citations`."""
-        from contactstudy.report import citations
-
-        return citations(self._dataset)
-
-    def explore(self) -> Any:
-        """See :func:`contactstudy.explorer.explore`."""
-        from contactstudy.explorer import explore
-
-        return explore(self._dataset)
+    summary = _imported_method("contactstudy.report", "summary")
+    assess = _imported_method("contactstudy.report", "assess")
+    citations = _imported_method("contactstudy.report", "citations")
+    explore = _imported_method("contactstudy.explorer", "explore")
 
 
 def _method(function: Callable[..., Any]) -> Callable[..., Any]:

@@ -8,10 +8,9 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Callable, Collection, Hashable, Mapping
-from dataclasses import dataclass
 from functools import wraps
 from threading import RLock
-from typing import Any, ParamSpec, TypeVar
+from typing import Any, NamedTuple, ParamSpec, TypeVar
 
 import numpy as np
 from cachetools import LRUCache
@@ -24,18 +23,16 @@ Arguments = ParamSpec("Arguments")
 Value = TypeVar("Value")
 
 
-@dataclass(frozen=True)
-class KindInfo:
+class KindInfo(NamedTuple):
     """Cached values of one kind: their number and bytes, and how many were reused and computed in this process."""
 
-    values: int = 0
-    nbytes: int = 0
-    reused: int = 0
-    computed: int = 0
+    values: int
+    nbytes: int
+    reused: int
+    computed: int
 
 
-@dataclass(frozen=True)
-class CacheInfo:
+class CacheInfo(NamedTuple):
     """State of the store: its limit and its values in bytes, also by kind."""
 
     limit: int

@@ -10,6 +10,7 @@ from contextlib import contextmanager
 from difflib import get_close_matches
 from numbers import Integral, Real
 from pathlib import Path
+from types import UnionType
 from typing import Any
 
 import numpy as np
@@ -21,17 +22,10 @@ UNIT_SIZES: dict[str, dict[str, float]] = {  # input units by their SI unit, and
     "m": {
         "m": 1.0,
         "mm": 1e-3,
-        "um": 1e-6,
-        "µm": 1e-6,
-        "μm": 1e-6,
-        "micrometer": 1e-6,
-        "micron": 1e-6,
+        **dict.fromkeys(("um", "µm", "μm", "micrometer", "micron"), 1e-6),
         "nm": 1e-9,
         "km": 1e3,
-        "metre": 1.0,
-        "meter": 1.0,
-        "metres": 1.0,
-        "meters": 1.0,
+        **dict.fromkeys(("metre", "meter", "metres", "meters"), 1.0),
     },
     "Pa": {"Pa": 1.0, "kPa": 1e3, "MPa": 1e6, "GPa": 1e9, "N/mm2": 1e6, "N/mm^2": 1e6, "N mm-2": 1e6, "bar": 1e5},
     "N": {"N": 1.0, "kN": 1e3},
@@ -135,7 +129,7 @@ def count(name: str, value: object, minimum: int = 1) -> int:
     return int(value)
 
 
-def instance(name: str, value: object, kind: type | tuple[type, ...], allowed: str) -> None:
+def instance(name: str, value: object, kind: type | UnionType | tuple[type, ...], allowed: str) -> None:
     """Raise if `value` is not an instance of `kind`; `allowed` describes the expected type."""
     if not isinstance(value, kind):
         raise InvalidInputError(name, value, f"{allowed}, not {type(value).__name__}")
@@ -155,6 +149,15 @@ def known_name(name: str, value: str, names: Iterable[str]) -> str:
 
 
 @contextmanager
+def store_errors(action: str) -> Iterator[None]:
+    """Raise an error of the file system as a StoreError of the action that failed."""
+    try:
+        yield
+    except OSError as error:
+        raise StoreError(f"cannot {action}: {error.strerror or error}") from error
+
+
+@contextmanager
 def writing(path: Path, name: Callable[[Path], str] | None = None) -> Iterator[Path]:
     """Yield a temporary path; the complete file replaces `path`, or has the name ``name(temporary_path)``.
 
@@ -163,7 +166,7 @@ def writing(path: Path, name: Callable[[Path], str] | None = None) -> Iterator[P
     if path.is_dir():
         raise StoreError(f"cannot write {path}: it is a folder")
     temporary_path = path.with_name(f"{path.name}.{uuid.uuid4().hex[:12]}{TEMPORARY_SUFFIX}")
-    try:
+    with store_errors(f"write {path}"):
         if path.exists() and not path.is_file():
             yield path
             return
@@ -174,8 +177,6 @@ def writing(path: Path, name: Callable[[Path], str] | None = None) -> Iterator[P
             os.replace(temporary_path, path if name is None else path.with_name(name(temporary_path)))
         finally:
             temporary_path.unlink(missing_ok=True)
-    except OSError as error:
-        raise StoreError(f"cannot write {path}: {error.strerror or error}") from error
 
 
 def coordinates(name: str, values: object, unit: str = "m") -> FloatArray:

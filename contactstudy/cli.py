@@ -27,7 +27,7 @@ def main(arguments: Sequence[str] | None = None, *, solver: Solver | None = None
     """Run the command line and return the exit code; `solver` is called instead of :func:`contactstudy.solve`."""
     parser = command_parser()
     options = parser.parse_args(arguments)
-    options.whole_process = arguments is None
+    options.whole_process, options.solver = arguments is None, solver
     try:
         if options.version:
             from contactstudy.arrays.variables import package_version
@@ -47,7 +47,7 @@ def main(arguments: Sequence[str] | None = None, *, solver: Solver | None = None
             return USAGE
         if options.whole_process and options.action in (_report, _explore):
             gc.set_threshold(50_000)  # with Python's default, collection takes a tenth of the time of a page or report
-        code: int = options.action(options, solver)
+        code: int = options.action(options)
         sys.stdout.flush()
     except ContactStudyError as error:
         print(f"contactstudy: {error}", file=sys.stderr)
@@ -70,6 +70,13 @@ def _print(lines: Iterable[str]) -> None:
         print(line)
 
 
+def _print_written(*paths: Path) -> None:
+    """Print the paths of written files."""
+    from contactstudy.study.report import format_path
+
+    _print(f"wrote {format_path(path.resolve())}" for path in paths)
+
+
 def _study(options: argparse.Namespace) -> Study:
     """Read a study; a very large study needs a confirmation."""
     from contactstudy.study import Study
@@ -86,12 +93,12 @@ def _study(options: argparse.Namespace) -> Study:
 
 
 def _parallel(options: argparse.Namespace) -> dict[str, Any]:
-    """Arguments of `run_study` that choose the workers."""
-    chosen_options = {"workers": options.workers, "scheduler": options.scheduler, "wait": options.wait}
-    return {name: value for name, value in chosen_options.items() if value is not None}
+    """Arguments of `run_study` that choose workers and solver."""
+    names = ("workers", "scheduler", "wait", "solver")
+    return {name: value for name in names if (value := getattr(options, name)) is not None}
 
 
-def _run(options: argparse.Namespace, solver: Solver | None) -> int:
+def _run(options: argparse.Namespace) -> int:
     from contactstudy.study import run_study
 
     share = None
@@ -101,34 +108,29 @@ def _run(options: argparse.Namespace, solver: Solver | None) -> int:
             allowed = "two numbers with a slash, such as 3/40 for the third of forty shares"
             raise InvalidInputError("share", options.share, allowed)
         share = (int(share_number), int(count))
-    report = run_study(_study(options), options.out, solver=solver, share=share, **_parallel(options))
-    if share is None:
-        return _finish(report, figure=not options.no_figure)
-    from contactstudy.study.report import run_lines
-
-    _print(run_lines(report))
-    return ALL_OK if not report.failures else SOME_FAILED
+    report = run_study(_study(options), options.out, share=share, **_parallel(options))
+    return _finish(report, complete=share is None, figure=not options.no_figure)
 
 
-def _rerun(options: argparse.Namespace, solver: Solver | None) -> int:
+def _rerun(options: argparse.Namespace) -> int:
     from contactstudy.study import rerun_study
 
-    report = rerun_study(options.path, solver=solver, **_parallel(options))
-    return _finish(report, figure=not options.no_figure)
+    report = rerun_study(options.path, **_parallel(options))
+    return _finish(report, complete=True, figure=not options.no_figure)
 
 
-def _finish(report: RunReport, *, figure: bool) -> int:
-    """Write summary and figures, then print the result of a run, so that files are complete if the output is closed."""
-    from contactstudy.study.report import format_path, run_lines, stale_lines
+def _finish(report: RunReport, *, complete: bool, figure: bool) -> int:
+    """Write summary and figures of all shares, then print: the files are complete if the output is closed."""
+    from contactstudy.study.report import format_path, run_lines
 
     lines: list[str] = []
-    if report.files:
+    if complete and report.files:
         lines.append(f"wrote {format_path(_write_summary(report.folder))}")
         try:
             lines += [f"wrote {format_path(figure_path)}" for figure_path in (_draw(report.folder) if figure else [])]
         except ContactStudyError as error:
             lines.append(f"  no figure: {error}")
-    _print([*run_lines(report), *lines, *stale_lines(report)])
+    _print([*run_lines(report), *lines])
     return ALL_OK if not report.failures else SOME_FAILED
 
 
@@ -136,7 +138,7 @@ def _write_summary(folder: Path, target: Path | None = None) -> Path:
     from contactstudy.study import collect
     from contactstudy.study.files import write_dataset
 
-    path = target if target is not None else folder / "summary.nc"
+    path = folder / "summary.nc" if target is None else target
     write_dataset(path, collect(folder))
     return path
 
@@ -164,28 +166,29 @@ def _draw(folder: Path) -> list[Path]:
         matplotlib.use(previous)
 
 
-def _plan(options: argparse.Namespace, solver: Solver | None) -> int:
+def _plan(options: argparse.Namespace) -> int:
     from contactstudy.study import run_study
     from contactstudy.study.folder import Folder
-    from contactstudy.study.report import forecast_lines, format_path, state_lines
+    from contactstudy.study.report import format_path, state_lines
 
     study = _study(options)
     folder = Folder(options.out if options.out is not None else Path("results") / study.name)
     print(f"study {study.name}: {study.size} combinations, results in {format_path(folder.path)}", flush=True)
     if options.sample is not None:
-        states = run_study(study, folder.path, sample=options.sample, solver=solver, workers=options.workers).states
+        chosen = {"sample": options.sample, "workers": options.workers, "solver": options.solver}
+        states = run_study(study, folder.path, **chosen).states
     else:
         states = folder.states(study.plan())
     plan = states.plan
     shape = " x ".join(f"{dim} {size}" for dim, size in zip(plan.cube.dims, plan.cube.shape, strict=True))
     print(f"{len(plan)} cases ({shape})")
-    _print([*state_lines(states, everything=options.all), *forecast_lines(states)])
+    _print(state_lines(states, everything=options.all))
     return ALL_OK if plan.unique else USAGE  # `run` also refuses a study without cases to solve
 
 
-def _status(options: argparse.Namespace, solver: Solver | None) -> int:
+def _status(options: argparse.Namespace) -> int:
     from contactstudy.study.folder import Folder
-    from contactstudy.study.report import forecast_lines, format_path, state_lines
+    from contactstudy.study.report import format_path, state_lines
 
     folder = Folder(options.path)
     study = folder.read_study()
@@ -193,20 +196,17 @@ def _status(options: argparse.Namespace, solver: Solver | None) -> int:
     print(f"study {study.name}: {len(states.plan)} cases, results in {format_path(folder.path)}")
     for holder in folder.holders:
         print(f"locked: {holder}")
-    _print([*state_lines(states, everything=options.all), *forecast_lines(states)])
+    _print(state_lines(states, everything=options.all))
     return ALL_OK if set(states.counts) <= {"ok", "skipped"} else SOME_FAILED
 
 
-def _collect(options: argparse.Namespace, solver: Solver | None) -> int:
-    from contactstudy.study.report import format_path
-
-    print(f"wrote {format_path(_write_summary(options.path.resolve(), options.out))}")
+def _collect(options: argparse.Namespace) -> int:
+    _print_written(_write_summary(options.path, options.out))
     return ALL_OK
 
 
-def _export(options: argparse.Namespace, solver: Solver | None) -> int:
+def _export(options: argparse.Namespace) -> int:
     from contactstudy.export.command import export
-    from contactstudy.study.report import format_path
 
     path = export(
         options.path,
@@ -218,22 +218,20 @@ def _export(options: argparse.Namespace, solver: Solver | None) -> int:
         out=options.out,
     )
     if path is not None:
-        print(f"wrote {format_path(path.resolve())}")
+        _print_written(path)
     return ALL_OK
 
 
-def _report(options: argparse.Namespace, solver: Solver | None) -> int:
+def _report(options: argparse.Namespace) -> int:
     from contactstudy.arrays.selections import selection_of
     from contactstudy.report import write
-    from contactstudy.study.report import format_path
 
     selection = selection_of(options.select or ())
-    path = write(options.path, options.out, title=options.title, selection=selection)
-    print(f"wrote {format_path(path.resolve())}")
+    _print_written(write(options.path, options.out, title=options.title, selection=selection))
     return ALL_OK
 
 
-def _explore(options: argparse.Namespace, solver: Solver | None) -> int:
+def _explore(options: argparse.Namespace) -> int:
     from contactstudy.explorer import serve
 
     if options.whole_process and "dask" not in sys.modules:
@@ -243,29 +241,27 @@ def _explore(options: argparse.Namespace, solver: Solver | None) -> int:
     return ALL_OK
 
 
-def _verify(options: argparse.Namespace, solver: Solver | None) -> int:
-    from contactstudy.study import report as words
+def _verify(options: argparse.Namespace) -> int:
     from contactstudy.verification import suite
     from contactstudy.verification.check import Check
 
     folder = options.out if options.out is not None else Path("results/verification")
     suite.make_folder(folder)  # before the work, not after
-    format_path: set[str] = set()
+    shown_groups: set[str] = set()
 
     def show(group: str, check: Check) -> None:
-        if group not in format_path:
+        if group not in shown_groups:
             print(f"\n{group}\n{suite.HEADING}")
-        format_path.add(group)
+        shown_groups.add(group)
         print(suite.line(check), flush=True)
 
     verification = suite.run(options.level, show)
     print(f"\n{suite.summary(verification)}")
-    for path in suite.write(verification, folder):
-        print(f"wrote {words.format_path(path.resolve())}")
+    _print_written(*suite.write(verification, folder))
     return ALL_OK if verification.passed else SOME_FAILED
 
 
-Action = Callable[[argparse.Namespace, "Solver | None"], int]  # Runs a command from its options; returns the exit code
+Action = Callable[[argparse.Namespace], int]  # Runs a command from its options; returns the exit code
 
 
 def command_parser() -> argparse.ArgumentParser:

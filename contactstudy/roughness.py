@@ -8,6 +8,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import xarray as xr
 
 from contactstudy import checks
@@ -92,9 +93,8 @@ def self_affine(
     frequency = np.hypot(x[:, None], y[None, :])
     is_rough = (frequency >= (1 - 1e-9) / longest) & (frequency <= (1 + 1e-9) / shortest)
     if not is_rough.any():
-        raise InvalidInputError(
-            "longest, shortest", (longest, shortest), "wavelengths with at least one wave of the grid between them"
-        )
+        allowed = "wavelengths with at least one wave of the grid between them"
+        raise InvalidInputError("longest, shortest", (longest, shortest), allowed)
     amplitude = np.zeros(frequency.shape)
     amplitude[is_rough] = frequency[is_rough] ** -(1 + hurst)
     noise = np.random.default_rng(seed).standard_normal(grid.shape)
@@ -223,11 +223,8 @@ def _check_cover(x: FloatArray, y: FloatArray, grid: Grid, argument: str = "grid
     for name, map_centres, centres in (("x", x, grid.x), ("y", y, grid.y)):
         slack = 1e-9 * (map_centres[-1] - map_centres[0])
         if centres[0] < map_centres[0] - slack or centres[-1] > map_centres[-1] + slack:
-            raise InvalidInputError(
-                f"{argument}.{name}",
-                f"{centres[0]:g} to {centres[-1]:g} m",
-                f"within the measured {map_centres[0]:g} to {map_centres[-1]:g} m",
-            )
+            allowed = f"within the measured {map_centres[0]:g} to {map_centres[-1]:g} m"
+            raise InvalidInputError(f"{argument}.{name}", f"{centres[0]:g} to {centres[-1]:g} m", allowed)
 
 
 def _interpolate(x: FloatArray, y: FloatArray, heights: FloatArray, grid: Grid) -> FloatArray:
@@ -259,15 +256,13 @@ def _read_csv(path: Path) -> Heights:
     columns = read_columns(path, ("x", "y"), ("height",))
     for name in ("x", "y"):
         checks.coordinates(name, columns[name])
-    (x, at_x), (y, at_y) = (np.unique(columns[name], return_inverse=True) for name in ("x", "y"))
-    points, counts = np.unique(at_x * y.size + at_y, return_counts=True)
-    if (counts > 1).any():
-        point = int(points[counts.argmax()])
-        location = f"x = {x[point // y.size]:g} m, y = {y[point % y.size]:g} m"
-        raise InvalidInputError("height", f"{counts.max()} values at {location}", "one value at every point")
-    heights = np.full((x.size, y.size), np.nan)
-    heights[at_x, at_y] = columns["height"]
-    return Heights(x, y, heights)
+    points = pd.DataFrame(columns)
+    if (repeated := points.duplicated(["x", "y"])).any():
+        x, y = points.loc[repeated, ["x", "y"]].iloc[0]
+        number = ((points["x"] == x) & (points["y"] == y)).sum()
+        raise InvalidInputError("height", f"{number} values at x = {x:g} m, y = {y:g} m", "one value at every point")
+    heights = points.pivot(index="x", columns="y", values="height")
+    return Heights(heights.index.to_numpy(), heights.columns.to_numpy(), heights.to_numpy())
 
 
 def _read_netcdf(path: Path) -> Heights:

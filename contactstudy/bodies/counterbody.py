@@ -50,13 +50,9 @@ class Counterbody:
         tolerance = ALIGNMENT_TOLERANCE * grid.widths.min()
         for end in (0.0, stop):
             if edges[0] < end < edges[-1] and np.abs(edges - end).min() > tolerance:
-                raise InvalidInputError(
-                    "grid",
-                    f"cells without a border at x = {self.start + end:g} m",
-                    "cells that meet the ends of both bodies where their widths differ",
-                )
-        inner = edges[(edges > tolerance) & (edges < stop - tolerance)]
-        widths = grid.widths
+                allowed = "cells that meet the ends of both bodies where their widths differ"
+                raise InvalidInputError("grid", f"cells without a border at x = {self.start + end:g} m", allowed)
+        inner, widths = edges[(edges > tolerance) & (edges < stop - tolerance)], grid.widths
         before = -growing_edges(edges[0], widths[0])[::-1] + edges[0] if edges[0] > tolerance else np.zeros(1)
         after = growing_edges(stop - edges[-1], widths[-1]) + edges[-1] if stop - edges[-1] > tolerance else [stop]
         body_edges = np.concatenate([before, inner, after])

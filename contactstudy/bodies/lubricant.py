@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -15,8 +15,7 @@ from contactstudy.errors import InvalidInputError
 VISCOSITY_LAWS, DENSITY_LAWS = ("roelands", "barus"), ("dowson-higginson", "constant")
 
 ROELANDS_PRESSURE = 1.962e8  # Reference pressure of Roelands' law, Pa
-# Limit of Roelands' law for all oils at negative pressure, Pa s
-ROELANDS_VISCOSITY = 6.31e-5
+ROELANDS_VISCOSITY = 6.31e-5  # Limit of Roelands' law for all oils at negative pressure, Pa s
 DENSITY_PRESSURE, DENSITY_GAIN = 5.9e8, 1.34  # Constants of Dowson and Higginson's density, Pa and 1
 KELVIN = 273.15  # 0 degrees Celsius in kelvin
 
@@ -82,12 +81,9 @@ class Lubricant:
         for name, laws in (("viscosity_law", VISCOSITY_LAWS), ("density_law", DENSITY_LAWS)):
             checks.known_name(name, getattr(self, name), laws)
         if self.viscosity_law == "roelands" and self.viscosity <= ROELANDS_VISCOSITY:
-            raise InvalidInputError(
-                "viscosity",
-                self.viscosity,
-                f"above {ROELANDS_VISCOSITY:g} Pa s with viscosity_law = 'roelands'",
-                "viscosities are in Pa s: 30 mPa s is 0.03",
-            )
+            allowed = f"above {ROELANDS_VISCOSITY:g} Pa s with viscosity_law = 'roelands'"
+            hint = "viscosities are in Pa s: 30 mPa s is 0.03"
+            raise InvalidInputError("viscosity", self.viscosity, allowed, hint)
 
     def __repr__(self) -> str:
         alpha = f"{1e9 * self.pressure_viscosity:.3g} 1/GPa"
@@ -180,13 +176,8 @@ class Lubricant:
         """
         density = checks.positive("density", density, "kg/m3")
         viscosity, slope = walther(viscosities, checks.finite("temperature", temperature, "degrees Celsius"))
-        arguments: dict[str, object] = {"temperature_viscosity": slope} | dict(properties)
-        return cls(
-            viscosity=1e-6 * viscosity * density,
-            density=density,
-            pressure_viscosity=pressure_viscosity,
-            **arguments,  # type: ignore[arg-type]
-        )
+        arguments: dict[str, Any] = {"temperature_viscosity": slope, "density": density, **properties}
+        return cls(viscosity=1e-6 * viscosity * density, pressure_viscosity=pressure_viscosity, **arguments)
 
     @classmethod
     def preset(cls, name: str, temperature: float) -> Lubricant:
@@ -236,9 +227,8 @@ def walther(viscosities: dict[float, float], temperature: float) -> tuple[float,
         (checks.finite("viscosities", key), checks.positive("viscosities", value)) for key, value in viscosities.items()
     )
     if not (thick > thin >= 2 and lower_temperature > -KELVIN):
-        raise InvalidInputError(
-            "viscosities", viscosities, "falling with the temperature, at least 2 mm2/s", "the range of ASTM D341"
-        )
+        allowed = "falling with the temperature, at least 2 mm2/s"
+        raise InvalidInputError("viscosities", viscosities, allowed, "the range of ASTM D341")
     double_logarithms = [np.log10(np.log10(viscosity + 0.7)) for viscosity in (thick, thin)]
     log_temperatures = [np.log10(celsius + KELVIN) for celsius in (lower_temperature, upper_temperature)]
     b = (double_logarithms[0] - double_logarithms[1]) / (log_temperatures[1] - log_temperatures[0])

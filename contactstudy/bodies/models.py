@@ -175,9 +175,8 @@ class QuarterSpace(BodyWithFreeEnds):
     def __post_init__(self) -> None:
         super().__post_init__()
         if self.model == "single-mirror":
-            raise InvalidInputError(
-                "model", self.model, "a model of one end", 'a single mirror is exact for one end: use "exact"'
-            )
+            hint = 'a single mirror is exact for one end: use "exact"'
+            raise InvalidInputError("model", self.model, "a model of one end", hint)
 
     @property
     def extent(self) -> Extent:

@@ -16,7 +16,6 @@ from contactstudy.bodies.lubricant import Lubricant
 from contactstudy.bodies.material import contact_modulus
 from contactstudy.bodies.models import Body
 from contactstudy.case.motion import (
-    MOTION_CLASSES,
     MOTIONS_TEXT,
     AxialFriction,
     Friction,
@@ -26,12 +25,13 @@ from contactstudy.case.motion import (
     check_friction,
     evaluate_friction,
 )
-from contactstudy.case.roller import Roller, gap_on_cells
+from contactstudy.case.roller import Roller, snap_to_ends
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 from contactstudy.profiles.base import SlopeJumps, as_shape
 from contactstudy.profiles.straight import Chamfer, Cylinder
 
+GAP_NODES = 6  # Gauss points over the width of a cell for the mean gap. Accuracy
 MAX_TILT = 0.1  # Largest tilt of the linear theory, radians
 INCLINATION_POINT_COUNT = 41  # Points along the axis that determine the mean inclination of the roller
 # Range of the Hertz half-width over the roller's radius; the minimum is 10 kPa on steel
@@ -118,10 +118,10 @@ class Case:
         )
         checks.instance("body", self.body, Body, allowed)
         checks.instance("roller", self.roller, Roller, "a Roller")
-        checks.instance("motion", self.motion, MOTION_CLASSES, MOTIONS_TEXT)
-        checks.instance("lubricant", self.lubricant, (Lubricant, type(None)), "a Lubricant(...), or None")
-        edge_kinds = "profiles.Cylinder(fillet_radius) or profiles.Chamfer(...), or None for a sharp edge"
-        checks.instance("body_edge", self.body_edge, (Cylinder, Chamfer, type(None)), edge_kinds)
+        checks.instance("motion", self.motion, Motion, MOTIONS_TEXT)
+        checks.instance("lubricant", self.lubricant, Lubricant | None, "a Lubricant(...), or None")
+        allowed = "profiles.Cylinder(fillet_radius) or profiles.Chamfer(...), or None for a sharp edge"
+        checks.instance("body_edge", self.body_edge, Cylinder | Chamfer | None, allowed)
         checks.instance("coupled", self.coupled, (bool, np.bool_), "True or False")
         friction = check_friction(self.friction)
         check_coupled(friction, self.motion, coupled=self.coupled)
@@ -154,19 +154,15 @@ class Case:
         if self.end_distance is not None:
             checks.store(self, end_distance=checks.finite("end_distance", self.end_distance, "metres"))
         elif self.roller.length > (extent := self.body.extent[1] - self.body.extent[0]):
+            hint = "give end_distance (negative) if the roller is to overhang"
             raise InvalidInputError(
-                "roller.length",
-                self.roller.length,
-                f"at most the body's length, {extent:g} m",
-                "give end_distance (negative) if the roller is to overhang",
+                "roller.length", self.roller.length, f"at most the body's length, {extent:g} m", hint
             )
         start, stop = self.contact_range
         if not start < stop:
+            allowed = "such that the roller lies over the body"
             raise InvalidInputError(
-                "end_distance",
-                self.roller_start,
-                "such that the roller lies over the body",
-                f"the body spans x = {self.body.extent}",
+                "end_distance", self.roller_start, allowed, f"the body spans x = {self.body.extent}"
             )
         if self.load_position is not None:
             position = checks.finite("load_position", self.load_position, "metres")
@@ -175,12 +171,8 @@ class Case:
                 raise InvalidInputError("load_position", position, allowed)
             checks.store(self, load_position=position)
             if self.tilt:
-                raise InvalidInputError(
-                    "tilt",
-                    self.tilt,
-                    "left out with load_position",
-                    "the roller tilts until the pressure balances the load",
-                )
+                hint = "the roller tilts until the pressure balances the load"
+                raise InvalidInputError("tilt", self.tilt, "left out with load_position", hint)
             self._check_inclination(start, stop)
 
     def _check_inclination(self, start: float, stop: float) -> None:
@@ -189,13 +181,12 @@ class Case:
         gap = self._clearance(x - self.roller_middle, np.zeros(1))[:, 0]
         slope = float(np.polynomial.polynomial.polyfit((x - start) / (stop - start), gap, 1)[1]) / (stop - start)
         if abs(slope) > MAX_TILT:
-            raise InvalidInputError(
-                "load_position",
-                self.load_position,
+            allowed = (
                 f"None, because the roller over the body is inclined by {slope:.3g} rad: a balanced roller would tilt "
-                f"by more than a small angle, {MAX_TILT} rad",
-                "let the roller overhang less, or hold its tilt",
+                f"by more than a small angle, {MAX_TILT} rad"
             )
+            hint = "let the roller overhang less, or hold its tilt"
+            raise InvalidInputError("load_position", self.load_position, allowed, hint)
 
     def _check_load(self) -> None:
         """Raise unless one of pressure, load and approach is given, with a possible magnitude."""
@@ -208,53 +199,41 @@ class Case:
         name, unit = ("load", "N") if self.max_pressure is None else ("max_pressure", "Pa")
         value = checks.positive(name, getattr(self, name), unit)
         checks.store(self, **{name: value})
-        if not MIN_HALF_WIDTH <= self.hertz_half_width / self.roller.radius <= MAX_HALF_WIDTH:
+        half_width, radius = self.hertz_half_width, self.roller.radius
+        if not MIN_HALF_WIDTH <= half_width / radius <= MAX_HALF_WIDTH:
             raise InvalidInputError(
                 name,
                 value,
-                f"such that the Hertz half-width, {self.hertz_half_width:.3g} m, is at most {MAX_HALF_WIDTH:g} "
-                f"and at least {MIN_HALF_WIDTH:g} of the roller's radius, {self.roller.radius:g} m",
+                f"such that the Hertz half-width, {half_width:.3g} m, is at most {MAX_HALF_WIDTH:g} and at least "
+                f"{MIN_HALF_WIDTH:g} of the roller's radius, {radius:g} m",
                 f"pressures and moduli are in Pa ({self.modulus:.3g} Pa here; 1500 MPa is 1.5e9 Pa), loads in N, "
                 "lengths in metres",
             )
 
         low, high = self.body.extent
-        lengths = {"roller.length": self.contact_length, "body.length": high - low}
-        for parameter, length in lengths.items():
-            if np.isfinite(length) and not MIN_LENGTH_RATIO <= length / self.hertz_half_width <= MAX_LENGTH_RATIO:
-                raise InvalidInputError(
-                    parameter,
-                    length,
-                    f"between {MIN_LENGTH_RATIO:g} and {MAX_LENGTH_RATIO:g} Hertz half-widths, "
-                    f"{self.hertz_half_width:.3g} m",
-                    "lengths are in metres, pressures and moduli in Pa, loads in N",
-                )
+        allowed = f"between {MIN_LENGTH_RATIO:g} and {MAX_LENGTH_RATIO:g} Hertz half-widths, {half_width:.3g} m"
+        for parameter, length in {"roller.length": self.contact_length, "body.length": high - low}.items():
+            if np.isfinite(length) and not MIN_LENGTH_RATIO <= length / half_width <= MAX_LENGTH_RATIO:
+                hint = "lengths are in metres, pressures and moduli in Pa, loads in N"
+                raise InvalidInputError(parameter, length, allowed, hint)
 
     def _check_approach(self) -> None:
         """Raise unless the approach is one number, beyond first touch by at most the roller's radius."""
         value: object = self.approach
         if isinstance(value, (list, tuple)) or (isinstance(value, (np.ndarray, xr.DataArray)) and value.ndim):
-            raise InvalidInputError(
-                "approach",
-                self.approach,
-                "one number (metres), because each approach has separate cells",
-                "sweep a list in a Study, or tabulate loads by contactstudy.bearing.contact_law",
-            )
+            allowed = "one number (metres), because each approach has separate cells"
+            hint = "sweep a list in a Study, or tabulate loads by contactstudy.bearing.contact_law"
+            raise InvalidInputError("approach", self.approach, allowed, hint)
         approach = checks.finite("approach", self.approach, "metres")
         checks.store(self, approach=approach)
         if self.load_position is not None:
-            raise InvalidInputError(
-                "load_position", self.load_position, "None where the approach is prescribed", "prescribe the load"
-            )
+            allowed = "None where the approach is prescribed"
+            raise InvalidInputError("load_position", self.load_position, allowed, "prescribe the load")
         radius, touch = self.roller.radius, self.first_touch
         if not MIN_DEPTH * radius < approach - touch <= radius:
-            raise InvalidInputError(
-                "approach",
-                approach,
-                f"more than that of first touch, {touch:.3g} m, and beyond it no more than the roller's radius, "
-                f"{radius:g} m",
-                "approaches are in metres, relative to the contact at a profile drop of 0",
-            )
+            limits = f"{touch:.3g} m, and beyond it no more than the roller's radius, {radius:g} m"
+            hint = "approaches are in metres, relative to the contact at a profile drop of 0"
+            raise InvalidInputError("approach", approach, f"more than that of first touch, {limits}", hint)
 
     @property
     def first_touch(self) -> float:
@@ -353,17 +332,25 @@ class Case:
         if self.load is not None:
             return self.load
         if self.approach is not None:
-            raise InvalidInputError(
-                "approach",
-                self.approach,
-                "None for functions that require the load before the solution",
-                "solve the case, and give load = normal_load of its result instead",
-            )
+            allowed = "None for functions that require the load before the solution"
+            hint = "solve the case, and give load = normal_load of its result instead"
+            raise InvalidInputError("approach", self.approach, allowed, hint)
         return self.contact_length * hertz.line_load(self.hertz_max_pressure, self.roller.radius, self.modulus)
 
     def gap(self, grid: Grid) -> FloatArray:
         """Return the gap before deformation, metres: at centres of uniform cells, else means along x."""
-        return gap_on_cells(self._clearance, grid, self.roller_middle, 0.5 * self.roller.length)
+        x, middle_line = grid.x - self.roller_middle, np.zeros(1)
+        if not grid.observes_means:
+            return self._clearance(snap_to_ends(x, 0.5 * self.roller.length, grid.dx), grid.y)
+        nodes, weights = np.polynomial.legendre.leggauss(GAP_NODES)
+        points = x[:, None] + 0.5 * grid.widths[:, None] * nodes
+        axial = self._clearance(points.ravel(), middle_line).reshape(points.shape)
+        is_finite = np.isfinite(axial)
+        fractions = np.maximum(is_finite @ weights, weights.min())
+        mean = np.where(is_finite, axial, 0.0) @ weights / fractions
+        at_centre = self._clearance(x, middle_line)[:, 0]
+        correction = np.subtract(mean, at_centre, out=np.zeros_like(mean), where=np.isfinite(at_centre))
+        return np.asarray(self._clearance(x, grid.y) + correction[:, None])
 
     @property
     def _body_top(self) -> tuple[float, float]:
@@ -386,10 +373,6 @@ def small_tilt(value: object) -> float:
     """Return a tilt in radians, or raise if it is not a small angle."""
     tilt = checks.finite("tilt", value, "radians")
     if abs(tilt) > MAX_TILT:
-        raise InvalidInputError(
-            "tilt",
-            tilt,
-            f"a small angle, at most {MAX_TILT} radians",
-            "1 mrad is 0.001, and degrees need numpy.radians",
-        )
+        hint = "1 mrad is 0.001, and degrees need numpy.radians"
+        raise InvalidInputError("tilt", tilt, f"a small angle, at most {MAX_TILT} radians", hint)
     return tilt

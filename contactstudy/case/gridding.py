@@ -27,10 +27,6 @@ def check_accuracy(value: object) -> float:
     return accuracy
 
 
-def solver_settings(*, tolerance: float = TOLERANCE, stresses: bool = True) -> None:
-    """Keywords of :func:`contactstudy.solve` for the cases of a study, with the defaults of the solver."""
-
-
 Result = TypeVar("Result")
 Window = TypeVar("Window")  # A width, a grid, or None for columns that the solver refines
 WINDOWS = (2.0, 3.0, 5.0, 8.0)
@@ -89,30 +85,23 @@ def choose_grid(
     margin_x = checks.not_negative("margin", margin) * half_width
     low, high = case.body.extent
     start, stop = case.roller_start, case.roller_start + case.roller.length
-    x_range = (
-        max(low, start - margin_x) if np.isinf(low) else low,
-        min(high, stop + margin_x) if np.isinf(high) else high,
-    )
+    x_range = (start - margin_x if np.isinf(low) else low, stop + margin_x if np.isinf(high) else high)
     min_counts = [
         max(4.0, float(np.ceil(span / half_width * checks.positive(name, cells) - 1e-9)))
         for name, span, cells in (("cells_x", x_range[1] - x_range[0], cells_x), ("cells_y", 2 * half_window, cells_y))
     ]
     if not min_counts[0] * min_counts[1] <= MAX_CELLS:
-        raise InvalidInputError(
-            "cells_x, cells_y",
-            (cells_x, cells_y),
-            f"such that there are at most {MAX_CELLS:.0e} cells, not {min_counts[0] * min_counts[1]:.1e}",
-            f"the Hertz half-width is {half_width:.3g} m: pressures are in Pa, loads in N, lengths in metres",
-        )
+        allowed = f"such that there are at most {MAX_CELLS:.0e} cells, not {min_counts[0] * min_counts[1]:.1e}"
+        hint = f"the Hertz half-width is {half_width:.3g} m: pressures are in Pa, loads in N, lengths in metres"
+        raise InvalidInputError("cells_x, cells_y", (cells_x, cells_y), allowed, hint)
     counts = [next_fast_len(int(count), real=True) for count in min_counts]
     if isinstance(case.roller.body, FiniteLengthSpace):
         candidates = [counts[0]]
         while candidates[-1] < MAX_CELL_INCREASE * counts[0]:
             candidates.append(next_fast_len(candidates[-1] + 1))
         ends = (np.array(case.contact_range) - x_range[0]) / (x_range[1] - x_range[0])
-        counts[0] = min(
-            candidates, key=lambda cells: float(np.abs(ends * cells - np.round(ends * cells)).max().round(3))
-        )
+        deviations = [np.abs(ends * cells - np.round(ends * cells)).max().round(3) for cells in candidates]
+        counts[0] = candidates[int(np.argmin(deviations))]
     return Grid(x_range=x_range, y_range=(-half_window, half_window), cells_x=counts[0], cells_y=counts[1])
 
 

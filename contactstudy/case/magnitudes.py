@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Iterable, Iterator
+from itertools import chain
 from typing import NamedTuple, TypeVar
 
 import numpy as np
@@ -107,26 +108,24 @@ Profiles = TypeVar("Profiles", bound=Shape)
 def list_unusual_magnitudes(case: Case) -> tuple[str, ...]:
     """List the unusual magnitudes of a case, with the usual range and the unit of a value within this range."""
     roller, body = case.roller, case.body
-    messages = [
-        _describe("radius", "roller.radius", roller.radius),
-        _describe("length", "roller.length", roller.length),
+    values: list[tuple[str, str, float | None]] = [
+        ("radius", "roller.radius", roller.radius),
+        ("length", "roller.length", roller.length),
+        ("length", "body.length", body.length if isinstance(body, FiniteLengthSpace) else None),
+        ("young", "body.material.young", body.material.young),
+        ("young", "roller.material.young", roller.material.young if roller.material else None),
+        ("tilt", "tilt", abs(case.tilt)),
     ]
-    if isinstance(body, FiniteLengthSpace):
-        messages.append(_describe("length", "body.length", body.length))
+    names = ("viscosity", "pressure_viscosity", "eyring_stress", "density", "conductivity") if case.lubricant else ()
+    values += [(name, f"lubricant.{name}", getattr(case.lubricant, name)) for name in names]
+    messages = [_describe(quantity, name, value) for quantity, name, value in values if value is not None]
     messages += [
-        _describe("young", "body.material.young", body.material.young),
-        "" if roller.material is None else _describe("young", "roller.material.young", roller.material.young),
         describe_unusual_friction(case.friction),
-        _describe("tilt", "tilt", abs(case.tilt)),
         _describe_unusual_crown(case),
         _describe_flat_crown(case),
         _describe_unusual_design(case),
         _describe_unusual_load(case),
     ]
-    if case.lubricant is not None:
-        names = ("viscosity", "pressure_viscosity", "eyring_stress", "density", "conductivity")
-        values = ((name, getattr(case.lubricant, name)) for name in names)
-        messages += [_describe(name, f"lubricant.{name}", value) for name, value in values if value is not None]
     return tuple(filter(None, messages))
 
 
@@ -195,10 +194,9 @@ def _find_components(profile: object, kind: type[Profiles]) -> Iterator[Profiles
 def _describe_flat_crown(case: Case) -> str:
     """Message on a crown radius too large for a ground crown."""
     half_length, profile = 0.5 * case.roller.length, case.roller.profile
-    crowns: list[FullCrown | PartialCrown] = [
-        *_find_components(profile, FullCrown),
-        *_find_components(profile, PartialCrown),
-    ]
+    crowns: Iterator[FullCrown | PartialCrown] = chain(
+        _find_components(profile, FullCrown), _find_components(profile, PartialCrown)
+    )
     for crown in crowns:
         radius = crown.crown_radius
         drop = 0.5 * half_length**2 / radius
@@ -209,15 +207,19 @@ def _describe_flat_crown(case: Case) -> str:
     return ""
 
 
+def _rate_half_width(half_width: float) -> str:
+    """Return "low" or "high" for an unusual half-width over the roller's radius; empty if usual."""
+    usual = USUAL_RANGES["half_width"]
+    return "low" if half_width < usual.minimum else "high" if half_width > usual.maximum else ""
+
+
 def _describe_unusual_design(case: Case) -> str:
     """Message on the design load of a logarithmic crown."""
-    usual_range, radius = USUAL_RANGES["half_width"], case.roller.radius
     for profile in _find_components(case.roller.profile, Logarithmic):
         amplitude = profile.amplitude
         # A = R (p0 / E*)**2, so the half-width of the design load is 2 (A R)**0.5.
-        half_width = 2 * np.sqrt(amplitude / radius)
-        if amplitude and not usual_range.minimum <= half_width <= usual_range.maximum:
-            rating = "low" if half_width < usual_range.minimum else "high"
+        half_width = 2 * np.sqrt(amplitude / case.roller.radius)
+        if amplitude and (rating := _rate_half_width(half_width)):
             return (
                 f"{type(profile).__name__}.amplitude = {amplitude:.3g} m belongs to a very {rating} design load, "
                 f"half-width {half_width:.1g} of the roller's radius: pressures and moduli are in Pa, "
@@ -230,10 +232,10 @@ def _describe_unusual_load(case: Case) -> str:
     """Message on load or pressure by the Hertz half-width, or on the approach."""
     if case.approach is not None:
         return _describe("approach", "approach", case.approach - case.first_touch, case.roller.radius)
-    usual_range, half_width = USUAL_RANGES["half_width"], case.hertz_half_width / case.roller.radius
-    if usual_range.minimum <= half_width <= usual_range.maximum:
+    half_width = case.hertz_half_width / case.roller.radius
+    rating = _rate_half_width(half_width)
+    if not rating:
         return ""
-    rating = "low" if half_width < usual_range.minimum else "high"
     prescribed = f"load = {case.load:g} N" if case.max_pressure is None else f"max_pressure = {case.max_pressure:g} Pa"
     pressure = format_quantity(case.hertz_max_pressure, "Pa")
     return (

@@ -217,8 +217,7 @@ class Rolling(StickSlip):
 
 
 Motion = Sliding | Shift | Rolling  # Any motion
-MOTION_CLASSES, MOTIONS_TEXT = (Sliding, Shift, Rolling), "a Sliding(), a Shift(...) or a Rolling(...)"
-"""Classes of motions, and their text in messages."""
+MOTIONS_TEXT = "a Sliding(), a Shift(...) or a Rolling(...)"  # Text of the classes in messages
 
 
 @dataclass(frozen=True)
@@ -227,10 +226,6 @@ class AxialFriction:
 
     x: tuple[float, ...]
     values: tuple[float, ...]
-
-    def at(self, x: FloatArray) -> FloatArray:
-        """Coefficient at positions `x`: array (x, 1)."""
-        return np.asarray(np.interp(x, self.x, self.values))[:, None]
 
 
 Friction = float | AxialFriction  # Friction of a case
@@ -254,7 +249,9 @@ def check_friction(friction: object) -> Friction:
 
 def evaluate_friction(friction: Friction, x: FloatArray) -> float | FloatArray:
     """Coefficient on columns of cells at `x`: a number or an array (x, 1)."""
-    return friction.at(x) if isinstance(friction, AxialFriction) else friction
+    if isinstance(friction, AxialFriction):
+        return np.asarray(np.interp(x, friction.x, friction.values))[:, None]
+    return friction
 
 
 def check_coupled(friction: Friction, motion: Motion, *, coupled: bool) -> None:

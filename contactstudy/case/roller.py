@@ -1,15 +1,13 @@
-"""Gap before deformation on cells: at the centres of uniform cells, else means along x."""
+"""A roller, rigid or elastic, and its height over the tangent plane."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from contactstudy import checks
 from contactstudy.arrays.engineering import format_quantity
-from contactstudy.arrays.grid import Grid
 from contactstudy.bodies.material import Material
 from contactstudy.bodies.models import Body, FiniteLengthSpace, HalfSpace
 from contactstudy.checks import FloatArray
@@ -17,32 +15,13 @@ from contactstudy.errors import InvalidInputError
 from contactstudy.profiles import Cylinder, Profile, local_radius
 from contactstudy.profiles.base import check_drop, describe_profile
 
-GAP_NODES = 6  # Gauss points over the width of a cell for the mean gap. Accuracy
 ROUNDING = 1e-9  # Rounding over a cell. Accuracy
-Clearance = Callable[[FloatArray, FloatArray], FloatArray]
-"""Height of a roller (x, y) at distances from its mid-length and from its centre line; infinite beyond its ends."""
 
 
 def snap_to_ends(x: FloatArray, half_length: float, width: float) -> FloatArray:
     """Move distances of cells' centres from mid-length onto the roller's ends if within rounding."""
     at_end = np.abs(np.abs(x) - half_length) <= ROUNDING * width
     return np.where(at_end, np.copysign(half_length, x), x)
-
-
-def gap_on_cells(clearance: Clearance, grid: Grid, mid_length: float, half_length: float) -> FloatArray:
-    """Return the gap on the cells of a grid, metres, of a roller with its mid-length and half of its length."""
-    x = grid.x - mid_length
-    if not grid.observes_means:
-        return clearance(snap_to_ends(x, half_length, grid.dx), grid.y)
-    nodes, weights = np.polynomial.legendre.leggauss(GAP_NODES)
-    points = x[:, None] + 0.5 * grid.widths[:, None] * nodes
-    axial = clearance(points.ravel(), np.zeros(1)).reshape(points.shape)
-    is_finite = np.isfinite(axial)
-    fractions = np.maximum(is_finite @ weights, weights.min())
-    mean = np.where(is_finite, axial, 0.0) @ weights / fractions
-    at_centre = clearance(x, np.zeros(1))[:, 0]
-    correction = np.where(np.isfinite(at_centre), mean - np.where(np.isfinite(at_centre), at_centre, 0.0), 0.0)
-    return np.asarray(clearance(x, grid.y) + correction[:, None])
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -89,7 +68,7 @@ class Roller:
         sizes = {name: checks.positive(name, getattr(self, name), "metres") for name in ("radius", "length")}
         checks.store(self, **sizes)
         checks.instance("profile", self.profile, Profile, "a profile from contactstudy.profiles")
-        checks.instance("material", self.material, (Material, type(None)), "a Material, or None for a rigid roller")
+        checks.instance("material", self.material, Material | None, "a Material, or None for a rigid roller")
         checks.known_name("ends", self.ends, ("free", "none"))
         if self.reference_depth is not None:
             depth = checks.positive("reference_depth", self.reference_depth, "metres")
@@ -131,15 +110,15 @@ class Roller:
         >>> [round(1e3 * Roller.combined_radius(6e-3, raceway), 3) for raceway in (30e-3, -42e-3)]
         [5.0, 7.0]
         """
-        sizes = {"first": checks.finite("first", first, "metres"), "second": checks.finite("second", second, "metres")}
-        for name, radius in sizes.items():
+        curvature = 0.0
+        for name, value in (("first", first), ("second", second)):
+            radius = checks.finite(name, value, "metres")
             if radius == 0:
                 raise InvalidInputError(name, radius, "a radius (metres), negative if hollow")
-        curvature = sum(1 / radius for radius in sizes.values())
+            curvature += 1 / radius
         if not curvature > 0:
-            raise InvalidInputError(
-                "first, second", (first, second), "such that a hollow radius is the larger one", "no gap would remain"
-            )
+            allowed = "such that a hollow radius is the larger one"
+            raise InvalidInputError("first, second", (first, second), allowed, "no gap would remain")
         return 1 / curvature
 
     @property

@@ -19,7 +19,6 @@ from contactstudy.bodies.counterbody import Counterbody
 from contactstudy.bodies.models import Body
 from contactstudy.cache import ArrayKey
 from contactstudy.case.motion import (
-    MOTION_CLASSES,
     MOTIONS_TEXT,
     Friction,
     Motion,
@@ -201,7 +200,7 @@ def solve_contact(
     grid.check_growth(np.asarray(np.isfinite(initial_gap).any(axis=1)))
     checks.instance("settings", settings, ContactSettings, "a ContactSettings")
     coupled, previous_step = bool(settings.coupled), settings.after
-    checks.instance("motion", motion, MOTION_CLASSES, MOTIONS_TEXT)
+    checks.instance("motion", motion, Motion, MOTIONS_TEXT)
     coefficient = check_friction(friction)
     check_coupled(coefficient, motion, coupled=coupled)
     cell_friction = evaluate_friction(coefficient, grid.x)

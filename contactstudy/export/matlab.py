@@ -13,9 +13,8 @@ import xarray as xr
 from contactstudy import checks
 from contactstudy.arrays.variables import require, variable_of
 from contactstudy.errors import InvalidInputError
-from contactstudy.export.table import named_arrays
+from contactstudy.export.table import named_arrays, output_path
 
-SUFFIX = ".mat"
 NAME = re.compile(r"[A-Za-z]\w{0,62}", re.ASCII)  # Valid name in MATLAB
 STRUCTS = ("units", "meaning", "dims", "about")  # Names of the structs
 MAX_BYTES = 2**31 - 1  # Bytes of an array in the format's version 5
@@ -64,10 +63,7 @@ def to_mat(dataset: xr.Dataset, path: str | Path, variables: str | Sequence[str]
     from scipy.io import savemat
 
     require(dataset)
-    checks.instance("path", path, (str, Path), "a path")
-    target = Path(path)
-    if target.suffix != SUFFIX:
-        raise InvalidInputError("path", str(path), f"a file name that ends with {SUFFIX}")
+    target = output_path(path, ".mat")
     content: dict[str, Any] = {name: {} for name in STRUCTS}
     arrays = named_arrays(dataset, variables)
     for array in list(arrays.values()):

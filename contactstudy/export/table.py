@@ -33,6 +33,15 @@ def headings(dataset: xr.Dataset, names: Sequence[str]) -> dict[str, str]:
     return texts
 
 
+def output_path(path: str | Path, *suffixes: str) -> Path:
+    """Return the path of a file to write, whose name must end with one of the `suffixes`."""
+    checks.instance("path", path, (str, Path), "a path")
+    target = Path(path)
+    if suffixes and target.suffix not in suffixes:
+        raise InvalidInputError("path", str(path), f"a file name that ends with {' or '.join(suffixes)}")
+    return target
+
+
 def named_arrays(dataset: xr.Dataset, variables: str | Sequence[str] | None) -> dict[str, xr.DataArray]:
     """Return variables or measures by name; default: all variables."""
     if variables is None:
@@ -83,9 +92,8 @@ def to_table(
             arrays = {name: array for name, array in arrays.items() if array.ndim}
         points_of_arrays = {frozenset(array.dims) for array in arrays.values()}
         if len(points_of_arrays) != 1 or frozenset() in points_of_arrays:
-            raise InvalidInputError(
-                "variables", variables or "all", "variables on the same points", points_hint(arrays)
-            )
+            allowed = "variables on the same points"
+            raise InvalidInputError("variables", variables or "all", allowed, points_hint(arrays))
         fields = xr.Dataset(arrays)
     else:
         if not isinstance(line, Sequence) or len(line) != 2:
@@ -144,8 +152,7 @@ def to_csv(
     ...     print(to_csv(xr.Dataset({"von_mises": stress}), Path(folder) / "depth.csv").read_text().splitlines()[1])
     0.0,1.0
     """
-    checks.instance("path", path, (str, Path), "a path")
-    target = Path(path)
+    target = output_path(path)
     table = to_table(dataset, variables, line=line, points=points)
     with checks.writing(target) as temporary_path:
         temporary_path.write_text(csv_text(table), encoding="utf-8")

@@ -18,8 +18,8 @@ from contactstudy.arrays.cells import labelled_cells
 from contactstudy.arrays.variables import AXES, STRESSES, require
 from contactstudy.checks import Array, FloatArray, IntArray
 from contactstudy.errors import InvalidInputError
+from contactstudy.export.table import output_path
 
-SUFFIXES = (".vtr", ".vtu")  # Rectilinear grid, and unstructured mesh for more programs
 TENSOR = (0, 3, 4, 3, 1, 5, 4, 5, 2)  # Indices of xx, xy, xz, yx, ... among the six components of a result
 TYPES = {"f": "Float64", "i": "Int64", "u": "UInt8"}  # VTK's types of arrays
 QUADRILATERAL, HEXAHEDRON = 9, 12  # VTK's numbers of kinds of cells
@@ -65,10 +65,7 @@ def to_vtk(dataset: xr.Dataset, path: str | Path, variables: str | Sequence[str]
     'surface.vtr'
     """
     require(dataset)
-    checks.instance("path", path, (str, Path), "a path")
-    target = Path(path)
-    if target.suffix not in SUFFIXES:
-        raise InvalidInputError("path", str(path), f"a file name that ends with {' or '.join(SUFFIXES)}")
+    target = output_path(path, ".vtr", ".vtu")  # rectilinear grid, and unstructured mesh for more programs
     fields = fields_on_same_points(single_case(dataset), variables)
     if target.suffix == ".vtr":
         axes, data = _on_points(fields)
@@ -85,10 +82,11 @@ def to_vtk(dataset: xr.Dataset, path: str | Path, variables: str | Sequence[str]
         # Only cells with finite values belong to the mesh: a gap is infinite beyond the roller.
         _, grid = labelled_cells("variables", xr.zeros_like(field, dtype=np.float64))
         edges = [grid.x_edges, np.linspace(*grid.y_range, grid.cells_y + 1), np.zeros(1)]
-        _write_mesh(target, edges, in_cells={name: array.transpose("x", "y").values for name, array in fields.items()})
+        values = {name: array.transpose("x", "y").values for name, array in fields.items()}
+        _write_mesh(target, edges, values, in_cells=True)
     else:
         axes, data = _on_points(fields)
-        _write_mesh(target, axes, on_points=data)
+        _write_mesh(target, axes, data, in_cells=False)
     return target
 
 
@@ -110,19 +108,15 @@ def _on_points(fields: dict[str, xr.DataArray]) -> tuple[list[FloatArray], dict[
     return [points[axis][order[axis]] for axis in AXES], data
 
 
-def _write_mesh(
-    path: Path,
-    axes: list[FloatArray],
-    *,
-    on_points: Mapping[str, FloatArray] | None = None,
-    in_cells: Mapping[str, FloatArray] | None = None,
-) -> None:
+def _write_mesh(path: Path, axes: list[FloatArray], data: Mapping[str, FloatArray], *, in_cells: bool) -> None:
     """Write the cells between points (x, y, z), with values on the points or in the cells."""
     kind, corners = _cells([axis.size for axis in axes])
     nodes = np.stack([points.ravel() for points in np.meshgrid(*axes, indexing="ij")], axis=1)
     sections: dict[str, dict[str, Array]] = {
-        "PointData": {name: values.reshape(len(nodes), -1) for name, values in (on_points or {}).items()},
-        "CellData": {name: values.ravel().astype(np.float64) for name, values in (in_cells or {}).items()},
+        "CellData" if in_cells else "PointData": {
+            name: values.reshape(len(corners if in_cells else nodes), -1).astype(np.float64)
+            for name, values in data.items()
+        },
         "Points": {"Points": nodes},
         "Cells": {
             "connectivity": corners.ravel(),
@@ -156,9 +150,8 @@ def _cells(counts: list[int]) -> tuple[int, IntArray]:
     """VTK's kind of the cells between points, from the numbers of points along the axes, and each cell's corners."""
     extended_axes = [axis for axis, count in enumerate(counts) if count > 1]
     if len(extended_axes) < 2:
-        raise InvalidInputError(
-            "variables", f"{counts} points", "on at least two points along two of x, y and z", "take .vtr or CSV"
-        )
+        allowed = "on at least two points along two of x, y and z"
+        raise InvalidInputError("variables", f"{counts} points", allowed, "take .vtr or CSV")
     point_indices = np.arange(int(np.prod(counts)), dtype="<i8").reshape(counts)
     cell_corners = CORNERS if len(extended_axes) == 2 else [(*corner, layer) for layer in (0, 1) for corner in CORNERS]
     corners = []

@@ -90,19 +90,14 @@ def refined_case_contact(case: Case, accuracy: float, tolerance: float) -> CaseC
     else:
         solution = contact_at_approach(case, accuracy, tolerance)
     loaded_case, refined_contact = solution
-    contact, values, tractions = (
-        _check_contact(loaded_case, refined_contact.contact),
-        refined_values(refined_contact),
-        None,
-    )
+    contact, tractions = _check_contact(loaded_case, refined_contact.contact), None
+    values = refined_values(refined_contact)
     if not isinstance(case.motion, Sliding):
         refined_tractions = refine_tractions(loaded_case, refined_contact, accuracy)
-        tractions, values = (
-            refined_tractions.contact,
-            refined_values(refined_tractions.normal).assign(refined_tractions.error_dataset().data_vars),
-        )
+        tractions = refined_tractions.contact
         tractions.warn_unless_converged()
         contact = tractions.contact
+        values = refined_values(refined_tractions.normal).assign(refined_tractions.error_dataset().data_vars)
     if case.approach is not None:
         values["normal_load_error"] = approach_load_error(solution)
     return CaseContact(
@@ -115,18 +110,14 @@ def contact_on_cells(case: Case, grid: Grid | None, roughness: xr.DataArray | No
     cells: Cells = "chosen" if grid is None else "given"
     if grid is None:
         # At an approach the load of the smooth roller determines the cells; a rough roller carries another load.
-        loaded_case = (
-            case if case.approach is None else contact_at_approach(case, COARSE_ACCURACY, COARSE_TOLERANCE).case
-        )
-        grid = choose_grid(loaded_case)
+        at_approach = case.approach is not None
+        grid = choose_grid(contact_at_approach(case, COARSE_ACCURACY, COARSE_TOLERANCE).case if at_approach else case)
     clearance, tractions = case.gap(grid), None
     if not np.isfinite(clearance).any():
-        raise InvalidInputError(
-            "grid",
-            grid.shape,
-            f"such that a cell's centre lies under the roller, which faces the body over {case.contact_length:.3g} m",
-            "move the roller by end_distance, or take more cells along x",
-        )
+        length = f"{case.contact_length:.3g} m"
+        allowed = f"such that a cell's centre lies under the roller, which faces the body over {length}"
+        hint = "move the roller by end_distance, or take more cells along x"
+        raise InvalidInputError("grid", grid.shape, allowed, hint)
     gap = clearance if roughness is None else clearance - heights_on(grid, roughness)
     try:
         contact = contact_of(contact_shape(case, grid, gap=gap), Settings(tolerance))
@@ -163,7 +154,7 @@ def _check_contact(case: Case, contact: Contact) -> Contact:
 
 RESIDUAL_DEPTHS = (0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0)  # depths of `end_traction_residual`, over the Hertz half-width
 RESIDUAL_POSITIONS = (-1.1, -0.9, -0.5, 0.0, 0.5, 0.9, 1.1)  # the residual's positions along y, over the half-width
-RESIDUAL_COVERS = (  # comment of `end_traction_residual`
+RESIDUAL_COMMENT = (
     f"the largest at depths from {RESIDUAL_DEPTHS[0]} a to {RESIDUAL_DEPTHS[-1]} a and |y| up to "
     f"{RESIDUAL_POSITIONS[-1]} a; nearer to the top of a loaded end it is larger, about 1e-4 at 0.01 a, 1e-3 at 0.004 a"
 )
@@ -188,7 +179,7 @@ def with_stresses(
         field = field.rename({"x": "x_field", "y": "y_field"})
     result = result.assign_coords(field.coords).assign(field.data_vars)
     result = result.assign(label_largest_stress(result, *largest).data_vars).assign(end_traction_residual=residual)
-    result["end_traction_residual"].attrs["comment"] = RESIDUAL_COVERS
+    result["end_traction_residual"].attrs["comment"] = RESIDUAL_COMMENT
     return result
 
 

@@ -66,19 +66,15 @@ def roller_stress(
         raise InvalidInputError("case.roller.material", None, "a Material: a rigid roller has no stresses")
     slides_fully = isinstance(case.motion, Sliding)
     if not slides_fully and (traction_x is None or traction_y is None):
-        raise InvalidInputError(
-            "traction_x, traction_y", None, "those of the result: they do not follow from the pressure"
-        )
+        allowed = "those of the result: they do not follow from the pressure"
+        raise InvalidInputError("traction_x, traction_y", None, allowed)
     grid, body_loads, *_ = prescribed_loads(case.body, pressure, 0.0, traction_x, traction_y)
     if slides_fully and traction_y is None:
         body_loads = {**body_loads, **sliding(body_loads[Load.NORMAL].cell_loads, case.friction_on(grid.x))}
-    body, roller_grid = case.counterbody.body, case.counterbody.grid_on_body(grid)
-    loads = {
-        load: TopLoad(
-            case.counterbody.transfer_load(grid, top.cell_loads), top.factor if load is Load.NORMAL else -top.factor
-        )
-        for load, top in body_loads.items()
-    }
-    return stress_dataset(
-        body, loads, roller_grid, field_positions(body, roller_grid, x, y, z), loads[Load.NORMAL].values
-    )
+    counterbody = case.counterbody
+    roller_grid, loads = counterbody.grid_on_body(grid), {}
+    for load, top in body_loads.items():
+        factor = top.factor if load is Load.NORMAL else -top.factor
+        loads[load] = TopLoad(counterbody.transfer_load(grid, top.cell_loads), factor)
+    positions = field_positions(counterbody.body, roller_grid, x, y, z)
+    return stress_dataset(counterbody.body, loads, roller_grid, positions, loads[Load.NORMAL].values)

@@ -1,9 +1,7 @@
 """Batches: netCDF files of many finished cases, the only format of a study's results.
 
-Numbers are columns, such as ``peak_pressure(case)``. Arrays are contiguous ragged arrays of the CF conventions:
-``pressure(x_y_values)`` contains the arrays of all cases one after the other, ``x_size(case)`` and ``y_size(case)``
-their shapes. All cases of a batch have equal versions and one level. A batch is never changed; the CRC-32 in its name
-detects damage without decoding.
+Numbers are columns, arrays are contiguous ragged arrays of the CF conventions, see docs/reference/results_files.md. A
+batch is never changed; the CRC-32 in its name detects damage without decoding.
 """
 
 from __future__ import annotations
@@ -12,7 +10,6 @@ import json
 import zlib
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -78,18 +75,18 @@ class Batch:
         """Names, dimensions and types of the arrays; batches of equal structure can be joined."""
         return tuple(sorted((name, array.dims, array.values.dtype.str) for name, array in self.arrays.items()))
 
-    @cached_property
-    def _offsets(self) -> dict[tuple[str, ...], IntArray]:
-        """For each array's dimensions: start of each case's values, and the end of the last case's values."""
-        return {
-            dims: case_offsets(self.sizes, dims, len(self)) for dims in {array.dims for array in self.arrays.values()}
-        }
+    def offsets(self, dims: Iterable[str]) -> IntArray:
+        """Start of each case's values in a ragged array along `dims`, and the end of the last case's values."""
+        counts = np.ones(len(self), dtype=np.int64)
+        for dim in dims:
+            counts *= self.sizes[dim]
+        return np.concatenate([[0], np.cumsum(counts)])
 
     def take(self, rows: IntArray) -> Batch:
         """Return a batch with the cases of these rows."""
         selected_arrays = {}
         for name, (dims, values) in self.arrays.items():
-            starts = self._offsets[dims]
+            starts = self.offsets(dims)
             slices = [values[starts[row] : starts[row + 1]] for row in rows]
             selected_arrays[name] = Ragged(dims, np.concatenate(slices) if slices else values[:0])
         return replace(
@@ -103,23 +100,6 @@ class Batch:
             arrays=selected_arrays,
         )
 
-    def case(self, row: int) -> xr.Dataset:
-        """Return one case on its cells, with its numbers, parameters, and the context of its run."""
-        variables: dict[str, Any] = {}
-        for name, (dims, values) in self.arrays.items():
-            starts = self._offsets[dims]
-            shape = [int(self.sizes[dim][row]) for dim in dims]
-            case_values = values[starts[row] : starts[row + 1]].reshape(shape)
-            variables[name] = (dims, case_values, self.attributes.get(name, {}))
-        for name, column in self.numbers.items():
-            if not np.isnan(column[row]):
-                variables[name] = ((), float(column[row]), self.attributes.get(name, {}))
-        dataset = xr.Dataset(variables)
-        dataset = dataset.set_coords([name for name in self.coordinates if name in dataset])
-        run, parameters = json.dumps(self.run(row)), self.texts["parameters"][row]
-        attributes = {"case_id": self.ids[row].decode(), CASE_ATTRIBUTE: parameters, RUN_ATTRIBUTE: run}
-        return describe(dataset, f"case of the study {self.run_context.get('study', '')}").assign_attrs(attributes)
-
     def run(self, row: int) -> dict[str, Any]:
         """Return versions, level, warnings and solution time of a case."""
         warnings = json.loads(self.texts["warnings"][row] or "[]")
@@ -127,18 +107,9 @@ class Batch:
         return run | ({"seconds": float(self.numbers["seconds"][row])} if "seconds" in self.numbers else {})
 
 
-def case_offsets(sizes: Mapping[str, IntArray], dims: Sequence[str], cases: int) -> IntArray:
-    """Start of each case's values in a ragged array along `dims`, and the end of the last case's values."""
-    counts = np.ones(cases, dtype=np.int64)
-    for dim in dims:
-        counts *= sizes[dim]
-    return np.concatenate([[0], np.cumsum(counts)])
-
-
 def join_batches(batches: Sequence[Batch]) -> Batch:
     """Join batches of equal `run_context` whose arrays have an equal structure, or that have no arrays."""
     first = max(batches, key=lambda batch: len(batch.arrays))
-
     names = list(dict.fromkeys(name for batch in batches for name in batch.numbers))
     attributes: dict[str, dict[str, Any]] = {}
     for batch in batches:
@@ -186,11 +157,7 @@ def write_batch(folder: Path, name: str, batch: Batch) -> None:
 
 def checksum(path: Path) -> int:
     """CRC-32 of a file."""
-    code = 0
-    with open(path, "rb") as file:
-        while block := file.read(2**22):
-            code = zlib.crc32(block, code)
-    return code
+    return zlib.crc32(path.read_bytes())
 
 
 def find_damage(path: Path) -> str:
@@ -230,15 +197,10 @@ def _write_variables(path: Path, batch: Batch) -> None:
             variable.setncatts({key: value for key, value in attributes.items() if not isinstance(value, str) or value})
             return variable
 
-        _write_text(
-            file, "case_id", [text.decode() for text in batch.ids], "identity of the case, a hash of its parameters"
-        )
-        status_attrs = {
-            "long_name": "state of the case",
-            "units": "1",
-            "flag_values": np.arange(len(STATUSES), dtype=np.int8),
-            "flag_meanings": " ".join(STATUSES),
-        }
+        ids = [text.decode() for text in batch.ids]
+        _write_text(file, "case_id", ids, "identity of the case, a hash of its parameters")
+        flags = {"flag_values": np.arange(len(STATUSES), dtype=np.int8), "flag_meanings": " ".join(STATUSES)}
+        status_attrs = {"long_name": "state of the case", "units": "1", **flags}
         create("status", "i1", ("case",), status_attrs)[:] = batch.status
         create("run", "i4", ("case",), {"long_name": "number of the run", "units": "1"})[:] = batch.runs
         shared, tables, parameters = _factor_out_shared([json.loads(text) for text in batch.texts["parameters"]])
@@ -247,10 +209,10 @@ def _write_variables(path: Path, batch: Batch) -> None:
         for name, values in batch.numbers.items():
             create(name, "f8", ("case",), _file_attributes(name, batch.attributes))[:] = values
         for dim, lengths in batch.sizes.items():
-            attributes = {"long_name": f"size along {dim}", "units": "1", "sample_dimension": _sample_dimension((dim,))}
+            attributes = {"long_name": f"size along {dim}", "units": "1", "sample_dimension": f"{dim}_values"}
             create(f"{dim}_size", "i4", ("case",), attributes)[:] = lengths
         for name, (dims, values) in batch.arrays.items():
-            sample = _sample_dimension(dims)
+            sample = f"{'_'.join(dims)}_values"
             if sample not in file.dimensions:
                 file.createDimension(sample, values.size)
             if values.size:
@@ -271,11 +233,6 @@ def _write_variables(path: Path, batch: Batch) -> None:
         )
 
 
-def _sample_dimension(dims: Iterable[str]) -> str:
-    """Name of the dimension of a ragged array."""
-    return f"{'_'.join(dims)}_values"
-
-
 def _file_attributes(name: str, attributes: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
     """Attributes of a variable for netCDF: texts and numbers as they are, other values as JSON."""
     complete = {"long_name": name.replace("_", " "), **labels(name), **attributes.get(name, {})}
@@ -291,18 +248,11 @@ def _write_text(file: Any, name: str, texts: Sequence[str], meaning: str) -> Non
     encoded = [text.encode() for text in texts]
     length = max(1, *map(len, encoded))
     file.createDimension(f"{name}_length", length)
-    variable = file.createVariable(
-        name,
-        "S1",
-        ("case", f"{name}_length"),
-        zlib=True,
-        complevel=1,
-        fletcher32=True,
-        chunksizes=(len(encoded), length),
-    )
+    dims, sizes = ("case", f"{name}_length"), (len(encoded), length)
+    variable = file.createVariable(name, "S1", dims, zlib=True, complevel=1, fletcher32=True, chunksizes=sizes)
     variable.setncatts({"long_name": meaning, "_Encoding": "utf-8"})
     variable.set_auto_chartostring(False)
-    variable[:] = np.array(encoded, dtype=f"S{length}").view("S1").reshape(len(encoded), length)
+    variable[:] = np.array(encoded, dtype=f"S{length}").view("S1").reshape(sizes)
 
 
 def _factor_out_shared(parameters: list[dict[str, Any]]) -> tuple[dict[str, Any], list[Any], list[str]]:
@@ -338,8 +288,7 @@ def read_batch(path: Path, *, arrays: Iterable[str] | None = (), texts: Iterable
         raise StoreError(f"cannot read {path}: it is not a regular file")
     with netcdf_access(path, "read"), netCDF4.Dataset(path) as file:
         file.set_auto_maskandscale(False)
-        file.set_auto_chartostring(False)
-        ids = _read_text(file["case_id"])
+        ids = np.char.encode(file["case_id"][:])
         if ids.dtype.itemsize != IDENTITY_LENGTH:
             raise StoreError(f"cannot read {path}: it is not a batch of cases")
         selected, text_names = (None, set(TEXT_COLUMNS)) if arrays is None else (set(arrays), set(texts))
@@ -357,10 +306,7 @@ def read_batch(path: Path, *, arrays: Iterable[str] | None = (), texts: Iterable
                 ragged[name] = Ragged(dims, variable[:] if read_values else np.empty(0, dtype=variable.dtype))
             else:
                 attributes[name], numbers[name] = attrs, variable[:]
-        columns = {
-            name: [text.decode() for text in _read_text(file[name])] if name in text_names else []
-            for name in TEXT_COLUMNS
-        }
+        columns = {name: file[name][:].tolist() if name in text_names else [] for name in TEXT_COLUMNS}
         if "parameters" in text_names:
             shared, tables = json.loads(file.getncattr(SHARED_ATTR)), json.loads(file.getncattr(TABLES_ATTR))
             columns["parameters"] = [_restore_parameters(shared, tables, text) for text in columns["parameters"]]
@@ -378,12 +324,6 @@ def read_batch(path: Path, *, arrays: Iterable[str] | None = (), texts: Iterable
         )
 
 
-def _read_text(variable: Any) -> npt.NDArray[np.bytes_]:
-    """Texts of a column as bytes."""
-    characters = np.ascontiguousarray(variable[:])
-    return np.asarray(characters.view(f"S{characters.shape[1]}").ravel())
-
-
 def read_slices(path: Path, bounds: Mapping[str, Sequence[tuple[int, int]]]) -> dict[str, list[npt.NDArray[Any]]]:
     """Read slices of the named ragged arrays, between pairs of first and last value."""
     import netCDF4
@@ -397,48 +337,49 @@ def read_slices(path: Path, bounds: Mapping[str, Sequence[tuple[int, int]]]) -> 
 
 
 def read_case(path: Path, row: int, names: Iterable[str] | None = None) -> xr.Dataset:
-    """Read one case of a batch on its cells, with all arrays, or the named arrays and their positions."""
+    """Read one case of a batch on its cells, with its numbers, parameters, the context of its run, and named arrays."""
     batch = read_batch(path, texts=TEXT_COLUMNS)
-    selected = set(batch.arrays) if names is None else set(names)
-    dims = {dim for name in selected & set(batch.arrays) for dim in batch.arrays[name].dims}
-    selected |= {name for name in batch.coordinates if set(batch.arrays[name].dims) <= dims}
-    bounds = {}
-    for name in selected & set(batch.arrays):
-        starts = case_offsets(batch.sizes, batch.arrays[name].dims, len(batch))
-        bounds[name] = [(int(starts[row]), int(starts[row + 1]))]
-    values = read_slices(path, bounds) if bounds else {}
-    case_batch = replace(batch, arrays={}).take(np.array([row]))
-    arrays = {name: Ragged(batch.arrays[name].dims, case_values) for name, (case_values,) in values.items()}
-    return replace(case_batch, arrays=arrays).case(0)
+    selected = set(batch.arrays if names is None else names) & set(batch.arrays)
+    selected_dims = {dim for name in selected for dim in batch.arrays[name].dims}
+    coordinates = [name for name in batch.coordinates if set(batch.arrays[name].dims) <= selected_dims]
+    bounds, shapes = {}, {}
+    for name in {*selected, *coordinates}:
+        dims = batch.arrays[name].dims
+        start, stop = batch.offsets(dims)[row : row + 2].tolist()
+        bounds[name], shapes[name] = [(start, stop)], [int(batch.sizes[dim][row]) for dim in dims]
+    variables: dict[str, Any] = {}
+    for name, (values,) in read_slices(path, bounds).items():
+        variables[name] = (batch.arrays[name].dims, values.reshape(shapes[name]), batch.attributes.get(name, {}))
+    for name, column in batch.numbers.items():
+        if not np.isnan(column[row]):
+            variables[name] = ((), float(column[row]), batch.attributes.get(name, {}))
+    dataset = xr.Dataset(variables).set_coords(coordinates)
+    run, parameters = json.dumps(batch.run(row)), batch.texts["parameters"][row]
+    attributes = {"case_id": batch.ids[row].decode(), CASE_ATTRIBUTE: parameters, RUN_ATTRIBUTE: run}
+    return describe(dataset, f"case of the study {batch.run_context.get('study', '')}").assign_attrs(attributes)
 
 
 def add_arrays(batch: Batch, dataset: xr.Dataset, level: str) -> Batch:
-    """Add the arrays of a solved case that a level retains; stresses and other fields in single precision."""
-    depth_flags = {
-        str(name): any(str(dim).startswith("z") for dim in entry.dims) for name, entry in dataset.data_vars.items()
-    }
-    retained = [
-        name
-        for name, is_deep in depth_flags.items()
-        if dataset.variables[name].ndim and (level == "fields" or (level == "surface" and not is_deep))
-    ]
-    dims = {str(dim) for name in retained for dim in dataset.variables[name].dims}
+    """Add the arrays of a solved case that a level above the summary retains; fields in single precision."""
+    variables = dataset.variables
+    deep = {name for name, variable in variables.items() if any(str(dim).startswith("z") for dim in variable.dims)}
+    retained = [name for name in dataset.data_vars if variables[name].ndim and (level == "fields" or name not in deep)]
+    dims = {str(dim) for name in retained for dim in variables[name].dims}
     coordinates = [
         str(name) for name, entry in dataset.coords.items() if entry.ndim and {*map(str, entry.dims)} <= dims
     ]
     arrays = {}
     for name in (*retained, *coordinates):
-        variable = dataset.variables[name]
-        values = variable.values
+        values = variables[name].values
         if values.dtype == bool:
             values = values.astype(np.int8)
-        elif depth_flags.get(name) and variable.ndim >= 2:
+        elif name in deep and values.ndim >= 2:
             values = values.astype(np.float32)
-        arrays[name] = Ragged(tuple(map(str, variable.dims)), np.ascontiguousarray(values).ravel())
+        arrays[str(name)] = Ragged(tuple(map(str, variables[name].dims)), np.ascontiguousarray(values).ravel())
     return replace(
         batch,
         sizes={dim: np.array([dataset.sizes[dim]], dtype=np.int64) for dim in sorted(dims)},
         arrays=arrays,
-        attributes=batch.attributes | {name: dict(dataset.variables[name].attrs) for name in arrays},
+        attributes=batch.attributes | {name: dict(variables[name].attrs) for name in arrays},
         coordinates=frozenset(coordinates),
     )

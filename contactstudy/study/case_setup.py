@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from itertools import chain
 from typing import Any
@@ -16,7 +16,7 @@ from contactstudy.bodies.lubricant import Lubricant
 from contactstudy.bodies.material import Material, contact_modulus
 from contactstudy.bodies.models import MODELS, Body, FiniteLengthSpace, HalfSpace, QuarterSpace
 from contactstudy.case.case import Case
-from contactstudy.case.gridding import check_accuracy, choose_grid, create_widening_grids, solver_settings
+from contactstudy.case.gridding import check_accuracy, choose_grid, create_widening_grids
 from contactstudy.case.motion import Motion, Rolling, Shift, Sliding
 from contactstudy.case.roller import Roller
 from contactstudy.checks import FloatArray
@@ -25,11 +25,11 @@ from contactstudy.film.asperities import Asperities
 from contactstudy.study.parameters import (
     PARAMETERS,
     REQUIRED,
-    ROLLER_BODIES,
     UNIFORM_CELL_PARAMETERS,
     check_parameters,
     keywords_of,
     with_defaults,
+    without_defaults,
 )
 from contactstudy.study.profile_tables import build_profile
 
@@ -143,26 +143,27 @@ def _check_choices(values: Mapping[str, Any]) -> None:
             raise InvalidInputError(names[0], None, "given")
         if len(stated_names) != 1:
             *first, last = names
-            count = "two" if len(names) == 2 else "three"
+            allowed = f"given as one of the {'two' if len(names) == 2 else 'three'}, {', '.join(first)} or {last}"
             stated_values = tuple(values[name] for name in stated_names) if stated_names else "none"
-            raise InvalidInputError(
-                ", ".join(stated_names or names),
-                stated_values,
-                f"given as one of the {count}, {', '.join(first)} or {last}",
-            )
+            raise InvalidInputError(", ".join(stated_names or names), stated_values, allowed)
+
+
+def _refuse(values: Mapping[str, Any], names: Iterable[str], allowed: str, hint: str = "") -> None:
+    """Raise if a case has one of the named parameters."""
+    for name in names:
+        if name in values:
+            raise InvalidInputError(name, values[name], allowed, hint)
 
 
 def _check_approach(parameters: Mapping[str, Any]) -> None:
     """Raise if a case at an approach has a parameter in half-widths: this half-width follows from the solution."""
-    if "approach" not in parameters:
-        return
-    remedies = dict.fromkeys(
-        UNIFORM_CELL_PARAMETERS, "leave it out: columns are refined, to `accuracy`"
-    ) | dict.fromkeys(SCALED_POSITIONS, "leave it out: the solver chooses the points, after the half-width")
-    remedies |= {"e_over_a": "give end_distance (metres)", "load_offset": "prescribe the load instead"}
-    for name, remedy in remedies.items():
-        if name in parameters:
-            raise InvalidInputError(name, parameters[name], "left out where the approach is prescribed", remedy)
+    if "approach" in parameters:
+        allowed = "left out where the approach is prescribed"
+        _refuse(parameters, UNIFORM_CELL_PARAMETERS, allowed, "leave it out: columns are refined, to `accuracy`")
+        hint = "leave it out: the solver chooses the points, after the half-width"
+        _refuse(parameters, SCALED_POSITIONS, allowed, hint)
+        _refuse(parameters, ["e_over_a"], allowed, "give end_distance (metres)")
+        _refuse(parameters, ["load_offset"], allowed, "prescribe the load instead")
 
 
 def _body(values: Mapping[str, Any], material: Material, length: float) -> Body:
@@ -180,9 +181,7 @@ def _body(values: Mapping[str, Any], material: Material, length: float) -> Body:
 def _roller_material(values: Mapping[str, Any]) -> Material | None:
     """Material of an elastic roller, by default the body's; None for a rigid roller."""
     if values["roller_body"] == "rigid":
-        for name in ("roller_young", "roller_poisson"):
-            if name in values:
-                raise InvalidInputError(name, values[name], "left out for a rigid roller", "or give roller_body")
+        _refuse(values, ("roller_young", "roller_poisson"), "left out for a rigid roller", "or give roller_body")
         return None
     return Material(
         young=values.get("roller_young", values["young"]), poisson=values.get("roller_poisson", values["poisson"])
@@ -215,17 +214,12 @@ def _lubricant(values: Mapping[str, Any]) -> Lubricant | None:
     sources = [name for name in LUBRICANT_PAIRS if name in values]
     if len(sources) > 1:
         raise InvalidInputError(", ".join(sources), tuple(values[name] for name in sources), "one of the two")
-    required = (*sources, *(LUBRICANT_PAIRS[name] for name in sources), "entrainment_speed")
-    excluded = [
-        *LUBRICANT_PAIRS.values(),
-        *((*UNIFORM_CELL_PARAMETERS, *SCALED_POSITIONS) if sources else FILM_PARAMETERS),
-    ]
-    for name in excluded:
-        if name not in required[:-1] and values.get(name) != PARAMETERS[name].default:
-            raise InvalidInputError(name, values[name], f"left out {'for' if sources else 'without'} a film")
     if not sources:
+        _refuse(values, (*LUBRICANT_PAIRS.values(), *FILM_PARAMETERS), "left out without a film")
         return None
-    for name in required:
+    excluded = {*LUBRICANT_PAIRS.values(), *UNIFORM_CELL_PARAMETERS, *SCALED_POSITIONS} - {LUBRICANT_PAIRS[sources[0]]}
+    _refuse(without_defaults(values), sorted(excluded), "left out for a film")
+    for name in (LUBRICANT_PAIRS[sources[0]], "entrainment_speed"):
         if name not in values:
             raise InvalidInputError(name, None, f"given with {sources[0]}")
     if "lubricant" in sources:
@@ -237,18 +231,13 @@ def _stress_points(
     values: Mapping[str, Any], half_width: float, extent: tuple[float, float]
 ) -> dict[str, FloatArray | None]:
     """Stress points in metres; None along an axis where the solver chooses the points."""
-    x, y, z = (
-        half_width * checks.coordinates(name, values[name]) if name in values else None for name in SCALED_POSITIONS
-    )
+    x, y, z = (half_width * np.array(values[name]) if name in values else None for name in SCALED_POSITIONS)
     if z is not None and z.min() < 0:
         raise InvalidInputError("field_z_over_a", float(z.min() / half_width), "not below zero")
     low, high = extent
     if x is not None and not (low <= x.min() and x.max() <= high * (1 + 1e-12)):
-        raise InvalidInputError(
-            "field_x_over_a",
-            float((x.min() if x.min() < low else x.max()) / half_width),
-            f"inside the body, 0 to {high / half_width:g}",
-        )
+        outside = float((x.min() if x.min() < low else x.max()) / half_width)
+        raise InvalidInputError("field_x_over_a", outside, f"inside the body, 0 to {high / half_width:g}")
     return {"x": x, "y": y, "z": z}
 
 
@@ -272,7 +261,7 @@ def build_setup(parameters: Mapping[str, Any]) -> Setup:
             length=sizes.roller_length,
             profile=build_profile(values["profile"], sizes),
             material=roller_material,
-            ends=ROLLER_BODIES[values["roller_body"]] or "free",
+            ends="none" if values["roller_body"] == "half-space" else "free",
             reference_depth=values.get("roller_reference_depth") if roller_material else None,
         ),
         end_distance=sizes.end_distance,
@@ -281,11 +270,11 @@ def build_setup(parameters: Mapping[str, Any]) -> Setup:
         lubricant=_lubricant(values),
         **keywords_of(Case, values),
     )
-    tolerance = checks.positive("tolerance", values["tolerance"])
-    options: dict[str, Any] = _stress_points(values, sizes.half_width, case.body.extent) | keywords_of(
-        solver_settings, values
-    )
-    options["tolerance"] = tolerance
+    options: dict[str, Any] = {
+        **_stress_points(values, sizes.half_width, case.body.extent),
+        "stresses": values["stresses"],
+        "tolerance": checks.positive("tolerance", values["tolerance"]),
+    }
     stated_cells = {name: parameters[name] for name in ("accuracy", *UNIFORM_CELL_PARAMETERS) if name in parameters}
     if "accuracy" in stated_cells and len(stated_cells) > 1:
         allowed = "given as one of the two, accuracy or uniform cells"

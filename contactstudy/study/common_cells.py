@@ -147,10 +147,9 @@ class Resampling:
             with np.errstate(invalid="ignore"):
                 result = (1 - fraction) * values[cells] + fraction * values[cells + 1]
             # Next to an infinite gap linear interpolation has no value.
-            nearest = np.clip(np.searchsorted(positions, self.axis), 0, positions.size - 1)
-            if not self.has_points:
-                nearest = np.clip(np.searchsorted(self.source, self.axis) - 1, 0, positions.size - 1)
-            result = np.where(np.isfinite(result), result, values[nearest])
+            containing = np.searchsorted(self.source, self.axis) - 1
+            nearest = np.searchsorted(positions, self.axis) if self.has_points else containing
+            result = np.where(np.isfinite(result), result, values[np.clip(nearest, 0, positions.size - 1)])
         result[self.is_outside] = np.nan
         return result
 

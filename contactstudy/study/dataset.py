@@ -17,8 +17,6 @@ from contactstudy.study.folder import STATES, Folder, States
 from contactstudy.study.parameters import PARAMETERS
 from contactstudy.study.plan import label
 
-CELL_CHOICES = ("common", "original")  # Axes of surfaces and stresses: common to all cases, or of each case
-
 
 def open_study(folder: str | Path, *, cells: str = "common", chunks: Any = None) -> xr.Dataset:
     """Open the results of a study as one Dataset whose dimensions are the swept parameters.
@@ -112,7 +110,7 @@ def load_case(folder: str | Path, case_id: str) -> xr.Dataset:
 def study_dataset(folder: str | Path, *, cells: str | None) -> xr.Dataset:
     """Dataset of a study with lazy surfaces and fields; without surfaces and fields if `cells` is None."""
     if cells is not None:
-        checks.known_name("cells", cells, CELL_CHOICES)
+        checks.known_name("cells", cells, ("common", "original"))
     results = Folder(folder)
     study = results.read_study()
     states = results.states(study.plan())
@@ -128,14 +126,12 @@ def numbers_dataset(states: States) -> xr.Dataset:
     plan, cube = states.plan, states.plan.cube
     coordinates: dict[str, Any] = {}
     for name, (dim, values) in cube.labels.items():
-        if any(isinstance(value, str) for value in values):
-            column = np.asarray(["" if value is None else str(value) for value in values])
-        else:
-            column = np.asarray([np.nan if value is None else value for value in values])
+        missing = "" if any(isinstance(value, str) for value in values) else np.nan
+        column = np.asarray([missing if value is None else value for value in values])
         attributes = PARAMETERS[name].attrs if name in PARAMETERS else labels("case", coordinate=True)
         coordinates[name] = (dim, column, attributes)
     names = np.array(STATES, dtype=np.str_)
-    reasons = [states.reasons.get(index, "") for index in range(len(plan))] if states.reasons else [""] * len(plan)
+    reasons = [states.reasons.get(index, "") for index in range(len(plan))]
     variables: dict[str, Any] = {
         "status": (cube.dims, names[plan.spread(states.status, STATES.index("excluded"))]),
         "message": (cube.dims, plan.spread(np.array(reasons, dtype=np.str_), "")),

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import itertools
 import json
-import math
 import re
 import tomllib
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -152,11 +150,9 @@ class Study:
             values = check_points(argument, values)
         if isinstance(values, np.ndarray):
             values = values.tolist()
-        if isinstance(values, (str, bytes, Mapping)) or not isinstance(values, Sequence):
-            allowed = "a list of values, or for numbers a table with start, stop and count"
+        if isinstance(values, (str, bytes, Mapping)) or not isinstance(values, Sequence) or not values:
+            allowed = "a list of at least one value, or for numbers a table with start, stop and count"
             raise InvalidInputError(argument, values, allowed)
-        if not values:
-            raise InvalidInputError(argument, values, "a list of at least one value")
         column = [PARAMETERS[name].normalize(value) for value in values]
         if where == "sweep":
             entries = [label(name, value) for value in column]
@@ -270,9 +266,16 @@ class Study:
     @property
     def size(self) -> int:
         """Number of combinations and explicit cases, before any is excluded."""
-        axes = [len(values) for values in self.sweep.values()]
-        axes += [len(next(iter(group.values()))) for group in self.zip]
-        return (math.prod(axes) if axes or not self.cases else 0) + len(self.cases)
+        return self._product.products + len(self.cases)
+
+    @property
+    def _product(self) -> Plan:
+        """Plan of all combinations and explicit cases, before any is excluded."""
+        axes: list[Axis] = [tuple({name: value} for value in values) for name, values in self.sweep.items()]
+        for group in self.zip:
+            axes.append(tuple(dict(zip(group, row, strict=True)) for row in zip(*group.values(), strict=True)))
+        explicit = tuple(self.cases)
+        return Plan(name=self.name, level=self.level, base=self.base, axes=tuple(axes), explicit=explicit)
 
     def plan(self) -> Plan:
         """Cases of the study, in order; solves nothing.
@@ -283,35 +286,17 @@ class Study:
             If there are more than :data:`MAX_CASES`.
         """
         if self.size > MAX_CASES:
-            raise StudyFileError(
-                f"study {self.name!r} has {self.size} combinations, and {MAX_CASES} is the most that one study may "
-                "have: sweep fewer values, or make several studies"
-            )
-        axes: list[Axis] = [tuple({name: value} for value in values) for name, values in self.sweep.items()]
-        for group in self.zip:
-            axes.append(tuple(dict(zip(group, row, strict=True)) for row in zip(*group.values(), strict=True)))
-        cases = tuple(self.cases)
-        product = Plan(name=self.name, level=self.level, base=self.base, axes=tuple(axes), explicit=cases)
-        axis_of = {name: axis_index for axis_index, axis in enumerate(axes) for name in axis[0]}
-        steps = np.unravel_index(np.arange(product.products), product.shape) if axes and self.exclude else ()
-        # For each parameter in the rules: its labels along its axis, its labels in the explicit cases, and the index of
-        # the former labels in each combination.
-        labels: dict[str, tuple[list[Any], list[Any], IntArray]] = {}
-        for name in {name for rule in self.exclude for name in rule}:
-            shared = self.base.get(name, PARAMETERS[name].default)
-            values = [step[name] for step in axes[axis_of[name]]] if name in axis_of else [shared]
-            step = steps[axis_of[name]] if name in axis_of else np.zeros(product.products, dtype=np.int64)
-            explicit = [label(name, case.get(name, shared)) for case in cases]
-            labels[name] = ([label(name, value) for value in values], explicit, step)
-        excluded = np.zeros(product.products + len(cases), dtype=bool)
+            limit = f"and {MAX_CASES} is the most that one study may have: sweep fewer values, or make several studies"
+            raise StudyFileError(f"study {self.name!r} has {self.size} combinations, {limit}")
+        product = self._product
+        excluded = np.zeros(self.size, dtype=bool)
         unknown = []
         for rule in self.exclude:
             matching = np.ones(excluded.size, dtype=bool)
             for name, allowed in rule.items():
-                along_axis, explicit, step = labels[name]
-                matching[: product.products] &= np.array([value in allowed for value in along_axis])[step]
-                matching[product.products :] &= np.array([value in allowed for value in explicit], dtype=bool)
-                used_labels = [*(along_axis if product.products else ()), *explicit]
+                labels, codes = self._labels(product, name)
+                matching &= np.array([text in allowed for text in labels])[codes]
+                used_labels = [labels[code] for code in np.unique(codes)]
                 unknown += [
                     f"exclude.{name} = {value!r}: no case has this value, so it excludes nothing"
                     for value in allowed
@@ -319,6 +304,18 @@ class Study:
                 ]
             excluded |= matching
         return replace(product, chosen=np.flatnonzero(~excluded), unknown=tuple(dict.fromkeys(unknown)))
+
+    def _labels(self, product: Plan, name: str) -> tuple[list[Any], IntArray]:
+        """Labels of a parameter, and the index of the label of each combination and of each explicit case."""
+        shared = self.base.get(name, PARAMETERS[name].default)
+        values, codes = [shared], np.zeros(product.products, dtype=np.int64)
+        for index, axis in enumerate(product.axes):
+            if name in axis[0]:
+                values = [step[name] for step in axis]
+                codes = np.unravel_index(np.arange(product.products), product.shape)[index]
+        explicit = [case.get(name, shared) for case in self.cases]
+        all_codes = np.concatenate([codes, len(values) + np.arange(len(explicit))])
+        return [label(name, value) for value in (*values, *explicit)], all_codes
 
 
 def content_of_table(table: xr.Dataset, base: Mapping[str, Any]) -> dict[str, Any]:
@@ -361,14 +358,11 @@ def _python_value(value: Any) -> Any:
 def _rows(table: xr.Dataset, columns: Mapping[str, xr.Variable]) -> Iterable[dict[str, Any]]:
     """Yield the varying parameters of every case, in the order of the table's dimensions."""
     varying = {name: array for name, array in columns.items() if array.dims}
-    dims = [dim for dim in table.sizes if any(dim in array.dims for array in varying.values())]
-    for steps in itertools.product(*(range(table.sizes[dim]) for dim in dims)):
-        step = dict(zip(dims, steps, strict=True))
-        row = {
-            name: _python_value(array[{dim: step[dim] for dim in array.dims}].values[()])
-            for name, array in varying.items()
-        }
-        yield {name: value for name, value in row.items() if value is not None}
+    sizes = {dim: size for dim, size in table.sizes.items() if any(dim in array.dims for array in varying.values())}
+    values = [array.set_dims(sizes).transpose(*sizes).values.ravel() for array in varying.values()]
+    for row in zip(*values, strict=True):
+        python_values = zip(varying, map(_python_value, row), strict=True)
+        yield {name: value for name, value in python_values if value is not None}
 
 
 def content_of_selection(study: Study, table: xr.Dataset, base: Mapping[str, Any]) -> dict[str, Any]:
@@ -394,10 +388,12 @@ def content_of_selection(study: Study, table: xr.Dataset, base: Mapping[str, Any
     selected_product = np.ravel_multi_index(np.ix_(*steps), plan.shape).ravel()
     if np.isin(selected_product, plan.chosen).sum() != len(selected):
         return content | {"cases": cases}
-    step_iterator = iter(steps)
-    sweep = {name: [values[step] for step in next(step_iterator)] for name, values in study.sweep.items()}
-    groups = []
-    for group in study.zip:
-        group_steps = next(step_iterator)
-        groups.append({name: [values[step] for step in group_steps] for name, values in group.items()})
+    sweep = {
+        name: [values[step] for step in axis_steps]
+        for (name, values), axis_steps in zip(study.sweep.items(), steps, strict=False)
+    }
+    groups = [
+        {name: [values[step] for step in axis_steps] for name, values in group.items()}
+        for group, axis_steps in zip(study.zip, steps[len(sweep) :], strict=True)
+    ]
     return content | {"sweep": sweep, "zip": groups, "exclude": list(study.exclude)}

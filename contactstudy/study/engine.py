@@ -21,10 +21,10 @@ from typing import TYPE_CHECKING, Any
 from contactstudy import checks
 from contactstudy.arrays.variables import package_version
 from contactstudy.errors import InvalidInputError, StudyFileError
-from contactstudy.study.plan import Plan
+from contactstudy.study.plan import Plan, PlannedCase
 from contactstudy.study.settings import RUN
 from contactstudy.study.user_profiles import user_profiles
-from contactstudy.study.worker import Job, Outcome, Solver, Task, solve_task
+from contactstudy.study.worker import Outcome, Solver, Task, solve_task
 
 if TYPE_CHECKING:
     from distributed import Client, Future, LocalCluster
@@ -76,52 +76,54 @@ class Engine:
     @contextlib.contextmanager
     def client(self, cases: int, notify: Callable[[str], None]) -> Iterator[Client]:
         """Client of the scheduler, or of local processes, which end with the block; few `cases` need few processes."""
-        if self.scheduler is None:
-            cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-            with _local_client(min(cores if self.workers is None else self.workers, cases)) as local_client:
-                yield local_client
-            return
+        from dask.system import CPU_COUNT
         from distributed.comm.core import CommClosedError
 
+        if self.scheduler is None:
+            with _local_client(min(CPU_COUNT if self.workers is None else self.workers, cases)) as local_client:
+                yield local_client
+            return
         if isinstance(self.scheduler, str):
             notify(f"connecting to the dask scheduler at {self.scheduler}, for up to {RUN.start_seconds:g} s")
-        with _silent_libraries() if isinstance(self.scheduler, str) else contextlib.nullcontext():
-            client = _connect(self.scheduler) if isinstance(self.scheduler, str) else self.scheduler
-            try:
+            remote_client: contextlib.AbstractContextManager[Client] = _remote_client(self.scheduler)
+        else:
+            remote_client = contextlib.nullcontext(self.scheduler)
+        try:
+            with remote_client as client:
                 yield client
-            except (CommClosedError, TimeoutError) as error:
-                raise StudyFileError(SCHEDULER_LOST) from error
-            finally:
-                if client is not self.scheduler:
-                    with contextlib.suppress(Exception):
-                        client.close(timeout=RUN.close_seconds)
+        except (CommClosedError, TimeoutError) as error:
+            raise StudyFileError(SCHEDULER_LOST) from error
 
 
-def _connect(scheduler: str) -> Client:
+@contextlib.contextmanager
+def _remote_client(scheduler: str) -> Iterator[Client]:
     """Client of a scheduler, within a time limit: dask waits endlessly for a listener that does not answer."""
     import dask
     from distributed import Client
 
-    clients: list[Client] = []
-    errors: list[Exception] = []
+    answers: queue.SimpleQueue[Client | Exception] = queue.SimpleQueue()
 
     def connect() -> None:
         try:
             with dask.config.set(SHORT_LOGS):
-                clients.append(Client(scheduler, timeout=RUN.start_seconds))
+                answers.put(Client(scheduler, timeout=RUN.start_seconds))
         except Exception as error:
-            errors.append(error)
+            answers.put(error)
 
-    thread = threading.Thread(target=connect, daemon=True)
-    thread.start()
-    thread.join(RUN.start_seconds + RUN.close_seconds)
-    if clients:
-        return clients[0]
-    if not errors:
-        raise StudyFileError(f"no dask scheduler at {scheduler}: the listener did not answer")
-    (error,) = errors
-    reason = error if isinstance(error, (OSError, ValueError)) else type(error).__name__
-    raise StudyFileError(f"no dask scheduler answers at {scheduler}: {reason}") from error
+    with _silent_libraries():
+        threading.Thread(target=connect, daemon=True).start()
+        try:
+            client = answers.get(timeout=RUN.start_seconds + RUN.close_seconds)
+        except queue.Empty:
+            raise StudyFileError(f"no dask scheduler at {scheduler}: the listener did not answer") from None
+        if isinstance(client, Exception):
+            reason = client if isinstance(client, (OSError, ValueError)) else type(client).__name__
+            raise StudyFileError(f"no dask scheduler answers at {scheduler}: {reason}") from client
+        try:
+            yield client
+        finally:
+            with contextlib.suppress(Exception):
+                client.close(timeout=RUN.close_seconds)
 
 
 @contextlib.contextmanager
@@ -240,40 +242,38 @@ class Tasks:
         if self._returned:
             task = self._returned.popleft()
         else:
-            plan, jobs = self._plan, list[Job]()
+            plan, cases = self._plan, list[PlannedCase]()
             # Tasks of this size let all workers end at about the same time.
-            cases = RUN.task_seconds * self._cases / max(self._seconds, 1e-9)
-            limit = int(min(cases, self.remaining / (2 * max(workers, 1)))) if self._cases else 1
-            while self._groups and (not jobs or len(jobs) + len(self._groups[0]) <= limit):
-                for index in self._groups.popleft():
-                    identity, group = plan.ids[index].decode(), int(plan.groups[index])
-                    jobs.append(Job(identity, plan.describe(index), plan.parameters(index), group))
-            profiles = user_profiles([job.parameters for job in jobs])
-            task = replace(self._template, jobs=tuple(jobs), profiles=profiles)
-        self.remaining -= len(task.jobs)
+            size = RUN.task_seconds * self._cases / max(self._seconds, 1e-9)
+            limit = int(min(size, self.remaining / (2 * max(workers, 1)))) if self._cases else 1
+            while self._groups and (not cases or len(cases) + len(self._groups[0]) <= limit):
+                cases += [plan[index] for index in self._groups.popleft()]
+            profiles = user_profiles([case.parameters for case in cases])
+            task = replace(self._template, cases=tuple(cases), profiles=profiles)
+        self.remaining -= len(task.cases)
         return task
 
     def record(self, cases: int, seconds: float) -> None:
         """Add the time of a finished task."""
         self._seconds, self._cases = self._seconds + seconds, self._cases + cases
 
-    def return_task(self, task: Task, *, died: bool) -> list[Job]:
-        """Return a task to the queue, as single cases if its worker died; returns jobs with which two workers died."""
-        failed = [job for job in task.jobs if died and job.id in self._suspect_cases]
-        jobs = [job for job in task.jobs if job not in failed]
+    def return_task(self, task: Task, *, died: bool) -> list[PlannedCase]:
+        """Return a task to the queue, as single cases if its worker died; returns cases with which two workers died."""
+        failed = [case for case in task.cases if died and case.id in self._suspect_cases]
+        cases = [case for case in task.cases if case not in failed]
         if died:
-            self._suspect_cases.update(job.id for job in jobs)
-        job_sets = [(job,) for job in jobs] if died else [tuple(jobs)]
-        self._returned.extend(replace(task, jobs=job_set) for job_set in job_sets if job_set)
-        self.remaining += len(jobs)
+            self._suspect_cases.update(case.id for case in cases)
+        case_sets = [(case,) for case in cases] if died else [tuple(cases)]
+        self._returned.extend(replace(task, cases=case_set) for case_set in case_sets if case_set)
+        self.remaining += len(cases)
         return failed
 
 
-TaskResults = Generator[tuple[list[Job], list[Outcome]], None, None]
+TaskResults = Generator[list[Outcome], None, None]
 
 
 def execute(tasks: Tasks, engine: Engine, notify: Callable[[str], None] = print) -> TaskResults:
-    """Solve tasks and yield the jobs and outcomes of each finished task; `notify` takes messages for the user."""
+    """Solve tasks and yield the outcomes of each finished task; `notify` takes messages for the user."""
     if not tasks:
         return
     if engine.scheduler is None and engine.workers == 0:
@@ -282,7 +282,7 @@ def execute(tasks: Tasks, engine: Engine, notify: Callable[[str], None] = print)
             start_time = time.monotonic()
             outcomes = solve_task(task, engine.solver)
             tasks.record(len(outcomes), time.monotonic() - start_time)
-            yield list(task.jobs), outcomes
+            yield outcomes
         return
     with engine.client(tasks.remaining, notify) as client:
         yield from _distribute(client, Workers(client, engine.wait, notify), tasks, engine.solver)
@@ -375,7 +375,7 @@ def _distribute(client: Client, workers: Workers, tasks: Tasks, solver: Solver |
             if future.status == "finished":
                 outcomes = future.result()
                 tasks.record(len(outcomes), time.monotonic() - start_time)
-                yield list(task.jobs), outcomes
+                yield outcomes
             elif future.status in ("cancelled", "lost"):
                 raise StudyFileError(SCHEDULER_LOST)
             elif isinstance(error, ImportError):
@@ -385,8 +385,7 @@ def _distribute(client: Client, workers: Workers, tasks: Tasks, solver: Solver |
                 raise error
             else:
                 message = "WorkerDied: a second worker process died while it solved this case alone"
-                jobs = tasks.return_task(task, died=True)
-                yield jobs, [Outcome(job.id, "failed", 0.0, message) for job in jobs]
+                yield [Outcome(case, "failed", message) for case in tasks.return_task(task, died=True)]
             future.release()
     finally:
         with contextlib.suppress(Exception):

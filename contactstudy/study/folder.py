@@ -10,6 +10,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from functools import cached_property, partial, reduce
+from itertools import chain, count
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -27,6 +28,7 @@ from contactstudy.errors import InvalidInputError, LockedError, StoreError, Stud
 from contactstudy.study.batches import (
     CASE_ATTRIBUTE,
     STATUSES,
+    TEXT_COLUMNS,
     Batch,
     batch_paths,
     common_attributes,
@@ -43,7 +45,7 @@ from contactstudy.study.files import UNFINISHED, is_regular, write_text
 from contactstudy.study.plan import LEVELS, Plan
 from contactstudy.study.profile_tables import check_without_files
 from contactstudy.study.settings import RUN
-from contactstudy.study.user_profiles import are_registered
+from contactstudy.study.user_profiles import user_profiles
 from contactstudy.study.worker import group_by_structure
 
 SCHEMA = 2  # Version of the format of study.json
@@ -99,7 +101,6 @@ class Results:
             except StoreError as error:
                 if path.exists() or path.is_symlink():  # another run may have joined the batch meanwhile
                     self.damaged[path] = str(error)
-        self._batches_with_texts: dict[int, Batch] = {}
 
     @cached_property
     def locations(self) -> dict[bytes, Location]:
@@ -112,18 +113,10 @@ class Results:
                     locations[identity] = Location(batch_index, row)
         return locations
 
-    @property
-    def latest_run(self) -> int:
-        """Largest number of a run; 0 without results."""
-        return max((int(batch.runs.max()) for batch in self.batches if len(batch)), default=0)
-
-    def batch_with_texts(self, batch_index: int) -> Batch:
-        """Batch with its texts: parameters, warnings and times."""
-        if batch_index not in self._batches_with_texts:
-            self._batches_with_texts[batch_index] = read_batch(
-                self.paths[batch_index], texts=("parameters", "message", "warnings", "time")
-            )
-        return self._batches_with_texts[batch_index]
+    @cached_property
+    def batches_with_texts(self) -> list[Batch]:
+        """Batches with the texts of their cases: parameters, messages, warnings and times."""
+        return [read_batch(path, texts=TEXT_COLUMNS) for path in self.paths]
 
     def case(self, identity: str, names: Iterable[str] | None = None) -> xr.Dataset:
         """Return one solved case on its cells, with all arrays or only the named arrays."""
@@ -132,11 +125,11 @@ class Results:
             raise InvalidInputError("case_id", identity, "that of a solved case of the study")
         case = read_case(self.paths[location.batch], location.row, names)
         parameters = json.loads(case.attrs[CASE_ATTRIBUTE])
-        if are_registered(parameters):
-            with contextlib.suppress(InvalidInputError):  # parameters of another version
-                setup = build_setup(parameters)
-                settings = {name: setup.options[name] for name in ("tolerance", "accuracy") if name in setup.options}
-                case.attrs[INPUTS_ATTRIBUTE] = json.dumps({"case": to_dict(setup.case), "settings": settings})
+        with contextlib.suppress(InvalidInputError):  # parameters of another version, or an unknown user's profile
+            user_profiles(parameters)
+            setup = build_setup(parameters)
+            settings = {name: setup.options[name] for name in ("tolerance", "accuracy") if name in setup.options}
+            case.attrs[INPUTS_ATTRIBUTE] = json.dumps({"case": to_dict(setup.case), "settings": settings})
         return case
 
     def state(self, identity: bytes, level: str) -> tuple[str, str, bool]:
@@ -171,9 +164,7 @@ class States:
             if reason := plan.reason(index):
                 status, usable = "skipped", False
             else:
-                status, reason, usable = (
-                    results.state(identity, plan.level) if results.batches else ("missing", "", False)
-                )
+                status, reason, usable = results.state(identity, plan.level)
                 if status == "missing" and damage:
                     reason = damage
             self.status[index], self.usable[index] = STATES.index(status), usable
@@ -185,6 +176,11 @@ class States:
         """Number of cases of each status that occurs."""
         counts = np.bincount(self.status, minlength=len(STATES))
         return {state: int(count) for state, count in zip(STATES, counts, strict=True) if count}
+
+    @property
+    def summary(self) -> str:
+        """Number of cases of each status, for messages."""
+        return ", ".join(f"{count} {state}" for state, count in self.counts.items())
 
     def indices(self, *statuses: str) -> list[int]:
         """Numbers in the plan of the cases with one of the `statuses`."""
@@ -220,7 +216,7 @@ class States:
         batch_index, row = (int(values[index]) for values in self.locations)
         if batch_index < 0:
             return Entry(status, reason)
-        batch = self.results.batch_with_texts(batch_index)
+        batch = self.results.batches_with_texts[batch_index]
         numbers = {name: float(column[row]) for name, column in batch.numbers.items() if not np.isnan(column[row])}
         return Entry(status, reason, numbers, batch.run(row))
 
@@ -240,10 +236,8 @@ class Folder:
         """Make the folder, or raise :class:`StoreError`."""
         if self.batches.is_symlink():
             raise StoreError(f"{self.batches} is a link, and a study writes into folders: delete it")
-        try:
+        with checks.store_errors(f"make {self.batches}"):
             self.batches.mkdir(parents=True, exist_ok=True)
-        except OSError as error:
-            raise StoreError(f"cannot make {self.batches}: {error.strerror or error}") from error
 
     def write_study(self, study: Study) -> None:
         """Write the definition of the study; a folder belongs to one study, which may grow."""
@@ -257,23 +251,23 @@ class Folder:
     def read_study(self) -> Study:
         """Return the definition of the study, or raise :class:`StudyFileError`."""
         path = self.path / "study.json"
+        if path.exists() and not is_regular(path):
+            raise StudyFileError(f"{path} is not a regular file")
         try:
-            if path.exists() and not is_regular(path):
-                raise StudyFileError(f"{path} is not a regular file")
             content = json.loads(path.read_text(encoding="utf-8"))
-        except OSError as error:
-            reason = "without study.json; give the folder that `contactstudy run` wrote, such as results/NAME"
+        except (OSError, ValueError, RecursionError) as error:
+            remedy = "give the folder that `contactstudy run` wrote, such as results/NAME"
             if not self.path.exists():
                 reason = "it does not exist"
             elif self.path.is_file():
-                reason = "it is a file; give the folder that `contactstudy run` wrote, such as results/NAME"
-            elif path.exists():
-                reason = f"study.json: {error.strerror}"
+                reason = f"it is a file; {remedy}"
+            elif not path.exists():
+                reason = f"without study.json; {remedy}"
+            elif isinstance(error, RecursionError):
+                reason = "study.json: nested too deeply for a study"
+            else:
+                reason = f"study.json: {getattr(error, 'strerror', None) or error}"
             raise StudyFileError(f"{self.path} is not the folder of a study: {reason}") from error
-        except ValueError as error:
-            raise StudyFileError(f"{self.path} is not the folder of a study: study.json: {error}") from error
-        except RecursionError:
-            raise StudyFileError(f"{path}: nested too deeply for a study") from None
         try:
             if isinstance(content, dict) and (schema := content.pop("schema", None)) != SCHEMA:
                 raise InvalidInputError("schema", schema, f"{SCHEMA}: another version of the package wrote the folder")
@@ -301,7 +295,7 @@ class Folder:
     def _hold(self, name: str, seconds: float) -> Iterator[None]:
         """Hold a lock; wait for some seconds."""
         path = self.path / f"{name}.lock"
-        if path.is_symlink() or (path.exists() and not is_regular(path)):
+        if os.path.lexists(path) and not is_regular(path):
             raise LockedError(f"{path} is not a regular file: delete it if no run uses {self.path}")
         lock = FileLock(path, timeout=seconds)
         try:
@@ -350,17 +344,13 @@ class Folder:
     def set_aside(self, path: Path) -> Path:
         """Move a damaged or foreign file to ``set-aside``; return its new path."""
         folder = self.path / "set-aside"
-        try:
-            if folder.is_symlink():
-                raise StoreError(f"{folder} is a link: delete it")
+        if folder.is_symlink():
+            raise StoreError(f"{folder} is a link: delete it")
+        with checks.store_errors(f"move {path}"):
             folder.mkdir(exist_ok=True)
-            target, suffix_number = folder / path.name, 1
-            while target.exists() or target.is_symlink():
-                suffix_number += 1
-                target = folder / f"{path.stem}-{suffix_number}{path.suffix}"
+            names = chain([path.name], (f"{path.stem}-{number}{path.suffix}" for number in count(2)))
+            target = next(folder / name for name in names if not os.path.lexists(folder / name))
             os.replace(path, target)
-        except OSError as error:
-            raise StoreError(f"cannot move {path}: {error.strerror or error}") from error
         return target
 
     def results(self) -> Results:

@@ -1,8 +1,8 @@
 """The parameters of a study's case, in one table: name, check, unit, meaning, and the function that uses the parameter.
 
-A new parameter is one entry of :data:`PARAMETERS` if `Case`, `choose_grid` or `solver_settings` has a keyword of the
-same name: the signature contains the default, and the function receives the value. Every other parameter is used by
-name in `contactstudy.study.case_setup.build_setup`. The identity of a case is a hash of its normalised parameters.
+A new parameter is one entry of :data:`PARAMETERS` if `Case` or `choose_grid` has a keyword of the same name: the
+signature contains the default, and the function receives the value. Every other parameter is used by name in
+`contactstudy.study.case_setup.build_setup`. The identity of a case is a hash of its normalised parameters.
 """
 
 from __future__ import annotations
@@ -11,9 +11,8 @@ import hashlib
 import inspect
 import json
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
-from functools import cached_property
-from typing import Any
+from functools import cache
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -22,32 +21,19 @@ from contactstudy.arrays.vocabulary import COORDINATES
 from contactstudy.bodies.lubricant import OILS
 from contactstudy.bodies.models import MODELS
 from contactstudy.case.case import Case
-from contactstudy.case.gridding import ACCURACY, choose_grid, solver_settings
+from contactstudy.case.gridding import ACCURACY, TOLERANCE, choose_grid
 from contactstudy.case.motion import MODELS as ROLLING_MODELS
 from contactstudy.errors import InvalidInputError
 from contactstudy.study.profile_tables import check_number, profile_table
 
 MAX_POINTS = 100_000  # Largest number of points of a table {start, stop, count}
 SCHEMA = 1  # Version of the parameters' meanings; raised only if a parameter changes its meaning
-MOTIONS = ("sliding", "shift", "rolling")  # Motions by name, the default first
-Check = Callable[[str, object], Any]
 
 
 def check_flag(name: str, value: object) -> bool:
     """Return True or False."""
     checks.instance(name, value, (bool, np.bool_), "true or false")
     return bool(value)
-
-
-def one_of(allowed_words: Iterable[str]) -> Check:
-    """Return a check that a value is one of the allowed words."""
-    names = tuple(allowed_words)
-
-    def check_word(name: str, value: object) -> str:
-        checks.instance(name, value, str, "text")
-        return checks.known_name(name, str(value), names)
-
-    return check_word
 
 
 def check_positive(name: str, value: object) -> float:
@@ -73,17 +59,23 @@ def check_points(name: str, value: object) -> list[float]:
     return [check_number(name, point) for point in positions.tolist()]
 
 
-@dataclass(frozen=True, kw_only=True)
-class Parameter:
+@cache
+def _keyword_default(function: Callable[..., Any], name: str) -> Any:
+    """Return the default of a keyword argument; finding it takes longer than checking a case."""
+    return inspect.signature(function).parameters[name].default
+
+
+class Parameter(NamedTuple):
     """Specification of one parameter."""
 
     name: str
-    check: Check = check_number  # from name and value to the normalised value for identities, or raises
-    units: str = ""  # empty for a word
+    units: str  # empty for a word
     meaning: str  # comment of the coordinate, and the documentation
+    absent: str = ""  # meaning of a missing parameter without a default, for the documentation
+    check: Callable[[str, object], Any] = check_number  # from name and value to the value for identities, or raises
+    words: tuple[str, ...] = ()  # allowed words; the first is the default unless `absent` has another meaning
     consumer: Callable[..., Any] | None = None  # function with a keyword of this name, whose default is the default
     fallback: Any = None  # default without a consumer; None: required or optional
-    absent: str = ""  # meaning of a missing parameter without a default, for the documentation
     note: str = ""  # addition to the meaning, for the documentation
     label: str = ""  # long name of the coordinate, short enough for an axis; default: a result's long name, or `name`
 
@@ -96,276 +88,182 @@ class Parameter:
 
     def normalize(self, value: object) -> Any:
         """Return a value in the normalised form of identities; a scalar with another unit is converted."""
-        return self.check(self.name, checks.scalar(self.name, value, self.units))
+        value = checks.scalar(self.name, value, self.units)
+        if not self.words:
+            return self.check(self.name, value)
+        checks.instance(self.name, value, str, "text")
+        return checks.known_name(self.name, str(value), self.words)
 
-    @cached_property
+    @property
     def default(self) -> Any:
         """Value of a case without the parameter; None if it is required or optional."""
-        value = self.fallback
-        if self.consumer is not None:
-            value = inspect.signature(self.consumer).parameters[self.name].default
+        if self.words:
+            return None if self.absent else self.words[0]
+        value = self.fallback if self.consumer is None else _keyword_default(self.consumer, self.name)
         return None if value is None else self.check(self.name, value)
 
 
 UNIFORM_CELL_PARAMETERS = ("cells_x", "cells_y", "window", "margin")  # a case with one has uniform cells
 
-BODIES = ("finite-length", "quarter-space", "half-space")
-
-# Ends of the roller by the name of its body; None for a rigid roller.
-ROLLER_BODIES: dict[str, str | None] = {"rigid": None, "finite-length": "free", "half-space": "none"}
-
 _PARAMETERS = (
     Parameter(
-        name="body",
-        check=one_of(BODIES),
-        meaning="kind of elastic body",
-        fallback=BODIES[0],
+        "body",
+        "",
+        "kind of elastic body",
+        words=("finite-length", "quarter-space", "half-space"),
         note="`finite-length`, `quarter-space` (one free end, at x = 0) or `half-space`",
     ),
     Parameter(
-        name="model",
-        check=one_of(MODELS),
-        meaning="model of the free ends",
+        "model",
+        "",
+        "model of the free ends",
+        words=MODELS,
         label="model of the free ends",
-        fallback=MODELS[0],
         note="`exact`; for comparison `mirror` and `mirror-factor`, quick fixes in use, and `single-mirror` (two ends "
         "only), the published scheme with one pair of images",
     ),
+    Parameter("young", "Pa", "Young's modulus of the body", "required", label="Young's modulus"),
+    Parameter("poisson", "1", "Poisson's ratio of the body", "required", label="Poisson's ratio"),
+    Parameter("radius", "m", "roller radius", "required"),
+    Parameter("roller_length", "m", "roller length; the body is longer by 2 e", "or `gamma`"),
+    Parameter("gamma", "1", "body length over roller radius; the roller is shorter by 2 e", "or `roller_length`"),
     Parameter(
-        name="young", units="Pa", meaning="Young's modulus of the body", absent="required", label="Young's modulus"
+        "e_over_a", "1", COORDINATES["e_over_a"].comment, "or `end_distance`", note="negative: the roller overhangs"
     ),
+    Parameter("end_distance", "m", "distance e of roller end and free end", "or `e_over_a`"),
     Parameter(
-        name="poisson", units="1", meaning="Poisson's ratio of the body", absent="required", label="Poisson's ratio"
-    ),
-    Parameter(name="radius", units="m", meaning="roller radius", absent="required"),
-    Parameter(name="roller_length", units="m", meaning="roller length; the body is longer by 2 e", absent="or `gamma`"),
-    Parameter(
-        name="gamma",
-        units="1",
-        meaning="body length over roller radius; the roller is shorter by 2 e",
-        absent="or `roller_length`",
-    ),
-    Parameter(
-        name="e_over_a",
-        units="1",
-        meaning=COORDINATES["e_over_a"].comment,
-        absent="or `end_distance`",
-        note="negative: the roller overhangs",
-    ),
-    Parameter(name="end_distance", units="m", meaning="distance e of roller end and free end", absent="or `e_over_a`"),
-    Parameter(
-        name="max_pressure",
-        units="Pa",
-        meaning="peak pressure p0 of the Hertz line contact",
+        "max_pressure",
+        "Pa",
+        "peak pressure p0 of the Hertz line contact",
+        "or `load`",
         consumer=Case,
-        absent="or `load`",
         label="Hertz pressure p0",
     ),
+    Parameter("load", "N", "normal load", "or `max_pressure`", consumer=Case, label="normal load"),
     Parameter(
-        name="load", units="N", meaning="normal load", consumer=Case, absent="or `max_pressure`", label="normal load"
-    ),
-    Parameter(
-        name="approach",
-        units="m",
-        meaning="approach at mid-length, from first contact without tilt",
+        "approach",
+        "m",
+        "approach at mid-length, from first contact without tilt",
+        "or `load`",
         consumer=Case,
-        absent="or `load`",
         note="load and a result: give `end_distance`, and leave out uniform cells and stress points, which are over a",
     ),
-    Parameter(name="friction", units="1", meaning="coefficient of friction", consumer=Case),
+    Parameter("friction", "1", "coefficient of friction", consumer=Case),
     Parameter(
-        name="profile",
-        check=lambda _, value: profile_table(value),
-        meaning="roller profile",
-        fallback={"kind": "cylinder"},
+        "profile", "", "roller profile", check=lambda _, value: profile_table(value), fallback={"kind": "cylinder"}
     ),
     Parameter(
-        name="roller_body",
-        check=one_of(ROLLER_BODIES),
-        meaning="roller as a rigid shape or as an elastic body",
-        fallback="rigid",
+        "roller_body",
+        "",
+        "roller as a rigid shape or as an elastic body",
+        words=("rigid", "finite-length", "half-space"),
         note="`rigid`; `finite-length`, with free ends; or `half-space`",
     ),
     Parameter(
-        name="roller_young",
-        units="Pa",
-        meaning="Young's modulus of an elastic roller",
-        absent="the body's",
-        label="roller's Young's modulus",
+        "roller_young", "Pa", "Young's modulus of an elastic roller", "the body's", label="roller's Young's modulus"
     ),
     Parameter(
-        name="roller_poisson",
-        units="1",
-        meaning="Poisson's ratio of an elastic roller",
-        absent="the body's",
-        label="roller's Poisson's ratio",
+        "roller_poisson", "1", "Poisson's ratio of an elastic roller", "the body's", label="roller's Poisson's ratio"
     ),
     Parameter(
-        name="reference_depth",
-        units="m",
-        meaning="depth of the material line below the load to which approach and tilt refer",
-        absent="one length between free ends, else far away",
+        "reference_depth",
+        "m",
+        "depth of the material line below the load to which approach and tilt refer",
+        "one length between free ends, else far away",
     ),
     Parameter(
-        name="roller_reference_depth",
-        units="m",
-        meaning="distance from the contact to the reference line of an elastic roller",
-        absent="the roller's length with free ends, else far away",
+        "roller_reference_depth",
+        "m",
+        "distance from the contact to the reference line of an elastic roller",
+        "the roller's length with free ends, else far away",
     ),
+    Parameter("tilt", "rad", "misalignment of the roller; positive if larger x is pressed deeper", consumer=Case),
     Parameter(
-        name="tilt",
-        units="rad",
-        meaning="misalignment of the roller; positive if larger x is pressed deeper",
-        consumer=Case,
-    ),
-    Parameter(
-        name="load_offset",
-        units="m",
-        meaning="position of the load, from mid-length",
-        absent="the tilt is prescribed",
+        "load_offset",
+        "m",
+        "position of the load, from mid-length",
+        "the tilt is prescribed",
         note="the roller tilts until it balances",
     ),
+    Parameter("coupled", "1", "whether friction displaces the surface normally", check=check_flag, consumer=Case),
     Parameter(
-        name="coupled",
-        check=check_flag,
-        units="1",
-        meaning="whether friction displaces the surface normally",
-        consumer=Case,
-    ),
-    Parameter(
-        name="motion",
-        check=one_of(MOTIONS),
-        meaning="motion of the roller against the body",
-        fallback=MOTIONS[0],
+        "motion",
+        "",
+        "motion of the roller against the body",
+        words=("sliding", "shift", "rolling"),
         note="`sliding` fully; `shift`, one from rest, or `rolling`, steady, both with stick and slip",
     ),
     Parameter(
-        name="longitudinal_creepage",
-        units="1",
-        meaning="velocity of the roller's surface against the body along y over the rolling speed",
-        absent="0",
+        "longitudinal_creepage",
+        "1",
+        "velocity of the roller's surface against the body along y over the rolling speed",
+        "0",
         note="rolling only; or `force_y`",
     ),
+    Parameter("lateral_creepage", "1", "the same along x", "0", note="rolling only; or `force_x`"),
     Parameter(
-        name="lateral_creepage", units="1", meaning="the same along x", absent="0", note="rolling only; or `force_x`"
+        "spin", "rad/m", "angular velocity about z over the rolling speed", "0", note="rolling only; or `moment_z`"
     ),
+    Parameter("shift_x", "m", "rigid shift along x", "0", note="shift only; or `force_x`"),
+    Parameter("shift_y", "m", "rigid shift along y", "0", note="shift only; or `force_y`"),
+    Parameter("force_x", "N", "force on the body along x", "follows", note="shift or rolling; less than slides"),
+    Parameter("force_y", "N", "force on the body along y", "follows", note="shift or rolling"),
+    Parameter("moment_z", "N m", "moment on the body about the roller's middle", "follows", note="rolling only"),
     Parameter(
-        name="spin",
-        units="rad/m",
-        meaning="angular velocity about z over the rolling speed",
-        absent="0",
-        note="rolling only; or `moment_z`",
-    ),
-    Parameter(name="shift_x", units="m", meaning="rigid shift along x", absent="0", note="shift only; or `force_x`"),
-    Parameter(name="shift_y", units="m", meaning="rigid shift along y", absent="0", note="shift only; or `force_y`"),
-    Parameter(
-        name="force_x",
-        units="N",
-        meaning="force on the body along x",
-        absent="follows",
-        note="shift or rolling; less than slides",
-    ),
-    Parameter(
-        name="force_y", units="N", meaning="force on the body along y", absent="follows", note="shift or rolling"
-    ),
-    Parameter(
-        name="moment_z",
-        units="N m",
-        meaning="moment on the body about the roller's middle",
-        absent="follows",
-        note="rolling only",
-    ),
-    Parameter(
-        name="rolling_model",
-        check=one_of(ROLLING_MODELS),
-        meaning="model of the tractions of rolling",
-        fallback=ROLLING_MODELS[0],
+        "rolling_model",
+        "",
+        "model of the tractions of rolling",
+        words=ROLLING_MODELS,
         note="`exact`; for comparison `fastsim`, strips without an influence of neighbours and free ends",
     ),
+    Parameter("lubricant", "", "oil of a film between the surfaces", "or `viscosity`; dry", words=tuple(OILS)),
+    Parameter("temperature", "degC", "temperature of the oil in the inlet", "with `lubricant`"),
+    Parameter("viscosity", "Pa s", "viscosity at ambient pressure", "or `lubricant`; dry", check=check_positive),
+    Parameter("pressure_viscosity", "Pa-1", "pressure-viscosity coefficient", "with `viscosity`", check=check_positive),
     Parameter(
-        name="lubricant", check=one_of(OILS), meaning="oil of a film between the surfaces", absent="or `viscosity`; dry"
-    ),
-    Parameter(
-        name="temperature", units="degC", meaning="temperature of the oil in the inlet", absent="with `lubricant`"
-    ),
-    Parameter(
-        name="viscosity",
+        "entrainment_speed",
+        "m s-1",
+        "mean speed of both surfaces along +y",
+        "required for a film",
         check=check_positive,
-        units="Pa s",
-        meaning="viscosity at ambient pressure",
-        absent="or `lubricant`; dry",
     ),
+    Parameter("slide_roll_ratio", "1", "difference of the speeds over their mean", "0"),
+    Parameter("roughness_rms", "m", "composite rms roughness", "smooth", check=check_positive),
     Parameter(
-        name="pressure_viscosity",
-        check=check_positive,
-        units="Pa-1",
-        meaning="pressure-viscosity coefficient",
-        absent="with `viscosity`",
-    ),
-    Parameter(
-        name="entrainment_speed",
-        check=check_positive,
-        units="m s-1",
-        meaning="mean speed of both surfaces along +y",
-        absent="required for a film",
-    ),
-    Parameter(name="slide_roll_ratio", units="1", meaning="difference of the speeds over their mean", absent="0"),
-    Parameter(
-        name="roughness_rms", check=check_positive, units="m", meaning="composite rms roughness", absent="smooth"
-    ),
-    Parameter(
-        name="accuracy",
-        units="1",
-        meaning="error over the peak to which peak, end pressures and end loads are settled",
-        absent=f"{ACCURACY:g}",
+        "accuracy",
+        "1",
+        "error over the peak to which peak, end pressures and end loads are settled",
+        f"{ACCURACY:g}",
         note="columns are refined to it; a case with parameters of uniform cells has none",
     ),
+    Parameter("cells_x", "1", "cells per half-width a along x", consumer=choose_grid, note="uniform cells"),
+    Parameter("cells_y", "1", "cells per half-width a along y", consumer=choose_grid, note="uniform cells"),
     Parameter(
-        name="cells_x", units="1", meaning="cells per half-width a along x", consumer=choose_grid, note="uniform cells"
-    ),
-    Parameter(
-        name="cells_y", units="1", meaning="cells per half-width a along y", consumer=choose_grid, note="uniform cells"
-    ),
-    Parameter(
-        name="window",
-        units="1",
-        meaning="half-width of the window in y over a",
+        "window",
+        "1",
+        "half-width of the window in y over a",
         consumer=choose_grid,
         note="uniform cells; the default is widened where the contact needs more; any other value is fixed",
     ),
     Parameter(
-        name="margin",
-        units="1",
-        meaning="distance from roller to grid edge over a, where the body goes on",
+        "margin",
+        "1",
+        "distance from roller to grid edge over a, where the body goes on",
         consumer=choose_grid,
         note="uniform cells",
     ),
-    Parameter(name="tolerance", units="1", meaning="tolerance of the contact iteration", consumer=solver_settings),
+    Parameter("tolerance", "1", "tolerance of the contact iteration", fallback=TOLERANCE),
+    Parameter("stresses", "1", "whether stresses are calculated", check=check_flag, fallback=True),
     Parameter(
-        name="stresses",
-        check=check_flag,
-        units="1",
-        meaning="whether stresses are calculated",
-        consumer=solver_settings,
-    ),
-    Parameter(
-        name="field_x_over_a",
+        "field_x_over_a",
+        "1",
+        "stress points: x from the free end over a",
+        "from face to face",
         check=check_points,
-        units="1",
-        meaning="stress points: x from the free end over a",
-        absent="from face to face",
         note="a list, or `{start, stop, count}`",
     ),
-    Parameter(
-        name="field_y_over_a", check=check_points, units="1", meaning="stress points: y over a", absent="cell centres"
-    ),
-    Parameter(
-        name="field_z_over_a",
-        check=check_points,
-        units="1",
-        meaning="stress points: depth over a",
-        absent="about 23 depths to 5 a",
-    ),
+    Parameter("field_y_over_a", "1", "stress points: y over a", "cell centres", check=check_points),
+    Parameter("field_z_over_a", "1", "stress points: depth over a", "about 23 depths to 5 a", check=check_points),
 )
 PARAMETERS: dict[str, Parameter] = {entry.name: entry for entry in _PARAMETERS}  # of a case, by name
 REQUIRED = (  # Groups of parameters; every case has exactly one parameter of each group
@@ -415,7 +313,8 @@ def without_defaults(values: Mapping[str, Any]) -> dict[str, Any]:
 
 def with_defaults(values: Mapping[str, Any]) -> dict[str, Any]:
     """Return `values` completed by the defaults."""
-    return {name: entry.default for name, entry in PARAMETERS.items() if entry.default is not None} | dict(values)
+    defaults = {name: entry.default for name, entry in PARAMETERS.items() if name not in values}
+    return {name: default for name, default in defaults.items() if default is not None} | dict(values)
 
 
 def identity_fragment(name: str, value: Any) -> str:

@@ -16,12 +16,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
+import pandas as pd
 
 from contactstudy.arrays.engineering import format_quantity
 from contactstudy.case.magnitudes import describe_unusual_friction, list_unusual_magnitudes
 from contactstudy.checks import IntArray
 from contactstudy.errors import ContactStudyError
-from contactstudy.study.case_setup import Setup, build_setup
+from contactstudy.study.case_setup import build_setup
 from contactstudy.study.parameters import (
     PARAMETERS,
     add_default_accuracy,
@@ -45,17 +46,18 @@ Axis = tuple[dict[str, Any], ...]  # a factor of the product of a study: the par
 
 @dataclass(frozen=True)
 class Cube:
-    """Dimensions of a study's Dataset; `labels` has the dimension and the values of each coordinate."""
+    """Dimensions of a study's Dataset."""
 
     dims: tuple[str, ...]
     shape: tuple[int, ...]
-    labels: dict[str, tuple[str, list[Any]]]
+    labels: dict[str, tuple[str, list[Any]]]  # dimension and values of each coordinate
+    indices: IntArray  # number of each case in the flattened cube
 
 
-def cube_of_axes(axes: Sequence[Axis]) -> Cube:
+def cube_of_axes(axes: Sequence[Axis], chosen: IntArray) -> Cube:
     """Cube of a product, one dimension per axis; zipped parameters are named after the first with distinct values."""
     if not axes:
-        return Cube(("case",), (1,), {"case": ("case", [0])})
+        return Cube(("case",), (1,), {"case": ("case", [0])}, chosen)
     dims, shape, labels = [], [], {}
     for axis in axes:
         columns = {name: [label(name, entry[name]) for entry in axis] for name in axis[0]}
@@ -67,11 +69,11 @@ def cube_of_axes(axes: Sequence[Axis]) -> Cube:
             labels[name] = (dim, column)
         dims.append(dim)
         shape.append(len(axis))
-    return Cube(tuple(dims), tuple(shape), labels)
+    return Cube(tuple(dims), tuple(shape), labels, chosen)
 
 
-def cube_of_cases(cases: Sequence[Mapping[str, Any]]) -> tuple[Cube, list[tuple[int, ...]]]:
-    """Cube of explicit cases over the parameters that differ, or along `case` if sparse, and each case's position."""
+def cube_of_cases(cases: Sequence[Mapping[str, Any]]) -> Cube:
+    """Cube of explicit cases over the parameters that differ, or along `case` if sparse."""
     names = list(dict.fromkeys(name for case in cases for name in case))
     rows = [{name: label(name, case.get(name)) if name in case else None for name in names} for case in cases]
     columns = {name: list(dict.fromkeys(row[name] for row in rows)) for name in names}
@@ -81,12 +83,12 @@ def cube_of_cases(cases: Sequence[Mapping[str, Any]]) -> tuple[Cube, list[tuple[
     indices = {name: {value: index for index, value in enumerate(column)} for name, column in varying.items()}
     positions = [tuple(indices[name][row[name]] for name in varying) for row in rows]
     if varying and complete and cells <= MAX_CUBE_CELLS * len(cases) and len(set(positions)) == len(positions):
+        shape = tuple(len(column) for column in varying.values())
         labels = {name: (name, column) for name, column in varying.items()}
-        return Cube(tuple(varying), tuple(len(column) for column in varying.values()), labels), positions
+        return Cube(tuple(varying), shape, labels, np.ravel_multi_index(tuple(np.array(positions).T), shape))
     labels = {"case": ("case", list(range(len(cases))))}
-    for name in varying:
-        labels[name] = ("case", [row[name] for row in rows])
-    return Cube(("case",), (len(cases),), labels), [(index,) for index in range(len(cases))]
+    labels |= {name: ("case", [row[name] for row in rows]) for name in varying}
+    return Cube(("case",), (len(cases),), labels, np.arange(len(cases)))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -98,6 +100,7 @@ class PlannedCase:
     parameters: dict[str, Any]  # checked, without defaults
     name: str  # swept parameters in words
     position: tuple[int, ...]  # in the study's Dataset
+    group: int  # number of the group, whose cases share a contact
     reason: str = ""  # why the plan skips the case, or empty
 
 
@@ -105,8 +108,7 @@ class Review(NamedTuple):
     """Result of setting up one case of each group, or of a sample of the groups."""
 
     reasons: dict[int, str]  # why a group cannot be solved
-    # warnings of values outside the usual range, with the number of groups
-    doubts: Counter[str]
+    doubts: Counter[str]  # warnings of values outside the usual range, with the number of groups
     checked: int  # groups that were set up
     groups: int
     cells: float  # mean per case
@@ -134,14 +136,13 @@ class Plan(Sequence[PlannedCase]):
         if isinstance(index, slice):
             return [self[case_index] for case_index in range(*index.indices(len(self)))]
         case_index = range(len(self))[index]
-        position = tuple(map(int, np.unravel_index(self.cube_indices[case_index], self.cube.shape)))
-        parameters, identity = self.parameters(case_index), self.ids[case_index].decode()
         return PlannedCase(
             index=case_index,
-            id=identity,
-            parameters=parameters,
+            id=self.ids[case_index].decode(),
+            parameters=self.parameters(case_index),
             name=self.describe(case_index),
-            position=position,
+            group=int(self.groups[case_index]),
+            position=tuple(map(int, np.unravel_index(self.cube.indices[case_index], self.cube.shape))),
             reason=self.reason(case_index),
         )
 
@@ -178,27 +179,16 @@ class Plan(Sequence[PlannedCase]):
         return " ".join(words) or "the only case"
 
     @cached_property
-    def _layout(self) -> tuple[Cube, IntArray]:
-        """Dimensions of the study, and each case's number in the flattened cube."""
-        if not self.explicit:
-            return cube_of_axes(self.axes), self.chosen
-        cube, positions = cube_of_cases([self.values(index) for index in range(len(self))])
-        return cube, np.ravel_multi_index(tuple(np.array(positions).T), cube.shape).astype(np.int64)
-
-    @property
     def cube(self) -> Cube:
         """Dimensions of the study."""
-        return self._layout[0]
-
-    @property
-    def cube_indices(self) -> IntArray:
-        """Number of each case in the flattened cube."""
-        return self._layout[1]
+        if self.explicit:
+            return cube_of_cases([self.values(index) for index in range(len(self))])
+        return cube_of_axes(self.axes, self.chosen)
 
     def spread(self, values: npt.NDArray[Any], fill: Any) -> npt.NDArray[Any]:
         """Values (case, ...) at the positions of the cases in the cube, with `fill` at empty positions."""
         table = np.full((math.prod(self.cube.shape), *values.shape[1:]), fill, dtype=values.dtype)
-        table[self.cube_indices] = values
+        table[self.cube.indices] = values
         return table.reshape((*self.cube.shape, *values.shape[1:]))
 
     def _fragments(self) -> Iterator[tuple[str, ...]]:
@@ -224,71 +214,64 @@ class Plan(Sequence[PlannedCase]):
         """Identities of the cases."""
         return np.fromiter(map(hash_fragments, self._fragments()), dtype="S64", count=len(self))
 
+    def _classify(self, local: Iterable[str], fixing: Iterable[str] = ()) -> IntArray:
+        """Class of each case: cases of a class differ in `local` parameters only, or not at all with a `fixing` one."""
+        local_starts, fixing_starts = (tuple(f'"{name}":' for name in names) for names in (local, fixing))
+
+        def key(fragments: tuple[str, ...]) -> int:
+            ignored = () if any(text.startswith(fixing_starts) for text in fragments) else local_starts
+            return hash(tuple(text for text in fragments if text and not text.startswith(ignored)))
+
+        keys = np.fromiter(map(key, self._fragments()), dtype=np.int64, count=len(self))
+        return np.asarray(pd.factorize(keys)[0], dtype=np.int64)
+
     @cached_property
     def groups(self) -> IntArray:
         """Group of each case: cases of a group differ only in friction in full sliding, or in the speed of a film."""
-        motions, local = ('"motion":', '"coupled":'), ('"friction":', '"entrainment_speed":')
-        keys = (
-            _hash_without(fragments, () if any(text.startswith(motions) for text in fragments) else local)
-            for fragments in self._fragments()
-        )
-        return _number_keys(keys, len(self))
+        return self._classify(("friction", "entrainment_speed"), fixing=("motion", "coupled"))
 
     @cached_property
     def operators(self) -> IntArray:
         """Number of the operator of each case: equal for cases that share body, load and cells."""
-        local = tuple(f'"{name}":' for name in LOCAL_PARAMETERS)
-        return _number_keys((_hash_without(fragments, local) for fragments in self._fragments()), len(self))
+        return self._classify(LOCAL_PARAMETERS)
 
     @cached_property
     def review(self) -> Review:
         """Check of one case of each group, or of a sample of them."""
         _, first_cases = np.unique(self.groups, return_index=True)
         step = max(1, -(-len(first_cases) // RUN.checked_groups))
-        reasons, magnitude_warnings = {}, Counter[str]()
-        cells, points, checked = 0.0, 0.0, 0
-        for index in first_cases[::step].tolist():
-            checked += 1
+        sample = first_cases[::step].tolist()
+        reasons, magnitude_warnings, sizes = {}, Counter[str](), []
+        for index in sample:
             try:
-                setup = self.setup(index)
+                setup = build_setup(add_default_accuracy(self.values(index)))
             except ContactStudyError as error:
                 reasons[int(self.groups[index])] = str(error)
                 continue
             magnitude_warnings.update(list_unusual_magnitudes(setup.case))
-            cells, points = cells + math.prod(setup.shape), points + setup.points
+            sizes.append((math.prod(setup.shape), setup.points))
         # The cases of a group differ in friction: check all values of friction, not only the first of each group.
         entries = [*(entry for axis in self.axes for entry in axis), *self.explicit]
         for friction in {entry["friction"] for entry in entries if "friction" in entry}:
             if message := describe_unusual_friction(friction):
-                magnitude_warnings.setdefault(message, checked)
-        solvable = max(1, checked - len(reasons))
-        return Review(
-            reasons, magnitude_warnings, checked, len(first_cases), cells=cells / solvable, points=points / solvable
-        )
-
-    def setup(self, index: int) -> Setup:
-        """Set up a case, or raise the reason why it cannot be solved."""
-        return build_setup(add_default_accuracy(self.values(index)))
+                magnitude_warnings.setdefault(message, len(sample))
+        cells, points = np.mean(sizes, axis=0).tolist() if sizes else (0.0, 0.0)
+        return Review(reasons, magnitude_warnings, len(sample), len(first_cases), cells=cells, points=points)
 
     def reason(self, index: int) -> str:
         """Reason why the plan skips a case; empty for a case to solve."""
-        return self.review.reasons.get(int(self.groups[index]), "") if self.review.reasons else ""
+        return self.review.reasons.get(int(self.groups[index]), "")
 
     @cached_property
     def skipped(self) -> list[int]:
         """Numbers of the skipped cases."""
-        skipped = np.isin(self.groups, list(self.review.reasons)) if self.review.reasons else np.zeros(len(self), bool)
-        return np.flatnonzero(skipped).tolist()
+        return np.flatnonzero(np.isin(self.groups, list(self.review.reasons))).tolist()
 
     @cached_property
     def unique(self) -> list[int]:
         """Indices of the cases to solve; of equal cases only the first."""
-        skipped = set(self.skipped)
-        first_indices: dict[bytes, int] = {}
-        for index, identity in enumerate(self.ids.tolist()):
-            if index not in skipped:
-                first_indices.setdefault(identity, index)
-        return list(first_indices.values())
+        _, first_indices = np.unique(self.ids, return_index=True)
+        return np.setdiff1d(first_indices, self.skipped).tolist()
 
     @property
     def doubts(self) -> tuple[str, ...]:
@@ -304,17 +287,6 @@ class Plan(Sequence[PlannedCase]):
         if self.level == "fields":
             size += BYTES_PER_POINT * self.review.points
         return size * len(self.unique)
-
-
-def _hash_without(fragments: tuple[str, ...], local: tuple[str, ...]) -> int:
-    """Hash of a case's fragments except those that start with a prefix in `local`."""
-    return hash(tuple(text for text in fragments if text and not text.startswith(local)))
-
-
-def _number_keys(keys: Iterable[int], count: int) -> IntArray:
-    """Return the number of each key, in the order of their first appearance."""
-    key_numbers: dict[int, int] = {}
-    return np.fromiter((key_numbers.setdefault(key, len(key_numbers)) for key in keys), dtype=np.int64, count=count)
 
 
 def label(name: str, value: Any) -> Any:

@@ -15,11 +15,12 @@ from typing import TYPE_CHECKING, Any
 
 from contactstudy import checks, profiles
 from contactstudy.arrays.engineering import format_quantity
-from contactstudy.case.serialization import tables_within
+from contactstudy.case.serialization import Sampled, tables_within
 from contactstudy.errors import InvalidInputError
 from contactstudy.profiles import Profile
 from contactstudy.profiles.base import UNITS
 from contactstudy.study import user_profiles
+from contactstudy.study.user_profiles import REGISTRY, round_digits
 
 if TYPE_CHECKING:
     from contactstudy.study.case_setup import Dimensions
@@ -32,13 +33,7 @@ POINTS = ("positions", "drops")  # Fields that contain lists of lengths
 NESTED = ("left", "right", "profile")  # Fields that contain a profile
 FILE_FLAGS = ("remove_tilt", "remove_offset")
 FILE_OPTIONS = ("file", *FILE_FLAGS, "turn")  # Keys of a measured profile that is read from a file
-DIGITS = 12  # Significant digits of a number in a study, beyond rounding
 MIN_MAGNITUDE = 1 / checks.MAX_MAGNITUDE
-
-
-def round_digits(value: float) -> float:
-    """Return `value` rounded to twelve significant digits; minus zero becomes zero."""
-    return float(f"{value:.{DIGITS}g}") + 0.0
 
 
 def check_number(name: str, value: object) -> float:
@@ -73,15 +68,15 @@ class ProfileKind:
         if is_measured:
             stated_entries = _read_points(stated_entries)
         values = {key: _check_value(key, entry, depth) for key, entry in stated_entries.items()}
-        if not {*POINTS, *NESTED, "terms"}.isdisjoint(self.defaults):
-            self._check_required_fields(values)
-        return {key: values[key] for key in keys if key in values and values[key] != self.defaults.get(key)}
-
-    def _check_required_fields(self, table: Mapping[str, Any], design_fields: tuple[str, ...] = ()) -> None:
-        """Raise unless a table has every required field except `design_fields`."""
+        design_count = sum(name in values for name in DESIGN)
+        if self.design_fields and design_count + any(name in values for name in self.design_fields) != 1:
+            choice = f"exactly one of {' with '.join(self.design_fields)}, {' and '.join(DESIGN)}"
+            raise InvalidInputError("profile", dict(table), f"given with {choice}")
         for name, default in self.defaults.items():
-            if default is MISSING and name not in table and name not in design_fields:
+            follows = design_count and name in self.design_fields
+            if default is MISSING and name not in values and not follows:
                 raise InvalidInputError("profile", dict(table), f"given with {name}")
+        return {key: values[key] for key in keys if key in values and values[key] != self.defaults.get(key)}
 
     def build(self, table: Mapping[str, Any], sizes: Dimensions) -> Profile:
         """Profile of the values that :meth:`read` returns."""
@@ -94,19 +89,15 @@ class ProfileKind:
                 values[name] = tuple(build_profile(term, sizes) for term in value)
             elif name not in design:
                 values[name] = value
-        if self.design_fields and len(design) + any(name in values for name in self.design_fields) != 1:
-            choice = f"exactly one of {' with '.join(self.design_fields)}, {' and '.join(DESIGN)}"
-            raise InvalidInputError("profile", dict(table), f"given with {choice}")
-        self._check_required_fields(values, self.design_fields if design else ())
         profile: Profile
         if not design:
             radii = {name: factor * sizes.radius for name, factor in self.radius_multiples.items()}
             profile = self.profile_class(**(radii | values))
-            return profile
-        values |= {"radius": sizes.radius, "modulus": sizes.modulus}
-        if "design_load" in design:
-            profile = self.profile_class.for_load(design["design_load"], length=sizes.roller_length, **values)
+        elif "design_load" in design:
+            values |= {"length": sizes.roller_length, "radius": sizes.radius, "modulus": sizes.modulus}
+            profile = self.profile_class.for_load(design["design_load"], **values)
         else:
+            values |= {"radius": sizes.radius, "modulus": sizes.modulus}
             profile = self.profile_class.for_pressure(design["design_pressure"], **values)
         return profile
 
@@ -205,7 +196,8 @@ def profile_table(value: object, depth: int = 0) -> Table:
 def build_profile(table: Mapping[str, Any], sizes: Dimensions) -> Profile:
     """Profile of a table from :func:`profile_table`."""
     if table["kind"] == user_profiles.KIND:
-        return user_profiles.registered_profile(table)
+        # A process without the object plans with a straight line.
+        return REGISTRY.get(table["content"]) or Sampled(str(table["class"]), (-0.5, 0.5), (0.0, 0.0))
     values = {key: value for key, value in table.items() if key not in ("kind", "name")}
     return PROFILES[table["kind"]].build(values, sizes)
 
@@ -245,9 +237,7 @@ def format_profile(table: Mapping[str, Any], *, in_units: bool = False) -> str:
         length_text = format_quantity(length, "m") if in_units else f"{length:g} m"
         return f"{format_profile(table['profile'], in_units=in_units)} over {length_text}"
     values = {key: table[key] for key in sorted(table) if key != "kind"}
-    if in_units:
-        items = (
-            f"{key.replace('_', ' ')} {format_quantity(value, units.get(key, 'm'))}" for key, value in values.items()
-        )
-        return ", ".join([kind, *items])
-    return " ".join([kind, *(f"{key}={value:g}" for key, value in values.items())])
+    if not in_units:
+        return " ".join([kind, *(f"{key}={value:g}" for key, value in values.items())])
+    texts = (f"{key.replace('_', ' ')} {format_quantity(value, units.get(key, 'm'))}" for key, value in values.items())
+    return ", ".join([kind, *texts])

@@ -11,7 +11,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
-from contactstudy.errors import StoreError
+from contactstudy.checks import store_errors
 from contactstudy.study.worker import Outcome
 
 LOGGER = logging.getLogger(__name__)
@@ -31,14 +31,12 @@ class Progress:
         self._bar_shown = visible and sys.stderr.isatty() and not os.environ.get("CI")
         self._messages_shown = visible
         self._bar: Any = None
-        self._count = self._total = self._shown_count = 0
+        self._count = self._total = 0
         self._began = time.monotonic()
         self.remarks: list[str] = []
         flags = os.O_WRONLY | os.O_APPEND | os.O_CREAT | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0)
-        try:
+        with store_errors(f"write {path}"):
             self._file = os.fdopen(os.open(path, flags, 0o666), "a", encoding="utf-8", buffering=1)
-        except OSError as error:
-            raise StoreError(f"cannot write {path}: {error.strerror or error}") from error
 
     def __enter__(self) -> Progress:
         return self
@@ -85,13 +83,13 @@ class Progress:
                 bar_format="{percentage:3.0f}%|{bar}| {n_fmt}/{total_fmt} cases [{elapsed}{postfix}]",
             )
 
-    def record(self, name: str, outcome: Outcome) -> None:
+    def record(self, outcome: Outcome) -> None:
         """Count one case; log a failure with its reason."""
         self._count += 1
         if outcome.status != "ok":
-            self.log(f"{outcome.status} {outcome.id[:16]} {name}: {outcome.message}")
+            self.log(f"{outcome.status} {outcome.case.id[:16]} {outcome.case.name}: {outcome.message}")
             if self._bar is not None:
-                self._bar.write(f"{outcome.status}: {name}: {outcome.message}", file=sys.stderr)
+                self._bar.write(f"{outcome.status}: {outcome.case.name}: {outcome.message}", file=sys.stderr)
 
     def show(self) -> None:
         """Log and show the number of finished cases and the time left at the present speed."""
@@ -100,5 +98,4 @@ class Progress:
         self.log(f"{self._count}/{self._total} cases, {forecast}")
         if self._bar is not None:
             self._bar.set_postfix_str(forecast, refresh=False)
-            self._bar.update(self._count - self._shown_count)
-        self._shown_count = self._count
+            self._bar.update(self._count - self._bar.n)

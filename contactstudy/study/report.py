@@ -33,8 +33,7 @@ def format_bytes(size: float) -> str:
 
 def run_lines(report: RunReport) -> Iterator[str]:
     """Lines on the result of a run."""
-    counts = ", ".join(f"{count} {status}" for status, count in report.counts.items())
-    yield f"{len(report.plan)} cases: {counts}; {report.solved} solved now"
+    yield f"{len(report.plan)} cases: {report.states.summary}; {report.solved} solved now"
     yield from _group_reasons(("failed", reason, case.name) for case, reason in report.failures)
     if report.failures:
         yield f"  details in {format_path(report.folder / 'run.log')}"
@@ -48,10 +47,6 @@ def run_lines(report: RunReport) -> Iterator[str]:
         size = sum(path.stat().st_size for path in files)
         folder, plural = format_path(files[0].parent), "s" * (len(files) > 1)
         yield f"{len(files)} netCDF file{plural}, {format_bytes(size)}, in {folder}"
-
-
-def stale_lines(report: RunReport) -> Iterator[str]:
-    """Lines on cases of another version that the run did not solve again."""
     if stale_cases := report.states.indices("stale"):
         rerun_command = f"contactstudy rerun {format_path(report.folder)}"
         yield f"{len(stale_cases)} stale ({report.states.reasons[stale_cases[0]]}); again with: {rerun_command}"
@@ -59,11 +54,9 @@ def stale_lines(report: RunReport) -> Iterator[str]:
 
 def _reasons(states: States, *statuses: str) -> Iterator[str]:
     """Lines on cases of some states, with their reasons."""
-    indices = states.indices(*statuses)
+    cases = [states.plan[index] for index in states.indices(*statuses) if index in states.reasons]
     yield from _group_reasons(
-        (STATES[states.status[index]], states.reasons[index], f"{states.plan[index].id[:16]} {states.plan[index].name}")
-        for index in indices
-        if index in states.reasons
+        (STATES[states.status[case.index]], states.reasons[case.index], f"{case.id[:16]} {case.name}") for case in cases
     )
 
 
@@ -79,23 +72,23 @@ def _group_reasons(cases: Iterable[tuple[str, str, str]]) -> Iterator[str]:
 
 
 def state_lines(states: States, *, everything: bool) -> Iterator[str]:
-    """Lines of counts, and of the cases that need attention, or of every case."""
+    """Lines of counts, of the cases that need attention, or of every case, and on the remaining cases."""
     for status, count in states.counts.items():
         yield f"  {count} {status}"
     if everything:
         for case in states.plan:
             reason = states.reasons.get(case.index, "")
-            yield f"  {STATES[states.status[case.index]]}: {case.id[:16]} {case.name}" + (
-                f": {reason}" if reason else ""
-            )
-        return
-    yield from _reasons(states, "skipped")
-    yield from _reasons(states, "failed", "stale", "missing")
-    if len(states.reasons) > 1:
-        yield "  every case: --all"
+            state = f"  {STATES[states.status[case.index]]}: {case.id[:16]} {case.name}"
+            yield f"{state}: {reason}" if reason else state
+    else:
+        yield from _reasons(states, "skipped")
+        yield from _reasons(states, "failed", "stale", "missing")
+        if len(states.reasons) > 1:
+            yield "  every case: --all"
+    yield from _forecast_lines(states)
 
 
-def forecast_lines(states: States) -> Iterator[str]:
+def _forecast_lines(states: States) -> Iterator[str]:
     """Lines on exclusions without effect, unusual magnitudes, and bytes and time of the remaining cases."""
     plan = states.plan
     yield from (f"  {message}" for message in plan.unknown[:MAX_REASONS])

@@ -9,7 +9,6 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from itertools import groupby
 from pathlib import Path
 from types import FrameType
 from typing import TYPE_CHECKING, Any
@@ -56,8 +55,8 @@ class RunReport:
     remarks: tuple[str, ...] = ()
 
     def __repr__(self) -> str:
-        counts = ", ".join(f"{count} {status}" for status, count in self.counts.items())
-        return f"RunReport({len(self.plan)} cases: {counts}; {self.solved} solved now; folder={str(self.folder)!r})"
+        cases = f"{len(self.plan)} cases: {self.states.summary}; {self.solved} solved now"
+        return f"RunReport({cases}; folder={str(self.folder)!r})"
 
     @property
     def plan(self) -> Plan:
@@ -209,13 +208,13 @@ def run_study(
             groups = _groups_to_solve(States(plan, results), again, run_share, sample)
             lock = results_folder.path / f"{run_share.name}.lock"
             task = Task(
-                jobs=(),
+                cases=(),
                 folder=str(results_folder.batches),
                 lock=(str(lock), lock.read_text(encoding="utf-8")),
                 prefix=run_share.prefix,
                 level=plan.level,
                 study=plan.name,
-                run=results.latest_run + 1,
+                run=1 + max((int(batch.runs.max()) for batch in results.batches), default=0),
             )
             del results
             solved = sum(map(len, groups))
@@ -235,7 +234,7 @@ def run_study(
             log.log(f"stopped: {type(error).__name__}: {error}")
             raise
         report = RunReport(results_folder.path, results_folder.states(plan), solved, tuple(log.remarks))
-        log.log(f"done: {', '.join(f'{count} {status}' for status, count in report.counts.items())}")
+        log.log(f"done: {report.states.summary}")
     return report
 
 
@@ -243,16 +242,15 @@ def _check_share(share: tuple[int, int] | None) -> Share:
     """Share of a run."""
     if share is None:
         return Share()
-    if not isinstance(share, tuple) or len(share) != 2 or not all(type(entry) is int for entry in share):
-        raise InvalidInputError("share", share, "two numbers, such as (3, 40) for the third of forty shares")
-    number, count = share
-    if not 1 <= number <= count:
-        raise InvalidInputError("share", share, "a number from 1 to the count of shares, and that count")
-    return Share(number, count)
+    numbers = share if isinstance(share, tuple) and all(type(entry) is int for entry in share) else ()
+    if len(numbers) != 2 or not 1 <= numbers[0] <= numbers[1]:
+        allowed = "two numbers, such as (3, 40) for the third of forty shares, the first from 1 to the second"
+        raise InvalidInputError("share", share, allowed)
+    return Share(*numbers)
 
 
 def _groups_to_solve(states: States, again: tuple[str, ...], share: Share, sample: int | None) -> list[list[int]]:
-    """Cases to solve, group by group, ordered by their operator, expensive groups first."""
+    """Cases to solve, group by group, ordered by their operator."""
     for status in again:
         checks.known_name("again", status, RERUN_STATUSES)
     plan = states.plan
@@ -268,20 +266,11 @@ def _groups_to_solve(states: States, again: tuple[str, ...], share: Share, sampl
     for index in unique.tolist():
         members.setdefault((int(plan.operators[index]), int(plan.groups[index])), []).append(index)
 
-    def sort_key(key: tuple[int, int]) -> tuple[bool, tuple[int, int]]:
-        values = plan.values(members[key][0])
-        needs_no_ends = values.get("body") == "half-space" or values.get("model", "exact") != "exact"
-        return needs_no_ends, key
-
-    order = sorted(members, key=sort_key)
-    groups = [members[key] for key in order]
+    groups = [members[key] for key in sorted(members)]
     if share.count > 1:
-        # A piece contains consecutive groups with one operator, few enough that every share receives several pieces.
-        max_groups, pieces = max(1, len(groups) // (RUN.turns * share.count)), list[int]()
-        for _, operator_groups in groupby(operator for operator, _ in order):
-            first_piece = pieces[-1] + 1 if pieces else 0
-            pieces += [first_piece + position // max_groups for position, _ in enumerate(operator_groups)]
-        groups = [group for group, piece in zip(groups, pieces, strict=True) if piece % share.count == share.number - 1]
+        # A piece contains consecutive groups, few enough that every share receives several pieces.
+        size = max(1, len(groups) // (RUN.turns * share.count))
+        groups = [group for index, group in enumerate(groups) if index // size % share.count == share.number - 1]
     unsolved_groups = []
     for group in groups:
         if "entrainment_speed" in plan.values(group[0]):
@@ -300,13 +289,12 @@ def _collect_outcomes(
     last_compaction = time.monotonic()
     try:
         with contextlib.closing(results):
-            for jobs, outcomes in results:
-                job_of = {job.id: job for job in jobs}
+            for outcomes in results:
                 for outcome in outcomes:
-                    log.record(job_of[outcome.id].name, outcome)
+                    log.record(outcome)
                     if outcome.message.startswith("WorkerDied"):
-                        batch = batch_without_numbers(template, job_of[outcome.id], outcome.status, outcome.message)
-                        write_batch(Path(template.folder), f"{template.prefix}{outcome.id[:12]}", batch)
+                        batch = batch_without_numbers(template, outcome.case, outcome.status, outcome.message)
+                        write_batch(Path(template.folder), f"{template.prefix}{outcome.case.id[:12]}", batch)
                 log.show()
                 if time.monotonic() - last_compaction > RUN.compact_seconds:
                     _compact(results_folder, share, log)

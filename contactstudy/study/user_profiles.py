@@ -8,14 +8,14 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import fields, is_dataclass
 from typing import Any
 
 import numpy as np
 
 from contactstudy import checks
-from contactstudy.case.serialization import Sampled, tables_within
+from contactstudy.case.serialization import tables_within
 from contactstudy.errors import ContactStudyError, InvalidInputError
 from contactstudy.profiles import Profile
 from contactstudy.profiles.base import check_drop, describe_profile, local_radius
@@ -26,7 +26,9 @@ LENGTHS = (1e-4, 1e-3, 1e-2, 1e-1)  # metres, of which drops enter the digest; a
 MAX_LISTED_SIZE = 100  # Largest array that a file lists; a digest represents a larger array
 REMEDY = "give its values as numbers, texts or lists, or the shape as profiles.Measured(x, drop)"
 
-_registry: dict[str, Profile] = {}  # copies by content; changes of the user's objects do not change them
+DIGITS = 12  # Significant digits of a number in a study, beyond rounding
+
+REGISTRY: dict[str, Profile] = {}  # copies by content; changes of the user's objects do not change them
 
 
 def register(profile: Profile) -> dict[str, Any]:
@@ -34,8 +36,8 @@ def register(profile: Profile) -> dict[str, Any]:
     name = type(profile).__qualname__.split("<locals>.")[-1]
     values = _values(profile)
     content = _digest([name, values, _behaviour(profile)])
-    if content not in _registry:
-        _registry[content] = _copy_by_pickle(profile, name, content)
+    if content not in REGISTRY:
+        REGISTRY[content] = _copy_by_pickle(profile, name, content)
     has_default_repr = type(profile).__repr__ is object.__repr__
     label = f"{name} {content[:8]}" if has_default_repr else describe_profile(profile)
     return {"kind": KIND, "name": label, "class": name, "values": values, "content": content}
@@ -50,51 +52,34 @@ def read_table(table: Mapping[str, Any]) -> dict[str, Any]:
     return {key: table[key] for key in KEYS}
 
 
-def registered_profile(table: Mapping[str, Any]) -> Profile:
-    """Profile of a table; if this process lacks the profile, a straight line, which serves plans only."""
-    return _registry.get(table["content"]) or Sampled(str(table["class"]), (-0.5, 0.5), (0.0, 0.0))
-
-
 def user_profiles(parameters: Any) -> dict[str, Profile]:
     """Users' profiles within parameters of cases, by content, for a worker; raises if this process lacks a profile."""
     profiles = {}
     for table in tables_within(parameters):
         if table["kind"] != KIND:
             continue
-        if table["content"] not in _registry:
-            raise InvalidInputError(
-                "profile",
-                f"{table['class']} {table['content'][:8]}",
-                "made by the running script: its class is not in the study's files",
-                "run the study from the script that makes this profile; opening it needs none",
-            )
-        profiles[table["content"]] = _registry[table["content"]]
+        if table["content"] not in REGISTRY:
+            allowed = "made by the running script: its class is not in the study's files"
+            hint = "run the study from the script that makes this profile; opening it needs none"
+            raise InvalidInputError("profile", f"{table['class']} {table['content'][:8]}", allowed, hint)
+        profiles[table["content"]] = REGISTRY[table["content"]]
     return profiles
 
 
-def are_registered(parameters: Any) -> bool:
-    """Whether this process has every user's profile within parameters."""
-    return all(table["content"] in _registry for table in tables_within(parameters) if table["kind"] == KIND)
-
-
-def receive_profiles(profiles: Mapping[str, Profile]) -> None:
-    """Add profiles that another process sent to the registry of this worker."""
-    _registry.update(profiles)
-
-
-def _attributes(profile: Profile) -> Iterable[tuple[str, Any]]:
-    """Fields of a dataclass, or attributes of another object."""
+def _values(profile: Profile, name: str = "profile") -> dict[str, Any]:
+    """JSON values of the fields of a dataclass, or of the attributes of another object."""
     kind: Any = type(profile)
     if is_dataclass(kind):
-        return [(entry.name, getattr(profile, entry.name)) for entry in fields(kind)]
-    attributes: dict[str, Any] = dict(getattr(profile, "__dict__", {}))
-    slots = [name for base in kind.__mro__ for name in getattr(base, "__slots__", ())]
-    return sorted((attributes | {name: getattr(profile, name) for name in slots if hasattr(profile, name)}).items())
+        names = [entry.name for entry in fields(kind)]
+    else:
+        slots = [slot for base in kind.__mro__ for slot in getattr(base, "__slots__", ())]
+        names = sorted({*getattr(profile, "__dict__", {}), *(slot for slot in slots if hasattr(profile, slot))})
+    return {key: _json_value(f"{name}.{key}", getattr(profile, key)) for key in names}
 
 
-def _values(profile: Profile) -> dict[str, Any]:
-    """JSON values of a profile."""
-    return {key: _json_value(f"profile.{key}", value) for key, value in _attributes(profile)}
+def round_digits(value: float) -> float:
+    """Return `value` rounded to twelve significant digits; minus zero becomes zero."""
+    return float(f"{value:.{DIGITS}g}") + 0.0
 
 
 def _json_value(name: str, value: object) -> Any:
@@ -106,14 +91,13 @@ def _json_value(name: str, value: object) -> Any:
     if value is None or isinstance(value, (bool, str, int)):
         return value
     if isinstance(value, float):
-        return float(f"{value:.12g}") + 0.0 if np.isfinite(value) else repr(value)
+        return round_digits(value) if np.isfinite(value) else repr(value)
     if isinstance(value, (list, tuple)):
         return [_json_value(name, entry) for entry in value]
     if isinstance(value, Mapping) and all(isinstance(key, str) for key in value):
         return {key: _json_value(f"{name}.{key}", entry) for key, entry in value.items()}
     if isinstance(value, Profile):
-        attributes = {key: _json_value(f"{name}.{key}", entry) for key, entry in _attributes(value)}
-        return {"class": type(value).__qualname__, **attributes}
+        return {"class": type(value).__qualname__, **_values(value, name)}
     allowed = f"a number, a text, a list or a profile, which identify the profile, not {type(value).__name__}"
     raise InvalidInputError(name, value, allowed, REMEDY)
 

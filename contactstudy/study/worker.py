@@ -29,27 +29,19 @@ from contactstudy.profiles import Profile
 from contactstudy.study.batches import IDENTITY_LENGTH, STATUSES, Batch, add_arrays, join_batches, write_batch
 from contactstudy.study.case_setup import Setup, build_setup
 from contactstudy.study.parameters import PARAMETERS
+from contactstudy.study.plan import PlannedCase
 from contactstudy.study.settings import RUN
-from contactstudy.study.user_profiles import receive_profiles
+from contactstudy.study.user_profiles import REGISTRY
 from contactstudy.versions import versions
 
 Solver = Callable[..., xr.Dataset]  # Callable with the arguments and the result of :func:`contactstudy.solve`
-
-
-class Job(NamedTuple):
-    """One case to solve: identity, swept parameters in words, checked parameters without defaults, and its group."""
-
-    id: str
-    name: str
-    parameters: dict[str, Any]
-    group: int
 
 
 @dataclass(frozen=True, kw_only=True)
 class Task:
     """Groups of cases that one worker solves in order."""
 
-    jobs: tuple[Job, ...]  # group by group
+    cases: tuple[PlannedCase, ...]  # group by group
     folder: str  # folder of the batches, on a file system of all workers
     # path and text of the run's lock: a worker that reads another text has another file system
     lock: tuple[str, str] = ("", "")
@@ -61,11 +53,10 @@ class Task:
 
 
 class Outcome(NamedTuple):
-    """Outcome of one case: a status from `STATUSES`, seconds, and the reason of a failure."""
+    """Outcome of one case: a status from `STATUSES`, and the reason of a failure."""
 
-    id: str
+    case: PlannedCase
     status: str
-    seconds: float
     message: str = ""
 
 
@@ -108,9 +99,10 @@ def solve_task(task: Task, solver: Solver | None = None) -> list[Outcome]:
     if lock != text:
         host = socket.gethostname()
         raise StoreError(f"a worker on {host} reads {lock[:200]!r} at {path}, not this run's lock; share the folder")
-    receive_profiles(task.profiles)
+    REGISTRY.update(task.profiles)
     unsaved_batches: list[Batch] = []
     outcomes: list[Outcome] = []
+    case_of = {case.id: case for case in task.cases}
 
     def flush() -> None:
         groups = group_by_structure(unsaved_batches)
@@ -118,16 +110,14 @@ def solve_task(task: Task, solver: Solver | None = None) -> list[Outcome]:
         for batches in groups:
             batch = join_batches(batches)
             write_batch(Path(task.folder), f"{task.prefix}{uuid.uuid4().hex[:12]}", batch)
-            for row, identity in enumerate(batch.ids):
-                status = STATUSES[batch.status[row]]
-                seconds = float(batch.numbers["seconds"][row]) if "seconds" in batch.numbers else 0.0
-                outcomes.append(Outcome(identity.decode(), status, seconds, batch.texts["message"][row]))
+            for identity, status, message in zip(batch.ids, batch.status, batch.texts["message"], strict=True):
+                outcomes.append(Outcome(case_of[identity.decode()], STATUSES[status], message))
 
     last_save = time.monotonic()
     try:
         with single_threaded():
-            for _, jobs in groupby(task.jobs, key=lambda job: job.group):
-                for batch in _solve_group(task, list(jobs), solver):
+            for _, cases in groupby(task.cases, key=lambda case: case.group):
+                for batch in _solve_group(task, list(cases), solver):
                     unsaved_batches.append(batch)
                     is_full = bool(batch.arrays) and sum(entry.nbytes for entry in unsaved_batches) > RUN.buffer_bytes
                     if is_full or time.monotonic() - last_save > RUN.save_seconds:
@@ -155,41 +145,43 @@ def group_by_structure(batches: Iterable[Batch]) -> list[list[Batch]]:
     return list(groups.values())
 
 
-def _solve_group(task: Task, jobs: list[Job], solver: Solver | None) -> Iterator[Batch]:
+def _solve_group(task: Task, cases: list[PlannedCase], solver: Solver | None) -> Iterator[Batch]:
     """Solve the cases of a group; without stresses one solution serves all values of uncoupled friction."""
-    shares_contact = solver is None and len(jobs) > 1 and task.level == "summary"
+    shares_contact = solver is None and len(cases) > 1 and task.level == "summary"
     shared_batch: Batch | None = None
     film: xr.Dataset | None = None
-    for job in jobs:
+    for case in cases:
         start_time = time.perf_counter()
         try:
-            setup = build_setup(job.parameters)
+            setup = build_setup(case.parameters)
         except ContactStudyError as error:
-            yield batch_without_numbers(task, job, "skipped", str(error))
+            yield batch_without_numbers(task, case, "skipped", str(error))
             continue
         if shared_batch is None:
-            batch, result = _solve_case(task, job, setup, solver, film)
+            batch, result = _solve_case(task, case, setup, solver, film)
             if setup.case.lubricant is not None:
                 film = result
             elif shares_contact and batch.status[0] == 0 and setup.grid is None and not setup.options["stresses"]:
                 shared_batch = batch
         else:
-            batch = batch_without_numbers(task, job, "ok")
+            batch = batch_without_numbers(task, case, "ok")
             batch = replace(batch, numbers=dict(shared_batch.numbers), attributes=dict(shared_batch.attributes))
             batch.texts["warnings"] = shared_batch.texts["warnings"]
         batch.numbers["seconds"] = np.array([time.perf_counter() - start_time])
         yield batch
 
 
-def batch_without_numbers(task: Task, job: Job, status: str, message: str = "", caught: Iterable[str] = ()) -> Batch:
+def batch_without_numbers(
+    task: Task, case: PlannedCase, status: str, message: str = "", caught: Iterable[str] = ()
+) -> Batch:
     """Batch of one case without numbers."""
     messages = sorted(set(caught))
     return Batch(
-        ids=np.array([job.id.encode()], dtype=f"S{IDENTITY_LENGTH}"),
+        ids=np.array([case.id.encode()], dtype=f"S{IDENTITY_LENGTH}"),
         status=np.array([STATUSES.index(status)], dtype=np.int8),
         runs=np.array([task.run], dtype=np.int64),
         texts={
-            "parameters": [json.dumps(job.parameters)],
+            "parameters": [json.dumps(case.parameters)],
             "message": [message],
             "warnings": [json.dumps(messages) if messages else ""],
             "time": [datetime.now(UTC).isoformat(timespec="seconds")],
@@ -199,7 +191,7 @@ def batch_without_numbers(task: Task, job: Job, status: str, message: str = "", 
 
 
 def _solve_case(
-    task: Task, job: Job, setup: Setup, solver: Solver | None, film: xr.Dataset | None
+    task: Task, case: PlannedCase, setup: Setup, solver: Solver | None, film: xr.Dataset | None
 ) -> tuple[Batch, xr.Dataset | None]:
     """Solve one case, starting from the film of another speed; the result of a failed case is None."""
     # Planning and opening a study need no solver.
@@ -226,12 +218,12 @@ def _solve_case(
     except StoreError:
         raise
     except (ContactStudyError, MemoryError, np.linalg.LinAlgError) as error:
-        return batch_without_numbers(task, job, "failed", f"{type(error).__name__}: {error}"), None
+        return batch_without_numbers(task, case, "failed", f"{type(error).__name__}: {error}"), None
     except Exception as error:
-        error.add_note(f"while solving the case {job.name} ({job.id[:16]})")
+        error.add_note(f"while solving the case {case.name} ({case.id[:16]})")
         raise
     batch = batch_without_numbers(
-        task, job, "ok", caught=(str(entry.message) for entry in caught if entry.category is not MagnitudeWarning)
+        task, case, "ok", caught=(str(entry.message) for entry in caught if entry.category is not MagnitudeWarning)
     )
     e_over_a = setup.e_over_a
     if np.isnan(e_over_a):  # the half-width follows from the solution

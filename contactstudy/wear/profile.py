@@ -14,8 +14,7 @@ from contactstudy import checks
 from contactstudy.analysis.provenance import check_solved_for
 from contactstudy.arrays.grid import growing_edges
 from contactstudy.arrays.variables import require
-from contactstudy.case.case import Case
-from contactstudy.case.roller import GAP_NODES
+from contactstudy.case.case import GAP_NODES, Case
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 from contactstudy.profiles.base import Sum

@@ -309,7 +309,7 @@ def test_results_cover_variable_table(returned_datasets: Returned) -> None:
 def test_listed_cases_have_case_coordinate() -> None:
     from contactstudy.study.plan import cube_of_axes
 
-    assert set(cube_of_axes([]).labels) == {"case"}
+    assert set(cube_of_axes([], np.zeros(1, dtype=np.int64)).labels) == {"case"}
 
 
 def test_labels_contain_no_braces(returned_datasets: Returned) -> None:

@@ -1,9 +1,10 @@
 """Gap of a roller on cells."""
 
 import numpy as np
+import pytest
 
-from contactstudy.arrays.grid import Grid
-from contactstudy.case.roller import gap_on_cells, snap_to_ends
+from contactstudy import Case, FiniteLengthSpace, Grid, Material, Roller
+from contactstudy.case.roller import snap_to_ends
 
 
 def test_cell_centre_within_rounding_is_under_the_roller():
@@ -11,6 +12,9 @@ def test_cell_centre_within_rounding_is_under_the_roller():
 
 
 def test_gap_at_centres_of_uniform_cells():
-    grid = Grid(x_range=(0.0, 4.0), y_range=(-1.0, 1.0), cells_x=4, cells_y=1)
-    gap = gap_on_cells(lambda x, y: x[:, None] ** 2 + 0 * y, grid, 2.0, 2.0)
-    assert gap[:, 0].tolist() == [2.25, 0.25, 0.25, 2.25]
+    body = FiniteLengthSpace(length=4.0, material=Material(1e9, 0.3))
+    case = Case(body=body, roller=Roller(radius=10.0, length=2.0), max_pressure=1e7, tilt=0.01)
+    gap = case.gap(Grid(x_range=(0.0, 4.0), y_range=(-2.0, 2.0), cells_x=4, cells_y=2))
+    assert gap[1] == pytest.approx(0.05 + 0.01 * 0.5)
+    assert gap[2] == pytest.approx(0.05 - 0.01 * 0.5)
+    assert np.isinf(gap[[0, 3]]).all()

@@ -13,6 +13,7 @@ import pytest
 from contactstudy.study import Study
 from contactstudy.study.batches import batch_paths, find_damage
 from contactstudy.study.folder import Folder
+from contactstudy.study.plan import PlannedCase
 from tests.small_study import as_toml, small_study
 from tests.stand_in_solver import HELD, give_tickets
 
@@ -64,3 +65,15 @@ def study_file(tmp_path: Path) -> Path:
     path = tmp_path / "small.toml"
     path.write_text(as_toml(small_study()))
     return path
+
+
+def planned_case(index, parameters=None):
+    """Case of a plan that is not set up."""
+    return PlannedCase(
+        index=index,
+        id=f"{index:064x}",
+        parameters=parameters or {},
+        name=f"case {index}",
+        position=(index,),
+        group=index,
+    )

@@ -10,11 +10,11 @@ from tests.stand_in_solver import solve_fake
 
 
 def tasks_of(study, groups, folder=""):
-    return Tasks(study.plan(), groups, Task(jobs=(), folder=str(folder)))
+    return Tasks(study.plan(), groups, Task(cases=(), folder=str(folder)))
 
 
 def ids(task):
-    return [job.name for job in task.jobs]
+    return [case.name for case in task.cases]
 
 
 @pytest.fixture
@@ -31,9 +31,9 @@ def test_groups_contain_the_frictions_of_a_contact(many_cases):
 def test_task_size_follows_measured_time(many_cases):
     tasks = tasks_of(many_cases, [[0, 1], [2, 3], [4, 5], [6, 7]])
     first_task = tasks.next_task(1)
-    assert len(first_task.jobs) == 2
+    assert len(first_task.cases) == 2
     tasks.record(2, 0.1)
-    assert len(tasks.next_task(1).jobs) == 2  # half of six cases, in whole groups
+    assert len(tasks.next_task(1).cases) == 2  # half of six cases, in whole groups
     assert tasks.remaining == 4
 
 
@@ -42,17 +42,15 @@ def test_case_fails_at_second_worker_death(many_cases):
     task = tasks.next_task(1)
     assert tasks.return_task(task, died=True) == []
     single_tasks = [tasks.next_task(1) for _ in range(2)]
-    assert [len(task.jobs) for task in single_tasks] == [1, 1]
-    assert [job.name for job in tasks.return_task(single_tasks[0], died=True)] == ids(single_tasks[0])
+    assert [len(task.cases) for task in single_tasks] == [1, 1]
+    assert [case.name for case in tasks.return_task(single_tasks[0], died=True)] == ids(single_tasks[0])
     assert not tasks
 
 
 def test_execution_in_process_yields_outcomes(many_cases, tmp_path):
     tasks = tasks_of(many_cases, [[0, 1], [2, 3]], tmp_path)
     outcomes = [
-        outcome
-        for _, task_outcomes in execute(tasks, Engine(workers=0, solver=solve_fake))
-        for outcome in task_outcomes
+        outcome for task_outcomes in execute(tasks, Engine(workers=0, solver=solve_fake)) for outcome in task_outcomes
     ]
     assert [outcome.status for outcome in outcomes] == ["ok"] * 4
     assert len(list(tmp_path.glob("*.nc"))) == 2

@@ -16,10 +16,10 @@ from contactstudy.study.batches import batch_paths, find_damage, join_batches, r
 from contactstudy.study.files import write_text
 from contactstudy.study.folder import Folder, Share, select_latest
 from contactstudy.study.settings import RunSettings
-from contactstudy.study.worker import Job, Task, batch_without_numbers
+from contactstudy.study.worker import Task, batch_without_numbers
 from tests.small_study import identity, small_study
 from tests.stand_in_solver import solve_fake
-from tests.study.conftest import ROOT
+from tests.study.conftest import ROOT, planned_case
 
 
 def run(study, folder, **options):
@@ -28,8 +28,8 @@ def run(study, folder, **options):
 
 def failed_batch(index, parameters, *, run=1, message="WindowError: narrow", warnings=()):
     """Batch of a case without results."""
-    job = Job(f"{index:064x}", "", parameters, index)
-    return batch_without_numbers(Task(jobs=(), folder="", run=run), job, "failed", message, warnings)
+    case = planned_case(index, parameters)
+    return batch_without_numbers(Task(cases=(), folder="", run=run), case, "failed", message, warnings)
 
 
 def rows(count, **options):

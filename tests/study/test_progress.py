@@ -8,6 +8,7 @@ from contactstudy.study import StoreError
 from contactstudy.study import progress as module
 from contactstudy.study.progress import Progress
 from contactstudy.study.worker import Outcome
+from tests.study.conftest import planned_case
 
 
 class Terminal(io.StringIO):
@@ -24,7 +25,7 @@ def watch(monkeypatch):
 
 
 def ok(index):
-    return Outcome(f"{index:016x}", "ok", 1.0)
+    return Outcome(planned_case(index), "ok")
 
 
 def test_remaining_time_follows_from_finished_cases(tmp_path, monkeypatch):
@@ -35,7 +36,7 @@ def test_remaining_time_follows_from_finished_cases(tmp_path, monkeypatch):
         for count, time in ((1, 110.0), (3, 120.0)):
             now[0] = time
             for index in range(count):
-                progress.record(f"case {index}", ok(index))
+                progress.record(ok(index))
             progress.show()
     lines = (tmp_path / "run.log").read_text().splitlines()
     assert [re.search(r"(\d+ s left|all done)", line).group() for line in lines[1:]] == ["30 s left", "all done"]
@@ -45,8 +46,8 @@ def test_terminal_has_progress_bar(tmp_path, monkeypatch):
     terminal = watch(monkeypatch)
     with Progress(tmp_path / "run.log") as progress:
         progress.begin(2, total=2)
-        progress.record("case 0", ok(0))
-        progress.record("case 1", Outcome("1" * 16, "failed", 1.0, "WindowError: too small"))
+        progress.record(ok(0))
+        progress.record(Outcome(planned_case(1), "failed", "WindowError: too small"))
         progress.show()
     assert "2/2 cases" in terminal.getvalue()
     assert "failed: case 1: WindowError: too small" in terminal.getvalue()
@@ -62,7 +63,7 @@ def test_pipe_has_no_progress_bar(tmp_path, monkeypatch, quiet):
         monkeypatch.setattr(Terminal, "isatty", lambda self: False)
     with Progress(tmp_path / "run.log", visible=quiet != "not wanted") as progress:
         progress.begin(1, total=1)
-        progress.record("case 0", ok(0))
+        progress.record(ok(0))
         progress.show()
     assert terminal.getvalue() == ""
 

@@ -114,7 +114,10 @@ def test_study_from_opened_dataset_equals_study(study: Study, tmp_path) -> None:
 def test_study_from_selection_of_dataset(tmp_path) -> None:
     study = small_study(
         sweep={"e_over_a": [0.0, 1.0, 2.0], "friction": [0.0, 0.1]},
-        zip={"profile": [{"kind": "cylinder", "name": "sharp"}, "ellipsoid"], "tilt": [0.0, 1e-4]},
+        zip={
+            "profile": [{"kind": "cylinder", "name": "sharp"}, {"kind": "ellipsoid", "crown_radius": 0.5}],
+            "tilt": [0.0, 1e-4],
+        },
     )
     run_study(study, tmp_path, workers=0, solver=solve_fake, progress=False)
     dataset = collect(tmp_path)

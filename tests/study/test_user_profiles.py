@@ -90,7 +90,8 @@ def test_workers_solve_user_profile(tmp_path: Path) -> None:
 def test_process_without_user_profile_refuses_to_solve(tmp_path: Path, monkeypatch) -> None:
     study = small_study(base=BASE | {"e_over_a": 1.0, "profile": Wedge(1e-4)}, sweep={"friction": [0.0]})
     run_study(study, tmp_path, workers=0, solver=solve_fake, progress=False)
-    monkeypatch.setattr(user_profiles, "_registry", {})
+    for content in list(user_profiles.REGISTRY):
+        monkeypatch.delitem(user_profiles.REGISTRY, content)
     assert open_study(tmp_path).status.values.tolist() == ["ok"]
     restored_study = Folder(tmp_path).read_study()
     assert run_study(restored_study, tmp_path, workers=0, progress=False).counts == {"ok": 1}
