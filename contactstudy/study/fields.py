@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, NamedTuple
 
@@ -30,44 +31,54 @@ from contactstudy.study.folder import States
 CELL_DIMS = ("x", "y")  # Dimensions of cells; positions along other dimensions are points
 
 
-class Positions(NamedTuple):
-    """Positions of a case along one dimension of its arrays."""
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Positions:
+    """Positions of all cases along one dimension of their arrays."""
 
-    values: FloatArray  # metres
-    widths: FloatArray  # widths of the cells, metres; empty for uniform cells and points
-    scale: float  # half-width, metres
-
-    @property
-    def over_a(self) -> FloatArray:
-        """Positions over the half-width."""
-        return self.values / self.scale
+    position_index: IntArray  # index of each case's position array in `values`; -1 if the case has none
+    values: list[FloatArray] = field(default_factory=list)  # different positions, metres
+    # widths of the cells; empty for uniform cells and points
+    widths: list[FloatArray] = field(default_factory=list)
+    scales: list[float] = field(default_factory=list)  # half-widths, metres
 
     @property
-    def edges_over_a(self) -> FloatArray:
-        """Edges of the cells over the half-width."""
-        values = self.values
-        if self.widths.size:
-            low, high = values - 0.5 * self.widths, values + 0.5 * self.widths
-            edges = np.concatenate([low[:1], 0.5 * (high[:-1] + low[1:]), high[-1:]])
-        else:
-            half_cell = 0.5 * (values[-1] - values[0]) / max(values.size - 1, 1)
-            edges = np.linspace(values[0] - half_cell, values[-1] + half_cell, values.size + 1)
-        return np.asarray(edges / self.scale)
+    def over_a(self) -> list[FloatArray]:
+        """Different positions over the half-width."""
+        return [values / scale for values, scale in zip(self.values, self.scales, strict=True)]
+
+    @property
+    def has_widths(self) -> bool:
+        """Whether cells have different widths."""
+        return any(widths.size for widths in self.widths)
+
+    def sources(self, *, has_points: bool) -> list[FloatArray]:
+        """Points, or edges of the cells, over the half-width."""
+        if has_points:
+            return self.over_a
+        result = []
+        for midpoints, widths, scale in zip(self.values, self.widths, self.scales, strict=True):
+            if widths.size:
+                low, high = midpoints - 0.5 * widths, midpoints + 0.5 * widths
+                edges = np.concatenate([low[:1], 0.5 * (high[:-1] + low[1:]), high[-1:]])
+            else:
+                half_width = 0.5 * (midpoints[-1] - midpoints[0]) / max(midpoints.size - 1, 1)
+                edges = np.linspace(midpoints[0] - half_width, midpoints[-1] + half_width, midpoints.size + 1)
+            result.append(edges / scale)
+        return result
 
 
-def _all_equal(arrays: Sequence[FloatArray]) -> bool:
-    """Whether all arrays equal the first, except for rounding."""
-    first = arrays[0]
+def _all_equal(arrays: Sequence[FloatArray], first: FloatArray) -> bool:
+    """Whether all arrays equal the array `first`, except for rounding."""
     scale = float(np.abs(first).max(initial=0.0))
     return all(row.size == first.size and np.allclose(row, first, rtol=1e-9, atol=1e-12 * scale) for row in arrays)
 
 
 class StudyAxis(NamedTuple):
-    """Dimension of a study that replaces a dimension of the cases, and each case's map onto a common axis."""
+    """Dimension of a study that replaces a dimension of the cases, and the maps of positions onto a common axis."""
 
     name: str
     size: int
-    resamplings: dict[int, Resampling] | None = None
+    resamplings: list[Resampling] | None = None
 
 
 class Fields:
@@ -85,25 +96,38 @@ class Fields:
         self._dims = list(dict.fromkeys(dim for dims, _ in self.names.values() for dim in dims))
 
     @cached_property
-    def _positions(self) -> dict[str, dict[int, Positions]]:
-        """Positions along every dimension, by the number of the case."""
+    def _positions(self) -> dict[str, Positions]:
+        """Positions along every dimension."""
+        case_count = len(self._states.plan)
         batch_of, row_of = self._states.locations
         half_widths = self._states.numbers("hertz_half_width")
-        result: dict[str, dict[int, Positions]] = {dim: {} for dim in self._dims}
+        result = {dim: Positions(position_index=np.full(case_count, -1, dtype=np.int64)) for dim in self._dims}
+        indices: dict[str, dict[Any, int]] = {dim: {} for dim in self._dims}
+        coordinates = [name for dim in self._dims for name in (dim, f"{dim}_width")]
         for batch_number, path in enumerate(self._states.results.paths):
             if not self._batches[batch_number].arrays:
                 continue
-            batch = read_batch(path, arrays=[name for dim in self._dims for name in (dim, f"{dim}_width")])
-            for dim in set(self._dims) & set(batch.sizes):
+            batch = read_batch(path, arrays=coordinates)
+            for dim in self._dims:
+                if dim not in batch.sizes:
+                    continue
                 starts = batch.offsets((dim,))
                 values, widths = (batch.arrays.get(name) for name in (dim, f"{dim}_width"))
                 for index in np.flatnonzero(batch_of == batch_number).tolist():
                     span = slice(starts[row_of[index]], starts[row_of[index] + 1])
-                    if span.start < span.stop:
-                        row = np.arange(span.stop - span.start) if values is None else values.values[span]
-                        row_widths = np.zeros(0) if widths is None else widths.values[span]
-                        result[dim][index] = Positions(row.astype(np.float64), row_widths, float(half_widths[index]))
-        return {dim: positions for dim, positions in result.items() if positions}
+                    row = np.arange(span.stop - span.start, dtype=np.float64) if values is None else values.values[span]
+                    row_widths = np.zeros(0) if widths is None else widths.values[span]
+                    if not row.size:
+                        continue
+                    positions = result[dim]
+                    key = (row.tobytes(), row_widths.tobytes(), half_widths[index])
+                    if key not in indices[dim]:
+                        indices[dim][key] = len(positions.values)
+                        positions.values.append(np.asarray(row, dtype=np.float64))
+                        positions.widths.append(np.asarray(row_widths, dtype=np.float64))
+                        positions.scales.append(float(half_widths[index]))
+                    positions.position_index[index] = indices[dim][key]
+        return {dim: positions for dim, positions in result.items() if positions.values}
 
     def add_to(self, dataset: xr.Dataset) -> xr.Dataset:
         """Return a Dataset of the study with the arrays."""
@@ -116,7 +140,7 @@ class Fields:
             attributes = self._states.attributes(name)
             if any(axes[dim].resamplings for dim in dims):
                 attributes |= {"comment": resampling_comment(name), ERROR_KIND: NOT_ESTIMATED}
-            array = CaseArray(self._states, name, {dim: axes[dim] for dim in dims}, dtype)
+            array = CaseArray(self._states, name, {dim: axes[dim] for dim in dims}, self._positions, dtype)
             variable_dims = (*cube.dims, *(axes[dim].name for dim in dims))
             variable = xr.Variable(variable_dims, indexing.LazilyIndexedArray(array), attributes)
             # A chunk of about 16 MiB contains whole arrays of several cases along the last swept dimensions.
@@ -134,12 +158,11 @@ class Fields:
         axes: dict[str, StudyAxis] = {}
         coordinates: dict[str, Any] = {}
         positions = self._positions
-        has_half_widths = all(np.isfinite(row.scale) for rows in positions.values() for row in rows.values())
-        for dim, rows in positions.items():
+        has_half_widths = all(np.isfinite(scale) for entry in positions.values() for scale in entry.scales)
+        for dim, entry in positions.items():
             if dim in axes:
                 continue
-            has_widths = any(row.widths.size for row in rows.values())
-            equal_over_a = has_half_widths and not has_widths and _all_equal([row.over_a for row in rows.values()])
+            equal_over_a = has_half_widths and _all_equal(entry.over_a, entry.over_a[0]) and not entry.has_widths
             if has_half_widths and (self._common or equal_over_a):
                 includes_points = self._common and dim == "x" and "x_field" in positions
                 dim_axes, dim_coordinates = self._common_axis(["x", "x_field"] if includes_points else [dim])
@@ -152,34 +175,31 @@ class Fields:
     def _original_axis(self, dim: str) -> tuple[dict[str, StudyAxis], dict[str, Any]]:
         """Axis of the cases' positions, padded with NaN to the largest case where they differ."""
         positions = self._positions[dim]
-        rows = {dim: {index: row.values for index, row in positions.items()}}
-        if any(row.widths.size for row in positions.values()):
-            rows[f"{dim}_width"] = {index: row.widths for index, row in positions.items()}
-        if all(np.isfinite(row.scale) for row in positions.values()):
-            rows[f"{dim}_over_a"] = {index: row.over_a for index, row in positions.items()}
-        first, *others = rows[dim].values()
-        name = dim if all(np.array_equal(values, first) for values in others) else f"{dim}_index"
-        size = max(values.size for values in rows[dim].values())
-        coordinates: dict[str, Any] = {}
-        for coordinate, entries in rows.items():
-            values = list(entries.values())
-            coordinates[coordinate] = (name, values[0]) if _all_equal(values) else self._pad_rows(name, entries, size)
+        equal_positions = all(np.array_equal(values, positions.values[0]) for values in positions.values)
+        name = dim if equal_positions else f"{dim}_index"
+        size, index = max(values.size for values in positions.values), positions.position_index
+
+        def coordinate(rows: list[FloatArray]) -> tuple[Any, ...]:
+            return (name, rows[0]) if _all_equal(rows, rows[0]) else self._pad_rows(name, rows, index, size)
+
+        coordinates = {dim: coordinate(positions.values)}
+        if positions.has_widths:
+            coordinates[f"{dim}_width"] = coordinate(positions.widths)
+        if np.isfinite(positions.scales).all():
+            coordinates[f"{dim}_over_a"] = coordinate(positions.over_a)
         return {dim: StudyAxis(name, size)}, coordinates
 
     def _common_axis(self, dims: list[str]) -> tuple[dict[str, StudyAxis], dict[str, Any]]:
         """Axis, over the half-width, that all cases share along dimensions of one direction, and its coordinates."""
         first_dim, name = dims[0], f"{dims[0]}_over_a"
-        sources: dict[str, dict[int, FloatArray]] = {}
-        for dim in dims:
-            positions = self._positions[dim].items()
-            sources[dim] = {index: row.edges_over_a if dim in CELL_DIMS else row.over_a for index, row in positions}
-        rows = list(sources[first_dim].values())
+        sources = {dim: self._positions[dim].sources(has_points=dim not in CELL_DIMS) for dim in dims}
+        rows = sources[first_dim]
         union = common_rows if first_dim == "y" else common_columns
-        axis = borders = rows[0] if _all_equal(rows) else union(rows)
+        axis = borders = rows[0] if _all_equal(rows, rows[0]) else union(rows)
         if first_dim not in CELL_DIMS:
             borders = np.concatenate([axis[:1], centres_of(axis), axis[-1:]])
         elif "x_field" in sources:
-            points = common_columns([np.sort(row) for row in sources["x_field"].values()])
+            points = common_columns([np.sort(row) for row in sources["x_field"]])
             plan = self._states.plan
             parameters = [plan.base, *(steps[0] for steps in plan.axes), *plan.explicit]
             # Stress points that the study gives are positions of the common axis.
@@ -190,16 +210,16 @@ class Fields:
         axes, maps = {}, {}
         for dim, source_rows in sources.items():
             has_points, fill = dim not in CELL_DIMS, 0.0 if dim == "y" else np.nan
-            maps[dim] = {
-                index: Resampling(source=source, axis=axis, borders=borders, fill=fill, has_points=has_points)
-                for index, source in source_rows.items()
-            }
-            is_common_axis = _all_equal([axis if has_points else borders, *source_rows.values()])
+            maps[dim] = [
+                Resampling(source=source, axis=axis, borders=borders, fill=fill, has_points=has_points)
+                for source in source_rows
+            ]
+            is_common_axis = _all_equal(source_rows, axis if has_points else borders)
             axes[dim] = StudyAxis(name, axis.size, None if is_common_axis else maps[dim])
         return axes, self._common_coordinates(maps, axis, borders)
 
     def _common_coordinates(
-        self, maps: dict[str, dict[int, Resampling]], axis: FloatArray, borders: FloatArray
+        self, maps: dict[str, list[Resampling]], axis: FloatArray, borders: FloatArray
     ) -> dict[str, Any]:
         """Coordinates of a common axis: over the half-width, and in metres (NaN beyond the case's cells and points)."""
         first_dim = next(iter(maps))
@@ -207,33 +227,40 @@ class Fields:
         coordinates: dict[str, Any] = {over_a: (over_a, axis)}
         for dim, resamplings in maps.items():
             positions = self._positions[dim]
-            rows = {
-                index: positions[index].scale * np.where(resampling.is_outside, np.nan, axis)
-                for index, resampling in resamplings.items()
-            }
-            coordinates[dim] = self._pad_rows(over_a, rows, axis.size)
-        positions, sources = self._positions[first_dim], [resampling.source for resampling in maps[first_dim].values()]
-        has_widths = any(row.widths.size for row in positions.values())
-        uniform = not has_widths and _all_equal([borders, *sources]) and np.ptp(np.diff(borders)) == 0
+            scaled_maps = zip(resamplings, positions.scales, strict=True)
+            rows = [scale * np.where(resampling.is_outside, np.nan, axis) for resampling, scale in scaled_maps]
+            coordinates[dim] = self._pad_rows(over_a, rows, positions.position_index, axis.size)
+        positions, sources = self._positions[first_dim], [resampling.source for resampling in maps[first_dim]]
+        uniform = not positions.has_widths and _all_equal(sources, borders) and np.ptp(np.diff(borders)) == 0
         if first_dim == "x" and not uniform:
-            rows = {index: np.diff(borders) * row.scale for index, row in positions.items()}
-            coordinates["x_width"] = self._pad_rows(over_a, rows, axis.size)
+            rows = [np.diff(borders) * scale for scale in positions.scales]
+            coordinates["x_width"] = self._pad_rows(over_a, rows, positions.position_index, axis.size)
         return coordinates
 
-    def _pad_rows(self, name: str, rows: Mapping[int, FloatArray], size: int) -> tuple[tuple[str, ...], FloatArray]:
+    def _pad_rows(
+        self, name: str, rows: Sequence[FloatArray], position_index: IntArray, size: int
+    ) -> tuple[tuple[str, ...], FloatArray]:
         """Dimensions and values of a coordinate of every case along the dimension `name`, padded with NaN."""
         plan = self._states.plan
-        padded = np.full((len(plan), size), np.nan)
-        for index, row in rows.items():
+        padded = np.full((len(rows) + 1, size), np.nan)
+        for index, row in enumerate(rows):
             padded[index, : row.size] = row
-        return (*plan.cube.dims, name), plan.spread(padded, np.nan)
+        return (*plan.cube.dims, name), plan.spread(padded[position_index], np.nan)
 
 
 class CaseArray(BackendArray):
     """One variable over all cases of a study; indexing reads the values from the batches."""
 
-    def __init__(self, states: States, name: str, axes: Mapping[str, StudyAxis], dtype: np.dtype[Any]) -> None:
+    def __init__(
+        self,
+        states: States,
+        name: str,
+        axes: Mapping[str, StudyAxis],
+        positions: Mapping[str, Positions],
+        dtype: np.dtype[Any],
+    ) -> None:
         self._states, self._name, self._dims, self._axes = states, name, tuple(axes), tuple(axes.values())
+        self._position_indices = [positions[dim].position_index for dim in axes]
         self.shape = (*states.plan.cube.shape, *(axis.size for axis in self._axes))
         resampling = any(axis.resamplings for axis in self._axes)
         self.dtype = np.dtype(np.float64) if resampling and dtype.kind != "f" else dtype
@@ -276,7 +303,10 @@ class CaseArray(BackendArray):
             for index, row, values in zip(indices, rows, flat, strict=True):
                 if values.size:
                     case_values = values.reshape([int(batch.sizes[dim][row]) for dim in self._dims])
-                    maps = [axis.resamplings[cases[index]] if axis.resamplings else None for axis in self._axes]
+                    maps = [
+                        axis.resamplings[position_index[cases[index]]] if axis.resamplings else None
+                        for axis, position_index in zip(self._axes, self._position_indices, strict=True)
+                    ]
                     yield index, resample(self._name, case_values, maps) if any(maps) else case_values
 
 
