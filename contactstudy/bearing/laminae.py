@@ -141,7 +141,6 @@ def slice_model(case: Case, *, slices: int = 30, tilt: float | None = None, edge
 # Power with which a lamina's risk of fatigue grows with load: the life exponent 4 of a line contact times the slope
 # 9/8 of Weibull's distribution
 LIFE_POWER = 9 / 2
-COLUMN_COMMENT = "from the stated errors of the pressure and the distance of its columns"
 
 
 def lamina_factors(result: xr.Dataset, *, laminae: int = 30) -> xr.Dataset:
@@ -219,9 +218,11 @@ def lamina_loads(solution: xr.Dataset, case: Case, laminae: int) -> tuple[xr.Dat
     )
     for name in ("load_per_length", "edge_factor"):
         labelled[name].attrs["comment"] = slice_result[name].attrs["comment"]
-    has_error = not np.isnan(error).any()
+    attributes = {"comment": "from the stated errors of the pressure and the distance of its columns"}
+    if np.isnan(error).any():
+        attributes = {ERROR_KIND: NOT_ESTIMATED}
     for name in ("hertz_load_per_length", "stress_riser"):
-        labelled[f"{name}_error"].attrs |= {"comment": COLUMN_COMMENT} if has_error else {ERROR_KIND: NOT_ESTIMATED}
+        labelled[f"{name}_error"].attrs |= attributes
     return describe(labelled, "stress riser of every lamina from solved pressures"), common_error
 
 

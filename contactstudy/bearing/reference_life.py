@@ -26,10 +26,6 @@ TURNING_POWER = 4.0  # Power of the mean for the turning raceway; for the other 
 # Factor lambda nu of ISO 281's dynamic ratings for radial roller bearings, second-hand: an allowance for edge stress,
 # which the lamina model contains
 RATING_REDUCTION = 0.83
-MILLION = 1e6
-
-# Comment of the errors: the models of slices neglect the ends, and the error of these models is not estimated
-ERROR_COMMENT = "from the stated errors of the pressures; NaN for the models of slices"
 
 
 def roller_ratings(dynamic_rating: float, rollers: int, gamma: float, *, rows: int = 1) -> tuple[float, float]:
@@ -170,7 +166,7 @@ def reference_life(
     mean_loads, upper_loads = equivalent_loads(loads), equivalent_loads(loads + errors)
     risks = [((equivalent_loads(q) / rating) ** LIFE_POWER).sum(axis=-1) for q in (loads, loads + common_errors)]
     (raceway_lives, lower_raceway_lives), (lives, lower_lives) = (
-        [MILLION * risk ** (-8 / 9) for risk in pair] for pair in (risks, [risk.sum(axis=-1) for risk in risks])
+        [1e6 * risk ** (-8 / 9) for risk in pair] for pair in (risks, [risk.sum(axis=-1) for risk in risks])
     )
     is_infinite = np.isinf(mean_loads)
     result = xr.Dataset(
@@ -196,7 +192,9 @@ def reference_life(
     )
     result.attrs = {"turning": turning, "laminae": lamina_count}
     for name in ("reference_life", "raceway_life", "lamina_equivalent_load", "stress_riser"):
-        result[f"{name}_error"].attrs["comment"] = ERROR_COMMENT
+        # The models of slices neglect the ends; their error is not estimated.
+        comment = "from the stated errors of the pressures; NaN for the models of slices"
+        result[f"{name}_error"].attrs["comment"] = comment
     return describe(result, "basic reference rating life from laminae")
 
 
