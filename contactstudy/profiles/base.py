@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import Field, dataclass, fields, is_dataclass
+from itertools import chain
 from typing import NamedTuple, Protocol, runtime_checkable
 
 import numpy as np
@@ -96,7 +97,7 @@ class Shape:
         """Return the sum of both profiles."""
         if not isinstance(other, Profile):
             return NotImplemented
-        return Sum((*_terms(self), *_terms(other)))
+        return Sum((self, other))
 
     __radd__ = __add__
 
@@ -106,10 +107,6 @@ def unit_of(profile: object, name: str) -> str:
     is_package_profile = isinstance(profile, type) and issubclass(profile, Shape) and is_dataclass(profile)
     return UNITS.get(name, "m") if is_package_profile and any(entry.name == name for entry in fields(profile)) else ""  # type: ignore[arg-type]
 
-
-def _terms(profile: Shape | Profile) -> tuple[Profile, ...]:
-    """Summands of a sum, or the profile."""
-    return profile.terms if isinstance(profile, Sum) else (profile,)
 
 
 def local_radius(profile: Profile, x: FloatArray, length: float, radius: float | FloatArray) -> FloatArray:
@@ -145,7 +142,7 @@ class Sum(Shape):
     Parameters
     ----------
     terms : tuple of Profile
-        At least one profile, valid for the roller's length.
+        At least one profile, valid for the roller's length; a sum counts as its terms.
 
     Raises
     ------
@@ -167,6 +164,8 @@ class Sum(Shape):
             raise InvalidInputError("terms", self.terms, "a tuple of at least one profile")
         for term in self.terms:
             checks.instance("terms", term, Profile, "profiles from contactstudy.profiles")
+        nested_terms = (term.terms if isinstance(term, Sum) else (term,) for term in self.terms)
+        checks.store(self, terms=tuple(chain.from_iterable(nested_terms)))
 
     def __repr__(self) -> str:
         return " + ".join(map(describe_profile, self.terms))
