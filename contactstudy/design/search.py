@@ -6,6 +6,7 @@ import logging
 import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import product
 from types import MappingProxyType
 
 import numpy as np
@@ -38,19 +39,6 @@ REMEDY = (
 )
 
 
-@dataclass(frozen=True, eq=False)
-class Range:
-    """Range of a parameter, mapped to fractions from 0 to 1."""
-
-    low: float  # if positive, equal steps of the fraction are equal ratios
-    high: float
-
-    def parameter_at(self, fraction: float) -> float:
-        """Return the parameter at a fraction of the range."""
-        ratio = self.low > 0
-        value = self.low * (self.high / self.low) ** fraction if ratio else self.low + (self.high - self.low) * fraction
-        return float(np.clip(value, self.low, self.high))
-
 
 @dataclass(frozen=True, eq=False)
 class Design:
@@ -80,7 +68,7 @@ class Evaluations:
 
     cases: list[Case]
     profile: Callable[..., Profile]
-    ranges: dict[str, Range]
+    ranges: dict[str, tuple[float, float]]  # low, if positive with equal ratios for equal steps of the fraction; high
     measure: Measure
     accuracy: float  # of the contacts; relative error of a measure without an error
     settings: Mapping[str, object]  # further arguments of solve
@@ -117,10 +105,11 @@ class Evaluations:
 
     def parameters(self, fractions: FloatArray) -> dict[str, float]:
         """Return the parameters at fractions of their ranges."""
-        return {
-            name: self.ranges[name].parameter_at(float(fraction))
-            for name, fraction in zip(self.ranges, fractions, strict=True)
-        }
+        parameters = {}
+        for (name, (low, high)), fraction in zip(self.ranges.items(), fractions.tolist(), strict=True):
+            value = low * (high / low) ** fraction if low > 0 else low + (high - low) * fraction
+            parameters[name] = float(np.clip(value, low, high))
+        return parameters
 
     def _solve_design(self, fractions: FloatArray) -> Design:
         """Solve every case of a design."""
@@ -199,8 +188,8 @@ def search_optimum(evaluations: Evaluations) -> Design:
     if not np.isfinite(start_design.value):
         if evaluations.last_error is not None:
             raise evaluations.last_error
-        bounds = {name: (limits.low, limits.high) for name, limits in evaluations.ranges.items()}
-        raise InvalidInputError("bounds", bounds, "such that the measure is finite somewhere within them", REMEDY)
+        allowed = "such that the measure is finite somewhere within them"
+        raise InvalidInputError("bounds", evaluations.ranges, allowed, REMEDY)
     # The search replaces an infinite measure by 1e3 times the least measure.
     maximum = 1e3 * max(abs(start_design.value), np.finfo(np.float64).tiny)
 
@@ -234,11 +223,14 @@ def search_optimum(evaluations: Evaluations) -> Design:
     return evaluations.best
 
 
-def find_flat_range(evaluations: Evaluations, best: Design, parameter: int) -> tuple[float, float]:
-    """Return the fractions between which a parameter alone changes the measure by less than the errors."""
-    side_count = 2 * (len(evaluations.ranges) - parameter)
-    low = _find_flat_end(evaluations, best, parameter, 0.0, limit=evaluations.remaining // side_count)
-    return low, _find_flat_end(evaluations, best, parameter, 1.0, limit=evaluations.remaining // (side_count - 1))
+def find_flat_ranges(evaluations: Evaluations, best: Design) -> FloatArray:
+    """Return the fractions (2, parameter) between which a parameter alone changes the measure less than the errors."""
+    sides = list(product(range(len(evaluations.ranges)), (0.0, 1.0)))
+    ends = [
+        _find_flat_end(evaluations, best, *side, limit=evaluations.remaining // (len(sides) - index))
+        for index, side in enumerate(sides)
+    ]
+    return np.reshape(ends, (-1, 2)).T
 
 
 def _find_flat_end(evaluations: Evaluations, best: Design, parameter: int, bound: float, *, limit: int) -> float:
@@ -292,13 +284,9 @@ def _find_flat_end(evaluations: Evaluations, best: Design, parameter: int, bound
 
 def _fractions_on_line(evaluations: Evaluations, best: Design, parameter: int) -> list[float]:
     """Fractions of the designs that differ from the best in this parameter alone."""
-    others = np.delete(np.array([design.fractions for design in evaluations.designs]), parameter, axis=1)
-    on_line = (np.abs(others - np.delete(best.fractions, parameter)) <= MIN_DIFFERENCE).all(axis=1)
-    return [
-        float(design.fractions[parameter])
-        for design, is_on_line in zip(evaluations.designs, on_line, strict=True)
-        if is_on_line
-    ]
+    fractions = np.array([design.fractions for design in evaluations.designs])
+    on_line = (np.abs(np.delete(fractions - best.fractions, parameter, axis=1)) <= MIN_DIFFERENCE).all(axis=1)
+    return [float(fraction) for fraction in fractions[on_line, parameter]]
 
 
 BOUND_TOLERANCE = 0.01  # Fraction of a range between an optimum at a bound and the bound
@@ -388,7 +376,7 @@ def best_profile(
         low, high = checks.coordinates(f"bounds[{name!r}]", pair, "SI")[[0, -1]] if np.size(pair) == 2 else (0.0, 0.0)
         if not low < high:
             raise InvalidInputError(f"bounds[{name!r}]", pair, "two numbers, the least and the largest value")
-        ranges[str(name)] = Range(float(low), float(high))
+        ranges[str(name)] = float(low), float(high)
     designs = Evaluations(
         cases=_create_cases(case, loads, max_pressures, tilts),
         profile=profile,
@@ -399,8 +387,7 @@ def best_profile(
         max_designs=checks.count("evaluations", evaluations, minimum=min_designs(len(ranges))),
     )
     best = search_optimum(designs)
-    ends = [find_flat_range(designs, best, index) for index in range(len(ranges))]
-    result = _label_designs(designs, ends)
+    result = _label_designs(designs, *find_flat_ranges(designs, best))
     for name in result["parameter"].values[result["at_bound"].values]:
         column = result.sel(parameter=name)
         value, low, high = (float(column[key]) for key in ("optimum", "lower_bound", "upper_bound"))
@@ -433,30 +420,27 @@ def _create_cases(case: Case, loads: object, pressures: object, tilts: object) -
     return [replace(variant, tilt=tilt) for variant in variants or [case] for tilt in angles]
 
 
-def _label_designs(designs: Evaluations, ends: list[tuple[float, float]]) -> xr.Dataset:
-    """Label the optimum and every design."""
-    best, evaluated_designs = designs.best, designs.designs
-    names, ranges = list(designs.ranges), list(designs.ranges.values())
-    flat_ranges = [
-        (limits.parameter_at(min(low, float(fraction))), limits.parameter_at(max(high, float(fraction))))
-        for limits, (low, high), fraction in zip(ranges, ends, best.fractions, strict=True)
-    ]
+def _label_designs(designs: Evaluations, flat_from: FloatArray, flat_to: FloatArray) -> xr.Dataset:
+    """Label the optimum, the ends of the flat ranges (fractions), and every design."""
+    best, evaluated_designs, names = designs.best, designs.designs, list(designs.ranges)
+    optimum = best.fractions
+    lower_bounds, upper_bounds = np.transpose(list(designs.ranges.values()))
     # An entirely flat range does not bound the optimum.
-    at_bound = [
-        min(fraction, 1 - fraction) < BOUND_TOLERANCE and not (low < BOUND_TOLERANCE and high > 1 - BOUND_TOLERANCE)
-        for (low, high), fraction in zip(ends, best.fractions, strict=True)
-    ]
-    parameters = [list(designs.parameters(design.fractions).values()) for design in evaluated_designs]
+    is_flat = (flat_from < BOUND_TOLERANCE) & (flat_to > 1 - BOUND_TOLERANCE)
+
+    def parameters(fractions: FloatArray) -> list[float]:
+        return list(designs.parameters(fractions).values())
+
     arrays: dict[str, tuple[object, object]] = {
-        "optimum": ("parameter", list(designs.parameters(best.fractions).values())),
-        "flat_from": ("parameter", [low for low, _ in flat_ranges]),
-        "flat_to": ("parameter", [high for _, high in flat_ranges]),
-        "lower_bound": ("parameter", [limits.low for limits in ranges]),
-        "upper_bound": ("parameter", [limits.high for limits in ranges]),
-        "at_bound": ("parameter", at_bound),
+        "optimum": ("parameter", parameters(optimum)),
+        "flat_from": ("parameter", parameters(np.minimum(flat_from, optimum))),
+        "flat_to": ("parameter", parameters(np.maximum(flat_to, optimum))),
+        "lower_bound": ("parameter", lower_bounds),
+        "upper_bound": ("parameter", upper_bounds),
+        "at_bound": ("parameter", (np.minimum(optimum, 1 - optimum) < BOUND_TOLERANCE) & ~is_flat),
         "measure": ((), best.value),
         "measure_error": ((), best.error),
-        "design": (("evaluation", "parameter"), parameters),
+        "design": (("evaluation", "parameter"), [parameters(design.fractions) for design in evaluated_designs]),
         "design_measure": ("evaluation", [design.value for design in evaluated_designs]),
         "design_measure_error": ("evaluation", [design.error for design in evaluated_designs]),
         "case_measure": (("evaluation", "case"), [design.values for design in evaluated_designs]),
