@@ -25,28 +25,26 @@ from contactstudy.heat.moving_source import MovingBody, SourceOperator, ThermalP
 
 
 class FrictionalHeat(NamedTuple):
-    """Frictional heat on the cells, its power, and the speeds of the surfaces relative to the contact."""
+    """Frictional heat on the cells, and the speeds of the surfaces relative to the contact."""
 
     density: FloatArray
-    power: float
     body_speed: float
     roller_speed: float
 
 
-def frictional_heat(case: Case, solution: xr.Dataset, grid: Grid) -> FrictionalHeat:
+def frictional_heat(case: Case, solution: xr.Dataset) -> FrictionalHeat:
     """Compute heat per area and speeds of a solved case."""
     motion = case.motion
     names = ("traction_y",) if isinstance(motion, Sliding) else ("traction_x", "slip_x", "traction_y", "slip_y")
     solution = require_in_si(solution, *names, argument="result")
     fields = [labelled_cells(f"result.{name}", solution[name], extent=case.body.extent)[0] for name in names]
-    area = grid.weights * grid.cell_area
     if isinstance(motion, Rolling):
         creepage = solution.get("longitudinal_creepage", motion.longitudinal_creepage)
         speeds = motion.speeds_at(0.0 if creepage is None else float(creepage))
         q_x, s_x, q_y, s_y = fields
         # Power per area is traction times slip per distance, times distance per time.
         density = -speeds.entrainment * np.maximum(q_x * s_x + q_y * s_y, 0.0)
-        return FrictionalHeat(density, float((area * density).sum()), speeds.body, speeds.roller)
+        return FrictionalHeat(density, speeds.body, speeds.roller)
     assert isinstance(motion, Sliding)
     if motion.speeds is None:
         raise InvalidInputError("case.motion", motion, "one with body_speed and roller_speed (m/s)")
@@ -63,8 +61,7 @@ def frictional_heat(case: Case, solution: xr.Dataset, grid: Grid) -> FrictionalH
             f"{relation} body_speed, {body_speed:g}: friction acts on the body along the roller's sliding",
             "speeds are along +y",
         )
-    power = float((area * traction).sum() * (roller_speed - body_speed))
-    return FrictionalHeat(density, power, body_speed, roller_speed)
+    return FrictionalHeat(density, body_speed, roller_speed)
 
 
 RESTART, MAX_RESTARTS = 60, 20  # Steps between restarts, and restarts
@@ -190,15 +187,13 @@ def flash_temperature(
     depths = None if z is None else checks.coordinates("z", z)
     if depths is not None and (depths < 0).any():
         raise InvalidInputError("z", float(depths.min()), "not below zero (metres)")
-    heat = frictional_heat(case, solution, grid)
+    heat = frictional_heat(case, solution)
     rises, into_body, mismatch = _solve_temperatures(case, grid, heat, pressure, body, roller=roller, fraction=share)
-    into_roller = heat.density - into_body
-    area = grid.weights * grid.cell_area
-    is_heated = heat.density != 0
+    no_fraction = np.full(grid.shape, np.nan)
     fields = rises | {
         "frictional_heat": heat.density,
         "heat_into_body": into_body,
-        "heat_partition": np.where(is_heated, into_body / np.where(is_heated, heat.density, 1.0), np.nan),
+        "heat_partition": np.divide(into_body, heat.density, out=no_fraction, where=heat.density != 0),
     }
     values = {name: (("x", "y"), field) for name, field in fields.items()}
     scalars = _find_maximum(grid, rises)
@@ -210,16 +205,18 @@ def flash_temperature(
     peak, error = (float(solution.get(name, np.nan)) for name in ("peak_pressure", "peak_pressure_error"))
     relative_error = error / peak if np.isfinite([peak, error]).all() and peak > 0 else np.nan
     scalars["max_temperature_rise_error"] = change + scalars["max_temperature_rise"] * relative_error
-    scalars["friction_power"] = heat.power
-    scalars["body_heat_share"] = float((area * into_body).sum() / heat.power) if heat.power else np.nan
-    entered_power = (area * into_body).sum() + (area * into_roller)[_under_roller(case, grid, pressure)[0]].sum()
-    scalars["heat_error"] = float(entered_power / heat.power - 1) if heat.power else 0.0
-    scalars["temperature_mismatch"] = mismatch
-    coords = {name: solution.coords[name] for name in ("x", "y", "x_bounds", "x_width") if name in solution.coords}
-    temperatures = xr.Dataset(values | scalars, coords=coords)
-    temperatures = temperatures.assign(
-        {name: solution[name] for name in ("hertz_half_width", "hertz_max_pressure") if name in solution}
-    )
+    area = grid.weights * grid.cell_area
+    power, body_power = (float((area * density).sum()) for density in (heat.density, into_body))
+    roller_power = float((area * (heat.density - into_body))[_under_roller(case, grid, pressure)[0]].sum())
+    scalars |= {
+        "friction_power": power,
+        "body_heat_share": body_power / power if power else np.nan,
+        "heat_error": (body_power + roller_power) / power - 1 if power else 0.0,
+        "temperature_mismatch": mismatch,
+    }
+    kept_names = ("x", "y", "x_bounds", "x_width", "hertz_half_width", "hertz_max_pressure")
+    kept = solution[[name for name in kept_names if name in solution.variables]].drop_attrs(deep=False)
+    temperatures = kept.assign(values | scalars)
     if depths is not None:
         moving_body, columns = MovingBody(body, heat.body_speed, case.body.extent), slice(0, grid.cells_x)
         inner_rises = [SourceOperator(moving_body, grid, columns, float(depth))(into_body) for depth in depths]

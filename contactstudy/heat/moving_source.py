@@ -131,11 +131,8 @@ def _primitive(spread: FloatArray, distance: FloatArray, length: float) -> Float
     if not is_wide.all():
         short_spreads = spread[~is_wide]
         image_count = max(0, int(np.ceil((MAX_SPREADS * short_spreads.max() / length - 1) / 2)))
-        image_sums = 0.5 * erf(reduced_distance / s[~is_wide])
-        for image in range(1, image_count + 1):
-            for shift in (-2 * length * image, 2 * length * image):
-                image_sums += 0.5 * erf((reduced_distance + shift) / s[~is_wide])
-        primitive[~is_wide] = image_sums
+        shifts = 2 * length * np.arange(-image_count, image_count + 1)
+        primitive[~is_wide] = sum(0.5 * erf((reduced_distance + shift) / s[~is_wide]) for shift in shifts)
     return primitive + periods
 
 
