@@ -7,6 +7,8 @@ Each column along x acts separately while the strain changes along y, in plane s
 from __future__ import annotations
 
 import warnings
+from collections import deque
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
@@ -63,7 +65,7 @@ class Passage:
     residual: Influence | LayerInfluence  # residual stress in the body by strains uniform along y
     layers: LayerInfluence  # the same in a body without ends
     lateral: PeriodicLayers  # residual stress in a body without ends by strains periodic along y
-    lateral_positions: int  # number of positions along y in the period
+
     cell_indices: tuple[IntArray, IntArray]  # column and layer (cell) in `lateral`
     yield_stress: FloatArray  # (cell), in tension, Pa
     shear_modulus: float  # Pa
@@ -76,7 +78,7 @@ class Passage:
         stiffness = 2 * self.shear_modulus
         elastic = self.elastic + self.residual.stresses(start.strain)[:, None]
         flow = np.zeros_like(elastic)
-        mixing = _AndersonMixing()
+        iterates, changes = (deque[FloatArray](maxlen=MIXING_HISTORY + 1) for _ in range(2))
         for _ in range(MAX_REPETITIONS):
             trial = compute_deviator(elastic + self._residual_stress(flow)) + stiffness * (start.strain[:, None] + flow)
             next_strain, accumulated = self._return_mapping(trial, start)
@@ -84,17 +86,19 @@ class Passage:
             converged = bool((stiffness * tensor_norm(change).max(axis=0) <= self.tolerance * self.yield_stress).all())
             if converged:
                 break
-            flow = mixing.next_iterate(flow, change)
+            iterates.append(flow)
+            changes.append(change)
+            flow = _mix(iterates, changes)
         return State(start.strain + next_strain[:, -1], accumulated, start.converged and converged)
 
     def _residual_stress(self, plastic_strain: FloatArray) -> FloatArray:
         """Residual stress (6, position, cell) by this pass's plastic strain, with every column in plane strain."""
         final_strain = plastic_strain[:, -1]
         column, layer = self.cell_indices
-        periodic_strain = np.zeros((6, self.lateral_positions, column.max() + 1, layer.max() + 1))
+        periodic_strain = np.zeros((6, self.lateral.positions, column.max() + 1, layer.max() + 1))
         count = plastic_strain.shape[1]
         periodic_strain[:, :count, column, layer] = plastic_strain
-        decay_count = self.lateral_positions - count
+        decay_count = self.lateral.positions - count
         decay = np.clip(2 - 2 * (np.arange(decay_count) + 0.5) / decay_count, 0.0, 1.0)
         periodic_strain[:, count:, column, layer] = (decay**2 * (3 - 2 * decay))[:, None] * final_strain[:, None]
         stress = self.lateral.stresses(periodic_strain)[:, :count, column, layer]
@@ -125,24 +129,13 @@ class Passage:
         return flow, accumulated
 
 
-class _AndersonMixing:
-    """Anderson's mixing."""
-
-    def __init__(self) -> None:
-        self._iterates: list[FloatArray] = []
-        self._changes: list[FloatArray] = []
-
-    def next_iterate(self, iterate: FloatArray, change: FloatArray) -> FloatArray:
-        """Next iterate from an iterate and its change."""
-        self._iterates = [*self._iterates[-MIXING_HISTORY:], iterate]
-        self._changes = [*self._changes[-MIXING_HISTORY:], change]
-        if len(self._changes) == 1:
-            return np.asarray(iterate + change)
-        steps, differences = (np.diff(np.stack(history), axis=0) for history in (self._iterates, self._changes))
-        flattened = differences.reshape(len(differences), -1)
-        # rcond: differences between iterates with smaller singular values are dependent
-        weights = np.linalg.lstsq(flattened @ flattened.T, flattened @ change.ravel(), rcond=1e-10)[0]
-        return np.asarray(iterate + change - np.tensordot(weights, steps + differences, axes=1))
+def _mix(iterates: Sequence[FloatArray], changes: Sequence[FloatArray]) -> FloatArray:
+    """Next iterate from the last iterates and their changes, by Anderson's mixing."""
+    steps, differences = (np.diff(np.stack(history), axis=0) for history in (iterates, changes))
+    flattened = differences.reshape(len(differences), changes[-1].size)
+    # rcond: differences between iterates with smaller singular values are dependent
+    weights = np.linalg.lstsq(flattened @ flattened.T, flattened @ changes[-1].ravel(), rcond=1e-10)[0]
+    return np.asarray(iterates[-1] + changes[-1] - np.tensordot(weights, steps + differences, axes=1))
 
 
 NEAR_YIELD_RATIO = 0.9  # Minimum von Mises stress over yield stress of the cells of a pass
@@ -191,15 +184,14 @@ class _CrossSection:
         top_layer, bottom_layer = layers.min(), layers.max()
         edges = edges_between(self.z, 0.0, np.inf)[top_layer : bottom_layer + 2]
         # Period over the length of the positions along y. Accuracy: strains one period away have no influence.
-        period = int(next_fast_len(int(3.0 * y.size), real=True))
-        periodic = PeriodicLayers(self.body.material, edges, period, float(y[1] - y[0]))
+        period = int(next_fast_len(3 * y.size, real=True))
         indices = np.unique(columns, return_inverse=True)[1], layers - top_layer
         return Passage(
             elastic=elastic,
             residual=self.layers if self.is_line_contact else Influence.of(self.cells, columns, layers),
             layers=self.layers,
-            lateral=periodic,
-            lateral_positions=period,
+            lateral=PeriodicLayers(self.body.material, edges, period, float(y[1] - y[0])),
+
             cell_indices=indices,
             yield_stress=self.yield_stress[cells],
             shear_modulus=self.body.material.shear_modulus,

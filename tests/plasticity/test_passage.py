@@ -19,6 +19,9 @@ LAYERS = LayerInfluence(POISSON, YOUNG)
 class IndependentLayers:
     """Layers without influence between positions along y."""
 
+    def __init__(self, positions: int) -> None:
+        self.positions = positions
+
     def stresses(self, eigenstrain: np.ndarray) -> np.ndarray:
         return LAYERS.stresses(eigenstrain.reshape(6, -1)).reshape(eigenstrain.shape)
 
@@ -30,8 +33,7 @@ def solve_passes(history: np.ndarray, shear_yield_stress: float, hardening: tupl
         elastic=history.T[:, :, None],
         residual=LAYERS,
         layers=LAYERS,
-        lateral=IndependentLayers(),
-        lateral_positions=history.shape[0] + 2,
+        lateral=IndependentLayers(history.shape[0] + 2),
         cell_indices=(index, index),
         yield_stress=np.full(1, np.sqrt(3) * shear_yield_stress),
         shear_modulus=YOUNG / (2 * (1 + POISSON)),
