@@ -176,9 +176,10 @@ class WearIntegrator:
 
     def _worn_area_rate(self, state: State) -> float:
         """Area (x, depth) that the law removes from the profile, per distance."""
-        return self.rate * float((self.shape.grid.widths * state.slip) @ self._line_load(state))  # eq. (603)
+        grid = self.shape.grid
+        return self.rate * grid.dy * float((grid.widths * state.slip) @ state.pressure.sum(axis=1))  # eq. (603)
 
-    def _line_load(self, contact: State | ContactIterate) -> FloatArray:
+    def _line_load(self, contact: ContactIterate) -> FloatArray:
         """Load per length (x), N/m."""
         return np.asarray(self.shape.grid.dy * contact.pressure.sum(axis=1))
 
