@@ -209,8 +209,7 @@ COLUMNS_PER_SOLUTION = 256  # Right-hand sides that are solved for at once. Spee
 class Influence:
     """Residual stress averaged over cells, from eigenstrains that are uniform in the same cells."""
 
-    poisson: float
-    young: float
+    material: Material
     airy_matrix: FloatArray  # (3 cells, 3 cells): stresses xx, zz, xz per eigenstrains xx + nu yy, zz + nu yy, xz
     antiplane_matrix: FloatArray  # (2 cells, 2 cells): stresses xy, yz per eigenstrains xy, yz
 
@@ -244,16 +243,15 @@ class Influence:
         integrals = body.antiplane_integrals
         antiplane = [integrals_of(integrals, 0, 1), -integrals_of(integrals, 1, 0)]
         antiplane_matrix = influence_matrix(body.antiplane_function, antiplane, np.array([2.0, 2.0]))
-        material = body.material
-        modulus = material.plane_strain_modulus
-        return cls(material.poisson, material.young, -modulus * airy_matrix, -material.shear_modulus * antiplane_matrix)
+        modulus, shear_modulus = body.material.plane_strain_modulus, body.material.shear_modulus
+        return cls(body.material, -modulus * airy_matrix, -shear_modulus * antiplane_matrix)
 
     def stresses(self, eigenstrain: FloatArray) -> FloatArray:
         """Residual stresses (6, cell) from eigenstrains (6, cell): xx, yy, zz, xy, xz, yz."""
-        e, nu = eigenstrain, self.poisson
+        e, nu = eigenstrain, self.material.poisson
         stress = np.empty_like(e)
         strain = np.concatenate([e[XX] + nu * e[YY], e[ZZ] + nu * e[YY], e[XZ]])
         stress[[XX, ZZ, XZ]] = (self.airy_matrix @ strain).reshape(3, -1)
         stress[[XY, YZ]] = (self.antiplane_matrix @ np.concatenate([e[XY], e[YZ]])).reshape(2, -1)
-        stress[YY] = nu * (stress[XX] + stress[ZZ]) - self.young * e[YY]
+        stress[YY] = nu * (stress[XX] + stress[ZZ]) - self.material.young * e[YY]
         return stress

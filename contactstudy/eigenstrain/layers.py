@@ -22,21 +22,13 @@ from contactstudy.eigenstrain.body import DEGREE, FAR_DISTANCE, XX, XY, XZ, YY, 
 from contactstudy.eigenstrain.stress_function import Splines
 
 
-@dataclass(frozen=True, eq=False)
-class LayerInfluence:
-    """Influence of endless layers: strains along x and y are zero, the stresses zz, xz and yz are zero."""
-
-    poisson: float
-    young: float
-
-    def stresses(self, eigenstrain: FloatArray) -> FloatArray:
-        """Residual stresses (6, layer) from eigenstrains (6, layer)."""
-        e, nu = eigenstrain, self.poisson
-        stress = np.zeros_like(e)
-        modulus = self.young / (1 - nu**2)
-        stress[XX], stress[YY] = -modulus * (e[XX] + nu * e[YY]), -modulus * (e[YY] + nu * e[XX])
-        stress[XY] = -self.young / (1 + nu) * e[XY]
-        return stress
+def layer_stresses(material: Material, eigenstrain: FloatArray) -> FloatArray:
+    """Residual stresses (6, layer) from eigenstrains (6, layer) in endless layers, without strains along x and y."""
+    e, nu, modulus = eigenstrain, material.poisson, material.plane_strain_modulus
+    stress = np.zeros_like(e)
+    stress[XX], stress[YY] = -modulus * (e[XX] + nu * e[YY]), -modulus * (e[YY] + nu * e[XX])
+    stress[XY] = -2 * material.shear_modulus * e[XY]
+    return stress
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,9 +8,9 @@ from __future__ import annotations
 
 import warnings
 from collections import deque
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from typing import NamedTuple
 
 import numpy as np
@@ -25,7 +25,7 @@ from contactstudy.arrays.variables import STRESSES, describe, require_in_si
 from contactstudy.bodies.models import Body
 from contactstudy.checks import FloatArray, IntArray
 from contactstudy.eigenstrain.body import EigenstrainBody, Influence
-from contactstudy.eigenstrain.layers import LayerInfluence, PeriodicLayers
+from contactstudy.eigenstrain.layers import PeriodicLayers, layer_stresses
 from contactstudy.errors import ConvergenceWarning, InvalidInputError
 from contactstudy.plasticity.eigenstrains import STRAINS, create_cross_section, edges_between
 from contactstudy.plasticity.material import ElasticPlastic
@@ -62,21 +62,20 @@ class Passage:
     """A pass over some cells of the cross-section."""
 
     elastic: FloatArray  # (6, position, cell), stress of the contact, Pa
-    residual: Influence | LayerInfluence  # residual stress in the body by strains uniform along y
-    layers: LayerInfluence  # the same in a body without ends
+    residual: Callable[[FloatArray], FloatArray]  # residual stress in the body by strains uniform along y
     lateral: PeriodicLayers  # residual stress in a body without ends by strains periodic along y
 
     cell_indices: tuple[IntArray, IntArray]  # column and layer (cell) in `lateral`
     yield_stress: FloatArray  # (cell), in tension, Pa
-    shear_modulus: float  # Pa
+
     isotropic: float  # hardening modulus, Pa
     kinematic: float  # hardening modulus, Pa
     tolerance: float  # change of the deviator over the yield stress
 
     def solve(self, start: State) -> State:
         """Return the state after the pass."""
-        stiffness = 2 * self.shear_modulus
-        elastic = self.elastic + self.residual.stresses(start.strain)[:, None]
+        stiffness = 2 * self.lateral.material.shear_modulus
+        elastic = self.elastic + self.residual(start.strain)[:, None]
         flow = np.zeros_like(elastic)
         iterates, changes = (deque[FloatArray](maxlen=MIXING_HISTORY + 1) for _ in range(2))
         for _ in range(MAX_REPETITIONS):
@@ -106,14 +105,14 @@ class Passage:
         norm = float(COMPONENT_COUNTS @ (final_strain**2).sum(axis=1))
         if norm:
             fraction = np.einsum("i,ipc,ic->p", COMPONENT_COUNTS, plastic_strain, final_strain) / norm
-            difference = self.residual.stresses(final_strain) - self.layers.stresses(final_strain)
+            difference = self.residual(final_strain) - layer_stresses(self.lateral.material, final_strain)
             stress += np.clip(fraction, 0.0, 1.0)[:, None] * difference[:, None]
         return np.asarray(stress)
 
     def _return_mapping(self, trial: FloatArray, initial: State) -> tuple[FloatArray, FloatArray]:
         """Plastic strain of this pass, and accumulated strain; `trial` is the deviator before plastic flow."""
         kinematic = 2 / 3 * self.kinematic
-        modulus = 2 * self.shear_modulus + kinematic
+        modulus = 2 * self.lateral.material.shear_modulus + kinematic
         stiffness = modulus + 2 / 3 * self.isotropic
         strain, accumulated = initial.strain, initial.accumulated
         flow = np.empty_like(trial)
@@ -168,11 +167,6 @@ class _CrossSection:
         """Yield stress in every cell, Pa."""
         return np.tile(self.material.yield_stress_at(self.z), self.x.size)
 
-    @property
-    def layers(self) -> LayerInfluence:
-        """Residual stress by strains in infinite layers of a body without ends."""
-        return LayerInfluence(self.body.material.poisson, self.body.material.young)
-
     def create_passage(self, cells: IntArray, substeps: int, tolerance: float) -> Passage:
         """Create the pass over a selection of the cells."""
         steps = substeps * max(1, round(float(np.ptp(self.y) / np.abs(np.diff(self.y)).min())))
@@ -185,16 +179,16 @@ class _CrossSection:
         edges = edges_between(self.z, 0.0, np.inf)[top_layer : bottom_layer + 2]
         # Period over the length of the positions along y. Accuracy: strains one period away have no influence.
         period = int(next_fast_len(3 * y.size, real=True))
-        indices = np.unique(columns, return_inverse=True)[1], layers - top_layer
+        if self.is_line_contact:
+            residual = partial(layer_stresses, self.body.material)
+        else:
+            residual = Influence.of(self.cells, columns, layers).stresses
         return Passage(
             elastic=elastic,
-            residual=self.layers if self.is_line_contact else Influence.of(self.cells, columns, layers),
-            layers=self.layers,
+            residual=residual,
             lateral=PeriodicLayers(self.body.material, edges, period, float(y[1] - y[0])),
-
-            cell_indices=indices,
+            cell_indices=(np.unique(columns, return_inverse=True)[1], layers - top_layer),
             yield_stress=self.yield_stress[cells],
-            shear_modulus=self.body.material.shear_modulus,
             isotropic=self.material.isotropic_hardening,
             kinematic=self.material.kinematic_hardening,
             tolerance=tolerance,
@@ -206,10 +200,10 @@ class _CrossSection:
         if not self.is_line_contact:
             solution = self.cells.solve(strain_field)
             return solution.cell_averages(), *solution.top_displacement(self.x)
-        stress = self.layers.stresses(strain).reshape(strain_field.shape)
+        material = self.body.material
+        stress = layer_stresses(material, strain).reshape(strain_field.shape)
         layer_heights = np.diff(np.concatenate([[0.0], 0.5 * (self.z[1:] + self.z[:-1]), self.z[-1:]]))
-        elastic_constants = self.body.material
-        strain_zz = -elastic_constants.poisson / elastic_constants.young * (stress[0] + stress[1]) + strain_field[2]
+        strain_zz = -material.poisson / material.young * (stress[0] + stress[1]) + strain_field[2]
         return stress, -strain_zz @ layer_heights, -2 * strain_field[5] @ layer_heights
 
     def yielding_cells(self, residual: FloatArray, ratio: float) -> IntArray:
