@@ -81,45 +81,30 @@ class EigenstrainBody:
         return np.concatenate([side_edges[0][::-1], x, side_edges[1]]), np.concatenate([edges_above, z, edges_below])
 
     @cached_property
-    def airy_function(self) -> StressFunction:
-        """Stress function of the stresses xx, zz and xz."""
-        x, z = (Splines(edges, self.degree, continuity=1, vanishing_orders=2) for edges in self.elements)
-        return StressFunction(x, z)
+    def functions(self) -> tuple[StressFunction, StressFunction]:
+        """Airy's function, of the stresses xx, zz and xz, and the antiplane function, of the stresses xy and yz."""
+        airy = (Splines(edges, self.degree, continuity=1, vanishing_orders=2) for edges in self.elements)
+        antiplane = (Splines(edges, self.degree - 1, continuity=0, vanishing_orders=1) for edges in self.elements)
+        return StressFunction(*airy), StressFunction(*antiplane)
 
     @cached_property
-    def antiplane_function(self) -> StressFunction:
-        """Antiplane stress function, of the stresses xy and yz."""
-        x, z = (Splines(edges, self.degree - 1, continuity=0, vanishing_orders=1) for edges in self.elements)
-        return StressFunction(x, z)
-
-    @cached_property
-    def airy_integrals(self) -> Factors:
-        """Integrals of the Airy function and of its derivatives over the cells."""
-        return self.airy_function.integrals(self.x_edges, self.z_edges)
-
-    @cached_property
-    def antiplane_integrals(self) -> Factors:
-        """Integrals of the antiplane stress function and of its slopes over the cells."""
-        return self.antiplane_function.integrals(self.x_edges, self.z_edges)
+    def integrals(self) -> tuple[Factors, Factors]:
+        """Integrals of both functions and of their derivatives over the cells."""
+        airy, antiplane = (function.integrals(self.x_edges, self.z_edges) for function in self.functions)
+        return airy, antiplane
 
     def solve(self, eigenstrain: FloatArray) -> EigenstrainSolution:
         """Solve for the stress functions of eigenstrains (6, cell x, cell z): tensor components xx, ..., yz."""
-        nu, young = self.material.poisson, self.material.young
-        e = eigenstrain
-        x, z = self.airy_integrals
-        right_hand_side = x[0] @ (e[XX] + nu * e[YY]) @ z[2].T + x[2] @ (e[ZZ] + nu * e[YY]) @ z[0].T  # eq. (503)
-        right_hand_side -= 2 * x[1] @ e[XZ] @ z[1].T
-        airy = self.airy_function.solve(-young / (1 - nu**2) * right_hand_side.reshape(-1, 1)).reshape(
-            right_hand_side.shape
-        )
-        antiplane: FloatArray = np.zeros((self.antiplane_function.x.count, self.antiplane_function.z.count))
+        e, nu = eigenstrain, self.material.poisson
+        (airy_function, antiplane_function), ((x, z), (antiplane_x, antiplane_z)) = self.functions, self.integrals
+        loads = x[0] @ (e[XX] + nu * e[YY]) @ z[2].T + x[2] @ (e[ZZ] + nu * e[YY]) @ z[0].T  # eq. (503)
+        loads -= 2 * x[1] @ e[XZ] @ z[1].T
+        airy = airy_function.solve(-self.material.plane_strain_modulus * loads.reshape(-1, 1)).reshape(loads.shape)
+        loads = 2 * (antiplane_x[0] @ e[XY] @ antiplane_z[1].T - antiplane_x[1] @ e[YZ] @ antiplane_z[0].T)
+        antiplane = np.zeros_like(loads)
         if e[[XY, YZ]].any():
-            x, z = self.antiplane_integrals
-            right_hand_side = 2 * (x[0] @ e[XY] @ z[1].T - x[1] @ e[YZ] @ z[0].T)
-            antiplane = self.antiplane_function.solve(
-                -self.material.shear_modulus * right_hand_side.reshape(-1, 1)
-            ).reshape(right_hand_side.shape)
-        return EigenstrainSolution(self, e, airy, antiplane)
+            antiplane = antiplane_function.solve(-self.material.shear_modulus * loads.reshape(-1, 1))
+        return EigenstrainSolution(self, e, airy, antiplane.reshape(loads.shape))
 
 
 @dataclass(frozen=True, eq=False)
@@ -133,8 +118,8 @@ class EigenstrainSolution:
 
     def stresses(self, x: FloatArray, z: FloatArray) -> FloatArray:
         """Residual stresses at the tensor product of positions: array (6, x, z), xx, yy, zz, xy, xz, yz in Pa."""
-        functions = self.body.airy_function.values(x, z), self.body.antiplane_function.values(x, z)
-        return self._assemble_stresses(*functions, self.eigenstrain_at(x, z))
+        airy, antiplane = (function.values(x, z) for function in self.body.functions)
+        return self._assemble_stresses(airy, antiplane, self.eigenstrain_at(x, z))
 
     def cell_averages(self) -> FloatArray:
         """Residual stresses averaged over the cells: array (6, cell x, cell z), Pa."""
@@ -142,7 +127,7 @@ class EigenstrainSolution:
         widths, heights = np.diff(body.x_edges)[:, None], np.diff(body.z_edges)[:, None]
         airy, antiplane = (
             ([matrix.T / widths for matrix in along_x], [matrix.T / heights for matrix in along_z])
-            for along_x, along_z in (body.airy_integrals, body.antiplane_integrals)
+            for along_x, along_z in body.integrals
         )
         return self._assemble_stresses(airy, antiplane, self.eigenstrain)
 
@@ -179,16 +164,15 @@ class EigenstrainSolution:
         nu, young = material.poisson, material.young
         z_elements = body.elements[1]
         depth_range = z_elements[[0, -1]]
-        airy_z = [body.airy_function.z.integrals(depth_range, d)[:, 0] for d in range(3)]
-        airy_x = [body.airy_function.x.values(x, d) for d in range(3)]
-        s_xx, s_zz = airy_x[0] @ self.airy @ airy_z[2], airy_x[2] @ self.airy @ airy_z[0]
+        airy, antiplane = body.functions
+        airy_z = [airy.z.integrals(depth_range, d)[:, 0] for d in (0, 2)]
+        s_xx, s_zz = airy.x.values(x) @ self.airy @ airy_z[1], airy.x.values(x, 2) @ self.airy @ airy_z[0]
         heights = np.diff(body.z_edges)
         centres = 0.5 * (body.z_edges[1:] + body.z_edges[:-1])
         e = self.eigenstrain_at(x, centres) @ heights
         # e_zz = (1 + nu) / E ((1 - nu) s_zz - nu s_xx) + eigenstrain zz + nu eigenstrain yy
         strain_zz = (1 + nu) / young * ((1 - nu) * s_zz - nu * s_xx) + e[ZZ] + nu * e[YY]
-        antiplane_z = body.antiplane_function.z.integrals(depth_range, 0)[:, 0]
-        s_yz = -body.antiplane_function.x.values(x, 1) @ self.antiplane @ antiplane_z
+        s_yz = -antiplane.x.values(x, 1) @ self.antiplane @ antiplane.z.integrals(depth_range, 0)[:, 0]
         return -strain_zz, -(s_yz / material.shear_modulus + 2 * e[YZ])
 
 
@@ -237,12 +221,11 @@ class Influence:
                 influence[:, start : start + COLUMNS_PER_SOLUTION] = averages @ function.solve(right_hand_sides)
             return influence / np.tile(areas, len(blocks))[:, None] * np.repeat(factors, areas.size)
 
-        integrals = body.airy_integrals
+        integrals, antiplane_integrals = body.integrals
         airy = [integrals_of(integrals, 0, 2), integrals_of(integrals, 2, 0), -integrals_of(integrals, 1, 1)]
-        airy_matrix = influence_matrix(body.airy_function, airy, np.array([1.0, 1.0, 2.0]))
-        integrals = body.antiplane_integrals
-        antiplane = [integrals_of(integrals, 0, 1), -integrals_of(integrals, 1, 0)]
-        antiplane_matrix = influence_matrix(body.antiplane_function, antiplane, np.array([2.0, 2.0]))
+        airy_matrix = influence_matrix(body.functions[0], airy, np.array([1.0, 1.0, 2.0]))
+        antiplane = [integrals_of(antiplane_integrals, 0, 1), -integrals_of(antiplane_integrals, 1, 0)]
+        antiplane_matrix = influence_matrix(body.functions[1], antiplane, np.array([2.0, 2.0]))
         modulus, shear_modulus = body.material.plane_strain_modulus, body.material.shear_modulus
         return cls(body.material, -modulus * airy_matrix, -shear_modulus * antiplane_matrix)
 
