@@ -136,9 +136,9 @@ def spence_checks() -> Iterator[Check]:
         )
     assert result is not None
     areas = [float(result["stick"].sum()), float((result["pressure"] > 0).sum())]
-    case, source = "rigid sphere pressed on a plane, f = 0.2986", "Spence (1975) by CONTACT"
+    reference = Reference("rigid sphere pressed on a plane, f = 0.2986", "Spence (1975) by CONTACT")
     ratio = np.sqrt(areas[0] / areas[1])
-    yield Reference(case, source).compare("radius of the stick zone over the contact's", ratio, 0.5, edge / cells)
+    yield reference.compare("radius of the stick zone over the contact's", ratio, 0.5, edge / cells)
 
 
 def shift_checks() -> Iterator[Check]:
@@ -155,12 +155,12 @@ def shift_checks() -> Iterator[Check]:
         counterbody=Counterbody(HalfSpace(material=rubber)),
         motion=Shift(force_y=load_fraction * friction * load),
     )
-    case, source = "sphere shifted on a plane, 7/8 of full sliding's force", "Cattaneo (1938); Mindlin (1949)"
+    reference = Reference("sphere shifted on a plane, 7/8 of full sliding's force", "Cattaneo (1938); Mindlin (1949)")
     expected = closed_forms.mindlin_shift(load_fraction, load, friction, 1e-3, shear, poisson=poisson)
-    yield Reference(case, source).compare("shift", result["shift_y"], expected, 3e-3, relative=True)
+    yield reference.compare("shift", result["shift_y"], expected, 3e-3, relative=True)
     step = 2 * edge / cells
     stick = step * np.sqrt(float(result["stick"].sum()) / np.pi)
-    yield Reference(case, source).compare("radius of the stick zone / a", stick / 1e-3, 0.5, 0.5 * step / 1e-3)
+    yield reference.compare("radius of the stick zone / a", stick / 1e-3, 0.5, 0.5 * step / 1e-3)
 
 
 def ellipse_gap(along_x: float, along_y: float, load: float, of: Material, cells: tuple[int, int]) -> xr.DataArray:
