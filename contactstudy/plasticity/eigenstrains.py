@@ -128,8 +128,7 @@ def edges_between(positions: FloatArray, low: float, high: float) -> FloatArray:
 def create_cross_section(body: Body, x: FloatArray, z: FloatArray) -> EigenstrainBody:
     """Create the cells around positions in a body, up to its top and its free ends."""
     for name, points in (("x", x), ("z", z)):
-        if points.size < 2 or (np.diff(points) <= 0).any():
-            raise InvalidInputError(name, points, "at least two positions, increasing (metres)")
+        checks.increasing(name, points, "metres", minimum=2)
     low, high = body.extent
     tolerance = 1e-9 * (x[-1] - x[0])  # Rounding over the positions' range
     if x[0] < low - tolerance or x[-1] > high + tolerance:

@@ -299,9 +299,7 @@ def wear_in(
         (0.0, None, _choose_cells(case, grid), None, 0.0) if after is None else _read_last_state(after, case, grid)
     )
     all_steps = np.ndim(distance) == 0
-    stops = checks.coordinates("distance", numbers_in_si("distance", distance, "m"))
-    if (np.diff(stops) <= 0).any():
-        raise InvalidInputError("distance", stops.tolist(), "increasing (metres)")
+    stops = checks.increasing("distance", numbers_in_si("distance", distance, "m"), "metres")
     if stops[0] < distance_before or stops[-1] <= distance_before:
         raise InvalidInputError("distance", stops.tolist(), f"beyond {distance_before:g} m, where the wear begins")
     gap = case.gap(cells)
