@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import Field, dataclass, fields, is_dataclass
 from itertools import chain
 from typing import NamedTuple, Protocol, runtime_checkable
@@ -79,19 +78,15 @@ class Shape:
         return None
 
     def __repr__(self) -> str:
-        return f"{type(self).__name__}({', '.join(f'{name}={text}' for name, text in self._arguments())})"
-
-    def _arguments(self) -> Iterator[tuple[str, str]]:
-        """Names and values of arguments other than the defaults, in engineering units."""
         entries: tuple[Field[object], ...] = fields(self) if is_dataclass(self) else ()
+        arguments = []  # other than the defaults, in engineering units
         for entry in entries:
             value = getattr(self, entry.name)
             if value != entry.default:
                 is_number = isinstance(value, (int, float)) and not isinstance(value, bool)
-                yield (
-                    entry.name,
-                    format_quantity(value, UNITS.get(entry.name, "m")) if is_number else describe_profile(value),
-                )
+                text = format_quantity(value, UNITS.get(entry.name, "m")) if is_number else describe_profile(value)
+                arguments.append(f"{entry.name}={text}")
+        return f"{type(self).__name__}({', '.join(arguments)})"
 
     def __add__(self, other: object) -> Sum:
         """Return the sum of both profiles."""
