@@ -125,7 +125,6 @@ def relative_life(risk: xr.Dataset, reference: xr.Dataset, exponents: LifeExpone
 MAX_TRUNCATED_RISK = 0.01  # Maximum fraction of the risk from sections with a truncated history or depth
 
 
-
 def _depth_positions(stress: xr.DataArray) -> tuple[str, xr.DataArray]:
     """Dimension and positions along the depth, NaN where padded."""
     dim = dimension_along(stress, "z")
