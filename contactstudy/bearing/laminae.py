@@ -232,12 +232,9 @@ def _hertz_loads(result: xr.Dataset, case: Case, edges: FloatArray) -> tuple[Flo
     x = dimension_along(pressure, "x")
     position, max_pressure = result[x].values, section_maxima(pressure.values)
     half_widths = 0.5 * cell_widths(pressure, "x").values
-    mid_length = case.roller_middle
-    under_roller = np.abs(position - mid_length) <= 0.5 * case.roller.length
-    radius = np.full(position.size, case.roller.radius)
-    radius[under_roller] = local_radius(
-        case.roller.profile, position[under_roller] - mid_length, case.roller.length, case.roller.radius
-    )
+    roller, half_length = case.roller, 0.5 * case.roller.length
+    x_from_middle = np.clip(position - case.roller_middle, -half_length, half_length)
+    radius = local_radius(roller.profile, x_from_middle, roller.length, roller.radius)
     line_loads = hertz.line_load(1.0, 1.0, case.modulus) * max_pressure**2 * radius
     columns = Columns(np.stack([position - half_widths, position + half_widths], axis=-1), position, line_loads)
     load, discretisation_error = power_means(columns, edges, LIFE_POWER)

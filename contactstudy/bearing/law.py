@@ -53,7 +53,7 @@ def _label_argument(name: str, value: Values) -> xr.DataArray:
 
 
 # Arguments of `apply_ufunc` for a function that returns two numbers
-PAIR: dict[str, Any] = {"output_core_dims": [[], []], "vectorize": True}
+PAIR: dict[str, Any] = {"output_core_dims": [[], []], "vectorize": True, "output_dtypes": [float, float]}
 
 
 def add_position_errors(motion: xr.Dataset) -> xr.Dataset:

@@ -169,32 +169,27 @@ def reference_life(
         [1e6 * risk ** (-8 / 9) for risk in pair] for pair in (risks, [risk.sum(axis=-1) for risk in risks])
     )
     is_infinite = np.isinf(mean_loads)
+    load_errors = np.where(is_infinite, np.inf, upper_loads - np.where(is_infinite, 0.0, mean_loads))
+    # The models of slices neglect the ends; their error is not estimated.
+    comment = {"comment": "from the stated errors of the pressures; NaN for the models of slices"}
+    variables: dict[str, tuple[object, ...]] = {}
+    for name, dims, values, error in (
+        ("reference_life", ("model",), lives, lives - lower_lives),
+        ("raceway_life", ("model", "raceway"), raceway_lives, raceway_lives - lower_raceway_lives),
+        ("lamina_equivalent_load", ("model", "raceway", "slice"), mean_loads, load_errors),
+        ("stress_riser", ("model", "raceway", "roller", "slice"), risers, riser_errors),
+    ):
+        variables |= {name: (dims, values), f"{name}_error": (dims, error, comment)}
     result = xr.Dataset(
-        {
-            "reference_life": ("model", lives),
-            "reference_life_error": ("model", lives - lower_lives),
-            "raceway_life": (("model", "raceway"), raceway_lives),
-            "raceway_life_error": (("model", "raceway"), raceway_lives - lower_raceway_lives),
-            "lamina_equivalent_load": (("model", "raceway", "slice"), mean_loads),
-            "lamina_equivalent_load_error": (
-                ("model", "raceway", "slice"),
-                np.where(is_infinite, np.inf, upper_loads - np.where(is_infinite, 0.0, mean_loads)),
-            ),
-            "stress_riser": (("model", "raceway", "roller", "slice"), risers),
-            "stress_riser_error": (("model", "raceway", "roller", "slice"), riser_errors),
-        },
+        variables,
         coords={
             "model": list(MODELS),
             "raceway": list(RACEWAYS),
             "roller": np.arange(1, loaded_count + 1),
             "slice": np.arange(1, lamina_count + 1),
         },
+        attrs={"turning": turning, "laminae": lamina_count},
     )
-    result.attrs = {"turning": turning, "laminae": lamina_count}
-    for name in ("reference_life", "raceway_life", "lamina_equivalent_load", "stress_riser"):
-        # The models of slices neglect the ends; their error is not estimated.
-        comment = "from the stated errors of the pressures; NaN for the models of slices"
-        result[f"{name}_error"].attrs["comment"] = comment
     return describe(result, "basic reference rating life from laminae")
 
 

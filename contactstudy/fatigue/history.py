@@ -129,10 +129,8 @@ def enclosing_balls(points: Array, heights: Array | None = None) -> tuple[Array,
     scale = np.sqrt((local**2).sum(axis=-1) + squares).max(axis=1)
     centre, radius = origin.copy(), np.zeros(len(points))
     open_paths = np.flatnonzero(scale > 0)
-    paths, squares = (
-        local[open_paths] / scale[open_paths, None, None],
-        squares[open_paths] / scale[open_paths, None] ** 2,
-    )
+    paths = local[open_paths] / scale[open_paths, None, None]
+    squares = squares[open_paths] / scale[open_paths, None] ** 2
     centres = paths[:, 0].copy()
     radii = np.sqrt(squares[:, 0])
     max_support = points.shape[-1] + 1
@@ -172,11 +170,10 @@ def _add_point(
     min_squared_radius = np.full(len(path), np.inf)
     centre, best_subset = np.zeros_like(new_point), np.zeros_like(is_present)
     for subset in product((False, True), repeat=subset_size):
-        mask = np.array(subset)
-        if mask.sum() >= max_support:  # more points than support a ball
+        mask, size = np.array(subset), sum(subset)
+        if size >= max_support:  # more points than support a ball
             continue
         # The circumcentre has equal distances from the new point and from the subset.
-        size = int(mask.sum())
         matrix = gram[:, mask][:, :, mask]
         regular = matrix + REGULARISATION * np.eye(size) * (1 + np.trace(matrix, axis1=1, axis2=2))[:, None, None]
         factors = np.linalg.solve(regular, 0.5 * square[:, mask][..., None])[..., 0] if size else square[:, mask]

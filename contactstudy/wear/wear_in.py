@@ -32,7 +32,7 @@ from contactstudy.contact.rolling.frictional_contact import frictional_contact
 from contactstudy.contact.rolling.tractions import FrictionRequest
 from contactstudy.errors import ConvergenceWarning, InvalidInputError
 from contactstudy.kernels.load import Load
-from contactstudy.profiles.base import check_drop
+
 from contactstudy.threads import one_blas_thread
 from contactstudy.wear.profile import WORN_ATTRIBUTES
 
@@ -398,9 +398,7 @@ def _label(integrator: WearIntegrator, states: list[State], length: float) -> xr
     x, half_length = grid.x - case.roller_middle, 0.5 * case.roller.length
     if grid.uniform:
         x = snap_to_ends(x, half_length, grid.dx)
-    under_roller = np.abs(x) <= half_length
-    drop = np.full(grid.cells_x, np.nan)
-    drop[under_roller] = check_drop(case.roller.profile, x[under_roller], case.roller.length)
+    drop = np.where(np.abs(x) <= half_length, case.roller.clearance(x, np.zeros(1))[:, 0], np.nan)
     volumes = length * depths @ grid.widths
     law_volumes = length * np.array([state.worn_area for state in states])
     volume_gain, law_volumes = volumes - volumes[0], law_volumes - law_volumes[0]
