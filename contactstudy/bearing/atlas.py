@@ -101,7 +101,6 @@ def _check_group(name: str, value: npt.ArrayLike | xr.DataArray, valid_range: tu
     return xr.DataArray(values, dims=("point",)[: values.ndim])
 
 
-
 @dataclass(frozen=True, eq=False)
 class AtlasTable:
     """Solved points and their interpolation; a residual is the difference from interpolation between other points."""

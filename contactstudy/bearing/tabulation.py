@@ -207,7 +207,6 @@ def contact_law(
     return ContactLaw(label_law(solver, nodes, fit_errors + cell_errors[:, None, None]))
 
 
-
 def label_law(solver: ContactSolver, nodes: Nodes, errors: FloatArray) -> xr.Dataset:
     """Label the nodes and their errors (2, approach, tilt), with the stiffness of their interpolation."""
     delta, theta = np.meshgrid(nodes.approaches, nodes.tilts, indexing="ij")

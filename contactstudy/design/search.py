@@ -39,7 +39,6 @@ REMEDY = (
 )
 
 
-
 @dataclass(frozen=True, eq=False)
 class Design:
     """Evaluated design."""

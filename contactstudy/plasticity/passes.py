@@ -292,13 +292,10 @@ def residual_stress(
                 next_state = State(state.strain.copy(), state.accumulated.copy(), pass_state.converged)
                 next_state.strain[:, cells], next_state.accumulated[cells] = pass_state.strain, pass_state.accumulated
             residual, displacement_z, displacement_y = section.residual_state(next_state.strain)
-            new_cells = np.setdiff1d(section.yielding_cells(residual.reshape(6, -1), 1 + tolerance), cells)
-            if not new_cells.size:
+            if np.isin(section.yielding_cells(residual.reshape(6, -1), 1 + tolerance), cells).all():
                 break
             # Residual stress makes further cells yield: repeat the pass with these cells.
-            cells = np.union1d(
-                np.union1d(cells, new_cells), section.yielding_cells(residual.reshape(6, -1), NEAR_YIELD_RATIO)
-            )
+            cells = np.union1d(cells, section.yielding_cells(residual.reshape(6, -1), NEAR_YIELD_RATIO))
             passage = section.create_passage(cells, substeps, tolerance)
         plastic_flow = float((next_state.accumulated - state.accumulated).max())
         strain_norm = tensor_norm(next_state.strain)
@@ -315,13 +312,13 @@ def residual_stress(
         strains = state.strain.reshape(6, section.x.size, section.z.size)
         fields = dict(zip((*STRESSES, *STRAINS), (*residual, *strains), strict=True))
         fields["equivalent_plastic_strain"] = state.accumulated.reshape(strains.shape[1:])
-        surface_fields = {"residual_displacement_z": displacement_z, "residual_displacement_y": displacement_y}
-        pass_result = xr.Dataset(
-            {name: (dims, field) for name, field in fields.items()}
-            | {name: (dims[:1], values) for name, values in surface_fields.items()}
-            | {"plastic_flow": ((), plastic_flow), "converged": ((), state.converged)},
-            coords={dims[0]: section.x, dims[1]: section.z},
-        )
+        variables = {name: (dims, field) for name, field in fields.items()} | {
+            "residual_displacement_z": (dims[:1], displacement_z),
+            "residual_displacement_y": (dims[:1], displacement_y),
+            "plastic_flow": ((), plastic_flow),
+            "converged": ((), state.converged),
+        }
+        pass_result = xr.Dataset(variables, coords={dims[0]: section.x, dims[1]: section.z})
         states.append(pass_result.expand_dims(pass_number=[pass_number]))
         # The state is stationary once the flow of a pass changes the stress by less than twice the tolerance.
         if 3 * body.material.shear_modulus * plastic_flow <= 2.0 * tolerance * section.yield_stress.min():

@@ -103,7 +103,6 @@ def unit_of(profile: object, name: str) -> str:
     return UNITS.get(name, "m") if is_package_profile and any(entry.name == name for entry in fields(profile)) else ""  # type: ignore[arg-type]
 
 
-
 def local_radius(profile: Profile, x: FloatArray, length: float, radius: float | FloatArray) -> FloatArray:
     """Radius of curvature across the roller (m) at distances `x` from mid-length.
 

@@ -156,7 +156,6 @@ class JohnsGohar(Logarithmic):
         checks.store(self, amplitude=checks.not_negative("amplitude", self.amplitude, "metres"))
         checks.store(self, half_width=checks.not_negative("half_width", self.half_width, "metres"))
 
-
     def edge_drop(self, length: float) -> float:
         """Drop (m) at the ends of a roller of the given `length` (m)."""
         return float(self.drop(np.array([length / 2]), length)[0])

@@ -32,7 +32,6 @@ from contactstudy.contact.rolling.frictional_contact import frictional_contact
 from contactstudy.contact.rolling.tractions import FrictionRequest
 from contactstudy.errors import ConvergenceWarning, InvalidInputError
 from contactstudy.kernels.load import Load
-
 from contactstudy.threads import one_blas_thread
 from contactstudy.wear.profile import WORN_ATTRIBUTES
 
