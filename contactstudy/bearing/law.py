@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -18,6 +18,7 @@ from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 
 Values = float | list[float] | tuple[float, ...] | FloatArray | xr.DataArray  # A number, several, or labelled numbers
+Pair = tuple[xr.DataArray, xr.DataArray]  # Approach and tilt
 UNITS = {"approach": "m", "tilt": "rad", "normal_load": "N", "moment": "N m"}  # Units of the arguments
 
 
@@ -43,9 +44,9 @@ def broadcast_arguments(**values: Values) -> tuple[xr.DataArray, ...]:
 def _label_argument(name: str, value: Values) -> xr.DataArray:
     """Return an argument as a DataArray of finite numbers."""
     if isinstance(value, xr.DataArray):
-        value = numbers_in_si(name, value, UNITS[name])
-        checks.coordinates(name, value.values.ravel(), UNITS[name])
-        return value.drop_vars(name, errors="ignore") if name not in value.dims else value
+        labelled: xr.DataArray = numbers_in_si(name, value, UNITS[name])
+        checks.coordinates(name, labelled.values.ravel(), UNITS[name])
+        return labelled.drop_vars(name, errors="ignore") if name not in labelled.dims else labelled
     if np.ndim(value) == 0:
         return xr.DataArray(checks.finite(name, value, UNITS[name]))
     numbers = checks.coordinates(name, value, UNITS[name])
@@ -376,7 +377,7 @@ class Raceways:
         contacts = (xr.apply_ufunc(law.solve_position, loads, moments, **PAIR) for law in (self.inner, self.outer))
         return add_position_errors(self._label_series(*contacts))
 
-    def _label_series(self, inner: Sequence[xr.DataArray], outer: Sequence[xr.DataArray]) -> xr.Dataset:
+    def _label_series(self, inner: Pair, outer: Pair) -> xr.Dataset:
         """Label the series of two contacts at given approaches and tilts."""
         pairs = [(self.inner, *inner), (self.outer, *outer)]
         contacts = [law.motion(delta.values, theta.values) for law, delta, theta in pairs]

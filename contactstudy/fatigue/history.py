@@ -28,9 +28,8 @@ def stack_history(stress: xr.Dataset) -> tuple[xr.DataArray, str]:
     """Six stress components, with rolling direction and component as last dimensions, and the former's name."""
     stress = require_in_si(stress, *STRESSES, argument="stress")
     rolling_dim = rolling_dimension(stress["tau_yz"])
-    tensor = xr.concat([stress[name] for name in STRESSES], dim=COMPONENT, coords="minimal", compat="override")
-    other_dims = [dim for dim in tensor.dims if dim not in (rolling_dim, COMPONENT)]
-    return tensor.transpose(*other_dims, rolling_dim, COMPONENT), rolling_dim
+    tensor = stress[list(STRESSES)].to_dataarray(COMPONENT).drop_vars(COMPONENT)
+    return tensor.transpose(..., rolling_dim, COMPONENT), rolling_dim
 
 
 def rolling_dimension(stress: xr.DataArray) -> str:

@@ -179,9 +179,8 @@ class _CrossSection:
         edges = edges_between(self.z, 0.0, np.inf)[top_layer : bottom_layer + 2]
         # Period over the length of the positions along y. Accuracy: strains one period away have no influence.
         period = int(next_fast_len(3 * y.size, real=True))
-        if self.is_line_contact:
-            residual = partial(layer_stresses, self.body.material)
-        else:
+        residual: Callable[[FloatArray], FloatArray] = partial(layer_stresses, self.body.material)
+        if not self.is_line_contact:
             residual = Influence.of(self.cells, columns, layers).stresses
         return Passage(
             elastic=elastic,
