@@ -173,13 +173,9 @@ def flash_temperature(
     check_solved_for(result, case)
     pressure, grid = labelled_cells("result.pressure", solution["pressure"], extent=case.body.extent)
     checks.instance("body", body, ThermalProperties, "a ThermalProperties(...)")
-    if partition is None and roller is None:
-        raise InvalidInputError(
-            "roller", None, "a ThermalProperties(...)", "or give partition, the fraction of the heat into the body"
-        )
-    if roller is not None:
-        checks.instance("roller", roller, ThermalProperties, "a ThermalProperties(...)")
     share = None if partition is None else checks.not_negative("partition", partition)
+    allowed = "a ThermalProperties(...), or None with partition, the fraction of the heat into the body"
+    checks.instance("roller", roller, ThermalProperties if share is None else (ThermalProperties, type(None)), allowed)
     if share is not None and share > 1:
         raise InvalidInputError("partition", share, "from 0 to 1: the fraction of the heat into the body")
     if limit is not None:
