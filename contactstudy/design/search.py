@@ -86,20 +86,15 @@ class Evaluations:
         """Design of the least measure."""
         return min(self.designs, key=lambda design: design.value)
 
-    def find_earlier(self, fractions: FloatArray) -> Design | None:
-        """Return an earlier design at the fractions of the ranges, or None."""
-        return next(
-            (design for design in self.designs if np.abs(design.fractions - fractions).max() <= MIN_DIFFERENCE), None
-        )
-
     def __call__(self, fractions: FloatArray) -> Design:
-        """Return the design at the fractions of the ranges."""
+        """Return the design at the fractions of the ranges, solved unless an earlier one has the same fractions."""
         clipped = np.clip(np.asarray(fractions, dtype=np.float64), 0.0, 1.0)
-        design = self.find_earlier(clipped)
-        if design is None:
-            design = self._solve_design(clipped)
-            self.designs.append(design)
-            LOGGER.info("%s: %.5g", self.parameters(clipped), design.value)
+        for earlier in self.designs:
+            if np.abs(earlier.fractions - clipped).max() <= MIN_DIFFERENCE:
+                return earlier
+        design = self._solve_design(clipped)
+        self.designs.append(design)
+        LOGGER.info("%s: %.5g", self.parameters(clipped), design.value)
         return design
 
     def parameters(self, fractions: FloatArray) -> dict[str, float]:
@@ -238,37 +233,35 @@ def _find_flat_end(evaluations: Evaluations, best: Design, parameter: int, bound
     if abs(origin - bound) <= MIN_DIFFERENCE:
         return bound
 
-    def fractions_with(fraction: float) -> FloatArray:
-        fractions = best.fractions.copy()
-        fractions[parameter] = fraction
-        return fractions
+    def line() -> list[float]:
+        """Fractions of the designs that differ from the best in this parameter alone."""
+        fractions = np.array([design.fractions for design in evaluations.designs])
+        on_line = (np.abs(np.delete(fractions - best.fractions, parameter, axis=1)) <= MIN_DIFFERENCE).all(axis=1)
+        return [float(fraction) for fraction in fractions[on_line, parameter]]
 
     def excess(fraction: float) -> float:
         """Difference of a design from the best beyond the errors of both."""
-        design = evaluations(fractions_with(fraction))
+        fractions = best.fractions.copy()
+        fractions[parameter] = fraction
+        design = evaluations(fractions)
         if not np.isfinite(design.value):
             return MAX_EXCESS_RATIO * best.error
         return float(min(design.value - best.value - design.error - best.error, MAX_EXCESS_RATIO * best.error))
 
     # Earlier designs on this line, outwards from the best; the first worse design ends the flat range.
-    flat_end, worse_end = origin, None
-    for fraction in sorted(
-        _fractions_on_line(evaluations, best, parameter), key=lambda fraction: abs(fraction - origin)
-    ):
-        if (fraction - origin) * (bound - origin) <= 0:
-            continue
+    flat_end, worse_end = origin, bound
+    earlier = [fraction for fraction in line() if (fraction - origin) * (bound - origin) > 0]
+    for fraction in sorted(earlier, key=lambda fraction: abs(fraction - origin)):
         if excess(fraction) > 0:
             worse_end = fraction
             break
         flat_end = fraction
-    if worse_end is None:
-        if evaluations.find_earlier(fractions_with(bound)) is None:
-            if limit < 1:
-                return flat_end
-            limit -= 1
+    else:
+        if abs(flat_end - bound) <= MIN_DIFFERENCE or limit < 1:
+            return flat_end
+        limit -= 1
         if excess(bound) <= 0:
             return bound
-        worse_end = bound
     if abs(worse_end - flat_end) <= FLAT_RANGE_TOLERANCE or limit < 1:
         return flat_end
     flat_limit, state = optimize.brentq(
@@ -277,15 +270,8 @@ def _find_flat_end(evaluations: Evaluations, best: Design, parameter: int, bound
     if state.converged:
         return float(flat_limit)
     low, high = sorted((flat_end, worse_end))
-    inner = [fraction for fraction in _fractions_on_line(evaluations, best, parameter) if low <= fraction <= high]
-    return max((fraction for fraction in inner if excess(fraction) <= 0), key=lambda fraction: abs(fraction - origin))
-
-
-def _fractions_on_line(evaluations: Evaluations, best: Design, parameter: int) -> list[float]:
-    """Fractions of the designs that differ from the best in this parameter alone."""
-    fractions = np.array([design.fractions for design in evaluations.designs])
-    on_line = (np.abs(np.delete(fractions - best.fractions, parameter, axis=1)) <= MIN_DIFFERENCE).all(axis=1)
-    return [float(fraction) for fraction in fractions[on_line, parameter]]
+    inner = [fraction for fraction in line() if low <= fraction <= high and excess(fraction) <= 0]
+    return max(inner, key=lambda fraction: abs(fraction - origin))
 
 
 BOUND_TOLERANCE = 0.01  # Fraction of a range between an optimum at a bound and the bound
