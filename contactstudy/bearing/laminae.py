@@ -249,14 +249,11 @@ def _hertz_loads(result: xr.Dataset, case: Case, edges: FloatArray) -> tuple[Flo
 def _pressure_errors(result: xr.Dataset, load: FloatArray, line_loads: FloatArray, weights: FloatArray) -> FloatArray:
     """Errors of loads per length that follow from the stated errors of the largest pressure in either half."""
     half_count = load.size // 2
-    errors = []
-    for lamina_range, side, relative_error in zip(
-        (slice(load.size - half_count), slice(half_count, None)), SIDES, pressure_errors(result), strict=True
-    ):
+    halves = (slice(load.size - half_count), slice(half_count, None))
+    errors = np.zeros((2, load.size))
+    for row, lamina_range, side, relative_error in zip(errors, halves, SIDES, pressure_errors(result), strict=True):
         is_infinite = np.isinf(float(result.get(f"peak_pressure_{side}", 0.0)))
         max_load = load[lamina_range] if is_infinite else line_loads[weights[lamina_range].any(axis=0)].max()
-        error = np.zeros(load.size)
         # The load is proportional to the square of the pressure.
-        error[lamina_range] = 2 * relative_error * np.sqrt(load[lamina_range] * max_load)
-        errors.append(error)
-    return np.maximum(*errors)
+        row[lamina_range] = 2 * relative_error * np.sqrt(load[lamina_range] * max_load)
+    return np.asarray(errors.max(axis=0))

@@ -273,13 +273,12 @@ class ContactLaw:
         start = np.array([nodes.approaches[row], nodes.tilts[column]])
         position = find_root(residual, start, bounds, scales, jacobian)
         if position is None:
-            raise InvalidInputError(
-                "normal_load, moment",
-                (load, moment),
+            allowed = (
                 f"of a contact in the table, whose loads go from {nodes.load.min():.4g} to {nodes.load.max():.4g} N "
-                f"and tilts from {min_tilt:g} to {max_tilt:g} rad",
-                "make the table for larger approaches or tilts",
+                f"and tilts from {min_tilt:g} to {max_tilt:g} rad"
             )
+            hint = "make the table for larger approaches or tilts"
+            raise InvalidInputError("normal_load, moment", (load, moment), allowed, hint)
         return position
 
     def range_of(self, name: str) -> tuple[float, float]:
@@ -416,10 +415,6 @@ class Raceways:
 
         position = find_root(residual, 0.5 * np.array([approach, tilt]), bounds, scales)
         if position is None:
-            raise InvalidInputError(
-                "approach, tilt",
-                (approach, tilt),
-                "such that either contact is in its table",
-                "make the tables for more approaches or tilts",
-            )
+            allowed, hint = "such that either contact is in its table", "make the tables for more approaches or tilts"
+            raise InvalidInputError("approach, tilt", (approach, tilt), allowed, hint)
         return position

@@ -70,12 +70,8 @@ def _name_unsolvable_contact(load: float, tilt: float) -> Iterator[None]:
     try:
         yield
     except (InvalidInputError, WindowError) as error:
-        raise InvalidInputError(
-            "tilts, approaches",
-            f"a tilt of {tilt:g} rad under {load:.3g} N",
-            "such that the contact is solved",
-            f"take smaller tilts or larger approaches ({error})",
-        ) from error
+        value, hint = f"a tilt of {tilt:g} rad under {load:.3g} N", f"take smaller tilts or larger approaches ({error})"
+        raise InvalidInputError("tilts, approaches", value, "such that the contact is solved", hint) from error
 
 
 def solve_nodes(solver: ContactSolver, approaches: FloatArray, tilts: FloatArray) -> Nodes:

@@ -33,10 +33,7 @@ XX, YY, ZZ, XY, XZ, YZ = range(6)  # components in the order of every array of s
 
 def grow_edges(start: float, stop: float, first_width: float) -> FloatArray:
     """Edges from `start` (left out) to `stop`; the widths of the elements grow from about `first_width`."""
-    distance = abs(stop - start)
-    if distance <= 0:
-        return np.zeros(0)
-    count = max(1, int(np.ceil(np.log1p(distance * (GROWTH - 1) / first_width) / np.log(GROWTH))))
+    count = max(1, int(np.ceil(np.log1p(abs(stop - start) * (GROWTH - 1) / first_width) / np.log(GROWTH))))
     # The widths are shrunk a little, such that the last element ends at `stop`.
     edges = start + (stop - start) * np.cumsum(GROWTH ** np.arange(count)) / (GROWTH ** np.arange(count)).sum()
     edges[-1] = stop

@@ -86,11 +86,8 @@ class FatigueLimits:
         slope = 3 * self.ratio - np.sqrt(3)
         # A ratio of 1 / sqrt(3) gives zero up to rounding.
         if slope < -1e-9:
-            raise InvalidInputError(
-                "torsion",
-                self.torsion,
-                f"at least the limit in bending over sqrt(3), {self.bending / np.sqrt(3):g} Pa, for Crossland",
-            )
+            allowed = f"at least the limit in bending over sqrt(3), {self.bending / np.sqrt(3):g} Pa, for Crossland"
+            raise InvalidInputError("torsion", self.torsion, allowed)
         return float(max(slope, 0.0))
 
     @property

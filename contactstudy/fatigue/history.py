@@ -35,13 +35,11 @@ def stack_history(stress: xr.Dataset) -> tuple[xr.DataArray, str]:
 def rolling_dimension(stress: xr.DataArray) -> str:
     """Name of the dimension along y of a stress, which must have at least three positions."""
     rolling_dim = dimension_along(stress, "y")
-    if stress.sizes[rolling_dim] < MIN_POSITIONS:
-        raise InvalidInputError(
-            f"stress.sizes[{rolling_dim!r}]",
-            stress.sizes[rolling_dim],
-            f"at least {MIN_POSITIONS}: the positions along y are the history",
-            "solve with y over the whole passage, for example from -3 to 3 half-widths",
-        )
+    size = stress.sizes[rolling_dim]
+    if size < MIN_POSITIONS:
+        allowed = f"at least {MIN_POSITIONS}: the positions along y are the history"
+        hint = "solve with y over the whole passage, for example from -3 to 3 half-widths"
+        raise InvalidInputError(f"stress.sizes[{rolling_dim!r}]", size, allowed, hint)
     return rolling_dim
 
 

@@ -180,12 +180,10 @@ def _integrate_risk(
     for name, mask in truncated.items():
         fraction = _sum_over_x(density.where(mask, 0.0)) / risk.where(risk > 0)
         if (fraction > MAX_TRUNCATED_RISK).any():
-            raise InvalidInputError(
-                "stress",
-                f"{name} in sections with {float(fraction.max()):.2g} of the risk",
-                f"largest inside; at most {MAX_TRUNCATED_RISK:g} of the risk may be cut off",
-                "solve with y over the whole passage, for example from -3 to 3 half-widths, and z from 0 to 2",
-            )
+            value = f"{name} in sections with {float(fraction.max()):.2g} of the risk"
+            allowed = f"largest inside; at most {MAX_TRUNCATED_RISK:g} of the risk may be cut off"
+            hint = "solve with y over the whole passage, for example from -3 to 3 half-widths, and z from 0 to 2"
+            raise InvalidInputError("stress", value, allowed, hint)
     return xr.Dataset(
         {
             "risk_density": label_points("risk_density", density).assign_attrs(units=exponents.units(1)),
@@ -266,12 +264,8 @@ def lundberg_palmgren(stress: xr.Dataset, exponents: LifeExponents = ROLLER_BEAR
     shear = stress["tau_yz"].compute()  # once for all subsets of the positions
     amplitude, max_amplitude, depth = _shear_maximum(shear)
     if ((max_amplitude > 0) & (depth <= 0)).any():
-        raise InvalidInputError(
-            "stress",
-            "orthogonal shear largest on the surface",
-            "largest below it",
-            "Lundberg and Palmgren's theory excludes such friction; use Ioannides and Harris'",
-        )
+        hint = "Lundberg and Palmgren's theory excludes such friction; use Ioannides and Harris'"
+        raise InvalidInputError("stress", "orthogonal shear largest on the surface", "largest below it", hint)
     depths, dim = positions(amplitude, "z"), dimension_along(amplitude, "z")
     y = positions(shear, "y")
     inner_shear = shear.where((y > y.min(rolling_dim)) & (y < y.max(rolling_dim)))

@@ -84,12 +84,8 @@ def shakedown(stress: xr.Dataset, *, axial: bool = False) -> xr.Dataset:
         tensor, _ = stack_history(stress)
         axial_dims = [str(dim) for dim in tensor.dims if str(dim).partition("_")[0] == "x"]
         if any(tensor.sizes[dim] > 1 for dim in axial_dims):
-            raise InvalidInputError(
-                "axial",
-                True,
-                f"False with {tensor.sizes[axial_dims[0]]} positions along x",
-                "residual stress along the axis is free only in a line contact, a result with one position along x",
-            )
+            hint = "residual stress along the axis is free only in a line contact, a result with one position along x"
+            raise InvalidInputError("axial", True, f"False with {tensor.sizes[axial_dims[0]]} positions along x", hint)
 
     def compute_yield_stresses(history: Array) -> tuple[Array, ...]:
         """Least yield stresses in shear without yield and with shakedown, and the residual stresses yy and xx."""

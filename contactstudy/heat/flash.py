@@ -55,12 +55,8 @@ def frictional_heat(case: Case, solution: xr.Dataset) -> FrictionalHeat:
         relation = "not below" if traction.max() > 0 else "not above"
         if (traction < 0).any() and (traction > 0).any():
             relation = "equal to, as the friction changes its sign along the axis,"
-        raise InvalidInputError(
-            "case.motion.roller_speed",
-            roller_speed,
-            f"{relation} body_speed, {body_speed:g}: friction acts on the body along the roller's sliding",
-            "speeds are along +y",
-        )
+        allowed = f"{relation} body_speed, {body_speed:g}: friction acts on the body along the roller's sliding"
+        raise InvalidInputError("case.motion.roller_speed", roller_speed, allowed, "speeds are along +y")
     return FrictionalHeat(density, body_speed, roller_speed)
 
 
@@ -75,25 +71,23 @@ def partition_heat(
     if not heat.any():  # surfaces of the same speed
         return np.zeros(heat.shape), 0.0
 
-    def expand(cell_heat: FloatArray) -> FloatArray:
-        grid_heat = np.zeros(heat.shape)
-        grid_heat[in_contact] = cell_heat
-        return grid_heat
-
     first_rise, second_rise = first_response(heat)[in_contact], second_response(heat)[in_contact]
     fraction = second_rise.max() / (first_rise.max() + second_rise.max())  # Blok's: equal largest temperatures
     guess = fraction * heat[in_contact]
     count = guess.size
 
     def apply(cell_heat: FloatArray) -> FloatArray:
-        grid_heat = expand(np.asarray(cell_heat).ravel())
+        grid_heat = np.zeros(heat.shape)
+        grid_heat[in_contact] = np.ravel(cell_heat)
         return np.asarray((first_response(grid_heat) + second_response(grid_heat))[in_contact])
 
     operator = LinearOperator((count, count), matvec=apply, dtype=np.float64)  # eq. (602)
     # Residual of the temperatures over the right-hand side at which the iteration stops
     solution, _ = gmres(operator, second_rise, x0=guess, rtol=1e-9, restart=min(RESTART, count), maxiter=MAX_RESTARTS)
     mismatch = float(np.abs(apply(solution) - second_rise).max() / max(np.abs(second_rise).max(), np.finfo(float).tiny))
-    return expand(solution), mismatch
+    into_first = np.zeros(heat.shape)
+    into_first[in_contact] = solution
+    return into_first, mismatch
 
 
 def flash_temperature(

@@ -161,12 +161,9 @@ class SourceOperator:
         window = grid.dy * grid.cells_y
         # Below this Peclet number of the window a surface is at rest.
         if np.isfinite(length) and abs(body.drift) * window < 1e-6:
-            raise InvalidInputError(
-                "speed",
-                body.speed,
-                "such that the surface of a body with two ends leaves the contact",
-                "a surface at rest gets hotter without limit, and the other body takes all heat: give partition",
-            )
+            allowed = "such that the surface of a body with two ends leaves the contact"
+            hint = "a surface at rest gets hotter without limit, and the other body takes all heat: give partition"
+            raise InvalidInputError("speed", body.speed, allowed, hint)
         spread, weights = spread_nodes(min(float(np.diff(edges).min()), grid.dy), grid.dy, window, body.drift)
         # eq. (601)
         weights = weights * np.exp(-((depth / spread) ** 2)) / (body.properties.conductivity * np.sqrt(np.pi))

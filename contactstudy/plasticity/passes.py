@@ -301,12 +301,9 @@ def residual_stress(
         if strain_norm.max(initial=0.0) > MAX_STRAIN:
             index = np.unravel_index(int(strain_norm.argmax()), (section.x.size, section.z.size))
             position = f"x = {section.x[index[0]]:.4g} m, z = {section.z[index[1]]:.4g} m"
-            raise InvalidInputError(
-                "stress",
-                f"a plastic strain of {strain_norm.max():.2g} at {position}",
-                f"such that plastic strains stay below {MAX_STRAIN:g}",
-                "lower the load, or give the material hardening: flow above the shakedown limit does not end",
-            )
+            value = f"a plastic strain of {strain_norm.max():.2g} at {position}"
+            hint = "lower the load, or give the material hardening: flow above the shakedown limit does not end"
+            raise InvalidInputError("stress", value, f"such that plastic strains stay below {MAX_STRAIN:g}", hint)
         state = next_state
         strains = state.strain.reshape(6, section.x.size, section.z.size)
         fields = dict(zip((*STRESSES, *STRAINS), (*residual, *strains), strict=True))

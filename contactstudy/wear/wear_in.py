@@ -315,13 +315,9 @@ def wear_in(
     last_stop = float(stops[-1])
     mean_depth = integrator.rate * float(start.slip.max()) * case.normal_load / case.contact_length * last_stop
     if mean_depth > MAX_DEPTH * case.roller.radius:
-        raise InvalidInputError(
-            "distance",
-            last_stop,
-            f"such that the mean worn depth, {mean_depth:.3g} m, is at most {MAX_DEPTH:g} of the roller's radius, "
-            f"{case.roller.radius:g} m",
-            "coefficient is in 1/Pa, distances in metres",
-        )
+        limit = f"at most {MAX_DEPTH:g} of the roller's radius, {case.roller.radius:g} m"
+        allowed = f"such that the mean worn depth, {mean_depth:.3g} m, is {limit}"
+        raise InvalidInputError("distance", last_stop, allowed, "coefficient is in 1/Pa, distances in metres")
     if step is None:
         # The first step wears 1e-3 of the depth ``a**2 / (2 R)`` of the contact.
         contact_depth = case.hertz_half_width**2 / (2 * case.roller.radius)
