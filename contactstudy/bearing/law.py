@@ -29,9 +29,8 @@ def broadcast_arguments(**values: Values) -> tuple[xr.DataArray, ...]:
         indexes = [argument.indexes[dim] for argument in labelled if dim in argument.indexes]
         if any(set(labels) != set(indexes[0]) for labels in indexes):
             labels_text = " and ".join(str(labels.tolist()[:5]) for labels in indexes)
-            raise InvalidInputError(
-                ", ".join(values), f"{dim} = {labels_text}", f"with the same labels along {dim}, or without"
-            )
+            allowed = f"with the same labels along {dim}, or without"
+            raise InvalidInputError(", ".join(values), f"{dim} = {labels_text}", allowed)
     try:
         aligned = xr.align(*labelled, join="left")
     except ValueError as error:
@@ -218,9 +217,8 @@ class ContactLaw:
             tolerance = ROUNDING * (high - low)
             outer_values = values.values[(values.values < low - tolerance) | (values.values > high + tolerance)]
             if outer_values.size:
-                raise InvalidInputError(
-                    name, float(outer_values[0]), f"in the table, from {low:g} to {high:g} {UNITS[name]}"
-                )
+                allowed = f"in the table, from {low:g} to {high:g} {UNITS[name]}"
+                raise InvalidInputError(name, float(outer_values[0]), allowed)
         pairs = delta.values, theta.values
         return label_motion(delta, theta, self.motion(*pairs), self.errors(*pairs))
 

@@ -65,9 +65,8 @@ class FatigueLimits:
         for name in ("bending", "torsion"):
             checks.store(self, **{name: checks.positive(name, getattr(self, name), "Pa")})
         if not 0.5 <= self.ratio < 1:
-            raise InvalidInputError(
-                "torsion", self.torsion, f"between half of the limit in bending and that limit, {self.bending:g} Pa"
-            )
+            allowed = f"between half of the limit in bending and that limit, {self.bending:g} Pa"
+            raise InvalidInputError("torsion", self.torsion, allowed)
         warn_of_values(stacklevel=4, bending=self.bending, torsion=self.torsion)
 
     @property

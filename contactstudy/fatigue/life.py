@@ -104,9 +104,8 @@ def relative_life(risk: xr.Dataset, reference: xr.Dataset, exponents: LifeExpone
     for name in ("theory", "fatigue_limit"):
         value, reference_value = (dataset["risk"].attrs.get(name) for dataset in (risk, reference))
         if value is not None is not reference_value and value != reference_value:
-            raise InvalidInputError(
-                "reference", f"{name} = {reference_value}", f"computed as risk was, {name} = {value}"
-            )
+            allowed = f"computed as risk was, {name} = {value}"
+            raise InvalidInputError("reference", f"{name} = {reference_value}", allowed)
     risks, references = risk["risk"], reference["risk"]
     # Without risk the life is infinite, unless the reference has no risk.
     ratio = (references / risks.where(risks > 0)).where((risks != 0) | (references == 0), np.inf)
@@ -373,9 +372,8 @@ def ioannides_harris(
         stress = in_si("stress", stress, "Pa")
     threshold = checks.not_negative("limit", limit, "Pa")
     if "y" in axis_dimensions(stress):
-        raise InvalidInputError(
-            "stress.dims", stress.dims, "without the rolling direction", "take the largest or the amplitude along y"
-        )
+        hint = "take the largest or the amplitude along y"
+        raise InvalidInputError("stress.dims", stress.dims, "without the rolling direction", hint)
     stress = stress.compute()
     dim, depths = _depth_positions(stress)
     outer = (depths == depths.max(dim)) | ((depths == depths.min(dim)) & (depths > 0))

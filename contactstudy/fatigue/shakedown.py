@@ -288,9 +288,8 @@ def shakedown_in_plane(stress: xr.Dataset, body: Body) -> xr.Dataset:
     x, z = (np.asarray(positions(tensor, axis).values, dtype=np.float64) for axis in ("x", "z"))
     for axis, points in (("x", x), ("z", z)):
         if points.size < MIN_POINTS or (np.diff(points) <= 0).any():
-            raise InvalidInputError(
-                f"stress.{axis}", points, f"at least {MIN_POINTS} positions, increasing", "solve with more positions"
-            )
+            allowed = f"at least {MIN_POINTS} positions, increasing"
+            raise InvalidInputError(f"stress.{axis}", points, allowed, "solve with more positions")
     values = tensor.transpose(*dims, rolling_dim, ...).values.astype(np.float64)
     history = values.reshape(-1, *values.shape[2:])
     history = np.concatenate([history, np.zeros_like(history[:, :1])], axis=1)

@@ -217,9 +217,8 @@ def read_columns(path: str | Path, positions: tuple[str, ...], values: tuple[str
     for line_number, line in lines:
         row = _split_fields(line_number, line, separator)
         if len(row) != len(header):
-            raise InvalidInputError(
-                f"line {line_number}", f"{len(row)} fields", f"{len(header)} fields, as the header has"
-            )
+            allowed = f"{len(header)} fields, as the header has"
+            raise InvalidInputError(f"line {line_number}", f"{len(row)} fields", allowed)
         for index, column in columns.items():
             column.append(parser.parse(line_number, header[index][0], row[index]))
     parser.check()
@@ -276,9 +275,8 @@ def check_positions(name: str, positions: FloatArray, min_count: int = 2) -> Non
     gaps = np.flatnonzero(steps > MAX_STEP_RATIO * neighbours) if steps.size > 1 else np.array([], dtype=int)
     if gaps.size:
         intervals = ", ".join(f"{positions[index]:g} to {positions[index + 1]:g} m" for index in gaps[:5])
-        raise InvalidInputError(
-            name, f"{gaps.size} gaps: {intervals}", f"without steps over {MAX_STEP_RATIO:g} times as wide"
-        )
+        allowed = f"without steps over {MAX_STEP_RATIO:g} times as wide"
+        raise InvalidInputError(name, f"{gaps.size} gaps: {intervals}", allowed)
 
 
 def check_values(name: str, values: FloatArray, *positions: tuple[str, FloatArray]) -> None:

@@ -164,9 +164,8 @@ class JohnsGohar(Logarithmic):
         """Material removed (m) at distances `x` (m) from mid-length."""
         factor = float(1 - EDGE_FACTOR * self.half_width / (length / 2))
         if factor < 0:
-            raise InvalidInputError(
-                "half_width", self.half_width, f"at most 3.3 half lengths of the roller, {length / 2 / EDGE_FACTOR:g} m"
-            )
+            allowed = f"at most 3.3 half lengths of the roller, {length / 2 / EDGE_FACTOR:g} m"
+            raise InvalidInputError("half_width", self.half_width, allowed)
         return logarithmic_drop(self.amplitude, 2 * np.asarray(x) / length, factor)
 
 

@@ -97,9 +97,8 @@ class Tapered(Shape):
     def __post_init__(self) -> None:
         angle = checks.finite("half_angle", self.half_angle, "radians")
         if abs(angle) > MAX_HALF_ANGLE:
-            raise InvalidInputError(
-                "half_angle", angle, "between -pi/4 and pi/4 (radians)", "an angle in degrees needs numpy.radians"
-            )
+            hint = "an angle in degrees needs numpy.radians"
+            raise InvalidInputError("half_angle", angle, "between -pi/4 and pi/4 (radians)", hint)
         checks.store(self, half_angle=angle)
         checks.store(self, fillet_radius=checks.not_negative("fillet_radius", self.fillet_radius, "metres"))
 
