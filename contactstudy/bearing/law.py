@@ -379,11 +379,8 @@ class Raceways:
         pairs = [(self.inner, *inner), (self.outer, *outer)]
         contacts = [law.motion(delta.values, theta.values) for law, delta, theta in pairs]
         # Compliances add up.
-        matrices = (
-            np.stack([motion.normal, motion.coupling, motion.coupling, motion.tilting], axis=-1) for motion in contacts
-        )
-        stiffness = np.linalg.inv(sum(np.linalg.inv(matrix.reshape(*matrix.shape[:-1], 2, 2)) for matrix in matrices))
-        normal, coupling, tilting = stiffness[..., 0, 0], stiffness[..., 0, 1], stiffness[..., 1, 1]
+        matrices = [np.array([[m.normal, m.coupling], [m.coupling, m.tilting]]).T for m in contacts]
+        (normal, coupling), (_, tilting) = np.linalg.inv(sum(map(np.linalg.inv, matrices))).T
         motion = contacts[0]._replace(normal=normal, coupling=coupling, tilting=tilting)
         # The larger of the two errors bounds the error of either contact.
         errors = np.maximum(*(law.errors(delta.values, theta.values) for law, delta, theta in pairs))

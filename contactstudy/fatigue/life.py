@@ -112,9 +112,8 @@ def relative_life(risk: xr.Dataset, reference: xr.Dataset, exponents: LifeExpone
     life = name_array("relative_life", ratio ** (1 / exponents.weibull))
     if not all("risk_error" in dataset for dataset in (risk, reference)):
         return life.assign_attrs({ERROR_KIND: NOT_ESTIMATED})
-    relative_error, reference_error = (
-        result["risk_error"] / result["risk"].where(result["risk"] > 0) for result in (risk, reference)
-    )
+    relative_error = risk["risk_error"] / risks.where(risks > 0)
+    reference_error = reference["risk_error"] / references.where(references > 0)
     # The longest life within the errors; infinite if the risk may be zero.
     max_factor = ((1 + reference_error) / (1 - relative_error).clip(0.0)) ** (1 / exponents.weibull)
     error = (life * (max_factor - 1)).reset_coords(drop=True)

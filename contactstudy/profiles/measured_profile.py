@@ -186,10 +186,8 @@ class Measured(Shape):
         checks.store(self, positions=tuple(x.tolist()), drops=tuple(drops.tolist()))
 
     def __repr__(self) -> str:
-        length, drop = (
-            format_quantity(self.positions[-1] - self.positions[0], "m"),
-            format_quantity(float(self._filtered.max()), "m"),
-        )
+        length = format_quantity(self.positions[-1] - self.positions[0], "m")
+        drop = format_quantity(float(self._filtered.max()), "m")
         filtered = "" if self.cutoff is None else f", Gaussian filter with cut-off {format_quantity(self.cutoff, 'm')}"
         return f"Measured({len(self.positions)} points over {length}, drop up to {drop}{filtered})"
 

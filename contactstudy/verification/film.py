@@ -173,23 +173,19 @@ def ellipse_checks() -> Iterator[Check]:
         )
 
 
-def crowned_film(body: Body, length: float) -> xr.Dataset:
-    """Film under the crowned roller."""
-    return film.solve_film(crowned_case(body, length), accuracy=0.1)
-
-
 def roller_checks(*, full: bool) -> Iterator[Check]:
     """Certificate of a film between free ends; at the full level, free ends far away."""
     length = 16 * HALF_WIDTH
-    flush_film = crowned_film(FiniteLengthSpace(length=length, material=STEEL), length)
+    flush_case = crowned_case(FiniteLengthSpace(length=length, material=STEEL), length)
+    flush_film = film.solve_film(flush_case, accuracy=0.1)
     case = "crowned roller, 16 a, flush, M = 10, L = 5"
     yield Reference(case, "mass balance").compare("net outflow of a cell / (um h)", flush_film["mass_error"], 0.0, 1e-6)
     area = flush_film["x_width"] * float(flush_film["y"][1] - flush_film["y"][0])
     load, quantity = (flush_film["pressure"] * area).sum(), "sum of the pressure over the cells, N"
     yield Reference(case, "equilibrium").compare(quantity, load, flush_film["normal_load"], 1e-8, relative=True)
     if full:
-        long_film = crowned_film(FiniteLengthSpace(length=10 * length, material=STEEL), length)
-        half_space_film = crowned_film(HalfSpace(material=STEEL), length)
+        bodies = FiniteLengthSpace(length=10 * length, material=STEEL), HalfSpace(material=STEEL)
+        long_film, half_space_film = (film.solve_film(crowned_case(body, length), accuracy=0.1) for body in bodies)
         case = "crowned roller, 16 a, 72 a from both free ends"
         for name in ("central_film", "least_film"):
             yield Reference(case, "half-space").compare(
