@@ -340,3 +340,9 @@ def alternation_checks() -> Iterator[Check]:
     yield Reference(case, iteration).compare_fields(
         quantity, direct_solution / max_load, iterated_solution / max_load, 1e-9
     )
+
+
+# Checks of the groups of the suite
+HALF_SPACE = (hertz_checks, circle_checks, line_checks, rectangle_checks, point_checks)
+LIMITS = (plane_checks, plate_contact_checks, body_checks)
+CONSISTENCY = (free_end_checks, equilibrium_checks, contact_condition_checks, reciprocity_checks, alternation_checks)

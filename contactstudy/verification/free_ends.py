@@ -324,3 +324,8 @@ def finite_element_checks(*, full: bool) -> Iterator[Check]:
             yield from displacement_checks(name)
     for name in CONTACT_CASES:
         yield from contact_checks(name)
+
+
+# Checks of the groups of the suite
+QUARTER_SPACE = (edge_load_checks, extra_deflection_checks, resultant_checks, corner_checks, antiplane_checks)
+PUBLISHED = (johnson_checks, wedge_checks, mirror_checks)

@@ -436,3 +436,8 @@ def rolling_wear_checks() -> Iterator[Check]:
     name = "crowned roller rolling at a creepage, little worn"
     source = "k times the frictional work of the unworn contact"
     yield Reference(name, source).compare("worn volume", volume, expected, 2e-3, relative=True)
+
+
+# Checks of the groups of the suite
+HEAT = (fast_checks, band_checks, resting_checks, end_checks)
+WEAR = (sliding_wear_checks, rolling_wear_checks)
