@@ -298,13 +298,12 @@ class ContactLaw:
 
     def errors(self, approach: FloatArray, tilt: FloatArray) -> FloatArray:
         """Errors of load and moment over the load, at pairs inside the table: the largest of the four nearest nodes."""
-        node_pairs = []
-        for name, values in (("approach", approach), ("tilt", tilt)):
-            nodes = self.table[name].values
-            upper = np.clip(np.searchsorted(nodes, values), 1, nodes.size - 1)
-            node_pairs.append((upper - 1, upper))
-        errors = [self._node_values(name) for name in ("relative_load_error", "relative_moment_error")]
-        load, moment = (np.max([error[i, j] for i in node_pairs[0] for j in node_pairs[1]], axis=0) for error in errors)
+        row, column = (
+            np.clip(np.searchsorted(nodes, values), 1, nodes.size - 1)
+            for nodes, values in ((self._nodes.approaches, approach), (self._nodes.tilts, tilt))
+        )
+        errors = np.stack([self._node_values(f"relative_{name}_error") for name in ("load", "moment")])
+        load, moment = np.max([errors[:, row - i, column - j] for i in (0, 1) for j in (0, 1)], axis=0)
         return np.array([load, float(self.table["contact_length"]) * moment])
 
 

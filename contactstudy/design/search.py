@@ -376,12 +376,9 @@ def best_profile(
     for name in result["parameter"].values[result["at_bound"].values]:
         column = result.sel(parameter=name)
         value, low, high = (float(column[key]) for key in ("optimum", "lower_bound", "upper_bound"))
-        warnings.warn(
-            f"the best {name} = {value:.4g} lies at a bound ({low:g} to {high:g}); widen the bounds if "
-            "such a roller can be manufactured",
-            BoundWarning,
-            stacklevel=2,
-        )
+        message = f"the best {name} = {value:.4g} lies at a bound ({low:g} to {high:g})"
+        hint = "widen the bounds if such a roller can be manufactured"
+        warnings.warn(f"{message}; {hint}", BoundWarning, stacklevel=2)
     return result
 
 

@@ -299,12 +299,9 @@ def shakedown_in_plane(stress: xr.Dataset, body: Body) -> xr.Dataset:
     airy, max_stress, bound = program.solve()
     gap = max(max_stress - bound, 0.0) / max(max_stress, 1e-300)
     if gap > MAX_GAP:
-        warnings.warn(
-            f"the shakedown program has a gap of {gap:.2g} after {MAX_CONE_PROGRAMS} programs: the bound holds, and a "
-            "larger load may shake down; take fewer positions along x and z",
-            ConvergenceWarning,
-            stacklevel=2,
-        )
+        message = f"the shakedown program has a gap of {gap:.2g} after {MAX_CONE_PROGRAMS} programs"
+        hint = "the bound holds, and a larger load may shake down; take fewer positions along x and z"
+        warnings.warn(f"{message}: {hint}", ConvergenceWarning, stacklevel=2)
     in_plane = [scale * (matrix @ airy) for matrix in stress_matrices]
     centre, radius, _ = program.compute_balls(airy)
     xx, zz, xz = in_plane

@@ -218,12 +218,8 @@ def flash_temperature(
     max_rise = scalars["max_temperature_rise"]
     if limit is not None and max_rise > limit:
         x, y = (1e3 * scalars[f"max_temperature_rise_{axis}"] for axis in "xy")
-        warnings.warn(
-            f"the surfaces are {max_rise:.4g} K hotter than the bodies at x = {x:.4g} mm, y = {y:.4g} mm: above "
-            f"limit = {limit:g} K",
-            TemperatureWarning,
-            stacklevel=2,
-        )
+        message = f"the surfaces are {max_rise:.4g} K hotter than the bodies at x = {x:.4g} mm, y = {y:.4g} mm"
+        warnings.warn(f"{message}: above limit = {limit:g} K", TemperatureWarning, stacklevel=2)
     return describe(temperatures, "flash temperature of a contact")
 
 

@@ -320,11 +320,8 @@ def residual_stress(
         if 3 * body.material.shear_modulus * plastic_flow <= 2.0 * tolerance * section.yield_stress.min():
             break
     if not state.converged:
-        warnings.warn(
-            f"the flow of a pass did not reach tolerance = {tolerance:g}; take more substeps, or lower the load",
-            ConvergenceWarning,
-            stacklevel=2,
-        )
+        message = f"the flow of a pass did not reach tolerance = {tolerance:g}; take more substeps, or lower the load"
+        warnings.warn(message, ConvergenceWarning, stacklevel=2)
     return describe(xr.concat(states, "pass_number"), "residual state after passes of a contact")
 
 

@@ -369,37 +369,30 @@ def _integrate_to_stops(integrator: WearIntegrator, state: State, stops: FloatAr
             state = next_state
             yield state
             if step_count >= max_steps and state.distance < stops[-1]:
-                warnings.warn(
-                    f"the wear stopped after max_steps = {max_steps} at {state.distance:g} m of {stops[-1]:g} m; go on "
-                    "with after=, or raise max_steps or tolerance",
-                    ConvergenceWarning,
-                    stacklevel=2,
-                )
+                message = f"the wear stopped after max_steps = {max_steps} at {state.distance:g} m of {stops[-1]:g} m"
+                hint = "go on with after=, or raise max_steps or tolerance"
+                warnings.warn(f"{message}; {hint}", ConvergenceWarning, stacklevel=2)
                 return
         if not state.converged:
-            warnings.warn(
-                "a contact of a wear step did not converge; take a smaller tolerance or other cells",
-                ConvergenceWarning,
-                stacklevel=2,
-            )
+            message = "a contact of a wear step did not converge; take a smaller tolerance or other cells"
+            warnings.warn(message, ConvergenceWarning, stacklevel=2)
 
 
 def _label(integrator: WearIntegrator, states: list[State], length: float) -> xr.Dataset:
     """Label the states."""
     case, grid = integrator.case, integrator.shape.grid
-    distances = np.array([state.distance for state in states])
-    depths = np.array([state.depth for state in states])
-    pressures = np.array([state.pressure for state in states])
+    columns = {name: np.array(values) for name, values in zip(State._fields, zip(*states, strict=True), strict=True)}
+    depths, pressures = columns["depth"], columns["pressure"]
     x, half_length = grid.x - case.roller_middle, 0.5 * case.roller.length
     if grid.uniform:
         x = snap_to_ends(x, half_length, grid.dx)
     drop = np.where(np.abs(x) <= half_length, case.roller.clearance(x, np.zeros(1))[:, 0], np.nan)
     volumes = length * depths @ grid.widths
-    law_volumes = length * np.array([state.worn_area for state in states])
+    law_volumes = length * columns["worn_area"]
     volume_gain, law_volumes = volumes - volumes[0], law_volumes - law_volumes[0]
     has_wear = law_volumes > 0
     scale = np.maximum(depths.max(axis=1), np.finfo(np.float64).tiny)
-    coords = {"distance": distances, "x": grid.x, "y": grid.y} | cell_coordinates(grid)
+    coords = {"distance": columns["distance"], "x": grid.x, "y": grid.y} | cell_coordinates(grid)
     result = xr.Dataset(
         {
             "wear_depth": (("distance", "x"), depths),
@@ -407,8 +400,8 @@ def _label(integrator: WearIntegrator, states: list[State], length: float) -> xr
             "line_load": (("distance", "x"), grid.dy * pressures.sum(axis=2)),
             "pressure": (("distance", "x", "y"), pressures),
             "worn_volume": ("distance", volumes),
-            "wear_error": ("distance", np.array([state.error for state in states]) / scale),
-            "next_step": ("distance", np.array([state.next_step for state in states])),
+            "wear_error": ("distance", columns["error"] / scale),
+            "next_step": ("distance", columns["next_step"]),
             "volume_error": float(np.abs(volume_gain[has_wear] / law_volumes[has_wear] - 1).max(initial=0.0)),
             "converged": states[-1].converged,
             "hertz_half_width": case.hertz_half_width,
