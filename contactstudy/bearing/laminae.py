@@ -98,16 +98,12 @@ def slice_model(case: Case, *, slices: int = 30, tilt: float | None = None, edge
     load = case.normal_load
     # `bound`: approach beyond the smallest height at which a single slice carries the whole load
     min_height, max_depth = float(height.min()), 0.5 * (load / stiffness) ** (1 / POWER)
-    approach = float(
-        brentq(
-            lambda approach: stiffness * float(np.sum((2 * np.maximum(approach - height, 0.0)) ** POWER)) / load - 1,
-            min_height,
-            min_height + 1.001 * max_depth,
-            xtol=1e-15 * max_depth,
-            rtol=1e-14,
-            maxiter=200,
-        )
-    )
+    max_approach = min_height + 1.001 * max_depth
+
+    def excess(approach: float) -> float:
+        return stiffness * float(np.sum((2 * np.maximum(approach - height, 0.0)) ** POWER)) / load - 1
+
+    approach = float(brentq(excess, min_height, max_approach, xtol=1e-15 * max_depth, rtol=1e-14, maxiter=200))
     deflection = np.maximum(approach - height, 0.0)
     load_per_length = stiffness * (2 * deflection) ** POWER * slices / length
     from_middle = np.abs(2 * np.arange(1, slices + 1) - slices - 1) / (2 * slices - 2)
@@ -123,12 +119,8 @@ def slice_model(case: Case, *, slices: int = 30, tilt: float | None = None, edge
         "deflection": deflection,
         "edge_factor": edge_factor,
     }
-    result = xr.Dataset(
-        {name: ("x", values) for name, values in fields.items()}
-        | {"normal_load": case.normal_load, "approach": approach},
-        coords={"x": x},
-        attrs={"slices": slices, "tilt": tilt},
-    )
+    variables = {name: ("x", values) for name, values in fields.items()} | {"normal_load": load, "approach": approach}
+    result = xr.Dataset(variables, coords={"x": x}, attrs={"slices": slices, "tilt": tilt})
     for name in ("load_per_length", "half_width", "deflection", "edge_factor", "approach"):
         result[name].attrs["comment"] = MODEL_COMMENT
     riser_comment = ", with stress riser" if edge_riser else ""

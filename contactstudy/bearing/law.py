@@ -379,7 +379,7 @@ class Raceways:
         contacts = [law.motion(delta.values, theta.values) for law, delta, theta in pairs]
         # Compliances add up.
         matrices = [np.array([[m.normal, m.coupling], [m.coupling, m.tilting]]).T for m in contacts]
-        (normal, coupling), (_, tilting) = np.linalg.inv(sum(map(np.linalg.inv, matrices))).T
+        (normal, _), (coupling, tilting) = np.linalg.inv(sum(map(np.linalg.inv, matrices))).T
         motion = contacts[0]._replace(normal=normal, coupling=coupling, tilting=tilting)
         # The larger of the two errors bounds the error of either contact.
         errors = np.maximum(*(law.errors(delta.values, theta.values) for law, delta, theta in pairs))

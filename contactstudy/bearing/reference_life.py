@@ -208,14 +208,9 @@ def _solve_roller_loads(case: Case, laminae: int, accuracy: float) -> FloatArray
     exact_result = solve(case, stresses=False, accuracy=accuracy)
     # The models have equal moments; their tilts differ by the compliance of the bodies.
     position = float(exact_result["load_position"]) if case.tilt else case.load_position
-    infinite = replace(
-        case,
-        body=HalfSpace(material=case.body.material),
-        roller=replace(case.roller, ends="none"),
-        end_distance=case.roller_start,
-        tilt=0.0,
-        load_position=position,
-    )
+    body, roller = HalfSpace(material=case.body.material), replace(case.roller, ends="none")
+    start = case.roller_start
+    infinite = replace(case, body=body, roller=roller, end_distance=start, tilt=0.0, load_position=position)
     half_space = solve(infinite, stresses=False, accuracy=accuracy)
     tables, common_errors = zip(
         *(lamina_loads(result, model, laminae) for model, result in ((infinite, half_space), (case, exact_result))),

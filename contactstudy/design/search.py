@@ -196,22 +196,13 @@ def search_optimum(evaluations: Evaluations) -> Design:
         simplex = np.tile(start_design.fractions, (parameters + 1, 1))
         # The simplex points away from the nearer bound, within the range.
         simplex[1:] += np.diag(np.where(start_design.fractions > 0.5, -SIMPLEX_SIZE, SIMPLEX_SIZE))
-        options = {
-            "initial_simplex": simplex,
-            "xatol": OPTIMUM_TOLERANCE,
-            "fatol": start_design.error,
-            "maxfev": budget,
-        }
-        optimize.minimize(
-            finite_measure,
-            start_design.fractions,
-            method="Nelder-Mead",
-            bounds=[(0.0, 1.0)] * parameters,
-            options=options,
-        )
+        tolerances = {"xatol": OPTIMUM_TOLERANCE, "fatol": start_design.error}
+        options = tolerances | {"initial_simplex": simplex, "maxfev": budget}
+        start, bounds = start_design.fractions, [(0.0, 1.0)] * parameters
+        optimize.minimize(finite_measure, start, method="Nelder-Mead", bounds=bounds, options=options)
     elif budget > 1:  # Brent's method, between the neighbours of the best design; the method takes two or more designs.
-        start, step = float(start_design.fractions[0]), 1 / (SCAN_COUNT - 1)
-        bracket = (max(start - step, 0.0), min(start + step, 1.0))
+        middle, step = float(start_design.fractions[0]), 1 / (SCAN_COUNT - 1)
+        bracket = (max(middle - step, 0.0), min(middle + step, 1.0))
         options = {"xatol": OPTIMUM_TOLERANCE, "maxiter": budget}
         optimize.minimize_scalar(finite_measure, bounds=bracket, method="bounded", options=options)
     return evaluations.best

@@ -268,11 +268,10 @@ def lundberg_palmgren(stress: xr.Dataset, exponents: LifeExponents = ROLLER_BEAR
     y = positions(shear, "y")
     inner_shear = shear.where((y > y.min(rolling_dim)) & (y < y.max(rolling_dim)))
     inner_amplitude = 0.5 * (inner_shear.max(rolling_dim) - inner_shear.min(rolling_dim))
+    at_border = ((amplitude == amplitude.max(dim)) & (inner_amplitude < amplitude)).any(dim)
     truncated = {
         "orthogonal shear largest at the first or last depth": (depth <= depths.min(dim)) | (depth >= depths.max(dim)),
-        "orthogonal shear largest at the first or last y": (
-            (amplitude == amplitude.max(dim)) & (inner_amplitude < amplitude)
-        ).any(dim),
+        "orthogonal shear largest at the first or last y": at_border,
     }
     density = _shear_risk(max_amplitude, depth, exponents)
     result = _integrate_risk(density, exponents, {"theory": "Lundberg and Palmgren"}, truncated).assign(
@@ -314,11 +313,8 @@ def _cut_fraction(excess: Array, depth: Array, exponents: LifeExponents) -> Arra
     first_excess, previous_excess, last_excess = (_take(excess, index) for index in borders)
     first_depth, previous_depth, last_depth = (_take(depth, index) for index in borders)
     with np.errstate(divide="ignore", invalid="ignore"):
-        integral_below = np.where(
-            last_excess > 0,
-            last_excess * (last_depth - previous_depth) / np.log(np.maximum(previous_excess / last_excess, 1.0)),
-            0.0,
-        )
+        decay = np.log(np.maximum(previous_excess / last_excess, 1.0))
+        integral_below = np.where(last_excess > 0, last_excess * (last_depth - previous_depth) / decay, 0.0)
         # The mean depth changes by the same fraction as the integral and enters with the exponent `depth`.
         fraction = (1 + exponents.depth) * (first_excess * first_depth + integral_below) / _integrate(excess, depth)
     return np.where(np.isnan(fraction), 0.0, fraction)
@@ -376,7 +372,7 @@ def ioannides_harris(
     stress = stress.compute()
     dim, depths = _depth_positions(stress)
     outer = (depths == depths.max(dim)) | ((depths == depths.min(dim)) & (depths > 0))
-    is_truncated = stress.where(outer).max(dim) >= stress.max(dim)
+    borders = {"a measure largest at the first or last depth": stress.where(outer).max(dim) >= stress.max(dim)}
 
     def compute_risks(stress: Array, depth: Array) -> tuple[Array, ...]:
         """Return density of the risk, weighted mean depth of the excess, and truncated fraction of the risk."""
@@ -392,12 +388,8 @@ def ioannides_harris(
         return reduce_dims(compute_risks, [(field, [dimension]), (depth_positions, [dimension])], 3)
 
     density, mean, truncated = compute_sections(stress)
-    result = _integrate_risk(
-        density,
-        exponents,
-        {"theory": "Ioannides and Harris", "fatigue_limit": threshold},
-        {"a measure largest at the first or last depth": is_truncated},
-    )
+    theory = {"theory": "Ioannides and Harris", "fatigue_limit": threshold}
+    result = _integrate_risk(density, exponents, theory, borders)
     if stress.attrs.get("units") == "1":
         for name in ("risk", "risk_density"):
             result[name].attrs["units"] = result[name].attrs["units"].split(maxsplit=1)[1]

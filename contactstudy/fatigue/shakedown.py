@@ -402,13 +402,7 @@ class _Program:
         cost[0] = 1.0
         settings = clarabel.DefaultSettings()
         settings.verbose = False
-        solver = clarabel.DefaultSolver(
-            sparse.csc_array((cost.size, cost.size)),
-            cost,
-            matrix,
-            right_hand_side,
-            [clarabel.SecondOrderConeT(5)] * cone_count,
-            settings=settings,
-        )
+        quadratic, cones = sparse.csc_array((cost.size, cost.size)), [clarabel.SecondOrderConeT(5)] * cone_count
+        solver = clarabel.DefaultSolver(quadratic, cost, matrix, right_hand_side, cones, settings=settings)
         solution = solver.solve()
         return np.asarray(solution.x)[1 + point_count :], float(solution.obj_val_dual)

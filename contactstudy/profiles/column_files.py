@@ -284,12 +284,9 @@ def check_values(name: str, values: FloatArray, *positions: tuple[str, FloatArra
     bad_indices = np.argwhere(~np.isfinite(values))
     if not bad_indices.size:
         return
-    positions_text = "; ".join(
-        ", ".join(
-            f"{axis} = {values_of_axis[index]:g} m"
-            for (axis, values_of_axis), index in zip(positions, entry, strict=True)
-        )
-        for entry in bad_indices[:5]
-    )
+    places = []
+    for entry in bad_indices[:5]:
+        pairs = zip(positions, entry, strict=True)
+        places.append(", ".join(f"{axis} = {points[index]:g} m" for (axis, points), index in pairs))
     hint = f"{len(bad_indices)} values are not: fill the gaps first, for example with the instrument's software"
-    raise InvalidInputError(name, f"missing or not finite at {positions_text}", "given everywhere", hint)
+    raise InvalidInputError(name, f"missing or not finite at {'; '.join(places)}", "given everywhere", hint)

@@ -164,12 +164,9 @@ class WearIntegrator:
             distance = stop if length == remaining else state.distance + length
             area = state.worn_area + 0.5 * length * (self._worn_area_rate(state) + self._worn_area_rate(half_steps))
             step = max(step, factor * length)
+            error, converged = state.error + error, state.converged and half_steps.converged
             state = half_steps._replace(
-                distance=distance,
-                error=state.error + error,
-                worn_area=area,
-                next_step=step,
-                converged=state.converged and half_steps.converged,
+                distance=distance, error=error, worn_area=area, next_step=step, converged=converged
             )
             yield state
 
