@@ -86,6 +86,12 @@ def dry_limit_checks() -> Iterator[Check]:
     yield Reference(case, "Moes (1992)").compare("exponent of M in the central film", float(exponent), -0.125, 0.01)
 
 
+def barus_oil(viscosity: float, pressure_viscosity: float) -> Lubricant:
+    """Oil of constant density whose viscosity follows Barus."""
+    laws = {"viscosity_law": "barus", "density_law": "constant"}
+    return Lubricant(viscosity=viscosity, pressure_viscosity=pressure_viscosity, **laws)
+
+
 def crowned_case(body: Body, length: float) -> Case:
     """Crowned roller in the middle of a body, with the numbers of the stored film."""
     stored_case = FILM_CASES["crowned"]
@@ -96,12 +102,8 @@ def crowned_case(body: Body, length: float) -> Case:
     dry_case = Case(body=body, roller=roller, max_pressure=pressure, end_distance=offset)
     modulus = 2 * dry_case.modulus
     half_width_ratio = dry_case.normal_load / (dry_case.contact_length * modulus * RADIUS * stored_case.load_number)
-    oil = Lubricant(
-        viscosity=0.5 * half_width_ratio**2 * modulus * RADIUS,
-        pressure_viscosity=stored_case.lubricant_number / (modulus * half_width_ratio**0.5),
-        viscosity_law="barus",
-        density_law="constant",
-    )
+    viscosity = 0.5 * half_width_ratio**2 * modulus * RADIUS
+    oil = barus_oil(viscosity, stored_case.lubricant_number / (modulus * half_width_ratio**0.5))
     return replace(dry_case, lubricant=oil, motion=Sliding(body_speed=1.0, roller_speed=1.0))
 
 
@@ -109,16 +111,10 @@ def coarse_film(name: str) -> FilmCase:
     """Film on the cells of the coarsest level, for comparison with the stored film."""
     length = FILM_CASES[name].length * HALF_WIDTH
     case = crowned_case(FiniteLengthSpace(length=length, material=STEEL), length)
-    assert case.lubricant is not None
-    assert case.motion.speeds is not None
-    return FilmCase(
-        case=case,
-        lubricant=case.lubricant,
-        speeds=case.motion.speeds,
-        asperities=None,
-        resolution=RESOLUTION,
-        inlet=None,
-    )
+    oil, speeds = case.lubricant, case.motion.speeds
+    assert oil is not None
+    assert speeds is not None
+    return FilmCase(case=case, lubricant=oil, speeds=speeds, asperities=None, resolution=RESOLUTION, inlet=None)
 
 
 def finite_element_checks(name: str) -> Iterator[Check]:
@@ -151,21 +147,11 @@ def ellipse_checks() -> Iterator[Check]:
         half_length = float(
             np.cbrt(3 * force * np.sqrt(radius * crown_radius) / modulus) * (crown_radius / radius) ** 0.25
         )
-        solved_film = film.solve_film(
-            Case(
-                body=HalfSpace(material=STEEL),
-                roller=Roller(radius=radius, length=5 * half_length, profile=FullCrown(crown_radius)),
-                load=force,
-                motion=Sliding(body_speed=speed, roller_speed=speed),
-                lubricant=Lubricant(
-                    viscosity=viscosity,
-                    pressure_viscosity=lubricant / (modulus * np.sqrt(root)),
-                    viscosity_law="barus",
-                    density_law="constant",
-                ),
-            ),
-            accuracy=0.2,
-        )
+        roller = Roller(radius=radius, length=5 * half_length, profile=FullCrown(crown_radius))
+        motion = Sliding(body_speed=speed, roller_speed=speed)
+        oil = barus_oil(viscosity, lubricant / (modulus * np.sqrt(root)))
+        lubricated = Case(body=HalfSpace(material=STEEL), roller=roller, load=force, motion=motion, lubricant=oil)
+        solved_film = film.solve_film(lubricated, accuracy=0.2)
         central, formula = solved_film["central_film"] / (radius * root), nijenbanning(load, lubricant, ratio)
         case = f"crowned roller on a half-space, Rx / Ry = {ratio:g}, M = {load:g}, L = {lubricant:g}"
         yield Reference(case, "Nijenbanning, Venner and Moes (1994)").compare(

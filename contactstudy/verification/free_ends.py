@@ -41,6 +41,7 @@ from contactstudy.verification.problems import (
     on_cells,
     on_grid,
     point_pressure,
+    strip,
     strip_means,
     unit_material,
 )
@@ -204,12 +205,8 @@ def mirror_checks() -> Iterator[Check]:
     half_width = 0.03  # half-width of the load over its length along the normal to the edge
     for poisson, expected in MIRROR_ERRORS.items():
         material = unit_material(poisson)
-        load = on_cells(
-            lambda x, y: np.sqrt(np.maximum(1 - (y / half_width) ** 2, 0)) * (x < 1),
-            (0, 1.125),
-            (-1.25 * half_width, 1.25 * half_width),
-            (288, 33),
-        )
+        y_range = (-1.25 * half_width, 1.25 * half_width)
+        load = on_cells(lambda x, y: strip(x, y / half_width) * (x < 1), (0, 1.125), y_range, (288, 33))
         exact, mirror = (
             float(surface_displacement(QuarterSpace(material=material, model=model), load)[0].max())
             for model in ("exact", "mirror")
