@@ -165,9 +165,8 @@ def reference_life(
 
     mean_loads, upper_loads = equivalent_loads(loads), equivalent_loads(loads + errors)
     risks = [((equivalent_loads(q) / rating) ** LIFE_POWER).sum(axis=-1) for q in (loads, loads + common_errors)]
-    (raceway_lives, lower_raceway_lives), (lives, lower_lives) = (
-        [1e6 * risk ** (-8 / 9) for risk in pair] for pair in (risks, [risk.sum(axis=-1) for risk in risks])
-    )
+    raceway_lives, lower_raceway_lives = (1e6 * risk ** (-8 / 9) for risk in risks)
+    lives, lower_lives = (1e6 * risk.sum(axis=-1) ** (-8 / 9) for risk in risks)
     is_infinite = np.isinf(mean_loads)
     load_errors = np.where(is_infinite, np.inf, upper_loads - np.where(is_infinite, 0.0, mean_loads))
     # The models of slices neglect the ends; their error is not estimated.

@@ -73,8 +73,7 @@ class EigenstrainBody:
                 grade_to_face(edge, end, width) if is_free else grow_edges(edge, edge + sign * far_distance, width)
             )
         edges_above = grade_to_face(z[0], 0.0, z[1] - z[0])[::-1]
-        bottom = z[-1] + (min(DEEP_LENGTHS * length, far_distance) if np.isfinite(length) else far_distance)
-        edges_below = grow_edges(z[-1], bottom, z[-1] - z[-2])
+        edges_below = grow_edges(z[-1], z[-1] + min(DEEP_LENGTHS * length, far_distance), z[-1] - z[-2])
         return np.concatenate([side_edges[0][::-1], x, side_edges[1]]), np.concatenate([edges_above, z, edges_below])
 
     @cached_property

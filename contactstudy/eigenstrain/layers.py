@@ -80,9 +80,8 @@ class PeriodicLayers:
         """Residual stresses (6, position, column, layer) from eigenstrains of this shape; columns are independent."""
         e, nu = eigenstrain, self.material.poisson
         stress = np.zeros_like(e)
-        stress[[YY, ZZ, YZ]] = self._apply(
-            self._airy_matrices, np.stack([e[YY] + nu * e[XX], e[ZZ] + nu * e[XX], e[YZ]])
-        )
+        in_plane = np.stack([e[YY] + nu * e[XX], e[ZZ] + nu * e[XX], e[YZ]])
+        stress[[YY, ZZ, YZ]] = self._apply(self._airy_matrices, in_plane)
         stress[XX] = nu * (stress[YY] + stress[ZZ]) - self.material.young * e[XX]
         if e[[XY, XZ]].any():
             stress[[XY, XZ]] = self._apply(self._antiplane_matrices, e[[XY, XZ]])

@@ -42,11 +42,9 @@ class Splines:
 
     @cached_property
     def _knots(self) -> FloatArray:
-        first_edge, inner_edges, last_edge = self.edges[0], self.edges[1:-1], self.edges[-1]
-        repeats = np.ones(self.degree + 1)
-        return np.concatenate(
-            [first_edge * repeats, np.repeat(inner_edges, self.degree - self.continuity), last_edge * repeats]
-        )
+        repeats = np.full(self.edges.size, self.degree - self.continuity)
+        repeats[[0, -1]] = self.degree + 1
+        return np.repeat(self.edges, repeats)
 
     def values(self, points: FloatArray, derivative: int = 0) -> FloatArray:
         """Functions, or a derivative of them, at points: array (point, function); on an edge of the right element."""

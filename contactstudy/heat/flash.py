@@ -188,9 +188,8 @@ def flash_temperature(
     values = {name: (("x", "y"), field) for name, field in fields.items()}
     scalars = _find_maximum(grid, rises)
     (wide_grid, density), (_, mean_pressure) = (_coarsen(grid, values) for values in (heat.density, pressure))
-    wide_rises, _, _ = _solve_temperatures(
-        case, wide_grid, heat._replace(density=density), mean_pressure, body, roller=roller, fraction=share
-    )
+    wide_heat = heat._replace(density=density)
+    wide_rises = _solve_temperatures(case, wide_grid, wide_heat, mean_pressure, body, roller=roller, fraction=share)[0]
     change = abs(_find_maximum(wide_grid, wide_rises)["max_temperature_rise"] - scalars["max_temperature_rise"])
     peak, error = (float(solution.get(name, np.nan)) for name in ("peak_pressure", "peak_pressure_error"))
     relative_error = error / peak if np.isfinite([peak, error]).all() and peak > 0 else np.nan

@@ -129,10 +129,8 @@ class PartialCrown(Shape):
             allowed = f"at least {(end - begin) / (1 - sine):g} m, to reach the roller's end"
             raise InvalidInputError("dub_radius", self.dub_radius, allowed)
         crown_drop = _arc_drop(np.minimum(distance, begin), self.crown_radius)
-        dub_drop = _arc_drop(np.maximum(distance - begin, 0.0) + shift, self.dub_radius) - _arc_drop(
-            np.array(shift), self.dub_radius
-        )
-        return np.asarray(crown_drop + dub_drop)
+        dub_drop = _arc_drop(np.maximum(distance - begin, 0.0) + shift, self.dub_radius)
+        return np.asarray(crown_drop + (dub_drop - _arc_drop(np.array(shift), self.dub_radius)))
 
 
 @dataclass(frozen=True, repr=False)
