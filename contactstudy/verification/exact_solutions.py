@@ -103,10 +103,12 @@ def circle_checks() -> Iterator[Check]:
     exact = closed_forms.hertz_circle(at_x, at_y, at_z, 1.0, 1.0, poisson=POISSON, friction=0.25)
     labels = "y / a", "tau_yz / p0, x = 0, z = 0.25a"
     curve = Curve(labels, y, stress["tau_yz"].values[0, :, 1], exact["tau_yz"][0, :, 1])
-    case = "circular Hertz pressure, sliding, f = 0.25, z >= 0.1a"
-    yield Reference(case, "Hamilton (1983); Hamilton and Goodman (1966)").compare_fields(
-        "six stresses / p0", components(stress), components(exact), 3e-3, curve=curve
+    case, source = (
+        "circular Hertz pressure, sliding, f = 0.25, z >= 0.1a",
+        "Hamilton (1983); Hamilton and Goodman (1966)",
     )
+    reference = Reference(case, source)
+    yield reference.compare_fields("six stresses / p0", components(stress), components(exact), 3e-3, curve=curve)
 
 
 def line_checks() -> Iterator[Check]:
@@ -135,10 +137,11 @@ def line_checks() -> Iterator[Check]:
             depth = min(2, z.size - 1)
             labels = "y / a", f"sigma_yy / p0, z = {z[depth]:g}a"
             curve = Curve(labels, y, stress["sigma_yy"].values[:, depth], exact["sigma_yy"][:, depth])
-            case = f"line contact's pressure on a strip of length 2000a, f = {friction:g}, {label}"
-            yield Reference(case, source).compare_fields(
-                "six stresses / p0", components(stress), components(exact), tolerance, curve=curve
+            reference = Reference(
+                f"line contact's pressure on a strip of length 2000a, f = {friction:g}, {label}", source
             )
+            computed, expected = components(stress), components(exact)
+            yield reference.compare_fields("six stresses / p0", computed, expected, tolerance, curve=curve)
 
 
 def rectangle_checks() -> Iterator[Check]:
@@ -200,9 +203,8 @@ def plane_checks() -> Iterator[Check]:
             computed = stress[component].isel(x=-1, z=3).values
             curve = Curve(("y / a", f"{component} / p0, z = 0.5a"), y, computed, exact[component][:, 3])
             case = f"strip load on a body of length {length:g}a, f = {friction:g}, z >= 0.1a"
-            yield Reference(case, source + state).compare_fields(
-                "six stresses / p0", components(stress), components(exact)[:, None], tolerance, curve=curve
-            )
+            reference, expected = Reference(case, source + state), components(exact)[:, None]
+            yield reference.compare_fields("six stresses / p0", components(stress), expected, tolerance, curve=curve)
 
 
 def plate_contact_checks() -> Iterator[Check]:

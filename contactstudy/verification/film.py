@@ -52,20 +52,15 @@ def line_checks(*, full: bool) -> Iterator[Check]:
         case, source = f"line contact, M = {load:g}, L = {lubricant:g}", "extrapolated table"
         yield Reference(case, source).compare("central film H", line.central_film, central, 5e-3, relative=True)
         yield Reference(case, source).compare("least film H", line.least_film, min_film, 5e-3, relative=True)
-        moment = abs(line.moment) / 2
-        yield Reference(case, "equilibrium").compare(
-            "w delta / 2 against t", moment, line.rolling_moment, 2e-2, relative=True
-        )
+        moment, reference = abs(line.moment) / 2, Reference(case, "equilibrium")
+        yield reference.compare("w delta / 2 against t", moment, line.rolling_moment, 2e-2, relative=True)
     for load in (50.0, 500.0) if full else (50.0,):
         line, case = line_contact.solve_line(load, 10.0), f"line contact, M = {load:g}, L = 10"
         formula = float(moes_line(load, 10.0))
         yield Reference(case, "Moes (1992)").compare("central film H", line.central_film, formula, 0.04, relative=True)
     line = line_contact.solve_line(20.0, 10.0, inlet=4.0)
-    expected, source = 1.45 * 20.0**-1.5, "Biboulet and Houpert (2010)"
-    case = "line contact, M = 20, L = 10"
-    yield Reference(case, source).compare(
-        "rolling moment t / (p0 a^2)", line.rolling_moment, expected, 0.04, relative=True
-    )
+    reference, expected = Reference("line contact, M = 20, L = 10", "Biboulet and Houpert (2010)"), 1.45 * 20.0**-1.5
+    yield reference.compare("rolling moment t / (p0 a^2)", line.rolling_moment, expected, 0.04, relative=True)
     rigid_film = 0.1 * line_contact.solve_line(0.1, 0.01, finest=0.4).central_film
     case = "line contact, M = 0.1, L = 0.01"
     yield Reference(case, "Martin (1916)").compare("M H of rigid surfaces", rigid_film, 2.448, 5e-3, relative=True)
@@ -154,9 +149,8 @@ def ellipse_checks() -> Iterator[Check]:
         solved_film = film.solve_film(lubricated, accuracy=0.2)
         central, formula = solved_film["central_film"] / (radius * root), nijenbanning(load, lubricant, ratio)
         case = f"crowned roller on a half-space, Rx / Ry = {ratio:g}, M = {load:g}, L = {lubricant:g}"
-        yield Reference(case, "Nijenbanning, Venner and Moes (1994)").compare(
-            "central film H", central, formula, 0.04, relative=True
-        )
+        reference = Reference(case, "Nijenbanning, Venner and Moes (1994)")
+        yield reference.compare("central film H", central, formula, 0.04, relative=True)
 
 
 def roller_checks(*, full: bool) -> Iterator[Check]:
@@ -172,8 +166,6 @@ def roller_checks(*, full: bool) -> Iterator[Check]:
     if full:
         bodies = FiniteLengthSpace(length=10 * length, material=STEEL), HalfSpace(material=STEEL)
         long_film, half_space_film = (film.solve_film(crowned_case(body, length), accuracy=0.1) for body in bodies)
-        case = "crowned roller, 16 a, 72 a from both free ends"
+        reference = Reference("crowned roller, 16 a, 72 a from both free ends", "half-space")
         for name in ("central_film", "least_film"):
-            yield Reference(case, "half-space").compare(
-                f"{name}, m", long_film[name], half_space_film[name], 5e-3, relative=True
-            )
+            yield reference.compare(f"{name}, m", long_film[name], half_space_film[name], 5e-3, relative=True)

@@ -293,10 +293,9 @@ def band_checks() -> Iterator[Check]:
         rises = rise(grid, band, 2 * drift, (0.0, 8.0))[2]
         exact = closed_forms.moving_band(grid.y, drift)
         curve = Curve(("y / a", "T lambda / (q a)"), grid.y, rises, exact)
-        case = f"band of uniform heat between two ends, Peclet number {drift:g}"
-        yield Reference(case, "Jaeger (1942)").compare_fields(
-            "rise over the largest", rises / exact.max(), exact / exact.max(), 5e-6, curve=curve
-        )
+        reference = Reference(f"band of uniform heat between two ends, Peclet number {drift:g}", "Jaeger (1942)")
+        computed, expected = rises / exact.max(), exact / exact.max()
+        yield reference.compare_fields("rise over the largest", computed, expected, 5e-6, curve=curve)
 
 
 def resting_checks() -> Iterator[Check]:
@@ -308,9 +307,8 @@ def resting_checks() -> Iterator[Check]:
     side = 0.5 * float(square[22].sum()) * cells.dy
     centre_rise = float(rise(cells, square, 0.0, EVERYWHERE)[22, 22]) / side
     expected = 4 * float(np.arcsinh(1.0)) / np.pi
-    yield Reference("square of uniform heat at rest", source).compare(
-        "rise in the middle", centre_rise, expected, 1e-5, relative=True
-    )
+    reference = Reference("square of uniform heat at rest", source)
+    yield reference.compare("rise in the middle", centre_rise, expected, 1e-5, relative=True)
     heat = np.sqrt(np.maximum(1 - grid.x[:, None] ** 2 - grid.y**2, 0))
     centre_rise, expected = float(rise(grid, heat, 0.0, EVERYWHERE)[30, 30]), 0.25 * np.pi
     case = "circle of Hertz' pressure at rest, 61 x 61 cells"
