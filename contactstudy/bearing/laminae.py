@@ -101,7 +101,7 @@ def slice_model(case: Case, *, slices: int = 30, tilt: float | None = None, edge
     max_approach = min_height + 1.001 * max_depth
 
     def excess(approach: float) -> float:
-        return stiffness * float(np.sum((2 * np.maximum(approach - height, 0.0)) ** POWER)) / load - 1
+        return float(stiffness * np.sum((2 * np.maximum(approach - height, 0.0)) ** POWER) / load - 1)
 
     approach = float(brentq(excess, min_height, max_approach, xtol=1e-15 * max_depth, rtol=1e-14, maxiter=200))
     deflection = np.maximum(approach - height, 0.0)

@@ -6,6 +6,7 @@ negligible stress, and without an end to a distance of little stress.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -185,52 +186,42 @@ def _split_cells(edges: FloatArray, splits: int, max_width: float) -> FloatArray
 COLUMNS_PER_SOLUTION = 256  # Right-hand sides that are solved for at once. Speed.
 
 
-@dataclass(frozen=True, eq=False)
-class Influence:
-    """Residual stress averaged over cells, from eigenstrains that are uniform in the same cells."""
+def cell_influence(body: EigenstrainBody, along_x: IntArray, along_z: IntArray) -> Callable[[FloatArray], FloatArray]:
+    """Residual stresses (6, cell) of eigenstrains (6, cell), in the cells with these indices along x and along z."""
+    areas = np.diff(body.x_edges)[along_x] * np.diff(body.z_edges)[along_z]
 
-    material: Material
-    airy_matrix: FloatArray  # (3 cells, 3 cells): stresses xx, zz, xz per eigenstrains xx + nu yy, zz + nu yy, xz
-    antiplane_matrix: FloatArray  # (2 cells, 2 cells): stresses xy, yz per eigenstrains xy, yz
+    def integrals_of(integrals: Factors, i: int, j: int) -> sparse.csc_array:
+        """Integrals of the functions' derivatives over each of the cells: array (function, cell)."""
+        x, z = (sparse.csc_array(m) for m in (integrals[0][i][:, along_x], integrals[1][j][:, along_z]))
+        products = [sparse.kron(x[:, [n]], z[:, [n]], format="csc") for n in range(along_x.size)]
+        return sparse.csc_array(sparse.hstack(products))
 
-    @classmethod
-    def of(cls, body: EigenstrainBody, along_x: IntArray, along_z: IntArray) -> Influence:
-        """Influence of the cells with these indices along x and along z on each other."""
-        areas = np.diff(body.x_edges)[along_x] * np.diff(body.z_edges)[along_z]
+    def influence_matrix(function: StressFunction, blocks: list[sparse.csc_array], factors: FloatArray) -> FloatArray:
+        """Cell averages of the stresses per eigenstrain times `factors`, over minus the modulus."""
+        stacked = sparse.csc_array(sparse.hstack(blocks))
+        averages = sparse.csr_array(stacked.T)
+        influence = np.empty((stacked.shape[1],) * 2)
+        for start in range(0, influence.shape[1], COLUMNS_PER_SOLUTION):
+            right_hand_sides = stacked[:, start : start + COLUMNS_PER_SOLUTION].toarray()
+            influence[:, start : start + COLUMNS_PER_SOLUTION] = averages @ function.solve(right_hand_sides)
+        return influence / np.tile(areas, len(blocks))[:, None] * np.repeat(factors, areas.size)
 
-        def integrals_of(integrals: Factors, i: int, j: int) -> sparse.csc_array:
-            """Integrals of the functions' derivatives over each of the cells: array (function, cell)."""
-            x, z = (sparse.csc_array(m) for m in (integrals[0][i][:, along_x], integrals[1][j][:, along_z]))
-            return sparse.csc_array(
-                sparse.hstack([sparse.kron(x[:, [n]], z[:, [n]], format="csc") for n in range(along_x.size)])
-            )
+    (airy_function, antiplane_function), (integrals, antiplane_integrals) = body.functions, body.integrals
+    airy = [integrals_of(integrals, 0, 2), integrals_of(integrals, 2, 0), -integrals_of(integrals, 1, 1)]
+    antiplane = [integrals_of(antiplane_integrals, 0, 1), -integrals_of(antiplane_integrals, 1, 0)]
+    nu, young = body.material.poisson, body.material.young
+    # Stresses xx, zz, xz per eigenstrains xx + nu yy, zz + nu yy, xz; stresses xy, yz per eigenstrains xy, yz
+    airy_matrix = influence_matrix(airy_function, airy, np.array([1.0, 1.0, 2.0]))
+    airy_matrix *= -body.material.plane_strain_modulus
+    antiplane_matrix = influence_matrix(antiplane_function, antiplane, np.array([2.0, 2.0]))
+    antiplane_matrix *= -body.material.shear_modulus
 
-        def influence_matrix(
-            function: StressFunction, blocks: list[sparse.csc_array], factors: FloatArray
-        ) -> FloatArray:
-            """Cell averages of the stresses per eigenstrain times `factors`, over minus the modulus."""
-            stacked = sparse.csc_array(sparse.hstack(blocks))
-            averages = sparse.csr_array(stacked.T)
-            influence = np.empty((stacked.shape[1],) * 2)
-            for start in range(0, influence.shape[1], COLUMNS_PER_SOLUTION):
-                right_hand_sides = stacked[:, start : start + COLUMNS_PER_SOLUTION].toarray()
-                influence[:, start : start + COLUMNS_PER_SOLUTION] = averages @ function.solve(right_hand_sides)
-            return influence / np.tile(areas, len(blocks))[:, None] * np.repeat(factors, areas.size)
-
-        integrals, antiplane_integrals = body.integrals
-        airy = [integrals_of(integrals, 0, 2), integrals_of(integrals, 2, 0), -integrals_of(integrals, 1, 1)]
-        airy_matrix = influence_matrix(body.functions[0], airy, np.array([1.0, 1.0, 2.0]))
-        antiplane = [integrals_of(antiplane_integrals, 0, 1), -integrals_of(antiplane_integrals, 1, 0)]
-        antiplane_matrix = influence_matrix(body.functions[1], antiplane, np.array([2.0, 2.0]))
-        modulus, shear_modulus = body.material.plane_strain_modulus, body.material.shear_modulus
-        return cls(body.material, -modulus * airy_matrix, -shear_modulus * antiplane_matrix)
-
-    def stresses(self, eigenstrain: FloatArray) -> FloatArray:
-        """Residual stresses (6, cell) from eigenstrains (6, cell): xx, yy, zz, xy, xz, yz."""
-        e, nu = eigenstrain, self.material.poisson
+    def stresses(e: FloatArray) -> FloatArray:
         stress = np.empty_like(e)
         strain = np.concatenate([e[XX] + nu * e[YY], e[ZZ] + nu * e[YY], e[XZ]])
-        stress[[XX, ZZ, XZ]] = (self.airy_matrix @ strain).reshape(3, -1)
-        stress[[XY, YZ]] = (self.antiplane_matrix @ np.concatenate([e[XY], e[YZ]])).reshape(2, -1)
-        stress[YY] = nu * (stress[XX] + stress[ZZ]) - self.material.young * e[YY]
+        stress[[XX, ZZ, XZ]] = (airy_matrix @ strain).reshape(3, -1)
+        stress[[XY, YZ]] = (antiplane_matrix @ np.concatenate([e[XY], e[YZ]])).reshape(2, -1)
+        stress[YY] = nu * (stress[XX] + stress[ZZ]) - young * e[YY]
         return stress
+
+    return stresses

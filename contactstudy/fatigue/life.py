@@ -388,7 +388,7 @@ def ioannides_harris(
         return reduce_dims(compute_risks, [(field, [dimension]), (depth_positions, [dimension])], 3)
 
     density, mean, truncated = compute_sections(stress)
-    theory = {"theory": "Ioannides and Harris", "fatigue_limit": threshold}
+    theory: dict[str, str | float] = {"theory": "Ioannides and Harris", "fatigue_limit": threshold}
     result = _integrate_risk(density, exponents, theory, borders)
     if stress.attrs.get("units") == "1":
         for name in ("risk", "risk_density"):

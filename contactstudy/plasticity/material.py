@@ -54,8 +54,7 @@ class ElasticPlastic:
             if profile.dims != ("z",) or "z" not in profile.coords:
                 raise InvalidInputError("yield_stress.dims", profile.dims, "('z',) with depths z in metres")
             checks.increasing("yield_stress.z", profile["z"].values, "metres")
-            for value in checks.coordinates("yield_stress", profile.values, "Pa"):
-                checks.positive("yield_stress", float(value), "Pa")
+            checks.positive("yield_stress", float(checks.coordinates("yield_stress", profile.values, "Pa").min()), "Pa")
             checks.store(self, yield_stress=profile)
         else:
             checks.store(self, yield_stress=checks.positive("yield_stress", self.yield_stress, "Pa"))

@@ -24,7 +24,7 @@ from contactstudy.analysis.provenance import check_solved_for
 from contactstudy.arrays.variables import STRESSES, describe, require_in_si
 from contactstudy.bodies.models import Body
 from contactstudy.checks import FloatArray, IntArray
-from contactstudy.eigenstrain.body import EigenstrainBody, Influence
+from contactstudy.eigenstrain.body import EigenstrainBody, cell_influence
 from contactstudy.eigenstrain.layers import PeriodicLayers, layer_stresses
 from contactstudy.errors import ConvergenceWarning, InvalidInputError
 from contactstudy.plasticity.eigenstrains import STRAINS, create_cross_section, edges_between
@@ -181,7 +181,7 @@ class _CrossSection:
         period = int(next_fast_len(3 * y.size, real=True))
         residual: Callable[[FloatArray], FloatArray] = partial(layer_stresses, self.body.material)
         if not self.is_line_contact:
-            residual = Influence.of(self.cells, columns, layers).stresses
+            residual = cell_influence(self.cells, columns, layers)
         return Passage(
             elastic=elastic,
             residual=residual,

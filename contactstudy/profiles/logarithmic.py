@@ -70,9 +70,9 @@ class Logarithmic(Shape):
         >>> round(1e6 * Lundberg.for_load(1532.0, length=10e-3, radius=5e-3, modulus=230.77e9).amplitude, 4)
         0.2113
         """
-        sizes = {"length": (length, "metres"), "radius": (radius, "metres"), "modulus": (modulus, "Pa")}
-        length, radius, modulus = (checks.positive(name, *value) for name, value in sizes.items())
-        pressure = hertz.line_max_pressure(checks.positive("load", load, "N") / length, radius, modulus)
+        line_load = checks.positive("load", load, "N") / checks.positive("length", length, "metres")
+        radius, modulus = checks.positive("radius", radius, "metres"), checks.positive("modulus", modulus, "Pa")
+        pressure = hertz.line_max_pressure(line_load, radius, modulus)
         return cls.for_pressure(pressure, radius=radius, modulus=modulus, **parameters)
 
 

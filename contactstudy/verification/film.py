@@ -83,8 +83,9 @@ def dry_limit_checks() -> Iterator[Check]:
 
 def barus_oil(viscosity: float, pressure_viscosity: float) -> Lubricant:
     """Oil of constant density whose viscosity follows Barus."""
-    laws = {"viscosity_law": "barus", "density_law": "constant"}
-    return Lubricant(viscosity=viscosity, pressure_viscosity=pressure_viscosity, **laws)
+    return Lubricant(
+        viscosity=viscosity, pressure_viscosity=pressure_viscosity, viscosity_law="barus", density_law="constant"
+    )
 
 
 def crowned_case(body: Body, length: float) -> Case:
