@@ -230,22 +230,21 @@ def _hertz_loads(result: xr.Dataset, case: Case, edges: FloatArray) -> tuple[Flo
     line_loads = hertz.line_load(1.0, 1.0, case.modulus) * max_pressure**2 * radius
     columns = Columns(np.stack([position - half_widths, position + half_widths], axis=-1), position, line_loads)
     load, discretisation_error = power_means(columns, edges, LIFE_POWER)
-    common_error = _pressure_errors(result, load, line_loads, columns.overlaps(edges))
-    error = common_error + discretisation_error
-    for end, side in ((0, "first"), (-1, "last")):
-        if np.isinf(float(result.get(f"peak_pressure_{side}", 0.0))):
-            load[end] = error[end] = common_error[end] = np.inf
-    return load, error, common_error
-
-
-def _pressure_errors(result: xr.Dataset, load: FloatArray, line_loads: FloatArray, weights: FloatArray) -> FloatArray:
-    """Errors of loads per length that follow from the stated errors of the largest pressure in either half."""
-    half_count = load.size // 2
+    # Errors that follow from the stated errors of the largest pressure in either half
+    half_count, weights = load.size // 2, columns.overlaps(edges)
+    singular_ends: list[int] = []
     halves = (slice(load.size - half_count), slice(half_count, None))
     errors = np.zeros((2, load.size))
-    for row, lamina_range, side, relative_error in zip(errors, halves, SIDES, pressure_errors(result), strict=True):
-        is_infinite = np.isinf(float(result.get(f"peak_pressure_{side}", 0.0)))
-        max_load = load[lamina_range] if is_infinite else line_loads[weights[lamina_range].any(axis=0)].max()
+    for row, half, end, side, relative_error in zip(
+        errors, halves, (0, -1), SIDES, pressure_errors(result), strict=True
+    ):
+        is_singular = np.isinf(float(result.get(f"peak_pressure_{side}", 0.0)))
+        singular_ends += [end] * is_singular
+        max_load = load[half] if is_singular else line_loads[weights[half].any(axis=0)].max()
         # The load is proportional to the square of the pressure.
-        row[lamina_range] = 2 * relative_error * np.sqrt(load[lamina_range] * max_load)
-    return np.asarray(errors.max(axis=0))
+        row[half] = 2 * relative_error * np.sqrt(load[half] * max_load)
+    common_error = errors.max(axis=0)
+    error = common_error + discretisation_error
+    for values in (load, error, common_error):
+        values[singular_ends] = np.inf
+    return load, error, common_error
