@@ -232,19 +232,16 @@ def _hertz_loads(result: xr.Dataset, case: Case, edges: FloatArray) -> tuple[Flo
     load, discretisation_error = power_means(columns, edges, LIFE_POWER)
     # Errors that follow from the stated errors of the largest pressure in either half
     half_count, weights = load.size // 2, columns.overlaps(edges)
-    singular_ends: list[int] = []
     halves = (slice(load.size - half_count), slice(half_count, None))
+    is_singular = [bool(np.isinf(float(result.get(f"peak_pressure_{side}", 0.0)))) for side in SIDES]
     errors = np.zeros((2, load.size))
-    for row, half, end, side, relative_error in zip(
-        errors, halves, (0, -1), SIDES, pressure_errors(result), strict=True
-    ):
-        is_singular = np.isinf(float(result.get(f"peak_pressure_{side}", 0.0)))
-        singular_ends += [end] * is_singular
-        max_load = load[half] if is_singular else line_loads[weights[half].any(axis=0)].max()
+    for row, half, singular, relative_error in zip(errors, halves, is_singular, pressure_errors(result), strict=True):
+        max_load = load[half] if singular else line_loads[weights[half].any(axis=0)].max()
         # The load is proportional to the square of the pressure.
         row[half] = 2 * relative_error * np.sqrt(load[half] * max_load)
     common_error = errors.max(axis=0)
     error = common_error + discretisation_error
+    singular_ends = np.flatnonzero(is_singular) * (load.size - 1)
     for values in (load, error, common_error):
         values[singular_ends] = np.inf
     return load, error, common_error
