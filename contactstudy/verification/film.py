@@ -117,12 +117,10 @@ def finite_element_checks(name: str) -> Iterator[Check]:
     """Compare a film between two free ends with the film of finite elements on the same cells."""
     stored, problem = load_reference(FILM_FILE, name), FILM_CASES[name]
     lubricated = coarse_film(name)
-    solution = film_on_level(lubricated, Level(), lubricated.contact_ends, SETTINGS)
-    cells = solution.problem.cells
-    fields = {"film": solution.solution.film, "pressure": solution.solution.fluid_pressure}
-    computed = xr.Dataset({key: (("x", "y"), field) for key, field in fields.items()}, {"x": cells.x, "y": cells.y})
+    solution = film_on_level(lubricated, Level(), lubricated.contact_ends, SETTINGS).solution
+    fields = {"film": solution.film, "pressure": solution.fluid_pressure}
     # The cells of both solutions differ only by rounding.
-    computed = computed.interp(x=stored["x"], y=stored["y"], kwargs={"fill_value": "extrapolate"})
+    computed = xr.Dataset({key: (("x", "y"), field) for key, field in fields.items()}, stored.coords)
     case = f"crowned roller, {problem.length:g} a, flush, M = {problem.load_number:g}, L = {problem.lubricant_number:g}"
     reference = Reference(case, FINITE_ELEMENTS.format(stored.attrs["film_error"], "of the film, on the same cells"))
     axis, expected = (data["film"].interp(y=0.0).values for data in (computed, stored))
