@@ -197,3 +197,11 @@ def coordinates(name: str, values: object, unit: str = "m") -> FloatArray:
         allowed = f"at most {MAX_MAGNITUDE:g} everywhere ({unit})"
         raise InvalidInputError(name, f"{array[large[0]]} at position {large[0]}", allowed, "units are SI")
     return array
+
+
+def increasing(name: str, values: object, unit: str = "m", minimum: int = 1) -> FloatArray:
+    """Return `values` as `coordinates` does; raise unless they increase and are at least `minimum`."""
+    array = coordinates(name, values, unit)
+    if array.size < minimum or (np.diff(array) <= 0).any():
+        raise InvalidInputError(name, array.tolist(), f"{minimum} or more increasing numbers ({unit})")
+    return array

@@ -148,7 +148,7 @@ def with_residuals(table: xr.Dataset) -> xr.Dataset:
 def left_out(atlas: AtlasTable, name: str) -> tuple[np.ndarray, np.ndarray]:
     """Difference of each point from the interpolation between the others, and its branch."""
     samples, scaled = atlas.interpolated_samples(name), atlas.scale(name, atlas.points)
-    values = np.stack([branch.interpolate(atlas.points, scaled) for branch in atlas.interpolators(name)])
+    values = atlas.branch_values(name, atlas.points)
     for row, members in zip(values, atlas.branches(name), strict=True):
         row[members] -= residuals_without_each(scaled[members], samples[members])
     return samples - values.max(axis=0), values.argmax(axis=0)

@@ -19,11 +19,11 @@ import numpy as np
 from numpy.polynomial import legendre
 from numpy.typing import NDArray
 from scipy import sparse
-from scipy.special import sici
+from scipy.special import sici, xlogy
 
 from benchmarks.finite_elements.harmonics import HarmonicBody, Line
 from benchmarks.finite_elements.superpose import Resolution
-from contactstudy.verification.problems import LubricatedCase
+from contactstudy.verification.problems import LINE_LOAD, LubricatedCase
 
 Array = NDArray[np.float64]
 FACE_FILM = (0.2, 2.0)
@@ -138,20 +138,33 @@ class Reynolds:
         return matrices[0], matrices[1]
 
 
+def mean_gap(case: LubricatedCase, x_edges: Array, y: Array) -> Array:
+    """Gap, mean over columns, at positions along y."""
+    position = 2 * x_edges / case.length - 1
+    integral = xlogy(1 + position, 1 + position) - xlogy(1 - position, 1 - position) - 2 * position
+    drop = -case.amplitude * np.diff(integral) / np.diff(position)
+    return drop[:, None] + 0.5 * y**2
+
+
 def solve(
     case: LubricatedCase, compliant: Array, x_edges: Array, y_edges: Array, *, tolerance: float = 1e-9
 ) -> tuple[Array, Array]:
     """Pressure and film (x, y), by pseudo-time steps and then the steady state."""
     x, y = (0.5 * (edges[1:] + edges[:-1]) for edges in (x_edges, y_edges))
-    gap, lengths = case.gap(x_edges, y), np.diff(y_edges)
+    gap, lengths = mean_gap(case, x_edges, y), np.diff(y_edges)
+    # Load of the line contact of half-width and peak pressure 1 over the whole length
+    load = LINE_LOAD * case.length
     areas = np.multiply.outer(np.diff(x_edges), lengths).ravel()
     # Heights are in a**2 / R and p0 = E* a / (2 R).
     matrix = 0.5 * compliant.reshape(gap.size, gap.size)
     pressure = np.sqrt(np.clip(1 - y**2, 0, None)) + 0 * gap
-    pressure *= case.load / (areas @ pressure.ravel())
+    pressure *= load / (areas @ pressure.ravel())
     film = gap + (matrix @ pressure.ravel()).reshape(gap.shape)
     film += START_FILM - film.min()
-    reynolds = Reynolds(x_edges, y_edges, case.speed, case.pressure_viscosity)
+    # Speed number of eq. (404), by (a / R)**2 = 8 W / pi, and pressure-viscosity coefficient times the peak pressure
+    speed = 3 * np.pi**2 / (8 * case.load_number**2)
+    pressure_viscosity = float(case.lubricant_number * np.sqrt(case.load_number / (2 * np.pi)))
+    reynolds = Reynolds(x_edges, y_edges, speed, pressure_viscosity)
     for time in (*TIMES, np.inf):
         previous_film, inverse = film, lengths / time
         for _ in range(60 if np.isinf(time) else 8):
@@ -163,9 +176,7 @@ def solve(
             broken = scale * pressure.ravel() < outflow
             rows = np.where(broken[:, None], np.eye(gap.size), jacobian / scale[:, None])
             by_height = np.where(broken, 0.0, by_film.sum(axis=1) / scale)
-            right = np.append(
-                np.where(broken, -pressure.ravel(), -outflow / scale), case.load - areas @ pressure.ravel()
-            )
+            right = np.append(np.where(broken, -pressure.ravel(), -outflow / scale), load - areas @ pressure.ravel())
             change = np.linalg.solve(np.block([[rows, by_height[:, None]], [areas, np.zeros(1)]]), right)
             film_change = change[-1] + matrix @ change[:-1]
             step_fraction = min(1.0, CLOSING / max((-film_change / film.ravel()).max(), 1e-300))

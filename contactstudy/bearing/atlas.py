@@ -6,7 +6,6 @@ from dataclasses import dataclass, field
 from functools import cache, cached_property
 from importlib.resources import files
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -15,7 +14,7 @@ from scipy.interpolate import RBFInterpolator
 from scipy.spatial import cKDTree
 
 from contactstudy.arrays.variables import describe
-from contactstudy.checks import FloatArray, IntArray
+from contactstudy.checks import BoolArray, FloatArray, IntArray
 from contactstudy.errors import InvalidInputError
 
 # Dimensionless groups, in the order of the coordinates of the interpolation
@@ -102,26 +101,12 @@ def _check_group(name: str, value: npt.ArrayLike | xr.DataArray, valid_range: tu
     return xr.DataArray(values, dims=("point",)[: values.ndim])
 
 
-class Branch(NamedTuple):
-    """Interpolation of a smooth branch: a tree of all points of the table, and which points belong to the branch."""
-
-    interpolation: RBFInterpolator
-    tree: cKDTree
-    members: npt.NDArray[np.bool_]
-
-    def interpolate(self, coordinates: FloatArray, scaled: FloatArray) -> FloatArray:
-        """Values at coordinates (point, group), also given `scaled`; minus infinity away from the branch's points."""
-        _, nearest = self.tree.query(coordinates, NEIGHBOUR_COUNT)
-        values = self.interpolation(scaled)
-        return np.where(self.members[nearest].any(axis=1), values, -np.inf)
-
-
 @dataclass(frozen=True, eq=False)
 class AtlasTable:
     """Solved points and their interpolation; a residual is the difference from interpolation between other points."""
 
     dataset: xr.Dataset  # (point): groups; quantities with scales, solver_error, coverage_factor; residuals; *_at_end
-    _interpolators: dict[str, list[Branch]] = field(default_factory=dict)
+    _interpolators: dict[str, list[RBFInterpolator]] = field(default_factory=dict)
 
     @cached_property
     def ranges(self) -> dict[str, tuple[float, float]]:
@@ -139,31 +124,34 @@ class AtlasTable:
         """Coordinates of the solved points (point, group)."""
         return self.coordinates(np.stack([self.dataset[name].values for name in GROUPS], axis=1))
 
+    @cached_property
+    def _tree(self) -> cKDTree:
+        return cKDTree(self.points)
+
     def interpolated_samples(self, name: str) -> FloatArray:
         """Values at the solved points that are interpolated: a quantity or the quantity's logarithm."""
         values = self.dataset[name].values
         return np.asarray(np.log(values) if name in LOGARITHMIC_QUANTITIES else values)
 
-    def branches(self, name: str) -> list[npt.NDArray[np.bool_]]:
+    def branches(self, name: str) -> list[BoolArray]:
         """Masks of the points of each smooth branch; a maximum with two possible places has a branch for each place."""
         if f"{name}_at_end" not in self.dataset:
             return [np.ones(len(self.points), dtype=bool)]
         at_end = self.dataset[f"{name}_at_end"].values.astype(bool)
         return [at_end, ~at_end]
 
-    def interpolators(self, name: str) -> list[Branch]:
-        """Interpolation of each branch of a quantity."""
+    def branch_values(self, name: str, coordinates: FloatArray) -> FloatArray:
+        """Interpolated values (branch, point) at coordinates; minus infinity away from the branch's points."""
+        branches = self.branches(name)
         if name not in self._interpolators:
-            tree, samples = cKDTree(self.points), self.interpolated_samples(name)
+            nodes, samples = self.scale(name, self.points), self.interpolated_samples(name)
             self._interpolators[name] = [
-                Branch(
-                    RBFInterpolator(self.scale(name, self.points[members]), samples[members], kernel="cubic", degree=2),
-                    tree,
-                    members,
-                )
-                for members in self.branches(name)
+                RBFInterpolator(nodes[members], samples[members], kernel="cubic", degree=2) for members in branches
             ]
-        return self._interpolators[name]
+        _, nearest = self._tree.query(coordinates, NEIGHBOUR_COUNT)
+        scaled = self.scale(name, coordinates)
+        values = [interpolator(scaled) for interpolator in self._interpolators[name]]
+        return np.where([members[nearest].any(axis=1) for members in branches], values, -np.inf)
 
     def scale(self, name: str, coordinates: FloatArray) -> FloatArray:
         """Coordinates (point, group) whose distances measure the variation of a quantity."""
@@ -171,8 +159,7 @@ class AtlasTable:
 
     def interpolate(self, name: str, coordinates: FloatArray) -> tuple[FloatArray, IntArray]:
         """Interpolated values at coordinates (point, group), and the branch of each."""
-        scaled = self.scale(name, coordinates)
-        values = np.stack([branch.interpolate(coordinates, scaled) for branch in self.interpolators(name)])
+        values = self.branch_values(name, coordinates)
         return values.max(axis=0), values.argmax(axis=0)
 
     def local_residual(self, name: str, coordinates: FloatArray, branch: IntArray, first: int = 0) -> FloatArray:

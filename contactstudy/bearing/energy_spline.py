@@ -41,33 +41,20 @@ class ContactResponse(NamedTuple):
     tilting: FloatArray  # dM/d theta, N m/rad
 
 
-@dataclass(frozen=True, eq=False)
-class SplineBasis:
-    """B-splines along one axis."""
-
-    knots: FloatArray  # with repeated ends
-    degree: int
-
-    @classmethod
-    def interpolating(cls, nodes: FloatArray, degree: int) -> SplineBasis:
-        """Return a basis of one more spline than nodes, with knots at de Boor's means of the nodes."""
-        degree = min(degree, nodes.size - 1)
-        inner = [nodes[first : first + degree - 1].mean() for first in range(1, nodes.size - degree + 1)]
-        first, last = (np.repeat(end, degree + 1) for end in nodes[[0, -1]])
-        return cls(np.concatenate([first, inner, last]), degree)
-
-    def __call__(self, points: FloatArray, derivative: int = 0) -> FloatArray:
-        """Values of the splines at points: array (point, spline)."""
-        count = self.knots.size - self.degree - 1
-        return np.asarray(BSpline(self.knots, np.eye(count), self.degree)(points, nu=derivative))
+def create_basis(nodes: FloatArray, degree: int) -> BSpline:
+    """Create a basis of one more B-spline than nodes, with knots at de Boor's means of the nodes."""
+    degree = min(degree, nodes.size - 1)
+    inner = [nodes[first : first + degree - 1].mean() for first in range(1, nodes.size - degree + 1)]
+    first, last = (np.repeat(end, degree + 1) for end in nodes[[0, -1]])
+    return BSpline(np.concatenate([first, inner, last]), np.eye(nodes.size + 1), degree)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class EnergySpline:
     """Strain energy: without tilt the exponential of a spline; a tensor product of splines adds the tilt's energy."""
 
-    approach_splines: SplineBasis  # in the logarithm of the approach
-    tilt_splines: SplineBasis  # in the tilt over the largest tilt
+    approach_splines: BSpline  # values (point, spline), in the logarithm of the approach
+    tilt_splines: BSpline  # the same in the tilt over the largest tilt
     tilt_scale: float  # rad
     untilted: FloatArray  # coefficients of the logarithm of the energy without tilt
     added: FloatArray  # coefficients of the energy added by a tilt, per pair, J
@@ -77,7 +64,7 @@ class EnergySpline:
         """Fit energy, load and moment at once."""
         u, scale = np.log(nodes.approaches), float(np.abs(nodes.tilts).max())
         t = nodes.tilts / scale
-        u_splines, t_splines = SplineBasis.interpolating(u, degree), SplineBasis.interpolating(t, degree)
+        u_splines, t_splines = create_basis(u, degree), create_basis(t, degree)
         # dU / d ln delta = delta Q, and dU / d(theta / scale) = scale M.
         load, moment = nodes.approaches[:, None] * nodes.load, scale * nodes.moment
         untilted_column = int(np.abs(t).argmin())
@@ -101,26 +88,23 @@ class EnergySpline:
 
     def __call__(self, approach: FloatArray, tilt: FloatArray) -> ContactResponse:
         """Load, moment and stiffness at pairs of approach and tilt, of one shape."""
-        shape = np.shape(approach)
-        delta, theta = np.ravel(approach), np.ravel(tilt)
-        u, t, scale = np.log(delta), theta / self.tilt_scale, self.tilt_scale
-        b_u = [self.approach_splines(u, order) for order in range(3)]
-        b_t = [self.tilt_splines(t, order) for order in range(3)]
+        scale = self.tilt_scale
+        b_u = [self.approach_splines(np.log(approach), order) for order in range(3)]
+        b_t = [self.tilt_splines(tilt / scale, order) for order in range(3)]
 
         def tilt_derivative(i: int, j: int) -> FloatArray:
-            return np.asarray(np.einsum("pi,ij,pj->p", b_u[i], self.added, b_t[j]))
+            return np.asarray(np.einsum("...i,ij,...j->...", b_u[i], self.added, b_t[j]))
 
         energy, slope, curvature = np.exp(b_u[0] @ self.untilted), b_u[1] @ self.untilted, b_u[2] @ self.untilted
         by_u = energy * slope + tilt_derivative(1, 0)
         by_uu = energy * (curvature + slope**2) + tilt_derivative(2, 0)
-        responses = (
-            by_u / delta,
-            tilt_derivative(0, 1) / scale,
-            (by_uu - by_u) / delta**2,
-            tilt_derivative(1, 1) / (delta * scale),
-            tilt_derivative(0, 2) / scale**2,
+        return ContactResponse(
+            load=by_u / approach,
+            moment=tilt_derivative(0, 1) / scale,
+            normal=(by_uu - by_u) / approach**2,
+            coupling=tilt_derivative(1, 1) / (approach * scale),
+            tilting=tilt_derivative(0, 2) / scale**2,
         )
-        return ContactResponse(*(response.reshape(shape) for response in responses))
 
 
 def _solve_least_squares(equation_blocks: list[tuple[FloatArray, FloatArray]]) -> FloatArray:
@@ -135,23 +119,17 @@ def estimate_fit_errors(nodes: Nodes, length: float) -> FloatArray:
     # Estimates: residuals, and differences from splines of another degree and on fewer nodes.
     spline, lower_degree_spline = EnergySpline.fit(nodes), EnergySpline.fit(nodes, ERROR_DEGREE)
     pairs = np.meshgrid(nodes.approaches, nodes.tilts, indexing="ij")
-    residual = _differences(spline(*pairs), nodes.load, nodes.moment, length)
-    pairs = np.meshgrid(np.exp(_subdivide(np.log(nodes.approaches))), _subdivide(nodes.tilts), indexing="ij")
-    lower_response = lower_degree_spline(*pairs)
-    degree_error = _differences(spline(*pairs), lower_response.load, lower_response.moment, length)
+    residual = _differences(spline(*pairs), nodes, length)
+    fine_pairs = np.meshgrid(np.exp(_subdivide(np.log(nodes.approaches))), _subdivide(nodes.tilts), indexing="ij")
+    degree_error = _differences(spline(*fine_pairs), lower_degree_spline(*fine_pairs), length)
     # Largest difference between each node and its neighbours.
     nearby = maximum_filter(degree_error, (1, 2 * STEPS + 1, 2 * STEPS + 1), mode="nearest")[:, ::STEPS, ::STEPS]
-    indices, residuals = np.arange(nodes.approaches.size), []
-    for index in indices[1:-1]:
-        nodes_left, gap = (
-            Nodes(nodes.approaches[rows], nodes.tilts, nodes.energy[rows], nodes.load[rows], nodes.moment[rows])
-            for rows in (indices != index, indices == index)
-        )
-        response = EnergySpline.fit(nodes_left)(*np.meshgrid(gap.approaches, gap.tilts, indexing="ij"))
-        residuals.append(_differences(response, gap.load, gap.moment, length))
-    return np.asarray(
-        np.maximum(residual, FACTOR * (nearby + np.concatenate([residuals[0], *residuals, residuals[-1]], axis=1)))
-    )
+    rows, names = range(1, nodes.approaches.size - 1), ("approaches", "energy", "load", "moment")
+    gaps = []
+    for row in rows:
+        other_nodes = nodes._replace(**{name: np.delete(getattr(nodes, name), row, axis=0) for name in names})
+        gaps.append(_differences(EnergySpline.fit(other_nodes)(*pairs), nodes, length)[:, row])
+    return np.asarray(np.maximum(residual, FACTOR * (nearby + np.stack([gaps[0], *gaps, gaps[-1]], axis=1))))
 
 
 def _subdivide(nodes: FloatArray) -> FloatArray:
@@ -160,6 +138,7 @@ def _subdivide(nodes: FloatArray) -> FloatArray:
     return np.asarray(np.interp(np.arange(STEPS * (count - 1) + 1) / STEPS, np.arange(count), nodes))
 
 
-def _differences(response: ContactResponse, load: FloatArray, moment: FloatArray, length: float) -> FloatArray:
+def _differences(response: ContactResponse, expected: Nodes | ContactResponse, length: float) -> FloatArray:
     """Errors of a response: load difference over load, and moment difference over load times length."""
-    return np.array([np.abs(response.load / load - 1), np.abs(response.moment - moment) / (load * length)])
+    moment_error = np.abs(response.moment - expected.moment) / (expected.load * length)
+    return np.array([np.abs(response.load / expected.load - 1), moment_error])

@@ -98,16 +98,12 @@ def slice_model(case: Case, *, slices: int = 30, tilt: float | None = None, edge
     load = case.normal_load
     # `bound`: approach beyond the smallest height at which a single slice carries the whole load
     min_height, max_depth = float(height.min()), 0.5 * (load / stiffness) ** (1 / POWER)
-    approach = float(
-        brentq(
-            lambda approach: stiffness * float(np.sum((2 * np.maximum(approach - height, 0.0)) ** POWER)) / load - 1,
-            min_height,
-            min_height + 1.001 * max_depth,
-            xtol=1e-15 * max_depth,
-            rtol=1e-14,
-            maxiter=200,
-        )
-    )
+    max_approach = min_height + 1.001 * max_depth
+
+    def excess(approach: float) -> float:
+        return float(stiffness * np.sum((2 * np.maximum(approach - height, 0.0)) ** POWER) / load - 1)
+
+    approach = float(brentq(excess, min_height, max_approach, xtol=1e-15 * max_depth, rtol=1e-14, maxiter=200))
     deflection = np.maximum(approach - height, 0.0)
     load_per_length = stiffness * (2 * deflection) ** POWER * slices / length
     from_middle = np.abs(2 * np.arange(1, slices + 1) - slices - 1) / (2 * slices - 2)
@@ -123,12 +119,8 @@ def slice_model(case: Case, *, slices: int = 30, tilt: float | None = None, edge
         "deflection": deflection,
         "edge_factor": edge_factor,
     }
-    result = xr.Dataset(
-        {name: ("x", values) for name, values in fields.items()}
-        | {"normal_load": case.normal_load, "approach": approach},
-        coords={"x": x},
-        attrs={"slices": slices, "tilt": tilt},
-    )
+    variables = {name: ("x", values) for name, values in fields.items()} | {"normal_load": load, "approach": approach}
+    result = xr.Dataset(variables, coords={"x": x}, attrs={"slices": slices, "tilt": tilt})
     for name in ("load_per_length", "half_width", "deflection", "edge_factor", "approach"):
         result[name].attrs["comment"] = MODEL_COMMENT
     riser_comment = ", with stress riser" if edge_riser else ""
@@ -141,7 +133,6 @@ def slice_model(case: Case, *, slices: int = 30, tilt: float | None = None, edge
 # Power with which a lamina's risk of fatigue grows with load: the life exponent 4 of a line contact times the slope
 # 9/8 of Weibull's distribution
 LIFE_POWER = 9 / 2
-COLUMN_COMMENT = "from the stated errors of the pressure and the distance of its columns"
 
 
 def lamina_factors(result: xr.Dataset, *, laminae: int = 30) -> xr.Dataset:
@@ -219,9 +210,11 @@ def lamina_loads(solution: xr.Dataset, case: Case, laminae: int) -> tuple[xr.Dat
     )
     for name in ("load_per_length", "edge_factor"):
         labelled[name].attrs["comment"] = slice_result[name].attrs["comment"]
-    has_error = not np.isnan(error).any()
+    attributes = {"comment": "from the stated errors of the pressure and the distance of its columns"}
+    if np.isnan(error).any():
+        attributes = {ERROR_KIND: NOT_ESTIMATED}
     for name in ("hertz_load_per_length", "stress_riser"):
-        labelled[f"{name}_error"].attrs |= {"comment": COLUMN_COMMENT} if has_error else {ERROR_KIND: NOT_ESTIMATED}
+        labelled[f"{name}_error"].attrs |= attributes
     return describe(labelled, "stress riser of every lamina from solved pressures"), common_error
 
 
@@ -231,34 +224,24 @@ def _hertz_loads(result: xr.Dataset, case: Case, edges: FloatArray) -> tuple[Flo
     x = dimension_along(pressure, "x")
     position, max_pressure = result[x].values, section_maxima(pressure.values)
     half_widths = 0.5 * cell_widths(pressure, "x").values
-    mid_length = case.roller_middle
-    under_roller = np.abs(position - mid_length) <= 0.5 * case.roller.length
-    radius = np.full(position.size, case.roller.radius)
-    radius[under_roller] = local_radius(
-        case.roller.profile, position[under_roller] - mid_length, case.roller.length, case.roller.radius
-    )
+    roller, half_length = case.roller, 0.5 * case.roller.length
+    x_from_middle = np.clip(position - case.roller_middle, -half_length, half_length)
+    radius = local_radius(roller.profile, x_from_middle, roller.length, roller.radius)
     line_loads = hertz.line_load(1.0, 1.0, case.modulus) * max_pressure**2 * radius
     columns = Columns(np.stack([position - half_widths, position + half_widths], axis=-1), position, line_loads)
     load, discretisation_error = power_means(columns, edges, LIFE_POWER)
-    common_error = _pressure_errors(result, load, line_loads, columns.overlaps(edges))
-    error = common_error + discretisation_error
-    for end, side in ((0, "first"), (-1, "last")):
-        if np.isinf(float(result.get(f"peak_pressure_{side}", 0.0))):
-            load[end] = error[end] = common_error[end] = np.inf
-    return load, error, common_error
-
-
-def _pressure_errors(result: xr.Dataset, load: FloatArray, line_loads: FloatArray, weights: FloatArray) -> FloatArray:
-    """Errors of loads per length that follow from the stated errors of the largest pressure in either half."""
-    half_count = load.size // 2
-    errors = []
-    for lamina_range, side, relative_error in zip(
-        (slice(load.size - half_count), slice(half_count, None)), SIDES, pressure_errors(result), strict=True
-    ):
-        is_infinite = np.isinf(float(result.get(f"peak_pressure_{side}", 0.0)))
-        max_load = load[lamina_range] if is_infinite else line_loads[weights[lamina_range].any(axis=0)].max()
-        error = np.zeros(load.size)
+    # Errors that follow from the stated errors of the largest pressure in either half
+    half_count, weights = load.size // 2, columns.overlaps(edges)
+    halves = (slice(load.size - half_count), slice(half_count, None))
+    is_singular = [bool(np.isinf(float(result.get(f"peak_pressure_{side}", 0.0)))) for side in SIDES]
+    errors = np.zeros((2, load.size))
+    for row, half, singular, relative_error in zip(errors, halves, is_singular, pressure_errors(result), strict=True):
+        max_load = load[half] if singular else line_loads[weights[half].any(axis=0)].max()
         # The load is proportional to the square of the pressure.
-        error[lamina_range] = 2 * relative_error * np.sqrt(load[lamina_range] * max_load)
-        errors.append(error)
-    return np.maximum(*errors)
+        row[half] = 2 * relative_error * np.sqrt(load[half] * max_load)
+    common_error = errors.max(axis=0)
+    error = common_error + discretisation_error
+    singular_ends = np.flatnonzero(is_singular) * (load.size - 1)
+    for values in (load, error, common_error):
+        values[singular_ends] = np.inf
+    return load, error, common_error

@@ -5,18 +5,20 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 import xarray as xr
 
 from contactstudy import checks
 from contactstudy.arrays.engineering import html_table
-from contactstudy.arrays.variables import describe, name_array, require, without_error
+from contactstudy.arrays.variables import describe, name_array, numbers_in_si, require, without_error
 from contactstudy.bearing.energy_spline import ContactResponse, EnergySpline, Nodes
-from contactstudy.checks import FloatArray, factor_to
+from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 
 Values = float | list[float] | tuple[float, ...] | FloatArray | xr.DataArray  # A number, several, or labelled numbers
+Pair = tuple[xr.DataArray, xr.DataArray]  # Approach and tilt
 UNITS = {"approach": "m", "tilt": "rad", "normal_load": "N", "moment": "N m"}  # Units of the arguments
 
 
@@ -27,9 +29,8 @@ def broadcast_arguments(**values: Values) -> tuple[xr.DataArray, ...]:
         indexes = [argument.indexes[dim] for argument in labelled if dim in argument.indexes]
         if any(set(labels) != set(indexes[0]) for labels in indexes):
             labels_text = " and ".join(str(labels.tolist()[:5]) for labels in indexes)
-            raise InvalidInputError(
-                ", ".join(values), f"{dim} = {labels_text}", f"with the same labels along {dim}, or without"
-            )
+            allowed = f"with the same labels along {dim}, or without"
+            raise InvalidInputError(", ".join(values), f"{dim} = {labels_text}", allowed)
     try:
         aligned = xr.align(*labelled, join="left")
     except ValueError as error:
@@ -42,22 +43,17 @@ def broadcast_arguments(**values: Values) -> tuple[xr.DataArray, ...]:
 def _label_argument(name: str, value: Values) -> xr.DataArray:
     """Return an argument as a DataArray of finite numbers."""
     if isinstance(value, xr.DataArray):
-        if (units := value.attrs.get("units")) is not None:
-            value = value * factor_to(UNITS[name], f"{name}.attrs['units']", units)
-        checks.coordinates(name, value.values.ravel(), UNITS[name])
-        return value.drop_vars(name, errors="ignore") if name not in value.dims else value
+        labelled: xr.DataArray = numbers_in_si(name, value, UNITS[name])
+        checks.coordinates(name, labelled.values.ravel(), UNITS[name])
+        return labelled.drop_vars(name, errors="ignore") if name not in labelled.dims else labelled
     if np.ndim(value) == 0:
         return xr.DataArray(checks.finite(name, value, UNITS[name]))
     numbers = checks.coordinates(name, value, UNITS[name])
     return xr.DataArray(numbers, dims=name, coords={name: numbers})
 
 
-def map_pairs(
-    first_argument: xr.DataArray, second_argument: xr.DataArray, function: Callable[[float, float], tuple[float, float]]
-) -> tuple[xr.DataArray, xr.DataArray]:
-    """Map a function of two values over the pairs of arguments."""
-    results = np.vectorize(function, otypes="dd")(first_argument.values, second_argument.values)
-    return first_argument.copy(data=results[0]), second_argument.copy(data=results[1])
+# Arguments of `apply_ufunc` for a function that returns two numbers
+PAIR: dict[str, Any] = {"output_core_dims": [[], []], "vectorize": True, "output_dtypes": [float, float]}
 
 
 def add_position_errors(motion: xr.Dataset) -> xr.Dataset:
@@ -94,7 +90,26 @@ def label_motion(approach: xr.DataArray, tilt: xr.DataArray, motion: ContactResp
 
 MIN_NODES = 5  # Minimum number of approaches and of tilts
 ROUNDING = 1e-9  # Rounding of an argument over the range of the table
-RESIDUAL_TOLERANCE = 1e-7  # Maximum residual of load and moment, over load and load times length
+
+
+def find_root(
+    residual: Callable[[FloatArray], FloatArray],
+    start: FloatArray,
+    bounds: FloatArray,
+    scales: FloatArray,
+    jacobian: Callable[[FloatArray], FloatArray] | str = "2-point",
+) -> tuple[float, float] | None:
+    """Return the approach and tilt between `bounds` (bound, 2), over `scales`, without a residual; None if none has."""
+    from scipy.optimize import least_squares
+
+    low, high = bounds / scales
+    start = np.clip(start / scales, low + ROUNDING, high - ROUNDING)
+    root = least_squares(residual, start, jacobian, bounds=(low, high), xtol=1e-14, ftol=1e-14, gtol=1e-14)
+    delta, theta = root.x * scales
+    # Maximum residual of load and moment, over load and load times length
+    return (float(delta), float(theta)) if np.abs(root.fun).max() <= 1e-7 else None
+
+
 # Required variables of a table
 KEYS = ("normal_load", "moment", "strain_energy", "relative_load_error", "relative_moment_error", "contact_length")
 
@@ -159,8 +174,8 @@ class ContactLaw:
 
     def _rows(self) -> Iterator[tuple[str, str]]:
         """Ranges and errors of the table, as rows of text."""
-        low, high = (1e6 * end for end in self._range("approach"))
-        min_tilt, max_tilt = (1e3 * end for end in self._range("tilt"))
+        low, high = (1e6 * end for end in self.range_of("approach"))
+        min_tilt, max_tilt = (1e3 * end for end in self.range_of("tilt"))
         loads = self.table["normal_load"]
         errors = 100 * self.table["relative_load_error"].broadcast_like(loads)
         worst_node = errors[errors.argmax(...)]
@@ -198,13 +213,12 @@ class ContactLaw:
         """
         delta, theta = broadcast_arguments(approach=approach, tilt=tilt)
         for name, values in (("approach", delta), ("tilt", theta)):
-            low, high = self._range(name)
+            low, high = self.range_of(name)
             tolerance = ROUNDING * (high - low)
             outer_values = values.values[(values.values < low - tolerance) | (values.values > high + tolerance)]
             if outer_values.size:
-                raise InvalidInputError(
-                    name, float(outer_values[0]), f"in the table, from {low:g} to {high:g} {UNITS[name]}"
-                )
+                allowed = f"in the table, from {low:g} to {high:g} {UNITS[name]}"
+                raise InvalidInputError(name, float(outer_values[0]), allowed)
         pairs = delta.values, theta.values
         return label_motion(delta, theta, self.motion(*pairs), self.errors(*pairs))
 
@@ -227,7 +241,7 @@ class ContactLaw:
             If approach and tilt are outside the table.
         """
         loads, moments = broadcast_arguments(normal_load=normal_load, moment=moment)
-        delta, theta = map_pairs(loads, moments, self.solve_position)
+        delta, theta = xr.apply_ufunc(self.solve_position, loads, moments, **PAIR)
         pairs = delta.values, theta.values
         return add_position_errors(label_motion(delta, theta, self.motion(*pairs), self.errors(*pairs)))
 
@@ -237,40 +251,35 @@ class ContactLaw:
 
     def solve_position(self, load: float, moment: float) -> tuple[float, float]:
         """Approach and tilt under one load (N) and one moment (N m)."""
-        from scipy.optimize import least_squares
-
         load = checks.positive("normal_load", load, "N")
-        (low, high), (min_tilt, max_tilt) = self._range("approach"), self._range("tilt")
         length, nodes = float(self.table["contact_length"]), self._nodes
         distance = np.hypot(nodes.load / load - 1, (nodes.moment - moment) / (load * length))
         row, column = np.unravel_index(int(distance.argmin()), distance.shape)
-        scale = np.array([high, max_tilt - min_tilt])
+        bounds = np.transpose([self.range_of("approach"), self.range_of("tilt")])
+        min_tilt, max_tilt = bounds[:, 1]
+        scales = np.array([bounds[1, 0], max_tilt - min_tilt])
 
         def residual(scaled: FloatArray) -> FloatArray:
-            motion = self.motion(*(scaled * scale))
+            motion = self.motion(*(scaled * scales))
             return np.array([motion.load / load - 1, (motion.moment - moment) / (load * length)])
 
         def jacobian(scaled: FloatArray) -> FloatArray:
-            motion = self.motion(*(scaled * scale))
+            motion = self.motion(*(scaled * scales))
             moment_row = np.array([motion.coupling, motion.tilting]) / length
-            return np.asarray(np.array([[motion.normal, motion.coupling], moment_row]) / load * scale)
+            return np.asarray(np.array([[motion.normal, motion.coupling], moment_row]) / load * scales)
 
-        bounds = (np.array([low, min_tilt]) / scale, np.array([high, max_tilt]) / scale)
-        start = np.array([nodes.approaches[row], nodes.tilts[column]]) / scale
-        start = np.clip(start, bounds[0] + ROUNDING, bounds[1] - ROUNDING)
-        solution = least_squares(residual, start, jacobian, bounds=bounds, xtol=1e-14, ftol=1e-14, gtol=1e-14)
-        if np.abs(solution.fun).max() > RESIDUAL_TOLERANCE:
-            raise InvalidInputError(
-                "normal_load, moment",
-                (load, moment),
+        start = np.array([nodes.approaches[row], nodes.tilts[column]])
+        position = find_root(residual, start, bounds, scales, jacobian)
+        if position is None:
+            allowed = (
                 f"of a contact in the table, whose loads go from {nodes.load.min():.4g} to {nodes.load.max():.4g} N "
-                f"and tilts from {min_tilt:g} to {max_tilt:g} rad",
-                "make the table for larger approaches or tilts",
+                f"and tilts from {min_tilt:g} to {max_tilt:g} rad"
             )
-        delta, theta = solution.x * scale
-        return float(delta), float(theta)
+            hint = "make the table for larger approaches or tilts"
+            raise InvalidInputError("normal_load, moment", (load, moment), allowed, hint)
+        return position
 
-    def _range(self, name: str) -> tuple[float, float]:
+    def range_of(self, name: str) -> tuple[float, float]:
         """First and last approach or tilt."""
         return float(self.table[name][0]), float(self.table[name][-1])
 
@@ -289,13 +298,12 @@ class ContactLaw:
 
     def errors(self, approach: FloatArray, tilt: FloatArray) -> FloatArray:
         """Errors of load and moment over the load, at pairs inside the table: the largest of the four nearest nodes."""
-        node_pairs = []
-        for name, values in (("approach", approach), ("tilt", tilt)):
-            nodes = self.table[name].values
-            upper = np.clip(np.searchsorted(nodes, values), 1, nodes.size - 1)
-            node_pairs.append((upper - 1, upper))
-        errors = [self._node_values(name) for name in ("relative_load_error", "relative_moment_error")]
-        load, moment = (np.max([error[i, j] for i in node_pairs[0] for j in node_pairs[1]], axis=0) for error in errors)
+        row, column = (
+            np.clip(np.searchsorted(nodes, values), 1, nodes.size - 1)
+            for nodes, values in ((self._nodes.approaches, approach), (self._nodes.tilts, tilt))
+        )
+        errors = np.stack([self._node_values(f"relative_{name}_error") for name in ("load", "moment")])
+        load, moment = np.max([errors[:, row - i, column - j] for i in (0, 1) for j in (0, 1)], axis=0)
         return np.array([load, float(self.table["contact_length"]) * moment])
 
 
@@ -350,7 +358,7 @@ class Raceways:
             If either contact is outside its table.
         """
         delta, theta = broadcast_arguments(approach=approach, tilt=tilt)
-        inner = map_pairs(delta, theta, self._solve_inner_position)
+        inner = xr.apply_ufunc(self._solve_inner_position, delta, theta, **PAIR)
         return self._label_series(inner, (delta - inner[0], theta - inner[1]))
 
     def under(self, normal_load: Values, moment: Values = 0.0) -> xr.Dataset:
@@ -362,26 +370,17 @@ class Raceways:
             If either contact is outside its table.
         """
         loads, moments = broadcast_arguments(normal_load=normal_load, moment=moment)
-        motion = self._label_series(
-            map_pairs(loads, moments, self.inner.solve_position), map_pairs(loads, moments, self.outer.solve_position)
-        )
-        return add_position_errors(motion)
+        contacts = (xr.apply_ufunc(law.solve_position, loads, moments, **PAIR) for law in (self.inner, self.outer))
+        return add_position_errors(self._label_series(*contacts))
 
-    def _label_series(
-        self, inner: tuple[xr.DataArray, xr.DataArray], outer: tuple[xr.DataArray, xr.DataArray]
-    ) -> xr.Dataset:
+    def _label_series(self, inner: Pair, outer: Pair) -> xr.Dataset:
         """Label the series of two contacts at given approaches and tilts."""
         pairs = [(self.inner, *inner), (self.outer, *outer)]
         contacts = [law.motion(delta.values, theta.values) for law, delta, theta in pairs]
         # Compliances add up.
-        matrices = (
-            np.stack([motion.normal, motion.coupling, motion.coupling, motion.tilting], axis=-1) for motion in contacts
-        )
-        stiffness = np.linalg.inv(sum(np.linalg.inv(matrix.reshape(*matrix.shape[:-1], 2, 2)) for matrix in matrices))
-        inner_response = contacts[0]
-        motion = ContactResponse(
-            inner_response.load, inner_response.moment, stiffness[..., 0, 0], stiffness[..., 0, 1], stiffness[..., 1, 1]
-        )
+        matrices = [np.array([[m.normal, m.coupling], [m.coupling, m.tilting]]).T for m in contacts]
+        (normal, _), (coupling, tilting) = np.linalg.inv(sum(map(np.linalg.inv, matrices))).T
+        motion = contacts[0]._replace(normal=normal, coupling=coupling, tilting=tilting)
         # The larger of the two errors bounds the error of either contact.
         errors = np.maximum(*(law.errors(delta.values, theta.values) for law, delta, theta in pairs))
         labelled = label_motion(inner[0] + outer[0], inner[1] + outer[1], motion, errors)
@@ -392,41 +391,24 @@ class Raceways:
 
     def _solve_inner_position(self, approach: float, tilt: float) -> tuple[float, float]:
         """Solve for the approach and tilt of the inner contact with equal loads and moments in both."""
-        from scipy.optimize import least_squares
-
-        tables = self.inner.table, self.outer.table
-        totals = {"approach": approach, "tilt": tilt}
-        lower_bounds, upper_bounds = [], []
-        for name, total in totals.items():
-            (first, last), (outer_first, outer_last) = ((float(t[name][0]), float(t[name][-1])) for t in tables)
-            lower_bounds.append(max(first, total - outer_last))
-            upper_bounds.append(min(last, total - outer_first))
-            if not lower_bounds[-1] < upper_bounds[-1]:
+        bounds = np.empty((2, 2))
+        for index, (name, total) in enumerate((("approach", approach), ("tilt", tilt))):
+            (first, last), (outer_first, outer_last) = self.inner.range_of(name), self.outer.range_of(name)
+            bounds[:, index] = max(first, total - outer_last), min(last, total - outer_first)
+            if not bounds[0, index] < bounds[1, index]:
                 limits = f"from {first + outer_first:g} to {last + outer_last:g}"
                 raise InvalidInputError(name, total, f"in the tables of both contacts together, {limits}")
-        bounds, scales = (
-            np.array([lower_bounds, upper_bounds]),
-            np.array([approach, max(np.ptp(tables[0]["tilt"].values), 1e-12)]),
-        )
-        length = float(tables[0]["contact_length"])
-
-        def motions(scaled: FloatArray) -> tuple[ContactResponse, ContactResponse]:
-            delta, theta = scaled * scales
-            return self.inner.motion(delta, theta), self.outer.motion(approach - delta, tilt - theta)
+        scales = np.array([approach, np.ptp(self.inner.range_of("tilt"))])
+        length = float(self.inner.table["contact_length"])
 
         def residual(scaled: FloatArray) -> FloatArray:
-            inner, outer = motions(scaled)
+            delta, theta = scaled * scales
+            inner, outer = self.inner.motion(delta, theta), self.outer.motion(approach - delta, tilt - theta)
             scale = float(np.sqrt(inner.load * outer.load))
             return np.array([inner.load - outer.load, (inner.moment - outer.moment) / length]) / scale
 
-        start = np.clip(0.5 * np.array([approach, tilt]), bounds[0] + ROUNDING * scales, bounds[1] - ROUNDING * scales)
-        solution = least_squares(residual, start / scales, bounds=bounds / scales, xtol=1e-14, ftol=1e-14, gtol=1e-14)
-        if np.abs(solution.fun).max() > RESIDUAL_TOLERANCE:
-            raise InvalidInputError(
-                "approach, tilt",
-                (approach, tilt),
-                "such that either contact is in its table",
-                "make the tables for more approaches or tilts",
-            )
-        delta, theta = solution.x * scales
-        return float(delta), float(theta)
+        position = find_root(residual, 0.5 * np.array([approach, tilt]), bounds, scales)
+        if position is None:
+            allowed, hint = "such that either contact is in its table", "make the tables for more approaches or tilts"
+            raise InvalidInputError("approach, tilt", (approach, tilt), allowed, hint)
+        return position

@@ -26,10 +26,6 @@ TURNING_POWER = 4.0  # Power of the mean for the turning raceway; for the other 
 # Factor lambda nu of ISO 281's dynamic ratings for radial roller bearings, second-hand: an allowance for edge stress,
 # which the lamina model contains
 RATING_REDUCTION = 0.83
-MILLION = 1e6
-
-# Comment of the errors: the models of slices neglect the ends, and the error of these models is not estimated
-ERROR_COMMENT = "from the stated errors of the pressures; NaN for the models of slices"
 
 
 def roller_ratings(dynamic_rating: float, rollers: int, gamma: float, *, rows: int = 1) -> tuple[float, float]:
@@ -169,34 +165,30 @@ def reference_life(
 
     mean_loads, upper_loads = equivalent_loads(loads), equivalent_loads(loads + errors)
     risks = [((equivalent_loads(q) / rating) ** LIFE_POWER).sum(axis=-1) for q in (loads, loads + common_errors)]
-    (raceway_lives, lower_raceway_lives), (lives, lower_lives) = (
-        [MILLION * risk ** (-8 / 9) for risk in pair] for pair in (risks, [risk.sum(axis=-1) for risk in risks])
-    )
+    raceway_lives, lower_raceway_lives = (1e6 * risk ** (-8 / 9) for risk in risks)
+    lives, lower_lives = (1e6 * risk.sum(axis=-1) ** (-8 / 9) for risk in risks)
     is_infinite = np.isinf(mean_loads)
+    load_errors = np.where(is_infinite, np.inf, upper_loads - np.where(is_infinite, 0.0, mean_loads))
+    # The models of slices neglect the ends; their error is not estimated.
+    comment = {"comment": "from the stated errors of the pressures; NaN for the models of slices"}
+    variables: dict[str, tuple[object, ...]] = {}
+    for name, dims, values, error in (
+        ("reference_life", ("model",), lives, lives - lower_lives),
+        ("raceway_life", ("model", "raceway"), raceway_lives, raceway_lives - lower_raceway_lives),
+        ("lamina_equivalent_load", ("model", "raceway", "slice"), mean_loads, load_errors),
+        ("stress_riser", ("model", "raceway", "roller", "slice"), risers, riser_errors),
+    ):
+        variables |= {name: (dims, values), f"{name}_error": (dims, error, comment)}
     result = xr.Dataset(
-        {
-            "reference_life": ("model", lives),
-            "reference_life_error": ("model", lives - lower_lives),
-            "raceway_life": (("model", "raceway"), raceway_lives),
-            "raceway_life_error": (("model", "raceway"), raceway_lives - lower_raceway_lives),
-            "lamina_equivalent_load": (("model", "raceway", "slice"), mean_loads),
-            "lamina_equivalent_load_error": (
-                ("model", "raceway", "slice"),
-                np.where(is_infinite, np.inf, upper_loads - np.where(is_infinite, 0.0, mean_loads)),
-            ),
-            "stress_riser": (("model", "raceway", "roller", "slice"), risers),
-            "stress_riser_error": (("model", "raceway", "roller", "slice"), riser_errors),
-        },
+        variables,
         coords={
             "model": list(MODELS),
             "raceway": list(RACEWAYS),
             "roller": np.arange(1, loaded_count + 1),
             "slice": np.arange(1, lamina_count + 1),
         },
+        attrs={"turning": turning, "laminae": lamina_count},
     )
-    result.attrs = {"turning": turning, "laminae": lamina_count}
-    for name in ("reference_life", "raceway_life", "lamina_equivalent_load", "stress_riser"):
-        result[f"{name}_error"].attrs["comment"] = ERROR_COMMENT
     return describe(result, "basic reference rating life from laminae")
 
 
@@ -215,14 +207,9 @@ def _solve_roller_loads(case: Case, laminae: int, accuracy: float) -> FloatArray
     exact_result = solve(case, stresses=False, accuracy=accuracy)
     # The models have equal moments; their tilts differ by the compliance of the bodies.
     position = float(exact_result["load_position"]) if case.tilt else case.load_position
-    infinite = replace(
-        case,
-        body=HalfSpace(material=case.body.material),
-        roller=replace(case.roller, ends="none"),
-        end_distance=case.roller_start,
-        tilt=0.0,
-        load_position=position,
-    )
+    body, roller = HalfSpace(material=case.body.material), replace(case.roller, ends="none")
+    start = case.roller_start
+    infinite = replace(case, body=body, roller=roller, end_distance=start, tilt=0.0, load_position=position)
     half_space = solve(infinite, stresses=False, accuracy=accuracy)
     tables, common_errors = zip(
         *(lamina_loads(result, model, laminae) for model, result in ((infinite, half_space), (case, exact_result))),

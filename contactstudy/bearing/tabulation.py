@@ -70,12 +70,8 @@ def _name_unsolvable_contact(load: float, tilt: float) -> Iterator[None]:
     try:
         yield
     except (InvalidInputError, WindowError) as error:
-        raise InvalidInputError(
-            "tilts, approaches",
-            f"a tilt of {tilt:g} rad under {load:.3g} N",
-            "such that the contact is solved",
-            f"take smaller tilts or larger approaches ({error})",
-        ) from error
+        value, hint = f"a tilt of {tilt:g} rad under {load:.3g} N", f"take smaller tilts or larger approaches ({error})"
+        raise InvalidInputError("tilts, approaches", value, "such that the contact is solved", hint) from error
 
 
 def solve_nodes(solver: ContactSolver, approaches: FloatArray, tilts: FloatArray) -> Nodes:
@@ -190,7 +186,7 @@ def contact_law(
         raise InvalidInputError("case.load_position", case.load_position, "None: the roller takes the law's tilts")
     if case.coupled:
         raise InvalidInputError("case.coupled", True, "False: with coupled friction the load derives from no energy")
-    checked_tilts = _check_increasing("tilts", numbers_in_si("tilts", tilts, "rad"), "radians")
+    checked_tilts = checks.increasing("tilts", numbers_in_si("tilts", tilts, "rad"), "radians", MIN_NODES)
     if np.abs(checked_tilts).max() > MAX_TILT:
         raise InvalidInputError("tilts", tilts, f"small angles, at most {MAX_TILT} radians")
     solver = ContactSolver(case, checks.positive("accuracy", accuracy), checks.positive("tolerance", tolerance))
@@ -198,20 +194,13 @@ def contact_law(
         low, high = (solver.solve_at_load(factor * case.normal_load, 0.0).approach for factor in LOAD_RANGE)
         checked_approaches = np.geomspace(low, high, APPROACH_COUNT)
     else:
-        checked_approaches = _check_increasing("approaches", numbers_in_si("approaches", approaches, "m"), "metres")
+        numbers = numbers_in_si("approaches", approaches, "m")
+        checked_approaches = checks.increasing("approaches", numbers, "metres", MIN_NODES)
         checks.positive("approaches", float(checked_approaches[0]), "metres")
     nodes = solve_nodes(solver, checked_approaches, checked_tilts)
     length = case.contact_length
     fit_errors, cell_errors = estimate_fit_errors(nodes, length), estimate_discretisation_errors(solver, nodes)
     return ContactLaw(label_law(solver, nodes, fit_errors + cell_errors[:, None, None]))
-
-
-def _check_increasing(name: str, values: object, unit: str) -> FloatArray:
-    """Return increasing numbers; raise for too few."""
-    numbers = checks.coordinates(name, values, unit)
-    if numbers.size < MIN_NODES or (np.diff(numbers) <= 0).any():
-        raise InvalidInputError(name, numbers.tolist(), f"{MIN_NODES} or more increasing numbers ({unit})")
-    return numbers
 
 
 def label_law(solver: ContactSolver, nodes: Nodes, errors: FloatArray) -> xr.Dataset:

@@ -6,6 +6,7 @@ import logging
 import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import product
 from types import MappingProxyType
 
 import numpy as np
@@ -39,20 +40,6 @@ REMEDY = (
 
 
 @dataclass(frozen=True, eq=False)
-class Range:
-    """Range of a parameter, mapped to fractions from 0 to 1."""
-
-    low: float  # if positive, equal steps of the fraction are equal ratios
-    high: float
-
-    def parameter_at(self, fraction: float) -> float:
-        """Return the parameter at a fraction of the range."""
-        ratio = self.low > 0
-        value = self.low * (self.high / self.low) ** fraction if ratio else self.low + (self.high - self.low) * fraction
-        return float(np.clip(value, self.low, self.high))
-
-
-@dataclass(frozen=True, eq=False)
 class Design:
     """Evaluated design."""
 
@@ -80,7 +67,7 @@ class Evaluations:
 
     cases: list[Case]
     profile: Callable[..., Profile]
-    ranges: dict[str, Range]
+    ranges: dict[str, tuple[float, float]]  # low, if positive with equal ratios for equal steps of the fraction; high
     measure: Measure
     accuracy: float  # of the contacts; relative error of a measure without an error
     settings: Mapping[str, object]  # further arguments of solve
@@ -99,28 +86,24 @@ class Evaluations:
         """Design of the least measure."""
         return min(self.designs, key=lambda design: design.value)
 
-    def find_earlier(self, fractions: FloatArray) -> Design | None:
-        """Return an earlier design at the fractions of the ranges, or None."""
-        return next(
-            (design for design in self.designs if np.abs(design.fractions - fractions).max() <= MIN_DIFFERENCE), None
-        )
-
     def __call__(self, fractions: FloatArray) -> Design:
-        """Return the design at the fractions of the ranges."""
+        """Return the design at the fractions of the ranges, solved unless an earlier one has the same fractions."""
         clipped = np.clip(np.asarray(fractions, dtype=np.float64), 0.0, 1.0)
-        design = self.find_earlier(clipped)
-        if design is None:
-            design = self._solve_design(clipped)
-            self.designs.append(design)
-            LOGGER.info("%s: %.5g", self.parameters(clipped), design.value)
+        for earlier in self.designs:
+            if np.abs(earlier.fractions - clipped).max() <= MIN_DIFFERENCE:
+                return earlier
+        design = self._solve_design(clipped)
+        self.designs.append(design)
+        LOGGER.info("%s: %.5g", self.parameters(clipped), design.value)
         return design
 
     def parameters(self, fractions: FloatArray) -> dict[str, float]:
         """Return the parameters at fractions of their ranges."""
-        return {
-            name: self.ranges[name].parameter_at(float(fraction))
-            for name, fraction in zip(self.ranges, fractions, strict=True)
-        }
+        parameters = {}
+        for (name, (low, high)), fraction in zip(self.ranges.items(), fractions.tolist(), strict=True):
+            value = low * (high / low) ** fraction if low > 0 else low + (high - low) * fraction
+            parameters[name] = float(np.clip(value, low, high))
+        return parameters
 
     def _solve_design(self, fractions: FloatArray) -> Design:
         """Solve every case of a design."""
@@ -199,8 +182,8 @@ def search_optimum(evaluations: Evaluations) -> Design:
     if not np.isfinite(start_design.value):
         if evaluations.last_error is not None:
             raise evaluations.last_error
-        bounds = {name: (limits.low, limits.high) for name, limits in evaluations.ranges.items()}
-        raise InvalidInputError("bounds", bounds, "such that the measure is finite somewhere within them", REMEDY)
+        allowed = "such that the measure is finite somewhere within them"
+        raise InvalidInputError("bounds", evaluations.ranges, allowed, REMEDY)
     # The search replaces an infinite measure by 1e3 times the least measure.
     maximum = 1e3 * max(abs(start_design.value), np.finfo(np.float64).tiny)
 
@@ -213,32 +196,26 @@ def search_optimum(evaluations: Evaluations) -> Design:
         simplex = np.tile(start_design.fractions, (parameters + 1, 1))
         # The simplex points away from the nearer bound, within the range.
         simplex[1:] += np.diag(np.where(start_design.fractions > 0.5, -SIMPLEX_SIZE, SIMPLEX_SIZE))
-        options = {
-            "initial_simplex": simplex,
-            "xatol": OPTIMUM_TOLERANCE,
-            "fatol": start_design.error,
-            "maxfev": budget,
-        }
-        optimize.minimize(
-            finite_measure,
-            start_design.fractions,
-            method="Nelder-Mead",
-            bounds=[(0.0, 1.0)] * parameters,
-            options=options,
-        )
+        tolerances = {"xatol": OPTIMUM_TOLERANCE, "fatol": start_design.error}
+        options = tolerances | {"initial_simplex": simplex, "maxfev": budget}
+        start, bounds = start_design.fractions, [(0.0, 1.0)] * parameters
+        optimize.minimize(finite_measure, start, method="Nelder-Mead", bounds=bounds, options=options)
     elif budget > 1:  # Brent's method, between the neighbours of the best design; the method takes two or more designs.
-        start, step = float(start_design.fractions[0]), 1 / (SCAN_COUNT - 1)
-        bracket = (max(start - step, 0.0), min(start + step, 1.0))
+        middle, step = float(start_design.fractions[0]), 1 / (SCAN_COUNT - 1)
+        bracket = (max(middle - step, 0.0), min(middle + step, 1.0))
         options = {"xatol": OPTIMUM_TOLERANCE, "maxiter": budget}
         optimize.minimize_scalar(finite_measure, bounds=bracket, method="bounded", options=options)
     return evaluations.best
 
 
-def find_flat_range(evaluations: Evaluations, best: Design, parameter: int) -> tuple[float, float]:
-    """Return the fractions between which a parameter alone changes the measure by less than the errors."""
-    side_count = 2 * (len(evaluations.ranges) - parameter)
-    low = _find_flat_end(evaluations, best, parameter, 0.0, limit=evaluations.remaining // side_count)
-    return low, _find_flat_end(evaluations, best, parameter, 1.0, limit=evaluations.remaining // (side_count - 1))
+def find_flat_ranges(evaluations: Evaluations, best: Design) -> FloatArray:
+    """Return the fractions (2, parameter) between which a parameter alone changes the measure less than the errors."""
+    sides = list(product(range(len(evaluations.ranges)), (0.0, 1.0)))
+    ends = [
+        _find_flat_end(evaluations, best, *side, limit=evaluations.remaining // (len(sides) - index))
+        for index, side in enumerate(sides)
+    ]
+    return np.reshape(ends, (-1, 2)).T
 
 
 def _find_flat_end(evaluations: Evaluations, best: Design, parameter: int, bound: float, *, limit: int) -> float:
@@ -247,37 +224,35 @@ def _find_flat_end(evaluations: Evaluations, best: Design, parameter: int, bound
     if abs(origin - bound) <= MIN_DIFFERENCE:
         return bound
 
-    def fractions_with(fraction: float) -> FloatArray:
-        fractions = best.fractions.copy()
-        fractions[parameter] = fraction
-        return fractions
+    def line() -> list[float]:
+        """Fractions of the designs that differ from the best in this parameter alone."""
+        fractions = np.array([design.fractions for design in evaluations.designs])
+        on_line = (np.abs(np.delete(fractions - best.fractions, parameter, axis=1)) <= MIN_DIFFERENCE).all(axis=1)
+        return [float(fraction) for fraction in fractions[on_line, parameter]]
 
     def excess(fraction: float) -> float:
         """Difference of a design from the best beyond the errors of both."""
-        design = evaluations(fractions_with(fraction))
+        fractions = best.fractions.copy()
+        fractions[parameter] = fraction
+        design = evaluations(fractions)
         if not np.isfinite(design.value):
             return MAX_EXCESS_RATIO * best.error
         return float(min(design.value - best.value - design.error - best.error, MAX_EXCESS_RATIO * best.error))
 
     # Earlier designs on this line, outwards from the best; the first worse design ends the flat range.
-    flat_end, worse_end = origin, None
-    for fraction in sorted(
-        _fractions_on_line(evaluations, best, parameter), key=lambda fraction: abs(fraction - origin)
-    ):
-        if (fraction - origin) * (bound - origin) <= 0:
-            continue
+    flat_end, worse_end = origin, bound
+    earlier = [fraction for fraction in line() if (fraction - origin) * (bound - origin) > 0]
+    for fraction in sorted(earlier, key=lambda fraction: abs(fraction - origin)):
         if excess(fraction) > 0:
             worse_end = fraction
             break
         flat_end = fraction
-    if worse_end is None:
-        if evaluations.find_earlier(fractions_with(bound)) is None:
-            if limit < 1:
-                return flat_end
-            limit -= 1
+    else:
+        if abs(flat_end - bound) <= MIN_DIFFERENCE or limit < 1:
+            return flat_end
+        limit -= 1
         if excess(bound) <= 0:
             return bound
-        worse_end = bound
     if abs(worse_end - flat_end) <= FLAT_RANGE_TOLERANCE or limit < 1:
         return flat_end
     flat_limit, state = optimize.brentq(
@@ -286,19 +261,8 @@ def _find_flat_end(evaluations: Evaluations, best: Design, parameter: int, bound
     if state.converged:
         return float(flat_limit)
     low, high = sorted((flat_end, worse_end))
-    inner = [fraction for fraction in _fractions_on_line(evaluations, best, parameter) if low <= fraction <= high]
-    return max((fraction for fraction in inner if excess(fraction) <= 0), key=lambda fraction: abs(fraction - origin))
-
-
-def _fractions_on_line(evaluations: Evaluations, best: Design, parameter: int) -> list[float]:
-    """Fractions of the designs that differ from the best in this parameter alone."""
-    others = np.delete(np.array([design.fractions for design in evaluations.designs]), parameter, axis=1)
-    on_line = (np.abs(others - np.delete(best.fractions, parameter)) <= MIN_DIFFERENCE).all(axis=1)
-    return [
-        float(design.fractions[parameter])
-        for design, is_on_line in zip(evaluations.designs, on_line, strict=True)
-        if is_on_line
-    ]
+    inner = [fraction for fraction in line() if low <= fraction <= high and excess(fraction) <= 0]
+    return max(inner, key=lambda fraction: abs(fraction - origin))
 
 
 BOUND_TOLERANCE = 0.01  # Fraction of a range between an optimum at a bound and the bound
@@ -388,7 +352,7 @@ def best_profile(
         low, high = checks.coordinates(f"bounds[{name!r}]", pair, "SI")[[0, -1]] if np.size(pair) == 2 else (0.0, 0.0)
         if not low < high:
             raise InvalidInputError(f"bounds[{name!r}]", pair, "two numbers, the least and the largest value")
-        ranges[str(name)] = Range(float(low), float(high))
+        ranges[str(name)] = float(low), float(high)
     designs = Evaluations(
         cases=_create_cases(case, loads, max_pressures, tilts),
         profile=profile,
@@ -399,17 +363,13 @@ def best_profile(
         max_designs=checks.count("evaluations", evaluations, minimum=min_designs(len(ranges))),
     )
     best = search_optimum(designs)
-    ends = [find_flat_range(designs, best, index) for index in range(len(ranges))]
-    result = _label_designs(designs, ends)
+    result = _label_designs(designs, *find_flat_ranges(designs, best))
     for name in result["parameter"].values[result["at_bound"].values]:
         column = result.sel(parameter=name)
         value, low, high = (float(column[key]) for key in ("optimum", "lower_bound", "upper_bound"))
-        warnings.warn(
-            f"the best {name} = {value:.4g} lies at a bound ({low:g} to {high:g}); widen the bounds if "
-            "such a roller can be manufactured",
-            BoundWarning,
-            stacklevel=2,
-        )
+        message = f"the best {name} = {value:.4g} lies at a bound ({low:g} to {high:g})"
+        hint = "widen the bounds if such a roller can be manufactured"
+        warnings.warn(f"{message}; {hint}", BoundWarning, stacklevel=2)
     return result
 
 
@@ -433,30 +393,27 @@ def _create_cases(case: Case, loads: object, pressures: object, tilts: object) -
     return [replace(variant, tilt=tilt) for variant in variants or [case] for tilt in angles]
 
 
-def _label_designs(designs: Evaluations, ends: list[tuple[float, float]]) -> xr.Dataset:
-    """Label the optimum and every design."""
-    best, evaluated_designs = designs.best, designs.designs
-    names, ranges = list(designs.ranges), list(designs.ranges.values())
-    flat_ranges = [
-        (limits.parameter_at(min(low, float(fraction))), limits.parameter_at(max(high, float(fraction))))
-        for limits, (low, high), fraction in zip(ranges, ends, best.fractions, strict=True)
-    ]
+def _label_designs(designs: Evaluations, flat_from: FloatArray, flat_to: FloatArray) -> xr.Dataset:
+    """Label the optimum, the ends of the flat ranges (fractions), and every design."""
+    best, evaluated_designs, names = designs.best, designs.designs, list(designs.ranges)
+    optimum = best.fractions
+    lower_bounds, upper_bounds = np.transpose(list(designs.ranges.values()))
     # An entirely flat range does not bound the optimum.
-    at_bound = [
-        min(fraction, 1 - fraction) < BOUND_TOLERANCE and not (low < BOUND_TOLERANCE and high > 1 - BOUND_TOLERANCE)
-        for (low, high), fraction in zip(ends, best.fractions, strict=True)
-    ]
-    parameters = [list(designs.parameters(design.fractions).values()) for design in evaluated_designs]
+    is_flat = (flat_from < BOUND_TOLERANCE) & (flat_to > 1 - BOUND_TOLERANCE)
+
+    def parameters(fractions: FloatArray) -> list[float]:
+        return list(designs.parameters(fractions).values())
+
     arrays: dict[str, tuple[object, object]] = {
-        "optimum": ("parameter", list(designs.parameters(best.fractions).values())),
-        "flat_from": ("parameter", [low for low, _ in flat_ranges]),
-        "flat_to": ("parameter", [high for _, high in flat_ranges]),
-        "lower_bound": ("parameter", [limits.low for limits in ranges]),
-        "upper_bound": ("parameter", [limits.high for limits in ranges]),
-        "at_bound": ("parameter", at_bound),
+        "optimum": ("parameter", parameters(optimum)),
+        "flat_from": ("parameter", parameters(np.minimum(flat_from, optimum))),
+        "flat_to": ("parameter", parameters(np.maximum(flat_to, optimum))),
+        "lower_bound": ("parameter", lower_bounds),
+        "upper_bound": ("parameter", upper_bounds),
+        "at_bound": ("parameter", (np.minimum(optimum, 1 - optimum) < BOUND_TOLERANCE) & ~is_flat),
         "measure": ((), best.value),
         "measure_error": ((), best.error),
-        "design": (("evaluation", "parameter"), parameters),
+        "design": (("evaluation", "parameter"), [parameters(design.fractions) for design in evaluated_designs]),
         "design_measure": ("evaluation", [design.value for design in evaluated_designs]),
         "design_measure_error": ("evaluation", [design.error for design in evaluated_designs]),
         "case_measure": (("evaluation", "case"), [design.values for design in evaluated_designs]),

@@ -6,6 +6,7 @@ negligible stress, and without an end to a distance of little stress.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -33,10 +34,7 @@ XX, YY, ZZ, XY, XZ, YZ = range(6)  # components in the order of every array of s
 
 def grow_edges(start: float, stop: float, first_width: float) -> FloatArray:
     """Edges from `start` (left out) to `stop`; the widths of the elements grow from about `first_width`."""
-    distance = abs(stop - start)
-    if distance <= 0:
-        return np.zeros(0)
-    count = max(1, int(np.ceil(np.log1p(distance * (GROWTH - 1) / first_width) / np.log(GROWTH))))
+    count = max(1, int(np.ceil(np.log1p(abs(stop - start) * (GROWTH - 1) / first_width) / np.log(GROWTH))))
     # The widths are shrunk a little, such that the last element ends at `stop`.
     edges = start + (stop - start) * np.cumsum(GROWTH ** np.arange(count)) / (GROWTH ** np.arange(count)).sum()
     edges[-1] = stop
@@ -76,50 +74,34 @@ class EigenstrainBody:
                 grade_to_face(edge, end, width) if is_free else grow_edges(edge, edge + sign * far_distance, width)
             )
         edges_above = grade_to_face(z[0], 0.0, z[1] - z[0])[::-1]
-        bottom = z[-1] + (min(DEEP_LENGTHS * length, far_distance) if np.isfinite(length) else far_distance)
-        edges_below = grow_edges(z[-1], bottom, z[-1] - z[-2])
+        edges_below = grow_edges(z[-1], z[-1] + min(DEEP_LENGTHS * length, far_distance), z[-1] - z[-2])
         return np.concatenate([side_edges[0][::-1], x, side_edges[1]]), np.concatenate([edges_above, z, edges_below])
 
     @cached_property
-    def airy_function(self) -> StressFunction:
-        """Stress function of the stresses xx, zz and xz."""
-        x, z = (Splines(edges, self.degree, continuity=1, vanishing_orders=2) for edges in self.elements)
-        return StressFunction(x, z)
+    def functions(self) -> tuple[StressFunction, StressFunction]:
+        """Airy's function, of the stresses xx, zz and xz, and the antiplane function, of the stresses xy and yz."""
+        airy = (Splines(edges, self.degree, continuity=1, vanishing_orders=2) for edges in self.elements)
+        antiplane = (Splines(edges, self.degree - 1, continuity=0, vanishing_orders=1) for edges in self.elements)
+        return StressFunction(*airy), StressFunction(*antiplane)
 
     @cached_property
-    def antiplane_function(self) -> StressFunction:
-        """Antiplane stress function, of the stresses xy and yz."""
-        x, z = (Splines(edges, self.degree - 1, continuity=0, vanishing_orders=1) for edges in self.elements)
-        return StressFunction(x, z)
-
-    @cached_property
-    def airy_integrals(self) -> Factors:
-        """Integrals of the Airy function and of its derivatives over the cells."""
-        return self.airy_function.integrals(self.x_edges, self.z_edges)
-
-    @cached_property
-    def antiplane_integrals(self) -> Factors:
-        """Integrals of the antiplane stress function and of its slopes over the cells."""
-        return self.antiplane_function.integrals(self.x_edges, self.z_edges)
+    def integrals(self) -> tuple[Factors, Factors]:
+        """Integrals of both functions and of their derivatives over the cells."""
+        airy, antiplane = (function.integrals(self.x_edges, self.z_edges) for function in self.functions)
+        return airy, antiplane
 
     def solve(self, eigenstrain: FloatArray) -> EigenstrainSolution:
         """Solve for the stress functions of eigenstrains (6, cell x, cell z): tensor components xx, ..., yz."""
-        nu, young = self.material.poisson, self.material.young
-        e = eigenstrain
-        x, z = self.airy_integrals
-        right_hand_side = x[0] @ (e[XX] + nu * e[YY]) @ z[2].T + x[2] @ (e[ZZ] + nu * e[YY]) @ z[0].T  # eq. (503)
-        right_hand_side -= 2 * x[1] @ e[XZ] @ z[1].T
-        airy = self.airy_function.solve(-young / (1 - nu**2) * right_hand_side.reshape(-1, 1)).reshape(
-            right_hand_side.shape
-        )
-        antiplane: FloatArray = np.zeros((self.antiplane_function.x.count, self.antiplane_function.z.count))
+        e, nu = eigenstrain, self.material.poisson
+        (airy_function, antiplane_function), ((x, z), (antiplane_x, antiplane_z)) = self.functions, self.integrals
+        loads = x[0] @ (e[XX] + nu * e[YY]) @ z[2].T + x[2] @ (e[ZZ] + nu * e[YY]) @ z[0].T  # eq. (503)
+        loads -= 2 * x[1] @ e[XZ] @ z[1].T
+        airy = airy_function.solve(-self.material.plane_strain_modulus * loads.reshape(-1, 1)).reshape(loads.shape)
+        loads = 2 * (antiplane_x[0] @ e[XY] @ antiplane_z[1].T - antiplane_x[1] @ e[YZ] @ antiplane_z[0].T)
+        antiplane = np.zeros_like(loads)
         if e[[XY, YZ]].any():
-            x, z = self.antiplane_integrals
-            right_hand_side = 2 * (x[0] @ e[XY] @ z[1].T - x[1] @ e[YZ] @ z[0].T)
-            antiplane = self.antiplane_function.solve(
-                -self.material.shear_modulus * right_hand_side.reshape(-1, 1)
-            ).reshape(right_hand_side.shape)
-        return EigenstrainSolution(self, e, airy, antiplane)
+            antiplane = antiplane_function.solve(-self.material.shear_modulus * loads.reshape(-1, 1))
+        return EigenstrainSolution(self, e, airy, antiplane.reshape(loads.shape))
 
 
 @dataclass(frozen=True, eq=False)
@@ -133,8 +115,8 @@ class EigenstrainSolution:
 
     def stresses(self, x: FloatArray, z: FloatArray) -> FloatArray:
         """Residual stresses at the tensor product of positions: array (6, x, z), xx, yy, zz, xy, xz, yz in Pa."""
-        functions = self.body.airy_function.values(x, z), self.body.antiplane_function.values(x, z)
-        return self._assemble_stresses(*functions, self.eigenstrain_at(x, z))
+        airy, antiplane = (function.values(x, z) for function in self.body.functions)
+        return self._assemble_stresses(airy, antiplane, self.eigenstrain_at(x, z))
 
     def cell_averages(self) -> FloatArray:
         """Residual stresses averaged over the cells: array (6, cell x, cell z), Pa."""
@@ -142,7 +124,7 @@ class EigenstrainSolution:
         widths, heights = np.diff(body.x_edges)[:, None], np.diff(body.z_edges)[:, None]
         airy, antiplane = (
             ([matrix.T / widths for matrix in along_x], [matrix.T / heights for matrix in along_z])
-            for along_x, along_z in (body.airy_integrals, body.antiplane_integrals)
+            for along_x, along_z in body.integrals
         )
         return self._assemble_stresses(airy, antiplane, self.eigenstrain)
 
@@ -179,16 +161,15 @@ class EigenstrainSolution:
         nu, young = material.poisson, material.young
         z_elements = body.elements[1]
         depth_range = z_elements[[0, -1]]
-        airy_z = [body.airy_function.z.integrals(depth_range, d)[:, 0] for d in range(3)]
-        airy_x = [body.airy_function.x.values(x, d) for d in range(3)]
-        s_xx, s_zz = airy_x[0] @ self.airy @ airy_z[2], airy_x[2] @ self.airy @ airy_z[0]
+        airy, antiplane = body.functions
+        airy_z = [airy.z.integrals(depth_range, d)[:, 0] for d in (0, 2)]
+        s_xx, s_zz = airy.x.values(x) @ self.airy @ airy_z[1], airy.x.values(x, 2) @ self.airy @ airy_z[0]
         heights = np.diff(body.z_edges)
         centres = 0.5 * (body.z_edges[1:] + body.z_edges[:-1])
         e = self.eigenstrain_at(x, centres) @ heights
         # e_zz = (1 + nu) / E ((1 - nu) s_zz - nu s_xx) + eigenstrain zz + nu eigenstrain yy
         strain_zz = (1 + nu) / young * ((1 - nu) * s_zz - nu * s_xx) + e[ZZ] + nu * e[YY]
-        antiplane_z = body.antiplane_function.z.integrals(depth_range, 0)[:, 0]
-        s_yz = -body.antiplane_function.x.values(x, 1) @ self.antiplane @ antiplane_z
+        s_yz = -antiplane.x.values(x, 1) @ self.antiplane @ antiplane.z.integrals(depth_range, 0)[:, 0]
         return -strain_zz, -(s_yz / material.shear_modulus + 2 * e[YZ])
 
 
@@ -205,55 +186,42 @@ def _split_cells(edges: FloatArray, splits: int, max_width: float) -> FloatArray
 COLUMNS_PER_SOLUTION = 256  # Right-hand sides that are solved for at once. Speed.
 
 
-@dataclass(frozen=True, eq=False)
-class Influence:
-    """Residual stress averaged over cells, from eigenstrains that are uniform in the same cells."""
+def cell_influence(body: EigenstrainBody, along_x: IntArray, along_z: IntArray) -> Callable[[FloatArray], FloatArray]:
+    """Residual stresses (6, cell) of eigenstrains (6, cell), in the cells with these indices along x and along z."""
+    areas = np.diff(body.x_edges)[along_x] * np.diff(body.z_edges)[along_z]
 
-    poisson: float
-    young: float
-    airy_matrix: FloatArray  # (3 cells, 3 cells): stresses xx, zz, xz per eigenstrains xx + nu yy, zz + nu yy, xz
-    antiplane_matrix: FloatArray  # (2 cells, 2 cells): stresses xy, yz per eigenstrains xy, yz
+    def integrals_of(integrals: Factors, i: int, j: int) -> sparse.csc_array:
+        """Integrals of the functions' derivatives over each of the cells: array (function, cell)."""
+        x, z = (sparse.csc_array(m) for m in (integrals[0][i][:, along_x], integrals[1][j][:, along_z]))
+        products = [sparse.kron(x[:, [n]], z[:, [n]], format="csc") for n in range(along_x.size)]
+        return sparse.csc_array(sparse.hstack(products))
 
-    @classmethod
-    def of(cls, body: EigenstrainBody, along_x: IntArray, along_z: IntArray) -> Influence:
-        """Influence of the cells with these indices along x and along z on each other."""
-        areas = np.diff(body.x_edges)[along_x] * np.diff(body.z_edges)[along_z]
+    def influence_matrix(function: StressFunction, blocks: list[sparse.csc_array], factors: FloatArray) -> FloatArray:
+        """Cell averages of the stresses per eigenstrain times `factors`, over minus the modulus."""
+        stacked = sparse.csc_array(sparse.hstack(blocks))
+        averages = sparse.csr_array(stacked.T)
+        influence = np.empty((stacked.shape[1],) * 2)
+        for start in range(0, influence.shape[1], COLUMNS_PER_SOLUTION):
+            right_hand_sides = stacked[:, start : start + COLUMNS_PER_SOLUTION].toarray()
+            influence[:, start : start + COLUMNS_PER_SOLUTION] = averages @ function.solve(right_hand_sides)
+        return influence / np.tile(areas, len(blocks))[:, None] * np.repeat(factors, areas.size)
 
-        def integrals_of(integrals: Factors, i: int, j: int) -> sparse.csc_array:
-            """Integrals of the functions' derivatives over each of the cells: array (function, cell)."""
-            x, z = (sparse.csc_array(m) for m in (integrals[0][i][:, along_x], integrals[1][j][:, along_z]))
-            return sparse.csc_array(
-                sparse.hstack([sparse.kron(x[:, [n]], z[:, [n]], format="csc") for n in range(along_x.size)])
-            )
+    (airy_function, antiplane_function), (integrals, antiplane_integrals) = body.functions, body.integrals
+    airy = [integrals_of(integrals, 0, 2), integrals_of(integrals, 2, 0), -integrals_of(integrals, 1, 1)]
+    antiplane = [integrals_of(antiplane_integrals, 0, 1), -integrals_of(antiplane_integrals, 1, 0)]
+    nu, young = body.material.poisson, body.material.young
+    # Stresses xx, zz, xz per eigenstrains xx + nu yy, zz + nu yy, xz; stresses xy, yz per eigenstrains xy, yz
+    airy_matrix = influence_matrix(airy_function, airy, np.array([1.0, 1.0, 2.0]))
+    airy_matrix *= -body.material.plane_strain_modulus
+    antiplane_matrix = influence_matrix(antiplane_function, antiplane, np.array([2.0, 2.0]))
+    antiplane_matrix *= -body.material.shear_modulus
 
-        def influence_matrix(
-            function: StressFunction, blocks: list[sparse.csc_array], factors: FloatArray
-        ) -> FloatArray:
-            """Cell averages of the stresses per eigenstrain times `factors`, over minus the modulus."""
-            stacked = sparse.csc_array(sparse.hstack(blocks))
-            averages = sparse.csr_array(stacked.T)
-            influence = np.empty((stacked.shape[1],) * 2)
-            for start in range(0, influence.shape[1], COLUMNS_PER_SOLUTION):
-                right_hand_sides = stacked[:, start : start + COLUMNS_PER_SOLUTION].toarray()
-                influence[:, start : start + COLUMNS_PER_SOLUTION] = averages @ function.solve(right_hand_sides)
-            return influence / np.tile(areas, len(blocks))[:, None] * np.repeat(factors, areas.size)
-
-        integrals = body.airy_integrals
-        airy = [integrals_of(integrals, 0, 2), integrals_of(integrals, 2, 0), -integrals_of(integrals, 1, 1)]
-        airy_matrix = influence_matrix(body.airy_function, airy, np.array([1.0, 1.0, 2.0]))
-        integrals = body.antiplane_integrals
-        antiplane = [integrals_of(integrals, 0, 1), -integrals_of(integrals, 1, 0)]
-        antiplane_matrix = influence_matrix(body.antiplane_function, antiplane, np.array([2.0, 2.0]))
-        material = body.material
-        modulus = material.plane_strain_modulus
-        return cls(material.poisson, material.young, -modulus * airy_matrix, -material.shear_modulus * antiplane_matrix)
-
-    def stresses(self, eigenstrain: FloatArray) -> FloatArray:
-        """Residual stresses (6, cell) from eigenstrains (6, cell): xx, yy, zz, xy, xz, yz."""
-        e, nu = eigenstrain, self.poisson
+    def stresses(e: FloatArray) -> FloatArray:
         stress = np.empty_like(e)
         strain = np.concatenate([e[XX] + nu * e[YY], e[ZZ] + nu * e[YY], e[XZ]])
-        stress[[XX, ZZ, XZ]] = (self.airy_matrix @ strain).reshape(3, -1)
-        stress[[XY, YZ]] = (self.antiplane_matrix @ np.concatenate([e[XY], e[YZ]])).reshape(2, -1)
-        stress[YY] = nu * (stress[XX] + stress[ZZ]) - self.young * e[YY]
+        stress[[XX, ZZ, XZ]] = (airy_matrix @ strain).reshape(3, -1)
+        stress[[XY, YZ]] = (antiplane_matrix @ np.concatenate([e[XY], e[YZ]])).reshape(2, -1)
+        stress[YY] = nu * (stress[XX] + stress[ZZ]) - young * e[YY]
         return stress
+
+    return stresses

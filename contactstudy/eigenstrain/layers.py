@@ -22,21 +22,13 @@ from contactstudy.eigenstrain.body import DEGREE, FAR_DISTANCE, XX, XY, XZ, YY, 
 from contactstudy.eigenstrain.stress_function import Splines
 
 
-@dataclass(frozen=True, eq=False)
-class LayerInfluence:
-    """Influence of endless layers: strains along x and y are zero, the stresses zz, xz and yz are zero."""
-
-    poisson: float
-    young: float
-
-    def stresses(self, eigenstrain: FloatArray) -> FloatArray:
-        """Residual stresses (6, layer) from eigenstrains (6, layer)."""
-        e, nu = eigenstrain, self.poisson
-        stress = np.zeros_like(e)
-        modulus = self.young / (1 - nu**2)
-        stress[XX], stress[YY] = -modulus * (e[XX] + nu * e[YY]), -modulus * (e[YY] + nu * e[XX])
-        stress[XY] = -self.young / (1 + nu) * e[XY]
-        return stress
+def layer_stresses(material: Material, eigenstrain: FloatArray) -> FloatArray:
+    """Residual stresses (6, layer) from eigenstrains (6, layer) in endless layers, without strains along x and y."""
+    e, nu, modulus = eigenstrain, material.poisson, material.plane_strain_modulus
+    stress = np.zeros_like(e)
+    stress[XX], stress[YY] = -modulus * (e[XX] + nu * e[YY]), -modulus * (e[YY] + nu * e[XX])
+    stress[XY] = -2 * material.shear_modulus * e[XY]
+    return stress
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,29 +40,21 @@ class PeriodicLayers:
     positions: int  # number of positions along y
     step: float  # distance from one position to the next, metres; negative where y falls
 
-    @cached_property
-    def _waves(self) -> FloatArray:
-        """Wavenumbers along the path, from 0 on, 1/m."""
-        return np.asarray(2 * np.pi * np.fft.rfftfreq(self.positions, abs(self.step)))
-
-    @cached_property
-    def _elements(self) -> FloatArray:
-        """Edges of the elements over depth: the layers, and elements above and below."""
-        z = self.z_edges
-        above = grade_to_face(z[0], 0.0, z[1] - z[0])[::-1]
-        return np.concatenate([above, z, grow_edges(z[-1], FAR_DISTANCE * z[-1], z[-1] - z[-2])])
-
     def _matrices(self, degree: int, order: int) -> FloatArray:
         """Stresses (or their part over i) in the layers per eigenstrain, over minus the modulus, for every wave."""
-        splines = Splines(self._elements, degree, continuity=order - 1, vanishing_orders=order)
+        waves, z = 2 * np.pi * np.fft.rfftfreq(self.positions, abs(self.step)), self.z_edges
+        # The elements over depth: the layers, and elements above and below.
+        above = grade_to_face(z[0], 0.0, z[1] - z[0])[::-1]
+        elements = np.concatenate([above, z, grow_edges(z[-1], FAR_DISTANCE * z[-1], z[-1] - z[-2])])
+        splines = Splines(elements, degree, continuity=order - 1, vanishing_orders=order)
         products = [splines.products(derivative).toarray() for derivative in range(order + 1)]
-        overlaps = [splines.integrals(self.z_edges, derivative) for derivative in range(order + 1)]
-        heights = np.tile(np.diff(self.z_edges), order + 1)
-        matrices = np.zeros((self._waves.size, heights.size, heights.size))
+        overlaps = [splines.integrals(z, derivative) for derivative in range(order + 1)]
+        heights = np.tile(np.diff(z), order + 1)
+        matrices = np.zeros((waves.size, heights.size, heights.size))
         # Without a change along y only strains in the plane of the layers are suppressed.
-        layer_indices = np.arange(self.z_edges.size - 1)
+        layer_indices = np.arange(z.size - 1)
         matrices[0, layer_indices, layer_indices] = 1.0 if order == 2 else 2.0
-        for wave_index, k in enumerate(self._waves[1:], 1):
+        for wave_index, k in enumerate(waves[1:], 1):
             if order == 2:  # yy, zz, yz
                 energy = products[2] + 2 * k**2 * products[1] + k**4 * products[0]  # eq. (504)
                 integrals = np.concatenate([overlaps[2], -(k**2) * overlaps[0], -k * overlaps[1]], axis=1)
@@ -96,9 +80,8 @@ class PeriodicLayers:
         """Residual stresses (6, position, column, layer) from eigenstrains of this shape; columns are independent."""
         e, nu = eigenstrain, self.material.poisson
         stress = np.zeros_like(e)
-        stress[[YY, ZZ, YZ]] = self._apply(
-            self._airy_matrices, np.stack([e[YY] + nu * e[XX], e[ZZ] + nu * e[XX], e[YZ]])
-        )
+        in_plane = np.stack([e[YY] + nu * e[XX], e[ZZ] + nu * e[XX], e[YZ]])
+        stress[[YY, ZZ, YZ]] = self._apply(self._airy_matrices, in_plane)
         stress[XX] = nu * (stress[YY] + stress[ZZ]) - self.material.young * e[XX]
         if e[[XY, XZ]].any():
             stress[[XY, XZ]] = self._apply(self._antiplane_matrices, e[[XY, XZ]])

@@ -42,11 +42,9 @@ class Splines:
 
     @cached_property
     def _knots(self) -> FloatArray:
-        first_edge, inner_edges, last_edge = self.edges[0], self.edges[1:-1], self.edges[-1]
-        repeats = np.ones(self.degree + 1)
-        return np.concatenate(
-            [first_edge * repeats, np.repeat(inner_edges, self.degree - self.continuity), last_edge * repeats]
-        )
+        repeats = np.full(self.edges.size, self.degree - self.continuity)
+        repeats[[0, -1]] = self.degree + 1
+        return np.repeat(self.edges, repeats)
 
     def values(self, points: FloatArray, derivative: int = 0) -> FloatArray:
         """Functions, or a derivative of them, at points: array (point, function); on an edge of the right element."""
@@ -77,6 +75,10 @@ class Splines:
         return np.asarray(np.diff(sums[elements], axis=0).T)
 
 
+# Weights of the squares of derivatives (along x, along z) in the energy, by the number of vanishing orders
+ENERGY_WEIGHTS = {2: {(2, 0): 1.0, (0, 2): 1.0, (1, 1): 2.0}, 1: {(1, 0): 1.0, (0, 1): 1.0}}
+
+
 @dataclass(frozen=True, eq=False)
 class StressFunction:
     """Products of splines along x and z, and their energy."""
@@ -87,19 +89,12 @@ class StressFunction:
     @cached_property
     def _factorisation(self) -> tuple[sparse.linalg.SuperLU, FloatArray]:
         """Factors of the energy's matrix, and the scale of each function with which the function's energy is 1."""
-        products = {(i, j): sparse.kron(self.x.products(i), self.z.products(j)) for i, j in self._energy_weights}
-        energy = sum(weight * products[orders] for orders, weight in self._energy_weights.items())
+        weights = ENERGY_WEIGHTS[self.x.vanishing_orders]
+        energy = sum(weight * sparse.kron(self.x.products(i), self.z.products(j)) for (i, j), weight in weights.items())
         scale = 1 / np.sqrt(energy.diagonal())
         scaled = sparse.csc_array(sparse.diags_array(scale) @ energy @ sparse.diags_array(scale))
         factor = splu(scaled, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
         return factor, scale
-
-    @property
-    def _energy_weights(self) -> dict[tuple[int, int], float]:
-        """Weight of the square of each derivative (along x, along z) in the energy."""
-        if self.x.vanishing_orders == 2:
-            return {(2, 0): 1.0, (0, 2): 1.0, (1, 1): 2.0}
-        return {(1, 0): 1.0, (0, 1): 1.0}
 
     def values(self, x: FloatArray, z: FloatArray) -> Factors:
         """Functions and their derivatives at positions: arrays (point, function)."""

@@ -18,6 +18,7 @@ from itertools import product
 
 import numpy as np
 import xarray as xr
+from scipy.linalg import block_diag, helmert
 
 from contactstudy import checks
 from contactstudy.analysis import positions
@@ -64,9 +65,8 @@ class FatigueLimits:
         for name in ("bending", "torsion"):
             checks.store(self, **{name: checks.positive(name, getattr(self, name), "Pa")})
         if not 0.5 <= self.ratio < 1:
-            raise InvalidInputError(
-                "torsion", self.torsion, f"between half of the limit in bending and that limit, {self.bending:g} Pa"
-            )
+            allowed = f"between half of the limit in bending and that limit, {self.bending:g} Pa"
+            raise InvalidInputError("torsion", self.torsion, allowed)
         warn_of_values(stacklevel=4, bending=self.bending, torsion=self.torsion)
 
     @property
@@ -85,11 +85,8 @@ class FatigueLimits:
         slope = 3 * self.ratio - np.sqrt(3)
         # A ratio of 1 / sqrt(3) gives zero up to rounding.
         if slope < -1e-9:
-            raise InvalidInputError(
-                "torsion",
-                self.torsion,
-                f"at least the limit in bending over sqrt(3), {self.bending / np.sqrt(3):g} Pa, for Crossland",
-            )
+            allowed = f"at least the limit in bending over sqrt(3), {self.bending / np.sqrt(3):g} Pa, for Crossland"
+            raise InvalidInputError("torsion", self.torsion, allowed)
         return float(max(slope, 0.0))
 
     @property
@@ -104,26 +101,9 @@ class FatigueLimits:
         return float(self.torsion * np.sqrt(1 + self.findley_slope**2))
 
 
-def _compute_deviators(history: Array) -> tuple[Array, Array]:
-    """Deviators (point, instant, 5) in axes that preserve the tensor's norm, and hydrostatic stresses."""
-    xx, yy, zz, xy, xz, yz = np.moveaxis(history, -1, 0)
-    hydrostatic = (xx + yy + zz) / 3
-    sqrt2 = np.sqrt(2.0)
-    # Ilyushin's axes: the sum of the squares is s:s.
-    vector = [np.sqrt(1.5) * (xx - hydrostatic), (yy - zz) / sqrt2, sqrt2 * xy, sqrt2 * xz, sqrt2 * yz]
-    return np.stack(vector, axis=-1), hydrostatic
-
-
-def _max_shear(deviator: Array) -> Array:
-    """Half of Tresca's stress of deviators in Ilyushin's axes."""
-    scaled_xx, difference, xy, xz, yz = np.moveaxis(deviator, -1, 0)
-    sqrt2 = np.sqrt(2.0)
-    xx = scaled_xx / np.sqrt(1.5)
-    yy, zz = 0.5 * (-xx + sqrt2 * difference), 0.5 * (-xx - sqrt2 * difference)
-    rows = [np.stack(row, axis=-1) for row in ((xx, xy / sqrt2, xz / sqrt2), (xy / sqrt2, yy, yz / sqrt2))]
-    rows.append(np.stack((xz / sqrt2, yz / sqrt2, zz), axis=-1))
-    principal = np.linalg.eigvalsh(np.stack(rows, axis=-2))
-    return np.asarray(0.5 * (principal[..., 2] - principal[..., 0]))
+# Ilyushin's axes (axis, component): the squared length of a deviator's five coordinates is s:s
+DEVIATOR_AXES = block_diag(helmert(3), np.sqrt(2.0) * np.eye(3))
+TENSOR = np.array([[0, 3, 4], [3, 1, 5], [4, 5, 2]])  # Indices of the six components in the tensor
 
 
 def _to_dataset(criterion: str, values: dict[str, xr.DataArray]) -> xr.Dataset:
@@ -173,9 +153,10 @@ def dang_van(stress: xr.Dataset, limits: FatigueLimits) -> xr.Dataset:
     tensor, rolling_dim = stack_history(stress)
 
     def criterion(history: Array) -> tuple[Array, ...]:
-        deviator, hydrostatic = _compute_deviators(history)
-        centre, _ = enclosing_balls(deviator)
-        shear = _max_shear(deviator - centre[:, None])
+        centre, _ = enclosing_balls(history @ DEVIATOR_AXES.T)
+        residual = centre @ np.linalg.pinv(DEVIATOR_AXES).T
+        principal = np.linalg.eigvalsh((history - residual[:, None])[..., TENSOR])
+        shear, hydrostatic = 0.5 * (principal[..., 2] - principal[..., 0]), history[..., :3].mean(axis=-1)
         damage = shear + limits.dang_van_slope * hydrostatic
         instant_index = damage.argmax(axis=1)[:, None]
         terms = [np.take_along_axis(values, instant_index, axis=1)[:, 0] for values in (damage, shear, hydrostatic)]
@@ -234,9 +215,8 @@ def crossland(stress: xr.Dataset, limits: FatigueLimits) -> xr.Dataset:
     slope = limits.crossland_slope
 
     def criterion(history: Array) -> tuple[Array, ...]:
-        deviator, hydrostatic = _compute_deviators(history)
-        _, radius = enclosing_balls(deviator)
-        return radius / np.sqrt(2.0), hydrostatic.max(axis=1)
+        _, radius = enclosing_balls(history @ DEVIATOR_AXES.T)
+        return radius / np.sqrt(2.0), history[..., :3].mean(axis=-1).max(axis=1)
 
     shear, hydrostatic = map_histories(criterion, stress, 2)
     damage = shear + slope * hydrostatic

@@ -28,21 +28,18 @@ def stack_history(stress: xr.Dataset) -> tuple[xr.DataArray, str]:
     """Six stress components, with rolling direction and component as last dimensions, and the former's name."""
     stress = require_in_si(stress, *STRESSES, argument="stress")
     rolling_dim = rolling_dimension(stress["tau_yz"])
-    tensor = xr.concat([stress[name] for name in STRESSES], dim=COMPONENT, coords="minimal", compat="override")
-    other_dims = [dim for dim in tensor.dims if dim not in (rolling_dim, COMPONENT)]
-    return tensor.transpose(*other_dims, rolling_dim, COMPONENT), rolling_dim
+    tensor = stress[list(STRESSES)].to_dataarray(COMPONENT).drop_vars(COMPONENT)
+    return tensor.transpose(..., rolling_dim, COMPONENT), rolling_dim
 
 
 def rolling_dimension(stress: xr.DataArray) -> str:
     """Name of the dimension along y of a stress, which must have at least three positions."""
     rolling_dim = dimension_along(stress, "y")
-    if stress.sizes[rolling_dim] < MIN_POSITIONS:
-        raise InvalidInputError(
-            f"stress.sizes[{rolling_dim!r}]",
-            stress.sizes[rolling_dim],
-            f"at least {MIN_POSITIONS}: the positions along y are the history",
-            "solve with y over the whole passage, for example from -3 to 3 half-widths",
-        )
+    size = stress.sizes[rolling_dim]
+    if size < MIN_POSITIONS:
+        allowed = f"at least {MIN_POSITIONS}: the positions along y are the history"
+        hint = "solve with y over the whole passage, for example from -3 to 3 half-widths"
+        raise InvalidInputError(f"stress.sizes[{rolling_dim!r}]", size, allowed, hint)
     return rolling_dim
 
 
@@ -129,10 +126,8 @@ def enclosing_balls(points: Array, heights: Array | None = None) -> tuple[Array,
     scale = np.sqrt((local**2).sum(axis=-1) + squares).max(axis=1)
     centre, radius = origin.copy(), np.zeros(len(points))
     open_paths = np.flatnonzero(scale > 0)
-    paths, squares = (
-        local[open_paths] / scale[open_paths, None, None],
-        squares[open_paths] / scale[open_paths, None] ** 2,
-    )
+    paths = local[open_paths] / scale[open_paths, None, None]
+    squares = squares[open_paths] / scale[open_paths, None] ** 2
     centres = paths[:, 0].copy()
     radii = np.sqrt(squares[:, 0])
     max_support = points.shape[-1] + 1
@@ -172,11 +167,10 @@ def _add_point(
     min_squared_radius = np.full(len(path), np.inf)
     centre, best_subset = np.zeros_like(new_point), np.zeros_like(is_present)
     for subset in product((False, True), repeat=subset_size):
-        mask = np.array(subset)
-        if mask.sum() >= max_support:  # more points than support a ball
+        mask, size = np.array(subset), sum(subset)
+        if size >= max_support:  # more points than support a ball
             continue
         # The circumcentre has equal distances from the new point and from the subset.
-        size = int(mask.sum())
         matrix = gram[:, mask][:, :, mask]
         regular = matrix + REGULARISATION * np.eye(size) * (1 + np.trace(matrix, axis1=1, axis2=2))[:, None, None]
         factors = np.linalg.solve(regular, 0.5 * square[:, mask][..., None])[..., 0] if size else square[:, mask]

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import TypeVar
 
 import numpy as np
 import xarray as xr
@@ -105,18 +104,16 @@ def relative_life(risk: xr.Dataset, reference: xr.Dataset, exponents: LifeExpone
     for name in ("theory", "fatigue_limit"):
         value, reference_value = (dataset["risk"].attrs.get(name) for dataset in (risk, reference))
         if value is not None is not reference_value and value != reference_value:
-            raise InvalidInputError(
-                "reference", f"{name} = {reference_value}", f"computed as risk was, {name} = {value}"
-            )
+            allowed = f"computed as risk was, {name} = {value}"
+            raise InvalidInputError("reference", f"{name} = {reference_value}", allowed)
     risks, references = risk["risk"], reference["risk"]
     # Without risk the life is infinite, unless the reference has no risk.
     ratio = (references / risks.where(risks > 0)).where((risks != 0) | (references == 0), np.inf)
     life = name_array("relative_life", ratio ** (1 / exponents.weibull))
     if not all("risk_error" in dataset for dataset in (risk, reference)):
         return life.assign_attrs({ERROR_KIND: NOT_ESTIMATED})
-    relative_error, reference_error = (
-        result["risk_error"] / result["risk"].where(result["risk"] > 0) for result in (risk, reference)
-    )
+    relative_error = risk["risk_error"] / risks.where(risks > 0)
+    reference_error = reference["risk_error"] / references.where(references > 0)
     # The longest life within the errors; infinite if the risk may be zero.
     max_factor = ((1 + reference_error) / (1 - relative_error).clip(0.0)) ** (1 / exponents.weibull)
     error = (life * (max_factor - 1)).reset_coords(drop=True)
@@ -124,11 +121,6 @@ def relative_life(risk: xr.Dataset, reference: xr.Dataset, exponents: LifeExpone
 
 
 MAX_TRUNCATED_RISK = 0.01  # Maximum fraction of the risk from sections with a truncated history or depth
-StressData = TypeVar("StressData", xr.Dataset, xr.DataArray)  # Stresses from which a risk is computed
-ERROR_ALONG_X_AND_Z = (
-    "of the positions along x and z alone, without the error of the positions along y and of the pressure"
-)
-ERROR_OF_POSITIONS = "from the distance of the positions alone: the result states no error of its pressure"
 
 
 def _depth_positions(stress: xr.DataArray) -> tuple[str, xr.DataArray]:
@@ -141,25 +133,24 @@ def _depth_positions(stress: xr.DataArray) -> tuple[str, xr.DataArray]:
 
 def _find_maximum(stress: Array, depth: Array) -> tuple[Array, Array]:
     """Largest stress over the depth and the depth of this maximum, by a parabola through the three nearest points."""
-    depth = np.broadcast_to(depth, stress.shape)
     finite_stress = np.where(np.isnan(stress), -np.inf, stress)
-    index = finite_stress.argmax(axis=-1)
-
-    def take(values: Array, step: int) -> Array:
-        column = np.clip(index + step, 0, values.shape[-1] - 1)[..., None]
-        return np.asarray(np.take_along_axis(values, column, axis=-1)[..., 0])
-
-    (z1, z2, z3), (s1, s2, s3) = ([take(values, step) for step in (-1, 0, 1)] for values in (depth, finite_stress))
+    index = finite_stress.argmax(axis=-1)[..., None]
+    columns = [np.clip(index + step, 0, stress.shape[-1] - 1) for step in (-1, 0, 1)]
+    z1, z2, z3 = (_take(np.broadcast_to(depth, stress.shape), column) for column in columns)
+    s1, s2, s3 = (_take(finite_stress, column) for column in columns)
     with np.errstate(divide="ignore", invalid="ignore"):
         slope_before, slope_after = (s2 - s1) / (z2 - z1), (s3 - s2) / (z3 - z2)
         curvature = (slope_after - slope_before) / (z3 - z1)
         position = 0.5 * (z1 + z2) - slope_before / (2 * curvature)
         maximum = s2 + (position - z2) * (slope_before + curvature * (position - z1))
     inside = np.isfinite(maximum) & (curvature < 0)
-    finite = np.isfinite(s2)
-    return np.where(finite, np.where(inside, maximum, s2), np.nan), np.where(
-        finite, np.where(inside, position, z2), np.nan
-    )
+    maximum, position = np.where(np.isfinite(s2), np.where(inside, (maximum, position), (s2, z2)), np.nan)
+    return maximum, position
+
+
+def _take(values: Array, index: IntArray) -> Array:
+    """Values at one index (..., 1) along the last axis."""
+    return np.asarray(np.take_along_axis(values, index, axis=-1)[..., 0])
 
 
 def _integrate(density: Array, position: Array) -> Array:
@@ -181,19 +172,16 @@ def _integrate_risk(
     x = dimension_along(density, "x")
     if density.sizes[x] < 2:
         raise InvalidInputError("stress", dict(density.sizes), "given at two or more positions along x")
-    density = density.compute()
     if (positions(density, "x").diff(x) <= 0).any():
         raise InvalidInputError("x", positions(density, "x").values, "increasing positions")
     risk = _sum_over_x(density)
     for name, mask in truncated.items():
         fraction = _sum_over_x(density.where(mask, 0.0)) / risk.where(risk > 0)
         if (fraction > MAX_TRUNCATED_RISK).any():
-            raise InvalidInputError(
-                "stress",
-                f"{name} in sections with {float(fraction.max()):.2g} of the risk",
-                f"largest inside; at most {MAX_TRUNCATED_RISK:g} of the risk may be cut off",
-                "solve with y over the whole passage, for example from -3 to 3 half-widths, and z from 0 to 2",
-            )
+            value = f"{name} in sections with {float(fraction.max()):.2g} of the risk"
+            allowed = f"largest inside; at most {MAX_TRUNCATED_RISK:g} of the risk may be cut off"
+            hint = "solve with y over the whole passage, for example from -3 to 3 half-widths, and z from 0 to 2"
+            raise InvalidInputError("stress", value, allowed, hint)
     return xr.Dataset(
         {
             "risk_density": label_points("risk_density", density).assign_attrs(units=exponents.units(1)),
@@ -205,13 +193,12 @@ def _integrate_risk(
 def _sum_over_x(density: xr.DataArray) -> xr.DataArray:
     """Integral of a density over x."""
     x = dimension_along(density, "x")
-    pair = density, positions(density, "x")
-    risk: xr.DataArray = xr.apply_ufunc(_integrate, *pair, input_core_dims=[[x], [x]], dask="allowed")
+    risk: xr.DataArray = xr.apply_ufunc(_integrate, density, positions(density, "x"), input_core_dims=[[x], [x]])
     return risk.reset_coords(drop=True)
 
 
 def _estimate_error(
-    data: StressData, field: xr.DataArray, risk: xr.DataArray, compute_risk: Callable[[StressData], xr.DataArray]
+    field: xr.DataArray, risk: xr.DataArray, compute_risk: Callable[[xr.DataArray], xr.DataArray]
 ) -> xr.DataArray:
     """Error of a risk: sum over the axes of the change with every second position; infinite with too few positions."""
     error = np.zeros(risk.shape)
@@ -222,9 +209,8 @@ def _estimate_error(
         # Every second position must leave at least three positions.
         if any(indices.size < 3 for indices in subsets):
             return xr.full_like(risk, np.inf)
-        error += np.max(
-            [np.abs(compute_risk(data.isel({dim: indices})).values - risk.values) for indices in subsets], axis=0
-        )
+        subset_risks = [compute_risk(field.isel({dim: indices})).values for indices in subsets]
+        error += np.abs(subset_risks - risk.values).max(axis=0)
     return risk.copy(data=error)
 
 
@@ -274,35 +260,30 @@ def lundberg_palmgren(stress: xr.Dataset, exponents: LifeExponents = ROLLER_BEAR
     stress = require_in_si(stress, "tau_yz", argument="stress")
     rolling_dim = rolling_dimension(stress["tau_yz"])
     shear = stress["tau_yz"].compute()  # once for all subsets of the positions
-    stress = stress.assign(tau_yz=shear)
-    amplitude, max_amplitude, depth = _shear_maximum(stress)
+    amplitude, max_amplitude, depth = _shear_maximum(shear)
     if ((max_amplitude > 0) & (depth <= 0)).any():
-        raise InvalidInputError(
-            "stress",
-            "orthogonal shear largest on the surface",
-            "largest below it",
-            "Lundberg and Palmgren's theory excludes such friction; use Ioannides and Harris'",
-        )
+        hint = "Lundberg and Palmgren's theory excludes such friction; use Ioannides and Harris'"
+        raise InvalidInputError("stress", "orthogonal shear largest on the surface", "largest below it", hint)
     depths, dim = positions(amplitude, "z"), dimension_along(amplitude, "z")
     y = positions(shear, "y")
     inner_shear = shear.where((y > y.min(rolling_dim)) & (y < y.max(rolling_dim)))
     inner_amplitude = 0.5 * (inner_shear.max(rolling_dim) - inner_shear.min(rolling_dim))
+    at_border = ((amplitude == amplitude.max(dim)) & (inner_amplitude < amplitude)).any(dim)
     truncated = {
         "orthogonal shear largest at the first or last depth": (depth <= depths.min(dim)) | (depth >= depths.max(dim)),
-        "orthogonal shear largest at the first or last y": (
-            (amplitude == amplitude.max(dim)) & (inner_amplitude < amplitude)
-        ).any(dim),
+        "orthogonal shear largest at the first or last y": at_border,
     }
     density = _shear_risk(max_amplitude, depth, exponents)
     result = _integrate_risk(density, exponents, {"theory": "Lundberg and Palmgren"}, truncated).assign(
-        shear_amplitude=label_points("shear_amplitude", max_amplitude.compute()),
-        shear_depth=label_points("shear_depth", depth.compute()),
+        shear_amplitude=label_points("shear_amplitude", max_amplitude),
+        shear_depth=label_points("shear_depth", depth),
     )
 
-    def compute_risk(subset: xr.Dataset) -> xr.DataArray:
-        return _sum_over_x(_shear_risk(*_shear_maximum(subset)[1:], exponents).compute())
+    def compute_risk(subset: xr.DataArray) -> xr.DataArray:
+        return _sum_over_x(_shear_risk(*_shear_maximum(subset)[1:], exponents))
 
-    error, comment = _estimate_error(stress[["tau_yz"]], shear, result["risk"], compute_risk), ERROR_OF_POSITIONS
+    error = _estimate_error(shear, result["risk"], compute_risk)
+    comment = "from the distance of the positions alone: the result states no error of its pressure"
     if {"peak_pressure", "peak_pressure_error"} <= set(stress.variables):
         comment = "from the distance of the positions, and of the pressure"
         peak = stress["peak_pressure"]
@@ -312,9 +293,9 @@ def lundberg_palmgren(stress: xr.Dataset, exponents: LifeExponents = ROLLER_BEAR
     return _assign_error(result, error, comment)
 
 
-def _shear_maximum(stress: xr.Dataset) -> tuple[xr.DataArray, xr.DataArray, xr.DataArray]:
+def _shear_maximum(shear: xr.DataArray) -> tuple[xr.DataArray, xr.DataArray, xr.DataArray]:
     """Amplitude of the orthogonal shear, its maximum over the depth, and the depth of the maximum."""
-    amplitude = measure(stress, "orthogonal_shear_amplitude")
+    amplitude = measure(shear.to_dataset(name="tau_yz"), "orthogonal_shear_amplitude")
     dim, depths = _depth_positions(amplitude)
     max_amplitude, depth = reduce_dims(_find_maximum, [(amplitude, [dim]), (depths, [dim])], 2)
     return amplitude, max_amplitude, depth
@@ -328,18 +309,12 @@ def _shear_risk(peak: xr.DataArray, depth: xr.DataArray, exponents: LifeExponent
 def _cut_fraction(excess: Array, depth: Array, exponents: LifeExponents) -> Array:
     """Fraction of a section's risk above the first depth (uniform excess) and below the last (exponential excess)."""
     last = np.maximum(np.isfinite(depth).sum(axis=-1, keepdims=True) - 1, 1)
-
-    def take(values: Array, index: IntArray) -> Array:
-        return np.asarray(np.take_along_axis(values, index, axis=-1)[..., 0])
-
-    border_values = [(take(excess, index), take(depth, index)) for index in (np.zeros_like(last), last - 1, last)]
-    (first_excess, first_depth), (previous_excess, previous_depth), (last_excess, last_depth) = border_values
+    borders = (np.zeros_like(last), last - 1, last)
+    first_excess, previous_excess, last_excess = (_take(excess, index) for index in borders)
+    first_depth, previous_depth, last_depth = (_take(depth, index) for index in borders)
     with np.errstate(divide="ignore", invalid="ignore"):
-        integral_below = np.where(
-            last_excess > 0,
-            last_excess * (last_depth - previous_depth) / np.log(np.maximum(previous_excess / last_excess, 1.0)),
-            0.0,
-        )
+        decay = np.log(np.maximum(previous_excess / last_excess, 1.0))
+        integral_below = np.where(last_excess > 0, last_excess * (last_depth - previous_depth) / decay, 0.0)
         # The mean depth changes by the same fraction as the integral and enters with the exponent `depth`.
         fraction = (1 + exponents.depth) * (first_excess * first_depth + integral_below) / _integrate(excess, depth)
     return np.where(np.isnan(fraction), 0.0, fraction)
@@ -392,13 +367,12 @@ def ioannides_harris(
         stress = in_si("stress", stress, "Pa")
     threshold = checks.not_negative("limit", limit, "Pa")
     if "y" in axis_dimensions(stress):
-        raise InvalidInputError(
-            "stress.dims", stress.dims, "without the rolling direction", "take the largest or the amplitude along y"
-        )
+        hint = "take the largest or the amplitude along y"
+        raise InvalidInputError("stress.dims", stress.dims, "without the rolling direction", hint)
     stress = stress.compute()
     dim, depths = _depth_positions(stress)
     outer = (depths == depths.max(dim)) | ((depths == depths.min(dim)) & (depths > 0))
-    is_truncated = stress.where(outer).max(dim) >= stress.max(dim)
+    borders = {"a measure largest at the first or last depth": stress.where(outer).max(dim) >= stress.max(dim)}
 
     def compute_risks(stress: Array, depth: Array) -> tuple[Array, ...]:
         """Return density of the risk, weighted mean depth of the excess, and truncated fraction of the risk."""
@@ -414,15 +388,12 @@ def ioannides_harris(
         return reduce_dims(compute_risks, [(field, [dimension]), (depth_positions, [dimension])], 3)
 
     density, mean, truncated = compute_sections(stress)
-    result = _integrate_risk(
-        density,
-        exponents,
-        {"theory": "Ioannides and Harris", "fatigue_limit": threshold},
-        {"a measure largest at the first or last depth": is_truncated},
-    )
+    theory: dict[str, str | float] = {"theory": "Ioannides and Harris", "fatigue_limit": threshold}
+    result = _integrate_risk(density, exponents, theory, borders)
     if stress.attrs.get("units") == "1":
         for name in ("risk", "risk_density"):
             result[name].attrs["units"] = result[name].attrs["units"].split(maxsplit=1)[1]
-    error = _estimate_error(stress, stress, result["risk"], lambda field: _sum_over_x(compute_sections(field)[0]))
+    error = _estimate_error(stress, result["risk"], lambda field: _sum_over_x(compute_sections(field)[0]))
     error = error + _sum_over_x(density * truncated)
-    return _assign_error(result.assign(mean_depth=label_points("mean_depth", mean)), error, ERROR_ALONG_X_AND_Z)
+    comment = "of the positions along x and z alone, without the error of the positions along y and of the pressure"
+    return _assign_error(result.assign(mean_depth=label_points("mean_depth", mean)), error, comment)

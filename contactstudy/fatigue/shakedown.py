@@ -12,7 +12,6 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Hashable
-from dataclasses import dataclass
 
 import numpy as np
 import xarray as xr
@@ -24,7 +23,7 @@ from contactstudy.analysis.axes import positions
 from contactstudy.analysis.peaks import interpolated_peak, label_peak
 from contactstudy.arrays.variables import STRESSES, VARIABLES, describe, name_array, require_in_si
 from contactstudy.bodies.models import Body
-from contactstudy.checks import Array, FloatArray, IntArray
+from contactstudy.checks import Array, FloatArray
 from contactstudy.eigenstrain.stress_function import Splines, StressFunction
 from contactstudy.errors import ConvergenceWarning, InvalidInputError
 from contactstudy.fatigue.history import MIN_POSITIONS, enclosing_balls, label_points, map_histories, stack_history
@@ -85,12 +84,8 @@ def shakedown(stress: xr.Dataset, *, axial: bool = False) -> xr.Dataset:
         tensor, _ = stack_history(stress)
         axial_dims = [str(dim) for dim in tensor.dims if str(dim).partition("_")[0] == "x"]
         if any(tensor.sizes[dim] > 1 for dim in axial_dims):
-            raise InvalidInputError(
-                "axial",
-                True,
-                f"False with {tensor.sizes[axial_dims[0]]} positions along x",
-                "residual stress along the axis is free only in a line contact, a result with one position along x",
-            )
+            hint = "residual stress along the axis is free only in a line contact, a result with one position along x"
+            raise InvalidInputError("axial", True, f"False with {tensor.sizes[axial_dims[0]]} positions along x", hint)
 
     def compute_yield_stresses(history: Array) -> tuple[Array, ...]:
         """Least yield stresses in shear without yield and with shakedown, and the residual stresses yy and xx."""
@@ -293,9 +288,8 @@ def shakedown_in_plane(stress: xr.Dataset, body: Body) -> xr.Dataset:
     x, z = (np.asarray(positions(tensor, axis).values, dtype=np.float64) for axis in ("x", "z"))
     for axis, points in (("x", x), ("z", z)):
         if points.size < MIN_POINTS or (np.diff(points) <= 0).any():
-            raise InvalidInputError(
-                f"stress.{axis}", points, f"at least {MIN_POINTS} positions, increasing", "solve with more positions"
-            )
+            allowed = f"at least {MIN_POINTS} positions, increasing"
+            raise InvalidInputError(f"stress.{axis}", points, allowed, "solve with more positions")
     values = tensor.transpose(*dims, rolling_dim, ...).values.astype(np.float64)
     history = values.reshape(-1, *values.shape[2:])
     history = np.concatenate([history, np.zeros_like(history[:, :1])], axis=1)
@@ -305,12 +299,9 @@ def shakedown_in_plane(stress: xr.Dataset, body: Body) -> xr.Dataset:
     airy, max_stress, bound = program.solve()
     gap = max(max_stress - bound, 0.0) / max(max_stress, 1e-300)
     if gap > MAX_GAP:
-        warnings.warn(
-            f"the shakedown program has a gap of {gap:.2g} after {MAX_CONE_PROGRAMS} programs: the bound holds, and a "
-            "larger load may shake down; take fewer positions along x and z",
-            ConvergenceWarning,
-            stacklevel=2,
-        )
+        message = f"the shakedown program has a gap of {gap:.2g} after {MAX_CONE_PROGRAMS} programs"
+        hint = "the bound holds, and a larger load may shake down; take fewer positions along x and z"
+        warnings.warn(f"{message}: {hint}", ConvergenceWarning, stacklevel=2)
     in_plane = [scale * (matrix @ airy) for matrix in stress_matrices]
     centre, radius, _ = program.compute_balls(airy)
     xx, zz, xz = in_plane
@@ -337,13 +328,10 @@ def _stress_matrices(extent: tuple[float, float], x: FloatArray, z: FloatArray) 
     ends = [end if np.isfinite(end) else edge for end, edge in zip(extent, x[[0, -1]], strict=True)]
     splines_x = Splines(_element_edges(x, *ends), DEGREE, CONTINUITY, vanishing_orders=2)
     splines_z = Splines(_element_edges(z, 0.0, z[-1]), DEGREE, CONTINUITY, vanishing_orders=2)
-    lengths = 0.5 * (splines_x.edges[-1] - splines_x.edges[0]), 0.5 * splines_z.edges[-1]
     # A scale of about an element's length gives coefficients in units of stress.
-    scales = [
-        length / max(splines.edges.size - 1, 1) for length, splines in zip(lengths, (splines_x, splines_z), strict=True)
-    ]
+    scale_x, scale_z = (0.5 * np.ptp(splines.edges) / (splines.edges.size - 1) for splines in (splines_x, splines_z))
     values_x, values_z = StressFunction(splines_x, splines_z).values(x, z)
-    scale = scales[0] * scales[1]
+    scale = scale_x * scale_z
     return [
         sparse.csr_array(sign * scale * sparse.kron(sparse.csr_array(values_x[i]), values_z[j]))
         for i, j, sign in ((0, 2, 1), (2, 0, 1), (1, 1, -1))
@@ -357,19 +345,15 @@ def _element_edges(points: FloatArray, low: float, high: float) -> FloatArray:
     return np.concatenate([[low], borders, [high]])
 
 
-@dataclass(eq=False)
 class _Program:
     """Cone program: histories in units of their largest stress, and residual stresses per coefficient."""
 
-    history: Array
-    function: list[sparse.csr_array]
-
-    def __post_init__(self) -> None:
-        xx, zz, xz = self.function
+    def __init__(self, history: Array, stress_matrices: list[sparse.csr_array]) -> None:
+        xx, zz, xz = stress_matrices
         self._v, self._xz = sparse.csr_array(0.5 * SQRT3 * (xx - zz)), sparse.csr_array(SQRT3 * xz)
-        self.u, self.v, _ = to_ball_axes(self.history)
-        self.xz = SQRT3 * self.history[..., 4]
-        self.fixed_shear = np.sqrt(3 * (self.history[..., 3] ** 2 + self.history[..., 5] ** 2))
+        self.u, self.v, _ = to_ball_axes(history)
+        self.xz = SQRT3 * history[..., 4]
+        self.fixed_shear = np.sqrt(3 * (history[..., 3] ** 2 + history[..., 5] ** 2))
 
     def compute_balls(self, airy: FloatArray) -> tuple[Array, Array, Array]:
         """Free stress along u, least von Mises stress of every point, and von Mises stress of every instant."""
@@ -383,7 +367,7 @@ class _Program:
         best_airy, min_radius, bound = np.zeros(self._v.shape[1]), np.inf, 0.0
         airy = best_airy
         # The unloaded state at every point bounds all coefficients.
-        is_active = np.zeros(self.history.shape[:2], dtype=bool)
+        is_active = np.zeros(self.u.shape, dtype=bool)
         is_active[:, -1] = True
         for program_index in range(MAX_CONE_PROGRAMS + 1):
             _, radius, stress = self.compute_balls(airy)
@@ -405,37 +389,20 @@ class _Program:
             raise ImportError("cone programs need the package clarabel: install contactstudy[shakedown]") from error
         point, instant = np.nonzero(is_active)
         points, point_index = np.unique(point, return_inverse=True)
-        cone_count, point_count, coefficient_count = point.size, points.size, self._v.shape[1]
-        rows = np.arange(cone_count)
-
+        cone_count, point_count = point.size, points.size
         # Variables: t, the free stress of each point, the coefficients. Rows: t, u, v, xz, fixed shear per instant.
-        def select_row_matrix(row: int, columns: IntArray, width: int) -> sparse.csr_array:
-            return sparse.csr_array(
-                (np.full(cone_count, -1.0), (5 * rows + row, columns)), shape=(5 * cone_count, width)
-            )
-
-        rows_vxz = [select_row_matrix(row, rows, cone_count) for row in (2, 3)]
-        airy_matrix = rows_vxz[0] @ self._v[point] + rows_vxz[1] @ self._xz[point]
-        matrix = sparse.hstack(
-            [select_row_matrix(0, 0 * rows, 1), select_row_matrix(1, point_index, point_count), airy_matrix],
-            format="csc",
-        )
-        constants = [
-            0 * self.u[point, instant],
-            *(values[point, instant] for values in (self.u, self.v, self.xz, self.fixed_shear)),
-        ]
+        t_row, u_row, v_row, xz_row, _ = (sparse.csr_array(-row[:, None]) for row in np.eye(5))
+        is_point = sparse.csr_array((np.ones(cone_count), (np.arange(cone_count), point_index)))
+        airy_matrix = sparse.kron(self._v[point], v_row) + sparse.kron(self._xz[point], xz_row)
+        t_column = sparse.kron(np.ones((cone_count, 1)), t_row)
+        matrix = sparse.csc_array(sparse.hstack([t_column, sparse.kron(is_point, u_row), airy_matrix]))
+        constants = [values[point, instant] for values in (0 * self.u, self.u, self.v, self.xz, self.fixed_shear)]
         right_hand_side = np.stack(constants, axis=1).ravel()
-        cost = np.zeros(1 + point_count + coefficient_count)
+        cost = np.zeros(matrix.shape[1])
         cost[0] = 1.0
         settings = clarabel.DefaultSettings()
         settings.verbose = False
-        solver = clarabel.DefaultSolver(
-            sparse.csc_array((cost.size, cost.size)),
-            cost,
-            matrix,
-            right_hand_side,
-            [clarabel.SecondOrderConeT(5)] * cone_count,
-            settings=settings,
-        )
+        quadratic, cones = sparse.csc_array((cost.size, cost.size)), [clarabel.SecondOrderConeT(5)] * cone_count
+        solver = clarabel.DefaultSolver(quadratic, cost, matrix, right_hand_side, cones, settings=settings)
         solution = solver.solve()
         return np.asarray(solution.x)[1 + point_count :], float(solution.obj_val_dual)

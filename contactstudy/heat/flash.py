@@ -25,28 +25,26 @@ from contactstudy.heat.moving_source import MovingBody, SourceOperator, ThermalP
 
 
 class FrictionalHeat(NamedTuple):
-    """Frictional heat on the cells, its power, and the speeds of the surfaces relative to the contact."""
+    """Frictional heat on the cells, and the speeds of the surfaces relative to the contact."""
 
     density: FloatArray
-    power: float
     body_speed: float
     roller_speed: float
 
 
-def frictional_heat(case: Case, solution: xr.Dataset, grid: Grid) -> FrictionalHeat:
+def frictional_heat(case: Case, solution: xr.Dataset) -> FrictionalHeat:
     """Compute heat per area and speeds of a solved case."""
     motion = case.motion
     names = ("traction_y",) if isinstance(motion, Sliding) else ("traction_x", "slip_x", "traction_y", "slip_y")
     solution = require_in_si(solution, *names, argument="result")
     fields = [labelled_cells(f"result.{name}", solution[name], extent=case.body.extent)[0] for name in names]
-    area = grid.weights * grid.cell_area
     if isinstance(motion, Rolling):
         creepage = solution.get("longitudinal_creepage", motion.longitudinal_creepage)
         speeds = motion.speeds_at(0.0 if creepage is None else float(creepage))
         q_x, s_x, q_y, s_y = fields
         # Power per area is traction times slip per distance, times distance per time.
         density = -speeds.entrainment * np.maximum(q_x * s_x + q_y * s_y, 0.0)
-        return FrictionalHeat(density, float((area * density).sum()), speeds.body, speeds.roller)
+        return FrictionalHeat(density, speeds.body, speeds.roller)
     assert isinstance(motion, Sliding)
     if motion.speeds is None:
         raise InvalidInputError("case.motion", motion, "one with body_speed and roller_speed (m/s)")
@@ -57,14 +55,9 @@ def frictional_heat(case: Case, solution: xr.Dataset, grid: Grid) -> FrictionalH
         relation = "not below" if traction.max() > 0 else "not above"
         if (traction < 0).any() and (traction > 0).any():
             relation = "equal to, as the friction changes its sign along the axis,"
-        raise InvalidInputError(
-            "case.motion.roller_speed",
-            roller_speed,
-            f"{relation} body_speed, {body_speed:g}: friction acts on the body along the roller's sliding",
-            "speeds are along +y",
-        )
-    power = float((area * traction).sum() * (roller_speed - body_speed))
-    return FrictionalHeat(density, power, body_speed, roller_speed)
+        allowed = f"{relation} body_speed, {body_speed:g}: friction acts on the body along the roller's sliding"
+        raise InvalidInputError("case.motion.roller_speed", roller_speed, allowed, "speeds are along +y")
+    return FrictionalHeat(density, body_speed, roller_speed)
 
 
 RESTART, MAX_RESTARTS = 60, 20  # Steps between restarts, and restarts
@@ -78,25 +71,23 @@ def partition_heat(
     if not heat.any():  # surfaces of the same speed
         return np.zeros(heat.shape), 0.0
 
-    def expand(cell_heat: FloatArray) -> FloatArray:
-        grid_heat = np.zeros(heat.shape)
-        grid_heat[in_contact] = cell_heat
-        return grid_heat
-
     first_rise, second_rise = first_response(heat)[in_contact], second_response(heat)[in_contact]
     fraction = second_rise.max() / (first_rise.max() + second_rise.max())  # Blok's: equal largest temperatures
     guess = fraction * heat[in_contact]
     count = guess.size
 
     def apply(cell_heat: FloatArray) -> FloatArray:
-        grid_heat = expand(np.asarray(cell_heat).ravel())
+        grid_heat = np.zeros(heat.shape)
+        grid_heat[in_contact] = np.ravel(cell_heat)
         return np.asarray((first_response(grid_heat) + second_response(grid_heat))[in_contact])
 
     operator = LinearOperator((count, count), matvec=apply, dtype=np.float64)  # eq. (602)
     # Residual of the temperatures over the right-hand side at which the iteration stops
     solution, _ = gmres(operator, second_rise, x0=guess, rtol=1e-9, restart=min(RESTART, count), maxiter=MAX_RESTARTS)
     mismatch = float(np.abs(apply(solution) - second_rise).max() / max(np.abs(second_rise).max(), np.finfo(float).tiny))
-    return expand(solution), mismatch
+    into_first = np.zeros(heat.shape)
+    into_first[in_contact] = solution
+    return into_first, mismatch
 
 
 def flash_temperature(
@@ -176,13 +167,9 @@ def flash_temperature(
     check_solved_for(result, case)
     pressure, grid = labelled_cells("result.pressure", solution["pressure"], extent=case.body.extent)
     checks.instance("body", body, ThermalProperties, "a ThermalProperties(...)")
-    if partition is None and roller is None:
-        raise InvalidInputError(
-            "roller", None, "a ThermalProperties(...)", "or give partition, the fraction of the heat into the body"
-        )
-    if roller is not None:
-        checks.instance("roller", roller, ThermalProperties, "a ThermalProperties(...)")
     share = None if partition is None else checks.not_negative("partition", partition)
+    allowed = "a ThermalProperties(...), or None with partition, the fraction of the heat into the body"
+    checks.instance("roller", roller, ThermalProperties if share is None else (ThermalProperties, type(None)), allowed)
     if share is not None and share > 1:
         raise InvalidInputError("partition", share, "from 0 to 1: the fraction of the heat into the body")
     if limit is not None:
@@ -190,36 +177,35 @@ def flash_temperature(
     depths = None if z is None else checks.coordinates("z", z)
     if depths is not None and (depths < 0).any():
         raise InvalidInputError("z", float(depths.min()), "not below zero (metres)")
-    heat = frictional_heat(case, solution, grid)
+    heat = frictional_heat(case, solution)
     rises, into_body, mismatch = _solve_temperatures(case, grid, heat, pressure, body, roller=roller, fraction=share)
-    into_roller = heat.density - into_body
-    area = grid.weights * grid.cell_area
-    is_heated = heat.density != 0
+    no_fraction = np.full(grid.shape, np.nan)
     fields = rises | {
         "frictional_heat": heat.density,
         "heat_into_body": into_body,
-        "heat_partition": np.where(is_heated, into_body / np.where(is_heated, heat.density, 1.0), np.nan),
+        "heat_partition": np.divide(into_body, heat.density, out=no_fraction, where=heat.density != 0),
     }
     values = {name: (("x", "y"), field) for name, field in fields.items()}
     scalars = _find_maximum(grid, rises)
     (wide_grid, density), (_, mean_pressure) = (_coarsen(grid, values) for values in (heat.density, pressure))
-    wide_rises, _, _ = _solve_temperatures(
-        case, wide_grid, heat._replace(density=density), mean_pressure, body, roller=roller, fraction=share
-    )
+    wide_heat = heat._replace(density=density)
+    wide_rises = _solve_temperatures(case, wide_grid, wide_heat, mean_pressure, body, roller=roller, fraction=share)[0]
     change = abs(_find_maximum(wide_grid, wide_rises)["max_temperature_rise"] - scalars["max_temperature_rise"])
     peak, error = (float(solution.get(name, np.nan)) for name in ("peak_pressure", "peak_pressure_error"))
     relative_error = error / peak if np.isfinite([peak, error]).all() and peak > 0 else np.nan
     scalars["max_temperature_rise_error"] = change + scalars["max_temperature_rise"] * relative_error
-    scalars["friction_power"] = heat.power
-    scalars["body_heat_share"] = float((area * into_body).sum() / heat.power) if heat.power else np.nan
-    entered_power = (area * into_body).sum() + (area * into_roller)[_under_roller(case, grid, pressure)[0]].sum()
-    scalars["heat_error"] = float(entered_power / heat.power - 1) if heat.power else 0.0
-    scalars["temperature_mismatch"] = mismatch
-    coords = {name: solution.coords[name] for name in ("x", "y", "x_bounds", "x_width") if name in solution.coords}
-    temperatures = xr.Dataset(values | scalars, coords=coords)
-    temperatures = temperatures.assign(
-        {name: solution[name] for name in ("hertz_half_width", "hertz_max_pressure") if name in solution}
-    )
+    area = grid.weights * grid.cell_area
+    power, body_power = (float((area * density).sum()) for density in (heat.density, into_body))
+    roller_power = float((area * (heat.density - into_body))[_under_roller(case, grid, pressure)[0]].sum())
+    scalars |= {
+        "friction_power": power,
+        "body_heat_share": body_power / power if power else np.nan,
+        "heat_error": (body_power + roller_power) / power - 1 if power else 0.0,
+        "temperature_mismatch": mismatch,
+    }
+    kept_names = ("x", "y", "x_bounds", "x_width", "hertz_half_width", "hertz_max_pressure")
+    kept = solution[[name for name in kept_names if name in solution.variables]].drop_attrs(deep=False)
+    temperatures = kept.assign(values | scalars)
     if depths is not None:
         moving_body, columns = MovingBody(body, heat.body_speed, case.body.extent), slice(0, grid.cells_x)
         inner_rises = [SourceOperator(moving_body, grid, columns, float(depth))(into_body) for depth in depths]
@@ -231,12 +217,8 @@ def flash_temperature(
     max_rise = scalars["max_temperature_rise"]
     if limit is not None and max_rise > limit:
         x, y = (1e3 * scalars[f"max_temperature_rise_{axis}"] for axis in "xy")
-        warnings.warn(
-            f"the surfaces are {max_rise:.4g} K hotter than the bodies at x = {x:.4g} mm, y = {y:.4g} mm: above "
-            f"limit = {limit:g} K",
-            TemperatureWarning,
-            stacklevel=2,
-        )
+        message = f"the surfaces are {max_rise:.4g} K hotter than the bodies at x = {x:.4g} mm, y = {y:.4g} mm"
+        warnings.warn(f"{message}: above limit = {limit:g} K", TemperatureWarning, stacklevel=2)
     return describe(temperatures, "flash temperature of a contact")
 
 

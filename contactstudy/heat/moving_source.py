@@ -131,11 +131,8 @@ def _primitive(spread: FloatArray, distance: FloatArray, length: float) -> Float
     if not is_wide.all():
         short_spreads = spread[~is_wide]
         image_count = max(0, int(np.ceil((MAX_SPREADS * short_spreads.max() / length - 1) / 2)))
-        image_sums = 0.5 * erf(reduced_distance / s[~is_wide])
-        for image in range(1, image_count + 1):
-            for shift in (-2 * length * image, 2 * length * image):
-                image_sums += 0.5 * erf((reduced_distance + shift) / s[~is_wide])
-        primitive[~is_wide] = image_sums
+        shifts = 2 * length * np.arange(-image_count, image_count + 1)
+        primitive[~is_wide] = sum(0.5 * erf((reduced_distance + shift) / s[~is_wide]) for shift in shifts)
     return primitive + periods
 
 
@@ -156,7 +153,7 @@ class SourceOperator:
     """Temperature rise (K) at the cells' midpoints, at one depth, from heat (W/m2) uniform in each cell."""
 
     def __init__(self, body: MovingBody, grid: Grid, columns: slice, depth: float = 0.0) -> None:
-        self._columns, self._shape = columns, grid.shape
+        self._columns, self._shape, self._uniform = columns, grid.shape, grid.uniform
         self._size_y = next_fast_len(2 * grid.cells_y - 1, real=True)  # padded, so that the wake does not return
         edges = grid.x_edges[columns.start : columns.stop + 1]
         x = grid.x[columns]
@@ -164,22 +161,18 @@ class SourceOperator:
         window = grid.dy * grid.cells_y
         # Below this Peclet number of the window a surface is at rest.
         if np.isfinite(length) and abs(body.drift) * window < 1e-6:
-            raise InvalidInputError(
-                "speed",
-                body.speed,
-                "such that the surface of a body with two ends leaves the contact",
-                "a surface at rest gets hotter without limit, and the other body takes all heat: give partition",
-            )
+            allowed = "such that the surface of a body with two ends leaves the contact"
+            hint = "a surface at rest gets hotter without limit, and the other body takes all heat: give partition"
+            raise InvalidInputError("speed", body.speed, allowed, hint)
         spread, weights = spread_nodes(min(float(np.diff(edges).min()), grid.dy), grid.dy, window, body.drift)
         # eq. (601)
         weights = weights * np.exp(-((depth / spread) ** 2)) / (body.properties.conductivity * np.sqrt(np.pi))
         lags = np.arange(self._size_y)
         lags[lags >= grid.cells_y] -= self._size_y
         lateral = rfft(weights[:, None] * lateral_factors(spread, grid.dy * lags, grid.dy, body.drift), axis=-1)
-        self._mirror_spectrum: ComplexArray | None = None
         if not grid.uniform:
             pairs = x.size * edges.size
-            self._spectrum = _sum_products(spread, lateral, pairs, lambda s: axial_factors(s, x, edges, body.ends))
+            self._spectra = {1: _sum_products(spread, lateral, pairs, lambda s: axial_factors(s, x, edges, body.ends))}
             return
         self._size_x = next_fast_len(2 * x.size - 1, real=True)
         offsets = np.arange(self._size_x)
@@ -194,26 +187,23 @@ class SourceOperator:
 
             return np.asarray(fft(_sum_products(spread, lateral, lower.size, factors), axis=0))
 
-        self._spectrum = compute_spectrum(0.0)
-        mirror = body.ends[0]
-        if np.isfinite(mirror):
-            # In reversed order cell j lies at x[-1] - dx j, and the cell's image at 2 mirror - x[-1] + dx j.
-            self._mirror_spectrum = compute_spectrum(x[0] + x[-1] - 2 * mirror)
+        self._spectra = {1: compute_spectrum(0.0)}  # by the order of the cells along x
+        if np.isfinite(body.ends[0]):
+            # In reversed order cell j lies at x[-1] - dx j, and the cell's image in the end e at 2 e - x[-1] + dx j.
+            self._spectra[-1] = compute_spectrum(x[0] + x[-1] - 2 * body.ends[0])
 
     def __call__(self, heat: FloatArray) -> FloatArray:
         """Temperature rise under `heat` on all cells of the grid; zero on columns beyond the body."""
         body_heat = heat[self._columns]
         rise = np.zeros(self._shape)
-        if self._spectrum.ndim == 3:
+        if self._uniform:
+            size = (self._size_x, self._size_y)
+            rise_spectrum = sum(spectrum * rfft2(body_heat[::order], size) for order, spectrum in self._spectra.items())
+            column_rises = irfft2(rise_spectrum, size)[: body_heat.shape[0]]
+        else:
             line_spectra = rfft(body_heat, self._size_y, axis=-1)
-            column_rises = irfft(np.einsum("xck,ck->xk", self._spectrum, line_spectra), self._size_y, axis=-1)
-            rise[self._columns] = column_rises[:, : self._shape[1]]
-            return rise
-        size = (self._size_x, self._size_y)
-        rise_spectrum = self._spectrum * rfft2(body_heat, size)
-        if self._mirror_spectrum is not None:
-            rise_spectrum += self._mirror_spectrum * rfft2(body_heat[::-1], size)
-        rise[self._columns] = irfft2(rise_spectrum, size)[: body_heat.shape[0], : self._shape[1]]
+            column_rises = irfft(np.einsum("xck,ck->xk", self._spectra[1], line_spectra), self._size_y, axis=-1)
+        rise[self._columns] = column_rises[:, : self._shape[1]]
         return rise
 
 

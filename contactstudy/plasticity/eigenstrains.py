@@ -73,37 +73,36 @@ def eigenstrain_stress(
     names = [name for name in STRAINS if name in eigenstrain]
     if not names:
         raise InvalidInputError("eigenstrain", sorted(map(str, eigenstrain)), f"with one of {', '.join(STRAINS)}")
-    positions, edges = {}, {}
-    for axis, argument, (low, high) in (("x", x_edges, body.extent), ("z", z_edges, (0.0, np.inf))):
+    axes, edges = {}, {}
+    for axis, points, given_edges, (low, high) in (
+        ("x", x, x_edges, body.extent),
+        ("z", z, z_edges, (0.0, np.inf)),
+    ):
         if axis not in eigenstrain.coords:
             raise InvalidInputError("eigenstrain.coords", list(eigenstrain.coords), f"with {axis} (metres)")
-        positions[axis] = checks.coordinates(f"eigenstrain.{axis}", eigenstrain[axis].values)
-        if argument is not None:
-            edges[axis] = checks.coordinates(f"{axis}_edges", argument)
-        elif positions[axis].size < 2:
+        centres = checks.coordinates(f"eigenstrain.{axis}", eigenstrain[axis].values)
+        if given_edges is not None:
+            cell_edges = checks.coordinates(f"{axis}_edges", given_edges)
+        elif centres.size < 2:
             raise InvalidInputError(f"{axis}_edges", None, "given for one cell", "its size is unknown")
         else:
-            edges[axis] = edges_between(positions[axis], low, high)
-        centres, cell_edges = positions[axis], edges[axis]
+            cell_edges = edges_between(centres, low, high)
         if cell_edges.size != centres.size + 1 or (np.diff(cell_edges) <= 0).any():
             raise InvalidInputError(f"{axis}_edges", cell_edges, f"{centres.size + 1} edges, increasing (metres)")
         if cell_edges[0] < low or cell_edges[-1] > high:
             raise InvalidInputError(f"{axis}_edges", cell_edges, f"inside the body, {low:g} to {high:g} m")
         if (centres < cell_edges[:-1]).any() or (centres > cell_edges[1:]).any():
             raise InvalidInputError(f"{axis}_edges", cell_edges, "such that each cell holds its position")
-    strain = np.zeros((6, positions["x"].size, positions["z"].size))
+        edges[axis] = cell_edges
+        axes[axis] = centres if points is None else checks.coordinates(axis, points)
+        if (axes[axis] < low).any() or (axes[axis] > high).any():
+            raise InvalidInputError(axis, "a position outside", f"inside the body, from {low:g} to {high:g} m")
+    strain = np.zeros((6, edges["x"].size - 1, edges["z"].size - 1))
     for name in names:
         values = np.asarray(eigenstrain[name].transpose("x", "z").values, dtype=np.float64)
         if not np.isfinite(values).all():
             raise InvalidInputError(f"eigenstrain.{name}", "values that are not finite", "finite strains")
         strain[STRAINS.index(name)] = values
-    axes = {
-        axis: positions[axis] if argument is None else checks.coordinates(axis, argument)
-        for axis, argument in (("x", x), ("z", z))
-    }
-    low, high = body.extent
-    if (axes["x"] < low).any() or (axes["x"] > high).any() or (axes["z"] < 0).any():
-        raise InvalidInputError("x, z", "a position outside", f"inside the body, x from {low:g} to {high:g} m")
     cells = EigenstrainBody(
         material=body.material, extent=body.extent, x_edges=edges["x"], z_edges=edges["z"], splits=SPLITS, degree=DEGREE
     )
@@ -128,8 +127,7 @@ def edges_between(positions: FloatArray, low: float, high: float) -> FloatArray:
 def create_cross_section(body: Body, x: FloatArray, z: FloatArray) -> EigenstrainBody:
     """Create the cells around positions in a body, up to its top and its free ends."""
     for name, points in (("x", x), ("z", z)):
-        if points.size < 2 or (np.diff(points) <= 0).any():
-            raise InvalidInputError(name, points, "at least two positions, increasing (metres)")
+        checks.increasing(name, points, "metres", minimum=2)
     low, high = body.extent
     tolerance = 1e-9 * (x[-1] - x[0])  # Rounding over the positions' range
     if x[0] < low - tolerance or x[-1] > high + tolerance:

@@ -53,11 +53,8 @@ class ElasticPlastic:
             profile = in_si("yield_stress", self.yield_stress, "Pa")
             if profile.dims != ("z",) or "z" not in profile.coords:
                 raise InvalidInputError("yield_stress.dims", profile.dims, "('z',) with depths z in metres")
-            depths = checks.coordinates("yield_stress.z", profile["z"].values)
-            if (np.diff(depths) <= 0).any():
-                raise InvalidInputError("yield_stress.z", depths, "increasing (metres)")
-            for value in checks.coordinates("yield_stress", profile.values, "Pa"):
-                checks.positive("yield_stress", float(value), "Pa")
+            checks.increasing("yield_stress.z", profile["z"].values, "metres")
+            checks.positive("yield_stress", float(checks.coordinates("yield_stress", profile.values, "Pa").min()), "Pa")
             checks.store(self, yield_stress=profile)
         else:
             checks.store(self, yield_stress=checks.positive("yield_stress", self.yield_stress, "Pa"))

@@ -7,8 +7,10 @@ Each column along x acts separately while the strain changes along y, in plane s
 from __future__ import annotations
 
 import warnings
+from collections import deque
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from typing import NamedTuple
 
 import numpy as np
@@ -22,8 +24,8 @@ from contactstudy.analysis.provenance import check_solved_for
 from contactstudy.arrays.variables import STRESSES, describe, require_in_si
 from contactstudy.bodies.models import Body
 from contactstudy.checks import FloatArray, IntArray
-from contactstudy.eigenstrain.body import EigenstrainBody, Influence
-from contactstudy.eigenstrain.layers import LayerInfluence, PeriodicLayers
+from contactstudy.eigenstrain.body import EigenstrainBody, cell_influence
+from contactstudy.eigenstrain.layers import PeriodicLayers, layer_stresses
 from contactstudy.errors import ConvergenceWarning, InvalidInputError
 from contactstudy.plasticity.eigenstrains import STRAINS, create_cross_section, edges_between
 from contactstudy.plasticity.material import ElasticPlastic
@@ -60,23 +62,22 @@ class Passage:
     """A pass over some cells of the cross-section."""
 
     elastic: FloatArray  # (6, position, cell), stress of the contact, Pa
-    residual: Influence | LayerInfluence  # residual stress in the body by strains uniform along y
-    layers: LayerInfluence  # the same in a body without ends
+    residual: Callable[[FloatArray], FloatArray]  # residual stress in the body by strains uniform along y
     lateral: PeriodicLayers  # residual stress in a body without ends by strains periodic along y
-    lateral_positions: int  # number of positions along y in the period
+
     cell_indices: tuple[IntArray, IntArray]  # column and layer (cell) in `lateral`
     yield_stress: FloatArray  # (cell), in tension, Pa
-    shear_modulus: float  # Pa
+
     isotropic: float  # hardening modulus, Pa
     kinematic: float  # hardening modulus, Pa
     tolerance: float  # change of the deviator over the yield stress
 
     def solve(self, start: State) -> State:
         """Return the state after the pass."""
-        stiffness = 2 * self.shear_modulus
-        elastic = self.elastic + self.residual.stresses(start.strain)[:, None]
+        stiffness = 2 * self.lateral.material.shear_modulus
+        elastic = self.elastic + self.residual(start.strain)[:, None]
         flow = np.zeros_like(elastic)
-        mixing = _AndersonMixing()
+        iterates, changes = (deque[FloatArray](maxlen=MIXING_HISTORY + 1) for _ in range(2))
         for _ in range(MAX_REPETITIONS):
             trial = compute_deviator(elastic + self._residual_stress(flow)) + stiffness * (start.strain[:, None] + flow)
             next_strain, accumulated = self._return_mapping(trial, start)
@@ -84,17 +85,19 @@ class Passage:
             converged = bool((stiffness * tensor_norm(change).max(axis=0) <= self.tolerance * self.yield_stress).all())
             if converged:
                 break
-            flow = mixing.next_iterate(flow, change)
+            iterates.append(flow)
+            changes.append(change)
+            flow = _mix(iterates, changes)
         return State(start.strain + next_strain[:, -1], accumulated, start.converged and converged)
 
     def _residual_stress(self, plastic_strain: FloatArray) -> FloatArray:
         """Residual stress (6, position, cell) by this pass's plastic strain, with every column in plane strain."""
         final_strain = plastic_strain[:, -1]
         column, layer = self.cell_indices
-        periodic_strain = np.zeros((6, self.lateral_positions, column.max() + 1, layer.max() + 1))
+        periodic_strain = np.zeros((6, self.lateral.positions, column.max() + 1, layer.max() + 1))
         count = plastic_strain.shape[1]
         periodic_strain[:, :count, column, layer] = plastic_strain
-        decay_count = self.lateral_positions - count
+        decay_count = self.lateral.positions - count
         decay = np.clip(2 - 2 * (np.arange(decay_count) + 0.5) / decay_count, 0.0, 1.0)
         periodic_strain[:, count:, column, layer] = (decay**2 * (3 - 2 * decay))[:, None] * final_strain[:, None]
         stress = self.lateral.stresses(periodic_strain)[:, :count, column, layer]
@@ -102,14 +105,14 @@ class Passage:
         norm = float(COMPONENT_COUNTS @ (final_strain**2).sum(axis=1))
         if norm:
             fraction = np.einsum("i,ipc,ic->p", COMPONENT_COUNTS, plastic_strain, final_strain) / norm
-            difference = self.residual.stresses(final_strain) - self.layers.stresses(final_strain)
+            difference = self.residual(final_strain) - layer_stresses(self.lateral.material, final_strain)
             stress += np.clip(fraction, 0.0, 1.0)[:, None] * difference[:, None]
         return np.asarray(stress)
 
     def _return_mapping(self, trial: FloatArray, initial: State) -> tuple[FloatArray, FloatArray]:
         """Plastic strain of this pass, and accumulated strain; `trial` is the deviator before plastic flow."""
         kinematic = 2 / 3 * self.kinematic
-        modulus = 2 * self.shear_modulus + kinematic
+        modulus = 2 * self.lateral.material.shear_modulus + kinematic
         stiffness = modulus + 2 / 3 * self.isotropic
         strain, accumulated = initial.strain, initial.accumulated
         flow = np.empty_like(trial)
@@ -125,24 +128,13 @@ class Passage:
         return flow, accumulated
 
 
-class _AndersonMixing:
-    """Anderson's mixing."""
-
-    def __init__(self) -> None:
-        self._iterates: list[FloatArray] = []
-        self._changes: list[FloatArray] = []
-
-    def next_iterate(self, iterate: FloatArray, change: FloatArray) -> FloatArray:
-        """Next iterate from an iterate and its change."""
-        self._iterates = [*self._iterates[-MIXING_HISTORY:], iterate]
-        self._changes = [*self._changes[-MIXING_HISTORY:], change]
-        if len(self._changes) == 1:
-            return np.asarray(iterate + change)
-        steps, differences = (np.diff(np.stack(history), axis=0) for history in (self._iterates, self._changes))
-        flattened = differences.reshape(len(differences), -1)
-        # rcond: differences between iterates with smaller singular values are dependent
-        weights = np.linalg.lstsq(flattened @ flattened.T, flattened @ change.ravel(), rcond=1e-10)[0]
-        return np.asarray(iterate + change - np.tensordot(weights, steps + differences, axes=1))
+def _mix(iterates: Sequence[FloatArray], changes: Sequence[FloatArray]) -> FloatArray:
+    """Next iterate from the last iterates and their changes, by Anderson's mixing."""
+    steps, differences = (np.diff(np.stack(history), axis=0) for history in (iterates, changes))
+    flattened = differences.reshape(len(differences), changes[-1].size)
+    # rcond: differences between iterates with smaller singular values are dependent
+    weights = np.linalg.lstsq(flattened @ flattened.T, flattened @ changes[-1].ravel(), rcond=1e-10)[0]
+    return np.asarray(iterates[-1] + changes[-1] - np.tensordot(weights, steps + differences, axes=1))
 
 
 NEAR_YIELD_RATIO = 0.9  # Minimum von Mises stress over yield stress of the cells of a pass
@@ -175,11 +167,6 @@ class _CrossSection:
         """Yield stress in every cell, Pa."""
         return np.tile(self.material.yield_stress_at(self.z), self.x.size)
 
-    @property
-    def layers(self) -> LayerInfluence:
-        """Residual stress by strains in infinite layers of a body without ends."""
-        return LayerInfluence(self.body.material.poisson, self.body.material.young)
-
     def create_passage(self, cells: IntArray, substeps: int, tolerance: float) -> Passage:
         """Create the pass over a selection of the cells."""
         steps = substeps * max(1, round(float(np.ptp(self.y) / np.abs(np.diff(self.y)).min())))
@@ -191,18 +178,16 @@ class _CrossSection:
         top_layer, bottom_layer = layers.min(), layers.max()
         edges = edges_between(self.z, 0.0, np.inf)[top_layer : bottom_layer + 2]
         # Period over the length of the positions along y. Accuracy: strains one period away have no influence.
-        period = int(next_fast_len(int(3.0 * y.size), real=True))
-        periodic = PeriodicLayers(self.body.material, edges, period, float(y[1] - y[0]))
-        indices = np.unique(columns, return_inverse=True)[1], layers - top_layer
+        period = int(next_fast_len(3 * y.size, real=True))
+        residual: Callable[[FloatArray], FloatArray] = partial(layer_stresses, self.body.material)
+        if not self.is_line_contact:
+            residual = cell_influence(self.cells, columns, layers)
         return Passage(
             elastic=elastic,
-            residual=self.layers if self.is_line_contact else Influence.of(self.cells, columns, layers),
-            layers=self.layers,
-            lateral=periodic,
-            lateral_positions=period,
-            cell_indices=indices,
+            residual=residual,
+            lateral=PeriodicLayers(self.body.material, edges, period, float(y[1] - y[0])),
+            cell_indices=(np.unique(columns, return_inverse=True)[1], layers - top_layer),
             yield_stress=self.yield_stress[cells],
-            shear_modulus=self.body.material.shear_modulus,
             isotropic=self.material.isotropic_hardening,
             kinematic=self.material.kinematic_hardening,
             tolerance=tolerance,
@@ -214,10 +199,10 @@ class _CrossSection:
         if not self.is_line_contact:
             solution = self.cells.solve(strain_field)
             return solution.cell_averages(), *solution.top_displacement(self.x)
-        stress = self.layers.stresses(strain).reshape(strain_field.shape)
+        material = self.body.material
+        stress = layer_stresses(material, strain).reshape(strain_field.shape)
         layer_heights = np.diff(np.concatenate([[0.0], 0.5 * (self.z[1:] + self.z[:-1]), self.z[-1:]]))
-        elastic_constants = self.body.material
-        strain_zz = -elastic_constants.poisson / elastic_constants.young * (stress[0] + stress[1]) + strain_field[2]
+        strain_zz = -material.poisson / material.young * (stress[0] + stress[1]) + strain_field[2]
         return stress, -strain_zz @ layer_heights, -2 * strain_field[5] @ layer_heights
 
     def yielding_cells(self, residual: FloatArray, ratio: float) -> IntArray:
@@ -306,46 +291,37 @@ def residual_stress(
                 next_state = State(state.strain.copy(), state.accumulated.copy(), pass_state.converged)
                 next_state.strain[:, cells], next_state.accumulated[cells] = pass_state.strain, pass_state.accumulated
             residual, displacement_z, displacement_y = section.residual_state(next_state.strain)
-            new_cells = np.setdiff1d(section.yielding_cells(residual.reshape(6, -1), 1 + tolerance), cells)
-            if not new_cells.size:
+            if np.isin(section.yielding_cells(residual.reshape(6, -1), 1 + tolerance), cells).all():
                 break
             # Residual stress makes further cells yield: repeat the pass with these cells.
-            cells = np.union1d(
-                np.union1d(cells, new_cells), section.yielding_cells(residual.reshape(6, -1), NEAR_YIELD_RATIO)
-            )
+            cells = np.union1d(cells, section.yielding_cells(residual.reshape(6, -1), NEAR_YIELD_RATIO))
             passage = section.create_passage(cells, substeps, tolerance)
         plastic_flow = float((next_state.accumulated - state.accumulated).max())
         strain_norm = tensor_norm(next_state.strain)
         if strain_norm.max(initial=0.0) > MAX_STRAIN:
             index = np.unravel_index(int(strain_norm.argmax()), (section.x.size, section.z.size))
             position = f"x = {section.x[index[0]]:.4g} m, z = {section.z[index[1]]:.4g} m"
-            raise InvalidInputError(
-                "stress",
-                f"a plastic strain of {strain_norm.max():.2g} at {position}",
-                f"such that plastic strains stay below {MAX_STRAIN:g}",
-                "lower the load, or give the material hardening: flow above the shakedown limit does not end",
-            )
+            value = f"a plastic strain of {strain_norm.max():.2g} at {position}"
+            hint = "lower the load, or give the material hardening: flow above the shakedown limit does not end"
+            raise InvalidInputError("stress", value, f"such that plastic strains stay below {MAX_STRAIN:g}", hint)
         state = next_state
         strains = state.strain.reshape(6, section.x.size, section.z.size)
         fields = dict(zip((*STRESSES, *STRAINS), (*residual, *strains), strict=True))
         fields["equivalent_plastic_strain"] = state.accumulated.reshape(strains.shape[1:])
-        surface_fields = {"residual_displacement_z": displacement_z, "residual_displacement_y": displacement_y}
-        pass_result = xr.Dataset(
-            {name: (dims, field) for name, field in fields.items()}
-            | {name: (dims[:1], values) for name, values in surface_fields.items()}
-            | {"plastic_flow": ((), plastic_flow), "converged": ((), state.converged)},
-            coords={dims[0]: section.x, dims[1]: section.z},
-        )
+        variables = {name: (dims, field) for name, field in fields.items()} | {
+            "residual_displacement_z": (dims[:1], displacement_z),
+            "residual_displacement_y": (dims[:1], displacement_y),
+            "plastic_flow": ((), plastic_flow),
+            "converged": ((), state.converged),
+        }
+        pass_result = xr.Dataset(variables, coords={dims[0]: section.x, dims[1]: section.z})
         states.append(pass_result.expand_dims(pass_number=[pass_number]))
         # The state is stationary once the flow of a pass changes the stress by less than twice the tolerance.
         if 3 * body.material.shear_modulus * plastic_flow <= 2.0 * tolerance * section.yield_stress.min():
             break
     if not state.converged:
-        warnings.warn(
-            f"the flow of a pass did not reach tolerance = {tolerance:g}; take more substeps, or lower the load",
-            ConvergenceWarning,
-            stacklevel=2,
-        )
+        message = f"the flow of a pass did not reach tolerance = {tolerance:g}; take more substeps, or lower the load"
+        warnings.warn(message, ConvergenceWarning, stacklevel=2)
     return describe(xr.concat(states, "pass_number"), "residual state after passes of a contact")
 
 

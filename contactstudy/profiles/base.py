@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import Field, dataclass, fields, is_dataclass
+from itertools import chain
 from typing import NamedTuple, Protocol, runtime_checkable
 
 import numpy as np
@@ -78,25 +78,21 @@ class Shape:
         return None
 
     def __repr__(self) -> str:
-        return f"{type(self).__name__}({', '.join(f'{name}={text}' for name, text in self._arguments())})"
-
-    def _arguments(self) -> Iterator[tuple[str, str]]:
-        """Names and values of arguments other than the defaults, in engineering units."""
         entries: tuple[Field[object], ...] = fields(self) if is_dataclass(self) else ()
+        arguments = []  # other than the defaults, in engineering units
         for entry in entries:
             value = getattr(self, entry.name)
             if value != entry.default:
                 is_number = isinstance(value, (int, float)) and not isinstance(value, bool)
-                yield (
-                    entry.name,
-                    format_quantity(value, UNITS.get(entry.name, "m")) if is_number else describe_profile(value),
-                )
+                text = format_quantity(value, UNITS.get(entry.name, "m")) if is_number else describe_profile(value)
+                arguments.append(f"{entry.name}={text}")
+        return f"{type(self).__name__}({', '.join(arguments)})"
 
     def __add__(self, other: object) -> Sum:
         """Return the sum of both profiles."""
         if not isinstance(other, Profile):
             return NotImplemented
-        return Sum((*_terms(self), *_terms(other)))
+        return Sum((self, other))
 
     __radd__ = __add__
 
@@ -105,11 +101,6 @@ def unit_of(profile: object, name: str) -> str:
     """Return the unit of a parameter of a profile's class; empty for a user's class or function."""
     is_package_profile = isinstance(profile, type) and issubclass(profile, Shape) and is_dataclass(profile)
     return UNITS.get(name, "m") if is_package_profile and any(entry.name == name for entry in fields(profile)) else ""  # type: ignore[arg-type]
-
-
-def _terms(profile: Shape | Profile) -> tuple[Profile, ...]:
-    """Summands of a sum, or the profile."""
-    return profile.terms if isinstance(profile, Sum) else (profile,)
 
 
 def local_radius(profile: Profile, x: FloatArray, length: float, radius: float | FloatArray) -> FloatArray:
@@ -145,7 +136,7 @@ class Sum(Shape):
     Parameters
     ----------
     terms : tuple of Profile
-        At least one profile, valid for the roller's length.
+        At least one profile, valid for the roller's length; a sum counts as its terms.
 
     Raises
     ------
@@ -167,6 +158,8 @@ class Sum(Shape):
             raise InvalidInputError("terms", self.terms, "a tuple of at least one profile")
         for term in self.terms:
             checks.instance("terms", term, Profile, "profiles from contactstudy.profiles")
+        nested_terms = (term.terms if isinstance(term, Sum) else (term,) for term in self.terms)
+        checks.store(self, terms=tuple(chain.from_iterable(nested_terms)))
 
     def __repr__(self) -> str:
         return " + ".join(map(describe_profile, self.terms))

@@ -212,22 +212,17 @@ def read_columns(path: str | Path, positions: tuple[str, ...], values: tuple[str
         raise InvalidInputError("path", str(path), "a file with a header and data", hint)
     separator = next((mark for mark in ";\t" if mark in header_line[1]), ",")
     header = [_split_unit(entry) for entry in _split_fields(*header_line, separator)]
-    names = _select_columns([name for name, _ in header], positions, values, path)
-    indices = [next(index for index, (title, _) in enumerate(header) if title == name) for name in names]
-    columns, parser = [array("d") for _ in names], NumberParser(separator)
+    indices = _select_columns([name for name, _ in header], positions, values, path)
+    columns, parser = {index: array("d") for index in indices}, NumberParser(separator)
     for line_number, line in lines:
         row = _split_fields(line_number, line, separator)
         if len(row) != len(header):
-            raise InvalidInputError(
-                f"line {line_number}", f"{len(row)} fields", f"{len(header)} fields, as the header has"
-            )
-        for name, index, column in zip(names, indices, columns, strict=True):
-            column.append(parser.parse(line_number, name, row[index]))
+            allowed = f"{len(header)} fields, as the header has"
+            raise InvalidInputError(f"line {line_number}", f"{len(row)} fields", allowed)
+        for index, column in columns.items():
+            column.append(parser.parse(line_number, header[index][0], row[index]))
     parser.check()
-    return {
-        name: unit_in_metres(name, header[index][1]) * np.array(column)
-        for name, index, column in zip(names, indices, columns, strict=True)
-    }
+    return {header[index][0]: unit_in_metres(*header[index]) * np.array(column) for index, column in columns.items()}
 
 
 def _split_fields(line_number: int, line: str, separator: str) -> list[str]:
@@ -247,8 +242,8 @@ def _split_unit(entry: str) -> tuple[str, str]:
     return (match[1].lower(), match[2]) if match else (entry.strip().lower(), "")
 
 
-def _select_columns(titles: list[str], positions: tuple[str, ...], values: tuple[str, ...], path: Path) -> list[str]:
-    """Return the names of the required columns; raise for missing or repeated columns."""
+def _select_columns(titles: list[str], positions: tuple[str, ...], values: tuple[str, ...], path: Path) -> list[int]:
+    """Return the indices of the required columns; raise for missing or repeated columns."""
     value_names = [name for name in values if name in titles]
     if any(titles.count(name) != 1 for name in positions) or len(value_names) != 1 or titles.count(value_names[0]) != 1:
         required = f"{', '.join(positions)} and one of {', '.join(values)}"
@@ -256,7 +251,7 @@ def _select_columns(titles: list[str], positions: tuple[str, ...], values: tuple
         header = _example_header(positions, values)
         hint = f"the first line of {path} without comments contains the names of the columns, such as: {header}"
         raise InvalidInputError("columns", quoted_titles, f"{required}, each with its unit", hint)
-    return [*positions, value_names[0]]
+    return [titles.index(name) for name in (*positions, value_names[0])]
 
 
 def _example_header(positions: tuple[str, ...], values: tuple[str, ...]) -> str:
@@ -280,9 +275,8 @@ def check_positions(name: str, positions: FloatArray, min_count: int = 2) -> Non
     gaps = np.flatnonzero(steps > MAX_STEP_RATIO * neighbours) if steps.size > 1 else np.array([], dtype=int)
     if gaps.size:
         intervals = ", ".join(f"{positions[index]:g} to {positions[index + 1]:g} m" for index in gaps[:5])
-        raise InvalidInputError(
-            name, f"{gaps.size} gaps: {intervals}", f"without steps over {MAX_STEP_RATIO:g} times as wide"
-        )
+        allowed = f"without steps over {MAX_STEP_RATIO:g} times as wide"
+        raise InvalidInputError(name, f"{gaps.size} gaps: {intervals}", allowed)
 
 
 def check_values(name: str, values: FloatArray, *positions: tuple[str, FloatArray]) -> None:
@@ -290,12 +284,9 @@ def check_values(name: str, values: FloatArray, *positions: tuple[str, FloatArra
     bad_indices = np.argwhere(~np.isfinite(values))
     if not bad_indices.size:
         return
-    positions_text = "; ".join(
-        ", ".join(
-            f"{axis} = {values_of_axis[index]:g} m"
-            for (axis, values_of_axis), index in zip(positions, entry, strict=True)
-        )
-        for entry in bad_indices[:5]
-    )
+    places = []
+    for entry in bad_indices[:5]:
+        pairs = zip(positions, entry, strict=True)
+        places.append(", ".join(f"{axis} = {points[index]:g} m" for (axis, points), index in pairs))
     hint = f"{len(bad_indices)} values are not: fill the gaps first, for example with the instrument's software"
-    raise InvalidInputError(name, f"missing or not finite at {positions_text}", "given everywhere", hint)
+    raise InvalidInputError(name, f"missing or not finite at {'; '.join(places)}", "given everywhere", hint)

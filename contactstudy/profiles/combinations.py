@@ -53,9 +53,8 @@ class Halves(Shape):
         left_drop, right_drop = (float(check_drop(half, mid_length, length)[0]) for half in (self.left, self.right))
         # Largest step between the two halves at mid-length, metres: about one atom
         if abs(left_drop - right_drop) > 1e-10:
-            raise InvalidInputError(
-                "left, right", (left_drop, right_drop), "equal drops at mid-length (metres), so that the halves meet"
-            )
+            allowed = "equal drops at mid-length (metres), so that the halves meet"
+            raise InvalidInputError("left, right", (left_drop, right_drop), allowed)
         x = np.asarray(x)
         return np.asarray(np.where(x < 0, *(check_drop(half, x, length) for half in (self.left, self.right))))
 
@@ -154,9 +153,8 @@ class EffectiveLength(Shape):
         """Material removed (m) at distances `x` (m) from mid-length."""
         half_length = 0.5 * length
         if 0.5 * self.effective_length > half_length * (1 + 1e-12):
-            raise InvalidInputError(
-                "effective_length", self.effective_length, f"at most the roller's length, {length:g} m"
-            )
+            allowed = f"at most the roller's length, {length:g} m"
+            raise InvalidInputError("effective_length", self.effective_length, allowed)
         x = np.asarray(x)
         first, last = self._create_corner(-1), self._create_corner(1)
         drops = check_drop(self.profile, np.clip(x, -first.start, last.start), self.effective_length)

@@ -52,9 +52,8 @@ class FullCrown(Shape):
             raise InvalidInputError("centre", self.centre, f"within half the roller's length, {length / 2:g} m")
         reach = length / 2 + abs(self.centre)
         if self.crown_radius < reach:
-            raise InvalidInputError(
-                "crown_radius", self.crown_radius, f"at least {reach:g} m, the distance to the roller's farther end"
-            )
+            allowed = f"at least {reach:g} m, the distance to the roller's farther end"
+            raise InvalidInputError("crown_radius", self.crown_radius, allowed)
         return _arc_drop(np.minimum(np.abs(np.asarray(x) - self.centre), reach), self.crown_radius)
 
 
@@ -112,14 +111,12 @@ class PartialCrown(Shape):
         """Material removed (m) at distances `x` (m) from mid-length."""
         end = (length - self.straight_length) / 2
         if end < 0:
-            raise InvalidInputError(
-                "straight_length", self.straight_length, f"at most the roller's length, {length:g} m"
-            )
+            allowed = f"at most the roller's length, {length:g} m"
+            raise InvalidInputError("straight_length", self.straight_length, allowed)
         begin = end - self.dub_length
         if begin < -1e-9 * length:
-            raise InvalidInputError(
-                "dub_length", self.dub_length, f"at most {end:g} m, the length between the straight middle and the end"
-            )
+            allowed = f"at most {end:g} m, the length between the straight middle and the end"
+            raise InvalidInputError("dub_length", self.dub_length, allowed)
         begin = max(begin, 0.0)
         if begin > self.crown_radius:
             raise InvalidInputError("crown_radius", self.crown_radius, f"at least {begin:g} m, the length of the crown")
@@ -129,14 +126,11 @@ class PartialCrown(Shape):
         sine = begin / self.crown_radius
         shift = self.dub_radius * sine
         if end - begin + shift > self.dub_radius:
-            raise InvalidInputError(
-                "dub_radius", self.dub_radius, f"at least {(end - begin) / (1 - sine):g} m, to reach the roller's end"
-            )
+            allowed = f"at least {(end - begin) / (1 - sine):g} m, to reach the roller's end"
+            raise InvalidInputError("dub_radius", self.dub_radius, allowed)
         crown_drop = _arc_drop(np.minimum(distance, begin), self.crown_radius)
-        dub_drop = _arc_drop(np.maximum(distance - begin, 0.0) + shift, self.dub_radius) - _arc_drop(
-            np.array(shift), self.dub_radius
-        )
-        return np.asarray(crown_drop + dub_drop)
+        dub_drop = _arc_drop(np.maximum(distance - begin, 0.0) + shift, self.dub_radius)
+        return np.asarray(crown_drop + (dub_drop - _arc_drop(np.array(shift), self.dub_radius)))
 
 
 @dataclass(frozen=True, repr=False)
@@ -207,7 +201,6 @@ class Sphere(Shape):
     def local_radius(self, x: FloatArray, length: float, radius: float | FloatArray) -> FloatArray:
         """Radius of the roller (m), which must equal the sphere's."""
         if not np.allclose(radius, self.radius, rtol=1e-9, atol=0.0):
-            raise InvalidInputError(
-                "radius", self.radius, f"the roller's radius, {np.max(radius):g} m", "an Ellipsoid may have any radius"
-            )
+            allowed = f"the roller's radius, {np.max(radius):g} m"
+            raise InvalidInputError("radius", self.radius, allowed, "an Ellipsoid may have any radius")
         return super().local_radius(x, length, radius)

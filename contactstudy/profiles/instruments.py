@@ -74,10 +74,8 @@ def rotate_heights(measured: Heights, angle: int, mirror: bool = False) -> Heigh
     x, y, heights = measured
     if y is None:
         return measured if angle == 0 else Heights(_reverse(x), None, heights[::-1])
-    if angle in (90, 270):  # (x, y) moves to (-y, x)
+    for _ in range(angle // 90):  # (x, y) moves to (-y, x)
         x, y, heights = _reverse(y), x, heights.T[::-1]
-    if angle in (180, 270):
-        x, y, heights = _reverse(x), _reverse(y), heights[::-1, ::-1]
     if mirror:
         y, heights = _reverse(y), heights[:, ::-1]
     return Heights(x, y, heights)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any, Self
+from typing import Self
 
 import numpy as np
 
@@ -45,16 +45,12 @@ class Logarithmic(Shape):
         **parameters
             Further parameters of the profile.
         """
-        profile_class: Any = cls
-        profile: Self = profile_class(**cls._parameters_for_pressure(max_pressure, radius, modulus), **parameters)
-        return profile
-
-    @classmethod
-    def _parameters_for_pressure(cls, max_pressure: float, radius: float, modulus: float) -> dict[str, float]:
-        """Parameters that follow from the design load."""
         pressure = checks.positive("max_pressure", max_pressure, "Pa")
         modulus = checks.positive("modulus", modulus, "Pa")
-        return {"amplitude": checks.positive("radius", radius, "metres") * (pressure / modulus) ** 2}
+        radius = checks.positive("radius", radius, "metres")
+        if issubclass(cls, JohnsGohar):
+            parameters = {"half_width": hertz.line_half_width(pressure, radius, modulus)} | parameters
+        return cls(amplitude=radius * (pressure / modulus) ** 2, **parameters)  # type: ignore[call-arg]
 
     @classmethod
     def for_load(cls, load: float, *, length: float, radius: float, modulus: float, **parameters: float) -> Self:
@@ -74,9 +70,9 @@ class Logarithmic(Shape):
         >>> round(1e6 * Lundberg.for_load(1532.0, length=10e-3, radius=5e-3, modulus=230.77e9).amplitude, 4)
         0.2113
         """
-        sizes = {"length": (length, "metres"), "radius": (radius, "metres"), "modulus": (modulus, "Pa")}
-        length, radius, modulus = (checks.positive(name, *value) for name, value in sizes.items())
-        pressure = hertz.line_max_pressure(checks.positive("load", load, "N") / length, radius, modulus)
+        line_load = checks.positive("load", load, "N") / checks.positive("length", length, "metres")
+        radius, modulus = checks.positive("radius", radius, "metres"), checks.positive("modulus", modulus, "Pa")
+        pressure = hertz.line_max_pressure(line_load, radius, modulus)
         return cls.for_pressure(pressure, radius=radius, modulus=modulus, **parameters)
 
 
@@ -160,12 +156,6 @@ class JohnsGohar(Logarithmic):
         checks.store(self, amplitude=checks.not_negative("amplitude", self.amplitude, "metres"))
         checks.store(self, half_width=checks.not_negative("half_width", self.half_width, "metres"))
 
-    @classmethod
-    def _parameters_for_pressure(cls, max_pressure: float, radius: float, modulus: float) -> dict[str, float]:
-        return super()._parameters_for_pressure(max_pressure, radius, modulus) | {
-            "half_width": hertz.line_half_width(max_pressure, radius, modulus)
-        }
-
     def edge_drop(self, length: float) -> float:
         """Drop (m) at the ends of a roller of the given `length` (m)."""
         return float(self.drop(np.array([length / 2]), length)[0])
@@ -174,9 +164,8 @@ class JohnsGohar(Logarithmic):
         """Material removed (m) at distances `x` (m) from mid-length."""
         factor = float(1 - EDGE_FACTOR * self.half_width / (length / 2))
         if factor < 0:
-            raise InvalidInputError(
-                "half_width", self.half_width, f"at most 3.3 half lengths of the roller, {length / 2 / EDGE_FACTOR:g} m"
-            )
+            allowed = f"at most 3.3 half lengths of the roller, {length / 2 / EDGE_FACTOR:g} m"
+            raise InvalidInputError("half_width", self.half_width, allowed)
         return logarithmic_drop(self.amplitude, 2 * np.asarray(x) / length, factor)
 
 

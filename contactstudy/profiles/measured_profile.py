@@ -89,12 +89,11 @@ def extract_ridge(x: FloatArray, y: FloatArray, heights: FloatArray) -> FloatArr
     ridge_y = -0.5 * scale * slope / c if c < 0 else np.full(x.size, np.nan)
     is_inside = (ridge_y >= y[0]) & (ridge_y <= y[-1])
     if not is_inside[complete].all() or not complete.any():
-        raise InvalidInputError(
-            "height",
-            "a map without the highest line of a roller",
-            "such that the surface rises to one line across the map and falls again",
-            "turn=90 takes the other axis for the roller's; for a roller without curvature across give one line as CSV",
+        allowed = "such that the surface rises to one line across the map and falls again"
+        hint = (
+            "turn=90 takes the other axis for the roller's; for a roller without curvature across give one line as CSV"
         )
+        raise InvalidInputError("height", "a map without the highest line of a roller", allowed, hint)
     fitted = slope[:, None] * lateral + c * lateral**2
     means = np.sum(filled - fitted, axis=1, where=is_measured) / np.maximum(counts, 1)
     return np.where(complete, means - slope**2 / (4 * c), np.nan)
@@ -170,12 +169,8 @@ class Measured(Shape):
             raise InvalidInputError("drops", drops.max(), f"at most {checks.MAX_MAGNITUDE:g} (metres)", "units are SI")
         if drops.min() < 0:
             index = int(drops.argmin())
-            raise InvalidInputError(
-                "drops",
-                f"{drops[index]:g} m at x = {x[index]:g} m",
-                "not below zero",
-                "remove_offset=True when reading",
-            )
+            value = f"{drops[index]:g} m at x = {x[index]:g} m"
+            raise InvalidInputError("drops", value, "not below zero", "remove_offset=True when reading")
         if self.largest_spike is not None:
             checks.store(self, largest_spike=checks.positive("largest_spike", self.largest_spike, "metres"))
         if self.cutoff is not None:
@@ -191,10 +186,8 @@ class Measured(Shape):
         checks.store(self, positions=tuple(x.tolist()), drops=tuple(drops.tolist()))
 
     def __repr__(self) -> str:
-        length, drop = (
-            format_quantity(self.positions[-1] - self.positions[0], "m"),
-            format_quantity(float(self._filtered.max()), "m"),
-        )
+        length = format_quantity(self.positions[-1] - self.positions[0], "m")
+        drop = format_quantity(float(self._filtered.max()), "m")
         filtered = "" if self.cutoff is None else f", Gaussian filter with cut-off {format_quantity(self.cutoff, 'm')}"
         return f"Measured({len(self.positions)} points over {length}, drop up to {drop}{filtered})"
 
@@ -308,13 +301,8 @@ class Measured(Shape):
         measured = self.positions[-1] - self.positions[0]
         # Largest difference of a measured length from the roller's, over the latter
         if abs(measured - length) > 1e-3 * length:
-            comparison = "longer" if measured > length else "shorter"
-            raise InvalidInputError(
-                "positions",
-                f"{measured:g} m from first to last",
-                f"the roller's length, {length:g} m",
-                f"it is {comparison}",
-            )
+            value, hint = f"{measured:g} m from first to last", f"it is {'longer' if measured > length else 'shorter'}"
+            raise InvalidInputError("positions", value, f"the roller's length, {length:g} m", hint)
         clipped = np.clip(x, -measured / 2, measured / 2)
         return np.asarray(np.maximum(self._interpolation(clipped), 0.0))
 
@@ -394,11 +382,8 @@ def check_outliers(x: FloatArray, drops: FloatArray, max_spike: float | None = N
     outliers = np.flatnonzero((spikes > limits) & (spikes == local_max))
     if outliers.size:
         listing = ", ".join(f"{spikes[index]:.2g} m at x = {x[index]:g} m" for index in outliers[:5])
-        raise InvalidInputError(
-            "drops",
-            f"{outliers.size} outliers: {listing}",
-            f"within {limits[outliers[0]]:.2g} m of the median of their neighbours",
-        )
+        allowed = f"within {limits[outliers[0]]:.2g} m of the median of their neighbours"
+        raise InvalidInputError("drops", f"{outliers.size} outliers: {listing}", allowed)
 
 
 def _running_median(values: FloatArray, half_count: int, parity: Literal["odd", "even"]) -> FloatArray:

@@ -97,9 +97,8 @@ class Tapered(Shape):
     def __post_init__(self) -> None:
         angle = checks.finite("half_angle", self.half_angle, "radians")
         if abs(angle) > MAX_HALF_ANGLE:
-            raise InvalidInputError(
-                "half_angle", angle, "between -pi/4 and pi/4 (radians)", "an angle in degrees needs numpy.radians"
-            )
+            hint = "an angle in degrees needs numpy.radians"
+            raise InvalidInputError("half_angle", angle, "between -pi/4 and pi/4 (radians)", hint)
         checks.store(self, half_angle=angle)
         checks.store(self, fillet_radius=checks.not_negative("fillet_radius", self.fillet_radius, "metres"))
 
@@ -112,12 +111,9 @@ class Tapered(Shape):
         mid_radius = np.asarray(radius) / np.cos(self.half_angle)
         slope = np.tan(self.half_angle)
         if np.min(mid_radius) <= abs(slope) * length / 2:
-            raise InvalidInputError(
-                "half_angle",
-                self.half_angle,
-                f"below {np.arcsin(min(1.0, float(2 * np.min(radius) / length))):.3g} rad for this roller",
-                "the cone's tip would lie within the roller",
-            )
+            max_angle = np.arcsin(min(1.0, float(2 * np.min(radius) / length)))
+            allowed, reason = f"below {max_angle:.3g} rad for this roller", "the cone's tip would lie within the roller"
+            raise InvalidInputError("half_angle", self.half_angle, allowed, reason)
         return np.asarray(mid_radius + slope * np.asarray(x))
 
 

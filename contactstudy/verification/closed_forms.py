@@ -33,6 +33,7 @@ from scipy import integrate, optimize, special
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 
+Values = NDArray[np.inexact]  # Real or complex numbers
 Stress = dict[str, FloatArray]
 COMPONENTS = ("sigma_xx", "sigma_yy", "sigma_zz", "tau_xy", "tau_xz", "tau_yz")  # Keys of a stress
 
@@ -104,9 +105,7 @@ def von_mises(stress: Mapping[str, FloatArray]) -> FloatArray:
     return np.asarray(np.sqrt(0.5 * normal_squares + 3 * (xy**2 + xz**2 + yz**2)))
 
 
-def potential_stresses(
-    x: NDArray[np.inexact], y: NDArray[np.inexact], z: NDArray[np.inexact], zeta: NDArray[np.inexact], nu: float
-) -> tuple[list[NDArray[np.inexact]], list[NDArray[np.inexact]]]:
+def potential_stresses(x: Values, y: Values, z: Values, zeta: Values, nu: float) -> tuple[list[Values], list[Values]]:
     """Stresses of a unit normal and a unit tangential (along y) load, from the potentials of Johnson, section 3.2.
 
     With `rho^2 = x^2 + y^2 + zeta^2` the potentials are `V = 1/rho`, `L = ln(rho + zeta)` and `W = zeta L - rho`; for a
@@ -131,7 +130,7 @@ def potential_stresses(
         -z * v_yz,
     ]
 
-    def third_derivatives(f2: NDArray[np.inexact], f3: NDArray[np.inexact]) -> tuple[NDArray[np.inexact], ...]:
+    def third_derivatives(f2: Values, f3: Values) -> tuple[Values, ...]:
         return 4 * y * f2 + 8 * x**2 * y * f3, 12 * y * f2 + 8 * y**3 * f3, 4 * x * f2 + 8 * x * y**2 * f3
 
     (l_xxy, l_yyy, l_xyy), (w_xxy, w_yyy, w_xyy) = third_derivatives(l2, l3), third_derivatives(w2, w3)

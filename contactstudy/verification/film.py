@@ -52,20 +52,15 @@ def line_checks(*, full: bool) -> Iterator[Check]:
         case, source = f"line contact, M = {load:g}, L = {lubricant:g}", "extrapolated table"
         yield Reference(case, source).compare("central film H", line.central_film, central, 5e-3, relative=True)
         yield Reference(case, source).compare("least film H", line.least_film, min_film, 5e-3, relative=True)
-        moment = abs(line.moment) / 2
-        yield Reference(case, "equilibrium").compare(
-            "w delta / 2 against t", moment, line.rolling_moment, 2e-2, relative=True
-        )
+        moment, reference = abs(line.moment) / 2, Reference(case, "equilibrium")
+        yield reference.compare("w delta / 2 against t", moment, line.rolling_moment, 2e-2, relative=True)
     for load in (50.0, 500.0) if full else (50.0,):
         line, case = line_contact.solve_line(load, 10.0), f"line contact, M = {load:g}, L = 10"
         formula = float(moes_line(load, 10.0))
         yield Reference(case, "Moes (1992)").compare("central film H", line.central_film, formula, 0.04, relative=True)
     line = line_contact.solve_line(20.0, 10.0, inlet=4.0)
-    expected, source = 1.45 * 20.0**-1.5, "Biboulet and Houpert (2010)"
-    case = "line contact, M = 20, L = 10"
-    yield Reference(case, source).compare(
-        "rolling moment t / (p0 a^2)", line.rolling_moment, expected, 0.04, relative=True
-    )
+    reference, expected = Reference("line contact, M = 20, L = 10", "Biboulet and Houpert (2010)"), 1.45 * 20.0**-1.5
+    yield reference.compare("rolling moment t / (p0 a^2)", line.rolling_moment, expected, 0.04, relative=True)
     rigid_film = 0.1 * line_contact.solve_line(0.1, 0.01, finest=0.4).central_film
     case = "line contact, M = 0.1, L = 0.01"
     yield Reference(case, "Martin (1916)").compare("M H of rigid surfaces", rigid_film, 2.448, 5e-3, relative=True)
@@ -86,6 +81,13 @@ def dry_limit_checks() -> Iterator[Check]:
     yield Reference(case, "Moes (1992)").compare("exponent of M in the central film", float(exponent), -0.125, 0.01)
 
 
+def barus_oil(viscosity: float, pressure_viscosity: float) -> Lubricant:
+    """Oil of constant density whose viscosity follows Barus."""
+    return Lubricant(
+        viscosity=viscosity, pressure_viscosity=pressure_viscosity, viscosity_law="barus", density_law="constant"
+    )
+
+
 def crowned_case(body: Body, length: float) -> Case:
     """Crowned roller in the middle of a body, with the numbers of the stored film."""
     stored_case = FILM_CASES["crowned"]
@@ -96,12 +98,8 @@ def crowned_case(body: Body, length: float) -> Case:
     dry_case = Case(body=body, roller=roller, max_pressure=pressure, end_distance=offset)
     modulus = 2 * dry_case.modulus
     half_width_ratio = dry_case.normal_load / (dry_case.contact_length * modulus * RADIUS * stored_case.load_number)
-    oil = Lubricant(
-        viscosity=0.5 * half_width_ratio**2 * modulus * RADIUS,
-        pressure_viscosity=stored_case.lubricant_number / (modulus * half_width_ratio**0.5),
-        viscosity_law="barus",
-        density_law="constant",
-    )
+    viscosity = 0.5 * half_width_ratio**2 * modulus * RADIUS
+    oil = barus_oil(viscosity, stored_case.lubricant_number / (modulus * half_width_ratio**0.5))
     return replace(dry_case, lubricant=oil, motion=Sliding(body_speed=1.0, roller_speed=1.0))
 
 
@@ -109,28 +107,20 @@ def coarse_film(name: str) -> FilmCase:
     """Film on the cells of the coarsest level, for comparison with the stored film."""
     length = FILM_CASES[name].length * HALF_WIDTH
     case = crowned_case(FiniteLengthSpace(length=length, material=STEEL), length)
-    assert case.lubricant is not None
-    assert case.motion.speeds is not None
-    return FilmCase(
-        case=case,
-        lubricant=case.lubricant,
-        speeds=case.motion.speeds,
-        asperities=None,
-        resolution=RESOLUTION,
-        inlet=None,
-    )
+    oil, speeds = case.lubricant, case.motion.speeds
+    assert oil is not None
+    assert speeds is not None
+    return FilmCase(case=case, lubricant=oil, speeds=speeds, asperities=None, resolution=RESOLUTION, inlet=None)
 
 
 def finite_element_checks(name: str) -> Iterator[Check]:
     """Compare a film between two free ends with the film of finite elements on the same cells."""
     stored, problem = load_reference(FILM_FILE, name), FILM_CASES[name]
     lubricated = coarse_film(name)
-    solution = film_on_level(lubricated, Level(), lubricated.contact_ends, SETTINGS)
-    cells = solution.problem.cells
-    fields = {"film": solution.solution.film, "pressure": solution.solution.fluid_pressure}
-    computed = xr.Dataset({key: (("x", "y"), field) for key, field in fields.items()}, {"x": cells.x, "y": cells.y})
+    solution = film_on_level(lubricated, Level(), lubricated.contact_ends, SETTINGS).solution
+    fields = {"film": solution.film, "pressure": solution.fluid_pressure}
     # The cells of both solutions differ only by rounding.
-    computed = computed.interp(x=stored["x"], y=stored["y"], kwargs={"fill_value": "extrapolate"})
+    computed = xr.Dataset({key: (("x", "y"), field) for key, field in fields.items()}, stored.coords)
     case = f"crowned roller, {problem.length:g} a, flush, M = {problem.load_number:g}, L = {problem.lubricant_number:g}"
     reference = Reference(case, FINITE_ELEMENTS.format(stored.attrs["film_error"], "of the film, on the same cells"))
     axis, expected = (data["film"].interp(y=0.0).values for data in (computed, stored))
@@ -151,47 +141,30 @@ def ellipse_checks() -> Iterator[Check]:
         half_length = float(
             np.cbrt(3 * force * np.sqrt(radius * crown_radius) / modulus) * (crown_radius / radius) ** 0.25
         )
-        solved_film = film.solve_film(
-            Case(
-                body=HalfSpace(material=STEEL),
-                roller=Roller(radius=radius, length=5 * half_length, profile=FullCrown(crown_radius)),
-                load=force,
-                motion=Sliding(body_speed=speed, roller_speed=speed),
-                lubricant=Lubricant(
-                    viscosity=viscosity,
-                    pressure_viscosity=lubricant / (modulus * np.sqrt(root)),
-                    viscosity_law="barus",
-                    density_law="constant",
-                ),
-            ),
-            accuracy=0.2,
-        )
+        roller = Roller(radius=radius, length=5 * half_length, profile=FullCrown(crown_radius))
+        motion = Sliding(body_speed=speed, roller_speed=speed)
+        oil = barus_oil(viscosity, lubricant / (modulus * np.sqrt(root)))
+        lubricated = Case(body=HalfSpace(material=STEEL), roller=roller, load=force, motion=motion, lubricant=oil)
+        solved_film = film.solve_film(lubricated, accuracy=0.2)
         central, formula = solved_film["central_film"] / (radius * root), nijenbanning(load, lubricant, ratio)
         case = f"crowned roller on a half-space, Rx / Ry = {ratio:g}, M = {load:g}, L = {lubricant:g}"
-        yield Reference(case, "Nijenbanning, Venner and Moes (1994)").compare(
-            "central film H", central, formula, 0.04, relative=True
-        )
-
-
-def crowned_film(body: Body, length: float) -> xr.Dataset:
-    """Film under the crowned roller."""
-    return film.solve_film(crowned_case(body, length), accuracy=0.1)
+        reference = Reference(case, "Nijenbanning, Venner and Moes (1994)")
+        yield reference.compare("central film H", central, formula, 0.04, relative=True)
 
 
 def roller_checks(*, full: bool) -> Iterator[Check]:
     """Certificate of a film between free ends; at the full level, free ends far away."""
     length = 16 * HALF_WIDTH
-    flush_film = crowned_film(FiniteLengthSpace(length=length, material=STEEL), length)
+    flush_case = crowned_case(FiniteLengthSpace(length=length, material=STEEL), length)
+    flush_film = film.solve_film(flush_case, accuracy=0.1)
     case = "crowned roller, 16 a, flush, M = 10, L = 5"
     yield Reference(case, "mass balance").compare("net outflow of a cell / (um h)", flush_film["mass_error"], 0.0, 1e-6)
     area = flush_film["x_width"] * float(flush_film["y"][1] - flush_film["y"][0])
     load, quantity = (flush_film["pressure"] * area).sum(), "sum of the pressure over the cells, N"
     yield Reference(case, "equilibrium").compare(quantity, load, flush_film["normal_load"], 1e-8, relative=True)
     if full:
-        long_film = crowned_film(FiniteLengthSpace(length=10 * length, material=STEEL), length)
-        half_space_film = crowned_film(HalfSpace(material=STEEL), length)
-        case = "crowned roller, 16 a, 72 a from both free ends"
+        bodies = FiniteLengthSpace(length=10 * length, material=STEEL), HalfSpace(material=STEEL)
+        long_film, half_space_film = (film.solve_film(crowned_case(body, length), accuracy=0.1) for body in bodies)
+        reference = Reference("crowned roller, 16 a, 72 a from both free ends", "half-space")
         for name in ("central_film", "least_film"):
-            yield Reference(case, "half-space").compare(
-                f"{name}, m", long_film[name], half_space_film[name], 5e-3, relative=True
-            )
+            yield reference.compare(f"{name}, m", long_film[name], half_space_film[name], 5e-3, relative=True)

@@ -41,6 +41,7 @@ from contactstudy.verification.problems import (
     on_cells,
     on_grid,
     point_pressure,
+    strip,
     strip_means,
     unit_material,
 )
@@ -194,9 +195,8 @@ def wedge_checks() -> Iterator[Check]:
     }
     curve = Curve(("z / a", "sigma_zz a / P, x = 0"), z, stress["sigma_zz"].values[0], exact["sigma_zz"][0])
     case = "line load P on the edge of a quarter space, a and more away"
-    yield Reference(case, "Michell (1900); Timoshenko and Goodier, wedge").compare_fields(
-        "six stresses a / P", components(stress), components(exact), 0.02, curve=curve
-    )
+    reference = Reference(case, "Michell (1900); Timoshenko and Goodier, wedge")
+    yield reference.compare_fields("six stresses a / P", components(stress), components(exact), 0.02, curve=curve)
 
 
 def mirror_checks() -> Iterator[Check]:
@@ -204,12 +204,8 @@ def mirror_checks() -> Iterator[Check]:
     half_width = 0.03  # half-width of the load over its length along the normal to the edge
     for poisson, expected in MIRROR_ERRORS.items():
         material = unit_material(poisson)
-        load = on_cells(
-            lambda x, y: np.sqrt(np.maximum(1 - (y / half_width) ** 2, 0)) * (x < 1),
-            (0, 1.125),
-            (-1.25 * half_width, 1.25 * half_width),
-            (288, 33),
-        )
+        y_range = (-1.25 * half_width, 1.25 * half_width)
+        load = on_cells(lambda x, y: strip(x, y / half_width) * (x < 1), (0, 1.125), y_range, (288, 33))
         exact, mirror = (
             float(surface_displacement(QuarterSpace(material=material, model=model), load)[0].max())
             for model in ("exact", "mirror")
@@ -262,11 +258,10 @@ def displacement_checks(name: str) -> Iterator[Check]:
     displacement = surface_displacement(body, on_grid(case.pressure(grid.x, grid.y), grid), case.friction)
     in_body = expected.sel(x=slice(0.5 * grid.dx, case.length - 0.5 * grid.dx))
     interpolated = displacement.interp(x=in_body["x"], y=in_body["y"], method="cubic")
-    mid_displacement = float(displacement.interp(x=0.5 * case.length, y=0.0, method="cubic"))
-    error = float(expected.attrs["error_estimate"])
-    yield Reference(
-        f"{name}: L = {case.length:g}a, {case.g}, f = {case.friction:g}", FINITE_ELEMENTS.format(error, "p0 a")
-    ).compare_fields("E u_z / (p0 a), relative to the middle", young * (interpolated - mid_displacement), in_body, 1e-3)
+    middle = float(displacement.interp(x=0.5 * case.length, y=0.0, method="cubic"))
+    label, error = f"{name}: L = {case.length:g}a, {case.g}, f = {case.friction:g}", expected.attrs["error_estimate"]
+    reference, computed = Reference(label, FINITE_ELEMENTS.format(error, "p0 a")), young * (interpolated - middle)
+    yield reference.compare_fields("E u_z / (p0 a), relative to the middle", computed, in_body, 1e-3)
 
 
 def contact_checks(name: str) -> Iterator[Check]:
@@ -324,3 +319,8 @@ def finite_element_checks(*, full: bool) -> Iterator[Check]:
             yield from displacement_checks(name)
     for name in CONTACT_CASES:
         yield from contact_checks(name)
+
+
+# Checks of the groups of the suite
+QUARTER_SPACE = (edge_load_checks, extra_deflection_checks, resultant_checks, corner_checks, antiplane_checks)
+PUBLISHED = (johnson_checks, wedge_checks, mirror_checks)

@@ -111,17 +111,13 @@ def pass_checks() -> Iterator[Check]:
     """Flow on either side of the shakedown limit."""
     contact = from_top(0.0).drop_vars("hertz_max_pressure").isel(z=slice(8, None, 2))
     body = HalfSpace(material=STIFF)
-    case, source = "passes of a line contact without friction", "Melan; Johnson's p0 = 4 k"
+    reference = Reference("passes of a line contact without friction", "Melan; Johnson's p0 = 4 k")
     settling = ElasticPlastic(yield_stress=np.sqrt(3.0) / 4 * 1.03)
     flow = residual_stress(contact, body, settling, passes=5)["plastic_flow"].values
-    yield Reference(case, source).compare(
-        "flow of the last pass over the first's, 3 % below", flow[-1] / flow[0], 0.0, 1e-3
-    )
+    yield reference.compare("flow of the last pass over the first's, 3 % below", flow[-1] / flow[0], 0.0, 1e-3)
     flowing = ElasticPlastic(yield_stress=np.sqrt(3.0) / 4 * 0.97, kinematic_hardening=5.0)
     flow = residual_stress(contact, body, flowing, passes=5)["plastic_flow"].values
-    yield Reference(case, source).compare(
-        "flow of the fifth pass over the fourth's, 3 % above", flow[-1] / flow[-2], 1.0, 0.05
-    )
+    yield reference.compare("flow of the fifth pass over the fourth's, 3 % above", flow[-1] / flow[-2], 1.0, 0.05)
 
 
 def finite_element_checks(name: str) -> Iterator[Check]:

@@ -17,7 +17,6 @@ from typing import Any
 import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
-from scipy.special import xlogy
 
 from contactstudy import checks
 from contactstudy.arrays.grid import Grid
@@ -183,28 +182,6 @@ class LubricatedCase:
     load_number: float  # Moes' M of the mean load per length
     lubricant_number: float  # Moes' L
     poisson: float = 0.3
-
-    @property
-    def load(self) -> float:
-        """Load of the line contact of half-width and peak pressure 1 over the whole length."""
-        return LINE_LOAD * self.length
-
-    @property
-    def speed(self) -> float:
-        """Speed number of eq. (404), by ``(a / R)**2 = 8 W / pi``."""
-        return 3 * np.pi**2 / (8 * self.load_number**2)
-
-    @property
-    def pressure_viscosity(self) -> float:
-        """Pressure-viscosity coefficient times the peak pressure."""
-        return float(self.lubricant_number * np.sqrt(self.load_number / (2 * np.pi)))
-
-    def gap(self, x_edges: FloatArray, y: FloatArray) -> FloatArray:
-        """Gap, mean over columns, at positions along y."""
-        position = 2 * x_edges / self.length - 1
-        integral = xlogy(1 + position, 1 + position) - xlogy(1 - position, 1 - position) - 2 * position
-        drop = -self.amplitude * np.diff(integral) / np.diff(position)
-        return np.asarray(drop[:, None] + 0.5 * y**2)
 
 
 # Loads whose stresses are stored, by name

@@ -31,27 +31,11 @@ if TYPE_CHECKING:
 LEVELS = ("quick", "full")  # Levels of a run
 # Iterators that compute checks, by the kind of reference; the argument selects the full level
 GROUPS: dict[str, Callable[[bool], tuple[Iterator[Check], ...]]] = {
-    "half-space": lambda full: (
-        exact_solutions.hertz_checks(),
-        exact_solutions.circle_checks(),
-        exact_solutions.line_checks(),
-        exact_solutions.rectangle_checks(),
-        exact_solutions.point_checks(),
-    ),
-    "limits": lambda full: (
-        exact_solutions.plane_checks(),
-        exact_solutions.plate_contact_checks(),
-        exact_solutions.body_checks(),
-    ),
-    "quarter space": lambda full: (
-        free_ends.edge_load_checks(),
-        free_ends.extra_deflection_checks(),
-        free_ends.resultant_checks(),
-        free_ends.corner_checks(),
-        free_ends.antiplane_checks(),
-    ),
+    "half-space": lambda full: tuple(checks() for checks in exact_solutions.HALF_SPACE),
+    "limits": lambda full: tuple(checks() for checks in exact_solutions.LIMITS),
+    "quarter space": lambda full: tuple(checks() for checks in free_ends.QUARTER_SPACE),
     "finite elements": lambda full: (free_ends.finite_element_checks(full=full),),
-    "published": lambda full: (free_ends.johnson_checks(), free_ends.wedge_checks(), free_ends.mirror_checks()),
+    "published": lambda full: tuple(checks() for checks in free_ends.PUBLISHED),
     "friction": lambda full: (
         tribology.carter_checks(),
         tribology.slope_checks(full=full),
@@ -60,13 +44,8 @@ GROUPS: dict[str, Callable[[bool], tuple[Iterator[Check], ...]]] = {
         tribology.kalker_checks(full=full),
         tribology.contact_program_checks(),
     ),
-    "heat": lambda full: (
-        tribology.fast_checks(),
-        tribology.band_checks(),
-        tribology.resting_checks(),
-        tribology.end_checks(),
-    ),
-    "wear": lambda full: (tribology.sliding_wear_checks(), tribology.rolling_wear_checks()),
+    "heat": lambda full: tuple(checks() for checks in tribology.HEAT),
+    "wear": lambda full: tuple(checks() for checks in tribology.WEAR),
     "passes": lambda full: (
         passes.shakedown_checks(),
         passes.residual_checks(),
@@ -80,13 +59,7 @@ GROUPS: dict[str, Callable[[bool], tuple[Iterator[Check], ...]]] = {
         *(film.finite_element_checks(name) for name in FILM_CASES),
         *((film.ellipse_checks(),) if full else ()),
     ),
-    "consistency": lambda full: (
-        exact_solutions.free_end_checks(),
-        exact_solutions.equilibrium_checks(),
-        exact_solutions.contact_condition_checks(),
-        exact_solutions.reciprocity_checks(),
-        exact_solutions.alternation_checks(),
-    ),
+    "consistency": lambda full: tuple(checks() for checks in exact_solutions.CONSISTENCY),
 }
 
 

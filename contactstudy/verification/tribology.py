@@ -11,17 +11,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import xarray as xr
 from scipy import special
 
 from contactstudy.arrays.grid import Grid
-from contactstudy.bodies import Counterbody, FiniteLengthSpace, HalfSpace, Material
+from contactstudy.bodies import Body, Counterbody, FiniteLengthSpace, HalfSpace, Material
 from contactstudy.case import Case, Roller, choose_grid
-from contactstudy.case.motion import Rolling, Shift, Sliding
+from contactstudy.case.motion import Motion, Rolling, Shift, Sliding
 from contactstudy.checks import FloatArray
 from contactstudy.contact import ContactSettings
 from contactstudy.contact.rolling.fastsim import POISSONS, TABLE
@@ -43,6 +44,17 @@ def material(shear: float, poisson: float) -> Material:
     return Material(2 * shear * (1 + poisson), poisson)
 
 
+def solve_pair(
+    bodies: Sequence[Body], gap: xr.DataArray, load: float, friction: float, motion: Motion, **settings: Any
+) -> xr.Dataset:
+    """Contact of two elastic bodies with friction."""
+    body, counterbody = bodies[0], Counterbody(bodies[1])
+    solver = ContactSettings(**settings)
+    return solve_contact(
+        body, gap, load=load, friction=friction, counterbody=counterbody, motion=motion, settings=solver
+    )
+
+
 def line_contact(
     first: Material, second: Material, motion: Rolling, friction: float, *, coupled: bool = False
 ) -> xr.Dataset:
@@ -50,15 +62,7 @@ def line_contact(
     modulus = 1 / (1 / first.plane_strain_modulus + 1 / second.plane_strain_modulus)
     gap = on_cells(lambda x, y: 0.5 * y**2 + 0 * x, (0, 1), (-1.3, 1.3), (2, LINE_CELLS))
     bodies = [FiniteLengthSpace(length=1.0, material=material_of, model="mirror") for material_of in (first, second)]
-    return solve_contact(
-        bodies[0],
-        gap,
-        load=0.25 * np.pi * modulus,
-        friction=friction,
-        counterbody=Counterbody(bodies[1]),
-        motion=motion,
-        settings=ContactSettings(coupled=coupled),
-    )
+    return solve_pair(bodies, gap, 0.25 * np.pi * modulus, friction, motion, coupled=coupled)
 
 
 def carter_checks() -> Iterator[Check]:
@@ -99,16 +103,9 @@ def slope_checks(*, full: bool) -> Iterator[Check]:
         gap = on_cells(lambda x, y: 0.5 * y**2 + 0 * x, (0, length), (-1.3, 1.3), (cells, LINE_CELLS))
         body = FiniteLengthSpace(length=length, material=steel)
         load = 0.25 * np.pi * 0.5 * steel.plane_strain_modulus * length
+        motions = (Rolling(longitudinal_creepage=index * creepage) for index in (1, 2))
         single_creepage, double_creepage = (
-            solve_contact(
-                body,
-                gap,
-                load=load,
-                friction=friction,
-                counterbody=Counterbody(body),
-                motion=Rolling(longitudinal_creepage=index * creepage),
-            ).isel(x=cells // 2)
-            for index in (1, 2)
+            solve_pair((body, body), gap, load, friction, motion).isel(x=cells // 2) for motion in motions
         )
         step = float(gap["y"][1] - gap["y"][0])
         forces = [step * float(result["traction_y"].sum()) for result in (single_creepage, double_creepage)]
@@ -126,19 +123,14 @@ def spence_checks() -> Iterator[Check]:
     load = 4 / 3 * half_space.material.plane_strain_modulus * 0.1
     result: xr.Dataset | None = None
     for ratio in np.linspace(0.2, 1.0, steps):  # equal steps of the radius
-        result = solve_contact(
-            half_space,
-            gap,
-            load=load * ratio**3,
-            friction=0.2986,
-            motion=Shift(),
-            settings=ContactSettings(coupled=True, after=result, tolerance=1e-5),
-        )
+        settings = ContactSettings(coupled=True, after=result, tolerance=1e-5)
+        force = load * ratio**3
+        result = solve_contact(half_space, gap, load=force, friction=0.2986, motion=Shift(), settings=settings)
     assert result is not None
     areas = [float(result["stick"].sum()), float((result["pressure"] > 0).sum())]
-    case, source = "rigid sphere pressed on a plane, f = 0.2986", "Spence (1975) by CONTACT"
+    reference = Reference("rigid sphere pressed on a plane, f = 0.2986", "Spence (1975) by CONTACT")
     ratio = np.sqrt(areas[0] / areas[1])
-    yield Reference(case, source).compare("radius of the stick zone over the contact's", ratio, 0.5, edge / cells)
+    yield reference.compare("radius of the stick zone over the contact's", ratio, 0.5, edge / cells)
 
 
 def shift_checks() -> Iterator[Check]:
@@ -147,20 +139,14 @@ def shift_checks() -> Iterator[Check]:
     rubber = material(shear, poisson)
     edge, cells = 1.25e-3, 76
     gap = on_cells(lambda x, y: (x**2 + y**2) / (2 * radius), (-edge, edge), (-edge, edge), (cells, cells))
-    result = solve_contact(
-        HalfSpace(material=rubber),
-        gap,
-        load=load,
-        friction=friction,
-        counterbody=Counterbody(HalfSpace(material=rubber)),
-        motion=Shift(force_y=load_fraction * friction * load),
-    )
-    case, source = "sphere shifted on a plane, 7/8 of full sliding's force", "Cattaneo (1938); Mindlin (1949)"
+    half_space, motion = HalfSpace(material=rubber), Shift(force_y=load_fraction * friction * load)
+    result = solve_pair((half_space, half_space), gap, load, friction, motion)
+    reference = Reference("sphere shifted on a plane, 7/8 of full sliding's force", "Cattaneo (1938); Mindlin (1949)")
     expected = closed_forms.mindlin_shift(load_fraction, load, friction, 1e-3, shear, poisson=poisson)
-    yield Reference(case, source).compare("shift", result["shift_y"], expected, 3e-3, relative=True)
+    yield reference.compare("shift", result["shift_y"], expected, 3e-3, relative=True)
     step = 2 * edge / cells
     stick = step * np.sqrt(float(result["stick"].sum()) / np.pi)
-    yield Reference(case, source).compare("radius of the stick zone / a", stick / 1e-3, 0.5, 0.5 * step / 1e-3)
+    yield reference.compare("radius of the stick zone / a", stick / 1e-3, 0.5, 0.5 * step / 1e-3)
 
 
 def ellipse_gap(along_x: float, along_y: float, load: float, of: Material, cells: tuple[int, int]) -> xr.DataArray:
@@ -185,17 +171,8 @@ def rolling_ellipse(
     along_x: float, along_y: float, load: float, of: Material, friction: float, motion: Rolling, cells: tuple[int, int]
 ) -> xr.Dataset:
     """Two like bodies that touch on an ellipse, in steady rolling."""
-    body = HalfSpace(material=of)
-    gap = ellipse_gap(along_x, along_y, load, of, cells)
-    return solve_contact(
-        body,
-        gap,
-        load=load,
-        friction=friction,
-        counterbody=Counterbody(body),
-        motion=motion,
-        settings=ContactSettings(tolerance=1e-5),
-    )
+    body, gap = HalfSpace(material=of), ellipse_gap(along_x, along_y, load, of, cells)
+    return solve_pair((body, body), gap, load, friction, motion, tolerance=1e-5)
 
 
 # Ratio of the half-widths along and across rolling, and Poisson's ratio; further pairs at the full level
@@ -231,9 +208,8 @@ def kalker_checks(*, full: bool) -> Iterator[Check]:
             coefficients.append(forces)
         # The error is of first order in the cell: count - 6 cells span the contact, since three lie outside either end.
         coarse_count, fine_count = (count - 6 for count in counts)
-        extrapolated = (fine_count * np.array(coefficients[1][:2]) - coarse_count * np.array(coefficients[0][:2])) / (
-            fine_count - coarse_count
-        )
+        coarse, fine = np.array(coefficients)[:, :2]
+        extrapolated = (fine_count * fine - coarse_count * coarse) / (fine_count - coarse_count)
         case = f"vanishing creepage, a/b = {ratio:g}, Poisson's ratio {poisson:g}"
         source = "Kalker (1990), table E.3"
         for name, computed, expected in zip(names, extrapolated, table[:2], strict=True):
@@ -317,10 +293,9 @@ def band_checks() -> Iterator[Check]:
         rises = rise(grid, band, 2 * drift, (0.0, 8.0))[2]
         exact = closed_forms.moving_band(grid.y, drift)
         curve = Curve(("y / a", "T lambda / (q a)"), grid.y, rises, exact)
-        case = f"band of uniform heat between two ends, Peclet number {drift:g}"
-        yield Reference(case, "Jaeger (1942)").compare_fields(
-            "rise over the largest", rises / exact.max(), exact / exact.max(), 5e-6, curve=curve
-        )
+        reference = Reference(f"band of uniform heat between two ends, Peclet number {drift:g}", "Jaeger (1942)")
+        computed, expected = rises / exact.max(), exact / exact.max()
+        yield reference.compare_fields("rise over the largest", computed, expected, 5e-6, curve=curve)
 
 
 def resting_checks() -> Iterator[Check]:
@@ -332,9 +307,8 @@ def resting_checks() -> Iterator[Check]:
     side = 0.5 * float(square[22].sum()) * cells.dy
     centre_rise = float(rise(cells, square, 0.0, EVERYWHERE)[22, 22]) / side
     expected = 4 * float(np.arcsinh(1.0)) / np.pi
-    yield Reference("square of uniform heat at rest", source).compare(
-        "rise in the middle", centre_rise, expected, 1e-5, relative=True
-    )
+    reference = Reference("square of uniform heat at rest", source)
+    yield reference.compare("rise in the middle", centre_rise, expected, 1e-5, relative=True)
     heat = np.sqrt(np.maximum(1 - grid.x[:, None] ** 2 - grid.y**2, 0))
     centre_rise, expected = float(rise(grid, heat, 0.0, EVERYWHERE)[30, 30]), 0.25 * np.pi
     case = "circle of Hertz' pressure at rest, 61 x 61 cells"
@@ -436,3 +410,8 @@ def rolling_wear_checks() -> Iterator[Check]:
     name = "crowned roller rolling at a creepage, little worn"
     source = "k times the frictional work of the unworn contact"
     yield Reference(name, source).compare("worn volume", volume, expected, 2e-3, relative=True)
+
+
+# Checks of the groups of the suite
+HEAT = (fast_checks, band_checks, resting_checks, end_checks)
+WEAR = (sliding_wear_checks, rolling_wear_checks)

@@ -81,9 +81,7 @@ def worn_profile(case: Case, worn: xr.Dataset, distance: float | None = None) ->
     columns = _Columns.of(worn, x, mask, start, stop)
     depth = worn["wear_depth"].values[index, mask]
     ends = _SharpEnds.of(case, columns, depth, worn["pressure"].values[index, mask])
-    profile = _fit_profile(case, columns, ends, depth)
-    unworn = case.roller.profile
-    return Sum((*(unworn.terms if isinstance(unworn, Sum) else (unworn,)), profile))
+    return Sum((case.roller.profile, _fit_profile(case, columns, ends, depth)))
 
 
 @dataclass(frozen=True, eq=False)

@@ -32,7 +32,6 @@ from contactstudy.contact.rolling.frictional_contact import frictional_contact
 from contactstudy.contact.rolling.tractions import FrictionRequest
 from contactstudy.errors import ConvergenceWarning, InvalidInputError
 from contactstudy.kernels.load import Load
-from contactstudy.profiles.base import check_drop
 from contactstudy.threads import one_blas_thread
 from contactstudy.wear.profile import WORN_ATTRIBUTES
 
@@ -62,23 +61,37 @@ class WearingOperator:
         return self.elastic.coarse
 
 
-class PressureResult(NamedTuple):
-    """A pressure (x, y), its load per length (x), and whether the iteration converged."""
-
-    pressure: FloatArray
-    line_load: FloatArray
-    converged: bool
+# Length of either implicit stage over the length of the step, which damps the stiffest wear fully (R. Alexander,
+# SIAM Journal on Numerical Analysis 14 (1977) 1006, theorem 5)
+STAGE_FRACTION = 1 - np.sqrt(0.5)
+STEP_SAFETY, MAX_GROWTH, MIN_GROWTH = 0.85, 4.0, 0.2  # Factor on the next step, and its bounds
 
 
-@dataclass(frozen=True, eq=False)
-class WornContact:
-    """Contact of a case on given cells, with a worn profile."""
+class State(NamedTuple):
+    """State of the wear integration: depth, pressure, slip, worn area."""
+
+    distance: float  # m
+    depth: FloatArray  # (x), m
+    pressure: FloatArray  # (x, y), Pa
+    slip: FloatArray  # (x), factor from load per length to wear
+    error: float = 0.0  # of the depth, summed over the steps, m
+    worn_area: float = 0.0  # volume by the law over the circumference, integrated by trapezoids, m2
+    next_step: float = np.inf  # length of the next step, m
+    converged: bool = True
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class WearIntegrator:
+    """Integrates the wear of a contact on given cells over the sliding distance."""
 
     case: Case
     shape: Shape  # unworn
     settings: Settings
+    rate: float  # depth per load per length, distance and slip, m2/N per metre
+    law: str  # slip or work
+    tolerance: float  # error of the depth per step over the largest depth
 
-    def solve(self, depth: FloatArray, compliance: FloatArray, start: FloatArray | None) -> PressureResult:
+    def solve_contact(self, depth: FloatArray, compliance: FloatArray, start: FloatArray | None) -> ContactIterate:
         """Solve the contact with wear: `compliance` (x) is the further depth per load per length, m2/N."""
         shape, grid = self.shape, self.shape.grid
         with one_blas_thread():
@@ -99,14 +112,14 @@ class WornContact:
 
             solution = shape.solve_relative_to_reference(solve, self.settings.tolerance).iterate
         check_window(shape.body, solution.pressure)
-        return PressureResult(solution.pressure, grid.dy * solution.pressure.sum(axis=1), solution.converged)
+        return solution
 
-    def compute_slip(self, depth: FloatArray, law: str) -> FloatArray:
+    def compute_slip(self, depth: FloatArray) -> FloatArray:
         """Wear (x) per load per length, over `rate`: slip per distance, or frictional work, pressure-weighted."""
         case, grid = self.case, self.shape.grid
         friction = np.broadcast_to(case.friction_on(grid.x), (grid.cells_x, 1))[:, 0]
         if not isinstance(case.motion, Rolling):
-            return np.ones(grid.cells_x) if law == "slip" else np.abs(friction)
+            return np.ones(grid.cells_x) if self.law == "slip" else np.abs(friction)
         mid_length = case.roller_middle
         shape = self.shape._replace(gap=ArrayKey(self.shape.gap.values + depth[:, None]))
         request = FrictionRequest(motion=case.motion, friction=friction[:, None], reference_x=mid_length, coupled=False)
@@ -114,49 +127,22 @@ class WornContact:
         rolling.warn_unless_converged()
         slip, traction = rolling.tractions.slip, rolling.tractions.traction
         pressure = rolling.contact.pressure
-        if law == "slip":
+        if self.law == "slip":
             wear_rate = pressure * np.hypot(slip[0], slip[1])
         else:
             wear_rate = np.maximum(traction[0] * slip[0] + traction[1] * slip[1], 0.0)
         load = pressure.sum(axis=1)
         return np.asarray(np.divide(wear_rate.sum(axis=1), load, out=np.zeros_like(load), where=load > 0))
 
-
-# Length of either implicit stage over the length of the step, which damps the stiffest wear fully (R. Alexander,
-# SIAM Journal on Numerical Analysis 14 (1977) 1006, theorem 5)
-STAGE_FRACTION = 1 - np.sqrt(0.5)
-STEP_SAFETY, MAX_GROWTH, MIN_GROWTH = 0.85, 4.0, 0.2  # Factor on the next step, and its bounds
-
-
-class State(NamedTuple):
-    """State of the wear integration: depth, pressure, slip, worn area."""
-
-    distance: float  # m
-    depth: FloatArray  # (x), m
-    pressure: FloatArray  # (x, y), Pa
-    slip: FloatArray  # (x), factor from load per length to wear
-    error: float = 0.0  # of the depth, summed over the steps, m
-    worn_area: float = 0.0  # volume by the law over the circumference, integrated by trapezoids, m2
-    converged: bool = True
-
-
-@dataclass(frozen=True, eq=False)
-class WearIntegrator:
-    """Integrates the wear over the sliding distance."""
-
-    contact: WornContact
-    rate: float  # depth per load per length, distance and slip, m2/N per metre
-    law: str  # slip or work
-    tolerance: float  # error of the depth per step over the largest depth
-
     def initial_state(self, distance: float, depth: FloatArray, error: float) -> State:
         """Return the state of a worn depth with an error."""
-        result = self.contact.solve(depth, np.zeros_like(depth), None)
-        slip = self.contact.compute_slip(depth, self.law)
-        return State(distance, depth, result.pressure, slip, error, converged=result.converged)
+        contact = self.solve_contact(depth, np.zeros_like(depth), None)
+        slip = self.compute_slip(depth)
+        return State(distance, depth, contact.pressure, slip, error, converged=contact.converged)
 
-    def integrate(self, state: State, stop: float, step: float) -> Iterator[tuple[State, float]]:
-        """Integrate to a distance; yield the state after each step and the length of the next step."""
+    def integrate(self, state: State, stop: float) -> Iterator[State]:
+        """Integrate to a distance; yield the state after each step."""
+        step = state.next_step
         min_length = 1e-6 * min(step, stop - state.distance)  # A shorter step is accepted with any error
         while state.distance < stop:
             remaining = stop - state.distance
@@ -177,22 +163,26 @@ class WearIntegrator:
                 continue
             distance = stop if length == remaining else state.distance + length
             area = state.worn_area + 0.5 * length * (self._worn_area_rate(state) + self._worn_area_rate(half_steps))
-            converged = state.converged and half_steps.converged
-            state = half_steps._replace(
-                distance=distance, error=state.error + error, worn_area=area, converged=converged
-            )
             step = max(step, factor * length)
-            yield state, step
+            error, converged = state.error + error, state.converged and half_steps.converged
+            state = half_steps._replace(
+                distance=distance, error=error, worn_area=area, next_step=step, converged=converged
+            )
+            yield state
 
     def _worn_area_rate(self, state: State) -> float:
         """Area (x, depth) that the law removes from the profile, per distance."""
-        grid = self.contact.shape.grid
+        grid = self.shape.grid
         return self.rate * grid.dy * float((grid.widths * state.slip) @ state.pressure.sum(axis=1))  # eq. (603)
+
+    def _line_load(self, contact: ContactIterate) -> FloatArray:
+        """Load per length (x), N/m."""
+        return np.asarray(self.shape.grid.dy * contact.pressure.sum(axis=1))
 
     def _take_step(self, state: State, length: float) -> State:
         """Take one step, or a predictor and a corrector if the slip depends on the depth."""
         predicted = self._solve_stages(state, length, state.slip, state.slip)
-        last_slip = self.contact.compute_slip(predicted.depth, self.law)
+        last_slip = self.compute_slip(predicted.depth)
         if np.array_equal(last_slip, state.slip):
             return predicted
         first_slip = state.slip + STAGE_FRACTION * (last_slip - state.slip)
@@ -201,10 +191,10 @@ class WearIntegrator:
     def _solve_stages(self, state: State, length: float, first_slip: FloatArray, last_slip: FloatArray) -> State:
         """Solve two implicit stages and return the second."""
         first_increment, second_increment = self.rate * length * first_slip, self.rate * length * last_slip
-        first_stage = self.contact.solve(state.depth, STAGE_FRACTION * first_increment, state.pressure)
-        intermediate_depth = state.depth + (1 - STAGE_FRACTION) * first_increment * first_stage.line_load
-        second_stage = self.contact.solve(intermediate_depth, STAGE_FRACTION * second_increment, first_stage.pressure)
-        depth = intermediate_depth + STAGE_FRACTION * second_increment * second_stage.line_load
+        first_stage = self.solve_contact(state.depth, STAGE_FRACTION * first_increment, state.pressure)
+        middle_depth = state.depth + (1 - STAGE_FRACTION) * first_increment * self._line_load(first_stage)
+        second_stage = self.solve_contact(middle_depth, STAGE_FRACTION * second_increment, first_stage.pressure)
+        depth = middle_depth + STAGE_FRACTION * second_increment * self._line_load(second_stage)
         converged = state.converged and first_stage.converged and second_stage.converged
         return State(state.distance + length, depth, second_stage.pressure, last_slip, converged=converged)
 
@@ -305,43 +295,38 @@ def wear_in(
         (0.0, None, _choose_cells(case, grid), None, 0.0) if after is None else _read_last_state(after, case, grid)
     )
     all_steps = np.ndim(distance) == 0
-    stops = checks.coordinates("distance", numbers_in_si("distance", distance, "m"))
-    if (np.diff(stops) <= 0).any():
-        raise InvalidInputError("distance", stops.tolist(), "increasing (metres)")
+    stops = checks.increasing("distance", numbers_in_si("distance", distance, "m"), "metres")
     if stops[0] < distance_before or stops[-1] <= distance_before:
         raise InvalidInputError("distance", stops.tolist(), f"beyond {distance_before:g} m, where the wear begins")
     gap = case.gap(cells)
     prescribed = PrescribedLoad(case.normal_load, case.load_position).check(gap, cells)
     shape = Shape(case.body, cells, ArrayKey(gap), prescribed, case.counterbody, coupled_friction=case.coupled_friction)
     # Bound on the iterations of one contact; large steps change the contact area often
-    contact = WornContact(case, shape, Settings(max_iterations=2000))
-    integrator = WearIntegrator(contact, rate / length, law, tolerance)
+    settings = Settings(max_iterations=2000)
+    integrator = WearIntegrator(
+        case=case, shape=shape, settings=settings, rate=rate / length, law=law, tolerance=tolerance
+    )
     start = integrator.initial_state(distance_before, np.zeros(cells.cells_x) if depth is None else depth, error)
     if not start.slip.any():
         raise InvalidInputError("case", f"friction = {case.friction}", "a case with friction and slip")
     last_stop = float(stops[-1])
     mean_depth = integrator.rate * float(start.slip.max()) * case.normal_load / case.contact_length * last_stop
     if mean_depth > MAX_DEPTH * case.roller.radius:
-        raise InvalidInputError(
-            "distance",
-            last_stop,
-            f"such that the mean worn depth, {mean_depth:.3g} m, is at most {MAX_DEPTH:g} of the roller's radius, "
-            f"{case.roller.radius:g} m",
-            "coefficient is in 1/Pa, distances in metres",
-        )
+        limit = f"at most {MAX_DEPTH:g} of the roller's radius, {case.roller.radius:g} m"
+        allowed = f"such that the mean worn depth, {mean_depth:.3g} m, is {limit}"
+        raise InvalidInputError("distance", last_stop, allowed, "coefficient is in 1/Pa, distances in metres")
     if step is None:
         # The first step wears 1e-3 of the depth ``a**2 / (2 R)`` of the contact.
         contact_depth = case.hertz_half_width**2 / (2 * case.roller.radius)
         max_rate = float((integrator.rate * start.slip * (cells.dy * start.pressure.sum(axis=1))).max())
         step = 1e-3 * contact_depth / max_rate if max_rate > 0 else np.inf
-    states, steps = [start], [step]
-    for state, next_step in _integrate_to_stops(integrator, start, stops, steps[0], max_steps):
+    states = [start._replace(next_step=step)]
+    for state in _integrate_to_stops(integrator, states[0], stops, max_steps):
         if all_steps or state.distance in stops:
             states.append(state)
-            steps.append(next_step)
-    settings = {"coefficient": rate, "law": law, "circumference": float(length), "tolerance": tolerance}
-    worn = _label(case, integrator, states, steps, length)
-    return with_provenance(worn, case, settings, {"wear": time.perf_counter() - start_time})
+    inputs = {"coefficient": rate, "law": law, "circumference": float(length), "tolerance": tolerance}
+    worn = _label(integrator, states, length)
+    return with_provenance(worn, case, inputs, {"wear": time.perf_counter() - start_time})
 
 
 def _choose_cells(case: Case, grid: Grid | None) -> Grid:
@@ -372,52 +357,39 @@ def _read_last_state(after: xr.Dataset, case: Case, grid: Grid | None) -> tuple[
     return float(last_state["distance"]), depth, cells, float(last_state["next_step"]), error
 
 
-def _integrate_to_stops(
-    integrator: WearIntegrator, state: State, stops: FloatArray, step: float, max_steps: int
-) -> Iterator[tuple[State, float]]:
+def _integrate_to_stops(integrator: WearIntegrator, state: State, stops: FloatArray, max_steps: int) -> Iterator[State]:
     """Integrate to one distance after the other, in at most `max_steps` steps."""
     step_count = 0
     for stop in stops[stops > state.distance]:
-        for next_state, next_step in integrator.integrate(state, float(stop), step):
+        for next_state in integrator.integrate(state, float(stop)):
             step_count += 1
-            state, step = next_state, next_step
-            yield state, step
+            state = next_state
+            yield state
             if step_count >= max_steps and state.distance < stops[-1]:
-                warnings.warn(
-                    f"the wear stopped after max_steps = {max_steps} at {state.distance:g} m of {stops[-1]:g} m; go on "
-                    "with after=, or raise max_steps or tolerance",
-                    ConvergenceWarning,
-                    stacklevel=2,
-                )
+                message = f"the wear stopped after max_steps = {max_steps} at {state.distance:g} m of {stops[-1]:g} m"
+                hint = "go on with after=, or raise max_steps or tolerance"
+                warnings.warn(f"{message}; {hint}", ConvergenceWarning, stacklevel=2)
                 return
         if not state.converged:
-            warnings.warn(
-                "a contact of a wear step did not converge; take a smaller tolerance or other cells",
-                ConvergenceWarning,
-                stacklevel=2,
-            )
+            message = "a contact of a wear step did not converge; take a smaller tolerance or other cells"
+            warnings.warn(message, ConvergenceWarning, stacklevel=2)
 
 
-def _label(
-    case: Case, integrator: WearIntegrator, states: list[State], steps: list[float], length: float
-) -> xr.Dataset:
+def _label(integrator: WearIntegrator, states: list[State], length: float) -> xr.Dataset:
     """Label the states."""
-    grid = integrator.contact.shape.grid
-    distances = np.array([state.distance for state in states])
-    depths = np.array([state.depth for state in states])
-    pressures = np.array([state.pressure for state in states])
+    case, grid = integrator.case, integrator.shape.grid
+    columns = {name: np.array(values) for name, values in zip(State._fields, zip(*states, strict=True), strict=True)}
+    depths, pressures = columns["depth"], columns["pressure"]
     x, half_length = grid.x - case.roller_middle, 0.5 * case.roller.length
     if grid.uniform:
         x = snap_to_ends(x, half_length, grid.dx)
-    under_roller = np.abs(x) <= half_length
-    drop = np.full(grid.cells_x, np.nan)
-    drop[under_roller] = check_drop(case.roller.profile, x[under_roller], case.roller.length)
+    drop = np.where(np.abs(x) <= half_length, case.roller.clearance(x, np.zeros(1))[:, 0], np.nan)
     volumes = length * depths @ grid.widths
-    law_volumes = length * np.array([state.worn_area for state in states])
+    law_volumes = length * columns["worn_area"]
     volume_gain, law_volumes = volumes - volumes[0], law_volumes - law_volumes[0]
     has_wear = law_volumes > 0
     scale = np.maximum(depths.max(axis=1), np.finfo(np.float64).tiny)
-    coords = {"distance": distances, "x": grid.x, "y": grid.y} | cell_coordinates(grid)
+    coords = {"distance": columns["distance"], "x": grid.x, "y": grid.y} | cell_coordinates(grid)
     result = xr.Dataset(
         {
             "wear_depth": (("distance", "x"), depths),
@@ -425,8 +397,8 @@ def _label(
             "line_load": (("distance", "x"), grid.dy * pressures.sum(axis=2)),
             "pressure": (("distance", "x", "y"), pressures),
             "worn_volume": ("distance", volumes),
-            "wear_error": ("distance", np.array([state.error for state in states]) / scale),
-            "next_step": ("distance", np.array(steps)),
+            "wear_error": ("distance", columns["error"] / scale),
+            "next_step": ("distance", columns["next_step"]),
             "volume_error": float(np.abs(volume_gain[has_wear] / law_volumes[has_wear] - 1).max(initial=0.0)),
             "converged": states[-1].converged,
             "hertz_half_width": case.hertz_half_width,

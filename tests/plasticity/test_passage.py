@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from itertools import pairwise
 
 import numpy as np
@@ -9,18 +10,24 @@ import pytest
 
 from contactstudy import fatigue
 from contactstudy.arrays.variables import STRESSES
-from contactstudy.eigenstrain.layers import LayerInfluence
+from contactstudy.bodies import Material
+from contactstudy.eigenstrain.layers import layer_stresses
 from contactstudy.plasticity.passes import Passage, State
 
 YOUNG, POISSON = 1000.0, 0.3
-LAYERS = LayerInfluence(POISSON, YOUNG)
+MATERIAL = Material(YOUNG, POISSON)
 
 
 class IndependentLayers:
     """Layers without influence between positions along y."""
 
+    material = MATERIAL
+
+    def __init__(self, positions: int) -> None:
+        self.positions = positions
+
     def stresses(self, eigenstrain: np.ndarray) -> np.ndarray:
-        return LAYERS.stresses(eigenstrain.reshape(6, -1)).reshape(eigenstrain.shape)
+        return layer_stresses(MATERIAL, eigenstrain.reshape(6, -1)).reshape(eigenstrain.shape)
 
 
 def solve_passes(history: np.ndarray, shear_yield_stress: float, hardening: tuple[float, float], count: int) -> State:
@@ -28,13 +35,10 @@ def solve_passes(history: np.ndarray, shear_yield_stress: float, hardening: tupl
     index = np.zeros(1, np.int64)
     passage = Passage(
         elastic=history.T[:, :, None],
-        residual=LAYERS,
-        layers=LAYERS,
-        lateral=IndependentLayers(),
-        lateral_positions=history.shape[0] + 2,
+        residual=partial(layer_stresses, MATERIAL),
+        lateral=IndependentLayers(history.shape[0] + 2),
         cell_indices=(index, index),
         yield_stress=np.full(1, np.sqrt(3) * shear_yield_stress),
-        shear_modulus=YOUNG / (2 * (1 + POISSON)),
         isotropic=hardening[0],
         kinematic=hardening[1],
         tolerance=1e-5,
@@ -91,4 +95,4 @@ def test_layer_agrees_with_rate_equations(
     assert state.converged
     expected = integrate_rates(coarse, np.sqrt(2) * yield_stress, hardening, 3, 40)
     assert np.abs(expected).max() > 0.01
-    assert LAYERS.stresses(state.strain)[:2, 0] == pytest.approx(expected, abs=0.01 * np.abs(expected).max())
+    assert layer_stresses(MATERIAL, state.strain)[:2, 0] == pytest.approx(expected, abs=0.01 * np.abs(expected).max())

@@ -28,7 +28,7 @@ from contactstudy.overlapping.equations import EquationSet
 from contactstudy.overlapping.quadrature import Resolution
 from contactstudy.verification import exact_solutions, free_ends, passes, suite, tribology
 from contactstudy.verification.check import Check
-from contactstudy.wear.wear_in import WornContact
+from contactstudy.wear.wear_in import WearIntegrator
 
 MODULES = (exact_solutions, free_ends, convergence)
 Patch = pytest.MonkeyPatch
@@ -164,13 +164,13 @@ def heat_in_halves(patch: Patch) -> None:
 
 
 def wear_that_changes_nothing(patch: Patch) -> None:
-    real = WornContact.solve
-    patch.setattr(WornContact, "solve", lambda contact, depth, *further: real(contact, 0 * depth, *further))
+    real = WearIntegrator.solve_contact
+    patch.setattr(WearIntegrator, "solve_contact", lambda wear, depth, *further: real(wear, 0 * depth, *further))
 
 
 def milder_wear(patch: Patch) -> None:
-    real = WornContact.compute_slip
-    patch.setattr(WornContact, "compute_slip", lambda contact, depth, law: 0.9 * real(contact, depth, law))
+    real = WearIntegrator.compute_slip
+    patch.setattr(WearIntegrator, "compute_slip", lambda wear, depth: 0.9 * real(wear, depth))
 
 
 def pressed_harder_by(factor: float) -> Callable[[Patch], None]:

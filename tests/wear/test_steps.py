@@ -1,5 +1,7 @@
 """Failing steps are shortened, down to a least length."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -7,7 +9,7 @@ from contactstudy import Case, FiniteLengthSpace, Material, Roller, choose_grid
 from contactstudy.cache import ArrayKey
 from contactstudy.contact.normal.contact import Settings, Shape
 from contactstudy.contact.normal.prescribed_loads import PrescribedLoad
-from contactstudy.wear.wear_in import WearIntegrator, WornContact
+from contactstudy.wear.wear_in import State, WearIntegrator
 
 
 @pytest.fixture
@@ -17,34 +19,41 @@ def integrator():
     grid = choose_grid(case, cells_x=3, cells_y=6)
     gap = case.gap(grid)
     shape = Shape(case.body, grid, ArrayKey(gap), PrescribedLoad(case.normal_load).check(gap, grid))
-    return WearIntegrator(WornContact(case, shape, Settings()), 1e-17 / (2 * np.pi * 5e-3), "slip", 0.01)
+    return WearIntegrator(
+        case=case, shape=shape, settings=Settings(), rate=1e-17 / (2 * np.pi * 5e-3), law="slip", tolerance=0.01
+    )
+
+
+def initial_state(integrator: WearIntegrator, step: float) -> State:
+    start = integrator.initial_state(0.0, np.zeros(integrator.shape.grid.cells_x), 0.0)
+    return start._replace(next_step=step)
 
 
 def test_failed_contact_shortens_the_step(integrator, monkeypatch):
-    initial_state = integrator.initial_state(0.0, np.zeros(integrator.contact.shape.grid.cells_x), 0.0)
-    solve = WornContact.solve
+    start = initial_state(integrator, 300.0)
+    solve = WearIntegrator.solve_contact
     max_length = 50.0
 
     def solve_short_steps(contact, depth, compliance, start):
         result = solve(contact, depth, compliance, start)
-        return result._replace(converged=compliance.max() < integrator.rate * max_length)
+        return replace(result, converged=compliance.max() < integrator.rate * max_length)
 
-    monkeypatch.setattr(WornContact, "solve", solve_short_steps)
-    states = [state for state, _ in integrator.integrate(initial_state, 300.0, 300.0)]
+    monkeypatch.setattr(WearIntegrator, "solve_contact", solve_short_steps)
+    states = list(integrator.integrate(start, 300.0))
     assert states[-1].distance == 300.0
     assert states[-1].converged
     assert len(states) > 2
 
 
 def test_shortest_step_without_convergence(integrator, monkeypatch):
-    initial_state = integrator.initial_state(0.0, np.zeros(integrator.contact.shape.grid.cells_x), 0.0)
-    solve = WornContact.solve
-    monkeypatch.setattr(WornContact, "solve", lambda *arguments: solve(*arguments)._replace(converged=False))
-    states = integrator.integrate(initial_state, 1.0, 1.0)
-    state, _ = next(states)
+    start = initial_state(integrator, 1.0)
+    solve = WearIntegrator.solve_contact
+    monkeypatch.setattr(WearIntegrator, "solve_contact", lambda *arguments: replace(solve(*arguments), converged=False))
+    states = integrator.integrate(start, 1.0)
+    state = next(states)
     assert 0 < state.distance < 1e-5
     assert not state.converged
     monkeypatch.undo()
-    next_state, _ = next(states)
+    next_state = next(states)
     assert next_state.distance > 2 * state.distance
     assert not next_state.converged
