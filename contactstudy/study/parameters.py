@@ -11,7 +11,6 @@ import hashlib
 import inspect
 import json
 from collections.abc import Callable, Iterable, Mapping
-from functools import cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -59,12 +58,6 @@ def check_points(name: str, value: object) -> list[float]:
     return [check_number(name, point) for point in positions.tolist()]
 
 
-@cache
-def _keyword_default(function: Callable[..., Any], name: str) -> Any:
-    """Return the default of a keyword argument; finding it takes longer than checking a case."""
-    return inspect.signature(function).parameters[name].default
-
-
 class Parameter(NamedTuple):
     """Specification of one parameter."""
 
@@ -99,7 +92,9 @@ class Parameter(NamedTuple):
         """Value of a case without the parameter; None if it is required or optional."""
         if self.words:
             return None if self.absent else self.words[0]
-        value = self.fallback if self.consumer is None else _keyword_default(self.consumer, self.name)
+        value = self.fallback
+        if self.consumer is not None:
+            value = inspect.signature(self.consumer).parameters[self.name].default
         return None if value is None else self.check(self.name, value)
 
 
@@ -266,6 +261,7 @@ _PARAMETERS = (
     Parameter("field_z_over_a", "1", "stress points: depth over a", "about 23 depths to 5 a", check=check_points),
 )
 PARAMETERS: dict[str, Parameter] = {entry.name: entry for entry in _PARAMETERS}  # of a case, by name
+DEFAULTS: dict[str, Any] = {name: entry.default for name, entry in PARAMETERS.items() if entry.default is not None}
 REQUIRED = (  # Groups of parameters; every case has exactly one parameter of each group
     ("young",),
     ("poisson",),
@@ -302,7 +298,7 @@ def identity_value(name: str, value: Any) -> Any:
     """Part of a checked value that belongs to the identity; None for a default."""
     if name == "profile":
         value = {key: entry for key, entry in value.items() if key != "name"}
-    return None if value == PARAMETERS[name].default else value
+    return None if value == DEFAULTS.get(name) else value
 
 
 def without_defaults(values: Mapping[str, Any]) -> dict[str, Any]:
@@ -313,8 +309,7 @@ def without_defaults(values: Mapping[str, Any]) -> dict[str, Any]:
 
 def with_defaults(values: Mapping[str, Any]) -> dict[str, Any]:
     """Return `values` completed by the defaults."""
-    defaults = {name: entry.default for name, entry in PARAMETERS.items() if name not in values}
-    return {name: default for name, default in defaults.items() if default is not None} | dict(values)
+    return DEFAULTS | dict(values)
 
 
 def identity_fragment(name: str, value: Any) -> str:
