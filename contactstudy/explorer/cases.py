@@ -52,12 +52,10 @@ SUBJECTS: dict[str, tuple[str, ...]] = {  # numbers in order; a name with a fina
         *("force_y", "force_x", "moment_z", "longitudinal_creepage", "lateral_creepage", "spin", "shift_y", "shift_x"),
         *("sticking_part", "friction_work"),
     ),
+    "further numbers": (),  # all that the other subjects lack
     "cells and iteration": ("end_traction_residual", "converged", "iterations", "friction_steps"),
     "solution": ("seconds",),
 }
-
-REMAINING_SUBJECT = "further numbers"  # Subject of all numbers that `SUBJECTS` lacks; precedes the subject of the cells
-SUBJECT_ORDER = [*list(SUBJECTS)[:-2], REMAINING_SUBJECT, *list(SUBJECTS)[-2:]]
 
 
 @dataclass(frozen=True, eq=False)
@@ -181,14 +179,15 @@ def numbers_by_subject(scalars: xr.Dataset) -> dict[str, dict[str, str]]:
         for subject, members in SUBJECTS.items():
             for index, entry in enumerate(members):
                 if name == entry or (entry.endswith("_") and name.startswith(entry)):
-                    return SUBJECT_ORDER.index(subject), index
-        return SUBJECT_ORDER.index(REMAINING_SUBJECT), 0
+                    return subjects.index(subject), index
+        return subjects.index("further numbers"), 0
 
+    subjects = list(SUBJECTS)
     groups: dict[str, dict[str, str]] = {}
     for (subject, _), name, meaning in sorted(
         (rank(name), name, meaning) for name, meaning in zip(names, meanings, strict=True)
     ):
         # The texts of all groups are distinct.
         text = meaning if meanings.count(meaning) == 1 else f"{meaning}, {name}"
-        groups.setdefault(SUBJECT_ORDER[subject], {})[text] = name
+        groups.setdefault(subjects[subject], {})[text] = name
     return groups

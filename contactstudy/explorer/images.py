@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -24,62 +23,32 @@ Span = tuple[float, float]
 
 
 class CaseFields:
-    """Fields of a case as arrays, each computed once; `load_stresses` returns the case with its six stresses."""
+    """Fields of a case as arrays; `load_stresses` returns the case with its six stresses."""
 
     def __init__(self, dataset: xr.Dataset, load_stresses: Callable[[], xr.Dataset] | None = None) -> None:
         self.dataset = dataset
         self._load_stresses = load_stresses or (lambda: dataset)
         self._stresses: dict[str, FloatArray] = {}
-
-    @property
-    def has_pressure(self) -> bool:
-        """Whether the case has surfaces."""
-        return "pressure" in self.dataset
-
-    @cached_property
-    def has_stress(self) -> bool:
-        """Whether the case has stresses."""
-        return "von_mises" in self.dataset and not bool(self.dataset["von_mises"].isnull().all())
-
-    @cached_property
-    def hertz(self) -> tuple[float, float] | None:
-        """Half-width and pressure of Hertz' line contact, or None."""
-        if "hertz_half_width" not in self.dataset:
-            return None
-        return float(self.dataset["hertz_half_width"]), float(self.dataset["hertz_max_pressure"])
-
-    @cached_property
-    def cells(self) -> tuple[FloatArray, FloatArray]:
-        """Positions of the cells along x and y."""
-        x, y = (positions(self.dataset["pressure"], axis).values for axis in "xy")
-        return x, y
-
-    @cached_property
-    def pressure(self) -> FloatArray:
-        """Pressure (x, y)."""
-        return _values(self.dataset["pressure"], "xy")
-
-    @cached_property
-    def axial_pressure(self) -> FloatArray:
-        """Largest pressure across y, along x."""
-        return np.asarray(self.pressure.max(axis=1))
-
-    @cached_property
-    def singular_ends(self) -> list[float]:
-        """Positions of singular ends."""
-        return singular_ends(self.dataset)
+        self.hertz: tuple[float, float] | None = None  # half-width and pressure of Hertz' line contact
+        if "hertz_half_width" in dataset:
+            self.hertz = float(dataset["hertz_half_width"]), float(dataset["hertz_max_pressure"])
+        self.has_pressure = "pressure" in dataset
+        self.singular_ends = singular_ends(dataset) if self.has_pressure else []
+        if self.has_pressure:
+            x, y = (positions(dataset["pressure"], axis).values for axis in "xy")
+            self.cells = x, y
+            self.pressure = _values(dataset["pressure"], "xy")
+            self.axial_pressure = self.pressure.max(axis=1)
+        self.has_stress = "von_mises" in dataset and not bool(dataset["von_mises"].isnull().all())
+        if self.has_stress:
+            self.points = {axis: positions(dataset["von_mises"], axis).values for axis in "xyz"}
 
     def near_singular(self, x: FloatArray) -> BoolArray:
         """Mask of the positions that are too near to a singular end to be drawn."""
         return near_singular(self.dataset, self.singular_ends, x)
 
-    @cached_property
-    def points(self) -> dict[str, FloatArray]:
-        """Positions of the stresses along each axis."""
-        return {axis: positions(self.dataset["von_mises"], axis).values for axis in "xyz"}
-
     def stress(self, name: str = "von_mises") -> FloatArray:
-        """Stress measure (x, y, z)."""
+        """Stress measure (x, y, z), computed once."""
         if name not in self._stresses:
             source = self.dataset if name in self.dataset else self._load_stresses()
             self._stresses[name] = _values(measure(source, name), "xyz")
@@ -175,14 +144,12 @@ def plane_image(
     position = 0.0 if normal == "y" else plane_start + fraction * (plane_stop - plane_start)
     axis = "xyz".index(normal)
     values = np.asarray(interpolate_along(axis, case.stress(name), points[normal], np.array([position])).take(0, axis))
-    spans = [(float(points[axis][0]), float(points[axis][-1])) for axis in (horizontal, vertical)]
+    left, right = float(points[horizontal][0]), float(points[horizontal][-1])
     if horizontal == "x":
-        spans[0] = (max(spans[0][0], limits[0]), min(spans[0][1], limits[1]))
-    axes = (points[horizontal], points[vertical])
-    x = points["x"]
-    near_singular_end = case.near_singular(x) if case.has_pressure else np.zeros(x.size, dtype=bool)
-    limit = _limit(case.stress(name), near_singular_end)
-    image = _image(values, axes, (spans[0], spans[1]), limit, scale, names=horizontal + vertical)
+        left, right = max(left, limits[0]), min(right, limits[1])
+    spans = ((left, right), (float(points[vertical][0]), float(points[vertical][-1])))
+    limit = _limit(case.stress(name), case.near_singular(points["x"]))
+    image = _image(values, (points[horizontal], points[vertical]), spans, limit, scale, names=horizontal + vertical)
     unit = scale.length_name.strip(" ()/")
     return image._replace(position=f"{normal} = {position / scale.length:.3g} {unit}")
 

@@ -16,7 +16,7 @@ from contactstudy import ContactStudyError, InvalidInputError, open_study
 from contactstudy.analysis import in_plane, measure
 from contactstudy.arrays.variables import STRESSES, specification
 from contactstudy.explorer import explore, server
-from contactstudy.explorer.cases import SUBJECT_ORDER, SUBJECTS, Cases, open_cases
+from contactstudy.explorer.cases import SUBJECTS, Cases, open_cases
 from contactstudy.explorer.figures import NEUTRAL_COLOR, StudyFigure
 from contactstudy.explorer.images import (
     PLANES,
@@ -157,7 +157,7 @@ def test_case_without_stresses(page: Page) -> None:
 
 def test_numbers_by_subject(page: Page) -> None:
     groups = page.number.groups
-    assert list(groups) == [subject for subject in SUBJECT_ORDER if subject in groups]
+    assert list(groups) == [subject for subject in SUBJECTS if subject in groups]
     assert list(groups)[:2] == ["pressure", "stresses"]
     assert list(groups)[-1] == "solution"
     names = [name for group in groups.values() for name in group.values()]
