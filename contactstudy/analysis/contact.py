@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -18,7 +17,7 @@ from contactstudy.analysis.axes import (
     reduce_dims,
     sort_positions,
 )
-from contactstudy.analysis.axial import axial_pressure, unloaded_gap
+from contactstudy.analysis.axial import axial_pressure, under_roller
 from contactstudy.analysis.peaks import largest_sample, measure
 from contactstudy.analysis.provenance import INPUTS_ATTRIBUTE, attribute, solved_case
 from contactstudy.arrays.variables import name_array, require_in_si, variable_of, without_error
@@ -29,20 +28,14 @@ MISSING_LOAD = 0.01  # Fraction of the load that a part of a contact lacks at le
 END_TOLERANCE = 1e-6  # Largest distance, over a cell, of a border of the cells that is at an end of the contact
 
 
-class ContactNumbers(NamedTuple):
-    """Scalars of contacts in whole cells: arrays without the cells' axes; NaN without pressure."""
-
-    contact_area: Array  # m2
-    contact_length: Array  # m
-    contact_width: Array
-    contact_length_loss: Array  # m, part of the facing length without contact
-    resultant: Array  # N
-    load_position: Array  # m, along x
-    mid_position: Array  # m
+NUMBERS = (  # scalars of `_contact_numbers`; the middle of the facing length is a position along x, m
+    *("contact_area", "contact_length", "contact_width", "contact_length_loss"),
+    *("resultant", "load_position", "mid_position"),
+)
 
 
-def contact_numbers(pressure: Array, under_roller: Array, x: Array, y: Array, dx: Array, dy: Array) -> ContactNumbers:
-    """Return the scalars of pressures (..., x, y), with `under_roller`, `x`, `dx` (..., x), and `y`, `dy` (..., y)."""
+def _contact_numbers(pressure: Array, is_facing: Array, x: Array, y: Array, dx: Array, dy: Array) -> tuple[Array, ...]:
+    """`NUMBERS` of pressures (..., x, y), with `is_facing`, `x`, `dx` (..., x), and `y`, `dy` (..., y)."""
     has_pressure = np.asarray(~np.isnan(pressure).all(axis=(-2, -1)))
     # A failed case has no finite positions.
     x, y, dx, dy = (np.where(has_pressure[..., None], values, 0.0) for values in (x, y, dx, dy))
@@ -57,17 +50,17 @@ def contact_numbers(pressure: Array, under_roller: Array, x: Array, y: Array, dx
     resultant = np.nansum(load, axis=-1)
     moment = np.nansum(load * x, axis=-1)
     position = np.divide(moment, resultant, out=np.full(np.shape(moment), np.nan), where=resultant > 0)
-    first, last = _range(x, under_roller)
+    first, last = _range(x, is_facing)
     numbers = (
         np.nansum(loaded * dx[..., :, None] * dy[..., None, :], axis=(-2, -1)),
         along,
         length(y, np.asarray(loaded.any(axis=-2)), dy),
-        length(x, under_roller, dx) - along,
+        length(x, is_facing, dx) - along,
         resultant,
         position,
         0.5 * np.where(first <= last, first, np.nan) + 0.5 * last,
     )
-    return ContactNumbers(*(np.where(has_pressure, value, np.nan) for value in numbers))
+    return tuple(np.where(has_pressure, value, np.nan) for value in numbers)
 
 
 def _range(centres: Array, mask: Array) -> tuple[Array, Array]:
@@ -110,14 +103,13 @@ def contact_results(dataset: xr.Dataset, about: float | None = None) -> xr.Datas
     dataset = require_in_si(dataset, "pressure", normalized=True)
     pressure = dataset["pressure"]
     x, y = dimension_along(pressure, "x"), dimension_along(pressure, "y")
-    under_roller = (unloaded_gap(dataset) if "initial_gap" in dataset else axial_pressure(dataset)).notnull()
     arguments = [
         (pressure, [x, y]),
-        (under_roller, [x]),
+        (under_roller(dataset), [x]),
         *((positions(pressure, axis), [dim]) for axis, dim in (("x", x), ("y", y))),
         *((cell_widths(pressure, axis), [dim]) for axis, dim in (("x", x), ("y", y))),
     ]
-    numbers = dict(zip(ContactNumbers._fields, reduce_dims(contact_numbers, arguments, 7), strict=True))
+    numbers = dict(zip(NUMBERS, reduce_dims(_contact_numbers, arguments, len(NUMBERS)), strict=True))
     mid_position, loss = numbers.pop("mid_position"), numbers.pop("contact_length_loss")
     centre = mid_position if about is None else checks.finite("about", about, "metres")
     numbers["moment"] = numbers["resultant"] * (numbers["load_position"] - centre)

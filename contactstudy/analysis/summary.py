@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from contactstudy.analysis import largest_sample, peak
-from contactstudy.analysis.contact import contact_numbers
+from contactstudy.analysis.contact import contact_results
 from contactstudy.arrays.variables import ERROR_KIND, NOT_ESTIMATED, STRESSES, labels, require
 from contactstudy.errors import InvalidInputError
 
@@ -24,33 +24,17 @@ COMMENTS = {
 def pressure_numbers(dataset: xr.Dataset) -> dict[str, float]:
     """Numbers of the pressure; end pressures from the Dataset, or else from the outermost loaded columns."""
     require(dataset, "pressure", "hertz_max_pressure")
-    array = dataset["pressure"].transpose("x", "y")
-    pressure, x, y, scale = array.values, array["x"].values, array["y"].values, float(dataset["hertz_max_pressure"])
-    in_contact = pressure > 0
-    has_contact = np.asarray(in_contact.any(axis=1))
-    columns = np.flatnonzero(has_contact)
-    widths = [
-        dataset[f"{axis}_width"].values
-        if f"{axis}_width" in dataset.variables
-        else np.full(centres.size, np.ptp(centres) / max(centres.size - 1, 1))
-        for axis, centres in (("x", x), ("y", y))
-    ]
-    numbers = contact_numbers(pressure, has_contact, x, y, *widths)
-    x_index, y_index = np.unravel_index(int(np.nanargmax(pressure)), pressure.shape)
-    end_pressures = [float(pressure[column].max()) for column in columns[[0, -1]]] if columns.size else [np.nan, np.nan]
+    numbers = {str(name): float(value) for name, value in contact_results(dataset).data_vars.items()}
     first, last = (
-        float(dataset.get(f"end_pressure_{end}", value)) / scale
-        for end, value in zip(("first", "last"), end_pressures, strict=True)
+        float(dataset.get(f"end_pressure_{end}", numbers[f"edge_pressure_{end}"]) / dataset["hertz_max_pressure"])
+        for end in ("first", "last")
     )
     return {
-        "peak_pressure": float(pressure[x_index, y_index]),
-        "peak_pressure_x": float(x[x_index]),
-        "peak_pressure_y": float(y[y_index]),
+        **{name: numbers[name] for name in ("peak_pressure", "peak_pressure_x", "peak_pressure_y")},
         "end_pressure_over_p0_first": first,
         "end_pressure_over_p0_last": last,
         "end_pressure_over_p0": 0.5 * (first + last),
-        "contact_length": float(numbers.contact_length),
-        "contact_width": float(numbers.contact_width),
+        **{name: numbers[name] for name in ("contact_length", "contact_width")},
     }
 
 

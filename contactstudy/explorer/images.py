@@ -32,8 +32,8 @@ class CaseFields:
         self.hertz: tuple[float, float] | None = None  # half-width and pressure of Hertz' line contact
         if "hertz_half_width" in dataset:
             self.hertz = float(dataset["hertz_half_width"]), float(dataset["hertz_max_pressure"])
+        self.singular_ends = singular_ends(dataset)
         self.has_pressure = "pressure" in dataset
-        self.singular_ends = singular_ends(dataset) if self.has_pressure else []
         if self.has_pressure:
             x, y = (positions(dataset["pressure"], axis).values for axis in "xy")
             self.cells = x, y
@@ -42,10 +42,6 @@ class CaseFields:
         self.has_stress = "von_mises" in dataset and not bool(dataset["von_mises"].isnull().all())
         if self.has_stress:
             self.points = {axis: positions(dataset["von_mises"], axis).values for axis in "xyz"}
-
-    def near_singular(self, x: FloatArray) -> BoolArray:
-        """Mask of the positions that are too near to a singular end to be drawn."""
-        return near_singular(self.dataset, self.singular_ends, x)
 
     def stress(self, name: str = "von_mises") -> FloatArray:
         """Stress measure (x, y, z), computed once."""
@@ -118,7 +114,7 @@ def region_limits(case: CaseFields, name: str) -> Span:
 def axial_line(case: CaseFields, scale: Scale) -> Line:
     """Return the largest pressure across the contact along the axis, without the vicinity of singular ends."""
     x, _ = case.cells
-    values = np.where(case.near_singular(x), np.nan, case.axial_pressure / scale.stress)
+    values = np.where(near_singular(case.dataset, x), np.nan, case.axial_pressure / scale.stress)
     return Line(x / scale.length, values, [end / scale.length for end in case.singular_ends])
 
 
@@ -126,7 +122,9 @@ def top_image(case: CaseFields, scale: Scale, limits: Span) -> Image:
     """Return the pressure on the top of the body."""
     x, y = case.cells
     spans = (limits, (float(y[0]), float(y[-1])))
-    return _image(case.pressure, case.cells, spans, _limit(case.pressure, case.near_singular(x)), scale, names="xy")
+    return _image(
+        case.pressure, case.cells, spans, _limit(case.pressure, near_singular(case.dataset, x)), scale, names="xy"
+    )
 
 
 def plane_image(
@@ -148,7 +146,7 @@ def plane_image(
     if horizontal == "x":
         left, right = max(left, limits[0]), min(right, limits[1])
     spans = ((left, right), (float(points[vertical][0]), float(points[vertical][-1])))
-    limit = _limit(case.stress(name), case.near_singular(points["x"]))
+    limit = _limit(case.stress(name), near_singular(case.dataset, points["x"]))
     image = _image(values, (points[horizontal], points[vertical]), spans, limit, scale, names=horizontal + vertical)
     unit = scale.length_name.strip(" ()/")
     return image._replace(position=f"{normal} = {position / scale.length:.3g} {unit}")

@@ -83,10 +83,9 @@ def draw_section_maxima(
     else:
         profile = largest_sample(case, variable, along="x")[f"peak_{variable}"]
     x = profile[dimension_along(profile, "x")].values
-    ends = singular_ends(case) if "pressure" in case else []
-    values = np.where(near_singular(case, ends, x), np.nan, profile.values)
+    values = np.where(near_singular(case, x), np.nan, profile.values)
     (line,) = ax.plot(x / unit.length + shift, values / unit.stress, **style)
-    mark_at_top(ax, [end / unit.length + shift for end in ends], line.get_color())
+    mark_at_top(ax, [end / unit.length + shift for end in singular_ends(case)], line.get_color())
 
 
 def plot_comparison(

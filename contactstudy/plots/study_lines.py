@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -122,19 +122,10 @@ def _draw_panel(
     is_numeric = np.issubdtype(values[x].dtype, np.number)
     x_values, x_label = scale_values(values[x], x) if is_numeric else (values[x], x.replace("_", " "))
     positions = x_values.values if is_numeric else np.arange(x_values.size)
-    count = 1 if hue is None else values.sizes[hue]
-    labels = [None] if hue is None else _value_labels(values[hue], hue)
-    for index, style in enumerate(line_styles(count)):
-        line, bars, open_cases = (
-            array.values if hue is None else array.isel({hue: index}).values
-            for array in (values, errors, without_estimate)
-        )
-        marker, unbounded = MARKERS[index % len(MARKERS)], np.isinf(line)
-        finite_line = np.where(unbounded, np.nan, line)
-        text = labels[index]
-        (curve,) = ax.plot(
-            positions, finite_line, **style, marker=marker, markersize=4, label=text and fold_text(text, LEGEND_COLUMN)
-        )
+    for selection, style in _lines(values, hue, LEGEND_COLUMN):
+        line, bars, open_cases = (array.isel(selection).values for array in (values, errors, without_estimate))
+        finite_line = np.where(np.isinf(line), np.nan, line)
+        (curve,) = ax.plot(positions, finite_line, **style)
         if np.isnan(line).all():
             curve.set_label("_unsolved")  # omitted in the legend
         if np.isfinite(bars).any():
@@ -143,12 +134,12 @@ def _draw_panel(
             marks[OPEN_LABEL] = {"marker": "o", **OPEN_MARK}
             if (np.isfinite(finite_line) & ~open_cases).any():
                 open_values = np.where(open_cases, finite_line, np.nan)
-                ax.plot(positions, open_values, color=style["color"], marker=marker, **OPEN_MARK)
+                ax.plot(positions, open_values, color=style["color"], marker=style["marker"], **OPEN_MARK)
             else:
-                curve.set(markersize=OPEN_MARK["markersize"], markerfacecolor=OPEN_MARK["markerfacecolor"])
-        if unbounded.any():
+                curve.set(**OPEN_MARK | {"linestyle": style["linestyle"]})
+        if np.isinf(line).any():
             marks[SINGULAR_LABEL] = SINGULAR_MARK
-        mark_at_top(ax, list(positions[unbounded]), style["color"])
+        mark_at_top(ax, list(positions[np.isinf(line)]), style["color"])
     if not is_numeric:
         ticks = [fold_text(escape_dollars(value), TICK_WIDTH) for value in x_values.values]
         ax.set_xticks(positions, ticks, rotation=20)
@@ -159,6 +150,14 @@ def _draw_panel(
     ax.set_ylim(0.0, 1.08 * max(np.nan_to_num(float(bar_tops.where(np.isfinite(bar_tops)).max())), 1e-300))
     ax.grid(color="0.9", linewidth=0.6)
     return marks
+
+
+def _lines(values: xr.DataArray, hue: str | None, width: int) -> Iterator[tuple[dict[str, int], dict[str, Any]]]:
+    """Yield the index along `hue`, and the style with the folded label, of each line; one line without `hue`."""
+    labels = [None] if hue is None else [fold_text(text, width) for text in _value_labels(values[hue], hue)]
+    for index, (label, style) in enumerate(zip(labels, line_styles(len(labels)), strict=True)):
+        marker = MARKERS[index % len(MARKERS)]
+        yield {} if hue is None else {hue: index}, style | {"marker": marker, "markersize": 4, "label": label}
 
 
 def _draw_legend(figure: Figure, ax: Axes, values: xr.DataArray, hue: str) -> None:
@@ -272,12 +271,9 @@ def plot_traction_curve(
     axes_of_study = (creepage,) if hue is None else (creepage, hue)
     values = select_one(dataset[name] / (dataset["friction"] * dataset["normal_load"]), axes_of_study, selection or {})
     ax = new_axes(ax)
-    labels = [None] if hue is None else _value_labels(values[hue], hue)
-    for index, style in enumerate(line_styles(len(labels))):
-        line = (values if hue is None else values.isel({hue: index})).dropna(creepage)
-        text, marker = labels[index], MARKERS[index % len(MARKERS)]
-        label = text and fold_text(text, TICK_WIDTH)
-        ax.plot(line[creepage], line.values, **style, marker=marker, markersize=4, label=label)
+    for selection_of_line, style in _lines(values, hue, TICK_WIDTH):
+        line = values.isel(selection_of_line).dropna(creepage)
+        ax.plot(line[creepage], line.values, **style)
     ax.axhline(1.0, color="0.6", linewidth=0.8)
     if hue is not None:
         title = scale_values(dataset[hue], hue)[1] if np.issubdtype(dataset[hue].dtype, np.number) else hue

@@ -12,7 +12,7 @@ from contactstudy.analysis import dimension_along, positions, single_case
 from contactstudy.arrays.engineering import unit_for
 from contactstudy.arrays.variables import require, variable_of
 from contactstudy.checks import BoolArray, FloatArray, IntArray
-from contactstudy.plots.singular_ends import near_singular, singular_ends
+from contactstudy.plots.singular_ends import near_singular
 from contactstudy.plots.style import COLORS, Units, label_axes, new_axes, units
 
 if TYPE_CHECKING:
@@ -55,7 +55,7 @@ class Surface(NamedTuple):
     def away_from_singular_ends(self) -> BoolArray:
         """Mask of the columns away from singular ends; all columns if every column is near an end."""
         x = positions(self.case["pressure"], "x").values
-        near_end = near_singular(self.case, singular_ends(self.case), x)
+        near_end = near_singular(self.case, x)
         return ~near_end | near_end.all()
 
 
@@ -64,10 +64,11 @@ def _surface(dataset: xr.Dataset, names: tuple[str, ...], *, si: bool, load: str
     case = single_case(dataset)
     require(case, *names)
     unit = units(case, si=si)
-    x, y = (dimension_along(case[load], axis) for axis in "xy")
     pressure = case[load]
-    x_over_unit, y_over_unit = (pressure[dim].values / unit.length for dim in (x, y))
-    return Surface(case, unit, x_over_unit, y_over_unit, pressure.transpose(y, x).values)
+    x, y = (dimension_along(pressure, axis) for axis in "xy")
+    return Surface(
+        case, unit, pressure[x].values / unit.length, pressure[y].values / unit.length, pressure.transpose(y, x).values
+    )
 
 
 def _draw_mesh(ax: Axes, surface: Surface, values: Any, **style: Any) -> QuadMesh:
