@@ -1,8 +1,10 @@
-"""Scalars of a contact on its cells: area, length, edge pressures, resultant, position of the load; cut ends."""
+"""Scalars of a contact on its cells: area, length, edge pressures, load and its position; cut ends; all numbers."""
 
 from __future__ import annotations
 
 import contextlib
+from functools import partial
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -18,16 +20,32 @@ from contactstudy.analysis.axes import (
     sort_positions,
 )
 from contactstudy.analysis.axial import axial_pressure, under_roller
-from contactstudy.analysis.peaks import largest_sample, measure
+from contactstudy.analysis.peaks import largest_sample, measure, peak
 from contactstudy.analysis.provenance import INPUTS_ATTRIBUTE, attribute, solved_case
-from contactstudy.arrays.variables import name_array, require_in_si, variable_of, without_error
+from contactstudy.arrays.variables import (
+    ERROR_KIND,
+    NOT_ESTIMATED,
+    STRESSES,
+    labels,
+    name_array,
+    require,
+    require_in_si,
+    variable_of,
+    without_error,
+)
 from contactstudy.checks import Array
 from contactstudy.errors import InvalidInputError
 
 MISSING_LOAD = 0.01  # Fraction of the load that a part of a contact lacks at least
 END_TOLERANCE = 1e-6  # Largest distance, over a cell, of a border of the cells that is at an end of the contact
 
-
+# Comments of numbers that depend on the cells, with errors that are not estimated
+COMMENTS = {
+    "contact_length": "in whole cells",
+    "contact_width": "in whole cells",
+    "end_pressure_over_p0_first": "mean of the outermost loaded cell",
+    "end_pressure_over_p0_last": "mean of the outermost loaded cell",
+}
 NUMBERS = (  # scalars of `_contact_numbers`; the middle of the facing length is a position along x, m
     *("contact_area", "contact_length", "contact_width", "contact_length_loss"),
     *("resultant", "load_position", "mid_position"),
@@ -118,8 +136,8 @@ def contact_results(dataset: xr.Dataset, about: float | None = None) -> xr.Datas
     scalars = {name: name_array(name, value) for name, value in numbers.items()}
     for name in ("contact_area", "contact_length"):
         scalars[name].attrs["comment"] = "in whole cells"
-    peak = _peak_pressure(dataset, numbers["resultant"])
-    return without_error(peak.assign(edge_pressure(dataset).data_vars).assign(scalars).compute(), *scalars)
+    scalars_of_peak = _peak_pressure(dataset, numbers["resultant"])
+    return without_error(scalars_of_peak.assign(edge_pressure(dataset).data_vars).assign(scalars).compute(), *scalars)
 
 
 def _peak_pressure(dataset: xr.Dataset, resultant: xr.DataArray) -> xr.Dataset:
@@ -130,10 +148,10 @@ def _peak_pressure(dataset: xr.Dataset, resultant: xr.DataArray) -> xr.Dataset:
         return largest_pressure
     covers_contact = resultant > (1 - MISSING_LOAD) * dataset["normal_load"]
     stored_peak = dataset[list(names)].reset_coords(drop=True)
-    peak = stored_peak["peak_pressure"].where(covers_contact, largest_pressure["peak_pressure"])
+    value = stored_peak["peak_pressure"].where(covers_contact, largest_pressure["peak_pressure"])
     comment = "settled where the contact is whole, otherwise of the highest cell"
     return largest_pressure.assign(
-        peak_pressure=name_array("peak_pressure", peak).assign_attrs(comment=comment),
+        peak_pressure=name_array("peak_pressure", value).assign_attrs(comment=comment),
         peak_pressure_error=stored_peak["peak_pressure_error"].where(covers_contact),
     )
 
@@ -164,27 +182,23 @@ def edge_pressure(dataset: xr.Dataset) -> xr.Dataset:
     >>> float(ends.edge_pressure_first), float(ends.edge_pressure_last)
     (3.0, 2.0)
     """
-    axial = sort_positions(axial_pressure(dataset), "x")
-
-    def first_and_last(values: Array) -> tuple[Array, Array]:
-        """First and last positive number along the last axis; NaN without a positive number."""
-        is_loaded = values > 0
-        indices = is_loaded.argmax(axis=-1), values.shape[-1] - 1 - is_loaded[..., ::-1].argmax(axis=-1)
-        first_values, last_values = (np.take_along_axis(values, index[..., None], axis=-1)[..., 0] for index in indices)
-        without_contact = ~is_loaded.any(axis=-1)
-        return np.where(without_contact, np.nan, first_values), np.where(without_contact, np.nan, last_values)
-
-    values = reduce_dims(first_and_last, [(axial, [dimension_along(axial, "x")])], 2)
+    axial = sort_positions(axial_pressure(dataset), "x").compute()
+    x = dimension_along(axial, "x")
+    axial = axial.drop_vars([name for name in axial.coords if x in axial[name].dims])
+    is_loaded = axial > 0
+    cells = {"first": is_loaded.argmax(x), "last": axial.sizes[x] - 1 - is_loaded[{x: slice(None, None, -1)}].argmax(x)}
     edges = {}
-    for end, value, is_cut in zip(("first", "last"), values, cut_ends(dataset), strict=True):
-        edge_value = value.where(is_cut == 0)
-        # At a singular end the mean of a cell depends on the size of the cell.
-        is_singular = np.isinf(dataset.get(f"end_pressure_{end}", xr.DataArray(0.0)))
-        edges[f"edge_pressure_{end}"] = name_array(
-            f"edge_pressure_{end}", edge_value.where(~is_singular | edge_value.isnull(), np.inf)
-        )
+    for (end, cell), is_cut in zip(cells.items(), cut_ends(dataset), strict=True):
+        value = _unbounded_if_singular(dataset, end, axial.isel({x: cell}).where(is_loaded.any(x) & (is_cut == 0)))
+        edges[f"edge_pressure_{end}"] = name_array(f"edge_pressure_{end}", value)
         edges[f"edge_pressure_{end}"].attrs["comment"] = "mean of the outermost loaded cell"
     return without_error(xr.Dataset(edges), *edges)
+
+
+def _unbounded_if_singular(dataset: xr.Dataset, end: str, value: xr.DataArray) -> xr.DataArray:
+    """Value near an end of the contact, infinite at a singular end, where the value depends on the cells."""
+    is_singular = np.isinf(dataset.get(f"end_pressure_{end}", xr.DataArray(0.0)))
+    return value.where(~is_singular | value.isnull(), np.inf)
 
 
 def cut_ends(dataset: xr.Dataset) -> tuple[xr.DataArray, xr.DataArray]:
@@ -229,14 +243,13 @@ def cut_ends(dataset: xr.Dataset) -> tuple[xr.DataArray, xr.DataArray]:
         (dataset["normal_load"], []),
         (positions(pressure, "x"), [x]),
         *((cell_widths(pressure, axis), [dim]) for axis, dim in (("x", x), ("y", y))),
-        *((xr.DataArray(end), []) for end in (start, stop)),
     ]
-    first, last = reduce_dims(_find_cuts, arguments, 2)
+    first, last = reduce_dims(partial(_find_cuts, start=start, stop=stop), arguments, 2)
     return first, last
 
 
 def _find_cuts(
-    pressure: Array, load: Array, x: Array, dx: Array, dy: Array, start: float, stop: float
+    pressure: Array, load: Array, x: Array, dx: Array, dy: Array, *, start: float, stop: float
 ) -> tuple[Array, Array]:
     """Whether contacts (..., x, y) continue beyond the first and the last x."""
     cells = np.broadcast_to(np.isfinite(x), pressure.shape[:-1])
@@ -247,15 +260,12 @@ def _find_cuts(
     # The load alone is not enough: a cut along y, or omitted cells, also reduce the resultant.
     cut = (resultant < (1 - MISSING_LOAD) * load) & ~in_contact[..., [0, -1]].any(axis=(-2, -1)) & ~is_gap.any(axis=-1)
 
-    def select_end(values: Array, *, first: bool) -> Array:
-        last = cells.sum(axis=-1, keepdims=True) - 1
-        index = np.zeros_like(last) if first else np.maximum(last, 0)
-        return np.asarray(np.take_along_axis(values, index, axis=-1)[..., 0])
-
     is_loaded, tolerance = in_contact.any(axis=-1), END_TOLERANCE * dx
-    starts_inside, stops_inside = x - 0.5 * dx > start + tolerance, x + 0.5 * dx < stop - tolerance
-    first, last = select_end(is_loaded & starts_inside, first=True), select_end(is_loaded & stops_inside, first=False)
-    return (cut & first).astype(np.float64), (cut & last).astype(np.float64)
+    starts_inside = is_loaded & (x - 0.5 * dx > start + tolerance)
+    stops_inside = is_loaded & (x + 0.5 * dx < stop - tolerance)
+    last_cell = np.maximum(cells.sum(axis=-1, keepdims=True) - 1, 0)  # padding follows it
+    last = np.take_along_axis(stops_inside, last_cell, axis=-1)[..., 0]
+    return (cut & starts_inside[..., 0]).astype(np.float64), (cut & last).astype(np.float64)
 
 
 def edge_factors(
@@ -329,12 +339,58 @@ def _values(dataset: xr.Dataset, variable: str, reach: xr.DataArray | float) -> 
     for side, border in zip(("first", "last"), borders, strict=True):
         # The factor allows for rounding of a point's distance.
         value = profile.where(abs(sample_x - border) <= reach * (1 + 1e-9)).max(x)
-        # Near a singular end pressure and stress are unbounded.
-        is_singular = np.isinf(dataset.get(f"end_pressure_{side}", xr.DataArray(0.0)))
-        values[side] = value.where(~is_singular | value.isnull(), np.inf)
+        values[side] = _unbounded_if_singular(dataset, side, value)
     distance = abs(sample_x - 0.5 * (borders[0] + borders[1]))
     nearest = distance.fillna(np.inf).argmin(x)
     width = cell_size(profile, "x")
     # A mid-length beyond the points has no value.
     is_within = distance.min(x) <= (width.isel({x: nearest}) if x in width.dims else width)
     return values | {"middle": profile.isel({x: nearest}).where(is_within), "peak": profile.max(x)}
+
+
+def pressure_numbers(dataset: xr.Dataset) -> dict[str, float]:
+    """Numbers of the pressure; end pressures from the Dataset, or else from the outermost loaded columns."""
+    require(dataset, "pressure", "hertz_max_pressure")
+    numbers = {str(name): float(value) for name, value in contact_results(dataset).data_vars.items()}
+    first, last = (
+        float(dataset.get(f"end_pressure_{end}", numbers[f"edge_pressure_{end}"]) / dataset["hertz_max_pressure"])
+        for end in ("first", "last")
+    )
+    return {
+        **{name: numbers[name] for name in ("peak_pressure", "peak_pressure_x", "peak_pressure_y")},
+        "end_pressure_over_p0_first": first,
+        "end_pressure_over_p0_last": last,
+        "end_pressure_over_p0": 0.5 * (first + last),
+        **{name: numbers[name] for name in ("contact_length", "contact_width")},
+    }
+
+
+def stress_summary(dataset: xr.Dataset) -> xr.Dataset:
+    """Largest von Mises stress, its error and position; empty without stresses."""
+    if "von_mises" not in dataset:
+        return xr.Dataset()
+    if np.isnan(dataset["von_mises"].values).all():
+        raise InvalidInputError("von_mises", "nan everywhere", "a field with at least one number")
+    has_all_stresses = all(name in dataset for name in STRESSES)
+    result = peak(dataset) if has_all_stresses else largest_sample(dataset, "von_mises")
+    return result.reset_coords(drop=True)
+
+
+class Number(NamedTuple):
+    """One number of a case with the attributes of its variable."""
+
+    value: float
+    attributes: dict[str, Any]
+
+
+def case_numbers(dataset: xr.Dataset) -> dict[str, Number]:
+    """All numbers of a solved case by name: scalars of the Dataset (refined), then numbers of its cells."""
+    numbers = {}
+    for name, value in pressure_numbers(dataset).items():
+        estimate = {"comment": COMMENTS[name], ERROR_KIND: NOT_ESTIMATED} if name in COMMENTS else {}
+        numbers[name] = Number(value, labels(name) | estimate)
+    for source in (stress_summary(dataset), dataset):
+        for key, variable in source.variables.items():
+            if variable.ndim == 0 and key not in source.coords:
+                numbers[str(key)] = Number(float(variable.values), dict(variable.attrs))
+    return numbers

@@ -22,7 +22,6 @@ from contactstudy.explorer.images import (
     CaseFields,
     Image,
     Line,
-    Span,
     axial_line,
     choose_scale,
     plane_image,
@@ -126,8 +125,9 @@ class Page:
         has_stress = any(case is not None and case.has_stress for case in cases)
         self.plane.visible = self.measure.visible = has_stress
         self.fraction.visible = has_stress and self.plane.value != PLANES[0]
-        self._show_axial(cases)
-        self._show_fields(cases)
+        shown = {side: case for side, case in enumerate(cases) if case is not None and case.has_pressure}
+        self._show_axial(shown)
+        self._show_fields(shown)
         self._show_study(sides)
         self._show_table(cases, sides, self._hide_empty(cases, sides))
 
@@ -166,52 +166,50 @@ class Page:
             self._columns[index] = {"is this number real?": verdict} | numbers | _edge_factors(case.dataset, table)
         return self._columns[index]
 
-    def _show_axial(self, cases: list[CaseFields | None]) -> None:
-        """Pressure along the axis."""
+    def _show_axial(self, shown: dict[int, CaseFields]) -> None:
+        """Pressure along the axis, with labels in the units of the first case."""
         lines: list[Line | None] = [None, None]
-        limits: list[Span] = []
-        names = ("", "")
-        for side, case in enumerate(cases):
-            if case is not None and case.has_pressure:
-                scale = choose_scale(case, relative=self.units.value)
-                low, high = region_limits(case, self.region.value)
-                lines[side] = axial_line(case, scale)
-                limits.append((low / scale.length, high / scale.length))
-                names = (scale.length_name, scale.stress_name) if len(limits) == 1 else names
-        labels = (f"distance from the free end, x{names[0]}", f"pressure along the axis{names[1]}") if limits else names
-        span = (min((low for low, _ in limits), default=0.0), max((high for _, high in limits), default=1.0))
-        self.axial.show(lines, span, labels)
+        limits: list[float] = []
+        labels = ("", "")
+        for side, case in reversed(shown.items()):
+            scale = choose_scale(case, relative=self.units.value)
+            lines[side] = axial_line(case, scale)
+            limits += [limit / scale.length for limit in region_limits(case, self.region.value)]
+            labels = (
+                f"distance from the free end, x{scale.length_name}",
+                f"pressure along the axis{scale.stress_name}",
+            )
+        self.axial.show(lines, (min(limits, default=0.0), max(limits, default=1.0)), labels)
 
-    def _show_fields(self, cases: list[CaseFields | None]) -> None:
+    def _show_fields(self, shown: dict[int, CaseFields]) -> None:
         """Pressure on the top and stress in the plane, with common colours."""
         top_images: list[Image | None] = [None, None]
         plane_images: list[Image | None] = [None, None]
         unit = ""
-        for side, case in enumerate(cases):
-            if case is not None and case.has_pressure:
-                scale, limits = choose_scale(case, relative=self.units.value), region_limits(case, self.region.value)
-                unit, kind, fraction = scale.stress_name, self.plane.value, self.fraction.value
-                top_images[side] = top_image(case, scale, limits)
-                plane_images[side] = plane_image(case, scale, limits, kind, fraction, name=self.measure.value)
+        for side, case in shown.items():
+            scale, limits = choose_scale(case, relative=self.units.value), region_limits(case, self.region.value)
+            unit, kind, fraction = scale.stress_name, self.plane.value, self.fraction.value
+            top_images[side] = top_image(case, scale, limits)
+            plane_images[side] = plane_image(case, scale, limits, kind, fraction, name=self.measure.value)
         measure = next(text for text, name in MEASURES.items() if name == self.measure.value)
         rows = (top_images, self.surface_figures, "pressure"), (plane_images, self.plane_figures, measure)
         for images, figures, quantity in rows:
             shown_images = [image for image in images if image is not None]
             limit = max((image.limit for image in shown_images), default=1.0)
-            vertical = (
-                min((image.vertical[0] for image in shown_images), default=0.0),
-                max((image.vertical[1] for image in shown_images), default=1.0),
-            )
-            for side, (case, image, figure) in enumerate(zip(cases, images, figures, strict=False)):
-                name = f"{NAMES[side]}: " if self.compare.value else ""
-                singular = case is not None and case.has_pressure and case.singular_ends
+            low = min((image.vertical[0] for image in shown_images), default=0.0)
+            high = max((image.vertical[1] for image in shown_images), default=1.0)
+            for side, (image, figure) in enumerate(zip(images, figures, strict=False)):
                 # The title has two lines, so that it fits into a narrow window.
-                title = f"{name}{quantity}{unit}"
+                title = f"{self._name(side)}{quantity}{unit}"
                 if image is not None:
-                    clipped_note = "clipped at the end" if singular else ""
-                    maximum_text = f"largest {image.largest[0]:.4g}"
-                    title += "\n" + ", ".join(filter(None, (image.position, maximum_text, clipped_note)))
-                figure.show(image, limit, title, vertical)
+                    clipped_note = "clipped at the end" if shown[side].singular_ends else ""
+                    notes = (image.position, f"largest {image.largest[0]:.4g}", clipped_note)
+                    title += "\n" + ", ".join(filter(None, notes))
+                figure.show(image, limit, title, (low, high))
+
+    def _name(self, side: int) -> str:
+        """Name of a case before a text, if there are two."""
+        return f"{NAMES[side]}: " if self.compare.value else ""
 
     def _hide_empty(self, cases: list[CaseFields | None], sides: list[int]) -> str:
         """Hide figures without data, and return the reasons."""

@@ -16,7 +16,15 @@ from contactstudy.errors import ContactStudyError, InvalidInputError
 from contactstudy.plots.edge_effect import EDGE_AXES, LoadCase, plot_edge_effect
 from contactstudy.plots.selection import describe_value, most_solved, scale_of, scale_values, select_one, select_values
 from contactstudy.plots.singular_ends import SINGULAR_LABEL, SINGULAR_MARK, mark_at_top
-from contactstudy.plots.style import MARKERS, escape_dollars, fold_labels, fold_text, line_styles, new_axes
+from contactstudy.plots.style import (
+    LEGEND_STYLE,
+    MARKERS,
+    escape_dollars,
+    fold_labels,
+    fold_text,
+    line_styles,
+    new_axes,
+)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -96,12 +104,14 @@ def plot_study_lines(
         marks |= _draw_panel(ax, dataset, name, x, hue, fixed_parameters=fixed_parameters)
     figure.set_figheight(figure.get_figheight() + LINE_HEIGHT * rows * max(map(_extra_lines, panels.flat)))
     if hue is not None:
-        _draw_legend(figure, panels[0, 0], dataset[hue], hue)
+        handles, labels = panels[0, 0].get_legend_handles_labels()
+        title = fold_text(_hue_title(dataset[hue], hue), LEGEND_COLUMN)
+        figure.legend(handles, labels, loc="outside right center", title=title, **LEGEND_STYLE, title_fontsize="small")
     if marks:
         from matplotlib.lines import Line2D
 
         handles = [Line2D([], [], color="0.3", **style) for style in marks.values()]
-        figure.legend(handles, list(marks), loc="outside lower right", frameon=False, fontsize="small", ncols=2)
+        figure.legend(handles, list(marks), loc="outside lower right", ncols=2, **LEGEND_STYLE)
     if fixed_parameters:
         values_text = [
             describe_value(dim, value, str(dataset[dim].attrs.get("units", "1")), dataset.sizes[dim])
@@ -160,20 +170,10 @@ def _lines(values: xr.DataArray, hue: str | None, width: int) -> Iterator[tuple[
         yield {} if hue is None else {hue: index}, style | {"marker": marker, "markersize": 4, "label": label}
 
 
-def _draw_legend(figure: Figure, ax: Axes, values: xr.DataArray, hue: str) -> None:
-    """Draw the legend next to the panels."""
-    numeric = np.issubdtype(values.dtype, np.number) and not _parameters_along(values, hue)
-    title = scale_values(values, hue)[1] if numeric else hue.replace("_", " ")
-    handles, labels = ax.get_legend_handles_labels()
-    figure.legend(
-        handles,
-        labels,
-        loc="outside right center",
-        title=fold_text(title, LEGEND_COLUMN),
-        frameon=False,
-        fontsize="small",
-        title_fontsize="small",
-    )
+def _hue_title(values: xr.DataArray, hue: str) -> str:
+    """Title of a legend: name and unit of a parameter of numbers, or the name of parameters that change together."""
+    is_numeric = np.issubdtype(values.dtype, np.number) and not _parameters_along(values, hue)
+    return scale_values(values, hue)[1] if is_numeric else hue.replace("_", " ")
 
 
 def _extra_lines(ax: Axes) -> int:
@@ -276,9 +276,7 @@ def plot_traction_curve(
         ax.plot(line[creepage], line.values, **style)
     ax.axhline(1.0, color="0.6", linewidth=0.8)
     if hue is not None:
-        title = scale_values(dataset[hue], hue)[1] if np.issubdtype(dataset[hue].dtype, np.number) else hue
-        title = fold_text(title.replace("_", " "), TICK_WIDTH)
-        ax.legend(title=title, frameon=False, fontsize="small", title_fontsize="small")
+        ax.legend(title=fold_text(_hue_title(dataset[hue], hue), TICK_WIDTH), **LEGEND_STYLE, title_fontsize="small")
     ax.set_xlabel(rf"{creepage.replace('_', ' ')}, $\{'xi' if name == 'force_y' else 'eta'}$")
     ax.set_ylabel(f"force over full sliding's, ${symbol}/(f W)$")
     ax.grid(color="0.9", linewidth=0.6)
