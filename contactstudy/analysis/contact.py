@@ -136,24 +136,14 @@ def contact_results(dataset: xr.Dataset, about: float | None = None) -> xr.Datas
     scalars = {name: name_array(name, value) for name, value in numbers.items()}
     for name in ("contact_area", "contact_length"):
         scalars[name].attrs["comment"] = "in whole cells"
-    scalars_of_peak = _peak_pressure(dataset, numbers["resultant"])
-    return without_error(scalars_of_peak.assign(edge_pressure(dataset).data_vars).assign(scalars).compute(), *scalars)
-
-
-def _peak_pressure(dataset: xr.Dataset, resultant: xr.DataArray) -> xr.Dataset:
-    """Largest pressure and its position: refined if the contact is complete."""
-    largest_pressure = largest_sample(dataset, "pressure")
-    names = ("peak_pressure", "peak_pressure_error")
-    if not {*names, "normal_load"} <= set(dataset.variables):
-        return largest_pressure
-    covers_contact = resultant > (1 - MISSING_LOAD) * dataset["normal_load"]
-    stored_peak = dataset[list(names)].reset_coords(drop=True)
-    value = stored_peak["peak_pressure"].where(covers_contact, largest_pressure["peak_pressure"])
-    comment = "settled where the contact is whole, otherwise of the highest cell"
-    return largest_pressure.assign(
-        peak_pressure=name_array("peak_pressure", value).assign_attrs(comment=comment),
-        peak_pressure_error=stored_peak["peak_pressure_error"].where(covers_contact),
-    )
+    result = largest_sample(dataset, "pressure")
+    if {"peak_pressure", "peak_pressure_error", "normal_load"} <= set(dataset.variables):
+        covers_contact = numbers["resultant"] > (1 - MISSING_LOAD) * dataset["normal_load"]
+        refined_peak, error = (dataset[f"peak_pressure{suffix}"].reset_coords(drop=True) for suffix in ("", "_error"))
+        pressure_peak = name_array("peak_pressure", refined_peak.where(covers_contact, result["peak_pressure"]))
+        pressure_peak.attrs["comment"] = "settled where the contact is whole, otherwise of the highest cell"
+        result = result.assign(peak_pressure=pressure_peak, peak_pressure_error=error.where(covers_contact))
+    return without_error(result.assign(edge_pressure(dataset).data_vars).assign(scalars).compute(), *scalars)
 
 
 def edge_pressure(dataset: xr.Dataset) -> xr.Dataset:

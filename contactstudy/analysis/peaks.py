@@ -1,8 +1,4 @@
-"""Stress measures and their largest values: at the samples, or between samples with an estimated error.
-
-Polynomials through the samples about the largest one interpolate the six components, from which the measure follows.
-The error estimate is the difference from polynomials of lower degree.
-"""
+"""Stress measures and their largest values: at the samples, or between samples with an estimated error."""
 
 from __future__ import annotations
 

@@ -203,11 +203,10 @@ def slices(dataset: xr.Dataset, count: int = 30) -> xr.Dataset:
         {
             "position": ("slice", 0.5 * (borders[1:] + borders[:-1]), position_comment),
             "width": ("slice", np.full(slice_count, borders[1] - borders[0]), position_comment),
-            "normal_load": name_array("normal_load", (weights * cells["line_load"]).sum(x)),
         },
         coords={"slice": np.arange(1, slice_count + 1)},
     )
-    load = result["normal_load"].values
+    load = (weights * cells["line_load"]).sum(x).values
     result = result.assign(_with_errors(case, borders, pressure, line_load, load).data_vars)
     averaged_names = [name for name in ("half_width", "unloaded_gap") if name in cells]
     for name in averaged_names:

@@ -6,7 +6,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -85,7 +84,10 @@ class Cases:
             columns = {name: self.scalars[name].values for name in case_columns}
             texts = [", ".join(f"{name}={columns[name][i]}" for name in case_columns) for i in range(values.size)]
         else:
-            texts = [_value_text(value, units) for value in values]
+            texts = [
+                str(value) if isinstance(value, (bool, np.bool_, str)) else format_quantity(float(value), units, 6)
+                for value in values
+            ]
         return texts if len(set(texts)) == len(texts) else [f"{i}: {text}" for i, text in enumerate(texts, start=1)]
 
     def index(self, chosen: dict[str, int]) -> CaseIndex:
@@ -107,13 +109,6 @@ class Cases:
 def status_sentence(status: str, reason: str) -> str:
     """Return the reason why a case has no figures, as a sentence."""
     return f"{STATUS.get(status, f'This case is {status}.')} {reason}".rstrip()
-
-
-def _value_text(value: Any, units: str) -> str:
-    """Value of a swept parameter in engineers' units."""
-    if isinstance(value, (bool, np.bool_, str)):
-        return str(value)
-    return format_quantity(float(value), units, 6)
 
 
 def open_cases(study: xr.Dataset | str | Path) -> Cases:

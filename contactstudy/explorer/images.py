@@ -79,6 +79,9 @@ class Line(NamedTuple):
     singular: list[float]
 
 
+NO_LINE = Line(np.zeros(0), np.zeros(0), [])
+
+
 class Image(NamedTuple):
     """Image (vertical, horizontal) of a field in a plane, limits and labels of both axes, and limit of the colours."""
 

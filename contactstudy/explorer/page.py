@@ -17,11 +17,11 @@ from contactstudy.errors import ContactStudyError
 from contactstudy.explorer.cases import Cases, numbers_by_subject, status_sentence
 from contactstudy.explorer.figures import FIRST_COLOR, SECOND_COLOR, AxialFigure, ImageFigure, StudyFigure
 from contactstudy.explorer.images import (
+    NO_LINE,
     PLANES,
     REGIONS,
     CaseFields,
     Image,
-    Line,
     axial_line,
     choose_scale,
     plane_image,
@@ -168,7 +168,7 @@ class Page:
 
     def _show_axial(self, shown: dict[int, CaseFields]) -> None:
         """Pressure along the axis, with labels in the units of the first case."""
-        lines: list[Line | None] = [None, None]
+        lines = [NO_LINE, NO_LINE]
         limits: list[float] = []
         labels = ("", "")
         for side, case in reversed(shown.items()):
@@ -275,13 +275,13 @@ class Page:
         label = f"{_label(entry)} ({unit})" if unit else _label(entry)
         return np.asarray(entry.values, dtype=np.float64) / factor, label, None
 
-    def _errors(self, name: str, line_index: tuple[Any, ...], values: FloatArray, factor: float) -> FloatArray | None:
-        """Errors of a number along a line of cases, NaN if not estimated; None for exact numbers."""
+    def _errors(self, name: str, line_index: tuple[Any, ...], values: FloatArray, factor: float) -> FloatArray:
+        """Errors of a number along a line of cases, NaN if not estimated; 0 for exact numbers."""
         scalars = self.cases.scalars
         if f"{name}_error" in scalars:
             errors = scalars[f"{name}_error"].transpose(*scalars["status"].dims).values[line_index] / factor
             return np.where(np.isfinite(errors) & np.isfinite(values), errors, np.nan)
-        return np.full(values.size, np.nan) if name.startswith(ESTIMATED_PREFIXES) else None
+        return np.full(values.size, np.nan if name.startswith(ESTIMATED_PREFIXES) else 0.0)
 
     def view(self) -> Any:
         """Layout of the page: columns on a wide screen, rows on a narrow screen."""

@@ -131,9 +131,8 @@ def plot_comparison(
     cases = {name: single_case(dataset) for name, dataset in results.items()}
     midpoints = {name: _contact_midpoint(case) for name, case in cases.items()}
     if centred is None:
-        half_widths = [float(case["hertz_half_width"]) for case in cases.values() if "hertz_half_width" in case]
-        midpoint_range = max(midpoints.values()) - min(midpoints.values())
-        centred = bool(half_widths) and midpoint_range > min(half_widths)
+        half_width = min(float(case.get("hertz_half_width", np.inf)) for case in cases.values())
+        centred = max(midpoints.values()) - min(midpoints.values()) > half_width
     for (name, case), style in zip(cases.items(), line_styles(len(cases)), strict=True):
         unit = units(case, si=si)
         shift = -midpoints[name] / unit.length if centred else 0.0

@@ -133,7 +133,8 @@ def _rows(case: xr.Dataset) -> Iterator[Quantity]:
         if f"end_intensity_{suffix}" in case:
             name, exponent = f"end_intensity_{suffix}", float(case[f"end_exponent_{suffix}"])
             value, error = float(case[name]), float(case.get(f"{name}_error", np.nan))
-            text, units = intensity_text(value, error, exponent), f"Pa m^{exponent:.3g}"
+            factor, units = 1e9 * 1e-3**exponent, f"Pa m^{exponent:.3g}"
+            text = format_with_error(value / factor, error / factor, f"GPa mm^{exponent:.3g}")
             remark = f"p = K / d^{exponent:.3g} at the distance d from the end"
             yield Quantity(name, f"intensity K at {end}", value, error, units, text=text, remark=remark)
         if f"end_load_{suffix}" in case:
@@ -171,7 +172,7 @@ def _row(case: xr.Dataset, name: str, meaning: str, remark: str | None = None) -
             remark = f"{NOT_ESTIMATED}: {remark or 'two grids show no limit'}"
         elif value == 0 and error == 0 and name.startswith("end_"):
             remark = OPEN_END
-    text = format_with_error(value, None if np.isnan(error) else error, units)
+    text = format_with_error(value, error, units)
     return Quantity(name, meaning, value, error, units, text=text, remark=remark)
 
 
@@ -184,12 +185,6 @@ def _peak_pressure(case: xr.Dataset) -> Iterator[Quantity]:
         value = peak if "peak_pressure" in case else float(case["pressure"].max())
         text = format_quantity(value, "Pa")
         yield Quantity("peak_pressure", "largest pressure", value, np.nan, "Pa", text=text, remark=CELL_MEAN)
-
-
-def intensity_text(value: float, error: float, exponent: float) -> str:
-    """Intensity of a singular end in GPa mm^exponent, from SI."""
-    factor = 1e9 * 1e-3**exponent
-    return format_with_error(value / factor, error / factor if np.isfinite(error) else None, f"GPa mm^{exponent:.3g}")
 
 
 def _peak_stress(case: xr.Dataset) -> Iterator[Quantity]:
