@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -23,11 +22,10 @@ Span = tuple[float, float]
 
 
 class CaseFields:
-    """Fields of a case as arrays; `load_stresses` returns the case with its six stresses."""
+    """Fields of a case as arrays."""
 
-    def __init__(self, dataset: xr.Dataset, load_stresses: Callable[[], xr.Dataset] | None = None) -> None:
+    def __init__(self, dataset: xr.Dataset) -> None:
         self.dataset = dataset
-        self._load_stresses = load_stresses or (lambda: dataset)
         self._stresses: dict[str, FloatArray] = {}
         self.hertz: tuple[float, float] | None = None  # half-width and pressure of Hertz' line contact
         if "hertz_half_width" in dataset:
@@ -46,8 +44,7 @@ class CaseFields:
     def stress(self, name: str = "von_mises") -> FloatArray:
         """Stress measure (x, y, z), computed once."""
         if name not in self._stresses:
-            source = self.dataset if name in self.dataset else self._load_stresses()
-            self._stresses[name] = _values(measure(source, name), "xyz")
+            self._stresses[name] = _values(measure(self.dataset, name), "xyz")
         return self._stresses[name]
 
 

@@ -113,7 +113,7 @@ class Page:
 
     def index(self, side: int) -> tuple[int, ...]:
         """Index of the first (0) or second (1) case in the study."""
-        return self.cases.index({dim: widget.value for dim, widget in self.choices[side].items()})
+        return tuple(widget.value for widget in self.choices[side].values())
 
     def update(self) -> None:
         """Draw the chosen cases."""
@@ -251,7 +251,7 @@ class Page:
             return
         name, parameter = self.number.value, self.parameter.value or self.cases.dims[0]
         scalars = self.cases.scalars
-        dims = [str(dim) for dim in scalars["status"].dims]
+        dims = self.cases.dims
         numbers = scalars[name].transpose(*dims).values
         specification = variable_of(name, scalars[name].attrs)
         factor, unit = unit_for(float(np.abs(numbers[np.isfinite(numbers)]).max(initial=0.0)), specification.units)
