@@ -30,7 +30,7 @@ from contactstudy.explorer.images import (
 )
 from contactstudy.plots.study_lines import ESTIMATED_PREFIXES
 from contactstudy.report.assessment import assess_case
-from contactstudy.report.summary_table import NOT_ESTIMATED, OPEN_END, Summary, summary
+from contactstudy.report.tables import NOT_ESTIMATED, OPEN_END, Summary, summary
 
 NAMES, COLORS = ("case", "second case"), (FIRST_COLOR, SECOND_COLOR)  # Names and colours of the two cases
 MAX_SLIDER_OPTIONS = 60  # Number of values of a swept parameter up to which a slider replaces a list

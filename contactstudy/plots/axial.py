@@ -1,4 +1,4 @@
-"""Lines along the roller's axis and against depth: profile, pressure, stresses, wear, several results together."""
+"""Lines along the roller's axis, along y and against depth: profile, pressure, stresses, film, wear, comparisons."""
 
 from __future__ import annotations
 
@@ -28,6 +28,7 @@ from contactstudy.profiles.base import check_drop
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+FILM_HALF_RANGE = 1.4  # Half of the range along y in a figure of a film, over the Hertz half-width
 PROFILE_POINTS = 4001
 WEAR_LABELS = {"wear_depth": (1e6, "worn depth (µm)"), "line_load": (1e-3, "load per length (N/mm)")}
 """Factor from SI and label of the variables of `plot_wear`."""
@@ -258,6 +259,65 @@ def plot_wear(worn: xr.Dataset, ax: Axes | None = None, *, variable: str = "wear
     ax.set_xlabel("position along the axis, $x$ (mm)")
     ax.set_ylabel(label)
     ax.legend(frameon=False, fontsize="small", title=str(worn["distance"].attrs.get("long_name", "distance")))
+    return ax
+
+
+def plot_film_line(
+    dataset: xr.Dataset, ax: Axes | None = None, *, x: float | None = None, y: float | None = None, si: bool = False
+) -> Axes:
+    """Film thickness and pressure along the axis, or along y.
+
+    Parameters
+    ----------
+    dataset : Dataset
+        Result of `solve_film`.
+    ax, si
+        As for :func:`plot_axial_pressure`.
+    x, y : float, optional
+        Position of the line along y or along the axis, metres; default: along the axis at ``y = 0``.
+
+    Returns
+    -------
+    Axes
+        Axes of the film; the pressure has axes on the right.
+
+    Raises
+    ------
+    InvalidInputError
+        If the film is missing, both positions are given, or the Dataset contains more than one case.
+
+    Examples
+    --------
+    >>> cells = {"x": [0.5, 1.5], "y": [-0.5, 0.5]}
+    >>> film = xr.DataArray([[1e-6, 2e-6], [1e-6, 3e-6]], dims=("x", "y"), coords=cells)
+    >>> case = xr.Dataset({"film_thickness": film, "pressure": 0 * film, "central_film": 1e-6,
+    ...                    "hertz_half_width": 1.0, "hertz_max_pressure": 1.0})
+    >>> plot_film_line(case, x=0.5).get_xlabel()
+    'position along rolling, $y/a$'
+    """
+    if x is not None and y is not None:
+        raise InvalidInputError("x, y", (x, y), "one of the two")
+    case = single_case(dataset)
+    require(case, "film_thickness", "pressure", "central_film")
+    unit, ax = units(case, si=si), new_axes(ax)
+    axis, fixed_axis, position = ("x", "y", y or 0.0) if x is None else ("y", "x", x)
+    line = case[["film_thickness", "pressure"]].dropna("x").interp({fixed_axis: position})
+    along = line[axis].values / unit.length
+    film_style, pressure_style, slice_style = line_styles(3)
+    ax.plot(along, 1e6 * line["film_thickness"].values, label="film", **film_style)
+    if axis == "x" and "slice_film" in case:
+        slices = case["slice_film"].sel(x=line["x"])
+        ax.plot(along, 1e6 * slices.values, label="slices, Moes' formula", **slice_style)
+    pressure_axes = ax.twinx()
+    pressure_axes.plot(along, line["pressure"].values / unit.stress, label="pressure", **pressure_style)
+    ax.set_ylim(0.0, 3e6 * float(case["central_film"]))
+    pressure_axes.set_ylim(bottom=0.0)
+    if axis == "y":
+        half_range = FILM_HALF_RANGE * float(case["hertz_half_width"]) / unit.length
+        ax.set_xlim(-half_range, half_range)
+    pressure_axes.set_ylabel(unit.stress_label("pressure"))
+    ax.legend(handles=[*ax.lines, *pressure_axes.lines], loc="lower center", frameon=False, fontsize="small")
+    label_axes(ax, unit.axis(axis), "film thickness, $h$ (µm)", pressure_axes)
     return ax
 
 

@@ -17,11 +17,10 @@ from contactstudy.analysis.provenance import INPUTS_ATTRIBUTE, RUN_ATTRIBUTE, at
 from contactstudy.arrays.variables import package_version
 from contactstudy.errors import InvalidInputError
 from contactstudy.report.assessment import assess_case
-from contactstudy.report.case_table import case_table
 from contactstudy.report.figures import case_pictures, side_view
 from contactstudy.report.sources import citations
 from contactstudy.report.study_page import study_context
-from contactstudy.report.summary_table import summary
+from contactstudy.report.tables import case_table, summary
 from contactstudy.study.files import load_result
 from contactstudy.versions import PACKAGES
 

@@ -18,7 +18,7 @@ from contactstudy.plots.selection import select_values
 from contactstudy.plots.study_lines import figures_with_selections
 from contactstudy.report.assessment import CAUTION, NO, UNKNOWN, YES, assess_case
 from contactstudy.report.figures import PIXELS_PER_INCH, Picture, encode_figure
-from contactstudy.report.summary_table import NOT_ESTIMATED, Summary, summary
+from contactstudy.report.tables import NOT_ESTIMATED, Summary, summary
 from contactstudy.study import collect
 from contactstudy.study.folder import Entry, Folder
 from contactstudy.study.parameters import PARAMETERS, with_defaults

@@ -12,7 +12,7 @@ from contactstudy import Case, FiniteLengthSpace, HalfSpace, InvalidInputError, 
 from contactstudy.analysis import solved_case
 from contactstudy.fields.edge_tension import edge_tension
 from contactstudy.report import assess, citations, summary
-from contactstudy.report.case_table import describe_body, describe_material
+from contactstudy.report.tables import describe_body, describe_material
 
 STEEL = Material(210e9, 0.3)
 
