@@ -46,44 +46,6 @@ COMMENTS = {
     "end_pressure_over_p0_first": "mean of the outermost loaded cell",
     "end_pressure_over_p0_last": "mean of the outermost loaded cell",
 }
-NUMBERS = (  # scalars of `_contact_numbers`; the middle of the facing length is a position along x, m
-    *("contact_area", "contact_length", "contact_width", "contact_length_loss"),
-    *("resultant", "load_position", "mid_position"),
-)
-
-
-def _contact_numbers(pressure: Array, is_facing: Array, x: Array, y: Array, dx: Array, dy: Array) -> tuple[Array, ...]:
-    """`NUMBERS` of pressures (..., x, y), with `is_facing`, `x`, `dx` (..., x), and `y`, `dy` (..., y)."""
-    has_pressure = np.asarray(~np.isnan(pressure).all(axis=(-2, -1)))
-    # A failed case has no finite positions.
-    x, y, dx, dy = (np.where(has_pressure[..., None], values, 0.0) for values in (x, y, dx, dy))
-    loaded = np.asarray(pressure > 0)
-
-    def length(centres: Array, mask: Array, width: Array) -> Array:
-        first, last = _range(centres - 0.5 * width, mask)[0], _range(centres + 0.5 * width, mask)[1]
-        return np.where(mask.any(axis=-1), last - first, 0.0)
-
-    along = length(x, np.asarray(loaded.any(axis=-1)), dx)
-    load = np.nansum(pressure * dy[..., None, :], axis=-1) * dx
-    resultant = np.nansum(load, axis=-1)
-    moment = np.nansum(load * x, axis=-1)
-    position = np.divide(moment, resultant, out=np.full(np.shape(moment), np.nan), where=resultant > 0)
-    first, last = _range(x, is_facing)
-    numbers = (
-        np.nansum(loaded * dx[..., :, None] * dy[..., None, :], axis=(-2, -1)),
-        along,
-        length(y, np.asarray(loaded.any(axis=-2)), dy),
-        length(x, is_facing, dx) - along,
-        resultant,
-        position,
-        0.5 * np.where(first <= last, first, np.nan) + 0.5 * last,
-    )
-    return tuple(np.where(has_pressure, value, np.nan) for value in numbers)
-
-
-def _range(centres: Array, mask: Array) -> tuple[Array, Array]:
-    """First and last position of a mask along the last axis; infinite for an empty mask."""
-    return np.where(mask, centres, np.inf).min(axis=-1), np.where(mask, centres, -np.inf).max(axis=-1)
 
 
 def contact_results(dataset: xr.Dataset, about: float | None = None) -> xr.Dataset:
@@ -121,18 +83,33 @@ def contact_results(dataset: xr.Dataset, about: float | None = None) -> xr.Datas
     dataset = require_in_si(dataset, "pressure", normalized=True)
     pressure = dataset["pressure"]
     x, y = dimension_along(pressure, "x"), dimension_along(pressure, "y")
-    arguments = [
-        (pressure, [x, y]),
-        (under_roller(dataset), [x]),
-        *((positions(pressure, axis), [dim]) for axis, dim in (("x", x), ("y", y))),
-        *((cell_widths(pressure, axis), [dim]) for axis, dim in (("x", x), ("y", y))),
-    ]
-    numbers = dict(zip(NUMBERS, reduce_dims(_contact_numbers, arguments, len(NUMBERS)), strict=True))
-    mid_position, loss = numbers.pop("mid_position"), numbers.pop("contact_length_loss")
+    centres_x, centres_y = (positions(pressure, axis) for axis in "xy")
+    dx, dy = (cell_widths(pressure, axis) for axis in "xy")
+    is_loaded, is_facing = pressure > 0, under_roller(dataset)
+
+    def length(dim: str, centres: xr.DataArray, widths: xr.DataArray, mask: xr.DataArray) -> xr.DataArray:
+        """Distance between the outer faces of the first and the last cell of a mask; 0 without one."""
+        last_face = (centres + 0.5 * widths).where(mask, -np.inf).max(dim, skipna=False)
+        first_face = (centres - 0.5 * widths).where(mask, np.inf).min(dim, skipna=False)
+        return (last_face - first_face).where(mask.any(dim), 0.0)
+
+    load = (pressure * dy).sum(y) * dx
+    resultant = load.sum(x)
+    contact_length = length(x, centres_x, dx, is_loaded.any(y))
+    numbers = {
+        "contact_area": (is_loaded * dx * dy).sum([x, y]),
+        "contact_length": contact_length,
+        "contact_width": length(y, centres_y, dy, is_loaded.any(x)),
+        "resultant": resultant,
+        "load_position": (load * centres_x).sum(x) / resultant.where(resultant > 0),
+    }
+    facing_x = centres_x.where(is_facing)
+    mid_position = 0.5 * facing_x.min(x) + 0.5 * facing_x.max(x)
     centre = mid_position if about is None else checks.finite("about", about, "metres")
     numbers["moment"] = numbers["resultant"] * (numbers["load_position"] - centre)
     if "initial_gap" in dataset:
-        numbers["contact_length_loss"] = loss
+        numbers["contact_length_loss"] = length(x, centres_x, dx, is_facing) - contact_length
+    numbers = {name: value.where(pressure.notnull().any([x, y])) for name, value in numbers.items()}
     scalars = {name: name_array(name, value) for name, value in numbers.items()}
     for name in ("contact_area", "contact_length"):
         scalars[name].attrs["comment"] = "in whole cells"

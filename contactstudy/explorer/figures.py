@@ -93,11 +93,6 @@ class ImageFigure:
         self.figure.add_layout(bar, "right")
         self.figure.grid.visible = False
 
-    @property
-    def has_image(self) -> bool:
-        """Whether the figure has an image."""
-        return bool(self._source.data["image"])
-
     def show(self, image: Image | None, limit: float, title: str, vertical: Span) -> None:
         """Draw an image, or none, with colours up to a limit and the vertical axis between two values."""
         self.figure.title.text = title

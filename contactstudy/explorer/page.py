@@ -127,9 +127,16 @@ class Page:
         self.fraction.visible = has_stress and self.plane.value != PLANES[0]
         shown = {side: case for side, case in enumerate(cases) if case is not None and case.has_pressure}
         self._show_axial(shown)
-        self._show_fields(shown)
+        plane_images = self._show_fields(shown)
         self._show_study(sides)
-        self._show_table(cases, sides, self._hide_empty(cases, sides))
+        self._set_visible(0, bool(shown))
+        for side in (0, 1):
+            self._set_visible(1 + side, side in shown)
+            self._set_visible(3 + side, plane_images[side] is not None)
+        remarks = [self._remark(side, cases[side], plane_images[side]) for side in sides]
+        if self.cases.dims and not self.panes[5].visible:
+            remarks.append("No case at these values of the other parameters has this number.")
+        self._show_table(cases, sides, "".join(f"<p class=why>{remark}</p>" for remark in remarks if remark))
 
     def _load(self, side: int) -> CaseFields | None:
         """Return a chosen case; None if it is not solved."""
@@ -181,8 +188,8 @@ class Page:
             )
         self.axial.show(lines, (min(limits, default=0.0), max(limits, default=1.0)), labels)
 
-    def _show_fields(self, shown: dict[int, CaseFields]) -> None:
-        """Pressure on the top and stress in the plane, with common colours."""
+    def _show_fields(self, shown: dict[int, CaseFields]) -> list[Image | None]:
+        """Show pressure on the top and stress in the plane, with common colours; return the images of the plane."""
         top_images: list[Image | None] = [None, None]
         plane_images: list[Image | None] = [None, None]
         unit = ""
@@ -200,42 +207,27 @@ class Page:
             high = max((image.vertical[1] for image in shown_images), default=1.0)
             for side, (image, figure) in enumerate(zip(images, figures, strict=False)):
                 # The title has two lines, so that it fits into a narrow window.
-                title = f"{self._name(side)}{quantity}{unit}"
+                title = f"{NAMES[side]}: {quantity}{unit}" if self.compare.value else f"{quantity}{unit}"
                 if image is not None:
                     clipped_note = "clipped at the end" if shown[side].singular_ends else ""
                     notes = (image.position, f"largest {image.largest[0]:.4g}", clipped_note)
                     title += "\n" + ", ".join(filter(None, notes))
                 figure.show(image, limit, title, (low, high))
+        return plane_images
 
-    def _name(self, side: int) -> str:
-        """Name of a case before a text, if there are two."""
-        return f"{NAMES[side]}: " if self.compare.value else ""
-
-    def _hide_empty(self, cases: list[CaseFields | None], sides: list[int]) -> str:
-        """Hide figures without data, and return the reasons."""
-        has_top_image = [figure.has_image for figure in self.surface_figures]
-        planes = [figure.has_image for figure in self.plane_figures]
-        self._set_visible(0, any(has_top_image))
-        for pane, images in ((1, has_top_image), (3, planes)):
-            for side in (0, 1):
-                self._set_visible(pane + side, side in sides and images[side])
-        remarks = []
-        for side in sides:
-            case = cases[side]
-            if case is None:
-                text = status_sentence(*self.cases.status(self.index(side)))
-            elif not has_top_image[side]:
-                text = "The study stores no surfaces of this case, only its numbers."
-            elif not planes[side]:
-                reason = "have too few points in this plane" if case.has_stress else "are not stored"
-                text = f"The stresses {reason}."
-            else:
-                continue
-            name = f"<b>{NAMES[side]}:</b> " if self.compare.value else ""
-            remarks.append(f"<p class=why>{name}{html.escape(text)}</p>")
-        if self.cases.dims and not self.panes[5].visible:
-            remarks.append("<p class=why>No case at these values of the other parameters has this number.</p>")
-        return "".join(remarks)
+    def _remark(self, side: int, case: CaseFields | None, plane_image: Image | None) -> str:
+        """Reason of missing figures of a case; empty if all are shown."""
+        if case is None:
+            text = status_sentence(*self.cases.status(self.index(side)))
+        elif not case.has_pressure:
+            text = "The study stores no surfaces of this case, only its numbers."
+        elif plane_image is None:
+            reason = "have too few points in this plane" if case.has_stress else "are not stored"
+            text = f"The stresses {reason}."
+        else:
+            return ""
+        name = f"<b>{NAMES[side]}:</b> " if self.compare.value else ""
+        return f"{name}{html.escape(text)}"
 
     def _set_visible(self, index: int, visible: bool) -> None:
         """Show or hide a figure; the figure's pane and model must agree."""
