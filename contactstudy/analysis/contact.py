@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -16,7 +15,6 @@ from contactstudy.analysis.axes import (
     cell_widths,
     dimension_along,
     positions,
-    reduce_dims,
     sort_positions,
 )
 from contactstudy.analysis.axial import axial_pressure, under_roller
@@ -33,7 +31,6 @@ from contactstudy.arrays.variables import (
     variable_of,
     without_error,
 )
-from contactstudy.checks import Array
 from contactstudy.errors import InvalidInputError
 
 MISSING_LOAD = 0.01  # Fraction of the load that a part of a contact lacks at least
@@ -205,34 +202,21 @@ def cut_ends(dataset: xr.Dataset) -> tuple[xr.DataArray, xr.DataArray]:
     if "case" in attribute(dataset, INPUTS_ATTRIBUTE):
         with contextlib.suppress(InvalidInputError):  # inputs of another version
             start, stop = solved_case(dataset).contact_range
-    arguments = [
-        (pressure, [x, y]),
-        (dataset["normal_load"], []),
-        (positions(pressure, "x"), [x]),
-        *((cell_widths(pressure, axis), [dim]) for axis, dim in (("x", x), ("y", y))),
-    ]
-    first, last = reduce_dims(partial(_find_cuts, start=start, stop=stop), arguments, 2)
-    return first, last
-
-
-def _find_cuts(
-    pressure: Array, load: Array, x: Array, dx: Array, dy: Array, *, start: float, stop: float
-) -> tuple[Array, Array]:
-    """Whether contacts (..., x, y) continue beyond the first and the last x."""
-    cells = np.broadcast_to(np.isfinite(x), pressure.shape[:-1])
-    x, dx = (np.broadcast_to(values, cells.shape) for values in (x, dx))
-    resultant = np.nansum(pressure * dx[..., :, None] * dy[..., None, :], axis=(-2, -1))
-    is_gap = np.abs(np.diff(x, axis=-1) - 0.5 * (dx[..., 1:] + dx[..., :-1])) > END_TOLERANCE * dx[..., 1:]
-    in_contact = pressure > 0
+    pressure, centres, dx, dy = (
+        array.drop_vars([name for name in array.coords if {x, y} & set(array[name].dims)])
+        for array in (pressure, positions(pressure, "x"), *(cell_widths(pressure, axis) for axis in "xy"))
+    )
+    in_contact, is_loaded, tolerance = pressure > 0, (pressure > 0).any(y), END_TOLERANCE * dx
+    before, after = {x: slice(None, -1)}, {x: slice(1, None)}
+    is_gap = abs(centres.diff(x) - 0.5 * (dx[after] + dx[before])) > tolerance[after]
     # The load alone is not enough: a cut along y, or omitted cells, also reduce the resultant.
-    cut = (resultant < (1 - MISSING_LOAD) * load) & ~in_contact[..., [0, -1]].any(axis=(-2, -1)) & ~is_gap.any(axis=-1)
-
-    is_loaded, tolerance = in_contact.any(axis=-1), END_TOLERANCE * dx
-    starts_inside = is_loaded & (x - 0.5 * dx > start + tolerance)
-    stops_inside = is_loaded & (x + 0.5 * dx < stop - tolerance)
-    last_cell = np.maximum(cells.sum(axis=-1, keepdims=True) - 1, 0)  # padding follows it
-    last = np.take_along_axis(stops_inside, last_cell, axis=-1)[..., 0]
-    return (cut & starts_inside[..., 0]).astype(np.float64), (cut & last).astype(np.float64)
+    has_less_load = (pressure * dx * dy).sum([x, y]) < (1 - MISSING_LOAD) * dataset["normal_load"]
+    is_cut = has_less_load & ~in_contact[{y: [0, -1]}].any([x, y]) & ~is_gap.any(x)
+    starts_inside = is_loaded & (centres - 0.5 * dx > start + tolerance)
+    stops_inside = is_loaded & (centres + 0.5 * dx < stop - tolerance)
+    last_cell = (centres.notnull().sum(x) - 1).clip(0)  # padding follows it
+    first, last = starts_inside.isel({x: 0}), stops_inside.isel({x: last_cell})
+    return (is_cut & first).astype(np.float64), (is_cut & last).astype(np.float64)
 
 
 def edge_factors(
