@@ -16,6 +16,7 @@ from contactstudy.analysis.axes import (
     dimension_along,
     positions,
     sort_positions,
+    without_coordinates,
 )
 from contactstudy.analysis.axial import axial_pressure, under_roller
 from contactstudy.analysis.peaks import largest_sample, measure, peak
@@ -148,7 +149,7 @@ def edge_pressure(dataset: xr.Dataset) -> xr.Dataset:
     """
     axial = sort_positions(axial_pressure(dataset), "x").compute()
     x = dimension_along(axial, "x")
-    axial = axial.drop_vars([name for name in axial.coords if x in axial[name].dims])
+    axial = without_coordinates(axial, x)
     is_loaded = axial > 0
     cells = {"first": is_loaded.argmax(x), "last": axial.sizes[x] - 1 - is_loaded[{x: slice(None, None, -1)}].argmax(x)}
     edges = {}
@@ -203,7 +204,7 @@ def cut_ends(dataset: xr.Dataset) -> tuple[xr.DataArray, xr.DataArray]:
         with contextlib.suppress(InvalidInputError):  # inputs of another version
             start, stop = solved_case(dataset).contact_range
     pressure, centres, dx, dy = (
-        array.drop_vars([name for name in array.coords if {x, y} & set(array[name].dims)])
+        without_coordinates(array, x, y)
         for array in (pressure, positions(pressure, "x"), *(cell_widths(pressure, axis) for axis in "xy"))
     )
     in_contact, is_loaded, tolerance = pressure > 0, (pressure > 0).any(y), END_TOLERANCE * dx
