@@ -215,7 +215,7 @@ def cut_ends(dataset: xr.Dataset) -> tuple[xr.DataArray, xr.DataArray]:
     is_cut = has_less_load & ~in_contact[{y: [0, -1]}].any([x, y]) & ~is_gap.any(x)
     starts_inside = is_loaded & (centres - 0.5 * dx > start + tolerance)
     stops_inside = is_loaded & (centres + 0.5 * dx < stop - tolerance)
-    last_cell = (centres.notnull().sum(x) - 1).clip(0)  # padding follows it
+    last_cell = (centres.notnull().sum(x) - 1).clip(0).compute()  # padding follows it
     first, last = starts_inside.isel({x: 0}), stops_inside.isel({x: last_cell})
     return (is_cut & first).astype(np.float64), (is_cut & last).astype(np.float64)
 
