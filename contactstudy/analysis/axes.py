@@ -109,6 +109,11 @@ def sort_positions(array: xr.DataArray, axis: str) -> xr.DataArray:
     return array if index is None or index.is_monotonic_increasing else array.sortby(dim)
 
 
+def without_coordinates(array: xr.DataArray, *dims: str) -> xr.DataArray:
+    """Return an array without its coordinates along some dimensions."""
+    return array.drop_vars([name for name in array.coords if set(dims) & set(array[name].dims)])
+
+
 def cell_size(array: xr.DataArray, axis: str) -> xr.DataArray:
     """Return the width of the cells along an axis, metres; a single position has the width 0."""
     if f"{axis}_width" in array.coords:

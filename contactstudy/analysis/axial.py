@@ -330,6 +330,11 @@ def unloaded_gap(dataset: xr.Dataset) -> xr.DataArray:
     return name_array("unloaded_gap", min_gap.where(np.isfinite(min_gap)))
 
 
+def under_roller(dataset: xr.Dataset) -> xr.DataArray:
+    """Return whether roller and body face each other at each x: from the initial gap, else from the pressure."""
+    return (unloaded_gap(dataset) if "initial_gap" in dataset else axial_pressure(dataset)).notnull()
+
+
 def axial_profiles(dataset: xr.Dataset) -> xr.Dataset:
     """Return pressure, load, half-width and gap along the roller's axis in one Dataset.
 

@@ -1,8 +1,4 @@
-"""Stress measures and their largest values: at the samples, or between samples with an estimated error.
-
-Polynomials through the samples about the largest one interpolate the six components, from which the measure follows.
-The error estimate is the difference from polynomials of lower degree.
-"""
+"""Stress measures and their largest values: at the samples, or between samples with an estimated error."""
 
 from __future__ import annotations
 
@@ -14,7 +10,7 @@ import numpy as np
 import xarray as xr
 
 from contactstudy import checks
-from contactstudy.analysis.axes import axis_dimensions, positions, reduce_dims, single_case
+from contactstudy.analysis.axes import axis_dimensions, positions, single_case, without_coordinates
 from contactstudy.arrays.grid import TOP_ERROR
 from contactstudy.arrays.peaks import interpolate_about, variation_lengths
 from contactstudy.arrays.variables import (
@@ -26,7 +22,7 @@ from contactstudy.arrays.variables import (
     variable_of,
     without_error,
 )
-from contactstudy.checks import Array, FloatArray
+from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 from contactstudy.stress import (
     hydrostatic,
@@ -150,29 +146,18 @@ def largest_sample(dataset: xr.Dataset, variable: str = "von_mises", *, along: s
         del axes[along]
     if not axes:
         raise InvalidInputError("variable", variable, "a field along x, y or z")
-    coordinates = [(positions(array, axis), [dim]) for axis, dim in axes.items()]
-    values = reduce_dims(_maximum, [(array, list(axes.values())), *coordinates], 1 + len(axes))
+    points = {axis: without_coordinates(positions(array, axis), dim) for axis, dim in axes.items()}
+    array = without_coordinates(array, *axes.values())
+    index = {dim: i.compute() for dim, i in array.fillna(-np.inf).argmax(list(axes.values())).items()}
+    largest = array.isel(index)
+    values = {f"peak_{variable}": largest} | {
+        f"peak_{variable}_{axis}": points[axis].isel({dim: index[dim]}).where(largest.notnull())
+        for axis, dim in axes.items()
+    }
     base = variable_of(variable, array.attrs)
-    names = (f"peak_{variable}", *(f"peak_{variable}_{axis}" for axis in axes))
-    result = xr.Dataset(
-        {name: name_array(name, value, base) for name, value in zip(names, values, strict=True)}
-    ).compute()
-    result[names[0]].attrs["comment"] = "largest sample; unbounded near a singular end"
-    return without_error(result, *names)
-
-
-def _maximum(values: Array, *coordinates: Array) -> tuple[Array, ...]:
-    """Largest number over the last axes, which `coordinates` belong to, and its position; NaN without a number."""
-    lead_shape, shape = values.shape[: values.ndim - len(coordinates)], values.shape[values.ndim - len(coordinates) :]
-    flat = values.reshape(*lead_shape, -1)
-    index = np.where(np.isnan(flat), -np.inf, flat).argmax(axis=-1)
-    maximum = np.take_along_axis(flat, index[..., None], axis=-1)[..., 0]
-    result = [maximum]
-    for coordinate, axis_index in zip(coordinates, np.unravel_index(index, shape), strict=True):
-        broadcast = np.broadcast_to(coordinate, (*lead_shape, coordinate.shape[-1]))
-        position = np.take_along_axis(broadcast, np.asarray(axis_index)[..., None], axis=-1)[..., 0]
-        result.append(np.where(np.isnan(maximum), np.nan, position))
-    return tuple(result)
+    result = xr.Dataset({name: name_array(name, value, base) for name, value in values.items()}).compute()
+    result[f"peak_{variable}"].attrs["comment"] = "largest sample; unbounded near a singular end"
+    return without_error(result, *values)
 
 
 class Peak(NamedTuple):

@@ -69,19 +69,13 @@ def attribute(dataset: xr.Dataset, name: str) -> dict[str, Any]:
 
 
 def _without_malformed(table: dict[str, Any]) -> dict[str, Any]:
-    """Table, with its nested tables, without malformed entries: foreign types, invalid dates, invalid seconds."""
-    valid_entries = {}
-    for name, value in table.items():
-        if name in ATTRIBUTE_TYPES and not isinstance(value, ATTRIBUTE_TYPES[name]):
-            continue
-        if name == "time":
-            try:
-                datetime.fromisoformat(value)
-            except ValueError:
-                continue
-        if name != "stages" or all(isinstance(seconds, Real) for seconds in value.values()):
-            valid_entries[name] = _without_malformed(value) if name in ("settings", "case", "roller") else value
-    return valid_entries
+    """Table, with its nested tables, without entries of a foreign type."""
+    foreign = {name for name, kind in ATTRIBUTE_TYPES.items() if name in table and not isinstance(table[name], kind)}
+    return {
+        name: _without_malformed(value) if name in ("settings", "case", "roller") else value
+        for name, value in table.items()
+        if name not in foreign
+    }
 
 
 def solved_case(dataset: xr.Dataset) -> Case:

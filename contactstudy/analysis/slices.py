@@ -14,7 +14,7 @@ import xarray as xr
 
 from contactstudy import checks
 from contactstudy.analysis.axes import axis_dimensions, cell_size, cell_widths, dimension_along, single_case
-from contactstudy.analysis.axial import axial_profiles
+from contactstudy.analysis.axial import axial_profiles, under_roller
 from contactstudy.analysis.contact import MISSING_LOAD, cut_ends
 from contactstudy.analysis.peaks import largest_sample
 from contactstudy.analysis.provenance import INPUTS_ATTRIBUTE, attribute
@@ -185,8 +185,8 @@ def slices(dataset: xr.Dataset, count: int = 30) -> xr.Dataset:
     slice_count = checks.count("count", count)
     profiles = axial_profiles(case)
     x = dimension_along(profiles["line_load"], "x")
-    under_roller = profiles["unloaded_gap"].notnull() if "unloaded_gap" in profiles else profiles["line_load"].notnull()
-    cells = profiles.isel({x: np.flatnonzero(under_roller.values)})
+    is_facing = under_roller(case).values
+    cells = profiles.isel({x: is_facing})
     centres = cells[x].values
     if centres.size < slice_count:
         raise InvalidInputError("count", count, f"at most the number of cells, {centres.size}")
@@ -194,7 +194,7 @@ def slices(dataset: xr.Dataset, count: int = 30) -> xr.Dataset:
     borders = np.linspace(centres[0] - half_widths[0], centres[-1] + half_widths[-1], slice_count + 1)
 
     edges = np.stack([centres - half_widths, centres + half_widths], axis=-1)
-    maxima = section_maxima(case["pressure"].transpose(x, ...).values[under_roller.values])
+    maxima = section_maxima(case["pressure"].transpose(x, ...).values[is_facing])
     pressure, line_load = Columns(edges, centres, maxima), Columns(edges, centres, cells["line_load"].values)
     # A cell that a border cuts divides its load between both slices.
     weights = xr.DataArray(pressure.overlaps(borders), dims=("slice", x))
@@ -203,11 +203,10 @@ def slices(dataset: xr.Dataset, count: int = 30) -> xr.Dataset:
         {
             "position": ("slice", 0.5 * (borders[1:] + borders[:-1]), position_comment),
             "width": ("slice", np.full(slice_count, borders[1] - borders[0]), position_comment),
-            "normal_load": name_array("normal_load", (weights * cells["line_load"]).sum(x)),
         },
         coords={"slice": np.arange(1, slice_count + 1)},
     )
-    load = result["normal_load"].values
+    load = (weights * cells["line_load"]).sum(x).values
     result = result.assign(_with_errors(case, borders, pressure, line_load, load).data_vars)
     averaged_names = [name for name in ("half_width", "unloaded_gap") if name in cells]
     for name in averaged_names:

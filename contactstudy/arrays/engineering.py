@@ -46,9 +46,9 @@ def format_quantity(value: float, units: str, digits: int = DIGITS) -> str:
     return f"{format_value(value / factor, digits)} {unit}".rstrip()
 
 
-def format_with_error(value: float, error: float | None, units: str) -> str:
-    """Write a number and its error in one unit, with the digits that are significant given the error."""
-    if error is None or not math.isfinite(value) or not NEGLIGIBLE * abs(value) < error < math.inf:
+def format_with_error(value: float, error: float, units: str) -> str:
+    """Write a number and its error, NaN if not known, in one unit, with the digits that the error leaves."""
+    if not math.isfinite(value) or not NEGLIGIBLE * abs(value) < error < math.inf:
         return format_quantity(value, units)
     factor, unit = unit_for(max(abs(value), error), units)
     value, error = value / factor, error / factor

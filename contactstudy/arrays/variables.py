@@ -127,15 +127,16 @@ def require(dataset: object, *names: str, argument: str = "dataset") -> None:
 POSITIONS = ("x", "y", "z", "x_field", "y_field", "x_width")  # coordinates in metres
 
 
-def in_si(name: str, array: xr.DataArray, unit: str) -> xr.DataArray:
-    """Return an array with its values in `unit`, a key of `checks.UNIT_SIZES`, and its positions in metres."""
-    checks.instance(name, array, xr.DataArray, "an xarray.DataArray with dimensions (x, y)")
-    factors = {axis: _factor(f"{name}.{axis}", array[axis], "m") for axis in POSITIONS if axis in array.coords}
+def in_si(name: str, values: Any, unit: str) -> Any:
+    """Return a DataArray with its values in `unit` of SI and its positions in metres; other values are unchanged."""
+    if not isinstance(values, xr.DataArray):
+        return values
+    factors = {axis: _factor(f"{name}.{axis}", values[axis], "m") for axis in POSITIONS if axis in values.coords}
     coordinates = {
-        axis: (array[axis] * factor).assign_attrs(units="m") for axis, factor in factors.items() if factor != 1
+        axis: (values[axis] * factor).assign_attrs(units="m") for axis, factor in factors.items() if factor != 1
     }
-    scale = _factor(name, array, unit)
-    converted = array.assign_coords(coordinates) if coordinates else array
+    scale = _factor(name, values, unit)
+    converted = values.assign_coords(coordinates) if coordinates else values
     return converted if scale == 1 else (converted * scale).assign_attrs(units=unit)
 
 
@@ -156,14 +157,6 @@ def require_in_si(dataset: xr.Dataset, *names: str, argument: str = "dataset", n
         converted.attrs = {**dataset[name].attrs, "units": unit}
         dataset = dataset.assign_coords({name: converted}) if name in POSITIONS else dataset.assign({name: converted})
     return dataset
-
-
-def numbers_in_si(name: str, values: Any, unit: str) -> Any:
-    """Return numbers in a unit of SI: a DataArray with a unit is converted, other values are unchanged."""
-    if not isinstance(values, xr.DataArray):
-        return values
-    factor = _factor(name, values, unit)
-    return values if factor == 1 else values * factor
 
 
 def _factor(name: str, array: xr.DataArray, unit: str) -> float:

@@ -29,6 +29,7 @@ class Variable(NamedTuple):
 
 X, XY, XZ, YZ, XYZ, SCALAR = ("x",), ("x", "y"), ("x", "z"), ("y", "z"), ("x", "y", "z"), ()
 SLICE_DIMS, CHECK_DIMS = ("slice",), ("check",)
+LAW, DISTANCE_X_DIMS = ("approach", "tilt"), ("distance", "x")
 EVALUATION_DIMS, PARAMETER_DIMS, SLIDE_ROLL_DIMS = ("evaluation",), ("parameter",), ("slide_roll_ratio",)
 AXES = ("x", "y", "z")  # along the roller's axis, along rolling, and into the body
 STRESSES = ("sigma_xx", "sigma_yy", "sigma_zz", "tau_xy", "tau_xz", "tau_yz")  # the order in every array
@@ -69,7 +70,8 @@ COORDINATES = {  # coordinates of results; swept parameters stand in :data:`cont
     "pass_number": Variable(("pass_number",), "1", "N", "number of the pass"),
 }
 
-CONTACT = {  # the contact: of a case, of a shape with a body, and of a rough surface
+VARIABLES = {  # every one by subject, without names made by a rule
+    # The contact: of a case, of a shape with a body, and of a rough surface
     "pressure": Variable(XY, "Pa", "p", "contact pressure"),
     "traction_x": Variable(XY, "Pa", "q_x", "traction on the body along the roller's axis"),
     "traction_y": Variable(XY, "Pa", "q_y", "traction on the body along +y"),
@@ -132,15 +134,11 @@ CONTACT = {  # the contact: of a case, of a shape with a body, and of a rough su
     "end_exponent_first": Variable(SCALAR, "1", r"m_\mathrm{I}", "exponent at a singular end nearer to end I"),
     "end_exponent_last": Variable(SCALAR, "1", r"m_\mathrm{II}", "exponent at a singular end nearer to end II"),
     "half_width_middle": Variable(SCALAR, "m", r"b_\mathrm{m}", "half-width of the contact at mid-length"),
-}
-
-SLICE_MODEL = {  # variables of the slice model only
+    # Of the slice model only
     "load_per_length": Variable(X, "N/m", "w", "load per length of each slice"),
     "deflection": Variable(X, "m", "d_k", "deflection of each slice"),
     "edge_factor": Variable(X, "1", "", "stress riser of ISO/TS 16281, a factor on the load"),
-}
-
-FIELDS = {  # fields in the body, and the loads on the auxiliary bodies that make them
+    # Fields in the body, and the loads on the auxiliary bodies that make them
     "u_x": Variable(XYZ, "m", "u_x", "displacement along the roller's axis"),
     "u_y": Variable(XYZ, "m", "u_y", "displacement along rolling"),
     "u_z": Variable(XYZ, "m", "u_z", "displacement along depth"),
@@ -153,9 +151,7 @@ FIELDS = {  # fields in the body, and the loads on the auxiliary bodies that mak
     "P_h1": Variable(XY, "Pa", "P_{h1}", "equivalent pressure on the top, P_h1"),
     "P_v1": Variable(YZ, "Pa", "P_{v1}", "equivalent pressure on end plane I, P_v1"),
     "P_v2": Variable(YZ, "Pa", "P_{v2}", "equivalent pressure on end plane II, P_v2"),
-}
-
-MEASURES = {  # measures of stress
+    # Measures of stress
     "von_mises": Variable(XYZ, "Pa", r"\sigma_{vM}", "von Mises stress"),
     "tresca": Variable(XYZ, "Pa", r"\sigma_{T}", "Tresca stress"),
     "maximum_shear": Variable(XYZ, "Pa", r"\tau_{max}", "maximum shear stress"),
@@ -169,10 +165,7 @@ MEASURES = {  # measures of stress
     "orthogonal_shear_amplitude": Variable(XZ, "Pa", r"\tau_0", "orthogonal shear amplitude"),
     "y_of_largest_shear": Variable(XZ, "m", "", "where tau_yz is largest"),
     "y_of_smallest_shear": Variable(XZ, "m", "", "where tau_yz is smallest"),
-}
-
-
-ANALYSIS = {  # variables of :mod:`contactstudy.analysis`
+    # Of :mod:`contactstudy.analysis`
     "axial_pressure": Variable(X, "Pa", r"\max_y p", "largest pressure across y"),
     "line_load": Variable(X, "N/m", "w", "load per length along the axis"),
     "half_width": Variable(X, "m", "b", "half-width of the contact"),
@@ -203,9 +196,7 @@ ANALYSIS = {  # variables of :mod:`contactstudy.analysis`
     "over_reference_peak": Variable(SCALAR, "1", "", "{variable} at its largest, over that of the reference"),
     "position": Variable(SLICE_DIMS, "m", "x_k", "middle of the slice"),
     "width": Variable(SLICE_DIMS, "m", "", "width of the slice"),
-}
-
-FATIGUE = {  # variables of :mod:`contactstudy.fatigue`. The unit of a risk has the exponents of its life theory
+    # Of :mod:`contactstudy.fatigue`. The unit of a risk has the exponents of its life theory
     "window_remainder": Variable(XZ, "1", "", "stress at the borders of the window over the largest of the passage"),
     "dang_van": Variable(XZ, "Pa", r"\tau + \alpha \sigma_h", "Dang Van's equivalent shear stress"),
     "dang_van_shear": Variable(XZ, "Pa", r"\tau", "shear at the worst instant"),
@@ -234,9 +225,7 @@ FATIGUE = {  # variables of :mod:`contactstudy.fatigue`. The unit of a risk has 
     "program_gap": Variable(SCALAR, "1", "", "part of the yield stress that the convex program could still gain"),
     "shakedown_limit": Variable(SCALAR, "1", "p_0/k", "pressure p0 over the least yield stress k for shakedown"),
     "first_yield_limit": Variable(SCALAR, "1", "p_0/k", "pressure p0 over the least yield stress k for no yield"),
-}
-
-HEAT = {  # variables of :func:`contactstudy.heat.flash_temperature`
+    # Of :func:`contactstudy.heat.flash_temperature`
     "temperature_rise": Variable(XY, "K", "T", "temperature rise of the body's surface"),
     "roller_temperature_rise": Variable(XY, "K", "T_2", "temperature rise of the roller's surface"),
     "body_temperature_rise": Variable(XYZ, "K", "T", "temperature rise in the body"),
@@ -253,96 +242,7 @@ HEAT = {  # variables of :func:`contactstudy.heat.flash_temperature`
     "temperature_mismatch": Variable(
         SCALAR, "1", "", "largest difference of the surfaces' temperatures where they touch, over the largest rise"
     ),
-}
-
-LAW = ("approach", "tilt")
-
-BEARING = {  # variables of :mod:`contactstudy.bearing`
-    "strain_energy": Variable(LAW, "J", "U", "strain energy of the contact"),
-    "normal_stiffness": Variable(LAW, "N/m", r"\partial Q/\partial\delta", "change of the load with the approach"),
-    "coupling_stiffness": Variable(
-        LAW, "N/rad", r"\partial Q/\partial\vartheta", "change of the load with tilt, and of the moment with approach"
-    ),
-    "tilting_stiffness": Variable(LAW, "N m/rad", r"\partial M/\partial\vartheta", "change of the moment with tilt"),
-    "relative_load_error": Variable(LAW, "1", "", "error of the contact law's load, over the load"),
-    "relative_moment_error": Variable(LAW, "1", "", "error of the contact law's moment, over load times length"),
-    "accuracy": Variable(SCALAR, "1", "", "accuracy to which the peak pressure is settled"),
-    "inner_approach": Variable(SCALAR, "m", "", "approach of the contact with the inner raceway"),
-    "inner_tilt": Variable(SCALAR, "rad", "", "tilt of the contact with the inner raceway"),
-    "outer_approach": Variable(SCALAR, "m", "", "approach of the contact with the outer raceway"),
-    "outer_tilt": Variable(SCALAR, "rad", "", "tilt of the contact with the outer raceway"),
-    "hertz_load_per_length": Variable(
-        SLICE_DIMS, "N/m", "", "load per length of the line contact with the solved pressure"
-    ),
-    "stress_riser": Variable(
-        ("model", "raceway", "roller", "slice"), "1", "f_k", "factor on the load of a lamina, from solved pressures"
-    ),
-    "lamina_equivalent_load": Variable(
-        ("model", "raceway", "slice"), "N", "q_{ke}", "dynamic equivalent load of a lamina"
-    ),
-    "reference_life": Variable(("model",), "1", "L_{10r}", "basic reference rating life, revolutions"),
-    "raceway_life": Variable(("model", "raceway"), "1", "", "revolutions that 9 of 10 raceways survive"),
-}
-
-DESIGN = {  # variables of :mod:`contactstudy.design`; the unit is the unit of the measure
-    "optimum": Variable(PARAMETER_DIMS, "", "", "best value of the parameter"),
-    "at_bound": Variable(PARAMETER_DIMS, "", "", "whether the best value is a bound"),
-    "flat_from": Variable(PARAMETER_DIMS, "", "", "least value of the parameter that is as good within the errors"),
-    "flat_to": Variable(PARAMETER_DIMS, "", "", "largest value of the parameter that is as good within the errors"),
-    "lower_bound": Variable(PARAMETER_DIMS, "", "", "least value of the parameter that is looked at"),
-    "upper_bound": Variable(PARAMETER_DIMS, "", "", "largest value of the parameter that is looked at"),
-    "measure": Variable(SCALAR, "", "", "measure of the best design in its worst case"),
-    "design": Variable(("evaluation", "parameter"), "", "", "parameters of a design that was looked at"),
-    "design_measure": Variable(EVALUATION_DIMS, "", "", "measure of a design in its worst case"),
-    "case_measure": Variable(("evaluation", "case"), "", "", "measure of a design in one case"),
-}
-
-DISTANCE_X_DIMS = ("distance", "x")
-
-WEAR = {  # variables of :func:`contactstudy.wear.wear_in`
-    "wear_depth": Variable(DISTANCE_X_DIMS, "m", "h", "depth worn off the roller's profile"),
-    "profile_drop": Variable(DISTANCE_X_DIMS, "m", "d", "drop of the worn profile"),
-    "worn_volume": Variable(("distance",), "m3", "V", "volume worn off the roller"),
-    "wear_error": Variable(("distance",), "1", "", "estimated error of the worn depth, over the largest depth"),
-    "next_step": Variable(("distance",), "m", "", "distance of the step that would follow"),
-    "volume_error": Variable(
-        SCALAR, "1", "", "relative difference of the worn volume from the volume by Archard's law"
-    ),
-}
-
-PASSES = {  # variables of :mod:`contactstudy.plasticity`
-    "plastic_strain_xx": Variable(XZ, "1", r"\varepsilon^p_{xx}", "plastic strain along the roller's axis"),
-    "plastic_strain_yy": Variable(XZ, "1", r"\varepsilon^p_{yy}", "plastic strain along rolling"),
-    "plastic_strain_zz": Variable(XZ, "1", r"\varepsilon^p_{zz}", "plastic strain along depth"),
-    "plastic_strain_xy": Variable(XZ, "1", r"\varepsilon^p_{xy}", "plastic shear strain xy, of the tensor"),
-    "plastic_strain_xz": Variable(XZ, "1", r"\varepsilon^p_{xz}", "plastic shear strain xz, of the tensor"),
-    "plastic_strain_yz": Variable(XZ, "1", r"\varepsilon^p_{yz}", "plastic shear strain yz, of the tensor"),
-    "equivalent_plastic_strain": Variable(XZ, "1", r"\alpha", "equivalent plastic strain, accumulated"),
-    "plastic_flow": Variable(SCALAR, "1", "", "largest equivalent plastic strain of the pass"),
-    "residual_displacement_z": Variable(X, "m", "", "normal displacement that passes leave on the top, into the body"),
-    "residual_displacement_y": Variable(X, "m", "", "displacement along +y that passes leave on the top"),
-}
-
-STUDIES = {  # variables of a study's cases
-    "status": Variable(SCALAR, "", "", "state of the case"),
-    "message": Variable(SCALAR, "", "", "why the case is not ok"),
-    "case_id": Variable(SCALAR, "", "", "identity of the case"),
-    "seconds": Variable(SCALAR, "s", "", "time of solving"),
-}
-
-VERIFICATION = {  # variables of :func:`contactstudy.verification.verify`
-    "group": Variable(CHECK_DIMS, "", "", "group of the check"),
-    "case": Variable(CHECK_DIMS, "", "", "solved problem"),
-    "quantity": Variable(CHECK_DIMS, "", "", "compared quantity, with its unit"),
-    "source": Variable(CHECK_DIMS, "", "", "origin of the reference value"),
-    "computed": Variable(CHECK_DIMS, "", "", "value of the package, in the unit of the quantity"),
-    "expected": Variable(CHECK_DIMS, "", "", "value of the reference, in the unit of the quantity"),
-    "difference": Variable(CHECK_DIMS, "", "", "difference that the tolerance bounds"),
-    "tolerance": Variable(CHECK_DIMS, "", "", "largest difference that passes"),
-    "passed": Variable(CHECK_DIMS, "", "", "whether the difference is within the tolerance"),
-}
-
-FILM = {  # film thickness and derived quantities
+    # Film thickness and derived quantities
     "film_thickness": Variable(XY, "m", "h", "film thickness", "mean height between rough surfaces"),
     "asperity_pressure": Variable(XY, "Pa", r"p_\mathrm{c}", "pressure of the asperities"),
     "central_film": Variable(SCALAR, "m", r"h_\mathrm{c}", "film thickness in the middle of the contact"),
@@ -380,18 +280,84 @@ FILM = {  # film thickness and derived quantities
     ),
     "rolling_force": Variable((), "N", "", "force along y on either surface from the film's pressure gradient"),
     "rolling_moment": Variable((), "N m", "t", "moment of the rolling force about the roller's axis"),
-}
-
-ATLAS = {  # contacts of the atlas, in units of the Hertz line contact
+    # Contacts of the atlas, in units of the Hertz line contact
     "peak_pressure_ratio": Variable(SCALAR, "1", "", "largest pressure over the Hertz pressure"),
     "peak_von_mises_ratio": Variable(SCALAR, "1", "", "largest von Mises stress over the Hertz pressure"),
     "approach_ratio": Variable(SCALAR, "1", "", "approach over a**2 / R"),
     "stiffness_ratio": Variable(SCALAR, "1", "", "stiffness over the contact modulus times the length"),
     "end_load_ratio": Variable(SCALAR, "1", "", "load on the last half-width over the mean load per half-width"),
+    # Of :mod:`contactstudy.bearing`
+    "strain_energy": Variable(LAW, "J", "U", "strain energy of the contact"),
+    "normal_stiffness": Variable(LAW, "N/m", r"\partial Q/\partial\delta", "change of the load with the approach"),
+    "coupling_stiffness": Variable(
+        LAW, "N/rad", r"\partial Q/\partial\vartheta", "change of the load with tilt, and of the moment with approach"
+    ),
+    "tilting_stiffness": Variable(LAW, "N m/rad", r"\partial M/\partial\vartheta", "change of the moment with tilt"),
+    "relative_load_error": Variable(LAW, "1", "", "error of the contact law's load, over the load"),
+    "relative_moment_error": Variable(LAW, "1", "", "error of the contact law's moment, over load times length"),
+    "accuracy": Variable(SCALAR, "1", "", "accuracy to which the peak pressure is settled"),
+    "inner_approach": Variable(SCALAR, "m", "", "approach of the contact with the inner raceway"),
+    "inner_tilt": Variable(SCALAR, "rad", "", "tilt of the contact with the inner raceway"),
+    "outer_approach": Variable(SCALAR, "m", "", "approach of the contact with the outer raceway"),
+    "outer_tilt": Variable(SCALAR, "rad", "", "tilt of the contact with the outer raceway"),
+    "hertz_load_per_length": Variable(
+        SLICE_DIMS, "N/m", "", "load per length of the line contact with the solved pressure"
+    ),
+    "stress_riser": Variable(
+        ("model", "raceway", "roller", "slice"), "1", "f_k", "factor on the load of a lamina, from solved pressures"
+    ),
+    "lamina_equivalent_load": Variable(
+        ("model", "raceway", "slice"), "N", "q_{ke}", "dynamic equivalent load of a lamina"
+    ),
+    "reference_life": Variable(("model",), "1", "L_{10r}", "basic reference rating life, revolutions"),
+    "raceway_life": Variable(("model", "raceway"), "1", "", "revolutions that 9 of 10 raceways survive"),
+    # Of :mod:`contactstudy.design`; the unit is the unit of the measure
+    "optimum": Variable(PARAMETER_DIMS, "", "", "best value of the parameter"),
+    "at_bound": Variable(PARAMETER_DIMS, "", "", "whether the best value is a bound"),
+    "flat_from": Variable(PARAMETER_DIMS, "", "", "least value of the parameter that is as good within the errors"),
+    "flat_to": Variable(PARAMETER_DIMS, "", "", "largest value of the parameter that is as good within the errors"),
+    "lower_bound": Variable(PARAMETER_DIMS, "", "", "least value of the parameter that is looked at"),
+    "upper_bound": Variable(PARAMETER_DIMS, "", "", "largest value of the parameter that is looked at"),
+    "measure": Variable(SCALAR, "", "", "measure of the best design in its worst case"),
+    "design": Variable(("evaluation", "parameter"), "", "", "parameters of a design that was looked at"),
+    "design_measure": Variable(EVALUATION_DIMS, "", "", "measure of a design in its worst case"),
+    "case_measure": Variable(("evaluation", "case"), "", "", "measure of a design in one case"),
+    # Of :func:`contactstudy.wear.wear_in`
+    "wear_depth": Variable(DISTANCE_X_DIMS, "m", "h", "depth worn off the roller's profile"),
+    "profile_drop": Variable(DISTANCE_X_DIMS, "m", "d", "drop of the worn profile"),
+    "worn_volume": Variable(("distance",), "m3", "V", "volume worn off the roller"),
+    "wear_error": Variable(("distance",), "1", "", "estimated error of the worn depth, over the largest depth"),
+    "next_step": Variable(("distance",), "m", "", "distance of the step that would follow"),
+    "volume_error": Variable(
+        SCALAR, "1", "", "relative difference of the worn volume from the volume by Archard's law"
+    ),
+    # Of :mod:`contactstudy.plasticity`
+    "plastic_strain_xx": Variable(XZ, "1", r"\varepsilon^p_{xx}", "plastic strain along the roller's axis"),
+    "plastic_strain_yy": Variable(XZ, "1", r"\varepsilon^p_{yy}", "plastic strain along rolling"),
+    "plastic_strain_zz": Variable(XZ, "1", r"\varepsilon^p_{zz}", "plastic strain along depth"),
+    "plastic_strain_xy": Variable(XZ, "1", r"\varepsilon^p_{xy}", "plastic shear strain xy, of the tensor"),
+    "plastic_strain_xz": Variable(XZ, "1", r"\varepsilon^p_{xz}", "plastic shear strain xz, of the tensor"),
+    "plastic_strain_yz": Variable(XZ, "1", r"\varepsilon^p_{yz}", "plastic shear strain yz, of the tensor"),
+    "equivalent_plastic_strain": Variable(XZ, "1", r"\alpha", "equivalent plastic strain, accumulated"),
+    "plastic_flow": Variable(SCALAR, "1", "", "largest equivalent plastic strain of the pass"),
+    "residual_displacement_z": Variable(X, "m", "", "normal displacement that passes leave on the top, into the body"),
+    "residual_displacement_y": Variable(X, "m", "", "displacement along +y that passes leave on the top"),
+    # Of a study's cases
+    "status": Variable(SCALAR, "", "", "state of the case"),
+    "message": Variable(SCALAR, "", "", "why the case is not ok"),
+    "case_id": Variable(SCALAR, "", "", "identity of the case"),
+    "seconds": Variable(SCALAR, "s", "", "time of solving"),
+    # Of :func:`contactstudy.verification.verify`
+    "group": Variable(CHECK_DIMS, "", "", "group of the check"),
+    "case": Variable(CHECK_DIMS, "", "", "solved problem"),
+    "quantity": Variable(CHECK_DIMS, "", "", "compared quantity, with its unit"),
+    "source": Variable(CHECK_DIMS, "", "", "origin of the reference value"),
+    "computed": Variable(CHECK_DIMS, "", "", "value of the package, in the unit of the quantity"),
+    "expected": Variable(CHECK_DIMS, "", "", "value of the reference, in the unit of the quantity"),
+    "difference": Variable(CHECK_DIMS, "", "", "difference that the tolerance bounds"),
+    "tolerance": Variable(CHECK_DIMS, "", "", "largest difference that passes"),
+    "passed": Variable(CHECK_DIMS, "", "", "whether the difference is within the tolerance"),
 }
-
-VARIABLES = CONTACT | SLICE_MODEL | FIELDS | MEASURES | ANALYSIS | FATIGUE | HEAT | FILM | ATLAS
-VARIABLES |= BEARING | DESIGN | WEAR | PASSES | STUDIES | VERIFICATION  # every one, without names made by a rule
 
 RULES = {  # names made from other variables or coordinates; their unit, symbol and meaning fill the braces
     "peak_{name}": Variable(SCALAR, "{units}", r"\max {symbol}", "largest {variable}"),

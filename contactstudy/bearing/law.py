@@ -12,7 +12,7 @@ import xarray as xr
 
 from contactstudy import checks
 from contactstudy.arrays.engineering import html_table
-from contactstudy.arrays.variables import describe, name_array, numbers_in_si, require, without_error
+from contactstudy.arrays.variables import describe, in_si, name_array, require, without_error
 from contactstudy.bearing.energy_spline import ContactResponse, EnergySpline, Nodes
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
@@ -43,7 +43,7 @@ def broadcast_arguments(**values: Values) -> tuple[xr.DataArray, ...]:
 def _label_argument(name: str, value: Values) -> xr.DataArray:
     """Return an argument as a DataArray of finite numbers."""
     if isinstance(value, xr.DataArray):
-        labelled: xr.DataArray = numbers_in_si(name, value, UNITS[name])
+        labelled: xr.DataArray = in_si(name, value, UNITS[name])
         checks.coordinates(name, labelled.values.ravel(), UNITS[name])
         return labelled.drop_vars(name, errors="ignore") if name not in labelled.dims else labelled
     if np.ndim(value) == 0:

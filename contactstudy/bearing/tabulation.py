@@ -12,7 +12,7 @@ import numpy as np
 import xarray as xr
 
 from contactstudy import checks
-from contactstudy.arrays.variables import describe, numbers_in_si
+from contactstudy.arrays.variables import describe, in_si
 from contactstudy.bearing.energy_spline import EnergySpline, Nodes, estimate_fit_errors
 from contactstudy.bearing.law import MIN_NODES, ContactLaw
 from contactstudy.case.case import MAX_TILT, Case
@@ -186,7 +186,7 @@ def contact_law(
         raise InvalidInputError("case.load_position", case.load_position, "None: the roller takes the law's tilts")
     if case.coupled:
         raise InvalidInputError("case.coupled", True, "False: with coupled friction the load derives from no energy")
-    checked_tilts = checks.increasing("tilts", numbers_in_si("tilts", tilts, "rad"), "radians", MIN_NODES)
+    checked_tilts = checks.increasing("tilts", in_si("tilts", tilts, "rad"), "radians", MIN_NODES)
     if np.abs(checked_tilts).max() > MAX_TILT:
         raise InvalidInputError("tilts", tilts, f"small angles, at most {MAX_TILT} radians")
     solver = ContactSolver(case, checks.positive("accuracy", accuracy), checks.positive("tolerance", tolerance))
@@ -194,7 +194,7 @@ def contact_law(
         low, high = (solver.solve_at_load(factor * case.normal_load, 0.0).approach for factor in LOAD_RANGE)
         checked_approaches = np.geomspace(low, high, APPROACH_COUNT)
     else:
-        numbers = numbers_in_si("approaches", approaches, "m")
+        numbers = in_si("approaches", approaches, "m")
         checked_approaches = checks.increasing("approaches", numbers, "metres", MIN_NODES)
         checks.positive("approaches", float(checked_approaches[0]), "metres")
     nodes = solve_nodes(solver, checked_approaches, checked_tilts)

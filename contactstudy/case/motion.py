@@ -239,9 +239,9 @@ def check_friction(friction: object) -> Friction:
         return checks.finite("friction", friction)
     if friction.dims != ("x",) or "x" not in friction.coords:
         raise InvalidInputError("friction.dims", friction.dims, "('x',) with the coordinate x, metres, or a number")
-    friction = in_si("friction", friction, "1")
-    x = checks.coordinates("friction.x", friction["x"].values)
-    values = checks.coordinates("friction", friction.values, "1")
+    profile = in_si("friction", friction, "1")
+    x = checks.coordinates("friction.x", profile["x"].values)
+    values = checks.coordinates("friction", profile.values, "1")
     if (np.diff(x) <= 0).any():
         raise InvalidInputError("friction.x", x.tolist(), "increasing (metres)")
     return AxialFriction(tuple(x.tolist()), tuple(values.tolist()))

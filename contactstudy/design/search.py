@@ -14,7 +14,7 @@ import xarray as xr
 from scipy import optimize
 
 from contactstudy import checks
-from contactstudy.arrays.variables import describe, numbers_in_si
+from contactstudy.arrays.variables import describe, in_si
 from contactstudy.case.case import Case, small_tilt
 from contactstudy.case.gridding import check_accuracy
 from contactstudy.checks import FloatArray
@@ -377,7 +377,7 @@ def _check_numbers(name: str, values: object, unit: str) -> list[float]:
     """Return numbers in SI; an empty list for None."""
     if values is None:
         return []
-    numbers = numbers_in_si(name, values, "rad" if unit == "radians" else unit)
+    numbers = in_si(name, values, "rad" if unit == "radians" else unit)
     return [float(value) for value in checks.coordinates(name, numbers, unit)]
 
 

@@ -6,7 +6,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -22,7 +21,7 @@ from contactstudy.study import collect
 from contactstudy.study.folder import Folder
 
 CaseIndex = tuple[int, ...]  # Index of a case along the study's dimensions
-FIELDS = ("pressure", "gap", "initial_gap", "von_mises")  # Fields that a loaded case keeps in memory
+FIELDS = ("pressure", "gap", "initial_gap", "von_mises", *STRESSES)  # Fields that a loaded case keeps in memory
 STATUS = {  # Sentence for each status without figures
     "failed": "This case failed.",
     "skipped": "This case cannot be solved.",
@@ -30,7 +29,7 @@ STATUS = {  # Sentence for each status without figures
     "missing": "This case is not solved yet.",
 }
 
-MAX_CACHED_CASES = 64  # Largest number of loaded cases in memory. Speed
+MAX_CACHED_CASES = 16  # Largest number of loaded cases in memory. Speed
 SUBJECTS: dict[str, tuple[str, ...]] = {  # numbers in order; a name with a final underscore is a prefix
     "pressure": ("peak_pressure", "peak_pressure_first", "peak_pressure_last", "peak_pressure_x", "peak_pressure_y"),
     "stresses": ("peak_von_mises", "peak_von_mises_z", "peak_von_mises_x", "peak_von_mises_y", "peak_"),
@@ -52,17 +51,15 @@ SUBJECTS: dict[str, tuple[str, ...]] = {  # numbers in order; a name with a fina
         *("force_y", "force_x", "moment_z", "longitudinal_creepage", "lateral_creepage", "spin", "shift_y", "shift_x"),
         *("sticking_part", "friction_work"),
     ),
+    "further numbers": (),  # all that the other subjects lack
     "cells and iteration": ("end_traction_residual", "converged", "iterations", "friction_steps"),
     "solution": ("seconds",),
 }
 
-REMAINING_SUBJECT = "further numbers"  # Subject of all numbers that `SUBJECTS` lacks; precedes the subject of the cells
-SUBJECT_ORDER = [*list(SUBJECTS)[:-2], REMAINING_SUBJECT, *list(SUBJECTS)[-2:]]
-
 
 @dataclass(frozen=True, eq=False)
 class Cases:
-    """Cases of a study: scalars over the swept parameters, and fields of one case on demand."""
+    """Cases of a study: scalars over the parameters with several values, and fields of one case on demand."""
 
     scalars: xr.Dataset
     load: Callable[[CaseIndex], CaseFields]
@@ -70,9 +67,8 @@ class Cases:
 
     @property
     def dims(self) -> tuple[str, ...]:
-        """Swept parameters with more than one value."""
-        status = self.scalars["status"]
-        return tuple(str(dim) for dim in status.dims if status.sizes[dim] > 1)
+        """Swept parameters with several values."""
+        return tuple(map(str, self.scalars["status"].dims))
 
     def choices(self, dim: str) -> list[str]:
         """Values of a swept parameter as distinct texts."""
@@ -87,35 +83,27 @@ class Cases:
             columns = {name: self.scalars[name].values for name in case_columns}
             texts = [", ".join(f"{name}={columns[name][i]}" for name in case_columns) for i in range(values.size)]
         else:
-            texts = [_value_text(value, units) for value in values]
+            texts = [
+                str(value) if isinstance(value, (bool, np.bool_, str)) else format_quantity(float(value), units, 6)
+                for value in values
+            ]
         return texts if len(set(texts)) == len(texts) else [f"{i}: {text}" for i, text in enumerate(texts, start=1)]
-
-    def index(self, chosen: dict[str, int]) -> CaseIndex:
-        """Index of the case with the chosen values of the swept parameters, given by their numbers."""
-        return tuple(chosen.get(str(dim), 0) for dim in self.scalars["status"].dims)
 
     def first_solved(self) -> dict[str, int]:
         """Index of the first solved case, by swept parameter."""
         solved = np.argwhere(np.isin(self.scalars["status"].values, ("ok", "stale")))
-        index = solved[0] if len(solved) else np.zeros(self.scalars["status"].ndim, dtype=int)
-        return {str(dim): int(i) for dim, i in zip(self.scalars["status"].dims, index, strict=True)}
+        index = solved[0].tolist() if len(solved) else [0] * len(self.dims)
+        return dict(zip(self.dims, index, strict=True))
 
     def status(self, index: CaseIndex) -> tuple[str, str]:
         """Status of a case, and its reason."""
-        entry = self.scalars[["status", "message"]].isel(dict(zip(self.scalars["status"].dims, index, strict=True)))
+        entry = self.scalars[["status", "message"]].isel(dict(zip(self.dims, index, strict=True)))
         return str(entry["status"].item()), str(entry["message"].item())
 
 
 def status_sentence(status: str, reason: str) -> str:
     """Return the reason why a case has no figures, as a sentence."""
     return f"{STATUS.get(status, f'This case is {status}.')} {reason}".rstrip()
-
-
-def _value_text(value: Any, units: str) -> str:
-    """Value of a swept parameter in engineers' units."""
-    if isinstance(value, (bool, np.bool_, str)):
-        return str(value)
-    return format_quantity(float(value), units, 6)
 
 
 def open_cases(study: xr.Dataset | str | Path) -> Cases:
@@ -127,12 +115,11 @@ def open_cases(study: xr.Dataset | str | Path) -> Cases:
 
 def _cases_of_folder(folder: Path) -> Cases:
     """Cases in a study's folder; each file is read on demand."""
-    scalars, results = collect(folder), Folder(folder).results()
+    scalars, results = collect(folder).squeeze(), Folder(folder).results()
 
     @lru_cache(maxsize=MAX_CACHED_CASES)
     def load(index: CaseIndex) -> CaseFields:
-        identity = str(scalars["case_id"].values[index])
-        return CaseFields(results.case(identity, FIELDS), lambda: results.case(identity, STRESSES))
+        return CaseFields(results.case(str(scalars["case_id"].values[index]), FIELDS))
 
     return Cases(scalars, load, study_title(attribute(scalars, STUDY_ATTRIBUTE), folder.name))
 
@@ -149,6 +136,7 @@ def _case_of_result(result: xr.Dataset) -> Cases:
 
 def _cases_of_study(study: xr.Dataset) -> Cases:
     """Cases of an opened study."""
+    study = study.squeeze([dim for dim in study["status"].dims if study.sizes[dim] == 1])
     dims = study["status"].dims
     scalars = study[[name for name, entry in study.data_vars.items() if set(entry.dims) <= set(dims)]]
     scalars = scalars.drop_vars([name for name in scalars.coords if not set(scalars[name].dims) <= set(dims)])
@@ -158,12 +146,8 @@ def _cases_of_study(study: xr.Dataset) -> Cases:
         entry = study.isel(dict(zip(dims, index, strict=True)))
         if str(entry["status"].item()) not in ("ok", "stale"):
             raise InvalidInputError("case", index, "a solved case")
-
-        def select_fields(arrays: tuple[str, ...]) -> xr.Dataset:
-            names = [name for name in study.data_vars if name in arrays or name in scalars]
-            return single_case(entry[[name for name in names if entry[name].dtype.kind not in "UO"]]).compute()
-
-        return CaseFields(select_fields(FIELDS), lambda: select_fields(STRESSES))
+        names = [name for name in study.data_vars if name in FIELDS or name in scalars]
+        return CaseFields(single_case(entry[[name for name in names if entry[name].dtype.kind not in "UO"]]).compute())
 
     return Cases(scalars.load(), load, study_title(attribute(study, STUDY_ATTRIBUTE), "study"))
 
@@ -177,18 +161,17 @@ def numbers_by_subject(scalars: xr.Dataset) -> dict[str, dict[str, str]]:
     ]
     meanings = [variable_of(name, scalars[name].attrs).long_name for name in names]
 
-    def rank(name: str) -> tuple[int, int]:
-        for subject, members in SUBJECTS.items():
-            for index, entry in enumerate(members):
-                if name == entry or (entry.endswith("_") and name.startswith(entry)):
-                    return SUBJECT_ORDER.index(subject), index
-        return SUBJECT_ORDER.index(REMAINING_SUBJECT), 0
+    entries = [(subject, entry) for subject, members in SUBJECTS.items() for entry in members or ("",)]
+
+    def rank(name: str) -> int:
+        for index, (_, entry) in enumerate(entries):
+            if name == entry or (entry.endswith("_") and name.startswith(entry)):
+                return index
+        return entries.index(("further numbers", ""))
 
     groups: dict[str, dict[str, str]] = {}
-    for (subject, _), name, meaning in sorted(
-        (rank(name), name, meaning) for name, meaning in zip(names, meanings, strict=True)
-    ):
+    for index, name, meaning in sorted((rank(name), name, text) for name, text in zip(names, meanings, strict=True)):
         # The texts of all groups are distinct.
         text = meaning if meanings.count(meaning) == 1 else f"{meaning}, {name}"
-        groups.setdefault(SUBJECT_ORDER[subject], {})[text] = name
+        groups.setdefault(entries[index][0], {})[text] = name
     return groups

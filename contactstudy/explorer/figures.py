@@ -63,19 +63,16 @@ class AxialFigure:
         self._legend = Legend(items=items, orientation="horizontal", border_line_color=None, padding=2)
         self.figure.add_layout(self._legend, "above")
 
-    def show(self, lines: list[Line | None], limits: Span, labels: tuple[str, str]) -> None:
+    def show(self, lines: list[Line], limits: Span, labels: tuple[str, str]) -> None:
         """Draw the pressure of the cases between two positions."""
-        max_pressure = 0.0
-        for line in lines:
-            if line is not None:
-                visible_pressure = line.pressure[(line.x >= limits[0]) & (line.x <= limits[1])]
-                max_pressure = max(max_pressure, float(np.nanmax(visible_pressure, initial=0.0)))
-        max_pressure = 1.06 * max_pressure if max_pressure > 0 else 1.0
+        visible_pressures = [line.pressure[(line.x >= limits[0]) & (line.x <= limits[1])] for line in lines]
+        peak = max(float(np.nanmax(pressure, initial=0.0)) for pressure in visible_pressures)
+        max_pressure = 1.06 * peak if peak > 0 else 1.0
         for line, source, marks in zip(lines, self._lines, self._marks, strict=True):
-            source.data = {"x": [], "p": []} if line is None else {"x": line.x, "p": line.pressure}
-            visible_ends = [] if line is None else [end for end in line.singular if limits[0] <= end <= limits[1]]
+            source.data = {"x": line.x, "p": line.pressure}
+            visible_ends = [end for end in line.singular if limits[0] <= end <= limits[1]]
             marks.data = {"x": visible_ends, "p": [0.96 * max_pressure] * len(visible_ends)}
-        self._legend.visible = lines[1] is not None
+        self._legend.visible = lines[1].x.size > 0
         self.figure.x_range.update(start=limits[0], end=limits[1])
         self.figure.y_range.update(start=0.0, end=max_pressure)
         self.figure.xaxis.axis_label, self.figure.yaxis.axis_label = labels
@@ -95,11 +92,6 @@ class ImageFigure:
         bar = ColorBar(color_mapper=self._mapper, ticker=BasicTicker(desired_num_ticks=6), width=12, padding=4)
         self.figure.add_layout(bar, "right")
         self.figure.grid.visible = False
-
-    @property
-    def has_image(self) -> bool:
-        """Whether the figure has an image."""
-        return bool(self._source.data["image"])
 
     def show(self, image: Image | None, limit: float, title: str, vertical: Span) -> None:
         """Draw an image, or none, with colours up to a limit and the vertical axis between two values."""
@@ -135,13 +127,13 @@ class StudyFigure:
         triangle = TRIANGLE | {"line_width": 3}
         self.figure.scatter("x", "v", source=self._marked_unbounded, line_color="color", **triangle)
         self.figure.y_range = Range1d(0, 1)
-        self._ticker, self._ticks = self.figure.xaxis[0].ticker, dict[float, str]()
+        self._ticker = self.figure.xaxis[0].ticker  # for numbers
 
     def show(
         self,
         x: FloatArray,
         values: FloatArray,
-        errors: FloatArray | None,  # NaN: an open mark; None: exact values
+        errors: FloatArray,  # NaN: an open mark; 0: exact values
         *,
         marked_cases: list[tuple[int, float, str]],  # of the page: number along the parameter, value, colour
         labels: tuple[str, str],
@@ -149,12 +141,12 @@ class StudyFigure:
     ) -> None:
         """Draw values with bars of errors over a swept parameter; an unbounded value as a triangle at the top."""
         is_finite = np.isfinite(values)
-        bars = np.zeros(values.size) if errors is None else np.nan_to_num(errors)
+        bars = np.nan_to_num(errors)
         finite_values = [*values[is_finite], *(value for _, value, _ in marked_cases if np.isfinite(value))]
         bar_values = [*finite_values, *(values + bars)[is_finite], *(values - bars)[is_finite & (bars > 0)]]
         low, high = min([0.0, *bar_values]), max([*bar_values, 1e-12]) if finite_values else 1.0
         high += 0.06 * (high - low)
-        without_error = is_finite & (np.isnan(errors) if errors is not None else False)
+        without_error = is_finite & np.isnan(errors)
         with_bar = is_finite & (bars > 0)
         self._line.data = {
             "x": x,
@@ -176,9 +168,7 @@ class StudyFigure:
                 "color": [color for _, _, color in cases],
             }
         self.figure.y_range.update(start=low, end=high)
-        if (ticks or {}) != self._ticks:  # to create a new ticker is slow
-            axis, self._ticks = self.figure.xaxis[0], ticks or {}
-            axis.ticker = list(self._ticks) if ticks else self._ticker
-            axis.major_label_overrides = self._ticks
-            axis.major_label_orientation = 0.5 if ticks else "horizontal"
+        axis = self.figure.xaxis[0]
+        axis.ticker, axis.major_label_overrides = list(ticks) if ticks else self._ticker, ticks or {}
+        axis.major_label_orientation = 0.5 if ticks else "horizontal"
         self.figure.xaxis.axis_label, self.figure.yaxis.axis_label = labels

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -24,65 +22,29 @@ Span = tuple[float, float]
 
 
 class CaseFields:
-    """Fields of a case as arrays, each computed once; `load_stresses` returns the case with its six stresses."""
+    """Fields of a case as arrays."""
 
-    def __init__(self, dataset: xr.Dataset, load_stresses: Callable[[], xr.Dataset] | None = None) -> None:
+    def __init__(self, dataset: xr.Dataset) -> None:
         self.dataset = dataset
-        self._load_stresses = load_stresses or (lambda: dataset)
         self._stresses: dict[str, FloatArray] = {}
-
-    @property
-    def has_pressure(self) -> bool:
-        """Whether the case has surfaces."""
-        return "pressure" in self.dataset
-
-    @cached_property
-    def has_stress(self) -> bool:
-        """Whether the case has stresses."""
-        return "von_mises" in self.dataset and not bool(self.dataset["von_mises"].isnull().all())
-
-    @cached_property
-    def hertz(self) -> tuple[float, float] | None:
-        """Half-width and pressure of Hertz' line contact, or None."""
-        if "hertz_half_width" not in self.dataset:
-            return None
-        return float(self.dataset["hertz_half_width"]), float(self.dataset["hertz_max_pressure"])
-
-    @cached_property
-    def cells(self) -> tuple[FloatArray, FloatArray]:
-        """Positions of the cells along x and y."""
-        x, y = (positions(self.dataset["pressure"], axis).values for axis in "xy")
-        return x, y
-
-    @cached_property
-    def pressure(self) -> FloatArray:
-        """Pressure (x, y)."""
-        return _values(self.dataset["pressure"], "xy")
-
-    @cached_property
-    def axial_pressure(self) -> FloatArray:
-        """Largest pressure across y, along x."""
-        return np.asarray(self.pressure.max(axis=1))
-
-    @cached_property
-    def singular_ends(self) -> list[float]:
-        """Positions of singular ends."""
-        return singular_ends(self.dataset)
-
-    def near_singular(self, x: FloatArray) -> BoolArray:
-        """Mask of the positions that are too near to a singular end to be drawn."""
-        return near_singular(self.dataset, self.singular_ends, x)
-
-    @cached_property
-    def points(self) -> dict[str, FloatArray]:
-        """Positions of the stresses along each axis."""
-        return {axis: positions(self.dataset["von_mises"], axis).values for axis in "xyz"}
+        self.hertz: tuple[float, float] | None = None  # half-width and pressure of Hertz' line contact
+        if "hertz_half_width" in dataset:
+            self.hertz = float(dataset["hertz_half_width"]), float(dataset["hertz_max_pressure"])
+        self.singular_ends = singular_ends(dataset)
+        self.has_pressure = "pressure" in dataset
+        if self.has_pressure:
+            x, y = (positions(dataset["pressure"], axis).values for axis in "xy")
+            self.cells = x, y
+            self.pressure = _values(dataset["pressure"], "xy")
+            self.axial_pressure = self.pressure.max(axis=1)
+        self.has_stress = "von_mises" in dataset and not bool(dataset["von_mises"].isnull().all())
+        if self.has_stress:
+            self.points = {axis: positions(dataset["von_mises"], axis).values for axis in "xyz"}
 
     def stress(self, name: str = "von_mises") -> FloatArray:
-        """Stress measure (x, y, z)."""
+        """Stress measure (x, y, z), computed once."""
         if name not in self._stresses:
-            source = self.dataset if name in self.dataset else self._load_stresses()
-            self._stresses[name] = _values(measure(source, name), "xyz")
+            self._stresses[name] = _values(measure(self.dataset, name), "xyz")
         return self._stresses[name]
 
 
@@ -112,6 +74,9 @@ class Line(NamedTuple):
     x: FloatArray
     pressure: FloatArray
     singular: list[float]
+
+
+NO_LINE = Line(np.zeros(0), np.zeros(0), [])
 
 
 class Image(NamedTuple):
@@ -149,7 +114,7 @@ def region_limits(case: CaseFields, name: str) -> Span:
 def axial_line(case: CaseFields, scale: Scale) -> Line:
     """Return the largest pressure across the contact along the axis, without the vicinity of singular ends."""
     x, _ = case.cells
-    values = np.where(case.near_singular(x), np.nan, case.axial_pressure / scale.stress)
+    values = np.where(near_singular(case.dataset, x), np.nan, case.axial_pressure / scale.stress)
     return Line(x / scale.length, values, [end / scale.length for end in case.singular_ends])
 
 
@@ -157,7 +122,9 @@ def top_image(case: CaseFields, scale: Scale, limits: Span) -> Image:
     """Return the pressure on the top of the body."""
     x, y = case.cells
     spans = (limits, (float(y[0]), float(y[-1])))
-    return _image(case.pressure, case.cells, spans, _limit(case.pressure, case.near_singular(x)), scale, names="xy")
+    return _image(
+        case.pressure, case.cells, spans, _limit(case.pressure, near_singular(case.dataset, x)), scale, names="xy"
+    )
 
 
 def plane_image(
@@ -175,14 +142,12 @@ def plane_image(
     position = 0.0 if normal == "y" else plane_start + fraction * (plane_stop - plane_start)
     axis = "xyz".index(normal)
     values = np.asarray(interpolate_along(axis, case.stress(name), points[normal], np.array([position])).take(0, axis))
-    spans = [(float(points[axis][0]), float(points[axis][-1])) for axis in (horizontal, vertical)]
+    left, right = float(points[horizontal][0]), float(points[horizontal][-1])
     if horizontal == "x":
-        spans[0] = (max(spans[0][0], limits[0]), min(spans[0][1], limits[1]))
-    axes = (points[horizontal], points[vertical])
-    x = points["x"]
-    near_singular_end = case.near_singular(x) if case.has_pressure else np.zeros(x.size, dtype=bool)
-    limit = _limit(case.stress(name), near_singular_end)
-    image = _image(values, axes, (spans[0], spans[1]), limit, scale, names=horizontal + vertical)
+        left, right = max(left, limits[0]), min(right, limits[1])
+    spans = ((left, right), (float(points[vertical][0]), float(points[vertical][-1])))
+    limit = _limit(case.stress(name), near_singular(case.dataset, points["x"]))
+    image = _image(values, (points[horizontal], points[vertical]), spans, limit, scale, names=horizontal + vertical)
     unit = scale.length_name.strip(" ()/")
     return image._replace(position=f"{normal} = {position / scale.length:.3g} {unit}")
 

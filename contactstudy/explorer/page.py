@@ -17,12 +17,11 @@ from contactstudy.errors import ContactStudyError
 from contactstudy.explorer.cases import Cases, numbers_by_subject, status_sentence
 from contactstudy.explorer.figures import FIRST_COLOR, SECOND_COLOR, AxialFigure, ImageFigure, StudyFigure
 from contactstudy.explorer.images import (
+    NO_LINE,
     PLANES,
     REGIONS,
     CaseFields,
     Image,
-    Line,
-    Span,
     axial_line,
     choose_scale,
     plane_image,
@@ -31,7 +30,7 @@ from contactstudy.explorer.images import (
 )
 from contactstudy.plots.study_lines import ESTIMATED_PREFIXES
 from contactstudy.report.assessment import assess_case
-from contactstudy.report.summary_table import NOT_ESTIMATED, OPEN_END, Summary, summary
+from contactstudy.report.tables import NOT_ESTIMATED, OPEN_END, Summary, summary
 
 NAMES, COLORS = ("case", "second case"), (FIRST_COLOR, SECOND_COLOR)  # Names and colours of the two cases
 MAX_SLIDER_OPTIONS = 60  # Number of values of a swept parameter up to which a slider replaces a list
@@ -114,7 +113,7 @@ class Page:
 
     def index(self, side: int) -> tuple[int, ...]:
         """Index of the first (0) or second (1) case in the study."""
-        return self.cases.index({dim: widget.value for dim, widget in self.choices[side].items()})
+        return tuple(widget.value for widget in self.choices[side].values())
 
     def update(self) -> None:
         """Draw the chosen cases."""
@@ -126,10 +125,18 @@ class Page:
         has_stress = any(case is not None and case.has_stress for case in cases)
         self.plane.visible = self.measure.visible = has_stress
         self.fraction.visible = has_stress and self.plane.value != PLANES[0]
-        self._show_axial(cases)
-        self._show_fields(cases)
+        shown = {side: case for side, case in enumerate(cases) if case is not None and case.has_pressure}
+        self._show_axial(shown)
+        plane_images = self._show_fields(shown)
         self._show_study(sides)
-        self._show_table(cases, sides, self._hide_empty(cases, sides))
+        self._set_visible(0, bool(shown))
+        for side in (0, 1):
+            self._set_visible(1 + side, side in shown)
+            self._set_visible(3 + side, plane_images[side] is not None)
+        remarks = [self._remark(side, cases[side], plane_images[side]) for side in sides]
+        if self.cases.dims and not self.panes[5].visible:
+            remarks.append("No case at these values of the other parameters has this number.")
+        self._show_table(cases, sides, "".join(f"<p class=why>{remark}</p>" for remark in remarks if remark))
 
     def _load(self, side: int) -> CaseFields | None:
         """Return a chosen case; None if it is not solved."""
@@ -166,78 +173,61 @@ class Page:
             self._columns[index] = {"is this number real?": verdict} | numbers | _edge_factors(case.dataset, table)
         return self._columns[index]
 
-    def _show_axial(self, cases: list[CaseFields | None]) -> None:
-        """Pressure along the axis."""
-        lines: list[Line | None] = [None, None]
-        limits: list[Span] = []
-        names = ("", "")
-        for side, case in enumerate(cases):
-            if case is not None and case.has_pressure:
-                scale = choose_scale(case, relative=self.units.value)
-                low, high = region_limits(case, self.region.value)
-                lines[side] = axial_line(case, scale)
-                limits.append((low / scale.length, high / scale.length))
-                names = (scale.length_name, scale.stress_name) if len(limits) == 1 else names
-        labels = (f"distance from the free end, x{names[0]}", f"pressure along the axis{names[1]}") if limits else names
-        span = (min((low for low, _ in limits), default=0.0), max((high for _, high in limits), default=1.0))
-        self.axial.show(lines, span, labels)
+    def _show_axial(self, shown: dict[int, CaseFields]) -> None:
+        """Pressure along the axis, with labels in the units of the first case."""
+        lines = [NO_LINE, NO_LINE]
+        limits: list[float] = []
+        labels = ("", "")
+        for side, case in reversed(shown.items()):
+            scale = choose_scale(case, relative=self.units.value)
+            lines[side] = axial_line(case, scale)
+            limits += [limit / scale.length for limit in region_limits(case, self.region.value)]
+            labels = (
+                f"distance from the free end, x{scale.length_name}",
+                f"pressure along the axis{scale.stress_name}",
+            )
+        self.axial.show(lines, (min(limits, default=0.0), max(limits, default=1.0)), labels)
 
-    def _show_fields(self, cases: list[CaseFields | None]) -> None:
-        """Pressure on the top and stress in the plane, with common colours."""
+    def _show_fields(self, shown: dict[int, CaseFields]) -> list[Image | None]:
+        """Show pressure on the top and stress in the plane, with common colours; return the images of the plane."""
         top_images: list[Image | None] = [None, None]
         plane_images: list[Image | None] = [None, None]
         unit = ""
-        for side, case in enumerate(cases):
-            if case is not None and case.has_pressure:
-                scale, limits = choose_scale(case, relative=self.units.value), region_limits(case, self.region.value)
-                unit, kind, fraction = scale.stress_name, self.plane.value, self.fraction.value
-                top_images[side] = top_image(case, scale, limits)
-                plane_images[side] = plane_image(case, scale, limits, kind, fraction, name=self.measure.value)
+        for side, case in shown.items():
+            scale, limits = choose_scale(case, relative=self.units.value), region_limits(case, self.region.value)
+            unit, kind, fraction = scale.stress_name, self.plane.value, self.fraction.value
+            top_images[side] = top_image(case, scale, limits)
+            plane_images[side] = plane_image(case, scale, limits, kind, fraction, name=self.measure.value)
         measure = next(text for text, name in MEASURES.items() if name == self.measure.value)
         rows = (top_images, self.surface_figures, "pressure"), (plane_images, self.plane_figures, measure)
         for images, figures, quantity in rows:
             shown_images = [image for image in images if image is not None]
             limit = max((image.limit for image in shown_images), default=1.0)
-            vertical = (
-                min((image.vertical[0] for image in shown_images), default=0.0),
-                max((image.vertical[1] for image in shown_images), default=1.0),
-            )
-            for side, (case, image, figure) in enumerate(zip(cases, images, figures, strict=False)):
-                name = f"{NAMES[side]}: " if self.compare.value else ""
-                singular = case is not None and case.has_pressure and case.singular_ends
+            low = min((image.vertical[0] for image in shown_images), default=0.0)
+            high = max((image.vertical[1] for image in shown_images), default=1.0)
+            for side, (image, figure) in enumerate(zip(images, figures, strict=False)):
                 # The title has two lines, so that it fits into a narrow window.
-                title = f"{name}{quantity}{unit}"
+                title = f"{NAMES[side]}: {quantity}{unit}" if self.compare.value else f"{quantity}{unit}"
                 if image is not None:
-                    clipped_note = "clipped at the end" if singular else ""
-                    maximum_text = f"largest {image.largest[0]:.4g}"
-                    title += "\n" + ", ".join(filter(None, (image.position, maximum_text, clipped_note)))
-                figure.show(image, limit, title, vertical)
+                    clipped_note = "clipped at the end" if shown[side].singular_ends else ""
+                    notes = (image.position, f"largest {image.largest[0]:.4g}", clipped_note)
+                    title += "\n" + ", ".join(filter(None, notes))
+                figure.show(image, limit, title, (low, high))
+        return plane_images
 
-    def _hide_empty(self, cases: list[CaseFields | None], sides: list[int]) -> str:
-        """Hide figures without data, and return the reasons."""
-        has_top_image = [figure.has_image for figure in self.surface_figures]
-        planes = [figure.has_image for figure in self.plane_figures]
-        self._set_visible(0, any(has_top_image))
-        for pane, images in ((1, has_top_image), (3, planes)):
-            for side in (0, 1):
-                self._set_visible(pane + side, side in sides and images[side])
-        remarks = []
-        for side in sides:
-            case = cases[side]
-            if case is None:
-                text = status_sentence(*self.cases.status(self.index(side)))
-            elif not has_top_image[side]:
-                text = "The study stores no surfaces of this case, only its numbers."
-            elif not planes[side]:
-                reason = "have too few points in this plane" if case.has_stress else "are not stored"
-                text = f"The stresses {reason}."
-            else:
-                continue
-            name = f"<b>{NAMES[side]}:</b> " if self.compare.value else ""
-            remarks.append(f"<p class=why>{name}{html.escape(text)}</p>")
-        if self.cases.dims and not self.panes[5].visible:
-            remarks.append("<p class=why>No case at these values of the other parameters has this number.</p>")
-        return "".join(remarks)
+    def _remark(self, side: int, case: CaseFields | None, plane_image: Image | None) -> str:
+        """Reason of missing figures of a case; empty if all are shown."""
+        if case is None:
+            text = status_sentence(*self.cases.status(self.index(side)))
+        elif not case.has_pressure:
+            text = "The study stores no surfaces of this case, only its numbers."
+        elif plane_image is None:
+            reason = "have too few points in this plane" if case.has_stress else "are not stored"
+            text = f"The stresses {reason}."
+        else:
+            return ""
+        name = f"<b>{NAMES[side]}:</b> " if self.compare.value else ""
+        return f"{name}{html.escape(text)}"
 
     def _set_visible(self, index: int, visible: bool) -> None:
         """Show or hide a figure; the figure's pane and model must agree."""
@@ -253,7 +243,7 @@ class Page:
             return
         name, parameter = self.number.value, self.parameter.value or self.cases.dims[0]
         scalars = self.cases.scalars
-        dims = [str(dim) for dim in scalars["status"].dims]
+        dims = self.cases.dims
         numbers = scalars[name].transpose(*dims).values
         specification = variable_of(name, scalars[name].attrs)
         factor, unit = unit_for(float(np.abs(numbers[np.isfinite(numbers)]).max(initial=0.0)), specification.units)
@@ -277,13 +267,13 @@ class Page:
         label = f"{_label(entry)} ({unit})" if unit else _label(entry)
         return np.asarray(entry.values, dtype=np.float64) / factor, label, None
 
-    def _errors(self, name: str, line_index: tuple[Any, ...], values: FloatArray, factor: float) -> FloatArray | None:
-        """Errors of a number along a line of cases, NaN if not estimated; None for exact numbers."""
+    def _errors(self, name: str, line_index: tuple[Any, ...], values: FloatArray, factor: float) -> FloatArray:
+        """Errors of a number along a line of cases, NaN if not estimated; 0 for exact numbers."""
         scalars = self.cases.scalars
         if f"{name}_error" in scalars:
             errors = scalars[f"{name}_error"].transpose(*scalars["status"].dims).values[line_index] / factor
             return np.where(np.isfinite(errors) & np.isfinite(values), errors, np.nan)
-        return np.full(values.size, np.nan) if name.startswith(ESTIMATED_PREFIXES) else None
+        return np.full(values.size, np.nan if name.startswith(ESTIMATED_PREFIXES) else 0.0)
 
     def view(self) -> Any:
         """Layout of the page: columns on a wide screen, rows on a narrow screen."""

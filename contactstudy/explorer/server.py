@@ -8,9 +8,8 @@ import json
 import logging
 import secrets
 import socket
-import sys
 from asyncio import wrap_future
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping, Sequence, Set
 from concurrent.futures import Future
 from importlib import import_module
 from importlib.util import find_spec
@@ -29,7 +28,6 @@ if TYPE_CHECKING:
 HOST = "localhost"
 LOCAL_HOSTS = frozenset({"localhost", "127.0.0.1", "::1"})  # any port: users forward ports
 PORT, PORT_COUNT = 5006, 20  # First port, and number of ports that are tried
-SWITCH_INTERVAL = 2e-4  # Seconds, while a thread reads the study and the server answers; Python's default is 5 ms
 
 
 def explore(study: xr.Dataset | str | Path) -> Any:
@@ -82,95 +80,48 @@ def _check_installed() -> None:
         )
 
 
-class AccessControl:
-    """Access to the server: checks hosts, against pages of other sites, and a token, against users of this machine."""
+def restrict_access(application: Any, port: int, hosts: Sequence[str]) -> str:
+    """Refuse requests to a Tornado application from another host, or without a token; return the address with it.
 
-    def __init__(self, port: int, hosts: Sequence[str] = ()) -> None:
-        self.token = secrets.token_urlsafe(24)
-        self.address = f"http://{HOST}:{port}/?token={self.token}"
-        self.cookie = f"contactstudy-{port}"
-        self._hosts = LOCAL_HOSTS | {host.lower() for host in hosts}
+    The host protects against pages of other sites, the token against users of this machine.
+    """
+    from tornado.web import ErrorHandler, RequestHandler
 
-    def allows_host(self, request: Any) -> bool:
-        """Whether the host of a request is allowed, and the request's origin, if any, is the same host."""
-        origin = request.headers.get("Origin")
-        try:
-            return urlsplit(f"//{request.host}").hostname in self._hosts and (
-                origin is None or urlsplit(origin).netloc.lower() == request.host.lower()
-            )
-        except ValueError:  # an invalid address
-            return False
+    token, cookie, find_handler = secrets.token_urlsafe(24), f"contactstudy-{port}", application.find_handler
+    allowed_hosts = LOCAL_HOSTS | {host.lower() for host in hosts}
 
-    def _is_token(self, text: str) -> bool:
-        return hmac.compare_digest(text.encode(), self.token.encode())
+    class SetCookie(RequestHandler):
+        """Set the cookie and reload the page at the address without the token."""
 
-    def protect(self, application: Any) -> None:
-        """Refuse requests to a Tornado application from another host, or without the token."""
-        from tornado.web import ErrorHandler, RequestHandler
+        def get(self) -> None:
+            self.set_cookie(cookie, token, httponly=True, samesite="Strict")
+            self.redirect("/")
 
-        cookie, token, find_handler = self.cookie, self.token, application.find_handler
+    def is_token(text: str) -> bool:
+        return hmac.compare_digest(text.encode(), token.encode())
 
-        class SetCookie(RequestHandler):
-            """Set the cookie and reload the page at the address without the token."""
-
-            def get(self) -> None:
-                self.set_cookie(cookie, token, httponly=True, samesite="Strict")
-                self.redirect("/")
-
-        def find_allowed(request: Any, **arguments: Any) -> Any:
+    def find_allowed(request: Any, **arguments: Any) -> Any:
+        if _is_own_host(request, allowed_hosts):
             texts = [text.decode(errors="replace") for text in request.query_arguments.get("token", [])]
-            sent_cookie = request.cookies.get(cookie)
-            if self.allows_host(request) and request.path == "/" and any(map(self._is_token, texts)):
+            if request.path == "/" and any(map(is_token, texts)):
                 return application.get_handler_delegate(request, SetCookie)
-            if self.allows_host(request) and sent_cookie is not None and self._is_token(sent_cookie.value):
+            if cookie in request.cookies and is_token(request.cookies[cookie].value):
                 return find_handler(request, **arguments)
-            return application.get_handler_delegate(request, ErrorHandler, {"status_code": 403})
+        return application.get_handler_delegate(request, ErrorHandler, {"status_code": 403})
 
-        application.find_handler = find_allowed
+    application.find_handler = find_allowed
+    return f"http://{HOST}:{port}/?token={token}"
 
 
-class StudyLoader:
-    """Study that a thread reads while browsers load the page's scripts."""
-
-    def __init__(self, folder: Path) -> None:
-        self._folder = folder
-        self._cases: Future[Cases] = Future()
-        self.error: Exception | None = None
-
-    async def read(self) -> None:
-        """Read the study in a thread; an error stops the server."""
-        from tornado.ioloop import IOLoop
-
-        def open_folder() -> Cases:
-            import_module("contactstudy.explorer.page")
-            from contactstudy.explorer.cases import open_cases
-
-            return open_cases(self._folder)
-
-        loop, switch_interval = IOLoop.current(), sys.getswitchinterval()
-        sys.setswitchinterval(SWITCH_INTERVAL)
-        try:
-            self._cases.set_result(await loop.run_in_executor(None, open_folder))
-        except Exception as error:  # `serve` raises it
-            self.error = error
-            loop.stop()
-        finally:
-            sys.setswitchinterval(switch_interval)
-
-    def page(self) -> Any:
-        """Page of a new visitor: empty until the browser has its scripts and the study is read."""
-        import panel as pn
-
-        column = pn.Column(sizing_mode="stretch_width")
-
-        async def fill_column() -> None:
-            """Put the study into the page."""
-            from contactstudy.explorer.page import Page
-
-            column.objects = [Page(await wrap_future(self._cases)).view()]
-
-        pn.state.onload(fill_column)
-        return column
+def _is_own_host(request: Any, hosts: Set[str]) -> bool:
+    """Whether the host of a request is among `hosts`, and the request's origin, if any, is the same host."""
+    origin = request.headers.get("Origin")
+    try:
+        return urlsplit(f"//{request.host}").hostname in hosts and (
+            origin is None or urlsplit(origin).netloc.lower() == request.host.lower()
+        )
+    except ValueError:  # an invalid address
+        return False
 
 
 def serve(folder: str | Path, *, port: int | None = None, hosts: Sequence[str] = (), show: bool = True) -> None:
@@ -209,12 +160,36 @@ def serve(folder: str | Path, *, port: int | None = None, hosts: Sequence[str] =
     import panel as pn
     from tornado.ioloop import IOLoop
 
-    loader, access = StudyLoader(path.resolve()), AccessControl(port, hosts)
     # Access checks host and origin of every request; Bokeh's own list of origins would need the forwarded ports.
     logging.getLogger("bokeh.server.util").setLevel(logging.ERROR)
     event_loop = IOLoop(make_current=False)
+    cases: Future[Cases] = Future()
+
+    def open_page() -> Any:
+        """Page of a new visitor: empty until the browser has its scripts and the study is read."""
+        column = pn.Column(sizing_mode="stretch_width")
+
+        async def fill_column() -> None:
+            from contactstudy.explorer.page import Page
+
+            column.objects = [Page(await wrap_future(cases)).view()]
+
+        pn.state.onload(fill_column)
+        return column
+
+    def read_study() -> None:
+        """Read the study; an error stops the server."""
+        try:
+            import_module("contactstudy.explorer.page")
+            from contactstudy.explorer.cases import open_cases
+
+            cases.set_result(open_cases(path.resolve()))
+        except Exception as error:
+            cases.set_exception(error)
+            event_loop.add_callback(event_loop.stop)
+
     server = pn.io.server.get_server(
-        {"/": loader.page},
+        {"/": open_page},
         port=port,
         loop=event_loop,
         address=HOST,
@@ -222,18 +197,18 @@ def serve(folder: str | Path, *, port: int | None = None, hosts: Sequence[str] =
         location=False,  # Panel's own cannot parse [::1]
         title=_title(path),
     )
-    access.protect(server._tornado)
-    print(f"{access.address} shows the study until Ctrl-C", flush=True)
-    event_loop.add_callback(loader.read)
+    address = restrict_access(server._tornado, port, hosts)
+    print(f"{address} shows the study until Ctrl-C", flush=True)
+    event_loop.add_callback(event_loop.run_in_executor, None, read_study)
     if show:
         import webbrowser
 
-        event_loop.add_callback(webbrowser.open, access.address)
+        event_loop.add_callback(webbrowser.open, address)
     server.start()
     event_loop.start()
-    if loader.error is not None:
+    if cases.done():
         server.stop()
-        raise loader.error
+        cases.result()  # raises the reason
 
 
 def _title(path: Path) -> str:

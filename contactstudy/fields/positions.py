@@ -13,7 +13,7 @@ import xarray as xr
 from contactstudy import checks
 from contactstudy.arrays.grid import Grid
 from contactstudy.arrays.points import Points
-from contactstudy.arrays.variables import numbers_in_si
+from contactstudy.arrays.variables import in_si
 from contactstudy.bodies.models import Body, Extent
 from contactstudy.checks import BoolArray, FloatArray
 from contactstudy.errors import InvalidInputError
@@ -52,9 +52,7 @@ def field_positions(
     """Positions of a field in a body."""
     body.check_span(grid)
     axes = {"x": grid.x if x is None else x, "y": grid.y if y is None else y, "z": z}
-    points = Points(
-        *(checks.coordinates(axis, numbers_in_si(axis, coordinates, "m")) for axis, coordinates in axes.items())
-    )
+    points = Points(*(checks.coordinates(axis, in_si(axis, coordinates, "m")) for axis, coordinates in axes.items()))
     points = points._replace(x=_snap_into_body(body, points.x, grid))
     if (points.z < 0).any():
         raise InvalidInputError("z", float(points.z.min()), "not negative (metres below the top)")

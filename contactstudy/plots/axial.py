@@ -1,4 +1,4 @@
-"""Lines along the roller's axis and against depth: pressure, stresses, wear, several results together."""
+"""Lines along the roller's axis, along y and against depth: profile, pressure, stresses, film, wear, comparisons."""
 
 from __future__ import annotations
 
@@ -22,10 +22,14 @@ from contactstudy.arrays.variables import require
 from contactstudy.errors import InvalidInputError
 from contactstudy.plots.singular_ends import mark_at_top, near_singular, singular_ends
 from contactstudy.plots.style import LEGEND_WIDTH, Units, fold_text, label_axes, line_styles, new_axes, units
+from contactstudy.profiles import Profile
+from contactstudy.profiles.base import check_drop
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+FILM_HALF_RANGE = 1.4  # Half of the range along y in a figure of a film, over the Hertz half-width
+PROFILE_POINTS = 4001
 WEAR_LABELS = {"wear_depth": (1e6, "worn depth (µm)"), "line_load": (1e-3, "load per length (N/mm)")}
 """Factor from SI and label of the variables of `plot_wear`."""
 
@@ -83,10 +87,9 @@ def draw_section_maxima(
     else:
         profile = largest_sample(case, variable, along="x")[f"peak_{variable}"]
     x = profile[dimension_along(profile, "x")].values
-    ends = singular_ends(case) if "pressure" in case else []
-    values = np.where(near_singular(case, ends, x), np.nan, profile.values)
+    values = np.where(near_singular(case, x), np.nan, profile.values)
     (line,) = ax.plot(x / unit.length + shift, values / unit.stress, **style)
-    mark_at_top(ax, [end / unit.length + shift for end in ends], line.get_color())
+    mark_at_top(ax, [end / unit.length + shift for end in singular_ends(case)], line.get_color())
 
 
 def plot_comparison(
@@ -129,9 +132,8 @@ def plot_comparison(
     cases = {name: single_case(dataset) for name, dataset in results.items()}
     midpoints = {name: _contact_midpoint(case) for name, case in cases.items()}
     if centred is None:
-        half_widths = [float(case["hertz_half_width"]) for case in cases.values() if "hertz_half_width" in case]
-        midpoint_range = max(midpoints.values()) - min(midpoints.values())
-        centred = bool(half_widths) and midpoint_range > min(half_widths)
+        half_width = min(float(case.get("hertz_half_width", np.inf)) for case in cases.values())
+        centred = max(midpoints.values()) - min(midpoints.values()) > half_width
     for (name, case), style in zip(cases.items(), line_styles(len(cases)), strict=True):
         unit = units(case, si=si)
         shift = -midpoints[name] / unit.length if centred else 0.0
@@ -257,4 +259,151 @@ def plot_wear(worn: xr.Dataset, ax: Axes | None = None, *, variable: str = "wear
     ax.set_xlabel("position along the axis, $x$ (mm)")
     ax.set_ylabel(label)
     ax.legend(frameon=False, fontsize="small", title=str(worn["distance"].attrs.get("long_name", "distance")))
+    return ax
+
+
+def plot_film_line(
+    dataset: xr.Dataset, ax: Axes | None = None, *, x: float | None = None, y: float | None = None, si: bool = False
+) -> Axes:
+    """Film thickness and pressure along the axis, or along y.
+
+    Parameters
+    ----------
+    dataset : Dataset
+        Result of `solve_film`.
+    ax, si
+        As for :func:`plot_axial_pressure`.
+    x, y : float, optional
+        Position of the line along y or along the axis, metres; default: along the axis at ``y = 0``.
+
+    Returns
+    -------
+    Axes
+        Axes of the film; the pressure has axes on the right.
+
+    Raises
+    ------
+    InvalidInputError
+        If the film is missing, both positions are given, or the Dataset contains more than one case.
+
+    Examples
+    --------
+    >>> cells = {"x": [0.5, 1.5], "y": [-0.5, 0.5]}
+    >>> film = xr.DataArray([[1e-6, 2e-6], [1e-6, 3e-6]], dims=("x", "y"), coords=cells)
+    >>> case = xr.Dataset({"film_thickness": film, "pressure": 0 * film, "central_film": 1e-6,
+    ...                    "hertz_half_width": 1.0, "hertz_max_pressure": 1.0})
+    >>> plot_film_line(case, x=0.5).get_xlabel()
+    'position along rolling, $y/a$'
+    """
+    if x is not None and y is not None:
+        raise InvalidInputError("x, y", (x, y), "one of the two")
+    case = single_case(dataset)
+    require(case, "film_thickness", "pressure", "central_film")
+    unit, ax = units(case, si=si), new_axes(ax)
+    axis, fixed_axis, position = ("x", "y", y or 0.0) if x is None else ("y", "x", x)
+    line = case[["film_thickness", "pressure"]].dropna("x").interp({fixed_axis: position})
+    along = line[axis].values / unit.length
+    film_style, pressure_style, slice_style = line_styles(3)
+    ax.plot(along, 1e6 * line["film_thickness"].values, label="film", **film_style)
+    if axis == "x" and "slice_film" in case:
+        slices = case["slice_film"].sel(x=line["x"])
+        ax.plot(along, 1e6 * slices.values, label="slices, Moes' formula", **slice_style)
+    pressure_axes = ax.twinx()
+    pressure_axes.plot(along, line["pressure"].values / unit.stress, label="pressure", **pressure_style)
+    ax.set_ylim(0.0, 3e6 * float(case["central_film"]))
+    pressure_axes.set_ylim(bottom=0.0)
+    if axis == "y":
+        half_range = FILM_HALF_RANGE * float(case["hertz_half_width"]) / unit.length
+        ax.set_xlim(-half_range, half_range)
+    pressure_axes.set_ylabel(unit.stress_label("pressure"))
+    ax.legend(handles=[*ax.lines, *pressure_axes.lines], loc="lower center", frameon=False, fontsize="small")
+    label_axes(ax, unit.axis(axis), "film thickness, $h$ (µm)", pressure_axes)
+    return ax
+
+
+def plot_profile(
+    profile: Profile, length: float, *, ax: Axes | None = None, deepest: float | None = None, **style: Any
+) -> Axes:
+    """Draw the generatrix of a roller, with the drop downwards.
+
+    Parameters
+    ----------
+    profile : Profile
+        Profile to draw.
+    length : float
+        Length of the roller, metres.
+    ax : Axes, optional
+        Axes to draw in; default: a new figure.
+    deepest : float, optional
+        Largest drop on the axis, metres; default: the profile's largest drop. Limit it for crowns of micrometres with
+        fillets of tenths of a millimetre.
+    **style
+        Style of the line, as in matplotlib.
+
+    Returns
+    -------
+    Axes
+        The line ends where the drop is infinite.
+
+    Raises
+    ------
+    InvalidInputError
+        If `profile` is not a profile or does not fit the length, or a number is not positive.
+
+    Examples
+    --------
+    >>> from contactstudy.profiles import Lundberg
+    >>> plot_profile(Lundberg(amplitude=0.2e-6), length=10e-3).get_ylabel()
+    'drop (µm)'
+    """
+    checks.instance("profile", profile, Profile, "a profile from contactstudy.profiles")
+    length = checks.positive("length", length, "metres")
+    x = 0.5 * length * np.linspace(-1, 1, PROFILE_POINTS)
+    drop = check_drop(profile, x, length)
+    drop = np.where(np.isfinite(drop), drop, np.nan)
+    ax = new_axes(ax, (6.4, 3.2))
+    ax.plot(1e3 * x, 1e6 * drop, **style)
+    if not ax.yaxis_inverted():
+        ax.invert_yaxis()
+    if deepest is not None:
+        deepest = checks.positive("deepest", deepest, "metres")
+        ax.set_ylim(1e6 * deepest, -0.05e6 * deepest)
+    ax.set_xlabel("distance from mid-length (mm)")
+    ax.set_ylabel("drop (µm)")
+    return ax
+
+
+def plot_profiles(
+    profiles: Mapping[str, Profile], length: float, *, ax: Axes | None = None, deepest: float | None = None
+) -> Axes:
+    """Compare the generatrices of rollers of one length.
+
+    Parameters
+    ----------
+    profiles : mapping of str to Profile
+        Profiles by their names in the legend.
+    length : float
+        Length of the rollers, metres.
+    ax, deepest
+        As for :func:`plot_profile`.
+
+    Raises
+    ------
+    InvalidInputError
+        If `profiles` is empty, or :func:`plot_profile` rejects an argument.
+
+    Examples
+    --------
+    >>> from contactstudy.profiles import Cylinder, FullCrown
+    >>> ax = plot_profiles({"sharp": Cylinder(), "crowned": FullCrown(1.0)}, length=10e-3)
+    >>> [text.get_text() for text in ax.get_legend().get_texts()]
+    ['sharp', 'crowned']
+    """
+    checks.instance("profiles", profiles, Mapping, "a mapping of names to profiles")
+    if not profiles:
+        raise InvalidInputError("profiles", dict(profiles), "at least one profile")
+    for (name, profile), style in zip(profiles.items(), line_styles(len(profiles)), strict=True):
+        ax = plot_profile(profile, length, ax=ax, deepest=deepest, label=fold_text(name, LEGEND_WIDTH), **style)
+    assert ax is not None
+    ax.legend(frameon=False, fontsize="small", ncols=2)
     return ax

@@ -8,14 +8,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import xarray as xr
 
-from contactstudy.analysis import axial_pressure, dimension_along, in_plane, single_case
+from contactstudy.analysis import axial_pressure, dimension_along, single_case
 from contactstudy.arrays.selections import index_of
-from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 from contactstudy.plots.axial import plot_axial_pressure
 from contactstudy.plots.selection import describe_value
-from contactstudy.plots.singular_ends import cap_field
-from contactstudy.plots.stress import plot_stress_plane
+from contactstudy.plots.stress import plane_stress, plot_stress_plane
 from contactstudy.plots.style import fold_text, line_styles, units
 
 if TYPE_CHECKING:
@@ -157,28 +155,19 @@ def _level_distance(entries: list[Entry]) -> float:
     return max(limits)
 
 
-def _plane_values(case: xr.Dataset) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Positions x/a and z/a, and von Mises stress over p0 as an array (x, z), in the plane y = 0."""
-    unit = units(case, si=False)
-    field, _ = cap_field(case, case["von_mises"])
-    plane = in_plane(case.assign(von_mises=field), y=0.0, variables="von_mises")["von_mises"]
-    x, z = (dimension_along(plane, axis) for axis in "xz")
-    return plane[x].values / unit.length, plane[z].values / unit.length, plane.transpose(x, z).values / unit.stress
-
-
 def _draw_planes(figure: Any, entries: list[Entry], distance: float, depth: float) -> None:
     """One panel of von Mises stress per e/a below each other, with one colour scale."""
     from matplotlib.ticker import MaxNLocator
 
-    planes = [_plane_values(case) for _, case in entries]
-    max_stress = max(float(np.nanmax(values[x <= distance][:, z <= depth])) for x, z, values in planes)
+    planes = [plane_stress(case, "von_mises", {"y": 0.0}, units(case, si=False)) for _, case in entries]
+    max_stress = max(float(np.nanmax(values[z <= depth][:, x <= distance])) for x, z, values, _ in planes)
     levels = MaxNLocator(20).tick_values(0.0, max_stress)
     axes = figure.subplots(len(entries), sharex=True, sharey=True, squeeze=False)[:, 0]
     unit = units(entries[0][1], si=False)
     for ax, (end_distance, case) in zip(axes, entries, strict=True):
         plot_stress_plane(case, "von_mises", y=0.0, ax=ax, levels=levels, colorbar=False)
         ax.set(xlabel="", ylabel=f"$z{unit.over_length}$", ylim=(depth, 0.0), title=f"$e/a$ = {end_distance:g}")
-    axes[0].set_xlim(0.0, min(distance, max(float(x.max()) for x, _, _ in planes)))
+    axes[0].set_xlim(0.0, min(distance, max(float(x.max()) for x, *_ in planes)))
     axes[-1].set_xlabel(unit.axis("x"))
     contours = next(entry for entry in axes[0].collections if entry.get_array() is not None)
     figure.colorbar(contours, ax=axes, label=unit.stress_label("von_mises") + "\nin $y=0$")

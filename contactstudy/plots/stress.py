@@ -47,6 +47,16 @@ def _plane_arrays(
     return first, second, plane.transpose(*dims[::-1]).values / unit.stress
 
 
+def plane_stress(
+    case: xr.Dataset, variable: str, position: dict[str, float], unit: Units
+) -> tuple[FloatArray, FloatArray, FloatArray, float]:
+    """Positions and values (down, across) of a stress in a plane, limited near singular ends, and the limit in Pa."""
+    field, bound = cap_field(case, measure(case, variable))
+    plane = in_plane(case.assign({variable: field}), variables=variable, **position)[variable]
+    horizontal, vertical = (axis for axis in "xyz" if axis not in position)
+    return *_plane_arrays(plane, horizontal, vertical, unit), bound
+
+
 def plot_stress_plane(
     dataset: xr.Dataset,
     variable: str = "von_mises",
@@ -99,13 +109,11 @@ def plot_stress_plane(
     case = single_case(dataset)
     unit = units(case, si=si)
     plane_position = {axis: value for axis, value in (("x", x), ("y", y), ("z", z)) if value is not None} or {"y": 0.0}
-    field, bound = cap_field(case, measure(case, variable))
-    plane = in_plane(case.assign({variable: field}), variables=variable, **plane_position)[variable]
+    across, depths, values, bound = plane_stress(case, variable, plane_position, unit)
     ((normal, position),) = plane_position.items()
     horizontal, vertical = (axis for axis in "xyz" if axis != normal)
-    horizontal_positions, depths, values = _plane_arrays(plane, horizontal, vertical, unit)
     ax = new_axes(ax, (6.4, 3.2))
-    contours = _draw_contours(ax, horizontal_positions, depths, values, LEVELS if levels is None else levels)
+    contours = _draw_contours(ax, across, depths, values, LEVELS if levels is None else levels)
     if vertical == "z":
         ax.set_ylim(depths.max(), depths.min())
     ax.set_title(f"plane {unit.position(normal, position)}", fontsize="medium")

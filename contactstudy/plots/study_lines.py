@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -16,7 +16,15 @@ from contactstudy.errors import ContactStudyError, InvalidInputError
 from contactstudy.plots.edge_effect import EDGE_AXES, LoadCase, plot_edge_effect
 from contactstudy.plots.selection import describe_value, most_solved, scale_of, scale_values, select_one, select_values
 from contactstudy.plots.singular_ends import SINGULAR_LABEL, SINGULAR_MARK, mark_at_top
-from contactstudy.plots.style import MARKERS, escape_dollars, fold_labels, fold_text, line_styles, new_axes
+from contactstudy.plots.style import (
+    LEGEND_STYLE,
+    MARKERS,
+    escape_dollars,
+    fold_labels,
+    fold_text,
+    line_styles,
+    new_axes,
+)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -96,12 +104,14 @@ def plot_study_lines(
         marks |= _draw_panel(ax, dataset, name, x, hue, fixed_parameters=fixed_parameters)
     figure.set_figheight(figure.get_figheight() + LINE_HEIGHT * rows * max(map(_extra_lines, panels.flat)))
     if hue is not None:
-        _draw_legend(figure, panels[0, 0], dataset[hue], hue)
+        handles, labels = panels[0, 0].get_legend_handles_labels()
+        title = fold_text(_hue_title(dataset[hue], hue), LEGEND_COLUMN)
+        figure.legend(handles, labels, loc="outside right center", title=title, **LEGEND_STYLE, title_fontsize="small")
     if marks:
         from matplotlib.lines import Line2D
 
         handles = [Line2D([], [], color="0.3", **style) for style in marks.values()]
-        figure.legend(handles, list(marks), loc="outside lower right", frameon=False, fontsize="small", ncols=2)
+        figure.legend(handles, list(marks), loc="outside lower right", ncols=2, **LEGEND_STYLE)
     if fixed_parameters:
         values_text = [
             describe_value(dim, value, str(dataset[dim].attrs.get("units", "1")), dataset.sizes[dim])
@@ -122,19 +132,10 @@ def _draw_panel(
     is_numeric = np.issubdtype(values[x].dtype, np.number)
     x_values, x_label = scale_values(values[x], x) if is_numeric else (values[x], x.replace("_", " "))
     positions = x_values.values if is_numeric else np.arange(x_values.size)
-    count = 1 if hue is None else values.sizes[hue]
-    labels = [None] if hue is None else _value_labels(values[hue], hue)
-    for index, style in enumerate(line_styles(count)):
-        line, bars, open_cases = (
-            array.values if hue is None else array.isel({hue: index}).values
-            for array in (values, errors, without_estimate)
-        )
-        marker, unbounded = MARKERS[index % len(MARKERS)], np.isinf(line)
-        finite_line = np.where(unbounded, np.nan, line)
-        text = labels[index]
-        (curve,) = ax.plot(
-            positions, finite_line, **style, marker=marker, markersize=4, label=text and fold_text(text, LEGEND_COLUMN)
-        )
+    for selection, style in _lines(values, hue, LEGEND_COLUMN):
+        line, bars, open_cases = (array.isel(selection).values for array in (values, errors, without_estimate))
+        finite_line = np.where(np.isinf(line), np.nan, line)
+        (curve,) = ax.plot(positions, finite_line, **style)
         if np.isnan(line).all():
             curve.set_label("_unsolved")  # omitted in the legend
         if np.isfinite(bars).any():
@@ -143,12 +144,12 @@ def _draw_panel(
             marks[OPEN_LABEL] = {"marker": "o", **OPEN_MARK}
             if (np.isfinite(finite_line) & ~open_cases).any():
                 open_values = np.where(open_cases, finite_line, np.nan)
-                ax.plot(positions, open_values, color=style["color"], marker=marker, **OPEN_MARK)
+                ax.plot(positions, open_values, color=style["color"], marker=style["marker"], **OPEN_MARK)
             else:
-                curve.set(markersize=OPEN_MARK["markersize"], markerfacecolor=OPEN_MARK["markerfacecolor"])
-        if unbounded.any():
+                curve.set(**OPEN_MARK | {"linestyle": style["linestyle"]})
+        if np.isinf(line).any():
             marks[SINGULAR_LABEL] = SINGULAR_MARK
-        mark_at_top(ax, list(positions[unbounded]), style["color"])
+        mark_at_top(ax, list(positions[np.isinf(line)]), style["color"])
     if not is_numeric:
         ticks = [fold_text(escape_dollars(value), TICK_WIDTH) for value in x_values.values]
         ax.set_xticks(positions, ticks, rotation=20)
@@ -161,20 +162,18 @@ def _draw_panel(
     return marks
 
 
-def _draw_legend(figure: Figure, ax: Axes, values: xr.DataArray, hue: str) -> None:
-    """Draw the legend next to the panels."""
-    numeric = np.issubdtype(values.dtype, np.number) and not _parameters_along(values, hue)
-    title = scale_values(values, hue)[1] if numeric else hue.replace("_", " ")
-    handles, labels = ax.get_legend_handles_labels()
-    figure.legend(
-        handles,
-        labels,
-        loc="outside right center",
-        title=fold_text(title, LEGEND_COLUMN),
-        frameon=False,
-        fontsize="small",
-        title_fontsize="small",
-    )
+def _lines(values: xr.DataArray, hue: str | None, width: int) -> Iterator[tuple[dict[str, int], dict[str, Any]]]:
+    """Yield the index along `hue`, and the style with the folded label, of each line; one line without `hue`."""
+    labels = [None] if hue is None else [fold_text(text, width) for text in _value_labels(values[hue], hue)]
+    for index, (label, style) in enumerate(zip(labels, line_styles(len(labels)), strict=True)):
+        marker = MARKERS[index % len(MARKERS)]
+        yield {} if hue is None else {hue: index}, style | {"marker": marker, "markersize": 4, "label": label}
+
+
+def _hue_title(values: xr.DataArray, hue: str) -> str:
+    """Title of a legend: name and unit of a parameter of numbers, or the name of parameters that change together."""
+    is_numeric = np.issubdtype(values.dtype, np.number) and not _parameters_along(values, hue)
+    return scale_values(values, hue)[1] if is_numeric else hue.replace("_", " ")
 
 
 def _extra_lines(ax: Axes) -> int:
@@ -272,17 +271,12 @@ def plot_traction_curve(
     axes_of_study = (creepage,) if hue is None else (creepage, hue)
     values = select_one(dataset[name] / (dataset["friction"] * dataset["normal_load"]), axes_of_study, selection or {})
     ax = new_axes(ax)
-    labels = [None] if hue is None else _value_labels(values[hue], hue)
-    for index, style in enumerate(line_styles(len(labels))):
-        line = (values if hue is None else values.isel({hue: index})).dropna(creepage)
-        text, marker = labels[index], MARKERS[index % len(MARKERS)]
-        label = text and fold_text(text, TICK_WIDTH)
-        ax.plot(line[creepage], line.values, **style, marker=marker, markersize=4, label=label)
+    for selection_of_line, style in _lines(values, hue, TICK_WIDTH):
+        line = values.isel(selection_of_line).dropna(creepage)
+        ax.plot(line[creepage], line.values, **style)
     ax.axhline(1.0, color="0.6", linewidth=0.8)
     if hue is not None:
-        title = scale_values(dataset[hue], hue)[1] if np.issubdtype(dataset[hue].dtype, np.number) else hue
-        title = fold_text(title.replace("_", " "), TICK_WIDTH)
-        ax.legend(title=title, frameon=False, fontsize="small", title_fontsize="small")
+        ax.legend(title=fold_text(_hue_title(dataset[hue], hue), TICK_WIDTH), **LEGEND_STYLE, title_fontsize="small")
     ax.set_xlabel(rf"{creepage.replace('_', ' ')}, $\{'xi' if name == 'force_y' else 'eta'}$")
     ax.set_ylabel(f"force over full sliding's, ${symbol}/(f W)$")
     ax.grid(color="0.9", linewidth=0.6)

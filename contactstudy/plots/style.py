@@ -42,6 +42,7 @@ SYMBOLS = {  # labels of swept parameters; the table of variables contains the s
 
 LETTER_WIDTH = 0.073  # Width of a letter in a label, inches
 MIN_LINE_LENGTH = 14  # Least length of a folded line, letters
+LEGEND_STYLE: dict[str, Any] = {"frameon": False, "fontsize": "small"}
 LEGEND_WIDTH = 40  # Letters in a line of a legend within the axes
 WORD = re.compile(r"(?:\\.|\$(?:[^$\\]|\\.)*\$|\S)+")  # formulas in one piece
 FOLD_CHARACTERS = (";:", ",", "")  # Letters after which a text is folded, first choice first; finally after any word

@@ -1,4 +1,4 @@
-"""Maps of the top of the body: pressure, traction, slip, stick and temperature, cropped to the contact."""
+"""Maps of the top of the body: pressure, traction, slip, stick, temperature and film, cropped to the contact."""
 
 from __future__ import annotations
 
@@ -12,7 +12,8 @@ from contactstudy.analysis import dimension_along, positions, single_case
 from contactstudy.arrays.engineering import unit_for
 from contactstudy.arrays.variables import require, variable_of
 from contactstudy.checks import BoolArray, FloatArray, IntArray
-from contactstudy.plots.singular_ends import near_singular, singular_ends
+from contactstudy.plots.axial import FILM_HALF_RANGE
+from contactstudy.plots.singular_ends import near_singular
 from contactstudy.plots.style import COLORS, Units, label_axes, new_axes, units
 
 if TYPE_CHECKING:
@@ -55,7 +56,7 @@ class Surface(NamedTuple):
     def away_from_singular_ends(self) -> BoolArray:
         """Mask of the columns away from singular ends; all columns if every column is near an end."""
         x = positions(self.case["pressure"], "x").values
-        near_end = near_singular(self.case, singular_ends(self.case), x)
+        near_end = near_singular(self.case, x)
         return ~near_end | near_end.all()
 
 
@@ -64,10 +65,11 @@ def _surface(dataset: xr.Dataset, names: tuple[str, ...], *, si: bool, load: str
     case = single_case(dataset)
     require(case, *names)
     unit = units(case, si=si)
-    x, y = (dimension_along(case[load], axis) for axis in "xy")
     pressure = case[load]
-    x_over_unit, y_over_unit = (pressure[dim].values / unit.length for dim in (x, y))
-    return Surface(case, unit, x_over_unit, y_over_unit, pressure.transpose(y, x).values)
+    x, y = (dimension_along(pressure, axis) for axis in "xy")
+    return Surface(
+        case, unit, pressure[x].values / unit.length, pressure[y].values / unit.length, pressure.transpose(y, x).values
+    )
 
 
 def _draw_mesh(ax: Axes, surface: Surface, values: Any, **style: Any) -> QuadMesh:
@@ -326,4 +328,53 @@ def plot_temperature_map(
     row, column = divmod(int(rise.argmax()), rise.shape[1])
     ax.plot(field.x[column], field.y[row], "+", color="black", markersize=9)
     _label(ax, field, mesh, f"{variable_of(name, field.case[name].attrs).long_name} (K)")
+    return ax
+
+
+def plot_film_map(dataset: xr.Dataset, ax: Axes | None = None, *, fringes: int = 12, si: bool = False) -> Axes:
+    """Film thickness with contours, like an interferogram.
+
+    Parameters
+    ----------
+    dataset : Dataset
+        Result of `solve_film`.
+    ax, si
+        As for :func:`plot_axial_pressure`.
+    fringes : int
+        Number of contours up to 1.5 times the central film.
+
+    Returns
+    -------
+    Axes
+        A cross marks the least film.
+
+    Raises
+    ------
+    InvalidInputError
+        If the film is missing, or the Dataset contains more than one case.
+
+    Examples
+    --------
+    >>> cells = {"x": [0.5, 1.5], "y": [-0.5, 0.5]}
+    >>> film = xr.DataArray([[1e-6, 2e-6], [1e-6, 3e-6]], dims=("x", "y"), coords=cells)
+    >>> scalars = {"central_film": 2e-6, "least_film_x": 0.5, "least_film_y": -0.5, "hertz_half_width": 1.0}
+    >>> case = xr.Dataset({"film_thickness": film, **scalars, "hertz_max_pressure": 1.0})
+    >>> plot_film_map(case).get_ylabel()
+    'position along rolling, $y/a$'
+    """
+    checks.count("fringes", fringes)
+    case = single_case(dataset)
+    require(case, "film_thickness", "central_film", "least_film_x", "least_film_y")
+    unit, ax = units(case, si=si), new_axes(ax)
+    film = 1e6 * case["film_thickness"].transpose("y", "x")
+    x, y = (film[axis].values / unit.length for axis in "xy")
+    max_film = 1.5e6 * float(case["central_film"])
+    levels = np.linspace(0.0, max_film, fringes + 1)
+    contours = ax.contourf(x, y, film.values, levels=levels, cmap=COLORS, extend="max")
+    ax.contour(x, y, film.values, levels=levels[1:], colors="0.25", linewidths=0.5)
+    ax.plot(float(case["least_film_x"]) / unit.length, float(case["least_film_y"]) / unit.length, "x", color="#e8513a")
+    half_range = FILM_HALF_RANGE * float(case["hertz_half_width"]) / unit.length
+    ax.set_ylim(max(-half_range, y.min()), min(half_range, y.max()))
+    bar = ax.figure.colorbar(contours, ax=ax, label="film thickness, $h$ (µm)")
+    label_axes(ax, unit.axis("x"), unit.axis("y"), bar.ax)
     return ax

@@ -13,7 +13,7 @@ from numpy.lib.stride_tricks import sliding_window_view
 
 from contactstudy import checks
 from contactstudy.arrays.engineering import format_quantity
-from contactstudy.arrays.variables import numbers_in_si
+from contactstudy.arrays.variables import in_si
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 from contactstudy.profiles.base import MIN_JUMP, Shape, SlopeJumps
@@ -156,9 +156,9 @@ class Measured(Shape):
     cutoff: float | None = None
 
     def __post_init__(self) -> None:
-        x = checks.coordinates("positions", numbers_in_si("positions", self.positions, "m"), "metres")
+        x = checks.coordinates("positions", in_si("positions", self.positions, "m"), "metres")
         try:
-            drops = np.asarray(numbers_in_si("drops", self.drops, "m"), dtype=np.float64)
+            drops = np.asarray(in_si("drops", self.drops, "m"), dtype=np.float64)
         except (TypeError, ValueError, OverflowError):
             raise InvalidInputError("drops", self.drops, "numbers (metres)") from None
         if drops.shape != x.shape:

@@ -4,9 +4,8 @@ A page contains all of its styles and pictures, without scripts.
 """
 
 from contactstudy.report.assessment import assess
-from contactstudy.report.case_table import case_table
 from contactstudy.report.page import html, provenance, write
 from contactstudy.report.sources import citations
-from contactstudy.report.summary_table import summary
+from contactstudy.report.tables import case_table, summary
 
 __all__ = ["assess", "case_table", "citations", "html", "provenance", "summary", "write"]

@@ -41,7 +41,6 @@ WIDTH, HEIGHT = 6.4, 3.3  # Size of a figure, inches
 END_PANEL, LONG_CONTACT = 6.0, 15.0  # Length of the panel of an end, least length with a panel, in half-widths
 DOTS_PER_INCH = 110  # Dots per inch of images within a figure
 PIXELS_PER_INCH = 96  # Pixels of a page per inch
-MIN_SCALE, MAX_SCALE, SCREEN_WIDTH = 0.5, 1.4, 380  # Scales with legible labels, narrow screen in pixels
 
 BLUE = "#1f4e79"
 BODY, ROLLER, LINE = "#d9dee3", "#b9c6d2", "#24313d"  # Colours of the side view
@@ -54,21 +53,6 @@ class Picture(NamedTuple):
     address: str
     caption: str
     width: int = 0
-
-    @property
-    def min_width(self) -> int:
-        """Width below which the figure scrolls."""
-        return round(MIN_SCALE * self.width)
-
-    @property
-    def max_width(self) -> int:
-        """Largest width."""
-        return round(MAX_SCALE * self.width)
-
-    @property
-    def scrolls(self) -> bool:
-        """Whether the figure scrolls on a narrow screen."""
-        return self.min_width > SCREEN_WIDTH
 
 
 def encode_figure(figure: Figure) -> str:

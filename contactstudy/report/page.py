@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from datetime import UTC, datetime
+from numbers import Real
 from pathlib import Path
 from typing import Any
 
@@ -16,11 +17,10 @@ from contactstudy.analysis.provenance import INPUTS_ATTRIBUTE, RUN_ATTRIBUTE, at
 from contactstudy.arrays.variables import package_version
 from contactstudy.errors import InvalidInputError
 from contactstudy.report.assessment import assess_case
-from contactstudy.report.case_table import case_table
 from contactstudy.report.figures import case_pictures, side_view
 from contactstudy.report.sources import citations
 from contactstudy.report.study_page import study_context
-from contactstudy.report.summary_table import summary
+from contactstudy.report.tables import case_table, summary
 from contactstudy.study.files import load_result
 from contactstudy.versions import PACKAGES
 
@@ -162,7 +162,7 @@ def provenance(dataset: xr.Dataset) -> list[tuple[str, str]]:
     settings = attribute(dataset, INPUTS_ATTRIBUTE).get("settings", {})
     rows = []
     if "time" in run:
-        rows.append(("solved", datetime.fromisoformat(run["time"]).strftime("%Y-%m-%d %H:%M UTC")))
+        rows.append(("solved", f"{run['time'][:16].replace('T', ' ')} UTC"))
     if run.get("study"):
         rows.append(("study", str(run["study"])))
     names = ("contactstudy", "commit", "python", *PACKAGES)
@@ -178,7 +178,8 @@ def provenance(dataset: xr.Dataset) -> list[tuple[str, str]]:
         rows.append(("roughness", "the surfaces are rough; the report does not contain their heights"))
     if "pressure" in dataset:
         rows.append(("cells along x and y", " x ".join(str(size) for size in dataset["pressure"].shape)))
-    times = [f"{stage} {seconds:.2f} s" for stage, seconds in run.get("stages", {}).items()]
+    stages = run.get("stages", {}).items()
+    times = [f"{stage} {seconds:.2f} s" for stage, seconds in stages if isinstance(seconds, Real)]
     if "seconds" in run:
         total = f"{run['seconds']:.2f} s"
         rows.append(("time", f"{', '.join(times)}; {total} in all" if times else total))

@@ -14,12 +14,11 @@ import xarray as xr
 
 from contactstudy.analysis import single_case
 from contactstudy.analysis.provenance import RUN_ATTRIBUTE, attribute
-from contactstudy.arrays.engineering import format_quantity, format_with_error
 from contactstudy.plots.selection import select_values
 from contactstudy.plots.study_lines import figures_with_selections
-from contactstudy.report.assessment import CAUTION, NO, UNKNOWN, YES, assess
+from contactstudy.report.assessment import CAUTION, NO, UNKNOWN, YES, assess_case
 from contactstudy.report.figures import PIXELS_PER_INCH, Picture, encode_figure
-from contactstudy.report.summary_table import intensity_text
+from contactstudy.report.tables import NOT_ESTIMATED, Summary, summary
 from contactstudy.study import collect
 from contactstudy.study.folder import Entry, Folder
 from contactstudy.study.parameters import PARAMETERS, with_defaults
@@ -29,7 +28,7 @@ from contactstudy.versions import PACKAGES
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-PEAK_NUMBERS = {  # Columns of the table and their headings
+HEADINGS = {  # Columns of the table and their headings
     "peak_pressure": "largest pressure",
     "end_pressure_first": "at end I",
     "end_pressure_last": "at end II",
@@ -39,14 +38,14 @@ PEAK_NUMBERS = {  # Columns of the table and their headings
     "peak_von_mises": "largest von Mises",
     "peak_von_mises_x": "at x",
     "peak_von_mises_z": "at z",
-}
-
-SINGULAR_NUMBERS = {  # Columns that replace the pressure at a singular end
     "end_intensity_first": "K at end I",
     "end_intensity_last": "K at end II",
     "end_load_first": "load on the last a, end I",
     "end_load_last": "load on the last a, end II",
 }
+SINGULAR_NUMBERS = ("end_intensity_first", "end_intensity_last", "end_load_first", "end_load_last")
+"""Columns that replace the pressure at a singular end."""
+NOT_LOADED, SINGULAR = "not loaded", "singular"  # texts instead of a number
 
 CAPTIONS = {  # Captions of figures by name
     "edge_effect": "Pressure along the axis, and von Mises stress in the plane y = 0, for several distances "
@@ -66,7 +65,7 @@ class Row(NamedTuple):
 
     anchor: str
     swept_values: list[str]
-    numbers: list[str]
+    numbers: dict[str, str]  # by name
     status: str
     note: str
     answer: str
@@ -80,13 +79,12 @@ def study_context(path: Path, selection: Mapping[str, Any] | None = None) -> dic
     plan = study.plan()
     states = folder.states(plan)
     entries = [states.entry(index) for index in range(len(plan))]
-    names = [name for name in PEAK_NUMBERS if any(_has_number(entry.numbers, name) for entry in entries)]
-    names += [name for name in SINGULAR_NUMBERS if any(_is_singular(entry.numbers, name) for entry in entries)]
     swept = list(dict.fromkeys([*study.sweep, *(name for table in (*study.zip, *study.cases) for name in table)]))
     rows = [
-        _row(f"case-{number}", entry, _swept_values(plan, case, swept), names)
+        _row(f"case-{number}", entry, _swept_values(plan, case, swept))
         for number, (case, entry) in enumerate(zip(plan, entries, strict=True), 1)
     ]
+    names = [name for name in HEADINGS if _has_number(rows, name)]
     sizes = ", ".join(f"{_heading(dim)}: {size}" for dim, size in zip(plan.cube.dims, plan.cube.shape, strict=True))
     return {
         "title": f"Study {study.name}",
@@ -102,7 +100,7 @@ def study_context(path: Path, selection: Mapping[str, Any] | None = None) -> dic
             for column, name in enumerate(swept)
         ],
         "headings": [_heading(name) for name in swept],
-        "number_headings": [(PEAK_NUMBERS | SINGULAR_NUMBERS)[name] for name in names],
+        "number_headings": {name: HEADINGS[name] for name in names},
         "intensities": any(name.startswith("end_intensity") for name in names),
         "rows": rows,
         "reasons": _group_rows((row for row in rows if row.status != "ok"), lambda row: (row.status, row.note)),
@@ -157,58 +155,44 @@ def _swept_values(plan: Plan, case: PlannedCase, swept: list[str]) -> list[str]:
     return texts
 
 
-def _row(anchor: str, entry: Entry, swept_values: list[str], names: list[str]) -> Row:
-    """Row of a case."""
-    assessment = assess(_record(entry)) if entry.numbers else None
-    answer, reason = (assessment.overall, assessment.verdict) if assessment else ("", "")
-    numbers = [_number(entry.numbers, name) for name in names]
+def _row(anchor: str, entry: Entry, swept_values: list[str]) -> Row:
+    """Row of a case, with all numbers of the table."""
+    if not entry.numbers:
+        return Row(anchor, swept_values, {}, entry.status, note=entry.reason, answer="", reason="")
+    record = _record(entry)
+    table = summary(record)
+    assessment = assess_case(record, table)
     return Row(
         anchor,
         swept_values,
-        numbers,
+        {name: _number(table, name) for name in HEADINGS},
         entry.status,
-        note=reason if answer == NO else entry.reason,
-        answer=answer,
-        reason=reason,
+        note=assessment.verdict if assessment.overall == NO else entry.reason,
+        answer=assessment.overall,
+        reason=assessment.verdict,
     )
 
 
-def _number(scalars: Mapping[str, float], name: str) -> str:
-    """Text of a number with its error."""
-    if name not in scalars or (name in SINGULAR_NUMBERS and not _is_singular(scalars, name)):
+def _number(table: Summary, name: str) -> str:
+    """Text of a number with its error; empty for a number of a singular end at a regular end."""
+    side = name.rpartition("_")[2]
+    if name.startswith("peak_von_mises") and "peak_von_mises" in table and np.isinf(table["peak_von_mises"].value):
+        return SINGULAR  # neither has it a position
+    if name not in table or (name in SINGULAR_NUMBERS and f"end_intensity_{side}" not in table):
         return ""
-    value, error = scalars[name], scalars.get(f"{name}_error", np.nan)
-    if name.startswith("end_intensity"):
-        text = intensity_text(value, error, scalars[name.replace("intensity", "exponent")])
-    elif _is_open_end(scalars, name):
-        return "not loaded"
-    elif np.isinf(value) or (name.startswith("peak_von_mises") and np.isinf(scalars.get("peak_pressure", 0.0))):
-        return "singular"
-    elif name.endswith(("_x", "_z")):
-        return format_quantity(value, "m")
-    else:
-        text = format_with_error(
-            value, error if np.isfinite(error) else None, "N" if name.startswith("end_load") else "Pa"
-        )
-    return text if np.isfinite(error) else f"{text} (error not estimated)"
+    number = table[name]
+    if name.startswith("end_pressure") and number.value == 0:
+        return NOT_LOADED
+    if np.isinf(number.value):
+        return SINGULAR
+    is_position = name.endswith(("_x", "_z"))
+    return number.text if is_position or np.isfinite(number.error) else f"{number.text} ({NOT_ESTIMATED})"
 
 
-def _has_number(scalars: Mapping[str, float], name: str) -> bool:
-    """Whether a case has a number in a column; a singular end has an intensity instead of a pressure."""
-    if name not in scalars or _is_open_end(scalars, name):
-        return False
-    has_intensity = name.startswith("end_pressure") and f"end_intensity_{name.rpartition('_')[2]}" in scalars
-    return not (has_intensity and np.isinf(scalars[name]))
-
-
-def _is_open_end(scalars: Mapping[str, float], name: str) -> bool:
-    """Whether a number is the pressure at an end without contact."""
-    return name.startswith("end_pressure") and scalars[name] == 0
-
-
-def _is_singular(scalars: Mapping[str, float], name: str) -> bool:
-    """Whether a number belongs to a singular end and is finite."""
-    return f"end_intensity_{name.rpartition('_')[2]}" in scalars and np.isfinite(scalars.get(name, np.nan))
+def _has_number(rows: list[Row], name: str) -> bool:
+    """Whether a column has a number; at a singular end the intensity replaces the pressure."""
+    empty = {"", NOT_LOADED, SINGULAR} if name.startswith("end_") else {"", NOT_LOADED}
+    return any(row.numbers.get(name, "") not in empty for row in rows)
 
 
 def _record(entry: Entry) -> xr.Dataset:

@@ -15,7 +15,7 @@ from contactstudy import checks
 from contactstudy.analysis.provenance import check_solved_for, with_provenance
 from contactstudy.arrays.cells import cell_coordinates, labelled_cells
 from contactstudy.arrays.grid import Grid
-from contactstudy.arrays.variables import describe, numbers_in_si, require
+from contactstudy.arrays.variables import describe, in_si, require
 from contactstudy.cache import ArrayKey
 from contactstudy.case.case import Case
 from contactstudy.case.gridding import choose_grid
@@ -295,7 +295,7 @@ def wear_in(
         (0.0, None, _choose_cells(case, grid), None, 0.0) if after is None else _read_last_state(after, case, grid)
     )
     all_steps = np.ndim(distance) == 0
-    stops = checks.increasing("distance", numbers_in_si("distance", distance, "m"), "metres")
+    stops = checks.increasing("distance", in_si("distance", distance, "m"), "metres")
     if stops[0] < distance_before or stops[-1] <= distance_before:
         raise InvalidInputError("distance", stops.tolist(), f"beyond {distance_before:g} m, where the wear begins")
     gap = case.gap(cells)

@@ -20,7 +20,7 @@ def test_written_numbers() -> None:
     assert [format_value(value) for value in values] == ["0.0002112", "1532", "1e-09", "\N{INFINITY}"]
     assert [format_quantity(1.5e9, "Pa"), format_quantity(0.1, "1")] == ["1.5 GPa", "0.1"]
     assert format_with_error(2.2531e9, 0.012e9, "Pa") == "2.253 ± 0.012 GPa"
-    assert format_with_error(65e-6, None, "m") == "65 \N{MICRO SIGN}m"
+    assert format_with_error(65e-6, math.nan, "m") == "65 \N{MICRO SIGN}m"
     assert format_with_error(0.0, 0.0, "Pa") == "0 MPa"
 
 

@@ -4,7 +4,7 @@ import pytest
 import xarray as xr
 
 pytest.importorskip("panel")
-from contactstudy.explorer.cases import _value_text, numbers_by_subject, status_sentence
+from contactstudy.explorer.cases import Cases, numbers_by_subject, status_sentence
 
 
 def test_sentence_of_an_unsolved_case():
@@ -14,11 +14,10 @@ def test_sentence_of_an_unsolved_case():
 
 
 def test_values_in_engineering_units():
-    assert [_value_text(*entry) for entry in ((1.5e9, "Pa"), ("cylinder", ""), (0.1, "1"))] == [
-        "1.5 GPa",
-        "cylinder",
-        "0.1",
-    ]
+    swept = {"max_pressure": ("max_pressure", [1.5e9], {"units": "Pa"}), "profile": ["cylinder"], "friction": [0.1]}
+    scalars = xr.Dataset({"status": (tuple(swept), [[["ok"]]])}, coords=swept)
+    cases = Cases(scalars, lambda index: None, "title")
+    assert [cases.choices(name) for name in swept] == [["1.5 GPa"], ["cylinder"], ["0.1"]]
 
 
 def test_subjects_of_numbers():

@@ -12,8 +12,7 @@ from contactstudy import Case, FiniteLengthSpace, HalfSpace, InvalidInputError, 
 from contactstudy.analysis import solved_case
 from contactstudy.fields.edge_tension import edge_tension
 from contactstudy.report import assess, citations, summary
-from contactstudy.report.case_table import describe_body, describe_material
-from contactstudy.report.summary_table import intensity_text
+from contactstudy.report.tables import describe_body, describe_material
 
 STEEL = Material(210e9, 0.3)
 
@@ -216,6 +215,7 @@ def test_tension_at_the_trailing_edge() -> None:
 
 
 def test_texts_of_intensity_material_and_body() -> None:
-    assert intensity_text(4.5e6, np.nan, 0.5) == "0.1423 GPa mm^0.5"
+    law = xr.Dataset({"end_intensity_first": 4.5e6, "end_exponent_first": 0.5})
+    assert summary(law)["end_intensity_first"].text == "0.1423 GPa mm^0.5"
     assert describe_material(STEEL) == "E = 210 GPa, Poisson's ratio 0.3"
     assert describe_body(FiniteLengthSpace(length=16e-3, material=STEEL)) == "two free ends, 16 mm apart"
