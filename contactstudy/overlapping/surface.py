@@ -189,7 +189,6 @@ def end_kernel(request: EndRequest) -> EndKernel:
     # Matrices from samples at the offsets to the padded grid's transform; an odd kernel is -sin(k y).
     transforms = np.ascontiguousarray(even_matrix.T), np.ascontiguousarray(-odd_matrix.T)
     samples_by_response: dict[Response, list[FloatArray]] = {}
-    shared_samples: dict[float, FloatArray] = {}  # samples at wavenumbers that kernels with either pole share
     for poles in sorted({_poles(response) for response in request.responses}):
         first_wavenumber = POLE_PANEL_FACTOR[poles] / min(length, 4 * max(request.span, window))
         panels = lateral_panels(
@@ -210,7 +209,7 @@ def end_kernel(request: EndRequest) -> EndKernel:
                     odd_transform @ panel.interpolation,
                 )
             samples = np.zeros((len(responses), parities, panel.nodes.size, size, size))
-            for node, sampled in enumerate(_sample_panel(request, panel, positions, shortest, shared_samples)):
+            for node, sampled in enumerate(_sample_panel(request, panel, positions, shortest)):
                 count = sampled.shape[-1]
                 samples[:, :, node, :count, :count] = sampled[:, indices].swapaxes(0, 1)
             for response, total, response_samples in zip(responses, totals, samples, strict=True):
@@ -232,28 +231,17 @@ def _poles(response: Response) -> int:
 
 
 def _sample_panel(
-    request: EndRequest,
-    panel: LateralPanel,
-    positions: FloatArray,
-    shortest: float,
-    shared_samples: dict[float, FloatArray],
+    request: EndRequest, panel: LateralPanel, positions: FloatArray, shortest: float
 ) -> Iterator[FloatArray]:
-    """Kernel at a panel's wavenumbers, or from `shared_samples`: arrays (parity, response, position, position)."""
+    """Yield the kernel at each of a panel's wavenumbers: arrays (parity, response, position, position)."""
     length, mirrored_once = request.free_ends
     first_wavenumber = float(panel.nodes[0])
     modes = modes_between_ends(length, first_wavenumber, shortest, request.resolution, mirrored_once=mirrored_once)
     waves = [PositionWaves.of(mode, positions, request.responses) for mode in modes]
-    is_shared = len({_poles(response) for response in request.responses}) > 1
     for wavenumber in panel.nodes.tolist():
-        kernel = shared_samples.get(wavenumber)
-        if kernel is None:
-            kernel = np.array([sampled_kernel(mode_waves, wavenumber, request, shortest) for mode_waves in waves])
-            # Ends do not interact: each parity has half of a quarter space's kernel.
-            if len(request.parities) > len(modes):
-                kernel = 0.5 * np.repeat(kernel, 2, axis=0)
-            if is_shared:
-                shared_samples[wavenumber] = kernel
-        yield kernel
+        kernel = np.array([sampled_kernel(mode_waves, wavenumber, request, shortest) for mode_waves in waves])
+        # Ends do not interact: each parity has half of a quarter space's kernel.
+        yield 0.5 * np.repeat(kernel, 2, axis=0) if len(request.parities) > len(modes) else kernel
 
 
 def add_product(total: FloatArray, left_factor: FloatArray, right_factor: FloatArray) -> None:
