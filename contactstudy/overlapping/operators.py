@@ -70,7 +70,7 @@ def solution_matrix(system: EquationSet) -> LinearOperator:
         return system.solve(source) / scale  # eq. (27)
 
     def solve_transposed(faces: FloatArray) -> FloatArray:
-        return system.factorisation.solve_transposed(faces / scale)
+        return system.solve(faces / scale, transposed=True)
 
     return LinearOperator(
         (scale.size, scale.size),
