@@ -118,11 +118,6 @@ class GridTransform:
         return np.asarray(buffers.real[: self.cells_x, : self.cells_y] * self._scale)
 
 
-NEGLIGIBLE_AMPLITUDE = (
-    1e-13  # odd wavenumbers of a load that is symmetric about mid-length, over the largest amplitude. Speed.
-)
-
-
 @dataclass(frozen=True, kw_only=True)
 class CentredConvolution:
     """Convolution of a load with the kernels of an influence at one depth."""
@@ -136,25 +131,14 @@ class CentredConvolution:
     depth: float  # depth of the points
 
     def fill_layer(self, layer: FloatArray, load_transform: ComplexArray, rows: IntArray, columns: IntArray) -> None:
-        """Fill a `layer` (component, row, column) from the load's transform, without odd wavenumbers if symmetric."""
+        """Fill a `layer` (component, row, column) from the load's transform."""
         spectrum = _kernel_spectrum(self)
         is_odd_x = np.array(self.influence.sign_along_x) < 0
-        is_mirrored, source_rows = np.zeros(rows.size, bool), rows
-        if self.is_symmetric(load_transform):
-            is_mirrored, source_rows = rows >= load_transform.shape[0], np.minimum(rows, self.shape[0] - 1 - rows)
-        distinct_rows, row_indices = np.unique(source_rows, return_inverse=True)
         for is_odd, components in ((False, np.flatnonzero(~is_odd_x)), (True, np.flatnonzero(is_odd_x))):
             if components.size:
-                along_y = self._invert_along_x(spectrum[components], load_transform, distinct_rows, odd=is_odd)
+                along_y = self._invert_along_x(spectrum[components], load_transform, rows, odd=is_odd)
                 along_y[np.array(self.influence.sign_along_y)[components] < 0] *= 1j
-                row_fields = fft.irfft(along_y, 2 * self.shape[1], axis=2)[..., _as_slice(columns)]
-                layer[components] = row_fields[:, _as_slice(row_indices)]
-                if is_odd and is_mirrored.any():
-                    layer[np.ix_(components, is_mirrored)] *= -1
-
-    def is_symmetric(self, load_transform: ComplexArray) -> bool:
-        """Whether a transform belongs to a load that is symmetric about mid-length."""
-        return self.mirrored and load_transform.shape[0] < self.shape[0]
+                layer[components] = fft.irfft(along_y, 2 * self.shape[1], axis=2)[..., columns]
 
     def _invert_along_x(
         self, spectrum: FloatArray, load_transform: ComplexArray, rows: IntArray, *, odd: bool
@@ -169,18 +153,11 @@ class CentredConvolution:
                 product[:, : half + 1] *= 1j
                 product[:, half + 1 :] *= -1j
             return np.asarray(fft.ifft(product, axis=1, overwrite_x=True)[:, rows])
-        step = 2 if self.is_symmetric(load_transform) else 1
         if odd:
             product = np.zeros((spectrum.shape[0], *load_transform.shape), np.complex128)
-            np.multiply(-spectrum[:, step:half:step], load_transform[1:], out=product[:, :-1])
+            np.multiply(-spectrum[:, 1:half], load_transform[1:], out=product[:, :-1])
             return np.asarray(fft.idst(product, type=2, axis=1, overwrite_x=True)[:, rows])
-        return np.asarray(fft.idct(spectrum[:, :half:step] * load_transform, type=2, axis=1, overwrite_x=True)[:, rows])
-
-
-def _as_slice(indices: IntArray) -> slice | IntArray:
-    """Index of ascending numbers, as a slice if they are consecutive."""
-    is_consecutive = bool((np.diff(indices) == 1).all())
-    return slice(indices[0], indices[-1] + 1) if is_consecutive and indices[0] >= 0 else indices
+        return np.asarray(fft.idct(spectrum[:, :half] * load_transform, type=2, axis=1, overwrite_x=True)[:, rows])
 
 
 @cached("half-space kernels")
@@ -227,11 +204,6 @@ def centred_field(
     shape = (half, fft.next_fast_len(reach_y + 1, real=True))
     along_y = fft.rfft(load, 2 * shape[1], axis=1)
     load_transform = fft.dct(along_y, type=2, n=half, axis=0) if mirrored else fft.fft(along_y, 2 * half, axis=0)
-    if mirrored and np.isfinite(length) and half % 2 == 0:
-        odd_amplitude, max_amplitude = np.abs(load_transform[1::2]).max(), np.abs(load_transform).max()
-        if odd_amplitude <= NEGLIGIBLE_AMPLITUDE * max_amplitude:
-            # Half of the even wavenumbers equals the transform of the load's first half, mirrored at mid-length.
-            load_transform = 0.5 * load_transform[::2]
     field = np.empty((influence.components, rows.size, z.size, columns.size))
     for depth_index, depth in enumerate(z.tolist()):
         convolution = CentredConvolution(
