@@ -18,9 +18,9 @@ from contactstudy.arrays.points import Points
 from contactstudy.checks import BoolArray, ComplexArray, FloatArray, IntArray
 from contactstudy.kernels.load import Load
 from contactstudy.overlapping.axial_modes import DECAY_LENGTHS
-from contactstudy.overlapping.equations import AuxiliaryLoads, EquationSet
+from contactstudy.overlapping.equations import EquationSet
 from contactstudy.overlapping.lateral_modes import LateralColumns, LateralPanel, lateral_columns
-from contactstudy.overlapping.problem import EndProblem, View, make_views, split_by_parity
+from contactstudy.overlapping.problem import EndProblem, make_views, split_by_parity
 from contactstudy.overlapping.quadrature import POSITIONS_PER_PANEL, graded_interpolation
 from contactstudy.threads import one_blas_thread
 
@@ -41,9 +41,6 @@ class Harmonics:
     even_in_y: list[int]  # components that under a pressure even in y are even; the others are odd
     odd_along_x: list[int]  # components that change sign from one end to the other
     growing_signs: tuple[int, ...]  # signs of mirror images with which the field between two ends grows far along y
-
-
-JOINT_POINTS = 2000  # largest number of positions times depths for a joint evaluation of all tensor products. Speed.
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -164,7 +161,7 @@ def _sum_over_wavenumbers(
                         continue
                     columns_of_parity = set_amplitudes[i][..., columns.parities == parity]
                     section = slice(stop - total[parity].shape[-1], stop)
-                    shape, block = (rows.size, depths.size, -1), _block_index(rows, depths)
+                    shape, block = (rows.size, depths.size, -1), np.ix_(rows, depths)
                     for component in range(harmonics.count):
                         wave = even_waves if component in harmonics.even_in_y else odd_waves
                         amplitude_rows = columns_of_parity[component].reshape(rows.size * depths.size, -1)
@@ -238,7 +235,7 @@ def unit_fields(problem: EndProblem, harmonics: Harmonics, points: Points, refer
         fields = {}
         for parity in parity_loads:
             field = np.zeros(shape)
-            field[(slice(None), slice(None), *_block_index(rows, depths))] = amplitudes[..., parities == parity]
+            field[:, :, rows[:, None], depths] = amplitudes[..., parities == parity]
             fields[parity] = field.reshape(*shape[:4], -1)
         field_at_nodes = folded.unfold(fields, harmonics.odd_along_x)[0]
         even_filters, odd_filters = panel.filters(problem.grid, points.y)
@@ -248,13 +245,6 @@ def unit_fields(problem: EndProblem, harmonics: Harmonics, points: Points, refer
         )
         component_count, x_count = harmonics.count, points.x.size
         yield UnitFields(field_at_nodes.reshape(component_count, x_count, panel.nodes.size, -1, points.z.size), filters)
-
-
-def _block_index(rows: IntArray, columns: IntArray) -> tuple[slice | IntArray, slice | IntArray]:
-    """Index of rows and columns in ascending order; complete ranges become slices, which are faster."""
-    if all(indices[-1] - indices[0] + 1 == indices.size for indices in (rows, columns)):
-        return slice(rows[0], rows[-1] + 1), slice(columns[0], columns[-1] + 1)
-    return rows[:, None], columns
 
 
 def _amplitudes(
@@ -271,41 +261,19 @@ def _amplitudes(
         for x, z in points
     ]
     starts = np.cumsum([0, *(x.size for x, _ in points)])
-    stops = np.cumsum([z.size for _, z in points])
-    depths = np.concatenate([z for _, z in points])
     for view in make_views(problem, columns, np.concatenate([x for x, _ in points]), shortest):
         view_rows = [np.flatnonzero((view.rows >= low) & (view.rows < high)) for low, high in pairwise(starts)]
-        is_joint = view.x.size * depths.size <= JOINT_POINTS
         for node, lateral in enumerate(columns.nodes.tolist()):
             system = problem.equation_set(view.modes, lateral, shortest)
             spectrum = view.spectra[:, node if view.spectra.shape[1] > 1 else 0]
             loads = system.auxiliary_loads(spectrum, problem.loads, shortest=shortest, resolution=problem.resolution)
-            fields = _evaluate_fields(harmonics, system, loads, view, slice(None), z=depths) if is_joint else None
-            for amplitude, (_, z), start, stop, view_indices in zip(
-                amplitudes, points, starts, stops, view_rows, strict=False
-            ):
-                if not view_indices.size:
+            for amplitude, (_, z), start, indices in zip(amplitudes, points, starts, view_rows, strict=False):
+                if not indices.size:
                     continue
-                if fields is None:
-                    field = _evaluate_fields(harmonics, system, loads, view, view_indices, z=z)
-                else:
-                    field = fields[:, view_indices, stop - z.size : stop]
-                by_load = field.reshape(*field.shape[:3], load_count, -1)
-                rows, depth_indices = (view.rows[view_indices] - start)[:, None, None], np.arange(z.size)[:, None]
-                for i in range(load_count):
-                    amplitude[i][:, rows, depth_indices, node, view.columns] = by_load[:, :, :, i]
+                cosine, sine = view.cosine[:, indices], view.sine[:, indices]
+                field = harmonics.of_equivalent_load(system, loads.equivalent, cosine, sine, z)
+                field += harmonics.of_face_load(system, loads.depth, loads.face_load, view.x[indices], z)
+                by_load = np.moveaxis(field.reshape(*field.shape[:3], load_count, -1), 3, 0)
+                rows, depths = (view.rows[indices] - start)[:, None, None], np.arange(z.size)[:, None]
+                amplitude[:, :, rows, depths, node, view.columns] = by_load
     return amplitudes
-
-
-def _evaluate_fields(
-    harmonics: Harmonics,
-    system: EquationSet,
-    loads: AuxiliaryLoads,
-    view: View,
-    indices: IntArray | slice,
-    z: FloatArray,
-) -> FloatArray:
-    """Field of both auxiliary bodies at some of a view's positions: array (component, x, z, column)."""
-    field = harmonics.of_equivalent_load(system, loads.equivalent, view.cosine[:, indices], view.sine[:, indices], z)
-    field += harmonics.of_face_load(system, loads.depth, loads.face_load, view.x[indices], z)
-    return field
