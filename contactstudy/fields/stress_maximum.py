@@ -8,7 +8,7 @@ polynomials of two degrees agree. On the top it evaluates the centres of cells i
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -171,22 +171,14 @@ def select_separated(positions: FloatArray, spacing: float) -> IntArray:
     return np.array(indices)
 
 
-def _peaks(maxima: FloatArray, *, symmetric: bool) -> Iterator[int]:
-    """Yield the column of the largest pressure in each half; in the first half alone of a symmetric contact."""
+def _peaks(maxima: FloatArray, *, symmetric: bool) -> list[int]:
+    """Columns of the largest pressure in each half, the larger first; in the first half alone if symmetric."""
     middle = (maxima.size + 1) // 2
-    first_peak, last_peak = (
-        int(maxima[:middle].argmax()),
-        middle + int(maxima[middle:].argmax()) if maxima.size > 1 else 0,
-    )
-    for peak in (
-        (first_peak,)
-        if symmetric
-        else (first_peak, last_peak)
-        if maxima[first_peak] >= maxima[last_peak]
-        else (last_peak, first_peak)
-    ):
-        if maxima[peak] >= MIN_SECOND_PEAK * maxima.max():
-            yield peak
+    peaks = [int(maxima[:middle].argmax())]
+    if not symmetric and maxima.size > 1:
+        peaks.append(middle + int(maxima[middle:].argmax()))
+    high_peaks = [peak for peak in peaks if maxima[peak] >= MIN_SECOND_PEAK * maxima.max()]
+    return sorted(high_peaks, key=lambda peak: -maxima[peak])
 
 
 RISE_ERROR = 0.25  # Error over the polynomials' rise above the largest sample: two may agree by chance. Accuracy
@@ -294,11 +286,8 @@ def _top_maximum(sample: _SampleMaximum, search: Search, stress_at: Callable[[Po
         if sample.maximum.value <= previous_value * (1 + REFINEMENT_TOLERANCE):
             break
     # The stress may grow towards the rim.
-    values, inside_rim, (column, row, _) = (
-        von_mises_of(*stresses)[..., 0],
-        search.inside_rim_at(centres),
-        sample.indices,
-    )
+    values, inside_rim = von_mises_of(*stresses)[..., 0], search.inside_rim_at(centres)
+    column, row, _ = sample.indices
     error = TOP_ERROR * sample.maximum.value
     for line, is_inside, index in (
         (values[:, row], inside_rim[:, row], column),
@@ -314,11 +303,8 @@ def _neighbour_cells(cells: IntArray, index: int, count: int) -> IntArray:
     """Return indices of cells from the previous to the next entry of a sampled cell, with the adjacent cells."""
     cell, distinct_cells = int(cells[index]), np.unique(cells)
     position = int(np.searchsorted(distinct_cells, cell))
-    previous_cell, next_cell = (
-        distinct_cells[max(position - 1, 0)],
-        distinct_cells[min(position + 1, distinct_cells.size - 1)],
-    )
-    spaced_cells = np.linspace(previous_cell, next_cell, 5).round().astype(np.int64)
+    neighbours = distinct_cells[max(position - 1, 0) : position + 2]
+    spaced_cells = np.linspace(neighbours[0], neighbours[-1], 5).round().astype(np.int64)
     return np.unique(np.clip([*spaced_cells, cell - 1, cell, cell + 1], 0, count - 1))
 
 

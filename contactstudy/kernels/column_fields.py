@@ -208,10 +208,8 @@ def split_columns(
         )
         first, load, is_refined = fine_cells.first, fine_cells.cell_loads, fine_cells.is_refined_along_y(z)
     lateral = LateralAxis(grid, y, first, fine_cells.count if fine_cells else load.shape[1])
-    lattices, (far_lattice,) = (
-        _lattices(lateral, z, is_refined),
-        _lattices(lateral, np.array([radius]), np.array([False])),
-    )
+    lattices = _lattices(lateral, z, is_refined)
+    (far_lattice,) = _lattices(lateral, np.array([radius]), np.array([False]))
 
     def layers_of(lattice: Lattice, z: FloatArray, depth_indices: IntArray, *, fine: bool = False) -> list[Layer]:
         axis = replace(lateral, y=lattice.y)

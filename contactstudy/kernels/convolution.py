@@ -127,10 +127,8 @@ def _kernel_spectrum(
         axis_last = spectrum.swapaxes(axis, 2)
         is_even = np.array(signs) > 0
         axis_spectrum = np.empty_like(axis_last)
-        axis_spectrum[is_even], axis_spectrum[~is_even] = (
-            even_spectrum(axis_last[is_even]),
-            odd_spectrum(axis_last[~is_even]),
-        )
+        axis_spectrum[is_even] = even_spectrum(axis_last[is_even])
+        axis_spectrum[~is_even] = odd_spectrum(axis_last[~is_even])
         spectrum = axis_spectrum.swapaxes(axis, 2)
     return np.ascontiguousarray(spectrum)
 

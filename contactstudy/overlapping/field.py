@@ -224,10 +224,8 @@ def unit_fields(problem: EndProblem, harmonics: Harmonics, points: Points, refer
     folded = _FoldedPositions.of(problem, points)
     cells = np.eye(problem.grid.cells_x)[problem.cell_of_column]
     parity_loads = {0: cells} if np.isinf(problem.length) else split_by_parity(cells, problem.sign_x)
-    parities, unit_loads = (
-        np.repeat(list(parity_loads), problem.grid.cells_x),
-        np.concatenate(list(parity_loads.values()), axis=1),
-    )
+    parities = np.repeat(list(parity_loads), problem.grid.cells_x)
+    unit_loads = np.concatenate(list(parity_loads.values()), axis=1)
     for panel, _, ((rows, depths),), (amplitudes,) in _panel_amplitudes(
         problem, harmonics, [folded], reference, lambda panel: LateralColumns.of_unit_loads(panel, unit_loads, parities)
     ):

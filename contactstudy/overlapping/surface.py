@@ -199,15 +199,14 @@ def end_kernel(request: EndRequest) -> EndKernel:
         size, parities = positions.size, len(request.parities)
         totals = np.zeros((len(responses), parities, request.cells_y + 1, size**2))
         for panel in panels:
+            cell_factor = request.dy * np.sinc(panel.fine_nodes * request.dy / (2 * np.pi))
             even_transform, odd_transform = (
-                transform @ (waves.T * (request.dy * np.sinc(panel.fine_nodes * request.dy / (2 * np.pi))))
+                transform @ (waves.T * cell_factor)
                 for transform, waves in zip(transforms, panel.waves(offsets), strict=True)
             )
             if panel.interpolation is not None:
-                even_transform, odd_transform = (
-                    even_transform @ panel.interpolation,
-                    odd_transform @ panel.interpolation,
-                )
+                even_transform = even_transform @ panel.interpolation
+                odd_transform = odd_transform @ panel.interpolation
             samples = np.zeros((len(responses), parities, panel.nodes.size, size, size))
             for node, sampled in enumerate(_sample_panel(request, panel, positions, shortest)):
                 count = sampled.shape[-1]
