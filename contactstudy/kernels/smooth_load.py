@@ -79,13 +79,6 @@ class SmoothLoad:
             edges=edges, sign=sign, first=first, middle=middle, last=last, knot=knot, coupled_to_next=coupled_to_next
         )
 
-    @property
-    def cell_means(self) -> FloatArray:
-        """Mean in each cell: array (row, cell)."""
-        return self.sign * (
-            self.knot * _mean_of_root(self.first, self.middle) + (1 - self.knot) * _mean_of_root(self.middle, self.last)
-        )
-
     def shape_loads(self, cell_loads: FloatArray) -> ShapedLoad:
         """Return `cell_loads` (row, cell) of this shape: the shape times a ratio that is linear in each cell."""
         # Where the shape is 0, the load equals the ratio. Each cell keeps its force; coupled cells keep their sum.

@@ -10,7 +10,7 @@ the window and the positions: fields of loads add up.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import pairwise
 
 import numpy as np
@@ -90,18 +90,10 @@ class LateralColumns:
     nodes: FloatArray  # wavenumbers along y, 1/m
     along_x: FloatArray  # (cell, node or 1, column): the functions of x
     parities: IntArray  # (column): 1 or -1 for an even or odd part of the load, 0 for an unsplit load
-    even_filters: FloatArray
+    even_filters: FloatArray = field(default_factory=lambda: np.zeros(0))
     """(node, column, y): from the amplitudes to their sum at positions y, for components even or odd under a load
-    even in y."""
-    odd_filters: FloatArray
-
-    @classmethod
-    def of_unit_loads(cls, panel: LateralPanel, along_x: FloatArray, parities: IntArray) -> LateralColumns:
-        """Columns `along_x` (cell, column) at the nodes of a panel, for operators that filter along y themselves."""
-        empty = np.zeros((panel.nodes.size, parities.size, 0))
-        return cls(
-            nodes=panel.nodes, along_x=along_x[:, None, :], parities=parities, even_filters=empty, odd_filters=empty
-        )
+    even in y; empty for operators that filter along y themselves."""
+    odd_filters: FloatArray = field(default_factory=lambda: np.zeros(0))
 
     def synthesis(self, load: Load, parity: int) -> tuple[FloatArray, FloatArray]:
         """`even_filters` and `odd_filters` of one parity for a load in one direction: arrays (node column, y)."""

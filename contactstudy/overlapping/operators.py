@@ -151,7 +151,7 @@ class OverlappingOperators:
         bands = []
         with one_blas_thread():
             for panel in problem.panels(y, shortest, reference):
-                columns = LateralColumns.of_unit_loads(panel, unit_loads, parities)
+                columns = LateralColumns(nodes=panel.nodes, along_x=unit_loads[:, None, :], parities=parities)
                 even_filters, odd_filters = panel.filters(problem.grid, y)
                 for view in make_views(problem, columns, x, shortest):
                     for node, lateral in enumerate(panel.nodes.tolist()):

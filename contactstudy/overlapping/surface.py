@@ -26,7 +26,7 @@ from contactstudy.kernels.load import Load, Response
 from contactstudy.overlapping.axial_modes import AxialModes, SingleMirrorModes, modes_between_ends
 from contactstudy.overlapping.equations import EquationSet
 from contactstudy.overlapping.lateral_modes import BENDING_POLES, POLE_PANEL_FACTOR, POLES, LateralPanel, lateral_panels
-from contactstudy.overlapping.quadrature import POSITIONS_PER_PANEL, Resolution, cell_moments, graded_positions
+from contactstudy.overlapping.quadrature import Resolution, cell_moments, graded_positions
 
 EXTRA_NODES = 2
 """Additional wavenumbers along y per panel, against a field: an operator is built once for all loads. Accuracy."""
@@ -183,7 +183,7 @@ def end_kernel(request: EndRequest) -> EndKernel:
     last_wavenumber = 2 * max(2.0 * np.pi / request.dy, 6.0 / request.finest)
     reference = request.reference if is_relative else None
     half_length = 0.5 * length if np.isfinite(length) else request.span
-    edges, positions = graded_positions(half_length, shortest, POSITIONS_PER_PANEL)
+    edges, positions = graded_positions(half_length, shortest)
     offsets: FloatArray = request.dy * np.arange(request.cells_y + 1.0)
     even_matrix, odd_matrix = spectrum_matrices(request.cells_y)
     # Matrices from samples at the offsets to the padded grid's transform; an odd kernel is -sin(k y).
