@@ -20,12 +20,7 @@ from contactstudy.checks import ComplexArray, FloatArray
 from contactstudy.errors import InvalidInputError
 from contactstudy.kernels.load import Load
 
-
-@lru_cache(maxsize=32)
-def _gauss_nodes(order: int) -> tuple[FloatArray, FloatArray]:
-    nodes, weights = np.polynomial.legendre.leggauss(order)
-    nodes.flags.writeable = weights.flags.writeable = False
-    return nodes, weights
+_gauss_nodes = lru_cache(np.polynomial.legendre.leggauss)
 
 
 def panel_nodes(edges: FloatArray, order: int) -> tuple[FloatArray, FloatArray]:

@@ -23,7 +23,7 @@ from contactstudy.cache import cached
 from contactstudy.checks import ComplexArray, FloatArray
 from contactstudy.kernels.convolution import spectrum_matrices
 from contactstudy.kernels.load import Load, Response
-from contactstudy.overlapping.axial_modes import AxialModes, SingleMirrorModes, modes_between_ends
+from contactstudy.overlapping.axial_modes import AxialModes, SingleMirrorModes, axial_modes
 from contactstudy.overlapping.equations import EquationSet
 from contactstudy.overlapping.lateral_modes import BENDING_POLES, POLE_PANEL_FACTOR, POLES, LateralPanel, lateral_panels
 from contactstudy.overlapping.quadrature import Resolution, cell_moments, graded_positions
@@ -235,7 +235,7 @@ def _sample_panel(
     """Yield the kernel at each of a panel's wavenumbers: arrays (parity, response, position, position)."""
     length, mirrored_once = request.free_ends
     first_wavenumber = float(panel.nodes[0])
-    modes = modes_between_ends(length, first_wavenumber, shortest, request.resolution, mirrored_once=mirrored_once)
+    modes = axial_modes(length, first_wavenumber, shortest, request.resolution, mirrored_once=mirrored_once)
     waves = [PositionWaves.of(mode, positions, request.responses) for mode in modes]
     for wavenumber in panel.nodes.tolist():
         kernel = np.array([sampled_kernel(mode_waves, wavenumber, request, shortest) for mode_waves in waves])
