@@ -38,18 +38,13 @@ SLIP_TOLERANCE = 1e-6  # tolerance of the traction of a slipping cell, over its 
 RIM_CELLS = 2  # cells at the rim of the contact without accurate stresses on the top. Accuracy.
 
 
-class Border(NamedTuple):
+class Border:
     """Border between stick and slip on the top, where the stress has a cusp between the centres of cells."""
 
     # The second sticking cell from the border represents the border: the values of the first cell are too smooth.
+    # The bound less the traction grows inside the border like a square root.
 
-    traction: FloatArray  # (2, x, y): tractions of the cells, at the border in the representing cells, Pa
-    rise: FloatArray  # (x, y): pressure at the border less the pressure of its representing cell, Pa; otherwise 0
-    poisson: float  # Poisson's ratio of the body
-
-    @classmethod
-    def of_loads(cls, loads: Loads, poisson: float) -> Border:
-        """Border of the sticking cells under loads; the bound less the traction grows inside like a square root."""
+    def __init__(self, loads: Loads, poisson: float) -> None:
         pressure = loads[Load.NORMAL].values
         zero = np.zeros_like(pressure)
         traction = np.stack([loads[load].values if load in loads else zero for load in (Load.ALONG_X, Load.ALONG_Y)])
@@ -68,7 +63,9 @@ class Border(NamedTuple):
             border_pressure = (1 - distance) * pressure[column, first_row] + distance * pressure[column, slipping_row]
             traction[:, column, second_row] = border_pressure * ratio[:, column, slipping_row]
             rise[column, second_row] = border_pressure - pressure[column, second_row]
-        return cls(traction, rise, poisson)
+        self.traction = traction  # (2, x, y): tractions of the cells, at the border in the representing cells, Pa
+        self.rise = rise  # (x, y): pressure at the border less the pressure of its representing cell, Pa; otherwise 0
+        self.poisson = poisson
 
 
 class Search(NamedTuple):
@@ -110,7 +107,7 @@ class Search(NamedTuple):
 
 def place_search(body: Body, loads: Loads, grid: Grid) -> Search:
     """Points of the search; they do not depend on the friction."""
-    extent, border = body.extent, Border.of_loads(loads, body.material.poisson)
+    extent, border = body.extent, Border(loads, body.material.poisson)
     pressure = loads[Load.NORMAL].values
     column_maxima = pressure.max(axis=1)
     # The body ends at the outermost columns.

@@ -104,12 +104,10 @@ class LateralAxis:
             indices = np.round((self.y - lowest_y) / step).astype(np.int64) * count
             aligned = AlignedPoints(lowest_y - self.first_edge, np.arange(self.y.size), indices)
             centred, edges = midpoint_cells(aligned, self.first_edge, span, step / count)
-            if fine:
-                return [Layer(centred, depths, depth_indices, step=step / count, edges=edges, fine_per_cell=1)]
-            fine_edges = np.linspace(edges[0], edges[-1], fine_per_cell * (edges.size - 1) + 1)
-            return [
-                Layer(centred, depths, depth_indices, step=step / count, edges=fine_edges, fine_per_cell=fine_per_cell)
-            ]
+            fine_per_cell = 1 if fine else fine_per_cell
+            if not fine:
+                edges = np.linspace(edges[0], edges[-1], fine_per_cell * (edges.size - 1) + 1)
+            return [Layer(centred, depths, depth_indices, step=step / count, edges=edges, fine_per_cell=fine_per_cell)]
         if not fine:
             edges = self.first_edge + dy / PARTS_Y * np.arange(PARTS_Y * self.count + 1.0)
             return [

@@ -126,22 +126,16 @@ def sum_of_ends(side_moments: list[FloatArray], sign: int) -> FloatArray:
     return np.asarray(side_moments[0] + sign * side_moments[1]) if len(side_moments) > 1 else side_moments[0]
 
 
-@dataclass(frozen=True, eq=False)
 class PositionWaves:
-    """Waves of axial modes at positions, shared by all wavenumbers along y with these modes."""
+    """Waves of axial modes at positions, for all directions of some responses and all wavenumbers along y."""
 
-    modes: AxialModes
-    positions: FloatArray  # positions within reach of the modes, metres
-    by_load: Mapping[Load, ComplexArray]  # (mode, position): weighted spectra of unit loads at the positions
-
-    @classmethod
-    def of(cls, modes: AxialModes, positions: FloatArray, responses: Sequence[Response]) -> PositionWaves:
-        """Waves for all directions of some responses."""
-        near_positions, weights = positions[positions <= modes.reach], modes.load_weights[:, None]
-        by_load = {
-            load: weights * modes.wave(load, near_positions) for load in dict.fromkeys(chain.from_iterable(responses))
+    def __init__(self, modes: AxialModes, positions: FloatArray, responses: Sequence[Response]) -> None:
+        self.modes, self.positions = modes, positions[positions <= modes.reach]  # positions within reach, metres
+        # (mode, position): weighted spectra of unit loads at the positions
+        self.by_load = {
+            load: modes.load_weights[:, None] * modes.wave(load, self.positions)
+            for load in dict.fromkeys(chain.from_iterable(responses))
         }
-        return cls(modes, near_positions, by_load)
 
 
 def sampled_kernel(waves: PositionWaves, wavenumber: float, request: EndRequest, shortest: float) -> list[FloatArray]:
@@ -236,7 +230,7 @@ def _sample_panel(
     length, mirrored_once = request.free_ends
     first_wavenumber = float(panel.nodes[0])
     modes = axial_modes(length, first_wavenumber, shortest, request.resolution, mirrored_once=mirrored_once)
-    waves = [PositionWaves.of(mode, positions, request.responses) for mode in modes]
+    waves = [PositionWaves(mode, positions, request.responses) for mode in modes]
     for wavenumber in panel.nodes.tolist():
         kernel = np.array([sampled_kernel(mode_waves, wavenumber, request, shortest) for mode_waves in waves])
         # Ends do not interact: each parity has half of a quarter space's kernel.

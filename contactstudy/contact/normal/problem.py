@@ -46,9 +46,9 @@ class ContactProblem:
     grid: Grid
     gap: FloatArray  # (x, y): initial gap less a prescribed approach, metres; infinite where nothing can touch
     resultants: Resultants  # prescribed resultants of the pressure
-    friction: float  # coefficient of the traction along +y
     tolerance: float  # tolerance of the iteration
-    max_iterations: int  # bound on the iterations
+    friction: float = 0.0  # coefficient of the traction along +y
+    max_iterations: int = 500  # bound on the iterations
 
     def rigid_height(self, motion: tuple[float, ...]) -> FloatArray:
         """Height of the shape after its rigid `motion`, metres: broadcasts to (x, y)."""

@@ -249,14 +249,8 @@ class _ColumnSolver:
         gap = shape.gap.values
         columns = _roller_columns(grid, edges)
         guess = _pad_to_grid(start, grid, edges) if start is not None and start.any() else None
-        problem = ContactProblem(
-            grid=grid,
-            gap=gap,
-            resultants=shape.prescribed.resultants(grid),
-            friction=0.0,
-            tolerance=tolerance,
-            max_iterations=500,
-        )
+        resultants = shape.prescribed.resultants(grid)
+        problem = ContactProblem(grid=grid, gap=gap, resultants=resultants, tolerance=tolerance)
         operator = contact_operator(shape)
         iterate = solve_normal(operator, problem, guess)
         check_window(shape.body, iterate.pressure)
