@@ -103,9 +103,9 @@ class EquationSet:
         top = modes.load_on_top(core, depth, lateral, poisson)
         end_load = core * (4 / np.pi / k * modes.on_end)
         factors, pivots = linalg.lu_factor(np.diag(1 / scale) - real_product(end_load, top))  # eq. (27)
-        rows = np.arange(pivots.size)
-        for row, pivot in enumerate(pivots):
-            rows[[row, pivot]] = rows[[pivot, row]]
+        rows = list(range(pivots.size))
+        for row, pivot in enumerate(pivots.tolist()):
+            rows[row], rows[pivot] = rows[pivot], rows[row]
         return cls(
             modes=modes,
             lateral=lateral,
@@ -114,7 +114,7 @@ class EquationSet:
             scale=scale,
             core=core,
             top=top,
-            rows=rows,
+            rows=np.array(rows),
             factors=factors,
         )
 
