@@ -32,10 +32,15 @@ class UniformOperator:
     """Displacements of the top of one part of a body."""
 
     def __init__(
-        self, extent: Extent, grid: Grid, spectra: Mapping[Response, FloatArray], end_correction: EndCorrection | None
+        self,
+        material: Material,
+        extent: Extent,
+        grid: Grid,
+        responses: Sequence[Response],
+        end_correction: EndCorrection | None,
     ) -> None:
-        self.extent, self.grid = extent, grid
-        self._spectra, self._correction = spectra, end_correction
+        self.extent, self.grid, self._correction = extent, grid, end_correction
+        self._spectra = {response: _spectrum(response, material, extent, grid) for response in responses}
         mirrored, padded_cells = _padding(extent, grid)
         # A body with only the second mirror is reversed.
         self._is_reversed = mirrored and bool(np.isinf(extent[0]))
@@ -46,24 +51,20 @@ class UniformOperator:
                 for direction in dict.fromkeys(directions)
             }
 
-        self._load_transforms = make_transforms([response.load for response in spectra])
-        self._field_transforms = make_transforms([response.displacement for response in spectra])
+        self._load_transforms = make_transforms([response.load for response in responses])
+        self._field_transforms = make_transforms([response.displacement for response in responses])
 
     @classmethod
     def of(
         cls, material: Material, extent: Extent, grid: Grid, responses: Sequence[Response], ends: EndKernel | None
     ) -> UniformOperator:
         """Operator of a part of a body made of `material`, for pairs of displacement and load."""
-        spectra = {response: _spectrum(response, material, extent, grid) for response in responses}
-        return cls(extent, grid, spectra, None if ends is None else EndCorrection.on_grid(grid, ends))
+        return cls(material, extent, grid, responses, None if ends is None else EndCorrection.on_grid(grid, ends))
 
     def coarsen(self, material: Material) -> UniformOperator:
         """Return the operator on cells of twice the size."""
-        grid = self.grid.coarsened()
-        spectra = {response: _spectrum(response, material, self.extent, grid) for response in self._spectra}
-        return UniformOperator(
-            self.extent, grid, spectra, self._correction.coarsen() if self._correction is not None else None
-        )
+        correction = None if self._correction is None else self._correction.coarsen()
+        return UniformOperator(material, self.extent, self.grid.coarsened(), list(self._spectra), correction)
 
     def __call__(self, loads: Mapping[Load, FloatArray], directions: Sequence[Load]) -> dict[Load, FloatArray]:
         """Displacements (m) of the cell centres in some `directions` under `loads` (Pa): arrays (x, y)."""
@@ -78,12 +79,9 @@ class UniformOperator:
         for direction in directions:
             transform = self._field_transforms[direction]
             self._fill(transform.spectrum, direction, spectra)
-            cells_x = self.grid.cells_x
-            end_displacement = (
-                self._correction.compute_displacement(direction, projected, cells_x)
-                if self._correction is not None
-                else None
-            )
+            end_displacement = None
+            if self._correction is not None:
+                end_displacement = self._correction.compute_displacement(direction, projected, self.grid.cells_x)
             displacement = transform.invert(end_displacement)  # eq. (5)
             displacements[direction] = direction.sign_x * displacement[::-1] if self._is_reversed else displacement
         return displacements
@@ -94,26 +92,20 @@ class UniformOperator:
         mirrored = bool(self._field_transforms[direction].mirror)
         for index, (load, spectrum) in enumerate(loads.items()):
             response = Response(direction, load)
-            kernel = self._spectra[response]
-            direct_part, load_spectrum = total, spectrum
+            kernel, direct_part, load_spectrum = self._spectra[response], total, spectrum
             if mirrored and response.sign_x < 0:
                 direct_part, load_spectrum = (
                     (total[:-1], spectrum[1:]) if direction.sign_x < 0 else (total[1:], spectrum[:-1])
                 )
                 if not index:
                     total[-1 if direction.sign_x < 0 else 0] = 0.0
-            if not index:
-                np.multiply(kernel, load_spectrum, out=direct_part)
-            elif response.sign_y > 0 and (mirrored or response.sign_x > 0):
-                direct_part += kernel * load_spectrum
-                continue
             # Kernels lack a factor i for each odd direction, except along x between mirrors.
             powers = int(response.sign_y < 0) + int(response.sign_x < 0 and not mirrored)
-            factor = (1, 1j, -1)[powers]
+            phased_kernel = (1j, -1)[powers - 1] * kernel if powers else kernel
             if index:
-                direct_part += (factor * kernel) * load_spectrum
-            elif powers:
-                direct_part *= factor
+                direct_part += phased_kernel * load_spectrum
+            else:
+                np.multiply(phased_kernel, load_spectrum, out=direct_part)
 
     def precondition(self, gap: FloatArray) -> FloatArray:
         """Approximate pressure for a normal displacement `gap`: the inverse spectrum of the mirrored half-space."""
@@ -224,11 +216,9 @@ class ColumnsOperator:
     def coarsen(self, material: Material) -> ColumnsOperator:
         """Return the operator on pairs of cells, for an initial guess."""
         grid = self.grid.coarsened()
-        fine_widths = self.grid.widths
-        averaging = np.zeros((grid.cells_x, fine_widths.size))
-        averaging[np.minimum(np.arange(fine_widths.size) // 2, grid.cells_x - 1), np.arange(fine_widths.size)] = (
-            fine_widths
-        )
+        fine_columns, widths = np.arange(self.grid.cells_x), self.grid.widths
+        averaging = np.zeros((grid.cells_x, widths.size))
+        averaging[np.minimum(fine_columns // 2, grid.cells_x - 1), fine_columns] = widths
         averaging /= grid.widths[:, None]
         coarse_kernels = {
             response: averaging @ kernel[: grid.cells_y + 1] @ averaging.T for response, kernel in self._kernels.items()
@@ -240,8 +230,12 @@ class ColumnsOperator:
         spectra = {load: self._transform_y(self._widths * cells) for load, cells in loads.items()}
         displacements = {}
         for direction in directions:
-            products = (self._multiply(Response(direction, load), spectrum) for load, spectrum in spectra.items())
-            displacements[direction] = self._invert_y(sum(products, np.zeros(1, np.complex128)))
+            total = np.zeros(1, np.complex128)
+            for load, spectrum in spectra.items():
+                response = Response(direction, load)
+                product = _multiply_matrices(self._kernels[response], spectrum)
+                total = total + (product if response.sign_y > 0 else 1j * product)
+            displacements[direction] = self._invert_y(total)
         return displacements
 
     def precondition(self, gap: FloatArray) -> FloatArray:
@@ -251,11 +245,6 @@ class ColumnsOperator:
     def _transform_y(self, cells: FloatArray) -> ComplexArray:
         """Transform along y: array (wavenumber, cell)."""
         return np.ascontiguousarray(fft.rfft(cells, n=2 * self.grid.cells_y, axis=1).T)
-
-    def _multiply(self, response: Response, spectrum: ComplexArray) -> ComplexArray:
-        """Multiply a spectrum by the kernel's matrix along x, for each wavenumber along y."""
-        product = _multiply_matrices(self._kernels[response], spectrum)
-        return product if response.sign_y > 0 else 1j * product
 
     def _invert_y(self, spectrum: ComplexArray) -> FloatArray:
         """Values on the cells from their transform along y (wavenumber, cell)."""

@@ -159,11 +159,8 @@ def edge_tension_summary(dataset: xr.Dataset) -> xr.Dataset:
 def _section(y: FloatArray, traction: FloatArray, limits: list[float]) -> _Section:
     """Chebyshev series of the traction of a section along +y, by least squares of the means of its cells."""
     trailing_edge, leading_edge = limits
-    half_width, centre, cell_width = (
-        0.5 * (leading_edge - trailing_edge),
-        0.5 * (trailing_edge + leading_edge),
-        abs(float(y[1] - y[0])),
-    )
+    half_width, centre = 0.5 * (leading_edge - trailing_edge), 0.5 * (trailing_edge + leading_edge)
+    cell_width = abs(float(y[1] - y[0]))
     points = (y[:, None] + cell_width * ((np.arange(40) + 0.5) / 40 - 0.5) - centre) / half_width
     angles = np.arccos(np.clip(points, -1.0, 1.0))
     # sqrt(1 - t**2) U_n(t) = sin((n + 1) arccos t)

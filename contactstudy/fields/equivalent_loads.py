@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import zip_longest
 
 import numpy as np
 import xarray as xr
@@ -79,11 +80,7 @@ def equivalent_loads(
         face_loads = [
             factor * operator.matvec(cell_loads.ravel()).reshape(grid.cells_y, -1) for operator in face_operators
         ]
-        face_totals = (
-            [face_total + face_load for face_total, face_load in zip(face_totals, face_loads, strict=True)]
-            if face_totals
-            else face_loads
-        )
+        face_totals = [np.asarray(sum(pair)) for pair in zip_longest(face_totals, face_loads, fillvalue=0.0)]
     distance = _load_reference(body)
     attributes: dict[str, str | float] = {}
     if distance is not None:

@@ -8,7 +8,7 @@ polynomials of two degrees agree. On the top it evaluates the centres of cells i
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -38,18 +38,13 @@ SLIP_TOLERANCE = 1e-6  # tolerance of the traction of a slipping cell, over its 
 RIM_CELLS = 2  # cells at the rim of the contact without accurate stresses on the top. Accuracy.
 
 
-class Border(NamedTuple):
+class Border:
     """Border between stick and slip on the top, where the stress has a cusp between the centres of cells."""
 
     # The second sticking cell from the border represents the border: the values of the first cell are too smooth.
+    # The bound less the traction grows inside the border like a square root.
 
-    traction: FloatArray  # (2, x, y): tractions of the cells, at the border in the representing cells, Pa
-    rise: FloatArray  # (x, y): pressure at the border less the pressure of its representing cell, Pa; otherwise 0
-    poisson: float  # Poisson's ratio of the body
-
-    @classmethod
-    def of_loads(cls, loads: Loads, poisson: float) -> Border:
-        """Border of the sticking cells under loads; the bound less the traction grows inside like a square root."""
+    def __init__(self, loads: Loads, poisson: float) -> None:
         pressure = loads[Load.NORMAL].values
         zero = np.zeros_like(pressure)
         traction = np.stack([loads[load].values if load in loads else zero for load in (Load.ALONG_X, Load.ALONG_Y)])
@@ -68,7 +63,9 @@ class Border(NamedTuple):
             border_pressure = (1 - distance) * pressure[column, first_row] + distance * pressure[column, slipping_row]
             traction[:, column, second_row] = border_pressure * ratio[:, column, slipping_row]
             rise[column, second_row] = border_pressure - pressure[column, second_row]
-        return cls(traction, rise, poisson)
+        self.traction = traction  # (2, x, y): tractions of the cells, at the border in the representing cells, Pa
+        self.rise = rise  # (x, y): pressure at the border less the pressure of its representing cell, Pa; otherwise 0
+        self.poisson = poisson
 
 
 class Search(NamedTuple):
@@ -111,7 +108,7 @@ class Search(NamedTuple):
 
 def place_search(body: Body, loads: Loads, grid: Grid) -> Search:
     """Points of the search; they do not depend on the friction."""
-    extent, border = body.extent, Border.of_loads(loads, body.material.poisson)
+    extent, border = body.extent, Border(loads, body.material.poisson)
     pressure = loads[Load.NORMAL].values
     column_maxima = pressure.max(axis=1)
     # The body ends at the outermost columns.
@@ -174,22 +171,14 @@ def select_separated(positions: FloatArray, spacing: float) -> IntArray:
     return np.array(indices)
 
 
-def _peaks(maxima: FloatArray, *, symmetric: bool) -> Iterator[int]:
-    """Yield the column of the largest pressure in each half; in the first half alone of a symmetric contact."""
+def _peaks(maxima: FloatArray, *, symmetric: bool) -> list[int]:
+    """Columns of the largest pressure in each half, the larger first; in the first half alone if symmetric."""
     middle = (maxima.size + 1) // 2
-    first_peak, last_peak = (
-        int(maxima[:middle].argmax()),
-        middle + int(maxima[middle:].argmax()) if maxima.size > 1 else 0,
-    )
-    for peak in (
-        (first_peak,)
-        if symmetric
-        else (first_peak, last_peak)
-        if maxima[first_peak] >= maxima[last_peak]
-        else (last_peak, first_peak)
-    ):
-        if maxima[peak] >= MIN_SECOND_PEAK * maxima.max():
-            yield peak
+    peaks = [int(maxima[:middle].argmax())]
+    if not symmetric and maxima.size > 1:
+        peaks.append(middle + int(maxima[middle:].argmax()))
+    high_peaks = [peak for peak in peaks if maxima[peak] >= MIN_SECOND_PEAK * maxima.max()]
+    return sorted(high_peaks, key=lambda peak: -maxima[peak])
 
 
 RISE_ERROR = 0.25  # Error over the polynomials' rise above the largest sample: two may agree by chance. Accuracy
@@ -297,11 +286,8 @@ def _top_maximum(sample: _SampleMaximum, search: Search, stress_at: Callable[[Po
         if sample.maximum.value <= previous_value * (1 + REFINEMENT_TOLERANCE):
             break
     # The stress may grow towards the rim.
-    values, inside_rim, (column, row, _) = (
-        von_mises_of(*stresses)[..., 0],
-        search.inside_rim_at(centres),
-        sample.indices,
-    )
+    values, inside_rim = von_mises_of(*stresses)[..., 0], search.inside_rim_at(centres)
+    column, row, _ = sample.indices
     error = TOP_ERROR * sample.maximum.value
     for line, is_inside, index in (
         (values[:, row], inside_rim[:, row], column),
@@ -317,11 +303,8 @@ def _neighbour_cells(cells: IntArray, index: int, count: int) -> IntArray:
     """Return indices of cells from the previous to the next entry of a sampled cell, with the adjacent cells."""
     cell, distinct_cells = int(cells[index]), np.unique(cells)
     position = int(np.searchsorted(distinct_cells, cell))
-    previous_cell, next_cell = (
-        distinct_cells[max(position - 1, 0)],
-        distinct_cells[min(position + 1, distinct_cells.size - 1)],
-    )
-    spaced_cells = np.linspace(previous_cell, next_cell, 5).round().astype(np.int64)
+    neighbours = distinct_cells[max(position - 1, 0) : position + 2]
+    spaced_cells = np.linspace(neighbours[0], neighbours[-1], 5).round().astype(np.int64)
     return np.unique(np.clip([*spaced_cells, cell - 1, cell, cell + 1], 0, count - 1))
 
 

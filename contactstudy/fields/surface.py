@@ -101,10 +101,7 @@ def surface_operator(
     return _cached_operator(replace(body, reference_depth=None), grid, loads, directions)
 
 
-@cached("surface operators")
-def _cached_operator(body: Body, grid: Grid, loads: tuple[Load, ...], directions: tuple[Load, ...]) -> SurfaceOperator:
-    """Build an operator, or return the cached one."""
-    return SurfaceOperator.of(body, grid, loads, directions)
+_cached_operator = cached("surface operators")(SurfaceOperator.of)
 
 
 @overload

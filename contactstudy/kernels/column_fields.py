@@ -91,7 +91,7 @@ class LateralAxis:
     def uniform_layers(self, z: FloatArray, depth_indices: IntArray) -> list[Layer]:
         """Layers at some of the depths, of uniform loads on the grid's cells."""
         return [
-            Layer.of(aligned, z[depth_indices], depth_indices, step=self.grid.dy, edges=None, fine_per_cell=self.count)
+            Layer(aligned, z[depth_indices], depth_indices, step=self.grid.dy, edges=None, fine_per_cell=self.count)
             for aligned in self.aligned_groups
             if depth_indices.size
         ]
@@ -112,25 +112,21 @@ class LateralAxis:
             indices = np.round((self.y - lowest_y) / step).astype(np.int64) * count
             aligned = AlignedPoints(lowest_y - self.first_edge, np.arange(self.y.size), indices)
             centred, edges = midpoint_cells(aligned, self.first_edge, span, step / count)
-            if fine:
-                return [Layer.of(centred, depths, depth_indices, step=step / count, edges=edges, fine_per_cell=1)]
-            fine_edges = np.linspace(edges[0], edges[-1], fine_per_cell * (edges.size - 1) + 1)
-            return [
-                Layer.of(
-                    centred, depths, depth_indices, step=step / count, edges=fine_edges, fine_per_cell=fine_per_cell
-                )
-            ]
+            fine_per_cell = 1 if fine else fine_per_cell
+            if not fine:
+                edges = np.linspace(edges[0], edges[-1], fine_per_cell * (edges.size - 1) + 1)
+            return [Layer(centred, depths, depth_indices, step=step / count, edges=edges, fine_per_cell=fine_per_cell)]
         if not fine:
             edges = self.first_edge + dy / PARTS_Y * np.arange(PARTS_Y * self.count + 1.0)
             return [
-                Layer.of(aligned, depths, depth_indices, step=dy, edges=edges, fine_per_cell=PARTS_Y)
+                Layer(aligned, depths, depth_indices, step=dy, edges=edges, fine_per_cell=PARTS_Y)
                 for aligned in self.aligned_groups
             ]
         layers = []
         for aligned in self.aligned_groups:
             aligned = AlignedPoints(aligned.offset, aligned.points, PARTS_Y * aligned.cells)
             centred, edges = midpoint_cells(aligned, self.first_edge, span, dy / PARTS_Y)
-            layers.append(Layer.of(centred, depths, depth_indices, step=dy / PARTS_Y, edges=edges, fine_per_cell=1))
+            layers.append(Layer(centred, depths, depth_indices, step=dy / PARTS_Y, edges=edges, fine_per_cell=1))
         return layers
 
 
@@ -262,7 +258,7 @@ def _uniform_jumps(
     column = int(np.clip(np.searchsorted(edges, x, side="right") - 1, 0, edges.size - 2))
     borders = _SplitRange(edges[column : column + 1], column, column).borders(edges, x, rings)
     low, high = borders[0]
-    near_jumps = [Jumps.of(edges[low : high + 1], loads[low:high], layer) for layer in layers]
+    near_jumps = [Jumps(edges[low : high + 1], loads[low:high], layer) for layer in layers]
     return near_jumps, _ring_jumps(edges, [[loads] * len(ring.layers) for ring in rings], rings, x, borders)
 
 
@@ -276,7 +272,7 @@ def _ring_jumps(
         jumps.append(
             [
                 [
-                    Jumps.of(*merge_columns(edges[start : end + 1], load[start:end], x), layer)
+                    Jumps(*merge_columns(edges[start : end + 1], load[start:end], x), layer)
                     for load, layer in zip(ring_loads, ring.layers, strict=True)
                 ]
                 for start, end in sections
@@ -346,7 +342,7 @@ class _SplitRange(NamedTuple):
     ) -> Jumps:
         """Jumps of columns from the `first` on, with the `inserted_loads` loads instead of the replaced ones."""
         start, stop = self.start - first, self.stop - first
-        return Jumps.of(
+        return Jumps(
             np.concatenate([edges[:start], self.inserted, edges[stop + 1 :]]),
             np.concatenate([loads[:start], inserted_loads, loads[stop:]]),
             layer,

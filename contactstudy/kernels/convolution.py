@@ -8,7 +8,6 @@ load extended evenly about its ends is diagonal in the cosine transform, extende
 from __future__ import annotations
 
 import threading
-from dataclasses import dataclass
 
 import numpy as np
 from scipy import fft
@@ -77,10 +76,9 @@ class GridTransform:
     @property
     def _buffers(self) -> _Buffers:
         """Buffers of this thread: all threads share the operators."""
-        buffers: _Buffers | None = getattr(self._thread, "buffers", None)
-        if buffers is None:
-            buffers = _Buffers(self.cells_x, self.cells_y, self.padded_x, self.mirror)
-            self._thread.buffers = buffers
+        if not hasattr(self._thread, "buffers"):
+            self._thread.buffers = _Buffers(self.cells_x, self.cells_y, self.padded_x, self.mirror)
+        buffers: _Buffers = self._thread.buffers
         return buffers
 
     def transform_y(self, cell_loads: FloatArray) -> ComplexArray:
@@ -118,88 +116,38 @@ class GridTransform:
         return np.asarray(buffers.real[: self.cells_x, : self.cells_y] * self._scale)
 
 
-NEGLIGIBLE_AMPLITUDE = (
-    1e-13  # odd wavenumbers of a load that is symmetric about mid-length, over the largest amplitude. Speed.
-)
-
-
-@dataclass(frozen=True, kw_only=True)
-class CentredConvolution:
-    """Convolution of a load with the kernels of an influence at one depth."""
-
-    influence: Influence  # influence of a unit load
-    dx: float  # cell size
-    dy: float
-    length: float  # distance between the ends that mirror the load; infinite with fewer than two ends
-    mirrored: bool  # whether the load is mirrored in end I
-    shape: tuple[int, int]  # largest offsets of the kernel, in cells: half the periods of the transforms
-    depth: float  # depth of the points
-
-    def fill_layer(self, layer: FloatArray, load_transform: ComplexArray, rows: IntArray, columns: IntArray) -> None:
-        """Fill a `layer` (component, row, column) from the load's transform, without odd wavenumbers if symmetric."""
-        spectrum = _kernel_spectrum(self)
-        is_odd_x = np.array(self.influence.sign_along_x) < 0
-        is_mirrored, source_rows = np.zeros(rows.size, bool), rows
-        if self.is_symmetric(load_transform):
-            is_mirrored, source_rows = rows >= load_transform.shape[0], np.minimum(rows, self.shape[0] - 1 - rows)
-        distinct_rows, row_indices = np.unique(source_rows, return_inverse=True)
-        for is_odd, components in ((False, np.flatnonzero(~is_odd_x)), (True, np.flatnonzero(is_odd_x))):
-            if components.size:
-                along_y = self._invert_along_x(spectrum[components], load_transform, distinct_rows, odd=is_odd)
-                along_y[np.array(self.influence.sign_along_y)[components] < 0] *= 1j
-                row_fields = fft.irfft(along_y, 2 * self.shape[1], axis=2)[..., _as_slice(columns)]
-                layer[components] = row_fields[:, _as_slice(row_indices)]
-                if is_odd and is_mirrored.any():
-                    layer[np.ix_(components, is_mirrored)] *= -1
-
-    def is_symmetric(self, load_transform: ComplexArray) -> bool:
-        """Whether a transform belongs to a load that is symmetric about mid-length."""
-        return self.mirrored and load_transform.shape[0] < self.shape[0]
-
-    def _invert_along_x(
-        self, spectrum: FloatArray, load_transform: ComplexArray, rows: IntArray, *, odd: bool
-    ) -> ComplexArray:
-        """Transform along y (component, row, wavenumber) of components even or odd along x."""
-        half = self.shape[0]
-        if not self.mirrored:
-            product = np.empty((spectrum.shape[0], *load_transform.shape), np.complex128)
-            np.multiply(spectrum, load_transform[: half + 1], out=product[:, : half + 1])
-            np.multiply(spectrum[:, half - 1 : 0 : -1], load_transform[half + 1 :], out=product[:, half + 1 :])
-            if odd:
-                product[:, : half + 1] *= 1j
-                product[:, half + 1 :] *= -1j
-            return np.asarray(fft.ifft(product, axis=1, overwrite_x=True)[:, rows])
-        step = 2 if self.is_symmetric(load_transform) else 1
-        if odd:
-            product = np.zeros((spectrum.shape[0], *load_transform.shape), np.complex128)
-            np.multiply(-spectrum[:, step:half:step], load_transform[1:], out=product[:, :-1])
-            return np.asarray(fft.idst(product, type=2, axis=1, overwrite_x=True)[:, rows])
-        return np.asarray(fft.idct(spectrum[:, :half:step] * load_transform, type=2, axis=1, overwrite_x=True)[:, rows])
-
-
-def _as_slice(indices: IntArray) -> slice | IntArray:
-    """Index of ascending numbers, as a slice if they are consecutive."""
-    is_consecutive = bool((np.diff(indices) == 1).all())
-    return slice(indices[0], indices[-1] + 1) if is_consecutive and indices[0] >= 0 else indices
-
-
 @cached("half-space kernels")
-def _kernel_spectrum(request: CentredConvolution) -> FloatArray:
+def _kernel_spectrum(
+    influence: Influence, cell: tuple[float, float], shape: tuple[int, int], length: float, depth: float
+) -> FloatArray:
     """Spectrum of the kernels, without a factor i per odd direction: (component, x, y)."""
-    x: FloatArray = request.dx * np.arange(request.shape[0] + 1.0)
-    y: FloatArray = request.dy * np.arange(request.shape[1] + 1.0)
-    influence = request.influence
-    spectrum = influence.kernel(x, y, request.dx, request.dy, length=request.length, depth=request.depth)
+    x, y = (size * np.arange(count + 1.0) for size, count in zip(cell, shape, strict=True))
+    spectrum = influence.kernel(x, y, *cell, length=length, depth=depth)
     for axis, signs in ((1, influence.sign_along_x), (2, influence.sign_along_y)):
         axis_last = spectrum.swapaxes(axis, 2)
         is_even = np.array(signs) > 0
         axis_spectrum = np.empty_like(axis_last)
-        axis_spectrum[is_even], axis_spectrum[~is_even] = (
-            even_spectrum(axis_last[is_even]),
-            odd_spectrum(axis_last[~is_even]),
-        )
+        axis_spectrum[is_even] = even_spectrum(axis_last[is_even])
+        axis_spectrum[~is_even] = odd_spectrum(axis_last[~is_even])
         spectrum = axis_spectrum.swapaxes(axis, 2)
     return np.ascontiguousarray(spectrum)
+
+
+def _invert_along_x(spectrum: FloatArray, load_transform: ComplexArray, *, mirrored: bool, odd: bool) -> ComplexArray:
+    """Transform along y (component, row, wavenumber) of components even or odd along x, from kernels and load."""
+    half = spectrum.shape[1] - 1
+    if mirrored and not odd:
+        return np.asarray(fft.idct(spectrum[:, :half] * load_transform, type=2, axis=1, overwrite_x=True))
+    product = np.zeros((spectrum.shape[0], *load_transform.shape), np.complex128)
+    if mirrored:
+        np.multiply(-spectrum[:, 1:half], load_transform[1:], out=product[:, :-1])
+        return np.asarray(fft.idst(product, type=2, axis=1, overwrite_x=True))
+    np.multiply(spectrum, load_transform[: half + 1], out=product[:, : half + 1])
+    np.multiply(spectrum[:, half - 1 : 0 : -1], load_transform[half + 1 :], out=product[:, half + 1 :])
+    if odd:
+        product[:, : half + 1] *= 1j
+        product[:, half + 1 :] *= -1j
+    return np.asarray(fft.ifft(product, axis=1, overwrite_x=True))
 
 
 def centred_field(
@@ -227,15 +175,13 @@ def centred_field(
     shape = (half, fft.next_fast_len(reach_y + 1, real=True))
     along_y = fft.rfft(load, 2 * shape[1], axis=1)
     load_transform = fft.dct(along_y, type=2, n=half, axis=0) if mirrored else fft.fft(along_y, 2 * half, axis=0)
-    if mirrored and np.isfinite(length) and half % 2 == 0:
-        odd_amplitude, max_amplitude = np.abs(load_transform[1::2]).max(), np.abs(load_transform).max()
-        if odd_amplitude <= NEGLIGIBLE_AMPLITUDE * max_amplitude:
-            # Half of the even wavenumbers equals the transform of the load's first half, mirrored at mid-length.
-            load_transform = 0.5 * load_transform[::2]
+    is_odd_x, is_odd_y = np.array(influence.sign_along_x) < 0, np.array(influence.sign_along_y) < 0
     field = np.empty((influence.components, rows.size, z.size, columns.size))
     for depth_index, depth in enumerate(z.tolist()):
-        convolution = CentredConvolution(
-            influence=influence, dx=cell[0], dy=cell[1], length=length, mirrored=mirrored, shape=shape, depth=depth
-        )
-        convolution.fill_layer(field[:, :, depth_index], load_transform, rows, columns)
+        spectrum = _kernel_spectrum(influence, cell, shape, length, depth=depth)
+        for odd in (False, True):
+            components = np.flatnonzero(is_odd_x == odd)
+            field_along_y = _invert_along_x(spectrum[components], load_transform, mirrored=mirrored, odd=odd)[:, rows]
+            field_along_y[is_odd_y[components]] *= 1j
+            field[components, :, depth_index] = fft.irfft(field_along_y, 2 * shape[1], axis=2)[..., columns]
     return field.swapaxes(2, 3)

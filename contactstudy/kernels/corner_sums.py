@@ -43,20 +43,11 @@ BLOCK_SIZE = 16_384  # corners and depths per evaluation. Speed: the values fit 
 MERGED_WIDTH = 0.04  # width of merged columns over their distance. Accuracy: 1e-5 of the pressure.
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
 class Layer:
-    """Points at some depths with equal offsets from the cells along y, and these cells."""
+    """Points at some depths with equal offsets from the corners of cells of size `step` along y, and these cells."""
 
-    points: IntArray  # indices of the positions along y, and of the offsets between position and first corner
-    offset_indices: IntArray
-    depth_indices: IntArray  # depths
-    corners: EvenOffsets  # offsets and depths of the corner functions
-    edges: FloatArray | None  # edges along y of fine cells; None for the grid's cells
-    fine_per_cell: int  # fine cells per cell of the layer; the cell carries their moments
-
-    @classmethod
-    def of(
-        cls,
+    def __init__(
+        self,
         aligned: AlignedPoints,
         z: FloatArray,
         depth_indices: IntArray,
@@ -64,8 +55,7 @@ class Layer:
         step: float,
         edges: FloatArray | None,
         fine_per_cell: int,
-    ) -> Layer:
-        """Layer of points with equal offsets from the corners of cells of size `step`."""
+    ) -> None:
         # The cells of the points are counted from the first of the `edges`, or of the grid's cells without `edges`.
         count = fine_per_cell if edges is None else (edges.size - 1) // fine_per_cell
         cells = aligned.cells
@@ -75,14 +65,11 @@ class Layer:
             count, cells = count + 2 * NEIGHBOURS, cells + NEIGHBOURS
         lowest = int(cells.min()) - count
         offsets: FloatArray = aligned.offset + step * np.arange(lowest, int(cells.max()) + 1.0)
-        return cls(
-            points=aligned.points,
-            offset_indices=cells - int(cells.min()),
-            depth_indices=depth_indices,
-            corners=EvenOffsets(offsets, z),
-            edges=edges,
-            fine_per_cell=fine_per_cell,
-        )
+        # Indices of the positions along y, of the offsets between position and first corner, and of the depths.
+        self.points, self.offset_indices, self.depth_indices = aligned.points, cells - int(cells.min()), depth_indices
+        self.corners = EvenOffsets(offsets, z)
+        self.edges = edges  # edges along y of fine cells; None for the grid's cells
+        self.fine_per_cell = fine_per_cell  # fine cells per cell of the layer; the cell carries their moments
 
     def loads(self, load: ShapedLoad) -> FloatArray:
         """Return loads of columns (column, y) on the cells of the layer."""
@@ -102,36 +89,21 @@ def midpoint_cells(aligned: AlignedPoints, start: float, span: float, step: floa
     return AlignedPoints(0.5 * step, aligned.points, aligned.cells - cells_before - 1), edges
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
 class Jumps:
-    """Nonzero mixed jumps of a load at the edges along x: array (edge, corner), backwards along y."""
+    """Nonzero mixed jumps of `loads` (column, cell) at the edges along x, for the points of a layer."""
 
-    # For few points along y the jumps are folded onto the distinct distances of the corner functions: array (edge and
-    # distance, point and parity).
-
-    edges: FloatArray
-    values: FloatArray
-    folded_values: FloatArray | None
-    size: int
-    min_width: float
-
-    @classmethod
-    def of(cls, edges: FloatArray, loads: FloatArray, layer: Layer) -> Jumps:
-        """Jumps of `loads` (column, cell) for the points of a layer."""
-        min_width = float(np.diff(edges).min())
+    def __init__(self, edges: FloatArray, loads: FloatArray, layer: Layer) -> None:
+        self.min_width = float(np.diff(edges).min())
         jumps = np.diff(np.diff(np.pad(loads, 1), axis=0), axis=1)
         is_loaded = jumps.any(axis=1)
-        reversed_jumps, corners = jumps[is_loaded, ::-1], layer.corners
-        size = fft.next_fast_len(jumps.shape[1] + int(layer.offset_indices.max()), real=True)
-        folded_jumps = None
-        if layer.offset_indices.size <= MAX_DIRECT_POINTS and corners.index is not None:
-            folded_jumps = np.stack(
-                [corners.fold_jumps(reversed_jumps, start) for start in layer.offset_indices.tolist()], axis=1
-            )
-            folded_jumps = folded_jumps.reshape(-1, 2 * layer.offset_indices.size)
-        return cls(
-            edges=edges[is_loaded], values=reversed_jumps, folded_values=folded_jumps, size=size, min_width=min_width
-        )
+        self.edges, self.values = edges[is_loaded], jumps[is_loaded, ::-1]  # (edge, corner), backwards along y
+        self.size = fft.next_fast_len(jumps.shape[1] + int(layer.offset_indices.max()), real=True)
+        self.folded_values: FloatArray | None = None
+        corners, starts = layer.corners, layer.offset_indices
+        if starts.size <= MAX_DIRECT_POINTS and corners.index is not None:
+            # Folded onto the distinct distances of the corner functions: (edge and distance, point and parity).
+            folded_jumps = [corners.fold_jumps(self.values, start) for start in starts.tolist()]
+            self.folded_values = np.stack(folded_jumps, axis=1).reshape(-1, 2 * starts.size)
 
     def field(self, influence: Influence, corners: EvenOffsets, x: float, starts: IntArray) -> FloatArray:
         """Field (component, depth, point) at `x` of the corners from the offset indices `starts` on."""

@@ -6,14 +6,15 @@ under columns is a sum over the corners of cells. Deep points and far columns ne
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from functools import partial
 
 import numpy as np
 from scipy import fft
 
 from contactstudy.arrays.grid import Grid
 from contactstudy.arrays.points import Points
-from contactstudy.checks import FloatArray, IntArray
+from contactstudy.checks import FloatArray
 from contactstudy.kernels.column_fields import columns_field
 from contactstudy.kernels.convolution import centred_field
 from contactstudy.kernels.corner_sums import OFFSET_TOLERANCE, AlignedPoints, aligned_points
@@ -107,11 +108,12 @@ def _uniform_field(
     elif mirrors_at_second:
         load = np.concatenate([load, image_sign * load[::-1]])
     length = extent[1] if mirrors_at_first and mirrors_at_second else np.inf
-    cells = _LoadedCells(load=load, influence=influence, dx=grid.dx, dy=grid.dy, length=length)
     field = np.empty((influence.components, x.size, z.size, y.size)).swapaxes(2, 3)
     for column in columns:
         for row in aligned_points(x, float(first_centre), grid.dx):
-            field[:, row.points[:, None], column.points] = _aligned_field(cells, row.cells, row.offset, column, z)
+            field[:, row.points[:, None], column.points] = _aligned_field(
+                load, influence, grid, row, column, z=z, length=length
+            )
     return field
 
 
@@ -144,57 +146,52 @@ def half_space_influence(
     return np.stack(layers, axis=-1)
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class _LoadedCells:
-    """A load on uniform cells and its mirror image; the period is twice the length."""
-
-    load: FloatArray
-    influence: Influence
-    dx: float
-    dy: float
-    length: float
-
-
 def _aligned_field(
-    cells: _LoadedCells, rows: IntArray, offset: float, column: AlignedPoints, z: FloatArray
+    load: FloatArray,
+    influence: Influence,
+    grid: Grid,
+    row: AlignedPoints,
+    column: AlignedPoints,
+    *,
+    z: FloatArray,
+    length: float,
 ) -> FloatArray:
-    """Field (component, row, column, z) at one offset along x from the centres of the cells `rows`."""
-    count, cells_y = cells.load.shape
+    """Field (component, row, column, z) of a load and its mirror image; the period is twice the `length`."""
+    count, cells_y = load.shape
     first_y = int(column.cells.min()) - cells_y + 1
-    y = cells.dy * np.arange(first_y, int(column.cells.max()) + 1) + column.offset
-    if np.isfinite(cells.length):
+    y = grid.dy * np.arange(first_y, int(column.cells.max()) + 1) + column.offset
+    if np.isfinite(length):
         # One period holds the load and its mirror image; offsets are wrapped into -length .. length.
         first_x, offset_count = -(count // 2), count
         shape = (offset_count, fft.next_fast_len(y.size, real=True))
     else:
-        first_x = int(rows.min()) - count + 1
-        offset_count = int(rows.max()) - first_x + 1
+        first_x = int(row.cells.min()) - count + 1
+        offset_count = int(row.cells.max()) - first_x + 1
         shape = (fft.next_fast_len(offset_count, real=True), fft.next_fast_len(y.size, real=True))
-    x = cells.dx * np.arange(first_x, first_x + offset_count) + offset
-    spectrum = fft.rfft2(cells.load, shape)
-    row_indices, column_indices = (rows - first_x) % shape[0], column.cells - first_y
+    x = grid.dx * np.arange(first_x, first_x + offset_count) + row.offset
+    spectrum = fft.rfft2(load, shape)
+    row_indices, column_indices = (row.cells - first_x) % shape[0], column.cells - first_y
 
     def evaluate_layer(depth: float) -> FloatArray:
-        kernel = _kernel_by_symmetry(cells, depth, x, y)
+        evaluate = partial(influence.kernel, y=y, dx=grid.dx, dy=grid.dy, length=length, depth=depth)
+        kernel = _kernel_by_symmetry(evaluate, x, grid.dx, influence.sign_along_x)
         layer = fft.irfft2(fft.rfft2(kernel, shape, axes=(1, 2)) * spectrum, shape, axes=(1, 2))
         return np.asarray(layer[:, row_indices[:, None], column_indices[None, :]])
 
     return np.stack([evaluate_layer(depth) for depth in z.tolist()], axis=-1)
 
 
-def _kernel_by_symmetry(cells: _LoadedCells, depth: float, x: FloatArray, y: FloatArray) -> FloatArray:
+def _kernel_by_symmetry(
+    evaluate: Callable[[FloatArray], FloatArray], x: FloatArray, dx: float, signs: Sequence[int]
+) -> FloatArray:
     """Kernel at uniform offsets `x`; offsets that include 0 are evaluated on one side and reflected."""
-
-    def evaluate(offsets: FloatArray) -> FloatArray:
-        return cells.influence.kernel(offsets, y, cells.dx, cells.dy, length=cells.length, depth=depth)
-
-    step_numbers = x / cells.dx
+    step_numbers = x / dx
     count_before = round(-float(step_numbers[0]))
     count_after = x.size - 1 - count_before
     if abs(step_numbers[0] + count_before) > OFFSET_TOLERANCE or min(count_before, count_after) < 1:
         return evaluate(x)
-    kernel_ahead = evaluate(cells.dx * np.arange(max(count_before, count_after) + 1.0))
-    kernel_behind = kernel_ahead[:, count_before:0:-1] * np.array(cells.influence.sign_along_x)[:, None, None]
+    kernel_ahead = evaluate(dx * np.arange(max(count_before, count_after) + 1.0))
+    kernel_behind = kernel_ahead[:, count_before:0:-1] * np.array(signs)[:, None, None]
     return np.concatenate([kernel_behind, kernel_ahead[:, : count_after + 1]], axis=1)
 
 

@@ -8,13 +8,13 @@ not depend on the load, and the field is linear in the load.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
 from contactstudy.arrays.grid import Grid
-from contactstudy.checks import Array, BoolArray, FloatArray
+from contactstudy.checks import Array, BoolArray, FloatArray, store
 from contactstudy.kernels.smooth_load import MomentLoads, ShapedLoad, SmoothLoad, moment_loads
 
 MAX_REFINED_DEPTH = 5.0
@@ -38,14 +38,16 @@ class FineCells:
     grid: Grid
     extent: tuple[float, float] = (-np.inf, np.inf)  # positions of the mirrors; infinite for none
     image_sign: int = 1  # sign of the load's mirror image
-    first: int = field(init=False)
-    """First cell along y in the grid, and number of cells: the cells of load and shape, and `SPARE_CELLS` beyond."""
-    count: int = field(init=False)
+    first: int = 0
+    """First cell along y in the grid, and number of cells: by default the cells of load and shape, and `SPARE_CELLS`
+    beyond."""
+    count: int = 0
 
     def __post_init__(self) -> None:
-        loaded_rows = np.flatnonzero((self.load != 0).any(axis=0) | (self.shape != 0).any(axis=0))
-        object.__setattr__(self, "first", int(loaded_rows[0]) - SPARE_CELLS)
-        object.__setattr__(self, "count", int(loaded_rows[-1]) + 1 + SPARE_CELLS - self.first)
+        if not self.count:
+            loaded_rows = np.flatnonzero((self.load != 0).any(axis=0) | (self.shape != 0).any(axis=0))
+            first = int(loaded_rows[0]) - SPARE_CELLS
+            store(self, first=first, count=int(loaded_rows[-1]) + 1 + SPARE_CELLS - first)
 
     @cached_property
     def y_edges(self) -> FloatArray:
@@ -66,14 +68,7 @@ class FineCells:
     @cached_property
     def shape_cells(self) -> FineCells:
         """The shape as a load."""
-        if np.array_equal(self.load, self.shape):
-            return self
-        cells = FineCells(
-            load=self.shape, shape=self.shape, grid=self.grid, extent=self.extent, image_sign=self.image_sign
-        )
-        for name in ("first", "count"):
-            object.__setattr__(cells, name, getattr(self, name))
-        return cells
+        return self if np.array_equal(self.load, self.shape) else replace(self, load=self.shape)
 
     @cached_property
     def _smooth(self) -> SmoothLoad:

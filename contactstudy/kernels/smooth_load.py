@@ -79,13 +79,6 @@ class SmoothLoad:
             edges=edges, sign=sign, first=first, middle=middle, last=last, knot=knot, coupled_to_next=coupled_to_next
         )
 
-    @property
-    def cell_means(self) -> FloatArray:
-        """Mean in each cell: array (row, cell)."""
-        return self.sign * (
-            self.knot * _mean_of_root(self.first, self.middle) + (1 - self.knot) * _mean_of_root(self.middle, self.last)
-        )
-
     def shape_loads(self, cell_loads: FloatArray) -> ShapedLoad:
         """Return `cell_loads` (row, cell) of this shape: the shape times a ratio that is linear in each cell."""
         # Where the shape is 0, the load equals the ratio. Each cell keeps its force; coupled cells keep their sum.
@@ -310,12 +303,8 @@ class _DirectedRows:
         length_ratio = 1.5 * end_load / face  # eq. (32b)
         is_inside = length_ratio <= 1
         index = row[is_inside], cell[is_inside]
-        self.knot[index], self.middle[index], self.last[index], self.fixed[index] = (
-            length_ratio[is_inside],
-            0.0,
-            0.0,
-            True,
-        )
+        self.knot[index], self.fixed[index] = length_ratio[is_inside], True
+        self.middle[index] = self.last[index] = 0.0
         # The load extends neither into the last cell of the row nor to a neighbour of another contact.
         last_cell = self.widths.size - 1
         is_beyond = extends_beyond & (length_ratio > 1) & (length_ratio < 1.5) & (cell < last_cell)
@@ -378,11 +367,9 @@ def _moments_of_root(
     value_sum = np.where(a + b > 0, a + b, 1.0)
     cubes = ((3 * b + 6 * a) * b + 4 * a * a) * b + 2 * a * a * a
     powers = (((15 * b + 45 * a) * b + 48 * a * a) * b + 24 * a * a * a) * b + 8 * a * a * a * a
-    first_moment, second_moment = (
-        2 / 15 * cubes / (value_sum * value_sum),
-        2 / 105 * powers / (value_sum * value_sum * value_sum),
-    )
-    return length * _mean_of_root(a, b), length**2 * np.asarray(first_moment), length**3 * np.asarray(second_moment)
+    first_moment = 2 / 15 * cubes / (value_sum * value_sum)
+    second_moment = 2 / 105 * powers / (value_sum * value_sum * value_sum)
+    return length * _mean_of_root(a, b), length**2 * first_moment, length**3 * second_moment
 
 
 def _solve_knot_value(mean: FloatArray, first: FloatArray, last: FloatArray) -> FloatArray:

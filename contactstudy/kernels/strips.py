@@ -1,16 +1,8 @@
 """Displacements of the top under loads on cells: the kernels of strips of load along y, and their integrals.
 
 ``k(X, Y)`` is the displacement at a distance X from a strip, differenced over a cell along y, ``P' = k`` the corner
-function of a loaded rectangle, and ``F'' = k`` the double primitive in X. With ``R**2 = X**2 + Y**2``:
-
-    of 1 / R:        k = asinh(Y / |X|),  F = X**2 / 2 asinh(Y / |X|) + X Y asinh(X / |Y|) - Y X**2 / (2 R + 2 |Y|)
-    of X**2 / R**3:  k = Y / R,           F = X Y asinh(X / |Y|) - Y R
-    of Y / R**2:     k = ln R,            F = X**2 / 2 ln R + X Y atan(X / Y) - Y**2 / 4 ln(1 + X**2 / Y**2)
-    of X / R**2:     k = atan(Y / X),     F = X**2 / 2 atan(Y / X) + X Y ln R + Y**2 / 2 atan(X / Y)
-    of X Y / R**3:   k = -X / R,          F = -X R / 2 - Y**2 / 2 asinh(X / |Y|)
-
-(Love's rectangle integrated once more; terms that cancel in the differences are left out). Distances and their sign
-determine the kernels.
+function of a loaded rectangle, and ``F'' = k`` the double primitive in X (Love's rectangle integrated once more); terms
+that cancel in the differences are left out. Distances and their sign determine the kernels.
 
 There are two observers: the centre of a uniform cell (eq. (39a)), and the mean over the width of a column, eq. (35) of
 docs/explanation/columns.md, symmetric to the last bit for the normal displacement under a pressure; its integrals are
@@ -192,29 +184,6 @@ IMAGE_POINTS = 16  # Chebyshev points along x of the interpolated far images, fo
 BLOCK_SIZE = 16_384  # distances along x and y per evaluation. Speed: the values fit into the processor's cache.
 
 
-@dataclass(frozen=True)
-class LateralCells:
-    """Cells along y, with the matrix from values at their edges to the transform on twice as many cells."""
-
-    dy: float  # cell size along y, metres
-    cell_count: int
-    even: bool  # whether the kernel is even in y; the transform of an odd kernel lacks its factor i
-
-    @property
-    def edges(self) -> FloatArray:
-        """Offsets half a cell beyond 0, 1, 2, ... cells, metres."""
-        return np.asarray((np.arange(self.cell_count + 1) + 0.5) * self.dy)
-
-    @property
-    def matrix(self) -> FloatArray:
-        """Matrix (edge, wavenumber) that takes the difference over each cell and its transform."""
-        difference = np.eye(self.cell_count + 1) - np.eye(self.cell_count + 1, k=-1)
-        # Where the kernel is even, F is odd in Y: the difference over the first cell is twice its value.
-        difference[0, 0] = 2.0 if self.even else 0.0
-        even_matrix, odd_matrix = spectrum_matrices(self.cell_count)
-        return np.asarray(difference.T @ (even_matrix if self.even else odd_matrix))
-
-
 @dataclass(frozen=True, kw_only=True)
 class ColumnsRequest:
     """Edges, cells and mirrors of columns."""
@@ -232,11 +201,11 @@ class ColumnsRequest:
 
     def influence(self, strips: Strips, image_sign: int) -> FloatArray:
         """Influence of strips with factors, and of their images of sign `image_sign`: (wavenumber, cell, cell)."""
-        edges, (first_mirror, last_mirror) = self.edges, self.extent
-        lateral = LateralCells(self.dy, self.cells_y, strips[0][1].sign_y > 0)
+        edges, (first_mirror, last_mirror), even = self.edges, self.extent, strips[0][1].sign_y > 0
+        y = self.dy * (np.arange(self.cells_y + 1.0) + 0.5)
         # After a split the influences between the other columns are reused, equal to the last bit.
-        key = (strips, image_sign, lateral, self.extent)
-        pair_sums = _PairSums.of(edges, lateral, recall("column pairs", key))
+        key = (strips, image_sign, self.dy, self.cells_y, self.extent)
+        pair_sums = _PairSums.of(edges, y, recall("column pairs", key))
         for factor, strip in strips:
             pair_sums.add_strip(factor, strip, np.subtract.outer(edges, edges))
             if np.isfinite(first_mirror):
@@ -247,13 +216,13 @@ class ColumnsRequest:
                 mirror_distances = np.add.outer(last_mirror - edges, last_mirror - edges)
                 pair_sums.add_strip(image_sign * strip.sign_x * factor, strip, mirror_distances, is_image=True)
         retain("column pairs", key, pair_sums, replace=True)
-        kernel = pair_sums.transform()
+        kernel = pair_sums.transform(even=even)
         if np.isfinite(first_mirror) and np.isfinite(last_mirror):
             images = FarImages(last_mirror - first_mirror, image_sign, IMAGE_POINTS)
             reference_level = row_level(strips, image_sign, last_mirror - first_mirror, self.reference)
             offsets = self.dy * np.arange(self.cells_y + 1.0)
             far_kernel = images.influence(corner_function(strips), offsets, self.dy, np.array(reference_level))
-            spectrum = even_spectrum(far_kernel) if lateral.even else odd_spectrum(far_kernel)
+            spectrum = even_spectrum(far_kernel) if even else odd_spectrum(far_kernel)
             means = images.means(edges - first_mirror)
             kernel += means.T @ np.ascontiguousarray(spectrum.transpose(2, 0, 1)) @ means
         return kernel
@@ -264,15 +233,15 @@ class _PairSums:
     """Sum of influences between columns, before the transform along y."""
 
     edges: FloatArray  # edges of the columns, metres
-    lateral: LateralCells  # cells along y
+    y: FloatArray  # offsets half a cell beyond 0, 1, 2, ... cells along y, metres
     total: FloatArray  # (cell, cell, offset): the sum, contiguous along y
     is_missing: BoolArray  # (cell, cell): pairs below the diagonal and on it that are to be added
 
     @classmethod
-    def of(cls, edges: FloatArray, lateral: LateralCells, stored: _PairSums | None) -> _PairSums:
+    def of(cls, edges: FloatArray, y: FloatArray, stored: _PairSums | None) -> _PairSums:
         """Zero influence between columns with these edges, except the stored influence between columns of `stored`."""
         count = edges.size - 1
-        total = np.zeros((count, count, lateral.edges.size))
+        total = np.zeros((count, count, y.size))
         is_missing = np.ones((count, count), bool)
         if stored is not None:
             index = np.minimum(np.searchsorted(stored.edges[:-1], edges[:-1]), stored.edges.size - 2)
@@ -283,11 +252,11 @@ class _PairSums:
                 np.ix_(index[common_columns], index[common_columns])
             ]
             is_missing[np.ix_(common_columns, common_columns)] = False
-        return cls(edges, lateral, total, np.tril(is_missing))
+        return cls(edges, y, total, np.tril(is_missing))
 
     def add_strip(self, factor: float, strip: Strip, distances: FloatArray, *, is_image: bool = False) -> None:
         """Add `factor` times the influence of columns with edges at signed `distances`; an image lies at their sums."""
-        widths, total, y = np.diff(self.edges), self.total, self.lateral.edges
+        widths, total, y = np.diff(self.edges), self.total, self.y
         separation = 0.25 * (distances[1:, 1:] + distances[1:, :-1] + distances[:-1, 1:] + distances[:-1, :-1])
         is_far = separation > FAR_COLUMNS * np.maximum.outer(widths, widths)
         # Marks edges of columns near each other.
@@ -313,11 +282,16 @@ class _PairSums:
             influences = factor * (strip.kernel(x, y) + width_squares / 24 * strip.curvature(x, y))
             _add_to_pairs(total, rows, columns, influences, exchange_sign)
 
-    def transform(self) -> FloatArray:
-        """Return the sum over the wavenumber along y: array (wavenumber, cell, cell)."""
+    def transform(self, *, even: bool) -> FloatArray:
+        """Differences over the cells along y, transformed on twice as many cells: array (wavenumber, cell, cell)."""
+        difference = np.eye(self.y.size) - np.eye(self.y.size, k=-1)
+        # Where the kernel is even, F is odd in Y: the difference over the first cell is twice its value.
+        difference[0, 0] = 2.0 if even else 0.0
+        even_matrix, odd_matrix = spectrum_matrices(self.y.size - 1)
+        matrix = difference.T @ (even_matrix if even else odd_matrix)
         cell_count = self.edges.size - 1
         pair_rows = self.total.reshape(cell_count**2, -1)
-        return np.asarray((self.lateral.matrix.T @ pair_rows.T).reshape(-1, cell_count, cell_count))
+        return np.asarray((matrix.T @ pair_rows.T).reshape(-1, cell_count, cell_count))
 
 
 def _add_to_pairs(

@@ -118,14 +118,23 @@ DECAY_LENGTHS = 14.0
 SEPARATE_ENDS = 20.0  # decay lengths beyond which the two ends do not affect each other: exp(-20) = 2e-9. Accuracy.
 
 
-def axial_modes(length: float, lateral: float, shortest: float, resolution: Resolution) -> list[AxialModes]:
+def axial_modes(
+    length: float, lateral: float, shortest: float, resolution: Resolution, *, mirrored_once: bool = False
+) -> list[AxialModes]:
     """Even and odd axial modes for wavenumbers along y from `lateral` on; modes of parity 0 for a single or far end."""
-    # `shortest` is the least distance that matters, and bounds the ray.
+    # `shortest` is the least distance that matters, and bounds the ray. Loads have all images or are mirrored once;
+    # ends far apart are quarter spaces in both schemes.
     last_wavenumber = max(resolution.reach / shortest, 4 * lateral)
     if lateral * length > SEPARATE_ENDS:
         reach = DECAY_LENGTHS / lateral
         ray, weights = ray_nodes(0.5 / reach, last_wavenumber, resolution)
         return [AxialModes(length=np.inf, parity=0, discrete=np.zeros(0), ray=ray, weights=weights, reach=reach)]
+    if mirrored_once:
+        ray, weights = ray_nodes(lateral / 36, last_wavenumber, resolution)
+        return [
+            SingleMirrorModes(length=length, parity=parity, discrete=np.zeros(0), ray=ray, weights=weights)
+            for parity in (1, -1)
+        ]
     spacing = np.pi / length
     # The ray starts half a spacing from the nearest mode of either parity: the modes are poles of the integrand.
     ray_start = (resolution.modes - 0.5) * spacing  # eq. (32)
@@ -209,17 +218,3 @@ class SingleMirrorModes(AxialModes):
     def face_amplitude(self, kappa: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
         """Amplitude of either half-space's harmonic per normal stress removed, and ``tau = 0``."""
         return self.face_factor(kappa), np.zeros_like(kappa)
-
-
-def modes_between_ends(
-    length: float, lateral: float, shortest: float, resolution: Resolution, *, mirrored_once: bool
-) -> list[AxialModes]:
-    """Axial modes of loads with all images or mirrored once; ends far apart are quarter spaces in both schemes."""
-    if not mirrored_once or lateral * length > SEPARATE_ENDS:
-        return axial_modes(length, lateral, shortest, resolution)
-    last_wavenumber = max(resolution.reach / shortest, 4 * lateral)
-    ray, weights = ray_nodes(lateral / 36, last_wavenumber, resolution)
-    return [
-        SingleMirrorModes(length=length, parity=parity, discrete=np.zeros(0), ray=ray, weights=weights)
-        for parity in (1, -1)
-    ]

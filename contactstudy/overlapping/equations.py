@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -65,29 +66,6 @@ def real_product(left_factor: ComplexArray, right_factor: ComplexArray) -> Float
     return np.asarray((flat_left @ flat_right.T).reshape(*left_factor.shape[:-1], *right_factor.shape[1:]))
 
 
-class Factorisation:
-    """LU factors of a matrix, read-only: ``scipy.linalg.lu_solve`` changes its pivots during the call (SciPy 1.17)."""
-
-    def __init__(self, matrix: FloatArray) -> None:
-        self._factors, pivots = linalg.lu_factor(matrix)
-        rows = list(range(len(pivots)))
-        for row, pivot in enumerate(pivots.tolist()):
-            rows[row], rows[pivot] = rows[pivot], rows[row]
-        self._rows: IntArray = np.array(rows)
-
-    def solve(self, right_hand_sides: FloatArray) -> FloatArray:
-        """Solution (row, column) of the equations with right sides (row, column)."""
-        forward_solution = linalg.blas.dtrsm(1.0, self._factors, right_hand_sides[self._rows], lower=1, diag=1)
-        return np.asarray(linalg.blas.dtrsm(1.0, self._factors, forward_solution))
-
-    def solve_transposed(self, right_hand_sides: FloatArray) -> FloatArray:
-        """Solution (row, column) of the equations of the transposed matrix."""
-        forward_solution = linalg.blas.dtrsm(1.0, self._factors, right_hand_sides, trans_a=1)
-        solution = np.empty(right_hand_sides.shape)
-        solution[self._rows] = linalg.blas.dtrsm(1.0, self._factors, forward_solution, lower=1, diag=1, trans_a=1)
-        return solution
-
-
 class AuxiliaryLoads(NamedTuple):
     """Loads on the auxiliary bodies, for one wavenumber along y."""
 
@@ -107,7 +85,8 @@ class EquationSet:
     scale: FloatArray  # ``T dk_z / kappa`` at the depth nodes
     core: ComplexArray  # (depth, wavenumber): coupling core ``M`` between depth nodes and axial wavenumbers
     top: ComplexArray  # (wavenumber, depth): weighted spectrum of the top load, before `cosine`, per scaled face load
-    factorisation: Factorisation  # LU factors of the set's matrix ``1 / scale - N``
+    rows: IntArray  # rows of the set's matrix ``1 / scale - N`` in the order of its LU factors
+    factors: FloatArray
 
     @classmethod
     def build(
@@ -123,7 +102,10 @@ class EquationSet:
         k = np.sqrt(axial**2 + lateral**2)
         top = modes.load_on_top(core, depth, lateral, poisson)
         end_load = core * (4 / np.pi / k * modes.on_end)
-        matrix = np.diag(1 / scale) - real_product(end_load, top)  # eq. (27)
+        factors, pivots = linalg.lu_factor(np.diag(1 / scale) - real_product(end_load, top))  # eq. (27)
+        rows = list(range(pivots.size))
+        for row, pivot in enumerate(pivots.tolist()):
+            rows[row], rows[pivot] = rows[pivot], rows[row]
         return cls(
             modes=modes,
             lateral=lateral,
@@ -132,12 +114,19 @@ class EquationSet:
             scale=scale,
             core=core,
             top=top,
-            factorisation=Factorisation(matrix),
+            rows=np.array(rows),
+            factors=factors,
         )
 
-    def solve(self, source: FloatArray) -> FloatArray:
-        """Scaled face loads ``scale * S`` from the source of a top load at the depth nodes."""
-        return self.factorisation.solve(source)
+    def solve(self, source: FloatArray, *, transposed: bool = False) -> FloatArray:
+        """Scaled face loads ``scale * S`` from the source of a top load at the depth nodes, or the transposed map."""
+        # `scipy.linalg.lu_solve` changes its pivots during the call (SciPy 1.17), and threads share the factors.
+        solve = partial(linalg.blas.dtrsm, 1.0, self.factors, trans_a=int(transposed))
+        if not transposed:
+            return np.asarray(solve(solve(source[self.rows], lower=1, diag=1)))
+        solution = np.empty(source.shape)
+        solution[self.rows] = solve(solve(source), lower=1, diag=1)
+        return solution
 
     def load_to_faces(self, load: Load) -> ComplexArray:
         """Face loads that free the ends from unit modes of a top load in H: array (depth, wavenumber)."""

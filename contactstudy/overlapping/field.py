@@ -15,13 +15,13 @@ from typing import NamedTuple
 import numpy as np
 
 from contactstudy.arrays.points import Points
-from contactstudy.checks import BoolArray, ComplexArray, FloatArray, IntArray
+from contactstudy.checks import ComplexArray, FloatArray, IntArray
 from contactstudy.kernels.load import Load
 from contactstudy.overlapping.axial_modes import DECAY_LENGTHS
-from contactstudy.overlapping.equations import AuxiliaryLoads, EquationSet
+from contactstudy.overlapping.equations import EquationSet
 from contactstudy.overlapping.lateral_modes import LateralColumns, LateralPanel, lateral_columns
-from contactstudy.overlapping.problem import EndProblem, View, make_views, split_by_parity
-from contactstudy.overlapping.quadrature import POSITIONS_PER_PANEL, graded_interpolation
+from contactstudy.overlapping.problem import EndProblem, make_views, split_by_parity
+from contactstudy.overlapping.quadrature import graded_interpolation
 from contactstudy.threads import one_blas_thread
 
 POSITION_DIGITS = 12  # digits to which positions over the length are compared for symmetry. Accuracy.
@@ -43,61 +43,39 @@ class Harmonics:
     growing_signs: tuple[int, ...]  # signs of mirror images with which the field between two ends grows far along y
 
 
-JOINT_POINTS = 2000  # largest number of positions times depths for a joint evaluation of all tensor products. Speed.
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
 class _FoldedPositions:
     """Positions at which waves are summed: few distances from the nearest end, none on the loaded corner."""
 
-    x: FloatArray  # positions of the sum; the last depth is a little below the corner if the corner is a position
-    y: FloatArray
-    z: FloatArray
-    distance_indices: IntArray  # index of each position in `x`, and whether the far end is nearer
-    in_far_half: BoolArray
-    interpolation: FloatArray | None  # from the positions of the sum to all positions; None where they are equal
-    corner: tuple[IntArray, IntArray] | None  # indices of `x` and of the depths on the corner, if it is a position
-
-    @classmethod
-    def of(cls, problem: EndProblem, points: Points) -> _FoldedPositions:
-        """Fold positions: many positions along x are interpolated from fewer, graded towards the ends."""
+    def __init__(self, problem: EndProblem, points: Points) -> None:
+        # Many positions along x are interpolated from fewer, graded towards the ends.
         length, offset = problem.length, problem.corner_offset
-        grading = graded_interpolation(points.x, length, POSITIONS_PER_PANEL)
-        positions, interpolation = (points.x, None) if grading is None else grading
-        if np.isinf(length):
-            x, distance_indices = positions, np.arange(positions.size)
-        else:
-            distances, distance_indices = np.unique(
+        grading = graded_interpolation(points.x, length)
+        positions = points.x if grading is None else grading[0]
+        self._interpolation = None if grading is None else grading[1]
+        self.x, self._distance_indices = positions, np.arange(positions.size)
+        if np.isfinite(length):
+            distances, self._distance_indices = np.unique(
                 np.round(problem.from_end(positions) / length, POSITION_DIGITS), return_inverse=True
             )
-            x = length * distances
-        corner_indices = np.flatnonzero(x < offset), np.flatnonzero(points.z < offset)
-        has_corner = bool(corner_indices[0].size and corner_indices[1].size)
-        z = np.append(points.z, offset) if has_corner else points.z
-        corner = corner_indices if has_corner else None
-        in_far_half = positions > 0.5 * length
-        return cls(
-            x=x,
-            y=points.y,
-            z=z,
-            distance_indices=distance_indices,
-            in_far_half=in_far_half,
-            interpolation=interpolation,
-            corner=corner,
-        )
+            self.x = length * distances
+        self._in_far_half = positions > 0.5 * length
+        # The last depth is a little below the corner if the corner is a position.
+        self._corner = np.flatnonzero(self.x < offset), np.flatnonzero(points.z < offset)
+        self._has_corner = bool(self._corner[0].size and self._corner[1].size)
+        self.y, self.z = points.y, np.append(points.z, offset) if self._has_corner else points.z
 
     @property
     def distance(self) -> FloatArray:
         """Distance of the points from the loaded corner: array (x, z)."""
         distance = np.hypot(self.x[:, None], self.z[None, :])
-        if self.corner is not None:
-            distance[self.corner[0][:, None], self.corner[1]] = np.inf
+        if self._has_corner:
+            distance[np.ix_(*self._corner)] = np.inf
         return distance
 
     def unfold(self, fields: Mapping[int, FloatArray], odd_along_x: list[int]) -> FloatArray:
         """Field (load, component, x, y, z) at all positions from the sums by parity (load, component, x, z, y)."""
-        if self.corner is not None:
-            rows, columns = self.corner
+        if self._has_corner:
+            rows, columns = self._corner
             for field in fields.values():
                 field[:, :, rows[:, None], columns] = field[:, :, rows, -1:]
             fields = {parity: field[:, :, :, :-1] for parity, field in fields.items()}
@@ -107,12 +85,12 @@ class _FoldedPositions:
                 [-parity if component in odd_along_x else parity for component in range(field.shape[1])]
             )
             # With one end no position lies beyond mid-length.
-            position_field = field[:, :, self.distance_indices]
-            position_field *= np.where(self.in_far_half & (parity != 0), far_signs[:, None], 1)[..., None, None]
+            position_field = field[:, :, self._distance_indices]
+            position_field *= np.where(self._in_far_half & (parity != 0), far_signs[:, None], 1)[..., None, None]
             total = position_field if total is None else np.add(total, position_field, out=total)
         assert total is not None
-        if self.interpolation is not None:
-            interpolated_field = self.interpolation @ total.reshape(*total.shape[:3], -1)
+        if self._interpolation is not None:
+            interpolated_field = self._interpolation @ total.reshape(*total.shape[:3], -1)
             total = interpolated_field.reshape(*interpolated_field.shape[:3], *total.shape[3:])
         return np.asarray(total.swapaxes(3, 4))
 
@@ -125,7 +103,7 @@ def end_fields(
     fields: list[dict[Load, FloatArray]] = [{} for _ in point_sets]
     with one_blas_thread():
         for subproblem in problem.split_by_mirror_sign():
-            folded_sets = [_FoldedPositions.of(subproblem, points) for points in point_sets]
+            folded_sets = [_FoldedPositions(subproblem, points) for points in point_sets]
             cell_loads = subproblem.cell_loads[subproblem.cell_of_column]
             parity_loads = (
                 {0: cell_loads} if np.isinf(subproblem.length) else split_by_parity(cell_loads, subproblem.sign_x)
@@ -164,7 +142,7 @@ def _sum_over_wavenumbers(
                         continue
                     columns_of_parity = set_amplitudes[i][..., columns.parities == parity]
                     section = slice(stop - total[parity].shape[-1], stop)
-                    shape, block = (rows.size, depths.size, -1), _block_index(rows, depths)
+                    shape, block = (rows.size, depths.size, -1), np.ix_(rows, depths)
                     for component in range(harmonics.count):
                         wave = even_waves if component in harmonics.even_in_y else odd_waves
                         amplitude_rows = columns_of_parity[component].reshape(rows.size * depths.size, -1)
@@ -224,21 +202,23 @@ class UnitFields(NamedTuple):
 def unit_fields(problem: EndProblem, harmonics: Harmonics, points: Points, reference: float) -> Iterator[UnitFields]:
     """Yield the field of the free ends under unit loads in the direction of a problem, panel by panel."""
     (load,) = problem.loads
-    folded = _FoldedPositions.of(problem, points)
+    folded = _FoldedPositions(problem, points)
     cells = np.eye(problem.grid.cells_x)[problem.cell_of_column]
     parity_loads = {0: cells} if np.isinf(problem.length) else split_by_parity(cells, problem.sign_x)
-    parities, unit_loads = (
-        np.repeat(list(parity_loads), problem.grid.cells_x),
-        np.concatenate(list(parity_loads.values()), axis=1),
-    )
+    parities = np.repeat(list(parity_loads), problem.grid.cells_x)
+    unit_loads = np.concatenate(list(parity_loads.values()), axis=1)
     for panel, _, ((rows, depths),), (amplitudes,) in _panel_amplitudes(
-        problem, harmonics, [folded], reference, lambda panel: LateralColumns.of_unit_loads(panel, unit_loads, parities)
+        problem,
+        harmonics,
+        [folded],
+        reference,
+        lambda panel: LateralColumns(nodes=panel.nodes, along_x=unit_loads[:, None, :], parities=parities),
     ):
         shape = (1, harmonics.count, folded.x.size, folded.z.size, panel.nodes.size, problem.grid.cells_x)
         fields = {}
         for parity in parity_loads:
             field = np.zeros(shape)
-            field[(slice(None), slice(None), *_block_index(rows, depths))] = amplitudes[..., parities == parity]
+            field[:, :, rows[:, None], depths] = amplitudes[..., parities == parity]
             fields[parity] = field.reshape(*shape[:4], -1)
         field_at_nodes = folded.unfold(fields, harmonics.odd_along_x)[0]
         even_filters, odd_filters = panel.filters(problem.grid, points.y)
@@ -248,13 +228,6 @@ def unit_fields(problem: EndProblem, harmonics: Harmonics, points: Points, refer
         )
         component_count, x_count = harmonics.count, points.x.size
         yield UnitFields(field_at_nodes.reshape(component_count, x_count, panel.nodes.size, -1, points.z.size), filters)
-
-
-def _block_index(rows: IntArray, columns: IntArray) -> tuple[slice | IntArray, slice | IntArray]:
-    """Index of rows and columns in ascending order; complete ranges become slices, which are faster."""
-    if all(indices[-1] - indices[0] + 1 == indices.size for indices in (rows, columns)):
-        return slice(rows[0], rows[-1] + 1), slice(columns[0], columns[-1] + 1)
-    return rows[:, None], columns
 
 
 def _amplitudes(
@@ -271,41 +244,19 @@ def _amplitudes(
         for x, z in points
     ]
     starts = np.cumsum([0, *(x.size for x, _ in points)])
-    stops = np.cumsum([z.size for _, z in points])
-    depths = np.concatenate([z for _, z in points])
     for view in make_views(problem, columns, np.concatenate([x for x, _ in points]), shortest):
         view_rows = [np.flatnonzero((view.rows >= low) & (view.rows < high)) for low, high in pairwise(starts)]
-        is_joint = view.x.size * depths.size <= JOINT_POINTS
         for node, lateral in enumerate(columns.nodes.tolist()):
             system = problem.equation_set(view.modes, lateral, shortest)
             spectrum = view.spectra[:, node if view.spectra.shape[1] > 1 else 0]
             loads = system.auxiliary_loads(spectrum, problem.loads, shortest=shortest, resolution=problem.resolution)
-            fields = _evaluate_fields(harmonics, system, loads, view, slice(None), z=depths) if is_joint else None
-            for amplitude, (_, z), start, stop, view_indices in zip(
-                amplitudes, points, starts, stops, view_rows, strict=False
-            ):
-                if not view_indices.size:
+            for amplitude, (_, z), start, indices in zip(amplitudes, points, starts, view_rows, strict=False):
+                if not indices.size:
                     continue
-                if fields is None:
-                    field = _evaluate_fields(harmonics, system, loads, view, view_indices, z=z)
-                else:
-                    field = fields[:, view_indices, stop - z.size : stop]
-                by_load = field.reshape(*field.shape[:3], load_count, -1)
-                rows, depth_indices = (view.rows[view_indices] - start)[:, None, None], np.arange(z.size)[:, None]
-                for i in range(load_count):
-                    amplitude[i][:, rows, depth_indices, node, view.columns] = by_load[:, :, :, i]
+                cosine, sine = view.cosine[:, indices], view.sine[:, indices]
+                field = harmonics.of_equivalent_load(system, loads.equivalent, cosine, sine, z)
+                field += harmonics.of_face_load(system, loads.depth, loads.face_load, view.x[indices], z)
+                by_load = np.moveaxis(field.reshape(*field.shape[:3], load_count, -1), 3, 0)
+                rows, depths = (view.rows[indices] - start)[:, None, None], np.arange(z.size)[:, None]
+                amplitude[:, :, rows, depths, node, view.columns] = by_load
     return amplitudes
-
-
-def _evaluate_fields(
-    harmonics: Harmonics,
-    system: EquationSet,
-    loads: AuxiliaryLoads,
-    view: View,
-    indices: IntArray | slice,
-    z: FloatArray,
-) -> FloatArray:
-    """Field of both auxiliary bodies at some of a view's positions: array (component, x, z, column)."""
-    field = harmonics.of_equivalent_load(system, loads.equivalent, view.cosine[:, indices], view.sine[:, indices], z)
-    field += harmonics.of_face_load(system, loads.depth, loads.face_load, view.x[indices], z)
-    return field

@@ -10,7 +10,7 @@ the window and the positions: fields of loads add up.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field
 from itertools import pairwise
 
 import numpy as np
@@ -90,18 +90,10 @@ class LateralColumns:
     nodes: FloatArray  # wavenumbers along y, 1/m
     along_x: FloatArray  # (cell, node or 1, column): the functions of x
     parities: IntArray  # (column): 1 or -1 for an even or odd part of the load, 0 for an unsplit load
-    even_filters: FloatArray
+    even_filters: FloatArray = field(default_factory=lambda: np.zeros(0))
     """(node, column, y): from the amplitudes to their sum at positions y, for components even or odd under a load
-    even in y."""
-    odd_filters: FloatArray
-
-    @classmethod
-    def of_unit_loads(cls, panel: LateralPanel, along_x: FloatArray, parities: IntArray) -> LateralColumns:
-        """Columns `along_x` (cell, column) at the nodes of a panel, for operators that filter along y themselves."""
-        empty = np.zeros((panel.nodes.size, parities.size, 0))
-        return cls(
-            nodes=panel.nodes, along_x=along_x[:, None, :], parities=parities, even_filters=empty, odd_filters=empty
-        )
+    even in y; empty for operators that filter along y themselves."""
+    odd_filters: FloatArray = field(default_factory=lambda: np.zeros(0))
 
     def synthesis(self, load: Load, parity: int) -> tuple[FloatArray, FloatArray]:
         """`even_filters` and `odd_filters` of one parity for a load in one direction: arrays (node column, y)."""
@@ -111,26 +103,6 @@ class LateralColumns:
             waves[:, is_parity].reshape(-1, waves.shape[2]) for waves in (self.even_filters, self.odd_filters)
         )
         return (even_filters, odd_filters) if load.sign_y > 0 else (odd_filters, -even_filters)
-
-    def sum_at_positions(self) -> LateralColumns:
-        """Columns whose amplitudes are parts of the sum at one position along y: fewer columns for few positions."""
-        along_nodes, waves = self.along_x.swapaxes(0, 1), np.concatenate([self.even_filters, self.odd_filters], axis=2)
-        along_x, parities, positions = [], [], []
-        for parity in np.unique(self.parities):
-            is_parity = self.parities == parity
-            sums = along_nodes[..., is_parity] @ waves[:, is_parity]
-            is_loaded = sums.any(axis=(0, 1))
-            along_x.append(sums[..., is_loaded].swapaxes(0, 1))
-            parities.append(np.full(is_loaded.sum(), parity))
-            positions.append(np.eye(is_loaded.size)[is_loaded])
-        even_filters, odd_filters = np.split(np.tile(np.concatenate(positions), (self.nodes.size, 1, 1)), 2, axis=2)
-        return replace(
-            self,
-            along_x=np.concatenate(along_x, axis=2),
-            parities=np.concatenate(parities),
-            even_filters=even_filters,
-            odd_filters=odd_filters,
-        )
 
 
 def lateral_panels(
@@ -203,7 +175,7 @@ def lateral_columns(
     )
     if panel.interpolation is not None:
         columns = _interpolate_columns(columns, panel.nodes, panel.interpolation)
-    return columns.sum_at_positions() if 2 * y.size * len(parity_loads) < columns.parities.size else columns
+    return columns
 
 
 def _interpolate_columns(columns: LateralColumns, nodes: FloatArray, interpolation: FloatArray) -> LateralColumns:

@@ -70,7 +70,7 @@ def solution_matrix(system: EquationSet) -> LinearOperator:
         return system.solve(source) / scale  # eq. (27)
 
     def solve_transposed(faces: FloatArray) -> FloatArray:
-        return system.factorisation.solve_transposed(faces / scale)
+        return system.solve(faces / scale, transposed=True)
 
     return LinearOperator(
         (scale.size, scale.size),
@@ -151,7 +151,7 @@ class OverlappingOperators:
         bands = []
         with one_blas_thread():
             for panel in problem.panels(y, shortest, reference):
-                columns = LateralColumns.of_unit_loads(panel, unit_loads, parities)
+                columns = LateralColumns(nodes=panel.nodes, along_x=unit_loads[:, None, :], parities=parities)
                 even_filters, odd_filters = panel.filters(problem.grid, y)
                 for view in make_views(problem, columns, x, shortest):
                     for node, lateral in enumerate(panel.nodes.tolist()):

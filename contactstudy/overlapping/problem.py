@@ -13,7 +13,7 @@ from contactstudy.cache import cached
 from contactstudy.checks import ComplexArray, FloatArray, IntArray
 from contactstudy.errors import InvalidInputError
 from contactstudy.kernels.load import Load
-from contactstudy.overlapping.axial_modes import AxialModes, modes_between_ends
+from contactstudy.overlapping.axial_modes import AxialModes, axial_modes
 from contactstudy.overlapping.equations import EquationSet
 from contactstudy.overlapping.lateral_modes import (
     BENDING_POLES,
@@ -172,7 +172,7 @@ def make_views(problem: EndProblem, load: LateralColumns, x: FloatArray, shortes
     length, edges = problem.length, problem.column_edges
     is_split = bool(load.parities.all())
     views = []
-    for modes in modes_between_ends(
+    for modes in axial_modes(
         length, float(load.nodes[0]), shortest, problem.resolution, mirrored_once=problem.mirrored_once
     ):
         columns = np.flatnonzero((load.parities == modes.parity) | (load.parities == 0) | (modes.parity == 0))

@@ -20,12 +20,7 @@ from contactstudy.checks import ComplexArray, FloatArray
 from contactstudy.errors import InvalidInputError
 from contactstudy.kernels.load import Load
 
-
-@lru_cache(maxsize=32)
-def _gauss_nodes(order: int) -> tuple[FloatArray, FloatArray]:
-    nodes, weights = np.polynomial.legendre.leggauss(order)
-    nodes.flags.writeable = weights.flags.writeable = False
-    return nodes, weights
+_gauss_nodes = lru_cache(np.polynomial.legendre.leggauss)
 
 
 def panel_nodes(edges: FloatArray, order: int) -> tuple[FloatArray, FloatArray]:
@@ -128,11 +123,11 @@ def ray_nodes(first: float, last: float, resolution: Resolution) -> tuple[Comple
 POSITIONS_PER_PANEL = 8  # Gauss positions per panel along x. Accuracy.
 
 
-def graded_positions(stop: float, finest: float, order: int) -> tuple[FloatArray, FloatArray]:
-    """Edges of panels from 0 to `stop` that double from `finest`, and `order` Gauss positions in each."""
+def graded_positions(stop: float, finest: float) -> tuple[FloatArray, FloatArray]:
+    """Edges of panels from 0 to `stop` that double from `finest`, and the Gauss positions in them."""
     panels = max(1, int(np.ceil(np.log2(stop / finest) - 1e-9)))
     edges = np.append(0.0, stop / 2.0**panels * 2.0 ** np.arange(panels + 1))
-    return edges, panel_nodes(edges, order)[0]
+    return edges, panel_nodes(edges, POSITIONS_PER_PANEL)[0]
 
 
 def cell_moments(edges: FloatArray, positions: FloatArray, cell_edges: FloatArray) -> FloatArray:
@@ -152,9 +147,9 @@ def cell_moments(edges: FloatArray, positions: FloatArray, cell_edges: FloatArra
     return moments
 
 
-def graded_interpolation(x: FloatArray, length: float, order: int) -> tuple[FloatArray, FloatArray] | None:
+def graded_interpolation(x: FloatArray, length: float) -> tuple[FloatArray, FloatArray] | None:
     """Few positions graded towards the ends, and the matrix that interpolates from them to many positions `x`."""
-    half_length = 0.5 * length if np.isfinite(length) else float(x.max())
+    order, half_length = POSITIONS_PER_PANEL, 0.5 * length if np.isfinite(length) else float(x.max())
     is_near_first = x <= half_length
     from_end = np.where(is_near_first, x, length - x)
     is_off_end = from_end > 0

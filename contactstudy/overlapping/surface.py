@@ -23,10 +23,10 @@ from contactstudy.cache import cached
 from contactstudy.checks import ComplexArray, FloatArray
 from contactstudy.kernels.convolution import spectrum_matrices
 from contactstudy.kernels.load import Load, Response
-from contactstudy.overlapping.axial_modes import AxialModes, SingleMirrorModes, modes_between_ends
+from contactstudy.overlapping.axial_modes import AxialModes, SingleMirrorModes, axial_modes
 from contactstudy.overlapping.equations import EquationSet
 from contactstudy.overlapping.lateral_modes import BENDING_POLES, POLE_PANEL_FACTOR, POLES, LateralPanel, lateral_panels
-from contactstudy.overlapping.quadrature import POSITIONS_PER_PANEL, Resolution, cell_moments, graded_positions
+from contactstudy.overlapping.quadrature import Resolution, cell_moments, graded_positions
 
 EXTRA_NODES = 2
 """Additional wavenumbers along y per panel, against a field: an operator is built once for all loads. Accuracy."""
@@ -126,22 +126,16 @@ def sum_of_ends(side_moments: list[FloatArray], sign: int) -> FloatArray:
     return np.asarray(side_moments[0] + sign * side_moments[1]) if len(side_moments) > 1 else side_moments[0]
 
 
-@dataclass(frozen=True, eq=False)
 class PositionWaves:
-    """Waves of axial modes at positions, shared by all wavenumbers along y with these modes."""
+    """Waves of axial modes at positions, for all directions of some responses and all wavenumbers along y."""
 
-    modes: AxialModes
-    positions: FloatArray  # positions within reach of the modes, metres
-    by_load: Mapping[Load, ComplexArray]  # (mode, position): weighted spectra of unit loads at the positions
-
-    @classmethod
-    def of(cls, modes: AxialModes, positions: FloatArray, responses: Sequence[Response]) -> PositionWaves:
-        """Waves for all directions of some responses."""
-        near_positions, weights = positions[positions <= modes.reach], modes.load_weights[:, None]
-        by_load = {
-            load: weights * modes.wave(load, near_positions) for load in dict.fromkeys(chain.from_iterable(responses))
+    def __init__(self, modes: AxialModes, positions: FloatArray, responses: Sequence[Response]) -> None:
+        self.modes, self.positions = modes, positions[positions <= modes.reach]  # positions within reach, metres
+        # (mode, position): weighted spectra of unit loads at the positions
+        self.by_load = {
+            load: modes.load_weights[:, None] * modes.wave(load, self.positions)
+            for load in dict.fromkeys(chain.from_iterable(responses))
         }
-        return cls(modes, near_positions, by_load)
 
 
 def sampled_kernel(waves: PositionWaves, wavenumber: float, request: EndRequest, shortest: float) -> list[FloatArray]:
@@ -183,13 +177,12 @@ def end_kernel(request: EndRequest) -> EndKernel:
     last_wavenumber = 2 * max(2.0 * np.pi / request.dy, 6.0 / request.finest)
     reference = request.reference if is_relative else None
     half_length = 0.5 * length if np.isfinite(length) else request.span
-    edges, positions = graded_positions(half_length, shortest, POSITIONS_PER_PANEL)
+    edges, positions = graded_positions(half_length, shortest)
     offsets: FloatArray = request.dy * np.arange(request.cells_y + 1.0)
     even_matrix, odd_matrix = spectrum_matrices(request.cells_y)
     # Matrices from samples at the offsets to the padded grid's transform; an odd kernel is -sin(k y).
     transforms = np.ascontiguousarray(even_matrix.T), np.ascontiguousarray(-odd_matrix.T)
     samples_by_response: dict[Response, list[FloatArray]] = {}
-    shared_samples: dict[float, FloatArray] = {}  # samples at wavenumbers that kernels with either pole share
     for poles in sorted({_poles(response) for response in request.responses}):
         first_wavenumber = POLE_PANEL_FACTOR[poles] / min(length, 4 * max(request.span, window))
         panels = lateral_panels(
@@ -200,17 +193,16 @@ def end_kernel(request: EndRequest) -> EndKernel:
         size, parities = positions.size, len(request.parities)
         totals = np.zeros((len(responses), parities, request.cells_y + 1, size**2))
         for panel in panels:
+            cell_factor = request.dy * np.sinc(panel.fine_nodes * request.dy / (2 * np.pi))
             even_transform, odd_transform = (
-                transform @ (waves.T * (request.dy * np.sinc(panel.fine_nodes * request.dy / (2 * np.pi))))
+                transform @ (waves.T * cell_factor)
                 for transform, waves in zip(transforms, panel.waves(offsets), strict=True)
             )
             if panel.interpolation is not None:
-                even_transform, odd_transform = (
-                    even_transform @ panel.interpolation,
-                    odd_transform @ panel.interpolation,
-                )
+                even_transform = even_transform @ panel.interpolation
+                odd_transform = odd_transform @ panel.interpolation
             samples = np.zeros((len(responses), parities, panel.nodes.size, size, size))
-            for node, sampled in enumerate(_sample_panel(request, panel, positions, shortest, shared_samples)):
+            for node, sampled in enumerate(_sample_panel(request, panel, positions, shortest)):
                 count = sampled.shape[-1]
                 samples[:, :, node, :count, :count] = sampled[:, indices].swapaxes(0, 1)
             for response, total, response_samples in zip(responses, totals, samples, strict=True):
@@ -232,28 +224,17 @@ def _poles(response: Response) -> int:
 
 
 def _sample_panel(
-    request: EndRequest,
-    panel: LateralPanel,
-    positions: FloatArray,
-    shortest: float,
-    shared_samples: dict[float, FloatArray],
+    request: EndRequest, panel: LateralPanel, positions: FloatArray, shortest: float
 ) -> Iterator[FloatArray]:
-    """Kernel at a panel's wavenumbers, or from `shared_samples`: arrays (parity, response, position, position)."""
+    """Yield the kernel at each of a panel's wavenumbers: arrays (parity, response, position, position)."""
     length, mirrored_once = request.free_ends
     first_wavenumber = float(panel.nodes[0])
-    modes = modes_between_ends(length, first_wavenumber, shortest, request.resolution, mirrored_once=mirrored_once)
-    waves = [PositionWaves.of(mode, positions, request.responses) for mode in modes]
-    is_shared = len({_poles(response) for response in request.responses}) > 1
+    modes = axial_modes(length, first_wavenumber, shortest, request.resolution, mirrored_once=mirrored_once)
+    waves = [PositionWaves(mode, positions, request.responses) for mode in modes]
     for wavenumber in panel.nodes.tolist():
-        kernel = shared_samples.get(wavenumber)
-        if kernel is None:
-            kernel = np.array([sampled_kernel(mode_waves, wavenumber, request, shortest) for mode_waves in waves])
-            # Ends do not interact: each parity has half of a quarter space's kernel.
-            if len(request.parities) > len(modes):
-                kernel = 0.5 * np.repeat(kernel, 2, axis=0)
-            if is_shared:
-                shared_samples[wavenumber] = kernel
-        yield kernel
+        kernel = np.array([sampled_kernel(mode_waves, wavenumber, request, shortest) for mode_waves in waves])
+        # Ends do not interact: each parity has half of a quarter space's kernel.
+        yield 0.5 * np.repeat(kernel, 2, axis=0) if len(request.parities) > len(modes) else kernel
 
 
 def add_product(total: FloatArray, left_factor: FloatArray, right_factor: FloatArray) -> None:

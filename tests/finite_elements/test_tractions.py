@@ -57,7 +57,7 @@ def own_displacement(bump: Bump, lateral: float, response: Response) -> FloatArr
     spectrum = weight * (wave(response.load, nodes) @ forces)
     total = wave(response.displacement, X_POSITIONS).T @ (mirrored_half_space(lateral, response) * spectrum)
     for modes in axial_modes(LENGTH, lateral, FINEST, resolution):
-        waves = PositionWaves.of(modes, np.concatenate([nodes, X_POSITIONS]), (response,))
+        waves = PositionWaves(modes, np.concatenate([nodes, X_POSITIONS]), (response,))
         kernel = sampled_kernel(waves, lateral, request, 0.5 * FINEST)[0]
         total += 2 * kernel[nodes.size :, : nodes.size] @ forces
     return np.asarray(total)

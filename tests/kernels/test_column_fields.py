@@ -374,7 +374,7 @@ def test_common_step_divides_distances(parts: int) -> None:
 def test_layer_cells_centre_points(offset: float, span: float) -> None:
     positions, step, start = np.array([-3, 0, 4, 20]), 0.1, 5.0
     column, edges = midpoint_cells(AlignedPoints(offset, np.arange(4), positions), start, span, step)
-    layer = Layer.of(column, np.array([0.5]), np.array([0]), step=step, edges=edges, fine_per_cell=1)
+    layer = Layer(column, np.array([0.5]), np.array([0]), step=step, edges=edges, fine_per_cell=1)
     assert layer.edges is not None
     cell_positions = (start + offset + step * positions - layer.edges[0]) / step
     assert cell_positions == pytest.approx(np.floor(cell_positions) + 0.5)

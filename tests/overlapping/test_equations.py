@@ -12,7 +12,7 @@ from contactstudy import Grid, Material
 from contactstudy.arrays.points import Points
 from contactstudy.bodies.models import FreeEnds
 from contactstudy.kernels.load import NORMAL_RESPONSE, Load
-from contactstudy.overlapping.axial_modes import SingleMirrorModes, axial_modes, modes_between_ends
+from contactstudy.overlapping.axial_modes import SingleMirrorModes, axial_modes
 from contactstudy.overlapping.equations import EquationSet, load_on_end
 from contactstudy.overlapping.field import end_fields
 from contactstudy.overlapping.harmonics import STRESS
@@ -123,10 +123,10 @@ def test_wavenumbers_scale_with_unit(length: float) -> None:
 
 def test_single_mirror_wavenumbers_have_equal_bound() -> None:
     for shortest, lateral in ((0.02, 0.7), (200.0, 4.0)):
-        for modes in modes_between_ends(3.0, lateral, shortest, Resolution(), mirrored_once=True):
+        for modes in axial_modes(3.0, lateral, shortest, Resolution(), mirrored_once=True):
             assert modes.discrete.size == 0
             assert abs(modes.ray[-1]) > 0.5 * max(Resolution().reach / shortest, 4 * lateral)
     for lateral, mirrored_once in ((0.7, False), (7.0, True), (7.0, False)):
-        computed = modes_between_ends(3.0, lateral, 0.02, Resolution(), mirrored_once=mirrored_once)
+        computed = axial_modes(3.0, lateral, 0.02, Resolution(), mirrored_once=mirrored_once)
         assert not any(isinstance(modes, SingleMirrorModes) for modes in computed)
         assert len(computed) == (2 if lateral < 1 else 1)

@@ -57,18 +57,6 @@ def test_columns_equal_the_load_at_every_wavenumber(seed: int, rank: int, split:
         )
 
 
-def test_few_positions_use_two_columns_each():
-    pressure = np.random.default_rng(2).random(GRID.shape)
-    parity_loads = {1: pressure + pressure[::-1], -1: pressure - pressure[::-1]}
-    for panel in lateral_panels(0.05, 2.5, 60.0, Resolution()):
-        few = lateral_columns(panel, parity_loads, GRID, Y[:1])
-        assert few is not None
-        assert few.parities.size <= 4
-        for index in range(Y.size):
-            position = integrate_kernel(panel, parity_loads, Y[index : index + 1])
-            np.testing.assert_allclose(position[..., 0], integrate_kernel(panel, parity_loads)[..., index], atol=1e-12)
-
-
 def test_product_of_x_and_y_has_one_column_per_node():
     pressure = np.outer(np.arange(1.0, 13.0), (1 - GRID.y**2) * (2 + GRID.y))
     panels = lateral_panels(0.05, 2.5, 60.0, Resolution())

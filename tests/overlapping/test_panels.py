@@ -14,7 +14,7 @@ def test_interpolation_is_exact_for_polynomials(finite: bool) -> None:
     rng = np.random.default_rng(0)
     for length in rng.uniform(1e-3, 1e3, 20):
         x = np.sort(np.concatenate([length * rng.random(200), [0.0, 0.5 * length, length]]))
-        computed = graded_interpolation(x, length if finite else np.inf, 8)
+        computed = graded_interpolation(x, length if finite else np.inf)
         assert computed is not None
         positions, matrix = computed
         for power in (0, 1, 5):
@@ -22,9 +22,9 @@ def test_interpolation_is_exact_for_polynomials(finite: bool) -> None:
 
 
 def test_few_positions_are_not_interpolated() -> None:
-    assert graded_interpolation(np.linspace(0.0, 1.0, 11), 1.0, 8) is None
-    assert graded_interpolation(np.array([0.0, 1.0]), 1.0, 8) is None
-    positions, matrix = graded_interpolation(np.linspace(0.0, 1.0, 401), 1.0, 8) or (np.empty(0), np.empty(0))
+    assert graded_interpolation(np.linspace(0.0, 1.0, 11), 1.0) is None
+    assert graded_interpolation(np.array([0.0, 1.0]), 1.0) is None
+    positions, matrix = graded_interpolation(np.linspace(0.0, 1.0, 401), 1.0) or (np.empty(0), np.empty(0))
     assert matrix[[0, -1], -2:].tolist() == [[1.0, 0.0], [0.0, 1.0]]
     assert positions[-2:].tolist() == [0.0, 1.0]
 
@@ -33,7 +33,7 @@ def test_few_positions_are_not_interpolated() -> None:
 def test_cell_moments_are_exact_for_polynomials(unit: float) -> None:
     """The moments are exact up to the degree of a panel; parts of cells outside the panels contribute nothing."""
     rng = np.random.default_rng(0)
-    edges, positions = graded_positions(4.0 * unit, 0.1 * unit, 6)
+    edges, positions = graded_positions(4.0 * unit, 0.1 * unit)
     assert edges[0] == 0.0
     assert edges[-1] == pytest.approx(4.0 * unit)
     assert edges[1] == pytest.approx(0.0625 * unit)
@@ -42,7 +42,7 @@ def test_cell_moments_are_exact_for_polynomials(unit: float) -> None:
         cells = np.sort(rng.uniform(-0.5, 4.5, 12))
         moments = cell_moments(edges, positions, unit * cells) / unit
         clipped_edges = np.clip(cells, 0.0, 4.0)
-        for power in range(6):
+        for power in range(8):
             expected = np.diff(clipped_edges ** (power + 1)) / (power + 1)
             assert (positions / unit) ** power @ moments == pytest.approx(expected, abs=1e-9 * 4.0**power)
 
@@ -51,7 +51,7 @@ def test_cell_moments_are_exact_for_polynomials(unit: float) -> None:
 @pytest.mark.parametrize("unit", [2.0**-17, 1.0])
 def test_interpolation_is_symmetric_in_any_unit(length: float, unit: float) -> None:
     x = np.sort(np.append(np.random.default_rng(0).uniform(0.0, 3.0, 600), [0.0, 3.0]))
-    computed = graded_interpolation(unit * x, unit * length, 8)
+    computed = graded_interpolation(unit * x, unit * length)
     assert computed is not None
     positions, matrix = computed
     assert positions.size < x.size
@@ -67,5 +67,5 @@ def test_interpolation_is_symmetric_in_any_unit(length: float, unit: float) -> N
     # The interpolation never has more positions than the original.
     for count in range(2, 160):
         few = np.linspace(0.0, 3.0, count)
-        variant = graded_interpolation(unit * few, unit * length, 8)
+        variant = graded_interpolation(unit * few, unit * length)
         assert variant is None or variant[0].size < count

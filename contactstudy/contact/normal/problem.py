@@ -46,9 +46,9 @@ class ContactProblem:
     grid: Grid
     gap: FloatArray  # (x, y): initial gap less a prescribed approach, metres; infinite where nothing can touch
     resultants: Resultants  # prescribed resultants of the pressure
-    friction: float  # coefficient of the traction along +y
     tolerance: float  # tolerance of the iteration
-    max_iterations: int  # bound on the iterations
+    friction: float = 0.0  # coefficient of the traction along +y
+    max_iterations: int = 500  # bound on the iterations
 
     def rigid_height(self, motion: tuple[float, ...]) -> FloatArray:
         """Height of the shape after its rigid `motion`, metres: broadcasts to (x, y)."""
@@ -132,14 +132,10 @@ def cell_means(values: FloatArray) -> FloatArray:
 
 def halve_cells(values: FloatArray, axis: int) -> FloatArray:
     """Values on cells of half the size along an axis, linear between the centres."""
-    first, last = np.take(values, [0], axis=axis), np.take(values, [-1], axis=axis)
-    padded = np.concatenate([first, values, last], axis=axis)
-    count = values.shape[axis]
-    centre, low, high = (np.take(padded, np.arange(start, start + count), axis=axis) for start in (1, 0, 2))
-    halves = np.stack([0.75 * centre + 0.25 * low, 0.75 * centre + 0.25 * high], axis=axis + 1)
-    shape = list(values.shape)
-    shape[axis] *= 2
-    return halves.reshape(shape)
+    centre = np.moveaxis(values, axis, 0)
+    padded = np.concatenate([centre[:1], centre, centre[-1:]])
+    halves = np.stack([0.75 * centre + 0.25 * padded[:-2], 0.75 * centre + 0.25 * padded[2:]], axis=1)
+    return np.ascontiguousarray(np.moveaxis(halves.reshape(-1, *centre.shape[1:]), 0, axis))
 
 
 def interpolate_columns(values: FloatArray, centres: FloatArray, x: FloatArray) -> FloatArray:

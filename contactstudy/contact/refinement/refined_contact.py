@@ -11,7 +11,7 @@ import xarray as xr
 from contactstudy.arrays.grid import Grid
 from contactstudy.arrays.variables import describe, without_error
 from contactstudy.bodies import hertz
-from contactstudy.bodies.models import BodyWithFreeEnds
+from contactstudy.bodies.models import Body, BodyWithFreeEnds
 from contactstudy.cache import ArrayKey, cached
 from contactstudy.case.case import MAX_HALF_WIDTH, MIN_HALF_WIDTH, Case
 from contactstudy.case.gridding import graded_grid, solve_in_first_window
@@ -98,11 +98,7 @@ def _refine_in_window(case: Case, half_window: float, accuracy: float, tolerance
     shape = _axial_shape(case)
     with one_blas_thread():
         # The half-width depends only weakly on the end correction, which is the expensive part.
-        body = case.body
-        mirrored = (
-            replace(body, model="mirror") if isinstance(body, BodyWithFreeEnds) and body.model == "exact" else body
-        )
-        coarse_solver = _ColumnSolver(replace(case, body=mirrored), half_window, COARSE_CELLS_Y)
+        coarse_solver = _ColumnSolver(replace(case, body=_mirrored(case.body)), half_window, COARSE_CELLS_Y)
         coarse = refine_coarsely(coarse_solver, shape)
         rows = np.flatnonzero(coarse.pressure.any(axis=0))
         cells = coarse_solver.grid(coarse.edges)
@@ -253,14 +249,8 @@ class _ColumnSolver:
         gap = shape.gap.values
         columns = _roller_columns(grid, edges)
         guess = _pad_to_grid(start, grid, edges) if start is not None and start.any() else None
-        problem = ContactProblem(
-            grid=grid,
-            gap=gap,
-            resultants=shape.prescribed.resultants(grid),
-            friction=0.0,
-            tolerance=tolerance,
-            max_iterations=500,
-        )
+        resultants = shape.prescribed.resultants(grid)
+        problem = ContactProblem(grid=grid, gap=gap, resultants=resultants, tolerance=tolerance)
         operator = contact_operator(shape)
         iterate = solve_normal(operator, problem, guess)
         check_window(shape.body, iterate.pressure)
@@ -392,12 +382,14 @@ def approach_load_error(contact: ApproachContact) -> float:
     return sum(abs(contact.carried_load - fine.carried_load) for contact in coarser)
 
 
+def _mirrored(body: Body) -> Body:
+    """Body with the mirror model of its ends instead of the exact model."""
+    return replace(body, model="mirror") if isinstance(body, BodyWithFreeEnds) and body.model == "exact" else body
+
+
 def _with_mirrored_ends(case: Case) -> Case:
     """Case with the mirror model of its ends."""
-    body, roller = case.body, case.roller
-    if isinstance(body, BodyWithFreeEnds) and body.model == "exact":
-        body = replace(body, model="mirror")
-    return replace(case, body=body, roller=replace(roller, ends="none"))
+    return replace(case, body=_mirrored(case.body), roller=replace(case.roller, ends="none"))
 
 
 def _slice_load(case: Case) -> float:

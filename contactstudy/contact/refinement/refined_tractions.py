@@ -52,14 +52,17 @@ class RefinedTractions(NamedTuple):
 
 def refine_tractions(case: Case, normal: RefinedContact, accuracy: float) -> RefinedTractions:
     """Tractions of a case on the columns of its normal contact."""
-    rows = normal.contact.shape.grid.cells_y
+    motion, rows = case.motion, normal.contact.shape.grid.cells_y
+    assert isinstance(motion, Shift | Rolling)
+    names = AMPLITUDE_NAMES[type(motion)]
+    prescribed_names = {RESULTANTS[mode] if mode in motion.modes else names[mode] for mode in names}
     previous = _contact_on_rows(case, normal, rows // 2, None)
     # FASTSIM's error is due to its model: its strips do not become accurate on finer cells.
-    max_rows = rows if isinstance(case.motion, Rolling) and case.motion.model == "fastsim" else CELLS_Y[-1]
+    max_rows = rows if isinstance(motion, Rolling) and motion.model == "fastsim" else CELLS_Y[-1]
     while True:
         contact = _contact_on_rows(case, normal, rows, previous)
         changes, scales = _convergence_values(contact) - _convergence_values(previous), _scales(case, contact)
-        is_adjustable = [name not in _prescribed_names(case) for name in scales]
+        is_adjustable = [name not in prescribed_names for name in scales]
         accurate = bool((np.abs(changes) <= accuracy * np.array(list(scales.values())))[is_adjustable].all())
         if accurate or rows >= max_rows:
             break
@@ -117,17 +120,8 @@ def _scales(case: Case, contact: FrictionalContact) -> dict[str, float]:
     sliding = {"x": slip, "y": slip, "spin": slip * force / moment if moment else 0.0}
     if not is_rolling:
         sliding = {name: size * case.hertz_half_width for name, size in sliding.items()}
-    names = AMPLITUDE_NAMES["rolling" if is_rolling else "shift"]
     rigid = {name: max(abs(amplitude), sliding[name]) for name, amplitude in contact.tractions.rigid.items()}
     largest = max(abs(rigid["x"]), abs(rigid["y"]), rigid.get("spin", 0.0) * moment / force if force else 0.0)
     return {"force_x": force, "force_y": force, "moment_z": moment, "friction_work": force * largest} | {
-        names[name]: size for name, size in rigid.items()
+        AMPLITUDE_NAMES[Rolling if is_rolling else Shift][name]: size for name, size in rigid.items()
     }
-
-
-def _prescribed_names(case: Case) -> set[str]:
-    """Names in results of the values that a case's motion prescribes."""
-    motion = case.motion
-    assert isinstance(motion, Shift | Rolling)
-    names = AMPLITUDE_NAMES["rolling" if isinstance(motion, Rolling) else "shift"]
-    return {RESULTANTS[mode] if mode in motion.modes else names[mode] for mode in names}

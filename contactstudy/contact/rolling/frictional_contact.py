@@ -10,7 +10,7 @@ import xarray as xr
 
 from contactstudy.arrays.variables import describe
 from contactstudy.cache import ArrayKey
-from contactstudy.case.motion import Rolling
+from contactstudy.case.motion import Rolling, Shift
 from contactstudy.checks import FloatArray
 from contactstudy.contact.normal.contact import Contact, Settings, Shape, contact_of
 from contactstudy.contact.normal.two_bodies import PairOperator
@@ -26,10 +26,8 @@ DIRECTIONS = (Load.NORMAL, *TANGENTIAL)
 
 MAX_ROUNDS = 30  # largest number of rounds of pressure and tractions in a coupled contact. Speed.
 MIN_ACCURACY = 1e-5  # least change of the pressure that ends coupled rounds. Accuracy.
-AMPLITUDE_NAMES = {  # names in results of the rigid motions, in rolling and in a shift
-    "rolling": Rolling.AMPLITUDES,
-    "shift": {"x": "shift_x", "y": "shift_y"},
-}
+AMPLITUDE_NAMES = {Rolling: Rolling.AMPLITUDES, Shift: {"x": "shift_x", "y": "shift_y"}}
+"""Names in results of the rigid motions, by class of the motion."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,7 +77,7 @@ class FrictionalContact:
             "stick": tractions.sticks,
         }
         is_rolling = "spin" in tractions.rigid
-        names, unit = AMPLITUDE_NAMES["rolling" if is_rolling else "shift"], "1" if is_rolling else "m"
+        names, unit = AMPLITUDE_NAMES[Rolling if is_rolling else Shift], "1" if is_rolling else "m"
         scalars: dict[str, object] = {names[name]: amplitude for name, amplitude in tractions.rigid.items()}
         scalars |= tractions.resultants
         for name in ("bound_error", "slip_error", "force_error"):

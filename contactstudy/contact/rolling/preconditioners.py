@@ -39,14 +39,13 @@ class TangentialInverse:
         """Spectrum of the displacement in `direction` under loads in the direction `load`."""
         response = Response(direction, load)
         x, y = (step * np.arange(count // 2 + 1.0) for count, step in zip(self._shape, cell, strict=True))
-        kernel = np.zeros((x.size, y.size))
-        for material in materials:
-            normalised = surface_kernel(response, material.poisson, x, y, cell)
-            kernel += normalised / (4 * np.pi * material.shear_modulus)
-        period = _unfold_kernel(
-            _unfold_kernel(kernel, self._shape[0], response.sign_x, 0), self._shape[1], response.sign_y, 1
+        kernel = sum(
+            surface_kernel(response, material.poisson, x, y, cell) / (4 * np.pi * material.shear_modulus)
+            for material in materials
         )
-        return np.asarray(fft.rfft2(period))
+        for axis, sign in enumerate((response.sign_x, response.sign_y)):
+            kernel = _unfold_kernel(np.asarray(kernel), self._shape[axis], sign, axis)
+        return np.asarray(fft.rfft2(kernel))
 
     def __call__(self, slip: FloatArray) -> FloatArray:
         """Approximate tractions (2, cell) that relieve a slip (2, cell)."""

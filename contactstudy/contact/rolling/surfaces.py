@@ -135,10 +135,8 @@ def _largest_multiple(resultants: FloatArray, bound: FloatArray, weights: FloatA
     has_resultant = sizes > 0
     if resultants[~has_resultant].any() or not has_resultant.any():
         return 0.0
-    weights, target = (
-        weights[has_resultant] / sizes[has_resultant, None, None],
-        resultants[has_resultant] / sizes[has_resultant],
-    )
+    sizes = sizes[has_resultant]
+    weights, target = weights[has_resultant] / sizes[:, None, None], resultants[has_resultant] / sizes
     # The square of a very small target would vanish.
     scale = float(np.abs(target).max())
     target = target / scale
