@@ -173,7 +173,7 @@ def contact_grid() -> Table:
     reference = solve_on(96)
     errors = np.array([np.abs(solve_on(count) - reference) for count in counts])
     return Table(
-        title="rigid cylinder on a body of its own length, 8a",
+        title="rigid cylinder on a body of the same length, 8a",
         setting="number of cells per a",
         source="96 cells per a",
         values=counts,
@@ -286,7 +286,7 @@ def window() -> Table:
     reference = solve_in_window(7.0)
     errors = tuple(float(np.abs(solve_in_window(width) - reference).max()) for width in widths)
     return Table(
-        title="rigid cylinder on a body of its own length, 8a, 16 cells per a across",
+        title="rigid cylinder on a body of the same length, 8a, 16 cells per a across",
         setting="half of the window over a",
         source="half of the window 7a",
         values=widths,

@@ -114,7 +114,7 @@ def place_search(body: Body, loads: Loads, grid: Grid) -> Search:
     # The body ends at the outermost columns.
     inside_rim = np.asarray(ndimage.binary_erosion(pressure > 0, iterations=RIM_CELLS, border_value=1))
     if not column_maxima.any():
-        return Search(grid, extent, inside_rim, border, [], np.inf)
+        return Search(grid, extent, inside_rim, border, samples=[], peak_width=np.inf)
     samples: list[Points] = []
     widths: list[float] = []
     symmetric = bool(  # about the middle of the window, up to errors of the solver
@@ -145,7 +145,7 @@ def place_search(body: Body, loads: Loads, grid: Grid) -> Search:
     x = np.concatenate([first_edge + distances, last_edge - (distances[-2:-1] if symmetric else distances)])
     depths = half_width * AXIS_DEPTHS
     samples.append(_nearest_cells(grid, inside_rim, x, section, depths, spacing=0.1 * half_width))
-    return Search(grid, extent, inside_rim, border, samples, min(widths))
+    return Search(grid, extent, inside_rim, border, samples=samples, peak_width=min(widths))
 
 
 def _nearest_cells(

@@ -297,7 +297,7 @@ def contact_condition_checks() -> Iterator[Check]:
     gap = on_cells(lambda x, y: y**2 + 0 * x, (0, 8), (-2, 2), (129, 65))
     contact = solve_contact(_finite(8.0), gap, load=8 * LINE_LOAD)
     pressure = contact["pressure"].values
-    case = "rigid cylinder on a body of its own length, 8a"
+    case = "rigid cylinder on a body of the same length, 8a"
     load = pressure.sum() * 32 / pressure.size
     yield Reference(case, "prescribed").compare("load", load, 8 * LINE_LOAD, 1e-9, relative=True)
     mirrored = [pressure[::-1], pressure[:, ::-1]]
@@ -310,7 +310,9 @@ def contact_condition_checks() -> Iterator[Check]:
     quantity = "gap under pressure over the variation of the displacement"
     yield Reference(case, "conditions of contact").compare_fields(quantity, height[in_contact], approach, 1e-5)
     overlap = min(0.0, float((height - approach)[~in_contact].min()))
-    yield Reference(case, "conditions of contact").compare("overlap elsewhere, likewise", overlap, 0.0, 1e-5)
+    yield Reference(case, "conditions of contact").compare(
+        "overlap outside the contact over the variation of the displacement", overlap, 0.0, 1e-5
+    )
 
 
 def reciprocity_checks() -> Iterator[Check]:

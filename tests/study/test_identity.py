@@ -50,6 +50,7 @@ def test_new_default_parameter_keeps_identities(monkeypatch):
         name="roughness", check=check_number, units="1", meaning="added later", fallback=3.0
     )
     monkeypatch.setitem(parameters.PARAMETERS, "roughness", new_parameter)
+    monkeypatch.setitem(parameters.DEFAULTS, "roughness", new_parameter.default)
     assert case_id({"friction": 0.1})[:16] == stored_identity
     assert case_id({"friction": 0.1, "roughness": 3})[:16] == stored_identity
     assert case_id({"friction": 0.1, "roughness": 4})[:16] != stored_identity
