@@ -265,7 +265,7 @@ class Plan(Sequence[PlannedCase]):
     @cached_property
     def skipped(self) -> list[int]:
         """Numbers of the skipped cases."""
-        return np.flatnonzero(np.isin(self.groups, list(self.review.reasons))).tolist()
+        return [int(index) for index in np.flatnonzero(np.isin(self.groups, list(self.review.reasons)))]
 
     @cached_property
     def unique(self) -> list[int]:

@@ -288,8 +288,8 @@ from tests.stand_in_solver import solve_fake
 
 sizes, count = [], Progress.record
 
-def note(self, name, outcome):
-    count(self, name, outcome)
+def note(self, outcome):
+    count(self, outcome)
     sizes.append(psutil.Process().memory_info().rss)
 
 Progress.record = note
