@@ -265,13 +265,13 @@ class Plan(Sequence[PlannedCase]):
     @cached_property
     def skipped(self) -> list[int]:
         """Numbers of the skipped cases."""
-        return [int(index) for index in np.flatnonzero(np.isin(self.groups, list(self.review.reasons)))]
+        return np.flatnonzero(np.isin(self.groups, list(self.review.reasons))).tolist()
 
     @cached_property
     def unique(self) -> list[int]:
         """Indices of the cases to solve; of equal cases only the first."""
         _, first_indices = np.unique(self.ids, return_index=True)
-        return np.setdiff1d(first_indices, self.skipped).tolist()
+        return [int(index) for index in np.setdiff1d(first_indices, self.skipped)]
 
     @property
     def doubts(self) -> tuple[str, ...]:
