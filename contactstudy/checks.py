@@ -149,7 +149,7 @@ def known_name(name: str, value: str, names: Iterable[str]) -> str:
 
 
 @contextmanager
-def store_errors(action: str) -> Iterator[None]:
+def convert_os_errors(action: str) -> Iterator[None]:
     """Raise an error of the file system as a StoreError of the action that failed."""
     try:
         yield
@@ -166,7 +166,7 @@ def writing(path: Path, name: Callable[[Path], str] | None = None) -> Iterator[P
     if path.is_dir():
         raise StoreError(f"cannot write {path}: it is a folder")
     temporary_path = path.with_name(f"{path.name}.{uuid.uuid4().hex[:12]}{TEMPORARY_SUFFIX}")
-    with store_errors(f"write {path}"):
+    with convert_os_errors(f"write {path}"):
         if path.exists() and not path.is_file():
             yield path
             return

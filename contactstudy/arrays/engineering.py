@@ -47,7 +47,7 @@ def format_quantity(value: float, units: str, digits: int = DIGITS) -> str:
 
 
 def format_with_error(value: float, error: float, units: str) -> str:
-    """Write a number and its error, NaN if not known, in one unit, with the digits that the error leaves."""
+    """Write a number and its error, NaN if not estimated, in one unit, with the digits that the error leaves."""
     if not math.isfinite(value) or not NEGLIGIBLE * abs(value) < error < math.inf:
         return format_quantity(value, units)
     factor, unit = unit_for(max(abs(value), error), units)

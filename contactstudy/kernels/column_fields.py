@@ -180,9 +180,7 @@ class Ring(NamedTuple):
     radius: float  # distance, metres
     lattice: Lattice  # positions along y
     layers: list[Layer]
-    interpolation_z: (
-        FloatArray | None
-    )  # (z, depth): interpolation from the depths of the layers; None if they are equal
+    interpolation_z: FloatArray | None  # (z, depth): interpolation from the layers' depths; None without one
 
 
 class SplitColumns(NamedTuple):

@@ -20,7 +20,13 @@ from contactstudy.checks import ComplexArray, FloatArray
 from contactstudy.errors import InvalidInputError
 from contactstudy.kernels.load import Load
 
-_gauss_nodes = lru_cache(np.polynomial.legendre.leggauss)
+
+@lru_cache(maxsize=32)
+def _gauss_nodes(order: int) -> tuple[FloatArray, FloatArray]:
+    """Nodes and weights on [-1, 1], read-only: all threads share them."""
+    nodes, weights = np.polynomial.legendre.leggauss(order)
+    nodes.flags.writeable = weights.flags.writeable = False
+    return nodes, weights
 
 
 def panel_nodes(edges: FloatArray, order: int) -> tuple[FloatArray, FloatArray]:

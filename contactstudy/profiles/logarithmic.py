@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Self
+from typing import Any, Self
 
 import numpy as np
 
@@ -45,12 +45,16 @@ class Logarithmic(Shape):
         **parameters
             Further parameters of the profile.
         """
+        profile_class: Any = cls
+        profile: Self = profile_class(**cls._parameters_for_pressure(max_pressure, radius, modulus) | parameters)
+        return profile
+
+    @classmethod
+    def _parameters_for_pressure(cls, max_pressure: float, radius: float, modulus: float) -> dict[str, float]:
+        """Parameters that follow from the design load."""
         pressure = checks.positive("max_pressure", max_pressure, "Pa")
         modulus = checks.positive("modulus", modulus, "Pa")
-        radius = checks.positive("radius", radius, "metres")
-        if issubclass(cls, JohnsGohar):
-            parameters = {"half_width": hertz.line_half_width(pressure, radius, modulus)} | parameters
-        return cls(amplitude=radius * (pressure / modulus) ** 2, **parameters)  # type: ignore[call-arg]
+        return {"amplitude": checks.positive("radius", radius, "metres") * (pressure / modulus) ** 2}
 
     @classmethod
     def for_load(cls, load: float, *, length: float, radius: float, modulus: float, **parameters: float) -> Self:
@@ -155,6 +159,12 @@ class JohnsGohar(Logarithmic):
     def __post_init__(self) -> None:
         checks.store(self, amplitude=checks.not_negative("amplitude", self.amplitude, "metres"))
         checks.store(self, half_width=checks.not_negative("half_width", self.half_width, "metres"))
+
+    @classmethod
+    def _parameters_for_pressure(cls, max_pressure: float, radius: float, modulus: float) -> dict[str, float]:
+        return super()._parameters_for_pressure(max_pressure, radius, modulus) | {
+            "half_width": hertz.line_half_width(max_pressure, radius, modulus)
+        }
 
     def edge_drop(self, length: float) -> float:
         """Drop (m) at the ends of a roller of the given `length` (m)."""

@@ -216,7 +216,7 @@ def solve(
     y : sequence of float, optional
         Positions of the stresses, metres; default: the cell centres.
     z : sequence of float, optional
-        Depths of the stresses, metres; default: from 0 to 5 Hertz half-widths, narrow at the largest stress.
+        Depths of the stresses, metres; default: from 0 to 5 Hertz half-widths, narrow below the pressure's peak.
     stresses : bool
         Whether to compute the stresses.
     roughness : DataArray (x, y), optional

@@ -157,7 +157,11 @@ def write_batch(folder: Path, name: str, batch: Batch) -> None:
 
 def checksum(path: Path) -> int:
     """CRC-32 of a file."""
-    return zlib.crc32(path.read_bytes())
+    code = 0
+    with open(path, "rb") as file:
+        while block := file.read(2**22):
+            code = zlib.crc32(block, code)
+    return code
 
 
 def find_damage(path: Path) -> str:

@@ -236,7 +236,7 @@ class Folder:
         """Make the folder, or raise :class:`StoreError`."""
         if self.batches.is_symlink():
             raise StoreError(f"{self.batches} is a link, and a study writes into folders: delete it")
-        with checks.store_errors(f"make {self.batches}"):
+        with checks.convert_os_errors(f"make {self.batches}"):
             self.batches.mkdir(parents=True, exist_ok=True)
 
     def write_study(self, study: Study) -> None:
@@ -346,7 +346,7 @@ class Folder:
         folder = self.path / "set-aside"
         if folder.is_symlink():
             raise StoreError(f"{folder} is a link: delete it")
-        with checks.store_errors(f"move {path}"):
+        with checks.convert_os_errors(f"move {path}"):
             folder.mkdir(exist_ok=True)
             names = chain([path.name], (f"{path.stem}-{number}{path.suffix}" for number in count(2)))
             target = next(folder / name for name in names if not os.path.lexists(folder / name))

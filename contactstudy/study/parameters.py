@@ -258,7 +258,7 @@ _PARAMETERS = (
         note="a list, or `{start, stop, count}`",
     ),
     Parameter("field_y_over_a", "1", "stress points: y over a", "cell centres", check=check_points),
-    Parameter("field_z_over_a", "1", "stress points: depth over a", "about 23 depths to 5 a", check=check_points),
+    Parameter("field_z_over_a", "1", "stress points: depth over a", "13 to 25 depths to 5 a", check=check_points),
 )
 PARAMETERS: dict[str, Parameter] = {entry.name: entry for entry in _PARAMETERS}  # of a case, by name
 DEFAULTS: dict[str, Any] = {name: entry.default for name, entry in PARAMETERS.items() if entry.default is not None}

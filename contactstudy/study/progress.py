@@ -11,7 +11,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
-from contactstudy.checks import store_errors
+from contactstudy.checks import convert_os_errors
 from contactstudy.study.worker import Outcome
 
 LOGGER = logging.getLogger(__name__)
@@ -35,7 +35,7 @@ class Progress:
         self._began = time.monotonic()
         self.remarks: list[str] = []
         flags = os.O_WRONLY | os.O_APPEND | os.O_CREAT | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0)
-        with store_errors(f"write {path}"):
+        with convert_os_errors(f"write {path}"):
             self._file = os.fdopen(os.open(path, flags, 0o666), "a", encoding="utf-8", buffering=1)
 
     def __enter__(self) -> Progress:
