@@ -203,9 +203,9 @@ def flash_temperature(
         "heat_error": (body_power + roller_power) / power - 1 if power else 0.0,
         "temperature_mismatch": mismatch,
     }
-    kept_names = ("x", "y", "x_bounds", "x_width", "hertz_half_width", "hertz_max_pressure")
-    kept = solution[[name for name in kept_names if name in solution.variables]].drop_attrs(deep=False)
-    temperatures = kept.assign(values | scalars)
+    inherited_names = ("x", "y", "x_bounds", "x_width", "hertz_half_width", "hertz_max_pressure")
+    inherited = solution[[name for name in inherited_names if name in solution.variables]].drop_attrs(deep=False)
+    temperatures = inherited.assign(values | scalars)
     if depths is not None:
         moving_body, columns = MovingBody(body, heat.body_speed, case.body.extent), slice(0, grid.cells_x)
         inner_rises = [SourceOperator(moving_body, grid, columns, float(depth))(into_body) for depth in depths]
