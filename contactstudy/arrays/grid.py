@@ -13,7 +13,7 @@ from contactstudy.errors import InvalidInputError
 SPACING_TOLERANCE = 1e-4  # Deviation of uniform spacing over a cell, above single precision. Accuracy
 MAX_WIDTH_RATIO = 4.0  # Largest ratio of neighbouring widths with valid error estimates. Accuracy
 WIDTH_RATIO = 3.0  # ratio of neighbouring cells outside the contact. Speed.
-MIN_WIDTH = 1e-12  # least width of a cell over the grid's length: the rounding of the edges. Accuracy.
+EDGE_ROUNDING = 1e-12  # rounding of the edges over the grid's length, and least width of a cell. Accuracy.
 TOP_ERROR = 0.02  # relative error of stresses on the top under a pressure of cells, from the page on limits. Accuracy.
 MAX_CELLS = 10**8  # largest number of cells; more suggest a wrong unit
 
@@ -54,7 +54,7 @@ class Grid:
             except (TypeError, ValueError):
                 raise InvalidInputError(name, getattr(self, name), "an increasing pair (metres)") from None
             low, high = checks.finite(name, low, "metres"), checks.finite(name, high, "metres")
-            if not high - low > max(1 / checks.MAX_MAGNITUDE, MIN_WIDTH * max(abs(low), abs(high))):
+            if not high - low > max(1 / checks.MAX_MAGNITUDE, EDGE_ROUNDING * max(abs(low), abs(high))):
                 raise InvalidInputError(name, (low, high), "an increasing pair (metres), not closer than rounding is")
             checks.store(self, **{name: (low, high)})
         for name in ("cells_x", "cells_y"):
@@ -96,7 +96,7 @@ class Grid:
         if edges.size < 2:
             raise InvalidInputError("x_edges", edges, "at least two edges (metres)")
         widths = np.diff(edges)
-        narrow_cells = np.flatnonzero(widths <= MIN_WIDTH * (edges[-1] - edges[0]))
+        narrow_cells = np.flatnonzero(widths <= EDGE_ROUNDING * (edges[-1] - edges[0]))
         if narrow_cells.size:
             index = int(narrow_cells[0])
             raise InvalidInputError("x_edges", f"{edges[index]:g}, {edges[index + 1]:g} m", "increasing")
@@ -131,6 +131,13 @@ class Grid:
     def uniform(self) -> bool:
         """Whether all cells have the same width."""
         return not self._inner
+
+    @property
+    def is_symmetric(self) -> bool:
+        """Whether the cells along x are symmetric about the middle of the window."""
+        low, high = self.x_range
+        edges = self.x_edges
+        return bool(np.abs(edges + edges[::-1] - (low + high)).max() <= EDGE_ROUNDING * (high - low))
 
     @property
     def observes_means(self) -> bool:

@@ -82,11 +82,18 @@ def _snap_into_body(body: Body, x: FloatArray, grid: Grid) -> FloatArray:
 
 
 def default_columns(grid: Grid, extent: Extent, is_loaded: BoolArray, half_width: float) -> FloatArray:
-    """Positions along x from one end of the body, or of the grid, to the other."""
+    """Positions along x from one end of the body, or of the grid, to the other, in either half graded from its end."""
     # The spacing equals two widths of a loaded column at its centre, and a fifth of the half-width at the ends.
-    ends = [end if np.isfinite(end) else edge for end, edge in zip(extent, grid.x_range, strict=True)]
+    ends = np.array([end if np.isfinite(end) else edge for end, edge in zip(extent, grid.x_range, strict=True)])
     spacings = np.append(2 * grid.widths[is_loaded], np.full(2, MAX_SPACING * half_width))
-    return _grade_positions(ends, np.append(grid.x[is_loaded], ends), spacings)
+    centres, half_length = np.append(grid.x[is_loaded], ends), 0.5 * float(ends[1] - ends[0])
+    from_first, from_second = (
+        _grade_positions([0.0, half_length], distances, spacings)
+        for distances in (centres - ends[0], ends[1] - centres)
+    )
+    if grid.is_symmetric and np.array_equal(is_loaded, is_loaded[::-1]):
+        from_second = from_first  # without their different rounding
+    return np.concatenate([ends[0] + from_first, ends[1] - from_second[-2::-1]])
 
 
 def default_depths(half_width: float, peak_width: float) -> FloatArray:

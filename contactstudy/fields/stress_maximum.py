@@ -119,7 +119,7 @@ def place_search(body: Body, loads: Loads, grid: Grid) -> Search:
     widths: list[float] = []
     symmetric = bool(  # about the middle of the window, up to errors of the solver
         np.isinf(extent[0]) == np.isinf(extent[1])
-        and np.allclose(grid.widths, grid.widths[::-1])
+        and grid.is_symmetric
         and all(
             np.allclose(
                 load.cell_loads, kind.sign_x * load.cell_loads[::-1], rtol=0, atol=1e-4 * np.abs(load.cell_loads).max()

@@ -17,7 +17,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from contactstudy.arrays.grid import Grid
+from contactstudy.arrays.grid import EDGE_ROUNDING, Grid
 from contactstudy.arrays.peaks import lagrange_weights
 from contactstudy.arrays.points import Points
 from contactstudy.cache import ArrayKey, cached
@@ -60,7 +60,7 @@ MIN_CENTRED_WIDTH = 1e-3
 """Least width of the fine column about a point next to a step of the load, over the original fine column. Accuracy: on
 the top a step has infinite stresses."""
 
-EDGE_ROUNDING = 1e-9  # rounding of positions on an end or an edge, over a column. Accuracy.
+POSITION_ROUNDING = 1e-9  # rounding of positions on an end or an edge, over a column. Accuracy.
 
 
 @dataclass(frozen=True, eq=False)
@@ -357,7 +357,7 @@ def _split_around(x: float, fine: FineCells, max_width: float) -> _SplitRange:
     """Split columns around a point, which lies in the middle of a new column; split none if all are narrow."""
     edges, count = fine.edges, fine.edges.size - 1
     column = int(np.clip(np.searchsorted(edges, x, side="right") - 1, 0, count - 1))
-    is_on_end = min(abs(x - end) for end in fine.extent) < EDGE_ROUNDING * (edges[column + 1] - edges[column])
+    is_on_end = min(abs(x - end) for end in fine.extent) < POSITION_ROUNDING * (edges[column + 1] - edges[column])
     start, stop = resolved_columns(edges, x, max_width)
     if start == stop:
         return _SplitRange(edges[start : start + 1], start, start)
@@ -365,7 +365,8 @@ def _split_around(x: float, fine: FineCells, max_width: float) -> _SplitRange:
     new_edges = fine.x_edges[(fine.x_edges >= low) & (fine.x_edges <= high)]
     if not is_on_end and low < x < high:
         # On an edge the narrower column determines the width: the mirrored load has the same columns.
-        columns = np.searchsorted(new_edges, [x - EDGE_ROUNDING * (high - low), x + EDGE_ROUNDING * (high - low)]) - 1
+        rounding = POSITION_ROUNDING * (high - low)
+        columns = np.searchsorted(new_edges, [x - rounding, x + rounding]) - 1
         # A point beyond the outermost edge by rounding belongs to the outermost column.
         width = float(np.diff(new_edges)[np.clip(columns, 0, new_edges.size - 2)].min())
         # A column across a step of the load would move its force.
@@ -404,6 +405,42 @@ def columns_field(
     extent: tuple[float, float],
 ) -> FloatArray:
     """Field in the half-space under a load and all its mirror images, as `half_space_field`."""
+    if _is_symmetric(load, shape, grid, extent):
+        position_indices, is_mirrored, x = _fold_positions(points.x, grid)
+        parities = np.where(is_mirrored, np.array(influence.sign_along_x)[:, None], 1)
+        field = _sum_columns(load, shape, influence, grid, points._replace(x=x), extent)[:, position_indices]
+        field *= parities[..., None, None]
+        return field
+    return _sum_columns(load, shape, influence, grid, points, extent)
+
+
+def _is_symmetric(load: FloatArray, shape: FloatArray | None, grid: Grid, extent: tuple[float, float]) -> bool:
+    """Whether a reflection about the middle of the window changes neither load nor images."""
+    # Between two ends the window is the whole body.
+    arrays = [load] if shape is None else [load, shape]
+    is_even = all(np.array_equal(values, values[::-1]) for values in arrays)
+    return is_even and grid.is_symmetric and bool(np.isinf(extent[0]) == np.isinf(extent[1]))
+
+
+def _fold_positions(x: FloatArray, grid: Grid) -> tuple[IntArray, BoolArray, FloatArray]:
+    """Index of each position among positions of the first half, whether it is mirrored, and these positions."""
+    low, high = grid.x_range
+    is_mirrored = x > 0.5 * (low + high)
+    folded = np.where(is_mirrored, low + high - x, x)
+    rounding = EDGE_ROUNDING * (high - low)
+    _, first_indices, indices = np.unique(np.round(folded / rounding), return_index=True, return_inverse=True)
+    return indices, is_mirrored, folded[first_indices]
+
+
+def _sum_columns(
+    load: FloatArray,
+    shape: FloatArray | None,
+    influence: Influence,
+    grid: Grid,
+    points: Points,
+    extent: tuple[float, float],
+) -> FloatArray:
+    """Field of all columns and of the far images."""
     x, y, z = points
     axes = (ArrayKey(x), ArrayKey(y), ArrayKey(z))
     shape_key = None if shape is None else ArrayKey(shape)

@@ -8,7 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
-from contactstudy.arrays.grid import Grid
+from contactstudy.arrays.grid import EDGE_ROUNDING, Grid
 from contactstudy.cache import cached
 from contactstudy.checks import ComplexArray, FloatArray, IntArray
 from contactstudy.errors import InvalidInputError
@@ -29,8 +29,6 @@ from contactstudy.overlapping.quadrature import Resolution
 CORNER_OFFSET = 1e-2
 """Depth below a loaded corner, over a cell, at which points on the corner are evaluated. Accuracy. H and V each have a
 logarithm at the corner; their sum is finite."""
-
-EDGE_ROUNDING = 1e-12  # rounding between an edge and an image, over the length. Accuracy.
 
 FIRST_PANEL_FACTOR = 0.1
 """End of the first panel along ``k_y``, over the smallest length of the problem, of a field without poles. Accuracy."""

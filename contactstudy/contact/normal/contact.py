@@ -35,7 +35,7 @@ CONVERGED_TOLERANCES = 10.0  # largest violation of a converged contact over the
 OPEN_TOLERANCES = 10.0  # least gap that counts as open, over the tolerance times the displacement's variation
 MAX_ROUNDS = 20  # rounds after which a prescribed tilt or approach is not reached. Speed.
 INNER_TOLERANCE = 1e-3  # tolerance of the contact over the error of the motion of the reference lines. Speed.
-SYMMETRY_ROUNDING = 1e-10  # rounding of a symmetric gap over the largest, of symmetric edges over the window. Accuracy.
+SYMMETRY_ROUNDING = 1e-10  # rounding of a symmetric gap over the largest, of a body's middle over the window. Accuracy.
 
 
 @dataclass(frozen=True)
@@ -104,8 +104,7 @@ class Shape(NamedTuple):
             centres.append(self.counterbody.start + 0.5 * sum(self.counterbody.body.extent))
         if position is not None:
             centres.append(position)
-        edges = self.grid.x_edges
-        even_x = np.abs(edges + edges[::-1] - (low + high)).max() < rounding and all(
+        even_x = self.grid.is_symmetric and all(
             np.isnan(centre) or abs(centre - 0.5 * (low + high)) < rounding for centre in centres
         )
         gap = np.where(np.isfinite(self.gap.values), self.gap.values, -1.0)
