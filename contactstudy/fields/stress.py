@@ -12,7 +12,7 @@ from contactstudy.arrays.grid import Grid
 from contactstudy.arrays.points import Points
 from contactstudy.arrays.variables import STRESSES, describe
 from contactstudy.bodies.models import Body
-from contactstudy.cache import ArrayKey, cached
+from contactstudy.cache import ArrayKey, recall, retain
 from contactstudy.checks import FloatArray
 from contactstudy.fields.body_operators import reference_distance
 from contactstudy.fields.loads import UNIFORM, Loads, end_problem, prescribed_loads, superpose, unit_problem
@@ -120,38 +120,41 @@ def stresses_at(
 ) -> list[FloatArray]:
     """Stresses (6, x, y, z) at each set of points, from one solution for the equivalent loads."""
     # The pressure `shape` determines the distribution inside the cells; None: uniform. All frictions of a sweep share
-    # the cached fields.
-    keys = tuple(tuple(ArrayKey(axis) for axis in points) for points in point_sets)
-    shape_cells = None if shape is None else ArrayKey(shape)
+    # the cached fields of each direction.
+    point_keys = tuple(ArrayKey(axis) for points in point_sets for axis in points)
+    shape_key = None if shape is None else ArrayKey(shape)
 
     def unit_fields(directions: tuple[Load, ...], cell_loads: FloatArray) -> dict[Load, list[FloatArray]]:
-        return _unit_stress(body, grid, directions, ArrayKey(cell_loads), keys, shape=shape_cells)
+        keys = {load: (body, grid, load, ArrayKey(cell_loads), point_keys, shape_key) for load in directions}
+        fields: dict[Load, list[FloatArray]] = {load: recall("stress fields", key) or [] for load, key in keys.items()}
+        missing = tuple(load for load, field in fields.items() if not field)
+        for load, field in _unit_stress(body, grid, missing, cell_loads, point_sets, shape).items():
+            fields[load] = retain("stress fields", keys[load], field)
+        return fields
 
     return superpose(loads, unit_fields)
 
 
-@cached("stress fields")
 def _unit_stress(
     body: Body,
     grid: Grid,
     loads: tuple[Load, ...],
-    cell_loads: ArrayKey,
-    point_set_keys: tuple[tuple[ArrayKey, ...], ...],
-    shape: ArrayKey | None,
+    cell_loads: FloatArray,
+    point_sets: Sequence[Points],
+    shape: FloatArray | None,
 ) -> dict[Load, list[FloatArray]]:
     """Stresses (6, x, y, z) at each set of points under a distribution in each direction."""
-    poisson, shape_cells = body.material.poisson, None if shape is None else shape.values
-    points_of_sets = [Points(*(axis.values for axis in key)) for key in point_set_keys]
+    poisson = body.material.poisson
     fields: dict[Load, list[FloatArray]] = {}
     for term in body.terms:
-        end_parts: list[dict[Load, FloatArray]] = [{} for _ in points_of_sets]
-        if term.free_ends and cell_loads.values.any():
-            problem = end_problem(term.free_ends, poisson, cell_loads.values, shape_cells, grid, loads=loads)
-            end_parts = end_fields(problem, STRESS, points_of_sets, reference_distance(term.extent))
+        end_parts: list[dict[Load, FloatArray]] = [{} for _ in point_sets]
+        if term.free_ends and cell_loads.any() and loads:
+            problem = end_problem(term.free_ends, poisson, cell_loads, shape, grid, loads=loads)
+            end_parts = end_fields(problem, STRESS, point_sets, reference_distance(term.extent))
         for load in loads:
-            term_fields = []
-            for key, points, end_part in zip(point_set_keys, points_of_sets, end_parts, strict=True):
-                field = _mirrored_stress(load, poisson, term.extent, grid, cell_loads, points=key, shape=shape)
+            term_fields, influence = [], stress_influence(load, poisson)
+            for points, end_part in zip(point_sets, end_parts, strict=True):
+                field = half_space_field(cell_loads, influence, grid, points, extent=term.extent, shape=shape)
                 if load in end_part:
                     # The two auxiliary bodies leave no traction on the top, by construction.
                     for component in (2, 4, 5):  # eq. (1)
@@ -162,23 +165,6 @@ def _unit_stress(
                 [a + b for a, b in zip(fields[load], term_fields, strict=True)] if load in fields else term_fields
             )
     return fields
-
-
-@cached("half-space stresses")
-def _mirrored_stress(
-    load: Load,
-    poisson: float,
-    extent: tuple[float, float],
-    grid: Grid,
-    cell_loads: ArrayKey,
-    points: tuple[ArrayKey, ...],
-    shape: ArrayKey | None,
-) -> FloatArray:
-    """Stresses (6, x, y, z) in the half-space; all frictions share the stresses under a pressure."""
-    field_points = Points(*(axis.values for axis in points))
-    shape_cells = None if shape is None else shape.values
-    influence = stress_influence(load, poisson)
-    return half_space_field(cell_loads.values, influence, grid, field_points, extent=extent, shape=shape_cells)
 
 
 def contact_stresses(

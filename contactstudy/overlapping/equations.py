@@ -67,11 +67,13 @@ def real_product(left_factor: ComplexArray, right_factor: ComplexArray) -> Float
 
 
 class AuxiliaryLoads(NamedTuple):
-    """Loads on the auxiliary bodies, for one wavenumber along y."""
+    """Loads on the auxiliary bodies, for one wavenumber along y, per direction of the load."""
 
-    equivalent: ComplexArray  # (wavenumber, column): weighted spectrum, before `cosine`, of the load added on H's top
+    equivalent: list[ComplexArray]
+    """Weighted spectra (wavenumber, column), before `cosine`, of the load added on H's top."""
     depth: ComplexArray  # depth wavenumbers on their ray, where the face loads are an analytic function
-    face_load: ComplexArray  # (depth, column): normal stress freed on the faces of V, times the quadrature's weights
+    face_load: list[ComplexArray]
+    """Normal stresses (depth, column) freed on the faces of V, times the quadrature's weights."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -148,20 +150,22 @@ class EquationSet:
         self, spectrum: ComplexArray, loads: Sequence[Load], *, shortest: float, resolution: Resolution
     ) -> AuxiliaryLoads:
         """Solve for the loads on H and V that free the ends from one distribution, acting in each direction in turn."""
-        equivalent = self.spectrum_on_top(self.solve(np.hstack([self.source(load, spectrum) for load in loads])))
+        # Separate products: the result in one direction is bit for bit independent of the other directions.
         depth, weights = self.ray_nodes(shortest, resolution)
-        columns = spectrum.shape[1]
-        top_spectrum = self.modes.on_end[:, None] * equivalent
-        slices = {load: slice(i * columns, (i + 1) * columns) for i, load in enumerate(loads)}
-        if Load.NORMAL in slices:
-            top_spectrum[:, slices[Load.NORMAL]] += spectrum
-        mode_matrix, conjugate_matrix = self.ray_to_faces(Load.NORMAL, depth)
-        face_load = mode_matrix @ top_spectrum + conjugate_matrix @ top_spectrum.conj()  # eq. (26)
-        for load, section in slices.items():
+        top_modes, top_conjugates = self.ray_to_faces(Load.NORMAL, depth)
+        equivalent_loads, face_loads = [], []
+        for load in loads:
+            equivalent = self.spectrum_on_top(self.solve(self.source(load, spectrum)))
+            top_spectrum = self.modes.on_end[:, None] * equivalent
+            if load is Load.NORMAL:
+                top_spectrum += spectrum
+            face_load = top_modes @ top_spectrum + top_conjugates @ top_spectrum.conj()  # eq. (26)
             if load is not Load.NORMAL:
                 mode_matrix, conjugate_matrix = self.ray_to_faces(load, depth)
-                face_load[:, section] += mode_matrix @ spectrum + conjugate_matrix @ spectrum.conj()
-        return AuxiliaryLoads(equivalent, depth, weights[:, None] * face_load)
+                face_load += mode_matrix @ spectrum + conjugate_matrix @ spectrum.conj()
+            equivalent_loads.append(equivalent)
+            face_loads.append(weights[:, None] * face_load)
+        return AuxiliaryLoads(equivalent_loads, depth, face_loads)
 
     def ray_nodes(self, shortest: float, resolution: Resolution) -> tuple[ComplexArray, ComplexArray]:
         """Depth wavenumbers on their ray, and the weights of the quadrature."""

@@ -31,10 +31,12 @@ POSITION_DIGITS = 12  # digits to which positions over the length are compared f
 class Harmonics:
     """A field of H under the equivalent load and of V under the face loads, for one wavenumber along y."""
 
-    of_equivalent_load: Callable[[EquationSet, ComplexArray, ComplexArray, ComplexArray, FloatArray], FloatArray]
-    """From equation set, equivalent load (wavenumber, column), cosine and sine (wavenumber, x) and depths to
-    amplitudes (component, x, z, column)."""
-    of_face_load: Callable[[EquationSet, ComplexArray, ComplexArray, FloatArray, FloatArray], FloatArray]
+    of_equivalent_load: Callable[
+        [EquationSet, Sequence[ComplexArray], ComplexArray, ComplexArray, FloatArray], FloatArray
+    ]
+    """From equation set, equivalent loads (wavenumber, column), cosine and sine (wavenumber, x) and depths to
+    amplitudes (load, component, x, z, column)."""
+    of_face_load: Callable[[EquationSet, ComplexArray, Sequence[ComplexArray], FloatArray, FloatArray], FloatArray]
     """From equation set, depth wavenumbers, weighted face loads (depth, column), distances from the end and depths
     to amplitudes of the same shape."""
     count: int  # number of components
@@ -238,9 +240,8 @@ def _amplitudes(
     shortest: float,
 ) -> list[FloatArray]:
     """Amplitudes of columns at the positions (x, z): arrays (load, component, x, z, wavenumber, column)."""
-    load_count = len(problem.loads)
     amplitudes = [
-        np.zeros((load_count, harmonics.count, x.size, z.size, columns.nodes.size, columns.parities.size))
+        np.zeros((len(problem.loads), harmonics.count, x.size, z.size, columns.nodes.size, columns.parities.size))
         for x, z in points
     ]
     starts = np.cumsum([0, *(x.size for x, _ in points)])
@@ -256,7 +257,6 @@ def _amplitudes(
                 cosine, sine = view.cosine[:, indices], view.sine[:, indices]
                 field = harmonics.of_equivalent_load(system, loads.equivalent, cosine, sine, z)
                 field += harmonics.of_face_load(system, loads.depth, loads.face_load, view.x[indices], z)
-                by_load = np.moveaxis(field.reshape(*field.shape[:3], load_count, -1), 3, 0)
                 rows, depths = (view.rows[indices] - start)[:, None, None], np.arange(z.size)[:, None]
-                amplitude[:, :, rows, depths, node, view.columns] = by_load
+                amplitude[:, :, rows, depths, node, view.columns] = field
     return amplitudes

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from contactstudy.checks import ComplexArray, FloatArray
@@ -10,9 +12,9 @@ from contactstudy.overlapping.field import Harmonics
 
 
 def _stress_of_equivalent_load(
-    system: EquationSet, equivalent: ComplexArray, cosine: ComplexArray, sine: ComplexArray, z: FloatArray
+    system: EquationSet, equivalent: Sequence[ComplexArray], cosine: ComplexArray, sine: ComplexArray, z: FloatArray
 ) -> FloatArray:
-    """Stresses of H under the equivalent load, by the harmonics of a pressure: array (6, x, z, column)."""
+    """Stresses of H under the equivalent load, by the harmonics of a pressure: (load, 6, x, z, column)."""
     nu, lateral = system.poisson, system.lateral
     axial = system.modes.wavenumbers
     k = np.sqrt(axial**2 + lateral**2)
@@ -28,23 +30,24 @@ def _stress_of_equivalent_load(
         (zero, zero + lateral),
     ]
     sine_terms = [(-(1 - 2 * nu) * axial * lateral / k**2, axial * lateral / k), (zero, -axial)]  # xy, xz
-    stresses = np.empty((6, cosine.shape[1], z.size, equivalent.shape[1]))
+    stresses = np.empty((len(equivalent), 6, cosine.shape[1], z.size, equivalent[0].shape[1]))
     for waves, terms, components in ((cosine, cosine_terms, [0, 1, 2, 5]), (sine, sine_terms, [3, 4])):
         along_z = np.stack([a[:, None] * decay + b[:, None] * z_times_decay for a, b in terms], axis=1)
-        along_x = equivalent.T[:, None, :] * waves.T
-        stresses[components] = real_product(along_x, along_z).transpose(2, 1, 3, 0)
+        for load_stresses, spectrum in zip(stresses, equivalent, strict=True):
+            along_x = spectrum.T[:, None, :] * waves.T
+            load_stresses[components] = real_product(along_x, along_z).transpose(2, 1, 3, 0)
     return stresses
 
 
 def _stress_of_face_load(
-    system: EquationSet, depth: ComplexArray, face_load: ComplexArray, x: FloatArray, z: FloatArray
+    system: EquationSet, depth: ComplexArray, face_load: Sequence[ComplexArray], x: FloatArray, z: FloatArray
 ) -> FloatArray:
-    """Stresses of V under the face loads on its two ends: array (6, x, z, column)."""
+    """Stresses of V under the face loads on its two ends: (load, 6, x, z, column)."""
     # The slab's harmonics are two half-space harmonics that start from either end; with ``X = kappa`` times the
     # distance from the end and ``Phi = 1 - 2 nu - tau - X`` each adds its amplitude and ``exp(-X)`` times the terms
     # below.
     nu, lateral, modes = system.poisson, system.lateral, system.modes
-    kappa, tau, face_waves = _face_waves(system, depth, face_load, z)
+    kappa, tau, along_z = _face_waves(system, depth, z)
     # Sums over both ends of exp(-X), and of (tau + X) exp(-X) for even and odd components.
     decay, x_times_decay = _decay_from_end(x, kappa, tau)
     even_growth = odd_growth = x_times_decay
@@ -64,20 +67,22 @@ def _stress_of_face_load(
     np.multiply(-lateral / kappa, odd_growth, out=cosine_z[3])
     np.multiply(lateral * depth / kappa**2, potential, out=sine_z[0])
     np.multiply(depth / kappa, odd_growth, out=sine_z[1])
-    stresses = np.empty((6, x.size, z.size, face_load.shape[1]))
-    stresses[[0, 1, 2, 3]] = real_product(cosine_z, face_waves)
-    stresses[[5, 4]] = real_product(-1j * sine_z, face_waves)
+    sine_z *= -1j
+    stresses = np.empty((len(face_load), 6, x.size, z.size, face_load[0].shape[1]))
+    for load_stresses, loads in zip(stresses, face_load, strict=True):
+        face_waves = along_z[..., None] * loads[:, None, :]
+        load_stresses[[0, 1, 2, 3]] = real_product(cosine_z, face_waves)
+        load_stresses[[5, 4]] = real_product(sine_z, face_waves)
     return stresses
 
 
 def _face_waves(
-    system: EquationSet, depth: ComplexArray, face_load: ComplexArray, z: FloatArray
+    system: EquationSet, depth: ComplexArray, z: FloatArray
 ) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
-    """``kappa`` and ``tau`` of depth wavenumbers, and the waves (depth, z, column) of V from either face."""
+    """``kappa`` and ``tau`` of depth wavenumbers, and the waves (depth, z) of V from either face per unit load."""
     kappa = np.sqrt(depth**2 + system.lateral**2)
     amplitude, tau = system.modes.face_amplitude(kappa)
-    waves = np.exp(1j * np.outer(depth, z))
-    return kappa, tau, waves[..., None] * (amplitude[:, None] * face_load)[:, None, :]
+    return kappa, tau, amplitude[:, None] * np.exp(1j * np.outer(depth, z))
 
 
 def _decay_from_end(distance: FloatArray, kappa: ComplexArray, tau: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
@@ -100,15 +105,15 @@ STRESS = Harmonics(  # components xx, yy, zz, xy, xz, yz
 
 
 def _displacement_of_equivalent_load(
-    system: EquationSet, equivalent: ComplexArray, cosine: ComplexArray, sine: ComplexArray, z: FloatArray
+    system: EquationSet, equivalent: Sequence[ComplexArray], cosine: ComplexArray, sine: ComplexArray, z: FloatArray
 ) -> FloatArray:
-    """``2 G u`` of H under the equivalent load, by the harmonics of a pressure: array (3, x, z, column)."""
+    """``2 G u`` of H under the equivalent load, by the harmonics of a pressure: (load, 3, x, z, column)."""
     nu, lateral = system.poisson, system.lateral
     axial = system.modes.wavenumbers
     k = np.sqrt(axial**2 + lateral**2)
     decay = np.exp(-np.outer(k, z))
     compressibility = 1 - 2 * nu
-    displacements = np.empty((3, cosine.shape[1], z.size, equivalent.shape[1]))
+    displacements = np.empty((len(equivalent), 3, cosine.shape[1], z.size, equivalent[0].shape[1]))
     # eqs. (10) and (13)
     terms = (  # component, function of x, constant, factor of k z
         (0, sine, -compressibility * axial / k**2, axial / k**2),
@@ -117,17 +122,18 @@ def _displacement_of_equivalent_load(
     )
     for component, function, constant, slope in terms:
         along_z = decay * (constant[:, None] + slope[:, None] * np.outer(k, z))
-        displacements[component] = real_product(function.T, along_z[..., None] * equivalent[:, None, :])
+        for load_displacements, spectrum in zip(displacements, equivalent, strict=True):
+            load_displacements[component] = real_product(function.T, along_z[..., None] * spectrum[:, None, :])
     return displacements
 
 
 def _displacement_of_face_load(
-    system: EquationSet, depth: ComplexArray, face_load: ComplexArray, x: FloatArray, z: FloatArray
+    system: EquationSet, depth: ComplexArray, face_load: Sequence[ComplexArray], x: FloatArray, z: FloatArray
 ) -> FloatArray:
-    """``2 G u`` of V under the face loads on its two ends: array (3, x, z, column)."""
+    """``2 G u`` of V under the face loads on its two ends: (load, 3, x, z, column)."""
     # With the potential ``psi = -exp(-X) / kappa`` of either end: ``2 G u = -grad(Phi) + 4 (1 - nu) psi e_x``.
     nu, lateral, modes = system.poisson, system.lateral, system.modes
-    kappa, tau, face_waves = _face_waves(system, depth, face_load, z)
+    kappa, tau, along_z = _face_waves(system, depth, z)
     along_x: ComplexArray = np.zeros((3, x.size, depth.size), np.complex128)
     ends = [(x, 1, 1)]
     if modes.parity:
@@ -139,7 +145,8 @@ def _displacement_of_face_load(
         along_x[0] -= odd_sign * (tau + scaled_distance + 2 * (1 - nu)) * decay / kappa
         along_x[1] -= even_sign * lateral / kappa**2 * potential
         along_x[2] += even_sign * depth / kappa**2 * potential
-    return np.concatenate([real_product(along_x[:2], face_waves), real_product(-1j * along_x[2:], face_waves)])
+    along_x[2] *= -1j
+    return np.stack([real_product(along_x, along_z[..., None] * loads[:, None, :]) for loads in face_load])
 
 
 DISPLACEMENT = Harmonics(  # components along x, y, z, times ``2 G``

@@ -150,7 +150,8 @@ def _solve_group(task: Task, cases: list[PlannedCase], solver: Solver | None) ->
     shares_contact = solver is None and len(cases) > 1 and task.level == "summary"
     shared_batch: Batch | None = None
     film: xr.Dataset | None = None
-    for case in cases:
+    # Stresses under the traction are evaluated together with those under the pressure, which all frictions share.
+    for case in sorted(cases, key=lambda case: case.parameters.get("friction", 0.0) == 0.0):
         start_time = time.perf_counter()
         try:
             setup = build_setup(case.parameters)

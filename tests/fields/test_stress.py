@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from contactstudy import FiniteLengthSpace, HalfSpace, InvalidInputError, Material, stress_field
+from contactstudy import FiniteLengthSpace, HalfSpace, InvalidInputError, Material, cache, stress_field
 from contactstudy.arrays.grid import Grid
 from contactstudy.arrays.points import Points
 from contactstudy.arrays.variables import STRESSES
@@ -77,6 +77,19 @@ def test_friction_is_linear(short_body: FiniteLengthSpace, strip_pressure) -> No
     empty, some, additional = (stress_field(short_body, pressure, friction=f, **points) for f in (0.0, 0.2, 0.4))
     for name in STRESSES:
         assert np.allclose(additional[name] - empty[name], 2 * (some[name] - empty[name]), atol=1e-10), name
+
+
+def test_frictions_share_stresses_bit_for_bit(short_body: FiniteLengthSpace, strip_pressure) -> None:
+    """The pressure's stresses are equal alone, and from the cache of stresses evaluated with the traction's."""
+    pressure = strip_pressure(8.0, (32, 32))
+    fields = []
+    for frictions in ((0.0,), (0.1, 0.0)):
+        cache.clear()
+        for friction in frictions:
+            stress = stress_field(short_body, pressure, friction=friction, x=[0.0, 0.3], y=[0.1, 0.4], z=[0.0, 0.2])
+        fields.append(stress)
+    assert cache.info().kinds["stress fields"].reused == 1
+    xr.testing.assert_identical(*fields)
 
 
 def test_stresses_do_not_depend_on_order_of_points(short_body: FiniteLengthSpace, strip_pressure) -> None:

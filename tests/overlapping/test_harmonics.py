@@ -52,7 +52,7 @@ def system_of(modes: AxialModes) -> EquationSet:
 def field_of_h(modes: AxialModes, field: Callable[..., FloatArray]) -> Field:
     """Field of H under an equivalent load of two columns."""
     system, load = system_of(modes), WEIGHTS[: modes.wavenumbers.size]
-    return lambda x, z: field(system, load, modes.cosine(x), modes.sine(x), z)
+    return lambda x, z: field(system, [load], modes.cosine(x), modes.sine(x), z)[0]
 
 
 def evaluate_beside_end(
@@ -60,7 +60,7 @@ def evaluate_beside_end(
 ) -> Field:
     """Field of V under face loads of two columns."""
     system = system_of(modes)
-    return lambda x, z: field(system, depth, load, x, z)
+    return lambda x, z: field(system, depth, [load], x, z)[0]
 
 
 def along(field: Field, axis: int) -> FloatArray:
@@ -156,7 +156,8 @@ def test_normal_stress_of_v_on_top(name: str) -> None:
         def load(
             x: FloatArray, wavenumber: ComplexArray = wavenumber, unit_load: ComplexArray = unit_load
         ) -> FloatArray:
-            return np.asarray(harmonics._stress_of_face_load(system, wavenumber, unit_load, x, np.zeros(1))[2, :, 0, 0])
+            stresses = harmonics._stress_of_face_load(system, wavenumber, [unit_load], x, np.zeros(1))
+            return np.asarray(stresses[0, 2, :, 0, 0])
 
         expected = weigh(modes, load) * kappa[index] / factor[index]
         assert computed[: modes.discrete.size, index] == pytest.approx(expected[: modes.discrete.size])
