@@ -132,7 +132,7 @@ def mark_largest(ax: Axes, case: xr.Dataset, variable: str, plane: dict[str, flo
         return
     ((normal, position),) = plane.items()
     location = {axis: float(case[f"{name}_{axis}"]) for axis in "xyz"}
-    label = f"{float(case[name]) / unit.stress:.3g}"
+    label = np.format_float_positional(float(case[name]) / unit.stress, precision=3, fractional=False, trim="-")
     if abs(location[normal] - position) > 1e-9:
         label += f" at {unit.position(normal, location[normal])}"
     horizontal, vertical = (location[axis] / unit.length for axis in "xyz" if axis != normal)
