@@ -170,8 +170,7 @@ def _draw_planes(figure: Any, entries: list[Entry], distance: float, depth: floa
         ax.set(xlabel="", ylabel=f"$z{unit.over_length}$", ylim=(depth, 0.0), title=f"$e/a$ = {end_distance:g}")
     axes[0].set_xlim(0.0, min(distance, max(float(x.max()) for x, *_ in planes)))
     axes[-1].set_xlabel(unit.axis("x"))
-    contours = [ax.collections[0] for ax in axes]
-    for panel in contours:
+    for ax in axes:
         # The stress below the end is several times that below mid-length: the square root separates both by colour.
-        panel.set_norm(PowerNorm(0.5, 0.0, levels[-1]))
-    figure.colorbar(contours[0], ax=axes, label=unit.stress_label("von_mises") + "\nin $y=0$")
+        ax.collections[0].set_norm(PowerNorm(0.5, 0.0, levels[-1]))
+    figure.colorbar(axes[0].collections[0], ax=axes, label=unit.stress_label("von_mises") + "\nin $y=0$")

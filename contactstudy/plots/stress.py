@@ -138,16 +138,9 @@ def mark_largest(ax: Axes, case: xr.Dataset, variable: str, plane: dict[str, flo
     horizontal, vertical = (location[axis] / unit.length for axis in "xyz" if axis != normal)
     ax.plot(horizontal, vertical, "+", color="#e8513a", markersize=9, markeredgewidth=1.6)
     is_right = horizontal > np.mean(ax.get_xlim())  # the label lies towards the middle of the axes
-    ax.annotate(
-        label,
-        (horizontal, vertical),
-        (-6 if is_right else 6, -6),
-        textcoords="offset points",
-        bbox={"boxstyle": "round,pad=0.1", "facecolor": "white", "alpha": 0.7, "linewidth": 0},
-        fontsize="small",
-        va="top",
-        ha="right" if is_right else "left",
-    )
+    box = {"boxstyle": "round,pad=0.1", "facecolor": "white", "alpha": 0.7, "linewidth": 0}
+    style: dict[str, Any] = {"bbox": box, "fontsize": "small", "va": "top", "ha": "right" if is_right else "left"}
+    ax.annotate(label, (horizontal, vertical), (-6 if is_right else 6, -6), textcoords="offset points", **style)
 
 
 def plot_end_face(
