@@ -31,6 +31,7 @@ from contactstudy.overlapping.field import end_fields
 from contactstudy.overlapping.harmonics import STRESS
 from contactstudy.overlapping.problem import EndProblem
 from contactstudy.overlapping.quadrature import Resolution
+from contactstudy.plots.style import line_styles
 from contactstudy.verification import closed_forms
 from contactstudy.verification.check import Check, Reference
 from contactstudy.verification.free_ends import pressure_of
@@ -321,16 +322,16 @@ def plot_convergence(tables: list[Table]) -> Figure:
     figure, axes = panels(len(tables))
     for ax, table in zip(axes, tables, strict=True):
         used = table.values.index(table.used)
-        for index, (quantity, errors) in enumerate(table.errors.items()):
+        for style, (quantity, errors) in zip(line_styles(len(table.errors)), table.errors.items(), strict=True):
             visible = np.maximum(errors, 1e-12)
-            ax.plot(table.values, visible, color=f"C{index}", marker=".", label=textwrap.shorten(quantity, 36))
-            ax.plot(table.used, visible[used], marker="o", color=f"C{index}")
+            ax.plot(table.values, visible, marker=".", label=textwrap.shorten(quantity, 30), **style)
+            ax.plot(table.used, visible[used], marker="o", color=style["color"])
         ax.set_xscale("log", base=2)
         ax.set_yscale("log")
         ax.set_xticks(table.values, [f"{value:.3g}" for value in table.values])
         ax.set_xlabel(table.setting)
         ax.set_ylabel("error")
-        ax.set_title("\n".join(textwrap.wrap(table.title, 48)), fontsize="small")
+        ax.set_title("\n".join(textwrap.wrap(table.title, 36)), fontsize="small")
         ax.legend(fontsize="x-small")
         ax.grid(alpha=0.3)
     return figure

@@ -144,35 +144,35 @@ def designs(task: Task) -> xr.Dataset:
 
 def draw(task: Task, designs_of_models: xr.Dataset) -> plt.Figure:
     """Worst pressure against the factor for both models, and pressure along the axis for both designs."""
-    figure, (left, right) = plt.subplots(1, 2, figsize=(10.5, 4.0), layout="constrained")
+    figure, (above, below) = plt.subplots(2, 1, figsize=(5.4, 6.4), layout="constrained")
     singular = False
     for label, dashes in (("half-space", "--"), ("free ends", "-")):
         row = designs_of_models.sel(design=label)
         line = row.dropna("evaluation", subset=["looked_at"]).sortby("looked_at")
         factors, worst = line["looked_at"].values, line["looked_at_pressure"].values
-        left.semilogx(factors, np.where(np.isfinite(worst), worst, np.nan), dashes, color="black", label=label)
+        above.semilogx(factors, np.where(np.isfinite(worst), worst, np.nan), dashes, color="black", label=label)
         singular_factors = factors[np.isinf(worst)]
         singular |= bool(singular_factors.size)
-        height, axes = np.full(singular_factors.size, 0.97), left.get_xaxis_transform()
-        left.plot(singular_factors, height, "^", transform=axes, color="black", markerfacecolor="none")
-        left.plot(float(row["delta"]), np.nanmin(worst), "o", color="black")
-        left.axvspan(float(row["flat_from"]), float(row["flat_to"]), color="0.9")
-    left.set_xticks([0.3, 0.5, 1.0, 2.0, 4.0], ["0.3", "0.5", "1", "2", "4"])
-    left.minorticks_off()
-    left.set(xlabel=r"modification factor $\delta$", ylabel="worst pressure over $p_0$")
+        height, axes = np.full(singular_factors.size, 0.97), above.get_xaxis_transform()
+        above.plot(singular_factors, height, "^", transform=axes, color="black", markerfacecolor="none")
+        above.plot(float(row["delta"]), np.nanmin(worst), "o", color="black")
+        above.axvspan(float(row["flat_from"]), float(row["flat_to"]), color="0.9")
+    above.set_xticks([0.3, 0.5, 1.0, 2.0, 4.0], ["0.3", "0.5", "1", "2", "4"])
+    above.minorticks_off()
+    above.set(xlabel=r"modification factor $\delta$", ylabel="worst pressure over $p_0$")
     title = "largest of all loads and tilts"
-    left.legend(frameon=False, title=f"{title}\n($\\triangle$ singular)" if singular else title)
+    above.legend(frameon=False, title=f"{title}\n($\\triangle$ singular)" if singular else title)
     for design, dashes in (("half-space", "--"), ("free ends", "-")):
         row = designs_of_models.sel(design=design)
-        right.plot(
+        below.plot(
             1e3 * designs_of_models["x"],
             row["axial_pressure"] / 1e9,
             dashes,
             color="black",
             label=rf"$\delta$ = {float(row['delta']):.2f}, for {design}",
         )
-    right.set(xlabel="position along the axis, $x$ (mm)", ylabel="largest pressure across y (GPa)", ylim=(0, None))
-    right.legend(
+    below.set(xlabel="position along the axis, $x$ (mm)", ylabel="largest pressure across y (GPa)", ylim=(0, None))
+    below.legend(
         frameon=False, title=f"on the body with free ends, tilt {1e3 * task.tilts[-1]:g} mrad", loc="lower center"
     )
     return figure
@@ -208,7 +208,7 @@ def main() -> None:
     designs_of_models = designs(task)
     options.out.mkdir(parents=True, exist_ok=True)
     designs_of_models.to_netcdf(options.out / "best_profile.nc")
-    draw(task, designs_of_models).savefig(options.out / "best_profile.png", dpi=110)
+    draw(task, designs_of_models).savefig(options.out / "best_profile.png", dpi=200)
     print(table(designs_of_models))
 
 

@@ -118,7 +118,7 @@ def flow(profile: xr.Dataset) -> xr.DataArray:
 
 def draw(residual: xr.Dataset) -> plt.Figure:
     """Residual stresses over the depth at the three places and over the section, and the flow of each pass."""
-    figure, axes = plt.subplots(2, 2, figsize=(10.0, 7.6), layout="constrained")
+    figure, axes = plt.subplots(2, 2, figsize=(8.0, 6.4), layout="constrained")
     profiles = select_depths(residual)
     for ax, (name, direction) in zip(axes[0], COMPONENTS.items(), strict=True):
         for (label, profile), style in zip(profiles.items(), line_styles(len(profiles)), strict=True):
@@ -165,7 +165,7 @@ def main() -> None:
     residual = roll_passes(Task())
     options.out.mkdir(parents=True, exist_ok=True)
     residual.to_netcdf(options.out / "residual_stress.nc")
-    draw(residual).savefig(options.out / "residual_stress.png", dpi=100)
+    draw(residual).savefig(options.out / "residual_stress.png", dpi=160)
     print(f"shakedown limit p0/k = {float(residual['shakedown_limit']):.2f}")
     print(f"k = {float(residual['shear_yield_stress']) / 1e6:.0f} MPa\n")
     print(table(residual))

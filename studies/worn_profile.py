@@ -125,7 +125,7 @@ def _press_profile(case: cs.Case, grid: cs.Grid) -> xr.Dataset:
 
 def draw(task: Task, worn: xr.Dataset, pressures: xr.Dataset) -> plt.Figure:
     """Profiles, and the load per length near an end at the load that they wore at and at a higher one."""
-    figure, axes = plt.subplots(1, 3, figsize=(13.0, 4.2), layout="constrained")
+    figure, axes = plt.subplots(3, 1, figsize=(5.4, 8.4), layout="constrained")
     compared = profiles(task, worn)
     x = 0.5 * task.length * np.linspace(-1, 1, 2001)[1:-1]
     styles = line_styles(len(compared))
@@ -170,7 +170,7 @@ def main() -> None:
     options.out.mkdir(parents=True, exist_ok=True)
     worn.to_netcdf(options.out / "worn_profile.nc")
     pressures.to_netcdf(options.out / "worn_profile_judged.nc")
-    draw(task, worn, pressures).savefig(options.out / "worn_profile.png", dpi=110)
+    draw(task, worn, pressures).savefig(options.out / "worn_profile.png", dpi=200)
     print(table(pressures))
 
 

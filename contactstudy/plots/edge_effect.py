@@ -157,6 +157,7 @@ def _level_distance(entries: list[Entry]) -> float:
 
 def _draw_planes(figure: Any, entries: list[Entry], distance: float, depth: float) -> None:
     """One panel of von Mises stress per e/a below each other, with one colour scale."""
+    from matplotlib.colors import PowerNorm
     from matplotlib.ticker import MaxNLocator
 
     planes = [plane_stress(case, "von_mises", {"y": 0.0}, units(case, si=False)) for _, case in entries]
@@ -169,5 +170,7 @@ def _draw_planes(figure: Any, entries: list[Entry], distance: float, depth: floa
         ax.set(xlabel="", ylabel=f"$z{unit.over_length}$", ylim=(depth, 0.0), title=f"$e/a$ = {end_distance:g}")
     axes[0].set_xlim(0.0, min(distance, max(float(x.max()) for x, *_ in planes)))
     axes[-1].set_xlabel(unit.axis("x"))
-    contours = next(entry for entry in axes[0].collections if entry.get_array() is not None)
-    figure.colorbar(contours, ax=axes, label=unit.stress_label("von_mises") + "\nin $y=0$")
+    for ax in axes:
+        # The stress below the end is several times that below mid-length: the square root separates both by colour.
+        ax.collections[0].set_norm(PowerNorm(0.5, 0.0, levels[-1]))
+    figure.colorbar(axes[0].collections[0], ax=axes, label=unit.stress_label("von_mises") + "\nin $y=0$")

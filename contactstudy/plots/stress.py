@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     from matplotlib.contour import QuadContourSet
 
 LEVELS = 12  # Approximate number of contours
-NEAR_PLANE = 0.15  # Distance from a plane, over the Hertz half-width, within which the plane marks the largest value
 
 
 def _draw_contours(
@@ -90,7 +89,7 @@ def plot_stress_plane(
     Returns
     -------
     Axes
-        Depth points downwards. A cross marks the largest value in the body, if it lies in the plane.
+        Depth points downwards. A cross marks the largest value in the body, its label the position off the plane.
 
     Raises
     ------
@@ -127,25 +126,21 @@ def plot_stress_plane(
 
 
 def mark_largest(ax: Axes, case: xr.Dataset, variable: str, plane: dict[str, float], unit: Units) -> None:
-    """Mark the largest value in the body, ``peak_<variable>``, if it lies in the plane."""
+    """Mark the largest value in the body, ``peak_<variable>``, with its distance from the plane if it lies beside."""
     name = f"peak_{variable}"
     if any(f"{name}{suffix}" not in case for suffix in ("", "_x", "_y", "_z")) or not np.isfinite(float(case[name])):
         return
     ((normal, position),) = plane.items()
     location = {axis: float(case[f"{name}_{axis}"]) for axis in "xyz"}
-    if abs(location[normal] - position) > NEAR_PLANE * float(case.get("hertz_half_width", 0.0)) + 1e-9:
-        return
+    label = np.format_float_positional(float(case[name]) / unit.stress, precision=3, fractional=False, trim="-")
+    if abs(location[normal] - position) > 1e-9:
+        label += f" at {unit.position(normal, location[normal])}"
     horizontal, vertical = (location[axis] / unit.length for axis in "xyz" if axis != normal)
     ax.plot(horizontal, vertical, "+", color="#e8513a", markersize=9, markeredgewidth=1.6)
-    ax.annotate(
-        f"{float(case[name]) / unit.stress:.3g}",
-        (horizontal, vertical),
-        (6, -6),
-        textcoords="offset points",
-        color="white",
-        fontsize="small",
-        va="top",
-    )
+    is_right = horizontal > np.mean(ax.get_xlim())  # the label lies towards the middle of the axes
+    box = {"boxstyle": "round,pad=0.1", "facecolor": "white", "alpha": 0.7, "linewidth": 0}
+    style: dict[str, Any] = {"bbox": box, "fontsize": "small", "va": "top", "ha": "right" if is_right else "left"}
+    ax.annotate(label, (horizontal, vertical), (-6 if is_right else 6, -6), textcoords="offset points", **style)
 
 
 def plot_end_face(

@@ -18,6 +18,7 @@ import xarray as xr
 from contactstudy import checks as arguments
 from contactstudy.arrays.variables import describe
 from contactstudy.errors import InvalidInputError, MagnitudeWarning
+from contactstudy.plots.style import line_styles
 from contactstudy.study.files import write_dataset, write_text
 from contactstudy.verification import exact_solutions, film, free_ends, passes, tribology
 from contactstudy.verification.check import Check
@@ -185,12 +186,12 @@ def row(cells: list[str]) -> str:
 
 
 def panels(count: int) -> tuple[Figure, list[Axes]]:
-    """Figure and its `count` panels in rows of three."""
+    """Figure of a page's width and its `count` panels in rows of two."""
     from matplotlib.figure import Figure
 
-    columns = min(count, 3)
-    figure = Figure(figsize=(4.2 * columns, 3.1 * -(-count // 3)), layout="constrained")
-    return figure, [figure.add_subplot(-(-count // 3), columns, index + 1) for index in range(count)]
+    rows = -(-count // 2)
+    figure = Figure(figsize=(6.0, 2.6 * rows), layout="constrained")
+    return figure, [figure.add_subplot(rows, 2, index + 1) for index in range(count)]
 
 
 def plot_profiles(checks: list[Check]) -> Figure:
@@ -199,10 +200,10 @@ def plot_profiles(checks: list[Check]) -> Figure:
     figure, axes = panels(len(curves))
     for ax, (case, curve) in zip(axes, curves, strict=True):
         every_nth = slice(None, None, max(1, curve.positions.size // 40))
-        ax.plot(curve.positions, curve.computed, color="C0", label="computed")
+        ax.plot(curve.positions, curve.computed, label="computed", **line_styles(1)[0])
         expected = curve.positions[every_nth], curve.expected[every_nth]
-        ax.plot(*expected, "o", color="C1", markersize=4, markerfacecolor="none", label="reference")
-        ax.set_title("\n".join(textwrap.wrap(case, 48)), fontsize="small")
+        ax.plot(*expected, "o", color="black", markersize=4, markerfacecolor="none", label="reference")
+        ax.set_title("\n".join(textwrap.wrap(case, 36)), fontsize="small")
         ax.set_xlabel(curve.labels[0])
         ax.set_ylabel(re.sub(r"(sigma|tau)_(\w\w)", r"$\\\1_{\2}$", curve.labels[1]), fontsize="small")
         ax.grid(alpha=0.3)

@@ -15,7 +15,7 @@ case = cs.Case(
 )
 a = case.hertz_half_width
 x = a * np.geomspace(1.0, 16.0, 24) - a  # from the free end
-result = cs.solve(case, x=x, y=a * np.linspace(-3, 3, 49), z=a * np.linspace(0.05, 1.5, 30))
+result = cs.solve(case, x=x, y=a * np.linspace(-3, 3, 97), z=a * np.linspace(0.0, 1.5, 31))
 limits = cs.fatigue.FatigueLimits(bending=700e6, torsion=450e6)
 panels = {"Dang Van": cs.fatigue.dang_van(result, limits), "Findley": cs.fatigue.findley(result, limits)}
 

@@ -20,5 +20,6 @@ grid = cs.Grid.from_edges([*half, *(10e-3 - half[-2::-1])], (-1.4 * a, 1.4 * a),
 result = cs.solve(case, grid, stresses=False)
 
 figure, ax = pyplot.subplots(figsize=(5.2, 4.0), layout="constrained")
-cs.plots.plot_stick_and_slip(result.sel(x=slice(0, 3 * a)), ax, arrows=14)
+cs.plots.plot_stick_and_slip(result.sel(x=slice(0, 4 * a)), ax, arrows=18)
+ax.set_xlim(-0.1, 3.0)
 figure.savefig("rolling.png", dpi=200)

@@ -15,6 +15,12 @@ def test_study_figure(study_dataset):
     assert labels[-1].startswith("half-space")
 
 
+def test_quarter_of_the_largest_stress_has_the_middle_colour(study_dataset):
+    figure = plots.plot_edge_effect(study_dataset)
+    panels = [ax.collections[0] for ax in figure.get_axes() if ax.get_title()]
+    assert [float(panel.norm(0.25 * panel.levels[-1])) for panel in panels] == pytest.approx([0.5] * 3)
+
+
 def test_legend_fits_narrow_column(study_dataset):
     figure = plots.plot_edge_effect(study_dataset)
     (text, *_) = figure.get_axes()[0].get_legend().get_texts()

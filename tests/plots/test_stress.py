@@ -26,6 +26,24 @@ def test_levels_cover_the_stress_of_the_plane(case_result):
     assert levels[-1] >= float(plane.max())
 
 
+@pytest.mark.parametrize(("y", "off_plane"), [(0.0, ""), (0.4, " at $y/a$ = 0.4")])
+@pytest.mark.parametrize("x", [1e-4, 4e-4])
+def test_largest_stress_is_marked_with_its_place(case_result, assert_nothing_clipped, x, y, off_plane):
+    a = float(case_result["hertz_half_width"])
+    place = {"peak_von_mises_x": x, "peak_von_mises_y": y * a, "peak_von_mises_z": 2e-5}
+    case = case_result.assign(place | {"peak_von_mises": 0.9 * 1.5e9})
+    ax = plots.plot_stress_plane(case)
+    (label,) = ax.texts
+    assert label.get_text() == f"0.9{off_plane}"
+    np.testing.assert_allclose(label.xy, (x / a, 2e-5 / a))
+    (label_si,) = plots.plot_stress_plane(case, si=True).texts
+    assert label_si.get_text().startswith("1350")
+    assert_nothing_clipped(ax.figure)
+    ends = label.get_window_extent().intervalx
+    assert (ends >= ax.bbox.x0).all()
+    assert (ends <= ax.bbox.x1).all()
+
+
 def test_plot_of_single_plane_result(study_case):
     ax = plots.plot_stress_plane(study_case, "sigma_xx")
     low, high = ax.get_ylim()
