@@ -16,6 +16,7 @@ import numpy as np
 import xarray as xr
 from scipy import ndimage
 
+from benchmarks.fuzz.profile_properties import drop_determines_the_peak
 from benchmarks.fuzz.shapes import magnitude
 from benchmarks.fuzz.solutions import (
     SAME_PRESSURE,
@@ -484,6 +485,7 @@ RANDOM_CHECKS: tuple[Callable[[SolvedCase], bool], ...] = (
     equilibrium,
     loads_on_the_top,
     largest_stress,
+    drop_determines_the_peak,
     equivalent_loads_are_finite,
     single_plane,
     two_threads,

@@ -13,12 +13,12 @@ from contactstudy.arrays.variables import ERROR_KIND, NOT_ESTIMATED, STRESSES, l
 from contactstudy.errors import InvalidInputError
 
 # Comments of numbers that depend on the cells, with errors that are not estimated
-COMMENTS = {
-    "contact_length": "in whole cells",
-    "contact_width": "in whole cells",
-    "end_pressure_over_p0_first": "mean of the outermost loaded cell",
-    "end_pressure_over_p0_last": "mean of the outermost loaded cell",
-}
+COMMENTS = dict.fromkeys(
+    ("contact_length", "contact_width", "peak_pressure_x", "peak_pressure_y"), "in whole cells"
+) | dict.fromkeys(
+    ("end_pressure_over_p0", "end_pressure_over_p0_first", "end_pressure_over_p0_last"),
+    "mean of the outermost loaded cell",
+)
 
 
 def pressure_numbers(dataset: xr.Dataset) -> dict[str, float]:

@@ -28,7 +28,7 @@ from contactstudy.case.motion import (
 from contactstudy.case.roller import Roller, snap_to_ends
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
-from contactstudy.profiles.base import SlopeJumps, as_shape
+from contactstudy.profiles.base import SlopeJumps, as_shape, find_slope_jumps
 from contactstudy.profiles.straight import Chamfer, Cylinder
 
 GAP_NODES = 6  # Gauss points over the width of a cell for the mean gap. Accuracy
@@ -247,16 +247,14 @@ class Case:
 
     @property
     def slope_jumps(self) -> SlopeJumps:
-        """Corners of the generatrix over the body: positions x, metres, and jumps of the slope."""
-        corners = as_shape(self.roller.profile).slope_jumps(self.roller.length)
-        corners = SlopeJumps(self.roller_middle + corners.positions, corners.jumps)
-        if self.body_edge is not None:
-            midpoint, length = self._body_top
-            edges = as_shape(self.body_edge).slope_jumps(length)
-            corners = SlopeJumps.merge(corners, SlopeJumps(midpoint + edges.positions, edges.jumps))
+        """Corners of the gap along the axis, also unresolved ones: positions x, metres, and jumps of the slope."""
         start, stop = self.contact_range
-        in_contact_range = (corners.positions > start) & (corners.positions < stop)
-        return SlopeJumps(corners.positions[in_contact_range], corners.jumps[in_contact_range])
+        middle = 0.5 * (start + stop)
+        corners = find_slope_jumps(lambda x: self.gap_on_axis(middle + x), stop - start)
+        unresolved = as_shape(self.roller.profile).unresolved_corners(self.roller.length)
+        x = np.append(middle + corners.positions, self.roller_middle + unresolved.positions)
+        is_inside = (x > start) & (x < stop)
+        return SlopeJumps(x[is_inside], np.append(corners.jumps, unresolved.jumps)[is_inside])
 
     @property
     def nodes(self) -> FloatArray:

@@ -249,11 +249,8 @@ def _start_loads(after: xr.Dataset, motion: Motion, grid: Grid, body: Body) -> d
     if missing:
         raise InvalidInputError("after", f"without {missing[0]}", "a result with stick and slip")
     previous = prescribed_loads(body, after["pressure"], 0.0, after["traction_x"], after["traction_y"])
-    if (
-        previous.grid.shape != grid.shape
-        or not np.allclose(previous.grid.x, grid.x)
-        or not np.allclose(previous.grid.y, grid.y)
-    ):
+    centres = (previous.grid.x, previous.grid.y), (grid.x, grid.y)
+    if previous.grid.shape != grid.shape or not all(map(np.allclose, *centres)):
         raise InvalidInputError("after", f"on {previous.grid.shape} cells", "on the cells of the gap")
     return {load: top.values for load, top in previous.loads.items()}
 

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import Field, dataclass, fields, is_dataclass
 from itertools import chain
 from typing import NamedTuple, Protocol, runtime_checkable
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 
 from contactstudy import checks
 from contactstudy.arrays.engineering import format_quantity
@@ -15,7 +17,9 @@ from contactstudy.errors import InvalidInputError
 
 # Units of the parameters of profiles other than lengths
 UNITS = {"half_angle": "rad", "angle": "rad", "delta": "1", "k1": "1", "k2": "1"}
-MIN_JUMP = 1e-6  # Minimum jump of a slope at a corner
+MIN_JUMP = 1e-6  # Minimum jump of a slope at a corner, of a formula over one plus the slope, because of rounding
+# Windows and rounds of the search for corners, and least ratio of the jumps in the last two rounds; a bend has 1/4
+WINDOWS, ROUNDS, MIN_JUMP_RATIO = 512, 6, 0.75
 
 
 @runtime_checkable
@@ -36,18 +40,37 @@ def describe_profile(profile: object) -> str:
 class SlopeJumps(NamedTuple):
     """Corners of a generatrix."""
 
-    positions: FloatArray  # from mid-length, m, increasing
+    positions: FloatArray  # from mid-length, m
     jumps: FloatArray  # increase of the slope of the drop; positive at a convex corner
 
     @classmethod
-    def merge(cls, *corners: SlopeJumps) -> SlopeJumps:
-        """Merge corners of summands: add jumps at equal positions and omit jumps of rounding."""
-        positions = np.concatenate([corner.positions for corner in corners])
-        jumps = np.concatenate([corner.jumps for corner in corners])
-        unique, indices = np.unique(positions, return_inverse=True)
-        total_jumps = np.bincount(indices, weights=jumps, minlength=unique.size)
-        is_corner = np.abs(total_jumps) > MIN_JUMP
-        return cls(unique[is_corner], np.asarray(total_jumps[is_corner], dtype=np.float64))
+    def join(cls, *corners: SlopeJumps) -> SlopeJumps:
+        """Corners of several profiles."""
+        return cls(*(np.concatenate(values) for values in zip(*corners, strict=True)))
+
+
+def find_slope_jumps(drop: Callable[[FloatArray], FloatArray], length: float) -> SlopeJumps:
+    """Find the corners of a generatrix: the slope changes by as much between closer points."""
+    edges = 0.5 * length * np.sin(np.linspace(-0.5, 0.5, WINDOWS + 1)[1:-1] * np.pi)  # denser at the ends
+    centres, step, jumps = 0.5 * (edges[:-1] + edges[1:]), 0.5 * np.diff(edges), np.zeros(WINDOWS - 2)
+    for _ in range(ROUNDS):
+        step = step / 4
+        x = centres[:, None] + step[:, None] * np.arange(-6, 7)
+        with np.errstate(invalid="ignore"):  # infinite drops
+            slopes = np.diff(drop(x.ravel()).reshape(x.shape)) / step[:, None]
+            changes = np.nan_to_num(np.diff(slopes), posinf=0.0)
+        sums = sliding_window_view(changes, 3, axis=1).sum(axis=2)  # a corner contributes to two neighbours at most
+        largest = np.abs(sums).argmax(axis=1)[:, None]
+        nodes, previous_jumps = largest + np.arange(3), jumps
+        jumps = np.take_along_axis(sums, largest, axis=1)[:, 0]
+        x = np.take_along_axis(x, nodes + 1, axis=1)
+        centres = x[:, 1]
+    min_jumps = MIN_JUMP * (1 + np.abs(slopes[:, 0]))
+    is_corner = np.abs(jumps) > np.maximum(MIN_JUMP_RATIO * np.abs(previous_jumps), min_jumps)
+    weighted_x = (x * np.take_along_axis(changes, nodes, axis=1)).sum(axis=1)
+    positions, jumps = weighted_x[is_corner] / jumps[is_corner], jumps[is_corner]
+    is_first = np.diff(positions, prepend=-np.inf) > 4 * step[is_corner]  # neighbouring windows may share a corner
+    return SlopeJumps(positions[is_first], jumps[is_first])
 
 
 class Shape:
@@ -65,13 +88,13 @@ class Shape:
         """Radius of curvature across the roller (m) at `x`, from the `radius` (m) of the preceding summands."""
         return np.broadcast_to(np.asarray(radius, dtype=np.float64), np.shape(x))
 
-    def slope_jumps(self, length: float) -> SlopeJumps:
-        """Corners of the generatrix; none for a smooth profile."""
+    def unresolved_corners(self, length: float) -> SlopeJumps:
+        """Corners that measured points do not resolve; none for a formula."""
         return SlopeJumps(np.zeros(0), np.zeros(0))
 
     def nodes(self, length: float) -> FloatArray:
-        """Distances from mid-length (m) between which the profile is smooth: corners, measured points."""
-        return self.slope_jumps(length).positions
+        """Distances from mid-length (m) between which the profile is smooth: measured points; none by default."""
+        return np.zeros(0)
 
     def second_interpolation(self) -> Profile | None:
         """Profile through the same measured points by another interpolation; None for a formula."""
@@ -169,9 +192,9 @@ class Sum(Shape):
         drops = [check_drop(term, np.asarray(x), length) for term in self.terms]
         return np.asarray(sum(drops[1:], start=drops[0]))
 
-    def slope_jumps(self, length: float) -> SlopeJumps:
+    def unresolved_corners(self, length: float) -> SlopeJumps:
         """Corners of all summands."""
-        return SlopeJumps.merge(*(as_shape(term).slope_jumps(length) for term in self.terms))
+        return SlopeJumps.join(*(as_shape(term).unresolved_corners(length) for term in self.terms))
 
     def nodes(self, length: float) -> FloatArray:
         """Nodes (m) of all summands."""

@@ -58,19 +58,12 @@ class Halves(Shape):
         x = np.asarray(x)
         return np.asarray(np.where(x < 0, *(check_drop(half, x, length) for half in (self.left, self.right))))
 
-    def slope_jumps(self, length: float) -> SlopeJumps:
-        """Corners of both halves, and the corner at mid-length."""
-        left_corners, right_corners = as_shape(self.left).slope_jumps(length), as_shape(self.right).slope_jumps(length)
-        # Slopes at mid-length from three drops on either side.
-        steps = SLOPE_STEP * length * np.array([0.0, 1.0, 2.0])
-        jump = 0.0
-        for half, side in ((self.right, 1), (self.left, -1)):
-            first_drop, next_drop, last_drop = check_drop(half, side * steps, length)
-            jump += float(-3 * first_drop + 4 * next_drop - last_drop) / (2 * steps[1])
-        return SlopeJumps.merge(
-            SlopeJumps(*(values[left_corners.positions < 0] for values in left_corners)),
-            SlopeJumps(np.zeros(1), np.array([jump])),
-            SlopeJumps(*(values[right_corners.positions > 0] for values in right_corners)),
+    def unresolved_corners(self, length: float) -> SlopeJumps:
+        """Corners of both halves."""
+        left, right = (as_shape(half).unresolved_corners(length) for half in (self.left, self.right))
+        return SlopeJumps.join(
+            SlopeJumps(*(values[left.positions < 0] for values in left)),
+            SlopeJumps(*(values[right.positions > 0] for values in right)),
         )
 
     def nodes(self, length: float) -> FloatArray:
@@ -190,9 +183,9 @@ class EffectiveLength(Shape):
             low, high = (midpoint, high) if outer_drop - inner_drop < MAX_SLOPE * width else (low, midpoint)
         return Corner(low, float(drops(low)[0]), np.sqrt(0.5), np.sqrt(0.5))
 
-    def slope_jumps(self, length: float) -> SlopeJumps:
-        """Corners of the profile within the effective length; the corner circles begin with the profile's slope."""
-        corners = as_shape(self.profile).slope_jumps(self.effective_length)
+    def unresolved_corners(self, length: float) -> SlopeJumps:
+        """Corners of the profile within the effective length."""
+        corners = as_shape(self.profile).unresolved_corners(self.effective_length)
         return SlopeJumps(*(values[np.abs(corners.positions) < 0.5 * self.effective_length] for values in corners))
 
     def nodes(self, length: float) -> FloatArray:

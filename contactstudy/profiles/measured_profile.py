@@ -271,8 +271,8 @@ class Measured(Shape):
         """Distances from mid-length (m) of the points."""
         return self._from_middle
 
-    def slope_jumps(self, length: float) -> SlopeJumps:
-        """Unresolved corners: points at which the slope changes within one or two steps.
+    def unresolved_corners(self, length: float) -> SlopeJumps:
+        """Return corners: points at which the slope changes within one or two steps.
 
         A filtered profile has no corners: its slope changes over the cut-off.
         """
@@ -280,7 +280,7 @@ class Measured(Shape):
         slope_changes = np.zeros(x.size)
         slope_changes[1:-1] = np.diff(np.diff(drops) / np.diff(x))
         if self.cutoff is not None:
-            return super().slope_jumps(length)
+            return super().unresolved_corners(length)
         magnitude = np.abs(slope_changes)
         padded = np.pad(magnitude, CORNER_STEPS, mode="edge")
         neighbours = np.maximum(padded[: x.size], padded[2 * CORNER_STEPS :])

@@ -9,7 +9,7 @@ import numpy as np
 from contactstudy import checks
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
-from contactstudy.profiles.base import Shape, SlopeJumps
+from contactstudy.profiles.base import Shape
 
 MAX_HALF_ANGLE = np.pi / 4  # Largest half cone angle, radians
 
@@ -152,8 +152,6 @@ class Chamfer(Shape):
     >>> chamfer = Chamfer(width=0.5e-3, angle=np.radians(45))
     >>> (1e3 * chamfer.drop(np.array([0.0, 4.5e-3, 5e-3]), length=10e-3)).round(6).tolist()
     [0.0, 0.0, 0.5]
-    >>> chamfer.slope_jumps(10e-3).jumps.round(6).tolist()
-    [1.0, 1.0]
     """
 
     depth: float | None = None
@@ -206,13 +204,6 @@ class Chamfer(Shape):
         chord = np.clip(distance + inner_blend, 0.0, inner_blend + outer_blend)
         arc_drop = chord**2 / (self.blend_radius + np.sqrt(self.blend_radius**2 - chord**2))
         return np.asarray(np.where(distance < outer_blend, arc_drop, chamfer_drop))
-
-    def slope_jumps(self, length: float) -> SlopeJumps:
-        """Both corners; none with a blend radius."""
-        if self.blend_radius > 0:
-            return super().slope_jumps(length)
-        corner = 0.5 * length - self.axial_width
-        return SlopeJumps(np.array([-corner, corner]), np.full(2, self.slope))
 
     def nodes(self, length: float) -> FloatArray:
         """Distances from mid-length (m) of both corners, and of the ends of their arcs."""

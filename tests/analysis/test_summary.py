@@ -22,6 +22,12 @@ def test_summary_contains_peak_position():
     assert [result[name] for name in ("peak_pressure", "peak_pressure_x", "peak_pressure_y")] == [4, 3.5, 0]
 
 
+def test_numbers_of_cells_are_marked_without_error():
+    numbers = case_numbers(contact(PRESSURE_VALUES))
+    names = ("peak_pressure_x", "peak_pressure_y", "contact_width", "end_pressure_over_p0", "end_pressure_over_p0_last")
+    assert {numbers[name].attributes["error_kind"] for name in names} == {"not estimated"}
+
+
 def test_ends_are_the_first_and_last_loaded_cells():
     result = pressure_numbers(contact(PRESSURE_VALUES))
     assert (result["end_pressure_over_p0_first"], result["end_pressure_over_p0_last"]) == (0.5, 2.0)

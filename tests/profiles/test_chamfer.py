@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from contactstudy import InvalidInputError
-from contactstudy.profiles import Chamfer, Cylinder, EffectiveLength, FullCrown, Halves, Measured
-from contactstudy.profiles.base import as_shape
+from contactstudy.profiles import Chamfer, Cylinder, EffectiveLength, FullCrown, Halves, Lundberg, Measured
+from contactstudy.profiles.base import find_slope_jumps
 
 LENGTH = 2e-3
 ANGLE = np.radians(2)
@@ -35,7 +35,7 @@ def test_blend_arc_is_tangential_to_both_sides() -> None:
     slope = np.diff(drop) / np.diff(x)
     assert np.abs(np.diff(slope)).max() < 1.01 * (x[1] - x[0]) / radius
     assert drop[-1] == pytest.approx(0.5e-3 * np.tan(ANGLE))
-    assert not chamfer.slope_jumps(LENGTH).positions.size
+    assert not find_slope_jumps(lambda x: chamfer.drop(x, LENGTH), LENGTH).positions.size
 
 
 @pytest.mark.parametrize(
@@ -64,12 +64,14 @@ RIDGE = Halves(FullCrown(0.2, centre=0.5e-3), FullCrown(0.2, centre=-0.5e-3))
         (RIDGE, [0.0], [0.005]),
         (RIDGE + Chamfer(width=0.5e-3, angle=ANGLE), [-0.5e-3, 0.0, 0.5e-3], [np.tan(ANGLE), 0.005, np.tan(ANGLE)]),
         (EffectiveLength(RIDGE, 1.8e-3), [0.0], [0.005]),
+        (Lundberg(1e-6) + Chamfer(width=0.3777e-3, angle=ANGLE), [-0.6223e-3, 0.6223e-3], [np.tan(ANGLE)] * 2),
         (Cylinder(0.1e-3), [], []),
+        (Cylinder(1e-6) + Lundberg(1e-6), [], []),
         (Halves(FullCrown(1.0), FullCrown(0.5)), [], []),
     ],
 )
 def test_slope_jumps_of_formulas(profile, positions: list[float], jumps: list[float]) -> None:
-    corners = as_shape(profile).slope_jumps(LENGTH)
+    corners = find_slope_jumps(lambda x: profile.drop(x, LENGTH), LENGTH)
     np.testing.assert_allclose(corners.positions, positions, atol=1e-12)
     np.testing.assert_allclose(corners.jumps, jumps, rtol=1e-4)
 
@@ -77,11 +79,11 @@ def test_slope_jumps_of_formulas(profile, positions: list[float], jumps: list[fl
 @pytest.mark.parametrize("shift", [0.0, 0.3, 0.5])
 def test_measured_points_do_not_resolve_a_corner(shift: float) -> None:
     chamfer = Chamfer(width=0.5e-3 + shift * (X[1] - X[0]), angle=ANGLE)
-    corners = Measured(X, chamfer.drop(X, LENGTH)).slope_jumps(LENGTH)
+    corners = Measured(X, chamfer.drop(X, LENGTH)).unresolved_corners(LENGTH)
     np.testing.assert_allclose(np.abs(corners.positions), 0.5e-3, atol=5.1e-6)
     np.testing.assert_allclose(corners.jumps, np.tan(ANGLE), rtol=1e-9)
 
 
 def test_measured_points_resolve_an_edge_radius() -> None:
-    corners = Measured(X, Cylinder(0.1e-3).drop(X, LENGTH)).slope_jumps(LENGTH)
+    corners = Measured(X, Cylinder(0.1e-3).drop(X, LENGTH)).unresolved_corners(LENGTH)
     assert not (np.abs(corners.positions) < 0.98e-3).any()

@@ -120,13 +120,11 @@ def _refine_in_window(case: Case, half_window: float, accuracy: float, tolerance
     contact = contact_of(full, Settings(tolerance), guess)
     if contact.shape.coupled_friction or contact.motions.total.tilt:
         refined = replace_pressure(refined, contact.pressure[_roller_columns(contact.shape.grid, refined.edges)], shape)
-    return RefinedContact(contact, refined, _strongest_corner(case, refined))
+    return RefinedContact(contact, refined, _strongest_corner(case, refined) if shape.corners else None)
 
 
 def _strongest_corner(case: Case, refined: RefinedColumns) -> CornerLaw | None:
     """Law of the loaded convex corner with the largest intensity; None without one."""
-    if as_shape(case.roller.profile).second_interpolation() is not None:
-        return None
     slope_jumps = zip(*(values.tolist() for values in case.slope_jumps), strict=True)
     exponent = RIGID if case.roller.body is None else np.nan
     laws = [
@@ -221,9 +219,9 @@ def contact_shape(
 def replace_contact(refined_contact: RefinedContact, contact: Contact, case: Case) -> RefinedContact:
     """Refined contact with another pressure on the same columns, from friction or finer cells along y."""
     refined = refined_contact.refined
-    pressure = contact.pressure[_roller_columns(contact.shape.grid, refined.edges)]
-    refined = replace_pressure(refined, pressure, _axial_shape(case))
-    return RefinedContact(contact, refined, _strongest_corner(case, refined))
+    shape = _axial_shape(case)
+    refined = replace_pressure(refined, contact.pressure[_roller_columns(contact.shape.grid, refined.edges)], shape)
+    return RefinedContact(contact, refined, _strongest_corner(case, refined) if shape.corners else None)
 
 
 @dataclass(frozen=True)

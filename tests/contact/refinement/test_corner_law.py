@@ -35,6 +35,20 @@ def test_peak_at_corner_is_infinite(chamfered_roller) -> None:
     assert float(ridge.corner_x) == pytest.approx(LENGTH / 2)
 
 
+def test_corner_of_user_class_has_the_law(chamfered_roller) -> None:
+    class Roof:
+        """Class with the method `drop` only."""
+
+        def drop(self, x: np.ndarray, length: float) -> np.ndarray:
+            """Drop of a chamfer."""
+            return Chamfer(width=0.5e-3, angle=ANGLE).drop(x, length)
+
+    result = solve_profile(Roof(), accuracy=0.02)
+    assert np.isinf(result.peak_pressure)
+    for name in ("corner_x", "corner_slope", "corner_intensity", "corner_distance"):
+        assert float(result[name]) == pytest.approx(float(chamfered_roller[name]), rel=1e-6)
+
+
 def test_corner_pressure_follows_logarithm(chamfered_roller) -> None:
     """The columns within 0.05 of d0 on both sides agree with the means of the law."""
     distance = float(chamfered_roller.corner_distance)
