@@ -128,7 +128,8 @@ def stresses_at(
         keys = {load: (body, grid, load, ArrayKey(cell_loads), point_keys, shape_key) for load in directions}
         fields: dict[Load, list[FloatArray]] = {load: recall("stress fields", key) or [] for load, key in keys.items()}
         missing = tuple(load for load, field in fields.items() if not field)
-        for load, field in _unit_stress(body, grid, missing, cell_loads, point_sets, shape).items():
+        missing_fields = _unit_stress(body, grid, missing, cell_loads, point_sets=point_sets, shape=shape)
+        for load, field in missing_fields.items():
             fields[load] = retain("stress fields", keys[load], field)
         return fields
 
@@ -140,6 +141,7 @@ def _unit_stress(
     grid: Grid,
     loads: tuple[Load, ...],
     cell_loads: FloatArray,
+    *,
     point_sets: Sequence[Points],
     shape: FloatArray | None,
 ) -> dict[Load, list[FloatArray]]:

@@ -408,10 +408,11 @@ def columns_field(
     if _is_symmetric(load, shape, grid, extent):
         position_indices, is_mirrored, x = _fold_positions(points.x, grid)
         parities = np.where(is_mirrored, np.array(influence.sign_along_x)[:, None], 1)
-        field = _sum_columns(load, shape, influence, grid, points._replace(x=x), extent)[:, position_indices]
+        folded_points = points._replace(x=x)
+        field = _sum_columns(load, shape, influence, grid, points=folded_points, extent=extent)[:, position_indices]
         field *= parities[..., None, None]
         return field
-    return _sum_columns(load, shape, influence, grid, points, extent)
+    return _sum_columns(load, shape, influence, grid, points=points, extent=extent)
 
 
 def _is_symmetric(load: FloatArray, shape: FloatArray | None, grid: Grid, extent: tuple[float, float]) -> bool:
@@ -437,6 +438,7 @@ def _sum_columns(
     shape: FloatArray | None,
     influence: Influence,
     grid: Grid,
+    *,
     points: Points,
     extent: tuple[float, float],
 ) -> FloatArray:
