@@ -109,7 +109,7 @@ EDGES = [
 
 @pytest.mark.parametrize("profile", EDGES, ids=repr)
 @pytest.mark.parametrize("length", [0.5e-3, 0.8e-3], ids=["flush", "inside"])
-@pytest.mark.parametrize("cells", [2, 4, 8])
+@pytest.mark.parametrize("cells", [2, 8])
 def test_coarse_cells_at_an_edge_radius(profile, length, cells):
     body = FiniteLengthSpace(length=length, material=STEEL)
     case = Case(body=body, roller=Roller(radius=5e-3, length=0.5e-3, profile=profile), max_pressure=1e9)
@@ -145,10 +145,9 @@ def test_end_pressures_below_the_peak(case):
     assert float(result.peak_pressure) >= max(ends)
 
 
-@pytest.mark.parametrize("poisson", [-0.5, -0.2])
-def test_peak_at_a_free_end(poisson):
+def test_peak_at_a_free_end():
     """An auxetic material is stiffer at its free end: the pressure rises towards the end."""
-    body = FiniteLengthSpace(length=8 * HALF_WIDTH, material=Material(210e9, poisson))
+    body = FiniteLengthSpace(length=8 * HALF_WIDTH, material=Material(210e9, -0.5))
     case = Case(body=body, roller=Roller(radius=5e-3, length=8 * HALF_WIDTH), max_pressure=PRESSURE)
     coarse_result, fine_result, reference_result = (solve_on_cells(case, cells) for cells in (24, 48, 96))
     estimate, reference = (

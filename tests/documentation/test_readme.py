@@ -1,4 +1,4 @@
-"""Files named in the README exist, and its test commands are the commands of CI."""
+"""Files named in the README exist, and CI runs the tests of its commands."""
 
 from __future__ import annotations
 
@@ -14,13 +14,11 @@ def test_named_files_exist() -> None:
         assert (ROOT / target).exists(), target
 
 
-def test_ci_calls_the_same_test_commands() -> None:
+def test_ci_runs_every_tier() -> None:
     script = (ROOT / ".ci" / "run").read_text()
     assert '.venv/bin/pip install -e ".[dev]" && .venv/bin/pytest' in README
     assert 'pip install --quiet -e ".[$extras]"' in script
     assert "extras=dev" in script
-    assert '"$bin"/pytest\n' in script
-    (tiers,) = re.findall(r'"\$bin"/pytest -m "(system .*?)"', script)
+    assert re.findall(r'"\$bin"/pytest -m ("not browser"|\w+)', script) == ['"not browser"', "browser"]
     for tier in ("system", "slow"):
-        assert tier in tiers.split(" or ")
         assert f".venv/bin/pytest -m {tier}`" in README

@@ -94,11 +94,13 @@ def test_stress_maximum_without_pressure_is_zero() -> None:
     assert np.isnan(computed.position).all()
 
 
-def sharp_roller(friction: float = 0.0, distance: float = 0.5, tilt: float = 0.0) -> Case:
+LENGTH = 20 * A
+
+
+def sharp_roller(friction: float = 0.0, tilt: float = 0.0) -> Case:
     """A roller with an edge radius of 0.4 half-widths: the largest stress lies at a depth of 0.03 half-widths."""
-    body = FiniteLengthSpace(length=20 * A, material=STEEL)
-    roller = Roller(radius=RADIUS, length=(20 - 2 * distance) * A, profile=profiles.Cylinder(fillet_radius=0.05e-3))
-    return Case(body=body, roller=roller, max_pressure=PRESSURE, friction=friction, tilt=tilt)
+    roller = Roller(radius=RADIUS, length=LENGTH, profile=profiles.Cylinder(fillet_radius=0.05e-3))
+    return Case(body=HalfSpace(material=STEEL), roller=roller, max_pressure=PRESSURE, friction=friction, tilt=tilt)
 
 
 def maximum_position(result: xr.Dataset) -> list[float]:
@@ -141,8 +143,8 @@ def test_opposite_tilt_mirrors_stress_maximum() -> None:
         solve(sharp_roller(tilt=tilt), accuracy=0.02, x=[0.0], y=[0.0], z=[A]) for tilt in (1e-3, -1e-3)
     )
     assert float(original.peak_von_mises) == pytest.approx(float(mirrored.peak_von_mises), rel=1e-3)
-    assert maximum_position(original)[0] == pytest.approx(20 * A - maximum_position(mirrored)[0], abs=0.02 * A)
-    assert abs(maximum_position(original)[0] - 10 * A) > 5 * A
+    assert maximum_position(original)[0] == pytest.approx(LENGTH - maximum_position(mirrored)[0], abs=0.02 * A)
+    assert abs(maximum_position(original)[0] - 0.5 * LENGTH) > 5 * A
 
 
 def test_stress_maximum_near_free_end_exceeds_pressure_peak() -> None:
@@ -222,11 +224,10 @@ def test_friction_moves_stress_maximum_on_top() -> None:
     """The stress on the top depends mainly on the friction: the search must include the cell with the largest sum."""
     length = 1e-3
     crown = profiles.Lundberg.for_pressure(1.5e9, radius=RADIUS, modulus=STEEL.plane_strain_modulus, delta=0.6)
-    body = FiniteLengthSpace(length=length + 8 * A, material=STEEL)
     roller = Roller(radius=RADIUS, length=length, profile=crown)
     computed = [
         solve(
-            Case(body=body, roller=roller, max_pressure=1.5e9, friction=friction),
+            Case(body=HalfSpace(material=STEEL), roller=roller, max_pressure=1.5e9, friction=friction),
             accuracy=0.05,
             x=[0.5 * length],
             y=[0.0],

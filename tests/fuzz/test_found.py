@@ -42,9 +42,7 @@ def test_stresses_below_single_cell_contact() -> None:
     assert stress["sigma_zz"].item() == pytest.approx(-pressure[7, row].item())
 
 
-@pytest.mark.parametrize(
-    "motion", [Shift(x=3.6e-11, y=-1.1e-11), Shift(force_x=-2e-10), Shift(force_y=3e-10, x=1e-11)], ids=str
-)
+@pytest.mark.parametrize("motion", [Shift(x=3.6e-11, y=-1.1e-11), Shift(force_y=3e-10, x=1e-11)], ids=str)
 def test_small_shift(motion: Shift) -> None:
     """Newton's method went round in circles: the pressure alone displaces the surfaces by more than the shift."""
     material = Material(4.625e9, 0.3)

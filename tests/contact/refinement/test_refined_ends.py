@@ -5,7 +5,17 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from contactstudy import Case, FiniteLengthSpace, Material, QuarterSpace, Roller, profiles, solve, stress_field
+from contactstudy import (
+    Case,
+    FiniteLengthSpace,
+    HalfSpace,
+    Material,
+    QuarterSpace,
+    Roller,
+    profiles,
+    solve,
+    stress_field,
+)
 from contactstudy.contact.refinement.laws import edge_peak
 from contactstudy.contact.refinement.refined_contact import refined_values
 from tests.contact.refinement.rollers import (
@@ -84,7 +94,7 @@ def test_sharp_elastic_end_has_smaller_exponent() -> None:
     """The exponent of a 90 degree edge on a half-space of the same material without friction is about 0.226."""
     half_width = 2 * A
     roller = Roller(radius=RADIUS, length=30 * half_width, material=STEEL)
-    case = Case(body=finite(60 * half_width), roller=roller, max_pressure=PRESSURE)
+    case = Case(body=HalfSpace(material=STEEL), roller=roller, max_pressure=PRESSURE)
     laws = refined_at(case).refined.laws
     for law in laws:
         assert law is not None
