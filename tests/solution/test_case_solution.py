@@ -104,7 +104,7 @@ def test_stresses_at_given_positions(result) -> None:
 
 def test_half_space_has_zero_end_traction() -> None:
     case = Case(body=HalfSpace(material=STEEL), roller=CASE.roller, max_pressure=1.5e9)
-    assert float(solve(case, x=[0.0], y=[0.0], z=[50e-6])["end_traction_residual"]) == 0.0
+    assert float(solve(case, x=[0.0], y=[0.0], z=[50e-6], accuracy=0.1)["end_traction_residual"]) == 0.0
 
 
 def test_grid_beside_roller_raises_error() -> None:
