@@ -51,7 +51,7 @@ def test_failures_give_code_1_and_are_named(study_file, capsys):
     assert run(study_file) == 1
     assert "failed: e_over_a=0 friction=0.66: WindowError: this friction fails" in capsys.readouterr().out
     assert command("status", "results/small") == 1
-    assert command("rerun", "results/small", "--workers", 0) == 1
+    assert command("rerun", "results/small", "--workers", 0, "--no-figure") == 1
 
 
 def test_status_groups_equal_reasons(study_file, capsys):
@@ -88,7 +88,8 @@ def test_plan_forecasts_new_cases(study_file, capsys):
 def test_skipped_cases_are_listed_with_the_reason(study_file, capsys):
     study_file.write_text(as_toml(small_study(sweep={"e_over_a": [0, -9], "friction": [0.1]})))
     reason = r"  skipped: .*e_over_a=-9 friction=0\.1: .*body length"
-    for arguments in (("plan", study_file), ("run", study_file, "--workers", 0), ("status", "results/small")):
+    run_arguments = ("run", study_file, "--workers", 0, "--no-figure")
+    for arguments in (("plan", study_file), run_arguments, ("status", "results/small")):
         assert command(*arguments) == 0
         assert re.search(reason, capsys.readouterr().out), arguments[0]
 

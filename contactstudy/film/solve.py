@@ -99,8 +99,8 @@ def solve_film(
 
     Examples
     --------
-    >>> from contactstudy import FiniteLengthSpace, Lubricant, Material, Roller, Sliding, profiles
-    >>> body = FiniteLengthSpace(length=0.3e-3, material=Material(210e9, 0.3))
+    >>> from contactstudy import HalfSpace, Lubricant, Material, Roller, Sliding, profiles
+    >>> body = HalfSpace(material=Material(210e9, 0.3))
     >>> roller = Roller(radius=5e-3, length=0.3e-3, profile=profiles.Lundberg(amplitude=0.4e-6))
     >>> oil = Lubricant.preset("heavy machine oil", 60.0)
     >>> motion = Sliding(body_speed=1.0, roller_speed=1.0)

@@ -132,7 +132,7 @@ def test_real_contact(case_result: xr.Dataset) -> None:
 def test_study_results_equal_case_results(study_dataset: xr.Dataset) -> None:
     study_results = analysis.contact_results(study_dataset)
     assert study_results["contact_area"].dims == ("e_over_a", "friction", "body")
-    for e in (0.0, 1.0, 2.0):
+    for e in (0.0, 2.0):
         selected_case = {"e_over_a": e, "friction": 0.1, "body": "finite-length"}
         case_result = analysis.contact_results(analysis.single_case(study_dataset.sel(selected_case)))
         for name, value in case_result.items():

@@ -42,7 +42,7 @@ def test_friction_shifts_the_largest_von_mises(strip_result) -> None:
 def test_study_results_equal_case_results(study_dataset: xr.Dataset) -> None:
     for variable in ("von_mises", "pressure", "tresca", "hydrostatic"):
         study_peaks = analysis.largest_sample(study_dataset, variable)
-        for e in (0.0, 1.0, 2.0):
+        for e in (0.0, 2.0):
             selected_case = {"e_over_a": e, "friction": 0.1, "body": "finite-length"}
             case_sample = analysis.largest_sample(analysis.single_case(study_dataset.sel(selected_case)), variable)
             for name, value in case_sample.items():

@@ -73,7 +73,7 @@ def test_case_of_an_opened_study(study_dataset: xr.Dataset) -> None:
 
 @pytest.mark.parametrize("change", [{"max_pressure": None, "approach": 2e-6}, {"load_position": 0.31e-3}])
 def test_prescribed_results(change) -> None:
-    case = replace(CASE, **change)
+    case = replace(CASE, body=HalfSpace(material=STEEL), **change)
     result = solve(case, accuracy=0.1, stresses=False)
     motion = {"load_position": None, "tilt": float(result["tilt"])} if "load_position" in change else {}
     load = {"approach": None, "max_pressure": None, "load": float(result["normal_load"])}

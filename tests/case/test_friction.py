@@ -9,6 +9,7 @@ import xarray as xr
 from contactstudy import (
     Case,
     FiniteLengthSpace,
+    HalfSpace,
     InvalidInputError,
     Material,
     Roller,
@@ -25,13 +26,13 @@ ANTISYMMETRIC_FRICTION = xr.DataArray([-0.1, 0.1], coords={"x": [0.0, LENGTH]}, 
 
 
 def create_case(friction: object, **arguments: object) -> Case:
-    body = FiniteLengthSpace(length=LENGTH, material=STEEL)
     roller = Roller(radius=5e-3, length=LENGTH)
-    return Case(body=body, roller=roller, max_pressure=1.5e9, friction=friction, **arguments)  # type: ignore[arg-type]
+    given = {"body": FiniteLengthSpace(length=LENGTH, material=STEEL), "roller": roller, "max_pressure": 1.5e9}
+    return Case(**(given | {"friction": friction} | arguments))  # type: ignore[arg-type]
 
 
 def test_antisymmetric_friction() -> None:
-    case = create_case(ANTISYMMETRIC_FRICTION)
+    case = create_case(ANTISYMMETRIC_FRICTION, body=HalfSpace(material=STEEL))
     grid = choose_grid(case, cells_x=3, cells_y=8, window=1.5)
     positions = {"x": LENGTH * np.array([0.1, 0.3, 0.7, 0.9]), "y": [-2e-5, 0.0, 2e-5], "z": [2e-5]}
     result = solve(case, grid, **positions)

@@ -91,7 +91,6 @@ def test_common_colours_of_two_cases(page: Page) -> None:
     assert ">1.5 GPa<" in page.table.object
 
 
-@any_source
 def test_common_axes_of_two_cases(page: Page) -> None:
     page.compare.value = True
     page.choices[1]["max_pressure"].value = 2

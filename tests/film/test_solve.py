@@ -82,7 +82,7 @@ def test_film_at_half_space_ends_is_thinner(crowned):
 
 
 def test_mid_length_film_equals_a_line_contact():
-    case = film_case(100 * HALF_WIDTH, profile=CROWN)
+    case = film_case(100 * HALF_WIDTH, profile=CROWN, body=cs.HalfSpace(material=STEEL))
     film = coarse_film(case)
     scale = RADIUS * np.sqrt(2 * case.lubricant.viscosity / (2 * case.modulus * RADIUS))
     line = solve_line(float(film.moes_load), float(film.moes_lubricant), finest=0.1)

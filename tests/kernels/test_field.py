@@ -43,6 +43,7 @@ def test_interpolated_lateral_positions_equal_single_positions(kind: str, load: 
     cell_loads = pressure(grid) if shaped else rng.integers(0, 2, grid.shape).astype(np.float64)
     x, y = np.array([0.0, 0.013, 1.7, 3.6]), np.append(np.sort(rng.uniform(-1.5, 1.5, 16)), 30.0)
     z = grid.dy * np.array([0.0, 0.3, 1.0, 2.5, 7.9, 8.0, 30.0])
+    compared = slice(0, None, 4)
     joint_field, *single_fields = (
         half_space_field(
             cell_loads,
@@ -52,10 +53,10 @@ def test_interpolated_lateral_positions_equal_single_positions(kind: str, load: 
             extent=(0.0, 4.0),
             shape=cell_loads if shaped else None,
         )
-        for positions in (y, *y[:, None])
+        for positions in (y, *y[compared, None])
     )
     assert LateralAxis(grid, y, 0, 24).offset_count == y.size
-    np.testing.assert_allclose(joint_field, np.concatenate(single_fields, axis=2), rtol=0, atol=1e-6)
+    np.testing.assert_allclose(joint_field[:, :, compared], np.concatenate(single_fields, axis=2), rtol=0, atol=1e-6)
 
 
 def pressure(grid: Grid) -> FloatArray:

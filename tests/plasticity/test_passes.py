@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 import pytest
@@ -98,21 +99,33 @@ def test_mid_length_of_a_long_contact(line_contact, steel_half_space) -> None:
         assert np.abs(middle[name].sel(x=0) - line_result[name].isel(x=0)).max() < 0.08 * size, name
 
 
-def test_residual_stress_prevents_yield(line_contact, steel_between_ends) -> None:
+class ShakenDown(NamedTuple):
+    """A contact between free ends, its shakedown stress, and the state after ten passes 3 % above that limit."""
+
+    contact: xr.Dataset
+    limit: float
+    last: xr.Dataset
+
+
+@pytest.fixture(scope="module")
+def shaken_down(line_contact, steel_between_ends) -> ShakenDown:
     contact = line_contact(0.1, length=8.0)
     limit = float(fatigue.shakedown(contact)["shakedown_stress"].max())
     plastic = perfectly_plastic(0.97 * limit)
     last = residual_stress(contact, steel_between_ends, plastic, passes=10).isel(pass_number=-1)
+    return ShakenDown(contact, limit, last)
+
+
+def test_residual_stress_prevents_yield(shaken_down) -> None:
+    contact, limit, last = shaken_down
     total = contact + last[list(STRESSES)].drop_vars("pass_number")
     limits_with_residual = fatigue.shakedown(total)
     assert float(limits_with_residual["first_yield_stress"].max()) < 0.97 * limit * (1 + 1e-3)
     assert float(fatigue.shakedown(contact)["first_yield_stress"].max()) > 1.05 * 0.97 * limit
 
 
-def test_residual_stress_of_the_plastic_strain(line_contact, steel_between_ends) -> None:
-    contact = line_contact(0.1, length=8.0)
-    limit = float(fatigue.shakedown(contact)["shakedown_stress"].max())
-    last = residual_stress(contact, steel_between_ends, perfectly_plastic(0.97 * limit), passes=3).isel(pass_number=-1)
+def test_residual_stress_of_the_plastic_strain(shaken_down, steel_between_ends) -> None:
+    last = shaken_down.last
     direct = eigenstrain_stress(steel_between_ends, last[list(STRAINS)].drop_vars("pass_number"))
     for name in ("sigma_xx", "sigma_yy"):
         assert np.abs(last[name].values - direct[name].values).max() < 0.1 * np.abs(direct[name].values).max()
@@ -207,7 +220,7 @@ def test_positions_short_of_the_ends_are_rejected(line_contact, steel_between_en
 
 def test_residual_stress_far_from_the_ends(line_contact, steel_between_ends) -> None:
     """Far from the ends of the body the residual stress is nearly unchanged; a free end is free."""
-    contact = line_contact(0.0, length=8.0, positions=5)
+    contact = line_contact(0.0, length=8.0, positions=5).isel(z=slice(0, None, 2))
     limit = float(fatigue.shakedown(contact)["shakedown_stress"].max())
     plastic = perfectly_plastic(0.95 * limit)
     bodies_without_end = (kind(material=steel_between_ends.material) for kind in (HalfSpace, QuarterSpace))
@@ -229,7 +242,7 @@ def test_stresses_of_another_body_are_rejected(line_contact, steel_between_ends)
 
 
 def test_positions_within_rounding_of_the_end(line_contact, steel_between_ends) -> None:
-    contact = line_contact(0.0, length=8.0)
+    contact = line_contact(0.0, length=8.0, positions=5)
     in_millimetres = contact.assign_coords(x=(1e3 * contact["x"]).assign_attrs(units="mm"))
     rounded = contact.assign_coords(x=contact["x"] * (1 + 1e-15))
     limit = float(fatigue.shakedown(contact)["shakedown_stress"].max())

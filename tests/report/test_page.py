@@ -349,6 +349,7 @@ def test_malformed_run_and_settings(case_result: xr.Dataset, run: dict[str, obje
     assert "Numbers" in page
 
 
+@pytest.mark.usefixtures("without_encoding")
 def test_page_omits_nan_numbers(case_result: xr.Dataset) -> None:
     scalars = {str(name): np.nan for name, variable in case_result.data_vars.items() if variable.ndim == 0}
     assert "not known" in report.html(case_result.assign(scalars))

@@ -20,7 +20,8 @@ STEEL = Material(210e9, 0.3)
 @pytest.fixture(scope="module")
 def singular() -> xr.Dataset:
     body = FiniteLengthSpace(length=0.4e-3, material=STEEL)
-    return solve(Case(body=body, roller=Roller(radius=5e-3, length=0.25e-3), max_pressure=1.5e9), z=[0.0, 2e-5])
+    case = Case(body=body, roller=Roller(radius=5e-3, length=0.25e-3), max_pressure=1.5e9)
+    return solve(case, x=[0.2e-3], y=[0.0], z=[0.0, 2e-5])
 
 
 def test_errors_of_settled_and_given_cells(case_result: xr.Dataset) -> None:

@@ -121,7 +121,8 @@ def test_open_study_writes_no_files(tmp_path):
 
 def test_intensities_with_different_exponents(tmp_path):
     sweep = {"roller_body": ["rigid", "finite-length"]}
-    base = BASE | {"e_over_a": 3.0, "stresses": False, "accuracy": 0.1, "cells_x": None, "cells_y": None}
+    base = BASE | {"body": "half-space", "stresses": False, "accuracy": 0.1, "cells_x": None, "cells_y": None}
+    base |= {"e_over_a": 3.0}
     base = {name: value for name, value in base.items() if value is not None and not name.startswith("field_")}
     study = small_study(base=base, sweep=sweep, level="summary")
     assert run_study(study, tmp_path, workers=0).counts == {"ok": 2}

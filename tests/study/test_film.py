@@ -18,7 +18,7 @@ BASE: dict[str, Any] = {
     "young": 210e9,
     "poisson": 0.3,
     "radius": 5e-3,
-    "roller_length": 0.3e-3,
+    "roller_length": 0.2e-3,
     "e_over_a": 0.0,
     "max_pressure": 1e9,
     "profile": {"kind": "lundberg", "design_pressure": 1e9},

@@ -31,7 +31,8 @@ def test_shakedown_limits_with_sufficient_positions(tmp_path):
 
 
 def test_shakedown_limits_missing_with_few_positions(tmp_path):
-    run_study(small_study(sweep={"e_over_a": [0.0]}, level="summary"), tmp_path, workers=0)
+    half_space = BASE | {"body": "half-space"}
+    run_study(small_study(base=half_space, sweep={"e_over_a": [0.0]}, level="summary"), tmp_path, workers=0)
     study = open_study(tmp_path)
     assert "peak_von_mises" in study
     assert "shakedown_limit" not in study

@@ -26,7 +26,7 @@ def test_quarter_space_with_distant_roller(tmp_path):
 
 
 def test_study_equals_solver_result(tmp_path):
-    study = small_study(sweep={"body": ["quarter-space"], "e_over_a": [1.0], "friction": [0.1]})
+    study = small_study(sweep={"body": ["half-space"], "e_over_a": [1.0], "friction": [0.1]})
     run_study(study, tmp_path, workers=0)
     (case,) = study.plan()
     setup = build_setup(case.parameters)

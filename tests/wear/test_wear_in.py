@@ -9,6 +9,7 @@ from contactstudy import (
     ConvergenceWarning,
     FiniteLengthSpace,
     Grid,
+    HalfSpace,
     InvalidInputError,
     Material,
     QuarterSpace,
@@ -151,9 +152,8 @@ def test_elastic_roller_with_coupled_friction():
 
 @pytest.fixture(scope="module")
 def rolling():
-    body = FiniteLengthSpace(length=0.6e-3, material=STEEL)
     case = Case(
-        body=body,
+        body=HalfSpace(material=STEEL),
         roller=Roller(radius=5e-3, length=0.4e-3, material=STEEL, profile=FullCrown(crown_radius=0.05)),
         max_pressure=1.5e9,
         friction=0.2,

@@ -30,12 +30,13 @@ SHORT_CASE = Case(
 """A rigid roller that ends inside the face with a singular pressure."""
 
 SLIDING_FORCE = 0.1 * STEEL_CASE.normal_load
+CREEPAGES = Rolling(longitudinal_creepage=5e-4, lateral_creepage=-3e-4, spin=1.0)
 
 
 @pytest.mark.parametrize(
     "motion",
     [
-        Rolling(longitudinal_creepage=5e-4, lateral_creepage=-3e-4, spin=1.0),
+        CREEPAGES,
         Rolling(force_y=0.6 * SLIDING_FORCE, force_x=0.2 * SLIDING_FORCE),
         Shift(y=3e-7),
         Shift(force_x=0.5 * SLIDING_FORCE),
@@ -98,7 +99,7 @@ def test_coupled_tractions_change_stated_values() -> None:
 def test_given_columns_are_used() -> None:
     edges = STEEL_CASE.body.extent[1] * np.concatenate([np.linspace(0, 0.2, 9)[:-1], np.linspace(0.2, 1, 13)])
     half_width = STEEL_CASE.hertz_half_width
-    case = replace(STEEL_CASE, motion=Rolling(longitudinal_creepage=1e-3))
+    case = replace(STEEL_CASE, motion=CREEPAGES)
     computed = solve(case, Grid.from_edges(edges, (-1.5 * half_width, 1.5 * half_width), 40), stresses=False)
     assert computed.sizes["x"] == edges.size - 1
     assert float(computed["force_y"]) == pytest.approx(float(solve(case, stresses=False)["force_y"]), rel=3e-3)
