@@ -443,7 +443,7 @@ LABELS = {
 
 def draw(solutions: xr.Dataset, indenters: Sequence[str] = ("sphere", "cylinder")) -> plt.Figure:
     """Every quantity over its value on the half-space against the distance: a panel for each shape and condition."""
-    figure, axes = plt.subplots(2, len(indenters), figsize=(10.0, 7.0), layout="constrained", sharex=True)
+    figure, axes = plt.subplots(2, len(indenters), figsize=(8.0, 7.0), layout="constrained", sharex=True)
     near = solutions["e_over_a"].values[np.isfinite(solutions["e_over_a"].values)]
     for (row, condition), (column, indenter) in itertools.product(enumerate(CONDITIONS), enumerate(indenters)):
         ax, part = axes[row, column], solutions.sel(indenter=indenter, condition=condition)

@@ -120,12 +120,12 @@ def table(error: xr.Dataset) -> str:
 def draw(error: xr.Dataset, profile: str) -> plt.Figure:
     """Errors over e/a and length of each model and quantity for one crown, without friction; lines at the limits."""
     figure, axes = plt.subplots(
-        len(QUANTITIES), len(MODELS), figsize=(15.0, 7.6), sharex=True, sharey=True, layout="constrained"
+        len(MODELS), len(QUANTITIES), figsize=(8.0, 10.6), sharex=True, sharey=True, layout="constrained"
     )
     bands = [0.0, 1.0, 5.0, 20.0, 1000.0]
     colours = plt.get_cmap("viridis_r", len(bands) - 1)
-    for row, name in zip(axes, QUANTITIES, strict=True):
-        for ax, model in zip(row, MODELS, strict=True):
+    for row, model in zip(axes, MODELS, strict=True):
+        for ax, name in zip(row, QUANTITIES, strict=True):
             panel = error[name].sel(approximation=model, friction=0.0, profile=profile).transpose("gamma", "e_over_a")
             size = np.ma.masked_where(np.isnan(panel.values), np.minimum(abs(panel.values), 0.99 * bands[-1]))
             mesh = ax.pcolormesh(size, cmap=colours, norm=BoundaryNorm(bands, colours.N))
@@ -138,17 +138,17 @@ def draw(error: xr.Dataset, profile: str) -> plt.Figure:
                     colour = "white" if abs(value) > 5 else "black"
                     text = f"{value:+.0f}" if abs(value) >= 9.95 else f"{value:+.1f}"
                     text = "\N{INFINITY}" if np.isinf(value) else text
-                    ax.text(j + 0.5, i + 0.5, text, ha="center", va="center", color=colour, fontsize=8)
+                    ax.text(j + 0.5, i + 0.5, text, ha="center", va="center", color=colour, fontsize=7)
             ax.patch.set(facecolor="white", edgecolor="0.8", hatch="///")
-    for ax, model in zip(axes[0], MODELS, strict=True):
-        ax.set_title(model, fontsize="medium")
-    for ax, meaning in zip(axes[:, 0], QUANTITIES.values(), strict=True):
-        ax.set_ylabel(f"{meaning}\n$L_f/a$")
+    for ax, meaning in zip(axes[0], QUANTITIES.values(), strict=True):
+        ax.set_title(meaning, fontsize="medium")
+    for ax, model in zip(axes[:, 0], MODELS, strict=True):
+        ax.set_ylabel(f"{model}\n$L_f/a$")
         ax.set_yticks(np.arange(error.sizes["gamma"]) + 0.5, [f"{v:g}" for v in error["length_over_a"].values])
     for ax in axes[-1]:
         ax.set_xlabel("$e/a$")
         ax.set_xticks(np.arange(error.sizes["e_over_a"]) + 0.5, [f"{v:g}" for v in error["e_over_a"].values])
-    bar = figure.colorbar(mesh, ax=axes, ticks=bands[1:-1], shrink=0.6, pad=0.01)
+    bar = figure.colorbar(mesh, ax=axes, ticks=bands[1:-1], location="bottom", shrink=0.6, pad=0.01)
     bar.set_label("size of the error (%); lines: solid 5 %, dashed 1 %")
     figure.suptitle(f"{profile}: error against exact free ends (%)")
     return figure
@@ -180,7 +180,7 @@ def main() -> None:
     error.to_netcdf(folder / "errors.nc")
     limits(error).to_dataframe().to_csv(folder / "limits.csv")
     for profile in map(str, error["profile"].values):
-        draw(error, profile).savefig(folder / f"{profile.replace(' ', '_')}.png", dpi=80)
+        draw(error, profile).savefig(folder / f"{profile.replace(' ', '_')}.png", dpi=110)
     print(table(error))
     print(f"\n{stated_errors(study)}")
     print(f"\nwrote errors.nc, limits.csv and a figure for each crown in {folder}")

@@ -106,7 +106,7 @@ def draw_stress(ax: Axes, study: xr.Dataset) -> None:
 
 def draw(studies: dict[str, xr.Dataset]) -> Figure:
     """One panel for each study."""
-    figure, axes = plt.subplots(2, 2, figsize=(10.0, 7.4), layout="constrained")
+    figure, axes = plt.subplots(2, 2, figsize=(8.0, 7.4), layout="constrained")
     panels = (draw_curve, draw_micro_slip, draw_spin, draw_stress)
     for ax, name, panel in zip(axes.ravel(), NAMES, panels, strict=True):
         panel(ax, studies[name])

@@ -57,7 +57,7 @@ def stated_errors(study: xr.Dataset) -> xr.DataArray:
 def draw(study: xr.Dataset, line: xr.Dataset) -> plt.Figure:
     """Limits over friction and distance: a map, and lines with the line contact's limits, for each crown."""
     crowns = study["profile"].values
-    figure, axes = plt.subplots(2, crowns.size, figsize=(11.0, 8.2), layout="constrained", squeeze=False)
+    figure, axes = plt.subplots(2, crowns.size, figsize=(8.0, 7.4), layout="constrained", squeeze=False)
     for crown, upper, lower in zip(crowns, *axes, strict=True):
         limit = study["shakedown_limit"].sel(profile=crown).transpose("e_over_a", "friction")
         friction, distance = limit["friction"].values, limit["e_over_a"].values
