@@ -149,6 +149,15 @@ def known_name(name: str, value: str, names: Iterable[str]) -> str:
 
 
 @contextmanager
+def name_argument(name: str) -> Iterator[None]:
+    """Prefix an argument's name to the parameter of an error in the argument's value."""
+    try:
+        yield
+    except InvalidInputError as error:
+        raise InvalidInputError(f"{name}.{error.parameter}", error.value, error.allowed, error.hint) from error
+
+
+@contextmanager
 def convert_os_errors(action: str) -> Iterator[None]:
     """Raise an error of the file system as a StoreError of the action that failed."""
     try:

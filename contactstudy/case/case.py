@@ -76,7 +76,7 @@ class Case:
         Position x of the load, metres; the roller tilts until the pressure balances it. Default: prescribed `tilt`.
     motion : Sliding, Shift or Rolling
         Motion and speed of the roller against the body. Default: full sliding.
-    body_edge : Cylinder or Chamfer, optional
+    body_edge : Cylinder or Chamfer
         Edge radius or chamfer of the body's top at its free ends, for the gap; default: sharp. An overhanging roller
         loads this edge.
     lubricant : Lubricant, optional
@@ -109,19 +109,17 @@ class Case:
     motion: Motion = field(default=Sliding())
     approach: float | None = None
     lubricant: Lubricant | None = None
-    body_edge: Cylinder | Chamfer | None = None
+    body_edge: Cylinder | Chamfer = field(default=Cylinder())
 
     def __post_init__(self) -> None:
         """Check the parameters."""
-        allowed = (
-            "elastic, a HalfSpace, a QuarterSpace or a FiniteLengthSpace: two rigid bodies have no contact pressure"
-        )
+        allowed = "elastic, a HalfSpace, QuarterSpace or FiniteLengthSpace: two rigid bodies have no contact pressure"
         checks.instance("body", self.body, Body, allowed)
         checks.instance("roller", self.roller, Roller, "a Roller")
         checks.instance("motion", self.motion, Motion, MOTIONS_TEXT)
         checks.instance("lubricant", self.lubricant, Lubricant | None, "a Lubricant(...), or None")
-        allowed = "profiles.Cylinder(fillet_radius) or profiles.Chamfer(...), or None for a sharp edge"
-        checks.instance("body_edge", self.body_edge, Cylinder | Chamfer | None, allowed)
+        allowed = "profiles.Cylinder(fillet_radius), sharp by default, or profiles.Chamfer(...)"
+        checks.instance("body_edge", self.body_edge, Cylinder | Chamfer, allowed)
         checks.instance("coupled", self.coupled, (bool, np.bool_), "True or False")
         friction = check_friction(self.friction)
         check_coupled(friction, self.motion, coupled=self.coupled)
@@ -154,16 +152,15 @@ class Case:
         if self.end_distance is not None:
             checks.store(self, end_distance=checks.finite("end_distance", self.end_distance, "metres"))
         elif self.roller.length > (extent := self.body.extent[1] - self.body.extent[0]):
+            allowed = f"at most the body's length, {extent:g} m"
             hint = "give end_distance (negative) if the roller is to overhang"
-            raise InvalidInputError(
-                "roller.length", self.roller.length, f"at most the body's length, {extent:g} m", hint
-            )
+            raise InvalidInputError("roller.length", self.roller.length, allowed, hint)
         start, stop = self.contact_range
         if not start < stop:
-            allowed = "such that the roller lies over the body"
-            raise InvalidInputError(
-                "end_distance", self.roller_start, allowed, f"the body spans x = {self.body.extent}"
-            )
+            hint = f"the body spans x = {self.body.extent}"
+            raise InvalidInputError("end_distance", self.roller_start, "such that the roller lies over the body", hint)
+        with checks.name_argument("body_edge"):
+            self.body_edge.drop(np.zeros(1), self._body_top[1])  # raises if the edge does not fit the body
         if self.load_position is not None:
             position = checks.finite("load_position", self.load_position, "metres")
             if not start < position < stop:
@@ -209,7 +206,6 @@ class Case:
                 f"pressures and moduli are in Pa ({self.modulus:.3g} Pa here; 1500 MPa is 1.5e9 Pa), loads in N, "
                 "lengths in metres",
             )
-
         low, high = self.body.extent
         allowed = f"between {MIN_LENGTH_RATIO:g} and {MAX_LENGTH_RATIO:g} Hertz half-widths, {half_width:.3g} m"
         for parameter, length in {"roller.length": self.contact_length, "body.length": high - low}.items():
@@ -260,9 +256,8 @@ class Case:
     def nodes(self) -> FloatArray:
         """Positions x, metres, between which the generatrix over the body is smooth."""
         x = self.roller_middle + as_shape(self.roller.profile).nodes(self.roller.length)
-        if self.body_edge is not None:
-            midpoint, length = self._body_top
-            x = np.union1d(x, midpoint + as_shape(self.body_edge).nodes(length))
+        midpoint, length = self._body_top
+        x = np.union1d(x, midpoint + self.body_edge.nodes(length))
         start, stop = self.contact_range
         return np.asarray(x[(x > start) & (x < stop)])
 
@@ -354,16 +349,17 @@ class Case:
     def _body_top(self) -> tuple[float, float]:
         """Midpoint and length of the body's top, metres; the far end of a quarter-space lies beyond the roller."""
         low, high = self.body.extent
+        if np.isinf(low):
+            return self.roller_middle, np.inf
         high = high if np.isfinite(high) else 3 * (self.roller_start + self.roller.length)
         return 0.5 * (low + high), high - low
 
     def _clearance(self, from_middle: FloatArray, y: FloatArray) -> FloatArray:
         """Height of the roller at distances from its mid-length."""
         clearance = self.roller.clearance(from_middle, y)
-        if self.body_edge is not None and np.isfinite(self.body.extent[0]):
-            midpoint, length = self._body_top
-            x = np.clip(self.roller_middle + from_middle - midpoint, -0.5 * length, 0.5 * length)
-            clearance = clearance + self.body_edge.drop(x, length)[:, None]
+        midpoint, length = self._body_top
+        x = np.clip(self.roller_middle + from_middle - midpoint, -0.5 * length, 0.5 * length)
+        clearance = clearance + self.body_edge.drop(x, length)[:, None]
         return clearance - self.tilt * from_middle[:, None] if self.tilt else clearance
 
 

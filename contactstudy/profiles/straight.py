@@ -45,7 +45,7 @@ class Cylinder(Shape):
         """Material removed (m) at distances `x` (m) from mid-length."""
         radius = self.fillet_radius
         if radius > length / 2:
-            raise InvalidInputError("fillet_radius", radius, f"at most half the roller's length, {length / 2:g} m")
+            raise InvalidInputError("fillet_radius", radius, f"at most half the length, {length / 2:g} m")
         distance = np.clip(np.abs(x) - (length / 2 - radius), 0.0, radius)
         # Squares of the smallest radii underflow.
         return np.asarray(np.maximum(radius - np.sqrt(radius**2 - distance**2), 0.0))
@@ -191,7 +191,7 @@ class Chamfer(Shape):
         """Material removed (m) at distances `x` (m) from mid-length."""
         half_length, width, inner_blend = 0.5 * length, self.axial_width, self.inner_blend
         if width > half_length:
-            raise InvalidInputError("width", width, f"at most half the roller's length, {half_length:g} m")
+            raise InvalidInputError("width", width, f"at most half the length, {half_length:g} m")
         outer_blend = self.blend_radius * np.sin(np.arctan(self.slope)) - inner_blend
         if outer_blend > width or width + inner_blend > half_length:
             max_radius = min(width / outer_blend, (half_length - width) / inner_blend) * self.blend_radius

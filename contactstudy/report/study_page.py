@@ -149,7 +149,7 @@ def _swept_values(plan: Plan, case: PlannedCase, swept: list[str]) -> list[str]:
     for name in swept:
         dim, labels = plan.cube.labels.get(name, ("", ()))
         value = labels[case.position[plan.cube.dims.index(dim)]] if dim in plan.cube.dims else parameters.get(name)
-        if isinstance(parameters.get(name), dict) and value == label(name, parameters[name]):
+        if isinstance(parameters.get(name), dict) and value == label(parameters[name]):
             value = parameters[name]  # a table without a name: its values
         texts.append("" if value is None else format_value(name, value))
     return texts

@@ -259,7 +259,7 @@ def build_setup(parameters: Mapping[str, Any]) -> Setup:
         roller=Roller(
             radius=sizes.radius,
             length=sizes.roller_length,
-            profile=build_profile(values["profile"], sizes),
+            profile=build_profile("profile", values["profile"], sizes),
             material=roller_material,
             ends="none" if values["roller_body"] == "half-space" else "free",
             reference_depth=values.get("roller_reference_depth") if roller_material else None,
@@ -268,7 +268,7 @@ def build_setup(parameters: Mapping[str, Any]) -> Setup:
         load_position=mid_length + values["load_offset"] if "load_offset" in values else None,
         motion=build_motion(values),
         lubricant=_lubricant(values),
-        **keywords_of(Case, values),
+        **keywords_of(Case, values | {"body_edge": build_profile("body_edge", values["body_edge"], sizes)}),
     )
     options: dict[str, Any] = {
         **_stress_points(values, sizes.half_width, case.body.extent),

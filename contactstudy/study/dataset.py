@@ -150,7 +150,7 @@ def numbers_dataset(states: States) -> xr.Dataset:
         if name not in coordinates and len(plan):
             value = plan.values(0).get(name, PARAMETERS[name].default)
             attributes = PARAMETERS[name].attrs | {"comment": DERIVED}
-            coordinates[name] = ((), label(name, value), attributes)
+            coordinates[name] = ((), label(value), attributes)
     return xr.Dataset(variables, coords=coordinates)
 
 

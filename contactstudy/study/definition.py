@@ -155,7 +155,7 @@ class Study:
             raise InvalidInputError(argument, values, allowed)
         column = [PARAMETERS[name].normalize(value) for value in values]
         if where == "sweep":
-            entries = [label(name, value) for value in column]
+            entries = [label(value) for value in column]
             if duplicates := [entry for entry in entries if entries.count(entry) > 1]:
                 raise InvalidInputError(argument, duplicates[0], "a list of different values", "it appears twice")
         return column
@@ -171,7 +171,7 @@ class Study:
             excluded[name] = [
                 value
                 if isinstance(value, str) and not isinstance(PARAMETERS[name].default, str)
-                else label(name, PARAMETERS[name].normalize(value))
+                else label(PARAMETERS[name].normalize(value))
                 for value in rule_values
             ]
         return excluded
@@ -315,7 +315,7 @@ class Study:
                 codes = np.unravel_index(np.arange(product.products), product.shape)[index]
         explicit = [case.get(name, shared) for case in self.cases]
         all_codes = np.concatenate([codes, len(values) + np.arange(len(explicit))])
-        return [label(name, value) for value in (*values, *explicit)], all_codes
+        return [label(value) for value in (*values, *explicit)], all_codes
 
 
 def content_of_table(table: xr.Dataset, base: Mapping[str, Any]) -> dict[str, Any]:

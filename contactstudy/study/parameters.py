@@ -11,6 +11,7 @@ import hashlib
 import inspect
 import json
 from collections.abc import Callable, Iterable, Mapping
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -23,7 +24,7 @@ from contactstudy.case.case import Case
 from contactstudy.case.gridding import ACCURACY, TOLERANCE, choose_grid
 from contactstudy.case.motion import MODELS as ROLLING_MODELS
 from contactstudy.errors import InvalidInputError
-from contactstudy.study.profile_tables import check_number, profile_table
+from contactstudy.study.profile_tables import EDGE_KINDS, check_number, profile_table
 
 MAX_POINTS = 100_000  # Largest number of points of a table {start, stop, count}
 SCHEMA = 1  # Version of the parameters' meanings; raised only if a parameter changes its meaning
@@ -108,6 +109,7 @@ _PARAMETERS = (
         words=("finite-length", "quarter-space", "half-space"),
         note="`finite-length`, `quarter-space` (one free end, at x = 0) or `half-space`",
     ),
+    Parameter("body_edge", "", "edge of the body's top", check=partial(profile_table, kinds=EDGE_KINDS), consumer=Case),
     Parameter(
         "model",
         "",
@@ -144,9 +146,7 @@ _PARAMETERS = (
         note="load and a result: give `end_distance`, and leave out uniform cells and stress points, which are over a",
     ),
     Parameter("friction", "1", "coefficient of friction", consumer=Case),
-    Parameter(
-        "profile", "", "roller profile", check=lambda _, value: profile_table(value), fallback={"kind": "cylinder"}
-    ),
+    Parameter("profile", "", "roller profile", check=profile_table, fallback={"kind": "cylinder"}),
     Parameter(
         "roller_body",
         "",
@@ -296,15 +296,14 @@ def add_default_accuracy(values: Mapping[str, Any]) -> dict[str, Any]:
 
 def identity_value(name: str, value: Any) -> Any:
     """Part of a checked value that belongs to the identity; None for a default."""
-    if name == "profile":
+    if isinstance(value, dict):
         value = {key: entry for key, entry in value.items() if key != "name"}
     return None if value == DEFAULTS.get(name) else value
 
 
 def without_defaults(values: Mapping[str, Any]) -> dict[str, Any]:
     """Return checked `values` without defaults and without a profile's name."""
-    pairs = ((name, identity_value(name, value)) for name, value in values.items())
-    return {name: value for name, value in pairs if value is not None}
+    return {name: part for name, value in values.items() if (part := identity_value(name, value)) is not None}
 
 
 def with_defaults(values: Mapping[str, Any]) -> dict[str, Any]:

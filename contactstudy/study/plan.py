@@ -38,7 +38,8 @@ MAX_LISTED = 12  # Largest number of values of a swept parameter that are all sh
 MAX_CUBE_CELLS = 4  # Entries of the parameter cube per explicit case; cases of a sparser cube are listed along `case`
 BYTES_PER_CASE, BYTES_PER_CELL, BYTES_PER_POINT = 700, 4 * 8, 7 * 4  # sizes before compression
 LOCAL_PARAMETERS = frozenset(  # Parameters that do not change the operator of the surface. Speed
-    {"friction", "tilt", "load_offset", "profile", "accuracy", "tolerance", "stresses", "entrainment_speed"}
+    {"friction", "tilt", "load_offset", "profile", "body_edge", "entrainment_speed"}
+    | {"accuracy", "tolerance", "stresses"}
 )
 
 Axis = tuple[dict[str, Any], ...]  # a factor of the product of a study: the parameters of each step
@@ -60,7 +61,7 @@ def cube_of_axes(axes: Sequence[Axis], chosen: IntArray) -> Cube:
         return Cube(("case",), (1,), {"case": ("case", [0])}, chosen)
     dims, shape, labels = [], [], {}
     for axis in axes:
-        columns = {name: [label(name, entry[name]) for entry in axis] for name in axis[0]}
+        columns = {name: [label(entry[name]) for entry in axis] for name in axis[0]}
         distinct = [name for name, column in columns.items() if len(set(column)) == len(column)]
         dim = distinct[0] if distinct else "_and_".join(columns)
         if not distinct:
@@ -75,7 +76,7 @@ def cube_of_axes(axes: Sequence[Axis], chosen: IntArray) -> Cube:
 def cube_of_cases(cases: Sequence[Mapping[str, Any]]) -> Cube:
     """Cube of explicit cases over the parameters that differ, or along `case` if sparse."""
     names = list(dict.fromkeys(name for case in cases for name in case))
-    rows = [{name: label(name, case.get(name)) if name in case else None for name in names} for case in cases]
+    rows = [{name: label(case.get(name)) for name in names} for case in cases]
     columns = {name: list(dict.fromkeys(row[name] for row in rows)) for name in names}
     varying = {name: column for name, column in columns.items() if len(column) > 1}
     cells = math.prod(map(len, varying.values()))
@@ -174,7 +175,7 @@ class Plan(Sequence[PlannedCase]):
 
     def describe(self, index: int) -> str:
         """Swept parameters of a case, for messages."""
-        labels = {name: label(name, value) for name, value in self.varying(index).items()}
+        labels = {name: label(value) for name, value in self.varying(index).items()}
         words = (f"{name}={text:g}" if isinstance(text, float) else f"{name}={text}" for name, text in labels.items())
         return " ".join(words) or "the only case"
 
@@ -289,9 +290,9 @@ class Plan(Sequence[PlannedCase]):
         return size * len(self.unique)
 
 
-def label(name: str, value: Any) -> Any:
+def label(value: Any) -> Any:
     """Value that represents a parameter's value in a coordinate."""
-    if name == "profile" and value is not None:
+    if isinstance(value, dict):
         return format_profile(value)
     if isinstance(value, list):
         return f"{len(value)} points {value[0]:g} to {value[-1]:g}"
@@ -305,7 +306,7 @@ def format_list(texts: Sequence[str]) -> str:
 
 def format_value(name: str, value: Any) -> str:
     """Value of a study's parameter in the units of engineers."""
-    value = format_profile(value, in_units=True) if name == "profile" and isinstance(value, dict) else value
+    value = format_profile(value, in_units=True) if isinstance(value, dict) else value
     if isinstance(value, (list, tuple)):
         range_text = f"{value[0]:g}" if len(value) == 1 else f"{value[0]:g} to {value[-1]:g}"
         return f"{len(value)} value{'s' if len(value) > 1 else ''}, {range_text}"

@@ -9,7 +9,7 @@ import hashlib
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import MISSING, dataclass, field, fields, is_dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -58,88 +58,83 @@ class ProfileKind:
         entries = fields(self.profile_class)
         return {entry.name: None if entry.name in self.radius_multiples else entry.default for entry in entries}
 
-    def read(self, table: Mapping[str, Any], depth: int) -> Table:
-        """Check keys and values of a table without `kind` and `name`; omit defaults."""
+    def read(self, name: str, table: Mapping[str, Any], depth: int) -> Table:
+        """Check keys and values of a parameter's table without `kind` and `name`; omit defaults."""
         is_measured = self.profile_class is profiles.Measured
         keys = [*self.defaults, *(DESIGN if self.design_fields else ()), *(FILE_OPTIONS if is_measured else ())]
         for key in table:
-            checks.known_name("profile key", str(key), [*keys, "kind", "name"])
+            checks.known_name(f"{name} key", str(key), [*keys, "kind", "name"])
         stated_entries = {key: entry for key, entry in table.items() if entry is not None}
         if is_measured:
-            stated_entries = _read_points(stated_entries)
-        values = {key: _check_value(key, entry, depth) for key, entry in stated_entries.items()}
-        design_count = sum(name in values for name in DESIGN)
-        if self.design_fields and design_count + any(name in values for name in self.design_fields) != 1:
+            stated_entries = _read_points(name, stated_entries)
+        values = {key: _check_value(name, key, entry, depth) for key, entry in stated_entries.items()}
+        design_count = sum(key in values for key in DESIGN)
+        if self.design_fields and design_count + any(key in values for key in self.design_fields) != 1:
             choice = f"exactly one of {' with '.join(self.design_fields)}, {' and '.join(DESIGN)}"
-            raise InvalidInputError("profile", dict(table), f"given with {choice}")
-        for name, default in self.defaults.items():
-            follows = design_count and name in self.design_fields
-            if default is MISSING and name not in values and not follows:
-                raise InvalidInputError("profile", dict(table), f"given with {name}")
+            raise InvalidInputError(name, dict(table), f"given with {choice}")
+        for key, default in self.defaults.items():
+            follows = design_count and key in self.design_fields
+            if default is MISSING and key not in values and not follows:
+                raise InvalidInputError(name, dict(table), f"given with {key}")
         return {key: values[key] for key in keys if key in values and values[key] != self.defaults.get(key)}
 
-    def build(self, table: Mapping[str, Any], sizes: Dimensions) -> Profile:
+    def build(self, name: str, table: Mapping[str, Any], sizes: Dimensions) -> Profile:
         """Profile of the values that :meth:`read` returns."""
-        design = {name: table[name] for name in DESIGN if name in table}
-        values: dict[str, Any] = {}
-        for name, value in table.items():
+        values: dict[str, Any] = {key: factor * sizes.radius for key, factor in self.radius_multiples.items()}
+        for key, value in table.items():
             if isinstance(value, Mapping):
-                values[name] = build_profile(value, sizes)
-            elif name == "terms":
-                values[name] = tuple(build_profile(term, sizes) for term in value)
-            elif name not in design:
-                values[name] = value
-        profile: Profile
-        if not design:
-            radii = {name: factor * sizes.radius for name, factor in self.radius_multiples.items()}
-            profile = self.profile_class(**(radii | values))
-        elif "design_load" in design:
-            values |= {"length": sizes.roller_length, "radius": sizes.radius, "modulus": sizes.modulus}
-            profile = self.profile_class.for_load(design["design_load"], **values)
-        else:
-            values |= {"radius": sizes.radius, "modulus": sizes.modulus}
-            profile = self.profile_class.for_pressure(design["design_pressure"], **values)
+                values[key] = build_profile(name, value, sizes)
+            elif key == "terms":
+                values[key] = tuple(build_profile(name, term, sizes) for term in value)
+            elif key not in DESIGN:
+                values[key] = value
+        create, scales = self.profile_class, {"radius": sizes.radius, "modulus": sizes.modulus}
+        if "design_pressure" in table:
+            create = partial(create.for_pressure, table["design_pressure"], **scales)
+        elif "design_load" in table:
+            create = partial(create.for_load, table["design_load"], length=sizes.roller_length, **scales)
+        with checks.name_argument(name):
+            profile: Profile = create(**values)
         return profile
 
 
-def _check_value(key: str, value: object, depth: int) -> Any:
+def _check_value(name: str, key: str, value: object, depth: int) -> Any:
     """Value of a table after its check: a nested profile, a list of profiles or lengths, or a number."""
     if key in NESTED:
-        return _check_nested_table(value, depth)
+        return _check_nested_table(name, value, depth)
     if key == "terms":
-        checks.instance("profile.terms", value, (list, tuple), "a list of profiles")
+        checks.instance(f"{name}.terms", value, (list, tuple), "a list of profiles")
         assert isinstance(value, Sequence)
-        return [_check_nested_table(term, depth) for term in value]
+        return [_check_nested_table(name, term, depth) for term in value]
     if key not in POINTS:
-        return check_number(f"profile.{key}", value)
-    points = checks.coordinates(f"profile.{key}", value, "metres").tolist()
+        return check_number(f"{name}.{key}", value)
+    points = checks.coordinates(f"{name}.{key}", value, "metres").tolist()
     if len(points) > MAX_POINTS:
         remedy = "thin the points out: cells of the contact are micrometres wide"
-        raise InvalidInputError("profile", f"{len(points)} points", f"at most {MAX_POINTS} points", remedy)
+        raise InvalidInputError(name, f"{len(points)} points", f"at most {MAX_POINTS} points", remedy)
     return [round_digits(point) for point in points]
 
 
-def _check_nested_table(value: object, depth: int) -> Table:
+def _check_nested_table(name: str, value: object, depth: int) -> Table:
     """Table of a profile within another profile, without the inner profile's name."""
-    return {key: entry for key, entry in profile_table(value, depth + 1).items() if key != "name"}
+    return {key: entry for key, entry in profile_table(name, value, depth + 1).items() if key != "name"}
 
 
-def _read_points(table: Table) -> Table:
+def _read_points(name: str, table: Table) -> Table:
     """Table of a measured profile with the points of its file: the points, not the path, determine the identity."""
     if "file" not in table:
         for key in FILE_OPTIONS:
             if key in table:
-                raise InvalidInputError(f"profile.{key}", table[key], "left out: it belongs to a file")
+                raise InvalidInputError(f"{name}.{key}", table[key], "left out: it belongs to a file")
         return table
-    if any(name in table for name in POINTS):
-        raise InvalidInputError("profile", sorted(table), "given with file, or with positions and drops")
-    checks.instance("profile.file", table["file"], str, "the path of a CSV or netCDF file")
+    if any(key in table for key in POINTS):
+        raise InvalidInputError(name, sorted(table), "given with file, or with positions and drops")
+    checks.instance(f"{name}.file", table["file"], str, "the path of a CSV or netCDF file")
     for flag in FILE_FLAGS:
-        checks.instance(f"profile.{flag}", table.get(flag, False), bool, "true or false")
+        checks.instance(f"{name}.{flag}", table.get(flag, False), bool, "true or false")
     options = {key: entry for key, entry in table.items() if key != "file"}
     measured = profiles.Measured.from_file(table["file"], **options)
-    values = {entry.name: getattr(measured, entry.name) for entry in fields(measured)}
-    return {name: value for name, value in values.items() if value is not None}
+    return {entry.name: value for entry in fields(measured) if (value := getattr(measured, entry.name)) is not None}
 
 
 PROFILES: dict[str, ProfileKind] = {  # Kinds of profile by their name in a study
@@ -162,44 +157,44 @@ PROFILES: dict[str, ProfileKind] = {  # Kinds of profile by their name in a stud
 }
 
 KIND_OF = {kind.profile_class: name for name, kind in PROFILES.items()}  # Name of the kind of each class
+KINDS = (*PROFILES, user_profiles.KIND)
+EDGE_KINDS = ("cylinder", "chamfer")  # of a case's `body_edge`
 
 
-def profile_table(value: object, depth: int = 0) -> Table:
+def profile_table(name: str, value: object, depth: int = 0, kinds: Sequence[str] = KINDS) -> Table:
     """Table of a profile without defaults; `value` is a kind, a table with ``kind`` and fields, or a profile object."""
     if depth > MAX_NESTING:
-        raise InvalidInputError("profile", f"more than {MAX_NESTING} profiles within one another", "nested less deeply")
+        raise InvalidInputError(name, f"more than {MAX_NESTING} profiles within one another", "nested less deeply")
     if is_dataclass(value) and type(value) in KIND_OF:
         value = {"kind": KIND_OF[type(value)], **{entry.name: getattr(value, entry.name) for entry in fields(value)}}
-    elif isinstance(value, Profile) and not isinstance(value, type):
+    elif user_profiles.KIND in kinds and isinstance(value, Profile) and not isinstance(value, type):
         return user_profiles.register(value)
     if isinstance(value, str):
         value = {"kind": value}
-    allowed = "a profile, an object with drop(x, length), or a table with a kind, such as {kind = 'cylinder'}"
-    checks.instance("profile", value, Mapping, allowed)
-    assert isinstance(value, Mapping)
-    if not isinstance(value.get("kind"), str):
-        raise InvalidInputError("profile", dict(value), f"a table with a kind: one of {', '.join(PROFILES)}")
-    kind = checks.known_name("profile.kind", value["kind"], [*PROFILES, user_profiles.KIND])
+    if not isinstance(value, Mapping) or not isinstance(value.get("kind"), str):
+        allowed = f"a profile, or a table with a kind: one of {', '.join(kinds)}"
+        raise InvalidInputError(name, value, allowed)
+    kind = checks.known_name(f"{name}.kind", value["kind"], kinds)
     table: Table = {"kind": kind}
-    name = value.get("name")
-    if name is None and isinstance(value.get("file"), str):
-        name = Path(value["file"]).stem
-    if name is not None:
-        checks.instance("profile.name", name, str, "text")
-        table["name"] = name
+    label = value.get("name")
+    if label is None and isinstance(value.get("file"), str):
+        label = Path(value["file"]).stem
+    if label is not None:
+        checks.instance(f"{name}.name", label, str, "text")
+        table["name"] = label
     content = {key: entry for key, entry in value.items() if key not in ("kind", "name")}
     if kind == user_profiles.KIND:
         return table | user_profiles.read_table(content)
-    return table | PROFILES[kind].read(content, depth)
+    return table | PROFILES[kind].read(name, content, depth)
 
 
-def build_profile(table: Mapping[str, Any], sizes: Dimensions) -> Profile:
+def build_profile(name: str, table: Mapping[str, Any], sizes: Dimensions) -> Profile:
     """Profile of a table from :func:`profile_table`."""
     if table["kind"] == user_profiles.KIND:
         # A process without the object plans with a straight line.
         return REGISTRY.get(table["content"]) or Sampled(str(table["class"]), (-0.5, 0.5), (0.0, 0.0))
     values = {key: value for key, value in table.items() if key not in ("kind", "name")}
-    return PROFILES[table["kind"]].build(values, sizes)
+    return PROFILES[table["kind"]].build(name, values, sizes)
 
 
 def resolve_files(content: Any, folder: Path) -> Any:

@@ -64,7 +64,7 @@ def test_profile_classes_have_kinds() -> None:
 def test_profile_object_table_and_json_agree(kind: str) -> None:
     profile = EXAMPLES[kind]
     assert built(profile) == profile
-    table = profile_table(profile)
+    table = profile_table("profile", profile)
     assert table["kind"] == kind
     restored_table = json.loads(json.dumps(table))
     assert built(restored_table) == profile
@@ -154,9 +154,9 @@ def test_profile_paths_are_relative_to_study_file(tmp_path: Path, monkeypatch) -
 
 
 def test_labels_tell_measured_profiles_apart(tmp_path: Path) -> None:
-    tables = [profile_table(profiles.Measured.from_file(trace(tmp_path, height))) for height in (1.0, 2.0)]
+    tables = [profile_table("profile", profiles.Measured.from_file(trace(tmp_path, height))) for height in (1.0, 2.0)]
     assert len({format_profile(table) for table in tables}) == 2
-    assert format_profile(profile_table(EXAMPLES["halves"])) == "cylinder | full-crown crown_radius=0.5"
+    assert format_profile(profile_table("profile", EXAMPLES["halves"])) == "cylinder | full-crown crown_radius=0.5"
 
 
 @pytest.mark.parametrize(

@@ -27,6 +27,7 @@ STORED = {
 
 DEFAULTS = {
     "body": "finite-length",
+    "body_edge": {"kind": "cylinder"},
     "model": "exact",
     "friction": 0.0,
     "profile": {"kind": "cylinder"},
