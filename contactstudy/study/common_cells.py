@@ -1,12 +1,13 @@
 """Common cells of a study: positions over the half-width on which the surfaces and stresses of all cases lie.
 
-The common edges along x are edges of the cases, thinned to half the width of the narrowest cell at each position, with
-further edges where stress points are denser. Pressure and traction are averaged over a common cell, so loads remain;
-flags have the value of the case's cell at the centre; other quantities are interpolated linearly.
+The common edges along x are edges of the cases at a distance of at least half the narrowest cell beside each, with
+further edges where stress points are denser, and a thin cell on each end of a case. Pressure and traction are averaged
+over a common cell, so loads remain; flags have the value of the case's cell at the centre; others are interpolated.
 """
 
 from __future__ import annotations
 
+from bisect import bisect
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -17,7 +18,8 @@ import numpy.typing as npt
 from contactstudy.arrays.grid import SPACING_TOLERANCE, centres_of
 from contactstudy.checks import FloatArray
 
-MIN_WIDTH = 0.5  # Width of a common cell over the narrowest cell of all cases at this position. Accuracy
+MIN_WIDTH = 0.5  # Width of a common cell over the narrowest cell of all cases beside its edges. Accuracy
+END_WIDTH = 1e-10  # Width of the cell on the end of a case over the longest case, above rounding. Accuracy
 AVERAGED_VARIABLES = frozenset({"pressure", "traction_x", "traction_y"})  # averaged over a common cell
 FLAG_VARIABLES = frozenset({"stick"})  # Variables that are true or false
 
@@ -34,20 +36,30 @@ def resampling_comment(name: str) -> str:
 def common_columns(edges: Sequence[FloatArray]) -> FloatArray:
     """Edges along x, over the half-width, that resolve the cells of all cases."""
     union = np.unique(np.concatenate(edges))
-    midpoints = 0.5 * (union[1:] + union[:-1])
+    midpoints = centres_of(union)
     narrowest = np.full(midpoints.size, np.inf)
     for case_edges in edges:
         cells = np.searchsorted(case_edges, midpoints) - 1
         in_case = (cells >= 0) & (cells < case_edges.size - 1)
         narrowest[in_case] = np.minimum(narrowest[in_case], np.diff(case_edges)[cells[in_case]])
-    common_edges = [union[0]]
-    for edge, width in zip(union[1:], narrowest, strict=True):
-        if edge - common_edges[-1] >= MIN_WIDTH * width:
-            common_edges.append(edge)
-    # The last edge replaces an edge shortly before.
-    if common_edges[-1] != union[-1]:
-        common_edges[-1 if len(common_edges) > 1 else 1 :] = [union[-1]]
-    return np.array(common_edges)
+    # Edges of narrower cells precede edges of wider cells near them.
+    narrowest_beside = np.minimum(narrowest[:-1], narrowest[1:])
+    kept = sorted({0, union.size - 1})
+    for index in (1 + np.argsort(narrowest_beside, kind="stable")).tolist():
+        place = bisect(kept, index)
+        distance = min(union[index] - union[kept[place - 1]], union[kept[place]] - union[index])
+        if distance >= MIN_WIDTH * narrowest_beside[index - 1]:
+            kept.insert(place, index)
+    return np.asarray(union[kept])
+
+
+def end_cells(edges: Sequence[FloatArray], points: Sequence[FloatArray]) -> FloatArray:
+    """Thin cells (end, inner edge) on the ends of the cases that are the first or last stress point of a case."""
+    ends = np.unique([case_edges[[0, -1]] for case_edges in edges], axis=0)
+    width = END_WIDTH * np.ptp(ends, axis=1).max()
+    cells = np.stack([ends, ends + np.array([width, -width])], axis=-1).reshape(-1, 2)
+    first_and_last = np.unique([(case_points.min(), case_points.max()) for case_points in points])
+    return np.asarray(cells[np.abs(first_and_last[:, None] - cells[:, 0]).min(axis=0, initial=np.inf) < width])
 
 
 def common_rows(edges: Sequence[FloatArray]) -> FloatArray:
@@ -59,30 +71,18 @@ def common_rows(edges: Sequence[FloatArray]) -> FloatArray:
 
 def split_cells(edges: FloatArray, points: FloatArray) -> FloatArray:
     """Edges with an additional edge between any two points that lie in one cell."""
-    midpoints = 0.5 * (points[1:] + points[:-1])
-    cells = np.searchsorted(edges, points, side="right")
-    cells[points >= edges[-1]] = edges.size - 1
-    return _add_face_cells(np.union1d(edges, midpoints[cells[1:] == cells[:-1]]), points)
-
-
-def _add_face_cells(edges: FloatArray, points: FloatArray) -> FloatArray:
-    """Edges with a thin additional cell at each face that contains a point: 4e-6 of the first or last cell."""
-    face_edges = []
-    for end_index, inner_index in ((0, 1), (-1, -2)):
-        width = edges[inner_index] - edges[end_index]
-        if (np.abs(points - edges[end_index]) < SPACING_TOLERANCE * abs(width)).any():
-            face_edges.append(edges[end_index] + 4e-6 * width)
-    return np.union1d(edges, face_edges)
+    cells = np.minimum(np.searchsorted(edges, points, side="right"), edges.size - 1)
+    return np.union1d(edges, centres_of(points)[cells[1:] == cells[:-1]])
 
 
 def centre_cells_on(edges: FloatArray, points: FloatArray) -> FloatArray:
     """Edges moved and added so that every point is the centre of a cell."""
-    edges = _add_face_cells(edges, points)
     for index, point in enumerate(points):
         cell = int(np.clip(np.searchsorted(edges, point) - 1, 0, edges.size - 2))
         low, high = edges[cell], edges[cell + 1]
         width = high - low
-        if not edges[0] < point < edges[-1] or abs(point - 0.5 * (low + high)) < 1e-9 * width:
+        is_centre = np.abs(centres_of(edges) - point).min() < END_WIDTH * (edges[-1] - edges[0])
+        if is_centre or not edges[0] < point < edges[-1]:
             continue
         spacings = np.abs(np.delete(points[max(index - 1, 0) : index + 2], min(index, 1)) - point)
         half_cell = min(0.25 * width, 0.5 * spacings.min(initial=np.inf), point - edges[0], edges[-1] - point)

@@ -22,6 +22,7 @@ from contactstudy.study.common_cells import (
     centre_cells_on,
     common_columns,
     common_rows,
+    end_cells,
     resample,
     resampling_comment,
     split_cells,
@@ -175,8 +176,7 @@ class Fields:
     def _original_axis(self, dim: str) -> tuple[dict[str, StudyAxis], dict[str, Any]]:
         """Axis of the cases' positions, padded with NaN to the largest case where they differ."""
         positions = self._positions[dim]
-        equal_positions = all(np.array_equal(values, positions.values[0]) for values in positions.values)
-        name = dim if equal_positions else f"{dim}_index"
+        name = dim if all(np.array_equal(row, positions.values[0]) for row in positions.values) else f"{dim}_index"
         size, index = max(values.size for values in positions.values), positions.position_index
 
         def coordinate(rows: list[FloatArray]) -> tuple[Any, ...]:
@@ -193,29 +193,31 @@ class Fields:
         """Axis, over the half-width, that all cases share along dimensions of one direction, and its coordinates."""
         first_dim, name = dims[0], f"{dims[0]}_over_a"
         sources = {dim: self._positions[dim].sources(has_points=dim not in CELL_DIMS) for dim in dims}
-        rows = sources[first_dim]
+        ends = end_cells(sources[first_dim], sources.get("x_field", []))
+        rows = [*sources[first_dim], *np.sort(ends, axis=1)]
         union = common_rows if first_dim == "y" else common_columns
         axis = borders = rows[0] if _all_equal(rows, rows[0]) else union(rows)
         if first_dim not in CELL_DIMS:
             borders = np.concatenate([axis[:1], centres_of(axis), axis[-1:]])
         elif "x_field" in sources:
-            points = common_columns([np.sort(row) for row in sources["x_field"]])
-            plan = self._states.plan
+            points, plan = common_columns([np.sort(row) for row in sources["x_field"]]), self._states.plan
             parameters = [plan.base, *(steps[0] for steps in plan.axes), *plan.explicit]
             # Stress points that the study gives are positions of the common axis.
             has_stated_points = any("field_x_over_a" in entry for entry in parameters)
             borders = centre_cells_on(borders, points) if has_stated_points else split_cells(borders, points)
         if first_dim in CELL_DIMS:
             axis = centres_of(borders)
+        for end in ends[:, 0]:
+            axis[np.abs(axis - end).argmin()] = end
         axes, maps = {}, {}
         for dim, source_rows in sources.items():
             has_points, fill = dim not in CELL_DIMS, 0.0 if dim == "y" else np.nan
+            positions, covered = (axis, axis) if has_points else (centres_of(borders), borders)
             maps[dim] = [
-                Resampling(source=source, axis=axis, borders=borders, fill=fill, has_points=has_points)
+                Resampling(source=source, axis=positions, borders=borders, fill=fill, has_points=has_points)
                 for source in source_rows
             ]
-            is_common_axis = _all_equal(source_rows, axis if has_points else borders)
-            axes[dim] = StudyAxis(name, axis.size, None if is_common_axis else maps[dim])
+            axes[dim] = StudyAxis(name, axis.size, None if _all_equal(source_rows, covered) else maps[dim])
         return axes, self._common_coordinates(maps, axis, borders)
 
     def _common_coordinates(
@@ -227,8 +229,8 @@ class Fields:
         coordinates: dict[str, Any] = {over_a: (over_a, axis)}
         for dim, resamplings in maps.items():
             positions = self._positions[dim]
-            scaled_maps = zip(resamplings, positions.scales, strict=True)
-            rows = [scale * np.where(resampling.is_outside, np.nan, axis) for resampling, scale in scaled_maps]
+            shared = [np.where(resampling.is_outside, np.nan, resampling.axis) for resampling in resamplings]
+            rows = [scale * row for row, scale in zip(shared, positions.scales, strict=True)]
             coordinates[dim] = self._pad_rows(over_a, rows, positions.position_index, axis.size)
         positions, sources = self._positions[first_dim], [resampling.source for resampling in maps[first_dim]]
         uniform = not positions.has_widths and _all_equal(sources, borders) and np.ptp(np.diff(borders)) == 0
@@ -241,11 +243,10 @@ class Fields:
         self, name: str, rows: Sequence[FloatArray], position_index: IntArray, size: int
     ) -> tuple[tuple[str, ...], FloatArray]:
         """Dimensions and values of a coordinate of every case along the dimension `name`, padded with NaN."""
-        plan = self._states.plan
         padded = np.full((len(rows) + 1, size), np.nan)
         for index, row in enumerate(rows):
             padded[index, : row.size] = row
-        return (*plan.cube.dims, name), plan.spread(padded[position_index], np.nan)
+        return (*self._states.plan.cube.dims, name), self._states.plan.spread(padded[position_index], np.nan)
 
 
 class CaseArray(BackendArray):
@@ -262,8 +263,8 @@ class CaseArray(BackendArray):
         self._states, self._name, self._dims, self._axes = states, name, tuple(axes), tuple(axes.values())
         self._position_indices = [positions[dim].position_index for dim in axes]
         self.shape = (*states.plan.cube.shape, *(axis.size for axis in self._axes))
-        resampling = any(axis.resamplings for axis in self._axes)
-        self.dtype = np.dtype(np.float64) if resampling and dtype.kind != "f" else dtype
+        is_resampled = any(axis.resamplings for axis in self._axes)
+        self.dtype = np.dtype(np.float64) if is_resampled and dtype.kind != "f" else dtype
 
     @cached_property
     def _cases(self) -> IntArray:

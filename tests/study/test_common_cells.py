@@ -10,15 +10,17 @@ from contactstudy.analysis import load_between, single_case
 from contactstudy.arrays.grid import centres_of
 from contactstudy.study import run_study
 from contactstudy.study.common_cells import (
+    END_WIDTH,
     MIN_WIDTH,
     Resampling,
     centre_cells_on,
     common_columns,
     common_rows,
+    end_cells,
     resample,
     split_cells,
 )
-from tests.small_study import small_study
+from tests.small_study import BASE, small_study
 
 
 def cells_map(source, borders, fill):
@@ -136,9 +138,62 @@ def test_stress_points_become_centres_of(source, points):
 
 def test_cells_between_stress_points():
     cells = split_cells(np.array([0.0, 1.0, 3.0]), np.array([0.0, 0.5, 2.0]))
-    assert cells.tolist() == [0.0, 1e-06, 0.25, 1.0, 3.0]
+    assert cells.tolist() == [0.0, 0.25, 1.0, 3.0]
 
 
 def test_common_edges_of_two_cases():
     first_edges, second_edges = np.array([0.0, 1.0, 2.0, 4.0]), np.array([0.0, 0.9, 4.0, 5.0])
     assert common_columns([first_edges, second_edges]).tolist() == [0.0, 0.9, 2.0, 4.0, 5.0]
+
+
+def test_end_cells_have_one_width():
+    edges, points = [np.array([0.0, 1.0, 4.0]), np.array([-1.0, 0.0, 5.0])], [np.array([0.0, 2.0, 4.0])]
+    width = END_WIDTH * 6.0
+    assert end_cells(edges, points).tolist() == [[0.0, width], [4.0, 4.0 - width]]
+
+
+@given(st.lists(st.tuples(edges(), st.floats(-3.0, 3.0)), min_size=1, max_size=5))
+def test_ends_of_all_cases_have_cells(shifted_edges):
+    cases = [case_edges + shift for case_edges, shift in shifted_edges]
+    ends = end_cells(cases, cases)
+    common_edges = common_columns([*cases, *np.sort(ends, axis=1)])
+    width = float(np.abs(ends[:, 1] - ends[:, 0]).max())
+    assert np.diff(common_edges).min() >= MIN_WIDTH * width * (1 - 1e-4)
+    for case_edges in cases:
+        for end in case_edges[[0, -1]]:
+            assert np.abs(centres_of(common_edges) - end).min() <= 2 * width
+
+
+@pytest.mark.parametrize("has_stated_points", [False, True])
+def test_stresses_on_the_ends_of_every_case(tmp_path, has_stated_points):
+    base = {name: value for name, value in BASE.items() if name not in ("field_x_over_a", "cells_x", "cells_y")}
+    base["accuracy"] = 0.1
+    length = base["roller_length"] / 6.5e-5
+    cases = [
+        {"body": "half-space", "e_over_a": 0.0, "field_x_over_a": [1.0, 2.0]},
+        {"body": "finite-length", "e_over_a": 0.0, "field_x_over_a": [0.0, 1.0, length]},
+        {"body": "finite-length", "e_over_a": 0.4, "field_x_over_a": [0.0, 1.0, length + 0.8]},
+    ]
+    if not has_stated_points:
+        cases = [{name: case[name] for name in ("body", "e_over_a")} for case in cases]
+    study = small_study(base=base, sweep={}, cases=cases)
+    assert run_study(study, tmp_path, workers=0, progress=False).counts == {"ok": 3}
+    common, original = open_study(tmp_path), open_study(tmp_path, cells="original")
+    for solved in np.argwhere(original["status"].values == "ok").tolist():
+        selected = dict(zip(original["status"].dims, solved, strict=True))
+        common_case, original_case = (dataset.isel(selected) for dataset in (common, original))
+        points = original_case["x_field"].dropna("x_field_index") / original_case["hertz_half_width"]
+        for number in (0, -1):
+            common_stress = common_case["von_mises"].sel(x_over_a=points.values[number], method="nearest")
+            assert float(common_stress["x_over_a"]) == pytest.approx(points.values[number], abs=1e-12)
+            expected = original_case["von_mises"].isel(x_field_index=slice(points.size))[number]
+            np.testing.assert_allclose(common_stress, expected, rtol=1e-12)
+        # The end of a body is an edge of common cells: the pressure at the end stays the case's own.
+        if original_case["body"] == "finite-length":
+            assert common_case["von_mises"].sel(x_over_a=0.0).notnull().all()
+            line_loads = [
+                case["pressure"].sum("y") * float(case["y"].diff("y")[0])
+                for case in map(single_case, (common_case, original_case))
+            ]
+            for number in (0, -1):
+                np.testing.assert_allclose(*(loads[number] for loads in line_loads), rtol=1e-9)
