@@ -66,7 +66,7 @@ def draw_micro_slip(ax: Axes, study: xr.Dataset) -> None:
     ax.plot(study["e_over_a"], slips, label="part of the contact that slips", **next(styles))
     creepage = 1e3 * study["longitudinal_creepage"]
     ax.plot(study["e_over_a"], creepage, label=r"longitudinal creepage, $10^3\,\xi$", **next(styles))
-    ax.set_xlabel("distance of the roller's ends from the free ends, $e/a$")
+    ax.set_xlabel("distance of the roller's ends, $e/a$")
 
 
 def draw_spin(ax: Axes, study: xr.Dataset) -> None:
@@ -100,7 +100,7 @@ def draw_stress(ax: Axes, study: xr.Dataset) -> None:
             ax.plot(ticks, curve, label=f"{quantity}, $f$ = {friction:g}", **next(styles))
     ax.set_ylim(0.0, 1.15)
     ax.set_xticks(ticks, [f"{1e3 * value:g}" for value in swept.values])
-    ax.set_xlabel(r"longitudinal creepage, $10^3\,\xi$ (the last is full sliding)")
+    ax.set_xlabel(r"creepage, $10^3\,\xi$ (the last is full sliding)")
     ax.set_ylabel("within $a$ of the free end, over $p_0$")
 
 

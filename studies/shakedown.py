@@ -71,7 +71,9 @@ def draw(study: xr.Dataset, line: xr.Dataset) -> plt.Figure:
             lower.plot(line["friction"], line[name], color="black", linestyle=dashes, label=f"line contact, {name}")
         lower.set(xlabel="friction", ylabel="$p_0/k$", ylim=(0.8, 4.1))
     figure.colorbar(filled, ax=axes[0], label="$p_0/k$ at shakedown")
-    figure.legend(*axes[1, -1].get_legend_handles_labels(), loc="outside lower center", ncols=4, frameon=False)
+    figure.legend(
+        *axes[1, -1].get_legend_handles_labels(), loc="outside lower center", ncols=3, fontsize="small", frameon=False
+    )
     return figure
 
 
