@@ -17,7 +17,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from contactstudy.arrays.grid import EDGE_ROUNDING, Grid
+from contactstudy.arrays.grid import Grid
 from contactstudy.arrays.peaks import lagrange_weights
 from contactstudy.arrays.points import Points
 from contactstudy.cache import ArrayKey, cached
@@ -60,6 +60,7 @@ MIN_CENTRED_WIDTH = 1e-3
 """Least width of the fine column about a point next to a step of the load, over the original fine column. Accuracy: on
 the top a step has infinite stresses."""
 
+MIRROR_ROUNDING = 1e-14  # rounding of a reflected position over the window. Accuracy.
 POSITION_ROUNDING = 1e-9  # rounding of positions on an end or an edge, over a column. Accuracy.
 
 
@@ -405,32 +406,33 @@ def columns_field(
     extent: tuple[float, float],
 ) -> FloatArray:
     """Field in the half-space under a load and all its mirror images, as `half_space_field`."""
-    if _is_symmetric(load, shape, grid, extent):
-        position_indices, is_mirrored, x = _fold_positions(points.x, grid)
-        parities = np.where(is_mirrored, np.array(influence.sign_along_x)[:, None], 1)
-        folded_points = points._replace(x=x)
-        field = _sum_columns(load, shape, influence, grid, points=folded_points, extent=extent)[:, position_indices]
-        field *= parities[..., None, None]
-        return field
-    return _sum_columns(load, shape, influence, grid, points=points, extent=extent)
-
-
-def _is_symmetric(load: FloatArray, shape: FloatArray | None, grid: Grid, extent: tuple[float, float]) -> bool:
-    """Whether a reflection about the middle of the window changes neither load nor images."""
-    # Between two ends the window is the whole body.
-    arrays = [load] if shape is None else [load, shape]
-    is_even = all(np.array_equal(values, values[::-1]) for values in arrays)
-    return is_even and grid.is_symmetric and bool(np.isinf(extent[0]) == np.isinf(extent[1]))
-
-
-def _fold_positions(x: FloatArray, grid: Grid) -> tuple[IntArray, BoolArray, FloatArray]:
-    """Index of each position among positions of the first half, whether it is mirrored, and these positions."""
+    # Between two ends the window is the whole body. The splitting of columns is not symmetric: in a symmetric window
+    # the second half is the reflected field of the reflected load, for every load, so that fields add up.
+    if not grid.is_symmetric or np.isinf(extent[0]) != np.isinf(extent[1]):
+        return _sum_columns(load, shape, influence, grid, points=points, extent=extent)
     low, high = grid.x_range
-    is_mirrored = x > 0.5 * (low + high)
-    folded = np.where(is_mirrored, low + high - x, x)
-    rounding = EDGE_ROUNDING * (high - low)
-    _, first_indices, indices = np.unique(np.round(folded / rounding), return_index=True, return_inverse=True)
-    return indices, is_mirrored, folded[first_indices]
+    in_second_half = points.x > 0.5 * (low + high)
+    x = np.where(in_second_half, low + high - points.x, points.x)
+    arrays = [load] if shape is None else [load, shape]
+    is_symmetric = all(np.array_equal(values, values[::-1]) for values in arrays)
+    field = np.empty((influence.components, x.size, points.z.size, points.y.size)).swapaxes(2, 3)
+    for is_reflected in (False,) if is_symmetric else (False, True):
+        selection = np.full(x.size, True) if is_symmetric else in_second_half == is_reflected
+        if selection.any():
+            distinct_x, indices = _distinct_positions(x[selection], MIRROR_ROUNDING * (high - low))
+            step = -1 if is_reflected else 1
+            half_points = points._replace(x=distinct_x)
+            half_shape = None if shape is None else shape[::step]
+            half_field = _sum_columns(load[::step], half_shape, influence, grid, points=half_points, extent=extent)
+            field[:, selection] = half_field[:, indices]
+    field[:, in_second_half] *= np.array(influence.sign_along_x)[:, None, None, None]
+    return field
+
+
+def _distinct_positions(x: FloatArray, rounding: float) -> tuple[FloatArray, IntArray]:
+    """Positions that differ by more than `rounding`, and the index of each position among them."""
+    _, first_indices, indices = np.unique(np.round(x / rounding), return_index=True, return_inverse=True)
+    return x[first_indices], indices
 
 
 def _sum_columns(

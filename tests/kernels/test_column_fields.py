@@ -217,13 +217,13 @@ def test_mirrored_load_has_mirrored_field(grid_and_load: tuple[Grid, FloatArray]
 @pytest.mark.parametrize("extent", EXTENTS)
 @pytest.mark.parametrize("shaped", [True, False])
 def test_symmetric_load_equals_sum_of_halves(load: Load, extent: str, *, shaped: bool) -> None:
-    """Positions of a symmetric load are evaluated in one half; the halves of the load are not symmetric."""
+    """Positions of a symmetric load are evaluated in one half; some of them lie on edges of its columns."""
     first_half = np.array([0.0, 0.1, 0.25, 0.5, 0.85])
     grid = Grid.from_edges(np.append(first_half, LENGTH - first_half[::-1]), (-1.0, 1.0), 8)
     shape = np.sqrt(np.maximum(1 - (grid.y / 0.9) ** 2 - 0.3 * (grid.x[:, None] - 0.5 * LENGTH) ** 2, 0.0))
     half_load = shape * (1 + grid.y) * (grid.x < 0.5 * LENGTH)[:, None]
     half_load[grid.cells_x // 2] *= 0.5
-    x, y = np.array([0.0, 0.02, 0.3, 0.5 * LENGTH, LENGTH - 0.3, 1.9, LENGTH]), np.array([-0.4, 0.1])
+    x, y = np.array([0.0, 0.02, 0.25, 0.3, 0.5 * LENGTH, LENGTH - 0.3, 1.75, 1.9, LENGTH]), np.array([-0.4, 0.1])
     for influence in (stresses_of(load), displacements_of(load, EXTENTS[extent])):
         first_field, second_field, sum_field = (
             columns_field(cells, shape if shaped else None, influence, grid, Points(x, y, Z), extent=EXTENTS[extent])
