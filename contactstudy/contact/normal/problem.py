@@ -169,6 +169,8 @@ def solve_coupled(operator: ContactOperator, problem: ContactProblem) -> Contact
     # The rounds contract like ``f (1 - 2 nu) / (2 (1 - nu))``; each is solved only as far as the last change requires.
     tolerance = max(problem.tolerance, FIRST_ROUND_TOLERANCE)
     iterate = solve_normal(operator, replace(problem, tolerance=tolerance))
+    if not iterate.converged:
+        return iterate
     scale = float(np.ptp(operator({Load.NORMAL: iterate.pressure})))
     applications = iterate.applications + 1
     bending: FloatArray = np.zeros_like(iterate.pressure)

@@ -69,6 +69,15 @@ def test_applications_are_counted(grid: Grid, friction: float) -> None:
     assert computed.applications == operator.application_count
 
 
+def test_overflow_of_the_first_round_is_not_converged() -> None:
+    """Two resultants that no pressure has let the iteration overflow."""
+    lever = np.where(GRID.x[:, None] > 0.4, 1.0, 1e-300)
+    problem = ball(GRID, friction=0.4)
+    with np.errstate(all="ignore"):
+        computed = solve_coupled(CountingOperator(GRID), replace(problem, resultants=Resultants(1e300, lever)))
+    assert not computed.converged
+
+
 def test_coupled_rounds_end_without_bending_change() -> None:
     """The pressure under its own friction equals the pressure of the next round, within the tolerance."""
     request = ball(GRID, friction=0.4)
