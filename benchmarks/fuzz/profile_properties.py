@@ -10,6 +10,9 @@ from benchmarks.fuzz.random_cases import RandomCase
 from benchmarks.fuzz.solutions import SolvedCase, require, run
 from contactstudy.profiles import Chamfer, Halves, Profile, Sum
 
+PROFILES_BEYOND_DROP = ("Measured", "Tapered")
+"""Profiles with more than a drop: measured points, and a radius across the roller."""
+
 
 @dataclass(frozen=True)
 class DropAlone:
@@ -31,21 +34,21 @@ def drop_determines_the_peak(solution: SolvedCase) -> bool:
     """A class with the drop alone has the peak of the profile, infinite at a corner."""
     cells = solution.cells
     roller = cells.case.roller
-    if cells.grid is not None or not has_corners(roller.profile) or any(map(repr(roller.profile).count, UNSEEN)):
+    if (
+        cells.grid is not None
+        or not has_corners(roller.profile)
+        or any(map(repr(roller.profile).count, PROFILES_BEYOND_DROP))
+    ):
         return False
     user_case = replace(cells.case, roller=replace(roller, profile=DropAlone(roller.profile)))
-    peaks = [result_of(random_case) for random_case in (cells, replace(cells, case=user_case))]
+    peaks = [solve_peak(random_case) for random_case in (cells, replace(cells, case=user_case))]
     (peak, error), (user_peak, user_error) = peaks
     agrees = abs(peak - user_peak) <= error + user_error if np.isfinite(peak) else np.isinf(user_peak)
     require(bool(agrees), f"a peak of {user_peak:.6g} with the drop alone, {peak:.6g} of the profile")
     return True
 
 
-UNSEEN = ("Measured", "Tapered")
-"""Profiles with more than a drop: measured points, and a radius across the roller."""
-
-
-def result_of(random_case: RandomCase) -> tuple[float, float]:
+def solve_peak(random_case: RandomCase) -> tuple[float, float]:
     """Peak and its error."""
     result = run(random_case)
     return float(result["peak_pressure"]), float(result["peak_pressure_error"])

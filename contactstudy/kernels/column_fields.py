@@ -416,15 +416,14 @@ def columns_field(
     arrays = [load] if shape is None else [load, shape]
     is_symmetric = all(np.array_equal(values, values[::-1]) for values in arrays)
     field = np.empty((influence.components, x.size, points.z.size, points.y.size)).swapaxes(2, 3)
-    for is_reflected in (False,) if is_symmetric else (False, True):
-        selection = np.full(x.size, True) if is_symmetric else in_second_half == is_reflected
-        if selection.any():
-            distinct_x, indices = _distinct_positions(x[selection], MIRROR_ROUNDING * (high - low))
-            step = -1 if is_reflected else 1
-            half_points = points._replace(x=distinct_x)
-            half_shape = None if shape is None else shape[::step]
+    whole = np.full(x.size, True)
+    # The step -1 reflects the load.
+    for step, half in ((1, whole),) if is_symmetric else ((1, ~in_second_half), (-1, in_second_half)):
+        if half.any():
+            distinct_x, indices = _distinct_positions(x[half], MIRROR_ROUNDING * (high - low))
+            half_points, half_shape = points._replace(x=distinct_x), None if shape is None else shape[::step]
             half_field = _sum_columns(load[::step], half_shape, influence, grid, points=half_points, extent=extent)
-            field[:, selection] = half_field[:, indices]
+            field[:, half] = half_field[:, indices]
     field[:, in_second_half] *= np.array(influence.sign_along_x)[:, None, None, None]
     return field
 

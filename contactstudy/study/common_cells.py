@@ -44,13 +44,13 @@ def common_columns(edges: Sequence[FloatArray]) -> FloatArray:
         narrowest[in_case] = np.minimum(narrowest[in_case], np.diff(case_edges)[cells[in_case]])
     # Edges of narrower cells precede edges of wider cells near them.
     narrowest_beside = np.minimum(narrowest[:-1], narrowest[1:])
-    kept = sorted({0, union.size - 1})
+    retained = sorted({0, union.size - 1})
     for index in (1 + np.argsort(narrowest_beside, kind="stable")).tolist():
-        place = bisect(kept, index)
-        distance = min(union[index] - union[kept[place - 1]], union[kept[place]] - union[index])
+        insertion = bisect(retained, index)
+        distance = min(union[index] - union[retained[insertion - 1]], union[retained[insertion]] - union[index])
         if distance >= MIN_WIDTH * narrowest_beside[index - 1]:
-            kept.insert(place, index)
-    return np.asarray(union[kept])
+            retained.insert(insertion, index)
+    return np.asarray(union[retained])
 
 
 def end_cells(edges: Sequence[FloatArray], points: Sequence[FloatArray]) -> FloatArray:
