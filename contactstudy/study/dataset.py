@@ -13,7 +13,7 @@ from contactstudy.analysis.provenance import STUDY_ATTRIBUTE
 from contactstudy.arrays.variables import DERIVED, describe, labels
 from contactstudy.checks import FloatArray
 from contactstudy.study.fields import Fields
-from contactstudy.study.folder import STATES, Folder, States
+from contactstudy.study.folder import Folder, States
 from contactstudy.study.parameters import PARAMETERS
 from contactstudy.study.plan import label
 
@@ -130,11 +130,9 @@ def numbers_dataset(states: States) -> xr.Dataset:
         column = np.asarray([missing if value is None else value for value in values])
         attributes = PARAMETERS[name].attrs if name in PARAMETERS else labels("case", coordinate=True)
         coordinates[name] = (dim, column, attributes)
-    names = np.array(STATES, dtype=np.str_)
-    reasons = [states.reasons.get(index, "") for index in range(len(plan))]
     variables: dict[str, Any] = {
-        "status": (cube.dims, names[plan.spread(states.status, STATES.index("excluded"))]),
-        "message": (cube.dims, plan.spread(np.array(reasons, dtype=np.str_), "")),
+        "status": (cube.dims, plan.spread(states.status, "excluded")),
+        "message": (cube.dims, plan.spread(np.array(states.reasons, dtype=np.str_), "")),
         "case_id": (cube.dims, plan.spread(plan.ids.astype(np.str_), "")),
     }
     for name in sorted({name for batch in states.results.batches for name in batch.numbers}):

@@ -16,7 +16,7 @@ from xarray.core import indexing
 from contactstudy.arrays.grid import centres_of
 from contactstudy.arrays.variables import ERROR_KIND, NOT_ESTIMATED
 from contactstudy.checks import FloatArray, IntArray
-from contactstudy.study.batches import read_batch, read_slices
+from contactstudy.study.batches import SIZE, read_batch, read_slices
 from contactstudy.study.common_cells import (
     Resampling,
     centre_cells_on,
@@ -100,7 +100,7 @@ class Fields:
     def _positions(self) -> dict[str, Positions]:
         """Positions along every dimension."""
         case_count = len(self._states.plan)
-        batch_of, row_of = self._states.locations
+        batch_of, row_of = self._states.batch, self._states.row
         half_widths = self._states.numbers("hertz_half_width")
         result = {dim: Positions(position_index=np.full(case_count, -1, dtype=np.int64)) for dim in self._dims}
         indices: dict[str, dict[Any, int]] = {dim: {} for dim in self._dims}
@@ -110,7 +110,7 @@ class Fields:
                 continue
             batch = read_batch(path, arrays=coordinates)
             for dim in self._dims:
-                if dim not in batch.sizes:
+                if f"{dim}{SIZE}" not in batch.cases:
                     continue
                 starts = batch.offsets((dim,))
                 values, widths = (batch.arrays.get(name) for name in (dim, f"{dim}_width"))
@@ -291,19 +291,19 @@ class CaseArray(BackendArray):
 
     def _values(self, cases: IntArray) -> Iterable[tuple[int, npt.NDArray[Any]]]:
         """Yield the values of cases on the study's axes, each with its number among `cases`; batch by batch."""
-        batch_of, row_of = self._states.locations
+        batch_of, row_of = self._states.batch, self._states.row
         for batch_index in np.unique(batch_of[cases[cases >= 0]]).tolist():
             batch = self._states.results.batches[batch_index] if batch_index >= 0 else None
             if batch is None or self._name not in batch.arrays:
                 continue
-            starts = batch.offsets(self._dims)
+            starts, sizes = batch.offsets(self._dims), batch.sizes(self._dims)
             indices = [i for i, case in enumerate(cases.tolist()) if case >= 0 and batch_of[case] == batch_index]
             rows = [int(row_of[cases[index]]) for index in indices]
             bounds = [(int(starts[row]), int(starts[row + 1])) for row in rows]
             flat = read_slices(self._states.results.paths[batch_index], {self._name: bounds})[self._name]
             for index, row, values in zip(indices, rows, flat, strict=True):
                 if values.size:
-                    case_values = values.reshape([int(batch.sizes[dim][row]) for dim in self._dims])
+                    case_values = values.reshape(sizes[row])
                     maps = [
                         axis.resamplings[position_index[cases[index]]] if axis.resamplings else None
                         for axis, position_index in zip(self._axes, self._position_indices, strict=True)

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from contactstudy.study.folder import STATES, States
+from contactstudy.study.folder import States
 from contactstudy.study.progress import format_duration
 from contactstudy.study.run import RunReport
 
@@ -54,9 +54,9 @@ def run_lines(report: RunReport) -> Iterator[str]:
 
 def _reasons(states: States, *statuses: str) -> Iterator[str]:
     """Lines on cases of some states, with their reasons."""
-    cases = [states.plan[index] for index in states.indices(*statuses) if index in states.reasons]
+    cases = [states.plan[index] for index in states.indices(*statuses) if states.reasons[index]]
     yield from _group_reasons(
-        (STATES[states.status[case.index]], states.reasons[case.index], f"{case.id[:16]} {case.name}") for case in cases
+        (states.status[case.index], states.reasons[case.index], f"{case.id[:16]} {case.name}") for case in cases
     )
 
 
@@ -77,13 +77,13 @@ def state_lines(states: States, *, everything: bool) -> Iterator[str]:
         yield f"  {count} {status}"
     if everything:
         for case in states.plan:
-            reason = states.reasons.get(case.index, "")
-            state = f"  {STATES[states.status[case.index]]}: {case.id[:16]} {case.name}"
+            reason = states.reasons[case.index]
+            state = f"  {states.status[case.index]}: {case.id[:16]} {case.name}"
             yield f"{state}: {reason}" if reason else state
     else:
         yield from _reasons(states, "skipped")
         yield from _reasons(states, "failed", "stale", "missing")
-        if len(states.reasons) > 1:
+        if sum(map(bool, states.reasons)) > 1:
             yield "  every case: --all"
     yield from _forecast_lines(states)
 

@@ -24,7 +24,7 @@ from contactstudy.study.folder import Folder, Share, States
 from contactstudy.study.plan import Plan, PlannedCase
 from contactstudy.study.progress import Progress
 from contactstudy.study.settings import RUN
-from contactstudy.study.worker import Solver, Task, batch_without_numbers
+from contactstudy.study.worker import Solver, Task, batch_of_case
 
 if TYPE_CHECKING:
     from distributed import Client
@@ -214,7 +214,7 @@ def run_study(
                 prefix=run_share.prefix,
                 level=plan.level,
                 study=plan.name,
-                run=1 + max((int(batch.runs.max()) for batch in results.batches), default=0),
+                run=1 + max((int(batch.cases["run"].max()) for batch in results.batches), default=0),
             )
             del results
             solved = sum(map(len, groups))
@@ -293,7 +293,7 @@ def _collect_outcomes(
                 for outcome in outcomes:
                     log.record(outcome)
                     if outcome.message.startswith("WorkerDied"):
-                        batch = batch_without_numbers(template, outcome.case, outcome.status, outcome.message)
+                        batch = batch_of_case(template, outcome.case, outcome.status, outcome.message)
                         write_batch(Path(template.folder), f"{template.prefix}{outcome.case.id[:12]}", batch)
                 log.show()
                 if time.monotonic() - last_compaction > RUN.compact_seconds:
