@@ -53,7 +53,7 @@ class Ragged(NamedTuple):
 class Batch:
     """Cases of a batch in memory."""
 
-    # a row per identity: status, run, texts, numbers (NaN if absent), and sizes of the arrays' dimensions (likewise)
+    # a row per identity: status, run, texts, numbers (NaN if absent), and sizes of the arrays' dimensions
     cases: pd.DataFrame
     arrays: dict[str, Ragged] = field(default_factory=dict)  # arrays and their positions
     attributes: dict[str, dict[str, Any]] = field(default_factory=dict)  # of numbers and arrays
@@ -74,13 +74,14 @@ class Batch:
         return [name for name in self.cases if name not in COLUMNS and not name.endswith(SIZE)]
 
     @property
-    def structure(self) -> tuple[tuple[str, tuple[str, ...], str], ...]:
-        """Names, dimensions and types of the arrays; batches of equal structure can be joined."""
-        return tuple(sorted((name, array.dims, array.values.dtype.str) for name, array in self.arrays.items()))
+    def structure(self) -> str:
+        """Context of the run; names, dimensions and types of the arrays. Batches of equal structure can be joined."""
+        arrays = sorted((name, array.dims, array.values.dtype.str) for name, array in self.arrays.items())
+        return json.dumps([self.run_context, arrays], sort_keys=True)
 
     def sizes(self, dims: Iterable[str]) -> IntArray:
         """Size (case, dimension) of each case's arrays along `dims`; 0 without arrays."""
-        return np.asarray(self.cases[[f"{dim}{SIZE}" for dim in dims]].fillna(0), dtype=np.int64)
+        return np.asarray(self.cases[[f"{dim}{SIZE}" for dim in dims]], dtype=np.int64)
 
     def offsets(self, dims: Iterable[str]) -> IntArray:
         """Start of each case's values in a ragged array along `dims`, and the end of the last case's values."""
@@ -111,21 +112,17 @@ def latest_rows(cases: pd.DataFrame) -> IntArray:
 
 
 def join_batches(batches: Sequence[Batch]) -> Batch:
-    """Join batches of equal `run_context` whose arrays have an equal structure, or that have no arrays."""
-    first = max(batches, key=lambda batch: len(batch.arrays))
+    """Join batches of equal structure."""
     attributes: dict[str, dict[str, Any]] = {}
     for batch in batches:
         for name, entries in batch.attributes.items():
             attributes[name] = common_attributes(name, attributes[name], entries) if name in attributes else entries
-    return replace(
-        first,
-        cases=pd.concat([batch.cases for batch in batches]),
-        arrays={
-            name: Ragged(array.dims, np.concatenate([batch.arrays[name].values for batch in batches if batch.arrays]))
-            for name, array in first.arrays.items()
-        },
-        attributes=attributes,
-    )
+    arrays = {
+        name: Ragged(array.dims, np.concatenate([batch.arrays[name].values for batch in batches]))
+        for name, array in batches[0].arrays.items()
+    }
+    cases = pd.concat([batch.cases for batch in batches])
+    return replace(batches[0], cases=cases, arrays=arrays, attributes=attributes)
 
 
 def common_attributes(name: str, attributes: Mapping[str, Any], other_attributes: Mapping[str, Any]) -> dict[str, Any]:

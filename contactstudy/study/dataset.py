@@ -63,9 +63,7 @@ def open_study(folder: str | Path, *, cells: str = "common", chunks: Any = None)
     """
     from contactstudy.study.xarray_backend import StudyBackend
 
-    path = Folder(folder)
-    path.read_study()
-    return xr.open_dataset(path.path, engine=StudyBackend, chunks=chunks, cells=cells)
+    return xr.open_dataset(Folder(folder).path, engine=StudyBackend, chunks=chunks, cells=cells)
 
 
 def collect(folder: str | Path) -> xr.Dataset:

@@ -6,7 +6,7 @@ import contextlib
 import json
 import os
 import socket
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from functools import cached_property, partial, reduce
@@ -47,7 +47,6 @@ from contactstudy.study.plan import LEVELS, Plan
 from contactstudy.study.profile_tables import check_without_files
 from contactstudy.study.settings import RUN
 from contactstudy.study.user_profiles import user_profiles
-from contactstudy.study.worker import group_by_structure
 
 SCHEMA = 2  # Version of the format of study.json
 STATES = (*STATUSES, "stale", "missing", "excluded")  # States of a case of a study
@@ -343,32 +342,31 @@ class Folder:
                 self._join(paths, share)
 
     def _join(self, paths: list[Path], share: Share) -> None:
-        """Join batches of equal `run_context` and structure, as far as the batches' sizes allow."""
-        groups: dict[str, list[tuple[Path, Batch]]] = {}
+        """Join batches of equal structure, as far as the batches' sizes allow."""
+        groups: dict[str, dict[Path, Batch]] = {}
         for path in paths:
             with contextlib.suppress(StoreError):
                 batch = read_batch(path, arrays=None, parameters=True)
-                groups.setdefault(json.dumps(batch.run_context, sort_keys=True), []).append((path, batch))
-        for paths_and_batches in groups.values():
-            sources = {id(batch): path for path, batch in paths_and_batches}
-            for batches in group_by_structure(batch for _, batch in paths_and_batches):
-                for portion in _split_by_size(batches):
-                    if len(portion) > 1:
-                        joined_batch = select_latest(join_batches(portion))
-                        write_batch(self.batches, f"{share.prefix}{os.urandom(6).hex()}", joined_batch)
-                        for batch in portion:
-                            sources[id(batch)].unlink(missing_ok=True)
+                groups.setdefault(batch.structure, {})[path] = batch
+        for group in groups.values():
+            for portion in _split_by_size(group):
+                if len(portion) > 1:
+                    joined_batch = select_latest(join_batches([*portion.values()]))
+                    write_batch(self.batches, f"{share.prefix}{os.urandom(6).hex()}", joined_batch)
+                    for path in portion:
+                        path.unlink(missing_ok=True)
 
 
-def _split_by_size(batches: list[Batch]) -> Iterator[list[Batch]]:
-    """Yield lists of consecutive batches that are not too large in total."""
-    portion: list[Batch] = []
-    for batch in sorted(batches, key=len):
-        has_many_cases = sum(map(len, [*portion, batch])) > RUN.batch_cases
-        if portion and (has_many_cases or sum(entry.nbytes for entry in [*portion, batch]) > RUN.batch_bytes):
+def _split_by_size(batches: Mapping[Path, Batch]) -> Iterator[dict[Path, Batch]]:
+    """Yield portions of the batches that are not too large in total, small batches first."""
+    portion: dict[Path, Batch] = {}
+    for path, batch in sorted(batches.items(), key=lambda item: len(item[1])):
+        entries = [*portion.values(), batch]
+        is_large = sum(map(len, entries)) > RUN.batch_cases or sum(entry.nbytes for entry in entries) > RUN.batch_bytes
+        if portion and is_large:
             yield portion
-            portion = []
-        portion.append(batch)
+            portion = {}
+        portion[path] = batch
     if portion:
         yield portion
 

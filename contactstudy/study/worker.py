@@ -14,6 +14,7 @@ from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
 from functools import cache
 from itertools import groupby
+from operator import attrgetter
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -106,10 +107,10 @@ def solve_task(task: Task, solver: Solver | None = None) -> list[Outcome]:
     case_of = {case.id: case for case in task.cases}
 
     def flush() -> None:
-        groups = group_by_structure(unsaved_batches)
+        batches = sorted(unsaved_batches, key=attrgetter("structure"))
         unsaved_batches.clear()
-        for batches in groups:
-            batch = join_batches(batches)
+        for _, group in groupby(batches, key=attrgetter("structure")):
+            batch = join_batches(list(group))
             write_batch(Path(task.folder), f"{task.prefix}{uuid.uuid4().hex[:12]}", batch)
             for identity, status, message in batch.cases[["status", "message"]].itertuples():
                 outcomes.append(Outcome(case_of[identity], status, message))
@@ -131,19 +132,6 @@ def solve_task(task: Task, solver: Solver | None = None) -> list[Outcome]:
         raise
     flush()
     return outcomes
-
-
-def group_by_structure(batches: Iterable[Batch]) -> list[list[Batch]]:
-    """Group batches that can be joined; batches without arrays belong to the first group."""
-    groups: dict[Any, list[Batch]] = {}
-    for batch in batches:
-        groups.setdefault(batch.structure, []).append(batch)
-    without_arrays = groups.pop((), [])
-    if without_arrays and groups:
-        next(iter(groups.values())).extend(without_arrays)
-    elif without_arrays:
-        groups[()] = without_arrays
-    return list(groups.values())
 
 
 def _solve_group(task: Task, cases: list[PlannedCase], solver: Solver | None) -> Iterator[Batch]:
