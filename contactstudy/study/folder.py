@@ -44,9 +44,8 @@ from contactstudy.study.case_setup import build_setup
 from contactstudy.study.definition import Study
 from contactstudy.study.files import UNFINISHED, is_regular, write_text
 from contactstudy.study.plan import LEVELS, Plan
-from contactstudy.study.profile_tables import check_without_files
+from contactstudy.study.profile_tables import check_without_files, user_profiles
 from contactstudy.study.settings import RUN
-from contactstudy.study.user_profiles import user_profiles
 
 SCHEMA = 2  # Version of the format of study.json
 STATES = (*STATUSES, "stale", "missing", "excluded")  # States of a case of a study

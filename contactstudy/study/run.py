@@ -91,12 +91,11 @@ def _interruptible(notify: Callable[[str], None]) -> Iterator[None]:
         yield
         return
     numbers = [signal.SIGINT, signal.SIGTERM, *([signal.SIGHUP] if hasattr(signal, "SIGHUP") else [])]
-    previous = {signal_number: signal.getsignal(signal_number) for signal_number in numbers}
     # A process under nohup continues to ignore SIGHUP.
-    handled_signals = [signal_number for signal_number in numbers if previous[signal_number] != signal.SIG_IGN]
+    previous = {number: handler for number in numbers if (handler := signal.getsignal(number)) != signal.SIG_IGN}
 
-    def handler(signal_number: int, frame: FrameType | None) -> None:
-        for handled_number in handled_signals:
+    def handle(signal_number: int, frame: FrameType | None) -> None:
+        for handled_number in previous:
             signal.signal(handled_number, signal.SIG_IGN)
         notify("interrupted: ending the workers ...")
         if signal_number == signal.SIGINT:
@@ -105,13 +104,13 @@ def _interruptible(notify: Callable[[str], None]) -> Iterator[None]:
         interrupt.signal_number = signal_number
         raise interrupt
 
-    for signal_number in handled_signals:
-        signal.signal(signal_number, handler)
+    for signal_number in previous:
+        signal.signal(signal_number, handle)
     try:
         yield
     finally:
-        for signal_number in handled_signals:
-            signal.signal(signal_number, previous[signal_number])
+        for signal_number, handler in previous.items():
+            signal.signal(signal_number, handler)
 
 
 def run_study(

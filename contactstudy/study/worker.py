@@ -32,8 +32,8 @@ from contactstudy.study.batches import Batch, add_arrays, join_batches, write_ba
 from contactstudy.study.case_setup import Setup, build_setup
 from contactstudy.study.parameters import PARAMETERS
 from contactstudy.study.plan import PlannedCase
+from contactstudy.study.profile_tables import REGISTRY
 from contactstudy.study.settings import RUN
-from contactstudy.study.user_profiles import REGISTRY
 from contactstudy.versions import versions
 
 Solver = Callable[..., xr.Dataset]  # Callable with the arguments and the result of :func:`contactstudy.solve`
