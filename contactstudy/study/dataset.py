@@ -19,7 +19,7 @@ from contactstudy.analysis.provenance import STUDY_ATTRIBUTE
 from contactstudy.arrays.grid import centres_of
 from contactstudy.arrays.variables import DERIVED, ERROR_KIND, NOT_ESTIMATED, describe, labels
 from contactstudy.checks import FloatArray, IntArray
-from contactstudy.study.batches import SIZE, Ragged, read_batch, read_slices
+from contactstudy.study.batches import SIZE, read_batch, read_slices
 from contactstudy.study.common_cells import (
     Resampling,
     centre_cells_on,
@@ -260,11 +260,9 @@ class Fields:
             batch = read_batch(path, arrays=coordinates)
             for dim in [dim for dim in self._dims if f"{dim}{SIZE}" in batch.cases]:
                 starts, positions = batch.offsets((dim,)), result[dim]
-                numbered = Ragged(
-                    (dim,), np.concatenate([np.arange(size, dtype=np.float64) for size in np.diff(starts)])
-                )
-                values = batch.arrays.get(dim, numbered).values
-                widths = batch.arrays.get(f"{dim}_width", Ragged((dim,), np.zeros(0))).values
+                numbers = np.arange(starts[-1], dtype=np.float64) - np.repeat(starts[:-1], np.diff(starts))
+                values = batch.arrays[dim].values if dim in batch.arrays else numbers
+                widths = batch.arrays[f"{dim}_width"].values if f"{dim}_width" in batch.arrays else np.zeros(0)
                 for index in np.flatnonzero(batch_of == batch_number).tolist():
                     span = slice(starts[row_of[index]], starts[row_of[index] + 1])
                     key = (values[span].tobytes(), widths[span].tobytes(), half_widths[index])
