@@ -338,25 +338,22 @@ def read_case(path: Path, row: int, names: Iterable[str] | None = None) -> xr.Da
 
 def add_arrays(batch: Batch, dataset: xr.Dataset, level: str) -> Batch:
     """Add the arrays of a solved case that a level above the summary retains; fields in single precision."""
-    variables = dataset.variables
-    deep = {name for name, variable in variables.items() if any(str(dim).startswith("z") for dim in variable.dims)}
-    retained = [name for name in dataset.data_vars if variables[name].ndim and (level == "fields" or name not in deep)]
-    dims = {str(dim) for name in retained for dim in variables[name].dims}
-    coordinates = [
-        str(name) for name, entry in dataset.coords.items() if entry.ndim and {*map(str, entry.dims)} <= dims
-    ]
+    deep = [name for name, entry in dataset.data_vars.items() if any(str(dim).startswith("z") for dim in entry.dims)]
+    retained = dataset if level == "fields" else dataset.drop_vars(deep)
+    dims = {str(dim) for entry in retained.data_vars.values() for dim in entry.dims}
     arrays = {}
-    for name in (*retained, *coordinates):
-        values = variables[name].values
-        if values.dtype == bool:
-            values = values.astype(np.int8)
-        elif name in deep and values.ndim >= 2:
-            values = values.astype(np.float32)
-        arrays[str(name)] = Ragged(tuple(map(str, variables[name].dims)), np.ascontiguousarray(values).ravel())
+    for name, variable in retained.variables.items():
+        if variable.ndim and dims.issuperset(variable.dims):
+            values = variable.values
+            if values.dtype == bool:
+                values = values.astype(np.int8)
+            elif name in deep and values.ndim >= 2:
+                values = values.astype(np.float32)
+            arrays[str(name)] = Ragged(tuple(map(str, variable.dims)), np.ascontiguousarray(values).ravel())
     return replace(
         batch,
         cases=batch.cases.assign(**{f"{dim}{SIZE}": dataset.sizes[dim] for dim in sorted(dims)}),
         arrays=arrays,
-        attributes=batch.attributes | {name: dict(variables[name].attrs) for name in arrays},
-        coordinates=frozenset(coordinates),
+        attributes=batch.attributes | {name: dict(retained[name].attrs) for name in arrays},
+        coordinates=frozenset(arrays) & {str(name) for name in retained.coords},
     )
