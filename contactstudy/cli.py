@@ -277,7 +277,7 @@ def format_bytes(size: float) -> str:
 def _run_lines(report: RunReport) -> Iterator[str]:
     """Lines on the result of a run."""
     yield f"{len(report.plan)} cases: {report.states.summary}; {report.solved} solved now"
-    yield from _group_reasons(("failed", reason, case.name) for case, reason in report.failures)
+    yield from _reasons(report.states, "failed", identities=False)
     if report.failures:
         yield f"  details in {_format_path(report.folder / 'run.log')}"
         yield f"  again with: contactstudy rerun {_format_path(report.folder)}"
@@ -295,21 +295,15 @@ def _run_lines(report: RunReport) -> Iterator[str]:
         yield f"{len(stale_cases)} stale ({report.states.reasons[stale_cases[0]]}); again with: {rerun_command}"
 
 
-def _reasons(states: States, *statuses: str) -> Iterator[str]:
-    """Lines on cases of some states, with their reasons."""
-    cases = [states.plan[index] for index in states.indices(*statuses) if states.reasons[index]]
-    yield from _group_reasons(
-        (states.status[case.index], states.reasons[case.index], f"{case.id[:16]} {case.name}") for case in cases
-    )
-
-
-def _group_reasons(cases: Iterable[tuple[str, str, str]]) -> Iterator[str]:
-    """Lines on cases (status, reason, name): for each reason the first case and the number of other cases."""
-    groups: dict[tuple[str, str], list[str]] = {}
-    for status, reason, name in cases:
-        groups.setdefault((status, reason), []).append(name)
-    for (status, reason), names in list(groups.items())[:MAX_REASONS]:
-        yield f"  {status}: {names[0]}: {reason}{f' (and {len(names) - 1} more)' if len(names) > 1 else ''}"
+def _reasons(states: States, *statuses: str, identities: bool = True) -> Iterator[str]:
+    """Lines on cases of some states with a reason: for each reason the first case and the number of other cases."""
+    groups: dict[tuple[str, str], list[int]] = {}
+    for index in states.indices(*statuses):
+        if reason := states.reasons[index]:
+            groups.setdefault((states.status[index], reason), []).append(index)
+    for (status, reason), indices in list(groups.items())[:MAX_REASONS]:
+        case, more = states.plan[indices[0]], f" (and {len(indices) - 1} more)" if len(indices) > 1 else ""
+        yield f"  {status}: {f'{case.id[:16]} ' if identities else ''}{case.name}: {reason}{more}"
     if len(groups) > MAX_REASONS:
         yield f"  ... and {len(groups) - MAX_REASONS} more reasons"
 
