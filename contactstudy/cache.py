@@ -191,10 +191,8 @@ class ArrayKey:
     def __init__(self, values: FloatArray) -> None:
         self.values: FloatArray = np.array(values)
         self.values.flags.writeable = False
-        digest = hashlib.blake2b(digest_size=16)
-        digest.update(f"{self.values.dtype} {self.values.shape}".encode())
-        digest.update(np.ascontiguousarray(self.values).tobytes())
-        self._digest = digest.digest()
+        content = f"{self.values.dtype} {self.values.shape}".encode() + self.values.tobytes()
+        self._digest = hashlib.blake2b(content, digest_size=16).digest()
 
     def __eq__(self, other: object) -> bool:
         """Whether the other is an array of the same values."""

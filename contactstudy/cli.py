@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
 import gc
 import logging
 import os
 import signal
 import sys
 import threading
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -17,9 +18,11 @@ from contactstudy.errors import ContactStudyError, InvalidInputError, Terminated
 
 if TYPE_CHECKING:
     from contactstudy.study import RunReport, Study
+    from contactstudy.study.folder import States
     from contactstudy.study.worker import Solver
 
 ALL_OK, SOME_FAILED, USAGE = 0, 1, 2
+MAX_REASONS = 20  # Reasons on the screen; ``--all`` lists every case with its reason
 MANY_CASES = 100_000  # Combinations of a study that needs a confirmation, or --yes
 
 
@@ -72,9 +75,7 @@ def _print(lines: Iterable[str]) -> None:
 
 def _print_written(*paths: Path) -> None:
     """Print the paths of written files."""
-    from contactstudy.study.report import format_path
-
-    _print(f"wrote {format_path(path.resolve())}" for path in paths)
+    _print(f"wrote {_format_path(path.resolve())}" for path in paths)
 
 
 def _study(options: argparse.Namespace) -> Study:
@@ -121,16 +122,14 @@ def _rerun(options: argparse.Namespace) -> int:
 
 def _finish(report: RunReport, *, complete: bool, figure: bool) -> int:
     """Write summary and figures of all shares, then print: the files are complete if the output is closed."""
-    from contactstudy.study.report import format_path, run_lines
-
     lines: list[str] = []
     if complete and report.files:
-        lines.append(f"wrote {format_path(_write_summary(report.folder))}")
+        lines.append(f"wrote {_format_path(_write_summary(report.folder))}")
         try:
-            lines += [f"wrote {format_path(figure_path)}" for figure_path in (_draw(report.folder) if figure else [])]
+            lines += [f"wrote {_format_path(figure_path)}" for figure_path in (_draw(report.folder) if figure else [])]
         except ContactStudyError as error:
             lines.append(f"  no figure: {error}")
-    _print([*run_lines(report), *lines])
+    _print([*_run_lines(report), *lines])
     return ALL_OK if not report.failures else SOME_FAILED
 
 
@@ -169,11 +168,10 @@ def _draw(folder: Path) -> list[Path]:
 def _plan(options: argparse.Namespace) -> int:
     from contactstudy.study import run_study
     from contactstudy.study.folder import Folder
-    from contactstudy.study.report import format_path, state_lines
 
     study = _study(options)
     folder = Folder(options.out if options.out is not None else Path("results") / study.name)
-    print(f"study {study.name}: {study.size} combinations, results in {format_path(folder.path)}", flush=True)
+    print(f"study {study.name}: {study.size} combinations, results in {_format_path(folder.path)}", flush=True)
     if options.sample is not None:
         chosen = {"sample": options.sample, "workers": options.workers, "solver": options.solver}
         states = run_study(study, folder.path, **chosen).states
@@ -182,21 +180,20 @@ def _plan(options: argparse.Namespace) -> int:
     plan = states.plan
     shape = " x ".join(f"{dim} {size}" for dim, size in zip(plan.cube.dims, plan.cube.shape, strict=True))
     print(f"{len(plan)} cases ({shape})")
-    _print(state_lines(states, everything=options.all))
+    _print(_state_lines(states, everything=options.all))
     return ALL_OK if plan.unique else USAGE  # `run` also refuses a study without cases to solve
 
 
 def _status(options: argparse.Namespace) -> int:
     from contactstudy.study.folder import Folder
-    from contactstudy.study.report import format_path, state_lines
 
     folder = Folder(options.path)
     study = folder.read_study()
     states = folder.states(study.plan())
-    print(f"study {study.name}: {len(states.plan)} cases, results in {format_path(folder.path)}")
+    print(f"study {study.name}: {len(states.plan)} cases, results in {_format_path(folder.path)}")
     for holder in folder.holders:
         print(f"locked: {holder}")
-    _print(state_lines(states, everything=options.all))
+    _print(_state_lines(states, everything=options.all))
     return ALL_OK if set(states.counts) <= {"ok", "skipped"} else SOME_FAILED
 
 
@@ -259,6 +256,103 @@ def _verify(options: argparse.Namespace) -> int:
     print(f"\n{suite.summary(verification)}")
     _print_written(*suite.write(verification, folder))
     return ALL_OK if verification.passed else SOME_FAILED
+
+
+def _format_path(path: Path) -> str:
+    """Return a path, relative to the current folder if inside the folder."""
+    with contextlib.suppress(ValueError, OSError):
+        return str(path.relative_to(Path.cwd()))
+    return str(path)
+
+
+def format_bytes(size: float) -> str:
+    """Return a size of files with a unit."""
+    for unit in ("bytes", "kB", "MB"):
+        if size < 1000:
+            return f"{size:.3g} {unit}"
+        size /= 1000
+    return f"{size:.3g} GB"
+
+
+def _run_lines(report: RunReport) -> Iterator[str]:
+    """Lines on the result of a run."""
+    yield f"{len(report.plan)} cases: {report.states.summary}; {report.solved} solved now"
+    yield from _reasons(report.states, "failed", identities=False)
+    if report.failures:
+        yield f"  details in {_format_path(report.folder / 'run.log')}"
+        yield f"  again with: contactstudy rerun {_format_path(report.folder)}"
+    yield from _reasons(report.states, "skipped")
+    for case in report.unconverged_cases[:MAX_REASONS]:
+        yield f"  not converged, do not rely on it: {case.name}"
+    for remark in report.remarks:
+        yield f"  {remark}"
+    if files := report.files:
+        size = sum(path.stat().st_size for path in files)
+        folder, plural = _format_path(files[0].parent), "s" * (len(files) > 1)
+        yield f"{len(files)} netCDF file{plural}, {format_bytes(size)}, in {folder}"
+    if stale_cases := report.states.indices("stale"):
+        rerun_command = f"contactstudy rerun {_format_path(report.folder)}"
+        yield f"{len(stale_cases)} stale ({report.states.reasons[stale_cases[0]]}); again with: {rerun_command}"
+
+
+def _reasons(states: States, *statuses: str, identities: bool = True) -> Iterator[str]:
+    """Lines on cases of some states with a reason: for each reason the first case and the number of other cases."""
+    groups: dict[tuple[str, str], list[int]] = {}
+    for index in states.indices(*statuses):
+        if reason := states.reasons[index]:
+            groups.setdefault((states.status[index], reason), []).append(index)
+    for (status, reason), indices in list(groups.items())[:MAX_REASONS]:
+        case, more = states.plan[indices[0]], f" (and {len(indices) - 1} more)" if len(indices) > 1 else ""
+        yield f"  {status}: {f'{case.id[:16]} ' if identities else ''}{case.name}: {reason}{more}"
+    if len(groups) > MAX_REASONS:
+        yield f"  ... and {len(groups) - MAX_REASONS} more reasons"
+
+
+def _state_lines(states: States, *, everything: bool) -> Iterator[str]:
+    """Lines of counts, of the cases that need attention, or of every case, and on the remaining cases."""
+    for status, count in states.counts.items():
+        yield f"  {count} {status}"
+    if everything:
+        for case in states.plan:
+            reason = states.reasons[case.index]
+            state = f"  {states.status[case.index]}: {case.id[:16]} {case.name}"
+            yield f"{state}: {reason}" if reason else state
+    else:
+        yield from _reasons(states, "skipped")
+        yield from _reasons(states, "failed", "stale", "missing")
+        if sum(map(bool, states.reasons)) > 1:
+            yield "  every case: --all"
+    yield from _forecast_lines(states)
+
+
+def _forecast_lines(states: States) -> Iterator[str]:
+    """Lines on exclusions without effect, unusual magnitudes, and bytes and time of the remaining cases."""
+    from contactstudy.study.progress import format_duration
+
+    plan = states.plan
+    yield from (f"  {message}" for message in plan.unknown[:MAX_REASONS])
+    for warning in plan.doubts[:MAX_REASONS]:
+        yield f"  doubtful magnitude in SI units: {warning}"
+    review = plan.review
+    if review.checked < review.groups:
+        yield f"  {review.checked} of {review.groups} contacts were checked; a run checks all"
+    unique = plan.unique
+    if duplicates := len(plan) - len(plan.skipped) - len(unique):
+        yield f"  {duplicates} duplicates, solved once"
+    missing, seconds = len(set(states.indices("missing")) & set(unique)), states.numbers("seconds")
+    seconds_of_solved = seconds[seconds >= 0]
+    solved = len(seconds_of_solved)
+    if solved:
+        size = sum(path.stat().st_size for path in states.results.paths)
+        total = format_bytes(size / solved * len(plan.unique))
+        yield f"files: about {total} at level {plan.level}, from {solved} solved cases"
+    else:
+        yield f"files: about {format_bytes(plan.size)} at level {plan.level} before compression"
+    if missing and solved:
+        duration = format_duration(float(seconds_of_solved.mean()) * missing)
+        yield f"time: about {duration} of one core for {missing} cases, from {solved} solved ones"
+    elif missing:
+        yield f"time: not estimated for {missing} cases; `plan --sample N` solves N of them for an estimate"
 
 
 Action = Callable[[argparse.Namespace], int]  # Runs a command from its options; returns the exit code

@@ -62,7 +62,7 @@ def begin(folder: Path, workers: int) -> subprocess.Popen[str]:
 
 def done(folder: Path) -> int:
     """Number of cases that are done."""
-    return len(Folder(folder / "out").results().locations)
+    return len(Folder(folder / "out").results().cases)
 
 
 def run(study: Study, folder: Path, workers: int, kill_at: int | None = None) -> xr.Dataset:

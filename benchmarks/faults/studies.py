@@ -94,10 +94,9 @@ def batches(folder: Path) -> list[Path]:
     return batch_paths(folder / "out" / "batches")
 
 
-def count_finished(folder: Path) -> dict[bytes, int]:
+def count_finished(folder: Path) -> dict[str, int]:
     """Identities of the cases that are done, with the number of the run that solved them."""
-    results = Folder(folder / "out").results()
-    return {identity: int(results.batches[batch].runs[row]) for identity, (batch, row) in results.locations.items()}
+    return Folder(folder / "out").results().cases["run"].to_dict()
 
 
 def unreadable(folder: Path) -> int:

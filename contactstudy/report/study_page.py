@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import re
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping
@@ -20,7 +19,7 @@ from contactstudy.report.assessment import CAUTION, NO, UNKNOWN, YES, assess_cas
 from contactstudy.report.figures import PIXELS_PER_INCH, Picture, encode_figure
 from contactstudy.report.tables import NOT_ESTIMATED, Summary, summary
 from contactstudy.study import collect
-from contactstudy.study.folder import Entry, Folder
+from contactstudy.study.folder import Folder
 from contactstudy.study.parameters import PARAMETERS, with_defaults
 from contactstudy.study.plan import Plan, PlannedCase, format_list, format_value, label
 from contactstudy.versions import PACKAGES
@@ -78,11 +77,13 @@ def study_context(path: Path, selection: Mapping[str, Any] | None = None) -> dic
     study = folder.read_study()
     plan = study.plan()
     states = folder.states(plan)
-    entries = [states.entry(index) for index in range(len(plan))]
+    records = [states.record(index) for index in range(len(plan))]
     swept = list(dict.fromkeys([*study.sweep, *(name for table in (*study.zip, *study.cases) for name in table)]))
     rows = [
-        _row(f"case-{number}", entry, _swept_values(plan, case, swept))
-        for number, (case, entry) in enumerate(zip(plan, entries, strict=True), 1)
+        _row(f"case-{number}", str(status), reason, record, _swept_values(plan, case, swept))
+        for number, (case, status, reason, record) in enumerate(
+            zip(plan, states.status, states.reasons, records, strict=True), 1
+        )
     ]
     names = [name for name in HEADINGS if _has_number(rows, name)]
     sizes = ", ".join(f"{_heading(dim)}: {size}" for dim, size in zip(plan.cube.dims, plan.cube.shape, strict=True))
@@ -90,7 +91,7 @@ def study_context(path: Path, selection: Mapping[str, Any] | None = None) -> dic
         "title": f"Study {study.name}",
         "description": study.description,
         "shape": f"{len(plan)} cases ({sizes})",
-        "counts": Counter(entry.status for entry in entries),
+        "counts": Counter(row.status for row in rows),
         "base": [(_meaning(name), format_value(name, value)) for name, value in study.base.items()],
         "swept": [
             (
@@ -107,7 +108,7 @@ def study_context(path: Path, selection: Mapping[str, Any] | None = None) -> dic
         "answers": _count_answers(rows),
         "verdict": _verdict(rows),
         "pictures": _pictures(path, selection),
-        "provenance": _provenance([attribute(_record(entry), RUN_ATTRIBUTE) for entry in entries if entry.run]),
+        "provenance": _provenance([attribute(record, RUN_ATTRIBUTE) for record in records if record]),
     }
 
 
@@ -155,19 +156,18 @@ def _swept_values(plan: Plan, case: PlannedCase, swept: list[str]) -> list[str]:
     return texts
 
 
-def _row(anchor: str, entry: Entry, swept_values: list[str]) -> Row:
+def _row(anchor: str, status: str, reason: str, record: xr.Dataset, swept_values: list[str]) -> Row:
     """Row of a case, with all numbers of the table."""
-    if not entry.numbers:
-        return Row(anchor, swept_values, {}, entry.status, note=entry.reason, answer="", reason="")
-    record = _record(entry)
+    if not record:
+        return Row(anchor, swept_values, {}, status, note=reason, answer="", reason="")
     table = summary(record)
     assessment = assess_case(record, table)
     return Row(
         anchor,
         swept_values,
         {name: _number(table, name) for name in HEADINGS},
-        entry.status,
-        note=assessment.verdict if assessment.overall == NO else entry.reason,
+        status,
+        note=assessment.verdict if assessment.overall == NO else reason,
         answer=assessment.overall,
         reason=assessment.verdict,
     )
@@ -193,12 +193,6 @@ def _has_number(rows: list[Row], name: str) -> bool:
     """Whether a column has a number; at a singular end the intensity replaces the pressure."""
     empty = {"", NOT_LOADED, SINGULAR} if name.startswith("end_") else {"", NOT_LOADED}
     return any(row.numbers.get(name, "") not in empty for row in rows)
-
-
-def _record(entry: Entry) -> xr.Dataset:
-    """Scalars of a case, with the record of its run."""
-    scalars = {name: value for name, value in entry.numbers.items() if not np.isnan(value)}
-    return xr.Dataset(scalars, attrs={RUN_ATTRIBUTE: json.dumps(entry.run)})
 
 
 def _group_rows(rows: Iterable[Row], key: Callable[[Row], tuple[str, str]]) -> list[tuple[str, str, list[Row]]]:

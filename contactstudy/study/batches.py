@@ -15,11 +15,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
+import pandas as pd
 import xarray as xr
 
 from contactstudy.analysis.provenance import RUN_ATTRIBUTE
 from contactstudy.arrays.variables import describe, labels, package_version
-from contactstudy.checks import TEMPORARY_SUFFIX, FloatArray, IntArray, writing
+from contactstudy.checks import TEMPORARY_SUFFIX, IntArray, writing
 from contactstudy.errors import StoreError
 from contactstudy.study.files import is_regular, netcdf_access
 
@@ -31,6 +32,8 @@ TEXT_COLUMNS = {  # Text columns with their meanings
     "time": "end of the case's solution, UTC",
 }
 
+COLUMNS = ("status", "run", *TEXT_COLUMNS)  # Columns of a batch's table that are neither numbers nor sizes
+SIZE = "_size"  # End of the names of columns of sizes, after the dimension
 SUFFIX = ".nc"
 IDENTITY_LENGTH = 64
 CHUNK_SIZE = 2**15  # Values compressed together in a ragged array. Speed: more make files smaller, single cases slower
@@ -50,37 +53,39 @@ class Ragged(NamedTuple):
 class Batch:
     """Cases of a batch in memory."""
 
-    ids: npt.NDArray[np.bytes_]  # identities, 64 hexadecimal digits
-    status: npt.NDArray[np.int8]  # indices in STATUSES
-    runs: IntArray  # number of the run of each case: of two results of a case, the later run is used
-    texts: dict[str, list[str]]  # columns of TEXT_COLUMNS
-    numbers: dict[str, FloatArray] = field(default_factory=dict)  # columns (case), NaN without the number
-    sizes: dict[str, IntArray] = field(default_factory=dict)  # sizes of the arrays' dimensions (case), 0 without arrays
+    # a row per identity: status, run, texts, numbers (NaN if absent), and sizes of the arrays' dimensions
+    cases: pd.DataFrame
     arrays: dict[str, Ragged] = field(default_factory=dict)  # arrays and their positions
     attributes: dict[str, dict[str, Any]] = field(default_factory=dict)  # of numbers and arrays
     coordinates: frozenset[str] = frozenset()  # names of arrays that are coordinates
     run_context: dict[str, Any] = field(default_factory=dict)  # versions and level, equal for all cases
 
     def __len__(self) -> int:
-        return len(self.ids)
+        return len(self.cases)
 
     @property
     def nbytes(self) -> int:
         """Size in memory, bytes."""
-        arrays = sum(array.values.nbytes for array in self.arrays.values())
-        return arrays + len(self) * (8 * len(self.numbers) + IDENTITY_LENGTH)
+        return 8 * int(self.cases.size) + sum(array.values.nbytes for array in self.arrays.values())
 
     @property
-    def structure(self) -> tuple[tuple[str, tuple[str, ...], str], ...]:
-        """Names, dimensions and types of the arrays; batches of equal structure can be joined."""
-        return tuple(sorted((name, array.dims, array.values.dtype.str) for name, array in self.arrays.items()))
+    def numbers(self) -> list[str]:
+        """Names of the numbers of the cases."""
+        return [name for name in self.cases if name not in COLUMNS and not name.endswith(SIZE)]
+
+    @property
+    def structure(self) -> str:
+        """Context of the run; names, dimensions and types of the arrays. Batches of equal structure can be joined."""
+        arrays = sorted((name, array.dims, array.values.dtype.str) for name, array in self.arrays.items())
+        return json.dumps([self.run_context, arrays], sort_keys=True)
+
+    def sizes(self, dims: Iterable[str]) -> IntArray:
+        """Size (case, dimension) of each case's arrays along `dims`; 0 without arrays."""
+        return np.asarray(self.cases[[f"{dim}{SIZE}" for dim in dims]], dtype=np.int64)
 
     def offsets(self, dims: Iterable[str]) -> IntArray:
         """Start of each case's values in a ragged array along `dims`, and the end of the last case's values."""
-        counts = np.ones(len(self), dtype=np.int64)
-        for dim in dims:
-            counts *= self.sizes[dim]
-        return np.concatenate([[0], np.cumsum(counts)])
+        return np.concatenate([[0], np.cumsum(self.sizes(dims).prod(axis=1))])
 
     def take(self, rows: IntArray) -> Batch:
         """Return a batch with the cases of these rows."""
@@ -89,52 +94,35 @@ class Batch:
             starts = self.offsets(dims)
             slices = [values[starts[row] : starts[row + 1]] for row in rows]
             selected_arrays[name] = Ragged(dims, np.concatenate(slices) if slices else values[:0])
-        return replace(
-            self,
-            ids=self.ids[rows],
-            status=self.status[rows],
-            runs=self.runs[rows],
-            texts={name: [column[row] for row in rows] for name, column in self.texts.items()},
-            numbers={name: column[rows] for name, column in self.numbers.items()},
-            sizes={name: column[rows] for name, column in self.sizes.items()},
-            arrays=selected_arrays,
-        )
+        return replace(self, cases=self.cases.iloc[rows], arrays=selected_arrays)
 
-    def run(self, row: int) -> dict[str, Any]:
-        """Return versions, level, warnings and solution time of a case."""
-        warnings = json.loads(self.texts["warnings"][row] or "[]")
-        run = {**self.run_context, "time": self.texts["time"][row], "warnings": warnings}
-        return run | ({"seconds": float(self.numbers["seconds"][row])} if "seconds" in self.numbers else {})
+    def record(self, row: int) -> xr.Dataset:
+        """Numbers of a case, with versions, level, warnings and solution time as an attribute."""
+        numbers, case = self.cases[self.numbers].iloc[row].dropna(), self.cases.iloc[row]
+        run = {**self.run_context, "time": case["time"], "warnings": json.loads(case["warnings"] or "[]")}
+        run |= {"seconds": float(case["seconds"])} if "seconds" in case else {}
+        variables = {name: ((), float(value), self.attributes.get(name, {})) for name, value in numbers.items()}
+        return xr.Dataset(variables, attrs={RUN_ATTRIBUTE: json.dumps(run)})
+
+
+def latest_rows(cases: pd.DataFrame) -> IntArray:
+    """Rows of the latest result of each case, in order."""
+    order = np.argsort(-cases["run"].to_numpy(np.int64), kind="stable")
+    return np.sort(order[~cases.index[order].duplicated()])
 
 
 def join_batches(batches: Sequence[Batch]) -> Batch:
-    """Join batches of equal `run_context` whose arrays have an equal structure, or that have no arrays."""
-    first = max(batches, key=lambda batch: len(batch.arrays))
-    names = list(dict.fromkeys(name for batch in batches for name in batch.numbers))
+    """Join batches of equal structure."""
     attributes: dict[str, dict[str, Any]] = {}
     for batch in batches:
         for name, entries in batch.attributes.items():
             attributes[name] = common_attributes(name, attributes[name], entries) if name in attributes else entries
-    return replace(
-        first,
-        ids=np.concatenate([batch.ids for batch in batches]),
-        status=np.concatenate([batch.status for batch in batches]),
-        runs=np.concatenate([batch.runs for batch in batches]),
-        texts={name: [text for batch in batches for text in batch.texts[name]] for name in TEXT_COLUMNS},
-        numbers={
-            name: np.concatenate([batch.numbers.get(name, np.full(len(batch), np.nan)) for batch in batches])
-            for name in names
-        },
-        sizes={
-            name: np.concatenate([batch.sizes.get(name, np.zeros(len(batch), dtype=np.int64)) for batch in batches])
-            for name in first.sizes
-        },
-        arrays={
-            name: Ragged(array.dims, np.concatenate([batch.arrays[name].values for batch in batches if batch.arrays]))
-            for name, array in first.arrays.items()
-        },
-        attributes=attributes,
-    )
+    arrays = {
+        name: Ragged(array.dims, np.concatenate([batch.arrays[name].values for batch in batches]))
+        for name, array in batches[0].arrays.items()
+    }
+    cases = pd.concat([batch.cases for batch in batches])
+    return replace(batches[0], cases=cases, arrays=arrays, attributes=attributes)
 
 
 def common_attributes(name: str, attributes: Mapping[str, Any], other_attributes: Mapping[str, Any]) -> dict[str, Any]:
@@ -191,6 +179,8 @@ def _write_variables(path: Path, batch: Batch) -> None:
     """Write all variables of a batch."""
     import netCDF4
 
+    cases = batch.cases
+
     with netCDF4.Dataset(path, "w", format="NETCDF4") as file:
         file.set_fill_off()
         file.createDimension("case", len(batch))
@@ -201,20 +191,19 @@ def _write_variables(path: Path, batch: Batch) -> None:
             variable.setncatts({key: value for key, value in attributes.items() if not isinstance(value, str) or value})
             return variable
 
-        ids = [text.decode() for text in batch.ids]
-        _write_text(file, "case_id", ids, "identity of the case, a hash of its parameters")
+        _write_text(file, "case_id", cases.index, "identity of the case, a hash of its parameters")
         flags = {"flag_values": np.arange(len(STATUSES), dtype=np.int8), "flag_meanings": " ".join(STATUSES)}
         status_attrs = {"long_name": "state of the case", "units": "1", **flags}
-        create("status", "i1", ("case",), status_attrs)[:] = batch.status
-        create("run", "i4", ("case",), {"long_name": "number of the run", "units": "1"})[:] = batch.runs
-        shared, tables, parameters = _factor_out_shared([json.loads(text) for text in batch.texts["parameters"]])
+        create("status", "i1", ("case",), status_attrs)[:] = cases["status"].map(STATUSES.index)
+        create("run", "i4", ("case",), {"long_name": "number of the run", "units": "1"})[:] = cases["run"]
+        shared, tables, parameters = _factor_out_shared([json.loads(text) for text in cases["parameters"]])
         for name, meaning in TEXT_COLUMNS.items():
-            _write_text(file, name, parameters if name == "parameters" else batch.texts[name], meaning)
-        for name, values in batch.numbers.items():
-            create(name, "f8", ("case",), _file_attributes(name, batch.attributes))[:] = values
-        for dim, lengths in batch.sizes.items():
+            _write_text(file, name, parameters if name == "parameters" else cases[name], meaning)
+        for name in batch.numbers:
+            create(name, "f8", ("case",), _file_attributes(name, batch.attributes))[:] = cases[name]
+        for dim in sorted({dim for array in batch.arrays.values() for dim in array.dims}):
             attributes = {"long_name": f"size along {dim}", "units": "1", "sample_dimension": f"{dim}_values"}
-            create(f"{dim}_size", "i4", ("case",), attributes)[:] = lengths
+            create(f"{dim}{SIZE}", "i4", ("case",), attributes)[:] = batch.sizes([dim])[:, 0]
         for name, (dims, values) in batch.arrays.items():
             sample = f"{'_'.join(dims)}_values"
             if sample not in file.dimensions:
@@ -228,7 +217,7 @@ def _write_variables(path: Path, batch: Batch) -> None:
                 "Conventions": "CF-1.11",
                 "title": f"cases of the study {batch.run_context.get('study', '')}",
                 "source": f"contactstudy {package_version()}",
-                "history": f"{batch.texts['time'][-1]} written by contactstudy",
+                "history": f"{cases['time'].iloc[-1]} written by contactstudy",
                 RUN_ATTRIBUTE: json.dumps(batch.run_context),
                 SHARED_ATTR: json.dumps(shared),
                 TABLES_ATTR: json.dumps(tables),
@@ -247,7 +236,7 @@ def _file_attributes(name: str, attributes: Mapping[str, Mapping[str, Any]]) -> 
     }
 
 
-def _write_text(file: Any, name: str, texts: Sequence[str], meaning: str) -> None:
+def _write_text(file: Any, name: str, texts: Iterable[str], meaning: str) -> None:
     """Write a column of texts as characters, padded to the longest."""
     encoded = [text.encode() for text in texts]
     length = max(1, *map(len, encoded))
@@ -284,43 +273,33 @@ def _restore_parameters(shared: dict[str, Any], tables: list[Any], remaining: st
     return json.dumps({**shared, **case})
 
 
-def read_batch(path: Path, *, arrays: Iterable[str] | None = (), texts: Iterable[str] = ()) -> Batch:
-    """Read a batch: its columns, the named arrays and the named texts; None reads all arrays or all texts."""
+def read_batch(path: Path, *, arrays: Iterable[str] | None = (), parameters: bool = False) -> Batch:
+    """Read a batch: its cases, without or with their parameters, and the named arrays; None reads all arrays."""
     import netCDF4
 
     if not is_regular(path):
         raise StoreError(f"cannot read {path}: it is not a regular file")
     with netcdf_access(path, "read"), netCDF4.Dataset(path) as file:
         file.set_auto_maskandscale(False)
-        ids = np.char.encode(file["case_id"][:])
-        if ids.dtype.itemsize != IDENTITY_LENGTH:
+        if file.dimensions["case_id_length"].size != IDENTITY_LENGTH:
             raise StoreError(f"cannot read {path}: it is not a batch of cases")
-        selected, text_names = (None, set(TEXT_COLUMNS)) if arrays is None else (set(arrays), set(texts))
-        numbers, sizes, ragged, attributes = {}, {}, {}, {}
+        selected = None if arrays is None else set(arrays)
+        columns, ragged, attributes = {"status": np.array(STATUSES)[file["status"][:]]}, {}, {}
         for name, variable in file.variables.items():
-            if name in TEXT_COLUMNS or name in ("case_id", "status", "run"):
+            if name in ("case_id", "status") or (name == "parameters" and not parameters):
                 continue
-            attrs = {key: variable.getncattr(key) for key in variable.ncattrs()}
-            if "sample_dimension" in attrs:
-                sizes[name.removesuffix("_size")] = variable[:].astype(np.int64)
-            elif "array_dimensions" in attrs:
-                dims = tuple(attrs.pop("array_dimensions").split())
-                attributes[name] = attrs
+            attributes[name] = {key: variable.getncattr(key) for key in variable.ncattrs()}
+            if dims := attributes[name].pop("array_dimensions", ""):
                 read_values = selected is None or name in selected
-                ragged[name] = Ragged(dims, variable[:] if read_values else np.empty(0, dtype=variable.dtype))
+                values = variable[:] if read_values else np.empty(0, dtype=variable.dtype)
+                ragged[name] = Ragged(tuple(dims.split()), values)
             else:
-                attributes[name], numbers[name] = attrs, variable[:]
-        columns = {name: file[name][:].tolist() if name in text_names else [] for name in TEXT_COLUMNS}
-        if "parameters" in text_names:
+                columns[name] = variable[:]
+        if parameters:
             shared, tables = json.loads(file.getncattr(SHARED_ATTR)), json.loads(file.getncattr(TABLES_ATTR))
             columns["parameters"] = [_restore_parameters(shared, tables, text) for text in columns["parameters"]]
         return Batch(
-            ids=ids,
-            status=file["status"][:],
-            runs=file["run"][:].astype(np.int64),
-            texts=columns,
-            numbers=numbers,
-            sizes=sizes,
+            cases=pd.DataFrame(columns, index=file["case_id"][:]),
             arrays=ragged,
             attributes=attributes,
             coordinates=frozenset(json.loads(file.getncattr(COORDINATES_ATTR))),
@@ -342,48 +321,39 @@ def read_slices(path: Path, bounds: Mapping[str, Sequence[tuple[int, int]]]) -> 
 
 def read_case(path: Path, row: int, names: Iterable[str] | None = None) -> xr.Dataset:
     """Read one case of a batch on its cells, with its numbers, parameters, the context of its run, and named arrays."""
-    batch = read_batch(path, texts=TEXT_COLUMNS)
+    batch = read_batch(path, parameters=True)
     selected = set(batch.arrays if names is None else names) & set(batch.arrays)
     selected_dims = {dim for name in selected for dim in batch.arrays[name].dims}
     coordinates = [name for name in batch.coordinates if set(batch.arrays[name].dims) <= selected_dims]
-    bounds, shapes = {}, {}
-    for name in {*selected, *coordinates}:
-        dims = batch.arrays[name].dims
-        start, stop = batch.offsets(dims)[row : row + 2].tolist()
-        bounds[name], shapes[name] = [(start, stop)], [int(batch.sizes[dim][row]) for dim in dims]
-    variables: dict[str, Any] = {}
+    offsets = {name: batch.offsets(batch.arrays[name].dims) for name in {*selected, *coordinates}}
+    bounds = {name: [(starts[row], starts[row + 1])] for name, starts in offsets.items()}
+    variables = {}
     for name, (values,) in read_slices(path, bounds).items():
-        variables[name] = (batch.arrays[name].dims, values.reshape(shapes[name]), batch.attributes.get(name, {}))
-    for name, column in batch.numbers.items():
-        if not np.isnan(column[row]):
-            variables[name] = ((), float(column[row]), batch.attributes.get(name, {}))
-    dataset = xr.Dataset(variables).set_coords(coordinates)
-    run, parameters = json.dumps(batch.run(row)), batch.texts["parameters"][row]
-    attributes = {"case_id": batch.ids[row].decode(), CASE_ATTRIBUTE: parameters, RUN_ATTRIBUTE: run}
+        dims = batch.arrays[name].dims
+        variables[name] = (dims, values.reshape(batch.sizes(dims)[row]), batch.attributes[name])
+    attributes = {"case_id": batch.cases.index[row], CASE_ATTRIBUTE: batch.cases["parameters"].iloc[row]}
+    dataset = batch.record(row).assign(variables).set_coords(coordinates)
     return describe(dataset, f"case of the study {batch.run_context.get('study', '')}").assign_attrs(attributes)
 
 
 def add_arrays(batch: Batch, dataset: xr.Dataset, level: str) -> Batch:
     """Add the arrays of a solved case that a level above the summary retains; fields in single precision."""
-    variables = dataset.variables
-    deep = {name for name, variable in variables.items() if any(str(dim).startswith("z") for dim in variable.dims)}
-    retained = [name for name in dataset.data_vars if variables[name].ndim and (level == "fields" or name not in deep)]
-    dims = {str(dim) for name in retained for dim in variables[name].dims}
-    coordinates = [
-        str(name) for name, entry in dataset.coords.items() if entry.ndim and {*map(str, entry.dims)} <= dims
-    ]
+    deep = [name for name, entry in dataset.data_vars.items() if any(str(dim).startswith("z") for dim in entry.dims)]
+    retained = dataset if level == "fields" else dataset.drop_vars(deep)
+    dims = {str(dim) for entry in retained.data_vars.values() for dim in entry.dims}
     arrays = {}
-    for name in (*retained, *coordinates):
-        values = variables[name].values
-        if values.dtype == bool:
-            values = values.astype(np.int8)
-        elif name in deep and values.ndim >= 2:
-            values = values.astype(np.float32)
-        arrays[str(name)] = Ragged(tuple(map(str, variables[name].dims)), np.ascontiguousarray(values).ravel())
+    for name, variable in retained.variables.items():
+        if variable.ndim and dims.issuperset(variable.dims):
+            values = variable.values
+            if values.dtype == bool:
+                values = values.astype(np.int8)
+            elif name in deep and values.ndim >= 2:
+                values = values.astype(np.float32)
+            arrays[str(name)] = Ragged(tuple(map(str, variable.dims)), np.ascontiguousarray(values).ravel())
     return replace(
         batch,
-        sizes={dim: np.array([dataset.sizes[dim]], dtype=np.int64) for dim in sorted(dims)},
+        cases=batch.cases.assign(**{f"{dim}{SIZE}": dataset.sizes[dim] for dim in sorted(dims)}),
         arrays=arrays,
-        attributes=batch.attributes | {name: dict(variables[name].attrs) for name in arrays},
-        coordinates=frozenset(coordinates),
+        attributes=batch.attributes | {name: dict(retained[name].attrs) for name in arrays},
+        coordinates=frozenset(arrays) & {str(name) for name in retained.coords},
     )

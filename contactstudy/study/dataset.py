@@ -2,20 +2,39 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 import xarray as xr
+from xarray.backends import BackendArray
+from xarray.core import indexing
 
 from contactstudy import checks
 from contactstudy.analysis.provenance import STUDY_ATTRIBUTE
-from contactstudy.arrays.variables import DERIVED, describe, labels
-from contactstudy.checks import FloatArray
-from contactstudy.study.fields import Fields
-from contactstudy.study.folder import STATES, Folder, States
+from contactstudy.arrays.grid import centres_of
+from contactstudy.arrays.variables import DERIVED, ERROR_KIND, NOT_ESTIMATED, describe, labels
+from contactstudy.checks import FloatArray, IntArray
+from contactstudy.study.batches import SIZE, read_batch, read_slices
+from contactstudy.study.common_cells import (
+    Resampling,
+    centre_cells_on,
+    common_columns,
+    common_rows,
+    end_cells,
+    resample,
+    resampling_comment,
+    split_cells,
+)
+from contactstudy.study.folder import Folder, States
 from contactstudy.study.parameters import PARAMETERS
 from contactstudy.study.plan import label
+
+CELL_DIMS = ("x", "y")  # Dimensions of cells; positions along other dimensions are points
 
 
 def open_study(folder: str | Path, *, cells: str = "common", chunks: Any = None) -> xr.Dataset:
@@ -63,9 +82,7 @@ def open_study(folder: str | Path, *, cells: str = "common", chunks: Any = None)
     """
     from contactstudy.study.xarray_backend import StudyBackend
 
-    path = Folder(folder)
-    path.read_study()
-    return xr.open_dataset(path.path, engine=StudyBackend, chunks=chunks, cells=cells)
+    return xr.open_dataset(Folder(folder).path, engine=StudyBackend, chunks=chunks, cells=cells)
 
 
 def collect(folder: str | Path) -> xr.Dataset:
@@ -130,11 +147,9 @@ def numbers_dataset(states: States) -> xr.Dataset:
         column = np.asarray([missing if value is None else value for value in values])
         attributes = PARAMETERS[name].attrs if name in PARAMETERS else labels("case", coordinate=True)
         coordinates[name] = (dim, column, attributes)
-    names = np.array(STATES, dtype=np.str_)
-    reasons = [states.reasons.get(index, "") for index in range(len(plan))]
     variables: dict[str, Any] = {
-        "status": (cube.dims, names[plan.spread(states.status, STATES.index("excluded"))]),
-        "message": (cube.dims, plan.spread(np.array(reasons, dtype=np.str_), "")),
+        "status": (cube.dims, plan.spread(states.status, "excluded")),
+        "message": (cube.dims, plan.spread(np.array(states.reasons, dtype=np.str_), "")),
         "case_id": (cube.dims, plan.spread(plan.ids.astype(np.str_), "")),
     }
     for name in sorted({name for batch in states.results.batches for name in batch.numbers}):
@@ -163,3 +178,280 @@ def _drop_constant_dims(dims: tuple[str, ...], table: FloatArray) -> tuple[tuple
             table = first.squeeze(axis)
             dims = (*dims[:axis], *dims[axis + 1 :])
     return dims, table
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Positions:
+    """Positions of all cases along one dimension of their arrays."""
+
+    position_index: IntArray  # index of each case's position array in `values`; -1 if the case has none
+    values: list[FloatArray] = field(default_factory=list)  # different positions, metres
+    # widths of the cells; empty for uniform cells and points
+    widths: list[FloatArray] = field(default_factory=list)
+    scales: list[float] = field(default_factory=list)  # half-widths, metres
+
+    @property
+    def over_a(self) -> list[FloatArray]:
+        """Different positions over the half-width."""
+        return [values / scale for values, scale in zip(self.values, self.scales, strict=True)]
+
+    @property
+    def has_widths(self) -> bool:
+        """Whether cells have different widths."""
+        return any(widths.size for widths in self.widths)
+
+    def sources(self, *, has_points: bool) -> list[FloatArray]:
+        """Points, or edges of the cells, over the half-width."""
+        if has_points:
+            return self.over_a
+        result = []
+        for midpoints, widths, scale in zip(self.values, self.widths, self.scales, strict=True):
+            if widths.size:
+                low, high = midpoints - 0.5 * widths, midpoints + 0.5 * widths
+                edges = np.concatenate([low[:1], 0.5 * (high[:-1] + low[1:]), high[-1:]])
+            else:
+                half_width = 0.5 * (midpoints[-1] - midpoints[0]) / max(midpoints.size - 1, 1)
+                edges = np.linspace(midpoints[0] - half_width, midpoints[-1] + half_width, midpoints.size + 1)
+            result.append(edges / scale)
+        return result
+
+
+def _all_equal(arrays: Sequence[FloatArray], first: FloatArray) -> bool:
+    """Whether all arrays equal the array `first`, except for rounding."""
+    scale = float(np.abs(first).max(initial=0.0))
+    return all(row.size == first.size and np.allclose(row, first, rtol=1e-9, atol=1e-12 * scale) for row in arrays)
+
+
+class StudyAxis(NamedTuple):
+    """Dimension of a study that replaces a dimension of the cases, and the maps of positions onto a common axis."""
+
+    name: str
+    size: int
+    position_index: IntArray  # index of each case's map
+    resamplings: list[Resampling] | None = None
+
+
+class Fields:
+    """Lazy arrays of a study's cases: on common axes if `common`, else on the cells and points of each case."""
+
+    def __init__(self, states: States, *, common: bool) -> None:
+        self._states, self._common = states, common
+        self._batches = states.results.batches
+        coordinates = {name for batch in self._batches for name in batch.coordinates}
+        self.names: dict[str, tuple[tuple[str, ...], np.dtype[Any]]] = {}
+        for batch in self._batches:
+            for name, (dims, values) in batch.arrays.items():
+                if name not in coordinates:
+                    self.names.setdefault(name, (dims, values.dtype))
+        self._dims = list(dict.fromkeys(dim for dims, _ in self.names.values() for dim in dims))
+
+    @cached_property
+    def _positions(self) -> dict[str, Positions]:
+        """Positions along every dimension."""
+        case_count = len(self._states.plan)
+        batch_of, row_of = self._states.batch, self._states.row
+        half_widths = self._states.numbers("hertz_half_width")
+        result = {dim: Positions(position_index=np.full(case_count, -1, dtype=np.int64)) for dim in self._dims}
+        indices: dict[str, dict[Any, int]] = {dim: {} for dim in self._dims}
+        coordinates = [name for dim in self._dims for name in (dim, f"{dim}_width")]
+        for batch_number, path in enumerate(self._states.results.paths):
+            if not self._batches[batch_number].arrays:
+                continue
+            batch = read_batch(path, arrays=coordinates)
+            for dim in [dim for dim in self._dims if f"{dim}{SIZE}" in batch.cases]:
+                starts, positions = batch.offsets((dim,)), result[dim]
+                numbers = np.arange(starts[-1], dtype=np.float64) - np.repeat(starts[:-1], np.diff(starts))
+                values = batch.arrays[dim].values if dim in batch.arrays else numbers
+                widths = batch.arrays[f"{dim}_width"].values if f"{dim}_width" in batch.arrays else np.zeros(0)
+                for index in np.flatnonzero(batch_of == batch_number).tolist():
+                    span = slice(starts[row_of[index]], starts[row_of[index] + 1])
+                    key = (values[span].tobytes(), widths[span].tobytes(), half_widths[index])
+                    if span.start == span.stop:
+                        continue
+                    if key not in indices[dim]:
+                        indices[dim][key] = len(positions.values)
+                        positions.values.append(values[span])
+                        positions.widths.append(widths[span])
+                        positions.scales.append(float(half_widths[index]))
+                    positions.position_index[index] = indices[dim][key]
+        return {dim: positions for dim, positions in result.items() if positions.values}
+
+    def add_to(self, dataset: xr.Dataset) -> xr.Dataset:
+        """Return a Dataset of the study with the arrays."""
+        axes, coordinates = self._axes()
+        cube = self._states.plan.cube
+        variables = {}
+        for name, (dims, dtype) in self.names.items():
+            if not all(dim in axes for dim in dims):
+                continue
+            attributes = self._states.attributes(name)
+            if any(axes[dim].resamplings for dim in dims):
+                attributes |= {"comment": resampling_comment(name), ERROR_KIND: NOT_ESTIMATED}
+            array = CaseArray(self._states, name, {dim: axes[dim] for dim in dims}, dtype)
+            variable_dims = (*cube.dims, *(axes[dim].name for dim in dims))
+            variable = xr.Variable(variable_dims, indexing.LazilyIndexedArray(array), attributes)
+            # A chunk of about 16 MiB contains whole arrays of several cases along the last swept dimensions.
+            size = array.dtype.itemsize * int(np.prod(array.shape[len(cube.dims) :], dtype=np.int64))
+            chunks = dict(zip(variable_dims, array.shape, strict=True))
+            for dim in reversed(cube.dims):
+                chunks[dim] = max(1, min(chunks[dim], 2**24 // max(size, 1)))
+                size *= chunks[dim]
+            variable.encoding = {"preferred_chunks": chunks}
+            variables[name] = variable
+        return dataset.assign_coords(coordinates).assign(variables)
+
+    def _axes(self) -> tuple[dict[str, StudyAxis], dict[str, Any]]:
+        """Axis of every dimension of the cases, and the coordinates of these axes."""
+        axes: dict[str, StudyAxis] = {}
+        coordinates: dict[str, Any] = {}
+        positions = self._positions
+        has_half_widths = all(np.isfinite(scale) for entry in positions.values() for scale in entry.scales)
+        for dim, entry in positions.items():
+            if dim in axes:
+                continue
+            equal_over_a = has_half_widths and _all_equal(entry.over_a, entry.over_a[0]) and not entry.has_widths
+            if has_half_widths and (self._common or equal_over_a):
+                includes_points = self._common and dim == "x" and "x_field" in positions
+                dim_axes, dim_coordinates = self._common_axis(["x", "x_field"] if includes_points else [dim])
+            else:
+                dim_axes, dim_coordinates = self._original_axis(dim)
+            axes |= dim_axes
+            coordinates |= dim_coordinates
+        return axes, coordinates
+
+    def _original_axis(self, dim: str) -> tuple[dict[str, StudyAxis], dict[str, Any]]:
+        """Axis of the cases' positions, padded with NaN to the largest case where they differ."""
+        positions = self._positions[dim]
+        name = dim if all(np.array_equal(row, positions.values[0]) for row in positions.values) else f"{dim}_index"
+        size, index = max(values.size for values in positions.values), positions.position_index
+
+        def coordinate(rows: list[FloatArray]) -> tuple[Any, ...]:
+            return (name, rows[0]) if _all_equal(rows, rows[0]) else self._pad_rows(name, rows, index, size)
+
+        coordinates = {dim: coordinate(positions.values)}
+        if positions.has_widths:
+            coordinates[f"{dim}_width"] = coordinate(positions.widths)
+        if np.isfinite(positions.scales).all():
+            coordinates[f"{dim}_over_a"] = coordinate(positions.over_a)
+        return {dim: StudyAxis(name, size, index)}, coordinates
+
+    def _common_axis(self, dims: list[str]) -> tuple[dict[str, StudyAxis], dict[str, Any]]:
+        """Axis, over the half-width, that all cases share along dimensions of one direction, and its coordinates."""
+        first_dim, name = dims[0], f"{dims[0]}_over_a"
+        sources = {dim: self._positions[dim].sources(has_points=dim not in CELL_DIMS) for dim in dims}
+        ends = end_cells(sources[first_dim], sources.get("x_field", []))
+        rows = [*sources[first_dim], *np.sort(ends, axis=1)]
+        union = common_rows if first_dim == "y" else common_columns
+        axis = borders = rows[0] if _all_equal(rows, rows[0]) else union(rows)
+        if first_dim not in CELL_DIMS:
+            borders = np.concatenate([axis[:1], centres_of(axis), axis[-1:]])
+        elif "x_field" in sources:
+            points, plan = common_columns([np.sort(row) for row in sources["x_field"]]), self._states.plan
+            parameters = [plan.base, *(steps[0] for steps in plan.axes), *plan.explicit]
+            # Stress points that the study gives are positions of the common axis.
+            has_stated_points = any("field_x_over_a" in entry for entry in parameters)
+            borders = centre_cells_on(borders, points) if has_stated_points else split_cells(borders, points)
+        if first_dim in CELL_DIMS:
+            axis = centres_of(borders)
+        for end in ends[:, 0]:
+            axis[np.abs(axis - end).argmin()] = end
+        axes, maps = {}, {}
+        for dim, source_rows in sources.items():
+            has_points, fill = dim not in CELL_DIMS, 0.0 if dim == "y" else np.nan
+            positions, covered = (axis, axis) if has_points else (centres_of(borders), borders)
+            maps[dim] = [
+                Resampling(source=source, axis=positions, borders=borders, fill=fill, has_points=has_points)
+                for source in source_rows
+            ]
+            resamplings = None if _all_equal(source_rows, covered) else maps[dim]
+            axes[dim] = StudyAxis(name, axis.size, self._positions[dim].position_index, resamplings)
+        return axes, self._common_coordinates(maps, axis, borders)
+
+    def _common_coordinates(
+        self, maps: dict[str, list[Resampling]], axis: FloatArray, borders: FloatArray
+    ) -> dict[str, Any]:
+        """Coordinates of a common axis: over the half-width, and in metres (NaN beyond the case's cells and points)."""
+        first_dim = next(iter(maps))
+        over_a = f"{first_dim}_over_a"
+        coordinates: dict[str, Any] = {over_a: (over_a, axis)}
+        for dim, resamplings in maps.items():
+            positions = self._positions[dim]
+            shared = [np.where(resampling.is_outside, np.nan, resampling.axis) for resampling in resamplings]
+            rows = [scale * row for row, scale in zip(shared, positions.scales, strict=True)]
+            coordinates[dim] = self._pad_rows(over_a, rows, positions.position_index, axis.size)
+        positions, sources = self._positions[first_dim], [resampling.source for resampling in maps[first_dim]]
+        uniform = not positions.has_widths and _all_equal(sources, borders) and np.ptp(np.diff(borders)) == 0
+        if first_dim == "x" and not uniform:
+            rows = [np.diff(borders) * scale for scale in positions.scales]
+            coordinates["x_width"] = self._pad_rows(over_a, rows, positions.position_index, axis.size)
+        return coordinates
+
+    def _pad_rows(
+        self, name: str, rows: Sequence[FloatArray], position_index: IntArray, size: int
+    ) -> tuple[tuple[str, ...], FloatArray]:
+        """Dimensions and values of a coordinate of every case along the dimension `name`, padded with NaN."""
+        padded = np.full((len(rows) + 1, size), np.nan)
+        for index, row in enumerate(rows):
+            padded[index, : row.size] = row
+        return (*self._states.plan.cube.dims, name), self._states.plan.spread(padded[position_index], np.nan)
+
+
+class CaseArray(BackendArray):
+    """One variable over all cases of a study; indexing reads the values from the batches."""
+
+    def __init__(self, states: States, name: str, axes: Mapping[str, StudyAxis], dtype: np.dtype[Any]) -> None:
+        self._states, self._name, self._dims, self._axes = states, name, tuple(axes), tuple(axes.values())
+        self.shape = (*states.plan.cube.shape, *(axis.size for axis in self._axes))
+        is_resampled = any(axis.resamplings for axis in self._axes)
+        self.dtype = np.dtype(np.float64) if is_resampled and dtype.kind != "f" else dtype
+
+    @cached_property
+    def _cases(self) -> IntArray:
+        """Number in the plan of each case of the cube; -1 for an excluded case."""
+        return self._states.plan.spread(np.arange(len(self._states.plan)), -1)
+
+    def __getitem__(self, key: Any) -> Any:
+        """Return the values at an explicit index of xarray."""
+        return indexing.explicit_indexing_adapter(key, self.shape, indexing.IndexingSupport.OUTER, self._read)
+
+    def _read(self, key: tuple[Any, ...]) -> npt.NDArray[Any]:
+        """Read the values at integers, slices and arrays of integers."""
+        swept_count = len(self._states.plan.cube.shape)
+        selected, field_key = _index_axes(self._cases, key[:swept_count]), key[swept_count:]
+        shape = tuple(axis.size for axis in self._axes)
+        fill = np.nan if self.dtype.kind == "f" else 0
+        empty = _index_axes(np.full(shape, fill, dtype=self.dtype), field_key)
+        result = np.broadcast_to(empty, (selected.size, *empty.shape)).copy()
+        for index, values in self._values(selected.ravel()):
+            padded = np.full(shape, fill, dtype=self.dtype)
+            padded[tuple(slice(size) for size in values.shape)] = values
+            result[index] = _index_axes(padded, field_key)
+        return result.reshape((*selected.shape, *empty.shape))
+
+    def _values(self, cases: IntArray) -> Iterable[tuple[int, npt.NDArray[Any]]]:
+        """Yield the values of cases on the study's axes, each with its number among `cases`; batch by batch."""
+        batch_of, row_of = self._states.batch, self._states.row
+        for batch_index in np.unique(batch_of[cases[cases >= 0]]).tolist():
+            batch = self._states.results.batches[batch_index] if batch_index >= 0 else None
+            if batch is None or self._name not in batch.arrays:
+                continue
+            starts, sizes = batch.offsets(self._dims), batch.sizes(self._dims)
+            indices = [i for i, case in enumerate(cases.tolist()) if case >= 0 and batch_of[case] == batch_index]
+            rows = [int(row_of[cases[index]]) for index in indices]
+            bounds = [(int(starts[row]), int(starts[row + 1])) for row in rows]
+            flat = read_slices(self._states.results.paths[batch_index], {self._name: bounds})[self._name]
+            for index, row, values in zip(indices, rows, flat, strict=True):
+                if values.size:
+                    case_values = values.reshape(sizes[row])
+                    maps = [
+                        axis.resamplings[axis.position_index[cases[index]]] if axis.resamplings else None
+                        for axis in self._axes
+                    ]
+                    yield index, resample(self._name, case_values, maps) if any(maps) else case_values
+
+
+def _index_axes(values: npt.NDArray[Any], key: Sequence[Any]) -> npt.NDArray[Any]:
+    """Index every axis independently."""
+    for axis in range(len(key) - 1, -1, -1):
+        values = values[(slice(None),) * axis + (key[axis],)]
+    return values

@@ -339,13 +339,16 @@ def content_of_table(table: xr.Dataset, base: Mapping[str, Any]) -> dict[str, An
         raise InvalidInputError("base", name, "a parameter that the table does not have")
     content: dict[str, Any] = {"base": {**base, **{name: value for name, value in shared.items() if value is not None}}}
     if any(array.ndim and (array.ndim > 1 or None in map(_python_value, array.values)) for array in columns.values()):
-        return content | {"cases": list(_rows(table, columns))}
+        varying = {name: array for name, array in columns.items() if array.dims}
+        used_dims = {dim for array in varying.values() for dim in array.dims}
+        sizes = {dim: size for dim, size in table.sizes.items() if dim in used_dims}
+        values = [map(_python_value, array.set_dims(sizes).transpose(*sizes).values.flat) for array in varying.values()]
+        return content | {"cases": [dict(zip(varying, row, strict=True)) for row in zip(*values, strict=True)]}
     groups: dict[str, dict[str, list[Any]]] = {}
     for name, array in columns.items():
         if array.dims:
             groups.setdefault(str(array.dims[0]), {})[name] = [_python_value(value) for value in array.values]
-    single_columns = {name: values for group in groups.values() if len(group) == 1 for name, values in group.items()}
-    return content | {"sweep": single_columns, "zip": [group for group in groups.values() if len(group) > 1]}
+    return content | _content_of_axes(groups.values())
 
 
 def _python_value(value: Any) -> Any:
@@ -353,16 +356,6 @@ def _python_value(value: Any) -> Any:
     python_value = value.item() if isinstance(value, np.generic) else value
     missing = python_value is None or python_value == "" or (isinstance(python_value, float) and np.isnan(python_value))
     return None if missing else python_value
-
-
-def _rows(table: xr.Dataset, columns: Mapping[str, xr.Variable]) -> Iterable[dict[str, Any]]:
-    """Yield the varying parameters of every case, in the order of the table's dimensions."""
-    varying = {name: array for name, array in columns.items() if array.dims}
-    sizes = {dim: size for dim, size in table.sizes.items() if any(dim in array.dims for array in varying.values())}
-    values = [array.set_dims(sizes).transpose(*sizes).values.ravel() for array in varying.values()]
-    for row in zip(*values, strict=True):
-        python_values = zip(varying, map(_python_value, row), strict=True)
-        yield {name: value for name, value in python_values if value is not None}
 
 
 def content_of_selection(study: Study, table: xr.Dataset, base: Mapping[str, Any]) -> dict[str, Any]:
@@ -388,12 +381,14 @@ def content_of_selection(study: Study, table: xr.Dataset, base: Mapping[str, Any
     selected_product = np.ravel_multi_index(np.ix_(*steps), plan.shape).ravel()
     if np.isin(selected_product, plan.chosen).sum() != len(selected):
         return content | {"cases": cases}
-    sweep = {
-        name: [values[step] for step in axis_steps]
-        for (name, values), axis_steps in zip(study.sweep.items(), steps, strict=False)
-    }
     groups = [
-        {name: [values[step] for step in axis_steps] for name, values in group.items()}
-        for group, axis_steps in zip(study.zip, steps[len(sweep) :], strict=True)
+        {name: [axis[step][name] for step in axis_steps] for name in axis[0]}
+        for axis, axis_steps in zip(plan.axes, steps, strict=True)
     ]
-    return content | {"sweep": sweep, "zip": groups, "exclude": list(study.exclude)}
+    return content | _content_of_axes(groups) | {"exclude": list(study.exclude)}
+
+
+def _content_of_axes(axes: Iterable[Mapping[str, list[Any]]]) -> dict[str, Any]:
+    """Return the keys `sweep` and `zip` of a product; parameters of one axis change together."""
+    swept = {name: values for axis in axes if len(axis) == 1 for name, values in axis.items()}
+    return {"sweep": swept, "zip": [axis for axis in axes if len(axis) > 1]}

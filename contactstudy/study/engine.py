@@ -22,8 +22,8 @@ from contactstudy import checks
 from contactstudy.arrays.variables import package_version
 from contactstudy.errors import InvalidInputError, StudyFileError
 from contactstudy.study.plan import Plan, PlannedCase
+from contactstudy.study.profile_tables import user_profiles
 from contactstudy.study.settings import RUN
-from contactstudy.study.user_profiles import user_profiles
 from contactstudy.study.worker import Outcome, Solver, Task, solve_task
 
 if TYPE_CHECKING:
@@ -359,18 +359,12 @@ def _distribute(client: Client, workers: Workers, tasks: Tasks, solver: Solver |
                     )
                     running[future] = (worker, task, time.monotonic())
                     future.add_done_callback(finished_futures.put)
-            if lost_future := next(
-                (future for future, (worker, _, _) in running.items() if worker not in usable), None
-            ):
-                future = lost_future
-            else:
-                try:
-                    future = finished_futures.get(timeout=RUN.poll_seconds)
-                except queue.Empty:
-                    continue
-            if future not in running:
+            lost_futures = [future for future, (worker, _, _) in running.items() if worker not in usable]
+            try:
+                future = lost_futures[0] if lost_futures else finished_futures.get(timeout=RUN.poll_seconds)
+                worker, task, start_time = running.pop(future)
+            except (queue.Empty, KeyError):  # KeyError: the future of a lost worker
                 continue
-            worker, task, start_time = running.pop(future)
             error = future.exception() if future.status == "error" else None
             if future.status == "finished":
                 outcomes = future.result()

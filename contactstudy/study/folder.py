@@ -6,16 +6,17 @@ import contextlib
 import json
 import os
 import socket
-from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
 from datetime import UTC, datetime
 from functools import cached_property, partial, reduce
 from itertools import chain, count
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
+import pandas as pd
 import xarray as xr
 from filelock import FileLock, Timeout
 
@@ -23,18 +24,18 @@ from contactstudy import checks
 from contactstudy.analysis.provenance import INPUTS_ATTRIBUTE
 from contactstudy.arrays.variables import package_version
 from contactstudy.case.serialization import to_dict
-from contactstudy.checks import TEMPORARY_SUFFIX, IntArray
+from contactstudy.checks import TEMPORARY_SUFFIX, FloatArray
 from contactstudy.errors import InvalidInputError, LockedError, StoreError, StudyFileError
 from contactstudy.study.batches import (
     CASE_ATTRIBUTE,
     STATUSES,
-    TEXT_COLUMNS,
     Batch,
     batch_paths,
     common_attributes,
     count_cases,
     find_damage,
     join_batches,
+    latest_rows,
     read_batch,
     read_case,
     write_batch,
@@ -43,10 +44,8 @@ from contactstudy.study.case_setup import build_setup
 from contactstudy.study.definition import Study
 from contactstudy.study.files import UNFINISHED, is_regular, write_text
 from contactstudy.study.plan import LEVELS, Plan
-from contactstudy.study.profile_tables import check_without_files
+from contactstudy.study.profile_tables import check_without_files, user_profiles
 from contactstudy.study.settings import RUN
-from contactstudy.study.user_profiles import user_profiles
-from contactstudy.study.worker import group_by_structure
 
 SCHEMA = 2  # Version of the format of study.json
 STATES = (*STATUSES, "stale", "missing", "excluded")  # States of a case of a study
@@ -70,23 +69,6 @@ class Share:
         return "" if self.count == 1 else f"{self.number}-of-{self.count}-"
 
 
-@dataclass(frozen=True)
-class Entry:
-    """State of one case with its numbers; `run` contains versions, level, time, seconds and warnings."""
-
-    status: str
-    reason: str = ""
-    numbers: dict[str, float] = field(default_factory=dict)
-    run: dict[str, Any] = field(default_factory=dict)
-
-
-class Location(NamedTuple):
-    """Batch and row of a case."""
-
-    batch: int
-    row: int
-
-
 class Results:
     """Results that a folder contains now: columns of all intact batches, in memory."""
 
@@ -96,34 +78,34 @@ class Results:
         self.damaged: dict[Path, str] = {}
         for path in paths:
             try:
-                self.batches.append(read_batch(path, texts=("message",)))
+                self.batches.append(read_batch(path))
                 self.paths.append(path)
             except StoreError as error:
                 if path.exists() or path.is_symlink():  # another run may have joined the batch meanwhile
                     self.damaged[path] = str(error)
 
     @cached_property
-    def locations(self) -> dict[bytes, Location]:
-        """Location of each case's latest result, by the case's identity."""
-        locations: dict[bytes, Location] = {}
-        for batch_index, batch in enumerate(self.batches):
-            for row, identity in enumerate(batch.ids.tolist()):
-                stored = locations.get(identity)
-                if stored is None or self.batches[stored.batch].runs[stored.row] < batch.runs[row]:
-                    locations[identity] = Location(batch_index, row)
-        return locations
-
-    @cached_property
-    def batches_with_texts(self) -> list[Batch]:
-        """Batches with the texts of their cases: parameters, messages, warnings and times."""
-        return [read_batch(path, texts=TEXT_COLUMNS) for path in self.paths]
+    def cases(self) -> pd.DataFrame:
+        """Latest result of each case, by identity: status, message, and run with version and level; batch and row."""
+        columns = ("status", "message", "run", "batch", "row", "version", "level")
+        tables = [
+            batch.cases.assign(
+                batch=index,
+                row=range(len(batch)),
+                version=batch.run_context.get("contactstudy"),
+                level=batch.run_context.get("level"),
+            ).reindex(columns=columns)
+            for index, batch in enumerate(self.batches)
+        ]
+        table = pd.concat(tables) if tables else pd.DataFrame(columns=columns)
+        return table.iloc[latest_rows(table)]
 
     def case(self, identity: str, names: Iterable[str] | None = None) -> xr.Dataset:
         """Return one solved case on its cells, with all arrays or only the named arrays."""
-        location = self.locations.get(identity.encode())
-        if location is None or self.batches[location.batch].status[location.row] != 0:
+        if identity not in self.cases.index or self.cases["status"][identity] != "ok":
             raise InvalidInputError("case_id", identity, "that of a solved case of the study")
-        case = read_case(self.paths[location.batch], location.row, names)
+        batch, row = self.cases.loc[identity, ["batch", "row"]]
+        case = read_case(self.paths[batch], row, names)
         parameters = json.loads(case.attrs[CASE_ATTRIBUTE])
         with contextlib.suppress(InvalidInputError):  # parameters of another version, or an unknown user's profile
             user_profiles(parameters)
@@ -132,50 +114,35 @@ class Results:
             case.attrs[INPUTS_ATTRIBUTE] = json.dumps({"case": to_dict(setup.case), "settings": settings})
         return case
 
-    def state(self, identity: bytes, level: str) -> tuple[str, str, bool]:
-        """Status and reason of a case, and whether its result can be used."""
-        location = self.locations.get(identity)
-        if location is None:
-            return "missing", "", False
-        batch = self.batches[location.batch]
-        status, version = STATUSES[batch.status[location.row]], batch.run_context.get("contactstudy")
-        is_current = version == package_version()
-        if status != "ok":
-            message = batch.texts["message"][location.row]
-            return ("missing", "", False) if status == "skipped" and not is_current else (status, message, False)
-        retained_level = batch.run_context.get("level")
-        if retained_level not in LEVELS or LEVELS.index(retained_level) < LEVELS.index(level):
-            return "stale", f"retains {retained_level}, not {level}", False
-        return ("ok", "", True) if is_current else ("stale", f"solved by version {version}", True)
-
 
 class States:
     """State of every case of a plan."""
 
     def __init__(self, plan: Plan, results: Results) -> None:
         self.plan, self.results = plan, results
-        self.status: npt.NDArray[np.int8] = np.full(len(plan), STATES.index("missing"), dtype=np.int8)
-        self.usable: npt.NDArray[np.bool_] = np.zeros(len(plan), dtype=bool)
-        self.reasons: dict[int, str] = {}
-        damage = "; ".join(results.damaged.values())
-        if not (results.batches or damage or plan.review.reasons):
-            return
-        for index, identity in enumerate(plan.ids.tolist()):
-            if reason := plan.reason(index):
-                status, usable = "skipped", False
-            else:
-                status, reason, usable = results.state(identity, plan.level)
-                if status == "missing" and damage:
-                    reason = damage
-            self.status[index], self.usable[index] = STATES.index(status), usable
-            if reason:
-                self.reasons[index] = reason
+        stored = results.cases.reindex(plan.ids.astype(np.str_))
+        is_ok, is_current = stored["status"] == "ok", stored["version"] == package_version()
+        is_complete = stored["level"].isin(LEVELS[LEVELS.index(plan.level) :])
+        is_absent = stored["status"].isna() | (~is_current & (stored["status"] == "skipped"))
+        obstacles = pd.Series(plan.groups).map(plan.review.reasons)
+        conditions, statuses, reasons = zip(
+            (obstacles.notna(), "skipped", obstacles),
+            (is_absent, "missing", "; ".join(results.damaged.values())),
+            (is_ok & ~is_complete, "stale", stored["level"].map(f"retains {{}}, not {plan.level}".format)),
+            (is_ok & ~is_current, "stale", stored["version"].map("solved by version {}".format)),
+            strict=True,
+        )
+        self.status: npt.NDArray[np.str_] = np.select(conditions, statuses, stored["status"]).astype("U8")
+        self.reasons: list[str] = np.select(conditions, reasons, stored["message"]).tolist()
+        is_solved = np.isin(self.status, ("ok", "stale"))
+        self.usable = is_solved & is_complete.to_numpy()
+        # batch and row of each case; -1 for a case without numbers
+        self.batch, self.row = (stored[name].where(is_solved, -1).to_numpy(np.int64) for name in ("batch", "row"))
 
     @property
     def counts(self) -> dict[str, int]:
         """Number of cases of each status that occurs."""
-        counts = np.bincount(self.status, minlength=len(STATES))
-        return {state: int(count) for state, count in zip(STATES, counts, strict=True) if count}
+        return {status: count for status in STATES if (count := int(np.count_nonzero(self.status == status)))}
 
     @property
     def summary(self) -> str:
@@ -184,25 +151,15 @@ class States:
 
     def indices(self, *statuses: str) -> list[int]:
         """Numbers in the plan of the cases with one of the `statuses`."""
-        return np.flatnonzero(np.isin(self.status, [STATES.index(status) for status in statuses])).tolist()
+        return np.flatnonzero(np.isin(self.status, statuses)).tolist()
 
-    @cached_property
-    def locations(self) -> tuple[IntArray, IntArray]:
-        """Batch and row of each case; -1 for a case without numbers."""
-        batch, row = (np.full(len(self.plan), -1, dtype=np.int64) for _ in range(2))
-        solved = np.isin(self.status, [STATES.index("ok"), STATES.index("stale")])
-        for index in np.flatnonzero(solved).tolist():
-            batch[index], row[index] = self.results.locations[self.plan.ids[index]]
-        return batch, row
-
-    def numbers(self, name: str) -> npt.NDArray[np.float64]:
+    def numbers(self, name: str) -> FloatArray:
         """Values of the number `name` for every case, in the order of the plan; NaN for an absent value."""
         values = np.full(len(self.plan), np.nan)
-        batch, row = self.locations
-        for batch_index, source_batch in enumerate(self.results.batches):
-            if name in source_batch.numbers:
-                cases = batch == batch_index
-                values[cases] = source_batch.numbers[name][row[cases]]
+        for batch_index, batch in enumerate(self.results.batches):
+            if name in batch.cases:
+                cases = self.batch == batch_index
+                values[cases] = batch.cases[name].to_numpy()[self.row[cases]]
         return values
 
     def attributes(self, name: str) -> dict[str, Any]:
@@ -210,15 +167,10 @@ class States:
         entries = [dict(batch.attributes[name]) for batch in self.results.batches if name in batch.attributes]
         return reduce(partial(common_attributes, name), entries) if entries else {}
 
-    def entry(self, index: int) -> Entry:
-        """State of one case with its numbers."""
-        status, reason = STATES[self.status[index]], self.reasons.get(index, "")
-        batch_index, row = (int(values[index]) for values in self.locations)
-        if batch_index < 0:
-            return Entry(status, reason)
-        batch = self.results.batches_with_texts[batch_index]
-        numbers = {name: float(column[row]) for name, column in batch.numbers.items() if not np.isnan(column[row])}
-        return Entry(status, reason, numbers, batch.run(row))
+    def record(self, index: int) -> xr.Dataset:
+        """Numbers of one case with the record of its run; empty for a case without numbers."""
+        batch = self.batch[index]
+        return self.results.batches[batch].record(self.row[index]) if batch >= 0 else xr.Dataset()
 
 
 class Folder:
@@ -389,39 +341,36 @@ class Folder:
                 self._join(paths, share)
 
     def _join(self, paths: list[Path], share: Share) -> None:
-        """Join batches of equal `run_context` and structure, as far as the batches' sizes allow."""
-        groups: dict[str, list[tuple[Path, Batch]]] = {}
+        """Join batches of equal structure, as far as the batches' sizes allow."""
+        groups: dict[str, dict[Path, Batch]] = {}
         for path in paths:
             with contextlib.suppress(StoreError):
-                batch = read_batch(path, arrays=None)
-                groups.setdefault(json.dumps(batch.run_context, sort_keys=True), []).append((path, batch))
-        for paths_and_batches in groups.values():
-            sources = {id(batch): path for path, batch in paths_and_batches}
-            for batches in group_by_structure(batch for _, batch in paths_and_batches):
-                for portion in _split_by_size(batches):
-                    if len(portion) > 1:
-                        joined_batch = select_latest(join_batches(portion))
-                        write_batch(self.batches, f"{share.prefix}{os.urandom(6).hex()}", joined_batch)
-                        for batch in portion:
-                            sources[id(batch)].unlink(missing_ok=True)
+                batch = read_batch(path, arrays=None, parameters=True)
+                groups.setdefault(batch.structure, {})[path] = batch
+        for group in groups.values():
+            for portion in _split_by_size(group):
+                if len(portion) > 1:
+                    joined_batch = select_latest(join_batches([*portion.values()]))
+                    write_batch(self.batches, f"{share.prefix}{os.urandom(6).hex()}", joined_batch)
+                    for path in portion:
+                        path.unlink(missing_ok=True)
 
 
-def _split_by_size(batches: list[Batch]) -> Iterator[list[Batch]]:
-    """Yield lists of consecutive batches that are not too large in total."""
-    portion: list[Batch] = []
-    for batch in sorted(batches, key=len):
-        has_many_cases = sum(map(len, [*portion, batch])) > RUN.batch_cases
-        if portion and (has_many_cases or sum(entry.nbytes for entry in [*portion, batch]) > RUN.batch_bytes):
+def _split_by_size(batches: Mapping[Path, Batch]) -> Iterator[dict[Path, Batch]]:
+    """Yield portions of the batches that are not too large in total, small batches first."""
+    portion: dict[Path, Batch] = {}
+    for path, batch in sorted(batches.items(), key=lambda item: len(item[1])):
+        entries = [*portion.values(), batch]
+        is_large = sum(map(len, entries)) > RUN.batch_cases or sum(entry.nbytes for entry in entries) > RUN.batch_bytes
+        if portion and is_large:
             yield portion
-            portion = []
-        portion.append(batch)
+            portion = {}
+        portion[path] = batch
     if portion:
         yield portion
 
 
 def select_latest(batch: Batch) -> Batch:
     """Return a batch with the latest row of each case."""
-    order = np.lexsort((-batch.runs, batch.ids))
-    _, first_positions = np.unique(batch.ids[order], return_index=True)
-    rows = np.sort(order[first_positions])
+    rows = latest_rows(batch.cases)
     return batch if len(rows) == len(batch) else batch.take(rows)

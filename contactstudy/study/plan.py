@@ -75,20 +75,18 @@ def cube_of_axes(axes: Sequence[Axis], chosen: IntArray) -> Cube:
 
 def cube_of_cases(cases: Sequence[Mapping[str, Any]]) -> Cube:
     """Cube of explicit cases over the parameters that differ, or along `case` if sparse."""
-    names = list(dict.fromkeys(name for case in cases for name in case))
-    rows = [{name: label(case.get(name)) for name in names} for case in cases]
-    columns = {name: list(dict.fromkeys(row[name] for row in rows)) for name in names}
-    varying = {name: column for name, column in columns.items() if len(column) > 1}
-    cells = math.prod(map(len, varying.values()))
-    complete = all(None not in column for column in varying.values())
-    indices = {name: {value: index for index, value in enumerate(column)} for name, column in varying.items()}
-    positions = [tuple(indices[name][row[name]] for name in varying) for row in rows]
-    if varying and complete and cells <= MAX_CUBE_CELLS * len(cases) and len(set(positions)) == len(positions):
-        shape = tuple(len(column) for column in varying.values())
-        labels = {name: (name, column) for name, column in varying.items()}
-        return Cube(tuple(varying), shape, labels, np.ravel_multi_index(tuple(np.array(positions).T), shape))
-    labels = {"case": ("case", list(range(len(cases))))}
-    labels |= {name: ("case", [row[name] for row in rows]) for name in varying}
+    names = dict.fromkeys(name for case in cases for name in case)
+    columns = {name: [label(case.get(name)) for case in cases] for name in names}
+    steps = {name: {value: step for step, value in enumerate(dict.fromkeys(columns[name]))} for name in names}
+    varying = {name: step_of for name, step_of in steps.items() if len(step_of) > 1}
+    shape = tuple(map(len, varying.values()))
+    complete = not any(None in step_of for step_of in varying.values())
+    if varying and complete and math.prod(shape) <= MAX_CUBE_CELLS * len(cases):
+        multi_index = tuple([step_of[value] for value in columns[name]] for name, step_of in varying.items())
+        indices = np.ravel_multi_index(multi_index, shape)
+        if len(np.unique(indices)) == len(cases):
+            return Cube(tuple(varying), shape, {name: (name, list(varying[name])) for name in varying}, indices)
+    labels = {"case": ("case", list(range(len(cases))))} | {name: ("case", columns[name]) for name in varying}
     return Cube(("case",), (len(cases),), labels, np.arange(len(cases)))
 
 

@@ -24,7 +24,7 @@ from contactstudy.study.folder import Folder, Share, States
 from contactstudy.study.plan import Plan, PlannedCase
 from contactstudy.study.progress import Progress
 from contactstudy.study.settings import RUN
-from contactstudy.study.worker import Solver, Task, batch_without_numbers
+from contactstudy.study.worker import Solver, Task, batch_of_case
 
 if TYPE_CHECKING:
     from distributed import Client
@@ -91,12 +91,11 @@ def _interruptible(notify: Callable[[str], None]) -> Iterator[None]:
         yield
         return
     numbers = [signal.SIGINT, signal.SIGTERM, *([signal.SIGHUP] if hasattr(signal, "SIGHUP") else [])]
-    previous = {signal_number: signal.getsignal(signal_number) for signal_number in numbers}
     # A process under nohup continues to ignore SIGHUP.
-    handled_signals = [signal_number for signal_number in numbers if previous[signal_number] != signal.SIG_IGN]
+    previous = {number: handler for number in numbers if (handler := signal.getsignal(number)) != signal.SIG_IGN}
 
-    def handler(signal_number: int, frame: FrameType | None) -> None:
-        for handled_number in handled_signals:
+    def handle(signal_number: int, frame: FrameType | None) -> None:
+        for handled_number in previous:
             signal.signal(handled_number, signal.SIG_IGN)
         notify("interrupted: ending the workers ...")
         if signal_number == signal.SIGINT:
@@ -105,13 +104,13 @@ def _interruptible(notify: Callable[[str], None]) -> Iterator[None]:
         interrupt.signal_number = signal_number
         raise interrupt
 
-    for signal_number in handled_signals:
-        signal.signal(signal_number, handler)
+    for signal_number in previous:
+        signal.signal(signal_number, handle)
     try:
         yield
     finally:
-        for signal_number in handled_signals:
-            signal.signal(signal_number, previous[signal_number])
+        for signal_number, handler in previous.items():
+            signal.signal(signal_number, handler)
 
 
 def run_study(
@@ -214,7 +213,7 @@ def run_study(
                 prefix=run_share.prefix,
                 level=plan.level,
                 study=plan.name,
-                run=1 + max((int(batch.runs.max()) for batch in results.batches), default=0),
+                run=1 + max((int(batch.cases["run"].max()) for batch in results.batches), default=0),
             )
             del results
             solved = sum(map(len, groups))
@@ -293,7 +292,7 @@ def _collect_outcomes(
                 for outcome in outcomes:
                     log.record(outcome)
                     if outcome.message.startswith("WorkerDied"):
-                        batch = batch_without_numbers(template, outcome.case, outcome.status, outcome.message)
+                        batch = batch_of_case(template, outcome.case, outcome.status, outcome.message)
                         write_batch(Path(template.folder), f"{template.prefix}{outcome.case.id[:12]}", batch)
                 log.show()
                 if time.monotonic() - last_compaction > RUN.compact_seconds:

@@ -14,10 +14,12 @@ from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
 from functools import cache
 from itertools import groupby
+from operator import attrgetter
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
+import pandas as pd
 import xarray as xr
 
 from contactstudy.analysis.summary import Number, case_numbers
@@ -26,12 +28,12 @@ from contactstudy.arrays.variables import DERIVED
 from contactstudy.case.gridding import solve_in_first_window
 from contactstudy.errors import ContactStudyError, MagnitudeWarning, StoreError
 from contactstudy.profiles import Profile
-from contactstudy.study.batches import IDENTITY_LENGTH, STATUSES, Batch, add_arrays, join_batches, write_batch
+from contactstudy.study.batches import Batch, add_arrays, join_batches, write_batch
 from contactstudy.study.case_setup import Setup, build_setup
 from contactstudy.study.parameters import PARAMETERS
 from contactstudy.study.plan import PlannedCase
+from contactstudy.study.profile_tables import REGISTRY
 from contactstudy.study.settings import RUN
-from contactstudy.study.user_profiles import REGISTRY
 from contactstudy.versions import versions
 
 Solver = Callable[..., xr.Dataset]  # Callable with the arguments and the result of :func:`contactstudy.solve`
@@ -105,13 +107,13 @@ def solve_task(task: Task, solver: Solver | None = None) -> list[Outcome]:
     case_of = {case.id: case for case in task.cases}
 
     def flush() -> None:
-        groups = group_by_structure(unsaved_batches)
+        batches = sorted(unsaved_batches, key=attrgetter("structure"))
         unsaved_batches.clear()
-        for batches in groups:
-            batch = join_batches(batches)
+        for _, group in groupby(batches, key=attrgetter("structure")):
+            batch = join_batches(list(group))
             write_batch(Path(task.folder), f"{task.prefix}{uuid.uuid4().hex[:12]}", batch)
-            for identity, status, message in zip(batch.ids, batch.status, batch.texts["message"], strict=True):
-                outcomes.append(Outcome(case_of[identity.decode()], STATUSES[status], message))
+            for identity, status, message in batch.cases[["status", "message"]].itertuples():
+                outcomes.append(Outcome(case_of[identity], status, message))
 
     last_save = time.monotonic()
     try:
@@ -132,19 +134,6 @@ def solve_task(task: Task, solver: Solver | None = None) -> list[Outcome]:
     return outcomes
 
 
-def group_by_structure(batches: Iterable[Batch]) -> list[list[Batch]]:
-    """Group batches that can be joined; batches without arrays belong to the first group."""
-    groups: dict[Any, list[Batch]] = {}
-    for batch in batches:
-        groups.setdefault(batch.structure, []).append(batch)
-    without_arrays = groups.pop((), [])
-    if without_arrays and groups:
-        next(iter(groups.values())).extend(without_arrays)
-    elif without_arrays:
-        groups[()] = without_arrays
-    return list(groups.values())
-
-
 def _solve_group(task: Task, cases: list[PlannedCase], solver: Solver | None) -> Iterator[Batch]:
     """Solve the cases of a group; without stresses one solution serves all values of uncoupled friction."""
     shares_contact = solver is None and len(cases) > 1 and task.level == "summary"
@@ -156,37 +145,44 @@ def _solve_group(task: Task, cases: list[PlannedCase], solver: Solver | None) ->
         try:
             setup = build_setup(case.parameters)
         except ContactStudyError as error:
-            yield batch_without_numbers(task, case, "skipped", str(error))
+            yield batch_of_case(task, case, "skipped", str(error))
             continue
         if shared_batch is None:
             batch, result = _solve_case(task, case, setup, solver, film)
             if setup.case.lubricant is not None:
                 film = result
-            elif shares_contact and batch.status[0] == 0 and setup.grid is None and not setup.options["stresses"]:
+            elif shares_contact and result is not None and setup.grid is None and not setup.options["stresses"]:
                 shared_batch = batch
         else:
-            batch = batch_without_numbers(task, case, "ok")
-            batch = replace(batch, numbers=dict(shared_batch.numbers), attributes=dict(shared_batch.attributes))
-            batch.texts["warnings"] = shared_batch.texts["warnings"]
-        batch.numbers["seconds"] = np.array([time.perf_counter() - start_time])
+            row = shared_batch.cases.set_axis([case.id]).assign(parameters=json.dumps(case.parameters))
+            batch = replace(shared_batch, cases=row)
+        batch.cases["seconds"] = time.perf_counter() - start_time
         yield batch
 
 
-def batch_without_numbers(
-    task: Task, case: PlannedCase, status: str, message: str = "", caught: Iterable[str] = ()
+def batch_of_case(
+    task: Task,
+    case: PlannedCase,
+    status: str,
+    message: str = "",
+    *,
+    warnings_of_case: Iterable[str] = (),
+    numbers: Mapping[str, Number] | None = None,
 ) -> Batch:
-    """Batch of one case without numbers."""
-    messages = sorted(set(caught))
+    """Batch of one case with its numbers."""
+    texts, numbers = sorted(set(warnings_of_case)), numbers or {}
+    row = {
+        "status": status,
+        "run": task.run,
+        "parameters": json.dumps(case.parameters),
+        "message": message,
+        "warnings": json.dumps(texts) if texts else "",
+        "time": datetime.now(UTC).isoformat(timespec="seconds"),
+        **{name: float(number.value) for name, number in numbers.items()},
+    }
     return Batch(
-        ids=np.array([case.id.encode()], dtype=f"S{IDENTITY_LENGTH}"),
-        status=np.array([STATUSES.index(status)], dtype=np.int8),
-        runs=np.array([task.run], dtype=np.int64),
-        texts={
-            "parameters": [json.dumps(case.parameters)],
-            "message": [message],
-            "warnings": [json.dumps(messages) if messages else ""],
-            "time": [datetime.now(UTC).isoformat(timespec="seconds")],
-        },
+        cases=pd.DataFrame(row, index=[case.id]),
+        attributes={name: number.attributes for name, number in numbers.items()},
         run_context={**run_context(), "study": task.study, "level": task.level},
     )
 
@@ -219,21 +215,15 @@ def _solve_case(
     except StoreError:
         raise
     except (ContactStudyError, MemoryError, np.linalg.LinAlgError) as error:
-        return batch_without_numbers(task, case, "failed", f"{type(error).__name__}: {error}"), None
+        return batch_of_case(task, case, "failed", f"{type(error).__name__}: {error}"), None
     except Exception as error:
         error.add_note(f"while solving the case {case.name} ({case.id[:16]})")
         raise
-    batch = batch_without_numbers(
-        task, case, "ok", caught=(str(entry.message) for entry in caught if entry.category is not MagnitudeWarning)
-    )
     e_over_a = setup.e_over_a
     if np.isnan(e_over_a):  # the half-width follows from the solution
         e_over_a = setup.case.roller_start / numbers["hertz_half_width"].value
     for name, value in (("e_over_a", e_over_a), ("gamma", setup.gamma)):
         numbers[name] = Number(float(value), PARAMETERS[name].attrs | {"comment": DERIVED})
-    batch = replace(
-        batch,
-        numbers={name: np.array([number.value]) for name, number in numbers.items()},
-        attributes={name: number.attributes for name, number in numbers.items()},
-    )
+    messages = (str(entry.message) for entry in caught if entry.category is not MagnitudeWarning)
+    batch = batch_of_case(task, case, "ok", warnings_of_case=messages, numbers=numbers)
     return add_arrays(batch, dataset, task.level) if task.level != "summary" else batch, dataset

@@ -19,7 +19,6 @@ from contactstudy.cli import main
 from contactstudy.report import figures, study_page
 from contactstudy.report.study_page import figures_of_folder
 from contactstudy.study import load_case, run_study
-from contactstudy.study.folder import Entry
 from tests.browser import browser, chromium
 from tests.small_study import BASE, small_study
 from tests.stand_in_solver import FAILS, solve_fake
@@ -143,7 +142,7 @@ def test_page_of_a_study(page: Page) -> None:
 def converged_rows(*errors: float) -> list[study_page.Row]:
     """Rows of solved cases with relative errors of the peak."""
     scalars = [{"peak_pressure": 2e9, "peak_pressure_error": error * 2e9, "converged": 1.0} for error in errors]
-    return [study_page._row("case-1", Entry("ok", numbers=case_scalars), []) for case_scalars in scalars]
+    return [study_page._row("case-1", "ok", "", xr.Dataset(case_scalars), []) for case_scalars in scalars]
 
 
 def test_reason_of_several_cases() -> None:
@@ -171,7 +170,7 @@ def test_open_ends_coarse_cells_and_malformed_runs(tmp_path: Path) -> None:
     assert "cylinder, fillet radius 0.1 mm" in page.text
     assert "at end" not in page.text
     scalars = [{"end_pressure_first": value, "end_pressure_last": 0.0} for value in (0.0, 1e9)]
-    rows = [study_page._row("case-1", Entry("ok", numbers=numbers), []) for numbers in scalars]
+    rows = [study_page._row("case-1", "ok", "", xr.Dataset(numbers), []) for numbers in scalars]
     names = [name for name in study_page.HEADINGS if study_page._has_number(rows, name)]
     assert names == ["end_pressure_first"]
 

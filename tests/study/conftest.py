@@ -46,8 +46,7 @@ def start_run(study: Path, folder: Path, *more: str, tickets: int, within: Seque
 
 def count_finished(folder: Path) -> int:
     """Number of cases in the written batches of a folder."""
-    results = Folder(folder).results()
-    return len(results.locations)
+    return len(Folder(folder).results().cases)
 
 
 def intact(folder: Path) -> bool:

@@ -1,14 +1,12 @@
 """Columns and ragged arrays of a batch."""
 
-import numpy as np
+import pandas as pd
 
 from contactstudy.study.batches import Batch, common_attributes
 
 
 def test_offsets_of_arrays_of_different_shapes():
-    sizes = {"x": np.array([2, 3]), "y": np.array([2, 1])}
-    ids, columns = np.array([b"a", b"b"]), np.zeros(2, dtype=np.int64)
-    batch = Batch(ids=ids, status=columns.astype(np.int8), runs=columns, texts={}, sizes=sizes)
+    batch = Batch(cases=pd.DataFrame({"x_size": [2, 3], "y_size": [2, 1]}))
     assert batch.offsets(("x", "y")).tolist() == [0, 4, 7]
 
 

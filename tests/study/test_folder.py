@@ -16,7 +16,7 @@ from contactstudy.study.batches import batch_paths, find_damage, join_batches, r
 from contactstudy.study.files import write_text
 from contactstudy.study.folder import Folder, Share, select_latest
 from contactstudy.study.settings import RunSettings
-from contactstudy.study.worker import Task, batch_without_numbers
+from contactstudy.study.worker import Task, batch_of_case
 from tests.small_study import identity, small_study
 from tests.stand_in_solver import solve_fake
 from tests.study.conftest import ROOT, planned_case
@@ -29,7 +29,7 @@ def run(study, folder, **options):
 def failed_batch(index, parameters, *, run=1, message="WindowError: narrow", warnings=()):
     """Batch of a case without results."""
     case = planned_case(index, parameters)
-    return batch_without_numbers(Task(cases=(), folder="", run=run), case, "failed", message, warnings)
+    return batch_of_case(Task(cases=(), folder="", run=run), case, "failed", message, warnings_of_case=warnings)
 
 
 def rows(count, **options):
@@ -81,11 +81,11 @@ def test_batch_round_trip(tmp_path):
     write_batch(tmp_path, "a", rows(3, message="Größe", warnings=["one"]))
     (path,) = batch_paths(tmp_path)
     assert find_damage(path) == ""
-    batch = read_batch(path, arrays=None)
-    assert batch.ids.tolist() == [f"{index:064x}".encode() for index in range(3)]
-    assert batch.texts["message"] == ["Größe"] * 3
-    assert batch.run(0)["warnings"] == ["one"]
-    assert batch.texts["parameters"] == ['{"friction": 0.1}'] * 3
+    cases = read_batch(path, parameters=True).cases
+    assert cases.index.tolist() == [f"{index:064x}" for index in range(3)]
+    assert cases["message"].tolist() == ["Größe"] * 3
+    assert cases["warnings"].tolist() == ['["one"]'] * 3
+    assert cases["parameters"].tolist() == ['{"friction": 0.1}'] * 3
 
 
 def test_batch_stores_parameter_tables_once(tmp_path):
@@ -94,7 +94,7 @@ def test_batch_stores_parameter_tables_once(tmp_path):
     batch = join_batches([failed_batch(index, entry) for index, entry in enumerate(parameters)])
     write_batch(tmp_path, "a", batch)
     (path,) = batch_paths(tmp_path)
-    assert read_batch(path, arrays=None).texts["parameters"] == batch.texts["parameters"]
+    assert read_batch(path, parameters=True).cases["parameters"].equals(batch.cases["parameters"])
     assert path.stat().st_size < 60_000
 
 
@@ -115,13 +115,13 @@ def test_small_batches_are_joined(tmp_path):
     assert len(batch_paths(folder.batches)) < 10
     folder.compact(Share(), at_end=True)
     (path,) = batch_paths(folder.batches)
-    assert len(folder.results().locations) == len(read_batch(path)) == 20
+    assert len(folder.results().cases) == len(read_batch(path)) == 20
 
 
 def test_latest_run_replaces_results(tmp_path):
     batch = join_batches([rows(2), rows(2, run=3, message="later"), rows(2, run=2)])
-    assert select_latest(batch).texts["message"] == ["later"] * 2
-    assert select_latest(batch).runs.tolist() == [3, 3]
+    assert select_latest(batch).cases["message"].tolist() == ["later"] * 2
+    assert select_latest(batch).cases["run"].tolist() == [3, 3]
 
 
 def test_joined_batches_have_equal_results(tmp_path, monkeypatch):

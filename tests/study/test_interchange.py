@@ -40,8 +40,8 @@ def test_batch_is_readable_without_hdf5_library(files):
             assert file["peak_pressure"].attrs["units"] in ("Pa", b"Pa")
             assert any(name.startswith("contactstudy_") for name in file.attrs)
     with pyfive.File(files[2]) as file:
-        (case,) = Folder(files[2].parents[1]).results().locations
-        pressure = load_case(files[2].parents[1], case.decode())["pressure"].values
+        (case,) = Folder(files[2].parents[1]).results().cases.index
+        pressure = load_case(files[2].parents[1], case)["pressure"].values
         np.testing.assert_array_equal(file["pressure"][...], pressure.ravel())
 
 

@@ -11,9 +11,10 @@ import pytest
 
 from contactstudy import InvalidInputError, profiles
 from contactstudy.analysis import solved_case
-from contactstudy.study import Study, load_case, open_study, run_study, user_profiles
+from contactstudy.study import Study, load_case, open_study, run_study
 from contactstudy.study.case_setup import build_setup
 from contactstudy.study.folder import Folder
+from contactstudy.study.profile_tables import REGISTRY, profile_table
 from tests.small_study import BASE, case_id, small_study
 from tests.stand_in_solver import solve_fake
 
@@ -90,8 +91,8 @@ def test_workers_solve_user_profile(tmp_path: Path) -> None:
 def test_process_without_user_profile_refuses_to_solve(tmp_path: Path, monkeypatch) -> None:
     study = small_study(base=BASE | {"e_over_a": 1.0, "profile": Wedge(1e-4)}, sweep={"friction": [0.0]})
     run_study(study, tmp_path, workers=0, solver=solve_fake, progress=False)
-    for content in list(user_profiles.REGISTRY):
-        monkeypatch.delitem(user_profiles.REGISTRY, content)
+    for content in list(REGISTRY):
+        monkeypatch.delitem(REGISTRY, content)
     assert open_study(tmp_path).status.values.tolist() == ["ok"]
     restored_study = Folder(tmp_path).read_study()
     assert run_study(restored_study, tmp_path, workers=0, progress=False).counts == {"ok": 1}
@@ -139,4 +140,4 @@ def test_arrays_and_profiles_within_count() -> None:
     points = np.linspace(0, 1, 200)
     assert identity(Wedge(1e-4, points=points)) != identity(Wedge(1e-4, points=points**2))
     assert identity(Wedge(1e-4, base=Cosine(1e-6))) != identity(Wedge(1e-4, base=Cosine(2e-6)))
-    assert "200 values" in user_profiles.register(Wedge(1e-4, points=points))["values"]["points"]
+    assert "200 values" in profile_table("profile", Wedge(1e-4, points=points))["values"]["points"]

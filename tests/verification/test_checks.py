@@ -18,7 +18,7 @@ FULL = [
     if entry.group in {listed_check.group for listed_check in LISTED if listed_check.level == "full"}
 ]
 """Checks of the groups with further checks at the full level."""
-LONG = ("film", "passes")
+LONG = ("friction", "film", "passes")
 """Groups whose quick level, a part of the full one, takes too long for the default tier."""
 TIGHTER = {
     "six stresses / p0, z >= 0.1a, largest difference": 1e-3,

@@ -1,9 +1,9 @@
 """Texts of the command line on a study."""
 
+from contactstudy.cli import format_bytes
 from contactstudy.study.plan import format_value
 from contactstudy.study.profile_tables import format_profile
 from contactstudy.study.progress import format_duration
-from contactstudy.study.report import format_bytes
 
 
 def test_sizes_and_durations():
