@@ -4,8 +4,8 @@ Usage: ``python studies/worn_profile.py [--out FOLDER]``; about one minute. Writ
 ``worn_profile_judged.nc`` and ``worn_profile.png`` and prints a table.
 
 A rigid cylinder that ends half a width from the free ends slides under one load until its load per length is uniform.
-Its profiles after little wear, more wear and wear-in are then pressed under other loads and tilts, beside
-Lundberg's profile with the factor that ``best_profile.py`` finds.
+Its profiles after little wear, more wear and wear-in are then pressed under other loads, at and beside mid-length.
+Lundberg's profile with the factor that ``best_profile.py`` finds is pressed as well.
 """
 
 from __future__ import annotations
@@ -35,14 +35,15 @@ class Task:
 
     material: cs.Material = field(default_factory=lambda: cs.Material(210e9, 0.3))
     radius: float = 5e-3
-    length: float = 2e-3
+    length: float = 10e-3
     end_distance: float = 33e-6
     design_pressure: float = 1.5e9
     coefficient: float = 1e-17
     mean_depths: tuple[float, ...] = (0.1e-6, 1e-6, 10e-6)
     pressures: tuple[float, ...] = (1.0e9, 1.5e9, 2.0e9)
-    tilts: tuple[float, ...] = (0.0, 2e-4)
-    best_delta: float = 0.76
+    offsets: tuple[float, ...] = (0.0, 0.5e-3)
+    """Distances of the load from mid-length."""
+    best_delta: float = 0.81
 
     @property
     def crown(self) -> cs.profiles.Lundberg:
@@ -53,9 +54,9 @@ class Task:
         )
 
     def case(
-        self, profile: cs.profiles.Profile | None = None, pressure: float | None = None, tilt: float = 0.0
+        self, profile: cs.profiles.Profile | None = None, pressure: float | None = None, offset: float = 0.0
     ) -> cs.Case:
-        """One profile, load and tilt; without a profile the sharp cylinder."""
+        """One profile and load; without a profile the sharp cylinder."""
         body = cs.FiniteLengthSpace(length=self.length + 2 * self.end_distance, material=self.material)
         shape = cs.profiles.Cylinder() if profile is None else profile
         return cs.Case(
@@ -63,7 +64,7 @@ class Task:
             roller=cs.Roller(radius=self.radius, length=self.length, profile=shape),
             max_pressure=self.design_pressure if pressure is None else pressure,
             end_distance=self.end_distance,
-            tilt=tilt,
+            load_position=self.end_distance + self.length / 2 + offset,
         )
 
 
@@ -87,7 +88,7 @@ def profiles(task: Task, worn: xr.Dataset) -> dict[str, cs.profiles.Profile]:
 
 
 def press_profiles(task: Task, worn: xr.Dataset) -> xr.Dataset:
-    """Load per length and largest pressure of every profile under every load and tilt, on the cells of the wear."""
+    """Load per length and largest pressure of every profile under every load, on the cells of the wear."""
     edges = np.append(worn["x_bounds"].values[:, 0], worn["x_bounds"].values[-1, 1])
     compared = profiles(task, worn)
     of_profiles = []
@@ -98,8 +99,8 @@ def press_profiles(task: Task, worn: xr.Dataset) -> xr.Dataset:
             grid = cs.Grid.from_edges(edges, (-half_window, half_window), CELLS_Y)
             of_loads.append(
                 xr.concat(
-                    [_press_profile(task.case(profile, pressure, tilt), grid) for tilt in task.tilts],
-                    xr.Variable("tilt", list(task.tilts), {"units": "rad"}),
+                    [_press_profile(task.case(profile, pressure, offset), grid) for offset in task.offsets],
+                    xr.Variable("offset", list(task.offsets), {"units": "m"}),
                 )
             )
         of_profiles.append(xr.concat(of_loads, xr.Variable("max_pressure", list(task.pressures), {"units": "Pa"})))
@@ -129,14 +130,15 @@ def draw(task: Task, worn: xr.Dataset, pressures: xr.Dataset) -> plt.Figure:
     compared = profiles(task, worn)
     x = 0.5 * task.length * np.linspace(-1, 1, 2001)[1:-1]
     styles = line_styles(len(compared))
-    for (name, profile), style in zip(compared.items(), styles, strict=True):
-        drop = profile.drop(x, task.length)
-        axes[0].plot(1e3 * x, 1e6 * (drop - drop[x.size // 2]), label=name, **style)
-    axes[0].set(xlabel="distance from mid-length (mm)", ylabel="drop below mid-length (µm)", ylim=(0.8, -0.05))
+    drops = {name: 1e6 * profile.drop(x, task.length) for name, profile in compared.items()}
+    for (name, drop), style in zip(drops.items(), styles, strict=True):
+        axes[0].plot(1e3 * x, drop - drop[x.size // 2], label=name, **style)
+    highest = min((drop - drop[x.size // 2]).min() for drop in drops.values())
+    axes[0].set(xlabel="distance from mid-length (mm)", ylabel="drop below mid-length (µm)", ylim=(0.8, 1.1 * highest))
     axes[0].legend(frameon=False, fontsize="small", loc="lower center")
     for ax, pressure in zip(axes[1:], task.pressures[-2:], strict=True):
         for name, style in zip(compared, styles, strict=True):
-            line = pressures["relative_load"].sel(profile=name, max_pressure=pressure, tilt=task.tilts[0])
+            line = pressures["relative_load"].sel(profile=name, max_pressure=pressure, offset=task.offsets[0])
             distance = (line["x"].values - task.end_distance) / task.case().hertz_half_width
             near = (distance > BESIDE_END) & (distance < 8)
             ax.plot(distance[near], line.values[near], **style)
@@ -146,14 +148,14 @@ def draw(task: Task, worn: xr.Dataset, pressures: xr.Dataset) -> plt.Figure:
 
 
 def table(pressures: xr.Dataset) -> str:
-    """Markdown: largest pressure off the ends, by load and tilt."""
-    loads = [(float(load), float(tilt)) for tilt in pressures["tilt"] for load in pressures["max_pressure"]]
-    heads = [f"{load / 1e9:g} GPa{f', {1e3 * tilt:g} mrad' if tilt else ''}" for load, tilt in loads]
+    """Markdown: largest pressure off the ends, by load and its position."""
+    loads = [(float(load), float(offset)) for offset in pressures["offset"] for load in pressures["max_pressure"]]
+    heads = [f"{load / 1e9:g} GPa{f', {1e3 * offset:+g} mm' if offset else ''}" for load, offset in loads]
     lines = [f"| profile | {' | '.join(heads)} |", "|---" * (len(heads) + 1) + "|"]
     for name in pressures["profile"].values:
         cells = [
-            f"{float(pressures['largest_pressure'].sel(profile=name, max_pressure=load, tilt=tilt)):.2f}"
-            for load, tilt in loads
+            f"{float(pressures['largest_pressure'].sel(profile=name, max_pressure=load, offset=offset)):.2f}"
+            for load, offset in loads
         ]
         lines.append(f"| {name} | {' | '.join(cells)} |")
     return "\n".join(lines)

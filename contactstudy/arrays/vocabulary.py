@@ -58,6 +58,7 @@ COORDINATES = {  # coordinates of results; swept parameters stand in :data:`cont
     "evaluation": Variable(EVALUATION_DIMS, "1", "", "number of the design"),
     "case_load": Variable(("case",), "N", "W", "normal load of the case"),
     "case_tilt": Variable(("case",), "rad", r"\vartheta", "tilt of the case"),
+    "case_load_position": Variable(("case",), "m", "x_W", "load position of the case"),
     "parameter": Variable(PARAMETER_DIMS, "", "", "parameter of the profile"),
     "parameter_units": Variable(PARAMETER_DIMS, "", "", "unit of the parameter", "empty where it is not known"),
     "raceway": Variable(("raceway",), "", "", "raceway"),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import logging
 import warnings
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import product
 from types import MappingProxyType
@@ -14,8 +14,8 @@ import xarray as xr
 from scipy import optimize
 
 from contactstudy import checks
-from contactstudy.arrays.variables import describe, in_si
-from contactstudy.case.case import Case, small_tilt
+from contactstudy.arrays.variables import describe
+from contactstudy.case.case import Case
 from contactstudy.case.gridding import check_accuracy
 from contactstudy.checks import FloatArray
 from contactstudy.errors import BoundWarning, ContactStudyError, InvalidInputError, MagnitudeWarning, WindowError
@@ -271,24 +271,21 @@ NO_STRESSES: Mapping[str, object] = MappingProxyType({"stresses": False})
 
 
 def best_profile(
-    case: Case,
+    cases: Case | Sequence[Case],
     profile: Callable[..., Profile],
     *,
     bounds: Mapping[str, tuple[float, float]],
     measure: Measure = "peak_pressure",
-    loads: Sequence[float] | FloatArray | None = None,
-    max_pressures: Sequence[float] | FloatArray | None = None,
-    tilts: Sequence[float] | FloatArray | None = None,
     accuracy: float = 0.01,
     settings: Mapping[str, object] = NO_STRESSES,
     evaluations: int = 60,
 ) -> xr.Dataset:
-    """Find the parameters of a profile that minimise the largest measure over loads and tilts.
+    """Find the parameters of a profile that minimise the largest measure over several cases.
 
     Parameters
     ----------
-    case : Case
-        Body and roller of any profile, with the default load and tilt.
+    cases : Case or sequence of Case
+        Bodies, loads, tilts, ..., with rollers of any profile, which the designs replace.
     profile : callable
         Profile from the parameters, by keyword: a class such as `profiles.FullCrown`, or a function.
     bounds : mapping of str to tuple of float
@@ -296,10 +293,6 @@ def best_profile(
     measure : str or callable
         A scalar variable of the result of :func:`contactstudy.solve`; or a function of the result that returns a
         number, or a number and its error.
-    loads, max_pressures : sequence of float, optional
-        Loads (N), or peak pressures of the Hertz line contact instead (Pa).
-    tilts : sequence of float, optional
-        Tilts, radians, for each of the loads.
     accuracy : float
         Accuracy of every contact, see :func:`contactstudy.solve`, and relative error of a measure without an error.
     settings : mapping
@@ -316,7 +309,7 @@ def best_profile(
         of the bounds, `at_bound`; the coordinate `parameter_units`, empty for a user's function. `measure` of the
         optimum in its worst case and `measure_error`. Along `evaluation` every design: `design` (evaluation,
         parameter), `design_measure`, `design_measure_error`, and `case_measure` (evaluation, case) with the
-        coordinates `case_load` (N) and `case_tilt` (rad).
+        coordinates `case_load` (N), `case_tilt` (rad) and `case_load_position` (m; NaN where the tilt is prescribed).
         ``profile(**result.optimum.to_series())`` is the profile.
 
     Raises
@@ -340,7 +333,6 @@ def best_profile(
     >>> bool(best.flat_from[0] <= best.optimum[0] <= best.flat_to[0])
     True
     """
-    checks.instance("case", case, Case, "a Case")
     if not callable(profile):
         raise InvalidInputError("profile", profile, "a class of profiles, or a function that returns a profile")
     if not (isinstance(measure, str) or callable(measure)):
@@ -353,8 +345,10 @@ def best_profile(
         if not low < high:
             raise InvalidInputError(f"bounds[{name!r}]", pair, "two numbers, the least and the largest value")
         ranges[str(name)] = float(low), float(high)
+    listed_cases = _list_cases(cases)
+    case_coordinates = _label_cases(listed_cases)
     designs = Evaluations(
-        cases=_create_cases(case, loads, max_pressures, tilts),
+        cases=listed_cases,
         profile=profile,
         ranges=ranges,
         measure=measure,
@@ -363,7 +357,7 @@ def best_profile(
         max_designs=checks.count("evaluations", evaluations, minimum=min_designs(len(ranges))),
     )
     best = search_optimum(designs)
-    result = _label_designs(designs, *find_flat_ranges(designs, best))
+    result = _label_designs(designs, *find_flat_ranges(designs, best)).assign_coords(case_coordinates)
     for name in result["parameter"].values[result["at_bound"].values]:
         column = result.sel(parameter=name)
         value, low, high = (float(column[key]) for key in ("optimum", "lower_bound", "upper_bound"))
@@ -373,24 +367,22 @@ def best_profile(
     return result
 
 
-def _check_numbers(name: str, values: object, unit: str) -> list[float]:
-    """Return numbers in SI; an empty list for None."""
-    if values is None:
-        return []
-    numbers = in_si(name, values, "rad" if unit == "radians" else unit)
-    return [float(value) for value in checks.coordinates(name, numbers, unit)]
+def _list_cases(cases: object) -> list[Case]:
+    """Return one or several cases as a list."""
+    listed = [cases] if isinstance(cases, Case) else list(cases) if isinstance(cases, Iterable) else []
+    for case in listed or [cases]:
+        checks.instance("cases", case, Case, "a Case, or a sequence of Cases")
+    return listed
 
 
-def _create_cases(case: Case, loads: object, pressures: object, tilts: object) -> list[Case]:
-    """Create a case per load and tilt."""
-    if loads is not None and pressures is not None:
-        raise InvalidInputError("loads, max_pressures", (loads, pressures), "one of both, or None")
-    variants = [replace(case, load=load, max_pressure=None) for load in _check_numbers("loads", loads, "N")]
-    variants += [
-        replace(case, load=None, max_pressure=peak) for peak in _check_numbers("max_pressures", pressures, "Pa")
-    ]
-    angles = [small_tilt(tilt) for tilt in _check_numbers("tilts", tilts, "radians")] or [case.tilt]
-    return [replace(variant, tilt=tilt) for variant in variants or [case] for tilt in angles]
+def _label_cases(cases: Sequence[Case]) -> dict[str, tuple[str, list[float]]]:
+    """Coordinates of the cases; raise for a case with a prescribed approach."""
+    positions = [np.nan if case.load_position is None else case.load_position for case in cases]
+    return {
+        "case_load": ("case", [case.normal_load for case in cases]),
+        "case_tilt": ("case", [case.tilt for case in cases]),
+        "case_load_position": ("case", positions),
+    }
 
 
 def _label_designs(designs: Evaluations, flat_from: FloatArray, flat_to: FloatArray) -> xr.Dataset:
@@ -425,8 +417,6 @@ def _label_designs(designs: Evaluations, flat_from: FloatArray, flat_to: FloatAr
             "parameter_units": ("parameter", [unit_of(designs.profile, name) for name in names]),
             "evaluation": np.arange(1, len(evaluated_designs) + 1),
             "case": np.arange(1, len(designs.cases) + 1),
-            "case_load": ("case", [case.normal_load for case in designs.cases]),
-            "case_tilt": ("case", [case.tilt for case in designs.cases]),
         },
     )
     if designs.units:

@@ -6,11 +6,9 @@ from matplotlib import pyplot
 import contactstudy as cs
 
 steel = cs.Material(young=210e9, poisson=0.3)
-case = cs.Case(
-    body=cs.FiniteLengthSpace(length=10.5e-3, material=steel),
-    roller=cs.Roller(radius=5e-3, length=10e-3),
-    max_pressure=1.5e9,
-)
+body = cs.FiniteLengthSpace(length=10.5e-3, material=steel)
+roller = cs.Roller(radius=5e-3, length=10e-3)
+cases = [cs.Case(body=body, roller=roller, max_pressure=p0, tilt=0.5e-3) for p0 in (1.2e9, 1.8e9)]
 
 
 def over_p0(result: xr.Dataset) -> tuple[xr.DataArray, xr.DataArray]:
@@ -20,12 +18,10 @@ def over_p0(result: xr.Dataset) -> tuple[xr.DataArray, xr.DataArray]:
 
 
 design = cs.design.best_profile(
-    case,
+    cases,
     cs.profiles.Lundberg,
     bounds={"amplitude": (0.5e-6, 10e-6)},
     measure=over_p0,
-    max_pressures=[1.2e9, 1.8e9],
-    tilts=[0.5e-3],
     accuracy=0.02,
     evaluations=14,
 )

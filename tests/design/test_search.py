@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -66,7 +68,8 @@ def test_optimum_at_a_kink_of_two_cases(solve_with) -> None:
     """The loads have opposite slopes: at the optimum both measures are equal."""
     slopes = {50.0: 1.0, 100.0: -2.0}
     solve_with(lambda drop, k1, case: 3 + slopes[case.normal_load] * np.log10(drop / 1e-5))
-    result = best_profile(CASE, crown, bounds=BOUNDS, loads=list(slopes))
+    cases = [replace(CASE, max_pressure=None, load=load) for load in slopes]
+    result = best_profile(cases, crown, bounds=BOUNDS)
     assert float(np.log10(result.optimum[0] / 1e-5)) == pytest.approx(0.0, abs=0.02)
     assert result.case_load.values.tolist() == [50.0, 100.0]
     np.testing.assert_allclose(result.case_measure.max("case"), result.design_measure)
@@ -119,18 +122,19 @@ def test_optimum_on_a_bound_warns(solve_with) -> None:
     assert result.at_bound.values.tolist() == [True]
 
 
-def test_tilts_and_errors_of_functions(solve_with) -> None:
+def test_cases_and_errors_of_functions(solve_with) -> None:
     solve_with(lambda drop, k1, case: 1.0 + abs(case.tilt))
+    pressures = (1e9, 2e9)
+    cases = [replace(CASE, max_pressure=pressure, tilt=tilt) for pressure in pressures for tilt in (0.0, 1e-3)]
     result_with_error = best_profile(
-        CASE,
+        [*cases, replace(CASE, load_position=0.4e-3)],
         crown,
         bounds=BOUNDS,
         measure=lambda result: (2 * result.peak_pressure, 0.5),
-        max_pressures=[1e9, 2e9],
-        tilts=[0.0, 1e-3],
         evaluations=8,
     )
-    assert result_with_error.sizes["case"] == 4
+    assert result_with_error.case_tilt.values.tolist() == [0.0, 1e-3, 0.0, 1e-3, 0.0]
+    np.testing.assert_array_equal(result_with_error.case_load_position, [np.nan] * 4 + [0.4e-3])
     assert float(result_with_error.measure) == pytest.approx(2.002)
     assert float(result_with_error.measure_error) == 0.5
     # The measure is constant: the flat range equals the bounds, without a warning.
@@ -163,8 +167,9 @@ def test_tilts_and_errors_of_functions(solve_with) -> None:
         ({"bounds": {"edge_drop": (1e-4, 1e-6)}}, r"bounds\['edge_drop'\]"),
         ({"bounds": {"edge_dorp": (1e-6, 1e-4)}}, r"bounds = \['edge_dorp'\]: must be of the keywords.*edge_dorp"),
         ({"bounds": {"edge_drop": 1e-6}}, r"bounds\['edge_drop'\]"),
-        ({"loads": [1.0], "max_pressures": [1e9]}, "loads, max_pressures"),
-        ({"tilts": [1.0]}, "tilt = 1.0: must be a small angle"),
+        ({"cases": "a case"}, "cases = 'a': must be a Case, or a sequence of Cases"),
+        ({"cases": []}, r"cases = \[\]: must be a Case, or a sequence of Cases"),
+        ({"cases": replace(CASE, max_pressure=None, approach=1e-6)}, "load"),
         ({"accuracy": 0.5}, "accuracy = 0.5"),
         ({"evaluations": 1}, "evaluations = 1"),
         ({"measure": lambda result: np.inf}, "finite somewhere"),
@@ -173,7 +178,7 @@ def test_tilts_and_errors_of_functions(solve_with) -> None:
 def test_error_names_the_bad_argument(solve_with, arguments, message: str) -> None:
     solve_with(lambda drop, k1, case: 1.0)
     with pytest.raises(InvalidInputError, match=message):
-        best_profile(**({"case": CASE, "profile": crown, "bounds": BOUNDS} | arguments))
+        best_profile(**({"cases": CASE, "profile": crown, "bounds": BOUNDS} | arguments))
 
 
 def test_bounds_without_valid_profile_are_rejected(solve_with) -> None:

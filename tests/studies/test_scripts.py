@@ -119,7 +119,7 @@ def test_regime_map_checks_accuracy():
 
 def test_best_profile_needs_less_crown_between_free_ends():
     module = script("best_profile")
-    task = module.Task(length=0.8e-3, pressures=(1.5e9,), tilts=(1e-4,), accuracy=0.1)
+    task = module.Task(length=0.8e-3, pressures=(1.5e9,), offsets=(0.04e-3,), accuracy=0.1)
     designs = module.designs(task)
     crown_factors = designs["delta"].sel(design=["half-space", "free ends"]).values
     assert task.bounds[0] < crown_factors[1] < crown_factors[0] < task.bounds[1]
@@ -224,9 +224,9 @@ def test_quarter_space_ignores_maximum_at_border(near_an_edge):
 
 def test_worn_profile_is_flat_at_design_load():
     module = script("worn_profile")
-    task = module.Task(length=0.6e-3, mean_depths=(1e-6, 1e-5), pressures=(1.5e9, 2e9), tilts=(0.0,))
+    task = module.Task(length=0.6e-3, mean_depths=(1e-6, 1e-5), pressures=(1.5e9, 2e9), offsets=(0.0,))
     wear_result = module.wear_roller(task)
-    result = module.press_profiles(task, wear_result).sel(tilt=0.0)
+    result = module.press_profiles(task, wear_result).sel(offset=0.0)
     off_the_ends = result["relative_load"].where(result["relative_load"].max(["profile", "max_pressure"]) > 0)
     worn_in = off_the_ends.sel(profile="worn by 10 µm")
     assert float(abs(worn_in.sel(max_pressure=1.5e9) - 1).max()) < 0.02
@@ -234,8 +234,8 @@ def test_worn_profile_is_flat_at_design_load():
     maximum = result["largest_pressure"].sel(max_pressure=1.5e9)
     assert float(maximum.sel(profile="best crown")) < float(maximum.sel(profile="worn by 10 µm"))
     assert float(maximum.sel(profile="worn by 10 µm")) < float(maximum.sel(profile="sharp"))
-    assert len(module.draw(task, wear_result, result.expand_dims(tilt=[0.0])).axes) == 3
-    assert "| best crown |" in module.table(result.expand_dims(tilt=[0.0]))
+    assert len(module.draw(task, wear_result, result.expand_dims(offset=[0.0])).axes) == 3
+    assert "| best crown |" in module.table(result.expand_dims(offset=[0.0]))
 
 
 def test_rolling_script_draws_four_studies(tmp_path):
