@@ -19,45 +19,24 @@ LOGGER = logging.getLogger(__name__)
 
 @dataclass(frozen=True, kw_only=True)
 class FilmSettings:
-    """Settings of the iteration.
+    """Settings of the iteration."""
 
-    Attributes
-    ----------
-    tolerance : float
-        Tolerance of a cell's net outflow over the flow ``um h_c``, and of the load's relative error. Accuracy.
-    level_tolerance : float
-        Tolerance on the coarser levels, which give first guesses and error estimates. Speed.
-    steps : tuple of float
-        Pseudo-time steps, in a / um, before the steady state. Speed.
-    newton_steps : int
-        Bound on the Newton steps of one pseudo-time step; the steady state may take three times as many. Speed.
-    linear_tolerance : float
-        Tolerance of the linear systems. Speed.
-    linear_steps : int
-        Bound on the steps of one linear system. Speed.
-    elimination_ratio : float
-        Residual over the former one below which the preconditioner of the former step serves again. Speed.
-    max_closing : float
-        Largest relative decrease of the film of a cell in one step. Speed.
-    max_pressure_change : float
-        Largest change of the pressure in one step, over p0. Speed.
-    closed_film_ratio, nearly_closed_ratio : float
-        Film over the central film below which an iteration ends, and below which a failure is a closed film.
-    speed_ratio, speed_steps : float, int
-        Ratio and number of the higher speeds solved first if the iteration fails from the dry contact. Speed.
-    """
-
-    tolerance: float = 1e-7
-    level_tolerance: float = 1e-3
+    tolerance: float = 1e-7  # of a cell's net outflow over the flow ``um h_c``, and of the load's error. Accuracy
+    level_tolerance: float = 1e-3  # on the coarser levels, which give first guesses and error estimates. Speed
+    # Pseudo-time steps, in a / um, before the steady state. Speed
     steps: tuple[float, ...] = (0.3, 0.9, 2.7, 8.1, 24.0, 73.0)
+    # Bound on the Newton steps of one pseudo-time step; the steady state may take three times as many. Speed
     newton_steps: int = 12
-    linear_tolerance: float = 1e-2
-    linear_steps: int = 60
+    linear_tolerance: float = 1e-2  # of the linear systems. Speed
+    linear_steps: int = 60  # bound on the steps of one linear system. Speed
+    # Residual over the former one below which the preconditioner of the former step serves again. Speed
     elimination_ratio: float = 0.1
-    max_closing: float = 0.6
-    max_pressure_change: float = 0.3
+    max_closing: float = 0.6  # largest relative decrease of the film of a cell in one step. Speed
+    max_pressure_change: float = 0.3  # largest change of the pressure in one step, over p0. Speed
+    # Film over the central film below which an iteration ends, and below which a failure is a closed film
     closed_film_ratio: float = 1e-6
     nearly_closed_ratio: float = 1e-3
+    # Ratio and number of the higher speeds solved first if the iteration fails from the dry contact. Speed
     speed_ratio: float = 4.0
     speed_steps: int = 4
 
