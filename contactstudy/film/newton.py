@@ -19,24 +19,45 @@ LOGGER = logging.getLogger(__name__)
 
 @dataclass(frozen=True, kw_only=True)
 class FilmSettings:
-    """Settings of the iteration."""
+    """Settings of the iteration.
 
-    tolerance: float = 1e-7  # of a cell's net outflow over the flow ``um h_c``, and of the load's error. Accuracy
-    level_tolerance: float = 1e-3  # on the coarser levels, which give first guesses and error estimates. Speed
-    # Pseudo-time steps, in a / um, before the steady state. Speed
+    Attributes
+    ----------
+    tolerance : float
+        Tolerance of a cell's net outflow over the flow ``um h_c``, and of the load's relative error. Accuracy.
+    level_tolerance : float
+        Tolerance on the coarser levels, which give first guesses and error estimates. Speed.
+    steps : tuple of float
+        Pseudo-time steps, in a / um, before the steady state. Speed.
+    newton_steps : int
+        Bound on the Newton steps of one pseudo-time step; the steady state may take three times as many. Speed.
+    linear_tolerance : float
+        Tolerance of the linear systems. Speed.
+    linear_steps : int
+        Bound on the steps of one linear system. Speed.
+    elimination_ratio : float
+        Residual over the former one below which the preconditioner of the former step serves again. Speed.
+    max_closing : float
+        Largest relative decrease of the film of a cell in one step. Speed.
+    max_pressure_change : float
+        Largest change of the pressure in one step, over p0. Speed.
+    closed_film_ratio, nearly_closed_ratio : float
+        Film over the central film below which an iteration ends, and below which a failure is a closed film.
+    speed_ratio, speed_steps : float, int
+        Ratio and number of the higher speeds solved first if the iteration fails from the dry contact. Speed.
+    """
+
+    tolerance: float = 1e-7
+    level_tolerance: float = 1e-3
     steps: tuple[float, ...] = (0.3, 0.9, 2.7, 8.1, 24.0, 73.0)
-    # Bound on the Newton steps of one pseudo-time step; the steady state may take three times as many. Speed
     newton_steps: int = 12
-    linear_tolerance: float = 1e-2  # of the linear systems. Speed
-    linear_steps: int = 60  # bound on the steps of one linear system. Speed
-    # Residual over the former one below which the preconditioner of the former step serves again. Speed
+    linear_tolerance: float = 1e-2
+    linear_steps: int = 60
     elimination_ratio: float = 0.1
-    max_closing: float = 0.6  # largest relative decrease of the film of a cell in one step. Speed
-    max_pressure_change: float = 0.3  # largest change of the pressure in one step, over p0. Speed
-    # Film over the central film below which an iteration ends, and below which a failure is a closed film
+    max_closing: float = 0.6
+    max_pressure_change: float = 0.3
     closed_film_ratio: float = 1e-6
     nearly_closed_ratio: float = 1e-3
-    # Ratio and number of the higher speeds solved first if the iteration fails from the dry contact. Speed
     speed_ratio: float = 4.0
     speed_steps: int = 4
 
@@ -45,10 +66,10 @@ SETTINGS = FilmSettings()  # Default settings
 
 
 class StepFailedError(ContactStudyError):
-    """A pseudo-time step did not converge; `closed_cell` is the cell (x, y) where the film closes, or None."""
+    """A pseudo-time step did not converge; the film closes at `position` (x, y), in half-widths, or is open (None)."""
 
-    def __init__(self, message: str, closed_cell: tuple[int, int] | None = None) -> None:
-        self.closed_cell = closed_cell
+    def __init__(self, message: str, position: tuple[float, float] | None = None) -> None:
+        self.position = position
         super().__init__(message)
 
 
@@ -96,7 +117,7 @@ def solve_from_dry(problem: FilmProblem, dry: FilmState, settings: FilmSettings)
             solution = solve_newton(trial, dry, settings, steady=False)
             break
         except StepFailedError as error:
-            if len(factors) > settings.speed_steps or error.closed_cell is not None:
+            if len(factors) > settings.speed_steps or error.position is not None:
                 raise
             factors.append(settings.speed_ratio * factors[-1])
     LOGGER.info("speeds over the prescribed one: %s", factors[::-1])
@@ -185,11 +206,11 @@ class _Iteration:
                 return self.certify(state, self.linearise(state, step, mass))
             if min_film_ratio(state) < settings.closed_film_ratio:
                 break
-        closed_cell = None
+        position = None
         if min_film_ratio(state) < settings.nearly_closed_ratio:
             row, cell = np.unravel_index(int(state.distance.argmin()), state.distance.shape)
-            closed_cell = int(row), int(cell)
-        raise StepFailedError(f"no convergence within {max_steps} Newton steps", closed_cell)
+            position = float(self.problem.cells.x[row]), float(self.problem.cells.y[cell])
+        raise StepFailedError(f"no convergence within {max_steps} Newton steps", position)
 
     def certify(self, state: FilmState, linearised: _LinearisedEquations) -> FilmSolution:
         """Return the solution: a state and its certificate."""

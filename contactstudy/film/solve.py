@@ -27,7 +27,6 @@ from contactstudy.film.levels import (
     FilmResolution,
     Level,
     continue_solution,
-    create_cells,
     film_on_level,
 )
 from contactstudy.film.newton import SETTINGS, FilmSettings, StepFailedError
@@ -117,8 +116,11 @@ def solve_film(
     start_time = time.perf_counter()
     if start is not None:
         require(start, "film_thickness", "pressure", "moes_load", argument="start")
-    with one_blas_thread():
-        refined = _refine(film, limit, settings, start)
+    try:
+        with one_blas_thread():
+            refined = _refine(film, limit, settings, start)
+    except StepFailedError as error:
+        raise _create_film_error(error, film.half_width) from None
     result = _label_film(film, refined)
     seconds = time.perf_counter() - start_time
     if refined.error > limit:
@@ -211,14 +213,12 @@ def _refine(film: FilmCase, accuracy: float, settings: FilmSettings, start: xr.D
     errors = np.full(len(FILM_NAMES), np.inf)
     while True:
         try:
-            solutions.append(
-                film_on_level(film, level, closures, coarse_settings, solutions[-1] if solutions else start)
-            )
-        except StepFailedError as error:
+            solutions.append(film_on_level(film, level, closures, coarse_settings, [start, *solutions][-1]))
+        except StepFailedError:
             if not solutions and start is not None:
                 return _refine(film, accuracy, settings)
             if np.isinf(errors).any():
-                raise _create_film_error(film, error, level, closures) from None
+                raise
             break
         films.append(compute_films(film, solutions[-1]))
         if direction:
@@ -235,10 +235,7 @@ def _refine(film: FilmCase, accuracy: float, settings: FilmSettings, start: xr.D
             x = solutions[-1].problem.cells.x
             minima = (float(x[np.abs(x - position).argmin()]) for position in (films[-1].first_x, films[-1].last_x))
             closures = (*film.contact_ends, *minima)
-    try:
-        solutions.append(continue_solution(solutions[-1], settings))
-    except StepFailedError as error:
-        raise _create_film_error(film, error, level, closures) from None
+    solutions.append(continue_solution(solutions[-1], settings))
     return _RefinedFilm(
         level_film=solutions[-1],
         films=compute_films(film, solutions[-1]),
@@ -255,12 +252,11 @@ def _estimate_errors(direction: str, changes: list[FloatArray]) -> FloatArray:
     return np.asarray(ERROR_FACTORS[direction] * np.maximum(changes[-1], CHANGE_RATIOS[direction] * changes[-2]))
 
 
-def _create_film_error(film: FilmCase, error: StepFailedError, level: Level, closures: tuple[float, ...]) -> FilmError:
+def _create_film_error(error: StepFailedError, half_width: float) -> FilmError:
     """Return the error of a failed iteration, with the position where the film closes."""
-    if error.closed_cell is None:
+    if error.position is None:
         return FilmError(f"the film's iteration does not converge: {error}; another speed or load may help")
-    cells = create_cells(film, level, closures)[0]
-    x, y = (film.half_width * axis[cell] for axis, cell in zip((cells.x, cells.y), error.closed_cell, strict=True))
+    x, y = (half_width * position for position in error.position)
     return FilmError(
         f"the film of smooth surfaces closes at x = {x:.4g} m, y = {y:.4g} m: give asperities=Asperities(rms=...), "
         "a profile with a larger drop at the ends, or a higher speed"
