@@ -12,7 +12,7 @@ from contactstudy.analysis.axes import cell_widths, dimension_along, single_case
 from contactstudy.analysis.provenance import solved_case
 from contactstudy.analysis.slices import SIDES, Columns, power_means, pressure_errors
 from contactstudy.arrays.peaks import section_maxima
-from contactstudy.arrays.variables import ERROR_KIND, NOT_ESTIMATED, describe, require, require_in_si, without_error
+from contactstudy.arrays.variables import ERROR_KIND, NOT_ESTIMATED, describe, require, require_in_si
 from contactstudy.bodies import hertz
 from contactstudy.case.case import Case, small_tilt
 from contactstudy.checks import FloatArray
@@ -112,21 +112,18 @@ def slice_model(case: Case, *, slices: int = 30, tilt: float | None = None, edge
     radius = local_radius(roller.profile, x_from_middle, roller.length, roller.radius)
     line_load = load_per_length * edge_factor if edge_riser else load_per_length
     pressure = np.sqrt(line_load * case.modulus / (np.pi * radius))
-    fields = {
-        "load_per_length": load_per_length,
-        "pressure": pressure,
-        "half_width": 2 * pressure * radius / case.modulus,
-        "deflection": deflection,
-        "edge_factor": edge_factor,
-    }
-    variables = {name: ("x", values) for name, values in fields.items()} | {"normal_load": load, "approach": approach}
-    result = xr.Dataset(variables, coords={"x": x}, attrs={"slices": slices, "tilt": tilt})
-    for name in ("load_per_length", "half_width", "deflection", "edge_factor", "approach"):
-        result[name].attrs["comment"] = MODEL_COMMENT
     riser_comment = ", with stress riser" if edge_riser else ""
-    result["pressure"].attrs["comment"] = f"peak of each slice{riser_comment}; {MODEL_COMMENT}"
-    result["approach"].attrs["reference"] = "undeformed bodies, at mid-length"
-    result = without_error(result, *fields, "approach")
+    attributes = {"comment": MODEL_COMMENT, ERROR_KIND: NOT_ESTIMATED}
+    variables: dict[str, tuple[object, ...]] = {
+        "load_per_length": ("x", load_per_length, attributes),
+        "pressure": ("x", pressure, attributes | {"comment": f"peak of each slice{riser_comment}; {MODEL_COMMENT}"}),
+        "half_width": ("x", 2 * pressure * radius / case.modulus, attributes),
+        "deflection": ("x", deflection, attributes),
+        "edge_factor": ("x", edge_factor, attributes),
+        "normal_load": ((), load),
+        "approach": ((), approach, attributes | {"reference": "undeformed bodies, at mid-length"}),
+    }
+    result = xr.Dataset(variables, coords={"x": x}, attrs={"slices": slices, "tilt": tilt})
     return describe(result, "slice model of ISO/TS 16281")
 
 
@@ -195,26 +192,21 @@ def lamina_loads(solution: xr.Dataset, case: Case, laminae: int) -> tuple[xr.Dat
     with np.errstate(divide="ignore", invalid="ignore"):
         riser = np.where(sliced_load > 0, load / sliced_load, np.nan)
         riser_error = np.where(sliced_load > 0, error / sliced_load, np.nan)
-    values = {
-        "position": 0.5 * (edges[1:] + edges[:-1]),
-        "width": np.full(count, (stop - start) / count),
-        "load_per_length": sliced_load,
-        "hertz_load_per_length": load,
-        "hertz_load_per_length_error": error,
-        "stress_riser": riser,
-        "stress_riser_error": riser_error,
-        "edge_factor": slice_result["edge_factor"].values,
-    }
-    labelled = xr.Dataset(
-        {name: ("slice", array) for name, array in values.items()}, coords={"slice": np.arange(1, count + 1)}
-    )
-    for name in ("load_per_length", "edge_factor"):
-        labelled[name].attrs["comment"] = slice_result[name].attrs["comment"]
-    attributes = {"comment": "from the stated errors of the pressure and the distance of its columns"}
+    model_attributes = {"comment": MODEL_COMMENT}
+    error_attributes = {"comment": "from the stated errors of the pressure and the distance of its columns"}
     if np.isnan(error).any():
-        attributes = {ERROR_KIND: NOT_ESTIMATED}
-    for name in ("hertz_load_per_length", "stress_riser"):
-        labelled[f"{name}_error"].attrs |= attributes
+        error_attributes = {ERROR_KIND: NOT_ESTIMATED}
+    values: dict[str, tuple[object, ...]] = {
+        "position": ("slice", 0.5 * (edges[1:] + edges[:-1])),
+        "width": ("slice", np.full(count, (stop - start) / count)),
+        "load_per_length": ("slice", sliced_load, model_attributes),
+        "hertz_load_per_length": ("slice", load),
+        "hertz_load_per_length_error": ("slice", error, error_attributes),
+        "stress_riser": ("slice", riser),
+        "stress_riser_error": ("slice", riser_error, error_attributes),
+        "edge_factor": ("slice", slice_result["edge_factor"].values, model_attributes),
+    }
+    labelled = xr.Dataset(values, coords={"slice": np.arange(1, count + 1)})
     return describe(labelled, "stress riser of every lamina from solved pressures"), common_error
 
 

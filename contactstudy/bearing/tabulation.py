@@ -219,12 +219,11 @@ def label_law(solver: ContactSolver, nodes: Nodes, errors: FloatArray) -> xr.Dat
         "relative_moment_error": errors[1],
     }
     scalars = {"contact_length": solver.case.contact_length, "accuracy": solver.accuracy}
-    table = xr.Dataset(
-        {name: (dims, values) for name, values in arrays.items()} | scalars,
-        coords={"approach": nodes.approaches, "tilt": nodes.tilts},
-    )
-    reference = describe_reference_lines(solver.case.body, solver.case.counterbody)
-    table["approach"].attrs |= {"reference": reference, "comment": "at the roller's mid-length"}
-    table["tilt"].attrs |= {"reference": reference, "centre": "the roller's mid-length"}
-    table["moment"].attrs["comment"] = "about the roller's mid-length"
+    reference, place = describe_reference_lines(solver.case.body, solver.case.counterbody), "the roller's mid-length"
+    coordinates = {
+        "approach": ("approach", nodes.approaches, {"reference": reference, "comment": f"at {place}"}),
+        "tilt": ("tilt", nodes.tilts, {"reference": reference, "centre": place}),
+    }
+    table = xr.Dataset({name: (dims, values) for name, values in arrays.items()} | scalars, coordinates)
+    table["moment"].attrs["comment"] = f"about {place}"
     return describe(table, "contact law of a roller on a raceway")

@@ -106,9 +106,10 @@ DEVIATOR_AXES = block_diag(helmert(3), np.sqrt(2.0) * np.eye(3))
 TENSOR = np.array([[0, 3, 4], [3, 1, 5], [4, 5, 2]])  # Indices of the six components in the tensor
 
 
-def _to_dataset(criterion: str, values: dict[str, xr.DataArray]) -> xr.Dataset:
-    """Label the results of a criterion with names and units."""
-    return xr.Dataset({name: label_points(name, array, VARIABLES[criterion]) for name, array in values.items()})
+def _label_criterion(name: str, damage: xr.DataArray, limit: float, **terms: xr.DataArray) -> xr.Dataset:
+    """Label the sum of a criterion, its ratio to the limit, and its terms with names and units."""
+    values = {name: damage, "utilisation": damage / limit} | {f"{name}_{term}": array for term, array in terms.items()}
+    return xr.Dataset({key: label_points(key, array, VARIABLES[name]) for key, array in values.items()})
 
 
 def dang_van(stress: xr.Dataset, limits: FatigueLimits) -> xr.Dataset:
@@ -166,14 +167,8 @@ def dang_van(stress: xr.Dataset, limits: FatigueLimits) -> xr.Dataset:
     instant = instant.compute()
     loaded = instant < tensor.sizes[rolling_dim]
     index = instant.where(loaded, 0).astype(np.int64).reset_coords(drop=True)
-    values = {
-        "dang_van": damage,
-        "utilisation": damage / limits.torsion,
-        "dang_van_shear": shear,
-        "dang_van_hydrostatic": hydrostatic,
-        "dang_van_y": positions(tensor, "y").isel({rolling_dim: index}).where(loaded),
-    }
-    return _to_dataset("dang_van", values)
+    y = positions(tensor, "y").isel({rolling_dim: index}).where(loaded)
+    return _label_criterion("dang_van", damage, limits.torsion, shear=shear, hydrostatic=hydrostatic, y=y)
 
 
 def crossland(stress: xr.Dataset, limits: FatigueLimits) -> xr.Dataset:
@@ -220,13 +215,7 @@ def crossland(stress: xr.Dataset, limits: FatigueLimits) -> xr.Dataset:
 
     shear, hydrostatic = map_histories(criterion, stress, 2)
     damage = shear + slope * hydrostatic
-    values = {
-        "crossland": damage,
-        "utilisation": damage / limits.torsion,
-        "crossland_shear": shear,
-        "crossland_hydrostatic": hydrostatic,
-    }
-    return _to_dataset("crossland", values)
+    return _label_criterion("crossland", damage, limits.torsion, shear=shear, hydrostatic=hydrostatic)
 
 
 # Number of planes of the first search, about 10 degrees apart on a hemisphere, and of shear directions per plane
@@ -257,14 +246,13 @@ def _create_frames() -> Array:
 def _resolution_vectors(frames: Array) -> tuple[Array, Array]:
     """Vectors (..., 6) whose products with the six components are ``n.sigma.m`` (shear) and ``n.sigma.n``."""
     normal, direction = frames[..., 0, :], frames[..., 1, :]
-
-    def create_resolver(normal_a: Array, normal_b: Array) -> Array:
-        (ax, ay, az), (bx, by, bz) = np.moveaxis(normal_a, -1, 0), np.moveaxis(normal_b, -1, 0)
-        shear_terms = (ax * by + ay * bx, ax * bz + az * bx, ay * bz + az * by)
-        return np.stack([ax * bx, ay * by, az * bz, *shear_terms], axis=-1)
-
-    # The vector contains the factor 2 of the shear components in n.sigma.n.
-    return create_resolver(normal, direction), create_resolver(normal, normal)
+    # The components of a tensor product count once on the diagonal, and twice beside it.
+    products = (normal[..., None] * vector[..., None, :] for vector in (direction, normal))
+    shear, squared = (
+        (product + product.swapaxes(-1, -2))[..., [0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]] for product in products
+    )
+    counts = np.array([0.5, 0.5, 0.5, 1.0, 1.0, 1.0])
+    return counts * shear, counts * squared
 
 
 def _compute_damage(history: Array, frames: Array, slope: float) -> tuple[Array, Array, Array]:
@@ -361,11 +349,6 @@ def findley(stress: xr.Dataset, limits: FatigueLimits) -> xr.Dataset:
     damage, shear, normal, *normals = map_histories(
         lambda history: _worst_planes(history, limits.findley_slope), stress, 6
     )
-    values = {
-        "findley": damage,
-        "utilisation": damage / limits.findley_limit,
-        "findley_shear": shear,
-        "findley_normal": normal,
-        "findley_plane": xr.concat(normals, "axis", coords="minimal", compat="override").transpose(..., "axis"),
-    }
-    return describe(_to_dataset("findley", values).assign_coords(axis=list(AXES)))
+    plane = xr.concat(normals, "axis", coords="minimal", compat="override").transpose(..., "axis")
+    result = _label_criterion("findley", damage, limits.findley_limit, shear=shear, normal=normal, plane=plane)
+    return describe(result.assign_coords(axis=list(AXES)))

@@ -135,9 +135,9 @@ def _find_maximum(stress: Array, depth: Array) -> tuple[Array, Array]:
     """Largest stress over the depth and the depth of this maximum, by a parabola through the three nearest points."""
     finite_stress = np.where(np.isnan(stress), -np.inf, stress)
     index = finite_stress.argmax(axis=-1)[..., None]
-    columns = [np.clip(index + step, 0, stress.shape[-1] - 1) for step in (-1, 0, 1)]
-    z1, z2, z3 = (_take(np.broadcast_to(depth, stress.shape), column) for column in columns)
-    s1, s2, s3 = (_take(finite_stress, column) for column in columns)
+    points = np.stack([np.broadcast_to(depth, stress.shape), finite_stress])
+    columns = (np.clip(index + step, 0, stress.shape[-1] - 1) for step in (-1, 0, 1))
+    (z1, s1), (z2, s2), (z3, s3) = (_take(points, column[None]) for column in columns)
     with np.errstate(divide="ignore", invalid="ignore"):
         slope_before, slope_after = (s2 - s1) / (z2 - z1), (s3 - s2) / (z3 - z2)
         curvature = (slope_after - slope_before) / (z3 - z1)
@@ -309,9 +309,8 @@ def _shear_risk(peak: xr.DataArray, depth: xr.DataArray, exponents: LifeExponent
 def _cut_fraction(excess: Array, depth: Array, exponents: LifeExponents) -> Array:
     """Fraction of a section's risk above the first depth (uniform excess) and below the last (exponential excess)."""
     last = np.maximum(np.isfinite(depth).sum(axis=-1, keepdims=True) - 1, 1)
-    borders = (np.zeros_like(last), last - 1, last)
-    first_excess, previous_excess, last_excess = (_take(excess, index) for index in borders)
-    first_depth, previous_depth, last_depth = (_take(depth, index) for index in borders)
+    borders = (_take(np.stack([excess, depth]), index[None]) for index in (np.zeros_like(last), last - 1, last))
+    (first_excess, first_depth), (previous_excess, previous_depth), (last_excess, last_depth) = borders
     with np.errstate(divide="ignore", invalid="ignore"):
         decay = np.log(np.maximum(previous_excess / last_excess, 1.0))
         integral_below = np.where(last_excess > 0, last_excess * (last_depth - previous_depth) / decay, 0.0)

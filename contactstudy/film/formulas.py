@@ -11,11 +11,6 @@ def moes_line(load: FloatArray | float, lubricant: FloatArray | float) -> FloatA
     """Central film of a line contact, ``H = h / R (2 U)**-1/2``, by Moes' formula, eq. (410).
 
     Moes' numbers are ``M = w / (E' R) (2 U)**-1/2`` and ``L = alpha E' (2 U)**1/4``, with ``E' = 2 E*``.
-
-    Examples
-    --------
-    >>> round(float(moes_line(20.0, 10.0)), 3)
-    5.101
     """
     h_ri, h_ei = 3.0 / np.asarray(load), 2.621 * np.asarray(load) ** -0.2
     h_rp = 1.287 * np.asarray(lubricant) ** (2 / 3)
@@ -26,19 +21,9 @@ def moes_line(load: FloatArray | float, lubricant: FloatArray | float) -> FloatA
 
 
 def nijenbanning(load: float, lubricant: float, ratio: float = 1.0) -> float:
-    """Central film of an elliptic contact by Nijenbanning, Venner and Moes (1994), eq. (411).
+    """Central film of an elliptic contact by Nijenbanning, Venner and Moes (1994), eq. (411); `ratio` at most 1.
 
-    Parameters
-    ----------
-    load, lubricant : float
-        ``M = F / (E' Rx**2) (2 U)**-3/4`` and ``L``, with Rx the radius along rolling.
-    ratio : float
-        ``Rx / Ry``, at most 1.
-
-    Examples
-    --------
-    >>> round(nijenbanning(20.0, 10.0), 2)
-    4.71
+    Of ``M = F / (E' Rx**2) (2 U)**-3/4``, ``L``, and ``Rx / Ry`` with the radius Rx along rolling.
     """
     h_ri = 145 * (1 + 0.796 * ratio ** (14 / 15)) ** (-15 / 7) * load**-2 / ratio
     h_ei = 3.18 * (1 + 0.006 * np.log(ratio) + 0.63 * ratio ** (4 / 7)) ** (-14 / 25) * ratio ** (-1 / 15)
@@ -55,11 +40,6 @@ def thermal_reduction(pressure_ratio: float, loading: float, slide_roll_ratio: f
     """Film with the heat of shear in the inlet over the isothermal film (Gupta, Cheng, Zhu 1992), eq. (414).
 
     From the largest pressure over E' and the `loading` ``eta0 beta um**2 / k``.
-
-    Examples
-    --------
-    >>> thermal_reduction(5e-3, 0.0, 0.1), round(thermal_reduction(5e-3, 1.0, 0.1), 3)
-    (1.0, 0.728)
     """
     inlet_heating = 1 + 0.213 * (1 + 2.23 * abs(slide_roll_ratio) ** 0.83) * loading**0.64
     return float((1 - 13.2 * pressure_ratio * loading**0.42) / inlet_heating)

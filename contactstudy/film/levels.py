@@ -28,7 +28,6 @@ from contactstudy.film.newton import FilmSettings, solve_from_dry, solve_newton
 from contactstudy.film.problem import FilmProblem, FilmSolution, FilmState, initial_state
 from contactstudy.film.reynolds import FilmCells, Fluid
 from contactstudy.kernels.load import Load
-from contactstudy.threads import one_blas_thread
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -120,10 +119,14 @@ class FilmCase:
         return self.case.hertz_max_pressure
 
     @cached_property
+    def dry_case(self) -> Case:
+        """Case of the dry contact."""
+        return replace(self.case, motion=Sliding(), friction=0.0, lubricant=None)
+
+    @cached_property
     def dry_contact(self) -> Contact:
         """Dry contact on columns refined for its pressure."""
-        case = replace(self.case, motion=Sliding(), friction=0.0, coupled=False, lubricant=None)
-        return refine_contact(case, self.resolution.dry_accuracy, 1e-6).contact
+        return refine_contact(self.dry_case, self.resolution.dry_accuracy, 1e-6).contact
 
     @cached_property
     def contact_ends(self) -> tuple[float, float]:
@@ -265,68 +268,55 @@ def film_on_level(
 ) -> FilmOnCells:
     """Solve for the film on the cells of a level, from the dry contact or from another film."""
     cells, merged, window = create_cells(film, level, closures)
-    with one_blas_thread():
-        return _solve_on_cells(film, cells, merged, window, settings, start=start)
-
-
-def continue_solution(level_film: FilmOnCells, settings: FilmSettings) -> FilmOnCells:
-    """Continue on the same cells, to the tolerance of the settings; raise StepFailedError if that fails."""
-    with one_blas_thread():
-        state = _transfer_state(level_film, level_film.problem)
-        return level_film._replace(solution=solve_newton(level_film.problem, state, settings, steady=True))
-
-
-def _solve_on_cells(
-    film: FilmCase,
-    cells: FilmCells,
-    merged: MergedCells,
-    window: tuple[float, float],
-    settings: FilmSettings,
-    start: FilmOnCells | xr.Dataset | None,
-) -> FilmOnCells:
-    a, p0 = film.half_width, film.pressure_scale
-    case = replace(film.case, motion=Sliding(), friction=0.0, coupled=False, lubricant=None)
-    grid = graded_grid(case, a * cells.x_edges, (a * window[0], a * window[1]), int(merged.edges[-1]))
+    a, p0, height_scale = film.half_width, film.pressure_scale, film.height_scale
+    grid = graded_grid(film.case, a * cells.x_edges, (a * window[0], a * window[1]), int(merged.edges[-1]))
     first_column = int(np.abs(grid.x_edges - a * cells.x_edges[0]).argmin())
     columns = slice(first_column, first_column + cells.shape[0])
-    shape = contact_shape(case, grid)
+    shape = contact_shape(film.dry_case, grid)
     operator = contact_operator(shape)
 
     def displace(load: FloatArray) -> FloatArray:
         body_load = np.zeros(grid.shape)
         body_load[columns] = p0 * load
         loads: Mapping[Load, FloatArray] = {Load.NORMAL: body_load}
-        return operator(loads)[columns] / film.height_scale
+        return operator(loads)[columns] / height_scale
 
     # The roller's motion has the same reference lines as in the dry contact.
     gap = shape.gap.values - film.dry_contact.motions.total.height(grid.x)
     unit_load = np.zeros((cells.shape[0], grid.cells_y))
     unit_load[:, 0] = 1.0
     lever = None
-    if case.load_position is not None:
-        lever = cells.x - case.load_position / a
+    if film.case.load_position is not None:
+        lever = cells.x - film.case.load_position / a
         lever = lever / np.abs(lever).max()
-    asperities = film.asperities
+    rough = film.asperities
     problem = FilmProblem(
         cells=cells,
         fluid=film.fluid,
-        gap=merged.to_centres(gap[columns]) / film.height_scale,
+        gap=merged.to_centres(gap[columns]) / height_scale,
         displace=lambda pressure: merged.to_centres(displace(merged.to_uniform_cells(pressure))),
         column_stiffness=merged.compute_stiffness(displace(unit_load)),
-        load=case.normal_load / (p0 * a**2),
+        load=film.case.normal_load / (p0 * a**2),
         lever=lever,
-        central_film=film.central_film / film.height_scale,
-        asperities=None if asperities is None else asperities.scaled_law(film.height_scale, p0, case.modulus),
-        mean_height=None if asperities is None else asperities.mean_height(film.height_scale),
+        central_film=film.central_film / height_scale,
+        asperities=None if rough is None else rough.scaled_law(height_scale, p0, film.case.modulus),
+        mean_height=None if rough is None else rough.mean_height(height_scale),
     )
-    if start is not None:
+    if start is None:
+        dry_contact = contact_of(shape, Settings(film.resolution.dry_tolerance, 500))
+        solution = solve_from_dry(problem, _dry_state(film, problem, dry_contact, columns, merged), settings)
+    else:
         state = (
-            _transfer_state(start, problem) if isinstance(start, FilmOnCells) else _convert_result(film, start, problem)
+            _convert_result(film, start, problem) if isinstance(start, xr.Dataset) else _transfer_state(start, problem)
         )
-        return FilmOnCells(problem, solve_newton(problem, state, settings, steady=True), grid, columns, merged)
-    dry_contact = contact_of(shape, Settings(film.resolution.dry_tolerance, 500))
-    solution = solve_from_dry(problem, _dry_state(film, problem, dry_contact, columns, merged), settings)
+        solution = solve_newton(problem, state, settings, steady=True)
     return FilmOnCells(problem, solution, grid, columns, merged)
+
+
+def continue_solution(level_film: FilmOnCells, settings: FilmSettings) -> FilmOnCells:
+    """Continue on the same cells, to the tolerance of the settings; raise StepFailedError if that fails."""
+    state = _transfer_state(level_film, level_film.problem)
+    return level_film._replace(solution=solve_newton(level_film.problem, state, settings, steady=True))
 
 
 def _dry_state(film: FilmCase, problem: FilmProblem, dry: Contact, columns: slice, merged: MergedCells) -> FilmState:
@@ -335,10 +325,8 @@ def _dry_state(film: FilmCase, problem: FilmProblem, dry: Contact, columns: slic
     distance = merged.to_centres(dry.gap[columns]) / film.height_scale + problem.central_film
     motion = np.zeros(len(problem.motions))
     motion[0] = problem.central_film - dry.approach / film.height_scale
-    if problem.lever is not None:
-        cells = problem.cells
-        assert film.case.load_position is not None
-        max_lever = np.abs(cells.x - film.case.load_position / film.half_width).max()
+    if film.case.load_position is not None:
+        max_lever = np.abs(problem.cells.x - film.case.load_position / film.half_width).max()
         motion[1] = -dry.tilt * max_lever * film.half_width / film.height_scale
     return initial_state(problem, pressure, motion, distance)
 
@@ -350,7 +338,7 @@ def _transfer_state(start: FilmOnCells, problem: FilmProblem) -> FilmState:
     pressure, distance = (
         _interpolate_film(values, start_cells.x, start_cells.y, cells) for values in (state.pressure, state.distance)
     )
-    return initial_state(problem, np.maximum(pressure, 0.0), state.motion.copy(), distance)
+    return initial_state(problem, np.maximum(pressure, 0.0), state.motion, distance)
 
 
 def _convert_result(film: FilmCase, result: xr.Dataset, problem: FilmProblem) -> FilmState:

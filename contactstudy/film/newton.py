@@ -12,7 +12,7 @@ from scipy import linalg, sparse
 from contactstudy.checks import BoolArray, FloatArray
 from contactstudy.errors import ContactStudyError
 from contactstudy.film.problem import FilmProblem, FilmSolution, FilmState
-from contactstudy.film.reynolds import Flow, Law
+from contactstudy.film.reynolds import Law
 
 LOGGER = logging.getLogger(__name__)
 
@@ -66,17 +66,17 @@ SETTINGS = FilmSettings()  # Default settings
 
 
 class StepFailedError(ContactStudyError):
-    """A pseudo-time step did not converge; `closed_cell` is the cell (x, y) where the film closes, or None."""
+    """A pseudo-time step did not converge; the film closes at `position` (x, y), in half-widths, or is open (None)."""
 
-    def __init__(self, message: str, closed_cell: tuple[int, int] | None = None) -> None:
-        self.closed_cell = closed_cell
+    def __init__(self, message: str, position: tuple[float, float] | None = None) -> None:
+        self.position = position
         super().__init__(message)
 
 
 class _LinearisedEquations(NamedTuple):
     """Equations linearised about a state."""
 
-    flow: Flow
+    outflow: FloatArray  # (cell): net outflow per width
     residual: FloatArray  # (cell + motion): residuals over the cells' film, and residuals of load and moment
     by_pressure: sparse.csr_array  # (cell, cell): derivatives of the cells' residuals at a fixed distance
     by_distance: sparse.csr_array  # (cell, cell): derivatives at a fixed pressure
@@ -117,7 +117,7 @@ def solve_from_dry(problem: FilmProblem, dry: FilmState, settings: FilmSettings)
             solution = solve_newton(trial, dry, settings, steady=False)
             break
         except StepFailedError as error:
-            if len(factors) > settings.speed_steps or error.closed_cell is not None:
+            if len(factors) > settings.speed_steps or error.position is not None:
                 raise
             factors.append(settings.speed_ratio * factors[-1])
     LOGGER.info("speeds over the prescribed one: %s", factors[::-1])
@@ -146,12 +146,11 @@ class _Iteration:
         """Return residual and derivatives at a state."""
         problem = self.problem
         cells, distance = problem.cells, state.distance
-        ones = np.ones(cells.shape)
         film = problem.compute_film(distance)
-        asperities = Law(0 * ones, 0 * ones) if problem.asperities is None else problem.asperities(distance)
+        no_pressure = Law(np.zeros(cells.shape), np.zeros(cells.shape))
+        asperities = no_pressure if problem.asperities is None else problem.asperities(distance)
         fluid_pressure = state.pressure - asperities.value
-        flow = cells.flow(problem.fluid, fluid_pressure, film)
-        outflow, by_pressure, by_distance = flow.outflow, flow.by_pressure, flow.by_film
+        outflow, by_pressure, by_distance = cells.flow(problem.fluid, fluid_pressure, film)
         if mass is not None:
             density = problem.fluid.density(fluid_pressure.ravel())
             lengths = np.tile(cells.lengths, cells.shape[0]) / step
@@ -171,7 +170,7 @@ class _Iteration:
         resultant_errors = problem.resultants @ state.pressure.ravel() - problem.prescribed
         residual = np.where(cavitated, fluid_pressure.ravel(), outflow / film.value.ravel())
         return _LinearisedEquations(
-            flow=flow._replace(outflow=outflow),
+            outflow=outflow,
             residual=np.concatenate([residual, resultant_errors / problem.load]),
             by_pressure=sparse.csr_array(by_pressure),
             by_distance=sparse.csr_array(by_distance),
@@ -207,39 +206,32 @@ class _Iteration:
                 return self.certify(state, self.linearise(state, step, mass))
             if min_film_ratio(state) < settings.closed_film_ratio:
                 break
-        closed_cell = None
+        position = None
         if min_film_ratio(state) < settings.nearly_closed_ratio:
             row, cell = np.unravel_index(int(state.distance.argmin()), state.distance.shape)
-            closed_cell = int(row), int(cell)
-        raise StepFailedError(f"no convergence within {max_steps} Newton steps", closed_cell)
+            position = float(self.problem.cells.x[row]), float(self.problem.cells.y[cell])
+        raise StepFailedError(f"no convergence within {max_steps} Newton steps", position)
 
     def certify(self, state: FilmState, linearised: _LinearisedEquations) -> FilmSolution:
         """Return the solution: a state and its certificate."""
-        problem, shape = self.problem, self.problem.cells.shape
-        full_cells = ~linearised.cavitated
-        outflow = linearised.flow.outflow
+        central_film, cavitated = self.problem.central_film, linearised.cavitated
         # A cavitated cell may lose mass; a full cell loses none.
-        residual = float(np.abs(outflow[full_cells]).max(initial=0.0)) / problem.central_film
-        inflow = float(np.maximum(-outflow[~full_cells], 0.0).max(initial=0.0)) / problem.central_film
-        cavity_pressure = float(np.abs(linearised.fluid_pressure.ravel()[~full_cells]).max(initial=0.0))
-        load_error = float(np.abs(linearised.residual[full_cells.size :]).max())
-        tolerance = self.settings.tolerance
+        residual = float(np.abs(linearised.outflow[~cavitated]).max(initial=0.0)) / central_film
+        inflow = float(np.maximum(-linearised.outflow[cavitated], 0.0).max(initial=0.0)) / central_film
+        cavity_pressure = float(np.abs(linearised.fluid_pressure.ravel()[cavitated]).max(initial=0.0))
+        load_error = float(np.abs(linearised.residual[cavitated.size :]).max())
+        mismatch = float(np.abs(state.mismatch).max()) / central_film
         return FilmSolution(
             state=state,
             fluid_pressure=np.maximum(linearised.fluid_pressure, 0.0),
             asperity_pressure=linearised.asperity_pressure,
             film=linearised.film,
-            flow=linearised.flow.face_flow,
-            outflow=outflow.reshape(shape),
-            cavitated=linearised.cavitated.reshape(shape),
             residual=residual,
             load_error=load_error,
             complementarity_error=max(inflow, cavity_pressure),
-            mismatch=float(np.abs(state.mismatch).max()) / problem.central_film,
             newton_steps=self.newton_steps,
             linear_steps=self.linear_steps,
-            converged=max(residual, inflow, cavity_pressure) <= tolerance
-            and max(load_error, float(np.abs(state.mismatch).max()) / problem.central_film) <= tolerance,
+            converged=max(residual, inflow, cavity_pressure, load_error, mismatch) <= self.settings.tolerance,
         )
 
     def apply_step(self, state: FilmState, change: FloatArray) -> tuple[FilmState, float, float]:

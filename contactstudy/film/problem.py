@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from contactstudy.checks import BoolArray, FloatArray
+from contactstudy.checks import FloatArray
 from contactstudy.film.reynolds import FilmCells, Fluid, Law
 
 INVERSE_STEPS = 8  # Steps from film to distance of rough surfaces; the next Newton step removes the remainder. Speed
@@ -86,13 +86,9 @@ class FilmSolution(NamedTuple):
     fluid_pressure: FloatArray  # (x, y)
     asperity_pressure: FloatArray  # (x, y)
     film: FloatArray  # (x, y): mean height
-    flow: FloatArray  # (x, y + 1): flow along y through the faces
-    outflow: FloatArray  # (x, y): net outflow of each cell per width
-    cavitated: BoolArray  # (x, y): cells with a broken film
     residual: float  # largest net outflow of a full cell over the central film
     load_error: float  # error of load and moment over the load
     complementarity_error: float  # largest net inflow of a cavitated cell over the central film
-    mismatch: float  # largest mismatch of the distance over the central film
     newton_steps: int
     linear_steps: int
     converged: bool  # whether every error is within the tolerance

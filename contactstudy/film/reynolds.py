@@ -14,6 +14,7 @@ import numpy as np
 from scipy import sparse
 from scipy.interpolate import PchipInterpolator
 
+from contactstudy.arrays.peaks import lagrange_weights
 from contactstudy.bodies.lubricant import Lubricant
 from contactstudy.checks import FloatArray
 
@@ -33,9 +34,7 @@ class Fluid:
     """Dimensionless laws of a lubricant."""
 
     density: Callable[[FloatArray], Law]  # over the ambient density, at a pressure
-    reduced_pressure: Callable[
-        [FloatArray], Law
-    ]  # integral of density over viscosity, both over ambient, up to a pressure
+    reduced_pressure: Callable[[FloatArray], Law]  # integral of density over viscosity, both over ambient, by pressure
     flow_number: float  # ``12 eta0 um R**2 / (a**3 p0)``
 
     @classmethod
@@ -59,12 +58,11 @@ class Fluid:
 
 
 class Flow(NamedTuple):
-    """Net outflow of each cell per width along x, and its derivatives."""
+    """Flow through faces, or net outflow of cells per width along x, and its derivatives."""
 
-    outflow: FloatArray  # (cell): net outflow
-    by_pressure: sparse.csr_array  # (cell, cell): derivatives at a fixed film
-    by_film: sparse.csr_array  # (cell, cell): derivatives at a fixed pressure
-    face_flow: FloatArray  # (x, y + 1): flow along y through the faces, per width
+    flow: FloatArray
+    by_pressure: sparse.csr_array  # (face or cell, cell): derivatives at a fixed film
+    by_film: sparse.csr_array  # derivatives at a fixed pressure
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -109,15 +107,17 @@ class FilmCells:
     def faces_y(self) -> Faces:
         """Faces between neighbours along y."""
         rows = sparse.eye_array(self.shape[0])
-        matrices = (*_neighbours(self.y.size), _gradient(self.y_edges, self.y, closed=False))
+        matrices = _difference_matrices(self.y_edges, self.y, closed=False)
         return Faces(*(sparse.csr_array(sparse.kron(rows, matrix)) for matrix in matrices))
 
     @cached_property
     def faces_x(self) -> Faces:
         """Faces between neighbours along x."""
         columns = sparse.eye_array(self.shape[1])
-        matrices = (*_neighbours(self.x.size), _gradient(self.x_edges, self.x, closed=not self.open_ends))
-        return Faces(*(sparse.csr_array(sparse.kron(matrix, columns)) for matrix in matrices))
+        *matrices, outflow = _difference_matrices(self.x_edges, self.x, closed=not self.open_ends)
+        per_width = sparse.diags_array(1 / self.widths) @ outflow
+        factors = [*((matrix, columns) for matrix in matrices), (per_width, sparse.diags_array(self.lengths))]
+        return Faces(*(sparse.csr_array(sparse.kron(*pair)) for pair in factors))
 
     @cached_property
     def parabolas(self) -> sparse.csr_array:
@@ -126,9 +126,7 @@ class FilmCells:
         matrix = np.zeros((cell_count + 1, cell_count))
         for face, position in enumerate(self.y_edges):
             stencil = np.arange(max(face - 2, 0), min(face + 1, cell_count)) if face else np.arange(min(2, cell_count))
-            for cell in stencil:
-                neighbours = self.y[stencil[stencil != cell]]
-                matrix[face, cell] = np.prod((position - neighbours) / (self.y[cell] - neighbours))
+            matrix[face, stencil] = lagrange_weights(self.y[stencil], np.array([position]))[0]
         return sparse.csr_array(sparse.kron(sparse.eye_array(self.shape[0]), matrix))
 
     def upwind(self, height: FloatArray) -> sparse.csr_array:
@@ -143,45 +141,24 @@ class FilmCells:
         unbounded = sparse.diags_array(np.where(below_bound | above_bound, 0.0, 1.0))
         return sparse.csr_array(unbounded @ self.parabolas + sparse.diags_array(bounds) @ upstream)
 
-    @cached_property
-    def outflow_y(self) -> sparse.csr_array:
-        """Matrix (cell, face): net outflow of the cells per flow through the faces along y."""
-        return sparse.csr_array(sparse.kron(sparse.eye_array(self.shape[0]), _outflow(self.shape[1])))
-
-    @cached_property
-    def outflow_x(self) -> sparse.csr_array:
-        """Matrix (cell, face): net outflow of the cells, per width, per flow through the faces along x."""
-        per_width = sparse.diags_array(1 / self.widths) @ _outflow(self.shape[0])
-        return sparse.csr_array(sparse.kron(per_width, sparse.diags_array(self.lengths)))
-
     def flow(self, fluid: Fluid, pressure: FloatArray, film: Law) -> Flow:
         """Net outflow of each cell, eq. (401), from fluid pressure and mean height (x, y) by the surfaces' distance."""
         height, pressure = film.value.ravel(), pressure.ravel()
         density, reduced = fluid.density(pressure), fluid.reduced_pressure(pressure)
         upwind = self.upwind(height)
-        pressure_flow = self.faces_y.conduct_flow(fluid.flow_number, reduced, height)
-        face_flow = upwind @ (density.value * height) - pressure_flow.flow
-        by_pressure = upwind @ sparse.diags_array(density.slope * height) - pressure_flow.by_pressure
-        by_film = upwind @ sparse.diags_array(density.value) - pressure_flow.by_film
-        outflow = self.outflow_y @ face_flow
-        by_pressure, by_film = self.outflow_y @ by_pressure, self.outflow_y @ by_film
-        if self.shape[0] > 1 or self.open_ends:
-            axial_flow = self.faces_x.conduct_flow(fluid.flow_number, reduced, height)
-            outflow = outflow - self.outflow_x @ axial_flow.flow
-            by_pressure = by_pressure - self.outflow_x @ axial_flow.by_pressure
-            by_film = by_film - self.outflow_x @ axial_flow.by_film
-        by_film = by_film @ sparse.diags_array(film.slope.ravel())
-        return Flow(
-            outflow, sparse.csr_array(by_pressure), sparse.csr_array(by_film), face_flow.reshape(self.shape[0], -1)
+        entrained = Flow(
+            upwind @ (density.value * height),
+            upwind @ sparse.diags_array(density.slope * height),
+            upwind @ sparse.diags_array(density.value),
         )
-
-
-class PressureFlow(NamedTuple):
-    """Flow through faces by the gradient of the pressure, with reversed sign, and its derivatives."""
-
-    flow: FloatArray
-    by_pressure: sparse.csr_array
-    by_film: sparse.csr_array
+        along_y, along_x = (
+            faces.conduct_flow(fluid.flow_number, reduced, height) for faces in (self.faces_y, self.faces_x)
+        )
+        outflow, by_pressure, by_film = (
+            self.faces_y.outflow @ (entrainment - flow_y) - self.faces_x.outflow @ flow_x
+            for entrainment, flow_y, flow_x in zip(entrained, along_y, along_x, strict=True)
+        )
+        return Flow(outflow, by_pressure, by_film @ sparse.diags_array(film.slope.ravel()))
 
 
 @dataclass(frozen=True, eq=False)
@@ -191,9 +168,10 @@ class Faces:
     upstream: sparse.csr_array  # selection of the cells upstream
     downstream: sparse.csr_array  # and downstream: the same cell at the outermost faces
     gradient: sparse.csr_array  # beyond the outermost faces the pressure is ambient
+    outflow: sparse.csr_array  # (cell, face): net outflow of the cells per flow through the faces
 
-    def conduct_flow(self, flow_number: float, reduced: Law, height: FloatArray) -> PressureFlow:
-        """Return the flow by the gradient of the reduced pressure, eq. (402); the flow rises with any pressure step."""
+    def conduct_flow(self, flow_number: float, reduced: Law, height: FloatArray) -> Flow:
+        """Flow by the reduced pressure's gradient, eq. (402), with reversed sign; it rises with any pressure step."""
         # The flow is constant between two centres, and the film linear: the thinner film determines the flow.
         upstream, downstream = self.upstream @ height, self.downstream @ height
         factor = 2 * (upstream * downstream) ** 2 / (upstream + downstream) / flow_number
@@ -203,30 +181,16 @@ class Faces:
             sparse.diags_array(factor * slopes * (2 / film - 1 / (upstream + downstream))) @ selection
             for film, selection in ((upstream, self.upstream), (downstream, self.downstream))
         )
-        return PressureFlow(factor * slopes, sparse.csr_array(by_pressure), sparse.csr_array(by_before + by_after))
+        return Flow(factor * slopes, by_pressure, by_before + by_after)
 
 
-def _outflow(cell_count: int) -> sparse.sparray:
-    """Matrix of the differences of neighbouring faces: array (cell, face)."""
-    return sparse.diags_array(
-        [-np.ones(cell_count), np.ones(cell_count)], offsets=[0, 1], shape=(cell_count, cell_count + 1)
-    )
-
-
-def _neighbours(cell_count: int) -> tuple[sparse.sparray, sparse.sparray]:
-    """Cells upstream and downstream of faces; at the outermost faces both are the outermost cell: (face, cell)."""
-    identity = sparse.eye_array(cell_count, format="csr")
-    return sparse.vstack([identity[:1], identity]), sparse.vstack([identity, identity[-1:]])
-
-
-def _gradient(edges: FloatArray, centres: FloatArray, *, closed: bool) -> sparse.sparray:
-    """Gradients on the faces; at the outermost faces the value is zero, or, if `closed`, the gradient: (face, cell)."""
-    cell_count = centres.size
-    matrix = np.zeros((cell_count + 1, cell_count))
-    for face in range(1, cell_count):
-        slope = 1 / (centres[face] - centres[face - 1])
-        matrix[face, face - 1 : face + 1] = -slope, slope
-    if not closed:
-        matrix[0, 0] = 1 / (centres[0] - edges[0])
-        matrix[-1, -1] = -1 / (edges[-1] - centres[-1])
-    return sparse.csr_array(matrix)
+def _difference_matrices(edges: FloatArray, centres: FloatArray, *, closed: bool) -> tuple[sparse.sparray, ...]:
+    """Matrices of `Faces` for one row of cells; the gradient on outermost faces is that to a value of zero, or zero."""
+    count = centres.size
+    identity = sparse.eye_array(count, format="csr")
+    upstream, downstream = sparse.vstack([identity[:1], identity]), sparse.vstack([identity, identity[-1:]])
+    differences = sparse.diags_array([-1.0, 1.0], offsets=[-1, 0], shape=(count + 1, count))
+    inverse_steps = 1 / np.diff(np.concatenate([edges[:1], centres, edges[-1:]]))
+    if closed:
+        inverse_steps[[0, -1]] = 0.0
+    return upstream, downstream, sparse.diags_array(inverse_steps) @ differences, -differences.T

@@ -27,10 +27,10 @@ from contactstudy.film.levels import (
     FilmResolution,
     Level,
     continue_solution,
-    create_cells,
     film_on_level,
 )
 from contactstudy.film.newton import SETTINGS, FilmSettings, StepFailedError
+from contactstudy.threads import one_blas_thread
 
 ACCURACIES = (2e-3, 0.2)  # Range of the accuracies that the levels reach
 ERROR_FACTORS = {"cells": 1.5, "columns": 1.0}  # Stated error over the latest change by a refinement. Accuracy
@@ -116,7 +116,11 @@ def solve_film(
     start_time = time.perf_counter()
     if start is not None:
         require(start, "film_thickness", "pressure", "moes_load", argument="start")
-    refined = _refine(film, limit, settings, start)
+    try:
+        with one_blas_thread():
+            refined = _refine(film, limit, settings, start)
+    except StepFailedError as error:
+        raise _create_film_error(error, film.half_width) from None
     result = _label_film(film, refined)
     seconds = time.perf_counter() - start_time
     if refined.error > limit:
@@ -164,31 +168,25 @@ def _check_case(case: Case, asperities: Asperities | None, inlet: float | None, 
 
 
 class Films(NamedTuple):
-    """Film thicknesses over the height scale, and their positions over the half-width."""
+    """Film thicknesses over the height scale, by their names in a result, and their positions over the half-width."""
 
-    central: float
-    middle: float
-    first: float
-    last: float
-    least: float
+    central_film: float
+    least_film_middle: float
+    least_film_first: float
+    least_film_last: float
+    least_film: float
     first_x: float
     last_x: float
     least_x: float
     least_y: float
 
     @property
-    def as_array(self) -> FloatArray:
-        """Films in the order of `FILM_NAMES`."""
-        return np.array([getattr(self, name) for name in FILM_NAMES])
+    def thicknesses(self) -> FloatArray:
+        """Films without positions."""
+        return np.array(self[: len(FILM_NAMES)])
 
 
-FILM_NAMES = {  # variables of the films
-    "central": "central_film",
-    "middle": "least_film_middle",
-    "first": "least_film_first",
-    "last": "least_film_last",
-    "least": "least_film",
-}
+FILM_NAMES = Films._fields[:5]
 
 
 class _RefinedFilm(NamedTuple):
@@ -196,7 +194,7 @@ class _RefinedFilm(NamedTuple):
 
     level_film: FilmOnCells
     films: Films
-    errors: dict[str, float]
+    errors: dict[str, float]  # by the film's name
     error: float
     levels: int
     newton_steps: int
@@ -208,41 +206,41 @@ def _refine(film: FilmCase, accuracy: float, settings: FilmSettings, start: xr.D
     coarse_settings = replace(settings, tolerance=max(settings.tolerance, settings.level_tolerance))
     level = Level()
     closures: tuple[float, ...] = film.contact_ends
-    try:
-        solutions = [film_on_level(film, level, closures, coarse_settings, start)]
-    except StepFailedError as error:
-        if start is not None:
-            return _refine(film, accuracy, settings)
-        raise _create_film_error(film, error, level, closures) from None
-    films = [compute_films(film, solutions[0])]
+    solutions: list[FilmOnCells] = []
+    films: list[Films] = []
     changes = {name: [np.full(len(FILM_NAMES), np.inf)] * 2 for name in Level._fields}
+    direction = ""
+    errors = np.full(len(FILM_NAMES), np.inf)
     while True:
+        try:
+            solutions.append(film_on_level(film, level, closures, coarse_settings, [start, *solutions][-1]))
+        except StepFailedError:
+            if not solutions and start is not None:
+                return _refine(film, accuracy, settings)
+            if np.isinf(errors).any():
+                raise
+            break
+        films.append(compute_films(film, solutions[-1]))
+        if direction:
+            changes[direction].append(np.abs(films[-1].thicknesses - films[-2].thicknesses))
         direction_errors = {name: _estimate_errors(name, change) for name, change in changes.items()}
-        errors = np.sum([*direction_errors.values()], axis=0) + MIN_RELATIVE_ERROR * films[-1].as_array
+        errors = np.sum([*direction_errors.values()], axis=0) + MIN_RELATIVE_ERROR * films[-1].thicknesses
         directions = [name for name in Level._fields if getattr(level, name) < film.resolution.levels - 1]
-        if errors.max() <= accuracy * films[-1].central or not directions:
+        if errors.max() <= accuracy * films[-1].central_film or not directions:
             break
         direction = max(directions, key=lambda name: float(direction_errors[name].max()))
         level = level._replace(**{direction: getattr(level, direction) + 1})
         if direction == "columns":
-            closures = (*film.contact_ends, *_columns_of_minima(films[-1], solutions[-1]))
-        try:
-            solutions.append(film_on_level(film, level, closures, coarse_settings, solutions[-1]))
-        except StepFailedError as error:
-            if np.isinf(errors).any():
-                raise _create_film_error(film, error, level, closures) from None
-            break
-        films.append(compute_films(film, solutions[-1]))
-        changes[direction].append(np.abs(films[-1].as_array - films[-2].as_array))
-    try:
-        solutions.append(continue_solution(solutions[-1], settings))
-    except StepFailedError as error:
-        raise _create_film_error(film, error, level, closures) from None
+            # The centres of the columns with the least films of both sides are equal for similar speeds.
+            x = solutions[-1].problem.cells.x
+            minima = (float(x[np.abs(x - position).argmin()]) for position in (films[-1].first_x, films[-1].last_x))
+            closures = (*film.contact_ends, *minima)
+    solutions.append(continue_solution(solutions[-1], settings))
     return _RefinedFilm(
         level_film=solutions[-1],
         films=compute_films(film, solutions[-1]),
         errors=dict(zip(FILM_NAMES, errors.tolist(), strict=True)),
-        error=float(errors.max()) / films[-1].central,
+        error=float(errors.max()) / films[-1].central_film,
         levels=len(films),
         newton_steps=sum(level_film.solution.newton_steps for level_film in solutions),
         linear_steps=sum(level_film.solution.linear_steps for level_film in solutions),
@@ -254,19 +252,11 @@ def _estimate_errors(direction: str, changes: list[FloatArray]) -> FloatArray:
     return np.asarray(ERROR_FACTORS[direction] * np.maximum(changes[-1], CHANGE_RATIOS[direction] * changes[-2]))
 
 
-def _columns_of_minima(films: Films, level_film: FilmOnCells) -> tuple[float, float]:
-    """Centres of the columns with the least films of both sides, over the half-width: equal for similar speeds."""
-    x = level_film.problem.cells.x
-    first, last = (float(x[np.abs(x - position).argmin()]) for position in (films.first_x, films.last_x))
-    return first, last
-
-
-def _create_film_error(film: FilmCase, error: StepFailedError, level: Level, closures: tuple[float, ...]) -> FilmError:
+def _create_film_error(error: StepFailedError, half_width: float) -> FilmError:
     """Return the error of a failed iteration, with the position where the film closes."""
-    if error.closed_cell is None:
+    if error.position is None:
         return FilmError(f"the film's iteration does not converge: {error}; another speed or load may help")
-    cells = create_cells(film, level, closures)[0]
-    x, y = (film.half_width * axis[cell] for axis, cell in zip((cells.x, cells.y), error.closed_cell, strict=True))
+    x, y = (half_width * position for position in error.position)
     return FilmError(
         f"the film of smooth surfaces closes at x = {x:.4g} m, y = {y:.4g} m: give asperities=Asperities(rms=...), "
         "a profile with a larger drop at the ends, or a higher speed"
@@ -284,15 +274,16 @@ def compute_films(film: FilmCase, level_film: FilmOnCells) -> Films:
     centre_films = np.array([np.interp(0.0, cells.y, row) for row in height])
     first_side = cells.x < mid_length
     side_minima = [_find_minimum(cells.x, cells.x_edges, least_films, on_side) for on_side in (first_side, ~first_side)]
+    (first, first_x), (last, last_x) = side_minima
     least, least_x = min(side_minima)
     return Films(
-        central=_interpolate(cells.x, centre_films, mid_length),
-        middle=_interpolate(cells.x, least_films, mid_length),
-        first=side_minima[0][0],
-        last=side_minima[1][0],
-        least=least,
-        first_x=side_minima[0][1],
-        last_x=side_minima[1][1],
+        central_film=_interpolate(cells.x, centre_films, mid_length),
+        least_film_middle=_interpolate(cells.x, least_films, mid_length),
+        least_film_first=first,
+        least_film_last=last,
+        least_film=least,
+        first_x=first_x,
+        last_x=last_x,
         least_x=least_x,
         least_y=float(np.interp(least_x, cells.x, positions)),
     )
@@ -330,26 +321,26 @@ def _label_film(film: FilmCase, refined: _RefinedFilm) -> xr.Dataset:
         expanded[solved.columns] = values
         return expanded[:, ::-1] if mirrored else expanded
 
-    pressure = expand(film.pressure_scale * _spread_pressure(solved, solution.fluid_pressure), 0.0)
-    fields = {"pressure": pressure}
+    pressures = {"pressure": solution.fluid_pressure}
     if film.asperities is not None:
-        fields["asperity_pressure"] = expand(
-            film.pressure_scale * _spread_pressure(solved, solution.asperity_pressure), 0.0
-        )
-        fields["pressure"] = pressure + fields["asperity_pressure"]
+        pressures["asperity_pressure"] = solution.asperity_pressure
+    fields = {
+        name: expand(film.pressure_scale * _spread_pressure(solved, values), 0.0) for name, values in pressures.items()
+    }
+    if film.asperities is not None:
+        fields["pressure"] = fields["pressure"] + fields["asperity_pressure"]
     cells = solved.problem.cells
     uniform_y = np.clip(grid.y / film.half_width, cells.y[0], cells.y[-1])
     height = PchipInterpolator(cells.y, solution.film, axis=1)(uniform_y)
     fields["film_thickness"] = expand(film.height_scale * height, np.nan)
     y = -grid.y[::-1] if mirrored else grid.y
-    films = refined.films
+    films, errors = refined.films, refined.errors
     scalars: dict[str, float | int | bool] = {}
-    for attribute, name in FILM_NAMES.items():
-        scalars[name] = film.height_scale * getattr(films, attribute)
-        scalars[f"{name}_error"] = film.height_scale * refined.errors[attribute]
-    scalars["end_film_ratio"] = films.least / films.middle
-    scalars["end_film_ratio_error"] = (refined.errors["least"] + refined.errors["middle"]) / films.middle
+    for name, thickness in zip(FILM_NAMES, films, strict=False):
+        scalars |= {name: film.height_scale * thickness, f"{name}_error": film.height_scale * errors[name]}
     scalars |= {
+        "end_film_ratio": films.least_film / films.least_film_middle,
+        "end_film_ratio_error": (errors["least_film"] + errors["least_film_middle"]) / films.least_film_middle,
         "least_film_x": film.half_width * films.least_x,
         "least_film_y": sign * film.half_width * films.least_y,
         "least_film_first_x": film.half_width * films.first_x,
@@ -359,7 +350,7 @@ def _label_film(film: FilmCase, refined: _RefinedFilm) -> xr.Dataset:
         "moes_load": film.moes_load(film.largest_line_load),
         "moes_lubricant": film.moes_lubricant,
         "normal_load": film.case.normal_load,
-        "mass_error": solution.residual * solved.problem.central_film / films.central,
+        "mass_error": solution.residual * solved.problem.central_film / films.central_film,
         "film_load_error": solution.load_error,
         "film_complementarity_error": solution.complementarity_error,
         "converged": solution.converged,
@@ -371,17 +362,21 @@ def _label_film(film: FilmCase, refined: _RefinedFilm) -> xr.Dataset:
     }
     profiles = {"slice_film": (("x",), film.slice_film(grid.x))}
     if film.asperities is not None:
+        rms = film.asperities.rms
         min_ratio = np.full(grid.cells_x, np.nan)
-        min_ratio[solved.columns] = film.height_scale * solution.film.min(axis=1) / film.asperities.rms
+        min_ratio[solved.columns] = film.height_scale * solution.film.min(axis=1) / rms
         profiles["film_ratio"] = (("x",), min_ratio)
-        scalars["asperity_load_share"] = float((solution.asperity_pressure * cells.areas).sum() / solved.problem.load)
-        scalars["roughness_rms"] = film.asperities.rms
-        scalars["least_film_ratio"] = scalars["least_film"] / film.asperities.rms
-        scalars["least_film_ratio_error"] = scalars["least_film_error"] / film.asperities.rms
         # The ends are outside ISO 281: kappa refers to the film of the middle section.
-        scalars["viscosity_ratio"] = (scalars["least_film_middle"] / film.asperities.rms) ** VISCOSITY_EXPONENT
+        viscosity_ratio = (scalars["least_film_middle"] / rms) ** VISCOSITY_EXPONENT
         relative_error = scalars["least_film_middle_error"] / scalars["least_film_middle"]
-        scalars["viscosity_ratio_error"] = VISCOSITY_EXPONENT * relative_error * scalars["viscosity_ratio"]
+        scalars |= {
+            "asperity_load_share": float((solution.asperity_pressure * cells.areas).sum() / solved.problem.load),
+            "roughness_rms": rms,
+            "least_film_ratio": scalars["least_film"] / rms,
+            "least_film_ratio_error": scalars["least_film_error"] / rms,
+            "viscosity_ratio": viscosity_ratio,
+            "viscosity_ratio_error": VISCOSITY_EXPONENT * relative_error * viscosity_ratio,
+        }
     return xr.Dataset(
         {name: (("x", "y"), values) for name, values in fields.items()} | profiles | scalars,
         coords={"x": grid.x, "y": y} | cell_coordinates(grid),

@@ -285,26 +285,25 @@ def residual_stress(
     passage = section.create_passage(cells, substeps, tolerance) if cells.size else None
     for pass_number in range(1, passes + 1):
         while True:
-            next_state = state
+            strain, accumulated, converged = state.strain.copy(), state.accumulated.copy(), state.converged
             if passage is not None:
-                pass_state = passage.solve(State(state.strain[:, cells], state.accumulated[cells], state.converged))
-                next_state = State(state.strain.copy(), state.accumulated.copy(), pass_state.converged)
-                next_state.strain[:, cells], next_state.accumulated[cells] = pass_state.strain, pass_state.accumulated
-            residual, displacement_z, displacement_y = section.residual_state(next_state.strain)
+                start = State(strain[:, cells], accumulated[cells], converged)
+                strain[:, cells], accumulated[cells], converged = passage.solve(start)
+            residual, displacement_z, displacement_y = section.residual_state(strain)
             if np.isin(section.yielding_cells(residual.reshape(6, -1), 1 + tolerance), cells).all():
                 break
             # Residual stress makes further cells yield: repeat the pass with these cells.
             cells = np.union1d(cells, section.yielding_cells(residual.reshape(6, -1), NEAR_YIELD_RATIO))
             passage = section.create_passage(cells, substeps, tolerance)
-        plastic_flow = float((next_state.accumulated - state.accumulated).max())
-        strain_norm = tensor_norm(next_state.strain)
+        plastic_flow = float((accumulated - state.accumulated).max())
+        strain_norm = tensor_norm(strain)
         if strain_norm.max(initial=0.0) > MAX_STRAIN:
             index = np.unravel_index(int(strain_norm.argmax()), (section.x.size, section.z.size))
             position = f"x = {section.x[index[0]]:.4g} m, z = {section.z[index[1]]:.4g} m"
             value = f"a plastic strain of {strain_norm.max():.2g} at {position}"
             hint = "lower the load, or give the material hardening: flow above the shakedown limit does not end"
             raise InvalidInputError("stress", value, f"such that plastic strains stay below {MAX_STRAIN:g}", hint)
-        state = next_state
+        state = State(strain, accumulated, converged)
         strains = state.strain.reshape(6, section.x.size, section.z.size)
         fields = dict(zip((*STRESSES, *STRAINS), (*residual, *strains), strict=True))
         fields["equivalent_plastic_strain"] = state.accumulated.reshape(strains.shape[1:])

@@ -80,8 +80,8 @@ def worn_profile(case: Case, worn: xr.Dataset, distance: float | None = None) ->
     mask = (x >= start - rounding) & (x <= stop + rounding)
     columns = _Columns.of(worn, x, mask, start, stop)
     depth = worn["wear_depth"].values[index, mask]
-    ends = _SharpEnds.of(case, columns, depth, worn["pressure"].values[index, mask])
-    return Sum((case.roller.profile, _fit_profile(case, columns, ends, depth)))
+    end_depth = _sharp_end_depth(case, columns, depth, worn["pressure"].values[index, mask])
+    return Sum((case.roller.profile, _fit_profile(case, columns, end_depth, depth)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,40 +115,36 @@ class _Columns:
         return np.asarray(0.5 * profile(self.points.ravel()).reshape(self.points.shape) @ GAUSS_WEIGHTS)
 
 
-@dataclass(frozen=True, eq=False)
-class _SharpEnds:
-    """Depth of the slope ``2 p / (pi E') ln s`` at a distance s from sharp ends (Johnson, section 2.5)."""
+def _sharp_end_depth(
+    case: Case, columns: _Columns, depth: FloatArray, pressure: FloatArray
+) -> Callable[[FloatArray], FloatArray]:
+    """Depth of the slope ``2 p / (pi E') ln s`` at a distance s from sharp ends (Johnson, section 2.5).
 
-    positions: tuple[float, float]
-    slopes: tuple[float, float]
-    length: float
+    The slope is at most the worn slope, and zero at an end of the body.
+    """
+    ends, length = np.array(case.contact_range), case.contact_length
+    modulus = case.body.material.plane_strain_modulus
+    inward_slopes = np.array([depth[0] - depth[1], depth[-1] - depth[-2]]) / np.diff(columns.midpoints)[[0, -1]]
+    outer_lengths = np.abs(ends - case.body.extent)
+    pressures = [float(column[column > 0].mean()) if (column > 0).any() else 0.0 for column in pressure[[0, -1]]]
+    slopes = np.clip(2 * np.array(pressures) / (np.pi * modulus), 0.0, np.maximum(inward_slopes, 0.0))
+    slopes[outer_lengths <= np.diff(columns.edges)[[0, -1]]] = 0.0
 
-    @classmethod
-    def of(cls, case: Case, columns: _Columns, depth: FloatArray, pressure: FloatArray) -> _SharpEnds:
-        """Return the ends; the slope is at most the worn slope, and zero at an end of the body."""
-        start, stop = case.contact_range
-        mid_length = case.roller_middle
-        modulus = case.body.material.plane_strain_modulus
-        inward_slopes = np.array([depth[0] - depth[1], depth[-1] - depth[-2]]) / np.diff(columns.midpoints)[[0, -1]]
-        outer_lengths = np.array([start - case.body.extent[0], case.body.extent[1] - stop])
-        pressures = [float(column[column > 0].mean()) if (column > 0).any() else 0.0 for column in pressure[[0, -1]]]
-        slopes = np.clip(2 * np.array(pressures) / (np.pi * modulus), 0.0, np.maximum(inward_slopes, 0.0))
-        slopes[outer_lengths <= np.diff(columns.edges)[[0, -1]]] = 0.0
-        return cls((start - mid_length, stop - mid_length), (float(slopes[0]), float(slopes[1])), stop - start)
+    def depth_at(x: FloatArray) -> FloatArray:
+        distances = np.abs(x[..., None] - (ends - case.roller_middle)) / length
+        distances = np.maximum(distances, np.finfo(np.float64).tiny)
+        return np.asarray((slopes * length * distances * np.log(distances)).sum(axis=-1))
 
-    def depth(self, x: FloatArray) -> FloatArray:
-        """Return the depth at distances from mid-length."""
-        depth = np.zeros_like(x)
-        for end, slope in zip(self.positions, self.slopes, strict=True):
-            distance = np.maximum(np.abs(x - end) / self.length, np.finfo(np.float64).tiny)
-            depth += slope * self.length * distance * np.log(distance)
-        return depth
+    return depth_at
 
 
-def _fit_profile(case: Case, columns: _Columns, ends: _SharpEnds, depth: FloatArray) -> Measured:
+def _fit_profile(
+    case: Case, columns: _Columns, end_depth: Callable[[FloatArray], FloatArray], depth: FloatArray
+) -> Measured:
     """Smooth profile with the mean depth of every column: the slope of a spline through the area worn off up to x."""
-    half_length, (start, stop) = 0.5 * case.roller.length, ends.positions
-    remainder = depth - columns.mean_depths(ends.depth)
+    half_length = 0.5 * case.roller.length
+    start, stop = (end - case.roller_middle for end in case.contact_range)
+    remainder = depth - columns.mean_depths(end_depth)
     volume = np.concatenate([[0.0], np.cumsum(remainder * np.diff(columns.edges))])
     spline = make_interp_spline(columns.edges, volume, k=min(3, depth.size)).derivative()
     borders = _interpolate_borders(case, columns, depth)
@@ -161,7 +157,7 @@ def _fit_profile(case: Case, columns: _Columns, ends: _SharpEnds, depth: FloatAr
         border_points = np.linspace(border.x[0], border.x[-1], 8 * border.x.size)  # points in each column
         is_distinct = np.abs(positions - border_points[:, None]).min(axis=1) > ROUNDING * case.roller.length
         positions = np.sort(np.append(positions, border_points[is_distinct]))
-    points = np.maximum(spline(positions) + ends.depth(positions), 0.0)
+    points = np.maximum(spline(positions) + end_depth(positions), 0.0)
     is_corrected = np.ones(depth.size, dtype=bool)
     for border in borders:
         in_border = (positions >= border.x[0]) & (positions <= border.x[-1])

@@ -46,6 +46,7 @@ def test_eyring_and_limit():
 
 def test_hot_inlets_thin_the_film():
     assert thermal_reduction(3e-3, 0.0, 1.0) == 1.0
+    assert thermal_reduction(5e-3, 1.0, 0.1) == pytest.approx(0.728, abs=5e-4)
     assert thermal_reduction(3e-3, 1.0, 1.0) < thermal_reduction(3e-3, 1.0, 0.0) < thermal_reduction(3e-3, 0.1, 0.0) < 1
 
 
