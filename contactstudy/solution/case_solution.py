@@ -24,7 +24,6 @@ from contactstudy.contact.normal.contact import Contact, Settings, contact_of
 from contactstudy.contact.refinement.refined_contact import (
     COARSE_ACCURACY,
     COARSE_TOLERANCE,
-    ApproachContact,
     approach_load_error,
     contact_at_approach,
     contact_shape,
@@ -32,7 +31,7 @@ from contactstudy.contact.refinement.refined_contact import (
     refined_values,
 )
 from contactstudy.contact.refinement.refined_tractions import refine_tractions
-from contactstudy.contact.rolling.frictional_contact import FrictionalContact, frictional_contact, with_tractions
+from contactstudy.contact.rolling.frictional_contact import FrictionalContact, frictional_contact
 from contactstudy.contact.rolling.tractions import FrictionRequest
 from contactstudy.contact.solve import contact_dataset
 from contactstudy.errors import InvalidInputError, WindowError
@@ -75,7 +74,7 @@ class CaseContact:
         result["tilt"] = result["tilt"].copy(data=result["tilt"] + case.tilt)
         result["tilt"].attrs["centre"] = "the roller's mid-length" if case.load_position is None else "load_position"
         if self.tractions is not None:
-            result = with_tractions(result, self.tractions)
+            result = self.tractions.with_tractions(result)
         return result.assign(self.values.data_vars).assign(
             initial_gap=(("x", "y"), self.contact.shape.gap.values.copy()),
             hertz_half_width=case.hertz_half_width,
@@ -85,21 +84,16 @@ class CaseContact:
 
 def refined_case_contact(case: Case, accuracy: float, tolerance: float) -> CaseContact:
     """Contact on columns that are refined to an accuracy."""
-    if case.approach is None:
-        solution = ApproachContact(case, refine_contact(case, accuracy, tolerance))
-    else:
-        solution = contact_at_approach(case, accuracy, tolerance)
-    loaded_case, refined_contact = solution
-    contact, tractions = _check_contact(loaded_case, refined_contact.contact), None
-    values = refined_values(refined_contact)
+    find_contact = refine_contact if case.approach is None else contact_at_approach
+    refined = find_contact(case, accuracy, tolerance)
+    loaded_case = _with_load(case, refined.contact)
+    contact, tractions, errors = _check_contact(case, refined.contact), None, xr.Dataset()
+    load_error = {} if case.approach is None else {"normal_load_error": approach_load_error(loaded_case, refined)}
     if not isinstance(case.motion, Sliding):
-        refined_tractions = refine_tractions(loaded_case, refined_contact, accuracy)
-        tractions = refined_tractions.contact
+        tractions, refined, errors = refine_tractions(loaded_case, refined, accuracy)
         tractions.warn_unless_converged()
         contact = tractions.contact
-        values = refined_values(refined_tractions.normal).assign(refined_tractions.error_dataset().data_vars)
-    if case.approach is not None:
-        values["normal_load_error"] = approach_load_error(solution)
+    values = refined_values(case, refined).assign(errors.data_vars).assign(load_error)
     return CaseContact(
         case=_with_load(case, contact), cells="refined", contact=contact, tractions=tractions, values=values
     )
@@ -110,8 +104,10 @@ def contact_on_cells(case: Case, grid: Grid | None, roughness: xr.DataArray | No
     cells: Cells = "chosen" if grid is None else "given"
     if grid is None:
         # At an approach the load of the smooth roller determines the cells; a rough roller carries another load.
-        at_approach = case.approach is not None
-        grid = choose_grid(contact_at_approach(case, COARSE_ACCURACY, COARSE_TOLERANCE).case if at_approach else case)
+        loaded_case = case
+        if case.approach is not None:
+            loaded_case = _with_load(case, contact_at_approach(case, COARSE_ACCURACY, COARSE_TOLERANCE).contact)
+        grid = choose_grid(loaded_case)
     clearance, tractions = case.gap(grid), None
     if not np.isfinite(clearance).any():
         length = f"{case.contact_length:.3g} m"

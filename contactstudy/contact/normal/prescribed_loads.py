@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
@@ -13,7 +13,7 @@ from contactstudy.arrays.peaks import lagrange_weights
 from contactstudy.bodies.models import Body
 from contactstudy.cache import cached
 from contactstudy.checks import FloatArray
-from contactstudy.contact.normal.conjugate_gradients import ContactIterate, Resultants
+from contactstudy.contact.normal.conjugate_gradients import Resultants
 from contactstudy.errors import InvalidInputError
 from contactstudy.fields.displacement import normal_influence
 from contactstudy.kernels.images import polynomial_count
@@ -134,15 +134,3 @@ class LineMotions(NamedTuple):
 
     body: RigidMotion
     total: RigidMotion
-
-
-class ReferencedContact(NamedTuple):
-    """A contact and the motions of its reference lines."""
-
-    iterate: ContactIterate
-    motions: LineMotions
-
-
-SolveAtMotion = Callable[[RigidMotion, FloatArray | None, float], ContactIterate]
-"""Function from a motion of the lines, a first guess of the pressure and a tolerance to the contact on the gap less
-the motion."""

@@ -25,7 +25,7 @@ from tests.contact.refinement.rollers import (
 
 def test_sharp_rigid_end_has_square_root_law() -> None:
     case = Case(body=HALF, roller=Roller(radius=RADIUS, length=LENGTH), max_pressure=PRESSURE)
-    values = refined_values(refined_at(case))
+    values = refined_values(case, refined_at(case))
     assert np.isinf(values.peak_pressure)
     assert np.isinf(values.peak_pressure_error)
     for side in ("first", "last"):
@@ -131,7 +131,7 @@ def test_sharp_end_near_free_end_has_infinite_error(distance: float) -> None:
     case = Case(
         body=finite(LENGTH + 2 * distance * A), roller=Roller(radius=RADIUS, length=LENGTH), max_pressure=PRESSURE
     )
-    computed = refined_values(refined_at(case))
+    computed = refined_values(case, refined_at(case))
     assert np.isinf(computed["end_pressure_first_error"])
     if distance > 1e-3:
         intensity = computed["end_intensity_first"] / (PRESSURE * np.sqrt(A))
@@ -144,7 +144,8 @@ def test_fading_end_has_infinite_error() -> None:
     rubber = Material(6e8, 0.0)
     roller = Roller(radius=RADIUS, length=0.13e-3, material=rubber)
     body = QuarterSpace(material=rubber, model="mirror-factor")
-    computed = refined_values(refined_at(Case(body=body, roller=roller, max_pressure=2e6), 0.02))
+    case = Case(body=body, roller=roller, max_pressure=2e6)
+    computed = refined_values(case, refined_at(case, 0.02))
     assert np.isinf(computed["end_pressure_first_error"])
     assert 0 < float(computed["peak_pressure_first_error"]) < 0.02 * float(computed["peak_pressure_first"])
 
