@@ -19,7 +19,7 @@ from contactstudy.case.motion import RESULTANTS, Rolling, Shift
 from contactstudy.checks import Array, BoolArray, FloatArray, IntArray
 from contactstudy.contact.normal.contact import Settings
 from contactstudy.contact.normal.problem import cell_means, halve_cells
-from contactstudy.contact.normal.two_bodies import ScaledOperator
+from contactstudy.contact.normal.two_bodies import PairOperator
 from contactstudy.contact.rolling.coulomb import (
     CoulombProblem,
     CoulombSolution,
@@ -253,10 +253,10 @@ def _solve_coarse(
 ) -> Tractions | None:
     """Solve on cells of twice the size; None on graded cells, or if the cells cannot be paired."""
     grid = surfaces.grid
+    operator = surfaces.operator
     if grid.cells_x % 2 or grid.cells_y % 2 or not grid.uniform:
         return None
-    operator = surfaces.operator.coarse
-    if isinstance(operator, ScaledOperator):
+    if isinstance(operator, PairOperator) and not operator.has_paired_cells:
         return None
     coarse_pressure, coarse_bound = cell_means(pressure), cell_means(bound)
     start = request.start
@@ -265,7 +265,7 @@ def _solve_coarse(
         friction=coarse_bound / np.where(coarse_pressure > 0, coarse_pressure, 1.0),
         start=None if start is None else {load: cell_means(values) for load, values in start.items()},
     )
-    surfaces = surfaces._replace(operator=operator, grid=grid.coarsened())
+    surfaces = surfaces._replace(operator=operator.coarse, grid=grid.coarsened())
     settings = settings._replace(tolerance=COARSE_TOLERANCE)
     # The friction times the pressure equals the mean of the bound up to rounding.
     return replace(solve_tractions(coarse, settings, surfaces, coarse_pressure, None), bound=coarse_bound)
