@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import logging
 import time
-from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from typing import Literal
 
 import numpy as np
 import xarray as xr
@@ -35,14 +33,11 @@ from contactstudy.contact.rolling.frictional_contact import FrictionalContact, f
 from contactstudy.contact.rolling.tractions import FrictionRequest
 from contactstudy.contact.solve import contact_dataset
 from contactstudy.errors import InvalidInputError, WindowError
-from contactstudy.fields.loads import TopLoad, sliding
+from contactstudy.fields.loads import sliding
 from contactstudy.fields.positions import Positions, default_columns, default_depths, field_positions
 from contactstudy.fields.stress import contact_stresses
 from contactstudy.fields.stress_maximum import place_search
-from contactstudy.kernels.load import Load
 from contactstudy.roughness import heights_on
-
-Cells = Literal["refined", "chosen", "given"]  # refined to an accuracy, chosen for a rough surface, or the caller's
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -50,7 +45,6 @@ class CaseContact:
     """Contact of a case."""
 
     case: Case  # the case; a prescribed approach is replaced by the load
-    cells: Cells  # origin of the cells
     contact: Contact  # the contact
     tractions: FrictionalContact | None = None  # tractions with stick and slip; None in full sliding
     values: xr.Dataset = field(default_factory=xr.Dataset)  # values and errors of refined columns; empty on other cells
@@ -59,13 +53,6 @@ class CaseContact:
     def grid(self) -> Grid:
         """Cells of the contact."""
         return self.contact.shape.grid
-
-    @property
-    def loads(self) -> Mapping[Load, TopLoad]:
-        """Loads on the body."""
-        if self.tractions is not None:
-            return self.tractions.loads
-        return sliding(self.contact.pressure, self.case.friction_on(self.grid.x))
 
     def dataset(self) -> xr.Dataset:
         """Labelled contact with its values; `tilt` includes the tilt of the case."""
@@ -94,14 +81,11 @@ def refined_case_contact(case: Case, accuracy: float, tolerance: float) -> CaseC
         tractions.warn_unless_converged()
         contact = tractions.contact
     values = refined_values(case, refined).assign(errors.data_vars).assign(load_error)
-    return CaseContact(
-        case=_with_load(case, contact), cells="refined", contact=contact, tractions=tractions, values=values
-    )
+    return CaseContact(case=_with_load(case, contact), contact=contact, tractions=tractions, values=values)
 
 
 def contact_on_cells(case: Case, grid: Grid | None, roughness: xr.DataArray | None, tolerance: float) -> CaseContact:
     """Contact on given cells, or on uniform ones chosen for the case."""
-    cells: Cells = "chosen" if grid is None else "given"
     if grid is None:
         # At an approach the load of the smooth roller determines the cells; a rough roller carries another load.
         loaded_case = case
@@ -132,7 +116,7 @@ def contact_on_cells(case: Case, grid: Grid | None, roughness: xr.DataArray | No
         tractions = frictional_contact(contact.shape, contact.settings, request)
         tractions.warn_unless_converged()
         contact = tractions.contact
-    return CaseContact(case=_with_load(case, contact), cells=cells, contact=contact, tractions=tractions)
+    return CaseContact(case=_with_load(case, contact), contact=contact, tractions=tractions)
 
 
 def _with_load(case: Case, contact: Contact) -> Case:
@@ -161,12 +145,11 @@ def with_stresses(
 ) -> xr.Dataset:
     """Add the stresses, the largest von Mises stress in the body, and the residual on the free ends."""
     # Default positions along x resolve the contact on refined columns, and equal the centres of chosen or given cells.
-    case, grid, loads, scale = contact.case, contact.grid, contact.loads, contact.case.hertz_half_width
-    refined = contact.cells == "refined"
-
+    case, grid, pressure, refined = contact.case, contact.grid, contact.contact.pressure, bool(contact.values)
+    scale = case.hertz_half_width
+    loads = contact.tractions.loads if contact.tractions else sliding(pressure, case.friction_on(grid.x))
     search = place_search(case.body, loads, grid)
-    is_loaded = np.asarray(contact.contact.pressure.any(axis=1))
-    columns = default_columns(grid, case.body.extent, is_loaded, scale) if x is None and refined else x
+    columns = default_columns(grid, case.body.extent, pressure.any(axis=1), scale) if x is None and refined else x
     depths = default_depths(scale, search.peak_width) if z is None else z
     positions = field_positions(case.body, grid, columns, y, depths)
     on_ends = scale * np.array(RESIDUAL_POSITIONS), scale * np.array(RESIDUAL_DEPTHS)
@@ -265,7 +248,8 @@ def solve(
         raise InvalidInputError("accuracy", accuracy, f"omitted with {reason}: the cells are not refined")
     refines = grid is None and roughness is None
     tolerance = checks.positive("tolerance", tolerance)
-    settings: dict[str, object] = {"tolerance": tolerance, "rough": roughness is not None}
+    cells = "refined" if refines else "chosen" if grid is None else "given"
+    settings: dict[str, object] = {"cells": cells, "tolerance": tolerance, "rough": roughness is not None}
     start = time.perf_counter()
     if refines:
         settings["accuracy"] = accuracy = check_accuracy(ACCURACY if accuracy is None else accuracy)
@@ -280,4 +264,4 @@ def solve(
     stages = {"contact": contact_seconds, "stresses": time.perf_counter() - start - contact_seconds}
     LOGGER.info("stresses: %.2f s", stages["stresses"])
     described = describe(result, "roller on an elastic body: contact and stresses")
-    return with_provenance(described, case, {"cells": contact.cells, **settings}, stages)
+    return with_provenance(described, case, settings, stages)

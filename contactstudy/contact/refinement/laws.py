@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -104,20 +103,14 @@ def law_of(samples: list[Sample], exponent: float) -> EndLaw | None:
     # Without an exponent of the materials (NaN) the growth of the outermost column between splittings determines it.
     if not np.isnan(exponent):
         return EndLaw(exponent=exponent) if samples[-1].pressure > 0 else None
-    pressures = [sample.pressure for sample in samples]
-    if len(samples) < 4 or pressures[-1] <= pressures[-2] or min(pressures[-3:]) <= 0:
+    widths, pressures = np.array(samples).T
+    if len(samples) < 4 or pressures[-1] <= pressures[-2] or pressures[-3:].min() <= 0:
         return None
-    growth = [
-        np.log(finer.pressure / coarser.pressure) / np.log(coarser.width / finer.width)
-        for coarser, finer in pairwise(samples[-3:])
-    ]
-    if min(growth) > MIN_GROWTH_EXPONENT:
+    refinements = np.log(widths[:-1] / widths[1:])
+    if (np.log(pressures[-2:] / pressures[-3:-1]) > MIN_GROWTH_EXPONENT * refinements[-2:]).all():
         return EndLaw(exponent=exponent)
-    steps = [
-        (finer.pressure - coarser.pressure) / np.log(coarser.width / finer.width)
-        for coarser, finer in pairwise(samples)
-    ]
-    if len(steps) >= 4 and sum(steps[-2:]) > MIN_STEP_RATIO * sum(steps[-4:-2]) > 0:
+    steps = np.diff(pressures) / refinements
+    if steps.size >= 4 and steps[-2:].sum() > MIN_STEP_RATIO * steps[-4:-2].sum() > 0:
         return EndLaw(exponent=0.0)
     return None
 
