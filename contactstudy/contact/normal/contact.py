@@ -52,29 +52,6 @@ class Certificate:
         return all(abs(violation) <= bound for violation in violations)
 
 
-def certify(
-    pressure: FloatArray,
-    opening: FloatArray,
-    displacement: FloatArray,
-    *,
-    carried_load: float,
-    load: float | None,
-    position_error: float,
-    tolerance: float,
-) -> Certificate:
-    """Return the violations of the contact's conditions."""
-    in_contact = pressure > 0
-    variation = float(np.ptp(displacement))
-    violation = max(float(np.abs(opening[in_contact]).max()), float(-opening.min()))  # eq. (34)
-    open_pressure = pressure[opening > OPEN_TOLERANCES * tolerance * variation]
-    return Certificate(
-        load_error=0.0 if load is None else carried_load / load - 1,
-        penetration_error=violation / variation,
-        open_pressure_error=float(open_pressure.max(initial=0.0) / pressure.max()),
-        load_position_error=position_error,
-    )
-
-
 class Shape(NamedTuple):
     """Contact to solve: bodies, cells, gap and load."""
 
@@ -205,21 +182,12 @@ def contact_of(shape: Shape, settings: Settings, start: ArrayKey | None = None) 
     if prescribed.load_position is not None:
         tilt = iterate.motion[1] / prescribed.max_arm(grid) - motions.total.tilt
         height = height - tilt * (grid.x[:, None] - prescribed.load_position)
-    in_contact, forces = pressure > 0, grid.weights * pressure
-    total = forces.sum()
     approach = prescribed.lowering
     if prescribed.approach is None:
-        approach = float((forces * np.where(in_contact, height, 0.0)).sum() / total)
+        forces = grid.weights * pressure
+        approach = float((forces * np.where(pressure > 0, height, 0.0)).sum() / forces.sum())
     opening = height - approach  # eq. (33)
-    certificate = certify(
-        pressure,
-        opening,
-        relative,
-        carried_load=float(total * grid.cell_area),
-        load=prescribed.load,
-        position_error=_position_error(prescribed, grid, pressure),
-        tolerance=settings.tolerance,
-    )
+    certificate = certify(shape, pressure, opening, relative, settings.tolerance)
     return Contact(
         shape=shape,
         settings=settings,
@@ -235,15 +203,26 @@ def contact_of(shape: Shape, settings: Settings, start: ArrayKey | None = None) 
     )
 
 
-def _position_error(prescribed: PrescribedLoad, grid: Grid, pressure: FloatArray) -> float:
-    """Distance of the pressure's resultant from the prescribed position, over the length of the contact."""
-    if prescribed.load_position is None:
-        return 0.0
-    line = (grid.weights * pressure).sum(axis=1)
-    loaded_columns = np.flatnonzero(line)
-    edges = grid.x_edges
-    length = edges[loaded_columns[-1] + 1] - edges[loaded_columns[0]]
-    return abs(float((line * (grid.x - prescribed.load_position)).sum() / line.sum())) / float(length)
+def certify(
+    shape: Shape, pressure: FloatArray, opening: FloatArray, displacement: FloatArray, tolerance: float
+) -> Certificate:
+    """Return the violations of the contact's conditions."""
+    grid, prescribed, forces = shape.grid, shape.prescribed, (shape.grid.weights * pressure).sum(axis=1)
+    variation = float(np.ptp(displacement))
+    violation = max(float(np.abs(opening[pressure > 0]).max()), float(-opening.min()))  # eq. (34)
+    open_pressure = pressure[opening > OPEN_TOLERANCES * tolerance * variation]
+    position_error = 0.0
+    if prescribed.load_position is not None:
+        loaded_columns = np.flatnonzero(forces)
+        length = grid.x_edges[loaded_columns[-1] + 1] - grid.x_edges[loaded_columns[0]]
+        position_error = abs(float((forces * (grid.x - prescribed.load_position)).sum() / forces.sum())) / float(length)
+    carried_load = float((grid.weights * pressure).sum() * grid.cell_area)
+    return Certificate(
+        load_error=0.0 if prescribed.load is None else carried_load / prescribed.load - 1,
+        penetration_error=violation / variation,
+        open_pressure_error=float(open_pressure.max(initial=0.0) / pressure.max()),
+        load_position_error=position_error,
+    )
 
 
 @cached("contacts")

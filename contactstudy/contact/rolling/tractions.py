@@ -100,7 +100,7 @@ class RollingCells:
 
     def on_grid(self, values: Array) -> Array:
         """Values of all cells (..., x, y) from the unknown ones (..., unknown); a dependent cell has its source's."""
-        return np.where(self.ratio > 0, values[..., self.source], 0)
+        return np.where(self.ratio > 0, np.take(values, self.source, axis=-1), values.dtype.type(0))
 
     def gather(self, weights: FloatArray) -> FloatArray:
         """Weights (part, unknown) of sums over the unknown tractions, from weights (part, x, y) over all cells."""
