@@ -49,14 +49,9 @@ class CaseContact:
     tractions: FrictionalContact | None = None  # tractions with stick and slip; None in full sliding
     values: xr.Dataset = field(default_factory=xr.Dataset)  # values and errors of refined columns; empty on other cells
 
-    @property
-    def grid(self) -> Grid:
-        """Cells of the contact."""
-        return self.contact.shape.grid
-
     def dataset(self) -> xr.Dataset:
         """Labelled contact with its values; `tilt` includes the tilt of the case."""
-        case, grid = self.case, self.grid
+        case, grid = self.case, self.contact.shape.grid
         result = contact_dataset(self.contact, case.friction_on(grid.x), x=grid.x, y=grid.y)
         result["tilt"] = result["tilt"].copy(data=result["tilt"] + case.tilt)
         result["tilt"].attrs["centre"] = "the roller's mid-length" if case.load_position is None else "load_position"
@@ -145,8 +140,8 @@ def with_stresses(
 ) -> xr.Dataset:
     """Add the stresses, the largest von Mises stress in the body, and the residual on the free ends."""
     # Default positions along x resolve the contact on refined columns, and equal the centres of chosen or given cells.
-    case, grid, pressure, refined = contact.case, contact.grid, contact.contact.pressure, bool(contact.values)
-    scale = case.hertz_half_width
+    case, refined, scale = contact.case, bool(contact.values), contact.case.hertz_half_width
+    grid, pressure = contact.contact.shape.grid, contact.contact.pressure
     loads = contact.tractions.loads if contact.tractions else sliding(pressure, case.friction_on(grid.x))
     search = place_search(case.body, loads, grid)
     columns = default_columns(grid, case.body.extent, pressure.any(axis=1), scale) if x is None and refined else x
@@ -258,7 +253,7 @@ def solve(
         contact = contact_on_cells(case, grid, roughness, tolerance)
     result = contact.dataset()
     contact_seconds = time.perf_counter() - start
-    LOGGER.info("contact: %d x %d cells, %.2f s", *contact.grid.shape, contact_seconds)
+    LOGGER.info("contact: %d x %d cells, %.2f s", *contact.contact.shape.grid.shape, contact_seconds)
     if stresses:
         result = with_stresses(result, contact, x, y, z)
     stages = {"contact": contact_seconds, "stresses": time.perf_counter() - start - contact_seconds}

@@ -99,7 +99,7 @@ def _refine_in_window(case: Case, half_window: float, accuracy: float, tolerance
         coarse_solver = _ColumnSolver(replace(case, body=_mirrored(case.body)), half_window, COARSE_CELLS_Y)
         coarse = refine_coarsely(coarse_solver, shape)
         rows = np.flatnonzero(coarse.pressure.any(axis=0))
-        cells = coarse_solver.grid(coarse.edges)
+        cells = coarse_solver.shape(coarse.edges).grid
         extent = float(np.abs(cells.y[rows]).max()) + 0.5 * cells.dy
         # Coupled friction moves the contact along y.
         factor = WINDOW_FACTOR_COUPLED if case.coupled else WINDOW_FACTOR
@@ -235,19 +235,15 @@ class _ColumnSolver:
     half_window: float
     cells_y: int
 
-    def grid(self, edges: FloatArray) -> Grid:
-        """Cells of the body, with columns under the roller between `edges`."""
-        return graded_grid(self.case, edges, (-self.half_window, self.half_window), self.cells_y)
-
     def shape(self, edges: FloatArray) -> Shape:
-        """Contact to solve on the columns between `edges`."""
-        return contact_shape(self.case, self.grid(edges))
+        """Contact to solve on cells with columns under the roller between `edges`."""
+        window = (-self.half_window, self.half_window)
+        return contact_shape(self.case, graded_grid(self.case, edges, window, self.cells_y))
 
     def __call__(self, edges: FloatArray, start: FloatArray | None, tolerance: float) -> ColumnPressure:
         """Solve without coupled friction, which changes the pressure by a few percent but not the columns."""
         shape = self.shape(edges)._replace(coupled_friction=0.0)
-        grid = shape.grid
-        gap = shape.gap.values
+        grid, gap = shape.grid, shape.gap.values
         columns = _roller_columns(grid, edges)
         guess = _pad_to_grid(start, grid, edges) if start is not None and start.any() else None
         resultants = shape.prescribed.resultants(grid)

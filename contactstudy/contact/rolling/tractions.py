@@ -275,11 +275,10 @@ def _complete_tractions(
     problem: CoulombProblem, solution: CoulombSolution, motion: Shift | Rolling, cells: RollingCells, surfaces: Surfaces
 ) -> Tractions:
     """Tractions of a solution, with resultants and certificate recomputed from the tractions."""
-    cell_slip = problem.slip(solution.traction, solution.amplitudes)
     scale = problem.slip_scale(solution.amplitudes)
-    bound_error, slip_error = law_violation(solution.traction, cell_slip, problem.bound, solution.sticks, scale)
+    bound_error, slip_error = law_violation(solution.traction, solution.slip, problem.bound, solution.sticks, scale)
     traction = cells.ratio * cells.on_grid(solution.traction)
-    slip, sticks = cells.on_grid(np.where(solution.sticks, 0.0, cell_slip)), cells.on_grid(solution.sticks)
+    slip, sticks = cells.on_grid(np.where(solution.sticks, 0.0, solution.slip)), cells.on_grid(solution.sticks)
     rigid = motion.amplitudes | dict(zip(motion.modes, solution.amplitudes.tolist(), strict=True))
     tractions = Tractions.of(surfaces, rigid, bound=cells.bound, traction=traction, slip=slip, sticks=sticks)
     max_resultants = (np.abs(surfaces.weights).sum(axis=1) * np.hypot(*traction)).sum(axis=(1, 2)).tolist()
