@@ -133,7 +133,9 @@ def solve_coulomb(problem: CoulombProblem, start: Guess | None = None) -> Coulom
     while steps < problem.max_steps and not converged:
         steps += 1
         active_set = sticks
-        traction, amplitudes = _newton_step(problem, traction, slip, sticks, amplitudes, diagonal, accuracy)
+        traction, amplitudes = _newton_step(
+            problem, traction, slip, sticks, amplitudes, diagonal=diagonal, accuracy=accuracy
+        )
         size = np.hypot(*traction)
         begins_slip = (size > bound) & sticks
         if len(problem.modes):
@@ -206,6 +208,7 @@ def _newton_step(
     slip: FloatArray,
     sticks: BoolArray,
     amplitudes: FloatArray,
+    *,
     diagonal: FloatArray,
     accuracy: float,
 ) -> tuple[FloatArray, FloatArray]:
