@@ -76,20 +76,17 @@ class Overlapping:
     z: Positions = (0.0,)
     load: str = "pressure"
     _operators: OverlappingOperators = field(init=False, repr=False)
+    _load: Load = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         """Build the equation sets."""
         checks.instance("body", self.body, Body, "a QuarterSpace or a FiniteLengthSpace")
         checks.instance("grid", self.grid, Grid, "a Grid")
-        checks.known_name("load", self.load, LOADS)
-        operators = overlapping_operators(self.body, self.grid, checks.coordinates("z", self.z), self._load)
+        load = LOADS[checks.known_name("load", self.load, LOADS)]
+        operators = overlapping_operators(self.body, self.grid, checks.coordinates("z", self.z), load)
         if operators is None:
             raise InvalidInputError("body", self.body, "a body with a free end and an overlapping model")
-        object.__setattr__(self, "_operators", operators)
-
-    @property
-    def _load(self) -> Load:
-        return LOADS[self.load]
+        checks.store(self, _operators=operators, _load=load)
 
     @cached_property
     def modes(self) -> LinearOperator:

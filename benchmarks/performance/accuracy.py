@@ -173,7 +173,7 @@ def compare_values(random_case: RandomCase, accuracy: float, reference: float) -
 
 
 def _values(case: Case, accuracy: float) -> xr.Dataset:
-    return refined_values(refine_contact(case, accuracy, 1e-6))
+    return refined_values(case, refine_contact(case, accuracy, 1e-6))
 
 
 def _table(comparisons: list[Comparison], refused: list[str], took: dict[str, float]) -> str:

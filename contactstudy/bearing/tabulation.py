@@ -53,8 +53,7 @@ class ContactSolver:
     def solve_at_approach(self, approach: float, tilt: float, load: float) -> Node:
         """Load, moment about mid-length and strain energy at an approach, from a first guess of the load."""
         with _name_unsolvable_contact(load, tilt):
-            solution = search_load(replace(self.case, tilt=tilt), approach, load, self.accuracy, self.tolerance)
-        contact = solution.refined.contact
+            contact = search_load(replace(self.case, tilt=tilt), approach, load, self.accuracy, self.tolerance).contact
         contact.warn_unless_converged()
         grid = contact.shape.grid
         forces = grid.weights * contact.pressure * grid.cell_area

@@ -31,7 +31,7 @@ from contactstudy.case.motion import (
 from contactstudy.checks import FloatArray
 from contactstudy.contact.normal.contact import Contact, Settings, Shape, contact_of
 from contactstudy.contact.normal.prescribed_loads import PrescribedLoad
-from contactstudy.contact.rolling.frictional_contact import frictional_contact, with_tractions
+from contactstudy.contact.rolling.frictional_contact import frictional_contact
 from contactstudy.contact.rolling.tractions import FrictionRequest
 from contactstudy.errors import InvalidInputError
 from contactstudy.fields.loads import prescribed_loads
@@ -237,7 +237,7 @@ def solve_contact(
     request = FrictionRequest(motion=motion, friction=cell_friction, reference_x=middle, coupled=coupled, start=start)
     frictional = frictional_contact(shape, iteration, request)
     frictional.warn_unless_converged()
-    return with_tractions(contact_dataset(frictional.contact, cell_friction, x=x, y=y), frictional)
+    return frictional.with_tractions(contact_dataset(frictional.contact, cell_friction, x=x, y=y))
 
 
 def _start_loads(after: xr.Dataset, motion: Motion, grid: Grid, body: Body) -> dict[Load, FloatArray]:

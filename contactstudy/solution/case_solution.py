@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import logging
 import time
-from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from typing import Literal
 
 import numpy as np
 import xarray as xr
@@ -24,7 +22,6 @@ from contactstudy.contact.normal.contact import Contact, Settings, contact_of
 from contactstudy.contact.refinement.refined_contact import (
     COARSE_ACCURACY,
     COARSE_TOLERANCE,
-    ApproachContact,
     approach_load_error,
     contact_at_approach,
     contact_shape,
@@ -32,18 +29,15 @@ from contactstudy.contact.refinement.refined_contact import (
     refined_values,
 )
 from contactstudy.contact.refinement.refined_tractions import refine_tractions
-from contactstudy.contact.rolling.frictional_contact import FrictionalContact, frictional_contact, with_tractions
+from contactstudy.contact.rolling.frictional_contact import FrictionalContact, frictional_contact
 from contactstudy.contact.rolling.tractions import FrictionRequest
 from contactstudy.contact.solve import contact_dataset
 from contactstudy.errors import InvalidInputError, WindowError
-from contactstudy.fields.loads import TopLoad, sliding
+from contactstudy.fields.loads import sliding
 from contactstudy.fields.positions import Positions, default_columns, default_depths, field_positions
 from contactstudy.fields.stress import contact_stresses
 from contactstudy.fields.stress_maximum import place_search
-from contactstudy.kernels.load import Load
 from contactstudy.roughness import heights_on
-
-Cells = Literal["refined", "chosen", "given"]  # refined to an accuracy, chosen for a rough surface, or the caller's
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -51,31 +45,18 @@ class CaseContact:
     """Contact of a case."""
 
     case: Case  # the case; a prescribed approach is replaced by the load
-    cells: Cells  # origin of the cells
     contact: Contact  # the contact
     tractions: FrictionalContact | None = None  # tractions with stick and slip; None in full sliding
     values: xr.Dataset = field(default_factory=xr.Dataset)  # values and errors of refined columns; empty on other cells
 
-    @property
-    def grid(self) -> Grid:
-        """Cells of the contact."""
-        return self.contact.shape.grid
-
-    @property
-    def loads(self) -> Mapping[Load, TopLoad]:
-        """Loads on the body."""
-        if self.tractions is not None:
-            return self.tractions.loads
-        return sliding(self.contact.pressure, self.case.friction_on(self.grid.x))
-
     def dataset(self) -> xr.Dataset:
         """Labelled contact with its values; `tilt` includes the tilt of the case."""
-        case, grid = self.case, self.grid
+        case, grid = self.case, self.contact.shape.grid
         result = contact_dataset(self.contact, case.friction_on(grid.x), x=grid.x, y=grid.y)
         result["tilt"] = result["tilt"].copy(data=result["tilt"] + case.tilt)
         result["tilt"].attrs["centre"] = "the roller's mid-length" if case.load_position is None else "load_position"
         if self.tractions is not None:
-            result = with_tractions(result, self.tractions)
+            result = self.tractions.with_tractions(result)
         return result.assign(self.values.data_vars).assign(
             initial_gap=(("x", "y"), self.contact.shape.gap.values.copy()),
             hertz_half_width=case.hertz_half_width,
@@ -85,33 +66,27 @@ class CaseContact:
 
 def refined_case_contact(case: Case, accuracy: float, tolerance: float) -> CaseContact:
     """Contact on columns that are refined to an accuracy."""
-    if case.approach is None:
-        solution = ApproachContact(case, refine_contact(case, accuracy, tolerance))
-    else:
-        solution = contact_at_approach(case, accuracy, tolerance)
-    loaded_case, refined_contact = solution
-    contact, tractions = _check_contact(loaded_case, refined_contact.contact), None
-    values = refined_values(refined_contact)
+    find_contact = refine_contact if case.approach is None else contact_at_approach
+    refined = find_contact(case, accuracy, tolerance)
+    loaded_case = _with_load(case, refined.contact)
+    contact, tractions, errors = _check_contact(case, refined.contact), None, xr.Dataset()
+    load_error = {} if case.approach is None else {"normal_load_error": approach_load_error(loaded_case, refined)}
     if not isinstance(case.motion, Sliding):
-        refined_tractions = refine_tractions(loaded_case, refined_contact, accuracy)
-        tractions = refined_tractions.contact
+        tractions, refined, errors = refine_tractions(loaded_case, refined, accuracy)
         tractions.warn_unless_converged()
         contact = tractions.contact
-        values = refined_values(refined_tractions.normal).assign(refined_tractions.error_dataset().data_vars)
-    if case.approach is not None:
-        values["normal_load_error"] = approach_load_error(solution)
-    return CaseContact(
-        case=_with_load(case, contact), cells="refined", contact=contact, tractions=tractions, values=values
-    )
+    values = refined_values(case, refined).assign(errors.data_vars).assign(load_error)
+    return CaseContact(case=_with_load(case, contact), contact=contact, tractions=tractions, values=values)
 
 
 def contact_on_cells(case: Case, grid: Grid | None, roughness: xr.DataArray | None, tolerance: float) -> CaseContact:
     """Contact on given cells, or on uniform ones chosen for the case."""
-    cells: Cells = "chosen" if grid is None else "given"
     if grid is None:
         # At an approach the load of the smooth roller determines the cells; a rough roller carries another load.
-        at_approach = case.approach is not None
-        grid = choose_grid(contact_at_approach(case, COARSE_ACCURACY, COARSE_TOLERANCE).case if at_approach else case)
+        loaded_case = case
+        if case.approach is not None:
+            loaded_case = _with_load(case, contact_at_approach(case, COARSE_ACCURACY, COARSE_TOLERANCE).contact)
+        grid = choose_grid(loaded_case)
     clearance, tractions = case.gap(grid), None
     if not np.isfinite(clearance).any():
         length = f"{case.contact_length:.3g} m"
@@ -136,7 +111,7 @@ def contact_on_cells(case: Case, grid: Grid | None, roughness: xr.DataArray | No
         tractions = frictional_contact(contact.shape, contact.settings, request)
         tractions.warn_unless_converged()
         contact = tractions.contact
-    return CaseContact(case=_with_load(case, contact), cells=cells, contact=contact, tractions=tractions)
+    return CaseContact(case=_with_load(case, contact), contact=contact, tractions=tractions)
 
 
 def _with_load(case: Case, contact: Contact) -> Case:
@@ -165,12 +140,11 @@ def with_stresses(
 ) -> xr.Dataset:
     """Add the stresses, the largest von Mises stress in the body, and the residual on the free ends."""
     # Default positions along x resolve the contact on refined columns, and equal the centres of chosen or given cells.
-    case, grid, loads, scale = contact.case, contact.grid, contact.loads, contact.case.hertz_half_width
-    refined = contact.cells == "refined"
-
+    case, refined, scale = contact.case, bool(contact.values), contact.case.hertz_half_width
+    grid, pressure = contact.contact.shape.grid, contact.contact.pressure
+    loads = contact.tractions.loads if contact.tractions else sliding(pressure, case.friction_on(grid.x))
     search = place_search(case.body, loads, grid)
-    is_loaded = np.asarray(contact.contact.pressure.any(axis=1))
-    columns = default_columns(grid, case.body.extent, is_loaded, scale) if x is None and refined else x
+    columns = default_columns(grid, case.body.extent, pressure.any(axis=1), scale) if x is None and refined else x
     depths = default_depths(scale, search.peak_width) if z is None else z
     positions = field_positions(case.body, grid, columns, y, depths)
     on_ends = scale * np.array(RESIDUAL_POSITIONS), scale * np.array(RESIDUAL_DEPTHS)
@@ -269,7 +243,8 @@ def solve(
         raise InvalidInputError("accuracy", accuracy, f"omitted with {reason}: the cells are not refined")
     refines = grid is None and roughness is None
     tolerance = checks.positive("tolerance", tolerance)
-    settings: dict[str, object] = {"tolerance": tolerance, "rough": roughness is not None}
+    cells = "refined" if refines else "chosen" if grid is None else "given"
+    settings: dict[str, object] = {"cells": cells, "tolerance": tolerance, "rough": roughness is not None}
     start = time.perf_counter()
     if refines:
         settings["accuracy"] = accuracy = check_accuracy(ACCURACY if accuracy is None else accuracy)
@@ -278,10 +253,10 @@ def solve(
         contact = contact_on_cells(case, grid, roughness, tolerance)
     result = contact.dataset()
     contact_seconds = time.perf_counter() - start
-    LOGGER.info("contact: %d x %d cells, %.2f s", *contact.grid.shape, contact_seconds)
+    LOGGER.info("contact: %d x %d cells, %.2f s", *contact.contact.shape.grid.shape, contact_seconds)
     if stresses:
         result = with_stresses(result, contact, x, y, z)
     stages = {"contact": contact_seconds, "stresses": time.perf_counter() - start - contact_seconds}
     LOGGER.info("stresses: %.2f s", stages["stresses"])
     described = describe(result, "roller on an elastic body: contact and stresses")
-    return with_provenance(described, case, {"cells": contact.cells, **settings}, stages)
+    return with_provenance(described, case, settings, stages)

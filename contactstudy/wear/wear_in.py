@@ -24,9 +24,9 @@ from contactstudy.case.motion import Rolling, Shift, Sliding
 from contactstudy.case.roller import snap_to_ends
 from contactstudy.checks import FloatArray
 from contactstudy.contact.normal.conjugate_gradients import ContactIterate
-from contactstudy.contact.normal.contact import Settings, Shape, check_window, contact_operator
-from contactstudy.contact.normal.prescribed_loads import PrescribedLoad, RigidMotion
-from contactstudy.contact.normal.problem import ContactOperator, ContactProblem, solve_coupled, solve_normal
+from contactstudy.contact.normal.contact import Settings, Shape, check_window, contact_operator, iterate_contact
+from contactstudy.contact.normal.prescribed_loads import PrescribedLoad
+from contactstudy.contact.normal.problem import ContactOperator
 from contactstudy.contact.refinement.refined_contact import refine_contact
 from contactstudy.contact.rolling.frictional_contact import frictional_contact
 from contactstudy.contact.rolling.tractions import FrictionRequest
@@ -93,24 +93,10 @@ class WearIntegrator:
 
     def solve_contact(self, depth: FloatArray, compliance: FloatArray, start: FloatArray | None) -> ContactIterate:
         """Solve the contact with wear: `compliance` (x) is the further depth per load per length, m2/N."""
-        shape, grid = self.shape, self.shape.grid
+        shape = self.shape._replace(gap=ArrayKey(self.shape.gap.values + depth[:, None]))
         with one_blas_thread():
-            operator = WearingOperator(contact_operator(shape), compliance[:, None], grid.dy)  # eq. (604)
-
-            def solve(motion: RigidMotion, guess: FloatArray | None, tolerance: float) -> ContactIterate:
-                problem = ContactProblem(
-                    grid=grid,
-                    gap=shape.gap.values + depth[:, None] - motion.height(grid.x),
-                    resultants=shape.prescribed.resultants(grid),
-                    friction=shape.coupled_friction,
-                    tolerance=tolerance,
-                    max_iterations=self.settings.max_iterations,
-                )
-                if shape.coupled_friction:
-                    return solve_coupled(operator, problem)
-                return solve_normal(operator, problem, start if guess is None else guess)
-
-            solution = shape.solve_relative_to_reference(solve, self.settings.tolerance).iterate
+            operator = WearingOperator(contact_operator(shape), compliance[:, None], shape.grid.dy)  # eq. (604)
+            solution, _ = iterate_contact(shape, operator, self.settings, start)
         check_window(shape.body, solution.pressure)
         return solution
 

@@ -19,9 +19,7 @@ from contactstudy.contact.normal.conjugate_gradients import ContactIterate
 from contactstudy.contact.normal.prescribed_loads import (
     LineMotions,
     PrescribedLoad,
-    ReferencedContact,
     RigidMotion,
-    SolveAtMotion,
     line_motion,
 )
 from contactstudy.contact.normal.problem import ContactOperator, ContactProblem, solve_coupled, solve_normal
@@ -52,29 +50,6 @@ class Certificate:
         bound = CONVERGED_TOLERANCES * tolerance
         violations = (self.load_error, self.penetration_error, self.load_position_error, self.open_pressure_error)
         return all(abs(violation) <= bound for violation in violations)
-
-
-def certify(
-    pressure: FloatArray,
-    opening: FloatArray,
-    displacement: FloatArray,
-    *,
-    carried_load: float,
-    load: float | None,
-    position_error: float,
-    tolerance: float,
-) -> Certificate:
-    """Return the violations of the contact's conditions."""
-    in_contact = pressure > 0
-    variation = float(np.ptp(displacement))
-    violation = max(float(np.abs(opening[in_contact]).max()), float(-opening.min()))  # eq. (34)
-    open_pressure = pressure[opening > OPEN_TOLERANCES * tolerance * variation]
-    return Certificate(
-        load_error=0.0 if load is None else carried_load / load - 1,
-        penetration_error=violation / variation,
-        open_pressure_error=float(open_pressure.max(initial=0.0) / pressure.max()),
-        load_position_error=position_error,
-    )
 
 
 class Shape(NamedTuple):
@@ -113,38 +88,6 @@ class Shape(NamedTuple):
             for axis, even in enumerate((even_x, not self.coupled_friction))
             if even and np.abs(gap - np.flip(gap, axis)).max() <= SYMMETRY_ROUNDING * gap.max()
         ]
-
-    def solve_relative_to_reference(
-        self, solve: SolveAtMotion, tolerance: float, start: FloatArray | None = None
-    ) -> ReferencedContact:
-        """Solve a contact whose approach or tilt is prescribed relative to the reference lines of the bodies."""
-        # The operator is symmetric only relative to the body far away: a fixed-point iteration with Aitken's
-        # relaxation adds the motion of the reference lines to the gap.
-        bodies = [self.body] if self.counterbody is None else [self.body, self.counterbody.body]
-        finite = any(np.isfinite(body.depth) for body in bodies)
-        fixed = (finite and self.prescribed.approach is not None, finite and self.prescribed.load_position is None)
-        low, high = self.grid.x_range
-        weights = np.array([1.0, high - low])
-        trial, previous = np.zeros(2), np.zeros(2)
-        relaxation, applications = 1.0, 0
-        guess, error = start, 1.0 if any(fixed) else 0.0
-        for round_index in range(MAX_ROUNDS):
-            inner_tolerance = max(tolerance, INNER_TOLERANCE * error)
-            iterate = solve(RigidMotion(*trial), guess, inner_tolerance)
-            applications += iterate.applications
-            guess = iterate.pressure
-            motions = self.line_motions(self.loads(guess), guess)
-            motion = np.array(motions.total)
-            residual = np.where(fixed, motion - trial, 0.0)
-            motion_norm = float(np.linalg.norm(weights * motion))
-            error = float(np.linalg.norm(weights * residual)) / motion_norm if motion_norm else 0.0
-            if max(error, inner_tolerance) <= tolerance:
-                return ReferencedContact(replace(iterate, applications=applications), motions)
-            change = weights * (residual - previous)
-            if round_index and change.any():
-                relaxation *= -float(weights * previous @ change) / float(change @ change)
-            trial, previous = trial + relaxation * residual, residual
-        return ReferencedContact(replace(iterate, applications=applications, converged=False), motions)
 
     def line_motions(self, loads: Mapping[Load, FloatArray], pressure: FloatArray) -> LineMotions:
         """Motions of the reference lines under loads on the body; `level` is taken below the pressure's resultant."""
@@ -239,21 +182,12 @@ def contact_of(shape: Shape, settings: Settings, start: ArrayKey | None = None) 
     if prescribed.load_position is not None:
         tilt = iterate.motion[1] / prescribed.max_arm(grid) - motions.total.tilt
         height = height - tilt * (grid.x[:, None] - prescribed.load_position)
-    in_contact, forces = pressure > 0, grid.weights * pressure
-    total = forces.sum()
     approach = prescribed.lowering
     if prescribed.approach is None:
-        approach = float((forces * np.where(in_contact, height, 0.0)).sum() / total)
+        forces = grid.weights * pressure
+        approach = float((forces * np.where(pressure > 0, height, 0.0)).sum() / forces.sum())
     opening = height - approach  # eq. (33)
-    certificate = certify(
-        pressure,
-        opening,
-        relative,
-        carried_load=float(total * grid.cell_area),
-        load=prescribed.load,
-        position_error=_position_error(prescribed, grid, pressure),
-        tolerance=settings.tolerance,
-    )
+    certificate = certify(shape, pressure, opening, relative, settings.tolerance)
     return Contact(
         shape=shape,
         settings=settings,
@@ -269,34 +203,74 @@ def contact_of(shape: Shape, settings: Settings, start: ArrayKey | None = None) 
     )
 
 
-def _position_error(prescribed: PrescribedLoad, grid: Grid, pressure: FloatArray) -> float:
-    """Distance of the pressure's resultant from the prescribed position, over the length of the contact."""
-    if prescribed.load_position is None:
-        return 0.0
-    line = (grid.weights * pressure).sum(axis=1)
-    loaded_columns = np.flatnonzero(line)
-    edges = grid.x_edges
-    length = edges[loaded_columns[-1] + 1] - edges[loaded_columns[0]]
-    return abs(float((line * (grid.x - prescribed.load_position)).sum() / line.sum())) / float(length)
+def certify(
+    shape: Shape, pressure: FloatArray, opening: FloatArray, displacement: FloatArray, tolerance: float
+) -> Certificate:
+    """Return the violations of the contact's conditions."""
+    grid, prescribed, forces = shape.grid, shape.prescribed, (shape.grid.weights * pressure).sum(axis=1)
+    variation = float(np.ptp(displacement))
+    violation = max(float(np.abs(opening[pressure > 0]).max()), float(-opening.min()))  # eq. (34)
+    open_pressure = pressure[opening > OPEN_TOLERANCES * tolerance * variation]
+    position_error = 0.0
+    if prescribed.load_position is not None:
+        loaded_columns = np.flatnonzero(forces)
+        length = grid.x_edges[loaded_columns[-1] + 1] - grid.x_edges[loaded_columns[0]]
+        position_error = abs(float((forces * (grid.x - prescribed.load_position)).sum() / forces.sum())) / float(length)
+    carried_load = float((grid.weights * pressure).sum() * grid.cell_area)
+    return Certificate(
+        load_error=0.0 if prescribed.load is None else carried_load / prescribed.load - 1,
+        penetration_error=violation / variation,
+        open_pressure_error=float(open_pressure.max(initial=0.0) / pressure.max()),
+        load_position_error=position_error,
+    )
 
 
 @cached("contacts")
-def _iterate(shape: Shape, settings: Settings, first: ArrayKey | None) -> ReferencedContact:
+def _iterate(shape: Shape, settings: Settings, start: ArrayKey | None) -> tuple[ContactIterate, LineMotions]:
     """Solve for the pressure of a contact and the motions of the reference lines."""
-    grid, operator = shape.grid, contact_operator(shape)
+    return iterate_contact(shape, contact_operator(shape), settings, None if start is None else start.values)
 
-    def solve(motion: RigidMotion, start: FloatArray | None, tolerance: float) -> ContactIterate:
+
+def iterate_contact(
+    shape: Shape, operator: ContactOperator, settings: Settings, start: FloatArray | None
+) -> tuple[ContactIterate, LineMotions]:
+    """Solve a contact whose approach or tilt is prescribed relative to the reference lines of the bodies."""
+    # The operator is symmetric only relative to the body far away: a fixed-point iteration with Aitken's relaxation
+    # adds the motion of the reference lines to the gap.
+    grid, prescribed, tolerance = shape.grid, shape.prescribed, settings.tolerance
+    bodies = [shape.body] if shape.counterbody is None else [shape.body, shape.counterbody.body]
+    finite = any(np.isfinite(body.depth) for body in bodies)
+    fixed = (finite and prescribed.approach is not None, finite and prescribed.load_position is None)
+    low, high = grid.x_range
+    weights = np.array([1.0, high - low])
+    trial, previous = np.zeros(2), np.zeros(2)
+    relaxation, applications = 1.0, 0
+    guess, error = start, 1.0 if any(fixed) else 0.0
+    for round_index in range(MAX_ROUNDS):
+        inner_tolerance = max(tolerance, INNER_TOLERANCE * error)
         problem = ContactProblem(
             grid=grid,
-            gap=shape.gap.values - shape.prescribed.lowering - motion.height(grid.x),
-            resultants=shape.prescribed.resultants(grid),
+            gap=shape.gap.values - prescribed.lowering - RigidMotion(*trial).height(grid.x),
+            resultants=prescribed.resultants(grid),
             friction=shape.coupled_friction,
-            tolerance=tolerance,
+            tolerance=inner_tolerance,
             max_iterations=settings.max_iterations,
         )
-        return solve_coupled(operator, problem) if shape.coupled_friction else solve_normal(operator, problem, start)
-
-    return shape.solve_relative_to_reference(solve, settings.tolerance, None if first is None else first.values)
+        iterate = solve_coupled(operator, problem) if problem.friction else solve_normal(operator, problem, guess)
+        applications += iterate.applications
+        guess = iterate.pressure
+        motions = shape.line_motions(shape.loads(guess), guess)
+        motion = np.array(motions.total)
+        residual = np.where(fixed, motion - trial, 0.0)
+        motion_norm = float(np.linalg.norm(weights * motion))
+        error = float(np.linalg.norm(weights * residual)) / motion_norm if motion_norm else 0.0
+        if max(error, inner_tolerance) <= tolerance:
+            return replace(iterate, applications=applications), motions
+        change = weights * (residual - previous)
+        if round_index and change.any():
+            relaxation *= -float(weights * previous @ change) / float(change @ change)
+        trial, previous = trial + relaxation * residual, residual
+    return replace(iterate, applications=applications, converged=False), motions
 
 
 def contact_operator(shape: Shape) -> ContactOperator:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
@@ -13,7 +13,7 @@ from contactstudy.arrays.peaks import lagrange_weights
 from contactstudy.bodies.models import Body
 from contactstudy.cache import cached
 from contactstudy.checks import FloatArray
-from contactstudy.contact.normal.conjugate_gradients import ContactIterate, Resultants
+from contactstudy.contact.normal.conjugate_gradients import Resultants
 from contactstudy.errors import InvalidInputError
 from contactstudy.fields.displacement import normal_influence
 from contactstudy.kernels.images import polynomial_count
@@ -80,20 +80,13 @@ class RigidMotion(NamedTuple):
         return np.asarray(self.level + self.tilt * x[:, None])
 
 
-class ReferenceLine(NamedTuple):
-    """Normal displacement of a body's reference line under loads on columns."""
-
-    x: FloatArray  # (point): positions on the line and weights of a quadrature along the line, metres
-    weights: FloatArray
-    influence: FloatArray  # (point, column, cell_y): displacement under a unit load, metres per Pa
-
-
 @cached("reference lines")
-def reference_line(body: Body, columns: Grid, load: Load) -> ReferenceLine:
-    """Return the reference line of a body, with the points that the smooth displacement at its depth needs."""
+def reference_line(body: Body, columns: Grid, load: Load) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Positions and weights of a quadrature along a reference line, and its displacement (point, column, cell_y)."""
+    # The displacement, in metres per Pa, is smooth at the line's depth.
     low, high = np.clip(body.extent, *columns.x_range)
     x, weights = panel_nodes(np.array([low, high]), polynomial_count(0.5 * (high - low), body.depth))
-    return ReferenceLine(x, weights, normal_influence(body, columns, load, x, body.depth))
+    return x, weights, normal_influence(body, columns, load, x, body.depth)
 
 
 @cached("distant columns")
@@ -117,12 +110,10 @@ def line_motion(body: Body, grid: Grid, loads: Mapping[Load, FloatArray], positi
     if not np.isfinite(body.depth):
         return RigidMotion()
     columns, onto_columns = distant_columns(grid, body.depth)
-    lines = {load: reference_line(body, columns, load) for load in loads}
-    displacement = sum(
-        (np.tensordot(lines[load].influence, onto_columns @ cells, axes=2) for load, cells in loads.items()),
-        start=np.zeros(1),
-    )
-    x, weights, _ = next(iter(lines.values()))
+    displacement: FloatArray = np.zeros(1)
+    for load, cells in loads.items():
+        x, weights, influence = reference_line(body, columns, load)
+        displacement = displacement + np.tensordot(influence, onto_columns @ cells, axes=2)
     arm = x - np.average(x, weights=weights)
     tilt = float((weights * arm) @ displacement / ((weights * arm) @ arm))
     position_on_line = np.clip([position], *np.clip(body.extent, *grid.x_range))
@@ -134,15 +125,3 @@ class LineMotions(NamedTuple):
 
     body: RigidMotion
     total: RigidMotion
-
-
-class ReferencedContact(NamedTuple):
-    """A contact and the motions of its reference lines."""
-
-    iterate: ContactIterate
-    motions: LineMotions
-
-
-SolveAtMotion = Callable[[RigidMotion, FloatArray | None, float], ContactIterate]
-"""Function from a motion of the lines, a first guess of the pressure and a tolerance to the contact on the gap less
-the motion."""

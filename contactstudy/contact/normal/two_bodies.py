@@ -46,10 +46,12 @@ class PairOperator:
     # The same overlaps move loads to the second body's cells and displacements back: the sum is symmetric. A
     # traction acts on the second body in the opposite direction.
 
-    def __init__(self, body: SurfaceOperator, counterbody: SurfaceOperator, transfer: CellTransfer | None) -> None:
-        self.body, self.counterbody, self._transfer = body, counterbody, transfer
-        first, second = (operator.body.material.plane_strain_modulus for operator in (body, counterbody))
-        self._softer = 1 + first / second
+    def __init__(
+        self, body: SurfaceOperator, counterbody: SurfaceOperator | None, transfer: CellTransfer | None, factor: float
+    ) -> None:
+        # Without an operator of its own the second body is displaced like the first one. `factor`: the normal
+        # displacement of both bodies over that of the first one.
+        self.body, self._counterbody, self._transfer, self._factor = body, counterbody, transfer, factor
 
     @classmethod
     def of(
@@ -63,12 +65,13 @@ class PairOperator:
         """Operator of two bodies for `loads` and displacements of given directions, on the cells of the first."""
         first = surface_operator(body, grid, loads, directions=directions)
         transfer = CellTransfer.of(counterbody, grid)
+        factor = 1 + body.material.plane_strain_modulus / counterbody.body.material.plane_strain_modulus
         # Equal bodies share one operator although the cells may differ by rounding.
         same_body = replace(counterbody.body, reference_depth=body.reference_depth) == body
         if transfer is None and same_body and counterbody.start == 0:
-            return cls(first, first, None)
-        second_grid = counterbody.grid_on_body(grid)
-        return cls(first, surface_operator(counterbody.body, second_grid, loads, directions=directions), transfer)
+            return cls(first, None, None, factor)
+        second = surface_operator(counterbody.body, counterbody.grid_on_body(grid), loads, directions=directions)
+        return cls(first, second, transfer, factor)
 
     def __call__(self, loads: Mapping[Load, FloatArray]) -> FloatArray:
         """Displacement (m) of the cells towards each other under `loads` on the first body (Pa)."""
@@ -78,7 +81,7 @@ class PairOperator:
         self, loads: Mapping[Load, FloatArray], directions: Sequence[Load]
     ) -> dict[Load, FloatArray]:
         """Relative displacements (m) in some `directions` under `loads` on the first body (Pa)."""
-        if self.counterbody is self.body and self._transfer is None:
+        if self._counterbody is None:
             return self._displacements_of_equal_bodies(loads, directions)
         transfer = self._transfer
         reaction = {
@@ -86,7 +89,7 @@ class PairOperator:
             for load, cell_loads in loads.items()
         }
         relative = self.body.compute_displacements(loads, directions)
-        for direction, values in self.counterbody.compute_displacements(reaction, directions).items():
+        for direction, values in self._counterbody.compute_displacements(reaction, directions).items():
             second = values if transfer is None else transfer.to_first @ values
             relative[direction] = relative[direction] + _reverse_tangential(direction, second)
         return relative
@@ -101,43 +104,27 @@ class PairOperator:
             observed = [direction for direction in directions if (direction is Load.NORMAL) == is_normal]
             if acting and observed:
                 for direction, displacement in self.body.compute_displacements(acting, observed).items():
-                    relative[direction] = 2 * displacement
+                    relative[direction] = self._factor * displacement
         return relative
 
     def precondition(self, gap: FloatArray) -> FloatArray:
         """Approximate pressure that closes the gap."""
-        return self.body.precondition(gap) / self._softer
+        return self.body.precondition(gap) / self._factor
+
+    @property
+    def has_paired_cells(self) -> bool:
+        """Whether the second body's cells can be joined in pairs."""
+        return self._counterbody is None or self._counterbody.grid.cells_x % 2 == 0
 
     @cached_property
-    def coarse(self) -> PairOperator | ScaledOperator:
+    def coarse(self) -> PairOperator:
         """Approximate operator on cells of twice the size; if cells cannot be paired, a multiple of the first one."""
-        if self.counterbody.grid.cells_x % 2:
-            return ScaledOperator(self.body.coarse, self._softer)
+        if self._counterbody is None or not self.has_paired_cells:
+            return PairOperator(self.body.coarse, None, None, self._factor)
         transfer = self._transfer and CellTransfer(
             2 * cell_means(self._transfer.to_second), 2 * cell_means(self._transfer.to_first)
         )
-        return PairOperator(self.body.coarse, self.counterbody.coarse, transfer)
-
-
-@dataclass(frozen=True, eq=False)
-class ScaledOperator:
-    """An operator times a factor."""
-
-    operator: SurfaceOperator
-    factor: float
-
-    def __call__(self, loads: Mapping[Load, FloatArray]) -> FloatArray:
-        """Displacement (m) of the cell centres under `loads` (Pa)."""
-        return self.factor * self.operator(loads)
-
-    def precondition(self, gap: FloatArray) -> FloatArray:
-        """Approximate pressure for a normal displacement `gap`."""
-        return self.operator.precondition(gap) / self.factor
-
-    @property
-    def coarse(self) -> ScaledOperator:
-        """The operator on cells of twice the size."""
-        return ScaledOperator(self.operator.coarse, self.factor)
+        return PairOperator(self.body.coarse, self._counterbody.coarse, transfer, self._factor)
 
 
 @dataclass(frozen=True, eq=False)

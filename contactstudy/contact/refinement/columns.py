@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 
@@ -66,42 +67,37 @@ def first_edges(shape: AxialShape) -> FloatArray:
     if shape.corners:
         edges = split_columns(_with_edges(edges, shape.corners), np.zeros(0, dtype=bool))
     while True:
-        heights = _heights(shape, edges)
-        lowest = _min_heights(shape, edges, heights)
+        _, lowest, is_bent = _sample(shape, edges)
         # Columns are split only where the shape is low enough for certain contact.
-        is_marked = _leaves_chord(shape, edges, heights) & (lowest - lowest.min() < 3 * shape.depth)
+        is_marked = is_bent & (lowest - lowest.min() < 3 * shape.depth)
         is_marked &= np.diff(edges) > MIN_CHORD_WIDTH * shape.half_width
         if not is_marked.any() or edges.size > MAX_COLUMNS:
             return edges
         edges = split_columns(edges, is_marked)
 
 
-def _heights(shape: AxialShape, edges: FloatArray) -> FloatArray:
-    """Heights of the shape at points along each column: array (column, point)."""
+class SampledColumns(NamedTuple):
+    """The shape in each column."""
+
+    heights: FloatArray  # (column, point): heights at points along each column, metres
+    lowest: FloatArray  # (column): least height, nodes included, metres
+    is_bent: BoolArray  # (column): whether the shape leaves its chord
+
+
+def _sample(shape: AxialShape, edges: FloatArray) -> SampledColumns:
+    """Sample the shape at points along each column and at its nodes."""
     # The outer points lie just inside the column: the shape may step at its ends.
     inside = np.clip(SAMPLE_POSITIONS, 1e-9, 1 - 1e-9)
     positions = edges[:-1, None] + np.diff(edges)[:, None] * inside
-    return shape.height(positions.ravel()).reshape(positions.shape)
-
-
-def _leaves_chord(shape: AxialShape, edges: FloatArray, heights: FloatArray) -> BoolArray:
-    """Mark columns inside which the shape leaves its chord."""
-    rise = heights[:, -1] - heights[:, 0]
+    heights = shape.height(positions.ravel()).reshape(positions.shape)
+    rise, lowest = heights[:, -1] - heights[:, 0], heights.min(axis=1)
     deviations = np.abs(heights - heights[:, :1] - rise[:, None] * SAMPLE_POSITIONS).max(axis=1)
     if shape.nodes.size:
         columns = np.clip(np.searchsorted(edges, shape.nodes, side="right") - 1, 0, edges.size - 2)
         fraction = (shape.nodes - edges[columns]) / np.diff(edges)[columns]
         np.maximum.at(deviations, columns, np.abs(shape.node_heights - heights[columns, 0] - rise[columns] * fraction))
-    return np.asarray(deviations > CHORD_TOLERANCE * shape.depth)
-
-
-def _min_heights(shape: AxialShape, edges: FloatArray, heights: FloatArray) -> FloatArray:
-    """Least height inside each column, nodes included."""
-    lowest = heights.min(axis=1)
-    if shape.nodes.size:
-        column = np.clip(np.searchsorted(edges, shape.nodes, side="right") - 1, 0, edges.size - 2)
-        np.minimum.at(lowest, column, shape.node_heights)
-    return np.asarray(lowest)
+        np.minimum.at(lowest, columns, shape.node_heights)
+    return SampledColumns(heights, lowest, deviations > CHORD_TOLERANCE * shape.depth)
 
 
 def _with_edges(edges: FloatArray, corners: tuple[float, ...]) -> FloatArray:
@@ -120,17 +116,16 @@ def find_overlooked(shape: AxialShape, edges: FloatArray, loaded: BoolArray, ope
     """Mark columns in which a solved contact misses details of the shape: a bend under pressure, or an open crest."""
     # An open column is overlooked if the shape lies below the displaced surface, except next to a contact that ends
     # in the column.
-    heights = _heights(shape, edges)
+    heights, lowest, is_bent = _sample(shape, edges)
     rigid_height = heights.mean(axis=1) - opening
     lowest_point = heights.argmin(axis=1)
     neighbour = np.zeros_like(loaded)
     neighbour[1:] |= loaded[:-1] & (lowest_point[1:] == 0)
     neighbour[:-1] |= loaded[1:] & (lowest_point[:-1] == SAMPLE_POSITIONS.size - 1)
-    lowest = _min_heights(shape, edges, heights)
     neighbour &= lowest >= heights.min(axis=1)
     is_missed = ~loaded & ~neighbour & (rigid_height - lowest > PENETRATION_TOLERANCE * shape.depth)
     is_wide = np.diff(edges) > MIN_CHORD_WIDTH * shape.half_width
-    return np.asarray(is_wide & (is_missed | (loaded & _leaves_chord(shape, edges, heights))))
+    return np.asarray(is_wide & (is_missed | (loaded & is_bent)))
 
 
 def split_columns(edges: FloatArray, is_marked: BoolArray) -> FloatArray:

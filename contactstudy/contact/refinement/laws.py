@@ -7,9 +7,8 @@ follows from the two materials or is fitted. Where the slope of the gap jumps by
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -18,6 +17,7 @@ from contactstudy import checks
 from contactstudy.arrays.grid import centres_of
 from contactstudy.arrays.peaks import section_maxima
 from contactstudy.checks import FloatArray
+from contactstudy.contact.refinement.columns import AxialShape
 from contactstudy.errors import InvalidInputError
 
 RIGID = 0.5  # exponent at a sharp rigid end
@@ -50,7 +50,6 @@ class Sample(NamedTuple):
 class EndLaw:
     """Law of the pressure at a singular end."""
 
-    kind: str  # "power" or "logarithm"
     exponent: float  # ``m`` of ``p = K d**-m`` from theory or a fit; NaN before the fit, 0 for a logarithm
     intensity: float = np.nan  # ``K`` and its estimated error, Pa m**m; NaN for a logarithm
     intensity_error: float = np.nan
@@ -60,7 +59,7 @@ class EndLaw:
         """Law with the intensity fitted to the pressure (column, y) at distances much smaller than `face_beyond`."""
         # The intensity of a lifted end is 0; on too few columns for a fit it follows from the outermost column. Both
         # have infinite errors.
-        if self.kind != "power":
+        if self.exponent == 0:
             return self
         # Friction moves the contact along y, by different distances at the ends.
         row = pressure[:, int(pressure[0].argmax())]
@@ -103,30 +102,28 @@ def law_of(samples: list[Sample], exponent: float) -> EndLaw | None:
     """Law of a loaded end; None for a finite pressure."""
     # Without an exponent of the materials (NaN) the growth of the outermost column between splittings determines it.
     if not np.isnan(exponent):
-        return EndLaw(kind="power", exponent=exponent) if samples[-1].pressure > 0 else None
-    pressures = [sample.pressure for sample in samples]
-    if len(samples) < 4 or pressures[-1] <= pressures[-2] or min(pressures[-3:]) <= 0:
+        return EndLaw(exponent=exponent) if samples[-1].pressure > 0 else None
+    widths, pressures = np.array(samples).T
+    if len(samples) < 4 or pressures[-1] <= pressures[-2] or pressures[-3:].min() <= 0:
         return None
-    growth = [
-        np.log(finer.pressure / coarser.pressure) / np.log(coarser.width / finer.width)
-        for coarser, finer in pairwise(samples[-3:])
-    ]
-    if min(growth) > MIN_GROWTH_EXPONENT:
-        return EndLaw(kind="power", exponent=exponent)
-    steps = [
-        (finer.pressure - coarser.pressure) / np.log(coarser.width / finer.width)
-        for coarser, finer in pairwise(samples)
-    ]
-    if len(steps) >= 4 and sum(steps[-2:]) > MIN_STEP_RATIO * sum(steps[-4:-2]) > 0:
-        return EndLaw(kind="logarithm", exponent=0.0)
+    refinements = np.log(widths[:-1] / widths[1:])
+    if (np.log(pressures[-2:] / pressures[-3:-1]) > MIN_GROWTH_EXPONENT * refinements[-2:]).all():
+        return EndLaw(exponent=exponent)
+    steps = np.diff(pressures) / refinements
+    if steps.size >= 4 and steps[-2:].sum() > MIN_STEP_RATIO * steps[-4:-2].sum() > 0:
+        return EndLaw(exponent=0.0)
     return None
+
+
+def _columns_between(edges: FloatArray, row: FloatArray, start: float, stop: float) -> FloatArray:
+    """Edges and pressures (3, column) of the loaded columns between two distances."""
+    columns = np.stack([edges[:-1], edges[1:], row])
+    return columns[:, (edges[:-1] >= 0.999 * start) & (edges[1:] <= 1.001 * stop) & (row > 0)]
 
 
 def _fit(edges: FloatArray, row: FloatArray, width: float, exponent: float) -> tuple[float, float]:
     """Fit ``K d**-m (1 + c d)`` to the columns' means by relative least squares; return K and the residual."""
-    low, high = edges[:-1], edges[1:]
-    in_range = (low >= 0.999 * FIT_START * width) & (high <= 1.001 * FIT_STOP * width) & (row > 0)
-    low, high, values = low[in_range], high[in_range], row[in_range]
+    low, high, values = _columns_between(edges, row, FIT_START * width, FIT_STOP * width)
     if values.size < MIN_FIT_COLUMNS:
         return np.nan, np.inf
     powers = [1 - exponent, 2 - exponent]
@@ -200,7 +197,7 @@ def corner_law(
     is_loaded = [bool(values[0].any()) for _, values in both_sides]
     if not all(is_loaded):
         face_beyond = max(float(distances[-1]) for distances, _ in both_sides)
-        end = EndLaw(kind="power", exponent=exponent).with_intensity(*both_sides[is_loaded.index(True)], face_beyond)
+        end = EndLaw(exponent=exponent).with_intensity(*both_sides[is_loaded.index(True)], face_beyond)
         return CornerLaw(x=x, slope=slope, intensity=intensity, end=end)
     centre = int((pressure[index - 1] + pressure[index]).argmax())
     sides = [(distances, values[:, centre]) for distances, values in both_sides]
@@ -216,9 +213,7 @@ def corner_law(
 
 def _log_distance(edges: FloatArray, row: FloatArray, width: float, intensity: float) -> float:
     """Logarithm of d0 on one side: the value at distance 0 of a line fitted to the values of the columns."""
-    low, high = edges[:-1], edges[1:]
-    in_range = (low >= 0.999 * CORNER_FIT_START * width) & (high <= 1.001 * CORNER_FIT_STOP * width) & (row > 0)
-    low, high, row = low[in_range], high[in_range], row[in_range]
+    low, high, row = _columns_between(edges, row, CORNER_FIT_START * width, CORNER_FIT_STOP * width)
     if row.size < 2:
         return np.nan
     mean_log = (high * np.log(high) - low * np.log(low)) / (high - low) - 1
@@ -263,38 +258,40 @@ def corner_peak(intensity: float, distance: float, slope: float, blend_radius: f
     return float(corner_intensity * (np.log(2 * distance / width) + 1))  # eq. (42b)
 
 
-Pair = tuple[float, float]
-Laws = tuple[EndLaw | None, EndLaw | None]
+ValuePairs = Mapping[str, list[float]]
+"""Values of the first and the last half or end, by their names in results: the largest pressure of a half, the pressure
+at an end, and the load on the last half-width at an end, over the width of a cell along y."""
 
 
-def extrapolate_end_pressures(
-    edges: FloatArray, pressure: FloatArray, laws: Sequence[EndLaw | None]
-) -> tuple[Pair, Pair, float]:
-    """Return each half's peak, each end's pressure, and the relative increase of the peak by a parabola along y."""
-    line = section_maxima(pressure)
-    lateral_excess = float(line.max() / pressure.max()) - 1
-    half = 0.5 * (edges[-1] - edges[0])
-    peaks, ends = [], []
-    for side in (0, 1):
+def evaluate_pairs(
+    edges: FloatArray, pressure: FloatArray, shape: AxialShape, laws: Sequence[EndLaw | None]
+) -> tuple[ValuePairs, float]:
+    """Values of a pressure (column, y), and relative increase of the peak by a parabola along y."""
+    line, sums = section_maxima(pressure), pressure.sum(axis=1)
+    half, mid_x = 0.5 * (edges[-1] - edges[0]), 0.5 * (edges[0] + edges[-1])
+    loaded_corners = [corner for corner in shape.corners if is_loaded_at(corner, edges, pressure)]
+    values: dict[str, list[float]] = {"peak_pressure": [], "end_pressure": [], "end_load": []}
+    for side, law in enumerate(laws):
         distances, row = count_from_end(side, edges, line)
-        end_pressure = _extrapolate_to_end(distances, row)
+        end_pressure = np.inf if law else _extrapolate_to_end(distances, row)
         half_row = row[centres_of(distances) < half]
         # Where the pressure rises through mid-length, the peak of a half lies at mid-length.
-        half_peak = max(float(half_row.max()), float(np.interp(half, centres_of(distances), row)))
+        peak = max(float(half_row.max()), float(np.interp(half, centres_of(distances), row)))
         # The peak exceeds the mean of the outermost column only if the pressure rises to the end.
-        peaks.append(np.inf if laws[side] else max(half_peak, end_pressure) if half_row.argmax() == 0 else half_peak)
-        ends.append(np.inf if laws[side] else end_pressure)
-    return (peaks[0], peaks[1]), (ends[0], ends[1]), lateral_excess
+        if half_row.argmax() == 0:
+            peak = max(peak, end_pressure)
+        is_unbounded = law or any(corner >= mid_x if side else corner <= mid_x for corner in loaded_corners)
+        values["peak_pressure"].append(np.inf if is_unbounded else peak)
+        values["end_pressure"].append(end_pressure)
+        column_sums = count_from_end(side, edges, sums)[1]
+        values["end_load"].append(float(column_sums @ np.diff(np.minimum(distances, shape.half_width))))
+    return values, float(line.max() / pressure.max()) - 1
 
 
-def end_loads(edges: FloatArray, pressure: FloatArray, half_width: float) -> Pair:
-    """Load on the last half-width at either end, divided by the cell width along y."""
-    sums = pressure.sum(axis=1)
-    loads = []
-    for side in (0, 1):
-        distances, row = count_from_end(side, edges, sums)
-        loads.append(float(row @ np.diff(np.minimum(distances, half_width))))
-    return loads[0], loads[1]
+def is_loaded_at(corner: float, edges: FloatArray, pressure: FloatArray) -> bool:
+    """Whether a column next to a corner has a pressure (column, y)."""
+    index = int(np.abs(edges - corner).argmin())
+    return bool(pressure[index - 1 : index + 1].any())
 
 
 def count_from_end(side: int, edges: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]:

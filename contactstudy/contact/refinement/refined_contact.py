@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields, is_dataclass, replace
-from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -57,11 +56,10 @@ share of the accuracy for this increase. Accuracy."""
 
 @dataclass(frozen=True, eq=False)
 class RefinedContact:
-    """A contact on refined columns, their values and errors, and the law of a corner."""
+    """A contact on refined columns, and their values and errors."""
 
     contact: Contact
     refined: RefinedColumns
-    corner: CornerLaw | None = None
 
 
 def refine_contact(case: Case, accuracy: float, tolerance: float) -> RefinedContact:
@@ -101,7 +99,7 @@ def _refine_in_window(case: Case, half_window: float, accuracy: float, tolerance
         coarse_solver = _ColumnSolver(replace(case, body=_mirrored(case.body)), half_window, COARSE_CELLS_Y)
         coarse = refine_coarsely(coarse_solver, shape)
         rows = np.flatnonzero(coarse.pressure.any(axis=0))
-        cells = coarse_solver.grid(coarse.edges)
+        cells = coarse_solver.shape(coarse.edges).grid
         extent = float(np.abs(cells.y[rows]).max()) + 0.5 * cells.dy
         # Coupled friction moves the contact along y.
         factor = WINDOW_FACTOR_COUPLED if case.coupled else WINDOW_FACTOR
@@ -118,19 +116,24 @@ def _refine_in_window(case: Case, half_window: float, accuracy: float, tolerance
     full = solver.shape(refined.edges)
     guess = ArrayKey(_pad_to_grid(refined.pressure, full.grid, refined.edges))
     contact = contact_of(full, Settings(tolerance), guess)
-    if contact.shape.coupled_friction or contact.motions.total.tilt:
-        refined = replace_pressure(refined, contact.pressure[_roller_columns(contact.shape.grid, refined.edges)], shape)
-    return RefinedContact(contact, refined, _strongest_corner(case, refined) if shape.corners else None)
+    refined_contact = RefinedContact(contact, refined)
+    if full.coupled_friction or contact.motions.total.tilt:
+        return replace_contact(refined_contact, contact, case)
+    return refined_contact
+
+
+def _convex_corners(case: Case) -> list[tuple[float, float]]:
+    """Positions and jumps of the slope of the convex corners of a profile that is not measured."""
+    if as_shape(case.roller.profile).second_interpolation() is not None:
+        return []
+    return [(x, jump) for x, jump in zip(*(values.tolist() for values in case.slope_jumps), strict=True) if jump > 0]
 
 
 def _strongest_corner(case: Case, refined: RefinedColumns) -> CornerLaw | None:
     """Law of the loaded convex corner with the largest intensity; None without one."""
-    slope_jumps = zip(*(values.tolist() for values in case.slope_jumps), strict=True)
     exponent = RIGID if case.roller.body is None else np.nan
     laws = [
-        corner_law(corner, case.modulus, exponent, refined.edges, refined.pressure)
-        for corner in slope_jumps
-        if corner[1] > 0
+        corner_law(corner, case.modulus, exponent, refined.edges, refined.pressure) for corner in _convex_corners(case)
     ]
     return max(filter(None, laws), key=lambda law: law.intensity, default=None)
 
@@ -165,9 +168,10 @@ def _cell_number_y(fraction: float, accuracy: float) -> int:
     return next((cells for cells in CELLS_Y if cells >= needed), CELLS_Y[-1])
 
 
-def refined_values(refined_contact: RefinedContact) -> xr.Dataset:
+def refined_values(case: Case, refined_contact: RefinedContact) -> xr.Dataset:
     """Label the values and their errors; a singular end has the values of its law instead of a pressure."""
-    refined, corner = refined_contact.refined, refined_contact.corner
+    refined = refined_contact.refined
+    corner = _strongest_corner(case, refined)
     values = {"peak_pressure": refined.peak, "peak_pressure_error": refined.peak_error}
     dy = refined_contact.contact.shape.grid.dy
     for side, end in enumerate(("first", "last")):
@@ -219,9 +223,8 @@ def contact_shape(
 def replace_contact(refined_contact: RefinedContact, contact: Contact, case: Case) -> RefinedContact:
     """Refined contact with another pressure on the same columns, from friction or finer cells along y."""
     refined = refined_contact.refined
-    shape = _axial_shape(case)
-    refined = replace_pressure(refined, contact.pressure[_roller_columns(contact.shape.grid, refined.edges)], shape)
-    return RefinedContact(contact, refined, _strongest_corner(case, refined) if shape.corners else None)
+    pressure = contact.pressure[_roller_columns(contact.shape.grid, refined.edges)]
+    return RefinedContact(contact, replace_pressure(refined, pressure, _axial_shape(case)))
 
 
 @dataclass(frozen=True)
@@ -232,19 +235,15 @@ class _ColumnSolver:
     half_window: float
     cells_y: int
 
-    def grid(self, edges: FloatArray) -> Grid:
-        """Cells of the body, with columns under the roller between `edges`."""
-        return graded_grid(self.case, edges, (-self.half_window, self.half_window), self.cells_y)
-
     def shape(self, edges: FloatArray) -> Shape:
-        """Contact to solve on the columns between `edges`."""
-        return contact_shape(self.case, self.grid(edges))
+        """Contact to solve on cells with columns under the roller between `edges`."""
+        window = (-self.half_window, self.half_window)
+        return contact_shape(self.case, graded_grid(self.case, edges, window, self.cells_y))
 
     def __call__(self, edges: FloatArray, start: FloatArray | None, tolerance: float) -> ColumnPressure:
         """Solve without coupled friction, which changes the pressure by a few percent but not the columns."""
         shape = self.shape(edges)._replace(coupled_friction=0.0)
-        grid = shape.grid
-        gap = shape.gap.values
+        grid, gap = shape.grid, shape.gap.values
         columns = _roller_columns(grid, edges)
         guess = _pad_to_grid(start, grid, edges) if start is not None and start.any() else None
         resultants = shape.prescribed.resultants(grid)
@@ -294,12 +293,10 @@ def _axial_shape(case: Case) -> AxialShape:
     rounding = 1e-9 * (stop - start)
     distances = case.roller_start - low, high - (case.roller_start + case.roller.length)
     beyond = [distance if distance > rounding else 0.0 for distance in distances]
-    corners = case.slope_jumps
     # The factor on images in the body differs from the factor on images in the roller.
     has_fading_end = (
         isinstance(body, BodyWithFreeEnds) and body.model == "mirror-factor" and case.roller.body is not None
     )
-    is_resolved = as_shape(case.roller.profile).second_interpolation() is None
     return AxialShape(
         start=start,
         stop=stop,
@@ -308,7 +305,7 @@ def _axial_shape(case: Case) -> AxialShape:
         height=case.gap_on_axis,
         face_beyond=(beyond[0], beyond[1]),
         exponents=(_end_exponent(case, distances[0], rounding), _end_exponent(case, distances[1], rounding)),
-        corners=tuple(corners.positions[corners.jumps > 0].tolist()) if is_resolved else (),
+        corners=tuple(x for x, _ in _convex_corners(case)),
         nodes=case.nodes,
         has_fading_end=has_fading_end,
     )
@@ -328,21 +325,14 @@ WINDOW_FACTOR_COARSE = 1.5  # factor on the window for half as many cells along 
 SLICES, SLICE_WIDTH = 200, 0.3  # slices for a first load; a slice's half-width over the undeformed overlap's. Speed.
 
 
-class ApproachContact(NamedTuple):
-    """A contact at an approach."""
-
-    case: Case  # the case with the load that causes the approach
-    refined: RefinedContact  # the contact
-
-
-def contact_at_approach(case: Case, accuracy: float, tolerance: float) -> ApproachContact:
+def contact_at_approach(case: Case, accuracy: float, tolerance: float) -> RefinedContact:
     """Contact of a case that prescribes its approach, on columns that are refined to an accuracy."""
     assert case.approach is not None
     coarse = search_load(_with_mirrored_ends(case), case.approach, _slice_load(case), COARSE_ACCURACY, COARSE_TOLERANCE)
-    return search_load(case, case.approach, coarse.case.normal_load, accuracy, tolerance)
+    return search_load(case, case.approach, coarse.contact.carried_load, accuracy, tolerance)
 
 
-def search_load(case: Case, approach: float, load: float, accuracy: float, tolerance: float) -> ApproachContact:
+def search_load(case: Case, approach: float, load: float, accuracy: float, tolerance: float) -> RefinedContact:
     """Contact of a case at an approach, from a first guess of its load."""
     power, previous = LOAD_POWER, (0.0, 0.0)
     for _ in range(MAX_CORRECTIONS):
@@ -359,14 +349,13 @@ def search_load(case: Case, approach: float, load: float, accuracy: float, toler
         load *= LOAD_EXCESS * (prescribed_depth / depth) ** power
     prescribed = PrescribedLoad(approach=approach).check(shape.gap.values, shape.grid)
     contact = contact_of(shape._replace(prescribed=prescribed), Settings(tolerance))
-    case = replace(loaded, load=contact.carried_load)
-    return ApproachContact(case, replace_contact(refined, contact, case))
+    return replace_contact(refined, contact, replace(loaded, load=contact.carried_load))
 
 
-def approach_load_error(contact: ApproachContact) -> float:
+def approach_load_error(case: Case, refined_contact: RefinedContact) -> float:
     """Error of the load at a prescribed approach, N: changes on coarser columns and fewer cells, with mirrored ends."""
-    refined, grid = contact.refined.refined, contact.refined.contact.shape.grid
-    case = _with_mirrored_ends(contact.case)
+    refined, grid = refined_contact.refined, refined_contact.contact.shape.grid
+    case = _with_mirrored_ends(case)
     window = WINDOW_FACTOR_COARSE * grid.y_range[0], WINDOW_FACTOR_COARSE * grid.y_range[1]
     rows = int(WINDOW_FACTOR_COARSE * grid.cells_y)
 

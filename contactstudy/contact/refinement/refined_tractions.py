@@ -7,9 +7,6 @@ cells at most, so the last change bounds the error of the cells along y; the err
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import NamedTuple
-
 import numpy as np
 import xarray as xr
 
@@ -17,7 +14,6 @@ from contactstudy.arrays.grid import Grid
 from contactstudy.arrays.variables import describe
 from contactstudy.case.case import Case
 from contactstudy.case.motion import RESULTANTS, Rolling, Shift
-from contactstudy.checks import FloatArray
 from contactstudy.contact.refinement.refined_contact import CELLS_Y, RefinedContact, contact_shape, replace_contact
 from contactstudy.contact.rolling.frictional_contact import AMPLITUDE_NAMES, FrictionalContact, frictional_contact
 from contactstudy.contact.rolling.tractions import FrictionRequest
@@ -31,54 +27,39 @@ MAX_COARSE_STEPS = 60
 active sets cycle on these cells, and converge on finer cells."""
 
 
-class RefinedTractions(NamedTuple):
-    """A contact with stick and slip, and its errors."""
-
-    contact: FrictionalContact  # pressure and tractions
-    normal: RefinedContact  # the normal contact with its errors
-    errors: Mapping[str, float]  # errors of forces, moment, work and unknown rigid motions, as named in results
-    accurate: bool  # whether the last changes were within the accuracy
-
-    def error_dataset(self) -> xr.Dataset:
-        """Label the errors."""
-        result = xr.Dataset({f"{name}_error": error for name, error in self.errors.items()})
-        units = self.contact.dataset()["friction_work"].attrs["units"]
-        result["friction_work_error"].attrs["units"] = units
-        if not self.accurate:
-            for error in result.values():
-                error.attrs["comment"] = "above the accuracy: the largest number of cells along y was reached"
-        return describe(result)
-
-
-def refine_tractions(case: Case, normal: RefinedContact, accuracy: float) -> RefinedTractions:
-    """Tractions of a case on the columns of its normal contact."""
+def refine_tractions(
+    case: Case, normal: RefinedContact, accuracy: float
+) -> tuple[FrictionalContact, RefinedContact, xr.Dataset]:
+    """Tractions of a case on the columns of its normal contact, the contact that they change, and their errors."""
     motion, rows = case.motion, normal.contact.shape.grid.cells_y
     assert isinstance(motion, Shift | Rolling)
-    names = AMPLITUDE_NAMES[type(motion)]
-    prescribed_names = {RESULTANTS[mode] if mode in motion.modes else names[mode] for mode in names}
+    prescribed = {
+        RESULTANTS[mode] if mode in motion.modes else name for mode, name in AMPLITUDE_NAMES[type(motion)].items()
+    }
     previous = _contact_on_rows(case, normal, rows // 2, None)
     # FASTSIM's error is due to its model: its strips do not become accurate on finer cells.
     max_rows = rows if isinstance(motion, Rolling) and motion.model == "fastsim" else CELLS_Y[-1]
     while True:
         contact = _contact_on_rows(case, normal, rows, previous)
-        changes, scales = _convergence_values(contact) - _convergence_values(previous), _scales(case, contact)
-        is_adjustable = [name not in prescribed_names for name in scales]
-        accurate = bool((np.abs(changes) <= accuracy * np.array(list(scales.values())))[is_adjustable].all())
+        scales = {name: scale for name, scale in _scales(case, contact).items() if name not in prescribed}
+        values, previous_values = _values(contact), _values(previous)
+        changes = {name: abs(values[name] - previous_values[name]) for name in scales}
+        accurate = all(changes[name] <= accuracy * scale for name, scale in scales.items())
         if accurate or rows >= max_rows:
             break
         rows, previous = 2 * rows, contact
-    # A force or a moment may be a small difference of large parts; work and rigid motions are not.
-    sizes = [
-        size if name in RESULTANTS.values() else min(size, abs(float(value)))
-        for (name, size), value in zip(scales.items(), _convergence_values(contact), strict=True)
-    ]
     column_error = COLUMN_ERROR_FACTOR * normal.refined.least_error
-    errors = {
-        name: abs(float(change)) + column_error * size
-        for name, size, change, adjustable in zip(scales, sizes, changes, is_adjustable, strict=True)
-        if adjustable
-    }
-    return RefinedTractions(contact, replace_contact(normal, contact.contact, case), errors, accurate)
+    errors = xr.Dataset()
+    for name, scale in scales.items():
+        # A force or a moment may be a small difference of large parts; work and rigid motions are not.
+        size = scale if name in RESULTANTS.values() else min(scale, abs(values[name]))
+        errors[f"{name}_error"] = changes[name] + column_error * size
+        if not accurate:
+            errors[f"{name}_error"].attrs["comment"] = (
+                "above the accuracy: the largest number of cells along y was reached"
+            )
+    errors["friction_work_error"].attrs["units"] = "J/m" if isinstance(motion, Rolling) else "J"
+    return contact, replace_contact(normal, contact.contact, case), describe(errors)
 
 
 def _contact_on_rows(
@@ -101,10 +82,10 @@ def _contact_on_rows(
     return frictional_contact(contact_shape(case, grid, contact.shape.prescribed), contact.settings, request)
 
 
-def _convergence_values(contact: FrictionalContact) -> FloatArray:
-    """Values whose changes end the refinement, in the order of `_scales`."""
+def _values(contact: FrictionalContact) -> dict[str, float]:
+    """Values whose changes end the refinement, by name in results."""
     tractions = contact.tractions
-    return np.array([*tractions.resultants.values(), tractions.work, *tractions.rigid.values()])
+    return {**tractions.resultants, "friction_work": tractions.work, **contact.rigid_motions}
 
 
 def _scales(case: Case, contact: FrictionalContact) -> dict[str, float]:
@@ -116,12 +97,10 @@ def _scales(case: Case, contact: FrictionalContact) -> dict[str, float]:
     arms = np.hypot((grid.x - case.roller_middle)[:, None], grid.y)
     slip = float(np.max(case.friction_on(grid.x))) * case.hertz_half_width / case.roller.radius
     force, moment = float(loads.sum()), float((loads * arms).sum())
-    is_rolling = isinstance(case.motion, Rolling)
     sliding = {"x": slip, "y": slip, "spin": slip * force / moment if moment else 0.0}
-    if not is_rolling:
+    if not isinstance(case.motion, Rolling):
         sliding = {name: size * case.hertz_half_width for name, size in sliding.items()}
     rigid = {name: max(abs(amplitude), sliding[name]) for name, amplitude in contact.tractions.rigid.items()}
     largest = max(abs(rigid["x"]), abs(rigid["y"]), rigid.get("spin", 0.0) * moment / force if force else 0.0)
-    return {"force_x": force, "force_y": force, "moment_z": moment, "friction_work": force * largest} | {
-        AMPLITUDE_NAMES[Rolling if is_rolling else Shift][name]: size for name, size in rigid.items()
-    }
+    named = zip(contact.rigid_motions, rigid.values(), strict=True)
+    return {"force_x": force, "force_y": force, "moment_z": moment, "friction_work": force * largest, **dict(named)}

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
@@ -15,11 +15,11 @@ from contactstudy.contact.normal.problem import interpolate_columns
 from contactstudy.contact.refinement.columns import MAX_COLUMNS, AxialShape, find_overlooked, first_edges, split_columns
 from contactstudy.contact.refinement.laws import (
     EndLaw,
-    Laws,
     Sample,
+    ValuePairs,
     count_from_end,
-    end_loads,
-    extrapolate_end_pressures,
+    evaluate_pairs,
+    is_loaded_at,
     law_of,
 )
 
@@ -78,11 +78,6 @@ Solve = Callable[[FloatArray, FloatArray | None, float], ColumnPressure]
 """Function from edges, a first guess of the pressure (or None) and a tolerance to the contact on the columns."""
 
 
-ValuePairs = Mapping[str, Sequence[float]]
-"""Values of the first and the last half or end, by their names in results: the largest pressure of a half, the pressure
-at an end, and the load on the last half-width at an end, over the width of a cell along y."""
-
-
 @dataclass(frozen=True, kw_only=True, eq=False)
 class RefinedColumns:
     """Columns of a refined contact."""
@@ -91,7 +86,7 @@ class RefinedColumns:
     pressure: FloatArray  # (column, y): pressure, Pa
     values: ValuePairs  # values by name; a pressure is infinite at a singular end, 0 at an end without contact
     errors: ValuePairs  # estimated errors of the values
-    laws: Laws  # law of each singular end
+    laws: Sequence[EndLaw | None]  # law of each singular end
     accurate: bool  # whether every error that is stated is within the accuracy
     first_edges: FloatArray  # edges of the columns of the first threshold, metres
     least_error: float  # least error that is stated on these columns, over the value
@@ -122,11 +117,10 @@ def refine_columns(solve: Solve, shape: AxialShape, accuracy: float, start: Floa
     theta = FIRST_THETA if start is None else SECOND_THETA
     while True:
         refinement.refine(theta)
-        refinement.record_values()
-        if len(refinement.history) > 1:
-            refined = refinement.result(theta, accuracy)
-            if (theta <= MAX_THETA and refined.accurate) or refinement.edges.size > MAX_COLUMNS:
-                return refined
+        refined = refinement.result(theta, accuracy)
+        is_complete = (theta <= MAX_THETA and refined.accurate) or refined.edges.size > MAX_COLUMNS
+        if len(refinement.history) > 1 and is_complete:
+            return refined
         theta *= THETA_RATIO
 
 
@@ -138,9 +132,7 @@ class Refinement:
     shape: AxialShape
     edges: FloatArray
     pressure: FloatArray = field(init=False)
-    first_edges: FloatArray | None = None
-    history: list[ValuePairs] = field(default_factory=list)
-    lateral_excess: float = 0.0
+    history: list[tuple[FloatArray, ValuePairs]] = field(default_factory=list)
     laws: list[EndLaw | None] = field(default_factory=lambda: [None, None])
     samples: tuple[list[Sample], list[Sample]] = field(default_factory=lambda: ([], []))
 
@@ -163,8 +155,6 @@ class Refinement:
             if not is_marked.any() or self.edges.size > MAX_COLUMNS:
                 break
             self._split(is_marked)
-        if self.first_edges is None:
-            self.first_edges = self.edges
 
     def _split(self, is_marked: BoolArray) -> None:
         """Split marked columns and solve the contact on them roughly."""
@@ -204,8 +194,7 @@ class Refinement:
             jumps[is_near & (widths > EDGE_COLUMN_WIDTH * a)] = np.inf
         is_marked: BoolArray = (jumps > theta) & (widths > 2 * MIN_COLUMN * a)
         for corner in self.shape.corners:
-            index = int(np.abs(edges - corner).argmin())
-            if pressure[index - 1 : index + 1].any():
+            if is_loaded_at(corner, edges, pressure):
                 distances = np.maximum(edges[:-1] - corner, corner - edges[1:])
                 is_near = distances < a
                 is_marked[is_near] = widths[is_near] > np.maximum(
@@ -221,23 +210,19 @@ class Refinement:
         pressure: FloatArray = self.pressure[first_half if side == 0 else ~first_half]
         return pressure
 
-    def record_values(self) -> None:
-        """Record the values of both halves and ends."""
-        values, self.lateral_excess = evaluate_pairs(self.edges, self.pressure, self.shape, self.laws)
-        self.history.append(values)
-
     def result(self, theta: float, accuracy: float) -> RefinedColumns:
-        """Columns of the refinement, with values and errors."""
-        values = self.history[-1]
+        """Columns of a threshold, with values and errors; the values join the history."""
+        values, lateral_excess = evaluate_pairs(self.edges, self.pressure, self.shape, self.laws)
+        self.history.append((self.edges, values))
         finite_peaks = [value for value in values["peak_pressure"] if 0 < value < np.inf]  # a half may have no contact
         scale = max(finite_peaks, default=float(self.pressure.max()))
-        floor = scale * (theta / THETA_PER_ERROR + self.lateral_excess)
+        floor = scale * (theta / THETA_PER_ERROR + lateral_excess)
         # The scale of `end_load` is the mean load per length times a half-width.
         length = float(self.edges[-1] - self.edges[0])
         end_load = float(self.pressure.sum(axis=1) @ np.diff(self.edges)) * min(1.0, self.shape.half_width / length)
         floors = {"peak_pressure": floor, "end_pressure": floor, "end_load": end_load * floor / scale}
         errors = {
-            name: [_change_error([reading[name][side] for reading in self.history], lower_bound) for side in (0, 1)]
+            name: [_change_error([reading[name][side] for _, reading in self.history], lower_bound) for side in (0, 1)]
             for name, lower_bound in floors.items()
         }
         for side in (0, 1):
@@ -259,7 +244,7 @@ class Refinement:
             errors=errors,
             laws=_fit_laws(self.laws, self.edges, self.pressure, self.shape),
             accurate=accurate,
-            first_edges=self.edges if self.first_edges is None else self.first_edges,
+            first_edges=self.history[0][0],
             least_error=floor / scale,
         )
 
@@ -279,27 +264,14 @@ def replace_pressure(refined: RefinedColumns, pressure: FloatArray, shape: Axial
     return replace(refined, pressure=pressure, values=values, errors={**refined.errors, **errors}, laws=laws)
 
 
-def evaluate_pairs(
-    edges: FloatArray, pressure: FloatArray, shape: AxialShape, laws: Sequence[EndLaw | None]
-) -> tuple[ValuePairs, float]:
-    """Values of a pressure (column, y), and relative increase of the peak by the parabola along y."""
-    peaks, end_pressures, lateral_excess = extrapolate_end_pressures(edges, pressure, laws)
-    mid_x = 0.5 * (edges[0] + edges[-1])
-    for corner in shape.corners:
-        index = int(np.abs(edges - corner).argmin())
-        if pressure[index - 1 : index + 1].any():
-            peaks = (np.inf if corner <= mid_x else peaks[0]), (np.inf if corner >= mid_x else peaks[1])
-    loads = end_loads(edges, pressure, shape.half_width)
-    return {"peak_pressure": peaks, "end_pressure": end_pressures, "end_load": loads}, lateral_excess
-
-
-def _fit_laws(laws: Sequence[EndLaw | None], edges: FloatArray, pressure: FloatArray, shape: AxialShape) -> Laws:
+def _fit_laws(
+    laws: Sequence[EndLaw | None], edges: FloatArray, pressure: FloatArray, shape: AxialShape
+) -> list[EndLaw | None]:
     """Laws of both ends with the intensities of a pressure (column, y)."""
-    first, last = (
-        law.with_intensity(*count_from_end(side, edges, pressure), shape.face_beyond[side]) if law else None
+    return [
+        law and law.with_intensity(*count_from_end(side, edges, pressure), shape.face_beyond[side])
         for side, law in enumerate(laws)
-    )
-    return first, last
+    ]
 
 
 def _change_error(values: list[float], floor: float) -> float:

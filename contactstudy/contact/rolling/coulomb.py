@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -133,8 +133,8 @@ def solve_coulomb(problem: CoulombProblem, start: Guess | None = None) -> Coulom
     while steps < problem.max_steps and not converged:
         steps += 1
         active_set = sticks
-        traction, amplitudes = _NewtonSystem(problem, traction, slip, sticks, diagonal).solve(
-            traction, slip, amplitudes, accuracy
+        traction, amplitudes = _newton_step(
+            problem, traction, slip, sticks, amplitudes, diagonal=diagonal, accuracy=accuracy
         )
         size = np.hypot(*traction)
         begins_slip = (size > bound) & sticks
@@ -190,82 +190,79 @@ def _select_largest_excess(exceeds: BoolArray, excess: FloatArray, sticks: BoolA
     return np.asarray(exceeds & (excess >= min_excess))
 
 
-class _NewtonSystem:
-    """Linear system of one Newton step."""
+def _unknown_basis(direction: FloatArray, sticks: BoolArray) -> Any:
+    """Sparse matrix from the unknowns to the components of the tractions; `direction` is that of the slip."""
+    # Unknowns are both components of a sticking cell's traction, and a slipping cell's component across the slip.
+    from scipy.sparse import csr_array
 
-    def __init__(
-        self, problem: CoulombProblem, traction: FloatArray, slip: FloatArray, sticks: BoolArray, diagonal: FloatArray
-    ) -> None:
-        self._problem, self._sticks, self._diagonal = problem, sticks, diagonal
-        self._root = np.sqrt(problem.relative_areas)
-        size = np.hypot(*traction)
-        direction = np.where(sticks, 0.0, traction / np.where(size > 0, size, 1.0))
-        across = np.stack([-direction[1], direction[0]])
-        # Unknowns are both components of a sticking cell's traction, and a slipping cell's component across the slip.
-        self._first = np.where(sticks, np.array([[1.0], [0.0]]), across)
-        self._second = np.where(sticks, np.array([[0.0], [1.0]]), 0.0)[:, sticks]
-        parallel = np.maximum((slip * direction).sum(axis=0), 0.0)
-        self._turning = np.where(sticks, 0.0, parallel / problem.bound)
+    first = np.where(sticks, np.array([[1.0], [0.0]]), np.stack([-direction[1], direction[0]]))
+    cells, sticking = np.arange(sticks.size), np.flatnonzero(sticks)
+    rows = np.concatenate([cells, cells.size + cells, cells.size + sticking])
+    columns = np.concatenate([cells, cells, cells.size + np.arange(sticking.size)])
+    return csr_array((np.append(first, np.ones(sticking.size)), (rows, columns)))
 
-    def _tractions(self, unknowns: FloatArray) -> FloatArray:
-        """Change of the tractions (2, cell) from the unknowns."""
-        cells = self._sticks.size
-        traction = self._first * unknowns[:cells]
-        traction[:, self._sticks] += self._second * unknowns[cells:]
-        return np.asarray(traction / self._root)
 
-    def _components(self, slip: FloatArray) -> FloatArray:
-        """Components of a slip (2, cell) conjugate to the unknowns."""
-        slip = self._root * slip
-        first = (self._first * slip).sum(axis=0)
-        second = (self._second * slip[:, self._sticks]).sum(axis=0)
-        return np.concatenate([first, second])
+def _newton_step(
+    problem: CoulombProblem,
+    traction: FloatArray,
+    slip: FloatArray,
+    sticks: BoolArray,
+    amplitudes: FloatArray,
+    *,
+    diagonal: FloatArray,
+    accuracy: float,
+) -> tuple[FloatArray, FloatArray]:
+    """Tractions and amplitudes of the rigid slips that reduce the residual by the factor `accuracy`."""
+    from scipy.sparse.linalg import LinearOperator, gmres
 
-    def solve(
-        self, traction: FloatArray, slip: FloatArray, amplitudes: FloatArray, accuracy: float
-    ) -> tuple[FloatArray, FloatArray]:
-        """Tractions and amplitudes of the rigid slips that reduce the residual by the factor `accuracy`."""
-        from scipy.sparse.linalg import LinearOperator, gmres
+    size, root = np.hypot(*traction), np.sqrt(problem.relative_areas)
+    direction = np.where(sticks, 0.0, traction / np.where(size > 0, size, 1.0))
+    basis = _unknown_basis(direction, sticks)
+    transposed = basis.T.tocsr()
 
-        problem = self._problem
-        turning = np.concatenate([self._turning, np.zeros(int(self._sticks.sum()))])
-        count, shape = turning.size, (len(problem.modes), turning.size)
-        # Spin (1/m) and moment (N m) are scaled to the units of slip, so that one residual contains all unknowns.
-        sizes = np.hypot(problem.modes[:, 0], problem.modes[:, 1]).max(axis=1, initial=np.finfo(float).tiny)
-        modes = np.array([self._components(mode) for mode in problem.modes]).reshape(shape) / sizes[:, None]
-        weights = np.array(
-            [self._components(work / problem.relative_areas) for work in problem.resultant_weights]
-        ).reshape(shape)
-        unit = (np.abs(weights).sum(axis=1) + np.finfo(float).tiny) / float(self._diagonal.mean())
-        weights = weights / unit[:, None]
-        diagonal = np.concatenate([self._diagonal, self._diagonal[self._sticks]])
-        damping = np.sqrt(diagonal / (diagonal + turning))
+    def tractions_of(unknowns: FloatArray) -> FloatArray:
+        return np.asarray((basis @ unknowns).reshape(2, -1) / root)
 
-        def invert(slip: FloatArray) -> FloatArray:
-            return np.asarray(damping * self._components(problem.inverse(self._tractions(damping * slip))))
+    def components_of(slip: FloatArray) -> FloatArray:
+        return np.asarray(transposed @ (root * slip).ravel())
 
-        inverse_modes = np.array([invert(mode) for mode in modes]).reshape(modes.shape)
-        schur = weights @ inverse_modes.T
+    parallel = np.maximum((slip * direction).sum(axis=0), 0.0)
+    turning = np.append(np.where(sticks, 0.0, parallel / problem.bound), np.zeros(int(sticks.sum())))
+    # Spin (1/m) and moment (N m) are scaled to the units of slip, so that one residual contains all unknowns.
+    count, shape = turning.size, (len(problem.modes), turning.size)
+    sizes = np.hypot(problem.modes[:, 0], problem.modes[:, 1]).max(axis=1, initial=np.finfo(float).tiny)
+    modes = np.array([components_of(mode) for mode in problem.modes]).reshape(shape) / sizes[:, None]
+    weights = np.array([components_of(work / problem.relative_areas) for work in problem.resultant_weights])
+    weights = weights.reshape(shape)
+    unit = (np.abs(weights).sum(axis=1) + np.finfo(float).tiny) / float(diagonal.mean())
+    weights = weights / unit[:, None]
+    diagonal = np.append(diagonal, diagonal[sticks])
+    damping = np.sqrt(diagonal / (diagonal + turning))
 
-        def multiply(unknowns: FloatArray) -> FloatArray:
-            tractions, rigid = unknowns[:count], unknowns[count:]
-            slip = self._components(problem.apply_compliance(self._tractions(tractions))) + turning * tractions
-            return np.concatenate([slip - rigid @ modes, weights @ tractions])
+    def invert(slip: FloatArray) -> FloatArray:
+        return np.asarray(damping * components_of(problem.inverse(tractions_of(damping * slip))))
 
-        def precondition(residual: FloatArray) -> FloatArray:
-            tractions = invert(residual[:count])
-            if not len(modes):
-                return tractions
-            rigid = np.linalg.lstsq(schur, residual[count:] - weights @ tractions, rcond=None)[0]
-            return np.concatenate([tractions + rigid @ inverse_modes, rigid])
+    inverse_modes = np.array([invert(mode) for mode in modes]).reshape(modes.shape)
+    schur = weights @ inverse_modes.T
 
-        resultant_errors = (problem.resultants - (problem.resultant_weights * traction).sum(axis=(1, 2))) / unit
-        residual = np.concatenate([self._components(slip), resultant_errors])
-        # With the preconditioner on the right the residual is the system's. 60 directions, 5 restarts. Speed.
-        shape = (residual.size, residual.size)
-        operator = LinearOperator(shape, lambda vector: multiply(precondition(vector)), dtype=float)
-        change = precondition(gmres(operator, residual, rtol=accuracy, atol=0.0, restart=60, maxiter=5)[0])
-        return traction + self._tractions(change[:count]), amplitudes + change[count:] / sizes
+    def multiply(unknowns: FloatArray) -> FloatArray:
+        tractions, rigid = unknowns[:count], unknowns[count:]
+        slip = components_of(problem.apply_compliance(tractions_of(tractions))) + turning * tractions
+        return np.concatenate([slip - rigid @ modes, weights @ tractions])
+
+    def precondition(residual: FloatArray) -> FloatArray:
+        tractions = invert(residual[:count])
+        if not len(modes):
+            return tractions
+        rigid = np.linalg.lstsq(schur, residual[count:] - weights @ tractions, rcond=None)[0]
+        return np.concatenate([tractions + rigid @ inverse_modes, rigid])
+
+    resultant_errors = (problem.resultants - (problem.resultant_weights * traction).sum(axis=(1, 2))) / unit
+    residual = np.concatenate([components_of(slip), resultant_errors])
+    # With the preconditioner on the right the residual is the system's. 60 directions, 5 restarts. Speed.
+    operator = LinearOperator((residual.size,) * 2, lambda vector: multiply(precondition(vector)), dtype=float)
+    change = precondition(gmres(operator, residual, rtol=accuracy, atol=0.0, restart=60, maxiter=5)[0])
+    return traction + tractions_of(change[:count]), amplitudes + change[count:] / sizes
 
 
 def _diagonal(problem: CoulombProblem) -> FloatArray:

@@ -44,13 +44,9 @@ def creep_coefficients(ratio: float, poisson: float) -> FloatArray:
         return np.array([np.pi**2 / (4 * (1 - poisson)), np.pi**2 / 4, turning])
     ratios = np.log([row[0] for row in TABLE])
     logarithm = float(np.clip(np.log(ratio), ratios[0], ratios[-1]))
-    coefficients = []
-    for column in (1, 2, 3):
-        values = PchipInterpolator(ratios, np.array([row[column] for row in TABLE]))(logarithm)
-        coefficients.append(
-            np.polynomial.polynomial.polyval(poisson, np.polynomial.polynomial.polyfit(POISSONS, values, 2))
-        )
-    return np.array(coefficients)
+    values = PchipInterpolator(ratios, np.array([row[1:] for row in TABLE]))(logarithm)
+    coefficients = np.polynomial.polynomial.polyfit(POISSONS, values.T, 2)
+    return np.asarray(np.polynomial.polynomial.polyval(poisson, coefficients))
 
 
 def flexibilities(half_widths: tuple[float, float], shear_modulus: float, poisson: float) -> dict[str, float]:

@@ -66,9 +66,16 @@ class FrictionalContact:
             stacklevel=2,
         )
 
-    def dataset(self) -> xr.Dataset:
-        """Label tractions, slip, resultants and the certificate; the dimensions x and y have no coordinates."""
-        tractions, shape = self.tractions, self.contact.shape
+    @property
+    def rigid_motions(self) -> dict[str, float]:
+        """Rigid motions by their names in results."""
+        rigid = self.tractions.rigid
+        names = AMPLITUDE_NAMES[Rolling if "spin" in rigid else Shift]
+        return {names[mode]: amplitude for mode, amplitude in rigid.items()}
+
+    def with_tractions(self, result: xr.Dataset) -> xr.Dataset:
+        """Labelled contact with tractions, slip, resultants and certificate in place of full sliding."""
+        tractions, weights = self.tractions, self.contact.shape.grid.weights
         fields = {
             "traction_x": tractions.traction[0],
             "traction_y": tractions.traction[1],
@@ -76,21 +83,22 @@ class FrictionalContact:
             "slip_y": tractions.slip[1],
             "stick": tractions.sticks,
         }
-        is_rolling = "spin" in tractions.rigid
-        names, unit = AMPLITUDE_NAMES[Rolling if is_rolling else Shift], "1" if is_rolling else "m"
-        scalars: dict[str, object] = {names[name]: amplitude for name, amplitude in tractions.rigid.items()}
-        scalars |= tractions.resultants
-        for name in ("bound_error", "slip_error", "force_error"):
-            scalars[name] = getattr(tractions, name)
-        areas, loaded = shape.grid.weights, self.contact.pressure > 0
-        scalars["sticking_part"] = float((areas * tractions.sticks).sum() / (areas * loaded).sum())
-        scalars["friction_work"] = tractions.work
-        scalars["friction_steps"] = tractions.steps
-        result = xr.Dataset({name: (("x", "y"), values) for name, values in fields.items()} | scalars)
-        for name in ("slip_x", "slip_y"):
-            result[name].attrs["units"] = unit
-        result["friction_work"].attrs["units"] = "J/m" if is_rolling else "J"
-        return result
+        scalars = {
+            **self.rigid_motions,
+            **tractions.resultants,
+            "bound_error": tractions.bound_error,
+            "slip_error": tractions.slip_error,
+            "force_error": tractions.force_error,
+            "sticking_part": float((weights * tractions.sticks).sum() / (weights * (self.contact.pressure > 0)).sum()),
+            "friction_work": tractions.work,
+            "friction_steps": tractions.steps,
+            "converged": self.converged,
+        }
+        complete = result.assign({name: (("x", "y"), values) for name, values in fields.items()}).assign(scalars)
+        slip_unit, work_unit = ("1", "J/m") if "spin" in tractions.rigid else ("m", "J")
+        for name, unit in (("slip_x", slip_unit), ("slip_y", slip_unit), ("friction_work", work_unit)):
+            complete[name].attrs["units"] = unit
+        return describe(complete)
 
 
 def frictional_contact(shape: Shape, settings: Settings, request: FrictionRequest) -> FrictionalContact:
@@ -136,10 +144,3 @@ def frictional_contact(shape: Shape, settings: Settings, request: FrictionReques
         with one_blas_thread():
             contact = replace(contact, shape=shape, displacement=body(loads))
     return FrictionalContact(contact, tractions, converged)
-
-
-def with_tractions(result: xr.Dataset, contact: FrictionalContact) -> xr.Dataset:
-    """Labelled contact with tractions and slip in place of full sliding."""
-    complete = result.assign(contact.dataset().data_vars)
-    complete["converged"] = contact.converged
-    return describe(complete)

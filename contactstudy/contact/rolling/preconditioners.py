@@ -6,6 +6,8 @@ wavenumber.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 from scipy import fft
 
@@ -24,7 +26,9 @@ class TangentialInverse:
         self._cells, self._root = tuple(cells - first[:, None]), _leading_root(cells, rolling=rolling)
         size = cells.max(axis=1) - first + 1
         self._shape = tuple(fft.next_fast_len(int(2 * count), real=True) for count in size)
-        xx, xy, yy = (self._compliance(materials, direction, load, cell) for direction, load in COMPONENTS)
+        x, y = (step * np.arange(count // 2 + 1.0) for count, step in zip(self._shape, cell, strict=True))
+        kernels = _compliances(materials, lambda response, poisson: surface_kernel(response, poisson, x, y, cell))
+        xx, xy, yy = (_spectrum(kernel, pair, self._shape) for kernel, pair in zip(kernels, COMPONENTS, strict=True))
         if rolling:
             derivative = _derivative(self._shape[1], cell[1])
             xx, xy, yy = derivative * xx, derivative * xy, derivative * yy
@@ -32,20 +36,6 @@ class TangentialInverse:
         # Single precision suffices for a preconditioner. Speed.
         entries = (yy / determinant, -xy / determinant, xx / determinant)
         self._inverse = tuple(entry.astype(np.complex64) for entry in entries)
-
-    def _compliance(
-        self, materials: list[Material], direction: Load, load: Load, cell: tuple[float, float]
-    ) -> ComplexArray:
-        """Spectrum of the displacement in `direction` under loads in the direction `load`."""
-        response = Response(direction, load)
-        x, y = (step * np.arange(count // 2 + 1.0) for count, step in zip(self._shape, cell, strict=True))
-        kernel = sum(
-            surface_kernel(response, material.poisson, x, y, cell) / (4 * np.pi * material.shear_modulus)
-            for material in materials
-        )
-        for axis, sign in enumerate((response.sign_x, response.sign_y)):
-            kernel = _unfold_kernel(np.asarray(kernel), self._shape[axis], sign, axis)
-        return np.asarray(fft.rfft2(kernel))
 
     def __call__(self, slip: FloatArray) -> FloatArray:
         """Approximate tractions (2, cell) that relieve a slip (2, cell)."""
@@ -76,13 +66,7 @@ class ColumnsInverse:
         self._rows, self._padded = int(last - first + 1), 2 * count
         self._widths = np.diff(edges)
         columns = ColumnsRequest(edges=edges, dy=grid.dy, cells_y=count, extent=(-np.inf, np.inf))
-        xx, xy, yy = (
-            sum(
-                columns.kernel(Response(*pair), material.poisson) / (4 * np.pi * material.shear_modulus)
-                for material in materials
-            )
-            for pair in COMPONENTS
-        )
+        xx, xy, yy = _compliances(materials, columns.kernel)
         self._inverse = np.linalg.inv(np.block([[xx, -xy], [xy, yy]]))
         self._derivative = _derivative(self._padded, grid.dy) if rolling else np.ones(count + 1, dtype=np.complex128)
 
@@ -131,11 +115,25 @@ def _leading_root(cells: IntArray, *, rolling: bool) -> FloatArray:
     return np.asarray(np.sqrt((last[row] + 0.5 - column) / (last[row] - first[row] + 1.0)))
 
 
-COMPONENTS = ((Load.ALONG_X, Load.ALONG_X), (Load.ALONG_X, Load.ALONG_Y), (Load.ALONG_Y, Load.ALONG_Y))
+COMPONENTS = (
+    Response(Load.ALONG_X, Load.ALONG_X),
+    Response(Load.ALONG_X, Load.ALONG_Y),
+    Response(Load.ALONG_Y, Load.ALONG_Y),
+)
 
 
-def _unfold_kernel(kernel: FloatArray, period: int, sign: int, axis: int) -> FloatArray:
-    """Values at all offsets of a period, from the values at non-negative offsets."""
-    half = kernel.shape[axis]
-    mirrored = np.flip(np.take(kernel, np.arange(1, period - half + 1), axis=axis), axis=axis)
-    return np.concatenate([kernel, sign * mirrored], axis=axis)
+def _compliances(materials: list[Material], kernel: Callable[[Response, float], FloatArray]) -> list[FloatArray]:
+    """Kernels of all components of the displacement, summed over the bodies."""
+    return [
+        np.sum([kernel(response, body.poisson) / (4 * np.pi * body.shear_modulus) for body in materials], axis=0)
+        for response in COMPONENTS
+    ]
+
+
+def _spectrum(kernel: FloatArray, response: Response, shape: tuple[int, ...]) -> ComplexArray:
+    """Spectrum over a whole period of a kernel, given at non-negative offsets."""
+    for axis, sign in enumerate((response.sign_x, response.sign_y)):
+        half = kernel.shape[axis]
+        mirrored = np.flip(np.take(kernel, np.arange(1, shape[axis] - half + 1), axis=axis), axis=axis)
+        kernel = np.concatenate([kernel, sign * mirrored], axis=axis)
+    return np.asarray(fft.rfft2(kernel))

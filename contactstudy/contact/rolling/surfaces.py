@@ -36,11 +36,7 @@ class Surfaces(NamedTuple):
     @property
     def weights(self) -> FloatArray:
         """Weights (resultant, component, x, y) of the tractions in the forces along x and y and the moment about z."""
-        grid = self.grid
-        weights = np.zeros((3, 2, *grid.shape))
-        weights[0, 0] = weights[1, 1] = 1.0
-        weights[2, 0], weights[2, 1] = -grid.y, (grid.x - self.reference_x)[:, None]
-        return weights * self.areas
+        return np.stack([self.rigid_slip(mode, self.grid.x[:, None], self.grid.y) for mode in RESULTANTS]) * self.areas
 
     def rigid_slip(self, name: str, x: FloatArray, y: FloatArray) -> FloatArray:
         """Slip (2, ...) of a rigid motion of unit amplitude at positions."""

@@ -11,14 +11,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
 from contactstudy.case.motion import RESULTANTS, Rolling, Shift
-from contactstudy.checks import BoolArray, FloatArray, IntArray
+from contactstudy.checks import Array, BoolArray, FloatArray, IntArray
 from contactstudy.contact.normal.contact import Settings
 from contactstudy.contact.normal.problem import cell_means, halve_cells
-from contactstudy.contact.normal.two_bodies import ScaledOperator
+from contactstudy.contact.normal.two_bodies import PairOperator
 from contactstudy.contact.rolling.coulomb import (
     CoulombProblem,
     CoulombSolution,
@@ -44,11 +45,19 @@ class RollingCells:
     """Cells of a contact in steady rolling along +y."""
 
     bound: FloatArray  # (x, y): bound on the traction, Pa
-    unknown: IntArray  # (2, unknown): row and column of the cells with unknown tractions
+    is_unknown: BoolArray  # (x, y): cells with an unknown traction
     offset: FloatArray  # (unknown): position of the slip in each cell, in cells ahead of the centre
-    dependent: IntArray  # (2, dependent): row and column of the dependent leading cells
-    source_cell: IntArray  # (dependent): index of the unknown cell behind each
-    ratio: FloatArray  # (dependent): traction of each over the traction of the cell behind
+    ratio: FloatArray  # (x, y): traction over that of `source`: 1 in unknown cells, 0 in cells without traction
+
+    @cached_property
+    def unknown(self) -> IntArray:
+        """Row and column of the cells with unknown tractions: array (2, unknown)."""
+        return np.argwhere(self.is_unknown).T
+
+    @cached_property
+    def source(self) -> IntArray:
+        """Index of the unknown cell that each cell follows, (x, y): itself, or the cell behind a dependent cell."""
+        return np.maximum(np.cumsum(self.is_unknown).reshape(self.is_unknown.shape) - 1, 0)
 
     @classmethod
     def of(
@@ -63,7 +72,7 @@ class RollingCells:
         loaded: BoolArray = (pressure > 0) & (bound > 0)
         leading_cells = np.argwhere(loaded & ~np.pad(loaded, ((0, 0), (0, 1)))[:, 1:])
         offset = np.full(pressure.shape, EDGE_OFFSET + 1.0)
-        dependent, ratio = [], []
+        is_unknown, ratio = loaded.copy(), loaded.astype(np.float64)
         for row, last_column in leading_cells:
             unloaded = np.flatnonzero(~loaded[row, : last_column + 1])
             first = int(unloaded[-1]) + 1 if unloaded.size else 0
@@ -77,45 +86,26 @@ class RollingCells:
                 offset[row, first : last_column + 1] = EDGE_OFFSET + leading_length  # eq. (44a)
             else:
                 offset[row, first : last_column + 1] = DEPENDENT_OFFSET
-                dependent.append((row, last_column))
-                ratio.append(bound[row, last_column] / bound[row, last_column - 1])
+                is_unknown[row, last_column] = False
+                ratio[row, last_column] = bound[row, last_column] / bound[row, last_column - 1]
         if weights is not None:
             weight = weights @ loaded
             offset = weights @ (loaded * offset) / np.where(weight > 0, weight, 1.0)
-        is_unknown = loaded.copy()
-        tied_cells = np.array(dependent, dtype=np.int64).reshape(-1, 2).T
-        is_unknown[tuple(tied_cells)] = False
-        # A dependent cell has the index of the last unknown cell before it.
-        unknown_indices = np.cumsum(is_unknown).reshape(is_unknown.shape) - 1
-        unknown = np.argwhere(is_unknown).T
-        return cls(
-            bound=bound,
-            unknown=unknown,
-            offset=offset[tuple(unknown)],
-            dependent=tied_cells,
-            source_cell=unknown_indices[tuple(tied_cells)],
-            ratio=np.array(ratio),
-        )
+        return cls(bound=bound, is_unknown=is_unknown, offset=offset[is_unknown], ratio=ratio)
 
     @property
     def limits(self) -> FloatArray:
         """Bounds of the unknown cells, Pa: array (unknown)."""
-        return np.asarray(self.bound[tuple(self.unknown)])
+        return np.asarray(self.bound[self.is_unknown])
 
-    def on_grid(self, traction: FloatArray) -> FloatArray:
-        """Tractions on all cells (2, x, y) from the unknown ones (2, unknown)."""
-        total = np.zeros((2, *self.bound.shape))
-        total[:, self.unknown[0], self.unknown[1]] = traction
-        total[:, self.dependent[0], self.dependent[1]] = self.ratio * traction[:, self.source_cell]
-        return total
+    def on_grid(self, values: Array) -> Array:
+        """Values of all cells (..., x, y) from the unknown ones (..., unknown); a dependent cell has its source's."""
+        return np.where(self.ratio > 0, np.take(values, self.source, axis=-1), values.dtype.type(0))
 
     def gather(self, weights: FloatArray) -> FloatArray:
-        """Weights (..., unknown) of a sum over the unknown cells, equal to weights (..., x, y) over all cells."""
-        sums = weights[..., self.unknown[0], self.unknown[1]].copy()
-        dependent_weights = self.ratio * weights[..., self.dependent[0], self.dependent[1]]
-        for index, unknown in enumerate(self.source_cell):
-            sums[..., unknown] += dependent_weights[..., index]
-        return np.asarray(sums)
+        """Weights (part, unknown) of sums over the unknown tractions, from weights (part, x, y) over all cells."""
+        loaded, count = self.ratio > 0, self.offset.size
+        return np.array([np.bincount(self.source[loaded], (self.ratio * part)[loaded], count) for part in weights])
 
     def derivative(self, displacement: FloatArray, dy: float) -> FloatArray:
         """Return the derivative (unknown) along y of a displacement (x, y), constant beyond the last cell."""
@@ -176,9 +166,15 @@ def solve_tractions(
     bound = np.asarray(request.friction * pressure)
     rolling = isinstance(motion, Rolling)
     weights = averaging_weights(grid.x, grid.widths, grid.dy)
-    cells = RollingCells.of(pressure, bound, weights) if rolling else _shift_cells(bound)
+    if rolling:
+        cells = RollingCells.of(pressure, bound, weights)
+    else:
+        loaded = bound > 0
+        cells = RollingCells(
+            bound=bound, is_unknown=loaded, offset=np.zeros(np.count_nonzero(loaded)), ratio=loaded.astype(np.float64)
+        )
     check_forces(motion, bound, surfaces.weights)
-    if not cells.unknown.size:
+    if not cells.offset.size:
         zero = np.zeros((2, *grid.shape))
         sticks = np.zeros(grid.shape, bool)
         return Tractions.of(surfaces, motion.amplitudes, bound=bound, traction=zero, slip=zero, sticks=sticks)
@@ -199,7 +195,7 @@ def solve_tractions(
     steps = 0
     if previous is None or previous.leading is None:
         coarse = request.coarse
-        if coarse is None and cells.unknown.shape[1] >= NESTED_CELLS:
+        if coarse is None and cells.offset.size >= NESTED_CELLS:
             coarse = _solve_coarse(request, settings, surfaces, pressure, bound)
         guess = None if coarse is None else guess_from_coarse(coarse, cells, motion.modes)
         previous = solve(cells, max(settings.tolerance, COARSE_TOLERANCE) if rolling else settings.tolerance, guess)
@@ -225,11 +221,10 @@ def _coulomb_problem(
         """Slip (2, unknown) due to displacements."""
         if rolling:
             return np.stack([cells.derivative(displacements[direction], grid.dy) for direction in TANGENTIAL])
-        return np.stack([-displacements[direction][tuple(cells.unknown)] for direction in TANGENTIAL])
+        return np.stack([-displacements[direction][cells.is_unknown] for direction in TANGENTIAL])
 
     def apply_compliance(traction: FloatArray) -> FloatArray:
-        on_grid = cells.on_grid(traction)
-        loads = dict(zip(TANGENTIAL, on_grid, strict=True))
+        loads = dict(zip(TANGENTIAL, cells.ratio * cells.on_grid(traction), strict=True))
         return -elastic_slip(surfaces.operator.compute_displacements(loads, TANGENTIAL))
 
     amplitudes, modes, weights = motion.amplitudes, motion.modes, surfaces.weights
@@ -248,7 +243,7 @@ def _coulomb_problem(
         modes=np.array([unit_slips[name] for name in modes]).reshape(len(modes), *rigid.shape),
         resultant_weights=mode_weights.reshape(len(modes), *rigid.shape),
         resultants=np.array(list(motion.resultants.values())),
-        relative_areas=np.broadcast_to(grid.weights, grid.shape)[tuple(cells.unknown)],
+        relative_areas=np.broadcast_to(grid.weights, grid.shape)[cells.is_unknown],
         symmetric=not rolling,
     )
 
@@ -258,10 +253,10 @@ def _solve_coarse(
 ) -> Tractions | None:
     """Solve on cells of twice the size; None on graded cells, or if the cells cannot be paired."""
     grid = surfaces.grid
+    operator = surfaces.operator
     if grid.cells_x % 2 or grid.cells_y % 2 or not grid.uniform:
         return None
-    operator = surfaces.operator.coarse
-    if isinstance(operator, ScaledOperator):
+    if isinstance(operator, PairOperator) and not operator.has_paired_cells:
         return None
     coarse_pressure, coarse_bound = cell_means(pressure), cell_means(bound)
     start = request.start
@@ -270,7 +265,7 @@ def _solve_coarse(
         friction=coarse_bound / np.where(coarse_pressure > 0, coarse_pressure, 1.0),
         start=None if start is None else {load: cell_means(values) for load, values in start.items()},
     )
-    surfaces = surfaces._replace(operator=operator, grid=grid.coarsened())
+    surfaces = surfaces._replace(operator=operator.coarse, grid=grid.coarsened())
     settings = settings._replace(tolerance=COARSE_TOLERANCE)
     # The friction times the pressure equals the mean of the bound up to rounding.
     return replace(solve_tractions(coarse, settings, surfaces, coarse_pressure, None), bound=coarse_bound)
@@ -280,16 +275,10 @@ def _complete_tractions(
     problem: CoulombProblem, solution: CoulombSolution, motion: Shift | Rolling, cells: RollingCells, surfaces: Surfaces
 ) -> Tractions:
     """Tractions of a solution, with resultants and certificate recomputed from the tractions."""
-    grid = surfaces.grid
-    cell_slip = problem.slip(solution.traction, solution.amplitudes)
     scale = problem.slip_scale(solution.amplitudes)
-    bound_error, slip_error = law_violation(solution.traction, cell_slip, problem.bound, solution.sticks, scale)
-    traction = cells.on_grid(solution.traction)
-    slip, sticks = np.zeros_like(traction), np.zeros(grid.shape, bool)
-    slip[:, cells.unknown[0], cells.unknown[1]] = np.where(solution.sticks, 0.0, cell_slip)
-    sticks[tuple(cells.unknown)] = solution.sticks
-    for row, column, index in zip(*cells.dependent, cells.source_cell, strict=True):
-        slip[:, row, column], sticks[row, column] = slip[:, row, column - 1], solution.sticks[index]
+    bound_error, slip_error = law_violation(solution.traction, solution.slip, problem.bound, solution.sticks, scale)
+    traction = cells.ratio * cells.on_grid(solution.traction)
+    slip, sticks = cells.on_grid(np.where(solution.sticks, 0.0, solution.slip)), cells.on_grid(solution.sticks)
     rigid = motion.amplitudes | dict(zip(motion.modes, solution.amplitudes.tolist(), strict=True))
     tractions = Tractions.of(surfaces, rigid, bound=cells.bound, traction=traction, slip=slip, sticks=sticks)
     max_resultants = (np.abs(surfaces.weights).sum(axis=1) * np.hypot(*traction)).sum(axis=(1, 2)).tolist()
@@ -332,15 +321,6 @@ def _with_mean_slip(tractions: Tractions, surfaces: Surfaces, displacements: Map
     return replace(tractions, slip=slip * scale, work=cells_work * scale)
 
 
-def _shift_cells(bound: FloatArray) -> RollingCells:
-    """Cells of a shifted contact: all cells that carry a traction are unknown."""
-    unknown = np.argwhere(bound > 0).T
-    offset, empty = np.zeros(unknown.shape[1]), np.zeros((2, 0), dtype=np.int64)
-    return RollingCells(
-        bound=bound, unknown=unknown, offset=offset, dependent=empty, source_cell=empty[0], ratio=np.zeros(0)
-    )
-
-
 def guess_from_coarse(coarse: Tractions, cells: RollingCells, modes: tuple[str, ...]) -> Guess:
     """Guess on finer cells from coarse tractions."""
     row, column = cells.unknown
@@ -361,9 +341,8 @@ def guess_from_coarse(coarse: Tractions, cells: RollingCells, modes: tuple[str, 
 
 def guess_from_last(previous: Tractions, cells: RollingCells, modes: tuple[str, ...]) -> Guess:
     """Guess from tractions on the same cells under a similar bound."""
-    unknown = tuple(cells.unknown)
-    traction, limit = previous.traction[:, *unknown], cells.limits
+    traction, limit = previous.traction[:, cells.is_unknown], cells.limits
     size = np.hypot(*traction)
-    limited = np.where(previous.sticks[unknown], np.minimum(size, MAX_STICKING_RATIO * limit), limit)
+    limited = np.where(previous.sticks[cells.is_unknown], np.minimum(size, MAX_STICKING_RATIO * limit), limit)
     amplitudes = np.array([previous.rigid[name] for name in modes])
     return Guess(traction * (limited / np.where(size > 0, size, 1.0)), amplitudes)

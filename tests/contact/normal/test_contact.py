@@ -10,7 +10,7 @@ import pytest
 from contactstudy import ConvergenceWarning, FiniteLengthSpace, Grid, HalfSpace, Material, QuarterSpace
 from contactstudy.bodies import Body, Counterbody
 from contactstudy.cache import ArrayKey
-from contactstudy.contact.normal.contact import Contact, Settings, Shape, _position_error, contact_of
+from contactstudy.contact.normal.contact import Contact, Settings, Shape, contact_of
 from contactstudy.contact.normal.prescribed_loads import PrescribedLoad
 
 LENGTH, PRESSURE = 2.0**-17, 2.0**37
@@ -148,15 +148,3 @@ def test_warning_refers_to_caller() -> None:
     with pytest.warns(ConvergenceWarning, match="after 3 operator applications|max_iterations .now 3") as message:
         computed.warn_unless_converged()
     assert message[0].filename == __file__
-
-
-def test_position_error_is_relative_to_contact_length() -> None:
-    """Two columns of different widths carry half of the load each; the error does not depend on their position."""
-    for position in (0.0, 5.0):
-        grid = Grid.between(position + np.array([0.0, 1.0, 2.0, 3.0, 5.0, 6.0]), (0.0, 1.0), 2)
-        pressure = np.zeros(grid.shape)
-        pressure[1], pressure[3] = 2.0, 1.0  # half of the load on each; centres 1.5 and 4, widths 1 and 2
-        for load_position in (2.0, 3.5):
-            off = _position_error(PrescribedLoad(1.0, position + load_position), grid, pressure)
-            assert off == pytest.approx(abs(2.75 - load_position) / 4.0)
-    assert _position_error(PrescribedLoad(1.0), grid, pressure) == 0.0

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from contactstudy.checks import FloatArray
-from contactstudy.contact.refinement.laws import EndLaw, count_from_end, end_loads, extrapolate_end_pressures
+from contactstudy.contact.refinement.columns import AxialShape
+from contactstudy.contact.refinement.laws import EndLaw, ValuePairs, count_from_end, evaluate_pairs
 
 EDGES = 3.0 + 1e-2 * np.cumsum([0.0, 1.0, 1.5, 2.5, 4.0, 6.0, 9.0, 4.0, 7.0, 5.0, 4.0, 3.0, 2.0, 1.0])
 ACROSS = np.sqrt(np.array([0.0, 0.19, 0.91, 0.91, 0.19, 0.0]))
@@ -20,8 +21,14 @@ def means(powers: list[float], edges: FloatArray) -> FloatArray:
     return np.asarray(np.diff(np.polynomial.polynomial.polyval(edges - mid_x, complete)) / np.diff(edges))
 
 
-def spread_load(line_load: FloatArray) -> FloatArray:
-    return np.asarray(line_load[:, None] * ACROSS)
+def values_of(
+    column_loads: FloatArray, laws: tuple[EndLaw | None, EndLaw | None] = (None, None), half_width: float = 0.1
+) -> tuple[ValuePairs, float]:
+    start, stop = float(EDGES[0]), float(EDGES[-1])
+    shape = AxialShape(
+        start=start, stop=stop, half_width=half_width, depth=1.0, height=np.zeros_like, face_beyond=(0.0, 0.0)
+    )
+    return evaluate_pairs(EDGES, column_loads[:, None] * ACROSS, shape, laws)
 
 
 @pytest.mark.parametrize("tilt", [2.0, -2.0])
@@ -29,11 +36,12 @@ def test_pressure_rising_to_end_peaks_at_end(tilt: float) -> None:
     """The value is exact for a parabola, between the cells along y as well."""
     half_length = 0.5 * (EDGES[-1] - EDGES[0])
     powers = [1.0, tilt, 1.5]
-    peaks, ends, along_y = extrapolate_end_pressures(EDGES, spread_load(means(powers, EDGES)), (None, None))
-    exact_pressures = tuple(
+    values, along_y = values_of(means(powers, EDGES))
+    peaks = values["peak_pressure"]
+    exact_pressures = [
         float(np.polynomial.polynomial.polyval(position, powers)) for position in (-half_length, half_length)
-    )
-    assert ends == pytest.approx(exact_pressures, rel=1e-9)
+    ]
+    assert values["end_pressure"] == pytest.approx(exact_pressures, rel=1e-9)
     risen = 1 if tilt > 0 else 0
     assert peaks[risen] == pytest.approx(exact_pressures[risen], rel=1e-9)
     # The other half is largest in the middle, between two columns, or on its last column if that is larger.
@@ -46,22 +54,20 @@ def test_pressure_rising_to_end_peaks_at_end(tilt: float) -> None:
 def test_halves_have_separate_peaks() -> None:
     column_loads = np.ones(EDGES.size - 1)
     column_loads[7] = 3.0  # this is the second column beyond the middle
-    peaks, ends, _ = extrapolate_end_pressures(EDGES, spread_load(column_loads), (None, None))
+    values, _ = values_of(column_loads)
     assert (0.5 * (EDGES[6] + EDGES[7]) - EDGES[0]) / (EDGES[-1] - EDGES[0]) > 0.5
-    assert peaks == pytest.approx((1.0, 3.0))
-    assert ends == pytest.approx((1.0, 1.0))
+    assert values["peak_pressure"] == pytest.approx([1.0, 3.0])
+    assert values["end_pressure"] == pytest.approx([1.0, 1.0])
 
 
 def test_ends_without_pressure_and_singular_ends() -> None:
     column_loads = np.append(np.zeros(3), np.ones(EDGES.size - 4))
-    peaks, ends, _ = extrapolate_end_pressures(
-        EDGES, spread_load(column_loads), (None, EndLaw(kind="power", exponent=0.5))
-    )
-    assert ends == (0.0, np.inf)
-    assert peaks == (pytest.approx(1.0), np.inf)
+    values, _ = values_of(column_loads, (None, EndLaw(exponent=0.5)))
+    assert values["end_pressure"] == [0.0, np.inf]
+    assert values["peak_pressure"] == [pytest.approx(1.0), np.inf]
     falling = column_loads.copy()
     falling[:3] = 0.01, 0.5, 1.0  # The parabola through these means is negative at the end.
-    assert extrapolate_end_pressures(EDGES, spread_load(falling), (None, None))[1][0] == 0.0
+    assert values_of(falling)[0]["end_pressure"][0] == 0.0
 
 
 @pytest.mark.parametrize("width", [1e-2, 2e-2, 0.1, 1.0])
@@ -70,8 +76,8 @@ def test_end_loads_integrate_one_half_width(width: float) -> None:
     fine = np.linspace(EDGES[0], EDGES[-1], 200001)
     centres, step = 0.5 * (fine[1:] + fine[:-1]), fine[1] - fine[0]
     step_loads = column_loads[np.searchsorted(EDGES, centres) - 1] * ACROSS.sum() * step
-    expected = step_loads[centres < EDGES[0] + width].sum(), step_loads[centres > EDGES[-1] - width].sum()
-    assert end_loads(EDGES, spread_load(column_loads), width) == pytest.approx(expected, rel=1e-3)
+    expected = [step_loads[centres < EDGES[0] + width].sum(), step_loads[centres > EDGES[-1] - width].sum()]
+    assert values_of(column_loads, half_width=width)[0]["end_load"] == pytest.approx(expected, rel=1e-3)
 
 
 def test_values_mirror_with_side() -> None:

@@ -29,7 +29,7 @@ def graded_edges(width: float) -> FloatArray:
 def test_rigid_end_intensity_matches_power_law(intensity: float, bend: float) -> None:
     edges = graded_edges(1e-3)
     pressure = column_means(edges, 0.5, intensity, bend)[:, None] * np.array([0.4, 1.0, 0.4])
-    law = EndLaw(kind="power", exponent=0.5).with_intensity(edges, pressure, np.inf)
+    law = EndLaw(exponent=0.5).with_intensity(edges, pressure, np.inf)
     assert law.intensity == pytest.approx(intensity, rel=1e-6)
     assert 0 < law.intensity_error < 5e-3 * intensity
 
@@ -39,7 +39,7 @@ def test_intensity_uses_row_of_end_peak() -> None:
     edges = graded_edges(1e-3)
     end = column_means(edges, 0.5, 2.0, 0.0)
     shifted = np.where(edges[1:] > 0.03, 10 * end.max(), 0.0)
-    law = EndLaw(kind="power", exponent=0.5).with_intensity(edges, np.stack([0.5 * end, end, shifted], axis=1), np.inf)
+    law = EndLaw(exponent=0.5).with_intensity(edges, np.stack([0.5 * end, end, shifted], axis=1), np.inf)
     assert law.intensity == pytest.approx(2.0, rel=1e-6)
     lifted = law.with_intensity(edges, np.stack([shifted, shifted], axis=1), np.inf)
     assert (lifted.intensity, lifted.intensity_error) == (0.0, np.inf)
@@ -51,7 +51,7 @@ def test_few_columns_have_infinite_intensity_error(exponent: float) -> None:
     edges = graded_edges(1e-3)
     pressure = column_means(edges, 0.5, 2.0, 0.0)[:, None].copy()
     pressure[5:] = 0.0
-    law = EndLaw(kind="power", exponent=exponent).with_intensity(edges, pressure, np.inf)
+    law = EndLaw(exponent=exponent).with_intensity(edges, pressure, np.inf)
     assert law.intensity_error == np.inf
     assert law.intensity > 0
     if exponent == 0.5:
@@ -62,7 +62,7 @@ def test_few_columns_have_infinite_intensity_error(exponent: float) -> None:
 def test_exponent_of_an_elastic_end_is_fitted(exponent: float) -> None:
     edges = graded_edges(1e-3)
     pressure = column_means(edges, exponent, 2.0, -0.5)[:, None]
-    law = EndLaw(kind="power", exponent=np.nan).with_intensity(edges, pressure, np.inf)
+    law = EndLaw(exponent=np.nan).with_intensity(edges, pressure, np.inf)
     assert law.exponent == pytest.approx(exponent, abs=1e-3)
     assert law.intensity == pytest.approx(2.0, rel=1e-2)
 
@@ -115,9 +115,8 @@ def samples(pressure: FloatArray) -> list[Sample]:
 @given(exponent=st.floats(0.15, 0.5))
 def test_power_growth_has_power_law(exponent: float) -> None:
     theory_law, fitted_law = (law_of(samples(HALVINGS**-exponent), theory) for theory in (RIGID, np.nan))
-    assert theory_law == EndLaw(kind="power", exponent=RIGID)
+    assert theory_law == EndLaw(exponent=RIGID)
     assert fitted_law is not None
-    assert fitted_law.kind == "power"
     assert np.isnan(fitted_law.exponent)
 
 
@@ -126,8 +125,8 @@ def test_logarithmic_growth_has_logarithm_law(share: float) -> None:
     growing = samples(1 + share * np.log(1 / HALVINGS))
     law = law_of(growing, np.nan)
     assert law is not None
-    assert (law.kind, law.exponent) == ("logarithm", 0.0)
-    assert law_of(growing, 0.2264) == EndLaw(kind="power", exponent=0.2264)
+    assert law.exponent == 0
+    assert law_of(growing, 0.2264) == EndLaw(exponent=0.2264)
     assert np.isnan(law.with_intensity(graded_edges(1e-3), np.ones((32, 1)), np.inf).intensity)
 
 
@@ -146,7 +145,7 @@ def test_end_loaded_on_some_columns_has_no_law() -> None:
 
 
 def test_loaded_end_has_theoretical_exponent() -> None:
-    assert law_of(samples(np.array([1.0, 1.0, 1.0, 1.0, 0.9, 0.9, 0.8])), RIGID) == EndLaw(kind="power", exponent=RIGID)
+    assert law_of(samples(np.array([1.0, 1.0, 1.0, 1.0, 0.9, 0.9, 0.8])), RIGID) == EndLaw(exponent=RIGID)
     assert law_of(samples(np.array([1.0, 1.0, 1.0, 1.0, 0.5, 0.2, 0.0])), RIGID) is None
 
 
@@ -180,9 +179,9 @@ def test_fit_uses_columns_from_3_to_64_widths(unit: float) -> None:
     def fitted_law(first_distance: float) -> EndLaw:
         variant = pressure.copy()
         variant[int(np.flatnonzero(first_distance == EDGES)[0])] *= 1.5
-        return EndLaw(kind="power", exponent=0.5).with_intensity(unit * EDGES, variant, np.inf)
+        return EndLaw(exponent=0.5).with_intensity(unit * EDGES, variant, np.inf)
 
-    baseline = EndLaw(kind="power", exponent=0.5).with_intensity(unit * EDGES, pressure, np.inf)
+    baseline = EndLaw(exponent=0.5).with_intensity(unit * EDGES, pressure, np.inf)
     assert baseline.intensity == pytest.approx(2.0)
     for first_distance in (2.0, 128.0):
         assert fitted_law(first_distance) == baseline
@@ -199,20 +198,17 @@ def test_end_near_free_end_has_larger_error(width: float) -> None:
     edges = width * EDGES
     pressure = column_means(edges, 0.5, 2.0, 0.0)[:, None]
     wide_face_law, narrow_face_law = (
-        EndLaw(kind="power", exponent=0.5).with_intensity(edges, pressure, room * width).intensity_error
-        for room in (129.0, 127.0)
+        EndLaw(exponent=0.5).with_intensity(edges, pressure, room * width).intensity_error for room in (129.0, 127.0)
     )
     assert wide_face_law == pytest.approx(3e-3 * 2.0)
     assert narrow_face_law - wide_face_law == pytest.approx(0.08 * 2.0)
-    nearly_flush = EndLaw(kind="power", exponent=0.5).with_intensity(edges, pressure, 2.9 * width)
+    nearly_flush = EndLaw(exponent=0.5).with_intensity(edges, pressure, 2.9 * width)
     assert nearly_flush.intensity_error == np.inf
 
 
 def test_rigid_exponent_bounds_elastic_exponent() -> None:
     edges = graded_edges(1e-3)
-    law = EndLaw(kind="power", exponent=np.nan).with_intensity(
-        edges, column_means(edges, 0.54, 2.0, 0.0)[:, None], np.inf
-    )
+    law = EndLaw(exponent=np.nan).with_intensity(edges, column_means(edges, 0.54, 2.0, 0.0)[:, None], np.inf)
     assert 0.49 < law.exponent <= 0.5
 
 
@@ -220,4 +216,4 @@ def test_logarithm_law_does_not_depend_on_splitting() -> None:
     widths = 0.1 * np.cumprod([1.0, 0.25, 0.25, 0.25, 0.5, 0.5])
     law = law_of([Sample(float(width), float(1 - 0.1 * np.log(width))) for width in widths], np.nan)
     assert law is not None
-    assert law.kind == "logarithm"
+    assert law.exponent == 0

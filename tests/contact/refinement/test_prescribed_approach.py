@@ -98,7 +98,7 @@ def test_distant_initial_load_is_corrected() -> None:
     """A steep crown carries a hundredth of the load of its slices as line contacts."""
     steep = replace(BALL, roller=replace(BALL.roller, radius=0.5, profile=profiles.FullCrown(crown_radius=1e-3)))
     computed = contact_at_approach(steep, 0.1, 1e-4)
-    assert computed.refined.contact.approach == APPROACH
+    assert computed.contact.approach == APPROACH
 
 
 def test_result_keeps_approach_and_requires_load() -> None:

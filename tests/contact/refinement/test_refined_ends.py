@@ -25,7 +25,7 @@ from tests.contact.refinement.rollers import (
 
 def test_sharp_rigid_end_has_square_root_law() -> None:
     case = Case(body=HALF, roller=Roller(radius=RADIUS, length=LENGTH), max_pressure=PRESSURE)
-    values = refined_values(refined_at(case))
+    values = refined_values(case, refined_at(case))
     assert np.isinf(values.peak_pressure)
     assert np.isinf(values.peak_pressure_error)
     for side in ("first", "last"):
@@ -53,7 +53,7 @@ def test_flush_end_of_a_free_body_has_a_finite_pressure() -> None:
     computed = refined_at(
         Case(body=finite(), roller=Roller(radius=RADIUS, length=LENGTH), max_pressure=PRESSURE)
     ).refined
-    assert computed.laws == (None, None)
+    assert computed.laws == [None, None]
     for end, error in zip(computed.values["end_pressure"], computed.errors["end_pressure"], strict=True):
         assert end / PRESSURE == pytest.approx(0.497, abs=0.005)
         assert abs(end / PRESSURE - 0.497) <= error / PRESSURE <= 0.01
@@ -64,11 +64,11 @@ def test_tilted_end_without_correction_has_logarithm() -> None:
     body = FiniteLengthSpace(length=LENGTH, material=STEEL, model="mirror")
     case = Case(body=body, roller=Roller(radius=RADIUS, length=LENGTH), max_pressure=PRESSURE, tilt=5e-4)
     laws = refined_at(case).refined.laws
-    assert "logarithm" in [law.kind for law in laws if law is not None]
+    assert 0.0 in [law.exponent for law in laws if law is not None]
     freed = refined_at(
         Case(body=finite(), roller=Roller(radius=RADIUS, length=LENGTH), max_pressure=PRESSURE, tilt=5e-4)
     ).refined
-    assert freed.laws == (None, None)
+    assert freed.laws == [None, None]
     assert freed.values["end_pressure"][0] < freed.values["end_pressure"][1] < freed.peak
 
 
@@ -76,7 +76,7 @@ def test_singular_end_with_unloaded_half() -> None:
     roller = Roller(radius=RADIUS, length=0.3e-3, profile=profiles.FullCrown(0.5))
     computed = refined_at(Case(body=HALF, roller=roller, max_pressure=PRESSURE, tilt=0.02), 0.1).refined
     assert computed.accurate
-    assert computed.values["peak_pressure"] == (0.0, np.inf)
+    assert computed.values["peak_pressure"] == [0.0, np.inf]
     assert computed.values["end_load"][0] == 0.0
 
 
@@ -88,7 +88,6 @@ def test_sharp_elastic_end_has_smaller_exponent() -> None:
     laws = refined_at(case).refined.laws
     for law in laws:
         assert law is not None
-        assert law.kind == "power"
         assert 0.2 < law.exponent < 0.24
 
 
@@ -96,7 +95,7 @@ def test_crowned_roller_peaks_at_mid_length() -> None:
     crown = profiles.Lundberg.for_pressure(PRESSURE, radius=RADIUS, modulus=STEEL.plane_strain_modulus)
     case = Case(body=finite(), roller=Roller(radius=RADIUS, length=LENGTH, profile=crown), max_pressure=PRESSURE)
     computed = refined_at(case)
-    assert computed.refined.values["end_pressure"] == (0.0, 0.0)
+    assert computed.refined.values["end_pressure"] == [0.0, 0.0]
     assert computed.refined.errors["end_pressure"] == [0.0, 0.0]
     assert abs(computed.refined.peak - finer_peak(case, computed, 2)) <= computed.refined.peak_error
     assert computed.refined.peak / PRESSURE == pytest.approx(1.044, abs=0.005)
@@ -131,7 +130,7 @@ def test_sharp_end_near_free_end_has_infinite_error(distance: float) -> None:
     case = Case(
         body=finite(LENGTH + 2 * distance * A), roller=Roller(radius=RADIUS, length=LENGTH), max_pressure=PRESSURE
     )
-    computed = refined_values(refined_at(case))
+    computed = refined_values(case, refined_at(case))
     assert np.isinf(computed["end_pressure_first_error"])
     if distance > 1e-3:
         intensity = computed["end_intensity_first"] / (PRESSURE * np.sqrt(A))
@@ -144,7 +143,8 @@ def test_fading_end_has_infinite_error() -> None:
     rubber = Material(6e8, 0.0)
     roller = Roller(radius=RADIUS, length=0.13e-3, material=rubber)
     body = QuarterSpace(material=rubber, model="mirror-factor")
-    computed = refined_values(refined_at(Case(body=body, roller=roller, max_pressure=2e6), 0.02))
+    case = Case(body=body, roller=roller, max_pressure=2e6)
+    computed = refined_values(case, refined_at(case, 0.02))
     assert np.isinf(computed["end_pressure_first_error"])
     assert 0 < float(computed["peak_pressure_first_error"]) < 0.02 * float(computed["peak_pressure_first"])
 

@@ -28,11 +28,8 @@ def solve_under(bound: FloatArray, traction: FloatArray, sticks: FloatArray) -> 
 
 
 def all_cells(bound: FloatArray) -> RollingCells:
-    empty = np.zeros((2, 0), dtype=np.int64)
-    unknown = np.argwhere(np.ones(bound.shape, bool)).T
-    offset = np.zeros(unknown.shape[1])
     return RollingCells(
-        bound=bound, unknown=unknown, offset=offset, dependent=empty, source_cell=empty[0], ratio=np.zeros(0)
+        bound=bound, is_unknown=np.ones(bound.shape, bool), offset=np.zeros(bound.size), ratio=np.ones(bound.shape)
     )
 
 
