@@ -248,7 +248,7 @@ def _amplitudes(
     for view in make_views(problem, columns, np.concatenate([x for x, _ in points]), shortest):
         view_rows = [np.flatnonzero((view.rows >= low) & (view.rows < high)) for low, high in pairwise(starts)]
         for node, lateral in enumerate(columns.nodes.tolist()):
-            system = problem.equation_set(view.modes, lateral, shortest)
+            system = EquationSet.build(view.modes, lateral, problem.poisson, shortest, problem.resolution)
             spectrum = view.spectra[:, node if view.spectra.shape[1] > 1 else 0]
             loads = system.auxiliary_loads(spectrum, problem.loads, shortest=shortest, resolution=problem.resolution)
             for amplitude, (_, z), start, indices in zip(amplitudes, points, starts, view_rows, strict=False):
