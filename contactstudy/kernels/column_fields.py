@@ -40,7 +40,6 @@ from contactstudy.kernels.fine_cells import (
     resolved_columns,
 )
 from contactstudy.kernels.images import Influence, far_images, interpolation_points
-from contactstudy.kernels.smooth_load import MomentLoads
 
 MAX_UNSPLIT_WIDTH = 0.15  # largest width of an unsplit column over the least depth. Accuracy.
 MAX_DIVISOR = 6  # largest number of common steps in the shortest distance between positions along y. Speed.
@@ -320,9 +319,8 @@ class _SplitRange(NamedTuple):
         replaced_columns = slice(self.start + 1, self.stop - 1)
         is_summed = np.ones(fine.edges.size - 1, bool)
         is_summed[replaced_columns] = fine.is_unsplit[replaced_columns]
-        total = MomentLoads(*(np.where(is_summed, loads, 0.0) for loads in fine.x_moments)).total.T
         midpoints = 0.5 * (self.inserted[1:] + self.inserted[:-1])
-        return total[np.searchsorted(fine.edges, midpoints) - 1]
+        return fine.moment_loads(is_summed)[np.searchsorted(fine.edges, midpoints) - 1]
 
     def jumps(
         self, edges: FloatArray, first: int, loads: FloatArray, inserted_loads: FloatArray, layer: Layer
