@@ -406,18 +406,14 @@ def columns_field(
     # The step -1 reflects the load.
     for step, half in ((1, whole),) if is_symmetric else ((1, ~in_second_half), (-1, in_second_half)):
         if half.any():
-            distinct_x, indices = _distinct_positions(x[half], MIRROR_ROUNDING * (high - low))
-            half_points, half_shape = points._replace(x=distinct_x), None if shape is None else shape[::step]
+            rounded_x = np.round(x[half] / (MIRROR_ROUNDING * (high - low)))
+            _, first_indices, indices = np.unique(rounded_x, return_index=True, return_inverse=True)
+            half_points = points._replace(x=x[half][first_indices])
+            half_shape = None if shape is None else shape[::step]
             half_field = _sum_columns(load[::step], half_shape, influence, grid, points=half_points, extent=extent)
             field[:, half] = half_field[:, indices]
     field[:, in_second_half] *= np.array(influence.sign_along_x)[:, None, None, None]
     return field
-
-
-def _distinct_positions(x: FloatArray, rounding: float) -> tuple[FloatArray, IntArray]:
-    """Positions that differ by more than `rounding`, and the index of each position among them."""
-    _, first_indices, indices = np.unique(np.round(x / rounding), return_index=True, return_inverse=True)
-    return x[first_indices], indices
 
 
 def _sum_columns(
