@@ -1,9 +1,8 @@
 """The largest von Mises stress in a body.
 
-The largest stress lies below a peak of the pressure, at a depth proportional to the width of the peak (some hundredths
-of a half-width for an edge radius), near a free end, or on the top, with much friction and where the contact reaches an
-end. The search evaluates points around the peaks and along the contact, and refines them about the largest values until
-polynomials of two degrees agree. On the top it evaluates the centres of cells inside the contact.
+The search evaluates points around the peaks of the pressure and along the contact, and refines them about the largest
+values until polynomials of two degrees agree (docs/explanation/numerics.md). On the top it evaluates the centres of
+cells inside the contact.
 """
 
 from __future__ import annotations

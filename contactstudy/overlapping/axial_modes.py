@@ -1,13 +1,8 @@
 """Axial wavenumbers: the sum over all mirrored loads, written as a few real modes and a decaying ray.
 
-In H every load is extended evenly about both ends, so it is a sum of modes ``cos(k_n x)``, ``k_n = n pi / L``. Modes
-with even and odd ``n`` (loads symmetric and antisymmetric about mid-length, ``parity = +1, -1``) never mix. The first
-few terms form a sum; the others an integral along a ray from the real axis (formula of Abel and Plana, eqs. (31) and
-(32) of docs/explanation/numerics.md), where the contributions of the two ends decay. A quarter space has one end: the
-ray starts at ``k = 0`` without the second end's part (``parity = 0``).
-
-The single-mirror scheme serves comparisons (docs/explanation/theory.md, section 10): H carries ``P_h1`` and one pair of
-images, V1 and V2 are half-spaces at x = 0 and x = L.
+The sum over the mirrored loads becomes a ray by the formula of Abel and Plana, eqs. (31) and (32) of
+docs/explanation/numerics.md. Loads even and odd about mid-length (``parity = +1, -1``) never mix; a quarter space has
+one end (``parity = 0``). The single-mirror scheme serves comparisons (docs/explanation/theory.md, section 10).
 """
 
 from __future__ import annotations
