@@ -242,7 +242,7 @@ def _uniform_jumps(x: float, parts: list[Part], edges: FloatArray, loads: FloatA
     column = int(np.clip(np.searchsorted(edges, x, side="right") - 1, 0, edges.size - 2))
     unsplit = _SplitRange(edges[column : column + 1], column, column)
     layer_loads, inserted_loads = ([[values] * len(part.layers) for part in parts] for values in (loads, loads[:0]))
-    return _jumps_around(x, parts, edges, unsplit, layer_loads, inserted_loads)
+    return _jumps_around(x, parts, edges, unsplit, loads=layer_loads, inserted_loads=inserted_loads)
 
 
 def _jumps_around(
@@ -250,6 +250,7 @@ def _jumps_around(
     parts: list[Part],
     edges: FloatArray,
     split_range: _SplitRange,
+    *,
     loads: list[list[FloatArray]],
     inserted_loads: list[list[FloatArray]],
 ) -> list[list[Jumps]]:
@@ -292,7 +293,7 @@ def _shaped_jumps(x: FloatArray, parts: list[Part], fine: FineCells, max_width: 
         for position, split_range in zip(positions, split_ranges, strict=True):
             first, stop = stop, stop + split_range.inserted.size - 1
             split_loads = [[layer_loads[first:stop] for layer_loads in part_loads] for part_loads in inserted_loads]
-            yield _jumps_around(position, parts, fine.edges, split_range, loads, split_loads)
+            yield _jumps_around(position, parts, fine.edges, split_range, loads=loads, inserted_loads=split_loads)
 
 
 class _SplitRange(NamedTuple):
