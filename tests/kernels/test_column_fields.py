@@ -466,10 +466,9 @@ def test_fields_unfold_from_distances(offset: float) -> None:
     aligned = AlignedPoints(offset, np.arange(2), np.array([0, 4]))
     layer = Layer(aligned, np.zeros(1), np.array([0]), step=0.1, edges=None, fine_per_cell=3)
     offsets = offset + 0.1 * np.arange(-3.0, 5.0)
-    values = np.stack([np.cos(layer.distances), np.sin(layer.distances)])[:, None, None, :]
-    unfolded = layer.unfold(values, np.array([False, True]), 10)[:, 0, 0]
-    assert unfolded[:, :8] == pytest.approx(np.stack([np.cos(offsets), np.sin(offsets)]))
-    assert not unfolded[:, 8:].any()
+    values, expected = (np.stack([np.cos(y), np.sin(y)]) for y in (layer.distances, offsets))
+    unfolded = layer.unfold(values[:, None, None, :], np.array([False, True]), 10)[:, 0, 0]
+    assert unfolded == pytest.approx(np.pad(expected, ((0, 0), (0, 2))))
 
 
 @pytest.mark.parametrize("x", [0.002, 0.005, 0.01, 2.99, 2.995, 2.998])
@@ -493,11 +492,9 @@ def test_columns_do_not_depend_on_the_unit(*, uniform: bool) -> None:
         axes, load = (ArrayKey(unit * x), ArrayKey(unit * y), ArrayKey(unit * z)), ArrayKey(cells.load)
         computed.append(split_columns(load, None if uniform else load, cells.grid, cells.extent, 1, axes))
     baseline, variant = computed
-    for part, scaled_part in zip(baseline.parts, variant.parts, strict=True):
-        assert part.depth_indices.size == scaled_part.depth_indices.size
+    assert len({tuple(part.depth_indices.size for part in columns.parts) for columns in computed}) == 1
     for jumps_of_parts, scaled_jumps_of_parts in zip(baseline.jumps, variant.jumps, strict=True):
         for part, jumps, scaled_jumps in zip(baseline.parts, jumps_of_parts, scaled_jumps_of_parts, strict=True):
-            for item, scaled in zip(jumps, scaled_jumps, strict=True):
-                assert scaled.edges.size == item.edges.size
-                if not part.radius:
-                    assert scaled.edges / UNIT == pytest.approx(item.edges, abs=1e-9)
+            assert [item.edges.size for item in jumps] == [item.edges.size for item in scaled_jumps]
+            for item, scaled in () if part.radius else zip(jumps, scaled_jumps, strict=True):
+                assert scaled.edges / UNIT == pytest.approx(item.edges, abs=1e-9)
