@@ -119,12 +119,8 @@ def edge_tension(result: xr.Dataset, x: Positions | None = None) -> xr.Dataset:
             traction_y=case["traction_y"],
         )
         tension_field = stresses["sigma_yy"].squeeze("z")
-    tensions = []
-    for column in columns.tolist():
-        if column not in sections:
-            tensions.append((np.nan, np.nan, np.nan))
-            continue
-        section = sections[column]
+    tensions = np.full((3, columns.size), np.nan)
+    for column, section in sections.items():
         stress = tension_field.sel(x=centres[column], y=y[column]).values
         smooth_stress = stress - section.plane_tension(FIT_DISTANCES)
         intercept = float(np.polyfit(FIT_DISTANCES, smooth_stress, 1)[1])
@@ -134,9 +130,9 @@ def edge_tension(result: xr.Dataset, x: Positions | None = None) -> xr.Dataset:
             + 2 * abs(section.coefficients[-1])
             + abs(tension) * (relative_error + EDGE_UNCERTAINTY * section.cell_width / section.half_width)
         )
-        tensions.append((tension, float(error), sign * section.edge))
+        tensions[:, columns == column] = np.array([[tension], [error], [sign * section.edge]])
     names = ("edge_tension", "edge_tension_error", "trailing_edge")
-    variables = {name: ("x", np.array(column)) for name, column in zip(names, zip(*tensions, strict=True), strict=True)}
+    variables = {name: ("x", values) for name, values in zip(names, tensions, strict=True)}
     return describe(xr.Dataset(variables, coords={"x": centres[columns]}))
 
 

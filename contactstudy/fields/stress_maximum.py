@@ -1,14 +1,14 @@
 """The largest von Mises stress in a body.
 
-The largest stress lies below a peak of the pressure, at a depth proportional to the width of the peak (some hundredths
-of a half-width for an edge radius), near a free end, or on the top, with much friction and where the contact reaches an
-end. The search evaluates points around the peaks and along the contact, and refines them about the largest values until
-polynomials of two degrees agree. On the top it evaluates the centres of cells inside the contact.
+The search evaluates points around the peaks of the pressure and along the contact, and refines them about the largest
+values until polynomials of two degrees agree (docs/explanation/numerics.md). On the top it evaluates the centres of
+cells inside the contact.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
+from operator import attrgetter
 from typing import NamedTuple
 
 import numpy as np
@@ -196,6 +196,9 @@ class StressMaximum(NamedTuple):
     position: tuple[float, float, float]  # x, y and z, metres
 
 
+VALUE = attrgetter("value")
+
+
 class _SampleMaximum(NamedTuple):
     """The largest value among points and between points, and the indices of the largest point."""
 
@@ -212,15 +215,15 @@ def find_stress_maximum(
         return StressMaximum(0.0, 0.0, (np.nan, np.nan, np.nan))
     samples = list(zip(search.samples, stresses, strict=True))
     *peaks, axis = [(points._replace(z=points.z[1:]), field[..., 1:]) for points, field in samples]
-    maximum = _select_largest(_refine_maximum(_maximum_between_samples(*peak), search, stress_at) for peak in peaks)
+    maximum = max((_refine_maximum(_maximum_between_samples(*peak), search, stress_at) for peak in peaks), key=VALUE)
     axis_sample = _maximum_of_samples(*axis)
     if axis_sample.maximum.value > maximum.value:
-        maximum = _select_largest([maximum, _refine_maximum(axis_sample, search, stress_at)])
+        maximum = max(maximum, _refine_maximum(axis_sample, search, stress_at), key=VALUE)
     for points, field in samples:
         top = search.top_stresses(points, field[..., :1])
         sample = _maximum_of_samples(points._replace(z=points.z[:1]), top, search.inside_rim_at(points))
         if sample.maximum.value * TOP_MARGIN > maximum.value:
-            maximum = _select_largest([maximum, _top_maximum(sample, search, stress_at)])
+            maximum = max(maximum, _top_maximum(sample, search, stress_at), key=VALUE)
     return maximum
 
 
@@ -252,7 +255,7 @@ def include_points(
             if maximum.value < value:
                 maximum = StressMaximum(value, maximum.error + value - maximum.value, position)
         elif value > maximum.value:
-            maximum = _select_largest([maximum, _top_maximum(sample, search, stress_at)])
+            maximum = max(maximum, _top_maximum(sample, search, stress_at), key=VALUE)
     return maximum
 
 
@@ -264,11 +267,6 @@ def _neighbourhood(position: tuple[float, float, float], search: Search) -> Poin
     depths = np.maximum(z * (1 + LOCAL_OFFSETS), search.shallowest)
     rows = np.unique([*np.round(z * LOCAL_OFFSETS / dy), -1, 1])
     return Points(axial[select_separated(axial, 0.1 * z)], y + dy * rows, depths[select_separated(depths, 0.1 * z)])
-
-
-def _select_largest(candidates: Iterable[StressMaximum]) -> StressMaximum:
-    """Return the candidate with the largest value."""
-    return max(candidates, key=lambda candidate: candidate.value)
 
 
 def _top_maximum(sample: _SampleMaximum, search: Search, stress_at: Callable[[Points], FloatArray]) -> StressMaximum:
@@ -352,22 +350,12 @@ def _maximum_of_samples(points: Points, stresses: FloatArray, selection: BoolArr
 def _maximum_between_samples(points: Points, stresses: FloatArray) -> _SampleMaximum:
     """Largest value between points, from polynomials through the stress components."""
     sample = _maximum_of_samples(points, stresses)
-    (value, position), (coarse_value, _) = (
-        _interpolate(points, stresses, sample.indices, neighbours) for neighbours in (2, 1)
+    fine, coarse = (
+        _maximum_of_samples(Points(*axes), components).maximum
+        for axes, components in (interpolate_about(points, sample.indices, stresses, count) for count in (2, 1))
     )
-    error = max(abs(value - coarse_value), RISE_ERROR * (value - sample.maximum.value))
-    return sample._replace(maximum=StressMaximum(value, error, position))
-
-
-def _interpolate(
-    points: Points, stresses: FloatArray, index: tuple[int, ...], neighbours: int
-) -> tuple[float, tuple[float, float, float]]:
-    """Largest value, and its position, of polynomials through `neighbours` points on either side of a point."""
-    axes, components = interpolate_about(points, index, stresses, neighbours)
-    von_mises = von_mises_of(*components)
-    maximum_index = np.unravel_index(int(von_mises.argmax()), von_mises.shape)
-    x, y, z = (float(axis[number]) for axis, number in zip(axes, maximum_index, strict=True))
-    return float(von_mises[maximum_index]), (x, y, z)
+    error = max(abs(fine.value - coarse.value), RISE_ERROR * (fine.value - sample.maximum.value))
+    return sample._replace(maximum=fine._replace(error=error))
 
 
 def _closer_points(sample: _SampleMaximum, search: Search) -> tuple[Points, bool]:

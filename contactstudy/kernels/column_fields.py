@@ -9,10 +9,10 @@ the columns.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import chain
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -40,7 +40,6 @@ from contactstudy.kernels.fine_cells import (
     resolved_columns,
 )
 from contactstudy.kernels.images import Influence, far_images, interpolation_points
-from contactstudy.kernels.smooth_load import MomentLoads
 
 MAX_UNSPLIT_WIDTH = 0.15  # largest width of an unsplit column over the least depth. Accuracy.
 MAX_DIVISOR = 6  # largest number of common steps in the shortest distance between positions along y. Speed.
@@ -131,16 +130,19 @@ class LateralAxis:
         return layers
 
 
-class Lattice(NamedTuple):
-    """Positions along y at which the field at some of the depths is evaluated, and interpolated from."""
+class Part(NamedTuple):
+    """Some of the columns at some depths, and the positions from which their field is interpolated."""
 
     y: FloatArray
-    matrix: FloatArray | None  # (position, y): interpolation; None if the positions are the given ones
-    depth_indices: IntArray
+    interpolation_y: FloatArray | None  # (y, position): None if the positions are the given ones
+    depth_indices: IntArray  # depths of the field; if depths are interpolated, all depths of the layers
+    interpolation_z: FloatArray | None = None  # (z, depth): None if the depths are the given ones
+    radius: float = 0.0  # for a ring of merged columns, its distance along x from the point, metres
+    layers: Sequence[Layer] = ()
 
     @classmethod
-    def of(cls, lateral: LateralAxis, step: float, depth_indices: IntArray) -> Lattice:
-        """Positions at whole steps from the centre of a cell."""
+    def on_lattice(cls, lateral: LateralAxis, step: float, depth_indices: IntArray) -> Part:
+        """Positions along y at whole steps from the centre of a cell."""
         numbers = (lateral.y - lateral.grid.y[0]) / step
         first_numbers = np.floor(numbers).astype(np.int64) - (LATTICE_POINTS // 2 - 1)
         weights = lagrange_weights(np.arange(float(LATTICE_POINTS)), numbers - first_numbers)
@@ -149,25 +151,31 @@ class Lattice(NamedTuple):
         matrix[indices.reshape(weights.shape), np.arange(lateral.y.size)[:, None]] = weights
         return cls(lateral.grid.y[0] + step * lattice, matrix, depth_indices)
 
-    def interpolate(self, field: FloatArray) -> FloatArray:
-        """Field (component, x, y, z) at the given positions."""
-        return field if self.matrix is None else np.asarray(self.matrix.T @ field)
+    def add_to(self, field: FloatArray, part_field: FloatArray) -> None:
+        """Add the part's field (component, x, y, z) at its positions to the field at the given positions."""
+        part_field = part_field[..., self.depth_indices]
+        if self.interpolation_y is not None:
+            part_field = self.interpolation_y.T @ part_field
+        if self.interpolation_z is not None:
+            field += part_field @ self.interpolation_z.T
+        else:
+            field[..., self.depth_indices] += part_field
 
 
-def _lattices(lateral: LateralAxis, z: FloatArray, is_refined: BoolArray) -> list[Lattice]:
-    """Return the lattices of all depths: with at most half as many offsets from the cells as the positions have."""
+def _parts_by_depth(lateral: LateralAxis, z: FloatArray, is_refined: BoolArray) -> list[Part]:
+    """Return parts without layers: on lattices with at most half as many offsets from the cells as the positions."""
     # The refined cells are centred about each position: their field is not interpolated.
     steps_per_cell = np.divide(lateral.grid.dy, LATTICE_STEP * z, out=np.full(z.shape, np.inf), where=z > 0)
     offset_counts = np.exp2(np.ceil(np.log2(np.maximum(steps_per_cell, 1.0))))
     offset_counts[is_refined | (2 * offset_counts > lateral.offset_count)] = np.inf
-    lattices = []
+    parts = []
     for count in np.unique(offset_counts).tolist():
         depth_indices = np.flatnonzero(offset_counts == count)
         if np.isfinite(count):
-            lattices.append(Lattice.of(lateral, lateral.grid.dy / count, depth_indices))
+            parts.append(Part.on_lattice(lateral, lateral.grid.dy / count, depth_indices))
         else:
-            lattices.append(Lattice(lateral.y, None, depth_indices))
-    return lattices
+            parts.append(Part(lateral.y, None, depth_indices))
+    return parts
 
 
 def _odd_count(ratio: float) -> int:
@@ -175,24 +183,11 @@ def _odd_count(ratio: float) -> int:
     return 2 * max(0, int(np.ceil(0.5 * (ratio - 1) - OFFSET_TOLERANCE))) + 1
 
 
-class Ring(NamedTuple):
-    """Merged columns beyond a distance along x, on cells of the grid's size along y."""
-
-    radius: float  # distance, metres
-    lattice: Lattice  # positions along y
-    layers: list[Layer]
-    interpolation_z: FloatArray | None  # (z, depth): interpolation from the layers' depths; None without one
-
-
 class SplitColumns(NamedTuple):
     """Columns around each point, and rings of merged columns farther away."""
 
-    lattices: list[Lattice]  # positions along y of the near columns' field
-    layers: list[list[Layer]]  # of each lattice
-    rings: list[Ring]  # from the innermost one
-    jumps: list[tuple[list[Jumps], list[list[list[Jumps]]]]]
-    """For each position along x the jumps of near columns in all `layers`, and for each ring and either side the jumps
-    of its columns in its layers."""
+    parts: list[Part]  # near columns, then rings from the innermost one
+    jumps: list[list[list[Jumps]]]  # for each position along x and each part
     first: int  # first loaded row of the grid, and the load (cell_x, y) on the rows from this row on
     load: FloatArray
 
@@ -218,94 +213,87 @@ def split_columns(
         )
         first, load, is_refined = fine_cells.first, fine_cells.cell_loads, fine_cells.is_refined_along_y(z)
     lateral = LateralAxis(grid, y, first, fine_cells.count if fine_cells else load.shape[1])
-    lattices = _lattices(lateral, z, is_refined)
 
-    def layers_of(lattice: Lattice, z: FloatArray, depth_indices: IntArray, *, fine: bool = False) -> list[Layer]:
-        axis = replace(lateral, y=lattice.y)
+    def with_layers(part: Part, z: FloatArray, is_refined: BoolArray) -> Part:
+        axis, indices = replace(lateral, y=part.y), part.depth_indices
         if fine_cells is None:
-            return axis.uniform_layers(z, depth_indices)
-        return axis.shaped_layers(z, depth_indices, fine=fine)
+            return part._replace(layers=axis.uniform_layers(z, indices))
+        coarse_layers = axis.shaped_layers(z, indices[~is_refined[indices]], fine=False)
+        return part._replace(layers=coarse_layers + axis.shaped_layers(z, indices[is_refined[indices]], fine=True))
 
-    layers = [
-        layers_of(lattice, z, lattice.depth_indices[~is_refined[lattice.depth_indices]])
-        + layers_of(lattice, z, lattice.depth_indices[is_refined[lattice.depth_indices]], fine=True)
-        for lattice in lattices
-    ]
-
-    def ring_beyond(radius: float) -> Ring:
-        (lattice,) = _lattices(lateral, np.array([radius]), np.array([False]))
-        depths, interpolation_z = interpolation_points(z, radius, FAR_ERROR)
-        return Ring(radius, lattice, layers_of(lattice, depths, np.arange(depths.size)), interpolation_z)
-
+    parts = [with_layers(part, z, is_refined) for part in _parts_by_depth(lateral, z, is_refined)]
     far_radius = FAR_DISTANCE * (grid.y_range[1] - grid.y_range[0])
     refined_radius = MAX_REFINED_DEPTH * grid.dy
-    radii = [refined_radius, far_radius] if is_refined.any() and refined_radius < far_radius else [far_radius]
-    rings = [ring_beyond(radius) for radius in radii]
-    near_layers = list(chain.from_iterable(layers))
+    for radius in [refined_radius, far_radius] if is_refined.any() and refined_radius < far_radius else [far_radius]:
+        (ring,) = _parts_by_depth(lateral, np.array([radius]), np.array([False]))
+        depths, interpolation_z = interpolation_points(z, radius, FAR_ERROR)
+        ring = ring._replace(depth_indices=np.arange(depths.size), interpolation_z=interpolation_z, radius=radius)
+        parts.append(with_layers(ring, depths, np.zeros(depths.size, bool)))
     if fine_cells is None:
         edges, loads = mirror_edges(grid.x_edges, extent), add_images(load, image_sign, extent)
-        jumps = [_uniform_jumps(position, near_layers, rings, edges, loads) for position in x.tolist()]
+        jumps = [_uniform_jumps(position, parts, edges, loads) for position in x.tolist()]
     else:
-        jumps = list(_shaped_jumps(x, near_layers, rings, fine_cells, MAX_UNSPLIT_WIDTH * float(z.min())))
-    return SplitColumns(lattices, layers, rings, jumps=jumps, first=first, load=load)
+        jumps = list(_shaped_jumps(x, parts, fine_cells, MAX_UNSPLIT_WIDTH * float(z.min())))
+    return SplitColumns(parts, jumps, first, load)
 
 
-def _uniform_jumps(
-    x: float, layers: list[Layer], rings: list[Ring], edges: FloatArray, loads: FloatArray
-) -> tuple[list[Jumps], list[list[list[Jumps]]]]:
-    """Jumps of columns with uniform loads (column, y) near a position, and of the rings."""
+def _uniform_jumps(x: float, parts: list[Part], edges: FloatArray, loads: FloatArray) -> list[list[Jumps]]:
+    """Jumps of columns with uniform loads (column, y) about a position, of each part."""
     column = int(np.clip(np.searchsorted(edges, x, side="right") - 1, 0, edges.size - 2))
-    borders = _SplitRange(edges[column : column + 1], column, column).borders(edges, x, rings)
-    low, high = borders[0]
-    near_jumps = [Jumps(edges[low : high + 1], loads[low:high], layer) for layer in layers]
-    return near_jumps, _ring_jumps(edges, [[loads] * len(ring.layers) for ring in rings], rings, x, borders)
+    unsplit = _SplitRange(edges[column : column + 1], column, column)
+    layer_loads, inserted_loads = ([[values] * len(part.layers) for part in parts] for values in (loads, loads[:0]))
+    return _jumps_around(x, parts, edges, unsplit, loads=layer_loads, inserted_loads=inserted_loads)
 
 
-def _ring_jumps(
-    edges: FloatArray, loads: list[list[FloatArray]], rings: list[Ring], x: float, borders: list[tuple[int, int]]
-) -> list[list[list[Jumps]]]:
-    """Jumps of the columns of each ring, on either side between successive `borders`, merged where they are narrow."""
-    jumps = []
-    for ring, ring_loads, (low, high), (first, stop) in zip(rings, loads, borders[:-1], borders[1:], strict=True):
-        sections = [(start, end) for start, end in ((first, low), (high, stop)) if start < end]
+def _jumps_around(
+    x: float,
+    parts: list[Part],
+    edges: FloatArray,
+    split_range: _SplitRange,
+    *,
+    loads: list[list[FloatArray]],
+    inserted_loads: list[list[FloatArray]],
+) -> list[list[Jumps]]:
+    """Jumps of each part about a position, from loads (column, y) per part and layer; merged in rings."""
+    borders = split_range.borders(edges, x, [part.radius for part in parts if part.radius])
+    (low, high), ring_borders, jumps = borders[0], pairwise(borders), []
+    for part, part_loads, part_inserted in zip(parts, loads, inserted_loads, strict=True):
+        if not part.radius:
+            jumps.append(
+                [
+                    split_range.jumps(edges[low : high + 1], low, column_loads[low:high], fine_loads, layer)
+                    for column_loads, fine_loads, layer in zip(part_loads, part_inserted, part.layers, strict=True)
+                ]
+            )
+            continue
+        (inner_first, inner_stop), (first, stop) = next(ring_borders)
+        sections = [(start, end) for start, end in ((first, inner_first), (inner_stop, stop)) if start < end]
         jumps.append(
             [
-                [
-                    Jumps(*merge_columns(edges[start : end + 1], load[start:end], x), layer)
-                    for load, layer in zip(ring_loads, ring.layers, strict=True)
-                ]
+                Jumps(*merge_columns(edges[start : end + 1], load[start:end], x), layer)
                 for start, end in sections
+                for load, layer in zip(part_loads, part.layers, strict=True)
             ]
         )
     return jumps
 
 
-def _shaped_jumps(
-    x: FloatArray, layers: list[Layer], rings: list[Ring], fine: FineCells, max_width: float
-) -> Iterator[tuple[list[Jumps], list[list[list[Jumps]]]]]:
-    """Jumps of the columns around each position, split unless they are narrow, and of the rings."""
-    edges, shape = fine.edges, fine.shape_cells
+def _shaped_jumps(x: FloatArray, parts: list[Part], fine: FineCells, max_width: float) -> Iterator[list[list[Jumps]]]:
+    """Jumps of each part about each position; columns around the position are split unless they are narrow."""
+    shape = fine.shape_cells
     load = fine.shape_along_y(fine.far_load, shape.far_load)
-    layer_loads, *ring_loads = (
-        [add_images(layer.loads(load), fine.image_sign, fine.extent) for layer in group]
-        for group in (layers, *(ring.layers for ring in rings))
-    )
+    loads = [[add_images(layer.loads(load), fine.image_sign, fine.extent) for layer in part.layers] for part in parts]
     for start in range(0, x.size, POSITIONS_PER_BATCH):
         positions = x[start : start + POSITIONS_PER_BATCH].tolist()
         split_ranges = [_split_around(position, fine, max_width) for position in positions]
         shape_means = _means_of_inserted(split_ranges, shape)
         load = fine.shape_along_y(shape_means if fine is shape else _means_of_inserted(split_ranges, fine), shape_means)
-        inserted_loads = [layer.loads(load) for layer in layers]
+        inserted_loads = [[] if part.radius else [layer.loads(load) for layer in part.layers] for part in parts]
         stop = 0
         for position, split_range in zip(positions, split_ranges, strict=True):
             first, stop = stop, stop + split_range.inserted.size - 1
-            borders = split_range.borders(edges, position, rings)
-            low, high = borders[0]
-            near_jumps = [
-                split_range.jumps(edges[low : high + 1], low, column_loads[low:high], fine_loads[first:stop], layer)
-                for column_loads, fine_loads, layer in zip(layer_loads, inserted_loads, layers, strict=True)
-            ]
-            yield near_jumps, _ring_jumps(edges, ring_loads, rings, position, borders)
+            split_loads = [[layer_loads[first:stop] for layer_loads in part_loads] for part_loads in inserted_loads]
+            yield _jumps_around(position, parts, fine.edges, split_range, loads=loads, inserted_loads=split_loads)
 
 
 class _SplitRange(NamedTuple):
@@ -321,9 +309,9 @@ class _SplitRange(NamedTuple):
         columns = np.flatnonzero(distances <= max(radius, float(distances.min())))
         return min(int(columns[0]), self.start), max(int(columns[-1]) + 1, self.stop)
 
-    def borders(self, edges: FloatArray, x: float, rings: list[Ring]) -> list[tuple[int, int]]:
+    def borders(self, edges: FloatArray, x: float, radii: list[float]) -> list[tuple[int, int]]:
         """Ranges of columns (first, stop) inside each ring; the last range is all columns."""
-        return [*(self.range_within(edges, x, ring.radius) for ring in rings), (0, edges.size - 1)]
+        return [*(self.range_within(edges, x, radius) for radius in radii), (0, edges.size - 1)]
 
     def moment_loads(self, fine: FineCells) -> FloatArray:
         """Return loads on the inserted columns with the moments of the other columns: array (column, y)."""
@@ -332,9 +320,8 @@ class _SplitRange(NamedTuple):
         replaced_columns = slice(self.start + 1, self.stop - 1)
         is_summed = np.ones(fine.edges.size - 1, bool)
         is_summed[replaced_columns] = fine.is_unsplit[replaced_columns]
-        total = MomentLoads(*(np.where(is_summed, loads, 0.0) for loads in fine.x_moments)).total.T
         midpoints = 0.5 * (self.inserted[1:] + self.inserted[:-1])
-        return total[np.searchsorted(fine.edges, midpoints) - 1]
+        return fine.moment_loads(is_summed)[np.searchsorted(fine.edges, midpoints) - 1]
 
     def jumps(
         self, edges: FloatArray, first: int, loads: FloatArray, inserted_loads: FloatArray, layer: Layer
@@ -420,18 +407,14 @@ def columns_field(
     # The step -1 reflects the load.
     for step, half in ((1, whole),) if is_symmetric else ((1, ~in_second_half), (-1, in_second_half)):
         if half.any():
-            distinct_x, indices = _distinct_positions(x[half], MIRROR_ROUNDING * (high - low))
-            half_points, half_shape = points._replace(x=distinct_x), None if shape is None else shape[::step]
+            rounded_x = np.round(x[half] / (MIRROR_ROUNDING * (high - low)))
+            _, first_indices, indices = np.unique(rounded_x, return_index=True, return_inverse=True)
+            half_points = points._replace(x=x[half][first_indices])
+            half_shape = None if shape is None else shape[::step]
             half_field = _sum_columns(load[::step], half_shape, influence, grid, points=half_points, extent=extent)
             field[:, half] = half_field[:, indices]
     field[:, in_second_half] *= np.array(influence.sign_along_x)[:, None, None, None]
     return field
-
-
-def _distinct_positions(x: FloatArray, rounding: float) -> tuple[FloatArray, IntArray]:
-    """Positions that differ by more than `rounding`, and the index of each position among them."""
-    _, first_indices, indices = np.unique(np.round(x / rounding), return_index=True, return_inverse=True)
-    return x[first_indices], indices
 
 
 def _sum_columns(
@@ -449,31 +432,24 @@ def _sum_columns(
     shape_key = None if shape is None else ArrayKey(shape)
     columns = split_columns(ArrayKey(load), shape_key, grid, extent, influence.load.sign_x, keys=axes)
     field = np.zeros((influence.components, x.size, z.size, y.size)).swapaxes(2, 3)
-    shape_of = (influence.components, x.size)
-    near_fields = [np.zeros((*shape_of, lattice.y.size, z.size)) for lattice in columns.lattices]
-    ring_fields = [
-        np.zeros((*shape_of, ring.lattice.y.size, ring.layers[0].depth_indices.size)) for ring in columns.rings
+    part_fields = [
+        np.zeros(
+            (
+                influence.components,
+                x.size,
+                part.y.size,
+                z.size if part.interpolation_z is None else part.depth_indices.size,
+            )
+        )
+        for part in columns.parts
     ]
-    for i, (position, (near_jumps, ring_jumps)) in enumerate(zip(x.tolist(), columns.jumps, strict=True)):
-        start = 0
-        for near_field, layers in zip(near_fields, columns.layers, strict=True):
-            _add_fields(near_field[:, i], influence, layers, near_jumps[start : start + len(layers)], position)
-            start += len(layers)
-        for ring_field, ring, jumps_of_sides in zip(ring_fields, columns.rings, ring_jumps, strict=True):
-            for side_jumps in jumps_of_sides:
-                _add_fields(ring_field[:, i], influence, ring.layers, side_jumps, position)
-    for near_field, lattice in zip(near_fields, columns.lattices, strict=True):
-        field[..., lattice.depth_indices] = lattice.interpolate(near_field[..., lattice.depth_indices])
-    for ring_field, ring in zip(ring_fields, columns.rings, strict=True):
-        ring_field = ring.lattice.interpolate(ring_field)
-        field += ring_field if ring.interpolation_z is None else ring_field @ ring.interpolation_z.T
+    for i, (position, jumps_of_parts) in enumerate(zip(x.tolist(), columns.jumps, strict=True)):
+        for part_field, jumps in zip(part_fields, jumps_of_parts, strict=True):
+            for layer_jumps in jumps:
+                layer, layer_field = layer_jumps.layer, layer_jumps.field(influence, position)
+                part_field[:, i][:, layer.points[:, None], layer.depth_indices] += layer_field.swapaxes(1, 2)
+    for part, part_field in zip(columns.parts, part_fields, strict=True):
+        part.add_to(field, part_field)
     if np.isfinite(extent).all():
         field += far_images(columns.load, influence, grid, columns.first, points, extent=extent)
     return field
-
-
-def _add_fields(field: FloatArray, influence: Influence, layers: list[Layer], jumps: list[Jumps], x: float) -> None:
-    """Add the fields of the jumps in each layer to a field (component, y, depth) at one position."""
-    for layer, layer_jumps in zip(layers, jumps, strict=True):
-        layer_field = layer_jumps.field(influence, layer.corners, x, layer.offset_indices)
-        field[:, layer.points[:, None], layer.depth_indices] += layer_field.swapaxes(1, 2)

@@ -36,6 +36,15 @@ def aligned_points(positions: FloatArray, first_centre: float, step: float) -> l
     ]
 
 
+def fold_offsets(offsets: FloatArray, step: float) -> tuple[FloatArray, IntArray, FloatArray]:
+    """Distances from 0 of uniform offsets, the index of each offset among them, and its sign; all offsets if uneven."""
+    half_steps = np.round(2 * offsets / step).astype(np.int64)
+    if np.abs(2 * offsets / step - half_steps).max() >= OFFSET_TOLERANCE:
+        return offsets, np.arange(offsets.size), np.ones(offsets.size)
+    distances, indices = np.unique(np.abs(half_steps), return_inverse=True)
+    return 0.5 * step * distances, indices, np.where(half_steps < 0, -1.0, 1.0)
+
+
 MAX_DIRECT_POINTS = (
     8  # largest number of points along y with direct sums over the corners instead of a convolution. Speed.
 )
@@ -67,7 +76,10 @@ class Layer:
         offsets: FloatArray = aligned.offset + step * np.arange(lowest, int(cells.max()) + 1.0)
         # Indices of the positions along y, of the offsets between position and first corner, and of the depths.
         self.points, self.offset_indices, self.depth_indices = aligned.points, cells - int(cells.min()), depth_indices
-        self.corners = EvenOffsets(offsets, z)
+        self.z = z
+        # Distances at which corner functions are evaluated, and the distance and the sign of each offset.
+        self.distances, self._indices, self._signs = fold_offsets(offsets, offsets[1] - offsets[0])
+        self._folding_matrices: dict[tuple[int, int], FloatArray] = {}
         self.edges = edges  # edges along y of fine cells; None for the grid's cells
         self.fine_per_cell = fine_per_cell  # fine cells per cell of the layer; the cell carries their moments
 
@@ -78,6 +90,32 @@ class Layer:
         return (
             fine_loads if self.fine_per_cell == 1 else np.ascontiguousarray(coarsen(fine_loads.T, self.fine_per_cell).T)
         )
+
+    def unfold(self, values: FloatArray, is_odd: BoolArray, size: int) -> FloatArray:
+        """Values (component, depth, edge, offset) from the evaluated offsets, padded with zeros to `size` offsets."""
+        unfolded_values = np.zeros((*values.shape[:-1], size))
+        negative_count, offset_count = int((self._signs < 0).sum()), self._indices.size
+        # Copies of contiguous ranges are several times faster than an index array.
+        if negative_count:
+            mirrored_values = values[..., self._indices[negative_count - 1] : self._indices[0] + 1][..., ::-1]
+            sign = np.where(is_odd, -1.0, 1.0)[:, None, None, None]
+            np.multiply(mirrored_values, sign, out=unfolded_values[..., :negative_count])
+        if negative_count < offset_count:
+            unfolded_values[..., negative_count:offset_count] = values[
+                ..., self._indices[negative_count] : self._indices[-1] + 1
+            ]
+        return unfolded_values
+
+    def fold_jumps(self, jumps: FloatArray, start: int) -> FloatArray:
+        """Sum jumps (edge, corner) from offset `start` on over both sides of 0: array (edge and distance, parity)."""
+        count = jumps.shape[1]
+        if (start, count) not in self._folding_matrices:
+            window, corners = slice(start, start + count), np.arange(count)
+            matrix = np.zeros((count, self.distances.size, 2))
+            matrix[corners, self._indices[window], 0] = 1.0
+            matrix[corners, self._indices[window], 1] = self._signs[window]
+            self._folding_matrices[start, count] = matrix.reshape(count, -1)
+        return (jumps @ self._folding_matrices[start, count]).reshape(-1, 2)
 
 
 def midpoint_cells(aligned: AlignedPoints, start: float, span: float, step: float) -> tuple[AlignedPoints, FloatArray]:
@@ -93,103 +131,38 @@ class Jumps:
     """Nonzero mixed jumps of `loads` (column, cell) at the edges along x, for the points of a layer."""
 
     def __init__(self, edges: FloatArray, loads: FloatArray, layer: Layer) -> None:
-        self.min_width = float(np.diff(edges).min())
+        self.layer, self.min_width = layer, float(np.diff(edges).min())
         jumps = np.diff(np.diff(np.pad(loads, 1), axis=0), axis=1)
         is_loaded = jumps.any(axis=1)
-        self.edges, self.values = edges[is_loaded], jumps[is_loaded, ::-1]  # (edge, corner), backwards along y
-        self.size = fft.next_fast_len(jumps.shape[1] + int(layer.offset_indices.max()), real=True)
-        self.folded_values: FloatArray | None = None
-        corners, starts = layer.corners, layer.offset_indices
-        if starts.size <= MAX_DIRECT_POINTS and corners.index is not None:
+        self.edges, values = edges[is_loaded], jumps[is_loaded, ::-1]  # (edge, corner), backwards along y
+        starts = layer.offset_indices
+        self.size = fft.next_fast_len(jumps.shape[1] + int(starts.max()), real=True)
+        self.is_folded = starts.size <= MAX_DIRECT_POINTS
+        if self.is_folded:
             # Folded onto the distinct distances of the corner functions: (edge and distance, point and parity).
-            folded_jumps = [corners.fold_jumps(self.values, start) for start in starts.tolist()]
-            self.folded_values = np.stack(folded_jumps, axis=1).reshape(-1, 2 * starts.size)
+            folded_values = [layer.fold_jumps(values, start) for start in starts.tolist()]
+            self.weights: FloatArray | ComplexArray = np.stack(folded_values, axis=1).reshape(-1, 2 * starts.size)
+        else:  # (edge, wavenumber)
+            self.weights = fft.rfft(values, self.size, axis=1).conj()
 
-    def field(self, influence: Influence, corners: EvenOffsets, x: float, starts: IntArray) -> FloatArray:
-        """Field (component, depth, point) at `x` of the corners from the offset indices `starts` on."""
-        distances = snap_offsets(x - self.edges, self.min_width)
-        step = max(1, BLOCK_SIZE // max(1, distances.size * corners.along_y.size))
-        spectrum = None if starts.size <= MAX_DIRECT_POINTS else fft.rfft(self.values, self.size, axis=1).conj()
-        fields = [
-            self._field_at_depths(
-                influence, corners, corners.z[start : start + step], distances, starts, spectrum=spectrum
-            )
-            for start in range(0, corners.z.size, step)
-        ]
-        return np.concatenate(fields, axis=1)
-
-    def _field_at_depths(
-        self,
-        influence: Influence,
-        corners: EvenOffsets,
-        z: FloatArray,
-        distances: FloatArray,
-        starts: IntArray,
-        spectrum: ComplexArray | None,
-    ) -> FloatArray:
-        """Field at some of the depths, for many points along y from the `spectrum` of the jumps."""
-        corner_values = influence.corner(distances[:, None], corners.along_y, z[:, None, None], influence.poisson)
+    def field(self, influence: Influence, x: float) -> FloatArray:
+        """Field (component, depth, point) at `x` of the corners."""
+        layer, offsets_x = self.layer, snap_offsets(x - self.edges, self.min_width)
         # A primitive is even where its kernel is odd, and odd where it is even.
         is_odd = np.array(influence.sign_along_y) > 0
-        if self.folded_values is not None:
-            sums = corner_values.reshape(*corner_values.shape[:2], -1) @ self.folded_values
-            return np.where(is_odd[:, None, None], sums[..., 1::2], sums[..., ::2])
-        corner_values, count = corners.unfold(corner_values, is_odd, self.size), self.values.shape[1]
-        if spectrum is None:
-            windows = (corner_values[..., start : start + count] for start in starts.tolist())
-            return np.stack([np.einsum("czef,ef->cz", window, self.values) for window in windows], axis=2)
-        field_spectrum = np.einsum("czek,ek->czk", fft.rfft(corner_values, axis=3), spectrum)
-        return np.asarray(fft.irfft(field_spectrum, self.size, axis=2)[..., starts])
-
-
-class EvenOffsets:
-    """Uniform offsets along y of corner functions, and depths; symmetric offsets are evaluated on one side of 0."""
-
-    # `along_y` are the evaluated offsets, `index` is the evaluated offset of each offset; None if they are equal.
-
-    def __init__(self, offsets: FloatArray, z: FloatArray) -> None:
-        self.z = z
-        self.along_y = offsets
-        self._signs: FloatArray = np.ones(1)
-        self.index: IntArray | None = None
-        if offsets.size > 1:
-            step = offsets[1] - offsets[0]
-            half_steps = np.round(2 * offsets / step).astype(np.int64)
-            if np.abs(2 * offsets / step - half_steps).max() < OFFSET_TOLERANCE:
-                distances, self.index = np.unique(np.abs(half_steps), return_inverse=True)
-                self.along_y = 0.5 * step * distances
-                self._signs = np.where(half_steps < 0, -1.0, 1.0)
-        self._folding_matrices: dict[tuple[int, int], FloatArray] = {}
-
-    def unfold(self, values: FloatArray, is_odd: BoolArray, size: int) -> FloatArray:
-        """Values (component, depth, edge, offset) from the evaluated offsets, padded with zeros to `size` offsets."""
-        unfolded_values = np.zeros((*values.shape[:-1], size))
-        if self.index is None:
-            unfolded_values[..., : values.shape[-1]] = values
-            return unfolded_values
-        negative_count, offset_count = int((self._signs < 0).sum()), self.index.size
-        # Copies of contiguous ranges are several times faster than an index array.
-        if negative_count:
-            mirrored_values = values[..., self.index[negative_count - 1] : self.index[0] + 1][..., ::-1]
-            sign = np.where(is_odd, -1.0, 1.0)[:, None, None, None]
-            np.multiply(mirrored_values, sign, out=unfolded_values[..., :negative_count])
-        if negative_count < offset_count:
-            unfolded_values[..., negative_count:offset_count] = values[
-                ..., self.index[negative_count] : self.index[-1] + 1
-            ]
-        return unfolded_values
-
-    def fold_jumps(self, jumps: FloatArray, start: int) -> FloatArray:
-        """Sum jumps (edge, corner) from offset `start` on over both sides of 0: array (edge and distance, parity)."""
-        assert self.index is not None
-        count = jumps.shape[1]
-        if (start, count) not in self._folding_matrices:
-            window, corners = slice(start, start + count), np.arange(count)
-            matrix = np.zeros((count, self.along_y.size, 2))
-            matrix[corners, self.index[window], 0] = 1.0
-            matrix[corners, self.index[window], 1] = self._signs[window]
-            self._folding_matrices[start, count] = matrix.reshape(count, -1)
-        return (jumps @ self._folding_matrices[start, count]).reshape(-1, 2)
+        step = max(1, BLOCK_SIZE // max(1, offsets_x.size * layer.distances.size))
+        fields = []
+        for start in range(0, layer.z.size, step):
+            z = layer.z[start : start + step, None, None]
+            corner_values = influence.corner(offsets_x[:, None], layer.distances, z, influence.poisson)
+            if self.is_folded:
+                sums = corner_values.reshape(*corner_values.shape[:2], -1) @ self.weights
+                fields.append(np.where(is_odd[:, None, None], sums[..., 1::2], sums[..., ::2]))
+                continue
+            unfolded_values = layer.unfold(corner_values, is_odd, self.size)
+            field_spectrum = np.einsum("czek,ek->czk", fft.rfft(unfolded_values, axis=3), self.weights)
+            fields.append(fft.irfft(field_spectrum, self.size, axis=2)[..., layer.offset_indices])
+        return np.concatenate(fields, axis=1)
 
 
 def merge_columns(edges: FloatArray, loads: FloatArray, x: float) -> tuple[FloatArray, FloatArray]:

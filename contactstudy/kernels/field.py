@@ -6,9 +6,6 @@ under columns is a sum over the corners of cells. Deep points and far columns ne
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from functools import partial
-
 import numpy as np
 from scipy import fft
 
@@ -17,7 +14,7 @@ from contactstudy.arrays.points import Points
 from contactstudy.checks import FloatArray
 from contactstudy.kernels.column_fields import columns_field
 from contactstudy.kernels.convolution import centred_field
-from contactstudy.kernels.corner_sums import OFFSET_TOLERANCE, AlignedPoints, aligned_points
+from contactstudy.kernels.corner_sums import AlignedPoints, aligned_points, fold_offsets
 from contactstudy.kernels.fine_cells import FineCells, mirror_edges
 from contactstudy.kernels.images import CHEBYSHEV_X, FarImages, Influence, snap_offsets
 from contactstudy.kernels.load import Load, Response
@@ -172,27 +169,16 @@ def _aligned_field(
     spectrum = fft.rfft2(load, shape)
     row_indices, column_indices = (row.cells - first_x) % shape[0], column.cells - first_y
 
+    # Where the offsets are symmetric, the kernel is evaluated on one side of 0.
+    x, x_indices, signs = fold_offsets(x, grid.dx)
+    factors = np.where(signs < 0, np.array(influence.sign_along_x)[:, None], 1)[:, :, None]
+
     def evaluate_layer(depth: float) -> FloatArray:
-        evaluate = partial(influence.kernel, y=y, dx=grid.dx, dy=grid.dy, length=length, depth=depth)
-        kernel = _kernel_by_symmetry(evaluate, x, grid.dx, influence.sign_along_x)
+        kernel = influence.kernel(x, y, grid.dx, grid.dy, length=length, depth=depth)[:, x_indices] * factors
         layer = fft.irfft2(fft.rfft2(kernel, shape, axes=(1, 2)) * spectrum, shape, axes=(1, 2))
         return np.asarray(layer[:, row_indices[:, None], column_indices[None, :]])
 
     return np.stack([evaluate_layer(depth) for depth in z.tolist()], axis=-1)
-
-
-def _kernel_by_symmetry(
-    evaluate: Callable[[FloatArray], FloatArray], x: FloatArray, dx: float, signs: Sequence[int]
-) -> FloatArray:
-    """Kernel at uniform offsets `x`; offsets that include 0 are evaluated on one side and reflected."""
-    step_numbers = x / dx
-    count_before = round(-float(step_numbers[0]))
-    count_after = x.size - 1 - count_before
-    if abs(step_numbers[0] + count_before) > OFFSET_TOLERANCE or min(count_before, count_after) < 1:
-        return evaluate(x)
-    kernel_ahead = evaluate(dx * np.arange(max(count_before, count_after) + 1.0))
-    kernel_behind = kernel_ahead[:, count_before:0:-1] * np.array(signs)[:, None, None]
-    return np.concatenate([kernel_behind, kernel_ahead[:, : count_after + 1]], axis=1)
 
 
 STRESS_PARITIES = ((1, 1, 1, -1, -1, 1), (1, 1, 1, -1, 1, -1))

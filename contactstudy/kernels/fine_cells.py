@@ -15,7 +15,7 @@ import numpy as np
 
 from contactstudy.arrays.grid import Grid
 from contactstudy.checks import Array, BoolArray, FloatArray, store
-from contactstudy.kernels.smooth_load import MomentLoads, ShapedLoad, SmoothLoad, moment_loads
+from contactstudy.kernels.smooth_load import ShapedLoad, SmoothLoad, moment_loads
 
 MAX_REFINED_DEPTH = 5.0
 """Largest depth of refined cells, over the cell size along y and along x. Accuracy: deeper down whole cells with the
@@ -115,15 +115,20 @@ class FineCells:
         return ~add_images(self.is_split, 1, self.extent)
 
     @cached_property
-    def x_moments(self) -> MomentLoads:
-        """Loads with the moments along x of the cells and their nearest images: arrays (y, cell)."""
-        return moment_loads(self.edges, add_images(self._load_along_x.moments.T, -self.image_sign, self.extent).T)
+    def _x_moments(self) -> FloatArray:
+        """Moments along x of the cells and their nearest images: array (y, cell)."""
+        return add_images(self._load_along_x.moments.T, -self.image_sign, self.extent).T
+
+    def moment_loads(self, is_carried: BoolArray) -> FloatArray:
+        """Return loads (column, y) on cells and nearest images with the moments along x of the marked ones."""
+        return moment_loads(self.edges, np.where(is_carried, self._x_moments, 0.0)).T
 
     @cached_property
     def far_load(self) -> FloatArray:
         """Load on the cells with forces and first moments of the smooth load: array (cell_x, y)."""
         # In coupled cells the means of the smooth load differ from the load on the cells.
-        return np.asarray(self._load_along_x.cell_means.T + self._without_images(self.x_moments.total.T))
+        moments = self._without_images(moment_loads(self.edges, self._x_moments).T)
+        return np.asarray(self._load_along_x.cell_means.T + moments)
 
     def is_refined_along_y(self, z: FloatArray) -> BoolArray:
         """Whether cells along y are refined at depths `z`."""
@@ -192,10 +197,8 @@ class FineCells:
 
         def column_means(cells: FineCells) -> FloatArray:
             # The neighbours of an unsplit column carry the column's moment.
-            moments = MomentLoads(*(np.where(is_unsplit, loads, 0.0) for loads in cells.x_moments)).total.T
-            return cells.column_means([edges]) + np.repeat(
-                self._without_images(moments), np.where(is_split, PARTS_X, 1), axis=0
-            )
+            moments = self._without_images(cells.moment_loads(is_unsplit))
+            return cells.column_means([edges]) + np.repeat(moments, np.where(is_split, PARTS_X, 1), axis=0)
 
         fine_loads, _ = self._refine_along_y(edges, column_means(self), column_means(self.shape_cells), 0.0)
         # The positions on the faces follow from the grid, not from the loaded cells: the field is additive.

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import NamedTuple
 
 import numpy as np
 
@@ -208,7 +207,7 @@ class ShapedLoad:
         moment[:, 0] -= sums_to_start[1][:, 0]
         moment -= (0.5 * (edges[1:] + edges[:-1])[cell_of_point] - self.edges[cell]) * force
         force, moment = (np.add.reduceat(values, first_points, axis=1) for values in (force, moment))
-        return force / np.diff(edges) + moment_loads(edges, moment).total
+        return force / np.diff(edges) + moment_loads(edges, moment)
 
 
 def _group_sums(values: FloatArray, start: IntArray) -> FloatArray:
@@ -217,29 +216,13 @@ def _group_sums(values: FloatArray, start: IntArray) -> FloatArray:
     return np.asarray(np.bincount(group.ravel(), values.ravel(), values.size)[group])
 
 
-class MomentLoads(NamedTuple):
-    """Loads per area on a cell and both neighbours that carry the cell's first moment: arrays (row, cell)."""
-
-    before: FloatArray  # (row, cell): loads on the previous cell, on the cell, and on the next cell
-    centre: FloatArray
-    behind: FloatArray
-
-    @property
-    def total(self) -> FloatArray:
-        """Sum of the loads on every cell."""
-        sums = self.centre.copy()
-        sums[:, :-1] += self.before[:, 1:]
-        sums[:, 1:] += self.behind[:, :-1]
-        return sums
-
-
-def moment_loads(edges: FloatArray, moments: FloatArray) -> MomentLoads:
-    """Return loads on each cell and its neighbours with the moment of the cell, without resultant and second moment."""
-    widths = np.diff(edges)
+def moment_loads(edges: FloatArray, moments: FloatArray) -> FloatArray:
+    """Return loads per area with the moments (row, cell) of the cells, without resultants and second moments."""
+    # Each cell and its neighbours carry the moment of the cell; the first and the last cell have one neighbour.
+    widths, loads = np.diff(edges), np.zeros(moments.shape)
     if widths.size == 1:
-        return MomentLoads(*(np.zeros(moments.shape) for _ in range(3)))
+        return loads
     spacings = 0.5 * (widths[1:] + widths[:-1])
-    # The first and the last cell have one neighbour.
     spacing_ahead, spacing_back = np.append(spacings, np.inf), np.append(np.inf, spacings)
     weight = np.ones(widths.size)
     weight[1:-1] = spacing_back[1:-1] / (spacing_ahead[1:-1] + spacing_back[1:-1])
@@ -247,11 +230,10 @@ def moment_loads(edges: FloatArray, moments: FloatArray) -> MomentLoads:
     weight = np.ones(widths.size)
     weight[1:-1] = spacing_ahead[1:-1] / (spacing_ahead[1:-1] + spacing_back[1:-1])
     load_before = -moments * weight / spacing_back
-    return MomentLoads(
-        load_before / np.append(1.0, widths[:-1]),
-        -(load_before + load_behind) / widths,
-        load_behind / np.append(widths[1:], 1.0),
-    )
+    loads -= (load_before + load_behind) / widths
+    loads[:, :-1] += load_before[:, 1:] / widths[:-1]
+    loads[:, 1:] += load_behind[:, :-1] / widths[1:]
+    return loads
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

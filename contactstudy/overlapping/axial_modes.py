@@ -1,24 +1,16 @@
 """Axial wavenumbers: the sum over all mirrored loads, written as a few real modes and a decaying ray.
 
-In H every load is extended evenly about both ends, so it is a sum of modes ``cos(k_n x)``, ``k_n = n pi / L``. Modes
-with even and odd ``n`` (loads symmetric and antisymmetric about mid-length, ``parity = +1, -1``) never mix. The first
-few terms form a sum; the others an integral along a ray from the real axis (formula of Abel and Plana, eqs. (31) and
-(32) of docs/explanation/numerics.md), where the contributions of the two ends decay. A quarter space has one end: the
-ray starts at ``k = 0`` without the second end's part (``parity = 0``).
-
-The single-mirror scheme serves comparisons (docs/explanation/theory.md, section 10): H carries ``P_h1`` and one pair of
-images, V1 and V2 are half-spaces at x = 0 and x = L.
+The sum over the mirrored loads becomes a ray by the formula of Abel and Plana, eqs. (31) and (32) of
+docs/explanation/numerics.md. Loads even and odd about mid-length (``parity = +1, -1``) never mix; a quarter space has
+one end (``parity = 0``). The single-mirror scheme serves comparisons (docs/explanation/theory.md, section 10).
 """
 
 from __future__ import annotations
 
-from collections.abc import Hashable
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
-from contactstudy.cache import ArrayKey
 from contactstudy.checks import ComplexArray, FloatArray
 from contactstudy.kernels.load import Load
 from contactstudy.overlapping.quadrature import Resolution, ray_nodes
@@ -26,7 +18,7 @@ from contactstudy.overlapping.quadrature import Resolution, ray_nodes
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class AxialModes:
-    """Axial wavenumbers of one parity; compared by value, as keys of cached equation sets."""
+    """Axial wavenumbers of one parity."""
 
     length: float  # distance between the ends, metres; infinite for a quarter space
     parity: int  # +1 or -1 for loads even or odd about mid-length, 0 for one end only
@@ -34,17 +26,6 @@ class AxialModes:
     ray: ComplexArray  # nodes and weights on the ray, for all further wavenumbers, 1/m
     weights: ComplexArray
     reach: float = np.inf  # from the end, metres, beyond which waves of these wavenumbers are negligible
-
-    @cached_property
-    def _identity(self) -> tuple[Hashable, ...]:
-        wavenumber_arrays = (self.discrete, self.ray.view(np.float64), self.weights.view(np.float64))
-        return type(self), self.length, self.parity, self.reach, *(ArrayKey(array) for array in wavenumber_arrays)
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, AxialModes) and self._identity == other._identity
-
-    def __hash__(self) -> int:
-        return hash(self._identity)
 
     @property
     def wavenumbers(self) -> ComplexArray:

@@ -152,23 +152,14 @@ def _sum_over_wavenumbers(
     return parity_fields
 
 
-class _PanelAmplitudes(NamedTuple):
-    """Amplitudes (load, component, x, z, wavenumber, column) in one panel; `indices` select x and z within reach."""
-
-    panel: LateralPanel
-    columns: LateralColumns
-    indices: list[tuple[IntArray, IntArray]]
-    amplitudes: list[FloatArray]
-
-
 def _panel_amplitudes(
     problem: EndProblem,
     harmonics: Harmonics,
     point_sets: list[_FoldedPositions],
     reference: float,
     make_columns: Callable[[LateralPanel], LateralColumns | None],
-) -> Iterator[_PanelAmplitudes]:
-    """Yield the amplitudes of the columns, panel by panel."""
+) -> Iterator[tuple[LateralPanel, LateralColumns, list[tuple[IntArray, IntArray]], list[FloatArray]]]:
+    """Yield panels, columns, indices of x and z within reach, and amplitudes as `_amplitudes`, per set of points."""
     distances = [points.distance for points in point_sets]
     nearest = min(float(distance.min()) for distance in distances)
     shortest = problem.smallest_scale(nearest)
@@ -188,8 +179,7 @@ def _panel_amplitudes(
         if not any(rows.size for rows, _ in indices):
             break
         axes = [(points.x[rows], points.z[depths]) for points, (rows, depths) in zip(point_sets, indices, strict=True)]
-        amplitudes = _amplitudes(problem, harmonics, axes, columns, shortest)
-        yield _PanelAmplitudes(panel, columns, indices, amplitudes)
+        yield panel, columns, indices, _amplitudes(problem, harmonics, axes, columns, shortest)
 
 
 class UnitFields(NamedTuple):
@@ -248,7 +238,7 @@ def _amplitudes(
     for view in make_views(problem, columns, np.concatenate([x for x, _ in points]), shortest):
         view_rows = [np.flatnonzero((view.rows >= low) & (view.rows < high)) for low, high in pairwise(starts)]
         for node, lateral in enumerate(columns.nodes.tolist()):
-            system = problem.equation_set(view.modes, lateral, shortest)
+            system = EquationSet.build(view.modes, lateral, problem.poisson, shortest, problem.resolution)
             spectrum = view.spectra[:, node if view.spectra.shape[1] > 1 else 0]
             loads = system.auxiliary_loads(spectrum, problem.loads, shortest=shortest, resolution=problem.resolution)
             for amplitude, (_, z), start, indices in zip(amplitudes, points, starts, view_rows, strict=False):

@@ -155,7 +155,7 @@ class OverlappingOperators:
                 even_filters, odd_filters = panel.filters(problem.grid, y)
                 for view in make_views(problem, columns, x, shortest):
                     for node, lateral in enumerate(panel.nodes.tolist()):
-                        system = problem.equation_set(view.modes, lateral, shortest)
+                        system = EquationSet.build(view.modes, lateral, problem.poisson, shortest, problem.resolution)
                         bands.append(Band(system, view, {1: even_filters[node], -1: odd_filters[node]}))
         return cls(problem, Points(x, y, z), bands)
 

@@ -9,12 +9,10 @@ from functools import cached_property
 import numpy as np
 
 from contactstudy.arrays.grid import EDGE_ROUNDING, Grid
-from contactstudy.cache import cached
 from contactstudy.checks import ComplexArray, FloatArray, IntArray
 from contactstudy.errors import InvalidInputError
 from contactstudy.kernels.load import Load
 from contactstudy.overlapping.axial_modes import AxialModes, axial_modes
-from contactstudy.overlapping.equations import EquationSet
 from contactstudy.overlapping.lateral_modes import (
     BENDING_POLES,
     NEGLIGIBLE_LOAD,
@@ -36,9 +34,6 @@ FIRST_PANEL_FACTOR = 0.1
 MIN_LENGTH_RATIO = 0.004
 """Least length of a body over the width of the load. Accuracy: at this length the ends keep a stress of 6e-4 of the
 pressure, at a third of this length a tenth."""
-
-
-_equation_set = cached("equation sets")(EquationSet.build)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -127,10 +122,6 @@ class EndProblem:
         # Along y the load is uniform in cells: half a cell is the finest scale.
         last_wavenumber = self.resolution.lateral_reach / max(shortest, 0.5 * self.finest_size)
         return lateral_panels(first_wavenumber, max_distance, last_wavenumber, self.resolution, reference, poles=poles)
-
-    def equation_set(self, modes: AxialModes, lateral: float, shortest: float) -> EquationSet:
-        """Equation set of some axial modes at the wavenumber `lateral`, cached."""
-        return _equation_set(modes, lateral, self.poisson, shortest, self.resolution)
 
 
 def finest_cell(grid: Grid) -> float:

@@ -19,7 +19,7 @@ from contactstudy.kernels.column_fields import (
     common_step,
     split_columns,
 )
-from contactstudy.kernels.corner_sums import AlignedPoints, EvenOffsets, Layer, merge_columns, midpoint_cells
+from contactstudy.kernels.corner_sums import AlignedPoints, Layer, fold_offsets, merge_columns, midpoint_cells
 from contactstudy.kernels.field import displacement_influence, half_space_field, stress_influence
 from contactstudy.kernels.fine_cells import FineCells, add_images, resolved_columns
 from contactstudy.kernels.images import Influence
@@ -405,7 +405,7 @@ def test_layer_cells_centre_points(offset: float, span: float) -> None:
     count = layer.edges.size
     for position, offset_index in zip(positions, layer.offset_indices, strict=True):
         distances = np.sort(start + offset + step * position - layer.edges)
-        offsets = layer.corners.along_y[layer.corners.index[offset_index : offset_index + count]]
+        offsets = layer.distances[layer._indices[offset_index : offset_index + count]]
         assert np.sort(offsets) == pytest.approx(np.sort(np.abs(distances)))
 
 
@@ -456,12 +456,19 @@ def test_merge_preserves_force_and_moment() -> None:
 )
 def test_offsets_about_zero_are_evaluated_on_one_side(start: float, halved: bool) -> None:
     offsets = start + np.arange(7.0)
-    corners = EvenOffsets(offsets, np.zeros(1))
-    assert np.all(corners.along_y >= 0) == halved
-    values = np.stack([np.cos(corners.along_y), np.sin(corners.along_y)])[:, None, None, :]
-    unfolded = corners.unfold(values, np.array([False, True]), 10)[:, 0, 0]
-    assert unfolded[:, :7] == pytest.approx(np.stack([np.cos(offsets), np.sin(offsets)]))
-    assert not unfolded[:, 7:].any()
+    distances, indices, signs = fold_offsets(offsets, 1.0)
+    assert np.all(distances >= 0) == halved
+    assert signs * distances[indices] == pytest.approx(offsets)
+
+
+@pytest.mark.parametrize("offset", [0.0, 0.03, 0.05])
+def test_fields_unfold_from_distances(offset: float) -> None:
+    aligned = AlignedPoints(offset, np.arange(2), np.array([0, 4]))
+    layer = Layer(aligned, np.zeros(1), np.array([0]), step=0.1, edges=None, fine_per_cell=3)
+    offsets = offset + 0.1 * np.arange(-3.0, 5.0)
+    values, expected = (np.stack([np.cos(y), np.sin(y)]) for y in (layer.distances, offsets))
+    unfolded = layer.unfold(values[:, None, None, :], np.array([False, True]), 10)[:, 0, 0]
+    assert unfolded == pytest.approx(np.pad(expected, ((0, 0), (0, 2))))
 
 
 @pytest.mark.parametrize("x", [0.002, 0.005, 0.01, 2.99, 2.995, 2.998])
@@ -485,12 +492,9 @@ def test_columns_do_not_depend_on_the_unit(*, uniform: bool) -> None:
         axes, load = (ArrayKey(unit * x), ArrayKey(unit * y), ArrayKey(unit * z)), ArrayKey(cells.load)
         computed.append(split_columns(load, None if uniform else load, cells.grid, cells.extent, 1, axes))
     baseline, variant = computed
-    for ring, scaled_ring in zip(baseline.rings, variant.rings, strict=True):
-        assert ring.layers[0].depth_indices.size == scaled_ring.layers[0].depth_indices.size
-    assert len(baseline.layers) == len(variant.layers)
-    for (near_jumps, rings), (scaled_jumps, scaled_rings) in zip(baseline.jumps, variant.jumps, strict=True):
-        for item, scaled in zip(near_jumps, scaled_jumps, strict=True):
-            assert scaled.edges / UNIT == pytest.approx(item.edges, abs=1e-9)
-        assert [[[jumps.edges.size for jumps in side] for side in sides] for sides in rings] == [
-            [[jumps.edges.size for jumps in side] for side in sides] for sides in scaled_rings
-        ]
+    assert len({tuple(part.depth_indices.size for part in columns.parts) for columns in computed}) == 1
+    for jumps_of_parts, scaled_jumps_of_parts in zip(baseline.jumps, variant.jumps, strict=True):
+        for part, jumps, scaled_jumps in zip(baseline.parts, jumps_of_parts, scaled_jumps_of_parts, strict=True):
+            assert [item.edges.size for item in jumps] == [item.edges.size for item in scaled_jumps]
+            for item, scaled in () if part.radius else zip(jumps, scaled_jumps, strict=True):
+                assert scaled.edges / UNIT == pytest.approx(item.edges, abs=1e-9)
