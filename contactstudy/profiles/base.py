@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import Field, dataclass, fields, is_dataclass
 from itertools import chain
-from typing import NamedTuple, Protocol, runtime_checkable
+from typing import Any, NamedTuple, Protocol, runtime_checkable
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
@@ -17,6 +17,9 @@ from contactstudy.errors import InvalidInputError
 
 # Units of the parameters of profiles other than lengths
 UNITS = {"half_angle": "rad", "angle": "rad", "delta": "1", "k1": "1", "k2": "1"}
+UNIT_WORDS = {"m": "metres", "rad": "radians", "1": ""}  # Words for the units in messages
+# Metadata of the numbers among the fields of a profile: the check of the value
+FINITE, NOT_NEGATIVE, POSITIVE = ({"check": check} for check in (checks.finite, checks.not_negative, checks.positive))
 MIN_JUMP = 1e-6  # Minimum jump of a slope at a corner, of a formula over one plus the slope, because of rounding
 # Windows and rounds of the search for corners, and least ratio of the jumps in the last two rounds; a bend has 1/4
 WINDOWS, ROUNDS, MIN_JUMP_RATIO = 512, 6, 0.75
@@ -80,6 +83,18 @@ class Shape:
     methods.
     """
 
+    def __post_init__(self) -> None:
+        """Check the numbers among the fields and store them as floats."""
+        for entry in self._entries():
+            value, check = getattr(self, entry.name), entry.metadata.get("check")
+            if check is not None and not (value is None and entry.default is None):
+                unit = UNIT_WORDS[UNITS.get(entry.name, "m")]
+                checks.store(self, **{entry.name: check(entry.name, value, unit)})
+
+    def _entries(self) -> tuple[Field[Any], ...]:
+        """Fields of a dataclass; none of another class."""
+        return fields(self) if is_dataclass(self) else ()
+
     def drop(self, x: FloatArray, length: float) -> FloatArray:
         """Material removed (m) at distances `x` (m) from mid-length."""
         raise NotImplementedError
@@ -101,9 +116,8 @@ class Shape:
         return None
 
     def __repr__(self) -> str:
-        entries: tuple[Field[object], ...] = fields(self) if is_dataclass(self) else ()
         arguments = []  # other than the defaults, in engineering units
-        for entry in entries:
+        for entry in self._entries():
             value = getattr(self, entry.name)
             if value != entry.default:
                 is_number = isinstance(value, (int, float)) and not isinstance(value, bool)

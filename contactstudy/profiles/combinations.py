@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import numpy as np
@@ -11,7 +11,16 @@ from contactstudy import checks
 from contactstudy.arrays.engineering import format_quantity
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
-from contactstudy.profiles.base import Profile, Shape, SlopeJumps, as_shape, check_drop, describe_profile, local_radius
+from contactstudy.profiles.base import (
+    POSITIVE,
+    Profile,
+    Shape,
+    SlopeJumps,
+    as_shape,
+    check_drop,
+    describe_profile,
+    local_radius,
+)
 
 SLOPE_STEP = 1e-6  # Step of the differences for a slope, over the length
 
@@ -127,11 +136,11 @@ class EffectiveLength(Shape):
     """
 
     profile: Profile
-    effective_length: float
+    effective_length: float = field(metadata=POSITIVE)
 
     def __post_init__(self) -> None:
         checks.instance("profile", self.profile, Profile, "a profile from contactstudy.profiles")
-        checks.store(self, effective_length=checks.positive("effective_length", self.effective_length, "metres"))
+        super().__post_init__()
 
     @property
     def end_drop(self) -> float:

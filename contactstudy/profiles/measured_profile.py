@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 from typing import Any, Literal
@@ -16,7 +16,7 @@ from contactstudy.arrays.engineering import format_quantity
 from contactstudy.arrays.variables import in_si
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
-from contactstudy.profiles.base import MIN_JUMP, Shape, SlopeJumps
+from contactstudy.profiles.base import MIN_JUMP, POSITIVE, Shape, SlopeJumps
 from contactstudy.profiles.column_files import check_positions, check_values, read_columns, read_netcdf, unit_in_metres
 from contactstudy.profiles.instruments import Heights, is_instrument_file, read_heights, rotate_heights
 
@@ -152,8 +152,8 @@ class Measured(Shape):
 
     positions: Sequence[float]
     drops: Sequence[float]
-    largest_spike: float | None = None
-    cutoff: float | None = None
+    largest_spike: float | None = field(default=None, metadata=POSITIVE)
+    cutoff: float | None = field(default=None, metadata=POSITIVE)
 
     def __post_init__(self) -> None:
         x = checks.coordinates("positions", in_si("positions", self.positions, "m"), "metres")
@@ -171,17 +171,14 @@ class Measured(Shape):
             index = int(drops.argmin())
             value = f"{drops[index]:g} m at x = {x[index]:g} m"
             raise InvalidInputError("drops", value, "not below zero", "remove_offset=True when reading")
-        if self.largest_spike is not None:
-            checks.store(self, largest_spike=checks.positive("largest_spike", self.largest_spike, "metres"))
+        super().__post_init__()
         if self.cutoff is not None:
-            length = checks.positive("cutoff", self.cutoff, "metres")
             min_cutoff, max_cutoff = MIN_STEPS * float(np.diff(x).max()), float(x[-1] - x[0])
-            if not min_cutoff <= length <= max_cutoff:
+            if not min_cutoff <= self.cutoff <= max_cutoff:
                 allowed = (
                     f"from {MIN_STEPS} steps between points, {min_cutoff:g} m, to the measured length, {max_cutoff:g} m"
                 )
-                raise InvalidInputError("cutoff", length, allowed, "units are SI")
-            checks.store(self, cutoff=length)
+                raise InvalidInputError("cutoff", self.cutoff, allowed, "units are SI")
         check_outliers(x, drops, self.largest_spike)
         checks.store(self, positions=tuple(x.tolist()), drops=tuple(drops.tolist()))
 
