@@ -18,7 +18,7 @@ from contactstudy.arrays.variables import in_si, labels, name_array
 from contactstudy.case.magnitudes import warn_of_values
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
-from contactstudy.profiles.column_files import check_positions, check_values, read_columns, read_netcdf, unit_in_metres
+from contactstudy.profiles.column_files import check_positions, check_values, read_columns, read_netcdf
 from contactstudy.profiles.instruments import Heights, is_instrument_file, read_heights, rotate_heights
 
 COORDINATE_TOLERANCE = 1e-3  # Largest difference of positions that count as equal, over a cell. Accuracy
@@ -159,8 +159,10 @@ def read_height_map(
         checks.instance(name, value, bool, "True or False")
     if is_instrument_file(path):
         height_map = read_heights(path)
+    elif path.suffix.lower() == ".nc":
+        height_map = Heights(*read_netcdf(path, ("x", "y"), ("height",)).values())
     else:
-        height_map = _read_netcdf(path) if path.suffix.lower() == ".nc" else _read_csv(path)
+        height_map = _read_csv(path)
     x, y, heights = rotate_heights(height_map, turn, mirror)
     if y is None:
         raise InvalidInputError("path", str(path), "a file with heights over x and y", "it holds one line")
@@ -263,14 +265,3 @@ def _read_csv(path: Path) -> Heights:
         raise InvalidInputError("height", f"{number} values at x = {x:g} m, y = {y:g} m", "one value at every point")
     heights = points.pivot(index="x", columns="y", values="height")
     return Heights(heights.index.to_numpy(), heights.columns.to_numpy(), heights.to_numpy())
-
-
-def _read_netcdf(path: Path) -> Heights:
-    """Positions along x and y and heights ``(x, y)`` from a netCDF file."""
-    dataset = read_netcdf(path)
-    if "height" not in dataset or set(dataset["height"].dims) != {"x", "y"} or not {"x", "y"} <= set(dataset.coords):
-        raise InvalidInputError("path", str(path), "a file with height along x and y, and their coordinates")
-    arrays = {"x": dataset["x"], "y": dataset["y"], "height": dataset["height"].transpose("x", "y")}
-    return Heights(
-        *(unit_in_metres(name, array.attrs.get("units")) * array.values.astype(float) for name, array in arrays.items())
-    )

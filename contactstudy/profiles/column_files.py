@@ -10,17 +10,13 @@ import zipfile
 from array import array
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
+import xarray as xr
 
 from contactstudy import checks
 from contactstudy.checks import UNIT_SIZES, FloatArray
 from contactstudy.errors import InvalidInputError
-
-if TYPE_CHECKING:
-    import xarray as xr
-
 
 # Size of a file with measurements: a height map of ten million points.
 MAX_BYTES = 500_000_000
@@ -139,37 +135,38 @@ class NumberParser:
 
     def __init__(self, separator: str) -> None:
         self._comma_allowed = separator != ","
-        self._point_number: tuple[str, str] | None = None
-        self._comma_number: tuple[str, str] | None = None
+        self._places: dict[str, tuple[str, str]] = {}  # the first number with a point, the last number with a comma
         self._is_decimal_comma = False
 
     def parse(self, line: int, name: str, field: str) -> float:
         """Return a field of a column as a number; NaN for an empty field."""
-        # Python's float also accepts underscores and the digits of all scripts.
-        if NUMERAL.fullmatch(field):
-            if self._point_number is None and "." in field:
-                self._point_number = f"line {line}, {name}", field
-            return float(field)
         if not field.strip():
             return np.nan
-        if self._comma_allowed and "." not in field and NUMERAL.fullmatch(with_point := field.replace(",", ".", 1)):
-            self._comma_number = f"line {line}, {name}", field
+        place = f"line {line}, {name}"
+        with_point = field.replace(",", ".", 1) if self._comma_allowed and "." not in field else field
+        # Python's float also accepts underscores and the digits of all scripts.
+        if not NUMERAL.fullmatch(with_point):
+            allowed = "a number with a decimal point" + (" or comma" if self._comma_allowed else "")
+            raise InvalidInputError(place, truncate(field), allowed)
+        if "," in field:
+            self._places[","] = place, field
             self._is_decimal_comma = self._is_decimal_comma or not THOUSANDS_PATTERN.fullmatch(field)
-            return float(with_point)
-        allowed = "a number with a decimal point" + (" or comma" if self._comma_allowed else "")
-        raise InvalidInputError(f"line {line}, {name}", truncate(field), allowed)
+        elif "." in field:
+            self._places.setdefault(".", (place, field))
+        return float(with_point)
 
     def check(self) -> None:
         """Raise if numbers with commas are ambiguous."""
-        if self._comma_number is None:
+        if "," not in self._places:
             return
-        position, field = self._comma_number
-        if self._point_number is not None:
-            reason = f"{self._point_number[0]} is {truncate(self._point_number[1])!r}"
-            raise InvalidInputError(position, truncate(field), "a number with the decimal mark of all others", reason)
+        place, field = self._places[","]
+        if "." in self._places:
+            place_of_point, with_point = self._places["."]
+            reason = f"{place_of_point} is {truncate(with_point)!r}"
+            raise InvalidInputError(place, truncate(field), "a number with the decimal mark of all others", reason)
         if not self._is_decimal_comma:
             hint = "a decimal comma, or a comma between thousands: write decimal points"
-            raise InvalidInputError(position, truncate(field), "a number of one meaning", hint)
+            raise InvalidInputError(place, truncate(field), "a number of one meaning", hint)
 
 
 MAX_STEP_RATIO = 3.0  # Width of a gap over the neighbouring steps
@@ -178,17 +175,25 @@ NAME_PATTERN = re.compile(r"[A-Za-z]\w{0,15}", re.ASCII)
 MAX_NAMES = 8
 
 
-def read_netcdf(path: Path) -> xr.Dataset:
-    """Read a netCDF file; raise an error with its path."""
-    import xarray as xr
-
+def read_netcdf(path: Path, positions: tuple[str, ...], values: tuple[str, ...]) -> dict[str, FloatArray]:
+    """Arrays of a netCDF file by name, metres: `positions`, and exactly one of `values` along these axes."""
     check_regular_file(path, "netCDF")
     try:
-        with xr.open_dataset(path, engine="netcdf4") as dataset:
-            return dataset.load()
+        with xr.open_dataset(path, engine="netcdf4") as file:
+            dataset = file.load()
     except (OSError, ValueError) as error:
         reason = (error.strerror or "it is not netCDF") if isinstance(error, OSError) else str(error)
         raise InvalidInputError("path", str(path), "a netCDF file that can be read", reason.lower()) from error
+    arrays = {name: dataset[name] for name in (*positions, *values) if name in dataset.variables}
+    axes = [axis for name in positions if name in arrays for axis in arrays[name].dims]
+    if [*arrays][:-1] != [*positions] or len(axes) != len(positions) or {*axes} != {*arrays[[*arrays][-1]].dims}:
+        allowed = f"a file with {' or '.join(values)} along {' and '.join(positions)}, and with these positions"
+        raise InvalidInputError("path", str(path), allowed)
+    return {
+        name: unit_in_metres(name, array.attrs.get("units"))
+        * array.transpose(*(axis for axis in axes if axis in array.dims)).values.astype(np.float64)
+        for name, array in arrays.items()
+    }
 
 
 def unit_in_metres(name: str, unit: object) -> float:

@@ -17,7 +17,7 @@ from contactstudy.arrays.variables import in_si
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 from contactstudy.profiles.base import MIN_JUMP, POSITIVE, Shape, SlopeJumps
-from contactstudy.profiles.column_files import check_positions, check_values, read_columns, read_netcdf, unit_in_metres
+from contactstudy.profiles.column_files import check_positions, check_values, read_columns, read_netcdf
 from contactstudy.profiles.instruments import Heights, is_instrument_file, read_heights, rotate_heights
 
 ALPHA = np.sqrt(np.log(2) / np.pi)  # Constant of transmission one half at the cut-off (ISO 16610-21)
@@ -345,22 +345,10 @@ def _read_file(path: Path, turn: int) -> tuple[FloatArray, FloatArray, str]:
     if is_instrument_file(path):
         x, y, heights = rotate_heights(read_heights(path), turn)
         return x, -(heights if y is None else extract_ridge(x, y, heights)), "height"
-    columns = _read_netcdf(path) if path.suffix.lower() == ".nc" else read_columns(path, ("x",), VALUE_NAMES)
-    name = next(name for name in columns if name != "x")
-    x, _, values = rotate_heights(Heights(columns["x"], None, columns[name]), turn)
+    read = read_netcdf if path.suffix.lower() == ".nc" else read_columns
+    (_, x), (name, values) = read(path, ("x",), VALUE_NAMES).items()
+    x, _, values = rotate_heights(Heights(x, None, values), turn)
     return x, values if name == "drop" else -values, name
-
-
-def _read_netcdf(path: Path) -> dict[str, FloatArray]:
-    """Positions and values of a netCDF file, in metres."""
-    dataset = read_netcdf(path)
-    value_names = [name for name in VALUE_NAMES if name in dataset.data_vars]
-    if len(value_names) != 1 or "x" not in dataset.variables or dataset[value_names[0]].dims != dataset["x"].dims:
-        raise InvalidInputError("path", str(path), f"a file with x and one of {', '.join(VALUE_NAMES)} along it")
-    return {
-        name: unit_in_metres(name, dataset[name].attrs.get("units")) * dataset[name].values.astype(np.float64)
-        for name in ("x", value_names[0])
-    }
 
 
 def check_outliers(x: FloatArray, drops: FloatArray, max_spike: float | None = None) -> None:

@@ -153,5 +153,5 @@ def test_pipes_and_folders_are_rejected(tmp_path):
 def test_non_netcdf_file_raises_package_error(tmp_path):
     (tmp_path / "a.nc").write_text("text")
     with pytest.raises(InvalidInputError, match="a netCDF file that can be read") as caught:
-        read_netcdf(tmp_path / "a.nc")
+        read_netcdf(tmp_path / "a.nc", *COLUMNS)
     assert "xarray" not in str(caught.value)
