@@ -75,7 +75,7 @@ def dry_limit_checks() -> Iterator[Check]:
     hertz = np.sqrt(1 - y**2)
     curve = Curve(("y / a", "p / p0"), y, pressure, hertz)
     case = "line contact, M = 2000, L = 10"
-    yield Reference(case, "Hertz").compare_fields("pressure / p0, abs(y) < 0.9 a", pressure, hertz, 0.01, curve=curve)
+    yield Reference(case, "Hertz").compare("pressure / p0, abs(y) < 0.9 a", pressure, hertz, 0.01, curve=curve)
     exponent = np.log10(heavy_film.central_film / films[200.0].central_film)
     case = "line contacts, M = 200 and 2000, L = 10"
     yield Reference(case, "Moes (1992)").compare("exponent of M in the central film", float(exponent), -0.125, 0.01)
@@ -125,10 +125,10 @@ def finite_element_checks(name: str) -> Iterator[Check]:
     reference = Reference(case, FINITE_ELEMENTS.format(stored.attrs["film_error"], "of the film, on the same cells"))
     axis, expected = (data["film"].interp(y=0.0).values for data in (computed, stored))
     curve = Curve(("x / a", "h R / a^2 at y = 0"), stored["x"].values, axis, expected)
-    yield reference.compare_fields("film at y = 0 over the reference", axis / expected, 1.0, 0.02, curve=curve)
+    yield reference.compare("film at y = 0 over the reference", axis / expected, 1.0, 0.02, curve=curve)
     min_film, expected = (data["film"].min("y").values for data in (computed, stored))
-    yield reference.compare_fields("least film of each column over the reference", min_film / expected, 1.0, 0.02)
-    yield reference.compare_fields("pressure / p0", computed["pressure"], stored["pressure"], 0.01)
+    yield reference.compare("least film of each column over the reference", min_film / expected, 1.0, 0.02)
+    yield reference.compare("pressure / p0", computed["pressure"], stored["pressure"], 0.01)
 
 
 def ellipse_checks() -> Iterator[Check]:

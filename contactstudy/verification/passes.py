@@ -89,7 +89,7 @@ def residual_checks() -> Iterator[Check]:
     max_stress_exact = np.abs(expected).max()
     for name, exact in zip(("sigma_xx", "sigma_yy", "sigma_zz", "tau_xz"), expected, strict=True):
         case = "eigenstrain in a rectangle of a half-space"
-        yield Reference(case, source).compare_fields(
+        yield Reference(case, source).compare(
             f"{name} over the largest stress", stress[name] / max_stress_exact, exact / max_stress_exact, 1e-4
         )
     finite_body = FiniteLengthSpace(length=1.0, material=STIFF)
@@ -140,10 +140,10 @@ def finite_element_checks(name: str) -> Iterator[Check]:
         source = f"{origin} {residual[component].attrs['error_estimate'] / size:.0e}"
         quantity = f"residual {component} over the largest"
         curve = Curve(("z / a", quantity), z, computed, expected) if component == "sigma_yy" else None
-        yield Reference(label, source).compare_fields(quantity, computed, expected, tolerances[0], curve=curve)
+        yield Reference(label, source).compare(quantity, computed, expected, tolerances[0], curve=curve)
     strain, computed = residual["plastic_strain_yz_young"], STIFF.young * passes["plastic_strain_yz"].values
     sums, expected = (fields.sum(axis=-1) for fields in (computed, strain.values))
     source = f"{origin} {strain.attrs['error_estimate'] / float(np.abs(strain).max()):.0e} of the largest shear"
     quantity = "plastic shear yz summed over depth, after every pass, over the largest"
     max_expected = np.abs(expected).max()
-    yield Reference(label, source).compare_fields(quantity, sums / max_expected, expected / max_expected, tolerances[1])
+    yield Reference(label, source).compare(quantity, sums / max_expected, expected / max_expected, tolerances[1])
