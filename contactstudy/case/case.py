@@ -21,7 +21,6 @@ from contactstudy.case.motion import (
     Friction,
     Motion,
     Sliding,
-    check_coupled,
     check_friction,
     evaluate_friction,
 )
@@ -121,8 +120,7 @@ class Case:
         allowed = "profiles.Cylinder(fillet_radius), sharp by default, or profiles.Chamfer(...)"
         checks.instance("body_edge", self.body_edge, Cylinder | Chamfer, allowed)
         checks.instance("coupled", self.coupled, (bool, np.bool_), "True or False")
-        friction = check_friction(self.friction)
-        check_coupled(friction, self.motion, coupled=self.coupled)
+        friction = check_friction(self.friction, self.motion, coupled=self.coupled)
         checks.store(self, friction=friction, tilt=small_tilt(self.tilt))
         self._check_position()
         self._check_load()
@@ -263,7 +261,8 @@ class Case:
 
     def friction_on(self, x: FloatArray) -> float | FloatArray:
         """Return the coefficient of friction on columns of cells at `x`: a number or an array (x, 1)."""
-        return evaluate_friction(check_friction(self.friction), x)
+        assert not isinstance(self.friction, xr.DataArray)
+        return evaluate_friction(self.friction, x)
 
     @property
     def coupled_friction(self) -> float:
