@@ -245,17 +245,18 @@ class Case:
         start, stop = self.contact_range
         middle = 0.5 * (start + stop)
         corners = find_slope_jumps(lambda x: self.gap_on_axis(middle + x), stop - start)
-        unresolved = as_shape(self.roller.profile).unresolved_corners(self.roller.length)
-        x = np.append(middle + corners.positions, self.roller_middle + unresolved.positions)
-        is_inside = (x > start) & (x < stop)
-        return SlopeJumps(x[is_inside], np.append(corners.jumps, unresolved.jumps)[is_inside])
+        nodes = as_shape(self.roller.profile).nodes(self.roller.length)
+        x = np.append(middle + corners.positions, self.roller_middle + nodes.positions)
+        jumps = np.append(corners.jumps, nodes.jumps)
+        is_inside = (x > start) & (x < stop) & (jumps != 0)
+        return SlopeJumps(x[is_inside], jumps[is_inside])
 
     @property
     def nodes(self) -> FloatArray:
         """Positions x, metres, between which the generatrix over the body is smooth."""
-        x = self.roller_middle + as_shape(self.roller.profile).nodes(self.roller.length)
+        x = self.roller_middle + as_shape(self.roller.profile).nodes(self.roller.length).positions
         midpoint, length = self._body_top
-        x = np.union1d(x, midpoint + self.body_edge.nodes(length))
+        x = np.union1d(x, midpoint + self.body_edge.nodes(length).positions)
         start, stop = self.contact_range
         return np.asarray(x[(x > start) & (x < stop)])
 

@@ -103,13 +103,9 @@ class Shape:
         """Radius of curvature across the roller (m) at `x`, from the `radius` (m) of the preceding summands."""
         return np.broadcast_to(np.asarray(radius, dtype=np.float64), np.shape(x))
 
-    def unresolved_corners(self, length: float) -> SlopeJumps:
-        """Corners that measured points do not resolve; none for a formula."""
+    def nodes(self, length: float) -> SlopeJumps:
+        """Points between which the profile is smooth, with jumps that measured points do not resolve, or 0."""
         return SlopeJumps(np.zeros(0), np.zeros(0))
-
-    def nodes(self, length: float) -> FloatArray:
-        """Distances from mid-length (m) between which the profile is smooth: measured points; none by default."""
-        return np.zeros(0)
 
     def second_interpolation(self) -> Profile | None:
         """Profile through the same measured points by another interpolation; None for a formula."""
@@ -206,13 +202,9 @@ class Sum(Shape):
         drops = [check_drop(term, np.asarray(x), length) for term in self.terms]
         return np.asarray(sum(drops[1:], start=drops[0]))
 
-    def unresolved_corners(self, length: float) -> SlopeJumps:
-        """Corners of all summands."""
-        return SlopeJumps.join(*(as_shape(term).unresolved_corners(length) for term in self.terms))
-
-    def nodes(self, length: float) -> FloatArray:
-        """Nodes (m) of all summands."""
-        return np.unique(np.concatenate([as_shape(term).nodes(length) for term in self.terms]))
+    def nodes(self, length: float) -> SlopeJumps:
+        """Nodes of all summands."""
+        return SlopeJumps.join(*(as_shape(term).nodes(length) for term in self.terms))
 
     def second_interpolation(self) -> Sum | None:
         """Sum with the second interpolation of every measured summand."""

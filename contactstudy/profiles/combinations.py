@@ -67,18 +67,12 @@ class Halves(Shape):
         x = np.asarray(x)
         return np.asarray(np.where(x < 0, *(check_drop(half, x, length) for half in (self.left, self.right))))
 
-    def unresolved_corners(self, length: float) -> SlopeJumps:
-        """Corners of both halves."""
-        left, right = (as_shape(half).unresolved_corners(length) for half in (self.left, self.right))
-        return SlopeJumps.join(
-            SlopeJumps(*(values[left.positions < 0] for values in left)),
-            SlopeJumps(*(values[right.positions > 0] for values in right)),
-        )
-
-    def nodes(self, length: float) -> FloatArray:
-        """Nodes (m) of both halves, and mid-length."""
-        left_nodes, right_nodes = as_shape(self.left).nodes(length), as_shape(self.right).nodes(length)
-        return np.concatenate([left_nodes[left_nodes < 0], [0.0], right_nodes[right_nodes > 0]])
+    def nodes(self, length: float) -> SlopeJumps:
+        """Nodes of both halves, and mid-length."""
+        left, right = (as_shape(half).nodes(length) for half in (self.left, self.right))
+        left = SlopeJumps(*(values[left.positions < 0] for values in left))
+        right = SlopeJumps(*(values[right.positions > 0] for values in right))
+        return SlopeJumps.join(left, SlopeJumps(np.zeros(1), np.zeros(1)), right)
 
     def second_interpolation(self) -> Halves | None:
         """Profile with the second interpolation of a measured half."""
@@ -192,13 +186,8 @@ class EffectiveLength(Shape):
             low, high = (midpoint, high) if outer_drop - inner_drop < MAX_SLOPE * width else (low, midpoint)
         return Corner(low, float(drops(low)[0]), np.sqrt(0.5), np.sqrt(0.5))
 
-    def unresolved_corners(self, length: float) -> SlopeJumps:
-        """Corners of the profile within the effective length."""
-        corners = as_shape(self.profile).unresolved_corners(self.effective_length)
-        return SlopeJumps(*(values[np.abs(corners.positions) < 0.5 * self.effective_length] for values in corners))
-
-    def nodes(self, length: float) -> FloatArray:
-        """Nodes (m) of the profile."""
+    def nodes(self, length: float) -> SlopeJumps:
+        """Nodes of the profile."""
         return as_shape(self.profile).nodes(self.effective_length)
 
     def second_interpolation(self) -> EffectiveLength | None:

@@ -264,20 +264,16 @@ class Measured(Shape):
         x = np.asarray(self.positions)
         return np.asarray(x - 0.5 * (x[0] + x[-1]))
 
-    def nodes(self, length: float) -> FloatArray:
-        """Distances from mid-length (m) of the points."""
-        return self._from_middle
-
-    def unresolved_corners(self, length: float) -> SlopeJumps:
-        """Return corners: points at which the slope changes within one or two steps.
+    def nodes(self, length: float) -> SlopeJumps:
+        """Points, with the jumps at unresolved corners, where the slope changes within one or two steps.
 
         A filtered profile has no corners: its slope changes over the cut-off.
         """
         x, drops = self._from_middle, self._filtered
         slope_changes = np.zeros(x.size)
-        slope_changes[1:-1] = np.diff(np.diff(drops) / np.diff(x))
         if self.cutoff is not None:
-            return super().unresolved_corners(length)
+            return SlopeJumps(x, slope_changes)
+        slope_changes[1:-1] = np.diff(np.diff(drops) / np.diff(x))
         magnitude = np.abs(slope_changes)
         padded = np.pad(magnitude, CORNER_STEPS, mode="edge")
         neighbours = np.maximum(padded[: x.size], padded[2 * CORNER_STEPS :])
@@ -287,7 +283,7 @@ class Measured(Shape):
             (magnitude == local_maxima) & (magnitude > CORNER_RATIO * typical_slope_changes) & (magnitude > MIN_JUMP)
         )
         sums = np.convolve(slope_changes, np.ones(3), mode="same")
-        return SlopeJumps(x[is_corner], sums[is_corner])
+        return SlopeJumps(x, np.where(is_corner, sums, 0.0))
 
     def second_interpolation(self) -> Measured:
         """Profile through the same points with harmonic-mean slopes."""

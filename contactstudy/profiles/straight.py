@@ -8,7 +8,7 @@ import numpy as np
 
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
-from contactstudy.profiles.base import FINITE, NOT_NEGATIVE, POSITIVE, Shape
+from contactstudy.profiles.base import FINITE, NOT_NEGATIVE, POSITIVE, Shape, SlopeJumps
 
 MAX_HALF_ANGLE = np.pi / 4  # Largest half cone angle, radians
 
@@ -196,8 +196,9 @@ class Chamfer(Shape):
         arc_drop = chord**2 / (self.blend_radius + np.sqrt(self.blend_radius**2 - chord**2))
         return np.asarray(np.where(distance < outer_blend, arc_drop, chamfer_drop))
 
-    def nodes(self, length: float) -> FloatArray:
-        """Distances from mid-length (m) of both corners, and of the ends of their arcs."""
+    def nodes(self, length: float) -> SlopeJumps:
+        """Both corners and the ends of their arcs."""
         corner = 0.5 * length - self.axial_width
         outer_blend = self.blend_radius * np.sin(np.arctan(self.slope)) - self.inner_blend
-        return np.unique(np.outer([-1.0, 1.0], [corner - self.inner_blend, corner, corner + outer_blend]))
+        positions = np.outer([-1.0, 1.0], [corner - self.inner_blend, corner, corner + outer_blend]).ravel()
+        return SlopeJumps(positions, np.zeros(positions.size))
