@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Iterable, Iterator
-from itertools import chain
-from typing import NamedTuple, TypeVar
+from types import UnionType
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -102,8 +102,6 @@ DROP_POSITIONS = {"drop": 0.4, "end drop": 0.49}  # where the drop is checked: f
 # the roller's length. Usual crown radii range from 0.1 to some 100 m.
 MIN_CROWN_DROP, MIN_CROWN_FRACTION = 1e-7, 1e-5
 
-Profiles = TypeVar("Profiles", bound=Shape)
-
 
 def list_unusual_magnitudes(case: Case) -> tuple[str, ...]:
     """List the unusual magnitudes of a case, with the usual range and the unit of a value within this range."""
@@ -180,7 +178,7 @@ def describe_unusual_friction(friction: Friction | xr.DataArray) -> str:
     return _describe("friction", "friction", float(np.max(np.abs(np.asarray(values, dtype=np.float64)))))
 
 
-def _find_components(profile: object, kind: type[Profiles]) -> Iterator[Profiles]:
+def _find_components(profile: object, kind: type | UnionType) -> Iterator[Any]:
     """Profiles of a kind in a profile: the profile itself, or the terms and halves of a composite."""
     if isinstance(profile, kind):
         yield profile
@@ -193,11 +191,8 @@ def _find_components(profile: object, kind: type[Profiles]) -> Iterator[Profiles
 
 def _describe_flat_crown(case: Case) -> str:
     """Message on a crown radius too large for a ground crown."""
-    half_length, profile = 0.5 * case.roller.length, case.roller.profile
-    crowns: Iterator[FullCrown | PartialCrown] = chain(
-        _find_components(profile, FullCrown), _find_components(profile, PartialCrown)
-    )
-    for crown in crowns:
+    half_length = 0.5 * case.roller.length
+    for crown in _find_components(case.roller.profile, FullCrown | PartialCrown):
         radius = crown.crown_radius
         drop = 0.5 * half_length**2 / radius
         if drop < min(MIN_CROWN_DROP, MIN_CROWN_FRACTION * case.roller.length):
