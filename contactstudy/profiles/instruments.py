@@ -19,8 +19,6 @@ from contactstudy.checks import FloatArray
 from contactstudy.errors import ContactStudyError, InvalidInputError
 from contactstudy.profiles.column_files import MAX_BYTES, READABLE_FILES, check_regular_file, describe_foreign_file
 
-X3P = ".x3p"
-
 # Endings of files without instrument formats: columns with units, and netCDF
 TEXT_ENDINGS = ("", ".csv", ".txt", ".tsv", ".dat", ".nc")
 ANGLES = (0, 90, 180, 270)
@@ -48,7 +46,7 @@ def is_instrument_file(path: Path) -> bool:
 
 def read_heights(path: Path) -> Heights:
     """Read positions and heights of an x3p file or a format of SurfaceTopography."""
-    x3p = path.suffix.lower() == X3P
+    x3p = path.suffix.lower() == ".x3p"
     package = "x3pio" if x3p else "SurfaceTopography"
     if find_spec(package) is None:
         if not x3p and (description := describe_foreign_file(path)):
@@ -115,16 +113,11 @@ def _read_x3p(path: Path) -> Heights:
     if isinstance(file, x3pio.Profile):
         return Heights(points[:, 0], None, points[:, 2])
     x, y = points[0, :, 0], points[:, 0, 1]
-    deviation = max(_max_grid_deviation(points[:, :, 0], x[None, :]), _max_grid_deviation(points[:, :, 1], y[:, None]))
-    if not deviation <= GRID_TOLERANCE:
+    deviations = np.abs(points[:, :, 0] - x).max(), np.abs(points[:, :, 1] - y[:, None]).max()
+    steps = (np.abs(np.diff(lines)).min(initial=np.inf) for lines in (x, y))
+    if not all(deviation <= GRID_TOLERANCE * step for deviation, step in zip(deviations, steps, strict=True)):
         raise _path_error(path, "a surface whose points are the crossings of lines along x and y")
     return Heights(x, y, points[:, :, 2].T)
-
-
-def _max_grid_deviation(positions: FloatArray, lines: FloatArray) -> float:
-    """Largest distance of points from their grid lines, over the smallest step of the lines."""
-    steps = np.abs(np.diff(lines.ravel()))
-    return float(np.abs(positions - lines).max() / steps.min()) if steps.size and steps.min() > 0 else 0.0
 
 
 def _read_topography(path: Path) -> Heights:

@@ -22,7 +22,6 @@ from contactstudy.profiles.instruments import Heights, is_instrument_file, read_
 
 ALPHA = np.sqrt(np.log(2) / np.pi)  # Constant of transmission one half at the cut-off (ISO 16610-21)
 WEIGHT_REACH = 2.2  # Half the width of the weight over ``ALPHA`` times the cut-off: less than 3e-7 of the peak beyond
-CHUNK_POINTS = 256  # Number of points in one block
 
 
 def filter_gaussian(x: FloatArray, values: FloatArray, cutoff: float) -> FloatArray:
@@ -57,14 +56,11 @@ def _sum_uneven_points(x: FloatArray, values: FloatArray) -> tuple[FloatArray, .
     point_weights = np.gradient(x)  # axial length per point
     point_weights[[0, -1]] *= 0.5
     moments = np.empty((5, x.size))
-    for begin in range(0, x.size, CHUNK_POINTS):
-        centres = x[begin : begin + CHUNK_POINTS]
-        start, stop = np.searchsorted(x, (centres[0] - WEIGHT_REACH, centres[-1] + WEIGHT_REACH))
-        nearby = slice(start, stop)
-        s = x[nearby] - centres[:, None]
-        weight = np.where(np.abs(s) <= WEIGHT_REACH, point_weights[nearby] * np.exp(-np.pi * s**2), 0.0)
-        sums = [np.sum(weight * s**power, axis=1) for power in range(3)]
-        moments[:, begin : begin + CHUNK_POINTS] = [*sums, weight @ values[nearby], (weight * s) @ values[nearby]]
+    for index, centre in enumerate(x):
+        nearby = slice(*np.searchsorted(x, (centre - WEIGHT_REACH, centre + WEIGHT_REACH)))
+        s = x[nearby] - centre
+        weight = point_weights[nearby] * np.exp(-np.pi * s**2)
+        moments[:, index] = [weight @ term for term in (np.ones(s.size), s, s**2, values[nearby], s * values[nearby])]
     return tuple(moments)
 
 
