@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import Field, dataclass, field, fields, is_dataclass
+from dataclasses import Field, dataclass, field, fields, is_dataclass, replace
 from itertools import chain
 from typing import Any, NamedTuple, Protocol, runtime_checkable
 
@@ -109,9 +109,11 @@ class Shape:
         """Points between which the profile is smooth, with jumps that measured points do not resolve, or 0."""
         return SlopeJumps(np.zeros(0), np.zeros(0))
 
-    def second_interpolation(self) -> Profile | None:
-        """Profile through the same measured points by another interpolation; None for a formula."""
-        return None
+    def second_interpolation(self) -> Any:
+        """Profile with another interpolation of the measured points in it; None without measured points."""
+        variants = {entry.name: _second_interpolation(getattr(self, entry.name)) for entry in self._entries()}
+        changes = {name: variant for name, variant in variants.items() if variant is not None}
+        return replace(self, **changes) if changes else None  # type: ignore[type-var]
 
     def __repr__(self) -> str:
         arguments = []  # other than the defaults, in engineering units
@@ -130,6 +132,14 @@ class Shape:
         return Sum((self, other))
 
     __radd__ = __add__
+
+
+def _second_interpolation(part: object) -> Any:
+    """Second interpolation of a profile, or of profiles in a tuple; None without measured points."""
+    if not isinstance(part, tuple):
+        return part.second_interpolation() if isinstance(part, Shape) else None
+    variants = [_second_interpolation(term) for term in part]
+    return tuple(variant or term for variant, term in zip(variants, part, strict=True)) if any(variants) else None
 
 
 def unit_of(profile: object, name: str) -> str:
@@ -208,13 +218,6 @@ class Sum(Shape):
         """Nodes of all summands."""
         return SlopeJumps.join(*(as_shape(term).nodes(length) for term in self.terms))
 
-    def second_interpolation(self) -> Sum | None:
-        """Sum with the second interpolation of every measured summand."""
-        variants = [as_shape(term).second_interpolation() for term in self.terms]
-        if not any(variants):
-            return None
-        return Sum(tuple(variant or term for variant, term in zip(variants, self.terms, strict=True)))
-
     def local_radius(self, x: FloatArray, length: float, radius: float | FloatArray) -> FloatArray:
         """Radius across the roller (m) after every summand in turn."""
         for term in self.terms:
@@ -270,11 +273,6 @@ class Halves(Shape):
         left = SlopeJumps(*(values[left.positions < 0] for values in left))
         right = SlopeJumps(*(values[right.positions > 0] for values in right))
         return SlopeJumps.join(left, SlopeJumps(np.zeros(1), np.zeros(1)), right)
-
-    def second_interpolation(self) -> Halves | None:
-        """Profile with the second interpolation of a measured half."""
-        lower, upper = as_shape(self.left).second_interpolation(), as_shape(self.right).second_interpolation()
-        return Halves(lower or self.left, upper or self.right) if lower or upper else None
 
     def local_radius(self, x: FloatArray, length: float, radius: float | FloatArray) -> FloatArray:
         """Radius across the roller (m) of each half."""
@@ -383,11 +381,6 @@ class EffectiveLength(Shape):
     def nodes(self, length: float) -> SlopeJumps:
         """Nodes of the profile."""
         return as_shape(self.profile).nodes(self.effective_length)
-
-    def second_interpolation(self) -> EffectiveLength | None:
-        """Profile with the second interpolation of its measured points."""
-        variant = as_shape(self.profile).second_interpolation()
-        return EffectiveLength(variant, self.effective_length) if variant else None
 
     def local_radius(self, x: FloatArray, length: float, radius: float | FloatArray) -> FloatArray:
         """Radius across the roller (m): the profile's, constant over the corners."""

@@ -168,16 +168,15 @@ def point_checks() -> Iterator[Check]:
     positions: dict[str, Any] = {"x": [-3.0, 0.4, 2.0], "y": [-1.0, 0.0, 2.5], "z": [0.8, 2.0, 4.0]}
     x, y, z = np.meshgrid(*positions.values(), indexing="ij")
     pressure = point_pressure(grid, 1, 1)
-    for friction, source in (
-        (0.0, "Boussinesq (1885); Johnson 3.2"),
-        (1.0, "Boussinesq and Cerruti; Johnson 3.2, 3.6"),
+    case = "load on one cell of 0.04a, 0.9a and more away"
+    for friction, reference in (
+        (0.0, Reference(case, "Boussinesq (1885); Johnson 3.2")),
+        (1.0, Reference(f"{case}, f = 1", "Boussinesq and Cerruti; Johnson 3.2, 3.6")),
     ):
         computed = components(stress_field(_half_space(), pressure, friction=friction, **positions))
         exact = components(closed_forms.point_load(x, y, z, POISSON, 1.0, tangential=friction))
-        case, scale = "load on one cell of 0.04a, 0.9a and more away", np.abs(exact).max()
-        case += ", f = 1" if friction else ""
-        quantity = "six stresses over the largest"
-        yield Reference(case, source).compare(quantity, computed / scale, exact / scale, 1e-3)
+        scale = np.abs(exact).max()
+        yield reference.compare("six stresses over the largest", computed / scale, exact / scale, 1e-3)
 
 
 def plane_checks() -> Iterator[Check]:
@@ -267,9 +266,8 @@ def equilibrium_checks() -> Iterator[Check]:
     divergence = [sum(slopes[axis][name] for axis, name in zip("xyz", row, strict=True)) for row in rows]
     size = max(abs(value) for by_name in slopes.values() for value in by_name.values())
     case = "smooth strip load, f = 0.3, L = 4a"
-    yield Reference(f"{case}, 0.3a from the end", "equilibrium").compare(
-        "divergence of the stress over its largest slope", np.array(divergence) / size, 0.0, 2e-3
-    )
+    reference, quantity = Reference(f"{case}, 0.3a from the end", "equilibrium"), "divergence of the stress"
+    yield reference.compare(f"{quantity} over its largest slope", np.array(divergence) / size, 0.0, 2e-3)
     # The resultants on the plane z = 1 equal the load. Quadrature: Gauss points in x, graded cells in y; farther out
     # the stress is that of Flamant's plate, whose shear under a traction Q falls like 2 Q z / (pi y**2).
     node, weight = np.polynomial.legendre.leggauss(10)
@@ -281,9 +279,8 @@ def equilibrium_checks() -> Iterator[Check]:
     fraction_within = 1 - 4 / (np.pi * np.abs(y).max())
     for component, expected in (("sigma_zz", -load), ("tau_yz", -friction * load * fraction_within)):
         resultant = float(np.einsum("xy,x,y->", cut_stress[component].values, 0.5 * length * weight, dy))
-        yield Reference(f"{case}, cut at z = a", "equilibrium").compare(
-            f"resultant of {component} / (p0 a^2)", resultant, expected, 2e-3
-        )
+        reference = Reference(f"{case}, cut at z = a", "equilibrium")
+        yield reference.compare(f"resultant of {component} / (p0 a^2)", resultant, expected, 2e-3)
 
 
 def contact_condition_checks() -> Iterator[Check]:
@@ -301,12 +298,10 @@ def contact_condition_checks() -> Iterator[Check]:
     height = ((gap + displacement) / float(displacement.max() - displacement.min())).values
     in_contact = pressure > 0
     approach = height[in_contact].mean()
-    quantity = "gap under pressure over the variation of the displacement"
-    yield Reference(case, "conditions of contact").compare(quantity, height[in_contact], approach, 1e-5)
+    reference, scale = Reference(case, "conditions of contact"), "over the variation of the displacement"
+    yield reference.compare(f"gap under pressure {scale}", height[in_contact], approach, 1e-5)
     overlap = min(0.0, float((height - approach)[~in_contact].min()))
-    yield Reference(case, "conditions of contact").compare(
-        "overlap outside the contact over the variation of the displacement", overlap, 0.0, 1e-5
-    )
+    yield reference.compare(f"overlap outside the contact {scale}", overlap, 0.0, 1e-5)
 
 
 def reciprocity_checks() -> Iterator[Check]:
@@ -334,8 +329,8 @@ def alternation_checks() -> Iterator[Check]:
         face_load = source + system.source(Load.NORMAL, modes.on_end * system.spectrum_on_top(system.scale * face_load))
     max_load, iterated_solution = np.abs(direct_solution).max(), system.scale * face_load
     case, iteration = "equivalent loads at one wavenumber, 200 alternations", "iteration of Hetenyi (1970) and Keer"
-    quantity = "face loads over the largest"
-    yield Reference(case, iteration).compare(quantity, direct_solution / max_load, iterated_solution / max_load, 1e-9)
+    computed, expected = direct_solution / max_load, iterated_solution / max_load
+    yield Reference(case, iteration).compare("face loads over the largest", computed, expected, 1e-9)
 
 
 # Checks of the groups of the suite
