@@ -72,13 +72,13 @@ class Sliding:
 
 
 RESULTANTS = {"x": "force_x", "y": "force_y", "spin": "moment_z"}  # conjugate to the rigid motions
+UNITS = {"x": "metres", "y": "metres", "spin": "rad/m", "force_x": "N", "force_y": "N", "moment_z": "N m"}
 
 
 class StickSlip:
     """Base of the motions with stick and slip: a prescribed rigid motion, force or moment per direction."""
 
     AMPLITUDES: ClassVar[Mapping[str, str]]  # parameter of each rigid motion
-    UNITS: ClassVar[Mapping[str, str]]
 
     def __post_init__(self) -> None:
         """Check the values, at most one of a motion and its force; the motion is 0 without both."""
@@ -88,12 +88,9 @@ class StickSlip:
             if amplitude is not None and resultant is not None:
                 allowed = "at most one of the two", "the other value follows"
                 raise InvalidInputError(f"{name}, {force}", (amplitude, resultant), *allowed)
-            if resultant is not None:
-                checks.store(self, **{force: checks.finite(force, resultant, "N m" if mode == "spin" else "N")})
-            else:
-                checks.store(
-                    self, **{name: checks.finite(name, 0.0 if amplitude is None else amplitude, self.UNITS[mode])}
-                )
+            prescribed = force if resultant is not None else name
+            value = 0.0 if amplitude is None and resultant is None else getattr(self, prescribed)
+            checks.store(self, **{prescribed: checks.finite(prescribed, value, UNITS.get(prescribed, ""))})
 
     @property
     def modes(self) -> tuple[str, ...]:
@@ -142,7 +139,6 @@ class Shift(StickSlip):
     force_y: float | None = None
 
     AMPLITUDES: ClassVar[Mapping[str, str]] = {"x": "x", "y": "y"}
-    UNITS: ClassVar[Mapping[str, str]] = {"x": "metres", "y": "metres"}
 
     @property
     def speeds(self) -> None:
@@ -195,7 +191,6 @@ class Rolling(StickSlip):
     model: str = "exact"
 
     AMPLITUDES: ClassVar[Mapping[str, str]] = {"x": "lateral_creepage", "y": "longitudinal_creepage", "spin": "spin"}
-    UNITS: ClassVar[Mapping[str, str]] = {"x": "", "y": "", "spin": "rad/m"}
 
     def __post_init__(self) -> None:
         checks.known_name("model", self.model, MODELS)

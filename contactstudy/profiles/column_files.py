@@ -25,19 +25,17 @@ BINARY_BYTES = bytes(set(range(32)) - set(b"\t\n\v\f\r\x1a\x1b"))  # Bytes outsi
 MICRO = "\N{MICRO SIGN}"
 
 FOREIGN_MICRO = "\udcb5"  # Python's surrogate of the byte 0xB5 outside UTF-8
-PICTURE_ADVICE = "a picture without heights: export the heights from the instrument's software"
 WORKBOOK_ADVICE = "a workbook of a spreadsheet program: save the sheet as 'CSV UTF-8'"
 
-# First bytes of foreign files, with advice
-SIGNATURES = (
-    (b"\x89PNG", PICTURE_ADVICE),
-    (b"\xff\xd8\xff", PICTURE_ADVICE),
-    (b"GIF8", PICTURE_ADVICE),
-    (b"BM", PICTURE_ADVICE),
-    (b"%PDF", "a PDF document: export the heights from the instrument's software"),
-    (b"CDF", "netCDF: let its name end with .nc"),
-    (b"\x89HDF", "netCDF or HDF5: let the name of a netCDF file end with .nc"),
-)
+SIGNATURES = {  # first bytes of foreign files, with advice
+    **dict.fromkeys(
+        (b"\x89PNG", b"\xff\xd8\xff", b"GIF8", b"BM"),
+        "a picture without heights: export the heights from the instrument's software",
+    ),
+    b"%PDF": "a PDF document: export the heights from the instrument's software",
+    b"CDF": "netCDF: let its name end with .nc",
+    b"\x89HDF": "netCDF or HDF5: let the name of a netCDF file end with .nc",
+}
 # Readable files, as the end of the sentence "must be ..."
 READABLE_FILES = (
     "columns as text (.csv, .txt, .tsv, .dat), netCDF (.nc), or with the extra `measured` x3p (.x3p) "
@@ -74,7 +72,7 @@ def read_lines(path: Path) -> Iterator[tuple[int, str]]:
 def describe_foreign_file(path: Path) -> str:
     """Return the kind of a file without measurements, and advice; an empty text for an unknown kind."""
     head = _read_head(path)
-    for signature, description in SIGNATURES:
+    for signature, description in SIGNATURES.items():
         # Short signatures also occur in text: the code ignores them in text files.
         if head.startswith(signature) and (len(signature) > 3 or _is_binary(head)):
             return description
