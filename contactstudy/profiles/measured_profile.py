@@ -17,8 +17,7 @@ from contactstudy.arrays.variables import in_si
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 from contactstudy.profiles.base import MIN_JUMP, POSITIVE, Shape, SlopeJumps
-from contactstudy.profiles.column_files import check_positions, check_values, read_columns, read_netcdf
-from contactstudy.profiles.instruments import Heights, is_instrument_file, read_heights, rotate_heights
+from contactstudy.profiles.measurement_files import check_positions, check_values, read_measurement, rotate_heights
 
 ALPHA = np.sqrt(np.log(2) / np.pi)  # Constant of transmission one half at the cut-off (ISO 16610-21)
 WEIGHT_REACH = 2.2  # Half the width of the weight over ``ALPHA`` times the cut-off: less than 3e-7 of the peak beyond
@@ -224,7 +223,12 @@ class Measured(Shape):
         """
         for flag, value in (("remove_tilt", remove_tilt), ("remove_offset", remove_offset)):
             checks.instance(flag, value, (bool, np.bool_), "True or False")
-        x, drop, name = _read_file(Path(path), turn)
+        measured, name = read_measurement(Path(path), ("x",), VALUE_NAMES)
+        x, y, drop = rotate_heights(measured, turn)
+        if y is not None:
+            drop = extract_ridge(x, y, drop)
+        if name == "height":
+            drop = -drop
         if remove_tilt or remove_offset:
             check_positions("x", x, MIN_POINTS)
             check_values(name, drop, ("x", x))
@@ -330,17 +334,6 @@ def _minmod(first: FloatArray, second: FloatArray) -> FloatArray:
     """Return the value closer to 0 where both signs agree; 0 elsewhere."""
     smaller = np.minimum(np.abs(first), np.abs(second))
     return np.asarray(np.where(first * second > 0, np.copysign(smaller, first), 0.0))
-
-
-def _read_file(path: Path, turn: int) -> tuple[FloatArray, FloatArray, str]:
-    """Positions and drops of a file, metres, and the name of the values."""
-    if is_instrument_file(path):
-        x, y, heights = rotate_heights(read_heights(path), turn)
-        return x, -(heights if y is None else extract_ridge(x, y, heights)), "height"
-    read = read_netcdf if path.suffix.lower() == ".nc" else read_columns
-    (_, x), (name, values) = read(path, ("x",), VALUE_NAMES).items()
-    x, _, values = rotate_heights(Heights(x, None, values), turn)
-    return x, values if name == "drop" else -values, name
 
 
 def check_outliers(x: FloatArray, drops: FloatArray, max_spike: float | None = None) -> None:
