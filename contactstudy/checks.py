@@ -198,13 +198,10 @@ def coordinates(name: str, values: object, unit: str = "m") -> FloatArray:
         raise InvalidInputError(name, values, f"numbers ({unit})") from None
     if array.ndim != 1 or array.size == 0:
         raise InvalidInputError(name, values, f"a non-empty one-dimensional sequence ({unit})")
-    bad = np.flatnonzero(~np.isfinite(array))
+    bad = np.flatnonzero(~(np.abs(array) <= MAX_MAGNITUDE))
     if bad.size:
-        raise InvalidInputError(name, f"{array[bad[0]]} at position {bad[0]}", f"finite everywhere ({unit})")
-    large = np.flatnonzero(np.abs(array) > MAX_MAGNITUDE)
-    if large.size:
-        allowed = f"at most {MAX_MAGNITUDE:g} everywhere ({unit})"
-        raise InvalidInputError(name, f"{array[large[0]]} at position {large[0]}", allowed, "units are SI")
+        allowed = f"finite everywhere, of a size up to {MAX_MAGNITUDE:g} ({unit})"
+        raise InvalidInputError(name, f"{array[bad[0]]} at position {bad[0]}", allowed, "units are SI")
     return array
 
 

@@ -8,7 +8,6 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
-import pandas as pd
 import xarray as xr
 
 from contactstudy import checks
@@ -18,8 +17,7 @@ from contactstudy.arrays.variables import in_si, labels, name_array
 from contactstudy.case.magnitudes import warn_of_values
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
-from contactstudy.profiles.column_files import check_positions, check_values, read_columns, read_netcdf, unit_in_metres
-from contactstudy.profiles.instruments import Heights, is_instrument_file, read_heights, rotate_heights
+from contactstudy.profiles.measurement_files import check_positions, check_values, read_measurement, rotate_heights
 
 COORDINATE_TOLERANCE = 1e-3  # Largest difference of positions that count as equal, over a cell. Accuracy
 
@@ -157,11 +155,7 @@ def read_height_map(
     checks.instance("grid", grid, Grid, "a Grid")
     for name, value in (("remove_slope", remove_slope), ("remove_form", remove_form)):
         checks.instance(name, value, bool, "True or False")
-    if is_instrument_file(path):
-        height_map = read_heights(path)
-    else:
-        height_map = _read_netcdf(path) if path.suffix.lower() == ".nc" else _read_csv(path)
-    x, y, heights = rotate_heights(height_map, turn, mirror)
+    x, y, heights = rotate_heights(read_measurement(path, ("x", "y"), ("height",))[0], turn, mirror)
     if y is None:
         raise InvalidInputError("path", str(path), "a file with heights over x and y", "it holds one line")
     if corner is not None:
@@ -249,28 +243,3 @@ def _form(x: FloatArray, y: FloatArray, heights: FloatArray, order: int) -> Floa
     projections = np.array([moments[term] for term in terms])
     factors[tuple(np.transpose(terms))] = np.linalg.lstsq(matrix, projections, rcond=None)[0]
     return np.asarray(along_x @ factors @ along_y.T)
-
-
-def _read_csv(path: Path) -> Heights:
-    """Positions along x and y and heights ``(x, y)`` from a table of points; NaN where the table lacks a point."""
-    columns = read_columns(path, ("x", "y"), ("height",))
-    for name in ("x", "y"):
-        checks.coordinates(name, columns[name])
-    points = pd.DataFrame(columns)
-    if (repeated := points.duplicated(["x", "y"])).any():
-        x, y = points.loc[repeated, ["x", "y"]].iloc[0]
-        number = ((points["x"] == x) & (points["y"] == y)).sum()
-        raise InvalidInputError("height", f"{number} values at x = {x:g} m, y = {y:g} m", "one value at every point")
-    heights = points.pivot(index="x", columns="y", values="height")
-    return Heights(heights.index.to_numpy(), heights.columns.to_numpy(), heights.to_numpy())
-
-
-def _read_netcdf(path: Path) -> Heights:
-    """Positions along x and y and heights ``(x, y)`` from a netCDF file."""
-    dataset = read_netcdf(path)
-    if "height" not in dataset or set(dataset["height"].dims) != {"x", "y"} or not {"x", "y"} <= set(dataset.coords):
-        raise InvalidInputError("path", str(path), "a file with height along x and y, and their coordinates")
-    arrays = {"x": dataset["x"], "y": dataset["y"], "height": dataset["height"].transpose("x", "y")}
-    return Heights(
-        *(unit_in_metres(name, array.attrs.get("units")) * array.values.astype(float) for name, array in arrays.items())
-    )

@@ -21,7 +21,6 @@ from contactstudy.case.motion import (
     Friction,
     Motion,
     Sliding,
-    check_coupled,
     check_friction,
     evaluate_friction,
 )
@@ -121,8 +120,7 @@ class Case:
         allowed = "profiles.Cylinder(fillet_radius), sharp by default, or profiles.Chamfer(...)"
         checks.instance("body_edge", self.body_edge, Cylinder | Chamfer, allowed)
         checks.instance("coupled", self.coupled, (bool, np.bool_), "True or False")
-        friction = check_friction(self.friction)
-        check_coupled(friction, self.motion, coupled=self.coupled)
+        friction = check_friction(self.friction, self.motion, coupled=self.coupled)
         checks.store(self, friction=friction, tilt=small_tilt(self.tilt))
         self._check_position()
         self._check_load()
@@ -247,23 +245,25 @@ class Case:
         start, stop = self.contact_range
         middle = 0.5 * (start + stop)
         corners = find_slope_jumps(lambda x: self.gap_on_axis(middle + x), stop - start)
-        unresolved = as_shape(self.roller.profile).unresolved_corners(self.roller.length)
-        x = np.append(middle + corners.positions, self.roller_middle + unresolved.positions)
-        is_inside = (x > start) & (x < stop)
-        return SlopeJumps(x[is_inside], np.append(corners.jumps, unresolved.jumps)[is_inside])
+        nodes = as_shape(self.roller.profile).nodes(self.roller.length)
+        x = np.append(middle + corners.positions, self.roller_middle + nodes.positions)
+        jumps = np.append(corners.jumps, nodes.jumps)
+        is_inside = (x > start) & (x < stop) & (jumps != 0)
+        return SlopeJumps(x[is_inside], jumps[is_inside])
 
     @property
     def nodes(self) -> FloatArray:
         """Positions x, metres, between which the generatrix over the body is smooth."""
-        x = self.roller_middle + as_shape(self.roller.profile).nodes(self.roller.length)
+        x = self.roller_middle + as_shape(self.roller.profile).nodes(self.roller.length).positions
         midpoint, length = self._body_top
-        x = np.union1d(x, midpoint + self.body_edge.nodes(length))
+        x = np.union1d(x, midpoint + self.body_edge.nodes(length).positions)
         start, stop = self.contact_range
         return np.asarray(x[(x > start) & (x < stop)])
 
     def friction_on(self, x: FloatArray) -> float | FloatArray:
         """Return the coefficient of friction on columns of cells at `x`: a number or an array (x, 1)."""
-        return evaluate_friction(check_friction(self.friction), x)
+        assert not isinstance(self.friction, xr.DataArray)
+        return evaluate_friction(self.friction, x)
 
     @property
     def coupled_friction(self) -> float:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Iterable, Iterator
-from itertools import chain
-from typing import NamedTuple, TypeVar
+from types import UnionType
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -102,8 +102,6 @@ DROP_POSITIONS = {"drop": 0.4, "end drop": 0.49}  # where the drop is checked: f
 # the roller's length. Usual crown radii range from 0.1 to some 100 m.
 MIN_CROWN_DROP, MIN_CROWN_FRACTION = 1e-7, 1e-5
 
-Profiles = TypeVar("Profiles", bound=Shape)
-
 
 def list_unusual_magnitudes(case: Case) -> tuple[str, ...]:
     """List the unusual magnitudes of a case, with the usual range and the unit of a value within this range."""
@@ -180,7 +178,7 @@ def describe_unusual_friction(friction: Friction | xr.DataArray) -> str:
     return _describe("friction", "friction", float(np.max(np.abs(np.asarray(values, dtype=np.float64)))))
 
 
-def _find_components(profile: object, kind: type[Profiles]) -> Iterator[Profiles]:
+def _find_components(profile: object, kind: type | UnionType) -> Iterator[Any]:
     """Profiles of a kind in a profile: the profile itself, or the terms and halves of a composite."""
     if isinstance(profile, kind):
         yield profile
@@ -193,11 +191,8 @@ def _find_components(profile: object, kind: type[Profiles]) -> Iterator[Profiles
 
 def _describe_flat_crown(case: Case) -> str:
     """Message on a crown radius too large for a ground crown."""
-    half_length, profile = 0.5 * case.roller.length, case.roller.profile
-    crowns: Iterator[FullCrown | PartialCrown] = chain(
-        _find_components(profile, FullCrown), _find_components(profile, PartialCrown)
-    )
-    for crown in crowns:
+    half_length = 0.5 * case.roller.length
+    for crown in _find_components(case.roller.profile, FullCrown | PartialCrown):
         radius = crown.crown_radius
         drop = 0.5 * half_length**2 / radius
         if drop < min(MIN_CROWN_DROP, MIN_CROWN_FRACTION * case.roller.length):
@@ -207,24 +202,24 @@ def _describe_flat_crown(case: Case) -> str:
     return ""
 
 
-def _rate_half_width(half_width: float) -> str:
-    """Return "low" or "high" for an unusual half-width over the roller's radius; empty if usual."""
+def _describe_half_width(subject: str, half_width: float, detail: str) -> str:
+    """Message on an unusual half-width over the roller's radius, with its rating in the subject; empty if usual."""
     usual = USUAL_RANGES["half_width"]
-    return "low" if half_width < usual.minimum else "high" if half_width > usual.maximum else ""
+    if usual.minimum <= half_width <= usual.maximum:
+        return ""
+    rating = "low" if half_width < usual.minimum else "high"
+    return f"{subject.format(rating)}: half-width {half_width:.1g} of the roller's radius, {detail}"
 
 
 def _describe_unusual_design(case: Case) -> str:
     """Message on the design load of a logarithmic crown."""
     for profile in _find_components(case.roller.profile, Logarithmic):
-        amplitude = profile.amplitude
         # A = R (p0 / E*)**2, so the half-width of the design load is 2 (A R)**0.5.
-        half_width = 2 * np.sqrt(amplitude / case.roller.radius)
-        if amplitude and (rating := _rate_half_width(half_width)):
-            return (
-                f"{type(profile).__name__}.amplitude = {amplitude:.3g} m belongs to a very {rating} design load, "
-                f"half-width {half_width:.1g} of the roller's radius: pressures and moduli are in Pa, "
-                "1500 MPa is 1.5e9 Pa"
-            )
+        half_width = 2 * np.sqrt(profile.amplitude / case.roller.radius)
+        subject = f"{type(profile).__name__}.amplitude = {profile.amplitude:.3g} m belongs to a very {{}} design load"
+        hint = "pressures and moduli are in Pa, 1500 MPa is 1.5e9 Pa"
+        if half_width and (message := _describe_half_width(subject, half_width, hint)):
+            return message
     return ""
 
 
@@ -232,12 +227,6 @@ def _describe_unusual_load(case: Case) -> str:
     """Message on load or pressure by the Hertz half-width, or on the approach."""
     if case.approach is not None:
         return _describe("approach", "approach", case.approach - case.first_touch, case.roller.radius)
-    half_width = case.hertz_half_width / case.roller.radius
-    rating = _rate_half_width(half_width)
-    if not rating:
-        return ""
     prescribed = f"load = {case.load:g} N" if case.max_pressure is None else f"max_pressure = {case.max_pressure:g} Pa"
-    pressure = format_quantity(case.hertz_max_pressure, "Pa")
-    return (
-        f"{prescribed} is very {rating}: Hertz pressure {pressure}, half-width {half_width:.1g} of the roller's radius"
-    )
+    pressure = f"Hertz pressure {format_quantity(case.hertz_max_pressure, 'Pa')}"
+    return _describe_half_width(f"{prescribed} is very {{}}", case.hertz_half_width / case.roller.radius, pressure)

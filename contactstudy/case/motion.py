@@ -72,13 +72,13 @@ class Sliding:
 
 
 RESULTANTS = {"x": "force_x", "y": "force_y", "spin": "moment_z"}  # conjugate to the rigid motions
+UNITS = {"x": "metres", "y": "metres", "spin": "rad/m", "force_x": "N", "force_y": "N", "moment_z": "N m"}
 
 
 class StickSlip:
     """Base of the motions with stick and slip: a prescribed rigid motion, force or moment per direction."""
 
     AMPLITUDES: ClassVar[Mapping[str, str]]  # parameter of each rigid motion
-    UNITS: ClassVar[Mapping[str, str]]
 
     def __post_init__(self) -> None:
         """Check the values, at most one of a motion and its force; the motion is 0 without both."""
@@ -88,12 +88,9 @@ class StickSlip:
             if amplitude is not None and resultant is not None:
                 allowed = "at most one of the two", "the other value follows"
                 raise InvalidInputError(f"{name}, {force}", (amplitude, resultant), *allowed)
-            if resultant is not None:
-                checks.store(self, **{force: checks.finite(force, resultant, "N m" if mode == "spin" else "N")})
-            else:
-                checks.store(
-                    self, **{name: checks.finite(name, 0.0 if amplitude is None else amplitude, self.UNITS[mode])}
-                )
+            prescribed = force if resultant is not None else name
+            value = 0.0 if amplitude is None and resultant is None else getattr(self, prescribed)
+            checks.store(self, **{prescribed: checks.finite(prescribed, value, UNITS.get(prescribed, ""))})
 
     @property
     def modes(self) -> tuple[str, ...]:
@@ -142,7 +139,6 @@ class Shift(StickSlip):
     force_y: float | None = None
 
     AMPLITUDES: ClassVar[Mapping[str, str]] = {"x": "x", "y": "y"}
-    UNITS: ClassVar[Mapping[str, str]] = {"x": "metres", "y": "metres"}
 
     @property
     def speeds(self) -> None:
@@ -195,7 +191,6 @@ class Rolling(StickSlip):
     model: str = "exact"
 
     AMPLITUDES: ClassVar[Mapping[str, str]] = {"x": "lateral_creepage", "y": "longitudinal_creepage", "spin": "spin"}
-    UNITS: ClassVar[Mapping[str, str]] = {"x": "", "y": "", "spin": "rad/m"}
 
     def __post_init__(self) -> None:
         checks.known_name("model", self.model, MODELS)
@@ -231,20 +226,27 @@ class AxialFriction:
 Friction = float | AxialFriction  # Friction of a case
 
 
-def check_friction(friction: object) -> Friction:
-    """Return a number or an `AxialFriction` from a number or a DataArray along x."""
-    if isinstance(friction, AxialFriction):
-        return friction
-    if not isinstance(friction, xr.DataArray) or not friction.dims:
-        return checks.finite("friction", friction)
+def check_friction(friction: object, motion: Motion, *, coupled: bool) -> Friction:
+    """Return a number or an `AxialFriction` that motion and coupling allow, from a number or a DataArray along x."""
+    checked = _axial_friction(friction) if isinstance(friction, xr.DataArray) and friction.dims else friction
+    if not isinstance(checked, AxialFriction):
+        checked = checks.finite("friction", checked)
+    min_friction = min(checked.values) if isinstance(checked, AxialFriction) else checked
+    if not isinstance(motion, Sliding) and min_friction < 0:
+        allowed = "not below zero with stick and slip: the slip reverses the traction"
+        raise InvalidInputError("friction", min_friction, allowed)
+    if isinstance(motion, Sliding) and coupled and isinstance(checked, AxialFriction):
+        raise InvalidInputError("coupled", True, "False in full sliding with friction that varies along the axis")
+    return checked
+
+
+def _axial_friction(friction: xr.DataArray) -> AxialFriction:
+    """Friction along the axis from a DataArray along x."""
     if friction.dims != ("x",) or "x" not in friction.coords:
         raise InvalidInputError("friction.dims", friction.dims, "('x',) with the coordinate x, metres, or a number")
     profile = in_si("friction", friction, "1")
-    x = checks.coordinates("friction.x", profile["x"].values)
-    values = checks.coordinates("friction", profile.values, "1")
-    if (np.diff(x) <= 0).any():
-        raise InvalidInputError("friction.x", x.tolist(), "increasing (metres)")
-    return AxialFriction(tuple(x.tolist()), tuple(values.tolist()))
+    x = checks.increasing("friction.x", profile["x"].values)
+    return AxialFriction(tuple(x.tolist()), tuple(checks.coordinates("friction", profile.values, "1").tolist()))
 
 
 def evaluate_friction(friction: Friction, x: FloatArray) -> float | FloatArray:
@@ -252,14 +254,3 @@ def evaluate_friction(friction: Friction, x: FloatArray) -> float | FloatArray:
     if isinstance(friction, AxialFriction):
         return np.asarray(np.interp(x, friction.x, friction.values))[:, None]
     return friction
-
-
-def check_coupled(friction: Friction, motion: Motion, *, coupled: bool) -> None:
-    """Raise for a friction that the motion or the coupling excludes."""
-    if not isinstance(motion, Sliding):
-        min_friction = min(friction.values) if isinstance(friction, AxialFriction) else friction
-        if min_friction < 0:
-            allowed = "not below zero with stick and slip: the slip reverses the traction"
-            raise InvalidInputError("friction", min_friction, allowed)
-    elif coupled and isinstance(friction, AxialFriction):
-        raise InvalidInputError("coupled", True, "False in full sliding with friction that varies along the axis")

@@ -24,7 +24,6 @@ from contactstudy.case.motion import (
     Motion,
     Shift,
     Sliding,
-    check_coupled,
     check_friction,
     evaluate_friction,
 )
@@ -201,9 +200,7 @@ def solve_contact(
     checks.instance("settings", settings, ContactSettings, "a ContactSettings")
     coupled, previous_step = bool(settings.coupled), settings.after
     checks.instance("motion", motion, Motion, MOTIONS_TEXT)
-    coefficient = check_friction(friction)
-    check_coupled(coefficient, motion, coupled=coupled)
-    cell_friction = evaluate_friction(coefficient, grid.x)
+    cell_friction = evaluate_friction(check_friction(friction, motion, coupled=coupled), grid.x)
     if surface is not None:
         checks.instance("surface", surface, LinearOperator, "a scipy.sparse.linalg.LinearOperator")
         cells = grid.cells_x * grid.cells_y

@@ -4,8 +4,7 @@ A profile has one method ``drop(x, length)``: the material removed, in metres an
 mid-length of a roller of the given `length`, fillets included. ``first + second`` is their sum.
 """
 
-from contactstudy.profiles.base import Profile, Shape, Sum, local_radius
-from contactstudy.profiles.combinations import EffectiveLength, Halves
+from contactstudy.profiles.base import EffectiveLength, Halves, Profile, Shape, Sum, local_radius
 from contactstudy.profiles.crowned import Ellipsoid, FullCrown, PartialCrown, Sphere
 from contactstudy.profiles.logarithmic import FujiwaraKawase, IsoCylindrical, IsoTapered, JohnsGohar, Lundberg
 from contactstudy.profiles.measured_profile import Measured

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
-from contactstudy import checks
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
-from contactstudy.profiles.base import Shape
+from contactstudy.profiles.base import FINITE, NOT_NEGATIVE, POSITIVE, Shape
 
 
 def _arc_drop(distance: FloatArray, radius: float) -> FloatArray:
@@ -39,12 +38,8 @@ class FullCrown(Shape):
     [0.0, 10.0]
     """
 
-    crown_radius: float
-    centre: float = 0.0
-
-    def __post_init__(self) -> None:
-        checks.store(self, crown_radius=checks.positive("crown_radius", self.crown_radius, "metres"))
-        checks.store(self, centre=checks.finite("centre", self.centre, "metres"))
+    crown_radius: float = field(metadata=POSITIVE)
+    centre: float = field(default=0.0, metadata=FINITE)
 
     def drop(self, x: FloatArray, length: float) -> FloatArray:
         """Material removed (m) at distances `x` (m) from mid-length."""
@@ -89,23 +84,19 @@ class PartialCrown(Shape):
     [0.0, 1.13, 8.13]
     """
 
-    straight_length: float
-    crown_radius: float
-    dub_length: float = 0.0
-    dub_radius: float | None = None
+    straight_length: float = field(metadata=NOT_NEGATIVE)
+    crown_radius: float = field(metadata=POSITIVE)
+    dub_length: float = field(default=0.0, metadata=NOT_NEGATIVE)
+    dub_radius: float | None = field(default=None, metadata=POSITIVE)
 
     def __post_init__(self) -> None:
-        checks.store(self, straight_length=checks.not_negative("straight_length", self.straight_length, "m"))
-        checks.store(self, crown_radius=checks.positive("crown_radius", self.crown_radius, "metres"))
-        checks.store(self, dub_length=checks.not_negative("dub_length", self.dub_length, "metres"))
+        super().__post_init__()
         if (self.dub_length > 0) != (self.dub_radius is not None):
             raise InvalidInputError(
                 "dub_length, dub_radius", (self.dub_length, self.dub_radius), "given both or neither"
             )
-        if self.dub_radius is not None:
-            checks.store(self, dub_radius=checks.positive("dub_radius", self.dub_radius, "metres"))
-            if self.dub_radius > self.crown_radius:
-                raise InvalidInputError("dub_radius", self.dub_radius, f"at most crown_radius, {self.crown_radius:g} m")
+        if self.dub_radius is not None and self.dub_radius > self.crown_radius:
+            raise InvalidInputError("dub_radius", self.dub_radius, f"at most crown_radius, {self.crown_radius:g} m")
 
     def drop(self, x: FloatArray, length: float) -> FloatArray:
         """Material removed (m) at distances `x` (m) from mid-length."""
@@ -159,10 +150,7 @@ class Ellipsoid(Shape):
     [0.0, 1e-06]
     """
 
-    crown_radius: float
-
-    def __post_init__(self) -> None:
-        checks.store(self, crown_radius=checks.positive("crown_radius", self.crown_radius, "metres"))
+    crown_radius: float = field(metadata=POSITIVE)
 
     def drop(self, x: FloatArray, length: float) -> FloatArray:
         """Material removed (m) at distances `x` (m) from mid-length."""
@@ -189,10 +177,7 @@ class Sphere(Shape):
     [0.0, 1e-06]
     """
 
-    radius: float
-
-    def __post_init__(self) -> None:
-        checks.store(self, radius=checks.positive("radius", self.radius, "metres"))
+    radius: float = field(metadata=POSITIVE)
 
     def drop(self, x: FloatArray, length: float) -> FloatArray:
         """Material removed (m) at distances `x` (m) from mid-length."""

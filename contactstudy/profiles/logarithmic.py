@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field, fields
 from typing import Any, Self
 
 import numpy as np
@@ -12,7 +12,7 @@ from contactstudy import checks
 from contactstudy.bodies import hertz
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
-from contactstudy.profiles.base import Shape
+from contactstudy.profiles.base import NOT_NEGATIVE, POSITIVE, Shape
 
 EDGE_FACTOR = 0.5 / math.sqrt(math.e)  # Johns and Gohar's 0.3033, ``1 / (2 sqrt(e))``
 
@@ -45,16 +45,14 @@ class Logarithmic(Shape):
         **parameters
             Further parameters of the profile.
         """
-        profile_class: Any = cls
-        profile: Self = profile_class(**cls._parameters_for_pressure(max_pressure, radius, modulus) | parameters)
-        return profile
-
-    @classmethod
-    def _parameters_for_pressure(cls, max_pressure: float, radius: float, modulus: float) -> dict[str, float]:
-        """Parameters that follow from the design load."""
         pressure = checks.positive("max_pressure", max_pressure, "Pa")
-        modulus = checks.positive("modulus", modulus, "Pa")
-        return {"amplitude": checks.positive("radius", radius, "metres") * (pressure / modulus) ** 2}
+        radius, modulus = checks.positive("radius", radius, "metres"), checks.positive("modulus", modulus, "Pa")
+        half_width = hertz.line_half_width(pressure, radius, modulus)
+        design = {"amplitude": radius * (pressure / modulus) ** 2, "half_width": half_width}
+        profile_class: Any = cls
+        names = [entry.name for entry in fields(profile_class) if entry.name in design]
+        profile: Self = profile_class(**{name: design[name] for name in names} | parameters)
+        return profile
 
     @classmethod
     def for_load(cls, load: float, *, length: float, radius: float, modulus: float, **parameters: float) -> Self:
@@ -110,12 +108,8 @@ class Lundberg(Logarithmic):
     0.2112
     """
 
-    amplitude: float
-    delta: float = 1.0
-
-    def __post_init__(self) -> None:
-        checks.store(self, amplitude=checks.not_negative("amplitude", self.amplitude, "metres"))
-        checks.store(self, delta=checks.not_negative("delta", self.delta))
+    amplitude: float = field(metadata=NOT_NEGATIVE)
+    delta: float = field(default=1.0, metadata=NOT_NEGATIVE)
 
     def drop(self, x: FloatArray, length: float) -> FloatArray:
         """Material removed (m) at distances `x` (m) from mid-length; infinite at the very ends."""
@@ -153,18 +147,8 @@ class JohnsGohar(Logarithmic):
     1.169
     """
 
-    amplitude: float
-    half_width: float
-
-    def __post_init__(self) -> None:
-        checks.store(self, amplitude=checks.not_negative("amplitude", self.amplitude, "metres"))
-        checks.store(self, half_width=checks.not_negative("half_width", self.half_width, "metres"))
-
-    @classmethod
-    def _parameters_for_pressure(cls, max_pressure: float, radius: float, modulus: float) -> dict[str, float]:
-        return super()._parameters_for_pressure(max_pressure, radius, modulus) | {
-            "half_width": hertz.line_half_width(max_pressure, radius, modulus)
-        }
+    amplitude: float = field(metadata=NOT_NEGATIVE)
+    half_width: float = field(metadata=NOT_NEGATIVE)
 
     def edge_drop(self, length: float) -> float:
         """Drop (m) at the ends of a roller of the given `length` (m)."""
@@ -214,15 +198,13 @@ class FujiwaraKawase(Logarithmic):
     [0.0, 0.0, 5e-06]
     """
 
-    amplitude: float
-    edge_drop: float
-    k1: float = 1.0
-    k2: float = 1.0
+    amplitude: float = field(metadata=POSITIVE)
+    edge_drop: float = field(metadata=NOT_NEGATIVE)
+    k1: float = field(default=1.0, metadata=POSITIVE)
+    k2: float = field(default=1.0, metadata=POSITIVE)
 
     def __post_init__(self) -> None:
-        checks.store(self, amplitude=checks.positive("amplitude", self.amplitude, "metres"))
-        checks.store(self, edge_drop=checks.not_negative("edge_drop", self.edge_drop, "metres"))
-        checks.store(self, k1=checks.positive("k1", self.k1), k2=checks.positive("k2", self.k2))
+        super().__post_init__()
         if self.k2 > 1:
             raise InvalidInputError("k2", self.k2, "at most 1, the whole half of the roller")
 
@@ -265,10 +247,7 @@ class IsoCylindrical(Shape):
     [0.0, 3.576]
     """
 
-    diameter: float
-
-    def __post_init__(self) -> None:
-        checks.store(self, diameter=checks.positive("diameter", self.diameter, "metres"))
+    diameter: float = field(metadata=POSITIVE)
 
     def drop(self, x: FloatArray, length: float) -> FloatArray:
         """Material removed (m) at distances `x` (m) from mid-length; infinite at the very ends."""
@@ -305,10 +284,7 @@ class IsoTapered(Shape):
     [0.0, 4.597]
     """
 
-    diameter: float
-
-    def __post_init__(self) -> None:
-        checks.store(self, diameter=checks.positive("diameter", self.diameter, "metres"))
+    diameter: float = field(metadata=POSITIVE)
 
     def drop(self, x: FloatArray, length: float) -> FloatArray:
         """Material removed (m) at distances `x` (m) from mid-length; infinite at the very ends."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 from typing import Any, Literal
@@ -16,13 +16,11 @@ from contactstudy.arrays.engineering import format_quantity
 from contactstudy.arrays.variables import in_si
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
-from contactstudy.profiles.base import MIN_JUMP, Shape, SlopeJumps
-from contactstudy.profiles.column_files import check_positions, check_values, read_columns, read_netcdf, unit_in_metres
-from contactstudy.profiles.instruments import Heights, is_instrument_file, read_heights, rotate_heights
+from contactstudy.profiles.base import MIN_JUMP, POSITIVE, Shape, SlopeJumps
+from contactstudy.profiles.measurement_files import check_positions, check_values, read_measurement, rotate_heights
 
 ALPHA = np.sqrt(np.log(2) / np.pi)  # Constant of transmission one half at the cut-off (ISO 16610-21)
 WEIGHT_REACH = 2.2  # Half the width of the weight over ``ALPHA`` times the cut-off: less than 3e-7 of the peak beyond
-CHUNK_POINTS = 256  # Number of points in one block
 
 
 def filter_gaussian(x: FloatArray, values: FloatArray, cutoff: float) -> FloatArray:
@@ -57,14 +55,11 @@ def _sum_uneven_points(x: FloatArray, values: FloatArray) -> tuple[FloatArray, .
     point_weights = np.gradient(x)  # axial length per point
     point_weights[[0, -1]] *= 0.5
     moments = np.empty((5, x.size))
-    for begin in range(0, x.size, CHUNK_POINTS):
-        centres = x[begin : begin + CHUNK_POINTS]
-        start, stop = np.searchsorted(x, (centres[0] - WEIGHT_REACH, centres[-1] + WEIGHT_REACH))
-        nearby = slice(start, stop)
-        s = x[nearby] - centres[:, None]
-        weight = np.where(np.abs(s) <= WEIGHT_REACH, point_weights[nearby] * np.exp(-np.pi * s**2), 0.0)
-        sums = [np.sum(weight * s**power, axis=1) for power in range(3)]
-        moments[:, begin : begin + CHUNK_POINTS] = [*sums, weight @ values[nearby], (weight * s) @ values[nearby]]
+    for index, centre in enumerate(x):
+        nearby = slice(*np.searchsorted(x, (centre - WEIGHT_REACH, centre + WEIGHT_REACH)))
+        s = x[nearby] - centre
+        weight = point_weights[nearby] * np.exp(-np.pi * s**2)
+        moments[:, index] = [weight @ term for term in (np.ones(s.size), s, s**2, values[nearby], s * values[nearby])]
     return tuple(moments)
 
 
@@ -152,8 +147,8 @@ class Measured(Shape):
 
     positions: Sequence[float]
     drops: Sequence[float]
-    largest_spike: float | None = None
-    cutoff: float | None = None
+    largest_spike: float | None = field(default=None, metadata=POSITIVE)
+    cutoff: float | None = field(default=None, metadata=POSITIVE)
 
     def __post_init__(self) -> None:
         x = checks.coordinates("positions", in_si("positions", self.positions, "m"), "metres")
@@ -171,17 +166,14 @@ class Measured(Shape):
             index = int(drops.argmin())
             value = f"{drops[index]:g} m at x = {x[index]:g} m"
             raise InvalidInputError("drops", value, "not below zero", "remove_offset=True when reading")
-        if self.largest_spike is not None:
-            checks.store(self, largest_spike=checks.positive("largest_spike", self.largest_spike, "metres"))
+        super().__post_init__()
         if self.cutoff is not None:
-            length = checks.positive("cutoff", self.cutoff, "metres")
             min_cutoff, max_cutoff = MIN_STEPS * float(np.diff(x).max()), float(x[-1] - x[0])
-            if not min_cutoff <= length <= max_cutoff:
+            if not min_cutoff <= self.cutoff <= max_cutoff:
                 allowed = (
                     f"from {MIN_STEPS} steps between points, {min_cutoff:g} m, to the measured length, {max_cutoff:g} m"
                 )
-                raise InvalidInputError("cutoff", length, allowed, "units are SI")
-            checks.store(self, cutoff=length)
+                raise InvalidInputError("cutoff", self.cutoff, allowed, "units are SI")
         check_outliers(x, drops, self.largest_spike)
         checks.store(self, positions=tuple(x.tolist()), drops=tuple(drops.tolist()))
 
@@ -231,7 +223,12 @@ class Measured(Shape):
         """
         for flag, value in (("remove_tilt", remove_tilt), ("remove_offset", remove_offset)):
             checks.instance(flag, value, (bool, np.bool_), "True or False")
-        x, drop, name = _read_file(Path(path), turn)
+        measured, name = read_measurement(Path(path), ("x",), VALUE_NAMES)
+        x, y, drop = rotate_heights(measured, turn)
+        if y is not None:
+            drop = extract_ridge(x, y, drop)
+        if name == "height":
+            drop = -drop
         if remove_tilt or remove_offset:
             check_positions("x", x, MIN_POINTS)
             check_values(name, drop, ("x", x))
@@ -267,20 +264,16 @@ class Measured(Shape):
         x = np.asarray(self.positions)
         return np.asarray(x - 0.5 * (x[0] + x[-1]))
 
-    def nodes(self, length: float) -> FloatArray:
-        """Distances from mid-length (m) of the points."""
-        return self._from_middle
-
-    def unresolved_corners(self, length: float) -> SlopeJumps:
-        """Return corners: points at which the slope changes within one or two steps.
+    def nodes(self, length: float) -> SlopeJumps:
+        """Points, with the jumps at unresolved corners, where the slope changes within one or two steps.
 
         A filtered profile has no corners: its slope changes over the cut-off.
         """
         x, drops = self._from_middle, self._filtered
         slope_changes = np.zeros(x.size)
-        slope_changes[1:-1] = np.diff(np.diff(drops) / np.diff(x))
         if self.cutoff is not None:
-            return super().unresolved_corners(length)
+            return SlopeJumps(x, slope_changes)
+        slope_changes[1:-1] = np.diff(np.diff(drops) / np.diff(x))
         magnitude = np.abs(slope_changes)
         padded = np.pad(magnitude, CORNER_STEPS, mode="edge")
         neighbours = np.maximum(padded[: x.size], padded[2 * CORNER_STEPS :])
@@ -290,7 +283,7 @@ class Measured(Shape):
             (magnitude == local_maxima) & (magnitude > CORNER_RATIO * typical_slope_changes) & (magnitude > MIN_JUMP)
         )
         sums = np.convolve(slope_changes, np.ones(3), mode="same")
-        return SlopeJumps(x[is_corner], sums[is_corner])
+        return SlopeJumps(x, np.where(is_corner, sums, 0.0))
 
     def second_interpolation(self) -> Measured:
         """Profile through the same points with harmonic-mean slopes."""
@@ -341,29 +334,6 @@ def _minmod(first: FloatArray, second: FloatArray) -> FloatArray:
     """Return the value closer to 0 where both signs agree; 0 elsewhere."""
     smaller = np.minimum(np.abs(first), np.abs(second))
     return np.asarray(np.where(first * second > 0, np.copysign(smaller, first), 0.0))
-
-
-def _read_file(path: Path, turn: int) -> tuple[FloatArray, FloatArray, str]:
-    """Positions and drops of a file, metres, and the name of the values."""
-    if is_instrument_file(path):
-        x, y, heights = rotate_heights(read_heights(path), turn)
-        return x, -(heights if y is None else extract_ridge(x, y, heights)), "height"
-    columns = _read_netcdf(path) if path.suffix.lower() == ".nc" else read_columns(path, ("x",), VALUE_NAMES)
-    name = next(name for name in columns if name != "x")
-    x, _, values = rotate_heights(Heights(columns["x"], None, columns[name]), turn)
-    return x, values if name == "drop" else -values, name
-
-
-def _read_netcdf(path: Path) -> dict[str, FloatArray]:
-    """Positions and values of a netCDF file, in metres."""
-    dataset = read_netcdf(path)
-    value_names = [name for name in VALUE_NAMES if name in dataset.data_vars]
-    if len(value_names) != 1 or "x" not in dataset.variables or dataset[value_names[0]].dims != dataset["x"].dims:
-        raise InvalidInputError("path", str(path), f"a file with x and one of {', '.join(VALUE_NAMES)} along it")
-    return {
-        name: unit_in_metres(name, dataset[name].attrs.get("units")) * dataset[name].values.astype(np.float64)
-        for name in ("x", value_names[0])
-    }
 
 
 def check_outliers(x: FloatArray, drops: FloatArray, max_spike: float | None = None) -> None:

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
-from contactstudy import checks
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
-from contactstudy.profiles.base import Shape
+from contactstudy.profiles.base import FINITE, NOT_NEGATIVE, POSITIVE, Shape, SlopeJumps
 
 MAX_HALF_ANGLE = np.pi / 4  # Largest half cone angle, radians
 
@@ -36,10 +35,7 @@ class Cylinder(Shape):
     [0.0, 0.0, 0.001]
     """
 
-    fillet_radius: float = 0.0
-
-    def __post_init__(self) -> None:
-        checks.store(self, fillet_radius=checks.not_negative("fillet_radius", self.fillet_radius, "metres"))
+    fillet_radius: float = field(default=0.0, metadata=NOT_NEGATIVE)
 
     def drop(self, x: FloatArray, length: float) -> FloatArray:
         """Material removed (m) at distances `x` (m) from mid-length."""
@@ -91,16 +87,14 @@ class Tapered(Shape):
     [0.0, 0.0, 0.0]
     """
 
-    half_angle: float
-    fillet_radius: float = 0.0
+    half_angle: float = field(metadata=FINITE)
+    fillet_radius: float = field(default=0.0, metadata=NOT_NEGATIVE)
 
     def __post_init__(self) -> None:
-        angle = checks.finite("half_angle", self.half_angle, "radians")
-        if abs(angle) > MAX_HALF_ANGLE:
+        super().__post_init__()
+        if abs(self.half_angle) > MAX_HALF_ANGLE:
             hint = "an angle in degrees needs numpy.radians"
-            raise InvalidInputError("half_angle", angle, "between -pi/4 and pi/4 (radians)", hint)
-        checks.store(self, half_angle=angle)
-        checks.store(self, fillet_radius=checks.not_negative("fillet_radius", self.fillet_radius, "metres"))
+            raise InvalidInputError("half_angle", self.half_angle, "between -pi/4 and pi/4 (radians)", hint)
 
     def drop(self, x: FloatArray, length: float) -> FloatArray:
         """Material removed (m) at distances `x` (m) from mid-length: the fillets."""
@@ -154,21 +148,18 @@ class Chamfer(Shape):
     [0.0, 0.0, 0.5]
     """
 
-    depth: float | None = None
-    width: float | None = None
-    angle: float | None = None
-    blend_radius: float = 0.0
+    depth: float | None = field(default=None, metadata=POSITIVE)
+    width: float | None = field(default=None, metadata=POSITIVE)
+    angle: float | None = field(default=None, metadata=POSITIVE)
+    blend_radius: float = field(default=0.0, metadata=NOT_NEGATIVE)
 
     def __post_init__(self) -> None:
-        sizes = {name: getattr(self, name) for name in ("depth", "width", "angle")}
-        if sum(size is not None for size in sizes.values()) != 2:
-            raise InvalidInputError("depth, width, angle", tuple(sizes.values()), "exactly two of the three")
-        for name, unit in (("depth", "metres"), ("width", "metres"), ("angle", "radians")):
-            if sizes[name] is not None:
-                checks.store(self, **{name: checks.positive(name, sizes[name], unit)})
+        sizes = self.depth, self.width, self.angle
+        if sum(size is not None for size in sizes) != 2:
+            raise InvalidInputError("depth, width, angle", sizes, "exactly two of the three")
+        super().__post_init__()
         if self.angle is not None and self.angle >= np.pi / 2:
             raise InvalidInputError("angle", self.angle, "below pi/2 (radians)", "45 degrees are numpy.radians(45)")
-        checks.store(self, blend_radius=checks.not_negative("blend_radius", self.blend_radius, "metres"))
 
     @property
     def slope(self) -> float:
@@ -205,8 +196,9 @@ class Chamfer(Shape):
         arc_drop = chord**2 / (self.blend_radius + np.sqrt(self.blend_radius**2 - chord**2))
         return np.asarray(np.where(distance < outer_blend, arc_drop, chamfer_drop))
 
-    def nodes(self, length: float) -> FloatArray:
-        """Distances from mid-length (m) of both corners, and of the ends of their arcs."""
+    def nodes(self, length: float) -> SlopeJumps:
+        """Both corners and the ends of their arcs."""
         corner = 0.5 * length - self.axial_width
         outer_blend = self.blend_radius * np.sin(np.arctan(self.slope)) - self.inner_blend
-        return np.unique(np.outer([-1.0, 1.0], [corner - self.inner_blend, corner, corner + outer_blend]))
+        positions = np.outer([-1.0, 1.0], [corner - self.inner_blend, corner, corner + outer_blend]).ravel()
+        return SlopeJumps(positions, np.zeros(positions.size))

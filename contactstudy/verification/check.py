@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import NamedTuple, SupportsFloat
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -49,18 +49,26 @@ class Reference(NamedTuple):
     def compare(
         self,
         quantity: str,
-        computed: SupportsFloat,
-        expected: SupportsFloat,
+        computed: ArrayLike,
+        expected: ArrayLike,
         tolerance: float,
         *,
         relative: bool = False,
+        median: bool = False,
         curve: Curve | None = None,
     ) -> Check:
-        """Compare two numbers."""
-        value, reference = float(computed), float(expected)
+        """Compare two numbers, or two fields where they differ most or by the median."""
+        is_field = np.ndim(computed) > 0
+        values, references = (np.ravel(a).astype(float) for a in np.broadcast_arrays(computed, expected))
+        differences = np.abs(values - references)
+        # argmax also finds a NaN, which exceeds every tolerance.
+        is_median = median and not np.isnan(differences).any()
+        index = np.argsort(differences)[differences.size // 2] if is_median else differences.argmax()
+        value, reference = float(values[index]), float(references[index])
+        kind = f", {'median' if median else 'largest'} difference" if is_field else ", relative" if relative else ""
         return Check(
             case=self.case,
-            quantity=f"{quantity}, relative" if relative else quantity,
+            quantity=f"{quantity}{kind}",
             source=self.source,
             computed=value,
             expected=reference,
@@ -68,22 +76,3 @@ class Reference(NamedTuple):
             tolerance=tolerance,
             curve=curve,
         )
-
-    def compare_fields(
-        self,
-        quantity: str,
-        computed: ArrayLike,
-        expected: ArrayLike,
-        tolerance: float,
-        *,
-        median: bool = False,
-        curve: Curve | None = None,
-    ) -> Check:
-        """Compare two arrays where they differ most, or by the median."""
-        values, references = (np.ravel(a).astype(float) for a in np.broadcast_arrays(computed, expected))
-        differences = np.abs(values - references)
-        # argmax also finds a NaN, which exceeds every tolerance.
-        is_median = median and not np.isnan(differences).any()
-        chosen_index = np.argsort(differences)[differences.size // 2] if is_median else differences.argmax()
-        description = f"{quantity}, {'median' if median else 'largest'} difference"
-        return self.compare(description, values[chosen_index], references[chosen_index], tolerance, curve=curve)

@@ -81,9 +81,12 @@ def test_typical_cases_have_no_warning(changes) -> None:
         ({"friction": 5}, "friction = 5, usual are 0 to 1.5; 5 % is 0.05"),
         ({"friction": xr.DataArray([0.1, -8.0], dims="x", coords={"x": [0.0, 1e-2]})}, "friction = 8"),
         ({"tilt": 0.05}, "tilt = 0.05 rad, usual are 0 to 0.01 rad; 0.05 deg is 0.000872665 rad"),
-        ({"load": None, "max_pressure": 1.5e5}, "max_pressure = 150000 Pa is very low: Hertz pressure 0.15 MPa"),
+        (
+            {"load": None, "max_pressure": 1.5e5},
+            "max_pressure = 150000 Pa is very low: half-width 1e-06 of the roller's radius, Hertz pressure 0.15 MPa",
+        ),
         ({"load": None, "approach": 5e-3}, "approach = 0.005 m, usual are up to 0.0006 m on .*; 0.005 mm is 5e-06 m"),
-        ({"load": 6e5}, "load = 600000 N is very high: Hertz pressure"),
+        ({"load": 6e5}, "load = 600000 N is very high: half-width"),
     ],
 )
 def test_unusual_values_of_a_case(changes, message: str) -> None:

@@ -9,9 +9,8 @@ import numpy as np
 import pytest
 
 from contactstudy.errors import InvalidInputError
-from contactstudy.profiles import instruments
-from contactstudy.profiles.column_files import read_columns, read_netcdf
-from contactstudy.profiles.instruments import read_heights
+from contactstudy.profiles import measurement_files
+from contactstudy.profiles.measurement_files import read_columns, read_heights, read_netcdf
 
 POINTS = [(0.0, 0.0), (2.5, 1.25), (5.0, 3.125)]
 COLUMNS = ("x",), ("drop",)
@@ -95,7 +94,7 @@ def test_column_name_equal_to_a_file_signature(tmp_path: Path, column: str) -> N
 def test_foreign_file_does_not_ask_for_the_extra(tmp_path: Path, monkeypatch, name: str, kind: str) -> None:
     content, message = FOREIGN_FILES[kind]
     (tmp_path / name).write_bytes(content)
-    monkeypatch.setattr(instruments, "find_spec", lambda name: None)
+    monkeypatch.setattr(measurement_files, "find_spec", lambda name: None)
     with pytest.raises(InvalidInputError, match=message):
         read_heights(tmp_path / name)
 
@@ -153,5 +152,5 @@ def test_pipes_and_folders_are_rejected(tmp_path):
 def test_non_netcdf_file_raises_package_error(tmp_path):
     (tmp_path / "a.nc").write_text("text")
     with pytest.raises(InvalidInputError, match="a netCDF file that can be read") as caught:
-        read_netcdf(tmp_path / "a.nc")
+        read_netcdf(tmp_path / "a.nc", *COLUMNS)
     assert "xarray" not in str(caught.value)

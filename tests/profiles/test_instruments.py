@@ -8,8 +8,8 @@ import pytest
 import x3pio
 
 from contactstudy import ContactStudyError, InvalidInputError
-from contactstudy.profiles import instruments
-from contactstudy.profiles.instruments import Heights, read_heights, rotate_heights
+from contactstudy.profiles import measurement_files
+from contactstudy.profiles.measurement_files import Heights, read_heights, rotate_heights
 
 X, Y = 2e-6 * np.arange(5), 3e-6 * np.arange(4)
 MAP = 1e-6 * np.random.default_rng(0).normal(size=(5, 4))
@@ -81,20 +81,20 @@ def test_error_names_the_bad_file(tmp_path: Path) -> None:
 
 
 def test_large_xml_is_rejected_before_unpacking(tmp_path: Path, monkeypatch) -> None:
-    monkeypatch.setattr(instruments, "MAX_XML", 100_000)
+    monkeypatch.setattr(measurement_files, "MAX_XML", 100_000)
     path = tmp_path / "bomb.x3p"
     x3pio.write(path, MAP.T, x_scale=2e-6, y_scale=3e-6)
     with zipfile.ZipFile(path, "a", zipfile.ZIP_DEFLATED) as archive:
-        archive.writestr("other.xml", b" " * (instruments.MAX_XML + 1))
+        archive.writestr("other.xml", b" " * (measurement_files.MAX_XML + 1))
     monkeypatch.setattr(x3pio, "read", lambda path: pytest.fail("the file is unpacked"))
-    with pytest.raises(InvalidInputError, match=rf"other.xml.*{instruments.MAX_XML + 1}"):
+    with pytest.raises(InvalidInputError, match=rf"other.xml.*{measurement_files.MAX_XML + 1}"):
         read_heights(path)
 
 
 def test_x3p_without_the_extra_names_the_extra(tmp_path: Path, monkeypatch) -> None:
     path = tmp_path / "flank.x3p"
     x3pio.write(path, MAP.T, x_scale=2e-6, y_scale=3e-6)
-    monkeypatch.setattr(instruments, "find_spec", lambda name: None)
+    monkeypatch.setattr(measurement_files, "find_spec", lambda name: None)
     with pytest.raises(ContactStudyError, match=r'pip install "contactstudy\[measured\]"'):
         read_heights(path)
 
@@ -110,6 +110,6 @@ def test_clouds_and_layers_are_rejected(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(("name", "package"), [("a.x3p", "x3pio"), ("a.gwy", "SurfaceTopography")])
 def test_missing_package_names_the_installation(tmp_path: Path, monkeypatch, name: str, package: str) -> None:
-    monkeypatch.setattr(instruments, "find_spec", lambda name: None)
+    monkeypatch.setattr(measurement_files, "find_spec", lambda name: None)
     with pytest.raises(ContactStudyError, match=rf'{package}.*pip install "contactstudy\[measured\]"'):
         read_heights(tmp_path / name)

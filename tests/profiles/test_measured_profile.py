@@ -206,7 +206,7 @@ def test_error_names_the_bad_csv_file(tmp_path: Path, text: str, message: str) -
 def test_error_names_the_bad_netcdf_file(tmp_path: Path) -> None:
     with pytest.raises(InvalidInputError, match="unit of x = 'deg'"):
         Measured.from_file(netcdf_file(tmp_path, units=("deg", "um")))
-    with pytest.raises(InvalidInputError, match="a file with x and one of drop, height"):
+    with pytest.raises(InvalidInputError, match="a file with drop or height along x"):
         Measured.from_file(netcdf_file(tmp_path, name="depth"))
     broken = tmp_path / "broken.nc"
     broken.write_text("no netCDF")

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from contactstudy import InvalidInputError
-from contactstudy.profiles.instruments import read_heights
+from contactstudy.profiles.measurement_files import read_heights
 from tests.profiles.test_column_files import FOREIGN_FILES
 
 SurfaceTopography = pytest.importorskip("SurfaceTopography", reason="the extra `measured` is not installed")

@@ -25,7 +25,7 @@ def test_tolerance(computed: float, expected: float, tolerance: float) -> None:
 def test_worst_point_of_fields(expected: list[float], index: int) -> None:
     computed = np.array(expected)
     computed[index % computed.size] += 1.0
-    check = Reference("case", "source").compare_fields("field", computed, expected, 0.5)
+    check = Reference("case", "source").compare("field", computed, expected, 0.5)
     assert check.difference == pytest.approx(1.0, abs=1e-6)
     assert not check.passed
 
@@ -33,8 +33,8 @@ def test_worst_point_of_fields(expected: list[float], index: int) -> None:
 @pytest.mark.parametrize("wrong", [np.nan, np.inf, -np.inf])
 def test_nan_fails_check(wrong: float) -> None:
     assert not Reference("case", "source").compare("quantity", wrong, 1.0, 1e9).passed
-    assert not Reference("case", "source").compare_fields("field", [1.0, wrong], [1.0, 1.0], 1e9).passed
-    assert not Reference("case", "source").compare_fields("field", [1.0, 1.0, np.nan], 1.0, 1e9, median=True).passed
+    assert not Reference("case", "source").compare("field", [1.0, wrong], [1.0, 1.0], 1e9).passed
+    assert not Reference("case", "source").compare("field", [1.0, 1.0, np.nan], 1.0, 1e9, median=True).passed
 
 
 def test_convergence_by_error_and_order() -> None:

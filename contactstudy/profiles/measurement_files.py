@@ -1,26 +1,30 @@
-"""Columns of measured values with units, from text files in any common encoding and number format, and from netCDF."""
+"""Files of measurements: columns as text in any common encoding and number format, netCDF, and instruments' formats.
+
+Two libraries of the extra ``measured`` read the files of instruments: x3pio reads x3p (ISO 25178-72), profiles
+included; SurfaceTopography reads the formats of profilometers.
+"""
 
 from __future__ import annotations
 
 import codecs
 import csv
+import logging
 import re
 import stat
-import zipfile
 from array import array
 from collections.abc import Iterator
+from importlib.util import find_spec
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import Any, NamedTuple
+from zipfile import BadZipFile, ZipFile
 
 import numpy as np
+import pandas as pd
+import xarray as xr
 
 from contactstudy import checks
 from contactstudy.checks import UNIT_SIZES, FloatArray
-from contactstudy.errors import InvalidInputError
-
-if TYPE_CHECKING:
-    import xarray as xr
-
+from contactstudy.errors import ContactStudyError, InvalidInputError
 
 # Size of a file with measurements: a height map of ten million points.
 MAX_BYTES = 500_000_000
@@ -29,19 +33,17 @@ BINARY_BYTES = bytes(set(range(32)) - set(b"\t\n\v\f\r\x1a\x1b"))  # Bytes outsi
 MICRO = "\N{MICRO SIGN}"
 
 FOREIGN_MICRO = "\udcb5"  # Python's surrogate of the byte 0xB5 outside UTF-8
-PICTURE_ADVICE = "a picture without heights: export the heights from the instrument's software"
 WORKBOOK_ADVICE = "a workbook of a spreadsheet program: save the sheet as 'CSV UTF-8'"
 
-# First bytes of foreign files, with advice
-SIGNATURES = (
-    (b"\x89PNG", PICTURE_ADVICE),
-    (b"\xff\xd8\xff", PICTURE_ADVICE),
-    (b"GIF8", PICTURE_ADVICE),
-    (b"BM", PICTURE_ADVICE),
-    (b"%PDF", "a PDF document: export the heights from the instrument's software"),
-    (b"CDF", "netCDF: let its name end with .nc"),
-    (b"\x89HDF", "netCDF or HDF5: let the name of a netCDF file end with .nc"),
-)
+SIGNATURES = {  # first bytes of foreign files, with advice
+    **dict.fromkeys(
+        (b"\x89PNG", b"\xff\xd8\xff", b"GIF8", b"BM"),
+        "a picture without heights: export the heights from the instrument's software",
+    ),
+    b"%PDF": "a PDF document: export the heights from the instrument's software",
+    b"CDF": "netCDF: let its name end with .nc",
+    b"\x89HDF": "netCDF or HDF5: let the name of a netCDF file end with .nc",
+}
 # Readable files, as the end of the sentence "must be ..."
 READABLE_FILES = (
     "columns as text (.csv, .txt, .tsv, .dat), netCDF (.nc), or with the extra `measured` x3p (.x3p) "
@@ -78,15 +80,15 @@ def read_lines(path: Path) -> Iterator[tuple[int, str]]:
 def describe_foreign_file(path: Path) -> str:
     """Return the kind of a file without measurements, and advice; an empty text for an unknown kind."""
     head = _read_head(path)
-    for signature, description in SIGNATURES:
+    for signature, description in SIGNATURES.items():
         # Short signatures also occur in text: the code ignores them in text files.
         if head.startswith(signature) and (len(signature) > 3 or _is_binary(head)):
             return description
     if head.startswith(b"PK"):
         try:
-            with zipfile.ZipFile(path) as archive:
+            with ZipFile(path) as archive:
                 names = archive.namelist()
-        except (OSError, zipfile.BadZipFile, ValueError):
+        except (OSError, BadZipFile, ValueError):
             return ""
         if any(name.startswith("xl/") for name in names) or "content.xml" in names:
             return WORKBOOK_ADVICE
@@ -139,37 +141,38 @@ class NumberParser:
 
     def __init__(self, separator: str) -> None:
         self._comma_allowed = separator != ","
-        self._point_number: tuple[str, str] | None = None
-        self._comma_number: tuple[str, str] | None = None
+        self._places: dict[str, tuple[str, str]] = {}  # the first number with a point, the last number with a comma
         self._is_decimal_comma = False
 
     def parse(self, line: int, name: str, field: str) -> float:
         """Return a field of a column as a number; NaN for an empty field."""
-        # Python's float also accepts underscores and the digits of all scripts.
-        if NUMERAL.fullmatch(field):
-            if self._point_number is None and "." in field:
-                self._point_number = f"line {line}, {name}", field
-            return float(field)
         if not field.strip():
             return np.nan
-        if self._comma_allowed and "." not in field and NUMERAL.fullmatch(with_point := field.replace(",", ".", 1)):
-            self._comma_number = f"line {line}, {name}", field
+        place = f"line {line}, {name}"
+        with_point = field.replace(",", ".", 1) if self._comma_allowed and "." not in field else field
+        # Python's float also accepts underscores and the digits of all scripts.
+        if not NUMERAL.fullmatch(with_point):
+            allowed = "a number with a decimal point" + (" or comma" if self._comma_allowed else "")
+            raise InvalidInputError(place, truncate(field), allowed)
+        if "," in field:
+            self._places[","] = place, field
             self._is_decimal_comma = self._is_decimal_comma or not THOUSANDS_PATTERN.fullmatch(field)
-            return float(with_point)
-        allowed = "a number with a decimal point" + (" or comma" if self._comma_allowed else "")
-        raise InvalidInputError(f"line {line}, {name}", truncate(field), allowed)
+        elif "." in field:
+            self._places.setdefault(".", (place, field))
+        return float(with_point)
 
     def check(self) -> None:
         """Raise if numbers with commas are ambiguous."""
-        if self._comma_number is None:
+        if "," not in self._places:
             return
-        position, field = self._comma_number
-        if self._point_number is not None:
-            reason = f"{self._point_number[0]} is {truncate(self._point_number[1])!r}"
-            raise InvalidInputError(position, truncate(field), "a number with the decimal mark of all others", reason)
+        place, field = self._places[","]
+        if "." in self._places:
+            place_of_point, with_point = self._places["."]
+            reason = f"{place_of_point} is {truncate(with_point)!r}"
+            raise InvalidInputError(place, truncate(field), "a number with the decimal mark of all others", reason)
         if not self._is_decimal_comma:
             hint = "a decimal comma, or a comma between thousands: write decimal points"
-            raise InvalidInputError(position, truncate(field), "a number of one meaning", hint)
+            raise InvalidInputError(place, truncate(field), "a number of one meaning", hint)
 
 
 MAX_STEP_RATIO = 3.0  # Width of a gap over the neighbouring steps
@@ -178,17 +181,25 @@ NAME_PATTERN = re.compile(r"[A-Za-z]\w{0,15}", re.ASCII)
 MAX_NAMES = 8
 
 
-def read_netcdf(path: Path) -> xr.Dataset:
-    """Read a netCDF file; raise an error with its path."""
-    import xarray as xr
-
+def read_netcdf(path: Path, positions: tuple[str, ...], values: tuple[str, ...]) -> dict[str, FloatArray]:
+    """Arrays of a netCDF file by name, metres: `positions`, and exactly one of `values` along these axes."""
     check_regular_file(path, "netCDF")
     try:
-        with xr.open_dataset(path, engine="netcdf4") as dataset:
-            return dataset.load()
+        with xr.open_dataset(path, engine="netcdf4") as file:
+            dataset = file.load()
     except (OSError, ValueError) as error:
         reason = (error.strerror or "it is not netCDF") if isinstance(error, OSError) else str(error)
         raise InvalidInputError("path", str(path), "a netCDF file that can be read", reason.lower()) from error
+    arrays = {name: dataset[name] for name in (*positions, *values) if name in dataset.variables}
+    axes = [axis for name in positions if name in arrays for axis in arrays[name].dims]
+    if [*arrays][:-1] != [*positions] or len(axes) != len(positions) or {*axes} != {*arrays[[*arrays][-1]].dims}:
+        allowed = f"a file with {' or '.join(values)} along {' and '.join(positions)}, and with these positions"
+        raise InvalidInputError("path", str(path), allowed)
+    return {
+        name: unit_in_metres(name, array.attrs.get("units"))
+        * array.transpose(*(axis for axis in axes if axis in array.dims)).values.astype(np.float64)
+        for name, array in arrays.items()
+    }
 
 
 def unit_in_metres(name: str, unit: object) -> float:
@@ -290,3 +301,148 @@ def check_values(name: str, values: FloatArray, *positions: tuple[str, FloatArra
         places.append(", ".join(f"{axis} = {points[index]:g} m" for (axis, points), index in pairs))
     hint = f"{len(bad_indices)} values are not: fill the gaps first, for example with the instrument's software"
     raise InvalidInputError(name, f"missing or not finite at {'; '.join(places)}", "given everywhere", hint)
+
+
+# Endings of files without instrument formats: columns with units, and netCDF
+TEXT_ENDINGS = ("", ".csv", ".txt", ".tsv", ".dat", ".nc")
+ANGLES = (0, 90, 180, 270)
+
+MAX_XML = 100_000_000  # Largest XML entry of an x3p file, bytes unpacked: a surface as text of some million points
+
+# Without a handler the reader igor2 would print a foreign file on the screen.
+logging.getLogger("igor2").addHandler(logging.NullHandler())
+
+GRID_TOLERANCE = 1e-6  # Distance of points from the lines of a grid, over a step
+
+
+class Heights(NamedTuple):
+    """Measured heights, metres: positions along one axis or two, heights ``(x,)`` or ``(x, y)``, NaN if missing."""
+
+    x: FloatArray
+    y: FloatArray | None
+    heights: FloatArray
+
+
+def read_measurement(path: Path, positions: tuple[str, ...], values: tuple[str, ...]) -> tuple[Heights, str]:
+    """Return positions along one axis or two, the values of a file in any readable format, and their name."""
+    ending = path.suffix.lower()
+    if ending not in TEXT_ENDINGS:
+        return read_heights(path), "height"
+    arrays = (read_netcdf if ending == ".nc" else read_columns)(path, positions, values)
+    name = list(arrays)[-1]
+    if len(positions) == 1:
+        return Heights(arrays["x"], None, arrays[name]), name
+    return Heights(*arrays.values()) if ending == ".nc" else _arrange_points(arrays), name
+
+
+def _arrange_points(columns: dict[str, FloatArray]) -> Heights:
+    """Positions along x and y and heights ``(x, y)`` from a table of points; NaN where the table lacks a point."""
+    for name in ("x", "y"):
+        checks.coordinates(name, columns[name])
+    points = pd.DataFrame(columns)
+    if (repeated := points.duplicated(["x", "y"])).any():
+        x, y = points.loc[repeated, ["x", "y"]].iloc[0]
+        number = ((points["x"] == x) & (points["y"] == y)).sum()
+        raise InvalidInputError("height", f"{number} values at x = {x:g} m, y = {y:g} m", "one value at every point")
+    heights = points.pivot(index="x", columns="y", values="height")
+    return Heights(heights.index.to_numpy(), heights.columns.to_numpy(), heights.to_numpy())
+
+
+def read_heights(path: Path) -> Heights:
+    """Read positions and heights of an x3p file or a format of SurfaceTopography."""
+    x3p = path.suffix.lower() == ".x3p"
+    package = "x3pio" if x3p else "SurfaceTopography"
+    if find_spec(package) is None:
+        if not x3p and (description := describe_foreign_file(path)):
+            raise _path_error(path, READABLE_FILES, f"it is {description}")
+        raise ContactStudyError(
+            f"reading {path} needs {package}, from the extra `measured`: "
+            'pip install "contactstudy[measured]"; files with columns end with .csv, .txt, .tsv or .dat'
+        )
+    check_regular_file(path, "measured")
+    heights = _read_x3p(path) if x3p else _read_topography(path)
+    if heights.y is not None and heights.y.size == 1:
+        return Heights(heights.x, None, heights.heights[:, 0])
+    return heights
+
+
+def rotate_heights(measured: Heights, angle: int, mirror: bool = False) -> Heights:
+    """Rotate heights by 0, 90, 180 or 270 degrees about their axis, then mirror the y axis."""
+    checks.instance("mirror", mirror, (bool, np.bool_), "True or False")
+    allowed = ANGLES if measured.y is not None else ANGLES[::2]
+    if isinstance(angle, bool) or angle not in allowed:
+        degrees = ", ".join(map(str, allowed))
+        raise InvalidInputError("turn", angle, f"one of {degrees} (degrees)" + (" for a line" * (measured.y is None)))
+    x, y, heights = measured
+    if y is None:
+        return measured if angle == 0 else Heights(_reverse(x), None, heights[::-1])
+    for _ in range(angle // 90):  # (x, y) moves to (-y, x)
+        x, y, heights = _reverse(y), x, heights.T[::-1]
+    if mirror:
+        y, heights = _reverse(y), heights[:, ::-1]
+    return Heights(x, y, heights)
+
+
+def _reverse(positions: FloatArray) -> FloatArray:
+    """Positions along the opposite axis, over the same range."""
+    return np.asarray(positions[0] + positions[-1] - positions[::-1])
+
+
+def _path_error(path: Path, allowed: str, hint: str = "") -> InvalidInputError:
+    return InvalidInputError("path", str(path), allowed, hint)
+
+
+def _read_x3p(path: Path) -> Heights:
+    """Profile or surface of an x3p file; its lengths are metres by the standard."""
+    import x3pio
+
+    try:
+        with ZipFile(path) as archive:
+            sizes = {entry.filename: entry.file_size for entry in archive.infolist()}
+    except (BadZipFile, OSError, ValueError) as error:
+        raise _path_error(path, "a readable x3p file", str(error)) from None
+    for name, size in sizes.items():
+        max_size = MAX_XML if name.endswith(".xml") else MAX_BYTES
+        if size > max_size:
+            raise _path_error(path, f"an x3p file with at most {max_size:.0e} bytes in {name}", f"it has {size}")
+    try:
+        file = x3pio.read(path)
+    except (x3pio.X3pError, OSError) as error:
+        raise _path_error(path, "a readable x3p file", str(error)) from None
+    if isinstance(file, x3pio.PointCloud):
+        raise _path_error(path, "a profile or a surface", "it is a cloud of points: bring it onto a grid")
+    if len(file.layers) != 1:
+        raise _path_error(path, "a file with one layer", f"it has {len(file.layers)}: write the required layer alone")
+    points = file.layers[0].points(coordinate_system=x3pio.CoordinateSystem.VIEW)
+    if isinstance(file, x3pio.Profile):
+        return Heights(points[:, 0], None, points[:, 2])
+    x, y = points[0, :, 0], points[:, 0, 1]
+    deviations = np.abs(points[:, :, 0] - x).max(), np.abs(points[:, :, 1] - y[:, None]).max()
+    steps = (np.abs(np.diff(lines)).min(initial=np.inf) for lines in (x, y))
+    if not all(deviation <= GRID_TOLERANCE * step for deviation, step in zip(deviations, steps, strict=True)):
+        raise _path_error(path, "a surface whose points are the crossings of lines along x and y")
+    return Heights(x, y, points[:, :, 2].T)
+
+
+def _read_topography(path: Path) -> Heights:
+    """Line scan or topography in a format of SurfaceTopography."""
+    from SurfaceTopography import read_topography
+    from SurfaceTopography.Exceptions import CannotDetectFileFormat
+
+    try:
+        topography: Any = read_topography(str(path))
+        unit, positions, heights = topography.unit, topography.positions(), np.ma.filled(topography.heights(), np.nan)
+    except CannotDetectFileFormat:
+        kind = describe_foreign_file(path)
+        hint = f"it is {kind}" if kind else "its format is unknown: export it as x3p, or as columns in a .csv file"
+        raise _path_error(path, READABLE_FILES, hint) from None
+    except Exception as error:  # the readers raise any class on a damaged file
+        raise _path_error(path, "a readable file", str(error)[:200]) from error
+    from SurfaceTopography.Support.UnitConversion import get_unit_conversion_factor, is_length_unit
+
+    if unit is None or not is_length_unit(unit):
+        raise InvalidInputError(f"unit of {path}", unit, "a unit of length", "or columns with units, in a .csv file")
+    scale = float(get_unit_conversion_factor(unit, "m"))
+    if heights.ndim == 1:
+        return Heights(scale * np.asarray(positions), None, scale * heights)
+    return Heights(scale * positions[0][:, 0], scale * positions[1][0, :], scale * heights)
