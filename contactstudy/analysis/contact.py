@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -15,64 +14,17 @@ from contactstudy.analysis.axes import (
     cell_widths,
     dimension_along,
     positions,
-    reduce_dims,
     sort_positions,
+    without_coordinates,
 )
-from contactstudy.analysis.axial import axial_pressure, unloaded_gap
+from contactstudy.analysis.axial import axial_pressure, under_roller
 from contactstudy.analysis.peaks import largest_sample, measure
 from contactstudy.analysis.provenance import INPUTS_ATTRIBUTE, attribute, solved_case
 from contactstudy.arrays.variables import name_array, require_in_si, variable_of, without_error
-from contactstudy.checks import Array
 from contactstudy.errors import InvalidInputError
 
 MISSING_LOAD = 0.01  # Fraction of the load that a part of a contact lacks at least
 END_TOLERANCE = 1e-6  # Largest distance, over a cell, of a border of the cells that is at an end of the contact
-
-
-class ContactNumbers(NamedTuple):
-    """Scalars of contacts in whole cells: arrays without the cells' axes; NaN without pressure."""
-
-    contact_area: Array  # m2
-    contact_length: Array  # m
-    contact_width: Array
-    contact_length_loss: Array  # m, part of the facing length without contact
-    resultant: Array  # N
-    load_position: Array  # m, along x
-    mid_position: Array  # m
-
-
-def contact_numbers(pressure: Array, under_roller: Array, x: Array, y: Array, dx: Array, dy: Array) -> ContactNumbers:
-    """Return the scalars of pressures (..., x, y), with `under_roller`, `x`, `dx` (..., x), and `y`, `dy` (..., y)."""
-    has_pressure = np.asarray(~np.isnan(pressure).all(axis=(-2, -1)))
-    # A failed case has no finite positions.
-    x, y, dx, dy = (np.where(has_pressure[..., None], values, 0.0) for values in (x, y, dx, dy))
-    loaded = np.asarray(pressure > 0)
-
-    def length(centres: Array, mask: Array, width: Array) -> Array:
-        first, last = _range(centres - 0.5 * width, mask)[0], _range(centres + 0.5 * width, mask)[1]
-        return np.where(mask.any(axis=-1), last - first, 0.0)
-
-    along = length(x, np.asarray(loaded.any(axis=-1)), dx)
-    load = np.nansum(pressure * dy[..., None, :], axis=-1) * dx
-    resultant = np.nansum(load, axis=-1)
-    moment = np.nansum(load * x, axis=-1)
-    position = np.divide(moment, resultant, out=np.full(np.shape(moment), np.nan), where=resultant > 0)
-    first, last = _range(x, under_roller)
-    numbers = (
-        np.nansum(loaded * dx[..., :, None] * dy[..., None, :], axis=(-2, -1)),
-        along,
-        length(y, np.asarray(loaded.any(axis=-2)), dy),
-        length(x, under_roller, dx) - along,
-        resultant,
-        position,
-        0.5 * np.where(first <= last, first, np.nan) + 0.5 * last,
-    )
-    return ContactNumbers(*(np.where(has_pressure, value, np.nan) for value in numbers))
-
-
-def _range(centres: Array, mask: Array) -> tuple[Array, Array]:
-    """First and last position of a mask along the last axis; infinite for an empty mask."""
-    return np.where(mask, centres, np.inf).min(axis=-1), np.where(mask, centres, -np.inf).max(axis=-1)
 
 
 def contact_results(dataset: xr.Dataset, about: float | None = None) -> xr.Dataset:
@@ -108,25 +60,38 @@ def contact_results(dataset: xr.Dataset, about: float | None = None) -> xr.Datas
     [4.0, 2.0, 8.0, -2.0]
     """
     dataset = require_in_si(dataset, "pressure", normalized=True)
-    pressure = dataset["pressure"]
-    x, y = dimension_along(pressure, "x"), dimension_along(pressure, "y")
-    under_roller = (unloaded_gap(dataset) if "initial_gap" in dataset else axial_pressure(dataset)).notnull()
-    arguments = [
-        (pressure, [x, y]),
-        (under_roller, [x]),
-        *((positions(pressure, axis), [dim]) for axis, dim in (("x", x), ("y", y))),
-        *((cell_widths(pressure, axis), [dim]) for axis, dim in (("x", x), ("y", y))),
-    ]
-    numbers = dict(zip(ContactNumbers._fields, reduce_dims(contact_numbers, arguments, 7), strict=True))
-    mid_position, loss = numbers.pop("mid_position"), numbers.pop("contact_length_loss")
-    centre = mid_position if about is None else checks.finite("about", about, "metres")
-    numbers["moment"] = numbers["resultant"] * (numbers["load_position"] - centre)
+    pressure, facing = dataset["pressure"], under_roller(dataset)
+    (x, sample_x, dx), (y, sample_y, dy) = (
+        (dimension_along(pressure, axis), positions(pressure, axis), cell_widths(pressure, axis)) for axis in "xy"
+    )
+
+    def length(mask: xr.DataArray, dim: str, centres: xr.DataArray, widths: xr.DataArray) -> xr.DataArray:
+        first, last = (centres - 0.5 * widths).where(mask).min(dim), (centres + 0.5 * widths).where(mask).max(dim)
+        return (last - first).fillna(0.0)
+
+    loaded = pressure > 0
+    load = (pressure * dy).sum(y) * dx
+    resultant = load.sum(x)
+    numbers = {
+        "contact_area": (loaded * dx * dy).sum((x, y)),
+        "contact_length": length(loaded.any(y), x, sample_x, dx),
+        "contact_width": length(loaded.any(x), y, sample_y, dy),
+        "resultant": resultant,
+        "load_position": (load * sample_x).sum(x) / resultant.where(resultant > 0),
+    }
+    if about is None:
+        facing_x = sample_x.where(facing)
+        centre = 0.5 * facing_x.min(x) + 0.5 * facing_x.max(x)
+    else:
+        centre = checks.finite("about", about, "metres")
+    numbers["moment"] = resultant * (numbers["load_position"] - centre)
     if "initial_gap" in dataset:
-        numbers["contact_length_loss"] = loss
-    scalars = {name: name_array(name, value) for name, value in numbers.items()}
+        numbers["contact_length_loss"] = length(facing, x, sample_x, dx) - numbers["contact_length"]
+    has_pressure = pressure.notnull().any((x, y))
+    scalars = {name: name_array(name, value.where(has_pressure)) for name, value in numbers.items()}
     for name in ("contact_area", "contact_length"):
         scalars[name].attrs["comment"] = "in whole cells"
-    peak = _peak_pressure(dataset, numbers["resultant"])
+    peak = _peak_pressure(dataset, scalars["resultant"])
     return without_error(peak.assign(edge_pressure(dataset).data_vars).assign(scalars).compute(), *scalars)
 
 
@@ -173,25 +138,17 @@ def edge_pressure(dataset: xr.Dataset) -> xr.Dataset:
     (3.0, 2.0)
     """
     axial = sort_positions(axial_pressure(dataset), "x")
-
-    def first_and_last(values: Array) -> tuple[Array, Array]:
-        """First and last positive number along the last axis; NaN without a positive number."""
-        is_loaded = values > 0
-        indices = is_loaded.argmax(axis=-1), values.shape[-1] - 1 - is_loaded[..., ::-1].argmax(axis=-1)
-        first_values, last_values = (np.take_along_axis(values, index[..., None], axis=-1)[..., 0] for index in indices)
-        without_contact = ~is_loaded.any(axis=-1)
-        return np.where(without_contact, np.nan, first_values), np.where(without_contact, np.nan, last_values)
-
-    values = reduce_dims(first_and_last, [(axial, [dimension_along(axial, "x")])], 2)
+    x = dimension_along(axial, "x")
+    is_loaded = (axial > 0).compute()
+    indices = is_loaded.argmax(x), axial.sizes[x] - 1 - is_loaded.isel({x: slice(None, None, -1)}).argmax(x)
     edges = {}
-    for end, value, is_cut in zip(("first", "last"), values, cut_ends(dataset), strict=True):
-        edge_value = value.where(is_cut == 0)
+    for end, index, is_cut in zip(("first", "last"), indices, cut_ends(dataset), strict=True):
+        name = f"edge_pressure_{end}"
+        value = without_coordinates(axial, x).isel({x: index}).where(is_loaded.any(x) & (is_cut == 0))
         # At a singular end the mean of a cell depends on the size of the cell.
         is_singular = np.isinf(dataset.get(f"end_pressure_{end}", xr.DataArray(0.0)))
-        edges[f"edge_pressure_{end}"] = name_array(
-            f"edge_pressure_{end}", edge_value.where(~is_singular | edge_value.isnull(), np.inf)
-        )
-        edges[f"edge_pressure_{end}"].attrs["comment"] = "mean of the outermost loaded cell"
+        edges[name] = name_array(name, value.where(~is_singular | value.isnull(), np.inf))
+        edges[name].attrs["comment"] = "mean of the outermost loaded cell"
     return without_error(xr.Dataset(edges), *edges)
 
 
@@ -227,43 +184,23 @@ def cut_ends(dataset: xr.Dataset) -> tuple[xr.DataArray, xr.DataArray]:
     dataset = require_in_si(dataset, "normal_load")
     for axis in "xy":
         pressure = sort_positions(pressure, axis)
-    x, y = dimension_along(pressure, "x"), dimension_along(pressure, "y")
+    (x, dx), (y, dy) = ((dimension_along(pressure, axis), cell_widths(pressure, axis)) for axis in "xy")
+    sample_x, in_contact = positions(pressure, "x"), pressure > 0
     start, stop = 0.0, np.inf
     if "case" in attribute(dataset, INPUTS_ATTRIBUTE):
         with contextlib.suppress(InvalidInputError):  # inputs of another version
             start, stop = solved_case(dataset).contact_range
-    arguments = [
-        (pressure, [x, y]),
-        (dataset["normal_load"], []),
-        (positions(pressure, "x"), [x]),
-        *((cell_widths(pressure, axis), [dim]) for axis, dim in (("x", x), ("y", y))),
-        *((xr.DataArray(end), []) for end in (start, stop)),
-    ]
-    first, last = reduce_dims(_find_cuts, arguments, 2)
-    return first, last
-
-
-def _find_cuts(
-    pressure: Array, load: Array, x: Array, dx: Array, dy: Array, start: float, stop: float
-) -> tuple[Array, Array]:
-    """Whether contacts (..., x, y) continue beyond the first and the last x."""
-    cells = np.broadcast_to(np.isfinite(x), pressure.shape[:-1])
-    x, dx = (np.broadcast_to(values, cells.shape) for values in (x, dx))
-    resultant = np.nansum(pressure * dx[..., :, None] * dy[..., None, :], axis=(-2, -1))
-    is_gap = np.abs(np.diff(x, axis=-1) - 0.5 * (dx[..., 1:] + dx[..., :-1])) > END_TOLERANCE * dx[..., 1:]
-    in_contact = pressure > 0
+    lacks_load = (pressure * dx * dy).sum((x, y)) < (1 - MISSING_LOAD) * dataset["normal_load"]
     # The load alone is not enough: a cut along y, or omitted cells, also reduce the resultant.
-    cut = (resultant < (1 - MISSING_LOAD) * load) & ~in_contact[..., [0, -1]].any(axis=(-2, -1)) & ~is_gap.any(axis=-1)
-
-    def select_end(values: Array, *, first: bool) -> Array:
-        last = cells.sum(axis=-1, keepdims=True) - 1
-        index = np.zeros_like(last) if first else np.maximum(last, 0)
-        return np.asarray(np.take_along_axis(values, index, axis=-1)[..., 0])
-
-    is_loaded, tolerance = in_contact.any(axis=-1), END_TOLERANCE * dx
-    starts_inside, stops_inside = x - 0.5 * dx > start + tolerance, x + 0.5 * dx < stop - tolerance
-    first, last = select_end(is_loaded & starts_inside, first=True), select_end(is_loaded & stops_inside, first=False)
-    return (cut & first).astype(np.float64), (cut & last).astype(np.float64)
+    steps, expected_steps = sample_x - sample_x.shift({x: 1}), 0.5 * (dx + dx.shift({x: 1}))
+    omits_cells = (abs(steps - expected_steps) > END_TOLERANCE * dx).any(x)
+    is_part = lacks_load & ~in_contact.isel({y: [0, -1]}).any((x, y)) & ~omits_cells
+    columns = (
+        (sample_x == sample_x.min(x)) & (sample_x - 0.5 * dx > start + END_TOLERANCE * dx),
+        (sample_x == sample_x.max(x)) & (sample_x + 0.5 * dx < stop - END_TOLERANCE * dx),
+    )
+    first, last = ((is_part & (in_contact.any(y) & column).any(x)).astype(np.float64) for column in columns)
+    return first, last
 
 
 def edge_factors(

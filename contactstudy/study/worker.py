@@ -20,7 +20,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import xarray as xr
 
-from contactstudy.analysis.summary import Number, case_numbers
+from contactstudy.analysis.summary import case_numbers
 from contactstudy.arrays.grid import Grid
 from contactstudy.arrays.variables import DERIVED
 from contactstudy.case.gridding import solve_in_first_window
@@ -210,12 +210,9 @@ def _solve_case(
         with warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("always")
             dataset = solve_in_first_window(setup.grids, solve_on)
-            numbers = case_numbers(dataset)
-            summaries = dict(shakedown_summary(dataset).data_vars)
+            numbers = case_numbers(dataset).assign(shakedown_summary(dataset).data_vars)
             if "von_mises" in dataset:
-                summaries |= edge_tension_summary(dataset).data_vars
-            for name, entry in summaries.items():
-                numbers[str(name)] = Number(float(entry), dict(entry.attrs))
+                numbers = numbers.assign(edge_tension_summary(dataset).data_vars)
     except StoreError:
         raise
     except (ContactStudyError, MemoryError, np.linalg.LinAlgError) as error:
@@ -228,12 +225,12 @@ def _solve_case(
     )
     e_over_a = setup.e_over_a
     if np.isnan(e_over_a):  # the half-width follows from the solution
-        e_over_a = setup.case.roller_start / numbers["hertz_half_width"].value
+        e_over_a = setup.case.roller_start / float(numbers["hertz_half_width"])
     for name, value in (("e_over_a", e_over_a), ("gamma", setup.gamma)):
-        numbers[name] = Number(float(value), PARAMETERS[name].attrs | {"comment": DERIVED})
+        numbers[name] = ((), float(value), PARAMETERS[name].attrs | {"comment": DERIVED})
     batch = replace(
         batch,
-        numbers={name: np.array([number.value]) for name, number in numbers.items()},
-        attributes={name: number.attributes for name, number in numbers.items()},
+        numbers={str(name): np.array([float(number)]) for name, number in numbers.items()},
+        attributes={str(name): dict(number.attrs) for name, number in numbers.items()},
     )
     return add_arrays(batch, dataset, task.level) if task.level != "summary" else batch, dataset
