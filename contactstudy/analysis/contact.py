@@ -1,4 +1,4 @@
-"""Scalars of a contact on its cells: area, length, edge pressures, resultant, position of the load; cut ends."""
+"""Scalars of a contact on its cells: area, length, edge pressures, resultant; cut ends; numbers of a study's case."""
 
 from __future__ import annotations
 
@@ -18,13 +18,21 @@ from contactstudy.analysis.axes import (
     without_coordinates,
 )
 from contactstudy.analysis.axial import axial_pressure, under_roller
-from contactstudy.analysis.peaks import largest_sample, measure
+from contactstudy.analysis.peaks import largest_sample, measure, peak
 from contactstudy.analysis.provenance import INPUTS_ATTRIBUTE, attribute, solved_case
-from contactstudy.arrays.variables import name_array, require_in_si, variable_of, without_error
+from contactstudy.arrays.variables import STRESSES, name_array, require, require_in_si, variable_of, without_error
 from contactstudy.errors import InvalidInputError
 
 MISSING_LOAD = 0.01  # Fraction of the load that a part of a contact lacks at least
 END_TOLERANCE = 1e-6  # Largest distance, over a cell, of a border of the cells that is at an end of the contact
+
+# Comments of numbers that depend on the cells, with errors that are not estimated
+COMMENTS = dict.fromkeys(
+    ("contact_length", "contact_width", "peak_pressure_x", "peak_pressure_y"), "in whole cells"
+) | dict.fromkeys(
+    ("end_pressure_over_p0", "end_pressure_over_p0_first", "end_pressure_over_p0_last"),
+    "mean of the outermost loaded cell",
+)
 
 
 def contact_results(dataset: xr.Dataset, about: float | None = None) -> xr.Dataset:
@@ -91,8 +99,8 @@ def contact_results(dataset: xr.Dataset, about: float | None = None) -> xr.Datas
     scalars = {name: name_array(name, value.where(has_pressure)) for name, value in numbers.items()}
     for name in ("contact_area", "contact_length"):
         scalars[name].attrs["comment"] = "in whole cells"
-    peak = _peak_pressure(dataset, scalars["resultant"])
-    return without_error(peak.assign(edge_pressure(dataset).data_vars).assign(scalars).compute(), *scalars)
+    peak_pressure = _peak_pressure(dataset, scalars["resultant"])
+    return without_error(peak_pressure.assign(edge_pressure(dataset).data_vars).assign(scalars).compute(), *scalars)
 
 
 def _peak_pressure(dataset: xr.Dataset, resultant: xr.DataArray) -> xr.Dataset:
@@ -103,10 +111,10 @@ def _peak_pressure(dataset: xr.Dataset, resultant: xr.DataArray) -> xr.Dataset:
         return largest_pressure
     covers_contact = resultant > (1 - MISSING_LOAD) * dataset["normal_load"]
     stored_peak = dataset[list(names)].reset_coords(drop=True)
-    peak = stored_peak["peak_pressure"].where(covers_contact, largest_pressure["peak_pressure"])
+    value = stored_peak["peak_pressure"].where(covers_contact, largest_pressure["peak_pressure"])
     comment = "settled where the contact is whole, otherwise of the highest cell"
     return largest_pressure.assign(
-        peak_pressure=name_array("peak_pressure", peak).assign_attrs(comment=comment),
+        peak_pressure=name_array("peak_pressure", value).assign_attrs(comment=comment),
         peak_pressure_error=stored_peak["peak_pressure_error"].where(covers_contact),
     )
 
@@ -146,10 +154,15 @@ def edge_pressure(dataset: xr.Dataset) -> xr.Dataset:
         name = f"edge_pressure_{end}"
         value = without_coordinates(axial, x).isel({x: index}).where(is_loaded.any(x) & (is_cut == 0))
         # At a singular end the mean of a cell depends on the size of the cell.
-        is_singular = np.isinf(dataset.get(f"end_pressure_{end}", xr.DataArray(0.0)))
-        edges[name] = name_array(name, value.where(~is_singular | value.isnull(), np.inf))
+        edges[name] = name_array(name, _unbounded_if_singular(dataset, end, value))
         edges[name].attrs["comment"] = "mean of the outermost loaded cell"
     return without_error(xr.Dataset(edges), *edges)
+
+
+def _unbounded_if_singular(dataset: xr.Dataset, end: str, value: xr.DataArray) -> xr.DataArray:
+    """Value near an end; infinite at a singular end, where pressure and stress are unbounded."""
+    is_singular = np.isinf(dataset.get(f"end_pressure_{end}", xr.DataArray(0.0)))
+    return value.where(~is_singular | value.isnull(), np.inf)
 
 
 def cut_ends(dataset: xr.Dataset) -> tuple[xr.DataArray, xr.DataArray]:
@@ -199,8 +212,8 @@ def cut_ends(dataset: xr.Dataset) -> tuple[xr.DataArray, xr.DataArray]:
         (sample_x == sample_x.min(x)) & (sample_x - 0.5 * dx > start + END_TOLERANCE * dx),
         (sample_x == sample_x.max(x)) & (sample_x + 0.5 * dx < stop - END_TOLERANCE * dx),
     )
-    first, last = ((is_part & (in_contact.any(y) & column).any(x)).astype(np.float64) for column in columns)
-    return first, last
+    first, last = (is_part & (in_contact.any(y) & column).any(x) for column in columns)
+    return first.astype(np.float64).drop_attrs(deep=False), last.astype(np.float64).drop_attrs(deep=False)
 
 
 def edge_factors(
@@ -274,12 +287,48 @@ def _values(dataset: xr.Dataset, variable: str, reach: xr.DataArray | float) -> 
     for side, border in zip(("first", "last"), borders, strict=True):
         # The factor allows for rounding of a point's distance.
         value = profile.where(abs(sample_x - border) <= reach * (1 + 1e-9)).max(x)
-        # Near a singular end pressure and stress are unbounded.
-        is_singular = np.isinf(dataset.get(f"end_pressure_{side}", xr.DataArray(0.0)))
-        values[side] = value.where(~is_singular | value.isnull(), np.inf)
+        values[side] = _unbounded_if_singular(dataset, side, value)
     distance = abs(sample_x - 0.5 * (borders[0] + borders[1]))
     nearest = distance.fillna(np.inf).argmin(x)
     width = cell_size(profile, "x")
     # A mid-length beyond the points has no value.
     is_within = distance.min(x) <= (width.isel({x: nearest}) if x in width.dims else width)
     return values | {"middle": profile.isel({x: nearest}).where(is_within), "peak": profile.max(x)}
+
+
+def pressure_numbers(dataset: xr.Dataset) -> xr.Dataset:
+    """Numbers of the pressure; end pressures from the Dataset, or else from the outermost loaded columns."""
+    require(dataset, "pressure", "hertz_max_pressure")
+    results = contact_results(dataset)
+    first, last = (
+        dataset.get(f"end_pressure_{end}", results[f"edge_pressure_{end}"]) / dataset["hertz_max_pressure"]
+        for end in ("first", "last")
+    )
+    numbers = {name: results[name] for name in ("peak_pressure", "peak_pressure_x", "peak_pressure_y")} | {
+        "end_pressure_over_p0_first": first,
+        "end_pressure_over_p0_last": last,
+        "end_pressure_over_p0": 0.5 * (first + last),
+        "contact_length": results["contact_length"],
+        "contact_width": results["contact_width"],
+    }
+    result = xr.Dataset({name: name_array(name, value) for name, value in numbers.items()})
+    for name, comment in COMMENTS.items():
+        result[name].attrs["comment"] = comment
+    return without_error(result, *COMMENTS)
+
+
+def stress_summary(dataset: xr.Dataset) -> xr.Dataset:
+    """Largest von Mises stress, its error and position; empty without stresses."""
+    if "von_mises" not in dataset:
+        return xr.Dataset()
+    if np.isnan(dataset["von_mises"].values).all():
+        raise InvalidInputError("von_mises", "nan everywhere", "a field with at least one number")
+    has_all_stresses = all(name in dataset for name in STRESSES)
+    return peak(dataset) if has_all_stresses else largest_sample(dataset, "von_mises")
+
+
+def case_numbers(dataset: xr.Dataset) -> xr.Dataset:
+    """All numbers of a solved case: scalars of the Dataset (refined), or else numbers of its cells."""
+    scalars = dataset[[name for name, entry in dataset.data_vars.items() if entry.ndim == 0]]
+    numbers = pressure_numbers(dataset).assign(stress_summary(dataset).data_vars).assign(scalars.data_vars)
+    return numbers.reset_coords(drop=True)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import xarray as xr
@@ -14,7 +14,7 @@ from contactstudy.arrays.variables import require, variable_of
 from contactstudy.checks import BoolArray, FloatArray, IntArray
 from contactstudy.plots.axial import FILM_HALF_RANGE
 from contactstudy.plots.singular_ends import near_singular
-from contactstudy.plots.style import COLORS, Units, label_axes, new_axes, units
+from contactstudy.plots.style import COLORS, label_axes, new_axes, units
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -31,14 +31,15 @@ VECTORS = ("traction", "slip")
 SURFACES = {"body": "temperature_rise", "roller": "roller_temperature_rise"}
 
 
-class Surface(NamedTuple):
-    """Positions of a map in the units of its figure, and the pressure over (y, x)."""
+class Surface:
+    """Surface of a single case: positions in the units of the figure, and a load over (y, x), positive in contact."""
 
-    case: xr.Dataset
-    unit: Units
-    x: FloatArray
-    y: FloatArray
-    pressure: FloatArray
+    def __init__(self, dataset: xr.Dataset, *names: str, si: bool, load: str = "pressure") -> None:
+        self.case = single_case(dataset)
+        require(self.case, *names)
+        self.unit = units(self.case, si=si)
+        self.x, self.y = (positions(self.case[load], axis).values / self.unit.length for axis in "xy")
+        self.pressure = self.values(load)
 
     def values(self, name: str) -> FloatArray:
         """Variable over (y, x)."""
@@ -58,18 +59,6 @@ class Surface(NamedTuple):
         x = positions(self.case["pressure"], "x").values
         near_end = near_singular(self.case, x)
         return ~near_end | near_end.all()
-
-
-def _surface(dataset: xr.Dataset, names: tuple[str, ...], *, si: bool, load: str = "pressure") -> Surface:
-    """Surface of a single case with these variables; `load` is positive in the contact."""
-    case = single_case(dataset)
-    require(case, *names)
-    unit = units(case, si=si)
-    pressure = case[load]
-    x, y = (dimension_along(pressure, axis) for axis in "xy")
-    return Surface(
-        case, unit, pressure[x].values / unit.length, pressure[y].values / unit.length, pressure.transpose(y, x).values
-    )
 
 
 def _draw_mesh(ax: Axes, surface: Surface, values: Any, **style: Any) -> QuadMesh:
@@ -153,7 +142,7 @@ def plot_pressure_map(dataset: xr.Dataset, ax: Axes | None = None, *, si: bool =
     >>> plot_pressure_map(case).get_ylabel()
     'position along rolling, $y/a$'
     """
-    surface = _surface(dataset, ("pressure",), si=si)
+    surface = Surface(dataset, "pressure", si=si)
     ax = new_axes(ax)
     stress, is_regular = surface.unit.stress, surface.away_from_singular_ends
     max_value = None if is_regular.all() else float(surface.pressure[:, is_regular].max()) / stress
@@ -200,7 +189,7 @@ def plot_stick_and_slip(dataset: xr.Dataset, ax: Axes | None = None, *, si: bool
     from matplotlib.patches import Patch
 
     checks.count("arrows", arrows)
-    surface = _surface(dataset, ("pressure", "traction_x", "traction_y", "stick"), si=si)
+    surface = Surface(dataset, "pressure", "traction_x", "traction_y", "stick", si=si)
     ax = new_axes(ax)
     slip = np.where(surface.values("stick") > 0, 0.0, 1.0)
     mesh = _draw_mesh(
@@ -270,7 +259,7 @@ def plot_traction_map(
     0.5
     """
     checks.known_name("variable", variable, VECTORS)
-    surface = _surface(dataset, ("pressure", "stick", f"{variable}_x", f"{variable}_y"), si=si)
+    surface = Surface(dataset, "pressure", "stick", f"{variable}_x", f"{variable}_y", si=si)
     ax = new_axes(ax)
     magnitude = np.hypot(surface.values(f"{variable}_x"), surface.values(f"{variable}_y"))
     max_traction = float(magnitude[surface.in_contact].max(initial=0.0))
@@ -320,7 +309,7 @@ def plot_temperature_map(
     """
     checks.known_name("surface", surface, SURFACES)
     name = SURFACES[surface]
-    field = _surface(dataset, (name, "frictional_heat"), si=si, load="frictional_heat")
+    field = Surface(dataset, name, "frictional_heat", si=si, load="frictional_heat")
     ax = new_axes(ax)
     rise = field.values(name)
     mesh = _draw_mesh(ax, field, rise, cmap=HEAT_COLORS)
@@ -363,15 +352,14 @@ def plot_film_map(dataset: xr.Dataset, ax: Axes | None = None, *, fringes: int =
     'position along rolling, $y/a$'
     """
     checks.count("fringes", fringes)
-    case = single_case(dataset)
-    require(case, "film_thickness", "central_film", "least_film_x", "least_film_y")
-    unit, ax = units(case, si=si), new_axes(ax)
-    film = 1e6 * case["film_thickness"].transpose("y", "x")
-    x, y = (film[axis].values / unit.length for axis in "xy")
+    names = ("film_thickness", "central_film", "least_film_x", "least_film_y")
+    surface, ax = Surface(dataset, *names, si=si, load="film_thickness"), new_axes(ax)
+    case, unit, x, y = surface.case, surface.unit, surface.x, surface.y
+    film = 1e6 * surface.values("film_thickness")
     max_film = 1.5e6 * float(case["central_film"])
     levels = np.linspace(0.0, max_film, fringes + 1)
-    contours = ax.contourf(x, y, film.values, levels=levels, cmap=COLORS, extend="max")
-    ax.contour(x, y, film.values, levels=levels[1:], colors="0.25", linewidths=0.5)
+    contours = ax.contourf(x, y, film, levels=levels, cmap=COLORS, extend="max")
+    ax.contour(x, y, film, levels=levels[1:], colors="0.25", linewidths=0.5)
     ax.plot(float(case["least_film_x"]) / unit.length, float(case["least_film_y"]) / unit.length, "x", color="#e8513a")
     half_range = FILM_HALF_RANGE * float(case["hertz_half_width"]) / unit.length
     ax.set_ylim(max(-half_range, y.min()), min(half_range, y.max()))

@@ -20,7 +20,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import xarray as xr
 
-from contactstudy.analysis.summary import case_numbers
+from contactstudy.analysis.contact import case_numbers
 from contactstudy.arrays.grid import Grid
 from contactstudy.arrays.variables import DERIVED
 from contactstudy.case.gridding import solve_in_first_window

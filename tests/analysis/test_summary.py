@@ -4,7 +4,7 @@ import xarray as xr
 from hypothesis import given
 from hypothesis import strategies as st
 
-from contactstudy.analysis.summary import case_numbers, pressure_numbers, stress_summary
+from contactstudy.analysis.contact import case_numbers, pressure_numbers, stress_summary
 from contactstudy.errors import InvalidInputError
 
 

@@ -27,7 +27,7 @@ from contactstudy import (
     verification,
     wear,
 )
-from contactstudy.analysis.summary import case_numbers
+from contactstudy.analysis.contact import case_numbers
 from contactstudy.arrays.variables import (
     COORDINATES,
     ERROR_KIND,
