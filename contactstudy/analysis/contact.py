@@ -10,17 +10,27 @@ import xarray as xr
 from contactstudy import checks
 from contactstudy.analysis.axes import (
     axis_dimensions,
+    cell_edges,
     cell_size,
-    cell_widths,
     dimension_along,
     positions,
     sort_positions,
     without_coordinates,
 )
-from contactstudy.analysis.axial import axial_pressure, under_roller
+from contactstudy.analysis.axial import axial_pressure, loaded_range, under_roller
 from contactstudy.analysis.peaks import largest_sample, measure, peak
 from contactstudy.analysis.provenance import INPUTS_ATTRIBUTE, attribute, solved_case
-from contactstudy.arrays.variables import STRESSES, name_array, require, require_in_si, variable_of, without_error
+from contactstudy.arrays.variables import (
+    ERROR_KIND,
+    NOT_ESTIMATED,
+    STRESSES,
+    labels,
+    name_array,
+    require,
+    require_in_si,
+    variable_of,
+    without_error,
+)
 from contactstudy.errors import InvalidInputError
 
 MISSING_LOAD = 0.01  # Fraction of the load that a part of a contact lacks at least
@@ -69,21 +79,20 @@ def contact_results(dataset: xr.Dataset, about: float | None = None) -> xr.Datas
     """
     dataset = require_in_si(dataset, "pressure", normalized=True)
     pressure, facing = dataset["pressure"], under_roller(dataset)
-    (x, sample_x, dx), (y, sample_y, dy) = (
-        (dimension_along(pressure, axis), positions(pressure, axis), cell_widths(pressure, axis)) for axis in "xy"
-    )
+    (x, dx), (y, dy) = ((dimension_along(pressure, axis), cell_size(pressure, axis)) for axis in "xy")
+    sample_x, loaded = positions(pressure, "x"), pressure > 0
 
-    def length(mask: xr.DataArray, dim: str, centres: xr.DataArray, widths: xr.DataArray) -> xr.DataArray:
-        first, last = (centres - 0.5 * widths).where(mask).min(dim), (centres + 0.5 * widths).where(mask).max(dim)
-        return (last - first).fillna(0.0)
+    def length(mask: xr.DataArray, axis: str) -> xr.DataArray:
+        lower_edges, upper_edges = (edges.where(mask) for edges in cell_edges(pressure, axis))
+        dim = dimension_along(pressure, axis)
+        return (upper_edges.max(dim) - lower_edges.min(dim)).fillna(0.0)
 
-    loaded = pressure > 0
     load = (pressure * dy).sum(y) * dx
     resultant = load.sum(x)
     numbers = {
         "contact_area": (loaded * dx * dy).sum((x, y)),
-        "contact_length": length(loaded.any(y), x, sample_x, dx),
-        "contact_width": length(loaded.any(x), y, sample_y, dy),
+        "contact_length": length(loaded.any(y), "x"),
+        "contact_width": length(loaded.any(x), "y"),
         "resultant": resultant,
         "load_position": (load * sample_x).sum(x) / resultant.where(resultant > 0),
     }
@@ -94,7 +103,7 @@ def contact_results(dataset: xr.Dataset, about: float | None = None) -> xr.Datas
         centre = checks.finite("about", about, "metres")
     numbers["moment"] = resultant * (numbers["load_position"] - centre)
     if "initial_gap" in dataset:
-        numbers["contact_length_loss"] = length(facing, x, sample_x, dx) - numbers["contact_length"]
+        numbers["contact_length_loss"] = length(facing, "x") - numbers["contact_length"]
     has_pressure = pressure.notnull().any((x, y))
     scalars = {name: name_array(name, value.where(has_pressure)) for name, value in numbers.items()}
     for name in ("contact_area", "contact_length"):
@@ -197,20 +206,20 @@ def cut_ends(dataset: xr.Dataset) -> tuple[xr.DataArray, xr.DataArray]:
     dataset = require_in_si(dataset, "normal_load")
     for axis in "xy":
         pressure = sort_positions(pressure, axis)
-    (x, dx), (y, dy) = ((dimension_along(pressure, axis), cell_widths(pressure, axis)) for axis in "xy")
-    sample_x, in_contact = positions(pressure, "x"), pressure > 0
+    (x, dx), (y, dy) = ((dimension_along(pressure, axis), cell_size(pressure, axis)) for axis in "xy")
+    (lower_edges, upper_edges), in_contact = cell_edges(pressure, "x"), pressure > 0
     start, stop = 0.0, np.inf
     if "case" in attribute(dataset, INPUTS_ATTRIBUTE):
         with contextlib.suppress(InvalidInputError):  # inputs of another version
             start, stop = solved_case(dataset).contact_range
     lacks_load = (pressure * dx * dy).sum((x, y)) < (1 - MISSING_LOAD) * dataset["normal_load"]
     # The load alone is not enough: a cut along y, or omitted cells, also reduce the resultant.
-    steps, expected_steps = sample_x - sample_x.shift({x: 1}), 0.5 * (dx + dx.shift({x: 1}))
-    omits_cells = (abs(steps - expected_steps) > END_TOLERANCE * dx).any(x)
+    tolerance = END_TOLERANCE * dx
+    omits_cells = (abs(lower_edges - upper_edges.shift({x: 1})) > tolerance).any(x)
     is_part = lacks_load & ~in_contact.isel({y: [0, -1]}).any((x, y)) & ~omits_cells
     columns = (
-        (sample_x == sample_x.min(x)) & (sample_x - 0.5 * dx > start + END_TOLERANCE * dx),
-        (sample_x == sample_x.max(x)) & (sample_x + 0.5 * dx < stop - END_TOLERANCE * dx),
+        (lower_edges == lower_edges.min(x)) & (lower_edges > start + tolerance),
+        (upper_edges == upper_edges.max(x)) & (upper_edges < stop - tolerance),
     )
     first, last = (is_part & (in_contact.any(y) & column).any(x) for column in columns)
     return first.astype(np.float64).drop_attrs(deep=False), last.astype(np.float64).drop_attrs(deep=False)
@@ -279,10 +288,9 @@ def _values(dataset: xr.Dataset, variable: str, reach: xr.DataArray | float) -> 
     if (profile < 0).any():
         raise InvalidInputError("variable", variable, "a measure that is not negative", "take a stress measure")
     x, sample_x = dimension_along(profile, "x"), positions(profile, "x")
-    loaded_x = positions(axial, "x").where(axial > 0)
-    loaded_range = loaded_x.min(dimension_along(axial, "x")), loaded_x.max(dimension_along(axial, "x"))
     # At a cut end the border of the contact is unknown.
-    borders = [border.where(cut == 0).compute() for border, cut in zip(loaded_range, cut_ends(dataset), strict=True)]
+    ends = zip(loaded_range(axial), cut_ends(dataset), strict=True)
+    borders = [border.where(cut == 0).compute() for border, cut in ends]
     values = {}
     for side, border in zip(("first", "last"), borders, strict=True):
         # The factor allows for rounding of a point's distance.
@@ -299,22 +307,29 @@ def _values(dataset: xr.Dataset, variable: str, reach: xr.DataArray | float) -> 
 def pressure_numbers(dataset: xr.Dataset) -> xr.Dataset:
     """Numbers of the pressure; end pressures from the Dataset, or else from the outermost loaded columns."""
     require(dataset, "pressure", "hertz_max_pressure")
-    results = contact_results(dataset)
+    array, scale = dataset["pressure"].transpose("x", "y"), float(dataset["hertz_max_pressure"])
+    pressure = array.values
+    x_index, y_index = np.unravel_index(int(np.nanargmax(pressure)), pressure.shape)
+    axial = pressure.max(axis=1)
+    outermost = axial[axial > 0][[0, -1]] if (axial > 0).any() else np.full(2, np.nan)
     first, last = (
-        dataset.get(f"end_pressure_{end}", results[f"edge_pressure_{end}"]) / dataset["hertz_max_pressure"]
-        for end in ("first", "last")
+        float(dataset.get(f"end_pressure_{end}", value)) / scale
+        for end, value in zip(("first", "last"), outermost, strict=True)
     )
-    numbers = {name: results[name] for name in ("peak_pressure", "peak_pressure_x", "peak_pressure_y")} | {
+    numbers = {
+        "peak_pressure": pressure[x_index, y_index],
+        "peak_pressure_x": array["x"].values[x_index],
+        "peak_pressure_y": array["y"].values[y_index],
         "end_pressure_over_p0_first": first,
         "end_pressure_over_p0_last": last,
         "end_pressure_over_p0": 0.5 * (first + last),
-        "contact_length": results["contact_length"],
-        "contact_width": results["contact_width"],
     }
-    result = xr.Dataset({name: name_array(name, value) for name, value in numbers.items()})
-    for name, comment in COMMENTS.items():
-        result[name].attrs["comment"] = comment
-    return without_error(result, *COMMENTS)
+    for name, axis, across in (("contact_length", "x", 1), ("contact_width", "y", 0)):
+        in_contact = (pressure > 0).any(axis=across)
+        lower_edges, upper_edges = (edges.values[in_contact] for edges in cell_edges(array, axis))
+        numbers[name] = upper_edges.max() - lower_edges.min() if in_contact.any() else 0.0
+    comments = {name: {"comment": comment, ERROR_KIND: NOT_ESTIMATED} for name, comment in COMMENTS.items()}
+    return xr.Dataset({name: ((), value, labels(name) | comments.get(name, {})) for name, value in numbers.items()})
 
 
 def stress_summary(dataset: xr.Dataset) -> xr.Dataset:

@@ -93,9 +93,8 @@ def region_limits(case: CaseFields, name: str) -> Span:
     if name == REGIONS[0] or not loaded.size or case.hertz is None:
         return low, high
     length = END_REGION * case.hertz[0]
-    if name == REGIONS[1]:
-        return max(low, loaded[0] - 0.25 * length), min(high, loaded[0] + 0.75 * length)
-    return max(low, loaded[-1] - 0.75 * length), min(high, loaded[-1] + 0.25 * length)
+    start = loaded[0] - 0.25 * length if name == REGIONS[1] else loaded[-1] - 0.75 * length
+    return max(low, start), min(high, start + length)
 
 
 def axial_line(case: CaseFields, scale: Scale) -> Line:

@@ -77,9 +77,8 @@ def plot_edge_effect(
     bodies = [str(name) for name in np.atleast_1d(dataset["body"].values)] if "body" in dataset.coords else [""]
 
     def entries_of(body: str) -> list[Entry]:
-        body_cases = dataset.sel(body=body) if has_bodies else dataset
-        entries = [(float(e), body_cases.isel(e_over_a=i)) for i, e in enumerate(body_cases["e_over_a"].values)]
-        return [(e, case) for e, case in entries if np.isfinite(float(case["hertz_half_width"]))]
+        body_cases = (dataset.sel(body=body) if has_bodies else dataset).dropna("e_over_a", subset=["hertz_half_width"])
+        return [(float(e), body_cases.isel(e_over_a=i)) for i, e in enumerate(body_cases["e_over_a"].values)]
 
     def with_surfaces(entries: list[Entry]) -> list[Entry]:
         loaded = [(e, load(case)) for e, case in entries]

@@ -105,7 +105,7 @@ def plot_study_lines(
     figure.set_figheight(figure.get_figheight() + LINE_HEIGHT * rows * max(map(_extra_lines, panels.flat)))
     if hue is not None:
         handles, labels = panels[0, 0].get_legend_handles_labels()
-        title = fold_text(_hue_title(dataset[hue], hue), LEGEND_COLUMN)
+        title = fold_text(_legend_texts(dataset[hue], hue)[0], LEGEND_COLUMN)
         figure.legend(handles, labels, loc="outside right center", title=title, **LEGEND_STYLE, title_fontsize="small")
     if marks:
         from matplotlib.lines import Line2D
@@ -164,16 +164,10 @@ def _draw_panel(
 
 def _lines(values: xr.DataArray, hue: str | None, width: int) -> Iterator[tuple[dict[str, int], dict[str, Any]]]:
     """Yield the index along `hue`, and the style with the folded label, of each line; one line without `hue`."""
-    labels = [None] if hue is None else [fold_text(text, width) for text in _value_labels(values[hue], hue)]
+    labels = [None] if hue is None else [fold_text(text, width) for text in _legend_texts(values[hue], hue)[1]]
     for index, (label, style) in enumerate(zip(labels, line_styles(len(labels)), strict=True)):
         marker = MARKERS[index % len(MARKERS)]
         yield {} if hue is None else {hue: index}, style | {"marker": marker, "markersize": 4, "label": label}
-
-
-def _hue_title(values: xr.DataArray, hue: str) -> str:
-    """Title of a legend: name and unit of a parameter of numbers, or the name of parameters that change together."""
-    is_numeric = np.issubdtype(values.dtype, np.number) and not _parameters_along(values, hue)
-    return scale_values(values, hue)[1] if is_numeric else hue.replace("_", " ")
 
 
 def _extra_lines(ax: Axes) -> int:
@@ -196,27 +190,18 @@ def _errors(
     return errors.where(np.isfinite(errors)) / factor, (errors == np.inf) & (abs(values) < np.inf)
 
 
-def _value_labels(values: xr.DataArray, name: str) -> list[str]:
-    """Texts of a parameter's values in the label's unit; values of zipped parameters share a text."""
-    if parameters := _parameters_along(values, name):
-        return [
-            ", ".join(escape_dollars(values[parameter].values[i]) for parameter in parameters)
-            for i in range(values.size)
-        ]
-    if not np.issubdtype(values.dtype, np.number):
-        return [escape_dollars(value) for value in values.values]
-    return [f"{value:g}" for value in scale_values(values, name)[0].values]
-
-
-def _parameters_along(values: xr.DataArray, name: str) -> list[str]:
-    """Parameters that change together along a dimension of a study; empty for a parameter's dimension."""
-    return [
-        str(parameter)
-        for parameter in values.coords
-        if parameter != name
-        and values[parameter].dims == values.dims
-        and values[parameter].attrs.get("comment") != DERIVED
+def _legend_texts(values: xr.DataArray, name: str) -> tuple[str, list[str]]:
+    """Title of a legend, and texts of a parameter's values in the title's unit, or of parameters zipped along `name`."""
+    zipped = [
+        coordinate.values
+        for parameter, coordinate in values.coords.items()
+        if parameter != name and coordinate.dims == values.dims and coordinate.attrs.get("comment") != DERIVED
     ]
+    if np.issubdtype(values.dtype, np.number) and not zipped:
+        scaled, title = scale_values(values, name)
+        return title, [f"{value:g}" for value in scaled.values]
+    entries = zip(*(zipped or [values.values]), strict=True)
+    return name.replace("_", " "), [", ".join(map(escape_dollars, entry)) for entry in entries]
 
 
 def plot_traction_curve(
@@ -276,7 +261,9 @@ def plot_traction_curve(
         ax.plot(line[creepage], line.values, **style)
     ax.axhline(1.0, color="0.6", linewidth=0.8)
     if hue is not None:
-        ax.legend(title=fold_text(_hue_title(dataset[hue], hue), TICK_WIDTH), **LEGEND_STYLE, title_fontsize="small")
+        ax.legend(
+            title=fold_text(_legend_texts(dataset[hue], hue)[0], TICK_WIDTH), **LEGEND_STYLE, title_fontsize="small"
+        )
     ax.set_xlabel(rf"{creepage.replace('_', ' ')}, $\{'xi' if name == 'force_y' else 'eta'}$")
     ax.set_ylabel(f"force over full sliding's, ${symbol}/(f W)$")
     ax.grid(color="0.9", linewidth=0.6)

@@ -13,7 +13,7 @@ from contactstudy.arrays.engineering import unit_for
 from contactstudy.arrays.variables import require, variable_of
 from contactstudy.checks import BoolArray, FloatArray, IntArray
 from contactstudy.plots.axial import FILM_HALF_RANGE
-from contactstudy.plots.singular_ends import near_singular
+from contactstudy.plots.singular_ends import cap_field
 from contactstudy.plots.style import COLORS, label_axes, new_axes, units
 
 if TYPE_CHECKING:
@@ -53,13 +53,6 @@ class Surface:
         """Cells in contact over (y, x)."""
         return self.pressure > 0
 
-    @property
-    def away_from_singular_ends(self) -> BoolArray:
-        """Mask of the columns away from singular ends; all columns if every column is near an end."""
-        x = positions(self.case["pressure"], "x").values
-        near_end = near_singular(self.case, x)
-        return ~near_end | near_end.all()
-
 
 def _draw_mesh(ax: Axes, surface: Surface, values: Any, **style: Any) -> QuadMesh:
     """Draw values over (y, x) as cells."""
@@ -90,9 +83,9 @@ def _extend(values: FloatArray, in_contact: BoolArray) -> FloatArray:
 
 def _draw_contact_border(ax: Axes, surface: Surface, *artists: Any) -> None:
     """Draw the border of the contact, and clip artists to this border."""
-    squared_pressure = surface.pressure**2
-    threshold = BORDER_LEVEL * float(squared_pressure[:, surface.away_from_singular_ends].max())
-    border = _draw_border(ax, surface, squared_pressure, threshold, **CONTACT_BORDER)
+    max_pressure = float(cap_field(surface.case, surface.case["pressure"])[0].max())
+    threshold = BORDER_LEVEL * (max_pressure * max_pressure)
+    border = _draw_border(ax, surface, surface.pressure**2, threshold, **CONTACT_BORDER)
     for artist in artists:
         if border is not None and artist is not None:
             artist.set_clip_path(border.get_paths()[0], ax.transData)
@@ -144,8 +137,8 @@ def plot_pressure_map(dataset: xr.Dataset, ax: Axes | None = None, *, si: bool =
     """
     surface = Surface(dataset, "pressure", si=si)
     ax = new_axes(ax)
-    stress, is_regular = surface.unit.stress, surface.away_from_singular_ends
-    max_value = None if is_regular.all() else float(surface.pressure[:, is_regular].max()) / stress
+    stress, (_, bound) = surface.unit.stress, cap_field(surface.case, surface.case["pressure"])
+    max_value = bound / stress if bound < np.inf else None
     mesh = _draw_mesh(ax, surface, surface.pressure / stress, cmap=COLORS, vmin=0.0, vmax=max_value)
     _draw_contact_border(ax, surface, mesh)
     _crop(ax, surface)
