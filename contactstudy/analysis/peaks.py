@@ -328,21 +328,15 @@ def _explain_unresolved(case: xr.Dataset, axes: dict[str, FloatArray], sample: d
         from_end = min((abs(float(x[column]) - end) for end in _extent(case)), default=np.inf)
         scales = {"x": min(length_x, max(length_y, from_end)), "z": min(length_x, length_y)}
         for axis, scale in scales.items():
-            distance = _distance(axes[axis], location.get(axis, 0.5 * scale)) if axis in axes else 0.0
+            points = axes.get(axis, np.zeros(1))
+            nearest = int(np.abs(points - location.get(axis, 0.5 * scale)).argmin())
+            distance = float(np.diff(points)[max(nearest - 1, 0) : nearest + 1].max(initial=0.0))
             if distance > MAX_SPACING_RATIO * scale:
                 return (
                     f"the points are {distance:.2g} m apart along {axis}, the pressure varies within {scale:.2g} m: "
                     f"take at most {MAX_SPACING_RATIO * scale:.2g} m"
                 )
     return ""
-
-
-def _distance(points: FloatArray, position: float) -> float:
-    """Larger of the distances from the point nearest to a position to its neighbours; 0 for a single point."""
-    if points.size < 2:
-        return 0.0
-    nearest = int(np.abs(points - position).argmin())
-    return float(np.diff(points)[max(nearest - 1, 0) : nearest + 1].max())
 
 
 def _extent(case: xr.Dataset) -> tuple[float, ...]:

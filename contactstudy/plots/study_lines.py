@@ -191,7 +191,7 @@ def _errors(
 
 
 def _legend_texts(values: xr.DataArray, name: str) -> tuple[str, list[str]]:
-    """Title of a legend, and texts of a parameter's values in the title's unit, or of parameters zipped along `name`."""
+    """Title of a legend, and texts of a parameter's values in the title's unit, or of zipped parameters."""
     zipped = [
         coordinate.values
         for parameter, coordinate in values.coords.items()

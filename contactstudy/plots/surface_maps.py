@@ -63,14 +63,12 @@ def _draw_border(ax: Axes, surface: Surface, values: FloatArray, threshold: floa
     """Draw a closed contour of values over (y, x), 0 beyond the cells; None for too few cells."""
     if min(values.shape) < 2 or values.max() <= threshold:
         return None
-    x, y = (_outer_edges(centres) for centres in (surface.x, surface.y))
+    # The contour may reach the outer edges of the cells.
+    x, y = (
+        np.concatenate([[line[0] - 0.5 * (line[1] - line[0])], line, [line[-1] + 0.5 * (line[-1] - line[-2])]])
+        for line in (surface.x, surface.y)
+    )
     return ax.contour(x, y, np.pad(values, 1), levels=[threshold], **style)
-
-
-def _outer_edges(centres: FloatArray) -> FloatArray:
-    """Centres of cells, with the outer edges of the first and the last cell."""
-    first_width, last_width = centres[1] - centres[0], centres[-1] - centres[-2]
-    return np.concatenate([[centres[0] - 0.5 * first_width], centres, [centres[-1] + 0.5 * last_width]])
 
 
 def _extend(values: FloatArray, in_contact: BoolArray) -> FloatArray:

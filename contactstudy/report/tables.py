@@ -310,21 +310,17 @@ def case_table(case: Case) -> CaseTable:
     Roller: radius R: 5 mm
     """
     roller = case.roller
+    model = "body with free ends" if roller.ends == "free" else "half-space without ends"
+    drops = roller.profile.drop(np.array([0.45, 0.5]) * roller.length, roller.length).tolist()
     roller_rows = [
         ("radius R", format_quantity(roller.radius, "m")),
         ("length L", format_quantity(roller.length, "m")),
         ("profile", _profile_text(roller.profile)),
         ("material", describe_material(roller.material) if roller.material else "rigid"),
+        *([("elastic model", model)] if roller.material else []),
+        (f"drop at {format_quantity(0.45 * roller.length, 'm')} from mid-length", format_quantity(drops[0], "m")),
+        ("drop at the very end", format_quantity(drops[1], "m")),
     ]
-    if roller.material is not None:
-        roller_rows.append(
-            ("elastic model", "body with free ends" if roller.ends == "free" else "half-space without ends")
-        )
-    drops = roller.profile.drop(np.array([0.45, 0.5]) * roller.length, roller.length).tolist()
-    roller_rows.append(
-        (f"drop at {format_quantity(0.45 * roller.length, 'm')} from mid-length", format_quantity(drops[0], "m"))
-    )
-    roller_rows.append(("drop at the very end", format_quantity(drops[1], "m")))
     position_rows = [("from end I of the body to the roller, e", format_quantity(case.roller_start, "m"))]
     if isinstance(case.body, FiniteLengthSpace):
         distance = case.body.length - case.roller_start - case.roller.length
