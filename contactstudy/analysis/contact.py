@@ -96,11 +96,9 @@ def contact_results(dataset: xr.Dataset, about: float | None = None) -> xr.Datas
         "resultant": resultant,
         "load_position": (load * sample_x).sum(x) / resultant.where(resultant > 0),
     }
-    if about is None:
-        facing_x = sample_x.where(facing)
-        centre = 0.5 * facing_x.min(x) + 0.5 * facing_x.max(x)
-    else:
-        centre = checks.finite("about", about, "metres")
+    facing_x = sample_x.where(facing)
+    mid_position = 0.5 * facing_x.min(x) + 0.5 * facing_x.max(x)
+    centre = mid_position if about is None else checks.finite("about", about, "metres")
     numbers["moment"] = resultant * (numbers["load_position"] - centre)
     if "initial_gap" in dataset:
         numbers["contact_length_loss"] = length(facing, "x") - numbers["contact_length"]

@@ -74,14 +74,13 @@ class Cases:
         """Values of a swept parameter as distinct texts."""
         values = self.scalars[dim].values
         units = str(self.scalars[dim].attrs.get("units", "1"))
-        case_columns = [
-            str(name)
+        columns = [
+            [f"{name}={value}" for value in entry.values]
             for name, entry in self.scalars.coords.items()
             if entry.dims == (dim,) and name != dim and "comment" not in entry.attrs
         ]
-        if dim == "case" and case_columns:
-            columns = {name: self.scalars[name].values for name in case_columns}
-            texts = [", ".join(f"{name}={columns[name][i]}" for name in case_columns) for i in range(values.size)]
+        if dim == "case" and columns:
+            texts = [", ".join(entries) for entries in zip(*columns, strict=True)]
         else:
             texts = [
                 str(value) if isinstance(value, (bool, np.bool_, str)) else format_quantity(float(value), units, 6)

@@ -57,14 +57,13 @@ class Scale(NamedTuple):
 
 
 class Line(NamedTuple):
-    """Pressure along the axis, and positions of singular ends."""
+    """Pressure along the axis, positions of singular ends, limits of the positions, and labels of both axes."""
 
     x: FloatArray
     pressure: FloatArray
     singular: list[float]
-
-
-NO_LINE = Line(np.zeros(0), np.zeros(0), [])
+    span: Span
+    names: tuple[str, str]
 
 
 class Image(NamedTuple):
@@ -93,14 +92,16 @@ def region_limits(case: CaseFields, name: str) -> Span:
     if name == REGIONS[0] or not loaded.size or case.hertz is None:
         return low, high
     length = END_REGION * case.hertz[0]
-    start = loaded[0] - 0.25 * length if name == REGIONS[1] else loaded[-1] - 0.75 * length
-    return max(low, start), min(high, start + length)
+    end, before = (loaded[0], 0.25) if name == REGIONS[1] else (loaded[-1], 0.75)
+    return max(low, end - before * length), min(high, end + (1 - before) * length)
 
 
-def axial_line(case: CaseFields, scale: Scale) -> Line:
+def axial_line(case: CaseFields, scale: Scale, limits: Span) -> Line:
     """Return the largest pressure across the contact along the axis, without the vicinity of singular ends."""
     values = np.where(near_singular(case.dataset, case.x), np.nan, case.axial_pressure / scale.stress)
-    return Line(case.x / scale.length, values, [end / scale.length for end in case.singular_ends])
+    singular = [end / scale.length for end in case.singular_ends]
+    names = f"distance from the free end, x{scale.length_name}", f"pressure along the axis{scale.stress_name}"
+    return Line(case.x / scale.length, values, singular, (limits[0] / scale.length, limits[1] / scale.length), names)
 
 
 def top_image(case: CaseFields, scale: Scale, limits: Span) -> Image:

@@ -180,7 +180,7 @@ def _draw_profile(roller: Roller, figure: Figure, result: xr.Dataset) -> str:
     return "Profile of the roller: drop from the cylinder, downwards."
 
 
-def _draw_plane(text: str, position: dict[str, float], figure: Figure, result: xr.Dataset) -> str:
+def _draw_plane(text: str, position: dict[str, Any], figure: Figure, result: xr.Dataset) -> str:
     """Von Mises stress in a plane."""
     plot_stress_plane(result, "von_mises", ax=figure.subplots(), si=True, **position)
     _, limit = cap_field(result, result["von_mises"])

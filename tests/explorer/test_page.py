@@ -226,7 +226,7 @@ def test_singular_end_is_not_drawn(case_result: xr.Dataset) -> None:
     x = np.linspace(float(case_result.x[0]), float(case_result.x[-1]), 400)
     case = CaseFields(singular.interp(x=x).drop_vars("x_bounds", errors="ignore"))
     scale = choose_scale(case, relative=True)
-    line = axial_line(case, scale)
+    line = axial_line(case, scale, region_limits(case, REGIONS[0]))
     assert len(line.singular) == 1
     assert np.isnan(line.pressure[np.abs(line.x - line.singular[0]) < 0.05]).all()
     assert top_image(case, scale, region_limits(case, REGIONS[1])).limit <= np.nanmax(line.pressure) * (1 + 1e-9)
