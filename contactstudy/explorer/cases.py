@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
 
@@ -108,15 +108,16 @@ def status_sentence(status: str, reason: str) -> str:
 def open_cases(study: xr.Dataset | str | Path) -> Cases:
     """Return the cases of an opened study, of a result, or of a study's folder."""
     if not isinstance(study, xr.Dataset):
-        return _cases_of_folder(Path(study))
-    return _cases_of_study(study) if "status" in study else _case_of_result(study)
+        cases = _cases_of_folder(Path(study))
+    else:
+        cases = _cases_of_study(study) if "status" in study else _case_of_result(study)
+    return replace(cases, load=lru_cache(maxsize=MAX_CACHED_CASES)(cases.load))
 
 
 def _cases_of_folder(folder: Path) -> Cases:
     """Cases in a study's folder; each file is read on demand."""
     scalars, results = collect(folder).squeeze(), Folder(folder).results()
 
-    @lru_cache(maxsize=MAX_CACHED_CASES)
     def load(index: CaseIndex) -> CaseFields:
         return CaseFields(results.case(str(scalars["case_id"].values[index]), FIELDS))
 
@@ -140,7 +141,6 @@ def _cases_of_study(study: xr.Dataset) -> Cases:
     scalars = study[[name for name, entry in study.data_vars.items() if set(entry.dims) <= set(dims)]]
     scalars = scalars.drop_vars([name for name in scalars.coords if not set(scalars[name].dims) <= set(dims)])
 
-    @lru_cache(maxsize=MAX_CACHED_CASES)
     def load(index: CaseIndex) -> CaseFields:
         entry = study.isel(dict(zip(dims, index, strict=True)))
         if str(entry["status"].item()) not in ("ok", "stale"):

@@ -99,9 +99,11 @@ def plot_study_lines(
     size = (4.0 * columns + (0.6 if hue is None else 2.0), 3.2 * rows + 0.4)
     figure, panels = pyplot.subplots(rows, columns, figsize=size, squeeze=False, layout="constrained", sharex=True)
     fixed_parameters = most_solved(dataset[names[0]], axes_of_study, selection or {})
+    stored_names = [entry for name in names for entry in (name, f"{name}_error") if entry in dataset]
+    lines = select_one(dataset[stored_names], axes_of_study, fixed_parameters)
     marks: dict[str, dict[str, Any]] = {}
     for ax, name in zip(panels.flat, names, strict=True):
-        marks |= _draw_panel(ax, dataset, name, x, hue, fixed_parameters=fixed_parameters)
+        marks |= _draw_panel(ax, lines, name, x, hue)
     figure.set_figheight(figure.get_figheight() + LINE_HEIGHT * rows * max(map(_extra_lines, panels.flat)))
     if hue is not None:
         handles, labels = panels[0, 0].get_legend_handles_labels()
@@ -121,14 +123,11 @@ def plot_study_lines(
     return figure
 
 
-def _draw_panel(
-    ax: Axes, dataset: xr.Dataset, name: str, x: str, hue: str | None, fixed_parameters: Mapping[str, Any]
-) -> dict[str, dict[str, Any]]:
+def _draw_panel(ax: Axes, dataset: xr.Dataset, name: str, x: str, hue: str | None) -> dict[str, dict[str, Any]]:
     """Draw one quantity; return the styles of the marks that a legend must explain, by label."""
     marks: dict[str, dict[str, Any]] = {}
-    axes_of_study = (x,) if hue is None else (x, hue)
-    values, label = scale_values(select_one(dataset[name], axes_of_study, fixed_parameters), name)
-    errors, without_estimate = _errors(dataset, name, axes_of_study, fixed_parameters)
+    values, label = scale_values(dataset[name], name)
+    errors, without_estimate = _errors(dataset, name)
     is_numeric = np.issubdtype(values[x].dtype, np.number)
     x_values, x_label = scale_values(values[x], x) if is_numeric else (values[x], x.replace("_", " "))
     positions = x_values.values if is_numeric else np.arange(x_values.size)
@@ -176,16 +175,10 @@ def _extra_lines(ax: Axes) -> int:
     return names + ax.get_xlabel().count("\n")
 
 
-def _errors(
-    dataset: xr.Dataset, name: str, axes: tuple[str, ...], fixed_parameters: Mapping[str, Any]
-) -> tuple[xr.DataArray, xr.DataArray]:
+def _errors(dataset: xr.Dataset, name: str) -> tuple[xr.DataArray, xr.DataArray]:
     """Finite errors in the unit of the panel, and the finite values whose error is not estimated."""
-    values = select_one(dataset[name], axes, fixed_parameters)
-    if f"{name}_error" in dataset:
-        errors = select_one(dataset[f"{name}_error"], axes, fixed_parameters)
-    else:
-        missing_error = np.inf if name.startswith(ESTIMATED_PREFIXES) else np.nan
-        errors = xr.full_like(values, missing_error, dtype=np.float64)
+    values, missing_error = dataset[name], np.inf if name.startswith(ESTIMATED_PREFIXES) else np.nan
+    errors = dataset.get(f"{name}_error", xr.full_like(values, missing_error, dtype=np.float64))
     factor, _ = scale_of(values)
     return errors.where(np.isfinite(errors)) / factor, (errors == np.inf) & (abs(values) < np.inf)
 
