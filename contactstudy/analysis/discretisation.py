@@ -91,10 +91,8 @@ def discretisation_error(fine: xr.Dataset, coarse: xr.Dataset) -> xr.Dataset:
         value, coarse_value = values[name], coarse_values[name]
         if name in singular_names | unresolved:
             return np.inf
-        if value == 0 and coarse_value == 0:
-            return 0.0
         # If the grids differ by more than this fraction, they do not allow an estimate of the limit.
-        if not (np.isfinite(value) and np.isfinite(coarse_value)) or abs(value - coarse_value) > 0.2 * abs(value):
+        if not abs(value - coarse_value) <= 0.2 * abs(value):  # also of NaN
             return np.inf
         return max(correction(name), displacement * abs(value) if np.isfinite(displacement) else 0.0)
 
