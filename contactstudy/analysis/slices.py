@@ -24,7 +24,6 @@ from contactstudy.arrays.variables import (
     NOT_ESTIMATED,
     STRESSES,
     describe,
-    name_array,
     require_in_si,
     without_error,
 )
@@ -257,10 +256,5 @@ def _with_errors(
         "axial_pressure": (maxima, "largest of the slice"),
         "axial_pressure_error": (error, source),
     }
-    result = xr.Dataset(
-        {
-            name: name_array(name, xr.DataArray(slice_values, dims="slice")).assign_attrs(comment=comment)
-            for name, (slice_values, comment) in values.items()
-        }
-    )
+    result = xr.Dataset({name: ("slice", entry, {"comment": comment}) for name, (entry, comment) in values.items()})
     return without_error(result, *values) if np.isnan(relative).any() else result
