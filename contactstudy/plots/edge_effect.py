@@ -148,7 +148,7 @@ def _level_distance(entries: list[Entry]) -> float:
         x, values = axial[dimension_along(axial, "x")].values / unit.length, axial.values
         mid_length = 0.5 * (x[0] + x[-1])
         in_half = x <= mid_length
-        is_level = np.abs(values[in_half] / values[in_half][-1] - 1) < PLATEAU if in_half.any() else np.array([True])
+        is_level = np.abs(values[in_half] / values[in_half][-1] - 1) < PLATEAU
         varying_x = x[in_half][~is_level]
         limits.append(min(1.25 * float(varying_x[-1]) + 1.0 if varying_x.size else 1.0, float(mid_length)))
     return max(limits)
