@@ -18,7 +18,7 @@ import xarray as xr
 from contactstudy import analysis
 
 
-def _imported_method(module: str, name: str) -> Callable[..., Any]:
+def _method(module: str, name: str) -> Callable[..., Any]:
     """Return a function of a Dataset, whose module is imported at the first call, as a method of the accessor."""
 
     def method(self: ContactAccessor, *arguments: Any, **options: Any) -> Any:
@@ -60,23 +60,13 @@ class ContactAccessor:
         dims = ", ".join(f"{dim} ({status.sizes[dim]})" for dim in status.dims)
         return f"study of {status.size} cases over {dims}: {by_status}; select one for its numbers"
 
-    summary = _imported_method("contactstudy.report", "summary")
-    assess = _imported_method("contactstudy.report", "assess")
-    citations = _imported_method("contactstudy.report", "citations")
-    explore = _imported_method("contactstudy.explorer", "explore")
-
-
-def _method(function: Callable[..., Any]) -> Callable[..., Any]:
-    """Return a function of a Dataset as a method of the accessor."""
-
-    @wraps(function)
-    def method(self: ContactAccessor, *arguments: Any, **options: Any) -> Any:
-        return function(self._dataset, *arguments, **options)
-
-    return method
+    summary = _method("contactstudy.report", "summary")
+    assess = _method("contactstudy.report", "assess")
+    citations = _method("contactstudy.report", "citations")
+    explore = _method("contactstudy.explorer", "explore")
 
 
 for _name in analysis.__all__:
     _function = getattr(analysis, _name)
     if inspect.isfunction(_function) and next(iter(inspect.signature(_function).parameters)) == "dataset":
-        setattr(ContactAccessor, _name, _method(_function))
+        setattr(ContactAccessor, _name, wraps(_function)(_method("contactstudy.analysis", _name)))

@@ -122,9 +122,10 @@ def cell_size(array: xr.DataArray, axis: str) -> xr.DataArray:
     return (centres.max(dim) - centres.min(dim)) / np.maximum(centres.count(dim) - 1, 1)
 
 
-def cell_widths(array: xr.DataArray, axis: str) -> xr.DataArray:
-    """Return the width of each cell along an axis, metres; NaN in padding."""
-    return cell_size(array, axis) + 0.0 * positions(array, axis)
+def cell_edges(array: xr.DataArray, axis: str) -> tuple[xr.DataArray, xr.DataArray]:
+    """Return the lower and the upper edge of each cell along an axis, metres; NaN in padding."""
+    centres, half_width = positions(array, axis), 0.5 * cell_size(array, axis)
+    return centres - half_width, centres + half_width
 
 
 def single_case(dataset: xr.Dataset) -> xr.Dataset:
@@ -196,8 +197,14 @@ def reduce_dims(
     return results
 
 
-# Powers of a and of p0 in the scale of each unit: a for a length, p0 a**2 for a load, and so on
-POWERS = {"m": (1, 0), "m2": (2, 0), "Pa": (0, 1), "N/m": (1, 1), "N": (2, 1), "N m": (3, 1)}
+POWERS = {  # Powers of a and of p0 in the scale of each unit, and the scale's text
+    "m": (1, 0, "a"),
+    "m2": (2, 0, "a**2"),
+    "Pa": (0, 1, "p0"),
+    "N/m": (1, 1, "p0 a"),
+    "N": (2, 1, "p0 a**2"),
+    "N m": (3, 1, "p0 a**3"),
+}
 SCALES = ("hertz_half_width", "hertz_max_pressure")  # The scales themselves, which stay in SI
 
 
@@ -234,14 +241,11 @@ def normalized(dataset: xr.Dataset) -> xr.Dataset:
     half_width, max_pressure = (dataset[name].variable for name in SCALES)
 
     def scaled(array: xr.DataArray, specification: Variable) -> xr.Variable:
-        length_power, pressure_power = POWERS[specification.units]
+        length_power, pressure_power, scale = POWERS[specification.units]
         result = array.variable / (half_width**length_power * max_pressure**pressure_power)
         # Dimensions of the study come first, as in the result.
         result = result.transpose(*(dim for dim in result.dims if dim not in array.dims), *array.dims)
-        length_scale = [f"a**{length_power}"] if length_power > 1 else ["a"] * length_power
-        scale = " ".join(["p0"] * pressure_power + length_scale)  # such as p0 a**2
-        long_name = f"{specification.long_name}, over {scale}"
-        result.attrs = {**array.attrs, "units": "1", "long_name": long_name}
+        result.attrs = {**array.attrs, "units": "1", "long_name": f"{specification.long_name}, over {scale}"}
         return result
 
     variables, coordinates = {}, {}

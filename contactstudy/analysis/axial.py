@@ -10,7 +10,15 @@ import numpy as np
 import xarray as xr
 
 from contactstudy import checks
-from contactstudy.analysis.axes import cell_size, dimension_along, positions, reduce_dims, single_case, sort_positions
+from contactstudy.analysis.axes import (
+    cell_edges,
+    cell_size,
+    dimension_along,
+    positions,
+    reduce_dims,
+    single_case,
+    sort_positions,
+)
 from contactstudy.arrays.cells import labelled_cells
 from contactstudy.arrays.grid import Grid
 from contactstudy.arrays.variables import describe, name_array, require, require_in_si, without_error
@@ -190,6 +198,12 @@ def axial_pressure(dataset: xr.Dataset) -> xr.DataArray:
     return name_array("axial_pressure", pressure.max(dimension_along(pressure, "y")))
 
 
+def loaded_range(axial: xr.DataArray) -> tuple[xr.DataArray, xr.DataArray]:
+    """Return the first and the last position of a pressure along the axis above 0, metres; NaN without contact."""
+    x, loaded_x = dimension_along(axial, "x"), positions(axial, "x").where(axial > 0)
+    return loaded_x.min(x), loaded_x.max(x)
+
+
 def line_load(dataset: xr.Dataset) -> xr.DataArray:
     """Return the load per length along the roller's axis, the integral of the pressure across y.
 
@@ -252,13 +266,13 @@ def load_between(dataset: xr.Dataset, start: xr.DataArray | float, stop: xr.Data
     for name, value in (("start", start), ("stop", stop)):
         checks.instance(name, value, (float, int, np.number, xr.DataArray), "a number (metres) or a DataArray")
     load = line_load(dataset)
-    x, half_cell = positions(load, "x"), 0.5 * cell_size(load, "x")
+    lower_edges, upper_edges = cell_edges(load, "x")
     if np.any(np.greater_equal(start, stop)):
         raise InvalidInputError("start, stop", (start, stop), "increasing (metres)")
-    low, high = float((x - half_cell).min()), float((x + half_cell).max())
+    low, high = float(lower_edges.min()), float(upper_edges.max())
     if np.all(np.greater_equal(start, high)) or np.all(np.less_equal(stop, low)):
         raise InvalidInputError("start, stop", (start, stop), f"a part of the cells, {low:.4g} to {high:.4g} m")
-    overlap = (np.minimum(x + half_cell, stop) - np.maximum(x - half_cell, start)).clip(0.0)
+    overlap = (np.minimum(upper_edges, stop) - np.maximum(lower_edges, start)).clip(0.0)
     total = (load * overlap).sum(dimension_along(load, "x"), min_count=1)
     return name_array("normal_load", total).assign_attrs(comment="between two positions along the axis")
 

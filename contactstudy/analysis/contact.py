@@ -1,9 +1,8 @@
-"""Scalars of a contact on its cells: area, length, edge pressures, resultant, position of the load; cut ends."""
+"""Scalars of a contact on its cells: area, length, edge pressures, resultant; cut ends; numbers of a study's case."""
 
 from __future__ import annotations
 
 import contextlib
-from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -11,68 +10,39 @@ import xarray as xr
 from contactstudy import checks
 from contactstudy.analysis.axes import (
     axis_dimensions,
+    cell_edges,
     cell_size,
-    cell_widths,
     dimension_along,
     positions,
-    reduce_dims,
     sort_positions,
+    without_coordinates,
 )
-from contactstudy.analysis.axial import axial_pressure, unloaded_gap
-from contactstudy.analysis.peaks import largest_sample, measure
+from contactstudy.analysis.axial import axial_pressure, loaded_range, under_roller
+from contactstudy.analysis.peaks import largest_sample, measure, peak
 from contactstudy.analysis.provenance import INPUTS_ATTRIBUTE, attribute, solved_case
-from contactstudy.arrays.variables import name_array, require_in_si, variable_of, without_error
-from contactstudy.checks import Array
+from contactstudy.arrays.variables import (
+    ERROR_KIND,
+    NOT_ESTIMATED,
+    STRESSES,
+    labels,
+    name_array,
+    require,
+    require_in_si,
+    variable_of,
+    without_error,
+)
 from contactstudy.errors import InvalidInputError
 
 MISSING_LOAD = 0.01  # Fraction of the load that a part of a contact lacks at least
 END_TOLERANCE = 1e-6  # Largest distance, over a cell, of a border of the cells that is at an end of the contact
 
-
-class ContactNumbers(NamedTuple):
-    """Scalars of contacts in whole cells: arrays without the cells' axes; NaN without pressure."""
-
-    contact_area: Array  # m2
-    contact_length: Array  # m
-    contact_width: Array
-    contact_length_loss: Array  # m, part of the facing length without contact
-    resultant: Array  # N
-    load_position: Array  # m, along x
-    mid_position: Array  # m
-
-
-def contact_numbers(pressure: Array, under_roller: Array, x: Array, y: Array, dx: Array, dy: Array) -> ContactNumbers:
-    """Return the scalars of pressures (..., x, y), with `under_roller`, `x`, `dx` (..., x), and `y`, `dy` (..., y)."""
-    has_pressure = np.asarray(~np.isnan(pressure).all(axis=(-2, -1)))
-    # A failed case has no finite positions.
-    x, y, dx, dy = (np.where(has_pressure[..., None], values, 0.0) for values in (x, y, dx, dy))
-    loaded = np.asarray(pressure > 0)
-
-    def length(centres: Array, mask: Array, width: Array) -> Array:
-        first, last = _range(centres - 0.5 * width, mask)[0], _range(centres + 0.5 * width, mask)[1]
-        return np.where(mask.any(axis=-1), last - first, 0.0)
-
-    along = length(x, np.asarray(loaded.any(axis=-1)), dx)
-    load = np.nansum(pressure * dy[..., None, :], axis=-1) * dx
-    resultant = np.nansum(load, axis=-1)
-    moment = np.nansum(load * x, axis=-1)
-    position = np.divide(moment, resultant, out=np.full(np.shape(moment), np.nan), where=resultant > 0)
-    first, last = _range(x, under_roller)
-    numbers = (
-        np.nansum(loaded * dx[..., :, None] * dy[..., None, :], axis=(-2, -1)),
-        along,
-        length(y, np.asarray(loaded.any(axis=-2)), dy),
-        length(x, under_roller, dx) - along,
-        resultant,
-        position,
-        0.5 * np.where(first <= last, first, np.nan) + 0.5 * last,
-    )
-    return ContactNumbers(*(np.where(has_pressure, value, np.nan) for value in numbers))
-
-
-def _range(centres: Array, mask: Array) -> tuple[Array, Array]:
-    """First and last position of a mask along the last axis; infinite for an empty mask."""
-    return np.where(mask, centres, np.inf).min(axis=-1), np.where(mask, centres, -np.inf).max(axis=-1)
+# Comments of numbers that depend on the cells, with errors that are not estimated
+COMMENTS = dict.fromkeys(
+    ("contact_length", "contact_width", "peak_pressure_x", "peak_pressure_y"), "in whole cells"
+) | dict.fromkeys(
+    ("end_pressure_over_p0", "end_pressure_over_p0_first", "end_pressure_over_p0_last"),
+    "mean of the outermost loaded cell",
+)
 
 
 def contact_results(dataset: xr.Dataset, about: float | None = None) -> xr.Dataset:
@@ -108,26 +78,36 @@ def contact_results(dataset: xr.Dataset, about: float | None = None) -> xr.Datas
     [4.0, 2.0, 8.0, -2.0]
     """
     dataset = require_in_si(dataset, "pressure", normalized=True)
-    pressure = dataset["pressure"]
-    x, y = dimension_along(pressure, "x"), dimension_along(pressure, "y")
-    under_roller = (unloaded_gap(dataset) if "initial_gap" in dataset else axial_pressure(dataset)).notnull()
-    arguments = [
-        (pressure, [x, y]),
-        (under_roller, [x]),
-        *((positions(pressure, axis), [dim]) for axis, dim in (("x", x), ("y", y))),
-        *((cell_widths(pressure, axis), [dim]) for axis, dim in (("x", x), ("y", y))),
-    ]
-    numbers = dict(zip(ContactNumbers._fields, reduce_dims(contact_numbers, arguments, 7), strict=True))
-    mid_position, loss = numbers.pop("mid_position"), numbers.pop("contact_length_loss")
+    pressure, facing = dataset["pressure"], under_roller(dataset)
+    (x, dx), (y, dy) = ((dimension_along(pressure, axis), cell_size(pressure, axis)) for axis in "xy")
+    sample_x, loaded = positions(pressure, "x"), pressure > 0
+
+    def length(mask: xr.DataArray, axis: str) -> xr.DataArray:
+        lower_edges, upper_edges = (edges.where(mask) for edges in cell_edges(pressure, axis))
+        dim = dimension_along(pressure, axis)
+        return (upper_edges.max(dim) - lower_edges.min(dim)).fillna(0.0)
+
+    load = (pressure * dy).sum(y) * dx
+    resultant = load.sum(x)
+    numbers = {
+        "contact_area": (loaded * dx * dy).sum((x, y)),
+        "contact_length": length(loaded.any(y), "x"),
+        "contact_width": length(loaded.any(x), "y"),
+        "resultant": resultant,
+        "load_position": (load * sample_x).sum(x) / resultant.where(resultant > 0),
+    }
+    facing_x = sample_x.where(facing)
+    mid_position = 0.5 * facing_x.min(x) + 0.5 * facing_x.max(x)
     centre = mid_position if about is None else checks.finite("about", about, "metres")
-    numbers["moment"] = numbers["resultant"] * (numbers["load_position"] - centre)
+    numbers["moment"] = resultant * (numbers["load_position"] - centre)
     if "initial_gap" in dataset:
-        numbers["contact_length_loss"] = loss
-    scalars = {name: name_array(name, value) for name, value in numbers.items()}
+        numbers["contact_length_loss"] = length(facing, "x") - numbers["contact_length"]
+    has_pressure = pressure.notnull().any((x, y))
+    scalars = {name: name_array(name, value.where(has_pressure)) for name, value in numbers.items()}
     for name in ("contact_area", "contact_length"):
         scalars[name].attrs["comment"] = "in whole cells"
-    peak = _peak_pressure(dataset, numbers["resultant"])
-    return without_error(peak.assign(edge_pressure(dataset).data_vars).assign(scalars).compute(), *scalars)
+    peak_pressure = _peak_pressure(dataset, scalars["resultant"])
+    return without_error(peak_pressure.assign(edge_pressure(dataset).data_vars).assign(scalars).compute(), *scalars)
 
 
 def _peak_pressure(dataset: xr.Dataset, resultant: xr.DataArray) -> xr.Dataset:
@@ -138,10 +118,10 @@ def _peak_pressure(dataset: xr.Dataset, resultant: xr.DataArray) -> xr.Dataset:
         return largest_pressure
     covers_contact = resultant > (1 - MISSING_LOAD) * dataset["normal_load"]
     stored_peak = dataset[list(names)].reset_coords(drop=True)
-    peak = stored_peak["peak_pressure"].where(covers_contact, largest_pressure["peak_pressure"])
+    value = stored_peak["peak_pressure"].where(covers_contact, largest_pressure["peak_pressure"])
     comment = "settled where the contact is whole, otherwise of the highest cell"
     return largest_pressure.assign(
-        peak_pressure=name_array("peak_pressure", peak).assign_attrs(comment=comment),
+        peak_pressure=name_array("peak_pressure", value).assign_attrs(comment=comment),
         peak_pressure_error=stored_peak["peak_pressure_error"].where(covers_contact),
     )
 
@@ -173,26 +153,23 @@ def edge_pressure(dataset: xr.Dataset) -> xr.Dataset:
     (3.0, 2.0)
     """
     axial = sort_positions(axial_pressure(dataset), "x")
-
-    def first_and_last(values: Array) -> tuple[Array, Array]:
-        """First and last positive number along the last axis; NaN without a positive number."""
-        is_loaded = values > 0
-        indices = is_loaded.argmax(axis=-1), values.shape[-1] - 1 - is_loaded[..., ::-1].argmax(axis=-1)
-        first_values, last_values = (np.take_along_axis(values, index[..., None], axis=-1)[..., 0] for index in indices)
-        without_contact = ~is_loaded.any(axis=-1)
-        return np.where(without_contact, np.nan, first_values), np.where(without_contact, np.nan, last_values)
-
-    values = reduce_dims(first_and_last, [(axial, [dimension_along(axial, "x")])], 2)
+    x = dimension_along(axial, "x")
+    is_loaded = (axial > 0).compute()
+    indices = is_loaded.argmax(x), axial.sizes[x] - 1 - is_loaded.isel({x: slice(None, None, -1)}).argmax(x)
     edges = {}
-    for end, value, is_cut in zip(("first", "last"), values, cut_ends(dataset), strict=True):
-        edge_value = value.where(is_cut == 0)
+    for end, index, is_cut in zip(("first", "last"), indices, cut_ends(dataset), strict=True):
+        name = f"edge_pressure_{end}"
+        value = without_coordinates(axial, x).isel({x: index}).where(is_loaded.any(x) & (is_cut == 0))
         # At a singular end the mean of a cell depends on the size of the cell.
-        is_singular = np.isinf(dataset.get(f"end_pressure_{end}", xr.DataArray(0.0)))
-        edges[f"edge_pressure_{end}"] = name_array(
-            f"edge_pressure_{end}", edge_value.where(~is_singular | edge_value.isnull(), np.inf)
-        )
-        edges[f"edge_pressure_{end}"].attrs["comment"] = "mean of the outermost loaded cell"
+        edges[name] = name_array(name, _unbounded_if_singular(dataset, end, value))
+        edges[name].attrs["comment"] = "mean of the outermost loaded cell"
     return without_error(xr.Dataset(edges), *edges)
+
+
+def _unbounded_if_singular(dataset: xr.Dataset, end: str, value: xr.DataArray) -> xr.DataArray:
+    """Value near an end; infinite at a singular end, where pressure and stress are unbounded."""
+    is_singular = np.isinf(dataset.get(f"end_pressure_{end}", xr.DataArray(0.0)))
+    return value.where(~is_singular | value.isnull(), np.inf)
 
 
 def cut_ends(dataset: xr.Dataset) -> tuple[xr.DataArray, xr.DataArray]:
@@ -227,43 +204,23 @@ def cut_ends(dataset: xr.Dataset) -> tuple[xr.DataArray, xr.DataArray]:
     dataset = require_in_si(dataset, "normal_load")
     for axis in "xy":
         pressure = sort_positions(pressure, axis)
-    x, y = dimension_along(pressure, "x"), dimension_along(pressure, "y")
+    (x, dx), (y, dy) = ((dimension_along(pressure, axis), cell_size(pressure, axis)) for axis in "xy")
+    (lower_edges, upper_edges), in_contact = cell_edges(pressure, "x"), pressure > 0
     start, stop = 0.0, np.inf
     if "case" in attribute(dataset, INPUTS_ATTRIBUTE):
         with contextlib.suppress(InvalidInputError):  # inputs of another version
             start, stop = solved_case(dataset).contact_range
-    arguments = [
-        (pressure, [x, y]),
-        (dataset["normal_load"], []),
-        (positions(pressure, "x"), [x]),
-        *((cell_widths(pressure, axis), [dim]) for axis, dim in (("x", x), ("y", y))),
-        *((xr.DataArray(end), []) for end in (start, stop)),
-    ]
-    first, last = reduce_dims(_find_cuts, arguments, 2)
-    return first, last
-
-
-def _find_cuts(
-    pressure: Array, load: Array, x: Array, dx: Array, dy: Array, start: float, stop: float
-) -> tuple[Array, Array]:
-    """Whether contacts (..., x, y) continue beyond the first and the last x."""
-    cells = np.broadcast_to(np.isfinite(x), pressure.shape[:-1])
-    x, dx = (np.broadcast_to(values, cells.shape) for values in (x, dx))
-    resultant = np.nansum(pressure * dx[..., :, None] * dy[..., None, :], axis=(-2, -1))
-    is_gap = np.abs(np.diff(x, axis=-1) - 0.5 * (dx[..., 1:] + dx[..., :-1])) > END_TOLERANCE * dx[..., 1:]
-    in_contact = pressure > 0
+    lacks_load = (pressure * dx * dy).sum((x, y)) < (1 - MISSING_LOAD) * dataset["normal_load"]
     # The load alone is not enough: a cut along y, or omitted cells, also reduce the resultant.
-    cut = (resultant < (1 - MISSING_LOAD) * load) & ~in_contact[..., [0, -1]].any(axis=(-2, -1)) & ~is_gap.any(axis=-1)
-
-    def select_end(values: Array, *, first: bool) -> Array:
-        last = cells.sum(axis=-1, keepdims=True) - 1
-        index = np.zeros_like(last) if first else np.maximum(last, 0)
-        return np.asarray(np.take_along_axis(values, index, axis=-1)[..., 0])
-
-    is_loaded, tolerance = in_contact.any(axis=-1), END_TOLERANCE * dx
-    starts_inside, stops_inside = x - 0.5 * dx > start + tolerance, x + 0.5 * dx < stop - tolerance
-    first, last = select_end(is_loaded & starts_inside, first=True), select_end(is_loaded & stops_inside, first=False)
-    return (cut & first).astype(np.float64), (cut & last).astype(np.float64)
+    tolerance = END_TOLERANCE * dx
+    omits_cells = (abs(lower_edges - upper_edges.shift({x: 1})) > tolerance).any(x)
+    is_part = lacks_load & ~in_contact.isel({y: [0, -1]}).any((x, y)) & ~omits_cells
+    columns = (
+        (lower_edges == lower_edges.min(x)) & (lower_edges > start + tolerance),
+        (upper_edges == upper_edges.max(x)) & (upper_edges < stop - tolerance),
+    )
+    first, last = (is_part & (in_contact.any(y) & column).any(x) for column in columns)
+    return first.astype(np.float64).drop_attrs(deep=False), last.astype(np.float64).drop_attrs(deep=False)
 
 
 def edge_factors(
@@ -329,20 +286,64 @@ def _values(dataset: xr.Dataset, variable: str, reach: xr.DataArray | float) -> 
     if (profile < 0).any():
         raise InvalidInputError("variable", variable, "a measure that is not negative", "take a stress measure")
     x, sample_x = dimension_along(profile, "x"), positions(profile, "x")
-    loaded_x = positions(axial, "x").where(axial > 0)
-    loaded_range = loaded_x.min(dimension_along(axial, "x")), loaded_x.max(dimension_along(axial, "x"))
     # At a cut end the border of the contact is unknown.
-    borders = [border.where(cut == 0).compute() for border, cut in zip(loaded_range, cut_ends(dataset), strict=True)]
+    ends = zip(loaded_range(axial), cut_ends(dataset), strict=True)
+    borders = [border.where(cut == 0).compute() for border, cut in ends]
     values = {}
     for side, border in zip(("first", "last"), borders, strict=True):
         # The factor allows for rounding of a point's distance.
         value = profile.where(abs(sample_x - border) <= reach * (1 + 1e-9)).max(x)
-        # Near a singular end pressure and stress are unbounded.
-        is_singular = np.isinf(dataset.get(f"end_pressure_{side}", xr.DataArray(0.0)))
-        values[side] = value.where(~is_singular | value.isnull(), np.inf)
+        values[side] = _unbounded_if_singular(dataset, side, value)
     distance = abs(sample_x - 0.5 * (borders[0] + borders[1]))
     nearest = distance.fillna(np.inf).argmin(x)
     width = cell_size(profile, "x")
     # A mid-length beyond the points has no value.
     is_within = distance.min(x) <= (width.isel({x: nearest}) if x in width.dims else width)
     return values | {"middle": profile.isel({x: nearest}).where(is_within), "peak": profile.max(x)}
+
+
+def pressure_numbers(dataset: xr.Dataset) -> dict[str, xr.Variable]:
+    """Numbers of the pressure; end pressures from the Dataset, or else from the outermost loaded columns."""
+    require(dataset, "pressure", "hertz_max_pressure")
+    array, scale = dataset["pressure"].transpose("x", "y"), float(dataset["hertz_max_pressure"])
+    pressure = array.values
+    x_index, y_index = np.unravel_index(int(np.nanargmax(pressure)), pressure.shape)
+    axial = pressure.max(axis=1)
+    outermost = axial[axial > 0][[0, -1]] if (axial > 0).any() else np.full(2, np.nan)
+    first, last = (
+        float(dataset.get(f"end_pressure_{end}", value)) / scale
+        for end, value in zip(("first", "last"), outermost, strict=True)
+    )
+    numbers = {
+        "peak_pressure": pressure[x_index, y_index],
+        "peak_pressure_x": array["x"].values[x_index],
+        "peak_pressure_y": array["y"].values[y_index],
+        "end_pressure_over_p0_first": first,
+        "end_pressure_over_p0_last": last,
+        "end_pressure_over_p0": 0.5 * (first + last),
+    }
+    for name, axis, across in (("contact_length", "x", 1), ("contact_width", "y", 0)):
+        loaded = (pressure > 0).any(axis=across)
+        widths = np.broadcast_to(cell_size(array, axis).values, loaded.shape)
+        numbers[name] = np.ptp(array[axis].values[loaded]) + widths[loaded][[0, -1]].mean() if loaded.any() else 0.0
+    comments = {name: {"comment": comment, ERROR_KIND: NOT_ESTIMATED} for name, comment in COMMENTS.items()}
+    return {name: xr.Variable((), value, labels(name) | comments.get(name, {})) for name, value in numbers.items()}
+
+
+def stress_summary(dataset: xr.Dataset) -> xr.Dataset:
+    """Largest von Mises stress, its error and position; empty without stresses."""
+    if "von_mises" not in dataset:
+        return xr.Dataset()
+    if np.isnan(dataset["von_mises"].values).all():
+        raise InvalidInputError("von_mises", "nan everywhere", "a field with at least one number")
+    has_all_stresses = all(name in dataset for name in STRESSES)
+    return peak(dataset) if has_all_stresses else largest_sample(dataset, "von_mises")
+
+
+def case_numbers(dataset: xr.Dataset) -> dict[str, xr.Variable]:
+    """All numbers of a solved case: scalars of the Dataset (refined), or else numbers of its cells."""
+    numbers = pressure_numbers(dataset)
+    for source in (stress_summary(dataset), dataset):
+        scalars = {str(name): entry for name, entry in source.variables.items() if entry.ndim == 0}
+        numbers |= {name: entry for name, entry in scalars.items() if name not in source.coords}
+    return numbers

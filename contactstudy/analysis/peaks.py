@@ -44,9 +44,8 @@ Measure = Callable[[xr.Dataset], xr.DataArray]
 
 def _principal(stress: xr.Dataset, rank: int) -> xr.DataArray:
     """Principal stress of a rank, 1 the largest, Pa."""
-    return name_array(
-        f"principal_stress_{rank}", principal_stresses(stress)["principal_stress"].sel(principal=rank, drop=True)
-    )
+    principal = principal_stresses(stress)["principal_stress"].sel(principal=rank, drop=True)
+    return name_array(f"principal_stress_{rank}", principal)
 
 
 # Measures of the stress at a point: components and function
@@ -98,9 +97,7 @@ def measure(dataset: xr.Dataset, name: str) -> xr.DataArray:
     checks.known_name("variable", name, {*map(str, dataset.data_vars), *MEASURES})
     components, function = MEASURES[name]
     stress = require_in_si(dataset, *components, normalized=True)[list(components)]
-    padding = xr.apply_ufunc(np.isnan, stress[components[0]], dask="allowed").compute()
-    if not padding.any():
-        return function(stress)
+    padding = stress[components[0]].isnull().compute()
     if padding.all():
         raise InvalidInputError(name, "nan everywhere", "a field with at least one number")
     value = function(stress.fillna(0.0))
@@ -311,7 +308,7 @@ def _explain_unbounded(case: xr.Dataset, axes: dict[str, FloatArray], index: tup
 
 def _explain_unresolved(case: xr.Dataset, axes: dict[str, FloatArray], sample: dict[str, float]) -> str:
     """Text on where samples are too coarse for the pressure above: at its peak or at the largest sample; or empty."""
-    if not {"pressure", "x", "y"} <= {str(name) for name in case.variables} or case["y"].size < 2:
+    if not {"pressure", "x", "y"} <= set(case.variables) or case["y"].size < 2:
         return ""
     pressure, x = case["pressure"].transpose("x", "y").values, case["x"].values
     dy = float(case["y"][1] - case["y"][0])
@@ -331,21 +328,15 @@ def _explain_unresolved(case: xr.Dataset, axes: dict[str, FloatArray], sample: d
         from_end = min((abs(float(x[column]) - end) for end in _extent(case)), default=np.inf)
         scales = {"x": min(length_x, max(length_y, from_end)), "z": min(length_x, length_y)}
         for axis, scale in scales.items():
-            distance = _distance(axes[axis], location.get(axis, 0.5 * scale)) if axis in axes else 0.0
+            points = axes.get(axis, np.zeros(1))
+            nearest = int(np.abs(points - location.get(axis, 0.5 * scale)).argmin())
+            distance = float(np.diff(points)[max(nearest - 1, 0) : nearest + 1].max(initial=0.0))
             if distance > MAX_SPACING_RATIO * scale:
                 return (
                     f"the points are {distance:.2g} m apart along {axis}, the pressure varies within {scale:.2g} m: "
                     f"take at most {MAX_SPACING_RATIO * scale:.2g} m"
                 )
     return ""
-
-
-def _distance(points: FloatArray, position: float) -> float:
-    """Larger of the distances from the point nearest to a position to its neighbours; 0 for a single point."""
-    if points.size < 2:
-        return 0.0
-    nearest = int(np.abs(points - position).argmin())
-    return float(np.diff(points)[max(nearest - 1, 0) : nearest + 1].max())
 
 
 def _extent(case: xr.Dataset) -> tuple[float, ...]:

@@ -13,7 +13,7 @@ import numpy as np
 import xarray as xr
 
 from contactstudy import checks
-from contactstudy.analysis.axes import axis_dimensions, cell_size, cell_widths, dimension_along, single_case
+from contactstudy.analysis.axes import axis_dimensions, cell_edges, cell_size, dimension_along, single_case
 from contactstudy.analysis.axial import axial_profiles, under_roller
 from contactstudy.analysis.contact import MISSING_LOAD, cut_ends
 from contactstudy.analysis.peaks import largest_sample
@@ -24,7 +24,6 @@ from contactstudy.arrays.variables import (
     NOT_ESTIMATED,
     STRESSES,
     describe,
-    name_array,
     require_in_si,
     without_error,
 )
@@ -190,10 +189,9 @@ def slices(dataset: xr.Dataset, count: int = 30) -> xr.Dataset:
     centres = cells[x].values
     if centres.size < slice_count:
         raise InvalidInputError("count", count, f"at most the number of cells, {centres.size}")
-    half_widths = 0.5 * cell_widths(cells["line_load"], "x").values
-    borders = np.linspace(centres[0] - half_widths[0], centres[-1] + half_widths[-1], slice_count + 1)
+    edges = np.stack(cell_edges(cells["line_load"], "x"), axis=-1)
+    borders = np.linspace(edges[0, 0], edges[-1, 1], slice_count + 1)
 
-    edges = np.stack([centres - half_widths, centres + half_widths], axis=-1)
     maxima = section_maxima(case["pressure"].transpose(x, ...).values[is_facing])
     pressure, line_load = Columns(edges, centres, maxima), Columns(edges, centres, cells["line_load"].values)
     # A cell that a border cuts divides its load between both slices.
@@ -258,10 +256,5 @@ def _with_errors(
         "axial_pressure": (maxima, "largest of the slice"),
         "axial_pressure_error": (error, source),
     }
-    result = xr.Dataset(
-        {
-            name: name_array(name, xr.DataArray(slice_values, dims="slice")).assign_attrs(comment=comment)
-            for name, (slice_values, comment) in values.items()
-        }
-    )
+    result = xr.Dataset({name: ("slice", entry, {"comment": comment}) for name, (entry, comment) in values.items()})
     return without_error(result, *values) if np.isnan(relative).any() else result

@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from contactstudy import checks
-from contactstudy.analysis.axes import cell_widths, dimension_along, single_case
+from contactstudy.analysis.axes import cell_edges, dimension_along, single_case
 from contactstudy.analysis.provenance import solved_case
 from contactstudy.analysis.slices import SIDES, Columns, power_means, pressure_errors
 from contactstudy.arrays.peaks import section_maxima
@@ -215,12 +215,11 @@ def _hertz_loads(result: xr.Dataset, case: Case, edges: FloatArray) -> tuple[Flo
     pressure = result["pressure"].transpose(dimension_along(result["pressure"], "x"), ...)
     x = dimension_along(pressure, "x")
     position, max_pressure = result[x].values, section_maxima(pressure.values)
-    half_widths = 0.5 * cell_widths(pressure, "x").values
     roller, half_length = case.roller, 0.5 * case.roller.length
     x_from_middle = np.clip(position - case.roller_middle, -half_length, half_length)
     radius = local_radius(roller.profile, x_from_middle, roller.length, roller.radius)
     line_loads = hertz.line_load(1.0, 1.0, case.modulus) * max_pressure**2 * radius
-    columns = Columns(np.stack([position - half_widths, position + half_widths], axis=-1), position, line_loads)
+    columns = Columns(np.stack(cell_edges(pressure, "x"), axis=-1), position, line_loads)
     load, discretisation_error = power_means(columns, edges, LIFE_POWER)
     # Errors that follow from the stated errors of the largest pressure in either half
     half_count, weights = load.size // 2, columns.overlaps(edges)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
 
@@ -74,14 +74,13 @@ class Cases:
         """Values of a swept parameter as distinct texts."""
         values = self.scalars[dim].values
         units = str(self.scalars[dim].attrs.get("units", "1"))
-        case_columns = [
-            str(name)
+        columns = [
+            [f"{name}={value}" for value in entry.values]
             for name, entry in self.scalars.coords.items()
             if entry.dims == (dim,) and name != dim and "comment" not in entry.attrs
         ]
-        if dim == "case" and case_columns:
-            columns = {name: self.scalars[name].values for name in case_columns}
-            texts = [", ".join(f"{name}={columns[name][i]}" for name in case_columns) for i in range(values.size)]
+        if dim == "case" and columns:
+            texts = [", ".join(entries) for entries in zip(*columns, strict=True)]
         else:
             texts = [
                 str(value) if isinstance(value, (bool, np.bool_, str)) else format_quantity(float(value), units, 6)
@@ -109,15 +108,16 @@ def status_sentence(status: str, reason: str) -> str:
 def open_cases(study: xr.Dataset | str | Path) -> Cases:
     """Return the cases of an opened study, of a result, or of a study's folder."""
     if not isinstance(study, xr.Dataset):
-        return _cases_of_folder(Path(study))
-    return _cases_of_study(study) if "status" in study else _case_of_result(study)
+        cases = _cases_of_folder(Path(study))
+    else:
+        cases = _cases_of_study(study) if "status" in study else _case_of_result(study)
+    return replace(cases, load=lru_cache(maxsize=MAX_CACHED_CASES)(cases.load))
 
 
 def _cases_of_folder(folder: Path) -> Cases:
     """Cases in a study's folder; each file is read on demand."""
     scalars, results = collect(folder).squeeze(), Folder(folder).results()
 
-    @lru_cache(maxsize=MAX_CACHED_CASES)
     def load(index: CaseIndex) -> CaseFields:
         return CaseFields(results.case(str(scalars["case_id"].values[index]), FIELDS))
 
@@ -141,7 +141,6 @@ def _cases_of_study(study: xr.Dataset) -> Cases:
     scalars = study[[name for name, entry in study.data_vars.items() if set(entry.dims) <= set(dims)]]
     scalars = scalars.drop_vars([name for name in scalars.coords if not set(scalars[name].dims) <= set(dims)])
 
-    @lru_cache(maxsize=MAX_CACHED_CASES)
     def load(index: CaseIndex) -> CaseFields:
         entry = study.isel(dict(zip(dims, index, strict=True)))
         if str(entry["status"].item()) not in ("ok", "stale"):

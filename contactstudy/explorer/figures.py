@@ -63,18 +63,22 @@ class AxialFigure:
         self._legend = Legend(items=items, orientation="horizontal", border_line_color=None, padding=2)
         self.figure.add_layout(self._legend, "above")
 
-    def show(self, lines: list[Line], limits: Span, labels: tuple[str, str]) -> None:
-        """Draw the pressure of the cases between two positions."""
-        visible_pressures = [line.pressure[(line.x >= limits[0]) & (line.x <= limits[1])] for line in lines]
-        peak = max(float(np.nanmax(pressure, initial=0.0)) for pressure in visible_pressures)
+    def show(self, lines: dict[int, Line]) -> None:
+        """Draw the pressure of the cases, 0 or 1, with the labels of the first."""
+        start = min((line.span[0] for line in lines.values()), default=0.0)
+        stop = max((line.span[1] for line in lines.values()), default=1.0)
+        visible_pressures = [line.pressure[(line.x >= start) & (line.x <= stop)] for line in lines.values()]
+        peak = max((float(np.nanmax(pressure, initial=0.0)) for pressure in visible_pressures), default=0.0)
         max_pressure = 1.06 * peak if peak > 0 else 1.0
-        for line, source, marks in zip(lines, self._lines, self._marks, strict=True):
-            source.data = {"x": line.x, "p": line.pressure}
-            visible_ends = [end for end in line.singular if limits[0] <= end <= limits[1]]
+        for side, (source, marks) in enumerate(zip(self._lines, self._marks, strict=True)):
+            x, pressure, singular, *_ = lines.get(side, ([], [], []))
+            source.data = {"x": x, "p": pressure}
+            visible_ends = [end for end in singular if start <= end <= stop]
             marks.data = {"x": visible_ends, "p": [0.96 * max_pressure] * len(visible_ends)}
-        self._legend.visible = lines[1].x.size > 0
-        self.figure.x_range.update(start=limits[0], end=limits[1])
+        self._legend.visible = 1 in lines
+        self.figure.x_range.update(start=start, end=stop)
         self.figure.y_range.update(start=0.0, end=max_pressure)
+        labels = next((line.names for line in lines.values()), ("", ""))
         self.figure.xaxis.axis_label, self.figure.yaxis.axis_label = labels
 
 
@@ -97,8 +101,8 @@ class ImageFigure:
         """Draw an image, or none, with colours up to a limit and the vertical axis between two values."""
         self.figure.title.text = title
         if image is None:
-            self._source.data = {"image": [], "x": [], "y": [], "w": [], "h": []}
-            self._largest.data = {"x": [], "y": []}
+            for source in (self._source, self._largest):
+                source.data = {name: [] for name in source.data}
             return
         (start, stop), (low, high) = image.horizontal, image.vertical
         self._source.data = {"image": [image.values], "x": [start], "y": [low], "w": [stop - start], "h": [high - low]}

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
 
-from contactstudy.analysis import measure, positions
-from contactstudy.analysis.axes import dimension_along
-from contactstudy.checks import Array, BoolArray, FloatArray
-from contactstudy.plots.singular_ends import near_singular, singular_ends
+from contactstudy.analysis import axial_pressure, in_plane, measure, positions
+from contactstudy.analysis.axes import axis_dimensions
+from contactstudy.checks import Array, FloatArray
+from contactstudy.plots.singular_ends import cap_field, near_singular, singular_ends
 
 PIXELS = (360, 150)  # Pixels of an image, horizontal and vertical
 END_REGION = 8.0  # Length of the region near an end, over the Hertz half-width
@@ -26,37 +27,24 @@ class CaseFields:
 
     def __init__(self, dataset: xr.Dataset) -> None:
         self.dataset = dataset
-        self._stresses: dict[str, FloatArray] = {}
+        self._stresses: dict[str, xr.DataArray] = {}
         self.hertz: tuple[float, float] | None = None  # half-width and pressure of Hertz' line contact
         if "hertz_half_width" in dataset:
             self.hertz = float(dataset["hertz_half_width"]), float(dataset["hertz_max_pressure"])
         self.singular_ends = singular_ends(dataset)
         self.has_pressure = "pressure" in dataset
         if self.has_pressure:
-            x, y = (positions(dataset["pressure"], axis).values for axis in "xy")
-            self.cells = x, y
-            self.pressure = _values(dataset["pressure"], "xy")
-            self.axial_pressure = self.pressure.max(axis=1)
+            axial = axial_pressure(dataset)
+            self.x, self.axial_pressure = positions(axial, "x").values, axial.values
         self.has_stress = "von_mises" in dataset and not bool(dataset["von_mises"].isnull().all())
         if self.has_stress:
             self.points = {axis: positions(dataset["von_mises"], axis).values for axis in "xyz"}
 
-    def stress(self, name: str = "von_mises") -> FloatArray:
-        """Stress measure (x, y, z), computed once."""
+    def stress(self, name: str) -> xr.DataArray:
+        """Stress measure, computed once."""
         if name not in self._stresses:
-            self._stresses[name] = _values(measure(self.dataset, name), "xyz")
+            self._stresses[name] = measure(self.dataset, name)
         return self._stresses[name]
-
-
-def _values(array: xr.DataArray, axes: str) -> FloatArray:
-    """Values of a field with its dimensions in the order of `axes`."""
-    return np.asarray(array.transpose(*(dimension_along(array, axis) for axis in axes)).values)
-
-
-def _limit(values: FloatArray, near_singular_end: BoolArray) -> float:
-    """Largest value away from singular ends, or of all values."""
-    regular_values = values[~near_singular_end] if near_singular_end.any() and not near_singular_end.all() else values
-    return float(np.nanmax(regular_values, initial=0.0))
 
 
 class Scale(NamedTuple):
@@ -69,14 +57,13 @@ class Scale(NamedTuple):
 
 
 class Line(NamedTuple):
-    """Pressure along the axis, and positions of singular ends."""
+    """Pressure along the axis, positions of singular ends, limits of the positions, and labels of both axes."""
 
     x: FloatArray
     pressure: FloatArray
     singular: list[float]
-
-
-NO_LINE = Line(np.zeros(0), np.zeros(0), [])
+    span: Span
+    names: tuple[str, str]
 
 
 class Image(NamedTuple):
@@ -100,31 +87,28 @@ def choose_scale(case: CaseFields, *, relative: bool) -> Scale:
 
 def region_limits(case: CaseFields, name: str) -> Span:
     """Return the limits of a region along the axis, metres."""
-    x, _ = case.cells
-    low, high = float(x.min()), float(x.max())
-    loaded = x[case.axial_pressure > 0]
+    low, high = float(case.x.min()), float(case.x.max())
+    loaded = case.x[case.axial_pressure > 0]
     if name == REGIONS[0] or not loaded.size or case.hertz is None:
         return low, high
     length = END_REGION * case.hertz[0]
-    if name == REGIONS[1]:
-        return max(low, loaded[0] - 0.25 * length), min(high, loaded[0] + 0.75 * length)
-    return max(low, loaded[-1] - 0.75 * length), min(high, loaded[-1] + 0.25 * length)
+    end, before = (loaded[0], 0.25) if name == REGIONS[1] else (loaded[-1], 0.75)
+    return max(low, end - before * length), min(high, end + (1 - before) * length)
 
 
-def axial_line(case: CaseFields, scale: Scale) -> Line:
+def axial_line(case: CaseFields, scale: Scale, limits: Span) -> Line:
     """Return the largest pressure across the contact along the axis, without the vicinity of singular ends."""
-    x, _ = case.cells
-    values = np.where(near_singular(case.dataset, x), np.nan, case.axial_pressure / scale.stress)
-    return Line(x / scale.length, values, [end / scale.length for end in case.singular_ends])
+    values = np.where(near_singular(case.dataset, case.x), np.nan, case.axial_pressure / scale.stress)
+    singular = [end / scale.length for end in case.singular_ends]
+    names = f"distance from the free end, x{scale.length_name}", f"pressure along the axis{scale.stress_name}"
+    return Line(case.x / scale.length, values, singular, (limits[0] / scale.length, limits[1] / scale.length), names)
 
 
 def top_image(case: CaseFields, scale: Scale, limits: Span) -> Image:
     """Return the pressure on the top of the body."""
-    x, y = case.cells
-    spans = (limits, (float(y[0]), float(y[-1])))
-    return _image(
-        case.pressure, case.cells, spans, _limit(case.pressure, near_singular(case.dataset, x)), scale, names="xy"
-    )
+    pressure = case.dataset["pressure"]
+    y = positions(pressure, "y").values
+    return _image(pressure, (limits, (float(y[0]), float(y[-1]))), _limit(case, pressure), scale)
 
 
 def plane_image(
@@ -140,63 +124,49 @@ def plane_image(
         return None
     plane_start, plane_stop = limits if normal == "x" else (float(points[normal][0]), float(points[normal][-1]))
     position = 0.0 if normal == "y" else plane_start + fraction * (plane_stop - plane_start)
-    axis = "xyz".index(normal)
-    values = np.asarray(interpolate_along(axis, case.stress(name), points[normal], np.array([position])).take(0, axis))
+    # Beyond the points the stress is constant.
+    nearest = float(np.clip(position, points[normal][0], points[normal][-1]))
+    plane = in_plane(case.stress(name).to_dataset(name=name), variables=name, **{normal: nearest})[name]
     left, right = float(points[horizontal][0]), float(points[horizontal][-1])
     if horizontal == "x":
         left, right = max(left, limits[0]), min(right, limits[1])
     spans = ((left, right), (float(points[vertical][0]), float(points[vertical][-1])))
-    limit = _limit(case.stress(name), near_singular(case.dataset, points["x"]))
-    image = _image(values, (points[horizontal], points[vertical]), spans, limit, scale, names=horizontal + vertical)
+    image = _image(plane, spans, _limit(case, case.stress(name)), scale)
     unit = scale.length_name.strip(" ()/")
     return image._replace(position=f"{normal} = {position / scale.length:.3g} {unit}")
 
 
-def _image(
-    values: FloatArray,
-    axes: tuple[FloatArray, FloatArray],
-    spans: tuple[Span, Span],
-    limit: float,
-    scale: Scale,
-    names: str,
-) -> Image:
+def _limit(case: CaseFields, field: xr.DataArray) -> float:
+    """Largest value away from singular ends, or of all values."""
+    return max(0.0, float(cap_field(case.dataset, field)[0].max()))
+
+
+def _image(plane: xr.DataArray, spans: tuple[Span, Span], limit: float, scale: Scale) -> Image:
     """Image in the units of the page."""
-    pixels = to_pixels(values, axes, spans, PIXELS) / scale.stress
+    names = axis_dimensions(plane)
+    values = plane.transpose(*names.values()).values
+    axes = tuple(positions(plane, axis).values for axis in names)
     labels = {"x": "distance from the free end, x", "y": "position along rolling, y", "z": "depth, z"}
     horizontal_label, vertical_label = (f"{labels[name]}{scale.length_name}" for name in names)
     (left, right), (low, high) = ((start / scale.length, stop / scale.length) for start, stop in spans)
-    clipped_pixels = np.minimum(pixels, limit / scale.stress).astype(np.float32)
     # The largest value of the field up to the limit, which may lie between the pixels.
     in_span = [(points >= start) & (points <= stop) for points, (start, stop) in zip(axes, spans, strict=True)]
     visible = np.where(in_span[0][:, None] & in_span[1] & (values <= limit), values, -np.inf)
     row, column = np.unravel_index(int(visible.argmax()), visible.shape)
-    maximum = np.array([visible[row, column], axes[0][row], axes[1][column]])
-    maximum /= (scale.stress, scale.length, scale.length)
-    largest = maximum.tolist() if maximum[0] > -np.inf else (np.nan, np.nan, np.nan)
+    largest = (visible[row, column] / scale.stress, axes[0][row] / scale.length, axes[1][column] / scale.length)
     return Image(
-        values=clipped_pixels,
+        values=(np.minimum(to_pixels(values, axes, spans), limit) / scale.stress).astype(np.float32),
         horizontal=(left, right),
         vertical=(low, high),
         limit=limit / scale.stress,
         names=(horizontal_label, vertical_label),
-        largest=tuple(largest),
+        largest=largest if np.isfinite(largest[0]) else (np.nan, np.nan, np.nan),
     )
 
 
-def to_pixels(
-    values: FloatArray, axes: tuple[FloatArray, FloatArray], spans: tuple[Span, Span], shape: tuple[int, int]
-) -> FloatArray:
-    """Return values (horizontal, vertical) at the centres of pixels (vertical, horizontal)."""
-    for axis, (points, (start, stop), count) in enumerate(zip(axes, spans, shape, strict=True)):
-        values = interpolate_along(axis, values, points, start + (np.arange(count) + 0.5) * (stop - start) / count)
+def to_pixels(values: FloatArray, axes: tuple[FloatArray, ...], spans: tuple[Span, Span]) -> FloatArray:
+    """Return values (horizontal, vertical) at the centres of pixels (vertical, horizontal), constant beyond points."""
+    for axis, (points, (start, stop), count) in enumerate(zip(axes, spans, PIXELS, strict=True)):
+        centres = start + (np.arange(count) + 0.5) * (stop - start) / count
+        values = np.apply_along_axis(partial(np.interp, centres, points), axis, values)
     return np.ascontiguousarray(values.T)
-
-
-def interpolate_along(axis: int, values: FloatArray, points: FloatArray, positions: FloatArray) -> FloatArray:
-    """Return values at positions along an axis: linear between points, constant beyond the outermost."""
-    lower = np.clip(np.searchsorted(points, positions) - 1, 0, max(points.size - 2, 0))
-    steps = np.diff(points, append=np.inf)[lower]
-    weights = np.clip((positions - points[lower]) / steps, 0.0, 1.0).reshape(-1, *(1,) * (values.ndim - axis - 1))
-    first, last = values.take(lower, axis), values.take(np.minimum(lower + 1, points.size - 1), axis)
-    # A position at a point has the point's value, even if a neighbour is NaN.
-    return np.where(weights == 0, first, np.where(weights == 1, last, (1 - weights) * first + weights * last))

@@ -17,11 +17,11 @@ from contactstudy.errors import ContactStudyError
 from contactstudy.explorer.cases import Cases, numbers_by_subject, status_sentence
 from contactstudy.explorer.figures import FIRST_COLOR, SECOND_COLOR, AxialFigure, ImageFigure, StudyFigure
 from contactstudy.explorer.images import (
-    NO_LINE,
     PLANES,
     REGIONS,
     CaseFields,
     Image,
+    Line,
     axial_line,
     choose_scale,
     plane_image,
@@ -126,14 +126,13 @@ class Page:
         self.plane.visible = self.measure.visible = has_stress
         self.fraction.visible = has_stress and self.plane.value != PLANES[0]
         shown = {side: case for side, case in enumerate(cases) if case is not None and case.has_pressure}
-        self._show_axial(shown)
-        plane_images = self._show_fields(shown)
+        planes = self._show_fields(shown)
         self._show_study(sides)
         self._set_visible(0, bool(shown))
         for side in (0, 1):
             self._set_visible(1 + side, side in shown)
-            self._set_visible(3 + side, plane_images[side] is not None)
-        remarks = [self._remark(side, cases[side], plane_images[side]) for side in sides]
+            self._set_visible(3 + side, side in planes)
+        remarks = [self._remark(side, cases[side], has_plane=side in planes) for side in sides]
         if self.cases.dims and not self.panes[5].visible:
             remarks.append("No case at these values of the other parameters has this number.")
         self._show_table(cases, sides, "".join(f"<p class=why>{remark}</p>" for remark in remarks if remark))
@@ -173,55 +172,43 @@ class Page:
             self._columns[index] = {"is this number real?": verdict} | numbers | _edge_factors(case.dataset, table)
         return self._columns[index]
 
-    def _show_axial(self, shown: dict[int, CaseFields]) -> None:
-        """Pressure along the axis, with labels in the units of the first case."""
-        lines = [NO_LINE, NO_LINE]
-        limits: list[float] = []
-        labels = ("", "")
-        for side, case in reversed(shown.items()):
-            scale = choose_scale(case, relative=self.units.value)
-            lines[side] = axial_line(case, scale)
-            limits += [limit / scale.length for limit in region_limits(case, self.region.value)]
-            labels = (
-                f"distance from the free end, x{scale.length_name}",
-                f"pressure along the axis{scale.stress_name}",
-            )
-        self.axial.show(lines, (min(limits, default=0.0), max(limits, default=1.0)), labels)
-
-    def _show_fields(self, shown: dict[int, CaseFields]) -> list[Image | None]:
-        """Show pressure on the top and stress in the plane, with common colours; return the images of the plane."""
-        top_images: list[Image | None] = [None, None]
-        plane_images: list[Image | None] = [None, None]
+    def _show_fields(self, shown: dict[int, CaseFields]) -> dict[int, Image]:
+        """Draw the fields of the cases with common axes and colours; return the images of the plane."""
+        lines: dict[int, Line] = {}
+        tops: dict[int, Image] = {}
+        planes: dict[int, Image] = {}
         unit = ""
         for side, case in shown.items():
             scale, limits = choose_scale(case, relative=self.units.value), region_limits(case, self.region.value)
-            unit, kind, fraction = scale.stress_name, self.plane.value, self.fraction.value
-            top_images[side] = top_image(case, scale, limits)
-            plane_images[side] = plane_image(case, scale, limits, kind, fraction, name=self.measure.value)
+            unit = scale.stress_name
+            lines[side], tops[side] = axial_line(case, scale, limits), top_image(case, scale, limits)
+            kind, fraction = self.plane.value, self.fraction.value
+            if image := plane_image(case, scale, limits, kind, fraction, name=self.measure.value):
+                planes[side] = image
+        self.axial.show(lines)
         measure = next(text for text, name in MEASURES.items() if name == self.measure.value)
-        rows = (top_images, self.surface_figures, "pressure"), (plane_images, self.plane_figures, measure)
+        rows = (tops, self.surface_figures, "pressure"), (planes, self.plane_figures, measure)
         for images, figures, quantity in rows:
-            shown_images = [image for image in images if image is not None]
-            limit = max((image.limit for image in shown_images), default=1.0)
-            low = min((image.vertical[0] for image in shown_images), default=0.0)
-            high = max((image.vertical[1] for image in shown_images), default=1.0)
-            for side, (image, figure) in enumerate(zip(images, figures, strict=False)):
+            limit = max((image.limit for image in images.values()), default=1.0)
+            low = min((image.vertical[0] for image in images.values()), default=0.0)
+            high = max((image.vertical[1] for image in images.values()), default=1.0)
+            for side, figure in enumerate(figures):
                 # The title has two lines, so that it fits into a narrow window.
                 title = f"{NAMES[side]}: {quantity}{unit}" if self.compare.value else f"{quantity}{unit}"
-                if image is not None:
+                if side in images:
                     clipped_note = "clipped at the end" if shown[side].singular_ends else ""
-                    notes = (image.position, f"largest {image.largest[0]:.4g}", clipped_note)
+                    notes = (images[side].position, f"largest {images[side].largest[0]:.4g}", clipped_note)
                     title += "\n" + ", ".join(filter(None, notes))
-                figure.show(image, limit, title, (low, high))
-        return plane_images
+                figure.show(images.get(side), limit, title, (low, high))
+        return planes
 
-    def _remark(self, side: int, case: CaseFields | None, plane_image: Image | None) -> str:
+    def _remark(self, side: int, case: CaseFields | None, *, has_plane: bool) -> str:
         """Reason of missing figures of a case; empty if all are shown."""
         if case is None:
             text = status_sentence(*self.cases.status(self.index(side)))
         elif not case.has_pressure:
             text = "The study stores no surfaces of this case, only its numbers."
-        elif plane_image is None:
+        elif not has_plane:
             reason = "have too few points in this plane" if case.has_stress else "are not stored"
             text = f"The stresses {reason}."
         else:

@@ -148,16 +148,11 @@ def _write(
 
 def _cells(counts: list[int]) -> tuple[int, IntArray]:
     """VTK's kind of the cells between points, from the numbers of points along the axes, and each cell's corners."""
-    extended_axes = [axis for axis, count in enumerate(counts) if count > 1]
-    if len(extended_axes) < 2:
+    points = np.arange(int(np.prod(counts)), dtype="<i8").reshape([count for count in counts if count > 1])
+    if points.ndim < 2:
         allowed = "on at least two points along two of x, y and z"
         raise InvalidInputError("variables", f"{counts} points", allowed, "take .vtr or CSV")
-    point_indices = np.arange(int(np.prod(counts)), dtype="<i8").reshape(counts)
-    cell_corners = CORNERS if len(extended_axes) == 2 else [(*corner, layer) for layer in (0, 1) for corner in CORNERS]
-    corners = []
-    for corner in cell_corners:
-        corner_slices = [slice(None)] * len(counts)
-        for axis, is_upper in zip(extended_axes, corner, strict=True):
-            corner_slices[axis] = slice(1, None) if is_upper else slice(None, -1)
-        corners.append(point_indices[tuple(corner_slices)].ravel())
-    return (QUADRILATERAL if len(extended_axes) == 2 else HEXAHEDRON), np.stack(corners, axis=1)
+    cell_corners = CORNERS if points.ndim == 2 else [(*corner, layer) for layer in (0, 1) for corner in CORNERS]
+    sides = (slice(None, -1), slice(1, None))  # points at the lower and the upper side of the cells along an axis
+    corners = [points[tuple(sides[upper] for upper in corner)].ravel() for corner in cell_corners]
+    return (QUADRILATERAL if points.ndim == 2 else HEXAHEDRON), np.stack(corners, axis=1)

@@ -18,6 +18,7 @@ from contactstudy.analysis import (
     positions,
     single_case,
 )
+from contactstudy.analysis.axial import loaded_range
 from contactstudy.arrays.variables import require
 from contactstudy.errors import InvalidInputError
 from contactstudy.plots.singular_ends import mark_at_top, near_singular, singular_ends
@@ -149,9 +150,7 @@ def _contact_midpoint(case: xr.Dataset) -> float:
     """Middle of the loaded positions along x, metres; 0 without a pressure."""
     if "pressure" not in case:
         return 0.0
-    axial = axial_pressure(case)
-    loaded_x = positions(axial, "x").where(axial > 0)
-    return 0.5 * float(loaded_x.min() + loaded_x.max())
+    return 0.5 * float(sum(loaded_range(axial_pressure(case))))
 
 
 def plot_depth(

@@ -77,9 +77,8 @@ def plot_edge_effect(
     bodies = [str(name) for name in np.atleast_1d(dataset["body"].values)] if "body" in dataset.coords else [""]
 
     def entries_of(body: str) -> list[Entry]:
-        body_cases = dataset.sel(body=body) if has_bodies else dataset
-        entries = [(float(e), body_cases.isel(e_over_a=i)) for i, e in enumerate(body_cases["e_over_a"].values)]
-        return [(e, case) for e, case in entries if np.isfinite(float(case["hertz_half_width"]))]
+        body_cases = (dataset.sel(body=body) if has_bodies else dataset).dropna("e_over_a", subset=["hertz_half_width"])
+        return [(float(e), body_cases.isel(e_over_a=i)) for i, e in enumerate(body_cases["e_over_a"].values)]
 
     def with_surfaces(entries: list[Entry]) -> list[Entry]:
         loaded = [(e, load(case)) for e, case in entries]
@@ -149,7 +148,7 @@ def _level_distance(entries: list[Entry]) -> float:
         x, values = axial[dimension_along(axial, "x")].values / unit.length, axial.values
         mid_length = 0.5 * (x[0] + x[-1])
         in_half = x <= mid_length
-        is_level = np.abs(values[in_half] / values[in_half][-1] - 1) < PLATEAU if in_half.any() else np.array([True])
+        is_level = np.abs(values[in_half] / values[in_half][-1] - 1) < PLATEAU
         varying_x = x[in_half][~is_level]
         limits.append(min(1.25 * float(varying_x[-1]) + 1.0 if varying_x.size else 1.0, float(mid_length)))
     return max(limits)

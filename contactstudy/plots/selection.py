@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 import xarray as xr
@@ -14,19 +14,21 @@ from contactstudy.arrays.selections import index_of
 from contactstudy.errors import InvalidInputError
 from contactstudy.plots.style import SYMBOLS, escape_dollars
 
+Array = TypeVar("Array", xr.DataArray, xr.Dataset)
+
 
 def select_values(dataset: xr.Dataset, selection: Mapping[str, Any]) -> xr.Dataset:
     """Part of a study with the selected values of its swept parameters; every dimension remains."""
     return dataset.isel({name: [index_of(dataset, name, value)] for name, value in selection.items()})
 
 
-def select_one(array: xr.DataArray, axes: tuple[str, ...], selection: Mapping[str, Any]) -> xr.DataArray:
-    """Array over the dimensions `axes`, with the selected value of every other dimension."""
+def select_one(array: Array, axes: tuple[str, ...], selection: Mapping[str, Any]) -> Array:
+    """Array, or Dataset, over the dimensions `axes`, with the selected value of every other dimension."""
+    swept = [str(dim) for dim in array.dims if dim not in axes]
     for name in selection:
-        if name not in array.dims or name in axes:
-            swept = [str(dim) for dim in array.dims if dim not in axes]
+        if name not in swept:
             raise InvalidInputError("selection", name, f"of {', '.join(swept) or 'nothing'}")
-    for dim in [str(dim) for dim in array.dims if dim not in axes]:
+    for dim in swept:
         if dim in selection:
             array = array.isel({dim: index_of(array, dim, selection[dim])})
         elif array.sizes[dim] == 1:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import xarray as xr
 
-from contactstudy.analysis.axes import cell_widths, dimension_along, positions
+from contactstudy.analysis.axes import cell_edges, dimension_along, positions
 from contactstudy.analysis.axial import under_roller
 from contactstudy.checks import BoolArray, FloatArray
 
@@ -23,14 +23,13 @@ MARK_HEIGHT = 0.965  # Height of a mark over the height of the axes
 
 def singular_ends(case: xr.Dataset) -> list[float]:
     """Positions of the roller's ends with a singular pressure, metres."""
-    names = {"first": "end_pressure_first", "last": "end_pressure_last"}
-    ends = [end for end, name in names.items() if np.isinf(float(case.get(name, 0.0)))]
-    if not ends or "pressure" not in case:
+    is_singular = [np.isinf(float(case.get(f"end_pressure_{end}", 0.0))) for end in ("first", "last")]
+    if not any(is_singular) or "pressure" not in case:
         return []
-    centres, half_widths = positions(case["pressure"], "x").values, 0.5 * cell_widths(case["pressure"], "x").values
-    facing = np.flatnonzero(under_roller(case).values)
-    borders = {"first": (centres - half_widths)[facing[0]], "last": (centres + half_widths)[facing[-1]]}
-    return [float(borders[end]) for end in ends]
+    facing = under_roller(case).values
+    lower_edges, upper_edges = (edges.values[facing] for edges in cell_edges(case["pressure"], "x"))
+    ends = np.array([lower_edges[0], upper_edges[-1]])
+    return [float(end) for end in ends[is_singular]]
 
 
 def near_singular(case: xr.Dataset, x: FloatArray) -> BoolArray:

@@ -99,13 +99,15 @@ def plot_study_lines(
     size = (4.0 * columns + (0.6 if hue is None else 2.0), 3.2 * rows + 0.4)
     figure, panels = pyplot.subplots(rows, columns, figsize=size, squeeze=False, layout="constrained", sharex=True)
     fixed_parameters = most_solved(dataset[names[0]], axes_of_study, selection or {})
+    stored_names = [entry for name in names for entry in (name, f"{name}_error") if entry in dataset]
+    lines = select_one(dataset[stored_names], axes_of_study, fixed_parameters)
     marks: dict[str, dict[str, Any]] = {}
     for ax, name in zip(panels.flat, names, strict=True):
-        marks |= _draw_panel(ax, dataset, name, x, hue, fixed_parameters=fixed_parameters)
+        marks |= _draw_panel(ax, lines, name, x, hue)
     figure.set_figheight(figure.get_figheight() + LINE_HEIGHT * rows * max(map(_extra_lines, panels.flat)))
     if hue is not None:
         handles, labels = panels[0, 0].get_legend_handles_labels()
-        title = fold_text(_hue_title(dataset[hue], hue), LEGEND_COLUMN)
+        title = fold_text(_legend_texts(dataset[hue], hue)[0], LEGEND_COLUMN)
         figure.legend(handles, labels, loc="outside right center", title=title, **LEGEND_STYLE, title_fontsize="small")
     if marks:
         from matplotlib.lines import Line2D
@@ -121,14 +123,11 @@ def plot_study_lines(
     return figure
 
 
-def _draw_panel(
-    ax: Axes, dataset: xr.Dataset, name: str, x: str, hue: str | None, fixed_parameters: Mapping[str, Any]
-) -> dict[str, dict[str, Any]]:
+def _draw_panel(ax: Axes, dataset: xr.Dataset, name: str, x: str, hue: str | None) -> dict[str, dict[str, Any]]:
     """Draw one quantity; return the styles of the marks that a legend must explain, by label."""
     marks: dict[str, dict[str, Any]] = {}
-    axes_of_study = (x,) if hue is None else (x, hue)
-    values, label = scale_values(select_one(dataset[name], axes_of_study, fixed_parameters), name)
-    errors, without_estimate = _errors(dataset, name, axes_of_study, fixed_parameters)
+    values, label = scale_values(dataset[name], name)
+    errors, without_estimate = _errors(dataset, name)
     is_numeric = np.issubdtype(values[x].dtype, np.number)
     x_values, x_label = scale_values(values[x], x) if is_numeric else (values[x], x.replace("_", " "))
     positions = x_values.values if is_numeric else np.arange(x_values.size)
@@ -164,16 +163,10 @@ def _draw_panel(
 
 def _lines(values: xr.DataArray, hue: str | None, width: int) -> Iterator[tuple[dict[str, int], dict[str, Any]]]:
     """Yield the index along `hue`, and the style with the folded label, of each line; one line without `hue`."""
-    labels = [None] if hue is None else [fold_text(text, width) for text in _value_labels(values[hue], hue)]
+    labels = [None] if hue is None else [fold_text(text, width) for text in _legend_texts(values[hue], hue)[1]]
     for index, (label, style) in enumerate(zip(labels, line_styles(len(labels)), strict=True)):
         marker = MARKERS[index % len(MARKERS)]
         yield {} if hue is None else {hue: index}, style | {"marker": marker, "markersize": 4, "label": label}
-
-
-def _hue_title(values: xr.DataArray, hue: str) -> str:
-    """Title of a legend: name and unit of a parameter of numbers, or the name of parameters that change together."""
-    is_numeric = np.issubdtype(values.dtype, np.number) and not _parameters_along(values, hue)
-    return scale_values(values, hue)[1] if is_numeric else hue.replace("_", " ")
 
 
 def _extra_lines(ax: Axes) -> int:
@@ -182,41 +175,26 @@ def _extra_lines(ax: Axes) -> int:
     return names + ax.get_xlabel().count("\n")
 
 
-def _errors(
-    dataset: xr.Dataset, name: str, axes: tuple[str, ...], fixed_parameters: Mapping[str, Any]
-) -> tuple[xr.DataArray, xr.DataArray]:
+def _errors(dataset: xr.Dataset, name: str) -> tuple[xr.DataArray, xr.DataArray]:
     """Finite errors in the unit of the panel, and the finite values whose error is not estimated."""
-    values = select_one(dataset[name], axes, fixed_parameters)
-    if f"{name}_error" in dataset:
-        errors = select_one(dataset[f"{name}_error"], axes, fixed_parameters)
-    else:
-        missing_error = np.inf if name.startswith(ESTIMATED_PREFIXES) else np.nan
-        errors = xr.full_like(values, missing_error, dtype=np.float64)
+    values, missing_error = dataset[name], np.inf if name.startswith(ESTIMATED_PREFIXES) else np.nan
+    errors = dataset.get(f"{name}_error", xr.full_like(values, missing_error, dtype=np.float64))
     factor, _ = scale_of(values)
     return errors.where(np.isfinite(errors)) / factor, (errors == np.inf) & (abs(values) < np.inf)
 
 
-def _value_labels(values: xr.DataArray, name: str) -> list[str]:
-    """Texts of a parameter's values in the label's unit; values of zipped parameters share a text."""
-    if parameters := _parameters_along(values, name):
-        return [
-            ", ".join(escape_dollars(values[parameter].values[i]) for parameter in parameters)
-            for i in range(values.size)
-        ]
-    if not np.issubdtype(values.dtype, np.number):
-        return [escape_dollars(value) for value in values.values]
-    return [f"{value:g}" for value in scale_values(values, name)[0].values]
-
-
-def _parameters_along(values: xr.DataArray, name: str) -> list[str]:
-    """Parameters that change together along a dimension of a study; empty for a parameter's dimension."""
-    return [
-        str(parameter)
-        for parameter in values.coords
-        if parameter != name
-        and values[parameter].dims == values.dims
-        and values[parameter].attrs.get("comment") != DERIVED
+def _legend_texts(values: xr.DataArray, name: str) -> tuple[str, list[str]]:
+    """Title of a legend, and texts of a parameter's values in the title's unit, or of zipped parameters."""
+    zipped = [
+        coordinate.values
+        for parameter, coordinate in values.coords.items()
+        if parameter != name and coordinate.dims == values.dims and coordinate.attrs.get("comment") != DERIVED
     ]
+    if np.issubdtype(values.dtype, np.number) and not zipped:
+        scaled, title = scale_values(values, name)
+        return title, [f"{value:g}" for value in scaled.values]
+    entries = zip(*(zipped or [values.values]), strict=True)
+    return name.replace("_", " "), [", ".join(map(escape_dollars, entry)) for entry in entries]
 
 
 def plot_traction_curve(
@@ -276,7 +254,9 @@ def plot_traction_curve(
         ax.plot(line[creepage], line.values, **style)
     ax.axhline(1.0, color="0.6", linewidth=0.8)
     if hue is not None:
-        ax.legend(title=fold_text(_hue_title(dataset[hue], hue), TICK_WIDTH), **LEGEND_STYLE, title_fontsize="small")
+        ax.legend(
+            title=fold_text(_legend_texts(dataset[hue], hue)[0], TICK_WIDTH), **LEGEND_STYLE, title_fontsize="small"
+        )
     ax.set_xlabel(rf"{creepage.replace('_', ' ')}, $\{'xi' if name == 'force_y' else 'eta'}$")
     ax.set_ylabel(f"force over full sliding's, ${symbol}/(f W)$")
     ax.grid(color="0.9", linewidth=0.6)

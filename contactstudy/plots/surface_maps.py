@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import xarray as xr
@@ -13,8 +13,8 @@ from contactstudy.arrays.engineering import unit_for
 from contactstudy.arrays.variables import require, variable_of
 from contactstudy.checks import BoolArray, FloatArray, IntArray
 from contactstudy.plots.axial import FILM_HALF_RANGE
-from contactstudy.plots.singular_ends import near_singular
-from contactstudy.plots.style import COLORS, Units, label_axes, new_axes, units
+from contactstudy.plots.singular_ends import cap_field
+from contactstudy.plots.style import COLORS, label_axes, new_axes, units
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -31,14 +31,15 @@ VECTORS = ("traction", "slip")
 SURFACES = {"body": "temperature_rise", "roller": "roller_temperature_rise"}
 
 
-class Surface(NamedTuple):
-    """Positions of a map in the units of its figure, and the pressure over (y, x)."""
+class Surface:
+    """Surface of a single case: positions in the units of the figure, and a load over (y, x), positive in contact."""
 
-    case: xr.Dataset
-    unit: Units
-    x: FloatArray
-    y: FloatArray
-    pressure: FloatArray
+    def __init__(self, dataset: xr.Dataset, *names: str, si: bool, load: str = "pressure") -> None:
+        self.case = single_case(dataset)
+        require(self.case, *names)
+        self.unit = units(self.case, si=si)
+        self.x, self.y = (positions(self.case[load], axis).values / self.unit.length for axis in "xy")
+        self.pressure = self.values(load)
 
     def values(self, name: str) -> FloatArray:
         """Variable over (y, x)."""
@@ -52,25 +53,6 @@ class Surface(NamedTuple):
         """Cells in contact over (y, x)."""
         return self.pressure > 0
 
-    @property
-    def away_from_singular_ends(self) -> BoolArray:
-        """Mask of the columns away from singular ends; all columns if every column is near an end."""
-        x = positions(self.case["pressure"], "x").values
-        near_end = near_singular(self.case, x)
-        return ~near_end | near_end.all()
-
-
-def _surface(dataset: xr.Dataset, names: tuple[str, ...], *, si: bool, load: str = "pressure") -> Surface:
-    """Surface of a single case with these variables; `load` is positive in the contact."""
-    case = single_case(dataset)
-    require(case, *names)
-    unit = units(case, si=si)
-    pressure = case[load]
-    x, y = (dimension_along(pressure, axis) for axis in "xy")
-    return Surface(
-        case, unit, pressure[x].values / unit.length, pressure[y].values / unit.length, pressure.transpose(y, x).values
-    )
-
 
 def _draw_mesh(ax: Axes, surface: Surface, values: Any, **style: Any) -> QuadMesh:
     """Draw values over (y, x) as cells."""
@@ -81,14 +63,12 @@ def _draw_border(ax: Axes, surface: Surface, values: FloatArray, threshold: floa
     """Draw a closed contour of values over (y, x), 0 beyond the cells; None for too few cells."""
     if min(values.shape) < 2 or values.max() <= threshold:
         return None
-    x, y = (_outer_edges(centres) for centres in (surface.x, surface.y))
+    # The contour may reach the outer edges of the cells.
+    x, y = (
+        np.concatenate([[line[0] - 0.5 * (line[1] - line[0])], line, [line[-1] + 0.5 * (line[-1] - line[-2])]])
+        for line in (surface.x, surface.y)
+    )
     return ax.contour(x, y, np.pad(values, 1), levels=[threshold], **style)
-
-
-def _outer_edges(centres: FloatArray) -> FloatArray:
-    """Centres of cells, with the outer edges of the first and the last cell."""
-    first_width, last_width = centres[1] - centres[0], centres[-1] - centres[-2]
-    return np.concatenate([[centres[0] - 0.5 * first_width], centres, [centres[-1] + 0.5 * last_width]])
 
 
 def _extend(values: FloatArray, in_contact: BoolArray) -> FloatArray:
@@ -101,9 +81,9 @@ def _extend(values: FloatArray, in_contact: BoolArray) -> FloatArray:
 
 def _draw_contact_border(ax: Axes, surface: Surface, *artists: Any) -> None:
     """Draw the border of the contact, and clip artists to this border."""
-    squared_pressure = surface.pressure**2
-    threshold = BORDER_LEVEL * float(squared_pressure[:, surface.away_from_singular_ends].max())
-    border = _draw_border(ax, surface, squared_pressure, threshold, **CONTACT_BORDER)
+    max_pressure = float(cap_field(surface.case, surface.case["pressure"])[0].max())
+    threshold = BORDER_LEVEL * (max_pressure * max_pressure)
+    border = _draw_border(ax, surface, surface.pressure**2, threshold, **CONTACT_BORDER)
     for artist in artists:
         if border is not None and artist is not None:
             artist.set_clip_path(border.get_paths()[0], ax.transData)
@@ -153,10 +133,10 @@ def plot_pressure_map(dataset: xr.Dataset, ax: Axes | None = None, *, si: bool =
     >>> plot_pressure_map(case).get_ylabel()
     'position along rolling, $y/a$'
     """
-    surface = _surface(dataset, ("pressure",), si=si)
+    surface = Surface(dataset, "pressure", si=si)
     ax = new_axes(ax)
-    stress, is_regular = surface.unit.stress, surface.away_from_singular_ends
-    max_value = None if is_regular.all() else float(surface.pressure[:, is_regular].max()) / stress
+    stress, (_, bound) = surface.unit.stress, cap_field(surface.case, surface.case["pressure"])
+    max_value = bound / stress if bound < np.inf else None
     mesh = _draw_mesh(ax, surface, surface.pressure / stress, cmap=COLORS, vmin=0.0, vmax=max_value)
     _draw_contact_border(ax, surface, mesh)
     _crop(ax, surface)
@@ -200,7 +180,7 @@ def plot_stick_and_slip(dataset: xr.Dataset, ax: Axes | None = None, *, si: bool
     from matplotlib.patches import Patch
 
     checks.count("arrows", arrows)
-    surface = _surface(dataset, ("pressure", "traction_x", "traction_y", "stick"), si=si)
+    surface = Surface(dataset, "pressure", "traction_x", "traction_y", "stick", si=si)
     ax = new_axes(ax)
     slip = np.where(surface.values("stick") > 0, 0.0, 1.0)
     mesh = _draw_mesh(
@@ -270,7 +250,7 @@ def plot_traction_map(
     0.5
     """
     checks.known_name("variable", variable, VECTORS)
-    surface = _surface(dataset, ("pressure", "stick", f"{variable}_x", f"{variable}_y"), si=si)
+    surface = Surface(dataset, "pressure", "stick", f"{variable}_x", f"{variable}_y", si=si)
     ax = new_axes(ax)
     magnitude = np.hypot(surface.values(f"{variable}_x"), surface.values(f"{variable}_y"))
     max_traction = float(magnitude[surface.in_contact].max(initial=0.0))
@@ -320,7 +300,7 @@ def plot_temperature_map(
     """
     checks.known_name("surface", surface, SURFACES)
     name = SURFACES[surface]
-    field = _surface(dataset, (name, "frictional_heat"), si=si, load="frictional_heat")
+    field = Surface(dataset, name, "frictional_heat", si=si, load="frictional_heat")
     ax = new_axes(ax)
     rise = field.values(name)
     mesh = _draw_mesh(ax, field, rise, cmap=HEAT_COLORS)
@@ -363,15 +343,14 @@ def plot_film_map(dataset: xr.Dataset, ax: Axes | None = None, *, fringes: int =
     'position along rolling, $y/a$'
     """
     checks.count("fringes", fringes)
-    case = single_case(dataset)
-    require(case, "film_thickness", "central_film", "least_film_x", "least_film_y")
-    unit, ax = units(case, si=si), new_axes(ax)
-    film = 1e6 * case["film_thickness"].transpose("y", "x")
-    x, y = (film[axis].values / unit.length for axis in "xy")
+    names = ("film_thickness", "central_film", "least_film_x", "least_film_y")
+    surface, ax = Surface(dataset, *names, si=si, load="film_thickness"), new_axes(ax)
+    case, unit, x, y = surface.case, surface.unit, surface.x, surface.y
+    film = 1e6 * surface.values("film_thickness")
     max_film = 1.5e6 * float(case["central_film"])
     levels = np.linspace(0.0, max_film, fringes + 1)
-    contours = ax.contourf(x, y, film.values, levels=levels, cmap=COLORS, extend="max")
-    ax.contour(x, y, film.values, levels=levels[1:], colors="0.25", linewidths=0.5)
+    contours = ax.contourf(x, y, film, levels=levels, cmap=COLORS, extend="max")
+    ax.contour(x, y, film, levels=levels[1:], colors="0.25", linewidths=0.5)
     ax.plot(float(case["least_film_x"]) / unit.length, float(case["least_film_y"]) / unit.length, "x", color="#e8513a")
     half_range = FILM_HALF_RANGE * float(case["hertz_half_width"]) / unit.length
     ax.set_ylim(max(-half_range, y.min()), min(half_range, y.max()))

@@ -24,6 +24,9 @@ conditions: each is below the digits that a summary prints."""
 PEAK_TOLERANCE = 0.02  # Largest relative error of the peak pressure: twice the default accuracy
 
 
+Answer = tuple[str, str]  # The answer, and the reason
+
+
 class Criterion(NamedTuple):
     """A question, its answer, and the reason."""
 
@@ -98,98 +101,96 @@ def _criteria(case: xr.Dataset, table: Summary) -> Iterator[Criterion]:
         message = str(case["message"].item()) if "message" in case else ""
         yield Criterion("Is there a result?", NO, f"the case is {status}" + (f": {message}" if message else ""))
         return
-    yield _converged(case)
-    yield _load(case)
-    yield _contact_conditions(case)
-    if "bound_error" in case:
-        yield _friction(case)
-    yield _free_ends(case)
-    yield _cells(case)
+    answers = {
+        "Did the iteration converge?": _converged(case),
+        "Does the pressure carry the load?": _load(case),
+        "Do gap and pressure exclude each other?": _contact_conditions(case),
+        "Do stick and slip follow Coulomb's law?": _friction(case),
+        "Are the free ends free?": _free_ends(case),
+        "Are the cells fine enough?": _cells(case),
+    }
+    yield from (Criterion(question, *answer) for question, answer in answers.items() if answer is not None)
     profile = attribute(case, INPUTS_ATTRIBUTE).get("case", {}).get("roller", {}).get("profile", {})
-    yield from (_measured_profile(entry) for entry in tables_within(profile) if entry["kind"] == "Measured")
+    for entry in tables_within(profile):
+        if entry["kind"] == "Measured":
+            yield Criterion("Is the measured profile filtered?", *_measured_profile(entry))
     if "peak_von_mises" in table:
-        yield _peak_stress(case, table["peak_von_mises"])
+        yield Criterion("Is the largest stress known?", *_peak_stress(case, table["peak_von_mises"]))
     for text in attribute(case, RUN_ATTRIBUTE).get("warnings", []):
         yield Criterion("Was there a warning?", CAUTION, str(text))
 
 
-def _converged(case: xr.Dataset) -> Criterion:
+def _converged(case: xr.Dataset) -> Answer:
     """Whether the iteration met its tolerance."""
-    question, steps = "Did the iteration converge?", _size(case, "iterations")
     if "converged" not in case:
-        return _unknown(question, "converged")
+        return _unknown("converged")
+    steps = _size(case, "iterations")
     count = f" in {steps:.0f} applications of the operator" if np.isfinite(steps) else ""
     if bool(case["converged"]):
-        return Criterion(question, YES, f"it reached its tolerance{count}")
-    return Criterion(question, NO, f"it stopped before its tolerance{count}")
+        return YES, f"it reached its tolerance{count}"
+    return NO, f"it stopped before its tolerance{count}"
 
 
-def _load(case: xr.Dataset) -> Criterion:
+def _load(case: xr.Dataset) -> Answer:
     """Whether the pressure is in equilibrium with the load."""
-    question, error = "Does the pressure carry the load?", _size(case, "load_error")
+    error, offset = _size(case, "load_error"), _size(case, "load_position_error")
     if np.isnan(error):
-        return _unknown(question, "load_error")
-    offset = _size(case, "load_position_error")
+        return _unknown("load_error")
     position = f", its position to {_digit(offset)} of the length" if offset > 0 else ""
     is_balanced = error <= LOAD_TOLERANCE and not offset > VIOLATION_TOLERANCE
-    return Criterion(
-        question, YES if is_balanced else NO, f"the resultant equals the load to {_digit(error)} of it{position}"
-    )
+    return YES if is_balanced else NO, f"the resultant equals the load to {_digit(error)} of it{position}"
 
 
-def _contact_conditions(case: xr.Dataset) -> Criterion:
+def _contact_conditions(case: xr.Dataset) -> Answer:
     """Whether gap and pressure are complementary."""
-    question = "Do gap and pressure exclude each other?"
     overlap, pressure = _size(case, "penetration_error"), _size(case, "open_pressure_error")
     if np.isnan(overlap):
-        return _unknown(question, "penetration_error")
+        return _unknown("penetration_error")
     is_fulfilled = max(overlap, np.nan_to_num(pressure)) <= VIOLATION_TOLERANCE
     reason = (
         f"gap or overlap under pressure is {_digit(overlap)} of the displacement, pressure over a gap "
         f"{_digit(pressure)} of the peak"
     )
-    return Criterion(question, YES if is_fulfilled else CAUTION, reason)
+    return YES if is_fulfilled else CAUTION, reason
 
 
-def _friction(case: xr.Dataset) -> Criterion:
-    """Whether stick and slip obey Coulomb's law."""
+def _friction(case: xr.Dataset) -> Answer | None:
+    """Whether stick and slip obey Coulomb's law; None without their errors."""
+    if "bound_error" not in case:
+        return None
     errors = {name: _size(case, name) for name in ("bound_error", "slip_error", "force_error") if name in case}
     reason = ", ".join(f"{name.replace('_', ' ')} {_digit(value)}" for name, value in errors.items())
-    is_fulfilled = all(not value > RESIDUAL_TOLERANCE for value in errors.values())
-    return Criterion("Do stick and slip follow Coulomb's law?", YES if is_fulfilled else CAUTION, reason)
+    return CAUTION if any(value > RESIDUAL_TOLERANCE for value in errors.values()) else YES, reason
 
 
-def _free_ends(case: xr.Dataset) -> Criterion:
+def _free_ends(case: xr.Dataset) -> Answer:
     """Whether the traction on the free ends vanishes."""
-    question, residual = "Are the free ends free?", _size(case, "end_traction_residual")
+    residual = _size(case, "end_traction_residual")
     body = attribute(case, INPUTS_ATTRIBUTE).get("case", {}).get("body", {})
     if body.get("kind") == "HalfSpace" or (residual == 0 and not body):
-        return Criterion(question, YES, "the body has no free end, or the traction on the free end is zero")
+        return YES, "the body has no free end, or the traction on the free end is zero"
     if np.isnan(residual):
-        return _unknown(question, "end_traction_residual")
+        return _unknown("end_traction_residual")
     reason = f"the traction on the free end is {_digit(residual)} of the peak pressure"
     if body.get("model", "exact") != "exact":
-        return Criterion(question, CAUTION, f"{reason}: the model {body['model']!r} serves comparisons only")
-    return Criterion(question, YES if residual <= RESIDUAL_TOLERANCE else CAUTION, reason)
+        return CAUTION, f"{reason}: the model {body['model']!r} serves comparisons only"
+    return YES if residual <= RESIDUAL_TOLERANCE else CAUTION, reason
 
 
-def _cells(case: xr.Dataset) -> Criterion:
+def _cells(case: xr.Dataset) -> Answer:
     """Whether the cells resolve the peak pressure."""
-    question = "Are the cells fine enough?"
     peak, error = (float(case.get(name, np.nan)) for name in ("peak_pressure", "peak_pressure_error"))
     if np.isinf(peak):
-        reason = f"the pressure is singular at {_singular_edge(case)}: its intensity replaces the peak"
-        return Criterion(question, CAUTION, reason)
+        return CAUTION, f"the pressure is singular at {_singular_edge(case)}: its intensity replaces the peak"
     if np.isnan(error):
         reason = "the error on the given cells was not estimated; numbers at the ends may depend on the cells"
-        return Criterion(question, CAUTION if "pressure" in case else UNKNOWN, reason)
+        return CAUTION if "pressure" in case else UNKNOWN, reason
     if np.isinf(error):
-        reason = str(case["peak_pressure_error"].attrs.get("comment", "two grids show no limit: take finer cells"))
-        return Criterion(question, CAUTION, reason)
+        return CAUTION, case["peak_pressure_error"].attrs.get("comment", "two grids show no limit: take finer cells")
     relative = error / peak if peak else 0.0
     if relative > PEAK_TOLERANCE:
-        return Criterion(question, CAUTION, f"the error of the peak pressure is {relative:.1%}")
-    return Criterion(question, YES, f"the peak pressure has converged to {relative:.1%}")
+        return CAUTION, f"the error of the peak pressure is {relative:.1%}"
+    return YES, f"the peak pressure has converged to {relative:.1%}"
 
 
 def _singular_edge(case: xr.Dataset) -> str:
@@ -207,34 +208,31 @@ def _singular_edge(case: xr.Dataset) -> str:
     return "the roller's sharp end inside the face; Roller(profile=...) takes a radius or a chamfer"
 
 
-def _measured_profile(profile: Mapping[str, Any]) -> Criterion:
+def _measured_profile(profile: Mapping[str, Any]) -> Answer:
     """Whether a measured profile is filtered: the cells would resolve its noise like a shape."""
-    question, cutoff = "Is the measured profile filtered?", profile.get("cutoff")
+    cutoff = profile.get("cutoff")
     if cutoff is None:
-        reason = (
+        return CAUTION, (
             "its points are unfiltered, and the pressure contains their noise, even of a tenth of a micrometre: choose "
             "a cutoff on which the peak does not depend"
         )
-        return Criterion(question, CAUTION, reason)
-    reason = f"the cut-off is {format_quantity(cutoff, 'm')}; a second one shows whether the peak depends on it"
-    return Criterion(question, YES, reason)
+    return YES, f"the cut-off is {format_quantity(cutoff, 'm')}; a second one shows whether the peak depends on it"
 
 
-def _peak_stress(case: xr.Dataset, row: Quantity) -> Criterion:
+def _peak_stress(case: xr.Dataset, row: Quantity) -> Answer:
     """Whether the largest von Mises stress has an error."""
-    question = "Is the largest stress known?"
     if "peak_von_mises_error" not in case and "von_mises" in case:
         flat = [axis for axis, dim in axis_dimensions(case["von_mises"]).items() if case.sizes[dim] == 1]
         if flat:
-            return Criterion(question, CAUTION, f"the stresses have one position along {' and '.join(flat)} only")
+            return CAUTION, f"the stresses have one position along {' and '.join(flat)} only"
     if not np.isfinite(row.error) or np.isinf(row.value):
-        return Criterion(question, CAUTION, row.remark or NOT_ESTIMATED)
-    return Criterion(question, YES, row.text)
+        return CAUTION, row.remark or NOT_ESTIMATED
+    return YES, row.text
 
 
-def _unknown(question: str, name: str) -> Criterion:
-    """Criterion of a number that the result lacks."""
-    return Criterion(question, UNKNOWN, f"the result has no {name}")
+def _unknown(name: str) -> Answer:
+    """Answer to a question on a number that the result lacks."""
+    return UNKNOWN, f"the result has no {name}"
 
 
 def _size(case: xr.Dataset, name: str) -> float:

@@ -93,7 +93,10 @@ def case_pictures(result: xr.Dataset, case: Case | None) -> list[Picture]:
         if check_drop(roller.profile, np.linspace(-0.5, 0.5, 201) * roller.length, roller.length).any():
             draw.append(partial(_draw_profile, roller))
     if "von_mises" in result and bool(result["von_mises"].notnull().any()):
-        draw += [_draw_axial_plane, _draw_cross_section, _draw_section_maxima]
+        x = float(largest_sample(result, "von_mises")["peak_von_mises_x"])
+        section = f"across the roller, in the section of its largest value, x = {format_quantity(x, 'm')}"
+        draw += [partial(_draw_plane, "in the plane y = 0, along the roller", {"y": 0.0})]
+        draw += [partial(_draw_plane, section, {"x": x}), _draw_section_maxima]
     pictures = []
     for function in draw:
         figure = _new_figure()
@@ -120,10 +123,8 @@ def _draw_axial_pressure(figure: Figure, result: xr.Dataset) -> str:
         line_pressure = axial_pressure(result).values
         loaded = x[line_pressure > 0]
         at_end_1 = line_pressure[x <= loaded[0] + panel].max() >= line_pressure[x >= loaded[-1] - panel].max()
-        limits = (
-            (loaded[0] - 0.1 * panel, loaded[0] + panel) if at_end_1 else (loaded[-1] - panel, loaded[-1] + 0.1 * panel)
-        )
-        axes[1].set_xlim(1e3 * limits[0], 1e3 * limits[1])
+        end, inwards = (loaded[0], panel) if at_end_1 else (loaded[-1], -panel)
+        axes[1].set_xlim(*sorted((1e3 * (end - 0.1 * inwards), 1e3 * (end + inwards))))
         axes[1].set_ylabel("")
         axes[1].set_title(f"near end {'I' if at_end_1 else 'II'}", fontsize="medium")
     if np.isinf(float(result.get("peak_pressure", 0.0))):
@@ -179,26 +180,12 @@ def _draw_profile(roller: Roller, figure: Figure, result: xr.Dataset) -> str:
     return "Profile of the roller: drop from the cylinder, downwards."
 
 
-def _cap_remark(result: xr.Dataset) -> str:
-    """Sentence for a caption: the colours are limited near a singular end; empty without a singular end."""
+def _draw_plane(text: str, position: dict[str, Any], figure: Figure, result: xr.Dataset) -> str:
+    """Von Mises stress in a plane."""
+    plot_stress_plane(result, "von_mises", ax=figure.subplots(), si=True, **position)
     _, limit = cap_field(result, result["von_mises"])
-    return f" Near a singular end the stress exceeds the largest colour, {format_quantity(limit, 'Pa')}." * (
-        limit < np.inf
-    )
-
-
-def _draw_axial_plane(figure: Figure, result: xr.Dataset) -> str:
-    """Von Mises stress in the plane of the axis."""
-    plot_stress_plane(result, "von_mises", y=0.0, ax=figure.subplots(), si=True)
-    return f"Von Mises stress in the plane y = 0, along the roller.{_cap_remark(result)}"
-
-
-def _draw_cross_section(figure: Figure, result: xr.Dataset) -> str:
-    """Von Mises stress across the roller, in the section of its largest value."""
-    x = float(largest_sample(result, "von_mises")["peak_von_mises_x"])
-    plot_stress_plane(result, "von_mises", ax=figure.subplots(), x=x, si=True)
-    caption = f"Von Mises stress across the roller, in the section of its largest value, x = {format_quantity(x, 'm')}."
-    return caption + _cap_remark(result)
+    capped = f" Near a singular end the stress exceeds the largest colour, {format_quantity(limit, 'Pa')}."
+    return f"Von Mises stress {text}.{capped if limit < np.inf else ''}"
 
 
 def _draw_section_maxima(figure: Figure, result: xr.Dataset) -> str:

@@ -29,6 +29,7 @@ CELLS = {  # Description of the cells by the setting of `solve`
     "chosen": "uniform cells, chosen by the package",
     "given": "given by the user",
 }
+ROUGH = "the surfaces are rough; the report does not contain their heights"
 
 
 def html(
@@ -160,30 +161,23 @@ def provenance(dataset: xr.Dataset) -> list[tuple[str, str]]:
     """
     run = attribute(dataset, RUN_ATTRIBUTE)
     settings = attribute(dataset, INPUTS_ATTRIBUTE).get("settings", {})
-    rows = []
-    if "time" in run:
-        rows.append(("solved", f"{run['time'][:16].replace('T', ' ')} UTC"))
-    if run.get("study"):
-        rows.append(("study", str(run["study"])))
     names = ("contactstudy", "commit", "python", *PACKAGES)
     versions = ", ".join(f"{name} {run[name]}" for name in names if name in run)
-    rows.append(("versions", versions or str(dataset.attrs.get("source", "not known"))))
-    if "cells" in settings:
-        rows.append(("cells", CELLS.get(str(settings["cells"]), str(settings["cells"]))))
-    if "accuracy" in settings:
-        rows.append(("accuracy", f"{settings['accuracy']:g} of the peak pressure"))
-    if "tolerance" in settings:
-        rows.append(("tolerance of the iteration", f"{settings['tolerance']:g}"))
-    if settings.get("rough"):
-        rows.append(("roughness", "the surfaces are rough; the report does not contain their heights"))
-    if "pressure" in dataset:
-        rows.append(("cells along x and y", " x ".join(str(size) for size in dataset["pressure"].shape)))
-    stages = run.get("stages", {}).items()
+    cells, stages = str(settings.get("cells", "")), run.get("stages", {}).items()
     times = [f"{stage} {seconds:.2f} s" for stage, seconds in stages if isinstance(seconds, Real)]
-    if "seconds" in run:
-        total = f"{run['seconds']:.2f} s"
-        rows.append(("time", f"{', '.join(times)}; {total} in all" if times else total))
-    return rows
+    total = f"{run['seconds']:.2f} s" if "seconds" in run else ""
+    rows = {
+        "solved": f"{run['time'][:16].replace('T', ' ')} UTC" if "time" in run else "",
+        "study": str(run.get("study") or ""),
+        "versions": versions or str(dataset.attrs.get("source", "not known")),
+        "cells": CELLS.get(cells, cells),
+        "accuracy": f"{settings['accuracy']:g} of the peak pressure" if "accuracy" in settings else "",
+        "tolerance of the iteration": f"{settings['tolerance']:g}" if "tolerance" in settings else "",
+        "roughness": ROUGH if settings.get("rough") else "",
+        "cells along x and y": " x ".join(map(str, dataset["pressure"].shape)) if "pressure" in dataset else "",
+        "time": f"{', '.join(times)}; {total} in all" if times and total else total,
+    }
+    return [(subject, text) for subject, text in rows.items() if text]
 
 
 def _render(template: str, context: dict[str, Any]) -> str:

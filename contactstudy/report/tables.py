@@ -30,6 +30,11 @@ SINGULAR = "singular: unbounded towards a sharp end"
 CELL_MEAN = f"mean over the cell of largest pressure, {NOT_ESTIMATED}"
 OPEN_END = "no contact at this end"
 ENDS = {"first": "end I", "last": "end II"}  # Ends of the roller: suffixes of variables, and names in the table
+HERTZ = {
+    "normal_load": "normal load",
+    "hertz_max_pressure": "Hertz pressure p0",
+    "hertz_half_width": "Hertz half-width a",
+}
 FILMS = ("central_film", "least_film", "end_film_ratio", "least_film_ratio")  # rows if present
 SCALARS = {  # Scalars that have a row if present and not zero, with the row's text
     "approach": "approach of roller and body",
@@ -126,11 +131,7 @@ def summary(dataset: xr.Dataset) -> Summary:
 
 def _rows(case: xr.Dataset) -> Iterator[Quantity]:
     """Rows of a case."""
-    for name, meaning in (
-        ("normal_load", "normal load"),
-        ("hertz_max_pressure", "Hertz pressure p0"),
-        ("hertz_half_width", "Hertz half-width a"),
-    ):
+    for name, meaning in HERTZ.items():
         if name in case:
             yield _row(case, name, meaning, None if f"{name}_error" in case else "")
     yield from _peak_pressure(case)
@@ -185,13 +186,11 @@ def _row(case: xr.Dataset, name: str, meaning: str, remark: str | None = None) -
 
 def _peak_pressure(case: xr.Dataset) -> Iterator[Quantity]:
     """Row of the largest pressure: refined, or of a cell."""
-    peak = float(case.get("peak_pressure", np.nan))
-    if "peak_pressure_error" in case or np.isinf(peak):
-        yield _row(case, "peak_pressure", "largest pressure")
-    elif "peak_pressure" in case or "pressure" in case:
-        value = peak if "peak_pressure" in case else float(case["pressure"].max())
-        text = format_quantity(value, "Pa")
-        yield Quantity("peak_pressure", "largest pressure", value, np.nan, "Pa", text=text, remark=CELL_MEAN)
+    if "peak_pressure" not in case and "pressure" in case:
+        case = case.assign(peak_pressure=float(case["pressure"].max()))
+    if "peak_pressure" in case:
+        is_refined = "peak_pressure_error" in case or np.isinf(float(case["peak_pressure"]))
+        yield _row(case, "peak_pressure", "largest pressure", None if is_refined else CELL_MEAN)
 
 
 def _peak_stress(case: xr.Dataset) -> Iterator[Quantity]:
@@ -203,7 +202,7 @@ def _peak_stress(case: xr.Dataset) -> Iterator[Quantity]:
             return
         case = case if singular else case.assign(peak(case).data_vars)
     if singular:
-        yield Quantity(name, meaning, np.inf, np.nan, "Pa", text=format_quantity(np.inf, "Pa"), remark=SINGULAR)
+        yield _row(case.assign({name: np.inf}), name, meaning, SINGULAR)
         return
     yield _row(case, name, meaning)
     for axis, coordinate in zip(AXES, ("position x", "position y", "depth"), strict=True):
@@ -260,17 +259,13 @@ def _slip(case: xr.Dataset) -> Iterator[Quantity]:
     if "stick" not in case:
         return
     for name, meaning in (("traction", "largest traction"), ("slip", "largest slip")):
-        components = [case[f"{name}_{axis}"] for axis in "xy" if f"{name}_{axis}" in case]
-        if len(components) == 2 and "pressure" in case:
-            size = ((components[0] ** 2 + components[1] ** 2) ** 0.5).where(case["pressure"] > 0, 0.0)
-            units = variable_of(f"{name}_y", components[1].attrs).units
-            value = float(size.max())
-            text = format_quantity(value, units) + (
-                "" if units == "m" or name == "traction" else " per distance rolled"
-            )
-            yield Quantity(
-                f"largest_{name}", meaning, value, np.nan, units, text=text, remark=f"of a cell, {NOT_ESTIMATED}"
-            )
+        if {f"{name}_x", f"{name}_y", "pressure"} <= set(case.variables):
+            x, y = case[f"{name}_x"], case[f"{name}_y"]
+            value = float(((x**2 + y**2) ** 0.5).where(case["pressure"] > 0, 0.0).max())
+            units = variable_of(f"{name}_y", y.attrs).units
+            suffix = "" if units == "m" or name == "traction" else " per distance rolled"
+            text, remark = f"{format_quantity(value, units)}{suffix}", f"of a cell, {NOT_ESTIMATED}"
+            yield Quantity(f"largest_{name}", meaning, value, np.nan, units, text=text, remark=remark)
 
 
 def _is_prescribed(case: xr.Dataset, name: str) -> Any:
@@ -315,21 +310,17 @@ def case_table(case: Case) -> CaseTable:
     Roller: radius R: 5 mm
     """
     roller = case.roller
+    model = "body with free ends" if roller.ends == "free" else "half-space without ends"
+    drops = roller.profile.drop(np.array([0.45, 0.5]) * roller.length, roller.length).tolist()
     roller_rows = [
         ("radius R", format_quantity(roller.radius, "m")),
         ("length L", format_quantity(roller.length, "m")),
         ("profile", _profile_text(roller.profile)),
         ("material", describe_material(roller.material) if roller.material else "rigid"),
+        *([("elastic model", model)] if roller.material else []),
+        (f"drop at {format_quantity(0.45 * roller.length, 'm')} from mid-length", format_quantity(drops[0], "m")),
+        ("drop at the very end", format_quantity(drops[1], "m")),
     ]
-    if roller.material is not None:
-        roller_rows.append(
-            ("elastic model", "body with free ends" if roller.ends == "free" else "half-space without ends")
-        )
-    drops = roller.profile.drop(np.array([0.45, 0.5]) * roller.length, roller.length).tolist()
-    roller_rows.append(
-        (f"drop at {format_quantity(0.45 * roller.length, 'm')} from mid-length", format_quantity(drops[0], "m"))
-    )
-    roller_rows.append(("drop at the very end", format_quantity(drops[1], "m")))
     position_rows = [("from end I of the body to the roller, e", format_quantity(case.roller_start, "m"))]
     if isinstance(case.body, FiniteLengthSpace):
         distance = case.body.length - case.roller_start - case.roller.length

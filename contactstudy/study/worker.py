@@ -22,7 +22,7 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from contactstudy.analysis.summary import Number, case_numbers
+from contactstudy.analysis.contact import case_numbers
 from contactstudy.arrays.grid import Grid
 from contactstudy.arrays.variables import DERIVED
 from contactstudy.case.gridding import solve_in_first_window
@@ -167,7 +167,7 @@ def batch_of_case(
     message: str = "",
     *,
     warnings_of_case: Iterable[str] = (),
-    numbers: Mapping[str, Number] | None = None,
+    numbers: Mapping[Any, xr.Variable] | None = None,
 ) -> Batch:
     """Batch of one case with its numbers."""
     texts, numbers = sorted(set(warnings_of_case)), numbers or {}
@@ -178,11 +178,11 @@ def batch_of_case(
         "message": message,
         "warnings": json.dumps(texts) if texts else "",
         "time": datetime.now(UTC).isoformat(timespec="seconds"),
-        **{name: float(number.value) for name, number in numbers.items()},
+        **{name: float(number) for name, number in numbers.items()},
     }
     return Batch(
         cases=pd.DataFrame(row, index=[case.id]),
-        attributes={name: number.attributes for name, number in numbers.items()},
+        attributes={name: number.attrs for name, number in numbers.items()},
         run_context={**run_context(), "study": task.study, "level": task.level},
     )
 
@@ -206,12 +206,9 @@ def _solve_case(
         with warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("always")
             dataset = solve_in_first_window(setup.grids, solve_on)
-            numbers = case_numbers(dataset)
-            summaries = dict(shakedown_summary(dataset).data_vars)
+            numbers = case_numbers(dataset) | dict(shakedown_summary(dataset).variables)
             if "von_mises" in dataset:
-                summaries |= edge_tension_summary(dataset).data_vars
-            for name, entry in summaries.items():
-                numbers[str(name)] = Number(float(entry), dict(entry.attrs))
+                numbers |= edge_tension_summary(dataset).variables
     except StoreError:
         raise
     except (ContactStudyError, MemoryError, np.linalg.LinAlgError) as error:
@@ -221,9 +218,9 @@ def _solve_case(
         raise
     e_over_a = setup.e_over_a
     if np.isnan(e_over_a):  # the half-width follows from the solution
-        e_over_a = setup.case.roller_start / numbers["hertz_half_width"].value
+        e_over_a = setup.case.roller_start / float(numbers["hertz_half_width"])
     for name, value in (("e_over_a", e_over_a), ("gamma", setup.gamma)):
-        numbers[name] = Number(float(value), PARAMETERS[name].attrs | {"comment": DERIVED})
+        numbers[name] = xr.Variable((), float(value), PARAMETERS[name].attrs | {"comment": DERIVED})
     messages = (str(entry.message) for entry in caught if entry.category is not MagnitudeWarning)
     batch = batch_of_case(task, case, "ok", warnings_of_case=messages, numbers=numbers)
     return add_arrays(batch, dataset, task.level) if task.level != "summary" else batch, dataset

@@ -27,7 +27,7 @@ from contactstudy import (
     verification,
     wear,
 )
-from contactstudy.analysis.summary import case_numbers
+from contactstudy.analysis.contact import case_numbers
 from contactstudy.arrays.variables import (
     COORDINATES,
     ERROR_KIND,
@@ -191,12 +191,7 @@ def returned_datasets(strip_result: Callable[..., xr.Dataset], study_dataset: xr
             roller=elastic_plastic,
             z=depths,
         ),
-        "case_numbers": xr.Dataset(
-            {
-                name: ((), entry_number.value, entry_number.attributes)
-                for name, entry_number in case_numbers(case_result).items()
-            }
-        ),
+        "case_numbers": xr.Dataset(case_numbers(case_result)),
         "self_affine": rough_result,
         "read_height_map": cs.roughness.read_height_map(file, grid),
         "slice_model": bearing.slice_model(case),
