@@ -42,6 +42,8 @@ class Task:
     design_pressure: float = 1.5e9
     bounds: tuple[float, float] = (0.3, 4.0)
     accuracy: float = 0.005
+    points: tuple[int, int, int] = (60, 241, 85)
+    """Positions of the stresses along x, y and z."""
 
     @property
     def half_width(self) -> float:
@@ -109,9 +111,10 @@ def judge_design(task: Task, delta: float) -> xr.Dataset:
     """One design on the real body: worst pressure; and stresses of the design load with the largest offset."""
     case = task.case(delta, task.body, task.design_pressure, task.offsets[-1])
     a = task.half_width
-    points = {"y": a * np.linspace(-3.0, 3.0, 241), "z": a * np.linspace(0.1, 1.5, 85)}
+    count_x, count_y, count_z = task.points
+    points = {"y": a * np.linspace(-3.0, 3.0, count_y), "z": a * np.linspace(0.1, 1.5, count_z)}
     # The load presses the end at large x deeper; the other half of the body carries less.
-    x = task.body.length - np.append(0.0, np.geomspace(0.05 * a, 0.5 * task.body.length, 60))
+    x = task.body.length - np.append(0.0, np.geomspace(0.05 * a, 0.5 * task.body.length, count_x))
     result = cs.solve(case, accuracy=task.accuracy, x=x[::-1], **points)
     risk = cs.fatigue.lundberg_palmgren(result)[["risk", "risk_error"]]
     worst, worst_error = task.worst(delta, task.body)

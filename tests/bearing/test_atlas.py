@@ -34,6 +34,7 @@ def solve_groups(groups: dict[str, float], load_factor: float = 1.0, **options: 
     return cs.solve(case, **options)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("groups", [GROUPS, TILTED], ids=["parallel", "tilted"])
 def test_atlas_errors_cover_a_solved_roller(groups) -> None:
     contact, result = solve_groups(groups, x=[0.0], y=[0.0], z=[0.0]), cs.atlas(**groups)

@@ -44,6 +44,7 @@ def test_load_exponent_of_a_ball(ball: ContactLaw) -> None:
     assert np.log2(loads[1] / loads[0]) == pytest.approx(1.5, abs=0.01)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("load", "tilt"), [(75.0, 6e-4), (95.0, -1.3e-3), (120.0, 2e-4)])
 def test_errors_against_direct_solutions(short_case: Case, short_law: ContactLaw, load: float, tilt: float) -> None:
     direct = solve(replace(short_case, load=load, tilt=tilt), stresses=False, accuracy=0.02)

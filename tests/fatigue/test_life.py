@@ -113,6 +113,7 @@ def test_too_few_positions_give_an_infinite_error(strip_result) -> None:
     assert float(fatigue.relative_life(result, result)["relative_life_error"]) == np.inf
 
 
+@pytest.mark.slow
 def test_error_of_solved_cases(case_result: xr.Dataset) -> None:
     """The risk on half of the positions is within the error."""
     full_result = fatigue.lundberg_palmgren(case_result)

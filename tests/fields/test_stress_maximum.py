@@ -129,6 +129,7 @@ def test_stress_maximum_does_not_depend_on_positions() -> None:
     assert peak_von_mises / float(distant_result.von_mises.max()) > 1.4
 
 
+@pytest.mark.slow
 def test_stress_maximum_error_covers_finer_cells() -> None:
     coarse, fine = (solve(sharp_roller(0.4), accuracy=accuracy, x=[0.0], y=[0.0], z=[A]) for accuracy in (0.02, 0.004))
     error = abs(float(coarse.peak_von_mises - fine.peak_von_mises))

@@ -92,6 +92,7 @@ def test_mid_length_film_equals_a_line_contact():
     assert middle == pytest.approx(line.central_film * scale, rel=0.04)
 
 
+@pytest.mark.slow
 def test_face_film_of_flush_rollers_has_converged():
     case = film_case(4 * HALF_WIDTH, 10.0, 5.0)
     cells = (replace(COARSE, columns=0.12 * factor, columns_inlet=0.4 * factor) for factor in (1.0, 0.5))

@@ -27,6 +27,7 @@ def roller_case(end_distance: float = 0.0, body: float | None = None, **settings
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "case",
     [

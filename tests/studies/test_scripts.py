@@ -119,7 +119,7 @@ def test_regime_map_checks_accuracy():
 
 def test_best_profile_needs_less_crown_between_free_ends():
     module = script("best_profile")
-    task = module.Task(length=0.8e-3, pressures=(1.5e9,), offsets=(0.04e-3,), accuracy=0.1)
+    task = module.Task(length=0.8e-3, pressures=(1.5e9,), offsets=(0.04e-3,), accuracy=0.1, points=(20, 61, 22))
     designs = module.designs(task)
     crown_factors = designs["delta"].sel(design=["half-space", "free ends"]).values
     assert task.bounds[0] < crown_factors[1] < crown_factors[0] < task.bounds[1]

@@ -164,6 +164,7 @@ def test_ends_of_all_cases_have_cells(shifted_edges):
             assert np.abs(centres_of(common_edges) - end).min() <= 2 * width
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("has_stated_points", [False, True])
 def test_stresses_on_the_ends_of_every_case(tmp_path, has_stated_points):
     base = {name: value for name, value in BASE.items() if name not in ("field_x_over_a", "cells_x", "cells_y")}

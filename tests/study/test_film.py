@@ -75,6 +75,7 @@ def test_dry_case_refuses_film_parameters() -> None:
         build_setup(dry_parameters | {"entrainment_speed": 1.0})
 
 
+@pytest.mark.slow
 def test_films_of_a_study(films: xr.Dataset) -> None:
     slow_film = build_setup(BASE | {"entrainment_speed": 1.0})
     cold_film = solve_film(slow_film.case, **slow_film.options)
@@ -86,6 +87,7 @@ def test_films_of_a_study(films: xr.Dataset) -> None:
     assert {"central_film_error", "least_film_error", "end_film_ratio_error"} <= set(films)
 
 
+@pytest.mark.slow
 def test_interrupted_films_start_from_same_speeds(films: xr.Dataset, tmp_path) -> None:
     study = Study(name="film", base=BASE, sweep={"entrainment_speed": SPEEDS})
     for sample in (1, None):

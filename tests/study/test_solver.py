@@ -36,6 +36,7 @@ def test_study_equals_solver_result(tmp_path):
     np.testing.assert_array_equal(stored_case["tau_xz"], separate_result["tau_xz"].astype(np.float32))
 
 
+@pytest.mark.slow
 def test_study_over_end_models(tmp_path):
     study = small_study(
         level="surface",

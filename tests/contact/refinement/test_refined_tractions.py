@@ -33,6 +33,7 @@ SLIDING_FORCE = 0.1 * STEEL_CASE.normal_load
 CREEPAGES = Rolling(longitudinal_creepage=5e-4, lateral_creepage=-3e-4, spin=1.0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "motion",
     [

@@ -344,6 +344,7 @@ def test_sticking_part_is_relative_to_loaded_area() -> None:
     assert float(result.sticking_part) == pytest.approx(float(result.stick.sum() / is_loaded.sum()))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("poisson", "spin"), [(0.3, 10.0), pytest.param(0.0, 5.0, marks=pytest.mark.slow)])
 def test_pressure_and_tractions_of_a_large_spin_converge(poisson: float, spin: float) -> None:
     """Sliding columns or leading edges from each pressure would alternate between two states."""
