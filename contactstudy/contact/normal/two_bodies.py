@@ -49,7 +49,7 @@ class PairOperator:
     def __init__(
         self, body: SurfaceOperator, counterbody: SurfaceOperator | None, transfer: CellTransfer | None, factor: float
     ) -> None:
-        # Without an operator of its own the second body is displaced like the first one. `factor`: the normal
+        # Without a second operator the second body is displaced like the first one. `factor`: the normal
         # displacement of both bodies over that of the first one.
         self.body, self._counterbody, self._transfer, self._factor = body, counterbody, transfer, factor
 
