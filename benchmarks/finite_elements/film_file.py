@@ -12,7 +12,7 @@ import xarray as xr
 from benchmarks.finite_elements.film import compliance, solve
 from benchmarks.finite_elements.stored import append_case, create_file
 from benchmarks.finite_elements.superpose import Resolution
-from contactstudy.film.levels import Level, create_cells
+from contactstudy.film.levels import create_cells
 from contactstudy.verification.film import coarse_film
 from contactstudy.verification.problems import FILM_CASES
 
@@ -23,7 +23,7 @@ COARSE = replace(PRODUCTION, order=3, growth=2.4, smallest=0.04, nodes=4)
 def solve_reference(name: str) -> xr.Dataset:
     """The film, and its largest change from coarser finite elements."""
     case, film = FILM_CASES[name], coarse_film(name)
-    cells = create_cells(film, Level(), film.contact_ends)[0]
+    cells = create_cells(film, film.coarsest_level)[0]
     edges = cells.x_edges, cells.y_edges
     reference, coarse = (
         solve(case, compliance(case, *edges, resolution), *edges) for resolution in (PRODUCTION, COARSE)

@@ -99,6 +99,11 @@ class FilmCase:
     inlet: float | None  # distance of the inlet's meniscus from the middle of the contact, metres; None: fully flooded
 
     @property
+    def rms(self) -> float | None:
+        """Roughness of both surfaces, metres; None for smooth surfaces."""
+        return None if self.asperities is None else self.asperities.rms
+
+    @property
     def speed(self) -> float:
         """Magnitude of the entrainment speed, m/s."""
         return abs(self.speeds.entrainment)
@@ -196,6 +201,17 @@ class FilmCase:
         ratio = self.resolution.ratio
         return float(ratio ** np.round(np.log(inlet_ratio * line_half_width / self.half_width) / np.log(ratio)))
 
+    @property
+    def coarsest_level(self) -> Level:
+        """Cells without refinement."""
+        return Level(cells=0, columns=0, closures=[*self.contact_ends], inlet_length=self.inlet_length)
+
+    def film_ratio(self, result: xr.Dataset) -> float:
+        """Central film by Moes' formula over that of a film at another speed or with another lubricant."""
+        former_load_number, load_number = float(result["moes_load"]), self.moes_load(self.largest_line_load)
+        former_film = moes_line(former_load_number, float(result["moes_lubricant"])) / former_load_number
+        return float(moes_line(load_number, self.moes_lubricant) / load_number / former_film)
+
     @cached_property
     def fluid(self) -> Fluid:
         """Laws of the lubricant in the scales of the film."""
@@ -205,10 +221,12 @@ class FilmCase:
 
 
 class Level(NamedTuple):
-    """Numbers of refinements of the cells along y and of the columns."""
+    """Cells of a film: numbers of refinements along y and of the columns, in the geometry of a case."""
 
-    cells: int = 0
-    columns: int = 0
+    cells: int
+    columns: int
+    closures: list[float]  # positions x of the narrowest columns over the half-width
+    inlet_length: float  # inlet length of the coarsest cells along y, over the half-width
 
 
 class FilmOnCells(NamedTuple):
@@ -221,23 +239,21 @@ class FilmOnCells(NamedTuple):
     merged: MergedCells  # cells along y
 
 
-def create_cells(
-    film: FilmCase, level: Level, closures: tuple[float, ...]
-) -> tuple[FilmCells, MergedCells, tuple[float, float]]:
-    """Return the cells of a level, with narrow columns at the `closures` along x, and the window along y."""
+def create_cells(film: FilmCase, level: Level) -> tuple[FilmCells, MergedCells, tuple[float, float]]:
+    """Return the cells of a level, and the window along y."""
     resolution = film.resolution
     scale, column_scale = resolution.ratio**-level.cells, resolution.ratio ** (-2 * level.columns)
     start, stop = (end / film.half_width for end in film.case.contact_range)
-    min_dx = min(resolution.columns, resolution.columns_inlet * film.inlet_length, 0.1 * (stop - start)) * column_scale
+    min_dx = min(resolution.columns, resolution.columns_inlet * level.inlet_length, 0.1 * (stop - start)) * column_scale
     growth = resolution.columns_growth * column_scale**0.35
 
     def column_width(x: float) -> float:
-        nearest = min(abs(x - closure) for closure in closures)
+        nearest = min(abs(x - closure) for closure in level.closures)
         max_width = min(resolution.widest_column, 0.2 * (stop - start))
         return float(min(min_dx + growth * max(nearest - 2 * min_dx, 0.0), max_width))
 
     x_edges = graded_edges(start, stop, column_width)
-    delta, half_width = film.inlet_length, film.contact_half_width
+    delta, half_width = level.inlet_length, film.contact_half_width
     y_start = -half_width - resolution.inlet * delta
     if film.inlet is not None:
         y_start = max(y_start, -film.inlet / film.half_width)
@@ -262,12 +278,11 @@ def create_cells(
 def film_on_level(
     film: FilmCase,
     level: Level,
-    closures: tuple[float, ...],
     settings: FilmSettings,
     start: FilmOnCells | xr.Dataset | None = None,
 ) -> FilmOnCells:
     """Solve for the film on the cells of a level, from the dry contact or from another film."""
-    cells, merged, window = create_cells(film, level, closures)
+    cells, merged, window = create_cells(film, level)
     a, p0, height_scale = film.half_width, film.pressure_scale, film.height_scale
     grid = graded_grid(film.case, a * cells.x_edges, (a * window[0], a * window[1]), int(merged.edges[-1]))
     first_column = int(np.abs(grid.x_edges - a * cells.x_edges[0]).argmin())
@@ -350,10 +365,7 @@ def _convert_result(film: FilmCase, result: xr.Dataset, problem: FilmProblem) ->
         _interpolate_film(fields[name].values[:, ::sign] / scale, x, (sign * y)[::sign], problem.cells)
         for name, scale in (("pressure", film.pressure_scale), ("film_thickness", film.height_scale))
     )
-    former_load_number, load_number = float(result["moes_load"]), film.moes_load(film.largest_line_load)
-    former_film = moes_line(former_load_number, float(result["moes_lubricant"])) / former_load_number
-    film_ratio = float(moes_line(load_number, film.moes_lubricant) / load_number / former_film)
-    central_film = float(result["central_film"]) / film.height_scale
+    film_ratio, central_film = film.film_ratio(result), float(result["central_film"]) / film.height_scale
     distance = np.where(distance < central_film, film_ratio * distance, distance + (film_ratio - 1) * central_film)
     loaded = pressure.ravel() > 0
     rigid_heights = (distance - problem.gap - problem.displace(pressure)).ravel()

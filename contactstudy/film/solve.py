@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 import warnings
-from dataclasses import replace
+from dataclasses import asdict, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -12,7 +12,7 @@ import xarray as xr
 from scipy.interpolate import CubicSpline, PchipInterpolator
 
 from contactstudy import checks
-from contactstudy.analysis.provenance import with_provenance
+from contactstudy.analysis.provenance import INPUTS_ATTRIBUTE, attribute, check_solved_for, with_provenance
 from contactstudy.arrays.cells import cell_coordinates
 from contactstudy.arrays.peaks import lagrange_weights
 from contactstudy.arrays.variables import describe, require, without_error
@@ -65,7 +65,8 @@ def solve_film(
         Distance of the lubricant's meniscus in the inlet from the middle of the contact, metres. Default: at a distance
         that floods the inlet fully.
     start : Dataset, optional
-        Film of the same case at another speed or with another lubricant, from which the iteration starts.
+        Film of the same case at another speed or with another lubricant, from which the iteration starts: on the cells
+        of a similar film, with its relative errors.
     resolution : FilmResolution
         Cells of the coarsest level, and the refinement.
     settings : FilmSettings
@@ -132,7 +133,8 @@ def solve_film(
         )
     _warn_of_viscosity(film, refined.level_film)
     labelled = without_error(describe(result, "lubricated contact of a roller with an elastic body"), "slice_film")
-    recorded_arguments = {"accuracy": limit, "inlet": inlet, "rms": None if asperities is None else asperities.rms}
+    cells = {"level": refined.level._asdict(), "resolution": asdict(film.resolution)}
+    recorded_arguments = {"accuracy": limit, "inlet": film.inlet, "rms": film.rms, **cells}
     return with_provenance(labelled, case, recorded_arguments, {"film": seconds})
 
 
@@ -192,6 +194,7 @@ FILM_NAMES = Films._fields[:5]
 class _RefinedFilm(NamedTuple):
     """Film on the finest level, its values, their errors, and the largest error over the central film."""
 
+    level: Level
     level_film: FilmOnCells
     films: Films
     errors: dict[str, float]  # by the film's name
@@ -203,17 +206,18 @@ class _RefinedFilm(NamedTuple):
 
 def _refine(film: FilmCase, accuracy: float, settings: FilmSettings, start: xr.Dataset | None = None) -> _RefinedFilm:
     """Refine the cells in the direction of the larger error until the film reaches the accuracy."""
+    if start is not None and (refined := _continue_film(film, accuracy, settings, start)) is not None:
+        return refined
     coarse_settings = replace(settings, tolerance=max(settings.tolerance, settings.level_tolerance))
-    level = Level()
-    closures: tuple[float, ...] = film.contact_ends
+    level = film.coarsest_level
     solutions: list[FilmOnCells] = []
     films: list[Films] = []
-    changes = {name: [np.full(len(FILM_NAMES), np.inf)] * 2 for name in Level._fields}
+    changes = {name: [np.full(len(FILM_NAMES), np.inf)] * 2 for name in ERROR_FACTORS}
     direction = ""
     errors = np.full(len(FILM_NAMES), np.inf)
     while True:
         try:
-            solutions.append(film_on_level(film, level, closures, coarse_settings, [start, *solutions][-1]))
+            solutions.append(film_on_level(film, level, coarse_settings, [start, *solutions][-1]))
         except StepFailedError:
             if not solutions and start is not None:
                 return _refine(film, accuracy, settings)
@@ -225,7 +229,7 @@ def _refine(film: FilmCase, accuracy: float, settings: FilmSettings, start: xr.D
             changes[direction].append(np.abs(films[-1].thicknesses - films[-2].thicknesses))
         direction_errors = {name: _estimate_errors(name, change) for name, change in changes.items()}
         errors = np.sum([*direction_errors.values()], axis=0) + MIN_RELATIVE_ERROR * films[-1].thicknesses
-        directions = [name for name in Level._fields if getattr(level, name) < film.resolution.levels - 1]
+        directions = [name for name in ERROR_FACTORS if getattr(level, name) < film.resolution.levels - 1]
         if errors.max() <= accuracy * films[-1].central_film or not directions:
             break
         direction = max(directions, key=lambda name: float(direction_errors[name].max()))
@@ -234,9 +238,10 @@ def _refine(film: FilmCase, accuracy: float, settings: FilmSettings, start: xr.D
             # The centres of the columns with the least films of both sides are equal for similar speeds.
             x = solutions[-1].problem.cells.x
             minima = (float(x[np.abs(x - position).argmin()]) for position in (films[-1].first_x, films[-1].last_x))
-            closures = (*film.contact_ends, *minima)
+            level = level._replace(closures=[*film.contact_ends, *minima])
     solutions.append(continue_solution(solutions[-1], settings))
     return _RefinedFilm(
+        level=level,
         level_film=solutions[-1],
         films=compute_films(film, solutions[-1]),
         errors=dict(zip(FILM_NAMES, errors.tolist(), strict=True)),
@@ -244,6 +249,39 @@ def _refine(film: FilmCase, accuracy: float, settings: FilmSettings, start: xr.D
         levels=len(films),
         newton_steps=sum(level_film.solution.newton_steps for level_film in solutions),
         linear_steps=sum(level_film.solution.linear_steps for level_film in solutions),
+    )
+
+
+def _continue_film(film: FilmCase, accuracy: float, settings: FilmSettings, start: xr.Dataset) -> _RefinedFilm | None:
+    """Film on the finest cells of a similar film, with its relative errors; None if they do not suffice."""
+    recorded = attribute(start, INPUTS_ATTRIBUTE).get("settings", {})
+    same = {"inlet": film.inlet, "rms": film.rms, "resolution": asdict(film.resolution)}
+    try:
+        check_solved_for(start, film.case)
+        level = Level(**recorded["level"])
+    except (InvalidInputError, KeyError, TypeError):
+        return None
+    # Errors are of second order in the cells over the inlet length, a power 2/3 of the film: eq. (403).
+    growth = max(film.film_ratio(start) ** (-4 / 3), 1.0)
+    relative_errors = growth * np.array([float(start[f"{name}_error"] / start[name]) for name in FILM_NAMES])
+    is_near = abs(np.log(film.inlet_length / level.inlet_length)) < 1.01 * np.log(film.resolution.ratio)
+    error = float((relative_errors * [float(start[name] / start["central_film"]) for name in FILM_NAMES]).max())
+    if any(recorded.get(name) != value for name, value in same.items()) or not is_near or error > accuracy:
+        return None
+    try:
+        solved = film_on_level(film, level, settings, start)
+    except StepFailedError:
+        return None
+    films = compute_films(film, solved)
+    return _RefinedFilm(
+        level=level,
+        level_film=solved,
+        films=films,
+        errors=dict(zip(FILM_NAMES, (relative_errors * films.thicknesses).tolist(), strict=True)),
+        error=error,
+        levels=1,
+        newton_steps=solved.solution.newton_steps,
+        linear_steps=solved.solution.linear_steps,
     )
 
 

@@ -143,17 +143,30 @@ def test_reversed_surfaces_mirror_the_film(crowned):
     assert mirrored.film_thickness.values[:, ::-1] == pytest.approx(crowned.film_thickness.values, rel=1e-6)
 
 
-def test_next_speed_starts_from_the_previous_film(crowned):
+@pytest.mark.parametrize(("speed", "growth"), [(1.2, 1.0), (0.9, 1.11)])
+def test_next_speed_has_the_cells_and_errors_of_the_previous_film(crowned, speed, growth):
+    """The stated errors grow for a thinner film; they cover the film that is refined anew."""
     case = film_case(LENGTH, 10.0, 5.0, profile=CROWN)
-    faster = replace(case, motion=cs.Sliding(body_speed=1.02, roller_speed=1.02))
+    next_case = replace(case, motion=cs.Sliding(body_speed=speed, roller_speed=speed))
     computed = cs.cache.info().kinds["surface operators"].computed
-    warm = coarse_film(faster, start=crowned)
+    warm = coarse_film(next_case, start=crowned)
     assert cs.cache.info().kinds["surface operators"].computed == computed
-    cold = coarse_film(faster)
-    assert int(warm.newton_steps) < 0.6 * int(cold.newton_steps)
-    for name in ("central_film", "least_film"):
-        assert float(warm[name]) == pytest.approx(float(cold[name]), rel=1e-7)
-        assert float(warm[f"{name}_error"]) == pytest.approx(float(cold[f"{name}_error"]), rel=1e-2)
+    cold = coarse_film(next_case)
+    assert int(warm.film_levels) == 1
+    assert int(warm.newton_steps) < 0.3 * int(cold.newton_steps)
+    assert float(warm.mass_error) < 1e-6
+    for name in ("central_film", "least_film", "least_film_last"):
+        former_error, error = (float(film[f"{name}_error"] / film[name]) for film in (crowned, warm))
+        assert error == pytest.approx(growth * former_error, rel=0.02)
+        assert abs(float(warm[name] - cold[name])) < float(warm[f"{name}_error"])
+
+
+def test_film_of_another_profile_is_refined_anew(crowned):
+    deeper_crown = cs.profiles.Lundberg(amplitude=1.2 * CROWN.amplitude)
+    other_case = film_case(LENGTH, 10.0, 5.0, profile=deeper_crown)
+    refined = coarse_film(other_case, start=crowned)
+    assert int(refined.film_levels) > 1
+    assert float(refined.least_film) == pytest.approx(float(coarse_film(other_case).least_film), rel=1e-6)
 
 
 def test_asperities_carry_part_of_the_load():

@@ -8,7 +8,7 @@ from scipy.special import xlogy
 
 from benchmarks.finite_elements.film import Reynolds, compliance, solve
 from benchmarks.finite_elements.film_file import COARSE
-from contactstudy.film.levels import Level, create_cells
+from contactstudy.film.levels import create_cells
 from contactstudy.verification.film import coarse_film
 from contactstudy.verification.problems import FILM_CASES, FILM_FILE, LubricatedCase, load_reference
 
@@ -42,7 +42,7 @@ def test_complex_steps() -> None:
 @pytest.mark.parametrize("name", FILM_CASES)
 def test_coarse_mesh(name: str) -> None:
     case, reference, film = FILM_CASES[name], load_reference(FILM_FILE, name), coarse_film(name)
-    cells = create_cells(film, Level(), film.contact_ends)[0]
+    cells = create_cells(film, film.coarsest_level)[0]
     edges = cells.x_edges, cells.y_edges
     pressure, height = solve(case, compliance(case, *edges, COARSE), *edges)
     np.testing.assert_allclose(height, reference["film"], rtol=2e-3)

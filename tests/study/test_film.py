@@ -80,7 +80,7 @@ def test_films_of_a_study(films: xr.Dataset) -> None:
     slow_film = build_setup(BASE | {"entrainment_speed": 1.0})
     cold_film = solve_film(slow_film.case, **slow_film.options)
     warm_film = films.sel(body="finite-length", entrainment_speed=1.0)
-    assert float(warm_film.least_film) == pytest.approx(float(cold_film.least_film), rel=1e-6)
+    assert abs(float(warm_film.least_film - cold_film.least_film)) < float(warm_film.least_film_error)
     assert float(warm_film.newton_steps) < float(cold_film.newton_steps)
     fast_film = films.end_film_ratio.sel(entrainment_speed=2.0)
     assert fast_film.sel(body="half-space") < fast_film.sel(body="finite-length")
