@@ -23,8 +23,9 @@ from contactstudy.case import Case, Roller
 from contactstudy.case.motion import Sliding
 from contactstudy.film import line_contact
 from contactstudy.film.formulas import moes_line, nijenbanning
-from contactstudy.film.levels import RESOLUTION, FilmCase, Level, film_on_level
+from contactstudy.film.levels import FilmCase, Level, film_on_level
 from contactstudy.film.newton import SETTINGS
+from contactstudy.film.solve import create_film_case
 from contactstudy.profiles import FullCrown, Lundberg
 from contactstudy.verification.check import Check, Curve, Reference
 from contactstudy.verification.free_ends import FINITE_ELEMENTS
@@ -102,11 +103,7 @@ def crowned_case(body: Body, length: float) -> Case:
 def coarse_film(name: str) -> FilmCase:
     """Film on the cells of the coarsest level, for comparison with the stored film."""
     length = FILM_CASES[name].length * HALF_WIDTH
-    case = crowned_case(FiniteLengthSpace(length=length, material=STEEL), length)
-    oil, speeds = case.lubricant, case.motion.speeds
-    assert oil is not None
-    assert speeds is not None
-    return FilmCase(case=case, lubricant=oil, speeds=speeds, asperities=None, resolution=RESOLUTION, inlet=None)
+    return create_film_case(crowned_case(FiniteLengthSpace(length=length, material=STEEL), length))
 
 
 def finite_element_checks(name: str) -> Iterator[Check]:
