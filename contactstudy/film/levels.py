@@ -22,7 +22,6 @@ from contactstudy.checks import FloatArray, IntArray
 from contactstudy.contact.normal.contact import Contact, Settings, contact_of, contact_operator
 from contactstudy.contact.refinement.refined_contact import contact_shape, refine_contact
 from contactstudy.film.asperities import Asperities
-from contactstudy.film.formulas import moes_line
 from contactstudy.film.newton import FilmProblem, FilmSettings, FilmSolution, FilmState, initial_state, solve_newton
 from contactstudy.film.reynolds import FilmCells, Fluid
 from contactstudy.kernels.load import Load
@@ -83,6 +82,19 @@ class FilmResolution:
 
 
 RESOLUTION = FilmResolution()  # Default cells
+
+
+def moes_line(load: FloatArray | float, lubricant: FloatArray | float) -> FloatArray:
+    """Central film of a line contact, ``H = h / R (2 U)**-1/2``, by Moes' formula, eq. (410).
+
+    Moes' numbers are ``M = w / (E' R) (2 U)**-1/2`` and ``L = alpha E' (2 U)**1/4``, with ``E' = 2 E*``.
+    """
+    h_ri, h_ei = 3.0 / np.asarray(load), 2.621 * np.asarray(load) ** -0.2
+    h_rp = 1.287 * np.asarray(lubricant) ** (2 / 3)
+    h_ep = 1.311 * np.asarray(load) ** -0.125 * np.asarray(lubricant) ** 0.75
+    s = (7 + 8 * np.exp(-2 * h_ei / h_ri)) / 5
+    piezoviscous = (h_rp**-3.5 + h_ep**-3.5) ** (-2 * s / 7)
+    return np.asarray(((h_ri ** (7 / 3) + h_ei ** (7 / 3)) ** (3 * s / 7) + piezoviscous) ** (1 / s))
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -8,8 +8,7 @@ import numpy as np
 
 from contactstudy.bodies.lubricant import Lubricant
 from contactstudy.checks import FloatArray
-from contactstudy.film.formulas import moes_line
-from contactstudy.film.levels import graded_edges
+from contactstudy.film.levels import graded_edges, moes_line
 from contactstudy.film.newton import SETTINGS, FilmProblem, FilmSolution, initial_state, solve_newton
 from contactstudy.film.reynolds import FilmCells, Fluid
 
