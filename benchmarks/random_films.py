@@ -19,8 +19,7 @@ import numpy as np
 import contactstudy as cs
 from benchmarks.fuzz.shapes import magnitude
 from contactstudy.film import Asperities, solve_film
-from contactstudy.film.formulas import moes_line
-from contactstudy.film.levels import RESOLUTION
+from contactstudy.film.levels import RESOLUTION, moes_line
 
 STEEL = cs.Material(210e9, 0.3)
 RADIUS = 5e-3

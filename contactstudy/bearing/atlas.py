@@ -209,5 +209,4 @@ def atlas_table() -> AtlasTable:
     """Return the table of the package."""
     package_path = Path(str(files("contactstudy.bearing"))) / "data" / "atlas.nc"
     path = package_path if package_path.exists() else Path(__file__).resolve().parents[2] / "data" / "atlas.nc"
-    with xr.open_dataset(path) as dataset:
-        return AtlasTable(dataset.load())
+    return AtlasTable(xr.load_dataset(path))

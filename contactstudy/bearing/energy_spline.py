@@ -27,18 +27,21 @@ class Nodes(NamedTuple):
     approaches: FloatArray  # m, positive, increasing
     tilts: FloatArray  # rad, increasing
     energy: FloatArray  # (approach, tilt), J
-    load: FloatArray  # N
+    normal_load: FloatArray  # N
     moment: FloatArray  # N m
 
 
 class ContactResponse(NamedTuple):
     """Load, moment and stiffness matrix at an approach and a tilt; arrays of one shape."""
 
-    load: FloatArray  # N
+    normal_load: FloatArray  # N
     moment: FloatArray  # N m
-    normal: FloatArray  # dQ/d delta, N/m
-    coupling: FloatArray  # dQ/d theta = dM/d delta, N/rad
-    tilting: FloatArray  # dM/d theta, N m/rad
+    normal_stiffness: FloatArray  # dQ/d delta, N/m
+    coupling_stiffness: FloatArray  # dQ/d theta = dM/d delta, N/rad
+    tilting_stiffness: FloatArray  # dM/d theta, N m/rad
+
+
+STIFFNESSES = ContactResponse._fields[2:]
 
 
 def create_basis(nodes: FloatArray, degree: int) -> BSpline:
@@ -66,7 +69,7 @@ class EnergySpline:
         t = nodes.tilts / scale
         u_splines, t_splines = create_basis(u, degree), create_basis(t, degree)
         # dU / d ln delta = delta Q, and dU / d(theta / scale) = scale M.
-        load, moment = nodes.approaches[:, None] * nodes.load, scale * nodes.moment
+        load, moment = nodes.approaches[:, None] * nodes.normal_load, scale * nodes.moment
         untilted_column = int(np.abs(t).argmin())
         energy, untilted_load = nodes.energy[:, untilted_column], load[:, untilted_column]
         weights = _solve_least_squares([(u_splines(u), np.log(energy)), (u_splines(u, 1), untilted_load / energy)])
@@ -99,11 +102,11 @@ class EnergySpline:
         by_u = energy * slope + tilt_derivative(1, 0)
         by_uu = energy * (curvature + slope**2) + tilt_derivative(2, 0)
         return ContactResponse(
-            load=by_u / approach,
+            normal_load=by_u / approach,
             moment=tilt_derivative(0, 1) / scale,
-            normal=(by_uu - by_u) / approach**2,
-            coupling=tilt_derivative(1, 1) / (approach * scale),
-            tilting=tilt_derivative(0, 2) / scale**2,
+            normal_stiffness=(by_uu - by_u) / approach**2,
+            coupling_stiffness=tilt_derivative(1, 1) / (approach * scale),
+            tilting_stiffness=tilt_derivative(0, 2) / scale**2,
         )
 
 
@@ -124,7 +127,7 @@ def estimate_fit_errors(nodes: Nodes, length: float) -> FloatArray:
     degree_error = _differences(spline(*fine_pairs), lower_degree_spline(*fine_pairs), length)
     # Largest difference between each node and its neighbours.
     nearby = maximum_filter(degree_error, (1, 2 * STEPS + 1, 2 * STEPS + 1), mode="nearest")[:, ::STEPS, ::STEPS]
-    rows, names = range(1, nodes.approaches.size - 1), ("approaches", "energy", "load", "moment")
+    rows, names = range(1, nodes.approaches.size - 1), ("approaches", "energy", "normal_load", "moment")
     gaps = []
     for row in rows:
         other_nodes = nodes._replace(**{name: np.delete(getattr(nodes, name), row, axis=0) for name in names})
@@ -140,5 +143,5 @@ def _subdivide(nodes: FloatArray) -> FloatArray:
 
 def _differences(response: ContactResponse, expected: Nodes | ContactResponse, length: float) -> FloatArray:
     """Errors of a response: load difference over load, and moment difference over load times length."""
-    moment_error = np.abs(response.moment - expected.moment) / (expected.load * length)
-    return np.array([np.abs(response.load / expected.load - 1), moment_error])
+    moment_error = np.abs(response.moment - expected.moment) / (expected.normal_load * length)
+    return np.array([np.abs(response.normal_load / expected.normal_load - 1), moment_error])

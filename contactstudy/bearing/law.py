@@ -13,7 +13,7 @@ import xarray as xr
 from contactstudy import checks
 from contactstudy.arrays.engineering import html_table
 from contactstudy.arrays.variables import describe, in_si, name_array, require, without_error
-from contactstudy.bearing.energy_spline import ContactResponse, EnergySpline, Nodes
+from contactstudy.bearing.energy_spline import STIFFNESSES, ContactResponse, EnergySpline, Nodes
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 
@@ -58,8 +58,7 @@ PAIR: dict[str, Any] = {"output_core_dims": [[], []], "vectorize": True, "output
 
 def add_position_errors(motion: xr.Dataset) -> xr.Dataset:
     """Add the errors of approach and tilt, from the errors of load and moment, to a motion under a load."""
-    names = ("normal_stiffness", "coupling_stiffness", "tilting_stiffness")
-    normal, coupling, tilting = (np.abs(motion[name]) for name in names)
+    normal, coupling, tilting = (np.abs(motion[name]) for name in STIFFNESSES)
     determinant = np.abs(motion["normal_stiffness"] * motion["tilting_stiffness"] - motion["coupling_stiffness"] ** 2)
     load, moment = motion["normal_load_error"], motion["moment_error"]
     errors = {
@@ -74,18 +73,14 @@ def label_motion(approach: xr.DataArray, tilt: xr.DataArray, motion: ContactResp
     values = {
         "approach": approach.values,
         "tilt": tilt.values,
-        "normal_load": motion.load,
-        "moment": motion.moment,
-        "normal_stiffness": motion.normal,
-        "coupling_stiffness": motion.coupling,
-        "tilting_stiffness": motion.tilting,
-        "normal_load_error": errors[0] * motion.load,
-        "moment_error": errors[1] * motion.load,
+        **motion._asdict(),
+        "normal_load_error": errors[0] * motion.normal_load,
+        "moment_error": errors[1] * motion.normal_load,
     }
     coords = {str(name): coordinate for name, coordinate in approach.coords.items()}
     data = {name: (approach.dims, array) for name, array in values.items() if name not in coords}
     labelled = describe(xr.Dataset(data, coords=coords))
-    return without_error(labelled, "normal_stiffness", "coupling_stiffness", "tilting_stiffness")
+    return without_error(labelled, *STIFFNESSES)
 
 
 MIN_NODES = 5  # Minimum number of approaches and of tilts
@@ -253,7 +248,7 @@ class ContactLaw:
         """Approach and tilt under one load (N) and one moment (N m)."""
         load = checks.positive("normal_load", load, "N")
         length, nodes = float(self.table["contact_length"]), self._nodes
-        distance = np.hypot(nodes.load / load - 1, (nodes.moment - moment) / (load * length))
+        distance = np.hypot(nodes.normal_load / load - 1, (nodes.moment - moment) / (load * length))
         row, column = np.unravel_index(int(distance.argmin()), distance.shape)
         bounds = np.transpose([self.range_of("approach"), self.range_of("tilt")])
         min_tilt, max_tilt = bounds[:, 1]
@@ -261,18 +256,19 @@ class ContactLaw:
 
         def residual(scaled: FloatArray) -> FloatArray:
             motion = self.motion(*(scaled * scales))
-            return np.array([motion.load / load - 1, (motion.moment - moment) / (load * length)])
+            return np.array([motion.normal_load / load - 1, (motion.moment - moment) / (load * length)])
 
         def jacobian(scaled: FloatArray) -> FloatArray:
-            motion = self.motion(*(scaled * scales))
-            moment_row = np.array([motion.coupling, motion.tilting]) / length
-            return np.asarray(np.array([[motion.normal, motion.coupling], moment_row]) / load * scales)
+            *_, normal, coupling, tilting = self.motion(*(scaled * scales))
+            moment_row = np.array([coupling, tilting]) / length
+            return np.asarray(np.array([[normal, coupling], moment_row]) / load * scales)
 
         start = np.array([nodes.approaches[row], nodes.tilts[column]])
         position = find_root(residual, start, bounds, scales, jacobian)
         if position is None:
+            low, high = nodes.normal_load.min(), nodes.normal_load.max()
             allowed = (
-                f"of a contact in the table, whose loads go from {nodes.load.min():.4g} to {nodes.load.max():.4g} N "
+                f"of a contact in the table, whose loads go from {low:.4g} to {high:.4g} N "
                 f"and tilts from {min_tilt:g} to {max_tilt:g} rad"
             )
             hint = "make the table for larger approaches or tilts"
@@ -378,9 +374,9 @@ class Raceways:
         pairs = [(self.inner, *inner), (self.outer, *outer)]
         contacts = [law.motion(delta.values, theta.values) for law, delta, theta in pairs]
         # Compliances add up.
-        matrices = [np.array([[m.normal, m.coupling], [m.coupling, m.tilting]]).T for m in contacts]
+        matrices = [np.array([[normal, coupling], [coupling, tilting]]).T for *_, normal, coupling, tilting in contacts]
         (normal, _), (coupling, tilting) = np.linalg.inv(sum(map(np.linalg.inv, matrices))).T
-        motion = contacts[0]._replace(normal=normal, coupling=coupling, tilting=tilting)
+        motion = contacts[0]._replace(normal_stiffness=normal, coupling_stiffness=coupling, tilting_stiffness=tilting)
         # The larger of the two errors bounds the error of either contact.
         errors = np.maximum(*(law.errors(delta.values, theta.values) for law, delta, theta in pairs))
         labelled = label_motion(inner[0] + outer[0], inner[1] + outer[1], motion, errors)
@@ -404,8 +400,8 @@ class Raceways:
         def residual(scaled: FloatArray) -> FloatArray:
             delta, theta = scaled * scales
             inner, outer = self.inner.motion(delta, theta), self.outer.motion(approach - delta, tilt - theta)
-            scale = float(np.sqrt(inner.load * outer.load))
-            return np.array([inner.load - outer.load, (inner.moment - outer.moment) / length]) / scale
+            scale = float(np.sqrt(inner.normal_load * outer.normal_load))
+            return np.array([inner.normal_load - outer.normal_load, (inner.moment - outer.moment) / length]) / scale
 
         position = find_root(residual, 0.5 * np.array([approach, tilt]), bounds, scales)
         if position is None:

@@ -140,7 +140,13 @@ def reference_life(
     >>> bool(life.sel(model="free ends") > life.sel(model="half-space"))
     True
     """
-    cases = {name: _check_cases(name, argument) for name, argument in zip(RACEWAYS, (inner, outer), strict=True)}
+    cases = {
+        name: [argument] if isinstance(argument, Case) else argument
+        for name, argument in zip(RACEWAYS, (inner, outer), strict=True)
+    }
+    for name, argument in cases.items():
+        if not (isinstance(argument, Sequence) and argument and all(isinstance(case, Case) for case in argument)):
+            raise InvalidInputError(name, argument, "a Case, or a sequence of a Case per loaded roller")
     if len(cases["inner"]) != len(cases["outer"]):
         raise InvalidInputError("outer", len(cases["outer"]), f"as many rollers as inside, {len(cases['inner'])}")
     loaded_count = len(cases["inner"])
@@ -190,14 +196,6 @@ def reference_life(
         attrs={"turning": turning, "laminae": lamina_count},
     )
     return describe(result, "basic reference rating life from laminae")
-
-
-def _check_cases(name: str, argument: object) -> list[Case]:
-    """Return the cases of one raceway as a list."""
-    cases = [argument] if isinstance(argument, Case) else list(argument) if isinstance(argument, Sequence) else []
-    if not cases or not all(isinstance(case, Case) for case in cases):
-        raise InvalidInputError(name, argument, "a Case, or a sequence of a Case per loaded roller")
-    return cases
 
 
 def _solve_roller_loads(case: Case, laminae: int, accuracy: float) -> FloatArray:

@@ -13,7 +13,7 @@ import xarray as xr
 
 from contactstudy import checks
 from contactstudy.arrays.variables import describe, in_si
-from contactstudy.bearing.energy_spline import EnergySpline, Nodes, estimate_fit_errors
+from contactstudy.bearing.energy_spline import STIFFNESSES, EnergySpline, Nodes, estimate_fit_errors
 from contactstudy.bearing.law import MIN_NODES, ContactLaw
 from contactstudy.case.case import MAX_TILT, Case
 from contactstudy.case.magnitudes import warn_of_magnitudes
@@ -120,7 +120,7 @@ def estimate_discretisation_errors(solver: ContactSolver, nodes: Nodes) -> Float
     tilt_sizes = np.abs(nodes.tilts)
     # The loop solves the last of two opposite tilts; the first may be a reflection.
     for index in {int(tilt_sizes.argmin()), tilt_sizes.size - 1 - int(tilt_sizes[::-1].argmax())}:
-        load, moment = nodes.load[-1, index], nodes.moment[-1, index]
+        load, moment = nodes.normal_load[-1, index], nodes.moment[-1, index]
         fine_node = fine_solver.solve_at_approach(float(nodes.approaches[-1]), float(nodes.tilts[index]), float(load))
         errors = np.maximum(errors, [abs(fine_node.load / load - 1), abs(fine_node.moment - moment) / (load * length)])
     return errors
@@ -205,15 +205,13 @@ def contact_law(
 def label_law(solver: ContactSolver, nodes: Nodes, errors: FloatArray) -> xr.Dataset:
     """Label the nodes and their errors (2, approach, tilt), with the stiffness of their interpolation."""
     delta, theta = np.meshgrid(nodes.approaches, nodes.tilts, indexing="ij")
-    motion = EnergySpline.fit(nodes)(delta, theta)
+    response = EnergySpline.fit(nodes)(delta, theta)
     dims = ("approach", "tilt")
     arrays = {
-        "normal_load": nodes.load,
+        "normal_load": nodes.normal_load,
         "moment": nodes.moment,
         "strain_energy": nodes.energy,
-        "normal_stiffness": motion.normal,
-        "coupling_stiffness": motion.coupling,
-        "tilting_stiffness": motion.tilting,
+        **{name: getattr(response, name) for name in STIFFNESSES},
         "relative_load_error": errors[0],
         "relative_moment_error": errors[1],
     }

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
@@ -18,14 +18,11 @@ from contactstudy.bodies.lubricant import Lubricant
 from contactstudy.case.case import Case
 from contactstudy.case.gridding import graded_grid
 from contactstudy.case.motion import Sliding, SurfaceSpeeds
-from contactstudy.checks import FloatArray
+from contactstudy.checks import FloatArray, IntArray
 from contactstudy.contact.normal.contact import Contact, Settings, contact_of, contact_operator
 from contactstudy.contact.refinement.refined_contact import contact_shape, refine_contact
 from contactstudy.film.asperities import Asperities
-from contactstudy.film.cells import MergedCells, graded_edges
-from contactstudy.film.formulas import moes_line
-from contactstudy.film.newton import FilmSettings, solve_from_dry, solve_newton
-from contactstudy.film.problem import FilmProblem, FilmSolution, FilmState, initial_state
+from contactstudy.film.newton import FilmProblem, FilmSettings, FilmSolution, FilmState, initial_state, solve_newton
 from contactstudy.film.reynolds import FilmCells, Fluid
 from contactstudy.kernels.load import Load
 
@@ -85,6 +82,19 @@ class FilmResolution:
 
 
 RESOLUTION = FilmResolution()  # Default cells
+
+
+def moes_line(load: FloatArray | float, lubricant: FloatArray | float) -> FloatArray:
+    """Central film of a line contact, ``H = h / R (2 U)**-1/2``, by Moes' formula, eq. (410).
+
+    Moes' numbers are ``M = w / (E' R) (2 U)**-1/2`` and ``L = alpha E' (2 U)**1/4``, with ``E' = 2 E*``.
+    """
+    h_ri, h_ei = 3.0 / np.asarray(load), 2.621 * np.asarray(load) ** -0.2
+    h_rp = 1.287 * np.asarray(lubricant) ** (2 / 3)
+    h_ep = 1.311 * np.asarray(load) ** -0.125 * np.asarray(lubricant) ** 0.75
+    s = (7 + 8 * np.exp(-2 * h_ei / h_ri)) / 5
+    piezoviscous = (h_rp**-3.5 + h_ep**-3.5) ** (-2 * s / 7)
+    return np.asarray(((h_ri ** (7 / 3) + h_ei ** (7 / 3)) ** (3 * s / 7) + piezoviscous) ** (1 / s))
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -220,6 +230,86 @@ class FilmCase:
         return Fluid.of(self.lubricant, self.pressure_scale, flow_number)
 
 
+@dataclass(frozen=True, eq=False)
+class MergedCells:
+    """Cells along y that are merged from uniform cells; the surface operator acts on the uniform cells."""
+
+    edges: IntArray  # indices of the uniform edges between merged cells
+
+    @classmethod
+    def of(cls, cell_count: int, max_count: Callable[[float, float], float]) -> MergedCells:
+        """Merge `cell_count` uniform cells in powers of two, at most ``max_count(first, last)`` into one."""
+        edges = [0]
+        while edges[-1] < cell_count:
+            first_cell, width = edges[-1], 1
+            previous = edges[-1] - edges[-2] if len(edges) > 1 else 1 << 30
+            while (
+                first_cell % (2 * width) == 0
+                and first_cell + 2 * width <= cell_count
+                and 2 * width <= min(2 * previous, max_count(first_cell, first_cell + 2 * width))
+            ):
+                width *= 2
+            edges.append(first_cell + width)
+        return cls(np.array(edges))
+
+    @cached_property
+    def counts(self) -> IntArray:
+        """Numbers of uniform cells in the merged cells."""
+        return np.diff(self.edges)
+
+    @cached_property
+    def centre_cells(self) -> tuple[IntArray, IntArray]:
+        """Uniform cells on either side of each merged cell's centre; the same cell if their number is odd."""
+        edge_sums = self.edges[1:] + self.edges[:-1]
+        return (edge_sums - 1) // 2, edge_sums // 2
+
+    def to_uniform_cells(self, field: FloatArray) -> FloatArray:
+        """Values on the uniform cells from values (x, merged cell)."""
+        return np.repeat(field, self.counts, axis=-1)
+
+    def to_centres(self, field: FloatArray) -> FloatArray:
+        """Values at the centres of merged cells from values (x, uniform cell)."""
+        lower_cells, upper_cells = self.centre_cells
+        return np.asarray(0.5 * (field[..., lower_cells] + field[..., upper_cells]))
+
+    def average(self, field: FloatArray) -> FloatArray:
+        """Means over the merged cells of values (x, uniform cell)."""
+        return np.asarray(np.add.reduceat(field, self.edges[:-1], axis=-1) / self.counts)
+
+    def compute_stiffness(self, response: FloatArray) -> FloatArray:
+        """Displacement per pressure on merged cells (x, cell, cell), from a uniform cell's `response` (x, offset)."""
+        cell_count = response.shape[-1]
+        two_sided_response = np.concatenate([response[:, :0:-1], response], axis=-1)
+        sums = np.concatenate([np.zeros((len(response), 1)), np.cumsum(two_sided_response, axis=-1)], axis=-1)
+        stiffness = np.zeros((len(response), self.counts.size, self.counts.size))
+        for centre_cell in self.centre_cells:
+            # The offsets of the uniform cells of a merged cell are consecutive.
+            offsets = centre_cell[:, None] - self.edges[None, :] + cell_count
+            stiffness += 0.5 * (sums[:, offsets[:, :-1]] - sums[:, offsets[:, 1:]])
+        return stiffness
+
+
+def graded_edges(start: float, stop: float, cell_width: Callable[[float], float]) -> FloatArray:
+    """Edges from `start` to `stop` of cells about as wide as `cell_width` at their midpoint.
+
+    Examples
+    --------
+    >>> graded_edges(0.0, 1.0, lambda x: 0.25).tolist()
+    [0.0, 0.25, 0.5, 0.75, 1.0]
+    """
+    # The integral of 1 / cell_width is equal over all cells.
+    points = [start]
+    while points[-1] < stop:
+        points.append(points[-1] + 0.1 * cell_width(points[-1]))
+    positions = np.minimum(np.array(points), stop)
+    midpoints = 0.5 * (positions[1:] + positions[:-1])
+    measure = np.concatenate([[0.0], np.cumsum(np.diff(positions) / [cell_width(x) for x in midpoints])])
+    cell_count = max(2, int(np.ceil(measure[-1] - 1e-9)))
+    edges = np.interp(np.linspace(0.0, measure[-1], cell_count + 1), measure, positions)
+    edges[0], edges[-1] = start, stop
+    return np.asarray(edges)
+
+
 class Level(NamedTuple):
     """Cells of a film: numbers of refinements along y and of the columns, in the geometry of a case."""
 
@@ -319,12 +409,12 @@ def film_on_level(
     )
     if start is None:
         dry_contact = contact_of(shape, Settings(film.resolution.dry_tolerance, 500))
-        solution = solve_from_dry(problem, _dry_state(film, problem, dry_contact, columns, merged), settings)
+        state = _dry_state(film, problem, dry_contact, columns, merged)
+    elif isinstance(start, xr.Dataset):
+        state = _convert_result(film, start, problem)
     else:
-        state = (
-            _convert_result(film, start, problem) if isinstance(start, xr.Dataset) else _transfer_state(start, problem)
-        )
-        solution = solve_newton(problem, state, settings, steady=True)
+        state = _transfer_state(start, problem)
+    solution = solve_newton(problem, state, settings, steady=start is not None)
     return FilmOnCells(problem, solution, grid, columns, merged)
 
 

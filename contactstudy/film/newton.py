@@ -1,9 +1,11 @@
-"""Semi-smooth Newton method for pressure, rigid motion and cavitation of the film, on arrays."""
+"""A film on arrays: problem, unknowns, and a semi-smooth Newton method for pressure, rigid motion and cavitation."""
 
 from __future__ import annotations
 
 import logging
-from dataclasses import dataclass, replace
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -11,10 +13,11 @@ from scipy import linalg, sparse
 
 from contactstudy.checks import BoolArray, FloatArray
 from contactstudy.errors import ContactStudyError
-from contactstudy.film.problem import FilmProblem, FilmSolution, FilmState
-from contactstudy.film.reynolds import Law
+from contactstudy.film.reynolds import FilmCells, Fluid, Law
 
 LOGGER = logging.getLogger(__name__)
+
+INVERSE_STEPS = 8  # Steps from film to distance of rough surfaces; the next Newton step removes the remainder. Speed
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -43,8 +46,6 @@ class FilmSettings:
         Largest change of the pressure in one step, over p0. Speed.
     closed_film_ratio, nearly_closed_ratio : float
         Film over the central film below which an iteration ends, and below which a failure is a closed film.
-    speed_ratio, speed_steps : float, int
-        Ratio and number of the higher speeds solved first if the iteration fails from the dry contact. Speed.
     """
 
     tolerance: float = 1e-7
@@ -58,11 +59,83 @@ class FilmSettings:
     max_pressure_change: float = 0.3
     closed_film_ratio: float = 1e-6
     nearly_closed_ratio: float = 1e-3
-    speed_ratio: float = 4.0
-    speed_steps: int = 4
 
 
 SETTINGS = FilmSettings()  # Default settings
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class FilmProblem:
+    """A film to solve, in the units of `FilmCells`."""
+
+    cells: FilmCells
+    fluid: Fluid
+    gap: FloatArray  # (x, y): gap before deformation
+    displace: Callable[[FloatArray], FloatArray]  # displacement of the surfaces apart (x, y) under a pressure
+    column_stiffness: FloatArray  # (x, y, y): displacement of a column's cells under a pressure equal in all columns
+    load: float  # prescribed sum of the pressure times the areas
+    lever: FloatArray | None  # (x): distances from the load's position over the largest one, if free to tilt
+    central_film: float  # estimate of the central film: the scale of tolerances
+    asperities: Callable[[FloatArray], Law] | None = None  # pressure of the asperities at a distance of the surfaces
+    mean_height: Callable[[FloatArray], Law] | None = None  # film at a distance of rough surfaces
+
+    @cached_property
+    def motions(self) -> FloatArray:
+        """Changes of the distance of the surfaces by unit rigid motions: array (motion, cell)."""
+        ones = np.ones(self.cells.shape)
+        motions = [ones] if self.lever is None else [ones, self.lever[:, None] * ones]
+        return np.stack([motion.ravel() for motion in motions])
+
+    @cached_property
+    def resultants(self) -> FloatArray:
+        """Factors by which a sum over the pressure gives load and moment: array (motion, cell)."""
+        return np.asarray(self.motions * self.cells.areas.ravel())
+
+    def compute_film(self, distance: FloatArray) -> Law:
+        """Mean height of the film at a distance of the surfaces."""
+        return Law(distance, np.ones_like(distance)) if self.mean_height is None else self.mean_height(distance)
+
+    def solve_distance(self, height: FloatArray, start: FloatArray) -> FloatArray:
+        """Distance of the surfaces at a mean film, by Newton's method for the film's logarithm from a `start`."""
+        if self.mean_height is None:
+            return height
+        # The mean height exceeds the distance of the surfaces by at most the height at distance zero.
+        touching_height = self.mean_height(np.zeros_like(height)).value
+        distance = np.where(height > touching_height, np.maximum(start, height - touching_height), start)
+        for _ in range(INVERSE_STEPS):
+            film = self.mean_height(distance)
+            distance = distance + film.value / film.slope * np.log(height / film.value)
+        return distance
+
+
+class FilmState(NamedTuple):
+    """Unknowns of an iteration."""
+
+    pressure: FloatArray  # (x, y): pressure on the surfaces, of fluid and asperities
+    motion: FloatArray  # (motion): rigid motion, height and, if free, tilt
+    distance: FloatArray  # (x, y): distance of the surfaces, unknown since a start may be interpolated from other cells
+    mismatch: FloatArray  # (x, y): distance less the distance that pressure and motion cause
+
+
+def initial_state(problem: FilmProblem, pressure: FloatArray, motion: FloatArray, distance: FloatArray) -> FilmState:
+    """Return a state with the mismatch of the given values."""
+    rigid = (motion @ problem.motions).reshape(problem.gap.shape)
+    return FilmState(pressure, motion, distance, distance - problem.gap - problem.displace(pressure) - rigid)
+
+
+class FilmSolution(NamedTuple):
+    """Solution of a film problem and its certificate."""
+
+    state: FilmState
+    fluid_pressure: FloatArray  # (x, y)
+    asperity_pressure: FloatArray  # (x, y)
+    film: FloatArray  # (x, y): mean height
+    residual: float  # largest net outflow of a full cell over the central film
+    load_error: float  # error of load and moment over the load
+    complementarity_error: float  # largest net inflow of a cavitated cell over the central film
+    newton_steps: int
+    linear_steps: int
+    converged: bool  # whether every error is within the tolerance
 
 
 class StepFailedError(ContactStudyError):
@@ -108,25 +181,6 @@ def solve_newton(problem: FilmProblem, start: FilmState, settings: FilmSettings,
     return iteration.converge(state, np.inf, None)
 
 
-def solve_from_dry(problem: FilmProblem, dry: FilmState, settings: FilmSettings) -> FilmSolution:
-    """Solve for the film from the dry contact, or, if the iteration fails, from films of higher speeds."""
-    factors = [1.0]
-    while True:
-        trial = replace(problem, fluid=replace(problem.fluid, flow_number=problem.fluid.flow_number * factors[-1]))
-        try:
-            solution = solve_newton(trial, dry, settings, steady=False)
-            break
-        except StepFailedError as error:
-            if len(factors) > settings.speed_steps or error.position is not None:
-                raise
-            factors.append(settings.speed_ratio * factors[-1])
-    LOGGER.info("speeds over the prescribed one: %s", factors[::-1])
-    for factor in factors[-2::-1]:
-        trial = replace(problem, fluid=replace(problem.fluid, flow_number=problem.fluid.flow_number * factor))
-        solution = solve_newton(trial, solution.state, settings, steady=True)
-    return solution
-
-
 @dataclass(eq=False)
 class _Iteration:
     """Newton's method for one problem."""
@@ -167,7 +221,9 @@ class _Iteration:
         full_cells = sparse.diags_array(np.where(cavitated, 0.0, 1 / film.value.ravel()))
         by_pressure = full_cells @ by_pressure + sparse.diags_array(cavitated.astype(np.float64))
         by_distance = full_cells @ by_distance - sparse.diags_array(cavitated * asperities.slope.ravel())
-        resultant_errors = problem.resultants @ state.pressure.ravel() - problem.prescribed
+        # The moment about the load's position is zero.
+        prescribed = np.array([problem.load, 0.0][: len(problem.motions)])
+        resultant_errors = problem.resultants @ state.pressure.ravel() - prescribed
         residual = np.where(cavitated, fluid_pressure.ravel(), outflow / film.value.ravel())
         return _LinearisedEquations(
             outflow=outflow,

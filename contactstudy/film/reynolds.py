@@ -132,13 +132,9 @@ class FilmCells:
     def upwind(self, height: FloatArray) -> sparse.csr_array:
         """Film on the faces by parabolas, bounded to stay positive where the film varies much: (face, cell)."""
         upstream = self.faces_y.upstream
-        face_film, min_film, max_film = (
-            self.parabolas @ height,
-            *(bound * (upstream @ height) for bound in FACE_RANGE),
-        )
-        below_bound, above_bound = face_film < min_film, face_film > max_film
-        bounds = np.where(below_bound, FACE_RANGE[0], np.where(above_bound, FACE_RANGE[1], 0.0))
-        unbounded = sparse.diags_array(np.where(below_bound | above_bound, 0.0, 1.0))
+        face_film, (min_film, max_film) = self.parabolas @ height, np.multiply.outer(FACE_RANGE, upstream @ height)
+        bounds = np.select([face_film < min_film, face_film > max_film], FACE_RANGE)
+        unbounded = sparse.diags_array(np.where(bounds > 0, 0.0, 1.0))
         return sparse.csr_array(unbounded @ self.parabolas + sparse.diags_array(bounds) @ upstream)
 
     def flow(self, fluid: Fluid, pressure: FloatArray, film: Law) -> Flow:

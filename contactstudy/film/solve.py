@@ -110,7 +110,7 @@ def solve_film(
     >>> round(1e6 * float(result.central_film), 1)
     0.2
     """
-    film = _check_case(case, asperities, inlet, resolution)
+    film = create_film_case(case, asperities, inlet, resolution)
     limit = checks.positive("accuracy", accuracy)
     if not ACCURACIES[0] <= limit <= ACCURACIES[1]:
         raise InvalidInputError("accuracy", limit, f"from {ACCURACIES[0]:g} to {ACCURACIES[1]:g} of the central film")
@@ -138,8 +138,13 @@ def solve_film(
     return with_provenance(labelled, case, recorded_arguments, {"film": seconds})
 
 
-def _check_case(case: Case, asperities: Asperities | None, inlet: float | None, resolution: FilmResolution) -> FilmCase:
-    """Check a case for a film."""
+def create_film_case(
+    case: Case,
+    asperities: Asperities | None = None,
+    inlet: float | None = None,
+    resolution: FilmResolution = RESOLUTION,
+) -> FilmCase:
+    """Return the film of a case, or raise `InvalidInputError` if the case has none."""
     checks.instance("case", case, Case, "a Case")
     if case.lubricant is None:
         raise InvalidInputError("case.lubricant", None, "a Lubricant(...) for a film")
@@ -159,13 +164,9 @@ def _check_case(case: Case, asperities: Asperities | None, inlet: float | None, 
         resolution=resolution,
         inlet=None if inlet is None else checks.positive("inlet", inlet, "metres"),
     )
-    if film.inlet is not None and film.inlet <= film.contact_half_width * film.half_width:
-        raise InvalidInputError(
-            "inlet",
-            film.inlet,
-            f"more than the half-width of the contact, {film.contact_half_width * film.half_width:.3g} m",
-            "a meniscus inside the contact forms no film",
-        )
+    if film.inlet is not None and film.inlet <= (contact_half_width := film.contact_half_width * film.half_width):
+        allowed = f"more than the half-width of the contact, {contact_half_width:.3g} m"
+        raise InvalidInputError("inlet", film.inlet, allowed, "a meniscus inside the contact forms no film")
     return film
 
 
@@ -227,7 +228,11 @@ def _refine(film: FilmCase, accuracy: float, settings: FilmSettings, start: xr.D
         films.append(compute_films(film, solutions[-1]))
         if direction:
             changes[direction].append(np.abs(films[-1].thicknesses - films[-2].thicknesses))
-        direction_errors = {name: _estimate_errors(name, change) for name, change in changes.items()}
+        # Of the latest two changes by refinement in one direction one may vanish by chance.
+        direction_errors = {
+            name: ERROR_FACTORS[name] * np.maximum(latest, CHANGE_RATIOS[name] * former)
+            for name, (*_, former, latest) in changes.items()
+        }
         errors = np.sum([*direction_errors.values()], axis=0) + MIN_RELATIVE_ERROR * films[-1].thicknesses
         directions = [name for name in ERROR_FACTORS if getattr(level, name) < film.resolution.levels - 1]
         if errors.max() <= accuracy * films[-1].central_film or not directions:
@@ -283,11 +288,6 @@ def _continue_film(film: FilmCase, accuracy: float, settings: FilmSettings, star
         newton_steps=solved.solution.newton_steps,
         linear_steps=solved.solution.linear_steps,
     )
-
-
-def _estimate_errors(direction: str, changes: list[FloatArray]) -> FloatArray:
-    """Error of each film from the latest two changes by refinement in one direction: one may vanish by chance."""
-    return np.asarray(ERROR_FACTORS[direction] * np.maximum(changes[-1], CHANGE_RATIOS[direction] * changes[-2]))
 
 
 def _create_film_error(error: StepFailedError, half_width: float) -> FilmError:

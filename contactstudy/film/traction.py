@@ -14,7 +14,6 @@ from contactstudy.bodies.lubricant import Lubricant
 from contactstudy.case.case import Case
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
-from contactstudy.film.formulas import thermal_reduction
 
 
 def film_traction(
@@ -110,3 +109,12 @@ def shear_stress(oil: Lubricant, pressure: FloatArray, rate: FloatArray) -> Floa
     if oil.limiting_shear is not None:
         stress = np.minimum(stress, oil.limiting_shear * pressure)
     return np.asarray(stress)
+
+
+def thermal_reduction(pressure_ratio: float, loading: float, slide_roll_ratio: float) -> float:
+    """Film with the heat of shear in the inlet over the isothermal film (Gupta, Cheng, Zhu 1992), eq. (414).
+
+    From the largest pressure over E' and the `loading` ``eta0 beta um**2 / k``.
+    """
+    inlet_heating = 1 + 0.213 * (1 + 2.23 * abs(slide_roll_ratio) ** 0.83) * loading**0.64
+    return float((1 - 13.2 * pressure_ratio * loading**0.42) / inlet_heating)

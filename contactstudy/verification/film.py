@@ -22,9 +22,9 @@ from contactstudy.bodies.models import Body
 from contactstudy.case import Case, Roller
 from contactstudy.case.motion import Sliding
 from contactstudy.film import line_contact
-from contactstudy.film.formulas import moes_line, nijenbanning
-from contactstudy.film.levels import RESOLUTION, FilmCase, film_on_level
+from contactstudy.film.levels import FilmCase, film_on_level, moes_line
 from contactstudy.film.newton import SETTINGS
+from contactstudy.film.solve import create_film_case
 from contactstudy.profiles import FullCrown, Lundberg
 from contactstudy.verification.check import Check, Curve, Reference
 from contactstudy.verification.free_ends import FINITE_ELEMENTS
@@ -102,11 +102,7 @@ def crowned_case(body: Body, length: float) -> Case:
 def coarse_film(name: str) -> FilmCase:
     """Film on the cells of the coarsest level, for comparison with the stored film."""
     length = FILM_CASES[name].length * HALF_WIDTH
-    case = crowned_case(FiniteLengthSpace(length=length, material=STEEL), length)
-    oil, speeds = case.lubricant, case.motion.speeds
-    assert oil is not None
-    assert speeds is not None
-    return FilmCase(case=case, lubricant=oil, speeds=speeds, asperities=None, resolution=RESOLUTION, inlet=None)
+    return create_film_case(crowned_case(FiniteLengthSpace(length=length, material=STEEL), length))
 
 
 def finite_element_checks(name: str) -> Iterator[Check]:
@@ -125,6 +121,22 @@ def finite_element_checks(name: str) -> Iterator[Check]:
     min_film, expected = (data["film"].min("y").values for data in (computed, stored))
     yield reference.compare("least film of each column over the reference", min_film / expected, 1.0, 0.02)
     yield reference.compare("pressure / p0", computed["pressure"], stored["pressure"], 0.01)
+
+
+def nijenbanning(load: float, lubricant: float, ratio: float = 1.0) -> float:
+    """Central film of an elliptic contact by Nijenbanning, Venner and Moes (1994), eq. (411); `ratio` at most 1.
+
+    Of ``M = F / (E' Rx**2) (2 U)**-3/4``, ``L``, and ``Rx / Ry`` with the radius Rx along rolling.
+    """
+    h_ri = 145 * (1 + 0.796 * ratio ** (14 / 15)) ** (-15 / 7) * load**-2 / ratio
+    h_ei = 3.18 * (1 + 0.006 * np.log(ratio) + 0.63 * ratio ** (4 / 7)) ** (-14 / 25) * ratio ** (-1 / 15)
+    h_ei *= load ** (-2 / 15)
+    h_rp = 1.29 * (1 + 0.691 * ratio) ** (-2 / 3) * lubricant ** (2 / 3)
+    h_ep = 1.48 * (1 + 0.006 * np.log(ratio) + 0.63 * ratio ** (4 / 7)) ** (-7 / 20) * ratio ** (-1 / 24)
+    h_ep *= load ** (-1 / 12) * lubricant**0.75
+    s = 1.5 * (1 + np.exp(-1.2 * h_ei / h_ri))
+    isoviscous = (h_ri**1.5 + (h_ei**-4 + (1.8 / ratio) ** -4) ** (-3 / 8)) ** (2 * s / 3)
+    return float((isoviscous + (h_rp**-8 + h_ep**-8) ** (-s / 8)) ** (1 / s))
 
 
 def ellipse_checks() -> Iterator[Check]:

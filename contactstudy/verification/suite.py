@@ -85,12 +85,11 @@ class Verification:
     def to_dataset(self) -> xr.Dataset:
         """All checks as data along ``check``."""
         groups = [name for name, group in self.groups.items() for _ in group]
-        columns = {"group": np.array(groups, dtype=object)}
+        data = xr.Dataset({"group": ("check", np.array(groups, dtype=object))})
         kinds = dict.fromkeys(("case", "quantity", "source"), object)
         kinds |= dict.fromkeys(("computed", "expected", "difference", "tolerance"), float) | {"passed": bool}
         for name, kind in kinds.items():
-            columns[name] = np.array([getattr(check, name) for check in self.checks], dtype=kind)
-        data = xr.Dataset({name: ("check", values) for name, values in columns.items()})
+            data[name] = "check", np.array([getattr(check, name) for check in self.checks], dtype=kind)
         data.attrs = {"level": self.level, "seconds": round(self.seconds, 1)}
         return describe(data, "verification of contactstudy")
 

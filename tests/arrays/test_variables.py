@@ -139,7 +139,9 @@ def returned_datasets(strip_result: Callable[..., xr.Dataset], study_dataset: xr
     rough_result.to_netcdf(file)
     check = Reference("case", "closed form").compare("peak pressure", 1.0, 1.0, 0.1)
     verification = suite.Verification("full", {"one": [check]})
-    law = bearing.ContactLaw(label_law(ContactSolver(case, 0.1, 1e-4), NODES, np.full((2, *NODES.load.shape), 0.01)))
+    law = bearing.ContactLaw(
+        label_law(ContactSolver(case, 0.1, 1e-4), NODES, np.full((2, *NODES.normal_load.shape), 0.01))
+    )
     smooth_result = cs.Roller(radius=5e-3, length=length, profile=cs.profiles.Lundberg(1e-7), material=steel)
     crowned_case = cs.Case(body=body, roller=smooth_result, max_pressure=1.5e9)
     oiled_case = replace(

@@ -29,11 +29,15 @@ def test_motion_of_two_springs(delta: float, theta: float) -> None:
     motion = EnergySpline.fit(NODES)(np.array(delta), np.array(theta))
     k_right, k_left = (1.5 * STIFFNESS * np.sqrt(delta + side * ARM * theta) for side in (1, -1))
     exact = springs(np.array([delta]), np.array([theta]))
-    assert float(motion.load) == pytest.approx(float(exact.load[0, 0]), rel=2e-4)
-    assert float(motion.moment) == pytest.approx(float(exact.moment[0, 0]), abs=2e-4 * ARM * float(exact.load[0, 0]))
-    assert float(motion.normal) == pytest.approx(k_right + k_left, rel=5e-3)
-    assert float(motion.coupling) == pytest.approx(ARM * (k_right - k_left), abs=5e-3 * ARM * (k_right + k_left))
-    assert float(motion.tilting) == pytest.approx(ARM**2 * (k_right + k_left), rel=1e-2)
+    assert float(motion.normal_load) == pytest.approx(float(exact.normal_load[0, 0]), rel=2e-4)
+    assert float(motion.moment) == pytest.approx(
+        float(exact.moment[0, 0]), abs=2e-4 * ARM * float(exact.normal_load[0, 0])
+    )
+    assert float(motion.normal_stiffness) == pytest.approx(k_right + k_left, rel=5e-3)
+    assert float(motion.coupling_stiffness) == pytest.approx(
+        ARM * (k_right - k_left), abs=5e-3 * ARM * (k_right + k_left)
+    )
+    assert float(motion.tilting_stiffness) == pytest.approx(ARM**2 * (k_right + k_left), rel=1e-2)
 
 
 def test_stiffness_equals_the_derivative() -> None:
@@ -41,11 +45,19 @@ def test_stiffness_equals_the_derivative() -> None:
     delta, theta, step = 2.2e-6, 1.7e-4, 1e-4
     motion = spline(np.array(delta), np.array(theta))
     upper, lower = (spline(np.array(delta * (1 + side * step)), np.array(theta)) for side in (1, -1))
-    assert float(upper.load - lower.load) / (2 * step * delta) == pytest.approx(float(motion.normal), rel=1e-5)
-    assert float(upper.moment - lower.moment) / (2 * step * delta) == pytest.approx(float(motion.coupling), rel=1e-5)
+    assert float(upper.normal_load - lower.normal_load) / (2 * step * delta) == pytest.approx(
+        float(motion.normal_stiffness), rel=1e-5
+    )
+    assert float(upper.moment - lower.moment) / (2 * step * delta) == pytest.approx(
+        float(motion.coupling_stiffness), rel=1e-5
+    )
     upper, lower = (spline(np.array(delta), np.array(theta * (1 + side * step))) for side in (1, -1))
-    assert float(upper.load - lower.load) / (2 * step * theta) == pytest.approx(float(motion.coupling), rel=1e-5)
-    assert float(upper.moment - lower.moment) / (2 * step * theta) == pytest.approx(float(motion.tilting), rel=1e-5)
+    assert float(upper.normal_load - lower.normal_load) / (2 * step * theta) == pytest.approx(
+        float(motion.coupling_stiffness), rel=1e-5
+    )
+    assert float(upper.moment - lower.moment) / (2 * step * theta) == pytest.approx(
+        float(motion.tilting_stiffness), rel=1e-5
+    )
 
 
 @pytest.mark.parametrize(("approaches", "tilts"), [(5, 5), (6, 7), (8, 9)])
@@ -55,7 +67,7 @@ def test_errors_cover_values_between_nodes(tilt_scale: float, approaches: int, t
     nodes = springs(np.geomspace(1e-6, 5e-6, approaches), np.linspace(-tilt_scale, tilt_scale, tilts))
     errors, dims = estimate_fit_errors(nodes, 2 * ARM), ("approach", "tilt")
     arrays = {
-        "normal_load": nodes.load,
+        "normal_load": nodes.normal_load,
         "moment": nodes.moment,
         "strain_energy": nodes.energy,
         "relative_load_error": errors[0],
@@ -65,7 +77,7 @@ def test_errors_cover_values_between_nodes(tilt_scale: float, approaches: int, t
     law = ContactLaw(table.assign_coords(approach=nodes.approaches, tilt=nodes.tilts))
     fine = springs(np.geomspace(1e-6, 5e-6, 21), np.linspace(-tilt_scale, tilt_scale, 25))
     motion = law.at(fine.approaches, fine.tilts)
-    load, moment = np.abs(motion.normal_load - fine.load), np.abs(motion.moment - fine.moment)
+    load, moment = np.abs(motion.normal_load - fine.normal_load), np.abs(motion.moment - fine.moment)
     assert bool((load <= motion.normal_load_error).all())
     assert bool((moment <= motion.moment_error).all())
     # The stated error exceeds the difference at the kink by a moderate factor only.

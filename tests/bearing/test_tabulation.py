@@ -52,7 +52,7 @@ def test_solved_tilts_of_a_symmetric_case(changes, tilts, solved: int) -> None:
     approaches, tilts_in_rad = 1e-6 * np.array([1.0, 2.0, 4.0]), 1e-3 * np.array(tilts)
     nodes = solve_nodes(solver, approaches, tilts_in_rad)
     assert len(solver.search_load) == 3 * solved
-    np.testing.assert_allclose(nodes.load, 2e7 * approaches[:, None] + 0 * tilts_in_rad)
+    np.testing.assert_allclose(nodes.normal_load, 2e7 * approaches[:, None] + 0 * tilts_in_rad)
     np.testing.assert_allclose(nodes.moment, 0.2 * tilts_in_rad + 0 * approaches[:, None])
     assert np.isfinite(nodes.energy).all()
 

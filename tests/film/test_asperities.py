@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from contactstudy.film import Asperities
-from contactstudy.film.newton import SETTINGS, StepFailedError, solve_newton
-from contactstudy.film.problem import FilmProblem, initial_state
+from contactstudy.film.newton import SETTINGS, FilmProblem, StepFailedError, initial_state, solve_newton
 from contactstudy.film.reynolds import FilmCells, Fluid, Law
 
 CELLS = FilmCells(x_edges=np.array([0.0, 1.0]), y_edges=np.linspace(-1.0, 1.0, 9), open_ends=False)

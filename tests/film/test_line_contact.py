@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from contactstudy import Lubricant
-from contactstudy.film.formulas import moes_line, nijenbanning
+from contactstudy.film.levels import moes_line
 from contactstudy.film.line_contact import solve_line
+from contactstudy.verification.film import nijenbanning
 
 pytestmark = pytest.mark.filterwarnings("ignore::contactstudy.MagnitudeWarning")
 

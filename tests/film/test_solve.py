@@ -8,8 +8,7 @@ import pytest
 
 import contactstudy as cs
 from contactstudy.film import Asperities, solve_film
-from contactstudy.film.formulas import moes_line
-from contactstudy.film.levels import RESOLUTION
+from contactstudy.film.levels import RESOLUTION, moes_line
 from contactstudy.film.line_contact import solve_line
 
 pytestmark = pytest.mark.filterwarnings("ignore::contactstudy.MagnitudeWarning")

@@ -6,8 +6,7 @@ import xarray as xr
 
 import contactstudy as cs
 from contactstudy.film import film_traction
-from contactstudy.film.formulas import thermal_reduction
-from contactstudy.film.traction import shear_stress
+from contactstudy.film.traction import shear_stress, thermal_reduction
 from tests.film.test_solve import HALF_WIDTH, film_case
 
 OIL = cs.Lubricant(viscosity=0.03, pressure_viscosity=2e-8, conductivity=0.14, temperature_viscosity=0.04)

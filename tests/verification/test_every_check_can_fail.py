@@ -19,8 +19,7 @@ from contactstudy.contact import solve as contact
 from contactstudy.eigenstrain.body import EigenstrainBody
 from contactstudy.fields import stress, surface
 from contactstudy.film import line_contact
-from contactstudy.film.newton import FilmSettings
-from contactstudy.film.problem import FilmProblem
+from contactstudy.film.newton import FilmProblem, FilmSettings
 from contactstudy.heat import flash
 from contactstudy.heat.moving_source import MovingBody
 from contactstudy.kernels.load import Load
