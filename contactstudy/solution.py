@@ -26,9 +26,9 @@ from contactstudy.contact.refinement.refined_contact import (
     contact_at_approach,
     contact_shape,
     refine_contact,
+    refine_tractions,
     refined_values,
 )
-from contactstudy.contact.refinement.refined_tractions import refine_tractions
 from contactstudy.contact.rolling.frictional_contact import FrictionalContact, frictional_contact
 from contactstudy.contact.rolling.tractions import FrictionRequest
 from contactstudy.contact.solve import contact_dataset
