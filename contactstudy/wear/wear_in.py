@@ -27,7 +27,7 @@ from contactstudy.contact.normal.conjugate_gradients import ContactIterate
 from contactstudy.contact.normal.contact import Settings, Shape, check_window, contact_operator, iterate_contact
 from contactstudy.contact.normal.prescribed_loads import PrescribedLoad
 from contactstudy.contact.normal.problem import ContactOperator
-from contactstudy.contact.refinement.refined_contact import refine_contact
+from contactstudy.contact.refinement.refined_contact import contact_shape, refine_contact
 from contactstudy.contact.rolling.frictional_contact import frictional_contact
 from contactstudy.contact.rolling.tractions import FrictionRequest
 from contactstudy.errors import ConvergenceWarning, InvalidInputError
@@ -284,13 +284,13 @@ def wear_in(
     stops = checks.increasing("distance", in_si("distance", distance, "m"), "metres")
     if stops[0] < distance_before or stops[-1] <= distance_before:
         raise InvalidInputError("distance", stops.tolist(), f"beyond {distance_before:g} m, where the wear begins")
-    gap = case.gap(cells)
-    prescribed = PrescribedLoad(case.normal_load, case.load_position).check(gap, cells)
-    shape = Shape(case.body, cells, ArrayKey(gap), prescribed, case.counterbody, coupled_friction=case.coupled_friction)
-    # Bound on the iterations of one contact; large steps change the contact area often
-    settings = Settings(max_iterations=2000)
     integrator = WearIntegrator(
-        case=case, shape=shape, settings=settings, rate=rate / length, law=law, tolerance=tolerance
+        case=case,
+        shape=contact_shape(case, cells, PrescribedLoad(case.normal_load, case.load_position)),
+        settings=Settings(max_iterations=2000),  # of one contact; large steps change the contact area often
+        rate=rate / length,
+        law=law,
+        tolerance=tolerance,
     )
     start = integrator.initial_state(distance_before, np.zeros(cells.cells_x) if depth is None else depth, error)
     if not start.slip.any():

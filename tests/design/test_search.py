@@ -27,7 +27,7 @@ def solve_with(monkeypatch: pytest.MonkeyPatch):
             result["peak_pressure"].attrs["units"] = "Pa"
             return result
 
-        monkeypatch.setattr("contactstudy.design.search.solve", solve)
+        monkeypatch.setattr("contactstudy.design.solve", solve)
 
     return install
 

@@ -16,12 +16,7 @@ from contactstudy.bodies.models import Body
 from contactstudy.cache import ArrayKey, cached
 from contactstudy.checks import FloatArray
 from contactstudy.contact.normal.conjugate_gradients import ContactIterate
-from contactstudy.contact.normal.prescribed_loads import (
-    LineMotions,
-    PrescribedLoad,
-    RigidMotion,
-    line_motion,
-)
+from contactstudy.contact.normal.prescribed_loads import LineMotions, PrescribedLoad, RigidMotion, line_motion
 from contactstudy.contact.normal.problem import ContactOperator, ContactProblem, solve_coupled, solve_normal
 from contactstudy.contact.normal.two_bodies import PairOperator, PrescribedSurface
 from contactstudy.errors import ConvergenceWarning, WindowError
@@ -48,8 +43,7 @@ class Certificate:
     def holds(self, tolerance: float) -> bool:
         """Whether every violation is within a multiple of the iteration's tolerance."""
         bound = CONVERGED_TOLERANCES * tolerance
-        violations = (self.load_error, self.penetration_error, self.load_position_error, self.open_pressure_error)
-        return all(abs(violation) <= bound for violation in violations)
+        return all(abs(violation) <= bound for violation in asdict(self).values())
 
 
 class Shape(NamedTuple):

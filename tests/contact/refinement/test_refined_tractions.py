@@ -11,9 +11,15 @@ from contactstudy import Case, FiniteLengthSpace, Grid, HalfSpace, Material, Rol
 from contactstudy.cache import ArrayKey
 from contactstudy.contact.normal.contact import Certificate, Contact, Settings, Shape
 from contactstudy.contact.normal.prescribed_loads import PrescribedLoad
-from contactstudy.contact.refinement import refined_tractions as module
-from contactstudy.contact.refinement.refined_contact import CELLS_Y, RefinedContact, refine_contact
-from contactstudy.contact.refinement.refined_tractions import COLUMN_ERROR_FACTOR, _scales, refine_tractions
+from contactstudy.contact.refinement import refined_contact as module
+from contactstudy.contact.refinement.refined_contact import (
+    CELLS_Y,
+    COLUMN_ERROR_FACTOR,
+    RefinedContact,
+    _scales,
+    refine_contact,
+    refine_tractions,
+)
 from contactstudy.contact.rolling.frictional_contact import FrictionalContact
 from contactstudy.contact.rolling.surfaces import Tractions
 from contactstudy.contact.rolling.tractions import FrictionRequest

@@ -7,7 +7,7 @@ import pytest
 
 from contactstudy import Grid, HalfSpace, Material
 from contactstudy.checks import FloatArray, IntArray
-from contactstudy.contact.rolling.preconditioners import tangential_inverse
+from contactstudy.contact.rolling.tractions import tangential_inverse
 from contactstudy.fields.surface import surface_operator
 from contactstudy.kernels.load import Load
 

@@ -1,4 +1,4 @@
-"""Search of a profile's best parameters for given loads and tilts: designs, optimum, and flat range."""
+"""Profiles that minimise a measure in the worst of several loads and tilts, with errors."""
 
 from __future__ import annotations
 
@@ -21,6 +21,8 @@ from contactstudy.checks import FloatArray
 from contactstudy.errors import BoundWarning, ContactStudyError, InvalidInputError, MagnitudeWarning, WindowError
 from contactstudy.profiles.base import Profile, unit_of
 from contactstudy.solution import solve
+
+__all__ = ["BoundWarning", "best_profile"]
 
 LOGGER = logging.getLogger(__name__)
 
