@@ -233,8 +233,7 @@ def edge_factors(
     dataset : Dataset
         A result or an opened study, with `pressure` and `hertz_half_width`.
     variable : str
-        `pressure`, or a stress or measure, see :func:`contactstudy.analysis.measure`, with its largest sample in each
-        cross-section.
+        `pressure`, or a stress or measure, see :func:`contactstudy.analysis.measure`: largest in each cross-section.
     reference : Dataset, optional
         The same contact on another body, usually the half-space, in the same coordinates.
     reach : float, optional
@@ -245,8 +244,7 @@ def edge_factors(
     Dataset
         `end_over_middle_first`, `end_over_middle_last`; with a reference also `over_reference_first` and
         `over_reference_last` (ends over its ends), `over_reference_middle`, and `over_reference_peak` (largest over
-        largest, anywhere). NaN without points, and at a cut end. Infinite at a singular end. The error is
-        not estimated.
+        largest, anywhere). NaN without points and at a cut end; infinite at a singular end; without an error.
 
     Raises
     ------

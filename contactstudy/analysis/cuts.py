@@ -63,8 +63,7 @@ def along_line(
     points : int
         Number of points, at least 2.
     variables : str or sequence of str, optional
-        Variables or measures, see :func:`contactstudy.analysis.measure`, on the same points; default: all stresses,
-        or all surfaces without stresses.
+        Variables or measures, see :func:`contactstudy.analysis.measure`; default: all stresses, else all surfaces.
 
     Returns
     -------
@@ -135,8 +134,7 @@ def in_plane(
     Raises
     ------
     InvalidInputError
-        Unless exactly one position is a number; if the plane lies outside the result, or the variables are missing or
-        lie on different points.
+        Unless exactly one position is a number within the result; if variables are missing or on different points.
 
     Examples
     --------

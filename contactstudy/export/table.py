@@ -59,8 +59,7 @@ def to_table(
     dataset : Dataset
         One case, or a Dataset of :mod:`contactstudy.analysis`.
     variables : str or sequence of str, optional
-        Variables or measures, see :func:`contactstudy.analysis.measure`, on the same points; default: all, or along a
-        line all stresses.
+        Variables or measures, see :func:`contactstudy.analysis.measure`; default: all, or along a line all stresses.
     line : pair of sequences, optional
         Ends of the line, (x, y, z) or (x, y), metres.
     points : int
@@ -69,8 +68,7 @@ def to_table(
     Returns
     -------
     pandas.DataFrame
-        Positions first; headings with units, such as ``von_mises [Pa]``, and with ``(error not estimated)`` for a
-        variable with this `error_kind`.
+        Positions first; headings such as ``von_mises [Pa]``, and ``(error not estimated)`` if this is the `error_kind`.
 
     Raises
     ------

@@ -42,10 +42,9 @@ def to_vtk(dataset: xr.Dataset, path: str | Path, variables: str | Sequence[str]
     Returns
     -------
     Path
-        The file. Its axes are the package's axes: z is the depth, so the body lies on the side of larger z.
-        Variables are point data; surfaces in an unstructured mesh, such as the pressure, are data of the contact's
-        cells. All six stress components are written
-        together as the tensor `stress` (xx, xy, xz, yx, yy, ...).
+        The file, with the package's axes: z is the depth. Variables are point data; surfaces in an unstructured mesh,
+        such as the pressure, are data of the contact's cells. All six stress components together are the tensor
+        `stress` (xx, xy, xz, yx, yy, ...).
 
     Raises
     ------

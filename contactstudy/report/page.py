@@ -144,13 +144,11 @@ def write(
 
     Parameters
     ----------
-    source : Dataset, str or Path
+    source, title, selection
         As for :func:`html`.
     path : str or Path, optional
         The file, ``.html``; an existing link is replaced, not followed. Default: next to the netCDF file, or
         ``report.html`` in the study's folder.
-    title, selection : optional
-        As for :func:`html`.
 
     Raises
     ------
