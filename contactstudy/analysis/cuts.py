@@ -15,13 +15,19 @@ from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 
 
+def named_arrays(dataset: xr.Dataset, variables: str | Sequence[str] | None) -> dict[str, xr.DataArray]:
+    """Return variables or measures by name; default: all variables."""
+    if variables is None:
+        return {str(name): array for name, array in dataset.data_vars.items()}
+    return {name: measure(dataset, name) for name in ([variables] if isinstance(variables, str) else variables)}
+
+
 def fields_on_same_points(
     dataset: xr.Dataset, variables: str | Sequence[str] | None, *, along: Sequence[str] = ()
 ) -> dict[str, xr.DataArray]:
     """Return fields on the same points, by name; default: fields along the axes `along`, in the body or on its top."""
     if variables is not None:
-        names = [variables] if isinstance(variables, str) else list(variables)
-        fields = {name: measure(dataset, name) for name in names}
+        fields = named_arrays(dataset, variables)
     else:
         axes = {str(name): axis_dimensions(array) for name, array in dataset.data_vars.items()}
         spatial = [name for name, dims in axes.items() if len(dims) > 1 and set(along) <= set(dims)]

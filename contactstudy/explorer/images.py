@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from functools import partial
+from functools import cache, partial
 from typing import NamedTuple
 
 import numpy as np
@@ -28,7 +28,7 @@ class CaseFields:
 
     def __init__(self, dataset: xr.Dataset) -> None:
         self.dataset = dataset
-        self._stresses: dict[str, xr.DataArray] = {}
+        self.stress = cache(partial(measure, dataset))  # by its name
         self.hertz: tuple[float, float] | None = None  # half-width and pressure of Hertz' line contact
         if "hertz_half_width" in dataset:
             self.hertz = float(dataset["hertz_half_width"]), float(dataset["hertz_max_pressure"])
@@ -40,12 +40,6 @@ class CaseFields:
         self.has_stress = "von_mises" in dataset and not bool(dataset["von_mises"].isnull().all())
         if self.has_stress:
             self.points = {axis: positions(dataset["von_mises"], axis).values for axis in "xyz"}
-
-    def stress(self, name: str) -> xr.DataArray:
-        """Stress measure, computed once."""
-        if name not in self._stresses:
-            self._stresses[name] = measure(self.dataset, name)
-        return self._stresses[name]
 
 
 class Line(NamedTuple):

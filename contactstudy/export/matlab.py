@@ -11,9 +11,10 @@ import numpy as np
 import xarray as xr
 
 from contactstudy import checks
+from contactstudy.analysis.cuts import named_arrays
 from contactstudy.arrays.variables import require, variable_of
 from contactstudy.errors import InvalidInputError
-from contactstudy.export.table import named_arrays, output_path
+from contactstudy.export.table import output_path
 
 NAME = re.compile(r"[A-Za-z]\w{0,62}", re.ASCII)  # Valid name in MATLAB
 STRUCTS = ("units", "meaning", "dims", "about")  # Names of the structs

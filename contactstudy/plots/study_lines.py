@@ -15,7 +15,7 @@ from contactstudy.arrays.selections import index_of
 from contactstudy.arrays.variables import DERIVED, require
 from contactstudy.errors import ContactStudyError, InvalidInputError
 from contactstudy.plots.axial import plot_axial_pressure
-from contactstudy.plots.selection import describe_value, most_solved, scale_of, scale_values, select_one, select_values
+from contactstudy.plots.selection import describe_value, most_solved, scale_of, scale_values, select_one
 from contactstudy.plots.singular_ends import SINGULAR_LABEL, SINGULAR_MARK, mark_at_top
 from contactstudy.plots.stress import plane_stress, plot_stress_plane
 from contactstudy.plots.style import (
@@ -327,8 +327,7 @@ def plot_edge_effect(
         return [(float(e), body_cases.isel(e_over_a=i)) for i, e in enumerate(body_cases["e_over_a"].values)]
 
     def with_surfaces(entries: list[Entry]) -> list[Entry]:
-        loaded = [(e, load(case)) for e, case in entries]
-        return [(e, case) for e, case in loaded if "pressure" in case]
+        return [(e, case) for e, part in entries if "pressure" in (case := load(part))]
 
     finite = next((body for body in bodies if body != "half-space"), bodies[0])
     candidates = entries_of(finite)
@@ -450,12 +449,15 @@ def study_figures(dataset: xr.Dataset, *, selection: Mapping[str, Any] | None = 
     >>> list(study_figures(xr.Dataset({"peak_pressure": values, "status": values})))
     ['study']
     """
-    selected = select_values(dataset, selection or {})
-    return {name: figure for name, (figure, _) in figures_with_selections(selected, single_case).items()}
+    figures = figures_with_selections(dataset, selection or {}, single_case)
+    return {name: figure for name, (figure, _) in figures.items()}
 
 
-def figures_with_selections(dataset: xr.Dataset, load: LoadCase) -> dict[str, tuple[Figure, list[str]]]:
+def figures_with_selections(
+    dataset: xr.Dataset, selection: Mapping[str, Any], load: LoadCase
+) -> dict[str, tuple[Figure, list[str]]]:
     """Figures of :func:`study_figures`, each with the parameters of which it shows one value among several."""
+    dataset = dataset.isel({name: [index_of(dataset, name, value)] for name, value in selection.items()})
     sizes = {str(dim): dataset.sizes[dim] for dim in dataset["status"].dims if dataset.sizes[dim] > 1}
     swept = sorted(sizes, key=lambda dim: -sizes[dim])
     figures = {}

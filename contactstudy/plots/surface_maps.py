@@ -32,7 +32,7 @@ SURFACES = {"body": "temperature_rise", "roller": "roller_temperature_rise"}
 
 
 class Surface:
-    """Surface of a single case: positions in the units of the figure, and a load over (y, x), positive in contact."""
+    """Surface of a single case: positions in the units of the figure, and load and contact over (y, x)."""
 
     def __init__(self, dataset: xr.Dataset, *names: str, si: bool, load: str = "pressure") -> None:
         self.case = single_case(dataset)
@@ -40,6 +40,7 @@ class Surface:
         self.unit = units(self.case, si=si)
         self.x, self.y = (positions(self.case[load], axis).values / self.unit.length for axis in "xy")
         self.pressure = self.values(load)
+        self.in_contact: BoolArray = self.pressure > 0
 
     def values(self, name: str) -> FloatArray:
         """Variable over (y, x)."""
@@ -47,11 +48,6 @@ class Surface:
         x, y = (dimension_along(array, axis) for axis in "xy")
         values: FloatArray = np.asarray(array.transpose(y, x).values, dtype=np.float64)
         return values
-
-    @property
-    def in_contact(self) -> BoolArray:
-        """Cells in contact over (y, x)."""
-        return self.pressure > 0
 
 
 def _draw_mesh(ax: Axes, surface: Surface, values: Any, **style: Any) -> QuadMesh:

@@ -19,7 +19,6 @@ from contactstudy.analysis import single_case, solved_case
 from contactstudy.analysis.provenance import INPUTS_ATTRIBUTE, RUN_ATTRIBUTE, attribute
 from contactstudy.arrays.variables import package_version
 from contactstudy.errors import InvalidInputError
-from contactstudy.plots.selection import select_values
 from contactstudy.plots.study_lines import figures_with_selections
 from contactstudy.report.assessment import CAUTION, NO, UNKNOWN, YES, assess_case
 from contactstudy.report.figures import PIXELS_PER_INCH, Picture, case_pictures, encode_figure, side_view
@@ -98,8 +97,7 @@ def html(
     Raises
     ------
     InvalidInputError
-        If the source is no result or more than one case; if the selection names no swept parameter or value, or the
-        source is no study.
+        If the source is no result or several cases; if the selection names no swept value, or the source is no study.
 
     Examples
     --------
@@ -290,19 +288,19 @@ def figures_of_folder(
 ) -> dict[str, tuple[Figure, dict[str, str]]]:
     """Draw a study's figures; with each, the parameters shown at one value only, and another value of each."""
     results = Folder(path).results()
-    selected = select_values(collect(path), selection or {})
+    study = collect(path)
 
     # Surfaces are lazy: only the files of drawn cases are opened.
     def load(case: xr.Dataset) -> xr.Dataset:
         return single_case(results.case(str(case["case_id"].item()), FIELDS))
 
     def last_value(dim: str) -> str:
-        value = selected.indexes[dim][-1]
+        value = study.indexes[dim][-1]
         return value if isinstance(value, str) else f"{float(value):.10g}"
 
     return {
         name: (figure, {dim: last_value(dim) for dim in fixed_values})
-        for name, (figure, fixed_values) in figures_with_selections(selected, load).items()
+        for name, (figure, fixed_values) in figures_with_selections(study, selection or {}, load).items()
     }
 
 
