@@ -152,7 +152,7 @@ def _draw(folder: Path) -> list[Path]:
         from matplotlib import pyplot
 
         from contactstudy.checks import writing
-        from contactstudy.report.study_page import figures_of_folder
+        from contactstudy.report.page import figures_of_folder
 
         paths = []
         for name, (figure, _) in figures_of_folder(folder).items():

@@ -233,8 +233,7 @@ def edge_factors(
     dataset : Dataset
         A result or an opened study, with `pressure` and `hertz_half_width`.
     variable : str
-        `pressure`, or a stress or measure, see :func:`contactstudy.analysis.measure`, with its largest sample in each
-        cross-section.
+        `pressure`, or a stress or measure, see :func:`contactstudy.analysis.measure`: largest in each cross-section.
     reference : Dataset, optional
         The same contact on another body, usually the half-space, in the same coordinates.
     reach : float, optional
@@ -245,8 +244,7 @@ def edge_factors(
     Dataset
         `end_over_middle_first`, `end_over_middle_last`; with a reference also `over_reference_first` and
         `over_reference_last` (ends over its ends), `over_reference_middle`, and `over_reference_peak` (largest over
-        largest, anywhere). NaN without points, and at a cut end. Infinite at a singular end. The error is
-        not estimated.
+        largest, anywhere). NaN without points and at a cut end; infinite at a singular end; without an error.
 
     Raises
     ------
@@ -302,8 +300,18 @@ def _values(dataset: xr.Dataset, variable: str, reach: xr.DataArray | float) -> 
     return values | {"middle": profile.isel({x: nearest}).where(is_within), "peak": profile.max(x)}
 
 
-def pressure_numbers(dataset: xr.Dataset) -> dict[str, xr.Variable]:
-    """Numbers of the pressure; end pressures from the Dataset, or else from the outermost loaded columns."""
+def stress_summary(dataset: xr.Dataset) -> xr.Dataset:
+    """Largest von Mises stress, its error and position; empty without stresses."""
+    if "von_mises" not in dataset:
+        return xr.Dataset()
+    if np.isnan(dataset["von_mises"].values).all():
+        raise InvalidInputError("von_mises", "nan everywhere", "a field with at least one number")
+    has_all_stresses = all(name in dataset for name in STRESSES)
+    return peak(dataset) if has_all_stresses else largest_sample(dataset, "von_mises")
+
+
+def case_numbers(dataset: xr.Dataset) -> dict[str, xr.Variable]:
+    """All numbers of a solved case: scalars of the Dataset (refined), or else numbers of its cells."""
     require(dataset, "pressure", "hertz_max_pressure")
     array, scale = dataset["pressure"].transpose("x", "y"), float(dataset["hertz_max_pressure"])
     pressure = array.values
@@ -327,23 +335,8 @@ def pressure_numbers(dataset: xr.Dataset) -> dict[str, xr.Variable]:
         widths = np.broadcast_to(cell_size(array, axis).values, loaded.shape)
         numbers[name] = np.ptp(array[axis].values[loaded]) + widths[loaded][[0, -1]].mean() if loaded.any() else 0.0
     comments = {name: {"comment": comment, ERROR_KIND: NOT_ESTIMATED} for name, comment in COMMENTS.items()}
-    return {name: xr.Variable((), value, labels(name) | comments.get(name, {})) for name, value in numbers.items()}
-
-
-def stress_summary(dataset: xr.Dataset) -> xr.Dataset:
-    """Largest von Mises stress, its error and position; empty without stresses."""
-    if "von_mises" not in dataset:
-        return xr.Dataset()
-    if np.isnan(dataset["von_mises"].values).all():
-        raise InvalidInputError("von_mises", "nan everywhere", "a field with at least one number")
-    has_all_stresses = all(name in dataset for name in STRESSES)
-    return peak(dataset) if has_all_stresses else largest_sample(dataset, "von_mises")
-
-
-def case_numbers(dataset: xr.Dataset) -> dict[str, xr.Variable]:
-    """All numbers of a solved case: scalars of the Dataset (refined), or else numbers of its cells."""
-    numbers = pressure_numbers(dataset)
+    result = {name: xr.Variable((), value, labels(name) | comments.get(name, {})) for name, value in numbers.items()}
     for source in (stress_summary(dataset), dataset):
         scalars = {str(name): entry for name, entry in source.variables.items() if entry.ndim == 0}
-        numbers |= {name: entry for name, entry in scalars.items() if name not in source.coords}
-    return numbers
+        result |= {name: entry for name, entry in scalars.items() if name not in source.coords}
+    return result

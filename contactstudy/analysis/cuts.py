@@ -15,13 +15,19 @@ from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 
 
+def named_arrays(dataset: xr.Dataset, variables: str | Sequence[str] | None) -> dict[str, xr.DataArray]:
+    """Return variables or measures by name; default: all variables."""
+    if variables is None:
+        return {str(name): array for name, array in dataset.data_vars.items()}
+    return {name: measure(dataset, name) for name in ([variables] if isinstance(variables, str) else variables)}
+
+
 def fields_on_same_points(
     dataset: xr.Dataset, variables: str | Sequence[str] | None, *, along: Sequence[str] = ()
 ) -> dict[str, xr.DataArray]:
     """Return fields on the same points, by name; default: fields along the axes `along`, in the body or on its top."""
     if variables is not None:
-        names = [variables] if isinstance(variables, str) else list(variables)
-        fields = {name: measure(dataset, name) for name in names}
+        fields = named_arrays(dataset, variables)
     else:
         axes = {str(name): axis_dimensions(array) for name, array in dataset.data_vars.items()}
         spatial = [name for name, dims in axes.items() if len(dims) > 1 and set(along) <= set(dims)]
@@ -63,8 +69,7 @@ def along_line(
     points : int
         Number of points, at least 2.
     variables : str or sequence of str, optional
-        Variables or measures, see :func:`contactstudy.analysis.measure`, on the same points; default: all stresses,
-        or all surfaces without stresses.
+        Variables or measures, see :func:`contactstudy.analysis.measure`; default: all stresses, else all surfaces.
 
     Returns
     -------
@@ -135,8 +140,7 @@ def in_plane(
     Raises
     ------
     InvalidInputError
-        Unless exactly one position is a number; if the plane lies outside the result, or the variables are missing or
-        lie on different points.
+        Unless exactly one position is a number within the result; if variables are missing or on different points.
 
     Examples
     --------

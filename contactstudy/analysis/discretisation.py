@@ -88,13 +88,12 @@ def discretisation_error(fine: xr.Dataset, coarse: xr.Dataset) -> xr.Dataset:
         return float(abs(values[name] - coarse_values[name]) / (ratio**order - 1))
 
     def estimate(name: str) -> float:
-        value, coarse_value = values[name], coarse_values[name]
-        if name in singular_names | unresolved:
-            return np.inf
-        # If the grids differ by more than this fraction, they do not allow an estimate of the limit.
-        if not abs(value - coarse_value) <= 0.2 * abs(value):  # also of NaN
-            return np.inf
-        return max(correction(name), displacement * abs(value) if np.isfinite(displacement) else 0.0)
+        value = abs(values[name])
+        # If the grids differ by more than this fraction, they do not allow an estimate of the limit; nor does NaN.
+        has_limit = name not in singular_names | unresolved and abs(values[name] - coarse_values[name]) <= 0.2 * value
+        return (
+            max(correction(name), displacement * value if np.isfinite(displacement) else 0.0) if has_limit else np.inf
+        )
 
     errors = {name: estimate(name) for name in values}
     peak = values["peak_pressure"]
@@ -170,8 +169,7 @@ def _quantities(name: str, contact: xr.Dataset) -> dict[str, float]:
     end_pressures = _end_pressure(axial[:FITTED_COLUMNS]), _end_pressure(axial[: -FITTED_COLUMNS - 1 : -1])
     return {
         "peak_pressure": max(_peak(pressure), *end_pressures),
-        "end_pressure_first": end_pressures[0],
-        "end_pressure_last": end_pressures[1],
+        **dict(zip(ENDS, end_pressures, strict=True)),
         "half_width_middle": float(np.interp(mid_length, grid.x, edges["half_width"].values)),
     }
 

@@ -71,8 +71,7 @@ def measure(dataset: xr.Dataset, name: str) -> xr.DataArray:
         A result of :func:`contactstudy.solve` or of :func:`contactstudy.open_study`.
     name : str
         A variable of the Dataset; or `von_mises`, `tresca`, `maximum_shear`, `hydrostatic`, `principal_stress_1`
-        (largest tension), `principal_stress_2`, `principal_stress_3`, `orthogonal_shear_range`,
-        `orthogonal_shear_amplitude`.
+        (largest tension) to `principal_stress_3`, `orthogonal_shear_range`, `orthogonal_shear_amplitude`.
 
     Returns
     -------

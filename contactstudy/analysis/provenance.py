@@ -94,8 +94,7 @@ def solved_case(dataset: xr.Dataset) -> Case:
     Raises
     ------
     InvalidInputError
-        If the Dataset lacks the inputs: it was computed from a result, or is a case selected from an opened study, see
-        :func:`contactstudy.study.load_case`.
+        If the Dataset lacks the inputs, as a case of an opened study does, see :func:`contactstudy.study.load_case`.
 
     Examples
     --------

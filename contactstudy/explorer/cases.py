@@ -161,12 +161,11 @@ def numbers_by_subject(scalars: xr.Dataset) -> dict[str, dict[str, str]]:
     meanings = [variable_of(name, scalars[name].attrs).long_name for name in names]
 
     entries = [(subject, entry) for subject, members in SUBJECTS.items() for entry in members or ("",)]
+    further = entries.index(("further numbers", ""))
 
     def rank(name: str) -> int:
-        for index, (_, entry) in enumerate(entries):
-            if name == entry or (entry.endswith("_") and name.startswith(entry)):
-                return index
-        return entries.index(("further numbers", ""))
+        is_member = (name == entry or (entry.endswith("_") and name.startswith(entry)) for _, entry in entries)
+        return next((index for index, found in enumerate(is_member) if found), further)
 
     groups: dict[str, dict[str, str]] = {}
     for index, name, meaning in sorted((rank(name), name, text) for name, text in zip(names, meanings, strict=True)):

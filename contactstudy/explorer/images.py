@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from functools import partial
+from functools import cache, partial
 from typing import NamedTuple
 
 import numpy as np
@@ -12,6 +12,7 @@ from contactstudy.analysis import axial_pressure, in_plane, measure, positions
 from contactstudy.analysis.axes import axis_dimensions
 from contactstudy.checks import Array, FloatArray
 from contactstudy.plots.singular_ends import cap_field, near_singular, singular_ends
+from contactstudy.plots.style import AXIS_MEANINGS, Units
 
 PIXELS = (360, 150)  # Pixels of an image, horizontal and vertical
 END_REGION = 8.0  # Length of the region near an end, over the Hertz half-width
@@ -27,7 +28,7 @@ class CaseFields:
 
     def __init__(self, dataset: xr.Dataset) -> None:
         self.dataset = dataset
-        self._stresses: dict[str, xr.DataArray] = {}
+        self.stress = cache(partial(measure, dataset))  # by its name
         self.hertz: tuple[float, float] | None = None  # half-width and pressure of Hertz' line contact
         if "hertz_half_width" in dataset:
             self.hertz = float(dataset["hertz_half_width"]), float(dataset["hertz_max_pressure"])
@@ -39,21 +40,6 @@ class CaseFields:
         self.has_stress = "von_mises" in dataset and not bool(dataset["von_mises"].isnull().all())
         if self.has_stress:
             self.points = {axis: positions(dataset["von_mises"], axis).values for axis in "xyz"}
-
-    def stress(self, name: str) -> xr.DataArray:
-        """Stress measure, computed once."""
-        if name not in self._stresses:
-            self._stresses[name] = measure(self.dataset, name)
-        return self._stresses[name]
-
-
-class Scale(NamedTuple):
-    """Units of the page: size of a length and of a stress in SI, and their names on axes."""
-
-    length: float
-    stress: float
-    length_name: str
-    stress_name: str
 
 
 class Line(NamedTuple):
@@ -78,11 +64,11 @@ class Image(NamedTuple):
     position: str = ""
 
 
-def choose_scale(case: CaseFields, *, relative: bool) -> Scale:
-    """Return mm and MPa, or half-width and pressure of Hertz' line contact."""
+def choose_scale(case: CaseFields, *, relative: bool) -> Units:
+    """Return mm and MPa, or half-width and pressure of Hertz' line contact, with suffixes as plain text."""
     if relative and case.hertz is not None:
-        return Scale(*case.hertz, "/a", "/p0")
-    return Scale(1e-3, 1e6, " (mm)", " (MPa)")
+        return Units(*case.hertz, "/a", "/p0")
+    return Units(1e-3, 1e6, " (mm)", " (MPa)")
 
 
 def region_limits(case: CaseFields, name: str) -> Span:
@@ -96,15 +82,15 @@ def region_limits(case: CaseFields, name: str) -> Span:
     return max(low, end - before * length), min(high, end + (1 - before) * length)
 
 
-def axial_line(case: CaseFields, scale: Scale, limits: Span) -> Line:
+def axial_line(case: CaseFields, scale: Units, limits: Span) -> Line:
     """Return the largest pressure across the contact along the axis, without the vicinity of singular ends."""
     values = np.where(near_singular(case.dataset, case.x), np.nan, case.axial_pressure / scale.stress)
     singular = [end / scale.length for end in case.singular_ends]
-    names = f"distance from the free end, x{scale.length_name}", f"pressure along the axis{scale.stress_name}"
+    names = f"{AXIS_MEANINGS['x']}, x{scale.over_length}", f"pressure along the axis{scale.over_stress}"
     return Line(case.x / scale.length, values, singular, (limits[0] / scale.length, limits[1] / scale.length), names)
 
 
-def top_image(case: CaseFields, scale: Scale, limits: Span) -> Image:
+def top_image(case: CaseFields, scale: Units, limits: Span) -> Image:
     """Return the pressure on the top of the body."""
     pressure = case.dataset["pressure"]
     y = positions(pressure, "y").values
@@ -112,7 +98,7 @@ def top_image(case: CaseFields, scale: Scale, limits: Span) -> Image:
 
 
 def plane_image(
-    case: CaseFields, scale: Scale, limits: Span, kind: str, fraction: float, *, name: str = "von_mises"
+    case: CaseFields, scale: Units, limits: Span, kind: str, fraction: float, *, name: str = "von_mises"
 ) -> Image | None:
     """Return a stress measure in a plane at a fraction of its points; None without stresses or with too few points."""
     if not case.has_stress:
@@ -132,7 +118,7 @@ def plane_image(
         left, right = max(left, limits[0]), min(right, limits[1])
     spans = ((left, right), (float(points[vertical][0]), float(points[vertical][-1])))
     image = _image(plane, spans, _limit(case, case.stress(name)), scale)
-    unit = scale.length_name.strip(" ()/")
+    unit = scale.over_length.strip(" ()/")
     return image._replace(position=f"{normal} = {position / scale.length:.3g} {unit}")
 
 
@@ -141,13 +127,12 @@ def _limit(case: CaseFields, field: xr.DataArray) -> float:
     return max(0.0, float(cap_field(case.dataset, field)[0].max()))
 
 
-def _image(plane: xr.DataArray, spans: tuple[Span, Span], limit: float, scale: Scale) -> Image:
+def _image(plane: xr.DataArray, spans: tuple[Span, Span], limit: float, scale: Units) -> Image:
     """Image in the units of the page."""
     names = axis_dimensions(plane)
     values = plane.transpose(*names.values()).values
     axes = tuple(positions(plane, axis).values for axis in names)
-    labels = {"x": "distance from the free end, x", "y": "position along rolling, y", "z": "depth, z"}
-    horizontal_label, vertical_label = (f"{labels[name]}{scale.length_name}" for name in names)
+    horizontal_label, vertical_label = (f"{AXIS_MEANINGS[axis]}, {axis}{scale.over_length}" for axis in names)
     (left, right), (low, high) = ((start / scale.length, stop / scale.length) for start, stop in spans)
     # The largest value of the field up to the limit, which may lie between the pixels.
     in_span = [(points >= start) & (points <= stop) for points, (start, stop) in zip(axes, spans, strict=True)]

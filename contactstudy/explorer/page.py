@@ -180,7 +180,7 @@ class Page:
         unit = ""
         for side, case in shown.items():
             scale, limits = choose_scale(case, relative=self.units.value), region_limits(case, self.region.value)
-            unit = scale.stress_name
+            unit = scale.over_stress
             lines[side], tops[side] = axial_line(case, scale, limits), top_image(case, scale, limits)
             kind, fraction = self.plane.value, self.fraction.value
             if image := plane_image(case, scale, limits, kind, fraction, name=self.measure.value):

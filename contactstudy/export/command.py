@@ -45,7 +45,7 @@ def export(
         collected = collect(path)
         rows = collected.to_dataframe().reset_index()
         rows = rows.rename(columns=headings(collected, [str(name) for name in rows.columns]))
-        return _write_csv(rows, path / "summary.csv" if out is None else out)
+        return _write_csv(rows, out or path / "summary.csv")
     kind = kind or "csv"
     dataset = open_study(path) if path.is_dir() else load_result(path, "path")
     for name, value in selection_of(select).items():
@@ -56,8 +56,7 @@ def export(
     if names and kind != "mat":
         example = f"--select {names[0]}={dataset[names[0]].values[0]}"
         raise InvalidInputError("select", list(select), f"with a value of {', '.join(names)} too", f"such as {example}")
-    default_path = path / f"export{SUFFIXES[kind]}" if path.is_dir() else path.with_suffix(SUFFIXES[kind])
-    target = default_path if out is None else out
+    target = out or (path / f"export{SUFFIXES[kind]}" if path.is_dir() else path.with_suffix(SUFFIXES[kind]))
     if kind == "vtk":
         return to_vtk(dataset, target, variables)
     if kind == "mat":

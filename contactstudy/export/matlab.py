@@ -11,9 +11,10 @@ import numpy as np
 import xarray as xr
 
 from contactstudy import checks
+from contactstudy.analysis.cuts import named_arrays
 from contactstudy.arrays.variables import require, variable_of
 from contactstudy.errors import InvalidInputError
-from contactstudy.export.table import named_arrays, output_path
+from contactstudy.export.table import output_path
 
 NAME = re.compile(r"[A-Za-z]\w{0,62}", re.ASCII)  # Valid name in MATLAB
 STRUCTS = ("units", "meaning", "dims", "about")  # Names of the structs
@@ -26,27 +27,23 @@ def to_mat(dataset: xr.Dataset, path: str | Path, variables: str | Sequence[str]
     Parameters
     ----------
     dataset : Dataset
-        A result, an opened study with all its cases, or a Dataset of :mod:`contactstudy.analysis`. Variables on the
-        disk are read one at a time.
+        A result, an opened study, whose variables are read one at a time, or a Dataset of `contactstudy.analysis`.
     path : str or Path
         File to write, ending with ``.mat``.
     variables : str or sequence of str, optional
-        Variables or measures, see :func:`contactstudy.analysis.measure`; default: all. Coordinates are
-        added.
+        Variables or measures, see :func:`contactstudy.analysis.measure`; default: all. Coordinates are added.
 
     Returns
     -------
     Path
-        The file. It contains every variable and coordinate as an array: numbers unchanged, a single dimension as a
-        column, texts as cells. The structs ``units``, ``meaning`` and ``dims`` have a field for each
-        name; ``dims.pressure`` is ``{'x', 'y'}``, the order of the array's dimensions. ``about`` contains the
-        attributes of the Dataset, such as versions and inputs.
+        Every variable and coordinate is an array: numbers unchanged, a single dimension as a column, texts as cells.
+        The structs ``units``, ``meaning`` and ``dims`` have a field for each name; ``dims.pressure`` is
+        ``{'x', 'y'}``. ``about`` contains the attributes of the Dataset, such as versions and inputs.
 
     Raises
     ------
     InvalidInputError
-        If the path ends otherwise, a variable is missing, has an invalid name in MATLAB or exceeds the size of the
-        format.
+        If the path ends otherwise, or a variable is missing, has an invalid name in MATLAB or more than 2 GB.
     StoreError
         If the file cannot be written.
 

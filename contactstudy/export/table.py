@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 import xarray as xr
 
 from contactstudy import checks
-from contactstudy.analysis import along_line, measure, single_case
-from contactstudy.analysis.cuts import points_hint
+from contactstudy.analysis import along_line, single_case
+from contactstudy.analysis.cuts import named_arrays, points_hint
 from contactstudy.arrays.variables import ERROR_KIND, NOT_ESTIMATED, require, variable_of
 from contactstudy.errors import InvalidInputError
 
@@ -42,13 +42,6 @@ def output_path(path: str | Path, *suffixes: str) -> Path:
     return target
 
 
-def named_arrays(dataset: xr.Dataset, variables: str | Sequence[str] | None) -> dict[str, xr.DataArray]:
-    """Return variables or measures by name; default: all variables."""
-    if variables is None:
-        return {str(name): array for name, array in dataset.data_vars.items()}
-    return {name: measure(dataset, name) for name in ([variables] if isinstance(variables, str) else variables)}
-
-
 def to_table(
     dataset: xr.Dataset, variables: str | Sequence[str] | None = None, *, line: Line | None = None, points: int = 101
 ) -> pd.DataFrame:
@@ -59,8 +52,7 @@ def to_table(
     dataset : Dataset
         One case, or a Dataset of :mod:`contactstudy.analysis`.
     variables : str or sequence of str, optional
-        Variables or measures, see :func:`contactstudy.analysis.measure`, on the same points; default: all, or along a
-        line all stresses.
+        Variables or measures, see :func:`contactstudy.analysis.measure`; default: all, or along a line all stresses.
     line : pair of sequences, optional
         Ends of the line, (x, y, z) or (x, y), metres.
     points : int
@@ -69,14 +61,12 @@ def to_table(
     Returns
     -------
     pandas.DataFrame
-        Positions first; headings with units, such as ``von_mises [Pa]``, and with ``(error not estimated)`` for a
-        variable with this `error_kind`.
+        Positions first; headings such as ``von_mises [Pa]``, and ``(error not estimated)`` if this is the `error_kind`.
 
     Raises
     ------
     InvalidInputError
-        If the Dataset contains more than one case, the variables are missing or lie on different points, or the line
-        leaves the result.
+        If the Dataset contains several cases, variables are missing or on different points, or the line leaves it.
 
     Examples
     --------

@@ -42,16 +42,14 @@ def to_vtk(dataset: xr.Dataset, path: str | Path, variables: str | Sequence[str]
     Returns
     -------
     Path
-        The file. Its axes are the package's axes: z is the depth, so the body lies on the side of larger z.
-        Variables are point data; surfaces in an unstructured mesh, such as the pressure, are data of the contact's
-        cells. All six stress components are written
-        together as the tensor `stress` (xx, xy, xz, yx, yy, ...).
+        The file, with the package's axes: z is the depth. Variables are point data; surfaces in an unstructured mesh,
+        such as the pressure, are data of the contact's cells. All six stress components together are the tensor
+        `stress` (xx, xy, xz, yx, yy, ...).
 
     Raises
     ------
     InvalidInputError
-        If the Dataset contains more than one case, the path has another suffix, the variables are missing or lie on
-        different points.
+        If the Dataset contains several cases, the suffix is another, or variables are missing or on different points.
     StoreError
         If the file cannot be written.
 
@@ -67,6 +65,7 @@ def to_vtk(dataset: xr.Dataset, path: str | Path, variables: str | Sequence[str]
     require(dataset)
     target = output_path(path, ".vtr", ".vtu")  # rectilinear grid, and unstructured mesh for more programs
     fields = fields_on_same_points(single_case(dataset), variables)
+    first_field = next(iter(fields.values()))
     if target.suffix == ".vtr":
         axes, data = _on_points(fields)
         extent = " ".join(f"0 {axis.size - 1}" for axis in axes)
@@ -77,16 +76,14 @@ def to_vtk(dataset: xr.Dataset, path: str | Path, variables: str | Sequence[str]
             "Coordinates": dict(zip(AXES, axes, strict=True)),
         }
         _write(target, "RectilinearGrid", {"WholeExtent": extent}, {"Extent": extent}, sections)
-    elif set(axis_dimensions(next(iter(fields.values()))).values()) == {"x", "y"}:
-        field = next(iter(fields.values()))
+    elif set(axis_dimensions(first_field).values()) == {"x", "y"}:
         # Only cells with finite values belong to the mesh: a gap is infinite beyond the roller.
-        _, grid = labelled_cells("variables", xr.zeros_like(field, dtype=np.float64))
+        _, grid = labelled_cells("variables", xr.zeros_like(first_field, dtype=np.float64))
         edges = [grid.x_edges, np.linspace(*grid.y_range, grid.cells_y + 1), np.zeros(1)]
         values = {name: array.transpose("x", "y").values for name, array in fields.items()}
         _write_mesh(target, edges, values, in_cells=True)
     else:
-        axes, data = _on_points(fields)
-        _write_mesh(target, axes, data, in_cells=False)
+        _write_mesh(target, *_on_points(fields), in_cells=False)
     return target
 
 

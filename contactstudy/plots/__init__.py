@@ -13,9 +13,8 @@ from contactstudy.plots.axial import (
     plot_profiles,
     plot_wear,
 )
-from contactstudy.plots.edge_effect import plot_edge_effect
 from contactstudy.plots.stress import plot_end_face, plot_stress_plane
-from contactstudy.plots.study_lines import plot_study_lines, plot_traction_curve, study_figures
+from contactstudy.plots.study_lines import plot_edge_effect, plot_study_lines, plot_traction_curve, study_figures
 from contactstudy.plots.study_map import plot_study_map
 from contactstudy.plots.style import COLORS, save
 from contactstudy.plots.surface_maps import (

@@ -131,7 +131,10 @@ def plot_comparison(
         raise InvalidInputError("results", results, "a mapping of names to results, at least one")
     ax = new_axes(ax)
     cases = {name: single_case(dataset) for name, dataset in results.items()}
-    midpoints = {name: _contact_midpoint(case) for name, case in cases.items()}
+    midpoints = {
+        name: 0.5 * float(sum(loaded_range(axial_pressure(case)))) if "pressure" in case else 0.0
+        for name, case in cases.items()
+    }
     if centred is None:
         half_width = min(float(case.get("hertz_half_width", np.inf)) for case in cases.values())
         centred = max(midpoints.values()) - min(midpoints.values()) > half_width
@@ -144,13 +147,6 @@ def plot_comparison(
     x_label = unit.axis("x") if not centred else f"position from mid-length, $x{unit.over_length}$"
     label_axes(ax, x_label, unit.stress_label(variable))
     return ax
-
-
-def _contact_midpoint(case: xr.Dataset) -> float:
-    """Middle of the loaded positions along x, metres; 0 without a pressure."""
-    if "pressure" not in case:
-        return 0.0
-    return 0.5 * float(sum(loaded_range(axial_pressure(case))))
 
 
 def plot_depth(

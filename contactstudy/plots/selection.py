@@ -17,11 +17,6 @@ from contactstudy.plots.style import SYMBOLS, escape_dollars
 Array = TypeVar("Array", xr.DataArray, xr.Dataset)
 
 
-def select_values(dataset: xr.Dataset, selection: Mapping[str, Any]) -> xr.Dataset:
-    """Part of a study with the selected values of its swept parameters; every dimension remains."""
-    return dataset.isel({name: [index_of(dataset, name, value)] for name, value in selection.items()})
-
-
 def select_one(array: Array, axes: tuple[str, ...], selection: Mapping[str, Any]) -> Array:
     """Array, or Dataset, over the dimensions `axes`, with the selected value of every other dimension."""
     swept = [str(dim) for dim in array.dims if dim not in axes]

@@ -77,8 +77,7 @@ def plot_stress_plane(
     variable : str
         A stress, or a measure, see :func:`contactstudy.analysis.measure`.
     y, x, z : float, optional
-        Position of the plane, metres, at most one of them; interpolated between the positions of the result.
-        Default: ``y = 0``.
+        Position of the plane, metres, at most one; default: ``y = 0``. Interpolated between positions of the result.
     ax, si
         As for :func:`plot_axial_pressure`.
     levels : int or sequence of float, optional

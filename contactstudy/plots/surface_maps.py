@@ -32,7 +32,7 @@ SURFACES = {"body": "temperature_rise", "roller": "roller_temperature_rise"}
 
 
 class Surface:
-    """Surface of a single case: positions in the units of the figure, and a load over (y, x), positive in contact."""
+    """Surface of a single case: positions in the units of the figure, and load and contact over (y, x)."""
 
     def __init__(self, dataset: xr.Dataset, *names: str, si: bool, load: str = "pressure") -> None:
         self.case = single_case(dataset)
@@ -40,6 +40,7 @@ class Surface:
         self.unit = units(self.case, si=si)
         self.x, self.y = (positions(self.case[load], axis).values / self.unit.length for axis in "xy")
         self.pressure = self.values(load)
+        self.in_contact: BoolArray = self.pressure > 0
 
     def values(self, name: str) -> FloatArray:
         """Variable over (y, x)."""
@@ -47,11 +48,6 @@ class Surface:
         x, y = (dimension_along(array, axis) for axis in "xy")
         values: FloatArray = np.asarray(array.transpose(y, x).values, dtype=np.float64)
         return values
-
-    @property
-    def in_contact(self) -> BoolArray:
-        """Cells in contact over (y, x)."""
-        return self.pressure > 0
 
 
 def _draw_mesh(ax: Axes, surface: Surface, values: Any, **style: Any) -> QuadMesh:
@@ -99,9 +95,9 @@ def _crop(ax: Axes, surface: Surface) -> None:
             limit(low - margin, high + margin)
 
 
-def _label(ax: Axes, surface: Surface, mesh: QuadMesh, label: str, extend: str = "neither") -> None:
-    """Label the axes and the colour bar of a mesh."""
-    bar = ax.figure.colorbar(mesh, ax=ax, label=label, extend=extend)
+def _label(ax: Axes, surface: Surface, colours: Any, label: str, extend: str | None = None) -> None:
+    """Label the axes and the colour bar of a mesh or of filled contours."""
+    bar = ax.figure.colorbar(colours, ax=ax, label=label, extend=extend)
     label_axes(ax, surface.unit.axis("x"), surface.unit.axis("y"), bar.ax)
 
 
@@ -140,7 +136,7 @@ def plot_pressure_map(dataset: xr.Dataset, ax: Axes | None = None, *, si: bool =
     mesh = _draw_mesh(ax, surface, surface.pressure / stress, cmap=COLORS, vmin=0.0, vmax=max_value)
     _draw_contact_border(ax, surface, mesh)
     _crop(ax, surface)
-    _label(ax, surface, mesh, surface.unit.stress_label("pressure"), "neither" if max_value is None else "max")
+    _label(ax, surface, mesh, surface.unit.stress_label("pressure"), None if max_value is None else "max")
     return ax
 
 
@@ -354,6 +350,5 @@ def plot_film_map(dataset: xr.Dataset, ax: Axes | None = None, *, fringes: int =
     ax.plot(float(case["least_film_x"]) / unit.length, float(case["least_film_y"]) / unit.length, "x", color="#e8513a")
     half_range = FILM_HALF_RANGE * float(case["hertz_half_width"]) / unit.length
     ax.set_ylim(max(-half_range, y.min()), min(half_range, y.max()))
-    bar = ax.figure.colorbar(contours, ax=ax, label="film thickness, $h$ (µm)")
-    label_axes(ax, unit.axis("x"), unit.axis("y"), bar.ax)
+    _label(ax, surface, contours, "film thickness, $h$ (µm)")
     return ax

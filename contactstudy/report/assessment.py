@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -22,7 +22,6 @@ LOAD_TOLERANCE, RESIDUAL_TOLERANCE, VIOLATION_TOLERANCE = 1e-6, 1e-3, 1e-4
 conditions: each is below the digits that a summary prints."""
 
 PEAK_TOLERANCE = 0.02  # Largest relative error of the peak pressure: twice the default accuracy
-
 
 Answer = tuple[str, str]  # The answer, and the reason
 
@@ -91,16 +90,11 @@ def assess(dataset: xr.Dataset) -> Assessment:
 
 
 def assess_case(case: xr.Dataset, table: Summary) -> Assessment:
-    """Return the assessment of a case, given the case's summary."""
-    return Assessment(tuple(_criteria(case, table)))
-
-
-def _criteria(case: xr.Dataset, table: Summary) -> Iterator[Criterion]:
-    """Yield every criterion; for a case without a result, only the reason."""
+    """Return the assessment of a case, given the case's summary; for a case without a result, only the reason."""
     if "status" in case and (status := str(case["status"].item())) != "ok":
         message = str(case["message"].item()) if "message" in case else ""
-        yield Criterion("Is there a result?", NO, f"the case is {status}" + (f": {message}" if message else ""))
-        return
+        reason = f"the case is {status}" + (f": {message}" if message else "")
+        return Assessment((Criterion("Is there a result?", NO, reason),))
     answers = {
         "Did the iteration converge?": _converged(case),
         "Does the pressure carry the load?": _load(case),
@@ -109,15 +103,16 @@ def _criteria(case: xr.Dataset, table: Summary) -> Iterator[Criterion]:
         "Are the free ends free?": _free_ends(case),
         "Are the cells fine enough?": _cells(case),
     }
-    yield from (Criterion(question, *answer) for question, answer in answers.items() if answer is not None)
+    criteria = [Criterion(question, *answer) for question, answer in answers.items() if answer is not None]
     profile = attribute(case, INPUTS_ATTRIBUTE).get("case", {}).get("roller", {}).get("profile", {})
     for entry in tables_within(profile):
         if entry["kind"] == "Measured":
-            yield Criterion("Is the measured profile filtered?", *_measured_profile(entry))
+            criteria.append(Criterion("Is the measured profile filtered?", *_measured_profile(entry)))
     if "peak_von_mises" in table:
-        yield Criterion("Is the largest stress known?", *_peak_stress(case, table["peak_von_mises"]))
-    for text in attribute(case, RUN_ATTRIBUTE).get("warnings", []):
-        yield Criterion("Was there a warning?", CAUTION, str(text))
+        criteria.append(Criterion("Is the largest stress known?", *_peak_stress(case, table["peak_von_mises"])))
+    warnings = attribute(case, RUN_ATTRIBUTE).get("warnings", [])
+    criteria += [Criterion("Was there a warning?", CAUTION, str(text)) for text in warnings]
+    return Assessment(tuple(criteria))
 
 
 def _converged(case: xr.Dataset) -> Answer:

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import re
+from collections import Counter
+from collections.abc import Callable, Iterable, Mapping
 from datetime import UTC, datetime
 from numbers import Real
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import jinja2
+import numpy as np
 import xarray as xr
 
 from contactstudy import checks
@@ -16,13 +19,20 @@ from contactstudy.analysis import single_case, solved_case
 from contactstudy.analysis.provenance import INPUTS_ATTRIBUTE, RUN_ATTRIBUTE, attribute
 from contactstudy.arrays.variables import package_version
 from contactstudy.errors import InvalidInputError
-from contactstudy.report.assessment import assess_case
-from contactstudy.report.figures import case_pictures, side_view
+from contactstudy.plots.study_lines import figures_with_selections
+from contactstudy.report.assessment import CAUTION, NO, UNKNOWN, YES, assess_case
+from contactstudy.report.figures import PIXELS_PER_INCH, Picture, case_pictures, encode_figure, side_view
 from contactstudy.report.sources import citations
-from contactstudy.report.study_page import study_context
-from contactstudy.report.tables import case_table, summary
+from contactstudy.report.tables import NOT_ESTIMATED, Summary, case_table, summary
+from contactstudy.study import collect
 from contactstudy.study.files import load_result
+from contactstudy.study.folder import Folder
+from contactstudy.study.parameters import PARAMETERS, with_defaults
+from contactstudy.study.plan import Plan, PlannedCase, format_list, format_value, label
 from contactstudy.versions import PACKAGES
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 CELLS = {  # Description of the cells by the setting of `solve`
     "refined": "columns refined along the axis until the accuracy was reached",
@@ -30,6 +40,37 @@ CELLS = {  # Description of the cells by the setting of `solve`
     "given": "given by the user",
 }
 ROUGH = "the surfaces are rough; the report does not contain their heights"
+VERSIONED = ("contactstudy", "commit", "python", *PACKAGES)  # Entries of a run with a version
+HEADINGS = {  # Columns of the table and their headings
+    "peak_pressure": "largest pressure",
+    "end_pressure_first": "at end I",
+    "end_pressure_last": "at end II",
+    "central_film": "central film",
+    "least_film": "least film",
+    "least_film_ratio": "least film over roughness",
+    "peak_von_mises": "largest von Mises",
+    "peak_von_mises_x": "at x",
+    "peak_von_mises_z": "at z",
+    "end_intensity_first": "K at end I",
+    "end_intensity_last": "K at end II",
+    "end_load_first": "load on the last a, end I",
+    "end_load_last": "load on the last a, end II",
+}
+SINGULAR_NUMBERS = ("end_intensity_first", "end_intensity_last", "end_load_first", "end_load_last")
+"""Columns that replace the pressure at a singular end."""
+NOT_LOADED, SINGULAR = "not loaded", "singular"  # texts instead of a number
+
+CAPTIONS = {  # Captions of figures by name
+    "edge_effect": "Pressure along the axis, and von Mises stress in the plane y = 0, for several distances "
+    "from the end.",
+    "study": "Largest values of the cases over the swept parameters; where all are singular, the loads on the last "
+    "half-width a at the ends. Bars: estimated errors; open marks: error not estimated. Open triangle at the top: "
+    "singular, without a largest value.",
+}
+
+FIELDS = ("pressure", "initial_gap", "von_mises")  # Variables of a case in the figures of a study
+PERCENTAGE = re.compile(r" ([0-9.]+)%$")  # Size of an error at the end of a reason
+RATINGS_WORST_FIRST = (NO, CAUTION, UNKNOWN, YES)
 
 
 def html(
@@ -56,8 +97,7 @@ def html(
     Raises
     ------
     InvalidInputError
-        If the source is no result or more than one case; if the selection names no swept parameter or value, or the
-        source is no study.
+        If the source is no result or several cases; if the selection names no swept value, or the source is no study.
 
     Examples
     --------
@@ -102,13 +142,11 @@ def write(
 
     Parameters
     ----------
-    source : Dataset, str or Path
+    source, title, selection
         As for :func:`html`.
     path : str or Path, optional
         The file, ``.html``; an existing link is replaced, not followed. Default: next to the netCDF file, or
         ``report.html`` in the study's folder.
-    title, selection : optional
-        As for :func:`html`.
 
     Raises
     ------
@@ -161,8 +199,7 @@ def provenance(dataset: xr.Dataset) -> list[tuple[str, str]]:
     """
     run = attribute(dataset, RUN_ATTRIBUTE)
     settings = attribute(dataset, INPUTS_ATTRIBUTE).get("settings", {})
-    names = ("contactstudy", "commit", "python", *PACKAGES)
-    versions = ", ".join(f"{name} {run[name]}" for name in names if name in run)
+    versions = ", ".join(f"{name} {run[name]}" for name in VERSIONED if name in run)
     cells, stages = str(settings.get("cells", "")), run.get("stages", {}).items()
     times = [f"{stage} {seconds:.2f} s" for stage, seconds in stages if isinstance(seconds, Real)]
     total = f"{run['seconds']:.2f} s" if "seconds" in run else ""
@@ -191,3 +228,203 @@ def _render(template: str, context: dict[str, Any]) -> str:
         lstrip_blocks=True,
     )
     return templates.get_template(template).render({"made": date, "version": package_version()} | context)
+
+
+class Row(NamedTuple):
+    """A case in the table: swept values, numbers with errors, status, assessment."""
+
+    anchor: str
+    swept_values: list[str]
+    numbers: dict[str, str]  # by name
+    status: str
+    note: str
+    answer: str
+    reason: str
+
+
+def study_context(path: Path, selection: Mapping[str, Any] | None = None) -> dict[str, Any]:
+    """Return the template's context for a study's page; the selection of swept values applies only to the figures."""
+    folder = Folder(path)
+    study = folder.read_study()
+    plan = study.plan()
+    states = folder.states(plan)
+    records = [states.record(index) for index in range(len(plan))]
+    swept = list(dict.fromkeys([*study.sweep, *(name for table in (*study.zip, *study.cases) for name in table)]))
+    rows = [
+        _row(f"case-{number}", str(status), reason, record, _swept_values(plan, case, swept))
+        for number, (case, status, reason, record) in enumerate(
+            zip(plan, states.status, states.reasons, records, strict=True), 1
+        )
+    ]
+    names = [name for name in HEADINGS if _has_number(rows, name)]
+    sizes = ", ".join(f"{_heading(dim)}: {size}" for dim, size in zip(plan.cube.dims, plan.cube.shape, strict=True))
+    return {
+        "title": f"Study {study.name}",
+        "description": study.description,
+        "shape": f"{len(plan)} cases ({sizes})",
+        "counts": Counter(row.status for row in rows),
+        "base": [(_meaning(name), format_value(name, value)) for name, value in study.base.items()],
+        "swept": [
+            (
+                _meaning(name),
+                format_list(list(dict.fromkeys(row.swept_values[column] for row in rows if row.swept_values[column]))),
+            )
+            for column, name in enumerate(swept)
+        ],
+        "headings": [_heading(name) for name in swept],
+        "number_headings": {name: HEADINGS[name] for name in names},
+        "intensities": any(name.startswith("end_intensity") for name in names),
+        "rows": rows,
+        "reasons": _group_rows((row for row in rows if row.status != "ok"), lambda row: (row.status, row.note)),
+        "answers": _count_answers(rows),
+        "verdict": _verdict(rows),
+        "pictures": _pictures(path, selection),
+        "provenance": _provenance([attribute(record, RUN_ATTRIBUTE) for record in records if record]),
+    }
+
+
+def figures_of_folder(
+    path: Path, selection: Mapping[str, Any] | None = None
+) -> dict[str, tuple[Figure, dict[str, str]]]:
+    """Draw a study's figures; with each, the parameters shown at one value only, and another value of each."""
+    results = Folder(path).results()
+    study = collect(path)
+
+    # Surfaces are lazy: only the files of drawn cases are opened.
+    def load(case: xr.Dataset) -> xr.Dataset:
+        return single_case(results.case(str(case["case_id"].item()), FIELDS))
+
+    def last_value(dim: str) -> str:
+        value = study.indexes[dim][-1]
+        return value if isinstance(value, str) else f"{float(value):.10g}"
+
+    return {
+        name: (figure, {dim: last_value(dim) for dim in fixed_values})
+        for name, (figure, fixed_values) in figures_with_selections(study, selection or {}, load).items()
+    }
+
+
+def _meaning(name: str) -> str:
+    """Meaning of a parameter."""
+    return PARAMETERS[name].meaning if name in PARAMETERS else name.replace("_", " ")
+
+
+def _heading(name: str) -> str:
+    """Heading of a parameter; zipped parameters have the name that the study gives them."""
+    return PARAMETERS[name].attrs["long_name"] if name in PARAMETERS else name.replace("_", " ")
+
+
+def _swept_values(plan: Plan, case: PlannedCase, swept: list[str]) -> list[str]:
+    """Values of the swept parameters of a case, with the study's names."""
+    parameters = with_defaults(case.parameters)
+    texts = []
+    for name in swept:
+        dim, labels = plan.cube.labels.get(name, ("", ()))
+        value = labels[case.position[plan.cube.dims.index(dim)]] if dim in plan.cube.dims else parameters.get(name)
+        if isinstance(parameters.get(name), dict) and value == label(parameters[name]):
+            value = parameters[name]  # a table without a name: its values
+        texts.append("" if value is None else format_value(name, value))
+    return texts
+
+
+def _row(anchor: str, status: str, reason: str, record: xr.Dataset, swept_values: list[str]) -> Row:
+    """Row of a case, with all numbers of the table."""
+    if not record:
+        return Row(anchor, swept_values, {}, status, note=reason, answer="", reason="")
+    table = summary(record)
+    assessment = assess_case(record, table)
+    return Row(
+        anchor,
+        swept_values,
+        {name: _number(table, name) for name in HEADINGS},
+        status,
+        note=assessment.verdict if assessment.overall == NO else reason,
+        answer=assessment.overall,
+        reason=assessment.verdict,
+    )
+
+
+def _number(table: Summary, name: str) -> str:
+    """Text of a number with its error; empty for a number of a singular end at a regular end."""
+    side = name.rpartition("_")[2]
+    if name.startswith("peak_von_mises") and "peak_von_mises" in table and np.isinf(table["peak_von_mises"].value):
+        return SINGULAR  # neither has it a position
+    if name not in table or (name in SINGULAR_NUMBERS and f"end_intensity_{side}" not in table):
+        return ""
+    number = table[name]
+    if name.startswith("end_pressure") and number.value == 0:
+        return NOT_LOADED
+    if np.isinf(number.value):
+        return SINGULAR
+    is_position = name.endswith(("_x", "_z"))
+    return number.text if is_position or np.isfinite(number.error) else f"{number.text} ({NOT_ESTIMATED})"
+
+
+def _has_number(rows: list[Row], name: str) -> bool:
+    """Whether a column has a number; at a singular end the intensity replaces the pressure."""
+    empty = {"", NOT_LOADED, SINGULAR} if name.startswith("end_") else {"", NOT_LOADED}
+    return any(row.numbers.get(name, "") not in empty for row in rows)
+
+
+def _group_rows(rows: Iterable[Row], key: Callable[[Row], tuple[str, str]]) -> list[tuple[str, str, list[Row]]]:
+    """Group rows by a key of two texts; return each key with its rows, in the order of first rows."""
+    groups: dict[tuple[str, str], list[Row]] = {}
+    for row in rows:
+        groups.setdefault(key(row), []).append(row)
+    return [(*texts, members) for texts, members in groups.items()]
+
+
+def _count_answers(rows: list[Row]) -> list[tuple[str, str, list[Row]]]:
+    """Answers and reasons with the rows of the cases they apply to, worst answers first."""
+    # The percentage in a reason differs from case to case: omit it, to group equal reasons.
+    groups = _group_rows((row for row in rows if row.answer), lambda row: (row.answer, PERCENTAGE.sub("", row.reason)))
+    groups.sort(key=lambda group: RATINGS_WORST_FIRST.index(group[0]))
+    answers = []
+    for answer, reason, cases in groups:
+        sizes = sorted(float(match[1]) for row in cases if (match := PERCENTAGE.search(row.reason)))
+        if sizes:
+            reason += f" {sizes[-1]:.1f}%"
+            reason += f" in the worst case, {sizes[0]:.1f}% in the best" if sizes[0] < sizes[-1] else ""
+        answers.append((answer, reason, cases))
+    return answers
+
+
+def _verdict(rows: list[Row]) -> tuple[str, str]:
+    """Worst answer of all cases, and the number of cases with each answer; an unsolved case counts as "with care"."""
+    count = Counter(row.answer for row in rows if row.answer)
+    worst = next((answer for answer in RATINGS_WORST_FIRST if answer in count), UNKNOWN)
+    if worst in (YES, UNKNOWN) and any(row.status != "ok" for row in rows):
+        worst = CAUTION
+    phrases = {NO: "not to be relied on", CAUTION: "real with care", UNKNOWN: "not known to be real", YES: "real"}
+    return worst, ", ".join(f"{count[answer]} {phrases[answer]}" for answer in RATINGS_WORST_FIRST if count[answer])
+
+
+def _pictures(path: Path, selection: Mapping[str, Any] | None) -> list[Picture]:
+    """Figures of the study with captions."""
+    from matplotlib import pyplot
+
+    pictures = []
+    for name, (figure, fixed_values) in figures_of_folder(path, selection).items():
+        caption = CAPTIONS.get(name, name.replace("_", " "))
+        for parameter, value in list(fixed_values.items())[:1]:
+            option = f"{parameter}={value}"
+            option = f'"{option}"' if set(option) & set(" $\\'\"()&;|<>*?#`!") else option
+            headings = " and ".join(map(_heading, fixed_values))
+            caption += f" Of {headings} the figure has the value in its title. Another value: "
+            caption += f"contactstudy report FOLDER --select {option}"
+        pictures.append(Picture(encode_figure(figure), caption, round(PIXELS_PER_INCH * figure.get_figwidth())))
+        pyplot.close(figure)
+    return pictures
+
+
+def _provenance(runs: list[dict[str, Any]]) -> list[tuple[str, str]]:
+    """Dates, versions and solution time of the cases."""
+    if not runs:
+        return []
+    dates = sorted(str(run["time"])[:10] for run in runs if "time" in run)
+    rows = [("solved", dates[0] if dates[0] == dates[-1] else f"{dates[0]} to {dates[-1]}")] if dates else []
+    for name in VERSIONED:
+        versions = sorted({str(run[name]) for run in runs if name in run})
+        if versions:
+            rows.append((name, ", ".join(versions)))
+    return [*rows, ("time of solving", f"{sum(run.get('seconds', 0.0) for run in runs):.0f} s of one core")]

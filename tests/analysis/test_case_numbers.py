@@ -4,7 +4,7 @@ import xarray as xr
 from hypothesis import given
 from hypothesis import strategies as st
 
-from contactstudy.analysis.contact import case_numbers, pressure_numbers, stress_summary
+from contactstudy.analysis.contact import case_numbers, stress_summary
 from contactstudy.errors import InvalidInputError
 
 
@@ -18,7 +18,7 @@ PRESSURE_VALUES = [[0, 0, 0], [0, 1, 0], [2, 3, 2], [0, 4, 1], [0, 0, 0]]
 
 
 def test_summary_contains_peak_position():
-    result = pressure_numbers(contact(PRESSURE_VALUES))
+    result = case_numbers(contact(PRESSURE_VALUES))
     assert [result[name] for name in ("peak_pressure", "peak_pressure_x", "peak_pressure_y")] == [4, 3.5, 0]
 
 
@@ -29,18 +29,18 @@ def test_numbers_of_cells_are_marked_without_error():
 
 
 def test_ends_are_the_first_and_last_loaded_cells():
-    result = pressure_numbers(contact(PRESSURE_VALUES))
+    result = case_numbers(contact(PRESSURE_VALUES))
     assert (result["end_pressure_over_p0_first"], result["end_pressure_over_p0_last"]) == (0.5, 2.0)
     assert result["end_pressure_over_p0"] == 1.25
 
 
 def test_extent_in_whole_cells():
-    result = pressure_numbers(contact(PRESSURE_VALUES))
+    result = case_numbers(contact(PRESSURE_VALUES))
     assert (result["contact_length"], result["contact_width"]) == (3, 3)
 
 
 def test_no_contact_at_all():
-    result = pressure_numbers(contact(np.zeros((3, 2))))
+    result = case_numbers(contact(np.zeros((3, 2))))
     assert np.isnan(result["end_pressure_over_p0"])
     assert result["contact_length"] == 0
 
@@ -48,8 +48,8 @@ def test_no_contact_at_all():
 @given(st.floats(0.1, 1e9))
 def test_ratios_do_not_depend_on_the_unit(scale):
     numbers, scaled_numbers = (
-        pressure_numbers(contact(PRESSURE_VALUES)),
-        pressure_numbers(contact(np.multiply(PRESSURE_VALUES, scale), 2 * scale)),
+        case_numbers(contact(PRESSURE_VALUES)),
+        case_numbers(contact(np.multiply(PRESSURE_VALUES, scale), 2 * scale)),
     )
     assert scaled_numbers["end_pressure_over_p0"] == pytest.approx(float(numbers["end_pressure_over_p0"]))
 

@@ -1,13 +1,6 @@
 """Values of parameters in titles."""
 
-import xarray as xr
-
-from contactstudy.plots.selection import describe_value, select_values
-
-
-def test_selected_value_keeps_dimension():
-    study = xr.Dataset({"status": ("friction", ["ok", "ok"])}, {"friction": [0.0, 0.1]})
-    assert select_values(study, {"friction": 0.1}).friction.values.tolist() == [0.1]
+from contactstudy.plots.selection import describe_value
 
 
 def test_values_are_described():

@@ -16,8 +16,9 @@ from matplotlib import pyplot
 
 from contactstudy import Case, InvalidInputError, open_study, report
 from contactstudy.cli import main
-from contactstudy.report import figures, study_page
-from contactstudy.report.study_page import figures_of_folder
+from contactstudy.report import figures
+from contactstudy.report import page as pages
+from contactstudy.report.page import figures_of_folder
 from contactstudy.study import load_case, run_study
 from tests.browser import browser, chromium
 from tests.small_study import BASE, small_study
@@ -79,7 +80,7 @@ def read_page(path: Path) -> Page:
 @pytest.fixture
 def without_encoding(monkeypatch: pytest.MonkeyPatch) -> None:
     """Replace the encoding of drawn figures by an empty address."""
-    for module in (figures, study_page):
+    for module in (figures, pages):
         monkeypatch.setattr(module, "encode_figure", lambda figure: "data:image/svg+xml;base64,")
 
 
@@ -139,22 +140,22 @@ def test_page_of_a_study(page: Page) -> None:
     assert len(page.fetched) == 2
 
 
-def converged_rows(*errors: float) -> list[study_page.Row]:
+def converged_rows(*errors: float) -> list[pages.Row]:
     """Rows of solved cases with relative errors of the peak."""
     scalars = [{"peak_pressure": 2e9, "peak_pressure_error": error * 2e9, "converged": 1.0} for error in errors]
-    return [study_page._row("case-1", "ok", "", xr.Dataset(case_scalars), []) for case_scalars in scalars]
+    return [pages._row("case-1", "ok", "", xr.Dataset(case_scalars), []) for case_scalars in scalars]
 
 
 def test_reason_of_several_cases() -> None:
-    ((rating, reason, cases), (best_group, _, _)) = study_page._count_answers(converged_rows(0.1, 0.06, 0.001))
+    ((rating, reason, cases), (best_group, _, _)) = pages._count_answers(converged_rows(0.1, 0.06, 0.001))
     assert (rating, len(cases), best_group) == ("with care", 2, "yes")
     assert reason == "the error of the peak pressure is 10.0% in the worst case, 6.0% in the best"
 
 
 @pytest.mark.usefixtures("without_encoding")
 def test_open_ends_coarse_cells_and_malformed_runs(tmp_path: Path) -> None:
-    assert study_page._verdict(converged_rows(0.1, 0.001)) == ("with care", "1 real with care, 1 real")
-    assert study_page._verdict(converged_rows(0.001, 0.001)) == ("yes", "2 real")
+    assert pages._verdict(converged_rows(0.1, 0.001)) == ("with care", "1 real with care, 1 real")
+    assert pages._verdict(converged_rows(0.001, 0.001)) == ("yes", "2 real")
     runs = list(MALFORMED)
 
     def solve_coarsely(*arguments, **keywords) -> xr.Dataset:
@@ -170,8 +171,8 @@ def test_open_ends_coarse_cells_and_malformed_runs(tmp_path: Path) -> None:
     assert "cylinder, fillet radius 0.1 mm" in page.text
     assert "at end" not in page.text
     scalars = [{"end_pressure_first": value, "end_pressure_last": 0.0} for value in (0.0, 1e9)]
-    rows = [study_page._row("case-1", "ok", "", xr.Dataset(numbers), []) for numbers in scalars]
-    names = [name for name in study_page.HEADINGS if study_page._has_number(rows, name)]
+    rows = [pages._row("case-1", "ok", "", xr.Dataset(numbers), []) for numbers in scalars]
+    names = [name for name in pages.HEADINGS if pages._has_number(rows, name)]
     assert names == ["end_pressure_first"]
 
 
