@@ -282,7 +282,7 @@ import sys
 from dataclasses import replace
 import psutil
 from contactstudy.study import run, run_study
-from contactstudy.study.progress import Progress
+from contactstudy.study.run import Progress
 from tests.small_study import small_study
 from tests.stand_in_solver import solve_fake
 
