@@ -327,7 +327,7 @@ def _state_lines(states: States, *, everything: bool) -> Iterator[str]:
 
 def _forecast_lines(states: States) -> Iterator[str]:
     """Lines on exclusions without effect, unusual magnitudes, and bytes and time of the remaining cases."""
-    from contactstudy.study.progress import format_duration
+    from contactstudy.study.run import format_duration
 
     plan = states.plan
     yield from (f"  {message}" for message in plan.unknown[:MAX_REASONS])

@@ -69,6 +69,9 @@ class Share:
         return "" if self.count == 1 else f"{self.number}-of-{self.count}-"
 
 
+WHOLE = Share()  # A study in one run
+
+
 class Results:
     """Results that a folder contains now: columns of all intact batches, in memory."""
 
@@ -174,15 +177,15 @@ class States:
 
 
 class Folder:
-    """A study's folder, which need not exist yet."""
+    """A study's folder, which need not exist yet, for one share of its cases."""
 
-    def __init__(self, path: str | Path) -> None:
+    def __init__(self, path: str | Path, share: Share = WHOLE) -> None:
         checks.instance("folder", path, (str, Path), "the path of a study's folder")
         try:
             self.path = Path(path).resolve()
         except OSError as error:
             raise StoreError(f"the working directory of {path} does not exist: {error.strerror}") from error
-        self.batches = self.path / "batches"
+        self.batches, self.share = self.path / "batches", share
 
     def create(self) -> None:
         """Make the folder, or raise :class:`StoreError`."""
@@ -229,10 +232,10 @@ class Folder:
             raise StudyFileError(f"{path} is not the definition of a study: {error}") from error
 
     @contextlib.contextmanager
-    def locked(self, share: Share) -> Iterator[None]:
+    def locked(self) -> Iterator[None]:
         """Hold a lock or raise :class:`LockedError`: runs of the whole study and of a share exclude each other."""
         with contextlib.ExitStack() as locks:
-            if share.count == 1:
+            if self.share.count == 1:
                 # Another process that calls `holders` holds the lock for a moment.
                 locks.enter_context(self._hold("run", 0.5))
                 for path in self.path.glob("run-*.lock"):
@@ -240,7 +243,7 @@ class Folder:
                         pass
             else:
                 with self._hold("run", RUN.share_seconds):
-                    locks.enter_context(self._hold(share.name, 0.0))
+                    locks.enter_context(self._hold(self.share.name, 0.0))
             yield
 
     @contextlib.contextmanager
@@ -285,10 +288,10 @@ class Folder:
                 continue
         return holders
 
-    def clean(self, share: Share) -> None:
+    def clean(self) -> None:
         """Remove unfinished files of runs that ended."""
-        for folder in (self.batches, self.path) if share.count == 1 else (self.batches,):
-            for path in folder.glob(f"{share.prefix}*{TEMPORARY_SUFFIX}"):
+        for folder in (self.batches, self.path) if self.share.count == 1 else (self.batches,):
+            for path in folder.glob(f"{self.share.prefix}*{TEMPORARY_SUFFIX}"):
                 if UNFINISHED.fullmatch(path.name):
                     with contextlib.suppress(OSError):
                         path.unlink()
@@ -313,34 +316,34 @@ class Folder:
         """State of every case of a plan; changes no file."""
         return States(plan, self.results())
 
-    def verified_results(self, share: Share) -> tuple[Results, list[str]]:
+    def verified_results(self) -> tuple[Results, list[str]]:
         """Verify every byte; return the intact results, and messages on damaged files, which are set aside."""
         paths = batch_paths(self.batches)
         damaged = {
-            path: reason for path in paths if path.name.startswith(share.prefix) and (reason := find_damage(path))
+            path: reason for path in paths if path.name.startswith(self.share.prefix) and (reason := find_damage(path))
         }
         results = Results([path for path in paths if path not in damaged])
-        if share.count == 1:
+        if self.share.count == 1:
             damaged |= results.damaged
         return results, [
             f"{path.name} is damaged, its cases are missing: {reason}; moved to {self.set_aside(path)}"
             for path, reason in damaged.items()
         ]
 
-    def compact(self, share: Share, *, at_end: bool = False) -> None:
+    def compact(self, *, at_end: bool = False) -> None:
         """Join small batches, without results that later runs replaced; `at_end` joins all small batches."""
         size_limit, min_count = (RUN.small_bytes, 2) if at_end else (RUN.batch_bytes, RUN.fan_in)
         tiers: dict[int, list[Path]] = {}
         for path in batch_paths(self.batches):
             with contextlib.suppress(OSError):
                 size, is_full = path.lstat().st_size, count_cases(path) > RUN.batch_cases // 2
-                if path.name.startswith(share.prefix) and not is_full and size < size_limit:
+                if path.name.startswith(self.share.prefix) and not is_full and size < size_limit:
                     tiers.setdefault(0 if at_end else int(np.log(max(size, 1)) / np.log(RUN.fan_in)), []).append(path)
         for paths in tiers.values():
             if len(paths) >= min_count:
-                self._join(paths, share)
+                self._join(paths)
 
-    def _join(self, paths: list[Path], share: Share) -> None:
+    def _join(self, paths: list[Path]) -> None:
         """Join batches of equal structure, as far as the batches' sizes allow."""
         groups: dict[str, dict[Path, Batch]] = {}
         for path in paths:
@@ -351,7 +354,7 @@ class Folder:
             for portion in _split_by_size(group):
                 if len(portion) > 1:
                     joined_batch = select_latest(join_batches([*portion.values()]))
-                    write_batch(self.batches, f"{share.prefix}{os.urandom(6).hex()}", joined_batch)
+                    write_batch(self.batches, f"{self.share.prefix}{os.urandom(6).hex()}", joined_batch)
                     for path in portion:
                         path.unlink(missing_ok=True)
 

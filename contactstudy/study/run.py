@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import contextlib
+import logging
 import multiprocessing
+import os
 import signal
+import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from datetime import UTC, datetime
 from pathlib import Path
 from types import FrameType
 from typing import TYPE_CHECKING, Any
@@ -20,15 +24,15 @@ from contactstudy.errors import InvalidInputError, StoreError, StudyFileError, T
 from contactstudy.study.batches import write_batch
 from contactstudy.study.definition import Study
 from contactstudy.study.engine import WAIT_SECONDS, Engine, TaskResults, Tasks, execute
-from contactstudy.study.folder import Folder, Share, States
+from contactstudy.study.folder import WHOLE, Folder, Share, States
 from contactstudy.study.plan import Plan, PlannedCase
-from contactstudy.study.progress import Progress
 from contactstudy.study.settings import RUN
-from contactstudy.study.worker import Solver, Task, batch_of_case
+from contactstudy.study.worker import Outcome, Solver, Task, batch_of_case
 
 if TYPE_CHECKING:
     from distributed import Client
 
+LOGGER = logging.getLogger(__name__)
 MAX_WARNINGS = 5  # Warnings of magnitudes that a run repeats; `plan` lists more
 RERUN_STATUSES = ("failed", "stale", "skipped")  # States that can be solved anew
 
@@ -82,6 +86,90 @@ class RunReport:
     def files(self) -> list[Path]:
         """Batches of the study."""
         return self.states.results.paths
+
+
+def format_duration(seconds: float) -> str:
+    """Duration of a forecast in words."""
+    if seconds < 100:
+        return f"{seconds:.0f} s"
+    return f"{seconds / 60:.1f} min" if seconds < 5400 else f"{seconds / 3600:.1f} h"
+
+
+class Progress:
+    """Bar, if `visible`, and log of one run; the log file grows from run to run."""
+
+    def __init__(self, path: Path, *, visible: bool = True) -> None:
+        self._bar_shown = visible and sys.stderr.isatty() and not os.environ.get("CI")
+        self._messages_shown = visible
+        self._bar: Any = None
+        self._count = self._total = 0
+        self._began = time.monotonic()
+        self.remarks: list[str] = []
+        flags = os.O_WRONLY | os.O_APPEND | os.O_CREAT | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0)
+        with checks.convert_os_errors(f"write {path}"):
+            self._file = os.fdopen(os.open(path, flags, 0o666), "a", encoding="utf-8", buffering=1)
+
+    def __enter__(self) -> Progress:
+        return self
+
+    def __exit__(self, *error: object) -> None:
+        """Close bar and log."""
+        if self._bar is not None:
+            self._bar.close()
+        with contextlib.suppress(OSError):  # a full disk is reported already
+            self._file.close()
+
+    def log(self, message: str) -> None:
+        """Write a line to the log file and to the logger of the package."""
+        LOGGER.info(message)
+        now = datetime.now(UTC).isoformat(timespec="seconds")
+        # A failed log must not stop the run; writing a batch reports a full disk.
+        with contextlib.suppress(OSError):
+            self._file.write(f"{now} {message}\n")
+
+    def notify(self, message: str) -> None:
+        """Write a line to the log and, if progress is visible, to the screen; safe in a handler of signals."""
+        self.log(message)
+        if self._messages_shown:
+            with contextlib.suppress(OSError, ValueError):
+                os.write(sys.stderr.fileno(), f"contactstudy: {message}\n".encode())
+
+    def remark(self, message: str) -> None:
+        """Notify the user of a message that the report of the run repeats; equal messages appear once."""
+        if message not in self.remarks:
+            self.remarks.append(message)
+            self.notify(message)
+
+    def begin(self, cases: int, total: int) -> None:
+        """Log the number of cases to solve."""
+        self._total, self._began = cases, time.monotonic()
+        self.log(f"process {os.getpid()}: {cases} of {total} cases to solve")
+        if self._bar_shown and cases:
+            from tqdm import tqdm
+
+            self._bar = tqdm(
+                total=cases,
+                unit="case",
+                dynamic_ncols=True,
+                bar_format="{percentage:3.0f}%|{bar}| {n_fmt}/{total_fmt} cases [{elapsed}{postfix}]",
+            )
+
+    def record(self, outcome: Outcome) -> None:
+        """Count one case; log a failure with its reason."""
+        self._count += 1
+        if outcome.status != "ok":
+            self.log(f"{outcome.status} {outcome.case.id[:16]} {outcome.case.name}: {outcome.message}")
+            if self._bar is not None:
+                self._bar.write(f"{outcome.status}: {outcome.case.name}: {outcome.message}", file=sys.stderr)
+
+    def show(self) -> None:
+        """Log and show the number of finished cases and the time left at the present speed."""
+        remaining_seconds = (time.monotonic() - self._began) * (self._total - self._count) / max(self._count, 1)
+        forecast = f"about {format_duration(remaining_seconds)} left" if self._count < self._total else "all done"
+        self.log(f"{self._count}/{self._total} cases, {forecast}")
+        if self._bar is not None:
+            self._bar.set_postfix_str(forecast, refresh=False)
+            self._bar.update(self._count - self._bar.n)
 
 
 @contextlib.contextmanager
@@ -189,19 +277,19 @@ def run_study(
     if not plan.unique:
         reason = plan.reason(plan.skipped[0]) if plan.skipped else "every combination is excluded"
         raise StudyFileError(f"study {study.name!r} has no case that can be solved: {reason}")
-    results_folder = Folder(folder if folder is not None else Path("results") / study.name)
+    results_folder = Folder(folder if folder is not None else Path("results") / study.name, run_share)
     results_folder.create()
     with (
-        results_folder.locked(run_share),
+        results_folder.locked(),
         Progress(results_folder.path / f"{run_share.name}.log", visible=progress) as log,
         _interruptible(log.notify),
     ):
         try:
-            results_folder.clean(run_share)
+            results_folder.clean()
             results_folder.write_study(study)
             for message in (*plan.unknown[:MAX_WARNINGS], *plan.doubts[:MAX_WARNINGS]):
                 log.remark(message if message in plan.unknown else f"doubtful magnitude in SI units: {message}")
-            results, messages = results_folder.verified_results(run_share)
+            results, messages = results_folder.verified_results()
             for message in messages:
                 log.remark(message)
             groups = _groups_to_solve(States(plan, results), again, run_share, sample)
@@ -219,7 +307,7 @@ def run_study(
             solved = sum(map(len, groups))
             log.begin(solved, total=len(plan.unique))
             tasks = Tasks(plan, groups, task)
-            _collect_outcomes(execute(tasks, engine, log.remark), task, results_folder, run_share, log)
+            _collect_outcomes(execute(tasks, engine, log.remark), task, results_folder, log)
         except KeyboardInterrupt as interrupt:
             counts = results_folder.states(plan).counts
             finished = counts.get("ok", 0) + counts.get("stale", 0)
@@ -240,7 +328,7 @@ def run_study(
 def _check_share(share: tuple[int, int] | None) -> Share:
     """Share of a run."""
     if share is None:
-        return Share()
+        return WHOLE
     numbers = share if isinstance(share, tuple) and all(type(entry) is int for entry in share) else ()
     if len(numbers) != 2 or not 1 <= numbers[0] <= numbers[1]:
         allowed = "two numbers, such as (3, 40) for the third of forty shares, the first from 1 to the second"
@@ -281,9 +369,7 @@ def _groups_to_solve(states: States, again: tuple[str, ...], share: Share, sampl
     return [group for group in unsolved_groups if group]
 
 
-def _collect_outcomes(
-    results: TaskResults, template: Task, results_folder: Folder, share: Share, log: Progress
-) -> None:
+def _collect_outcomes(results: TaskResults, template: Task, results_folder: Folder, log: Progress) -> None:
     """Record the outcomes, and join small batches during the run and at the end."""
     last_compaction = time.monotonic()
     try:
@@ -296,17 +382,17 @@ def _collect_outcomes(
                         write_batch(Path(template.folder), f"{template.prefix}{outcome.case.id[:12]}", batch)
                 log.show()
                 if time.monotonic() - last_compaction > RUN.compact_seconds:
-                    _compact(results_folder, share, log)
+                    _compact(results_folder, log)
                     last_compaction = time.monotonic()
     finally:
-        results_folder.clean(share)
-    _compact(results_folder, share, log, at_end=True)
+        results_folder.clean()
+    _compact(results_folder, log, at_end=True)
 
 
-def _compact(results_folder: Folder, share: Share, log: Progress, *, at_end: bool = False) -> None:
+def _compact(results_folder: Folder, log: Progress, *, at_end: bool = False) -> None:
     """Join small batches; a full disk leaves them as they are."""
     try:
-        results_folder.compact(share, at_end=at_end)
+        results_folder.compact(at_end=at_end)
     except StoreError as error:
         log.log(f"batches are not joined: {error}")
 

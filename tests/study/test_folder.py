@@ -39,41 +39,41 @@ def rows(count, **options):
 
 def test_lock_error_contains_holder(tmp_path):
     folder = Folder(tmp_path)
-    with folder.locked(Share()):
-        with pytest.raises(LockedError, match=f"process {os.getpid()} on "), folder.locked(Share()):
+    with folder.locked():
+        with pytest.raises(LockedError, match=f"process {os.getpid()} on "), folder.locked():
             pass
         assert [f"process {os.getpid()}" in holder for holder in folder.holders] == [True]
     assert folder.holders == []
-    with folder.locked(Share()):
+    with folder.locked():
         pass
 
 
 def test_share_lock_excludes_run_and_same_share(tmp_path, monkeypatch):
     monkeypatch.setattr(module, "RUN", RunSettings(share_seconds=0.1))
-    folder = Folder(tmp_path)
-    with folder.locked(Share(1, 3)), folder.locked(Share(2, 3)):
-        for share in (Share(1, 3), Share()):
-            with pytest.raises(LockedError), folder.locked(share):
+    whole, first, second, third = Folder(tmp_path), *(Folder(tmp_path, Share(number, 3)) for number in (1, 2, 3))
+    with first.locked(), second.locked():
+        for folder in (first, whole):
+            with pytest.raises(LockedError), folder.locked():
                 pass
-    with folder.locked(Share()), pytest.raises(LockedError), folder.locked(Share(3, 3)):
+    with whole.locked(), pytest.raises(LockedError), third.locked():
         pass
 
 
 def test_killed_process_releases_lock(tmp_path):
     code = (
         "import os, signal, sys\n"
-        "from contactstudy.study.folder import Folder, Share\n"
-        "with Folder(sys.argv[1]).locked(Share()):\n    os.kill(os.getpid(), signal.SIGKILL)\n"
+        "from contactstudy.study.folder import Folder\n"
+        "with Folder(sys.argv[1]).locked():\n    os.kill(os.getpid(), signal.SIGKILL)\n"
     )
     subprocess.run([sys.executable, "-c", code, str(tmp_path)], cwd=ROOT, check=False)
     assert (tmp_path / "run.lock").exists()
-    with Folder(tmp_path).locked(Share()):
+    with Folder(tmp_path).locked():
         pass
 
 
 def test_pipe_as_lock_raises(tmp_path):
     os.mkfifo(tmp_path / "run.lock")
-    with pytest.raises(LockedError, match="not a regular file"), Folder(tmp_path).locked(Share()):
+    with pytest.raises(LockedError, match="not a regular file"), Folder(tmp_path).locked():
         pass
 
 
@@ -111,9 +111,9 @@ def test_small_batches_are_joined(tmp_path):
     folder.create()
     for index in range(20):
         write_batch(folder.batches, f"a{index}", failed_batch(index, {}))
-        folder.compact(Share())
+        folder.compact()
     assert len(batch_paths(folder.batches)) < 10
-    folder.compact(Share(), at_end=True)
+    folder.compact(at_end=True)
     (path,) = batch_paths(folder.batches)
     assert len(folder.results().cases) == len(read_batch(path)) == 20
 

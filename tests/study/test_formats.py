@@ -3,7 +3,7 @@
 from contactstudy.cli import format_bytes
 from contactstudy.study.plan import format_value
 from contactstudy.study.profile_tables import format_profile
-from contactstudy.study.progress import format_duration
+from contactstudy.study.run import format_duration
 
 
 def test_sizes_and_durations():

@@ -5,8 +5,8 @@ import sys
 import pytest
 
 from contactstudy.study import StoreError
-from contactstudy.study import progress as module
-from contactstudy.study.progress import Progress
+from contactstudy.study import run as module
+from contactstudy.study.run import Progress
 from contactstudy.study.worker import Outcome
 from tests.study.conftest import planned_case
 

@@ -107,7 +107,7 @@ def partial_study(**changes):
 @pytest.fixture
 def two_batches(study, tmp_path, monkeypatch):
     """Folder with a study in two batches of two cases."""
-    monkeypatch.setattr(Folder, "compact", lambda self, share, at_end=False: None)
+    monkeypatch.setattr(Folder, "compact", lambda self, at_end=False: None)
     monkeypatch.setattr(worker, "RUN", RunSettings(save_seconds=60.0))
     for e_over_a in (0.0, 1.0):
         run(partial_study(e_over_a=e_over_a), tmp_path)
@@ -282,7 +282,7 @@ import sys
 from dataclasses import replace
 import psutil
 from contactstudy.study import run, run_study
-from contactstudy.study.progress import Progress
+from contactstudy.study.run import Progress
 from tests.small_study import small_study
 from tests.stand_in_solver import solve_fake
 
