@@ -17,8 +17,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from contactstudy.arrays.grid import Grid
-from contactstudy.arrays.points import Points
+from contactstudy.arrays.grid import Grid, Points
 from contactstudy.arrays.variables import STRESSES
 from contactstudy.bodies.models import FiniteLengthSpace, HalfSpace
 from contactstudy.checks import FloatArray

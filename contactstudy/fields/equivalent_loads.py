@@ -9,8 +9,7 @@ import numpy as np
 import xarray as xr
 
 from contactstudy import checks
-from contactstudy.arrays.grid import Grid
-from contactstudy.arrays.points import Points
+from contactstudy.arrays.grid import Grid, Points
 from contactstudy.arrays.variables import describe
 from contactstudy.bodies.models import Body
 from contactstudy.checks import FloatArray

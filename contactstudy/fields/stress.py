@@ -8,8 +8,7 @@ import numpy as np
 import xarray as xr
 from scipy.sparse.linalg import LinearOperator
 
-from contactstudy.arrays.grid import Grid
-from contactstudy.arrays.points import Points
+from contactstudy.arrays.grid import Grid, Points
 from contactstudy.arrays.variables import STRESSES, describe
 from contactstudy.bodies.models import Body
 from contactstudy.cache import ArrayKey, recall, retain

@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from contactstudy.arrays.points import Points
+from contactstudy.arrays.grid import Points
 from contactstudy.checks import ComplexArray, FloatArray, IntArray
 from contactstudy.kernels.load import Load
 from contactstudy.overlapping.axial_modes import DECAY_LENGTHS

@@ -9,7 +9,7 @@ import pytest
 from scipy import integrate
 
 from contactstudy import Grid, Material
-from contactstudy.arrays.points import Points
+from contactstudy.arrays.grid import Points
 from contactstudy.bodies.models import FreeEnds
 from contactstudy.kernels.load import NORMAL_RESPONSE, Load
 from contactstudy.overlapping.axial_modes import SingleMirrorModes, axial_modes

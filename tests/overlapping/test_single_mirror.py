@@ -19,7 +19,7 @@ from contactstudy import (
     stress_field,
     surface_displacement,
 )
-from contactstudy.arrays.points import Points
+from contactstudy.arrays.grid import Points
 from contactstudy.arrays.variables import STRESSES
 from contactstudy.fields.loads import sliding
 from contactstudy.fields.stress import end_traction_residual, stresses_at
