@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from contactstudy.analysis import axial_pressure, dimension_along, single_case
-from contactstudy.arrays.selections import index_of
+from contactstudy.arrays.variables import index_of
 from contactstudy.errors import InvalidInputError
 from contactstudy.plots.axial import plot_axial_pressure
 from contactstudy.plots.selection import describe_value
