@@ -24,8 +24,7 @@ from contactstudy.analysis.provenance import check_solved_for
 from contactstudy.arrays.variables import STRESSES, describe, require_in_si
 from contactstudy.bodies.models import Body
 from contactstudy.checks import FloatArray, IntArray
-from contactstudy.eigenstrain.body import EigenstrainBody, cell_influence
-from contactstudy.eigenstrain.layers import PeriodicLayers, layer_stresses
+from contactstudy.eigenstrain.body import EigenstrainBody, PeriodicLayers, cell_influence, layer_stresses
 from contactstudy.errors import ConvergenceWarning, InvalidInputError
 from contactstudy.plasticity.eigenstrains import STRAINS, create_cross_section, edges_between
 from contactstudy.plasticity.material import ElasticPlastic
