@@ -69,6 +69,7 @@ def equivalent_loads(
     depths = checks.coordinates("z", z)
     top_load = np.array(loads[Load.NORMAL].values)
     face_totals: list[FloatArray] = []
+    attributes: dict[str, str | float] = {}
     for load, (cell_loads, factor) in loads.items():
         operators = overlapping_operators(body, grid, depths, load, cell_loads)
         if operators is None:
@@ -80,12 +81,10 @@ def equivalent_loads(
             factor * operator.matvec(cell_loads.ravel()).reshape(grid.cells_y, -1) for operator in face_operators
         ]
         face_totals = [np.asarray(sum(pair)) for pair in zip_longest(face_totals, face_loads, fillvalue=0.0)]
-    attributes: dict[str, str | float] = {}
-    if operators.reference is not None:
-        attributes = {
-            "reference_distance": operators.reference,
-            "reference": "the part of an eccentric load that makes no stress is zero at |y| = reference_distance (m)",
-        }
+        if operators.reference is not None:
+            part = "the part of an eccentric load that makes no stress"
+            attributes["reference_distance"] = operators.reference
+            attributes["reference"] = f"{part} is zero at |y| = reference_distance (m)"
     fields = {"P_h1": (("x", "y"), top_load, attributes)}
     fields |= {f"P_v{end}": (("y", "z"), face_total, attributes) for end, face_total in enumerate(face_totals, start=1)}
     return describe(xr.Dataset(fields, coords={"x": coordinates_x, "y": coordinates_y, "z": depths}))
