@@ -17,8 +17,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from contactstudy.arrays.grid import Grid
-from contactstudy.arrays.points import Points
+from contactstudy.arrays.grid import Grid, Points
 from contactstudy.arrays.variables import STRESSES
 from contactstudy.bodies.models import FiniteLengthSpace, HalfSpace
 from contactstudy.checks import FloatArray
@@ -27,8 +26,7 @@ from contactstudy.contact.solve import solve_contact
 from contactstudy.fields.stress import stress_field
 from contactstudy.fields.surface import SurfaceOperator
 from contactstudy.kernels.load import Load
-from contactstudy.overlapping.field import end_fields
-from contactstudy.overlapping.harmonics import STRESS
+from contactstudy.overlapping.field import STRESS, end_fields
 from contactstudy.overlapping.problem import EndProblem
 from contactstudy.overlapping.quadrature import Resolution
 from contactstudy.plots.style import line_styles

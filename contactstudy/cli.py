@@ -220,7 +220,7 @@ def _export(options: argparse.Namespace) -> int:
 
 
 def _report(options: argparse.Namespace) -> int:
-    from contactstudy.arrays.selections import selection_of
+    from contactstudy.arrays.variables import selection_of
     from contactstudy.report import write
 
     selection = selection_of(options.select or ())

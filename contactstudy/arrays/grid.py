@@ -1,8 +1,9 @@
-"""Grid of cells of pressure and gap: any edges along x, uniform along y."""
+"""Grid of cells of pressure and gap, any edges along x and uniform along y, and the points of a field."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -16,6 +17,14 @@ WIDTH_RATIO = 3.0  # ratio of neighbouring cells outside the contact. Speed.
 EDGE_ROUNDING = 1e-12  # rounding of the edges over the grid's length, and least width of a cell. Accuracy.
 TOP_ERROR = 0.02  # relative error of stresses on the top under a pressure of cells, from the page on limits. Accuracy.
 MAX_CELLS = 10**8  # largest number of cells; more suggest a wrong unit
+
+
+class Points(NamedTuple):
+    """Positions of a field: the tensor product of `x`, `y` and `z`, metres."""
+
+    x: FloatArray
+    y: FloatArray
+    z: FloatArray
 
 
 @dataclass(frozen=True, kw_only=True)

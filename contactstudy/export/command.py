@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from contactstudy.arrays.selections import index_of, selection_of
+from contactstudy.arrays.variables import index_of, selection_of
 from contactstudy.errors import InvalidInputError
 from contactstudy.export.matlab import to_mat
 from contactstudy.export.table import Line, csv_text, headings, to_table

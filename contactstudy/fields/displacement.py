@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from contactstudy.arrays.grid import Grid
-from contactstudy.arrays.points import Points
+from contactstudy.arrays.grid import Grid, Points
 from contactstudy.arrays.variables import describe
 from contactstudy.bodies.models import Body
 from contactstudy.checks import FloatArray
@@ -15,8 +14,7 @@ from contactstudy.fields.loads import UNIFORM, Loads, end_problem, prescribed_lo
 from contactstudy.fields.positions import Positions, field_positions
 from contactstudy.kernels.field import displacement_influence, half_space_field, half_space_influence
 from contactstudy.kernels.load import Load
-from contactstudy.overlapping.field import end_fields, unit_fields
-from contactstudy.overlapping.harmonics import DISPLACEMENT
+from contactstudy.overlapping.field import DISPLACEMENT, end_fields, unit_fields
 
 COMPONENTS = ("u_x", "u_y", "u_z")
 

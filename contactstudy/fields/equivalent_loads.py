@@ -9,8 +9,7 @@ import numpy as np
 import xarray as xr
 
 from contactstudy import checks
-from contactstudy.arrays.grid import Grid
-from contactstudy.arrays.points import Points
+from contactstudy.arrays.grid import Grid, Points
 from contactstudy.arrays.variables import describe
 from contactstudy.bodies.models import Body
 from contactstudy.checks import FloatArray
@@ -70,6 +69,7 @@ def equivalent_loads(
     depths = checks.coordinates("z", z)
     top_load = np.array(loads[Load.NORMAL].values)
     face_totals: list[FloatArray] = []
+    attributes: dict[str, str | float] = {}
     for load, (cell_loads, factor) in loads.items():
         operators = overlapping_operators(body, grid, depths, load, cell_loads)
         if operators is None:
@@ -81,23 +81,13 @@ def equivalent_loads(
             factor * operator.matvec(cell_loads.ravel()).reshape(grid.cells_y, -1) for operator in face_operators
         ]
         face_totals = [np.asarray(sum(pair)) for pair in zip_longest(face_totals, face_loads, fillvalue=0.0)]
-    distance = _load_reference(body)
-    attributes: dict[str, str | float] = {}
-    if distance is not None:
-        attributes = {
-            "reference_distance": distance,
-            "reference": "the part of an eccentric load that makes no stress is zero at |y| = reference_distance (m)",
-        }
+        if operators.reference is not None:
+            part = "the part of an eccentric load that makes no stress"
+            attributes["reference_distance"] = operators.reference
+            attributes["reference"] = f"{part} is zero at |y| = reference_distance (m)"
     fields = {"P_h1": (("x", "y"), top_load, attributes)}
     fields |= {f"P_v{end}": (("y", "z"), face_total, attributes) for end, face_total in enumerate(face_totals, start=1)}
     return describe(xr.Dataset(fields, coords={"x": coordinates_x, "y": coordinates_y, "z": depths}))
-
-
-def _load_reference(body: Body) -> float | None:
-    """Distance along y at which equivalent loads without stress are zero, metres; None without two exact ends."""
-    free_ends = next((term.free_ends for term in body.terms if term.free_ends), None)
-    is_relative = free_ends is not None and np.isfinite(free_ends.length) and not free_ends.mirrored_once
-    return REFERENCE_LENGTHS * free_ends.length if free_ends is not None and is_relative else None
 
 
 def overlapping_operators(
@@ -113,4 +103,7 @@ def overlapping_operators(
     cell_loads = np.zeros(grid.shape) if cell_loads is None else cell_loads
     problem = end_problem(free_ends, body.material.poisson, cell_loads, None, grid, loads=(load,))
     problem = replace(problem, resolution=problem.resolution.for_loads((load,)))
-    return OverlappingOperators.of(problem, Points(grid.x, grid.y, depths), reference=_load_reference(body))
+    # Two exact ends leave a part of an eccentric load without stress.
+    is_relative = np.isfinite(free_ends.length) and not free_ends.mirrored_once
+    reference = REFERENCE_LENGTHS * free_ends.length if is_relative else None
+    return OverlappingOperators.of(problem, Points(grid.x, grid.y, depths), reference)

@@ -11,8 +11,7 @@ import numpy.typing as npt
 import xarray as xr
 
 from contactstudy import checks
-from contactstudy.arrays.grid import Grid
-from contactstudy.arrays.points import Points
+from contactstudy.arrays.grid import Grid, Points
 from contactstudy.arrays.variables import in_si
 from contactstudy.bodies.models import Body, Extent
 from contactstudy.checks import BoolArray, FloatArray

@@ -8,8 +8,7 @@ import numpy as np
 import xarray as xr
 from scipy.sparse.linalg import LinearOperator
 
-from contactstudy.arrays.grid import Grid
-from contactstudy.arrays.points import Points
+from contactstudy.arrays.grid import Grid, Points
 from contactstudy.arrays.variables import STRESSES, describe
 from contactstudy.bodies.models import Body
 from contactstudy.cache import ArrayKey, recall, retain
@@ -20,8 +19,7 @@ from contactstudy.fields.positions import FieldPositions, Positions, field_posit
 from contactstudy.fields.stress_maximum import Search, StressMaximum, find_stress_maximum, include_points
 from contactstudy.kernels.field import half_space_field, stress_influence
 from contactstudy.kernels.load import Load
-from contactstudy.overlapping.field import UnitFields, end_fields, unit_fields
-from contactstudy.overlapping.harmonics import STRESS
+from contactstudy.overlapping.field import STRESS, UnitFields, end_fields, unit_fields
 from contactstudy.overlapping.problem import CORNER_OFFSET
 from contactstudy.stress import von_mises
 

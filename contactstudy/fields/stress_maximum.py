@@ -14,9 +14,8 @@ from typing import NamedTuple
 import numpy as np
 from scipy import ndimage
 
-from contactstudy.arrays.grid import TOP_ERROR, Grid
+from contactstudy.arrays.grid import TOP_ERROR, Grid, Points
 from contactstudy.arrays.peaks import interpolate_about, variation_lengths
-from contactstudy.arrays.points import Points
 from contactstudy.bodies.models import Body, Extent
 from contactstudy.checks import BoolArray, FloatArray, IntArray
 from contactstudy.fields.loads import Loads

@@ -17,9 +17,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from contactstudy.arrays.grid import Grid
+from contactstudy.arrays.grid import Grid, Points
 from contactstudy.arrays.peaks import lagrange_weights
-from contactstudy.arrays.points import Points
 from contactstudy.cache import ArrayKey, cached
 from contactstudy.checks import BoolArray, FloatArray, IntArray
 from contactstudy.kernels.corner_sums import (

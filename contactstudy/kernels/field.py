@@ -9,8 +9,7 @@ from __future__ import annotations
 import numpy as np
 from scipy import fft
 
-from contactstudy.arrays.grid import Grid
-from contactstudy.arrays.points import Points
+from contactstudy.arrays.grid import Grid, Points
 from contactstudy.checks import FloatArray
 from contactstudy.kernels.column_fields import columns_field
 from contactstudy.kernels.convolution import centred_field

@@ -14,8 +14,7 @@ from functools import cached_property
 import numpy as np
 from numpy.polynomial import chebyshev
 
-from contactstudy.arrays.grid import Grid
-from contactstudy.arrays.points import Points
+from contactstudy.arrays.grid import Grid, Points
 from contactstudy.checks import FloatArray
 from contactstudy.kernels.load import Load
 from contactstudy.kernels.patch import Corner

@@ -18,7 +18,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from scipy.sparse.linalg import LinearOperator
 
-from contactstudy.arrays.points import Points
+from contactstudy.arrays.grid import Points
 from contactstudy.checks import FloatArray
 from contactstudy.kernels.load import Load
 from contactstudy.overlapping.equations import EquationSet
@@ -137,10 +137,11 @@ class OverlappingOperators:
     problem: EndProblem  # body, directions of the loads, grid and quadratures; the load of the problem does not matter
     positions: Points  # positions of the equivalent loads: `x` and `y` on the top, `y` and depths `z` on the ends
     bands: list[Band]  # the equation sets
+    reference: float | None  # distance along y at which loads without stress are zero, metres; None without such loads
 
     @classmethod
-    def of(cls, problem: EndProblem, positions: Points, *, reference: float | None) -> OverlappingOperators:
-        """Operators of a problem; `reference` is the distance along y at which loads without stress are zero."""
+    def of(cls, problem: EndProblem, positions: Points, reference: float | None) -> OverlappingOperators:
+        """Operators of a problem."""
         offset, length = problem.corner_offset, problem.length
         x, y, z = positions
         x = np.where(problem.from_end(x) < offset, np.where(x < offset, offset, length - offset), x)
@@ -157,7 +158,7 @@ class OverlappingOperators:
                     for node, lateral in enumerate(panel.nodes.tolist()):
                         system = EquationSet.build(view.modes, lateral, problem.poisson, shortest, problem.resolution)
                         bands.append(Band(system, view, {1: even_filters[node], -1: odd_filters[node]}))
-        return cls(problem, Points(x, y, z), bands)
+        return cls(problem, Points(x, y, z), bands, reference)
 
     @cached_property
     def _shortest(self) -> float:

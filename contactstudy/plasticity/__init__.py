@@ -4,7 +4,6 @@ After many passes the residual state does not depend on y: it is a field over th
 """
 
 from contactstudy.plasticity.eigenstrains import STRAINS, eigenstrain_stress
-from contactstudy.plasticity.material import ElasticPlastic
-from contactstudy.plasticity.passes import residual_stress
+from contactstudy.plasticity.passes import ElasticPlastic, residual_stress
 
 __all__ = ["STRAINS", "ElasticPlastic", "eigenstrain_stress", "residual_stress"]

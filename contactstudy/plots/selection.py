@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 
 from contactstudy.arrays.engineering import format_quantity, unit_for
-from contactstudy.arrays.selections import index_of
+from contactstudy.arrays.variables import index_of
 from contactstudy.errors import InvalidInputError
 from contactstudy.plots.style import SYMBOLS, escape_dollars
 

@@ -11,8 +11,7 @@ import xarray as xr
 
 from contactstudy import checks
 from contactstudy.analysis import axial_pressure, dimension_along, single_case
-from contactstudy.arrays.selections import index_of
-from contactstudy.arrays.variables import DERIVED, require
+from contactstudy.arrays.variables import DERIVED, index_of, require
 from contactstudy.errors import ContactStudyError, InvalidInputError
 from contactstudy.plots.axial import plot_axial_pressure
 from contactstudy.plots.selection import describe_value, most_solved, scale_of, scale_values, select_one

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import xarray as xr
 
-from contactstudy.arrays.selections import index_of, selection_of
+from contactstudy.arrays.variables import index_of, selection_of
 
 
 def test_position_of_a_value() -> None:

@@ -27,7 +27,7 @@ from contactstudy import (
 )
 from contactstudy.arrays.variables import in_si, require_in_si
 from contactstudy.bearing import contact_law
-from contactstudy.case.motion import AxialFriction, check_friction
+from contactstudy.case.motion import AxialFriction, Sliding, check_friction
 from contactstudy.plasticity import ElasticPlastic
 from contactstudy.profiles import FullCrown, Measured
 from contactstudy.roughness import heights_on
@@ -73,7 +73,7 @@ def test_only_real_numbers_are_taken(values: np.ndarray, half_space: HalfSpace) 
 
 def test_friction_and_roughness_are_converted_or_refused(half_space: HalfSpace) -> None:
     friction = xr.DataArray([10.0, 20.0], {"x": ("x", [0.0, 2.0], {"units": "mm"})}, "x", attrs={"units": "%"})
-    assert check_friction(friction) == AxialFriction((0.0, 2e-3), (0.1, 0.2))
+    assert check_friction(friction, Sliding(), coupled=False) == AxialFriction((0.0, 2e-3), (0.1, 0.2))
     cells = Grid(x_range=(0.0, 4e-3), y_range=(0.0, 2e-3), cells_x=4, cells_y=2)
     heights = xr.DataArray(np.arange(8.0).reshape(4, 2), {"x": 1e3 * cells.x, "y": 1e3 * cells.y}, ("x", "y"))
     for axis in "xy":
@@ -83,7 +83,7 @@ def test_friction_and_roughness_are_converted_or_refused(half_space: HalfSpace) 
         with pytest.raises(InvalidInputError, match=r"roughness.*attrs\['units'\]"):
             heights_on(cells, wrong)
     with pytest.raises(InvalidInputError, match=r"friction.attrs\['units'\] = 'N'"):
-        check_friction(friction.assign_attrs(units="N"))
+        check_friction(friction.assign_attrs(units="N"), Sliding(), coupled=False)
 
 
 def test_depths_in_micrometres(on_cells: OnCells, half_space: HalfSpace) -> None:

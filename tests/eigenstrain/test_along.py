@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from contactstudy.bodies.material import Material
-from contactstudy.eigenstrain.body import XX, XY, XZ, YY, YZ, ZZ
-from contactstudy.eigenstrain.layers import PeriodicLayers, layer_stresses
+from contactstudy.eigenstrain.body import XX, XY, XZ, YY, YZ, ZZ, PeriodicLayers, layer_stresses
 from contactstudy.verification.closed_forms import rectangle_in_half_plane
 
 TEST_MATERIAL = Material(2.0, 0.3)

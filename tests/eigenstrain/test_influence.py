@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from contactstudy.bodies.material import Material
-from contactstudy.eigenstrain.body import EigenstrainBody, cell_influence
-from contactstudy.eigenstrain.layers import layer_stresses
+from contactstudy.eigenstrain.body import EigenstrainBody, cell_influence, layer_stresses
 
 TEST_MATERIAL = Material(2.0, 0.3)
 

@@ -17,7 +17,7 @@ from contactstudy import (
     stress_field,
     surface_displacement,
 )
-from contactstudy.arrays.points import Points
+from contactstudy.arrays.grid import Points
 from contactstudy.fields.displacement import displacement_under, normal_influence
 from contactstudy.fields.loads import TopLoad
 from contactstudy.kernels.load import Load

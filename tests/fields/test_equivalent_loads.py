@@ -17,7 +17,7 @@ from contactstudy import (
     profiles,
     solve,
 )
-from contactstudy.arrays.points import Points
+from contactstudy.arrays.grid import Points
 from contactstudy.kernels.field import half_space_field, stress_influence
 from contactstudy.kernels.load import Load
 from contactstudy.overlapping import problem

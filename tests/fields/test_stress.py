@@ -7,8 +7,7 @@ import pytest
 import xarray as xr
 
 from contactstudy import FiniteLengthSpace, HalfSpace, InvalidInputError, Material, cache, stress_field
-from contactstudy.arrays.grid import Grid
-from contactstudy.arrays.points import Points
+from contactstudy.arrays.grid import Grid, Points
 from contactstudy.arrays.variables import STRESSES
 from contactstudy.fields.loads import sliding
 from contactstudy.fields.stress import stresses_at

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from contactstudy import Grid
-from contactstudy.arrays.points import Points
+from contactstudy.arrays.grid import Points
 from contactstudy.cache import ArrayKey
 from contactstudy.checks import FloatArray
 from contactstudy.kernels.column_fields import (

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from contactstudy import Grid
-from contactstudy.arrays.points import Points
+from contactstudy.arrays.grid import Points
 from contactstudy.checks import FloatArray
 from contactstudy.kernels import field
 from contactstudy.kernels.column_fields import LateralAxis

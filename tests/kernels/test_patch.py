@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from contactstudy import Grid
-from contactstudy.arrays.points import Points
+from contactstudy.arrays.grid import Points
 from contactstudy.checks import FloatArray
 from contactstudy.kernels import images, patch
 from contactstudy.kernels.field import displacement_influence, half_space_field

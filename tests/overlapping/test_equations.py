@@ -9,13 +9,12 @@ import pytest
 from scipy import integrate
 
 from contactstudy import Grid, Material
-from contactstudy.arrays.points import Points
+from contactstudy.arrays.grid import Points
 from contactstudy.bodies.models import FreeEnds
 from contactstudy.kernels.load import NORMAL_RESPONSE, Load
 from contactstudy.overlapping.axial_modes import SingleMirrorModes, axial_modes
 from contactstudy.overlapping.equations import EquationSet, load_on_end
-from contactstudy.overlapping.field import end_fields
-from contactstudy.overlapping.harmonics import STRESS
+from contactstudy.overlapping.field import STRESS, end_fields
 from contactstudy.overlapping.problem import EndProblem
 from contactstudy.overlapping.quadrature import Resolution
 from contactstudy.overlapping.surface import EndRequest, end_kernel

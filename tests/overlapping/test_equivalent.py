@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from contactstudy import Grid
-from contactstudy.arrays.points import Points
+from contactstudy.arrays.grid import Points
 from contactstudy.kernels.field import half_space_field, stress_influence
 from contactstudy.kernels.load import Load
 from contactstudy.overlapping.operators import OverlappingOperators

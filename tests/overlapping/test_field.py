@@ -8,12 +8,11 @@ import numpy as np
 import pytest
 
 from contactstudy import Grid
-from contactstudy.arrays.points import Points
+from contactstudy.arrays.grid import Points
 from contactstudy.checks import ComplexArray, FloatArray
 from contactstudy.kernels.load import Load
 from contactstudy.overlapping.equations import EquationSet
-from contactstudy.overlapping.field import end_fields
-from contactstudy.overlapping.harmonics import DISPLACEMENT, STRESS
+from contactstudy.overlapping.field import DISPLACEMENT, STRESS, end_fields
 from contactstudy.overlapping.problem import EndProblem
 from contactstudy.overlapping.quadrature import Resolution
 

@@ -7,7 +7,7 @@ import pytest
 from scipy.sparse.linalg import LinearOperator, gmres
 
 from contactstudy import Grid
-from contactstudy.arrays.points import Points
+from contactstudy.arrays.grid import Points
 from contactstudy.kernels.load import Load
 from contactstudy.overlapping.operators import OverlappingOperators
 from contactstudy.overlapping.problem import EndProblem

@@ -19,13 +19,12 @@ from contactstudy import (
     stress_field,
     surface_displacement,
 )
-from contactstudy.arrays.points import Points
+from contactstudy.arrays.grid import Points
 from contactstudy.arrays.variables import STRESSES
 from contactstudy.fields.loads import sliding
 from contactstudy.fields.stress import end_traction_residual, stresses_at
 from contactstudy.kernels.load import Load
-from contactstudy.overlapping.field import end_fields
-from contactstudy.overlapping.harmonics import STRESS
+from contactstudy.overlapping.field import STRESS, end_fields
 from contactstudy.overlapping.problem import EndProblem
 from contactstudy.overlapping.quadrature import Resolution
 from contactstudy.verification.problems import LINE_LOAD

@@ -11,7 +11,7 @@ import pytest
 from contactstudy import fatigue
 from contactstudy.arrays.variables import STRESSES
 from contactstudy.bodies import Material
-from contactstudy.eigenstrain.layers import layer_stresses
+from contactstudy.eigenstrain.body import layer_stresses
 from contactstudy.plasticity.passes import Passage, State
 
 YOUNG, POISSON = 1000.0, 0.3
