@@ -6,7 +6,7 @@ body from its loaded top ``z = 0``. No body has a boundary in y or at depth.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import numpy as np
@@ -54,15 +54,13 @@ class Body:
     """
 
     material: Material
-    reference_depth: float | None = None
+    reference_depth: float | None = field(default=None, metadata=checks.number(checks.positive, "metres"))
 
     def __post_init__(self) -> None:
         if type(self) in (Body, BodyWithFreeEnds):
             raise InvalidInputError("body", type(self).__name__, "a HalfSpace, a QuarterSpace or a FiniteLengthSpace")
         checks.instance("material", self.material, Material, "a Material")
-        if self.reference_depth is not None:
-            depth = checks.positive("reference_depth", self.reference_depth, "metres")
-            checks.store(self, reference_depth=depth)
+        checks.store_numbers(self)
 
     def __repr__(self) -> str:
         low, high = self.extent
@@ -212,11 +210,7 @@ class FiniteLengthSpace(BodyWithFreeEnds):
     (0.0, 0.016)
     """
 
-    length: float
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        checks.store(self, length=checks.positive("length", self.length, "metres"))
+    length: float = field(metadata=checks.number(checks.positive, "metres"))
 
     @property
     def extent(self) -> Extent:

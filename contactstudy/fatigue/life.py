@@ -9,7 +9,7 @@ Journal of Tribology 107 (1985) 367-378.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 import xarray as xr
@@ -51,13 +51,12 @@ class LifeExponents:
     4.0
     """
 
-    stress: float = 31 / 3
-    depth: float = 7 / 3
-    weibull: float = 9 / 8
+    stress: float = field(default=31 / 3, metadata=checks.number(checks.positive))
+    depth: float = field(default=7 / 3, metadata=checks.number(checks.positive))
+    weibull: float = field(default=9 / 8, metadata=checks.number(checks.positive))
 
     def __post_init__(self) -> None:
-        for name in ("stress", "depth", "weibull"):
-            checks.store(self, **{name: checks.positive(name, getattr(self, name))})
+        checks.store_numbers(self)
 
     def units(self, lengths: int) -> str:
         """Return the unit of the integral of ``stress**c / depth**h`` over 1 or 2 lengths."""

@@ -6,9 +6,10 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from contactstudy import checks
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
-from contactstudy.profiles.base import FINITE, NOT_NEGATIVE, POSITIVE, Shape
+from contactstudy.profiles.base import NOT_NEGATIVE_LENGTH, POSITIVE_LENGTH, Shape
 
 
 def _arc_drop(distance: FloatArray, radius: float) -> FloatArray:
@@ -38,8 +39,8 @@ class FullCrown(Shape):
     [0.0, 10.0]
     """
 
-    crown_radius: float = field(metadata=POSITIVE)
-    centre: float = field(default=0.0, metadata=FINITE)
+    crown_radius: float = field(metadata=POSITIVE_LENGTH)
+    centre: float = field(default=0.0, metadata=checks.number(checks.finite, "metres"))
 
     def drop(self, x: FloatArray, length: float) -> FloatArray:
         """Material removed (m) at distances `x` (m) from mid-length."""
@@ -84,10 +85,10 @@ class PartialCrown(Shape):
     [0.0, 1.13, 8.13]
     """
 
-    straight_length: float = field(metadata=NOT_NEGATIVE)
-    crown_radius: float = field(metadata=POSITIVE)
-    dub_length: float = field(default=0.0, metadata=NOT_NEGATIVE)
-    dub_radius: float | None = field(default=None, metadata=POSITIVE)
+    straight_length: float = field(metadata=NOT_NEGATIVE_LENGTH)
+    crown_radius: float = field(metadata=POSITIVE_LENGTH)
+    dub_length: float = field(default=0.0, metadata=NOT_NEGATIVE_LENGTH)
+    dub_radius: float | None = field(default=None, metadata=POSITIVE_LENGTH)
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -150,7 +151,7 @@ class Ellipsoid(Shape):
     [0.0, 1e-06]
     """
 
-    crown_radius: float = field(metadata=POSITIVE)
+    crown_radius: float = field(metadata=POSITIVE_LENGTH)
 
     def drop(self, x: FloatArray, length: float) -> FloatArray:
         """Material removed (m) at distances `x` (m) from mid-length."""
@@ -177,7 +178,7 @@ class Sphere(Shape):
     [0.0, 1e-06]
     """
 
-    radius: float = field(metadata=POSITIVE)
+    radius: float = field(metadata=POSITIVE_LENGTH)
 
     def drop(self, x: FloatArray, length: float) -> FloatArray:
         """Material removed (m) at distances `x` (m) from mid-length."""

@@ -6,9 +6,10 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from contactstudy import checks
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
-from contactstudy.profiles.base import FINITE, NOT_NEGATIVE, POSITIVE, Shape, SlopeJumps
+from contactstudy.profiles.base import NOT_NEGATIVE_LENGTH, POSITIVE_LENGTH, Shape, SlopeJumps
 
 MAX_HALF_ANGLE = np.pi / 4  # Largest half cone angle, radians
 
@@ -35,7 +36,7 @@ class Cylinder(Shape):
     [0.0, 0.0, 0.001]
     """
 
-    fillet_radius: float = field(default=0.0, metadata=NOT_NEGATIVE)
+    fillet_radius: float = field(default=0.0, metadata=NOT_NEGATIVE_LENGTH)
 
     def drop(self, x: FloatArray, length: float) -> FloatArray:
         """Material removed (m) at distances `x` (m) from mid-length."""
@@ -87,8 +88,8 @@ class Tapered(Shape):
     [0.0, 0.0, 0.0]
     """
 
-    half_angle: float = field(metadata=FINITE)
-    fillet_radius: float = field(default=0.0, metadata=NOT_NEGATIVE)
+    half_angle: float = field(metadata=checks.number(checks.finite, "radians"))
+    fillet_radius: float = field(default=0.0, metadata=NOT_NEGATIVE_LENGTH)
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -148,10 +149,10 @@ class Chamfer(Shape):
     [0.0, 0.0, 0.5]
     """
 
-    depth: float | None = field(default=None, metadata=POSITIVE)
-    width: float | None = field(default=None, metadata=POSITIVE)
-    angle: float | None = field(default=None, metadata=POSITIVE)
-    blend_radius: float = field(default=0.0, metadata=NOT_NEGATIVE)
+    depth: float | None = field(default=None, metadata=POSITIVE_LENGTH)
+    width: float | None = field(default=None, metadata=POSITIVE_LENGTH)
+    angle: float | None = field(default=None, metadata=checks.number(checks.positive, "radians"))
+    blend_radius: float = field(default=0.0, metadata=NOT_NEGATIVE_LENGTH)
 
     def __post_init__(self) -> None:
         sizes = self.depth, self.width, self.angle
