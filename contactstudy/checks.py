@@ -7,6 +7,7 @@ import os
 import uuid
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
+from dataclasses import fields
 from difflib import get_close_matches
 from numbers import Integral, Real
 from pathlib import Path
@@ -119,6 +120,19 @@ def _check_range(name: str, value: object, unit: str, minimum: float, allowed: s
             sizes = f"{1 / MAX_MAGNITUDE:g} to {MAX_MAGNITUDE:g}"
             raise InvalidInputError(name, value, f"{allowed}, of a size from {sizes}", "units are SI")
     raise InvalidInputError(name, value, allowed)
+
+
+def number(check: Callable[[str, object, str], float], unit: str = "") -> dict[str, Any]:
+    """Metadata of a field of a dataclass that holds a number: its check and unit."""
+    return {"check": check, "unit": unit}
+
+
+def store_numbers(checked: Any) -> None:
+    """Check the numbers in the fields of a frozen dataclass and store them as floats; None only as the default."""
+    for entry in fields(checked):
+        value, check = getattr(checked, entry.name), entry.metadata.get("check")
+        if check is not None and not (value is None and entry.default is None):
+            store(checked, **{entry.name: check(entry.name, value, entry.metadata["unit"])})
 
 
 def count(name: str, value: object, minimum: int = 1) -> int:

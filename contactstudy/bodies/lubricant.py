@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-from typing import Any, NamedTuple
+from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 
@@ -12,15 +12,10 @@ from contactstudy.arrays.engineering import format_quantity
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 
-VISCOSITY_LAWS, DENSITY_LAWS = ("roelands", "barus"), ("dowson-higginson", "constant")
-
 ROELANDS_PRESSURE = 1.962e8  # Reference pressure of Roelands' law, Pa
 ROELANDS_VISCOSITY = 6.31e-5  # Limit of Roelands' law for all oils at negative pressure, Pa s
 DENSITY_PRESSURE, DENSITY_GAIN = 5.9e8, 1.34  # Constants of Dowson and Higginson's density, Pa and 1
 KELVIN = 273.15  # 0 degrees Celsius in kelvin
-
-UNITS = {"viscosity": "Pa s", "pressure_viscosity": "1/Pa", "roelands_exponent": "", "density": "kg/m3"}
-UNITS |= {"temperature_viscosity": "1/K", "conductivity": "W/(m K)", "eyring_stress": "Pa", "limiting_shear": ""}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -62,24 +57,21 @@ class Lubricant:
     (30134.9, 1.214)
     """
 
-    viscosity: float
-    pressure_viscosity: float
+    viscosity: float = field(metadata=checks.number(checks.positive, "Pa s"))
+    pressure_viscosity: float = field(metadata=checks.number(checks.positive, "1/Pa"))
     viscosity_law: str = "roelands"
-    roelands_exponent: float | None = None
+    roelands_exponent: float | None = field(default=None, metadata=checks.number(checks.positive))
     density_law: str = "dowson-higginson"
-    density: float | None = None
-    temperature_viscosity: float | None = None
-    conductivity: float | None = None
-    eyring_stress: float | None = None
-    limiting_shear: float | None = None
+    density: float | None = field(default=None, metadata=checks.number(checks.positive, "kg/m3"))
+    temperature_viscosity: float | None = field(default=None, metadata=checks.number(checks.positive, "1/K"))
+    conductivity: float | None = field(default=None, metadata=checks.number(checks.positive, "W/(m K)"))
+    eyring_stress: float | None = field(default=None, metadata=checks.number(checks.positive, "Pa"))
+    limiting_shear: float | None = field(default=None, metadata=checks.number(checks.positive))
 
     def __post_init__(self) -> None:
-        for name, unit in UNITS.items():
-            value = getattr(self, name)
-            if value is not None or name in ("viscosity", "pressure_viscosity"):
-                checks.store(self, **{name: checks.positive(name, value, unit)})
-        for name, laws in (("viscosity_law", VISCOSITY_LAWS), ("density_law", DENSITY_LAWS)):
-            checks.known_name(name, getattr(self, name), laws)
+        checks.store_numbers(self)
+        checks.known_name("viscosity_law", self.viscosity_law, ("roelands", "barus"))
+        checks.known_name("density_law", self.density_law, ("dowson-higginson", "constant"))
         if self.viscosity_law == "roelands" and self.viscosity <= ROELANDS_VISCOSITY:
             allowed = f"above {ROELANDS_VISCOSITY:g} Pa s with viscosity_law = 'roelands'"
             hint = "viscosities are in Pa s: 30 mPa s is 0.03"
@@ -195,12 +187,12 @@ class Lubricant:
         >>> Lubricant.preset("heavy machine oil", 60.0)
         Lubricant(eta0 = 0.034 Pa s, alpha = 20.5 1/GPa, roelands, dowson-higginson density)
         """
-        oil = OILS[checks.known_name("name", name, OILS)]
+        viscosities, pressure_viscosities = OILS[checks.known_name("name", name, OILS)]
         theta = checks.finite("temperature", temperature, "degrees Celsius")
         lowest, highest = OIL_TEMPERATURES[0], OIL_TEMPERATURES[-1]
         if not lowest <= theta <= highest:
             raise InvalidInputError("temperature", theta, f"from {lowest:g} to {highest:g} degrees Celsius", SOURCE)
-        temperatures, logs = np.array(OIL_TEMPERATURES), np.log(oil.viscosities)
+        temperatures, logs = np.array(OIL_TEMPERATURES), np.log(viscosities)
         # ln eta = A + B / (theta - C), through three points.
         ratio = (logs[0] - logs[1]) / (logs[1] - logs[2])
         ratio *= (temperatures[2] - temperatures[1]) / (temperatures[1] - temperatures[0])
@@ -209,7 +201,7 @@ class Lubricant:
         log_viscosity = logs[0] + b * (1 / (theta - c) - 1 / (temperatures[0] - c))
         return cls(
             viscosity=float(np.exp(log_viscosity)),
-            pressure_viscosity=1e-9 * float(np.interp(theta, temperatures, oil.pressure_viscosities)),
+            pressure_viscosity=1e-9 * float(np.interp(theta, temperatures, pressure_viscosities)),
             temperature_viscosity=float(b / (theta - c) ** 2),
         )
 
@@ -238,20 +230,13 @@ def walther(viscosities: dict[float, float], temperature: float) -> tuple[float,
     return float(viscosity), float((viscosity + 0.7) / viscosity * power * np.log(10) * b / kelvin)
 
 
-class Oil(NamedTuple):
-    """Viscosities, Pa s, and pressure-viscosity coefficients, 1/GPa, at the table's temperatures."""
-
-    viscosities: tuple[float, float, float]
-    pressure_viscosities: tuple[float, float, float]
-
-
 OIL_TEMPERATURES = (30.0, 60.0, 100.0)  # Temperatures of `OILS`, degrees Celsius
 SOURCE = "G. W. Stachowiak, A. W. Batchelor, Engineering Tribology, table 2.3"  # Source of `OILS`
-OILS = {
-    "heavy machine oil": Oil((0.153, 0.034, 0.0091), (23.7, 20.5, 15.8)),
-    "heavier machine oil": Oil((0.250, 0.0505, 0.0126), (25.0, 21.3, 17.6)),
-    "cylinder oil": Oil((0.810, 0.135, 0.0268), (34.0, 28.0, 22.0)),
-    "spindle oil": Oil((0.0186, 0.0063, 0.0024), (20.0, 16.0, 13.0)),
-    "light machine oil": Oil((0.045, 0.012, 0.0039), (28.0, 20.0, 16.0)),
-    "medicinal white oil": Oil((0.107, 0.0233, 0.0064), (29.6, 22.8, 17.8)),
+OILS = {  # viscosities, Pa s, and pressure-viscosity coefficients, 1/GPa, at these temperatures
+    "heavy machine oil": ((0.153, 0.034, 0.0091), (23.7, 20.5, 15.8)),
+    "heavier machine oil": ((0.250, 0.0505, 0.0126), (25.0, 21.3, 17.6)),
+    "cylinder oil": ((0.810, 0.135, 0.0268), (34.0, 28.0, 22.0)),
+    "spindle oil": ((0.0186, 0.0063, 0.0024), (20.0, 16.0, 13.0)),
+    "light machine oil": ((0.045, 0.012, 0.0039), (28.0, 20.0, 16.0)),
+    "medicinal white oil": ((0.107, 0.0233, 0.0064), (29.6, 22.8, 17.8)),
 }

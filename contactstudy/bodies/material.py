@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from contactstudy import checks
 from contactstudy.arrays.engineering import format_quantity
@@ -36,15 +36,13 @@ class Material:
     (80.77, 230.77)
     """
 
-    young: float
-    poisson: float
+    young: float = field(metadata=checks.number(checks.positive, "Pa"))
+    poisson: float = field(metadata=checks.number(checks.finite))
 
     def __post_init__(self) -> None:
-        checks.store(self, young=checks.positive("young", self.young, "Pa"))
-        poisson = checks.finite("poisson", self.poisson)
-        if not -1 < poisson <= 0.5:
+        checks.store_numbers(self)
+        if not -1 < self.poisson <= 0.5:
             raise InvalidInputError("poisson", self.poisson, "in (-1, 0.5]")
-        checks.store(self, poisson=poisson)
 
     def __repr__(self) -> str:
         return f"Material(E = {format_quantity(self.young, 'Pa')}, nu = {self.poisson:g})"

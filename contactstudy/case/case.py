@@ -11,10 +11,9 @@ from contactstudy import checks
 from contactstudy.arrays.engineering import format_quantity
 from contactstudy.arrays.grid import Grid
 from contactstudy.bodies import hertz
-from contactstudy.bodies.counterbody import Counterbody
 from contactstudy.bodies.lubricant import Lubricant
 from contactstudy.bodies.material import contact_modulus
-from contactstudy.bodies.models import Body
+from contactstudy.bodies.models import Body, Counterbody
 from contactstudy.case.motion import (
     MOTIONS_TEXT,
     AxialFriction,
@@ -28,7 +27,7 @@ from contactstudy.case.roller import Roller, snap_to_ends
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 from contactstudy.profiles.base import SlopeJumps, as_shape, find_slope_jumps
-from contactstudy.profiles.straight import Chamfer, Cylinder
+from contactstudy.profiles.geometric import Chamfer, Cylinder
 
 GAP_NODES = 6  # Gauss points over the width of a cell for the mean gap. Accuracy
 MAX_TILT = 0.1  # Largest tilt of the linear theory, radians

@@ -18,7 +18,7 @@ from contactstudy.case.motion import Friction
 from contactstudy.checks import UNIT_SIZES, FloatArray
 from contactstudy.errors import InvalidInputError, MagnitudeWarning
 from contactstudy.profiles.base import Shape, check_drop
-from contactstudy.profiles.crowned import FullCrown, PartialCrown
+from contactstudy.profiles.geometric import FullCrown, PartialCrown
 from contactstudy.profiles.logarithmic import Logarithmic
 
 MIN_CONTACT_RATIO = 1.0  # Minimum contact length of a tilted roller at its end, over the half-width

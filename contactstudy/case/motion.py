@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import ClassVar, NamedTuple
 
 import numpy as np
@@ -72,7 +72,7 @@ class Sliding:
 
 
 RESULTANTS = {"x": "force_x", "y": "force_y", "spin": "moment_z"}  # conjugate to the rigid motions
-UNITS = {"x": "metres", "y": "metres", "spin": "rad/m", "force_x": "N", "force_y": "N", "moment_z": "N m"}
+LENGTH, FORCE = checks.number(checks.finite, "metres"), checks.number(checks.finite, "N")
 
 
 class StickSlip:
@@ -88,9 +88,9 @@ class StickSlip:
             if amplitude is not None and resultant is not None:
                 allowed = "at most one of the two", "the other value follows"
                 raise InvalidInputError(f"{name}, {force}", (amplitude, resultant), *allowed)
-            prescribed = force if resultant is not None else name
-            value = 0.0 if amplitude is None and resultant is None else getattr(self, prescribed)
-            checks.store(self, **{prescribed: checks.finite(prescribed, value, UNITS.get(prescribed, ""))})
+            if amplitude is None and resultant is None:
+                checks.store(self, **{name: 0.0})
+        checks.store_numbers(self)
 
     @property
     def modes(self) -> tuple[str, ...]:
@@ -133,10 +133,10 @@ class Shift(StickSlip):
     ('y',)
     """
 
-    x: float | None = None
-    y: float | None = None
-    force_x: float | None = None
-    force_y: float | None = None
+    x: float | None = field(default=None, metadata=LENGTH)
+    y: float | None = field(default=None, metadata=LENGTH)
+    force_x: float | None = field(default=None, metadata=FORCE)
+    force_y: float | None = field(default=None, metadata=FORCE)
 
     AMPLITUDES: ClassVar[Mapping[str, str]] = {"x": "x", "y": "y"}
 
@@ -181,21 +181,19 @@ class Rolling(StickSlip):
     ('x',)
     """
 
-    longitudinal_creepage: float | None = None
-    lateral_creepage: float | None = None
-    spin: float | None = None
-    force_x: float | None = None
-    force_y: float | None = None
-    moment_z: float | None = None
-    speed: float | None = None
+    longitudinal_creepage: float | None = field(default=None, metadata=checks.number(checks.finite))
+    lateral_creepage: float | None = field(default=None, metadata=checks.number(checks.finite))
+    spin: float | None = field(default=None, metadata=checks.number(checks.finite, "rad/m"))
+    force_x: float | None = field(default=None, metadata=FORCE)
+    force_y: float | None = field(default=None, metadata=FORCE)
+    moment_z: float | None = field(default=None, metadata=checks.number(checks.finite, "N m"))
+    speed: float | None = field(default=None, metadata=checks.number(checks.positive, "m/s"))
     model: str = "exact"
 
     AMPLITUDES: ClassVar[Mapping[str, str]] = {"x": "lateral_creepage", "y": "longitudinal_creepage", "spin": "spin"}
 
     def __post_init__(self) -> None:
         checks.known_name("model", self.model, MODELS)
-        if self.speed is not None:
-            checks.store(self, speed=checks.positive("speed", self.speed, "m/s"))
         super().__post_init__()
         if self.modes and self.model == "fastsim":
             raise InvalidInputError("model", self.model, 'a model that takes forces: "exact"', "or give the creepages")

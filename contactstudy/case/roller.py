@@ -56,25 +56,22 @@ class Roller:
     [[0.0, 1e-06]]
     """
 
-    radius: float
-    length: float
+    radius: float = field(metadata=checks.number(checks.positive, "metres"))
+    length: float = field(metadata=checks.number(checks.positive, "metres"))
     profile: Profile = field(default_factory=Cylinder)
     material: Material | None = None
     ends: str = "free"
-    reference_depth: float | None = None
+    reference_depth: float | None = field(default=None, metadata=checks.number(checks.positive, "metres"))
 
     def __post_init__(self) -> None:
         """Check the geometry; a trial of the profile reveals errors before a study."""
-        sizes = {name: checks.positive(name, getattr(self, name), "metres") for name in ("radius", "length")}
-        checks.store(self, **sizes)
+        checks.store_numbers(self)
         checks.instance("profile", self.profile, Profile, "a profile from contactstudy.profiles")
         checks.instance("material", self.material, Material | None, "a Material, or None for a rigid roller")
         checks.known_name("ends", self.ends, ("free", "none"))
-        if self.reference_depth is not None:
-            depth = checks.positive("reference_depth", self.reference_depth, "metres")
-            checks.store(self, reference_depth=depth)
-            if self.material is None:
-                raise InvalidInputError("reference_depth", depth, "None for a rigid roller", "or give a material")
+        if self.reference_depth is not None and self.material is None:
+            allowed = "None for a rigid roller"
+            raise InvalidInputError("reference_depth", self.reference_depth, allowed, "or give a material")
         positions = np.array([0.0, 0.25 * self.length])
         local_radius(self.profile, positions, self.length, self.radius)
         if np.isinf(check_drop(self.profile, positions, self.length)).all():

@@ -15,8 +15,7 @@ from contactstudy import checks
 from contactstudy.arrays.cells import cell_coordinates, labelled_cells
 from contactstudy.arrays.grid import Grid
 from contactstudy.arrays.variables import describe, in_si, without_error
-from contactstudy.bodies.counterbody import Counterbody
-from contactstudy.bodies.models import Body
+from contactstudy.bodies.models import Body, Counterbody
 from contactstudy.cache import ArrayKey
 from contactstudy.case.motion import (
     MOTIONS_TEXT,

@@ -12,7 +12,7 @@ manuals of PragTic (Findley method) and COMSOL (Findley criterion).
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cache
 from itertools import product
 
@@ -58,16 +58,15 @@ class FatigueLimits:
     (0.3, 0.067949, 0.204124)
     """
 
-    bending: float
-    torsion: float
+    bending: float = field(metadata=checks.number(checks.positive, "Pa"))
+    torsion: float = field(metadata=checks.number(checks.positive, "Pa"))
 
     def __post_init__(self) -> None:
-        for name in ("bending", "torsion"):
-            checks.store(self, **{name: checks.positive(name, getattr(self, name), "Pa")})
+        checks.store_numbers(self)
         if not 0.5 <= self.ratio < 1:
             allowed = f"between half of the limit in bending and that limit, {self.bending:g} Pa"
             raise InvalidInputError("torsion", self.torsion, allowed)
-        warn_of_values(stacklevel=4, bending=self.bending, torsion=self.torsion)
+        warn_of_values(stacklevel=4, **vars(self))
 
     @property
     def ratio(self) -> float:

@@ -9,7 +9,7 @@ Journal of Tribology 107 (1985) 367-378.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 import xarray as xr
@@ -18,7 +18,7 @@ from contactstudy import checks
 from contactstudy.analysis import dimension_along, measure, positions
 from contactstudy.analysis.axes import axis_dimensions, reduce_dims
 from contactstudy.arrays.variables import ERROR_KIND, NOT_ESTIMATED, in_si, name_array, require, require_in_si
-from contactstudy.checks import Array, IntArray
+from contactstudy.checks import Array
 from contactstudy.errors import InvalidInputError
 from contactstudy.fatigue.history import label_points, rolling_dimension
 
@@ -51,13 +51,12 @@ class LifeExponents:
     4.0
     """
 
-    stress: float = 31 / 3
-    depth: float = 7 / 3
-    weibull: float = 9 / 8
+    stress: float = field(default=31 / 3, metadata=checks.number(checks.positive))
+    depth: float = field(default=7 / 3, metadata=checks.number(checks.positive))
+    weibull: float = field(default=9 / 8, metadata=checks.number(checks.positive))
 
     def __post_init__(self) -> None:
-        for name in ("stress", "depth", "weibull"):
-            checks.store(self, **{name: checks.positive(name, getattr(self, name))})
+        checks.store_numbers(self)
 
     def units(self, lengths: int) -> str:
         """Return the unit of the integral of ``stress**c / depth**h`` over 1 or 2 lengths."""
@@ -137,7 +136,7 @@ def _find_maximum(stress: Array, depth: Array) -> tuple[Array, Array]:
     index = finite_stress.argmax(axis=-1)[..., None]
     points = np.stack([np.broadcast_to(depth, stress.shape), finite_stress])
     columns = (np.clip(index + step, 0, stress.shape[-1] - 1) for step in (-1, 0, 1))
-    (z1, s1), (z2, s2), (z3, s3) = (_take(points, column[None]) for column in columns)
+    (z1, s1), (z2, s2), (z3, s3) = (np.take_along_axis(points, column[None], axis=-1)[..., 0] for column in columns)
     with np.errstate(divide="ignore", invalid="ignore"):
         slope_before, slope_after = (s2 - s1) / (z2 - z1), (s3 - s2) / (z3 - z2)
         curvature = (slope_after - slope_before) / (z3 - z1)
@@ -146,11 +145,6 @@ def _find_maximum(stress: Array, depth: Array) -> tuple[Array, Array]:
     inside = np.isfinite(maximum) & (curvature < 0)
     maximum, position = np.where(np.isfinite(s2), np.where(inside, (maximum, position), (s2, z2)), np.nan)
     return maximum, position
-
-
-def _take(values: Array, index: IntArray) -> Array:
-    """Values at one index (..., 1) along the last axis."""
-    return np.asarray(np.take_along_axis(values, index, axis=-1)[..., 0])
 
 
 def _integrate(density: Array, position: Array) -> Array:
@@ -309,8 +303,9 @@ def _shear_risk(peak: xr.DataArray, depth: xr.DataArray, exponents: LifeExponent
 def _cut_fraction(excess: Array, depth: Array, exponents: LifeExponents) -> Array:
     """Fraction of a section's risk above the first depth (uniform excess) and below the last (exponential excess)."""
     last = np.maximum(np.isfinite(depth).sum(axis=-1, keepdims=True) - 1, 1)
-    borders = (_take(np.stack([excess, depth]), index[None]) for index in (np.zeros_like(last), last - 1, last))
-    (first_excess, first_depth), (previous_excess, previous_depth), (last_excess, last_depth) = borders
+    indices = np.concatenate([np.zeros_like(last), last - 1, last], axis=-1)
+    first_excess, previous_excess, last_excess = np.moveaxis(np.take_along_axis(excess, indices, axis=-1), -1, 0)
+    first_depth, previous_depth, last_depth = np.moveaxis(np.take_along_axis(depth, indices, axis=-1), -1, 0)
     with np.errstate(divide="ignore", invalid="ignore"):
         decay = np.log(np.maximum(previous_excess / last_excess, 1.0))
         integral_below = np.where(last_excess > 0, last_excess * (last_depth - previous_depth) / decay, 0.0)

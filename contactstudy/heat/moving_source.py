@@ -7,7 +7,7 @@ integrand has one factor along each axis (docs/explanation/heat_and_wear.md); in
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import numpy as np
@@ -51,14 +51,13 @@ class ThermalProperties:
     12.47
     """
 
-    conductivity: float
-    density: float
-    specific_heat: float
+    conductivity: float = field(metadata=checks.number(checks.positive, "W/(m K)"))
+    density: float = field(metadata=checks.number(checks.positive, "kg/m3"))
+    specific_heat: float = field(metadata=checks.number(checks.positive, "J/(kg K)"))
 
     def __post_init__(self) -> None:
-        units = {"conductivity": "W/(m K)", "density": "kg/m3", "specific_heat": "J/(kg K)"}
-        checks.store(self, **{name: checks.positive(name, getattr(self, name), unit) for name, unit in units.items()})
-        warn_of_values(stacklevel=4, **{name: getattr(self, name) for name in units})
+        checks.store_numbers(self)
+        warn_of_values(stacklevel=4, **vars(self))
 
     @property
     def diffusivity(self) -> float:

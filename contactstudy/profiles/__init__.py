@@ -5,10 +5,9 @@ mid-length of a roller of the given `length`, fillets included. ``first + second
 """
 
 from contactstudy.profiles.base import EffectiveLength, Halves, Profile, Shape, Sum, local_radius
-from contactstudy.profiles.crowned import Ellipsoid, FullCrown, PartialCrown, Sphere
+from contactstudy.profiles.geometric import Chamfer, Cylinder, Ellipsoid, FullCrown, PartialCrown, Sphere, Tapered
 from contactstudy.profiles.logarithmic import FujiwaraKawase, IsoCylindrical, IsoTapered, JohnsGohar, Lundberg
 from contactstudy.profiles.measured_profile import Measured
-from contactstudy.profiles.straight import Chamfer, Cylinder, Tapered
 
 __all__ = [
     "Chamfer",

@@ -15,11 +15,8 @@ from contactstudy.arrays.engineering import format_quantity
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 
-# Units of the parameters of profiles other than lengths
-UNITS = {"half_angle": "rad", "angle": "rad", "delta": "1", "k1": "1", "k2": "1"}
-UNIT_WORDS = {"m": "metres", "rad": "radians", "1": ""}  # Words for the units in messages
-# Metadata of the numbers among the fields of a profile: the check of the value
-FINITE, NOT_NEGATIVE, POSITIVE = ({"check": check} for check in (checks.finite, checks.not_negative, checks.positive))
+POSITIVE_LENGTH = checks.number(checks.positive, "metres")
+NOT_NEGATIVE_LENGTH = checks.number(checks.not_negative, "metres")
 MIN_JUMP = 1e-6  # Minimum jump of a slope at a corner, of a formula over one plus the slope, because of rounding
 # Windows and rounds of the search for corners, and least ratio of the jumps in the last two rounds; a bend has 1/4
 WINDOWS, ROUNDS, MIN_JUMP_RATIO = 512, 6, 0.75
@@ -87,11 +84,7 @@ class Shape:
 
     def __post_init__(self) -> None:
         """Check the numbers among the fields and store them as floats."""
-        for entry in self._entries():
-            value, check = getattr(self, entry.name), entry.metadata.get("check")
-            if check is not None and not (value is None and entry.default is None):
-                unit = UNIT_WORDS[UNITS.get(entry.name, "m")]
-                checks.store(self, **{entry.name: check(entry.name, value, unit)})
+        checks.store_numbers(self)
 
     def _entries(self) -> tuple[Field[Any], ...]:
         """Fields of a dataclass; none of another class."""
@@ -121,7 +114,7 @@ class Shape:
             value = getattr(self, entry.name)
             if value != entry.default:
                 is_number = isinstance(value, (int, float)) and not isinstance(value, bool)
-                text = format_quantity(value, UNITS.get(entry.name, "m")) if is_number else describe_profile(value)
+                text = format_quantity(value, _unit_of(entry)) if is_number else describe_profile(value)
                 arguments.append(f"{entry.name}={text}")
         return f"{type(self).__name__}({', '.join(arguments)})"
 
@@ -145,7 +138,14 @@ def _second_interpolation(part: object) -> Any:
 def unit_of(profile: object, name: str) -> str:
     """Return the unit of a parameter of a profile's class; empty for a user's class or function."""
     is_package_profile = isinstance(profile, type) and issubclass(profile, Shape) and is_dataclass(profile)
-    return UNITS.get(name, "m") if is_package_profile and any(entry.name == name for entry in fields(profile)) else ""  # type: ignore[arg-type]
+    entries = fields(profile) if is_package_profile else ()  # type: ignore[arg-type]
+    return next((_unit_of(entry) for entry in entries if entry.name == name), "")
+
+
+def _unit_of(entry: Field[Any]) -> str:
+    """SI unit of a field of a profile; m without metadata."""
+    unit: str = entry.metadata.get("unit", "metres")
+    return checks.SI_UNITS.get(unit, unit)
 
 
 def local_radius(profile: Profile, x: FloatArray, length: float, radius: float | FloatArray) -> FloatArray:
@@ -322,7 +322,7 @@ class EffectiveLength(Shape):
     """
 
     profile: Profile
-    effective_length: float = field(metadata=POSITIVE)
+    effective_length: float = field(metadata=POSITIVE_LENGTH)
 
     def __post_init__(self) -> None:
         checks.instance("profile", self.profile, Profile, "a profile from contactstudy.profiles")

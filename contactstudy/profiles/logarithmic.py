@@ -12,7 +12,7 @@ from contactstudy import checks
 from contactstudy.bodies import hertz
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
-from contactstudy.profiles.base import NOT_NEGATIVE, POSITIVE, Shape
+from contactstudy.profiles.base import NOT_NEGATIVE_LENGTH, POSITIVE_LENGTH, Shape
 
 EDGE_FACTOR = 0.5 / math.sqrt(math.e)  # Johns and Gohar's 0.3033, ``1 / (2 sqrt(e))``
 
@@ -108,8 +108,8 @@ class Lundberg(Logarithmic):
     0.2112
     """
 
-    amplitude: float = field(metadata=NOT_NEGATIVE)
-    delta: float = field(default=1.0, metadata=NOT_NEGATIVE)
+    amplitude: float = field(metadata=NOT_NEGATIVE_LENGTH)
+    delta: float = field(default=1.0, metadata=checks.number(checks.not_negative))
 
     def drop(self, x: FloatArray, length: float) -> FloatArray:
         """Material removed (m) at distances `x` (m) from mid-length; infinite at the very ends."""
@@ -147,8 +147,8 @@ class JohnsGohar(Logarithmic):
     1.169
     """
 
-    amplitude: float = field(metadata=NOT_NEGATIVE)
-    half_width: float = field(metadata=NOT_NEGATIVE)
+    amplitude: float = field(metadata=NOT_NEGATIVE_LENGTH)
+    half_width: float = field(metadata=NOT_NEGATIVE_LENGTH)
 
     def edge_drop(self, length: float) -> float:
         """Drop (m) at the ends of a roller of the given `length` (m)."""
@@ -198,10 +198,10 @@ class FujiwaraKawase(Logarithmic):
     [0.0, 0.0, 5e-06]
     """
 
-    amplitude: float = field(metadata=POSITIVE)
-    edge_drop: float = field(metadata=NOT_NEGATIVE)
-    k1: float = field(default=1.0, metadata=POSITIVE)
-    k2: float = field(default=1.0, metadata=POSITIVE)
+    amplitude: float = field(metadata=POSITIVE_LENGTH)
+    edge_drop: float = field(metadata=NOT_NEGATIVE_LENGTH)
+    k1: float = field(default=1.0, metadata=checks.number(checks.positive))
+    k2: float = field(default=1.0, metadata=checks.number(checks.positive))
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -247,7 +247,7 @@ class IsoCylindrical(Shape):
     [0.0, 3.576]
     """
 
-    diameter: float = field(metadata=POSITIVE)
+    diameter: float = field(metadata=POSITIVE_LENGTH)
 
     def drop(self, x: FloatArray, length: float) -> FloatArray:
         """Material removed (m) at distances `x` (m) from mid-length; infinite at the very ends."""
@@ -284,7 +284,7 @@ class IsoTapered(Shape):
     [0.0, 4.597]
     """
 
-    diameter: float = field(metadata=POSITIVE)
+    diameter: float = field(metadata=POSITIVE_LENGTH)
 
     def drop(self, x: FloatArray, length: float) -> FloatArray:
         """Material removed (m) at distances `x` (m) from mid-length; infinite at the very ends."""

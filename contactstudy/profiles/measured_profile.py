@@ -16,7 +16,7 @@ from contactstudy.arrays.engineering import format_quantity
 from contactstudy.arrays.variables import in_si
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
-from contactstudy.profiles.base import MIN_JUMP, POSITIVE, Shape, SlopeJumps
+from contactstudy.profiles.base import MIN_JUMP, POSITIVE_LENGTH, Shape, SlopeJumps
 from contactstudy.profiles.measurement_files import check_positions, check_values, read_measurement, rotate_heights
 
 ALPHA = np.sqrt(np.log(2) / np.pi)  # Constant of transmission one half at the cut-off (ISO 16610-21)
@@ -147,8 +147,8 @@ class Measured(Shape):
 
     positions: Sequence[float]
     drops: Sequence[float]
-    largest_spike: float | None = field(default=None, metadata=POSITIVE)
-    cutoff: float | None = field(default=None, metadata=POSITIVE)
+    largest_spike: float | None = field(default=None, metadata=POSITIVE_LENGTH)
+    cutoff: float | None = field(default=None, metadata=POSITIVE_LENGTH)
 
     def __post_init__(self) -> None:
         x = checks.coordinates("positions", in_si("positions", self.positions, "m"), "metres")

@@ -22,7 +22,7 @@ from contactstudy.arrays.engineering import format_quantity
 from contactstudy.case.serialization import Sampled, tables_within
 from contactstudy.errors import ContactStudyError, InvalidInputError
 from contactstudy.profiles import Profile
-from contactstudy.profiles.base import UNITS, check_drop, describe_profile, local_radius
+from contactstudy.profiles.base import check_drop, describe_profile, local_radius, unit_of
 
 if TYPE_CHECKING:
     from contactstudy.study.case_setup import Dimensions
@@ -232,7 +232,7 @@ def format_profile(table: Mapping[str, Any], *, in_units: bool = False) -> str:
     """Name of a profile, or its kind and values in SI (for a dimension's label) or in the units of engineers."""
     if "name" in table:
         return str(table["name"])
-    kind, units = str(table["kind"]), UNITS | {"design_pressure": "Pa", "design_load": "N"}
+    kind = str(table["kind"])
     if kind == "sum":
         return " + ".join(format_profile(term, in_units=in_units) for term in table["terms"])
     if kind == "halves":
@@ -248,7 +248,9 @@ def format_profile(table: Mapping[str, Any], *, in_units: bool = False) -> str:
     values = {key: table[key] for key in sorted(table) if key != "kind"}
     if not in_units:
         return " ".join([kind, *(f"{key}={value:g}" for key, value in values.items())])
-    texts = (f"{key.replace('_', ' ')} {format_quantity(value, units.get(key, 'm'))}" for key, value in values.items())
+    units = {key: unit_of(PROFILES[kind].profile_class, key) for key in values}
+    units |= {"design_pressure": "Pa", "design_load": "N"}
+    texts = (f"{key.replace('_', ' ')} {format_quantity(value, units[key])}" for key, value in values.items())
     return ", ".join([kind, *texts])
 
 

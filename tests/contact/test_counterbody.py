@@ -26,7 +26,7 @@ from contactstudy import (
     stress_field,
     surface_displacement,
 )
-from contactstudy.bodies.counterbody import Counterbody
+from contactstudy.bodies.models import Counterbody
 from contactstudy.contact import ContactSettings
 from contactstudy.verification.problems import on_cells
 from tests.closed_forms import sliding_line

@@ -30,7 +30,7 @@ def test_walther_interpolates_two_viscosities():
 def test_presets_agree_with_their_table(name):
     for column, temperature in enumerate((30.0, 60.0, 100.0)):
         oil = Lubricant.preset(name, temperature)
-        assert oil.viscosity == pytest.approx(OILS[name].viscosities[column])
+        assert oil.viscosity == pytest.approx(OILS[name][0][column])
     step = 0.01
     fall = np.log(Lubricant.preset(name, 60 - step).viscosity / Lubricant.preset(name, 60 + step).viscosity) / 0.02
     assert Lubricant.preset(name, 60.0).temperature_viscosity == pytest.approx(fall, rel=1e-4)

@@ -11,8 +11,7 @@ import numpy as np
 from scipy.sparse.linalg import LinearOperator
 
 from contactstudy.arrays.grid import Grid
-from contactstudy.bodies.counterbody import Counterbody
-from contactstudy.bodies.models import Body
+from contactstudy.bodies.models import Body, Counterbody
 from contactstudy.cache import ArrayKey, cached
 from contactstudy.checks import FloatArray
 from contactstudy.contact.normal.conjugate_gradients import ContactIterate

@@ -10,8 +10,7 @@ import numpy as np
 from scipy.sparse.linalg import LinearOperator
 
 from contactstudy.arrays.grid import Grid
-from contactstudy.bodies.counterbody import Counterbody
-from contactstudy.bodies.models import Body
+from contactstudy.bodies.models import Body, Counterbody
 from contactstudy.checks import FloatArray
 from contactstudy.contact.normal.problem import cell_means
 from contactstudy.fields.surface import SurfaceOperator, surface_operator
