@@ -19,14 +19,7 @@ from contactstudy.analysis.contact import MISSING_LOAD, cut_ends
 from contactstudy.analysis.peaks import largest_sample
 from contactstudy.analysis.provenance import INPUTS_ATTRIBUTE, attribute
 from contactstudy.arrays.peaks import section_maxima
-from contactstudy.arrays.variables import (
-    ERROR_KIND,
-    NOT_ESTIMATED,
-    STRESSES,
-    describe,
-    require_in_si,
-    without_error,
-)
+from contactstudy.arrays.variables import ERROR_KIND, NOT_ESTIMATED, STRESSES, describe, require_in_si, without_error
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 

@@ -17,15 +17,7 @@ from contactstudy.arrays.grid import Grid
 from contactstudy.arrays.variables import describe, in_si, without_error
 from contactstudy.bodies.models import Body, Counterbody
 from contactstudy.cache import ArrayKey
-from contactstudy.case.motion import (
-    MOTIONS_TEXT,
-    Friction,
-    Motion,
-    Shift,
-    Sliding,
-    check_friction,
-    evaluate_friction,
-)
+from contactstudy.case.motion import MOTIONS_TEXT, Friction, Motion, Shift, Sliding, check_friction, evaluate_friction
 from contactstudy.checks import FloatArray
 from contactstudy.contact.normal.contact import Contact, Settings, Shape, contact_of
 from contactstudy.contact.normal.prescribed_loads import PrescribedLoad

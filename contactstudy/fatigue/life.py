@@ -269,8 +269,7 @@ def lundberg_palmgren(stress: xr.Dataset, exponents: LifeExponents = ROLLER_BEAR
     }
     density = _shear_risk(max_amplitude, depth, exponents)
     result = _integrate_risk(density, exponents, {"theory": "Lundberg and Palmgren"}, truncated).assign(
-        shear_amplitude=label_points("shear_amplitude", max_amplitude),
-        shear_depth=label_points("shear_depth", depth),
+        shear_amplitude=label_points("shear_amplitude", max_amplitude), shear_depth=label_points("shear_depth", depth)
     )
 
     def compute_risk(subset: xr.DataArray) -> xr.DataArray:

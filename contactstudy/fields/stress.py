@@ -168,11 +168,7 @@ def _unit_stress(
 
 
 def contact_stresses(
-    body: Body,
-    loads: Loads,
-    search: Search,
-    positions: FieldPositions,
-    end_yz: tuple[FloatArray, FloatArray],
+    body: Body, loads: Loads, search: Search, positions: FieldPositions, end_yz: tuple[FloatArray, FloatArray]
 ) -> tuple[xr.Dataset, float, StressMaximum]:
     """Return stresses at positions, the residual on the ends, and the largest stress in the body."""
     end_positions, pressure = _end_positions(body), loads[Load.NORMAL].values

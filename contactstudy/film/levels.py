@@ -366,10 +366,7 @@ def create_cells(film: FilmCase, level: Level) -> tuple[FilmCells, MergedCells, 
 
 
 def film_on_level(
-    film: FilmCase,
-    level: Level,
-    settings: FilmSettings,
-    start: FilmOnCells | xr.Dataset | None = None,
+    film: FilmCase, level: Level, settings: FilmSettings, start: FilmOnCells | xr.Dataset | None = None
 ) -> FilmOnCells:
     """Solve for the film on the cells of a level, from the dry contact or from another film."""
     cells, merged, window = create_cells(film, level)

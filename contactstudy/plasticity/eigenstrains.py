@@ -74,10 +74,7 @@ def eigenstrain_stress(
     if not names:
         raise InvalidInputError("eigenstrain", sorted(map(str, eigenstrain)), f"with one of {', '.join(STRAINS)}")
     axes, edges = {}, {}
-    for axis, points, given_edges, (low, high) in (
-        ("x", x, x_edges, body.extent),
-        ("z", z, z_edges, (0.0, np.inf)),
-    ):
+    for axis, points, given_edges, (low, high) in (("x", x, x_edges, body.extent), ("z", z, z_edges, (0.0, np.inf))):
         if axis not in eigenstrain.coords:
             raise InvalidInputError("eigenstrain.coords", list(eigenstrain.coords), f"with {axis} (metres)")
         centres = checks.coordinates(f"eigenstrain.{axis}", eigenstrain[axis].values)
