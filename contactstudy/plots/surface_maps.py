@@ -28,6 +28,7 @@ BORDER_LEVEL = 0.01  # Squared pressure, linear in the distance, at the drawn bo
 MARGIN = 0.1  # Margin around the contact over its width
 ARROW_LENGTH = 1.5  # Length of the longest arrow over the arrows' spacing along x
 VECTORS = ("traction", "slip")
+EQUAL_MAXIMA = 1e-6  # relative difference of two maxima that are equal up to the solver's tolerance
 SURFACES = {"body": "temperature_rise", "roller": "roller_temperature_rise"}
 
 
@@ -301,7 +302,8 @@ def plot_temperature_map(
     rise = field.values(name)
     mesh = _draw_mesh(ax, field, rise, cmap=HEAT_COLORS)
     _draw_border(ax, field, field.pressure, 1e-3 * float(field.pressure.max()), colors="white", linewidths=0.8)
-    row, column = divmod(int(rise.argmax()), rise.shape[1])
+    # Of equal maxima at both ends, the one nearer to end I.
+    row, column = divmod(int((rise >= (1 - EQUAL_MAXIMA) * rise.max()).argmax()), rise.shape[1])
     ax.plot(field.x[column], field.y[row], "+", color="black", markersize=9)
     _label(ax, field, mesh, f"{variable_of(name, field.case[name].attrs).long_name} (K)")
     return ax
