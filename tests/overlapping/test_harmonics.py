@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from contactstudy.checks import ComplexArray, FloatArray
-from contactstudy.overlapping import harmonics
+from contactstudy.overlapping import field as end_field
 from contactstudy.overlapping.axial_modes import AxialModes, SingleMirrorModes
 from contactstudy.overlapping.equations import EquationSet, coupling_core
 from contactstudy.overlapping.quadrature import Resolution
@@ -69,10 +69,10 @@ def along(field: Field, axis: int) -> FloatArray:
     return np.asarray((ahead - behind) / (2 * STEP))
 
 
-FIELDS = (harmonics._stress_of_face_load, harmonics._displacement_of_face_load)
+FIELDS = (end_field._stress_of_face_load, end_field._displacement_of_face_load)
 BODIES = {
-    "below": (field_of_h, harmonics._displacement_of_equivalent_load, harmonics._stress_of_equivalent_load),
-    "beside": (evaluate_beside_end, harmonics._displacement_of_face_load, harmonics._stress_of_face_load),
+    "below": (field_of_h, end_field._displacement_of_equivalent_load, end_field._stress_of_equivalent_load),
+    "beside": (evaluate_beside_end, end_field._displacement_of_face_load, end_field._stress_of_face_load),
 }
 
 
@@ -97,7 +97,7 @@ def test_stresses_follow_hookes_law_in_equilibrium(body: str, name: str) -> None
 @pytest.mark.parametrize("name", MODES)
 def test_top_of_h_carries_equivalent_load(name: str) -> None:
     modes = MODES[name]
-    computed = field_of_h(modes, harmonics._stress_of_equivalent_load)(X, np.zeros(1))[:, :, 0]
+    computed = field_of_h(modes, end_field._stress_of_equivalent_load)(X, np.zeros(1))[:, :, 0]
     load = np.real(modes.cosine(X).T @ WEIGHTS[: modes.wavenumbers.size])
     assert computed[2] == pytest.approx(-load)
     assert np.abs(computed[4:]).max() < 1e-12 * np.abs(computed).max()
@@ -107,14 +107,14 @@ def test_top_of_h_carries_equivalent_load(name: str) -> None:
 def test_faces_and_top_of_v_have_no_shear(name: str) -> None:
     modes = MODES[name]
     faces = np.array([0.0, modes.length]) if modes.parity else np.zeros(1)
-    computed = evaluate_beside_end(modes, harmonics._stress_of_face_load)(faces, Z)
+    computed = evaluate_beside_end(modes, end_field._stress_of_face_load)(faces, Z)
     kappa = np.sqrt(RAY[:2] ** 2 + LATERAL**2)
     freed = np.real(np.exp(1j * np.outer(Z, RAY[:2])) @ WEIGHTS[:2])
     if isinstance(modes, SingleMirrorModes):
         # Each half-space has a separate load; the opposite load's normal stress reaches the face, its shear remains.
         applied = np.exp(1j * np.outer(Z, RAY[:2])) @ (modes.load_on_face(kappa)[:, None] * WEIGHTS[:2])
         single_mirror = SingleMirrorModes(length=1e3, parity=1, discrete=np.zeros(0), ray=RAY, weights=modes.weights)
-        assert evaluate_beside_end(single_mirror, harmonics._stress_of_face_load)(faces[:1], Z)[0, 0] == pytest.approx(
+        assert evaluate_beside_end(single_mirror, end_field._stress_of_face_load)(faces[:1], Z)[0, 0] == pytest.approx(
             freed
         )
         assert np.abs(np.real(applied) - freed).max() > 1e-3 * np.abs(freed).max()
@@ -156,7 +156,7 @@ def test_normal_stress_of_v_on_top(name: str) -> None:
         def load(
             x: FloatArray, wavenumber: ComplexArray = wavenumber, unit_load: ComplexArray = unit_load
         ) -> FloatArray:
-            stresses = harmonics._stress_of_face_load(system, wavenumber, [unit_load], x, np.zeros(1))
+            stresses = end_field._stress_of_face_load(system, wavenumber, [unit_load], x, np.zeros(1))
             return np.asarray(stresses[0, 2, :, 0, 0])
 
         expected = weigh(modes, load) * kappa[index] / factor[index]
