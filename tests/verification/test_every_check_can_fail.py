@@ -229,8 +229,8 @@ def unfinished_iteration(patch: Patch) -> None:
 
 
 def heavier_film(patch: Patch) -> None:
-    real = FilmProblem.prescribed.fget
-    patch.setattr(FilmProblem, "prescribed", property(lambda problem: 1.01 * real(problem)))
+    real = FilmProblem.resultants.func
+    patch.setattr(FilmProblem, "resultants", property(lambda problem: real(problem) / 1.01))
 
 
 def failed_checks(checks: Iterator[Check]) -> dict[tuple[str, str], bool]:
