@@ -147,7 +147,8 @@ def with_stresses(
     grid, pressure = contact.contact.shape.grid, contact.contact.pressure
     loads = contact.tractions.loads if contact.tractions else sliding(pressure, case.friction_on(grid.x))
     search = place_search(case.body, loads, grid)
-    columns = default_columns(grid, case.body.extent, pressure.any(axis=1), scale) if x is None and refined else x
+    is_loaded = np.asarray(pressure.any(axis=1))
+    columns = default_columns(grid, case.body.extent, is_loaded, scale) if x is None and refined else x
     depths = default_depths(scale, search.peak_width) if z is None else z
     positions = field_positions(case.body, grid, columns, y, depths)
     on_ends = scale * np.array(RESIDUAL_POSITIONS), scale * np.array(RESIDUAL_DEPTHS)

@@ -60,7 +60,7 @@ class RollingCells:
     @cached_property
     def source(self) -> IntArray:
         """Index of the unknown cell that each cell follows, (x, y): itself, or the cell behind a dependent cell."""
-        return np.maximum(np.cumsum(self.is_unknown).reshape(self.is_unknown.shape) - 1, 0)
+        return np.asarray(np.maximum(np.cumsum(self.is_unknown).reshape(self.is_unknown.shape) - 1, 0))
 
     @classmethod
     def of(
