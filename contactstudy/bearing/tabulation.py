@@ -216,11 +216,11 @@ def label_law(solver: ContactSolver, nodes: Nodes, errors: FloatArray) -> xr.Dat
         "relative_moment_error": errors[1],
     }
     scalars = {"contact_length": solver.case.contact_length, "accuracy": solver.accuracy}
-    reference, place = describe_reference_lines(solver.case.body, solver.case.counterbody), "the roller's mid-length"
+    reference, centre = describe_reference_lines(solver.case.body, solver.case.counterbody), "the roller's mid-length"
     coordinates = {
-        "approach": ("approach", nodes.approaches, {"reference": reference, "comment": f"at {place}"}),
-        "tilt": ("tilt", nodes.tilts, {"reference": reference, "centre": place}),
+        "approach": ("approach", nodes.approaches, {"reference": reference, "comment": f"at {centre}"}),
+        "tilt": ("tilt", nodes.tilts, {"reference": reference, "centre": centre}),
     }
     table = xr.Dataset({name: (dims, values) for name, values in arrays.items()} | scalars, coordinates)
-    table["moment"].attrs["comment"] = f"about {place}"
+    table["moment"].attrs["comment"] = f"about {centre}"
     return describe(table, "contact law of a roller on a raceway")

@@ -165,7 +165,7 @@ def numbers_by_subject(scalars: xr.Dataset) -> dict[str, dict[str, str]]:
 
     def rank(name: str) -> int:
         is_member = (name == entry or (entry.endswith("_") and name.startswith(entry)) for _, entry in entries)
-        return next((index for index, found in enumerate(is_member) if found), further)
+        return next((index for index, member in enumerate(is_member) if member), further)
 
     groups: dict[str, dict[str, str]] = {}
     for index, name, meaning in sorted((rank(name), name, text) for name, text in zip(names, meanings, strict=True)):

@@ -132,6 +132,6 @@ def create_cross_section(body: Body, x: FloatArray, z: FloatArray) -> Eigenstrai
     x_edges, z_edges = edges_between(x, low, high), edges_between(z, 0.0, np.inf)
     for name, face, edge in (("x", low, x_edges[0]), ("x", high, x_edges[-1]), ("z", 0.0, z_edges[0])):
         if np.isfinite(face) and edge != face:
-            place = "the top" if name == "z" else f"the free end at {face:g} m"
-            raise InvalidInputError(name, f"{edge:g} m, where the outer cell ends", f"positions that reach to {place}")
+            border = "the top" if name == "z" else f"the free end at {face:g} m"
+            raise InvalidInputError(name, f"{edge:g} m, where the outer cell ends", f"positions that reach to {border}")
     return EigenstrainBody(material=body.material, extent=body.extent, x_edges=x_edges, z_edges=z_edges)

@@ -141,38 +141,39 @@ class NumberParser:
 
     def __init__(self, separator: str) -> None:
         self._comma_allowed = separator != ","
-        self._places: dict[str, tuple[str, str]] = {}  # the first number with a point, the last number with a comma
+        # the first number with a point, the last number with a comma
+        self._marked_fields: dict[str, tuple[str, str]] = {}
         self._is_decimal_comma = False
 
     def parse(self, line: int, name: str, field: str) -> float:
         """Return a field of a column as a number; NaN for an empty field."""
         if not field.strip():
             return np.nan
-        place = f"line {line}, {name}"
+        field_name = f"line {line}, {name}"
         with_point = field.replace(",", ".", 1) if self._comma_allowed and "." not in field else field
         # Python's float also accepts underscores and the digits of all scripts.
         if not NUMERAL.fullmatch(with_point):
             allowed = "a number with a decimal point" + (" or comma" if self._comma_allowed else "")
-            raise InvalidInputError(place, truncate(field), allowed)
+            raise InvalidInputError(field_name, truncate(field), allowed)
         if "," in field:
-            self._places[","] = place, field
+            self._marked_fields[","] = field_name, field
             self._is_decimal_comma = self._is_decimal_comma or not THOUSANDS_PATTERN.fullmatch(field)
         elif "." in field:
-            self._places.setdefault(".", (place, field))
+            self._marked_fields.setdefault(".", (field_name, field))
         return float(with_point)
 
     def check(self) -> None:
         """Raise if numbers with commas are ambiguous."""
-        if "," not in self._places:
+        if "," not in self._marked_fields:
             return
-        place, field = self._places[","]
-        if "." in self._places:
-            place_of_point, with_point = self._places["."]
-            reason = f"{place_of_point} is {truncate(with_point)!r}"
-            raise InvalidInputError(place, truncate(field), "a number with the decimal mark of all others", reason)
+        field_name, field = self._marked_fields[","]
+        if "." in self._marked_fields:
+            name_with_point, with_point = self._marked_fields["."]
+            reason = f"{name_with_point} is {truncate(with_point)!r}"
+            raise InvalidInputError(field_name, truncate(field), "a number with the decimal mark of all others", reason)
         if not self._is_decimal_comma:
             hint = "a decimal comma, or a comma between thousands: write decimal points"
-            raise InvalidInputError(place, truncate(field), "a number of one meaning", hint)
+            raise InvalidInputError(field_name, truncate(field), "a number of one meaning", hint)
 
 
 MAX_STEP_RATIO = 3.0  # Width of a gap over the neighbouring steps

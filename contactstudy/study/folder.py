@@ -69,7 +69,7 @@ class Share:
         return "" if self.count == 1 else f"{self.number}-of-{self.count}-"
 
 
-WHOLE = Share()  # A study in one run
+UNDIVIDED = Share()  # A study in one run
 
 
 class Results:
@@ -179,7 +179,7 @@ class States:
 class Folder:
     """A study's folder, which need not exist yet, for one share of its cases."""
 
-    def __init__(self, path: str | Path, share: Share = WHOLE) -> None:
+    def __init__(self, path: str | Path, share: Share = UNDIVIDED) -> None:
         checks.instance("folder", path, (str, Path), "the path of a study's folder")
         try:
             self.path = Path(path).resolve()

@@ -277,7 +277,7 @@ def _read_user_table(table: Mapping[str, Any]) -> dict[str, Any]:
 
 def user_profiles(parameters: Any) -> dict[str, Profile]:
     """Users' profiles within parameters of cases, by content, for a worker; raises if this process lacks a profile."""
-    found = {}
+    profiles = {}
     for table in tables_within(parameters):
         if table["kind"] != USER_KIND:
             continue
@@ -285,8 +285,8 @@ def user_profiles(parameters: Any) -> dict[str, Profile]:
             allowed = "made by the running script: its class is not in the study's files"
             hint = "run the study from the script that makes this profile; opening it needs none"
             raise InvalidInputError("profile", f"{table['class']} {table['content'][:8]}", allowed, hint)
-        found[table["content"]] = REGISTRY[table["content"]]
-    return found
+        profiles[table["content"]] = REGISTRY[table["content"]]
+    return profiles
 
 
 def _values(profile: Profile, name: str = "profile") -> dict[str, Any]:

@@ -24,7 +24,7 @@ from contactstudy.errors import InvalidInputError, StoreError, StudyFileError, T
 from contactstudy.study.batches import write_batch
 from contactstudy.study.definition import Study
 from contactstudy.study.engine import WAIT_SECONDS, Engine, TaskResults, Tasks, execute
-from contactstudy.study.folder import WHOLE, Folder, Share, States
+from contactstudy.study.folder import UNDIVIDED, Folder, Share, States
 from contactstudy.study.plan import Plan, PlannedCase
 from contactstudy.study.settings import RUN
 from contactstudy.study.worker import Outcome, Solver, Task, batch_of_case
@@ -328,7 +328,7 @@ def run_study(
 def _check_share(share: tuple[int, int] | None) -> Share:
     """Share of a run."""
     if share is None:
-        return WHOLE
+        return UNDIVIDED
     numbers = share if isinstance(share, tuple) and all(type(entry) is int for entry in share) else ()
     if len(numbers) != 2 or not 1 <= numbers[0] <= numbers[1]:
         allowed = "two numbers, such as (3, 40) for the third of forty shares, the first from 1 to the second"
