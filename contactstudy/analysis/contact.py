@@ -331,9 +331,11 @@ def case_numbers(dataset: xr.Dataset) -> dict[str, xr.Variable]:
         "end_pressure_over_p0": 0.5 * (first + last),
     }
     for name, axis, across in (("contact_length", "x", 1), ("contact_width", "y", 0)):
-        loaded = (pressure > 0).any(axis=across)
-        widths = np.broadcast_to(cell_size(array, axis).values, loaded.shape)
-        numbers[name] = np.ptp(array[axis].values[loaded]) + widths[loaded][[0, -1]].mean() if loaded.any() else 0.0
+        loaded, centres, width = (pressure > 0).any(axis=across), array[axis].values, array.coords.get(f"{axis}_width")
+        # Without labels: a study computes these numbers for every case.
+        mean_width = np.full(centres.size, np.ptp(centres) / max(centres.size - 1, 1))
+        widths = mean_width if width is None else width.values
+        numbers[name] = np.ptp(centres[loaded]) + widths[loaded][[0, -1]].mean() if loaded.any() else 0.0
     comments = {name: {"comment": comment, ERROR_KIND: NOT_ESTIMATED} for name, comment in COMMENTS.items()}
     result = {name: xr.Variable((), value, labels(name) | comments.get(name, {})) for name, value in numbers.items()}
     for source in (stress_summary(dataset), dataset):
