@@ -437,9 +437,12 @@ def _transfer_state(start: FilmOnCells, problem: FilmProblem) -> FilmState:
     """First guess: film of other cells, interpolated between the cells' centres."""
     start_cells, cells = start.problem.cells, problem.cells
     state = start.solution.state
-    pressure, distance = (
-        _interpolate_film(values, start_cells.x, start_cells.y, cells) for values in (state.pressure, state.distance)
+    # The film rises by powers of ten from column to column at the contact's ends: its logarithm is interpolated.
+    pressure, distance, log_film = (
+        _interpolate_field(values, start_cells.x, start_cells.y, cells)
+        for values in (state.pressure, state.distance, np.log(start.solution.film))
     )
+    distance = problem.solve_distance(np.exp(log_film), distance)
     return initial_state(problem, np.maximum(pressure, 0.0), state.motion, distance)
 
 
@@ -448,10 +451,11 @@ def _convert_result(film: FilmCase, result: xr.Dataset, problem: FilmProblem) ->
     sign = -1 if result["entrainment_speed"] < 0 else 1
     fields = result[["pressure", "film_thickness"]].transpose("x", "y").dropna("x")
     x, y = (fields[axis].values / film.half_width for axis in "xy")
-    pressure, distance = (
-        _interpolate_film(fields[name].values[:, ::sign] / scale, x, (sign * y)[::sign], problem.cells)
-        for name, scale in (("pressure", film.pressure_scale), ("film_thickness", film.height_scale))
+    pressure, log_film = (
+        _interpolate_field(values[:, ::sign], x, (sign * y)[::sign], problem.cells)
+        for values in (fields["pressure"].values / film.pressure_scale, np.log(fields["film_thickness"].values))
     )
+    distance = np.exp(log_film) / film.height_scale
     film_ratio, central_film = film.film_ratio(result), float(result["central_film"]) / film.height_scale
     distance = np.where(distance < central_film, film_ratio * distance, distance + (film_ratio - 1) * central_film)
     loaded = pressure.ravel() > 0
@@ -460,7 +464,7 @@ def _convert_result(film: FilmCase, result: xr.Dataset, problem: FilmProblem) ->
     return initial_state(problem, pressure, motion, distance)
 
 
-def _interpolate_film(field: FloatArray, x: FloatArray, y: FloatArray, cells: FilmCells) -> FloatArray:
+def _interpolate_field(field: FloatArray, x: FloatArray, y: FloatArray, cells: FilmCells) -> FloatArray:
     """Values at the centres of cells by monotone cubic polynomials, constant outside the given positions."""
     along_y = PchipInterpolator(y, field, axis=1)(np.clip(cells.y, y[0], y[-1]))
     return np.asarray(PchipInterpolator(x, along_y, axis=0)(np.clip(cells.x, x[0], x[-1])))
