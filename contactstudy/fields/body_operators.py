@@ -268,11 +268,10 @@ class ColumnsOperator:
 
 
 def _multiply_matrices(matrices: FloatArray, spectrum: ComplexArray) -> ComplexArray:
-    """Real matrices (wavenumber, cell, cell) times a spectrum (wavenumber, cell)."""
-    product = np.empty_like(spectrum)
-    product.real = (matrices @ spectrum.real[..., None])[..., 0]
-    product.imag = (matrices @ spectrum.imag[..., None])[..., 0]
-    return product
+    """Real matrices (wavenumber, cell, cell) times a contiguous spectrum (wavenumber, cell)."""
+    # One product for real and imaginary parts reads the matrices once.
+    parts = spectrum.view(np.float64).reshape(*spectrum.shape, 2)
+    return (matrices @ parts).view(np.complex128)[..., 0]
 
 
 def _invert_matrix(matrix: FloatArray) -> FloatArray:
