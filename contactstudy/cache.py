@@ -7,7 +7,7 @@ arguments of its function, so results are bit for bit the same with and without 
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable, Collection, Hashable, Mapping
+from collections.abc import Callable, Hashable, Mapping
 from functools import wraps
 from threading import RLock
 from typing import Any, NamedTuple, ParamSpec, TypeVar
@@ -135,8 +135,7 @@ def recall(kind: str, key: Hashable) -> Any | None:
 
 def retain(kind: str, key: Hashable, value: Value, *, replace: bool = False) -> Value:
     """Cache a value with read-only arrays; return the shared one: the first of its key, or this one to `replace` it."""
-    _protect(value)
-    nbytes = nbytes_of(value)
+    nbytes = _protect(value)
     with _lock:
         if replace:
             _store.pop((kind, key), None)
@@ -162,27 +161,25 @@ def cached(kind: str) -> Callable[[Callable[Arguments, Value]], Callable[Argumen
     return decorator
 
 
-def nbytes_of(value: object) -> int:
-    """Size of a value, bytes: its `nbytes`, or the sum over its items."""
-    nbytes = getattr(value, "nbytes", None)
-    return sum(map(nbytes_of, _children(value))) if nbytes is None else int(nbytes)
-
-
-def _protect(value: object) -> None:
-    """Make the arrays of a value read-only."""
-    if isinstance(value, np.ndarray):
-        value.flags.writeable = False
-    for child in _children(value):
-        _protect(child)
-
-
-def _children(value: object) -> Collection[object]:
-    """Items of sequences and mappings, and attributes of objects of this package."""
-    if isinstance(value, (list, tuple)):
-        return value
-    if isinstance(value, Mapping):
-        return value.values()
-    return vars(value).values() if type(value).__module__.startswith("contactstudy.") else ()
+def _protect(value: object) -> int:
+    """Make the arrays of a value read-only, and return its bytes, with those that its use adds."""
+    nbytes, visited, pending = 0, set[int](), [value]
+    while pending:
+        item = pending.pop()
+        if id(item) in visited:
+            continue
+        visited.add(id(item))
+        if isinstance(item, np.ndarray):
+            item.flags.writeable = False
+            nbytes += item.nbytes
+        elif isinstance(item, (list, tuple)):
+            pending += item
+        elif isinstance(item, Mapping):
+            pending += item.values()
+        elif type(item).__module__.startswith("contactstudy."):
+            pending += vars(item).values()
+            nbytes += getattr(item, "added_nbytes", 0)
+    return nbytes
 
 
 class ArrayKey:

@@ -26,14 +26,15 @@ def build_bodies(repeats: int, _: Report) -> Iterator[Row]:
     """Operator of a body with ends, and the time of a second case."""
     grid = Grid(x_range=(0.0, 8 * HALF_WIDTH), y_range=(-1.5 * HALF_WIDTH, 1.5 * HALF_WIDTH), cells_x=128, cells_y=64)
     body = FiniteLengthSpace(length=8 * HALF_WIDTH, material=STEEL)
+    former_nbytes = cache.info().nbytes
     surface_operator(body, grid)
+    megabytes = (cache.info().nbytes - former_nbytes) / 1e6
     works: dict[str, Callable[[], object]] = {
         "cold": lambda: SurfaceOperator.of(body, grid),
         "friction": lambda: SurfaceOperator.of(body, grid, (Load.NORMAL, Load.ALONG_Y)),
         "kept": lambda: surface_operator(body, grid),
     }
     seconds = medians(works, repeats, warm_up=False)
-    megabytes = cache.nbytes_of(surface_operator(body, grid)) / 1e6
     yield Row(
         "building the operator, 128 x 64, L = 8a",
         show(seconds["cold"]),

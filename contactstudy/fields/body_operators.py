@@ -15,7 +15,6 @@ from scipy import fft, linalg
 from contactstudy.arrays.grid import Grid
 from contactstudy.bodies.material import Material
 from contactstudy.bodies.models import BodyTerm, Extent
-from contactstudy.cache import nbytes_of
 from contactstudy.checks import ComplexArray, FloatArray
 from contactstudy.errors import InvalidInputError
 from contactstudy.kernels.convolution import GridTransform, even_spectrum, odd_spectrum
@@ -124,10 +123,9 @@ class UniformOperator:
         return np.asarray(1.0 / np.maximum(spectrum, 1e-3 * spectrum.min(where=spectrum > 0, initial=np.inf)))
 
     @property
-    def nbytes(self) -> int:
-        """Memory, bytes, with the inverse that preconditioning adds."""
-        inverse = max(spectrum.nbytes for spectrum in self._spectra.values())
-        return nbytes_of([self._spectra, self._correction, self._load_transforms, self._field_transforms]) + inverse
+    def added_nbytes(self) -> int:
+        """Memory of the inverse that preconditioning adds, bytes."""
+        return max(spectrum.nbytes for spectrum in self._spectra.values())
 
 
 def _padding(extent: Extent, grid: Grid) -> tuple[bool, int]:
@@ -262,9 +260,9 @@ class ColumnsOperator:
         return inverse
 
     @property
-    def nbytes(self) -> int:
-        """Memory, bytes, with the inverse that preconditioning adds."""
-        return nbytes_of(self._kernels) + max(kernel.nbytes for kernel in self._kernels.values())
+    def added_nbytes(self) -> int:
+        """Memory of the inverse that preconditioning adds, bytes."""
+        return max(kernel.nbytes for kernel in self._kernels.values())
 
 
 def _multiply_matrices(matrices: FloatArray, spectrum: ComplexArray) -> ComplexArray:

@@ -102,7 +102,7 @@ class GridTransform:
         return np.asarray(self._buffers.lateral)
 
     @property
-    def nbytes(self) -> int:
+    def added_nbytes(self) -> int:
         """Memory of one thread's buffers, bytes."""
         return int(self._buffers.real.nbytes + self._buffers.lateral.nbytes)
 
