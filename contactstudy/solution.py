@@ -33,6 +33,7 @@ from contactstudy.contact.rolling.frictional_contact import FrictionalContact, f
 from contactstudy.contact.rolling.tractions import FrictionRequest
 from contactstudy.contact.solve import contact_dataset
 from contactstudy.errors import InvalidInputError, WindowError
+from contactstudy.fields.edge_tension import EdgeSections, label_largest_tension
 from contactstudy.fields.loads import TopLoad, prescribed_loads, sliding
 from contactstudy.fields.positions import Positions, default_columns, default_depths, field_positions
 from contactstudy.fields.stress import contact_stresses, stress_dataset
@@ -141,7 +142,7 @@ RESIDUAL_COMMENT = (
 def with_stresses(
     result: xr.Dataset, contact: CaseContact, x: Positions | None, y: Positions | None, z: Positions | None
 ) -> xr.Dataset:
-    """Add the stresses, the largest von Mises stress in the body, and the residual on the free ends."""
+    """Add the stresses, the largest stress and edge tension in the body, and the residual on the free ends."""
     # Default positions along x resolve the contact on refined columns, and equal the centres of chosen or given cells.
     case, refined, scale = contact.case, bool(contact.values), contact.case.hertz_half_width
     grid, pressure = contact.contact.shape.grid, contact.contact.pressure
@@ -152,13 +153,19 @@ def with_stresses(
     depths = default_depths(scale, search.peak_width) if z is None else z
     positions = field_positions(case.body, grid, columns, y, depths)
     on_ends = scale * np.array(RESIDUAL_POSITIONS), scale * np.array(RESIDUAL_DEPTHS)
-    field, residual, largest = contact_stresses(case.body, loads, search, positions, on_ends)
+    sections = EdgeSections.of(grid, loads, contact.contact.gap)
+    slides_fully, is_singular = contact.tractions is None, np.isinf(float(result.get("peak_pressure", 0.0)))
+    further_points = [sections.points] if sections.columns.size and slides_fully and not is_singular else []
+    stresses = contact_stresses(case.body, loads, search, positions, end_yz=on_ends, further_points=further_points)
+    field = stresses.field
     if refined or x is not None or y is not None:
         field = field.rename({"x": "x_field", "y": "y_field"})
     result = result.assign_coords(field.coords).assign(field.data_vars)
-    result = result.assign(label_largest_stress(result, *largest).data_vars).assign(end_traction_residual=residual)
-    result["end_traction_residual"].attrs["comment"] = RESIDUAL_COMMENT
-    return result
+    numbers = label_largest_stress(result, *stresses.maximum).assign(end_traction_residual=stresses.end_residual)
+    numbers["end_traction_residual"].attrs["comment"] = RESIDUAL_COMMENT
+    if stresses.further and Load.ALONG_Y in loads:
+        numbers = numbers.assign(label_largest_tension(result, sections, loads, *stresses.further).data_vars)
+    return result.assign(numbers.data_vars)
 
 
 LOGGER = logging.getLogger(__name__)
@@ -209,7 +216,8 @@ def solve(
         Everything that `solve_contact` and `stress_field` return, with `hertz_half_width` and `hertz_max_pressure`.
         Stresses have the dimensions ``(x_field, y_field, z)``; ``(x, y, z)`` at the centres of given cells. With
         stresses also `end_traction_residual` and the largest von Mises stress in the body, independent of the
-        positions: `peak_von_mises` and its position ``_x``, ``_y``, ``_z``. On refined columns also `peak_pressure`
+        positions: `peak_von_mises` and its position ``_x``, ``_y``, ``_z``; in full sliding with friction
+        `peak_edge_tension`, see `contactstudy.fields.edge_tension`. On refined columns also `peak_pressure`
         and, for the ends ``_first`` and ``_last``, `end_pressure` and `end_load`, the load on the last half-width. At
         a singular end pressures are infinite; `end_intensity` is K and `end_exponent` m of ``p = K d**-m``. Estimated
         errors are ``<name>_error``. The attributes contain the case, the settings, the versions, and the seconds of

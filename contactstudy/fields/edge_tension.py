@@ -15,33 +15,81 @@ import numpy as np
 import xarray as xr
 
 from contactstudy.analysis.axes import single_case
-from contactstudy.analysis.axial import EDGE_UNCERTAINTY, contact_edges
-from contactstudy.analysis.contact import cut_ends
-from contactstudy.analysis.provenance import INPUTS_ATTRIBUTE, attribute, solved_case
-from contactstudy.arrays.variables import describe, require, without_error
-from contactstudy.checks import FloatArray
+from contactstudy.analysis.axial import EDGE_UNCERTAINTY, contact_borders
+from contactstudy.analysis.provenance import solved_case
+from contactstudy.arrays.grid import Grid, Points
+from contactstudy.arrays.variables import STRESSES, describe, require, without_error
+from contactstudy.checks import FloatArray, IntArray
 from contactstudy.errors import InvalidInputError
+from contactstudy.fields.loads import Loads, prescribed_loads
 from contactstudy.fields.positions import Positions
-from contactstudy.fields.stress import stress_field
+from contactstudy.fields.stress import stresses_at
+from contactstudy.kernels.load import Load
 
 SERIES_TERMS = 4  # terms of the Chebyshev series. Accuracy: the last one is part of the error.
-FIT_DISTANCES = np.array([0.35, 0.5, 0.7, 1.0])  # over a: cells are accurate to 1e-3. Accuracy
+FIT_DISTANCES = np.array([0.35, 0.5, 0.7, 1.0])  # least ones, over a: cells are accurate to 1e-3. Accuracy
 MIN_CELLS = 8  # least number of loaded cells across a section, for edges accurate to a few hundredths of a cell
 
 
-class _Section(NamedTuple):
-    """Traction of a cross-section: its trailing edge, half-width, series, and the width of its cells."""
+class EdgeSections(NamedTuple):
+    """Cross-sections of a contact, each with the rows of cells outside of its trailing edge that the tension needs."""
 
-    edge: float
-    half_width: float
-    coefficients: FloatArray
-    cell_width: float
+    grid: Grid
+    sign: float  # direction of the traction along y: the trailing edge has the opposite direction
+    columns: IntArray
+    edges: FloatArray  # positions y of the trailing edges, metres
+    half_widths: FloatArray  # metres
+    rows: IntArray  # (section, distance): numbers of rows, also beyond the grid
 
-    def plane_tension(self, distance: FloatArray | float) -> FloatArray:
-        """Tension of the series at distances from the edge over the half-width, Pa."""
-        g = (1 + np.asarray(distance)) - np.sqrt((1 + np.asarray(distance)) ** 2 - 1)
-        n = np.arange(SERIES_TERMS)
-        return np.asarray(2 * ((-1.0) ** n * self.coefficients * g[..., None] ** (n + 1)).sum(axis=-1))
+    @classmethod
+    def of(cls, grid: Grid, loads: Loads, gap: FloatArray, columns: IntArray | None = None) -> EdgeSections:
+        """Sections in those columns with enough cells; default: under the largest pressures and in the middle."""
+        pressure = loads[Load.NORMAL].values
+        if columns is None:
+            maxima, middle = pressure.max(axis=1), grid.cells_x // 2
+            columns = np.array([maxima[:middle].argmax(), middle, middle + maxima[middle:].argmax()])
+        columns = np.unique(columns)
+        columns = columns[np.count_nonzero(pressure[columns], axis=1) >= MIN_CELLS]
+        # Without friction the sections equal those of a traction along +y, and share their stresses under the pressure.
+        sign = -1.0 if Load.ALONG_Y in loads and loads[Load.ALONG_Y].values.sum() < 0 else 1.0
+        low, high = contact_borders(pressure[columns], grid.y, gap[columns])
+        edges, half_widths = low if sign > 0 else high, 0.5 * (high - low)
+        # All stresses at rows of cells take one evaluation.
+        numbers = sign * (edges - grid.y[0])[:, None] - half_widths[:, None] * FIT_DISTANCES
+        rows = (sign * np.floor(numbers / grid.dy + 1e-9)).astype(np.int64)
+        return cls(grid, sign, columns, edges, half_widths, rows)
+
+    @property
+    def points(self) -> Points:
+        """Points on the top for the stresses of all sections."""
+        y = self.grid.y[0] + self.grid.dy * np.unique(self.rows)
+        return Points(self.grid.x[self.columns], y, np.zeros(1))
+
+    def compute_tensions(self, loads: Loads, stresses: FloatArray, relative_error: float) -> xr.Dataset:
+        """Tensions at the edges with errors, from the stresses (6, section, y, 1) at the points."""
+        grid, traction, rows = self.grid, loads[Load.ALONG_Y].values, np.unique(self.rows)
+        tensions, errors = np.zeros((2, self.columns.size))
+        for section, (column, edge, half_width) in enumerate(
+            zip(self.columns, self.edges, self.half_widths, strict=True)
+        ):
+            cell_width = grid.dy / half_width
+            coefficients = _fit_series(
+                self.sign * (grid.y - edge) / half_width - 1, cell_width, self.sign * traction[column]
+            )
+            section_rows = self.rows[section]
+            distances = self.sign * (edge - grid.y[0] - grid.dy * section_rows) / half_width
+            stress = stresses[STRESSES.index("sigma_yy"), section, np.searchsorted(rows, section_rows), 0]
+            smooth_stress = stress - _plane_tension(coefficients, distances)
+            intercept = np.polyfit(distances, smooth_stress, 1)[1]
+            tensions[section] = _plane_tension(coefficients, np.zeros(1))[0] + intercept
+            errors[section] = (
+                abs(intercept - smooth_stress[0])
+                + 2 * abs(coefficients[-1])
+                + abs(tensions[section]) * (relative_error + EDGE_UNCERTAINTY * cell_width)
+            )
+        variables = {"edge_tension": tensions, "edge_tension_error": errors, "trailing_edge": self.edges}
+        coordinates = {"x": grid.x[self.columns]}
+        return describe(xr.Dataset({name: ("x", values) for name, values in variables.items()}, coords=coordinates))
 
 
 def edge_tension(result: xr.Dataset, x: Positions | None = None) -> xr.Dataset:
@@ -81,84 +129,46 @@ def edge_tension(result: xr.Dataset, x: Positions | None = None) -> xr.Dataset:
     if "stick" in result:
         raise InvalidInputError("result", "a contact with stick and slip", "one in full sliding")
     body, case = solved_case(result).body, single_case(result)
-    traction = case["traction_y"].transpose("x", "y").values
-    if not traction.any():
+    pressure, traction = case["pressure"], case["traction_y"]
+    if not traction.values.any():
         raise InvalidInputError("result", "a contact without friction", "one in full sliding")
-    centres, column_maxima = case["x"].values, case["pressure"].transpose("x", "y").values.max(axis=1)
-    if x is None:
-        middle_column = centres.size // 2
-        columns = np.unique(
-            [
-                int(column_maxima[:middle_column].argmax()),
-                middle_column,
-                middle_column + int(column_maxima[middle_column:].argmax()),
-            ]
-        )
-    else:
-        columns = np.unique(np.abs(centres - np.atleast_1d(np.asarray(x, dtype=np.float64))[:, None]).argmin(axis=1))
-    edges, sign = contact_edges(case), float(np.sign(traction.sum()))
-    relative_error = 0.0
-    if "peak_pressure_error" in case and np.isfinite(float(case["peak_pressure"])):
-        relative_error = float(case["peak_pressure_error"] / case["peak_pressure"])
-    sections: dict[int, _Section] = {}
-    for column in columns.tolist():
-        limits = float(edges["y_left"][column]), float(edges["y_right"][column])
-        if np.count_nonzero(traction[column]) >= MIN_CELLS and np.isfinite(limits).all():
-            sections[column] = _section(
-                sign * case["y"].values, sign * traction[column], sorted(sign * np.array(limits))
-            )
-    y = {column: sign * (section.edge - section.half_width * FIT_DISTANCES) for column, section in sections.items()}
-    if sections:
-        # One field for all sections: the end correction takes most of the time.
-        stresses = stress_field(
-            body,
-            case["pressure"],
-            x=centres[list(sections)],
-            y=np.unique(np.concatenate(list(y.values()))),
-            z=[0.0],
-            traction_y=case["traction_y"],
-        )
-        tension_field = stresses["sigma_yy"].squeeze("z")
-    tensions = np.full((3, columns.size), np.nan)
-    for column, section in sections.items():
-        stress = tension_field.sel(x=centres[column], y=y[column]).values
-        smooth_stress = stress - section.plane_tension(FIT_DISTANCES)
-        intercept = float(np.polyfit(FIT_DISTANCES, smooth_stress, 1)[1])
-        tension = float(section.plane_tension(0.0)) + intercept
-        error = (
-            abs(intercept - smooth_stress[0])
-            + 2 * abs(section.coefficients[-1])
-            + abs(tension) * (relative_error + EDGE_UNCERTAINTY * section.cell_width / section.half_width)
-        )
-        tensions[:, columns == column] = np.array([[tension], [error], [sign * section.edge]])
-    names = ("edge_tension", "edge_tension_error", "trailing_edge")
-    variables = {name: ("x", values) for name, values in zip(names, tensions, strict=True)}
-    return describe(xr.Dataset(variables, coords={"x": centres[columns]}))
+    grid, loads, _, shape = prescribed_loads(body, pressure, traction_y=traction, inside_cells=pressure)
+    columns = None
+    if x is not None:
+        columns = np.abs(grid.x - np.atleast_1d(np.asarray(x, dtype=np.float64))[:, None]).argmin(axis=1)
+    sections = EdgeSections.of(grid, loads, case["gap"].transpose("x", "y").values, columns)
+    (stresses,) = stresses_at(body, loads, grid, [sections.points], shape)
+    tensions = sections.compute_tensions(loads, stresses, _relative_error(case))
+    return tensions if columns is None else tensions.reindex(x=grid.x[np.unique(columns)])
 
 
-def edge_tension_summary(dataset: xr.Dataset) -> xr.Dataset:
-    """Largest edge tension of a solved case with its error and position; empty where :func:`edge_tension` has none."""
-    slides_fully = {"pressure", "gap", "traction_y"} <= set(dataset.data_vars) and "stick" not in dataset
-    if not slides_fully or not dataset["traction_y"].values.any() or any(cut_ends(dataset)):
-        return xr.Dataset()
-    if "case" not in attribute(dataset, INPUTS_ATTRIBUTE) or np.isinf(float(dataset.get("peak_pressure", 0))):
-        return xr.Dataset()
-    tension = edge_tension(dataset)
-    if bool(tension["edge_tension"].isnull().all()):
-        return xr.Dataset()
-    largest_tension = tension.isel(x=int(np.nanargmax(tension["edge_tension"].values)))
+def label_largest_tension(result: xr.Dataset, sections: EdgeSections, loads: Loads, stresses: FloatArray) -> xr.Dataset:
+    """Return the largest edge tension with its error and position."""
+    tensions = sections.compute_tensions(loads, stresses, _relative_error(result))
+    largest_tension = tensions.isel(x=int(tensions["edge_tension"].values.argmax()))
     names = {"edge_tension": "", "edge_tension_error": "_error", "x": "_x", "trailing_edge": "_y"}
     variables = {f"peak_edge_tension{suffix}": float(largest_tension[name]) for name, suffix in names.items()}
     return without_error(describe(xr.Dataset(variables)), "peak_edge_tension_x", "peak_edge_tension_y")
 
 
-def _section(y: FloatArray, traction: FloatArray, limits: list[float]) -> _Section:
-    """Chebyshev series of the traction of a section along +y, by least squares of the means of its cells."""
-    trailing_edge, leading_edge = limits
-    half_width, centre = 0.5 * (leading_edge - trailing_edge), 0.5 * (trailing_edge + leading_edge)
-    cell_width = abs(float(y[1] - y[0]))
-    points = (y[:, None] + cell_width * ((np.arange(40) + 0.5) / 40 - 0.5) - centre) / half_width
+def _relative_error(case: xr.Dataset) -> float:
+    """Relative error of a refined largest pressure; 0 on given cells and at singular ends."""
+    if "peak_pressure_error" not in case or not np.isfinite(float(case["peak_pressure"])):
+        return 0.0
+    return float(case["peak_pressure_error"] / case["peak_pressure"])
+
+
+def _plane_tension(coefficients: FloatArray, distance: FloatArray) -> FloatArray:
+    """Tension of the series at distances from the edge over the half-width, Pa."""
+    g = 1 + distance - np.sqrt((1 + distance) ** 2 - 1)
+    n = np.arange(SERIES_TERMS)
+    return np.asarray(2 * ((-1.0) ** n * coefficients * g[:, None] ** (n + 1)).sum(axis=-1))
+
+
+def _fit_series(centres: FloatArray, cell_width: float, traction: FloatArray) -> FloatArray:
+    """Chebyshev series of a traction along +y between -1 and 1, by least squares of the means of its cells."""
+    points = centres[:, None] + cell_width * ((np.arange(40) + 0.5) / 40 - 0.5)
     angles = np.arccos(np.clip(points, -1.0, 1.0))
     # sqrt(1 - t**2) U_n(t) = sin((n + 1) arccos t)
     cell_means = np.stack([np.sin((n + 1) * angles).mean(axis=1) for n in range(SERIES_TERMS)], axis=1)
-    return _Section(trailing_edge, half_width, np.linalg.lstsq(cell_means, traction, rcond=None)[0], cell_width)
+    return np.asarray(np.linalg.lstsq(cell_means, traction, rcond=None)[0])

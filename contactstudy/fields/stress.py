@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -167,10 +168,25 @@ def _unit_stress(
     return fields
 
 
+class ContactStresses(NamedTuple):
+    """Stresses of a contact."""
+
+    field: xr.Dataset  # at positions
+    end_residual: float  # residual on the free ends
+    maximum: StressMaximum  # largest stress in the body
+    further: list[FloatArray]  # at further sets of points: arrays (6, x, y, z)
+
+
 def contact_stresses(
-    body: Body, loads: Loads, search: Search, positions: FieldPositions, end_yz: tuple[FloatArray, FloatArray]
-) -> tuple[xr.Dataset, float, StressMaximum]:
-    """Return stresses at positions, the residual on the ends, and the largest stress in the body."""
+    body: Body,
+    loads: Loads,
+    search: Search,
+    positions: FieldPositions,
+    *,
+    end_yz: tuple[FloatArray, FloatArray],
+    further_points: Sequence[Points] = (),
+) -> ContactStresses:
+    """Return stresses at positions and further points, the residual on the ends, and the largest stress in the body."""
     end_positions, pressure = _end_positions(body), loads[Load.NORMAL].values
 
     def stress_at(points: Points) -> FloatArray:
@@ -178,11 +194,14 @@ def contact_stresses(
 
     # All sets share one solution for the equivalent loads.
     on_ends = [Points(end_positions, *end_yz)] if end_positions.size else []
-    field, *stresses = stresses_at(body, loads, search.grid, [positions.points, *search.samples, *on_ends], pressure)
-    residual = _traction_residual(loads, stresses[-1]) if on_ends else 0.0
-    maximum = find_stress_maximum(search, stresses[: len(search.samples)], stress_at)
+    point_sets = [positions.points, *on_ends, *search.samples, *further_points]
+    field, *stresses = stresses_at(body, loads, search.grid, point_sets, pressure)
+    residual = _traction_residual(loads, stresses.pop(0)) if on_ends else 0.0
+    sample_count = len(search.samples)
+    maximum = find_stress_maximum(search, stresses[:sample_count], stress_at)
     maximum = include_points(maximum, positions.points, field, search, stress_at)
-    return _label_stresses(body, search.grid, field, positions), residual, maximum
+    labelled_field = _label_stresses(body, search.grid, field, positions)
+    return ContactStresses(labelled_field, residual, maximum, stresses[sample_count:])
 
 
 def end_traction_residual(body: Body, loads: Loads, grid: Grid, y: FloatArray, z: FloatArray) -> float:

@@ -20,8 +20,6 @@ from contactstudy.bodies.models import Body, FiniteLengthSpace
 from contactstudy.case.case import Case
 from contactstudy.case.gridding import TOLERANCE
 from contactstudy.case.motion import AxialFriction, Sliding
-from contactstudy.errors import InvalidInputError
-from contactstudy.fields.edge_tension import edge_tension_summary
 from contactstudy.profiles import Cylinder, Profile, Shape
 from contactstudy.profiles.base import describe_profile
 
@@ -215,11 +213,6 @@ def _peak_stress(case: xr.Dataset) -> Iterator[Quantity]:
 def _edge_tension(case: xr.Dataset) -> Iterator[Quantity]:
     """Row of the largest tension at the trailing edge of a sliding contact, the stress that opens cracks."""
     name = "peak_edge_tension"
-    if name not in case:
-        try:
-            case = case.assign(edge_tension_summary(case).data_vars)
-        except InvalidInputError:  # inputs of another version
-            return
     if name in case:
         row = _row(case, name, "largest tension at the trailing edge")
         position = ", ".join(f"{axis} = {format_quantity(float(case[f'{name}_{axis}']), 'm')}" for axis in "xy")

@@ -193,7 +193,6 @@ def _solve_case(
     """Solve one case, starting from the film of another speed; the result of a failed case is None."""
     # Planning and opening a study need no solver.
     from contactstudy.fatigue.shakedown import shakedown_summary
-    from contactstudy.fields.edge_tension import edge_tension_summary
     from contactstudy.film.solve import solve_film
     from contactstudy.solution import solve
 
@@ -207,8 +206,6 @@ def _solve_case(
             warnings.simplefilter("always")
             dataset = solve_in_first_window(setup.grids, solve_on)
             numbers = case_numbers(dataset) | dict(shakedown_summary(dataset).variables)
-            if "von_mises" in dataset:
-                numbers |= edge_tension_summary(dataset).variables
     except StoreError:
         raise
     except (ContactStudyError, MemoryError, np.linalg.LinAlgError) as error:

@@ -78,5 +78,5 @@ def test_study_contains_largest_tension(tmp_path) -> None:
     assert np.isnan(cases["peak_edge_tension"].sel(friction=0.0))
     for name, study_name in (("edge_tension", "peak_edge_tension"), ("edge_tension_error", "peak_edge_tension_error")):
         largest = tension[name][int(tension["edge_tension"].values.argmax())]
-        np.testing.assert_allclose(cases[study_name].sel(friction=0.1), largest, rtol=1e-12)
+        np.testing.assert_allclose(cases[study_name].sel(friction=0.1), largest, rtol=1e-7)
     assert cases["peak_edge_tension"].attrs["units"] == "Pa"

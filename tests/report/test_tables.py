@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -205,14 +206,13 @@ def test_marks_of_prescribed_values(case_result: xr.Dataset) -> None:
 def test_tension_at_the_trailing_edge() -> None:
     roller = Roller(radius=5e-3, length=0.5e-3, profile=profiles.Cylinder(1e-4))
     case = Case(body=HalfSpace(material=STEEL), roller=roller, max_pressure=1e9, friction=0.2)
-    result = solve(case, stresses=False, accuracy=0.05)
+    result = solve(case, y=[0.0], z=[0.0], accuracy=0.05)
     row = summary(result)["peak_edge_tension"]
-    expected = edge_tension(result)
-    assert row.value == float(expected["edge_tension"].max())
+    assert row.value == pytest.approx(float(edge_tension(result)["edge_tension"].max()), rel=1e-7)
     assert 0 < row.error < 0.5 * row.value
     assert row.remark.startswith("x = ")
-    for changed_result in (result.drop_attrs(), result.assign(traction_y=0.0 * result["traction_y"])):
-        assert "peak_edge_tension" not in summary(changed_result)
+    frictionless = solve(replace(case, friction=0.0), y=[0.0], z=[0.0], accuracy=0.05)
+    assert "peak_edge_tension" not in summary(frictionless)
 
 
 def test_texts_of_intensity_material_and_body() -> None:

@@ -56,11 +56,12 @@ def test_result_contains_documented_variables_with_units(result) -> None:
                 *("peak_pressure", "peak_pressure_first", "peak_pressure_last"),
                 *("end_pressure_first", "end_pressure_last"),
                 *("end_load_first", "end_load_last"),
-                "peak_von_mises",
+                *("peak_von_mises", "peak_edge_tension"),
             )
             for error in ("", "_error")
         ),
         *(f"peak_von_mises_{axis}" for axis in "xyz"),
+        *(f"peak_edge_tension_{axis}" for axis in "xy"),
     )
     assert set(promised) == set(result.data_vars)
     for name in promised:
