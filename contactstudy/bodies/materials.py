@@ -31,12 +31,3 @@ SOURCES = {
     "STRUCTURAL_STEEL": "structural steel. EN 1993-1-1, 3.2.6",
 }
 """Description and source of each material."""
-
-
-def format_table() -> str:
-    """Return the documentation's table of all materials in Markdown."""
-    rows = ["| name | E, GPa | nu | description and source |", "|---|---|---|---|"]
-    for name, source in SOURCES.items():
-        material: Material = globals()[name]
-        rows.append(f"| `cs.materials.{name}` | {1e-9 * material.young:g} | {material.poisson:g} | {source} |")
-    return "\n".join(rows)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
-from functools import partial
 from numbers import Real
 
 import numpy as np
@@ -160,24 +159,14 @@ def solve_contact(
     >>> bool(contact.converged), round(float(contact.pressure.max()), 2)
     (True, 0.64)
     """
+    arguments = dict(locals())
     if not isinstance(approach, (Real, str, type(None))):
         if isinstance(settings, ContactSettings) and settings.after is not None:
             raise InvalidInputError(
                 "after", "a result", "omitted with several approaches: solve a history step by step"
             )
         steps = checks.coordinates("approach", approach, "metres").tolist()
-        solve_step = partial(
-            solve_contact,
-            body,
-            gap,
-            load=load,
-            friction=friction,
-            counterbody=counterbody,
-            surface=surface,
-            motion=motion,
-            settings=settings,
-        )
-        results = [solve_step(approach=step).set_coords("approach") for step in steps]
+        results = [solve_contact(**arguments | {"approach": step}).set_coords("approach") for step in steps]
         return xr.concat(results, "approach", data_vars="all", coords="minimal", compat="override", join="exact")
     checks.instance("body", body, Body, "a HalfSpace, a QuarterSpace or a FiniteLengthSpace")
     if counterbody is not None:

@@ -24,7 +24,7 @@ from contactstudy.analysis.peaks import interpolated_peak, label_peak
 from contactstudy.arrays.variables import STRESSES, VARIABLES, describe, name_array, require_in_si
 from contactstudy.bodies.models import Body
 from contactstudy.checks import Array, FloatArray
-from contactstudy.eigenstrain.stress_function import Splines, StressFunction
+from contactstudy.eigenstrain.body import Splines, StressFunction
 from contactstudy.errors import ConvergenceWarning, InvalidInputError
 from contactstudy.fatigue.history import MIN_POSITIONS, enclosing_balls, label_points, map_histories, stack_history
 

@@ -9,9 +9,9 @@ from contactstudy.arrays.grid import Grid, Points
 from contactstudy.arrays.variables import describe
 from contactstudy.bodies.models import Body
 from contactstudy.checks import FloatArray
-from contactstudy.fields.body_operators import REFERENCE_LENGTHS, kernel_factor, reference_distance
 from contactstudy.fields.loads import UNIFORM, Loads, end_problem, prescribed_loads, superpose, unit_problem
 from contactstudy.fields.positions import Positions, field_positions
+from contactstudy.fields.surface import kernel_factor, reference_distance
 from contactstudy.kernels.field import displacement_influence, half_space_field, half_space_influence
 from contactstudy.kernels.load import Load
 from contactstudy.overlapping.field import DISPLACEMENT, end_fields, unit_fields
@@ -67,7 +67,7 @@ def displacement_field(
     displacement = displacement_under(body, prescribed.loads, prescribed.grid, positions.points, prescribed.shape)
     fields = positions.dataset({name: displacement[i] for i, name in enumerate(COMPONENTS)})
     # Far from a row of images without end the displacement grows like a logarithm, without an absolute value.
-    reference = REFERENCE_LENGTHS * min(term.extent[1] - term.extent[0] for term in body.terms)
+    reference = min(reference_distance(term.extent) for term in body.terms)
     if np.isfinite(reference):
         for name in COMPONENTS:
             fields[name].attrs["reference_distance"] = reference

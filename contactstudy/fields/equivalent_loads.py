@@ -14,9 +14,9 @@ from contactstudy.arrays.variables import describe
 from contactstudy.bodies.models import Body
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
-from contactstudy.fields.body_operators import REFERENCE_LENGTHS
 from contactstudy.fields.loads import end_problem, prescribed_loads
 from contactstudy.fields.positions import Positions
+from contactstudy.fields.surface import REFERENCE_LENGTHS
 from contactstudy.kernels.load import Load
 from contactstudy.overlapping.operators import OverlappingOperators
 

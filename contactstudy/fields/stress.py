@@ -14,10 +14,10 @@ from contactstudy.arrays.variables import STRESSES, describe
 from contactstudy.bodies.models import Body
 from contactstudy.cache import ArrayKey, recall, retain
 from contactstudy.checks import FloatArray
-from contactstudy.fields.body_operators import reference_distance
 from contactstudy.fields.loads import UNIFORM, Loads, end_problem, prescribed_loads, superpose, unit_problem
 from contactstudy.fields.positions import FieldPositions, Positions, field_positions
 from contactstudy.fields.stress_maximum import Search, StressMaximum, find_stress_maximum, include_points
+from contactstudy.fields.surface import reference_distance
 from contactstudy.kernels.field import half_space_field, stress_influence
 from contactstudy.kernels.load import Load
 from contactstudy.overlapping.field import STRESS, UnitFields, end_fields, unit_fields

@@ -6,7 +6,7 @@ and ``S`` follow from one small dense system per wavenumber along y. The loads a
 wavenumbers, so a ray in the complex plane replaces the real axis in every sum and integral: oscillation becomes
 decay, and stresses next to the ends and the top are accurate. docs/explanation/theory.md contains the equations.
 
-Wavenumbers are axial (``k_x``, axial_modes.py), lateral (``k_y``, lateral_modes.py) and along depth (``k_z``,
-equations.py). The parity is 1 or -1 for a load even or odd about mid-length, 0 for a single end; `shortest` is the
-smallest distance of a position or a step of the load from a corner and bounds all wavenumbers.
+Wavenumbers are axial (``k_x``) and along depth (``k_z``), in equations.py, and lateral (``k_y``), in problem.py. The
+parity is 1 or -1 for a load even or odd about mid-length, 0 for a single end; `shortest` is the smallest distance of a
+position or a step of the load from a corner and bounds all wavenumbers.
 """

@@ -18,10 +18,15 @@ import numpy as np
 from contactstudy.arrays.grid import Points
 from contactstudy.checks import ComplexArray, FloatArray, IntArray
 from contactstudy.kernels.load import Load
-from contactstudy.overlapping.axial_modes import DECAY_LENGTHS
-from contactstudy.overlapping.equations import EquationSet, real_product
-from contactstudy.overlapping.lateral_modes import LateralColumns, LateralPanel, lateral_columns
-from contactstudy.overlapping.problem import EndProblem, make_views, split_by_parity
+from contactstudy.overlapping.equations import DECAY_LENGTHS, EquationSet, real_product
+from contactstudy.overlapping.problem import (
+    EndProblem,
+    LateralColumns,
+    LateralPanel,
+    lateral_columns,
+    make_views,
+    split_by_parity,
+)
 from contactstudy.overlapping.quadrature import graded_interpolation
 from contactstudy.threads import one_blas_thread
 

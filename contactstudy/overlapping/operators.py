@@ -22,8 +22,7 @@ from contactstudy.arrays.grid import Points
 from contactstudy.checks import FloatArray
 from contactstudy.kernels.load import Load
 from contactstudy.overlapping.equations import EquationSet
-from contactstudy.overlapping.lateral_modes import LateralColumns
-from contactstudy.overlapping.problem import EndProblem, View, make_views
+from contactstudy.overlapping.problem import EndProblem, LateralColumns, View, make_views
 from contactstudy.threads import one_blas_thread
 
 

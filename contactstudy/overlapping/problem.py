@@ -1,28 +1,257 @@
-"""A load on the top of a body with free ends, expressed in axial modes."""
+"""A load on the top of a body with free ends, in axial modes and few wavenumbers ``k_y`` along the rolling.
+
+The amplitudes of the body vary slowly with ``k_y``, the phase ``k_y y`` of load and position fast. The equation sets
+are solved at the Gauss nodes of panels that grow from 0, and the amplitudes interpolated to the many nodes of the
+phase. Within a panel a load is a sum of few products of a function of x and a function of ``k_y`` (a singular value
+decomposition), and only these functions of x, the columns, are right-hand sides. Nodes and panels depend on the body,
+the window and the positions: fields of loads add up.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 
 from contactstudy.arrays.grid import EDGE_ROUNDING, Grid
+from contactstudy.arrays.peaks import lagrange_weights
 from contactstudy.checks import ComplexArray, FloatArray, IntArray
 from contactstudy.errors import InvalidInputError
 from contactstudy.kernels.load import Load
-from contactstudy.overlapping.axial_modes import AxialModes, axial_modes
-from contactstudy.overlapping.lateral_modes import (
-    BENDING_POLES,
-    NEGLIGIBLE_LOAD,
-    POLE_PANEL_FACTOR,
-    POLES,
-    LateralColumns,
-    LateralPanel,
-    lateral_panels,
+from contactstudy.overlapping.equations import AxialModes, axial_modes
+from contactstudy.overlapping.quadrature import Resolution, panel_nodes
+
+NEGLIGIBLE_LOAD = (
+    1e-11  # neglected part of a load: rounding of narrow columns. Fields of loads add up to this accuracy.
 )
-from contactstudy.overlapping.quadrature import Resolution
+
+POLES, BENDING_POLES = 2, 3
+"""Order of an amplitude's pole at wavenumber 0, eq. (30); 3 under a force along x, which bends the body, eq. (30a)."""
+
+POLE_PANEL_FACTOR, POLE_TERMS = {POLES: 0.1, BENDING_POLES: 1.0}, {POLES: 4, BENDING_POLES: 6}
+"""Wavenumber along y, over the smallest length of the problem, below which an amplitude is a sum of poles and as many
+powers from the constant on. Accuracy. The higher the pole (a double one if a sliding load off-centre turns the body),
+the more it amplifies the quadrature errors of a much lower wavenumber."""
+
+PHASE_PER_NODE = 1.8  # phase that one Gauss node follows, radians. Accuracy.
+
+MOMENT_ORDER, MOMENT_PHASE = 16, 10.0
+"""Gauss nodes, and the phase that they follow, for the integrals of powers. Accuracy."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class LateralPanel:
+    """Part of the integral over the wavenumber along y."""
+
+    nodes: FloatArray  # wavenumbers of the equation sets, 1/m
+    fine_nodes: FloatArray  # quadrature nodes that follow the phase, and their weights; may be `nodes`
+    weights: FloatArray
+    interpolation: FloatArray | None = None  # (fine, node): from `nodes` to `fine_nodes`; None where they are the same
+    reference: float | None = None
+    """If given, the nodes represent an amplitude ``b / k**2 + c / k + d`` (with more powers and a higher pole, with
+    more nodes) from 0 to the panel's end. The integral is a closed form, for the poles relative to ``|y| =
+    reference``."""
+    poles: int = POLES  # highest order of these poles
+
+    def waves(self, y: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """``cos(k y)`` and ``sin(k y)`` times the weights of the integral: arrays (fine, y)."""
+        if self.reference is not None:
+            panel_end, terms = float(self.nodes[-1]), self.nodes.size - self.poles
+            # Wavenumbers are divided by the panel's end, so that their powers are of similar size.
+            powers = (self.nodes[:, None] / panel_end) ** np.arange(-self.poles, terms)
+            scale = panel_end ** np.arange(-self.poles, terms)
+            waves = []
+            for compute_moments in (cosine_moments, sine_moments):
+                integrals = compute_moments(panel_end, y, self.reference, terms)[BENDING_POLES - self.poles :]
+                waves.append(np.asarray(np.linalg.solve(powers.T, integrals / scale[:, None]) / np.pi))
+            return waves[0], waves[1]
+        phase, weights = np.outer(self.fine_nodes, y), self.weights[:, None] / np.pi
+        return np.cos(phase) * weights, np.sin(phase) * weights
+
+    def load_waves(self, grid: Grid) -> tuple[FloatArray, FloatArray]:
+        """Integrals of ``cos(k y)`` and ``sin(k y)`` over the cells along y: arrays (cell, fine)."""
+        width = grid.dy * np.sinc(self.fine_nodes * grid.dy / (2 * np.pi))
+        phase = np.outer(grid.y, self.fine_nodes)
+        return np.cos(phase) * width, np.sin(phase) * width
+
+    def filters(self, grid: Grid, y: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Matrices (node, cell, y) from a load on cells to each node's part at positions `y`, for even, odd loads."""
+        (load_cosine, load_sine), (cosine, sine) = self.load_waves(grid), self.waves(y)
+        interpolation = np.eye(self.nodes.size) if self.interpolation is None else self.interpolation
+        even_filters = [(load_cosine * column) @ cosine + (load_sine * column) @ sine for column in interpolation.T]
+        odd_filters = [(load_sine * column) @ cosine - (load_cosine * column) @ sine for column in interpolation.T]
+        return np.array(even_filters), np.array(odd_filters)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class LateralColumns:
+    """A load within one panel, as few functions of x ("columns")."""
+
+    nodes: FloatArray  # wavenumbers along y, 1/m
+    along_x: FloatArray  # (cell, node or 1, column): the functions of x
+    parities: IntArray  # (column): 1 or -1 for an even or odd part of the load, 0 for an unsplit load
+    even_filters: FloatArray = field(default_factory=lambda: np.zeros(0))
+    """(node, column, y): from the amplitudes to their sum at positions y, for components even or odd under a load
+    even in y; empty for operators that filter along y themselves."""
+    odd_filters: FloatArray = field(default_factory=lambda: np.zeros(0))
+
+    def synthesis(self, load: Load, parity: int) -> tuple[FloatArray, FloatArray]:
+        """`even_filters` and `odd_filters` of one parity for a load in one direction: arrays (node column, y)."""
+        # Kernels of a load that a reflection along y reverses carry a factor i, which turns a cosine into a sine.
+        is_parity = self.parities == parity
+        even_filters, odd_filters = (
+            waves[:, is_parity].reshape(-1, waves.shape[2]) for waves in (self.even_filters, self.odd_filters)
+        )
+        return (even_filters, odd_filters) if load.sign_y > 0 else (odd_filters, -even_filters)
+
+
+def lateral_panels(
+    first: float,
+    max_distance: float,
+    last: float,
+    resolution: Resolution,
+    reference: float | None = None,
+    poles: int = POLES,
+) -> list[LateralPanel]:
+    """Panels from 0 to `last`, growing from `first`, for phases over the distance `max_distance`."""
+    # With a `reference`, amplitudes have a pole at 0 up to the order `poles`, taken relative to ``|y| = reference``.
+    order = resolution.lateral_nodes
+    count = max(1, int(np.ceil(np.log(last / first) / np.log(resolution.lateral_ratio))))
+    edges = first * (last / first) ** (np.arange(count + 1) / count)
+    nodes, weights = panel_nodes(np.array([0.0, first]), order)
+    panels = [LateralPanel(nodes=nodes, fine_nodes=nodes, weights=weights)]
+    for low, high in pairwise(edges):
+        # Amplitudes are smooth over the logarithm of the wavenumber.
+        log_nodes, weights = panel_nodes(np.log([low, high]), order)
+        nodes = np.exp(log_nodes)
+        if high * np.log(high / low) * max_distance <= PHASE_PER_NODE * order:
+            panels.append(LateralPanel(nodes=nodes, fine_nodes=nodes, weights=weights * nodes))
+            continue
+        panel_count = int(np.ceil((high - low) * max_distance / (PHASE_PER_NODE * resolution.lateral_order)))
+        fine_nodes, weights = panel_nodes(np.linspace(low, high, panel_count + 1), resolution.lateral_order)
+        panels.append(
+            LateralPanel(
+                nodes=nodes,
+                fine_nodes=fine_nodes,
+                weights=weights,
+                interpolation=lagrange_weights(log_nodes, np.log(fine_nodes)),
+            )
+        )
+    if reference is not None:
+        count = poles + POLE_TERMS[poles]
+        samples = first * np.arange(1.0, count + 1) / count
+        panels[0] = LateralPanel(
+            nodes=samples, fine_nodes=samples, weights=np.ones_like(samples), reference=reference, poles=poles
+        )
+    return panels
+
+
+def lateral_columns(
+    panel: LateralPanel, parity_loads: Mapping[int, FloatArray], grid: Grid, y: FloatArray
+) -> LateralColumns | None:
+    """Columns of the `parity_loads` of a cell-wise uniform load within one panel; None if the panel needs no column."""
+    waves = panel.load_waves(grid)
+    cosine, sine = panel.waves(y)
+    along_x, parities, even_waves, odd_waves = [], [], [], []
+    spectra_of = {parity: [cells @ wave for wave in waves] for parity, cells in parity_loads.items()}
+    min_amplitude = NEGLIGIBLE_LOAD * max(
+        (np.abs(amplitude).max() for amplitudes in spectra_of.values() for amplitude in amplitudes), default=0.0
+    )
+    for parity, spectra in spectra_of.items():
+        for spectrum, even_wave, odd_wave in zip(spectra, (cosine, sine), (-sine, cosine), strict=True):
+            if np.abs(spectrum).max() > min_amplitude:
+                along_x.append(spectrum)
+                parities.append(parity)
+                even_waves.append(even_wave)
+                odd_waves.append(odd_wave)
+    if not along_x:
+        return None
+    columns = LateralColumns(
+        nodes=panel.fine_nodes,
+        along_x=np.stack(along_x, axis=-1),
+        parities=np.array(parities),
+        even_filters=np.stack(even_waves, axis=1),
+        odd_filters=np.stack(odd_waves, axis=1),
+    )
+    if panel.interpolation is not None:
+        columns = _interpolate_columns(columns, panel.nodes, panel.interpolation)
+    return columns
+
+
+def _interpolate_columns(columns: LateralColumns, nodes: FloatArray, interpolation: FloatArray) -> LateralColumns:
+    """Represent the load by few functions of x at few nodes."""
+    cells, fine, _ = columns.along_x.shape
+    along_x, parities, factors = [], [], []
+    for parity in np.unique(columns.parities):
+        is_parity = columns.parities == parity
+        along_cells, singular, right = np.linalg.svd(
+            columns.along_x[..., is_parity].reshape(cells, -1), full_matrices=False
+        )
+        rank = int((singular > NEGLIGIBLE_LOAD * singular[0]).sum())
+        along_nodes = (singular[:rank, None] * right[:rank]).reshape(rank, fine, -1)
+        along_x.append(along_cells[:, :rank])
+        parities.append(np.full(rank, parity))
+        factors.append((is_parity, interpolation.T[:, None, :, None] * along_nodes))
+    column_parities = np.concatenate(parities)
+    even_filters, odd_filters = (
+        np.concatenate([np.tensordot(factor, waves[:, is_parity], axes=2) for is_parity, factor in factors], axis=1)
+        for waves in (columns.even_filters, columns.odd_filters)
+    )
+    return LateralColumns(
+        nodes=nodes,
+        along_x=np.concatenate(along_x, axis=1)[:, None, :],
+        parities=column_parities,
+        even_filters=even_filters,
+        odd_filters=odd_filters,
+    )
+
+
+def cosine_moments(panel_end: float, y: FloatArray, reference: float, terms: int = 1) -> FloatArray:
+    """Integrals of ``cos(k y)`` times ``k**-3, k**-2, k**-1, 1, ...`` over k from 0 to `panel_end`: (3 + terms, y)."""
+    # Integrals of poles are relative to ``|y| = reference = r``: with the integrals beyond `panel_end` they are rigid
+    # motions, k**-3: y**2 / 2 ln(|y| / r) + 3 / 4 (r**2 - y**2),   k**-2: pi / 2 (r - |y|),   k**-1: ln(r / |y|).
+    from scipy.special import sici
+
+    distance = np.maximum(np.abs(y), 1e-30 / panel_end)
+    argument = panel_end * distance
+    sine_integral, cosine_integral = sici(argument)
+    logarithm = cosine_integral - np.log(distance / reference)
+    cubic_pole = 0.75 * (reference**2 - distance**2) - 0.5 * distance**2 * logarithm  # eq. (30c)
+    return np.array(
+        [
+            cubic_pole - 0.5 * (np.cos(argument) / panel_end - distance * np.sin(argument)) / panel_end,
+            (-np.cos(argument)) / panel_end - distance * sine_integral + 0.5 * np.pi * reference,
+            logarithm,
+            *_power_moments(np.cos, panel_end, y, terms),
+        ]
+    )
+
+
+def sine_moments(panel_end: float, y: FloatArray, reference: float, terms: int = 1) -> FloatArray:
+    """Integrals of ``sin(k y)`` times the same powers, consistent with `cosine_moments` integrated along y."""
+    from scipy.special import sici
+
+    argument = panel_end * y
+    _, double_pole, simple_pole = cosine_moments(panel_end, y, reference, 0)
+    return np.array(
+        [
+            0.5 * y * (double_pole + 0.5 * np.pi * reference) - 0.5 * np.sin(argument) / panel_end**2,
+            y * (1 - np.sinc(argument / np.pi) + simple_pole),
+            sici(argument)[0],
+            *_power_moments(np.sin, panel_end, y, terms),
+        ]
+    )
+
+
+def _power_moments(wave: Callable[[FloatArray], FloatArray], panel_end: float, y: FloatArray, terms: int) -> FloatArray:
+    """Integrals of ``wave(k y)`` times ``1, k, k**2, ...`` over k from 0 to `panel_end`: array (terms, y)."""
+    panel_count = max(1, int(np.ceil(panel_end * np.abs(y).max(initial=0.0) / MOMENT_PHASE)))
+    nodes, weights = panel_nodes(np.linspace(0.0, panel_end, panel_count + 1), MOMENT_ORDER)
+    return np.asarray((nodes[:, None] ** np.arange(terms) * weights[:, None]).T @ wave(np.outer(nodes, y)))
+
 
 CORNER_OFFSET = 1e-2
 """Depth below a loaded corner, over a cell, at which points on the corner are evaluated. Accuracy. H and V each have a

@@ -23,9 +23,8 @@ from contactstudy.cache import cached
 from contactstudy.checks import ComplexArray, FloatArray
 from contactstudy.kernels.convolution import spectrum_matrices
 from contactstudy.kernels.load import Load, Response
-from contactstudy.overlapping.axial_modes import AxialModes, SingleMirrorModes, axial_modes
-from contactstudy.overlapping.equations import EquationSet
-from contactstudy.overlapping.lateral_modes import BENDING_POLES, POLE_PANEL_FACTOR, POLES, LateralPanel, lateral_panels
+from contactstudy.overlapping.equations import AxialModes, EquationSet, SingleMirrorModes, axial_modes
+from contactstudy.overlapping.problem import BENDING_POLES, POLE_PANEL_FACTOR, POLES, LateralPanel, lateral_panels
 from contactstudy.overlapping.quadrature import Resolution, cell_moments, graded_positions
 
 EXTRA_NODES = 2

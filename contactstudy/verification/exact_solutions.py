@@ -16,8 +16,7 @@ from contactstudy.fields.loads import sliding
 from contactstudy.fields.stress import end_traction_residual, stress_field
 from contactstudy.fields.surface import surface_displacement
 from contactstudy.kernels.load import Load
-from contactstudy.overlapping.axial_modes import axial_modes
-from contactstudy.overlapping.equations import EquationSet
+from contactstudy.overlapping.equations import EquationSet, axial_modes
 from contactstudy.overlapping.quadrature import Resolution
 from contactstudy.verification import closed_forms
 from contactstudy.verification.check import Check, Curve, Reference

@@ -25,8 +25,7 @@ from contactstudy.contact.solve import solve_contact
 from contactstudy.fields.stress import stress_field
 from contactstudy.fields.surface import surface_displacement
 from contactstudy.kernels.load import Load
-from contactstudy.overlapping.axial_modes import axial_modes
-from contactstudy.overlapping.equations import EquationSet
+from contactstudy.overlapping.equations import EquationSet, axial_modes
 from contactstudy.overlapping.quadrature import Resolution
 from contactstudy.stress import maximum_shear, von_mises
 from contactstudy.verification.check import Check, Curve, Reference

@@ -28,7 +28,7 @@ from contactstudy.contact import ContactSettings
 from contactstudy.contact.rolling.fastsim import POISSONS, TABLE
 from contactstudy.contact.solve import solve_contact
 from contactstudy.heat import ThermalProperties, flash_temperature
-from contactstudy.heat.moving_source import MovingBody, SourceOperator
+from contactstudy.heat.flash import MovingBody, SourceOperator
 from contactstudy.profiles import FullCrown
 from contactstudy.solution import solve
 from contactstudy.verification import closed_forms

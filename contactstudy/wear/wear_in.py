@@ -23,10 +23,9 @@ from contactstudy.case.magnitudes import warn_of_magnitudes
 from contactstudy.case.motion import Rolling, Shift, Sliding
 from contactstudy.case.roller import snap_to_ends
 from contactstudy.checks import FloatArray
-from contactstudy.contact.normal.conjugate_gradients import ContactIterate
 from contactstudy.contact.normal.contact import Settings, Shape, check_window, contact_operator, iterate_contact
 from contactstudy.contact.normal.prescribed_loads import PrescribedLoad
-from contactstudy.contact.normal.problem import ContactOperator
+from contactstudy.contact.normal.problem import ContactIterate, ContactOperator
 from contactstudy.contact.refinement.refined_contact import contact_shape, refine_contact
 from contactstudy.contact.rolling.frictional_contact import frictional_contact
 from contactstudy.contact.rolling.tractions import FrictionRequest

@@ -255,8 +255,17 @@ def modules() -> str:
     return table(("folder", "modules"), rows)
 
 
+def material_table() -> str:
+    """Return the elastic constants of the materials with their sources."""
+    rows = []
+    for name, source in materials.SOURCES.items():
+        material = getattr(materials, name)
+        rows.append((code(f"cs.materials.{name}"), f"{1e-9 * material.young:g}", f"{material.poisson:g}", source))
+    return table(("name", "E, GPa", "nu", "description and source"), rows)
+
+
 TABLES: dict[str, Callable[[], str]] = {
-    "materials": materials.format_table,
+    "materials": material_table,
     "study-keys": parameter_table,
     "profile-kinds": profile_kinds,
     "measures": measures,

@@ -21,7 +21,7 @@ from contactstudy.arrays.grid import Points
 from contactstudy.kernels.field import half_space_field, stress_influence
 from contactstudy.kernels.load import Load
 from contactstudy.overlapping import problem
-from contactstudy.overlapping.lateral_modes import POLES
+from contactstudy.overlapping.problem import POLES
 
 
 def test_face_loads_reverse_end_stress_of_top_load(short_body: FiniteLengthSpace, strip_pressure) -> None:

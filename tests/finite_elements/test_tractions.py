@@ -11,7 +11,7 @@ from contactstudy import Material
 from contactstudy.bodies.models import FreeEnds
 from contactstudy.checks import FloatArray
 from contactstudy.kernels.load import Load, Response
-from contactstudy.overlapping.axial_modes import axial_modes
+from contactstudy.overlapping.equations import axial_modes
 from contactstudy.overlapping.quadrature import Resolution, panel_nodes
 from contactstudy.overlapping.surface import EndRequest, PositionWaves, sampled_kernel
 from contactstudy.verification.problems import Bump

@@ -3,7 +3,7 @@ import pytest
 
 from contactstudy import InvalidInputError
 from contactstudy.arrays.grid import Grid
-from contactstudy.heat.moving_source import MovingBody, SourceOperator
+from contactstudy.heat.flash import MovingBody, SourceOperator
 from contactstudy.verification import closed_forms
 from contactstudy.verification.tribology import heat_carried_away
 

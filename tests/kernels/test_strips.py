@@ -13,8 +13,7 @@ from scipy import fft, integrate
 from contactstudy import FiniteLengthSpace, Grid, HalfSpace, Material, QuarterSpace, cache
 from contactstudy.bodies.models import Body
 from contactstudy.checks import FloatArray
-from contactstudy.fields.body_operators import ColumnsOperator, end_kernel_of
-from contactstudy.fields.surface import SurfaceOperator
+from contactstudy.fields.surface import ColumnsOperator, SurfaceOperator, end_kernel_of
 from contactstudy.kernels.load import NORMAL_RESPONSE, Load, Response
 from contactstudy.kernels.strips import (
     FAR_COLUMNS,

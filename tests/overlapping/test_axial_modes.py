@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from contactstudy.kernels.load import Load
-from contactstudy.overlapping.axial_modes import AxialModes, axial_modes
+from contactstudy.overlapping.equations import AxialModes, axial_modes
 from contactstudy.overlapping.quadrature import Resolution
 
 X = np.array([0.02, 0.6, 1.5, 2.7])

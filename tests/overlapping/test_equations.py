@@ -12,8 +12,7 @@ from contactstudy import Grid, Material
 from contactstudy.arrays.grid import Points
 from contactstudy.bodies.models import FreeEnds
 from contactstudy.kernels.load import NORMAL_RESPONSE, Load
-from contactstudy.overlapping.axial_modes import SingleMirrorModes, axial_modes
-from contactstudy.overlapping.equations import EquationSet, load_on_end
+from contactstudy.overlapping.equations import EquationSet, SingleMirrorModes, axial_modes, load_on_end
 from contactstudy.overlapping.field import STRESS, end_fields
 from contactstudy.overlapping.problem import EndProblem
 from contactstudy.overlapping.quadrature import Resolution

@@ -9,8 +9,7 @@ import pytest
 
 from contactstudy.checks import ComplexArray, FloatArray
 from contactstudy.overlapping import field as end_field
-from contactstudy.overlapping.axial_modes import AxialModes, SingleMirrorModes
-from contactstudy.overlapping.equations import EquationSet, coupling_core
+from contactstudy.overlapping.equations import AxialModes, EquationSet, SingleMirrorModes, coupling_core
 from contactstudy.overlapping.quadrature import Resolution
 
 LATERAL, POISSON, LENGTH = 0.7, 0.3, 2.3

@@ -14,7 +14,7 @@ from scipy import integrate
 from contactstudy import Grid
 from contactstudy.checks import FloatArray
 from contactstudy.kernels.load import Load
-from contactstudy.overlapping.lateral_modes import (
+from contactstudy.overlapping.problem import (
     BENDING_POLES,
     POLES,
     LateralPanel,

@@ -10,8 +10,16 @@ import pytest
 from contactstudy import Grid, InvalidInputError
 from contactstudy.checks import FloatArray
 from contactstudy.kernels.load import Load
-from contactstudy.overlapping.lateral_modes import BENDING_POLES, POLE_PANEL_FACTOR, POLES, lateral_panels
-from contactstudy.overlapping.problem import FIRST_PANEL_FACTOR, MIN_LENGTH_RATIO, EndProblem, split_by_parity
+from contactstudy.overlapping.problem import (
+    BENDING_POLES,
+    FIRST_PANEL_FACTOR,
+    MIN_LENGTH_RATIO,
+    POLE_PANEL_FACTOR,
+    POLES,
+    EndProblem,
+    lateral_panels,
+    split_by_parity,
+)
 from contactstudy.overlapping.quadrature import Resolution
 
 EDGES = np.array([0.0, 0.2, 0.5, 1.0, 1.7, 2.1, 2.4])

@@ -7,7 +7,7 @@ from math import factorial
 import numpy as np
 import pytest
 
-from contactstudy.overlapping.axial_modes import slab_factors
+from contactstudy.overlapping.equations import slab_factors
 
 KAPPA = np.array([1e-3, 0.05, 0.2, 0.4, 0.49, 0.51, 1.0, 3.0, 12.0])
 

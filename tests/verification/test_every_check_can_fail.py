@@ -21,7 +21,7 @@ from contactstudy.fields import stress, surface
 from contactstudy.film import line_contact
 from contactstudy.film.newton import FilmProblem, FilmSettings
 from contactstudy.heat import flash
-from contactstudy.heat.moving_source import MovingBody
+from contactstudy.heat.flash import MovingBody
 from contactstudy.kernels.load import Load
 from contactstudy.overlapping.equations import EquationSet
 from contactstudy.overlapping.quadrature import Resolution

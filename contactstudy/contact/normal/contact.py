@@ -14,9 +14,8 @@ from contactstudy.arrays.grid import Grid
 from contactstudy.bodies.models import Body, Counterbody
 from contactstudy.cache import ArrayKey, cached
 from contactstudy.checks import FloatArray
-from contactstudy.contact.normal.conjugate_gradients import ContactIterate
 from contactstudy.contact.normal.prescribed_loads import LineMotions, PrescribedLoad, RigidMotion, line_motion
-from contactstudy.contact.normal.problem import ContactOperator, ContactProblem, solve_coupled, solve_normal
+from contactstudy.contact.normal.problem import ContactIterate, ContactOperator, ContactProblem, solve_problem
 from contactstudy.contact.normal.two_bodies import PairOperator, PrescribedSurface
 from contactstudy.errors import ConvergenceWarning, WindowError
 from contactstudy.fields.surface import SurfaceOperator, surface_operator
@@ -249,7 +248,7 @@ def iterate_contact(
             tolerance=inner_tolerance,
             max_iterations=settings.max_iterations,
         )
-        iterate = solve_coupled(operator, problem) if problem.friction else solve_normal(operator, problem, guess)
+        iterate = solve_problem(operator, problem, guess)
         applications += iterate.applications
         guess = iterate.pressure
         motions = shape.line_motions(shape.loads(guess), guess)

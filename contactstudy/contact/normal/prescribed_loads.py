@@ -13,7 +13,7 @@ from contactstudy.arrays.peaks import lagrange_weights
 from contactstudy.bodies.models import Body
 from contactstudy.cache import cached
 from contactstudy.checks import FloatArray
-from contactstudy.contact.normal.conjugate_gradients import Resultants
+from contactstudy.contact.normal.problem import Resultants
 from contactstudy.errors import InvalidInputError
 from contactstudy.fields.displacement import normal_influence
 from contactstudy.kernels.images import polynomial_count

@@ -1,17 +1,266 @@
-"""Problem of one contact, first guess from coarser cells, and solution with or without coupled friction."""
+"""Unilateral contact under prescribed resultants or a prescribed approach, with or without coupled friction.
+
+The conjugate gradients follow I. A. Polonsky and L. M. Keer, Wear 231 (1999) 206, with a preconditioner (J. Zhao,
+E. A. H. Vollebregt, C. W. Oosterlee, Math. Comput. Sci. 9 (2015) 375), an update of the gap along the search direction
+while the contact area does not change, and a safeguard against cells that enter at once and overshoot. The first guess
+stems from coarser cells.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import Protocol
 
 import numpy as np
 
 from contactstudy.arrays.grid import Grid
-from contactstudy.checks import FloatArray
-from contactstudy.contact.normal.conjugate_gradients import ContactIterate, Resultants, solve_complementarity
+from contactstudy.checks import BoolArray, FloatArray
 from contactstudy.kernels.load import Load
+
+Operator = Callable[[FloatArray], FloatArray]
+
+ENTRY_OVERLAP = 0.1  # overlap from which on a cell enters the contact, over the tolerated violation. Speed.
+MIN_ENTRY_PRESSURE = 1e-12  # least pressure of a cell that enters the contact, over the largest pressure. Speed.
+MIN_LINEAR_FACTOR = 0.1  # least value of the linear factor in `restore`, over its constant: positive. Speed.
+ADDED_PRESSURE = 0.1  # pressure, over the largest, added to all cells if one side of the load has none. Speed.
+MAX_EXPONENT = 1e4  # largest slope of the exponential factor in `restore`. Speed.
+
+
+@dataclass(frozen=True, eq=False)
+class Resultants:
+    """Prescribed resultants of the pressure, each conjugate to a rigid motion of the shape."""
+
+    total: float | None  # sum over the cells, Pa, conjugate to the approach; None if the gap contains the approach
+    lever: FloatArray | None = None
+    """(x, 1): arm of each cell about the point where the load is to act, over the largest arm: the sum of arm times
+    pressure is zero, and the shape tilts about that point."""
+
+    @property
+    def motions(self) -> list[FloatArray]:
+        """Rigid motions that are free: arrays that broadcast to (x, y)."""
+        if self.total is None:
+            return []
+        return [np.ones((1, 1))] if self.lever is None else [np.ones((1, 1)), self.lever]
+
+    def restore(self, pressure: FloatArray) -> FloatArray:
+        """Scale the pressure to the prescribed resultants, by a factor that is linear or exponential in the arm."""
+        if self.total is None:
+            return pressure
+        if self.lever is None:
+            return np.asarray(pressure * (self.total / pressure.sum()))
+        line = pressure.sum(axis=1)
+        arm = self.lever[:, 0]
+        sums = [float((line * arm**power).sum()) for power in (0, 1, 2)]
+        # One column of cells lacks a second moment: the factor restores the sum only.
+        if sums[0] * sums[2] - sums[1] ** 2 <= 1e-9 * sums[0] * sums[2]:
+            return np.asarray(pressure * (self.total / sums[0]))
+        constant, slope = np.linalg.solve([sums[:2], sums[1:]], [self.total, 0.0])
+        factor = constant + slope * self.lever
+        if factor.min() < MIN_LINEAR_FACTOR * constant:
+            factor = self._exponential_factor(line, arm)
+        return np.asarray(pressure * factor)
+
+    def _exponential_factor(self, line: FloatArray, arm: FloatArray) -> FloatArray:
+        """Positive factor ``C exp(s arm)`` for both resultants; without pressure on both sides, for the sum alone."""
+        assert self.total is not None
+        loaded = line > 0
+        line, lever = line[loaded], arm[loaded]
+        slope = 0.0
+        if lever.min() < 0 < lever.max():
+
+            def moment(slope: float) -> float:
+                weighted = line * np.exp(slope * lever - (slope * lever).max())
+                return float((weighted * lever).sum() / weighted.sum())
+
+            bound = 1.0
+            while bound < MAX_EXPONENT and moment(-bound) * moment(bound) > 0:
+                bound *= 2
+            if moment(-bound) * moment(bound) <= 0:
+                from scipy.optimize import brentq
+
+                slope = float(brentq(moment, -bound, bound, xtol=1e-15, rtol=1e-14))
+        factor = np.exp(slope * arm - (slope * lever).max())
+        return np.asarray((factor * (self.total / float((line * factor[loaded]).sum())))[:, None])
+
+    def position_error(self, pressure: FloatArray) -> float:
+        """Distance of the pressure's resultant from its prescribed position, over the largest arm."""
+        return 0.0 if self.lever is None else abs(float((pressure * self.lever).sum() / pressure.sum()))
+
+
+@dataclass(frozen=True, kw_only=True)
+class ContactIterate:
+    """Result of the iteration."""
+
+    pressure: FloatArray  # (x, y): pressure, Pa, with the prescribed resultants
+    motion: tuple[float, ...]  # the free rigid motions: approach, metres, and tilt about the point of application
+    applications: int  # number of applications of the operator
+    converged: bool  # whether the tolerance was reached
+
+
+def solve_complementarity(
+    operator: Operator,
+    preconditioner: Operator,
+    gap: FloatArray,
+    resultants: Resultants,
+    start: FloatArray,
+    *,
+    tolerance: float,
+    max_iterations: int,
+) -> ContactIterate:
+    """Solve for a pressure ``p >= 0`` with ``g = gap + operator(p) - motion >= 0``, ``p g = 0`` and the resultants."""
+    state = _IterationState(operator, preconditioner, gap, resultants, start)
+    converged = False
+    for _ in range(max_iterations):
+        opening = state.compute_opening()
+        residual = np.where(state.contact, opening, 0.0)
+        violation = np.where(state.contact, np.abs(residual), np.maximum(-opening, 0.0)).max()
+        scale = np.ptp(state.displacement)
+        step, response, curvature = state.search_step(residual)
+        trial = state.pressure - step * state.direction
+        change = abs(step) * float(np.abs(state.direction).sum() / state.pressure.sum())
+        closing = ~state.contact & (opening < -ENTRY_OVERLAP * tolerance * scale)
+        if (trial < 0).any() or closing.any():
+            state.change_area(trial, closing, opening, step, response)
+        else:
+            state.pressure, state.displacement, state.area_changed = trial, state.displacement - step * response, False
+            converges = violation <= tolerance * scale and change <= tolerance
+            if converges and resultants.position_error(state.pressure) <= tolerance:
+                converged = True
+                break
+        if curvature <= 0:
+            break
+    pressure = resultants.restore(state.pressure)
+    motion = tuple(float(component) for component in state.motion)
+    return ContactIterate(pressure=pressure, motion=motion, applications=state.applications, converged=converged)
+
+
+class _IterationState:
+    """State of the iteration in `solve_complementarity`."""
+
+    def __init__(
+        self, operator: Operator, preconditioner: Operator, gap: FloatArray, resultants: Resultants, start: FloatArray
+    ) -> None:
+        self._operator, self._preconditioner = operator, preconditioner
+        self._gap, self._possible = gap, np.isfinite(gap)
+        self._resultants, self._motions = resultants, resultants.motions
+        self.applications = 0
+        self.pressure = resultants.restore(self._balance_sides(start))
+        self.displacement = self._apply(self.pressure)
+        if resultants.total is None:
+            self._scale_guess()
+        self.contact = self.pressure > 0
+        self.area_changed = True
+        self.motion: FloatArray = np.zeros(len(self._motions))
+        self.direction: FloatArray = np.zeros_like(self.pressure)
+        self._residual: FloatArray = np.zeros_like(self.pressure)
+        self._energy_slope = 0.0
+        self._weights: list[FloatArray] = []
+        self._gram: FloatArray = np.zeros((len(self._motions), len(self._motions)))
+
+    def _apply(self, pressure: FloatArray) -> FloatArray:
+        self.applications += 1
+        return self._operator(pressure)
+
+    def _scale_guess(self) -> None:
+        """Scale the guess so that the work of the prescribed approach equals the work of the displacement."""
+        gap = self._gap
+        work = -float((self.pressure * np.where(self._possible, gap, 0.0)).sum())
+        if work <= 0:  # the guess lies outside the shape's overlap
+            self.pressure = np.where(gap < 0, 1.0, 0.0)
+            self.displacement, work = self._apply(self.pressure), -float(gap[gap < 0].sum())
+        factor = work / float((self.pressure * self.displacement).sum())
+        self.pressure, self.displacement = factor * self.pressure, factor * self.displacement
+
+    def _balance_sides(self, pressure: FloatArray) -> FloatArray:
+        """Add a little pressure to every cell if all pressure lies on one side of the load's position."""
+        lever = self._resultants.lever
+        if lever is None:
+            return pressure
+        arms = lever[pressure.any(axis=1)]
+        if arms.min() < 0 < arms.max():
+            return pressure
+        return pressure + np.where(self._possible, ADDED_PRESSURE * pressure.max(), 0.0)
+
+    def compute_opening(self) -> FloatArray:
+        """Compute the gap after the rigid motion for which the descent keeps the prescribed resultants."""
+        motions = self._motions
+        if self.area_changed:
+            self._weights = [
+                np.where(self.contact, self._preconditioner(np.where(self.contact, mode, 0.0)), 0.0) for mode in motions
+            ]
+            self._gram = np.array([[float((weight * mode).sum()) for mode in motions] for weight in self._weights])
+        height = np.where(self._possible, self._gap + self.displacement, np.inf)
+        contact_height = np.where(self.contact, height, 0.0)
+        if motions:
+            weighted_heights = [float((weight * contact_height).sum()) for weight in self._weights]
+            if len(motions) == 1:
+                self.motion = np.asarray(np.array(weighted_heights) / self._gram[0])
+            else:  # least squares, for a contact of one column of cells cannot tilt
+                self.motion = np.asarray(np.linalg.lstsq(self._gram, weighted_heights, rcond=None)[0])
+        terms = (component * mode for component, mode in zip(self.motion, motions, strict=True))
+        return np.asarray(height - sum(terms, np.zeros((1, 1))))
+
+    def search_step(self, residual: FloatArray) -> tuple[float, FloatArray, float]:
+        """Update the search direction; return the step, the displacement under the direction and the curvature."""
+        descent = np.where(self.contact, self._preconditioner(residual), 0.0)
+        if self.area_changed or self._energy_slope == 0.0:
+            direction = descent
+        else:
+            # Polak and Ribiere's form tolerates a preconditioner that is slightly unsymmetric on the contact.
+            beta = float(((residual - self._residual) * descent).sum()) / self._energy_slope
+            direction = descent + beta * self.direction
+        self._energy_slope, self._residual = float((residual * descent).sum()), residual
+        self.direction = np.where(self.contact, direction, 0.0)
+        displacement = self._apply(self.direction)
+        curvature = float((self.direction * displacement).sum())
+        step = float((residual * self.direction).sum()) / curvature if curvature > 0 else 0.0
+        return step, displacement, curvature
+
+    def change_area(
+        self, trial: FloatArray, entering: BoolArray, opening: FloatArray, step: float, response: FloatArray
+    ) -> None:
+        """Remove cells with negative pressure from the contact, and add cells that overlap."""
+        trial[trial < 0] = 0.0
+        if entering.any():
+            # As in Polonsky and Keer, the pressure of an entering cell is a step along its overlap.
+            scaled = self._preconditioner(np.where(entering, opening, 0.0))
+            trial[entering] = np.maximum(-scaled[entering], MIN_ENTRY_PRESSURE * trial.max())
+        trial = self._resultants.restore(self._balance_sides(trial))
+        displacement = self._apply(trial)
+        fraction = 1.0
+        # Only entering cells may overshoot; cells leave the contact finitely often.
+        if entering.any():
+            fraction = _descent_fraction(trial - self.pressure, displacement - self.displacement, opening)
+        if fraction > 0:
+            if fraction < 1.0:
+                trial = self.pressure + fraction * (trial - self.pressure)
+                displacement = self.displacement + fraction * (displacement - self.displacement)
+            self.pressure, self.displacement = trial, displacement
+        else:
+            self._step_to_border(step, response)
+        self.contact = self.pressure > 0
+        self.area_changed = True
+
+    def _step_to_border(self, step: float, response: FloatArray) -> None:
+        """Step along the search direction until the first cell leaves the contact; the resultants do not change."""
+        pressure_change = -step * self.direction
+        falling = self.contact & (pressure_change < 0)
+        steps_to_zero = self.pressure[falling] / -pressure_change[falling]
+        fraction = min(1.0, float(steps_to_zero.min(initial=1.0)))
+        pressure = self.pressure + fraction * pressure_change
+        pressure[falling] = np.where(steps_to_zero <= fraction, 0.0, np.maximum(pressure[falling], 0.0))
+        self.pressure, self.displacement = pressure, self.displacement - fraction * step * response
+
+
+def _descent_fraction(pressure_change: FloatArray, displacement_change: FloatArray, opening: FloatArray) -> float:
+    """Fraction of a pressure change to apply: 1, or the minimum of the energy if the whole change raises the energy."""
+    slope = -float((pressure_change * np.where(np.isfinite(opening), opening, 0.0)).sum())
+    curvature = float((pressure_change * displacement_change).sum())
+    if slope <= 0:
+        return 0.0
+    return slope / curvature if slope < 0.5 * curvature else 1.0
+
 
 MAX_COUPLED_ROUNDS = 60  # largest number of rounds of a coupled contact. Speed.
 ROUND_ACCURACY = 0.03  # tolerance of a round over the change in the preceding round. Speed.
@@ -164,8 +413,12 @@ def solve_normal(operator: ContactOperator, problem: ContactProblem, start: Floa
     return replace(iterate, pressure=iterate.pressure / weights)
 
 
-def solve_coupled(operator: ContactOperator, problem: ContactProblem) -> ContactIterate:
-    """Solve a contact with the displacement from friction: the traction of one round changes the gap of the next."""
+def solve_problem(
+    operator: ContactOperator, problem: ContactProblem, start: FloatArray | None = None
+) -> ContactIterate:
+    """Solve a contact: with coupled friction, the traction of one round changes the gap of the next."""
+    if not problem.friction:
+        return solve_normal(operator, problem, start)
     # The rounds contract like ``f (1 - 2 nu) / (2 (1 - nu))``; each is solved only as far as the last change requires.
     tolerance = max(problem.tolerance, FIRST_ROUND_TOLERANCE)
     iterate = solve_normal(operator, replace(problem, tolerance=tolerance))

@@ -1,4 +1,4 @@
-"""Laws of singular ends and convex corners, and the pressures and loads at the ends of a contact.
+"""Laws of singular ends and convex corners of a contact.
 
 At the distance d from a sharp end the pressure is ``K d**-m``, with ``m = 1/2`` at a rigid end; at an elastic end m
 follows from the two materials or is fitted. Where the slope of the gap jumps by s > 0, it is
@@ -7,17 +7,13 @@ follows from the two materials or is fitted. Where the slope of the gap jumps by
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
 
 from contactstudy import checks
-from contactstudy.arrays.grid import centres_of
-from contactstudy.arrays.peaks import section_maxima
 from contactstudy.checks import FloatArray
-from contactstudy.contact.refinement.columns import AxialShape
 from contactstudy.errors import InvalidInputError
 
 RIGID = 0.5  # exponent at a sharp rigid end
@@ -256,53 +252,3 @@ def corner_peak(intensity: float, distance: float, slope: float, blend_radius: f
         bound = MAX_BLEND_WIDTH * distance / slope
         raise InvalidInputError("blend_radius", blend_radius, f"at most {bound:.3g} m", "solve the blended profile")
     return float(corner_intensity * (np.log(2 * distance / width) + 1))  # eq. (42b)
-
-
-ValuePairs = Mapping[str, list[float]]
-"""Values of the first and the last half or end, by their names in results: the largest pressure of a half, the pressure
-at an end, and the load on the last half-width at an end, over the width of a cell along y."""
-
-
-def evaluate_pairs(
-    edges: FloatArray, pressure: FloatArray, shape: AxialShape, laws: Sequence[EndLaw | None]
-) -> tuple[ValuePairs, float]:
-    """Values of a pressure (column, y), and relative increase of the peak by a parabola along y."""
-    line, sums = section_maxima(pressure), pressure.sum(axis=1)
-    half, mid_x = 0.5 * (edges[-1] - edges[0]), 0.5 * (edges[0] + edges[-1])
-    loaded_corners = [corner for corner in shape.corners if is_loaded_at(corner, edges, pressure)]
-    values: dict[str, list[float]] = {"peak_pressure": [], "end_pressure": [], "end_load": []}
-    for side, law in enumerate(laws):
-        distances, row = count_from_end(side, edges, line)
-        end_pressure = np.inf if law else _extrapolate_to_end(distances, row)
-        half_row = row[centres_of(distances) < half]
-        # Where the pressure rises through mid-length, the peak of a half lies at mid-length.
-        peak = max(float(half_row.max()), float(np.interp(half, centres_of(distances), row)))
-        # The peak exceeds the mean of the outermost column only if the pressure rises to the end.
-        if half_row.argmax() == 0:
-            peak = max(peak, end_pressure)
-        is_unbounded = law or any(corner >= mid_x if side else corner <= mid_x for corner in loaded_corners)
-        values["peak_pressure"].append(np.inf if is_unbounded else peak)
-        values["end_pressure"].append(end_pressure)
-        column_sums = count_from_end(side, edges, sums)[1]
-        values["end_load"].append(float(column_sums @ np.diff(np.minimum(distances, shape.half_width))))
-    return values, float(line.max() / pressure.max()) - 1
-
-
-def is_loaded_at(corner: float, edges: FloatArray, pressure: FloatArray) -> bool:
-    """Whether a column next to a corner has a pressure (column, y)."""
-    index = int(np.abs(edges - corner).argmin())
-    return bool(pressure[index - 1 : index + 1].any())
-
-
-def count_from_end(side: int, edges: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Distances of the edges from an end of the shape, and the values in the order from this end."""
-    return (edges - edges[0], values) if side == 0 else (edges[-1] - edges[::-1], values[::-1])
-
-
-def _extrapolate_to_end(edges: FloatArray, row: FloatArray) -> float:
-    """Pressure at the end, from the means of the three outermost columns."""
-    if row[0] <= 0:
-        return 0.0
-    sums = np.cumsum(row[:3] * np.diff(edges[:4]))
-    positions = edges[1:4]
-    return max(float(np.linalg.solve(np.stack([positions, positions**2, positions**3], axis=1), sums)[0]), 0.0)

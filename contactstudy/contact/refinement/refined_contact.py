@@ -24,10 +24,10 @@ from contactstudy.checks import FloatArray
 from contactstudy.contact.normal.contact import Contact, Settings, Shape, check_window, contact_of, contact_operator
 from contactstudy.contact.normal.prescribed_loads import PrescribedLoad
 from contactstudy.contact.normal.problem import ContactProblem, solve_normal
-from contactstudy.contact.refinement.columns import AxialShape
 from contactstudy.contact.refinement.laws import RIGID, CornerLaw, EndLaw, corner_law, elastic_exponent
 from contactstudy.contact.refinement.refinement import (
     VALUE_TOLERANCE,
+    AxialShape,
     ColumnPressure,
     RefinedColumns,
     refine_coarsely,

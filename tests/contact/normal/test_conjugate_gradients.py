@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from scipy import optimize
 
 from contactstudy import FiniteLengthSpace, Grid, Material
-from contactstudy.contact.normal.conjugate_gradients import (
+from contactstudy.contact.normal.problem import (
     Resultants,
     _descent_fraction,
     _IterationState,

@@ -10,17 +10,17 @@ import pytest
 
 from contactstudy import Grid, HalfSpace, Material
 from contactstudy.checks import FloatArray
-from contactstudy.contact.normal.conjugate_gradients import Resultants
 from contactstudy.contact.normal.problem import (
     ContactOperator,
     ContactProblem,
+    Resultants,
     _continue_square,
     _initial_guess,
     _remove_mean_slope,
     halve_cells,
     interpolate_columns,
-    solve_coupled,
     solve_normal,
+    solve_problem,
 )
 from contactstudy.fields.surface import surface_operator
 from contactstudy.kernels.load import Load
@@ -64,7 +64,7 @@ GRADED = Grid.between(np.concatenate([np.linspace(-1.5, 0.3, 11), np.linspace(0.
 @pytest.mark.parametrize("grid", [GRID, GRADED], ids=["uniform", "graded"])
 def test_applications_are_counted(grid: Grid, friction: float) -> None:
     operator = CountingOperator(grid)
-    computed = (solve_coupled if friction else solve_normal)(operator, ball(grid, friction=friction))
+    computed = solve_problem(operator, ball(grid, friction=friction))
     assert computed.converged
     assert computed.applications == operator.application_count
 
@@ -74,7 +74,7 @@ def test_overflow_of_the_first_round_is_not_converged() -> None:
     lever = np.where(GRID.x[:, None] > 0.4, 1.0, 1e-300)
     problem = ball(GRID, friction=0.4)
     with np.errstate(all="ignore"):
-        computed = solve_coupled(CountingOperator(GRID), replace(problem, resultants=Resultants(1e300, lever)))
+        computed = solve_problem(CountingOperator(GRID), replace(problem, resultants=Resultants(1e300, lever)))
     assert not computed.converged
 
 
@@ -82,7 +82,7 @@ def test_coupled_rounds_end_without_bending_change() -> None:
     """The pressure under its own friction equals the pressure of the next round, within the tolerance."""
     request = ball(GRID, friction=0.4)
     operator = CountingOperator(GRID)
-    computed = solve_coupled(operator, request)
+    computed = solve_problem(operator, request)
     friction_displacement = operator({Load.ALONG_Y: request.friction * computed.pressure})
     repeated = solve_normal(operator, replace(request, gap=request.gap + friction_displacement, tolerance=1e-10))
     assert computed.pressure == pytest.approx(repeated.pressure, abs=3e-6 * repeated.pressure.max())
@@ -234,7 +234,7 @@ def test_last_round_changes_surface_within_tolerance(tolerance: float, friction:
         tolerance=tolerance,
         max_iterations=500,
     )
-    computed = solve_coupled(operator, request)
+    computed = solve_problem(operator, request)
     assert computed.converged
     shifted = float(np.ptp((friction_displacements[-1] - friction_displacements[-2])[computed.pressure > 0]))
     assert shifted <= 0.55 * tolerance * float(np.ptp(expected({Load.NORMAL: computed.pressure})))

@@ -9,7 +9,7 @@ import pytest
 
 from contactstudy.arrays.grid import centres_of
 from contactstudy.checks import FloatArray
-from contactstudy.contact.refinement.columns import (
+from contactstudy.contact.refinement.refinement import (
     CHORD_TOLERANCE,
     FIRST_COLUMN,
     MAX_COLUMNS,

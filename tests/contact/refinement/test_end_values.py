@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from contactstudy.checks import FloatArray
-from contactstudy.contact.refinement.columns import AxialShape
-from contactstudy.contact.refinement.laws import EndLaw, ValuePairs, count_from_end, evaluate_pairs
+from contactstudy.contact.refinement.laws import EndLaw
+from contactstudy.contact.refinement.refinement import AxialShape, ValuePairs, count_from_end, evaluate_pairs
 
 EDGES = 3.0 + 1e-2 * np.cumsum([0.0, 1.0, 1.5, 2.5, 4.0, 6.0, 9.0, 4.0, 7.0, 5.0, 4.0, 3.0, 2.0, 1.0])
 ACROSS = np.sqrt(np.array([0.0, 0.19, 0.91, 0.91, 0.19, 0.0]))

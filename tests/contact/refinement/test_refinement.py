@@ -11,18 +11,22 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from contactstudy.checks import BoolArray, FloatArray
-from contactstudy.contact.refinement.columns import MAX_COLUMNS, MAX_WIDTH_RATIO, AxialShape, first_edges, split_columns
 from contactstudy.contact.refinement.laws import RIGID, EndLaw
 from contactstudy.contact.refinement.refinement import (
     EDGE_COLUMN_WIDTH,
     END_COLUMN_WIDTH,
+    MAX_COLUMNS,
+    MAX_WIDTH_RATIO,
     MIN_END_COLUMN,
+    AxialShape,
     ColumnPressure,
     Refinement,
     _change_error,
+    first_edges,
     refine_coarsely,
     refine_columns,
     replace_pressure,
+    split_columns,
 )
 
 HALF_WIDTH, LENGTH = 1.0, 20.0
