@@ -264,6 +264,7 @@ VARIABLES = {  # every one by subject, without names made by a rule
     "mass_error": Variable(
         SCALAR, "1", "", "largest net outflow of a full cell, over the central flow times the cell's width"
     ),
+    "film_balance_error": Variable(SCALAR, "1", "", "inflow less outflow of the whole film, over the central flow"),
     "film_load_error": Variable(SCALAR, "1", "", "error of load and moment of the film, over the load"),
     "film_complementarity_error": Variable(SCALAR, "1", "", "largest net inflow or pressure of a cavitated cell"),
     "newton_steps": Variable(SCALAR, "1", "", "Newton steps of the film on all levels"),

@@ -131,6 +131,7 @@ class FilmSolution(NamedTuple):
     asperity_pressure: FloatArray  # (x, y)
     film: FloatArray  # (x, y): mean height
     residual: float  # largest net outflow of a full cell over the central film
+    balance_error: float  # flow out of all full cells, through their outer faces, over the central film and the length
     load_error: float  # error of load and moment over the load
     complementarity_error: float  # largest net inflow of a cavitated cell over the central film
     newton_steps: int
@@ -273,6 +274,9 @@ class _Iteration:
         central_film, cavitated = self.problem.central_film, linearised.cavitated
         # A cavitated cell may lose mass; a full cell loses none.
         residual = float(np.abs(linearised.outflow[~cavitated]).max(initial=0.0)) / central_film
+        # Flows between full cells cancel: the sum contains inlet, exit and both ends.
+        widths = self.problem.cells.widths
+        balance = (widths @ np.where(cavitated, 0.0, linearised.outflow).reshape(widths.size, -1)).sum()
         inflow = float(np.maximum(-linearised.outflow[cavitated], 0.0).max(initial=0.0)) / central_film
         cavity_pressure = float(np.abs(linearised.fluid_pressure.ravel()[cavitated]).max(initial=0.0))
         load_error = float(np.abs(linearised.residual[cavitated.size :]).max())
@@ -283,6 +287,7 @@ class _Iteration:
             asperity_pressure=linearised.asperity_pressure,
             film=linearised.film,
             residual=residual,
+            balance_error=abs(float(balance)) / (central_film * float(widths.sum())),
             load_error=load_error,
             complementarity_error=max(inflow, cavity_pressure),
             newton_steps=self.newton_steps,

@@ -389,6 +389,7 @@ def _label_film(film: FilmCase, refined: _RefinedFilm) -> xr.Dataset:
         "moes_lubricant": film.moes_lubricant,
         "normal_load": film.case.normal_load,
         "mass_error": solution.residual * solved.problem.central_film / films.central_film,
+        "film_balance_error": solution.balance_error * solved.problem.central_film / films.central_film,
         "film_load_error": solution.load_error,
         "film_complementarity_error": solution.complementarity_error,
         "converged": solution.converged,

@@ -38,9 +38,9 @@ def film_traction(
     Returns
     -------
     Dataset
-        Over `slide_roll_ratio`: `traction_coefficient`, `power_loss` of sliding and rolling, `thermal_reduction` if the
-        lubricant has `temperature_viscosity` and `conductivity`; `rolling_force` and `rolling_moment`, about the
-        roller's axis.
+        Over `slide_roll_ratio`: `traction_y` (x, y) on the body, for stresses and heat, `traction_coefficient`,
+        `power_loss` of sliding and rolling, `thermal_reduction` if the lubricant has `temperature_viscosity` and
+        `conductivity`; `rolling_force` and `rolling_moment`, about the roller's axis.
 
     Raises
     ------
@@ -75,16 +75,22 @@ def film_traction(
     fluid_pressure = np.maximum(pressure - asperities, 0.0)
     area = grid.weights * grid.cell_area
     speed, load = abs(float(result["entrainment_speed"])), float(result["normal_load"])
-    traction_forces = []
-    for ratio in slide_rolls:
-        shear = np.where(fluid_pressure > 0, shear_stress(lubricant, fluid_pressure, abs(ratio) * speed / height), 0.0)
-        boundary_shear = friction * asperities if ratio else 0.0
-        traction_forces.append(np.sign(ratio) * float((area * (shear + boundary_shear)).sum()))
-    traction_force = np.array(traction_forces)
+    traction = np.stack(
+        [
+            np.sign(ratio)
+            * (
+                np.where(fluid_pressure > 0, shear_stress(lubricant, fluid_pressure, abs(ratio) * speed / height), 0.0)
+                + friction * asperities
+            )
+            for ratio in slide_rolls
+        ]
+    )
+    traction_force = (area * traction).sum(axis=(1, 2))
     film = np.where(np.isfinite(height), height, 0.0)
     slope_forces = 0.5 * (film[:, 1:] + film[:, :-1]) * np.diff(fluid_pressure, axis=1)  # eq. (415)
     rolling_force = 0.5 * abs(float((grid.widths[:, None] * slope_forces).sum()))
     variables: dict[str, object] = {
+        "traction_y": (("slide_roll_ratio", "x", "y"), np.sign(float(result["entrainment_speed"])) * traction),
         "traction_coefficient": (("slide_roll_ratio",), traction_force / load),
         "power_loss": (("slide_roll_ratio",), np.abs(traction_force * slide_rolls) * speed + 2 * rolling_force * speed),
         "rolling_force": rolling_force,
@@ -97,7 +103,7 @@ def film_traction(
             ("slide_roll_ratio",),
             [thermal_reduction(pressure_ratio, loading, float(ratio)) for ratio in slide_rolls],
         )
-    curve = xr.Dataset(variables, coords={"slide_roll_ratio": slide_rolls})
+    curve = xr.Dataset(variables, coords={**result["pressure"].coords, "slide_roll_ratio": slide_rolls})
     return describe(curve, "traction of a lubricated contact")
 
 

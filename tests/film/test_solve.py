@@ -57,6 +57,7 @@ def crowned():
 def test_certificate_is_small(crowned):
     assert bool(crowned.converged)
     assert float(crowned.mass_error) < 1e-6
+    assert float(crowned.film_balance_error) < 1e-6
     assert float(crowned.film_load_error) < 1e-8
     assert float(crowned.film_complementarity_error) < 1e-6
 

@@ -34,6 +34,20 @@ def test_newtonian_traction(film):
     assert float(curve.thermal_reduction[1]) < 1
 
 
+@pytest.mark.parametrize("direction", [1.0, -1.0])
+def test_heat_of_the_fluid_equals_traction_times_sliding_speed(film, direction):
+    case, result = film
+    motion = cs.Sliding(body_speed=direction * 1.9, roller_speed=direction * 2.1)
+    sliding_case = replace(case, motion=motion)
+    result = result.assign(entrainment_speed=direction * 2.0)
+    curve = film_traction(sliding_case, result, [0.1]).isel(slide_roll_ratio=0)
+    steel = cs.heat.ThermalProperties(conductivity=46.0, density=7850.0, specific_heat=470.0)
+    hot = cs.heat.flash_temperature(sliding_case, result.assign(traction_y=curve.traction_y), body=steel, roller=steel)
+    traction_force = float(curve.traction_coefficient) * float(result.normal_load)
+    assert float(hot.friction_power) == pytest.approx(0.2 * traction_force, rel=1e-9)
+    assert float(hot.friction_power) == pytest.approx(float(curve.power_loss), rel=1e-9)
+
+
 def test_eyring_and_limit():
     rates = np.geomspace(1.0, 1e9, 50)
     eyring = shear_stress(OIL.replaced(eyring_stress=5e6), np.full(50, 5e8), rates)
