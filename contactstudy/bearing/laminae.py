@@ -11,7 +11,7 @@ import xarray as xr
 from contactstudy import checks
 from contactstudy.analysis.axes import cell_edges, dimension_along, single_case
 from contactstudy.analysis.provenance import solved_case
-from contactstudy.analysis.slices import SIDES, Columns, power_means, pressure_errors
+from contactstudy.analysis.roller_slices import SIDES, Columns, power_means, pressure_errors
 from contactstudy.arrays.peaks import section_maxima
 from contactstudy.arrays.variables import ERROR_KIND, NOT_ESTIMATED, describe, require, require_in_si
 from contactstudy.bodies import hertz
