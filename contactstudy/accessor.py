@@ -66,7 +66,7 @@ class ContactAccessor:
     explore = _method("contactstudy.explorer", "explore")
 
 
-for _name in analysis.__all__:
+for _name in dir(analysis):
     _function = getattr(analysis, _name)
     if inspect.isfunction(_function) and next(iter(inspect.signature(_function).parameters)) == "dataset":
         setattr(ContactAccessor, _name, wraps(_function)(_method("contactstudy.analysis", _name)))

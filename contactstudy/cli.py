@@ -203,9 +203,9 @@ def _collect(options: argparse.Namespace) -> int:
 
 
 def _export(options: argparse.Namespace) -> int:
-    from contactstudy.export.command import export
+    from contactstudy.export import export_results
 
-    path = export(
+    path = export_results(
         options.path,
         kind=options.format,
         variables=options.variable,

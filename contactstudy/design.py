@@ -347,8 +347,15 @@ def best_profile(
         if not low < high:
             raise InvalidInputError(f"bounds[{name!r}]", pair, "two numbers, the least and the largest value")
         ranges[str(name)] = float(low), float(high)
-    listed_cases = _list_cases(cases)
-    case_coordinates = _label_cases(listed_cases)
+    listed_cases = [cases] if isinstance(cases, Case) else list(cases) if isinstance(cases, Iterable) else []
+    for case in listed_cases or (cases,):
+        checks.instance("cases", case, Case, "a Case, or a sequence of Cases")
+    load_positions = [np.nan if case.load_position is None else case.load_position for case in listed_cases]
+    case_coordinates = {
+        "case_load": ("case", [case.normal_load for case in listed_cases]),  # raises for a prescribed approach
+        "case_tilt": ("case", [case.tilt for case in listed_cases]),
+        "case_load_position": ("case", load_positions),
+    }
     designs = Evaluations(
         cases=listed_cases,
         profile=profile,
@@ -367,24 +374,6 @@ def best_profile(
         hint = "widen the bounds if such a roller can be manufactured"
         warnings.warn(f"{message}; {hint}", BoundWarning, stacklevel=2)
     return result
-
-
-def _list_cases(cases: object) -> list[Case]:
-    """Return one or several cases as a list."""
-    listed = [cases] if isinstance(cases, Case) else list(cases) if isinstance(cases, Iterable) else []
-    for case in listed or [cases]:
-        checks.instance("cases", case, Case, "a Case, or a sequence of Cases")
-    return listed
-
-
-def _label_cases(cases: Sequence[Case]) -> dict[str, tuple[str, list[float]]]:
-    """Coordinates of the cases; raise for a case with a prescribed approach."""
-    positions = [np.nan if case.load_position is None else case.load_position for case in cases]
-    return {
-        "case_load": ("case", [case.normal_load for case in cases]),
-        "case_tilt": ("case", [case.tilt for case in cases]),
-        "case_load_position": ("case", positions),
-    }
 
 
 def _label_designs(designs: Evaluations, flat_from: FloatArray, flat_to: FloatArray) -> xr.Dataset:

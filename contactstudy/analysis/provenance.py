@@ -31,18 +31,10 @@ FILM_ONLY = ("motion.body_speed", "motion.roller_speed", "motion.speed", "lubric
 CASE_PARTS = ("roller.profile", "friction", "motion")  # Parts of a case that a message contains as a unit
 # Types of entries in the attributes of inputs and run
 ATTRIBUTE_TYPES: dict[str, type | tuple[type, ...]] = {
+    **dict.fromkeys(("seconds", "accuracy", "tolerance"), Real),
+    **dict.fromkeys(("stages", "settings", "case", "body", "roller", "motion", "profile"), dict),
     "time": str,
-    "seconds": Real,
-    "stages": dict,
     "warnings": list,
-    "settings": dict,
-    "accuracy": Real,
-    "tolerance": Real,
-    "case": dict,
-    "body": dict,
-    "roller": dict,
-    "motion": dict,
-    "profile": dict,
 }
 
 

@@ -124,10 +124,6 @@ class AtlasTable:
         """Coordinates of the solved points (point, group)."""
         return self.coordinates(np.stack([self.dataset[name].values for name in GROUPS], axis=1))
 
-    @cached_property
-    def _tree(self) -> cKDTree:
-        return cKDTree(self.points)
-
     def interpolated_samples(self, name: str) -> FloatArray:
         """Values at the solved points that are interpolated: a quantity or the quantity's logarithm."""
         values = self.dataset[name].values
@@ -148,7 +144,7 @@ class AtlasTable:
             self._interpolators[name] = [
                 RBFInterpolator(nodes[members], samples[members], kernel="cubic", degree=2) for members in branches
             ]
-        _, nearest = self._tree.query(coordinates, NEIGHBOUR_COUNT)
+        _, nearest = cKDTree(self.points).query(coordinates, NEIGHBOUR_COUNT)
         scaled = self.scale(name, coordinates)
         values = [interpolator(scaled) for interpolator in self._interpolators[name]]
         return np.where([members[nearest].any(axis=1) for members in branches], values, -np.inf)

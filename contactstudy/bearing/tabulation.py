@@ -6,7 +6,6 @@ import logging
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
-from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -28,14 +27,6 @@ LOGGER = logging.getLogger(__name__)
 TOLERANCE = 1e-9  # Maximum difference of mirror images over the length, or over the drop
 
 
-class Node(NamedTuple):
-    """Load (N), moment (N m) and strain energy (J) of one contact."""
-
-    load: float
-    moment: float
-    energy: float
-
-
 @dataclass(frozen=True)
 class ContactSolver:
     """Solves the contact of a case at given loads or approaches, and tilts."""
@@ -50,8 +41,8 @@ class ContactSolver:
             case = replace(self.case, load=load, max_pressure=None, tilt=tilt)
             return refine_contact(case, self.accuracy, self.tolerance).contact
 
-    def solve_at_approach(self, approach: float, tilt: float, load: float) -> Node:
-        """Load, moment about mid-length and strain energy at an approach, from a first guess of the load."""
+    def solve_at_approach(self, approach: float, tilt: float, load: float) -> FloatArray:
+        """Load (N), moment about mid-length (N m) and energy (J) at an approach, from a first guess of the load."""
         with _name_unsolvable_contact(load, tilt):
             contact = search_load(replace(self.case, tilt=tilt), approach, load, self.accuracy, self.tolerance).contact
         contact.warn_unless_converged()
@@ -59,8 +50,8 @@ class ContactSolver:
         forces = grid.weights * contact.pressure * grid.cell_area
         # In the contact the normal displacement is approach less gap.
         normal_displacement = np.where(contact.pressure > 0, contact.approach - contact.shape.gap.values, 0.0)
-        moment = float((forces * (grid.x[:, None] - self.case.roller_middle)).sum())
-        return Node(float(forces.sum()), moment, 0.5 * float((forces * normal_displacement).sum()))
+        moment = (forces * (grid.x[:, None] - self.case.roller_middle)).sum()
+        return np.array([forces.sum(), moment, 0.5 * (forces * normal_displacement).sum()])
 
 
 @contextmanager
@@ -121,8 +112,9 @@ def estimate_discretisation_errors(solver: ContactSolver, nodes: Nodes) -> Float
     # The loop solves the last of two opposite tilts; the first may be a reflection.
     for index in {int(tilt_sizes.argmin()), tilt_sizes.size - 1 - int(tilt_sizes[::-1].argmax())}:
         load, moment = nodes.normal_load[-1, index], nodes.moment[-1, index]
-        fine_node = fine_solver.solve_at_approach(float(nodes.approaches[-1]), float(nodes.tilts[index]), float(load))
-        errors = np.maximum(errors, [abs(fine_node.load / load - 1), abs(fine_node.moment - moment) / (load * length)])
+        position = float(nodes.approaches[-1]), float(nodes.tilts[index])
+        fine_load, fine_moment, _ = fine_solver.solve_at_approach(*position, float(load))
+        errors = np.maximum(errors, [abs(fine_load / load - 1), abs(fine_moment - moment) / (load * length)])
     return errors
 
 

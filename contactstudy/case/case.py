@@ -110,7 +110,6 @@ class Case:
     body_edge: Cylinder | Chamfer = field(default=Cylinder())
 
     def __post_init__(self) -> None:
-        """Check the parameters."""
         allowed = "elastic, a HalfSpace, QuarterSpace or FiniteLengthSpace: two rigid bodies have no contact pressure"
         checks.instance("body", self.body, Body, allowed)
         checks.instance("roller", self.roller, Roller, "a Roller")

@@ -57,7 +57,6 @@ class Sliding:
     roller_speed: float | None = None
 
     def __post_init__(self) -> None:
-        """Check the speeds."""
         speeds = {name: getattr(self, name) for name in ("body_speed", "roller_speed")}
         if all(value is None for value in speeds.values()):
             return

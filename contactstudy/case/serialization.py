@@ -51,7 +51,7 @@ KINDS: dict[str, type[Any]] = {  # Classes of a case and its parts, by name
     for kind in (
         *(Case, Roller, Lubricant, Material, HalfSpace, QuarterSpace, FiniteLengthSpace),
         *(AxialFriction, Sliding, Shift, Rolling, Sampled, Sum),
-        *(getattr(profiles, name) for name in profiles.__all__ if is_dataclass(getattr(profiles, name))),
+        *(getattr(profiles, name) for name in dir(profiles) if is_dataclass(getattr(profiles, name))),
     )
 }
 

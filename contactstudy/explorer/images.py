@@ -11,8 +11,7 @@ import xarray as xr
 from contactstudy.analysis import axial_pressure, in_plane, measure, positions
 from contactstudy.analysis.axes import axis_dimensions
 from contactstudy.checks import Array, FloatArray
-from contactstudy.plots.singular_ends import cap_field, near_singular, singular_ends
-from contactstudy.plots.style import AXIS_MEANINGS, Units
+from contactstudy.plots.style import AXIS_MEANINGS, Units, cap_field, near_singular, singular_ends
 
 PIXELS = (360, 150)  # Pixels of an image, horizontal and vertical
 END_REGION = 8.0  # Length of the region near an end, over the Hertz half-width

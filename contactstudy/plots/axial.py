@@ -21,8 +21,18 @@ from contactstudy.analysis import (
 from contactstudy.analysis.axial import loaded_range
 from contactstudy.arrays.variables import require
 from contactstudy.errors import InvalidInputError
-from contactstudy.plots.singular_ends import mark_at_top, near_singular, singular_ends
-from contactstudy.plots.style import LEGEND_WIDTH, Units, fold_text, label_axes, line_styles, new_axes, units
+from contactstudy.plots.style import (
+    LEGEND_WIDTH,
+    Units,
+    fold_text,
+    label_axes,
+    line_styles,
+    mark_at_top,
+    near_singular,
+    new_axes,
+    singular_ends,
+    units,
+)
 from contactstudy.profiles import Profile
 from contactstudy.profiles.base import check_drop
 

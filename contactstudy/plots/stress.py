@@ -11,8 +11,7 @@ from contactstudy import checks
 from contactstudy.analysis import dimension_along, in_plane, measure, positions, single_case
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
-from contactstudy.plots.singular_ends import cap_field
-from contactstudy.plots.style import COLORS, Units, fold_labels, label_axes, new_axes, units
+from contactstudy.plots.style import COLORS, Units, cap_field, fold_labels, label_axes, new_axes, units
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -14,16 +14,18 @@ from contactstudy.analysis import axial_pressure, dimension_along, single_case
 from contactstudy.arrays.variables import DERIVED, index_of, require
 from contactstudy.errors import ContactStudyError, InvalidInputError
 from contactstudy.plots.axial import plot_axial_pressure
-from contactstudy.plots.selection import describe_value, most_solved, scale_of, scale_values, select_one
-from contactstudy.plots.singular_ends import SINGULAR_LABEL, SINGULAR_MARK, mark_at_top
 from contactstudy.plots.stress import plane_stress, plot_stress_plane
+from contactstudy.plots.study_map import TICK_WIDTH, describe_value, most_solved, scale_of, scale_values, select_one
 from contactstudy.plots.style import (
     LEGEND_STYLE,
     MARKERS,
+    SINGULAR_LABEL,
+    SINGULAR_MARK,
     escape_dollars,
     fold_labels,
     fold_text,
     line_styles,
+    mark_at_top,
     new_axes,
     units,
 )
@@ -46,7 +48,7 @@ OPEN_LABEL = "error not estimated"
 
 ESTIMATED_PREFIXES = ("peak_", "end_pressure_", "end_load_", "end_intensity", "contact_")  # with errors
 LINE_HEIGHT = 0.17  # Height of a line of text, inches
-TICK_WIDTH, LEGEND_COLUMN = 18, 22  # letters of a name at the axis and in the legend next to the axes
+LEGEND_COLUMN = 22  # letters of a name in the legend next to the axes
 FORCES = {"longitudinal_creepage": ("force_y", "F_y"), "lateral_creepage": ("force_x", "F_x")}
 """Force conjugate to a creepage, and its symbol."""
 

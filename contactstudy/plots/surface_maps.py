@@ -13,8 +13,7 @@ from contactstudy.arrays.engineering import unit_for
 from contactstudy.arrays.variables import require, variable_of
 from contactstudy.checks import BoolArray, FloatArray, IntArray
 from contactstudy.plots.axial import FILM_HALF_RANGE
-from contactstudy.plots.singular_ends import cap_field
-from contactstudy.plots.style import COLORS, label_axes, new_axes, units
+from contactstudy.plots.style import COLORS, cap_field, label_axes, new_axes, units
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -4,29 +4,6 @@ A profile has one method ``drop(x, length)``: the material removed, in metres an
 mid-length of a roller of the given `length`, fillets included. ``first + second`` is their sum.
 """
 
-from contactstudy.profiles.base import EffectiveLength, Halves, Profile, Shape, Sum, local_radius
-from contactstudy.profiles.geometric import Chamfer, Cylinder, Ellipsoid, FullCrown, PartialCrown, Sphere, Tapered
-from contactstudy.profiles.logarithmic import FujiwaraKawase, IsoCylindrical, IsoTapered, JohnsGohar, Lundberg
-from contactstudy.profiles.measured_profile import Measured
+import lazy_loader
 
-__all__ = [
-    "Chamfer",
-    "Cylinder",
-    "EffectiveLength",
-    "Ellipsoid",
-    "FujiwaraKawase",
-    "FullCrown",
-    "Halves",
-    "IsoCylindrical",
-    "IsoTapered",
-    "JohnsGohar",
-    "Lundberg",
-    "Measured",
-    "PartialCrown",
-    "Profile",
-    "Shape",
-    "Sphere",
-    "Sum",
-    "Tapered",
-    "local_radius",
-]
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -119,7 +119,6 @@ class Shape:
         return f"{type(self).__name__}({', '.join(arguments)})"
 
     def __add__(self, other: object) -> Sum:
-        """Return the sum of both profiles."""
         if not isinstance(other, Profile):
             return NotImplemented
         return Sum((self, other))

@@ -29,8 +29,7 @@ from contactstudy.plots import (
     plot_traction_map,
 )
 from contactstudy.plots.axial import draw_section_maxima
-from contactstudy.plots.singular_ends import cap_field
-from contactstudy.plots.style import MILLIMETRES
+from contactstudy.plots.style import MILLIMETRES, cap_field
 from contactstudy.profiles.base import check_drop, local_radius
 
 if TYPE_CHECKING:

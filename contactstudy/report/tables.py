@@ -74,11 +74,9 @@ class Summary:
     numbers: tuple[Quantity, ...]
 
     def __getitem__(self, name: str) -> Quantity:
-        """Row of a variable."""
         return next(row for row in self.numbers if row.name == name)
 
     def __contains__(self, name: object) -> bool:
-        """Whether a variable has a row."""
         return any(row.name == name for row in self.numbers)
 
     def __repr__(self) -> str:

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
 from itertools import chain
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -43,8 +42,7 @@ MOTION_PARAMETERS = {  # arguments of each motion's class, with the prefix `shif
 }
 
 
-@dataclass(frozen=True, kw_only=True)
-class Dimensions:
+class Dimensions(NamedTuple):
     """Interdependent lengths of a case, metres, and the contact modulus, Pa."""
 
     radius: float
@@ -67,14 +65,7 @@ class Dimensions:
             else:
                 roller_length = values["roller_length"]
                 body_length = roller_length + 2 * distance
-            return cls(
-                radius=radius,
-                body_length=body_length,
-                roller_length=roller_length,
-                end_distance=distance,
-                half_width=half_width,
-                modulus=modulus,
-            )
+            return cls(radius, body_length, roller_length, distance, half_width=half_width, modulus=modulus)
 
         if "max_pressure" in values:
             pressure = checks.positive("max_pressure", values["max_pressure"], "Pa")
@@ -101,17 +92,16 @@ class Dimensions:
         return self
 
 
-@dataclass(frozen=True, eq=False, kw_only=True)
-class Setup:
+class Setup(NamedTuple):
     """A case ready to solve."""
 
     case: Case
     grid: Grid | None  # uniform cells, on the narrowest of the windows to try; None: columns that the solver refines
     options: dict[str, Any]  # all other arguments of the solver
-    e_over_a: float  # NaN where the half-width follows from the solution
-    gamma: float  # length of the body over the roller's radius
     # cells per half-width, where the window may grow with the contact; empty where `grid` is the only grid
     cells: dict[str, float]
+    e_over_a: float  # NaN where the half-width follows from the solution
+    gamma: float  # length of the body over the roller's radius
 
     @property
     def grids(self) -> Iterator[Grid | None]:
@@ -291,11 +281,5 @@ def build_setup(parameters: Mapping[str, Any]) -> Setup:
     if case.lubricant is not None:
         rms = values.get("roughness_rms")
         options = {"accuracy": options["accuracy"], "asperities": None if rms is None else Asperities(rms=rms)}
-    return Setup(
-        case=case,
-        grid=grid,
-        options=options,
-        e_over_a=sizes.end_distance / sizes.half_width,
-        gamma=sizes.body_length / sizes.radius,
-        cells=cells,
-    )
+    e_over_a, gamma = sizes.end_distance / sizes.half_width, sizes.body_length / sizes.radius
+    return Setup(case, grid, options, cells, e_over_a=e_over_a, gamma=gamma)

@@ -112,7 +112,6 @@ class Study:
             yield "exclude", f"{len(self.exclude)} rules"
 
     def __post_init__(self) -> None:
-        """Check names and types, and normalise every value."""
         if not isinstance(self.name, str) or not re.fullmatch(r"[A-Za-z0-9][\w.-]*", self.name):
             raise InvalidInputError("name", self.name, "a word of letters, digits and _ - .")
         checks.known_name("level", self.level, LEVELS)

@@ -32,10 +32,7 @@ if TYPE_CHECKING:
 
 WAIT_SECONDS = 300.0  # Longest wait for a worker while a scheduler has none
 WORKER_ENVIRONMENT = {  # one thread; keeping the freed memory of arrays halves the time of a case
-    "OMP_NUM_THREADS": "1",
-    "MKL_NUM_THREADS": "1",
-    "OPENBLAS_NUM_THREADS": "1",
-    "PYFFTW_NUM_THREADS": "1",
+    **dict.fromkeys(("OMP_NUM_THREADS", "MKL_NUM_THREADS", "OPENBLAS_NUM_THREADS", "PYFFTW_NUM_THREADS"), "1"),
     "MALLOC_MMAP_THRESHOLD_": str(32 * 2**20),
     "MALLOC_TRIM_THRESHOLD_": str(512 * 2**20),
 }
@@ -61,7 +58,6 @@ class Engine:
     solver: Solver | None = None  # called instead of `contactstudy.solve`
 
     def __post_init__(self) -> None:
-        """Check the values."""
         if self.workers is not None:
             checks.count("workers", self.workers, minimum=0)
         if isinstance(self.wait, bool) or not isinstance(self.wait, (int, float)) or not self.wait >= 0:

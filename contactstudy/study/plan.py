@@ -131,7 +131,6 @@ class Plan(Sequence[PlannedCase]):
         return len(self.chosen)
 
     def __getitem__(self, index: Any) -> Any:
-        """Return one case, or a list of cases."""
         if isinstance(index, slice):
             return [self[case_index] for case_index in range(*index.indices(len(self)))]
         case_index = range(len(self))[index]

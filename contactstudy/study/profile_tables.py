@@ -198,7 +198,12 @@ def profile_table(name: str, value: object, depth: int = 0, kinds: Sequence[str]
         table["name"] = label
     content = {key: entry for key, entry in value.items() if key not in ("kind", "name")}
     if kind == USER_KIND:
-        return table | _read_user_table(content)
+        for key in content:
+            checks.known_name("profile key", str(key), [*USER_KEYS, "kind", "name"])
+        for key, expected in (("class", str), ("content", str), ("values", Mapping)):
+            allowed = "the content of a user's profile, written by a study"
+            checks.instance(f"profile.{key}", content.get(key), expected, allowed)
+        return table | {key: content[key] for key in USER_KEYS}
     return table | PROFILES[kind].read(name, content, depth)
 
 
@@ -264,15 +269,6 @@ def _register(profile: Profile) -> dict[str, Any]:
     has_default_repr = type(profile).__repr__ is object.__repr__
     label = f"{name} {content[:8]}" if has_default_repr else describe_profile(profile)
     return {"kind": USER_KIND, "name": label, "class": name, "values": values, "content": content}
-
-
-def _read_user_table(table: Mapping[str, Any]) -> dict[str, Any]:
-    """Check the table of a file."""
-    for key in table:
-        checks.known_name("profile key", str(key), [*USER_KEYS, "kind", "name"])
-    for key, kind in (("class", str), ("content", str), ("values", Mapping)):
-        checks.instance(f"profile.{key}", table.get(key), kind, "the content of a user's profile, written by a study")
-    return {key: table[key] for key in USER_KEYS}
 
 
 def user_profiles(parameters: Any) -> dict[str, Profile]:

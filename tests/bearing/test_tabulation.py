@@ -9,7 +9,7 @@ import pytest
 
 from contactstudy import Case, FiniteLengthSpace, HalfSpace, InvalidInputError, Material, QuarterSpace, Roller, profiles
 from contactstudy.bearing.energy_spline import Nodes
-from contactstudy.bearing.tabulation import ContactSolver, Node, estimate_discretisation_errors, solve_nodes
+from contactstudy.bearing.tabulation import ContactSolver, estimate_discretisation_errors, solve_nodes
 
 STEEL = Material(210e9, 0.3)
 BALL = Roller(radius=5e-3, length=0.8e-3, profile=profiles.FullCrown(crown_radius=5e-3))
@@ -28,10 +28,10 @@ class SpringSolver(ContactSolver):
 
     search_load: list[tuple[float, float]]
 
-    def solve_at_approach(self, approach: float, tilt: float, load: float) -> Node:
+    def solve_at_approach(self, approach: float, tilt: float, load: float) -> np.ndarray:
         assert load > 0
         self.search_load.append((approach, tilt))
-        return Node(2e7 * approach, 0.2 * tilt, 1e7 * approach**2 + 0.1 * tilt**2)
+        return np.array([2e7 * approach, 0.2 * tilt, 1e7 * approach**2 + 0.1 * tilt**2])
 
 
 @pytest.mark.parametrize(
@@ -68,9 +68,9 @@ def test_errors_at_the_largest_tilt(monkeypatch) -> None:
     nodes = Nodes(np.array([1e-6, 2e-6]), tilts, loads, loads, 0 * loads)
     solved_tilts = []
 
-    def solve_at_approach(self: ContactSolver, approach: float, tilt: float, load: float) -> Node:
+    def solve_at_approach(self: ContactSolver, approach: float, tilt: float, load: float) -> np.ndarray:
         solved_tilts.append(tilt)
-        return Node(1.0 + abs(tilt), 0.0, 1.0)
+        return np.array([1.0 + abs(tilt), 0.0, 1.0])
 
     monkeypatch.setattr(ContactSolver, "solve_at_approach", solve_at_approach)
     errors = estimate_discretisation_errors(ContactSolver(CASE, 0.01, 1e-6), nodes)

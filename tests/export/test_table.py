@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 
 from contactstudy import InvalidInputError, analysis, checks, export, plots, report
 from contactstudy.errors import StoreError
-from contactstudy.export.table import csv_text, headings
+from contactstudy.export import csv_text, headings
 
 
 def test_a_line_as_csv(case_result: xr.Dataset, tmp_path) -> None:

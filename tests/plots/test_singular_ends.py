@@ -5,7 +5,7 @@ import pytest
 import xarray as xr
 
 from contactstudy import Case, HalfSpace, Material, Roller, plots, solve
-from contactstudy.plots.singular_ends import singular_ends
+from contactstudy.plots.style import singular_ends
 
 
 @pytest.fixture(scope="module")

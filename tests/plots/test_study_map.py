@@ -5,6 +5,7 @@ from matplotlib import pyplot
 
 from contactstudy import analysis, plots
 from contactstudy.errors import InvalidInputError
+from contactstudy.plots.study_map import describe_value
 from tests.stand_in_solver import FAILS
 
 
@@ -79,3 +80,8 @@ def test_bad_input(study_dataset):
     ):
         with pytest.raises(InvalidInputError, match=message):
             call()
+
+
+def test_values_are_described() -> None:
+    assert describe_value("max_pressure", 1e9, "Pa", 2) == "$p_0$ = 1 GPa, one of 2 values"
+    assert describe_value("profile", "crowned", "") == "profile = crowned"

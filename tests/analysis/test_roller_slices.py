@@ -17,7 +17,7 @@ from contactstudy import (
     profiles,
     solve,
 )
-from contactstudy.analysis.slices import Columns, border_load_errors, maximum_between, power_means
+from contactstudy.analysis.roller_slices import Columns, border_load_errors, maximum_between, power_means
 from contactstudy.arrays.variables import ERROR_KIND, ESTIMATED, NOT_ESTIMATED
 from contactstudy.study import Study, open_study, run_study
 from tests.split_columns import split_columns
