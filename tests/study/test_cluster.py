@@ -77,7 +77,7 @@ def test_dead_cluster_worker_fails_one_case(tmp_path):
     study = small_study(
         sweep={"e_over_a": [0, 1, 2], "friction": [0, DIES]}, exclude=[{"e_over_a": [0, 1], "friction": DIES}]
     )
-    with cluster(tmp_path, workers=3) as address:
+    with cluster(tmp_path) as address:
         report = run_study(study, tmp_path / "out", scheduler=address, solver=solve_fake)
     assert report.counts == {"ok": 3, "failed": 1}
     assert all(reason.startswith("WorkerDied") for _, reason in report.failures)
