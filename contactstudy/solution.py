@@ -312,11 +312,11 @@ def roller_stress(
     Examples
     --------
     >>> import numpy as np
-    >>> from contactstudy import Case, FiniteLengthSpace, Material, Roller, solve
+    >>> from contactstudy import Case, FiniteLengthSpace, Material, Roller, choose_grid, solve
     >>> steel = Material(210e9, 0.3)
     >>> body = FiniteLengthSpace(length=0.3e-3, material=steel)
     >>> case = Case(body=body, roller=Roller(radius=5e-3, length=0.3e-3, material=steel), max_pressure=1.5e9)
-    >>> result = solve(case, x=[1e-4, 2e-4], y=[0.0], z=[5e-5], accuracy=0.1)
+    >>> result = solve(case, choose_grid(case, cells_x=4, cells_y=8), x=[1e-4, 2e-4], y=[0.0], z=[5e-5])
     >>> inside = roller_stress(case, result.pressure, result.x_field, [0.0], [5e-5])  # equal bodies, equal stresses
     >>> bool(np.allclose(inside.von_mises.values, result.von_mises.values, rtol=1e-4))
     True

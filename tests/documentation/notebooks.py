@@ -8,7 +8,7 @@ import tempfile
 import nbformat
 import pytest
 
-SLOW = {"designing_a_profile.ipynb", "rolling.ipynb", "verification.ipynb"}
+SLOW = {"designing_a_profile.ipynb", "rolling.ipynb"}
 """Notebooks that need more than 20 s."""
 LARGEST = 30_000
 """Largest size of a notebook, bytes; a notebook without output is smaller."""

@@ -23,7 +23,7 @@ def perfectly_plastic(shear_yield_stress: float) -> ElasticPlastic:
 
 def test_flow_below_and_above_the_limit(line_contact, steel_half_space) -> None:
     """With friction the flow of each pass is a fraction of the flow of the previous pass."""
-    contact = line_contact(0.2)
+    contact = line_contact(0.2).isel(z=slice(0, None, 2))
     limit = float(fatigue.shakedown(contact, axial=True)["shakedown_stress"].max())
     below_limit, above_limit = (
         residual_stress(contact, steel_half_space, perfectly_plastic(factor * limit), passes=6)
@@ -242,7 +242,7 @@ def test_stresses_of_another_body_are_rejected(line_contact, steel_between_ends)
 
 
 def test_positions_within_rounding_of_the_end(line_contact, steel_between_ends) -> None:
-    contact = line_contact(0.0, length=8.0, positions=5)
+    contact = line_contact(0.0, length=8.0, positions=5).isel(z=slice(0, None, 2))
     in_millimetres = contact.assign_coords(x=(1e3 * contact["x"]).assign_attrs(units="mm"))
     rounded = contact.assign_coords(x=contact["x"] * (1 + 1e-15))
     limit = float(fatigue.shakedown(contact)["shakedown_stress"].max())

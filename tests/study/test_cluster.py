@@ -26,6 +26,13 @@ def load_dataset(folder):
 ROOT = Path(__file__).resolve().parents[2]
 
 
+@pytest.fixture(scope="module")
+def two_workers(tmp_path_factory):
+    """Address of a cluster with two workers, which several tests use."""
+    with cluster(tmp_path_factory.mktemp("cluster")) as address:
+        yield address
+
+
 def test_documentation_contains_cluster_commands():
     text = (ROOT / "docs" / "how-to" / "cluster.md").read_text()
     assert SCHEDULER in text
@@ -51,14 +58,14 @@ def test_silent_listener_raises_scheduler_error(tmp_path, monkeypatch):
 
 
 @pytest.mark.system
-def test_cluster_of_separate_processes(tmp_path):
+def test_cluster_of_separate_processes(two_workers, tmp_path):
     """By the scheduler's address, and by a client, which the run leaves open."""
     from distributed import Client
 
     study = small_study("large", sweep=LARGE)
     run_study(study, tmp_path / "calm", workers=0, solver=solve_fake)
-    with cluster(tmp_path) as address, Client(str(address)) as client:
-        for scheduler in (address, client):
+    with Client(str(two_workers)) as client:
+        for scheduler in (two_workers, client):
             folder = tmp_path / type(scheduler).__name__
             assert run_study(study, folder, scheduler=scheduler, solver=solve_fake).counts == {"ok": 20}
             assert load_dataset(folder).identical(load_dataset(tmp_path / "calm"))
@@ -70,7 +77,7 @@ def test_dead_cluster_worker_fails_one_case(tmp_path):
     study = small_study(
         sweep={"e_over_a": [0, 1, 2], "friction": [0, DIES]}, exclude=[{"e_over_a": [0, 1], "friction": DIES}]
     )
-    with cluster(tmp_path, workers=3) as address:
+    with cluster(tmp_path) as address:
         report = run_study(study, tmp_path / "out", scheduler=address, solver=solve_fake)
     assert report.counts == {"ok": 3, "failed": 1}
     assert all(reason.startswith("WorkerDied") for _, reason in report.failures)
@@ -126,13 +133,12 @@ def test_killed_scheduler_ends_run(tmp_path, monkeypatch):
 
 
 @pytest.mark.system
-def test_results_do_not_depend_on_workers(tmp_path):
+def test_results_do_not_depend_on_workers(two_workers, tmp_path):
     """Bit for bit: in this process, with two workers, and on a cluster."""
     study = small_study(sweep={"e_over_a": [0.0, 1.0], "friction": [0.1]})
     for workers in (0, 2):
         assert run_study(study, tmp_path / str(workers), workers=workers).counts == {"ok": 2}
-    with cluster(tmp_path) as address:
-        run_study(study, tmp_path / "cluster", scheduler=address)
+    run_study(study, tmp_path / "cluster", scheduler=two_workers)
     first_dataset = load_dataset(tmp_path / "0")
     assert float(first_dataset["von_mises"].max()) > 1e8
     for name in ("2", "cluster"):

@@ -12,14 +12,9 @@ from contactstudy.verification.check import Check
 from tests.verification import listed
 
 LISTED = listed.read()
-FULL = [
-    entry
-    for entry in LISTED
-    if entry.group in {listed_check.group for listed_check in LISTED if listed_check.level == "full"}
-]
-"""Checks of the groups with further checks at the full level."""
-LONG = ("friction", "film", "passes")
-"""Groups whose quick level, a part of the full one, takes too long for the default tier."""
+LONG = {entry.group for entry in LISTED if entry.level == "full"}
+"""Groups with further checks at the full level: the slow tier runs this level, which contains the quick one."""
+FULL = [entry for entry in LISTED if entry.group in LONG]
 TIGHTER = {
     "six stresses / p0, z >= 0.1a, largest difference": 1e-3,
     "six stresses / p0, z >= 0.1a, median difference": 3e-6,
@@ -41,9 +36,8 @@ def quick(group: str) -> dict[tuple[str, str], Check]:
 @functools.cache
 def full_verification() -> Verification:
     """The full level, without the groups equal to the quick level's."""
-    more = {entry.group for entry in FULL}
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(suite, "GROUPS", {name: make for name, make in suite.GROUPS.items() if name in more})
+        patch.setattr(suite, "GROUPS", {name: make for name, make in suite.GROUPS.items() if name in LONG})
         return suite.run("full")
 
 
@@ -56,8 +50,7 @@ def assert_check_passed(check: Check) -> None:
 
 def parameters(*, slow: bool) -> list[object]:
     """Checks of the default or the slow tier under their names."""
-    in_tier = (entry for entry in LISTED if (entry.level == "full" or entry.group in LONG) == slow)
-    return [pytest.param(entry, id=entry.name) for entry in in_tier]
+    return [pytest.param(entry, id=entry.name) for entry in LISTED if (entry.group in LONG) == slow]
 
 
 @pytest.mark.parametrize("entry", parameters(slow=False))
