@@ -422,11 +422,13 @@ def continue_solution(level_film: FilmOnCells, settings: FilmSettings) -> FilmOn
 
 
 def _dry_state(film: FilmCase, problem: FilmProblem, dry: Contact, columns: slice, merged: MergedCells) -> FilmState:
-    """First guess: pressure and gap of the dry contact, with the formula's central film added to the gap."""
+    """First guess: pressure and gap of the dry contact, with the distance at the formula's central film added to it."""
     pressure = merged.average(dry.pressure[columns]) / film.pressure_scale
-    distance = merged.to_centres(dry.gap[columns]) / film.height_scale + problem.central_film
+    # Thin films separate rough surfaces by less than their height: the distance of the mean planes is negative.
+    (separation,) = problem.solve_distance(np.array([problem.central_film]), np.zeros(1))
+    distance = merged.to_centres(dry.gap[columns]) / film.height_scale + separation
     motion = np.zeros(len(problem.motions))
-    motion[0] = problem.central_film - dry.approach / film.height_scale
+    motion[0] = separation - dry.approach / film.height_scale
     if film.case.load_position is not None:
         max_lever = np.abs(problem.cells.x - film.case.load_position / film.half_width).max()
         motion[1] = -dry.tilt * max_lever * film.half_width / film.height_scale
