@@ -57,7 +57,7 @@ class EdgeSections(NamedTuple):
         # All stresses at rows of cells take one evaluation.
         numbers = sign * (edges - grid.y[0])[:, None] - half_widths[:, None] * FIT_DISTANCES
         rows = (sign * np.floor(numbers / grid.dy + 1e-9)).astype(np.int64)
-        return cls(grid, sign, columns, edges, half_widths, rows)
+        return cls(grid, sign, columns, edges=edges, half_widths=half_widths, rows=rows)
 
     @property
     def points(self) -> Points:

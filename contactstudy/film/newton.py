@@ -53,7 +53,7 @@ class FilmSettings:
     steps: tuple[float, ...] = (0.3, 0.9, 2.7, 8.1, 24.0, 73.0)
     newton_steps: int = 12
     linear_tolerance: float = 1e-2
-    linear_steps: int = 60
+    linear_steps: int = 200
     elimination_ratio: float = 0.1
     max_closing: float = 0.6
     max_pressure_change: float = 0.3

@@ -206,3 +206,13 @@ def test_bad_argument_is_rejected():
         solve_film(case, inlet=0.5 * HALF_WIDTH)
     with pytest.raises(cs.InvalidInputError, match="rms"):
         Asperities(rms=0.0)
+
+
+@pytest.mark.slow
+def test_thin_film_between_rough_surfaces_nears_the_dry_contact():
+    case = film_case(LENGTH, 200.0, 5.0, profile=CROWN)
+    film = coarse_film(case, asperities=Asperities(rms=5e-8))
+    dry = cs.solve(replace(case, lubricant=None), accuracy=0.02, stresses=False)
+    pressures = [result.pressure.interp(x=0.5 * LENGTH, y=0.0) for result in (film, dry)]
+    assert float(film.asperity_load_share) > 0.1
+    assert abs(float(pressures[0] - pressures[1])) < 0.005 * PRESSURE
