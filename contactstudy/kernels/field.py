@@ -199,8 +199,6 @@ def displacement_influence(load: Load, poisson: float, length: float, reference:
     """Displacements times ``4 pi G`` of a unit load, relative to the top at the reference between two mirrors."""
     level = tuple(
         row_level(strips_of(Response(direction, load), poisson), load.sign_x, length, reference)
-        if np.isfinite(length)
-        else 0.0
         for direction in (Load.ALONG_X, Load.ALONG_Y, Load.NORMAL)
     )
     return Influence(

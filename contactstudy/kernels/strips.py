@@ -146,7 +146,7 @@ def corner_function(strips: Strips) -> CornerFunction:
 
 def row_level(strips: Strips, image_sign: int, length: float, reference: float) -> float:
     """Return the ``4 pi G u`` per load that makes the displacement next to a row of images zero at the reference."""
-    if image_sign < 0:
+    if image_sign < 0 or np.isinf(length):
         return 0.0
     logarithm = np.log(2 * FAR_LIMIT * length / reference)
     return float(
@@ -170,10 +170,8 @@ def surface_kernel(
 ) -> FloatArray:
     """Displacement times ``4 pi G`` of the surface from a unit load on one cell, at uniform offsets: array (x, y)."""
     strips = strips_of(response, poisson)
-    kernel = mirrored_kernel(corner_function(strips), x, y, *cell, length)  # eq. (39a)
-    if np.isinf(length):
-        return kernel
-    return kernel + cell[0] * cell[1] * row_level(strips, response.load.sign_x, length, reference)
+    level = row_level(strips, response.load.sign_x, length, reference)
+    return mirrored_kernel(corner_function(strips), x, y, *cell, length, level)  # eq. (39a)
 
 
 FAR_COLUMNS = 24.0

@@ -84,7 +84,7 @@ def test_kernel_includes_all_images(
     dx = length / cells_x
     corner = partial(CORNERS[kind], z=depth, poisson=0.3)
     x, y = dx * np.arange(0, cells_x + 1), dy * np.arange(cells_y)
-    computed = images.mirrored_kernel(corner, x, y, dx, dy, length)
+    computed = images.mirrored_kernel(corner, x, y, dx, dy, length, 0.0)
     near_images, far_images = (
         sum(images.cell_kernel(corner, x + 2 * length * image_number, y, dx, dy) for image_number in image_numbers)
         for image_numbers in (range(-400, 401), [*range(-800, -400), *range(401, 801)])
