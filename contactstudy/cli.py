@@ -239,8 +239,7 @@ def _explore(options: argparse.Namespace) -> int:
 
 
 def _verify(options: argparse.Namespace) -> int:
-    from contactstudy.verification import suite
-    from contactstudy.verification.check import Check
+    from contactstudy.verification import Check, suite
 
     folder = options.out if options.out is not None else Path("results/verification")
     suite.make_folder(folder)  # before the work, not after
