@@ -16,8 +16,7 @@ from numpy.polynomial import chebyshev
 
 from contactstudy.arrays.grid import Grid, Points
 from contactstudy.checks import FloatArray
-from contactstudy.kernels.load import Load
-from contactstudy.kernels.patch import Corner
+from contactstudy.kernels.load import Corner, Load
 
 CornerFunction = Callable[[FloatArray, FloatArray], FloatArray]
 

@@ -22,8 +22,7 @@ from contactstudy.cache import recall, retain
 from contactstudy.checks import BoolArray, FloatArray, IntArray
 from contactstudy.kernels.convolution import even_spectrum, odd_spectrum, spectrum_matrices
 from contactstudy.kernels.images import FAR_LIMIT, CornerFunction, FarImages, mirrored_kernel
-from contactstudy.kernels.load import Load, Response
-from contactstudy.kernels.patch import TINY
+from contactstudy.kernels.load import TINY, Load, Response
 
 Function = Callable[[FloatArray, FloatArray], FloatArray]
 
@@ -112,7 +111,7 @@ Strips = tuple[tuple[float, Strip], ...]  # strips and their factors in a sum
 
 def strips_of(response: Response, poisson: float) -> Strips:
     """Return strips, with factors, whose sum is ``4 pi G u`` (Cerruti; Johnson, Contact Mechanics, section 3.6)."""
-    # With the potentials V, chi, Theta of patch.py: u_z[p] = 2 (1 - nu) V, u_x[p] = -(1 - 2 nu) chi_x = -u_z[q_x],
+    # With the potentials V, chi, Theta of load.py: u_z[p] = 2 (1 - nu) V, u_x[p] = -(1 - 2 nu) chi_x = -u_z[q_x],
     # u_x[q_x] = 2 V + 2 nu Theta_xx, u_y[q_x] = u_x[q_y] = 2 nu Theta_xy, and with x and y exchanged.
     compressibility = 1 - 2 * poisson
     return {
