@@ -190,7 +190,7 @@ class Influence:
     def kernel(self, x: FloatArray, y: FloatArray, dx: float, dy: float, length: float, depth: float) -> FloatArray:
         """Influence at uniform offsets `x` and `y`, with all images where `length` is finite: (component, x, y)."""
         level = np.array(self.image_level)[:, None, None]
-        return mirrored_kernel(self.corner_at(depth), x, y, dx, dy, length, level)
+        return mirrored_kernel(self.corner_at(depth), x, y, dx, dy, length=length, level=level)
 
 
 LOAD_POINTS = 10

@@ -170,7 +170,7 @@ def surface_kernel(
     """Displacement times ``4 pi G`` of the surface from a unit load on one cell, at uniform offsets: array (x, y)."""
     strips = strips_of(response, poisson)
     level = row_level(strips, response.load.sign_x, length, reference)
-    return mirrored_kernel(corner_function(strips), x, y, *cell, length, level)  # eq. (39a)
+    return mirrored_kernel(corner_function(strips), x, y, *cell, length=length, level=level)  # eq. (39a)
 
 
 FAR_COLUMNS = 24.0
