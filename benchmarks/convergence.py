@@ -31,12 +31,13 @@ from contactstudy.overlapping.problem import EndProblem
 from contactstudy.overlapping.quadrature import Resolution
 from contactstudy.plots.style import line_styles
 from contactstudy.verification import closed_forms
-from contactstudy.verification.check import Check, Reference
 from contactstudy.verification.free_ends import pressure_of
 from contactstudy.verification.problems import (
     LINE_LOAD,
     LOAD_CASES,
     STRESS_FILE,
+    Check,
+    Reference,
     components,
     load_reference,
     on_cells,

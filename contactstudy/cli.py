@@ -239,8 +239,7 @@ def _explore(options: argparse.Namespace) -> int:
 
 
 def _verify(options: argparse.Namespace) -> int:
-    from contactstudy.verification import suite
-    from contactstudy.verification.check import Check
+    from contactstudy.verification import Check, suite
 
     folder = options.out if options.out is not None else Path("results/verification")
     suite.make_folder(folder)  # before the work, not after
@@ -355,9 +354,6 @@ def _forecast_lines(states: States) -> Iterator[str]:
         yield f"time: not estimated for {missing} cases; `plan --sample N` solves N of them for an estimate"
 
 
-Action = Callable[[argparse.Namespace], int]  # Runs a command from its options; returns the exit code
-
-
 def command_parser() -> argparse.ArgumentParser:
     """Return the parser of the command line."""
     parser = argparse.ArgumentParser(
@@ -371,7 +367,9 @@ def command_parser() -> argparse.ArgumentParser:
     parser.add_argument("--verbose", action="store_true", help="log to the error output")
     commands = parser.add_subparsers(dest="command", metavar="COMMAND")
 
-    def command(action: Action, path_kind: str, description: str) -> argparse.ArgumentParser:
+    def command(
+        action: Callable[[argparse.Namespace], int], path_kind: str, description: str
+    ) -> argparse.ArgumentParser:
         child = commands.add_parser(action.__name__.strip("_"), help=description, description=description)
         child.set_defaults(action=action)
         meanings = {

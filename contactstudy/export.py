@@ -16,13 +16,13 @@ from contactstudy import checks
 from contactstudy.analysis import along_line, single_case
 from contactstudy.analysis.axes import axis_dimensions, positions
 from contactstudy.analysis.cuts import fields_on_same_points, named_arrays, points_hint
-from contactstudy.arrays.cells import labelled_cells
 from contactstudy.arrays.variables import (
     AXES,
     ERROR_KIND,
     NOT_ESTIMATED,
     STRESSES,
     index_of,
+    labelled_cells,
     require,
     selection_of,
     variable_of,

@@ -11,9 +11,8 @@ import numpy as np
 import xarray as xr
 
 from contactstudy import checks
-from contactstudy.arrays.cells import labelled_cells
 from contactstudy.arrays.grid import Grid
-from contactstudy.arrays.variables import in_si, labels, name_array
+from contactstudy.arrays.variables import in_si, labelled_cells, labels, name_array
 from contactstudy.case.magnitudes import warn_of_values
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError

@@ -9,8 +9,6 @@ from contactstudy.arrays.variables import AXES, STRESSES, describe, name_array, 
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 
-PRINCIPAL = "principal"  # Dimension of the principal stresses
-
 
 def von_mises(stress: xr.Dataset) -> xr.DataArray:
     """Von Mises equivalent stress.
@@ -87,10 +85,10 @@ def principal_stresses(stress: xr.Dataset) -> xr.Dataset:
     # eigh sorts upwards and keeps the vectors in columns.
     result = xr.Dataset(
         {
-            "principal_stress": ((*dims, PRINCIPAL), values[..., ::-1]),
-            "principal_direction": ((*dims, PRINCIPAL, "axis"), np.swapaxes(vectors[..., ::-1], -1, -2)),
+            "principal_stress": ((*dims, "principal"), values[..., ::-1]),
+            "principal_direction": ((*dims, "principal", "axis"), np.swapaxes(vectors[..., ::-1], -1, -2)),
         },
-        coords={**first_component.coords, PRINCIPAL: [1, 2, 3], "axis": list(AXES)},
+        coords={**first_component.coords, "principal": [1, 2, 3], "axis": list(AXES)},
     )
     return describe(result)
 
@@ -115,7 +113,7 @@ def tresca(stress: xr.Dataset) -> xr.DataArray:
     2.0
     """
     principal = principal_stresses(stress)["principal_stress"]
-    shear_diameter = principal.sel({PRINCIPAL: 1}, drop=True) - principal.sel({PRINCIPAL: 3}, drop=True)
+    shear_diameter = principal.sel(principal=1, drop=True) - principal.sel(principal=3, drop=True)
     return name_array("tresca", shear_diameter)
 
 

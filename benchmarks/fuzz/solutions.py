@@ -20,7 +20,7 @@ from contactstudy import (
     solve,
     solve_contact,
 )
-from contactstudy.arrays.cells import cell_coordinates
+from contactstudy.arrays.variables import cell_coordinates
 from contactstudy.contact import ContactSettings
 
 TOLERANCE = 1e-6

@@ -19,9 +19,8 @@ from contactstudy.analysis.axes import (
     single_case,
     sort_positions,
 )
-from contactstudy.arrays.cells import labelled_cells
 from contactstudy.arrays.grid import Grid
-from contactstudy.arrays.variables import describe, name_array, require, require_in_si, without_error
+from contactstudy.arrays.variables import describe, labelled_cells, name_array, require, require_in_si, without_error
 from contactstudy.checks import Array, FloatArray, IntArray
 from contactstudy.errors import InvalidInputError
 

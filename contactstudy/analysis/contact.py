@@ -37,12 +37,7 @@ MISSING_LOAD = 0.01  # Fraction of the load that a part of a contact lacks at le
 END_TOLERANCE = 1e-6  # Largest distance, over a cell, of a border of the cells that is at an end of the contact
 
 # Comments of numbers that depend on the cells, with errors that are not estimated
-COMMENTS = dict.fromkeys(
-    ("contact_length", "contact_width", "peak_pressure_x", "peak_pressure_y"), "in whole cells"
-) | dict.fromkeys(
-    ("end_pressure_over_p0", "end_pressure_over_p0_first", "end_pressure_over_p0_last"),
-    "mean of the outermost loaded cell",
-)
+WHOLE_CELLS, OUTERMOST_CELL = "in whole cells", "mean of the outermost loaded cell"
 
 
 def contact_results(dataset: xr.Dataset, about: float | None = None) -> xr.Dataset:
@@ -105,7 +100,7 @@ def contact_results(dataset: xr.Dataset, about: float | None = None) -> xr.Datas
     has_pressure = pressure.notnull().any((x, y))
     scalars = {name: name_array(name, value.where(has_pressure)) for name, value in numbers.items()}
     for name in ("contact_area", "contact_length"):
-        scalars[name].attrs["comment"] = "in whole cells"
+        scalars[name].attrs["comment"] = WHOLE_CELLS
     peak_pressure = _peak_pressure(dataset, scalars["resultant"])
     return without_error(peak_pressure.assign(edge_pressure(dataset).data_vars).assign(scalars).compute(), *scalars)
 
@@ -162,7 +157,7 @@ def edge_pressure(dataset: xr.Dataset) -> xr.Dataset:
         value = without_coordinates(axial, x).isel({x: index}).where(is_loaded.any(x) & (is_cut == 0))
         # At a singular end the mean of a cell depends on the size of the cell.
         edges[name] = name_array(name, _unbounded_if_singular(dataset, end, value))
-        edges[name].attrs["comment"] = "mean of the outermost loaded cell"
+        edges[name].attrs["comment"] = OUTERMOST_CELL
     return without_error(xr.Dataset(edges), *edges)
 
 
@@ -323,21 +318,24 @@ def case_numbers(dataset: xr.Dataset) -> dict[str, xr.Variable]:
         for end, value in zip(("first", "last"), outermost, strict=True)
     )
     numbers = {
-        "peak_pressure": pressure[x_index, y_index],
-        "peak_pressure_x": array["x"].values[x_index],
-        "peak_pressure_y": array["y"].values[y_index],
-        "end_pressure_over_p0_first": first,
-        "end_pressure_over_p0_last": last,
-        "end_pressure_over_p0": 0.5 * (first + last),
+        "peak_pressure": (pressure[x_index, y_index], ""),
+        "peak_pressure_x": (array["x"].values[x_index], WHOLE_CELLS),
+        "peak_pressure_y": (array["y"].values[y_index], WHOLE_CELLS),
+        "end_pressure_over_p0_first": (first, OUTERMOST_CELL),
+        "end_pressure_over_p0_last": (last, OUTERMOST_CELL),
+        "end_pressure_over_p0": (0.5 * (first + last), OUTERMOST_CELL),
     }
     for name, axis, across in (("contact_length", "x", 1), ("contact_width", "y", 0)):
         loaded, centres, width = (pressure > 0).any(axis=across), array[axis].values, array.coords.get(f"{axis}_width")
         # Without labels: a study computes these numbers for every case.
         mean_width = np.full(centres.size, np.ptp(centres) / max(centres.size - 1, 1))
         widths = mean_width if width is None else width.values
-        numbers[name] = np.ptp(centres[loaded]) + widths[loaded][[0, -1]].mean() if loaded.any() else 0.0
-    comments = {name: {"comment": comment, ERROR_KIND: NOT_ESTIMATED} for name, comment in COMMENTS.items()}
-    result = {name: xr.Variable((), value, labels(name) | comments.get(name, {})) for name, value in numbers.items()}
+        extent = np.ptp(centres[loaded]) + widths[loaded][[0, -1]].mean() if loaded.any() else 0.0
+        numbers[name] = extent, WHOLE_CELLS
+    result = {}
+    for name, (value, comment) in numbers.items():
+        attributes = {"comment": comment, ERROR_KIND: NOT_ESTIMATED} if comment else {}
+        result[name] = xr.Variable((), value, labels(name) | attributes)
     for source in (stress_summary(dataset), dataset):
         scalars = {str(name): entry for name, entry in source.variables.items() if entry.ndim == 0}
         result |= {name: entry for name, entry in scalars.items() if name not in source.coords}

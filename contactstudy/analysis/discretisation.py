@@ -6,8 +6,7 @@ import numpy as np
 import xarray as xr
 
 from contactstudy.analysis.axial import EDGE_UNCERTAINTY, contact_edges
-from contactstudy.arrays.cells import labelled_cells
-from contactstudy.arrays.variables import describe
+from contactstudy.arrays.variables import describe, labelled_cells
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 

@@ -295,11 +295,11 @@ def _explain_unbounded(case: xr.Dataset, axes: dict[str, FloatArray], index: tup
     """Reason why the largest value may exceed the samples without limit; empty if none."""
     if "peak_pressure" in case and np.isinf(float(case["peak_pressure"])):
         return SINGULAR
-    extent = _extent(case)
+    ends = cell_ends(case)
     for (axis, points), i in zip(axes.items(), index, strict=True):
         at_surface = axis == "z" and points[0] == 0 and i == 0
         if axis == "x":
-            at_surface = any(np.isclose(points[i], end, rtol=0, atol=1e-9 * np.ptp(points)) for end in extent)
+            at_surface = any(np.isclose(points[i], end, rtol=0, atol=1e-9 * np.ptp(points)) for end in ends)
         if points.size > 1 and i in (0, points.size - 1) and not at_surface:
             return f"the largest sample lies at the edge of the points along {axis}"
     return _explain_unresolved(case, axes, {axis: float(axes[axis][i]) for axis, i in zip(axes, index, strict=True)})
@@ -324,7 +324,7 @@ def _explain_unresolved(case: xr.Dataset, axes: dict[str, FloatArray], sample: d
     for column, location in checked_columns:
         length_x, length_y = variation_lengths(pressure, x, dy, column)
         # Near a free end the stresses vary along x even under a uniform pressure.
-        from_end = min((abs(float(x[column]) - end) for end in _extent(case)), default=np.inf)
+        from_end = min((abs(float(x[column]) - end) for end in cell_ends(case)), default=np.inf)
         scales = {"x": min(length_x, max(length_y, from_end)), "z": min(length_x, length_y)}
         for axis, scale in scales.items():
             points = axes.get(axis, np.zeros(1))
@@ -338,7 +338,7 @@ def _explain_unresolved(case: xr.Dataset, axes: dict[str, FloatArray], sample: d
     return ""
 
 
-def _extent(case: xr.Dataset) -> tuple[float, ...]:
+def cell_ends(case: xr.Dataset) -> tuple[float, ...]:
     """Return the ends of the cells along x, equal to the ends of a finite body; empty without cells."""
     if "x_bounds" not in case.coords:
         return ()

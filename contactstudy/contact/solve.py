@@ -11,9 +11,8 @@ import xarray as xr
 from scipy.sparse.linalg import LinearOperator
 
 from contactstudy import checks
-from contactstudy.arrays.cells import cell_coordinates, labelled_cells
 from contactstudy.arrays.grid import Grid
-from contactstudy.arrays.variables import describe, in_si, without_error
+from contactstudy.arrays.variables import cell_coordinates, describe, in_si, labelled_cells, without_error
 from contactstudy.bodies.models import Body, Counterbody
 from contactstudy.cache import ArrayKey
 from contactstudy.case.motion import MOTIONS_TEXT, Friction, Motion, Shift, Sliding, check_friction, evaluate_friction

@@ -18,7 +18,7 @@ from bokeh.models import (
 from bokeh.plotting import figure
 
 from contactstudy.checks import FloatArray
-from contactstudy.explorer.images import Image, Line, Span
+from contactstudy.explorer.cases import Image, Line, Span
 
 FIRST_COLOR, SECOND_COLOR, NEUTRAL_COLOR = "#1f4e79", "#c05a00", "#8894a0"  # first case, second case, other cases
 

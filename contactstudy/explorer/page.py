@@ -14,20 +14,22 @@ from contactstudy.arrays.engineering import unit_for
 from contactstudy.arrays.variables import variable_of
 from contactstudy.checks import FloatArray
 from contactstudy.errors import ContactStudyError
-from contactstudy.explorer.cases import Cases, numbers_by_subject, status_sentence
-from contactstudy.explorer.figures import FIRST_COLOR, SECOND_COLOR, AxialFigure, ImageFigure, StudyFigure
-from contactstudy.explorer.images import (
+from contactstudy.explorer.cases import (
     PLANES,
     REGIONS,
     CaseFields,
+    Cases,
     Image,
     Line,
     axial_line,
     choose_scale,
+    numbers_by_subject,
     plane_image,
     region_limits,
+    status_sentence,
     top_image,
 )
+from contactstudy.explorer.figures import FIRST_COLOR, SECOND_COLOR, AxialFigure, ImageFigure, StudyFigure
 from contactstudy.plots.study_lines import ESTIMATED_PREFIXES
 from contactstudy.report.assessment import assess_case
 from contactstudy.report.tables import NOT_ESTIMATED, OPEN_END, Summary, summary

@@ -150,10 +150,9 @@ def _find_maximum(stress: Array, depth: Array) -> tuple[Array, Array]:
 def _integrate(density: Array, position: Array) -> Array:
     """Trapezoidal integral along the last axis without padded positions."""
     position = np.broadcast_to(position, density.shape)
-    padding = np.isnan(density) | np.isnan(position)
     areas = 0.5 * (density[..., 1:] + density[..., :-1]) * np.abs(np.diff(position, axis=-1))
-    total = np.where(padding[..., 1:] | padding[..., :-1], 0.0, areas).sum(axis=-1)
-    return np.asarray(np.where(padding.all(axis=-1), np.nan, total))
+    is_empty = (np.isnan(density) | np.isnan(position)).all(axis=-1)
+    return np.asarray(np.where(is_empty, np.nan, np.nansum(areas, axis=-1)))
 
 
 def _integrate_risk(

@@ -20,7 +20,7 @@ from scipy import sparse
 from contactstudy import checks
 from contactstudy.analysis import dimension_along, single_case
 from contactstudy.analysis.axes import positions
-from contactstudy.analysis.peaks import interpolated_peak, label_peak
+from contactstudy.analysis.peaks import cell_ends, interpolated_peak, label_peak
 from contactstudy.arrays.variables import STRESSES, VARIABLES, describe, name_array, require_in_si
 from contactstudy.bodies.models import Body
 from contactstudy.checks import Array, FloatArray
@@ -171,11 +171,9 @@ def shakedown_limit(stress: xr.Dataset, *, axial: bool = False) -> xr.Dataset:
             maximum = maximum._replace(error=maximum.error + maximum.value - min(half.value for half in half_maxima))
         peak = label_peak(variable, maximum, VARIABLES[variable])
         position_notes = ["on the top" if maximum.position.get("z", 1.0) == 0 else "below the top"]
-        if "x" in maximum.position and "x_bounds" in case.coords:
-            bounds = case["x_bounds"].values
-            ends = [bounds.min(), bounds.max()]
-            if np.isclose(maximum.position["x"], ends, rtol=0, atol=1e-9 * np.ptp(bounds)).any():
-                position_notes.append("at an end")
+        ends = cell_ends(case) if "x" in maximum.position else ()
+        if ends and np.isclose(maximum.position["x"], ends, rtol=0, atol=1e-9 * np.ptp(ends)).any():
+            position_notes.append("at an end")
         peak[f"peak_{variable}"].attrs["comment"] = ", ".join(position_notes)
         result = result.merge(peak)
         if "hertz_max_pressure" in case and maximum.value:

@@ -9,9 +9,8 @@ import numpy as np
 import xarray as xr
 
 from contactstudy import checks
-from contactstudy.arrays.cells import labelled_cells
 from contactstudy.arrays.grid import SPACING_TOLERANCE, Grid
-from contactstudy.arrays.variables import in_si
+from contactstudy.arrays.variables import in_si, labelled_cells
 from contactstudy.bodies.models import Body, FreeEnds
 from contactstudy.cache import ArrayKey
 from contactstudy.checks import FloatArray

@@ -13,9 +13,8 @@ from scipy.interpolate import CubicSpline, PchipInterpolator
 
 from contactstudy import checks
 from contactstudy.analysis.provenance import INPUTS_ATTRIBUTE, attribute, check_solved_for, with_provenance
-from contactstudy.arrays.cells import cell_coordinates
 from contactstudy.arrays.peaks import lagrange_weights
-from contactstudy.arrays.variables import describe, require, without_error
+from contactstudy.arrays.variables import cell_coordinates, describe, require, without_error
 from contactstudy.case.case import Case
 from contactstudy.checks import BoolArray, FloatArray
 from contactstudy.errors import ConvergenceWarning, FilmError, InvalidInputError, MagnitudeWarning

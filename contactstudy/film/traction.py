@@ -8,8 +8,7 @@ import numpy as np
 import xarray as xr
 
 from contactstudy import checks
-from contactstudy.arrays.cells import labelled_cells
-from contactstudy.arrays.variables import describe
+from contactstudy.arrays.variables import describe, labelled_cells
 from contactstudy.bodies.lubricant import Lubricant
 from contactstudy.case.case import Case
 from contactstudy.checks import FloatArray

@@ -22,9 +22,8 @@ from scipy.special import erf
 from contactstudy import checks
 from contactstudy.analysis.axes import single_case
 from contactstudy.analysis.provenance import check_solved_for
-from contactstudy.arrays.cells import labelled_cells
 from contactstudy.arrays.grid import Grid
-from contactstudy.arrays.variables import describe, require_in_si
+from contactstudy.arrays.variables import describe, labelled_cells, require_in_si
 from contactstudy.case.case import Case
 from contactstudy.case.magnitudes import warn_of_values
 from contactstudy.case.motion import Rolling, Shift, Sliding

@@ -16,8 +16,7 @@ from contactstudy.kernels.convolution import centred_field
 from contactstudy.kernels.corner_sums import AlignedPoints, aligned_points, fold_offsets
 from contactstudy.kernels.fine_cells import FineCells, mirror_edges
 from contactstudy.kernels.images import CHEBYSHEV_X, FarImages, Influence, snap_offsets
-from contactstudy.kernels.load import Load, Response
-from contactstudy.kernels.patch import DISPLACEMENT_CORNERS, STRESS_CORNERS
+from contactstudy.kernels.load import DISPLACEMENT_CORNERS, STRESS_CORNERS, Load, Response
 from contactstudy.kernels.strips import row_level, strips_of
 from contactstudy.threads import one_blas_thread
 
@@ -180,29 +179,18 @@ def _aligned_field(
     return np.stack([evaluate_layer(depth) for depth in z.tolist()], axis=-1)
 
 
-STRESS_PARITIES = ((1, 1, 1, -1, -1, 1), (1, 1, 1, -1, 1, -1))
-"""Parities along x and along y of the components xx, yy, zz, xy, xz, yz under a pressure."""
-
-DISPLACEMENT_PARITIES = ((-1, 1, 1), (1, -1, 1))
-"""Parities along x and along y of the components x, y, z under a pressure."""
-
-
 def stress_influence(load: Load, poisson: float) -> Influence:
     """Stresses xx, yy, zz, xy, xz, yz of a unit load."""
-    level = (0.0,) * len(STRESS_PARITIES[0])
-    return Influence(
-        corner=STRESS_CORNERS[load], poisson=poisson, load=load, parities=STRESS_PARITIES, image_level=level
-    )
+    parities = (1, 1, 1, -1, -1, 1), (1, 1, 1, -1, 1, -1)
+    corner, levels = STRESS_CORNERS[load], (0.0,) * 6
+    return Influence(corner=corner, poisson=poisson, load=load, parities=parities, image_level=levels)
 
 
 def displacement_influence(load: Load, poisson: float, length: float, reference: float) -> Influence:
     """Displacements times ``4 pi G`` of a unit load, relative to the top at the reference between two mirrors."""
-    level = tuple(
+    levels = tuple(
         row_level(strips_of(Response(direction, load), poisson), load.sign_x, length, reference)
-        if np.isfinite(length)
-        else 0.0
         for direction in (Load.ALONG_X, Load.ALONG_Y, Load.NORMAL)
     )
-    return Influence(
-        corner=DISPLACEMENT_CORNERS[load], poisson=poisson, load=load, parities=DISPLACEMENT_PARITIES, image_level=level
-    )
+    corner, parities = DISPLACEMENT_CORNERS[load], ((-1, 1, 1), (1, -1, 1))
+    return Influence(corner=corner, poisson=poisson, load=load, parities=parities, image_level=levels)

@@ -172,11 +172,9 @@ class FineCells:
         if not self.is_split.any():
             return loads, grid
         margin, has_end = NEIGHBOURS * PARTS_X, np.isfinite(self.extent)
-        padded = loads
-        for has_image, pad in zip(has_end, ((margin, 0), (0, margin)), strict=True):
-            extended = np.pad(loads, (pad, (0, 0)), mode="symmetric" if has_image else "constant")
-            loads_beyond = self.image_sign * (extended[: pad[0]] if pad[0] else extended[extended.shape[0] - pad[1] :])
-            padded = np.concatenate([loads_beyond, padded] if pad[0] else [padded, loads_beyond])
+        padded = np.pad(loads, ((margin, margin), (0, 0)), mode="symmetric")
+        for has_image, loads_beyond in zip(has_end, (padded[:margin], padded[-margin:]), strict=True):
+            loads_beyond *= self.image_sign if has_image else 0
         # The loads that carry the moments also lie on cells beyond the load, or in the image at an end.
         loads = coarsen(padded, PARTS_X)[NEIGHBOURS:-NEIGHBOURS]
         step, (cells_before, cells_behind) = self.grid.dx, (0 if has_image else NEIGHBOURS for has_image in has_end)

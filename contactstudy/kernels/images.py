@@ -16,8 +16,7 @@ from numpy.polynomial import chebyshev
 
 from contactstudy.arrays.grid import Grid, Points
 from contactstudy.checks import FloatArray
-from contactstudy.kernels.load import Load
-from contactstudy.kernels.patch import Corner
+from contactstudy.kernels.load import Corner, Load
 
 CornerFunction = Callable[[FloatArray, FloatArray], FloatArray]
 
@@ -42,14 +41,15 @@ def snap_offsets(offsets: FloatArray, size: float) -> FloatArray:
 
 
 def mirrored_kernel(
-    corner: CornerFunction, x: FloatArray, y: FloatArray, dx: float, dy: float, length: float
+    corner: CornerFunction, x: FloatArray, y: FloatArray, dx: float, dy: float, length: float, level: FloatArray | float
 ) -> FloatArray:
     """`cell_kernel` of a load and all its images at distances ``2 length``, if finite; offsets x up to ``length``."""
-    # A quantity that grows with distance contains the constant of a spread load up to ``FAR_LIMIT * length``.
+    # A quantity that grows with distance contains the constant of a spread load up to ``FAR_LIMIT * length``, and the
+    # `level` per area, which moves it to its reference.
+    kernel = cell_kernel(corner, x, y, dx, dy)
     if np.isinf(length):
-        return cell_kernel(corner, x, y, dx, dy)
-    images = image_kernel(corner, x, y, dx, dy, length=length, nearest=2 * length)
-    return cell_kernel(corner, x, y, dx, dy) + images
+        return kernel
+    return kernel + image_kernel(corner, x, y, dx, dy, length=length, nearest=2 * length) + dx * dy * level
 
 
 def image_kernel(
@@ -189,9 +189,8 @@ class Influence:
 
     def kernel(self, x: FloatArray, y: FloatArray, dx: float, dy: float, length: float, depth: float) -> FloatArray:
         """Influence at uniform offsets `x` and `y`, with all images where `length` is finite: (component, x, y)."""
-        kernel = mirrored_kernel(self.corner_at(depth), x, y, dx, dy, length=length)
         level = np.array(self.image_level)[:, None, None]
-        return kernel if np.isinf(length) else np.asarray(kernel + dx * dy * level)
+        return mirrored_kernel(self.corner_at(depth), x, y, dx, dy, length=length, level=level)
 
 
 LOAD_POINTS = 10

@@ -1,9 +1,28 @@
-"""Directions of a load on the top of a body, and their parities under reflection."""
+"""Directions of a load on the top, and a uniformly loaded rectangle: stresses and displacements in closed form.
+
+Every quantity is a second mixed difference, over the rectangle's corners, of a corner function of the offset
+``(X, Y, z)`` from corner to observer. The corner functions follow from the Boussinesq and Cerruti potentials
+
+    V = int int dA / r,   chi = int int ln(r + z) dA,   Theta = int int [z ln(r + z) - r] dA
+
+(A. E. H. Love, Phil. Trans. R. Soc. A 228 (1929); K. L. Johnson, Contact Mechanics (1985), section 3.2). Terms that
+depend on one of X and Y alone cancel in the difference and are left out, which also avoids loss of digits. The
+displacements are
+
+    pressure p:        4 pi G u_x = -(1 - 2 nu) chi_x - z V_x,   4 pi G u_z = 2 (1 - nu) V - z V_z
+    traction q on y:   4 pi G u_x = 2 nu Theta_xy - z chi_xy,    4 pi G u_y = 2 V + 2 nu Theta_yy - z chi_yy,
+                       4 pi G u_z = (1 - 2 nu) chi_y - z V_y
+"""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from enum import Enum
 from typing import NamedTuple
+
+import numpy as np
+
+from contactstudy.checks import FloatArray
 
 
 class Load(Enum):
@@ -36,3 +55,124 @@ class Response(NamedTuple):
 
 
 NORMAL_RESPONSE = Response(Load.NORMAL, Load.NORMAL)  # normal displacement of the top under a pressure
+
+Corner = Callable[[FloatArray, FloatArray, FloatArray | float, float], FloatArray]
+
+TINY = 1e-150  # least denominator, with a representable square, far below any offset in metres
+
+
+def _inverse_sinh_ratio(numerator: FloatArray, square: FloatArray, r: FloatArray) -> FloatArray:
+    """``asinh(numerator / sqrt(square))`` with ``r**2 = numerator**2 + square``; finite where `square` vanishes."""
+    ratio = (np.abs(numerator) + r) / np.sqrt(np.maximum(square, TINY))
+    return np.copysign(np.log(np.maximum(ratio, 1.0)), numerator)
+
+
+def _angle(opposite: FloatArray, adjacent: FloatArray) -> FloatArray:
+    """Angle whose tangent is ``opposite / adjacent``, for `adjacent` not negative."""
+    return np.arctan(opposite / np.maximum(adjacent, TINY))
+
+
+def _stack_components(*components: FloatArray) -> FloatArray:
+    """Components over ``2 pi`` as one array (component, ...)."""
+    stacked = np.empty((len(components), *components[0].shape))
+    for scaled_component, component in zip(stacked, components, strict=True):
+        np.multiply(component, 1 / (2 * np.pi), out=scaled_component)
+    return stacked
+
+
+def normal_corner(x: FloatArray, y: FloatArray, z: FloatArray | float, poisson: float) -> FloatArray:
+    """Corner functions (6, ...) of xx, yy, zz, xy, xz, yz; unit pressure has their second mixed difference."""
+    xx, yy = x * x, y * y
+    r = np.sqrt(xx + yy + z * z)
+    xy = x * y
+    v_z = -_angle(xy, z * r)
+    chi_xx = _angle(xy * (xx + yy), (r + z) * (r * xx + z * yy))
+    chi_yy = -v_z - chi_xx
+    along_x = 1.0 / np.maximum(r * (xx + z * z), TINY)
+    along_y = 1.0 / np.maximum(r * (yy + z * z), TINY)
+    v_xx, v_yy = -xy * along_x, -xy * along_y
+    compressibility = 1 - 2 * poisson
+    return _stack_components(
+        2 * poisson * v_z - compressibility * chi_xx - z * v_xx,
+        2 * poisson * v_z - compressibility * chi_yy - z * v_yy,
+        v_z + z * (v_xx + v_yy),
+        -compressibility * np.log(np.maximum(r + z, TINY)) - z / np.maximum(r, TINY),
+        z * z * y * along_x,
+        z * z * x * along_y,
+    )
+
+
+def tangential_corner(x: FloatArray, y: FloatArray, z: FloatArray | float, poisson: float) -> FloatArray:
+    """Corner functions of the six stresses under unit shear traction along +y; otherwise as :func:`normal_corner`."""
+    xx, yy, zz = x * x, y * y, np.square(z)
+    r = np.sqrt(xx + yy + zz)
+    safe_r, r_z = np.maximum(r, TINY), np.maximum(r + z, TINY)
+    v_y = _inverse_sinh_ratio(x, yy + zz, r)
+    along_y = 1.0 / np.maximum(r * (yy + zz), TINY)
+    x_r, y_r, term = x / r_z, y / r_z, z * x * along_y
+    return _stack_components(
+        2 * poisson * (v_y - x_r) - z / safe_r * x_r,
+        2 * v_y + 2 * poisson * x_r + z / safe_r * x_r - z * term,
+        z * term,
+        _inverse_sinh_ratio(y, xx + zz, r) - 2 * poisson * y_r - z / safe_r * y_r,
+        -z / safe_r,
+        -_angle(x * y, z * r) + y * term,
+    )
+
+
+class _Potentials:
+    """Corner functions of the potentials' derivatives at offsets ``(X, Y, z)``."""
+
+    def __init__(self, x: FloatArray, y: FloatArray, z: FloatArray | float) -> None:
+        xx, yy, zz = x * x, y * y, np.square(z)
+        r = np.sqrt(xx + yy + zz)
+        xy = x * y
+        self.r, self.z = r, z
+        self.log = np.log(np.maximum(r + z, TINY))
+        self.asinh_x = _inverse_sinh_ratio(x, yy + zz, r)
+        self.asinh_y = _inverse_sinh_ratio(y, xx + zz, r)
+        self.v_z = -_angle(xy, z * r)
+        self.chi_xx = _angle(xy * (r - z), x * x * r + y * y * z)
+        self.chi_yy = _angle(xy * (r - z), y * y * r + x * x * z)
+        self.v = x * self.asinh_y + y * self.asinh_x + z * self.v_z
+        self.chi_x = y * self.log + z * self.asinh_y + x * self.chi_xx
+        self.chi_y = x * self.log + z * self.asinh_x + y * self.chi_yy
+        self.theta_yy = -y * self.asinh_x + z * self.chi_yy
+
+
+def normal_displacement_inside(x: FloatArray, y: FloatArray, z: FloatArray | float, poisson: float) -> FloatArray:
+    """Corner functions of ``4 pi G (u_x, u_y, u_z)`` under unit pressure: array (3, ...)."""
+    potentials = _Potentials(x, y, z)
+    compressibility = 1 - 2 * poisson
+    return np.stack(
+        [
+            -compressibility * potentials.chi_x - z * potentials.asinh_y,
+            -compressibility * potentials.chi_y - z * potentials.asinh_x,
+            2 * (1 - poisson) * potentials.v - z * potentials.v_z,
+        ]
+    )
+
+
+def tangential_displacement_inside(x: FloatArray, y: FloatArray, z: FloatArray | float, poisson: float) -> FloatArray:
+    """Corner functions of ``4 pi G (u_x, u_y, u_z)`` under unit shear traction along +y; otherwise as for pressure."""
+    potentials = _Potentials(x, y, z)
+    return np.stack(
+        [
+            2 * poisson * (z * potentials.log - potentials.r) - z * potentials.log,
+            2 * potentials.v + 2 * poisson * potentials.theta_yy - z * potentials.chi_yy,
+            (1 - 2 * poisson) * potentials.chi_y - z * potentials.asinh_x,
+        ]
+    )
+
+
+def _corners(normal: Corner, tangential: Corner, exchanged_order: list[int]) -> dict[Load, Corner]:
+    """Corner functions by the direction of the load; along +x they are the functions of +y with x and y exchanged."""
+
+    def axial(x: FloatArray, y: FloatArray, z: FloatArray | float, poisson: float) -> FloatArray:
+        return tangential(y, x, z, poisson)[exchanged_order]
+
+    return {Load.NORMAL: normal, Load.ALONG_X: axial, Load.ALONG_Y: tangential}
+
+
+STRESS_CORNERS = _corners(normal_corner, tangential_corner, [1, 0, 2, 3, 5, 4])
+DISPLACEMENT_CORNERS = _corners(normal_displacement_inside, tangential_displacement_inside, [1, 0, 2])

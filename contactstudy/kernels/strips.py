@@ -22,8 +22,7 @@ from contactstudy.cache import recall, retain
 from contactstudy.checks import BoolArray, FloatArray, IntArray
 from contactstudy.kernels.convolution import even_spectrum, odd_spectrum, spectrum_matrices
 from contactstudy.kernels.images import FAR_LIMIT, CornerFunction, FarImages, mirrored_kernel
-from contactstudy.kernels.load import Load, Response
-from contactstudy.kernels.patch import TINY
+from contactstudy.kernels.load import TINY, Load, Response
 
 Function = Callable[[FloatArray, FloatArray], FloatArray]
 
@@ -112,7 +111,7 @@ Strips = tuple[tuple[float, Strip], ...]  # strips and their factors in a sum
 
 def strips_of(response: Response, poisson: float) -> Strips:
     """Return strips, with factors, whose sum is ``4 pi G u`` (Cerruti; Johnson, Contact Mechanics, section 3.6)."""
-    # With the potentials V, chi, Theta of patch.py: u_z[p] = 2 (1 - nu) V, u_x[p] = -(1 - 2 nu) chi_x = -u_z[q_x],
+    # With the potentials V, chi, Theta of load.py: u_z[p] = 2 (1 - nu) V, u_x[p] = -(1 - 2 nu) chi_x = -u_z[q_x],
     # u_x[q_x] = 2 V + 2 nu Theta_xx, u_y[q_x] = u_x[q_y] = 2 nu Theta_xy, and with x and y exchanged.
     compressibility = 1 - 2 * poisson
     return {
@@ -146,7 +145,7 @@ def corner_function(strips: Strips) -> CornerFunction:
 
 def row_level(strips: Strips, image_sign: int, length: float, reference: float) -> float:
     """Return the ``4 pi G u`` per load that makes the displacement next to a row of images zero at the reference."""
-    if image_sign < 0:
+    if image_sign < 0 or np.isinf(length):
         return 0.0
     logarithm = np.log(2 * FAR_LIMIT * length / reference)
     return float(
@@ -170,10 +169,8 @@ def surface_kernel(
 ) -> FloatArray:
     """Displacement times ``4 pi G`` of the surface from a unit load on one cell, at uniform offsets: array (x, y)."""
     strips = strips_of(response, poisson)
-    kernel = mirrored_kernel(corner_function(strips), x, y, *cell, length)  # eq. (39a)
-    if np.isinf(length):
-        return kernel
-    return kernel + cell[0] * cell[1] * row_level(strips, response.load.sign_x, length, reference)
+    level = row_level(strips, response.load.sign_x, length, reference)
+    return mirrored_kernel(corner_function(strips), x, y, *cell, length=length, level=level)  # eq. (39a)
 
 
 FAR_COLUMNS = 24.0

@@ -119,19 +119,3 @@ def edges_between(positions: FloatArray, low: float, high: float) -> FloatArray:
     first_edge = low if positions[0] - low <= positions[1] - positions[0] else 2 * positions[0] - midpoints[0]
     last_edge = high if high - positions[-1] <= positions[-1] - positions[-2] else 2 * positions[-1] - midpoints[-1]
     return np.concatenate([[first_edge], midpoints, [last_edge]])
-
-
-def create_cross_section(body: Body, x: FloatArray, z: FloatArray) -> EigenstrainBody:
-    """Create the cells around positions in a body, up to its top and its free ends."""
-    for name, points in (("x", x), ("z", z)):
-        checks.increasing(name, points, "metres", minimum=2)
-    low, high = body.extent
-    tolerance = 1e-9 * (x[-1] - x[0])  # Rounding over the positions' range
-    if x[0] < low - tolerance or x[-1] > high + tolerance:
-        raise InvalidInputError("x", f"{x[0]:g} to {x[-1]:g} m", f"positions in the body, from {low:g} to {high:g} m")
-    x_edges, z_edges = edges_between(x, low, high), edges_between(z, 0.0, np.inf)
-    for name, face, edge in (("x", low, x_edges[0]), ("x", high, x_edges[-1]), ("z", 0.0, z_edges[0])):
-        if np.isfinite(face) and edge != face:
-            border = "the top" if name == "z" else f"the free end at {face:g} m"
-            raise InvalidInputError(name, f"{edge:g} m, where the outer cell ends", f"positions that reach to {border}")
-    return EigenstrainBody(material=body.material, extent=body.extent, x_edges=x_edges, z_edges=z_edges)

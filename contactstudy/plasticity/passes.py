@@ -27,7 +27,7 @@ from contactstudy.case.magnitudes import warn_of_values
 from contactstudy.checks import FloatArray, IntArray
 from contactstudy.eigenstrain.body import EigenstrainBody, PeriodicLayers, cell_influence, layer_stresses
 from contactstudy.errors import ConvergenceWarning, InvalidInputError
-from contactstudy.plasticity.eigenstrains import STRAINS, create_cross_section, edges_between
+from contactstudy.plasticity.eigenstrains import STRAINS, edges_between
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -152,8 +152,7 @@ class Passage:
     cell_indices: tuple[IntArray, IntArray]  # column and layer (cell) in `lateral`
     yield_stress: FloatArray  # (cell), in tension, Pa
 
-    isotropic: float  # hardening modulus, Pa
-    kinematic: float  # hardening modulus, Pa
+    material: ElasticPlastic  # for its hardening
     tolerance: float  # change of the deviator over the yield stress
 
     def solve(self, start: State) -> State:
@@ -195,15 +194,15 @@ class Passage:
 
     def _return_mapping(self, trial: FloatArray, initial: State) -> tuple[FloatArray, FloatArray]:
         """Plastic strain of this pass, and accumulated strain; `trial` is the deviator before plastic flow."""
-        kinematic = 2 / 3 * self.kinematic
+        kinematic = 2 / 3 * self.material.kinematic_hardening
         modulus = 2 * self.lateral.material.shear_modulus + kinematic
-        stiffness = modulus + 2 / 3 * self.isotropic
+        stiffness = modulus + 2 / 3 * self.material.isotropic_hardening
         strain, accumulated = initial.strain, initial.accumulated
         flow = np.empty_like(trial)
         for position in range(trial.shape[1]):
             relative_stress = trial[:, position] - modulus * strain
             norm = tensor_norm(relative_stress)
-            radius = np.sqrt(2 / 3) * (self.yield_stress + self.isotropic * accumulated)
+            radius = np.sqrt(2 / 3) * (self.yield_stress + self.material.isotropic_hardening * accumulated)
             if (norm > radius).any():
                 multiplier = np.maximum(norm - radius, 0.0) / stiffness
                 strain = strain + multiplier / np.maximum(norm, radius) * relative_stress
@@ -243,8 +242,22 @@ class _CrossSection:
 
     @cached_property
     def cells(self) -> EigenstrainBody:
-        """Cells around the positions."""
-        return create_cross_section(self.body, self.x, self.z)
+        """Cells around the positions, up to the body's top and its free ends."""
+        body, x, z = self.body, self.x, self.z
+        for name, points in (("x", x), ("z", z)):
+            checks.increasing(name, points, "metres", minimum=2)
+        low, high = body.extent
+        tolerance = 1e-9 * (x[-1] - x[0])  # Rounding over the positions' range
+        if x[0] < low - tolerance or x[-1] > high + tolerance:
+            allowed = f"positions in the body, from {low:g} to {high:g} m"
+            raise InvalidInputError("x", f"{x[0]:g} to {x[-1]:g} m", allowed)
+        x_edges, z_edges = edges_between(x, low, high), edges_between(z, 0.0, np.inf)
+        for name, face, edge in (("x", low, x_edges[0]), ("x", high, x_edges[-1]), ("z", 0.0, z_edges[0])):
+            if np.isfinite(face) and edge != face:
+                border = "the top" if name == "z" else f"the free end at {face:g} m"
+                allowed = f"positions that reach to {border}"
+                raise InvalidInputError(name, f"{edge:g} m, where the outer cell ends", allowed)
+        return EigenstrainBody(material=body.material, extent=body.extent, x_edges=x_edges, z_edges=z_edges)
 
     @cached_property
     def yield_stress(self) -> FloatArray:
@@ -272,8 +285,7 @@ class _CrossSection:
             lateral=PeriodicLayers(self.body.material, edges, period, float(y[1] - y[0])),
             cell_indices=(np.unique(columns, return_inverse=True)[1], layers - top_layer),
             yield_stress=self.yield_stress[cells],
-            isotropic=self.material.isotropic_hardening,
-            kinematic=self.material.kinematic_hardening,
+            material=self.material,
             tolerance=tolerance,
         )
 

@@ -8,7 +8,7 @@
 
 from __future__ import annotations
 
-from contactstudy.verification.check import Check
+from contactstudy.verification.problems import Check
 from contactstudy.verification.suite import Verification, run, verify
 
 __all__ = ["Check", "Verification", "run", "verify"]

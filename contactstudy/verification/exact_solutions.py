@@ -19,9 +19,11 @@ from contactstudy.kernels.load import Load
 from contactstudy.overlapping.equations import EquationSet, axial_modes
 from contactstudy.overlapping.quadrature import Resolution
 from contactstudy.verification import closed_forms
-from contactstudy.verification.check import Check, Curve, Reference
 from contactstudy.verification.problems import (
     LINE_LOAD,
+    Check,
+    Curve,
+    Reference,
     components,
     on_cells,
     point_pressure,

@@ -26,9 +26,8 @@ from contactstudy.film.levels import FilmCase, film_on_level, moes_line
 from contactstudy.film.newton import SETTINGS
 from contactstudy.film.solve import create_film_case
 from contactstudy.profiles import FullCrown, Lundberg
-from contactstudy.verification.check import Check, Curve, Reference
 from contactstudy.verification.free_ends import FINITE_ELEMENTS
-from contactstudy.verification.problems import FILM_CASES, FILM_FILE, load_reference
+from contactstudy.verification.problems import FILM_CASES, FILM_FILE, Check, Curve, Reference, load_reference
 
 # Moes' numbers M, L: extrapolated central and least film H of Barus oil of constant density, below M = 100 with an
 # inlet of four half-widths; two programs agree to 0.2 %

@@ -28,13 +28,15 @@ from contactstudy.kernels.load import Load
 from contactstudy.overlapping.equations import EquationSet, axial_modes
 from contactstudy.overlapping.quadrature import Resolution
 from contactstudy.stress import maximum_shear, von_mises
-from contactstudy.verification.check import Check, Curve, Reference
 from contactstudy.verification.problems import (
     CONTACT_CASES,
     CONTACT_FILE,
     LOAD_CASES,
     STRESS_FILE,
+    Check,
+    Curve,
     LoadCase,
+    Reference,
     components,
     load_reference,
     on_cells,

@@ -13,9 +13,8 @@ from contactstudy.bodies import FiniteLengthSpace, HalfSpace, Material
 from contactstudy.checks import FloatArray
 from contactstudy.fatigue import shakedown, shakedown_limit
 from contactstudy.plasticity import ElasticPlastic, eigenstrain_stress, residual_stress
-from contactstudy.verification.check import Check, Curve, Reference
 from contactstudy.verification.closed_forms import hertz_strip, rectangle_in_half_plane, von_mises
-from contactstudy.verification.problems import PASSES_CASES, PASSES_FILE, load_reference
+from contactstudy.verification.problems import PASSES_CASES, PASSES_FILE, Check, Curve, Reference, load_reference
 
 STIFF = Material(1000.0, 0.3)  # Young's modulus is a thousand times the peak pressure of the contacts
 # Allowed differences of residual stress, and of shear summed over depth. Above the limit errors add up

@@ -1,4 +1,4 @@
-"""Unit problems of the checks, and stored solutions of some problems by independent finite elements.
+"""Checks, their unit problems, and stored solutions of some problems by independent finite elements.
 
 Lengths are in units of ``a`` and pressures in units of ``p0``: half-width and peak of a prescribed load, or of the
 Hertz line contact of the same load per length, with ``E* = 1``, ``R = a / 2`` and the gap ``y**2``.
@@ -12,7 +12,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -24,6 +24,73 @@ from contactstudy.bodies.material import Material
 from contactstudy.checks import FloatArray
 
 Range = tuple[float, float]
+
+
+@dataclass(frozen=True, eq=False)
+class Curve:
+    """Computed and expected curve of a check, for a figure."""
+
+    labels: tuple[str, str]  # position and quantity
+    positions: FloatArray
+    computed: FloatArray
+    expected: FloatArray
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Check:
+    """One quantity compared with its reference."""
+
+    case: str  # solved problem
+    quantity: str  # compared quantity with its unit
+    source: str  # source of the reference
+    computed: float  # computed value; of a field, the value at the worst point
+    expected: float
+    difference: float  # between both, over `expected` if relative; for a field the largest or the median
+    tolerance: float  # largest difference that passes
+    curve: Curve | None = None  # for a figure
+
+    @property
+    def passed(self) -> bool:
+        """Whether the difference is a number within the tolerance."""
+        return bool(abs(self.difference) <= self.tolerance)
+
+
+class Reference(NamedTuple):
+    """A solved problem and the source of its expected values."""
+
+    case: str
+    source: str
+
+    def compare(
+        self,
+        quantity: str,
+        computed: ArrayLike,
+        expected: ArrayLike,
+        tolerance: float,
+        *,
+        relative: bool = False,
+        median: bool = False,
+        curve: Curve | None = None,
+    ) -> Check:
+        """Compare two numbers, or two fields where they differ most or by the median."""
+        is_field = np.ndim(computed) > 0
+        values, references = (np.ravel(a).astype(float) for a in np.broadcast_arrays(computed, expected))
+        differences = np.abs(values - references)
+        # argmax also finds a NaN, which exceeds every tolerance.
+        is_median = median and not np.isnan(differences).any()
+        index = np.argsort(differences)[differences.size // 2] if is_median else differences.argmax()
+        value, reference = float(values[index]), float(references[index])
+        kind = f", {'median' if median else 'largest'} difference" if is_field else ", relative" if relative else ""
+        return Check(
+            case=self.case,
+            quantity=f"{quantity}{kind}",
+            source=self.source,
+            computed=value,
+            expected=reference,
+            difference=(value - reference) / (reference if relative else 1.0),
+            tolerance=tolerance,
+            curve=curve,
+        )
 
 
 def unit_material(poisson: float = 0.3) -> Material:

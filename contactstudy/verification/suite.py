@@ -21,8 +21,7 @@ from contactstudy.errors import InvalidInputError, MagnitudeWarning
 from contactstudy.plots.style import line_styles
 from contactstudy.study.files import write_dataset, write_text
 from contactstudy.verification import exact_solutions, film, free_ends, passes, tribology
-from contactstudy.verification.check import Check
-from contactstudy.verification.problems import FILM_CASES, PASSES_CASES
+from contactstudy.verification.problems import FILM_CASES, PASSES_CASES, Check
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -32,8 +32,7 @@ from contactstudy.heat.flash import MovingBody, SourceOperator
 from contactstudy.profiles import FullCrown
 from contactstudy.solution import solve
 from contactstudy.verification import closed_forms
-from contactstudy.verification.check import Check, Curve, Reference
-from contactstudy.verification.problems import on_cells, on_grid
+from contactstudy.verification.problems import Check, Curve, Reference, on_cells, on_grid
 from contactstudy.wear import wear_in, worn_profile
 
 LINE_CELLS = 52  # Cells along y over 2.6 half-widths of a line contact: 20 per half-width

@@ -13,9 +13,8 @@ import xarray as xr
 
 from contactstudy import checks
 from contactstudy.analysis.provenance import check_solved_for, with_provenance
-from contactstudy.arrays.cells import cell_coordinates, labelled_cells
 from contactstudy.arrays.grid import Grid
-from contactstudy.arrays.variables import describe, in_si, require
+from contactstudy.arrays.variables import cell_coordinates, describe, in_si, labelled_cells, require
 from contactstudy.cache import ArrayKey
 from contactstudy.case.case import Case
 from contactstudy.case.gridding import choose_grid

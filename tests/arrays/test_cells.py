@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 
 import contactstudy as cs
 from contactstudy import Grid, InvalidInputError
-from contactstudy.arrays.cells import cell_coordinates, labelled_cells
 from contactstudy.arrays.grid import SPACING_TOLERANCE
+from contactstudy.arrays.variables import cell_coordinates, labelled_cells
 
 EDGES = np.array([0.0, 0.1, 0.3, 0.7, 1.1, 1.4, 1.5])
 GRID = Grid.from_edges(EDGES, (-1.0, 1.0), 4)

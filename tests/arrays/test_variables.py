@@ -46,7 +46,7 @@ from contactstudy.bearing.tabulation import ContactSolver, label_law
 from contactstudy.fields.edge_tension import edge_tension
 from contactstudy.study.parameters import PARAMETERS
 from contactstudy.verification import suite
-from contactstudy.verification.check import Reference
+from contactstudy.verification.problems import Reference
 from tests.bearing.test_energy_spline import NODES
 from tests.small_study import small_study
 from tests.stand_in_solver import solve_fake

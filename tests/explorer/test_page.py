@@ -16,20 +16,22 @@ from contactstudy import ContactStudyError, InvalidInputError, open_study
 from contactstudy.analysis import in_plane, measure
 from contactstudy.arrays.variables import specification
 from contactstudy.explorer import explore, server
-from contactstudy.explorer.cases import SUBJECTS, Cases, open_cases
-from contactstudy.explorer.figures import NEUTRAL_COLOR, StudyFigure
-from contactstudy.explorer.images import (
+from contactstudy.explorer.cases import (
     PIXELS,
     PLANES,
     REGIONS,
+    SUBJECTS,
     CaseFields,
+    Cases,
     axial_line,
     choose_scale,
+    open_cases,
     plane_image,
     region_limits,
     to_pixels,
     top_image,
 )
+from contactstudy.explorer.figures import NEUTRAL_COLOR, StudyFigure
 from contactstudy.explorer.page import MEASURES, Page, _marked_text
 from contactstudy.study import run_study
 from tests.small_study import small_study

@@ -29,7 +29,7 @@ def test_image_sum_converges(length: float, unit: float) -> None:
     for image_number in image_numbers:
         image_sum += cell_kernel(corner, x - 2 * length * unit * image_number, y, dx, dy)
     cell_influence = cell_kernel(corner, x, y, dx, dy)
-    computed = mirrored_kernel(corner, x, y, dx, dy, length * unit)
+    computed = mirrored_kernel(corner, x, y, dx, dy, length * unit, 0.0)
     # A uniform line load on either side replaces the images beyond 1500 periods.
     truncation_error = 0.3 * 0.25 * 0.2 / (2 * length) / (3001 * length) ** 2
     assert computed == pytest.approx(

@@ -12,7 +12,7 @@ from contactstudy import fatigue
 from contactstudy.arrays.variables import STRESSES
 from contactstudy.bodies import Material
 from contactstudy.eigenstrain.body import layer_stresses
-from contactstudy.plasticity.passes import Passage, State
+from contactstudy.plasticity.passes import ElasticPlastic, Passage, State
 
 YOUNG, POISSON = 1000.0, 0.3
 MATERIAL = Material(YOUNG, POISSON)
@@ -39,8 +39,7 @@ def solve_passes(history: np.ndarray, shear_yield_stress: float, hardening: tupl
         lateral=IndependentLayers(history.shape[0] + 2),
         cell_indices=(index, index),
         yield_stress=np.full(1, np.sqrt(3) * shear_yield_stress),
-        isotropic=hardening[0],
-        kinematic=hardening[1],
+        material=ElasticPlastic(yield_stress=1e9, isotropic_hardening=hardening[0], kinematic_hardening=hardening[1]),
         tolerance=1e-5,
     )
     state = State(np.zeros((6, 1)), np.zeros(1), True)

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from benchmarks.convergence import SETTINGS, Table
-from contactstudy.verification.check import Reference
+from contactstudy.verification.problems import Reference
 from contactstudy.verification.suite import line
 
 FINITE = st.floats(-1e6, 1e6)

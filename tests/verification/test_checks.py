@@ -8,7 +8,7 @@ import itertools
 import pytest
 
 from contactstudy.verification import Verification, suite
-from contactstudy.verification.check import Check
+from contactstudy.verification.problems import Check
 from tests.verification import listed
 
 LISTED = listed.read()

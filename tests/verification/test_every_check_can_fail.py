@@ -26,7 +26,7 @@ from contactstudy.kernels.load import Load
 from contactstudy.overlapping.equations import EquationSet
 from contactstudy.overlapping.quadrature import Resolution
 from contactstudy.verification import exact_solutions, free_ends, passes, suite, tribology
-from contactstudy.verification.check import Check
+from contactstudy.verification.problems import Check
 from contactstudy.wear.wear_in import WearIntegrator
 
 MODULES = (exact_solutions, free_ends, convergence)

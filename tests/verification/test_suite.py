@@ -15,7 +15,7 @@ import xarray as xr
 from contactstudy import InvalidInputError, MagnitudeWarning
 from contactstudy.cli import main
 from contactstudy.verification import Verification, suite, verify
-from contactstudy.verification.check import Check, Curve, Reference
+from contactstudy.verification.problems import Check, Curve, Reference
 
 
 def fake() -> Iterator[Check]:

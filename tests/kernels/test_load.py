@@ -12,14 +12,22 @@ from hypothesis import strategies as st
 from contactstudy import Grid
 from contactstudy.arrays.grid import Points
 from contactstudy.checks import FloatArray
-from contactstudy.kernels import images, patch
+from contactstudy.kernels import images
 from contactstudy.kernels.field import displacement_influence, half_space_field
-from contactstudy.kernels.load import Load, Response
-from contactstudy.kernels.patch import DISPLACEMENT_CORNERS, normal_displacement_inside, tangential_displacement_inside
+from contactstudy.kernels.load import (
+    DISPLACEMENT_CORNERS,
+    STRESS_CORNERS,
+    Load,
+    Response,
+    normal_corner,
+    normal_displacement_inside,
+    tangential_corner,
+    tangential_displacement_inside,
+)
 from contactstudy.kernels.strips import corner_function, strips_of
 from contactstudy.verification import closed_forms as ref
 
-CORNERS = {"normal": patch.normal_corner, "tangential": patch.tangential_corner}
+CORNERS = {"normal": normal_corner, "tangential": tangential_corner}
 
 
 def rectangle(kind: str, x: float, y: float, z: float, size: tuple[float, float] = (1.0, 1.0)) -> np.ndarray:
@@ -84,7 +92,7 @@ def test_kernel_includes_all_images(
     dx = length / cells_x
     corner = partial(CORNERS[kind], z=depth, poisson=0.3)
     x, y = dx * np.arange(0, cells_x + 1), dy * np.arange(cells_y)
-    computed = images.mirrored_kernel(corner, x, y, dx, dy, length)
+    computed = images.mirrored_kernel(corner, x, y, dx, dy, length, 0.0)
     near_images, far_images = (
         sum(images.cell_kernel(corner, x + 2 * length * image_number, y, dx, dy) for image_number in image_numbers)
         for image_numbers in (range(-400, 401), [*range(-800, -400), *range(401, 801)])
@@ -196,6 +204,6 @@ def test_results_scale_with_unit_and_position(load: Load, name: str, *, smooth: 
 
 def test_unit_traction_on_the_top() -> None:
     edge = np.array([-1.0, 1.0])
-    for corner, component in ((patch.STRESS_CORNERS[Load.ALONG_Y], 5), (patch.STRESS_CORNERS[Load.ALONG_X], 4)):
+    for corner, component in ((STRESS_CORNERS[Load.ALONG_Y], 5), (STRESS_CORNERS[Load.ALONG_X], 4)):
         corner_values = corner(edge[:, None], edge[None, :], 0.0, 0.3)
         assert np.diff(np.diff(corner_values, axis=1), axis=2)[component, 0, 0] == pytest.approx(-1.0)
