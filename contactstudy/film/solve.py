@@ -17,6 +17,7 @@ from contactstudy.arrays.cells import cell_coordinates
 from contactstudy.arrays.peaks import lagrange_weights
 from contactstudy.arrays.variables import describe, require, without_error
 from contactstudy.case.case import Case
+from contactstudy.case.magnitudes import warn_of_magnitudes
 from contactstudy.checks import BoolArray, FloatArray
 from contactstudy.errors import ConvergenceWarning, FilmError, InvalidInputError, MagnitudeWarning
 from contactstudy.film.asperities import Asperities
@@ -96,7 +97,7 @@ def solve_film(
     ConvergenceWarning
         If the finest level does not reach the accuracy.
     MagnitudeWarning
-        If the pressure exceeds the range of the viscosity law.
+        If the magnitude of an input is unusual, or the pressure exceeds the range of the viscosity law.
 
     Examples
     --------
@@ -111,6 +112,7 @@ def solve_film(
     0.2
     """
     film = create_film_case(case, asperities, inlet, resolution)
+    warn_of_magnitudes(case)
     limit = checks.positive("accuracy", accuracy)
     if not ACCURACIES[0] <= limit <= ACCURACIES[1]:
         raise InvalidInputError("accuracy", limit, f"from {ACCURACIES[0]:g} to {ACCURACIES[1]:g} of the central film")

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 import contactstudy as cs
-from contactstudy.film import Asperities, solve_film
+from contactstudy import InvalidInputError
+from contactstudy.film import Asperities, FilmResolution, solve_film
 from contactstudy.film.levels import RESOLUTION, moes_line
 from contactstudy.film.line_contact import solve_line
 
@@ -205,3 +206,12 @@ def test_bad_argument_is_rejected():
         solve_film(case, inlet=0.5 * HALF_WIDTH)
     with pytest.raises(cs.InvalidInputError, match="rms"):
         Asperities(rms=0.0)
+
+
+@pytest.mark.parametrize(("name", "length"), [("inlet", 1.0), ("inlet", 200.0), ("outlet", 0.1), ("inlet", np.nan)])
+def test_unsettled_window_raises(name: str, length: float) -> None:
+    """An inlet of one inlet length would give two thirds of the film."""
+    with pytest.raises(InvalidInputError, match=rf"^{name} = "):
+        FilmResolution(**{name: length})
+    with pytest.raises(InvalidInputError, match="from 25 to 100 inlet lengths; `inlet` of solve_film"):
+        FilmResolution(inlet=24.0)
