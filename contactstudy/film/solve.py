@@ -38,7 +38,6 @@ ERROR_FACTORS = {"cells": 1.5, "columns": 1.0}  # Stated error over the latest c
 CHANGE_RATIOS = {"cells": 0.5, "columns": 0.25}  # Ratio of successive changes, for errors of second order. Accuracy
 MIN_RELATIVE_ERROR = 1e-3  # Least stated error over the value. Accuracy
 VISCOSITY_EXPONENT = 1.3  # Viscosity ratio ``kappa = Lambda**1.3`` from the film ratio (ISO 281:2007). Physics
-MAX_LOG_VISCOSITY = 25.0  # Logarithm of the viscosity ratio above which an oil is solid: the law holds to less. Physics
 
 
 def solve_film(
@@ -432,16 +431,16 @@ def _spread_pressure(level_film: FilmOnCells, values: FloatArray) -> FloatArray:
 
 
 def _warn_of_viscosity(film: FilmCase, level_film: FilmOnCells) -> None:
-    """Warn if the lubricant is solid at the largest pressure."""
+    """Warn if the viscosity law does not hold at the largest pressure."""
     pressure = film.pressure_scale * level_film.solution.fluid_pressure
-    logs = film.lubricant.log_viscosity(pressure)
-    if logs.max() <= MAX_LOG_VISCOSITY:
+    row, cell = np.unravel_index(int(pressure.argmax()), pressure.shape)
+    if film.lubricant.law_holds(pressure[row, cell]):
         return
-    row, cell = np.unravel_index(int(logs.argmax()), logs.shape)
+    log_ratio = float(film.lubricant.log_viscosity(pressure[row, cell]))
     x, y = film.half_width * level_film.problem.cells.x[row], film.half_width * level_film.problem.cells.y[cell]
     warnings.warn(
         f"viscosity_law = {film.lubricant.viscosity_law!r} at {pressure[row, cell]:.3g} Pa (x = {x:.3g} m, "
-        f"y = {abs(y):.3g} m from the middle) is exp({logs.max():.0f}) times the ambient viscosity: the law does not "
+        f"y = {abs(y):.3g} m from the middle) is exp({log_ratio:.0f}) times the ambient viscosity: the law does not "
         "hold at this pressure, which affects the traction; the film forms at lower pressures",
         MagnitudeWarning,
         stacklevel=3,

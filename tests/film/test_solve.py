@@ -215,3 +215,8 @@ def test_unsettled_window_raises(name: str, length: float) -> None:
         FilmResolution(**{name: length})
     with pytest.raises(InvalidInputError, match="from 25 to 100 inlet lengths; `inlet` of solve_film"):
         FilmResolution(inlet=24.0)
+
+
+def test_barus_oil_above_its_pressures_warns(crowned):
+    with pytest.warns(cs.MagnitudeWarning, match=r"viscosity_law = 'barus' at 1.*e\+09 Pa .* exp\(7\) times"):
+        coarse_film(film_case(LENGTH, 10.0, 5.0, profile=CROWN), start=crowned)
