@@ -36,6 +36,7 @@ UNIT_SIZES: dict[str, dict[str, float]] = {  # input units by their SI unit, and
     "1/Pa": {"1/Pa": 1.0, "1/GPa": 1e-9, "mm2/N": 1e-6},
     "kg/m3": {"kg/m3": 1.0, "g/cm3": 1e3},
     "J/(kg K)": {"J/(kg K)": 1.0, "J/(g K)": 1e3},
+    "m/s": {"m/s": 1.0, "mm/s": 1e-3, "km/h": 1 / 3.6},
     "rad/m": {"rad/m": 1.0, "1/m": 1.0, "rad/mm": 1e3, "1/mm": 1e3},
     "1": {"1": 1.0, "%": 0.01, "percent": 0.01},
 }

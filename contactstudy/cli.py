@@ -396,7 +396,7 @@ def command_parser() -> argparse.ArgumentParser:
     run.add_argument("--share", metavar="K/N", help="solve share K of N, such as 3/40: for job arrays")
     text = "State of every case, errors in the study, and bytes and time of a run; solves nothing without --sample."
     plan = command(_plan, "study", text)
-    plan.add_argument("--sample", metavar="N", type=int, help="solve N cases, evenly spaced, to estimate the time")
+    plan.add_argument("--sample", metavar="N", type=int, help="solve N cases, films by groups, to estimate the time")
     plan.add_argument("--workers", metavar="N", type=int, help="local processes for the sample; default one per core")
     for child in (run, plan):
         child.add_argument("--yes", action="store_true", help=f"solve {MANY_CASES} cases and more without confirmation")

@@ -9,12 +9,14 @@ import numpy as np
 
 from contactstudy import checks
 from contactstudy.arrays.engineering import format_quantity
-from contactstudy.checks import FloatArray
+from contactstudy.checks import BoolArray, FloatArray
 from contactstudy.errors import InvalidInputError
 
 ROELANDS_PRESSURE = 1.962e8  # Reference pressure of Roelands' law, Pa
 ROELANDS_VISCOSITY = 6.31e-5  # Limit of Roelands' law for all oils at negative pressure, Pa s
 DENSITY_PRESSURE, DENSITY_GAIN = 5.9e8, 1.34  # Constants of Dowson and Higginson's density, Pa and 1
+BARUS_PRESSURE = 0.5e9  # Pressure to which Barus' law holds, Pa. Physics
+MAX_LOG_VISCOSITY = 25.0  # Logarithm of the viscosity ratio above which an oil is solid. Physics
 KELVIN = 273.15  # 0 degrees Celsius in kelvin
 
 
@@ -29,7 +31,7 @@ class Lubricant:
     pressure_viscosity : float
         Pressure-viscosity coefficient ``alpha`` at ambient pressure, 1/Pa.
     viscosity_law : str
-        "roelands", or "barus" for ``eta0 exp(alpha p)``, which holds below some 0.5 GPa.
+        "roelands", or "barus" for ``eta0 exp(alpha p)``, which holds to some 0.5 GPa: above, `solve_film` warns.
     roelands_exponent : float, optional
         Exponent ``z`` of Roelands' law; default: from `viscosity` and `pressure_viscosity`.
     density_law : str
@@ -101,6 +103,12 @@ class Lubricant:
         """Dynamic viscosity at pressures in Pa, Pa s."""
         # The bound prevents an overflow of the cubed exponential.
         return np.asarray(self.viscosity * np.exp(np.minimum(self.log_viscosity(pressure), 400.0)))
+
+    def law_holds(self, pressure: FloatArray | float) -> BoolArray:
+        """Whether the viscosity law holds at pressures in Pa, by Roelands up to solidification."""
+        if self.viscosity_law == "barus":
+            return np.asarray(np.asarray(pressure) <= BARUS_PRESSURE)
+        return np.asarray(self.log_viscosity(pressure) <= MAX_LOG_VISCOSITY)
 
     def density_ratio(self, pressure: FloatArray | float) -> FloatArray:
         """Density at pressures in Pa over the ambient density."""

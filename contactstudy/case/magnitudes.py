@@ -73,6 +73,7 @@ class UsualRange(NamedTuple):
 
 LENGTH_RANGE = UsualRange(1e-5, 3.0, "m", ("mm", "µm"))  # From a pin of a watch to the roll of a mill
 STRENGTH_RANGE = UsualRange(1e5, 1e10, "Pa", ("GPa", "MPa"))  # From soft lead to hard metal
+SPEED_RANGE = UsualRange(0.0, 150.0, "m/s", ("mm/s", "km/h"))  # Up to the main shafts of aircraft engines
 USUAL_RANGES = {  # in engineering contacts, by quantity
     "young": UsualRange(1e6, 1.5e12, "Pa", ("GPa", "MPa")),  # soft rubber to diamond
     "radius": LENGTH_RANGE._replace(maximum=1.5),
@@ -90,6 +91,8 @@ USUAL_RANGES = {  # in engineering contacts, by quantity
     "yield_stress": STRENGTH_RANGE,
     "dynamic_rating": UsualRange(500.0, 1e8, "N", ("kN",)),  # from needles to the bearings of a mill
     "roughness": UsualRange(0.0, 2e-4, "m", ("mm", "µm")),  # from peak to valley
+    "entrainment_speed": SPEED_RANGE,
+    "sliding_speed": SPEED_RANGE,
     "viscosity": UsualRange(1e-4, 1e3, "Pa s", ("mPa s",)),  # from petrol to grease
     "pressure_viscosity": UsualRange(1e-9, 1e-7, "1/Pa", ("1/GPa", "mm2/N")),
     "eyring_stress": UsualRange(1e5, 1e9, "Pa", ("MPa",)),
@@ -117,8 +120,11 @@ def list_unusual_magnitudes(case: Case) -> tuple[str, ...]:
     names = ("viscosity", "pressure_viscosity", "eyring_stress", "density", "conductivity") if case.lubricant else ()
     values += [(name, f"lubricant.{name}", getattr(case.lubricant, name)) for name in names]
     messages = [_describe(quantity, name, value) for quantity, name, value in values if value is not None]
+    if (speeds := case.motion.speeds) is not None:
+        messages.append(describe_unusual("entrainment_speed", speeds.entrainment))
+        messages.append(describe_unusual("sliding_speed", speeds.roller - speeds.body))
     messages += [
-        describe_unusual_friction(case.friction),
+        describe_unusual("friction", case.friction),
         _describe_unusual_crown(case),
         _describe_flat_crown(case),
         _describe_unusual_design(case),
@@ -172,10 +178,10 @@ def _describe_unusual_crown(case: Case) -> str:
     return ""
 
 
-def describe_unusual_friction(friction: Friction | xr.DataArray) -> str:
-    """Message on the largest magnitude of the friction, a number or values along the axis; empty if usual."""
-    values = getattr(friction, "values", friction)
-    return _describe("friction", "friction", float(np.max(np.abs(np.asarray(values, dtype=np.float64)))))
+def describe_unusual(name: str, value: Friction | xr.DataArray) -> str:
+    """Message on the largest magnitude of a quantity, a number or values along the axis; empty if usual."""
+    values = getattr(value, "values", value)
+    return _describe(name, name, float(np.max(np.abs(np.asarray(values, dtype=np.float64)))))
 
 
 def _find_components(profile: object, kind: type | UnionType) -> Iterator[Any]:

@@ -16,6 +16,7 @@ from contactstudy.analysis.provenance import INPUTS_ATTRIBUTE, attribute, check_
 from contactstudy.arrays.peaks import lagrange_weights
 from contactstudy.arrays.variables import cell_coordinates, describe, require, without_error
 from contactstudy.case.case import Case
+from contactstudy.case.magnitudes import warn_of_magnitudes
 from contactstudy.checks import BoolArray, FloatArray
 from contactstudy.errors import ConvergenceWarning, FilmError, InvalidInputError, MagnitudeWarning
 from contactstudy.film.asperities import Asperities
@@ -36,7 +37,6 @@ ERROR_FACTORS = {"cells": 1.5, "columns": 1.0}  # Stated error over the latest c
 CHANGE_RATIOS = {"cells": 0.5, "columns": 0.25}  # Ratio of successive changes, for errors of second order. Accuracy
 MIN_RELATIVE_ERROR = 1e-3  # Least stated error over the value. Accuracy
 VISCOSITY_EXPONENT = 1.3  # Viscosity ratio ``kappa = Lambda**1.3`` from the film ratio (ISO 281:2007). Physics
-MAX_LOG_VISCOSITY = 25.0  # Logarithm of the viscosity ratio above which an oil is solid: the law holds to less. Physics
 
 
 def solve_film(
@@ -95,7 +95,7 @@ def solve_film(
     ConvergenceWarning
         If the finest level does not reach the accuracy.
     MagnitudeWarning
-        If the pressure exceeds the range of the viscosity law.
+        If the magnitude of an input is unusual, or the pressure exceeds the range of the viscosity law.
 
     Examples
     --------
@@ -110,6 +110,7 @@ def solve_film(
     0.2
     """
     film = create_film_case(case, asperities, inlet, resolution)
+    warn_of_magnitudes(case)
     limit = checks.positive("accuracy", accuracy)
     if not ACCURACIES[0] <= limit <= ACCURACIES[1]:
         raise InvalidInputError("accuracy", limit, f"from {ACCURACIES[0]:g} to {ACCURACIES[1]:g} of the central film")
@@ -430,16 +431,16 @@ def _spread_pressure(level_film: FilmOnCells, values: FloatArray) -> FloatArray:
 
 
 def _warn_of_viscosity(film: FilmCase, level_film: FilmOnCells) -> None:
-    """Warn if the lubricant is solid at the largest pressure."""
+    """Warn if the viscosity law does not hold at the largest pressure."""
     pressure = film.pressure_scale * level_film.solution.fluid_pressure
-    logs = film.lubricant.log_viscosity(pressure)
-    if logs.max() <= MAX_LOG_VISCOSITY:
+    row, cell = np.unravel_index(int(pressure.argmax()), pressure.shape)
+    if film.lubricant.law_holds(pressure[row, cell]):
         return
-    row, cell = np.unravel_index(int(logs.argmax()), logs.shape)
+    log_ratio = float(film.lubricant.log_viscosity(pressure[row, cell]))
     x, y = film.half_width * level_film.problem.cells.x[row], film.half_width * level_film.problem.cells.y[cell]
     warnings.warn(
         f"viscosity_law = {film.lubricant.viscosity_law!r} at {pressure[row, cell]:.3g} Pa (x = {x:.3g} m, "
-        f"y = {abs(y):.3g} m from the middle) is exp({logs.max():.0f}) times the ambient viscosity: the law does not "
+        f"y = {abs(y):.3g} m from the middle) is exp({log_ratio:.0f}) times the ambient viscosity: the law does not "
         "hold at this pressure, which affects the traction; the film forms at lower pressures",
         MagnitudeWarning,
         stacklevel=3,

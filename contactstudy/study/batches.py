@@ -106,8 +106,8 @@ class Batch:
 
 
 def latest_rows(cases: pd.DataFrame) -> IntArray:
-    """Rows of the latest result of each case, in order."""
-    order = np.argsort(-cases["run"].to_numpy(np.int64), kind="stable")
+    """Rows of the latest result of each case, in order; within a run a failure replaces a film written before."""
+    order = np.lexsort((cases["status"] == "ok", -cases["run"].to_numpy(np.int64)))
     return np.sort(order[~cases.index[order].duplicated()])
 
 

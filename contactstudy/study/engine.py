@@ -1,7 +1,7 @@
 """Engine of a run: this process, local worker processes, or a dask cluster, and the distribution of tasks over them.
 
 Every worker has one task. The death of a worker costs this task only: the cases of the task are solved again one by
-one, and a case during which a second worker dies fails.
+one, films with the other films of their group, and what a second worker dies of fails.
 """
 
 from __future__ import annotations
@@ -16,6 +16,8 @@ import time
 from collections import deque
 from collections.abc import Callable, Generator, Iterator
 from dataclasses import dataclass, replace
+from itertools import groupby
+from operator import attrgetter
 from typing import TYPE_CHECKING, Any
 
 from contactstudy import checks
@@ -254,13 +256,13 @@ class Tasks:
         self._seconds, self._cases = self._seconds + seconds, self._cases + cases
 
     def return_task(self, task: Task, *, died: bool) -> list[PlannedCase]:
-        """Return a task to the queue, as single cases if its worker died; returns cases with which two workers died."""
+        """Return a task to the queue, divided if its worker died; returns cases with which two workers died."""
         failed = [case for case in task.cases if died and case.id in self._suspect_cases]
         cases = [case for case in task.cases if case not in failed]
         if died:
             self._suspect_cases.update(case.id for case in cases)
-        case_sets = [(case,) for case in cases] if died else [tuple(cases)]
-        self._returned.extend(replace(task, cases=case_set) for case_set in case_sets if case_set)
+        parts = [list(part) for _, part in groupby(cases, attrgetter("solved_with"))] if died else [cases]
+        self._returned.extend(replace(task, cases=tuple(part)) for part in parts if part)
         self.remaining += len(cases)
         return failed
 
@@ -374,7 +376,7 @@ def _distribute(client: Client, workers: Workers, tasks: Tasks, solver: Solver |
             elif error is not None and not isinstance(error, KilledWorker):
                 raise error
             else:
-                message = "WorkerDied: a second worker process died while it solved this case alone"
+                message = "WorkerDied: a second worker process died of this case, or of a film of its group"
                 yield [Outcome(case, "failed", message) for case in tasks.return_task(task, died=True)]
             future.release()
     finally:

@@ -19,7 +19,7 @@ import numpy.typing as npt
 import pandas as pd
 
 from contactstudy.arrays.engineering import format_quantity
-from contactstudy.case.magnitudes import describe_unusual_friction, list_unusual_magnitudes
+from contactstudy.case.magnitudes import describe_unusual, list_unusual_magnitudes
 from contactstudy.checks import IntArray
 from contactstudy.errors import ContactStudyError
 from contactstudy.study.case_setup import build_setup
@@ -37,9 +37,9 @@ LEVELS = ("summary", "surface", "fields")  # Arrays that a study retains: none; 
 MAX_LISTED = 12  # Largest number of values of a swept parameter that are all shown
 MAX_CUBE_CELLS = 4  # Entries of the parameter cube per explicit case; cases of a sparser cube are listed along `case`
 BYTES_PER_CASE, BYTES_PER_CELL, BYTES_PER_POINT = 700, 4 * 8, 7 * 4  # sizes before compression
+GROUPED_PARAMETERS = ("friction", "entrainment_speed")  # Parameters in which cases of a group differ
 LOCAL_PARAMETERS = frozenset(  # Parameters that do not change the operator of the surface. Speed
-    {"friction", "tilt", "load_offset", "profile", "body_edge", "entrainment_speed"}
-    | {"accuracy", "tolerance", "stresses"}
+    {"tilt", "load_offset", "profile", "body_edge", "accuracy", "tolerance", "stresses", *GROUPED_PARAMETERS}
 )
 
 Axis = tuple[dict[str, Any], ...]  # a factor of the product of a study: the parameters of each step
@@ -101,6 +101,11 @@ class PlannedCase:
     position: tuple[int, ...]  # in the study's Dataset
     group: int  # number of the group, whose cases share a contact
     reason: str = ""  # why the plan skips the case, or empty
+
+    @property
+    def solved_with(self) -> int | str:
+        """Group of a film, which starts from the other films of the group; of any other case its identity."""
+        return self.group if "entrainment_speed" in self.parameters else self.id
 
 
 class Review(NamedTuple):
@@ -226,7 +231,7 @@ class Plan(Sequence[PlannedCase]):
     @cached_property
     def groups(self) -> IntArray:
         """Group of each case: cases of a group differ only in friction in full sliding, or in the speed of a film."""
-        return self._classify(("friction", "entrainment_speed"), fixing=("motion", "coupled"))
+        return self._classify(GROUPED_PARAMETERS, fixing=("motion", "coupled"))
 
     @cached_property
     def operators(self) -> IntArray:
@@ -248,11 +253,12 @@ class Plan(Sequence[PlannedCase]):
                 continue
             magnitude_warnings.update(list_unusual_magnitudes(setup.case))
             sizes.append((math.prod(setup.shape), setup.points))
-        # The cases of a group differ in friction: check all values of friction, not only the first of each group.
+        # The cases of a group differ in friction or speed: check all values, not only the first of each group.
         entries = [*(entry for axis in self.axes for entry in axis), *self.explicit]
-        for friction in {entry["friction"] for entry in entries if "friction" in entry}:
-            if message := describe_unusual_friction(friction):
-                magnitude_warnings.setdefault(message, len(sample))
+        for name in GROUPED_PARAMETERS:
+            for value in {entry[name] for entry in entries if name in entry}:
+                if message := describe_unusual(name, value):
+                    magnitude_warnings.setdefault(message, len(sample))
         cells, points = np.mean(sizes, axis=0).tolist() if sizes else (0.0, 0.0)
         return Review(reasons, magnitude_warnings, len(sample), len(first_cases), cells=cells, points=points)
 

@@ -216,8 +216,9 @@ def run_study(
 ) -> RunReport:
     """Solve every case of a study that is not solved yet.
 
-    A run may be interrupted in any way and called again: finished cases are not solved twice. A script that calls this
-    function needs the guard ``if __name__ == "__main__":``, because the worker processes import the script.
+    A run may be interrupted in any way and called again: finished cases are not solved twice, except films: those that
+    differ only in speed are solved together, and another speed may change them within their stated errors. A script
+    needs the guard ``if __name__ == "__main__":``, because the worker processes import the script.
 
     Parameters
     ----------
@@ -238,7 +239,7 @@ def run_study(
     again : tuple of {"failed", "stale", "skipped"}
         States of cases to solve anew.
     sample : int, optional
-        Solve so many cases only, evenly spaced: from these, `plan` estimates time and bytes.
+        Solve so many cases only, evenly spaced, films with their group: from these, `plan` estimates time and bytes.
     solver : callable, optional
         Called instead of :func:`contactstudy.solve`, with the same arguments.
 

@@ -16,9 +16,13 @@ from contactstudy import (
     Case,
     FiniteLengthSpace,
     HalfSpace,
+    InvalidInputError,
+    Lubricant,
     MagnitudeWarning,
     Material,
     Roller,
+    Rolling,
+    Sliding,
     WindowError,
     bearing,
     choose_grid,
@@ -27,6 +31,7 @@ from contactstudy import (
     profiles,
     roughness,
     solve,
+    solve_film,
 )
 from contactstudy.case.magnitudes import list_unusual_magnitudes
 from contactstudy.cli import main
@@ -60,6 +65,7 @@ def create_crowned_case(crown: profiles.Profile, length: float = 14e-3, radius: 
         {"radius": 0.7, "length": 2.0, "body": 2.5, "load": 2e7},
         {"material": Material(2e6, 0.5), "load": 1.0},
         {"material": Material(1.1e12, 0.1), "load": None, "max_pressure": 8e9},
+        {"motion": Sliding(body_speed=-80.0, roller_speed=0.0)},
     ],
 )
 def test_typical_cases_have_no_warning(changes) -> None:
@@ -87,6 +93,11 @@ def test_typical_cases_have_no_warning(changes) -> None:
         ),
         ({"load": None, "approach": 5e-3}, "approach = 0.005 m, usual are up to 0.0006 m on .*; 0.005 mm is 5e-06 m"),
         ({"load": 6e5}, "load = 600000 N is very high: half-width"),
+        (
+            {"motion": Sliding(body_speed=2000.0, roller_speed=2200.0)},
+            "^entrainment_speed = 2100 m/s, usual are 0 to 150 m/s; 2100 mm/s is 2.1 m/s; sliding_speed = 200 m/s",
+        ),
+        ({"motion": Rolling(speed=160.0)}, "entrainment_speed = 160 m/s, .*; 160 mm/s is 0.16 m/s"),
     ],
 )
 def test_unusual_values_of_a_case(changes, message: str) -> None:
@@ -213,6 +224,21 @@ def test_heights_in_micrometres_warn() -> None:
     heights = roughness.self_affine(grid, rms_height=0.2, hurst=0.8, longest=0.2e-3, shortest=0.05e-3, seed=1)
     with pytest.warns(MagnitudeWarning, match=r"roughness = .* usual are 0 to 0.0002 m.* µm is"):
         solve_ignoring_window(case, heights)
+
+
+def test_film_warns_of_unusual_inputs() -> None:
+    motion = Sliding(body_speed=2000.0, roller_speed=2000.0)
+    oil = Lubricant(viscosity=0.03, pressure_viscosity=20e-9)
+    with pytest.warns(MagnitudeWarning, match="entrainment_speed = 2000 m/s") as caught, suppress(InvalidInputError):
+        solve_film(create_case(motion=motion, lubricant=oil), accuracy=1.0)
+    assert caught[0].filename == __file__
+
+
+def test_plan_checks_all_speeds_of_a_group() -> None:
+    base = {"young": 210e9, "poisson": 0.3, "radius": 5e-3, "roller_length": 1e-3, "max_pressure": 1e9, "e_over_a": 0.0}
+    oil = {"viscosity": 0.03, "pressure_viscosity": 20e-9}
+    (doubt,) = Study(name="film", base=base | oil, sweep={"entrainment_speed": [1.0, 1000.0]}).plan().doubts
+    assert doubt.startswith("entrainment_speed = 1000 m/s, usual are 0 to 150 m/s; 1000 mm/s is 1 m/s")
 
 
 def solve_ignoring_window(case: Case, heights: xr.DataArray) -> None:

@@ -18,6 +18,13 @@ def test_roelands_starts_as_barus_and_ends_below():
     assert float(oil.log_viscosity(1e9)) < 2e-8 * 1e9
 
 
+@pytest.mark.parametrize(("law", "pressure"), [("barus", 0.5e9), ("roelands", 2.0976e9)])
+def test_viscosity_law_holds_to_a_pressure(law, pressure):
+    """Barus' law to 0.5 GPa, Roelands' to solidification."""
+    oil = Lubricant(viscosity=0.02, pressure_viscosity=2e-8, viscosity_law=law)
+    assert oil.law_holds(np.array([0.99, 1.01]) * pressure).tolist() == [True, False]
+
+
 def test_walther_interpolates_two_viscosities():
     points = {40: 100.0, 100: 11.0}
     assert walther(points, 40.0)[0] == pytest.approx(100.0)

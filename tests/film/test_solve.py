@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 import contactstudy as cs
-from contactstudy.film import Asperities, solve_film
+from contactstudy import InvalidInputError
+from contactstudy.film import Asperities, FilmResolution, solve_film
 from contactstudy.film.levels import RESOLUTION, moes_line
 from contactstudy.film.line_contact import solve_line
 
@@ -216,3 +217,17 @@ def test_thin_film_between_rough_surfaces_nears_the_dry_contact():
     pressures = [result.pressure.interp(x=0.5 * LENGTH, y=0.0) for result in (film, dry)]
     assert float(film.asperity_load_share) > 0.1
     assert abs(float(pressures[0] - pressures[1])) < 0.005 * PRESSURE
+
+
+@pytest.mark.parametrize(("name", "length"), [("inlet", 1.0), ("inlet", 200.0), ("outlet", 0.1), ("inlet", np.nan)])
+def test_unsettled_window_raises(name: str, length: float) -> None:
+    """An inlet of one inlet length would give two thirds of the film."""
+    with pytest.raises(InvalidInputError, match=rf"^{name} = "):
+        FilmResolution(**{name: length})
+    with pytest.raises(InvalidInputError, match="from 25 to 100 inlet lengths; `inlet` of solve_film"):
+        FilmResolution(inlet=24.0)
+
+
+def test_barus_oil_above_its_pressures_warns(crowned):
+    with pytest.warns(cs.MagnitudeWarning, match=r"viscosity_law = 'barus' at 1.*e\+09 Pa .* exp\(7\) times"):
+        coarse_film(film_case(LENGTH, 10.0, 5.0, profile=CROWN), start=crowned)

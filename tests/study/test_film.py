@@ -1,17 +1,21 @@
-"""Studies of films: parameters, rejected values, warm starts, equal numbers on any workers."""
+"""Studies of films: parameters, rejected values, warm starts, equal numbers after interrupts and deaths of workers."""
 
 from __future__ import annotations
 
+import os
+import signal
+from pathlib import Path
 from typing import Any
 
-import numpy as np
 import pytest
 import xarray as xr
 
-from contactstudy import InvalidInputError, Sliding, solve_film
+from contactstudy import Case, InvalidInputError, Sliding, solve_film
 from contactstudy.film import Asperities
 from contactstudy.study import Study, open_study, run_study
 from contactstudy.study.case_setup import build_setup
+from contactstudy.study.engine import Tasks
+from contactstudy.study.worker import Task
 from tests.small_study import case_id
 
 BASE: dict[str, Any] = {
@@ -27,15 +31,19 @@ BASE: dict[str, Any] = {
     "accuracy": 0.1,
 }
 SPEEDS = [1.0, 2.0]
+STUDY = Study(
+    name="film",
+    base=BASE,
+    sweep={"body": ["finite-length", "half-space"], "entrainment_speed": SPEEDS},
+    exclude=[{"body": "half-space", "entrainment_speed": 1.0}],
+)
 
 
 @pytest.fixture(scope="module")
 def films(tmp_path_factory: pytest.TempPathFactory) -> xr.Dataset:
     """Two speeds between free ends, and the higher speed on a half-space."""
-    sweep = {"body": ["finite-length", "half-space"], "entrainment_speed": SPEEDS}
-    study = Study(name="film", base=BASE, sweep=sweep, exclude=[{"body": "half-space", "entrainment_speed": 1.0}])
     folder = tmp_path_factory.mktemp("films")
-    assert run_study(study, folder, workers=0, progress=False).counts == {"ok": 3}
+    assert run_study(STUDY, folder, workers=0, progress=False).counts == {"ok": 3}
     return open_study(folder)
 
 
@@ -87,9 +95,59 @@ def test_films_of_a_study(films: xr.Dataset) -> None:
     assert {"central_film_error", "least_film_error", "end_film_ratio_error"} <= set(films)
 
 
+def assert_equal_bits(folder: Path, films: xr.Dataset) -> None:
+    """Compare all that the studies hold except how long it took."""
+    xr.testing.assert_identical(open_study(folder).drop_vars("seconds").load(), films.drop_vars("seconds").load())
+
+
 @pytest.mark.slow
-def test_interrupted_films_start_from_same_speeds(films: xr.Dataset, tmp_path) -> None:
-    study = Study(name="film", base=BASE, sweep={"entrainment_speed": SPEEDS})
-    for sample in (1, None):
-        run_study(study, tmp_path, workers=0, progress=False, sample=sample)
-    np.testing.assert_array_equal(films.least_film.sel(body="finite-length"), open_study(tmp_path).least_film)
+@pytest.mark.parametrize("finished", [1, 2])
+def test_interrupt_does_not_change_films(films: xr.Dataset, tmp_path: Path, finished: int) -> None:
+    """Within a group and between two groups."""
+    solved: list[xr.Dataset] = []
+
+    def solve_some(case: Case, **options: Any) -> xr.Dataset:
+        if len(solved) == finished:
+            raise KeyboardInterrupt
+        solved.append(solve_film(case, **options))
+        return solved[-1]
+
+    with pytest.raises(KeyboardInterrupt, match=f"{finished} of 3 cases are kept"):
+        run_study(STUDY, tmp_path, workers=0, progress=False, solver=solve_some)
+    run_study(STUDY, tmp_path, workers=0, progress=False)
+    assert_equal_bits(tmp_path, films)
+
+
+DEATH = "CONTACTSTUDY_TEST_DEATH"
+"""Environment variable with a file whose creator, a worker, dies of the film of the higher speed."""
+
+
+def solve_after_death(case: Case, **options: Any) -> xr.Dataset:
+    """Solve a film; the first film of the higher speed kills its process."""
+    marker = Path(os.environ[DEATH])
+    if case.motion.speeds is not None and case.motion.speeds.entrainment == SPEEDS[-1] and not marker.exists():
+        marker.touch()
+        os.kill(os.getpid(), signal.SIGKILL)
+    return solve_film(case, **options)
+
+
+@pytest.mark.slow
+def test_death_of_a_worker_does_not_change_films(
+    films: xr.Dataset, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv(DEATH, str(tmp_path / "dead"))
+    folder = tmp_path / "out"
+    run_study(STUDY, folder, workers=1, progress=False, solver=solve_after_death)
+    assert (tmp_path / "dead").exists()
+    assert_equal_bits(folder, films)
+
+
+def test_films_of_a_group_return_whole() -> None:
+    """As one task; a second death fails the whole group."""
+    plan = Study(name="film", base=BASE, sweep={"max_pressure": [0.8e9, 1e9], "entrainment_speed": SPEEDS}).plan()
+    tasks = Tasks(plan, [[0, 1, 2, 3]], Task(cases=(), folder=""))
+    assert tasks.return_task(tasks.next_task(1), died=True) == []
+    returned_tasks = [tasks.next_task(1) for _ in range(2)]
+    assert [[case.index for case in task.cases] for task in returned_tasks] == [[0, 1], [2, 3]]
+    assert [case.index for case in tasks.return_task(returned_tasks[0], died=True)] == [0, 1]
+    assert not tasks

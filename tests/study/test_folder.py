@@ -124,6 +124,14 @@ def test_latest_run_replaces_results(tmp_path):
     assert select_latest(batch).cases["run"].tolist() == [3, 3]
 
 
+@pytest.mark.parametrize("statuses", [("ok", "failed"), ("failed", "ok")])
+def test_failed_group_replaces_films_of_the_same_run(statuses):
+    batches = [rows(1) for _ in statuses]
+    for batch, status in zip(batches, statuses, strict=True):
+        batch.cases["status"] = status
+    assert select_latest(join_batches(batches)).cases["status"].tolist() == ["failed"]
+
+
 def test_joined_batches_have_equal_results(tmp_path, monkeypatch):
     study = small_study(sweep={"e_over_a": [0.0, 1.0, 2.0], "friction": [0.0, 0.1]})
     for name, batch_cases in (("one", 2**13), ("many", 1)):

@@ -299,13 +299,25 @@ FAULTS: dict[str, tuple[Faults, ...]] = {
 @pytest.mark.slow
 @pytest.mark.parametrize("group", FAULTS)
 def test_switched_off_physics_fails_checks(group: str) -> None:
-    for part, faults in enumerate(FAULTS[group]):
-        passed = []
-        for fault in faults:
-            with switched_off(fault):
-                is_failed = failed_checks(suite.GROUPS[group](False)[part])
-            passed.append({check for check, fails in is_failed.items() if not fails})
-        assert set.intersection(*passed) == set()
+    for part in range(len(FAULTS[group])):
+        assert checks_that_pass(group, part, full=False) == set()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("part", [1, 4])
+def test_switched_off_physics_fails_checks_of_friction_at_the_full_level(part: int) -> None:
+    """Slopes and Kalker's coefficients; further checks of this level take minutes."""
+    assert checks_that_pass("friction", part, full=True) == set()
+
+
+def checks_that_pass(group: str, part: int, *, full: bool) -> set[tuple[str, str]]:
+    """Checks of a part that pass with every fault."""
+    passed = []
+    for fault in FAULTS[group][part]:
+        with switched_off(fault):
+            is_failed = failed_checks(suite.GROUPS[group](full)[part])
+        passed.append({check for check, fails in is_failed.items() if not fails})
+    return set.intersection(*passed)
 
 
 @pytest.mark.slow
