@@ -1,4 +1,4 @@
-"""Properties of profiles: a user's class has the pressure of its formula."""
+"""Properties of profiles: a user's class has the pressure of its formula, without bound at its corners."""
 
 from __future__ import annotations
 
@@ -7,7 +7,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from benchmarks.fuzz.random_cases import RandomCase
+from benchmarks.fuzz.shapes import Polyline
 from benchmarks.fuzz.solutions import SolvedCase, require, run
+from contactstudy import ContactStudyError
 from contactstudy.profiles import Chamfer, Halves, Profile, Sum
 
 PROFILES_BEYOND_DROP = ("Measured", "Tapered")
@@ -32,7 +34,7 @@ def has_corners(profile: Profile) -> bool:
 
 def drop_determines_the_peak(solution: SolvedCase) -> bool:
     """A class with the drop alone has the peak of the profile, infinite at a corner."""
-    cells = solution.cells
+    cells = solution.random_case
     roller = cells.case.roller
     if (
         cells.grid is not None
@@ -45,6 +47,43 @@ def drop_determines_the_peak(solution: SolvedCase) -> bool:
     (peak, error), (user_peak, user_error) = peaks
     agrees = abs(peak - user_peak) <= error + user_error if np.isfinite(peak) else np.isinf(user_peak)
     require(bool(agrees), f"a peak of {user_peak:.6g} with the drop alone, {peak:.6g} of the profile")
+    return True
+
+
+MIN_BEND = 1e-5
+"""Least jump of the slope that is a corner, above the package's bound for rounding."""
+
+
+def convex_bends(profile: Profile) -> list[tuple[float, float]]:
+    """Distances from mid-length, and jumps, of the convex bends of a user's profile, alone or in a sum."""
+    if isinstance(profile, Sum):
+        return [bend for term in profile.terms for bend in convex_bends(term)]
+    if not isinstance(profile, Polyline):
+        return []
+    jumps = np.diff(np.diff(profile.drops) / np.diff(profile.positions))
+    return [(x, jump) for x, jump in zip(profile.positions[1:-1], jumps.tolist(), strict=True) if jump > MIN_BEND]
+
+
+def pressed_corner_is_unbounded(solution: SolvedCase) -> bool:
+    """The corner of refined cells is the strongest convex bend of a user's profile that is pressed on both sides."""
+    case = solution.random_case.case
+    bends = convex_bends(case.roller.profile)
+    if solution.moves or not bends or "Measured" in repr(case.roller.profile):
+        return False
+    try:
+        result = run(replace(solution.random_case, grid=None, accuracy=0.1))
+    except ContactStudyError:
+        return False
+    edges = np.append(result["x_bounds"][:, 0], result["x_bounds"][-1, 1])
+    is_loaded = np.asarray(result["pressure"].any("y"))
+    slope, peak = float(result.get("corner_slope", 0.0)), float(result["peak_pressure"])
+    for distance, jump in bends:
+        x = case.roller_middle + distance + 1e-9 * case.roller.length * np.array([-1.0, 1.0])
+        if edges[0] < x[0] and x[1] < edges[-1] and is_loaded[np.searchsorted(edges, x) - 1].all():
+            stated = f"a corner of slope {slope:.4g} and a peak of {peak:.4g} are stated"
+            require(
+                np.isinf(peak) and slope > 0.999 * jump, f"a bend of {jump:.4g} at x = {x[0]:.6g} is pressed: {stated}"
+            )
     return True
 
 

@@ -16,7 +16,7 @@ import numpy as np
 import xarray as xr
 from scipy import ndimage
 
-from benchmarks.fuzz.profile_properties import drop_determines_the_peak
+from benchmarks.fuzz.profile_properties import drop_determines_the_peak, pressed_corner_is_unbounded
 from benchmarks.fuzz.shapes import magnitude
 from benchmarks.fuzz.solutions import (
     SAME_PRESSURE,
@@ -472,6 +472,7 @@ CONSTANT_CHECKS: tuple[Callable[[SolvedCase], bool], ...] = (
     symmetry_across,
     free_ends,
     stated_errors,
+    pressed_corner_is_unbounded,
 )
 """Properties that need no other solution, and the stated errors."""
 

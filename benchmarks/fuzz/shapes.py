@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import dataclass
 from random import Random
 
 import numpy as np
@@ -26,6 +27,18 @@ from contactstudy.profiles import (
     Sum,
     Tapered,
 )
+
+
+@dataclass(frozen=True)
+class Polyline:
+    """A user's class of straight pieces."""
+
+    positions: tuple[float, ...]
+    drops: tuple[float, ...]
+
+    def drop(self, x: np.ndarray, length: float) -> np.ndarray:
+        """Material removed (m) at distances `x` (m) from mid-length."""
+        return np.interp(x, self.positions, self.drops)
 
 
 def magnitude(rng: Random, low: float, high: float) -> float:
@@ -67,6 +80,7 @@ def _single_profile(rng: Random, radius: float, length: float, depth: float) -> 
         "measured": lambda: _measured_profile(rng, length, drop),
         "roof": lambda: _roof(rng, length, drop),
         "burr": lambda: _burr(rng, length, drop),
+        "polyline": lambda: _polyline(rng, length, drop),
         "chamfer": lambda: Chamfer(depth=drop, width=rng.uniform(0.05, 0.3) * length),
     }
     return makers[rng.choice(tuple(makers))]()
@@ -83,6 +97,16 @@ def _roof(rng: Random, length: float, drop: float) -> Measured:
     """Two planes with a convex corner between them."""
     x, corner = np.linspace(-0.5, 0.5, 41), rng.uniform(-0.3, 0.3)
     return Measured(positions=tuple(x * length), drops=tuple(drop * np.abs(x - corner)))
+
+
+def _polyline(rng: Random, length: float, drop: float) -> Polyline:
+    """A user's profile with two to four bends, 1e-4 to 1e-2 of the length apart."""
+    distances = [magnitude(rng, 1e-4, 1e-2) for _ in range(rng.randint(1, 3))]
+    bends = rng.uniform(-0.4, 0.4) + np.cumsum([0.0, *distances])
+    jumps = np.array([rng.choice((-1, 1)) * magnitude(rng, 1.0, 1e2) for _ in bends])
+    x = np.concatenate([[-0.5], bends, [0.5]])
+    shape = np.maximum(x[:, None] - bends, 0.0) @ jumps - 0.5 * jumps.sum() * x
+    return Polyline(tuple((x * length).tolist()), tuple((drop * (shape - shape.min())).tolist()))
 
 
 def _burr(rng: Random, length: float, drop: float) -> Measured:
@@ -112,8 +136,8 @@ def mirror_profile(profile: Profile) -> Profile:
             return FullCrown(crown_radius, -centre)
         case Tapered(half_angle, fillet_radius):
             return Tapered(-half_angle, fillet_radius)
-        case Measured(positions, drops):
-            return Measured(tuple(-x for x in reversed(positions)), tuple(reversed(drops)))
+        case Measured(positions, drops) | Polyline(positions, drops):
+            return type(profile)(tuple(-x for x in reversed(positions)), tuple(reversed(drops)))
     return profile
 
 
@@ -132,8 +156,8 @@ def stretch_profile(profile: Profile, factor: float) -> Profile:
             return Lundberg(factor * amplitude, delta)
         case FujiwaraKawase(amplitude, edge_drop, k1, k2):
             return FujiwaraKawase(factor * amplitude, factor * edge_drop, k1, k2)
-        case Measured(positions, drops):
-            return Measured(tuple(factor * x for x in positions), tuple(factor * d for d in drops))
+        case Measured(positions, drops) | Polyline(positions, drops):
+            return type(profile)(tuple(factor * x for x in positions), tuple(factor * d for d in drops))
         case PartialCrown(straight, crown, dub, dub_radius):
             return PartialCrown(
                 factor * straight, factor * crown, factor * dub, None if dub_radius is None else factor * dub_radius

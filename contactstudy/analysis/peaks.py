@@ -37,7 +37,7 @@ NEIGHBOURS = 2  # Samples on either side of the largest one in the polynomial
 # Largest distance of samples over the length on which the pressure above varies. Accuracy: the error exceeds the stated
 # error by up to 2 % of the value at a ratio of 0.5, 8 % at 1, 14 % at 1.5
 MAX_SPACING_RATIO = 0.5
-SINGULAR = "the pressure is singular at an end, and so is the stress"
+SINGULAR = "the pressure is singular, and so is the stress"
 
 Measure = Callable[[xr.Dataset], xr.DataArray]
 

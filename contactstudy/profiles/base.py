@@ -8,7 +8,6 @@ from itertools import chain
 from typing import Any, NamedTuple, Protocol, runtime_checkable
 
 import numpy as np
-from numpy.lib.stride_tricks import sliding_window_view
 
 from contactstudy import checks
 from contactstudy.arrays.engineering import format_quantity
@@ -18,8 +17,8 @@ from contactstudy.errors import InvalidInputError
 POSITIVE_LENGTH = checks.number(checks.positive, "metres")
 NOT_NEGATIVE_LENGTH = checks.number(checks.not_negative, "metres")
 MIN_JUMP = 1e-6  # Minimum jump of a slope at a corner, of a formula over one plus the slope, because of rounding
-# Windows and rounds of the search for corners, and least ratio of the jumps in the last two rounds; a bend has 1/4
-WINDOWS, ROUNDS, MIN_JUMP_RATIO = 512, 6, 0.75
+CELLS, PARTS, ROUNDS = 1024, 16, 3  # Cells of the search for corners, parts of a cell in each round, and rounds
+MIN_JUMP_RATIO = 3.0  # Minimum ratio of a corner's jump to the changes of the slope on both sides; a bend has 0
 SLOPE_STEP = 1e-6  # Step of the differences for a slope, over the length
 MAX_SLOPE = 1.0  # Maximum slope of the profile at a corner's start: logarithmic profiles end with an infinite slope
 
@@ -51,28 +50,33 @@ class SlopeJumps(NamedTuple):
         return cls(*(np.concatenate(values) for values in zip(*corners, strict=True)))
 
 
+@np.errstate(invalid="ignore")  # infinite drops
 def find_slope_jumps(drop: Callable[[FloatArray], FloatArray], length: float) -> SlopeJumps:
-    """Find the corners of a generatrix: the slope changes by as much between closer points."""
-    edges = 0.5 * length * np.sin(np.linspace(-0.5, 0.5, WINDOWS + 1)[1:-1] * np.pi)  # denser at the ends
-    centres, step, jumps = 0.5 * (edges[:-1] + edges[1:]), 0.5 * np.diff(edges), np.zeros(WINDOWS - 2)
+    """Find the corners of a generatrix: divide the cells with jumps of the slope; compare slopes on both sides."""
+    edges = 0.5 * length * np.sin(np.linspace(-0.5, 0.5, CELLS + 1)[1:-1] * np.pi)  # denser at the ends
+    starts, steps = edges[:-1], np.diff(edges)
     for _ in range(ROUNDS):
-        step = step / 4
-        x = centres[:, None] + step[:, None] * np.arange(-6, 7)
-        with np.errstate(invalid="ignore"):  # infinite drops
-            slopes = np.diff(drop(x.ravel()).reshape(x.shape)) / step[:, None]
-            changes = np.nan_to_num(np.diff(slopes), posinf=0.0)
-        sums = sliding_window_view(changes, 3, axis=1).sum(axis=2)  # a corner contributes to two neighbours at most
-        largest = np.abs(sums).argmax(axis=1)[:, None]
-        nodes, previous_jumps = largest + np.arange(3), jumps
-        jumps = np.take_along_axis(sums, largest, axis=1)[:, 0]
-        x = np.take_along_axis(x, nodes + 1, axis=1)
-        centres = x[:, 1]
-    min_jumps = MIN_JUMP * (1 + np.abs(slopes[:, 0]))
-    is_corner = np.abs(jumps) > np.maximum(MIN_JUMP_RATIO * np.abs(previous_jumps), min_jumps)
-    weighted_x = (x * np.take_along_axis(changes, nodes, axis=1)).sum(axis=1)
-    positions, jumps = weighted_x[is_corner] / jumps[is_corner], jumps[is_corner]
-    is_first = np.diff(positions, prepend=-np.inf) > 4 * step[is_corner]  # neighbouring windows may share a corner
-    return SlopeJumps(positions[is_first], jumps[is_first])
+        steps = steps / PARTS
+        x = starts[:, None] + steps[:, None] * np.arange(-2, PARTS + 3)
+        slopes = np.diff(drop(x.ravel()).reshape(x.shape)) / steps[:, None]
+        # The third difference is half the jump or more at an end of the corner's part, and 0 on a parabola.
+        has_jump = np.abs(np.diff(slopes, 3)) > 0.5 * MIN_JUMP * (1 + np.abs(slopes[:, :1]))
+        cells, parts = np.nonzero(has_jump[:, :-1] | has_jump[:, 1:])
+        starts, steps = x[cells, parts + 2], steps[cells]
+        if not starts.size:
+            return SlopeJumps(starts, starts)
+    is_first = np.diff(starts, prepend=-np.inf) > 1.5 * steps  # of neighbouring parts, which share a corner
+    first, last = starts[is_first], (starts + steps)[np.roll(is_first, -1)]
+    middle, half_width = 0.5 * (first + last), 0.5 * (last - first)
+    x = middle[:, None] + half_width[:, None] * np.array([-8, -4, -2, -1, 1, 2, 4, 8])
+    drops = drop(x.ravel()).reshape(x.shape)
+    slopes = np.diff(drops) / np.diff(x)
+    left, right = slopes[:, 2], slopes[:, 4]
+    jumps = (4 * (right - left) - slopes[:, 6] + slopes[:, 0]) / 3  # extrapolated to distance 0
+    changes = np.abs(left - slopes[:, 0]) + np.abs(slopes[:, 6] - right)
+    is_corner = np.abs(jumps) > np.maximum(MIN_JUMP * (1 + np.abs(left)), MIN_JUMP_RATIO * changes)
+    differences = (left + right) * half_width - (drops[:, 4] - drops[:, 3])  # of both lines in the middle
+    return SlopeJumps(middle[is_corner] + differences[is_corner] / jumps[is_corner], jumps[is_corner])
 
 
 class Shape:

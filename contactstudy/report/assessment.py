@@ -190,7 +190,7 @@ def _cells(case: xr.Dataset) -> Answer:
 
 def _singular_edge(case: xr.Dataset) -> str:
     """Name of the edge with a singular pressure, and the argument for its radius."""
-    if "corner_x" in case:
+    if np.isfinite(_size(case, "corner_x")):
         return f"the corner x = {format_quantity(float(case['corner_x']), 'm')}; a Chamfer may have a blend_radius"
     inputs = attribute(case, INPUTS_ATTRIBUTE).get("case", {})
     start, length = inputs.get("end_distance"), inputs.get("body", {}).get("length", np.inf)

@@ -51,6 +51,8 @@ HEADINGS = {  # Columns of the table and their headings
     "peak_von_mises": "largest von Mises",
     "peak_von_mises_x": "at x",
     "peak_von_mises_z": "at z",
+    "corner_x": "corner at x",
+    "corner_distance": "d0 of the corner",
     "end_intensity_first": "K at end I",
     "end_intensity_last": "K at end II",
     "end_load_first": "load on the last a, end I",

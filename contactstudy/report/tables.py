@@ -34,6 +34,7 @@ HERTZ = {
     "hertz_half_width": "Hertz half-width a",
 }
 FILMS = ("central_film", "least_film", "end_film_ratio", "least_film_ratio")  # rows if present
+CORNER = ("corner_x", "corner_slope", "corner_intensity", "corner_distance")  # rows unless NaN
 SCALARS = {  # Scalars that have a row if present and not zero, with the row's text
     "approach": "approach of roller and body",
     "tilt": "tilt",
@@ -134,8 +135,8 @@ def _rows(case: xr.Dataset) -> Iterator[Quantity]:
     for suffix, end in ENDS.items():
         if f"end_pressure_{suffix}" in case:
             yield _row(case, f"end_pressure_{suffix}", f"pressure at {end} of the roller")
-        if f"end_intensity_{suffix}" in case:
-            name, exponent = f"end_intensity_{suffix}", float(case[f"end_exponent_{suffix}"])
+        name, exponent = f"end_intensity_{suffix}", float(case.get(f"end_exponent_{suffix}", np.nan))
+        if np.isfinite(exponent):
             value, error = float(case[name]), float(case.get(f"{name}_error", np.nan))
             factor, units = 1e9 * 1e-3**exponent, f"Pa m^{exponent:.3g}"
             text = format_with_error(value / factor, error / factor, f"GPa mm^{exponent:.3g}")
@@ -143,9 +144,11 @@ def _rows(case: xr.Dataset) -> Iterator[Quantity]:
             yield Quantity(name, f"intensity K at {end}", value, error, units, text=text, remark=remark)
         if f"end_load_{suffix}" in case:
             yield _row(case, f"end_load_{suffix}", f"load on the last half-width, {end}")
-    for name in FILMS:
-        if name in case:
-            yield _row(case, name, variable_of(name, case[name].attrs).long_name)
+    for name in (*CORNER, *FILMS):
+        if not np.isnan(float(case.get(name, np.nan))):
+            attributes = case[name].attrs
+            comment = str(attributes.get("comment", "")) if name in CORNER[:3] else None  # exact values
+            yield _row(case, name, variable_of(name, attributes).long_name, comment)
     if {"pressure", "gap"} <= set(case.data_vars) and (case["pressure"] > 0).any() and not any(cut_ends(case)):
         case = case.assign(contact_length=contact_edges(case)["contact_length"])
     if "contact_length" in case:
@@ -169,7 +172,7 @@ def _row(case: xr.Dataset, name: str, meaning: str, remark: str | None = None) -
     if remark is None:
         remark = str(case[f"{name}_error"].attrs.get("comment", "")) if f"{name}_error" in case else ""
         if np.isinf(value):
-            remark = SINGULAR
+            remark = SINGULAR if name.startswith("end_") else _describe_singularity(case)
         elif np.isnan(error):
             remark = NOT_ESTIMATED
         elif np.isinf(error):
@@ -178,6 +181,12 @@ def _row(case: xr.Dataset, name: str, meaning: str, remark: str | None = None) -
             remark = OPEN_END
     text = format_with_error(value, error, units)
     return Quantity(name, meaning, value, error, units, text=text, remark=remark)
+
+
+def _describe_singularity(case: xr.Dataset) -> str:
+    """Remark on an infinite peak: the corner or end at which the pressure is unbounded."""
+    x = float(case.get("corner_x", np.nan))
+    return SINGULAR if np.isnan(x) else f"singular: unbounded towards the corner at x = {format_quantity(x, 'm')}"
 
 
 def _peak_pressure(case: xr.Dataset) -> Iterator[Quantity]:
@@ -198,7 +207,7 @@ def _peak_stress(case: xr.Dataset) -> Iterator[Quantity]:
             return
         case = case if singular else case.assign(peak(case).data_vars)
     if singular:
-        yield _row(case.assign({name: np.inf}), name, meaning, SINGULAR)
+        yield _row(case.assign({name: np.inf}), name, meaning, _describe_singularity(case))
         return
     yield _row(case, name, meaning)
     for axis, coordinate in zip(AXES, ("position x", "position y", "depth"), strict=True):

@@ -76,6 +76,33 @@ def test_slope_jumps_of_formulas(profile, positions: list[float], jumps: list[fl
     np.testing.assert_allclose(corners.jumps, jumps, rtol=1e-4)
 
 
+@pytest.mark.parametrize(
+    ("positions", "jumps"),
+    [
+        ([-20e-6, 0.0, 20e-6], [0.02, -0.04, 0.02]),  # V groove
+        ([0.35e-3, 0.355e-3, 0.445e-3, 0.45e-3], [0.02, -0.02, -0.02, 0.02]),  # flat groove with steep flanks
+        ([0.3e-3, 0.31e-3], [0.02, 0.005]),
+        ([0.3e-3, 0.31e-3], [0.005, 0.02]),
+        ([0.3e-3, 0.301e-3, 0.302e-3], [-0.001, 0.02, -0.01]),
+    ],
+)
+def test_close_corners_are_told_apart(positions: list[float], jumps: list[float]) -> None:
+    """The least distance is a ten-thousandth of the length."""
+
+    def drop(x: np.ndarray) -> np.ndarray:
+        return 0.4 * x**2 + np.maximum(x[:, None] - positions, 0.0) @ jumps
+
+    corners = find_slope_jumps(drop, 10e-3)
+    np.testing.assert_allclose(corners.positions, positions, atol=1e-11)
+    np.testing.assert_allclose(corners.jumps, jumps, rtol=1e-4)
+
+
+@pytest.mark.parametrize("radius", [1.0, 10.0, 1000.0])
+def test_rounding_is_no_corner(radius: float) -> None:
+    """The difference of two large numbers is the usual formula of an arc."""
+    assert not find_slope_jumps(lambda x: radius - np.sqrt(radius**2 - x**2), 10e-3).positions.size
+
+
 @pytest.mark.parametrize("shift", [0.0, 0.3, 0.5])
 def test_measured_points_do_not_resolve_a_corner(shift: float) -> None:
     chamfer = Chamfer(width=0.5e-3 + shift * (X[1] - X[0]), angle=ANGLE)

@@ -110,6 +110,14 @@ def test_singular_peak(case_result: xr.Dataset) -> None:
 
 
 @pytest.mark.usefixtures("without_encoding")
+def test_singular_corner(case_result: xr.Dataset) -> None:
+    corner = case_result.assign(peak_pressure=np.inf, peak_pressure_error=np.inf, corner_x=5e-3, corner_distance=54e-6)
+    page = Page(report.html(corner))
+    assert page.text.count("singular: unbounded towards the corner at x = 5 mm") == 3
+    assert "distance from the corner at which its logarithm is 0" in page.text
+
+
+@pytest.mark.usefixtures("without_encoding")
 def test_dataset_without_inputs(case_result: xr.Dataset) -> None:
     page = Page(report.html(case_result.drop_attrs()))
     assert "contains no inputs" in page.text

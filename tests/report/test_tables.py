@@ -104,6 +104,25 @@ def test_singular_values(singular: xr.Dataset) -> None:
     assert "intensity replaces the peak" in assessment.verdict
 
 
+def test_corner(case_result: xr.Dataset) -> None:
+    """A study of mixed cases has NaN for the law of an end that is not singular, and for the corner."""
+    law = {"corner_x": 5e-3, "corner_slope": 0.02, "corner_intensity": 7.3e8}
+    law |= {"corner_distance": 54e-6, "corner_distance_error": 1.3e-6}
+    peak = {"peak_pressure": np.inf, "peak_pressure_error": np.inf}
+    no_end = {"end_intensity_first": np.nan, "end_exponent_first": np.nan}
+    view = summary(case_result.assign(law | peak | no_end))
+    assert "end_intensity_first" not in view
+    for name in ("peak_pressure", "peak_von_mises"):
+        assert view[name].remark == "singular: unbounded towards the corner at x = 5 mm"
+    assert {view[name].value for name in law if not name.endswith("_error")} == {5e-3, 0.02, 7.3e8, 54e-6}
+    assert view["corner_distance"].text == "54.0 ± 1.3 µm"
+    assert view["corner_x"].remark == ""
+    sharp = case_result.assign(dict.fromkeys(law, np.nan) | peak)
+    assert not {"corner_x", "corner_distance"} & set(summary(sharp).to_dataframe().index)
+    assert summary(sharp)["peak_pressure"].remark == "singular: unbounded towards a sharp end"
+    assert "sharp end" in assess(sharp).verdict
+
+
 def test_answers(case_result: xr.Dataset) -> None:
     """Each answer changes with its number."""
 

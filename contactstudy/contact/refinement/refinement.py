@@ -105,15 +105,11 @@ def _sample(shape: AxialShape, edges: FloatArray) -> SampledColumns:
 
 
 def _with_edges(edges: FloatArray, corners: tuple[float, ...]) -> FloatArray:
-    """Add edges at the corners; an edge closer to a corner than a quarter of its column moves onto the corner."""
-    for corner in corners:
-        nearest = int(np.abs(edges - corner).argmin())
-        is_inner = 0 < nearest < edges.size - 1
-        if is_inner and abs(edges[nearest] - corner) < 0.25 * np.diff(edges)[nearest - 1 : nearest + 1].min():
-            edges[nearest] = corner
-        else:
-            edges = np.sort(np.append(edges, corner))
-    return edges
+    """Add edges at the corners; edges closer to a corner than a quarter of their narrower column are dropped."""
+    inner, widths = edges[1:-1], np.diff(edges)
+    distances = np.abs(inner[:, None] - corners).min(axis=1)
+    inner = inner[distances >= 0.25 * np.minimum(widths[:-1], widths[1:])]
+    return np.unique(np.concatenate([edges[:1], inner, corners, edges[-1:]]))
 
 
 def find_overlooked(shape: AxialShape, edges: FloatArray, loaded: BoolArray, opening: FloatArray) -> BoolArray:
@@ -186,7 +182,7 @@ def evaluate_pairs(
     """Values of a pressure (column, y), and relative increase of the peak by a parabola along y."""
     line, sums = section_maxima(pressure), pressure.sum(axis=1)
     half, mid_x = 0.5 * (edges[-1] - edges[0]), 0.5 * (edges[0] + edges[-1])
-    loaded_corners = [corner for corner in shape.corners if is_loaded_at(corner, edges, pressure)]
+    loaded_corners = _loaded_corners(shape.corners, edges, pressure)
     values: dict[str, list[float]] = {"peak_pressure": [], "end_pressure": [], "end_load": []}
     for side, law in enumerate(laws):
         distances, row = count_from_end(side, edges, line)
@@ -205,10 +201,10 @@ def evaluate_pairs(
     return values, float(line.max() / pressure.max()) - 1
 
 
-def is_loaded_at(corner: float, edges: FloatArray, pressure: FloatArray) -> bool:
-    """Whether a column next to a corner has a pressure (column, y)."""
-    index = int(np.abs(edges - corner).argmin())
-    return bool(pressure[index - 1 : index + 1].any())
+def _loaded_corners(corners: tuple[float, ...], edges: FloatArray, pressure: FloatArray) -> list[float]:
+    """Corners next to a column with a pressure (column, y)."""
+    indices = [int(np.abs(edges - corner).argmin()) for corner in corners]
+    return [corner for corner, i in zip(corners, indices, strict=True) if pressure[i - 1 : i + 1].any()]
 
 
 def count_from_end(side: int, edges: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -365,13 +361,11 @@ class Refinement:
             is_near = (edges[:-1] < end + a) & (edges[1:] > end - a)
             jumps[is_near & (widths > EDGE_COLUMN_WIDTH * a)] = np.inf
         is_marked: BoolArray = (jumps > theta) & (widths > 2 * MIN_COLUMN * a)
-        for corner in self.shape.corners:
-            if is_loaded_at(corner, edges, pressure):
-                distances = np.maximum(edges[:-1] - corner, corner - edges[1:])
-                is_near = distances < a
-                is_marked[is_near] = widths[is_near] > np.maximum(
-                    MIN_END_COLUMN * a, CORNER_GROWTH * distances[is_near]
-                )
+        corners = _loaded_corners(self.shape.corners, edges, pressure)
+        distances = [np.maximum(edges[:-1] - corner, corner - edges[1:]) for corner in corners]
+        nearest = np.min(distances, axis=0, initial=a)
+        is_wide = widths > np.maximum(MIN_END_COLUMN * a, CORNER_GROWTH * nearest)
+        is_marked = np.where(nearest < a, is_wide, is_marked)
         for side, outermost in enumerate(((0, 1), (-1, -2))):
             if self.laws[side] is not None:
                 is_marked[list(outermost)] = False

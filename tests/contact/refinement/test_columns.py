@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -131,3 +132,8 @@ def test_first_columns_contain_narrow_ridges(position: float, width: float) -> N
     columns = np.diff(edges)[np.abs(centres_of(edges) - position) < 0.1]
     assert columns.size
     assert columns.max() <= 0.1
+
+
+def test_close_corners_are_edges() -> None:
+    corners = (13.0, 13.001, 13.002)
+    assert set(corners) <= set(first_edges(replace(axial_shape(SHAPES["chamfer"]), corners=corners)).tolist())

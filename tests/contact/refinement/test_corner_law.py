@@ -14,8 +14,8 @@ LENGTH = 2e-3
 ANGLE = np.radians(2)
 
 
-def solve_profile(profile: Profile, accuracy: float = 0.01):
-    roller = cs.Roller(radius=6e-3, length=LENGTH, profile=profile)
+def solve_profile(profile: Profile, accuracy: float = 0.01, length: float = LENGTH):
+    roller = cs.Roller(radius=6e-3, length=length, profile=profile)
     case = cs.Case(body=cs.HalfSpace(material=STEEL), roller=roller, max_pressure=1e9)
     return cs.solve(case, stresses=False, accuracy=accuracy)
 
@@ -23,6 +23,19 @@ def solve_profile(profile: Profile, accuracy: float = 0.01):
 @pytest.fixture(scope="module")
 def chamfered_roller():
     return solve_profile(Chamfer(width=0.5e-3, angle=ANGLE), accuracy=0.02)
+
+
+class Groove:
+    """V groove of 40 um at mid-length."""
+
+    def drop(self, x: np.ndarray, length: float) -> np.ndarray:
+        """Material removed (m) at distances `x` (m) from mid-length."""
+        return 0.02 * np.maximum(20e-6 - np.abs(x), 0.0)
+
+
+@pytest.fixture(scope="module")
+def grooved_roller():
+    return solve_profile(Groove(), accuracy=0.02, length=10e-3)
 
 
 def test_peak_at_corner_is_infinite(chamfered_roller) -> None:
@@ -49,19 +62,27 @@ def test_corner_of_user_class_has_the_law(chamfered_roller) -> None:
         assert float(result[name]) == pytest.approx(float(chamfered_roller[name]), rel=1e-6)
 
 
-def test_corner_pressure_follows_logarithm(chamfered_roller) -> None:
-    """The columns within 0.05 of d0 on both sides agree with the means of the law."""
-    distance = float(chamfered_roller.corner_distance)
-    low, high = (chamfered_roller.x_bounds.values - float(chamfered_roller.corner_x)).T
+def test_groove_has_a_law(grooved_roller) -> None:
+    assert np.isinf(grooved_roller.peak_pressure)
+    assert float(grooved_roller.corner_slope) == pytest.approx(0.02)
+    assert abs(float(grooved_roller.corner_x) - 5e-3) == pytest.approx(20e-6)
+
+
+@pytest.mark.parametrize(("name", "part"), [("chamfered_roller", 0.05), ("grooved_roller", 0.03)])
+def test_corner_pressure_follows_logarithm(name: str, part: float, request) -> None:
+    """The columns within a part of d0 on both sides agree with the means of the law."""
+    result = request.getfixturevalue(name)
+    distance = float(result.corner_distance)
+    low, high = (result.x_bounds.values - float(result.corner_x)).T
     for low_distance, high_distance in ((low, high), (-high, -low)):
-        in_range = (low_distance > 0) & (high_distance < 0.05 * distance)
+        in_range = (low_distance > 0) & (high_distance < part * distance)
         assert in_range.sum() > 3
         low_distance, high_distance = low_distance[in_range], high_distance[in_range]
         mean_log = (high_distance * np.log(high_distance) - low_distance * np.log(low_distance)) / (
             high_distance - low_distance
         ) - 1
-        law = float(chamfered_roller.corner_intensity) * (np.log(distance) - mean_log)
-        np.testing.assert_allclose(chamfered_roller.pressure.max("y").values[in_range], law, rtol=0.05)
+        law = float(result.corner_intensity) * (np.log(distance) - mean_log)
+        np.testing.assert_allclose(result.pressure.max("y").values[in_range], law, rtol=0.05)
 
 
 @pytest.mark.parametrize("radius", [50e-6])
