@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
-from contextlib import AbstractContextManager
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager
 from functools import cache
+from threading import Lock
 
 from threadpoolctl import ThreadpoolController
+
+_LOCK, _LIMIT = Lock(), ExitStack()
+_entries = 0
 
 
 @cache
@@ -14,7 +19,19 @@ def _controller() -> ThreadpoolController:
     return ThreadpoolController()
 
 
-def one_blas_thread() -> AbstractContextManager[object]:
+@contextmanager
+def one_blas_thread() -> Iterator[None]:
     """Keep BLAS on one thread: for many small products, waiting for a second thread costs more than it saves."""
-    limit: AbstractContextManager[object] = _controller().limit(limits=1, user_api="blas")
-    return limit
+    # All threads of the process share the limit: the first entry sets it, the last exit restores the threads.
+    global _entries
+    with _LOCK:
+        if not _entries:
+            _LIMIT.enter_context(_controller().limit(limits=1, user_api="blas"))
+        _entries += 1
+    try:
+        yield
+    finally:
+        with _LOCK:
+            _entries -= 1
+            if not _entries:
+                _LIMIT.close()

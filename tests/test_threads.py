@@ -5,13 +5,15 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import AbstractContextManager
+from threading import Event
 
 import pytest
 import xarray as xr
 from threadpoolctl import threadpool_limits
 
 import contactstudy as cs
-from contactstudy import cache
+from contactstudy import cache, threads
 
 ROUNDS = 2
 
@@ -36,6 +38,51 @@ ROLLING_GRID = cs.choose_grid(ROLLING, cells_x=6, cells_y=8)
 POINTS = {"x": [0.0, 1e-4], "y": [0.0, 2e-5], "z": [0.0, 1e-5, 5e-5]}
 
 
+class Controller:
+    """Controller of the threads of a BLAS that starts with two."""
+
+    def __init__(self) -> None:
+        self.threads = 2
+
+    def limit(self, *, limits: int, user_api: str) -> AbstractContextManager[None]:
+        assert user_api == "blas"
+        return Limiter(self, limits)
+
+
+class Limiter(AbstractContextManager[None]):
+    """Limit that restores the threads found at its start."""
+
+    def __init__(self, controller: Controller, limit: int) -> None:
+        self.controller, self.original = controller, controller.threads
+        controller.threads = limit
+
+    def __exit__(self, *_: object) -> None:
+        self.controller.threads = self.original
+
+
+@pytest.mark.parametrize("last", [0, 1])
+def test_blas_limit_lasts_from_first_entry_to_last_exit(monkeypatch: pytest.MonkeyPatch, last: int) -> None:
+    controller = Controller()
+    monkeypatch.setattr(threads, "_controller", lambda: controller)
+    entered, leave = (Event(), Event()), (Event(), Event())
+
+    def hold(index: int) -> None:
+        with threads.one_blas_thread():
+            entered[index].set()
+            assert leave[index].wait(10)
+
+    with ThreadPoolExecutor(2) as executor:
+        holders = []
+        for index in (0, 1):
+            holders.append(executor.submit(hold, index))
+            assert entered[index].wait(10)
+        assert controller.threads == 1
+        for index, remaining_threads in ((1 - last, 1), (last, 2)):
+            leave[index].set()
+            holders[index].result(10)
+            assert controller.threads == remaining_threads
+
+
 @pytest.fixture
 def fast_switching() -> Iterator[None]:
     """Switch between threads every ten microseconds; BLAS, whose threads the process shares, on one."""
@@ -54,6 +101,7 @@ def calls() -> dict[str, Callable[[], xr.Dataset | xr.DataArray]]:
     thermal = cs.heat.ThermalProperties(conductivity=50.0, density=7850.0, specific_heat=460.0)
     return {
         "solve": lambda: cs.solve(CASE, GRID, **POINTS),
+        "solve_refined": lambda: cs.solve(CASE, **POINTS),
         "solve_rolling": lambda: cs.solve(ROLLING, ROLLING_GRID, stresses=False),
         "solve_contact": lambda: cs.solve_contact(BODY, gap, load=10.0),
         "stress_field": lambda: cs.stress_field(BODY, pressure, friction=0.2, **POINTS),
@@ -61,6 +109,7 @@ def calls() -> dict[str, Callable[[], xr.Dataset | xr.DataArray]]:
         "surface_displacement": lambda: cs.surface_displacement(BODY, pressure, 0.2),
         "equivalent_loads": lambda: cs.equivalent_loads(BODY, pressure, 0.2),
         "roller_stress": lambda: cs.roller_stress(CASE, pressure, **POINTS),
+        "wear_in": lambda: cs.wear.wear_in(CASE, 1e-17, distance=1e3, grid=GRID),
         "flash_temperature": lambda: cs.heat.flash_temperature(CASE, solution, body=thermal, roller=thermal),
     }
 
@@ -77,6 +126,6 @@ def test_threads_get_serial_results() -> None:
         order = names[start:] + names[:start]
         return [name for name in order if not serial[name]().equals(expected[name])]
 
-    with ThreadPoolExecutor(2) as threads:
+    with ThreadPoolExecutor(2) as executor:
         for start in range(ROUNDS):
-            assert list(threads.map(run, (start, start))) == [[], []]
+            assert list(executor.map(run, (start, start))) == [[], []]

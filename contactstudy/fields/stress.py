@@ -57,9 +57,9 @@ def stress_field(
     inside_cells : "uniform" or DataArray (x, y)
         Distribution of the loads inside the cells: uniform, or the shape of a given pressure on the same cells, usually
         the contact pressure of `solve`. Its smooth form is continuous and falls to zero inside the last cells; a load
-        is this form times a ratio linear in each cell, and each cell keeps its force. For a given argument the field is
-        linear in the loads. The error under a Hertz pressure at a third of a cell below the top is 7e-2 of the largest
-        pressure with uniform cells, 1.5e-3 with the shape.
+        is this form times a ratio, linear between centres and faces, and the cells keep the sum of their forces. For a
+        given argument the field is linear in the loads. The error under a Hertz pressure at a third of a cell below
+        the top is 7e-2 of the largest pressure with uniform cells, 1.5e-3 with the shape.
 
     Returns
     -------

@@ -23,7 +23,7 @@ MIN_EQUAL_RATIO = 0.999
 determine the end of a load."""
 
 MIN_NEIGHBOUR_RATIO = 0.5
-"""Least mean of the shape in a neighbouring cell, over the mean in the cell, for a determined ratio. Accuracy."""
+"""Least ratio of the shape's means in neighbouring cells with a continuous ratio between them. Accuracy."""
 
 MIN_LOADED_FRACTION = 0.5
 """Loaded part of the last cell below which the last two cells share their force. Accuracy: the discrete contact puts
@@ -79,50 +79,43 @@ class SmoothLoad:
         )
 
     def shape_loads(self, cell_loads: FloatArray) -> ShapedLoad:
-        """Return `cell_loads` (row, cell) of this shape: the shape times a ratio that is linear in each cell."""
-        # Where the shape is 0, the load equals the ratio. Each cell keeps its force; coupled cells keep their sum.
-        widths, (rows, count) = np.diff(self.edges), cell_loads.shape
-        force, moment, _ = self.moments_up_to(np.arange(count), self.edges[1:])
+        """Return `cell_loads` (row, cell) of this shape: the shape times a ratio, linear between centres and faces."""
+        # Where the shape is 0, the load equals the ratio. The ratio on a face is a mean of the ratios at the centres of
+        # both cells: no ratio is larger than all of these, and tractions keep their bound. The cells keep the sum of
+        # their forces; coupled cells have one ratio.
+        widths, count = np.diff(self.edges), cell_loads.shape[1]
+        force = self.moments_up_to(np.arange(count), self.edges[1:])[0]
         is_empty = force == 0
-        force, moment = np.where(is_empty, widths, force), np.where(is_empty, 0.5 * widths**2, moment)
+        force, cell_force = np.where(is_empty, widths, force), cell_loads * widths
         sign, first, middle, last = (
             np.where(is_empty, 1.0, values) for values in (self.sign, self.first, self.middle, self.last)
         )
         shape = replace(self, sign=sign, first=first, middle=middle, last=last)
-        cell_force, centroid = cell_loads * widths, self.edges[:-1] + moment / force
-        # Coupled cells form a group with one ratio; other groups contain one cell.
         is_coupled_back = np.pad(self.coupled_to_next[:, :-1], ((0, 0), (1, 0)))
-        group_start = np.maximum.accumulate(np.where(is_coupled_back, 0, np.arange(count)), axis=1)
-        group_stop = np.minimum.accumulate(np.where(self.coupled_to_next, count, np.arange(count))[:, ::-1], axis=1)[
-            :, ::-1
-        ]
+        group_force = force
         if self.coupled_to_next.any():
-            moment = force * centroid
-            cell_force, force, moment = (_group_sums(values, group_start) for values in (cell_force, force, moment))
-            centroid = moment / force
-        ratio = cell_force / force
-        mean = np.abs(force / (self.edges[1:][group_stop] - self.edges[:-1][group_start]))
-        distances, ratio_changes = [], []
-        row = np.arange(rows)[:, None]
-        for neighbour, exists in (
-            (np.maximum(group_start - 1, 0), group_start > 0),
-            (np.minimum(group_stop + 1, count - 1), group_stop < count - 1),
-        ):
-            # The ratio in a neighbour with a small mean is inaccurate.
-            is_valid = (
-                exists & ~is_empty & ~is_empty[row, neighbour] & (mean[row, neighbour] > MIN_NEIGHBOUR_RATIO * mean)
-            )
-            distances.append(np.where(is_valid, centroid[row, neighbour] - centroid, 0.0))
-            ratio_changes.append(ratio[row, neighbour] - ratio)
-        # The slope of the parabola through the ratios of both neighbours; with one neighbour the ratio is constant.
-        (distance_back, distance_ahead), (first_change, last_change) = distances, ratio_changes
-        product = np.where(
-            (distance_back < 0) & (distance_ahead > 0),
-            distance_back * distance_ahead * (distance_ahead - distance_back),
-            np.inf,
-        )
-        slope = (first_change * distance_ahead**2 - last_change * distance_back**2) / product
-        return ShapedLoad(shape, ratio + slope * (self.edges[:-1] - centroid), slope)
+            group_start = np.maximum.accumulate(np.where(is_coupled_back, 0, np.arange(count)), axis=1)
+            cell_force, group_force = (_group_sums(values, group_start) for values in (cell_force, force))
+        ratio = cell_force / group_force
+        mean = np.where(self.coupled_to_next | is_coupled_back | is_empty, 0.0, force / widths)
+        near, far = mean[:, :-1], mean[:, 1:]
+        # The ratio in a cell with a small mean is inaccurate.
+        is_continuous = near * far > MIN_NEIGHBOUR_RATIO * np.maximum(near**2, far**2)
+        first_force, last_force = shape._face_forces()
+        weight = first_force[:, 1:] / np.where(is_continuous, first_force[:, 1:] + last_force[:, :-1], 1.0)
+        face_ratio = ratio[:, :-1] + weight * np.diff(ratio, axis=1)
+        first_ratio, last_ratio = ratio.copy(), ratio.copy()
+        np.copyto(first_ratio[:, 1:], face_ratio, where=is_continuous)
+        np.copyto(last_ratio[:, :-1], face_ratio, where=is_continuous)
+        return ShapedLoad(shape, first_ratio, ratio, last_ratio)
+
+    def _face_forces(self) -> tuple[FloatArray, FloatArray]:
+        """Return forces of the shape times a ratio that rises from 0 at the centre to 1 on the first or last face."""
+        cell, half_width = np.arange(self.edges.size - 1), 0.5 * np.diff(self.edges)
+        half_force, half_moment, _ = self.moments_up_to(cell, self.edges[:-1] + half_width)
+        force, moment, _ = self.moments_up_to(cell, self.edges[1:])
+        last = (moment - half_moment) / half_width - (force - half_force)
+        return np.abs(half_force - half_moment / half_width), np.abs(last)
 
     def moments_up_to(self, cell: IntArray, x: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Force, first and second moment between the start of each `cell` and `x`, about the start: arrays (row, x)."""
@@ -144,11 +137,12 @@ class SmoothLoad:
 
 @dataclass(frozen=True, eq=False)
 class ShapedLoad:
-    """Loads along rows of cells: a shape times a ratio that is linear in each cell."""
+    """Loads along rows of cells: a shape times a ratio that is linear in each half of a cell."""
 
     shape: SmoothLoad
-    ratio: FloatArray  # (row, cell): ratio at the start of each cell and its derivative, 1/m
-    slope: FloatArray
+    first: FloatArray  # (row, cell): ratio on the first face, at the centre and on the last face
+    middle: FloatArray
+    last: FloatArray
 
     @property
     def edges(self) -> FloatArray:
@@ -163,9 +157,20 @@ class ShapedLoad:
 
     def _moments_up_to(self, cell: IntArray, x: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Force and first moment between the start of each `cell` and `x`, about the start: arrays (row, x)."""
-        force, moment, second_moment = self.shape.moments_up_to(cell, x)
-        ratio, slope = self.ratio[:, cell], self.slope[:, cell]
-        return ratio * force + slope * moment, ratio * moment + slope * second_moment
+        half_width = 0.5 * np.diff(self.edges)[cell]
+        half = self.shape.moments_up_to(cell, np.minimum(x, self.edges[cell] + half_width))
+        whole = self.shape.moments_up_to(cell, x)
+        first, middle, last = self.first[:, cell], self.middle[:, cell], self.last[:, cell]
+        rise, start = (last - middle) / half_width, 2 * middle - last  # in the second half
+        first_rise, start_change = (middle - first) / half_width, first - start
+        force, moment = (
+            start * whole[order]
+            + rise * whole[order + 1]
+            + start_change * half[order]
+            + (first_rise - rise) * half[order + 1]
+            for order in (0, 1)
+        )
+        return force, moment
 
     @property
     def cell_means(self) -> FloatArray:

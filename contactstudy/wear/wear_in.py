@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 import warnings
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -17,7 +17,7 @@ from contactstudy.arrays.grid import Grid
 from contactstudy.arrays.variables import cell_coordinates, describe, in_si, labelled_cells, require
 from contactstudy.cache import ArrayKey
 from contactstudy.case.case import Case
-from contactstudy.case.gridding import choose_grid
+from contactstudy.case.gridding import create_widening_grids, solve_in_first_window
 from contactstudy.case.magnitudes import warn_of_magnitudes
 from contactstudy.case.motion import Rolling, Shift, Sliding
 from contactstudy.case.roller import snap_to_ends
@@ -219,7 +219,8 @@ def wear_in(
     circumference : float, optional
         Length along y of the surface over which the wear is spread, metres; default: the roller's, ``2 pi R``.
     grid : Grid, optional
-        Cells. Default: in full sliding the columns refined for the unworn contact, else the cells of `choose_grid`.
+        Cells. Default: in full sliding the columns refined for the unworn contact, else the cells
+        of `choose_grid` in the first window that contains the contact.
     after : Dataset, optional
         Result of this function for the same roller and body; its last state is the start.
     tolerance : float
@@ -275,22 +276,27 @@ def wear_in(
     if not TOLERANCE_RANGE[0] <= tolerance <= TOLERANCE_RANGE[1]:
         raise InvalidInputError("tolerance", tolerance, f"from {TOLERANCE_RANGE[0]:g} to {TOLERANCE_RANGE[1]:g}")
     max_steps = checks.count("max_steps", max_steps)
-    distance_before, depth, cells, step, error = (
-        (0.0, None, _choose_cells(case, grid), None, 0.0) if after is None else _read_last_state(after, case, grid)
+    distance_before, depth, grids, step, error = (
+        (0.0, None, _choose_grids(case, grid), None, 0.0) if after is None else _read_last_state(after, case, grid)
     )
     all_steps = np.ndim(distance) == 0
     stops = checks.increasing("distance", in_si("distance", distance, "m"), "metres")
     if stops[0] < distance_before or stops[-1] <= distance_before:
         raise InvalidInputError("distance", stops.tolist(), f"beyond {distance_before:g} m, where the wear begins")
-    integrator = WearIntegrator(
-        case=case,
-        shape=contact_shape(case, cells, PrescribedLoad(case.normal_load, case.load_position)),
-        settings=Settings(max_iterations=2000),  # of one contact; large steps change the contact area often
-        rate=rate / length,
-        law=law,
-        tolerance=tolerance,
-    )
-    start = integrator.initial_state(distance_before, np.zeros(cells.cells_x) if depth is None else depth, error)
+
+    def start_on(cells: Grid) -> tuple[WearIntegrator, State]:
+        integrator = WearIntegrator(
+            case=case,
+            shape=contact_shape(case, cells, PrescribedLoad(case.normal_load, case.load_position)),
+            settings=Settings(max_iterations=2000),  # of one contact; large steps change the contact area often
+            rate=rate / length,
+            law=law,
+            tolerance=tolerance,
+        )
+        first_depth = np.zeros(cells.cells_x) if depth is None else depth
+        return integrator, integrator.initial_state(distance_before, first_depth, error)
+
+    integrator, start = solve_in_first_window(grids, start_on)
     if not start.slip.any():
         raise InvalidInputError("case", f"friction = {case.friction}", "a case with friction and slip")
     last_stop = float(stops[-1])
@@ -302,7 +308,7 @@ def wear_in(
     if step is None:
         # The first step wears 1e-3 of the depth ``a**2 / (2 R)`` of the contact.
         contact_depth = case.hertz_half_width**2 / (2 * case.roller.radius)
-        max_rate = float((integrator.rate * start.slip * (cells.dy * start.pressure.sum(axis=1))).max())
+        max_rate = float((integrator.rate * start.slip * (integrator.shape.grid.dy * start.pressure.sum(axis=1))).max())
         step = 1e-3 * contact_depth / max_rate if max_rate > 0 else np.inf
     states = [start._replace(next_step=step)]
     for state in _integrate_to_stops(integrator, states[0], stops, max_steps):
@@ -313,22 +319,24 @@ def wear_in(
     return with_provenance(worn, case, inputs, {"wear": time.perf_counter() - start_time})
 
 
-def _choose_cells(case: Case, grid: Grid | None) -> Grid:
-    """Choose the cells."""
+def _choose_grids(case: Case, grid: Grid | None) -> Iterable[Grid]:
+    """Choose the cells, in rolling with windows of increasing widths."""
     if grid is not None:
         checks.instance("grid", grid, Grid, "a Grid")
-        return grid
+        return (grid,)
     if not isinstance(case.motion, Sliding):
-        return choose_grid(case)
+        return create_widening_grids(case)
     refined_grid = refine_contact(case, 0.01, 1e-6).contact.shape.grid
     low, high = refined_grid.y_range
     # The load moves along the axis as the ends wear: the window is 1.4 times the window of the unworn contact.
     cells_y = 2 * int(np.ceil(0.5 * 1.4 * refined_grid.cells_y))
     width_factor = cells_y / refined_grid.cells_y
-    return Grid.between(refined_grid.x_edges, (width_factor * low, width_factor * high), cells_y)
+    return (Grid.between(refined_grid.x_edges, (width_factor * low, width_factor * high), cells_y),)
 
 
-def _read_last_state(after: xr.Dataset, case: Case, grid: Grid | None) -> tuple[float, FloatArray, Grid, float, float]:
+def _read_last_state(
+    after: xr.Dataset, case: Case, grid: Grid | None
+) -> tuple[float, FloatArray, tuple[Grid], float, float]:
     """Distance, depth, cells, next step and error of the depth of the last state of a result."""
     require(after, "wear_depth", "wear_error", "pressure", "next_step", argument="after")
     check_solved_for(after, case, "after", only=WORN_ATTRIBUTES)
@@ -338,7 +346,7 @@ def _read_last_state(after: xr.Dataset, case: Case, grid: Grid | None) -> tuple[
     cells = labelled_cells("after.pressure", last_state["pressure"], extent=case.body.extent)[1]
     depth = last_state["wear_depth"].values.astype(np.float64)
     error = float(last_state["wear_error"]) * float(depth.max())
-    return float(last_state["distance"]), depth, cells, float(last_state["next_step"]), error
+    return float(last_state["distance"]), depth, (cells,), float(last_state["next_step"]), error
 
 
 def _integrate_to_stops(integrator: WearIntegrator, state: State, stops: FloatArray, max_steps: int) -> Iterator[State]:

@@ -58,3 +58,26 @@ def test_stress_maximum_at_stick_slip_border(friction: float, force_fraction: fl
     assert abs(float(result.peak_von_mises) - expected) < float(result.peak_von_mises_error)
     assert float(result.peak_von_mises_error) < 0.03 * expected
     assert abs(float(result.peak_von_mises_x) - LENGTH / 2) < 0.1 * LENGTH
+
+
+@pytest.mark.parametrize(
+    ("body", "creepage"),
+    [
+        (cs.HalfSpace(material=STEEL), {"longitudinal_creepage": 0.15}),
+        (cs.HalfSpace(material=STEEL), {"longitudinal_creepage": 0.3, "lateral_creepage": 0.2, "spin": 0.4}),
+        (cs.FiniteLengthSpace(length=0.6e-3, material=STEEL), {"lateral_creepage": 0.5}),
+    ],
+)
+def test_coulomb_law_holds_inside_cells(body: cs.Body, creepage: dict[str, float]) -> None:
+    """Largest traction on the top over its bound, at positions inside the cells, away from the rim."""
+    profile = cs.profiles.Ellipsoid(crown_radius=20e-3)
+    roller = cs.Roller(radius=RADIUS, length=0.6e-3, profile=profile, material=STEEL, ends="none")
+    case = cs.Case(body=body, roller=roller, max_pressure=1e9, friction=0.3)
+    half_width = case.hertz_half_width
+    scales = {name: 0.3 * half_width / RADIUS / (half_width if name == "spin" else 1.0) for name in creepage}
+    motion = cs.Rolling(**{name: value * scales[name] for name, value in creepage.items()})
+    y = half_width * np.linspace(-0.8, 0.8, 161)
+    stress = cs.solve(replace(case, motion=motion), x=np.linspace(0.25e-3, 0.35e-3, 5), y=y, z=[0.0])
+    pressure = -stress.sigma_zz
+    ratio = np.hypot(stress.tau_xz, stress.tau_yz) / (0.3 * pressure)
+    assert float(ratio.where(pressure > 0.3 * pressure.max()).max()) < 1.005

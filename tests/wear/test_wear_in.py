@@ -16,10 +16,11 @@ from contactstudy import (
     Roller,
     Rolling,
     Shift,
+    WindowError,
     choose_grid,
     solve,
 )
-from contactstudy.profiles import Cylinder, FullCrown, Lundberg
+from contactstudy.profiles import Cylinder, Ellipsoid, FullCrown, Lundberg
 from contactstudy.wear import wear_in, worn_profile
 
 STEEL = Material(210e9, 0.3)
@@ -322,3 +323,15 @@ def test_wear_by_slip_equals_wear_by_work() -> None:
         for law, coefficient in (("slip", 1e-17), ("work", 1e-17 / friction))
     )
     assert by_slip == pytest.approx(by_work, rel=1e-3)
+
+
+def test_rolling_window_widens_until_it_contains_the_contact():
+    """The contact of a crowned roller at a low load is wider than the first window."""
+    roller = Roller(radius=5e-3, length=0.3e-3, profile=Ellipsoid(crown_radius=3e-3))
+    motion = Rolling(longitudinal_creepage=1e-3)
+    case = Case(body=HalfSpace(material=STEEL), roller=roller, load=1.0, friction=0.3, motion=motion)
+    with pytest.raises(WindowError):
+        wear_in(case, K, distance=1.0, grid=choose_grid(case))
+    worn = wear_in(case, K, distance=1.0)
+    assert bool(worn.converged)
+    assert float(worn.line_load.isel(distance=-1).sum() * worn.x.diff("x")[0]) == pytest.approx(1.0, rel=1e-6)
