@@ -280,7 +280,7 @@ FAULTS: dict[str, tuple[Faults, ...]] = {
         (harder_steel,),
     ),
     "film": (
-        (faster_flow, shifted_pressure),
+        (faster_flow, shifted_pressure, wrong_exponent),
         (heavier_film, wrong_exponent),
         (unfinished_iteration, heavier_film),
         (faster_flow,),
