@@ -1,4 +1,4 @@
-"""Rules of CONTRIBUTING.md: no long sequence of positional values, no constant bound twice."""
+"""Rules of CONTRIBUTING.md: no long sequence of positional values, no constant bound twice, tests by module."""
 
 from __future__ import annotations
 
@@ -83,8 +83,33 @@ def fields(node: ast.ClassDef, classes: dict[str, ast.ClassDef]) -> set[str]:
     )
 
 
+def misplaced_tests(tests: list[str], modules: list[str]) -> list[str]:
+    """Files `room/test_MODULE.py`, `room/test_MODULE_TOPIC.py` or `MODULE/test_TOPIC.py` without such a module."""
+    stems = {name.removesuffix(".py") for name in modules}
+    rooms = {name.split("/")[0] for name in stems}
+    misplaced = []
+    for test in tests:
+        room, _, name = test.removesuffix(".py").rpartition("/")
+        words = name.split("_")[1:]
+        candidates = {f"{room}/{'_'.join(words[:count])}" for count in range(1, len(words) + 1)} | {room}
+        if room.split("/")[0] in rooms and not candidates & stems:
+            misplaced.append(test)
+    return misplaced
+
+
 def test_package_follows_rules() -> None:
     assert not violations(MODULES)
+
+
+def test_tests_mirror_modules() -> None:
+    folder = Path(__file__).parent
+    tests = [path.relative_to(folder).as_posix() for path in folder.rglob("test_*.py")]
+    assert not misplaced_tests(tests, [Path(name).as_posix() for name in MODULES])
+
+
+def test_misplaced_test_is_detected() -> None:
+    tests = ["film/test_solve.py", "film/test_solve_speeds.py", "export/test_vtk.py", "film/test_speeds.py"]
+    assert misplaced_tests(tests, ["film/solve.py", "export.py"]) == ["film/test_speeds.py"]
 
 
 FIELDS = "\n    ".join(f"{name}: int" for name in "abcde")

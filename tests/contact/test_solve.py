@@ -1,4 +1,4 @@
-"""Contact: effects of a free end, friction, bad input; `verification/test_checks` has closed forms."""
+"""Contact: effects of a free end, friction, bad input; `verification/test_suite_checks` has closed forms."""
 
 from __future__ import annotations
 

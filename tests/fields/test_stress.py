@@ -1,4 +1,4 @@
-"""Stresses on and near the top, equilibrium, symmetry and bad input; `verification/test_checks` has closed forms."""
+"""Stresses near the top, equilibrium, symmetry and bad input; `verification/test_suite_checks` has closed forms."""
 
 from __future__ import annotations
 

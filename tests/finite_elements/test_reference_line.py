@@ -39,7 +39,7 @@ def finite_elements(depths: tuple[float, ...]) -> np.ndarray:
 
 @pytest.mark.slow
 def test_surface_displacement_relative_to_reference_depth() -> None:
-    """The contact's approach is this difference, see `tests/contact/normal/test_reference.py`."""
+    """The contact's approach is this difference, see `tests/contact/normal/test_contact_reference.py`."""
     depths = (0.5 * LENGTH, LENGTH, 3 * LENGTH)
     material = unit_material(POISSON)
     load = on_cells(lambda x, y: quartic(y) + 0 * x, (0.0, LENGTH), (-1.25, 1.25), (80, 120))

@@ -26,7 +26,7 @@ def test_mutation_run_on_closed_form(tmp_path: Path) -> None:
         "slab_factors",
         "--tests",
     ]
-    for tests in ("tests/overlapping/test_slab.py", "tests/overlapping/test_quadrature.py"):
+    for tests in ("tests/overlapping/test_equations_slab.py", "tests/overlapping/test_quadrature.py"):
         subprocess.run([*command, tests], cwd=ROOT, env=os.environ | {"PYTHONPATH": str(ROOT)}, check=True)
     reached_notes, tried_notes = (
         read_notes(tmp_path / "reached.jsonl", "test"),
@@ -36,4 +36,4 @@ def test_mutation_run_on_closed_form(tmp_path: Path) -> None:
     assert set(tried_notes) == {mutant.key for mutant in all_mutants() if "slab_factors" in mutant.key} - set(
         EQUIVALENT
     )
-    assert all("test_slab" in note["by"] for note in tried_notes.values())
+    assert all("test_equations_slab" in note["by"] for note in tried_notes.values())

@@ -1,4 +1,4 @@
-"""Output of the suite; `test_checks` makes its checks."""
+"""Output of the suite; `test_suite_checks` makes its checks."""
 
 from __future__ import annotations
 

@@ -15,7 +15,7 @@ from contactstudy.study.case_setup import build_setup
 from contactstudy.study.parameters import PARAMETERS
 from contactstudy.study.profile_tables import PROFILES
 from tests.small_study import BASE, as_toml, case_id, small_study
-from tests.study.test_profile_kinds import EXAMPLES
+from tests.study.test_profile_tables import EXAMPLES
 
 OVERHANG = {key: value for key, value in BASE.items() if not key.startswith("field")} | {"end_distance": -5e-5}
 EDGES = [{"name": "drawn", "kind": "chamfer", "width": 5e-5, "angle": 0.1}, profiles.Cylinder(2e-5), "cylinder"]

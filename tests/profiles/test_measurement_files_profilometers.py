@@ -9,7 +9,7 @@ import pytest
 
 from contactstudy import InvalidInputError
 from contactstudy.profiles.measurement_files import read_heights
-from tests.profiles.test_column_files import FOREIGN_FILES
+from tests.profiles.test_measurement_files_columns import FOREIGN_FILES
 
 X, Y = 2e-6 * np.arange(5), 3e-6 * np.arange(4)
 MAP = 1e-6 * np.random.default_rng(0).normal(size=(5, 4))
