@@ -41,7 +41,10 @@ def largest_under_carter(friction: float, stick: float) -> float:
     return float(np.sqrt(squares.max()))
 
 
-@pytest.mark.parametrize(("friction", "force_fraction"), [(0.3, 0.25), (0.5, 0.8), (1.0, 0.5)])
+@pytest.mark.parametrize(
+    ("friction", "force_fraction"),
+    [(0.3, 0.25), *(pytest.param(*pair, marks=pytest.mark.slow) for pair in [(0.5, 0.8), (1.0, 0.5)])],
+)
 def test_stress_maximum_at_stick_slip_border(friction: float, force_fraction: float) -> None:
     profile = cs.profiles.Lundberg.for_pressure(
         PRESSURE, radius=RADIUS, modulus=STEEL.plane_strain_modulus / 2, delta=2
